@@ -1,0 +1,23 @@
+# Every find_package of the project. The package configuration repeats those that installed
+# libraries need (kaboum-config.cmake.in).
+set(CMAKE_FIND_PACKAGE_PREFER_CONFIG OFF)
+find_package(Threads REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(TBB REQUIRED CONFIG)
+find_package(nlohmann_json 3.11 REQUIRED CONFIG)
+find_package(CLI11 2.1 REQUIRED CONFIG)
+find_package(PNG REQUIRED)
+
+# CGAL's Kernel and number types (LGPL) only; its mesh packages are GPL and stay out of the libraries.
+set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
+find_package(CGAL 5.5 REQUIRED CONFIG QUIET)
+
+if(KABOUM_WITH_ASSIMP)
+  find_package(assimp 5.2 REQUIRED CONFIG)
+endif()
+if(KABOUM_BUILD_TESTS)
+  find_package(GTest 1.12 REQUIRED)
+endif()
+if(KABOUM_BUILD_BENCHMARKS)
+  find_package(benchmark REQUIRED)
+endif()

@@ -1,0 +1,23 @@
+# One INTERFACE target carries the language level, the warnings and the instrumentation.
+add_library(kaboum_options INTERFACE)
+target_compile_features(kaboum_options INTERFACE cxx_std_20)
+# No contraction into fused multiply-adds: error bounds and determinism depend on the rounding of
+# every single operation.
+target_compile_options(kaboum_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-qual
+  -ffp-contract=off)
+# GCC 12 and 13 drop double -> float -> double when they vectorise it in straight-line code
+# (tests/geom/float32_test.cpp shows it); loops are not affected.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  target_compile_options(kaboum_options INTERFACE -fno-tree-slp-vectorize)
+endif()
+
+if(KABOUM_SANITIZE)
+  target_compile_options(kaboum_options INTERFACE
+    -fsanitize=${KABOUM_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(kaboum_options INTERFACE -fsanitize=${KABOUM_SANITIZE})
+endif()
+if(KABOUM_COVERAGE)
+  target_compile_options(kaboum_options INTERFACE --coverage)
+  target_link_options(kaboum_options INTERFACE --coverage)
+endif()

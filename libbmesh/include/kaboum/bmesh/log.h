@@ -1,0 +1,45 @@
+#pragma once
+
+#include <kaboum/geom/mesh.h>
+#include <kaboum/geom/prepare.h>
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace kaboum::bmesh {
+
+enum class Direction {
+  Outer,  ///< the result encloses the input
+  Inner,  ///< the input encloses the result
+  Any,    ///< no constraint: for comparison
+};
+
+/// One certified operation: the triangles with both vertices vanish, `kept` moves to `position`, and
+/// `gone` becomes `kept`. A move of a single vertex has kept == gone.
+struct Step {
+  std::uint32_t kept;
+  std::uint32_t gone;
+  geom::Vec3 position;
+};
+
+/// Everything needed to derive a result from its input again. Layout of the file: docs/formats.md.
+struct Log {
+  Direction direction = Direction::Outer;
+  std::string input_sha256;              ///< of the input file's bytes
+  std::string tool;                      ///< program and version
+  std::vector<std::uint32_t> dropped;    ///< input triangles left out, ascending
+  std::vector<std::uint32_t> turned;     ///< input triangles with reversed orientation, ascending
+  std::vector<Step> steps;
+};
+
+/// The triangles that preparation dropped and turned. `input_triangles` is the number before it.
+void record_preparation(const geom::Prepared& prepared, std::size_t input_triangles, Log& log);
+
+std::vector<char> serialise_log(const Log& log);
+
+/// @throws Error{InvalidInput} on malformed or truncated bytes.
+Log parse_log(std::span<const char> bytes, const std::string& name);
+
+}  // namespace kaboum::bmesh

@@ -1,0 +1,576 @@
+// Bounding mesh decimation.
+// [gaschler2016] A. Gaschler, Efficient Geometric Predicates for Integrated Task and Motion Planning,
+// §4.3, Algorithms 1 and 2. The certificate and the error bound: docs/algorithms/bounding-mesh.md.
+#include <kaboum/bmesh/decimate.h>
+#include <kaboum/geom/convex_set.h>
+#include <kaboum/geom/error.h>
+#include <kaboum/geom/float32.h>
+#include <kaboum/geom/predicates.h>
+#include <kaboum/geom/topology.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "bucket_queue.h"
+#include "connectivity.h"
+#include "placement.h"
+#include "quadric.h"
+#include "tolerance.h"
+
+namespace kaboum::bmesh {
+namespace {
+
+using geom::Mesh;
+using geom::Sign;
+using geom::Triangle;
+
+/// Spacing of the representable numbers at x, at least.
+double spacing(double x, Precision precision) {
+  if (precision == Precision::Float) return geom::float32_spacing(x);
+  const double a = std::abs(x);
+  return std::nextafter(a, std::numeric_limits<double>::infinity()) - a;
+}
+
+class Decimator {
+ public:
+  Decimator(const geom::Prepared& input, const DecimateOptions& options)
+      : options_(options),
+        sign_(options.direction == Direction::Inner ? -1 : 1),
+        constrained_(options.direction != Direction::Any),
+        origin_(geom::bounding_box(input.mesh).center()),
+        position_(input.mesh.vertices),
+        border_(input.border),
+        mesh_(input.mesh.vertices.size(), input.mesh.triangles),
+        normal_(input.mesh.triangles.size()),
+        quadric_(input.mesh.vertices.size()),
+        stamp_(input.mesh.vertices.size(), 0),
+        mark_(input.mesh.vertices.size(), 0),
+        vertices_(input.mesh.vertices.size()) {
+    statistics_.vertices_in = vertices_;
+    for (std::uint32_t t = 0; t < mesh_.size(); ++t) update_normal(t);
+    init_quadrics(input.mesh);
+    if (options.epsilon) tolerance_.emplace(input.mesh, *options.epsilon);
+  }
+
+  DecimateResult run() {
+    const Stop stop = contract_all();
+    DecimateResult result;
+    if (options_.precision == Precision::Float) result.unrepresentable = make_representable();
+    result.stop = stop;
+    result.mesh = extract();
+    statistics_.vertices_out = result.mesh.vertices.size();
+    result.statistics = statistics_;
+    return result;
+  }
+
+ private:
+  // ---- set-up -------------------------------------------------------------------------------------
+
+  void update_normal(std::uint32_t t) {
+    const Triangle& tri = mesh_[t];
+    const Vec3& a = position_[tri[0]];
+    const Vec3 n = (position_[tri[1]] - a).cross(position_[tri[2]] - a);
+    const double length = n.norm();
+    normal_[t] = length > 0 ? Vec3(n / length) : Vec3(Vec3::Zero());
+  }
+
+  [[nodiscard]] Vec3 local(std::uint32_t v) const { return position_[v] - origin_; }
+
+  void init_quadrics(const Mesh& mesh) {
+    for (std::uint32_t t = 0; t < mesh_.size(); ++t) {
+      const Triangle& tri = mesh_[t];
+      const Quadric q =
+          options_.cost == Cost::Triangles
+              ? point_quadric((local(tri[0]) + local(tri[1]) + local(tri[2])) / 3.0)
+              : plane_quadric(local(tri[0]), normal_[t]);
+      for (const std::uint32_t v : tri) quadric_[v] += q;
+    }
+    if (options_.cost != Cost::Triangles && options_.sharp_angle < 180) add_sharp_edges(mesh);
+  }
+
+  void add_sharp_edges(const Mesh& mesh) {
+    const double limit = std::cos(options_.sharp_angle * std::numbers::pi / 180);
+    for (std::uint32_t t = 0; t < mesh_.size(); ++t) {
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const std::uint32_t a = mesh_[t][k], b = mesh_[t][(k + 1) % 3];
+        if (a > b) continue;
+        mesh_.for_each_triangle(b, [&](std::uint32_t u, std::uint32_t j) {
+          if (mesh_[u][(j + 1) % 3] != a || normal_[t].dot(normal_[u]) >= limit) return;
+          const Vec3 sum = normal_[t] + normal_[u];
+          const Vec3 across = sum.norm() > 1e-6
+                                  ? sum
+                                  : Vec3((mesh.vertices[b] - mesh.vertices[a]).cross(normal_[t]));
+          if (!(across.norm() > 0)) return;
+          const Quadric q = plane_quadric(local(a), across.normalized());
+          quadric_[a] += q;
+          quadric_[b] += q;
+        });
+      }
+    }
+  }
+
+  [[nodiscard]] Quadric merged(std::uint32_t a, std::uint32_t b) const {
+    switch (options_.cost) {
+      case Cost::PlanesAdapted:
+        return add_adapted(quadric_[a], quadric_[b]);
+      case Cost::PlanesDiagonal: {
+        const double length = (position_[b] - position_[a]).norm();
+        if (length > 0) return add_diagonal(quadric_[a], quadric_[b], length, options_.as_printed);
+        break;
+      }
+      case Cost::Planes:
+      case Cost::Triangles:
+        break;
+    }
+    return quadric_[a] + quadric_[b];
+  }
+
+  // ---- the queue ----------------------------------------------------------------------------------
+
+  /// Entered with a lower bound of the cost; the constrained cost is found when the edge is popped.
+  void push_edge(std::uint32_t a, std::uint32_t b) {
+    if (border_[a] != 0 && border_[b] != 0) return;
+    const Quadric q = merged(a, b);
+    const Vec3 middle = 0.5 * (local(a) + local(b));
+    const double lower = std::max(0.0, unconstrained_minimum(q, middle)) +
+                         length_cost(q, a, b);
+    queue_.push(lower, {a, b, stamp_[a], stamp_[b]});
+  }
+
+  /// Prefers short edges where the quadric is indifferent, as in planes: 10^-4 of the length.
+  [[nodiscard]] double length_cost(const Quadric& q, std::uint32_t a, std::uint32_t b) const {
+    return 1e-8 * q.trace() * (position_[b] - position_[a]).squaredNorm();
+  }
+
+  void push_all() {
+    queue_.reserve(mesh_.size() * 3 / 2);
+    for (std::uint32_t v = 0; v < position_.size(); ++v) {
+      if (!mesh_.used(v)) continue;
+      ++mark_value_;
+      mesh_.for_each_triangle(v, [&](std::uint32_t t, std::uint32_t k) {
+        for (std::uint32_t j = 1; j < 3; ++j) {
+          const std::uint32_t w = mesh_[t][(k + j) % 3];
+          if (w <= v || mark_[w] == mark_value_) continue;
+          mark_[w] = mark_value_;
+          push_edge(v, w);
+        }
+      });
+    }
+  }
+
+  [[nodiscard]] bool stale(const BucketQueue::Entry& e) const {
+    return stamp_[e.a] != e.stamp_a || stamp_[e.b] != e.stamp_b;
+  }
+
+  Stop contract_all() {
+    const std::size_t target = options_.vertices.value_or(0);
+    bool bounded = false;  // some candidate failed for epsilon alone
+    for (bool progress = true; progress && vertices_ > target;) {
+      progress = false;
+      push_all();
+      std::size_t purge_at = 2 * queue_.size() + 1024;
+      BucketQueue::Entry e;
+      const std::uint64_t rejected_before = statistics_.rejected_distance;
+      while (vertices_ > target && queue_.pop(e)) {
+        if (stale(e)) continue;
+        if (!evaluate(e.a, e.b)) continue;
+        if (!queue_.due(candidate_.cost)) {
+          queue_.push(candidate_.cost, e);
+          continue;
+        }
+        if (!admissible()) continue;
+        apply();
+        progress = true;
+        if (queue_.size() > purge_at) {
+          queue_.purge([&](const BucketQueue::Entry& x) { return stale(x); });
+          purge_at = 2 * queue_.size() + 1024;
+        }
+      }
+      bounded = statistics_.rejected_distance > rejected_before;
+    }
+    if (options_.vertices && vertices_ <= target) return Stop::VertexTarget;
+    return bounded ? Stop::ErrorBound : Stop::Exhausted;
+  }
+
+  // ---- one candidate ------------------------------------------------------------------------------
+
+  struct StarTriangle {
+    std::uint32_t index;
+    std::uint32_t corner;  // of the moved vertex
+    bool at_b;             // touches b and not a
+    bool vanishes;         // touches both
+  };
+
+  struct Candidate {
+    std::uint32_t a, b;
+    Vec3 position;
+    double cost;
+  };
+
+  void gather(std::uint32_t a, std::uint32_t b) {
+    star_.clear();
+    mesh_.for_each_triangle(a, [&](std::uint32_t t, std::uint32_t k) {
+      const Triangle& tri = mesh_[t];
+      star_.push_back({t, k, false, tri[(k + 1) % 3] == b || tri[(k + 2) % 3] == b});
+    });
+    mesh_.for_each_triangle(b, [&](std::uint32_t t, std::uint32_t k) {
+      const Triangle& tri = mesh_[t];
+      if (tri[(k + 1) % 3] != a && tri[(k + 2) % 3] != a) star_.push_back({t, k, true, false});
+    });
+  }
+
+  /// The link condition: the neighbours common to a and b are the corners opposite their edge, and no
+  /// two triangles would come to coincide.
+  [[nodiscard]] bool keeps_topology() {
+    const std::uint32_t apex = ++mark_value_;
+    std::uint32_t apexes = 0;
+    for (const StarTriangle& s : star_) {
+      if (!s.vanishes) continue;
+      for (const std::uint32_t v : mesh_[s.index]) {
+        if (v == candidate_.a || v == candidate_.b || mark_[v] == apex) continue;
+        mark_[v] = apex;
+        ++apexes;
+      }
+    }
+    if (apexes == 0) return false;
+    const auto is_apex = [&](std::uint32_t v) { return mark_[v] == apex; };
+    // Triangles between two apexes on both sides would fold onto each other.
+    bool between[2] = {false, false};
+    for (const StarTriangle& s : star_) {
+      if (s.vanishes) continue;
+      const Triangle& t = mesh_[s.index];
+      if (is_apex(t[(s.corner + 1) % 3]) && is_apex(t[(s.corner + 2) % 3])) between[s.at_b] = true;
+    }
+    if (between[0] && between[1]) return false;
+    // Neighbours of a that are no apexes must not be neighbours of b.
+    const std::uint32_t neighbour = ++mark_value_;
+    bool common = false;
+    for (const StarTriangle& s : star_) {
+      if (s.vanishes) continue;
+      const Triangle& t = mesh_[s.index];
+      for (std::uint32_t j = 1; j < 3; ++j) {
+        const std::uint32_t v = t[(s.corner + j) % 3];
+        if (is_apex(v)) continue;
+        if (!s.at_b)
+          mark_[v] = neighbour;
+        else
+          common = common || mark_[v] == neighbour;
+      }
+    }
+    return !common;
+  }
+
+  /// Fills candidate_ with the cheapest valid position for the edge (a, b); false if there is none.
+  bool evaluate(std::uint32_t a, std::uint32_t b) {
+    candidate_.a = a;
+    candidate_.b = b;
+    gather(a, b);
+    if (!keeps_topology()) return reject(statistics_.rejected_topology);
+    const Quadric q = merged(a, b);
+    if (border_[a] != 0 || border_[b] != 0) {
+      candidate_.position = border_[a] != 0 ? position_[a] : position_[b];
+    } else {
+      if (options_.keep_convex) gather_rim();
+      // The second attempt keeps farther from the planes, for positions that rounding spoils.
+      bool placed = false;
+      for (const double care : {1.0, 16.0}) {
+        if (!place(q, care)) return reject(statistics_.rejected_no_position);
+        placed = encloses();
+        if (placed) break;
+      }
+      if (!placed) return reject(statistics_.rejected_predicate);
+    }
+    if ((border_[a] != 0 || border_[b] != 0) && !encloses())
+      return reject(statistics_.rejected_predicate);
+    if (folds()) return reject(statistics_.rejected_fold);
+    candidate_.cost =
+        std::max(0.0, q(candidate_.position - origin_)) + length_cost(q, a, b);
+    return true;
+  }
+
+  static bool reject(std::uint64_t& counter) {
+    ++counter;
+    return false;
+  }
+
+  /// Minimises the quadric over the half-spaces of the star and rounds the result.
+  bool place(const Quadric& q, double care) {
+    ++statistics_.placements;
+    const Vec3 &pa = position_[candidate_.a], &pb = position_[candidate_.b];
+    const Vec3 half = 0.5 * (pb - pa);
+    const Vec3 middle = pa + half;
+    // A rounded coordinate is off by half a spacing; what else is off is the minimiser's own error.
+    const Vec3 spread(spacing(middle.x(), options_.precision), spacing(middle.y(), options_.precision),
+                      spacing(middle.z(), options_.precision));
+    const double own_error = 1e-13 * half.lpNorm<1>();
+    planes_.clear();
+    if (constrained_) {
+      for (const StarTriangle& s : star_) {
+        const Vec3& n = normal_[s.index];
+        const bool along_axis =
+            (n.x() == 0) + (n.y() == 0) + (n.z() == 0) == 2;  // rounding cannot leave such a plane
+        const double margin =
+            along_axis ? 0 : care * (0.51 * n.cwiseAbs().dot(spread) + own_error);
+        // Height of the middle over the plane, which passes through a or b.
+        const double height = s.vanishes ? 0 : s.at_b ? -n.dot(half) : n.dot(half);
+        planes_.push_back({sign_ * n, margin - sign_ * height});
+      }
+      for (const std::uint32_t t : rim_) {
+        const Vec3& n = normal_[t];
+        const double margin = care * (0.51 * n.cwiseAbs().dot(spread) + own_error);
+        planes_.push_back({-n, margin + n.dot(middle - position_[mesh_[t][0]])});
+      }
+    }
+    const auto y = minimise(q, q.half_gradient(middle - origin_), planes_);
+    if (!y) return false;
+    candidate_.position = middle + *y;
+    if (options_.precision == Precision::Float) {
+      candidate_.position = geom::to_float32(candidate_.position);
+    } else {
+      snap_to_axis_planes(half.lpNorm<1>());
+    }
+    return candidate_.position.allFinite();
+  }
+
+  /// Puts the position exactly on axis-aligned planes that it is on but for rounding.
+  void snap_to_axis_planes(double extent) {
+    for (const StarTriangle& s : star_) {
+      const Vec3& n = normal_[s.index];
+      if ((n.x() == 0) + (n.y() == 0) + (n.z() == 0) != 2) continue;
+      const int k = n.x() != 0 ? 0 : n.y() != 0 ? 1 : 2;
+      const double c = position_[mesh_[s.index][0]][k];
+      if (std::abs(candidate_.position[k] - c) <= 1e-9 * extent) candidate_.position[k] = c;
+    }
+  }
+
+  [[nodiscard]] Sign side(std::uint32_t t) {
+    ++statistics_.predicates;
+    const Triangle& tri = mesh_[t];
+    return geom::orient3d(position_[tri[0]], position_[tri[1]], position_[tri[2]],
+                          candidate_.position, &statistics_.exact_fallbacks);
+  }
+
+  /// The exact test that the certificate rests on: the new vertex is on the right side of, or on, the
+  /// plane of every triangle of the star.
+  [[nodiscard]] bool encloses() {
+    if (!constrained_) return true;
+    const Sign wrong = options_.direction == Direction::Inner ? Sign::Positive : Sign::Negative;
+    for (const StarTriangle& s : star_)
+      if (side(s.index) == wrong) return false;
+    for (const std::uint32_t t : rim_)
+      if (side(t) == Sign::Positive) return false;
+    return true;
+  }
+
+  /// Whether a remaining triangle would collapse or turn by more than about 80 degrees.
+  [[nodiscard]] bool folds() const {
+    for (const StarTriangle& s : star_) {
+      if (s.vanishes) continue;
+      const Vec3& before = normal_[s.index];
+      if (before.x() == 0 && before.y() == 0 && before.z() == 0) continue;
+      const Triangle& t = mesh_[s.index];
+      const Vec3& p = position_[t[(s.corner + 1) % 3]];
+      const Vec3 n = (p - candidate_.position).cross(position_[t[(s.corner + 2) % 3]] - candidate_.position);
+      const double along = n.dot(before);
+      if (!(along > 0) || along * along < 0.03 * n.squaredNorm()) return true;
+    }
+    return false;
+  }
+
+  // ---- convexity ----------------------------------------------------------------------------------
+
+  /// Collects the triangles across the star's boundary: the new vertex must stay on or below them.
+  void gather_rim() {
+    rim_.clear();
+    for (const StarTriangle& s : star_) {
+      if (s.vanishes) continue;
+      const Triangle& t = mesh_[s.index];
+      const std::uint32_t p = t[(s.corner + 1) % 3], q = t[(s.corner + 2) % 3];
+      mesh_.for_each_triangle(q, [&](std::uint32_t u, std::uint32_t k) {
+        if (mesh_[u][(k + 1) % 3] == p) rim_.push_back(u);
+      });
+    }
+    if (options_.direction == Direction::Inner) rim_.clear();
+  }
+
+  /// Exact: every edge of the star that the candidate would leave behind is convex or flat.
+  [[nodiscard]] bool stays_convex() {
+    const auto moved = [&](std::uint32_t v) -> const Vec3& {
+      return v == candidate_.a || v == candidate_.b ? candidate_.position : position_[v];
+    };
+    const auto in_star = [&](std::uint32_t t) {
+      return std::any_of(star_.begin(), star_.end(),
+                         [&](const StarTriangle& s) { return s.index == t; });
+    };
+    for (const StarTriangle& s : star_) {
+      if (s.vanishes) continue;
+      const Triangle& t = mesh_[s.index];
+      const std::uint32_t p = t[(s.corner + 1) % 3], q = t[(s.corner + 2) % 3];
+      const auto below = [&](std::uint32_t v) {
+        ++statistics_.predicates;
+        return geom::orient3d(candidate_.position, position_[p], position_[q], moved(v),
+                              &statistics_.exact_fallbacks) != Sign::Positive;
+      };
+      // Across the boundary edge (p, q), and the other boundary vertices of the star.
+      bool convex = true;
+      mesh_.for_each_triangle(q, [&](std::uint32_t u, std::uint32_t k) {
+        if (mesh_[u][(k + 1) % 3] == p && !in_star(u)) convex = convex && below(mesh_[u][(k + 2) % 3]);
+      });
+      for (const StarTriangle& r : star_) {
+        if (r.vanishes || !convex) continue;
+        convex = below(mesh_[r.index][(r.corner + 1) % 3]);
+      }
+      if (!convex) return false;
+    }
+    return true;
+  }
+
+  // ---- acceptance ---------------------------------------------------------------------------------
+
+  void describe_change() {
+    removed_.clear();
+    added_.clear();
+    for (const StarTriangle& s : star_) {
+      removed_.push_back(s.index);
+      if (s.vanishes) continue;
+      const Triangle& t = mesh_[s.index];
+      added_.push_back({s.index,
+                        {candidate_.position, position_[t[(s.corner + 1) % 3]],
+                         position_[t[(s.corner + 2) % 3]]}});
+    }
+  }
+
+  /// The dearer tests, made only of candidates that are about to be applied.
+  [[nodiscard]] bool admissible() {
+    if (options_.keep_convex && !stays_convex()) return reject(statistics_.rejected_predicate);
+    if (!tolerance_) return true;
+    describe_change();
+    if (!tolerance_->admits(removed_, added_)) return reject(statistics_.rejected_distance);
+    return true;
+  }
+
+  void apply() {
+    const auto [a, b, position, cost] = candidate_;
+    if (tolerance_) tolerance_->commit(removed_);
+    if (options_.steps != nullptr) options_.steps->push_back({a, b, position});
+    quadric_[a] = merged(a, b);
+    mesh_.contract(a, b);
+    position_[a] = position;
+    border_[a] = border_[a] | border_[b];
+    ++stamp_[a];
+    ++stamp_[b];
+    --vertices_;
+    ++statistics_.contractions;
+    mesh_.for_each_triangle(a, [&](std::uint32_t t, std::uint32_t) { update_normal(t); });
+    const std::uint32_t seen = ++mark_value_;
+    mesh_.for_each_triangle(a, [&](std::uint32_t t, std::uint32_t k) {
+      for (std::uint32_t j = 1; j < 3; ++j) {
+        const std::uint32_t w = mesh_[t][(k + j) % 3];
+        if (mark_[w] == seen) continue;
+        mark_[w] = seen;
+        push_edge(a, w);
+      }
+    });
+    if (options_.progress && statistics_.contractions % 4096 == 0) options_.progress(vertices_);
+  }
+
+  // ---- representable coordinates ------------------------------------------------------------------
+
+  /// Moves vertices that float32 cannot hold to certified positions that it can. Returns how many
+  /// could not be helped.
+  std::size_t make_representable() {
+    std::size_t failed = 0;
+    for (std::uint32_t v = 0; v < position_.size(); ++v) {
+      if (!mesh_.used(v) || geom::is_float32(position_[v])) continue;
+      if (border_[v] != 0 || !move_to_representable(v)) ++failed;
+    }
+    return failed;
+  }
+
+  bool move_to_representable(std::uint32_t v) {
+    candidate_.a = candidate_.b = v;
+    star_.clear();
+    mesh_.for_each_triangle(
+        v, [&](std::uint32_t t, std::uint32_t k) { star_.push_back({t, k, false, false}); });
+    rim_.clear();
+    if (options_.keep_convex) gather_rim();
+    const Quadric nearest = point_quadric(local(v));
+    for (const double care : {1.0, 4.0, 16.0}) {
+      if (!place(nearest, care) || !encloses() || folds()) continue;
+      if (options_.keep_convex && !stays_convex()) continue;
+      if (tolerance_) {
+        describe_change();
+        if (!tolerance_->admits(removed_, added_)) continue;
+        tolerance_->commit(removed_);
+      }
+      position_[v] = candidate_.position;
+      mesh_.for_each_triangle(v, [&](std::uint32_t t, std::uint32_t) { update_normal(t); });
+      if (options_.steps != nullptr) options_.steps->push_back({v, v, candidate_.position});
+      ++statistics_.moves;
+      return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] Mesh extract() const {
+    Mesh out;
+    std::vector<std::uint32_t> renumbered(position_.size(), Connectivity::kNone);
+    for (std::uint32_t t = 0; t < mesh_.size(); ++t) {
+      if (!mesh_.alive(t)) continue;
+      Triangle tri;
+      for (int k = 0; k < 3; ++k) {
+        std::uint32_t& r = renumbered[mesh_[t][k]];
+        if (r == Connectivity::kNone) {
+          r = static_cast<std::uint32_t>(out.vertices.size());
+          out.vertices.push_back(position_[mesh_[t][k]]);
+        }
+        tri[k] = r;
+      }
+      out.triangles.push_back(tri);
+    }
+    return out;
+  }
+
+  const DecimateOptions& options_;
+  double sign_;
+  bool constrained_;
+  Vec3 origin_;  // quadrics are relative to it, lest they cancel far from the origin
+  std::vector<Vec3> position_;
+  std::vector<char> border_;
+  Connectivity mesh_;
+  std::vector<Vec3> normal_;  // unit, or zero for triangles without area
+  std::vector<Quadric> quadric_;
+  std::vector<std::uint32_t> stamp_;  // of a vertex: raised when it is moved or vanishes
+  std::vector<std::uint32_t> mark_;
+  std::uint32_t mark_value_ = 0;
+  std::size_t vertices_;
+  BucketQueue queue_;
+  std::optional<Tolerance> tolerance_;
+  DecimateStatistics statistics_;
+
+  // Of the candidate at hand.
+  Candidate candidate_{};
+  std::vector<StarTriangle> star_;
+  std::vector<std::uint32_t> rim_;
+  std::vector<HalfSpace> planes_;
+  std::vector<std::uint32_t> removed_;
+  std::vector<Tolerance::NewTriangle> added_;
+};
+
+}  // namespace
+
+DecimateResult decimate(const geom::Prepared& input, const DecimateOptions& options) {
+  if (!options.vertices && !options.epsilon)
+    throw Error(ErrorCode::InvalidArgument, "decimation needs a number of vertices or an error bound");
+  if (options.epsilon && !(*options.epsilon > 0 && std::isfinite(*options.epsilon)))
+    throw Error(ErrorCode::InvalidArgument, "the error bound must be a positive length");
+  if (options.keep_convex && !geom::is_convex(input.mesh))
+    throw Error(ErrorCode::InvalidInput, "the input is not convex, so convexity cannot be kept");
+  DecimateResult result = Decimator(input, options).run();
+  if (options.keep_convex)
+    ensure(geom::is_convex(geom::weld(result.mesh)), "a contraction lost convexity");
+  return result;
+}
+
+}  // namespace kaboum::bmesh

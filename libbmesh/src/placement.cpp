@@ -1,0 +1,197 @@
+#include "placement.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace kaboum::bmesh {
+namespace {
+
+/// Cholesky factor of the regularised, trace-scaled quadratic part.
+struct Cholesky {
+  double l00, l10, l11, l20, l21, l22;
+
+  explicit Cholesky(const Quadric& q) {
+    const double t = q.trace();
+    const double s = t > 0 ? 1 / t : 0;
+    const double e = t > 0 ? kRegularisation : 1;
+    l00 = std::sqrt(std::max(q.xx * s, 0.0) + e);
+    l10 = q.xy * s / l00;
+    l20 = q.xz * s / l00;
+    l11 = std::sqrt(std::max(q.yy * s + e - l10 * l10, 0.5 * e));
+    l21 = (q.yz * s - l20 * l10) / l11;
+    l22 = std::sqrt(std::max(q.zz * s + e - l20 * l20 - l21 * l21, 0.5 * e));
+    scale = s;
+  }
+  /// L⁻¹ v
+  [[nodiscard]] Vec3 forward(const Vec3& v) const {
+    const double x = v.x() / l00;
+    const double y = (v.y() - l10 * x) / l11;
+    return {x, y, (v.z() - l20 * x - l21 * y) / l22};
+  }
+  /// L⁻ᵀ v
+  [[nodiscard]] Vec3 backward(const Vec3& v) const {
+    const double z = v.z() / l22;
+    const double y = (v.y() - l21 * z) / l11;
+    return {(v.x() - l10 * y - l20 * z) / l00, y, z};
+  }
+
+  double scale;
+};
+
+/// u·z ≥ c with unit u.
+struct Plane {
+  Vec3 u;
+  double c;
+};
+
+/// Closest point to the origin in an intersection of half-spaces, by basis exchange.
+class ClosestPoint {
+ public:
+  explicit ClosestPoint(std::span<const Plane> planes) : planes_(planes) {}
+
+  std::optional<Vec3> solve() {
+    constexpr int kMaxExchanges = 64;
+    for (int i = 0; i < kMaxExchanges; ++i) {
+      const int worst = most_violated();
+      if (worst < 0) return z_;
+      if (!exchange(worst)) return std::nullopt;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  static constexpr double kTolerance = 1e-12;
+
+  [[nodiscard]] int most_violated() const {
+    int worst = -1;
+    double violation = 0;
+    for (std::size_t i = 0; i < planes_.size(); ++i) {
+      const double v = planes_[i].c - planes_[i].u.dot(z_);
+      if (v > violation) {
+        violation = v;
+        worst = static_cast<int>(i);
+      }
+    }
+    if (worst < 0) return -1;
+    const double scale = z_.lpNorm<1>() + std::abs(planes_[static_cast<std::size_t>(worst)].c);
+    return violation > kTolerance * scale ? worst : -1;
+  }
+
+  [[nodiscard]] bool feasible(const Vec3& z, std::initializer_list<int> others) const {
+    for (const int i : others) {
+      const Plane& p = planes_[static_cast<std::size_t>(i)];
+      if (p.u.dot(z) < p.c - kTolerance * (z.lpNorm<1>() + std::abs(p.c))) return false;
+    }
+    return true;
+  }
+
+  /// New basis from {entering} and a subset of the old one.
+  bool exchange(int entering) {
+    const auto [b0, b1, b2] = basis_;
+    const int n = size_;
+    const auto old = [&](int k) { return k == 0 ? b0 : k == 1 ? b1 : b2; };
+    if (auto z = one(entering)) {
+      const bool ok = n == 0   ? true
+                      : n == 1 ? feasible(*z, {b0})
+                      : n == 2 ? feasible(*z, {b0, b1})
+                               : feasible(*z, {b0, b1, b2});
+      if (ok) return accept(*z, {entering, -1, -1}, 1);
+    }
+    for (int k = 0; k < n; ++k) {
+      const auto z = two(entering, old(k));
+      if (!z) continue;
+      const int i = old((k + 1) % std::max(n, 1)), j = old((k + 2) % std::max(n, 1));
+      const bool ok = n == 1 || (n == 2 ? feasible(*z, {old(1 - k)}) : feasible(*z, {i, j}));
+      if (ok) return accept(*z, {entering, old(k), -1}, 2);
+    }
+    for (int k = 0; k + 1 < n; ++k) {
+      for (int l = k + 1; l < n; ++l) {
+        const auto z = three(entering, old(k), old(l));
+        if (!z) continue;
+        if (n < 3 || feasible(*z, {old(3 - k - l)})) return accept(*z, {entering, old(k), old(l)}, 3);
+      }
+    }
+    return false;
+  }
+
+  bool accept(const Vec3& z, std::array<int, 3> basis, int size) {
+    z_ = z;
+    basis_ = basis;
+    size_ = size;
+    return true;
+  }
+
+  [[nodiscard]] const Plane& plane(int i) const { return planes_[static_cast<std::size_t>(i)]; }
+
+  // Closest points with one, two, three planes active and multipliers ≥ 0.
+  [[nodiscard]] std::optional<Vec3> one(int i) const {
+    const Plane& p = plane(i);
+    if (p.c < 0) return std::nullopt;
+    return Vec3(p.c * p.u);
+  }
+
+  [[nodiscard]] std::optional<Vec3> two(int i, int j) const {
+    const Plane &p = plane(i), &q = plane(j);
+    const double r = p.u.dot(q.u);
+    const double det = 1 - r * r;
+    if (det < 1e-20) return std::nullopt;
+    const double a = (p.c - r * q.c) / det, b = (q.c - r * p.c) / det;
+    if (a < 0 || b < 0) return std::nullopt;
+    return Vec3(a * p.u + b * q.u);
+  }
+
+  [[nodiscard]] std::optional<Vec3> three(int i, int j, int k) const {
+    const Plane &p = plane(i), &q = plane(j), &r = plane(k);
+    const Vec3 qr = q.u.cross(r.u), rp = r.u.cross(p.u), pq = p.u.cross(q.u);
+    const double det = p.u.dot(qr);
+    if (std::abs(det) < 1e-12) return std::nullopt;
+    const Vec3 z = (p.c * qr + q.c * rp + r.c * pq) / det;
+    // z = λp + μq + νr  ⇒  λ = z·(q×r)/det and so on.
+    const double slack = -1e-12 * z.lpNorm<1>();
+    if (z.dot(qr) / det < slack || z.dot(rp) / det < slack || z.dot(pq) / det < slack)
+      return std::nullopt;
+    return z;
+  }
+
+  std::span<const Plane> planes_;
+  Vec3 z_ = Vec3::Zero();
+  std::array<int, 3> basis_{-1, -1, -1};
+  int size_ = 0;
+};
+
+}  // namespace
+
+std::optional<Vec3> minimise(const Quadric& quadratic, const Vec3& linear,
+                             std::span<const HalfSpace> half_spaces) {
+  // With A' = LLᵀ, z = Lᵀy + L⁻¹b': the objective is |z|² plus a constant, and n·y ≥ d becomes
+  // (L⁻¹n)·z ≥ d + (L⁻¹n)·(L⁻¹b').
+  const Cholesky l(quadratic);
+  const Vec3 shift = l.forward(linear * l.scale);
+  constexpr std::size_t kOnStack = 48;
+  std::array<Plane, kOnStack> buffer;
+  std::vector<Plane> heap;
+  std::span<Plane> planes(buffer.data(), std::min(half_spaces.size(), kOnStack));
+  if (half_spaces.size() > kOnStack) {
+    heap.resize(half_spaces.size());
+    planes = heap;
+  }
+  std::size_t count = 0;
+  for (const HalfSpace& h : half_spaces) {
+    const Vec3 g = l.forward(h.normal);
+    const double norm = g.norm();
+    if (!(norm > 0)) continue;
+    planes[count++] = {g / norm, (h.offset + g.dot(shift)) / norm};
+  }
+  const auto z = ClosestPoint(planes.first(count)).solve();
+  if (!z) return std::nullopt;
+  return l.backward(*z - shift);
+}
+
+double unconstrained_minimum(const Quadric& q, const Vec3& near) {
+  const Cholesky l(q);
+  const Vec3 shift = l.forward(q.half_gradient(near) * l.scale);
+  return q(near - l.backward(shift));
+}
+
+}  // namespace kaboum::bmesh

@@ -1,0 +1,247 @@
+// The checker of decimation logs. It is kept apart from the decimation on purpose: nothing here may
+// use its predicates, its adjacency or its preparation.
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <kaboum/bmesh/replay.h>
+#include <kaboum/geom/error.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <unordered_map>
+
+namespace kaboum::bmesh {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Point = Kernel::Point_3;
+using Corners = std::array<std::uint32_t, 3>;
+
+std::string at_step(std::size_t i) { return "step " + std::to_string(i); }
+
+bool repeated(const Corners& c) { return c[0] == c[1] || c[1] == c[2] || c[0] == c[2]; }
+
+/// The same oriented triangle, beginning with its smallest corner.
+template <class T>
+std::array<T, 3> rotated(std::array<T, 3> c) {
+  std::rotate(c.begin(), std::min_element(c.begin(), c.end()), c.end());
+  return c;
+}
+
+/// Surplus of forward over backward runs, edge by edge.
+using EdgeBalance = std::map<std::pair<std::uint32_t, std::uint32_t>, std::int64_t>;
+
+void add_edges(const Corners& c, EdgeBalance& balance) {
+  for (int k = 0; k < 3; ++k) {
+    const std::uint32_t a = c[k], b = c[(k + 1) % 3];
+    if (a != b) balance[std::minmax(a, b)] += a < b ? 1 : -1;
+  }
+}
+
+class Replay {
+ public:
+  Replay(const geom::Mesh& original, const Log& log) : log_(log) {
+    if (original.triangles.size() >= (1ULL << 31))
+      throw Error(ErrorCode::InvalidInput, "too many triangles to replay");
+    merge_vertices(original);
+  }
+
+  ReplayResult run(const geom::Mesh& result) {
+    report_.dropped = log_.dropped.size();
+    report_.turned = log_.turned.size();
+    if (!interpret()) return report_;
+    find_border();
+    for (std::size_t i = 0; i < log_.steps.size(); ++i) {
+      if (!step(i)) return report_;
+      ++report_.steps;
+    }
+    if (!same_as(result)) return report_;
+    report_.verified = true;
+    return report_;
+  }
+
+ private:
+  bool violated(const std::string& what) {
+    report_.violation = what;
+    return false;
+  }
+
+  /// Equal coordinates become one point of all_points_; triangles refer to those.
+  void merge_vertices(const geom::Mesh& original) {
+    std::map<std::array<double, 3>, std::uint32_t> known;
+    for (const geom::Triangle& t : original.triangles) {
+      Corners c;
+      for (int k = 0; k < 3; ++k) {
+        const geom::Vec3& p = original.vertices.at(t[k]);
+        const auto [it, fresh] = known.try_emplace({p.x() + 0.0, p.y() + 0.0, p.z() + 0.0},
+                                                   static_cast<std::uint32_t>(all_points_.size()));
+        if (fresh) all_points_.emplace_back(p.x(), p.y(), p.z());
+        c[k] = it->second;
+      }
+      input_.push_back(c);
+    }
+  }
+
+  /// Applies the log's turns and drops, checks the drops, and numbers the vertices left by first use.
+  bool interpret() {
+    std::vector<char> dropped(input_.size(), 0);
+    for (const std::uint32_t t : log_.turned) {
+      require_triangle(t);
+      std::swap(input_[t][1], input_[t][2]);
+    }
+    for (const std::uint32_t t : log_.dropped) {
+      require_triangle(t);
+      dropped[t] = 1;
+    }
+    if (!drops_are_harmless(dropped)) return false;
+    std::vector<std::uint32_t> number(all_points_.size(), ~0U);
+    for (std::size_t t = 0; t < input_.size(); ++t) {
+      if (dropped[t] != 0) continue;
+      Corners c = input_[t];
+      if (repeated(c)) return violated("input triangle " + std::to_string(t) + " has a repeated corner");
+      for (std::uint32_t& v : c) {
+        if (number[v] == ~0U) {
+          number[v] = static_cast<std::uint32_t>(points_.size());
+          points_.push_back(all_points_[v]);
+        }
+        v = number[v];
+      }
+      triangles_.push_back(c);
+    }
+    around_.resize(points_.size());
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t)
+      for (const std::uint32_t v : triangles_[t]) around_[v].push_back(t);
+    return true;
+  }
+
+  void require_triangle(std::uint32_t t) const {
+    if (t >= input_.size())
+      throw Error(ErrorCode::InvalidInput,
+                  "the log refers to input triangle " + std::to_string(t) + ", but there are only " +
+                      std::to_string(input_.size()));
+  }
+
+  /// Dropped triangles have repeated corners, or their sum is a closed chain made of opposite pairs
+  /// and of copies of triangles that stay.
+  bool drops_are_harmless(const std::vector<char>& dropped) {
+    std::map<Corners, std::int64_t> kept, gone;
+    for (std::size_t t = 0; t < input_.size(); ++t)
+      if (!repeated(input_[t])) ++(dropped[t] != 0 ? gone : kept)[rotated(input_[t])];
+    EdgeBalance balance;
+    for (const auto& [c, n] : gone) {
+      const auto opposite = gone.find(rotated(Corners{c[0], c[2], c[1]}));
+      const std::int64_t copies = n - (opposite == gone.end() ? 0 : opposite->second);
+      if (copies <= 0) continue;
+      if (!kept.contains(c))
+        return violated("a triangle is dropped that neither cancels nor is a copy of one that stays");
+      for (std::int64_t i = 0; i < copies; ++i) add_edges(c, balance);
+    }
+    for (const auto& [edge, surplus] : balance)
+      if (surplus != 0) return violated("the copies dropped are no closed chain");
+    return true;
+  }
+
+  void find_border() {
+    EdgeBalance balance;
+    for (const Corners& c : triangles_) add_edges(c, balance);
+    border_.assign(points_.size(), 0);
+    report_.closed = true;
+    for (const auto& [edge, surplus] : balance) {
+      if (surplus == 0) continue;
+      border_[edge.first] = border_[edge.second] = 1;
+      report_.closed = false;
+    }
+  }
+
+  bool step(std::size_t i) {
+    const Step& s = log_.steps[i];
+    if (s.kept >= points_.size() || s.gone >= points_.size())
+      throw Error(ErrorCode::InvalidInput, at_step(i) + " of the log refers to a vertex that is not there");
+    if (!s.position.allFinite()) return violated(at_step(i) + " moves a vertex to no finite place");
+    const Point to(s.position.x(), s.position.y(), s.position.z());
+    for (const std::uint32_t v : {s.kept, s.gone})
+      if (border_[v] != 0 && points_[v] != to) return violated(at_step(i) + " moves a border vertex");
+
+    std::vector<std::uint32_t> star = around_[s.kept];
+    if (s.gone != s.kept) star.insert(star.end(), around_[s.gone].begin(), around_[s.gone].end());
+    std::sort(star.begin(), star.end());
+    star.erase(std::unique(star.begin(), star.end()), star.end());
+    if (star.empty()) return violated(at_step(i) + " moves a vertex without triangles");
+
+    if (log_.direction != Direction::Any) {
+      const CGAL::Sign wrong =
+          log_.direction == Direction::Outer ? CGAL::NEGATIVE : CGAL::POSITIVE;
+      for (const std::uint32_t t : star) {
+        const Corners& c = triangles_[t];
+        ++report_.predicates;
+        if (CGAL::orientation(points_[c[0]], points_[c[1]], points_[c[2]], to) == wrong)
+          return violated(at_step(i) + " moves to the wrong side of a triangle it replaces");
+      }
+    }
+
+    points_[s.kept] = to;
+    border_[s.kept] |= border_[s.gone];
+    if (s.gone == s.kept) return true;
+    std::vector<std::uint32_t> stay;
+    for (const std::uint32_t t : star) {
+      Corners& c = triangles_[t];
+      std::replace(c.begin(), c.end(), s.gone, s.kept);
+      if (!repeated(c)) {
+        stay.push_back(t);
+        continue;
+      }
+      for (const std::uint32_t v : c)
+        if (v != s.kept) std::erase(around_[v], t);
+    }
+    around_[s.kept] = std::move(stay);
+    around_[s.gone].clear();
+    around_[s.gone].shrink_to_fit();
+    return true;
+  }
+
+  /// Triangles as coordinates, without those that have two equal corners, sorted.
+  using Coordinates = std::array<std::array<double, 3>, 3>;
+  static void add_coordinates(const Coordinates& c, std::vector<Coordinates>& list) {
+    if (c[0] != c[1] && c[1] != c[2] && c[0] != c[2]) list.push_back(rotated(c));
+  }
+
+  bool same_as(const geom::Mesh& result) {
+    std::vector<Coordinates> mine, theirs;
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+      const Corners& c = triangles_[t];
+      if (repeated(c)) continue;
+      Coordinates x;
+      for (int k = 0; k < 3; ++k)
+        x[k] = {points_[c[k]].x() + 0.0, points_[c[k]].y() + 0.0, points_[c[k]].z() + 0.0};
+      add_coordinates(x, mine);
+    }
+    for (const geom::Triangle& t : result.triangles) {
+      Coordinates x;
+      for (int k = 0; k < 3; ++k) {
+        const geom::Vec3& p = result.vertices.at(t[k]);
+        x[k] = {p.x() + 0.0, p.y() + 0.0, p.z() + 0.0};
+      }
+      add_coordinates(x, theirs);
+    }
+    std::sort(mine.begin(), mine.end());
+    std::sort(theirs.begin(), theirs.end());
+    if (mine != theirs) return violated("the triangles that the log leads to are not those of the result");
+    return true;
+  }
+
+  const Log& log_;
+  ReplayResult report_;
+  std::vector<Point> all_points_;
+  std::vector<Corners> input_;
+  std::vector<Point> points_;
+  std::vector<Corners> triangles_;
+  std::vector<std::vector<std::uint32_t>> around_;
+  std::vector<char> border_;
+};
+
+}  // namespace
+
+ReplayResult replay(const geom::Mesh& original, const Log& log, const geom::Mesh& result) {
+  return Replay(original, log).run(result);
+}
+
+}  // namespace kaboum::bmesh

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <kaboum/geom/distance.h>
+#include <kaboum/geom/mesh.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace kaboum::bmesh {
+
+using geom::Vec3;
+
+/// Carried certificate that a changing mesh and its original stay within ε of each other.
+///
+/// Towards the original: a new triangle is cut into pieces until the corners of each piece are within
+/// ε of one and the same original triangle; the distance to one triangle is convex, so the whole piece
+/// is. From the original: every original triangle is covered by pieces, each carried by a current
+/// triangle within ε of its corners. A change is admitted only if all pieces carried by the triangles
+/// it removes find a new carrier. docs/algorithms/bounding-mesh.md, "The error bound".
+class Tolerance {
+ public:
+  struct NewTriangle {
+    std::uint32_t index;  ///< the current mesh's triangle it becomes
+    std::array<Vec3, 3> corner;
+  };
+
+  /// @param original  carried initially triangle by triangle: triangle i of the current mesh is
+  ///   triangle i of the original.
+  Tolerance(const geom::Mesh& original, double epsilon);
+
+  /// Whether triangles `removed` may be replaced by `added` (which reuse some of their indices).
+  [[nodiscard]] bool admits(std::span<const std::uint32_t> removed,
+                            std::span<const NewTriangle> added);
+  /// Carries out the change that `admits` has just accepted.
+  void commit(std::span<const std::uint32_t> removed);
+
+ private:
+  static constexpr std::uint32_t kNone = ~0U;
+  static constexpr int kMaxSplits = 6;
+
+  struct Piece {
+    std::array<Vec3, 3> corner;
+    std::uint32_t next;
+  };
+  struct Placed {
+    std::array<Vec3, 3> corner;
+    std::uint32_t carrier;
+  };
+
+  [[nodiscard]] bool near_original(const std::array<Vec3, 3>& triangle, std::uint32_t hint,
+                                   int splits_left) const;
+  [[nodiscard]] bool place(const std::array<Vec3, 3>& piece, std::span<const NewTriangle> added,
+                           int splits_left);
+  std::uint32_t allocate();
+
+  geom::DistanceQuery original_;
+  double epsilon_;
+  std::vector<Piece> pieces_;
+  std::vector<std::uint32_t> head_;  // per current triangle
+  std::uint32_t free_ = kNone;
+  std::vector<Placed> placed_;       // of the change under consideration
+  std::size_t last_carrier_ = 0;
+};
+
+}  // namespace kaboum::bmesh

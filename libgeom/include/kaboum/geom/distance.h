@@ -1,0 +1,87 @@
+#pragma once
+
+#include <kaboum/geom/bvh.h>
+#include <kaboum/geom/mesh.h>
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace kaboum::geom {
+
+/// Certified bracket of a distance: lower ≤ true distance ≤ upper, in spite of rounding. [length]
+struct DistanceBounds {
+  double lower;
+  double upper;
+};
+
+/// Distance of point p to the closed triangle (a, b, c), which may be degenerate.
+///
+/// The closest point is computed in rounded arithmetic; the bounds hold however badly that went:
+/// `upper` is the distance to a convex combination of the corners, `lower` the distance to a plane
+/// that separates p from the corners, both widened by the rounding error derived in
+/// docs/algorithms/distances.md.
+///
+/// @pre finite coordinates of magnitude below 1e150.
+DistanceBounds point_triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
+
+/// Distance queries against a fixed set of triangles.
+class DistanceQuery {
+ public:
+  struct Nearest {
+    std::uint32_t triangle;  ///< a triangle whose distance is ≤ upper
+    double lower;            ///< bracket of the distance to the whole set
+    double upper;
+  };
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+  /// Copies what it needs of the mesh.
+  /// @throws Error{InvalidInput} if the mesh has no triangles.
+  explicit DistanceQuery(const Mesh& mesh);
+
+  /// Nearest triangle; `hint`, a triangle likely to be near, only makes it faster: the bracket's
+  /// width does not depend on it beyond rounding.
+  [[nodiscard]] Nearest nearest(const Vec3& p, std::uint32_t hint = kNone) const;
+
+  /// Some triangle whose distance from p is certainly ≤ radius, starting the search at `hint`;
+  /// kNone if there is none (or, within rounding of the radius, if it was missed).
+  [[nodiscard]] std::uint32_t within(const Vec3& p, double radius, std::uint32_t hint = kNone) const;
+
+  /// Bracket of the distance to one triangle.
+  [[nodiscard]] DistanceBounds to_triangle(const Vec3& p, std::uint32_t triangle) const;
+
+  [[nodiscard]] const Box3& box() const { return bvh_.nodes()[0].box; }
+  [[nodiscard]] std::size_t triangle_count() const { return corners_.size(); }
+
+ private:
+  Bvh bvh_;
+  std::vector<std::array<Vec3, 3>> corners_;   // in the tree's order
+  std::vector<std::uint32_t> position_;        // triangle → place in corners_
+};
+
+/// One-sided Hausdorff distance sup_{x∈A} d(x, B) between surfaces. [length]
+struct DirectedDistance {
+  double max_lower = 0;  ///< certified bracket of the supremum
+  double max_upper = 0;
+  Vec3 at = Vec3::Zero();  ///< point of A at which max_lower is attained
+  std::uint64_t queries = 0;
+};
+
+struct DistanceOptions {
+  double relative_gap = 1e-3;   ///< stop when upper ≤ lower · (1 + relative_gap) …
+  double absolute_gap = 1e-9;   ///< … or upper ≤ lower + absolute_gap · diagonal of A and B's box
+};
+
+/// Branch and bound over A's triangles, splitting each into four.
+///
+/// Upper bound of a sub-triangle: d(·, t) is convex for one triangle t of B, so its largest value over
+/// the sub-triangle is at a corner; the best t among those nearest to the corners and the centroid is
+/// taken, or the Lipschitz bound from the centroid. Rounds are evaluated in parallel (oneTBB) and the
+/// result does not depend on the number of threads.
+///
+/// @pre A and B have triangles and finite coordinates; B is given as a query.
+/// @throws Error{LimitReached} when the gap cannot be reached with 2^26 sub-triangles.
+DirectedDistance directed_distance(const Mesh& a, const DistanceQuery& b,
+                                   const DistanceOptions& options = {});
+
+}  // namespace kaboum::geom

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <kaboum/geom/mesh.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kaboum::io {
+
+/// File formats. `Stl` is told apart into ASCII and binary when reading; the other encodings only
+/// matter when writing.
+enum class Format { Stl, StlAscii, Obj, Ply, PlyAscii, Off, Glb, Gltf, Collada, Fbx, ThreeMf, X3d, Vrml };
+
+/// Format named by `text`: a format name ("stl", "ply-ascii") or a file name's extension (".stl").
+/// @return nullopt when unknown.
+std::optional<Format> format_from_name(std::string_view text);
+
+/// Names accepted by format_from_name that can be read / written by this build, sorted.
+std::vector<std::string> readable_formats();
+std::vector<std::string> writable_formats();
+
+/// True when the format stores coordinates as text or as 64-bit floats, so that doubles survive.
+bool holds_double(Format format);
+
+/// A mesh as read, and what the reader did on the way.
+struct ReadResult {
+  geom::Mesh mesh;  ///< vertices with equal coordinates merged (−0 = +0), in order of first use
+  Format format;
+  bool single_precision = false;      ///< the reader delivered float32 values (binary STL, assimp)
+  std::size_t file_vertices = 0;      ///< as stored, before merging
+  std::size_t file_triangles = 0;     ///< after splitting polygons, before anything is dropped
+  std::size_t split_polygons = 0;     ///< faces with more than three corners that were triangulated
+  std::size_t collapsed_triangles = 0;  ///< dropped: two or three equal corners after merging
+  std::vector<std::string> notes;     ///< things a user should know; one sentence each
+};
+
+/// Parses a file held in memory.
+///
+/// Coordinates become the doubles nearest to the numbers in the file. Polygons are triangulated
+/// without adding vertices. `name` appears in messages only.
+///
+/// @throws Error{InvalidInput} on malformed, truncated or empty data, on non-finite coordinates and
+///   on indices out of range, naming the place (line or byte) and the remedy.
+/// @throws Error{NotBuilt} when the format's reader is not part of this build.
+ReadResult parse_mesh(std::span<const char> bytes, Format format, const std::string& name,
+                      const std::filesystem::path& base_directory = {});
+
+/// Reads a file; the format is taken from the extension unless given. `-` is standard input and
+/// needs `format`. Also fills `bytes_out`, when not null, with the file's bytes (for hashing).
+/// @throws as parse_mesh; Error{InvalidInput} when the file cannot be read or its format is unknown.
+ReadResult read_mesh(const std::filesystem::path& path, std::optional<Format> format = {},
+                     std::vector<char>* bytes_out = nullptr);
+
+struct WriteOptions {
+  /// Store 64-bit floats where the format can (PLY); text formats always write enough digits to get
+  /// the same double back. Formats that hold float32 only (binary STL, GLB) refuse coordinates that
+  /// float32 cannot represent.
+  bool double_precision = false;
+  std::string comment;  ///< one line, written where the format has comments
+};
+
+/// The mesh as bytes of `format`. Vertices that no triangle uses are left out. Reading the bytes back
+/// gives the same coordinates, bit for bit (−0 is written as 0).
+/// @throws Error{OutputFailed} when the format cannot hold the coordinates exactly.
+/// @throws Error{InvalidArgument} when the format cannot be written.
+std::vector<char> serialise_mesh(const geom::Mesh& mesh, Format format, const WriteOptions& options = {});
+
+/// Writes bytes to `path` through a temporary file in the same directory and a rename, so that the
+/// path holds either the old content or all of the new. `-` is standard output.
+/// @throws Error{OutputFailed}.
+void write_file(const std::filesystem::path& path, std::span<const char> bytes);
+
+/// All bytes of a file, or of standard input for `-`.
+/// @throws Error{InvalidInput}.
+std::vector<char> read_file(const std::filesystem::path& path);
+
+/// SHA-256 of the bytes, lower-case hexadecimal.
+std::string sha256(std::span<const char> bytes);
+
+}  // namespace kaboum::io

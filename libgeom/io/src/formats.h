@@ -1,0 +1,30 @@
+#pragma once
+
+#include <kaboum/io/mesh_io.h>
+
+#include "source.h"
+
+// The readers and writers behind parse_mesh and serialise_mesh, one .cpp each. Internal to
+// kaboum_io.
+namespace kaboum::io {
+
+ReadResult read_stl(Source source);
+ReadResult read_obj(const Source& source);
+ReadResult read_ply(Source source);
+ReadResult read_off(const Source& source);
+ReadResult read_vrml(const Source& source);
+/// glTF, GLB, COLLADA, FBX, 3MF, X3D.
+/// @throws Error{NotBuilt} without assimp.
+ReadResult read_with_assimp(Source source, Format format);
+bool has_assimp();
+
+/// `mesh` holds only used vertices, all finite, no −0, and valid indices.
+std::vector<char> write_stl_binary(const geom::Mesh& mesh, const WriteOptions& options);
+std::vector<char> write_stl_ascii(const geom::Mesh& mesh, const WriteOptions& options);
+std::vector<char> write_obj(const geom::Mesh& mesh, const WriteOptions& options);
+std::vector<char> write_ply_binary(const geom::Mesh& mesh, const WriteOptions& options);
+std::vector<char> write_ply_ascii(const geom::Mesh& mesh, const WriteOptions& options);
+std::vector<char> write_off(const geom::Mesh& mesh, const WriteOptions& options);
+std::vector<char> write_glb(const geom::Mesh& mesh, const WriteOptions& options);
+
+}  // namespace kaboum::io

@@ -1,0 +1,113 @@
+// Wavefront OBJ: vertices and faces; everything else is ignored.
+
+#include <limits>
+
+#include "builder.h"
+#include "bytes.h"
+#include "formats.h"
+#include "output.h"
+#include "text.h"
+
+namespace kaboum::io {
+namespace {
+
+class ObjReader {
+ public:
+  explicit ObjReader(const Source& source)
+      : source_(source),
+        scan_(source, {.comments = true, .continuation = true}),
+        builder_(source) {}
+
+  ReadResult read() {
+    for (; !scan_.done(); scan_.skip_line()) {
+      const std::string_view record = scan_.token_on_line();
+      if (record == "v") {
+        read_vertex();
+      } else if (record == "f" || record == "fo") {
+        read_face();
+      } else if (record == "curv" || record == "surf") {
+        ++free_form_;
+      }
+    }
+    if (highest_at_ != nullptr && highest_ >= builder_.point_count())
+      builder_.corner(static_cast<std::int64_t>(highest_) + 1, 1, highest_at_);
+    if (free_form_ > 0) builder_.note("Free-form curves and surfaces (curv, surf) were ignored.");
+    return builder_.finish(Format::Obj, false);
+  }
+
+ private:
+  void read_vertex() {
+    const char* const where = scan_.last();
+    geom::Vec3 p;
+    for (double& x : p) {
+      const std::string_view token = scan_.token_on_line();
+      if (token.empty())
+        fail(source_, where, "a vertex with fewer than three coordinates; the file is damaged");
+      x = parse_coordinate(source_, token);
+    }
+    builder_.add_point(p, where);
+  }
+
+  void read_face() {
+    const char* const where = scan_.last();
+    corners_.clear();
+    for (std::string_view token = scan_.token_on_line(); !token.empty();
+         token = scan_.token_on_line())
+      corners_.push_back(corner(token.substr(0, token.find('/'))));
+    builder_.add_face(corners_, where);
+  }
+
+  /// Negative indices count back from the latest vertex. Positive ones may refer to vertices that
+  /// are yet to come; those are checked at the end.
+  std::uint32_t corner(std::string_view token) {
+    const std::int64_t index = parse_integer(source_, token, "a vertex index");
+    const auto count = static_cast<std::int64_t>(builder_.point_count());
+    if (index < 0 && index >= -count) return static_cast<std::uint32_t>(count + index);
+    if (index <= 0 || index >= std::numeric_limits<std::uint32_t>::max())
+      return builder_.corner(index, 1, token.data());
+    const auto zero_based = static_cast<std::uint32_t>(index - 1);
+    if (zero_based >= highest_) {
+      highest_ = zero_based;
+      highest_at_ = token.data();
+    }
+    return zero_based;
+  }
+
+  const Source& source_;
+  Scanner scan_;
+  MeshBuilder builder_;
+  std::vector<std::uint32_t> corners_;
+  std::uint32_t highest_ = 0;
+  const char* highest_at_ = nullptr;
+  std::size_t free_form_ = 0;
+};
+
+}  // namespace
+
+ReadResult read_obj(const Source& source) { return ObjReader(source).read(); }
+
+std::vector<char> write_obj(const geom::Mesh& mesh, const WriteOptions& options) {
+  Output out;
+  out.reserve(mesh.vertices.size() * 48 + mesh.triangles.size() * 24);
+  // A backslash at the line end would swallow the next line.
+  if (!options.comment.empty()) out.text("# " + one_line(options.comment) + " \n");
+  for (const geom::Vec3& p : mesh.vertices) {
+    out.text("v");
+    for (const double x : p) {
+      out.text(" ");
+      out.number(x);
+    }
+    out.text("\n");
+  }
+  for (const geom::Triangle& t : mesh.triangles) {
+    out.text("f");
+    for (const std::uint32_t corner : t) {
+      out.text(" ");
+      out.number(corner + 1);
+    }
+    out.text("\n");
+  }
+  return out.take();
+}
+
+}  // namespace kaboum::io

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <kaboum/geom/mesh.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace kaboum::io {
+
+/// Splits polygons into triangles without adding vertices. Internal to kaboum_io.
+///
+/// The directed edges of the triangles sum up to the directed edges of the polygon, whatever its
+/// shape, so that closed polygon meshes stay closed. Works on the polygon's projection along the
+/// dominant axis of its Newell normal with exact orientation tests: the projected triangles do not
+/// overlap when the projected polygon is simple, and also when it touches itself (holes connected
+/// by a bridge). Triangles without area appear only where no other split exists. Deterministic.
+///
+/// Time: linear for convex polygons, else about corners × reflex corners, cut off by a budget.
+class PolygonSplitter {
+ public:
+  /// @param budget  containment tests that all calls together may use.
+  explicit PolygonSplitter(std::uint64_t budget) : budget_(budget) {}
+
+  /// Corners must be finite. Consecutive corners at the same position are taken as one, so fewer
+  /// than #corners − 2 triangles may result.
+  /// @param triangles  receives indices into `corners`.
+  /// @return false when the polygon is not simple (or the budget is used up) and a plain fan around
+  ///   its first corner was returned.
+  bool split(std::span<const geom::Vec3> corners, std::vector<geom::Triangle>& triangles);
+
+ private:
+  struct Corner {
+    double x, y;               ///< projection, counter-clockwise
+    std::uint32_t index;       ///< into the caller's corners
+    std::uint32_t prev, next;  ///< in the ring that is left
+    bool reflex;               ///< not strictly convex
+  };
+
+  bool project(std::span<const geom::Vec3> corners);
+  [[nodiscard]] int turn(std::uint32_t a, std::uint32_t b, std::uint32_t c) const;
+  [[nodiscard]] bool same_place(std::uint32_t a, std::uint32_t b) const;
+  [[nodiscard]] int corner_turn(std::uint32_t i) const;
+  [[nodiscard]] bool is_convex() const;
+  [[nodiscard]] geom::Triangle indices(std::uint32_t a, std::uint32_t b, std::uint32_t c) const;
+  void fan(std::vector<geom::Triangle>& triangles) const;
+  bool split_quad(std::vector<geom::Triangle>& triangles) const;
+  bool clip_ears(std::vector<geom::Triangle>& triangles);
+  std::uint32_t find_ear(std::uint32_t start, std::uint32_t left);
+  [[nodiscard]] bool is_ear(std::uint32_t i);
+  void update_reflex(std::uint32_t i);
+
+  std::uint64_t budget_;
+  std::vector<Corner> ring_;
+  std::vector<std::uint32_t> reflex_;  ///< corners that may lie in an ear; a superset
+};
+
+}  // namespace kaboum::io

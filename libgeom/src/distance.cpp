@@ -1,0 +1,155 @@
+// Closest point on a triangle: C. Ericson, Real-Time Collision Detection (2005), 5.1.5; the bounds
+// around it are derived in docs/algorithms/distances.md.
+#include <kaboum/geom/distance.h>
+#include <kaboum/geom/error.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace kaboum::geom {
+namespace {
+
+// Rounding errors are below kRounding times the largest |coordinate difference| (45 · 2^-53), and
+// below kRounding relatively in norms and quotients.
+constexpr double kRounding = 5e-15;
+
+/// Weights (s, t) of a point a + s·(b−a) + t·(c−a) of the triangle that is closest to the origin, up
+/// to rounding; s, t ≥ 0 and s + t ≤ 1 up to 2^-52.
+std::pair<double, double> closest_weights(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a;
+  const double d1 = -ab.dot(a), d2 = -ac.dot(a);
+  if (d1 <= 0 && d2 <= 0) return {0, 0};
+  const double d3 = -ab.dot(b), d4 = -ac.dot(b);
+  if (d3 >= 0 && d4 <= d3) return {1, 0};
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return {d1 > d3 ? d1 / (d1 - d3) : 0, 0};
+  const double d5 = -ab.dot(c), d6 = -ac.dot(c);
+  if (d6 >= 0 && d5 <= d6) return {0, 1};
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return {0, d2 > d6 ? d2 / (d2 - d6) : 0};
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 >= d3 && d5 >= d6) {
+    const double sum = (d4 - d3) + (d5 - d6);
+    const double w = sum > 0 ? (d4 - d3) / sum : 0;
+    return {1 - w, w};
+  }
+  const double sum = va + vb + vc;
+  if (!(sum > 0)) return {0, 0};
+  const double s = std::clamp(vb / sum, 0.0, 1.0);
+  return {s, std::clamp(vc / sum, 0.0, 1.0 - s)};
+}
+
+/// Bounds for the triangle (a, b, c) given relative to the query point.
+DistanceBounds bounds_at_origin(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const double magnitude =
+      a.cwiseAbs().cwiseMax(b.cwiseAbs()).cwiseMax(c.cwiseAbs()).maxCoeff();
+  const double slack = kRounding * magnitude;
+  const auto [s, t] = closest_weights(a, b, c);
+  const Vec3 q = a + s * (b - a) + t * (c - a);
+  const double norm = q.norm();
+  const double upper = norm * (1 + kRounding) + slack;
+  double lower = 0;
+  if (norm > 0) {
+    const double support = std::min({q.dot(a), q.dot(b), q.dot(c)}) / norm;
+    lower = std::max(0.0, support * (1 - kRounding) - slack);
+  }
+  return {lower, upper};
+}
+
+/// Lower bound of the squared distance of p to a box.
+double squared_distance(const Vec3& p, const Box3& box) {
+  const Vec3 d = (box.min - p).cwiseMax(p - box.max).cwiseMax(0.0);
+  return d.squaredNorm() * (1 - kRounding);
+}
+
+}  // namespace
+
+DistanceBounds point_triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  return bounds_at_origin(a - p, b - p, c - p);
+}
+
+DistanceQuery::DistanceQuery(const Mesh& mesh) : bvh_(mesh) {
+  if (mesh.empty()) throw Error(ErrorCode::InvalidInput, "distance to a mesh without triangles");
+  const auto order = bvh_.order();
+  corners_.reserve(order.size());
+  position_.resize(order.size());
+  for (std::uint32_t i = 0; i < order.size(); ++i) {
+    const Triangle& t = mesh.triangles[order[i]];
+    corners_.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
+    position_[order[i]] = i;
+  }
+}
+
+DistanceBounds DistanceQuery::to_triangle(const Vec3& p, std::uint32_t triangle) const {
+  const auto& [a, b, c] = corners_[position_[triangle]];
+  return point_triangle_distance(p, a, b, c);
+}
+
+DistanceQuery::Nearest DistanceQuery::nearest(const Vec3& p, std::uint32_t hint) const {
+  Nearest best{0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  double best_squared = best.upper;
+  const auto consider = [&](std::uint32_t place, std::uint32_t triangle) {
+    const auto& [a, b, c] = corners_[place];
+    const DistanceBounds d = point_triangle_distance(p, a, b, c);
+    best.lower = std::min(best.lower, d.lower);
+    if (d.upper < best.upper) {
+      best.upper = d.upper;
+      best.triangle = triangle;
+      best_squared = d.upper * d.upper * (1 + kRounding);
+    }
+  };
+  if (hint != kNone) consider(position_[hint], hint);
+
+  const auto nodes = bvh_.nodes();
+  struct Entry {
+    double squared;
+    std::uint32_t node;
+  };
+  Entry stack[Bvh::kMaxDepth];
+  int size = 0;
+  stack[size++] = {squared_distance(p, nodes[0].box), 0};
+  while (size > 0) {
+    const Entry entry = stack[--size];
+    if (entry.squared > best_squared) continue;
+    const Bvh::Node& node = nodes[entry.node];
+    if (node.leaf()) {
+      for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
+        consider(i, bvh_.order()[i]);
+      continue;
+    }
+    Entry near{squared_distance(p, nodes[entry.node + 1].box), entry.node + 1};
+    Entry far{squared_distance(p, nodes[node.first].box), node.first};
+    if (far.squared < near.squared) std::swap(near, far);
+    if (far.squared <= best_squared) stack[size++] = far;
+    if (near.squared <= best_squared) stack[size++] = near;
+  }
+  return best;
+}
+
+std::uint32_t DistanceQuery::within(const Vec3& p, double radius, std::uint32_t hint) const {
+  if (hint != kNone && to_triangle(p, hint).upper <= radius) return hint;
+  const auto nodes = bvh_.nodes();
+  const double limit = radius * radius;
+  std::uint32_t stack[Bvh::kMaxDepth];
+  int size = 0;
+  stack[size++] = 0;
+  while (size > 0) {
+    const std::uint32_t index = stack[--size];
+    const Bvh::Node& node = nodes[index];
+    if (squared_distance(p, node.box) > limit) continue;
+    if (node.leaf()) {
+      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+        const auto& [a, b, c] = corners_[i];
+        if (point_triangle_distance(p, a, b, c).upper <= radius) return bvh_.order()[i];
+      }
+      continue;
+    }
+    const bool left_first =
+        squared_distance(p, nodes[index + 1].box) <= squared_distance(p, nodes[node.first].box);
+    stack[size++] = left_first ? node.first : index + 1;
+    stack[size++] = left_first ? index + 1 : node.first;
+  }
+  return kNone;
+}
+
+}  // namespace kaboum::geom

@@ -1,0 +1,28 @@
+#include <kaboum/geom/float32.h>
+
+#include <cmath>
+#include <limits>
+
+namespace kaboum::geom {
+
+double to_float32(double x) { return static_cast<double>(static_cast<float>(x)); }
+
+Vec3 to_float32(const Vec3& p) {
+  // One at a time through volatile: see the header.
+  Vec3 out;
+  for (int k = 0; k < 3; ++k) {
+    volatile float f = static_cast<float>(p[k]);
+    out[k] = static_cast<double>(f);
+  }
+  return out;
+}
+
+bool is_float32(const Vec3& p) { return to_float32(p) == p; }
+
+double float32_spacing(double x) {
+  const float a = std::abs(static_cast<float>(x));
+  if (!std::isfinite(a)) return std::numeric_limits<double>::infinity();
+  return static_cast<double>(std::nextafter(a, std::numeric_limits<float>::infinity())) - static_cast<double>(a);
+}
+
+}  // namespace kaboum::geom

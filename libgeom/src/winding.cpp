@@ -1,0 +1,82 @@
+#include <kaboum/geom/predicates.h>
+#include <kaboum/geom/winding.h>
+
+namespace kaboum::geom {
+namespace {
+
+/// Side of p with respect to the directed line a → b seen from above. Zeros are broken as if p were
+/// at (x + ε, y + ε²); a pair of points with equal projection has no sides and gives 0.
+int perturbed_side(const Vec3& a, const Vec3& b, const Vec3& p) {
+  const Sign s = orient2d(a.x(), a.y(), b.x(), b.y(), p.x(), p.y());
+  if (s != Sign::Zero) return static_cast<int>(s);
+  // Derivative of (b−a)×(p−a) by p.x is −(b.y−a.y), by p.y it is b.x−a.x.
+  if (a.y() != b.y()) return a.y() > b.y() ? 1 : -1;
+  if (a.x() != b.x()) return b.x() > a.x() ? 1 : -1;
+  return 0;
+}
+
+/// Exact test whether p, known to lie in the triangle's plane, lies in the triangle: it must in each
+/// of the three axis projections that do not collapse the triangle.
+bool on_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
+  bool projected = false;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const auto side = [&](const Vec3& s, const Vec3& e, const Vec3& x) {
+      return orient2d(s[u], s[v], e[u], e[v], x[u], x[v]);
+    };
+    const Sign turn = side(a, b, c);
+    if (turn == Sign::Zero) continue;
+    projected = true;
+    const Sign away = turn == Sign::Positive ? Sign::Negative : Sign::Positive;
+    if (side(a, b, p) == away || side(b, c, p) == away || side(c, a, p) == away) return false;
+  }
+  if (projected) return true;
+  // A segment or a point: p must be collinear with it in all projections and within its box.
+  for (int axis = 0; axis < 3; ++axis) {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const auto collinear = [&](const Vec3& s, const Vec3& e) {
+      return orient2d(s[u], s[v], e[u], e[v], p[u], p[v]) == Sign::Zero;
+    };
+    if (!collinear(a, b) || !collinear(b, c) || !collinear(c, a)) return false;
+  }
+  Box3 box;
+  box.extend(a);
+  box.extend(b);
+  box.extend(c);
+  return (p.array() >= box.min.array()).all() && (p.array() <= box.max.array()).all();
+}
+
+}  // namespace
+
+WindingNumber::WindingNumber(const Mesh& mesh) : mesh_(mesh), bvh_(mesh) {}
+
+std::optional<int> WindingNumber::weighted(const Vec3& p,
+                                           std::span<const std::int8_t> weight) const {
+  int winding = 0;
+  bool on_surface = false;
+  bvh_.traverse(
+      [&](const Box3& box) {
+        return !on_surface && p.z() <= box.max.z() && p.x() >= box.min.x() && p.x() <= box.max.x() &&
+               p.y() >= box.min.y() && p.y() <= box.max.y();
+      },
+      [&](std::uint32_t index) {
+        const int factor = weight.empty() ? 1 : weight[index];
+        if (factor == 0) return;
+        const Triangle& t = mesh_.triangles[index];
+        const Vec3 &a = mesh_.vertices[t[0]], &b = mesh_.vertices[t[1]], &c = mesh_.vertices[t[2]];
+        if (on_surface || p.z() > std::max({a.z(), b.z(), c.z()})) return;
+        const Sign height = orient3d(a, b, c, p);
+        if (height == Sign::Zero && on_triangle(a, b, c, p)) on_surface = true;
+        const int ab = perturbed_side(a, b, p);
+        if (ab == 0 || perturbed_side(b, c, p) != ab || perturbed_side(c, a, p) != ab) return;
+        // The ray crosses the triangle's interior, or p is on its plane. The normal points up when
+        // the projection is counter-clockwise; p is below the triangle when it is on the side away
+        // from an upward normal.
+        const Sign below = ab > 0 ? Sign::Negative : Sign::Positive;
+        if (height == below) winding += factor * ab;
+      });
+  if (on_surface) return std::nullopt;
+  return winding;
+}
+
+}  // namespace kaboum::geom

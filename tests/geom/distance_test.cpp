@@ -1,0 +1,143 @@
+#include <kaboum/geom/distance.h>
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <random>
+
+#include "families.h"
+
+namespace {
+
+using kaboum::geom::directed_distance;
+using kaboum::geom::DistanceQuery;
+using kaboum::geom::Mesh;
+using kaboum::geom::point_triangle_distance;
+using kaboum::geom::Vec3;
+
+using Real = long double;
+using Vec3l = Eigen::Matrix<Real, 3, 1>;
+
+/// Distance by projection onto the plane, the edges' lines and the corners, in extended precision.
+Real slow_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3l x = p.cast<Real>();
+  const std::array<Vec3l, 3> t{a.cast<Real>(), b.cast<Real>(), c.cast<Real>()};
+  Real best = std::min({(x - t[0]).norm(), (x - t[1]).norm(), (x - t[2]).norm()});
+  for (int k = 0; k < 3; ++k) {
+    const Vec3l e = t[(k + 1) % 3] - t[k];
+    if (e.squaredNorm() == 0) continue;
+    const Real s = (x - t[k]).dot(e) / e.squaredNorm();
+    if (s > 0 && s < 1) best = std::min(best, (x - t[k] - s * e).norm());
+  }
+  const Vec3l n = (t[1] - t[0]).cross(t[2] - t[0]);
+  if (n.squaredNorm() == 0) return best;
+  bool inside = true;
+  for (int k = 0; k < 3; ++k) inside = inside && (t[(k + 1) % 3] - t[k]).cross(x - t[k]).dot(n) >= 0;
+  return inside ? std::min(best, std::abs((x - t[0]).dot(n)) / n.norm()) : best;
+}
+
+TEST(PointTriangle, BracketsTheDistanceAlsoOfSlivers) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (int i = 0; i < 50000; ++i) {
+    const auto point = [&] { return Vec3(unit(random), unit(random), unit(random)); };
+    const Vec3 a = point();
+    const Vec3 b = point();
+    Vec3 c = point();
+    if (i % 3 == 1) c = a + unit(random) * (b - a) + std::pow(10.0, -4 - i % 12) * point();  // sliver
+    if (i % 17 == 0) c = b;                                                                 // segment
+    Vec3 p = point() * (i % 5 == 0 ? 100 : 1);
+    if (i % 7 == 0) p = a + 0.3 * (b - a) + 0.2 * (c - a) + 1e-9 * point();
+    const auto d = point_triangle_distance(p, a, b, c);
+    const Real slow = slow_distance(p, a, b, c);
+    ASSERT_LE(d.lower, slow * (1 + 1e-15L)) << i;
+    ASSERT_GE(d.upper, slow * (1 - 1e-15L)) << i;
+    if (i % 3 != 1) ASSERT_LE(d.upper - d.lower, 1e-13 * (1 + d.upper) * 100) << i;
+  }
+}
+
+TEST(DistanceQuery, FindsTheNearestTriangle) {
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> unit(-0.5, 1.5);
+  for (const auto& family : kaboum::test::closed_families()) {
+    const Mesh& mesh = family.mesh;
+    if (mesh.triangles.size() > 4000) continue;
+    const DistanceQuery query(mesh);
+    const auto box = kaboum::geom::bounding_box(mesh);
+    for (int i = 0; i < 10; ++i) {
+      const Vec3 p =
+          box.min + Vec3(unit(random), unit(random), unit(random)).cwiseProduct(box.max - box.min);
+      Real slow = std::numeric_limits<Real>::infinity();
+      for (const auto& t : mesh.triangles)
+        slow = std::min(slow, slow_distance(p, mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]));
+      for (const std::uint32_t hint : {DistanceQuery::kNone, std::uint32_t{0}}) {
+        const auto n = query.nearest(p, hint);
+        EXPECT_LE(n.lower, slow * (1 + 1e-15L)) << family.name;
+        EXPECT_GE(n.upper, slow * (1 - 1e-15L)) << family.name;
+        EXPECT_LE(n.upper - n.lower, 1e-9 * box.diagonal()) << family.name;
+      }
+      EXPECT_NE(query.within(p, static_cast<double>(slow) * 1.001 + 1e-9 * box.diagonal()), DistanceQuery::kNone);
+      EXPECT_EQ(query.within(p, static_cast<double>(slow) * 0.999), DistanceQuery::kNone);
+    }
+  }
+}
+
+Mesh scaled_about_center(Mesh mesh, double factor) {
+  const Vec3 c = kaboum::geom::bounding_box(mesh).center();
+  for (Vec3& v : mesh.vertices) v = c + factor * (v - c);
+  return mesh;
+}
+
+TEST(DirectedDistance, BracketsSamplesAndItselfIsZero) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (const auto& family : kaboum::test::closed_families()) {
+    const Mesh& a = family.mesh;
+    if (a.triangles.size() > 3000) continue;
+    const Mesh b = scaled_about_center(a, 1.1);
+    const DistanceQuery query(b);
+    const auto d = directed_distance(a, query);
+    EXPECT_LE(d.max_lower, d.max_upper);
+    EXPECT_LE(d.max_upper,
+              std::max(d.max_lower * (1 + 1.1e-3), d.max_lower + 2e-9 * kaboum::geom::bounding_box(b).diagonal()) +
+                  1e-12 * kaboum::geom::bounding_box(b).max.cwiseAbs().maxCoeff())
+        << family.name;
+    for (int i = 0; i < 300; ++i) {
+      const auto& t = a.triangles[static_cast<std::size_t>(unit(random) * static_cast<double>(a.triangles.size()))];
+      double s = unit(random), r = unit(random);
+      if (s + r > 1) s = 1 - s, r = 1 - r;
+      const Vec3 p = a.vertices[t[0]] + s * (a.vertices[t[1]] - a.vertices[t[0]]) +
+                     r * (a.vertices[t[2]] - a.vertices[t[0]]);
+      EXPECT_LE(query.nearest(p).lower, d.max_upper) << family.name;
+    }
+    const auto self = directed_distance(a, DistanceQuery(a));
+    EXPECT_LE(self.max_upper, 1e-8 * kaboum::geom::bounding_box(a).diagonal() +
+                                  1e-12 * kaboum::geom::bounding_box(a).max.cwiseAbs().maxCoeff())
+        << family.name;
+  }
+}
+
+// The maximum of the distance from a big triangle to two small ones at its ends lies in its middle,
+// where no vertex is.
+TEST(DirectedDistance, FindsMaximaInsideFaces) {
+  const Mesh a{{{0, 0, 0}, {10, 0, 0}, {5, 0.001, 0}}, {{0, 1, 2}}};
+  const Mesh b{{{0, 0, 0}, {0, 1, 0}, {0, 0, 1}, {10, 0, 0}, {10, 1, 0}, {10, 0, 1}}, {{0, 1, 2}, {3, 4, 5}}};
+  const auto d = directed_distance(a, DistanceQuery(b));
+  EXPECT_NEAR(d.max_lower, 5, 0.006);
+  EXPECT_GE(d.max_upper, 5 - 1e-6);
+}
+
+TEST(DirectedDistance, DoesNotDependOnTheNumberOfThreads) {
+  const auto families = kaboum::test::closed_families();
+  const Mesh& a = families.front().mesh;
+  const Mesh b = scaled_about_center(a, 1.07);
+  const DistanceQuery query(b);
+  const auto many = directed_distance(a, query);
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const auto single = directed_distance(a, query);
+  EXPECT_EQ(many.max_lower, single.max_lower);
+  EXPECT_EQ(many.max_upper, single.max_upper);
+  EXPECT_EQ(many.queries, single.queries);
+}
+
+}  // namespace

@@ -1,0 +1,163 @@
+#include <unistd.h>
+
+#include <fstream>
+
+#include "io_test.h"
+
+namespace kaboum::io::test {
+namespace {
+
+const std::string kHeader = "#VRML V2.0 utf8\n";
+const std::string kTriangle =
+    "Shape { appearance Appearance { material Material { diffuseColor 1 0 0 } } # comment }\n"
+    " geometry IndexedFaceSet { solid FALSE creaseAngle 0.5\n"
+    " coord Coordinate { point [ 0 0 0, 1 0 0, 0 1 .5 ] } coordIndex [ 0, 1, 2, -1 ] } }\n";
+
+std::vector<Vec3> read(const std::string& body) {
+  return soup(parse(kHeader + body, Format::Vrml).mesh);
+}
+
+void expect_near(const std::vector<Vec3>& actual, const std::vector<Vec3>& expected) {
+  ASSERT_EQ(actual.size(), expected.size());
+  for (std::size_t i = 0; i < actual.size(); ++i)
+    EXPECT_LT((actual[i] - expected[i]).norm(), 1e-12) << i << ": " << actual[i].transpose();
+}
+
+TEST(Vrml, FaceSet) {
+  const std::vector<Vec3> expected = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0.5)};
+  EXPECT_EQ(read(kTriangle), expected);
+  EXPECT_EQ(read("Group { children [ " + kTriangle + " ] }"), expected);
+  EXPECT_EQ(read("Group { bboxSize 1 1 1 children " + kTriangle + " }"), expected);
+  EXPECT_EQ(read("Shape { geometry IndexedFaceSet { ccw FALSE coordIndex [ 0 1 2 ]\n"
+                 "coord Coordinate { point [ 0 0 0 1 0 0 0 1 .5 ] } } }"),
+            (std::vector<Vec3>{Vec3(0, 1, 0.5), Vec3(1, 0, 0), Vec3(0, 0, 0)}));
+}
+
+TEST(Vrml, Transforms) {
+  const std::string wrap = " children [ " + kTriangle + " ] }";
+  EXPECT_EQ(read("Transform { translation 1 2 3" + wrap),
+            (std::vector<Vec3>{Vec3(1, 2, 3), Vec3(2, 2, 3), Vec3(1, 3, 3.5)}));
+  EXPECT_EQ(read("Transform { children [ " + kTriangle + " ] scale 2 2 2 }"),
+            (std::vector<Vec3>{Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(0, 2, 1)}));
+  expect_near(read("Transform { rotation 0 0 2 1.5707963267948966 translation 1 0 0" + wrap),
+              {Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 0, 0.5)});
+  expect_near(read("Transform { center 1 0 0 rotation 0 0 1 3.141592653589793" + wrap),
+              {Vec3(2, 0, 0), Vec3(1, 0, 0), Vec3(2, -1, 0.5)});
+  // Scale by 2 along the diagonal x = y.
+  expect_near(read("Transform { scale 2 1 1 scaleOrientation 0 0 1 0.7853981633974483" + wrap),
+              {Vec3(0, 0, 0), Vec3(1.5, 0.5, 0), Vec3(0.5, 1.5, 0.5)});
+  expect_near(read("Transform { translation 0 0 1 children Transform { scale 1 1 2" + wrap + " }"),
+              {Vec3(0, 0, 1), Vec3(1, 0, 1), Vec3(0, 1, 2)});
+  EXPECT_EQ(read("Transform { scale -1 1 1" + wrap),
+            (std::vector<Vec3>{Vec3(0, 1, 0.5), Vec3(-1, 0, 0), Vec3(0, 0, 0)}));
+}
+
+TEST(Vrml, DefAndUse) {
+  EXPECT_EQ(read("DEF A " + kTriangle + "Transform { translation 5 0 0 children [ USE A ] }"),
+            (std::vector<Vec3>{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0.5), Vec3(5, 0, 0),
+                               Vec3(6, 0, 0), Vec3(5, 1, 0.5)}));
+  // A coordinate node shared; a DEF inside of a node that is skipped.
+  EXPECT_EQ(read("Unknown { field DEF C Coordinate { point [ 0 0 0 1 0 0 0 1 0 ] } }\n"
+                 "Shape { geometry IndexedFaceSet { coord USE C coordIndex [ 0 1 2 -1 ] } }\n"
+                 "Shape { geometry IndexedFaceSet { coord USE C coordIndex [ 2 1 0 ] } }")
+                .size(),
+            6U);
+}
+
+TEST(Vrml, OtherGroups) {
+  const std::string other = "Shape { geometry Box { } }";
+  EXPECT_EQ(read("Switch { whichChoice 1 choice [ " + other + " " + kTriangle + " ] }").size(), 3U);
+  EXPECT_EQ(read("Switch { choice [ " + other + " ] whichChoice -1 } " + kTriangle).size(), 3U);
+  EXPECT_EQ(read("LOD { range [ 1 ] level [ " + kTriangle + " " + other + " ] }").size(), 3U);
+  EXPECT_EQ(read("Anchor { url \"x\" children " + kTriangle + " }").size(), 3U);
+  EXPECT_EQ(read("Collision { proxy " + other + " children [ " + kTriangle + " ] }").size(), 3U);
+}
+
+TEST(Vrml, SkipsWhatHasNoSurface) {
+  const ReadResult r =
+      parse(kHeader +
+                "WorldInfo { title \"a } [ \\\" string\" info [ \"x\" ] } DEF V Viewpoint { "
+                "position 0 0 1 }\n" +
+                kTriangle +
+                "Shape { geometry IndexedLineSet { coord Coordinate { point [ 0 0 0 1 1 1 ] } "
+                "coordIndex [ 0 1 ] } }\n"
+                "ROUTE V.position TO V.position\nMystery { a [ B { c 1 } ] d NULL }\n",
+            Format::Vrml);
+  EXPECT_EQ(r.mesh.triangles.size(), 1U);
+  EXPECT_TRUE(has_note(r, "lines or points"));
+  EXPECT_TRUE(has_note(r, "'Mystery'"));
+  EXPECT_FALSE(has_note(r, "Viewpoint"));
+}
+
+TEST(Vrml, Errors) {
+  expect_error("#VRML V1.0 ascii\n", Format::Vrml, {"VRML 1.0"});
+  expect_error("hello", Format::Vrml, {"#VRML V2.0"});
+  expect_error(kHeader, Format::Vrml, {"no triangles"});
+  expect_error(kHeader + "PROTO X [ ] { }", Format::Vrml, {"line 2", "PROTO"});
+  expect_error(kHeader + "Shape { geometry Sphere { radius 1 } }", Format::Vrml,
+               {"line 2", "Sphere"});
+  expect_error(kHeader + "Shape {\n geometry Foo { } }", Format::Vrml, {"line 3", "'Foo'"});
+  expect_error(kHeader + "Group { children [ USE X ] }", Format::Vrml, {"'X'", "DEF"});
+  expect_error(kHeader + "Group { children [ ", Format::Vrml, {"truncated"});
+  expect_error(kHeader + "WorldInfo { title \"x }", Format::Vrml, {"quote"});
+  expect_error(kHeader +
+                   "Shape { geometry IndexedFaceSet { coord Coordinate { point [ 0 0 0 ] }\n"
+                   "coordIndex [ 0 1 2 ] } }",
+               Format::Vrml, {"line 3", "vertex 1", "there are 1"});
+  expect_error(kHeader + "Shape { geometry IndexedFaceSet { coord Coordinate { point [ 0 0 ] } } }",
+               Format::Vrml, {"']'", "not a number"});
+  expect_error(kHeader +
+                   "Transform { scale 1e308 1 1 children Transform { scale 1e308 1 1 children " +
+                   kTriangle + "} }",
+               Format::Vrml, {"not finite"});
+  expect_error(kHeader + "Inline { url \"other.wrl\" }", Format::Vrml, {"directory"});
+}
+
+TEST(Vrml, NestingIsLimited) {
+  std::string deep = kHeader;
+  for (int i = 0; i < 100000; ++i) deep += "Group { children [ ";
+  expect_error(deep, Format::Vrml, {});
+  for (int i = 0; i < 100000; ++i) deep += "] } ";
+  expect_error(deep, Format::Vrml, {"deep"});
+  expect_error(kHeader + "DEF A Group { children [ USE A ] }", Format::Vrml, {"deep"});
+  // Each level doubles the one before.
+  std::string bomb = kHeader + "DEF N0 " + kTriangle;
+  for (int i = 1; i < 60; ++i) {
+    const std::string before = "USE N" + std::to_string(i - 1);
+    bomb += "DEF N" + std::to_string(i) + " Group { children [ " + before + " " + before + " ] }\n";
+  }
+  expect_error(bomb, Format::Vrml, {"repeat too much"}, ErrorCode::LimitReached);
+}
+
+TEST(Vrml, Inline) {
+  const std::filesystem::path directory =
+      std::filesystem::path(::testing::TempDir()) / ("kaboum-inline-" + std::to_string(::getpid()));
+  std::filesystem::create_directories(directory / "parts");
+  std::ofstream(directory / "parts" / "a.wrl") << kHeader << kTriangle;
+  std::ofstream(directory / "parts" / "loop.wrl") << kHeader << "Inline { url \"loop.wrl\" }";
+  std::ofstream(directory / "parts" / "bad.wrl") << kHeader << "\n\nShape { geometry Box { } }";
+  const auto text = [](const std::string& url) {
+    return kHeader + "Transform { translation 1 0 0 children Inline { url [ \"" + url + "\" ] } }";
+  };
+  const ReadResult r = parse(text("parts/a.wrl"), Format::Vrml, directory);
+  EXPECT_EQ(soup(r.mesh), (std::vector<Vec3>{Vec3(1, 0, 0), Vec3(2, 0, 0), Vec3(1, 1, 0.5)}));
+  EXPECT_TRUE(has_note(r, "Inline"));
+  const auto message = [&](const std::string& url) -> std::string {
+    try {
+      parse(text(url), Format::Vrml, directory);
+      return "no error";
+    } catch (const Error& e) {
+      return e.what();
+    }
+  };
+  EXPECT_NE(message("parts/loop.wrl").find("include itself"), std::string::npos);
+  EXPECT_NE(message("parts/bad.wrl").find("bad.wrl: line 4"), std::string::npos)
+      << message("parts/bad.wrl");
+  EXPECT_NE(message("parts/none.wrl").find("cannot be read"), std::string::npos);
+  EXPECT_NE(message("http://example.org/x.wrl").find("not supported"), std::string::npos);
+  EXPECT_NE(message("/etc/passwd").find("not supported"), std::string::npos);
+  std::filesystem::remove_all(directory);
+}
+
+}  // namespace
+}  // namespace kaboum::io::test

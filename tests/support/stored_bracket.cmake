@@ -1,0 +1,13 @@
+# Regenerates meshes/bracket.obj and compares bytes; checks the manifest's hash.
+set(fresh ${WORK}/bracket.obj)
+execute_process(COMMAND ${MAKE_PART} -o ${fresh} COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${CMAKE_COMMAND} -E compare_files ${fresh} ${STORED} RESULT_VARIABLE differ)
+if(differ)
+  message(FATAL_ERROR "${STORED} is not what make-part writes (fresh copy: ${fresh})")
+endif()
+file(SHA256 ${STORED} hash)
+file(READ ${MANIFEST} manifest)
+string(JSON expected GET "${manifest}" meshes 0 sha256)
+if(NOT hash STREQUAL expected)
+  message(FATAL_ERROR "sha256 of ${STORED} is ${hash}, MANIFEST.json says ${expected}")
+endif()

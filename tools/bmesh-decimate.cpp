@@ -1,0 +1,434 @@
+#include <kaboum/bmesh/decimate.h>
+#include <kaboum/geom/distance.h>
+#include <kaboum/geom/error.h>
+#include <kaboum/geom/float32.h>
+#include <kaboum/geom/prepare.h>
+#include <kaboum/geom/topology.h>
+#include <kaboum/geom/winding.h>
+#include <kaboum/io/mesh_io.h>
+
+#include <chrono>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+#include "cli.h"
+
+namespace {
+
+using namespace kaboum;  // the tool's own names are few
+using tools::Json;
+
+struct Options {
+  std::string input, output, input_format, output_format;
+  bmesh::Direction direction = bmesh::Direction::Outer;
+  std::size_t vertices = 0;
+  double ratio = 0;
+  std::string epsilon;
+  bmesh::Cost cost = bmesh::Cost::Planes;
+  bool as_printed = false;
+  std::string precision = "auto";
+  double sharp_angle = 90;
+  bool keep_convex = false;
+  geom::PrepareOptions prepare;
+  std::string log, depfile;
+  tools::CommonOptions common;
+};
+
+const std::map<std::string, bmesh::Direction> kDirections{
+    {"outer", bmesh::Direction::Outer}, {"inner", bmesh::Direction::Inner}, {"any", bmesh::Direction::Any}};
+const std::map<std::string, bmesh::Cost> kCosts{{"planes", bmesh::Cost::Planes},
+                                                {"planes-adapted", bmesh::Cost::PlanesAdapted},
+                                                {"planes-diagonal", bmesh::Cost::PlanesDiagonal},
+                                                {"triangles", bmesh::Cost::Triangles}};
+
+template <class T>
+std::string name_of(const std::map<std::string, T>& names, T value) {
+  for (const auto& [name, v] : names)
+    if (v == value) return name;
+  return "?";
+}
+
+void describe(CLI::App& app, Options& o) {
+  app.add_option("INPUT", o.input, "Mesh to simplify (- for stdin)")->required()->type_name("FILE");
+  app.add_option("-o,--output", o.output, "Where the result goes (- for stdout)")
+      ->required()
+      ->type_name("FILE");
+  app.add_option("--direction", o.direction,
+                 "outer: the result encloses the input; inner: the input encloses the result; any: "
+                 "neither, for comparison [outer]")
+      ->transform(CLI::CheckedTransformer(kDirections).description(""))
+      ->type_name("outer|inner|any");
+  app.add_option("--vertices", o.vertices, "Stop at this many vertices (at least 4)")
+      ->check(CLI::Range(std::size_t{4}, std::numeric_limits<std::size_t>::max()).description(""))
+      ->type_name("N");
+  app.add_option("--ratio", o.ratio, "Stop at this fraction of the input's welded vertices (0 < R < 1)")
+      ->check([](const std::string& s) {
+        double r = 0;
+        return CLI::detail::lexical_cast(s, r) && r > 0 && r < 1 ? std::string()
+                                                                 : "must lie between 0 and 1";
+      })
+      ->type_name("R");
+  app.add_option("--epsilon", o.epsilon,
+                 "Keep every point of either surface within this distance of the other: a length, or a "
+                 "percentage of the bounding box's diagonal, as in 0.5%")
+      ->check([](const std::string& s) {
+        return tools::parse_length(s) ? std::string()
+                                      : "must be a positive length, or a percentage such as 0.5%";
+      })
+      ->type_name("LENGTH|P%");
+  app.add_option("--cost", o.cost, "Cost of a contraction [planes]")
+      ->transform(CLI::CheckedTransformer(kCosts).description(""))
+      ->type_name("planes|planes-adapted|planes-diagonal|triangles");
+  app.add_flag("--as-printed", o.as_printed,
+               "planes-diagonal with the thesis's formulas as printed, to reproduce its tables");
+  app.add_option("--precision", o.precision,
+                 "Numbers of the result's coordinates; auto: float, or double where float is too coarse "
+                 "and the format can hold it [auto]")
+      ->check(CLI::IsMember({"auto", "float", "double"}).description(""))
+      ->type_name("auto|float|double");
+  app.add_option("--sharp-angle", o.sharp_angle,
+                 "Edges whose normals differ by more degrees than this resist growing spikes; 180: none")
+      ->check(CLI::Range(0.0, 180.0).description(""))
+      ->capture_default_str()
+      ->type_name("DEG");
+  app.add_flag("--keep-convex", o.keep_convex, "Convex in, convex out, exactly");
+  app.add_flag("--drop-sheets", o.prepare.drop_sheets,
+               "Drop back-to-back faces without volume (they are then not enclosed)");
+  app.add_flag("--require-closed", o.prepare.require_closed, "Refuse open meshes");
+  app.add_flag("--keep-orientation", o.prepare.keep_orientation,
+               "Never turn inconsistent triangles or inside-out components");
+  app.add_option("--log", o.log, "Write the log of all steps, for bmesh-replay")->type_name("FILE");
+  app.add_option("--depfile", o.depfile, "Write a Makefile dependency rule")->type_name("FILE");
+  app.add_option("--input-format", o.input_format, "Format of INPUT [by extension]")->type_name("NAME");
+  app.add_option("--output-format", o.output_format, "Format of the result [by extension]")
+      ->type_name("NAME");
+  tools::add_common_options(app, o.common);
+  app.footer(
+      "Give at least one of --vertices, --ratio and --epsilon; the first one reached stops.\n"
+      "Exit codes: 0 done; 1 the wished number of vertices cannot be reached (the best result is\n"
+      "written) or float32 is too coarse here (nothing is written); 2 usage; 3 bad input;\n"
+      "4 output failed; 5 feature not built; 6 internal error; 7 limit reached.");
+}
+
+/// What is written is what was certified: the bytes must read back as the result's triangles.
+void check_readback(const std::vector<char>& bytes, io::Format format, const geom::Mesh& mesh) {
+  if (mesh.triangles.empty()) return;
+  const io::ReadResult back = io::parse_mesh(bytes, format, "the result");
+  std::size_t at = 0;
+  const auto collapsed = [&](const geom::Triangle& t) {
+    return mesh.vertices[t[0]] == mesh.vertices[t[1]] || mesh.vertices[t[1]] == mesh.vertices[t[2]] ||
+           mesh.vertices[t[2]] == mesh.vertices[t[0]];
+  };
+  for (const geom::Triangle& t : mesh.triangles) {
+    if (collapsed(t)) continue;
+    ensure(at < back.mesh.triangles.size(), "the written mesh lost a triangle");
+    for (int k = 0; k < 3; ++k)
+      ensure(back.mesh.vertices[back.mesh.triangles[at][k]] == mesh.vertices[t[k]],
+             "a coordinate changed when it was written");
+    ++at;
+  }
+  ensure(at == back.mesh.triangles.size(), "the written mesh gained a triangle");
+}
+
+/// Faces whose inner side is not in the solid, among at most 100,000 looked at: only the surface
+/// claim would protect them. Evidence, not proof.
+struct SurfaceSamples {
+  std::size_t faces = 0, outside = 0;
+};
+
+SurfaceSamples sample_surface(const geom::Mesh& mesh, double diagonal) {
+  const geom::WindingNumber winding(mesh);
+  const std::size_t step = mesh.triangles.size() / 100000 + 1;
+  SurfaceSamples samples;
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += step) {
+    const auto& tri = mesh.triangles[t];
+    const geom::Vec3 &a = mesh.vertices[tri[0]], &b = mesh.vertices[tri[1]], &c = mesh.vertices[tri[2]];
+    const geom::Vec3 n = (b - a).cross(c - a);
+    if (!(n.norm() > 0)) continue;
+    const auto w = winding((a + b + c) / 3.0 - n * (1e-9 * diagonal / n.norm()));
+    if (!w) continue;
+    ++samples.faces;
+    samples.outside += *w < 1;
+  }
+  return samples;
+}
+
+std::string formatted(double x) {
+  std::ostringstream s;
+  s << std::setprecision(4) << x;
+  return s.str();
+}
+
+class Job {
+ public:
+  explicit Job(Options options) : o_(std::move(options)) {}
+
+  int run() {
+    require(o_.vertices != 0 || o_.ratio > 0 || !o_.epsilon.empty(),
+            "give at least one of --vertices, --ratio and --epsilon");
+    require(!(o_.common.report == "-" && o_.output == "-"),
+            "the result and the report cannot both go to stdout");
+    const io::Format output_format = tools::format_for(o_.output, o_.output_format, "--output-format");
+    const io::Format input_format = tools::format_for(o_.input, o_.input_format, "--input-format");
+    require(o_.precision != "double" || io::holds_double(output_format),
+            "--precision double: the output format holds float32 only; write .ply, .obj or .off");
+    read(input_format);
+    if (!choose_precision(output_format)) return tools::kNo;
+    if (!decimate(output_format)) return tools::kNo;
+    const std::vector<char> bytes = serialise(output_format);
+    if (epsilon_ || !o_.common.report.empty()) measure();
+    if (!o_.log.empty()) io::write_file(o_.log, bmesh::serialise_log(log_));
+    if (!o_.common.report.empty()) tools::write_json(o_.common.report, report());
+    if (!o_.depfile.empty()) tools::write_depfile(o_.depfile, o_.output, {o_.input});
+    io::write_file(o_.output, bytes);
+    return conclude();
+  }
+
+ private:
+  static void require(bool condition, const char* message) {
+    if (!condition) throw Error(ErrorCode::InvalidArgument, message);
+  }
+
+  void say(const std::string& text) const { tools::log(o_.common.quiet, text); }
+
+  void read(io::Format format) {
+    const bool hash = !o_.log.empty() || !o_.common.report.empty();
+    std::vector<char> bytes;
+    input_ = io::read_mesh(o_.input, format, hash ? &bytes : nullptr);
+    if (hash) log_.input_sha256 = io::sha256(bytes);
+    for (const std::string& note : input_.notes) say("note: " + note);
+    const std::size_t triangles = input_.mesh.triangles.size();
+    try {
+      prepared_ = geom::prepare(input_.mesh, o_.prepare);
+    } catch (const Error& error) {
+      throw Error(error.code(), o_.input + ": " + error.what());
+    }
+    if (!o_.log.empty()) {
+      log_.direction = o_.direction;
+      log_.tool = std::string("bmesh-decimate ") + tools::version();
+      bmesh::record_preparation(prepared_, triangles, log_);
+    }
+    input_.mesh = {};
+    for (const std::string& note : prepared_.notes) say("note: " + note);
+    box_ = geom::bounding_box(prepared_.mesh);
+    if (!o_.epsilon.empty()) epsilon_ = tools::parse_length(o_.epsilon)->of(box_.diagonal());
+    if (epsilon_ && !(*epsilon_ > 0))
+      throw Error(ErrorCode::InvalidInput, o_.input + ": a percentage of a mesh without extent is no length");
+    seconds_read_ = tools::user_seconds();
+  }
+
+  bool choose_precision(io::Format format) {
+    precision_ = o_.precision == "double" ? bmesh::Precision::Double : bmesh::Precision::Float;
+    if (precision_ == bmesh::Precision::Double) return true;
+    double limit = 1e-6 * box_.diagonal();
+    if (epsilon_) limit = std::min(limit, *epsilon_ / 100);
+    const double spacing = geom::float32_spacing(
+        std::max(box_.min.cwiseAbs().maxCoeff(), box_.max.cwiseAbs().maxCoeff()));
+    if (spacing <= limit) return true;
+    return double_instead(format, "float32 numbers are " + formatted(spacing) +
+                                      " apart at these coordinates, more than " + formatted(limit) +
+                                      " (a millionth of the diagonal, or a hundredth of epsilon)");
+  }
+
+  /// Falls back to double where that is allowed; else says what to do.
+  bool double_instead(io::Format format, const std::string& why) {
+    if (o_.precision == "auto" && io::holds_double(format)) {
+      precision_ = bmesh::Precision::Double;
+      say("note: " + why + ": writing double");
+      return true;
+    }
+    tools::log(false, "bmesh-decimate: " + o_.input + ": " + why +
+                          "; nothing is written. Use --precision double with .ply, .obj or .off output, "
+                          "or move the mesh towards the origin");
+    return false;
+  }
+
+  bool decimate(io::Format format) {
+    bmesh::DecimateOptions d;
+    d.direction = o_.direction;
+    d.cost = o_.cost;
+    d.as_printed = o_.as_printed;
+    d.precision = precision_;
+    d.keep_convex = o_.keep_convex;
+    d.sharp_angle = o_.sharp_angle;
+    d.epsilon = epsilon_;
+    if (o_.vertices != 0) d.vertices = o_.vertices;
+    if (o_.ratio > 0) {
+      const auto n = static_cast<std::size_t>(
+          std::ceil(o_.ratio * static_cast<double>(prepared_.mesh.vertices.size())));
+      d.vertices = std::max({n, d.vertices.value_or(0), std::size_t{4}});
+    }
+    target_ = d.vertices;
+    if (!o_.log.empty()) d.steps = &log_.steps;
+    tools::Progress progress(o_.common.quiet);
+    const std::size_t start = prepared_.mesh.vertices.size();
+    d.progress = [&](std::size_t vertices) {
+      std::string text = std::to_string(vertices) + " of " + std::to_string(start) + " vertices left";
+      if (target_) text += ", " + std::to_string(*target_) + " wished";
+      progress.show(text);
+    };
+    result_ = bmesh::decimate(prepared_, d);
+    seconds_decimated_ = tools::user_seconds();
+    if (result_.unrepresentable == 0) return true;
+    return double_instead(format, std::to_string(result_.unrepresentable) +
+                                      (prepared_.closed ? " vertices" : " vertices (those of the border may not move)") +
+                                      " have no certified float32 position");
+  }
+
+  std::vector<char> serialise(io::Format format) const {
+    io::WriteOptions w;
+    w.double_precision = precision_ == bmesh::Precision::Double;
+    w.comment = std::string("bmesh-decimate ") + tools::version();
+    std::vector<char> bytes = io::serialise_mesh(result_.mesh, format, w);
+    check_readback(bytes, format, result_.mesh);
+    return bytes;
+  }
+
+  void measure() {
+    const geom::DistanceQuery original(prepared_.mesh), result(result_.mesh);
+    to_result_ = geom::directed_distance(prepared_.mesh, result);
+    to_original_ = geom::directed_distance(result_.mesh, original);
+    if (epsilon_)
+      ensure(std::max(to_result_->max_lower, to_original_->max_lower) <= *epsilon_,
+             "the measured distance exceeds the carried bound");
+  }
+
+  [[nodiscard]] Json report() const {
+    Json r;
+    r["tool"] = "bmesh-decimate";
+    r["version"] = tools::version();
+    r["input"] = {{"file", o_.input},
+                  {"sha256", log_.input_sha256},
+                  {"single_precision", input_.single_precision},
+                  {"file_vertices", input_.file_vertices},
+                  {"file_triangles", input_.file_triangles},
+                  {"split_polygons", input_.split_polygons}};
+    r["input"].update(tools::to_json(geom::analyse(prepared_.mesh)));
+    r["preparation"] = {
+        {"collapsed_triangles", input_.collapsed_triangles + prepared_.collapsed_triangles},
+        {"dropped_copies", prepared_.dropped_copies},
+        {"cancelled_walls", prepared_.cancelled_walls},
+        {"dropped_sheets", prepared_.dropped_sheets},
+        {"turned_components", prepared_.turned_components},
+        {"turned_triangles", prepared_.turned_triangles},
+        {"notes", prepared_.notes}};
+    r["options"] = {{"direction", name_of(kDirections, o_.direction)},
+                    {"cost", name_of(kCosts, o_.cost)},
+                    {"as_printed", o_.as_printed},
+                    {"precision", precision_ == bmesh::Precision::Double ? "double" : "float"},
+                    {"vertices", target_ ? Json(*target_) : Json()},
+                    {"epsilon", epsilon_ ? Json(*epsilon_) : Json()},
+                    {"sharp_angle", o_.sharp_angle},
+                    {"keep_convex", o_.keep_convex}};
+    r["stop"] = stop_name();
+    r["output"] = {{"file", o_.output}};
+    r["output"].update(tools::to_json(geom::analyse(result_.mesh)));
+    r["claims"] = claims();
+    const bmesh::DecimateStatistics& s = result_.statistics;
+    r["certificate"] = {{"contractions", s.contractions},
+                        {"moves", s.moves},
+                        {"placements", s.placements},
+                        {"predicates", s.predicates},
+                        {"exact_fallbacks", s.exact_fallbacks},
+                        {"rejected",
+                         {{"topology", s.rejected_topology},
+                          {"no_position", s.rejected_no_position},
+                          {"predicate", s.rejected_predicate},
+                          {"fold", s.rejected_fold},
+                          {"distance", s.rejected_distance}}}};
+    const double diagonal = box_.diagonal();
+    r["distance"] = {{"meaning", "one-sided, surface to surface, certified brackets of the maximum; "
+                                 "the original is the input after preparation"},
+                     {"bbox_diagonal", diagonal},
+                     {"original_to_result", tools::to_json(*to_result_, diagonal)},
+                     {"result_to_original", tools::to_json(*to_original_, diagonal)},
+                     {"hausdorff_upper", std::max(to_result_->max_upper, to_original_->max_upper)}};
+    r["resources"] = {{"user_seconds_reading", seconds_read_},
+                      {"user_seconds_decimating", seconds_decimated_ - seconds_read_},
+                      {"user_seconds", tools::user_seconds()},
+                      {"peak_megabytes", tools::peak_megabytes()},
+                      {"threads", o_.common.threads}};
+    return r;
+  }
+
+  [[nodiscard]] Json claims() const {
+    if (o_.direction == bmesh::Direction::Any) return {{"solid", "none"}, {"surface", "none"}};
+    const bool outer = o_.direction == bmesh::Direction::Outer;
+    Json c;
+    c["solid"] = prepared_.closed
+                     ? (outer ? "certified: the result's solid contains the input's"
+                              : "certified: the input's solid contains the result's")
+                     : "open mesh: certified only that the generalised winding number nowhere " +
+                           std::string(outer ? "falls" : "rises");
+    if (!outer || !prepared_.closed) {
+      c["surface"] = "none";
+      return c;
+    }
+    const SurfaceSamples s = sample_surface(prepared_.mesh, box_.diagonal());
+    c["surface"] = s.outside == 0
+                       ? "sampled: every input face looked at bounds the input's solid, which is contained"
+                       : "not claimed: some input faces do not bound the input's solid";
+    c["surface_faces_sampled"] = s.faces;
+    c["surface_faces_outside_solid"] = s.outside;
+    return c;
+  }
+
+  [[nodiscard]] const char* stop_name() const {
+    switch (result_.stop) {
+      case bmesh::Stop::VertexTarget:
+        return "vertices";
+      case bmesh::Stop::ErrorBound:
+        return "epsilon";
+      case bmesh::Stop::Exhausted:
+        break;
+    }
+    return "exhausted";
+  }
+
+  int conclude() const {
+    const bmesh::DecimateStatistics& s = result_.statistics;
+    std::string line = o_.output + ": " + std::to_string(s.vertices_in) + " → " +
+                       std::to_string(s.vertices_out) + " vertices, " +
+                       name_of(kDirections, o_.direction);
+    if (o_.direction != bmesh::Direction::Any) line += prepared_.closed ? ", certified" : ", open";
+    if (to_result_) {
+      const double upper = std::max(to_result_->max_upper, to_original_->max_upper);
+      line += ", within " + formatted(upper) + " (" + formatted(100 * upper / box_.diagonal()) + "%)";
+    }
+    say(line);
+    if (target_ && result_.stop == bmesh::Stop::Exhausted && s.vertices_out > *target_) {
+      tools::log(false, "bmesh-decimate: " + o_.input + ": " + std::to_string(*target_) +
+                            " vertices cannot be reached: no further contraction is possible at " +
+                            std::to_string(s.vertices_out) + "; the result so far is written");
+      return tools::kNo;
+    }
+    return tools::kDone;
+  }
+
+  Options o_;
+  io::ReadResult input_{};
+  geom::Prepared prepared_;
+  geom::Box3 box_;
+  std::optional<double> epsilon_;
+  std::optional<std::size_t> target_;
+  bmesh::Precision precision_ = bmesh::Precision::Float;
+  bmesh::DecimateResult result_;
+  bmesh::Log log_;
+  std::optional<geom::DirectedDistance> to_result_, to_original_;
+  double seconds_read_ = 0, seconds_decimated_ = 0;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Simplifies a triangle mesh so that the result provably encloses it (or is enclosed by it).",
+      "bmesh-decimate");
+  Options options;
+  describe(app, options);
+  return tools::run(app, argc, argv, [&] {
+    const tools::ThreadLimit limit(options.common.threads);
+    return Job(options).run();
+  });
+}

@@ -1,0 +1,189 @@
+#include "cli.h"
+
+#include <kaboum/geom/error.h>
+
+#include <sys/resource.h>
+#include <tbb/global_control.h>
+#include <unistd.h>
+
+#include <charconv>
+#include <cmath>
+#include <iostream>
+#include <new>
+
+namespace kaboum::tools {
+namespace {
+
+int exit_code(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::InvalidArgument:
+      return kUsage;
+    case ErrorCode::InvalidInput:
+      return kBadInput;
+    case ErrorCode::OutputFailed:
+      return kOutputFailed;
+    case ErrorCode::NotBuilt:
+      return kNotBuilt;
+    case ErrorCode::LimitReached:
+      return kLimit;
+    case ErrorCode::Internal:
+      break;
+  }
+  return kInternal;
+}
+
+}  // namespace
+
+const char* version() { return KABOUM_VERSION; }
+
+int run(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
+  app.set_version_flag("--version", std::string(KABOUM_VERSION));
+  app.get_formatter()->column_width(34);
+  const std::string name = app.get_name();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& success) {
+    return app.exit(success) == 0 ? kDone : kInternal;
+  } catch (const CLI::ParseError& error) {
+    std::cerr << name << ": " << error.what() << " (see " << name << " --help)\n";
+    return kUsage;
+  }
+  try {
+    return body();
+  } catch (const Error& error) {
+    std::cerr << name << ": " << error.what() << '\n';
+    return exit_code(error.code());
+  } catch (const std::bad_alloc&) {
+    std::cerr << name << ": out of memory\n";
+    return kLimit;
+  } catch (const std::exception& error) {
+    std::cerr << name << ": internal error: " << error.what() << '\n';
+    return kInternal;
+  }
+}
+
+void add_common_options(CLI::App& app, CommonOptions& options) {
+  app.add_option("--report", options.report, "Write a JSON report to this file (- for stdout)")
+      ->type_name("FILE");
+  app.add_option("--threads", options.threads, "Number of threads; 0: one per core; same bytes for any")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str()
+      ->type_name("N");
+  app.add_option("--seed", options.seed, "Seed of whatever is random; the result itself is not")
+      ->capture_default_str()
+      ->type_name("N");
+  app.add_flag("--quiet", options.quiet, "Print errors only");
+}
+
+struct ThreadLimit::Impl {
+  explicit Impl(std::size_t n) : control(tbb::global_control::max_allowed_parallelism, n) {}
+  tbb::global_control control;
+};
+
+ThreadLimit::ThreadLimit(int threads)
+    : impl_(threads > 0 ? std::make_unique<Impl>(static_cast<std::size_t>(threads)) : nullptr) {}
+ThreadLimit::~ThreadLimit() = default;
+
+std::optional<Length> parse_length(const std::string& text) {
+  Length length;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, length.value);
+  if (error != std::errc() || !std::isfinite(length.value) || !(length.value > 0)) return std::nullopt;
+  length.percent = stop != end && *stop == '%';
+  if (stop + (length.percent ? 1 : 0) != end) return std::nullopt;
+  return length;
+}
+
+Progress::Progress(bool quiet) : active_(!quiet && isatty(STDERR_FILENO) == 1) {}
+Progress::~Progress() {
+  if (shown_) std::cerr << "\r\033[K";
+}
+void Progress::show(const std::string& text) {
+  if (!active_) return;
+  shown_ = true;
+  std::cerr << '\r' << text << "\033[K" << std::flush;
+}
+
+void log(bool quiet, const std::string& text) {
+  if (!quiet) std::cerr << text << '\n';
+}
+
+io::Format format_for(const std::string& path, const std::string& name, const char* option) {
+  const auto listed = [](const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& n : names) text += (text.empty() ? "" : ", ") + n;
+    return text;
+  };
+  const bool reading = std::string_view(option) == "--input-format";
+  const std::string choices = listed(reading ? io::readable_formats() : io::writable_formats());
+  if (!name.empty()) {
+    if (const auto f = io::format_from_name(name)) return *f;
+    throw Error(ErrorCode::InvalidArgument,
+                std::string(option) + ": unknown format '" + name + "'; known: " + choices);
+  }
+  if (path == "-")
+    throw Error(ErrorCode::InvalidArgument, std::string(option) + " is needed with '-'; known: " + choices);
+  if (const auto f = io::format_from_name(std::filesystem::path(path).extension().string())) return *f;
+  throw Error(reading ? ErrorCode::InvalidInput : ErrorCode::InvalidArgument,
+              path + ": unknown file extension; use one of " + choices + ", or give " + option);
+}
+
+Json to_json(const geom::TopologyReport& t) {
+  return {{"vertices", t.vertices},
+          {"triangles", t.triangles},
+          {"edges", t.edges},
+          {"components", t.components},
+          {"closed", t.closed()},
+          {"manifold", t.manifold()},
+          {"open_edges", t.open_edges},
+          {"nonmanifold_edges", t.nonmanifold_edges},
+          {"inconsistent_edges", t.inconsistent_edges},
+          {"unbalanced_edges", t.unbalanced_edges},
+          {"nonmanifold_vertices", t.nonmanifold_vertices},
+          {"degenerate_triangles", t.degenerate_triangles},
+          {"duplicate_triangles", t.duplicate_triangles}};
+}
+
+Json to_json(const geom::DirectedDistance& d, double diagonal) {
+  return {{"max_lower", d.max_lower},
+          {"max_upper", d.max_upper},
+          {"max_upper_percent", diagonal > 0 ? 100 * d.max_upper / diagonal : 0.0},
+          {"at", {d.at.x(), d.at.y(), d.at.z()}}};
+}
+
+double user_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_utime.tv_sec) + 1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
+}
+
+double peak_megabytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+void write_json(const std::string& path, const Json& json) {
+  const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  io::write_file(path, text);
+}
+
+void write_depfile(const std::string& path, const std::string& target,
+                   const std::vector<std::string>& inputs) {
+  const auto escaped = [](const std::string& s) {
+    std::string out;
+    for (const char c : s) {
+      if (c == ' ' || c == '#' || c == '\\') out += '\\';
+      if (c == '$') out += '$';
+      out += c;
+    }
+    return out;
+  };
+  std::string text = escaped(target) + ":";
+  for (const std::string& input : inputs)
+    if (input != "-") text += " " + escaped(input);
+  text += "\n";
+  io::write_file(path, text);
+}
+
+}  // namespace kaboum::tools

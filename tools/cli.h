@@ -1,0 +1,99 @@
+#pragma once
+
+#include <kaboum/geom/distance.h>
+#include <kaboum/geom/topology.h>
+#include <kaboum/io/mesh_io.h>
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+/// What the command-line tools share: exit codes, common options, progress, reports.
+namespace kaboum::tools {
+
+using Json = nlohmann::ordered_json;
+
+/// Exit codes; docs/exit-codes.md.
+enum ExitCode {
+  kDone = 0,
+  kNo = 1,
+  kUsage = 2,
+  kBadInput = 3,
+  kOutputFailed = 4,
+  kNotBuilt = 5,
+  kInternal = 6,
+  kLimit = 7,
+};
+
+const char* version();
+
+/// Parses the command line and runs `body`; prints errors on stderr and returns the exit code.
+int run(CLI::App& app, int argc, char** argv, const std::function<int()>& body);
+
+/// Options that every tool has.
+struct CommonOptions {
+  std::string report;
+  int threads = 0;
+  std::uint64_t seed = 1;
+  bool quiet = false;
+};
+void add_common_options(CLI::App& app, CommonOptions& options);
+
+/// Holds oneTBB to options.threads (0: all cores) while it lives.
+class ThreadLimit {
+ public:
+  explicit ThreadLimit(int threads);
+  ~ThreadLimit();
+  ThreadLimit(const ThreadLimit&) = delete;
+  ThreadLimit& operator=(const ThreadLimit&) = delete;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// A length, or a percentage of something.
+struct Length {
+  double value = 0;
+  bool percent = false;
+  [[nodiscard]] double of(double diagonal) const { return percent ? 0.01 * value * diagonal : value; }
+};
+
+/// "0.005" or "0.5%"; nullopt unless it is a positive finite number.
+std::optional<Length> parse_length(const std::string& text);
+
+/// One line on stderr that is rewritten, if stderr is a terminal and not `quiet`; else nothing.
+class Progress {
+ public:
+  explicit Progress(bool quiet);
+  ~Progress();
+  void show(const std::string& text);
+
+ private:
+  bool active_;
+  bool shown_ = false;
+};
+
+/// Prints a line on stderr unless `quiet`.
+void log(bool quiet, const std::string& text);
+
+/// Format named by --input-format/--output-format, else by the file name's extension.
+/// @throws Error{InvalidArgument} when unknown.
+io::Format format_for(const std::string& path, const std::string& name, const char* option);
+
+Json to_json(const geom::TopologyReport& topology);
+Json to_json(const geom::DirectedDistance& distance, double diagonal);
+
+/// Seconds of user CPU time and peak memory of this process so far.
+double user_seconds();
+double peak_megabytes();
+
+void write_json(const std::string& path, const Json& json);
+
+/// A Makefile rule saying that `target` depends on `inputs`.
+void write_depfile(const std::string& path, const std::string& target,
+                   const std::vector<std::string>& inputs);
+
+}  // namespace kaboum::tools
