@@ -20,7 +20,6 @@ int run(int resolution, const std::string& output, const std::string& format_nam
   }
   io::WriteOptions options;
   options.double_precision = true;
-  options.comment = "KABouM make-part --resolution " + std::to_string(resolution);
   io::write_file(output, io::serialise_mesh(examples::make_bracket(resolution), *format, options));
   return 0;
 }
@@ -47,9 +46,12 @@ int main(int argc, char** argv) {
   } catch (const kaboum::Error& error) {
     std::cerr << "make-part: " << error.what() << '\n';
     switch (error.code()) {
-      case kaboum::ErrorCode::InvalidArgument: return 2;
-      case kaboum::ErrorCode::OutputFailed: return 4;
-      default: return 6;
+      case kaboum::ErrorCode::InvalidArgument:
+        return 2;
+      case kaboum::ErrorCode::OutputFailed:
+        return 4;
+      default:
+        return 6;
     }
   } catch (const std::exception& error) {
     std::cerr << "make-part: internal error: " << error.what() << '\n';

@@ -129,8 +129,8 @@ class Drawing {
     if (b < a) return reversed(line(b, a));
     double square = 0;
     for (int k = 0; k < 3; ++k) square += static_cast<double>((b[k] - a[k]) * (b[k] - a[k]));
-    const auto count =
-        std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(std::sqrt(square) / spacing())));
+    const auto count = std::max<std::int64_t>(
+        1, static_cast<std::int64_t>(std::ceil(std::sqrt(square) / spacing())));
     Path path;
     for (std::int64_t i = 0; i <= count; ++i) {
       Point p;
@@ -175,10 +175,12 @@ class Drawing {
   }
 
   /// Stadium across x: two half circles about centre ± half_length along z, and the lines between.
-  [[nodiscard]] Path slot(const Point& centre, std::int64_t half_length, std::int64_t radius) const {
+  [[nodiscard]] Path slot(const Point& centre, std::int64_t half_length,
+                          std::int64_t radius) const {
     const Path upper = arc({centre[0], centre[1], centre[2] + half_length}, 1, 2, radius, 0, 2);
     const Path lower = arc({centre[0], centre[1], centre[2] - half_length}, 1, 2, radius, 2, 2);
-    return join({upper, line(upper.back(), lower.front()), lower, line(lower.back(), upper.front())});
+    return join(
+        {upper, line(upper.back(), lower.front()), lower, line(lower.back(), upper.front())});
   }
 
  private:
@@ -190,9 +192,9 @@ class Drawing {
 
 geom::Mesh make_bracket(int resolution) {
   if (resolution < kMinBracketResolution || resolution > kMaxBracketResolution) {
-    throw Error(ErrorCode::InvalidArgument,
-                "the resolution must be from " + std::to_string(kMinBracketResolution) + " to " +
-                    std::to_string(kMaxBracketResolution));
+    throw Error(ErrorCode::InvalidArgument, "the resolution must be from " +
+                                                std::to_string(kMinBracketResolution) + " to " +
+                                                std::to_string(kMaxBracketResolution));
   }
   constexpr std::int64_t mm = kMillimetre;
   constexpr std::int64_t length = 200 * mm, width = 120 * mm, height = 140 * mm;
@@ -231,10 +233,9 @@ geom::Mesh make_bracket(int resolution) {
       join({draw.arc({base_end, base_corner, 0}, 0, 1, base_corner, 3, 1),
             draw.line({length, base_corner, 0}, {length, width - base_corner, 0}),
             draw.arc({base_end, width - base_corner, 0}, 0, 1, base_corner, 0, 1)});
-  const Path wall_rim =
-      join({draw.arc({0, width - wall_corner, wall_end}, 1, 2, wall_corner, 0, 1),
-            draw.line({0, width - wall_corner, height}, {0, wall_corner, height}),
-            draw.arc({0, wall_corner, wall_end}, 1, 2, wall_corner, 1, 1)});
+  const Path wall_rim = join({draw.arc({0, width - wall_corner, wall_end}, 1, 2, wall_corner, 0, 1),
+                              draw.line({0, width - wall_corner, height}, {0, wall_corner, height}),
+                              draw.arc({0, wall_corner, wall_end}, 1, 2, wall_corner, 1, 1)});
   part.sweep(base_rim, 2, base_up, false);
   part.sweep(wall_rim, 0, wall_through, false);
 
@@ -244,15 +245,22 @@ geom::Mesh make_bracket(int resolution) {
             draw.lines({{base_end, width, 0}, {bend, width, 0}, {bend, 0, 0}})})};
   std::vector<Path> top{
       join({draw.line({in_x, 0, base}, {base_end, 0, base}), shifted(base_rim, 2, base),
-            draw.lines({{base_end, width, base}, {in_x, width, base}, {in_x, rib1, base},
-                        {rib_x, rib1, base}, {rib_x, rib0, base}, {in_x, rib0, base},
+            draw.lines({{base_end, width, base},
+                        {in_x, width, base},
+                        {in_x, rib1, base},
+                        {rib_x, rib1, base},
+                        {rib_x, rib0, base},
+                        {in_x, rib0, base},
                         {in_x, 0, base}})})};
-  std::vector<Path> back{
-      join({draw.lines({{0, 0, bend}, {0, width, bend}, {0, width, wall_end}}), wall_rim,
-            draw.line({0, 0, wall_end}, {0, 0, bend})})};
+  std::vector<Path> back{join({draw.lines({{0, 0, bend}, {0, width, bend}, {0, width, wall_end}}),
+                               wall_rim, draw.line({0, 0, wall_end}, {0, 0, bend})})};
   std::vector<Path> front{
-      join({draw.lines({{wall, 0, in_z}, {wall, rib0, in_z}, {wall, rib0, rib_z},
-                        {wall, rib1, rib_z}, {wall, rib1, in_z}, {wall, width, in_z},
+      join({draw.lines({{wall, 0, in_z},
+                        {wall, rib0, in_z},
+                        {wall, rib0, rib_z},
+                        {wall, rib1, rib_z},
+                        {wall, rib1, in_z},
+                        {wall, width, in_z},
                         {wall, width, wall_end}}),
             shifted(wall_rim, 0, wall), draw.line({wall, 0, wall_end}, {wall, 0, in_z})})};
 
@@ -296,9 +304,9 @@ geom::Mesh make_bracket(int resolution) {
                                  {rib_x, rib0, base + rib_tip},
                                  {wall + rib_tip, rib0, rib_z},
                                  {wall, rib0, rib_z}});
-  const Path rib_side = join({draw.line({in_x, rib0, base}, {rib_x, rib0, base}), ridge,
-                              draw.line({wall, rib0, rib_z}, {wall, rib0, in_z}),
-                              shifted(inner_fillet, 1, rib0)});
+  const Path rib_side =
+      join({draw.line({in_x, rib0, base}, {rib_x, rib0, base}), ridge,
+            draw.line({wall, rib0, rib_z}, {wall, rib0, in_z}), shifted(inner_fillet, 1, rib0)});
   part.sweep(ridge, 1, draw.line({0, rib0, 0}, {0, rib1, 0}), true);
   part.face(1, {rib_side}, spacing, false);
   part.face(1, {shifted(rib_side, 1, rib1 - rib0)}, spacing, true);

@@ -84,7 +84,8 @@ class Triangulation {
     std::vector<std::uint32_t> stack;
     for (std::uint32_t f = 0; f < faces_.size(); ++f) {
       for (int i = 0; i < 3; ++i) {
-        if (wall.count({faces_[f].corner[i], faces_[f].corner[(i + 1) % 3]}) != 0) stack.push_back(f);
+        if (wall.count({faces_[f].corner[i], faces_[f].corner[(i + 1) % 3]}) != 0)
+          stack.push_back(f);
       }
     }
     while (!stack.empty()) {
@@ -101,7 +102,8 @@ class Triangulation {
     std::vector<std::array<std::uint32_t, 3>> result;
     for (std::uint32_t f = 0; f < faces_.size(); ++f) {
       if (state[f] == 0) continue;
-      for (const std::uint32_t c : faces_[f].corner) ensure(c < first_extra_, "a planar face leaks");
+      for (const std::uint32_t c : faces_[f].corner)
+        ensure(c < first_extra_, "a planar face leaks");
       result.push_back(faces_[f].corner);
     }
     return result;
@@ -182,7 +184,8 @@ class Triangulation {
       ensure(cross(points_[b.from], points_[b.to], p) > 0, "two points of a planar face coincide");
       if (b.outside != kNone) {
         for (int i = 0; i < 3; ++i) {
-          if (faces_[b.outside].corner[i] == b.to && faces_[b.outside].corner[(i + 1) % 3] == b.from) {
+          if (faces_[b.outside].corner[i] == b.to &&
+              faces_[b.outside].corner[(i + 1) % 3] == b.from) {
             outer_sides[k] = {b.outside, i};
           }
         }
@@ -191,7 +194,8 @@ class Triangulation {
     for (std::size_t k = 0; k < border.size(); ++k) {
       const Border& b = border[k];
       faces_[slot[k]] = {{b.from, b.to, index}, {b.outside, kNone, kNone}};
-      if (b.outside != kNone) faces_[outer_sides[k].first].adjacent[outer_sides[k].second] = slot[k];
+      if (b.outside != kNone)
+        faces_[outer_sides[k].first].adjacent[outer_sides[k].second] = slot[k];
       starting_at[b.from] = slot[k];
     }
     for (std::size_t k = 0; k < border.size(); ++k) {
@@ -218,9 +222,11 @@ class Triangulation {
     if (u == a || u == b || v == a || v == b) return false;
     const auto sign = [](std::int64_t s) { return (s > 0) - (s < 0); };
     return sign(cross(points_[a], points_[b], points_[u])) *
-                   sign(cross(points_[a], points_[b], points_[v])) < 0 &&
+                   sign(cross(points_[a], points_[b], points_[v])) <
+               0 &&
            sign(cross(points_[u], points_[v], points_[a])) *
-                   sign(cross(points_[u], points_[v], points_[b])) < 0;
+                   sign(cross(points_[u], points_[v], points_[b])) <
+               0;
   }
 
   [[nodiscard]] std::deque<std::pair<std::uint32_t, std::uint32_t>> edges_crossing(

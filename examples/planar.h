@@ -22,12 +22,13 @@ struct PlanarMesh {
 /// Triangulates a polygon with holes, with further points inside at about the given spacing.
 ///
 /// A Delaunay triangulation (Bowyer 1981, Watson 1981) in which the loops' edges are then enforced
-/// by flips (Sloan 1993). All decisions are exact integer arithmetic, so it cannot fail on collinear
-/// or cocircular points.
+/// by flips (Sloan 1993). All decisions are exact integer arithmetic, so it cannot fail on
+/// collinear or cocircular points.
 ///
 /// @param loops    simple, disjoint, no repeated points; the outer one counter-clockwise, holes
 ///                 clockwise: the region lies to the left of every edge. Edges are not subdivided.
-/// @param spacing  grid units; points are added where they are at least 0.6 spacings from the loops.
+/// @param spacing  grid units; points are added where they are at least 0.6 spacings from the
+/// loops.
 /// @throws Error{Internal} when the loops cross themselves or each other.
 PlanarMesh triangulate(const std::vector<Loop>& loops, double spacing);
 

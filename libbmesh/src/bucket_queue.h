@@ -1,5 +1,7 @@
 #pragma once
 
+#include <kaboum/geom/mesh.h>
+
 #include <bit>
 #include <cstdint>
 #include <vector>
@@ -12,9 +14,12 @@ namespace kaboum::bmesh {
 class BucketQueue {
  public:
   struct Entry {
-    std::uint32_t a, b;          ///< end points
-    std::uint32_t stamp_a, stamp_b;  ///< their stamps when the entry was made
+    std::uint32_t a, b;      ///< end points
+    std::uint32_t stamps;    ///< sum of their stamps when the entry was made
+    std::uint32_t versions;  ///< sum of their versions when `position` was found; kUnsolved: not yet
+    geom::Vec3 position;     ///< where the edge would be contracted to
   };
+  static constexpr std::uint32_t kUnsolved = ~0U;
 
   BucketQueue() : heads_(kBuckets, kNone) {}
 

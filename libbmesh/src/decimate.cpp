@@ -45,6 +45,7 @@ class Decimator {
         normal_(input.mesh.triangles.size()),
         quadric_(input.mesh.vertices.size()),
         stamp_(input.mesh.vertices.size(), 0),
+        version_(input.mesh.vertices.size(), 0),
         mark_(input.mesh.vertices.size(), 0),
         vertices_(input.mesh.vertices.size()) {
     statistics_.vertices_in = vertices_;
@@ -135,7 +136,7 @@ class Decimator {
     const Vec3 middle = 0.5 * (local(a) + local(b));
     const double lower = std::max(0.0, unconstrained_minimum(q, middle)) +
                          length_cost(q, a, b);
-    queue_.push(lower, {a, b, stamp_[a], stamp_[b]});
+    queue_.push(lower, {a, b, stamp_[a] + stamp_[b], BucketQueue::kUnsolved, {}});
   }
 
   /// Prefers short edges where the quadric is indifferent, as in planes: 10^-4 of the length.
@@ -159,8 +160,13 @@ class Decimator {
     }
   }
 
+  // Stamps and versions only rise, so a sum of two is unchanged only if both are.
   [[nodiscard]] bool stale(const BucketQueue::Entry& e) const {
-    return stamp_[e.a] != e.stamp_a || stamp_[e.b] != e.stamp_b;
+    return stamp_[e.a] + stamp_[e.b] != e.stamps;
+  }
+  /// Whether the entry's position was found for the very triangles that are there now.
+  [[nodiscard]] bool solved(const BucketQueue::Entry& e) const {
+    return version_[e.a] + version_[e.b] == e.versions;
   }
 
   Stop contract_all() {
@@ -174,10 +180,16 @@ class Decimator {
       const std::uint64_t rejected_before = statistics_.rejected_distance;
       while (vertices_ > target && queue_.pop(e)) {
         if (stale(e)) continue;
-        if (!evaluate(e.a, e.b)) continue;
-        if (!queue_.due(candidate_.cost)) {
-          queue_.push(candidate_.cost, e);
-          continue;
+        if (solved(e)) {
+          candidate_ = {e.a, e.b, e.position, 0};
+        } else {
+          if (!evaluate(e.a, e.b)) continue;
+          if (!queue_.due(candidate_.cost)) {
+            e.versions = version_[e.a] + version_[e.b];
+            e.position = candidate_.position;
+            queue_.push(candidate_.cost, e);
+            continue;
+          }
         }
         if (!admissible()) continue;
         apply();
@@ -443,6 +455,8 @@ class Decimator {
 
   /// The dearer tests, made only of candidates that are about to be applied.
   [[nodiscard]] bool admissible() {
+    if (!options_.keep_convex && !tolerance_) return true;
+    gather(candidate_.a, candidate_.b);
     if (options_.keep_convex && !stays_convex()) return reject(statistics_.rejected_predicate);
     if (!tolerance_) return true;
     describe_change();
@@ -460,6 +474,7 @@ class Decimator {
     border_[a] = border_[a] | border_[b];
     ++stamp_[a];
     ++stamp_[b];
+    ++version_[a];
     --vertices_;
     ++statistics_.contractions;
     mesh_.for_each_triangle(a, [&](std::uint32_t t, std::uint32_t) { update_normal(t); });
@@ -469,6 +484,7 @@ class Decimator {
         const std::uint32_t w = mesh_[t][(k + j) % 3];
         if (mark_[w] == seen) continue;
         mark_[w] = seen;
+        ++version_[w];
         push_edge(a, w);
       }
     });
@@ -477,15 +493,43 @@ class Decimator {
 
   // ---- representable coordinates ------------------------------------------------------------------
 
-  /// Moves vertices that float32 cannot hold to certified positions that it can. Returns how many
-  /// could not be helped.
+  /// Moves vertices that float32 cannot hold to certified positions that it can, or contracts them
+  /// away. Returns how many could not be helped.
   std::size_t make_representable() {
-    std::size_t failed = 0;
-    for (std::uint32_t v = 0; v < position_.size(); ++v) {
-      if (!mesh_.used(v) || geom::is_float32(position_[v])) continue;
-      if (border_[v] != 0 || !move_to_representable(v)) ++failed;
+    std::vector<std::uint32_t> left;
+    for (std::uint32_t v = 0; v < position_.size(); ++v)
+      if (mesh_.used(v) && !geom::is_float32(position_[v])) left.push_back(v);
+    // What fails now may succeed once a neighbour has moved.
+    for (std::size_t before = left.size() + 1; left.size() < before;) {
+      before = left.size();
+      std::erase_if(left, [&](std::uint32_t v) {
+        if (!mesh_.used(v)) return true;
+        return border_[v] == 0 && (move_to_representable(v) || contract_away(v));
+      });
     }
-    return failed;
+    return left.size();
+  }
+
+  /// Contracts the cheapest admissible edge of v.
+  bool contract_away(std::uint32_t v) {
+    std::vector<std::uint32_t> neighbours;
+    mesh_.for_each_triangle(v, [&](std::uint32_t t, std::uint32_t k) {
+      for (std::uint32_t j = 1; j < 3; ++j) neighbours.push_back(mesh_[t][(k + j) % 3]);
+    });
+    std::sort(neighbours.begin(), neighbours.end());
+    neighbours.erase(std::unique(neighbours.begin(), neighbours.end()), neighbours.end());
+    std::optional<Candidate> best;
+    for (const std::uint32_t w : neighbours) {
+      if (!evaluate(v, w) || !geom::is_float32(candidate_.position)) continue;
+      if (best && best->cost <= candidate_.cost) continue;
+      const Candidate candidate = candidate_;
+      if (admissible()) best = candidate;
+    }
+    if (!best) return false;
+    candidate_ = *best;
+    ensure(admissible(), "an admitted contraction is no longer admissible");
+    apply();
+    return true;
   }
 
   bool move_to_representable(std::uint32_t v) {
@@ -541,7 +585,8 @@ class Decimator {
   Connectivity mesh_;
   std::vector<Vec3> normal_;  // unit, or zero for triangles without area
   std::vector<Quadric> quadric_;
-  std::vector<std::uint32_t> stamp_;  // of a vertex: raised when it is moved or vanishes
+  std::vector<std::uint32_t> stamp_;    // of a vertex: raised when it is moved or vanishes
+  std::vector<std::uint32_t> version_;  // of a vertex: raised when any of its triangles changes
   std::vector<std::uint32_t> mark_;
   std::uint32_t mark_value_ = 0;
   std::size_t vertices_;

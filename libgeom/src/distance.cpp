@@ -39,21 +39,36 @@ std::pair<double, double> closest_weights(const Vec3& a, const Vec3& b, const Ve
   return {s, std::clamp(vc / sum, 0.0, 1.0 - s)};
 }
 
+/// Point of the segment (a, b) closest to the origin.
+Vec3 closest_on_segment(const Vec3& a, const Vec3& b) {
+  const Vec3 ab = b - a;
+  const double length = ab.squaredNorm();
+  if (!(length > 0)) return a;
+  return a + std::clamp(-a.dot(ab) / length, 0.0, 1.0) * ab;
+}
+
+/// Bounds that the point q of the triangle gives.
+DistanceBounds bounds_from(const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c, double slack) {
+  const double norm = q.norm();
+  if (!(norm > 0)) return {0, slack};
+  const double support = std::min({q.dot(a), q.dot(b), q.dot(c)}) / norm;
+  return {std::max(0.0, support * (1 - kRounding) - slack), norm * (1 + kRounding) + slack};
+}
+
 /// Bounds for the triangle (a, b, c) given relative to the query point.
 DistanceBounds bounds_at_origin(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const double magnitude =
-      a.cwiseAbs().cwiseMax(b.cwiseAbs()).cwiseMax(c.cwiseAbs()).maxCoeff();
-  const double slack = kRounding * magnitude;
+  const double slack =
+      kRounding * a.cwiseAbs().cwiseMax(b.cwiseAbs()).cwiseMax(c.cwiseAbs()).maxCoeff();
   const auto [s, t] = closest_weights(a, b, c);
-  const Vec3 q = a + s * (b - a) + t * (c - a);
-  const double norm = q.norm();
-  const double upper = norm * (1 + kRounding) + slack;
-  double lower = 0;
-  if (norm > 0) {
-    const double support = std::min({q.dot(a), q.dot(b), q.dot(c)}) / norm;
-    lower = std::max(0.0, support * (1 - kRounding) - slack);
+  DistanceBounds best = bounds_from(a + s * (b - a) + t * (c - a), a, b, c, slack);
+  if (best.upper - best.lower <= 4 * slack + 1e-12 * best.upper) return best;
+  // A sliver, whose plane is ill-defined: its edges are not, and no point of it is far from them.
+  for (const Vec3& q : {closest_on_segment(a, b), closest_on_segment(b, c), closest_on_segment(c, a)}) {
+    const DistanceBounds d = bounds_from(q, a, b, c, slack);
+    best.lower = std::max(best.lower, d.lower);
+    best.upper = std::min(best.upper, d.upper);
   }
-  return {lower, upper};
+  return best;
 }
 
 /// Lower bound of the squared distance of p to a box.

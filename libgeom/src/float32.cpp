@@ -1,6 +1,8 @@
 #include <kaboum/geom/float32.h>
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace kaboum::geom {
@@ -22,7 +24,8 @@ bool is_float32(const Vec3& p) { return to_float32(p) == p; }
 double float32_spacing(double x) {
   const float a = std::abs(static_cast<float>(x));
   if (!std::isfinite(a)) return std::numeric_limits<double>::infinity();
-  return static_cast<double>(std::nextafter(a, std::numeric_limits<float>::infinity())) - static_cast<double>(a);
+  const auto next = std::bit_cast<float>(std::bit_cast<std::uint32_t>(a) + 1);
+  return static_cast<double>(next) - static_cast<double>(a);
 }
 
 }  // namespace kaboum::geom

@@ -1,13 +1,19 @@
 #include <kaboum/geom/predicates.h>
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Exact_rational.h>
+#include <CGAL/Mpzf.h>
+#include <CGAL/Simple_cartesian.h>
 
 namespace kaboum::geom::detail {
 namespace {
 
-// The kernel behind CGAL's filtered predicates: exact arithmetic on doubles, without intervals. The
-// callers have filtered already, and what is left is mostly exactly zero.
-using Exact = CGAL::Exact_predicates_inexact_constructions_kernel::Exact_kernel;
+// Exact arithmetic on doubles, without CGAL's interval stage: the callers have filtered already, and
+// what is left is mostly exactly zero. Mpzf (dyadic numbers) is ten times faster than rationals.
+#ifdef CGAL_HAS_MPZF
+using Exact = CGAL::Simple_cartesian<CGAL::Mpzf>;
+#else
+using Exact = CGAL::Simple_cartesian<CGAL::Exact_rational>;
+#endif
 
 Sign to_sign(CGAL::Sign s) { return static_cast<Sign>(static_cast<int>(s)); }
 

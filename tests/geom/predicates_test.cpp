@@ -13,7 +13,7 @@ using kaboum::geom::Sign;
 using kaboum::geom::Vec3;
 using Rational = boost::multiprecision::cpp_rational;
 
-Sign sign(const Rational& r) { return static_cast<Sign>(r.sign()); }
+Sign sign_of(const Rational& r) { return static_cast<Sign>(r.sign()); }
 
 Sign orient3d_slow(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   Rational m[3][3];
@@ -22,7 +22,7 @@ Sign orient3d_slow(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     m[1][k] = Rational(c[k]) - Rational(a[k]);
     m[2][k] = Rational(d[k]) - Rational(a[k]);
   }
-  return sign(m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+  return sign_of(m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
               m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
               m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]));
 }
@@ -81,7 +81,7 @@ TEST(Orient2d, AgreesWithRationalsNearDegeneracy) {
     const double cx = ax + t * (bx - ax), cy = ay + t * (by - ay);
     const Rational slow = (Rational(bx) - Rational(ax)) * (Rational(cy) - Rational(ay)) -
                           (Rational(by) - Rational(ay)) * (Rational(cx) - Rational(ax));
-    ASSERT_EQ(orient2d(ax, ay, bx, by, cx, cy), sign(slow));
+    ASSERT_EQ(orient2d(ax, ay, bx, by, cx, cy), sign_of(slow));
   }
 }
 

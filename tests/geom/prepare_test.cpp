@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "families.h"
+#include "support/families.h"
 
 namespace {
 

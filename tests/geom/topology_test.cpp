@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "families.h"
-#include "oracle.h"
+#include "support/families.h"
+#include "support/oracle.h"
 
 namespace {
 

@@ -4,8 +4,8 @@
 
 #include <random>
 
-#include "families.h"
-#include "oracle.h"
+#include "support/families.h"
+#include "support/oracle.h"
 
 namespace {
 

@@ -1,6 +1,7 @@
 // Whatever the bytes, parse_mesh returns a valid mesh or throws Error.
 
 #include <random>
+#include <sstream>
 
 #include "io_test.h"
 #include "samples.h"
@@ -140,12 +141,12 @@ TEST(Hostile, LongLines) {
 TEST(Hostile, HugePolygonsEnd) {
   // A zigzag in which nearly every corner is reflex, shuffled so that it is not simple.
   std::mt19937_64 random(3);
-  std::string text;
+  std::ostringstream text;
   for (int i = 0; i < 200'000; ++i)
-    text += "v " + std::to_string(random() % 1000) + " " + std::to_string(random() % 1000) + " 0\n";
-  text += "f";
-  for (int i = 1; i <= 200'000; ++i) text += " " + std::to_string(i);
-  expect_mesh_or_error(text, Format::Obj);
+    text << "v " << random() % 1000 << ' ' << random() % 1000 << " 0\n";
+  text << 'f';
+  for (int i = 1; i <= 200'000; ++i) text << ' ' << i;
+  expect_mesh_or_error(text.str(), Format::Obj);
 }
 
 }  // namespace

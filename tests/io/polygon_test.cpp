@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <random>
+#include <sstream>
 
 #include "io_test.h"
 
@@ -73,7 +74,7 @@ TEST(Polygon, ConvexIsAFan) {
 TEST(Polygon, ConcaveQuadUsesTheInnerDiagonal) {
   for (int start = 0; start < 4; ++start) {
     std::vector<Vec3> dart = flat({{0, 0}, {2, -1}, {0, 3}, {-2, -1}});
-    std::ranges::rotate(dart, dart.begin() + start);
+    std::rotate(dart.begin(), dart.begin() + start, dart.end());
     expect_proper(dart);
   }
 }
@@ -102,7 +103,7 @@ TEST(Polygon, ConcaveShapes) {
             {0, 1}})};
   for (std::vector<Vec3> shape : shapes) {
     for (std::size_t start = 0; start < shape.size(); ++start) {
-      std::ranges::rotate(shape, shape.begin() + 1);
+      std::rotate(shape.begin(), shape.begin() + 1, shape.end());
       expect_proper(shape);
     }
   }
@@ -112,12 +113,12 @@ TEST(Polygon, CollinearCornersGiveNoTriangleWithoutArea) {
   std::vector<Vec3> shape =
       flat({{0, 0}, {1, 0}, {2, 0}, {3, 0}, {3, 1}, {3, 2}, {3, 3}, {2, 2}, {1, 1}});
   for (std::size_t start = 0; start < shape.size(); ++start) {
-    std::ranges::rotate(shape, shape.begin() + 1);
+    std::rotate(shape.begin(), shape.begin() + 1, shape.end());
     expect_proper(shape);
   }
   std::vector<Vec3> quad = flat({{0, 0}, {1, 0}, {2, 0}, {0, 2}});
   for (int start = 0; start < 4; ++start) {
-    std::ranges::rotate(quad, quad.begin() + 1);
+    std::rotate(quad.begin(), quad.begin() + 1, quad.end());
     expect_proper(quad);
   }
 }
@@ -133,7 +134,7 @@ TEST(Polygon, HoleWithBridge) {
   std::vector<Vec3> keyhole =
       flat({{0, 0}, {6, 0}, {6, 6}, {0, 6}, {0, 0}, {2, 2}, {2, 4}, {4, 4}, {4, 2}, {2, 2}});
   for (std::size_t start = 0; start < keyhole.size(); ++start) {
-    std::ranges::rotate(keyhole, keyhole.begin() + 1);
+    std::rotate(keyhole.begin(), keyhole.begin() + 1, keyhole.end());
     expect_proper(keyhole);
   }
 }
@@ -204,19 +205,17 @@ TEST(Polygon, ClosedMeshStaysClosed) {
   const std::vector<std::array<double, 2>> outline = {{0, 0}, {2, 0}, {4, 0}, {4, 1},
                                                       {1, 1}, {1, 3}, {1, 4}, {0, 4}};
   const std::size_t n = outline.size();
-  std::string text;
+  std::ostringstream text, bottom, top, sides;
   for (const int z : {0, 1})
-    for (const auto& [x, y] : outline)
-      text += "v " + std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z) + "\n";
-  std::string bottom = "f", top = "f", sides;
+    for (const auto& [x, y] : outline) text << "v " << x << ' ' << y << ' ' << z << '\n';
   for (std::size_t i = 0; i < n; ++i) {
-    bottom += " " + std::to_string(n - i);
-    top += " " + std::to_string(n + i + 1);
+    bottom << ' ' << n - i;
+    top << ' ' << n + i + 1;
     const std::size_t k = (i + 1) % n;
-    sides += "f " + std::to_string(i + 1) + " " + std::to_string(k + 1) + " " +
-             std::to_string(n + k + 1) + " " + std::to_string(n + i + 1) + "\n";
+    sides << "f " << i + 1 << ' ' << k + 1 << ' ' << n + k + 1 << ' ' << n + i + 1 << '\n';
   }
-  const ReadResult r = parse(text + bottom + "\n" + top + "\n" + sides, Format::Obj);
+  text << 'f' << bottom.str() << "\nf" << top.str() << '\n' << sides.str();
+  const ReadResult r = parse(text.str(), Format::Obj);
   EXPECT_TRUE(is_closed_chain(r.mesh));
   EXPECT_EQ(r.mesh.triangles.size(), 2 * (n - 2) + 2 * n);
   EXPECT_EQ(r.split_polygons, n + 2);

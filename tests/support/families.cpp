@@ -19,7 +19,9 @@ Mesh displaced(const Mesh& mesh) { return translated(mesh, {0.1, -0.7, 1.3}); }
 /// A list under construction; `add` is for solids, the others say what differs.
 class List {
  public:
-  void add(std::string name, Mesh mesh) { push(std::move(name), std::move(mesh), true, true, false); }
+  void add(std::string name, Mesh mesh) {
+    push(std::move(name), std::move(mesh), true, true, false);
+  }
   void convex(std::string name, Mesh mesh) {
     push(std::move(name), std::move(mesh), true, true, true);
   }
@@ -45,9 +47,11 @@ void add_convex(List& list) {
   list.convex("hull-ball", random_hull(400, Cloud::Ball, 1));
   list.convex("hull-cube-float", convex_hull(to_float(random_hull(2000, Cloud::Cube, 2)).vertices));
   list.convex("hull-sphere", random_hull(300, Cloud::Sphere, 3));
-  list.convex("hull-sphere-far",
-              convex_hull(translated(random_hull(150, Cloud::Sphere, 4), {1e6, 2e6, -3e6}).vertices));
-  list.convex("hull-flat", convex_hull(scaled(random_hull(200, Cloud::Sphere, 5), {1, 1, 1e-4}).vertices));
+  list.convex(
+      "hull-sphere-far",
+      convex_hull(translated(random_hull(150, Cloud::Sphere, 4), {1e6, 2e6, -3e6}).vertices));
+  list.convex("hull-flat",
+              convex_hull(scaled(random_hull(200, Cloud::Sphere, 5), {1, 1, 1e-4}).vertices));
   list.convex("box-float", box({1, 2, 0.5}, 4));
   list.convex("box", translated(box(kOdd, 6), {0.1, 0.2, 0.3}));
   list.add("box-rotated", rotated(box(kOdd, 6), 0.7));
@@ -93,8 +97,8 @@ void add_components(List& list) {
   list.add("box-with-cavity",
            displaced(merged({box({1, 1, 1}, 5),
                              flipped(translated(box({0.3, 0.4, 0.5}, 3), {0.3, 0.3, 0.3}))})));
-  list.add("shells-nested",
-           merged({ball, flipped(ball_of(0.9)), ball_of(0.7), flipped(ball_of(0.6)), ball_of(0.3)}));
+  list.add("shells-nested", merged({ball, flipped(ball_of(0.9)), ball_of(0.7),
+                                    flipped(ball_of(0.6)), ball_of(0.3)}));
   list.add("solids-nested", merged({ball, ball_of(0.6), ball_of(0.3)}));  // w = 1, 2, 3
   list.add("spheres-overlapping",
            merged({ball, translated(ball, {0.9, 0.1, 0.2}), translated(ball, {0.3, 0.8, -0.3})}));
@@ -118,13 +122,13 @@ void add_nonmanifold(List& list) {
            scaled(welded(merged({cube, translated(cube, {1, 1, 0})})), kOdd));
   list.add("cubes-sharing-vertex-odd",
            rotated(welded(merged({cube, translated(cube, {1, 1, 1})})), 0.5));
-  list.add("cubes-sharing-face-odd", rotated(welded(merged({cube, translated(cube, {0, 0, 1})})), 1.5));
+  list.add("cubes-sharing-face-odd",
+           rotated(welded(merged({cube, translated(cube, {0, 0, 1})})), 1.5));
   const Mesh sheet = grid(8, [](double x, double y) { return 0.1 * std::sin(5 * x) * y; });
   list.closed_without_solid("sheet-flat-float",
                             welded(merged({grid(8, [](double, double) { return 0.0; }),
                                            flipped(grid(8, [](double, double) { return 0.0; }))})));
-  list.closed_without_solid("sheet-curved",
-                            rotated(welded(merged({sheet, flipped(sheet)})), 0.8));
+  list.closed_without_solid("sheet-curved", rotated(welded(merged({sheet, flipped(sheet)})), 0.8));
   list.add("sphere-with-fin",  // a sheet that stands on nothing, beside a solid
            merged({icosphere(2), translated(rotated(welded(merged({sheet, flipped(sheet)})), 0.8),
                                             {1.5, 0, 0})}));
@@ -166,7 +170,8 @@ std::vector<Family> open_families() {
   list.open("hill", displaced(grid(20, hill)));
   list.open("hill-far", translated(grid(20, hill), {12345.6, 65432.1, -321.9}));
   list.open("tube-open", without(rotated(cylinder(30, 3, 10, 2), 0.2), [](const Vec3& p) {
-              static const Mesh axis = rotated(cylinder(3, 3, 1, 1), 0.2);  // its last vertices: caps' middles
+              static const Mesh axis =
+                  rotated(cylinder(3, 3, 1, 1), 0.2);  // its last vertices: caps' middles
               const Vec3& low = axis.vertices[axis.vertices.size() - 2];
               const Vec3& high = axis.vertices.back();
               const double along = (p - low).dot(high - low) / 9;

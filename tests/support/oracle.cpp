@@ -72,7 +72,8 @@ Exact normal(const Exact& a, const Exact& b, const Exact& c) {
     u[k] = b[k] - a[k];
     v[k] = c[k] - a[k];
   }
-  for (int k = 0; k < 3; ++k) n[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
+  for (int k = 0; k < 3; ++k)
+    n[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
   return n;
 }
 
@@ -144,7 +145,8 @@ std::optional<int> count_tetrahedra(const geom::Mesh& mesh, const std::vector<Ex
 
 /// Whether the closed segment e–f meets the closed triangle in a point that is not a corner shared
 /// by both. @pre not all five points are coplanar.
-bool segment_pierces(const Exact& e, const Exact& f, const Exact& a, const Exact& b, const Exact& c) {
+bool segment_pierces(const Exact& e, const Exact& f, const Exact& a, const Exact& b,
+                     const Exact& c) {
   const int se = side(a, b, c, e), sf = side(a, b, c, f);
   if (se * sf > 0) return false;
   const auto is_corner = [&](const Exact& p) { return p == a || p == b || p == c; };
@@ -319,7 +321,8 @@ std::size_t self_intersections(const geom::Mesh& mesh, std::size_t limit) {
             [](const Entry& l, const Entry& r) { return l.min.x() < r.min.x(); });
   std::size_t found = 0;
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    for (std::size_t j = i + 1; j < entries.size() && entries[j].min.x() <= entries[i].max.x(); ++j) {
+    for (std::size_t j = i + 1; j < entries.size() && entries[j].min.x() <= entries[i].max.x();
+         ++j) {
       const Entry &s = entries[i], &t = entries[j];
       if ((s.min.array() > t.max.array()).any() || (t.min.array() > s.max.array()).any()) continue;
       if (triangles_cross(s.corners, t.corners) && ++found >= limit) return found;

@@ -26,8 +26,8 @@ bool closed_manifold(const geom::Mesh& mesh);
 /// No vertex above the plane of any triangle; O(#V · #T) exact determinants.
 bool exactly_convex(const geom::Mesh& mesh);
 
-/// Pairs of triangles that meet in more than the vertices or the one edge they share by coordinates.
-/// Degenerate triangles are ignored. Stops at `limit`.
+/// Pairs of triangles that meet in more than the vertices or the one edge they share by
+/// coordinates. Degenerate triangles are ignored. Stops at `limit`.
 std::size_t self_intersections(const geom::Mesh& mesh, std::size_t limit = 1);
 
 /// Share of the coordinates of vertices in use that float32 cannot represent.

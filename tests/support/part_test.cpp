@@ -5,8 +5,8 @@
 
 #include <kaboum/geom/error.h>
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 namespace kaboum::examples {
 namespace {
@@ -27,8 +27,9 @@ TEST(Bracket, IsOneManifoldSolid) {
     EXPECT_EQ(test::self_intersections(mesh), 0U);
     EXPECT_NEAR(volume(mesh), 2.6e-4, 1e-6);
     // Thirteen holes: V − E + F = 2 − 2·13.
-    EXPECT_EQ(static_cast<long>(mesh.vertices.size()) - static_cast<long>(mesh.triangles.size()) / 2,
-              -24);
+    EXPECT_EQ(
+        static_cast<long>(mesh.vertices.size()) - static_cast<long>(mesh.triangles.size()) / 2,
+        -24);
     EXPECT_EQ(test::winding_number_slow(mesh, {0.1, 0.06, 0.004}), 1);
     EXPECT_EQ(test::winding_number_slow(mesh, {0.05, 0.024, 0.004}), 0);  // in a bolt hole
   }

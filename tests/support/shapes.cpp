@@ -67,8 +67,7 @@ Mesh icosphere(int level) {
   for (int step = 0; step < level; ++step) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middle;
     const auto split = [&](std::uint32_t a, std::uint32_t b) {
-      const auto [it, added] =
-          middle.emplace(std::minmax(a, b), id(mesh.vertices.size()));
+      const auto [it, added] = middle.emplace(std::minmax(a, b), id(mesh.vertices.size()));
       if (added) mesh.vertices.push_back((mesh.vertices[a] + mesh.vertices[b]).normalized());
       return it->second;
     };
@@ -272,8 +271,8 @@ Mesh welded(const Mesh& mesh) {
     Triangle u{};
     for (int i = 0; i < 3; ++i) {
       const Vec3& p = mesh.vertices[t[i]];
-      const auto [it, added] =
-          index.emplace(std::tuple(p.x() + 0.0, p.y() + 0.0, p.z() + 0.0), id(result.vertices.size()));
+      const auto [it, added] = index.emplace(std::tuple(p.x() + 0.0, p.y() + 0.0, p.z() + 0.0),
+                                             id(result.vertices.size()));
       if (added) result.vertices.push_back(p);
       u[i] = it->second;
     }

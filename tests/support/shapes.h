@@ -51,7 +51,7 @@ Mesh merged(const std::vector<Mesh>& parts);  ///< side by side, no welding
 Mesh welded(const Mesh& mesh);                ///< equal coordinates become one index
 Mesh flipped(Mesh mesh);                      ///< orientation reversed
 Mesh translated(Mesh mesh, const Vec3& by);
-Mesh scaled(Mesh mesh, const Vec3& by);       ///< by positive factors
+Mesh scaled(Mesh mesh, const Vec3& by);  ///< by positive factors
 /// Rotated about an odd axis by an odd angle; rounds, so planes bend by an ulp.
 Mesh rotated(Mesh mesh, double angle);
 /// Vertices moved along the ray from the origin by up to ± amplitude of their distance.

@@ -3,9 +3,9 @@
 #include "support/oracle.h"
 #include "support/shapes.h"
 
+#include <gtest/gtest.h>
 #include <Eigen/Geometry>
 #include <cmath>
-#include <gtest/gtest.h>
 #include <set>
 
 namespace kaboum::test {
@@ -77,9 +77,9 @@ TEST(Families, SameEveryTime) {
 TEST(Families, SelfIntersectOnlyWhereMeant) {
   const std::set<std::string> crossing{"spheres-overlapping", "tube-self-crossing",
                                        "boxes-crossing-float", "component-twice-rotated"};
-  const std::set<std::string> clean{"icosphere-2", "torus",       "knot-2-3",      "knot-3-7",
-                                    "bracket-20",  "sphere-uv",   "cavity",        "thin-plate-1e-5",
-                                    "soup",        "solids-nested", "sliver-cylinder"};
+  const std::set<std::string> clean{
+      "icosphere-2", "torus",           "knot-2-3", "knot-3-7",      "bracket-20",     "sphere-uv",
+      "cavity",      "thin-plate-1e-5", "soup",     "solids-nested", "sliver-cylinder"};
   for (const Family& f : closed_families()) {
     if (crossing.count(f.name) + clean.count(f.name) == 0) continue;
     EXPECT_EQ(self_intersections(f.mesh) > 0, crossing.count(f.name) != 0) << f.name;
@@ -125,8 +125,9 @@ TEST(Oracle, SelfIntersections) {
   EXPECT_EQ(self_intersections(cube), 0U);
   EXPECT_EQ(self_intersections(merged({cube, translated(cube, {1.5, 0, 0})})), 0U);
   EXPECT_GT(self_intersections(merged({cube, translated(cube, {0.5, 0.25, 0.25})})), 0U);
-  EXPECT_GT(self_intersections(merged({cube, translated(cube, {1, 0.5, 0.5})})), 0U);  // faces touch
-  EXPECT_GT(self_intersections(merged({cube, translated(cube, {0.5, 0, 0})})), 0U);    // coplanar
+  EXPECT_GT(self_intersections(merged({cube, translated(cube, {1, 0.5, 0.5})})),
+            0U);                                                                     // faces touch
+  EXPECT_GT(self_intersections(merged({cube, translated(cube, {0.5, 0, 0})})), 0U);  // coplanar
   EXPECT_EQ(self_intersections(merged({cube, translated(cube, {1, 1, 1})})), 0U);  // common vertex
 }
 

@@ -14,7 +14,9 @@ struct Image {
   std::vector<Colour> pixels;  ///< rows from the top
 
   Image(int w, int h, const Colour& fill)
-      : width(w), height(h), pixels(static_cast<std::size_t>(w) * static_cast<std::size_t>(h), fill) {}
+      : width(w),
+        height(h),
+        pixels(static_cast<std::size_t>(w) * static_cast<std::size_t>(h), fill) {}
   [[nodiscard]] Colour& at(int x, int y) {
     return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
                   static_cast<std::size_t>(x)];

@@ -105,7 +105,8 @@ int make_picture(const Options& options) {
     Style style;
     style.surface = colours[std::min(n, colours.size() - 1)];
     style.edges = options.edges;
-    draw_mesh(image, i * panel_width, title_height, panel_width, panel_height, meshes[n], camera, style);
+    draw_mesh(image, i * panel_width, title_height, panel_width, panel_height, meshes[n], camera,
+              style);
     if (n < titles.size()) {
       const int left = i * panel_width + (panel_width - text_width(titles[n], scale)) / 2;
       draw_text(image, titles[n], left, 4 * scale, scale, kInk);
@@ -131,7 +132,8 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(32, 16384))
       ->capture_default_str();
   app.add_option("--titles", options.titles, "Titles of the panels, separated by commas");
-  app.add_option("--view", options.view, "Camera: azimuth,elevation in degrees")->capture_default_str();
+  app.add_option("--view", options.view, "Camera: azimuth,elevation in degrees")
+      ->capture_default_str();
   app.add_option("--colours", options.colours,
                  "Colours of the panels: grey, blue, orange, green, red; the last one repeats")
       ->capture_default_str();

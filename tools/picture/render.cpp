@@ -29,7 +29,8 @@ struct Buffer {
     ink.assign(size, 0.0F);
   }
   [[nodiscard]] std::size_t index(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(x);
   }
 };
 
@@ -39,16 +40,17 @@ Colour times(const Colour& c, double f) {
   return result;
 }
 
-/// Key light from the upper left of the viewer, weak fill light from the right, light from the sky.
+/// Key light from the viewer's upper right, weak fill light from the left, light from the sky.
 double brightness(const Vec3& normal, const Camera& camera) {
-  const Vec3 key = (-0.45 * camera.right() + 0.75 * camera.up() + 0.75 * camera.back()).normalized();
-  const Vec3 fill = (0.9 * camera.right() - 0.1 * camera.up() + 0.4 * camera.back()).normalized();
+  const Vec3 key = (0.55 * camera.right() + 0.75 * camera.up() + 0.75 * camera.back()).normalized();
+  const Vec3 fill = (-0.9 * camera.right() - 0.1 * camera.up() + 0.4 * camera.back()).normalized();
   const double sky = 0.5 + 0.5 * normal.z();
-  return 0.34 + 0.66 * std::max(0.0, normal.dot(key)) + 0.20 * std::max(0.0, normal.dot(fill)) +
+  return 0.36 + 0.60 * std::max(0.0, normal.dot(key)) + 0.20 * std::max(0.0, normal.dot(fill)) +
          0.16 * sky;
 }
 
-void fill_triangle(Buffer& buffer, const Vec3& a, const Vec3& b, const Vec3& c, const Colour& colour) {
+void fill_triangle(Buffer& buffer, const Vec3& a, const Vec3& b, const Vec3& c,
+                   const Colour& colour) {
   const double area = (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
   if (area == 0) return;
   const double inverse = 1 / area;
@@ -59,7 +61,8 @@ void fill_triangle(Buffer& buffer, const Vec3& a, const Vec3& b, const Vec3& c, 
     return static_cast<int>(
         std::clamp(std::floor(std::max({x, y, z}) - 0.5), -1.0, static_cast<double>(limit - 1)));
   };
-  const int x1 = high(a.x(), b.x(), c.x(), buffer.width), y1 = high(a.y(), b.y(), c.y(), buffer.height);
+  const int x1 = high(a.x(), b.x(), c.x(), buffer.width),
+            y1 = high(a.y(), b.y(), c.y(), buffer.height);
   for (int y = low(a.y(), b.y(), c.y()); y <= y1; ++y) {
     for (int x = low(a.x(), b.x(), c.x()); x <= x1; ++x) {
       const double px = x + 0.5, py = y + 0.5;
@@ -83,7 +86,8 @@ void draw_line(Buffer& buffer, const Vec3& a, const Vec3& b, double bias, double
   const int major = steep ? 1 : 0, minor = 1 - major;
   const double length = std::abs(d[major]);
   if (length == 0) return;
-  const int limit = steep ? buffer.height : buffer.width, other = steep ? buffer.width : buffer.height;
+  const int limit = steep ? buffer.height : buffer.width,
+            other = steep ? buffer.width : buffer.height;
   const double from = std::min(a[major], b[major]), to = std::max(a[major], b[major]);
   const double across = thickness * d.head<2>().norm() / length / 2;
   const int first = std::max(0, static_cast<int>(std::ceil(from - 0.5)));
@@ -151,7 +155,8 @@ Camera::Camera(const geom::Box3& box, const View& view, int width, int height) {
   // Fit the images of the box's corners.
   Eigen::Array2d low(1e300, 1e300), high(-1e300, -1e300);
   for (int i = 0; i < 8 && !box.empty(); ++i) {
-    const Vec3 corner((i & 1) != 0 ? box.max.x() : box.min.x(), (i & 2) != 0 ? box.max.y() : box.min.y(),
+    const Vec3 corner((i & 1) != 0 ? box.max.x() : box.min.x(),
+                      (i & 2) != 0 ? box.max.y() : box.min.y(),
                       (i & 4) != 0 ? box.max.z() : box.min.z());
     const Vec3 image = project(corner);
     low = low.min(image.head<2>().array());
@@ -194,13 +199,14 @@ void draw_mesh(Image& image, int left, int top, int width, int height, const geo
     fill_triangle(buffer, projected[t[0]], projected[t[1]], projected[t[2]],
                   times(base, brightness(front ? normal : Vec3(-normal), camera)));
   }
-  draw_edges(buffer, mesh, projected, normals, 1.5e-3, style.edges);
+  draw_edges(buffer, mesh, projected, normals, 8e-4, style.edges);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       Colour& pixel = image.at(left + x, top + y);
       Colour sum{};
       for (int s = 0; s < kSamples * kSamples; ++s) {
-        const std::size_t i = buffer.index(kSamples * x + s % kSamples, kSamples * y + s / kSamples);
+        const std::size_t i =
+            buffer.index(kSamples * x + s % kSamples, kSamples * y + s / kSamples);
         const Colour& c = buffer.depth[i] < kFar ? buffer.colour[i] : pixel;
         for (std::size_t k = 0; k < 3; ++k) sum[k] += c[k] * (1 - buffer.ink[i]);
       }

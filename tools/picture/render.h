@@ -6,7 +6,7 @@
 
 namespace kaboum::picture {
 
-/// Where the camera stands: orthographic-like perspective, looking at the box's centre, z upwards.
+/// Where the camera stands: a long way off, looking at the box's centre, z upwards.
 struct View {
   double azimuth = -50;   ///< degrees from the x axis towards y
   double elevation = 28;  ///< degrees above the horizon

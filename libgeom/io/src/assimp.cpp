@@ -248,12 +248,35 @@ void add_unit_notes(MeshBuilder& builder, const Source& source, const aiScene& s
   }
 }
 
+/// COLLADA's index lists <p> and <vcount> hold digits and white space. assimp (5.2) never returns,
+/// and allocates without end, when it meets anything else there; so it must not see such files.
+void check_collada_lists(const Source& source) {
+  for (const std::string_view tag : {"<p", "<vcount"}) {
+    for (std::size_t at = source.bytes.find(tag); at != std::string_view::npos;
+         at = source.bytes.find(tag, at)) {
+      at += tag.size();
+      constexpr std::string_view kAfterName = "> \t\r\n";
+      if (at >= source.bytes.size() || kAfterName.find(source.bytes[at]) == std::string_view::npos)
+        continue;
+      const std::size_t first = source.bytes.find('>', at);
+      if (first == std::string_view::npos) return;  // not XML; assimp says so
+      if (source.bytes[first - 1] == '/') continue;
+      const std::size_t end = source.bytes.find_first_not_of("0123456789 \t\r\n", first + 1);
+      if (end == std::string_view::npos || source.bytes.substr(end, 2) != "</")
+        fail(source, source.begin() + std::min(end, source.bytes.size()),
+             "an index list holds something else than numbers; the file is damaged, export it "
+             "again");
+      at = end;
+    }
+  }
+}
+
 }  // namespace
 
 bool has_assimp() { return true; }
 
-ReadResult read_with_assimp(Source source, Format format) {
-  source.text = false;
+ReadResult read_with_assimp(const Source& source, Format format) {
+  if (format == Format::Collada) check_collada_lists(source);
   const std::string main = "kaboum-input." + extension_of(format);
   Assimp::Importer importer;
   // COLLADA: robot descriptions (URDF) use the file's own axes, whatever it calls up.

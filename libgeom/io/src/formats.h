@@ -15,7 +15,7 @@ ReadResult read_off(const Source& source);
 ReadResult read_vrml(const Source& source);
 /// glTF, GLB, COLLADA, FBX, 3MF, X3D.
 /// @throws Error{NotBuilt} without assimp.
-ReadResult read_with_assimp(Source source, Format format);
+ReadResult read_with_assimp(const Source& source, Format format);
 bool has_assimp();
 
 /// `mesh` holds only used vertices, all finite, no −0, and valid indices.

@@ -8,7 +8,7 @@ namespace kaboum::io {
 
 bool has_assimp() { return false; }
 
-ReadResult read_with_assimp(Source source, Format /*format*/) {
+ReadResult read_with_assimp(const Source& source, Format /*format*/) {
   throw Error(ErrorCode::NotBuilt,
               std::string(source.name) +
                   ": reading this format needs assimp, which this build leaves out; build with "

@@ -19,7 +19,7 @@ class OffReader {
     const std::string_view keyword = scan_.token();
     if (keyword.empty()) fail(source_, "the file is empty; get it again");
     // Some files lack the keyword and begin with the counts.
-    const bool has_keyword = keyword.front() < '0' || keyword.front() > '9';
+    const bool has_keyword = keyword.find_first_not_of("+-0123456789") != std::string_view::npos;
     if (has_keyword) check_keyword(keyword);
     const std::size_t vertices =
         has_keyword ? count(scan_.need("the number of vertices"), 6) : count(keyword, 6);

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMaxNodeDepth = 256;
+constexpr std::size_t kMaxNodeDepth = 256;
 constexpr int kMaxInlineDepth = 16;
 
 constexpr std::array<std::string_view, 5> kGroups = {"Anchor", "Billboard", "Collision", "Group",
@@ -111,8 +111,8 @@ struct TransformFields {
 /// What all files of a scene share.
 struct Scene {
   MeshBuilder& builder;
-  std::uint64_t budget;  ///< tokens that may still be read
-  int depth = 0;         ///< of nested nodes
+  std::uint64_t budget;   ///< tokens that may still be read
+  std::size_t depth = 0;  ///< of nested nodes
   std::vector<fs::path> inlined = {};
   bool placed = false;    ///< a transform was applied
   bool mirrored = false;  ///< by a negative scale
@@ -254,10 +254,7 @@ class VrmlReader {
   template <typename Body>
   void read_node(std::string_view word, const Body& body) {
     if (word == "NULL") return;
-    if (++scene_.depth > kMaxNodeDepth)
-      fail(source_, last_,
-           "nodes are nested more than " + std::to_string(kMaxNodeDepth) +
-               " deep; flatten the scene");
+    if (++scene_.depth > kMaxNodeDepth) fail_depth();
     if (word == "USE") {
       const std::string_view name = need("a node name");
       const auto found = defs_.find(name);
@@ -276,6 +273,12 @@ class VrmlReader {
       read_plain_node(word, body);
     }
     --scene_.depth;
+  }
+
+  [[noreturn]] void fail_depth() const {
+    fail(
+        source_, last_,
+        "nodes are nested more than " + std::to_string(kMaxNodeDepth) + " deep; flatten the scene");
   }
 
   template <typename Body>
@@ -310,6 +313,7 @@ class VrmlReader {
     for (std::size_t open = 1; open > 0;) {
       const std::string_view word = need("a closing bracket");
       if (word == "{" || word == "[") ++open;
+      if (open > 2 * kMaxNodeDepth) fail_depth();
       if (word == "}" || word == "]") --open;
       if (word == "DEF") {
         const std::string_view name = need("a node name");
@@ -584,7 +588,7 @@ class VrmlReader {
       fail(source_, where,
            "Inline of " + in_quotes(url) +
                " needs the file's directory; read the file by its path, not from a pipe");
-    const fs::path path = source_.directory / relative;
+    fs::path path = source_.directory / relative;
     std::error_code ignored;
     if (!fs::is_regular_file(path, ignored))
       fail(source_, where,

@@ -14,7 +14,21 @@ namespace kaboum::io {
 
 /// File formats. `Stl` is told apart into ASCII and binary when reading; the other encodings only
 /// matter when writing.
-enum class Format { Stl, StlAscii, Obj, Ply, PlyAscii, Off, Glb, Gltf, Collada, Fbx, ThreeMf, X3d, Vrml };
+enum class Format {
+  Stl,
+  StlAscii,
+  Obj,
+  Ply,
+  PlyAscii,
+  Off,
+  Glb,
+  Gltf,
+  Collada,
+  Fbx,
+  ThreeMf,
+  X3d,
+  Vrml
+};
 
 /// Format named by `text`: a format name ("stl", "ply-ascii") or a file name's extension (".stl").
 /// @return nullopt when unknown.
@@ -31,28 +45,43 @@ bool holds_double(Format format);
 struct ReadResult {
   geom::Mesh mesh;  ///< vertices with equal coordinates merged (−0 = +0), in order of first use
   Format format;
-  bool single_precision = false;      ///< the reader delivered float32 values (binary STL, assimp)
-  std::size_t file_vertices = 0;      ///< as stored, before merging
-  std::size_t file_triangles = 0;     ///< after splitting polygons, before anything is dropped
-  std::size_t split_polygons = 0;     ///< faces with more than three corners that were triangulated
+  /// The coordinates came as float32 (binary STL, binary PLY with float x, y, z, assimp).
+  /// Transforms of scene nodes are applied after that, in double.
+  bool single_precision = false;
+  std::size_t file_vertices = 0;   ///< as stored, before merging
+  std::size_t file_triangles = 0;  ///< after splitting polygons, before anything is dropped
+  std::size_t split_polygons = 0;  ///< faces with more than three corners that were triangulated
   std::size_t collapsed_triangles = 0;  ///< dropped: two or three equal corners after merging
-  std::vector<std::string> notes;     ///< things a user should know; one sentence each
+  std::vector<std::string> notes;       ///< things a user should know; one sentence each
 };
 
 /// Parses a file held in memory.
 ///
 /// Coordinates become the doubles nearest to the numbers in the file. Polygons are triangulated
-/// without adding vertices. `name` appears in messages only.
+/// without adding vertices; the directed edges of the triangles sum up to those of the polygon, so
+/// that closed polygon meshes stay closed. `name` appears in messages only. Time and memory are
+/// bounded by the size of the input, whatever it states about itself (assimp's formats excepted).
 ///
+/// Scenes (VRML and assimp's formats): all meshes are merged, moved by their nodes' transforms,
+/// which are applied in rounded double precision; a mirroring transform reverses the faces.
+/// COLLADA: scaled to metres by its <unit>, its <up_axis> is ignored, as robot descriptions expect.
+/// FBX and 3MF: not scaled. A note says so in each case. VRML: LOD gives its finest level, Switch
+/// its choice; PROTO and the primitives (Box, Sphere, ...) are refused.
+///
+/// @param base_directory  where files that this one refers to are found (VRML's Inline, glTF's
+///   buffers), by relative paths; empty: nowhere.
 /// @throws Error{InvalidInput} on malformed, truncated or empty data, on non-finite coordinates and
 ///   on indices out of range, naming the place (line or byte) and the remedy.
 /// @throws Error{NotBuilt} when the format's reader is not part of this build.
+/// @throws Error{LimitReached} on more than 2^32 − 2 vertices, and on scenes whose instances
+///   multiply out of proportion to the file.
 ReadResult parse_mesh(std::span<const char> bytes, Format format, const std::string& name,
                       const std::filesystem::path& base_directory = {});
 
 /// Reads a file; the format is taken from the extension unless given. `-` is standard input and
 /// needs `format`. Also fills `bytes_out`, when not null, with the file's bytes (for hashing).
-/// @throws as parse_mesh; Error{InvalidInput} when the file cannot be read or its format is unknown.
+/// @throws as parse_mesh; Error{InvalidInput} when the file cannot be read or its format is
+/// unknown.
 ReadResult read_mesh(const std::filesystem::path& path, std::optional<Format> format = {},
                      std::vector<char>* bytes_out = nullptr);
 
@@ -64,19 +93,22 @@ struct WriteOptions {
   std::string comment;  ///< one line, written where the format has comments
 };
 
-/// The mesh as bytes of `format`. Vertices that no triangle uses are left out. Reading the bytes back
-/// gives the same coordinates, bit for bit (−0 is written as 0).
+/// The mesh as bytes of `format`. Vertices that no triangle uses are left out. Reading the bytes
+/// back gives the same coordinates, bit for bit (−0 is written as 0).
 /// @throws Error{OutputFailed} when the format cannot hold the coordinates exactly.
-/// @throws Error{InvalidArgument} when the format cannot be written.
-std::vector<char> serialise_mesh(const geom::Mesh& mesh, Format format, const WriteOptions& options = {});
+/// @throws Error{InvalidArgument} when the format cannot be written, and when the mesh is empty or
+///   not valid.
+std::vector<char> serialise_mesh(const geom::Mesh& mesh, Format format,
+                                 const WriteOptions& options = {});
 
 /// Writes bytes to `path` through a temporary file in the same directory and a rename, so that the
-/// path holds either the old content or all of the new. `-` is standard output.
+/// path holds either the old content or all of the new. Permissions and symbolic links stay. `-` is
+/// standard output; it, /dev/stdout, pipes and devices are written directly.
 /// @throws Error{OutputFailed}.
 void write_file(const std::filesystem::path& path, std::span<const char> bytes);
 
 /// All bytes of a file, or of standard input for `-`.
-/// @throws Error{InvalidInput}.
+/// @throws Error{InvalidInput}; Error{LimitReached} for streams of more than 8 GiB.
 std::vector<char> read_file(const std::filesystem::path& path);
 
 /// SHA-256 of the bytes, lower-case hexadecimal.

@@ -1,0 +1,20 @@
+# What a newcomer types; the work is done by scripts/ and CMake.
+.PHONY: help demo build test clean
+
+help:
+	@echo "make demo    simplify a bracket, check the result, draw it (into demo-output/)"
+	@echo "make build   build everything (into build/release/)"
+	@echo "make test    build everything and run the test suite"
+	@echo "make clean   remove build/ and demo-output/"
+
+demo:
+	@scripts/demo
+
+build:
+	@scripts/build
+
+test:
+	@scripts/test
+
+clean:
+	rm -rf build demo-output

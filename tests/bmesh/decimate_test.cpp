@@ -1,0 +1,224 @@
+#include <kaboum/bmesh/decimate.h>
+#include <kaboum/bmesh/replay.h>
+#include <kaboum/geom/convex_set.h>
+#include <kaboum/geom/distance.h>
+#include <kaboum/geom/error.h>
+#include <kaboum/geom/float32.h>
+#include <kaboum/geom/topology.h>
+
+#include <gtest/gtest.h>
+
+#include "support/families.h"
+
+namespace {
+
+using namespace kaboum;         // NOLINT: the test uses most of it
+using namespace kaboum::bmesh;  // NOLINT
+
+std::vector<test::Family> solids() {
+  std::vector<test::Family> out;
+  for (auto& f : test::closed_families())
+    if (f.solid && f.mesh.triangles.size() < 4000) out.push_back(std::move(f));
+  return out;
+}
+
+DecimateOptions to_vertices(std::size_t n, Direction direction = Direction::Outer) {
+  DecimateOptions o;
+  o.vertices = n;
+  o.direction = direction;
+  o.precision = Precision::Double;
+  return o;
+}
+
+TEST(Decimate, NeedsATarget) {
+  const auto p = geom::prepare(solids().front().mesh);
+  EXPECT_THROW(decimate(p, {}), Error);
+  DecimateOptions negative;
+  negative.epsilon = -1;
+  EXPECT_THROW(decimate(p, negative), Error);
+}
+
+TEST(Decimate, ReachesTheWishedNumberOrSaysSo) {
+  for (const auto& f : solids()) {
+    const auto p = geom::prepare(f.mesh);
+    const std::size_t n = p.mesh.vertices.size() / 2;
+    const auto r = decimate(p, to_vertices(n));
+    if (r.stop == Stop::VertexTarget) {
+      EXPECT_EQ(r.mesh.vertices.size(), n) << f.name;
+    } else {
+      EXPECT_EQ(r.stop, Stop::Exhausted) << f.name;
+      EXPECT_GT(r.mesh.vertices.size(), n) << f.name;
+    }
+    EXPECT_TRUE(geom::analyse(r.mesh).closed()) << f.name;
+    EXPECT_EQ(r.statistics.vertices_out, r.mesh.vertices.size());
+    EXPECT_EQ(r.statistics.vertices_in, r.statistics.contractions + r.mesh.vertices.size()) << f.name;
+  }
+}
+
+TEST(Decimate, VolumeOnlyGrowsOutwardsAndShrinksInwards) {
+  for (const auto& f : solids()) {
+    const auto p = geom::prepare(f.mesh);
+    const double v = geom::signed_volume(p.mesh);
+    const std::size_t n = p.mesh.vertices.size() / 4 + 4;
+    EXPECT_GE(geom::signed_volume(decimate(p, to_vertices(n)).mesh), v * (1 - 1e-12)) << f.name;
+    EXPECT_LE(geom::signed_volume(decimate(p, to_vertices(n, Direction::Inner)).mesh), v * (1 + 1e-12)) << f.name;
+  }
+}
+
+TEST(Decimate, GivesTheSameResultTwice) {
+  for (const auto& f : solids()) {
+    const auto p = geom::prepare(f.mesh);
+    const auto a = decimate(p, to_vertices(p.mesh.vertices.size() / 3)),
+               b = decimate(p, to_vertices(p.mesh.vertices.size() / 3));
+    ASSERT_EQ(a.mesh.triangles, b.mesh.triangles) << f.name;
+    for (std::size_t i = 0; i < a.mesh.vertices.size(); ++i) ASSERT_EQ(a.mesh.vertices[i], b.mesh.vertices[i]);
+  }
+}
+
+TEST(Decimate, WritesFloatsWhenAsked) {
+  for (const auto& f : solids()) {
+    const auto p = geom::prepare(f.mesh);
+    DecimateOptions o = to_vertices(p.mesh.vertices.size() / 3 + 4);
+    o.precision = Precision::Float;
+    const auto r = decimate(p, o);
+    std::size_t not_float = 0;
+    for (const auto& v : r.mesh.vertices) not_float += !geom::is_float32(v);
+    EXPECT_EQ(not_float, r.unrepresentable) << f.name;
+    if (not_float != 0) std::cout << f.name << ": " << not_float << " vertices not representable\n";
+  }
+}
+
+TEST(Decimate, KeepsBordersInPlace) {
+  for (const auto& f : test::open_families()) {
+    const auto p = geom::prepare(f.mesh);
+    ASSERT_FALSE(p.closed) << f.name;
+    const auto r = decimate(p, to_vertices(4));
+    std::vector<geom::Vec3> after = r.mesh.vertices;
+    for (std::size_t v = 0; v < p.mesh.vertices.size(); ++v) {
+      if (p.border[v] == 0) continue;
+      EXPECT_NE(std::find(after.begin(), after.end(), p.mesh.vertices[v]), after.end()) << f.name;
+    }
+    EXPECT_LT(r.mesh.vertices.size(), p.mesh.vertices.size()) << f.name;
+  }
+}
+
+// Every cost, both directions, replayed by the separate checker.
+TEST(Decimate, EveryCostIsCertified) {
+  for (const auto& f : solids()) {
+    if (f.mesh.triangles.size() > 1500) continue;
+    const auto p = geom::prepare(f.mesh);
+    for (const Cost cost : {Cost::Planes, Cost::PlanesAdapted, Cost::PlanesDiagonal, Cost::Triangles}) {
+      for (const Direction direction : {Direction::Outer, Direction::Inner}) {
+        Log log;
+        log.direction = direction;
+        record_preparation(p, f.mesh.triangles.size(), log);
+        DecimateOptions o = to_vertices(p.mesh.vertices.size() / 5 + 4, direction);
+        o.cost = cost;
+        o.steps = &log.steps;
+        const auto r = decimate(p, o);
+        const auto checked = replay(f.mesh, log, r.mesh);
+        EXPECT_TRUE(checked.verified) << f.name << ": " << checked.violation;
+        EXPECT_GT(r.statistics.contractions, 0U) << f.name;
+      }
+    }
+  }
+}
+
+TEST(Decimate, EpsilonHoldsBothWays) {
+  for (const auto& f : solids()) {
+    const auto p = geom::prepare(f.mesh);
+    const double diagonal = geom::bounding_box(p.mesh).diagonal();
+    for (const double percent : {0.1, 2.0}) {
+      DecimateOptions o;
+      o.precision = Precision::Double;
+      o.epsilon = 0.01 * percent * diagonal;
+      const auto r = decimate(p, o);
+      const auto there = geom::directed_distance(p.mesh, geom::DistanceQuery(r.mesh));
+      const auto back = geom::directed_distance(r.mesh, geom::DistanceQuery(p.mesh));
+      EXPECT_LE(there.max_lower, *o.epsilon) << f.name;
+      EXPECT_LE(back.max_lower, *o.epsilon) << f.name;
+    }
+  }
+}
+
+TEST(Decimate, EpsilonLeavesRoomForContractions) {
+  const auto sphere = solids().front();
+  const auto p = geom::prepare(sphere.mesh);
+  DecimateOptions o;
+  o.epsilon = 0.02 * geom::bounding_box(p.mesh).diagonal();
+  const auto r = decimate(p, o);
+  EXPECT_EQ(r.stop, Stop::ErrorBound);
+  EXPECT_LT(r.mesh.vertices.size(), p.mesh.vertices.size() * 3 / 4) << sphere.name;
+}
+
+TEST(Decimate, KeepsConvexity) {
+  int tried = 0;
+  for (const auto& f : solids()) {
+    if (!f.convex) continue;
+    ++tried;
+    const auto p = geom::prepare(f.mesh);
+    for (const Direction direction : {Direction::Outer, Direction::Inner}) {
+      for (const Precision precision : {Precision::Double, Precision::Float}) {
+        DecimateOptions o = to_vertices(std::max<std::size_t>(8, p.mesh.vertices.size() / 4), direction);
+        o.keep_convex = true;
+        o.precision = precision;
+        const auto r = decimate(p, o);
+        EXPECT_TRUE(geom::is_convex(r.mesh)) << f.name;
+        if (direction == Direction::Outer) {
+          EXPECT_LT(r.mesh.vertices.size(), p.mesh.vertices.size()) << f.name;
+        }
+      }
+    }
+  }
+  EXPECT_GE(tried, 3);
+  for (const auto& f : solids()) {
+    if (f.convex) continue;
+    DecimateOptions o = to_vertices(8);
+    o.keep_convex = true;
+    EXPECT_THROW(decimate(geom::prepare(f.mesh), o), Error) << f.name;
+  }
+}
+
+// Appendix A.2 says that the cost of triangle centres alone keeps convex meshes convex. It does not.
+TEST(Decimate, TrianglesCostAloneLosesConvexity) {
+  int lost = 0;
+  for (const auto& f : solids()) {
+    if (!f.convex) continue;
+    const auto p = geom::prepare(f.mesh);
+    DecimateOptions o = to_vertices(p.mesh.vertices.size() * 2 / 3);
+    o.cost = Cost::Triangles;
+    lost += !geom::is_convex(geom::weld(decimate(p, o).mesh));
+  }
+  EXPECT_GT(lost, 0);
+}
+
+// Powers of two change no rounding, so the result must be the same but for the factor.
+TEST(Decimate, DoesNotDependOnTheScale) {
+  for (const auto& f : solids()) {
+    if (f.mesh.triangles.size() > 1500) continue;
+    const auto p = geom::prepare(f.mesh);
+    const auto r = decimate(p, to_vertices(p.mesh.vertices.size() / 4 + 4));
+    for (const int exponent : {-20, 20}) {
+      geom::Mesh scaled = f.mesh;
+      for (auto& v : scaled.vertices) v *= std::ldexp(1.0, exponent);
+      const auto s = decimate(geom::prepare(scaled), to_vertices(p.mesh.vertices.size() / 4 + 4));
+      ASSERT_EQ(s.mesh.triangles, r.mesh.triangles) << f.name;
+      for (std::size_t i = 0; i < r.mesh.vertices.size(); ++i)
+        ASSERT_EQ(s.mesh.vertices[i], r.mesh.vertices[i] * std::ldexp(1.0, exponent)) << f.name;
+    }
+  }
+}
+
+TEST(Decimate, ProgressMayCancel) {
+  test::Family big;
+  for (auto& f : test::closed_families())
+    if (f.solid && f.mesh.vertices.size() > big.mesh.vertices.size()) big = std::move(f);
+  DecimateOptions o = to_vertices(4);
+  struct Cancelled {};
+  o.progress = [](std::size_t) { throw Cancelled{}; };
+  const auto p = geom::prepare(big.mesh);
+  ASSERT_GT(p.mesh.vertices.size(), 4200U) << "the largest family gives no progress";
+  EXPECT_THROW(decimate(p, o), Cancelled);
+}
+
+}  // namespace

@@ -1,0 +1,139 @@
+#include <kaboum/bmesh/decimate.h>
+#include <kaboum/bmesh/replay.h>
+#include <kaboum/geom/error.h>
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "support/families.h"
+
+namespace {
+
+using namespace kaboum;         // NOLINT: the test uses most of it
+using namespace kaboum::bmesh;  // NOLINT
+
+struct Recorded {
+  geom::Mesh input;
+  Log log;
+  geom::Mesh result;
+};
+
+Recorded run(const geom::Mesh& mesh, Direction direction) {
+  Recorded r{mesh, {}, {}};
+  const auto p = geom::prepare(mesh);
+  r.log.direction = direction;
+  record_preparation(p, mesh.triangles.size(), r.log);
+  DecimateOptions o;
+  o.direction = direction;
+  o.vertices = p.mesh.vertices.size() / 3;
+  o.steps = &r.log.steps;
+  r.result = decimate(p, o).mesh;
+  return r;
+}
+
+geom::Mesh sphere() {
+  for (const auto& f : test::closed_families())
+    if (f.convex && f.mesh.vertices.size() > 100) return f.mesh;
+  throw std::logic_error("no convex family");
+}
+
+TEST(Replay, VerifiesWhatDecimateDid) {
+  for (const Direction d : {Direction::Outer, Direction::Inner, Direction::Any}) {
+    const Recorded r = run(sphere(), d);
+    const auto checked = replay(r.input, r.log, r.result);
+    EXPECT_TRUE(checked.verified) << checked.violation;
+    EXPECT_TRUE(checked.closed);
+    EXPECT_EQ(checked.steps, r.log.steps.size());
+    EXPECT_EQ(checked.predicates == 0, d == Direction::Any);
+  }
+}
+
+// Pulling the vertex of a step inwards, by little or much, must be refuted even when the result is
+// changed along with it (the result is compared last).
+TEST(Replay, RefutesInwardSteps) {
+  std::mt19937_64 random(51);
+  const geom::Vec3 center = geom::bounding_box(sphere()).center();
+  for (const Direction d : {Direction::Outer, Direction::Inner}) {
+    const Recorded r = run(sphere(), d);
+    for (const double size : {1e-2, 1e-4, 1e-6}) {
+      for (int i = 0; i < 20; ++i) {
+        Log mutant = r.log;
+        auto& step = mutant.steps[random() % mutant.steps.size()];
+        const double sign = d == Direction::Outer ? -1 : 1;
+        step.position += sign * size * (step.position - center);
+        const auto checked = replay(r.input, mutant, r.result);
+        EXPECT_FALSE(checked.verified);
+        EXPECT_FALSE(checked.violation.empty());
+      }
+    }
+    Log swapped = r.log;
+    swapped.direction = d == Direction::Outer ? Direction::Inner : Direction::Outer;
+    EXPECT_FALSE(replay(r.input, swapped, r.result).verified);
+  }
+}
+
+TEST(Replay, RefutesAnotherResult) {
+  const Recorded r = run(sphere(), Direction::Outer);
+  geom::Mesh moved = r.result;
+  moved.vertices[3].x() = std::nextafter(moved.vertices[3].x(), 1e9);
+  EXPECT_FALSE(replay(r.input, r.log, moved).verified);
+  geom::Mesh fewer = r.result;
+  fewer.triangles.pop_back();
+  EXPECT_FALSE(replay(r.input, r.log, fewer).verified);
+  geom::Mesh turned = r.result;
+  std::swap(turned.triangles[0][0], turned.triangles[0][1]);
+  EXPECT_FALSE(replay(r.input, r.log, turned).verified);
+  geom::Mesh rotated = r.result;
+  std::rotate(rotated.triangles[0].begin(), rotated.triangles[0].begin() + 1, rotated.triangles[0].end());
+  std::reverse(rotated.triangles.begin(), rotated.triangles.end());
+  EXPECT_TRUE(replay(r.input, r.log, rotated).verified) << "order does not matter";
+}
+
+TEST(Replay, RefutesDropsThatChangeTheSolid) {
+  Recorded r = run(sphere(), Direction::Outer);
+  r.log.dropped.push_back(5);
+  EXPECT_FALSE(replay(r.input, r.log, r.result).verified);
+  // A real copy may go.
+  geom::Mesh twice = sphere();
+  const auto n = twice.triangles.size();
+  for (std::size_t t = 0; t < n; ++t) twice.triangles.push_back(twice.triangles[t]);
+  const Recorded copy = run(twice, Direction::Outer);
+  EXPECT_EQ(copy.log.dropped.size(), n);
+  EXPECT_TRUE(replay(copy.input, copy.log, copy.result).verified);
+  Recorded partial = copy;
+  partial.log.dropped.pop_back();
+  EXPECT_FALSE(replay(partial.input, partial.log, partial.result).verified);
+}
+
+TEST(Replay, RefutesMovesOfTheBorder) {
+  for (const auto& f : test::open_families()) {
+    Recorded r = run(f.mesh, Direction::Outer);
+    const auto checked = replay(r.input, r.log, r.result);
+    EXPECT_TRUE(checked.verified) << f.name << ": " << checked.violation;
+    EXPECT_FALSE(checked.closed);
+    const auto p = geom::prepare(f.mesh);
+    for (std::uint32_t v = 0; v < p.border.size(); ++v) {
+      if (p.border[v] == 0) continue;
+      Log mutant = r.log;
+      mutant.steps.insert(mutant.steps.begin(), {v, v, p.mesh.vertices[v] + geom::Vec3(0, 0, 1e-9)});
+      EXPECT_FALSE(replay(r.input, mutant, r.result).verified) << f.name;
+      break;
+    }
+  }
+}
+
+TEST(Replay, RefusesNonsense) {
+  Recorded r = run(sphere(), Direction::Outer);
+  Log mutant = r.log;
+  mutant.steps[0].gone = 1U << 30;
+  EXPECT_THROW(replay(r.input, mutant, r.result), Error);
+  mutant = r.log;
+  mutant.turned.push_back(1U << 30);
+  EXPECT_THROW(replay(r.input, mutant, r.result), Error);
+  mutant = r.log;
+  mutant.steps[0].position.x() = std::nan("");
+  EXPECT_FALSE(replay(r.input, mutant, r.result).verified);
+}
+
+}  // namespace

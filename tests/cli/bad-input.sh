@@ -1,0 +1,69 @@
+. "$(dirname "$0")/common.sh"
+D=$BIN/bmesh-decimate
+
+expect 3 'cannot' "$D" missing.off -o x.off --vertices 4
+: >empty.off
+: >empty.stl
+: >empty.ply
+: >empty.obj
+for f in empty.off empty.stl empty.ply empty.obj; do expect 3 '' "$D" $f -o x.off --vertices 4; done
+printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n' >truncated.off
+expect 3 '' "$D" truncated.off -o x.off --vertices 4
+printf 'OFF\n0 0 0\n' >zero.off
+expect 3 '' "$D" zero.off -o x.off --vertices 4
+printf 'OFF\n3 1 0\n0 0 0\n1 0 0\nnan 1 0\n3 0 1 2\n' >nan.off
+expect 3 'finite' "$D" nan.off -o x.off --vertices 4
+printf 'v 0 0 0\nv 1 0 0\nv 0 inf 0\nf 1 2 3\n' >inf.obj
+expect 3 'finite' "$D" inf.obj -o x.off --vertices 4
+printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 9\n' >index.off
+expect 3 '' "$D" index.off -o x.off --vertices 4
+printf 'OFF\n2147483648 2147483648 0\n0 0 0\n' >huge.off
+expect 3 '' "$D" huge.off -o x.off --vertices 4
+{ head -c 80 /dev/zero; printf '\377\377\377\177'; head -c 100 /dev/zero; } >huge.stl
+expect 3 '' "$D" huge.stl -o x.off --vertices 4
+printf 'ply\nformat binary_little_endian 1.0\nelement vertex 4294967295\nproperty float x\nproperty float y\nproperty float z\nelement face 4294967295\nproperty list uchar int vertex_indices\nend_header\nabcdefgh' >huge.ply
+expect 3 '' "$D" huge.ply -o x.off --vertices 4
+printf 'OFF\n3 2 0\n0 0 0\n1 0 0\n2 0 0\n3 0 0 1\n3 1 1 1\n' >degenerate.off
+expect 3 '' "$D" degenerate.off -o x.off --vertices 4
+printf 'OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 2 1\n' >sheet.off
+expect 3 'drop-sheets' "$D" sheet.off -o x.off --vertices 4
+expect 3 '' "$D" sheet.off -o x.off --vertices 4 --drop-sheets
+tetrahedron | sed '$d' | sed 's/^4 4 0/4 3 0/' >open.off
+expect 3 'require-closed' "$D" open.off -o x.off --vertices 4 --require-closed
+# Möbius strip of five quads.
+awk 'BEGIN { n = 5; print "OFF"; print 2 * n, 2 * n, 0; pi = atan2(0, -1)
+  for (i = 0; i < n; i++) for (s = -1; s <= 1; s += 2) { u = 2 * pi * i / n; r = 1 + 0.3 * s * cos(u / 2)
+    printf "%.9g %.9g %.9g\n", r * cos(u), r * sin(u), 0.3 * s * sin(u / 2) }
+  for (i = 0; i < n; i++) { a = 2 * i; b = a + 1; c = a + 2; d = a + 3
+    if (i == n - 1) { c = 1; d = 0 }
+    print 3, a, c, b; print 3, b, c, d } }' >moebius.off
+expect 3 'one-sided' "$D" moebius.off -o x.off --vertices 4
+absent x.off
+
+# A file cut at many places gives an error or, when only trailing bytes are missing, a result.
+"$D" "$BRACKET" -o whole.stl --vertices 60 --quiet
+for f in whole.stl; do
+  size=$(wc -c <"$f")
+  for n in 0 1 79 80 83 84 100 133 134 $((size / 2)) $((size - 1)); do
+    head -c "$n" "$f" >cut.stl
+    expect 3 '' "$D" cut.stl -o x.off --vertices 4
+  done
+done
+absent x.off
+
+# The corpus's dirty meshes: a result (0), a valid "no" (1), or a clear refusal (3); nothing else.
+if [ -n "${KABOUM_MESHES:-}" ]; then
+  for f in "$KABOUM_MESHES"/dirty-*; do
+    rm -f dirty.ply
+    timeout 60 "$D" "$f" -o dirty.ply --ratio 0.1 --log dirty.log >out.txt 2>err.txt
+    code=$?
+    case $code in
+      0 | 1) "$BIN/bmesh-replay" "$f" dirty.log dirty.ply >/dev/null || fail "replay of $f" ;;
+      3) grep -q "$(basename "$f")" err.txt || fail "message for $f: $(cat err.txt)"
+         absent dirty.ply ;;
+      *) fail "$f: exit $code: $(head -c 300 err.txt)" ;;
+    esac
+    rm -f dirty.log
+  done
+fi
+finish

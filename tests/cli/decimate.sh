@@ -1,0 +1,69 @@
+. "$(dirname "$0")/common.sh"
+D=$BIN/bmesh-decimate
+
+expect 0 'Simplifies' "$D" --help
+expect 0 '' "$D" --version
+expect 0 'certified' "$D" "$BRACKET" -o a.stl --ratio 0.2 --report a.json --log a.log --depfile a.d
+for key in '"sha256"' '"contractions"' '"exact_fallbacks"' '"max_upper"' '"peak_megabytes"' '"stop": "vertices"' \
+  '"closed": true' '"version"'; do
+  grep -q "$key" a.json || fail "no $key in the report"
+done
+grep -q "^a.stl: .*bracket" a.d || fail "dependency file: $(cat a.d)"
+expect 0 '' "$D" "$BRACKET" -o in.obj --direction inner --vertices 500 --quiet
+[ ! -s err.txt ] || fail "--quiet is not quiet: $(cat err.txt)"
+[ "$(grep -c '^v ' in.obj)" = 500 ] || fail "inner: $(grep -c '^v ' in.obj) vertices instead of 500"
+expect 0 'within' "$D" "$BRACKET" -o eps.ply --epsilon 0.5%
+expect 0 '' "$D" "$BRACKET" -o any.off --direction any --ratio 0.5
+for cost in planes planes-adapted planes-diagonal triangles; do
+  expect 0 'certified' "$D" "$BRACKET" -o c.glb --ratio 0.3 --cost $cost
+done
+for format in stl stl-ascii obj ply ply-ascii off glb; do
+  expect 0 '' "$D" "$BRACKET" -o "f.$format" --output-format $format --ratio 0.5 --quiet
+done
+
+# Stopping at epsilon before the wished count is success.
+expect 0 '' "$D" "$BRACKET" -o e.ply --vertices 4 --epsilon 0.1% --report e.json
+grep -q '"stop": "epsilon"' e.json || fail "epsilon did not stop"
+
+# A count that cannot be reached: best result, exit code 1.
+tetrahedron >t.off
+expect 0 '' "$D" t.off -o t4.off --vertices 4
+sed 's/^4 4 0/8 8 0/' t.off | awk '{print} NR==6{print "5 0 0\n6 0 0\n5 1 0\n5 0 1"} END{print "3 4 6 5\n3 4 5 7\n3 5 6 7\n3 6 4 7"}' >two.off
+expect 1 'cannot be reached' "$D" two.off -o two-out.off --vertices 4
+[ -s two-out.off ] || fail "the best result was not written"
+
+# Convexity.
+expect 3 'not convex' "$D" "$BRACKET" -o k.ply --ratio 0.5 --keep-convex
+expect 0 '' "$D" t.off -o k.ply --vertices 4 --keep-convex
+
+# Precision: far from the origin float32 is too coarse.
+awk 'NR>2 && NR<7 {printf "%.17g %.17g %.17g\n", $1+20000, $2, $3; next} {print}' t.off >far.off
+expect 1 'float32' "$D" far.off -o far.stl --vertices 4
+expect 1 '--precision double' "$D" far.off -o far.ply --vertices 4 --precision float
+absent far.stl far.ply
+expect 0 'writing double' "$D" far.off -o far.ply --vertices 4
+expect 0 '' "$D" far.off -o far.off2 --output-format off --vertices 4 --precision double
+expect 2 'float32 only' "$D" far.off -o far.stl --vertices 4 --precision double
+
+# Usage.
+expect 2 '' "$D"
+expect 2 'at least one of' "$D" t.off -o x.off
+expect 2 '' "$D" t.off -o x.off --vertices four
+expect 2 '' "$D" t.off -o x.off --vertices 3
+expect 2 '' "$D" t.off -o x.off --vertices -5
+expect 2 '' "$D" t.off -o x.off --ratio 1.5
+expect 2 '' "$D" t.off -o x.off --ratio 0
+expect 2 '' "$D" t.off -o x.off --epsilon 0
+expect 2 '' "$D" t.off -o x.off --epsilon -1%
+expect 2 '' "$D" t.off -o x.off --epsilon nan
+expect 2 '' "$D" t.off -o x.off --vertices 4 --direction sideways
+expect 2 '' "$D" t.off -o x.off --vertices 4 --cost volume
+expect 2 '' "$D" t.off -o x.off --vertices 4 --nonsense
+expect 2 'unknown' "$D" t.off -o x.xyz --vertices 4
+expect 2 '' "$D" t.off -o x.off --vertices 4 --threads many
+absent x.off
+
+# Output that cannot be written.
+expect 4 '' "$D" t.off -o /nonexistent/dir/x.off --vertices 4
+expect 4 '' "$D" t.off -o x.off --vertices 4 --report /nonexistent/dir/r.json
+finish

@@ -1,0 +1,203 @@
+// Decimates meshes outwards and inwards and attacks the claim: the log is replayed by the separate
+// checker, and sample points, half of them very close to a surface, must not change sides.
+//
+//   enclosure_check [--families] [--corpus] [--own DIR] [--samples N] [--ratios 0.2,0.1,0.05]
+//                   [--largest VERTICES] [--all-costs] [FILE...]
+//
+// Exit status 0 if no violation was found, 1 otherwise.
+#include <kaboum/bmesh/decimate.h>
+#include <kaboum/bmesh/replay.h>
+#include <kaboum/geom/error.h>
+#include <kaboum/geom/winding.h>
+#include <kaboum/io/mesh_io.h>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <iostream>
+#include <random>
+#include <sstream>
+
+#include "support/families.h"
+
+namespace {
+
+using namespace kaboum;  // NOLINT: a test program
+using bmesh::Direction;
+using geom::Mesh;
+using geom::Vec3;
+
+struct Settings {
+  std::size_t samples = 100000;
+  std::size_t largest = ~std::size_t{0};
+  std::vector<double> ratios{0.2, 0.1, 0.05};
+  std::vector<bmesh::Cost> costs{bmesh::Cost::Planes};
+};
+
+/// Half of the points within 1e-6 of the diagonal of either surface, half anywhere around.
+std::vector<Vec3> sample_points(const Mesh& a, const Mesh& b, std::size_t n) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> unit(0, 1);
+  geom::Box3 box = geom::bounding_box(a);
+  const double diagonal = box.diagonal();
+  std::vector<Vec3> points;
+  points.reserve(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3 r(unit(random), unit(random), unit(random));
+    const Mesh& mesh = i % 4 == 0 ? a : b;
+    if (i % 2 == 1 || mesh.triangles.empty()) {
+      points.emplace_back(box.min - 0.05 * (box.max - box.min) + 1.1 * r.cwiseProduct(box.max - box.min));
+      continue;
+    }
+    const auto& t = mesh.triangles[random() % mesh.triangles.size()];
+    double u = r.x(), v = r.y();
+    if (u + v > 1) u = 1 - u, v = 1 - v;
+    if (i % 8 == 0) u = v = 0;  // at vertices
+    const Vec3 &p = mesh.vertices[t[0]], &q = mesh.vertices[t[1]], &s = mesh.vertices[t[2]];
+    const Vec3 jitter = Vec3(unit(random), unit(random), unit(random)) - Vec3::Constant(0.5);
+    points.push_back(p + u * (q - p) + v * (s - p) + std::pow(10.0, -6 - 4 * r.z()) * diagonal * jitter);
+  }
+  return points;
+}
+
+/// Points of `inside`'s solid that are not in `outside`'s.
+std::size_t violations(const Mesh& inside, const Mesh& outside, const std::vector<Vec3>& points,
+                       std::size_t* solid_points) {
+  const geom::WindingNumber a(inside), b(outside);
+  std::atomic<std::size_t> bad{0}, solid{0};
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), 512), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      const auto wa = a(points[i]);
+      if (!wa || *wa < 1) continue;
+      ++solid;
+      const auto wb = b(points[i]);
+      if (wb && *wb < 1) ++bad;
+    }
+  });
+  *solid_points = solid;
+  return bad;
+}
+
+class Check {
+ public:
+  explicit Check(Settings settings) : s_(std::move(settings)) {}
+
+  void mesh(const std::string& name, const Mesh& input) {
+    geom::Prepared p;
+    try {
+      p = geom::prepare(input);
+    } catch (const Error& e) {
+      std::cout << name << ": refused: " << e.what() << '\n';
+      ++refused_;
+      return;
+    }
+    if (!p.closed || p.mesh.vertices.size() > s_.largest) return;
+    ++meshes_;
+    for (const bmesh::Cost cost : s_.costs)
+      for (const Direction d : {Direction::Outer, Direction::Inner})
+        for (const double ratio : s_.ratios) run(name, input, p, d, ratio, cost);
+  }
+
+  void file(const std::string& path) {
+    try {
+      mesh(path, io::read_mesh(path).mesh);
+    } catch (const Error& e) {
+      std::cout << path << ": not read: " << e.what() << '\n';
+    }
+  }
+
+  int conclude() const {
+    std::cout << meshes_ << " meshes, " << runs_ << " runs, " << contractions_ << " contractions replayed with "
+              << predicates_ << " exact tests, " << points_ << " points sampled, " << solid_points_
+              << " of them in the inner solid; " << refused_ << " meshes refused; " << failures_ << " failures\n";
+    return failures_ == 0 && runs_ > 0 ? 0 : 1;
+  }
+
+ private:
+  void run(const std::string& name, const Mesh& input, const geom::Prepared& p, Direction d, double ratio,
+           bmesh::Cost cost) {
+    bmesh::Log log;
+    log.direction = d;
+    bmesh::record_preparation(p, input.triangles.size(), log);
+    bmesh::DecimateOptions o;
+    o.direction = d;
+    o.cost = cost;
+    o.vertices = std::max<std::size_t>(4, static_cast<std::size_t>(ratio * static_cast<double>(p.mesh.vertices.size())));
+    o.steps = &log.steps;
+    const auto r = bmesh::decimate(p, o);
+    const auto checked = bmesh::replay(input, log, r.mesh);
+    const auto points = sample_points(p.mesh, r.mesh, s_.samples);
+    std::size_t solid = 0;
+    const std::size_t bad = d == Direction::Outer ? violations(p.mesh, r.mesh, points, &solid)
+                                                  : violations(r.mesh, p.mesh, points, &solid);
+    ++runs_;
+    contractions_ += checked.steps;
+    predicates_ += checked.predicates;
+    points_ += points.size();
+    solid_points_ += solid;
+    if (checked.verified && bad == 0) return;
+    ++failures_;
+    std::cout << name << (d == Direction::Outer ? " outer " : " inner ") << ratio << ": "
+              << (checked.verified ? "replay verified" : checked.violation) << ", " << bad << " points outside\n";
+  }
+
+  Settings s_;
+  std::size_t meshes_ = 0, runs_ = 0, refused_ = 0, failures_ = 0, points_ = 0, solid_points_ = 0,
+              contractions_ = 0;
+  std::uint64_t predicates_ = 0;
+};
+
+std::vector<std::string> mesh_files(const std::filesystem::path& directory) {
+  std::vector<std::string> files;
+  if (!std::filesystem::is_directory(directory)) return files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(directory))
+    if (entry.is_regular_file() && io::format_from_name(entry.path().extension().string()))
+      files.push_back(entry.path().string());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  Settings settings;
+  bool families = false;
+  std::vector<std::string> files;
+  const std::vector<std::string> args(argv + 1, argv + argc);
+  for (std::size_t i = 0; i < args.size(); ++i) {
+    const auto value = [&] { return args.at(++i); };
+    if (args[i] == "--families") {
+      families = true;
+    } else if (args[i] == "--all-costs") {
+      settings.costs = {bmesh::Cost::Planes, bmesh::Cost::PlanesAdapted, bmesh::Cost::PlanesDiagonal,
+                        bmesh::Cost::Triangles};
+    } else if (args[i] == "--corpus") {
+      const char* corpus = std::getenv("KABOUM_MESHES");
+      if (corpus == nullptr) std::cout << "KABOUM_MESHES is not set: the project's own meshes only\n";
+      if (corpus != nullptr)
+        for (std::string& f : mesh_files(corpus)) files.push_back(std::move(f));
+    } else if (args[i] == "--own") {
+      for (std::string& f : mesh_files(value())) files.push_back(std::move(f));
+    } else if (args[i] == "--samples") {
+      settings.samples = std::stoul(value());
+    } else if (args[i] == "--largest") {
+      settings.largest = std::stoul(value());
+    } else if (args[i] == "--ratios") {
+      settings.ratios.clear();
+      std::istringstream list(value());
+      for (std::string r; std::getline(list, r, ',');) settings.ratios.push_back(std::stod(r));
+    } else {
+      files.push_back(args[i]);
+    }
+  }
+  Check check(settings);
+  if (families)
+    for (const auto& f : test::closed_families()) check.mesh(f.name, f.mesh);
+  for (const std::string& f : files) check.file(f);
+  return check.conclude();
+} catch (const std::exception& e) {
+  std::cerr << "enclosure_check: " << e.what() << '\n';
+  return 2;
+}
