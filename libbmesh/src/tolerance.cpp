@@ -1,17 +1,14 @@
 #include "tolerance.h"
 
+#include <algorithm>
+#include <limits>
+
 namespace kaboum::bmesh {
 namespace {
 
-using Triangle3 = std::array<Vec3, 3>;
-
-/// The four quarters of a triangle. Midpoints are rounded, so the quarters miss points of the whole by
-/// up to 2^-53 of the coordinates; the caller's ε is lowered by more than that.
-std::array<Triangle3, 4> quarters(const Triangle3& t) {
-  const Vec3 m01 = 0.5 * t[0] + 0.5 * t[1], m12 = 0.5 * t[1] + 0.5 * t[2],
-             m20 = 0.5 * t[2] + 0.5 * t[0];
-  return {{{t[0], m01, m20}, {m01, t[1], m12}, {m20, m12, t[2]}, {m01, m12, m20}}};
-}
+/// Cuts that may lead to one piece over the whole run: what their rounding may leave uncovered is
+/// taken off ε beforehand.
+constexpr std::uint32_t kMaxTotalCuts = 1000;
 
 }  // namespace
 
@@ -19,13 +16,13 @@ Tolerance::Tolerance(const geom::Mesh& original, double epsilon)
     : original_(original), head_(original.triangles.size(), kNone) {
   const geom::Box3& box = original_.box();
   const double magnitude = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
-  epsilon_ = epsilon - (magnitude + epsilon) * (kMaxSplits + 2) * 4.5e-16;
+  epsilon_ = epsilon - (magnitude + epsilon) * kMaxTotalCuts * geom::ConvexPolygon::kCutError;
   pieces_.reserve(original.triangles.size());
   for (std::uint32_t t = 0; t < original.triangles.size(); ++t) {
     const geom::Triangle& tri = original.triangles[t];
     head_[t] = static_cast<std::uint32_t>(pieces_.size());
     pieces_.push_back(
-        {{original.vertices[tri[0]], original.vertices[tri[1]], original.vertices[tri[2]]}, kNone});
+        {{original.vertices[tri[0]], original.vertices[tri[1]], original.vertices[tri[2]]}, 0, kNone});
   }
 }
 
@@ -39,63 +36,61 @@ std::uint32_t Tolerance::allocate() {
   return p;
 }
 
-bool Tolerance::near_original(const Triangle3& triangle, std::uint32_t hint, int splits_left) const {
-  const Vec3 center = (triangle[0] + triangle[1] + triangle[2]) / 3.0;
-  const geom::DistanceQuery::Nearest at = original_.nearest(center, hint);
-  if (at.upper > epsilon_) return false;
-  const auto covered_by = [&](std::uint32_t t) {
-    for (const Vec3& c : triangle)
-      if (original_.to_triangle(c, t).upper > epsilon_) return false;
-    return true;
-  };
-  if (covered_by(at.triangle)) return true;
-  // Every point is within the radius about the centre of it.
-  double radius = 0;
-  for (const Vec3& c : triangle) radius = std::max(radius, (c - center).norm());
-  if (at.upper + radius * (1 + 1e-15) <= epsilon_) return true;
-  if (splits_left == 0) return false;
-  for (const Triangle3& q : quarters(triangle))
-    if (!near_original(q, at.triangle, splits_left - 1)) return false;
+bool Tolerance::carries(const NewTriangle& triangle, const geom::ConvexPolygon& piece) const {
+  const auto& [a, b, c] = triangle.corner;
+  for (int i = 0; i < piece.size; ++i)
+    if (geom::point_triangle_distance(piece.corner[i], a, b, c).upper > epsilon_) return false;
   return true;
 }
 
-bool Tolerance::place(const Triangle3& piece, std::span<const NewTriangle> added, int splits_left) {
+void Tolerance::put(const geom::ConvexPolygon& piece, std::uint32_t cuts, std::uint32_t carrier) {
+  for (int i = 2; i < piece.size; ++i)
+    placed_.push_back({{piece.corner[0], piece.corner[i - 1], piece.corner[i]}, cuts, carrier});
+}
+
+bool Tolerance::place(const geom::ConvexPolygon& piece, std::uint32_t cuts,
+                      std::span<const NewTriangle> added, int cuts_left) {
   for (std::size_t i = 0; i < added.size(); ++i) {
     const std::size_t k = (last_carrier_ + i) % added.size();
-    const auto& [a, b, c] = added[k].corner;
-    bool near = true;
-    for (const Vec3& p : piece)
-      near = near && geom::point_triangle_distance(p, a, b, c).upper <= epsilon_;
-    if (!near) continue;
+    if (!carries(added[k], piece)) continue;
     last_carrier_ = k;
-    placed_.push_back({piece, added[k].index});
+    put(piece, cuts, added[k].index);
     return true;
   }
-  if (splits_left == 0) return false;
-  // A corner out of reach of all new triangles cannot be helped by splitting.
-  for (const Vec3& p : piece) {
-    bool reached = false;
-    for (const NewTriangle& t : added)
-      reached = reached ||
-                geom::point_triangle_distance(p, t.corner[0], t.corner[1], t.corner[2]).upper <= epsilon_;
-    if (!reached) return false;
+  if (cuts_left == 0 || cuts >= kMaxTotalCuts || --pieces_left_ < 0) return false;
+  // Cut along the prism of the new triangle nearest to the middle; if that is too far, no cut helps.
+  const Vec3 center = piece.centroid();
+  std::size_t nearest = 0;
+  double distance = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < added.size(); ++k) {
+    const auto& [a, b, c] = added[k].corner;
+    const double d = geom::point_triangle_distance(center, a, b, c).upper;
+    if (d >= distance) continue;
+    distance = d;
+    nearest = k;
   }
-  for (const Triangle3& q : quarters(piece))
-    if (!place(q, added, splits_left - 1)) return false;
+  if (distance > epsilon_) return false;
+  const auto& [a, b, c] = added[nearest].corner;
+  const geom::PrismCut pieces = geom::cut_by_prism(piece, a, b, c, cuts_left % 3 == 0);
+  last_carrier_ = nearest;
+  for (int i = 0; i < pieces.count; ++i)
+    if (!place(pieces.piece[i], cuts + 1, added, cuts_left - 1)) return false;
   return true;
 }
 
 bool Tolerance::admits(std::span<const std::uint32_t> removed, std::span<const NewTriangle> added) {
   placed_.clear();
   last_carrier_ = 0;
+  pieces_left_ = kMaxPieces;
   if (added.empty()) return false;
   for (const std::uint32_t t : removed)
     for (std::uint32_t p = head_[t]; p != kNone; p = pieces_[p].next)
-      if (!place(pieces_[p].corner, added, kMaxSplits)) return false;
-  std::uint32_t hint = geom::DistanceQuery::kNone;
-  for (const NewTriangle& t : added)
-    if (!near_original(t.corner, hint, kMaxSplits)) return false;
-  return true;
+      if (const auto& [a, b, c] = pieces_[p].corner;
+          !place({a, b, c}, pieces_[p].cuts, added, kMaxCuts))
+        return false;
+  return std::all_of(added.begin(), added.end(), [&](const NewTriangle& t) {
+    return original_.all_within({t.corner[0], t.corner[1], t.corner[2]}, epsilon_);
+  });
 }
 
 void Tolerance::commit(std::span<const std::uint32_t> removed) {
@@ -111,7 +106,7 @@ void Tolerance::commit(std::span<const std::uint32_t> removed) {
   }
   for (const Placed& placed : placed_) {
     const std::uint32_t p = allocate();
-    pieces_[p] = {placed.corner, head_[placed.carrier]};
+    pieces_[p] = {placed.corner, placed.cuts, head_[placed.carrier]};
     head_[placed.carrier] = p;
   }
 }

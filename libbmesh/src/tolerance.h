@@ -17,7 +17,7 @@ using geom::Vec3;
 /// ε of one and the same original triangle; the distance to one triangle is convex, so the whole piece
 /// is. From the original: every original triangle is covered by pieces, each carried by a current
 /// triangle within ε of its corners. A change is admitted only if all pieces carried by the triangles
-/// it removes find a new carrier. docs/algorithms/bounding-mesh.md, "The error bound".
+/// it removes, cut further where need be, find a new carrier. docs/algorithms/bounding-mesh.md, "The error bound".
 class Tolerance {
  public:
   struct NewTriangle {
@@ -37,21 +37,24 @@ class Tolerance {
 
  private:
   static constexpr std::uint32_t kNone = ~0U;
-  static constexpr int kMaxSplits = 6;
+  static constexpr int kMaxCuts = 9;      ///< of one piece in one change
+  static constexpr int kMaxPieces = 2000;  ///< tried in one change
 
   struct Piece {
     std::array<Vec3, 3> corner;
+    std::uint32_t cuts;  ///< that led to it, since the beginning
     std::uint32_t next;
   };
   struct Placed {
     std::array<Vec3, 3> corner;
+    std::uint32_t cuts;
     std::uint32_t carrier;
   };
 
-  [[nodiscard]] bool near_original(const std::array<Vec3, 3>& triangle, std::uint32_t hint,
-                                   int splits_left) const;
-  [[nodiscard]] bool place(const std::array<Vec3, 3>& piece, std::span<const NewTriangle> added,
-                           int splits_left);
+  [[nodiscard]] bool place(const geom::ConvexPolygon& piece, std::uint32_t cuts,
+                           std::span<const NewTriangle> added, int cuts_left);
+  void put(const geom::ConvexPolygon& piece, std::uint32_t cuts, std::uint32_t carrier);
+  [[nodiscard]] bool carries(const NewTriangle& triangle, const geom::ConvexPolygon& piece) const;
   std::uint32_t allocate();
 
   geom::DistanceQuery original_;
@@ -61,6 +64,7 @@ class Tolerance {
   std::uint32_t free_ = kNone;
   std::vector<Placed> placed_;       // of the change under consideration
   std::size_t last_carrier_ = 0;
+  int pieces_left_ = 0;
 };
 
 }  // namespace kaboum::bmesh

@@ -167,4 +167,31 @@ std::uint32_t DistanceQuery::within(const Vec3& p, double radius, std::uint32_t 
   return kNone;
 }
 
+bool DistanceQuery::all_within(const ConvexPolygon& polygon, double radius, int max_pieces) const {
+  struct Entry {
+    ConvexPolygon polygon;
+    std::uint32_t hint;
+    int depth;
+  };
+  constexpr int kStack = 96;
+  std::array<Entry, kStack> stack;
+  int size = 0;
+  stack[size++] = {polygon, kNone, 0};
+  while (size > 0) {
+    const Entry e = stack[--size];
+    if (--max_pieces < 0) return false;
+    const Nearest at = nearest(e.polygon.centroid(), e.hint);
+    if (at.upper > radius) return false;
+    double worst = 0;
+    for (int i = 0; i < e.polygon.size && worst <= radius; ++i)
+      worst = std::max(worst, to_triangle(e.polygon.corner[i], at.triangle).upper);
+    if (worst <= radius) continue;
+    const auto& [a, b, c] = corners(at.triangle);
+    const PrismCut pieces = cut_by_prism(e.polygon, a, b, c, e.depth % 3 == 2);
+    if (size + pieces.count > kStack) return false;
+    for (int i = 0; i < pieces.count; ++i) stack[size++] = {pieces.piece[i], at.triangle, e.depth + 1};
+  }
+  return true;
+}
+
 }  // namespace kaboum::geom

@@ -5,165 +5,188 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace kaboum::geom {
 namespace {
 
-using Nearest = DistanceQuery::Nearest;
-
-struct Corner {
-  Vec3 point;
-  Nearest nearest;
-};
-
-/// A piece of one of A's triangles whose largest distance to B is not settled yet.
+/// A part of one of A's triangles whose largest distance to B may still matter.
 struct Piece {
-  std::array<Corner, 3> corner;
-  double upper;
+  ConvexPolygon polygon;
+  double upper = std::numeric_limits<double>::infinity();
+  std::uint32_t nearest = DistanceQuery::kNone;
 };
 
-/// Everything known about a piece before its corners' queries are needed again.
-struct Evaluated {
-  Piece piece;
-  Corner center;
+/// What one round finds out about a piece.
+struct Finding {
+  double lower = 0;  // the distance at `at` is at least this
+  Vec3 at = Vec3::Zero();
 };
 
-double diameter_about(const Piece& piece, const Vec3& center) {
-  double r = 0;
-  for (const Corner& c : piece.corner) r = std::max(r, (c.point - center).norm());
-  return r * (1 + 1e-15);
-}
+class BranchAndBound {
+ public:
+  BranchAndBound(const Mesh& a, const DistanceQuery& b, const DistanceOptions& options)
+      : a_(a), b_(b), options_(options) {
+    Box3 box = bounding_box(a);
+    magnitude_ = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
+    box.extend(b.box());
+    absolute_gap_ = options.absolute_gap * box.diagonal();
+  }
 
-/// Smallest bound over a few triangles t of max over the corners of d(corner, t).
-double upper_bound(const Piece& piece, const Corner& center, const DistanceQuery& b) {
-  double best = center.nearest.upper + diameter_about(piece, center.point);
-  const auto try_triangle = [&](std::uint32_t t) {
-    double worst = 0;
-    for (const Corner& c : piece.corner) {
-      worst = std::max(worst, c.nearest.triangle == t ? c.nearest.upper
-                                                      : b.to_triangle(c.point, t).upper);
-      if (worst >= best) return;
+  DirectedDistance run() {
+    measure_vertices();
+    std::vector<Piece> open;
+    // The first round in chunks, so that most triangles never exist as pieces.
+    constexpr std::size_t kChunk = std::size_t{1} << 16;
+    for (std::size_t first = 0; first < a_.triangles.size(); first += kChunk) {
+      std::vector<Piece> chunk;
+      const std::size_t last = std::min(first + kChunk, a_.triangles.size());
+      chunk.reserve(last - first);
+      for (std::size_t t = first; t < last; ++t) {
+        const Triangle& tri = a_.triangles[t];
+        chunk.push_back({{a_.vertices[tri[0]], a_.vertices[tri[1]], a_.vertices[tri[2]]},
+                         std::numeric_limits<double>::infinity(),
+                         nearest_to_vertex_[tri[0]]});
+      }
+      evaluate(chunk);
+      keep_unsettled(chunk);
+      open.insert(open.end(), chunk.begin(), chunk.end());
     }
-    best = worst;
-  };
-  try_triangle(center.nearest.triangle);
-  for (const Corner& c : piece.corner) try_triangle(c.nearest.triangle);
-  return best;
-}
+    int round = 1;
+    for (; !open.empty(); ++round) {
+      keep_unsettled(open);  // the lower bound may have risen
+      if (round > kMaxRounds || open.size() > kMaxPieces)
+        throw Error(ErrorCode::LimitReached,
+                    "the distance could not be bounded to the wished gap; allow a larger gap");
+      open = cut_all(open, round % 3 == 0);
+      evaluate(open);
+      keep_unsettled(open);
+    }
+    // What cuts may have left out lies this close to what they covered.
+    result_.max_upper = std::max(settled_ + round * ConvexPolygon::kCutError * magnitude_,
+                                 result_.max_lower);
+    return result_;
+  }
 
-Evaluated evaluate(const Piece& piece, const DistanceQuery& b) {
-  const Vec3 center =
-      (piece.corner[0].point + piece.corner[1].point + piece.corner[2].point) / 3.0;
-  Evaluated e{piece, {center, b.nearest(center, piece.corner[0].nearest.triangle)}};
-  e.piece.upper = std::min(piece.upper, upper_bound(piece, e.center, b));
-  return e;
-}
+ private:
+  static constexpr std::size_t kMaxPieces = std::size_t{1} << 23;
+  static constexpr int kMaxRounds = 200;
+
+  void raise(double lower, const Vec3& at) {
+    if (lower <= result_.max_lower) return;
+    result_.max_lower = lower;
+    result_.at = at;
+  }
+
+  void measure_vertices() {
+    nearest_to_vertex_.assign(a_.vertices.size(), DistanceQuery::kNone);
+    std::vector<double> lower(a_.vertices.size(), 0);
+    std::vector<char> used(a_.vertices.size(), 0);
+    for (const Triangle& t : a_.triangles)
+      for (const std::uint32_t v : t) used[v] = 1;
+    // Hints pass on within fixed blocks, not within the scheduler's ranges.
+    constexpr std::size_t kBlock = 64;
+    const std::size_t blocks = (a_.vertices.size() + kBlock - 1) / kBlock;
+    tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
+      std::uint32_t hint = DistanceQuery::kNone;
+      const std::size_t last = std::min((block + 1) * kBlock, a_.vertices.size());
+      for (std::size_t v = block * kBlock; v < last; ++v) {
+        if (used[v] == 0) continue;
+        const auto n = b_.nearest(a_.vertices[v], hint);
+        hint = nearest_to_vertex_[v] = n.triangle;
+        lower[v] = n.lower;
+      }
+    });
+    for (std::size_t v = 0; v < a_.vertices.size(); ++v) {
+      if (used[v] == 0) continue;
+      ++result_.queries;
+      raise(lower[v], a_.vertices[v]);
+    }
+  }
+
+  /// Largest distance of the corners from triangle t, and the corner where it is.
+  std::pair<double, int> worst_corner(const ConvexPolygon& polygon, std::uint32_t t) const {
+    double worst = 0;
+    int where = 0;
+    for (int i = 0; i < polygon.size; ++i) {
+      const double d = b_.to_triangle(polygon.corner[i], t).upper;
+      if (d > worst) {
+        worst = d;
+        where = i;
+      }
+    }
+    return {worst, where};
+  }
+
+  Finding bound(Piece& piece) const {
+    const Vec3 center = piece.polygon.centroid();
+    const auto at_center = b_.nearest(center, piece.nearest);
+    piece.nearest = at_center.triangle;
+    Finding finding{at_center.lower, center};
+    const auto [worst, where] = worst_corner(piece.polygon, at_center.triangle);
+    piece.upper = std::min(piece.upper, worst);
+    if (piece.upper <= result_.max_lower) return finding;
+    // The corner that is far from this triangle may be near another one.
+    const Vec3& corner = piece.polygon.corner[where];
+    const auto at_corner = b_.nearest(corner, at_center.triangle);
+    if (at_corner.lower > finding.lower) finding = {at_corner.lower, corner};
+    if (at_corner.triangle != at_center.triangle)
+      piece.upper = std::min(piece.upper, worst_corner(piece.polygon, at_corner.triangle).first);
+    double radius = 0;
+    for (int i = 0; i < piece.polygon.size; ++i)
+      radius = std::max(radius, (piece.polygon.corner[i] - center).norm());
+    piece.upper = std::min(piece.upper, at_center.upper + radius * (1 + 1e-14));
+    return finding;
+  }
+
+  void evaluate(std::vector<Piece>& pieces) {
+    std::vector<Finding> findings(pieces.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pieces.size(), 64),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                        for (std::size_t i = range.begin(); i != range.end(); ++i)
+                          findings[i] = bound(pieces[i]);
+                      });
+    result_.queries += 2 * pieces.size();
+    for (const Finding& f : findings) raise(f.lower, f.at);
+  }
+
+  void keep_unsettled(std::vector<Piece>& pieces) {
+    const double limit = std::max(result_.max_lower * (1 + options_.relative_gap),
+                                  result_.max_lower + absolute_gap_);
+    std::erase_if(pieces, [&](const Piece& p) {
+      if (p.upper > limit) return false;
+      settled_ = std::max(settled_, p.upper);
+      return true;
+    });
+  }
+
+  std::vector<Piece> cut_all(const std::vector<Piece>& pieces, bool halving) const {
+    std::vector<Piece> out;
+    out.reserve(3 * pieces.size());
+    for (const Piece& p : pieces) {
+      const auto& [a, b, c] = b_.corners(p.nearest);
+      const PrismCut cuts = cut_by_prism(p.polygon, a, b, c, halving);
+      for (int i = 0; i < cuts.count; ++i) out.push_back({cuts.piece[i], p.upper, p.nearest});
+    }
+    return out;
+  }
+
+  const Mesh& a_;
+  const DistanceQuery& b_;
+  const DistanceOptions& options_;
+  double magnitude_ = 0;
+  double absolute_gap_ = 0;
+  double settled_ = 0;  // largest upper bound among the pieces that need no further cut
+  std::vector<std::uint32_t> nearest_to_vertex_;
+  DirectedDistance result_;
+};
 
 }  // namespace
 
-// The midpoints of a piece are rounded, so its four children cover it only up to rounding. That is
-// harmless: the bound of a child is a bound over its own corners, and the parent's points are within
-// 2^-52 · max|coordinate| of some child; this is added once, at the end.
 DirectedDistance directed_distance(const Mesh& a, const DistanceQuery& b,
                                    const DistanceOptions& options) {
   if (a.empty()) throw Error(ErrorCode::InvalidInput, "distance from a mesh without triangles");
-  constexpr std::size_t kMaxPieces = std::size_t{1} << 26;
-  constexpr int kMaxRounds = 60;
-
-  Box3 box = bounding_box(a);
-  const double coordinates = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
-  const double cover_slack = coordinates * 4.5e-16 * kMaxRounds;
-  box.extend(b.box());
-  const double absolute_gap = options.absolute_gap * box.diagonal();
-
-  DirectedDistance result;
-  // Vertices first: each is shared by about six triangles, and chunks of neighbours pass on hints.
-  std::vector<Nearest> at_vertex(a.vertices.size(), Nearest{DistanceQuery::kNone, 0, 0});
-  std::vector<char> used(a.vertices.size(), 0);
-  for (const Triangle& t : a.triangles)
-    for (const std::uint32_t v : t) used[v] = 1;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, a.vertices.size(), 256),
-                    [&](const tbb::blocked_range<std::size_t>& range) {
-                      std::uint32_t hint = DistanceQuery::kNone;
-                      for (std::size_t v = range.begin(); v != range.end(); ++v) {
-                        if (!used[v]) continue;
-                        at_vertex[v] = b.nearest(a.vertices[v], hint);
-                        hint = at_vertex[v].triangle;
-                      }
-                    });
-  const auto raise = [&](const Corner& c) {
-    if (c.nearest.lower > result.max_lower) {
-      result.max_lower = c.nearest.lower;
-      result.at = c.point;
-    }
-  };
-  for (std::size_t v = 0; v < a.vertices.size(); ++v) {
-    if (!used[v]) continue;
-    ++result.queries;
-    raise({a.vertices[v], at_vertex[v]});
-  }
-
-  std::vector<Piece> open;
-  open.reserve(a.triangles.size());
-  for (const Triangle& t : a.triangles) {
-    Piece piece{{}, std::numeric_limits<double>::infinity()};
-    for (int k = 0; k < 3; ++k) piece.corner[k] = {a.vertices[t[k]], at_vertex[t[k]]};
-    open.push_back(piece);
-  }
-
-  const auto target = [&] {
-    return std::max(result.max_lower * (1 + options.relative_gap), result.max_lower + absolute_gap);
-  };
-  double settled = 0;  // largest upper bound among the pieces that need no further split
-  for (int round = 0; !open.empty(); ++round) {
-    std::vector<Evaluated> evaluated(open.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, open.size(), 64),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        for (std::size_t i = range.begin(); i != range.end(); ++i)
-                          evaluated[i] = evaluate(open[i], b);
-                      });
-    result.queries += open.size();
-    for (const Evaluated& e : evaluated) raise(e.center);
-    const double limit = target();
-    std::vector<const Evaluated*> split;
-    for (const Evaluated& e : evaluated) {
-      if (e.piece.upper <= limit)
-        settled = std::max(settled, e.piece.upper);
-      else
-        split.push_back(&e);
-    }
-    if (split.empty()) break;
-    if (round == kMaxRounds || 4 * split.size() > kMaxPieces)
-      throw Error(ErrorCode::LimitReached,
-                  "the distance could not be bounded to the wished gap; allow a larger gap");
-
-    std::vector<Piece> next(4 * split.size());
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, split.size(), 64),
-        [&](const tbb::blocked_range<std::size_t>& range) {
-          for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            const Evaluated& e = *split[i];
-            std::array<Corner, 3> middle;  // middle[k] lies opposite corner k
-            for (int k = 0; k < 3; ++k) {
-              const Corner &p = e.piece.corner[(k + 1) % 3], &q = e.piece.corner[(k + 2) % 3];
-              const Vec3 m = 0.5 * p.point + 0.5 * q.point;
-              middle[k] = {m, b.nearest(m, e.center.nearest.triangle)};
-            }
-            const auto& c = e.piece.corner;
-            const double u = e.piece.upper;
-            next[4 * i + 0] = {{c[0], middle[2], middle[1]}, u};
-            next[4 * i + 1] = {{middle[2], c[1], middle[0]}, u};
-            next[4 * i + 2] = {{middle[1], middle[0], c[2]}, u};
-            next[4 * i + 3] = {middle, u};
-          }
-        });
-    result.queries += 3 * split.size();
-    for (std::size_t i = 0; i < split.size(); ++i)
-      for (const Corner& m : next[4 * i + 3].corner) raise(m);
-    open.swap(next);
-  }
-  result.max_upper = std::max(settled + cover_slack, result.max_lower);
-  return result;
+  return BranchAndBound(a, b, options).run();
 }
 
 }  // namespace kaboum::geom

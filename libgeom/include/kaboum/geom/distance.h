@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/geom/bvh.h>
+#include <kaboum/geom/clip.h>
 #include <kaboum/geom/mesh.h>
 
 #include <cstdint>
@@ -47,6 +48,17 @@ class DistanceQuery {
   /// kNone if there is none (or, within rounding of the radius, if it was missed).
   [[nodiscard]] std::uint32_t within(const Vec3& p, double radius, std::uint32_t hint = kNone) const;
 
+  /// Whether every point of the polygon is within `radius`: decided by cutting it along the prisms of
+  /// nearest triangles until each piece's corners are within the radius of one triangle (the distance
+  /// to one triangle is convex). False also when that did not succeed in `max_pieces` pieces.
+  [[nodiscard]] bool all_within(const ConvexPolygon& polygon, double radius,
+                                int max_pieces = 256) const;
+
+  /// The triangle's corners.
+  [[nodiscard]] const std::array<Vec3, 3>& corners(std::uint32_t triangle) const {
+    return corners_[position_[triangle]];
+  }
+
   /// Bracket of the distance to one triangle.
   [[nodiscard]] DistanceBounds to_triangle(const Vec3& p, std::uint32_t triangle) const;
 
@@ -72,15 +84,16 @@ struct DistanceOptions {
   double absolute_gap = 1e-9;   ///< … or upper ≤ lower + absolute_gap · diagonal of A and B's box
 };
 
-/// Branch and bound over A's triangles, splitting each into four.
+/// Branch and bound over convex pieces of A's triangles.
 ///
-/// Upper bound of a sub-triangle: d(·, t) is convex for one triangle t of B, so its largest value over
-/// the sub-triangle is at a corner; the best t among those nearest to the corners and the centroid is
-/// taken, or the Lipschitz bound from the centroid. Rounds are evaluated in parallel (oneTBB) and the
-/// result does not depend on the number of threads.
+/// Upper bound of a piece: d(·, t) is convex for one triangle t of B, so its largest value over the
+/// piece is at a corner; t is the triangle nearest to the piece's centroid, or to its worst corner.
+/// A piece that is not settled is cut along the prism of t, so that coplanar surfaces fall apart into
+/// the cells in which one triangle of B is nearest, instead of being halved down to the gap. Rounds
+/// are evaluated in parallel (oneTBB); the result does not depend on the number of threads.
 ///
 /// @pre A and B have triangles and finite coordinates; B is given as a query.
-/// @throws Error{LimitReached} when the gap cannot be reached with 2^26 sub-triangles.
+/// @throws Error{LimitReached} when the gap cannot be reached with 2^23 pieces at a time.
 DirectedDistance directed_distance(const Mesh& a, const DistanceQuery& b,
                                    const DistanceOptions& options = {});
 
