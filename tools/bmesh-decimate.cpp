@@ -35,8 +35,9 @@ struct Options {
   tools::CommonOptions common;
 };
 
-const std::map<std::string, bmesh::Direction> kDirections{
-    {"outer", bmesh::Direction::Outer}, {"inner", bmesh::Direction::Inner}, {"any", bmesh::Direction::Any}};
+const std::map<std::string, bmesh::Direction> kDirections{{"outer", bmesh::Direction::Outer},
+                                                          {"inner", bmesh::Direction::Inner},
+                                                          {"any", bmesh::Direction::Any}};
 const std::map<std::string, bmesh::Cost> kCosts{{"planes", bmesh::Cost::Planes},
                                                 {"planes-adapted", bmesh::Cost::PlanesAdapted},
                                                 {"planes-diagonal", bmesh::Cost::PlanesDiagonal},
@@ -62,16 +63,18 @@ void describe(CLI::App& app, Options& o) {
   app.add_option("--vertices", o.vertices, "Stop at this many vertices (at least 4)")
       ->check(CLI::Range(std::size_t{4}, std::numeric_limits<std::size_t>::max()).description(""))
       ->type_name("N");
-  app.add_option("--ratio", o.ratio, "Stop at this fraction of the input's welded vertices (0 < R < 1)")
+  app.add_option("--ratio", o.ratio,
+                 "Stop at this fraction of the input's welded vertices (0 < R < 1)")
       ->check([](const std::string& s) {
         double r = 0;
         return CLI::detail::lexical_cast(s, r) && r > 0 && r < 1 ? std::string()
                                                                  : "must lie between 0 and 1";
       })
       ->type_name("R");
-  app.add_option("--epsilon", o.epsilon,
-                 "Keep every point of either surface within this distance of the other: a length, or a "
-                 "percentage of the bounding box's diagonal, as in 0.5%")
+  app.add_option(
+         "--epsilon", o.epsilon,
+         "Keep every point of either surface within this distance of the other: a length, or a "
+         "percentage of the bounding box's diagonal, as in 0.5%")
       ->check([](const std::string& s) {
         return tools::parse_length(s) ? std::string()
                                       : "must be a positive length, or a percentage such as 0.5%";
@@ -82,13 +85,15 @@ void describe(CLI::App& app, Options& o) {
       ->type_name("planes|planes-adapted|planes-diagonal|triangles");
   app.add_flag("--as-printed", o.as_printed,
                "planes-diagonal with the thesis's formulas as printed, to reproduce its tables");
-  app.add_option("--precision", o.precision,
-                 "Numbers of the result's coordinates; auto: float, or double where float is too coarse "
-                 "and the format can hold it [auto]")
+  app.add_option(
+         "--precision", o.precision,
+         "Numbers of the result's coordinates; auto: float, or double where float is too coarse "
+         "and the format can hold it [auto]")
       ->check(CLI::IsMember({"auto", "float", "double"}).description(""))
       ->type_name("auto|float|double");
-  app.add_option("--sharp-angle", o.sharp_angle,
-                 "Edges whose normals differ by more degrees than this resist growing spikes; 180: none")
+  app.add_option(
+         "--sharp-angle", o.sharp_angle,
+         "Edges whose normals differ by more degrees than this resist growing spikes; 180: none")
       ->check(CLI::Range(0.0, 180.0).description(""))
       ->capture_default_str()
       ->type_name("DEG");
@@ -100,7 +105,8 @@ void describe(CLI::App& app, Options& o) {
                "Never turn inconsistent triangles or inside-out components");
   app.add_option("--log", o.log, "Write the log of all steps, for bmesh-replay")->type_name("FILE");
   app.add_option("--depfile", o.depfile, "Write a Makefile dependency rule")->type_name("FILE");
-  app.add_option("--input-format", o.input_format, "Format of INPUT [by extension]")->type_name("NAME");
+  app.add_option("--input-format", o.input_format, "Format of INPUT [by extension]")
+      ->type_name("NAME");
   app.add_option("--output-format", o.output_format, "Format of the result [by extension]")
       ->type_name("NAME");
   tools::add_common_options(app, o.common);
@@ -117,8 +123,8 @@ void check_readback(const std::vector<char>& bytes, io::Format format, const geo
   const io::ReadResult back = io::parse_mesh(bytes, format, "the result");
   std::size_t at = 0;
   const auto collapsed = [&](const geom::Triangle& t) {
-    return mesh.vertices[t[0]] == mesh.vertices[t[1]] || mesh.vertices[t[1]] == mesh.vertices[t[2]] ||
-           mesh.vertices[t[2]] == mesh.vertices[t[0]];
+    return mesh.vertices[t[0]] == mesh.vertices[t[1]] ||
+           mesh.vertices[t[1]] == mesh.vertices[t[2]] || mesh.vertices[t[2]] == mesh.vertices[t[0]];
   };
   for (const geom::Triangle& t : mesh.triangles) {
     if (collapsed(t)) continue;
@@ -143,7 +149,8 @@ SurfaceSamples sample_surface(const geom::Mesh& mesh, double diagonal) {
   SurfaceSamples samples;
   for (std::size_t t = 0; t < mesh.triangles.size(); t += step) {
     const auto& tri = mesh.triangles[t];
-    const geom::Vec3 &a = mesh.vertices[tri[0]], &b = mesh.vertices[tri[1]], &c = mesh.vertices[tri[2]];
+    const geom::Vec3 &a = mesh.vertices[tri[0]], &b = mesh.vertices[tri[1]],
+                     &c = mesh.vertices[tri[2]];
     const geom::Vec3 n = (b - a).cross(c - a);
     if (!(n.norm() > 0)) continue;
     const auto w = winding((a + b + c) / 3.0 - n * (1e-9 * diagonal / n.norm()));
@@ -169,7 +176,8 @@ class Job {
             "give at least one of --vertices, --ratio and --epsilon");
     require(!(o_.common.report == "-" && o_.output == "-"),
             "the result and the report cannot both go to stdout");
-    const io::Format output_format = tools::format_for(o_.output, o_.output_format, "--output-format");
+    const io::Format output_format =
+        tools::format_for(o_.output, o_.output_format, "--output-format");
     const io::Format input_format = tools::format_for(o_.input, o_.input_format, "--input-format");
     require(o_.precision != "double" || io::holds_double(output_format),
             "--precision double: the output format holds float32 only; write .ply, .obj or .off");
@@ -214,7 +222,8 @@ class Job {
     box_ = geom::bounding_box(prepared_.mesh);
     if (!o_.epsilon.empty()) epsilon_ = tools::parse_length(o_.epsilon)->of(box_.diagonal());
     if (epsilon_ && !(*epsilon_ > 0))
-      throw Error(ErrorCode::InvalidInput, o_.input + ": a percentage of a mesh without extent is no length");
+      throw Error(ErrorCode::InvalidInput,
+                  o_.input + ": a percentage of a mesh without extent is no length");
     seconds_read_ = tools::user_seconds();
   }
 
@@ -238,9 +247,10 @@ class Job {
       say("note: " + why + ": writing double");
       return true;
     }
-    tools::log(false, "bmesh-decimate: " + o_.input + ": " + why +
-                          "; nothing is written. Use --precision double with .ply, .obj or .off output, "
-                          "or move the mesh towards the origin");
+    tools::log(false,
+               "bmesh-decimate: " + o_.input + ": " + why +
+                   "; nothing is written. Use --precision double with .ply, .obj or .off output, "
+                   "or move the mesh towards the origin");
     return false;
   }
 
@@ -264,16 +274,19 @@ class Job {
     tools::Progress progress(o_.common.quiet);
     const std::size_t start = prepared_.mesh.vertices.size();
     d.progress = [&](std::size_t vertices) {
-      std::string text = std::to_string(vertices) + " of " + std::to_string(start) + " vertices left";
+      std::string text =
+          std::to_string(vertices) + " of " + std::to_string(start) + " vertices left";
       if (target_) text += ", " + std::to_string(*target_) + " wished";
       progress.show(text);
     };
     result_ = bmesh::decimate(prepared_, d);
     seconds_decimated_ = tools::user_seconds();
     if (result_.unrepresentable == 0) return true;
-    return double_instead(format, std::to_string(result_.unrepresentable) +
-                                      (prepared_.closed ? " vertices" : " vertices (those of the border may not move)") +
-                                      " have no certified float32 position");
+    return double_instead(
+        format,
+        std::to_string(result_.unrepresentable) +
+            (prepared_.closed ? " vertices" : " vertices (those of the border may not move)") +
+            " have no certified float32 position");
   }
 
   std::vector<char> serialise(io::Format format) const {
@@ -338,8 +351,9 @@ class Job {
                           {"fold", s.rejected_fold},
                           {"distance", s.rejected_distance}}}};
     const double diagonal = box_.diagonal();
-    r["distance"] = {{"meaning", "one-sided, surface to surface, certified brackets of the maximum; "
-                                 "the original is the input after preparation"},
+    r["distance"] = {{"meaning",
+                      "one-sided, surface to surface, certified brackets of the maximum; "
+                      "the original is the input after preparation"},
                      {"bbox_diagonal", diagonal},
                      {"original_to_result", tools::to_json(*to_result_, diagonal)},
                      {"result_to_original", tools::to_json(*to_original_, diagonal)},
@@ -366,9 +380,10 @@ class Job {
       return c;
     }
     const SurfaceSamples s = sample_surface(prepared_.mesh, box_.diagonal());
-    c["surface"] = s.outside == 0
-                       ? "sampled: every input face looked at bounds the input's solid, which is contained"
-                       : "not claimed: some input faces do not bound the input's solid";
+    c["surface"] =
+        s.outside == 0
+            ? "sampled: every input face looked at bounds the input's solid, which is contained"
+            : "not claimed: some input faces do not bound the input's solid";
     c["surface_faces_sampled"] = s.faces;
     c["surface_faces_outside_solid"] = s.outside;
     return c;
@@ -394,7 +409,8 @@ class Job {
     if (o_.direction != bmesh::Direction::Any) line += prepared_.closed ? ", certified" : ", open";
     if (to_result_) {
       const double upper = std::max(to_result_->max_upper, to_original_->max_upper);
-      line += ", within " + formatted(upper) + " (" + formatted(100 * upper / box_.diagonal()) + "%)";
+      line +=
+          ", within " + formatted(upper) + " (" + formatted(100 * upper / box_.diagonal()) + "%)";
     }
     say(line);
     if (target_ && result_.stop == bmesh::Stop::Exhausted && s.vertices_out > *target_) {

@@ -16,7 +16,8 @@ struct Options {
 };
 
 std::string claim(const bmesh::Log& log, const bmesh::ReplayResult& r) {
-  if (log.direction == bmesh::Direction::Any) return "replayed; direction 'any' claims no enclosure";
+  if (log.direction == bmesh::Direction::Any)
+    return "replayed; direction 'any' claims no enclosure";
   const bool outer = log.direction == bmesh::Direction::Outer;
   if (!r.closed)
     return std::string("verified: the generalised winding number nowhere ") +
@@ -27,11 +28,12 @@ std::string claim(const bmesh::Log& log, const bmesh::ReplayResult& r) {
 
 int check(const Options& o) {
   std::vector<char> bytes;
-  const io::ReadResult original =
-      io::read_mesh(o.original, tools::format_for(o.original, o.original_format, "--input-format"), &bytes);
+  const io::ReadResult original = io::read_mesh(
+      o.original, tools::format_for(o.original, o.original_format, "--input-format"), &bytes);
   const bmesh::Log log = bmesh::parse_log(io::read_file(o.log), o.log);
   if (log.input_sha256 != io::sha256(bytes))
-    throw Error(ErrorCode::InvalidInput, o.log + ": the log was made from another file than " + o.original);
+    throw Error(ErrorCode::InvalidInput,
+                o.log + ": the log was made from another file than " + o.original);
   bytes = {};
   const io::ReadResult result =
       io::read_mesh(o.result, tools::format_for(o.result, o.result_format, "--input-format"));
@@ -61,17 +63,24 @@ int check(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Derives the result of bmesh-decimate again from its log and checks every step exactly.",
-               "bmesh-replay");
+  CLI::App app(
+      "Derives the result of bmesh-decimate again from its log and checks every step exactly.",
+      "bmesh-replay");
   Options o;
-  app.add_option("ORIGINAL", o.original, "The mesh that was simplified")->required()->type_name("FILE");
-  app.add_option("LOG", o.log, "The log that bmesh-decimate --log wrote")->required()->type_name("FILE");
+  app.add_option("ORIGINAL", o.original, "The mesh that was simplified")
+      ->required()
+      ->type_name("FILE");
+  app.add_option("LOG", o.log, "The log that bmesh-decimate --log wrote")
+      ->required()
+      ->type_name("FILE");
   app.add_option("RESULT", o.result, "The mesh that it wrote")->required()->type_name("FILE");
   app.add_option("--input-format", o.original_format, "Format of ORIGINAL [by extension]")
       ->type_name("NAME");
   app.add_option("--result-format", o.result_format, "Format of RESULT [by extension]")
       ->type_name("NAME");
   tools::add_common_options(app, o.common);
-  app.footer("Exit codes: 0 verified; 1 refuted; 2 usage; 3 bad input; 4 output failed; 6 internal error.");
+  app.footer(
+      "Exit codes: 0 verified; 1 refuted; 2 usage; 3 bad input; 4 output failed; 6 internal "
+      "error.");
   return tools::run(app, argc, argv, [&] { return check(o); });
 }

@@ -65,7 +65,8 @@ int run(CLI::App& app, int argc, char** argv, const std::function<int()>& body) 
 void add_common_options(CLI::App& app, CommonOptions& options) {
   app.add_option("--report", options.report, "Write a JSON report to this file (- for stdout)")
       ->type_name("FILE");
-  app.add_option("--threads", options.threads, "Number of threads; 0: one per core; same bytes for any")
+  app.add_option("--threads", options.threads,
+                 "Number of threads; 0: one per core; same bytes for any")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str()
       ->type_name("N");
@@ -88,7 +89,8 @@ std::optional<Length> parse_length(const std::string& text) {
   Length length;
   const char* end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, length.value);
-  if (error != std::errc() || !std::isfinite(length.value) || !(length.value > 0)) return std::nullopt;
+  if (error != std::errc() || !std::isfinite(length.value) || !(length.value > 0))
+    return std::nullopt;
   length.percent = stop != end && *stop == '%';
   if (stop + (length.percent ? 1 : 0) != end) return std::nullopt;
   return length;
@@ -122,8 +124,10 @@ io::Format format_for(const std::string& path, const std::string& name, const ch
                 std::string(option) + ": unknown format '" + name + "'; known: " + choices);
   }
   if (path == "-")
-    throw Error(ErrorCode::InvalidArgument, std::string(option) + " is needed with '-'; known: " + choices);
-  if (const auto f = io::format_from_name(std::filesystem::path(path).extension().string())) return *f;
+    throw Error(ErrorCode::InvalidArgument,
+                std::string(option) + " is needed with '-'; known: " + choices);
+  if (const auto f = io::format_from_name(std::filesystem::path(path).extension().string()))
+    return *f;
   throw Error(reading ? ErrorCode::InvalidInput : ErrorCode::InvalidArgument,
               path + ": unknown file extension; use one of " + choices + ", or give " + option);
 }
@@ -154,7 +158,8 @@ Json to_json(const geom::DirectedDistance& d, double diagonal) {
 double user_seconds() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_utime.tv_sec) + 1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
+  return static_cast<double>(usage.ru_utime.tv_sec) +
+         1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
 }
 
 double peak_megabytes() {

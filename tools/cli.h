@@ -58,7 +58,9 @@ class ThreadLimit {
 struct Length {
   double value = 0;
   bool percent = false;
-  [[nodiscard]] double of(double diagonal) const { return percent ? 0.01 * value * diagonal : value; }
+  [[nodiscard]] double of(double diagonal) const {
+    return percent ? 0.01 * value * diagonal : value;
+  }
 };
 
 /// "0.005" or "0.5%"; nullopt unless it is a positive finite number.

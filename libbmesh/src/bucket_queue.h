@@ -1,7 +1,5 @@
 #pragma once
 
-#include <kaboum/geom/mesh.h>
-
 #include <bit>
 #include <cstdint>
 #include <vector>
@@ -14,12 +12,9 @@ namespace kaboum::bmesh {
 class BucketQueue {
  public:
   struct Entry {
-    std::uint32_t a, b;      ///< end points
-    std::uint32_t stamps;    ///< sum of their stamps when the entry was made
-    std::uint32_t versions;  ///< sum of their versions when `position` was found; kUnsolved: not yet
-    geom::Vec3 position;     ///< where the edge would be contracted to
+    std::uint32_t a = 0, b = 0;  ///< end points
+    std::uint32_t stamps = 0;    ///< sum of their stamps when the entry was made
   };
-  static constexpr std::uint32_t kUnsolved = ~0U;
 
   BucketQueue() : heads_(kBuckets, kNone) {}
 
@@ -78,11 +73,11 @@ class BucketQueue {
   }
 
  private:
+  static constexpr std::uint32_t kNone = ~0U;
   struct Node {
     Entry entry;
-    std::uint32_t next;
+    std::uint32_t next = kNone;
   };
-  static constexpr std::uint32_t kNone = ~0U;
   static constexpr std::uint32_t kBuckets = 0x7F81;  // up to and including +infinity
 
   static std::uint32_t bucket_of(double key) {

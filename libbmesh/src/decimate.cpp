@@ -1,6 +1,7 @@
 // Bounding mesh decimation.
-// [gaschler2016] A. Gaschler, Efficient Geometric Predicates for Integrated Task and Motion Planning,
-// §4.3, Algorithms 1 and 2. The certificate and the error bound: docs/algorithms/bounding-mesh.md.
+// [gaschler2016] A. Gaschler, Efficient Geometric Predicates for Integrated Task and Motion
+// Planning, §4.3, Algorithms 1 and 2. The certificate and the error bound:
+// docs/algorithms/bounding-mesh.md.
 #include <kaboum/bmesh/decimate.h>
 #include <kaboum/geom/convex_set.h>
 #include <kaboum/geom/error.h>
@@ -45,7 +46,6 @@ class Decimator {
         normal_(input.mesh.triangles.size()),
         quadric_(input.mesh.vertices.size()),
         stamp_(input.mesh.vertices.size(), 0),
-        version_(input.mesh.vertices.size(), 0),
         mark_(input.mesh.vertices.size(), 0),
         vertices_(input.mesh.vertices.size()) {
     statistics_.vertices_in = vertices_;
@@ -66,7 +66,8 @@ class Decimator {
   }
 
  private:
-  // ---- set-up -------------------------------------------------------------------------------------
+  // ---- set-up
+  // -------------------------------------------------------------------------------------
 
   void update_normal(std::uint32_t t) {
     const Triangle& tri = mesh_[t];
@@ -81,10 +82,9 @@ class Decimator {
   void init_quadrics(const Mesh& mesh) {
     for (std::uint32_t t = 0; t < mesh_.size(); ++t) {
       const Triangle& tri = mesh_[t];
-      const Quadric q =
-          options_.cost == Cost::Triangles
-              ? point_quadric((local(tri[0]) + local(tri[1]) + local(tri[2])) / 3.0)
-              : plane_quadric(local(tri[0]), normal_[t]);
+      const Quadric q = options_.cost == Cost::Triangles
+                            ? point_quadric((local(tri[0]) + local(tri[1]) + local(tri[2])) / 3.0)
+                            : plane_quadric(local(tri[0]), normal_[t]);
       for (const std::uint32_t v : tri) quadric_[v] += q;
     }
     if (options_.cost != Cost::Triangles && options_.sharp_angle < 180) add_sharp_edges(mesh);
@@ -127,16 +127,16 @@ class Decimator {
     return quadric_[a] + quadric_[b];
   }
 
-  // ---- the queue ----------------------------------------------------------------------------------
+  // ---- the queue
+  // ----------------------------------------------------------------------------------
 
   /// Entered with a lower bound of the cost; the constrained cost is found when the edge is popped.
   void push_edge(std::uint32_t a, std::uint32_t b) {
     if (border_[a] != 0 && border_[b] != 0) return;
     const Quadric q = merged(a, b);
     const Vec3 middle = 0.5 * (local(a) + local(b));
-    const double lower = std::max(0.0, unconstrained_minimum(q, middle)) +
-                         length_cost(q, a, b);
-    queue_.push(lower, {a, b, stamp_[a] + stamp_[b], BucketQueue::kUnsolved, {}});
+    const double lower = std::max(0.0, unconstrained_minimum(q, middle)) + length_cost(q, a, b);
+    queue_.push(lower, {a, b, stamp_[a] + stamp_[b]});
   }
 
   /// Prefers short edges where the quadric is indifferent, as in planes: 10^-4 of the length.
@@ -160,13 +160,9 @@ class Decimator {
     }
   }
 
-  // Stamps and versions only rise, so a sum of two is unchanged only if both are.
+  // Stamps only rise, so a sum of two is unchanged only if both are.
   [[nodiscard]] bool stale(const BucketQueue::Entry& e) const {
     return stamp_[e.a] + stamp_[e.b] != e.stamps;
-  }
-  /// Whether the entry's position was found for the very triangles that are there now.
-  [[nodiscard]] bool solved(const BucketQueue::Entry& e) const {
-    return version_[e.a] + version_[e.b] == e.versions;
   }
 
   Stop contract_all() {
@@ -180,16 +176,12 @@ class Decimator {
       const std::uint64_t rejected_before = statistics_.rejected_distance;
       while (vertices_ > target && queue_.pop(e)) {
         if (stale(e)) continue;
-        if (solved(e)) {
-          candidate_ = {e.a, e.b, e.position, 0};
-        } else {
-          if (!evaluate(e.a, e.b)) continue;
-          if (!queue_.due(candidate_.cost)) {
-            e.versions = version_[e.a] + version_[e.b];
-            e.position = candidate_.position;
-            queue_.push(candidate_.cost, e);
-            continue;
-          }
+        // Evaluated anew each time it is popped: what is applied holds for the planes of this
+        // moment.
+        if (!evaluate(e.a, e.b)) continue;
+        if (!queue_.due(candidate_.cost)) {
+          queue_.push(candidate_.cost, e);
+          continue;
         }
         if (!admissible()) continue;
         apply();
@@ -205,7 +197,8 @@ class Decimator {
     return bounded ? Stop::ErrorBound : Stop::Exhausted;
   }
 
-  // ---- one candidate ------------------------------------------------------------------------------
+  // ---- one candidate
+  // ------------------------------------------------------------------------------
 
   struct StarTriangle {
     std::uint32_t index;
@@ -232,8 +225,8 @@ class Decimator {
     });
   }
 
-  /// The link condition: the neighbours common to a and b are the corners opposite their edge, and no
-  /// two triangles would come to coincide.
+  /// The link condition: the neighbours common to a and b are the corners opposite their edge, and
+  /// no two triangles would come to coincide.
   [[nodiscard]] bool keeps_topology() {
     const std::uint32_t apex = ++mark_value_;
     std::uint32_t apexes = 0;
@@ -282,28 +275,54 @@ class Decimator {
     const Quadric q = merged(a, b);
     if (border_[a] != 0 || border_[b] != 0) {
       candidate_.position = border_[a] != 0 ? position_[a] : position_[b];
+      if (!encloses()) return reject(statistics_.rejected_predicate);
     } else {
       if (options_.keep_convex) gather_rim();
-      // The second attempt keeps farther from the planes, for positions that rounding spoils.
-      bool placed = false;
+      // The second attempt keeps farther from the planes, for positions that rounding spoils; the
+      // end points themselves serve in flat places, where every plane of the star is the same one.
+      bool found = false, placed = false;
       for (const double care : {1.0, 16.0}) {
-        if (!place(q, care)) return reject(statistics_.rejected_no_position);
-        placed = encloses();
-        if (placed) break;
+        found = place(q, care);
+        placed = found && encloses();
+        if (placed || !found) break;
       }
-      if (!placed) return reject(statistics_.rejected_predicate);
+      if (!placed && !at_end_point()) {
+        return reject(found ? statistics_.rejected_predicate : statistics_.rejected_no_position);
+      }
     }
-    if ((border_[a] != 0 || border_[b] != 0) && !encloses())
-      return reject(statistics_.rejected_predicate);
     if (folds()) return reject(statistics_.rejected_fold);
-    candidate_.cost =
-        std::max(0.0, q(candidate_.position - origin_)) + length_cost(q, a, b);
+    candidate_.cost = std::max(0.0, q(candidate_.position - origin_)) + length_cost(q, a, b);
     return true;
+  }
+
+  /// Tries to contract to an end point of the edge, where it is.
+  bool at_end_point() {
+    for (const std::uint32_t v : {candidate_.a, candidate_.b}) {
+      candidate_.position = position_[v];
+      if (options_.precision == Precision::Float && !geom::is_float32(candidate_.position))
+        continue;
+      if (encloses() && !folds()) return true;
+    }
+    return false;
   }
 
   static bool reject(std::uint64_t& counter) {
     ++counter;
     return false;
+  }
+
+  /// The axis that a unit normal is, or -1.
+  static int axis(const Vec3& n) {
+    if ((n.x() == 0) + (n.y() == 0) + (n.z() == 0) != 2) return -1;
+    return n.x() != 0 ? 0 : n.y() != 0 ? 1 : 2;
+  }
+
+  /// Whether a rounded vertex can lie exactly on the triangle's plane: it is axis-aligned, at a
+  /// representable coordinate.
+  [[nodiscard]] bool can_lie_on(std::uint32_t t) const {
+    const int k = axis(normal_[t]);
+    return k >= 0 &&
+           (options_.precision == Precision::Double || geom::is_float32(position_[mesh_[t][0]][k]));
   }
 
   /// Minimises the quadric over the half-spaces of the star and rounds the result.
@@ -313,24 +332,24 @@ class Decimator {
     const Vec3 half = 0.5 * (pb - pa);
     const Vec3 middle = pa + half;
     // A rounded coordinate is off by half a spacing; what else is off is the minimiser's own error.
-    const Vec3 spread(spacing(middle.x(), options_.precision), spacing(middle.y(), options_.precision),
+    const Vec3 spread(spacing(middle.x(), options_.precision),
+                      spacing(middle.y(), options_.precision),
                       spacing(middle.z(), options_.precision));
     const double own_error = 1e-13 * half.lpNorm<1>();
     planes_.clear();
     if (constrained_) {
       for (const StarTriangle& s : star_) {
         const Vec3& n = normal_[s.index];
-        const bool along_axis =
-            (n.x() == 0) + (n.y() == 0) + (n.z() == 0) == 2;  // rounding cannot leave such a plane
         const double margin =
-            along_axis ? 0 : care * (0.51 * n.cwiseAbs().dot(spread) + own_error);
+            can_lie_on(s.index) ? 0 : care * (0.51 * n.cwiseAbs().dot(spread) + own_error);
         // Height of the middle over the plane, which passes through a or b.
         const double height = s.vanishes ? 0 : s.at_b ? -n.dot(half) : n.dot(half);
         planes_.push_back({sign_ * n, margin - sign_ * height});
       }
       for (const std::uint32_t t : rim_) {
         const Vec3& n = normal_[t];
-        const double margin = care * (0.51 * n.cwiseAbs().dot(spread) + own_error);
+        const double margin =
+            can_lie_on(t) ? 0 : care * (0.51 * n.cwiseAbs().dot(spread) + own_error);
         planes_.push_back({-n, margin + n.dot(middle - position_[mesh_[t][0]])});
       }
     }
@@ -348,9 +367,8 @@ class Decimator {
   /// Puts the position exactly on axis-aligned planes that it is on but for rounding.
   void snap_to_axis_planes(double extent) {
     for (const StarTriangle& s : star_) {
-      const Vec3& n = normal_[s.index];
-      if ((n.x() == 0) + (n.y() == 0) + (n.z() == 0) != 2) continue;
-      const int k = n.x() != 0 ? 0 : n.y() != 0 ? 1 : 2;
+      const int k = axis(normal_[s.index]);
+      if (k < 0) continue;
       const double c = position_[mesh_[s.index][0]][k];
       if (std::abs(candidate_.position[k] - c) <= 1e-9 * extent) candidate_.position[k] = c;
     }
@@ -363,8 +381,8 @@ class Decimator {
                           candidate_.position, &statistics_.exact_fallbacks);
   }
 
-  /// The exact test that the certificate rests on: the new vertex is on the right side of, or on, the
-  /// plane of every triangle of the star.
+  /// The exact test that the certificate rests on: the new vertex is on the right side of, or on,
+  /// the plane of every triangle of the star.
   [[nodiscard]] bool encloses() {
     if (!constrained_) return true;
     const Sign wrong = options_.direction == Direction::Inner ? Sign::Positive : Sign::Negative;
@@ -383,14 +401,16 @@ class Decimator {
       if (before.x() == 0 && before.y() == 0 && before.z() == 0) continue;
       const Triangle& t = mesh_[s.index];
       const Vec3& p = position_[t[(s.corner + 1) % 3]];
-      const Vec3 n = (p - candidate_.position).cross(position_[t[(s.corner + 2) % 3]] - candidate_.position);
+      const Vec3 n =
+          (p - candidate_.position).cross(position_[t[(s.corner + 2) % 3]] - candidate_.position);
       const double along = n.dot(before);
       if (!(along > 0) || along * along < 0.03 * n.squaredNorm()) return true;
     }
     return false;
   }
 
-  // ---- convexity ----------------------------------------------------------------------------------
+  // ---- convexity
+  // ----------------------------------------------------------------------------------
 
   /// Collects the triangles across the star's boundary: the new vertex must stay on or below them.
   void gather_rim() {
@@ -406,39 +426,38 @@ class Decimator {
     if (options_.direction == Direction::Inner) rim_.clear();
   }
 
-  /// Exact: every edge of the star that the candidate would leave behind is convex or flat.
+  /// Exact: no vertex would be above a new triangle. The other triangles keep all vertices below
+  /// them: outwards the new vertex was tested against those across the star's boundary (beyond them
+  /// none is visible from it), inwards it lies in the old, convex body.
   [[nodiscard]] bool stays_convex() {
-    const auto moved = [&](std::uint32_t v) -> const Vec3& {
-      return v == candidate_.a || v == candidate_.b ? candidate_.position : position_[v];
-    };
-    const auto in_star = [&](std::uint32_t t) {
-      return std::any_of(star_.begin(), star_.end(),
-                         [&](const StarTriangle& s) { return s.index == t; });
-    };
+    const bool inner = options_.direction == Direction::Inner;
+    bool solid = !inner;  // inwards the body might be flattened
     for (const StarTriangle& s : star_) {
       if (s.vanishes) continue;
       const Triangle& t = mesh_[s.index];
-      const std::uint32_t p = t[(s.corner + 1) % 3], q = t[(s.corner + 2) % 3];
+      const Vec3 &p = position_[t[(s.corner + 1) % 3]], &q = position_[t[(s.corner + 2) % 3]];
       const auto below = [&](std::uint32_t v) {
+        if (v == candidate_.a || v == candidate_.b) return true;
         ++statistics_.predicates;
-        return geom::orient3d(candidate_.position, position_[p], position_[q], moved(v),
-                              &statistics_.exact_fallbacks) != Sign::Positive;
+        const Sign height =
+            geom::orient3d(candidate_.position, p, q, position_[v], &statistics_.exact_fallbacks);
+        solid = solid || height == Sign::Negative;
+        return height != Sign::Positive;
       };
-      // Across the boundary edge (p, q), and the other boundary vertices of the star.
-      bool convex = true;
-      mesh_.for_each_triangle(q, [&](std::uint32_t u, std::uint32_t k) {
-        if (mesh_[u][(k + 1) % 3] == p && !in_star(u)) convex = convex && below(mesh_[u][(k + 2) % 3]);
-      });
-      for (const StarTriangle& r : star_) {
-        if (r.vanishes || !convex) continue;
-        convex = below(mesh_[r.index][(r.corner + 1) % 3]);
+      if (inner) {
+        for (std::uint32_t v = 0; v < position_.size(); ++v)
+          if (mesh_.used(v) && !below(v)) return false;
+        continue;
       }
-      if (!convex) return false;
+      for (const std::uint32_t r : rim_)
+        for (const std::uint32_t v : mesh_[r])
+          if (!below(v)) return false;
     }
-    return true;
+    return solid;
   }
 
-  // ---- acceptance ---------------------------------------------------------------------------------
+  // ---- acceptance
+  // ---------------------------------------------------------------------------------
 
   void describe_change() {
     removed_.clear();
@@ -455,8 +474,6 @@ class Decimator {
 
   /// The dearer tests, made only of candidates that are about to be applied.
   [[nodiscard]] bool admissible() {
-    if (!options_.keep_convex && !tolerance_) return true;
-    gather(candidate_.a, candidate_.b);
     if (options_.keep_convex && !stays_convex()) return reject(statistics_.rejected_predicate);
     if (!tolerance_) return true;
     describe_change();
@@ -474,7 +491,6 @@ class Decimator {
     border_[a] = border_[a] | border_[b];
     ++stamp_[a];
     ++stamp_[b];
-    ++version_[a];
     --vertices_;
     ++statistics_.contractions;
     mesh_.for_each_triangle(a, [&](std::uint32_t t, std::uint32_t) { update_normal(t); });
@@ -484,14 +500,14 @@ class Decimator {
         const std::uint32_t w = mesh_[t][(k + j) % 3];
         if (mark_[w] == seen) continue;
         mark_[w] = seen;
-        ++version_[w];
         push_edge(a, w);
       }
     });
-    if (options_.progress && statistics_.contractions % 4096 == 0) options_.progress(vertices_);
+    if (options_.progress && statistics_.contractions % 1024 == 0) options_.progress(vertices_);
   }
 
-  // ---- representable coordinates ------------------------------------------------------------------
+  // ---- representable coordinates
+  // ------------------------------------------------------------------
 
   /// Moves vertices that float32 cannot hold to certified positions that it can, or contracts them
   /// away. Returns how many could not be helped.
@@ -526,8 +542,8 @@ class Decimator {
       if (admissible()) best = candidate;
     }
     if (!best) return false;
-    candidate_ = *best;
-    ensure(admissible(), "an admitted contraction is no longer admissible");
+    ensure(evaluate(best->a, best->b) && admissible(),
+           "an admitted contraction is no longer admissible");
     apply();
     return true;
   }
@@ -535,8 +551,9 @@ class Decimator {
   bool move_to_representable(std::uint32_t v) {
     candidate_.a = candidate_.b = v;
     star_.clear();
-    mesh_.for_each_triangle(
-        v, [&](std::uint32_t t, std::uint32_t k) { star_.push_back({t, k, false, false}); });
+    mesh_.for_each_triangle(v, [&](std::uint32_t t, std::uint32_t k) {
+      star_.push_back({t, k, false, false});
+    });
     rim_.clear();
     if (options_.keep_convex) gather_rim();
     const Quadric nearest = point_quadric(local(v));
@@ -585,8 +602,7 @@ class Decimator {
   Connectivity mesh_;
   std::vector<Vec3> normal_;  // unit, or zero for triangles without area
   std::vector<Quadric> quadric_;
-  std::vector<std::uint32_t> stamp_;    // of a vertex: raised when it is moved or vanishes
-  std::vector<std::uint32_t> version_;  // of a vertex: raised when any of its triangles changes
+  std::vector<std::uint32_t> stamp_;  // of a vertex: raised when it is moved or vanishes
   std::vector<std::uint32_t> mark_;
   std::uint32_t mark_value_ = 0;
   std::size_t vertices_;
@@ -607,7 +623,8 @@ class Decimator {
 
 DecimateResult decimate(const geom::Prepared& input, const DecimateOptions& options) {
   if (!options.vertices && !options.epsilon)
-    throw Error(ErrorCode::InvalidArgument, "decimation needs a number of vertices or an error bound");
+    throw Error(ErrorCode::InvalidArgument,
+                "decimation needs a number of vertices or an error bound");
   if (options.epsilon && !(*options.epsilon > 0 && std::isfinite(*options.epsilon)))
     throw Error(ErrorCode::InvalidArgument, "the error bound must be a positive length");
   if (options.keep_convex && !geom::is_convex(input.mesh))

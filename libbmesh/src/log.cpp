@@ -80,7 +80,9 @@ class Reader {
   void require(std::size_t n) const {
     if (n > bytes_.size() - at_) truncated();
   }
-  [[noreturn]] void truncated() const { fail("is truncated at byte " + std::to_string(bytes_.size())); }
+  [[noreturn]] void truncated() const {
+    fail("is truncated at byte " + std::to_string(bytes_.size()));
+  }
 
   std::span<const char> bytes_;
   std::string name_;

@@ -109,7 +109,8 @@ class ClosestPoint {
       for (int l = k + 1; l < n; ++l) {
         const auto z = three(entering, old(k), old(l));
         if (!z) continue;
-        if (n < 3 || feasible(*z, {old(3 - k - l)})) return accept(*z, {entering, old(k), old(l)}, 3);
+        if (n < 3 || feasible(*z, {old(3 - k - l)}))
+          return accept(*z, {entering, old(k), old(l)}, 3);
       }
     }
     return false;

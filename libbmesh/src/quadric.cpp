@@ -30,7 +30,8 @@ Frame principal_frame(const Quadric& q, const Vec3& near) {
   return {eigen.eigenvectors(), near + eigen.eigenvectors() * step};
 }
 
-/// Some point in the region where both quadrics are small: where the sum's singular directions start.
+/// Some point in the region where both quadrics are small: where the sum's singular directions
+/// start.
 Vec3 anchor(const Quadric& a, const Quadric& b) {
   const Quadric q = a + b;
   const double t = q.trace();

@@ -41,15 +41,16 @@ Quadric point_quadric(const Vec3& p);
 Quadric plane_quadric(const Vec3& p, const Vec3& n);
 
 /// Q1 + Q2 with its constant lowered by max(Q1(m), Q2(m)), m the minimiser of the sum.
-/// [gaschler2016] §4.3.3, "Adjustment of the Constant". A cost, not an upper bound of min(Q1, Q2) as
-/// printed: Q1 = 4x², Q2 = (x−1)² at x = 0.21 gives 0.1605 < 0.1764.
+/// [gaschler2016] §4.3.3, "Adjustment of the Constant". A cost, not an upper bound of min(Q1, Q2)
+/// as printed: Q1 = 4x², Q2 = (x−1)² at x = 0.21 gives 0.1605 < 0.1764.
 Quadric add_adapted(const Quadric& a, const Quadric& b);
 
 /// Upper bound of Q1 and Q2 that is diagonal in the principal frame of Q1 + Q2.
 /// [gaschler2016] §4.3.3, "Adjustment of all Coefficients".
 ///
-/// As printed (Eq. 4.6) a row's diagonal entry is √(s_ii² + s_ij²), which is no bound: S = [[1,1],[1,1]]
-/// at (1,1) gives 4 > 2√2. Corrected: s_ii + Σ_{j≠i} |s_ij| (Gershgorin). Eq. 4.7 likewise needs |t|.
+/// As printed (Eq. 4.6) a row's diagonal entry is √(s_ii² + s_ij²), which is no bound: S =
+/// [[1,1],[1,1]] at (1,1) gives 4 > 2√2. Corrected: s_ii + Σ_{j≠i} |s_ij| (Gershgorin). Eq. 4.7
+/// likewise needs |t|.
 ///
 /// @param length  the free parameter l > 0 of Eq. 4.7: where the bound of linear terms is tight.
 Quadric add_diagonal(const Quadric& a, const Quadric& b, double length, bool as_printed);

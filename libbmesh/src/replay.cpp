@@ -81,7 +81,8 @@ class Replay {
     }
   }
 
-  /// Applies the log's turns and drops, checks the drops, and numbers the vertices left by first use.
+  /// Applies the log's turns and drops, checks the drops, and numbers the vertices left by first
+  /// use.
   bool interpret() {
     std::vector<char> dropped(input_.size(), 0);
     for (const std::uint32_t t : log_.turned) {
@@ -97,7 +98,8 @@ class Replay {
     for (std::size_t t = 0; t < input_.size(); ++t) {
       if (dropped[t] != 0) continue;
       Corners c = input_[t];
-      if (repeated(c)) return violated("input triangle " + std::to_string(t) + " has a repeated corner");
+      if (repeated(c))
+        return violated("input triangle " + std::to_string(t) + " has a repeated corner");
       for (std::uint32_t& v : c) {
         if (number[v] == ~0U) {
           number[v] = static_cast<std::uint32_t>(points_.size());
@@ -115,9 +117,9 @@ class Replay {
 
   void require_triangle(std::uint32_t t) const {
     if (t >= input_.size())
-      throw Error(ErrorCode::InvalidInput,
-                  "the log refers to input triangle " + std::to_string(t) + ", but there are only " +
-                      std::to_string(input_.size()));
+      throw Error(ErrorCode::InvalidInput, "the log refers to input triangle " + std::to_string(t) +
+                                               ", but there are only " +
+                                               std::to_string(input_.size()));
   }
 
   /// Dropped triangles have repeated corners, or their sum is a closed chain made of opposite pairs
@@ -132,7 +134,8 @@ class Replay {
       const std::int64_t copies = n - (opposite == gone.end() ? 0 : opposite->second);
       if (copies <= 0) continue;
       if (!kept.contains(c))
-        return violated("a triangle is dropped that neither cancels nor is a copy of one that stays");
+        return violated(
+            "a triangle is dropped that neither cancels nor is a copy of one that stays");
       for (std::int64_t i = 0; i < copies; ++i) add_edges(c, balance);
     }
     for (const auto& [edge, surplus] : balance)
@@ -155,11 +158,13 @@ class Replay {
   bool step(std::size_t i) {
     const Step& s = log_.steps[i];
     if (s.kept >= points_.size() || s.gone >= points_.size())
-      throw Error(ErrorCode::InvalidInput, at_step(i) + " of the log refers to a vertex that is not there");
+      throw Error(ErrorCode::InvalidInput,
+                  at_step(i) + " of the log refers to a vertex that is not there");
     if (!s.position.allFinite()) return violated(at_step(i) + " moves a vertex to no finite place");
     const Point to(s.position.x(), s.position.y(), s.position.z());
     for (const std::uint32_t v : {s.kept, s.gone})
-      if (border_[v] != 0 && points_[v] != to) return violated(at_step(i) + " moves a border vertex");
+      if (border_[v] != 0 && points_[v] != to)
+        return violated(at_step(i) + " moves a border vertex");
 
     std::vector<std::uint32_t> star = around_[s.kept];
     if (s.gone != s.kept) star.insert(star.end(), around_[s.gone].begin(), around_[s.gone].end());
@@ -168,8 +173,7 @@ class Replay {
     if (star.empty()) return violated(at_step(i) + " moves a vertex without triangles");
 
     if (log_.direction != Direction::Any) {
-      const CGAL::Sign wrong =
-          log_.direction == Direction::Outer ? CGAL::NEGATIVE : CGAL::POSITIVE;
+      const CGAL::Sign wrong = log_.direction == Direction::Outer ? CGAL::NEGATIVE : CGAL::POSITIVE;
       for (const std::uint32_t t : star) {
         const Corners& c = triangles_[t];
         ++report_.predicates;
@@ -224,7 +228,8 @@ class Replay {
     }
     std::sort(mine.begin(), mine.end());
     std::sort(theirs.begin(), theirs.end());
-    if (mine != theirs) return violated("the triangles that the log leads to are not those of the result");
+    if (mine != theirs)
+      return violated("the triangles that the log leads to are not those of the result");
     return true;
   }
 

@@ -22,7 +22,9 @@ Tolerance::Tolerance(const geom::Mesh& original, double epsilon)
     const geom::Triangle& tri = original.triangles[t];
     head_[t] = static_cast<std::uint32_t>(pieces_.size());
     pieces_.push_back(
-        {{original.vertices[tri[0]], original.vertices[tri[1]], original.vertices[tri[2]]}, 0, kNone});
+        {{original.vertices[tri[0]], original.vertices[tri[1]], original.vertices[tri[2]]},
+         0,
+         kNone});
   }
 }
 
@@ -58,7 +60,8 @@ bool Tolerance::place(const geom::ConvexPolygon& piece, std::uint32_t cuts,
     return true;
   }
   if (cuts_left == 0 || cuts >= kMaxTotalCuts || --pieces_left_ < 0) return false;
-  // Cut along the prism of the new triangle nearest to the middle; if that is too far, no cut helps.
+  // Cut along the prism of the new triangle nearest to the middle; if that is too far, no cut
+  // helps.
   const Vec3 center = piece.centroid();
   std::size_t nearest = 0;
   double distance = std::numeric_limits<double>::infinity();

@@ -13,11 +13,12 @@ using geom::Vec3;
 
 /// Carried certificate that a changing mesh and its original stay within ε of each other.
 ///
-/// Towards the original: a new triangle is cut into pieces until the corners of each piece are within
-/// ε of one and the same original triangle; the distance to one triangle is convex, so the whole piece
-/// is. From the original: every original triangle is covered by pieces, each carried by a current
-/// triangle within ε of its corners. A change is admitted only if all pieces carried by the triangles
-/// it removes, cut further where need be, find a new carrier. docs/algorithms/bounding-mesh.md, "The error bound".
+/// Towards the original: a new triangle is cut into pieces until the corners of each piece are
+/// within ε of one and the same original triangle; the distance to one triangle is convex, so the
+/// whole piece is. From the original: every original triangle is covered by pieces, each carried by
+/// a current triangle within ε of its corners. A change is admitted only if all pieces carried by
+/// the triangles it removes, cut further where need be, find a new carrier.
+/// docs/algorithms/bounding-mesh.md, "The error bound".
 class Tolerance {
  public:
   struct NewTriangle {
@@ -37,7 +38,7 @@ class Tolerance {
 
  private:
   static constexpr std::uint32_t kNone = ~0U;
-  static constexpr int kMaxCuts = 9;      ///< of one piece in one change
+  static constexpr int kMaxCuts = 9;       ///< of one piece in one change
   static constexpr int kMaxPieces = 2000;  ///< tried in one change
 
   struct Piece {
@@ -62,7 +63,7 @@ class Tolerance {
   std::vector<Piece> pieces_;
   std::vector<std::uint32_t> head_;  // per current triangle
   std::uint32_t free_ = kNone;
-  std::vector<Placed> placed_;       // of the change under consideration
+  std::vector<Placed> placed_;  // of the change under consideration
   std::size_t last_carrier_ = 0;
   int pieces_left_ = 0;
 };

@@ -13,8 +13,8 @@ namespace {
 // below kRounding relatively in norms and quotients.
 constexpr double kRounding = 5e-15;
 
-/// Weights (s, t) of a point a + s·(b−a) + t·(c−a) of the triangle that is closest to the origin, up
-/// to rounding; s, t ≥ 0 and s + t ≤ 1 up to 2^-52.
+/// Weights (s, t) of a point a + s·(b−a) + t·(c−a) of the triangle that is closest to the origin,
+/// up to rounding; s, t ≥ 0 and s + t ≤ 1 up to 2^-52.
 std::pair<double, double> closest_weights(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 ab = b - a, ac = c - a;
   const double d1 = -ab.dot(a), d2 = -ac.dot(a);
@@ -39,20 +39,15 @@ std::pair<double, double> closest_weights(const Vec3& a, const Vec3& b, const Ve
   return {s, std::clamp(vc / sum, 0.0, 1.0 - s)};
 }
 
-/// Point of the segment (a, b) closest to the origin.
-Vec3 closest_on_segment(const Vec3& a, const Vec3& b) {
-  const Vec3 ab = b - a;
-  const double length = ab.squaredNorm();
-  if (!(length > 0)) return a;
-  return a + std::clamp(-a.dot(ab) / length, 0.0, 1.0) * ab;
-}
-
-/// Bounds that the point q of the triangle gives.
-DistanceBounds bounds_from(const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c, double slack) {
-  const double norm = q.norm();
-  if (!(norm > 0)) return {0, slack};
-  const double support = std::min({q.dot(a), q.dot(b), q.dot(c)}) / norm;
-  return {std::max(0.0, support * (1 - kRounding) - slack), norm * (1 + kRounding) + slack};
+/// Bounds that a point q of the triangle gives, and a direction that the triangle is seen in: no
+/// point of it is nearer than its nearest corner along that direction.
+DistanceBounds bounds_from(const Vec3& q, const Vec3& direction, const Vec3& a, const Vec3& b,
+                           const Vec3& c, double slack) {
+  const double upper = q.norm() * (1 + kRounding) + slack;
+  const double length = direction.norm();
+  if (!(length > 0)) return {0, upper};
+  const double support = std::min({direction.dot(a), direction.dot(b), direction.dot(c)}) / length;
+  return {std::max(0.0, support * (1 - kRounding) - slack), upper};
 }
 
 /// Bounds for the triangle (a, b, c) given relative to the query point.
@@ -60,13 +55,34 @@ DistanceBounds bounds_at_origin(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double slack =
       kRounding * a.cwiseAbs().cwiseMax(b.cwiseAbs()).cwiseMax(c.cwiseAbs()).maxCoeff();
   const auto [s, t] = closest_weights(a, b, c);
-  DistanceBounds best = bounds_from(a + s * (b - a) + t * (c - a), a, b, c, slack);
+  const Vec3 ab = b - a, ac = c - a;
+  const Vec3 nearest = a + s * ab + t * ac;
+  DistanceBounds best = bounds_from(nearest, nearest, a, b, c, slack);
   if (best.upper - best.lower <= 4 * slack + 1e-12 * best.upper) return best;
-  // A sliver, whose plane is ill-defined: its edges are not, and no point of it is far from them.
-  for (const Vec3& q : {closest_on_segment(a, b), closest_on_segment(b, c), closest_on_segment(c, a)}) {
-    const DistanceBounds d = bounds_from(q, a, b, c, slack);
+  // A sliver, or a point very close: the weights come from differences of squares, and the
+  // direction to the nearest point from a difference of neighbours. Normals and edges lose fewer
+  // digits.
+  const auto improve = [&](const Vec3& q, const Vec3& direction) {
+    const DistanceBounds d = bounds_from(q, direction, a, b, c, slack);
     best.lower = std::max(best.lower, d.lower);
     best.upper = std::min(best.upper, d.upper);
+  };
+  const auto improve_on_segment = [&](const Vec3& from, const Vec3& to) {
+    const Vec3 edge = to - from;
+    const double length = edge.squaredNorm();
+    if (!(length > 0)) return;
+    const Vec3 q = from + std::clamp(-from.dot(edge) / length, 0.0, 1.0) * edge;
+    improve(q, q);
+    improve(q, q - (q.dot(edge) / length) * edge);
+  };
+  improve_on_segment(a, b);
+  improve_on_segment(b, c);
+  improve_on_segment(c, a);
+  const Vec3 n = ab.cross(ac);
+  const double square = n.squaredNorm();
+  if (square > 0) {
+    const double u = n.dot(ac.cross(a)) / square, v = n.dot(a.cross(ab)) / square;
+    if (u >= 0 && v >= 0 && u + v <= 1) improve(a + u * ab + v * ac, n.dot(a) < 0 ? Vec3(-n) : n);
   }
   return best;
 }
@@ -189,7 +205,8 @@ bool DistanceQuery::all_within(const ConvexPolygon& polygon, double radius, int 
     const auto& [a, b, c] = corners(at.triangle);
     const PrismCut pieces = cut_by_prism(e.polygon, a, b, c, e.depth % 3 == 2);
     if (size + pieces.count > kStack) return false;
-    for (int i = 0; i < pieces.count; ++i) stack[size++] = {pieces.piece[i], at.triangle, e.depth + 1};
+    for (int i = 0; i < pieces.count; ++i)
+      stack[size++] = {pieces.piece[i], at.triangle, e.depth + 1};
   }
   return true;
 }

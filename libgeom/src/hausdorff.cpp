@@ -14,7 +14,8 @@ namespace {
 struct Piece {
   ConvexPolygon polygon;
   double upper = std::numeric_limits<double>::infinity();
-  std::uint32_t nearest = DistanceQuery::kNone;
+  std::uint32_t nearest = DistanceQuery::kNone;   ///< to the centroid
+  std::uint32_t at_worst = DistanceQuery::kNone;  ///< to the corner farthest from that
 };
 
 /// What one round finds out about a piece.
@@ -46,7 +47,8 @@ class BranchAndBound {
         const Triangle& tri = a_.triangles[t];
         chunk.push_back({{a_.vertices[tri[0]], a_.vertices[tri[1]], a_.vertices[tri[2]]},
                          std::numeric_limits<double>::infinity(),
-                         nearest_to_vertex_[tri[0]]});
+                         nearest_to_vertex_[tri[0]],
+                         DistanceQuery::kNone});
       }
       evaluate(chunk);
       keep_unsettled(chunk);
@@ -58,13 +60,13 @@ class BranchAndBound {
       if (round > kMaxRounds || open.size() > kMaxPieces)
         throw Error(ErrorCode::LimitReached,
                     "the distance could not be bounded to the wished gap; allow a larger gap");
-      open = cut_all(open, round % 3 == 0);
+      open = cut_all(open, round);
       evaluate(open);
       keep_unsettled(open);
     }
     // What cuts may have left out lies this close to what they covered.
-    result_.max_upper = std::max(settled_ + round * ConvexPolygon::kCutError * magnitude_,
-                                 result_.max_lower);
+    result_.max_upper =
+        std::max(settled_ + round * ConvexPolygon::kCutError * magnitude_, result_.max_lower);
     return result_;
   }
 
@@ -121,7 +123,7 @@ class BranchAndBound {
   Finding bound(Piece& piece) const {
     const Vec3 center = piece.polygon.centroid();
     const auto at_center = b_.nearest(center, piece.nearest);
-    piece.nearest = at_center.triangle;
+    piece.nearest = piece.at_worst = at_center.triangle;
     Finding finding{at_center.lower, center};
     const auto [worst, where] = worst_corner(piece.polygon, at_center.triangle);
     piece.upper = std::min(piece.upper, worst);
@@ -130,6 +132,7 @@ class BranchAndBound {
     const Vec3& corner = piece.polygon.corner[where];
     const auto at_corner = b_.nearest(corner, at_center.triangle);
     if (at_corner.lower > finding.lower) finding = {at_corner.lower, corner};
+    piece.at_worst = at_corner.triangle;
     if (at_corner.triangle != at_center.triangle)
       piece.upper = std::min(piece.upper, worst_corner(piece.polygon, at_corner.triangle).first);
     double radius = 0;
@@ -160,13 +163,45 @@ class BranchAndBound {
     });
   }
 
-  std::vector<Piece> cut_all(const std::vector<Piece>& pieces, bool halving) const {
+  /// Cuts where the planes of the two triangles that matter are equally far: on a ridge of the
+  /// distance, which halving would only approach.
+  bool cut_by_bisector(const Piece& piece, PrismCut& out) const {
+    if (piece.at_worst == piece.nearest) return false;
+    const Vec3 center = piece.polygon.centroid();
+    const auto plane = [&](std::uint32_t triangle, Vec3& n, double& height) {
+      const auto& [a, b, c] = b_.corners(triangle);
+      n = (b - a).cross(c - a);
+      const double length = n.norm();
+      if (!(length > 0)) return false;
+      n /= length;
+      height = n.dot(center - a);
+      if (height < 0) {
+        n = -n;
+        height = -height;
+      }
+      return true;
+    };
+    Vec3 n1, n2;
+    double h1 = 0, h2 = 0;
+    if (!plane(piece.nearest, n1, h1) || !plane(piece.at_worst, n2, h2)) return false;
+    const Vec3 n = n1 - n2;
+    const double square = n.squaredNorm();
+    if (square < 1e-20) return false;
+    out.count = 2;
+    return cut(piece.polygon, center - ((h1 - h2) / square) * n, n, out.piece[0], out.piece[1]);
+  }
+
+  std::vector<Piece> cut_all(const std::vector<Piece>& pieces, int round) const {
     std::vector<Piece> out;
     out.reserve(3 * pieces.size());
     for (const Piece& p : pieces) {
-      const auto& [a, b, c] = b_.corners(p.nearest);
-      const PrismCut cuts = cut_by_prism(p.polygon, a, b, c, halving);
-      for (int i = 0; i < cuts.count; ++i) out.push_back({cuts.piece[i], p.upper, p.nearest});
+      PrismCut cuts;
+      if (round % 4 == 0 || round % 2 == 1 || !cut_by_bisector(p, cuts)) {
+        const auto& [a, b, c] = b_.corners(p.nearest);
+        cuts = cut_by_prism(p.polygon, a, b, c, round % 4 == 0);
+      }
+      for (int i = 0; i < cuts.count; ++i)
+        out.push_back({cuts.piece[i], p.upper, p.nearest, DistanceQuery::kNone});
     }
     return out;
   }

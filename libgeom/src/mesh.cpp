@@ -16,7 +16,8 @@ double signed_volume(const Mesh& mesh) {
   const Vec3 o = box.center();
   double six_volumes = 0.0;
   for (const Triangle& t : mesh.triangles) {
-    const Vec3 a = mesh.vertices[t[0]] - o, b = mesh.vertices[t[1]] - o, c = mesh.vertices[t[2]] - o;
+    const Vec3 a = mesh.vertices[t[0]] - o, b = mesh.vertices[t[1]] - o,
+               c = mesh.vertices[t[2]] - o;
     six_volumes += a.dot(b.cross(c));
   }
   return six_volumes / 6.0;
@@ -35,9 +36,9 @@ void require_valid(const Mesh& mesh) {
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     for (const std::uint32_t v : mesh.triangles[i]) {
       if (v >= mesh.vertices.size())
-        throw Error(ErrorCode::InvalidInput, "triangle " + std::to_string(i) + " refers to vertex " +
-                                                 std::to_string(v) + ", but there are only " +
-                                                 std::to_string(mesh.vertices.size()));
+        throw Error(ErrorCode::InvalidInput,
+                    "triangle " + std::to_string(i) + " refers to vertex " + std::to_string(v) +
+                        ", but there are only " + std::to_string(mesh.vertices.size()));
       if (!mesh.vertices[v].allFinite())
         throw Error(ErrorCode::InvalidInput, "vertex " + std::to_string(v) + " of triangle " +
                                                  std::to_string(i) +

@@ -7,8 +7,9 @@
 namespace kaboum::geom::detail {
 namespace {
 
-// Exact arithmetic on doubles, without CGAL's interval stage: the callers have filtered already, and
-// what is left is mostly exactly zero. Mpzf (dyadic numbers) is ten times faster than rationals.
+// Exact arithmetic on doubles, without CGAL's interval stage: the callers have filtered already,
+// and what is left is mostly exactly zero. Mpzf (dyadic numbers) is ten times faster than
+// rationals.
 #ifdef CGAL_HAS_MPZF
 using Exact = CGAL::Simple_cartesian<CGAL::Mpzf>;
 #else
@@ -25,8 +26,8 @@ Sign orient3d_exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) 
 }
 
 Sign orient2d_exact(double ax, double ay, double bx, double by, double cx, double cy) {
-  return to_sign(CGAL::orientation(Exact::Point_2(ax, ay), Exact::Point_2(bx, by),
-                                   Exact::Point_2(cx, cy)));
+  return to_sign(
+      CGAL::orientation(Exact::Point_2(ax, ay), Exact::Point_2(bx, by), Exact::Point_2(cx, cy)));
 }
 
 }  // namespace kaboum::geom::detail

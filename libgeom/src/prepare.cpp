@@ -90,7 +90,8 @@ class Preparation {
   }
 
   static bool balanced(std::span<const EdgeUse> uses) {
-    const auto forward = std::count_if(uses.begin(), uses.end(), [](const EdgeUse& e) { return e.forward; });
+    const auto forward =
+        std::count_if(uses.begin(), uses.end(), [](const EdgeUse& e) { return e.forward; });
     return 2 * static_cast<std::size_t>(forward) == uses.size();
   }
 
@@ -98,7 +99,8 @@ class Preparation {
   /// orientation that most of their area has already.
   void agree_with_neighbours() {
     std::size_t inconsistent = 0;
-    for_each_edge([&](std::span<const EdgeUse> e) { inconsistent += e.size() == 2 && !balanced(e); });
+    for_each_edge(
+        [&](std::span<const EdgeUse> e) { inconsistent += e.size() == 2 && !balanced(e); });
     if (inconsistent == 0) return;
 
     const std::size_t n = mesh().triangles.size();
@@ -125,7 +127,8 @@ class Preparation {
         const std::uint32_t t = patch[i];
         const Triangle& tri = mesh().triangles[t];
         const Vec3& a = mesh().vertices[tri[0]];
-        balance += sense[t] * (mesh().vertices[tri[1]] - a).cross(mesh().vertices[tri[2]] - a).norm();
+        balance +=
+            sense[t] * (mesh().vertices[tri[1]] - a).cross(mesh().vertices[tri[2]] - a).norm();
         for (const Neighbour& nb : across[t]) {
           if (nb.triangle == ~0U) continue;
           const auto wished = static_cast<std::int8_t>(nb.agrees ? sense[t] : -sense[t]);
@@ -169,7 +172,8 @@ class Preparation {
           const auto opposite = [&](const EdgeUse& u) {
             return mesh().triangles[u.triangle][(u.corner + 2) % 3];
           };
-          if (opposite(e[i]) == opposite(e[j])) candidate[e[i].triangle] = candidate[e[j].triangle] = 1;
+          if (opposite(e[i]) == opposite(e[j]))
+            candidate[e[i].triangle] = candidate[e[j].triangle] = 1;
         }
     });
     for (std::uint32_t t = 0; t < candidate.size(); ++t) {
@@ -187,7 +191,8 @@ class Preparation {
         side[even(mesh().triangles[keyed[j].second], keyed[i].first)].push_back(keyed[j].second);
       const std::size_t opposite = std::min(side[0].size(), side[1].size());
       for (const auto& s : side) {
-        found.pairs.insert(found.pairs.end(), s.begin(), s.begin() + static_cast<std::ptrdiff_t>(opposite));
+        found.pairs.insert(found.pairs.end(), s.begin(),
+                           s.begin() + static_cast<std::ptrdiff_t>(opposite));
         for (std::size_t k = opposite + 1; k < s.size(); ++k) found.copies.push_back(s[k]);
       }
       i = j;
@@ -207,8 +212,8 @@ class Preparation {
                   "nothing is left once opposite coincident faces cancel; the input has no volume");
   }
 
-  /// Opposite pairs add nothing to the chain. Inside the rest's solid they are walls between touching
-  /// bodies; elsewhere they are sheets, which no solid protects.
+  /// Opposite pairs add nothing to the chain. Inside the rest's solid they are walls between
+  /// touching bodies; elsewhere they are sheets, which no solid protects.
   void drop_pairs(const std::vector<std::uint32_t>& pairs, std::vector<char>& keep) {
     if (pairs.empty()) return;
     std::vector<std::int8_t> weight(mesh().triangles.size(), 1);
@@ -223,13 +228,14 @@ class Preparation {
       if (!w || *w <= 0) sheets.push_back(t);
     }
     if (!sheets.empty() && !options_.drop_sheets)
-      throw Error(ErrorCode::InvalidInput,
-                  count_of(sheets.size(), "face lies", "faces lie") +
-                      " back to back with an opposite copy and no volume between (sheets; the first is "
-                      "input triangle " +
-                      std::to_string(out_.source[*std::min_element(sheets.begin(), sheets.end())]) +
-                      "); give the sheets a thickness, or drop them with --drop-sheets: they are then "
-                      "not enclosed");
+      throw Error(
+          ErrorCode::InvalidInput,
+          count_of(sheets.size(), "face lies", "faces lie") +
+              " back to back with an opposite copy and no volume between (sheets; the first is "
+              "input triangle " +
+              std::to_string(out_.source[*std::min_element(sheets.begin(), sheets.end())]) +
+              "); give the sheets a thickness, or drop them with --drop-sheets: they are then "
+              "not enclosed");
     for (const std::uint32_t t : pairs) keep[t] = 0;
     out_.dropped_sheets = sheets.size();
     out_.cancelled_walls = pairs.size() - sheets.size();
@@ -382,9 +388,8 @@ class Preparation {
       if (sense[label[t]] < 0) turn(t);
     if (out_.turned_components == 0) return;
     edges_ = edge_uses(mesh());
-    out_.notes.push_back(
-        count_of(out_.turned_components, "component was", "components were") +
-        " inside out and turned, with what is nested inside");
+    out_.notes.push_back(count_of(out_.turned_components, "component was", "components were") +
+                         " inside out and turned, with what is nested inside");
   }
 
   void find_border() {
@@ -398,7 +403,8 @@ class Preparation {
     out_.closed = open == 0;
     if (out_.closed) return;
     if (options_.require_closed)
-      throw Error(ErrorCode::InvalidInput, "the mesh is open at " + count_of(open, "edge", "edges") +
+      throw Error(ErrorCode::InvalidInput, "the mesh is open at " +
+                                               count_of(open, "edge", "edges") +
                                                " and bounds no solid; close it, or leave out "
                                                "--require-closed to keep its border in place");
     out_.notes.push_back("the mesh is open at " + count_of(open, "edge", "edges") +

@@ -144,10 +144,10 @@ TopologyReport analyse(const Mesh& mesh) {
   const std::vector<EdgeUse> uses = edge_uses(mesh);
   for_each_edge(uses, [&](std::size_t first, std::size_t last) {
     const auto n = last - first;
-    const auto forward = static_cast<std::size_t>(
-        std::count_if(uses.begin() + static_cast<std::ptrdiff_t>(first),
-                      uses.begin() + static_cast<std::ptrdiff_t>(last),
-                      [](const EdgeUse& e) { return e.forward; }));
+    const auto forward =
+        static_cast<std::size_t>(std::count_if(uses.begin() + static_cast<std::ptrdiff_t>(first),
+                                               uses.begin() + static_cast<std::ptrdiff_t>(last),
+                                               [](const EdgeUse& e) { return e.forward; }));
     ++report.edges;
     report.open_edges += n == 1;
     report.nonmanifold_edges += n > 2;
@@ -160,7 +160,8 @@ TopologyReport analyse(const Mesh& mesh) {
   keys.reserve(mesh.triangles.size());
   for (const Triangle& t : mesh.triangles) keys.push_back(sorted(t));
   std::sort(keys.begin(), keys.end());
-  for (std::size_t i = 1; i < keys.size(); ++i) report.duplicate_triangles += keys[i] == keys[i - 1];
+  for (std::size_t i = 1; i < keys.size(); ++i)
+    report.duplicate_triangles += keys[i] == keys[i - 1];
   return report;
 }
 

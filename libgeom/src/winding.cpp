@@ -15,8 +15,8 @@ int perturbed_side(const Vec3& a, const Vec3& b, const Vec3& p) {
   return 0;
 }
 
-/// Exact test whether p, known to lie in the triangle's plane, lies in the triangle: it must in each
-/// of the three axis projections that do not collapse the triangle.
+/// Exact test whether p, known to lie in the triangle's plane, lies in the triangle: it must in
+/// each of the three axis projections that do not collapse the triangle.
 bool on_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
   bool projected = false;
   for (int axis = 0; axis < 3; ++axis) {
@@ -56,8 +56,8 @@ std::optional<int> WindingNumber::weighted(const Vec3& p,
   bool on_surface = false;
   bvh_.traverse(
       [&](const Box3& box) {
-        return !on_surface && p.z() <= box.max.z() && p.x() >= box.min.x() && p.x() <= box.max.x() &&
-               p.y() >= box.min.y() && p.y() <= box.max.y();
+        return !on_surface && p.z() <= box.max.z() && p.x() >= box.min.x() &&
+               p.x() <= box.max.x() && p.y() >= box.min.y() && p.y() <= box.max.y();
       },
       [&](std::uint32_t index) {
         const int factor = weight.empty() ? 1 : weight[index];

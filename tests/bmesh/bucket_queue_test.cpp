@@ -8,7 +8,7 @@ namespace {
 
 using kaboum::bmesh::BucketQueue;
 
-BucketQueue::Entry entry(std::uint32_t a) { return {a, a + 1, 0, BucketQueue::kUnsolved, {}}; }
+BucketQueue::Entry entry(std::uint32_t a) { return {a, a + 1, 0}; }
 
 TEST(BucketQueue, PopsInOrderWithinOnePercent) {
   BucketQueue queue;

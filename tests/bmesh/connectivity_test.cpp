@@ -6,8 +6,8 @@
 #include <random>
 #include <set>
 
-#include "support/families.h"
 #include <kaboum/geom/topology.h>
+#include "support/families.h"
 
 namespace {
 

@@ -58,7 +58,8 @@ struct Exhaustive {
     std::optional<Vec3> best;
     const auto consider = [&](const std::vector<std::size_t>& active) {
       const auto y = with_active(active);
-      if (y && violation(*y) <= tolerance * (1 + y->norm()) && (!best || cost(*y) < cost(*best))) best = y;
+      if (y && violation(*y) <= tolerance * (1 + y->norm()) && (!best || cost(*y) < cost(*best)))
+        best = y;
     };
     consider({});
     const std::size_t n = planes.size();
@@ -115,11 +116,13 @@ TEST(Placement, EqualsExhaustiveEnumeration) {
     const double scale = 1 + y->squaredNorm();
     ASSERT_NEAR(reference.cost(*y), reference.cost(*expected), 1e-7 * scale) << "case " << i;
     int tight = 0;
-    for (const HalfSpace& h : p.planes) tight += std::abs(h.normal.dot(*y) - h.offset) < 1e-9 * (1 + y->norm());
+    for (const HalfSpace& h : p.planes)
+      tight += std::abs(h.normal.dot(*y) - h.offset) < 1e-9 * (1 + y->norm());
     ++active[static_cast<std::size_t>(std::min(tight, 3))];
   }
   EXPECT_GT(solved, 2500);
-  for (int m = 0; m < 4; ++m) EXPECT_GT(active[static_cast<std::size_t>(m)], 10) << m << " active planes";
+  for (int m = 0; m < 4; ++m)
+    EXPECT_GT(active[static_cast<std::size_t>(m)], 10) << m << " active planes";
 }
 
 TEST(Placement, ReportsInfeasibility) {

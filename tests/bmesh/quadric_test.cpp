@@ -16,7 +16,8 @@ Vec3 random_vector(std::mt19937_64& random, double scale = 1) {
 TEST(Quadric, MeasuresSquaredDistances) {
   std::mt19937_64 random(21);
   for (int i = 0; i < 100; ++i) {
-    const Vec3 p = random_vector(random), x = random_vector(random), n = random_vector(random).normalized();
+    const Vec3 p = random_vector(random), x = random_vector(random),
+               n = random_vector(random).normalized();
     EXPECT_NEAR(point_quadric(p)(x), (x - p).squaredNorm(), 1e-12);
     EXPECT_NEAR(plane_quadric(p, n)(x), std::pow(n.dot(x - p), 2), 1e-12);
     const Quadric sum = point_quadric(p) + plane_quadric(p, n);
@@ -66,11 +67,13 @@ TEST(AddDiagonal, BoundsBothWhenCorrected) {
 
 TEST(AddDiagonal, DoesNotDependOnTheFrame) {
   std::mt19937_64 random(23);
-  const Vec3 p = random_vector(random), n = random_vector(random).normalized(), m = random_vector(random).normalized();
+  const Vec3 p = random_vector(random), n = random_vector(random).normalized(),
+             m = random_vector(random).normalized();
   const Eigen::AngleAxisd turn(0.7, Vec3(1, 2, 3).normalized());
   const Vec3 shift(1, -2, 0.5);
   const auto moved = [&](const Vec3& x) { return Vec3(turn * x + shift); };
-  const Quadric q = add_diagonal(plane_quadric(p, n) + point_quadric(p), plane_quadric(-p, m), 0.3, false);
+  const Quadric q =
+      add_diagonal(plane_quadric(p, n) + point_quadric(p), plane_quadric(-p, m), 0.3, false);
   const Quadric r = add_diagonal(plane_quadric(moved(p), turn * n) + point_quadric(moved(p)),
                                  plane_quadric(moved(-p), turn * m), 0.3, false);
   for (int i = 0; i < 50; ++i) {

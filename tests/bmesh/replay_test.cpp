@@ -85,7 +85,8 @@ TEST(Replay, RefutesAnotherResult) {
   std::swap(turned.triangles[0][0], turned.triangles[0][1]);
   EXPECT_FALSE(replay(r.input, r.log, turned).verified);
   geom::Mesh rotated = r.result;
-  std::rotate(rotated.triangles[0].begin(), rotated.triangles[0].begin() + 1, rotated.triangles[0].end());
+  std::rotate(rotated.triangles[0].begin(), rotated.triangles[0].begin() + 1,
+              rotated.triangles[0].end());
   std::reverse(rotated.triangles.begin(), rotated.triangles.end());
   EXPECT_TRUE(replay(r.input, r.log, rotated).verified) << "order does not matter";
 }
@@ -116,7 +117,8 @@ TEST(Replay, RefutesMovesOfTheBorder) {
     for (std::uint32_t v = 0; v < p.border.size(); ++v) {
       if (p.border[v] == 0) continue;
       Log mutant = r.log;
-      mutant.steps.insert(mutant.steps.begin(), {v, v, p.mesh.vertices[v] + geom::Vec3(0, 0, 1e-9)});
+      mutant.steps.insert(mutant.steps.begin(),
+                          {v, v, p.mesh.vertices[v] + geom::Vec3(0, 0, 1e-9)});
       EXPECT_FALSE(replay(r.input, mutant, r.result).verified) << f.name;
       break;
     }

@@ -15,7 +15,10 @@ const Mesh kSquare{{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, {0, 0, 0}},
 std::vector<Tolerance::NewTriangle> raised(double z) {
   const auto& v = kSquare.vertices;
   const Vec3 top(0, 0, z);
-  return {{0, {v[0], v[1], top}}, {1, {v[1], v[2], top}}, {2, {v[2], v[3], top}}, {3, {v[3], v[0], top}}};
+  return {{0, {v[0], v[1], top}},
+          {1, {v[1], v[2], top}},
+          {2, {v[2], v[3], top}},
+          {3, {v[3], v[0], top}}};
 }
 
 TEST(Tolerance, AdmitsUpToEpsilonAndNoFurther) {
@@ -40,7 +43,8 @@ TEST(Tolerance, DoesNotDrift) {
 TEST(Tolerance, AlsoWatchesTheOriginal) {
   Tolerance tolerance(kSquare, 0.1);
   const std::vector<std::uint32_t> removed{0, 1, 2, 3};
-  const std::vector<Tolerance::NewTriangle> corner{{0, {Vec3(-1, -1, 0), Vec3(-0.8, -1, 0), Vec3(-1, -0.8, 0)}}};
+  const std::vector<Tolerance::NewTriangle> corner{
+      {0, {Vec3(-1, -1, 0), Vec3(-0.8, -1, 0), Vec3(-1, -0.8, 0)}}};
   EXPECT_FALSE(tolerance.admits(removed, corner));
   EXPECT_FALSE(tolerance.admits(removed, {}));
 }
@@ -50,7 +54,8 @@ TEST(Tolerance, SplitsPiecesBetweenCarriers) {
   Tolerance tolerance(kSquare, 0.01);
   const auto& v = kSquare.vertices;
   const std::vector<std::uint32_t> removed{0, 1, 2, 3};
-  const std::vector<Tolerance::NewTriangle> halves{{0, {v[0], v[1], v[2]}}, {1, {v[0], v[2], v[3]}}};
+  const std::vector<Tolerance::NewTriangle> halves{{0, {v[0], v[1], v[2]}},
+                                                   {1, {v[0], v[2], v[3]}}};
   ASSERT_TRUE(tolerance.admits(removed, halves));
   tolerance.commit(removed);
   const std::vector<Tolerance::NewTriangle> other{{0, {v[0], v[1], v[3]}}, {1, {v[1], v[2], v[3]}}};

@@ -8,8 +8,8 @@ namespace {
 
 using kaboum::geom::Vec3;
 
-// GCC 12 at -O2 vectorises a pair of conversions and drops them; found because a written mesh did not
-// hold the coordinates that were certified.
+// GCC 12 at -O2 vectorises a pair of conversions and drops them; found because a written mesh did
+// not hold the coordinates that were certified.
 TEST(Float32, RoundsEveryCoordinate) {
   volatile double tenth = 0.1;
   const Vec3 p(tenth + 1e-9, 3 * tenth + 1e-9, 7 * tenth + 1e-10);

@@ -23,8 +23,8 @@ Sign orient3d_slow(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     m[2][k] = Rational(d[k]) - Rational(a[k]);
   }
   return sign_of(m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-              m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-              m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]));
+                 m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+                 m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]));
 }
 
 TEST(Orient3d, IsPositiveOnTheOuterSide) {
@@ -51,7 +51,8 @@ TEST(Orient3d, AgreesWithRationalsNearDegeneracy) {
     const Vec3 a = point(), b = point(), c = point();
     Vec3 d = a + unit(random) * (b - a) + unit(random) * (c - a);
     for (int k = 0; k < 3; ++k)
-      for (int n = nudge(random); n != 0; n += n > 0 ? -1 : 1) d[k] = std::nextafter(d[k], n * 1e300);
+      for (int n = nudge(random); n != 0; n += n > 0 ? -1 : 1)
+        d[k] = std::nextafter(d[k], n * 1e300);
     const Sign expected = orient3d_slow(a, b, c, d);
     zeros += expected == Sign::Zero;
     ASSERT_EQ(orient3d(a, b, c, d, &exact), expected) << "case " << i;
@@ -68,8 +69,9 @@ TEST(Orient3d, SurvivesUnderflowAndOverflow) {
     EXPECT_EQ(orient3d(a, b, c, Vec3(s, s, 0)), Sign::Zero) << s;
   }
   // A tiny factor beside a huge one.
-  EXPECT_EQ(orient3d(Vec3(0, 0, 0), Vec3(1e-200, 0, 0), Vec3(0, 1e-200, 0), Vec3(1e200, 1e200, 1e-300)),
-            Sign::Positive);
+  EXPECT_EQ(
+      orient3d(Vec3(0, 0, 0), Vec3(1e-200, 0, 0), Vec3(0, 1e-200, 0), Vec3(1e200, 1e200, 1e-300)),
+      Sign::Positive);
 }
 
 TEST(Orient2d, AgreesWithRationalsNearDegeneracy) {

@@ -23,14 +23,18 @@ void add_cube(Mesh& mesh, Vec3 lo, Vec3 hi, bool inward = false) {
   for (int i = 0; i < 8; ++i)
     mesh.vertices.emplace_back((i & 1) != 0 ? hi.x() : lo.x(), (i & 2) != 0 ? hi.y() : lo.y(),
                                (i & 4) != 0 ? hi.z() : lo.z());
-  const std::uint32_t faces[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                                      {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  const std::uint32_t faces[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6},
+                                      {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7},
+                                      {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   for (const auto& f : faces)
-    mesh.triangles.push_back(inward ? kaboum::geom::Triangle{base + f[0], base + f[2], base + f[1]}
-                                    : kaboum::geom::Triangle{base + f[0], base + f[1], base + f[2]});
+    mesh.triangles.push_back(inward
+                                 ? kaboum::geom::Triangle{base + f[0], base + f[2], base + f[1]}
+                                 : kaboum::geom::Triangle{base + f[0], base + f[1], base + f[2]});
 }
 
-int winding_at(const Prepared& p, const Vec3& x) { return kaboum::geom::WindingNumber(p.mesh)(x).value(); }
+int winding_at(const Prepared& p, const Vec3& x) {
+  return kaboum::geom::WindingNumber(p.mesh)(x).value();
+}
 
 ErrorCode refusal(const Mesh& mesh, const PrepareOptions& options = {}) {
   try {
@@ -70,8 +74,8 @@ TEST(Prepare, TurnsAnInsideOutComponent) {
 TEST(Prepare, KeepsCavitiesAndBodiesInBodies) {
   Mesh mesh;
   add_cube(mesh, {0, 0, 0}, {9, 9, 9});
-  add_cube(mesh, {1, 1, 1}, {8, 8, 8}, true);  // cavity
-  add_cube(mesh, {2, 2, 2}, {3, 3, 3});        // a body in the cavity
+  add_cube(mesh, {1, 1, 1}, {8, 8, 8}, true);              // cavity
+  add_cube(mesh, {2, 2, 2}, {3, 3, 3});                    // a body in the cavity
   add_cube(mesh, {0.25, 0.25, 0.25}, {0.75, 0.75, 0.75});  // a body in the wall
   const Prepared p = prepare(mesh);
   EXPECT_EQ(p.turned_triangles, 0U);
@@ -119,9 +123,18 @@ TEST(Prepare, DropsCopiesAndCancelsWalls) {
   Mesh stacked;  // two cubes with a common face, triangulated alike
   add_cube(stacked, {0, 0, 0}, {1, 1, 1});
   stacked.vertices.insert(stacked.vertices.end(), {{2, 0, 0}, {2, 1, 0}, {2, 0, 1}, {2, 1, 1}});
-  for (const auto& t : std::vector<kaboum::geom::Triangle>{
-           {1, 5, 3}, {3, 5, 7}, {8, 9, 10}, {9, 11, 10}, {1, 3, 8}, {3, 9, 8}, {5, 10, 7}, {7, 10, 11},
-           {1, 8, 5}, {5, 8, 10}, {3, 7, 9}, {7, 11, 9}})
+  for (const auto& t : std::vector<kaboum::geom::Triangle>{{1, 5, 3},
+                                                           {3, 5, 7},
+                                                           {8, 9, 10},
+                                                           {9, 11, 10},
+                                                           {1, 3, 8},
+                                                           {3, 9, 8},
+                                                           {5, 10, 7},
+                                                           {7, 10, 11},
+                                                           {1, 8, 5},
+                                                           {5, 8, 10},
+                                                           {3, 7, 9},
+                                                           {7, 11, 9}})
     stacked.triangles.push_back(t);
   const Prepared p = prepare(stacked);
   EXPECT_TRUE(p.closed);

@@ -44,8 +44,10 @@ TEST(Analyse, FindsOpenInconsistentAndNonManifoldPlaces) {
 
   // Two tetrahedra that share one vertex.
   Mesh touching = kTetrahedron;
-  for (const auto& p : {kaboum::geom::Vec3(-1, 0, 0), {0, -1, 0}, {0, 0, -1}}) touching.vertices.push_back(p);
-  for (const auto& t : std::vector<kaboum::geom::Triangle>{{0, 4, 5}, {0, 6, 4}, {4, 6, 5}, {5, 6, 0}})
+  for (const auto& p : {kaboum::geom::Vec3(-1, 0, 0), {0, -1, 0}, {0, 0, -1}})
+    touching.vertices.push_back(p);
+  for (const auto& t :
+       std::vector<kaboum::geom::Triangle>{{0, 4, 5}, {0, 6, 4}, {4, 6, 5}, {5, 6, 0}})
     touching.triangles.push_back(t);
   EXPECT_EQ(analyse(touching).nonmanifold_vertices, 1U);
   EXPECT_EQ(analyse(touching).components, 1U);
@@ -69,7 +71,8 @@ TEST(Families, AreClosedAsTheySay) {
     EXPECT_TRUE(analyse(weld(f.mesh)).closed()) << f.name;
     EXPECT_TRUE(kaboum::test::closed_chain(f.mesh)) << f.name;
   }
-  for (const auto& f : kaboum::test::open_families()) EXPECT_FALSE(analyse(weld(f.mesh)).closed()) << f.name;
+  for (const auto& f : kaboum::test::open_families())
+    EXPECT_FALSE(analyse(weld(f.mesh)).closed()) << f.name;
 }
 
 }  // namespace

@@ -25,7 +25,8 @@ TEST(WindingNumber, AgreesWithTheOracleOnEveryFamily) {
     std::uniform_int_distribution<std::size_t> any(0, mesh.triangles.size() - 1);
     const int samples = mesh.triangles.size() > 3000 ? 6 : 24;
     for (int i = 0; i < samples; ++i) {
-      Vec3 p = box.min + Vec3(unit(random), unit(random), unit(random)).cwiseProduct(box.max - box.min);
+      Vec3 p =
+          box.min + Vec3(unit(random), unit(random), unit(random)).cwiseProduct(box.max - box.min);
       const auto& t = mesh.triangles[any(random)];
       if (i % 3 == 1) p.head<2>() = mesh.vertices[t[0]].head<2>();
       if (i % 3 == 2) p.head<2>() = (0.5 * (mesh.vertices[t[0]] + mesh.vertices[t[1]])).head<2>();
@@ -37,9 +38,20 @@ TEST(WindingNumber, AgreesWithTheOracleOnEveryFamily) {
 }
 
 TEST(WindingNumber, KnowsPointsOnTheSurface) {
-  const Mesh cube{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}},
-                  {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}, {0, 1, 5}, {0, 5, 4},
-                   {1, 2, 6}, {1, 6, 5}, {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7}}};
+  const Mesh cube{
+      {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}},
+      {{0, 2, 1},
+       {0, 3, 2},
+       {4, 5, 6},
+       {4, 6, 7},
+       {0, 1, 5},
+       {0, 5, 4},
+       {1, 2, 6},
+       {1, 6, 5},
+       {2, 3, 7},
+       {2, 7, 6},
+       {3, 0, 4},
+       {3, 4, 7}}};
   const WindingNumber winding(cube);
   EXPECT_EQ(winding(Vec3(0.5, 0.5, 0.5)), 1);
   EXPECT_EQ(winding(Vec3(0.5, 0.5, 1.5)), 0);

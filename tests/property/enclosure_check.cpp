@@ -48,7 +48,8 @@ std::vector<Vec3> sample_points(const Mesh& a, const Mesh& b, std::size_t n) {
     const Vec3 r(unit(random), unit(random), unit(random));
     const Mesh& mesh = i % 4 == 0 ? a : b;
     if (i % 2 == 1 || mesh.triangles.empty()) {
-      points.emplace_back(box.min - 0.05 * (box.max - box.min) + 1.1 * r.cwiseProduct(box.max - box.min));
+      points.emplace_back(box.min - 0.05 * (box.max - box.min) +
+                          1.1 * r.cwiseProduct(box.max - box.min));
       continue;
     }
     const auto& t = mesh.triangles[random() % mesh.triangles.size()];
@@ -57,7 +58,8 @@ std::vector<Vec3> sample_points(const Mesh& a, const Mesh& b, std::size_t n) {
     if (i % 8 == 0) u = v = 0;  // at vertices
     const Vec3 &p = mesh.vertices[t[0]], &q = mesh.vertices[t[1]], &s = mesh.vertices[t[2]];
     const Vec3 jitter = Vec3(unit(random), unit(random), unit(random)) - Vec3::Constant(0.5);
-    points.push_back(p + u * (q - p) + v * (s - p) + std::pow(10.0, -6 - 4 * r.z()) * diagonal * jitter);
+    points.push_back(p + u * (q - p) + v * (s - p) +
+                     std::pow(10.0, -6 - 4 * r.z()) * diagonal * jitter);
   }
   return points;
 }
@@ -109,22 +111,24 @@ class Check {
   }
 
   int conclude() const {
-    std::cout << meshes_ << " meshes, " << runs_ << " runs, " << contractions_ << " contractions replayed with "
-              << predicates_ << " exact tests, " << points_ << " points sampled, " << solid_points_
-              << " of them in the inner solid; " << refused_ << " meshes refused; " << failures_ << " failures\n";
+    std::cout << meshes_ << " meshes, " << runs_ << " runs, " << contractions_
+              << " contractions replayed with " << predicates_ << " exact tests, " << points_
+              << " points sampled, " << solid_points_ << " of them in the inner solid; " << refused_
+              << " meshes refused; " << failures_ << " failures\n";
     return failures_ == 0 && runs_ > 0 ? 0 : 1;
   }
 
  private:
-  void run(const std::string& name, const Mesh& input, const geom::Prepared& p, Direction d, double ratio,
-           bmesh::Cost cost) {
+  void run(const std::string& name, const Mesh& input, const geom::Prepared& p, Direction d,
+           double ratio, bmesh::Cost cost) {
     bmesh::Log log;
     log.direction = d;
     bmesh::record_preparation(p, input.triangles.size(), log);
     bmesh::DecimateOptions o;
     o.direction = d;
     o.cost = cost;
-    o.vertices = std::max<std::size_t>(4, static_cast<std::size_t>(ratio * static_cast<double>(p.mesh.vertices.size())));
+    o.vertices = std::max<std::size_t>(
+        4, static_cast<std::size_t>(ratio * static_cast<double>(p.mesh.vertices.size())));
     o.steps = &log.steps;
     const auto r = bmesh::decimate(p, o);
     const auto checked = bmesh::replay(input, log, r.mesh);
@@ -140,7 +144,8 @@ class Check {
     if (checked.verified && bad == 0) return;
     ++failures_;
     std::cout << name << (d == Direction::Outer ? " outer " : " inner ") << ratio << ": "
-              << (checked.verified ? "replay verified" : checked.violation) << ", " << bad << " points outside\n";
+              << (checked.verified ? "replay verified" : checked.violation) << ", " << bad
+              << " points outside\n";
   }
 
   Settings s_;
@@ -171,11 +176,12 @@ int main(int argc, char** argv) try {
     if (args[i] == "--families") {
       families = true;
     } else if (args[i] == "--all-costs") {
-      settings.costs = {bmesh::Cost::Planes, bmesh::Cost::PlanesAdapted, bmesh::Cost::PlanesDiagonal,
-                        bmesh::Cost::Triangles};
+      settings.costs = {bmesh::Cost::Planes, bmesh::Cost::PlanesAdapted,
+                        bmesh::Cost::PlanesDiagonal, bmesh::Cost::Triangles};
     } else if (args[i] == "--corpus") {
       const char* corpus = std::getenv("KABOUM_MESHES");
-      if (corpus == nullptr) std::cout << "KABOUM_MESHES is not set: the project's own meshes only\n";
+      if (corpus == nullptr)
+        std::cout << "KABOUM_MESHES is not set: the project's own meshes only\n";
       if (corpus != nullptr)
         for (std::string& f : mesh_files(corpus)) files.push_back(std::move(f));
     } else if (args[i] == "--own") {

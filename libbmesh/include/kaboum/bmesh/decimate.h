@@ -24,13 +24,15 @@ enum class Precision { Float, Double };
 struct DecimateOptions {
   Direction direction = Direction::Outer;
   Cost cost = Cost::Planes;
-  bool as_printed = false;  ///< the thesis's formulas where they are known to be wrong (PlanesDiagonal)
+  bool as_printed =
+      false;  ///< the thesis's formulas where they are known to be wrong (PlanesDiagonal)
   Precision precision = Precision::Float;
   std::optional<std::size_t> vertices;  ///< stop at this many vertices
   std::optional<double> epsilon;        ///< keep both one-sided distances within this. [length] > 0
   bool keep_convex = false;             ///< convex in, convex out, exactly
-  /// Edges whose faces' normals differ by more than this also cost the distance to the plane through
-  /// them across their mean normal ([gaschler2016] §4.3.5), against spikes off knife edges. [degrees]
+  /// Edges whose faces' normals differ by more than this also cost the distance to the plane
+  /// through them across their mean normal ([gaschler2016] §4.3.5), against spikes off knife edges.
+  /// [degrees]
   double sharp_angle = 90;
   std::vector<Step>* steps = nullptr;  ///< receives the steps, when not null
   /// Called now and then with the current number of vertices; may throw to cancel.
@@ -47,34 +49,36 @@ enum class Stop {
 struct DecimateStatistics {
   std::size_t vertices_in = 0, vertices_out = 0;
   std::size_t contractions = 0;
-  std::size_t moves = 0;             ///< single vertices moved to representable coordinates
-  std::uint64_t placements = 0;      ///< minimisations solved
-  std::uint64_t predicates = 0;      ///< exact orientation tests
-  std::uint64_t exact_fallbacks = 0; ///< of these, decided by exact arithmetic
+  std::size_t moves = 0;              ///< single vertices moved to representable coordinates
+  std::uint64_t placements = 0;       ///< minimisations solved
+  std::uint64_t predicates = 0;       ///< exact orientation tests
+  std::uint64_t exact_fallbacks = 0;  ///< of these, decided by exact arithmetic
   // Candidates rejected, by reason.
-  std::uint64_t rejected_topology = 0;    ///< would pinch the surface
-  std::uint64_t rejected_no_position = 0; ///< no position satisfies the planes
-  std::uint64_t rejected_predicate = 0;   ///< the rounded position fails an exact test
-  std::uint64_t rejected_fold = 0;        ///< a triangle would turn over or collapse
-  std::uint64_t rejected_distance = 0;    ///< would leave epsilon
+  std::uint64_t rejected_topology = 0;     ///< would pinch the surface
+  std::uint64_t rejected_no_position = 0;  ///< no position satisfies the planes
+  std::uint64_t rejected_predicate = 0;    ///< the rounded position fails an exact test
+  std::uint64_t rejected_fold = 0;         ///< a triangle would turn over or collapse
+  std::uint64_t rejected_distance = 0;     ///< would leave epsilon
 };
 
 struct DecimateResult {
   geom::Mesh mesh;
   Stop stop = Stop::Exhausted;
   DecimateStatistics statistics;
-  /// Vertices that precision Float was wished for but that have no certified float32 position nearby
-  /// (never any with Precision::Double). The mesh is valid, but not representable in float32.
+  /// Vertices that precision Float was wished for but that have no certified float32 position
+  /// nearby (never any with Precision::Double). The mesh is valid, but not representable in
+  /// float32.
   std::size_t unrepresentable = 0;
 };
 
 /// Single-sided decimation by edge contraction. Source: [gaschler2016] Alg. 1, Alg. 2.
 ///
-/// Every contraction is accepted only after exact orientation tests of the new, already rounded vertex
-/// against the plane of every triangle it replaces, so that the winding number never falls (Outer) or
-/// never rises (Inner) anywhere off the surfaces: docs/algorithms/bounding-mesh.md has the theorem.
-/// Vertices on the border of an open mesh do not move. With `epsilon`, every contraction also keeps a
-/// certificate that no point of either surface is farther than epsilon from the other one.
+/// Every contraction is accepted only after exact orientation tests of the new, already rounded
+/// vertex against the plane of every triangle it replaces, so that the winding number never falls
+/// (Outer) or never rises (Inner) anywhere off the surfaces: docs/algorithms/bounding-mesh.md has
+/// the theorem. Vertices on the border of an open mesh do not move. With `epsilon`, every
+/// contraction also keeps a certificate that no point of either surface is farther than epsilon
+/// from the other one.
 ///
 /// @pre options.vertices or options.epsilon is given; coordinates of magnitude below 1e100.
 /// @throws Error{InvalidArgument} on contradictory options; Error{InvalidInput} when keep_convex is

@@ -16,8 +16,8 @@ enum class Direction {
   Any,    ///< no constraint: for comparison
 };
 
-/// One certified operation: the triangles with both vertices vanish, `kept` moves to `position`, and
-/// `gone` becomes `kept`. A move of a single vertex has kept == gone.
+/// One certified operation: the triangles with both vertices vanish, `kept` moves to `position`,
+/// and `gone` becomes `kept`. A move of a single vertex has kept == gone.
 struct Step {
   std::uint32_t kept;
   std::uint32_t gone;
@@ -27,10 +27,10 @@ struct Step {
 /// Everything needed to derive a result from its input again. Layout of the file: docs/formats.md.
 struct Log {
   Direction direction = Direction::Outer;
-  std::string input_sha256;              ///< of the input file's bytes
-  std::string tool;                      ///< program and version
-  std::vector<std::uint32_t> dropped;    ///< input triangles left out, ascending
-  std::vector<std::uint32_t> turned;     ///< input triangles with reversed orientation, ascending
+  std::string input_sha256;            ///< of the input file's bytes
+  std::string tool;                    ///< program and version
+  std::vector<std::uint32_t> dropped;  ///< input triangles left out, ascending
+  std::vector<std::uint32_t> turned;   ///< input triangles with reversed orientation, ascending
   std::vector<Step> steps;
 };
 

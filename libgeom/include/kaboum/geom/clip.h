@@ -8,8 +8,8 @@ namespace kaboum::geom {
 
 /// A planar convex polygon that is cut into smaller ones, to bound distances piece by piece.
 ///
-/// New corners are rounded, so the two parts of a cut cover the whole only up to kCutError times the
-/// largest |coordinate|; who cuts repeatedly adds that up.
+/// New corners are rounded, so the two parts of a cut cover the whole only up to kCutError times
+/// the largest |coordinate|; who cuts repeatedly adds that up.
 struct ConvexPolygon {
   static constexpr int kCapacity = 8;
   static constexpr double kCutError = 1e-15;
@@ -39,16 +39,16 @@ struct ConvexPolygon {
 };
 
 /// Cuts by the plane through p with normal n. @return false when all corners lie on one side (or
-/// within rounding of the plane), or when rounding has made the polygon so crooked that a part would
-/// exceed the capacity; the parts are then undefined.
+/// within rounding of the plane), or when rounding has made the polygon so crooked that a part
+/// would exceed the capacity; the parts are then undefined.
 bool cut(const ConvexPolygon& polygon, const Vec3& p, const Vec3& n, ConvexPolygon& below,
          ConvexPolygon& above);
 
 /// Cuts in two across its longest extent; a polygon at capacity is cut along a diagonal.
 void halve(const ConvexPolygon& polygon, ConvexPolygon& first, ConvexPolygon& second);
 
-/// Pieces of a polygon with respect to a triangle's prism (the points that project into it): at most
-/// one piece inside and three outside.
+/// Pieces of a polygon with respect to a triangle's prism (the points that project into it): at
+/// most one piece inside and three outside.
 struct PrismCut {
   std::array<ConvexPolygon, 4> piece;
   int count = 0;

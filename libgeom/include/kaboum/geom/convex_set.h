@@ -22,7 +22,7 @@ struct Provenance {
   std::string parameters;     ///< the options used
   std::string unit = "m";
   std::string frame;
-  double epsilon = -1;        ///< certified bound of the distance to the solid; negative: none
+  double epsilon = -1;  ///< certified bound of the distance to the solid; negative: none
 };
 
 /// A union of convex polytopes, each enlarged by a ball of radius `margin` (Minkowski sum): the

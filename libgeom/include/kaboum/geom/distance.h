@@ -46,11 +46,13 @@ class DistanceQuery {
 
   /// Some triangle whose distance from p is certainly ≤ radius, starting the search at `hint`;
   /// kNone if there is none (or, within rounding of the radius, if it was missed).
-  [[nodiscard]] std::uint32_t within(const Vec3& p, double radius, std::uint32_t hint = kNone) const;
+  [[nodiscard]] std::uint32_t within(const Vec3& p, double radius,
+                                     std::uint32_t hint = kNone) const;
 
-  /// Whether every point of the polygon is within `radius`: decided by cutting it along the prisms of
-  /// nearest triangles until each piece's corners are within the radius of one triangle (the distance
-  /// to one triangle is convex). False also when that did not succeed in `max_pieces` pieces.
+  /// Whether every point of the polygon is within `radius`: decided by cutting it along the prisms
+  /// of nearest triangles until each piece's corners are within the radius of one triangle (the
+  /// distance to one triangle is convex). False also when that did not succeed in `max_pieces`
+  /// pieces.
   [[nodiscard]] bool all_within(const ConvexPolygon& polygon, double radius,
                                 int max_pieces = 256) const;
 
@@ -67,8 +69,8 @@ class DistanceQuery {
 
  private:
   Bvh bvh_;
-  std::vector<std::array<Vec3, 3>> corners_;   // in the tree's order
-  std::vector<std::uint32_t> position_;        // triangle → place in corners_
+  std::vector<std::array<Vec3, 3>> corners_;  // in the tree's order
+  std::vector<std::uint32_t> position_;       // triangle → place in corners_
 };
 
 /// One-sided Hausdorff distance sup_{x∈A} d(x, B) between surfaces. [length]
@@ -80,17 +82,17 @@ struct DirectedDistance {
 };
 
 struct DistanceOptions {
-  double relative_gap = 1e-3;   ///< stop when upper ≤ lower · (1 + relative_gap) …
-  double absolute_gap = 1e-9;   ///< … or upper ≤ lower + absolute_gap · diagonal of A and B's box
+  double relative_gap = 1e-3;  ///< stop when upper ≤ lower · (1 + relative_gap) …
+  double absolute_gap = 1e-9;  ///< … or upper ≤ lower + absolute_gap · diagonal of A and B's box
 };
 
 /// Branch and bound over convex pieces of A's triangles.
 ///
 /// Upper bound of a piece: d(·, t) is convex for one triangle t of B, so its largest value over the
 /// piece is at a corner; t is the triangle nearest to the piece's centroid, or to its worst corner.
-/// A piece that is not settled is cut along the prism of t, so that coplanar surfaces fall apart into
-/// the cells in which one triangle of B is nearest, instead of being halved down to the gap. Rounds
-/// are evaluated in parallel (oneTBB); the result does not depend on the number of threads.
+/// A piece that is not settled is cut along the prism of t, so that coplanar surfaces fall apart
+/// into the cells in which one triangle of B is nearest, instead of being halved down to the gap.
+/// Rounds are evaluated in parallel (oneTBB); the result does not depend on the number of threads.
 ///
 /// @pre A and B have triangles and finite coordinates; B is given as a query.
 /// @throws Error{LimitReached} when the gap cannot be reached with 2^23 pieces at a time.

@@ -25,22 +25,24 @@ struct Prepared {
   std::size_t collapsed_triangles = 0;  ///< dropped: repeated corners
   std::size_t dropped_copies = 0;       ///< dropped: identically oriented copies
   std::size_t cancelled_walls = 0;      ///< dropped: triangles in opposite pairs inside the solid
-  std::size_t dropped_sheets = 0;       ///< dropped: triangles in opposite pairs outside, on request
-  std::size_t turned_components = 0;    ///< inside out, turned as a whole
-  std::size_t turned_triangles = 0;     ///< against their neighbours or in a turned component
+  std::size_t dropped_sheets = 0;     ///< dropped: triangles in opposite pairs outside, on request
+  std::size_t turned_components = 0;  ///< inside out, turned as a whole
+  std::size_t turned_triangles = 0;   ///< against their neighbours or in a turned component
   std::vector<std::string> notes;
 };
 
 /// Gives the input a solid, or says why it has none.
 ///
-/// In this order: equal vertices are merged and triangles with repeated corners dropped; inconsistent
-/// neighbours are turned to agree; opposite coincident faces inside the solid (walls between touching
-/// bodies) cancel; identically oriented copies are dropped where what is dropped is itself a closed
-/// chain; a component whose inside would have a negative winding number is turned together with all
-/// that is nested in it. A cavity (a component oriented inwards, inside another) stays a cavity, and a
-/// body inside another body stays a body: the solid never shrinks by a turn.
+/// In this order: equal vertices are merged and triangles with repeated corners dropped;
+/// inconsistent neighbours are turned to agree; opposite coincident faces inside the solid (walls
+/// between touching bodies) cancel; identically oriented copies are dropped where what is dropped
+/// is itself a closed chain; a component whose inside would have a negative winding number is
+/// turned together with all that is nested in it. A cavity (a component oriented inwards, inside
+/// another) stays a cavity, and a body inside another body stays a body: the solid never shrinks by
+/// a turn.
 ///
-/// @throws Error{InvalidInput} when no solid can be given: no triangles, a one-sided surface, sheets
+/// @throws Error{InvalidInput} when no solid can be given: no triangles, a one-sided surface,
+/// sheets
 ///   (unless dropped on request), nothing left, or open while `require_closed`.
 Prepared prepare(const Mesh& input, const PrepareOptions& options = {});
 

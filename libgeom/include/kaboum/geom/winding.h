@@ -12,10 +12,10 @@ namespace kaboum::geom {
 /// Winding number of a mesh about points, exact.
 ///
 /// For a closed chain it is the integer that says how often the surface goes round the point: the
-/// solid is the closure of {w ≥ 1}. The number is the sum of signed crossings of a vertical ray with
-/// the triangles; rays through edges and vertices are told apart by a symbolic displacement of the
-/// point, (x + ε, y + ε², z), so every sign is decided and nothing is counted twice.
-/// For an open chain the result depends on the ray's direction and means nothing.
+/// solid is the closure of {w ≥ 1}. The number is the sum of signed crossings of a vertical ray
+/// with the triangles; rays through edges and vertices are told apart by a symbolic displacement of
+/// the point, (x + ε, y + ε², z), so every sign is decided and nothing is counted twice. For an
+/// open chain the result depends on the ray's direction and means nothing.
 class WindingNumber {
  public:
   /// Keeps a reference to `mesh`, which must outlive this object.
@@ -25,8 +25,8 @@ class WindingNumber {
   /// @return the winding number about p; nullopt if p lies on a triangle.
   [[nodiscard]] std::optional<int> operator()(const Vec3& p) const { return weighted(p, {}); }
 
-  /// The same for the chain in which triangle i counts weight[i] times; triangles of weight 0 are not
-  /// there. An empty span stands for weights of 1.
+  /// The same for the chain in which triangle i counts weight[i] times; triangles of weight 0 are
+  /// not there. An empty span stands for weights of 1.
   [[nodiscard]] std::optional<int> weighted(const Vec3& p,
                                             std::span<const std::int8_t> weight) const;
 
