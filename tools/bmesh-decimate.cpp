@@ -22,7 +22,7 @@ using tools::Json;
 struct Options {
   std::string input, output, input_format, output_format;
   bmesh::Direction direction = bmesh::Direction::Outer;
-  std::size_t vertices = 0;
+  std::int64_t vertices = 0;
   double ratio = 0;
   std::string epsilon;
   bmesh::Cost cost = bmesh::Cost::Planes;
@@ -61,7 +61,7 @@ void describe(CLI::App& app, Options& o) {
       ->transform(CLI::CheckedTransformer(kDirections).description(""))
       ->type_name("outer|inner|any");
   app.add_option("--vertices", o.vertices, "Stop at this many vertices (at least 4)")
-      ->check(CLI::Range(std::size_t{4}, std::numeric_limits<std::size_t>::max()).description(""))
+      ->check(CLI::Range(std::int64_t{4}, std::int64_t{1} << 40).description(""))
       ->type_name("N");
   app.add_option("--ratio", o.ratio,
                  "Stop at this fraction of the input's welded vertices (0 < R < 1)")
@@ -263,7 +263,7 @@ class Job {
     d.keep_convex = o_.keep_convex;
     d.sharp_angle = o_.sharp_angle;
     d.epsilon = epsilon_;
-    if (o_.vertices != 0) d.vertices = o_.vertices;
+    if (o_.vertices != 0) d.vertices = static_cast<std::size_t>(o_.vertices);
     if (o_.ratio > 0) {
       const auto n = static_cast<std::size_t>(
           std::ceil(o_.ratio * static_cast<double>(prepared_.mesh.vertices.size())));

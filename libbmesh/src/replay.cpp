@@ -81,34 +81,33 @@ class Replay {
     }
   }
 
-  /// Applies the log's turns and drops, checks the drops, and numbers the vertices left by first
-  /// use.
+  /// Numbers the vertices of the triangles left by first use, as the input has them; applies the log's
+  /// turns; checks its drops.
   bool interpret() {
     std::vector<char> dropped(input_.size(), 0);
-    for (const std::uint32_t t : log_.turned) {
-      require_triangle(t);
-      std::swap(input_[t][1], input_[t][2]);
-    }
     for (const std::uint32_t t : log_.dropped) {
       require_triangle(t);
       dropped[t] = 1;
     }
-    if (!drops_are_harmless(dropped)) return false;
     std::vector<std::uint32_t> number(all_points_.size(), ~0U);
     for (std::size_t t = 0; t < input_.size(); ++t) {
       if (dropped[t] != 0) continue;
-      Corners c = input_[t];
-      if (repeated(c))
+      if (repeated(input_[t]))
         return violated("input triangle " + std::to_string(t) + " has a repeated corner");
-      for (std::uint32_t& v : c) {
-        if (number[v] == ~0U) {
-          number[v] = static_cast<std::uint32_t>(points_.size());
-          points_.push_back(all_points_[v]);
-        }
-        v = number[v];
+      for (const std::uint32_t v : input_[t]) {
+        if (number[v] != ~0U) continue;
+        number[v] = static_cast<std::uint32_t>(points_.size());
+        points_.push_back(all_points_[v]);
       }
-      triangles_.push_back(c);
     }
+    for (const std::uint32_t t : log_.turned) {
+      require_triangle(t);
+      std::swap(input_[t][1], input_[t][2]);
+    }
+    if (!drops_are_harmless(dropped)) return false;
+    for (std::size_t t = 0; t < input_.size(); ++t)
+      if (dropped[t] == 0)
+        triangles_.push_back({number[input_[t][0]], number[input_[t][1]], number[input_[t][2]]});
     around_.resize(points_.size());
     for (std::uint32_t t = 0; t < triangles_.size(); ++t)
       for (const std::uint32_t v : triangles_[t]) around_[v].push_back(t);

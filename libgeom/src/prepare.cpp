@@ -32,6 +32,7 @@ class Preparation {
     if (!options_.keep_orientation) agree_with_neighbours();
     cancel_coincident();
     if (!options_.keep_orientation) turn_components();
+    number_by_first_use();
     find_border();
     components(out_.mesh, true, &out_.components);
     out_.turned_triangles =
@@ -390,6 +391,19 @@ class Preparation {
     edges_ = edge_uses(mesh());
     out_.notes.push_back(count_of(out_.turned_components, "component was", "components were") +
                          " inside out and turned, with what is nested inside");
+  }
+
+  /// Vertices in the order in which the triangles left use them in the input, before any was turned.
+  void number_by_first_use() {
+    if (std::find(out_.turned.begin(), out_.turned.end(), 1) == out_.turned.end()) return;
+    const auto turn_all = [&] {
+      for (std::size_t t = 0; t < out_.turned.size(); ++t)
+        if (out_.turned[t] != 0) std::swap(mesh().triangles[t][1], mesh().triangles[t][2]);
+    };
+    turn_all();
+    mesh() = weld(mesh());
+    turn_all();
+    edges_ = edge_uses(mesh());
   }
 
   void find_border() {

@@ -200,7 +200,8 @@ int main(int argc, char** argv) try {
   }
   Check check(settings);
   if (families)
-    for (const auto& f : test::closed_families()) check.mesh(f.name, f.mesh);
+    for (const auto& list : {test::closed_families(), test::bad_families()})
+      for (const auto& f : list) check.mesh(f.name, f.mesh);
   for (const std::string& f : files) check.file(f);
   return check.conclude();
 } catch (const std::exception& e) {

@@ -16,7 +16,9 @@ struct PrepareOptions {
 
 /// A mesh whose solid is defined, and how it came from the input.
 struct Prepared {
-  Mesh mesh;                          ///< welded, without unused vertices
+  /// Welded, without unused vertices; vertices in the order of their first use by the triangles left,
+  /// as the input orients these.
+  Mesh mesh;
   std::vector<std::uint32_t> source;  ///< per triangle: its index in the input
   std::vector<char> turned;           ///< per triangle: orientation reversed
   std::vector<char> border;           ///< per vertex: lies on an unbalanced edge and must not move
