@@ -482,7 +482,8 @@ class Decimator {
   }
 
   void apply() {
-    const auto [a, b, position, cost] = candidate_;
+    const std::uint32_t a = candidate_.a, b = candidate_.b;
+    const Vec3 position = candidate_.position;
     if (tolerance_) tolerance_->commit(removed_);
     if (options_.steps != nullptr) options_.steps->push_back({a, b, position});
     quadric_[a] = merged(a, b);

@@ -88,29 +88,28 @@ class ClosestPoint {
 
   /// New basis from {entering} and a subset of the old one.
   bool exchange(int entering) {
-    const auto [b0, b1, b2] = basis_;
+    const std::array<int, 3> old = basis_;
     const int n = size_;
-    const auto old = [&](int k) { return k == 0 ? b0 : k == 1 ? b1 : b2; };
     if (auto z = one(entering)) {
       const bool ok = n == 0   ? true
-                      : n == 1 ? feasible(*z, {b0})
-                      : n == 2 ? feasible(*z, {b0, b1})
-                               : feasible(*z, {b0, b1, b2});
+                      : n == 1 ? feasible(*z, {old[0]})
+                      : n == 2 ? feasible(*z, {old[0], old[1]})
+                               : feasible(*z, {old[0], old[1], old[2]});
       if (ok) return accept(*z, {entering, -1, -1}, 1);
     }
     for (int k = 0; k < n; ++k) {
-      const auto z = two(entering, old(k));
+      const auto z = two(entering, old[k]);
       if (!z) continue;
-      const int i = old((k + 1) % std::max(n, 1)), j = old((k + 2) % std::max(n, 1));
-      const bool ok = n == 1 || (n == 2 ? feasible(*z, {old(1 - k)}) : feasible(*z, {i, j}));
-      if (ok) return accept(*z, {entering, old(k), -1}, 2);
+      const bool ok = n == 1   ? true
+                      : n == 2 ? feasible(*z, {old[1 - k]})
+                               : feasible(*z, {old[(k + 1) % 3], old[(k + 2) % 3]});
+      if (ok) return accept(*z, {entering, old[k], -1}, 2);
     }
     for (int k = 0; k + 1 < n; ++k) {
       for (int l = k + 1; l < n; ++l) {
-        const auto z = three(entering, old(k), old(l));
-        if (!z) continue;
-        if (n < 3 || feasible(*z, {old(3 - k - l)}))
-          return accept(*z, {entering, old(k), old(l)}, 3);
+        const auto z = three(entering, old[k], old[l]);
+        if (z && (n < 3 || feasible(*z, {old[3 - k - l]})))
+          return accept(*z, {entering, old[k], old[l]}, 3);
       }
     }
     return false;

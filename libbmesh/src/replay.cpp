@@ -81,8 +81,8 @@ class Replay {
     }
   }
 
-  /// Numbers the vertices of the triangles left by first use, as the input has them; applies the log's
-  /// turns; checks its drops.
+  /// Numbers the vertices of the triangles left by first use, as the input has them; applies the
+  /// log's turns; checks its drops.
   bool interpret() {
     std::vector<char> dropped(input_.size(), 0);
     for (const std::uint32_t t : log_.dropped) {

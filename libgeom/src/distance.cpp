@@ -9,9 +9,9 @@
 namespace kaboum::geom {
 namespace {
 
-// Rounding errors are below kRounding times the largest |coordinate difference| (45 · 2^-53), and
+// Rounding errors are below kRounding (72 · 2^-53) times the largest |coordinate difference|, and
 // below kRounding relatively in norms and quotients.
-constexpr double kRounding = 5e-15;
+constexpr double kRounding = 8e-15;
 
 /// Weights (s, t) of a point a + s·(b−a) + t·(c−a) of the triangle that is closest to the origin,
 /// up to rounding; s, t ≥ 0 and s + t ≤ 1 up to 2^-52.

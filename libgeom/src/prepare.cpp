@@ -393,7 +393,8 @@ class Preparation {
                          " inside out and turned, with what is nested inside");
   }
 
-  /// Vertices in the order in which the triangles left use them in the input, before any was turned.
+  /// Vertices in the order in which the triangles left use them in the input, before any was
+  /// turned.
   void number_by_first_use() {
     if (std::find(out_.turned.begin(), out_.turned.end(), 1) == out_.turned.end()) return;
     const auto turn_all = [&] {

@@ -16,8 +16,8 @@ struct PrepareOptions {
 
 /// A mesh whose solid is defined, and how it came from the input.
 struct Prepared {
-  /// Welded, without unused vertices; vertices in the order of their first use by the triangles left,
-  /// as the input orients these.
+  /// Welded, without unused vertices; vertices in the order of their first use by the triangles
+  /// left, as the input orients these.
   Mesh mesh;
   std::vector<std::uint32_t> source;  ///< per triangle: its index in the input
   std::vector<char> turned;           ///< per triangle: orientation reversed
