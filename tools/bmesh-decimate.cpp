@@ -7,8 +7,8 @@
 #include <kaboum/geom/winding.h>
 #include <kaboum/io/mesh_io.h>
 
-#include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <iomanip>
 #include <sstream>
 
@@ -21,6 +21,7 @@ using tools::Json;
 
 struct Options {
   std::string input, output, input_format, output_format;
+  std::string direction_name = "outer", cost_name = "planes";
   bmesh::Direction direction = bmesh::Direction::Outer;
   std::int64_t vertices = 0;
   double ratio = 0;
@@ -55,10 +56,10 @@ void describe(CLI::App& app, Options& o) {
   app.add_option("-o,--output", o.output, "Where the result goes (- for stdout)")
       ->required()
       ->type_name("FILE");
-  app.add_option("--direction", o.direction,
+  app.add_option("--direction", o.direction_name,
                  "outer: the result encloses the input; inner: the input encloses the result; any: "
                  "neither, for comparison [outer]")
-      ->transform(CLI::CheckedTransformer(kDirections).description(""))
+      ->check(CLI::IsMember({"outer", "inner", "any"}).description(""))
       ->type_name("outer|inner|any");
   app.add_option("--vertices", o.vertices, "Stop at this many vertices (at least 4)")
       ->check(CLI::Range(std::int64_t{4}, std::int64_t{1} << 40).description(""))
@@ -71,17 +72,19 @@ void describe(CLI::App& app, Options& o) {
                                                                  : "must lie between 0 and 1";
       })
       ->type_name("R");
-  app.add_option(
-         "--epsilon", o.epsilon,
-         "Keep every point of either surface within this distance of the other: a length, or a "
-         "percentage of the bounding box's diagonal, as in 0.5%")
+  app.add_option("--epsilon", o.epsilon,
+                 "Keep every point of either surface within this distance of the other: a length "
+                 "in the mesh's unit, or a "
+                 "percentage of the bounding box's diagonal, as in 0.5%")
       ->check([](const std::string& s) {
         return tools::parse_length(s) ? std::string()
-                                      : "must be a positive length, or a percentage such as 0.5%";
+                                      : "must be a positive number, or a percentage such as 0.5%, "
+                                        "without blanks or units";
       })
       ->type_name("LENGTH|P%");
-  app.add_option("--cost", o.cost, "Cost of a contraction [planes]")
-      ->transform(CLI::CheckedTransformer(kCosts).description(""))
+  app.add_option("--cost", o.cost_name, "Cost of a contraction [planes]")
+      ->check(CLI::IsMember({"planes", "planes-adapted", "planes-diagonal", "triangles"})
+                  .description(""))
       ->type_name("planes|planes-adapted|planes-diagonal|triangles");
   app.add_flag("--as-printed", o.as_printed,
                "planes-diagonal with the thesis's formulas as printed, to reproduce its tables");
@@ -169,13 +172,16 @@ std::string formatted(double x) {
 
 class Job {
  public:
-  explicit Job(Options options) : o_(std::move(options)) {}
+  explicit Job(Options options) : o_(std::move(options)) {
+    o_.direction = kDirections.at(o_.direction_name);
+    o_.cost = kCosts.at(o_.cost_name);
+  }
 
   int run() {
     require(o_.vertices != 0 || o_.ratio > 0 || !o_.epsilon.empty(),
             "give at least one of --vertices, --ratio and --epsilon");
-    require(!(o_.common.report == "-" && o_.output == "-"),
-            "the result and the report cannot both go to stdout");
+    require_separate_files();
+    require(o_.depfile.empty() || o_.output != "-", "--depfile needs a result that is a file");
     const io::Format output_format =
         tools::format_for(o_.output, o_.output_format, "--output-format");
     const io::Format input_format = tools::format_for(o_.input, o_.input_format, "--input-format");
@@ -186,16 +192,55 @@ class Job {
     if (!decimate(output_format)) return tools::kNo;
     const std::vector<char> bytes = serialise(output_format);
     if (epsilon_ || !o_.common.report.empty()) measure();
-    if (!o_.log.empty()) io::write_file(o_.log, bmesh::serialise_log(log_));
-    if (!o_.common.report.empty()) tools::write_json(o_.common.report, report());
-    if (!o_.depfile.empty()) tools::write_depfile(o_.depfile, o_.output, {o_.input});
-    io::write_file(o_.output, bytes);
+    write_all(bytes);
     return conclude();
   }
 
  private:
   static void require(bool condition, const char* message) {
     if (!condition) throw Error(ErrorCode::InvalidArgument, message);
+  }
+
+  /// No file may be written twice, nor the input overwritten when a log speaks of it.
+  void require_separate_files() const {
+    std::vector<std::pair<std::string, std::string>> files{{"the result", o_.output}};
+    if (!o_.log.empty()) files.emplace_back("the log", o_.log);
+    if (!o_.common.report.empty()) files.emplace_back("the report", o_.common.report);
+    if (!o_.depfile.empty()) files.emplace_back("the dependency file", o_.depfile);
+    // In place is fine, unless a log would then speak of a file that is gone.
+    if (o_.input != "-" && files.size() > 1) files.emplace_back("the input", o_.input);
+    const auto place = [](const std::string& file) {
+      return std::filesystem::weakly_canonical(std::filesystem::absolute(file));
+    };
+    const auto same = [&](const std::string& a, const std::string& b) {
+      return a == b || (a != "-" && b != "-" && place(a) == place(b));
+    };
+    for (std::size_t i = 0; i < files.size(); ++i)
+      for (std::size_t j = i + 1; j < files.size(); ++j)
+        if (same(files[i].second, files[j].second))
+          throw Error(ErrorCode::InvalidArgument, files[i].first + " and " + files[j].first +
+                                                      " cannot both be " + files[i].second);
+  }
+
+  /// The result comes last, so that it is there only if everything that belongs to it is; if it
+  /// cannot be written, the rest is taken back.
+  void write_all(const std::vector<char>& bytes) const {
+    std::vector<std::string> written;
+    try {
+      if (!o_.log.empty()) io::write_file(o_.log, bmesh::serialise_log(log_));
+      if (!o_.log.empty()) written.push_back(o_.log);
+      if (!o_.common.report.empty()) tools::write_json(o_.common.report, report());
+      if (!o_.common.report.empty()) written.push_back(o_.common.report);
+      if (!o_.depfile.empty()) tools::write_depfile(o_.depfile, o_.output, {o_.input});
+      if (!o_.depfile.empty()) written.push_back(o_.depfile);
+      io::write_file(o_.output, bytes);
+    } catch (...) {
+      for (const std::string& file : written) {
+        std::error_code ignored;
+        if (std::filesystem::is_regular_file(file, ignored)) std::filesystem::remove(file, ignored);
+      }
+      throw;
+    }
   }
 
   void say(const std::string& text) const { tools::log(o_.common.quiet, text); }
@@ -206,6 +251,7 @@ class Job {
     input_ = io::read_mesh(o_.input, format, hash ? &bytes : nullptr);
     if (hash) log_.input_sha256 = io::sha256(bytes);
     for (const std::string& note : input_.notes) say("note: " + note);
+    notes_ = input_.notes;
     const std::size_t triangles = input_.mesh.triangles.size();
     try {
       prepared_ = geom::prepare(input_.mesh, o_.prepare);
@@ -219,8 +265,12 @@ class Job {
     }
     input_.mesh = {};
     for (const std::string& note : prepared_.notes) say("note: " + note);
+    notes_.insert(notes_.end(), prepared_.notes.begin(), prepared_.notes.end());
     box_ = geom::bounding_box(prepared_.mesh);
     if (!o_.epsilon.empty()) epsilon_ = tools::parse_length(o_.epsilon)->of(box_.diagonal());
+    if (epsilon_ && *epsilon_ > 0.1 * box_.diagonal())
+      say("note: epsilon is " + formatted(100 * *epsilon_ / box_.diagonal()) +
+          "% of the diagonal; a percentage is written with its sign, as in --epsilon 1%");
     if (epsilon_ && !(*epsilon_ > 0))
       throw Error(ErrorCode::InvalidInput,
                   o_.input + ": a percentage of a mesh without extent is no length");
@@ -249,8 +299,8 @@ class Job {
     }
     tools::log(false,
                "bmesh-decimate: " + o_.input + ": " + why +
-                   "; nothing is written. Use --precision double with .ply, .obj or .off output, "
-                   "or move the mesh towards the origin");
+                   "; nothing is written. Write .ply, .obj, .off or stl-ascii with --precision "
+                   "double, or move the mesh towards the origin");
     return false;
   }
 
@@ -316,7 +366,7 @@ class Job {
     r["version"] = tools::version();
     r["input"] = {{"file", o_.input},
                   {"sha256", log_.input_sha256},
-                  {"single_precision", input_.single_precision},
+                  {"reader_delivers_float32", input_.single_precision},
                   {"file_vertices", input_.file_vertices},
                   {"file_triangles", input_.file_triangles},
                   {"split_polygons", input_.split_polygons}};
@@ -328,7 +378,7 @@ class Job {
         {"dropped_sheets", prepared_.dropped_sheets},
         {"turned_components", prepared_.turned_components},
         {"turned_triangles", prepared_.turned_triangles},
-        {"notes", prepared_.notes}};
+        {"notes", notes_}};
     r["options"] = {{"direction", name_of(kDirections, o_.direction)},
                     {"cost", name_of(kCosts, o_.cost)},
                     {"as_printed", o_.as_printed},
@@ -355,7 +405,8 @@ class Job {
                           {"distance", s.rejected_distance}}}};
     const double diagonal = box_.diagonal();
     r["distance"] = {{"meaning",
-                      "one-sided, surface to surface, certified brackets of the maximum; "
+                      "one-sided, surface to surface, certified brackets of the maximum, in the "
+                      "input's unit; "
                       "the original is the input after preparation"},
                      {"bbox_diagonal", diagonal},
                      {"original_to_result", tools::to_json(*to_result_, diagonal)},
@@ -373,6 +424,10 @@ class Job {
     if (o_.direction == bmesh::Direction::Any) return {{"solid", "none"}, {"surface", "none"}};
     const bool outer = o_.direction == bmesh::Direction::Outer;
     Json c;
+    c["input"] =
+        prepared_.turned_triangles + prepared_.dropped_copies + prepared_.dropped_sheets == 0
+            ? "as in the file"
+            : "as prepared: with triangles turned or dropped as listed under preparation";
     c["solid"] = prepared_.closed
                      ? (outer ? "certified: the result's solid contains the input's"
                               : "certified: the input's solid contains the result's")
@@ -409,13 +464,17 @@ class Job {
     std::string line = o_.output + ": " + std::to_string(s.vertices_in) + " → " +
                        std::to_string(s.vertices_out) + " vertices, " +
                        name_of(kDirections, o_.direction);
-    if (o_.direction != bmesh::Direction::Any) line += prepared_.closed ? ", certified" : ", open";
+    if (o_.direction != bmesh::Direction::Any)
+      line += prepared_.closed ? ", certified" : ", certified as far as an open mesh allows";
     if (to_result_) {
       const double upper = std::max(to_result_->max_upper, to_original_->max_upper);
       line +=
           ", within " + formatted(upper) + " (" + formatted(100 * upper / box_.diagonal()) + "%)";
     }
+    if (target_ && result_.stop == bmesh::Stop::ErrorBound)
+      line += "; epsilon allows no fewer, " + std::to_string(*target_) + " were wished";
     say(line);
+    warn_of_spikes();
     if (target_ && result_.stop == bmesh::Stop::Exhausted && s.vertices_out > *target_) {
       tools::log(false, "bmesh-decimate: " + o_.input + ": " + std::to_string(*target_) +
                             " vertices cannot be reached: no further contraction is possible at " +
@@ -423,6 +482,19 @@ class Job {
       return tools::kNo;
     }
     return tools::kDone;
+  }
+
+  /// Without --epsilon nothing keeps vertices near the original, and few vertices mean spikes.
+  void warn_of_spikes() const {
+    const geom::Box3 result = geom::bounding_box(result_.mesh);
+    if (result.empty()) return;
+    const double beyond =
+        std::max((box_.min - result.min).maxCoeff(), (result.max - box_.max).maxCoeff());
+    if (beyond > 0.05 * box_.diagonal())
+      tools::log(o_.common.quiet, "warning: the result reaches " +
+                                      formatted(100 * beyond / box_.diagonal()) +
+                                      "% of the diagonal beyond the input's bounding box; use more "
+                                      "vertices, or --epsilon to bound the distance");
   }
 
   Options o_;
@@ -435,6 +507,7 @@ class Job {
   bmesh::DecimateResult result_;
   bmesh::Log log_;
   std::optional<geom::DirectedDistance> to_result_, to_original_;
+  std::vector<std::string> notes_;
   double seconds_read_ = 0, seconds_decimated_ = 0;
 };
 

@@ -15,20 +15,29 @@ struct Options {
   tools::CommonOptions common;
 };
 
+/// The original as the log interprets it: turns are taken from the log, not judged.
+std::string original(const bmesh::ReplayResult& r) {
+  std::string text = "the original";
+  if (r.turned != 0)
+    text += ", with " + std::to_string(r.turned) +
+            " triangles turned as the log says (whether they should be is not checked),";
+  return text;
+}
+
 std::string claim(const bmesh::Log& log, const bmesh::ReplayResult& r) {
   if (log.direction == bmesh::Direction::Any)
     return "replayed; direction 'any' claims no enclosure";
   const bool outer = log.direction == bmesh::Direction::Outer;
   if (!r.closed)
-    return std::string("verified: the generalised winding number nowhere ") +
+    return std::string("verified: the generalised winding number of ") + original(r) + " nowhere " +
            (outer ? "falls" : "rises") + " (open mesh)";
-  return outer ? "verified: the result's solid contains the original's"
-               : "verified: the original's solid contains the result's";
+  return outer ? "verified: the solid of the result contains that of " + original(r)
+               : "verified: the solid of " + original(r) + " contains that of the result";
 }
 
 int check(const Options& o) {
   std::vector<char> bytes;
-  const io::ReadResult original = io::read_mesh(
+  const io::ReadResult input = io::read_mesh(
       o.original, tools::format_for(o.original, o.original_format, "--input-format"), &bytes);
   const bmesh::Log log = bmesh::parse_log(io::read_file(o.log), o.log);
   if (log.input_sha256 != io::sha256(bytes))
@@ -37,7 +46,7 @@ int check(const Options& o) {
   bytes = {};
   const io::ReadResult result =
       io::read_mesh(o.result, tools::format_for(o.result, o.result_format, "--input-format"));
-  const bmesh::ReplayResult r = bmesh::replay(original.mesh, log, result.mesh);
+  const bmesh::ReplayResult r = bmesh::replay(input.mesh, log, result.mesh);
   if (!o.common.report.empty())
     tools::write_json(o.common.report, {{"tool", "bmesh-replay"},
                                         {"version", tools::version()},
@@ -54,7 +63,6 @@ int check(const Options& o) {
   }
   std::string text = claim(log, r) + "; " + std::to_string(r.steps) + " steps, " +
                      std::to_string(r.predicates) + " exact tests";
-  if (r.turned != 0) text += ", " + std::to_string(r.turned) + " input triangles turned";
   if (r.dropped != 0) text += ", " + std::to_string(r.dropped) + " input triangles dropped";
   if (!o.common.quiet) std::cout << text << '\n';
   return tools::kDone;

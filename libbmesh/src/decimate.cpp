@@ -40,6 +40,7 @@ class Decimator {
         sign_(options.direction == Direction::Inner ? -1 : 1),
         constrained_(options.direction != Direction::Any),
         origin_(geom::bounding_box(input.mesh).center()),
+        reach_(reach(geom::bounding_box(input.mesh))),
         position_(input.mesh.vertices),
         border_(input.border),
         mesh_(input.mesh.vertices.size(), input.mesh.triangles),
@@ -66,6 +67,11 @@ class Decimator {
   }
 
  private:
+  /// Half the box, and its diagonal more on every side: no vertex goes farther, whatever it costs.
+  static Vec3 reach(const geom::Box3& box) {
+    return 0.5 * (box.max - box.min) + Vec3::Constant(box.diagonal());
+  }
+
   // ---- set-up
   // -------------------------------------------------------------------------------------
 
@@ -361,7 +367,7 @@ class Decimator {
     } else {
       snap_to_axis_planes(half.lpNorm<1>());
     }
-    return candidate_.position.allFinite();
+    return ((candidate_.position - origin_).cwiseAbs().array() <= reach_.array()).all();
   }
 
   /// Puts the position exactly on axis-aligned planes that it is on but for rounding.
@@ -598,6 +604,7 @@ class Decimator {
   double sign_;
   bool constrained_;
   Vec3 origin_;  // quadrics are relative to it, lest they cancel far from the origin
+  Vec3 reach_;   // of new vertices from the origin
   std::vector<Vec3> position_;
   std::vector<char> border_;
   Connectivity mesh_;

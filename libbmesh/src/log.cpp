@@ -97,6 +97,9 @@ void record_preparation(const geom::Prepared& prepared, std::size_t input_triang
     kept[prepared.source[t]] = 1;
     if (prepared.turned[t] != 0) log.turned.push_back(prepared.source[t]);
   }
+  log.turned.insert(log.turned.end(), prepared.turned_and_dropped.begin(),
+                    prepared.turned_and_dropped.end());
+  std::sort(log.turned.begin(), log.turned.end());
   for (std::uint32_t t = 0; t < input_triangles; ++t)
     if (kept[t] == 0) log.dropped.push_back(t);
 }

@@ -6,8 +6,8 @@
 namespace kaboum::bmesh {
 namespace {
 
-/// Cuts that may lead to one piece over the whole run: what their rounding may leave uncovered is
-/// taken off ε beforehand.
+/// Cuts by prisms that may lead to one piece over the whole run: what their rounding may leave
+/// uncovered is taken off ε beforehand.
 constexpr std::uint32_t kMaxTotalCuts = 1000;
 
 }  // namespace
@@ -16,7 +16,8 @@ Tolerance::Tolerance(const geom::Mesh& original, double epsilon)
     : original_(original), head_(original.triangles.size(), kNone) {
   const geom::Box3& box = original_.box();
   const double magnitude = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
-  epsilon_ = epsilon - (magnitude + epsilon) * kMaxTotalCuts * geom::ConvexPolygon::kCutError;
+  epsilon_ = epsilon - (magnitude + epsilon) * kMaxTotalCuts * geom::PrismCut::kCuts *
+                           geom::ConvexPolygon::kCutError;
   pieces_.reserve(original.triangles.size());
   for (std::uint32_t t = 0; t < original.triangles.size(); ++t) {
     const geom::Triangle& tri = original.triangles[t];
@@ -41,7 +42,7 @@ std::uint32_t Tolerance::allocate() {
 bool Tolerance::carries(const NewTriangle& triangle, const geom::ConvexPolygon& piece) const {
   const auto& [a, b, c] = triangle.corner;
   for (int i = 0; i < piece.size; ++i)
-    if (geom::point_triangle_distance(piece.corner[i], a, b, c).upper > epsilon_) return false;
+    if (!(geom::point_triangle_distance(piece.corner[i], a, b, c).upper <= epsilon_)) return false;
   return true;
 }
 
@@ -72,7 +73,7 @@ bool Tolerance::place(const geom::ConvexPolygon& piece, std::uint32_t cuts,
     distance = d;
     nearest = k;
   }
-  if (distance > epsilon_) return false;
+  if (!(distance <= epsilon_)) return false;
   const auto& [a, b, c] = added[nearest].corner;
   const geom::PrismCut pieces = geom::cut_by_prism(piece, a, b, c, cuts_left % 3 == 0);
   last_carrier_ = nearest;

@@ -197,11 +197,11 @@ bool DistanceQuery::all_within(const ConvexPolygon& polygon, double radius, int 
     const Entry e = stack[--size];
     if (--max_pieces < 0) return false;
     const Nearest at = nearest(e.polygon.centroid(), e.hint);
-    if (at.upper > radius) return false;
-    double worst = 0;
-    for (int i = 0; i < e.polygon.size && worst <= radius; ++i)
-      worst = std::max(worst, to_triangle(e.polygon.corner[i], at.triangle).upper);
-    if (worst <= radius) continue;
+    if (!(at.upper <= radius)) return false;
+    bool near = true;
+    for (int i = 0; i < e.polygon.size && near; ++i)
+      near = to_triangle(e.polygon.corner[i], at.triangle).upper <= radius;
+    if (near) continue;
     const auto& [a, b, c] = corners(at.triangle);
     const PrismCut pieces = cut_by_prism(e.polygon, a, b, c, e.depth % 3 == 2);
     if (size + pieces.count > kStack) return false;

@@ -57,16 +57,20 @@ class BranchAndBound {
     int round = 1;
     for (; !open.empty(); ++round) {
       keep_unsettled(open);  // the lower bound may have risen
-      if (round > kMaxRounds || open.size() > kMaxPieces)
-        throw Error(ErrorCode::LimitReached,
-                    "the distance could not be bounded to the wished gap; allow a larger gap");
+      if (round > kMaxRounds || open.size() > kMaxPieces) {
+        // What is known of the rest is a bound all the same.
+        for (const Piece& p : open) settled_ = std::max(settled_, p.upper);
+        result_.within_gap = false;
+        break;
+      }
       open = cut_all(open, round);
       evaluate(open);
       keep_unsettled(open);
     }
     // What cuts may have left out lies this close to what they covered.
     result_.max_upper =
-        std::max(settled_ + round * ConvexPolygon::kCutError * magnitude_, result_.max_lower);
+        std::max(settled_ + round * PrismCut::kCuts * ConvexPolygon::kCutError * magnitude_,
+                 result_.max_lower);
     return result_;
   }
 

@@ -4,6 +4,7 @@
 #include <kaboum/geom/winding.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace kaboum::geom {
@@ -17,6 +18,7 @@ class Preparation {
  public:
   Preparation(const Mesh& input, const PrepareOptions& options) : options_(options) {
     require_valid(input);
+    require_moderate(input);
     out_.mesh = weld(input);
     const std::size_t n = out_.mesh.triangles.size();
     out_.source.resize(n);
@@ -30,11 +32,16 @@ class Preparation {
       throw Error(ErrorCode::InvalidInput, "the mesh has no triangle with three different corners");
     edges_ = edge_uses(out_.mesh);
     if (!options_.keep_orientation) agree_with_neighbours();
-    cancel_coincident();
+    cancel_pairs();
     if (!options_.keep_orientation) turn_components();
+    drop_copies();
     number_by_first_use();
     find_border();
     components(out_.mesh, true, &out_.components);
+    if (options_.keep_orientation && out_.closed && !(signed_volume(out_.mesh) > 0))
+      out_.notes.push_back(
+          "the signed volume is not positive: as oriented, the mesh bounds little or no "
+          "solid, and what is certified of its solid says nothing of its surface");
     out_.turned_triangles =
         static_cast<std::size_t>(std::count(out_.turned.begin(), out_.turned.end(), 1));
     return std::move(out_);
@@ -42,6 +49,20 @@ class Preparation {
 
  private:
   Mesh& mesh() { return out_.mesh; }
+
+  /// Products of four coordinates must neither overflow nor vanish.
+  static void require_moderate(const Mesh& input) {
+    const Box3 box = bounding_box(input);
+    if (box.empty()) return;
+    const double magnitude = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
+    const double extent = (box.max - box.min).maxCoeff();
+    if (magnitude > 1e60 || (extent > 0 && extent < 1e-60))
+      throw Error(
+          ErrorCode::InvalidInput,
+          "the mesh's coordinates reach " + std::to_string(std::log10(magnitude)) +
+              " in powers of ten and its extent " + std::to_string(std::log10(extent)) +
+              "; coordinates up to 1e60 and extents from 1e-60 can be worked on: scale the mesh");
+  }
 
   void turn(std::uint32_t t) {
     std::swap(mesh().triangles[t][1], mesh().triangles[t][2]);
@@ -52,7 +73,10 @@ class Preparation {
   void filter(const std::vector<char>& keep) {
     std::size_t n = 0;
     for (std::size_t t = 0; t < keep.size(); ++t) {
-      if (keep[t] == 0) continue;
+      if (keep[t] == 0) {
+        if (out_.turned[t] != 0) out_.turned_and_dropped.push_back(out_.source[t]);
+        continue;
+      }
       mesh().triangles[n] = mesh().triangles[t];
       out_.source[n] = out_.source[t];
       out_.turned[n] = out_.turned[t];
@@ -96,12 +120,19 @@ class Preparation {
     return 2 * static_cast<std::size_t>(forward) == uses.size();
   }
 
+  std::uint32_t opposite_corner(const EdgeUse& use) const {
+    return out_.mesh.triangles[use.triangle][(use.corner + 2) % 3];
+  }
+
   /// Patches connected through edges with exactly two triangles are oriented consistently, by the
   /// orientation that most of their area has already.
   void agree_with_neighbours() {
     std::size_t inconsistent = 0;
+    const auto neighbours = [&](std::span<const EdgeUse> e) {
+      return e.size() == 2 && opposite_corner(e[0]) != opposite_corner(e[1]);
+    };
     for_each_edge(
-        [&](std::span<const EdgeUse> e) { inconsistent += e.size() == 2 && !balanced(e); });
+        [&](std::span<const EdgeUse> e) { inconsistent += neighbours(e) && !balanced(e); });
     if (inconsistent == 0) return;
 
     const std::size_t n = mesh().triangles.size();
@@ -111,7 +142,7 @@ class Preparation {
     };
     std::vector<std::array<Neighbour, 3>> across(n);
     for_each_edge([&](std::span<const EdgeUse> e) {
-      if (e.size() != 2) return;
+      if (!neighbours(e)) return;  // copies of one triangle are none
       const bool agrees = e[0].forward != e[1].forward;
       across[e[0].triangle][e[0].corner] = {e[1].triangle, agrees};
       across[e[1].triangle][e[1].corner] = {e[0].triangle, agrees};
@@ -165,17 +196,17 @@ class Preparation {
       return (t[0] == sorted[0] && t[1] == sorted[1]) || (t[1] == sorted[0] && t[2] == sorted[1]) ||
              (t[2] == sorted[0] && t[0] == sorted[1]);
     };
-    // Only triangles that share their lowest edge with another can coincide.
+    // Only triangles that share an edge and the corner opposite to it can coincide.
     std::vector<char> candidate(mesh().triangles.size(), 0);
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> by_corner;
     for_each_edge([&](std::span<const EdgeUse> e) {
-      for (std::size_t i = 0; i < e.size(); ++i)
-        for (std::size_t j = i + 1; j < e.size(); ++j) {
-          const auto opposite = [&](const EdgeUse& u) {
-            return mesh().triangles[u.triangle][(u.corner + 2) % 3];
-          };
-          if (opposite(e[i]) == opposite(e[j]))
-            candidate[e[i].triangle] = candidate[e[j].triangle] = 1;
-        }
+      if (e.size() < 2) return;
+      by_corner.clear();
+      for (const EdgeUse& u : e) by_corner.emplace_back(opposite_corner(u), u.triangle);
+      std::sort(by_corner.begin(), by_corner.end());
+      for (std::size_t i = 1; i < by_corner.size(); ++i)
+        if (by_corner[i].first == by_corner[i - 1].first)
+          candidate[by_corner[i].second] = candidate[by_corner[i - 1].second] = 1;
     });
     for (std::uint32_t t = 0; t < candidate.size(); ++t) {
       if (candidate[t] == 0) continue;
@@ -201,12 +232,11 @@ class Preparation {
     return found;
   }
 
-  void cancel_coincident() {
+  void cancel_pairs() {
     const Coincident found = find_coincident();
-    if (found.pairs.empty() && found.copies.empty()) return;
+    if (found.pairs.empty()) return;
     std::vector<char> keep(mesh().triangles.size(), 1);
     drop_pairs(found.pairs, keep);
-    drop_copies(found.copies, keep);
     filter(keep);
     if (mesh().empty())
       throw Error(ErrorCode::InvalidInput,
@@ -216,7 +246,6 @@ class Preparation {
   /// Opposite pairs add nothing to the chain. Inside the rest's solid they are walls between
   /// touching bodies; elsewhere they are sheets, which no solid protects.
   void drop_pairs(const std::vector<std::uint32_t>& pairs, std::vector<char>& keep) {
-    if (pairs.empty()) return;
     std::vector<std::int8_t> weight(mesh().triangles.size(), 1);
     for (const std::uint32_t t : pairs) weight[t] = 0;
     const WindingNumber winding(mesh());
@@ -248,9 +277,18 @@ class Preparation {
                            " of walls between touching bodies cancelled");
   }
 
-  /// Drops copies whose edges balance among the dropped ones alone, component by component.
-  void drop_copies(const std::vector<std::uint32_t>& copies, std::vector<char>& keep) {
+  /// Drops copies whose edges balance among the dropped ones alone, component by component. A copy
+  /// lowers the winding number inside; that leaves the solid alone only where nothing else lowers
+  /// it, so copies stay if any component is oriented inwards.
+  void drop_copies() {
+    const std::vector<std::uint32_t> copies = find_coincident().copies;
     if (copies.empty()) return;
+    std::vector<char> closed_component;
+    const std::vector<std::uint32_t> component = closed_components(closed_component);
+    const std::vector<double> volume = volumes(component, closed_component.size());
+    for (std::size_t c = 0; c < volume.size(); ++c)
+      if (closed_component[c] != 0 && volume[c] < 0) return;
+    std::vector<char> keep(mesh().triangles.size(), 1);
     Mesh dropped{mesh().vertices, {}};
     for (const std::uint32_t t : copies) dropped.triangles.push_back(mesh().triangles[t]);
     std::uint32_t count = 0;
@@ -268,9 +306,10 @@ class Preparation {
       keep[copies[i]] = 0;
       ++out_.dropped_copies;
     }
-    if (out_.dropped_copies != 0)
-      out_.notes.push_back(count_of(out_.dropped_copies, "triangle", "triangles") +
-                           " of identically oriented copies dropped");
+    if (out_.dropped_copies == 0) return;
+    filter(keep);
+    out_.notes.push_back(count_of(out_.dropped_copies, "triangle", "triangles") +
+                         " of identically oriented copies dropped");
   }
 
   /// Smallest sets of triangles that are closed chains: patches joined through edges of two
@@ -291,22 +330,25 @@ class Preparation {
     for_each_edge([&](std::span<const EdgeUse> e) {
       if (e.size() == 2) join(e[0].triangle, e[1].triangle);
     });
+    std::vector<std::pair<std::uint32_t, int>> sums;  // per patch at an edge: forward − backward
     for (bool changed = true; changed;) {
       changed = false;
       for_each_edge([&](std::span<const EdgeUse> e) {
         if (e.size() <= 2 || !balanced(e)) return;
-        for (const EdgeUse& u : e) {
-          const std::uint32_t root = find(u.triangle);
+        sums.clear();
+        for (const EdgeUse& u : e) sums.emplace_back(find(u.triangle), u.forward ? 1 : -1);
+        std::sort(sums.begin(), sums.end());
+        bool alone = true;
+        for (std::size_t i = 0; i < sums.size() && alone;) {
+          const std::uint32_t root = sums[i].first;
           int sum = 0;
-          for (const EdgeUse& x : e)
-            if (find(x.triangle) == root) sum += x.forward ? 1 : -1;
-          if (sum == 0) continue;
-          for (const EdgeUse& x : e)
-            if (find(x.triangle) != root) {
-              join(root, x.triangle);
-              changed = true;
-            }
-          return;
+          for (; i < sums.size() && sums[i].first == root; ++i) sum += sums[i].second;
+          alone = sum == 0;
+        }
+        if (alone) return;
+        for (const EdgeUse& u : e.subspan(1)) {
+          changed = changed || find(u.triangle) != find(e[0].triangle);
+          join(e[0].triangle, u.triangle);
         }
       });
     }
@@ -324,10 +366,7 @@ class Preparation {
     return label;
   }
 
-  void turn_components() {
-    std::vector<char> closed;
-    const std::vector<std::uint32_t> label = closed_components(closed);
-    const std::size_t count = closed.size();
+  std::vector<double> volumes(const std::vector<std::uint32_t>& label, std::size_t count) {
     const Vec3 origin = bounding_box(mesh()).center();
     std::vector<double> volume(count, 0);
     for (std::size_t t = 0; t < label.size(); ++t) {
@@ -336,61 +375,91 @@ class Preparation {
                  c = mesh().vertices[tri[2]] - origin;
       volume[label[t]] += a.dot(b.cross(c));
     }
+    return volume;
+  }
+
+  /// A component with negative volume is a cavity if all of it lies in the solid of the others;
+  /// otherwise it is inside out and turned. It takes along what lies inside it as long as that has
+  /// no solid of its own: the cavities of a file that is inside out as a whole.
+  void turn_components() {
+    std::vector<char> closed;
+    const std::vector<std::uint32_t> label = closed_components(closed);
+    const std::size_t count = closed.size();
+    std::vector<double> volume = volumes(label, count);
     const auto inward = [&](std::uint32_t c) { return closed[c] != 0 && volume[c] < 0; };
     bool any = false;
     for (std::uint32_t c = 0; c < count; ++c) any = any || inward(c);
     if (!any) return;
 
     std::vector<std::vector<std::uint32_t>> members(count);
-    for (std::uint32_t t = 0; t < label.size(); ++t) members[label[t]].push_back(t);
+    std::vector<Box3> box(count);
+    for (std::uint32_t t = 0; t < label.size(); ++t) {
+      members[label[t]].push_back(t);
+      for (const std::uint32_t v : mesh().triangles[t]) box[label[t]].extend(mesh().vertices[v]);
+    }
     std::vector<std::uint32_t> by_size(count);
     std::iota(by_size.begin(), by_size.end(), 0U);
     std::stable_sort(by_size.begin(), by_size.end(), [&](std::uint32_t a, std::uint32_t b) {
       return std::abs(volume[a]) > std::abs(volume[b]);
     });
     const WindingNumber winding(mesh());
-    std::vector<std::int8_t> weight(label.size(), 1);
+    std::vector<std::int8_t> weight(label.size(), 1);  // of the whole chain as turned so far
     for (std::size_t t = 0; t < label.size(); ++t)
       if (closed[label[t]] == 0) weight[t] = 0;
-    const auto set_weight = [&](std::uint32_t c, std::int8_t w) {
-      for (const std::uint32_t t : members[c]) weight[t] = w;
-    };
-    const auto corner = [&](std::uint32_t t) -> const Vec3& {
-      return mesh().vertices[mesh().triangles[t][0]];
-    };
+    std::vector<std::int8_t> only(label.size(), 0);  // of the nest looked at
     std::vector<std::int8_t> sense(count, 1);
-    std::vector<std::int8_t> only(label.size(), 0);
+    const auto set = [&](std::vector<std::int8_t>& weights, std::uint32_t c, std::int8_t w) {
+      for (const std::uint32_t t : members[c]) weights[t] = w;
+    };
+    // Whether holds(w) at every corner of c that is on none of the weighted triangles.
+    const auto everywhere = [&](std::uint32_t c, const std::vector<std::int8_t>& weights,
+                                auto&& holds) {
+      for (const std::uint32_t t : members[c]) {
+        for (const std::uint32_t v : mesh().triangles[t]) {
+          const auto w = winding.weighted(mesh().vertices[v], weights);
+          if (w && !holds(*w)) return false;
+        }
+      }
+      return true;
+    };
     for (const std::uint32_t c : by_size) {
       if (!inward(c)) continue;
-      // Inside out unless it lies in a solid everywhere: then it is a cavity.
-      set_weight(c, 0);
-      const bool cavity = std::all_of(members[c].begin(), members[c].end(), [&](std::uint32_t t) {
-        return winding.weighted(corner(t), weight).value_or(1) >= 1;
-      });
-      set_weight(c, sense[c]);
+      set(weight, c, 0);
+      const bool cavity = everywhere(c, weight, [](int w) { return w >= 1; });
+      set(weight, c, sense[c]);
       if (cavity) continue;
       ++out_.turned_components;
-      for (const std::uint32_t t : members[c]) only[t] = 1;
+      std::vector<std::uint32_t> nest{c};
+      set(only, c, sense[c]);
       for (std::uint32_t d = 0; d < count; ++d) {
-        if (closed[d] == 0) continue;
-        if (d != c) {
-          std::optional<int> around;
-          for (const std::uint32_t t : members[d])
-            if ((around = winding.weighted(corner(t), only))) break;
-          if (around.value_or(0) == 0) continue;
-        }
+        if (d == c || closed[d] == 0 || std::abs(volume[d]) >= std::abs(volume[c])) continue;
+        if (!(box[d].min.array() >= box[c].min.array()).all() ||
+            !(box[d].max.array() <= box[c].max.array()).all())
+          continue;
+        if (everywhere(d, only, [](int w) { return w < 0; })) nest.push_back(d);
+      }
+      for (const std::uint32_t d : nest) set(only, d, sense[d]);
+      const bool hollow = std::all_of(nest.begin(), nest.end(), [&](std::uint32_t d) {
+        set(only, d, 0);
+        const int inside = volume[d] > 0 ? 1 : -1;
+        const bool none = everywhere(d, only, [&](int w) { return w <= 0 && w + inside <= 0; });
+        set(only, d, sense[d]);
+        return none;
+      });
+      for (const std::uint32_t d : nest) set(only, d, 0);
+      if (!hollow) nest.resize(1);
+      for (const std::uint32_t d : nest) {
         sense[d] = static_cast<std::int8_t>(-sense[d]);
         volume[d] = -volume[d];
-        set_weight(d, sense[d]);
+        set(weight, d, sense[d]);
       }
-      for (const std::uint32_t t : members[c]) only[t] = 0;
     }
     for (std::uint32_t t = 0; t < label.size(); ++t)
       if (sense[label[t]] < 0) turn(t);
     if (out_.turned_components == 0) return;
     edges_ = edge_uses(mesh());
     out_.notes.push_back(count_of(out_.turned_components, "component was", "components were") +
-                         " inside out and turned, with what is nested inside");
+                         " inside out and turned, with its cavities");
   }
 
   /// Vertices in the order in which the triangles left use them in the input, before any was

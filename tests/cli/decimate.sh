@@ -45,6 +45,12 @@ expect 0 'writing double' "$D" far.off -o far.ply --vertices 4
 expect 0 '' "$D" far.off -o far.off2 --output-format off --vertices 4 --precision double
 expect 2 'float32 only' "$D" far.off -o far.stl --vertices 4 --precision double
 
+# Sizes whose products would overflow or vanish.
+awk 'NR>2 && NR<7 {printf "%.17g %.17g %.17g\n", $1*1e80, $2*1e80, $3*1e80; next} {print}' t.off >vast.off
+expect 3 'scale the mesh' "$D" vast.off -o x.off --vertices 4
+awk 'NR>2 && NR<7 {printf "%.17g %.17g %.17g\n", $1*1e-80, $2*1e-80, $3*1e-80; next} {print}' t.off >minute.off
+expect 3 'scale the mesh' "$D" minute.off -o x.off --vertices 4
+
 # Usage.
 expect 2 '' "$D"
 expect 2 'at least one of' "$D" t.off -o x.off
@@ -63,7 +69,15 @@ expect 2 'unknown' "$D" t.off -o x.xyz --vertices 4
 expect 2 '' "$D" t.off -o x.off --vertices 4 --threads many
 absent x.off
 
-# Output that cannot be written.
+# Every file once.
+expect 2 'cannot both be' "$D" t.off -o x.off --vertices 4 --log ./x.off
+expect 2 'cannot both be' "$D" t.off -o x.off --vertices 4 --report x.off
+expect 2 'cannot both be' "$D" t.off -o t.off --vertices 4 --log l.log
+expect 2 'cannot both be' "$D" t.off -o - --output-format off --vertices 4 --log -
+
+# Output that cannot be written; nothing that belongs to it stays behind.
+expect 4 '' "$D" t.off -o /nonexistent/dir/x.off --vertices 4 --log gone.log --report gone.json --depfile gone.d
+absent gone.log gone.json gone.d
 expect 4 '' "$D" t.off -o /nonexistent/dir/x.off --vertices 4
 expect 4 '' "$D" t.off -o x.off --vertices 4 --report /nonexistent/dir/r.json
 finish

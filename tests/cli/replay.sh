@@ -4,9 +4,9 @@ R=$BIN/bmesh-replay
 
 "$D" "$BRACKET" -o outer.stl --ratio 0.1 --log outer.log --quiet || fail "decimation"
 "$D" "$BRACKET" -o inner.ply --ratio 0.1 --log inner.log --quiet --direction inner || fail "decimation"
-expect 0 'contains the original' "$R" "$BRACKET" outer.log outer.stl --report r.json
+expect 0 'solid of the result contains that of the original' "$R" "$BRACKET" outer.log outer.stl --report r.json
 grep -q '"verified": true' r.json || fail "report"
-expect 0 "original's solid contains" "$R" "$BRACKET" inner.log inner.ply
+expect 0 'solid of the original contains' "$R" "$BRACKET" inner.log inner.ply
 expect 1 'refuted' "$R" "$BRACKET" outer.log inner.ply
 expect 1 'refuted' "$R" "$BRACKET" inner.log outer.stl
 
@@ -20,6 +20,11 @@ expect 3 'not a log' "$R" "$BRACKET" no.log outer.stl
 expect 3 '' "$R" "$BRACKET" missing.log outer.stl
 expect 3 '' "$R" missing.ply outer.log outer.stl
 expect 2 '' "$R" "$BRACKET" outer.log
+
+# Triangles turned by the log are named in the verdict.
+tetrahedron | sed 's/^3 \([0-9]\) \([0-9]\) \([0-9]\)/3 \1 \3 \2/' >inverted.off
+"$D" inverted.off -o upright.off --vertices 4 --log i.log --quiet || fail "inverted"
+expect 0 'is not checked' "$R" inverted.off i.log upright.off
 
 # One flipped bit in the last step's position: refuted (or, in an unused bit of the header, refused).
 size=$(wc -c <outer.log)

@@ -103,6 +103,47 @@ TEST(Prepare, TurnsAnInsideOutBodyInACavity) {
   EXPECT_EQ(winding_at(p, {2.5, 2.5, 2.25}), 1);
 }
 
+// A small inside-out body overlaps a corner of a big one, whose first corner lies inside it.
+TEST(Prepare, TurnsOnlyWhatIsInsideOut) {
+  Mesh mesh;
+  add_cube(mesh, {0, 0, 0}, {10, 10, 10});
+  add_cube(mesh, {-1, -1, -1}, {1, 1, 1}, true);
+  const Prepared p = prepare(mesh);
+  EXPECT_EQ(p.turned_triangles, 12U);
+  EXPECT_EQ(winding_at(p, {5, 5, 5.5}), 1);
+  EXPECT_EQ(winding_at(p, {-0.5, -0.5, -0.25}), 1);
+  EXPECT_EQ(winding_at(p, {0.5, 0.5, 0.25}), 2);
+}
+
+// An inside-out shell around a solid body: the body keeps its solid.
+TEST(Prepare, TakesNoSolidFromANest) {
+  Mesh mesh;
+  add_cube(mesh, {0, 0, 0}, {9, 9, 9}, true);
+  add_cube(mesh, {1, 1, 1}, {8, 8, 8});
+  add_cube(mesh, {2, 2, 2}, {7, 7, 7});
+  const Prepared p = prepare(mesh);
+  EXPECT_GE(winding_at(p, {4, 4, 4.5}), 1);
+  EXPECT_GE(winding_at(p, {0.5, 0.5, 0.25}), 1);
+}
+
+TEST(Prepare, KeepsCopiesBesideCavities) {
+  Mesh mesh;
+  add_cube(mesh, {0, 0, 0}, {9, 9, 9});
+  add_cube(mesh, {0, 0, 0}, {9, 9, 9});
+  add_cube(mesh, {1, 1, 1}, {8, 8, 8}, true);  // 2 − 1 = 1: still solid
+  const Prepared p = prepare(mesh);
+  EXPECT_EQ(p.dropped_copies, 0U);
+  EXPECT_EQ(winding_at(p, {5, 5, 5.5}), 1);
+}
+
+TEST(Prepare, RefusesSizesThatOverflow) {
+  for (const double s : {1e70, 1e-70}) {
+    Mesh mesh;
+    add_cube(mesh, {0, 0, 0}, {s, s, s});
+    EXPECT_EQ(refusal(mesh), ErrorCode::InvalidInput);
+  }
+}
+
 TEST(Prepare, AgreesMixedOrientation) {
   Mesh mesh;
   add_cube(mesh, {0, 0, 0}, {1, 1, 1});

@@ -8,6 +8,7 @@
 #include <kaboum/bmesh/decimate.h>
 #include <kaboum/bmesh/replay.h>
 #include <kaboum/geom/error.h>
+#include <kaboum/geom/topology.h>
 #include <kaboum/geom/winding.h>
 #include <kaboum/io/mesh_io.h>
 
@@ -134,8 +135,16 @@ class Check {
     const auto checked = bmesh::replay(input, log, r.mesh);
     const auto points = sample_points(p.mesh, r.mesh, s_.samples);
     std::size_t solid = 0;
-    const std::size_t bad = d == Direction::Outer ? violations(p.mesh, r.mesh, points, &solid)
-                                                  : violations(r.mesh, p.mesh, points, &solid);
+    std::size_t bad = d == Direction::Outer ? violations(p.mesh, r.mesh, points, &solid)
+                                            : violations(r.mesh, p.mesh, points, &solid);
+    // Preparation may not have taken anything from the input's own solid, where it has one; nor
+    // added to it, unless it turned something.
+    if (const Mesh raw = geom::weld(input); geom::analyse(raw).closed()) {
+      std::size_t ignored = 0;
+      if (d == Direction::Outer) bad += violations(raw, r.mesh, points, &ignored);
+      if (d == Direction::Inner && p.turned_triangles == 0)
+        bad += violations(r.mesh, raw, points, &ignored);
+    }
     ++runs_;
     contractions_ += checked.steps;
     predicates_ += checked.predicates;

@@ -42,7 +42,8 @@ struct DecimateOptions {
 /// Why decimation ended.
 enum class Stop {
   VertexTarget,  ///< the wished number of vertices is reached
-  ErrorBound,    ///< no contraction is left that keeps within epsilon
+  ErrorBound,    ///< no contraction is left; epsilon alone forbids at least one that is otherwise
+                 ///< valid
   Exhausted,     ///< no contraction is left at all
 };
 
@@ -80,7 +81,7 @@ struct DecimateResult {
 /// contraction also keeps a certificate that no point of either surface is farther than epsilon
 /// from the other one.
 ///
-/// @pre options.vertices or options.epsilon is given; coordinates of magnitude below 1e100.
+/// @pre options.vertices or options.epsilon is given; `input` comes from geom::prepare.
 /// @throws Error{InvalidArgument} on contradictory options; Error{InvalidInput} when keep_convex is
 ///   wished for input that is not convex.
 DecimateResult decimate(const geom::Prepared& input, const DecimateOptions& options);

@@ -27,6 +27,11 @@ struct ReplayResult {
 /// (not checked for Direction::Any, which claims nothing); no vertex of an unbalanced edge moves;
 /// and the triangles left are exactly those of `result`, coordinate by coordinate.
 ///
+/// The original is taken as the log interprets it: turned triangles are applied and counted,
+/// whether they should be turned is not checked. Dropped copies are checked to be closed chains
+/// that also stay; they lower the winding number but, unless something is oriented inwards, not the
+/// solid.
+///
 /// @param original  as read from the input file.
 /// @param result    as read from the result file.
 /// @throws Error{InvalidInput} when the log refers to triangles or vertices that do not exist.

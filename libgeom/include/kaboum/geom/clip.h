@@ -50,6 +50,7 @@ void halve(const ConvexPolygon& polygon, ConvexPolygon& first, ConvexPolygon& se
 /// Pieces of a polygon with respect to a triangle's prism (the points that project into it): at
 /// most one piece inside and three outside.
 struct PrismCut {
+  static constexpr int kCuts = 3;  ///< that a point may undergo: what they leave out adds up
   std::array<ConvexPolygon, 4> piece;
   int count = 0;
 };

@@ -23,7 +23,7 @@ struct DistanceBounds {
 /// that separates p from the corners, both widened by the rounding error derived in
 /// docs/algorithms/distances.md.
 ///
-/// @pre finite coordinates of magnitude below 1e150.
+/// @pre coordinates of magnitude below 1e70; differences that matter above 1e-70.
 DistanceBounds point_triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// Distance queries against a fixed set of triangles.
@@ -78,6 +78,8 @@ struct DirectedDistance {
   double max_lower = 0;  ///< certified bracket of the supremum
   double max_upper = 0;
   Vec3 at = Vec3::Zero();  ///< point of A at which max_lower is attained
+  bool within_gap =
+      true;  ///< false: the work allowed (2^23 pieces at a time) did not reach the gap
   std::uint64_t queries = 0;
 };
 
@@ -95,7 +97,7 @@ struct DistanceOptions {
 /// Rounds are evaluated in parallel (oneTBB); the result does not depend on the number of threads.
 ///
 /// @pre A and B have triangles and finite coordinates; B is given as a query.
-/// @throws Error{LimitReached} when the gap cannot be reached with 2^23 pieces at a time.
+/// @throws Error{InvalidInput} when A has no triangles.
 DirectedDistance directed_distance(const Mesh& a, const DistanceQuery& b,
                                    const DistanceOptions& options = {});
 
