@@ -127,7 +127,7 @@ Status ContingentPlanner::solve(const State& start, Index& entry, Blame& blame) 
   Status status = Status::Limit;
   while (true) {
     ++statistics_.searches;
-    const Found found = search_({task_, start, *this, limits_, statistics_});
+    const Found found = search_({task_, start, *this, limits_, statistics_, heuristics_});
     if (found.status != Status::Solved) {
       status = found.status;
       break;

@@ -60,6 +60,7 @@ class ContingentPlanner final : private Target {
   SearchFunction search_;
   Limits& limits_;
   Statistics& statistics_;
+  Heuristics heuristics_;
   Regression regression_;
   std::vector<Entry> entries_;
   std::unordered_map<std::uint64_t, std::vector<Index>> entry_index_;

@@ -3,12 +3,18 @@
 #include <kaboum/plan/solve.h>
 
 #include <chrono>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "task.h"
 
 namespace kaboum::plan {
+
+class Relaxation;
+class RelaxedPlan;
+class Invariants;
+class LandmarkHeuristic;
 
 /// What a search for one unbranched part looks for, and which outcomes it may suppose.
 class Target {
@@ -45,6 +51,16 @@ struct Found {
   std::vector<Step> steps;
 };
 
+/// Heuristics of a task, made when a search first needs them and kept for the next.
+struct Heuristics {
+  Heuristics();
+  ~Heuristics();
+  std::unique_ptr<Relaxation> relaxation;
+  std::unique_ptr<RelaxedPlan> relaxed_plan;
+  std::unique_ptr<Invariants> invariants;
+  std::unique_ptr<LandmarkHeuristic> landmarks;
+};
+
 /// One search from `start` to the target. The algorithm's header tells what it guarantees.
 struct SearchInput {
   Task& task;
@@ -52,6 +68,7 @@ struct SearchInput {
   Target& target;
   Limits& limits;
   Statistics& statistics;
+  Heuristics& heuristics;
 };
 
 Found depth_first(const SearchInput& in);

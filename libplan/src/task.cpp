@@ -262,6 +262,7 @@ void Task::add_change(const Update& u, const std::vector<Index>& slots, Conditio
     const Word content = c.kind == K::AddValue ? kFirstValue + c.value
                          : static_cast<Word>(c.kind == K::AddTrue ? AtomKnowledge::True : AtomKnowledge::False);
     const Conditional::Write w{f.word, f.mask, content << f.shift};
+    out.plain.push_back(c);
     for (Conditional::Write& old : out.writes)
       if (old.word == w.word) {
         old.bits = (old.bits & ~w.mask) | w.bits;

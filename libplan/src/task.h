@@ -30,6 +30,7 @@ struct Conditional {
     Word bits;
   };
   std::vector<Write> writes;
+  std::vector<Change> plain;  ///< what the writes are made of: for analysis
 };
 
 struct GroundAction {
