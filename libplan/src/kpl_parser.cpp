@@ -18,16 +18,22 @@ constexpr int kMaximumNesting = 200;  // recursion stays far from the stack's en
 
 class Parser {
  public:
-  explicit Parser(std::shared_ptr<const Source> source)
-      : source_(std::move(source)), tokens_(tokenize(*source_)) {}
+  explicit Parser(const Source& source) : source_(&source), tokens_(tokenize(source)) {}
 
   syntax::Document document() {
-    document_.sources.push_back(source_);
     while (!at_end()) section();
     return std::move(document_);
   }
 
- private:
+  /// Reads one piece, which must be the whole text.
+  template <class Read>
+  auto piece(Read read) {
+    auto result = read(*this);
+    if (!at_end()) place().fail("unexpected " + found());
+    return result;
+  }
+
+ // Public to the pieces below; the class itself is private to this file.
   // ---- tokens ------------------------------------------------------------------------------
   [[nodiscard]] const Token& peek(std::size_t ahead = 0) const {
     return tokens_[std::min(next_ + ahead, tokens_.size() - 1)];
@@ -36,7 +42,7 @@ class Parser {
   [[nodiscard]] bool is(std::string_view symbol, std::size_t ahead = 0) const {
     return peek(ahead).is(symbol);
   }
-  [[nodiscard]] Place place() const { return {source_.get(), peek().offset}; }
+  [[nodiscard]] Place place() const { return {source_, peek().offset}; }
   bool accept(std::string_view symbol) {
     if (!is(symbol)) return false;
     ++next_;
@@ -74,7 +80,7 @@ class Parser {
   [[nodiscard]] bool at_section() const {
     static constexpr std::array kWithColon = {"types",   "constants", "objects", "predicates",
                                               "functions", "externals", "init",  "closed",
-                                              "goal",    "preconds",  "effects", "cost"};
+                                              "unknown", "goal",      "preconds", "effects", "cost"};
     static constexpr std::array kOthers = {"action", "table", "domain", "problem", "symbols"};
     if (at_end()) return true;
     if (peek().kind != Token::Kind::Name) return false;
@@ -111,6 +117,8 @@ class Parser {
       list([&] { document_.externals.push_back(external()); });
     } else if (heading("closed")) {
       list([&] { document_.closed.push_back(name("a predicate")); });
+    } else if (heading("unknown")) {
+      list([&] { document_.unknown.push_back(literal()); });
     } else if (heading("init")) {
       initial();
     } else if (heading("goal")) {
@@ -543,7 +551,7 @@ class Parser {
     }
   }
 
-  std::shared_ptr<const Source> source_;
+  const Source* source_;
   std::vector<Token> tokens_;
   std::size_t next_ = 0;
   int depth_ = 0;
@@ -558,7 +566,38 @@ void append(std::vector<T>& to, std::vector<T>& from) {
 }  // namespace
 
 syntax::Document parse_kpl(std::shared_ptr<const Source> source) {
-  return Parser(std::move(source)).document();
+  syntax::Document document = Parser(*source).document();
+  document.sources.push_back(std::move(source));
+  return document;
+}
+
+syntax::Formula kpl_piece::formula(const Source& source) {
+  return Parser(source).piece([](Parser& p) { return p.formula(); });
+}
+std::vector<Effect> kpl_piece::effects(const Source& source) {
+  return Parser(source).piece([](Parser& p) { return p.effects(); });
+}
+std::vector<Effect> kpl_piece::initial(const Source& source) {
+  return Parser(source).piece([](Parser& p) {
+    p.initial();
+    return std::move(p.document_.initial);
+  });
+}
+std::vector<TypedVariable> kpl_piece::parameters(const Source& source) {
+  return Parser(source).piece([](Parser& p) { return p.at_end() ? std::vector<TypedVariable>{} : p.parameters(); });
+}
+std::vector<syntax::Signature> kpl_piece::signatures(const Source& source) {
+  return Parser(source).piece([](Parser& p) {
+    std::vector<syntax::Signature> all;
+    p.list([&] { all.push_back(p.signature(true)); });
+    return all;
+  });
+}
+std::vector<TypedVariable> kpl_piece::constants(const Source& source) {
+  return Parser(source).piece([](Parser& p) {
+    p.constants();
+    return std::move(p.document_.constants);
+  });
 }
 
 syntax::Document syntax::merge(Document domain, Document problem) {
@@ -573,6 +612,7 @@ syntax::Document syntax::merge(Document domain, Document problem) {
   append(domain.initial, problem.initial);
   append(domain.goals, problem.goals);
   append(domain.closed, problem.closed);
+  append(domain.unknown, problem.unknown);
   append(domain.sources, problem.sources);
   return domain;
 }

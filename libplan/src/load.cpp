@@ -1,7 +1,10 @@
 #include <kaboum/plan/load.h>
 
 #include "kpl_parser.h"
+#include "kpl_printer.h"
+#include "pddl.h"
 #include "resolve.h"
+#include "xml.h"
 
 namespace kaboum::plan {
 namespace {
@@ -14,9 +17,9 @@ syntax::Document parse(const Text& text) {
     case Language::Kpl:
       return parse_kpl(std::move(source));
     case Language::Pddl:
-      break;
+      return parse_pddl(std::move(source));
     case Language::Xml:
-      break;
+      return parse_xml(std::move(source));
   }
   throw Error(ErrorCode::InvalidArgument, "unknown language");
 }
@@ -40,5 +43,17 @@ Model load(const Text& domain, const Text* problem, const ExternalBindings& bind
   return resolve(parse(domain, problem), bindings);
 }
 
-std::string convert(const Text&, const Text*, Language) { return {}; }
+std::string convert(const Text& domain, const Text* problem, Language to) {
+  const syntax::Document d = parse(domain, problem);
+  switch (to) {
+    case Language::Kpl:
+      return print_kpl(d);
+    case Language::Xml:
+      return print_xml(d);
+    case Language::Pddl:
+      return print_pddl(d);
+  }
+  throw Error(ErrorCode::InvalidArgument, "unknown language");
+}
+
 }  // namespace kaboum::plan

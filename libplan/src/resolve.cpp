@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <set>
 #include <unordered_map>
 
 namespace kaboum::plan {
@@ -792,7 +793,20 @@ class Resolver {
       std::vector<Index> values(scope.slots, 0);
       expand(r, values, e.place, e.database == sx::Database::Lcw ? closed : model_.initial);
     }
+    for (const sx::Formula& f : document_.unknown) {
+      Scope none;
+      std::vector<Unfolded> unfolded;
+      Update::Literal l = literal(f, false, none, unfolded);
+      if (l.function || l.negated || !unfolded.empty()) f.place.fail("'unknown' takes atoms of constants");
+      std::vector<Index> key = {l.symbol};
+      for (const Argument& a : l.arguments) key.push_back(a.index);
+      unknown_.insert(std::move(key));
+    }
     for (const Name& name : document_.closed) {
+      if (name.text == "all" && !predicates_.contains("all")) {
+        for (Index p = 0; p < model_.predicates.size(); ++p) close(p, {}, closed);
+        continue;
+      }
       const auto found = predicates_.find(name.text);
       if (found == predicates_.end()) name.place.fail("unknown predicate '" + name.text + "'");
       close(found->second, {}, closed);
@@ -803,6 +817,10 @@ class Resolver {
   void close(Index predicate, std::vector<Argument> prefix, std::vector<Update>& out) {
     const Symbol& s = model_.predicates[predicate];
     if (prefix.size() == s.parameters.size()) {
+      std::vector<Index> key = {predicate};
+      for (const Argument& a : prefix) key.push_back(a.index);
+      if (unknown_.contains(key)) return;
+      if (out.size() > 5'000'000) throw Error(ErrorCode::LimitReached, "too many atoms of closed predicates");
       Update u;
       u.database = Update::Database::Lcw;
       u.literals.push_back({false, false, predicate, prefix, {}});
@@ -856,6 +874,7 @@ class Resolver {
   const sx::Document& document_;
   const ExternalBindings& bindings_;
   Model model_;
+  std::set<std::vector<Index>> unknown_;
   Table types_, objects_, predicates_, functions_, externals_, actions_;
 };
 

@@ -111,7 +111,8 @@ struct Document {
   std::vector<Action> actions;
   std::vector<Effect> initial;
   std::vector<Formula> goals;  ///< conjunction
-  std::vector<Name> closed;    ///< predicates closed in the initial state: init LCW(p(...))
+  std::vector<Name> closed;     ///< predicates closed in the initial state ("all": every one)
+  std::vector<Formula> unknown;  ///< atoms that closing leaves open
   std::vector<std::shared_ptr<const Source>> sources;  ///< keep the places alive
 };
 
