@@ -87,7 +87,7 @@ std::string effects(const std::vector<Effect>& list, const std::string& indent) 
 
 std::string signature(const syntax::Signature& s) {
   std::string text;
-  for (const auto& p : s.parameters) text += (text.empty() ? "" : ", ") + (p.text.empty() ? "object" : p.text);
+  for (const auto& p : s.parameters) text += (text.empty() ? "" : ", ") + (p.text.empty() ? "?any" : p.text);
   return s.name.text + (s.parameters.empty() ? "" : "(" + text + ")");
 }
 

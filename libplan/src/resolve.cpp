@@ -118,11 +118,18 @@ class Resolver {
       name.place.fail(std::string(what) + " '" + name.text + "' is declared twice");
   }
 
+  /// The root of the types is "object", unless the text declares that as one type among others, as the
+  /// thesis does ("types: object, robot"): then the root has no name.
   void declare_types() {
-    model_.types.push_back({"object", kNone, {}});
-    types_.emplace("object", 0);
+    const auto is_object = [](const sx::Type& t) { return t.name.text == "object"; };
+    const bool object_is_a_type =
+        std::any_of(document_.types.begin(), document_.types.end(), is_object) &&
+        std::none_of(document_.types.begin(), document_.types.end(),
+                     [](const sx::Type& t) { return t.parent.text == "object"; });
+    model_.types.push_back({object_is_a_type ? "any type" : "object", kNone, {}});
+    types_.emplace(model_.types[0].name, 0);
     for (const sx::Type& t : document_.types) {
-      if (t.name.text == "object" || t.name.text == "number") {
+      if (t.name.text == "number" || (t.name.text == "object" && !object_is_a_type)) {
         if (!t.parent.text.empty()) t.name.place.fail("type '" + t.name.text + "' cannot have a parent");
         continue;
       }
@@ -132,7 +139,8 @@ class Resolver {
     for (const sx::Type& t : document_.types)
       if (!t.parent.text.empty()) model_.types[types_.at(t.name.text)].parent = type(t.parent);
     for (const sx::Type& t : document_.types) {
-      Index up = types_.at(t.name.text == "number" ? "object" : t.name.text);
+      const auto found = types_.find(t.name.text);
+      Index up = found == types_.end() ? kNone : found->second;
       for (std::size_t steps = 0; up != kNone; up = model_.types[up].parent)
         if (++steps > model_.types.size()) t.name.place.fail("type '" + t.name.text + "' is its own ancestor");
     }

@@ -115,7 +115,7 @@ using ExternalFunction = std::function<std::optional<Index>(std::span<const Inde
 
 struct Model {
   std::string name;
-  std::vector<Type> types;  ///< types[0] is the root, "object"
+  std::vector<Type> types;  ///< types[0] is the root of all
   std::vector<Object> objects;
   std::vector<Symbol> predicates;
   std::vector<Symbol> functions;
