@@ -256,11 +256,13 @@ Truth FormulaPool::evaluate(Formula f, const Word* state) const {
     case Kind::IsTrue:
     case Kind::IsFalse: {
       const auto k = static_cast<AtomKnowledge>(layout_.fluents()[n.a].get(state));
-      if (k == AtomKnowledge::Whether) return Truth::Open;
+      if (k == AtomKnowledge::Whether || tied(n.a, k, state)) return Truth::Open;
       return yes(k == (n.kind == Kind::IsTrue ? AtomKnowledge::True : AtomKnowledge::False));
     }
-    case Kind::Whether:
-      return yes(layout_.fluents()[n.a].get(state) != 0);
+    case Kind::Whether: {
+      const auto k = static_cast<AtomKnowledge>(layout_.fluents()[n.a].get(state));
+      return tied(n.a, k, state) ? Truth::Open : yes(k != AtomKnowledge::Unknown);
+    }
     case Kind::ValueKnown:
       return yes(layout_.fluents()[n.a].get(state) != kValueUnknown);
     case Kind::ValueIs: {
@@ -309,11 +311,16 @@ void FormulaPool::open_fluents(Formula f, const Word* state, std::vector<Index>&
       return;
     case Kind::IsTrue:
     case Kind::IsFalse:
+    case Kind::Whether:
     case Kind::ValueIs:
-    case Kind::ValueIsNot:
-      if (evaluate(f, state) == Truth::Open && std::find(out.begin(), out.end(), n.a) == out.end())
-        out.push_back(n.a);
+    case Kind::ValueIsNot: {
+      if (evaluate(f, state) != Truth::Open) return;
+      const Fluent& fluent = layout_.fluents()[n.a];
+      const bool undecided = !fluent.function && fluent.get(state) == static_cast<Word>(AtomKnowledge::Unknown);
+      const Index needed = undecided ? layout_.sensed_tie(n.a, state) : n.a;
+      if (std::find(out.begin(), out.end(), needed) == out.end()) out.push_back(needed);
       return;
+    }
     default:
       return;
   }

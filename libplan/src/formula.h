@@ -89,6 +89,11 @@ class FormulaPool {
 
   Formula add(Node node, std::vector<Formula> children);
   Formula join(Kind kind, std::vector<Formula> children);
+  /// Undecided now, but a sensed atom of the same exclusive-or entries may decide it.
+  [[nodiscard]] bool tied(Index fluent, AtomKnowledge k, const Word* state) const {
+    return k == AtomKnowledge::Unknown && !layout_.fluents()[fluent].groups.empty() &&
+           layout_.sensed_tie(fluent, state) != kNone;
+  }
   [[nodiscard]] bool excluded(const Fluent& f, const Word* state, Index value) const {
     return f.exclusions != kNone && ((state[f.exclusions + value / 64] >> (value % 64)) & 1U) != 0;
   }

@@ -360,6 +360,27 @@ Layout::Place Layout::term(Index function, const Index* arguments) const {
   return place;
 }
 
+Index Layout::sensed_tie(Index fluent, const Word* state) const {
+  std::vector<Index> todo = {fluent};
+  std::vector<Index> seen = {fluent};
+  while (!todo.empty()) {
+    const Fluent& f = fluents_[todo.back()];
+    todo.pop_back();
+    for (const auto& [g, bit] : f.groups) {
+      const Group& group = groups_[g];
+      if (((state[group.word] >> bit) & 1U) == 0) continue;
+      for (std::size_t i = 0; i < group.members.size(); ++i) {
+        const Index m = group.members[i];
+        if (((state[group.word] >> i) & 1U) == 0 || std::find(seen.begin(), seen.end(), m) != seen.end()) continue;
+        if (fluents_[m].get(state) == static_cast<Word>(AtomKnowledge::Whether)) return m;
+        seen.push_back(m);
+        todo.push_back(m);
+      }
+    }
+  }
+  return kNone;
+}
+
 Index Layout::group(std::vector<Index> members) const {
   std::sort(members.begin(), members.end());
   members.erase(std::unique(members.begin(), members.end()), members.end());

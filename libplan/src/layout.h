@@ -65,6 +65,9 @@ class Layout {
   [[nodiscard]] Index group(std::vector<Index> members) const;
   [[nodiscard]] Index words() const { return words_; }
   [[nodiscard]] std::size_t range_size(const Fluent& f) const { return model_.types[f.range].objects.size(); }
+  /// For an undecided atom in exclusive-or entries: a sensed atom whose value, once known, may decide
+  /// it. kNone: there is none, and the atom will stay undecided.
+  [[nodiscard]] Index sensed_tie(Index fluent, const Word* state) const;
   /// Whether sensing can happen at all, so that queries may be open.
   [[nodiscard]] bool sensing() const { return sensing_; }
 

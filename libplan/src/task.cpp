@@ -359,6 +359,43 @@ bool Task::apply(Step step, Knowledge& state) {
   return true;
 }
 
+Index Task::undecided(const Change& c, const Word* state) const {
+  using K = Change::Kind;
+  if (c.kind == K::DeleteGroup) {
+    const Group& g = layout_.groups()[c.fluent];
+    for (std::size_t i = 0; i < g.members.size(); ++i)
+      if (((state[g.word] >> i) & 1U) != 0 &&
+          layout_.fluents()[g.members[i]].get(state) == static_cast<Word>(AtomKnowledge::Whether))
+        return g.members[i];
+    return kNone;
+  }
+  if (c.kind == K::AddGroup || c.kind == K::AddWhether || c.kind == K::AddClosed || c.kind == K::AddSensed) return kNone;
+  const Fluent& f = layout_.fluents()[c.fluent];
+  const Word content = f.get(state);
+  switch (c.kind) {
+    case K::DeleteTrue:
+    case K::DeleteFalse:
+    case K::DeleteClosed:
+      if (content == static_cast<Word>(AtomKnowledge::Whether)) return c.fluent;
+      break;
+    case K::DeleteValue:
+    case K::DeleteExclude:
+    case K::Exclude:
+    case K::AddOptions:
+      return content == kValueSensed ? c.fluent : kNone;
+    default:
+      break;
+  }
+  // What Kx would conclude from the value must be concluded before the atom changes.
+  if (f.groups.empty()) return kNone;
+  if (content == static_cast<Word>(AtomKnowledge::Whether))
+    return std::any_of(f.groups.begin(), f.groups.end(),
+                       [&](const auto& g) { return ((state[layout_.groups()[g.first].word] >> g.second) & 1U) != 0; })
+               ? c.fluent
+               : kNone;
+  return content == static_cast<Word>(AtomKnowledge::Unknown) ? layout_.sensed_tie(c.fluent, state) : kNone;
+}
+
 template <bool Sensing>
 void Task::expand_schema(Index schema, const Word* state, std::vector<Step>& steps, std::vector<Index>& needs) {
   Schema& s = schemas_[schema];
@@ -391,9 +428,20 @@ void Task::expand_schema(Index schema, const Word* state, std::vector<Step>& ste
       if constexpr (Sensing) {
         bool decided = true;
         for (const Conditional& c : actions_[step]->effects)
-          if (c.condition != kTrue && pool_.evaluate(c.condition, state) == Truth::Open) {
-            pool_.open_fluents(c.condition, state, needs);
-            decided = false;
+          {
+            const Truth t = c.condition == kTrue ? Truth::Yes : pool_.evaluate(c.condition, state);
+            if (t == Truth::Open) {
+              pool_.open_fluents(c.condition, state, needs);
+              decided = false;
+            }
+            if (t != Truth::Yes) continue;
+            for (const auto* list : {&c.deletions, &c.additions})
+              for (const Change& change : *list) {
+                const Index fluent = undecided(change, state);
+                if (fluent == kNone) continue;
+                needs.push_back(fluent);
+                decided = false;
+              }
           }
         if (!decided) return;
       }

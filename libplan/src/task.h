@@ -120,6 +120,8 @@ class Task {
                       GroundAction& action);
   void add_change(const Update& update, const std::vector<Index>& slots, Conditional& conditional);
   [[nodiscard]] bool is_plain(const Change& change) const;
+  /// A sensed fluent whose value decides what the change does; kNone: it does the same for all.
+  [[nodiscard]] Index undecided(const Change& change, const Word* state) const;
   void make_initial();
   template <bool Sensing>
   void expand_schema(Index schema, const Word* state, std::vector<Step>& steps, std::vector<Index>& needs);
