@@ -98,20 +98,34 @@ void compare(const Knowledge& k, const Layout& layout, const Naive& naive, bool 
         const bool never = naive.always([&](const World& w) { return w.value != v; });
         const bool claimed = k.excluded(i, static_cast<Index>(v)) ||
                              (content >= kFirstValue && content != kFirstValue + static_cast<Word>(v));
-        if (claimed) EXPECT_TRUE(never);
-        if (exactly) EXPECT_EQ(claimed, never);
+        if (claimed) {
+          EXPECT_TRUE(never);
+        }
+        if (exactly) {
+          EXPECT_EQ(claimed, never);
+        }
       }
-      if (content == kValueSensed) EXPECT_TRUE(naive.constant_in_classes(value));
-      if (exactly && !known) EXPECT_EQ(content == kValueSensed, naive.constant_in_classes(value));
+      if (content == kValueSensed) {
+        EXPECT_TRUE(naive.constant_in_classes(value));
+      }
+      if (exactly && !known) {
+        EXPECT_EQ(content == kValueSensed, naive.constant_in_classes(value));
+      }
     } else {
       const std::size_t a = f.symbol;
       const bool yes = naive.always([&](const World& w) { return w.atoms[a]; });
       const bool no = naive.always([&](const World& w) { return !w.atoms[a]; });
       const bool whether = naive.constant_in_classes([&](const World& w) { return w.atoms[a]; });
       const AtomKnowledge s = k.atom(i);
-      if (s == AtomKnowledge::True) EXPECT_TRUE(yes);
-      if (s == AtomKnowledge::False) EXPECT_TRUE(no);
-      if (s == AtomKnowledge::Whether) EXPECT_TRUE(whether);
+      if (s == AtomKnowledge::True) {
+        EXPECT_TRUE(yes);
+      }
+      if (s == AtomKnowledge::False) {
+        EXPECT_TRUE(no);
+      }
+      if (s == AtomKnowledge::Whether) {
+        EXPECT_TRUE(whether);
+      }
       if (!exactly) continue;
       const AtomKnowledge expected = yes       ? AtomKnowledge::True
                                      : no      ? AtomKnowledge::False
