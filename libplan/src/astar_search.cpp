@@ -1,4 +1,5 @@
-// A* with the landmark heuristic; states are reopened, so the plan is of least cost (without sensing).
+// A* with the landmark heuristic; states are reopened, so the plan is of least cost (without
+// sensing).
 #include <algorithm>
 #include <queue>
 #include <tuple>
@@ -16,15 +17,17 @@ Found a_star(const SearchInput& in) {
   if (!in.heuristics.invariants)
     in.heuristics.invariants = std::make_unique<Invariants>(in.task, *in.heuristics.relaxation);
   if (!in.heuristics.landmarks)
-    in.heuristics.landmarks =
-        std::make_unique<LandmarkHeuristic>(in.task, *in.heuristics.relaxation, *in.heuristics.invariants);
+    in.heuristics.landmarks = std::make_unique<LandmarkHeuristic>(
+        in.task, *in.heuristics.relaxation, *in.heuristics.invariants);
   LandmarkHeuristic& heuristic = *in.heuristics.landmarks;
 
   struct Open {
     std::uint64_t f, h, order;
     Index state;
     std::uint64_t g;
-    bool operator>(const Open& o) const { return std::tuple(f, h, o.order) > std::tuple(o.f, o.h, order); }
+    bool operator>(const Open& o) const {
+      return std::tuple(f, h, o.order) > std::tuple(o.f, o.h, order);
+    }
   };
   constexpr std::uint64_t kDead = ~std::uint64_t{0};
   struct Info {
@@ -38,13 +41,14 @@ Found a_star(const SearchInput& in) {
   std::uint64_t order = 0;
   const auto finish = [&](Status status) {
     in.statistics.states = std::max<std::uint64_t>(in.statistics.states, store.size());
-    in.statistics.state_bytes =
-        std::max<std::uint64_t>(in.statistics.state_bytes, store.bytes() + info.capacity() * sizeof(Info));
+    in.statistics.state_bytes = std::max<std::uint64_t>(
+        in.statistics.state_bytes, store.bytes() + info.capacity() * sizeof(Info));
     found.status = status;
     return found;
   };
-  // A target may hold in states that are no goal states of the task (a known sub-plan): the estimate
-  // only speaks of the goal, so it guides there but proves nothing. Without sensing both are the same.
+  // A target may hold in states that are no goal states of the task (a known sub-plan): the
+  // estimate only speaks of the goal, so it guides there but proves nothing. Without sensing both
+  // are the same.
   store.insert(in.start.data(), Knowledge::hash_of(in.start.data(), n), kNone, 0);
   const auto start = heuristic.evaluate(in.start.data());
   in.statistics.initial_estimate = start ? static_cast<std::int64_t>(*start) : -1;
@@ -53,7 +57,8 @@ Found a_star(const SearchInput& in) {
   open.push({*start, *start, order++, 0, 0});
   std::vector<Step> steps;
   while (!open.empty()) {
-    if (in.limits.exceeded(store.bytes() + info.capacity() * sizeof(Info))) return finish(Status::Limit);
+    if (in.limits.exceeded(store.bytes() + info.capacity() * sizeof(Info)))
+      return finish(Status::Limit);
     const Open top = open.top();
     open.pop();
     if (top.g != info[top.state].g) continue;  // a cheaper way was found since

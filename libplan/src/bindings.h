@@ -13,6 +13,8 @@ std::vector<const Query*> conjuncts(const Query& query);
 std::vector<Index> free_slots(const Query& query);
 
 /// The object an argument stands for.
-inline Index value_of(const Argument& a, const Index* slots) { return a.variable ? slots[a.index] : a.index; }
+inline Index value_of(const Argument& a, const Index* slots) {
+  return a.variable ? slots[a.index] : a.index;
+}
 
 }  // namespace kaboum::plan

@@ -8,12 +8,16 @@
 namespace kaboum::plan {
 
 Limits::Limits(const SolveOptions& options, Statistics& statistics)
-    : options_(options), statistics_(statistics), start_(std::chrono::steady_clock::now()), last_progress_(start_) {}
+    : options_(options),
+      statistics_(statistics),
+      start_(std::chrono::steady_clock::now()),
+      last_progress_(start_) {}
 
 bool Limits::check(std::size_t bytes) {
   if (!reason_.empty()) return true;
   const auto now = std::chrono::steady_clock::now();
-  if (options_.timeout > 0 && std::chrono::duration<double>(now - start_).count() > options_.timeout)
+  if (options_.timeout > 0 &&
+      std::chrono::duration<double>(now - start_).count() > options_.timeout)
     reason_ = "time limit reached";
   if (options_.max_memory > 0 && bytes > options_.max_memory) reason_ = "memory limit reached";
   if (options_.progress && now - last_progress_ > std::chrono::milliseconds(200)) {
@@ -86,7 +90,8 @@ Found breadth_first(const SearchInput& in) {
     next.make(in, store[static_cast<Index>(i)], scratch, store);
     for (std::size_t k = 0; k < next.steps.size(); ++k) {
       const Word* state = next.words.data() + k * n;
-      const auto [number, fresh] = store.insert(state, next.hashes[k], static_cast<Index>(i), next.steps[k]);
+      const auto [number, fresh] =
+          store.insert(state, next.hashes[k], static_cast<Index>(i), next.steps[k]);
       if (!fresh || !in.target.reached(state)) continue;
       in.statistics.depth = std::max(in.statistics.depth, depth + 1);
       count_states(store, in.statistics);
@@ -158,12 +163,12 @@ Found depth_first(const SearchInput& in) {
   return found;
 }
 
-/// Depth-first within a growing depth limit. A state is searched again only with more depth left than
-/// ever before, so each round is at most as long as a breadth-first search of the same depth and the
-/// plan has the fewest steps. A round that reaches no new state proves that there is none.
+/// Depth-first within a growing depth limit. A state is searched again only with more depth left
+/// than ever before, so each round is at most as long as a breadth-first search of the same depth
+/// and the plan has the fewest steps. A round that reaches no new state proves that there is none.
 Found iterative_deepening(const SearchInput& in) {
   const Index n = in.task.layout().words();
-  StateStore store(n);               // link.step: most depth left with which it was searched
+  StateStore store(n);  // link.step: most depth left with which it was searched
   Knowledge state(in.task.layout());
   state.keep_log(true);
   Found found;

@@ -13,13 +13,16 @@ namespace {
 
 constexpr std::size_t kMaximumSplit = 1U << 16U;  // outcomes of one action
 
-Fact fact(bool function, Index symbol, const std::vector<Argument>& arguments, const std::vector<Index>& slots) {
+Fact fact(bool function, Index symbol, const std::vector<Argument>& arguments,
+          const std::vector<Index>& slots) {
   Fact f = {function ? Index{1} : Index{0}, symbol};
   for (const Argument& a : arguments) f.push_back(a.variable ? slots.at(a.index) : a.index);
   return f;
 }
 
-Index object(const Argument& a, const std::vector<Index>& slots) { return a.variable ? slots.at(a.index) : a.index; }
+Index object(const Argument& a, const std::vector<Index>& slots) {
+  return a.variable ? slots.at(a.index) : a.index;
+}
 
 /// Evaluates queries of the lifted model, or lists what they read.
 class Evaluator {
@@ -33,9 +36,11 @@ class Evaluator {
       case Query::Kind::False:
         return false;
       case Query::Kind::And:
-        return std::all_of(q.children.begin(), q.children.end(), [&](const Query& c) { return holds(c, slots, k); });
+        return std::all_of(q.children.begin(), q.children.end(),
+                           [&](const Query& c) { return holds(c, slots, k); });
       case Query::Kind::Or:
-        return std::any_of(q.children.begin(), q.children.end(), [&](const Query& c) { return holds(c, slots, k); });
+        return std::any_of(q.children.begin(), q.children.end(),
+                           [&](const Query& c) { return holds(c, slots, k); });
       case Query::Kind::Xor:
         return std::count_if(q.children.begin(), q.children.end(),
                              [&](const Query& c) { return holds(c, slots, k); }) == 1;
@@ -45,7 +50,8 @@ class Evaluator {
       case Query::Kind::ForAll:
         for (const Index o : model_.types[q.type].objects) {
           slots.at(q.symbol) = o;
-          if (holds(q.children[0], slots, k) == (q.kind == Query::Kind::Exists)) return q.kind == Query::Kind::Exists;
+          if (holds(q.children[0], slots, k) == (q.kind == Query::Kind::Exists))
+            return q.kind == Query::Kind::Exists;
         }
         return q.kind == Query::Kind::ForAll;
       case Query::Kind::Known:
@@ -57,7 +63,8 @@ class Evaluator {
         const Fact f = fact(true, q.symbol, q.arguments, slots);
         const Index wanted = object(*q.value, slots);
         const Index* value = k.value(f);
-        const bool differs = !model_.is_a(wanted, model_.functions[q.symbol].range) || k.rules_out(f, wanted);
+        const bool differs =
+            !model_.is_a(wanted, model_.functions[q.symbol].range) || k.rules_out(f, wanted);
         if (q.kind == Query::Kind::WhetherValue) return value != nullptr || differs;
         return q.negated ? differs : value != nullptr && *value == wanted;
       }
@@ -214,7 +221,8 @@ class Checker {
         if (f[0] == 1) {
           for (const Index v : range(f[1])) {
             RuntimeKnowledge copy = state;
-            if (!state.rules_out(f, v) && copy.learn_value(f, v, range(f[1]))) next.push_back(std::move(copy));
+            if (!state.rules_out(f, v) && copy.learn_value(f, v, range(f[1])))
+              next.push_back(std::move(copy));
           }
         } else {
           for (const bool truth : {true, false}) {
@@ -223,7 +231,8 @@ class Checker {
           }
         }
       }
-      if (next.size() > kMaximumSplit) throw Error(ErrorCode::LimitReached, "too many outcomes of one action to replay");
+      if (next.size() > kMaximumSplit)
+        throw Error(ErrorCode::LimitReached, "too many outcomes of one action to replay");
       all = std::move(next);
     }
     return all;
@@ -255,7 +264,8 @@ class Checker {
           break;
         case Update::Database::Lcw:
           // Closed last: what is sensed stays open.
-          if (!k.knows_whether(f) && std::find(sensed.begin(), sensed.end(), f) == sensed.end()) ok = k.learn(f, false);
+          if (!k.knows_whether(f) && std::find(sensed.begin(), sensed.end(), f) == sensed.end())
+            ok = k.learn(f, false);
           break;
       }
       if (!ok) throw Error(ErrorCode::InvalidInput, "the initial knowledge contradicts itself");
@@ -263,10 +273,12 @@ class Checker {
     return split(std::move(k), sensed);
   }
 
-  bool learn_exclusive(RuntimeKnowledge& k, const Update& u, const std::vector<Index>& slots) const {
+  bool learn_exclusive(RuntimeKnowledge& k, const Update& u,
+                       const std::vector<Index>& slots) const {
     if (!u.literals[0].function) {
       std::set<Fact> atoms;
-      for (const Update::Literal& l : u.literals) atoms.insert(fact(false, l.symbol, l.arguments, slots));
+      for (const Update::Literal& l : u.literals)
+        atoms.insert(fact(false, l.symbol, l.arguments, slots));
       return k.learn_exclusive(std::move(atoms));
     }
     const Index symbol = u.literals[0].symbol;
@@ -284,8 +296,8 @@ class Checker {
   };
 
   /// Updates whose conditions hold before the action.
-  void fire(const std::vector<Effect>& effects, std::vector<Index>& slots, const RuntimeKnowledge& k,
-            std::vector<Ground>& out) const {
+  void fire(const std::vector<Effect>& effects, std::vector<Index>& slots,
+            const RuntimeKnowledge& k, std::vector<Ground>& out) const {
     for (const Effect& e : effects) {
       if (e.kind == Effect::Kind::Update) {
         out.push_back({&e.update, slots});
@@ -333,7 +345,8 @@ class Checker {
           k.forget_value(f);
         } else {
           std::set<Fact> atoms;
-          for (const Update::Literal& o : u.literals) atoms.insert(fact(false, o.symbol, o.arguments, g.slots));
+          for (const Update::Literal& o : u.literals)
+            atoms.insert(fact(false, o.symbol, o.arguments, g.slots));
           k.drop_exclusive(atoms);
         }
         return;
@@ -367,7 +380,8 @@ class Checker {
       case Update::Database::Kx:
         if (l.function) {
           const Index* known = k.value(f);
-          const bool kept = known == nullptr || std::any_of(u.literals.begin(), u.literals.end(), [&](const auto& o) {
+          const bool kept = known == nullptr ||
+                            std::any_of(u.literals.begin(), u.literals.end(), [&](const auto& o) {
                               return object(*o.value, g.slots) == *known;
                             });
           if (!kept) k.forget_value(f);
@@ -396,7 +410,8 @@ class Checker {
     const auto [it, fresh] = seen_.emplace(node, std::move(k));
     if (!fresh) return;
     if (++result_.states > limit_)
-      throw Error(ErrorCode::LimitReached, "more than " + std::to_string(limit_) + " states to replay");
+      throw Error(ErrorCode::LimitReached,
+                  "more than " + std::to_string(limit_) + " states to replay");
     visits_.push_back({node, &it->second, parent, std::move(label)});
     queue_.push_back(visits_.size() - 1);
   }
@@ -453,7 +468,8 @@ class Checker {
     }
   }
 
-  void follow(std::size_t v, const Plan::Branch& branch, RuntimeKnowledge k, const std::string& label) {
+  void follow(std::size_t v, const Plan::Branch& branch, RuntimeKnowledge k,
+              const std::string& label) {
     const Fact f = branch_fact(branch);
     const std::string prefix = label.empty() ? "" : label + "; ";
     Index value = 0;
@@ -466,7 +482,8 @@ class Checker {
       value = *known;
     } else {
       if (!k.knows_whether(f)) {
-        violate(v, prefix + "the plan branches on " + case_text(model_, branch, 1) + ", which is not known");
+        violate(v, prefix + "the plan branches on " + case_text(model_, branch, 1) +
+                       ", which is not known");
         return;
       }
       value = k.knows(f, true) ? 1 : 0;

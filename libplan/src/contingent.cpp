@@ -17,7 +17,8 @@ void merge(std::vector<Index>& into, const std::vector<Index>& from) {
 
 }  // namespace
 
-ContingentPlanner::ContingentPlanner(Task& task, SearchFunction search, Limits& limits, Statistics& statistics)
+ContingentPlanner::ContingentPlanner(Task& task, SearchFunction search, Limits& limits,
+                                     Statistics& statistics)
     : task_(task), search_(search), limits_(limits), statistics_(statistics), regression_(task) {
   entries_.push_back({task.goal(), 0, false, kGoal, {}, kGoal});
 }
@@ -45,9 +46,10 @@ Index ContingentPlanner::add(Entry entry) {
   for (const auto& [step, next] : entry.cases) h += word_hash(step, same(next));
   for (const Index i : entry_index_[h]) {
     const Entry& e = entries_[i];
-    const bool equal = e.branch == entry.branch && e.step == entry.step && same(e.next) == same(entry.next) &&
-                       std::equal(e.cases.begin(), e.cases.end(), entry.cases.begin(), entry.cases.end(),
-                                  [&](const auto& a, const auto& b) {
+    const bool equal = e.branch == entry.branch && e.step == entry.step &&
+                       same(e.next) == same(entry.next) &&
+                       std::equal(e.cases.begin(), e.cases.end(), entry.cases.begin(),
+                                  entry.cases.end(), [&](const auto& a, const auto& b) {
                                     return a.first == b.first && same(a.second) == same(b.second);
                                   });
     if (!equal) continue;
@@ -61,16 +63,26 @@ Index ContingentPlanner::add(Entry entry) {
 
 /// The problem at this depth of the stack is no longer open: failures that ran into it are void.
 void ContingentPlanner::close(Index depth) {
-  const auto ran_into = [depth](const Blame& b) { return std::find(b.begin(), b.end(), depth) != b.end(); };
+  const auto ran_into = [depth](const Blame& b) {
+    return std::find(b.begin(), b.end(), depth) != b.end();
+  };
   std::erase_if(dead_, [&](const auto& d) { return ran_into(d.second); });
-  for (auto& [state, fluents] : forbidden_) std::erase_if(fluents, [&](const auto& f) { return ran_into(f.second); });
+  for (auto& [state, fluents] : forbidden_)
+    std::erase_if(fluents, [&](const auto& f) { return ran_into(f.second); });
   std::erase_if(forbidden_, [](const auto& f) { return f.second.empty(); });
 }
 
-/// Enters `step`, after which `next` goes on, for the state `at`; of an outcome, plans for the others.
-Status ContingentPlanner::cover(const State& at, Step step, Index next, Index& entry, Blame& blame) {
+/// Enters `step`, after which `next` goes on, for the state `at`; of an outcome, plans for the
+/// others.
+Status ContingentPlanner::cover(const State& at, Step step, Index next, Index& entry,
+                                Blame& blame) {
   if (!task_.is_outcome(step)) {
-    entry = add({regression_.before(step, entries_[next].condition, at.data()), step, false, next, {}, kGoal});
+    entry = add({regression_.before(step, entries_[next].condition, at.data()),
+                 step,
+                 false,
+                 next,
+                 {},
+                 kGoal});
     return Status::Solved;
   }
   const Index fluent = task_.outcome(step).fluent;
@@ -96,7 +108,8 @@ Status ContingentPlanner::cover(const State& at, Step step, Index next, Index& e
   if (f.function) {
     for (Index v = 0; v < task_.layout().range_size(f); ++v) {
       const Step missing = task_.outcome_step(fluent, v);
-      if (std::none_of(branch.cases.begin(), branch.cases.end(), [&](const auto& c) { return c.first == missing; }))
+      if (std::none_of(branch.cases.begin(), branch.cases.end(),
+                       [&](const auto& c) { return c.first == missing; }))
         conditions.push_back(pool.leaf(FormulaPool::Kind::ValueIsNot, fluent, v));
     }
   }
@@ -152,7 +165,8 @@ Status ContingentPlanner::solve(const State& start, Index& entry, Blame& blame) 
       }
       covered = s == Status::Solved;
       if (covered) {
-        ensure(task_.pool().holds(entries_[entry].condition, states[i].data()), "regression keeps its own state");
+        ensure(task_.pool().holds(entries_[entry].condition, states[i].data()),
+               "regression keeps its own state");
         next = entry;
       } else {
         forbidden_[states[i]][task_.outcome(found.steps[i]).fluent] = std::move(why);

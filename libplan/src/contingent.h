@@ -13,10 +13,11 @@ namespace kaboum::plan {
 /// And-or planning by weak plans, repaired until every outcome is covered.
 ///
 /// A search that may choose outcomes finds a weak plan. Going back along it, each branch's other
-/// outcomes are planned for in turn; then the step joins the policy with its regressed condition. Later
-/// searches stop at any state that satisfies such a condition, so equal sub-plans are shared. A node
-/// is entered only after its successors: the graph cannot have cycles. A branch with an outcome that
-/// has no plan is forbidden in that state, and the search repeated. docs/planning/search.md.
+/// outcomes are planned for in turn; then the step joins the policy with its regressed condition.
+/// Later searches stop at any state that satisfies such a condition, so equal sub-plans are shared.
+/// A node is entered only after its successors: the graph cannot have cycles. A branch with an
+/// outcome that has no plan is forbidden in that state, and the search repeated.
+/// docs/planning/search.md.
 class ContingentPlanner final : private Target {
  public:
   using SearchFunction = Found (*)(const SearchInput&);
@@ -32,7 +33,7 @@ class ContingentPlanner final : private Target {
 
   struct Entry {
     Formula condition = kTrue;
-    Step step = 0;       ///< an action; of a branch, its first outcome
+    Step step = 0;  ///< an action; of a branch, its first outcome
     bool branch = false;
     Index next = kGoal;
     std::vector<std::pair<Step, Index>> cases;  ///< of a branch
@@ -41,7 +42,9 @@ class ContingentPlanner final : private Target {
 
   using State = std::vector<Word>;
   struct StateHash {
-    std::size_t operator()(const State& s) const { return Knowledge::hash_of(s.data(), static_cast<Index>(s.size())); }
+    std::size_t operator()(const State& s) const {
+      return Knowledge::hash_of(s.data(), static_cast<Index>(s.size()));
+    }
   };
   /// Why something failed: depths on the stack of open problems that it ran into. Empty: for good.
   using Blame = std::vector<Index>;
@@ -64,7 +67,8 @@ class ContingentPlanner final : private Target {
   Regression regression_;
   std::vector<Entry> entries_;
   std::unordered_map<std::uint64_t, std::vector<Index>> entry_index_;
-  std::unordered_map<State, std::map<Index, Blame>, StateHash> forbidden_;  ///< by state, then fluent
+  std::unordered_map<State, std::map<Index, Blame>, StateHash>
+      forbidden_;  ///< by state, then fluent
   std::unordered_map<State, Blame, StateHash> dead_;
   std::unordered_map<State, Index, StateHash> open_problems_;  ///< states being solved: depth
   Index root_ = kGoal;

@@ -18,25 +18,29 @@ std::uint64_t mix(std::uint64_t h, std::uint64_t v) {
 
 }  // namespace
 
-FormulaPool::FormulaPool(const Model& model, const Layout& layout) : model_(model), layout_(layout) {
+FormulaPool::FormulaPool(const Model& model, const Layout& layout)
+    : model_(model), layout_(layout) {
   nodes_.push_back({Kind::False, false, 0, 0});
   nodes_.push_back({Kind::True, false, 0, 0});
 }
 
 Formula FormulaPool::add(Node node, std::vector<Formula> children) {
   const bool connective = !children.empty();
-  std::uint64_t h = mix(static_cast<std::uint64_t>(node.kind), connective ? children.size() : node.b);
+  std::uint64_t h =
+      mix(static_cast<std::uint64_t>(node.kind), connective ? children.size() : node.b);
   if (!connective) h = mix(h, node.a);
   for (const Formula c : children) h = mix(h, c);
   const auto [first, last] = index_.equal_range(h);
   for (auto it = first; it != last; ++it) {
     const Node& n = nodes_[it->second];
     if (n.kind != node.kind) continue;
-    if (connective ? std::equal(begin(it->second), end(it->second), children.begin(), children.end())
-                   : n.a == node.a && n.b == node.b)
+    if (connective
+            ? std::equal(begin(it->second), end(it->second), children.begin(), children.end())
+            : n.a == node.a && n.b == node.b)
       return it->second;
   }
-  if (nodes_.size() >= kMaximumNodes) throw Error(ErrorCode::LimitReached, "too many ground formulas");
+  if (nodes_.size() >= kMaximumNodes)
+    throw Error(ErrorCode::LimitReached, "too many ground formulas");
   const auto f = static_cast<Formula>(nodes_.size());
   node.calls = node.kind == Kind::External;
   if (connective) {
@@ -50,7 +54,9 @@ Formula FormulaPool::add(Node node, std::vector<Formula> children) {
   return f;
 }
 
-Formula FormulaPool::leaf(Kind kind, Index fluent, Index value) { return add({kind, false, fluent, value}, {}); }
+Formula FormulaPool::leaf(Kind kind, Index fluent, Index value) {
+  return add({kind, false, fluent, value}, {});
+}
 
 Formula FormulaPool::negate(Formula f) {
   if (f == kFalse) return kTrue;
@@ -90,8 +96,12 @@ Formula FormulaPool::join(Kind kind, std::vector<Formula> children) {
   return add({kind, false, 0, 0}, std::move(unique));
 }
 
-Formula FormulaPool::all(std::vector<Formula> children) { return join(Kind::And, std::move(children)); }
-Formula FormulaPool::any(std::vector<Formula> children) { return join(Kind::Or, std::move(children)); }
+Formula FormulaPool::all(std::vector<Formula> children) {
+  return join(Kind::And, std::move(children));
+}
+Formula FormulaPool::any(std::vector<Formula> children) {
+  return join(Kind::Or, std::move(children));
+}
 
 Formula FormulaPool::one(std::vector<Formula> children) {
   std::vector<Formula> kept;
@@ -112,7 +122,8 @@ Formula FormulaPool::one(std::vector<Formula> children) {
 
 Formula FormulaPool::bits(Index word, Word mask, Word value) {
   if (mask == 0) return kTrue;
-  const auto [it, fresh] = mask_index_.emplace(std::pair(mask, value), static_cast<Index>(masks_.size()));
+  const auto [it, fresh] =
+      mask_index_.emplace(std::pair(mask, value), static_cast<Index>(masks_.size()));
   if (fresh) masks_.emplace_back(mask, value);
   return add({Kind::Bits, false, word, it->second}, {});
 }
@@ -181,7 +192,8 @@ Formula FormulaPool::ground(const Query& q, std::vector<Index>& slots) {
       const Layout::Place p = layout_.atom(q.symbol, objects().data());
       if (!p.exists) return kFalse;
       if (p.fluent == kNone) {
-        if (q.kind == Query::Kind::KnowWhether) return p.atom != AtomKnowledge::Unknown ? kTrue : kFalse;
+        if (q.kind == Query::Kind::KnowWhether)
+          return p.atom != AtomKnowledge::Unknown ? kTrue : kFalse;
         return p.atom == (q.negated ? AtomKnowledge::False : AtomKnowledge::True) ? kTrue : kFalse;
       }
       if (q.kind == Query::Kind::KnowWhether) return leaf(Kind::Whether, p.fluent);
@@ -199,19 +211,23 @@ Formula FormulaPool::ground(const Query& q, std::vector<Index>& slots) {
         position = layout_.position(model_.functions[q.symbol].range, value);
       }
       if (p.fluent == kNone) {
-        if (p.value == kNone && q.kind == Query::Kind::KnownValue && q.negated && position == kNone) return kTrue;
+        if (p.value == kNone && q.kind == Query::Kind::KnownValue && q.negated && position == kNone)
+          return kTrue;
         if (p.value == kNone) return kFalse;
         if (q.kind != Query::Kind::KnownValue) return kTrue;
         return (p.value == value) != q.negated ? kTrue : kFalse;
       }
       if (q.kind == Query::Kind::KnowValue) return leaf(Kind::ValueKnown, p.fluent);
       // A value outside the range is never the value.
-      if (position == kNone) return q.kind == Query::Kind::WhetherValue || q.negated ? kTrue : kFalse;
+      if (position == kNone)
+        return q.kind == Query::Kind::WhetherValue || q.negated ? kTrue : kFalse;
       if (q.kind == Query::Kind::WhetherValue) return leaf(Kind::ValueWhether, p.fluent, position);
       return leaf(q.negated ? Kind::ValueIsNot : Kind::ValueIs, p.fluent, position);
     }
     case Query::Kind::Same:
-      return value_of(q.arguments[0], slots.data()) == value_of(q.arguments[1], slots.data()) ? kTrue : kFalse;
+      return value_of(q.arguments[0], slots.data()) == value_of(q.arguments[1], slots.data())
+                 ? kTrue
+                 : kFalse;
     case Query::Kind::External:
       return external(q.symbol, objects(), q.value ? value_of(*q.value, slots.data()) : kNone);
   }
@@ -316,7 +332,8 @@ void FormulaPool::open_fluents(Formula f, const Word* state, std::vector<Index>&
     case Kind::ValueIsNot: {
       if (evaluate(f, state) != Truth::Open) return;
       const Fluent& fluent = layout_.fluents()[n.a];
-      const bool undecided = !fluent.function && fluent.get(state) == static_cast<Word>(AtomKnowledge::Unknown);
+      const bool undecided =
+          !fluent.function && fluent.get(state) == static_cast<Word>(AtomKnowledge::Unknown);
       const Index needed = undecided ? layout_.sensed_tie(n.a, state) : n.a;
       if (std::find(out.begin(), out.end(), needed) == out.end()) out.push_back(needed);
       return;

@@ -59,10 +59,12 @@ class FormulaPool {
   /// The query for these slots. Constant knowledge is folded in.
   Formula ground(const Query& query, std::vector<Index>& slots);
 
-  /// Conjunctions and disjunctions are evaluated from left to right and stop at the first child that
-  /// decides; an External is not called once an earlier child is open.
+  /// Conjunctions and disjunctions are evaluated from left to right and stop at the first child
+  /// that decides; an External is not called once an earlier child is open.
   [[nodiscard]] Truth evaluate(Formula f, const Word* state) const;
-  [[nodiscard]] bool holds(Formula f, const Word* state) const { return evaluate(f, state) == Truth::Yes; }
+  [[nodiscard]] bool holds(Formula f, const Word* state) const {
+    return evaluate(f, state) == Truth::Yes;
+  }
 
   /// Fluents whose sensed value leaves `f` open in `state`.
   void open_fluents(Formula f, const Word* state, std::vector<Index>& out) const;

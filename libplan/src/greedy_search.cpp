@@ -14,7 +14,9 @@ struct Open {
   std::uint64_t estimate;
   std::uint64_t order;  // first come, first served
   Index state;
-  bool operator>(const Open& o) const { return std::pair(estimate, order) > std::pair(o.estimate, o.order); }
+  bool operator>(const Open& o) const {
+    return std::pair(estimate, order) > std::pair(o.estimate, o.order);
+  }
 };
 using Queue = std::priority_queue<Open, std::vector<Open>, std::greater<>>;
 
@@ -61,8 +63,11 @@ Found greedy_best_first(const SearchInput& in) {
     if (expanded[state]) continue;
     expanded[state] = 1;
     const std::uint64_t h = heuristic.evaluate(store[state]);
-    if (state == 0) in.statistics.initial_estimate = h == RelaxedPlan::kDeadEnd ? -1 : static_cast<std::int64_t>(h);
-    if (h == RelaxedPlan::kDeadEnd) continue;  // safe: the relaxation overestimates what is possible
+    if (state == 0)
+      in.statistics.initial_estimate =
+          h == RelaxedPlan::kDeadEnd ? -1 : static_cast<std::int64_t>(h);
+    if (h == RelaxedPlan::kDeadEnd)
+      continue;  // safe: the relaxation overestimates what is possible
     if (h < best) {
       best = h;
       boost = 1000;
@@ -83,7 +88,8 @@ Found greedy_best_first(const SearchInput& in) {
         return finish(Status::Solved);
       }
       all.push({h, order, number});
-      if (std::binary_search(helpful.begin(), helpful.end(), step)) preferred.push({h, order, number});
+      if (std::binary_search(helpful.begin(), helpful.end(), step))
+        preferred.push({h, order, number});
       ++order;
     }
   }

@@ -19,7 +19,8 @@ Index Invariants::key_of(const Part& p, FactId f) const {
   const Fluent& fluent = task_.layout().fluents()[relaxation_.fluent_of(f)];
   if (fluent.function != p.function || fluent.symbol != p.symbol) return kNone;
   const Word content = relaxation_.content_of(f);
-  if (p.function ? content < kFirstValue : content != static_cast<Word>(AtomKnowledge::True)) return kNone;
+  if (p.function ? content < kFirstValue : content != static_cast<Word>(AtomKnowledge::True))
+    return kNone;
   if (p.key == kNone) return kNoKey;
   if (p.key < fluent.arguments.size()) return fluent.arguments[p.key];
   return task_.model().types[fluent.range].objects[content - kFirstValue];
@@ -77,8 +78,9 @@ bool Invariants::balanced(const Candidate& c, Failure& failure) const {
         if (k != kNone) added.push_back({k, f, o});
       }
     if (added.empty()) continue;
-    std::sort(added.begin(), added.end(),
-              [](const Added& a, const Added& b) { return std::tie(a.key, a.fact, a.op) < std::tie(b.key, b.fact, b.op); });
+    std::sort(added.begin(), added.end(), [](const Added& a, const Added& b) {
+      return std::tie(a.key, a.fact, a.op) < std::tie(b.key, b.fact, b.op);
+    });
     for (std::size_t i = 0; i < added.size(); ++i) {
       const Added& a = added[i];
       const std::vector<FactId>& conditions = operators[a.op].preconditions;
@@ -95,7 +97,8 @@ bool Invariants::balanced(const Candidate& c, Failure& failure) const {
       for (std::size_t j = i + 1; j < added.size() && added[j].key == a.key; ++j) {
         if (added[j].fact == a.fact) continue;
         std::vector<FactId> both;
-        std::set_union(conditions.begin(), conditions.end(), operators[added[j].op].preconditions.begin(),
+        std::set_union(conditions.begin(), conditions.end(),
+                       operators[added[j].op].preconditions.begin(),
                        operators[added[j].op].preconditions.end(), std::back_inserter(both));
         if (!can_fire(c, both)) continue;
         failure = {true, a.op, a.fact, a.key};
@@ -106,7 +109,8 @@ bool Invariants::balanced(const Candidate& c, Failure& failure) const {
   return true;
 }
 
-Invariants::Invariants(const Task& task, const Relaxation& relaxation) : task_(task), relaxation_(relaxation) {
+Invariants::Invariants(const Task& task, const Relaxation& relaxation)
+    : task_(task), relaxation_(relaxation) {
   const auto& operators = relaxation.operators();
   groups_of_.resize(relaxation.facts());
   unconditional_.assign(operators.size(), 0);
@@ -116,13 +120,16 @@ Invariants::Invariants(const Task& task, const Relaxation& relaxation) : task_(t
     actions_.back().second = o + 1;
     action_of_[o] = static_cast<Index>(actions_.size() - 1);
     if (!task.is_outcome(operators[o].step))
-      unconditional_[o] = task.action(operators[o].step).effects[operators[o].conditional].condition == kTrue ? 1 : 0;
+      unconditional_[o] =
+          task.action(operators[o].step).effects[operators[o].conditional].condition == kTrue ? 1
+                                                                                              : 0;
   }
 
   std::set<Part> parts;
   for (const Fluent& f : task.layout().fluents()) {
     const auto arguments = static_cast<Index>(f.arguments.size());
-    for (Index k = 0; k < arguments + (f.function ? 1 : 0); ++k) parts.insert({f.function, f.symbol, k});
+    for (Index k = 0; k < arguments + (f.function ? 1 : 0); ++k)
+      parts.insert({f.function, f.symbol, k});
     parts.insert({f.function, f.symbol, kNone});
   }
   std::deque<Candidate> open;
@@ -158,7 +165,9 @@ Invariants::Invariants(const Task& task, const Relaxation& relaxation) : task_(t
       if (!deletes(failure.op, q)) continue;
       for (const Part& p : parts) {
         if (key_of(p, q) != failure.key) continue;
-        if (std::any_of(c.begin(), c.end(), [&](const Part& x) { return x.function == p.function && x.symbol == p.symbol; }))
+        if (std::any_of(c.begin(), c.end(), [&](const Part& x) {
+              return x.function == p.function && x.symbol == p.symbol;
+            }))
           continue;
         Candidate larger = c;
         larger.push_back(p);

@@ -9,9 +9,9 @@ namespace kaboum::plan {
 
 /// Groups of facts of which at most one holds in any reachable state.
 ///
-/// Found as in Fast Downward's invariant synthesis ([helmert2009concise]): candidates "counted facts
-/// that share a key object", e.g. {clear(x)} + {on(y, x) : y} + {holding(x)}, refined until every action
-/// that adds a fact of a group also takes one away; here checked on ground actions.
+/// Found as in Fast Downward's invariant synthesis ([helmert2009concise]): candidates "counted
+/// facts that share a key object", e.g. {clear(x)} + {on(y, x) : y} + {holding(x)}, refined until
+/// every action that adds a fact of a group also takes one away; here checked on ground actions.
 class Invariants {
  public:
   Invariants(const Task& task, const Relaxation& relaxation);

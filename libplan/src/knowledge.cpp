@@ -90,7 +90,8 @@ void Knowledge::apply(const Change& c) {
       clear_exclusions(f);
       break;
     case K::DeleteValue:
-      if (now == kFirstValue + c.value || (now < kFirstValue && !excluded(c.fluent, c.value))) forget_value();
+      if (now == kFirstValue + c.value || (now < kFirstValue && !excluded(c.fluent, c.value)))
+        forget_value();
       break;
     case K::Exclude:
       if (now == kFirstValue + c.value) forget_value();
@@ -155,7 +156,9 @@ bool Knowledge::learn_not_value(Index fluent, Index value) {
 bool Knowledge::learn_options(Index fluent, const std::vector<Index>& options) {
   const std::size_t range = layout_->range_size(layout_->fluents()[fluent]);
   for (Index v = 0; v < range; ++v)
-    if (std::find(options.begin(), options.end(), v) == options.end() && !learn_not_value(fluent, v)) return false;
+    if (std::find(options.begin(), options.end(), v) == options.end() &&
+        !learn_not_value(fluent, v))
+      return false;
   return true;
 }
 

@@ -22,22 +22,22 @@ inline std::uint64_t word_hash(Index place, Word content) {
 /// One change of knowledge, ground.
 struct Change {
   enum class Kind : std::uint8_t {
-    AddTrue,       ///< add(Kf, p)
-    AddFalse,      ///< add(Kf, !p)
-    DeleteTrue,    ///< del(Kf, p)
-    DeleteFalse,   ///< del(Kf, !p)
-    AddWhether,    ///< add(Kw, p): p is sensed
-    Forget,        ///< del(Kw, p), del(Kv, f)
-    AddValue,      ///< add(Kf, f = v)
-    DeleteValue,   ///< del(Kf, f = v)
-    Exclude,       ///< add(Kf, f != v)
-    DeleteExclude, ///< del(Kf, f != v)
-    AddSensed,     ///< add(Kv, f): f is sensed
-    AddGroup,      ///< add(Kx, p | q | ...)
-    DeleteGroup,   ///< del(Kx, ...)
-    AddClosed,     ///< add(LCW, p): all instances are sensed
-    DeleteClosed,  ///< del(LCW, p): the list of true instances may be incomplete
-    AddOptions,    ///< add(Kx, f = v | f = w | ...): one per option; the rest is excluded
+    AddTrue,        ///< add(Kf, p)
+    AddFalse,       ///< add(Kf, !p)
+    DeleteTrue,     ///< del(Kf, p)
+    DeleteFalse,    ///< del(Kf, !p)
+    AddWhether,     ///< add(Kw, p): p is sensed
+    Forget,         ///< del(Kw, p), del(Kv, f)
+    AddValue,       ///< add(Kf, f = v)
+    DeleteValue,    ///< del(Kf, f = v)
+    Exclude,        ///< add(Kf, f != v)
+    DeleteExclude,  ///< del(Kf, f != v)
+    AddSensed,      ///< add(Kv, f): f is sensed
+    AddGroup,       ///< add(Kx, p | q | ...)
+    DeleteGroup,    ///< del(Kx, ...)
+    AddClosed,      ///< add(LCW, p): all instances are sensed
+    DeleteClosed,   ///< del(LCW, p): the list of true instances may be incomplete
+    AddOptions,     ///< add(Kx, f = v | f = w | ...): one per option; the rest is excluded
   };
   Kind kind = Kind::AddTrue;
   Index fluent = 0;  ///< or group
@@ -50,7 +50,9 @@ struct Change {
 class Knowledge {
  public:
   explicit Knowledge(const Layout& layout)
-      : layout_(&layout), words_(layout.words(), 0), hash_(hash_of(words_.data(), layout.words())) {}
+      : layout_(&layout),
+        words_(layout.words(), 0),
+        hash_(hash_of(words_.data(), layout.words())) {}
 
   void assign(const Word* words) {
     words_.assign(words, words + words_.size());
@@ -93,7 +95,9 @@ class Knowledge {
   [[nodiscard]] AtomKnowledge atom(Index fluent) const {
     return static_cast<AtomKnowledge>(layout_->fluents()[fluent].get(words_.data()));
   }
-  [[nodiscard]] Word value(Index fluent) const { return layout_->fluents()[fluent].get(words_.data()); }
+  [[nodiscard]] Word value(Index fluent) const {
+    return layout_->fluents()[fluent].get(words_.data());
+  }
   [[nodiscard]] bool excluded(Index fluent, Index value) const;
   /// Values the term may still have, as positions.
   [[nodiscard]] std::vector<Index> possible_values(Index fluent, std::size_t range_size) const;

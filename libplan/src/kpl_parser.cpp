@@ -33,7 +33,7 @@ class Parser {
     return result;
   }
 
- // Public to the pieces below; the class itself is private to this file.
+  // Public to the pieces below; the class itself is private to this file.
   // ---- tokens ------------------------------------------------------------------------------
   [[nodiscard]] const Token& peek(std::size_t ahead = 0) const {
     return tokens_[std::min(next_ + ahead, tokens_.size() - 1)];
@@ -53,7 +53,8 @@ class Parser {
   }
   void expect(std::string_view symbol, std::string_view where) {
     if (!accept(symbol))
-      place().fail("expected '" + std::string(symbol) + "' " + std::string(where) + ", found " + found());
+      place().fail("expected '" + std::string(symbol) + "' " + std::string(where) + ", found " +
+                   found());
   }
   Name name(std::string_view what) {
     if (peek().kind != Token::Kind::Name)
@@ -78,9 +79,9 @@ class Parser {
 
   // ---- sections ----------------------------------------------------------------------------
   [[nodiscard]] bool at_section() const {
-    static constexpr std::array kWithColon = {"types",   "constants", "objects", "predicates",
-                                              "functions", "externals", "init",  "closed",
-                                              "unknown", "goal",      "preconds", "effects", "cost"};
+    static constexpr std::array kWithColon = {
+        "types",  "constants", "objects", "predicates", "functions", "externals", "init",
+        "closed", "unknown",   "goal",    "preconds",   "effects",   "cost"};
     static constexpr std::array kOthers = {"action", "table", "domain", "problem", "symbols"};
     if (at_end()) return true;
     if (peek().kind != Token::Kind::Name) return false;
@@ -125,8 +126,10 @@ class Parser {
       document_.goals.push_back(formula());
       if (!at_section()) place().fail("expected the end of the goal, found " + found());
     } else {
-      at.fail("expected a section such as 'types:', 'predicates:', 'action', 'init:' or 'goal:', found " +
-              found());
+      at.fail(
+          "expected a section such as 'types:', 'predicates:', 'action', 'init:' or 'goal:', "
+          "found " +
+          found());
     }
     while (accept(";")) {
     }
@@ -253,7 +256,8 @@ class Parser {
         break;
       }
     }
-    if (!at_section()) place().fail("expected 'preconds:', 'effects:' or the next section, found " + found());
+    if (!at_section())
+      place().fail("expected 'preconds:', 'effects:' or the next section, found " + found());
     document_.actions.push_back(std::move(a));
   }
 
@@ -330,8 +334,10 @@ class Parser {
         expect(")", "after the function term of Kv");
         return f;
       }
-      if (accept("forallK") || accept("forall")) return quantified(std::move(f), Formula::Kind::ForAll);
-      if (accept("existsK") || accept("exists")) return quantified(std::move(f), Formula::Kind::Exists);
+      if (accept("forallK") || accept("forall"))
+        return quantified(std::move(f), Formula::Kind::ForAll);
+      if (accept("existsK") || accept("exists"))
+        return quantified(std::move(f), Formula::Kind::Exists);
       if (is("extern")) {
         f.terms.push_back(term());
         return comparison(std::move(f), Formula::Kind::Extern);
@@ -345,8 +351,10 @@ class Parser {
       f.kind = Formula::Kind::False;
       return f;
     }
-    place().fail("expected a query such as K(...), !K(...), Kw(...), Kv(...), forallK or extern(...), found " +
-                 found());
+    place().fail(
+        "expected a query such as K(...), !K(...), Kw(...), Kv(...), forallK or extern(...), "
+        "found " +
+        found());
   }
 
   Formula modal(Formula f, Formula::Kind kind) {
@@ -408,7 +416,8 @@ class Parser {
     t.name = name("a variable, a constant or a function");
     if (t.name.text == "extern" && accept("(")) {
       t = term();
-      if (t.kind == Term::Kind::Variable) t.name.place.fail("expected an external function after extern(");
+      if (t.kind == Term::Kind::Variable)
+        t.name.place.fail("expected an external function after extern(");
       t.kind = Term::Kind::Extern;
       expect(")", "to close extern(");
       return t;
@@ -485,7 +494,8 @@ class Parser {
       if (tokens_[i].is("(")) ++depth;
       if (tokens_[i].is(")") && --depth == 0) return false;
       if (tokens_[i].is("=>")) return true;
-      if ((tokens_[i].is("add") || tokens_[i].is("del")) && i + 1 < tokens_.size() && tokens_[i + 1].is("("))
+      if ((tokens_[i].is("add") || tokens_[i].is("del")) && i + 1 < tokens_.size() &&
+          tokens_[i + 1].is("("))
         return true;
     }
     return false;
@@ -526,14 +536,16 @@ class Parser {
     return result;
   }
 
-  /// init: add(Kf, ...) or the short forms K(...), Kw(...), Kv(...), Kx(a | b), LCW(...), or a bare literal.
+  /// init: add(Kf, ...) or the short forms K(...), Kw(...), Kv(...), Kx(a | b), LCW(...), or a bare
+  /// literal.
   void initial() {
     while (!at_section()) {
       Effect e;
       e.place = place();
       if (is("add") && is("(", 1)) {
         e = update();
-      } else if (is("(", 1) && (is("K") || is("Kf") || is("Kw") || is("Kv") || is("Kx") || is("LCW"))) {
+      } else if (is("(", 1) &&
+                 (is("K") || is("Kf") || is("Kw") || is("Kv") || is("Kx") || is("LCW"))) {
         if (accept("K")) {
           e.database = syntax::Database::Kf;
         } else {
@@ -584,7 +596,8 @@ std::vector<Effect> kpl_piece::initial(const Source& source) {
   });
 }
 std::vector<TypedVariable> kpl_piece::parameters(const Source& source) {
-  return Parser(source).piece([](Parser& p) { return p.at_end() ? std::vector<TypedVariable>{} : p.parameters(); });
+  return Parser(source).piece(
+      [](Parser& p) { return p.at_end() ? std::vector<TypedVariable>{} : p.parameters(); });
 }
 std::vector<syntax::Signature> kpl_piece::signatures(const Source& source) {
   return Parser(source).piece([](Parser& p) {

@@ -10,8 +10,8 @@ namespace kaboum::plan {
 /// @throws Error{InvalidInput} with line, column and caret.
 syntax::Document parse_kpl(std::shared_ptr<const Source> source);
 
-/// Pieces of another document that are written in the same notation (the XML form). Each text is read
-/// to its end.
+/// Pieces of another document that are written in the same notation (the XML form). Each text is
+/// read to its end.
 namespace kpl_piece {
 syntax::Formula formula(const Source& source);
 std::vector<syntax::Effect> effects(const Source& source);

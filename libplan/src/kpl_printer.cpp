@@ -11,7 +11,8 @@ using K = Formula::Kind;
 std::string variables(const std::vector<syntax::TypedVariable>& list) {
   std::string text;
   for (const auto& v : list)
-    text += (text.empty() ? "?" : ", ?") + v.name.text + (v.type.text.empty() ? "" : " : " + v.type.text);
+    text += (text.empty() ? "?" : ", ?") + v.name.text +
+            (v.type.text.empty() ? "" : " : " + v.type.text);
   return "(" + text + ")";
 }
 
@@ -33,7 +34,8 @@ std::string joined(const Formula& f, const char* symbol) {
   std::string text;
   for (const Formula& c : f.children) {
     const bool parentheses = strength(c) <= strength(f);
-    text += (text.empty() ? "" : symbol) + (parentheses ? "(" + print_formula(c) + ")" : print_formula(c));
+    text += (text.empty() ? "" : symbol) +
+            (parentheses ? "(" + print_formula(c) + ")" : print_formula(c));
   }
   return text;
 }
@@ -61,7 +63,8 @@ const char* name(syntax::Database d) {
 std::string update(const Effect& e) {
   std::string text;
   for (const Formula& f : e.formulas) text += (text.empty() ? "" : " | ") + print_formula(f);
-  return std::string(e.kind == Effect::Kind::Add ? "add(" : "del(") + name(e.database) + ", " + text + ")";
+  return std::string(e.kind == Effect::Kind::Add ? "add(" : "del(") + name(e.database) + ", " +
+         text + ")";
 }
 
 std::string effects(const std::vector<Effect>& list, const std::string& indent);
@@ -72,9 +75,11 @@ std::string effect(const Effect& e, const std::string& indent) {
     case Effect::Kind::Delete:
       return update(e);
     case Effect::Kind::When:
-      return print_formula(e.formulas.at(0)) + " => {\n" + effects(e.children, indent + "  ") + "\n" + indent + "}";
+      return print_formula(e.formulas.at(0)) + " => {\n" + effects(e.children, indent + "  ") +
+             "\n" + indent + "}";
     case Effect::Kind::ForAll:
-      return "forall" + variables(e.variables) + " {\n" + effects(e.children, indent + "  ") + "\n" + indent + "}";
+      return "forall" + variables(e.variables) + " {\n" + effects(e.children, indent + "  ") +
+             "\n" + indent + "}";
   }
   return {};
 }
@@ -87,7 +92,8 @@ std::string effects(const std::vector<Effect>& list, const std::string& indent) 
 
 std::string signature(const syntax::Signature& s) {
   std::string text;
-  for (const auto& p : s.parameters) text += (text.empty() ? "" : ", ") + (p.text.empty() ? "?any" : p.text);
+  for (const auto& p : s.parameters)
+    text += (text.empty() ? "" : ", ") + (p.text.empty() ? "?any" : p.text);
   return s.name.text + (s.parameters.empty() ? "" : "(" + text + ")");
 }
 
@@ -97,7 +103,8 @@ std::string print_term(const Term& t) {
   std::string text = t.kind == Term::Kind::Variable ? "?" + t.name.text : t.name.text;
   if (t.kind == Term::Kind::Call || (t.kind == Term::Kind::Extern && !t.arguments.empty())) {
     text += "(";
-    for (std::size_t i = 0; i < t.arguments.size(); ++i) text += (i == 0 ? "" : ", ") + print_term(t.arguments[i]);
+    for (std::size_t i = 0; i < t.arguments.size(); ++i)
+      text += (i == 0 ? "" : ", ") + print_term(t.arguments[i]);
     text += ")";
   }
   return t.kind == Term::Kind::Extern ? "extern(" + text + ")" : text;
@@ -157,12 +164,14 @@ std::string print_kpl(const syntax::Document& d) {
   section("constants:", d.constants, [](const syntax::TypedVariable& c) {
     return (c.type.text.empty() ? "object" : c.type.text) + " " + c.name.text + ";";
   });
-  section("predicates:", d.predicates, [](const syntax::Signature& s) { return signature(s) + ";"; });
+  section("predicates:", d.predicates,
+          [](const syntax::Signature& s) { return signature(s) + ";"; });
   section("functions:", d.functions, [](const syntax::Signature& s) {
     return signature(s) + (s.range.text.empty() ? "" : " : " + s.range.text) + ";";
   });
   section("externals:", d.externals, [](const syntax::Signature& s) {
-    return signature(s) + (s.range.text.empty() ? "" : " : " + s.range.text) + (s.is_volatile ? " volatile" : "") + ";";
+    return signature(s) + (s.range.text.empty() ? "" : " : " + s.range.text) +
+           (s.is_volatile ? " volatile" : "") + ";";
   });
   for (const syntax::Table& t : d.tables) {
     out += "table " + t.external.text + ":\n";
@@ -180,7 +189,8 @@ std::string print_kpl(const syntax::Document& d) {
     out += "\n";
   }
   section("init:", d.initial, [](const Effect& e) {
-    if (e.database == syntax::Database::Kf && e.formulas.size() == 1 && e.formulas[0].kind == K::Equal)
+    if (e.database == syntax::Database::Kf && e.formulas.size() == 1 &&
+        e.formulas[0].kind == K::Equal)
       return print_formula(e.formulas[0]) + ";";
     return update(e) + ";";
   });

@@ -31,7 +31,8 @@ bool disjoint(const std::vector<std::uint64_t>& a, const std::vector<std::uint64
 
 }  // namespace
 
-LandmarkHeuristic::LandmarkHeuristic(Task& task, const Relaxation& relaxation, const Invariants& invariants)
+LandmarkHeuristic::LandmarkHeuristic(Task& task, const Relaxation& relaxation,
+                                     const Invariants& invariants)
     : task_(task), relaxation_(relaxation), invariants_(invariants) {
   number_of_.assign(task.action_count(), kNone);
   for (const Step a : relaxation.actions()) {
@@ -83,7 +84,8 @@ LandmarkHeuristic::FactInfo& LandmarkHeuristic::info(FactId f) {
   info.conditions = common_conditions(f);
   std::map<std::vector<FactId>, std::vector<Index>> by_guards;
   for (const Index o : achievers_[f]) {
-    // A condition that itself needs f first cannot lead to f's first achievement, unless it holds now.
+    // A condition that itself needs f first cannot lead to f's first achievement, unless it holds
+    // now.
     std::vector<FactId> guards;
     for (const FactId c : relaxation_.operators()[o].preconditions) {
       if (c == f || opaque_[c]) continue;
@@ -141,7 +143,9 @@ Index LandmarkHeuristic::first_event(std::vector<FactId> facts, const Word* stat
   bool one_bucket = true;
   for (const FactId f : e.facts)
     for (const Bucket& b : info(f).buckets) {
-      if (!std::all_of(b.guards.begin(), b.guards.end(), [&](FactId g) { return relaxation_.holds(g, state); })) continue;
+      if (!std::all_of(b.guards.begin(), b.guards.end(),
+                       [&](FactId g) { return relaxation_.holds(g, state); }))
+        continue;
       for (std::size_t i = 0; i < words_; ++i) e.actions[i] |= b.actions[i];
       e.conditions = first ? b.conditions : intersection(e.conditions, b.conditions);
       if (first) {
@@ -159,7 +163,8 @@ Index LandmarkHeuristic::first_event(std::vector<FactId> facts, const Word* stat
       std::vector<FactId> all = option;
       bool everywhere = true;
       for (const Bucket& b : info(e.facts[0]).buckets) {
-        if (!std::all_of(b.guards.begin(), b.guards.end(), [&](FactId g) { return relaxation_.holds(g, state); }))
+        if (!std::all_of(b.guards.begin(), b.guards.end(),
+                         [&](FactId g) { return relaxation_.holds(g, state); }))
           continue;
         const auto same = std::find_if(b.options.begin(), b.options.end(), [&](const auto& o) {
           const Fluent& f = task_.layout().fluents()[relaxation_.fluent_of(o[0])];
@@ -211,7 +216,9 @@ bool LandmarkHeuristic::relate(Index event, const Word* state) {
     for (const Index g : info(p).excludes) order(event, last_event(g), false);
   }
   for (const auto& option : e.options) {
-    if (std::any_of(option.begin(), option.end(), [&](FactId f) { return relaxation_.holds(f, state); })) continue;
+    if (std::any_of(option.begin(), option.end(),
+                    [&](FactId f) { return relaxation_.holds(f, state); }))
+      continue;
     order(first_event(option, state), event, true);
   }
   if (e.facts.size() == 1) {
@@ -279,12 +286,14 @@ std::uint64_t LandmarkHeuristic::bound(bool& contradiction) {
     if (sizes[i].actions > 0) shared += least;
   }
   // Events that pairwise cannot be the same occurrence, greedily: those of few actions first.
-  std::stable_sort(sizes.begin(), sizes.end(), [](const Size& a, const Size& b) { return a.actions < b.actions; });
+  std::stable_sort(sizes.begin(), sizes.end(),
+                   [](const Size& a, const Size& b) { return a.actions < b.actions; });
   std::vector<std::size_t> chosen;
   std::uint64_t distinct = 0;
   for (const Size& s : sizes) {
     const bool fits = std::all_of(chosen.begin(), chosen.end(), [&](std::size_t c) {
-      return get(before[c], s.event) || get(before[s.event], c) || disjoint(events_[c].actions, events_[s.event].actions);
+      return get(before[c], s.event) || get(before[s.event], c) ||
+             disjoint(events_[c].actions, events_[s.event].actions);
     });
     if (!fits) continue;
     chosen.push_back(s.event);

@@ -15,9 +15,9 @@ namespace kaboum::plan {
 /// An event is an occurrence of some action that every plan from the state must contain: the first
 /// time a landmark becomes true, or the last time a goal does. Backward chaining finds events and
 /// orders them: a precondition comes before; what excludes a goal comes before the goal's last
-/// achievement. When the same actions must happen both before and after something else (a cycle among
-/// landmarks, [buechner2021cyclic]) the orders make two events of them, which cost twice. The estimate
-/// is the larger of
+/// achievement. When the same actions must happen both before and after something else (a cycle
+/// among landmarks, [buechner2021cyclic]) the orders make two events of them, which cost twice. The
+/// estimate is the larger of
 ///   - the cost of events that pairwise cannot be one and the same occurrence, and
 ///   - uniform cost partitioning over all events ([karpas2009landmarks]).
 /// Proof of admissibility: docs/planning/search.md.
@@ -35,8 +35,9 @@ class LandmarkHeuristic {
   struct Bucket {
     std::vector<FactId> guards;
     Bits actions;
-    std::vector<FactId> conditions;             ///< common to all
-    std::vector<std::vector<FactId>> options;   ///< every achiever has a condition among each of these
+    std::vector<FactId> conditions;  ///< common to all
+    std::vector<std::vector<FactId>>
+        options;  ///< every achiever has a condition among each of these
   };
   struct FactInfo {
     bool ready = false;
@@ -45,7 +46,7 @@ class LandmarkHeuristic {
     std::vector<Index> excludes;     ///< goals that exclude this fact
   };
   struct Event {
-    bool last = false;               ///< last achievement of a goal; else first of `facts`
+    bool last = false;  ///< last achievement of a goal; else first of `facts`
     std::vector<FactId> facts;
     Bits actions;
     std::vector<FactId> conditions;
@@ -63,14 +64,14 @@ class LandmarkHeuristic {
   Task& task_;
   const Relaxation& relaxation_;
   const Invariants& invariants_;
-  std::size_t words_ = 0;                       ///< of a set of actions
-  std::vector<std::int64_t> costs_;             ///< by action number
-  std::vector<Index> number_of_;                ///< by step
-  std::vector<std::vector<Index>> achievers_;   ///< by fact
-  std::vector<std::vector<FactId>> common_;     ///< by fact, once common_ready_
+  std::size_t words_ = 0;                      ///< of a set of actions
+  std::vector<std::int64_t> costs_;            ///< by action number
+  std::vector<Index> number_of_;               ///< by step
+  std::vector<std::vector<Index>> achievers_;  ///< by fact
+  std::vector<std::vector<FactId>> common_;    ///< by fact, once common_ready_
   std::vector<char> common_ready_;
   std::vector<FactInfo> infos_;
-  std::vector<char> opaque_;                    ///< by fact
+  std::vector<char> opaque_;  ///< by fact
   std::vector<FactId> goals_;
   std::vector<std::vector<Index>> goals_in_group_;
 

@@ -41,7 +41,8 @@ struct Layout::Builder {
         layout.positions_[t][model.types[t].objects[i]] = static_cast<Index>(i);
     std::size_t atoms = 0;
     std::size_t terms = 0;
-    const auto assign = [&](const std::vector<Symbol>& symbols, std::vector<Block>& blocks, std::size_t& next) {
+    const auto assign = [&](const std::vector<Symbol>& symbols, std::vector<Block>& blocks,
+                            std::size_t& next) {
       for (const Symbol& s : symbols) {
         blocks.push_back({next, false, false});
         std::size_t count = s.numeric ? 0 : 1;
@@ -51,7 +52,8 @@ struct Layout::Builder {
         }
         next += count;
         if (next > kMaximumNumbered)
-          throw Error(ErrorCode::LimitReached, "'" + s.name + "' has too many ground instances (limit " +
+          throw Error(ErrorCode::LimitReached, "'" + s.name +
+                                                   "' has too many ground instances (limit " +
                                                    std::to_string(kMaximumNumbered) + ")");
       }
     };
@@ -81,8 +83,8 @@ struct Layout::Builder {
     std::vector<Index> arguments;
     for (const Argument& a : l.arguments) arguments.push_back(value_of(a, slots));
     const Symbol& s = (l.function ? model.functions : model.predicates)[l.symbol];
-    const std::size_t n =
-        layout.number(s, (l.function ? layout.functions_ : layout.predicates_)[l.symbol], arguments.data());
+    const std::size_t n = layout.number(
+        s, (l.function ? layout.functions_ : layout.predicates_)[l.symbol], arguments.data());
     if (n != kNone) (l.function ? term_changes : atom_changes)[n] = 1;
   }
 
@@ -96,7 +98,8 @@ struct Layout::Builder {
       atoms.emplace_back(l.symbol, std::move(arguments));
     }
     group_atoms.push_back(std::move(atoms));
-    if (group_atoms.size() > 100'000) throw Error(ErrorCode::LimitReached, "too many entries of Kx");
+    if (group_atoms.size() > 100'000)
+      throw Error(ErrorCode::LimitReached, "too many entries of Kx");
   }
 
   void mark_effects(const std::vector<Effect>& effects, std::vector<Index>& slots) {
@@ -134,18 +137,21 @@ struct Layout::Builder {
   [[nodiscard]] bool refuted(const Query& q, const Index* slots) const {
     if (q.kind == Query::Kind::Not) {
       const Query& c = q.children[0];
-      if (c.kind == Query::Kind::Same) return value_of(c.arguments[0], slots) == value_of(c.arguments[1], slots);
+      if (c.kind == Query::Kind::Same)
+        return value_of(c.arguments[0], slots) == value_of(c.arguments[1], slots);
       if (c.kind != Query::Kind::Known || open_symbols[c.symbol]) return false;
       return holds(c, slots);
     }
-    if (q.kind == Query::Kind::Same) return value_of(q.arguments[0], slots) != value_of(q.arguments[1], slots);
+    if (q.kind == Query::Kind::Same)
+      return value_of(q.arguments[0], slots) != value_of(q.arguments[1], slots);
     if (q.kind != Query::Kind::Known || open_symbols[q.symbol]) return false;
     return !holds(q, slots);
   }
   [[nodiscard]] bool holds(const Query& q, const Index* slots) const {
     std::vector<Index> arguments;
     for (const Argument& a : q.arguments) arguments.push_back(value_of(a, slots));
-    const std::size_t n = layout.number(model.predicates[q.symbol], layout.predicates_[q.symbol], arguments.data());
+    const std::size_t n =
+        layout.number(model.predicates[q.symbol], layout.predicates_[q.symbol], arguments.data());
     if (n == kNone) return false;
     return layout.atom_constants_[n] == (q.negated ? AtomKnowledge::False : AtomKnowledge::True);
   }
@@ -194,8 +200,8 @@ struct Layout::Builder {
         if (u.database != Update::Database::Kf || l.function) continue;
       }
       const Symbol& s = (l.function ? model.functions : model.predicates)[l.symbol];
-      const std::size_t n =
-          layout.number(s, (l.function ? layout.functions_ : layout.predicates_)[l.symbol], arguments.data());
+      const std::size_t n = layout.number(
+          s, (l.function ? layout.functions_ : layout.predicates_)[l.symbol], arguments.data());
       ensure(n != kNone, "initial knowledge outside its types");
       if (l.function) {
         layout.term_constants_[n] = l.value->index;
@@ -208,8 +214,10 @@ struct Layout::Builder {
       std::vector<Index> arguments;
       for (const Argument& a : u.literals[0].arguments) arguments.push_back(a.index);
       const Index p = u.literals[0].symbol;
-      const std::size_t n = layout.number(model.predicates[p], layout.predicates_[p], arguments.data());
-      if (layout.atom_constants_[n] == AtomKnowledge::Unknown) layout.atom_constants_[n] = AtomKnowledge::False;
+      const std::size_t n =
+          layout.number(model.predicates[p], layout.predicates_[p], arguments.data());
+      if (layout.atom_constants_[n] == AtomKnowledge::Unknown)
+        layout.atom_constants_[n] = AtomKnowledge::False;
     }
   }
 
@@ -235,7 +243,8 @@ struct Layout::Builder {
     for (Fluent& f : fluents) {
       unsigned bits = 2;
       if (f.function)
-        bits = static_cast<unsigned>(std::bit_width(model.types[f.range].objects.size() + kFirstValue - 1));
+        bits = static_cast<unsigned>(
+            std::bit_width(model.types[f.range].objects.size() + kFirstValue - 1));
       const Open at = place(bits);
       f.word = at.word;
       f.shift = at.used;
@@ -250,14 +259,16 @@ struct Layout::Builder {
     for (std::size_t g = 0; g < layout.groups_.size(); ++g) {
       layout.groups_[g].word = layout.words_++;
       for (std::size_t i = 0; i < layout.groups_[g].members.size(); ++i)
-        fluents[layout.groups_[g].members[i]].groups.emplace_back(static_cast<Index>(g), static_cast<Index>(i));
+        fluents[layout.groups_[g].members[i]].groups.emplace_back(static_cast<Index>(g),
+                                                                  static_cast<Index>(i));
     }
     if (layout.words_ == 0) layout.words_ = 1;
   }
 
   void make_fluents() {
-    const auto each = [&](const std::vector<Symbol>& symbols, const std::vector<Block>& blocks, bool function,
-                          const std::vector<char>& changes, std::vector<Index>& numbers) {
+    const auto each = [&](const std::vector<Symbol>& symbols, const std::vector<Block>& blocks,
+                          bool function, const std::vector<char>& changes,
+                          std::vector<Index>& numbers) {
       for (Index s = 0; s < symbols.size(); ++s) {
         if (symbols[s].numeric) continue;
         std::vector<Index> arguments(symbols[s].parameters.size());
@@ -291,7 +302,8 @@ struct Layout::Builder {
       std::sort(g.members.begin(), g.members.end());
       g.members.erase(std::unique(g.members.begin(), g.members.end()), g.members.end());
       const auto index = static_cast<Index>(layout.groups_.size());
-      if (layout.group_by_members_.emplace(g.members, index).second) layout.groups_.push_back(std::move(g));
+      if (layout.group_by_members_.emplace(g.members, index).second)
+        layout.groups_.push_back(std::move(g));
     }
   }
 
@@ -302,10 +314,12 @@ struct Layout::Builder {
       for_each_update(a.effects, [&](const Update& u) { scan(u, false); });
     initial_constants();
     for (const Action& a : model.actions) mark_action(a);
-    if (visits > kMaximumVisits) {  // too many bindings to look at: everything named by an effect may change
+    if (visits >
+        kMaximumVisits) {  // too many bindings to look at: everything named by an effect may change
       const auto all = [](const std::vector<Block>& blocks, std::vector<char>& changes) {
         for (std::size_t s = 0; s < blocks.size(); ++s)
-          for (std::size_t n = blocks[s].first; n < (s + 1 < blocks.size() ? blocks[s + 1].first : changes.size()); ++n)
+          for (std::size_t n = blocks[s].first;
+               n < (s + 1 < blocks.size() ? blocks[s + 1].first : changes.size()); ++n)
             changes[n] |= static_cast<char>(blocks[s].changes);
       };
       all(layout.predicates_, atom_changes);
@@ -371,7 +385,9 @@ Index Layout::sensed_tie(Index fluent, const Word* state) const {
       if (((state[group.word] >> bit) & 1U) == 0) continue;
       for (std::size_t i = 0; i < group.members.size(); ++i) {
         const Index m = group.members[i];
-        if (((state[group.word] >> i) & 1U) == 0 || std::find(seen.begin(), seen.end(), m) != seen.end()) continue;
+        if (((state[group.word] >> i) & 1U) == 0 ||
+            std::find(seen.begin(), seen.end(), m) != seen.end())
+          continue;
         if (fluents_[m].get(state) == static_cast<Word>(AtomKnowledge::Whether)) return m;
         seen.push_back(m);
         todo.push_back(m);

@@ -26,9 +26,9 @@ struct Fluent {
   std::vector<Index> arguments;
   Index word = 0;
   unsigned shift = 0;
-  Word mask = 0;                  ///< in place
-  Index range = kNone;            ///< of a function
-  Index exclusions = kNone;       ///< first word of the bit set of excluded values, if one is kept
+  Word mask = 0;             ///< in place
+  Index range = kNone;       ///< of a function
+  Index exclusions = kNone;  ///< first word of the bit set of excluded values, if one is kept
   Index exclusion_words = 0;
   std::vector<std::pair<Index, Index>> groups;  ///< Kx groups it is in, and its bit there
 
@@ -48,10 +48,10 @@ class Layout {
   explicit Layout(const Model& model);
 
   struct Place {
-    Index fluent = kNone;                            ///< kNone: constant
-    AtomKnowledge atom = AtomKnowledge::Unknown;     ///< constant knowledge of an atom
-    Index value = kNone;                             ///< constant value of a term; kNone: unknown
-    bool exists = true;                              ///< false: an argument is not of its type
+    Index fluent = kNone;                         ///< kNone: constant
+    AtomKnowledge atom = AtomKnowledge::Unknown;  ///< constant knowledge of an atom
+    Index value = kNone;                          ///< constant value of a term; kNone: unknown
+    bool exists = true;                           ///< false: an argument is not of its type
   };
   [[nodiscard]] Place atom(Index predicate, const Index* arguments) const;
   [[nodiscard]] Place term(Index function, const Index* arguments) const;
@@ -64,9 +64,11 @@ class Layout {
   /// The group with these members (any order); kNone if there is none.
   [[nodiscard]] Index group(std::vector<Index> members) const;
   [[nodiscard]] Index words() const { return words_; }
-  [[nodiscard]] std::size_t range_size(const Fluent& f) const { return model_.types[f.range].objects.size(); }
-  /// For an undecided atom in exclusive-or entries: a sensed atom whose value, once known, may decide
-  /// it. kNone: there is none, and the atom will stay undecided.
+  [[nodiscard]] std::size_t range_size(const Fluent& f) const {
+    return model_.types[f.range].objects.size();
+  }
+  /// For an undecided atom in exclusive-or entries: a sensed atom whose value, once known, may
+  /// decide it. kNone: there is none, and the atom will stay undecided.
   [[nodiscard]] Index sensed_tie(Index fluent, const Word* state) const;
   /// Whether sensing can happen at all, so that queries may be open.
   [[nodiscard]] bool sensing() const { return sensing_; }
@@ -79,7 +81,8 @@ class Layout {
   };
   struct Builder;
 
-  [[nodiscard]] std::size_t number(const Symbol& symbol, const Block& block, const Index* arguments) const;
+  [[nodiscard]] std::size_t number(const Symbol& symbol, const Block& block,
+                                   const Index* arguments) const;
 
   const Model& model_;
   std::vector<std::vector<Index>> positions_;

@@ -10,10 +10,11 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// What may stand for an operator, longest first; each with the spelling the parser sees.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 27> kSymbols = {{
-    {"<=>", "<=>"}, {"⟹", "=>"}, {"⇒", "=>"},  {"∧", "&"}, {"∨", "|"}, {"¬", "!"},   {"⊕", "xor"},
-    {"≠", "!="},    {"=>", "=>"}, {"!=", "!="}, {"(", "("}, {")", ")"}, {"[", "["},   {"]", "]"},
-    {",", ","},     {";", ";"},   {":", ":"},   {"=", "="}, {"!", "!"}, {"&", "&"},   {"^", "&"},
-    {"|", "|"},     {"/", "/"},   {"{", "{"},   {"}", "}"}, {"+", "+"}, {"...", "..."},
+    {"<=>", "<=>"}, {"⟹", "=>"}, {"⇒", "=>"},    {"∧", "&"},   {"∨", "|"}, {"¬", "!"},
+    {"⊕", "xor"},   {"≠", "!="}, {"=>", "=>"},   {"!=", "!="}, {"(", "("}, {")", ")"},
+    {"[", "["},     {"]", "]"},  {",", ","},     {";", ";"},   {":", ":"}, {"=", "="},
+    {"!", "!"},     {"&", "&"},  {"^", "&"},     {"|", "|"},   {"/", "/"}, {"{", "{"},
+    {"}", "}"},     {"+", "+"},  {"...", "..."},
 }};
 
 }  // namespace
@@ -24,9 +25,8 @@ std::vector<Token> tokenize(const Source& source) {
   std::size_t i = 0;
   const auto starts = [&](std::string_view s) { return text.compare(i, s.size(), s) == 0; };
   const auto name_end = [&](std::size_t at) {
-    while (at < text.size() &&
-           (is_letter(text[at]) || is_digit(text[at]) || text[at] == '\'' ||
-            (text[at] == '-' && at + 1 < text.size() && text[at + 1] != '-')))
+    while (at < text.size() && (is_letter(text[at]) || is_digit(text[at]) || text[at] == '\'' ||
+                                (text[at] == '-' && at + 1 < text.size() && text[at + 1] != '-')))
       ++at;
     return at;
   };

@@ -18,7 +18,8 @@ struct Token {
   }
 };
 
-/// Tokens of a .kpl text, the last of kind End. Comments: "--", "//" and "#" to the end of the line.
+/// Tokens of a .kpl text, the last of kind End. Comments: "--", "//" and "#" to the end of the
+/// line.
 /// @throws Error{InvalidInput} on a character that begins nothing.
 std::vector<Token> tokenize(const Source& source);
 

@@ -11,7 +11,8 @@ namespace {
 
 syntax::Document parse(const Text& text) {
   constexpr std::size_t kLargest = 64U << 20U;
-  if (text.text.size() > kLargest) throw Error(ErrorCode::InvalidInput, text.name + ": larger than 64 MiB");
+  if (text.text.size() > kLargest)
+    throw Error(ErrorCode::InvalidInput, text.name + ": larger than 64 MiB");
   auto source = std::make_shared<Source>(Source{text.name, text.text});
   switch (text.language) {
     case Language::Kpl:

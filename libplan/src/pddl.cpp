@@ -25,7 +25,9 @@ struct Expression {
   Place place;
 
   [[nodiscard]] bool is(std::string_view w) const { return !list && word == w; }
-  [[nodiscard]] bool headed(std::string_view w) const { return list && !items.empty() && items[0].is(w); }
+  [[nodiscard]] bool headed(std::string_view w) const {
+    return list && !items.empty() && items[0].is(w);
+  }
 };
 
 class Lisp {
@@ -59,7 +61,8 @@ class Lisp {
     const std::string& t = source_.text;
     if (t[at_] == ')') source_.fail(at_, "')' without '('");
     if (t[at_] != '(') {
-      while (at_ < t.size() && std::string_view("() \t\r\n;").find(t[at_]) == std::string_view::npos) {
+      while (at_ < t.size() &&
+             std::string_view("() \t\r\n;").find(t[at_]) == std::string_view::npos) {
         const char c = t[at_++];
         e.word += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
       }
@@ -106,7 +109,8 @@ class Reader {
     if (!e.headed("define")) e.place.fail("expected (define ...)");
     const Expression& head = item(e, 1, "(domain NAME) or (problem NAME)");
     const bool domain = head.headed("domain");
-    if (!domain && !head.headed("problem")) head.place.fail("expected (domain NAME) or (problem NAME)");
+    if (!domain && !head.headed("problem"))
+      head.place.fail("expected (domain NAME) or (problem NAME)");
     const Name n = name(item(head, 1, "a name"), "a name");
     if (domain || document_.name.text.empty()) document_.name = n;
     for (std::size_t i = 2; i < e.items.size(); ++i) section(e.items[i]);
@@ -122,7 +126,8 @@ class Reader {
     } else if (key == ":constants" || key == ":objects") {
       for (TypedVariable& c : typed(e, 1, false)) document_.constants.push_back(std::move(c));
     } else if (key == ":predicates") {
-      for (std::size_t i = 1; i < e.items.size(); ++i) document_.predicates.push_back(signature(e.items[i]));
+      for (std::size_t i = 1; i < e.items.size(); ++i)
+        document_.predicates.push_back(signature(e.items[i]));
     } else if (key == ":functions") {
       functions(e);
     } else if (key == ":action") {
@@ -133,7 +138,8 @@ class Reader {
       document_.goals.push_back(formula(item(e, 1, "a goal"), true));
     } else if (key == ":metric") {
       const Expression& what = item(e, 2, "what to minimise");
-      if (!item(e, 1, "minimize").is("minimize") || !(what.is("total-cost") || what.headed("total-cost")))
+      if (!item(e, 1, "minimize").is("minimize") ||
+          !(what.is("total-cost") || what.headed("total-cost")))
         e.place.fail("only the metric 'minimize (total-cost)' is supported");
     } else if (key != ":domain") {
       e.place.fail("unsupported section '" + key + "'");
@@ -141,10 +147,19 @@ class Reader {
   }
 
   static void requirement(const Expression& e) {
-    static constexpr std::array kSupported = {
-        ":strips",          ":typing",        ":equality",       ":negative-preconditions", ":disjunctive-preconditions",
-        ":existential-preconditions", ":universal-preconditions", ":quantified-preconditions",
-        ":conditional-effects", ":adl",       ":object-fluents", ":action-costs",           ":contingent"};
+    static constexpr std::array kSupported = {":strips",
+                                              ":typing",
+                                              ":equality",
+                                              ":negative-preconditions",
+                                              ":disjunctive-preconditions",
+                                              ":existential-preconditions",
+                                              ":universal-preconditions",
+                                              ":quantified-preconditions",
+                                              ":conditional-effects",
+                                              ":adl",
+                                              ":object-fluents",
+                                              ":action-costs",
+                                              ":contingent"};
     if (std::none_of(kSupported.begin(), kSupported.end(), [&](const char* s) { return e.is(s); }))
       e.place.fail("unsupported requirement '" + e.word + "'");
   }
@@ -163,7 +178,8 @@ class Reader {
       }
       Name n = name(e.items[i], "a name");
       if (variables != (n.text[0] == '?'))
-        n.place.fail(variables ? "expected a variable such as ?x" : "expected a name, found a variable");
+        n.place.fail(variables ? "expected a variable such as ?x"
+                               : "expected a name, found a variable");
       if (variables) n.text.erase(0, 1);
       if (variables && n.text.empty()) n.place.fail("a variable's name must follow '?'");
       result.push_back({n, {}});
@@ -183,7 +199,8 @@ class Reader {
     for (std::size_t i = 1; i < e.items.size(); ++i) {
       if (e.items[i].is("-")) {
         const Name range = name(item(e, i + 1, "a type after '-'"), "a type");
-        for (; untyped < document_.functions.size(); ++untyped) document_.functions[untyped].range = range;
+        for (; untyped < document_.functions.size(); ++untyped)
+          document_.functions[untyped].range = range;
         ++i;
         continue;
       }
@@ -192,7 +209,8 @@ class Reader {
     // Without a type a function is a number.
     for (; untyped < document_.functions.size(); ++untyped)
       document_.functions[untyped].range = {"number", document_.functions[untyped].name.place};
-    std::erase_if(document_.functions, [](const syntax::Signature& s) { return s.name.text == "total-cost"; });
+    std::erase_if(document_.functions,
+                  [](const syntax::Signature& s) { return s.name.text == "total-cost"; });
   }
 
   // ---- formulas: a closed-world condition p becomes K(p), (not p) becomes K(!p) -----------------
@@ -245,7 +263,8 @@ class Reader {
     if (e.headed("not")) return formula(item(e, 1, "a condition"), !positive);
     if (e.headed("imply"))
       return make(positive ? K::Or : K::And, e.place,
-                  {formula(item(e, 1, "a condition"), !positive), formula(item(e, 2, "a condition"), positive)});
+                  {formula(item(e, 1, "a condition"), !positive),
+                   formula(item(e, 2, "a condition"), positive)});
     if (e.headed("exists") || e.headed("forall")) {
       Formula f = make(e.headed("exists") == positive ? K::Exists : K::ForAll, e.place,
                        {formula(item(e, 2, "a condition"), positive)});
@@ -306,8 +325,10 @@ class Reader {
       return;
     }
     if (e.headed("increase")) {
-      if (!item(e, 1, "(total-cost)").headed("total-cost")) e.place.fail("only (total-cost) can be increased");
-      if (&out != &a.effects || !a.cost.empty()) e.place.fail("the cost of an action is one unconditional increase");
+      if (!item(e, 1, "(total-cost)").headed("total-cost"))
+        e.place.fail("only (total-cost) can be increased");
+      if (&out != &a.effects || !a.cost.empty())
+        e.place.fail("the cost of an action is one unconditional increase");
       a.cost.push_back(term(item(e, 2, "the cost")));
       return;
     }
@@ -356,7 +377,9 @@ class Reader {
       document_.initial.push_back(std::move(entry));
       return;
     }
-    if (e.headed("or")) e.place.fail("(or ...) is not supported in the initial state; (oneof ...) and (unknown ...) are");
+    if (e.headed("or"))
+      e.place.fail(
+          "(or ...) is not supported in the initial state; (oneof ...) and (unknown ...) are");
     if (e.headed("=") && item(e, 1, "a function").headed("total-cost")) return;
     if (e.headed("not")) {
       entry.formulas.push_back(make(K::Not, e.place, {literal(item(e, 1, "an atom"))}));
@@ -385,24 +408,33 @@ class Writer {
     document_ = &d;
     if (!d.externals.empty()) refuse("external function '" + d.externals[0].name.text + "'");
     const std::string title = d.name.text.empty() ? "unnamed" : d.name.text;
-    std::string out = "(define (domain " + title + ")\n (:requirements :typing :adl :object-fluents :action-costs :contingent)\n";
+    std::string out =
+        "(define (domain " + title +
+        ")\n (:requirements :typing :adl :object-fluents :action-costs :contingent)\n";
     out += " (:types";
     for (const syntax::Type& t : d.types)
-      if (t.name.text != "object") out += " " + t.name.text + " - " + (t.parent.text.empty() ? "object" : t.parent.text);
+      if (t.name.text != "object")
+        out += " " + t.name.text + " - " + (t.parent.text.empty() ? "object" : t.parent.text);
     out += ")\n (:constants";
     for (const TypedVariable& c : d.constants) out += " " + c.name.text + " - " + type(c.type);
     out += ")\n (:predicates";
     for (const syntax::Signature& s : d.predicates) out += " " + signature(s);
     out += ")\n (:functions";
-    for (const syntax::Signature& s : d.functions) out += " " + signature(s) + " - " + type(s.range);
-    const bool costs = std::any_of(d.actions.begin(), d.actions.end(), [](const auto& a) { return !a.cost.empty(); });
+    for (const syntax::Signature& s : d.functions)
+      out += " " + signature(s) + " - " + type(s.range);
+    const bool costs = std::any_of(d.actions.begin(), d.actions.end(),
+                                   [](const auto& a) { return !a.cost.empty(); });
     out += std::string(costs ? " (total-cost) - number" : "") + ")\n";
     for (const syntax::Action& a : d.actions) out += action(a, costs);
     out += ")\n\n(define (problem " + title + "-problem)\n (:domain " + title + ")\n (:init";
     for (const Effect& e : d.initial) out += "\n  " + initial(e);
     for (const Formula& f : d.unknown) out += "\n  (unknown " + literal(f) + ")";
-    const bool closed = std::any_of(d.closed.begin(), d.closed.end(), [](const Name& n) { return n.text == "all"; });
-    if (!closed) refuse("an open world: PDDL takes what is not stated for false; state 'closed: all' if that is meant");
+    const bool closed = std::any_of(d.closed.begin(), d.closed.end(),
+                                    [](const Name& n) { return n.text == "all"; });
+    if (!closed)
+      refuse(
+          "an open world: PDDL takes what is not stated for false; state 'closed: all' if that is "
+          "meant");
     out += ")\n (:goal (and";
     for (const Formula& g : d.goals) out += " " + condition(g);
     out += "))\n";
@@ -417,7 +449,8 @@ class Writer {
   static std::string type(const Name& n) { return n.text.empty() ? "object" : n.text; }
   static std::string variables(const std::vector<TypedVariable>& list) {
     std::string out;
-    for (const TypedVariable& v : list) out += (out.empty() ? "?" : " ?") + v.name.text + " - " + type(v.type);
+    for (const TypedVariable& v : list)
+      out += (out.empty() ? "?" : " ?") + v.name.text + " - " + type(v.type);
     return "(" + out + ")";
   }
   static std::string signature(const syntax::Signature& s) {
@@ -429,9 +462,10 @@ class Writer {
   std::string term(const Term& t, bool call) const {
     if (t.kind == Term::Kind::Extern) refuse("extern(...)");
     if (t.kind == Term::Kind::Variable) return "?" + t.name.text;
-    const bool nullary = t.kind == Term::Kind::Name && !call &&
-                         std::any_of(document_->functions.begin(), document_->functions.end(),
-                                     [&](const syntax::Signature& s) { return s.name.text == t.name.text; });
+    const bool nullary =
+        t.kind == Term::Kind::Name && !call &&
+        std::any_of(document_->functions.begin(), document_->functions.end(),
+                    [&](const syntax::Signature& s) { return s.name.text == t.name.text; });
     if (t.kind == Term::Kind::Name && !call && !nullary) return t.name.text;
     std::string out = "(" + t.name.text;
     for (const Term& a : t.arguments) out += " " + term(a, false);
@@ -470,8 +504,8 @@ class Writer {
         return literal(f.children.at(0));
       case K::Exists:
       case K::ForAll:
-        return std::string(f.kind == K::Exists ? "(exists " : "(forall ") + variables(f.variables) + " " +
-               condition(f.children.at(0)) + ")";
+        return std::string(f.kind == K::Exists ? "(exists " : "(forall ") + variables(f.variables) +
+               " " + condition(f.children.at(0)) + ")";
       case K::Not:
         refuse("a lack of knowledge, such as !K(...)");
       case K::Xor:
@@ -521,11 +555,12 @@ class Writer {
     std::string all = effects(a.effects, observed);
     if (costs) {
       all.pop_back();
-      const std::string cost = a.cost.empty() ? "1" : term(a.cost[0], a.cost[0].kind == Term::Kind::Call);
+      const std::string cost =
+          a.cost.empty() ? "1" : term(a.cost[0], a.cost[0].kind == Term::Kind::Call);
       all += " (increase (total-cost) " + cost + "))";
     }
-    return " (:action " + a.name.text + "\n  :parameters " + variables(a.parameters) + "\n  :precondition " +
-           condition(a.precondition) + "\n  :effect " + all +
+    return " (:action " + a.name.text + "\n  :parameters " + variables(a.parameters) +
+           "\n  :precondition " + condition(a.precondition) + "\n  :effect " + all +
            (observed.empty() ? "" : "\n  :observe " + observed) + ")\n";
   }
   std::string initial(const Effect& e) const {
@@ -549,6 +584,8 @@ class Writer {
 
 std::string print_pddl(const syntax::Document& document) { return Writer().write(document); }
 
-syntax::Document parse_pddl(std::shared_ptr<const Source> source) { return Reader(std::move(source)).read(); }
+syntax::Document parse_pddl(std::shared_ptr<const Source> source) {
+  return Reader(std::move(source)).read();
+}
 
 }  // namespace kaboum::plan

@@ -28,7 +28,8 @@ std::vector<Index> bottom_up(const Plan& plan) {
     std::size_t next;
   };
   const auto check = [&](Index n) {
-    if (n >= plan.nodes.size()) throw Error(ErrorCode::InvalidInput, "the plan names a node that is not there");
+    if (n >= plan.nodes.size())
+      throw Error(ErrorCode::InvalidInput, "the plan names a node that is not there");
     if (mark[n] == kOpen) throw Error(ErrorCode::InvalidInput, "the plan has a cycle");
   };
   check(plan.root);
@@ -52,7 +53,8 @@ std::vector<Index> bottom_up(const Plan& plan) {
   return order;
 }
 
-std::string arguments_text(const Model& model, const std::string& name, const std::vector<Index>& arguments) {
+std::string arguments_text(const Model& model, const std::string& name,
+                           const std::vector<Index>& arguments) {
   if (arguments.empty()) return name;
   std::string text = name + "(";
   for (std::size_t i = 0; i < arguments.size(); ++i)
@@ -64,7 +66,8 @@ std::int64_t cost_of(const Model& model, const Plan::Step& step) {
   const Action& a = model.actions[step.schema];
   if (a.cost_function == kNone) return a.cost;
   std::vector<Index> key;
-  for (const Argument& c : a.cost_arguments) key.push_back(c.variable ? step.arguments[c.index] : c.index);
+  for (const Argument& c : a.cost_arguments)
+    key.push_back(c.variable ? step.arguments[c.index] : c.index);
   const auto value = model.numbers[a.cost_function].find(key);
   return value == model.numbers[a.cost_function].end() ? 0 : value->second;
 }
@@ -76,13 +79,15 @@ bool Plan::operator==(const Plan& other) const {
     const auto same_case = [](const Branch::Case& x, const Branch::Case& y) {
       return x.value == y.value && x.next == y.next;
     };
-    return a.acts == b.acts && a.branches == b.branches && a.next == b.next && a.action.schema == b.action.schema &&
-           a.action.arguments == b.action.arguments && a.branch.function == b.branch.function &&
-           a.branch.symbol == b.branch.symbol && a.branch.arguments == b.branch.arguments &&
-           std::equal(a.branch.cases.begin(), a.branch.cases.end(), b.branch.cases.begin(), b.branch.cases.end(),
-                      same_case);
+    return a.acts == b.acts && a.branches == b.branches && a.next == b.next &&
+           a.action.schema == b.action.schema && a.action.arguments == b.action.arguments &&
+           a.branch.function == b.branch.function && a.branch.symbol == b.branch.symbol &&
+           a.branch.arguments == b.branch.arguments &&
+           std::equal(a.branch.cases.begin(), a.branch.cases.end(), b.branch.cases.begin(),
+                      b.branch.cases.end(), same_case);
   };
-  return root == other.root && std::equal(nodes.begin(), nodes.end(), other.nodes.begin(), other.nodes.end(), same_node);
+  return root == other.root &&
+         std::equal(nodes.begin(), nodes.end(), other.nodes.begin(), other.nodes.end(), same_node);
 }
 
 std::string step_text(const Model& model, const Plan::Step& step) {
@@ -91,7 +96,8 @@ std::string step_text(const Model& model, const Plan::Step& step) {
 
 std::string case_text(const Model& model, const Plan::Branch& branch, Index value) {
   if (!branch.function)
-    return (value != 0 ? "" : "!") + arguments_text(model, model.predicates[branch.symbol].name, branch.arguments);
+    return (value != 0 ? "" : "!") +
+           arguments_text(model, model.predicates[branch.symbol].name, branch.arguments);
   return arguments_text(model, model.functions[branch.symbol].name, branch.arguments) + " = " +
          model.objects[value].name;
 }
@@ -138,7 +144,8 @@ Plan expand_tree(const Plan& plan, std::size_t limit) {
   const auto copy = [&](Index n) -> Index {
     if (n == kNone) return kNone;
     if (tree.nodes.size() >= limit)
-      throw Error(ErrorCode::LimitReached, "the tree has more than " + std::to_string(limit) + " nodes");
+      throw Error(ErrorCode::LimitReached,
+                  "the tree has more than " + std::to_string(limit) + " nodes");
     tree.nodes.push_back(plan.nodes[n]);
     todo.emplace_back(n, static_cast<Index>(tree.nodes.size() - 1));
     return todo.back().second;

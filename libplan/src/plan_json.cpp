@@ -28,7 +28,8 @@ class Reader {
     } catch (const nlohmann::json::exception& e) {
       fail(e.what());
     }
-    if (!json.is_object() || json.value("format", Json()) != Json("kaboum-plan")) fail("not a kaboum-plan file");
+    if (!json.is_object() || json.value("format", Json()) != Json("kaboum-plan"))
+      fail("not a kaboum-plan file");
     if (json.value("version", Json()) != Json(1)) fail("unknown version of the format");
     const Json& nodes = member(json, "nodes");
     if (!nodes.is_array()) fail("'nodes' is not a list");
@@ -50,7 +51,8 @@ class Reader {
 
  private:
   [[noreturn]] void fail(const std::string& message) const {
-    throw Error(ErrorCode::InvalidInput, file_ + ": " + (where_.empty() ? "" : where_ + ": ") + message);
+    throw Error(ErrorCode::InvalidInput,
+                file_ + ": " + (where_.empty() ? "" : where_ + ": ") + message);
   }
   void check(Index next, const Plan& plan) const {
     if (next != kNone && next >= plan.nodes.size()) fail("leads to a node that is not there");
@@ -68,7 +70,8 @@ class Reader {
   }
   [[nodiscard]] Index next(const Json& json) const {
     if (json.is_string() && json.get<std::string>() == "goal") return kNone;
-    if (!json.is_number_unsigned() || json.get<std::uint64_t>() >= kNone) fail("a successor is a node's number or \"goal\"");
+    if (!json.is_number_unsigned() || json.get<std::uint64_t>() >= kNone)
+      fail("a successor is a node's number or \"goal\"");
     return json.get<Index>();
   }
   [[nodiscard]] Index object(const Json& json) const {
@@ -79,18 +82,21 @@ class Reader {
     fail("unknown constant '" + name + "'");
   }
   template <class Symbols>
-  [[nodiscard]] Index symbol(const Symbols& symbols, const std::string& name, const char* what) const {
+  [[nodiscard]] Index symbol(const Symbols& symbols, const std::string& name,
+                             const char* what) const {
     for (std::size_t i = 0; i < symbols.size(); ++i)
       if (symbols[i].name == name) return static_cast<Index>(i);
     fail(std::string("unknown ") + what + " '" + name + "'");
   }
-  [[nodiscard]] std::vector<Index> objects(const Json& json, const std::vector<Index>& types) const {
+  [[nodiscard]] std::vector<Index> objects(const Json& json,
+                                           const std::vector<Index>& types) const {
     if (!json.is_array() || json.size() != types.size()) fail("wrong number of arguments");
     std::vector<Index> result;
     for (std::size_t i = 0; i < types.size(); ++i) {
       result.push_back(object(json[i]));
       if (!model_.is_a(result.back(), types[i]))
-        fail("'" + model_.objects[result.back()].name + "' is not of type " + model_.types[types[i]].name);
+        fail("'" + model_.objects[result.back()].name + "' is not of type " +
+             model_.types[types[i]].name);
     }
     return result;
   }
@@ -102,7 +108,8 @@ class Reader {
       n.acts = true;
       n.action.schema = symbol(model_.actions, text(json, "action"), "action");
       std::vector<Index> types;
-      for (const Action::Parameter& p : model_.actions[n.action.schema].parameters) types.push_back(p.type);
+      for (const Action::Parameter& p : model_.actions[n.action.schema].parameters)
+        types.push_back(p.type);
       n.action.arguments = objects(member(json, "arguments"), types);
     }
     if (json.contains("branch")) {
@@ -160,9 +167,11 @@ std::string write_plan(const Model& model, const Plan& plan) {
     if (n.branches) {
       Json cases = Json::array();
       for (const Plan::Branch::Case& c : n.branch.cases)
-        cases.push_back({{"value", n.branch.function ? Json(model.objects[c.value].name) : Json(c.value != 0)},
-                         {"next", link(c.next)}});
-      const std::string& symbol = (n.branch.function ? model.functions : model.predicates)[n.branch.symbol].name;
+        cases.push_back(
+            {{"value", n.branch.function ? Json(model.objects[c.value].name) : Json(c.value != 0)},
+             {"next", link(c.next)}});
+      const std::string& symbol =
+          (n.branch.function ? model.functions : model.predicates)[n.branch.symbol].name;
       j["branch"] = {{n.branch.function ? "function" : "predicate", symbol},
                      {"arguments", names(model, n.branch.arguments)},
                      {"cases", std::move(cases)}};

@@ -47,7 +47,8 @@ struct Edge {
 std::vector<Edge> edges(const Model& model, const Plan::Node& n) {
   if (!n.branches) return {{n.next, ""}};
   std::vector<Edge> result;
-  for (const Plan::Branch::Case& c : n.branch.cases) result.push_back({c.next, case_text(model, n.branch, c.value)});
+  for (const Plan::Branch::Case& c : n.branch.cases)
+    result.push_back({c.next, case_text(model, n.branch, c.value)});
   return result;
 }
 
@@ -75,7 +76,8 @@ std::string plan_text(const Model& model, const Plan& plan) {
     const Item item = stack.back();
     stack.pop_back();
     const std::string indent(2 * item.depth, ' ');
-    if (!item.label.empty()) out << std::string(2 * (item.depth - 1), ' ') << "if " << item.label << ":\n";
+    if (!item.label.empty())
+      out << std::string(2 * (item.depth - 1), ' ') << "if " << item.label << ":\n";
     if (item.node == kNone) {
       out << indent << "(goal)\n";
       continue;
@@ -98,14 +100,17 @@ std::string plan_text(const Model& model, const Plan& plan) {
 
 std::string plan_dot(const Model& model, const Plan& plan) {
   std::ostringstream out;
-  out << "digraph plan {\n  node [shape=box, fontname=\"sans-serif\"];\n  goal [shape=doublecircle];\n"
+  out << "digraph plan {\n  node [shape=box, fontname=\"sans-serif\"];\n  goal "
+         "[shape=doublecircle];\n"
       << "  start [shape=point];\n  start -> ";
-  const auto name = [](Index n) { return n == kNone ? std::string("goal") : "n" + std::to_string(n); };
+  const auto name = [](Index n) {
+    return n == kNone ? std::string("goal") : "n" + std::to_string(n);
+  };
   out << name(plan.root) << ";\n";
   for (Index i = 0; i < plan.nodes.size(); ++i) {
     const Plan::Node& n = plan.nodes[i];
-    out << "  n" << i << " [label=\"" << escape_dot(label(model, n)) << "\"" << (n.branches ? ", style=rounded" : "")
-        << "];\n";
+    out << "  n" << i << " [label=\"" << escape_dot(label(model, n)) << "\""
+        << (n.branches ? ", style=rounded" : "") << "];\n";
     for (const Edge& e : edges(model, n)) {
       out << "  n" << i << " -> " << name(e.to);
       if (!e.label.empty()) out << " [label=\"" << escape_dot(e.label) << "\"]";
@@ -173,7 +178,8 @@ std::string plan_svg(const Model& model, const Plan& plan) {
   Spot goal{};
   for (std::size_t r = 0; r < rows.size(); ++r)
     for (std::size_t i = 0; i < rows[r].size(); ++i) {
-      const Spot s{width / 2 + static_cast<int>(2 * i + 1) * column / 2 - static_cast<int>(rows[r].size()) * column / 2,
+      const Spot s{width / 2 + static_cast<int>(2 * i + 1) * column / 2 -
+                       static_cast<int>(rows[r].size()) * column / 2,
                    40 + static_cast<int>(r) * kRow};
       (rows[r][i] == kNone ? goal : spot[rows[r][i]]) = s;
     }
@@ -185,15 +191,16 @@ std::string plan_svg(const Model& model, const Plan& plan) {
     for (const Edge& e : edges(model, plan.nodes[n])) {
       const Spot a = spot[n];
       const Spot b = e.to == kNone ? goal : spot[e.to];
-      out << "<line x1=\"" << a.x << "\" y1=\"" << a.y + kHeight / 2 << "\" x2=\"" << b.x << "\" y2=\""
-          << b.y - kHeight / 2 << "\" stroke=\"gray\"/>\n";
+      out << "<line x1=\"" << a.x << "\" y1=\"" << a.y + kHeight / 2 << "\" x2=\"" << b.x
+          << "\" y2=\"" << b.y - kHeight / 2 << "\" stroke=\"gray\"/>\n";
       if (!e.label.empty())
-        out << "<text x=\"" << (2 * a.x + b.x) / 3 << "\" y=\"" << (2 * a.y + b.y) / 3 + 10 << "\" fill=\"#0050a0\" font-size=\"11\">"
-            << escape_xml(e.label) << "</text>\n";
+        out << "<text x=\"" << (2 * a.x + b.x) / 3 << "\" y=\"" << (2 * a.y + b.y) / 3 + 10
+            << "\" fill=\"#0050a0\" font-size=\"11\">" << escape_xml(e.label) << "</text>\n";
     }
   const auto draw = [&](Spot s, const std::string& text, int w, const char* fill) {
-    out << "<rect x=\"" << s.x - w / 2 << "\" y=\"" << s.y - kHeight / 2 << "\" width=\"" << w << "\" height=\"" << kHeight
-        << "\" rx=\"5\" fill=\"" << fill << "\" stroke=\"black\"/>\n<text x=\"" << s.x << "\" y=\"" << s.y + 4 << "\">"
+    out << "<rect x=\"" << s.x - w / 2 << "\" y=\"" << s.y - kHeight / 2 << "\" width=\"" << w
+        << "\" height=\"" << kHeight << "\" rx=\"5\" fill=\"" << fill
+        << "\" stroke=\"black\"/>\n<text x=\"" << s.x << "\" y=\"" << s.y + 4 << "\">"
         << escape_xml(text) << "</text>\n";
   };
   for (const Index n : order)

@@ -11,10 +11,13 @@ namespace {
 
 using Kind = FormulaPool::Kind;
 
-bool is_connective(Kind k) { return k == Kind::And || k == Kind::Or || k == Kind::Xor || k == Kind::Not; }
+bool is_connective(Kind k) {
+  return k == Kind::And || k == Kind::Or || k == Kind::Xor || k == Kind::Not;
+}
 
 /// Whether a formula reads a field that `touched` covers.
-bool leaf_touched(const FormulaPool& pool, const Layout& layout, Formula f, const std::vector<Word>& touched) {
+bool leaf_touched(const FormulaPool& pool, const Layout& layout, Formula f,
+                  const std::vector<Word>& touched) {
   const FormulaPool::Node& n = pool.node(f);
   if (n.kind == Kind::Bits) return (touched[n.a] & pool.bits_mask(n)) != 0;
   if (n.kind == Kind::True || n.kind == Kind::False || n.kind == Kind::External) return false;
@@ -41,8 +44,8 @@ void Regression::require_as_before(const Fluent& fluent) {
     required_.push_back(pool.bits(fluent.exclusions + i, ~Word{0}, before_[fluent.exclusions + i]));
 }
 
-/// The fluent's content after the step is not (always) what it was; if `plain`, it does not depend on
-/// what it was either. Knowledge in Kx groups spreads: all fluents tied to it count as touched.
+/// The fluent's content after the step is not (always) what it was; if `plain`, it does not depend
+/// on what it was either. Knowledge in Kx groups spreads: all fluents tied to it count as touched.
 void Regression::touch(Index fluent, bool plain) {
   const Layout& layout = task_.layout();
   std::vector<Index> todo = {fluent};
@@ -141,8 +144,8 @@ Formula Regression::before(Step step, Formula condition, const Word* before) {
           for (const Index m : task_.layout().groups()[change.fluent].members) touch(m, false);
           touched_[task_.layout().groups()[change.fluent].word] = ~Word{0};
         } else {
-          touch(change.fluent,
-                change.kind == K::AddTrue || change.kind == K::AddFalse || change.kind == K::AddValue || change.kind == K::Forget);
+          touch(change.fluent, change.kind == K::AddTrue || change.kind == K::AddFalse ||
+                                   change.kind == K::AddValue || change.kind == K::Forget);
         }
       };
       if (!happens) touched_.assign(touched_.size(), 0);
@@ -162,7 +165,8 @@ Formula Regression::before(Step step, Formula condition, const Word* before) {
   }
 
   std::vector<Formula> conjuncts = {condition};
-  if (pool.node(condition).kind == Kind::And) conjuncts.assign(pool.begin(condition), pool.end(condition));
+  if (pool.node(condition).kind == Kind::And)
+    conjuncts.assign(pool.begin(condition), pool.end(condition));
   std::vector<Formula> result;
   for (const Formula c : conjuncts) {
     open_ = false;

@@ -9,10 +9,10 @@ namespace kaboum::plan {
 /// Regression: what must hold before a step so that a condition holds after it.
 ///
 /// The result is taken in the context of one state `before` in which the step was planned: which
-/// conditional effects happen is fixed as there (and required), and where an update's result depends
-/// on earlier knowledge (deletions, sensing, Kx propagation) that knowledge is required to be as it
-/// was. All else is left open, so the condition describes many states: the partial states that let
-/// equal sub-plans be shared.
+/// conditional effects happen is fixed as there (and required), and where an update's result
+/// depends on earlier knowledge (deletions, sensing, Kx propagation) that knowledge is required to
+/// be as it was. All else is left open, so the condition describes many states: the partial states
+/// that let equal sub-plans be shared.
 class Regression {
  public:
   explicit Regression(Task& task) : task_(task), after_(task.layout()) {}

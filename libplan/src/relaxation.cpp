@@ -21,13 +21,16 @@ Relaxation::Relaxation(Task& task) : task_(task) {
   for (const Step a : actions_) add_action(a);
   for (Index i = 0; i < task.layout().fluents().size(); ++i) {
     const Fluent& f = task.layout().fluents()[i];
-    const FactId sensed = fact(i, f.function ? kValueSensed : static_cast<Word>(AtomKnowledge::Whether));
+    const FactId sensed =
+        fact(i, f.function ? kValueSensed : static_cast<Word>(AtomKnowledge::Whether));
     if (!reached_[sensed]) continue;
     for (Index v = 0; v < (f.function ? task.layout().range_size(f) : 2); ++v) {
       Operator o;
       o.step = task.outcome_step(i, v);
       o.preconditions = {sensed};
-      o.adds = {fact(i, f.function ? kFirstValue + v : static_cast<Word>(v == 1 ? AtomKnowledge::True : AtomKnowledge::False))};
+      o.adds = {fact(
+          i, f.function ? kFirstValue + v
+                        : static_cast<Word>(v == 1 ? AtomKnowledge::True : AtomKnowledge::False))};
       add_operator(std::move(o), {sensed});
     }
   }
@@ -41,7 +44,8 @@ bool Relaxation::mark(FactId f) {
 }
 
 /// Contents of a leaf's fluent for which the leaf holds (or, if not positive, fails).
-std::vector<FactId> Relaxation::contents(const FormulaPool::Node& n, bool positive, bool& always) const {
+std::vector<FactId> Relaxation::contents(const FormulaPool::Node& n, bool positive,
+                                         bool& always) const {
   const Fluent& f = task_.layout().fluents()[n.a];
   always = false;
   std::vector<FactId> result;
@@ -100,12 +104,15 @@ bool Relaxation::possible(Formula f, bool positive) const {
     case Kind::And:
     case Kind::Or:
       if ((n.kind == Kind::And) == positive)
-        return std::all_of(pool.begin(f), pool.end(f), [&](Formula c) { return possible(c, positive); });
-      return std::any_of(pool.begin(f), pool.end(f), [&](Formula c) { return possible(c, positive); });
+        return std::all_of(pool.begin(f), pool.end(f),
+                           [&](Formula c) { return possible(c, positive); });
+      return std::any_of(pool.begin(f), pool.end(f),
+                         [&](Formula c) { return possible(c, positive); });
     default: {
       bool always = false;
       const std::vector<FactId> any = contents(n, positive, always);
-      return always || std::any_of(any.begin(), any.end(), [&](FactId x) { return reached_[x] != 0; });
+      return always ||
+             std::any_of(any.begin(), any.end(), [&](FactId x) { return reached_[x] != 0; });
     }
   }
 }
@@ -206,12 +213,14 @@ Index Relaxation::node(Formula f, bool positive) {
     case Kind::And:
     case Kind::Or:
       made.kind = (n.kind == Kind::And) == positive ? Node::Kind::All : Node::Kind::Any;
-      for (const Formula* c = pool.begin(f); c != pool.end(f); ++c) made.children.push_back(node(*c, positive));
+      for (const Formula* c = pool.begin(f); c != pool.end(f); ++c)
+        made.children.push_back(node(*c, positive));
       break;
     case Kind::Xor:
       made.kind = positive ? Node::Kind::Any : Node::Kind::All;
       if (positive)
-        for (const Formula* c = pool.begin(f); c != pool.end(f); ++c) made.children.push_back(node(*c, true));
+        for (const Formula* c = pool.begin(f); c != pool.end(f); ++c)
+          made.children.push_back(node(*c, true));
       break;
     case Kind::Bits:
     case Kind::External:
@@ -277,7 +286,8 @@ void Relaxation::add_action(Step step) {
         for (const FactId x : added(change)) o.adds.push_back(x);
     if (o.adds.empty()) continue;
     const std::vector<FactId> condition = necessary_facts(c.condition);
-    std::set_union(needed.begin(), needed.end(), condition.begin(), condition.end(), std::back_inserter(o.preconditions));
+    std::set_union(needed.begin(), needed.end(), condition.begin(), condition.end(),
+                   std::back_inserter(o.preconditions));
     std::vector<Index> conditions = {precondition};
     if (c.condition != kTrue) conditions.push_back(node(c.condition));
     add_operator(std::move(o), std::move(conditions));

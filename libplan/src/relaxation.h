@@ -8,7 +8,8 @@
 
 namespace kaboum::plan {
 
-/// A fluent with one of its contents: "p is known to be true", "f is known to be c", "p is unknown".
+/// A fluent with one of its contents: "p is known to be true", "f is known to be c", "p is
+/// unknown".
 using FactId = std::uint32_t;
 
 /// The delete relaxation of a task: contents that a fluent has had stay available. Its reachable
@@ -23,11 +24,13 @@ class Relaxation {
     std::int64_t cost = 0;
     std::vector<FactId> preconditions;  ///< facts that must hold (those that can be told as facts)
     std::vector<FactId> adds;
-    Index node = 0;                     ///< in the and-or graph
-    Index conditional = 0;              ///< index into the action's effects
+    Index node = 0;         ///< in the and-or graph
+    Index conditional = 0;  ///< index into the action's effects
   };
 
-  [[nodiscard]] FactId fact(Index fluent, Word content) const { return first_fact_[fluent] + static_cast<FactId>(content); }
+  [[nodiscard]] FactId fact(Index fluent, Word content) const {
+    return first_fact_[fluent] + static_cast<FactId>(content);
+  }
   [[nodiscard]] std::size_t facts() const { return facts_; }
   [[nodiscard]] Index fluent_of(FactId f) const { return fluent_of_[f]; }
   [[nodiscard]] Word content_of(FactId f) const { return f - first_fact_[fluent_of_[f]]; }
@@ -54,7 +57,8 @@ class Relaxation {
   void add_action(Step step);
   void add_operator(Operator o, std::vector<Index> conditions);
   [[nodiscard]] bool possible(Formula f, bool positive) const;
-  [[nodiscard]] std::vector<FactId> contents(const FormulaPool::Node& leaf, bool positive, bool& always) const;
+  [[nodiscard]] std::vector<FactId> contents(const FormulaPool::Node& leaf, bool positive,
+                                             bool& always) const;
   std::vector<FactId> added(const Change& change) const;
   bool mark(FactId f);
 

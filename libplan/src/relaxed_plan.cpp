@@ -4,7 +4,8 @@
 
 namespace kaboum::plan {
 
-RelaxedPlan::RelaxedPlan(Task& task, Relaxation& relaxation) : task_(task), relaxation_(relaxation) {
+RelaxedPlan::RelaxedPlan(Task& task, Relaxation& relaxation)
+    : task_(task), relaxation_(relaxation) {
   goal_ = relaxation.node(task.goal());
   const auto& nodes = relaxation.nodes();
   parents_.resize(nodes.size());
@@ -34,9 +35,11 @@ std::uint64_t RelaxedPlan::evaluate(const Word* state) {
   std::vector<std::uint64_t> sum(nodes.size(), 0);
   for (Index n = 0; n < nodes.size(); ++n) {
     missing_[n] = static_cast<Index>(nodes[n].children.size());
-    if (nodes[n].kind == Relaxation::Node::Kind::All && nodes[n].children.empty()) settle(n, 0, kNone);
+    if (nodes[n].kind == Relaxation::Node::Kind::All && nodes[n].children.empty())
+      settle(n, 0, kNone);
   }
-  for (Index i = 0; i < fluents.size(); ++i) settle(relaxation_.fact(i, fluents[i].get(state)), 0, kNone);
+  for (Index i = 0; i < fluents.size(); ++i)
+    settle(relaxation_.fact(i, fluents[i].get(state)), 0, kNone);
   while (!queue_.empty()) {
     std::pop_heap(queue_.begin(), queue_.end(), std::greater<>());
     const auto [cost, node] = queue_.back();
@@ -53,7 +56,8 @@ std::uint64_t RelaxedPlan::evaluate(const Word* state) {
     }
     for (const Index o : achieves_[node]) {
       const Relaxation::Operator& op = relaxation_.operators()[o];
-      const auto step_cost = static_cast<std::uint64_t>(task_.is_outcome(op.step) ? 0 : std::max<std::int64_t>(1, op.cost));
+      const auto step_cost = static_cast<std::uint64_t>(
+          task_.is_outcome(op.step) ? 0 : std::max<std::int64_t>(1, op.cost));
       for (const FactId f : op.adds) settle(f, cost + step_cost, o);
     }
   }
@@ -89,7 +93,8 @@ std::uint64_t RelaxedPlan::evaluate(const Word* state) {
   steps_.erase(std::unique(steps_.begin(), steps_.end()), steps_.end());
   std::uint64_t total = 0;
   for (const Step s : steps_)
-    if (!task_.is_outcome(s)) total += static_cast<std::uint64_t>(std::max<std::int64_t>(1, task_.cost(s)));
+    if (!task_.is_outcome(s))
+      total += static_cast<std::uint64_t>(std::max<std::int64_t>(1, task_.cost(s)));
   return total;
 }
 

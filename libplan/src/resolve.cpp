@@ -118,8 +118,8 @@ class Resolver {
       name.place.fail(std::string(what) + " '" + name.text + "' is declared twice");
   }
 
-  /// The root of the types is "object", unless the text declares that as one type among others, as the
-  /// thesis does ("types: object, robot"): then the root has no name.
+  /// The root of the types is "object", unless the text declares that as one type among others, as
+  /// the thesis does ("types: object, robot"): then the root has no name.
   void declare_types() {
     const auto is_object = [](const sx::Type& t) { return t.name.text == "object"; };
     const bool object_is_a_type =
@@ -130,7 +130,8 @@ class Resolver {
     types_.emplace(model_.types[0].name, 0);
     for (const sx::Type& t : document_.types) {
       if (t.name.text == "number" || (t.name.text == "object" && !object_is_a_type)) {
-        if (!t.parent.text.empty()) t.name.place.fail("type '" + t.name.text + "' cannot have a parent");
+        if (!t.parent.text.empty())
+          t.name.place.fail("type '" + t.name.text + "' cannot have a parent");
         continue;
       }
       unique(types_, t.name, static_cast<Index>(model_.types.size()), "type");
@@ -142,7 +143,8 @@ class Resolver {
       const auto found = types_.find(t.name.text);
       Index up = found == types_.end() ? kNone : found->second;
       for (std::size_t steps = 0; up != kNone; up = model_.types[up].parent)
-        if (++steps > model_.types.size()) t.name.place.fail("type '" + t.name.text + "' is its own ancestor");
+        if (++steps > model_.types.size())
+          t.name.place.fail("type '" + t.name.text + "' is its own ancestor");
     }
   }
 
@@ -159,7 +161,8 @@ class Resolver {
       unique(objects_, c.name, index, "constant");
       const Index t = type(c.type);
       model_.objects.push_back({c.name.text, t});
-      for (Index up = t; up != kNone; up = model_.types[up].parent) model_.types[up].objects.push_back(index);
+      for (Index up = t; up != kNone; up = model_.types[up].parent)
+        model_.types[up].objects.push_back(index);
     }
   }
 
@@ -178,7 +181,8 @@ class Resolver {
     }
     for (const sx::Signature& s : document_.functions) {
       unique(functions_, s.name, static_cast<Index>(model_.functions.size()), "function");
-      if (predicates_.contains(s.name.text)) s.name.place.fail("'" + s.name.text + "' is a predicate already");
+      if (predicates_.contains(s.name.text))
+        s.name.place.fail("'" + s.name.text + "' is a predicate already");
       Symbol f = symbol(s);
       f.numeric = s.range.text == "number";
       f.range = f.numeric ? kNone : type(s.range);
@@ -198,8 +202,9 @@ class Resolver {
     const auto found = objects_.find(name.text);
     if (found == objects_.end()) name.place.fail("unknown constant '" + name.text + "'");
     if (!model_.is_a(found->second, type_wanted))
-      name.place.fail("'" + name.text + "' is of type " + type_name(model_.objects[found->second].type) +
-                      ", expected " + type_name(type_wanted));
+      name.place.fail("'" + name.text + "' is of type " +
+                      type_name(model_.objects[found->second].type) + ", expected " +
+                      type_name(type_wanted));
     return found->second;
   }
   [[nodiscard]] const std::string& type_name(Index t) const { return model_.types[t].name; }
@@ -209,13 +214,14 @@ class Resolver {
     std::vector<bool> bound(model_.externals.size(), false);
     for (const sx::Table& t : document_.tables) {
       const auto found = externals_.find(t.external.text);
-      if (found == externals_.end()) t.external.place.fail("unknown external function '" + t.external.text + "'");
+      if (found == externals_.end())
+        t.external.place.fail("unknown external function '" + t.external.text + "'");
       const Symbol& g = model_.externals[found->second];
       bound[found->second] = true;
       for (const sx::Row& row : t.rows) {
         if (row.arguments.size() != g.parameters.size())
-          row.place.fail("'" + g.name + "' takes " + plural(g.parameters.size(), "argument") + ", not " +
-                         std::to_string(row.arguments.size()));
+          row.place.fail("'" + g.name + "' takes " + plural(g.parameters.size(), "argument") +
+                         ", not " + std::to_string(row.arguments.size()));
         std::vector<Index> key;
         for (std::size_t i = 0; i < row.arguments.size(); ++i)
           key.push_back(object(row.arguments[i], g.parameters[i]));
@@ -241,8 +247,8 @@ class Resolver {
               return row->second;
             });
       } else {
-        place.fail("external function '" + g.name + "' is bound to nothing: give a 'table " + g.name +
-                   ":' or bind it in the host program");
+        place.fail("external function '" + g.name + "' is bound to nothing: give a 'table " +
+                   g.name + ":' or bind it in the host program");
       }
     }
   }
@@ -260,8 +266,8 @@ class Resolver {
       if (range == kNone) return 0;
       const auto found = table.find(value);
       if (found == table.end() || !std::binary_search(root.begin(), root.end(), found->second))
-        throw Error(ErrorCode::InvalidInput,
-                    "external function '" + name + "' returned '" + value + "', no constant of its type");
+        throw Error(ErrorCode::InvalidInput, "external function '" + name + "' returned '" + value +
+                                                 "', no constant of its type");
       return found->second;
     };
   }
@@ -285,7 +291,8 @@ class Resolver {
   void check_type(const Name& name, Index found, Index wanted) const {
     for (Index up = found; up != kNone; up = model_.types[up].parent)
       if (up == wanted) return;
-    name.place.fail("'" + name.text + "' is of type " + type_name(found) + ", expected " + type_name(wanted));
+    name.place.fail("'" + name.text + "' is of type " + type_name(found) + ", expected " +
+                    type_name(wanted));
   }
   [[nodiscard]] bool related(Index a, Index b) const {
     for (Index up = a; up != kNone; up = model_.types[up].parent)
@@ -319,7 +326,8 @@ class Resolver {
     if (t.kind == sx::Term::Kind::Extern) {
       const Index g = external(t);
       range = model_.externals[g].range;
-      if (range == kNone) t.name.place.fail("'" + t.name.text + "' is a truth value, not an object");
+      if (range == kNone)
+        t.name.place.fail("'" + t.name.text + "' is a truth value, not an object");
       condition.kind = Query::Kind::External;
       condition.symbol = g;
       condition.arguments = arguments(t, model_.externals[g], scope, inner);
@@ -327,7 +335,8 @@ class Resolver {
       const Index* f = function_of(t);
       if (f == nullptr) t.name.place.fail("unknown function '" + t.name.text + "'");
       range = model_.functions[*f].range;
-      if (model_.functions[*f].numeric) t.name.place.fail("'" + t.name.text + "' is a number, not an object");
+      if (model_.functions[*f].numeric)
+        t.name.place.fail("'" + t.name.text + "' is a number, not an object");
       condition.kind = Query::Kind::KnownValue;
       condition.symbol = *f;
       condition.arguments = arguments(t, model_.functions[*f], scope, inner);
@@ -347,15 +356,16 @@ class Resolver {
 
   [[nodiscard]] Index external(const sx::Term& t) const {
     const auto found = externals_.find(t.name.text);
-    if (found == externals_.end()) t.name.place.fail("unknown external function '" + t.name.text + "'");
+    if (found == externals_.end())
+      t.name.place.fail("unknown external function '" + t.name.text + "'");
     return found->second;
   }
 
   std::vector<Argument> arguments(const sx::Term& t, const Symbol& s, Scope& scope,
                                   std::vector<Unfolded>& unfolded) {
     if (t.arguments.size() != s.parameters.size())
-      t.name.place.fail("'" + s.name + "' takes " + plural(s.parameters.size(), "argument") + ", not " +
-                        std::to_string(t.arguments.size()));
+      t.name.place.fail("'" + s.name + "' takes " + plural(s.parameters.size(), "argument") +
+                        ", not " + std::to_string(t.arguments.size()));
     std::vector<Argument> result;
     for (std::size_t i = 0; i < t.arguments.size(); ++i)
       result.push_back(argument(t.arguments[i], s.parameters[i], scope, unfolded));
@@ -384,7 +394,8 @@ class Resolver {
         return q;
       case K::Exists:
       case K::ForAll:
-        return quantified(f, f.kind == K::Exists ? Query::Kind::Exists : Query::Kind::ForAll, scope);
+        return quantified(f, f.kind == K::Exists ? Query::Kind::Exists : Query::Kind::ForAll,
+                          scope);
       case K::Known:
         return known(f.children.at(0), false, scope);
       case K::KnowWhether:
@@ -474,15 +485,18 @@ class Resolver {
   }
 
   [[nodiscard]] bool is_plain(const sx::Term& t) const {
-    return t.kind == sx::Term::Kind::Variable || (t.kind == sx::Term::Kind::Name && !function_of(t));
+    return t.kind == sx::Term::Kind::Variable ||
+           (t.kind == sx::Term::Kind::Name && !function_of(t));
   }
 
-  /// K(a = b) and K(a != b) in all their forms; the known side is looked up before an extern is called.
+  /// K(a = b) and K(a != b) in all their forms; the known side is looked up before an extern is
+  /// called.
   Query equality(const sx::Formula& f, bool negated, Scope& scope) {
     const sx::Term* left = &f.terms.at(0);
     const sx::Term* right = &f.terms.at(1);
     // K(phi = extern(g(x))) with a predicate phi.
-    if (right->kind != sx::Term::Kind::Extern && left->kind == sx::Term::Kind::Extern) std::swap(left, right);
+    if (right->kind != sx::Term::Kind::Extern && left->kind == sx::Term::Kind::Extern)
+      std::swap(left, right);
     if (right->kind == sx::Term::Kind::Extern && predicate_of(*left) && !function_of(*left)) {
       std::vector<Unfolded> unfolded;
       Query p = atom(*left, scope, unfolded);
@@ -497,7 +511,8 @@ class Resolver {
       either.children = {std::move(both), std::move(neither)};
       return wrap(std::move(unfolded), std::move(either));
     }
-    if (right->kind != sx::Term::Kind::Extern && !is_plain(*right) && is_plain(*left)) std::swap(left, right);
+    if (right->kind != sx::Term::Kind::Extern && !is_plain(*right) && is_plain(*left))
+      std::swap(left, right);
     std::vector<Unfolded> unfolded;
     Query q;
     if (is_plain(*left) && is_plain(*right)) {
@@ -510,7 +525,8 @@ class Resolver {
       const sx::Term& other = is_plain(*left) ? *left : *right;
       const Index g = external(call);
       const Index range = model_.externals[g].range;
-      if (range == kNone) call.name.place.fail("'" + call.name.text + "' is a truth value, not an object");
+      if (range == kNone)
+        call.name.place.fail("'" + call.name.text + "' is a truth value, not an object");
       q.kind = Query::Kind::External;
       q.symbol = g;
       q.arguments = arguments(call, model_.externals[g], scope, unfolded);
@@ -539,7 +555,8 @@ class Resolver {
       Query q = equality(f, false, scope);
       Query* leaf = &q;
       while (leaf->kind == Query::Kind::Exists) leaf = &leaf->children.at(0).children.at(1);
-      if (leaf->kind != Query::Kind::KnownValue) f.place.fail("Kw(...) of an equality needs a function of the state");
+      if (leaf->kind != Query::Kind::KnownValue)
+        f.place.fail("Kw(...) of an equality needs a function of the state");
       leaf->kind = Query::Kind::WhetherValue;
       return q;
     }
@@ -552,7 +569,8 @@ class Resolver {
   Query know_value(const sx::Formula& f, Scope& scope) {
     const sx::Term& t = f.terms.at(0);
     const Index* function = function_of(t);
-    if (function == nullptr) t.name.place.fail("Kv(...) needs a function; '" + t.name.text + "' is none");
+    if (function == nullptr)
+      t.name.place.fail("Kv(...) needs a function; '" + t.name.text + "' is none");
     std::vector<Unfolded> unfolded;
     Query q;
     q.kind = Query::Kind::KnowValue;
@@ -596,7 +614,8 @@ class Resolver {
   }
 
   // ---- effects -----------------------------------------------------------------------------
-  Update::Literal literal(const sx::Formula& f, bool negated, Scope& scope, std::vector<Unfolded>& unfolded) {
+  Update::Literal literal(const sx::Formula& f, bool negated, Scope& scope,
+                          std::vector<Unfolded>& unfolded) {
     using K = sx::Formula::Kind;
     if (f.kind == K::Not) return literal(f.children.at(0), !negated, scope, unfolded);
     Update::Literal l;
@@ -616,7 +635,9 @@ class Resolver {
     const Index* function = function_of(left);
     if (function == nullptr) left.name.place.fail("unknown function '" + left.name.text + "'");
     const Symbol& s = model_.functions[*function];
-    if (s.numeric) left.name.place.fail("'" + left.name.text + "' is a number; only the initial state gives its value");
+    if (s.numeric)
+      left.name.place.fail("'" + left.name.text +
+                           "' is a number; only the initial state gives its value");
     l.function = true;
     l.symbol = *function;
     l.arguments = arguments(left, s, scope, unfolded);
@@ -638,7 +659,8 @@ class Resolver {
       case sx::Database::Kw:
         u.literals.push_back(literal(first, false, scope, unfolded));
         u.literals[0].negated = false;
-        if (u.literals[0].function) first.place.fail("Kw holds atoms; the value of a function belongs to Kv");
+        if (u.literals[0].function)
+          first.place.fail("Kw holds atoms; the value of a function belongs to Kv");
         break;
       case sx::Database::Kv: {
         if (first.kind != sx::Formula::Kind::Atom || !function_of(first.terms.at(0)))
@@ -647,7 +669,8 @@ class Resolver {
         Update::Literal l;
         l.function = true;
         l.symbol = *function_of(t);
-        if (model_.functions[l.symbol].numeric) t.name.place.fail("'" + t.name.text + "' is a number, never sensed");
+        if (model_.functions[l.symbol].numeric)
+          t.name.place.fail("'" + t.name.text + "' is a number, never sensed");
         l.arguments = arguments(t, model_.functions[l.symbol], scope, unfolded);
         u.literals.push_back(std::move(l));
         break;
@@ -667,7 +690,8 @@ class Resolver {
       const Update::Literal& l = u.literals.back();
       if (l.negated) f.place.fail("an alternative of Kx is an atom or f(x) = c, not a negation");
       if (l.function != u.literals[0].function)
-        f.place.fail("the alternatives of one Kx entry are all atoms or all values of one function");
+        f.place.fail(
+            "the alternatives of one Kx entry are all atoms or all values of one function");
       if (l.function && l.symbol != u.literals[0].symbol)
         f.place.fail("the alternatives of one Kx entry are values of one function term");
       if (l.function)
@@ -686,7 +710,8 @@ class Resolver {
         const std::size_t outer = scope.variables.size();
         std::vector<std::pair<Index, Index>> wildcards;
         if (e.database == sx::Database::Lcw) {
-          if (e.formulas.at(0).kind != sx::Formula::Kind::Atom) e.formulas[0].place.fail("LCW(...) holds an atom");
+          if (e.formulas.at(0).kind != sx::Formula::Kind::Atom)
+            e.formulas[0].place.fail("LCW(...) holds an atom");
           wildcards = bind_wildcards(e.formulas[0].terms.at(0), scope);
         }
         std::vector<Unfolded> unfolded;
@@ -741,7 +766,8 @@ class Resolver {
     Scope scope;
     scope.place = a.name.place;
     for (const sx::TypedVariable& p : a.parameters) {
-      if (scope.find(p.name.text) != nullptr) p.name.place.fail("parameter '?" + p.name.text + "' is declared twice");
+      if (scope.find(p.name.text) != nullptr)
+        p.name.place.fail("parameter '?" + p.name.text + "' is declared twice");
       const Index t = type(p.type);
       scope.variables.push_back({p.name.text, scope.fresh(), t});
       action.parameters.push_back({p.name.text, t});
@@ -756,7 +782,8 @@ class Resolver {
   static std::optional<std::int64_t> integer(const std::string& text) {
     std::int64_t value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || value > 1'000'000'000) return std::nullopt;
+    if (error != std::errc() || end != text.data() + text.size() || value > 1'000'000'000)
+      return std::nullopt;
     return value;
   }
 
@@ -783,7 +810,8 @@ class Resolver {
     Scope none;
     std::vector<Unfolded> unfolded;
     std::vector<Index> key;
-    for (const Argument& a : arguments(f.terms[0], model_.functions[*function], none, unfolded)) key.push_back(a.index);
+    for (const Argument& a : arguments(f.terms[0], model_.functions[*function], none, unfolded))
+      key.push_back(a.index);
     if (!unfolded.empty()) f.place.fail("an initial value's arguments are constants");
     const auto value = integer(f.terms.at(1).name.text);
     if (!value) f.terms[1].name.place.fail("expected a whole number up to 1000000000");
@@ -805,7 +833,8 @@ class Resolver {
       Scope none;
       std::vector<Unfolded> unfolded;
       Update::Literal l = literal(f, false, none, unfolded);
-      if (l.function || l.negated || !unfolded.empty()) f.place.fail("'unknown' takes atoms of constants");
+      if (l.function || l.negated || !unfolded.empty())
+        f.place.fail("'unknown' takes atoms of constants");
       std::vector<Index> key = {l.symbol};
       for (const Argument& a : l.arguments) key.push_back(a.index);
       unknown_.insert(std::move(key));
@@ -828,7 +857,8 @@ class Resolver {
       std::vector<Index> key = {predicate};
       for (const Argument& a : prefix) key.push_back(a.index);
       if (unknown_.contains(key)) return;
-      if (out.size() > 5'000'000) throw Error(ErrorCode::LimitReached, "too many atoms of closed predicates");
+      if (out.size() > 5'000'000)
+        throw Error(ErrorCode::LimitReached, "too many atoms of closed predicates");
       Update u;
       u.database = Update::Database::Lcw;
       u.literals.push_back({false, false, predicate, prefix, {}});
@@ -843,7 +873,8 @@ class Resolver {
   }
 
   /// Ground updates of an initial entry: only the quantification of LCW patterns may remain.
-  void expand(const Effect& e, std::vector<Index>& values, const Place& place, std::vector<Update>& out) const {
+  void expand(const Effect& e, std::vector<Index>& values, const Place& place,
+              std::vector<Update>& out) const {
     if (e.kind == Effect::Kind::When) place.fail("an initial entry's arguments are constants");
     if (e.kind == Effect::Kind::ForAll) {
       for (const Index o : model_.types[e.type].objects) {
@@ -875,8 +906,9 @@ class Resolver {
     }
     model_.goal_slots = scope.slots;
     if (document_.goals.empty())
-      throw Error(ErrorCode::InvalidInput, (document_.sources.empty() ? "" : document_.sources.back()->name + ": ") +
-                                               std::string("no goal: a 'goal:' section is needed"));
+      throw Error(ErrorCode::InvalidInput,
+                  (document_.sources.empty() ? "" : document_.sources.back()->name + ": ") +
+                      std::string("no goal: a 'goal:' section is needed"));
   }
 
   const sx::Document& document_;

@@ -5,7 +5,8 @@
 namespace kaboum::plan {
 
 bool RuntimeKnowledge::operator<(const RuntimeKnowledge& o) const {
-  return std::tie(atoms_, values_, excluded_, exclusive_) < std::tie(o.atoms_, o.values_, o.excluded_, o.exclusive_);
+  return std::tie(atoms_, values_, excluded_, exclusive_) <
+         std::tie(o.atoms_, o.values_, o.excluded_, o.exclusive_);
 }
 
 bool RuntimeKnowledge::knows(const Fact& atom, bool truth) const {
@@ -70,7 +71,8 @@ bool RuntimeKnowledge::learn_value(const Fact& term, Index value, const std::vec
   return !rules_out(term, value);
 }
 
-bool RuntimeKnowledge::learn_not_value(const Fact& term, Index value, const std::vector<Index>& range) {
+bool RuntimeKnowledge::learn_not_value(const Fact& term, Index value,
+                                       const std::vector<Index>& range) {
   if (const Index* v = this->value(term)) return *v != value;
   std::set<Index>& out = excluded_[term];
   out.insert(value);
@@ -119,7 +121,9 @@ void RuntimeKnowledge::restrict_to(const std::set<Fact>& live) {
       for (const Fact& f : open) again |= keep.insert(f).second;
     }
   }
-  std::erase_if(exclusive_, [&](const auto& e) { return e.second.empty() || !keep.contains(*e.second.begin()); });
+  std::erase_if(exclusive_, [&](const auto& e) {
+    return e.second.empty() || !keep.contains(*e.second.begin());
+  });
   const auto dead = [&](const auto& entry) { return !keep.contains(entry.first); };
   std::erase_if(atoms_, dead);
   std::erase_if(values_, dead);

@@ -34,7 +34,8 @@ Solution solve(const Model& model, const SolveOptions& options) {
   solution.status = planner.run();
   if (solution.status == Status::Solved) solution.plan = planner.plan();
   if (solution.status == Status::Limit)
-    solution.limit = limits.reason().empty() ? "depth limit of nested searches reached" : limits.reason();
+    solution.limit =
+        limits.reason().empty() ? "depth limit of nested searches reached" : limits.reason();
   solution.statistics.ground_actions = task.action_count();
   solution.statistics.external_calls = task.pool().external_calls();
   return solution;

@@ -41,29 +41,37 @@ class StateStore {
     return {number, true};
   }
 
-  void prefetch(std::uint64_t hash) const { __builtin_prefetch(&table_[hash & (table_.size() - 1)]); }
+  void prefetch(std::uint64_t hash) const {
+    __builtin_prefetch(&table_[hash & (table_.size() - 1)]);
+  }
 
   [[nodiscard]] const Word* operator[](Index state) const {
     return contents_[state / kChunk].get() + static_cast<std::size_t>(state % kChunk) * words_;
   }
   Link& link(Index state) { return links_[state / kChunk][state % kChunk]; }
-  [[nodiscard]] const Link& link(Index state) const { return links_[state / kChunk][state % kChunk]; }
+  [[nodiscard]] const Link& link(Index state) const {
+    return links_[state / kChunk][state % kChunk];
+  }
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] std::size_t bytes() const {
-    return contents_.size() * kChunk * (words_ * sizeof(Word) + sizeof(Link)) + table_.size() * sizeof(Index);
+    return contents_.size() * kChunk * (words_ * sizeof(Word) + sizeof(Link)) +
+           table_.size() * sizeof(Index);
   }
 
   /// Steps from the first state to `state`.
   [[nodiscard]] std::vector<Index> path(Index state) const {
     std::vector<Index> steps;
-    for (; link(state).parent != kNone; state = link(state).parent) steps.push_back(link(state).step);
+    for (; link(state).parent != kNone; state = link(state).parent)
+      steps.push_back(link(state).step);
     return {steps.rbegin(), steps.rend()};
   }
 
  private:
   static constexpr std::size_t kChunk = 1U << 12U;
 
-  Word* at(Index state) { return contents_[state / kChunk].get() + static_cast<std::size_t>(state % kChunk) * words_; }
+  Word* at(Index state) {
+    return contents_[state / kChunk].get() + static_cast<std::size_t>(state % kChunk) * words_;
+  }
   [[nodiscard]] bool equal(const Word* a, const Word* b) const {
     for (Index i = 0; i < words_; ++i)
       if (a[i] != b[i]) return false;

@@ -40,14 +40,14 @@ struct Formula {
     Not,
     Exists,
     ForAll,
-    Known,         ///< K(child)
-    KnowWhether,   ///< Kw(child)
-    KnowValue,     ///< Kv(terms[0])
-    ClosedWorld,   ///< LCW(atom): whether every instance is known-whether
-    Atom,          ///< terms[0]; only inside K, Kw, LCW, add and del
-    Equal,         ///< terms[0] = terms[1]
-    NotEqual,      ///< terms[0] != terms[1]
-    Extern         ///< terms[0] of kind Extern, as a condition
+    Known,        ///< K(child)
+    KnowWhether,  ///< Kw(child)
+    KnowValue,    ///< Kv(terms[0])
+    ClosedWorld,  ///< LCW(atom): whether every instance is known-whether
+    Atom,         ///< terms[0]; only inside K, Kw, LCW, add and del
+    Equal,        ///< terms[0] = terms[1]
+    NotEqual,     ///< terms[0] != terms[1]
+    Extern        ///< terms[0] of kind Extern, as a condition
   };
   Kind kind = Kind::True;
   Place place;
@@ -110,8 +110,8 @@ struct Document {
   std::vector<Table> tables;
   std::vector<Action> actions;
   std::vector<Effect> initial;
-  std::vector<Formula> goals;  ///< conjunction
-  std::vector<Name> closed;     ///< predicates closed in the initial state ("all": every one)
+  std::vector<Formula> goals;    ///< conjunction
+  std::vector<Name> closed;      ///< predicates closed in the initial state ("all": every one)
   std::vector<Formula> unknown;  ///< atoms that closing leaves open
   std::vector<std::shared_ptr<const Source>> sources;  ///< keep the places alive
 };

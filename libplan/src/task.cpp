@@ -28,15 +28,16 @@ Task::Task(const Model& model) : model_(model), layout_(model), pool_(model, lay
 void Task::make_initial() {
   Knowledge k(layout_);
   const auto contradiction = [](const std::string& what) {
-    throw Error(ErrorCode::InvalidInput, "the initial knowledge contradicts itself about '" + what + "'");
+    throw Error(ErrorCode::InvalidInput,
+                "the initial knowledge contradicts itself about '" + what + "'");
   };
   for (const Update& u : model_.initial) {
     const Update::Literal& l = u.literals[0];
     std::vector<Index> arguments;
     for (const Argument& a : l.arguments) arguments.push_back(a.index);
     const std::string& name = (l.function ? model_.functions : model_.predicates)[l.symbol].name;
-    const Layout::Place p =
-        l.function ? layout_.term(l.symbol, arguments.data()) : layout_.atom(l.symbol, arguments.data());
+    const Layout::Place p = l.function ? layout_.term(l.symbol, arguments.data())
+                                       : layout_.atom(l.symbol, arguments.data());
     const auto position = [&](const Update::Literal& literal) {
       return layout_.position(model_.functions[literal.symbol].range, literal.value->index);
     };
@@ -44,10 +45,12 @@ void Task::make_initial() {
     switch (u.database) {
       case Update::Database::Kf:
         if (p.fluent == kNone) {
-          consistent = l.function ? p.value == l.value->index
-                                  : p.atom == (l.negated ? AtomKnowledge::False : AtomKnowledge::True);
+          consistent = l.function
+                           ? p.value == l.value->index
+                           : p.atom == (l.negated ? AtomKnowledge::False : AtomKnowledge::True);
         } else if (l.function) {
-          consistent = l.negated ? k.learn_not_value(p.fluent, position(l)) : k.learn_value(p.fluent, position(l));
+          consistent = l.negated ? k.learn_not_value(p.fluent, position(l))
+                                 : k.learn_value(p.fluent, position(l));
         } else {
           consistent = k.learn_atom(p.fluent, !l.negated);
         }
@@ -74,7 +77,8 @@ void Task::make_initial() {
         }
         break;
       case Update::Database::Lcw:
-        if (p.fluent != kNone && k.atom(p.fluent) == AtomKnowledge::Unknown) consistent = k.learn_atom(p.fluent, false);
+        if (p.fluent != kNone && k.atom(p.fluent) == AtomKnowledge::Unknown)
+          consistent = k.learn_atom(p.fluent, false);
         break;
     }
     if (!consistent) contradiction(name);
@@ -91,7 +95,8 @@ void Task::prepare(Index schema) {
   std::vector<std::vector<const Query*>> singles(a.parameters.size());
   const auto calls = [](const auto& self, const Query& q) -> bool {
     if (q.kind == Query::Kind::External) return true;
-    return std::any_of(q.children.begin(), q.children.end(), [&](const Query& c) { return self(self, c); });
+    return std::any_of(q.children.begin(), q.children.end(),
+                       [&](const Query& c) { return self(self, c); });
   };
   for (const Query* q : conjuncts(a.precondition)) {
     Check c;
@@ -171,7 +176,8 @@ Step Task::action_step(Index schema, const std::vector<Index>& arguments) {
     known = &s.step_index.emplace(key, ~Step{0}).first->second;
   }
   if (*known != ~Step{0}) return *known;
-  if (actions_.size() >= kOutcome - 1) throw Error(ErrorCode::LimitReached, "too many ground actions");
+  if (actions_.size() >= kOutcome - 1)
+    throw Error(ErrorCode::LimitReached, "too many ground actions");
   auto ground = std::make_unique<GroundAction>();
   ground->schema = schema;
   ground->arguments = arguments;
@@ -185,7 +191,8 @@ Step Task::action_step(Index schema, const std::vector<Index>& arguments) {
     const auto& table = model_.numbers[a.cost_function];
     const auto value = table.find(objects);
     if (value == table.end())
-      throw Error(ErrorCode::InvalidInput, "no initial value of '" + model_.functions[a.cost_function].name +
+      throw Error(ErrorCode::InvalidInput, "no initial value of '" +
+                                               model_.functions[a.cost_function].name +
                                                "' for the cost of an action '" + a.name + "'");
     ground->cost = value->second;
   }
@@ -196,7 +203,8 @@ Step Task::action_step(Index schema, const std::vector<Index>& arguments) {
 }
 
 bool Task::is_plain(const Change& c) const {
-  if (c.kind != Change::Kind::AddTrue && c.kind != Change::Kind::AddFalse && c.kind != Change::Kind::AddValue)
+  if (c.kind != Change::Kind::AddTrue && c.kind != Change::Kind::AddFalse &&
+      c.kind != Change::Kind::AddValue)
     return false;
   const Fluent& f = layout_.fluents()[c.fluent];
   return f.groups.empty() && f.exclusions == kNone;
@@ -207,7 +215,8 @@ void Task::add_change(const Update& u, const std::vector<Index>& slots, Conditio
   const auto place = [&](const Update::Literal& l) {
     std::vector<Index> objects;
     for (const Argument& a : l.arguments) objects.push_back(value_of(a, slots.data()));
-    return l.function ? layout_.term(l.symbol, objects.data()) : layout_.atom(l.symbol, objects.data());
+    return l.function ? layout_.term(l.symbol, objects.data())
+                      : layout_.atom(l.symbol, objects.data());
   };
   const auto position = [&](const Update::Literal& l) {
     return layout_.position(model_.functions[l.symbol].range, value_of(*l.value, slots.data()));
@@ -224,9 +233,11 @@ void Task::add_change(const Update& u, const std::vector<Index>& slots, Conditio
     case D::Kf:
       if (l.function) {
         c.value = position(l);
-        c.kind = u.add ? (l.negated ? K::Exclude : K::AddValue) : (l.negated ? K::DeleteExclude : K::DeleteValue);
+        c.kind = u.add ? (l.negated ? K::Exclude : K::AddValue)
+                       : (l.negated ? K::DeleteExclude : K::DeleteValue);
       } else {
-        c.kind = u.add ? (l.negated ? K::AddFalse : K::AddTrue) : (l.negated ? K::DeleteFalse : K::DeleteTrue);
+        c.kind = u.add ? (l.negated ? K::AddFalse : K::AddTrue)
+                       : (l.negated ? K::DeleteFalse : K::DeleteTrue);
       }
       break;
     case D::Kw:
@@ -259,8 +270,10 @@ void Task::add_change(const Update& u, const std::vector<Index>& slots, Conditio
   // A plain write after additions that are none would come before them: keep the text's order then.
   if (out.additions.empty() && is_plain(c)) {
     const Fluent& f = layout_.fluents()[c.fluent];
-    const Word content = c.kind == K::AddValue ? kFirstValue + c.value
-                         : static_cast<Word>(c.kind == K::AddTrue ? AtomKnowledge::True : AtomKnowledge::False);
+    const Word content =
+        c.kind == K::AddValue
+            ? kFirstValue + c.value
+            : static_cast<Word>(c.kind == K::AddTrue ? AtomKnowledge::True : AtomKnowledge::False);
     const Conditional::Write w{f.word, f.mask, content << f.shift};
     out.plain.push_back(c);
     for (Conditional::Write& old : out.writes)
@@ -275,8 +288,8 @@ void Task::add_change(const Update& u, const std::vector<Index>& slots, Conditio
   }
 }
 
-void Task::ground_effects(const std::vector<Effect>& effects, Formula condition, std::vector<Index>& slots,
-                          GroundAction& action) {
+void Task::ground_effects(const std::vector<Effect>& effects, Formula condition,
+                          std::vector<Index>& slots, GroundAction& action) {
   for (const Effect& e : effects) {
     switch (e.kind) {
       case Effect::Kind::Update: {
@@ -305,8 +318,8 @@ void Task::ground_effects(const std::vector<Effect>& effects, Formula condition,
 }
 
 Step Task::outcome_step(Index fluent, Index value) {
-  const auto [it, fresh] =
-      outcome_index_.emplace(std::pair(fluent, value), static_cast<Step>(outcomes_.size()) | kOutcome);
+  const auto [it, fresh] = outcome_index_.emplace(std::pair(fluent, value),
+                                                  static_cast<Step>(outcomes_.size()) | kOutcome);
   if (fresh) outcomes_.push_back({fluent, value});
   return it->second;
 }
@@ -369,7 +382,9 @@ Index Task::undecided(const Change& c, const Word* state) const {
         return g.members[i];
     return kNone;
   }
-  if (c.kind == K::AddGroup || c.kind == K::AddWhether || c.kind == K::AddClosed || c.kind == K::AddSensed) return kNone;
+  if (c.kind == K::AddGroup || c.kind == K::AddWhether || c.kind == K::AddClosed ||
+      c.kind == K::AddSensed)
+    return kNone;
   const Fluent& f = layout_.fluents()[c.fluent];
   const Word content = f.get(state);
   switch (c.kind) {
@@ -390,14 +405,18 @@ Index Task::undecided(const Change& c, const Word* state) const {
   if (f.groups.empty()) return kNone;
   if (content == static_cast<Word>(AtomKnowledge::Whether))
     return std::any_of(f.groups.begin(), f.groups.end(),
-                       [&](const auto& g) { return ((state[layout_.groups()[g.first].word] >> g.second) & 1U) != 0; })
+                       [&](const auto& g) {
+                         return ((state[layout_.groups()[g.first].word] >> g.second) & 1U) != 0;
+                       })
                ? c.fluent
                : kNone;
-  return content == static_cast<Word>(AtomKnowledge::Unknown) ? layout_.sensed_tie(c.fluent, state) : kNone;
+  return content == static_cast<Word>(AtomKnowledge::Unknown) ? layout_.sensed_tie(c.fluent, state)
+                                                              : kNone;
 }
 
 template <bool Sensing>
-void Task::expand_schema(Index schema, const Word* state, std::vector<Step>& steps, std::vector<Index>& needs) {
+void Task::expand_schema(Index schema, const Word* state, std::vector<Step>& steps,
+                         std::vector<Index>& needs) {
   Schema& s = schemas_[schema];
   Index* slots = slots_.data();
   std::array<Formula, 64> open;  // open formulas on the way down
@@ -407,7 +426,8 @@ void Task::expand_schema(Index schema, const Word* state, std::vector<Step>& ste
     if (f == kTrue) return true;
     if (f == kFalse) return false;
     if constexpr (!Sensing) return pool_.holds(f, state);
-    if (open_count > 0 && pool_.node(f).calls) return true;  // not called before the rest is decided
+    if (open_count > 0 && pool_.node(f).calls)
+      return true;  // not called before the rest is decided
     const Truth t = pool_.evaluate(f, state);
     if (t == Truth::Open && open_count < open.size()) open[open_count++] = f;
     return t != Truth::No;
@@ -427,22 +447,21 @@ void Task::expand_schema(Index schema, const Word* state, std::vector<Step>& ste
       const Step step = action_step(schema, arguments);
       if constexpr (Sensing) {
         bool decided = true;
-        for (const Conditional& c : actions_[step]->effects)
-          {
-            const Truth t = c.condition == kTrue ? Truth::Yes : pool_.evaluate(c.condition, state);
-            if (t == Truth::Open) {
-              pool_.open_fluents(c.condition, state, needs);
+        for (const Conditional& c : actions_[step]->effects) {
+          const Truth t = c.condition == kTrue ? Truth::Yes : pool_.evaluate(c.condition, state);
+          if (t == Truth::Open) {
+            pool_.open_fluents(c.condition, state, needs);
+            decided = false;
+          }
+          if (t != Truth::Yes) continue;
+          for (const auto* list : {&c.deletions, &c.additions})
+            for (const Change& change : *list) {
+              const Index fluent = undecided(change, state);
+              if (fluent == kNone) continue;
+              needs.push_back(fluent);
               decided = false;
             }
-            if (t != Truth::Yes) continue;
-            for (const auto* list : {&c.deletions, &c.additions})
-              for (const Change& change : *list) {
-                const Index fluent = undecided(change, state);
-                if (fluent == kNone) continue;
-                needs.push_back(fluent);
-                decided = false;
-              }
-          }
+        }
         if (!decided) return;
       }
       steps.push_back(step);

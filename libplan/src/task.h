@@ -72,7 +72,9 @@ class Task {
   Step outcome_step(Index fluent, Index value);
   /// Every outcome of sensing this fluent in this state.
   [[nodiscard]] std::vector<Index> outcomes(Index fluent, const Word* state) const;
-  [[nodiscard]] std::int64_t cost(Step step) const { return is_outcome(step) ? 0 : actions_[step]->cost; }
+  [[nodiscard]] std::int64_t cost(Step step) const {
+    return is_outcome(step) ? 0 : actions_[step]->cost;
+  }
   [[nodiscard]] std::size_t action_count() const { return actions_.size(); }
 
   /// The ground action with these arguments (made if need be); its precondition is not looked at.
@@ -80,8 +82,8 @@ class Task {
 
   [[nodiscard]] std::uint64_t tests() const { return tests_; }  ///< action instances tested so far
 
-  /// Calls `visit(arguments)` for the instances of a schema whose conjuncts `possible` does not rule
-  /// out, tested as soon as their arguments are chosen.
+  /// Calls `visit(arguments)` for the instances of a schema whose conjuncts `possible` does not
+  /// rule out, tested as soon as their arguments are chosen.
   template <class Possible, class Visit>
   void instances(Index schema, const Possible& possible, const Visit& visit);
 
@@ -92,8 +94,8 @@ class Task {
   struct Check {
     const Query* query = nullptr;
     std::vector<Index> slots;
-    bool single = false;              ///< depends on the parameter chosen last only
-    std::vector<Formula> grounded;    ///< by the slots' values; empty: too many to tabulate
+    bool single = false;            ///< depends on the parameter chosen last only
+    std::vector<Formula> grounded;  ///< by the slots' values; empty: too many to tabulate
   };
   struct Candidate {
     Index object = 0;
@@ -116,15 +118,16 @@ class Task {
 
   void prepare(Index schema);
   Formula grounded(Index schema, Check& check, const Index* slots);
-  void ground_effects(const std::vector<Effect>& effects, Formula condition, std::vector<Index>& slots,
-                      GroundAction& action);
+  void ground_effects(const std::vector<Effect>& effects, Formula condition,
+                      std::vector<Index>& slots, GroundAction& action);
   void add_change(const Update& update, const std::vector<Index>& slots, Conditional& conditional);
   [[nodiscard]] bool is_plain(const Change& change) const;
   /// A sensed fluent whose value decides what the change does; kNone: it does the same for all.
   [[nodiscard]] Index undecided(const Change& change, const Word* state) const;
   void make_initial();
   template <bool Sensing>
-  void expand_schema(Index schema, const Word* state, std::vector<Step>& steps, std::vector<Index>& needs);
+  void expand_schema(Index schema, const Word* state, std::vector<Step>& steps,
+                     std::vector<Index>& needs);
 
   const Model& model_;
   Layout layout_;

@@ -19,10 +19,12 @@ class Reader {
 
   syntax::Document read() {
     document_.sources.push_back(source_);
-    if (std::count(source_->text.begin(), source_->text.end(), '<') > 1'000'000) fail(0, "too many elements");
+    if (std::count(source_->text.begin(), source_->text.end(), '<') > 1'000'000)
+      fail(0, "too many elements");
     tinyxml2::XMLDocument xml;
     if (xml.Parse(source_->text.data(), source_->text.size()) != tinyxml2::XML_SUCCESS)
-      fail(xml.ErrorLineNum(), std::string("not well-formed XML (") + tinyxml2::XMLDocument::ErrorIDToName(xml.ErrorID()) + ")");
+      fail(xml.ErrorLineNum(), std::string("not well-formed XML (") +
+                                   tinyxml2::XMLDocument::ErrorIDToName(xml.ErrorID()) + ")");
     const XMLElement* root = xml.RootElement();
     if (root == nullptr || std::strcmp(root->Name(), "pks") != 0) fail(1, "expected <pks>");
     each(*root, [&](const XMLElement& e) {
@@ -56,7 +58,9 @@ class Reader {
 
   template <class Visit>
   static void each(const XMLElement& parent, const Visit& visit) {
-    for (const XMLElement* e = parent.FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) visit(*e);
+    for (const XMLElement* e = parent.FirstChildElement(); e != nullptr;
+         e = e->NextSiblingElement())
+      visit(*e);
   }
 
   /// The element's text as a source of its own whose lines are numbered as in the file.
@@ -71,14 +75,16 @@ class Reader {
         fail(n->GetLineNum(), std::string("unexpected element in <") + e.Name() + ">");
       }
     }
-    document_.sources.push_back(
-        std::make_shared<Source>(Source{source_->name, std::string(static_cast<std::size_t>(std::max(line - 1, 0)), '\n') + content}));
+    document_.sources.push_back(std::make_shared<Source>(
+        Source{source_->name,
+               std::string(static_cast<std::size_t>(std::max(line - 1, 0)), '\n') + content}));
     return *document_.sources.back();
   }
 
   syntax::Name attribute(const XMLElement& e, const char* key) const {
     const char* value = e.Attribute(key);
-    if (value == nullptr) fail(e.GetLineNum(), std::string("<") + e.Name() + "> needs the attribute '" + key + "'");
+    if (value == nullptr)
+      fail(e.GetLineNum(), std::string("<") + e.Name() + "> needs the attribute '" + key + "'");
     std::size_t offset = 0;
     for (int i = 1; i < e.GetLineNum(); ++i) {
       const std::size_t newline = source_->text.find('\n', offset);
@@ -128,7 +134,8 @@ class Reader {
         a.parameters = kpl_piece::parameters(text(e));
       } else if (is(e, "preconds")) {
         const Source& s = text(e);
-        if (s.text.find_first_not_of(" \t\r\n") != std::string::npos) a.precondition = kpl_piece::formula(s);
+        if (s.text.find_first_not_of(" \t\r\n") != std::string::npos)
+          a.precondition = kpl_piece::formula(s);
       } else if (is(e, "effects")) {
         a.effects = kpl_piece::effects(text(e));
       } else {
@@ -139,7 +146,8 @@ class Reader {
   }
 
   void problem(const XMLElement& parent) {
-    if (parent.Attribute("name") != nullptr && document_.name.text.empty()) document_.name = attribute(parent, "name");
+    if (parent.Attribute("name") != nullptr && document_.name.text.empty())
+      document_.name = attribute(parent, "name");
     each(parent, [&](const XMLElement& e) {
       if (is(e, "symbols")) {
         symbols(e);
@@ -159,7 +167,9 @@ class Reader {
 
 }  // namespace
 
-syntax::Document parse_xml(std::shared_ptr<const Source> source) { return Reader(std::move(source)).read(); }
+syntax::Document parse_xml(std::shared_ptr<const Source> source) {
+  return Reader(std::move(source)).read();
+}
 
 std::string print_xml(const syntax::Document& d) {
   const auto refuse = [](const std::string& what) {
@@ -181,20 +191,24 @@ std::string print_xml(const syntax::Document& d) {
     for (const auto& item : list) all += (all.empty() ? "" : ", ") + text(item);
     return all;
   };
-  const auto signature = [](const syntax::Signature& s) { return s.name.text + "/" + std::to_string(s.parameters.size()); };
+  const auto signature = [](const syntax::Signature& s) {
+    return s.name.text + "/" + std::to_string(s.parameters.size());
+  };
   out.OpenElement("pks");
   out.OpenElement("domain");
   if (!d.name.text.empty()) out.PushAttribute("name", d.name.text.c_str());
   out.OpenElement("symbols");
   element("predicates", names(d.predicates, signature));
   element("functions", names(d.functions, signature));
-  element("constants", names(d.constants, [](const syntax::TypedVariable& c) { return c.name.text; }));
+  element("constants",
+          names(d.constants, [](const syntax::TypedVariable& c) { return c.name.text; }));
   out.CloseElement();
   for (const syntax::Action& a : d.actions) {
     if (!a.cost.empty()) refuse("costs (action '" + a.name.text + "')");
     out.OpenElement("action");
     out.PushAttribute("name", a.name.text.c_str());
-    element("params", names(a.parameters, [](const syntax::TypedVariable& v) { return "?" + v.name.text; }));
+    element("params",
+            names(a.parameters, [](const syntax::TypedVariable& v) { return "?" + v.name.text; }));
     element("preconds", print_formula(a.precondition));
     element("effects", print_effects(a.effects));
     out.CloseElement();

@@ -57,7 +57,8 @@ TEST(Check, ExchangingOrDroppingCasesIsNoticed) {
       EXPECT_FALSE(valid(m, swapped)) << name;
       for (std::size_t c = 0; c < plan.nodes[i].branch.cases.size(); ++c) {
         Plan dropped = plan;
-        dropped.nodes[i].branch.cases.erase(dropped.nodes[i].branch.cases.begin() + static_cast<std::ptrdiff_t>(c));
+        dropped.nodes[i].branch.cases.erase(dropped.nodes[i].branch.cases.begin() +
+                                            static_cast<std::ptrdiff_t>(c));
         EXPECT_FALSE(valid(m, dropped)) << name;
       }
     }

@@ -4,7 +4,9 @@
 namespace kaboum::plan::test {
 namespace {
 
-std::string data(const std::string& file) { return slurp(std::string(KABOUM_DOMAINS) + "/../../tests/plan/data/" + file); }
+std::string data(const std::string& file) {
+  return slurp(std::string(KABOUM_DOMAINS) + "/../../tests/plan/data/" + file);
+}
 
 std::string plan_of(const std::string& text, Language language) {
   const Model m = load({"t", text, language}, nullptr);
@@ -12,8 +14,10 @@ std::string plan_of(const std::string& text, Language language) {
 }
 
 TEST(Convert, KplIsAFixedPoint) {
-  for (const char* name : {"stacked", "force-sensing", "bartender", "circular-rearrange", "bimanual-assembly", "remove"}) {
-    const Text d{"d.kpl", slurp(std::string(KABOUM_DOMAINS) + "/" + name + "/domain.kpl"), Language::Kpl};
+  for (const char* name : {"stacked", "force-sensing", "bartender", "circular-rearrange",
+                           "bimanual-assembly", "remove"}) {
+    const Text d{"d.kpl", slurp(std::string(KABOUM_DOMAINS) + "/" + name + "/domain.kpl"),
+                 Language::Kpl};
     const Text p{"p.kpl", made(name, "2"), Language::Kpl};
     const std::string once = convert(d, &p, Language::Kpl);
     EXPECT_EQ(convert({"o.kpl", once, Language::Kpl}, nullptr, Language::Kpl), once);
@@ -41,7 +45,9 @@ TEST(Convert, PddlIsReadAndWritten) {
 }
 
 TEST(Convert, NamesWhatCannotBeSaid) {
-  const Text d{"d.kpl", slurp(std::string(KABOUM_DOMAINS) + "/remove/domain.kpl") + made("remove", "2"), Language::Kpl};
+  const Text d{"d.kpl",
+               slurp(std::string(KABOUM_DOMAINS) + "/remove/domain.kpl") + made("remove", "2"),
+               Language::Kpl};
   EXPECT_THROW(convert(d, nullptr, Language::Pddl), Error);
   EXPECT_THROW(convert(d, nullptr, Language::Xml), Error);
 }
@@ -50,7 +56,8 @@ TEST(Show, TextDotAndSvgNameEveryAction) {
   const Model m = scenario("force-sensing", "2");
   const Plan plan = solved(m, Algorithm::BreadthFirst).plan;
   for (const std::string& text : {plan_text(m, plan), plan_dot(m, plan), plan_svg(m, plan)})
-    for (const Plan::Node& n : plan.nodes) EXPECT_NE(text.find(step_text(m, n.action)), std::string::npos);
+    for (const Plan::Node& n : plan.nodes)
+      EXPECT_NE(text.find(step_text(m, n.action)), std::string::npos);
 }
 
 }  // namespace

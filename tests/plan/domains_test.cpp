@@ -10,7 +10,8 @@ TEST_P(Stacked, ShortestPlanHas2nMinus1Moves) {
   const int n = GetParam();
   for (const char* seed : {"", " 1", " 2"}) {
     const Model m = scenario("stacked", std::to_string(n) + seed);
-    for (const Algorithm a : {Algorithm::BreadthFirst, Algorithm::IterativeDeepening, Algorithm::AStar}) {
+    for (const Algorithm a :
+         {Algorithm::BreadthFirst, Algorithm::IterativeDeepening, Algorithm::AStar}) {
       const Solution s = solved(m, a);
       ASSERT_EQ(s.status, Status::Solved);
       EXPECT_EQ(measure(m, s.plan).longest, static_cast<std::uint64_t>(2 * n - 1));
@@ -79,7 +80,8 @@ TEST(Scenario, RemoveTakesOneActionPerObject) {
 }
 
 TEST(Scenario, EveryScenarioIsSolvedByEverySearch) {
-  for (const char* name : {"stacked", "force-sensing", "bartender", "circular-rearrange", "remove"}) {
+  for (const char* name :
+       {"stacked", "force-sensing", "bartender", "circular-rearrange", "remove"}) {
     const Model m = scenario(name, "2");
     for (const Algorithm a : kAll) EXPECT_EQ(solved(m, a).status, Status::Solved) << name;
   }

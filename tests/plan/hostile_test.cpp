@@ -55,7 +55,8 @@ void mutate(const std::string& good, Language language, std::uint32_t seed, int 
 
 TEST(Hostile, MutatedScenarios) {
   std::uint32_t seed = 1;
-  for (const char* name : {"stacked", "force-sensing", "bartender", "circular-rearrange", "bimanual-assembly", "remove"})
+  for (const char* name : {"stacked", "force-sensing", "bartender", "circular-rearrange",
+                           "bimanual-assembly", "remove"})
     mutate(whole(name, "2"), Language::Kpl, seed++, 150);
 }
 
@@ -63,7 +64,8 @@ TEST(Hostile, MutatedXmlAndPddl) {
   const Text d{"d.kpl", whole("force-sensing", "2"), Language::Kpl};
   std::string xml = slurp(std::string(KABOUM_DOMAINS) + "/../../tests/plan/data/sensing.xml");
   mutate(xml, Language::Xml, 7, 300);
-  mutate(slurp(std::string(KABOUM_DOMAINS) + "/../../tests/plan/data/blocks.pddl"), Language::Pddl, 8, 300);
+  mutate(slurp(std::string(KABOUM_DOMAINS) + "/../../tests/plan/data/blocks.pddl"), Language::Pddl,
+         8, 300);
 }
 
 TEST(Hostile, DeepNestingAndOddTexts) {
@@ -82,11 +84,13 @@ TEST(Hostile, DeepNestingAndOddTexts) {
 
 TEST(Hostile, PlansThatAreNone) {
   const Model m = scenario("stacked", "3");
-  for (const char* text : {"", "{}", "[]", "null", "{\"format\": \"kaboum-plan\", \"version\": 1}",
-                           R"({"format":"kaboum-plan","version":1,"root":5,"nodes":[]})",
-                           R"({"format":"kaboum-plan","version":1,"root":0,"nodes":[{"next":"goal"}]})",
-                           R"({"format":"kaboum-plan","version":1,"root":0,"nodes":[{"action":"move","arguments":["o1"],"next":0}]})",
-                           R"({"format":"kaboum-plan","version":1,"root":-1,"nodes":{}})"})
+  for (
+      const char* text :
+      {"", "{}", "[]", "null", "{\"format\": \"kaboum-plan\", \"version\": 1}",
+       R"({"format":"kaboum-plan","version":1,"root":5,"nodes":[]})",
+       R"({"format":"kaboum-plan","version":1,"root":0,"nodes":[{"next":"goal"}]})",
+       R"({"format":"kaboum-plan","version":1,"root":0,"nodes":[{"action":"move","arguments":["o1"],"next":0}]})",
+       R"({"format":"kaboum-plan","version":1,"root":-1,"nodes":{}})"})
     EXPECT_THROW(read_plan(m, text, "p.json"), Error) << text;
 }
 

@@ -27,7 +27,8 @@ class Naive {
     for (int bits = 0; bits < (1 << kAtoms); ++bits)
       for (int v = 0; v < kValues; ++v) {
         World w;
-        for (int i = 0; i < kAtoms; ++i) w.atoms[static_cast<std::size_t>(i)] = ((bits >> i) & 1) != 0;
+        for (int i = 0; i < kAtoms; ++i)
+          w.atoms[static_cast<std::size_t>(i)] = ((bits >> i) & 1) != 0;
         w.value = v;
         all.insert(w);
       }
@@ -74,7 +75,8 @@ class Naive {
 
 const char* const kModel =
     "types: value\nconstants: value v0, v1, v2\npredicates: p0, p1, p2, p3\nfunctions: f : value\n"
-    "action all preconds: true effects: add(Kf, p0), add(Kf, p1), add(Kf, p2), add(Kf, p3), add(Kf, f != v0)\n"
+    "action all preconds: true effects: add(Kf, p0), add(Kf, p1), add(Kf, p2), add(Kf, p3), "
+    "add(Kf, f != v0)\n"
     "action groups preconds: true effects: add(Kx, p0 | p1 | p2), add(Kx, p1 | p3)\n"
     "action sense preconds: true effects: add(Kw, p0), add(Kv, f)\n"
     "goal: K(p0)\n";
@@ -96,8 +98,9 @@ void compare(const Knowledge& k, const Layout& layout, const Naive& naive, bool 
           EXPECT_FALSE(is);
         }
         const bool never = naive.always([&](const World& w) { return w.value != v; });
-        const bool claimed = k.excluded(i, static_cast<Index>(v)) ||
-                             (content >= kFirstValue && content != kFirstValue + static_cast<Word>(v));
+        const bool claimed =
+            k.excluded(i, static_cast<Index>(v)) ||
+            (content >= kFirstValue && content != kFirstValue + static_cast<Word>(v));
         if (claimed) {
           EXPECT_TRUE(never);
         }
@@ -232,7 +235,8 @@ void random_walk(std::uint32_t seed, bool groups) {
       case 8:
         if (sensed_term) break;
         k.apply({C::Exclude, term, value, {}});
-        if (naive.always([&](const World& w) { return w.value == v; })) free_value([](const World&) { return true; });
+        if (naive.always([&](const World& w) { return w.value == v; }))
+          free_value([](const World&) { return true; });
         naive.map([&](const World& w, Class& out) {
           if (w.value != v) out.insert(w);
         });
@@ -260,11 +264,13 @@ void random_walk(std::uint32_t seed, bool groups) {
         const Index g = random() % layout.groups().size();
         const auto consistent = [&](const World& w) {
           int n = 0;
-          for (const Index m : layout.groups()[g].members) n += w.atoms[layout.fluents()[m].symbol] ? 1 : 0;
+          for (const Index m : layout.groups()[g].members)
+            n += w.atoms[layout.fluents()[m].symbol] ? 1 : 0;
           return n == 1;
         };
         bool possible = !any_sensed;
-        for (const Class& c : naive.classes) possible &= std::any_of(c.begin(), c.end(), consistent);
+        for (const Class& c : naive.classes)
+          possible &= std::any_of(c.begin(), c.end(), consistent);
         if (!possible) break;
         naive.map([&](const World& w, Class& out) {
           if (consistent(w)) out.insert(w);

@@ -10,11 +10,13 @@ const std::string kHead =
     "constants: object a, b\n";
 
 std::string with_action(const std::string& preconds, const std::string& effects) {
-  return kHead + "action act(?x : object)\n  preconds: " + preconds + "\n  effects: " + effects + "\ngoal: K(r)\n";
+  return kHead + "action act(?x : object)\n  preconds: " + preconds + "\n  effects: " + effects +
+         "\ngoal: K(r)\n";
 }
 
 TEST(Language, ErrorsHaveFileLineColumnAndCaret) {
-  const std::string message = complaint("predicates: p(object)\nconstants: object a\ngoal: K(zz(a))\n");
+  const std::string message =
+      complaint("predicates: p(object)\nconstants: object a\ngoal: K(zz(a))\n");
   EXPECT_EQ(message, "bad.kpl:3:9: error: unknown predicate 'zz'\n  goal: K(zz(a))\n          ^");
 }
 
@@ -41,19 +43,25 @@ TEST(Language, FindsMistakesAtLoad) {
       {"goal: K(\x01)", "unexpected character"},
   };
   for (const auto& [text, expected] : cases)
-    EXPECT_NE(complaint(text).find(expected), std::string::npos) << text << "\n--> " << complaint(text);
+    EXPECT_NE(complaint(text).find(expected), std::string::npos)
+        << text << "\n--> " << complaint(text);
 }
 
 TEST(Language, ChecksTypes) {
   const std::string head =
-      "types: box, robot\npredicates: full(box)\nfunctions: inside(box) : box\nconstants: box b; robot r\n";
-  EXPECT_NE(complaint(head + "goal: K(full(r))").find("'r' is of type robot, expected box"), std::string::npos);
+      "types: box, robot\npredicates: full(box)\nfunctions: inside(box) : box\nconstants: box b; "
+      "robot r\n";
+  EXPECT_NE(complaint(head + "goal: K(full(r))").find("'r' is of type robot, expected box"),
+            std::string::npos);
   EXPECT_NE(complaint(head + "goal: K(inside(b) = r)").find("expected box"), std::string::npos);
-  EXPECT_NE(complaint(head + "goal: forallK(?x : robot) K(full(?x))").find("'x' is of type robot"), std::string::npos);
+  EXPECT_NE(complaint(head + "goal: forallK(?x : robot) K(full(?x))").find("'x' is of type robot"),
+            std::string::npos);
 }
 
 TEST(Language, RefusesContradictoryInitialKnowledge) {
-  const Model m = model_of(kHead + "init: K(p(a)) K(!p(a))\naction x preconds: true effects: add(Kf, !p(a))\ngoal: K(r)");
+  const Model m = model_of(
+      kHead +
+      "init: K(p(a)) K(!p(a))\naction x preconds: true effects: add(Kf, !p(a))\ngoal: K(r)");
   EXPECT_THROW(solve(m, {}), Error);
 }
 
@@ -70,7 +78,8 @@ bool holds(const std::string& init, const std::string& goal) {
 TEST(Language, Queries) {
   EXPECT_TRUE(holds("K(p(a))", "K(p(a)) & !K(p(b)) & !K(!p(b)) & Kw(p(a)) & !Kw(p(b))"));
   EXPECT_TRUE(holds("K(!p(a))", "K(!p(a)) & Kw(p(a)) & !K(p(a))"));
-  EXPECT_TRUE(holds("K(f(a) = b)", "K(f(a) = b) & K(b = f(a)) & K(f(a) != a) & Kv(f(a)) & !Kv(f(b))"));
+  EXPECT_TRUE(
+      holds("K(f(a) = b)", "K(f(a) = b) & K(b = f(a)) & K(f(a) != a) & Kv(f(a)) & !Kv(f(b))"));
   EXPECT_TRUE(holds("K(f(a) = b) K(p(b))", "K(p(f(a)))"));
   EXPECT_FALSE(holds("K(p(b))", "K(p(f(a)))"));
   EXPECT_TRUE(holds("K(f(a) = b) K(f(b) = b)", "K(f(a) = f(b))"));
@@ -95,9 +104,11 @@ TEST(Language, ExternsAreCalledInOrderAndOnce) {
     ++calls;
     return std::string(arguments[0] == "a" ? "yes" : "");
   };
-  const std::string text = kHead + "externals: g(object)\ninit: K(p(a)) K(!q(a)) K(!q(b))\n"
-                                   "action act(?x : object) preconds: K(p(?x)) & extern(g(?x)) effects: add(Kf, q(?x))\n"
-                                   "goal: K(q(a))";
+  const std::string text =
+      kHead +
+      "externals: g(object)\ninit: K(p(a)) K(!q(a)) K(!q(b))\n"
+      "action act(?x : object) preconds: K(p(?x)) & extern(g(?x)) effects: add(Kf, q(?x))\n"
+      "goal: K(q(a))";
   const Model m = load({"t.kpl", text, Language::Kpl}, nullptr, bindings);
   const Solution s = solve(m, {});
   ASSERT_EQ(s.status, Status::Solved);
@@ -106,9 +117,11 @@ TEST(Language, ExternsAreCalledInOrderAndOnce) {
 }
 
 TEST(Language, ExternValuesInEffects) {
-  const std::string text = kHead + "externals: g(object) : object\ntable g: (a) = b\n"
-                                   "action act(?x : object) preconds: true effects: add(Kf, f(?x) = extern(g(?x)))\n"
-                                   "goal: K(f(a) = b) & K(f(a) = extern(g(a)))";
+  const std::string text =
+      kHead +
+      "externals: g(object) : object\ntable g: (a) = b\n"
+      "action act(?x : object) preconds: true effects: add(Kf, f(?x) = extern(g(?x)))\n"
+      "goal: K(f(a) = b) & K(f(a) = extern(g(a)))";
   const Model m = model_of(text);
   EXPECT_EQ(measure(m, solved(m, Algorithm::BreadthFirst).plan).longest, 1U);
 }

@@ -5,8 +5,8 @@ must_hold.py path/to/kaboum-plan [RUNS]. Every plan is checked by `kaboum-plan c
 constants are permuted where the goal asks for it. Prints a Markdown table.
 """
 import json
-import os
 import pathlib
+import resource
 import subprocess
 import sys
 import tempfile
@@ -19,10 +19,10 @@ def solve(tool, work, domain, arguments, search):
     problem.write_text(subprocess.run([DOMAINS / domain / "make-problem", *arguments.split()],
                                       check=True, capture_output=True, text=True).stdout)
     files = [DOMAINS / domain / "domain.kpl", problem]
-    before = os.times().children_user
+    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     subprocess.run([tool, "solve", *files, "--search", search, "-o", work / "plan.json", "--report",
                     work / "report.json", "--quiet"], check=True)
-    seconds = os.times().children_user - before
+    seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
     subprocess.run([tool, "check", *files, "--plan", work / "plan.json", "--quiet"], check=True)
     return seconds, json.loads((work / "report.json").read_text())
 

@@ -30,14 +30,21 @@ std::string gripper(int balls) {
     goal += " (at " + b + " b)";
   }
   return "(define (domain gripper) (:requirements :strips :typing) (:types room ball gripper)"
-         " (:predicates (robby ?r - room) (at ?b - ball ?r - room) (free ?g - gripper) (carry ?o - ball ?g - gripper))"
-         " (:action move :parameters (?f ?t - room) :precondition (robby ?f) :effect (and (robby ?t) (not (robby ?f))))"
-         " (:action pick :parameters (?o - ball ?r - room ?g - gripper) :precondition (and (at ?o ?r) (robby ?r) (free ?g))"
+         " (:predicates (robby ?r - room) (at ?b - ball ?r - room) (free ?g - gripper) (carry ?o - "
+         "ball ?g - gripper))"
+         " (:action move :parameters (?f ?t - room) :precondition (robby ?f) :effect (and (robby "
+         "?t) (not (robby ?f))))"
+         " (:action pick :parameters (?o - ball ?r - room ?g - gripper) :precondition (and (at ?o "
+         "?r) (robby ?r) (free ?g))"
          "  :effect (and (carry ?o ?g) (not (at ?o ?r)) (not (free ?g))))"
-         " (:action drop :parameters (?o - ball ?r - room ?g - gripper) :precondition (and (carry ?o ?g) (robby ?r))"
+         " (:action drop :parameters (?o - ball ?r - room ?g - gripper) :precondition (and (carry "
+         "?o ?g) (robby ?r))"
          "  :effect (and (at ?o ?r) (free ?g) (not (carry ?o ?g)))))"
-         "(define (problem p) (:domain gripper) (:objects a b - room left right - gripper" + objects + " - ball)"
-         " (:init (robby a) (free left) (free right)" + init + ") (:goal (and" + goal + ")))";
+         "(define (problem p) (:domain gripper) (:objects a b - room left right - gripper" +
+         objects +
+         " - ball)"
+         " (:init (robby a) (free left) (free right)" +
+         init + ") (:goal (and" + goal + ")))";
 }
 
 TEST(Pddl, GripperOptima) {
@@ -52,27 +59,34 @@ TEST(Pddl, LogisticsWithObjectFluentsAndCosts) {
   // A package goes by truck, plane and truck; one truck waits at its airport already.
   const Model m = pddl(
       "(define (domain logistics) (:requirements :typing :object-fluents :action-costs :adl)"
-      " (:types thing place - object package vehicle - thing truck plane - vehicle city - object airport - place)"
+      " (:types thing place - object package vehicle - thing truck plane - vehicle city - object "
+      "airport - place)"
       " (:predicates (in-city ?p - place ?c - city))"
       " (:functions (at ?t - thing) - object (total-cost) - number (fare ?a ?b - airport) - number)"
-      " (:action load :parameters (?p - package ?v - vehicle ?l - place) :precondition (and (= (at ?p) ?l) (= (at ?v) ?l))"
+      " (:action load :parameters (?p - package ?v - vehicle ?l - place) :precondition (and (= (at "
+      "?p) ?l) (= (at ?v) ?l))"
       "  :effect (and (assign (at ?p) ?v) (increase (total-cost) 1)))"
-      " (:action unload :parameters (?p - package ?v - vehicle ?l - place) :precondition (and (= (at ?p) ?v) (= (at ?v) ?l))"
+      " (:action unload :parameters (?p - package ?v - vehicle ?l - place) :precondition (and (= "
+      "(at ?p) ?v) (= (at ?v) ?l))"
       "  :effect (and (assign (at ?p) ?l) (increase (total-cost) 1)))"
       " (:action drive :parameters (?t - truck ?a ?b - place ?c - city)"
       "  :precondition (and (= (at ?t) ?a) (in-city ?a ?c) (in-city ?b ?c) (not (= ?a ?b)))"
       "  :effect (and (assign (at ?t) ?b) (increase (total-cost) 2)))"
-      " (:action fly :parameters (?t - plane ?a ?b - airport) :precondition (and (= (at ?t) ?a) (not (= ?a ?b)))"
+      " (:action fly :parameters (?t - plane ?a ?b - airport) :precondition (and (= (at ?t) ?a) "
+      "(not (= ?a ?b)))"
       "  :effect (and (assign (at ?t) ?b) (increase (total-cost) (fare ?a ?b)))))"
       "(define (problem p) (:domain logistics)"
-      " (:objects home shop - place north south - airport n s - city t1 t2 - truck jet - plane box - package)"
-      " (:init (in-city home n) (in-city north n) (in-city shop s) (in-city south s) (= (at box) home) (= (at t1) north)"
-      "  (= (at t2) south) (= (at jet) north) (= (fare north south) 10) (= (fare south north) 99) (= (total-cost) 0))"
+      " (:objects home shop - place north south - airport n s - city t1 t2 - truck jet - plane box "
+      "- package)"
+      " (:init (in-city home n) (in-city north n) (in-city shop s) (in-city south s) (= (at box) "
+      "home) (= (at t1) north)"
+      "  (= (at t2) south) (= (at jet) north) (= (fare north south) 10) (= (fare south north) 99) "
+      "(= (total-cost) 0))"
       " (:goal (= (at box) shop)) (:metric minimize (total-cost)))");
   const Solution s = solved(m, Algorithm::AStar);
   ASSERT_EQ(s.status, Status::Solved);
   const PlanSize size = measure(m, s.plan);
-  EXPECT_EQ(size.longest, 10U);            // 6 loads and unloads, 3 drives, 1 flight
+  EXPECT_EQ(size.longest, 10U);  // 6 loads and unloads, 3 drives, 1 flight
   EXPECT_EQ(size.cost, 6 + 3 * 2 + 10);
 }
 
@@ -82,7 +96,8 @@ TEST(Pddl, ObserveAndOneof) {
       " (:predicates (safe ?d - door) (out))"
       " (:action listen :parameters (?d - door) :observe (safe ?d))"
       " (:action leave :parameters (?d - door) :precondition (safe ?d) :effect (out)))"
-      "(define (problem p) (:domain wumpus) (:objects a b c - door) (:init (oneof (safe a) (safe b))) (:goal (out)))");
+      "(define (problem p) (:domain wumpus) (:objects a b c - door) (:init (oneof (safe a) (safe "
+      "b))) (:goal (out)))");
   const Solution s = solved(m, Algorithm::BreadthFirst);
   ASSERT_EQ(s.status, Status::Solved);
   EXPECT_EQ(measure(m, s.plan).leaves, 2U);
@@ -91,12 +106,16 @@ TEST(Pddl, ObserveAndOneof) {
 
 TEST(Pddl, NamesWhatIsNotSupported) {
   const std::string head = "(define (domain d) (:requirements ";
-  EXPECT_NE(complaint(head + ":durative-actions))", Language::Pddl).find("unsupported requirement ':durative-actions'"),
+  EXPECT_NE(complaint(head + ":durative-actions))", Language::Pddl)
+                .find("unsupported requirement ':durative-actions'"),
             std::string::npos);
-  EXPECT_NE(complaint(head + ":derived-predicates))", Language::Pddl).find("':derived-predicates'"), std::string::npos);
-  EXPECT_NE(complaint("(define (domain d) (:derived (p) (q)))", Language::Pddl).find("unsupported section ':derived'"),
+  EXPECT_NE(complaint(head + ":derived-predicates))", Language::Pddl).find("':derived-predicates'"),
             std::string::npos);
-  EXPECT_NE(complaint("(define (domain d)\n  (:predicates (p)", Language::Pddl).find("bad.pddl:2:3: error: '(' is never closed"),
+  EXPECT_NE(complaint("(define (domain d) (:derived (p) (q)))", Language::Pddl)
+                .find("unsupported section ':derived'"),
+            std::string::npos);
+  EXPECT_NE(complaint("(define (domain d)\n  (:predicates (p)", Language::Pddl)
+                .find("bad.pddl:2:3: error: '(' is never closed"),
             std::string::npos);
 }
 

@@ -26,19 +26,24 @@ inline std::string slurp(const std::string& file) {
 
 /// What `make-problem N` of a scenario prints.
 inline std::string made(const std::string& domain, const std::string& arguments) {
-  const std::string command = std::string(KABOUM_DOMAINS) + "/" + domain + "/make-problem " + arguments;
+  const std::string command =
+      std::string(KABOUM_DOMAINS) + "/" + domain + "/make-problem " + arguments;
   const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
   std::string text;
   std::array<char, 4096> buffer{};
-  while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe.get())) text.append(buffer.data(), n);
+  while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe.get()))
+    text.append(buffer.data(), n);
   EXPECT_FALSE(text.empty()) << command;
   return text;
 }
 
-inline Model model_of(const std::string& kpl) { return load({"test.kpl", kpl, Language::Kpl}, nullptr); }
+inline Model model_of(const std::string& kpl) {
+  return load({"test.kpl", kpl, Language::Kpl}, nullptr);
+}
 
 inline Model scenario(const std::string& domain, const std::string& arguments) {
-  const Text d{"domain.kpl", slurp(std::string(KABOUM_DOMAINS) + "/" + domain + "/domain.kpl"), Language::Kpl};
+  const Text d{"domain.kpl", slurp(std::string(KABOUM_DOMAINS) + "/" + domain + "/domain.kpl"),
+               Language::Kpl};
   const Text p{"problem.kpl", made(domain, arguments), Language::Kpl};
   return load(d, &p);
 }
@@ -55,13 +60,15 @@ inline Solution solved(const Model& model, Algorithm algorithm) {
   return s;
 }
 
-inline constexpr std::array kAll = {Algorithm::DepthFirst, Algorithm::BreadthFirst, Algorithm::IterativeDeepening,
-                                    Algorithm::Greedy, Algorithm::AStar};
+inline constexpr std::array kAll = {Algorithm::DepthFirst, Algorithm::BreadthFirst,
+                                    Algorithm::IterativeDeepening, Algorithm::Greedy,
+                                    Algorithm::AStar};
 
 /// The message of the error that loading raises.
 inline std::string complaint(const std::string& text, Language language = Language::Kpl) {
   try {
-    load({"bad." + std::string(language == Language::Kpl ? "kpl" : "pddl"), text, language}, nullptr);
+    load({"bad." + std::string(language == Language::Kpl ? "kpl" : "pddl"), text, language},
+         nullptr);
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), ErrorCode::InvalidInput);
     return e.what();

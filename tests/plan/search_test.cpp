@@ -8,8 +8,10 @@ namespace {
 
 TEST(Search, UnsolvableIsToldFromLimit) {
   // The goal needs q, which nothing brings about.
-  const Model m = model_of("predicates: p, q\ninit: K(!p) K(!q)\naction on preconds: K(!p) effects: add(Kf, p)\n"
-                           "action off preconds: K(p) effects: add(Kf, !p)\naction never preconds: false effects: add(Kf, q)\ngoal: K(q)");
+  const Model m = model_of(
+      "predicates: p, q\ninit: K(!p) K(!q)\naction on preconds: K(!p) effects: add(Kf, p)\n"
+      "action off preconds: K(p) effects: add(Kf, !p)\naction never preconds: false effects: "
+      "add(Kf, q)\ngoal: K(q)");
   for (const Algorithm a : kAll) EXPECT_EQ(solve(m, {a, 0, 0, {}}).status, Status::Unsolvable);
 
   const Model large = scenario("stacked", "9");
@@ -22,8 +24,10 @@ TEST(Search, UnsolvableIsToldFromLimit) {
 
 TEST(Search, SensingThatDoesNotHelpIsNoPlan) {
   // Weighing tells, but the full box cannot be moved: only one outcome has a plan.
-  const Model m = model_of("predicates: full, moved\ninit: K(!moved)\naction weigh preconds: !Kw(full) effects: add(Kw, full)\n"
-                           "action move preconds: K(!full) & K(!moved) effects: add(Kf, moved)\ngoal: K(moved)");
+  const Model m = model_of(
+      "predicates: full, moved\ninit: K(!moved)\naction weigh preconds: !Kw(full) effects: add(Kw, "
+      "full)\n"
+      "action move preconds: K(!full) & K(!moved) effects: add(Kf, moved)\ngoal: K(moved)");
   for (const Algorithm a : kAll) EXPECT_EQ(solve(m, {a, 0, 0, {}}).status, Status::Unsolvable);
 }
 
@@ -45,16 +49,19 @@ TEST(Search, ADeadEndOfOneBranchIsAvoided) {
 
 TEST(Search, RepeatingUntilLuckyIsNoPlan) {
   // Tossing again and again would be a cycle: a plan must end on every branch.
-  const Model m = model_of("predicates: heads, won\ninit: K(!won)\n"
-                           "action toss preconds: true effects: del(Kw, heads), add(Kw, heads)\n"
-                           "action win preconds: K(heads) effects: add(Kf, won)\ngoal: K(won)");
+  const Model m = model_of(
+      "predicates: heads, won\ninit: K(!won)\n"
+      "action toss preconds: true effects: del(Kw, heads), add(Kw, heads)\n"
+      "action win preconds: K(heads) effects: add(Kf, won)\ngoal: K(won)");
   for (const Algorithm a : kAll) EXPECT_EQ(solve(m, {a, 0, 0, {}}).status, Status::Unsolvable);
 }
 
 TEST(Search, BranchesOnEveryValueOfASensedFunction) {
-  const Model m = model_of("types: room\nconstants: room kitchen, hall, cellar\nfunctions: at : room\npredicates: found, checked(room)\n"
-                           "init: K(!found)\naction ask preconds: !Kv(at) effects: add(Kv, at)\n"
-                           "action go(?r : room) preconds: K(at = ?r) effects: add(Kf, found)\ngoal: K(found)");
+  const Model m = model_of(
+      "types: room\nconstants: room kitchen, hall, cellar\nfunctions: at : room\npredicates: "
+      "found, checked(room)\n"
+      "init: K(!found)\naction ask preconds: !Kv(at) effects: add(Kv, at)\n"
+      "action go(?r : room) preconds: K(at = ?r) effects: add(Kf, found)\ngoal: K(found)");
   for (const Algorithm a : kAll) {
     const Solution s = solved(m, a);
     ASSERT_EQ(s.status, Status::Solved);
@@ -65,9 +72,13 @@ TEST(Search, BranchesOnEveryValueOfASensedFunction) {
 }
 
 TEST(Search, RuledOutValuesNeedNoCase) {
-  const Model m = model_of("types: room\nconstants: room kitchen, hall, cellar\nfunctions: at : room\npredicates: found\n"
-                           "init: K(!found) Kx(at = kitchen | at = hall)\naction ask preconds: !Kv(at) effects: add(Kv, at)\n"
-                           "action go(?r : room) preconds: K(at = ?r) & K(?r != cellar) effects: add(Kf, found)\ngoal: K(found)");
+  const Model m = model_of(
+      "types: room\nconstants: room kitchen, hall, cellar\nfunctions: at : room\npredicates: "
+      "found\n"
+      "init: K(!found) Kx(at = kitchen | at = hall)\naction ask preconds: !Kv(at) effects: add(Kv, "
+      "at)\n"
+      "action go(?r : room) preconds: K(at = ?r) & K(?r != cellar) effects: add(Kf, found)\ngoal: "
+      "K(found)");
   const Solution s = solved(m, Algorithm::BreadthFirst);
   ASSERT_EQ(s.status, Status::Solved);
   EXPECT_EQ(measure(m, s.plan).leaves, 2U);
@@ -75,10 +86,11 @@ TEST(Search, RuledOutValuesNeedNoCase) {
 
 TEST(Search, ExclusiveOrSpreadsWhatIsSensed) {
   // One of three boxes holds the key; looking into two of them is enough.
-  const Model m = model_of("types: box\nconstants: box a, b, c\npredicates: key(box), seen(box), taken\n"
-                           "init: Kx(key(a) | key(b) | key(c)) K(!taken)\n"
-                           "action look(?x : box) preconds: !Kw(key(?x)) & K(?x != c) effects: add(Kw, key(?x))\n"
-                           "action take(?x : box) preconds: K(key(?x)) effects: add(Kf, taken)\ngoal: K(taken)");
+  const Model m = model_of(
+      "types: box\nconstants: box a, b, c\npredicates: key(box), seen(box), taken\n"
+      "init: Kx(key(a) | key(b) | key(c)) K(!taken)\n"
+      "action look(?x : box) preconds: !Kw(key(?x)) & K(?x != c) effects: add(Kw, key(?x))\n"
+      "action take(?x : box) preconds: K(key(?x)) effects: add(Kf, taken)\ngoal: K(taken)");
   for (const Algorithm a : kAll) {
     const Solution s = solved(m, a);
     ASSERT_EQ(s.status, Status::Solved);
@@ -97,32 +109,39 @@ TEST(Search, IsDeterministic) {
 /// A random classical task: small, some solvable, some not.
 std::string random_task(std::uint32_t seed) {
   std::mt19937 random(seed);
-  std::string text = "types: v\nconstants: v a, b, c\npredicates: p0, p1, p2, p3, p4\nfunctions: f : v; g : v\ninit: ";
-  for (int i = 0; i < 5; ++i) text += std::string("K(") + (random() % 2 ? "!" : "") + "p" + std::to_string(i) + ") ";
+  std::string text =
+      "types: v\nconstants: v a, b, c\npredicates: p0, p1, p2, p3, p4\nfunctions: f : v; g : "
+      "v\ninit: ";
+  for (int i = 0; i < 5; ++i)
+    text += std::string("K(") + (random() % 2 ? "!" : "") + "p" + std::to_string(i) + ") ";
   text += "K(f = a) K(g = b)\n";
   const auto literal = [&](bool goal) {
     if (random() % 3 == 0)
-      return std::string(random() % 2 ? "f" : "g") + " = " + std::string(1, static_cast<char>('a' + random() % 3));
+      return std::string(random() % 2 ? "f" : "g") + " = " +
+             std::string(1, static_cast<char>('a' + random() % 3));
     return std::string(!goal && random() % 2 ? "!" : "") + "p" + std::to_string(random() % 5);
   };
   const int actions = 4 + static_cast<int>(random() % 5);
   for (int i = 0; i < actions; ++i) {
-    text += "action act" + std::to_string(i) + " preconds: K(" + literal(false) + ") & K(" + literal(false) + ") effects: ";
+    text += "action act" + std::to_string(i) + " preconds: K(" + literal(false) + ") & K(" +
+            literal(false) + ") effects: ";
     text += "add(Kf, " + literal(false) + "), ";
     if (random() % 2) text += "K(" + literal(false) + ") => add(Kf, " + literal(false) + "), ";
     text += "add(Kf, " + literal(false) + ")\n  cost: " + std::to_string(random() % 4) + "\n";
   }
-  return text + "goal: K(" + literal(true) + ") & K(" + literal(true) + ") & K(" + literal(true) + ")\n";
+  return text + "goal: K(" + literal(true) + ") & K(" + literal(true) + ") & K(" + literal(true) +
+         ")\n";
 }
 
-/// Least cost by the plainest means: Dijkstra would do; here A* must agree with exhaustive search over
-/// unit costs, and must not exceed any other search's cost.
+/// Least cost by the plainest means: Dijkstra would do; here A* must agree with exhaustive search
+/// over unit costs, and must not exceed any other search's cost.
 TEST(Search, AStarIsOptimalOnRandomTasks) {
   int solvable = 0;
   for (std::uint32_t seed = 0; seed < 600; ++seed) {
     std::string text = random_task(seed);
     const Model weighted = model_of(text);
-    for (std::size_t at = 0; (at = text.find("cost: ", at)) != std::string::npos; ++at) text[at + 6] = '1';
+    for (std::size_t at = 0; (at = text.find("cost: ", at)) != std::string::npos; ++at)
+      text[at + 6] = '1';
     const Model unit = model_of(text);
     const Solution reference = solved(unit, Algorithm::BreadthFirst);
     for (const Algorithm a : kAll) EXPECT_EQ(solved(unit, a).status, reference.status) << text;
@@ -130,10 +149,13 @@ TEST(Search, AStarIsOptimalOnRandomTasks) {
     if (reference.status != Status::Solved) continue;
     ++solvable;
     EXPECT_EQ(measure(unit, best.plan).longest, measure(unit, reference.plan).longest) << text;
-    EXPECT_EQ(measure(unit, solved(unit, Algorithm::IterativeDeepening).plan).longest, measure(unit, reference.plan).longest);
+    EXPECT_EQ(measure(unit, solved(unit, Algorithm::IterativeDeepening).plan).longest,
+              measure(unit, reference.plan).longest);
     const std::int64_t cost = measure(weighted, solved(weighted, Algorithm::AStar).plan).cost;
-    for (const Algorithm a : kAll) EXPECT_LE(cost, measure(weighted, solved(weighted, a).plan).cost) << text;
-    EXPECT_LE(best.statistics.initial_estimate, static_cast<std::int64_t>(measure(unit, reference.plan).longest));
+    for (const Algorithm a : kAll)
+      EXPECT_LE(cost, measure(weighted, solved(weighted, a).plan).cost) << text;
+    EXPECT_LE(best.statistics.initial_estimate,
+              static_cast<std::int64_t>(measure(unit, reference.plan).longest));
     if (HasFailure()) return;
   }
   EXPECT_GT(solvable, 100);

@@ -11,7 +11,8 @@ namespace kaboum::plan {
 /// Host functions by the name that `externals:` declares. They receive and return names of objects;
 /// an empty string is "false" or "no value".
 using ExternalBindings =
-    std::map<std::string, std::function<std::string(std::span<const std::string> arguments)>, std::less<>>;
+    std::map<std::string, std::function<std::string(std::span<const std::string> arguments)>,
+             std::less<>>;
 
 enum class Language { Kpl, Pddl, Xml };
 
@@ -29,7 +30,8 @@ struct Text {
 /// @throws Error{InvalidInput} "file:line:column: error: ..." with the line and a caret.
 Model load(const Text& domain, const Text* problem, const ExternalBindings& bindings = {});
 
-/// The same document in another language. @throws Error{InvalidInput} naming what cannot be said in it.
+/// The same document in another language. @throws Error{InvalidInput} naming what cannot be said in
+/// it.
 std::string convert(const Text& domain, const Text* problem, Language to);
 
 }  // namespace kaboum::plan

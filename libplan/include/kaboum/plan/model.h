@@ -49,9 +49,9 @@ struct Query {
     False,
     And,
     Or,
-    Xor,           ///< exactly one of the children holds
+    Xor,  ///< exactly one of the children holds
     Not,
-    Exists,        ///< variable slot `symbol` over the objects of type `type`; one child
+    Exists,  ///< variable slot `symbol` over the objects of type `type`; one child
     ForAll,
     Known,         ///< K(p(arguments)), or K(!p(arguments)) when negated
     KnowWhether,   ///< Kw(p(arguments))
