@@ -34,6 +34,17 @@ Relaxation::Relaxation(Task& task) : task_(task) {
       add_operator(std::move(o), {sensed});
     }
   }
+  // Kx and exclusions may decide or sense without an action that says so: free, to be safe.
+  for (Index i = 0; i < task.layout().fluents().size(); ++i) {
+    const Fluent& f = task.layout().fluents()[i];
+    if (f.groups.empty() && f.exclusions == kNone) continue;
+    Operator o;
+    o.step = task.outcome_step(i, 0);
+    const Word contents = f.function ? task.layout().range_size(f) + kFirstValue : 4;
+    for (Word c = 1; c < contents; ++c)
+      if (!f.function || c != kValueSensed) o.adds.push_back(fact(i, c));
+    add_operator(std::move(o), {});
+  }
   node(task.goal());
 }
 

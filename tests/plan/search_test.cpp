@@ -218,8 +218,11 @@ std::string random_sensing_task(std::uint32_t seed) {
             (random() % 2 ? " & " + query() : "");
     text += " effects: " + effect() + (random() % 2 ? ", " + effect() : "") + "\n";
   }
-  return text + "goal: K(" + literal() + ") & " +
-         (random() % 3 == 0 ? "(K(p0) xor K(!p1))" : "K(" + literal() + ")") + "\n";
+  const std::string sensed = atom();
+  const std::string other = atom();
+  // Knowing a value needs a branch once it is sensed.
+  return text + "goal: (K(" + sensed + ") | K(!" + sensed + ")) & (K(" + other + ") | K(" +
+         literal() + "))\n";
 }
 
 /// Five searches that try things in different orders agree on what can be solved, and the
@@ -227,7 +230,7 @@ std::string random_sensing_task(std::uint32_t seed) {
 TEST(Search, AllAgreeOnRandomTasksWithSensing) {
   int branching = 0;
   int unsolvable = 0;
-  for (std::uint32_t seed = 0; seed < 1500 && !HasFailure(); ++seed) {
+  for (std::uint32_t seed = 0; seed < 6000 && !HasFailure(); ++seed) {
     const std::string text = random_sensing_task(seed);
     const Model m = model_of(text);
     const Solution reference = solved(m, Algorithm::BreadthFirst);
