@@ -1,0 +1,29 @@
+#pragma once
+
+#include <kaboum/plan/model.h>
+#include <kaboum/plan/plan.h>
+
+#include <cstdint>
+#include <string>
+
+namespace kaboum::plan {
+
+struct CheckResult {
+  bool valid = false;
+  std::string violation;     ///< what fails first, with the actions and outcomes that lead there
+  std::uint64_t states = 0;  ///< pairs of a plan node and a knowledge state that were replayed
+  std::uint64_t leaves = 0;  ///< distinct of those at an end of the plan
+};
+
+/// Replays a plan for every way the sensing may turn out: each precondition must hold, each branch
+/// be on something known by then and have a case for its value, and each end meet the goal.
+///
+/// Shares nothing with the planner but the loaded model: knowledge is kept as sets of literals as
+/// it will be at run time (a sensed value splits the replay at once), and queries are evaluated on
+/// the lifted model. Knowledge that nothing further down reads is dropped, so shared sub-plans are
+/// replayed once for all that reach them alike.
+///
+/// @throws Error{InvalidInput} if the graph has a cycle; Error{LimitReached} beyond `limit` pairs.
+CheckResult check(const Model& model, const Plan& plan, std::uint64_t limit = 2'000'000);
+
+}  // namespace kaboum::plan

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <kaboum/plan/model.h>
+
+#include <map>
+#include <string>
+#include <string_view>
+
+namespace kaboum::plan {
+
+/// Host functions by the name that `externals:` declares. They receive and return names of objects;
+/// an empty string is "false" or "no value".
+using ExternalBindings =
+    std::map<std::string, std::function<std::string(std::span<const std::string> arguments)>,
+             std::less<>>;
+
+enum class Language { Kpl, Pddl, Xml };
+
+/// By the file name's extension: .kpl, .pddl, .xml or .pks; else nullopt.
+std::optional<Language> language_from_name(std::string_view file_name);
+
+/// A text and what it is called in messages.
+struct Text {
+  std::string name;
+  std::string text;
+  Language language = Language::Kpl;
+};
+
+/// Reads, merges and checks a domain and (optionally) its problem.
+/// @throws Error{InvalidInput} "file:line:column: error: ..." with the line and a caret.
+Model load(const Text& domain, const Text* problem, const ExternalBindings& bindings = {});
+
+/// The same document in another language. @throws Error{InvalidInput} naming what cannot be said in
+/// it.
+std::string convert(const Text& domain, const Text* problem, Language to);
+
+}  // namespace kaboum::plan

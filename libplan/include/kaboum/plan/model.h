@@ -1,0 +1,134 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+/// The checked, lifted form of a domain and a problem: every name has become an index, nested terms
+/// have been unfolded, nothing has been grounded. Loaders make it (load.h); the search and the
+/// validator each read it on their own.
+namespace kaboum::plan {
+
+using Index = std::uint32_t;
+inline constexpr Index kNone = ~Index{0};
+
+struct Type {
+  std::string name;
+  Index parent = kNone;
+  std::vector<Index> objects;  ///< of the type and its subtypes, ascending
+};
+
+struct Object {
+  std::string name;
+  Index type = 0;
+};
+
+/// A predicate, a function, or an external function.
+struct Symbol {
+  std::string name;
+  std::vector<Index> parameters;  ///< types
+  Index range = kNone;            ///< type of the value; kNone: a truth value
+  bool numeric = false;           ///< a function whose constant values are integers (costs)
+  bool is_volatile = false;       ///< an external whose results must not be cached
+};
+
+/// An object, or the slot of a variable.
+struct Argument {
+  bool variable = false;
+  Index index = 0;
+};
+
+/// A knowledge-level query with free variables.
+struct Query {
+  enum class Kind {
+    True,
+    False,
+    And,
+    Or,
+    Xor,  ///< exactly one of the children holds
+    Not,
+    Exists,  ///< variable slot `symbol` over the objects of type `type`; one child
+    ForAll,
+    Known,         ///< K(p(arguments)), or K(!p(arguments)) when negated
+    KnowWhether,   ///< Kw(p(arguments))
+    KnownValue,    ///< K(f(arguments) = value), or != when negated
+    WhetherValue,  ///< Kw(f(arguments) = value)
+    KnowValue,     ///< Kv(f(arguments))
+    Same,          ///< arguments[0] and arguments[1] are the same object
+    External       ///< extern(g(arguments)), or extern(g(arguments)) = value if it has one
+  };
+  Kind kind = Kind::True;
+  Index symbol = 0;
+  Index type = 0;
+  bool negated = false;
+  std::vector<Argument> arguments;
+  std::optional<Argument> value;
+  std::vector<Query> children;
+};
+
+/// One change of one database.
+struct Update {
+  enum class Database { Kf, Kw, Kv, Kx, Lcw };
+  struct Literal {
+    bool function = false;
+    bool negated = false;
+    Index symbol = 0;
+    std::vector<Argument> arguments;
+    std::optional<Argument> value;
+  };
+  bool add = true;
+  Database database = Database::Kf;
+  std::vector<Literal> literals;  ///< one; for Kx the alternatives
+};
+
+struct Effect {
+  enum class Kind { Update, When, ForAll };
+  Kind kind = Kind::Update;
+  Update update;
+  Query condition;
+  Index slot = 0;
+  Index type = 0;
+  std::vector<Effect> children;
+};
+
+struct Action {
+  std::string name;
+  struct Parameter {
+    std::string name;
+    Index type = 0;
+  };
+  std::vector<Parameter> parameters;  ///< slots 0, 1, ...
+  Index slots = 0;                    ///< parameters and quantified variables together
+  Query precondition;
+  std::vector<Effect> effects;
+  std::int64_t cost = 1;
+  Index cost_function = kNone;  ///< a numeric function of the parameters, added to nothing
+  std::vector<Argument> cost_arguments;
+};
+
+/// The value of an external function: for truth values nullopt is false; else an object.
+using ExternalFunction = std::function<std::optional<Index>(std::span<const Index> arguments)>;
+
+struct Model {
+  std::string name;
+  std::vector<Type> types;  ///< types[0] is the root of all
+  std::vector<Object> objects;
+  std::vector<Symbol> predicates;
+  std::vector<Symbol> functions;
+  std::vector<Symbol> externals;
+  std::vector<ExternalFunction> external_functions;  ///< one per external
+  std::vector<Action> actions;
+  std::vector<Update> initial;  ///< ground, in the order to apply; LCW entries last
+  Query goal;
+  Index goal_slots = 0;
+  /// Values of numeric functions: by function, then arguments.
+  std::vector<std::map<std::vector<Index>, std::int64_t>> numbers;
+
+  [[nodiscard]] bool is_a(Index object, Index type) const;
+};
+
+}  // namespace kaboum::plan

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <kaboum/plan/model.h>
+
+#include <string>
+#include <vector>
+
+namespace kaboum::plan {
+
+/// A contingent plan: an acyclic graph whose equal sub-plans are shared (docs/planning/plans.md).
+/// Execution starts at `root`, performs the node's action, looks at what was sensed if the node
+/// branches, and goes on. kNone as a successor is the end: the goal holds.
+struct Plan {
+  struct Step {
+    Index schema = 0;
+    std::vector<Index> arguments;
+  };
+  struct Branch {
+    bool function = false;  ///< a term of Kv; else an atom of Kw
+    Index symbol = 0;
+    std::vector<Index> arguments;
+    struct Case {
+      Index value = 0;  ///< atom: 1 true, 0 false; term: the object
+      Index next = kNone;
+    };
+    std::vector<Case> cases;
+  };
+  struct Node {
+    bool acts = false;
+    bool branches = false;
+    Step action;
+    Branch branch;
+    Index next = kNone;  ///< when it does not branch
+  };
+  std::vector<Node> nodes;
+  Index root = kNone;
+
+  [[nodiscard]] bool operator==(const Plan& other) const;
+};
+
+/// Size of a plan; the tree's figures are saturated at 10^18.
+struct PlanSize {
+  std::uint64_t nodes = 0;
+  std::uint64_t branches = 0;
+  std::uint64_t tree_actions = 0;  ///< when nothing is shared
+  std::uint64_t leaves = 0;
+  std::uint64_t longest = 0;  ///< actions on the longest path
+  std::int64_t cost = 0;      ///< of the most expensive path
+};
+
+/// @throws Error{InvalidInput} if the graph has a cycle or a missing node.
+PlanSize measure(const Model& model, const Plan& plan);
+
+/// The same plan without sharing. @throws Error{LimitReached} beyond `limit` nodes.
+Plan expand_tree(const Plan& plan, std::size_t limit = 1'000'000);
+
+/// JSON, as docs/planning/plans.md describes it.
+std::string write_plan(const Model& model, const Plan& plan);
+/// @throws Error{InvalidInput} on anything but a well-formed plan of this model's names.
+Plan read_plan(const Model& model, const std::string& json, const std::string& file_name);
+
+/// An indented text, Graphviz DOT, or a drawing.
+std::string plan_text(const Model& model, const Plan& plan);
+std::string plan_dot(const Model& model, const Plan& plan);
+std::string plan_svg(const Model& model, const Plan& plan);
+
+/// "name(a, b)"; of a case "p(a)" or "!p(a)" or "f(a) = c".
+std::string step_text(const Model& model, const Plan::Step& step);
+std::string case_text(const Model& model, const Plan::Branch& branch, Index value);
+
+}  // namespace kaboum::plan

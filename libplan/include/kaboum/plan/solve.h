@@ -1,0 +1,59 @@
+#pragma once
+
+#include <kaboum/plan/model.h>
+#include <kaboum/plan/plan.h>
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+namespace kaboum::plan {
+
+enum class Algorithm {
+  DepthFirst,          ///< thesis: first plan in order of declaration
+  BreadthFirst,        ///< thesis: fewest steps (of each unbranched part)
+  IterativeDeepening,  ///< thesis: fewest steps
+  Greedy,              ///< best first by the relaxed plan, preferred operators
+  AStar                ///< least cost (without sensing), landmark cost partitioning
+};
+
+/// Counters in the spirit of Table 6.4.
+struct Statistics {
+  std::uint64_t expanded = 0;          ///< states whose steps were generated
+  std::uint64_t generated = 0;         ///< successor states made
+  std::uint64_t states = 0;            ///< distinct states kept, of the largest single search
+  std::uint64_t state_bytes = 0;       ///< their storage: contents, links and index
+  std::uint64_t ground_actions = 0;    ///< instances that came into being
+  std::uint64_t external_calls = 0;    ///< calls of external functions, cached ones not counted
+  std::uint64_t searches = 0;          ///< searches for one unbranched part
+  std::uint64_t dead_ends = 0;         ///< states proved to have no plan
+  std::uint64_t reused = 0;            ///< sub-plans found again by their regressed condition
+  std::uint64_t depth = 0;             ///< deepest layer or path so far
+  std::int64_t initial_estimate = -1;  ///< heuristic value of the initial state; -1: none used
+};
+
+struct SolveOptions {
+  Algorithm algorithm = Algorithm::BreadthFirst;
+  double timeout = 0;                               ///< seconds; 0: none
+  std::size_t max_memory = 0;                       ///< bytes of search memory; 0: none
+  std::function<void(const Statistics&)> progress;  ///< called now and then
+};
+
+enum class Status {
+  Solved,
+  Unsolvable,  ///< proved: every possibility was tried
+  Limit        ///< time, memory or size ran out first
+};
+
+struct Solution {
+  Status status = Status::Limit;
+  std::string limit;  ///< which, when status is Limit
+  Plan plan;
+  Statistics statistics;
+};
+
+/// Plans from the model's initial knowledge to its goal. Deterministic, timeouts apart.
+/// @throws Error of what an external function or an inconsistent initial state causes.
+Solution solve(const Model& model, const SolveOptions& options);
+
+}  // namespace kaboum::plan

@@ -1,0 +1,60 @@
+#include <kaboum/plan/load.h>
+
+#include "kpl_parser.h"
+#include "kpl_printer.h"
+#include "pddl.h"
+#include "resolve.h"
+#include "xml.h"
+
+namespace kaboum::plan {
+namespace {
+
+syntax::Document parse(const Text& text) {
+  constexpr std::size_t kLargest = 64U << 20U;
+  if (text.text.size() > kLargest)
+    throw Error(ErrorCode::InvalidInput, text.name + ": larger than 64 MiB");
+  auto source = std::make_shared<Source>(Source{text.name, text.text});
+  switch (text.language) {
+    case Language::Kpl:
+      return parse_kpl(std::move(source));
+    case Language::Pddl:
+      return parse_pddl(std::move(source));
+    case Language::Xml:
+      return parse_xml(std::move(source));
+  }
+  throw Error(ErrorCode::InvalidArgument, "unknown language");
+}
+
+syntax::Document parse(const Text& domain, const Text* problem) {
+  syntax::Document d = parse(domain);
+  return problem == nullptr ? d : syntax::merge(std::move(d), parse(*problem));
+}
+
+}  // namespace
+
+std::optional<Language> language_from_name(std::string_view file_name) {
+  const auto ends = [&](std::string_view e) { return file_name.ends_with(e); };
+  if (ends(".kpl")) return Language::Kpl;
+  if (ends(".pddl")) return Language::Pddl;
+  if (ends(".xml") || ends(".pks")) return Language::Xml;
+  return std::nullopt;
+}
+
+Model load(const Text& domain, const Text* problem, const ExternalBindings& bindings) {
+  return resolve(parse(domain, problem), bindings);
+}
+
+std::string convert(const Text& domain, const Text* problem, Language to) {
+  const syntax::Document d = parse(domain, problem);
+  switch (to) {
+    case Language::Kpl:
+      return print_kpl(d);
+    case Language::Xml:
+      return print_xml(d);
+    case Language::Pddl:
+      return print_pddl(d);
+  }
+  throw Error(ErrorCode::InvalidArgument, "unknown language");
+}
+
+}  // namespace kaboum::plan

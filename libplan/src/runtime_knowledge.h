@@ -1,0 +1,54 @@
+#pragma once
+
+#include <kaboum/plan/model.h>
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace kaboum::plan {
+
+/// A ground atom or term: 0 or 1 (a function), symbol, arguments.
+using Fact = std::vector<Index>;
+
+/// What an agent knows at run time, when every sensed value is at hand: plain sets, no packing. The
+/// validator's, and only its, notion of a state; the rules are those of
+/// docs/planning/knowledge-states.md, written a second time.
+class RuntimeKnowledge {
+ public:
+  [[nodiscard]] bool operator<(const RuntimeKnowledge& other) const;
+
+  [[nodiscard]] bool knows(const Fact& atom, bool truth) const;
+  [[nodiscard]] bool knows_whether(const Fact& atom) const { return atoms_.contains(atom); }
+  [[nodiscard]] const Index* value(const Fact& term) const;
+  [[nodiscard]] bool rules_out(const Fact& term, Index value) const;
+
+  // The world as it is: outcomes of sensing and initial facts. False: contradiction.
+  bool learn(const Fact& atom, bool truth);
+  bool learn_value(const Fact& term, Index value, const std::vector<Index>& range);
+  bool learn_not_value(const Fact& term, Index value, const std::vector<Index>& range);
+  bool learn_exclusive(std::set<Fact> atoms);
+
+  // Changes of the world.
+  void become(const Fact& atom, bool truth);
+  void forget(const Fact& atom);
+  void become_value(const Fact& term, Index value);
+  void forget_value(const Fact& term);
+  void drop_exclusive(const std::set<Fact>& atoms);
+
+  /// Only what is in `live`, and what Kx ties to it.
+  void restrict_to(const std::set<Fact>& live);
+
+ private:
+  bool settle();
+  void release(const Fact& atom);
+
+  std::map<Fact, bool> atoms_;
+  std::map<Fact, Index> values_;
+  std::map<Fact, std::set<Index>> excluded_;
+  /// Each with the entry it came from: del(Kx) names that.
+  std::map<std::set<Fact>, std::set<Fact>> exclusive_;
+};
+
+}  // namespace kaboum::plan

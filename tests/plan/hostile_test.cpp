@@ -1,0 +1,98 @@
+// Malformed files: an error with a place, never a crash.
+#include <random>
+
+#include "plan_test.h"
+
+namespace kaboum::plan::test {
+namespace {
+
+/// Loading and a short search either work or raise Error.
+void survive(const std::string& text, Language language) {
+  try {
+    const Model m = load({"hostile", text, language}, nullptr);
+    SolveOptions options;
+    options.timeout = 0.05;
+    options.max_memory = 16 << 20;
+    const Solution s = solve(m, options);
+    if (s.status == Status::Solved) {
+      const CheckResult r = check(m, s.plan);
+      EXPECT_TRUE(r.valid) << r.violation << "\n" << text;
+    }
+  } catch (const Error& e) {
+    EXPECT_NE(e.code(), ErrorCode::Internal) << e.what() << "\n" << text;
+  }
+}
+
+std::string whole(const std::string& domain, const std::string& n) {
+  return slurp(std::string(KABOUM_DOMAINS) + "/" + domain + "/domain.kpl") + made(domain, n);
+}
+
+void mutate(const std::string& good, Language language, std::uint32_t seed, int rounds) {
+  std::mt19937 random(seed);
+  for (int i = 0; i < rounds && !testing::Test::HasFailure(); ++i) {
+    std::string text = good;
+    for (std::uint32_t edits = 1 + random() % 3; edits > 0; --edits) {
+      const std::size_t at = random() % text.size();
+      const std::size_t length = std::min<std::size_t>(random() % 12, text.size() - at);
+      switch (random() % 4) {
+        case 0:
+          text.erase(at, length);
+          break;
+        case 1:
+          text.insert(at, text.substr(random() % text.size(), length));
+          break;
+        case 2:
+          text[at] = static_cast<char>(random() % 256);
+          break;
+        default:
+          text.insert(at, 1, "()!&|,;:=?K "[random() % 12]);
+      }
+      if (text.empty()) text = " ";
+    }
+    survive(text, language);
+  }
+}
+
+TEST(Hostile, MutatedScenarios) {
+  std::uint32_t seed = 1;
+  for (const char* name : {"stacked", "force-sensing", "bartender", "circular-rearrange",
+                           "bimanual-assembly", "remove"})
+    mutate(whole(name, "2"), Language::Kpl, seed++, 150);
+}
+
+TEST(Hostile, MutatedXmlAndPddl) {
+  const Text d{"d.kpl", whole("force-sensing", "2"), Language::Kpl};
+  std::string xml = slurp(std::string(KABOUM_DOMAINS) + "/../../tests/plan/data/sensing.xml");
+  mutate(xml, Language::Xml, 7, 300);
+  mutate(slurp(std::string(KABOUM_DOMAINS) + "/../../tests/plan/data/blocks.pddl"), Language::Pddl,
+         8, 300);
+}
+
+TEST(Hostile, DeepNestingAndOddTexts) {
+  survive(std::string(100000, '('), Language::Kpl);
+  survive("goal: " + std::string(100000, '('), Language::Kpl);
+  survive("goal: " + std::string(100000, '!'), Language::Kpl);
+  survive(std::string(100000, '('), Language::Pddl);
+  survive("", Language::Kpl);
+  survive("", Language::Pddl);
+  survive("", Language::Xml);
+  survive(std::string("goal: K(p\0)", 11), Language::Kpl);
+  std::string nested;
+  for (int i = 0; i < 5000; ++i) nested += "<a>";
+  survive(nested, Language::Xml);
+}
+
+TEST(Hostile, PlansThatAreNone) {
+  const Model m = scenario("stacked", "3");
+  for (
+      const char* text :
+      {"", "{}", "[]", "null", "{\"format\": \"kaboum-plan\", \"version\": 1}",
+       R"({"format":"kaboum-plan","version":1,"root":5,"nodes":[]})",
+       R"({"format":"kaboum-plan","version":1,"root":0,"nodes":[{"next":"goal"}]})",
+       R"({"format":"kaboum-plan","version":1,"root":0,"nodes":[{"action":"move","arguments":["o1"],"next":0}]})",
+       R"({"format":"kaboum-plan","version":1,"root":-1,"nodes":{}})"})
+    EXPECT_THROW(read_plan(m, text, "p.json"), Error) << text;
+}
+
+}  // namespace
+}  // namespace kaboum::plan::test
