@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Measures the planner's goals: user CPU seconds of whole runs of kaboum-plan, best of three.
 
-must_hold.py path/to/kaboum-plan [RUNS]. Every plan is checked by `kaboum-plan check`; a problem's
+planning.py path/to/kaboum-plan [RUNS]. Every plan is checked by `kaboum-plan check`; a problem's
 constants are permuted where the goal asks for it. Prints a Markdown table.
 """
 import json
@@ -11,7 +11,7 @@ import subprocess
 import sys
 import tempfile
 
-DOMAINS = pathlib.Path(__file__).resolve().parents[2] / "examples" / "domains"
+DOMAINS = pathlib.Path(__file__).resolve().parents[1] / "examples" / "domains"
 
 
 def solve(tool, work, domain, arguments, search):

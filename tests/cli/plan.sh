@@ -1,0 +1,29 @@
+. "$(dirname "$0")/common.sh"
+P=$BIN/kaboum-plan
+DOMAINS=$MESHES/../examples/domains
+
+for case in 'stacked 4 astar' 'stacked 4 bfs' 'force-sensing 5 dfs' 'bartender 3 greedy' 'circular-rearrange 3 bfs' \
+  'bimanual-assembly 1 bfs' 'remove 5 ids'; do
+  set -- $case
+  "$DOMAINS/$1/make-problem" "$2" >problem.kpl || fail "make-problem $1"
+  expect 0 'solved' "$P" solve "$DOMAINS/$1/domain.kpl" problem.kpl --search "$3" -o plan.json --report report.json
+  expect 0 'valid' "$P" check "$DOMAINS/$1/domain.kpl" problem.kpl --plan plan.json
+  expect 0 '' "$P" show "$DOMAINS/$1/domain.kpl" problem.kpl --plan plan.json
+done
+expect 0 'digraph' "$P" show "$DOMAINS/$1/domain.kpl" problem.kpl --plan plan.json --output-format dot
+expect 0 '<svg' "$P" show "$DOMAINS/$1/domain.kpl" problem.kpl --plan plan.json --output-format svg
+
+# The optimal plan of four stacked objects has seven moves; another problem's plan is invalid.
+"$DOMAINS/stacked/make-problem" 4 >problem.kpl
+expect 0 'longest path 7 ' "$P" solve "$DOMAINS/stacked/domain.kpl" problem.kpl --search astar -o four.json
+"$DOMAINS/stacked/make-problem" 5 >five.kpl
+expect 1 '' "$P" check "$DOMAINS/stacked/domain.kpl" five.kpl --plan four.json
+sed 's/isHighest(o4)/isNonsense(o4)/' problem.kpl >broken.kpl
+expect 3 'broken.kpl:' "$P" solve "$DOMAINS/stacked/domain.kpl" broken.kpl
+expect 3 '' "$P" solve missing.kpl
+expect 2 '' "$P" solve "$DOMAINS/stacked/domain.kpl" problem.kpl --search sideways
+expect 2 '' "$P"
+"$DOMAINS/stacked/make-problem" 9 >nine.kpl
+expect 7 '' "$P" solve "$DOMAINS/stacked/domain.kpl" nine.kpl --search bfs --max-memory 1M -o none.json
+absent none.json
+finish
