@@ -65,7 +65,7 @@ Formula FormulaPool::negate(Formula f) {
   return add({Kind::Not, false, 0, 0}, {f});
 }
 
-Formula FormulaPool::join(Kind kind, std::vector<Formula> children) {
+Formula FormulaPool::join(Kind kind, const std::vector<Formula>& children) {
   const Formula neutral = kind == Kind::And ? kTrue : kFalse;
   const Formula decides = kind == Kind::And ? kFalse : kTrue;
   std::vector<Formula> kept;
@@ -96,14 +96,10 @@ Formula FormulaPool::join(Kind kind, std::vector<Formula> children) {
   return add({kind, false, 0, 0}, std::move(unique));
 }
 
-Formula FormulaPool::all(std::vector<Formula> children) {
-  return join(Kind::And, std::move(children));
-}
-Formula FormulaPool::any(std::vector<Formula> children) {
-  return join(Kind::Or, std::move(children));
-}
+Formula FormulaPool::all(const std::vector<Formula>& children) { return join(Kind::And, children); }
+Formula FormulaPool::any(const std::vector<Formula>& children) { return join(Kind::Or, children); }
 
-Formula FormulaPool::one(std::vector<Formula> children) {
+Formula FormulaPool::one(const std::vector<Formula>& children) {
   std::vector<Formula> kept;
   int certain = 0;
   for (const Formula c : children) {

@@ -50,9 +50,9 @@ class FormulaPool {
 
   Formula leaf(Kind kind, Index fluent, Index value = 0);
   Formula negate(Formula f);
-  Formula all(std::vector<Formula> children);  ///< conjunction, in order; flattened
-  Formula any(std::vector<Formula> children);  ///< disjunction
-  Formula one(std::vector<Formula> children);  ///< exclusive or: exactly one
+  Formula all(const std::vector<Formula>& children);  ///< conjunction, in order; flattened
+  Formula any(const std::vector<Formula>& children);  ///< disjunction
+  Formula one(const std::vector<Formula>& children);  ///< exclusive or: exactly one
   Formula bits(Index word, Word mask, Word value);
   Formula external(Index external, std::vector<Index> arguments, Index expected);
 
@@ -90,7 +90,7 @@ class FormulaPool {
   enum class Cached : std::uint8_t { No, Yes };
 
   Formula add(Node node, std::vector<Formula> children);
-  Formula join(Kind kind, std::vector<Formula> children);
+  Formula join(Kind kind, const std::vector<Formula>& children);
   /// Undecided now, but a sensed atom of the same exclusive-or entries may decide it.
   [[nodiscard]] bool tied(Index fluent, AtomKnowledge k, const Word* state) const {
     return k == AtomKnowledge::Unknown && !layout_.fluents()[fluent].groups.empty() &&

@@ -254,7 +254,8 @@ class Resolver {
   }
 
   [[nodiscard]] ExternalFunction host_function(
-      std::function<std::string(std::span<const std::string>)> function, const Symbol& g) const {
+      const std::function<std::string(std::span<const std::string>)>& function,
+      const Symbol& g) const {
     std::vector<std::string> names;
     for (const Object& o : model_.objects) names.push_back(o.name);
     return [=, table = objects_, range = g.range, name = g.name, root = range_objects(g.range)](

@@ -60,7 +60,7 @@ bool RuntimeKnowledge::settle() {
   return true;
 }
 
-bool RuntimeKnowledge::learn_exclusive(std::set<Fact> atoms) {
+bool RuntimeKnowledge::learn_exclusive(const std::set<Fact>& atoms) {
   exclusive_[atoms] = atoms;
   return settle();
 }

@@ -28,7 +28,7 @@ class RuntimeKnowledge {
   bool learn(const Fact& atom, bool truth);
   bool learn_value(const Fact& term, Index value, const std::vector<Index>& range);
   bool learn_not_value(const Fact& term, Index value, const std::vector<Index>& range);
-  bool learn_exclusive(std::set<Fact> atoms);
+  bool learn_exclusive(const std::set<Fact>& atoms);
 
   // Changes of the world.
   void become(const Fact& atom, bool truth);
