@@ -279,7 +279,7 @@ class Checker {
       std::set<Fact> atoms;
       for (const Update::Literal& l : u.literals)
         atoms.insert(fact(false, l.symbol, l.arguments, slots));
-      return k.learn_exclusive(std::move(atoms));
+      return k.learn_exclusive(atoms);
     }
     const Index symbol = u.literals[0].symbol;
     const Fact f = fact(true, symbol, u.literals[0].arguments, slots);

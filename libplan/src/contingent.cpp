@@ -114,7 +114,7 @@ Status ContingentPlanner::cover(const State& at, Step step, Index next, Index& e
     }
   }
   branch.step = branch.cases.front().first;
-  branch.condition = pool.all(std::move(conditions));
+  branch.condition = pool.all(conditions);
   entry = add(std::move(branch));
   return Status::Solved;
 }

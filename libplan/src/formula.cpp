@@ -109,7 +109,7 @@ Formula FormulaPool::one(const std::vector<Formula>& children) {
   if (certain > 1) return kFalse;
   if (certain == 1) {
     for (Formula& c : kept) c = negate(c);
-    return all(std::move(kept));
+    return all(kept);
   }
   if (kept.empty()) return kFalse;
   if (kept.size() == 1) return kept[0];
@@ -167,8 +167,8 @@ Formula FormulaPool::ground(const Query& q, std::vector<Index>& slots) {
         if (q.kind == Query::Kind::And && children.back() == kFalse) return kFalse;
         if (q.kind == Query::Kind::Or && children.back() == kTrue) return kTrue;
       }
-      if (q.kind == Query::Kind::And) return all(std::move(children));
-      return q.kind == Query::Kind::Or ? any(std::move(children)) : one(std::move(children));
+      if (q.kind == Query::Kind::And) return all(children);
+      return q.kind == Query::Kind::Or ? any(children) : one(children);
     }
     case Query::Kind::Not:
       return negate(ground(q.children[0], slots));
@@ -181,7 +181,7 @@ Formula FormulaPool::ground(const Query& q, std::vector<Index>& slots) {
         children.push_back(ground(q.children[0], slots));
         if (children.back() == (exists ? kTrue : kFalse)) return children.back();
       }
-      return exists ? any(std::move(children)) : all(std::move(children));
+      return exists ? any(children) : all(children);
     }
     case Query::Kind::Known:
     case Query::Kind::KnowWhether: {

@@ -90,11 +90,11 @@ Formula Regression::rewrite(Formula f) {
     for (Formula& c : children) c = rewrite(c);
     switch (n.kind) {
       case Kind::And:
-        return pool.all(std::move(children));
+        return pool.all(children);
       case Kind::Or:
-        return pool.any(std::move(children));
+        return pool.any(children);
       case Kind::Xor:
-        return pool.one(std::move(children));
+        return pool.one(children);
       default:
         return pool.negate(children[0]);
     }

@@ -130,7 +130,7 @@ void Task::prepare(Index schema) {
       slots[i] = o;
       std::vector<Formula> all;
       for (const Query* q : singles[i]) all.push_back(pool_.ground(*q, slots));
-      c.full = pool_.all(std::move(all));
+      c.full = pool_.all(all);
       if (c.full == kFalse) continue;
       pool_.as_bits(c.full, c.word, c.mask, c.value);
       s.levels[i].candidates.push_back(c);
