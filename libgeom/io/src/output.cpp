@@ -1,6 +1,7 @@
 #include "output.h"
 
 #include <kaboum/geom/error.h>
+#include <kaboum/geom/float32.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -11,8 +12,7 @@
 namespace kaboum::io {
 
 bool is_float(double value) {
-  return std::abs(value) <= std::numeric_limits<float>::max() &&
-         static_cast<double>(static_cast<float>(value)) == value;
+  return std::abs(value) <= std::numeric_limits<float>::max() && geom::is_float32(value);
 }
 
 bool all_float(const geom::Mesh& mesh) {
