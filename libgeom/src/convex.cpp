@@ -26,4 +26,10 @@ bool is_convex(const Mesh& hull) {
   return solid;
 }
 
+std::optional<std::size_t> find_not_convex(const ConvexSet& set) {
+  for (std::size_t i = 0; i < set.bodies.size(); ++i)
+    if (!is_convex(set.bodies[i].hull)) return i;
+  return std::nullopt;
+}
+
 }  // namespace kaboum::geom

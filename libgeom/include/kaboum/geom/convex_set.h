@@ -2,6 +2,8 @@
 
 #include <kaboum/geom/mesh.h>
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,7 +24,12 @@ struct Provenance {
   std::string parameters;     ///< the options used
   std::string unit = "m";
   std::string frame;
-  double epsilon = -1;  ///< certified bound of the distance to the solid; negative: none
+  std::string direction;        ///< "outer", "inner", or empty: not stated
+  double epsilon = -1;          ///< certified bound of the distance to the solid; negative: none
+  bool covers_solid = false;    ///< outer: verified that the set contains the input's solid
+  bool covers_surface = false;  ///< outer: verified that the set contains every input triangle
+
+  bool operator==(const Provenance&) const = default;
 };
 
 /// A union of convex polytopes, each enlarged by a ball of radius `margin` (Minkowski sum): the
@@ -37,5 +44,8 @@ struct ConvexSet {
 /// Whether every vertex lies on or below the plane of every triangle, decided exactly, and the
 /// triangles form a closed chain of positive volume. Cost #V · #T filtered predicates.
 bool is_convex(const Mesh& hull);
+
+/// The first body that is not exactly convex (is_convex); nullopt when all are.
+std::optional<std::size_t> find_not_convex(const ConvexSet& set);
 
 }  // namespace kaboum::geom

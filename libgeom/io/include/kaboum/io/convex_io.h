@@ -1,0 +1,77 @@
+#pragma once
+
+#include <kaboum/geom/convex_set.h>
+#include <kaboum/io/mesh_io.h>
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kaboum::io {
+
+/// Where convex sets are stored. docs/formats.md, "Convex sets".
+enum class SetFormat {
+  Glb,        ///< the container: glTF 2.0 binary, one mesh per body, the record in `extras`
+  Obj,        ///< one `o` group per body
+  Directory,  ///< a folder with one binary STL per body and the record in convex-set.json
+};
+
+/// Format that a path is written in: Glb and Obj by the extension, Directory when there is none (or
+/// when the path is a folder). @return nullopt for other extensions.
+std::optional<SetFormat> set_format_from_path(const std::filesystem::path& path);
+
+/// What reading a set did besides.
+struct SetReadDetails {
+  std::vector<std::string> notes;  ///< things a user should know; one sentence each
+  std::vector<char> bytes;         ///< of the file (of all files of a folder, in order)
+  bool has_record = false;         ///< the margin and provenance come from the file
+  bool single_precision = false;   ///< coordinates were stored as float32
+};
+
+/// Parses a set from a file in memory: every mesh format, see read_convex_set.
+/// @throws as parse_mesh.
+geom::ConvexSet parse_convex_set(std::span<const char> bytes, Format format,
+                                 const std::string& name, SetReadDetails* details = nullptr,
+                                 const std::filesystem::path& base_directory = {});
+
+/// Reads a set of bodies. They need not be convex: geom::find_not_convex tells.
+///
+/// - GLB: one body per mesh, in the order of the scene's nodes. Files without node transforms,
+///   compression and sparse accessors are read here, others as plain meshes.
+/// - OBJ: one body per `o` or `g` statement that is followed by faces, if there are at least two.
+/// - A folder: one body per STL file in it, in natural order of the names (2 before 10).
+/// - Otherwise a plain mesh: one body per component connected through edges.
+///
+/// Equal vertices of a body are merged and triangles with repeated corners dropped; nothing else
+/// changes. Coordinates are the doubles that the numbers in the file stand for.
+///
+/// @param path    a file, a folder, or `-` (standard input; needs `format`).
+/// @param format  of the file; by its extension when not given.
+/// @throws as read_mesh.
+geom::ConvexSet read_convex_set(const std::filesystem::path& path,
+                                std::optional<Format> format = {},
+                                SetReadDetails* details = nullptr);
+
+/// The set as the bytes of a GLB or OBJ file. Reading them back gives the same coordinates,
+/// triangles, names and margin, and (GLB) the same provenance; vertices that no triangle uses are
+/// left out. GLB may hold the empty set.
+///
+/// @throws Error{OutputFailed} when GLB would have to round a coordinate, and for a margin > 0 in a
+///   format that knows none.
+/// @throws Error{InvalidArgument} for Directory, for a negative or non-finite margin, for bodies
+///   that are empty or not valid, and for an empty set in OBJ.
+std::vector<char> serialise_convex_set(const geom::ConvexSet& set, SetFormat format);
+
+/// Writes a set so that the path holds either what it held before or all of the new (folders: after
+/// a crash between two renames, the old content may be left in a hidden folder beside it).
+///
+/// A folder is replaced only when it is empty or holds nothing but STL files and convex-set.json.
+///
+/// @throws as serialise_convex_set; Error{OutputFailed} when the path cannot be written.
+void write_convex_set(const std::filesystem::path& path, const geom::ConvexSet& set,
+                      std::optional<SetFormat> format = {});
+
+}  // namespace kaboum::io
