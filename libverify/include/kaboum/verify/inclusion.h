@@ -1,0 +1,76 @@
+#pragma once
+
+#include <kaboum/geom/mesh.h>
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kaboum::verify {
+
+enum class Answer {
+  Verified,   ///< true
+  Refuted,    ///< false
+  Undecided,  ///< a limit was reached before the claim was decided
+  Undefined,  ///< means nothing for these meshes
+};
+
+/// A point that shows that a claim is false.
+struct Witness {
+  geom::Vec3 point;
+  double depth = 0;  ///< distance to the outer mesh, rounded [length]
+  /// The winding numbers at `point` were found by exact arithmetic and contradict the claim. If
+  /// not, the offending region is too thin to hold a point with double coordinates, and `point` is
+  /// a rounded one beside it.
+  bool exact = false;
+};
+
+/// The answer to one claim.
+struct Claim {
+  Answer answer = Answer::Undefined;
+  std::string reason;  ///< one clause; empty when verified
+  std::optional<Witness> witness;
+  /// Triangles that bound the offending regions.
+  std::vector<std::uint32_t> inner_triangles, outer_triangles;
+};
+
+struct InclusionOptions {
+  std::size_t max_contacts = 200'000'000;  ///< pairs of triangles that touch, per kind
+  std::size_t max_pieces = 20'000'000;     ///< pieces of lines within one triangle
+  /// Called with what is being done, from one thread.
+  std::function<void(const std::string&)> progress;
+};
+
+/// What verify_inclusion found.
+struct Inclusion {
+  /// Solid claim. Closed meshes: {w_inner ≥ 1} ⊆ {w_outer ≥ 1} off the surfaces. Open ones with the
+  /// same border: w_inner ≤ w_outer off the surfaces; `relative` is then true.
+  Claim solid;
+  bool relative = false;
+  /// Surface claim: every triangle of the inner mesh lies in closure{w_outer ≥ 1}.
+  Claim surface;
+
+  bool inner_closed = true, outer_closed = true;
+  std::size_t inner_open_edges = 0, outer_open_edges = 0;
+  std::size_t triangles_without_area = 0;  ///< in both meshes; they bound nothing
+  std::size_t contacts = 0;                ///< pairs of triangles in which one cuts the other
+  std::size_t samples = 0;                 ///< winding numbers computed
+};
+
+/// Decides from the triangles alone whether one mesh encloses another, in exact arithmetic.
+///
+/// Z = {w_inner ≥ 1, w_outer ≤ 0} off the surfaces is open and bounded; if it is not empty, some
+/// face of the inner mesh has its inner side in Z or some face of the outer mesh its outer side.
+/// Every cell of every face is decided by an exact winding number on that side. Meshes may touch,
+/// share faces, intersect themselves and be non-manifold. docs/algorithms/exact-inclusion.md has
+/// the proof.
+///
+/// The result does not depend on the number of threads.
+///
+/// @throws Error{InvalidInput} on indices out of range or coordinates that are not finite.
+Inclusion verify_inclusion(const geom::Mesh& inner, const geom::Mesh& outer,
+                           const InclusionOptions& options = {});
+
+}  // namespace kaboum::verify

@@ -1,0 +1,154 @@
+#include "arrangement.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <numeric>
+
+namespace kaboum::verify {
+
+void Arrangement::need_mutual() {
+  if (contacts_[kInside][kOutside]) return;
+  MutualContacts found = contacts_between(scene_, limit_);
+  contacts_[kInside][kOutside] = std::move(found.of_inside);
+  contacts_[kOutside][kInside] = std::move(found.of_outside);
+}
+
+void Arrangement::need_own(int chain) {
+  if (!contacts_[chain][chain]) contacts_[chain][chain] = contacts_within(scene_, chain, limit_);
+}
+
+namespace {
+
+int place_of(const Face& f, std::uint32_t vertex) {
+  for (int k = 0; k < 3; ++k) {
+    if (f.v[k] == vertex) return k;
+  }
+  return -1;
+}
+
+/// The sector between two neighbours at their common edge, on the side that is walked on.
+class Sector {
+ public:
+  Sector(const Scene& scene, std::uint32_t f, std::uint32_t other, std::uint32_t other_apex,
+         Side side)
+      : scene_(scene), f_(f), other_(other), side_(side) {
+    const Sign turn = scene.side(f, scene.point(other_apex));
+    turn_ = side * to_int(turn);
+  }
+
+  /// 0: the faces are coplanar, on or beside each other.
+  [[nodiscard]] int turn() const { return turn_; }
+
+  /// Whether the half-plane from the edge through p lies strictly within the sector.
+  [[nodiscard]] bool holds(const Vec3& p) const {
+    const bool beyond_first = side_ * to_int(scene_.side(f_, p)) > 0;
+    if (turn_ == 0) return beyond_first;
+    const bool beyond_other = side_ * to_int(scene_.side(other_, p)) > 0;
+    return turn_ > 0 ? beyond_first && beyond_other : beyond_first || beyond_other;
+  }
+
+ private:
+  const Scene& scene_;
+  std::uint32_t f_, other_;
+  Side side_;
+  int turn_;
+};
+
+/// Whether one can walk from f over its edge k to `other` without crossing the chains of `mask`.
+bool walkable(const Arrangement& arrangement, std::uint32_t f, int k, std::uint32_t other,
+              int other_edge, ChainMask mask, Side side) {
+  const Scene& scene = arrangement.scene();
+  const Face& face = scene.face(f);
+  const std::uint32_t u = face.v[k], v = face.v[(k + 1) % 3];
+
+  // What lies along the edge: triangles that have it as an edge, and those in contact with it.
+  thread_local std::vector<std::uint32_t> touching;
+  touching.clear();
+  for (const std::uint32_t g : scene.around(u)) {
+    const Face& by = scene.face(g);
+    if (g == f || g == other || by.axis < 0 || (mask & mask_of(by.chain)) == 0) continue;
+    if (place_of(by, v) >= 0) touching.push_back(g);
+  }
+  for (int chain = 0; chain < 2; ++chain) {
+    if ((mask & mask_of(chain)) == 0) continue;
+    const Contacts& contacts = arrangement.contacts(face.chain, chain);
+    for (const auto& [owner, edge] : {std::pair{f, k}, std::pair{other, other_edge}}) {
+      for (const Contacts::Along& along : contacts.alongs(owner)) {
+        if (along.edge != edge) continue;
+        if (!along.whole) return false;
+        touching.push_back(along.on);
+      }
+    }
+  }
+  if (touching.empty()) return true;
+
+  const std::uint32_t apex = scene.face(other).v[(other_edge + 2) % 3];
+  const Sector sector(scene, f, other, apex, side);
+  if (sector.turn() == 0) {
+    // Coplanar: beside each other is a flat sector, on each other none or all of the space.
+    const Vec3 &a = scene.point(u), &b = scene.point(v);
+    const Sign first = orient2d(face.axis, a, b, scene.corner(f, (k + 2) % 3));
+    const Sign second = orient2d(face.axis, a, b, scene.point(apex));
+    if (first == second) return false;
+  }
+  for (const std::uint32_t g : touching) {
+    for (const std::uint32_t w : scene.face(g).v) {
+      if (w != u && w != v && sector.holds(scene.point(w))) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> patches(const Arrangement& arrangement, int chain, ChainMask mask,
+                                   Side side) {
+  const Scene& scene = arrangement.scene();
+  const std::uint32_t begin = scene.begin(chain), count = scene.count(chain);
+
+  // Per face and edge: the neighbour that can be walked to, if its number is larger.
+  constexpr std::uint32_t kNone = 0xFFFFFFFF;
+  std::vector<std::array<std::uint32_t, 3>> next(count, {kNone, kNone, kNone});
+  oneapi::tbb::parallel_for(std::uint32_t{0}, count, [&](std::uint32_t i) {
+    const std::uint32_t f = begin + i;
+    const Face& face = scene.face(f);
+    if (face.axis < 0 || !arrangement.whole(f, mask)) return;
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t u = face.v[k], v = face.v[(k + 1) % 3];
+      std::uint32_t other = kNone;
+      int others = 0, other_edge = 0;
+      for (const std::uint32_t g : scene.around(u)) {
+        const Face& by = scene.face(g);
+        if (g == f || by.chain != chain) continue;
+        const int at = place_of(by, v);
+        if (at < 0) continue;
+        ++others;
+        other = g;
+        other_edge = at;  // opposite direction: from v to u
+      }
+      if (others != 1 || other < f) continue;
+      const Face& neighbour = scene.face(other);
+      if (neighbour.axis < 0 || neighbour.v[(other_edge + 1) % 3] != u) continue;
+      if (!arrangement.whole(other, mask)) continue;
+      if (walkable(arrangement, f, k, other, other_edge, mask, side)) next[i][k] = other - begin;
+    }
+  });
+
+  std::vector<std::uint32_t> parent(count);
+  std::iota(parent.begin(), parent.end(), 0U);
+  const auto root = [&](std::uint32_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  for (std::uint32_t i = 0; i < count; ++i) {
+    for (const std::uint32_t j : next[i]) {
+      if (j == kNone) continue;
+      const std::uint32_t a = root(i), b = root(j);
+      parent[std::max(a, b)] = std::min(a, b);
+    }
+  }
+  for (std::uint32_t i = 0; i < count; ++i) parent[i] = root(i);
+  return parent;
+}
+
+}  // namespace kaboum::verify

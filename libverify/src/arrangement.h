@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "contacts.h"
+#include "scene.h"
+
+namespace kaboum::verify {
+
+/// The scene and the contacts that have been asked for so far.
+class Arrangement {
+ public:
+  /// @param limit  of the number of contacts of each kind
+  Arrangement(const Scene& scene, std::size_t limit) : scene_(scene), limit_(limit) {}
+
+  /// Finds the contacts between the two chains, or of a chain with itself, if not known yet.
+  void need_mutual();
+  void need_own(int chain);
+
+  [[nodiscard]] const Scene& scene() const { return scene_; }
+  /// @pre they were asked for
+  [[nodiscard]] const Contacts& contacts(int of, int with) const { return *contacts_[of][with]; }
+  /// No chain of the mask cuts the face.
+  [[nodiscard]] bool whole(std::uint32_t face, ChainMask with) const {
+    const int of = scene_.face(face).chain;
+    for (int c = 0; c < 2; ++c) {
+      if ((with & mask_of(c)) != 0 && !contacts_[of][c]->whole(face)) return false;
+    }
+    return true;
+  }
+
+ private:
+  const Scene& scene_;
+  std::size_t limit_;
+  std::array<std::array<std::optional<Contacts>, 2>, 2> contacts_;
+};
+
+/// A side of a face: +1 outer, −1 inner.
+using Side = int;
+inline constexpr Side kInner = -1;
+inline constexpr Side kOuter = 1;
+
+/// Groups the faces of `chain` that the chains of `mask` leave whole into patches: from one face to
+/// its neighbour in the patch one can walk on the given side without crossing the chains of `mask`.
+/// @return per face of the chain (counted from its first) the lowest number, so counted, of its
+///   patch; for faces that are cut, their own number.
+std::vector<std::uint32_t> patches(const Arrangement& arrangement, int chain, ChainMask mask,
+                                   Side side);
+
+}  // namespace kaboum::verify

@@ -1,0 +1,113 @@
+#pragma once
+
+#include <kaboum/geom/mesh.h>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace kaboum::verify {
+
+/// Axis-aligned box of exact minima and maxima.
+struct Bounds {
+  std::array<double, 3> low, high;
+
+  void include(const Bounds& other) {
+    for (int k = 0; k < 3; ++k) {
+      if (other.low[k] < low[k]) low[k] = other.low[k];
+      if (other.high[k] > high[k]) high[k] = other.high[k];
+    }
+  }
+  [[nodiscard]] bool meets(const Bounds& other) const {
+    return low[0] <= other.high[0] && other.low[0] <= high[0] && low[1] <= other.high[1] &&
+           other.low[1] <= high[1] && low[2] <= other.high[2] && other.low[2] <= high[2];
+  }
+};
+
+/// Binary tree of boxes over items: nodes in depth-first order, left child next to its parent.
+class BoxTree {
+ public:
+  struct Node {
+    Bounds box;
+    std::uint32_t first;  ///< leaf: place of its first item; inner: index of the right child
+    std::uint32_t count;  ///< leaf: number of items (≥ 1); inner: 0
+  };
+
+  BoxTree() = default;
+  /// `boxes[i]` belongs to the item `items[i]`.
+  BoxTree(std::vector<Bounds> boxes, std::vector<std::uint32_t> items);
+
+  [[nodiscard]] bool empty() const { return nodes_.empty(); }
+  [[nodiscard]] const std::vector<Node>& nodes() const { return nodes_; }
+  [[nodiscard]] std::uint32_t item(std::uint32_t place) const { return items_[place]; }
+  [[nodiscard]] const Bounds& box(std::uint32_t place) const { return boxes_[place]; }
+
+  /// Calls visit(item) for the items whose boxes satisfy `wanted`, in the tree's order. wanted(box)
+  /// must hold for every box that contains one for which it holds.
+  template <class Wanted, class Visit>
+  void query(Wanted&& wanted, Visit&& visit) const {
+    if (nodes_.empty()) return;
+    std::array<std::uint32_t, 96> stack;  // halving 2^32 items takes 32 levels
+    std::size_t size = 0;
+    stack[size++] = 0;
+    while (size > 0) {
+      const std::uint32_t index = stack[--size];
+      const Node& node = nodes_[index];
+      if (!wanted(node.box)) continue;
+      if (node.count == 0) {
+        stack[size++] = node.first;
+        stack[size++] = index + 1;
+      } else {
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+          if (wanted(boxes_[i])) visit(items_[i]);
+        }
+      }
+    }
+  }
+
+ private:
+  void build(std::vector<std::uint32_t>& order, const std::vector<Bounds>& boxes,
+             std::uint32_t first, std::uint32_t last);
+
+  std::vector<Node> nodes_;
+  std::vector<Bounds> boxes_;  // in the tree's order
+  std::vector<std::uint32_t> items_;
+};
+
+/// Calls visit(item of a, item of b) for all pairs of items whose boxes meet and whose place in a's
+/// tree lies below the node `root`. With `a` and `b` the same tree, each pair comes both ways.
+template <class Visit>
+void meeting_pairs(const BoxTree& a, std::uint32_t root, const BoxTree& b, Visit&& visit) {
+  if (a.empty() || b.empty()) return;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> stack{{root, 0}};
+  while (!stack.empty()) {
+    const auto [i, j] = stack.back();
+    stack.pop_back();
+    const BoxTree::Node &x = a.nodes()[i], &y = b.nodes()[j];
+    if (!x.box.meets(y.box)) continue;
+    if (x.count != 0 && y.count != 0) {
+      for (std::uint32_t p = x.first; p < x.first + x.count; ++p) {
+        for (std::uint32_t q = y.first; q < y.first + y.count; ++q) {
+          if (a.box(p).meets(b.box(q))) visit(a.item(p), b.item(q));
+        }
+      }
+      continue;
+    }
+    const auto extent = [](const Bounds& box) {
+      return (box.high[0] - box.low[0]) + (box.high[1] - box.low[1]) + (box.high[2] - box.low[2]);
+    };
+    if (y.count != 0 || (x.count == 0 && extent(x.box) >= extent(y.box))) {
+      stack.emplace_back(x.first, j);
+      stack.emplace_back(i + 1, j);
+    } else {
+      stack.emplace_back(i, y.first);
+      stack.emplace_back(i, j + 1);
+    }
+  }
+}
+
+/// Roots of at most `wanted` disjoint subtrees that together hold all items.
+std::vector<std::uint32_t> subtrees(const BoxTree& tree, std::size_t wanted);
+
+}  // namespace kaboum::verify

@@ -1,0 +1,292 @@
+#include <kaboum/geom/error.h>
+#include <kaboum/verify/inclusion.h>
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <limits>
+
+#include "arrangement.h"
+#include "spot.h"
+#include "witness.h"
+
+namespace kaboum::verify {
+namespace {
+
+constexpr int kCut = std::numeric_limits<int>::min();  // no one value: the face is cut
+
+/// Per face of a chain the winding number that `value` finds on one side, for faces that the chains
+/// of `mask` leave whole; kCut for the others and for faces without area.
+template <class Value>
+std::vector<int> whole_values(const Arrangement& arrangement, int chain, ChainMask mask, Side side,
+                              const Value& value, std::atomic<std::size_t>& samples) {
+  const Scene& scene = arrangement.scene();
+  const std::uint32_t begin = scene.begin(chain), count = scene.count(chain);
+  const std::vector<std::uint32_t> patch = patches(arrangement, chain, mask, side);
+  std::vector<int> result(count, kCut);
+  std::vector<std::uint32_t> roots;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (patch[i] == i && scene.face(begin + i).axis >= 0 && arrangement.whole(begin + i, mask)) {
+      roots.push_back(i);
+    }
+  }
+  oneapi::tbb::parallel_for(std::size_t{0}, roots.size(), [&](std::size_t r) {
+    const Spot spot = middle_spot(begin + roots[r]);
+    result[roots[r]] = value(spot);
+  });
+  samples += roots.size();
+  for (std::uint32_t i = 0; i < count; ++i) result[i] = result[patch[i]];
+  return result;
+}
+
+class Decision {
+ public:
+  Decision(const Scene& scene, const InclusionOptions& options)
+      : scene_(scene), options_(options), arrangement_(scene, options.max_contacts) {}
+
+  /// Closed chains: the solid claim and, for the inner chain's faces, the surface claim.
+  void decide_closed(Inclusion& result) {
+    say("pairs of triangles");
+    arrangement_.need_mutual();
+    for (const int chain : {kInside, kOutside}) {
+      say(chain == kInside ? "inner sides of the inner mesh" : "outer sides of the outer mesh");
+      const std::vector<std::uint32_t> failing = first_level(chain);
+      if (failing.empty()) continue;
+      if (chain == kInside) surface(failing);
+      say("cells against their own mesh");
+      second_level(chain, failing);
+    }
+    finish(result);
+  }
+
+  /// The outer mesh is closed, the inner one need not be: the surface claim only.
+  void decide_surface(Inclusion& result) {
+    say("pairs of triangles");
+    arrangement_.need_mutual();
+    surface(first_level(kInside));
+    finish(result);
+  }
+
+  /// Open chains with one border: w_inner ≤ w_outer.
+  void decide_difference(Inclusion& result) {
+    say("pairs of triangles");
+    arrangement_.need_mutual();
+    arrangement_.need_own(kInside);
+    arrangement_.need_own(kOutside);
+    for (const int chain : {kInside, kOutside}) {
+      say("cells");
+      const Side side = test_side(chain);
+      const auto value = [&](const Spot& spot) { return winding_difference(scene_, spot, side); };
+      const std::vector<int> values = whole_values(arrangement_, chain, 3, side, value, samples_);
+      const std::uint32_t begin = scene_.begin(chain);
+      std::vector<char> bad(values.size(), 0);
+      oneapi::tbb::parallel_for(std::size_t{0}, values.size(), [&](std::size_t i) {
+        const auto f = begin + static_cast<std::uint32_t>(i);
+        if (scene_.face(f).axis < 0) return;
+        if (values[i] != kCut) {
+          if (values[i] < 0) report(solid_, bad[i], middle_spot(f), side);
+          return;
+        }
+        for (const Spot& spot : spots(arrangement_, f, 3, options_.max_pieces)) {
+          ++samples_;
+          if (value(spot) < 0) return report(solid_, bad[i], spot, side);
+        }
+      });
+    }
+    finish(result);
+  }
+
+ private:
+  void say(const char* what) const {
+    if (options_.progress) options_.progress(what);
+  }
+
+  /// The side of a chain's faces on which an offending region can lie.
+  static Side test_side(int chain) { return chain == kInside ? kInner : kOuter; }
+  /// Whether the other chain's winding number alone shows that there is no offence.
+  static bool passes(int chain, int other) { return chain == kInside ? other >= 1 : other <= 0; }
+  /// Whether the own winding number completes an offence, the other's having failed.
+  static bool offends(int chain, int own) { return chain == kInside ? own >= 1 : own <= 0; }
+
+  /// Faces with a cell that the other chain's winding number does not settle.
+  std::vector<std::uint32_t> first_level(int chain) {
+    const int other = 1 - chain;
+    const Side side = test_side(chain);
+    const auto value = [&](const Spot& spot) { return winding(scene_, spot, side, other); };
+    other_values_ = whole_values(arrangement_, chain, mask_of(other), side, value, samples_);
+    const std::uint32_t begin = scene_.begin(chain);
+    std::vector<char> fails(other_values_.size(), 0);
+    oneapi::tbb::parallel_for(std::size_t{0}, fails.size(), [&](std::size_t i) {
+      const auto f = begin + static_cast<std::uint32_t>(i);
+      if (scene_.face(f).axis < 0) return;
+      if (other_values_[i] != kCut) {
+        fails[i] = static_cast<char>(!passes(chain, other_values_[i]));
+        return;
+      }
+      for (const Spot& spot : spots(arrangement_, f, mask_of(other), options_.max_pieces)) {
+        ++samples_;
+        if (passes(chain, value(spot))) continue;
+        fails[i] = 1;
+        return;
+      }
+    });
+    std::vector<std::uint32_t> failing;
+    for (std::uint32_t i = 0; i < fails.size(); ++i) {
+      if (fails[i] != 0) failing.push_back(begin + i);
+    }
+    return failing;
+  }
+
+  /// Decides the faces that the first level left open with the own winding number.
+  void second_level(int chain, const std::vector<std::uint32_t>& failing) {
+    const int other = 1 - chain;
+    const Side side = test_side(chain);
+    arrangement_.need_own(chain);
+    const auto own = [&](const Spot& spot) { return winding(scene_, spot, side, chain); };
+    const std::vector<int> own_values =
+        whole_values(arrangement_, chain, mask_of(chain), side, own, samples_);
+    const std::uint32_t begin = scene_.begin(chain);
+    std::vector<char> bad(scene_.count(chain), 0);
+    oneapi::tbb::parallel_for(std::size_t{0}, failing.size(), [&](std::size_t i) {
+      const std::uint32_t f = failing[i];
+      const int own_value = own_values[f - begin], other_value = other_values_[f - begin];
+      // The own number is the same all over the face and harmless.
+      if (own_value != kCut && !offends(chain, own_value)) return;
+      if (own_value != kCut && other_value != kCut) {
+        return report(solid_, bad[f - begin], middle_spot(f), side);
+      }
+      for (const Spot& spot : spots(arrangement_, f, 3, options_.max_pieces)) {
+        ++samples_;
+        const int o = other_value != kCut ? other_value : winding(scene_, spot, side, other);
+        if (passes(chain, o)) continue;
+        if (!offends(chain, own_value != kCut ? own_value : own(spot))) continue;
+        return report(solid_, bad[f - begin], spot, side);
+      }
+    });
+  }
+
+  /// Surface claim for the inner chain's faces whose inner sides are not all within the outer
+  /// solid: their outer sides must be.
+  void surface(const std::vector<std::uint32_t>& failing) {
+    if (failing.empty()) return;
+    const auto at = [&](const Spot& spot, Side side) {
+      return winding(scene_, spot, side, kOutside);
+    };
+    const std::vector<int> outer_values = whole_values(
+        arrangement_, kInside, mask_of(kOutside), kOuter,
+        [&](const Spot& spot) { return at(spot, kOuter); }, samples_);
+    std::vector<char> bad(scene_.count(kInside), 0);
+    oneapi::tbb::parallel_for(std::size_t{0}, failing.size(), [&](std::size_t i) {
+      const std::uint32_t f = failing[i];
+      if (outer_values[f] != kCut) {
+        if (outer_values[f] < 1) report(surface_, bad[f], middle_spot(f), kOuter);
+        return;
+      }
+      for (const Spot& spot : spots(arrangement_, f, mask_of(kOutside), options_.max_pieces)) {
+        ++samples_;
+        if (at(spot, kInner) >= 1 || at(spot, kOuter) >= 1) continue;
+        return report(surface_, bad[f], spot, kOuter);
+      }
+    });
+  }
+
+  struct Offences {
+    std::mutex mutex;
+    std::vector<Offence> list;
+  };
+
+  void report(Offences& offences, char& flag, const Spot& spot, Side side) {
+    flag = 1;
+    const std::lock_guard lock(offences.mutex);
+    offences.list.push_back({spot.face, side, position(scene_, spot)});
+  }
+
+  void conclude(Claim& claim, Offences& offences, bool on_surface, bool relative,
+                const char* reason) {
+    if (claim.answer != Answer::Verified) return;
+    std::sort(offences.list.begin(), offences.list.end(),
+              [](const Offence& a, const Offence& b) { return a.face < b.face; });
+    for (const Offence& offence : offences.list) {
+      const Face& face = scene_.face(offence.face);
+      (face.chain == kInside ? claim.inner_triangles : claim.outer_triangles)
+          .push_back(face.source);
+    }
+    if (offences.list.empty()) return;
+    claim.answer = Answer::Refuted;
+    claim.reason = reason;
+    say("a witness");
+    claim.witness = find_witness(scene_, offences.list, on_surface, relative);
+  }
+
+  void finish(Inclusion& result) {
+    conclude(result.solid, solid_, false, result.relative,
+             result.relative ? "the inner mesh winds more often about a point than the outer one"
+                             : "a part of the inner solid is outside the outer one");
+    conclude(result.surface, surface_, true, false,
+             "a part of the inner mesh's surface is outside the outer solid");
+    result.samples = samples_;
+    for (const auto& [x, y] : {std::pair{kInside, kOutside}, std::pair{kOutside, kInside}}) {
+      result.contacts += arrangement_.contacts(x, y).cut_count();
+    }
+  }
+
+  const Scene& scene_;
+  const InclusionOptions& options_;
+  Arrangement arrangement_;
+  std::vector<int> other_values_;
+  std::atomic<std::size_t> samples_ = 0;
+  Offences solid_, surface_;
+};
+
+}  // namespace
+
+Inclusion verify_inclusion(const geom::Mesh& inner, const geom::Mesh& outer,
+                           const InclusionOptions& options) {
+  const Scene scene(inner, outer);
+  Inclusion result;
+  result.inner_open_edges = scene.unbalanced(mask_of(kInside), false);
+  result.outer_open_edges = scene.unbalanced(mask_of(kOutside), false);
+  result.inner_closed = result.inner_open_edges == 0;
+  result.outer_closed = result.outer_open_edges == 0;
+  result.triangles_without_area = scene.without_area(kInside) + scene.without_area(kOutside) +
+                                  scene.repeated_corners(kInside) +
+                                  scene.repeated_corners(kOutside);
+  const bool same_border = scene.same_border();
+
+  // Claims that have a meaning count as true until they are refuted.
+  const auto undefined = [](Claim& claim, const char* why) {
+    claim.answer = Answer::Undefined;
+    claim.reason = why;
+  };
+  result.solid.answer = Answer::Verified;
+  result.surface.answer = Answer::Verified;
+  if (!result.outer_closed) undefined(result.surface, "the outer mesh is not closed");
+  if (!result.inner_closed || !result.outer_closed) {
+    result.relative = same_border;
+    if (!same_border)
+      undefined(result.solid, "the meshes are not closed and have different borders");
+  }
+
+  Decision decision(scene, options);
+  try {
+    if (result.relative) {
+      decision.decide_difference(result);
+    } else if (result.inner_closed && result.outer_closed) {
+      decision.decide_closed(result);
+    } else if (result.outer_closed) {
+      decision.decide_surface(result);
+    }
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::LimitReached) throw;
+    for (Claim* claim : {&result.solid, &result.surface}) {
+      if (claim->answer == Answer::Undefined) continue;
+      *claim = {};
+      claim->answer = Answer::Undecided;
+      claim->reason = error.what();
+    }
+  }
+  return result;
+}
+
+}  // namespace kaboum::verify

@@ -1,0 +1,85 @@
+#include "nearest.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace kaboum::verify {
+namespace {
+
+Vec3 closest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 d = b - a;
+  const double square = d.squaredNorm();
+  if (!(square > 0)) return a;
+  const double t = std::clamp((p - a).dot(d) / square, 0.0, 1.0);
+  return (1 - t) * a + t * b;
+}
+
+double squared_distance(const Vec3& p, const Bounds& box) {
+  double sum = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double d = std::max({box.low[k] - p[k], p[k] - box.high[k], 0.0});
+    sum += d * d;
+  }
+  return sum;
+}
+
+}  // namespace
+
+Vec3 closest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 n = (b - a).cross(c - a);
+  const double area = n.squaredNorm();
+  if (area > 0) {
+    const double u = (c - b).cross(p - b).dot(n) / area;
+    const double v = (a - c).cross(p - c).dot(n) / area;
+    const double w = 1 - u - v;
+    if (u >= 0 && v >= 0 && w >= 0) return u * a + v * b + w * c;
+  }
+  Vec3 best = closest_on_segment(p, a, b);
+  for (const Vec3& q : {closest_on_segment(p, b, c), closest_on_segment(p, c, a)}) {
+    if ((q - p).squaredNorm() < (best - p).squaredNorm()) best = q;
+  }
+  return best;
+}
+
+NearestTriangle::Hit NearestTriangle::nearest(const Vec3& p) const {
+  Hit best{0, std::numeric_limits<double>::infinity()};
+  if (tree_.empty()) return best;
+  double square = std::numeric_limits<double>::infinity();
+  struct Entry {
+    std::uint32_t node;
+    double distance;
+  };
+  std::array<Entry, 96> stack;
+  std::size_t size = 0;
+  stack[size++] = {0, squared_distance(p, tree_.nodes()[0].box)};
+  while (size > 0) {
+    const Entry entry = stack[--size];
+    if (!(entry.distance < square)) continue;
+    const BoxTree::Node& node = tree_.nodes()[entry.node];
+    if (node.count == 0) {
+      const Entry left{entry.node + 1, squared_distance(p, tree_.nodes()[entry.node + 1].box)};
+      const Entry right{node.first, squared_distance(p, tree_.nodes()[node.first].box)};
+      const bool left_first = left.distance <= right.distance;
+      stack[size++] = left_first ? right : left;
+      stack[size++] = left_first ? left : right;
+      continue;
+    }
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+      const std::uint32_t f = tree_.item(i);
+      const double d =
+          (closest_point(p, scene_.corner(f, 0), scene_.corner(f, 1), scene_.corner(f, 2)) - p)
+              .squaredNorm();
+      if (d < square) {
+        square = d;
+        best.face = f;
+      }
+    }
+  }
+  best.distance = std::sqrt(square);
+  return best;
+}
+
+double NearestTriangle::distance(const Vec3& p) const { return nearest(p).distance; }
+
+}  // namespace kaboum::verify

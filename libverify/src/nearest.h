@@ -1,0 +1,29 @@
+#pragma once
+
+#include "scene.h"
+
+namespace kaboum::verify {
+
+/// Closest point of a triangle to p, computed in rounded arithmetic as a convex combination of the
+/// corners.
+Vec3 closest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
+
+/// Nearest triangle of a chain, in rounded arithmetic.
+class NearestTriangle {
+ public:
+  struct Hit {
+    std::uint32_t face;
+    double distance;
+  };
+  NearestTriangle(const Scene& scene, int chain) : scene_(scene), tree_(scene.tree(chain)) {}
+  /// @pre the chain has triangles with area
+  [[nodiscard]] Hit nearest(const Vec3& p) const;
+  /// Infinite when the chain has no triangle with area.
+  [[nodiscard]] double distance(const Vec3& p) const;
+
+ private:
+  const Scene& scene_;
+  const BoxTree& tree_;
+};
+
+}  // namespace kaboum::verify

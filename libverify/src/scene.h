@@ -1,0 +1,81 @@
+#pragma once
+
+#include <kaboum/geom/mesh.h>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "box_tree.h"
+#include "number.h"
+
+namespace kaboum::verify {
+
+/// One of the two chains that are compared.
+enum Chain : int { kInside = 0, kOutside = 1 };
+
+/// A set of chains.
+using ChainMask = unsigned;
+inline constexpr ChainMask mask_of(int chain) { return 1U << chain; }
+
+struct Face {
+  std::array<std::uint32_t, 3> v;
+  std::int8_t axis;      ///< a projection along it does not collapse the face; −1: no area
+  bool upward;           ///< the projection along `axis` is counter-clockwise
+  std::uint8_t chain;    ///< Chain
+  std::uint32_t source;  ///< index in the mesh it comes from
+};
+
+/// Both meshes with one set of vertices, equal coordinates merged (−0 = +0): faces of the inside
+/// chain first. Faces with repeated corners are left out; faces without area stay, as they count in
+/// the balance of edges, but are marked.
+class Scene {
+ public:
+  Scene(const geom::Mesh& inside, const geom::Mesh& outside);
+
+  [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }
+  [[nodiscard]] const Face& face(std::uint32_t f) const { return faces_[f]; }
+  [[nodiscard]] std::uint32_t begin(int chain) const { return chain == kInside ? 0 : split_; }
+  [[nodiscard]] std::uint32_t end(int chain) const {
+    return chain == kInside ? split_ : static_cast<std::uint32_t>(faces_.size());
+  }
+  [[nodiscard]] std::uint32_t count(int chain) const { return end(chain) - begin(chain); }
+
+  [[nodiscard]] const Vec3& point(std::uint32_t vertex) const { return points_[vertex]; }
+  [[nodiscard]] const Vec3& corner(std::uint32_t f, int k) const { return points_[faces_[f].v[k]]; }
+  [[nodiscard]] std::size_t vertex_count() const { return points_.size(); }
+
+  /// Faces that touch a vertex, in order of their numbers.
+  [[nodiscard]] std::span<const std::uint32_t> around(std::uint32_t vertex) const {
+    return {incident_.data() + first_[vertex], incident_.data() + first_[vertex + 1]};
+  }
+
+  /// Every directed edge of the chain is cancelled by its opposite.
+  [[nodiscard]] bool closed(int chain) const { return unbalanced(mask_of(chain), false) == 0; }
+  /// Outside minus inside is a closed chain.
+  [[nodiscard]] bool same_border() const { return unbalanced(3, true) == 0; }
+  /// Number of edges that are not balanced.
+  [[nodiscard]] std::size_t unbalanced(ChainMask chains, bool difference) const;
+
+  [[nodiscard]] std::size_t without_area(int chain) const { return without_area_[chain]; }
+  [[nodiscard]] std::size_t repeated_corners(int chain) const { return repeated_[chain]; }
+
+  /// Boxes of the faces with area.
+  [[nodiscard]] const BoxTree& tree(int chain) const { return tree_[chain]; }
+
+  /// Side of a point with respect to a face's plane; exact.
+  [[nodiscard]] Sign side(std::uint32_t f, const Vec3& p) const {
+    return geom::orient3d(corner(f, 0), corner(f, 1), corner(f, 2), p);
+  }
+
+ private:
+  std::vector<Vec3> points_;
+  std::vector<Face> faces_;
+  std::uint32_t split_ = 0;
+  std::vector<std::uint32_t> first_, incident_;
+  std::array<std::size_t, 2> without_area_{}, repeated_{};
+  std::array<BoxTree, 2> tree_;
+};
+
+}  // namespace kaboum::verify

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "arrangement.h"
+#include "number.h"
+
+namespace kaboum::verify {
+
+/// A point of a face's interior, displaced infinitesimally within the face, as a representative of
+/// a cell. The point is given by barycentric weights ≥ 0, up to a positive factor.
+struct Spot {
+  std::uint32_t face;
+  Triple<Exact> exact;
+  Triple<Approx> approx;
+  /// The displacement goes to the side of this line where it is positive (a linear function of
+  /// barycentric coordinates, zero at the point); absent: in any direction.
+  std::optional<Triple<Exact>> line;
+};
+
+/// The middle of a face.
+Spot middle_spot(std::uint32_t face);
+
+/// Rounded coordinates.
+Vec3 position(const Scene& scene, const Spot& spot);
+
+/// One spot at least in each cell that the chains of `mask` cut the face into.
+/// @pre their contacts with the face's chain are known.
+/// @throws Error{LimitReached} when the face is cut into more than `limit` pieces of lines.
+std::vector<Spot> spots(const Arrangement& arrangement, std::uint32_t face, ChainMask mask,
+                        std::size_t limit);
+
+/// Winding number of a chain on one side of the face at the spot; exact.
+/// @pre the chain is closed.
+int winding(const Scene& scene, const Spot& spot, Side side, int chain);
+
+/// Outside's minus inside's; for open chains with the same border, too.
+int winding_difference(const Scene& scene, const Spot& spot, Side side);
+
+/// Winding number of a closed chain at a point; nullopt on its surface. Exact.
+std::optional<int> winding_at(const Scene& scene, int chain, const Vec3& p);
+
+}  // namespace kaboum::verify

@@ -1,0 +1,239 @@
+// Winding numbers at spots: signed crossings of a line along the face's axis with the chain, every
+// sign exact, ties broken by an infinitesimal displacement within the face, then off the face.
+
+#include <kaboum/geom/error.h>
+
+#include <algorithm>
+
+#include "spot.h"
+
+namespace kaboum::verify {
+namespace {
+
+/// Directions within a face, in barycentric coordinates (their sum is zero). For every finite set
+/// of lines through a spot some of them lie on none; the list is long enough for what is met.
+std::array<int, 3> direction(int attempt) {
+  static constexpr std::array<std::array<int, 2>, 24> kPairs{
+      {{3, 1},   {1, -4},  {5, -2},   {2, 7},    {-7, 3},  {11, 5},  {4, -13},  {-9, 17},
+       {19, 8},  {6, 23},  {-29, 10}, {31, -12}, {14, 37}, {41, 15}, {-16, 43}, {47, -18},
+       {20, 53}, {59, 21}, {-22, 61}, {67, -24}, {25, 71}, {73, 26}, {-27, 79}, {83, -28}}};
+  const std::array<int, 2>& pair = kPairs[static_cast<std::size_t>(attempt) % kPairs.size()];
+  const int turn = attempt / static_cast<int>(kPairs.size());
+  const int x = pair[0] + 97 * turn, y = pair[1] - 89 * turn;
+  return {x, y, -x - y};
+}
+constexpr int kAttempts = 2400;
+
+/// Sign of Σ weight[i]·value(i): rounded first, exactly if that leaves it open.
+template <class ApproxValue, class ExactValue>
+Sign sign_of_sum(const Triple<Approx>& weight, const Triple<Exact>& exact_weight,
+                 const ApproxValue& value, const ExactValue& exact_value) {
+  const Triple<Approx> values{value(0), value(1), value(2)};
+  if (const auto sign = sign_of(dot(weight, values))) return *sign;
+  return sign_of(dot(exact_weight, Triple<Exact>{exact_value(0), exact_value(1), exact_value(2)}));
+}
+
+/// A spot with a direction chosen, ready for queries.
+class Line {
+ public:
+  Line(const Scene& scene, const Spot& spot, Side side)
+      : scene_(scene),
+        spot_(spot),
+        face_(scene.face(spot.face)),
+        axis_(face_.axis),
+        above_((side == kOuter) == face_.upward) {
+    bound();
+  }
+
+  /// @return false when there is no such direction on the spot's side of its line.
+  bool choose(int attempt) {
+    std::array<int, 3> u = direction(attempt);
+    if (spot_.line) {
+      const Triple<Exact> exact{Exact(u[0]), Exact(u[1]), Exact(u[2])};
+      const Sign sign = sign_of(dot(*spot_.line, exact));
+      if (sign == Sign::Zero) return false;
+      if (sign == Sign::Negative) u = {-u[0], -u[1], -u[2]};
+    }
+    for (int k = 0; k < 3; ++k) {
+      exact_direction_[k] = Exact(u[k]);
+      direction_[k] = {static_cast<double>(u[k]), 0};
+    }
+    return true;
+  }
+
+  /// Signed crossings of the ray that goes up from the displaced spot; nullopt: choose another
+  /// direction.
+  [[nodiscard]] std::optional<int> crossings(int chain) const {
+    int sum = 0;
+    bool clear = true;
+    const int u = (axis_ + 1) % 3, v = (axis_ + 2) % 3;
+    scene_.tree(chain).query(
+        [&](const Bounds& box) {
+          return clear && box.high[axis_] >= box_.low[axis_] && box.low[u] <= box_.high[u] &&
+                 box.high[u] >= box_.low[u] && box.low[v] <= box_.high[v] &&
+                 box.high[v] >= box_.low[v];
+        },
+        [&](std::uint32_t g) {
+          const std::optional<int> crossing = cross(g);
+          if (crossing) {
+            sum += *crossing;
+          } else {
+            clear = false;
+          }
+        });
+    if (!clear) return std::nullopt;
+    return sum;
+  }
+
+ private:
+  /// A box that certainly contains the spot.
+  void bound() {
+    const Triple<Approx>& w = spot_.approx;
+    const Approx total = w[0] + w[1] + w[2];
+    for (int k = 0; k < 3; ++k) {
+      box_.low[k] = std::min({corner(0)[k], corner(1)[k], corner(2)[k]});
+      box_.high[k] = std::max({corner(0)[k], corner(1)[k], corner(2)[k]});
+      Approx sum;
+      for (int i = 0; i < 3; ++i) sum = sum + w[i] * Approx{corner(i)[k], 0};
+      const double smallest = total.value - total.error;
+      if (!(smallest > 0)) continue;
+      const double q = sum.value / total.value;
+      const double error =
+          ((sum.error + std::abs(q) * total.error) / smallest + std::abs(q) * 2 * kUnit) * kGrowth +
+          kTiny;
+      if (!(error < 1e300)) continue;
+      box_.low[k] = std::max(box_.low[k], q - 2 * error);
+      box_.high[k] = std::min(box_.high[k], q + 2 * error);
+    }
+  }
+
+  [[nodiscard]] const Vec3& corner(int k) const { return scene_.point(face_.v[k]); }
+
+  /// Sign of an affine function, given by its values at the face's corners, at the displaced spot;
+  /// Zero if it vanishes there and in the direction of displacement.
+  template <class ApproxValue, class ExactValue>
+  [[nodiscard]] Sign sign(const ApproxValue& value, const ExactValue& exact_value) const {
+    const Sign at_spot = sign_of_sum(spot_.approx, spot_.exact, value, exact_value);
+    if (at_spot != Sign::Zero) return at_spot;
+    return sign_of_sum(direction_, exact_direction_, value, exact_value);
+  }
+
+  [[nodiscard]] std::optional<int> cross(std::uint32_t gi) const {
+    const Face& g = scene_.face(gi);
+    bool upward = g.upward;
+    if (g.axis != axis_) {
+      const Sign turn =
+          orient2d(axis_, scene_.point(g.v[0]), scene_.point(g.v[1]), scene_.point(g.v[2]));
+      if (turn == Sign::Zero)
+        return 0;  // upright: the line meets it nowhere, or is displaced off it
+      upward = turn == Sign::Positive;
+    }
+    const Sign in = upward ? Sign::Positive : Sign::Negative;
+    bool open = false;
+    for (int e = 0; e < 3; ++e) {
+      const std::uint32_t a = g.v[e], b = g.v[(e + 1) % 3];
+      const auto value = [&]<class Number>(int i) {
+        if (face_.v[i] == a || face_.v[i] == b) return integer<Number>(0);
+        return orient2d_value<Number>(axis_, scene_.point(a), scene_.point(b), corner(i));
+      };
+      const Sign s = sign([&](int i) { return value.template operator()<Approx>(i); },
+                          [&](int i) { return value.template operator()<Exact>(i); });
+      if (s == Sign::Zero) {
+        open = true;
+      } else if (s != in) {
+        return 0;
+      }
+    }
+    if (open) return std::nullopt;
+
+    const auto value = [&]<class Number>(int i) {
+      const std::uint32_t v = face_.v[i];
+      if (v == g.v[0] || v == g.v[1] || v == g.v[2]) return integer<Number>(0);
+      return orient3d_value<Number>(scene_.point(g.v[0]), scene_.point(g.v[1]),
+                                    scene_.point(g.v[2]), corner(i));
+    };
+    const Sign s = sign([&](int i) { return value.template operator()<Approx>(i); },
+                        [&](int i) { return value.template operator()<Exact>(i); });
+    if (s == Sign::Zero) {
+      for (int i = 0; i < 3; ++i) {
+        const std::uint32_t v = face_.v[i];
+        if (v != g.v[0] && v != g.v[1] && v != g.v[2] && scene_.side(gi, corner(i)) != Sign::Zero) {
+          return std::nullopt;  // the displacement runs along the line where the planes meet
+        }
+      }
+      // Coplanar: crossed if the spot is displaced downwards off the face.
+      return above_ ? 0 : (upward ? 1 : -1);
+    }
+    // Below g: on the side away from an upward normal.
+    const Sign below = upward ? Sign::Negative : Sign::Positive;
+    return s == below ? (upward ? 1 : -1) : 0;
+  }
+
+  const Scene& scene_;
+  const Spot& spot_;
+  const Face& face_;
+  int axis_;
+  bool above_;
+  Bounds box_{};
+  Triple<Approx> direction_;
+  Triple<Exact> exact_direction_;
+};
+
+template <class Count>
+int with_some_direction(const Scene& scene, const Spot& spot, Side side, const Count& count) {
+  Line line(scene, spot, side);
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    if (!line.choose(attempt)) continue;
+    if (const std::optional<int> result = count(line)) return *result;
+  }
+  throw Error(ErrorCode::LimitReached,
+              "no direction off all planes through a point; too many triangles meet there");
+}
+
+}  // namespace
+
+int winding(const Scene& scene, const Spot& spot, Side side, int chain) {
+  return with_some_direction(scene, spot, side,
+                             [&](const Line& line) { return line.crossings(chain); });
+}
+
+int winding_difference(const Scene& scene, const Spot& spot, Side side) {
+  return with_some_direction(scene, spot, side, [&](const Line& line) -> std::optional<int> {
+    const std::optional<int> inside = line.crossings(kInside);
+    if (!inside) return std::nullopt;
+    const std::optional<int> outside = line.crossings(kOutside);
+    if (!outside) return std::nullopt;
+    return *outside - *inside;
+  });
+}
+
+std::optional<int> winding_at(const Scene& scene, int chain, const Vec3& p) {
+  // A vertical ray from (x + ε, y + ε²): side of the displaced point with respect to a → b.
+  const auto side = [&](const Vec3& a, const Vec3& b) {
+    const Sign s = geom::orient2d(a.x(), a.y(), b.x(), b.y(), p.x(), p.y());
+    if (s != Sign::Zero) return to_int(s);
+    if (a.y() != b.y()) return a.y() > b.y() ? 1 : -1;
+    if (a.x() != b.x()) return b.x() > a.x() ? 1 : -1;
+    return 0;
+  };
+  int sum = 0;
+  bool touches = false;
+  scene.tree(chain).query(
+      [&](const Bounds& box) {
+        return p.x() >= box.low[0] && p.x() <= box.high[0] && p.y() >= box.low[1] &&
+               p.y() <= box.high[1] && p.z() <= box.high[2];
+      },
+      [&](std::uint32_t f) {
+        const Vec3 &a = scene.corner(f, 0), &b = scene.corner(f, 1), &c = scene.corner(f, 2);
+        const Sign height = scene.side(f, p);
+        // On the plane, within the box: taken for a touch, whether or not it is one.
+        if (height == Sign::Zero) touches = true;
+        const int s = side(a, b);
+        if (s == 0 || side(b, c) != s || side(c, a) != s) return;
+        if (to_int(height) == -s) sum += s;
+      });
+  if (touches) return std::nullopt;
+  return sum;
+}
+
+}  // namespace kaboum::verify
