@@ -80,6 +80,26 @@ NearestTriangle::Hit NearestTriangle::nearest(const Vec3& p) const {
   return best;
 }
 
+double NearestTriangle::lower_bound(const Vec3& p, double within) const {
+  // Triangles in boxes that are passed over are at least `within` away, up to rounding.
+  double least = within;
+  const double limit = within * within;
+  tree_.query([&](const Bounds& box) { return squared_distance(p, box) <= limit; },
+              [&](std::uint32_t f) {
+                const Vec3 &a = scene_.corner(f, 0), &b = scene_.corner(f, 1),
+                           &c = scene_.corner(f, 2);
+                const Vec3 away = p - closest_point(p, a, b, c);
+                const double length = away.norm();
+                if (!(length > 0)) {
+                  least = 0;
+                  return;
+                }
+                const Vec3 n = away / length;
+                least = std::min(least, std::min({n.dot(p - a), n.dot(p - b), n.dot(p - c)}));
+              });
+  return std::max(least, 0.0);
+}
+
 double NearestTriangle::distance(const Vec3& p) const { return nearest(p).distance; }
 
 }  // namespace kaboum::verify

@@ -20,6 +20,11 @@ class NearestTriangle {
   [[nodiscard]] Hit nearest(const Vec3& p) const;
   /// Infinite when the chain has no triangle with area.
   [[nodiscard]] double distance(const Vec3& p) const;
+  /// A bound of the distance from below, but for an absolute error of a few units in the last place
+  /// of the coordinates: the least over all triangles of the distance to a plane that separates p
+  /// from the triangle. Boxes farther away than `within` are passed over.
+  /// @param within  about the distance, from above
+  [[nodiscard]] double lower_bound(const Vec3& p, double within) const;
 
  private:
   const Scene& scene_;

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <kaboum/verify/inclusion.h>
+
+namespace kaboum::verify {
+
+/// The answer to a distance claim.
+struct DistanceClaim {
+  Answer answer = Answer::Undefined;
+  std::string reason;
+  double largest = 0;  ///< a distance that is certainly reached somewhere, at `at` [length]
+  geom::Vec3 at = geom::Vec3::Zero();
+  std::size_t pieces = 0;  ///< parts of triangles looked at
+};
+
+struct DistanceClaimOptions {
+  /// Points with w_to ≥ 1 have distance 0. @pre `to` is a closed chain
+  bool to_solid = false;
+  std::size_t max_pieces = std::size_t{1} << 20U;  ///< of one triangle
+};
+
+/// Decides whether every point of the triangles of `from` is within `epsilon` of the triangles of
+/// `to`, or of its solid.
+///
+/// A part of a triangle passes when its corners are within ε of one triangle of `to` (the distance
+/// to a convex set is convex), or when it lies inside the solid as a whole; it fails when a corner
+/// is certainly farther away; otherwise it is split. Upper bounds are distances to convex
+/// combinations of corners, lower bounds distances to separating planes, both widened by their
+/// rounding: docs/algorithms/exact-inclusion.md, "Distance". Suprema closer to ε than the rounding
+/// stay undecided.
+///
+/// @pre epsilon > 0; `to` has a triangle with area.
+/// @throws Error{InvalidInput} on indices out of range or coordinates that are not finite.
+DistanceClaim verify_distance(const geom::Mesh& from, const geom::Mesh& to, double epsilon,
+                              const DistanceClaimOptions& options = {});
+
+}  // namespace kaboum::verify

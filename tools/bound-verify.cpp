@@ -1,0 +1,418 @@
+#include <kaboum/geom/error.h>
+#include <kaboum/geom/prepare.h>
+#include <kaboum/io/convex_io.h>
+#include <kaboum/verify/cover.h>
+#include <kaboum/verify/distance.h>
+#include <kaboum/verify/inclusion.h>
+
+#include <algorithm>
+#include <iomanip>
+#include <iostream>
+#include <sstream>
+
+#include "cli.h"
+
+namespace {
+
+using namespace kaboum;
+using tools::Json;
+using verify::Answer;
+
+struct Options {
+  bool outer = false, inner = false, cover = false, prepare = false;
+  std::string original, approximation, original_format, approximation_format;
+  std::string epsilon, witness, claims = "all";
+  std::size_t max_contacts = verify::InclusionOptions{}.max_contacts;
+  tools::CommonOptions common;
+};
+
+struct Input {
+  geom::Mesh mesh;
+  io::Format format;
+  std::string sha256;
+  std::vector<std::string> notes;
+};
+
+Input read(const std::string& path, const std::string& format, const char* option) {
+  std::vector<char> bytes;
+  io::ReadResult r = io::read_mesh(path, tools::format_for(path, format, option), &bytes);
+  std::vector<std::string> notes = std::move(r.notes);
+  if (r.collapsed_triangles != 0) {
+    notes.push_back(std::to_string(r.collapsed_triangles) +
+                    " triangles with repeated corners bound nothing and are left out");
+  }
+  return {std::move(r.mesh), r.format, io::sha256(bytes), std::move(notes)};
+}
+
+const char* name(Answer answer) {
+  switch (answer) {
+    case Answer::Verified:
+      return "verified";
+    case Answer::Refuted:
+      return "refuted";
+    case Answer::Undecided:
+      return "undecided";
+    case Answer::Undefined:
+      break;
+  }
+  return "undefined";
+}
+
+std::string number(double x) {
+  std::ostringstream text;
+  text << std::setprecision(6) << x;
+  return text.str();
+}
+
+std::string point(const geom::Vec3& p) {
+  std::ostringstream text;
+  text << std::setprecision(17) << '(' << p.x() << ", " << p.y() << ", " << p.z() << ')';
+  return text.str();
+}
+
+Json to_json(const geom::Vec3& p) { return {p.x(), p.y(), p.z()}; }
+
+Json to_json(const verify::Claim& claim) {
+  Json json{{"answer", name(claim.answer)}, {"reason", claim.reason}};
+  if (claim.witness) {
+    json["witness"] = {{"point", to_json(claim.witness->point)},
+                       {"depth", claim.witness->depth},
+                       {"exact", claim.witness->exact}};
+    json["inner_triangles"] = claim.inner_triangles.size();
+    json["outer_triangles"] = claim.outer_triangles.size();
+  }
+  return json;
+}
+
+Json to_json(const verify::DistanceClaim& claim) {
+  return {{"answer", name(claim.answer)},
+          {"reason", claim.reason},
+          {"largest_found", claim.largest},
+          {"at", to_json(claim.at)},
+          {"pieces", claim.pieces}};
+}
+
+/// Everything that was asked for, in the order of printing.
+class Verdict {
+ public:
+  void add(const std::string& title, const std::string& what, const verify::Claim& claim,
+           bool counts) {
+    std::string line = title + ": " + name(claim.answer);
+    if (claim.answer == Answer::Verified) line += ": " + what;
+    if (!claim.reason.empty()) line += ": " + claim.reason;
+    if (claim.witness) {
+      line += "; at " + point(claim.witness->point) + ", " + number(claim.witness->depth) + " deep";
+      if (!claim.witness->exact) {
+        line += " (too thin for a point with double coordinates, which is beside it)";
+      }
+    }
+    lines_.push_back(line);
+    if (counts) answers_.push_back(claim.answer);
+  }
+  void add(const std::string& title, double bound, const verify::DistanceClaim& claim) {
+    std::string line = title + ": " + name(claim.answer);
+    if (claim.answer == Answer::Verified) line += ": nowhere more than " + number(bound);
+    if (!claim.reason.empty()) line += ": " + claim.reason;
+    if (claim.answer != Answer::Verified) {
+      line += "; at least " + number(claim.largest) + " at " + point(claim.at) + ", claimed " +
+              number(bound);
+    }
+    lines_.push_back(line);
+    answers_.push_back(claim.answer);
+  }
+
+  [[nodiscard]] const std::vector<std::string>& lines() const { return lines_; }
+  [[nodiscard]] Answer answer() const {
+    const auto any = [&](Answer a) {
+      return std::find(answers_.begin(), answers_.end(), a) != answers_.end();
+    };
+    if (any(Answer::Refuted)) return Answer::Refuted;
+    if (any(Answer::Undecided)) return Answer::Undecided;
+    return any(Answer::Verified) ? Answer::Verified : Answer::Undefined;
+  }
+
+ private:
+  std::vector<std::string> lines_;
+  std::vector<Answer> answers_;
+};
+
+int exit_code(Answer answer) {
+  switch (answer) {
+    case Answer::Verified:
+      return tools::kDone;
+    case Answer::Refuted:
+      return tools::kNo;
+    case Answer::Undecided:
+      return tools::kLimit;
+    case Answer::Undefined:
+      break;
+  }
+  return tools::kBadInput;
+}
+
+/// The offending triangles, of both meshes, as one mesh.
+void write_witness(const std::string& path, const geom::Mesh& inner, const geom::Mesh& outer,
+                   const std::vector<const verify::Claim*>& claims) {
+  geom::Mesh mesh;
+  const auto take = [&](const geom::Mesh& from, std::vector<std::uint32_t> triangles) {
+    std::sort(triangles.begin(), triangles.end());
+    triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+    for (const std::uint32_t t : triangles) {
+      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+      for (const std::uint32_t v : from.triangles[t]) mesh.vertices.push_back(from.vertices[v]);
+      mesh.triangles.push_back({first, first + 1, first + 2});
+    }
+  };
+  std::vector<std::uint32_t> of_inner, of_outer;
+  for (const verify::Claim* claim : claims) {
+    of_inner.insert(of_inner.end(), claim->inner_triangles.begin(), claim->inner_triangles.end());
+    of_outer.insert(of_outer.end(), claim->outer_triangles.begin(), claim->outer_triangles.end());
+  }
+  take(inner, std::move(of_inner));
+  take(outer, std::move(of_outer));
+  if (mesh.triangles.empty()) return;  // only distances were refuted
+  io::WriteOptions options;
+  options.double_precision = true;
+  options.comment = "triangles that bound what refutes the claim";
+  const io::Format format = io::format_from_name(std::filesystem::path(path).extension().string())
+                                .value_or(io::Format::Ply);
+  io::write_file(path, io::serialise_mesh(geom::Mesh(mesh), format, options));
+}
+
+int check(const Options& o) {
+  const tools::ThreadLimit threads(o.common.threads);
+  std::optional<tools::Length> epsilon;
+  if (!o.epsilon.empty()) {
+    epsilon = tools::parse_length(o.epsilon);
+    if (!epsilon) {
+      throw Error(ErrorCode::InvalidArgument,
+                  "--epsilon: '" + o.epsilon + "' is neither a positive length nor a percentage");
+    }
+  }
+  if (o.original == "-" && o.approximation == "-") {
+    throw Error(ErrorCode::InvalidArgument, "only one of the two files can be standard input");
+  }
+
+  Input original = read(o.original, o.original_format, "--input-format");
+  if (o.prepare) {
+    geom::Prepared prepared = geom::prepare(original.mesh);
+    original.mesh = std::move(prepared.mesh);
+    original.notes.insert(original.notes.end(), prepared.notes.begin(), prepared.notes.end());
+  }
+  Input approximation;
+  geom::ConvexSet set;
+  if (o.cover) {
+    io::SetReadDetails details;
+    std::optional<io::Format> format;
+    if (!o.approximation_format.empty() || o.approximation == "-") {
+      format = tools::format_for(o.approximation, o.approximation_format, "--input-format");
+    }
+    set = io::read_convex_set(o.approximation, format, &details);
+    approximation.mesh = verify::sum_of(set);
+    approximation.sha256 = io::sha256(details.bytes);
+    approximation.notes = std::move(details.notes);
+  } else {
+    approximation = read(o.approximation, o.approximation_format, "--input-format");
+  }
+  for (const Input* input : {&original, &approximation}) {
+    for (const std::string& note : input->notes) {
+      tools::log(o.common.quiet, (input == &original ? o.original : o.approximation) + ": " + note);
+    }
+  }
+
+  tools::Progress progress(o.common.quiet);
+  verify::InclusionOptions options;
+  options.max_contacts = o.max_contacts;
+  options.progress = [&](const std::string& what) { progress.show("deciding: " + what); };
+
+  Verdict verdict;
+  Json claims;
+  const bool wants_solid = o.claims != "surface", wants_surface = o.claims != "solid";
+  const geom::Mesh& inner = o.inner ? approximation.mesh : original.mesh;
+  const geom::Mesh& outer = o.inner ? original.mesh : approximation.mesh;
+  verify::Inclusion inclusion;
+  if (o.cover) {
+    const verify::Cover cover = verify::verify_cover(original.mesh, set, options);
+    verdict.add("convexity", std::to_string(set.bodies.size()) + " convex bodies", cover.convex,
+                true);
+    claims["convex"] = to_json(cover.convex);
+    inclusion = cover.inclusion;
+  } else {
+    inclusion = verify::verify_inclusion(inner, outer, options);
+  }
+  const std::string inner_name = o.inner ? "the approximation" : "the original";
+  const std::string outer_name = o.cover   ? "the union of the bodies"
+                                 : o.inner ? "the original"
+                                           : "the approximation";
+  const std::string solid = inclusion.relative
+                                ? "nowhere does " + inner_name + " wind more often than " +
+                                      outer_name + " (both are open, with the same border)"
+                                : "the solid of " + inner_name + " is within that of " + outer_name;
+  verdict.add("solid claim", solid, inclusion.solid, wants_solid);
+  verdict.add("surface claim",
+              "every triangle of " + inner_name + " is within the solid of " + outer_name,
+              inclusion.surface, wants_surface);
+  claims["solid"] = to_json(inclusion.solid);
+  claims["solid"]["relative"] = inclusion.relative;
+  claims["surface"] = to_json(inclusion.surface);
+
+  const double diagonal = geom::bounding_box(original.mesh).diagonal();
+  if (epsilon) {
+    const double bound = epsilon->of(diagonal);
+    const auto measure = [&](const char* title, const char* key, const geom::Mesh& from,
+                             const geom::Mesh& to, bool to_solid) {
+      progress.show(std::string("deciding: ") + title);
+      verify::DistanceClaimOptions distance;
+      distance.to_solid = to_solid;
+      const verify::DistanceClaim claim = verify::verify_distance(from, to, bound, distance);
+      verdict.add(title, bound, claim);
+      claims[key] = to_json(claim);
+      claims[key]["bound"] = bound;
+    };
+    if (o.cover) {
+      const double with_margin = bound - set.margin;
+      if (!(with_margin > 0)) {
+        throw Error(ErrorCode::InvalidArgument,
+                    "--epsilon: not larger than the set's margin " + number(set.margin));
+      }
+      const verify::DistanceClaim claim = [&] {
+        progress.show("deciding: distance");
+        verify::DistanceClaimOptions distance;
+        distance.to_solid = inclusion.inner_closed;
+        return verify::verify_distance(approximation.mesh, original.mesh, with_margin, distance);
+      }();
+      verdict.add(inclusion.inner_closed ? "distance from the union to the solid"
+                                         : "distance from the union to the surface",
+                  with_margin, claim);
+      claims["distance"] = to_json(claim);
+      claims["distance"]["bound"] = bound;
+      claims["distance"]["margin"] = set.margin;
+      claims["distance"]["to_solid"] = inclusion.inner_closed;
+    } else {
+      measure("distance from approximation to original", "approximation_to_original",
+              approximation.mesh, original.mesh, false);
+      measure("distance from original to approximation", "original_to_approximation", original.mesh,
+              approximation.mesh, false);
+    }
+  }
+
+  const Answer answer = verdict.answer();
+  if (!o.witness.empty() && answer == Answer::Refuted) {
+    write_witness(o.witness, inner, outer, {&inclusion.solid, &inclusion.surface});
+  }
+  if (!o.common.report.empty()) {
+    const auto file = [](const std::string& path, const Input& input, bool closed,
+                         std::size_t open) {
+      return Json{{"file", path},
+                  {"sha256", input.sha256},
+                  {"triangles", input.mesh.triangles.size()},
+                  {"closed", closed},
+                  {"unbalanced_edges", open},
+                  {"notes", input.notes}};
+    };
+    const bool swap = o.inner;
+    Json json{
+        {"tool", "bound-verify"},
+        {"version", tools::version()},
+        {"relation", o.cover   ? "cover"
+                     : o.inner ? "inner"
+                               : "outer"},
+        {"verdict", name(answer)},
+        {"deciding_claims", o.claims},
+        {"original",
+         file(o.original, original, swap ? inclusion.outer_closed : inclusion.inner_closed,
+              swap ? inclusion.outer_open_edges : inclusion.inner_open_edges)},
+        {"approximation", file(o.approximation, approximation,
+                               swap ? inclusion.inner_closed : inclusion.outer_closed,
+                               swap ? inclusion.inner_open_edges : inclusion.outer_open_edges)},
+        {"bbox_diagonal", diagonal}};
+    if (o.cover) {
+      json["approximation"]["bodies"] = set.bodies.size();
+      json["approximation"]["margin"] = set.margin;
+    }
+    json["claims"] = claims;
+    json["triangles_without_area"] = inclusion.triangles_without_area;
+    json["contacts"] = inclusion.contacts;
+    json["samples"] = inclusion.samples;
+    json["resources"] = {{"user_seconds", tools::user_seconds()},
+                         {"peak_megabytes", tools::peak_megabytes()}};
+    tools::write_json(o.common.report, json);
+  }
+  if (!o.common.quiet) {
+    for (const std::string& line : verdict.lines()) std::cout << line << '\n';
+  }
+  if (answer == Answer::Undefined) {
+    throw Error(ErrorCode::InvalidInput,
+                inclusion.outer_closed
+                    ? (o.inner ? o.approximation : o.original) + ": not a closed mesh (" +
+                          std::to_string(inclusion.inner_open_edges) +
+                          " unbalanced edges); its solid is not defined. The surface claim is: "
+                          "--claims surface"
+                    : (o.inner ? o.original : o.approximation) + ": not a closed mesh (" +
+                          std::to_string(inclusion.outer_open_edges) +
+                          " unbalanced edges); nothing can lie inside it. Close its holes first");
+  }
+  if (!o.common.quiet) std::cout << name(answer) << '\n';
+  return exit_code(answer);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Decides from two files alone, in exact arithmetic, whether an approximation encloses the\n"
+      "original (--outer), is enclosed by it (--inner) or, a set of convex bodies, covers it "
+      "(--cover).\n"
+      "\n"
+      "Solid claim: points about which one mesh winds at least once are so in the other.\n"
+      "Surface claim: every triangle of the enclosed mesh lies in the solid of the enclosing one.\n"
+      "Both are answered; --claims says which decide the exit code.",
+      "bound-verify");
+  Options o;
+  CLI::Option_group* relation = app.add_option_group("Relation", "One of");
+  relation->add_flag("--outer", o.outer, "APPROXIMATION encloses ORIGINAL");
+  relation->add_flag("--inner", o.inner, "APPROXIMATION is enclosed by ORIGINAL");
+  relation->add_flag("--cover", o.cover,
+                     "APPROXIMATION is a set of convex bodies that covers ORIGINAL");
+  relation->require_option(1);
+  app.add_option("ORIGINAL", o.original, "The mesh that was approximated (- for standard input)")
+      ->required()
+      ->type_name("FILE");
+  app.add_option("APPROXIMATION", o.approximation,
+                 "The result: a mesh; with --cover a set (.glb, .obj, a folder of .stl)")
+      ->required()
+      ->type_name("FILE");
+  app.add_option("--claims", o.claims,
+                 "Claims that decide: all, solid or surface; those that mean nothing for the files "
+                 "do not count")
+      ->check(CLI::IsMember({"all", "solid", "surface"}))
+      ->capture_default_str()
+      ->type_name("NAME");
+  app.add_option(
+         "--epsilon", o.epsilon,
+         "Also decide that no distance exceeds this: a length, or a percentage of ORIGINAL's "
+         "bounding-box diagonal (0.5%); between the surfaces, both ways; with --cover from "
+         "the union to the solid (to the surface when ORIGINAL is open)")
+      ->type_name("LENGTH");
+  app.add_flag("--prepare", o.prepare,
+               "Judge against ORIGINAL as bmesh-decimate prepares it (parts that are inside out "
+               "turned, copies and walls dropped) instead of the file as it is");
+  app.add_option("--witness", o.witness,
+                 "When refuted, write the offending triangles to this mesh file")
+      ->type_name("FILE");
+  app.add_option("--input-format", o.original_format, "Format of ORIGINAL [by extension]")
+      ->type_name("NAME");
+  app.add_option("--approximation-format", o.approximation_format,
+                 "Format of APPROXIMATION [by extension]")
+      ->type_name("NAME");
+  app.add_option("--max-contacts", o.max_contacts,
+                 "Give up (exit code 7) beyond this many pairs of triangles that touch")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{4'000'000'000}))
+      ->capture_default_str()
+      ->type_name("N");
+  tools::add_common_options(app, o.common);
+  app.footer(
+      "Exit codes: 0 verified; 1 refuted; 2 usage; 3 bad input, or not closed where a claim needs "
+      "it; 4 output failed; 6 internal error; 7 undecided within limits.");
+  return tools::run(app, argc, argv, [&] { return check(o); });
+}
