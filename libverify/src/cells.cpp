@@ -49,8 +49,15 @@ Sign sign_on(const Triple<Approx>& approx_line, const Triple<Exact>& line,
 
 class Cutter {
  public:
-  Cutter(const Arrangement& arrangement, std::uint32_t face, std::size_t limit)
-      : scene_(arrangement.scene()), index_(face), face_(scene_.face(face)), limit_(limit) {}
+  Cutter(const Arrangement& arrangement, std::uint32_t face, std::size_t limit,
+         std::span<const std::uint32_t> settled)
+      : scene_(arrangement.scene()),
+        index_(face),
+        face_(scene_.face(face)),
+        limit_(limit),
+        settled_(settled.begin(), settled.end()) {
+    std::sort(settled_.begin(), settled_.end());
+  }
 
   void add(const Contacts::Cut& cut) {
     if (cut.coplanar) {
@@ -163,7 +170,7 @@ class Cutter {
     for (int e = 0; e < 3; ++e) {
       const std::uint32_t a = std::min(g.v[e], g.v[(e + 1) % 3]),
                           b = std::max(g.v[e], g.v[(e + 1) % 3]);
-      if (!edges_.emplace(a, b).second) continue;
+      if (!edges_.emplace(a, b).second || between_settled(gi, a, b)) continue;
       Segment s;
       s.p = barycentric(a);
       s.q = barycentric(b);
@@ -174,6 +181,20 @@ class Cutter {
       }
       segments_.push_back(std::move(s));
     }
+  }
+
+  /// Whether the only faces of g's chain along its edge are settled ones.
+  [[nodiscard]] bool between_settled(std::uint32_t gi, std::uint32_t a, std::uint32_t b) const {
+    if (settled_.empty()) return false;
+    int count = 0;
+    for (const std::uint32_t h : scene_.around(a)) {
+      const Face& face = scene_.face(h);
+      if (face.chain != scene_.face(gi).chain) continue;
+      if (std::find(face.v.begin(), face.v.end(), b) == face.v.end()) continue;
+      if (!std::binary_search(settled_.begin(), settled_.end(), h)) return false;
+      ++count;
+    }
+    return count == 2;
   }
 
   /// Cuts off what lies outside the face. @return false when nothing of the interior is left.
@@ -313,6 +334,7 @@ class Cutter {
   std::size_t limit_;
   std::vector<Segment> segments_;
   std::vector<std::vector<Triple<Exact>>> splits_;
+  std::vector<std::uint32_t> settled_;
   std::set<std::pair<std::uint32_t, std::uint32_t>> edges_;
 };
 
@@ -332,9 +354,9 @@ Vec3 position(const Scene& scene, const Spot& spot) {
 }
 
 std::vector<Spot> spots(const Arrangement& arrangement, std::uint32_t face, ChainMask mask,
-                        std::size_t limit) {
+                        std::size_t limit, std::span<const std::uint32_t> settled) {
   if (arrangement.whole(face, mask)) return {middle_spot(face)};
-  Cutter cutter(arrangement, face, limit);
+  Cutter cutter(arrangement, face, limit, settled);
   const int chain = arrangement.scene().face(face).chain;
   for (int c = 0; c < 2; ++c) {
     if ((mask & mask_of(c)) == 0) continue;

@@ -15,6 +15,7 @@
 namespace kaboum::verify {
 namespace {
 
+constexpr std::size_t kManyCoplanar = 1000;
 constexpr int kCut = std::numeric_limits<int>::min();  // no one value: the face is cut
 
 /// Per face of a chain the winding number that `value` finds on one side, for faces that the chains
@@ -110,12 +111,60 @@ class Decision {
   /// Whether the own winding number completes an offence, the other's having failed.
   static bool offends(int chain, int own) { return chain == kInside ? own >= 1 : own <= 0; }
 
+  /// Own winding numbers of a chain on one side of its faces.
+  std::vector<int> own_values(int chain, Side side) {
+    arrangement_.need_own(chain);
+    const auto own = [&](const Spot& spot) { return winding(scene_, spot, side, chain); };
+    return whole_values(arrangement_, chain, mask_of(chain), side, own, samples_);
+  }
+
+  /// Where faces of both chains lie in one plane, the own winding number of the other chain's face
+  /// settles the cell that it covers, which saves cutting along its edges. Worth while only where
+  /// there is much of that.
+  void prepare_settled(int chain) {
+    settled_.clear();
+    std::size_t coplanar = 0;
+    const std::uint32_t begin = scene_.begin(chain), end = scene_.end(chain);
+    const Contacts& contacts = arrangement_.contacts(chain, 1 - chain);
+    for (std::uint32_t f = begin; f < end; ++f) {
+      for (const Contacts::Cut& cut : contacts.cuts(f))
+        coplanar += static_cast<std::size_t>(cut.coplanar);
+    }
+    if (coplanar < kManyCoplanar) return;
+    const int other = 1 - chain;
+    const Side side = test_side(chain);
+    const std::vector<int> same = own_values(other, side), reversed = own_values(other, -side);
+    settled_.resize(same.size());
+    for (std::size_t i = 0; i < same.size(); ++i) {
+      settled_[i] =
+          static_cast<std::uint8_t>((same[i] != kCut && passes(chain, same[i]) ? 1 : 0) |
+                                    (reversed[i] != kCut && passes(chain, reversed[i]) ? 2 : 0));
+    }
+  }
+
+  /// Coplanar faces that settle the cells of f that they cover.
+  [[nodiscard]] std::vector<std::uint32_t> settled(std::uint32_t f) const {
+    std::vector<std::uint32_t> result;
+    if (settled_.empty()) return result;
+    const Face& face = scene_.face(f);
+    const int other = 1 - face.chain;
+    for (const Contacts::Cut& cut : arrangement_.contacts(face.chain, other).cuts(f)) {
+      if (!cut.coplanar) continue;
+      const bool upward = orient2d(face.axis, scene_.corner(cut.by, 0), scene_.corner(cut.by, 1),
+                                   scene_.corner(cut.by, 2)) == Sign::Positive;
+      const std::uint8_t wanted = upward == face.upward ? 1 : 2;
+      if ((settled_[cut.by - scene_.begin(other)] & wanted) != 0) result.push_back(cut.by);
+    }
+    return result;
+  }
+
   /// Faces with a cell that the other chain's winding number does not settle.
   std::vector<std::uint32_t> first_level(int chain) {
     const int other = 1 - chain;
     const Side side = test_side(chain);
     const auto value = [&](const Spot& spot) { return winding(scene_, spot, side, other); };
     other_values_ = whole_values(arrangement_, chain, mask_of(other), side, value, samples_);
+    prepare_settled(chain);
     const std::uint32_t begin = scene_.begin(chain);
     std::vector<char> fails(other_values_.size(), 0);
     oneapi::tbb::parallel_for(std::size_t{0}, fails.size(), [&](std::size_t i) {
@@ -125,7 +174,8 @@ class Decision {
         fails[i] = static_cast<char>(!passes(chain, other_values_[i]));
         return;
       }
-      for (const Spot& spot : spots(arrangement_, f, mask_of(other), options_.max_pieces)) {
+      for (const Spot& spot :
+           spots(arrangement_, f, mask_of(other), options_.max_pieces, settled(f))) {
         ++samples_;
         if (passes(chain, value(spot))) continue;
         fails[i] = 1;
@@ -143,15 +193,13 @@ class Decision {
   void second_level(int chain, const std::vector<std::uint32_t>& failing) {
     const int other = 1 - chain;
     const Side side = test_side(chain);
-    arrangement_.need_own(chain);
+    const std::vector<int> values = own_values(chain, side);
     const auto own = [&](const Spot& spot) { return winding(scene_, spot, side, chain); };
-    const std::vector<int> own_values =
-        whole_values(arrangement_, chain, mask_of(chain), side, own, samples_);
     const std::uint32_t begin = scene_.begin(chain);
     std::vector<char> bad(scene_.count(chain), 0);
     oneapi::tbb::parallel_for(std::size_t{0}, failing.size(), [&](std::size_t i) {
       const std::uint32_t f = failing[i];
-      const int own_value = own_values[f - begin], other_value = other_values_[f - begin];
+      const int own_value = values[f - begin], other_value = other_values_[f - begin];
       // The own number is the same all over the face and harmless.
       if (own_value != kCut && !offends(chain, own_value)) return;
       if (own_value != kCut && other_value != kCut) {
@@ -236,6 +284,9 @@ class Decision {
   const InclusionOptions& options_;
   Arrangement arrangement_;
   std::vector<int> other_values_;
+  /// Per face of the other chain: bit 0, its own chain settles the side that the faces in question
+  /// are tested on, if it is oriented like them; bit 1, if it is oriented the other way.
+  std::vector<std::uint8_t> settled_;
   std::atomic<std::size_t> samples_ = 0;
   Offences solid_, surface_;
 };

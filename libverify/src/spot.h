@@ -26,10 +26,15 @@ Spot middle_spot(std::uint32_t face);
 Vec3 position(const Scene& scene, const Spot& spot);
 
 /// One spot at least in each cell that the chains of `mask` cut the face into.
-/// @pre their contacts with the face's chain are known.
-/// @throws Error{LimitReached} when the face is cut into more than `limit` pieces of lines.
+///
+/// @param limit    of the number of pieces of lines on the face
+/// @param settled  cells that lie on one of these coplanar faces, each of them left whole by its
+/// own
+///   chain, may be left out: the result can be empty
+/// @pre the contacts of the mask's chains with the face's chain are known.
+/// @throws Error{LimitReached} beyond `limit`.
 std::vector<Spot> spots(const Arrangement& arrangement, std::uint32_t face, ChainMask mask,
-                        std::size_t limit);
+                        std::size_t limit, std::span<const std::uint32_t> settled = {});
 
 /// Winding number of a chain on one side of the face at the spot; exact.
 /// @pre the chain is closed.
