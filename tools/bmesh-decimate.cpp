@@ -6,6 +6,8 @@
 #include <kaboum/geom/topology.h>
 #include <kaboum/geom/winding.h>
 #include <kaboum/io/mesh_io.h>
+#include <kaboum/verify/distance.h>
+#include <kaboum/verify/inclusion.h>
 
 #include <cmath>
 #include <filesystem>
@@ -31,6 +33,7 @@ struct Options {
   std::string precision = "auto";
   double sharp_angle = 90;
   bool keep_convex = false;
+  bool verify = false;
   geom::PrepareOptions prepare;
   std::string log, depfile;
   tools::CommonOptions common;
@@ -106,6 +109,9 @@ void describe(CLI::App& app, Options& o) {
   app.add_flag("--require-closed", o.prepare.require_closed, "Refuse open meshes");
   app.add_flag("--keep-orientation", o.prepare.keep_orientation,
                "Never turn inconsistent triangles or inside-out components");
+  app.add_flag("--verify", o.verify,
+               "Decide enclosure and distances anew, exactly and by independent means, before the "
+               "result is written; a claim that does not hold gives exit code 1");
   app.add_option("--log", o.log, "Write the log of all steps, for bmesh-replay")->type_name("FILE");
   app.add_option("--depfile", o.depfile, "Write a Makefile dependency rule")->type_name("FILE");
   app.add_option("--input-format", o.input_format, "Format of INPUT [by extension]")
@@ -116,7 +122,9 @@ void describe(CLI::App& app, Options& o) {
   app.footer(
       "Give at least one of --vertices, --ratio and --epsilon; the first one reached stops.\n"
       "Exit codes: 0 done; 1 the wished number of vertices cannot be reached (the best result is\n"
-      "written) or float32 is too coarse here (nothing is written); 2 usage; 3 bad input;\n"
+      "written), float32 is too coarse here (nothing is written) or --verify found a claim that "
+      "does\n"
+      "not hold; 2 usage; 3 bad input;\n"
       "4 output failed; 5 feature not built; 6 internal error; 7 limit reached.");
 }
 
@@ -187,11 +195,14 @@ class Job {
     const io::Format input_format = tools::format_for(o_.input, o_.input_format, "--input-format");
     require(o_.precision != "double" || io::holds_double(output_format),
             "--precision double: the output format holds float32 only; write .ply, .obj or .off");
+    require(!o_.verify || o_.direction != bmesh::Direction::Any,
+            "--verify: direction 'any' claims nothing that could be verified");
     read(input_format);
     if (!choose_precision(output_format)) return tools::kNo;
     if (!decimate(output_format)) return tools::kNo;
     const std::vector<char> bytes = serialise(output_format);
-    if (epsilon_ || !o_.common.report.empty()) measure();
+    if (epsilon_ || o_.verify || !o_.common.report.empty()) measure();
+    if (o_.verify) verify(bytes, output_format);
     write_all(bytes);
     return conclude();
   }
@@ -360,6 +371,56 @@ class Job {
     for (auto* d : {&*to_result_, &*to_original_}) d->max_upper = std::min(d->max_upper, *epsilon_);
   }
 
+  /// Decides the claims anew from the bytes that will be written, by other means than those that
+  /// made them. A refuted certificate is our bug: nothing is written.
+  void verify(const std::vector<char>& bytes, io::Format format) {
+    const io::ReadResult back = io::parse_mesh(bytes, format, "the result");
+    const bool outer = o_.direction == bmesh::Direction::Outer;
+    const geom::Mesh &inner = outer ? prepared_.mesh : back.mesh,
+                     &enclosing = outer ? back.mesh : prepared_.mesh;
+    tools::Progress progress(o_.common.quiet);
+    verify::InclusionOptions options;
+    options.progress = [&](const std::string& what) { progress.show("verifying: " + what); };
+    verified_ = verify::verify_inclusion(inner, enclosing, options);
+    const auto failed = [](verify::Answer a) { return a == verify::Answer::Refuted; };
+    ensure(!failed(verified_->solid.answer),
+           "the verification refutes that the result is bounding; nothing is written");
+    progress.show("verifying: distances");
+    const double bound = std::max(to_result_->max_upper, to_original_->max_upper);
+    // The measured bound holds up to the rounding that both derive; some room keeps it decidable.
+    const double claimed = std::max(bound * (1 + 1e-6), 1e-9 * box_.diagonal());
+    for (const bool forth : {true, false}) {
+      const verify::DistanceClaim claim = verify::verify_distance(
+          forth ? prepared_.mesh : back.mesh, forth ? back.mesh : prepared_.mesh, claimed);
+      ensure(!failed(claim.answer),
+             "the verification refutes the measured distance; nothing is written");
+      verified_distance_.push_back(claim.answer);
+    }
+  }
+
+  [[nodiscard]] Json verification() const {
+    const auto name = [](verify::Answer a) {
+      return a == verify::Answer::Verified    ? "verified"
+             : a == verify::Answer::Refuted   ? "refuted"
+             : a == verify::Answer::Undecided ? "undecided"
+                                              : "undefined";
+    };
+    const auto claim = [&](const verify::Claim& c) {
+      Json json{{"answer", name(c.answer)}, {"reason", c.reason}};
+      if (c.witness) {
+        json["depth"] = c.witness->depth;
+        json["triangles"] = c.inner_triangles.size() + c.outer_triangles.size();
+      }
+      return json;
+    };
+    Json json{{"solid", claim(verified_->solid)},
+              {"relative", verified_->relative},
+              {"surface", claim(verified_->surface)},
+              {"distance_original_to_result", name(verified_distance_[0])},
+              {"distance_result_to_original", name(verified_distance_[1])}};
+    return json;
+  }
+
   [[nodiscard]] Json report() const {
     Json r;
     r["tool"] = "bmesh-decimate";
@@ -391,6 +452,7 @@ class Job {
     r["output"] = {{"file", o_.output}};
     r["output"].update(tools::to_json(geom::analyse(result_.mesh)));
     r["claims"] = claims();
+    if (verified_) r["verification"] = verification();
     const bmesh::DecimateStatistics& s = result_.statistics;
     r["certificate"] = {{"contractions", s.contractions},
                         {"moves", s.moves},
@@ -475,13 +537,41 @@ class Job {
       line += "; epsilon allows no fewer, " + std::to_string(*target_) + " were wished";
     say(line);
     warn_of_spikes();
+    const bool as_verified = !verified_ || conclude_verification();
     if (target_ && result_.stop == bmesh::Stop::Exhausted && s.vertices_out > *target_) {
       tools::log(false, "bmesh-decimate: " + o_.input + ": " + std::to_string(*target_) +
                             " vertices cannot be reached: no further contraction is possible at " +
                             std::to_string(s.vertices_out) + "; the result so far is written");
       return tools::kNo;
     }
-    return tools::kDone;
+    return as_verified ? tools::kDone : tools::kNo;
+  }
+
+  /// @return false if a claim is not verified, in which case it says which.
+  [[nodiscard]] bool conclude_verification() const {
+    using verify::Answer;
+    std::vector<std::string> open;
+    const auto look = [&](const std::string& what, Answer answer, const std::string& detail) {
+      if (answer == Answer::Refuted) open.push_back(what + " is false" + detail);
+      if (answer == Answer::Undecided) open.push_back(what + " is undecided" + detail);
+    };
+    look("the solid claim", verified_->solid.answer, "");
+    std::string depth;
+    if (verified_->surface.witness) {
+      depth = ": " + std::to_string(verified_->surface.inner_triangles.size()) +
+              " triangles bound no solid of their own and lie outside, as deep as " +
+              formatted(verified_->surface.witness->depth);
+    }
+    look("the surface claim", verified_->surface.answer, depth);
+    for (const Answer answer : verified_distance_) look("a distance", answer, "");
+    if (open.empty()) {
+      say("verified from the written bytes");
+      return true;
+    }
+    for (const std::string& text : open) {
+      tools::log(false, "bmesh-decimate: " + o_.output + ": verified, but " + text);
+    }
+    return false;
   }
 
   /// Without --epsilon nothing keeps vertices near the original, and few vertices mean spikes.
@@ -507,6 +597,8 @@ class Job {
   bmesh::DecimateResult result_;
   bmesh::Log log_;
   std::optional<geom::DirectedDistance> to_result_, to_original_;
+  std::optional<verify::Inclusion> verified_;
+  std::vector<verify::Answer> verified_distance_;
   std::vector<std::string> notes_;
   double seconds_read_ = 0, seconds_decimated_ = 0;
 };
