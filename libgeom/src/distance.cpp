@@ -99,24 +99,29 @@ DistanceBounds point_triangle_distance(const Vec3& p, const Vec3& a, const Vec3&
   return bounds_at_origin(a - p, b - p, c - p);
 }
 
-DistanceQuery::DistanceQuery(const Mesh& mesh) : bvh_(mesh) {
+Vec3 nearest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const auto [s, t] = closest_weights(a - p, b - p, c - p);
+  return a + s * (b - a) + t * (c - a);
+}
+
+TriangleSearch::TriangleSearch(const Mesh& mesh, std::span<const std::uint32_t> order) {
   if (mesh.empty()) throw Error(ErrorCode::InvalidInput, "distance to a mesh without triangles");
-  const auto order = bvh_.order();
   corners_.reserve(order.size());
   position_.resize(order.size());
   for (std::uint32_t i = 0; i < order.size(); ++i) {
     const Triangle& t = mesh.triangles[order[i]];
     corners_.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
     position_[order[i]] = i;
+    for (const Vec3& corner : corners_.back()) box_.extend(corner);
   }
 }
 
-DistanceBounds DistanceQuery::to_triangle(const Vec3& p, std::uint32_t triangle) const {
-  const auto& [a, b, c] = corners_[position_[triangle]];
-  return point_triangle_distance(p, a, b, c);
-}
+DistanceQuery::DistanceQuery(const Mesh& mesh) : DistanceQuery(mesh, Bvh(mesh)) {}
 
-DistanceQuery::Nearest DistanceQuery::nearest(const Vec3& p, std::uint32_t hint) const {
+DistanceQuery::DistanceQuery(const Mesh& mesh, Bvh bvh)
+    : TriangleSearch(mesh, bvh.order()), bvh_(std::move(bvh)) {}
+
+TriangleSearch::Nearest DistanceQuery::nearest(const Vec3& p, std::uint32_t hint) const {
   Nearest best{0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   double best_squared = best.upper;
   const auto consider = [&](std::uint32_t place, std::uint32_t triangle) {

@@ -14,8 +14,8 @@ namespace {
 struct Piece {
   ConvexPolygon polygon;
   double upper = std::numeric_limits<double>::infinity();
-  std::uint32_t nearest = DistanceQuery::kNone;   ///< to the centroid
-  std::uint32_t at_worst = DistanceQuery::kNone;  ///< to the corner farthest from that
+  std::uint32_t nearest = TriangleSearch::kNone;   ///< to the centroid
+  std::uint32_t at_worst = TriangleSearch::kNone;  ///< to the corner farthest from that
 };
 
 /// What one round finds out about a piece.
@@ -26,7 +26,7 @@ struct Finding {
 
 class BranchAndBound {
  public:
-  BranchAndBound(const Mesh& a, const DistanceQuery& b, const DistanceOptions& options)
+  BranchAndBound(const Mesh& a, const TriangleSearch& b, const DistanceOptions& options)
       : a_(a), b_(b), options_(options) {
     Box3 box = bounding_box(a);
     magnitude_ = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
@@ -48,7 +48,7 @@ class BranchAndBound {
         chunk.push_back({{a_.vertices[tri[0]], a_.vertices[tri[1]], a_.vertices[tri[2]]},
                          std::numeric_limits<double>::infinity(),
                          nearest_to_vertex_[tri[0]],
-                         DistanceQuery::kNone});
+                         TriangleSearch::kNone});
       }
       evaluate(chunk);
       keep_unsettled(chunk);
@@ -85,7 +85,7 @@ class BranchAndBound {
   }
 
   void measure_vertices() {
-    nearest_to_vertex_.assign(a_.vertices.size(), DistanceQuery::kNone);
+    nearest_to_vertex_.assign(a_.vertices.size(), TriangleSearch::kNone);
     std::vector<double> lower(a_.vertices.size(), 0);
     std::vector<char> used(a_.vertices.size(), 0);
     for (const Triangle& t : a_.triangles)
@@ -94,7 +94,7 @@ class BranchAndBound {
     constexpr std::size_t kBlock = 64;
     const std::size_t blocks = (a_.vertices.size() + kBlock - 1) / kBlock;
     tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
-      std::uint32_t hint = DistanceQuery::kNone;
+      std::uint32_t hint = TriangleSearch::kNone;
       const std::size_t last = std::min((block + 1) * kBlock, a_.vertices.size());
       for (std::size_t v = block * kBlock; v < last; ++v) {
         if (used[v] == 0) continue;
@@ -205,13 +205,13 @@ class BranchAndBound {
         cuts = cut_by_prism(p.polygon, a, b, c, round % 4 == 0);
       }
       for (int i = 0; i < cuts.count; ++i)
-        out.push_back({cuts.piece[i], p.upper, p.nearest, DistanceQuery::kNone});
+        out.push_back({cuts.piece[i], p.upper, p.nearest, TriangleSearch::kNone});
     }
     return out;
   }
 
   const Mesh& a_;
-  const DistanceQuery& b_;
+  const TriangleSearch& b_;
   const DistanceOptions& options_;
   double magnitude_ = 0;
   double absolute_gap_ = 0;
@@ -222,7 +222,7 @@ class BranchAndBound {
 
 }  // namespace
 
-DirectedDistance directed_distance(const Mesh& a, const DistanceQuery& b,
+DirectedDistance directed_distance(const Mesh& a, const TriangleSearch& b,
                                    const DistanceOptions& options) {
   if (a.empty()) throw Error(ErrorCode::InvalidInput, "distance from a mesh without triangles");
   return BranchAndBound(a, b, options).run();

@@ -49,8 +49,9 @@ double brightness(const Vec3& normal, const Camera& camera) {
          0.16 * sky;
 }
 
+/// `colour` holds the corners' colours.
 void fill_triangle(Buffer& buffer, const Vec3& a, const Vec3& b, const Vec3& c,
-                   const Colour& colour) {
+                   const std::array<Colour, 3>& colour) {
   const double area = (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
   if (area == 0) return;
   const double inverse = 1 / area;
@@ -73,7 +74,9 @@ void fill_triangle(Buffer& buffer, const Vec3& a, const Vec3& b, const Vec3& c,
       const std::size_t i = buffer.index(x, y);
       if (z >= buffer.depth[i]) continue;
       buffer.depth[i] = z;
-      buffer.colour[i] = colour;
+      for (std::size_t k = 0; k < 3; ++k)
+        buffer.colour[i][k] =
+            static_cast<float>(u * colour[0][k] + v * colour[1][k] + (1 - u - v) * colour[2][k]);
     }
   }
 }
@@ -195,11 +198,15 @@ void draw_mesh(Image& image, int left, int top, int width, int height, const geo
     const Vec3 normal = (b - a).cross(c - a).normalized();
     normals.push_back(normal);
     const bool front = normal.dot(camera.eye() - a) >= 0;
-    const Colour base = front ? style.surface : Colour{0.62F, 0.36F, 0.34F};
-    fill_triangle(buffer, projected[t[0]], projected[t[1]], projected[t[2]],
-                  times(base, brightness(front ? normal : Vec3(-normal), camera)));
+    const double light = brightness(front ? normal : Vec3(-normal), camera);
+    std::array<Colour, 3> base;
+    base.fill(times(front ? style.surface : Colour{0.62F, 0.36F, 0.34F}, light));
+    if (!style.vertex_colours.empty())
+      for (std::size_t k = 0; k < 3; ++k) base[k] = times(style.vertex_colours[t[k]], light);
+    fill_triangle(buffer, projected[t[0]], projected[t[1]], projected[t[2]], base);
   }
-  draw_edges(buffer, mesh, projected, normals, 8e-4, style.edges);
+  if (style.edges || style.outlines)
+    draw_edges(buffer, mesh, projected, normals, 8e-4, style.edges);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       Colour& pixel = image.at(left + x, top + y);

@@ -4,6 +4,8 @@
 
 #include <kaboum/geom/mesh.h>
 
+#include <span>
+
 namespace kaboum::picture {
 
 /// Where the camera stands: a long way off, looking at the box's centre, z upwards.
@@ -32,7 +34,10 @@ class Camera {
 
 struct Style {
   Colour surface{0.66F, 0.68F, 0.71F};
-  bool edges = false;  ///< draw every edge; otherwise only sharp ones and borders
+  bool edges = false;    ///< draw every edge; otherwise only sharp ones and borders
+  bool outlines = true;  ///< draw sharp edges and borders
+  /// One colour per vertex, blended across triangles, instead of `surface`; empty: none.
+  std::span<const Colour> vertex_colours;
 };
 
 /// Draws the mesh into the panel whose left edge is at `left`: flat shading, z-buffer, two by two

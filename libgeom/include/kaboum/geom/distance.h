@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 namespace kaboum::geom {
@@ -26,8 +27,13 @@ struct DistanceBounds {
 /// @pre coordinates of magnitude below 1e70; differences that matter above 1e-70.
 DistanceBounds point_triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
-/// Distance queries against a fixed set of triangles.
-class DistanceQuery {
+/// The point of the triangle (a, b, c) nearest to p, rounded; for reports.
+Vec3 nearest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
+
+/// A search structure over a fixed set of triangles that finds the nearest one.
+///
+/// What branch and bound needs; DistanceQuery is the library's own, others may be given instead.
+class TriangleSearch {
  public:
   struct Nearest {
     std::uint32_t triangle;  ///< a triangle whose distance is ≤ upper
@@ -36,13 +42,46 @@ class DistanceQuery {
   };
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
+  TriangleSearch(const TriangleSearch&) = delete;
+  TriangleSearch& operator=(const TriangleSearch&) = delete;
+  virtual ~TriangleSearch() = default;
+
+  /// Nearest triangle; `hint`, a triangle likely to be near, only makes it faster: the bracket's
+  /// width does not depend on it beyond rounding. Safe to call from several threads.
+  [[nodiscard]] virtual Nearest nearest(const Vec3& p, std::uint32_t hint = kNone) const = 0;
+
+  /// The triangle's corners.
+  [[nodiscard]] const std::array<Vec3, 3>& corners(std::uint32_t triangle) const {
+    return corners_[position_[triangle]];
+  }
+
+  /// Bracket of the distance to one triangle.
+  [[nodiscard]] DistanceBounds to_triangle(const Vec3& p, std::uint32_t triangle) const {
+    const auto& [a, b, c] = corners(triangle);
+    return point_triangle_distance(p, a, b, c);
+  }
+
+  [[nodiscard]] const Box3& box() const { return box_; }
+  [[nodiscard]] std::size_t triangle_count() const { return corners_.size(); }
+
+ protected:
+  /// Copies the triangles' corners, in `order` (all indices once).
+  /// @throws Error{InvalidInput} if the mesh has no triangles.
+  TriangleSearch(const Mesh& mesh, std::span<const std::uint32_t> order);
+
+  std::vector<std::array<Vec3, 3>> corners_;  // in the given order
+  std::vector<std::uint32_t> position_;       // triangle → place in corners_
+  Box3 box_;
+};
+
+/// Distance queries through the library's own hierarchy.
+class DistanceQuery final : public TriangleSearch {
+ public:
   /// Copies what it needs of the mesh.
   /// @throws Error{InvalidInput} if the mesh has no triangles.
   explicit DistanceQuery(const Mesh& mesh);
 
-  /// Nearest triangle; `hint`, a triangle likely to be near, only makes it faster: the bracket's
-  /// width does not depend on it beyond rounding.
-  [[nodiscard]] Nearest nearest(const Vec3& p, std::uint32_t hint = kNone) const;
+  [[nodiscard]] Nearest nearest(const Vec3& p, std::uint32_t hint = kNone) const override;
 
   /// Some triangle whose distance from p is certainly ≤ radius, starting the search at `hint`;
   /// kNone if there is none (or, within rounding of the radius, if it was missed).
@@ -56,21 +95,10 @@ class DistanceQuery {
   [[nodiscard]] bool all_within(const ConvexPolygon& polygon, double radius,
                                 int max_pieces = 256) const;
 
-  /// The triangle's corners.
-  [[nodiscard]] const std::array<Vec3, 3>& corners(std::uint32_t triangle) const {
-    return corners_[position_[triangle]];
-  }
-
-  /// Bracket of the distance to one triangle.
-  [[nodiscard]] DistanceBounds to_triangle(const Vec3& p, std::uint32_t triangle) const;
-
-  [[nodiscard]] const Box3& box() const { return bvh_.nodes()[0].box; }
-  [[nodiscard]] std::size_t triangle_count() const { return corners_.size(); }
-
  private:
+  DistanceQuery(const Mesh& mesh, Bvh bvh);
+
   Bvh bvh_;
-  std::vector<std::array<Vec3, 3>> corners_;  // in the tree's order
-  std::vector<std::uint32_t> position_;       // triangle → place in corners_
 };
 
 /// One-sided Hausdorff distance sup_{x∈A} d(x, B) between surfaces. [length]
@@ -98,7 +126,7 @@ struct DistanceOptions {
 ///
 /// @pre A and B have triangles and finite coordinates; B is given as a query.
 /// @throws Error{InvalidInput} when A has no triangles.
-DirectedDistance directed_distance(const Mesh& a, const DistanceQuery& b,
+DirectedDistance directed_distance(const Mesh& a, const TriangleSearch& b,
                                    const DistanceOptions& options = {});
 
 }  // namespace kaboum::geom

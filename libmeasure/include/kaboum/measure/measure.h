@@ -1,0 +1,50 @@
+#pragma once
+
+#include <kaboum/geom/distance.h>
+#include <kaboum/measure/search.h>
+
+#include <cstdint>
+#include <functional>
+
+namespace kaboum::measure {
+
+/// An estimate from random samples and its standard error (one standard deviation).
+struct Estimate {
+  double value = 0;
+  double standard_error = 0;
+};
+
+/// Mean and root mean square of d(x, B) over the area of A. [length]
+struct Sampled {
+  Estimate mean, rms;
+  std::uint64_t samples = 0;
+};
+
+/// Stratified sampling: A's triangles, one after the other, make a strip of length area(A), which
+/// is cut into samples/2 equal strata; each gets two independent points, uniformly distributed,
+/// whose difference estimates the variance inside the stratum. Random numbers depend on the seed
+/// and the stratum alone, so the result does not depend on the number of threads.
+///
+/// @param samples  rounded up to an even number, at least 2. A surface without area is sampled as
+/// if
+///   its triangles had equal areas.
+/// @throws Error{InvalidInput} when A has no triangles.
+Sampled sample_distances(const geom::Mesh& a, const geom::TriangleSearch& b, std::uint64_t samples,
+                         std::uint64_t seed);
+
+/// Bracket of the smallest distance between two surfaces, and a pair of nearest points.
+struct Minimum {
+  double lower = 0;
+  double upper = 0;
+  geom::Vec3 on_a = geom::Vec3::Zero();  ///< |on_a − on_b| ≤ upper
+  geom::Vec3 on_b = geom::Vec3::Zero();
+  std::uint64_t pairs = 0;  ///< pairs of triangles that were looked at
+};
+
+/// min over x ∈ A, y ∈ B of |x − y|: dual traversal of two hierarchies, triangle pairs bracketed by
+/// planes that separate them. Exactly [0, 0] when the surfaces have a point in common, which is
+/// decided exactly.
+/// @throws Error{InvalidInput} when a mesh has no triangles.
+Minimum minimum_distance(const geom::Mesh& a, const geom::Mesh& b);
+
+}  // namespace kaboum::measure

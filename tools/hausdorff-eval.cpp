@@ -1,0 +1,528 @@
+#include <kaboum/geom/convex_set.h>
+#include <kaboum/geom/distance.h>
+#include <kaboum/geom/error.h>
+#include <kaboum/geom/topology.h>
+#include <kaboum/io/convex_io.h>
+#include <kaboum/io/mesh_io.h>
+#include <kaboum/measure/measure.h>
+#include <kaboum/measure/search.h>
+#include <kaboum/measure/surface.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <sstream>
+
+#include "cli.h"
+#include "picture/heatmap.h"
+#include "picture/png_file.h"
+
+namespace {
+
+using namespace kaboum;  // the tool's own names are few
+using geom::Vec3;
+using tools::Json;
+
+struct Options {
+  std::string a, b, input_format, a_as = "auto", b_as = "auto";
+  double gap = 1e-3;
+  std::uint64_t samples = 100000;
+  std::string backend = "embree";
+  std::string at_most;
+  std::string csv, heatmap;
+  int width = 1600, height = 800;
+  tools::CommonOptions common;
+};
+
+void describe(CLI::App& app, Options& o) {
+  app.add_option("A", o.a, "Mesh or convex set (- for stdin)")->required()->type_name("A");
+  app.add_option("B", o.b, "The other one")->required()->type_name("B");
+  app.add_option(
+         "--gap", o.gap,
+         "Wished relative width of the certified intervals, from 1e-9 to 1; never finer than "
+         "1e-9 of the diagonal")
+      ->check(CLI::Range(1e-9, 1.0).description(""))
+      ->capture_default_str()
+      ->type_name("G");
+  app.add_option("--samples", o.samples, "Points for mean and rms, each way, from 2 to 1e9")
+      ->check(CLI::Range(std::uint64_t{2}, std::uint64_t{1000000000}).description(""))
+      ->capture_default_str()
+      ->type_name("N");
+  const std::string kinds = "auto|mesh|set";
+  for (auto* kind : {&o.a_as, &o.b_as})
+    app.add_option(
+           kind == &o.a_as ? "--a-as" : "--b-as", *kind,
+           std::string(kind == &o.a_as ? "A" : "B") +
+               " is a mesh, or a set of convex bodies of which the union's boundary counts; "
+               "auto: a set if it is a folder, a container, or a GLB or OBJ file with "
+               "several bodies that are all convex [auto]")
+        ->check(CLI::IsMember({"auto", "mesh", "set"}).description(""))
+        ->type_name(kinds);
+  app.add_option(
+         "--at-most", o.at_most,
+         "Exit with 1 unless the Hausdorff distance is certainly at most this: a length, or "
+         "a percentage of the diagonal, as in 0.5%")
+      ->check([](const std::string& s) {
+        return tools::parse_length(s) ? std::string()
+                                      : "must be a positive number, or a percentage such as 0.5%";
+      })
+      ->type_name("LENGTH|P%");
+  app.add_option("--backend", o.backend, "Search structure: both give certified intervals [embree]")
+      ->check(CLI::IsMember({"embree", "own"}).description(""))
+      ->type_name("embree|own");
+  app.add_option("--csv", o.csv, "Write the numbers as CSV, a line each way (- for stdout)")
+      ->type_name("FILE");
+  app.add_option("--heatmap", o.heatmap,
+                 "Colours by distance: .png draws A and B with a scale, .ply is A with colours and "
+                 "the distance as `quality`")
+      ->type_name("FILE");
+  app.add_option("--input-format", o.input_format, "Format of - and of unknown extensions")
+      ->type_name("NAME");
+  tools::add_common_options(app, o.common);
+  app.footer(
+      "Prints one-sided distances both ways and the Hausdorff distance, in the files' unit and\n"
+      "relative to the diagonal of both bounding boxes. min and max are certified intervals; mean\n"
+      "and rms are estimates with their standard error.\n"
+      "Exit codes: 0 done; 1 --at-most does not hold (or is not certain); 2 usage; 3 bad input;\n"
+      "4 output failed; 5 feature not built; 6 internal error; 7 an interval stayed wider than\n"
+      "wished (it is printed and holds all the same), or out of memory.");
+}
+
+/// One of the two inputs as a surface.
+struct Side {
+  std::string file, sha256;
+  bool set = false;
+  std::size_t bodies = 0;
+  geom::Mesh mesh;
+  double error = 0;  ///< how far `mesh` may be from the surface that is meant
+  std::vector<std::string> notes;
+};
+
+/// One-sided results.
+struct OneWay {
+  geom::DirectedDistance max;
+  Vec3 nearest = Vec3::Zero();  ///< on the other surface, to max.at
+  measure::Sampled sampled;
+};
+
+std::string formatted(double x, int digits = 6) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.*g", digits, x);
+  return text;
+}
+
+class Job {
+ public:
+  explicit Job(Options options) : o_(std::move(options)), progress_(o_.common.quiet) {}
+
+  int run() {
+    check_files();
+    start_ = now();
+    a_ = read(o_.a, o_.a_as);
+    b_ = read(o_.b, o_.b_as);
+    check_range();
+    read_ = now();
+    measure();
+    measured_ = now();
+    write();
+    return conclude();
+  }
+
+ private:
+  using Time = std::chrono::steady_clock::time_point;
+  static Time now() { return std::chrono::steady_clock::now(); }
+  static double seconds(Time from, Time to) {
+    return std::chrono::duration<double>(to - from).count();
+  }
+
+  static void require(bool condition, const std::string& message) {
+    if (!condition) throw Error(ErrorCode::InvalidArgument, message);
+  }
+
+  void check_files() const {
+    require(o_.a != "-" || o_.b != "-", "A and B cannot both be standard input");
+    std::vector<std::pair<std::string, std::string>> out{
+        {"--report", o_.common.report}, {"--csv", o_.csv}, {"--heatmap", o_.heatmap}};
+    std::erase_if(out, [](const auto& f) { return f.second.empty(); });
+    const auto place = [](const std::string& file) {
+      return file == "-" ? std::filesystem::path("-")
+                         : std::filesystem::weakly_canonical(std::filesystem::absolute(file));
+    };
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      for (std::size_t j = i + 1; j < out.size(); ++j)
+        require(place(out[i].second) != place(out[j].second),
+                out[i].first + " and " + out[j].first + " cannot both be " + out[i].second);
+      for (const std::string& input : {o_.a, o_.b})
+        require(input == "-" || place(out[i].second) != place(input),
+                out[i].first + " would overwrite the input " + input);
+    }
+    if (o_.heatmap.empty()) return;
+    const std::string extension = std::filesystem::path(o_.heatmap).extension().string();
+    require(extension == ".png" || extension == ".ply", "--heatmap: give a .png or .ply file");
+  }
+
+  void say(const std::string& text) const { tools::log(o_.common.quiet, text); }
+
+  Side read(const std::string& path, const std::string& as) {
+    progress_.show("reading " + path);
+    Side side;
+    side.file = path;
+    const bool folder = path != "-" && std::filesystem::is_directory(path);
+    std::optional<io::Format> format;
+    if (!folder) {
+      const bool known =
+          path != "-" &&
+          io::format_from_name(std::filesystem::path(path).extension().string()).has_value();
+      format = tools::format_for(path, known ? std::string() : o_.input_format, "--input-format");
+    }
+    require(!folder || as != "mesh",
+            path + " is a folder, which holds a set of bodies, not a mesh");
+    const bool may_be_set = folder || format == io::Format::Glb || format == io::Format::Obj;
+    if (as == "set" || (as == "auto" && may_be_set)) {
+      io::SetReadDetails details;
+      std::vector<char> bytes;
+      geom::ConvexSet set;
+      if (folder) {
+        set = io::read_convex_set(path, {}, &details);
+        bytes = details.bytes;
+      } else {
+        bytes = io::read_file(path);
+        set = io::parse_convex_set(bytes, *format, path, &details,
+                                   std::filesystem::path(path).parent_path());
+      }
+      const bool is_set = as == "set" || folder || details.has_record ||
+                          (set.bodies.size() > 1 && !geom::find_not_convex(set));
+      if (!is_set) return read_mesh(std::move(side), bytes, *format);
+      side.sha256 = io::sha256(bytes);
+      side.notes = details.notes;
+      return as_set(std::move(side), set);
+    }
+    return read_mesh(std::move(side), io::read_file(path), *format);
+  }
+
+  Side read_mesh(Side side, const std::vector<char>& bytes, io::Format format) const {
+    io::ReadResult result =
+        io::parse_mesh(bytes, format, side.file, std::filesystem::path(side.file).parent_path());
+    side.sha256 = io::sha256(bytes);
+    side.notes = result.notes;
+    side.mesh = std::move(result.mesh);
+    if (side.mesh.empty())
+      throw Error(ErrorCode::InvalidInput, side.file + ": no triangles to measure to");
+    return side;
+  }
+
+  Side as_set(Side side, const geom::ConvexSet& set) const {
+    if (set.bodies.empty())
+      throw Error(ErrorCode::InvalidInput, side.file + ": the empty set has no distance");
+    side.set = true;
+    side.bodies = set.bodies.size();
+    try {
+      measure::UnionBoundary boundary = measure::union_boundary(set);
+      side.mesh = std::move(boundary.mesh);
+      side.error = boundary.error;
+    } catch (const Error& error) {
+      throw Error(error.code(), side.file + ": " + error.what());
+    }
+    if (set.margin > 0)
+      throw Error(
+          ErrorCode::InvalidInput,
+          side.file + ": sets with a margin are not measured yet; make the offset explicit");
+    return side;
+  }
+
+  /// The distance bounds hold below 1e60 only.
+  void check_range() const {
+    for (const Side* side : {&a_, &b_}) {
+      const geom::Box3 box = geom::bounding_box(side->mesh);
+      if (box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).maxCoeff() > 1e60)
+        throw Error(ErrorCode::InvalidInput,
+                    side->file + ": coordinates beyond 1e60; scale the mesh");
+    }
+    geom::Box3 box = geom::bounding_box(a_.mesh);
+    box.extend(geom::bounding_box(b_.mesh));
+    if (box.diagonal() > 0 && box.diagonal() < 1e-60)
+      throw Error(ErrorCode::InvalidInput,
+                  a_.file + ", " + b_.file + ": extent below 1e-60; scale the meshes");
+  }
+
+  void measure() {
+    geom::Box3 box = geom::bounding_box(a_.mesh);
+    box.extend(geom::bounding_box(b_.mesh));
+    diagonal_ = box.diagonal();
+    const auto backend = o_.backend == "own" ? measure::Backend::Own : measure::Backend::Embree;
+    progress_.show("building search structures");
+    const auto search_a = measure::make_search(a_.mesh, backend);
+    const auto search_b = measure::make_search(b_.mesh, backend);
+    built_ = now();
+    to_b_ = one_way("A to B", a_, *search_b);
+    to_a_ = one_way("B to A", b_, *search_a);
+    progress_.show("smallest distance");
+    min_ = measure::minimum_distance(a_.mesh, b_.mesh);
+    // Surfaces that stand for others at a distance of at most `error`.
+    const double error = a_.error + b_.error;
+    for (OneWay* way : {&to_b_, &to_a_}) {
+      way->max.max_lower = std::max(0.0, way->max.max_lower - error);
+      way->max.max_upper += error;
+    }
+    if (error > 0) {
+      min_.lower = std::max(0.0, min_.lower - error);
+      min_.upper += error;
+    }
+    if (!o_.heatmap.empty()) make_heatmap(*search_a, *search_b);
+  }
+
+  OneWay one_way(const char* name, const Side& from, const geom::TriangleSearch& to) {
+    OneWay way;
+    geom::DistanceOptions d;
+    d.relative_gap = o_.gap;
+    progress_.show(std::string(name) + ": largest distance");
+    way.max = geom::directed_distance(from.mesh, to, d);
+    const auto& [a, b, c] = to.corners(to.nearest(way.max.at).triangle);
+    way.nearest = geom::nearest_point(way.max.at, a, b, c);
+    progress_.show(std::string(name) + ": sampling");
+    way.sampled = measure::sample_distances(from.mesh, to, o_.samples, o_.common.seed);
+    return way;
+  }
+
+  [[nodiscard]] double hausdorff_lower() const {
+    return std::max(to_b_.max.max_lower, to_a_.max.max_lower);
+  }
+  [[nodiscard]] double hausdorff_upper() const {
+    return std::max(to_b_.max.max_upper, to_a_.max.max_upper);
+  }
+
+  /// Triangles of A cut into parts of at most a hundredth of the diagonal, so that colours show
+  /// what happens inside them.
+  [[nodiscard]] geom::Mesh refined(const geom::Mesh& mesh) const {
+    geom::Mesh out;
+    out.vertices = mesh.vertices;
+    const double limit = diagonal_ / 100;
+    for (const geom::Triangle& t : mesh.triangles) {
+      const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+      const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+      const int n = limit > 0 ? static_cast<int>(std::ceil(longest / limit)) : 1;
+      if (n <= 1) {
+        out.triangles.push_back(t);
+        continue;
+      }
+      const auto first = static_cast<std::uint32_t>(out.vertices.size());
+      for (int i = 0; i <= n; ++i)
+        for (int j = 0; j <= n - i; ++j)
+          out.vertices.emplace_back(a + (static_cast<double>(i) / n) * (b - a) +
+                                    (static_cast<double>(j) / n) * (c - a));
+      const auto at = [&](int i, int j) {
+        return first + static_cast<std::uint32_t>(i * (n + 1) - i * (i - 1) / 2 + j);
+      };
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n - i; ++j) {
+          out.triangles.push_back({at(i, j), at(i + 1, j), at(i, j + 1)});
+          if (j + 1 < n - i)
+            out.triangles.push_back({at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
+        }
+    }
+    return out;
+  }
+
+  static std::vector<double> distances(const geom::Mesh& mesh, const geom::TriangleSearch& to) {
+    std::vector<double> values(mesh.vertices.size(), 0);
+    std::uint32_t hint = geom::TriangleSearch::kNone;
+    for (std::size_t v = 0; v < values.size(); ++v) {
+      const auto nearest = to.nearest(mesh.vertices[v], hint);
+      hint = nearest.triangle;
+      values[v] = nearest.upper;
+    }
+    return values;
+  }
+
+  void make_heatmap(const geom::TriangleSearch& search_a, const geom::TriangleSearch& search_b) {
+    progress_.show("colours");
+    const bool ply = std::filesystem::path(o_.heatmap).extension() == ".ply";
+    const geom::Mesh a = refined(a_.mesh);
+    const std::vector<double> to_b = distances(a, search_b);
+    if (ply) {
+      heatmap_ = picture::heatmap_ply(a, to_b, to_b_.max.max_upper);
+      return;
+    }
+    const geom::Mesh b = refined(b_.mesh);
+    const std::vector<double> to_a = distances(b, search_a);
+    heatmap_ = picture::encode_png(
+        picture::draw_heatmap({{&a, &to_b, "A: distance to B"}, {&b, &to_a, "B: distance to A"}},
+                              hausdorff_upper(), diagonal_, o_.width, o_.height));
+  }
+
+  // -- output ------------------------------------------------------------------------------------
+
+  [[nodiscard]] double relative(double x) const { return diagonal_ > 0 ? x / diagonal_ : 0; }
+
+  [[nodiscard]] std::string table() const {
+    std::ostringstream out;
+    const auto row = [&](const char* name, const std::string& ab, const std::string& ba) {
+      char line[200];
+      std::snprintf(line, sizeof line, "%-6s %-34s %-34s\n", name, ab.c_str(), ba.c_str());
+      std::string text = line;
+      while (text.size() > 1 && text[text.size() - 2] == ' ') text.erase(text.size() - 2, 1);
+      out << text;
+    };
+    const auto percent = [&](double x) { return formatted(100 * relative(x), 4) + "%"; };
+    const auto interval = [&](double lower, double upper) {
+      return "[" + formatted(lower) + ", " + formatted(upper) + "]";
+    };
+    const auto estimate = [](const measure::Estimate& e) {
+      return formatted(e.value) + " ± " + formatted(e.standard_error, 2);
+    };
+    out << (a_.set || b_.set ? "surface to surface (sets: boundary of the union)"
+                             : "surface to surface")
+        << ", diagonal " << formatted(diagonal_) << '\n';
+    row("", "A to B", "B to A");
+    row("min", interval(min_.lower, min_.upper), interval(min_.lower, min_.upper));
+    row("mean", estimate(to_b_.sampled.mean), estimate(to_a_.sampled.mean));
+    row("", percent(to_b_.sampled.mean.value), percent(to_a_.sampled.mean.value));
+    row("rms", estimate(to_b_.sampled.rms), estimate(to_a_.sampled.rms));
+    row("", percent(to_b_.sampled.rms.value), percent(to_a_.sampled.rms.value));
+    row("max", interval(to_b_.max.max_lower, to_b_.max.max_upper),
+        interval(to_a_.max.max_lower, to_a_.max.max_upper));
+    row("", percent(to_b_.max.max_upper), percent(to_a_.max.max_upper));
+    out << "Hausdorff distance " << interval(hausdorff_lower(), hausdorff_upper()) << ", "
+        << percent(hausdorff_upper()) << " of the diagonal\n";
+    return out.str();
+  }
+
+  static Json to_json(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
+
+  [[nodiscard]] Json to_json(const Side& side) const {
+    Json j{{"file", side.file},
+           {"sha256", side.sha256},
+           {"kind", side.set ? "convex set: boundary of the union" : "mesh"}};
+    if (side.set) j["bodies"] = side.bodies;
+    const geom::TopologyReport topology = geom::analyse(side.mesh);
+    j["vertices"] = topology.vertices;
+    j["triangles"] = topology.triangles;
+    j["components"] = topology.components;
+    if (!side.set) j["closed"] = topology.closed();
+    j["degenerate_triangles"] = topology.degenerate_triangles;
+    j["surface_error"] = side.error;
+    j["notes"] = side.notes;
+    return j;
+  }
+
+  [[nodiscard]] Json to_json(const OneWay& way) const {
+    return {{"min", min_.upper},
+            {"min_lower", min_.lower},
+            {"min_upper", min_.upper},
+            {"mean", way.sampled.mean.value},
+            {"mean_standard_error", way.sampled.mean.standard_error},
+            {"rms", way.sampled.rms.value},
+            {"rms_standard_error", way.sampled.rms.standard_error},
+            {"max_lower", way.max.max_lower},
+            {"max_upper", way.max.max_upper},
+            {"max_at", to_json(way.max.at)},
+            {"max_nearest", to_json(way.nearest)},
+            {"max_within_gap", way.max.within_gap},
+            {"relative",
+             {{"min", relative(min_.upper)},
+              {"mean", relative(way.sampled.mean.value)},
+              {"rms", relative(way.sampled.rms.value)},
+              {"max_lower", relative(way.max.max_lower)},
+              {"max_upper", relative(way.max.max_upper)}}},
+            {"samples", way.sampled.samples},
+            {"queries", way.max.queries}};
+  }
+
+  [[nodiscard]] Json report() const {
+    Json r;
+    r["tool"] = "hausdorff-eval";
+    r["version"] = tools::version();
+    r["a"] = to_json(a_);
+    r["b"] = to_json(b_);
+    r["measure"] = "surface to surface";
+    r["options"] = {{"gap", o_.gap},
+                    {"samples", o_.samples},
+                    {"seed", o_.common.seed},
+                    {"backend", o_.backend}};
+    r["bbox_diagonal"] = diagonal_;
+    r["a_to_b"] = to_json(to_b_);
+    r["b_to_a"] = to_json(to_a_);
+    r["hausdorff_lower"] = hausdorff_lower();
+    r["hausdorff_upper"] = hausdorff_upper();
+    r["hausdorff_relative"] = {{"lower", relative(hausdorff_lower())},
+                               {"upper", relative(hausdorff_upper())}};
+    r["min_at"] = {{"a", to_json(min_.on_a)}, {"b", to_json(min_.on_b)}};
+    r["resources"] = {{"seconds_reading", seconds(start_, read_)},
+                      {"seconds_building", seconds(read_, built_)},
+                      {"seconds_measuring", seconds(built_, measured_)},
+                      {"user_seconds", tools::user_seconds()},
+                      {"peak_megabytes", tools::peak_megabytes()},
+                      {"threads", o_.common.threads}};
+    return r;
+  }
+
+  [[nodiscard]] std::string csv() const {
+    std::string out =
+        "direction,min_lower,min_upper,mean,mean_standard_error,rms,rms_standard_error,max_lower,"
+        "max_upper,bbox_diagonal\n";
+    for (const OneWay* way : {&to_b_, &to_a_}) {
+      out += way == &to_b_ ? "a_to_b" : "b_to_a";
+      for (const double x :
+           {min_.lower, min_.upper, way->sampled.mean.value, way->sampled.mean.standard_error,
+            way->sampled.rms.value, way->sampled.rms.standard_error, way->max.max_lower,
+            way->max.max_upper, diagonal_})
+        out += "," + formatted(x, 17);
+      out += "\n";
+    }
+    return out;
+  }
+
+  void write() const {
+    if (!o_.heatmap.empty()) io::write_file(o_.heatmap, heatmap_);
+    if (!o_.csv.empty()) io::write_file(o_.csv, csv());
+    if (!o_.common.report.empty()) tools::write_json(o_.common.report, report());
+    if (!o_.common.quiet && o_.csv != "-" && o_.common.report != "-") io::write_file("-", table());
+  }
+
+  [[nodiscard]] int conclude() const {
+    for (const Side* side : {&a_, &b_})
+      for (const std::string& note : side->notes) say("note: " + side->file + ": " + note);
+    if (!o_.at_most.empty()) {
+      const double limit = tools::parse_length(o_.at_most)->of(diagonal_);
+      if (hausdorff_upper() > limit) {
+        tools::log(false, "hausdorff-eval: " +
+                              std::string(hausdorff_lower() > limit
+                                              ? "the Hausdorff distance exceeds "
+                                              : "it is not certain that the Hausdorff distance is "
+                                                "at most ") +
+                              formatted(limit));
+        return tools::kNo;
+      }
+    }
+    if (!to_b_.max.within_gap || !to_a_.max.within_gap) {
+      tools::log(false,
+                 "hausdorff-eval: the work allowed did not reach the wished gap; the interval "
+                 "holds, but is wider");
+      return tools::kLimit;
+    }
+    return tools::kDone;
+  }
+
+  Options o_;
+  tools::Progress progress_;
+  Side a_, b_;
+  OneWay to_b_, to_a_;
+  measure::Minimum min_;
+  double diagonal_ = 0;
+  std::vector<char> heatmap_;
+  Time start_, read_, built_, measured_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Distances between two surfaces, with certified intervals.", "hausdorff-eval");
+  Options options;
+  describe(app, options);
+  return tools::run(app, argc, argv, [&] {
+    const tools::ThreadLimit limit(options.common.threads);
+    return Job(options).run();
+  });
+}
