@@ -1,0 +1,132 @@
+#include "judge.h"
+
+#include <kaboum/verify/inclusion.h>
+
+#include <cstdlib>
+#include <exception>
+#include <fstream>
+#include <limits>
+#include <optional>
+
+#include "support/oracle.h"
+
+namespace kaboum::test {
+namespace {
+
+using verify::Answer;
+
+/// How the verifier must answer.
+Answer answer_for(const std::optional<bool>& truth) {
+  if (!truth) return Answer::Undefined;
+  return *truth ? Answer::Verified : Answer::Refuted;
+}
+
+const char* name(Answer answer) {
+  switch (answer) {
+    case Answer::Verified:
+      return "verified";
+    case Answer::Refuted:
+      return "refuted";
+    case Answer::Undecided:
+      return "undecided";
+    case Answer::Undefined:
+      break;
+  }
+  return "undefined";
+}
+
+}  // namespace
+
+void keep(const MeshPair& pair) {
+  const char* folder = std::getenv("KABOUM_KEEP");
+  if (folder == nullptr) return;
+  std::string stem = pair.name;
+  for (char& c : stem) c = c == ' ' || c == '/' ? '-' : c;
+  for (const auto& [mesh, which] : {std::pair{&pair.inner, "inner"}, {&pair.outer, "outer"}}) {
+    std::ofstream file(std::string(folder) + '/' + stem + '.' + which + ".obj");
+    file.precision(std::numeric_limits<double>::max_digits10);
+    for (const geom::Vec3& p : mesh->vertices)
+      file << "v " << p.x() << ' ' << p.y() << ' ' << p.z() << '\n';
+    for (const geom::Triangle& t : mesh->triangles)
+      file << "f " << t[0] + 1 << ' ' << t[1] + 1 << ' ' << t[2] + 1 << '\n';
+  }
+}
+
+void Tally::compare(const MeshPair& pair, const ArrangementVerdict& truth) {
+  verify::Inclusion claim;
+  const std::string before = faults_;
+  try {
+    claim = verify::verify_inclusion(pair.inner, pair.outer);
+  } catch (const std::exception& e) {
+    fault(pair.name + ": " + e.what());
+    keep(pair);
+    return;
+  }
+  if (claim.inner_closed != truth.inner_closed || claim.outer_closed != truth.outer_closed)
+    fault(pair.name + ": closedness");
+  const bool relative = !(truth.inner_closed && truth.outer_closed) && truth.same_border;
+  if (claim.relative != relative) fault(pair.name + ": relative or not");
+  const Answer solid = answer_for(relative ? truth.difference : truth.solid);
+  if (claim.solid.answer != solid) {
+    fault(pair.name + ": solid claim " + name(claim.solid.answer) + " but " + name(solid));
+  }
+  const Answer surface = answer_for(truth.surface);
+  if (claim.surface.answer != surface) {
+    fault(pair.name + ": surface claim " + name(claim.surface.answer) + " but " + name(surface));
+  }
+  for (const verify::Claim* c : {&claim.solid, &claim.surface}) {
+    if (c->answer != Answer::Refuted) {
+      if (c->witness) fault(pair.name + ": a witness of nothing");
+      continue;
+    }
+    if (!c->witness || c->reason.empty()) {
+      fault(pair.name + ": refuted without witness or reason");
+      continue;
+    }
+    if (c->inner_triangles.empty() && c->outer_triangles.empty())
+      fault(pair.name + ": refuted without triangles");
+    if (!c->witness->exact) {
+      ++inexact_;
+      continue;
+    }
+    ++exact_;
+    // Open chains have no winding number; their difference has.
+    const geom::Vec3& p = c->witness->point;
+    bool contradicts = false;
+    if (c == &claim.solid && relative) {
+      MeshPair turned = pair;
+      for (geom::Triangle& t : turned.inner.triangles) std::swap(t[1], t[2]);
+      const auto first = static_cast<std::uint32_t>(turned.outer.vertices.size());
+      for (const geom::Vec3& v : turned.inner.vertices) turned.outer.vertices.push_back(v);
+      for (const geom::Triangle& t : turned.inner.triangles)
+        turned.outer.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+      const auto w = winding_number_slow(turned.outer, p);
+      contradicts = w && *w < 0;
+    } else if (c == &claim.solid) {
+      const auto a = winding_number_slow(pair.inner, p), b = winding_number_slow(pair.outer, p);
+      contradicts = a && b && *a >= 1 && *b <= 0;
+    } else {
+      const auto b = winding_number_slow(pair.outer, p);
+      contradicts = b && *b <= 0;
+    }
+    if (!contradicts) fault(pair.name + ": the witness contradicts nothing");
+  }
+  if (faults_ != before) keep(pair);
+}
+
+void Tally::judge_one(const MeshPair& pair, std::uint64_t seed) {
+  const ArrangementVerdict truth = arrangement_verdict(pair.inner, pair.outer);
+  ++pairs_;
+  if (truth.solid) ++solid_[*truth.solid ? 1 : 0];
+  if (truth.surface) ++surface_[*truth.surface ? 1 : 0];
+  if (!truth.solid && truth.difference) ++difference_[*truth.difference ? 1 : 0];
+  compare(pair, truth);
+  compare(permuted(pair, seed), truth);
+}
+
+void Tally::judge(const MeshPair& pair, std::uint64_t seed) {
+  judge_one(pair, seed);
+  judge_one({pair.name + " reversed", pair.outer, pair.inner}, seed + 1);
+}
+
+}  // namespace kaboum::test

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <kaboum/geom/mesh.h>
+
+#include <cstdint>
+#include <random>
+#include <string>
+#include <vector>
+
+/// Small pairs of meshes for claims of enclosure, most of them full of coincidences.
+namespace kaboum::test {
+
+struct MeshPair {
+  std::string name;
+  geom::Mesh inner, outer;
+};
+
+using Random = std::mt19937_64;
+
+/// Closed chains on a coarse lattice: shared vertices, edges and faces, coplanar overlaps, opposite
+/// and repeated faces, T-junctions, sheets, self-intersections, components that wind the wrong way,
+/// nested ones, cavities. About half of the pairs are built so that the solid claim is likely true.
+MeshPair lattice_pair(std::uint64_t seed);
+
+/// A lattice pair whose coordinates were moved off the lattice, the same way in both meshes: what
+/// was coplanar, collinear or met in a point just fails to.
+MeshPair bent_pair(std::uint64_t seed);
+
+/// A lattice pair with triangles taken out, of one mesh or the same ones of both.
+MeshPair open_pair(std::uint64_t seed);
+
+/// The same sets of points, exactly, in another order: triangles, vertices and corners permuted,
+/// vertices duplicated, axes permuted and reflected (triangles turned accordingly), scaled by a
+/// power of two. No coordinate is rounded unless it leaves the range of double.
+MeshPair permuted(const MeshPair& pair, std::uint64_t seed);
+
+/// Every triangle split into four at its edges' midpoints, exact on lattices.
+geom::Mesh subdivided(const geom::Mesh& mesh);
+
+}  // namespace kaboum::test
