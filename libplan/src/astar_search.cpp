@@ -15,7 +15,7 @@ Found a_star(const SearchInput& in) {
   Found found;
   if (!in.heuristics.relaxation) in.heuristics.relaxation = std::make_unique<Relaxation>(in.task);
   if (!in.heuristics.invariants)
-    in.heuristics.invariants = std::make_unique<Invariants>(in.task, *in.heuristics.relaxation);
+    in.heuristics.invariants = std::make_unique<Invariants>(in.task, *in.heuristics.relaxation, in.limits);
   if (!in.heuristics.landmarks)
     in.heuristics.landmarks = std::make_unique<LandmarkHeuristic>(
         in.task, *in.heuristics.relaxation, *in.heuristics.invariants);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <deque>
+#include <map>
+#include <optional>
 #include <utility>
 
 #include "runtime_knowledge.h"
@@ -75,7 +77,7 @@ class Evaluator {
       case Query::Kind::External: {
         std::vector<Index> arguments;
         for (const Argument& a : q.arguments) arguments.push_back(object(a, slots));
-        const auto result = model_.external_functions[q.symbol](arguments);
+        const auto result = call(q.symbol, std::move(arguments));
         return result && (!q.value || *result == object(*q.value, slots));
       }
     }
@@ -105,8 +107,20 @@ class Evaluator {
     }
   }
 
+  /// Another state: volatile functions are called again.
+  void forget_calls() {
+    std::erase_if(calls_, [&](const auto& c) { return model_.externals[c.first.first].is_volatile; });
+  }
+
  private:
+  std::optional<Index> call(Index external, std::vector<Index> arguments) const {
+    const auto [it, fresh] = calls_.try_emplace({external, std::move(arguments)});
+    if (fresh) it->second = model_.external_functions[external](it->first.second);
+    return it->second;
+  }
+
   const Model& model_;
+  mutable std::map<std::pair<Index, std::vector<Index>>, std::optional<Index>> calls_;
 };
 
 class Checker {
@@ -124,6 +138,10 @@ class Checker {
       queue_.pop_front();
       replay(v);
     }
+    for (const auto& [node, v] : contradicted_)
+      if (!passed_.contains(node))
+        violate(v, "what " + step_text(model_, plan_.nodes[node].action) +
+                       " observes contradicts what is known");
     result_.valid = result_.violation.empty();
     return result_;
   }
@@ -180,6 +198,10 @@ class Checker {
 
   void effect_reads(const Effect& e, std::vector<Index>& slots, std::set<Fact>& out) const {
     if (e.kind == Effect::Kind::When) evaluator_.reads(e.condition, slots, out);
+    // A disjunction combines with what is known of its atoms by then.
+    if (e.kind == Effect::Kind::Update && e.update.database == Update::Database::Kx)
+      for (const Update::Literal& l : e.update.literals)
+        out.insert(fact(l.function, l.symbol, l.arguments, slots));
     if (e.kind == Effect::Kind::ForAll) {
       for (const Index o : model_.types[e.type].objects) {
         slots.at(e.slot) = o;
@@ -241,6 +263,7 @@ class Checker {
   std::vector<RuntimeKnowledge> initial_states() const {
     RuntimeKnowledge k;
     std::vector<Fact> sensed;
+    std::set<Fact> stated;
     const std::vector<Index> none;
     for (const Update& u : model_.initial) {
       const Update::Literal& l = u.literals[0];
@@ -258,13 +281,16 @@ class Checker {
         case Update::Database::Kw:
         case Update::Database::Kv:
           sensed.push_back(f);
+          stated.insert(f);
           break;
         case Update::Database::Kx:
+          for (const Update::Literal& o : u.literals)
+            stated.insert(fact(o.function, o.symbol, o.arguments, none));
           ok = learn_exclusive(k, u, none);
           break;
         case Update::Database::Lcw:
-          // Closed last: what is sensed stays open.
-          if (!k.knows_whether(f) && std::find(sensed.begin(), sensed.end(), f) == sensed.end())
+          // Closed last: what is sensed or in a disjunction stays open.
+          if (!k.knows_whether(f) && !stated.contains(f))
             ok = k.learn(f, false);
           break;
       }
@@ -356,27 +382,30 @@ class Checker {
     }
   }
 
-  void add_to(RuntimeKnowledge& k, const Ground& g, std::vector<Fact>& sensed) const {
+  /// @return false if it is an observation that contradicts what is known.
+  bool add_to(RuntimeKnowledge& k, const Ground& g, std::vector<Fact>& sensed) const {
     const Update& u = *g.update;
     const Update::Literal& l = u.literals[0];
     const Fact f = fact(l.function, l.symbol, l.arguments, g.slots);
     switch (u.database) {
       case Update::Database::Kf:
-        if (!l.function) {
+        if (u.maybe) {
+          may_become(k, f, l, g.slots);
+        } else if (!l.function) {
           k.become(f, !l.negated);
         } else if (!l.negated) {
           k.become_value(f, object(*l.value, g.slots));
         } else {
           const Index v = object(*l.value, g.slots);
           if (const Index* known = k.value(f); known != nullptr && *known == v) k.forget_value(f);
-          k.learn_not_value(f, v, range(l.symbol));
+          return k.learn_not_value(f, v, range(l.symbol));
         }
-        return;
+        return true;
       case Update::Database::Kw:
       case Update::Database::Kv:
       case Update::Database::Lcw:
         sensed.push_back(f);
-        return;
+        return true;
       case Update::Database::Kx:
         if (l.function) {
           const Index* known = k.value(f);
@@ -386,9 +415,22 @@ class Checker {
                             });
           if (!kept) k.forget_value(f);
         }
-        learn_exclusive(k, u, g.slots);
-        return;
+        return learn_exclusive(k, u, g.slots);
     }
+    return true;
+  }
+
+  /// The literal may have come true: it stays known if it was, and its negation does not.
+  void may_become(RuntimeKnowledge& k, const Fact& f, const Update::Literal& l,
+                  const std::vector<Index>& slots) const {
+    if (!l.function) {
+      if (!k.knows(f, !l.negated)) k.forget(f);
+      return;
+    }
+    const Index v = object(*l.value, slots);
+    const Index* known = k.value(f);
+    const bool holds = l.negated ? k.rules_out(f, v) : known != nullptr && *known == v;
+    if (!holds) k.forget_value(f);
   }
 
   // ---- replay ------------------------------------------------------------------------------
@@ -418,6 +460,7 @@ class Checker {
 
   void replay(std::size_t v) {
     const Visit at = visits_[v];
+    evaluator_.forget_calls();  // within one state, each is called once
     if (at.node == kNone) {
       ++result_.leaves;
       std::vector<Index> slots(std::max<Index>(model_.goal_slots, 1), 0);
@@ -449,13 +492,16 @@ class Checker {
       std::vector<Fact> sensed;
       for (const Ground& g : fired)
         if (!g.update->add) delete_from(k, g);
+      bool possible = true;
       for (const Ground& g : fired)
-        if (g.update->add) add_to(k, g, sensed);
-      after = split(std::move(k), sensed);
+        if (g.update->add) possible = possible && add_to(k, g, sensed);
+      // What is observed rules this run out; but some run must get through, or it is no plan.
+      if (possible) after = split(std::move(k), sensed);
       if (after.empty()) {
-        violate(v, label + " contradicts what is known");
+        contradicted_.try_emplace(at.node, v);
         return;
       }
+      passed_.insert(at.node);
     } else {
       after.push_back(*at.state);
     }
@@ -505,6 +551,8 @@ class Checker {
   std::set<std::pair<Index, RuntimeKnowledge>> seen_;
   std::vector<Visit> visits_;
   std::deque<std::size_t> queue_;
+  std::map<Index, std::size_t> contradicted_;  ///< nodes, and a visit in which they contradict
+  std::set<Index> passed_;                     ///< nodes that some run gets through
   CheckResult result_;
 };
 

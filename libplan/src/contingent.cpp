@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "exhaustive.h"
+
 namespace kaboum::plan {
 
 namespace {
@@ -86,10 +88,7 @@ Status ContingentPlanner::cover(const State& at, Step step, Index next, Index& e
     return Status::Solved;
   }
   const Index fluent = task_.outcome(step).fluent;
-  FormulaPool& pool = task_.pool();
-  Entry branch;
-  branch.branch = true;
-  std::vector<Formula> conditions;
+  std::vector<std::pair<Step, Index>> cases;
   for (const Index value : task_.outcomes(fluent, at.data())) {
     const Step other = task_.outcome_step(fluent, value);
     Index then = next;
@@ -100,23 +99,35 @@ Status ContingentPlanner::cover(const State& at, Step step, Index next, Index& e
       const Status s = solve(State(k.words(), k.words() + task_.layout().words()), then, blame);
       if (s != Status::Solved) return s;
     }
-    branch.cases.emplace_back(other, then);
-    conditions.push_back(regression_.before(other, entries_[then].condition, at.data()));
+    cases.emplace_back(other, then);
   }
+  entry = branch(at, std::move(cases));
+  return Status::Solved;
+}
+
+/// A branch, for the state `at` and all others of its regressed condition.
+Index ContingentPlanner::branch(const State& at, std::vector<std::pair<Step, Index>> cases) {
+  FormulaPool& pool = task_.pool();
+  std::vector<Formula> conditions;
+  for (const auto& [outcome, then] : cases)
+    conditions.push_back(regression_.before(outcome, entries_[then].condition, at.data()));
   // Values that are ruled out here must be ruled out wherever this branch is used.
+  const Index fluent = task_.outcome(cases.front().first).fluent;
   const Fluent& f = task_.layout().fluents()[fluent];
   if (f.function) {
     for (Index v = 0; v < task_.layout().range_size(f); ++v) {
       const Step missing = task_.outcome_step(fluent, v);
-      if (std::none_of(branch.cases.begin(), branch.cases.end(),
+      if (std::none_of(cases.begin(), cases.end(),
                        [&](const auto& c) { return c.first == missing; }))
         conditions.push_back(pool.leaf(FormulaPool::Kind::ValueIsNot, fluent, v));
     }
   }
-  branch.step = branch.cases.front().first;
-  branch.condition = pool.all(conditions);
-  entry = add(std::move(branch));
-  return Status::Solved;
+  Entry e;
+  e.branch = true;
+  e.step = cases.front().first;
+  e.condition = pool.all(conditions);
+  e.cases = std::move(cases);
+  return add(std::move(e));
 }
 
 Status ContingentPlanner::solve(const State& start, Index& entry, Blame& blame) {
@@ -194,8 +205,43 @@ Status ContingentPlanner::solve(const State& start, Index& entry, Blame& blame) 
 }
 
 Status ContingentPlanner::run() {
+  task_.branch(Task::Branching::OnNeed);
   Blame blame;
-  return solve(task_.initial(), root_, blame);
+  const Status status = solve(task_.initial(), root_, blame);
+  if (status != Status::Unsolvable || !task_.held_back()) return status;
+  // Nothing is proved yet: branches that nothing needed were left out.
+  return exhaust();
+}
+
+Status ContingentPlanner::exhaust() {
+  task_.branch(Task::Branching::Anywhere);
+  forbidden_.clear();
+  dead_.clear();
+  ++statistics_.searches;
+  Exhaustive all({task_, task_.initial(), *this, limits_, statistics_, heuristics_});
+  const Status status = all.run();
+  if (status != Status::Solved) return status;
+  std::vector<Index> entry;  // by decision
+  for (const Exhaustive::Decision& d : all.plan()) {
+    const Index known = match(d.state.data());
+    if (known != kNone) {
+      entry.push_back(known);
+      continue;
+    }
+    std::vector<std::pair<Step, Index>> cases = d.cases;
+    for (auto& [step, next] : cases) next = entry[next];
+    const auto [step, next] = cases.front();
+    entry.push_back(task_.is_outcome(step)
+                        ? branch(d.state, std::move(cases))
+                        : add({regression_.before(step, entries_[next].condition, d.state.data()),
+                               step,
+                               false,
+                               next,
+                               {},
+                               kGoal}));
+  }
+  root_ = entry.back();
+  return status;
 }
 
 Plan ContingentPlanner::plan() const {

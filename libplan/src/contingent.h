@@ -16,7 +16,9 @@ namespace kaboum::plan {
 /// outcomes are planned for in turn; then the step joins the policy with its regressed condition.
 /// Later searches stop at any state that satisfies such a condition, so equal sub-plans are shared.
 /// A node is entered only after its successors: the graph cannot have cycles. A branch with an
-/// outcome that has no plan is forbidden in that state, and the search repeated.
+/// outcome that has no plan is forbidden in that state, and the search repeated. If that fails and a
+/// branch that nothing needed was left out, all states are looked at (exhaustive.h): only then is it
+/// proved that there is no plan.
 /// docs/planning/search.md.
 class ContingentPlanner final : private Target {
  public:
@@ -55,6 +57,8 @@ class ContingentPlanner final : private Target {
 
   [[nodiscard]] Index match(const Word* state) const;
   Status solve(const State& start, Index& entry, Blame& blame);
+  Status exhaust();
+  Index branch(const State& at, std::vector<std::pair<Step, Index>> cases);
   Status cover(const State& at, Step step, Index next, Index& entry, Blame& blame);
   Index add(Entry entry);
   void close(Index depth);

@@ -3,6 +3,7 @@
 #include <kaboum/geom/error.h>
 
 #include <algorithm>
+#include <chrono>
 
 #include "bindings.h"
 
@@ -18,8 +19,8 @@ std::uint64_t mix(std::uint64_t h, std::uint64_t v) {
 
 }  // namespace
 
-FormulaPool::FormulaPool(const Model& model, const Layout& layout)
-    : model_(model), layout_(layout) {
+FormulaPool::FormulaPool(const Model& model, const Layout& layout, Limits& limits)
+    : model_(model), layout_(layout), limits_(limits) {
   nodes_.push_back({Kind::False, false, 0, 0});
   nodes_.push_back({Kind::True, false, 0, 0});
 }
@@ -51,6 +52,7 @@ Formula FormulaPool::add(Node node, std::vector<Formula> children) {
   }
   nodes_.push_back(node);
   index_.emplace(h, f);
+  limits_.work(sizeof(Node) + children.size() * sizeof(Formula) + 48);  // 48: of the index
   return f;
 }
 
@@ -135,19 +137,33 @@ Formula FormulaPool::external(Index external, std::vector<Index> arguments, Inde
   return add({Kind::External, true, it->second, expected}, {});
 }
 
-std::optional<Index> FormulaPool::call(Index call) const {
+std::optional<Index> FormulaPool::call(Index call, const Word* state) const {
   const Call& c = calls_[call];
   if (cached_[call] == Cached::Yes) return results_[call];
-  ++external_calls_;
-  const std::optional<Index> result = model_.external_functions[c.external](c.arguments);
-  if (!model_.externals[c.external].is_volatile) {
-    results_[call] = result;
-    cached_[call] = Cached::Yes;
+  const auto run = [&] {
+    ++external_calls_;
+    const auto start = std::chrono::steady_clock::now();
+    const std::optional<Index> result = model_.external_functions[c.external](c.arguments);
+    external_seconds_ +=
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return result;
+  };
+  if (model_.externals[c.external].is_volatile) {
+    const auto [it, fresh] =
+        volatile_.try_emplace({call, std::vector<Word>(state, state + layout_.words())});
+    if (fresh) {
+      limits_.work(sizeof(Word) * layout_.words() + 64);
+      it->second = run();
+    }
+    return it->second;
   }
-  return result;
+  results_[call] = run();
+  cached_[call] = Cached::Yes;
+  return results_[call];
 }
 
 Formula FormulaPool::ground(const Query& q, std::vector<Index>& slots) {
+  limits_.work();
   const auto objects = [&] {
     std::vector<Index> out;
     for (const Argument& a : q.arguments) out.push_back(value_of(a, slots.data()));
@@ -207,14 +223,16 @@ Formula FormulaPool::ground(const Query& q, std::vector<Index>& slots) {
         position = layout_.position(model_.functions[q.symbol].range, value);
       }
       if (p.fluent == kNone) {
-        if (p.value == kNone && q.kind == Query::Kind::KnownValue && q.negated && position == kNone)
-          return kTrue;
-        if (p.value == kNone) return kFalse;
+        // A value outside the range is never the value.
+        if (p.value == kNone)
+          return q.value && position == kNone &&
+                         (q.kind == Query::Kind::WhetherValue || q.negated)
+                     ? kTrue
+                     : kFalse;
         if (q.kind != Query::Kind::KnownValue) return kTrue;
         return (p.value == value) != q.negated ? kTrue : kFalse;
       }
       if (q.kind == Query::Kind::KnowValue) return leaf(Kind::ValueKnown, p.fluent);
-      // A value outside the range is never the value.
       if (position == kNone)
         return q.kind == Query::Kind::WhetherValue || q.negated ? kTrue : kFalse;
       if (q.kind == Query::Kind::WhetherValue) return leaf(Kind::ValueWhether, p.fluent, position);
@@ -298,7 +316,7 @@ Truth FormulaPool::evaluate(Formula f, const Word* state) const {
     case Kind::Bits:
       return yes((state[n.a] & masks_[n.b].first) == masks_[n.b].second);
     case Kind::External: {
-      const std::optional<Index> result = call(n.a);
+      const std::optional<Index> result = call(n.a, state);
       return yes(result && (n.b == kNone || *result == n.b));
     }
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "layout.h"
+#include "solve_limits.h"
 
 namespace kaboum::plan {
 
@@ -46,7 +47,7 @@ class FormulaPool {
     Index b = 0;         ///< value; of a connective: number of children
   };
 
-  FormulaPool(const Model& model, const Layout& layout);
+  FormulaPool(const Model& model, const Layout& layout, Limits& limits);
 
   Formula leaf(Kind kind, Index fluent, Index value = 0);
   Formula negate(Formula f);
@@ -79,8 +80,10 @@ class FormulaPool {
   /// If `f` is "this field has this content": word, mask and content.
   bool as_bits(Formula f, Index& word, Word& mask, Word& value) const;
 
-  [[nodiscard]] std::optional<Index> call(Index call) const;  ///< cached unless volatile
+  /// Cached by its arguments; if volatile, also by the state.
+  [[nodiscard]] std::optional<Index> call(Index call, const Word* state) const;
   [[nodiscard]] std::uint64_t external_calls() const { return external_calls_; }
+  [[nodiscard]] double external_seconds() const { return external_seconds_; }
 
  private:
   struct Call {
@@ -102,6 +105,7 @@ class FormulaPool {
 
   const Model& model_;
   const Layout& layout_;
+  Limits& limits_;
   std::vector<Node> nodes_;
   std::vector<Formula> children_;
   std::vector<std::pair<Word, Word>> masks_;
@@ -111,7 +115,9 @@ class FormulaPool {
   std::map<std::pair<Index, std::vector<Index>>, Index> call_index_;
   mutable std::vector<Cached> cached_;
   mutable std::vector<std::optional<Index>> results_;
+  mutable std::map<std::pair<Index, std::vector<Word>>, std::optional<Index>> volatile_;
   mutable std::uint64_t external_calls_ = 0;
+  mutable double external_seconds_ = 0;
 };
 
 }  // namespace kaboum::plan

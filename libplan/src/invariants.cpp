@@ -9,7 +9,6 @@
 namespace kaboum::plan {
 namespace {
 
-constexpr Index kNoKey = kNone - 1;
 constexpr std::size_t kMaximumCandidates = 300;
 constexpr std::size_t kMaximumParts = 4;
 
@@ -21,7 +20,7 @@ Index Invariants::key_of(const Part& p, FactId f) const {
   const Word content = relaxation_.content_of(f);
   if (p.function ? content < kFirstValue : content != static_cast<Word>(AtomKnowledge::True))
     return kNone;
-  if (p.key == kNone) return kNoKey;
+  if (p.key == kNone) return static_cast<Index>(task_.model().objects.size());
   if (p.key < fluent.arguments.size()) return fluent.arguments[p.key];
   return task_.model().types[fluent.range].objects[content - kFirstValue];
 }
@@ -40,13 +39,13 @@ bool Invariants::deletes(Index op, FactId f) const {
   const auto [first, last] = actions_[action_of_[op]];
   for (Index o = first; o < last; ++o) {
     if (o != op && !unconditional_[o]) continue;
-    for (const FactId a : operators[o].adds)
-      if (relaxation_.fluent_of(a) == relaxation_.fluent_of(f) && a != f) return true;
+    if (relaxation_.ends(operators[o], f)) return true;
   }
   return false;
 }
 
 /// Conditions that name two facts of one group, or two contents of one fluent, never hold together.
+/// Only a group that starts with at most one fact is one of which that is being proved.
 bool Invariants::can_fire(const Candidate& c, const std::vector<FactId>& conditions) const {
   std::vector<Index> keys;
   for (std::size_t i = 0; i < conditions.size(); ++i) {
@@ -55,14 +54,23 @@ bool Invariants::can_fire(const Candidate& c, const std::vector<FactId>& conditi
       return false;
     if (i > 0 && conditions[i] == conditions[i - 1]) continue;
     const Index k = key_of(c, conditions[i]);
-    if (k == kNone) continue;
+    if (k == kNone || heavy_[k]) continue;
     if (std::find(keys.begin(), keys.end(), k) != keys.end()) return false;
     keys.push_back(k);
   }
   return true;
 }
 
-bool Invariants::balanced(const Candidate& c, Failure& failure) const {
+bool Invariants::balanced(const Candidate& c, Failure& failure) {
+  std::fill(heavy_.begin(), heavy_.end(), 0);
+  std::vector<char> some(heavy_.size(), 0);
+  for (Index i = 0; i < task_.layout().fluents().size(); ++i) {
+    const Index k =
+        key_of(c, relaxation_.fact(i, task_.layout().fluents()[i].get(task_.initial().data())));
+    if (k == kNone) continue;
+    heavy_[k] |= some[k];
+    some[k] = 1;
+  }
   const auto& operators = relaxation_.operators();
   struct Added {
     Index key;
@@ -72,10 +80,11 @@ bool Invariants::balanced(const Candidate& c, Failure& failure) const {
   std::vector<Added> added;
   for (const auto& [first, last] : actions_) {
     added.clear();
+    limits_.work();
     for (Index o = first; o < last; ++o)
       for (const FactId f : operators[o].adds) {
         const Index k = key_of(c, f);
-        if (k != kNone) added.push_back({k, f, o});
+        if (k != kNone && !heavy_[k]) added.push_back({k, f, o});
       }
     if (added.empty()) continue;
     std::sort(added.begin(), added.end(), [](const Added& a, const Added& b) {
@@ -109,10 +118,11 @@ bool Invariants::balanced(const Candidate& c, Failure& failure) const {
   return true;
 }
 
-Invariants::Invariants(const Task& task, const Relaxation& relaxation)
-    : task_(task), relaxation_(relaxation) {
+Invariants::Invariants(const Task& task, const Relaxation& relaxation, Limits& limits)
+    : task_(task), relaxation_(relaxation), limits_(limits) {
   const auto& operators = relaxation.operators();
   groups_of_.resize(relaxation.facts());
+  heavy_.assign(task.model().objects.size() + 1, 0);
   unconditional_.assign(operators.size(), 0);
   action_of_.resize(operators.size());
   for (Index o = 0; o < operators.size(); ++o) {
@@ -146,15 +156,13 @@ Invariants::Invariants(const Task& task, const Relaxation& relaxation)
     if (balanced(c, failure)) {
       // One group for each key that starts with at most one of its facts.
       std::map<Index, std::vector<FactId>> members;
-      std::map<Index, int> weight;
       for (FactId f = 0; f < relaxation.facts(); ++f) {
         const Index k = key_of(c, f);
         if (k == kNone) continue;
         members[k].push_back(f);
-        weight[k] += relaxation.holds(f, task.initial().data()) ? 1 : 0;
       }
       for (const auto& [k, facts] : members) {
-        if (weight[k] > 1 || facts.size() < 2) continue;
+        if (heavy_[k] || facts.size() < 2) continue;
         for (const FactId f : facts) groups_of_[f].push_back(static_cast<Index>(groups_));
         ++groups_;
       }

@@ -14,7 +14,7 @@ namespace kaboum::plan {
 /// every action that adds a fact of a group also takes one away; here checked on ground actions.
 class Invariants {
  public:
-  Invariants(const Task& task, const Relaxation& relaxation);
+  Invariants(const Task& task, const Relaxation& relaxation, Limits& limits);
 
   /// Whether the two facts never hold together. Sound, not complete.
   [[nodiscard]] bool exclusive(FactId a, FactId b) const;
@@ -40,15 +40,18 @@ class Invariants {
     Index key = 0;
   };
 
-  /// The group's key if the fact belongs to the candidate; kNone - 1 if the part has no key.
+  /// The group's key if the fact belongs to the candidate: an object, or their number if the part has
+  /// no key; else kNone.
   [[nodiscard]] Index key_of(const Candidate& c, FactId f) const;
   [[nodiscard]] Index key_of(const Part& p, FactId f) const;
   [[nodiscard]] bool deletes(Index op, FactId f) const;
   [[nodiscard]] bool can_fire(const Candidate& c, const std::vector<FactId>& conditions) const;
-  [[nodiscard]] bool balanced(const Candidate& c, Failure& failure) const;
+  bool balanced(const Candidate& c, Failure& failure);
 
   const Task& task_;
   const Relaxation& relaxation_;
+  Limits& limits_;
+  std::vector<char> heavy_;  ///< keys of the candidate at hand that start with two facts or more
   std::vector<std::pair<Index, Index>> actions_;  ///< ranges of operators with the same step
   std::vector<Index> action_of_;                  ///< by operator
   std::vector<char> unconditional_;

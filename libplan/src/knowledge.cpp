@@ -32,15 +32,12 @@ void Knowledge::drop_groups(const Fluent& f) {
   }
 }
 
-void Knowledge::apply(const Change& c) {
+bool Knowledge::apply(const Change& c) {
   using K = Change::Kind;
-  if (c.kind == K::AddGroup) {
-    learn_group(c.fluent);
-    return;
-  }
+  if (c.kind == K::AddGroup) return learn_group(c.fluent);
   if (c.kind == K::DeleteGroup) {
     write(layout_->groups()[c.fluent].word, 0);
-    return;
+    return true;
   }
   const Fluent& f = layout_->fluents()[c.fluent];
   const Word now = f.get(words_.data());
@@ -75,7 +72,7 @@ void Knowledge::apply(const Change& c) {
         set(c.fluent, raw(AtomKnowledge::Whether));
         std::vector<Index> groups;
         for (const auto& [g, bit] : f.groups) groups.push_back(g);
-        settle(std::move(groups));
+        return settle(std::move(groups));
       }
       break;
     case K::Forget:
@@ -95,8 +92,7 @@ void Knowledge::apply(const Change& c) {
       break;
     case K::Exclude:
       if (now == kFirstValue + c.value) forget_value();
-      learn_not_value(c.fluent, c.value);
-      break;
+      return learn_not_value(c.fluent, c.value);
     case K::DeleteExclude:
       if (now != kFirstValue + c.value) forget_value();
       break;
@@ -107,12 +103,12 @@ void Knowledge::apply(const Change& c) {
       if (now >= kFirstValue &&
           std::find(c.options.begin(), c.options.end(), now - kFirstValue) == c.options.end())
         forget_value();
-      learn_options(c.fluent, c.options);
-      break;
+      return learn_options(c.fluent, c.options);
     case K::AddGroup:
     case K::DeleteGroup:
       break;
   }
+  return true;
 }
 
 bool Knowledge::learn_atom(Index fluent, bool truth) {

@@ -82,7 +82,8 @@ class Knowledge {
   void write(Index word, Word mask, Word bits) { write(word, (words_[word] & ~mask) | bits); }
 
   /// An action's effect: the world changes, or an observation is made at run time.
-  void apply(const Change& change);
+  /// @return false if the observation contradicts what is known; the state is then meaningless.
+  bool apply(const Change& change);
 
   /// Something about the world as it is becomes known: the outcome of sensing, or an initial fact.
   /// @return false if it contradicts what is known; the state is then meaningless.

@@ -89,7 +89,8 @@ class Parser {
       if (is(keyword) && is(":", 1)) return true;
     if (is("symbols")) return true;
     for (const char* keyword : kOthers)
-      if (is(keyword) && peek(1).kind == Token::Kind::Name) return true;
+      if (is(keyword) && peek(1).kind == Token::Kind::Name)
+        return !is("table") || is(":", 2);  // an object may be called table
     return false;
   }
 
@@ -448,7 +449,7 @@ class Parser {
     const Level level(*this);
     Effect e;
     e.place = place();
-    if ((is("add") || is("del")) && is("(", 1)) return update();
+    if ((is("add") || is("del") || is("maybe")) && is("(", 1)) return update();
     if ((is("forall") || is("forallK")) && is("(", 1)) {
       next_ += 2;
       e.kind = Effect::Kind::ForAll;
@@ -483,7 +484,7 @@ class Parser {
       return result;
     }
     do result.push_back(effect());
-    while (is("&") && (is("add", 1) || is("del", 1)) && accept("&"));
+    while (is("&") && (is("add", 1) || is("del", 1) || is("maybe", 1)) && accept("&"));
     return result;
   }
 
@@ -494,7 +495,8 @@ class Parser {
       if (tokens_[i].is("(")) ++depth;
       if (tokens_[i].is(")") && --depth == 0) return false;
       if (tokens_[i].is("=>")) return true;
-      if ((tokens_[i].is("add") || tokens_[i].is("del")) && i + 1 < tokens_.size() &&
+      if ((tokens_[i].is("add") || tokens_[i].is("del") || tokens_[i].is("maybe")) &&
+          i + 1 < tokens_.size() &&
           tokens_[i + 1].is("("))
         return true;
     }
@@ -513,14 +515,18 @@ class Parser {
   Effect update() {
     Effect e;
     e.place = place();
-    e.kind = accept("add") ? Effect::Kind::Add : Effect::Kind::Delete;
-    if (e.kind == Effect::Kind::Delete) ++next_;
-    expect("(", "after add or del");
+    e.kind = is("add")   ? Effect::Kind::Add
+             : is("del") ? Effect::Kind::Delete
+                         : Effect::Kind::Maybe;
+    ++next_;
+    expect("(", "after add, del or maybe");
     if (const auto d = database()) {
       e.database = *d;
     } else {
       place().fail("expected a database (Kf, Kw, Kv, Kx or LCW), found " + found());
     }
+    if (e.kind == Effect::Kind::Maybe && e.database != syntax::Database::Kf)
+      e.place.fail("maybe(...) is about the world: its database is Kf");
     expect(",", "after the database");
     e.formulas = contents(e.database);
     expect(")", "to close the update");
@@ -614,6 +620,9 @@ std::vector<TypedVariable> kpl_piece::constants(const Source& source) {
 }
 
 syntax::Document syntax::merge(Document domain, Document problem) {
+  if (domain.assumes_complete && !problem.unknown.empty())
+    problem.unknown[0].place.fail(
+        "incomplete knowledge needs the requirement ':contingent' in the domain");
   if (domain.name.text.empty()) domain.name = problem.name;
   append(domain.types, problem.types);
   append(domain.constants, problem.constants);

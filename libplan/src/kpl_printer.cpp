@@ -1,5 +1,9 @@
 #include "kpl_printer.h"
 
+#include <set>
+
+#include "lexer.h"
+
 namespace kaboum::plan {
 namespace {
 
@@ -63,8 +67,10 @@ const char* name(syntax::Database d) {
 std::string update(const Effect& e) {
   std::string text;
   for (const Formula& f : e.formulas) text += (text.empty() ? "" : " | ") + print_formula(f);
-  return std::string(e.kind == Effect::Kind::Add ? "add(" : "del(") + name(e.database) + ", " +
-         text + ")";
+  const char* what = e.kind == Effect::Kind::Add     ? "add("
+                     : e.kind == Effect::Kind::Maybe ? "maybe("
+                                                     : "del(";
+  return std::string(what) + name(e.database) + ", " + text + ")";
 }
 
 std::string effects(const std::vector<Effect>& list, const std::string& indent);
@@ -72,6 +78,7 @@ std::string effects(const std::vector<Effect>& list, const std::string& indent);
 std::string effect(const Effect& e, const std::string& indent) {
   switch (e.kind) {
     case Effect::Kind::Add:
+    case Effect::Kind::Maybe:
     case Effect::Kind::Delete:
       return update(e);
     case Effect::Kind::When:
@@ -149,7 +156,42 @@ std::string print_formula(const Formula& f) {
 
 std::string print_effects(const std::vector<Effect>& list) { return effects(list, ""); }
 
+namespace {
+
+/// Other languages have names that this one has not.
+void check_name(const syntax::Name& n) {
+  if (n.text.empty()) return;
+  static const std::set<std::string, std::less<>> kReserved = {
+      "K",      "Kf",     "Kw",     "Kv",     "Kx",  "LCW",     "add", "del",  "maybe",
+      "forall", "exists", "extern", "xor",    "true", "false", "forallK", "existsK"};
+  bool readable = false;
+  try {
+    const std::vector<Token> tokens = tokenize({"", n.text});
+    readable = tokens.size() == 2 && tokens[0].kind == Token::Kind::Name &&
+               tokens[0].text == n.text && !kReserved.contains(n.text);
+  } catch (const Error&) {
+    readable = false;
+  }
+  if (!readable)
+    n.place.fail("kpl cannot say the name '" + n.text +
+                 "': a name is a letter followed by letters, digits, '_' and '-', and no operator");
+}
+
+void check_names(const syntax::Document& d) {
+  for (const auto& t : d.types) check_name(t.name);
+  for (const auto& c : d.constants) check_name(c.name);
+  for (const auto* list : {&d.predicates, &d.functions, &d.externals})
+    for (const auto& s : *list) check_name(s.name);
+  for (const auto& a : d.actions) {
+    check_name(a.name);
+    for (const auto& p : a.parameters) check_name(p.name);
+  }
+}
+
+}  // namespace
+
 std::string print_kpl(const syntax::Document& d) {
+  check_names(d);
   std::string out;
   if (!d.name.text.empty()) out += "domain " + d.name.text + "\n\n";
   const auto section = [&](const char* heading, const auto& list, const auto& line) {
@@ -161,9 +203,14 @@ std::string print_kpl(const syntax::Document& d) {
   section("types:", d.types, [](const syntax::Type& t) {
     return t.name.text + (t.parent.text.empty() ? "" : " : " + t.parent.text) + ";";
   });
-  section("constants:", d.constants, [](const syntax::TypedVariable& c) {
-    return (c.type.text.empty() ? "object" : c.type.text) + " " + c.name.text + ";";
-  });
+  // A type goes on until the next; so constants without one begin a section of their own.
+  const std::string* type = nullptr;
+  for (const syntax::TypedVariable& c : d.constants) {
+    if (type == nullptr || (c.type.text.empty() && !type->empty())) out += "constants:\n";
+    type = &c.type.text;
+    out += "  " + (type->empty() ? "" : *type + " ") + c.name.text + ";\n";
+  }
+  if (type != nullptr) out += "\n";
   section("predicates:", d.predicates,
           [](const syntax::Signature& s) { return signature(s) + ";"; });
   section("functions:", d.functions, [](const syntax::Signature& s) {

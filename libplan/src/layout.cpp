@@ -11,6 +11,7 @@ namespace kaboum::plan {
 namespace {
 
 constexpr std::size_t kMaximumNumbered = 20'000'000;  // ground atoms and terms of one task
+constexpr std::size_t kMaximumPositions = 200'000'000;
 constexpr std::size_t kMaximumVisits = 2'000'000;     // bindings looked at to find what can change
 
 template <class Visit>
@@ -30,11 +31,14 @@ void for_each_update(const std::vector<Effect>& effects, const Visit& visit) {
 struct Layout::Builder {
   Layout& layout;
   const Model& model;
+  Limits& limits;
   std::vector<char> atom_changes, term_changes;  ///< by number
   std::vector<std::vector<std::pair<Index, std::vector<Index>>>> group_atoms;
   std::size_t visits = 0;
 
   void number_all() {
+    if (model.types.size() * model.objects.size() > kMaximumPositions)
+      throw Error(ErrorCode::LimitReached, "too many types and constants");
     layout.positions_.assign(model.types.size(), std::vector<Index>(model.objects.size(), kNone));
     for (std::size_t t = 0; t < model.types.size(); ++t)
       for (std::size_t i = 0; i < model.types[t].objects.size(); ++i)
@@ -104,7 +108,8 @@ struct Layout::Builder {
 
   void mark_effects(const std::vector<Effect>& effects, std::vector<Index>& slots) {
     for (const Effect& e : effects) {
-      ++visits;
+      limits.work();
+      if (++visits > kMaximumVisits) return;
       if (e.kind == Effect::Kind::Update) {
         mark_update(e.update, slots.data());
       } else if (e.kind == Effect::Kind::When) {
@@ -177,6 +182,7 @@ struct Layout::Builder {
         return;
       }
       for (const Index o : model.types[a.parameters[depth].type].objects) {
+        limits.work();
         if (++visits > kMaximumVisits) return;
         slots[depth] = o;
         self(self, depth + 1);
@@ -195,9 +201,9 @@ struct Layout::Builder {
       const Update::Literal& l = u.literals[0];
       std::vector<Index> arguments;
       for (const Argument& a : l.arguments) arguments.push_back(a.index);
-      if (u.database != Update::Database::Kf || l.negated == l.function) {
+      if (u.database != Update::Database::Kf || (l.function && l.negated)) {
         mark_update(u, nullptr);  // disjunctive or sensed knowledge, or f != c: not constant
-        if (u.database != Update::Database::Kf || l.function) continue;
+        continue;
       }
       const Symbol& s = (l.function ? model.functions : model.predicates)[l.symbol];
       const std::size_t n = layout.number(
@@ -335,8 +341,12 @@ struct Layout::Builder {
   }
 };
 
-Layout::Layout(const Model& model) : model_(model) {
-  Builder{*this, model, {}, {}, {}, 0, {}}.run();
+Layout::Layout(const Model& model, Limits& limits) : model_(model) {
+  Builder{*this, model, limits, {}, {}, {}, 0, {}}.run();
+  limits.work(atom_fluents_.size() * (sizeof(Index) + sizeof(AtomKnowledge)) +
+              term_fluents_.size() * 2 * sizeof(Index) +
+              fluents_.size() * (sizeof(Fluent) + 32) +
+              model.types.size() * model.objects.size() * sizeof(Index));
 }
 
 std::size_t Layout::number(const Symbol& symbol, const Block& block, const Index* arguments) const {

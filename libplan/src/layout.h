@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "solve_limits.h"
+
 namespace kaboum::plan {
 
 using Word = std::uint64_t;
@@ -45,7 +47,7 @@ struct Group {
 /// field; what is known of them is constant. So a state of STACKED 8 is one 64-bit word.
 class Layout {
  public:
-  explicit Layout(const Model& model);
+  Layout(const Model& model, Limits& limits);
 
   struct Place {
     Index fluent = kNone;                         ///< kNone: constant

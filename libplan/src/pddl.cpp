@@ -92,6 +92,12 @@ class Reader {
     if (costs_)
       for (syntax::Action& a : document_.actions)
         if (a.cost.empty()) a.cost.push_back({Term::Kind::Name, {"0", a.name.place}, {}});
+    for (syntax::Action& a : document_.actions) a.effects = additions_last(a.effects);
+    document_.assumes_complete = !contingent_ && !document_.actions.empty();
+    if (document_.assumes_complete && !document_.unknown.empty())
+      document_.unknown[0].place.fail(
+          "incomplete knowledge needs the requirement ':contingent' in the domain");
+    for (syntax::Action& a : document_.actions) a.effects = conditions_decided(a.effects);
     return std::move(document_);
   }
 
@@ -146,7 +152,8 @@ class Reader {
     }
   }
 
-  static void requirement(const Expression& e) {
+  void requirement(const Expression& e) {
+    contingent_ |= e.is(":contingent");
     static constexpr std::array kSupported = {":strips",
                                               ":typing",
                                               ":equality",
@@ -292,6 +299,7 @@ class Reader {
         effects(value, a.effects, a);
       } else if (key == ":observe") {
         observe(value, a.effects);
+        contingent_ = true;
       } else {
         e.items[i].place.fail("unsupported part of an action: '" + key + "'");
       }
@@ -341,6 +349,7 @@ class Reader {
     } else if (e.headed("when")) {
       made.kind = Effect::Kind::When;
       made.formulas.push_back(formula(item(e, 1, "a condition"), true));
+      made.formulas.push_back(formula(item(e, 1, "a condition"), false));  // for the unknown case
       effects(item(e, 2, "an effect"), made.children, a);
     } else if (e.headed("assign")) {
       Formula f = make(K::Equal, e.place);
@@ -354,6 +363,69 @@ class Reader {
       made.formulas.push_back(literal(e));
     }
     out.push_back(std::move(made));
+  }
+
+  /// PDDL: what one action both adds and deletes holds afterwards. Here the later update wins.
+  static std::vector<Effect> additions_last(const std::vector<Effect>& effects) {
+    const auto part = [](const auto& self, const std::vector<Effect>& list,
+                         bool deletions) -> std::vector<Effect> {
+      std::vector<Effect> out;
+      for (const Effect& e : list) {
+        if (e.kind == Effect::Kind::When || e.kind == Effect::Kind::ForAll) {
+          Effect copy = e;
+          copy.children = self(self, e.children, deletions);
+          if (!copy.children.empty()) out.push_back(std::move(copy));
+        } else if ((e.formulas.at(0).kind == K::Not) == deletions) {
+          out.push_back(e);
+        }
+      }
+      return out;
+    };
+    std::vector<Effect> all = part(part, effects, true);
+    for (Effect& e : part(part, effects, false)) all.push_back(std::move(e));
+    return all;
+  }
+
+  /// A conditional effect happens or not in the world, known or not: with incomplete knowledge, it
+  /// may happen where its condition is not known to fail. So far a When has two formulas: that its
+  /// condition is known to hold, and that it is known to fail.
+  std::vector<Effect> conditions_decided(const std::vector<Effect>& effects) const {
+    std::vector<Effect> all;
+    for (const Effect& e : effects) {
+      Effect known = e;
+      known.children = conditions_decided(e.children);
+      if (e.kind != Effect::Kind::When) {
+        all.push_back(std::move(known));
+        continue;
+      }
+      Effect unknown = known;
+      known.formulas.resize(1);
+      all.push_back(std::move(known));
+      if (!contingent_) continue;
+      unknown.children = possibly(std::move(unknown.children));
+      if (unknown.children.empty()) continue;
+      unknown.formulas = {make(
+          K::And, e.place,
+          {make(K::Not, e.place, {e.formulas.at(0)}), make(K::Not, e.place, {e.formulas.at(1)})})};
+      all.push_back(std::move(unknown));
+    }
+    return all;
+  }
+
+  static std::vector<Effect> possibly(std::vector<Effect> effects) {
+    std::vector<Effect> all;
+    for (Effect& e : effects) {
+      if (e.kind == Effect::Kind::When || e.kind == Effect::Kind::ForAll) {
+        e.children = possibly(std::move(e.children));
+        if (e.children.empty()) continue;
+      } else if (e.database != syntax::Database::Kf) {
+        continue;
+      } else {
+        e.kind = Effect::Kind::Maybe;
+      }
+      all.push_back(std::move(e));
+    }
+    return all;
   }
 
   // ---- initial state ---------------------------------------------------------------------------
@@ -399,6 +471,7 @@ class Reader {
   syntax::Document document_;
   std::vector<Formula> unknown_;
   bool costs_ = false;
+  bool contingent_ = false;
 };
 
 /// Writes the classical part of the language, and sensing.
@@ -406,6 +479,13 @@ class Writer {
  public:
   std::string write(const syntax::Document& d) {
     document_ = &d;
+    // PDDL's "object" is the root of all types; as one type among others it needs another name.
+    const auto is_object = [](const syntax::Type& t) { return t.name.text == "object"; };
+    rename_object_ =
+        std::any_of(d.types.begin(), d.types.end(), is_object) && d.types.size() > 1 &&
+        std::none_of(d.types.begin(), d.types.end(),
+                     [](const syntax::Type& t) { return t.parent.text == "object"; });
+    check_names(d);
     if (!d.externals.empty()) refuse("external function '" + d.externals[0].name.text + "'");
     const std::string title = d.name.text.empty() ? "unnamed" : d.name.text;
     std::string out =
@@ -413,8 +493,8 @@ class Writer {
         ")\n (:requirements :typing :adl :object-fluents :action-costs :contingent)\n";
     out += " (:types";
     for (const syntax::Type& t : d.types)
-      if (t.name.text != "object")
-        out += " " + t.name.text + " - " + (t.parent.text.empty() ? "object" : t.parent.text);
+      if (t.name.text != "number" && (t.name.text != "object" || rename_object_))
+        out += " " + type(t.name) + " - " + (t.parent.text.empty() ? "object" : t.parent.text);
     out += ")\n (:constants";
     for (const TypedVariable& c : d.constants) out += " " + c.name.text + " - " + type(c.type);
     out += ")\n (:predicates";
@@ -446,14 +526,33 @@ class Writer {
   [[noreturn]] static void refuse(const std::string& what) {
     throw Error(ErrorCode::InvalidInput, "PDDL cannot say: " + what);
   }
-  static std::string type(const Name& n) { return n.text.empty() ? "object" : n.text; }
-  static std::string variables(const std::vector<TypedVariable>& list) {
+  /// PDDL ignores case: names that differ in nothing else would be one.
+  static void check_names(const syntax::Document& d) {
+    std::map<std::string, std::string> seen;
+    const auto add = [&](const std::string& kind, const Name& n) {
+      std::string lower = kind;
+      for (const char c : n.text) lower += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+      const auto [it, fresh] = seen.emplace(lower, n.text);
+      if (!fresh && it->second != n.text)
+        refuse("'" + it->second + "' and '" + n.text + "', which differ only in case");
+    };
+    for (const syntax::Type& t : d.types) add("t ", t.name);
+    for (const TypedVariable& c : d.constants) add("c ", c.name);
+    for (const syntax::Signature& s : d.predicates) add("p ", s.name);
+    for (const syntax::Signature& s : d.functions) add("p ", s.name);
+    for (const syntax::Action& a : d.actions) add("a ", a.name);
+  }
+  [[nodiscard]] std::string type(const Name& n) const {
+    if (n.text.empty()) return "object";
+    return rename_object_ && n.text == "object" ? "kpl-object" : n.text;
+  }
+  [[nodiscard]] std::string variables(const std::vector<TypedVariable>& list) const {
     std::string out;
     for (const TypedVariable& v : list)
       out += (out.empty() ? "?" : " ?") + v.name.text + " - " + type(v.type);
     return "(" + out + ")";
   }
-  static std::string signature(const syntax::Signature& s) {
+  [[nodiscard]] std::string signature(const syntax::Signature& s) const {
     std::string out = "(" + s.name.text;
     for (std::size_t i = 0; i < s.parameters.size(); ++i)
       out += " ?x" + std::to_string(i) + " - " + type(s.parameters[i]);
@@ -532,8 +631,9 @@ class Writer {
             out += " " + literal(e.formulas.at(0));
           }
           break;
+        case Effect::Kind::Maybe:
         case Effect::Kind::Delete:
-          refuse("loss of knowledge, del(...)");
+          refuse("loss of knowledge, del(...) or maybe(...)");
         case Effect::Kind::When: {
           std::string inner;
           out += " (when " + condition(e.formulas.at(0)) + " " + effects(e.children, inner) + ")";
@@ -550,8 +650,24 @@ class Writer {
     }
     return out + ")";
   }
+  /// In PDDL an addition wins over a deletion, wherever it stands; here the later update does.
+  static void refuse_late_deletions(const std::vector<Effect>& list, std::set<std::string>& added,
+                                    const std::string& action) {
+    for (const Effect& e : list) {
+      refuse_late_deletions(e.children, added, action);
+      if (e.kind != Effect::Kind::Add || e.database != syntax::Database::Kf) continue;
+      const Formula& f = e.formulas.at(0);
+      if (f.kind == K::Atom) added.insert(f.terms.at(0).name.text);
+      if (f.kind == K::Not && f.children.at(0).kind == K::Atom &&
+          added.contains(f.children[0].terms.at(0).name.text))
+        refuse("action '" + action + "' adds " + f.children[0].terms[0].name.text +
+               " and then its negation; put negations first");
+    }
+  }
   std::string action(const syntax::Action& a, bool costs) const {
     std::string observed;
+    std::set<std::string> added;
+    refuse_late_deletions(a.effects, added, a.name.text);
     std::string all = effects(a.effects, observed);
     if (costs) {
       all.pop_back();
@@ -578,6 +694,7 @@ class Writer {
   }
 
   const syntax::Document* document_ = nullptr;
+  bool rename_object_ = false;
 };
 
 }  // namespace

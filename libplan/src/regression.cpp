@@ -48,23 +48,33 @@ void Regression::require_as_before(const Fluent& fluent) {
 /// on what it was either. Knowledge in Kx groups spreads: all fluents tied to it count as touched.
 void Regression::touch(Index fluent, bool plain) {
   const Layout& layout = task_.layout();
-  std::vector<Index> todo = {fluent};
-  std::set<Index> seen = {fluent};
-  while (!todo.empty()) {
-    const Fluent& f = layout.fluents()[todo.back()];
-    todo.pop_back();
+  for (const Index tied : tied_to(fluent)) {
+    const Fluent& f = layout.fluents()[tied];
     touched_[f.word] |= f.mask;
     for (Index i = 0; i < f.exclusion_words; ++i) touched_[f.exclusions + i] = ~Word{0};
     const bool depends = !plain || !f.groups.empty();
     if (depends) require_as_before(f);
     for (const auto& [g, bit] : f.groups) {
-      const Group& group = layout.groups()[g];
-      touched_[group.word] = ~Word{0};
-      required_.push_back(task_.pool().bits(group.word, ~Word{0}, before_[group.word]));
-      for (const Index m : group.members)
-        if (seen.insert(m).second) todo.push_back(m);
+      touched_[layout.groups()[g].word] = ~Word{0};
+      require_word(layout.groups()[g].word);
     }
   }
+}
+
+void Regression::require_word(Index word) {
+  required_.push_back(task_.pool().bits(word, ~Word{0}, before_[word]));
+}
+
+/// The fluent, and all that Kx entries tie to it, whether they hold now or not.
+std::vector<Index> Regression::tied_to(Index fluent) const {
+  const Layout& layout = task_.layout();
+  std::vector<Index> all = {fluent};
+  std::set<Index> seen = {fluent};
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (const auto& [g, bit] : layout.fluents()[all[i]].groups)
+      for (const Index m : layout.groups()[g].members)
+        if (seen.insert(m).second) all.push_back(m);
+  return all;
 }
 
 /// Fluents that `f` reads: their content before the step is required to be what it was.
@@ -78,7 +88,11 @@ void Regression::require_read(Formula f) {
     const FormulaPool::Node n = pool.node(f);
     required_.push_back(pool.bits(n.a, pool.bits_mask(n), before_[n.a] & pool.bits_mask(n)));
   } else if (kind != Kind::True && kind != Kind::False && kind != Kind::External) {
-    require_as_before(task_.layout().fluents()[pool.node(f).a]);
+    for (const Index fluent : tied_to(pool.node(f).a)) {
+      const Fluent& read = task_.layout().fluents()[fluent];
+      require_as_before(read);
+      for (const auto& [g, bit] : read.groups) require_word(task_.layout().groups()[g].word);
+    }
   }
 }
 
@@ -135,11 +149,15 @@ Formula Regression::before(Step step, Formula condition, const Word* before) {
     std::vector<Formula> fired, idle;
     for (const Conditional& c : a.effects) {
       const bool happens = pool.holds(c.condition, before);
-      // An effect that does not happen here must not happen, if it could touch what is asked for.
+      // An effect that does not happen here must not happen, if it could touch what is asked for or
+      // be an observation that contradicts what is known there.
+      bool observes = false;
       const std::vector<Word> kept = touched_;
       const std::size_t requirements = required_.size();
       const auto touch_change = [&](const Change& change) {
         using K = Change::Kind;
+        observes |= change.kind == K::AddGroup || change.kind == K::Exclude ||
+                    change.kind == K::AddOptions;
         if (change.kind == K::AddGroup || change.kind == K::DeleteGroup) {
           for (const Index m : task_.layout().groups()[change.fluent].members) touch(m, false);
           touched_[task_.layout().groups()[change.fluent].word] = ~Word{0};
@@ -155,7 +173,7 @@ Formula Regression::before(Step step, Formula condition, const Word* before) {
       if (happens) {
         fired.push_back(c.condition);
       } else {
-        if (overlaps(condition)) idle.push_back(pool.negate(c.condition));
+        if (observes || overlaps(condition)) idle.push_back(pool.negate(c.condition));
         touched_ = kept;
         required_.resize(requirements);
       }

@@ -26,7 +26,9 @@ class Regression {
   Formula rewrite(Formula f);
   [[nodiscard]] bool overlaps(Formula f) const;
   void require_as_before(const Fluent& fluent);
+  void require_word(Index word);
   void require_read(Formula f);
+  [[nodiscard]] std::vector<Index> tied_to(Index fluent) const;
 
   Task& task_;
   Knowledge after_;

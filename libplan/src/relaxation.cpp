@@ -163,6 +163,50 @@ std::vector<FactId> Relaxation::added(const Change& c) const {
   return {};
 }
 
+bool Relaxation::ends(const Operator& op, FactId f) const {
+  if (task_.is_outcome(op.step)) return false;  // learning changes nothing
+  using K = Change::Kind;
+  const Index fluent = fluent_of(f);
+  const Word content = content_of(f);
+  const auto is = [&](AtomKnowledge k) { return content == static_cast<Word>(k); };
+  const Conditional& c = task_.action(op.step).effects[op.conditional];
+  for (const auto* list : {&c.deletions, &c.plain, &c.additions})
+    for (const Change& change : *list) {
+      if (change.kind == K::AddGroup || change.kind == K::DeleteGroup || change.fluent != fluent)
+        continue;
+      switch (change.kind) {
+        case K::AddTrue:
+          if (!is(AtomKnowledge::True)) return true;
+          break;
+        case K::AddFalse:
+          if (!is(AtomKnowledge::False)) return true;
+          break;
+        case K::DeleteTrue:
+          if (is(AtomKnowledge::True)) return true;
+          break;
+        case K::DeleteFalse:
+        case K::DeleteClosed:
+          if (is(AtomKnowledge::False)) return true;
+          break;
+        case K::Forget:
+          if (content != 0) return true;
+          break;
+        case K::AddValue:
+          if (content != kFirstValue + change.value) return true;
+          break;
+        case K::DeleteValue:
+          if (content == kFirstValue + change.value) return true;
+          break;
+        case K::DeleteExclude:
+          if (content >= kFirstValue && content != kFirstValue + change.value) return true;
+          break;
+        default:
+          break;  // observations: certain of nothing
+      }
+    }
+  return false;
+}
+
 void Relaxation::reach() {
   const Layout& layout = task_.layout();
   for (Index i = 0; i < layout.fluents().size(); ++i) {

@@ -28,6 +28,10 @@ class Relaxation {
     Index conditional = 0;  ///< index into the action's effects
   };
 
+  /// Whether the operator, where it happens, leaves the fluent with another content than `f` for
+  /// certain, if nothing else that the action does gives it back.
+  [[nodiscard]] bool ends(const Operator& op, FactId f) const;
+
   [[nodiscard]] FactId fact(Index fluent, Word content) const {
     return first_fact_[fluent] + static_cast<FactId>(content);
   }

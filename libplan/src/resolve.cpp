@@ -20,6 +20,8 @@ using sx::Name;
 
 constexpr std::size_t kMaximumArity = 12;
 constexpr std::size_t kMaximumSlots = 64;
+constexpr std::size_t kMaximumTypes = 10'000;
+constexpr std::size_t kMaximumInitial = 5'000'000;
 
 using Table = std::unordered_map<std::string, Index>;
 
@@ -67,27 +69,64 @@ Query wrap(std::vector<Unfolded> unfolded, Query inner) {
   return inner;
 }
 
-Effect wrap(std::vector<Unfolded> unfolded, Effect inner) {
-  for (auto u = unfolded.rbegin(); u != unfolded.rend(); ++u) {
-    Effect when;
-    when.kind = Effect::Kind::When;
-    when.condition = std::move(u->condition);
-    when.children.push_back(std::move(inner));
-    Effect all;
-    all.kind = Effect::Kind::ForAll;
-    all.slot = u->slot;
-    all.type = u->type;
-    all.children.push_back(std::move(when));
-    inner = std::move(all);
-  }
-  return inner;
-}
-
 Query negation(Query q) {
   Query n;
   n.kind = Query::Kind::Not;
   n.children.push_back(std::move(q));
   return n;
+}
+
+Effect when(Query condition, const Effect& happens) {
+  Effect e;
+  e.kind = Effect::Kind::When;
+  e.condition = std::move(condition);
+  e.children.push_back(happens);
+  return e;
+}
+
+/// What an update does if it only may happen: additions become possible ones, and what says nothing
+/// of the world (sensing, observations) is left out.
+std::optional<Effect> possibly(Effect e) {
+  if (e.kind == Effect::Kind::Update) {
+    if (e.update.add && e.update.database != Update::Database::Kf) return std::nullopt;
+    e.update.maybe = e.update.add;
+    return e;
+  }
+  std::vector<Effect> children;
+  for (Effect& c : e.children)
+    if (auto p = possibly(std::move(c))) children.push_back(std::move(*p));
+  if (children.empty()) return std::nullopt;
+  e.children = std::move(children);
+  return e;
+}
+
+/// `inner` for the value that each unfolded term has. Where a term's value is not known, `inner` may
+/// happen for any value that it may have, and takes the knowledge that would be wrong then.
+Effect wrap(std::vector<Unfolded> unfolded, Effect inner) {
+  std::optional<Effect> maybe = possibly(inner);
+  for (auto u = unfolded.rbegin(); u != unfolded.rend(); ++u) {
+    const auto all = [&](std::vector<Effect> children) {
+      Effect e;
+      e.kind = Effect::Kind::ForAll;
+      e.slot = u->slot;
+      e.type = u->type;
+      e.children = std::move(children);
+      return e;
+    };
+    std::vector<Effect> certain = {when(u->condition, inner)};
+    if (u->condition.kind != Query::Kind::KnownValue) {  // an external value is there, or is none
+      if (maybe) maybe = all({when(u->condition, *maybe)});
+    } else if (maybe) {
+      Query whether = u->condition;
+      whether.kind = Query::Kind::WhetherValue;
+      certain.push_back(when(negation(std::move(whether)), *maybe));
+      Query differs = u->condition;
+      differs.negated = true;
+      maybe = all({when(negation(std::move(differs)), *maybe)});
+    }
+    inner = all(std::move(certain));
+  }
+  return inner;
 }
 
 std::string plural(std::size_t n, const char* what) {
@@ -134,6 +173,7 @@ class Resolver {
           t.name.place.fail("type '" + t.name.text + "' cannot have a parent");
         continue;
       }
+      if (model_.types.size() >= kMaximumTypes) t.name.place.fail("too many types");
       unique(types_, t.name, static_cast<Index>(model_.types.size()), "type");
       model_.types.push_back({t.name.text, 0, {}});
     }
@@ -649,7 +689,8 @@ class Resolver {
 
   Update update(const sx::Effect& e, Scope& scope, std::vector<Unfolded>& unfolded) {
     Update u;
-    u.add = e.kind == sx::Effect::Kind::Add;
+    u.add = e.kind != sx::Effect::Kind::Delete;
+    u.maybe = e.kind == sx::Effect::Kind::Maybe;
     u.database = static_cast<Update::Database>(e.database);
     const sx::Formula& first = e.formulas.at(0);
     switch (e.database) {
@@ -707,6 +748,7 @@ class Resolver {
     Effect result;
     switch (e.kind) {
       case sx::Effect::Kind::Add:
+      case sx::Effect::Kind::Maybe:
       case sx::Effect::Kind::Delete: {
         const std::size_t outer = scope.variables.size();
         std::vector<std::pair<Index, Index>> wildcards;
@@ -783,7 +825,7 @@ class Resolver {
   static std::optional<std::int64_t> integer(const std::string& text) {
     std::int64_t value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || value > 1'000'000'000)
+    if (error != std::errc() || end != text.data() + text.size() || value < 0 || value > 1'000'000'000)
       return std::nullopt;
     return value;
   }
@@ -795,7 +837,8 @@ class Resolver {
     }
     const Index* function = function_of(t);
     if (function == nullptr || !model_.functions[*function].numeric)
-      t.name.place.fail("a cost is a whole number up to 1000000000 or a function of type number");
+      t.name.place.fail(
+          "a cost is a whole number from 0 to 1000000000 or a function of type number");
     std::vector<Unfolded> unfolded;
     action.cost_function = *function;
     action.cost_arguments = arguments(t, model_.functions[*function], scope, unfolded);
@@ -815,7 +858,7 @@ class Resolver {
       key.push_back(a.index);
     if (!unfolded.empty()) f.place.fail("an initial value's arguments are constants");
     const auto value = integer(f.terms.at(1).name.text);
-    if (!value) f.terms[1].name.place.fail("expected a whole number up to 1000000000");
+    if (!value) f.terms[1].name.place.fail("expected a whole number from 0 to 1000000000");
     model_.numbers[*function][key] = *value;
     return true;
   }
@@ -858,7 +901,7 @@ class Resolver {
       std::vector<Index> key = {predicate};
       for (const Argument& a : prefix) key.push_back(a.index);
       if (unknown_.contains(key)) return;
-      if (out.size() > 5'000'000)
+      if (out.size() > kMaximumInitial)
         throw Error(ErrorCode::LimitReached, "too many atoms of closed predicates");
       Update u;
       u.database = Update::Database::Lcw;
@@ -884,6 +927,7 @@ class Resolver {
       }
       return;
     }
+    if (out.size() > kMaximumInitial) place.fail("too many instances");
     Update u = e.update;
     for (Update::Literal& l : u.literals) {
       for (Argument& a : l.arguments)

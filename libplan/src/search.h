@@ -2,11 +2,10 @@
 
 #include <kaboum/plan/solve.h>
 
-#include <chrono>
 #include <memory>
-#include <string>
 #include <vector>
 
+#include "solve_limits.h"
 #include "task.h"
 
 namespace kaboum::plan {
@@ -23,27 +22,6 @@ class Target {
   virtual bool reached(const Word* state) = 0;
   /// Whether branching on this outcome's fluent in this state is still worth trying.
   virtual bool allowed(const Word* state, Step outcome) = 0;
-};
-
-/// Time and memory, checked every so often.
-class Limits {
- public:
-  Limits(const SolveOptions& options, Statistics& statistics);
-  /// @return true if the search must stop; `reason()` says why.
-  bool exceeded(std::size_t bytes) {
-    if (++checks_ % 1024 != 0 && reason_.empty()) return false;
-    return check(bytes);
-  }
-  [[nodiscard]] const std::string& reason() const { return reason_; }
-
- private:
-  bool check(std::size_t bytes);
-
-  const SolveOptions& options_;
-  Statistics& statistics_;
-  std::chrono::steady_clock::time_point start_, last_progress_;
-  std::uint64_t checks_ = 0;
-  std::string reason_;
 };
 
 struct Found {

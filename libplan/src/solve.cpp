@@ -29,15 +29,29 @@ ContingentPlanner::SearchFunction search_function(Algorithm a) {
 Solution solve(const Model& model, const SolveOptions& options) {
   Solution solution;
   Limits limits(options, solution.statistics);
-  Task task(model);
-  ContingentPlanner planner(task, search_function(options.algorithm), limits, solution.statistics);
-  solution.status = planner.run();
-  if (solution.status == Status::Solved) solution.plan = planner.plan();
+  try {
+    Task task(model, limits);
+    const auto count = [&] {
+      solution.statistics.ground_actions = task.action_count();
+      solution.statistics.external_calls = task.pool().external_calls();
+      solution.statistics.external_seconds = task.pool().external_seconds();
+    };
+    try {
+      ContingentPlanner planner(task, search_function(options.algorithm), limits,
+                                solution.statistics);
+      solution.status = planner.run();
+      if (solution.status == Status::Solved) solution.plan = planner.plan();
+    } catch (const Stopped&) {
+      count();
+      throw;
+    }
+    count();
+  } catch (const Stopped&) {
+    solution.status = Status::Limit;
+  }
   if (solution.status == Status::Limit)
     solution.limit =
         limits.reason().empty() ? "depth limit of nested searches reached" : limits.reason();
-  solution.statistics.ground_actions = task.action_count();
-  solution.statistics.external_calls = task.pool().external_calls();
   return solution;
 }
 

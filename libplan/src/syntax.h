@@ -59,7 +59,7 @@ struct Formula {
 enum class Database { Kf, Kw, Kv, Kx, Lcw };
 
 struct Effect {
-  enum class Kind { Add, Delete, When, ForAll };
+  enum class Kind { Add, Maybe, Delete, When, ForAll };
   Kind kind = Kind::Add;
   Place place;
   Database database = Database::Kf;
@@ -113,6 +113,8 @@ struct Document {
   std::vector<Formula> goals;    ///< conjunction
   std::vector<Name> closed;      ///< predicates closed in the initial state ("all": every one)
   std::vector<Formula> unknown;  ///< atoms that closing leaves open
+  /// Of a PDDL domain: its conditional effects assume that everything is known.
+  bool assumes_complete = false;
   std::vector<std::shared_ptr<const Source>> sources;  ///< keep the places alive
 };
 

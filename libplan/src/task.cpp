@@ -4,17 +4,20 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 
 #include "bindings.h"
 
 namespace kaboum::plan {
 namespace {
 
-constexpr std::size_t kTabulated = 1U << 20U;  // entries of one table by arguments
+constexpr std::size_t kTabulated = 1U << 20U;       // entries of one table by arguments
+constexpr std::size_t kMaximumUpdates = 1'000'000;  // of one ground action
 
 }  // namespace
 
-Task::Task(const Model& model) : model_(model), layout_(model), pool_(model, layout_) {
+Task::Task(const Model& model, Limits& limits)
+    : model_(model), limits_(limits), layout_(model, limits), pool_(model, layout_, limits) {
   Index slots = std::max<Index>(model.goal_slots, 1);
   for (const Action& a : model.actions) slots = std::max(slots, a.slots);
   slots_.assign(slots, 0);
@@ -22,11 +25,13 @@ Task::Task(const Model& model) : model_(model), layout_(model), pool_(model, lay
   for (Index s = 0; s < schemas_.size(); ++s) prepare(s);
   goal_ = pool_.ground(model.goal, slots_);
   make_initial();
+  if (layout_.sensing()) find_sensible();
 }
 
 /// Initial entries are all about the same world: each is learnt, none is a change of it.
 void Task::make_initial() {
   Knowledge k(layout_);
+  std::set<Index> stated;
   const auto contradiction = [](const std::string& what) {
     throw Error(ErrorCode::InvalidInput,
                 "the initial knowledge contradicts itself about '" + what + "'");
@@ -56,7 +61,7 @@ void Task::make_initial() {
         }
         break;
       case Update::Database::Kw:
-        k.apply({Change::Kind::AddWhether, p.fluent, 0, {}});
+        consistent = k.apply({Change::Kind::AddWhether, p.fluent, 0, {}});
         break;
       case Update::Database::Kv:
         k.apply({Change::Kind::AddSensed, p.fluent, 0, {}});
@@ -73,11 +78,14 @@ void Task::make_initial() {
             for (const Argument& a : o.arguments) objects.push_back(a.index);
             members.push_back(layout_.atom(o.symbol, objects.data()).fluent);
           }
+          stated.insert(members.begin(), members.end());
           consistent = k.learn_group(layout_.group(std::move(members)));
         }
         break;
       case Update::Database::Lcw:
-        if (p.fluent != kNone && k.atom(p.fluent) == AtomKnowledge::Unknown)
+        // What Kw or Kx speaks of is stated, if not decided.
+        if (p.fluent != kNone && k.atom(p.fluent) == AtomKnowledge::Unknown &&
+            !stated.contains(p.fluent))
           consistent = k.learn_atom(p.fluent, false);
         break;
     }
@@ -196,7 +204,9 @@ Step Task::action_step(Index schema, const std::vector<Index>& arguments) {
                                                "' for the cost of an action '" + a.name + "'");
     ground->cost = value->second;
   }
+  grounded_updates_ = 0;
   ground_effects(a.effects, kTrue, slots, *ground);
+  limits_.work(sizeof(GroundAction) + ground->effects.size() * sizeof(Conditional));
   *known = static_cast<Step>(actions_.size());
   actions_.push_back(std::move(ground));
   return *known;
@@ -231,13 +241,15 @@ void Task::add_change(const Update& u, const std::vector<Index>& slots, Conditio
   using K = Change::Kind;
   switch (u.database) {
     case D::Kf:
-      if (l.function) {
-        c.value = position(l);
-        c.kind = u.add ? (l.negated ? K::Exclude : K::AddValue)
-                       : (l.negated ? K::DeleteExclude : K::DeleteValue);
+      if (l.function) c.value = position(l);
+      if (u.add && !u.maybe) {
+        c.kind = l.function ? (l.negated ? K::Exclude : K::AddValue)
+                            : (l.negated ? K::AddFalse : K::AddTrue);
       } else {
-        c.kind = u.add ? (l.negated ? K::AddFalse : K::AddTrue)
-                       : (l.negated ? K::DeleteFalse : K::DeleteTrue);
+        // What may happen takes the knowledge that it would make false: the negation.
+        const bool takes_negation = l.negated != u.maybe;
+        c.kind = l.function ? (takes_negation ? K::DeleteExclude : K::DeleteValue)
+                            : (takes_negation ? K::DeleteFalse : K::DeleteTrue);
       }
       break;
     case D::Kw:
@@ -293,6 +305,11 @@ void Task::ground_effects(const std::vector<Effect>& effects, Formula condition,
   for (const Effect& e : effects) {
     switch (e.kind) {
       case Effect::Kind::Update: {
+        limits_.work(sizeof(Change));
+        if (++grounded_updates_ > kMaximumUpdates)
+          throw Error(ErrorCode::LimitReached, "the effects of an action '" +
+                                                   model_.actions[action.schema].name +
+                                                   "' are too many");
         if (action.effects.empty() || action.effects.back().condition != condition) {
           Conditional c;
           c.condition = condition;
@@ -303,6 +320,7 @@ void Task::ground_effects(const std::vector<Effect>& effects, Formula condition,
         break;
       }
       case Effect::Kind::When: {
+        limits_.work();
         const Formula f = pool_.all({condition, pool_.ground(e.condition, slots)});
         if (f != kFalse) ground_effects(e.children, f, slots, action);
         break;
@@ -364,10 +382,12 @@ bool Task::apply(Step step, Knowledge& state) {
   const Conditional* const* fired = many.empty() ? few.data() : many.data();
   if (deletions)
     for (std::size_t i = 0; i < count; ++i)
-      for (const Change& c : fired[i]->deletions) state.apply(c);
+      for (const Change& c : fired[i]->deletions)
+        if (!state.apply(c)) return false;
   for (std::size_t i = 0; i < count; ++i) {
     for (const Conditional::Write& w : fired[i]->writes) state.write(w.word, w.mask, w.bits);
-    for (const Change& c : fired[i]->additions) state.apply(c);
+    for (const Change& c : fired[i]->additions)
+      if (!state.apply(c)) return false;
   }
   return true;
 }
@@ -375,11 +395,14 @@ bool Task::apply(Step step, Knowledge& state) {
 Index Task::undecided(const Change& c, const Word* state) const {
   using K = Change::Kind;
   if (c.kind == K::DeleteGroup) {
+    // What the entry would tell once sensed values are at hand must be concluded before it goes.
     const Group& g = layout_.groups()[c.fluent];
-    for (std::size_t i = 0; i < g.members.size(); ++i)
-      if (((state[g.word] >> i) & 1U) != 0 &&
-          layout_.fluents()[g.members[i]].get(state) == static_cast<Word>(AtomKnowledge::Whether))
-        return g.members[i];
+    for (std::size_t i = 0; i < g.members.size(); ++i) {
+      if (((state[g.word] >> i) & 1U) == 0) continue;
+      const Index m = g.members[i];
+      if (layout_.fluents()[m].get(state) == static_cast<Word>(AtomKnowledge::Whether)) return m;
+      if (const Index tie = layout_.sensed_tie(m, state); tie != kNone) return tie;
+    }
     return kNone;
   }
   if (c.kind == K::AddGroup || c.kind == K::AddWhether || c.kind == K::AddClosed ||
@@ -469,6 +492,7 @@ void Task::expand_schema(Index schema, const Word* state, std::vector<Step>& ste
     }
     Level& level = s.levels[depth];
     for (const Candidate& c : level.candidates) {
+      limits_.work();
       const std::size_t before = open_count;
       if (c.mask != 0 && (state[c.word] & c.mask) == c.value) {
         // holds
@@ -505,6 +529,52 @@ void Task::expand(const Word* state, std::vector<Step>& steps) {
   needs_.erase(std::unique(needs_.begin(), needs_.end()), needs_.end());
   for (const Index fluent : needs_)
     for (const Index value : outcomes(fluent, state)) steps.push_back(outcome_step(fluent, value));
+  if (held_back_ && branching_ == Branching::OnNeed) return;
+  for (const Index fluent : sensible_) {
+    const Fluent& f = layout_.fluents()[fluent];
+    const Word sensed = f.function ? kValueSensed : static_cast<Word>(AtomKnowledge::Whether);
+    if (f.get(state) != sensed || std::binary_search(needs_.begin(), needs_.end(), fluent)) continue;
+    held_back_ = true;
+    if (branching_ == Branching::OnNeed) return;
+    for (const Index value : outcomes(fluent, state)) steps.push_back(outcome_step(fluent, value));
+  }
+}
+
+void Task::find_sensible() {
+  std::vector<char> read(model_.predicates.size() + model_.functions.size(), 0);
+  const auto collect = [&](const auto& self, const Query& q) -> void {
+    switch (q.kind) {
+      case Query::Kind::Known:
+      case Query::Kind::KnowWhether:
+        read[q.symbol] = 1;
+        break;
+      case Query::Kind::KnownValue:
+      case Query::Kind::WhetherValue:
+      case Query::Kind::KnowValue:
+        read[model_.predicates.size() + q.symbol] = 1;
+        break;
+      default:
+        break;
+    }
+    for (const Query& c : q.children) self(self, c);
+  };
+  const auto effects = [&](const auto& self, const std::vector<Effect>& list) -> void {
+    for (const Effect& e : list) {
+      if (e.kind == Effect::Kind::When) collect(collect, e.condition);
+      self(self, e.children);
+    }
+  };
+  collect(collect, model_.goal);
+  for (const Action& a : model_.actions) {
+    collect(collect, a.precondition);
+    effects(effects, a.effects);
+  }
+  for (Index i = 0; i < layout_.fluents().size(); ++i) {
+    const Fluent& f = layout_.fluents()[i];
+    // An atom in a disjunction may tell something of another that is read.
+    if (!f.groups.empty() || read[(f.function ? model_.predicates.size() : 0) + f.symbol] != 0)
+      sensible_.push_back(i);
+  }
 }
 
 }  // namespace kaboum::plan

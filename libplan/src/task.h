@@ -9,6 +9,7 @@
 #include "formula.h"
 #include "knowledge.h"
 #include "layout.h"
+#include "solve_limits.h"
 
 namespace kaboum::plan {
 
@@ -44,7 +45,8 @@ struct GroundAction {
 /// A model made ready for search. Ground actions come into being when they are first reached.
 class Task {
  public:
-  explicit Task(const Model& model);
+  /// @throws Stopped, as may all that grounds, when `limits` are reached.
+  Task(const Model& model, Limits& limits);
   Task(const Task&) = delete;
   Task& operator=(const Task&) = delete;
 
@@ -56,10 +58,19 @@ class Task {
   [[nodiscard]] Formula goal() const { return goal_; }
 
   /// Steps possible in a state: applicable actions in order of declaration and arguments; then, for
-  /// sensed values that the goal or an otherwise applicable action needs decided, their outcomes.
+  /// sensed values that the goal or an otherwise applicable action needs decided, their outcomes;
+  /// then, when branching anywhere, the outcomes of all other sensed values that something reads.
   void expand(const Word* state, std::vector<Step>& steps);
 
-  /// Makes the step. @return false if it supposes an outcome that contradicts the state.
+  /// To branch only on need keeps searches small but loses plans: which of two actions to take may
+  /// depend on a value that is tested later. So a search on need that fails proves nothing if a
+  /// branch was held back.
+  enum class Branching { OnNeed, Anywhere };
+  void branch(Branching b) { branching_ = b; }
+  [[nodiscard]] bool held_back() const { return held_back_; }
+
+  /// Makes the step. @return false if an outcome or observation contradicts what is known; the state
+  /// is then meaningless and the step not possible.
   bool apply(Step step, Knowledge& state);
 
   [[nodiscard]] bool is_outcome(Step step) const { return (step & kOutcome) != 0; }
@@ -125,11 +136,13 @@ class Task {
   /// A sensed fluent whose value decides what the change does; kNone: it does the same for all.
   [[nodiscard]] Index undecided(const Change& change, const Word* state) const;
   void make_initial();
+  void find_sensible();
   template <bool Sensing>
   void expand_schema(Index schema, const Word* state, std::vector<Step>& steps,
                      std::vector<Index>& needs);
 
   const Model& model_;
+  Limits& limits_;
   Layout layout_;
   FormulaPool pool_;
   std::vector<Word> initial_;
@@ -140,6 +153,10 @@ class Task {
   std::map<std::pair<Index, Index>, Step> outcome_index_;
   std::vector<Index> slots_;
   std::vector<Index> needs_;
+  std::vector<Index> sensible_;  ///< fluents whose sensed value some query reads, or Kx ties to one
+  Branching branching_ = Branching::OnNeed;
+  bool held_back_ = false;  ///< a branch was possible that nothing needed
+  std::size_t grounded_updates_ = 0;
   std::uint64_t tests_ = 0;
 };
 
@@ -155,6 +172,7 @@ void Task::instances(Index schema, const Possible& possible, const Visit& visit)
       return;
     }
     for (const Candidate& c : s.levels[depth].candidates) {
+      limits_.work();
       if (!possible(c.full)) continue;
       slots[depth] = c.object;
       bool ok = true;

@@ -19,6 +19,8 @@ class Reader {
 
   syntax::Document read() {
     document_.sources.push_back(source_);
+    for (std::size_t i = 0; i < source_->text.size(); ++i)
+      if (source_->text[i] == '\n') lines_.push_back(i + 1);
     if (std::count(source_->text.begin(), source_->text.end(), '<') > 1'000'000)
       fail(0, "too many elements");
     tinyxml2::XMLDocument xml;
@@ -40,14 +42,15 @@ class Reader {
   }
 
  private:
+  /// Where a line begins, counted from 1.
+  [[nodiscard]] std::size_t line_start(int line) const {
+    const auto i = static_cast<std::size_t>(std::max(line - 1, 0));
+    return lines_.at(std::min(i, lines_.size() - 1));
+  }
+
   /// A message about a line of the file.
   [[noreturn]] void fail(int line, const std::string& message) const {
-    std::size_t offset = 0;
-    for (int i = 1; i < line && offset != std::string::npos; ++i) {
-      const std::size_t newline = source_->text.find('\n', offset);
-      if (newline == std::string::npos) break;
-      offset = newline + 1;
-    }
+    const std::size_t offset = line_start(line);
     const std::size_t text = source_->text.find_first_not_of(" \t", offset);
     source_->fail(text == std::string::npos ? offset : text, message);
   }
@@ -75,9 +78,14 @@ class Reader {
         fail(n->GetLineNum(), std::string("unexpected element in <") + e.Name() + ">");
       }
     }
+    // The first line's column: where its text stands in the file, if it stands there as it is.
+    const std::size_t start = line_start(line);
+    const std::string_view raw(source_->text.data() + start,
+                               std::min(source_->text.find('\n', start), source_->text.size()) - start);
+    const std::size_t at = raw.find(">" + content.substr(0, content.find('\n')));
+    if (at != std::string_view::npos) content.insert(0, at + 1, ' ');
     document_.sources.push_back(std::make_shared<Source>(
-        Source{source_->name,
-               std::string(static_cast<std::size_t>(std::max(line - 1, 0)), '\n') + content}));
+        Source{source_->name, std::move(content), static_cast<std::size_t>(std::max(line, 1))}));
     return *document_.sources.back();
   }
 
@@ -85,13 +93,7 @@ class Reader {
     const char* value = e.Attribute(key);
     if (value == nullptr)
       fail(e.GetLineNum(), std::string("<") + e.Name() + "> needs the attribute '" + key + "'");
-    std::size_t offset = 0;
-    for (int i = 1; i < e.GetLineNum(); ++i) {
-      const std::size_t newline = source_->text.find('\n', offset);
-      if (newline == std::string::npos) break;
-      offset = newline + 1;
-    }
-    return {value, {source_.get(), offset}};
+    return {value, {source_.get(), line_start(e.GetLineNum())}};
   }
 
   template <class T>
@@ -153,6 +155,13 @@ class Reader {
         symbols(e);
       } else if (is(e, "init")) {
         append(document_.initial, kpl_piece::initial(text(e)));
+      } else if (is(e, "updates")) {
+        // Rules that the older planner applied after each action; ours infers by itself.
+        const Source& s = text(e);
+        if (s.text.find_first_not_of(" \t\r\n") != std::string::npos)
+          fail(e.GetLineNum(),
+               "<updates> are not supported: write the rule as conditional effects of the actions "
+               "that it follows");
       } else if (is(e, "goal")) {
         document_.goals.push_back(kpl_piece::formula(text(e)));
       } else {
@@ -162,6 +171,7 @@ class Reader {
   }
 
   std::shared_ptr<const Source> source_;
+  std::vector<std::size_t> lines_ = {0};
   syntax::Document document_;
 };
 
@@ -179,6 +189,8 @@ std::string print_xml(const syntax::Document& d) {
     if (t.name.text != "object") refuse("types ('" + t.name.text + "')");
   if (!d.externals.empty()) refuse("external functions ('" + d.externals[0].name.text + "')");
   if (!d.closed.empty()) refuse("'closed:'");
+  for (const syntax::Signature& f : d.functions)
+    if (f.range.text == "number") refuse("functions of numbers ('" + f.name.text + "')");
   // The kpl printer's pieces are the XML form's texts.
   tinyxml2::XMLPrinter out;
   const auto element = [&](const char* name, const std::string& text) {

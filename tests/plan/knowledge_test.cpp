@@ -142,7 +142,10 @@ void compare(const Knowledge& k, const Layout& layout, const Naive& naive, bool 
 /// Random updates; `groups` allows Kx, with which inference is sound but not complete.
 void random_walk(std::uint32_t seed, bool groups) {
   const Model model = model_of(kModel);
-  const Layout layout(model);
+  const SolveOptions options;
+  Statistics statistics;
+  Limits limits(options, statistics);
+  const Layout layout(model, limits);
   std::vector<Index> atom(kAtoms);
   Index term = kNone;
   for (Index i = 0; i < layout.fluents().size(); ++i) {
@@ -311,7 +314,10 @@ TEST(Knowledge, IsSoundWithExclusiveOr) {
 
 TEST(Knowledge, AddingAnAtomClearsItsNegationAndWhether) {
   const Model model = model_of(kModel);
-  const Layout layout(model);
+  const SolveOptions options;
+  Statistics statistics;
+  Limits limits(options, statistics);
+  const Layout layout(model, limits);
   Knowledge k(layout);
   Index p = kNone;
   for (Index i = 0; i < layout.fluents().size(); ++i)

@@ -33,7 +33,7 @@ struct Symbol {
   std::vector<Index> parameters;  ///< types
   Index range = kNone;            ///< type of the value; kNone: a truth value
   bool numeric = false;           ///< a function whose constant values are integers (costs)
-  bool is_volatile = false;       ///< an external whose results must not be cached
+  bool is_volatile = false;       ///< an external that is called again in every state
 };
 
 /// An object, or the slot of a variable.
@@ -81,6 +81,7 @@ struct Update {
     std::optional<Argument> value;
   };
   bool add = true;
+  bool maybe = false;  ///< of an addition to Kf: it may happen, and takes what it would make false
   Database database = Database::Kf;
   std::vector<Literal> literals;  ///< one; for Kx the alternatives
 };
@@ -110,7 +111,7 @@ struct Action {
   std::vector<Argument> cost_arguments;
 };
 
-/// The value of an external function: for truth values nullopt is false; else an object.
+/// The value of an external function: for truth values nullopt is false; else an object or none.
 using ExternalFunction = std::function<std::optional<Index>(std::span<const Index> arguments)>;
 
 struct Model {

@@ -25,6 +25,7 @@ struct Statistics {
   std::uint64_t state_bytes = 0;       ///< their storage: contents, links and index
   std::uint64_t ground_actions = 0;    ///< instances that came into being
   std::uint64_t external_calls = 0;    ///< calls of external functions, cached ones not counted
+  double external_seconds = 0;         ///< spent in them: the thesis's time of geometric search
   std::uint64_t searches = 0;          ///< searches for one unbranched part
   std::uint64_t dead_ends = 0;         ///< states proved to have no plan
   std::uint64_t reused = 0;            ///< sub-plans found again by their regressed condition
@@ -35,13 +36,13 @@ struct Statistics {
 struct SolveOptions {
   Algorithm algorithm = Algorithm::BreadthFirst;
   double timeout = 0;                               ///< seconds; 0: none
-  std::size_t max_memory = 0;                       ///< bytes of search memory; 0: none
+  std::size_t max_memory = 0;                       ///< bytes of grounding and search; 0: none
   std::function<void(const Statistics&)> progress;  ///< called now and then
 };
 
 enum class Status {
   Solved,
-  Unsolvable,  ///< proved: every possibility was tried
+  Unsolvable,  ///< proved, by the inference rules of the knowledge state: all was tried
   Limit        ///< time, memory or size ran out first
 };
 

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <kaboum/plan/solve.h>
+
+#include <chrono>
+#include <string>
+
+namespace kaboum::plan {
+
+/// Thrown out of grounding and analysis when a limit is reached; `solve` turns it into Status::Limit.
+struct Stopped {};
+
+/// Time and memory of one call of `solve`, checked every so often.
+class Limits {
+ public:
+  Limits(const SolveOptions& options, Statistics& statistics);
+
+  /// For searches. @return true if the search, which holds `bytes`, must stop; `reason()` says why.
+  bool exceeded(std::size_t bytes) {
+    if (++checks_ % 256 != 0 && reason_.empty()) return false;
+    return check(bytes);
+  }
+  /// The same, at every call: where one step takes long.
+  bool check(std::size_t bytes);
+
+  /// For grounding and analysis: some work was done, and this much more memory is held until `solve`
+  /// ends. @throws Stopped
+  void work(std::size_t more_bytes = 0) {
+    held_ += more_bytes;
+    if (++work_ % 1024 == 0 && check(0)) throw Stopped();
+  }
+  [[nodiscard]] const std::string& reason() const { return reason_; }
+
+ private:
+  const SolveOptions& options_;
+  Statistics& statistics_;
+  std::chrono::steady_clock::time_point start_, last_progress_;
+  std::uint64_t checks_ = 0;
+  std::uint64_t work_ = 0;
+  std::size_t held_ = 0;
+  std::string reason_;
+};
+
+}  // namespace kaboum::plan

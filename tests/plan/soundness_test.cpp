@@ -1,0 +1,234 @@
+// Small tasks on which a careless planner or validator is wrong: false proofs of unsolvability,
+// unsound inference, plans that fail at run time.
+#include <chrono>
+
+#include "plan_test.h"
+
+namespace kaboum::plan::test {
+namespace {
+
+void expect_all(const std::string& text, Status status) {
+  const Model m = model_of(text);
+  for (const Algorithm a : kAll)
+    EXPECT_EQ(solved(m, a).status, status)
+        << text << "\nsearch " << static_cast<int>(a);
+}
+
+Plan straight(const Model& m, std::initializer_list<const char*> names) {
+  Plan p;
+  for (const char* name : names) {
+    Plan::Node n;
+    n.acts = true;
+    for (Index i = 0; i < m.actions.size(); ++i)
+      if (m.actions[i].name == name) n.action.schema = i;
+    n.next = static_cast<Index>(p.nodes.size() + 1);
+    p.nodes.push_back(n);
+  }
+  p.nodes.back().next = kNone;
+  p.root = 0;
+  return p;
+}
+
+TEST(Soundness, ABranchMayBeNeededBeforeAnyTestReadsIt) {
+  // Only one of left and right can be done; which is right is sensed, but nothing tests it before.
+  expect_all(
+      "predicates: p, q, r, used, done\ninit: K(!used) K(!done) Kw(p)\n"
+      "action left preconds: K(!used) effects: add(Kf, q), add(Kf, used)\n"
+      "action right preconds: K(!used) effects: add(Kf, r), add(Kf, used)\n"
+      "action finish1 preconds: K(q) & K(p) effects: add(Kf, done)\n"
+      "action finish2 preconds: K(r) & K(!p) effects: add(Kf, done)\n"
+      "goal: K(done)",
+      Status::Solved);
+  // The same with the goal as the only test, and with a sensed value.
+  expect_all(
+      "types: v\nconstants: v a, b\nfunctions: f : v\npredicates: q, r, used\n"
+      "init: K(!used) Kv(f)\n"
+      "action left preconds: K(!used) effects: add(Kf, q), add(Kf, used)\n"
+      "action right preconds: K(!used) effects: add(Kf, r), add(Kf, used)\n"
+      "goal: (K(q) & K(f = a)) | (K(r) & K(f = b))",
+      Status::Solved);
+}
+
+TEST(Soundness, DeletingANegationLeavesWhatIsTrue) {
+  // del(Kf, !p) takes nothing from a true p. An invariant that thinks so holds "p or q, not both"
+  // for certain, and then the goal for impossible.
+  expect_all(
+      "types: v\nconstants: v a, b\npredicates: p(v), t\ninit: K(p(a)) K(!p(b)) K(!t)\n"
+      "action shift(?x : v, ?y : v) preconds: K(p(?x)) & K(!p(?y)) effects: del(Kf, !p(?x)), "
+      "add(Kf, p(?y))\n"
+      "action tick preconds: K(p(a)) & K(p(b)) effects: add(Kf, t)\n"
+      "goal: K(p(a)) & K(p(b)) & K(t)",
+      Status::Solved);
+}
+
+TEST(Soundness, AnInvariantOfOneKeySaysNothingOfAnother) {
+  // at(?x, .) has two places for box x at the start; the action that needs both gives y a second.
+  expect_all(
+      "types: box, place\nconstants: box x, y; place a, b\npredicates: at(box, place)\n"
+      "init: K(at(x, a)) K(at(x, b)) K(at(y, a)) K(!at(y, b))\n"
+      "action clone preconds: K(at(x, a)) & K(at(x, b)) effects: add(Kf, at(y, b))\n"
+      "goal: K(at(y, a)) & K(at(y, b))",
+      Status::Solved);
+}
+
+TEST(Soundness, AnUnknownTermInAnEffectTakesKnowledge) {
+  // The box is moved to where the cart is, which is unknown: it may be anywhere then.
+  const std::string head =
+      "types: place\nconstants: place a, b\nfunctions: box : place; cart : place\n"
+      "predicates: lit(place)\ninit: K(box = a) K(!lit(a)) K(!lit(b))\n"
+      "action bring preconds: true effects: add(Kf, box = cart), add(Kf, lit(cart))\n"
+      "action ask preconds: true effects: add(Kv, cart)\n";
+  const Model m = model_of(head + "goal: K(box = a) & K(!lit(b))");
+  EXPECT_FALSE(check(m, straight(m, {"bring"})).valid);
+  expect_all(head + "goal: K(lit(a)) & K(box = a) & K(!lit(a))", Status::Unsolvable);
+  // After bring, box = a and !lit(b) are gone; asking first keeps one of them in each branch.
+  const Model lost = model_of(head + "action stop preconds: !K(box = a) & !K(!lit(a)) effects: "
+                              "add(Kv, cart), add(Kv, box), add(Kw, lit(a))\n"
+                              "goal: !Kw(lit(b)) & !Kw(lit(a))");
+  EXPECT_TRUE(check(lost, straight(lost, {"bring"})).valid);
+  for (const Algorithm a : kAll) EXPECT_EQ(solved(lost, a).status, Status::Solved);
+}
+
+TEST(Soundness, TheCheckerKeepsWhatALaterExclusiveOrNeeds) {
+  const Model m = model_of(
+      "predicates: f, g, x\ninit: K(f)\n"
+      "action rest preconds: true effects: add(Kf, x)\n"
+      "action tell preconds: K(x) effects: add(Kx, f | g)\ngoal: K(!g)");
+  EXPECT_TRUE(check(m, straight(m, {"rest", "tell"})).valid);
+  const Model hidden = model_of(
+      "predicates: f, g, x\ninit: K(f)\n"
+      "action rest preconds: true effects: add(Kf, x)\n"
+      "action tell preconds: K(x) effects: add(Kx, f | g)\ngoal: !K(!g) & K(x)");
+  EXPECT_FALSE(check(hidden, straight(hidden, {"rest", "tell"})).valid);
+  for (const Algorithm a : kAll) EXPECT_EQ(solved(m, a).status, Status::Solved);
+}
+
+TEST(Soundness, AnObservationRulesOutWhatItContradicts) {
+  // Both are sensed; then it is observed that exactly one holds: two outcomes are left, not four.
+  const std::string text =
+      "predicates: p, q, x\ninit: Kw(p) Kw(q) K(!x)\n"
+      "action tell preconds: K(!x) effects: add(Kx, p | q), add(Kf, x)\n"
+      "goal: K(x) & ((K(p) & K(!q)) | (K(!p) & K(q)))";
+  expect_all(text, Status::Solved);
+  const Model m = model_of(text);
+  EXPECT_EQ(measure(m, solved(m, Algorithm::BreadthFirst).plan).leaves, 2U);
+  // What contradicts certain knowledge cannot be observed: no step, so no plan.
+  expect_all(
+      "predicates: p, q, x\ninit: K(p) K(q) K(!x)\n"
+      "action tell preconds: K(!x) effects: add(Kx, p | q), add(Kf, x)\ngoal: K(x)",
+      Status::Unsolvable);
+}
+
+TEST(Soundness, GivingUpADisjunctionWaitsForWhatItTells) {
+  // c decides b, b decides a: once c is sensed, a may be known, and then !K(a) fails.
+  expect_all(
+      "predicates: a, b, c, e, x\ninit: Kx(a | b) Kx(b | c | e) K(!x)\n"
+      "action look preconds: !Kw(c) effects: add(Kw, c)\n"
+      "action drop preconds: Kw(c) effects: del(Kx, a | b), add(Kf, x)\n"
+      "goal: K(x) & !K(a)",
+      Status::Unsolvable);
+}
+
+TEST(Soundness, AClosedWorldDoesNotDecideADisjunction) {
+  // "Exactly one of a and b" and "what is not stated is false" do not say which.
+  const std::string text =
+      "types: v\nconstants: v a, b\npredicates: p(v), x\ninit: Kx(p(a) | p(b)) LCW(p(?v))\n"
+      "action none preconds: false effects: add(Kf, x)\n";
+  expect_all(text + "goal: K(p(b)) | K(p(a))", Status::Unsolvable);
+  expect_all(text + "goal: !Kw(p(b)) & !Kw(p(a))", Status::Solved);
+}
+
+TEST(Soundness, PddlAdditionsWin) {
+  // (p) and (not (p)) of one action: p holds afterwards, in whatever order they are written.
+  for (const char* effects : {"(and (on ?x) (not (on ?y)))", "(and (not (on ?y)) (on ?x))",
+                              "(and (when (c) (on ?x)) (not (on ?y)))",
+                              "(and (forall (?z - t) (when (c) (on ?z))) (not (on ?y)))"}) {
+    const Model m = load(
+        {"t.pddl",
+         std::string("(define (domain d) (:requirements :adl) (:types t) (:predicates (on ?x - t) "
+                     "(c) (done)) (:action touch :parameters (?x ?y - t) :precondition (not "
+                     "(done)) :effect (and (done) ") +
+             effects +
+             ")))(define (problem p) (:domain d) (:objects a - t) (:init (c)) (:goal (and (done) "
+             "(on a))))",
+         Language::Pddl},
+        nullptr);
+    EXPECT_EQ(solved(m, Algorithm::BreadthFirst).status, Status::Solved) << effects;
+  }
+}
+
+TEST(Soundness, PddlConditionsThatAreUnknownTakeKnowledge) {
+  // Whether the box is open is unknown; shaking empties it if so: full is unknown then.
+  const Model m = load(
+      {"t.pddl",
+       "(define (domain d) (:requirements :adl :contingent) (:predicates (open) (full) (done))"
+       " (:action shake :parameters () :effect (and (done) (when (open) (not (full)))))"
+       " (:action look :parameters () :observe (open)))"
+       "(define (problem p) (:domain d) (:init (full) (unknown (open))) (:goal (and (done) (full))))",
+       Language::Pddl},
+      nullptr);
+  for (const Algorithm a : kAll) EXPECT_EQ(solved(m, a).status, Status::Unsolvable);
+}
+
+TEST(Soundness, CostsAreNotNegative) {
+  const std::string text =
+      "(define (domain d) (:requirements :action-costs) (:predicates (p)) (:functions (total-cost) "
+      "- number (k) - number)"
+      " (:action a :parameters () :effect (and (p) (increase (total-cost) COST))))"
+      "(define (problem q) (:domain d) (:init (= (k) VALUE)) (:goal (p)))";
+  for (const auto& [cost, value] : {std::pair("-3", "1"), std::pair("(k)", "-1")}) {
+    std::string t = text;
+    t.replace(t.find("COST"), 4, cost);
+    t.replace(t.find("VALUE"), 5, value);
+    EXPECT_NE(complaint(t, Language::Pddl).find("whole number"), std::string::npos)
+        << complaint(t, Language::Pddl);
+  }
+}
+
+TEST(Soundness, AVolatileFunctionIsCalledOnceForEachUse) {
+  // The value changes with every call, as the number of a geometric state does.
+  int calls = 0;
+  ExternalBindings bindings;
+  bindings["next"] = [&](std::span<const std::string>) {
+    return std::string(1, static_cast<char>('a' + calls++ % 3));
+  };
+  const Model m = load({"t.kpl",
+                        "types: v\nconstants: v a, b, c\nfunctions: s : v\npredicates: x\n"
+                        "externals: next : v volatile\ninit: K(!x)\n"
+                        "action go preconds: K(!x) effects: add(Kf, s = extern(next)), add(Kf, x)\n"
+                        "goal: K(x) & (K(s = a) | K(s = b) | K(s = c))",
+                        Language::Kpl},
+                       nullptr, bindings);
+  const Solution s = solve(m, {});
+  EXPECT_EQ(s.status, Status::Solved);
+  EXPECT_EQ(calls, 1);
+  EXPECT_TRUE(check(m, s.plan).valid);
+  EXPECT_EQ(calls, 2);
+}
+
+TEST(Soundness, TimeAndMemoryLimitsHoldWhileGrounding) {
+  std::string constants;
+  for (int i = 0; i < 60; ++i) constants += (i ? ", c" : "c") + std::to_string(i);
+  std::string wide =
+      "constants: object " + constants + "\npredicates: p(object, object), x\n" +
+      "action wide(?a : object, ?b : object, ?c : object, ?d : object, ?e : object, ?f : object) "
+      "preconds: !K(p(?a, ?b)) & !K(p(?b, ?c)) & !K(p(?c, ?d)) & !K(p(?d, ?e)) & !K(p(?e, ?f)) "
+      "effects: add(Kf, p(?a, ?f))\naction no preconds: false effects: add(Kf, x)\ngoal: K(x)";
+  const Model m = model_of(wide);
+  for (const Algorithm a : kAll) {
+    SolveOptions o;
+    o.algorithm = a;
+    o.timeout = 0.3;
+    const auto start = std::chrono::steady_clock::now();
+    EXPECT_EQ(solve(m, o).status, Status::Limit);
+    EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 3);
+    o.timeout = 0;
+    o.max_memory = 64U << 20U;
+    const Solution s = solve(m, o);
+    EXPECT_EQ(s.status, Status::Limit);
+    EXPECT_NE(s.limit.find("memory"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace kaboum::plan::test
