@@ -13,13 +13,7 @@ namespace kaboum::plan {
 Found a_star(const SearchInput& in) {
   const Index n = in.task.layout().words();
   Found found;
-  if (!in.heuristics.relaxation) in.heuristics.relaxation = std::make_unique<Relaxation>(in.task);
-  if (!in.heuristics.invariants)
-    in.heuristics.invariants = std::make_unique<Invariants>(in.task, *in.heuristics.relaxation, in.limits);
-  if (!in.heuristics.landmarks)
-    in.heuristics.landmarks = std::make_unique<LandmarkHeuristic>(
-        in.task, *in.heuristics.relaxation, *in.heuristics.invariants);
-  LandmarkHeuristic& heuristic = *in.heuristics.landmarks;
+  LandmarkHeuristic& heuristic = in.heuristics.landmark(in.task, in.limits);
 
   struct Open {
     std::uint64_t f, h, order;
@@ -39,10 +33,14 @@ Found a_star(const SearchInput& in) {
   std::vector<Info> info(1);
   std::priority_queue<Open, std::vector<Open>, std::greater<>> open;
   std::uint64_t order = 0;
+  std::size_t most_open = 0;
+  const auto bytes = [&] {
+    most_open = std::max(most_open, open.size());
+    return store.bytes() + info.capacity() * sizeof(Info) + most_open * sizeof(Open);
+  };
   const auto finish = [&](Status status) {
     in.statistics.states = std::max<std::uint64_t>(in.statistics.states, store.size());
-    in.statistics.state_bytes = std::max<std::uint64_t>(
-        in.statistics.state_bytes, store.bytes() + info.capacity() * sizeof(Info));
+    in.statistics.state_bytes = std::max<std::uint64_t>(in.statistics.state_bytes, bytes());
     found.status = status;
     return found;
   };
@@ -51,14 +49,14 @@ Found a_star(const SearchInput& in) {
   // are the same.
   store.insert(in.start.data(), Knowledge::hash_of(in.start.data(), n), kNone, 0);
   const auto start = heuristic.evaluate(in.start.data());
-  in.statistics.initial_estimate = start ? static_cast<std::int64_t>(*start) : -1;
+  if (in.statistics.searches == 1)
+    in.statistics.initial_estimate = start ? static_cast<std::int64_t>(*start) : -1;
   if (!start) return finish(Status::Unsolvable);
   info[0].h = *start;
   open.push({*start, *start, order++, 0, 0});
   std::vector<Step> steps;
   while (!open.empty()) {
-    if (in.limits.exceeded(store.bytes() + info.capacity() * sizeof(Info)))
-      return finish(Status::Limit);
+    if (in.limits.check(bytes())) return finish(Status::Limit);
     const Open top = open.top();
     open.pop();
     if (top.g != info[top.state].g) continue;  // a cheaper way was found since
@@ -73,6 +71,7 @@ Found a_star(const SearchInput& in) {
       if (in.task.is_outcome(step) && !in.target.allowed(store[top.state], step)) continue;
       scratch.assign(store[top.state]);
       if (!in.task.apply(step, scratch)) continue;
+      in.limits.work();
       ++in.statistics.generated;
       const auto cost = static_cast<std::uint64_t>(in.task.cost(step));
       const auto [number, fresh] = store.insert(scratch.words(), scratch.hash(), top.state, step);

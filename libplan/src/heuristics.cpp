@@ -9,4 +9,17 @@ namespace kaboum::plan {
 Heuristics::Heuristics() = default;
 Heuristics::~Heuristics() = default;
 
+RelaxedPlan& Heuristics::relaxed(Task& task, Limits& limits) {
+  if (!relaxation) relaxation = std::make_unique<Relaxation>(task, limits);
+  if (!relaxed_plan) relaxed_plan = std::make_unique<RelaxedPlan>(task, *relaxation);
+  return *relaxed_plan;
+}
+
+LandmarkHeuristic& Heuristics::landmark(Task& task, Limits& limits) {
+  if (!relaxation) relaxation = std::make_unique<Relaxation>(task, limits);
+  if (!invariants) invariants = std::make_unique<Invariants>(task, *relaxation, limits);
+  if (!landmarks) landmarks = std::make_unique<LandmarkHeuristic>(task, *relaxation, *invariants);
+  return *landmarks;
+}
+
 }  // namespace kaboum::plan

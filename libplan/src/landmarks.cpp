@@ -39,6 +39,10 @@ LandmarkHeuristic::LandmarkHeuristic(Task& task, const Relaxation& relaxation,
     number_of_[a] = static_cast<Index>(costs_.size());
     costs_.push_back(task.cost(a));
   }
+  // Outcomes of sensing are steps as well, free ones.
+  for (const Relaxation::Operator& o : relaxation.operators())
+    if (task.is_outcome(o.step) && number_of_outcome_.try_emplace(o.step, costs_.size()).second)
+      costs_.push_back(0);
   words_ = (costs_.size() + 63) / 64;
   achievers_.resize(relaxation.facts());
   common_.resize(relaxation.facts());
@@ -47,12 +51,10 @@ LandmarkHeuristic::LandmarkHeuristic(Task& task, const Relaxation& relaxation,
   const auto& operators = relaxation.operators();
   for (Index o = 0; o < operators.size(); ++o)
     for (const FactId f : operators[o].adds) achievers_[f].push_back(o);
-  // Facts that sensing or disjunctive knowledge can bring about without an action are no events.
+  // Facts that disjunctive knowledge can bring about without a step are no events.
   const auto opaque = [&](FactId f) {
     const Fluent& fluent = task.layout().fluents()[relaxation.fluent_of(f)];
-    if (!fluent.groups.empty() || fluent.exclusions != kNone) return true;
-    return std::any_of(achievers_[f].begin(), achievers_[f].end(),
-                       [&](Index o) { return task.is_outcome(operators[o].step); });
+    return !fluent.groups.empty() || fluent.exclusions != kNone;
   };
   opaque_.resize(relaxation.facts());
   for (FactId f = 0; f < relaxation.facts(); ++f) opaque_[f] = opaque(f) ? 1 : 0;
@@ -102,7 +104,8 @@ LandmarkHeuristic::FactInfo& LandmarkHeuristic::info(FactId f) {
     std::map<std::pair<bool, Index>, std::vector<FactId>> options;
     for (const Index o : operators) {
       const Relaxation::Operator& op = relaxation_.operators()[o];
-      const Index number = number_of_[op.step];
+      const Index number =
+          task_.is_outcome(op.step) ? number_of_outcome_.at(op.step) : number_of_[op.step];
       b.actions[number / 64] |= std::uint64_t{1} << (number % 64);
       b.conditions = first ? op.preconditions : intersection(b.conditions, op.preconditions);
       std::map<std::pair<bool, Index>, std::vector<FactId>> mine;
@@ -287,7 +290,9 @@ std::uint64_t LandmarkHeuristic::bound(bool& contradiction) {
   }
   // Events that pairwise cannot be the same occurrence, greedily: those of few actions first.
   std::stable_sort(sizes.begin(), sizes.end(),
-                   [](const Size& a, const Size& b) { return a.actions < b.actions; });
+                   [](const Size& a, const Size& b) {
+                     return std::pair(a.cost == 0, a.actions) < std::pair(b.cost == 0, b.actions);
+                   });
   std::vector<std::size_t> chosen;
   std::uint64_t distinct = 0;
   for (const Size& s : sizes) {

@@ -28,6 +28,9 @@ class LandmarkHeuristic {
   /// Lower bound on the cost to the goal; nullopt: the goal cannot be reached.
   std::optional<std::uint64_t> evaluate(const Word* state);
 
+  /// Events of the last evaluation, whose time grows with their cube.
+  [[nodiscard]] std::size_t events() const { return events_.size(); }
+
  private:
   using Bits = std::vector<std::uint64_t>;
 
@@ -67,6 +70,7 @@ class LandmarkHeuristic {
   std::size_t words_ = 0;                      ///< of a set of actions
   std::vector<std::int64_t> costs_;            ///< by action number
   std::vector<Index> number_of_;               ///< by step
+  std::map<Step, Index> number_of_outcome_;
   std::vector<std::vector<Index>> achievers_;  ///< by fact
   std::vector<std::vector<FactId>> common_;    ///< by fact, once common_ready_
   std::vector<char> common_ready_;

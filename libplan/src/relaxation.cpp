@@ -6,7 +6,7 @@ namespace kaboum::plan {
 
 using Kind = FormulaPool::Kind;
 
-Relaxation::Relaxation(Task& task) : task_(task) {
+Relaxation::Relaxation(Task& task, Limits& limits) : task_(task), limits_(limits) {
   for (Index i = 0; i < task.layout().fluents().size(); ++i) {
     const Fluent& f = task.layout().fluents()[i];
     first_fact_.push_back(static_cast<FactId>(facts_));
@@ -297,6 +297,7 @@ Index Relaxation::node(Formula f, bool positive) {
     }
   }
   const auto index = static_cast<Index>(nodes_.size());
+  limits_.work(sizeof(Node) + made.children.size() * sizeof(Index) + 32);
   nodes_.push_back(std::move(made));
   node_index_[key] = index;
   return index;
@@ -321,6 +322,8 @@ std::vector<FactId> Relaxation::necessary_facts(Formula f) const {
 
 void Relaxation::add_operator(Operator o, std::vector<Index> conditions) {
   o.node = static_cast<Index>(nodes_.size());
+  limits_.work(2 * sizeof(Operator) + sizeof(Node) +
+               (conditions.size() + o.preconditions.size() + o.adds.size()) * sizeof(Index));
   nodes_.push_back({Node::Kind::All, std::move(conditions)});
   operators_.push_back(std::move(o));
 }

@@ -16,7 +16,7 @@ using FactId = std::uint32_t;
 /// actions, and the and-or graph of facts, formulas and actions that heuristics walk.
 class Relaxation {
  public:
-  explicit Relaxation(Task& task);
+  Relaxation(Task& task, Limits& limits);
 
   /// One effect of one action, or of an outcome of sensing.
   struct Operator {
@@ -67,6 +67,7 @@ class Relaxation {
   bool mark(FactId f);
 
   Task& task_;
+  Limits& limits_;
   std::size_t facts_ = 0;
   std::vector<FactId> first_fact_;
   std::vector<Index> fluent_of_;

@@ -3,6 +3,11 @@
 #include <algorithm>
 
 namespace kaboum::plan {
+namespace {
+
+constexpr std::uint64_t kLargest = std::uint64_t{1} << 62U;  // additive costs may grow exponentially
+
+}  // namespace
 
 RelaxedPlan::RelaxedPlan(Task& task, Relaxation& relaxation)
     : task_(task), relaxation_(relaxation) {
@@ -50,7 +55,7 @@ std::uint64_t RelaxedPlan::evaluate(const Word* state) {
       if (nodes[p].kind == Relaxation::Node::Kind::Any) {
         settle(p, cost, node);
       } else {
-        sum[p] += cost;
+        sum[p] = std::min(sum[p] + cost, kLargest);
         if (--missing_[p] == 0) settle(p, sum[p], kNone);
       }
     }
@@ -58,7 +63,7 @@ std::uint64_t RelaxedPlan::evaluate(const Word* state) {
       const Relaxation::Operator& op = relaxation_.operators()[o];
       const auto step_cost = static_cast<std::uint64_t>(
           task_.is_outcome(op.step) ? 0 : std::max<std::int64_t>(1, op.cost));
-      for (const FactId f : op.adds) settle(f, cost + step_cost, o);
+      for (const FactId f : op.adds) settle(f, std::min(cost + step_cost, kLargest), o);
     }
   }
   if (cost_[goal_] == kDeadEnd) return kDeadEnd;

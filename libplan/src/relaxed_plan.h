@@ -18,6 +18,9 @@ class RelaxedPlan {
   static constexpr std::uint64_t kDeadEnd = ~std::uint64_t{0};
   std::uint64_t evaluate(const Word* state);
 
+  /// Nodes of the graph that an evaluation walks.
+  [[nodiscard]] std::size_t size() const { return parents_.size(); }
+
   /// Steps of the last relaxed plan, ascending: those applicable now are the preferred ones.
   [[nodiscard]] const std::vector<Step>& steps() const { return steps_; }
 

@@ -33,6 +33,8 @@ struct Found {
 struct Heuristics {
   Heuristics();
   ~Heuristics();
+  RelaxedPlan& relaxed(Task& task, Limits& limits);
+  LandmarkHeuristic& landmark(Task& task, Limits& limits);
   std::unique_ptr<Relaxation> relaxation;
   std::unique_ptr<RelaxedPlan> relaxed_plan;
   std::unique_ptr<Invariants> invariants;

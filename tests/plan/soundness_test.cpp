@@ -223,7 +223,7 @@ TEST(Soundness, TimeAndMemoryLimitsHoldWhileGrounding) {
     EXPECT_EQ(solve(m, o).status, Status::Limit);
     EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 3);
     o.timeout = 0;
-    o.max_memory = 64U << 20U;
+    o.max_memory = 16U << 20U;
     const Solution s = solve(m, o);
     EXPECT_EQ(s.status, Status::Limit);
     EXPECT_NE(s.limit.find("memory"), std::string::npos);
