@@ -169,6 +169,7 @@ Formula Regression::before(Step step, Formula condition, const Word* before) {
       if (!happens) touched_.assign(touched_.size(), 0);
       for (const Change& d : c.deletions) touch_change(d);
       for (const Change& d : c.additions) touch_change(d);
+      for (const Change& d : c.sensing) touch_change(d);
       for (const Conditional::Write& w : c.writes) touch_field(w.mask, w.word);
       if (happens) {
         fired.push_back(c.condition);

@@ -233,7 +233,7 @@ void Relaxation::reach() {
             }
             for (const Conditional& c : task_.action(step).effects) {
               if (!possible(c.condition, true)) continue;
-              for (const auto* list : {&c.deletions, &c.plain, &c.additions})
+              for (const auto* list : {&c.deletions, &c.plain, &c.additions, &c.sensing})
                 for (const Change& change : *list)
                   for (const FactId x : added(change)) again |= mark(x);
             }
@@ -339,7 +339,7 @@ void Relaxation::add_action(Step step) {
     o.step = step;
     o.cost = a.cost;
     o.conditional = i;
-    for (const auto* list : {&c.deletions, &c.plain, &c.additions})
+    for (const auto* list : {&c.deletions, &c.plain, &c.additions, &c.sensing})
       for (const Change& change : *list)
         for (const FactId x : added(change)) o.adds.push_back(x);
     if (o.adds.empty()) continue;

@@ -279,6 +279,10 @@ void Task::add_change(const Update& u, const std::vector<Index>& slots, Conditio
     out.deletions.push_back(std::move(c));
     return;
   }
+  if (c.kind == K::AddWhether || c.kind == K::AddSensed || c.kind == K::AddClosed) {
+    out.sensing.push_back(std::move(c));
+    return;
+  }
   // A plain write after additions that are none would come before them: keep the text's order then.
   if (out.additions.empty() && is_plain(c)) {
     const Fluent& f = layout_.fluents()[c.fluent];
@@ -357,7 +361,7 @@ bool Task::apply(Step step, Knowledge& state) {
                                                 : state.learn_atom(o.fluent, o.value != 0);
   }
   const GroundAction& a = *actions_[step];
-  // All conditions look at the state before the action; then all deletions, then all additions.
+  // All conditions look at the state before the action; then come deletions, additions, sensing.
   std::array<const Conditional*, 16> few;
   std::vector<const Conditional*> many;
   std::size_t count = 0;
@@ -389,6 +393,10 @@ bool Task::apply(Step step, Knowledge& state) {
     for (const Change& c : fired[i]->additions)
       if (!state.apply(c)) return false;
   }
+  // What is sensed is the world after the action.
+  for (std::size_t i = 0; i < count; ++i)
+    for (const Change& c : fired[i]->sensing)
+      if (!state.apply(c)) return false;
   return true;
 }
 

@@ -16,7 +16,7 @@ namespace kaboum::plan {
 /// One step of a search: a ground action, or an outcome of sensing that a branch supposes.
 using Step = std::uint32_t;
 
-/// Effects that happen together: the condition, then deletions, then additions.
+/// Effects that happen together: the condition, then deletions, then additions, then sensing.
 struct Conditional {
   Formula condition = kTrue;
   Index word = 0;  ///< the condition as a bit test, if mask is not 0
@@ -24,6 +24,7 @@ struct Conditional {
   Word value = 0;
   std::vector<Change> deletions;
   std::vector<Change> additions;
+  std::vector<Change> sensing;
   /// Additions that are plain writes (no Kx groups or exclusions concerned), in their place.
   struct Write {
     Index word;
