@@ -95,11 +95,14 @@ Json to_json(const verify::DistanceClaim& claim) {
 /// Everything that was asked for, in the order of printing.
 class Verdict {
  public:
-  void add(const std::string& title, const std::string& what, const verify::Claim& claim,
-           bool counts) {
-    std::string line = title + ": " + name(claim.answer);
-    if (claim.answer == Answer::Verified) line += ": " + what;
-    if (!claim.reason.empty()) line += ": " + claim.reason;
+  /// @param what     the claim, as a sentence
+  /// @param refuted  what is true instead
+  void add(const std::string& title, const std::string& what, const std::string& refuted,
+           const verify::Claim& claim, bool counts) {
+    std::string line = title + ": " + name(claim.answer) + ": ";
+    line += claim.answer == Answer::Verified  ? what
+            : claim.answer == Answer::Refuted ? refuted
+                                              : claim.reason;
     if (claim.witness) {
       line += "; at " + point(claim.witness->point) + ", " + number(claim.witness->depth) + " deep";
       if (!claim.witness->exact) {
@@ -233,8 +236,8 @@ int check(const Options& o) {
   verify::Inclusion inclusion;
   if (o.cover) {
     const verify::Cover cover = verify::verify_cover(original.mesh, set, options);
-    verdict.add("convexity", std::to_string(set.bodies.size()) + " convex bodies", cover.convex,
-                true);
+    verdict.add("convexity", "all " + std::to_string(set.bodies.size()) + " bodies are convex",
+                cover.convex.reason, cover.convex, true);
     claims["convex"] = to_json(cover.convex);
     inclusion = cover.inclusion;
   } else {
@@ -244,13 +247,19 @@ int check(const Options& o) {
   const std::string outer_name = o.cover   ? "the union of the bodies"
                                  : o.inner ? "the original"
                                            : "the approximation";
-  const std::string solid = inclusion.relative
-                                ? "nowhere does " + inner_name + " wind more often than " +
-                                      outer_name + " (both are open, with the same border)"
-                                : "the solid of " + inner_name + " is within that of " + outer_name;
-  verdict.add("solid claim", solid, inclusion.solid, wants_solid);
+  const bool relative = inclusion.relative;
+  verdict.add("solid claim",
+              relative ? "nowhere does " + inner_name + " wind more often than " + outer_name +
+                             " (both are open, with the same border)"
+                       : "the solid of " + inner_name + " is within that of " + outer_name,
+              relative
+                  ? inner_name + " winds more often than " + outer_name
+                  : "a part of the solid of " + inner_name + " is outside that of " + outer_name,
+              inclusion.solid, wants_solid);
   verdict.add("surface claim",
               "every triangle of " + inner_name + " is within the solid of " + outer_name,
+              std::to_string(inclusion.surface.inner_triangles.size()) + " triangles of " +
+                  inner_name + " are not all within the solid of " + outer_name,
               inclusion.surface, wants_surface);
   claims["solid"] = to_json(inclusion.solid);
   claims["solid"]["relative"] = inclusion.relative;
