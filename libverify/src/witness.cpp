@@ -12,8 +12,8 @@
 namespace kaboum::verify {
 namespace {
 
-constexpr std::size_t kFaces = 20000;  // looked at, spread evenly
-constexpr std::size_t kTried = 400;    // of the candidates, deepest first
+constexpr std::size_t kFaces = 4000;  // looked at, spread evenly
+constexpr std::size_t kTried = 400;   // of the candidates, deepest first
 constexpr int kHalvings = 60;
 
 struct Candidate {
@@ -57,12 +57,20 @@ Witness find_witness(const Scene& scene, const std::vector<Offence>& offences, b
   }
   const NearestTriangle nearest(scene, kOutside);
   oneapi::tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t i) {
-    candidates[i].depth = nearest.distance(candidates[i].point);
+    Candidate& candidate = candidates[i];
+    const std::optional<int> outer = winding_at(scene, kOutside, candidate.point);
+    const bool enclosed = !relative && outer && *outer >= 1;
+    candidate.depth = enclosed ? -1 : nearest.distance(candidate.point);
   });
+  std::erase_if(candidates, [](const Candidate& candidate) { return candidate.depth < 0; });
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.depth > b.depth; });
 
   const auto try_at = [&](const Candidate& candidate, double reach) -> std::optional<Witness> {
+    // A point of a triangle shows by itself that it is outside.
+    if (on_surface && contradicts(scene, candidate.point, on_surface, relative)) {
+      return Witness{candidate.point, nearest.distance(candidate.point), true};
+    }
     for (int k = 0; k <= kHalvings; ++k) {
       const Vec3 p = candidate.point + std::ldexp(reach, -k) * candidate.direction;
       if (!p.allFinite() || !contradicts(scene, p, on_surface, relative)) continue;
