@@ -99,6 +99,18 @@ DistanceBounds point_triangle_distance(const Vec3& p, const Vec3& a, const Vec3&
   return bounds_at_origin(a - p, b - p, c - p);
 }
 
+double point_triangle_upper(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 x = a - p, y = b - p, z = c - p;
+  const Vec3 u = y - x, v = z - x;
+  if (u.cross(v).squaredNorm() < 1e-8 * u.squaredNorm() * v.squaredNorm())
+    return bounds_at_origin(x, y, z).upper;
+  const auto [s, t] = closest_weights(x, y, z);
+  const Vec3 nearest = x + s * u + t * v;
+  const double slack =
+      kRounding * x.cwiseAbs().cwiseMax(y.cwiseAbs()).cwiseMax(z.cwiseAbs()).maxCoeff();
+  return nearest.norm() * (1 + kRounding) + slack;
+}
+
 Vec3 nearest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const auto [s, t] = closest_weights(a - p, b - p, c - p);
   return a + s * (b - a) + t * (c - a);

@@ -7,21 +7,36 @@
 #include <algorithm>
 #include <cmath>
 
+#include "spatial_order.h"
+
 namespace kaboum::geom {
 namespace {
+
+constexpr std::uint32_t kNone = TriangleSearch::kNone;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// A run of A's triangles in spatial order, with their box.
+struct Cluster {
+  std::uint32_t first, count;
+  Box3 box;
+  std::uint32_t hint;  ///< a triangle of B that is probably near
+  double upper;
+};
 
 /// A part of one of A's triangles whose largest distance to B may still matter.
 struct Piece {
   ConvexPolygon polygon;
-  double upper = std::numeric_limits<double>::infinity();
-  std::uint32_t nearest = TriangleSearch::kNone;   ///< to the centroid
-  std::uint32_t at_worst = TriangleSearch::kNone;  ///< to the corner farthest from that
+  double upper = kInfinity;
+  std::uint32_t nearest = kNone;   ///< to the centroid
+  std::uint32_t at_worst = kNone;  ///< to the corner farthest from that
 };
 
-/// What one round finds out about a piece.
+/// What one round finds out about a cluster or piece.
 struct Finding {
   double lower = 0;  // the distance at `at` is at least this
   Vec3 at = Vec3::Zero();
+  double settled = 0;  // upper bound of the parts that need no further work
+  std::uint64_t queries = 0;
 };
 
 class BranchAndBound {
@@ -35,25 +50,7 @@ class BranchAndBound {
   }
 
   DirectedDistance run() {
-    measure_vertices();
-    std::vector<Piece> open;
-    // The first round in chunks, so that most triangles never exist as pieces.
-    constexpr std::size_t kChunk = std::size_t{1} << 16;
-    for (std::size_t first = 0; first < a_.triangles.size(); first += kChunk) {
-      std::vector<Piece> chunk;
-      const std::size_t last = std::min(first + kChunk, a_.triangles.size());
-      chunk.reserve(last - first);
-      for (std::size_t t = first; t < last; ++t) {
-        const Triangle& tri = a_.triangles[t];
-        chunk.push_back({{a_.vertices[tri[0]], a_.vertices[tri[1]], a_.vertices[tri[2]]},
-                         std::numeric_limits<double>::infinity(),
-                         nearest_to_vertex_[tri[0]],
-                         TriangleSearch::kNone});
-      }
-      evaluate(chunk);
-      keep_unsettled(chunk);
-      open.insert(open.end(), chunk.begin(), chunk.end());
-    }
+    std::vector<Piece> open = bound_clusters();
     int round = 1;
     for (; !open.empty(); ++round) {
       keep_unsettled(open);  // the lower bound may have risen
@@ -65,7 +62,6 @@ class BranchAndBound {
       }
       open = cut_all(open, round);
       evaluate(open);
-      keep_unsettled(open);
     }
     // What cuts may have left out lies this close to what they covered.
     result_.max_upper =
@@ -77,45 +73,145 @@ class BranchAndBound {
  private:
   static constexpr std::size_t kMaxPieces = std::size_t{1} << 23;
   static constexpr int kMaxRounds = 200;
+  // Sizes of clusters, halving eightfold.
+  static constexpr std::uint32_t kLargestCluster = 4096;
+  static constexpr std::uint32_t kSmallestCluster = 8;
 
-  void raise(double lower, const Vec3& at) {
-    if (lower <= result_.max_lower) return;
-    result_.max_lower = lower;
-    result_.at = at;
+  [[nodiscard]] double limit() const {
+    return std::max(result_.max_lower * (1 + options_.relative_gap),
+                    result_.max_lower + absolute_gap_);
   }
 
-  void measure_vertices() {
-    nearest_to_vertex_.assign(a_.vertices.size(), TriangleSearch::kNone);
-    std::vector<double> lower(a_.vertices.size(), 0);
-    std::vector<char> used(a_.vertices.size(), 0);
-    for (const Triangle& t : a_.triangles)
-      for (const std::uint32_t v : t) used[v] = 1;
-    // Hints pass on within fixed blocks, not within the scheduler's ranges.
-    constexpr std::size_t kBlock = 64;
-    const std::size_t blocks = (a_.vertices.size() + kBlock - 1) / kBlock;
-    tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
-      std::uint32_t hint = TriangleSearch::kNone;
-      const std::size_t last = std::min((block + 1) * kBlock, a_.vertices.size());
-      for (std::size_t v = block * kBlock; v < last; ++v) {
-        if (used[v] == 0) continue;
-        const auto n = b_.nearest(a_.vertices[v], hint);
-        hint = nearest_to_vertex_[v] = n.triangle;
-        lower[v] = n.lower;
+  void take(const Finding& f) {
+    settled_ = std::max(settled_, f.settled);
+    result_.queries += f.queries;
+    if (f.lower <= result_.max_lower) return;
+    result_.max_lower = f.lower;
+    result_.at = f.at;
+  }
+
+  const Vec3& corner(std::uint32_t triangle, int k) const {
+    return a_.vertices[a_.triangles[triangle][k]];
+  }
+
+  [[nodiscard]] double upper_to(const Vec3& p, std::uint32_t triangle) const {
+    const auto& [a, b, c] = b_.corners(triangle);
+    return point_triangle_upper(p, a, b, c);
+  }
+
+  // -- clusters ----------------------------------------------------------------------------------
+
+  /// Settles whole clusters of triangles where it can, level by level; returns the triangles left.
+  std::vector<Piece> bound_clusters() {
+    order_ = spatial_order(a_);
+    const auto n = static_cast<std::uint32_t>(order_.size());
+    // Boxes of the smallest clusters, and of eight of them, and so on.
+    std::vector<std::vector<Box3>> boxes;
+    {
+      std::vector<Box3> leaves((n + kSmallestCluster - 1) / kSmallestCluster);
+      for (std::uint32_t i = 0; i < n; ++i)
+        for (int k = 0; k < 3; ++k) leaves[i / kSmallestCluster].extend(corner(order_[i], k));
+      boxes.push_back(std::move(leaves));
+      for (std::uint32_t size = kSmallestCluster; size < kLargestCluster; size *= 8) {
+        std::vector<Box3> up((boxes.back().size() + 7) / 8);
+        for (std::size_t i = 0; i < boxes.back().size(); ++i) up[i / 8].extend(boxes.back()[i]);
+        boxes.push_back(std::move(up));
       }
-    });
-    for (std::size_t v = 0; v < a_.vertices.size(); ++v) {
-      if (used[v] == 0) continue;
-      ++result_.queries;
-      raise(lower[v], a_.vertices[v]);
     }
+    std::vector<Cluster> level;
+    for (std::size_t i = 0; i < boxes.back().size(); ++i) {
+      const auto first = static_cast<std::uint32_t>(i) * kLargestCluster;
+      level.push_back({first, std::min(kLargestCluster, n - first), boxes.back()[i], kNone, kInfinity});
+    }
+    std::uint32_t size = kLargestCluster;
+    for (std::size_t depth = boxes.size(); depth-- > 0; size /= 8) {
+      std::vector<Finding> findings(level.size());
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, level.size(), 16),
+                        [&](const tbb::blocked_range<std::size_t>& range) {
+                          for (std::size_t i = range.begin(); i != range.end(); ++i)
+                            findings[i] = bound(level[i]);
+                        });
+      for (const Finding& f : findings) take(f);
+      std::vector<Cluster> next;
+      const std::uint32_t step = size / 8;
+      for (const Cluster& cluster : level) {
+        if (settle(cluster.upper)) continue;
+        if (depth == 0) {
+          next.push_back(cluster);
+          continue;
+        }
+        const std::uint32_t end = cluster.first + cluster.count;
+        for (std::uint32_t first = cluster.first; first < end; first += step)
+          next.push_back({first, std::min(step, end - first), boxes[depth - 1][first / step],
+                          cluster.hint, cluster.upper});
+      }
+      level = std::move(next);
+    }
+    return bound_triangles(level);
   }
+
+  /// Bounds a cluster by the distance of one of its points and its extent.
+  Finding bound(Cluster& cluster) const {
+    const Vec3& p = corner(order_[cluster.first + cluster.count / 2], 0);
+    const auto at = b_.nearest(p, cluster.hint);
+    cluster.hint = at.triangle;
+    const double radius = (cluster.box.max - p).cwiseMax(p - cluster.box.min).norm();
+    cluster.upper = std::min(cluster.upper, (at.upper + radius) * (1 + 1e-14));
+    return {at.lower, p, 0, 1};
+  }
+
+  /// The triangles of clusters that cannot be settled as wholes, as pieces; many are settled by the
+  /// triangle of B that is next to the cluster.
+  std::vector<Piece> bound_triangles(const std::vector<Cluster>& clusters) {
+    struct Outcome {
+      Finding finding;
+      std::vector<Piece> pieces;
+    };
+    std::vector<Outcome> outcomes(clusters.size());
+    const double enough = limit();
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, clusters.size(), 16),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                        for (std::size_t i = range.begin(); i != range.end(); ++i)
+                          outcomes[i].finding =
+                              bound_each(clusters[i], enough, outcomes[i].pieces);
+                      });
+    std::vector<Piece> open;
+    for (const Outcome& o : outcomes) {
+      take(o.finding);
+      open.insert(open.end(), o.pieces.begin(), o.pieces.end());
+    }
+    return open;
+  }
+
+  Finding bound_each(const Cluster& cluster, double enough, std::vector<Piece>& pieces) const {
+    Finding finding;
+    std::uint32_t hint = kNone;
+    for (std::uint32_t i = cluster.first; i < cluster.first + cluster.count; ++i) {
+      const std::uint32_t t = order_[i];
+      Piece piece{{corner(t, 0), corner(t, 1), corner(t, 2)}, kInfinity, cluster.hint, hint};
+      const Finding own = bound(piece, enough);
+      finding.queries += own.queries;
+      if (own.lower > finding.lower) {
+        finding.lower = own.lower;
+        finding.at = own.at;
+      }
+      if (own.queries > 0) hint = piece.nearest;
+      if (piece.upper <= enough)
+        finding.settled = std::max(finding.settled, piece.upper);
+      else
+        pieces.push_back(piece);
+    }
+    return finding;
+  }
+
+  // -- pieces ------------------------------------------------------------------------------------
 
   /// Largest distance of the corners from triangle t, and the corner where it is.
   std::pair<double, int> worst_corner(const ConvexPolygon& polygon, std::uint32_t t) const {
     double worst = 0;
     int where = 0;
     for (int i = 0; i < polygon.size; ++i) {
-      const double d = b_.to_triangle(polygon.corner[i], t).upper;
+      const double d = upper_to(polygon.corner[i], t);
       if (d > worst) {
         worst = d;
         where = i;
@@ -124,47 +220,73 @@ class BranchAndBound {
     return {worst, where};
   }
 
-  Finding bound(Piece& piece) const {
+  /// The same distance; some larger value once it is known to exceed `enough`: infinity.
+  double largest_to(const ConvexPolygon& polygon, std::uint32_t t, double enough) const {
+    double largest = 0;
+    for (int i = 0; i < polygon.size; ++i) {
+      largest = std::max(largest, upper_to(polygon.corner[i], t));
+      if (largest > enough) return kInfinity;
+    }
+    return largest;
+  }
+
+  /// Lowers piece.upper until it is `enough` or nothing more is known.
+  Finding bound(Piece& piece, double enough) const {
+    Finding finding;
+    // What was near the piece that this one was cut from may settle it without a query.
+    for (const std::uint32_t t : {piece.nearest, piece.at_worst}) {
+      if (t == kNone) continue;
+      if (piece.upper = std::min(piece.upper, largest_to(piece.polygon, t, enough));
+          piece.upper <= enough)
+        return finding;
+    }
     const Vec3 center = piece.polygon.centroid();
     const auto at_center = b_.nearest(center, piece.nearest);
-    piece.nearest = piece.at_worst = at_center.triangle;
-    Finding finding{at_center.lower, center};
-    const auto [worst, where] = worst_corner(piece.polygon, at_center.triangle);
-    piece.upper = std::min(piece.upper, worst);
-    if (piece.upper <= result_.max_lower) return finding;
-    // The corner that is far from this triangle may be near another one.
-    const Vec3& corner = piece.polygon.corner[where];
-    const auto at_corner = b_.nearest(corner, at_center.triangle);
-    if (at_corner.lower > finding.lower) finding = {at_corner.lower, corner};
-    piece.at_worst = at_corner.triangle;
-    if (at_corner.triangle != at_center.triangle)
-      piece.upper = std::min(piece.upper, worst_corner(piece.polygon, at_corner.triangle).first);
+    finding = {at_center.lower, center, 0, 1};
     double radius = 0;
     for (int i = 0; i < piece.polygon.size; ++i)
       radius = std::max(radius, (piece.polygon.corner[i] - center).norm());
-    piece.upper = std::min(piece.upper, at_center.upper + radius * (1 + 1e-14));
+    piece.upper = std::min(piece.upper, (at_center.upper + radius) * (1 + 1e-14));
+    piece.nearest = piece.at_worst = at_center.triangle;
+    const auto [worst, where] = worst_corner(piece.polygon, at_center.triangle);
+    piece.upper = std::min(piece.upper, worst);
+    if (piece.upper <= enough) return finding;
+    // The corner that is far from this triangle may be near another one.
+    const Vec3& corner = piece.polygon.corner[where];
+    const auto at_corner = b_.nearest(corner, at_center.triangle);
+    ++finding.queries;
+    if (at_corner.lower > finding.lower) {
+      finding.lower = at_corner.lower;
+      finding.at = corner;
+    }
+    piece.at_worst = at_corner.triangle;
+    if (at_corner.triangle != at_center.triangle)
+      piece.upper = std::min(piece.upper, worst_corner(piece.polygon, at_corner.triangle).first);
     return finding;
   }
 
+  /// Bounds all pieces and keeps those that are not settled.
   void evaluate(std::vector<Piece>& pieces) {
     std::vector<Finding> findings(pieces.size());
+    const double enough = limit();
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pieces.size(), 64),
                       [&](const tbb::blocked_range<std::size_t>& range) {
                         for (std::size_t i = range.begin(); i != range.end(); ++i)
-                          findings[i] = bound(pieces[i]);
+                          findings[i] = bound(pieces[i], enough);
                       });
-    result_.queries += 2 * pieces.size();
-    for (const Finding& f : findings) raise(f.lower, f.at);
+    for (const Finding& f : findings) take(f);
+    keep_unsettled(pieces);
+  }
+
+  /// Whether an upper bound is good enough; then it counts.
+  bool settle(double upper) {
+    if (upper > limit()) return false;
+    settled_ = std::max(settled_, upper);
+    return true;
   }
 
   void keep_unsettled(std::vector<Piece>& pieces) {
-    const double limit = std::max(result_.max_lower * (1 + options_.relative_gap),
-                                  result_.max_lower + absolute_gap_);
-    std::erase_if(pieces, [&](const Piece& p) {
-      if (p.upper > limit) return false;
-      settled_ = std::max(settled_, p.upper);
-      return true;
-    });
+    std::erase_if(pieces, [&](const Piece& p) { return settle(p.upper); });
   }
 
   /// Cuts where the planes of the two triangles that matter are equally far: on a ridge of the
@@ -195,17 +317,36 @@ class BranchAndBound {
     return cut(piece.polygon, center - ((h1 - h2) / square) * n, n, out.piece[0], out.piece[1]);
   }
 
+  /// Whether the piece is so much larger than the triangle next to it that cutting along that
+  /// one's prism would only break splinters off.
+  [[nodiscard]] bool much_larger(const Piece& piece, double enough) const {
+    const auto& [a, b, c] = b_.corners(piece.nearest);
+    const double size = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
+    if (size > kReach * enough * enough) return false;
+    double own = 0;
+    for (int i = 0; i < piece.polygon.size; ++i)
+      own = std::max(own, (piece.polygon.corner[i] -
+                           piece.polygon.corner[(i + 1) % piece.polygon.size])
+                              .squaredNorm());
+    return own > kMuchLarger * size;
+  }
+  static constexpr double kMuchLarger = 9, kReach = 16;  // squared
+
   std::vector<Piece> cut_all(const std::vector<Piece>& pieces, int round) const {
     std::vector<Piece> out;
     out.reserve(3 * pieces.size());
+    const double enough = limit();
     for (const Piece& p : pieces) {
       PrismCut cuts;
-      if (round % 4 == 0 || round % 2 == 1 || !cut_by_bisector(p, cuts)) {
+      if (much_larger(p, enough)) {
+        halve(p.polygon, cuts.piece[0], cuts.piece[1]);
+        cuts.count = 2;
+      } else if (round % 4 == 0 || round % 2 == 1 || !cut_by_bisector(p, cuts)) {
         const auto& [a, b, c] = b_.corners(p.nearest);
         cuts = cut_by_prism(p.polygon, a, b, c, round % 4 == 0);
       }
       for (int i = 0; i < cuts.count; ++i)
-        out.push_back({cuts.piece[i], p.upper, p.nearest, TriangleSearch::kNone});
+        out.push_back({cuts.piece[i], p.upper, p.nearest, p.at_worst});
     }
     return out;
   }
@@ -216,7 +357,7 @@ class BranchAndBound {
   double magnitude_ = 0;
   double absolute_gap_ = 0;
   double settled_ = 0;  // largest upper bound among the pieces that need no further cut
-  std::vector<std::uint32_t> nearest_to_vertex_;
+  std::vector<std::uint32_t> order_;
   DirectedDistance result_;
 };
 

@@ -27,6 +27,10 @@ struct DistanceBounds {
 /// @pre coordinates of magnitude below 1e70; differences that matter above 1e-70.
 DistanceBounds point_triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
+/// The upper bound alone, cheaper: never below the distance, and above point_triangle_distance's
+/// bound by rounding at most.
+double point_triangle_upper(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
+
 /// The point of the triangle (a, b, c) nearest to p, rounded; for reports.
 Vec3 nearest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
