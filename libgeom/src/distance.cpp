@@ -102,7 +102,7 @@ DistanceBounds point_triangle_distance(const Vec3& p, const Vec3& a, const Vec3&
 double point_triangle_upper(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 x = a - p, y = b - p, z = c - p;
   const Vec3 u = y - x, v = z - x;
-  if (u.cross(v).squaredNorm() < 1e-8 * u.squaredNorm() * v.squaredNorm())
+  if (!(u.cross(v).squaredNorm() > 1e-8 * u.squaredNorm() * v.squaredNorm()))
     return bounds_at_origin(x, y, z).upper;
   const auto [s, t] = closest_weights(x, y, z);
   const Vec3 nearest = x + s * u + t * v;

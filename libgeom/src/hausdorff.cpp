@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "spatial_order.h"
+#include <kaboum/geom/spatial_order.h>
 
 namespace kaboum::geom {
 namespace {
@@ -126,10 +126,11 @@ class BranchAndBound {
     std::uint32_t size = kLargestCluster;
     for (std::size_t depth = boxes.size(); depth-- > 0; size /= 8) {
       std::vector<Finding> findings(level.size());
+      const double enough = limit();
       tbb::parallel_for(tbb::blocked_range<std::size_t>(0, level.size(), 16),
                         [&](const tbb::blocked_range<std::size_t>& range) {
                           for (std::size_t i = range.begin(); i != range.end(); ++i)
-                            findings[i] = bound(level[i]);
+                            findings[i] = bound(level[i], enough);
                         });
       for (const Finding& f : findings) take(f);
       std::vector<Cluster> next;
@@ -150,14 +151,30 @@ class BranchAndBound {
     return bound_triangles(level);
   }
 
-  /// Bounds a cluster by the distance of one of its points and its extent.
-  Finding bound(Cluster& cluster) const {
+  /// Bounds a cluster by its box's corners, as a piece by its own, or by the distance of one of its
+  /// points and its extent.
+  Finding bound(Cluster& cluster, double enough) const {
+    if (cluster.hint != kNone && lower_by_corners(cluster, enough)) return {};
     const Vec3& p = corner(order_[cluster.first + cluster.count / 2], 0);
     const auto at = b_.nearest(p, cluster.hint);
     cluster.hint = at.triangle;
     const double radius = (cluster.box.max - p).cwiseMax(p - cluster.box.min).norm();
     cluster.upper = std::min(cluster.upper, (at.upper + radius) * (1 + 1e-14));
+    if (cluster.upper > enough) lower_by_corners(cluster, enough);
     return {at.lower, p, 0, 1};
+  }
+
+  bool lower_by_corners(Cluster& cluster, double enough) const {
+    double largest = 0;
+    for (int i = 0; i < 8; ++i) {
+      const auto pick = [&](int axis) {
+        return (i >> axis & 1) != 0 ? cluster.box.max[axis] : cluster.box.min[axis];
+      };
+      largest = std::max(largest, upper_to({pick(0), pick(1), pick(2)}, cluster.hint));
+      if (largest > enough) return false;
+    }
+    cluster.upper = std::min(cluster.upper, largest);
+    return true;
   }
 
   /// The triangles of clusters that cannot be settled as wholes, as pieces; many are settled by the

@@ -1,4 +1,4 @@
-#include "spatial_order.h"
+#include <kaboum/geom/spatial_order.h>
 
 #include <algorithm>
 #include <array>
