@@ -209,7 +209,107 @@ Mesh with_cone(const Mesh& mesh, Random& random, int n) {
                                       result.vertices[t[2]], apex})});
 }
 
+std::tuple<double, double, double> key(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
+
+/// Moves vertex v along the mean normal of its triangles by `distance`.
+void displace(Mesh& mesh, std::uint32_t v, double distance) {
+  Vec3 normal = Vec3::Zero();
+  for (const Triangle& t : mesh.triangles) {
+    if (std::find(t.begin(), t.end(), v) == t.end()) continue;
+    normal += (mesh.vertices[t[1]] - mesh.vertices[t[0]])
+                  .cross(mesh.vertices[t[2]] - mesh.vertices[t[0]]);
+  }
+  if (normal.norm() > 0) mesh.vertices[v] += distance * normal.normalized();
+}
+
+/// Replaces an edge of two triangles by the other diagonal; `inwards` if that takes from the solid.
+/// @return false if there is none among some tries.
+bool flip_edge(Mesh& mesh, bool inwards, Random& random) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::size_t>> of_edge;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    for (int k = 0; k < 3; ++k)
+      of_edge[{mesh.triangles[i][k], mesh.triangles[i][(k + 1) % 3]}].push_back(i);
+  }
+  for (int attempt = 0; attempt < 200; ++attempt) {
+    const std::size_t i = random() % mesh.triangles.size();
+    Triangle s = mesh.triangles[i];
+    std::rotate(s.begin(), s.begin() + below(random, 3), s.end());
+    const auto other = of_edge.find({s[1], s[0]});
+    if (other == of_edge.end() || other->second.size() != 1) continue;
+    const Triangle& t = mesh.triangles[other->second[0]];
+    std::uint32_t d = t[0];
+    for (const std::uint32_t v : t) {
+      if (v != s[0] && v != s[1]) d = v;
+    }
+    const auto& x = mesh.vertices;
+    const double volume = (x[s[1]] - x[s[0]]).cross(x[s[2]] - x[s[0]]).dot(x[d] - x[s[0]]);
+    if (d == s[2] || (inwards ? volume >= 0 : volume <= 0)) continue;
+    mesh.triangles[i] = {s[0], d, s[2]};
+    mesh.triangles[other->second[0]] = {d, s[1], s[2]};
+    return true;
+  }
+  return false;
+}
+
+/// Leaves out one of the components that hang together by vertices.
+void drop_component(Mesh& mesh, Random& random) {
+  std::vector<std::uint32_t> label(mesh.vertices.size());
+  for (std::uint32_t i = 0; i < label.size(); ++i) label[i] = i;
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const Triangle& t : mesh.triangles) {
+      const std::uint32_t least = std::min({label[t[0]], label[t[1]], label[t[2]]});
+      for (const std::uint32_t v : t) {
+        changed = changed || label[v] != least;
+        label[v] = least;
+      }
+    }
+  }
+  const std::uint32_t gone = label[mesh.triangles[random() % mesh.triangles.size()][0]];
+  std::erase_if(mesh.triangles, [&](const Triangle& t) { return label[t[0]] == gone; });
+}
+
 }  // namespace
+
+std::vector<MeshPair> mutants(const MeshPair& pair, std::uint64_t seed, int count) {
+  Random random(seed);
+  geom::Box3 all;
+  std::set<std::tuple<double, double, double>> of_inner, of_outer;
+  for (const Vec3& p : pair.inner.vertices) of_inner.insert(key(p)), all.extend(p);
+  for (const Vec3& p : pair.outer.vertices) of_outer.insert(key(p)), all.extend(p);
+  std::vector<MeshPair> result;
+  while (static_cast<int>(result.size()) < count) {
+    MeshPair mutant = pair;
+    mutant.name += " mutant " + std::to_string(result.size());
+    const bool out = chance(random, 70);
+    Mesh& mesh = out ? mutant.outer : mutant.inner;
+    const auto& others = out ? of_inner : of_outer;
+    const int kind = below(random, 10);
+    if (kind == 0) {
+      drop_component(mesh, random);
+      mutant.name += " component";
+    } else if (kind <= 2) {
+      if (!flip_edge(mesh, chance(random, 80) == out, random)) continue;
+      mutant.name += " flip";
+    } else {
+      std::uint32_t v = 0;
+      for (int attempt = 0; attempt < 30; ++attempt) {
+        v = static_cast<std::uint32_t>(random() % mesh.vertices.size());
+        if (kind <= 4 || others.count(key(mesh.vertices[v])) != 0) break;
+      }
+      const int digits = 3 + below(random, 8);
+      displace(mesh, v, (out ? -1 : 1) * std::pow(10.0, -digits) * all.diagonal());
+      mutant.name += " vertex 1e-" + std::to_string(digits);
+    }
+    result.push_back(std::move(mutant));
+  }
+  return result;
+}
+
+Mesh block_chain(const std::vector<std::array<int, 3>>& cells) {
+  Random random(1);
+  return cubes({cells.begin(), cells.end()}, false, random);
+}
 
 Mesh subdivided(const Mesh& mesh) {
   Mesh result{mesh.vertices, {}};

@@ -2,6 +2,7 @@
 
 #include <kaboum/geom/mesh.h>
 
+#include <array>
 #include <cstdint>
 #include <random>
 #include <string>
@@ -33,6 +34,14 @@ MeshPair open_pair(std::uint64_t seed);
 /// vertices duplicated, axes permuted and reflected (triangles turned accordingly), scaled by a
 /// power of two. No coordinate is rounded unless it leaves the range of double.
 MeshPair permuted(const MeshPair& pair, std::uint64_t seed);
+
+/// Claims about a bounding mesh spoilt in one place; some stay true. One vertex of either mesh,
+/// those at which the meshes touch preferred, is moved by 1e-3 to 1e-10 of the diagonal, the
+/// outer's inwards and the inner's outwards; an edge is flipped; a component is left out.
+std::vector<MeshPair> mutants(const MeshPair& pair, std::uint64_t seed, int count);
+
+/// Boundary of the union of unit cubes, given by their lowest corners.
+geom::Mesh block_chain(const std::vector<std::array<int, 3>>& cells);
 
 /// Every triangle split into four at its edges' midpoints, exact on lattices.
 geom::Mesh subdivided(const geom::Mesh& mesh);

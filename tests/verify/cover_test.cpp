@@ -1,0 +1,187 @@
+// Convex covers: verify_cover against decompositions whose truth is known, and the exact oracle.
+#include <kaboum/verify/cover.h>
+
+#include <gtest/gtest.h>
+
+#include "pairs.h"
+#include "support/arrangement_oracle.h"
+#include "support/shapes.h"
+
+namespace {
+
+using namespace kaboum;        // NOLINT: a test
+using namespace kaboum::test;  // NOLINT: a test
+using geom::ConvexSet;
+using verify::Answer;
+
+ConvexSet set_of(const std::vector<Mesh>& bodies) {
+  ConvexSet set;
+  for (const Mesh& b : bodies) set.bodies.push_back({"body", b});
+  return set;
+}
+
+Mesh block(const Vec3& low, const Vec3& high) { return translated(box(high - low, 1), low); }
+
+/// The boundary of an L, 2 × 2 × 1 without the upper right cube, by its cubes' outer faces.
+Mesh ell() { return block_chain({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}); }
+
+Answer truth(const Mesh& original, const ConvexSet& set, bool surface) {
+  const auto v = arrangement_verdict(original, verify::sum_of(set));
+  return *(surface ? v.surface : v.solid) ? Answer::Verified : Answer::Refuted;
+}
+
+/// Both claims are as the oracle finds, and the solid claim is `expected`.
+void expect_cover(const Mesh& original, const ConvexSet& set, Answer expected,
+                  const std::string& what) {
+  const auto cover = verify::verify_cover(original, set);
+  EXPECT_EQ(cover.convex.answer, Answer::Verified) << what << ": " << cover.convex.reason;
+  EXPECT_EQ(cover.inclusion.solid.answer, expected) << what;
+  EXPECT_EQ(cover.inclusion.solid.answer, truth(original, set, false)) << what;
+  EXPECT_EQ(cover.inclusion.surface.answer, truth(original, set, true)) << what;
+}
+
+TEST(Cover, LInTwoBlocksTouchingOrOverlapping) {
+  const Mesh left = block({0, 0, 0}, {1, 2, 1}), right = block({1, 0, 0}, {2, 1, 1});
+  expect_cover(ell(), set_of({left, right}), Answer::Verified, "touching");
+  expect_cover(ell(), set_of({left, block({0, 0, 0}, {2, 1, 1})}), Answer::Verified, "overlapping");
+  expect_cover(ell(), set_of({left}), Answer::Refuted, "one missing");
+  expect_cover(ell(), set_of({block({0, 0, 0}, {2, 2, 1})}), Answer::Verified, "hull");
+  expect_cover(ell(), set_of({}), Answer::Refuted, "nothing");
+  for (const double gap : {1e-3, 1e-10, 1e-15}) {
+    expect_cover(ell(), set_of({left, translated(right, {gap, 0, 0})}), Answer::Refuted, "gap");
+    expect_cover(ell(), set_of({left, translated(right, {-gap, 0, 0})}), Answer::Refuted, "short");
+    expect_cover(ell(), set_of({left, translated(right, {0, 0, gap})}), Answer::Refuted, "lifted");
+    expect_cover(ell(), set_of({left, block({1 - gap, 0, 0}, {2 + gap, 1, 1})}), Answer::Verified,
+                 "wider");
+  }
+}
+
+/// All cubes of a 3 × 3 × 3 block but some.
+std::vector<Mesh> cubes_but(const std::vector<int>& missing) {
+  std::vector<Mesh> bodies;
+  for (int i = 0; i < 27; ++i) {
+    if (std::find(missing.begin(), missing.end(), i) != missing.end()) continue;
+    const Vec3 low(i % 3, i / 3 % 3, i / 9);
+    bodies.push_back(block(low, low + Vec3::Ones()));
+  }
+  return bodies;
+}
+
+TEST(Cover, VoidInTheMiddle) {
+  const Mesh solid = box({3, 3, 3}, 2);
+  const Mesh hollow = merged({solid, flipped(block({1, 1, 1}, {2, 2, 2}))});
+  expect_cover(solid, set_of(cubes_but({})), Answer::Verified, "all cubes");
+  // Every triangle is covered, but not the solid.
+  const auto cover = verify::verify_cover(solid, set_of(cubes_but({13})));
+  EXPECT_EQ(cover.inclusion.surface.answer, Answer::Verified);
+  expect_cover(solid, set_of(cubes_but({13})), Answer::Refuted, "void");
+  expect_cover(hollow, set_of(cubes_but({13})), Answer::Verified, "void where the input has one");
+  expect_cover(solid, set_of(cubes_but({4})), Answer::Refuted, "one of the surface missing");
+  for (const double d : {1e-3, 1e-10}) {
+    std::vector<Mesh> bodies = cubes_but({13});
+    bodies.push_back(block(Vec3::Constant(1 + d), Vec3::Constant(2)));
+    expect_cover(solid, set_of(bodies), Answer::Refuted, "thin void");
+    bodies.back() = block(Vec3::Constant(1 - d), Vec3::Constant(2));
+    expect_cover(solid, set_of(bodies), Answer::Verified, "void filled");
+  }
+  // The cubes share all their faces with one another; one moved by an ulp opens a gap.
+  for (const int moved : {0, 4, 13}) {
+    std::vector<Mesh> bodies = cubes_but({});
+    for (Vec3& p : bodies[moved].vertices) p.x() = std::nextafter(p.x(), 9);
+    expect_cover(solid, set_of(bodies), Answer::Refuted, "moved");
+  }
+}
+
+TEST(Cover, OpenOriginalsAreCoveredByTheirTriangles) {
+  Mesh open = ell();
+  open.triangles.pop_back();
+  const ConvexSet set = set_of({block({0, 0, 0}, {1, 2, 1}), block({1, 0, 0}, {2, 1, 1})});
+  auto cover = verify::verify_cover(open, set);
+  EXPECT_EQ(cover.inclusion.solid.answer, Answer::Undefined);
+  EXPECT_EQ(cover.inclusion.surface.answer, Answer::Verified);
+  cover = verify::verify_cover(open, set_of({block({0, 0, 0}, {1, 2, 1})}));
+  EXPECT_EQ(cover.inclusion.surface.answer, Answer::Refuted);
+}
+
+TEST(Cover, BodiesMustBeConvex) {
+  const Mesh unit = block({0, 0, 0}, {1, 1, 1});
+  const auto fault = [&](const Mesh& body) {
+    const auto cover = verify::verify_cover(unit, set_of({unit, body}));
+    if (cover.convex.answer == Answer::Verified) return std::string("none");
+    EXPECT_EQ(cover.convex.answer, Answer::Refuted);
+    EXPECT_EQ(cover.not_convex.size(), 1U);
+    if (!cover.not_convex.empty()) {
+      EXPECT_EQ(cover.not_convex[0].first, 1U);
+    }
+    return cover.convex.reason;
+  };
+  EXPECT_EQ(fault(unit), "none");
+  EXPECT_EQ(fault(icosphere(2)), "none");
+  EXPECT_EQ(fault(merged({unit, unit})), "none");  // twice the same set of points
+  EXPECT_NE(fault(ell()), "none");
+  EXPECT_NE(fault(flipped(unit)), "none");
+  EXPECT_NE(fault(Mesh{}), "none");
+  EXPECT_NE(fault(merged({unit, block({2, 0, 0}, {3, 1, 1})})), "none");
+  EXPECT_NE(fault(Mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 1}}}), "none");
+  Mesh open = unit;
+  open.triangles.pop_back();
+  EXPECT_NE(fault(open), "none");
+  // A rotated box's rectangles are bent by an ulp: one diagonal of each is convex, the other not.
+  int bent = 0;
+  for (int i = 1; i <= 20; ++i) bent += fault(rotated(unit, 0.1 * i)) != "none" ? 1 : 0;
+  EXPECT_GE(bent, 10);
+  Mesh dented = icosphere(2);
+  dented.vertices[5] *= 1 - 1e-10;
+  dented.vertices[5] *= 0.9;
+  EXPECT_NE(fault(dented), "none");
+}
+
+TEST(Cover, MarginCountsAgainstTheSetOnly) {
+  const Mesh left = block({0, 0, 0}, {1, 2, 1}), right = block({1, 0, 0}, {2, 1, 1});
+  ConvexSet set = set_of({left, translated(right, {0.25, 0, 0})});
+  set.margin = 1e-3;  // does not close the gap
+  EXPECT_EQ(verify::verify_cover(ell(), set).inclusion.solid.answer, Answer::Refuted);
+  set.margin = 0.5;  // does: nothing certain may be said
+  EXPECT_EQ(verify::verify_cover(ell(), set).inclusion.solid.answer, Answer::Undecided);
+  EXPECT_EQ(verify::verify_cover(ell(), set).inclusion.surface.answer, Answer::Undecided);
+  set = set_of({left, right});
+  set.margin = 0.5;
+  EXPECT_EQ(verify::verify_cover(ell(), set).inclusion.solid.answer, Answer::Verified);
+  set = set_of({});
+  set.margin = 100;  // the empty set has no margin
+  EXPECT_EQ(verify::verify_cover(ell(), set).inclusion.solid.answer, Answer::Refuted);
+}
+
+TEST(Cover, RandomBoxesOverRandomCubes) {
+  int yes = 0, no = 0;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    Random random(seed);
+    std::vector<std::array<int, 3>> cells;
+    for (int i = 0; i < 8; ++i) {
+      if (random() % 4 != 0) cells.push_back({i % 2, i / 2 % 2, i / 4});
+    }
+    if (cells.empty()) continue;
+    const Mesh original = block_chain(cells);
+    std::vector<Mesh> bodies;
+    for (int i = 0; i < 7; ++i) {
+      Vec3 low, high;
+      for (int k = 0; k < 3; ++k) {
+        low[k] = static_cast<double>(random() % 2);
+        high[k] = low[k] + 1 + static_cast<double>(random() % 2);
+      }
+      if (random() % 4 == 0) high.x() += std::ldexp(1, -40);
+      bodies.push_back(block(low, high));
+    }
+    const ConvexSet set = set_of(bodies);
+    const auto answer = verify::verify_cover(original, set).inclusion.solid.answer;
+    EXPECT_EQ(answer, truth(original, set, false)) << seed;
+    EXPECT_EQ(verify::verify_cover(original, set).inclusion.surface.answer,
+              truth(original, set, true))
+        << seed;
+    ++(answer == Answer::Verified ? yes : no);
+  }
+  EXPECT_GE(yes, 5);
+  EXPECT_GE(no, 5);
+}
+
+}  // namespace
