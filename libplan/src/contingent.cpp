@@ -181,6 +181,7 @@ Status ContingentPlanner::solve(const State& start, Index& entry, Blame& blame) 
         next = entry;
       } else {
         forbidden_[states[i]][task_.outcome(found.steps[i]).fluent] = std::move(why);
+        if (decided_otherwise()) return Status::Limit;  // of this search; run() knows better
       }
     }
     if (!covered) continue;
@@ -208,18 +209,27 @@ Status ContingentPlanner::run() {
   task_.branch(Task::Branching::OnNeed);
   Blame blame;
   const Status status = solve(task_.initial(), root_, blame);
+  if (verdict_) return *verdict_;
   if (status != Status::Unsolvable || !task_.held_back()) return status;
   // Nothing is proved yet: branches that nothing needed were left out.
-  return exhaust();
+  return exhaust(~std::size_t{0});
 }
 
-Status ContingentPlanner::exhaust() {
+/// After many failures: a look at all states that costs no more than the searches so far.
+bool ContingentPlanner::decided_otherwise() {
+  if (++failures_ < next_attempt_) return false;
+  next_attempt_ *= 2;
+  const Status s = exhaust(1000 + 2 * statistics_.expanded);
+  if (s != Status::Limit) verdict_ = s;
+  return verdict_.has_value();
+}
+
+Status ContingentPlanner::exhaust(std::size_t most_states) {
   task_.branch(Task::Branching::Anywhere);
-  forbidden_.clear();
-  dead_.clear();
   ++statistics_.searches;
   Exhaustive all({task_, task_.initial(), *this, limits_, statistics_, heuristics_});
-  const Status status = all.run();
+  const Status status = all.run(most_states);
+  task_.branch(Task::Branching::OnNeed);
   if (status != Status::Solved) return status;
   std::vector<Index> entry;  // by decision
   for (const Exhaustive::Decision& d : all.plan()) {

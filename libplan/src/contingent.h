@@ -18,7 +18,8 @@ namespace kaboum::plan {
 /// A node is entered only after its successors: the graph cannot have cycles. A branch with an
 /// outcome that has no plan is forbidden in that state, and the search repeated. If that fails and a
 /// branch that nothing needed was left out, all states are looked at (exhaustive.h): only then is it
-/// proved that there is no plan.
+/// proved that there is no plan. The same is tried, on a budget, where failures are many: repairs can
+/// take exponentially many searches among few states.
 /// docs/planning/search.md.
 class ContingentPlanner final : private Target {
  public:
@@ -57,7 +58,8 @@ class ContingentPlanner final : private Target {
 
   [[nodiscard]] Index match(const Word* state) const;
   Status solve(const State& start, Index& entry, Blame& blame);
-  Status exhaust();
+  Status exhaust(std::size_t most_states);
+  bool decided_otherwise();
   Index branch(const State& at, std::vector<std::pair<Step, Index>> cases);
   Status cover(const State& at, Step step, Index next, Index& entry, Blame& blame);
   Index add(Entry entry);
@@ -76,6 +78,9 @@ class ContingentPlanner final : private Target {
   std::unordered_map<State, Blame, StateHash> dead_;
   std::unordered_map<State, Index, StateHash> open_problems_;  ///< states being solved: depth
   Index root_ = kGoal;
+  std::uint64_t failures_ = 0;           ///< branches that were forbidden
+  std::uint64_t next_attempt_ = 50;      ///< failures at which to look at all states
+  std::optional<Status> verdict_;        ///< what that found
 };
 
 }  // namespace kaboum::plan

@@ -31,13 +31,13 @@ void Exhaustive::expand(Index state) {
   }
 }
 
-bool Exhaustive::explore() {
+bool Exhaustive::explore(std::size_t most_states) {
   for (Index i = 0; i < store_.size(); ++i) {
     const std::size_t bytes = store_.bytes() + edges_.capacity() * sizeof(Edge) +
                               targets_.capacity() * 3 * sizeof(Index);
     in_.statistics.states = std::max<std::uint64_t>(in_.statistics.states, store_.size());
     in_.statistics.state_bytes = std::max<std::uint64_t>(in_.statistics.state_bytes, bytes);
-    if (in_.limits.exceeded(bytes)) return false;
+    if (store_.size() > most_states || in_.limits.exceeded(bytes)) return false;
     has_plan_.push_back(0);
     if (in_.target.reached(store_[i])) {
       has_plan_[i] = 1;
@@ -49,8 +49,8 @@ bool Exhaustive::explore() {
   return true;
 }
 
-Status Exhaustive::run() {
-  if (!explore()) return Status::Limit;
+Status Exhaustive::run(std::size_t most_states) {
+  if (!explore(most_states)) return Status::Limit;
   // Edges into each state, then back from the targets.
   std::vector<Index> begin(store_.size() + 1, 0);
   for (const Index t : targets_) ++begin[t + 1];

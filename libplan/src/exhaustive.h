@@ -15,8 +15,8 @@ class Exhaustive {
  public:
   explicit Exhaustive(const SearchInput& in);
 
-  /// Looks at everything. Limit if the limits were reached first.
-  Status run();
+  /// Looks at everything. Limit if the limits, or so many states, were reached first.
+  Status run(std::size_t most_states);
 
   /// What to do in a state of the plan: perform an action, or branch.
   struct Decision {
@@ -34,7 +34,7 @@ class Exhaustive {
     Index missing = 0;  ///< targets that are not yet known to have a plan
   };
 
-  bool explore();
+  bool explore(std::size_t most_states);
   void expand(Index state);
 
   SearchInput in_;

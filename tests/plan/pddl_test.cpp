@@ -90,6 +90,84 @@ TEST(Pddl, LogisticsWithObjectFluentsAndCosts) {
   EXPECT_EQ(size.cost, 6 + 3 * 2 + 10);
 }
 
+/// Blocks with four actions, from and to lists of towers, each bottom first.
+std::string blocks(const std::vector<std::vector<int>>& from,
+                   const std::vector<std::vector<int>>& to) {
+  const auto name = [](int b) { return "b" + std::to_string(b); };
+  const auto facts = [&](const std::vector<std::vector<int>>& towers, bool initial) {
+    std::string text;
+    for (const auto& t : towers)
+      for (std::size_t i = 0; i < t.size(); ++i) {
+        text += i == 0 ? " (ontable " + name(t[i]) + ")"
+                       : " (on " + name(t[i]) + " " + name(t[i - 1]) + ")";
+        if (initial && i + 1 == t.size()) text += " (clear " + name(t[i]) + ")";
+      }
+    return text;
+  };
+  std::string objects;
+  for (const auto& t : from)
+    for (const int b : t) objects += " " + name(b);
+  return "(define (domain blocks) (:requirements :strips) (:predicates (on ?x ?y) (ontable ?x)"
+         " (clear ?x) (handempty) (holding ?x))"
+         "(:action pick-up :parameters (?x) :precondition (and (clear ?x) (ontable ?x) (handempty))"
+         " :effect (and (not (ontable ?x)) (not (clear ?x)) (not (handempty)) (holding ?x)))"
+         "(:action put-down :parameters (?x) :precondition (holding ?x)"
+         " :effect (and (not (holding ?x)) (clear ?x) (handempty) (ontable ?x)))"
+         "(:action stack :parameters (?x ?y) :precondition (and (holding ?x) (clear ?y))"
+         " :effect (and (not (holding ?x)) (not (clear ?y)) (clear ?x) (handempty) (on ?x ?y)))"
+         "(:action unstack :parameters (?x ?y) :precondition (and (on ?x ?y) (clear ?x) (handempty))"
+         " :effect (and (holding ?x) (clear ?y) (not (clear ?x)) (not (handempty)) (not (on ?x ?y)))))"
+         "(define (problem p) (:domain blocks) (:objects" +
+         objects + ") (:init (handempty)" + facts(from, true) + ") (:goal (and" +
+         facts(to, false) + ")))";
+}
+
+TEST(Pddl, BlocksOptima) {
+  // Two actions for every block that must move, and two more for each that must move twice.
+  EXPECT_EQ(optimum(pddl(blocks({{1, 3}, {2}}, {{3, 2, 1}}))), 6U);  // Sussman's anomaly
+  EXPECT_EQ(optimum(pddl(blocks({{1, 2, 3, 4, 5}}, {{5, 4, 3, 2, 1}}))), 10U);
+  EXPECT_EQ(optimum(pddl(blocks({{1, 2, 3, 4, 5, 6}}, {{1, 6}, {2}, {3}, {4}, {5}}))), 12U);
+  EXPECT_EQ(optimum(pddl(blocks({{1, 2}, {3, 4}}, {{3, 2}, {1, 4}}))), 6U);
+  EXPECT_EQ(optimum(pddl(blocks({{1, 2, 3}}, {{2, 1, 3}}))), 8U);
+  // A new block below a tower: all but the new one move twice.
+  EXPECT_EQ(optimum(pddl(blocks({{2, 3, 4, 5}, {1}}, {{1, 2, 3, 4, 5}}))), 14U);
+}
+
+/// Logistics with predicates: packages at places of one city, to a place of the other.
+std::string logistics(int packages) {
+  std::string objects, init, goal;
+  for (int i = 0; i < packages; ++i) {
+    const std::string p = "p" + std::to_string(i);
+    objects += " " + p;
+    init += " (at " + p + " home)";
+    goal += " (at " + p + " shop)";
+  }
+  return "(define (domain logistics) (:requirements :strips :typing) (:types package vehicle - thing"
+         " truck plane - vehicle airport - place city thing place - object)"
+         " (:predicates (at ?t - thing ?p - place) (in ?p - package ?v - vehicle) (in-city ?p - "
+         "place ?c - city))"
+         " (:action load :parameters (?p - package ?v - vehicle ?l - place) :precondition (and (at "
+         "?p ?l) (at ?v ?l)) :effect (and (not (at ?p ?l)) (in ?p ?v)))"
+         " (:action unload :parameters (?p - package ?v - vehicle ?l - place) :precondition (and "
+         "(in ?p ?v) (at ?v ?l)) :effect (and (not (in ?p ?v)) (at ?p ?l)))"
+         " (:action drive :parameters (?t - truck ?a ?b - place ?c - city) :precondition (and (at "
+         "?t ?a) (in-city ?a ?c) (in-city ?b ?c)) :effect (and (not (at ?t ?a)) (at ?t ?b)))"
+         " (:action fly :parameters (?t - plane ?a ?b - airport) :precondition (at ?t ?a) :effect "
+         "(and (not (at ?t ?a)) (at ?t ?b))))"
+         "(define (problem p) (:domain logistics) (:objects home shop - place north south - airport"
+         " n s - city t1 t2 - truck jet - plane" +
+         objects +
+         " - package) (:init (in-city home n) (in-city north n) (in-city shop s) (in-city south s)"
+         " (at t1 north) (at t2 south) (at jet south)" +
+         init + ") (:goal (and" + goal + ")))";
+}
+
+TEST(Pddl, LogisticsOptima) {
+  // Drives there and back, two flights, one drive; and six loads and unloads for each package.
+  for (const int n : {1, 2, 3})
+    EXPECT_EQ(optimum(pddl(logistics(n))), static_cast<std::uint64_t>(5 + 6 * n));
+}
+
 TEST(Pddl, ObserveAndOneof) {
   const Model m = pddl(
       "(define (domain wumpus) (:requirements :typing :contingent) (:types door)"
@@ -111,6 +189,15 @@ TEST(Pddl, NamesWhatIsNotSupported) {
             std::string::npos);
   EXPECT_NE(complaint(head + ":derived-predicates))", Language::Pddl).find("':derived-predicates'"),
             std::string::npos);
+  EXPECT_NE(complaint("(define (domain d) (:requirements :typing) (:types a b) (:predicates (p ?x - "
+                      "(either a b))))",
+                      Language::Pddl)
+                .find("bad.pddl:1:82: error: (either ...) is not supported"),
+            std::string::npos);
+  for (const char* numeric : {":fluents", ":numeric-fluents", ":constraints", ":preferences"})
+    EXPECT_NE(complaint(head + numeric + "))", Language::Pddl)
+                  .find(std::string("unsupported requirement '") + numeric),
+              std::string::npos);
   EXPECT_NE(complaint("(define (domain d) (:derived (p) (q)))", Language::Pddl)
                 .find("unsupported section ':derived'"),
             std::string::npos);
