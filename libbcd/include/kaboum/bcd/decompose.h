@@ -1,0 +1,73 @@
+#pragma once
+
+#include <kaboum/geom/convex_set.h>
+#include <kaboum/geom/prepare.h>
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace kaboum::bcd {
+
+/// How much work the search spends.
+enum class Effort { Fast, Normal, Best };
+
+/// How a decomposition stands.
+struct Progress {
+  std::string stage;
+  double fraction;  ///< estimate of the share of the work done, 0 to 1
+};
+
+struct DecomposeOptions {
+  /// Largest distance allowed from a point of the bodies to the solid and its triangles. [length]
+  std::optional<double> epsilon;
+  /// Most bodies wished for. With epsilon: fewest bodies within it, and if these are too many, the
+  /// best that this many allow.
+  std::optional<std::size_t> max_bodies;
+  std::size_t max_vertices = 64;  ///< per body, ≥ 8
+  Effort effort = Effort::Normal;
+  /// Called now and then, from the calling thread; may throw to cancel.
+  std::function<void(const Progress&)> progress;
+};
+
+/// Why decomposition ended.
+enum class Stop {
+  Done,           ///< epsilon reached, within max_bodies when given; or max_bodies alone was given
+  TooManyBodies,  ///< epsilon is not reached with max_bodies
+  Stuck,          ///< epsilon is not reached though everything was tried
+};
+
+struct DecomposeStatistics {
+  std::size_t leaves = 0;            ///< pieces that the input was cut into
+  std::size_t filled_triangles = 0;  ///< that closed an open input
+  std::size_t vertices = 0;          ///< of all bodies
+  std::size_t largest = 0;           ///< vertices of the largest body
+};
+
+struct DecomposeResult {
+  std::vector<geom::ConvexBody> bodies;
+  Stop stop = Stop::Done;
+  /// Certified bracket of the largest distance from a point of the bodies to the input's solid and
+  /// triangles. [length]
+  double reach_lower = 0, reach_upper = 0;
+  DecomposeStatistics statistics;
+};
+
+/// Convex bodies whose union contains the input's solid and every triangle of it.
+///
+/// The solid is cut by planes into cells; what of it lies in a cell is contained in the hull of the
+/// clipped triangles and of the cell's corners that lie in the solid; hulls are merged while the
+/// distance to the solid allows, their vertices reduced by contractions that only enlarge them, and
+/// rounded outwards to float32. Source: [gaschler2016] §4.4; docs/algorithms/convex-
+/// decomposition.md has the covering argument.
+///
+/// An open input is closed first by fans over its holes; the solid is then that of the closed mesh.
+///
+/// Bodies are exactly convex, with float32 coordinates; the same for any number of threads.
+///
+/// @pre input comes from geom::prepare; epsilon or max_bodies is given.
+/// @throws Error{InvalidArgument} on contradictory options.
+DecomposeResult decompose(const geom::Prepared& input, const DecomposeOptions& options);
+
+}  // namespace kaboum::bcd

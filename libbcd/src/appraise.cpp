@@ -1,0 +1,76 @@
+#include "appraise.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kaboum::bcd {
+
+Appraisal appraise(std::span<const Vec3> points, const Solid& solid, geom::HullBuilder& builder,
+                   double density) {
+  Appraisal out;
+  if (!builder.build(points)) return out;
+  out.flat = false;
+  Box3 box;
+  for (const std::uint32_t v : builder.vertices()) box.extend(points[v]);
+  const double unit = std::max(1.5 * solid.spacing(), box.diagonal() / density);
+  const Vec3 center = box.center();
+  for (const Triangle& t : builder.triangles()) {
+    const Vec3 &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];
+    const Vec3 ab = b - a, ac = c - a;
+    const Vec3 normal = ab.cross(ac);
+    const double area = 0.5 * normal.norm();
+    out.volume += normal.dot(a - center) / 6;
+    const double longest =
+        std::sqrt(std::max({ab.squaredNorm(), ac.squaredNorm(), (c - b).squaredNorm()}));
+    // Slivers need few samples across.
+    const double height = longest > 0 ? 2 * area / longest : 0;
+    const int m = std::clamp(static_cast<int>(std::ceil(longest / unit)), 1, 16);
+    const int rows = std::clamp(static_cast<int>(std::ceil(height / unit)), 1, 16);
+    if (rows >= m / 2) {
+      const double share = area / (m * m);
+      for (int i = 0; i < m; ++i) {
+        for (int j = 0; j < 2 * (m - i) - 1; ++j) {
+          // Centroids of the m² similar triangles.
+          const double s = (i + (j % 2 == 0 ? 1.0 : 2.0) / 3) / m;
+          const double r = (j / 2 + (j % 2 == 0 ? 1.0 : 2.0) / 3) / m;
+          const Vec3 p = a + s * ab + r * ac;
+          const double d = solid.field(p);
+          if (d <= 0) continue;
+          out.fourth += share * d * d * d * d;
+          if (d > out.worst) {
+            out.worst = d;
+            out.at = p;
+          }
+        }
+      }
+    } else {
+      // A sliver: along the median to the longest side's ends.
+      const Vec3* e[3] = {&a, &b, &c};
+      int k = 0;
+      double l = -1;
+      for (int i = 0; i < 3; ++i) {
+        const double x = (*e[(i + 1) % 3] - *e[i]).squaredNorm();
+        if (x > l) {
+          l = x;
+          k = i;
+        }
+      }
+      const Vec3 &p0 = *e[k], &p1 = *e[(k + 1) % 3], &top = *e[(k + 2) % 3];
+      const double share = area / m;
+      for (int i = 0; i < m; ++i) {
+        const Vec3 base = p0 + ((i + 0.5) / m) * (p1 - p0);
+        const Vec3 p = base + (top - base) / 3;
+        const double d = solid.field(p);
+        if (d <= 0) continue;
+        out.fourth += share * d * d * d * d;
+        if (d > out.worst) {
+          out.worst = d;
+          out.at = p;
+        }
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace kaboum::bcd

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <kaboum/geom/convex_hull.h>
+
+#include <span>
+
+#include "solid.h"
+
+namespace kaboum::bcd {
+
+/// How far a hull reaches from the solid, by samples of its facets: guides the search.
+struct Appraisal {
+  double fourth = 0;  ///< ∫ d⁴ over the facets
+  double worst = 0;   ///< largest d
+  Vec3 at = Vec3::Zero();
+  double volume = 0;
+  bool flat = true;  ///< no hull: the points are coplanar
+};
+
+/// Builds the hull of the points (left in `builder`) and samples it.
+Appraisal appraise(std::span<const Vec3> points, const Solid& solid, geom::HullBuilder& builder,
+                   double density = 14);
+
+}  // namespace kaboum::bcd

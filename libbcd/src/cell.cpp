@@ -1,0 +1,96 @@
+#include "cell.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace kaboum::bcd {
+
+Cell Cell::of(const Box3& box) {
+  Cell cell;
+  for (int i = 0; i < 8; ++i)
+    cell.corners.emplace_back((i & 1) != 0 ? box.max.x() : box.min.x(),
+                              (i & 2) != 0 ? box.max.y() : box.min.y(),
+                              (i & 4) != 0 ? box.max.z() : box.min.z());
+  cell.faces = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+  return cell;
+}
+
+std::vector<std::array<std::uint32_t, 2>> Cell::edges() const {
+  std::vector<std::array<std::uint32_t, 2>> out;
+  for (const auto& face : faces) {
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      const std::uint32_t a = face[k], b = face[(k + 1) % face.size()];
+      out.push_back({std::min(a, b), std::max(a, b)});
+    }
+  }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+Vec3 Cell::center() const {
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& p : corners) sum += p / static_cast<double>(corners.size());
+  return sum;
+}
+
+Cell clip(const Cell& cell, const Plane& plane, bool lower, double shift) {
+  std::vector<double> h(cell.corners.size());
+  for (std::size_t i = 0; i < h.size(); ++i) {
+    h[i] = plane.height(cell.corners[i]);
+    h[i] = (lower ? h[i] : -h[i]) - shift;  // kept where ≤ 0
+  }
+  Cell out;
+  constexpr std::uint32_t kNone = 0xFFFFFFFF;
+  std::vector<std::uint32_t> number(h.size(), kNone);
+  std::map<std::array<std::uint32_t, 2>, std::uint32_t> on_edge;
+  std::vector<std::uint32_t> cap;
+  for (const auto& face : cell.faces) {
+    std::vector<std::uint32_t> loop;
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      const std::uint32_t a = face[k], b = face[(k + 1) % face.size()];
+      if (h[a] <= 0) {
+        if (number[a] == kNone) {
+          number[a] = static_cast<std::uint32_t>(out.corners.size());
+          out.corners.push_back(cell.corners[a]);
+          if (h[a] == 0) cap.push_back(number[a]);
+        }
+        loop.push_back(number[a]);
+      }
+      if ((h[a] < 0 && h[b] > 0) || (h[a] > 0 && h[b] < 0)) {
+        const std::array<std::uint32_t, 2> edge{std::min(a, b), std::max(a, b)};
+        const auto [at, fresh] =
+            on_edge.emplace(edge, static_cast<std::uint32_t>(out.corners.size()));
+        if (fresh) {
+          const Vec3 &p = cell.corners[edge[0]], &q = cell.corners[edge[1]];
+          out.corners.push_back(p + (h[edge[0]] / (h[edge[0]] - h[edge[1]])) * (q - p));
+          cap.push_back(at->second);
+        }
+        loop.push_back(at->second);
+      }
+    }
+    if (loop.size() >= 3) out.faces.push_back(std::move(loop));
+  }
+  if (out.faces.empty()) return {};
+  if (cap.size() >= 3 && out.corners.size() > cap.size()) {
+    // In order round the cut's centre.
+    Vec3 center = Vec3::Zero();
+    for (const std::uint32_t v : cap) center += out.corners[v] / static_cast<double>(cap.size());
+    Vec3 u = plane.n.unitOrthogonal();
+    const Vec3 w = plane.n.cross(u);
+    std::vector<std::pair<double, std::uint32_t>> order;
+    for (const std::uint32_t v : cap) {
+      const Vec3 r = out.corners[v] - center;
+      order.emplace_back(std::atan2(w.dot(r), u.dot(r)), v);
+    }
+    std::sort(order.begin(), order.end());
+    std::vector<std::uint32_t> loop;
+    for (const auto& [angle, v] : order) loop.push_back(v);
+    if (!lower) std::reverse(loop.begin(), loop.end());
+    out.faces.push_back(std::move(loop));
+  }
+  return out;
+}
+
+}  // namespace kaboum::bcd

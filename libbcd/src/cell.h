@@ -1,0 +1,34 @@
+#pragma once
+
+#include <kaboum/geom/mesh.h>
+
+#include <array>
+#include <vector>
+
+namespace kaboum::bcd {
+
+using geom::Box3;
+using geom::Vec3;
+
+/// Oriented plane: points with n·x ≤ d are on its lower side. |n| = 1 up to rounding.
+struct Plane {
+  Vec3 n = Vec3::Zero();
+  double d = 0;
+  [[nodiscard]] double height(const Vec3& p) const { return n.dot(p) - d; }
+};
+
+/// Bounded convex polytope that space is cut into: corners and faces as loops of corners.
+struct Cell {
+  std::vector<Vec3> corners;
+  std::vector<std::vector<std::uint32_t>> faces;
+
+  static Cell of(const Box3& box);
+  /// Corner pairs, each edge once (from < to).
+  [[nodiscard]] std::vector<std::array<std::uint32_t, 2>> edges() const;
+  [[nodiscard]] Vec3 center() const;
+};
+
+/// The part where height ≤ shift (lower) or height ≥ −shift (upper). Empty if there is none.
+Cell clip(const Cell& cell, const Plane& plane, bool lower, double shift);
+
+}  // namespace kaboum::bcd

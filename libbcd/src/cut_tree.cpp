@@ -1,0 +1,329 @@
+#include <kaboum/geom/topology.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "search.h"
+
+namespace kaboum::bcd {
+namespace {
+
+/// A plane's hull points on one side, with the cell's corners that lie inside the solid.
+struct Scratch {
+  geom::HullBuilder builder;
+  std::vector<double> height;
+  std::vector<Side> side;
+  std::vector<Vec3> lower, upper;
+  std::vector<char> mark;
+};
+
+Scratch& scratch() {
+  static thread_local Scratch s;
+  return s;
+}
+
+}  // namespace
+
+CutTree::CutTree(const Solid& solid, const SearchOptions& options)
+    : solid_(solid), options_(options) {
+  double magnitude = 0;
+  for (const Vec3& p : solid.mesh().vertices)
+    magnitude = std::max(magnitude, p.cwiseAbs().maxCoeff());
+  shift_ = 0x1p-36 * magnitude;
+  find_reflex_planes();
+  add_leaf(whole(solid), -1);
+}
+
+void CutTree::find_reflex_planes() {
+  const Mesh& mesh = solid_.mesh();
+  const std::vector<geom::EdgeUse> uses = geom::edge_uses(mesh);
+  reflex_of_.resize(mesh.triangles.size());
+  std::map<std::array<int, 4>, std::uint32_t> known;
+  const auto plane_of = [&](std::uint32_t t, Plane& plane) {
+    const auto& v = mesh.vertices;
+    const Triangle& tri = mesh.triangles[t];
+    const Vec3 n = (v[tri[1]] - v[tri[0]]).cross(v[tri[2]] - v[tri[0]]);
+    const double length = n.norm();
+    if (!(length > 0)) return false;
+    plane.n = n / length;
+    plane.d = plane.n.dot(v[tri[0]]);
+    return true;
+  };
+  const auto number_of = [&](Plane plane, double weight) {
+    // Opposite normals are the same cut.
+    int axis = 0;
+    plane.n.cwiseAbs().maxCoeff(&axis);
+    if (plane.n[axis] < 0) {
+      plane.n = -plane.n;
+      plane.d = -plane.d;
+    }
+    const double center = plane.n.dot(solid_.box().center());
+    const std::array<int, 4> key{
+        static_cast<int>(std::lround(200 * plane.n.x())),
+        static_cast<int>(std::lround(200 * plane.n.y())),
+        static_cast<int>(std::lround(200 * plane.n.z())),
+        static_cast<int>(std::lround(500 * (plane.d - center) / solid_.diagonal()))};
+    const auto [at, fresh] = known.emplace(key, static_cast<std::uint32_t>(reflex_.size()));
+    if (fresh) reflex_.push_back({plane, weight});
+    return at->second;
+  };
+  for (std::size_t i = 0; i + 1 < uses.size(); ++i) {
+    if (uses[i].lo != uses[i + 1].lo || uses[i].hi != uses[i + 1].hi) continue;
+    const std::uint32_t s = uses[i].triangle, t = uses[i + 1].triangle;
+    Plane p, q;
+    if (!plane_of(s, p) || !plane_of(t, q)) continue;
+    const std::uint32_t apex = mesh.triangles[t][(uses[i + 1].corner + 2) % 3];
+    const double sine = p.n.cross(q.n).norm();
+    const double cosine = p.n.dot(q.n);
+    if (p.height(mesh.vertices[apex]) <= 0) continue;
+    if (std::atan2(sine, cosine) < 0.25) continue;
+    const Vec3 &a = mesh.vertices[uses[i].lo], &b = mesh.vertices[uses[i].hi];
+    const double weight = (b - a).norm() * std::atan2(sine, cosine);
+    for (const Plane& plane : {p, q}) {
+      const std::uint32_t number = number_of(plane, 0);
+      reflex_of_[s].push_back(number);
+      reflex_of_[t].push_back(number);
+      reflex_[number].weight = std::max(reflex_[number].weight, weight);
+    }
+    Vec3 across = p.n - q.n;
+    if (across.norm() > 0.05) {
+      Plane bisector;
+      bisector.n = across.normalized();
+      bisector.d = bisector.n.dot(0.5 * a + 0.5 * b);
+      const std::uint32_t number = number_of(bisector, 0);
+      reflex_of_[s].push_back(number);
+      reflex_of_[t].push_back(number);
+      reflex_[number].weight = std::max(reflex_[number].weight, 0.5 * weight);
+    }
+  }
+}
+
+void CutTree::add_leaf(Piece&& piece, int parent) {
+  Node node;
+  node.parent = parent;
+  geom::HullBuilder& builder = scratch().builder;
+  const std::vector<Vec3> points = piece.hull_points();
+  node.appraisal = appraise(points, solid_, builder);
+  if (!node.appraisal.flat) {
+    for (const std::uint32_t v : builder.vertices()) node.hull.push_back(points[v]);
+  } else {
+    node.hull = points;
+  }
+  node.piece = std::move(piece);
+  nodes_.push_back(std::move(node));
+  ++leaf_count_;
+}
+
+std::vector<int> CutTree::leaves() const {
+  std::vector<int> out;
+  for (int i = 0; i < static_cast<int>(nodes_.size()); ++i)
+    if (nodes_[i].lower < 0 && nodes_[i].upper < 0) out.push_back(i);
+  return out;
+}
+
+double CutTree::worst() const {
+  double worst = 0;
+  for (const Node& n : nodes_)
+    if (n.lower < 0 && !n.stuck) worst = std::max(worst, n.appraisal.worst);
+  return worst;
+}
+
+double CutTree::score(const Node& node, const Plane& plane) const {
+  Scratch& s = scratch();
+  const Piece& piece = node.piece;
+  classify(piece, plane, solid_, shift_, s.height, s.side);
+  s.lower.clear();
+  s.upper.clear();
+  s.mark.assign(piece.points.size(), 0);
+  bool any[2]{};
+  for (std::size_t f = 0; f < s.side.size(); ++f) {
+    const std::uint32_t first = piece.start[f], last = piece.start[f + 1];
+    if (s.side[f] != Side::Both) {
+      const char bit = s.side[f] == Side::Lower ? 1 : 2;
+      any[bit - 1] = true;
+      for (std::uint32_t k = first; k < last; ++k) s.mark[piece.corner[k]] |= bit;
+      continue;
+    }
+    any[0] = any[1] = true;
+    for (std::uint32_t k = first; k < last; ++k) {
+      const std::uint32_t a = piece.corner[k];
+      const std::uint32_t b = piece.corner[k + 1 < last ? k + 1 : first];
+      const double ha = s.height[a], hb = s.height[b];
+      s.mark[a] |= static_cast<char>((ha <= 0 ? 1 : 0) | (ha >= 0 ? 2 : 0));
+      if ((ha < 0 && hb > 0) || (ha > 0 && hb < 0)) {
+        const Vec3 p = piece.points[a] + (ha / (ha - hb)) * (piece.points[b] - piece.points[a]);
+        s.lower.push_back(p);
+        s.upper.push_back(p);
+      }
+    }
+  }
+  if (!any[0] || !any[1]) return std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < piece.points.size(); ++i) {
+    if ((s.mark[i] & 1) != 0) s.lower.push_back(piece.points[i]);
+    if ((s.mark[i] & 2) != 0) s.upper.push_back(piece.points[i]);
+  }
+  const Cell& cell = piece.cell;
+  for (std::size_t i = 0; i < cell.corners.size(); ++i)
+    if (piece.inside[i] != 0)
+      (plane.height(cell.corners[i]) <= 0 ? s.lower : s.upper).push_back(cell.corners[i]);
+  for (const auto& [a, b] : cell.edges()) {
+    const double ha = plane.height(cell.corners[a]), hb = plane.height(cell.corners[b]);
+    if (!((ha < 0 && hb > 0) || (ha > 0 && hb < 0))) continue;
+    const Vec3 p = cell.corners[a] + (ha / (ha - hb)) * (cell.corners[b] - cell.corners[a]);
+    if (solid_.field(p) >= -0.25 * solid_.spacing()) continue;
+    s.lower.push_back(p);
+    s.upper.push_back(p);
+  }
+  const double limit = node.appraisal.fourth;
+  const Appraisal lower = appraise(s.lower, solid_, s.builder);
+  if (lower.fourth > 2 * limit) return lower.fourth;
+  const Appraisal upper = appraise(s.upper, solid_, s.builder);
+  return lower.fourth + upper.fourth;
+}
+
+std::vector<CutTree::Candidate> CutTree::candidates(const Node& node) const {
+  std::vector<Candidate> out;
+  Box3 box;
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& p : node.hull) {
+    box.extend(p);
+    mean += p / static_cast<double>(node.hull.size());
+  }
+  const double size = box.diagonal();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (const Vec3& p : node.hull) covariance += (p - mean) * (p - mean).transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance);
+  std::vector<Vec3> directions{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 d = eigen.eigenvectors().col(k);
+    if (d.allFinite() && d.cwiseAbs().maxCoeff() < 0.99) directions.push_back(d);
+  }
+  for (const Vec3& n : directions) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Vec3& p : node.hull) {
+      low = std::min(low, n.dot(p));
+      high = std::max(high, n.dot(p));
+    }
+    for (int i = 1; i <= options_.offsets; ++i)
+      out.push_back({{n, low + (high - low) * i / (options_.offsets + 1)}});
+  }
+  // Planes that separate, or run through, the pit below the worst point.
+  const Vec3& x = node.appraisal.at;
+  const double step = solid_.spacing();
+  Vec3 g;
+  for (int k = 0; k < 3; ++k)
+    g[k] = solid_.field(x + step * Vec3::Unit(k)) - solid_.field(x - step * Vec3::Unit(k));
+  if (g.norm() > 0.1 * step) {
+    g.normalize();
+    const Vec3 y = x - node.appraisal.worst * g;
+    out.push_back({{g, g.dot(y)}});
+    const Vec3 u = g.unitOrthogonal(), w = g.cross(u);
+    for (int k = 0; k < 4; ++k) {
+      const double angle = 0.25 * M_PI * k;
+      const Vec3 n = std::cos(angle) * u + std::sin(angle) * w;
+      out.push_back({{n, n.dot(y)}});
+    }
+  }
+  if (options_.reflex_planes > 0) {
+    std::map<std::uint32_t, double> weight;
+    for (const std::uint32_t t : node.piece.source)
+      for (const std::uint32_t r : reflex_of_[t]) weight[r] += reflex_[r].weight;
+    std::vector<std::pair<double, std::uint32_t>> order;
+    for (const auto& [r, w] : weight) {
+      double low = std::numeric_limits<double>::infinity(), high = -low;
+      for (const Vec3& p : node.hull) {
+        const double h = reflex_[r].plane.height(p);
+        low = std::min(low, h);
+        high = std::max(high, h);
+      }
+      if (low < -1e-4 * size && high > 1e-4 * size) order.emplace_back(-w, r);
+    }
+    std::sort(order.begin(), order.end());
+    for (std::size_t i = 0;
+         i < order.size() && i < static_cast<std::size_t>(options_.reflex_planes); ++i)
+      out.push_back({reflex_[order[i].second].plane});
+  }
+  return out;
+}
+
+void CutTree::evaluate(const Node& node, std::vector<Candidate>& list) const {
+  tbb::parallel_for(std::size_t{0}, list.size(),
+                    [&](std::size_t i) { list[i].score = score(node, list[i].plane); });
+}
+
+bool CutTree::cut(int leaf) {
+  const Node& node = nodes_[leaf];
+  if (node.piece.polygons() == 0) {
+    nodes_[leaf].stuck = true;
+    return false;
+  }
+  std::vector<Candidate> list = candidates(node);
+  evaluate(node, list);
+  const auto best_of = [](const std::vector<Candidate>& l) {
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < l.size(); ++i)
+      if (l[i].score < l[best].score) best = i;
+    return l[best];
+  };
+  if (list.empty()) {
+    nodes_[leaf].stuck = true;
+    return false;
+  }
+  Candidate best = best_of(list);
+  if (!std::isfinite(best.score)) {
+    nodes_[leaf].stuck = true;
+    return false;
+  }
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Vec3& p : node.hull) {
+    low = std::min(low, best.plane.n.dot(p));
+    high = std::max(high, best.plane.n.dot(p));
+  }
+  double step = 0.5 * (high - low) / (options_.offsets + 1);
+  for (int r = 0; r < options_.refinements; ++r, step *= 0.5) {
+    std::vector<Candidate> near;
+    for (const double s : {-step, step})
+      if (best.plane.d + s > low && best.plane.d + s < high)
+        near.push_back({{best.plane.n, best.plane.d + s}});
+    if (near.empty()) continue;
+    evaluate(node, near);
+    const Candidate c = best_of(near);
+    if (c.score < best.score) best = c;
+  }
+  Scratch& s = scratch();
+  classify(node.piece, best.plane, solid_, shift_, s.height, s.side);
+  Piece lower = clip(node.piece, best.plane, true, shift_, solid_, s.height, s.side);
+  Piece upper = clip(node.piece, best.plane, false, shift_, solid_, s.height, s.side);
+  nodes_[leaf].plane = best.plane;
+  nodes_[leaf].piece = {};
+  --leaf_count_;
+  if (!lower.empty()) {
+    add_leaf(std::move(lower), leaf);
+    nodes_[leaf].lower = static_cast<int>(nodes_.size()) - 1;
+  }
+  if (!upper.empty()) {
+    add_leaf(std::move(upper), leaf);
+    nodes_[leaf].upper = static_cast<int>(nodes_.size()) - 1;
+  }
+  return true;
+}
+
+bool CutTree::cut_worst() {
+  for (;;) {
+    int worst = -1;
+    for (int i = 0; i < static_cast<int>(nodes_.size()); ++i) {
+      const Node& n = nodes_[i];
+      if (n.lower >= 0 || n.upper >= 0 || n.stuck) continue;
+      if (worst < 0 || n.appraisal.worst > nodes_[worst].appraisal.worst) worst = i;
+    }
+    if (worst < 0 || nodes_[worst].appraisal.worst <= 0) return false;
+    if (cut(worst)) return true;
+  }
+}
+
+}  // namespace kaboum::bcd

@@ -1,0 +1,270 @@
+#include <kaboum/bcd/decompose.h>
+#include <kaboum/geom/error.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "closure.h"
+#include "outward.h"
+#include "reach.h"
+#include "search.h"
+#include "simplify.h"
+
+namespace kaboum::bcd {
+namespace {
+
+struct Tuning {
+  std::size_t grid;
+  SearchOptions search;
+  std::vector<double> multiples;   ///< of the wished bodies, that the input is cut into
+  std::vector<double> thresholds;  ///< of epsilon, that leaves are cut down to
+};
+
+Tuning tuning(Effort effort) {
+  switch (effort) {
+    case Effort::Fast:
+      return {60000, {.offsets = 5, .reflex_planes = 6, .refinements = 1}, {1.5}, {0.8}};
+    case Effort::Normal:
+      return {200000, {}, {1, 1.25, 1.5, 2, 3}, {1, 0.7, 0.5}};
+    case Effort::Best:
+      break;
+  }
+  return {1000000,
+          {.offsets = 11, .reflex_planes = 16, .refinements = 4},
+          {1, 1.25, 1.5, 2, 3, 4.5, 6},
+          {1, 0.85, 0.7, 0.5, 0.35}};
+}
+
+/// A body on its way to the result.
+struct Finished {
+  Body body;
+  Mesh hull;
+  Reach reach;
+};
+
+class Decomposer {
+ public:
+  Decomposer(const geom::Prepared& input, const Mesh& closed, const DecomposeOptions& options)
+      : options_(options),
+        tuning_(tuning(options.effort)),
+        solid_(closed, tuning_.grid),
+        tree_(solid_, tuning_.search) {
+    result_.statistics.filled_triangles = closed.triangles.size() - input.mesh.triangles.size();
+    double magnitude = 0;
+    for (const Vec3& p : closed.vertices) magnitude = std::max(magnitude, p.cwiseAbs().maxCoeff());
+    point_error_ = 0x1p-40 * magnitude;
+  }
+
+  DecomposeResult run() {
+    std::vector<Finished> bodies;
+    if (options_.epsilon) {
+      bodies = within(*options_.epsilon);
+      result_.stop = Stop::Done;
+      for (const Finished& f : bodies)
+        if (f.reach.upper > *options_.epsilon) result_.stop = Stop::Stuck;
+      if (options_.max_bodies && bodies.size() > *options_.max_bodies) {
+        result_.stop = Stop::TooManyBodies;
+        bodies = at_most(*options_.max_bodies);
+      }
+    } else {
+      bodies = at_most(*options_.max_bodies);
+    }
+    result_.statistics.leaves = tree_.leaf_count();
+    for (Finished& f : bodies) {
+      result_.reach_lower = std::max(result_.reach_lower, f.reach.lower);
+      result_.reach_upper = std::max(result_.reach_upper, f.reach.upper);
+      result_.statistics.vertices += f.hull.vertices.size();
+      result_.statistics.largest = std::max(result_.statistics.largest, f.hull.vertices.size());
+      result_.bodies.push_back({"", std::move(f.hull)});
+    }
+    return std::move(result_);
+  }
+
+ private:
+  void report(const char* stage, double fraction) {
+    if (options_.progress) options_.progress({stage, fraction});
+  }
+
+  [[nodiscard]] std::vector<Body> leaf_bodies() const {
+    std::vector<Body> out;
+    for (const int leaf : tree_.leaves()) out.push_back(body_of(tree_, leaf));
+    return out;
+  }
+
+  /// Simplified shapes, not yet rounded; their appraisals by samples.
+  void simplify_all(std::vector<Body>& bodies, double free_cost, std::vector<Body>& out) const {
+    out.resize(bodies.size());
+    tbb::parallel_for(std::size_t{0}, bodies.size(), [&](std::size_t i) {
+      out[i] = bodies[i];
+      if (bodies[i].appraisal.flat) return;
+      const double free = std::max(free_cost, 0.0);
+      out[i].hull = simplify(bodies[i].hull, options_.max_vertices, free, solid_).vertices;
+      geom::HullBuilder builder;
+      out[i].appraisal = appraise(out[i].hull, solid_, builder);
+    });
+  }
+
+  [[nodiscard]] static double worst_of(const std::vector<Body>& bodies) {
+    double worst = 0;
+    for (const Body& b : bodies) worst = std::max(worst, b.appraisal.worst);
+    return worst;
+  }
+
+  std::vector<Body> best_merge(const std::vector<std::vector<Body>>& snapshots,
+                               std::size_t target) {
+    std::vector<Body> best;
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& snapshot : snapshots) {
+      std::vector<Body> bodies = merge(snapshot, solid_, target, least);
+      if (bodies.size() > target) continue;
+      const double worst = worst_of(bodies);
+      if (worst >= least) continue;
+      least = worst;
+      best = std::move(bodies);
+    }
+    return best;
+  }
+
+  std::vector<Finished> at_most(std::size_t target) {
+    std::vector<std::vector<Body>> snapshots;
+    const double most = tuning_.multiples.back() * static_cast<double>(target);
+    for (const double multiple : tuning_.multiples) {
+      const double wished = std::ceil(multiple * static_cast<double>(target));
+      while (static_cast<double>(tree_.leaf_count()) < wished && tree_.cut_worst())
+        report("cutting", 0.7 * static_cast<double>(tree_.leaf_count()) / most);
+      snapshots.push_back(leaf_bodies());
+    }
+    report("merging", 0.7);
+    std::vector<Body> bodies = best_merge(snapshots, target);
+    if (bodies.empty())
+      bodies = merge(leaf_bodies(), solid_, target, std::numeric_limits<double>::infinity());
+    report("simplifying", 0.8);
+    return finish(bodies, 0.25 * worst_of(bodies));
+  }
+
+  std::vector<Finished> within(double epsilon) {
+    const double wished = 0.93 * epsilon;
+    std::vector<Body> best;
+    const double begin = std::max(tree_.worst(), epsilon);
+    std::size_t most_leaves = 20000;
+    for (const double threshold : tuning_.thresholds) {
+      while (tree_.worst() > threshold * wished && tree_.leaf_count() < most_leaves &&
+             tree_.cut_worst())
+        report("cutting", 0.6 * std::clamp(std::log(begin / std::max(tree_.worst(), 1e-300)) /
+                                               std::log(begin / (0.5 * wished)),
+                                           0.0, 1.0));
+      std::vector<Body> bodies = merge(leaf_bodies(), solid_, 1, wished);
+      most_leaves = std::max<std::size_t>(200, 8 * bodies.size());
+      if (best.empty() || bodies.size() < best.size()) best = std::move(bodies);
+    }
+    report("simplifying", 0.6);
+    // Simplify; where the vertices allowed are too few, take the body apart.
+    std::vector<Finished> out;
+    for (int round = 0; round < 30 && !best.empty(); ++round) {
+      std::vector<Finished> tried = finish(best, 0.5 * wished, epsilon);
+      best.clear();
+      for (Finished& f : tried) {
+        if (f.reach.upper <= epsilon) {
+          out.push_back(std::move(f));
+        } else {
+          std::vector<Body> parts = take_apart(f.body, wished);
+          if (parts.size() < 2) {
+            out.push_back(std::move(f));
+          } else {
+            for (Body& p : parts) best.push_back(std::move(p));
+          }
+        }
+      }
+      report("simplifying", 0.6 + 0.013 * (round + 1));
+    }
+    if (!best.empty())
+      for (Finished& f : finish(best, 0)) out.push_back(std::move(f));
+    return out;
+  }
+
+  /// Two or more bodies in place of one.
+  std::vector<Body> take_apart(const Body& body, double epsilon) {
+    std::vector<Body> leaves;
+    if (body.leaves.size() == 1) {
+      const int leaf = body.leaves[0];
+      if (tree_.nodes()[leaf].stuck || !tree_.cut(leaf)) return {};
+      for (const int child : {tree_.nodes()[leaf].lower, tree_.nodes()[leaf].upper})
+        if (child >= 0) leaves.push_back(body_of(tree_, child));
+      return leaves;
+    }
+    for (const int leaf : body.leaves) leaves.push_back(body_of(tree_, leaf));
+    return merge(std::move(leaves), solid_, 2, epsilon);
+  }
+
+  /// Simplifies, rounds outwards and measures.
+  std::vector<Finished> finish(std::vector<Body>& bodies, double free_cost, double floor = 0) {
+    std::vector<Body> shapes;
+    simplify_all(bodies, free_cost, shapes);
+    std::vector<Finished> out(bodies.size());
+    // Required points by leaf, each computed once.
+    std::vector<int> leaves;
+    for (const Body& b : bodies) leaves.insert(leaves.end(), b.leaves.begin(), b.leaves.end());
+    std::vector<int> open;
+    for (const int leaf : leaves)
+      if (!required_.contains(leaf)) {
+        required_[leaf] = {};
+        open.push_back(leaf);
+      }
+    std::vector<std::vector<Vec3>*> place;
+    for (const int leaf : open) place.push_back(&required_[leaf]);
+    tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t i) {
+      *place[i] = outer_points(tree_.nodes()[open[i]].piece, point_error_);
+    });
+    tbb::parallel_for(std::size_t{0}, bodies.size(), [&](std::size_t i) {
+      std::vector<Vec3> required;
+      for (const int leaf : bodies[i].leaves) {
+        const auto& points = required_.at(leaf);
+        required.insert(required.end(), points.begin(), points.end());
+      }
+      geom::HullBuilder builder;
+      if (builder.build(required)) {
+        std::vector<Vec3> hull;
+        for (const std::uint32_t v : builder.vertices()) hull.push_back(required[v]);
+        required = std::move(hull);
+      }
+      out[i].hull = enclose(shapes[i].hull, required, options_.max_vertices);
+    });
+    std::vector<Mesh> hulls;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      hulls.push_back(out[i].hull);
+      out[i].body = std::move(bodies[i]);
+    }
+    ReachOptions reach;
+    reach.absolute_gap = 1e-5 * solid_.diagonal();
+    const std::vector<Reach> measured = measure(hulls, solid_, reach, 0.5 * floor);
+    for (std::size_t i = 0; i < out.size(); ++i) out[i].reach = measured[i];
+    return out;
+  }
+
+  const DecomposeOptions& options_;
+  Tuning tuning_;
+  Solid solid_;
+  CutTree tree_;
+  double point_error_ = 0;
+  std::map<int, std::vector<Vec3>> required_;
+  DecomposeResult result_;
+};
+
+}  // namespace
+
+DecomposeResult decompose(const geom::Prepared& input, const DecomposeOptions& options) {
+  if (!options.epsilon && !options.max_bodies)
+    throw Error(ErrorCode::InvalidArgument, "decompose: neither epsilon nor max_bodies is given");
+  if (options.epsilon && !(*options.epsilon > 0))
+    throw Error(ErrorCode::InvalidArgument, "decompose: epsilon must be positive");
+  if (options.max_bodies && *options.max_bodies == 0)
+    throw Error(ErrorCode::InvalidArgument, "decompose: max_bodies must be at least 1");
+  if (options.max_vertices < 8)
+    throw Error(ErrorCode::InvalidArgument, "decompose: fewer than 8 vertices per body");
+  const Mesh closed = input.closed ? input.mesh : close_holes(input.mesh);
+  return Decomposer(input, closed, options).run();
+}
+
+}  // namespace kaboum::bcd

@@ -1,0 +1,125 @@
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+
+#include "search.h"
+
+namespace kaboum::bcd {
+namespace {
+
+/// Two bodies and what their hull would be.
+struct Pair {
+  std::uint32_t a, b;
+  double cost;
+  double worst;
+};
+
+/// Cheapest first; ties by index, so that the order is always the same.
+bool later(const Pair& p, const Pair& q) {
+  if (p.cost != q.cost) return p.cost > q.cost;
+  return p.a != q.a ? p.a > q.a : p.b > q.b;
+}
+
+geom::HullBuilder& hull_builder() {
+  static thread_local geom::HullBuilder builder;
+  return builder;
+}
+
+void join(const Body& a, const Body& b, std::vector<Vec3>& points) {
+  points.assign(a.hull.begin(), a.hull.end());
+  points.insert(points.end(), b.hull.begin(), b.hull.end());
+}
+
+Pair judge(const std::vector<Body>& bodies, std::uint32_t a, std::uint32_t b, const Solid& solid) {
+  static thread_local std::vector<Vec3> points;
+  join(bodies[a], bodies[b], points);
+  const Appraisal h = appraise(points, solid, hull_builder());
+  const double added =
+      std::max(0.0, h.volume - bodies[a].appraisal.volume - bodies[b].appraisal.volume);
+  return {a, b, h.worst + 0.05 * std::cbrt(added), h.worst};
+}
+
+}  // namespace
+
+Body body_of(const CutTree& tree, int leaf) {
+  const CutTree::Node& node = tree.nodes()[leaf];
+  Body body{node.hull, {leaf}, node.appraisal, {}};
+  for (const Vec3& p : body.hull) body.box.extend(p);
+  return body;
+}
+
+std::vector<Body> merge(std::vector<Body> bodies, const Solid& solid, std::size_t target,
+                        double epsilon) {
+  std::vector<char> alive(bodies.size(), 1);
+  std::size_t count = bodies.size();
+  const double reach = 1e-3 * solid.diagonal();
+  const auto near = [&](const Body& a, const Body& b) {
+    return ((a.box.min.array() - reach <= b.box.max.array()) &&
+            (b.box.min.array() - reach <= a.box.max.array()))
+        .all();
+  };
+  std::priority_queue<Pair, std::vector<Pair>, decltype(&later)> queue(&later);
+  std::vector<Pair> fresh;
+  const auto judge_all = [&] {
+    tbb::parallel_for(std::size_t{0}, fresh.size(), [&](std::size_t i) {
+      fresh[i] = judge(bodies, fresh[i].a, fresh[i].b, solid);
+    });
+    for (const Pair& p : fresh)
+      if (p.worst <= epsilon) queue.push(p);
+    fresh.clear();
+  };
+  for (std::uint32_t a = 0; a < bodies.size(); ++a)
+    for (std::uint32_t b = a + 1; b < bodies.size(); ++b)
+      if (near(bodies[a], bodies[b])) fresh.push_back({a, b, 0, 0});
+  judge_all();
+  bool all_pairs = false;
+  while (count > target) {
+    if (queue.empty()) {
+      // Parts that do not touch may still share a hull.
+      if (all_pairs || count > 400) break;
+      all_pairs = true;
+      for (std::uint32_t a = 0; a < bodies.size(); ++a)
+        for (std::uint32_t b = a + 1; b < bodies.size(); ++b)
+          if (alive[a] != 0 && alive[b] != 0 && !near(bodies[a], bodies[b]))
+            fresh.push_back({a, b, 0, 0});
+      judge_all();
+      if (queue.empty()) break;
+    }
+    const Pair p = queue.top();
+    queue.pop();
+    if (alive[p.a] == 0 || alive[p.b] == 0) continue;
+    Body merged;
+    std::vector<Vec3> points;
+    join(bodies[p.a], bodies[p.b], points);
+    geom::HullBuilder& builder = hull_builder();
+    merged.appraisal = appraise(points, solid, builder);
+    if (merged.appraisal.flat) {
+      merged.hull = points;
+    } else {
+      for (const std::uint32_t v : builder.vertices()) merged.hull.push_back(points[v]);
+    }
+    merged.leaves = bodies[p.a].leaves;
+    merged.leaves.insert(merged.leaves.end(), bodies[p.b].leaves.begin(), bodies[p.b].leaves.end());
+    std::sort(merged.leaves.begin(), merged.leaves.end());
+    for (const Vec3& q : merged.hull) merged.box.extend(q);
+    alive[p.a] = alive[p.b] = 0;
+    bodies[p.a].hull = {};
+    bodies[p.b].hull = {};
+    --count;
+    const auto self = static_cast<std::uint32_t>(bodies.size());
+    bodies.push_back(std::move(merged));
+    alive.push_back(1);
+    for (std::uint32_t a = 0; a < self; ++a)
+      if (alive[a] != 0 && (all_pairs || near(bodies[a], bodies[self])))
+        fresh.push_back({a, self, 0, 0});
+    judge_all();
+  }
+  std::vector<Body> out;
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    if (alive[i] != 0) out.push_back(std::move(bodies[i]));
+  return out;
+}
+
+}  // namespace kaboum::bcd

@@ -1,0 +1,163 @@
+#include "outward.h"
+
+#include <kaboum/geom/convex_hull.h>
+#include <kaboum/geom/error.h>
+#include <kaboum/geom/float32.h>
+#include <kaboum/geom/predicates.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace kaboum::bcd {
+namespace {
+
+double float_below(double x) {
+  const double f = geom::to_float32(x);
+  return f <= x ? f
+                : static_cast<double>(std::nextafter(static_cast<float>(f),
+                                                     -std::numeric_limits<float>::infinity()));
+}
+double float_above(double x) { return -float_below(-x); }
+
+struct Less {
+  bool operator()(const Vec3& a, const Vec3& b) const {
+    if (a.x() != b.x()) return a.x() < b.x();
+    return a.y() != b.y() ? a.y() < b.y() : a.z() < b.z();
+  }
+};
+
+void add_box(std::vector<Vec3>& out, const Vec3& p, double error) {
+  Vec3 low, high;
+  for (int k = 0; k < 3; ++k) {
+    low[k] = float_below(p[k] - error);
+    high[k] = float_above(p[k] + error);
+  }
+  for (int i = 0; i < 8; ++i) {
+    if (((i & 1) != 0 && high.x() == low.x()) || ((i & 2) != 0 && high.y() == low.y()) ||
+        ((i & 4) != 0 && high.z() == low.z()))
+      continue;
+    out.emplace_back((i & 1) != 0 ? high.x() : low.x(), (i & 2) != 0 ? high.y() : low.y(),
+                     (i & 4) != 0 ? high.z() : low.z());
+  }
+}
+
+/// A float32 box along the principal axes that contains the points, exactly.
+std::optional<geom::Mesh> box_round(std::span<const Vec3> points, double ulp) {
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& p : points) mean += p / static_cast<double>(points.size());
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (const Vec3& p : points) covariance += (p - mean) * (p - mean).transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance);
+  const Eigen::Matrix3d axes = eigen.eigenvectors();
+  if (!axes.allFinite()) return std::nullopt;
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (const Vec3& p : points) {
+    const Vec3 q = axes.transpose() * (p - mean);
+    low = low.cwiseMin(q);
+    high = high.cwiseMax(q);
+  }
+  geom::HullBuilder builder;
+  double margin = 2 * ulp;
+  for (int round = 0; round < 12; ++round, margin *= 2) {
+    std::vector<Vec3> corners;
+    for (int i = 0; i < 8; ++i)
+      corners.push_back(geom::to_float32(
+          Vec3(mean + axes * Vec3((i & 1) != 0 ? high.x() + margin : low.x() - margin,
+                                  (i & 2) != 0 ? high.y() + margin : low.y() - margin,
+                                  (i & 4) != 0 ? high.z() + margin : low.z() - margin))));
+    if (!builder.build(corners)) continue;
+    bool good = true;
+    for (const Triangle& t : builder.triangles())
+      for (const Vec3& p : points)
+        good = good && geom::orient3d(corners[t[0]], corners[t[1]], corners[t[2]], p) !=
+                           geom::Sign::Positive;
+    if (good) return builder.mesh();
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<Vec3> outer_points(const Piece& piece, double error) {
+  std::vector<Vec3> out;
+  for (std::size_t i = 0; i < piece.points.size(); ++i)
+    add_box(out, piece.points[i], piece.exact[i] != 0 ? 0 : error);
+  for (std::size_t i = 0; i < piece.inside.size(); ++i)
+    if (piece.inside[i] != 0) add_box(out, piece.cell.corners[i], error);
+  geom::HullBuilder builder;
+  if (!builder.build(out)) return out;
+  std::vector<Vec3> hull;
+  for (const std::uint32_t v : builder.vertices()) hull.push_back(out[v]);
+  return hull;
+}
+
+geom::Mesh enclose(std::span<const Vec3> shape, std::span<const Vec3> required, std::size_t most) {
+  double magnitude = 0;
+  for (const Vec3& p : required) magnitude = std::max(magnitude, p.cwiseAbs().maxCoeff());
+  if (!(magnitude < 1e38))
+    throw Error(ErrorCode::LimitReached, "coordinates beyond float32; scale the mesh");
+  const double ulp = geom::float32_spacing(magnitude);
+  std::vector<Vec3> sorted(required.begin(), required.end());
+  std::sort(sorted.begin(), sorted.end(), Less());
+  const double longest_push = std::max(64 * ulp, 1e-5 * magnitude);
+  geom::HullBuilder builder;
+  if (builder.build(shape)) {
+    const geom::Mesh hull = builder.mesh();
+    const std::size_t n = hull.vertices.size();
+    std::vector<Vec3> direction(n, Vec3::Zero());
+    std::vector<Vec3> normals;
+    for (const Triangle& t : hull.triangles) {
+      const Vec3 m = (hull.vertices[t[1]] - hull.vertices[t[0]])
+                         .cross(hull.vertices[t[2]] - hull.vertices[t[0]]);
+      normals.push_back(m.norm() > 0 ? Vec3(m.normalized()) : Vec3::Zero());
+      for (const std::uint32_t v : t) direction[v] += normals.back();
+    }
+    std::vector<double> least(n, 1);
+    for (Vec3& d : direction) d.normalize();
+    for (std::size_t f = 0; f < normals.size(); ++f)
+      for (const std::uint32_t v : hull.triangles[f])
+        least[v] = std::min(least[v], normals[f].dot(direction[v]));
+    std::vector<double> push(n, 0);
+    for (std::size_t v = 0; v < n; ++v) {
+      direction[v] /= std::max(0.1, least[v]);
+      if (!direction[v].allFinite()) direction[v] = Vec3::Zero();
+      if (!std::binary_search(sorted.begin(), sorted.end(), hull.vertices[v], Less()))
+        push[v] = 1.5 * ulp;
+    }
+    for (int round = 0; round < 40; ++round) {
+      std::vector<Vec3> moved(n);
+      for (std::size_t v = 0; v < n; ++v)
+        moved[v] = geom::to_float32(Vec3(hull.vertices[v] + push[v] * direction[v]));
+      if (!builder.build(moved)) break;
+      bool good = true;
+      for (const Triangle& t : builder.triangles()) {
+        bool outside = false;
+        for (const Vec3& p : required) {
+          if (geom::orient3d(moved[t[0]], moved[t[1]], moved[t[2]], p) == geom::Sign::Positive) {
+            outside = true;
+            break;
+          }
+        }
+        if (!outside) continue;
+        good = false;
+        for (const std::uint32_t v : t) push[v] = std::max(1.5 * ulp, 1.6 * push[v]);
+      }
+      if (good) return builder.mesh();
+      if (*std::max_element(push.begin(), push.end()) > longest_push) break;
+    }
+  }
+  // Too thin to be pushed along normals: the points themselves, or a box round them.
+  if (builder.build(required) && builder.vertices().size() <= most) return builder.mesh();
+  if (!required.empty()) {
+    if (auto box = box_round(required, ulp)) return *std::move(box);
+  }
+  // Flat: boxes of a few float32 steps.
+  std::vector<Vec3> thick;
+  for (const Vec3& p : required) add_box(thick, p, 2 * ulp);
+  ensure(builder.build(thick), "a set of boxes without a hull");
+  return builder.mesh();
+}
+
+}  // namespace kaboum::bcd

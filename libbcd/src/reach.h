@@ -1,0 +1,26 @@
+#pragma once
+
+#include <vector>
+
+#include "solid.h"
+
+namespace kaboum::bcd {
+
+/// Certified bracket of the largest distance of a body's points to the solid and its triangles.
+struct Reach {
+  double lower = 0, upper = 0;
+  Vec3 at = Vec3::Zero();  ///< a point of the body with distance ≥ lower
+};
+
+struct ReachOptions {
+  double relative_gap = 0.02;
+  double absolute_gap = 0;    ///< [length]
+  std::size_t most = 400000;  ///< pieces per body; beyond, the bracket is wider than the gaps
+};
+
+/// One bracket per body. Branch and bound over facets and, for pits and cavities that a body spans,
+/// over its inside. `floor` is a distance that need not be told from smaller ones.
+std::vector<Reach> measure(const std::vector<Mesh>& bodies, const Solid& solid,
+                           const ReachOptions& options, double floor = 0);
+
+}  // namespace kaboum::bcd

@@ -1,0 +1,454 @@
+#include "simplify.h"
+
+#include <kaboum/geom/convex_hull.h>
+#include <kaboum/geom/error.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <queue>
+
+namespace kaboum::bcd {
+namespace {
+
+constexpr std::uint32_t kNone = 0xFFFFFFFF;
+
+struct HalfSpace {
+  Vec3 n;  // unit
+  double d;
+  [[nodiscard]] double height(const Vec3& p) const { return n.dot(p) - d; }
+};
+
+/// Sum of weighted squared distances to planes: vᵀAv − 2bᵀv + c.
+struct Quadric {
+  Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
+  Vec3 b = Vec3::Zero();
+  void add(const HalfSpace& h, double weight) {
+    a += weight * h.n * h.n.transpose();
+    b += weight * h.d * h.n;
+  }
+  void add(const Quadric& q) {
+    a += q.a;
+    b += q.b;
+  }
+};
+
+class Contractor {
+ public:
+  Contractor(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
+             const Solid& solid)
+      : solid_(solid), original_(points), vertices_(points) {
+    Box3 box;
+    for (const Vec3& p : points) box.extend(p);
+    size_ = box.diagonal();
+    star_.resize(points.size());
+    version_.assign(points.size(), 0);
+    quadric_.resize(points.size());
+    alive_ = points.size();
+    for (const Triangle& t : triangles) {
+      HalfSpace h;
+      if (!plane(points[t[0]], points[t[1]], points[t[2]], h)) {
+        add_triangle(t);
+        continue;
+      }
+      planes_.push_back(h);
+      const double area = (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]).norm() +
+                          1e-6 * size_ * size_;
+      for (const std::uint32_t v : t) quadric_[v].add(h, area);
+      add_triangle(t);
+    }
+  }
+
+  /// @return the largest cost of a contraction done.
+  double run(std::size_t cap, double free_cost) {
+    double largest = 0;
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t)
+      for (int k = 0; k < 3; ++k) {
+        const std::uint32_t a = triangles_[t][k], b = triangles_[t][(k + 1) % 3];
+        if (a < b) push(a, b);
+      }
+    while (!queue_.empty()) {
+      const Entry e = queue_.top();
+      if (alive_ <= cap && e.cost > free_cost) break;
+      if (alive_ <= 5) break;
+      queue_.pop();
+      if (star_[e.a].empty() || star_[e.b].empty()) continue;
+      if (e.stamp != version_[e.a] + version_[e.b]) {
+        if (e.stamp == kRetry || adjacent(e.a, e.b)) push(e.a, e.b);
+        continue;
+      }
+      if (contract(e)) largest = std::max(largest, e.cost);
+    }
+    return largest;
+  }
+
+  [[nodiscard]] std::vector<Vec3> result() const {
+    std::vector<Vec3> out;
+    for (std::size_t v = 0; v < vertices_.size(); ++v)
+      if (!star_[v].empty()) out.push_back(vertices_[v]);
+    return out;
+  }
+  [[nodiscard]] std::size_t count() const { return alive_; }
+
+ private:
+  static constexpr std::uint64_t kRetry = ~std::uint64_t{0};
+  struct Entry {
+    double cost;
+    std::uint32_t a, b;
+    std::uint64_t stamp;
+    Vec3 position;
+    bool operator<(const Entry& o) const {
+      if (cost != o.cost) return cost > o.cost;
+      return a != o.a ? a > o.a : b > o.b;
+    }
+  };
+
+  static bool plane(const Vec3& a, const Vec3& b, const Vec3& c, HalfSpace& h) {
+    const Vec3 u = b - a, w = c - a;
+    const Vec3 n = u.cross(w);
+    const double length = n.norm();
+    if (!(length > 1e-14 * (u.squaredNorm() + w.squaredNorm()))) return false;
+    h.n = n / length;
+    h.d = h.n.dot(a);
+    return true;
+  }
+
+  void add_triangle(const Triangle& t) {
+    const auto index = static_cast<std::uint32_t>(triangles_.size());
+    triangles_.push_back(t);
+    live_.push_back(1);
+    for (const std::uint32_t v : t) star_[v].push_back(index);
+  }
+  void remove_triangle(std::uint32_t t) {
+    live_[t] = 0;
+    for (const std::uint32_t v : triangles_[t]) {
+      auto& s = star_[v];
+      s.erase(std::find(s.begin(), s.end(), t));
+    }
+  }
+  [[nodiscard]] bool adjacent(std::uint32_t a, std::uint32_t b) const {
+    for (const std::uint32_t t : star_[a])
+      for (const std::uint32_t v : triangles_[t])
+        if (v == b) return true;
+    return false;
+  }
+
+  /// Plane through u and w that touches the original hull, seen from the side of the star.
+  bool tangent(const Vec3& u, const Vec3& w, HalfSpace& h) const {
+    const Vec3 e = w - u;
+    const double length = e.norm();
+    if (!(length > 0)) return false;
+    const double eps = 1e-12 * size_;
+    Vec3 n = Vec3::Zero();
+    bool found = false;
+    for (const Vec3& p : original_) {
+      const Vec3 r = p - u;
+      if (found && n.dot(r) <= eps) continue;
+      // Facet (p, u, w): normal (u − p) × (w − p) = r × … oriented with e and r.
+      const Vec3 m = e.cross(r);
+      const double size = m.norm();
+      if (size <= 1e-9 * length * size_) continue;
+      n = m / size;
+      found = true;
+    }
+    if (!found) return false;
+    h.n = n;
+    h.d = n.dot(u);
+    return true;
+  }
+
+  bool link(std::uint32_t a, std::uint32_t b,
+            std::vector<std::array<std::uint32_t, 2>>& edges) const {
+    edges.clear();
+    int both = 0;
+    for (const std::uint32_t x : {a, b}) {
+      for (const std::uint32_t t : star_[x]) {
+        const Triangle& v = triangles_[t];
+        const bool has_a = v[0] == a || v[1] == a || v[2] == a;
+        const bool has_b = v[0] == b || v[1] == b || v[2] == b;
+        if (has_a && has_b) {
+          ++both;
+          continue;
+        }
+        int k = 0;
+        while (v[k] != x) ++k;
+        edges.push_back({v[(k + 1) % 3], v[(k + 2) % 3]});
+      }
+    }
+    return both == 4 && edges.size() >= 3;
+  }
+
+  void push(std::uint32_t a, std::uint32_t b) {
+    if (a > b) std::swap(a, b);
+    Entry e{};
+    e.a = a;
+    e.b = b;
+    e.stamp = version_[a] + version_[b];
+    if (place(a, b, e.position, e.cost)) queue_.push(e);
+  }
+
+  /// Cheapest position for the vertex that replaces a and b.
+  bool place(std::uint32_t a, std::uint32_t b, Vec3& best, double& cost) {
+    if (!link(a, b, edges_)) return false;
+    constraints_.clear();
+    for (const auto& [u, w] : edges_) {
+      HalfSpace h;
+      if (!tangent(vertices_[u], vertices_[w], h)) return false;
+      bool known = false;
+      for (const HalfSpace& c : constraints_)
+        known = known || (c.n.dot(h.n) > 1 - 1e-14 && std::abs(c.d - h.d) < 1e-12 * size_);
+      if (!known) constraints_.push_back(h);
+    }
+    Quadric q = quadric_[a];
+    q.add(quadric_[b]);
+    const Vec3 middle = 0.5 * (vertices_[a] + vertices_[b]);
+    const double weight = 1e-7 * q.a.trace();
+    q.a += weight * Eigen::Matrix3d::Identity();
+    q.b += weight * middle;
+    if (!minimise(q, middle, best)) return false;
+    double growth = 0;
+    for (const HalfSpace& h : planes_) growth = std::max(growth, h.height(best));
+    double reach = solid_.field(best);
+    for (const auto& [u, w] : edges_) {
+      const Vec3 &p = vertices_[u], &r = vertices_[w];
+      reach = std::max({reach, solid_.field(0.5 * (best + p)), solid_.field((best + p + r) / 3),
+                        solid_.field(0.6 * best + 0.2 * p + 0.2 * r)});
+    }
+    cost = std::max(reach, 0.3 * growth) + 0.02 * growth;
+    return growth < 2 * size_;
+  }
+
+  /// Minimiser of the quadric beyond all constraints: the first set of up to three active ones
+  /// whose multipliers are right.
+  bool minimise(const Quadric& q, const Vec3& origin, Vec3& best) const {
+    const double eps = 1e-11 * size_;
+    const auto feasible = [&](const Vec3& v) {
+      for (const HalfSpace& h : constraints_)
+        if (h.height(v) < -eps) return false;
+      return true;
+    };
+    const Eigen::Matrix3d inverse = q.a.inverse();
+    if (!inverse.allFinite()) return false;
+    const Vec3 free = inverse * q.b;
+    if (feasible(free)) {
+      best = free;
+      return true;
+    }
+    const auto k = constraints_.size();
+    std::vector<Vec3>& column = columns_;
+    column.resize(k);
+    std::vector<double>& lack = lack_;
+    lack.resize(k);
+    for (std::size_t i = 0; i < k; ++i) {
+      column[i] = inverse * constraints_[i].n;
+      lack[i] = -constraints_[i].height(free);
+    }
+    const auto g = [&](std::size_t i, std::size_t j) { return constraints_[i].n.dot(column[j]); };
+    for (std::size_t i = 0; i < k; ++i) {
+      if (lack[i] <= 0) continue;
+      const Vec3 v = free + column[i] * (lack[i] / g(i, i));
+      if (feasible(v)) {
+        best = v;
+        return true;
+      }
+    }
+    for (std::size_t i = 0; i < k; ++i) {
+      for (std::size_t j = i + 1; j < k; ++j) {
+        const double gii = g(i, i), gij = g(i, j), gjj = g(j, j);
+        const double det = gii * gjj - gij * gij;
+        if (!(det > 1e-12 * gii * gjj)) continue;
+        const double li = (lack[i] * gjj - lack[j] * gij) / det;
+        const double lj = (lack[j] * gii - lack[i] * gij) / det;
+        if (li < 0 || lj < 0) continue;
+        const Vec3 v = free + li * column[i] + lj * column[j];
+        if (feasible(v)) {
+          best = v;
+          return true;
+        }
+      }
+    }
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < k; ++i) {
+      for (std::size_t j = i + 1; j < k; ++j) {
+        for (std::size_t l = j + 1; l < k; ++l) {
+          const Vec3 &n1 = constraints_[i].n, &n2 = constraints_[j].n, &n3 = constraints_[l].n;
+          const Vec3 c23 = n2.cross(n3);
+          const double det = n1.dot(c23);
+          if (std::abs(det) < 1e-9) continue;
+          const Vec3 v = (constraints_[i].d * c23 + constraints_[j].d * n3.cross(n1) +
+                          constraints_[l].d * n1.cross(n2)) /
+                         det;
+          const Vec3 r = v - origin;
+          if (r.squaredNorm() > 16 * size_ * size_) continue;
+          const Vec3 f = v - free;
+          const double value = f.dot(q.a * f);
+          if (value < least && feasible(v)) {
+            least = value;
+            best = v;
+          }
+        }
+      }
+    }
+    return least < std::numeric_limits<double>::infinity();
+  }
+
+  bool contract(const Entry& e) {
+    const double eps = 1e-10 * size_;
+    // Facets that the new vertex sees, and the star.
+    std::vector<std::uint32_t> gone;
+    const auto mark = [&](std::uint32_t t) {
+      if (live_[t] != 1) return false;
+      live_[t] = 2;
+      gone.push_back(t);
+      return true;
+    };
+    const auto undo = [&] {
+      for (const std::uint32_t t : gone) live_[t] = 1;
+      return false;
+    };
+    for (const std::uint32_t t : star_[e.a]) mark(t);
+    for (const std::uint32_t t : star_[e.b]) mark(t);
+    std::vector<std::array<std::uint32_t, 2>> horizon;
+    for (std::size_t i = 0; i < gone.size(); ++i) {
+      const Triangle v = triangles_[gone[i]];
+      for (int k = 0; k < 3; ++k) {
+        const std::uint32_t a = v[k], b = v[(k + 1) % 3];
+        for (const std::uint32_t t : star_[a]) {
+          if (live_[t] != 1) continue;
+          const Triangle& w = triangles_[t];
+          const bool across =
+              (w[0] == b && w[1] == a) || (w[1] == b && w[2] == a) || (w[2] == b && w[0] == a);
+          if (!across) continue;
+          HalfSpace h;
+          const bool flat = !plane(vertices_[w[0]], vertices_[w[1]], vertices_[w[2]], h);
+          if (flat || h.height(e.position) > -eps) mark(t);
+          break;
+        }
+      }
+    }
+    for (const std::uint32_t t : gone) {
+      const Triangle& v = triangles_[t];
+      for (int k = 0; k < 3; ++k) {
+        const std::uint32_t a = v[k], b = v[(k + 1) % 3];
+        for (const std::uint32_t s : star_[a]) {
+          if (live_[s] != 1) continue;
+          const Triangle& w = triangles_[s];
+          if ((w[0] == b && w[1] == a) || (w[1] == b && w[2] == a) || (w[2] == b && w[0] == a))
+            horizon.push_back({a, b});
+        }
+      }
+    }
+    if (horizon.size() < 3) return undo();
+    // One loop: every vertex once.
+    std::vector<std::uint32_t> ring{horizon[0][0]};
+    for (std::size_t i = 0; i < horizon.size(); ++i) {
+      std::uint32_t to = kNone;
+      for (const auto& h : horizon)
+        if (h[0] == ring.back()) {
+          if (to != kNone) return undo();
+          to = h[1];
+        }
+      if (to == kNone) return undo();
+      if (to == ring[0]) break;
+      ring.push_back(to);
+      if (ring.size() > horizon.size()) return undo();
+    }
+    if (ring.size() != horizon.size()) return undo();
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      HalfSpace h;
+      if (!plane(vertices_[ring[i]], vertices_[ring[(i + 1) % ring.size()]], e.position, h))
+        return undo();
+      for (const Vec3& p : original_)
+        if (h.height(p) > eps) return undo();
+      for (const std::uint32_t v : ring)
+        if (h.height(vertices_[v]) > eps) return undo();
+    }
+    Quadric q;
+    for (const std::uint32_t v : {e.a, e.b}) q.add(quadric_[v]);
+    std::vector<std::uint32_t> lost;
+    for (const std::uint32_t t : gone)
+      for (const std::uint32_t v : triangles_[t]) lost.push_back(v);
+    for (const std::uint32_t t : gone) remove_triangle(t);
+    const auto fresh = static_cast<std::uint32_t>(vertices_.size());
+    vertices_.push_back(e.position);
+    star_.emplace_back();
+    version_.push_back(0);
+    std::sort(lost.begin(), lost.end());
+    lost.erase(std::unique(lost.begin(), lost.end()), lost.end());
+    for (std::size_t i = 0; i < ring.size(); ++i)
+      add_triangle({ring[i], ring[(i + 1) % ring.size()], fresh});
+    ++alive_;
+    for (const std::uint32_t v : lost) {
+      if (star_[v].empty()) {
+        --alive_;
+        if (v != e.a && v != e.b) q.add(quadric_[v]);
+      } else {
+        ++version_[v];
+      }
+    }
+    quadric_.push_back(q);
+    for (const std::uint32_t v : ring) push(fresh, v);
+    return true;
+  }
+
+  const Solid& solid_;
+  const std::vector<Vec3>& original_;
+  std::vector<HalfSpace> planes_;
+  double size_ = 0;
+  std::vector<Vec3> vertices_;
+  std::vector<std::vector<std::uint32_t>> star_;
+  std::vector<std::uint64_t> version_;
+  std::vector<Quadric> quadric_;
+  std::vector<Triangle> triangles_;
+  std::vector<char> live_;
+  std::size_t alive_ = 0;
+  std::priority_queue<Entry> queue_;
+  std::vector<std::array<std::uint32_t, 2>> edges_;
+  std::vector<HalfSpace> constraints_;
+  mutable std::vector<Vec3> columns_;
+  mutable std::vector<double> lack_;
+};
+
+/// Corners of a box round the points, along their principal axes.
+std::vector<Vec3> box_round(std::span<const Vec3> points) {
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& p : points) mean += p / static_cast<double>(points.size());
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (const Vec3& p : points) covariance += (p - mean) * (p - mean).transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance);
+  const Eigen::Matrix3d axes = eigen.eigenvectors();
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (const Vec3& p : points) {
+    const Vec3 q = axes.transpose() * (p - mean);
+    low = low.cwiseMin(q);
+    high = high.cwiseMax(q);
+  }
+  std::vector<Vec3> out;
+  for (int i = 0; i < 8; ++i)
+    out.emplace_back(mean + axes * Vec3((i & 1) != 0 ? high.x() : low.x(),
+                                        (i & 2) != 0 ? high.y() : low.y(),
+                                        (i & 4) != 0 ? high.z() : low.z()));
+  return out;
+}
+
+}  // namespace
+
+Simplified simplify(std::span<const Vec3> hull, std::size_t cap, double free_cost,
+                    const Solid& solid) {
+  Simplified out;
+  out.vertices.assign(hull.begin(), hull.end());
+  if (hull.size() <= std::min<std::size_t>(cap, 4)) return out;
+  geom::HullBuilder builder;
+  if (!builder.build(hull)) {
+    // Flat: a box is as good as anything.
+    if (hull.size() > cap) out.vertices = box_round(hull);
+    return out;
+  }
+  const Mesh mesh = builder.mesh();
+  Contractor contractor(mesh.vertices, mesh.triangles, solid);
+  out.cost = contractor.run(cap, free_cost);
+  out.vertices = contractor.count() <= cap ? contractor.result() : box_round(hull);
+  return out;
+}
+
+}  // namespace kaboum::bcd

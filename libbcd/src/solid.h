@@ -1,0 +1,55 @@
+#pragma once
+
+#include <kaboum/geom/distance.h>
+#include <kaboum/geom/mesh.h>
+#include <kaboum/geom/winding.h>
+
+#include <atomic>
+#include <memory>
+
+namespace kaboum::bcd {
+
+using geom::Box3;
+using geom::Mesh;
+using geom::Triangle;
+using geom::Vec3;
+
+/// What a decomposition has to contain: the solid of a closed chain and its triangles. Distances to
+/// both, exact ones and quick ones.
+class Solid {
+ public:
+  /// @param mesh  a closed chain; kept by reference.
+  /// @param nodes  wished number of nodes of the grid behind field().
+  Solid(const Mesh& mesh, std::size_t nodes);
+
+  [[nodiscard]] const Mesh& mesh() const { return mesh_; }
+  [[nodiscard]] const Box3& box() const { return box_; }
+  [[nodiscard]] double diagonal() const { return diagonal_; }
+  [[nodiscard]] const geom::DistanceQuery& surface() const { return surface_; }
+
+  /// Winding number ≥ 1, or on a triangle; exact.
+  [[nodiscard]] bool contains(const Vec3& p) const;
+
+  /// Signed distance to the surface, negative inside, interpolated on a grid whose nodes are
+  /// computed when they are first needed. Good to about the grid's spacing; guides the search,
+  /// never a claim. Same value whatever was asked before, from any thread.
+  [[nodiscard]] double field(const Vec3& p) const;
+  [[nodiscard]] double spacing() const { return spacing_; }
+  [[nodiscard]] std::size_t nodes_computed() const { return computed_; }
+
+ private:
+  [[nodiscard]] float node(int x, int y, int z) const;
+
+  const Mesh& mesh_;
+  Box3 box_;
+  double diagonal_;
+  geom::DistanceQuery surface_;
+  geom::WindingNumber winding_;
+  double spacing_ = 0;
+  Vec3 origin_;
+  std::array<int, 3> size_{};
+  std::unique_ptr<std::atomic<float>[]> value_;
+  mutable std::atomic<std::size_t> computed_{0};
+};
+
+}  // namespace kaboum::bcd
