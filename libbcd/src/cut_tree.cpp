@@ -126,6 +126,13 @@ std::vector<int> CutTree::leaves() const {
   return out;
 }
 
+void CutTree::leaves_below(int node, std::vector<int>& out) const {
+  const Node& n = nodes_[node];
+  if (n.lower < 0 && n.upper < 0) out.push_back(node);
+  if (n.lower >= 0) leaves_below(n.lower, out);
+  if (n.upper >= 0) leaves_below(n.upper, out);
+}
+
 double CutTree::worst() const {
   double worst = 0;
   for (const Node& n : nodes_)
@@ -183,7 +190,11 @@ double CutTree::score(const Node& node, const Plane& plane) const {
   const Appraisal lower = appraise(s.lower, solid_, s.builder);
   if (lower.fourth > 2 * limit) return lower.fourth;
   const Appraisal upper = appraise(s.upper, solid_, s.builder);
-  return lower.fourth + upper.fourth;
+  // Where no single cut helps, slicing off a little always seems to: cuts in the middle are
+  // preferred up to a factor, for they bring the next cuts nearer.
+  const double volume = lower.volume + upper.volume;
+  const double balance = volume > 0 ? std::min(lower.volume, upper.volume) / volume : 0;
+  return (lower.fourth + upper.fourth) * (1 - 0.6 * std::min(1.0, 4 * balance));
 }
 
 std::vector<CutTree::Candidate> CutTree::candidates(const Node& node) const {

@@ -189,9 +189,11 @@ class Decomposer {
     std::vector<Body> leaves;
     if (body.leaves.size() == 1) {
       const int leaf = body.leaves[0];
-      if (tree_.nodes()[leaf].stuck || !tree_.cut(leaf)) return {};
+      const CutTree::Node& node = tree_.nodes()[leaf];
+      if (node.lower < 0 && node.upper < 0 && (node.stuck || !tree_.cut(leaf))) return {};
       for (const int child : {tree_.nodes()[leaf].lower, tree_.nodes()[leaf].upper})
         if (child >= 0) leaves.push_back(body_of(tree_, child));
+      if (leaves.size() == 1) return take_apart(leaves[0], epsilon);
       return leaves;
     }
     for (const int leaf : body.leaves) leaves.push_back(body_of(tree_, leaf));
@@ -204,25 +206,25 @@ class Decomposer {
     simplify_all(bodies, free_cost, shapes);
     std::vector<Finished> out(bodies.size());
     // Required points by leaf, each computed once.
-    std::vector<int> leaves;
-    for (const Body& b : bodies) leaves.insert(leaves.end(), b.leaves.begin(), b.leaves.end());
+    std::vector<std::vector<int>> leaves(bodies.size());
     std::vector<int> open;
-    for (const int leaf : leaves)
-      if (!required_.contains(leaf)) {
-        required_[leaf] = {};
-        open.push_back(leaf);
-      }
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      for (const int node : bodies[i].leaves) tree_.leaves_below(node, leaves[i]);
+      for (const int leaf : leaves[i])
+        if (required_.try_emplace(leaf).second) open.push_back(leaf);
+    }
     std::vector<std::vector<Vec3>*> place;
-    for (const int leaf : open) place.push_back(&required_[leaf]);
+    for (const int leaf : open) place.push_back(&required_.at(leaf));
     tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t i) {
       *place[i] = outer_points(tree_.nodes()[open[i]].piece, point_error_);
     });
     tbb::parallel_for(std::size_t{0}, bodies.size(), [&](std::size_t i) {
       std::vector<Vec3> required;
-      for (const int leaf : bodies[i].leaves) {
+      for (const int leaf : leaves[i]) {
         const auto& points = required_.at(leaf);
         required.insert(required.end(), points.begin(), points.end());
       }
+      ensure(!required.empty(), "a body that has to contain nothing");
       geom::HullBuilder builder;
       if (builder.build(required)) {
         std::vector<Vec3> hull;

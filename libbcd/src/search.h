@@ -37,6 +37,8 @@ class CutTree {
 
   [[nodiscard]] const std::vector<Node>& nodes() const { return nodes_; }
   [[nodiscard]] std::vector<int> leaves() const;
+  /// Appends the leaves that a node was cut into, itself when it was not.
+  void leaves_below(int node, std::vector<int>& out) const;
   [[nodiscard]] std::size_t leaf_count() const { return leaf_count_; }
   /// Largest distance among the leaves that can be cut.
   [[nodiscard]] double worst() const;
