@@ -43,6 +43,51 @@ void add_box(std::vector<Vec3>& out, const Vec3& p, double error) {
   }
 }
 
+/// A direction u with n·u ≥ 1 for all normals, as short as a few steps find it: along the shortest
+/// vector of their hull (Gilbert's algorithm).
+Vec3 outward(const std::vector<Vec3>& normals, const Vec3& otherwise) {
+  if (normals.empty()) {
+    const double length = otherwise.norm();
+    return length > 0 ? Vec3(otherwise / length) : Vec3::Zero();
+  }
+  Vec3 w = Vec3::Zero();
+  for (const Vec3& n : normals) w += n / static_cast<double>(normals.size());
+  Vec3 best = w;
+  double margin = -1;
+  for (int step = 0; step < 60; ++step) {
+    const Vec3* least = normals.data();
+    for (const Vec3& n : normals)
+      if (n.dot(w) < least->dot(w)) least = &n;
+    const double length = w.norm();
+    if (!(length > 1e-6)) break;
+    if (least->dot(w) / length > margin) {
+      margin = least->dot(w) / length;
+      best = w / length;
+    }
+    const Vec3 d = *least - w;
+    const double square = d.squaredNorm();
+    if (!(square > 1e-12)) break;
+    w += std::clamp(-w.dot(d) / square, 0.0, 1.0) * d;
+  }
+  return best / std::max(margin, 0.01);
+}
+
+/// The points without those closer than `radius` to an earlier one; points of `preferred` (sorted)
+/// come first.
+std::vector<Vec3> distinct(std::span<const Vec3> points, const std::vector<Vec3>& preferred,
+                           double radius) {
+  std::vector<Vec3> out;
+  for (const bool exact : {true, false}) {
+    for (const Vec3& p : points) {
+      if (std::binary_search(preferred.begin(), preferred.end(), p, Less()) != exact) continue;
+      if (std::none_of(out.begin(), out.end(),
+                       [&](const Vec3& q) { return (p - q).cwiseAbs().maxCoeff() <= radius; }))
+        out.push_back(p);
+    }
+  }
+  return out;
+}
+
 /// A float32 box along the principal axes that contains the points, exactly.
 std::optional<geom::Mesh> box_round(std::span<const Vec3> points, double ulp) {
   Vec3 mean = Vec3::Zero();
@@ -103,26 +148,26 @@ geom::Mesh enclose(std::span<const Vec3> shape, std::span<const Vec3> required, 
   std::sort(sorted.begin(), sorted.end(), Less());
   const double longest_push = std::max(64 * ulp, 1e-5 * magnitude);
   geom::HullBuilder builder;
-  if (builder.build(shape)) {
+  const std::vector<Vec3> corners = distinct(shape, sorted, 4 * ulp);
+  if (builder.build(corners)) {
     const geom::Mesh hull = builder.mesh();
     const std::size_t n = hull.vertices.size();
-    std::vector<Vec3> direction(n, Vec3::Zero());
-    std::vector<Vec3> normals;
+    // Facets narrower than rounding have no direction that means something.
+    std::vector<std::vector<Vec3>> normals(n);
     for (const Triangle& t : hull.triangles) {
-      const Vec3 m = (hull.vertices[t[1]] - hull.vertices[t[0]])
-                         .cross(hull.vertices[t[2]] - hull.vertices[t[0]]);
-      normals.push_back(m.norm() > 0 ? Vec3(m.normalized()) : Vec3::Zero());
-      for (const std::uint32_t v : t) direction[v] += normals.back();
+      const Vec3 &a = hull.vertices[t[0]], &b = hull.vertices[t[1]], &c = hull.vertices[t[2]];
+      const Vec3 m = (b - a).cross(c - a);
+      const double longest = std::sqrt(
+          std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()}));
+      if (m.norm() > 30 * ulp * longest)
+        for (const std::uint32_t v : t) normals[v].push_back(m.normalized());
     }
-    std::vector<double> least(n, 1);
-    for (Vec3& d : direction) d.normalize();
-    for (std::size_t f = 0; f < normals.size(); ++f)
-      for (const std::uint32_t v : hull.triangles[f])
-        least[v] = std::min(least[v], normals[f].dot(direction[v]));
+    Vec3 center = Vec3::Zero();
+    for (const Vec3& p : hull.vertices) center += p / static_cast<double>(n);
+    std::vector<Vec3> direction(n);
     std::vector<double> push(n, 0);
     for (std::size_t v = 0; v < n; ++v) {
-      direction[v] /= std::max(0.1, least[v]);
-      if (!direction[v].allFinite()) direction[v] = Vec3::Zero();
+      direction[v] = outward(normals[v], hull.vertices[v] - center);
       if (!std::binary_search(sorted.begin(), sorted.end(), hull.vertices[v], Less()))
         push[v] = 1.5 * ulp;
     }

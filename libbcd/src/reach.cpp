@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "cell.h"
+
 namespace kaboum::bcd {
 namespace {
 
@@ -109,12 +111,12 @@ class Measure {
   void inside() {
     Box3 box;
     for (const Vec3& p : body_.vertices) box.extend(p);
-    std::vector<std::pair<Vec3, double>> planes;
+    std::vector<Plane> planes, crossing;
     for (const Triangle& t : body_.triangles) {
       const Vec3& a = body_.vertices[t[0]];
       const Vec3 n = (body_.vertices[t[1]] - a).cross(body_.vertices[t[2]] - a);
       const double length = n.norm();
-      if (length > 0) planes.emplace_back(n / length, n.dot(a) / length);
+      if (length > 0) planes.push_back({n / length, n.dot(a) / length});
     }
     std::vector<Cube> stack;
     // Cubes over the box, no larger than its shortest side.
@@ -131,13 +133,15 @@ class Measure {
       const Cube cube = stack.back();
       stack.pop_back();
       bool outside = false, within = true;
-      for (const auto& [n, d] : planes) {
-        const double h = n.dot(cube.center) - d;
-        if (h - cube.half * n.cwiseAbs().sum() > slack_) {
+      crossing.clear();
+      for (const Plane& plane : planes) {
+        const double h = plane.height(cube.center), extent = cube.half * plane.n.cwiseAbs().sum();
+        if (h - extent > slack_) {
           outside = true;
           break;
         }
         within = within && h <= -slack_;
+        if (h + extent > -slack_) crossing.push_back(plane);
       }
       if (outside) continue;
       const double radius = cube.half * 1.7320508075688774;
@@ -150,6 +154,17 @@ class Measure {
         } else if (within) {
           raise(at.lower, cube.center);
         }
+      }
+      if (upper > limit() && crossing.size() <= 12) {
+        // The distance to one triangle is convex: largest at a corner of the cube's part in the
+        // body.
+        const Vec3 h = Vec3::Constant(cube.half);
+        Cell part = Cell::of({cube.center - h, cube.center + h});
+        for (const Plane& plane : crossing) part = clip(part, plane, true, slack_);
+        double corners = 0;
+        for (const Vec3& v : part.corners)
+          corners = std::max(corners, solid_.surface().to_triangle(v, at.triangle).upper);
+        upper = std::min(upper, corners);
       }
       if (upper <= limit() || ++work > options_.most) {
         settle(upper);
