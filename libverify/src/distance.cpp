@@ -19,6 +19,7 @@ struct Piece {
 };
 
 constexpr int kMaxDepth = 64;
+constexpr std::uint32_t kBlock = 8192;  // triangles between looks at the limits
 
 /// Distance claims about the pieces of one triangle.
 class Judge {
@@ -37,18 +38,19 @@ class Judge {
     while (!stack.empty()) {
       const Piece piece = stack.back();
       stack.pop_back();
-      if (++claim.pieces > options_.max_pieces || piece.depth > kMaxDepth) {
+      if (++claim.pieces > options_.max_pieces_of_one || piece.depth > kMaxDepth) {
         claim.answer = Answer::Undecided;
         claim.reason = "the supremum is too close to the bound";
         return claim;
       }
-      if (passes(piece, claim)) continue;
+      std::uint32_t face = 0;
+      if (passes(piece, face, claim)) continue;
       if (claim.largest > epsilon_) {
         claim.answer = Answer::Refuted;
         claim.reason = "a point is farther away";
         return claim;
       }
-      split(piece, stack);
+      split(piece, face, stack);
     }
     return claim;
   }
@@ -71,13 +73,15 @@ class Judge {
   }
 
   /// Whether all of the piece is certainly within the bound. Records distances found on the way.
-  bool passes(const Piece& piece, DistanceClaim& claim) const {
+  /// @param face  the triangle nearest to its centre
+  bool passes(const Piece& piece, std::uint32_t& face, DistanceClaim& claim) const {
     const Vec3 centre = (piece.corner[0] + piece.corner[1] + piece.corner[2]) / 3;
     double radius = 0;
     for (const Vec3& p : piece.corner) radius = std::max(radius, (p - centre).norm());
     radius += slack_;
 
     const NearestTriangle::Hit hit = nearest_.nearest(centre);
+    face = hit.face;
     if (near(piece, hit.face)) return true;
     if (options_.to_solid && hit.distance > 2 * radius && lower(centre) > radius &&
         inside(centre)) {
@@ -104,7 +108,49 @@ class Judge {
                        [&](const Vec3& p) { return upper(p, face) <= epsilon_; });
   }
 
-  static void split(const Piece& piece, std::vector<Piece>& stack) {
+  /// Cuts along a side of the nearest triangle's prism, so that surfaces in one plane fall apart
+  /// into the parts that lie on one triangle each; across the longest edge where no side cuts.
+  void split(const Piece& piece, std::uint32_t face, std::vector<Piece>& stack) const {
+    const Vec3 &a = scene_.corner(face, 0), &b = scene_.corner(face, 1),
+               &c = scene_.corner(face, 2);
+    const Vec3 normal = (b - a).cross(c - a);
+    for (const auto& [from, to] : {std::pair{a, b}, std::pair{b, c}, std::pair{c, a}}) {
+      const Vec3 across = (to - from).cross(normal);
+      const double length = across.norm();
+      if (length > 0 && cut(piece, from, across / length, stack)) return;
+    }
+    halve(piece, stack);
+  }
+
+  /// Cuts by the plane through `on`; @return false when no corner is clearly on either side.
+  bool cut(const Piece& piece, const Vec3& on, const Vec3& normal,
+           std::vector<Piece>& stack) const {
+    std::array<double, 3> height;
+    for (int k = 0; k < 3; ++k) height[k] = normal.dot(piece.corner[k] - on);
+    const double clear = 4 * slack_;
+    if (*std::max_element(height.begin(), height.end()) <= clear ||
+        *std::min_element(height.begin(), height.end()) >= -clear) {
+      return false;
+    }
+    int lone = 0;  // the corner that is alone on its side
+    for (int k = 0; k < 3; ++k) {
+      const bool other = (height[(k + 1) % 3] >= 0) == (height[(k + 2) % 3] >= 0);
+      if (other && (height[k] >= 0) != (height[(k + 1) % 3] >= 0)) lone = k;
+    }
+    const int i = (lone + 1) % 3, j = (lone + 2) % 3;
+    const auto meet = [&](int k) -> Vec3 {
+      const double t = height[lone] / (height[lone] - height[k]);
+      return (1 - t) * piece.corner[lone] + t * piece.corner[k];
+    };
+    const Vec3 p = meet(i), q = meet(j);
+    const int depth = piece.depth + 1;
+    stack.push_back({{piece.corner[lone], p, q}, depth});
+    stack.push_back({{p, piece.corner[i], piece.corner[j]}, depth});
+    stack.push_back({{p, piece.corner[j], q}, depth});
+    return true;
+  }
+
+  static void halve(const Piece& piece, std::vector<Piece>& stack) {
     int longest = 0;
     double length = -1;
     for (int k = 0; k < 3; ++k) {
@@ -139,27 +185,37 @@ DistanceClaim verify_distance(const geom::Mesh& from, const geom::Mesh& to, doub
       largest = std::max(largest, scene.point(v).cwiseAbs().maxCoeff());
     }
   }
-  // docs/algorithms/exact-inclusion.md, "Distance": 64 splits and one closest point.
-  const double slack = 256 * kUnit * largest + kTiny;
+  // docs/algorithms/exact-inclusion.md, "Distance": 64 cuts and one closest point.
+  const double slack = 1024 * kUnit * largest + kTiny;
   const Judge judge(scene, epsilon, slack, options);
   const std::uint32_t count = scene.count(kInside);
-  std::vector<DistanceClaim> claims(count);
-  oneapi::tbb::parallel_for(std::uint32_t{0}, count, [&](std::uint32_t f) {
-    claims[f] = judge(scene.corner(f, 0), scene.corner(f, 1), scene.corner(f, 2));
-  });
-
   DistanceClaim result;
   result.answer = Answer::Verified;
-  for (const DistanceClaim& claim : claims) {
-    result.pieces += claim.pieces;
-    if (claim.largest > result.largest) {
-      result.largest = claim.largest;
-      result.at = claim.at;
+  std::vector<DistanceClaim> claims;
+  for (std::uint32_t first = 0; first < count; first += kBlock) {
+    const std::uint32_t size = std::min(kBlock, count - first);
+    claims.assign(size, {});
+    oneapi::tbb::parallel_for(std::uint32_t{0}, size, [&](std::uint32_t i) {
+      const std::uint32_t f = first + i;
+      claims[i] = judge(scene.corner(f, 0), scene.corner(f, 1), scene.corner(f, 2));
+    });
+    for (const DistanceClaim& claim : claims) {
+      result.pieces += claim.pieces;
+      if (claim.largest > result.largest) {
+        result.largest = claim.largest;
+        result.at = claim.at;
+      }
+      if (claim.answer == Answer::Refuted ||
+          (claim.answer == Answer::Undecided && result.answer == Answer::Verified)) {
+        result.answer = claim.answer;
+        result.reason = claim.reason;
+      }
     }
-    if (claim.answer == Answer::Refuted ||
-        (claim.answer == Answer::Undecided && result.answer == Answer::Verified)) {
-      result.answer = claim.answer;
-      result.reason = claim.reason;
+    if (result.answer == Answer::Refuted) break;
+    if (result.pieces > options.max_pieces) {
+      result.answer = Answer::Undecided;
+      result.reason = "too many parts of triangles would have to be looked at";
+      break;
     }
   }
   return result;

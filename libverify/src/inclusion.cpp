@@ -15,7 +15,6 @@
 namespace kaboum::verify {
 namespace {
 
-constexpr std::size_t kManyCoplanar = 1000;
 constexpr int kCut = std::numeric_limits<int>::min();  // no one value: the face is cut
 
 /// Per face of a chain the winding number that `value` finds on one side, for faces that the chains
@@ -130,7 +129,7 @@ class Decision {
       for (const Contacts::Cut& cut : contacts.cuts(f))
         coplanar += static_cast<std::size_t>(cut.coplanar);
     }
-    if (coplanar < kManyCoplanar) return;
+    if (coplanar == 0 || coplanar < options_.settle_from) return;
     const int other = 1 - chain;
     const Side side = test_side(chain);
     const std::vector<int> same = own_values(other, side), reversed = own_values(other, -side);

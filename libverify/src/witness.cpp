@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t kFaces = 4000;  // looked at, spread evenly
 constexpr std::size_t kTried = 400;   // of the candidates, deepest first
+constexpr int kFound = 32;            // witnesses to choose from
 constexpr int kHalvings = 60;
 
 struct Candidate {
@@ -66,26 +67,30 @@ Witness find_witness(const Scene& scene, const std::vector<Offence>& offences, b
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.depth > b.depth; });
 
-  const auto try_at = [&](const Candidate& candidate, double reach) -> std::optional<Witness> {
-    // A point of a triangle shows by itself that it is outside.
-    if (on_surface && contradicts(scene, candidate.point, on_surface, relative)) {
-      return Witness{candidate.point, nearest.distance(candidate.point), true};
-    }
-    for (int k = 0; k <= kHalvings; ++k) {
-      const Vec3 p = candidate.point + std::ldexp(reach, -k) * candidate.direction;
-      if (!p.allFinite() || !contradicts(scene, p, on_surface, relative)) continue;
-      return Witness{p, nearest.distance(p), true};
-    }
-    return std::nullopt;
-  };
-  for (std::size_t i = 0; i < std::min(kTried, candidates.size()); ++i) {
-    const Candidate& candidate = candidates[i];
-    const double scale = std::max(candidate.point.cwiseAbs().maxCoeff(), 1e-300);
-    if (auto witness =
-            try_at(candidate, candidate.depth > 0 ? 0.5 * candidate.depth : 1e-6 * scale)) {
-      return *witness;
-    }
+  // The deepest of the first few that can be found, each as far along its direction as possible.
+  geom::Box3 box;
+  for (std::uint32_t f = scene.begin(kInside); f < scene.end(kInside); ++f) {
+    for (int k = 0; k < 3; ++k) box.extend(scene.corner(f, k));
   }
+  const double extent = box.diagonal();
+  std::optional<Witness> best;
+  int found = 0;
+  const auto look_at = [&](const Vec3& p) {
+    if (!p.allFinite() || !contradicts(scene, p, on_surface, relative)) return false;
+    const double depth = nearest.distance(p);
+    if (!best || depth > best->depth) best = Witness{p, depth, true};
+    return true;
+  };
+  for (std::size_t i = 0; i < std::min(kTried, candidates.size()) && found < kFound; ++i) {
+    const Candidate& candidate = candidates[i];
+    // A point of a triangle shows by itself that it is outside.
+    bool success = on_surface && look_at(candidate.point);
+    for (int k = 1; k <= kHalvings && !success; ++k) {
+      success = look_at(candidate.point + std::ldexp(extent, -k) * candidate.direction);
+    }
+    found += static_cast<int>(success);
+  }
+  if (best) return *best;
   return {offences.front().point, nearest.distance(offences.front().point), false};
 }
 

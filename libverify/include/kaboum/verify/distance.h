@@ -16,7 +16,8 @@ struct DistanceClaim {
 struct DistanceClaimOptions {
   /// Points with w_to ≥ 1 have distance 0. @pre `to` is a closed chain
   bool to_solid = false;
-  std::size_t max_pieces = std::size_t{1} << 20U;  ///< of one triangle
+  std::size_t max_pieces_of_one = std::size_t{1} << 18U;  ///< of one triangle
+  std::size_t max_pieces = 500'000'000;  ///< of all of them, up to a few thousand triangles more
 };
 
 /// Decides whether every point of the triangles of `from` is within `epsilon` of the triangles of
@@ -24,10 +25,11 @@ struct DistanceClaimOptions {
 ///
 /// A part of a triangle passes when its corners are within ε of one triangle of `to` (the distance
 /// to a convex set is convex), or when it lies inside the solid as a whole; it fails when a corner
-/// is certainly farther away; otherwise it is split. Upper bounds are distances to convex
-/// combinations of corners, lower bounds distances to separating planes, both widened by their
-/// rounding: docs/algorithms/exact-inclusion.md, "Distance". Suprema closer to ε than the rounding
-/// stay undecided.
+/// is certainly farther away; otherwise it is cut, along the prism of the nearest triangle where
+/// that is possible. Upper bounds are distances to convex combinations of corners, lower bounds
+/// distances to separating planes, both widened by their rounding:
+/// docs/algorithms/exact-inclusion.md, "Distance". Suprema closer to ε than the rounding stay
+/// undecided.
 ///
 /// @pre epsilon > 0; `to` has a triangle with area.
 /// @throws Error{InvalidInput} on indices out of range or coordinates that are not finite.

@@ -39,6 +39,9 @@ struct Claim {
 struct InclusionOptions {
   std::size_t max_contacts = 200'000'000;  ///< pairs of triangles that touch, per kind
   std::size_t max_pieces = 20'000'000;     ///< pieces of lines within one triangle
+  /// From this many coplanar overlaps on, the cells between them are settled by the meshes' own
+  /// winding numbers instead of being sampled; the answers are the same.
+  std::size_t settle_from = 1000;
   /// Called with what is being done, from one thread.
   std::function<void(const std::string&)> progress;
 };
