@@ -57,7 +57,14 @@ DistanceBounds bounds_at_origin(const Vec3& a, const Vec3& b, const Vec3& c) {
   const auto [s, t] = closest_weights(a, b, c);
   const Vec3 ab = b - a, ac = c - a;
   const Vec3 nearest = a + s * ab + t * ac;
-  DistanceBounds best = bounds_from(nearest, nearest, a, b, c, slack);
+  DistanceBounds best{0, 0};
+  if (const double length = nearest.norm(); length > 0) {
+    best.upper = length * (1 + kRounding) + slack;
+    const double support = std::min({nearest.dot(a), nearest.dot(b), nearest.dot(c)}) / length;
+    best.lower = std::max(0.0, support * (1 - kRounding) - slack);
+  } else {
+    best.upper = slack;
+  }
   if (best.upper - best.lower <= 4 * slack + 1e-12 * best.upper) return best;
   // A sliver, or a point very close: the weights come from differences of squares, and the
   // direction to the nearest point from a difference of neighbours. Normals and edges lose fewer
@@ -88,15 +95,34 @@ DistanceBounds bounds_at_origin(const Vec3& a, const Vec3& b, const Vec3& c) {
 }
 
 /// Lower bound of the squared distance of p to a box.
-double squared_distance(const Vec3& p, const Box3& box) {
-  const Vec3 d = (box.min - p).cwiseMax(p - box.max).cwiseMax(0.0);
-  return d.squaredNorm() * (1 - kRounding);
+inline double squared_distance(const Vec3& p, const Vec3& min, const Vec3& max) {
+  double sum = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double d = std::max(std::max(min[k] - p[k], p[k] - max[k]), 0.0);
+    sum += d * d;
+  }
+  return sum * (1 - kRounding);
+}
+inline double squared_distance(const Vec3& p, const Box3& box) {
+  return squared_distance(p, box.min, box.max);
 }
 
 }  // namespace
 
 DistanceBounds point_triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   return bounds_at_origin(a - p, b - p, c - p);
+}
+
+bool box_beyond(const Vec3& p, const std::array<Vec3, 3>& t, double radius) {
+  const auto& [a, b, c] = t;
+  double sum = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double low = std::min(std::min(a[k], b[k]), c[k]) - p[k];
+    const double high = p[k] - std::max(std::max(a[k], b[k]), c[k]);
+    const double d = std::max(std::max(low, high), 0.0);
+    sum += d * d;
+  }
+  return sum * (1 - kRounding) > radius * radius;
 }
 
 double point_triangle_upper(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -138,6 +164,7 @@ TriangleSearch::Nearest DistanceQuery::nearest(const Vec3& p, std::uint32_t hint
   double best_squared = best.upper;
   const auto consider = [&](std::uint32_t place, std::uint32_t triangle) {
     const auto& [a, b, c] = corners_[place];
+    if (box_beyond(p, corners_[place], best.upper)) return;
     const DistanceBounds d = point_triangle_distance(p, a, b, c);
     best.lower = std::min(best.lower, d.lower);
     if (d.upper < best.upper) {

@@ -140,6 +140,7 @@ class EmbreeSearch final : public geom::TriangleSearch {
     const auto [first, last] = self.group(arguments->primID);
     bool nearer = false;
     for (std::size_t place = first; place < last; ++place) {
+      if (geom::box_beyond(visit.point, self.corners_[place], visit.best.upper)) continue;
       const auto& [a, b, c] = self.corners_[place];
       const bool closer =
           visit.consider(self.order_[place], geom::point_triangle_distance(visit.point, a, b, c));

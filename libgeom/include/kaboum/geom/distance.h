@@ -27,6 +27,9 @@ struct DistanceBounds {
 /// @pre coordinates of magnitude below 1e70; differences that matter above 1e-70.
 DistanceBounds point_triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
+/// Whether the triangle's box, and so the triangle, is certainly farther from p than `radius`.
+bool box_beyond(const Vec3& p, const std::array<Vec3, 3>& t, double radius);
+
 /// The upper bound alone, cheaper: never below the distance, and above point_triangle_distance's
 /// bound by rounding at most.
 double point_triangle_upper(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
