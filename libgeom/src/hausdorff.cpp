@@ -340,6 +340,7 @@ class BranchAndBound {
     const auto& [a, b, c] = b_.corners(piece.nearest);
     const double size = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
     if (size > kReach * enough * enough) return false;
+    if (size <= enough * enough) return true;
     double own = 0;
     for (int i = 0; i < piece.polygon.size; ++i)
       own = std::max(own, (piece.polygon.corner[i] -

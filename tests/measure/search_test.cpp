@@ -1,0 +1,97 @@
+#include <kaboum/measure/search.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "support/families.h"
+#include "support/shapes.h"
+
+namespace {
+
+using kaboum::geom::Mesh;
+using kaboum::geom::TriangleSearch;
+using kaboum::geom::Vec3;
+using kaboum::measure::Backend;
+using kaboum::measure::make_search;
+
+/// Bracket of the distance by looking at every triangle.
+kaboum::geom::DistanceBounds by_all(const Mesh& mesh, const Vec3& p) {
+  kaboum::geom::DistanceBounds best{1e300, 1e300};
+  for (const auto& [i, j, k] : mesh.triangles) {
+    const auto d = kaboum::geom::point_triangle_distance(p, mesh.vertices[i], mesh.vertices[j],
+                                                         mesh.vertices[k]);
+    best.lower = std::min(best.lower, d.lower);
+    best.upper = std::min(best.upper, d.upper);
+  }
+  return best;
+}
+
+// What float32 culls must not be nearer than what is found: near-ties on the surface itself, close
+// to it, and far away, where the float32 grid is coarser than the mesh; at any scale and offset.
+TEST(Search, EveryBackendFindsWhatLookingAtAllTrianglesFinds) {
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (const auto& family : kaboum::test::closed_families()) {
+    if (family.mesh.triangles.size() > 2000) continue;
+    for (const double scale : {1.0, 1e-6, 1e6, 1e-50, 1e50}) {
+      for (const double offset : {0.0, 1e5}) {
+        Mesh mesh = family.mesh;
+        for (Vec3& v : mesh.vertices) v = scale * (v + Vec3::Constant(offset));
+        const auto embree = make_search(mesh, Backend::Embree);
+        const auto own = make_search(mesh, Backend::Own);
+        const auto box = kaboum::geom::bounding_box(mesh);
+        const double diagonal = box.diagonal();
+        for (int i = 0; i < 6; ++i) {
+          const auto& t =
+              mesh.triangles[static_cast<std::size_t>(random() % mesh.triangles.size())];
+          const double away = i % 3 == 0 ? 1e-9 : i % 3 == 1 ? 0.3 : 3e3;
+          const Vec3 p = (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3 +
+                         away * diagonal * Vec3(unit(random), unit(random), unit(random));
+          const auto slow = by_all(mesh, p);
+          const double rounding =
+              1e-12 * slow.upper + 4e-14 * diagonal + 4e-16 * p.cwiseAbs().maxCoeff();
+          for (const auto* search : {embree.get(), own.get()}) {
+            const auto n = search->nearest(p);
+            EXPECT_GE(n.upper, slow.lower) << family.name;
+            EXPECT_LE(n.upper, slow.upper + rounding) << family.name << " " << scale;
+            EXPECT_LE(n.lower, slow.upper) << family.name;
+            EXPECT_LE(n.upper - n.lower, 1e-8 * n.upper + rounding) << family.name;
+            EXPECT_LE(search->to_triangle(p, n.triangle).lower, n.upper);
+            const auto hinted =
+                search->nearest(p, static_cast<std::uint32_t>(random() % mesh.triangles.size()));
+            EXPECT_LE(hinted.upper, slow.upper + rounding) << family.name;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(Search, BothBackendsGiveTheSameLargestDistance) {
+  for (const auto& family : kaboum::test::closed_families()) {
+    if (family.mesh.triangles.size() > 1500) continue;
+    Mesh other = family.mesh;
+    const Vec3 center = kaboum::geom::bounding_box(other).center();
+    for (Vec3& v : other.vertices) v = center + Vec3(1.05, 0.9, 1.1).cwiseProduct(v - center);
+    const auto x = kaboum::geom::directed_distance(family.mesh, *make_search(other, Backend::Embree));
+    const auto y = kaboum::geom::directed_distance(family.mesh, *make_search(other, Backend::Own));
+    EXPECT_LE(x.max_lower, y.max_upper) << family.name;
+    EXPECT_LE(y.max_lower, x.max_upper) << family.name;
+    EXPECT_TRUE(x.within_gap && y.within_gap) << family.name;
+  }
+}
+
+TEST(Search, RefusesMeshesWithoutTriangles) {
+  for (const Backend backend : {Backend::Embree, Backend::Own})
+    EXPECT_ANY_THROW(make_search(Mesh{}, backend));
+}
+
+TEST(Search, TakesAPointAsMesh) {
+  const Mesh mesh{{{3, 4, 0}}, {{0, 0, 0}}};
+  for (const Backend backend : {Backend::Embree, Backend::Own})
+    EXPECT_NEAR(make_search(mesh, backend)->nearest({0, 0, 0}).upper, 5, 1e-12);
+}
+
+}  // namespace
