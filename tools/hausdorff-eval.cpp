@@ -322,7 +322,7 @@ class Job {
             out.triangles.push_back({at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
         }
     }
-    return out;
+    return geom::weld(out);
   }
 
   static std::vector<double> distances(const geom::Mesh& mesh, const geom::TriangleSearch& to) {

@@ -5,6 +5,8 @@
 #include <kaboum/geom/spatial_order.h>
 #include <kaboum/measure/search.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace kaboum::measure {
@@ -48,6 +50,7 @@ class EmbreeSearch final : public geom::TriangleSearch {
     const double half = 0.5 * (box_.max - box_.min).maxCoeff();
     // A power of two, so that scaling does not round; 1e-60 and 1e60 stay far from its limits.
     scale_ = half > 0 ? std::exp2(-std::ceil(std::log2(half))) : 1.0;
+    box_triangles();
     device_.reset(rtcNewDevice("threads=0"));
     if (!device_) throw Error(ErrorCode::Internal, "Embree: no device");
     scene_.reset(rtcNewScene(device_.get()));
@@ -117,38 +120,81 @@ class EmbreeSearch final : public geom::TriangleSearch {
     return {first, std::min(first + kGroup, corners_.size())};
   }
 
+  /// Boxes of a primitive's triangles, by coordinate, so that one loop tests them all; those beyond
+  /// the last triangle are empty.
+  struct Boxes {
+    std::array<std::array<float, kGroup>, 3> lower, upper;
+  };
+
+  void box_triangles() {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    boxes_.resize((corners_.size() + kGroup - 1) / kGroup);
+    for (std::size_t g = 0; g < boxes_.size(); ++g) {
+      for (int axis = 0; axis < 3; ++axis) {
+        boxes_[g].lower[axis].fill(kInfinity);
+        boxes_[g].upper[axis].fill(-kInfinity);
+      }
+      const auto [first, last] = group(static_cast<unsigned>(g));
+      for (std::size_t place = first; place < last; ++place) {
+        const auto& [a, b, c] = corners_[place];
+        for (int axis = 0; axis < 3; ++axis) {
+          const double low = std::min({a[axis], b[axis], c[axis]}) - center_[axis];
+          const double high = std::max({a[axis], b[axis], c[axis]}) - center_[axis];
+          // The differences err by half an ulp of double, far less than the step to the next
+          // float32 number or 1e-15.
+          boxes_[g].lower[axis][place - first] = below(scale_ * low - 1e-15);
+          boxes_[g].upper[axis][place - first] = above(scale_ * high + 1e-15);
+        }
+      }
+    }
+  }
+
   static void bounds(const RTCBoundsFunctionArguments* arguments) {
     const auto& self = *static_cast<const EmbreeSearch*>(arguments->geometryUserPtr);
-    geom::Box3 box;
-    const auto [first, last] = self.group(arguments->primID);
-    for (std::size_t place = first; place < last; ++place)
-      for (const Vec3& corner : self.corners_[place])
-        box.extend(Vec3(self.scale_ * (corner - self.center_)));
-    // The difference errs by half an ulp of double, far less than the step to the next float32.
-    RTCBounds& out = *arguments->bounds_o;
-    out.lower_x = below(box.min.x() - 1e-15);
-    out.lower_y = below(box.min.y() - 1e-15);
-    out.lower_z = below(box.min.z() - 1e-15);
-    out.upper_x = above(box.max.x() + 1e-15);
-    out.upper_y = above(box.max.y() + 1e-15);
-    out.upper_z = above(box.max.z() + 1e-15);
+    const Boxes& boxes = self.boxes_[arguments->primID];
+    const auto low = [&](int axis) {
+      return *std::min_element(boxes.lower[axis].begin(), boxes.lower[axis].end());
+    };
+    const auto high = [&](int axis) {
+      return *std::max_element(boxes.upper[axis].begin(), boxes.upper[axis].end());
+    };
+    *arguments->bounds_o = {low(0), low(1), low(2), 0, high(0), high(1), high(2), 0};
+  }
+
+  /// Squared distances of the query point to the boxes of a primitive's triangles.
+  static std::array<float, kGroup> squared_distances(const RTCPointQuery& query,
+                                                     const Boxes& boxes) {
+    const std::array<float, 3> p{query.x, query.y, query.z};
+    std::array<float, kGroup> sum{};
+    for (int axis = 0; axis < 3; ++axis) {
+      for (std::size_t i = 0; i < kGroup; ++i) {
+        const float below_box = boxes.lower[axis][i] - p[axis];
+        const float above_box = p[axis] - boxes.upper[axis][i];
+        const float side = below_box > above_box ? below_box : above_box;
+        const float d = side > 0 ? side : 0;
+        sum[i] += d * d;
+      }
+    }
+    return sum;
   }
 
   static bool meet(RTCPointQueryFunctionArguments* arguments) {
     auto& visit = *static_cast<Visit*>(arguments->userPtr);
     const EmbreeSearch& self = *visit.search;
     const auto [first, last] = self.group(arguments->primID);
+    const auto squared = squared_distances(*arguments->query, self.boxes_[arguments->primID]);
     bool nearer = false;
     for (std::size_t place = first; place < last; ++place) {
-      if (geom::box_beyond(visit.point, self.corners_[place], visit.best.upper)) continue;
+      const float radius = arguments->query->radius;
+      if (squared[place - first] > radius * radius) continue;
       const auto& [a, b, c] = self.corners_[place];
       const bool closer =
           visit.consider(self.order_[place], geom::point_triangle_distance(visit.point, a, b, c));
-      nearer = nearer || closer;
+      if (!closer) continue;
+      arguments->query->radius = std::min(radius, visit.radius());
+      nearer = true;
     }
-    if (!nearer) return false;
-    arguments->query->radius = std::min(arguments->query->radius, visit.radius());
-    return true;
+    return nearer;
   }
 
   struct Release {
@@ -157,6 +203,7 @@ class EmbreeSearch final : public geom::TriangleSearch {
   };
   std::unique_ptr<RTCDeviceTy, Release> device_;
   std::unique_ptr<RTCSceneTy, Release> scene_;
+  std::vector<Boxes> boxes_;          // of primitives
   std::vector<std::uint32_t> order_;  // place → triangle
   Vec3 center_ = Vec3::Zero();
   double scale_ = 1;

@@ -15,7 +15,8 @@ done
 [ "$(head -c 4 h.png | tail -c 3)" = PNG ] || fail "no PNG"
 expect 0 '' "$H" "$BRACKET" b.ply --heatmap h.ply --quiet
 [ ! -s out.txt ] || fail "--quiet is not quiet"
-expect 0 '' "$D" h.ply -o again.off --vertices 300 --direction any
+expect 0 '' "$H" h.ply "$BRACKET" --csv again.csv
+awk -F, 'NR>1 { bad = bad || $9 > 1e-8 } END { exit bad }' again.csv || fail "heatmap: $(cat again.csv)"
 
 # Known distances: a tetrahedron moved by 3 along x, and the same file twice.
 tetrahedron >t.off
