@@ -73,9 +73,9 @@ Answer ours(const geom::Mesh& a, const geom::Mesh& b, measure::Backend backend) 
   options.absolute_gap = kError;
   const auto search_a = measure::make_search(a, backend), search_b = measure::make_search(b, backend);
   const double built = user_seconds();
-  const auto there = geom::directed_distance(a, *search_b, options);
+  const auto there = geom::directed_distance(*search_a, *search_b, options);
   const double turned = user_seconds();
-  const auto back = geom::directed_distance(b, *search_a, options);
+  const auto back = geom::directed_distance(*search_b, *search_a, options);
   answer.seconds = user_seconds() - start;
   std::printf("  %-9s build %.3f, there %.3f (%llu queries), back %.3f (%llu)\n",
               backend == measure::Backend::Own ? "own" : "Embree", built - start, turned - built,

@@ -256,8 +256,8 @@ class Job {
     const auto search_a = measure::make_search(a_.mesh, backend);
     const auto search_b = measure::make_search(b_.mesh, backend);
     built_ = now();
-    to_b_ = one_way("A to B", a_, *search_b);
-    to_a_ = one_way("B to A", b_, *search_a);
+    to_b_ = one_way("A to B", a_, *search_a, *search_b);
+    to_a_ = one_way("B to A", b_, *search_b, *search_a);
     progress_.show("smallest distance");
     min_ = measure::minimum_distance(a_.mesh, b_.mesh);
     // Surfaces that stand for others at a distance of at most `error`.
@@ -273,12 +273,13 @@ class Job {
     if (!o_.heatmap.empty()) make_heatmap(*search_a, *search_b);
   }
 
-  OneWay one_way(const char* name, const Side& from, const geom::TriangleSearch& to) {
+  OneWay one_way(const char* name, const Side& from, const geom::TriangleSearch& from_search,
+                 const geom::TriangleSearch& to) {
     OneWay way;
     geom::DistanceOptions d;
     d.relative_gap = o_.gap;
     progress_.show(std::string(name) + ": largest distance");
-    way.max = geom::directed_distance(from.mesh, to, d);
+    way.max = geom::directed_distance(from_search, to, d);
     const auto& [a, b, c] = to.corners(to.nearest(way.max.at).triangle);
     way.nearest = geom::nearest_point(way.max.at, a, b, c);
     progress_.show(std::string(name) + ": sampling");

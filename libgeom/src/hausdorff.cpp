@@ -41,9 +41,11 @@ struct Finding {
 
 class BranchAndBound {
  public:
-  BranchAndBound(const Mesh& a, const TriangleSearch& b, const DistanceOptions& options)
+  /// A's triangles in spatial order.
+  BranchAndBound(std::span<const std::array<Vec3, 3>> a, const TriangleSearch& b,
+                 const DistanceOptions& options)
       : a_(a), b_(b), options_(options) {
-    Box3 box = bounding_box(a);
+    Box3 box = box_clusters();
     magnitude_ = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
     box.extend(b.box());
     absolute_gap_ = options.absolute_gap * box.diagonal();
@@ -90,10 +92,6 @@ class BranchAndBound {
     result_.at = f.at;
   }
 
-  const Vec3& corner(std::uint32_t triangle, int k) const {
-    return a_.vertices[a_.triangles[triangle][k]];
-  }
-
   [[nodiscard]] double upper_to(const Vec3& p, std::uint32_t triangle) const {
     const auto& [a, b, c] = b_.corners(triangle);
     return point_triangle_upper(p, a, b, c);
@@ -101,23 +99,26 @@ class BranchAndBound {
 
   // -- clusters ----------------------------------------------------------------------------------
 
+  /// Boxes of the smallest clusters, and of eight of them, and so on. @return the box of all.
+  Box3 box_clusters() {
+    std::vector<Box3> leaves((a_.size() + kSmallestCluster - 1) / kSmallestCluster);
+    for (std::size_t i = 0; i < a_.size(); ++i)
+      for (const Vec3& p : a_[i]) leaves[i / kSmallestCluster].extend(p);
+    boxes_.push_back(std::move(leaves));
+    for (std::uint32_t size = kSmallestCluster; size < kLargestCluster; size *= 8) {
+      std::vector<Box3> up((boxes_.back().size() + 7) / 8);
+      for (std::size_t i = 0; i < boxes_.back().size(); ++i) up[i / 8].extend(boxes_.back()[i]);
+      boxes_.push_back(std::move(up));
+    }
+    Box3 all;
+    for (const Box3& box : boxes_.back()) all.extend(box);
+    return all;
+  }
+
   /// Settles whole clusters of triangles where it can, level by level; returns the triangles left.
   std::vector<Piece> bound_clusters() {
-    order_ = spatial_order(a_);
-    const auto n = static_cast<std::uint32_t>(order_.size());
-    // Boxes of the smallest clusters, and of eight of them, and so on.
-    std::vector<std::vector<Box3>> boxes;
-    {
-      std::vector<Box3> leaves((n + kSmallestCluster - 1) / kSmallestCluster);
-      for (std::uint32_t i = 0; i < n; ++i)
-        for (int k = 0; k < 3; ++k) leaves[i / kSmallestCluster].extend(corner(order_[i], k));
-      boxes.push_back(std::move(leaves));
-      for (std::uint32_t size = kSmallestCluster; size < kLargestCluster; size *= 8) {
-        std::vector<Box3> up((boxes.back().size() + 7) / 8);
-        for (std::size_t i = 0; i < boxes.back().size(); ++i) up[i / 8].extend(boxes.back()[i]);
-        boxes.push_back(std::move(up));
-      }
-    }
+    const auto n = static_cast<std::uint32_t>(a_.size());
+    const auto& boxes = boxes_;
     std::vector<Cluster> level;
     for (std::size_t i = 0; i < boxes.back().size(); ++i) {
       const auto first = static_cast<std::uint32_t>(i) * kLargestCluster;
@@ -155,7 +156,7 @@ class BranchAndBound {
   /// points and its extent.
   Finding bound(Cluster& cluster, double enough) const {
     if (cluster.hint != kNone && lower_by_corners(cluster, enough)) return {};
-    const Vec3& p = corner(order_[cluster.first + cluster.count / 2], 0);
+    const Vec3& p = a_[cluster.first + cluster.count / 2][0];
     const auto at = b_.nearest(p, cluster.hint);
     cluster.hint = at.triangle;
     const double radius = (cluster.box.max - p).cwiseMax(p - cluster.box.min).norm();
@@ -204,8 +205,8 @@ class BranchAndBound {
     Finding finding;
     std::uint32_t hint = kNone;
     for (std::uint32_t i = cluster.first; i < cluster.first + cluster.count; ++i) {
-      const std::uint32_t t = order_[i];
-      Piece piece{{corner(t, 0), corner(t, 1), corner(t, 2)}, kInfinity, cluster.hint, hint};
+      const auto& [a, b, c] = a_[i];
+      Piece piece{{a, b, c}, kInfinity, cluster.hint, hint};
       const Finding own = bound(piece, enough);
       finding.queries += own.queries;
       if (own.lower > finding.lower) {
@@ -369,13 +370,13 @@ class BranchAndBound {
     return out;
   }
 
-  const Mesh& a_;
+  std::span<const std::array<Vec3, 3>> a_;
   const TriangleSearch& b_;
   const DistanceOptions& options_;
   double magnitude_ = 0;
   double absolute_gap_ = 0;
   double settled_ = 0;  // largest upper bound among the pieces that need no further cut
-  std::vector<std::uint32_t> order_;
+  std::vector<std::vector<Box3>> boxes_;  // of clusters, smallest first
   DirectedDistance result_;
 };
 
@@ -384,7 +385,18 @@ class BranchAndBound {
 DirectedDistance directed_distance(const Mesh& a, const TriangleSearch& b,
                                    const DistanceOptions& options) {
   if (a.empty()) throw Error(ErrorCode::InvalidInput, "distance from a mesh without triangles");
-  return BranchAndBound(a, b, options).run();
+  std::vector<std::array<Vec3, 3>> corners;
+  corners.reserve(a.triangles.size());
+  for (const std::uint32_t t : spatial_order(a)) {
+    const auto& [i, j, k] = a.triangles[t];
+    corners.push_back({a.vertices[i], a.vertices[j], a.vertices[k]});
+  }
+  return BranchAndBound(corners, b, options).run();
+}
+
+DirectedDistance directed_distance(const TriangleSearch& a, const TriangleSearch& b,
+                                   const DistanceOptions& options) {
+  return BranchAndBound(a.ordered(), b, options).run();
 }
 
 }  // namespace kaboum::geom

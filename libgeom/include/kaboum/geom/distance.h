@@ -68,11 +68,14 @@ class TriangleSearch {
     return point_triangle_distance(p, a, b, c);
   }
 
+  /// The corners of all triangles, in an order in which neighbours are mostly near each other.
+  [[nodiscard]] std::span<const std::array<Vec3, 3>> ordered() const { return corners_; }
+
   [[nodiscard]] const Box3& box() const { return box_; }
   [[nodiscard]] std::size_t triangle_count() const { return corners_.size(); }
 
  protected:
-  /// Copies the triangles' corners, in `order` (all indices once).
+  /// Copies the triangles' corners, in `order` (all indices once), along some path through space.
   /// @throws Error{InvalidInput} if the mesh has no triangles.
   TriangleSearch(const Mesh& mesh, std::span<const std::uint32_t> order);
 
@@ -134,6 +137,10 @@ struct DistanceOptions {
 /// @pre A and B have triangles and finite coordinates; B is given as a query.
 /// @throws Error{InvalidInput} when A has no triangles.
 DirectedDistance directed_distance(const Mesh& a, const TriangleSearch& b,
+                                   const DistanceOptions& options = {});
+
+/// The same for A's triangles as its own search structure holds them; faster where that exists.
+DirectedDistance directed_distance(const TriangleSearch& a, const TriangleSearch& b,
                                    const DistanceOptions& options = {});
 
 }  // namespace kaboum::geom
