@@ -38,8 +38,8 @@ geom::Mesh subdivided(const geom::Mesh& mesh) {
   out.vertices = mesh.vertices;
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middle;
   const auto between = [&](std::uint32_t a, std::uint32_t b) {
-    const auto [it, fresh] = middle.try_emplace(
-        std::minmax(a, b), static_cast<std::uint32_t>(out.vertices.size()));
+    const auto [it, fresh] =
+        middle.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(out.vertices.size()));
     if (fresh) out.vertices.emplace_back(0.5 * mesh.vertices[a] + 0.5 * mesh.vertices[b]);
     return it->second;
   };
@@ -71,7 +71,8 @@ Answer ours(const geom::Mesh& a, const geom::Mesh& b, measure::Backend backend) 
   geom::DistanceOptions options;
   options.relative_gap = 0;
   options.absolute_gap = kError;
-  const auto search_a = measure::make_search(a, backend), search_b = measure::make_search(b, backend);
+  const auto search_a = measure::make_search(a, backend),
+             search_b = measure::make_search(b, backend);
   const double built = user_seconds();
   const auto there = geom::directed_distance(*search_a, *search_b, options);
   const double turned = user_seconds();
@@ -119,8 +120,8 @@ void compare(const char* title, const geom::Mesh& a, const geom::Mesh& b, bool w
   bool agree = true;
   for (const Answer* answer : {&own, &embree})
     for (int k = 0; k < 2; ++k)
-      agree = agree && answer->lower[k] <= reference.upper[k] &&
-              answer->upper[k] >= reference.lower[k];
+      agree =
+          agree && answer->lower[k] <= reference.upper[k] && answer->upper[k] >= reference.lower[k];
   std::printf("  CGAL / Embree %.1f, CGAL / own %.1f, intervals %s\n",
               reference.seconds / embree.seconds, reference.seconds / own.seconds,
               agree ? "meet" : "DO NOT MEET");

@@ -122,7 +122,8 @@ class BranchAndBound {
     std::vector<Cluster> level;
     for (std::size_t i = 0; i < boxes.back().size(); ++i) {
       const auto first = static_cast<std::uint32_t>(i) * kLargestCluster;
-      level.push_back({first, std::min(kLargestCluster, n - first), boxes.back()[i], kNone, kInfinity});
+      level.push_back(
+          {first, std::min(kLargestCluster, n - first), boxes.back()[i], kNone, kInfinity});
     }
     std::uint32_t size = kLargestCluster;
     for (std::size_t depth = boxes.size(); depth-- > 0; size /= 8) {
@@ -190,8 +191,7 @@ class BranchAndBound {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, clusters.size(), 16),
                       [&](const tbb::blocked_range<std::size_t>& range) {
                         for (std::size_t i = range.begin(); i != range.end(); ++i)
-                          outcomes[i].finding =
-                              bound_each(clusters[i], enough, outcomes[i].pieces);
+                          outcomes[i].finding = bound_each(clusters[i], enough, outcomes[i].pieces);
                       });
     std::vector<Piece> open;
     for (const Outcome& o : outcomes) {
@@ -269,6 +269,7 @@ class BranchAndBound {
     const auto [worst, where] = worst_corner(piece.polygon, at_center.triangle);
     piece.upper = std::min(piece.upper, worst);
     if (piece.upper <= enough) return finding;
+    if (much_larger(piece, enough)) return finding;  // it will be halved, whatever its corners say
     // The corner that is far from this triangle may be near another one.
     const Vec3& corner = piece.polygon.corner[where];
     const auto at_corner = b_.nearest(corner, at_center.triangle);
@@ -339,14 +340,15 @@ class BranchAndBound {
   /// one's prism would only break splinters off.
   [[nodiscard]] bool much_larger(const Piece& piece, double enough) const {
     const auto& [a, b, c] = b_.corners(piece.nearest);
-    const double size = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
+    const double size =
+        std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
     if (size > kReach * enough * enough) return false;
     if (size <= enough * enough) return true;
     double own = 0;
     for (int i = 0; i < piece.polygon.size; ++i)
-      own = std::max(own, (piece.polygon.corner[i] -
-                           piece.polygon.corner[(i + 1) % piece.polygon.size])
-                              .squaredNorm());
+      own = std::max(own,
+                     (piece.polygon.corner[i] - piece.polygon.corner[(i + 1) % piece.polygon.size])
+                         .squaredNorm());
     return own > kMuchLarger * size;
   }
   static constexpr double kMuchLarger = 9, kReach = 16;  // squared

@@ -31,7 +31,8 @@ constexpr double kSmallestRadius = 0x1p-60;
 // radius; less than 16 roundings of 2^-24 each.
 constexpr double kTraversal = 1 + 0x1p-20;
 
-// Triangles, neighbours in spatial order, that share a primitive: fewer to build with, and to visit.
+// Triangles, neighbours in spatial order, that share a primitive: fewer to build with, and to
+// visit.
 constexpr std::size_t kGroup = 4;
 
 [[noreturn]] void fail(RTCDevice device, const char* what) {
@@ -55,7 +56,8 @@ class EmbreeSearch final : public geom::TriangleSearch {
     if (!device_) throw Error(ErrorCode::Internal, "Embree: no device");
     scene_.reset(rtcNewScene(device_.get()));
     const RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>((corners_.size() + kGroup - 1) / kGroup));
+    rtcSetGeometryUserPrimitiveCount(
+        geometry, static_cast<unsigned>((corners_.size() + kGroup - 1) / kGroup));
     rtcSetGeometryUserData(geometry, this);
     rtcSetGeometryBoundsFunction(geometry, bounds, nullptr);
     rtcCommitGeometry(geometry);

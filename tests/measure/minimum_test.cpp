@@ -29,8 +29,8 @@ TEST(Minimum, OfBoxesApart) {
 
 TEST(Minimum, IsExactlyZeroWhereSurfacesMeet) {
   const Mesh a = kaboum::test::icosphere(3);
-  for (const Mesh& b : {a, kaboum::test::translated(a, {1, 0, 0}),
-                        kaboum::test::box({0.1, 0.1, 2}, 1)}) {
+  for (const Mesh& b :
+       {a, kaboum::test::translated(a, {1, 0, 0}), kaboum::test::box({0.1, 0.1, 2}, 1)}) {
     const auto m = minimum_distance(a, b);
     EXPECT_EQ(m.lower, 0);
     EXPECT_EQ(m.upper, 0);

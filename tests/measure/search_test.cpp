@@ -75,7 +75,8 @@ TEST(Search, BothBackendsGiveTheSameLargestDistance) {
     Mesh other = family.mesh;
     const Vec3 center = kaboum::geom::bounding_box(other).center();
     for (Vec3& v : other.vertices) v = center + Vec3(1.05, 0.9, 1.1).cwiseProduct(v - center);
-    const auto x = kaboum::geom::directed_distance(family.mesh, *make_search(other, Backend::Embree));
+    const auto x =
+        kaboum::geom::directed_distance(family.mesh, *make_search(other, Backend::Embree));
     const auto y = kaboum::geom::directed_distance(family.mesh, *make_search(other, Backend::Own));
     EXPECT_LE(x.max_lower, y.max_upper) << family.name;
     EXPECT_LE(y.max_lower, x.max_upper) << family.name;

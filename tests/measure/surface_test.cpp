@@ -27,11 +27,11 @@ TEST(UnionBoundary, OfBoxes) {
   };
   EXPECT_NEAR(area(set_of({box})), 6, 1e-12);
   EXPECT_NEAR(area(set_of({box, at(3, 0, 0)})), 12, 1e-12);
-  EXPECT_NEAR(area(set_of({box, at(0.5, 0, 0)})), 8, 1e-12);        // coplanar sides count once
+  EXPECT_NEAR(area(set_of({box, at(0.5, 0, 0)})), 8, 1e-12);  // coplanar sides count once
   EXPECT_NEAR(area(set_of({box, at(0.5, 0.5, 0.5)})), 10.5, 1e-12);
-  EXPECT_NEAR(area(set_of({box, at(1, 0, 0)})), 10, 1e-12);         // shared face
-  EXPECT_NEAR(area(set_of({box, at(1, 0.25, 0)})), 10.5, 1e-12);    // part of a face shared
-  EXPECT_NEAR(area(set_of({box, at(1, 1, 0)})), 12, 1e-12);         // shared edge
+  EXPECT_NEAR(area(set_of({box, at(1, 0, 0)})), 10, 1e-12);       // shared face
+  EXPECT_NEAR(area(set_of({box, at(1, 0.25, 0)})), 10.5, 1e-12);  // part of a face shared
+  EXPECT_NEAR(area(set_of({box, at(1, 1, 0)})), 12, 1e-12);       // shared edge
   EXPECT_NEAR(area(set_of({box, box})), 6, 1e-12);
   EXPECT_NEAR(area(set_of({box, box, at(1, 0, 0), at(0.5, 0, 0)})), 10, 1e-12);
   EXPECT_NEAR(area(set_of({kaboum::test::scaled(box, {3, 3, 3}), at(1, 1, 1)})), 54, 1e-12);
@@ -73,10 +73,12 @@ TEST(UnionBoundary, OfRandomHulls) {
         int count = 0, kept = 0;
         for (int s = 0; s < kSteps; ++s)
           for (int t = 0; s + t < kSteps; ++t) {
-            const Vec3 p = a + ((s + 1.0 / 3) / kSteps) * (b - a) + ((t + 1.0 / 3) / kSteps) * (c - a);
+            const Vec3 p =
+                a + ((s + 1.0 / 3) / kSteps) * (b - a) + ((t + 1.0 / 3) / kSteps) * (c - a);
             ++count;
             bool inside = false;
-            for (const Mesh& other : bodies) inside = inside || (&other != &body && height(other, p) < 0);
+            for (const Mesh& other : bodies)
+              inside = inside || (&other != &body && height(other, p) < 0);
             kept += inside ? 0 : 1;
           }
         outside += part * kept / count;
