@@ -1,0 +1,135 @@
+. "$(dirname "$0")/common.sh"
+V=$BIN/bound-verify
+D=$BIN/bmesh-decimate
+
+# cube LOW HIGH [FACES]: an axis-aligned cube as OFF, all twelve triangles or the first few.
+cube() {
+  awk -v a="$1" -v b="$2" -v n="${3:-12}" 'BEGIN {
+    print "OFF"; print 8, n, 0
+    for (i = 0; i < 8; i++) print (i % 2 ? b : a), (int(i / 2) % 2 ? b : a), (i > 3 ? b : a)
+    split("0 2 1,1 2 3,4 5 6,5 7 6,0 1 4,1 5 4,2 6 3,3 6 7,0 4 2,2 4 6,1 3 5,3 7 5", t, ",")
+    for (i = 1; i <= n; i++) print 3, t[i] }'
+}
+cube 0 1 >one.off
+cube -1 2 >three.off
+cube 0 1 11 >open.off
+
+# What the answers are, and that they reach the exit code.
+expect 0 'solid claim: verified' "$V" --outer one.off three.off
+expect 0 'surface claim: verified' "$V" --outer one.off three.off
+expect 1 'solid claim: refuted' "$V" --outer three.off one.off
+expect 0 '^verified$' "$V" --inner three.off one.off
+expect 1 '^refuted$' "$V" --inner one.off three.off
+expect 0 '' "$V" --outer one.off one.off
+expect 0 '' "$V" --inner one.off one.off
+cube 0 0.9999999999 >less.off
+expect 1 'refuted' "$V" --outer one.off less.off
+expect 0 '' "$V" --inner one.off less.off
+
+# Sheets: no solid, but a surface. --claims chooses what decides.
+printf 'OFF\n3 2 0\n5 0 0\n6 0 0\n5 1 0\n3 0 1 2\n3 0 2 1\n' >sheet.off
+expect 1 'surface claim: refuted' "$V" --outer sheet.off one.off
+expect 0 'surface claim: refuted' "$V" --outer sheet.off one.off --claims solid
+expect 1 '' "$V" --outer sheet.off one.off --claims surface
+
+# Open meshes.
+expect 0 'surface claim: verified' "$V" --outer open.off three.off
+expect 3 'not a closed mesh' "$V" --outer one.off open.off
+grep -q 'open.off' err.txt || fail 'the open file is not named'
+expect 3 'not a closed mesh' "$V" --outer open.off three.off --claims solid
+expect 0 'same border' "$V" --outer open.off open.off
+expect 3 '' "$V" --inner open.off one.off
+expect 1 'surface claim: refuted' "$V" --outer open.off less.off
+
+# Limit.
+cube 0.5 1.5 >moved.off
+expect 7 'undecided' "$V" --outer one.off moved.off --max-contacts 1
+
+# Usage and bad input.
+expect 2 '' "$V"
+expect 2 '' "$V" one.off three.off
+expect 2 '' "$V" --outer one.off
+expect 2 '' "$V" --outer --inner one.off three.off
+expect 2 '' "$V" --outer one.off three.off --claims some
+expect 2 '' "$V" --outer one.off three.off --wrong
+expect 2 'epsilon' "$V" --outer one.off three.off --epsilon -1
+expect 2 'epsilon' "$V" --outer one.off three.off --epsilon nonsense
+expect 2 '' "$V" --outer - - --input-format off --approximation-format off
+expect 2 '' "$V" --outer one.off three.off --max-contacts 0
+expect 3 'missing.off' "$V" --outer missing.off three.off
+expect 3 'missing.off' "$V" --outer one.off missing.off
+expect 3 'missing.off' "$V" --cover one.off missing.off
+head -c 60 one.off >cut.off
+expect 3 'cut.off' "$V" --outer one.off cut.off
+printf 'OFF\n3 1 0\n0 0 0\n1 0 0\nnan 1 0\n3 0 1 2\n' >nan.off
+expect 3 'finite' "$V" --outer nan.off three.off
+expect 0 'Exit codes' "$V" --help
+expect 0 '' "$V" --version
+
+# Witness: the offending triangles, only when refuted; in any format that is written.
+expect 1 '' "$V" --outer three.off one.off --witness w.ply
+expect 0 '' "$V" --outer w.ply three.off --claims surface
+expect 1 '' "$V" --outer three.off one.off --witness w.obj
+grep -q '^f ' w.obj || fail 'no triangle in the witness'
+expect 0 '' "$V" --outer one.off three.off --witness none.ply
+absent none.ply
+# Where nothing can be written the code says so, and no report is left that would look complete.
+expect 4 '' "$V" --outer three.off one.off --witness no/such/folder/w.ply --report r4.json
+expect 4 '' "$V" --outer one.off three.off --report no/such/folder/r.json
+absent no r4.json
+
+# Distances.
+expect 0 'nowhere more than' "$V" --outer one.off three.off --epsilon 1.74
+expect 1 'distance from approximation to original: refuted' "$V" --outer one.off three.off --epsilon 1.73
+expect 0 '' "$V" --outer one.off three.off --epsilon 101%
+expect 1 '' "$V" --outer one.off three.off --epsilon 99%
+
+# Covers.
+{ echo 'o left'; cube 0 1 | awk 'NF == 3 && NR > 2 { print "v", $1, $2, $3 } NF == 4 { print "f", $2 + 1, $3 + 1, $4 + 1 }'
+  echo 'o right'; cube 0.5 2 | awk 'NF == 3 && NR > 2 { print "v", $1, $2, $3 } NF == 4 { print "f", $2 + 9, $3 + 9, $4 + 9 }'
+} >set.obj
+cube 0 2 >two.off
+expect 0 'convexity: verified: 2 convex bodies' "$V" --cover one.off set.obj
+expect 1 'solid claim: refuted' "$V" --cover two.off set.obj --report cover.json
+grep -q '"bodies": 2' cover.json || fail 'no number of bodies in the report'
+expect 0 'distance from the union to the solid' "$V" --cover one.off set.obj --epsilon 1.74
+expect 1 '' "$V" --cover one.off set.obj --epsilon 1.73
+expect 1 'convexity: refuted' "$V" --cover "$BRACKET" "$BRACKET"
+expect 1 'convexity: refuted' "$V" --cover open.off open.off
+
+# Results of bmesh-decimate; a pipe; the report.
+"$D" "$BRACKET" -o outer.ply --ratio 0.1 --quiet || fail 'decimate'
+"$D" "$BRACKET" -o inner.ply --ratio 0.1 --direction inner --quiet || fail 'decimate'
+expect 0 '' "$V" --outer "$BRACKET" outer.ply
+expect 0 '' "$V" --inner "$BRACKET" inner.ply
+expect 1 '' "$V" --outer "$BRACKET" inner.ply
+expect 1 '' "$V" --inner "$BRACKET" outer.ply
+"$V" --outer "$BRACKET" - --approximation-format ply <outer.ply >out.txt 2>err.txt || fail "pipe: $(cat err.txt)"
+grep -q '^verified$' out.txt || fail 'no verdict from the pipe'
+"$V" --inner - inner.ply --input-format obj <"$BRACKET" >out.txt 2>err.txt || fail "pipe: $(cat err.txt)"
+"$V" --outer "$BRACKET" outer.ply --quiet >out.txt 2>err.txt || fail 'quiet run'
+if [ -s out.txt ] || [ -s err.txt ]; then fail '--quiet is not quiet'; fi
+expect 1 '' "$V" --outer outer.ply "$BRACKET" --report r.json --witness w.ply
+for field in tool version relation verdict deciding_claims original approximation sha256 triangles \
+  closed unbalanced_edges bbox_diagonal claims solid surface relative answer reason witness point \
+  depth exact inner_triangles outer_triangles triangles_without_area contacts samples resources; do
+  grep -q "\"$field\"" r.json || fail "no $field in the report"
+done
+grep -q '"verdict": "refuted"' r.json || fail 'verdict in the report'
+grep -q "\"sha256\": \"$(sha256sum "$BRACKET" | cut -d' ' -f1)\"" r.json || fail 'hash in the report'
+
+# Same report on any number of threads, yes or no.
+for n in 1 2 5; do
+  "$V" --outer "$BRACKET" outer.ply --epsilon 5% --report "yes$n.json" --threads $n >"yes$n.txt" || fail 'run'
+  "$V" --inner "$BRACKET" outer.ply --witness "w$n.ply" --report "no$n.json" --threads $n >"no$n.txt"
+  [ $? = 1 ] || fail 'run'
+  for f in yes no; do sed -i '/"resources"/,/}/d' "$f$n.json"; done
+done
+for n in 2 5; do
+  for f in yes no; do
+    cmp -s ${f}1.json $f$n.json || fail "$f: report differs on $n threads: $(diff ${f}1.json $f$n.json | head -5)"
+    cmp -s ${f}1.txt $f$n.txt || fail "$f: output differs on $n threads"
+  done
+  cmp -s w1.ply w$n.ply || fail "witness differs on $n threads"
+done
+finish
