@@ -89,7 +89,7 @@ expect 1 '' "$V" --outer one.off three.off --epsilon 99%
   echo 'o right'; cube 0.5 2 | awk 'NF == 3 && NR > 2 { print "v", $1, $2, $3 } NF == 4 { print "f", $2 + 9, $3 + 9, $4 + 9 }'
 } >set.obj
 cube 0 2 >two.off
-expect 0 'convexity: verified: 2 convex bodies' "$V" --cover one.off set.obj
+expect 0 'convexity: verified: all 2 bodies are convex' "$V" --cover one.off set.obj
 expect 1 'solid claim: refuted' "$V" --cover two.off set.obj --report cover.json
 grep -q '"bodies": 2' cover.json || fail 'no number of bodies in the report'
 expect 0 'distance from the union to the solid' "$V" --cover one.off set.obj --epsilon 1.74
