@@ -19,7 +19,7 @@ using namespace kaboum;  // the tool's own names are few
 
 struct Options {
   std::string domain, problem, plan, output = "-", input_format, problem_format, output_format,
-                                     search = "bfs";
+                                     search = "greedy";
   bool tree = false;
   double timeout = 0;
   std::string max_memory;
@@ -96,6 +96,7 @@ tools::Json statistics_json(const plan::Statistics& s) {
        s.states == 0 ? 0.0 : static_cast<double>(s.state_bytes) / static_cast<double>(s.states)},
       {"ground_actions", s.ground_actions},
       {"external_calls", s.external_calls},
+      {"external_s", s.external_seconds},
       {"searches", s.searches},
       {"dead_ends", s.dead_ends},
       {"subplans_reused", s.reused},
@@ -192,7 +193,7 @@ int check(const Options& o) {
   }
   if (!o.common.quiet)
     std::cout << "valid: every end meets the goal; " << r.states << " states replayed, " << r.leaves
-              << " different ends\n";
+              << (r.leaves == 1 ? " distinct end\n" : " distinct ends\n");
   return tools::kDone;
 }
 
@@ -244,7 +245,9 @@ int main(int argc, char** argv) {
   CLI::App* s = app.add_subcommand("solve", "Find a plan");
   add_inputs(*s, o);
   add_problem(*s, o);
-  s->add_option("--search", o.search, "dfs, bfs, ids (as in the thesis), greedy, or astar")
+  s->add_option("--search", o.search,
+                "greedy: a plan, soon; astar: least cost; bfs, ids: fewest steps; dfs: any plan. With "
+                "sensing, the last three minimise parts, not the whole")
       ->check(CLI::IsMember({"dfs", "bfs", "ids", "greedy", "astar"}))
       ->capture_default_str()
       ->type_name("NAME");
@@ -256,7 +259,7 @@ int main(int argc, char** argv) {
       ->check(CLI::PositiveNumber)
       ->type_name("S");
   s->add_option("--max-memory", o.max_memory,
-                "Give up when the search holds this much, e.g. 500M or 2G [no limit]")
+                "Give up when grounding and search hold this much, e.g. 500M or 2G [no limit]")
       ->type_name("SIZE");
   tools::add_common_options(*s, o.common);
 

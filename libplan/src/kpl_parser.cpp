@@ -258,7 +258,8 @@ class Parser {
       }
     }
     if (!at_section())
-      place().fail("expected 'preconds:', 'effects:' or the next section, found " + found());
+      place().fail("expected 'preconds:', 'effects:' or the next section, found " + found() +
+                   (is("and") || is("or") ? " ('&' means and, '|' means or)" : ""));
     document_.actions.push_back(std::move(a));
   }
 
@@ -352,10 +353,15 @@ class Parser {
       f.kind = Formula::Kind::False;
       return f;
     }
+    std::string hint;
+    if (peek().kind == Token::Kind::Name)
+      hint = peek(1).kind == Token::Kind::Name && !is(":", 2)
+                 ? " (a section begins with 'action', 'init:', 'goal:' and the like)"
+                 : ": write K(" + peek().text + (is("(", 1) ? "(...)" : "") + ") for what is known";
     place().fail(
         "expected a query such as K(...), !K(...), Kw(...), Kv(...), forallK or extern(...), "
         "found " +
-        found());
+        found() + hint);
   }
 
   Formula modal(Formula f, Formula::Kind kind) {

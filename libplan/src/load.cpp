@@ -30,6 +30,19 @@ syntax::Document parse(const Text& domain, const Text* problem) {
   return problem == nullptr ? d : syntax::merge(std::move(d), parse(*problem));
 }
 
+/// Names that nothing declares are only found when the text is read: it must read as it was written.
+std::string checked_kpl(std::string text, const std::string& of) {
+  std::string again;
+  try {
+    again = print_kpl(parse_kpl(std::make_shared<Source>(Source{"the result", text})));
+  } catch (const Error& e) {
+    throw Error(ErrorCode::InvalidInput, of + ": kpl cannot say a name that is used: " + e.what());
+  }
+  if (again != text)
+    throw Error(ErrorCode::InvalidInput, of + ": kpl cannot say a name that is used");
+  return text;
+}
+
 }  // namespace
 
 std::optional<Language> language_from_name(std::string_view file_name) {
@@ -48,7 +61,7 @@ std::string convert(const Text& domain, const Text* problem, Language to) {
   const syntax::Document d = parse(domain, problem);
   switch (to) {
     case Language::Kpl:
-      return print_kpl(d);
+      return checked_kpl(print_kpl(d), domain.name);
     case Language::Xml:
       return print_xml(d);
     case Language::Pddl:

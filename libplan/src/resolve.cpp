@@ -953,7 +953,8 @@ class Resolver {
     if (document_.goals.empty())
       throw Error(ErrorCode::InvalidInput,
                   (document_.sources.empty() ? "" : document_.sources.back()->name + ": ") +
-                      std::string("no goal: a 'goal:' section is needed"));
+                      std::string("no goal: give the problem's file after the domain's, or a 'goal:' "
+                              "section"));
   }
 
   const sx::Document& document_;

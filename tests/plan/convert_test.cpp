@@ -44,6 +44,57 @@ TEST(Convert, PddlIsReadAndWritten) {
   EXPECT_EQ(plan_of(again, Language::Pddl), plan);
 }
 
+TEST(Convert, NamesThatTheTargetCannotSay) {
+  const std::string pddl =
+      "(define (domain d) (:predicates (p ?x) (NAME)) (:action a :parameters (?x) :effect (p ?x)))"
+      "(define (problem q) (:domain d) (:objects OBJECT) (:goal (p OBJECT)))";
+  const auto with = [&](const std::string& name, const std::string& object) {
+    std::string t = pddl;
+    t.replace(t.find("NAME"), 4, name);
+    for (std::size_t at = 0; (at = t.find("OBJECT")) != std::string::npos;)
+      t.replace(at, 6, object);
+    return convert({"t.pddl", t, Language::Pddl}, nullptr, Language::Kpl);
+  };
+  EXPECT_NE(with("q", "b-1").find("b-1"), std::string::npos);
+  for (const auto& [name, object] : {std::pair("q", "1b"), std::pair("q", "b.1"),
+                                     std::pair("extern", "b"), std::pair("kf@", "b")})
+    EXPECT_THROW(with(name, object), Error) << name << " " << object;
+  const auto to_pddl = [](const std::string& kpl) {
+    return convert({"t.kpl", kpl, Language::Kpl}, nullptr, Language::Pddl);
+  };
+  EXPECT_THROW(to_pddl("predicates: isOn, ison\nclosed: all\ngoal: K(isOn)"), Error);
+  EXPECT_THROW(to_pddl("types: v\nconstants: v a\npredicates: p(v)\nclosed: all\naction x(?a : v, ?b : v) "
+                       "preconds: true effects: add(Kf, p(?a)), add(Kf, !p(?b))\ngoal: K(p(a))"),
+               Error);
+}
+
+TEST(Convert, ObjectMayBeOneTypeAmongOthers) {
+  // In PDDL "object" is the root: robots would become objects.
+  const std::string kpl =
+      "types: object, robot\nconstants: object o; robot r; free\npredicates: p(object), s\n"
+      "closed: all\naction a(?o : object) preconds: K(!p(?o)) effects: add(Kf, p(?o))\n"
+      "goal: forallK(?x : object) K(p(?x))";
+  const std::string plan = plan_of(kpl, Language::Kpl);
+  const std::string pddl = convert({"t.kpl", kpl, Language::Kpl}, nullptr, Language::Pddl);
+  EXPECT_EQ(plan_of(pddl, Language::Pddl), plan) << pddl;
+  const std::string again = convert({"t.kpl", kpl, Language::Kpl}, nullptr, Language::Kpl);
+  EXPECT_EQ(plan_of(again, Language::Kpl), plan) << again;
+}
+
+TEST(Convert, XmlErrorsNameLineAndColumn) {
+  const std::string message = complaint(
+      "<pks><domain name=\"d\"><symbols><predicates>p</predicates></symbols>\n"
+      " <action name=\"a\">\n  <preconds>K(zz)</preconds>\n  <effects>add(Kf, p)</effects>\n"
+      " </action></domain>\n<problem><goal>K(p)</goal></problem></pks>",
+      Language::Xml);
+  EXPECT_NE(message.find(":3:15: error: unknown predicate 'zz'"), std::string::npos) << message;
+  const std::string updates = complaint(
+      "<pks><domain name=\"d\"><symbols><predicates>p</predicates></symbols></domain>\n"
+      "<problem><goal>K(p)</goal>\n<updates>K(p) => add(Kf, p)</updates></problem></pks>",
+      Language::Xml);
+  EXPECT_NE(updates.find(":3:1: error: <updates> are not supported"), std::string::npos) << updates;
+}
+
 TEST(Convert, NamesWhatCannotBeSaid) {
   const Text d{"d.kpl",
                slurp(std::string(KABOUM_DOMAINS) + "/remove/domain.kpl") + made("remove", "2"),

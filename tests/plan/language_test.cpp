@@ -26,6 +26,10 @@ TEST(Language, FindsMistakesAtLoad) {
       {with_action("K(p(?x, ?x))", "add(Kf, r)"), "takes 1 argument, not 2"},
       {with_action("K(p(c))", "add(Kf, r)"), "unknown constant 'c'"},
       {with_action("p(?x)", "add(Kf, r)"), "expected a query"},
+      {with_action("p(?x)", "add(Kf, r)"), "write K(p(...)) for what is known"},
+      {with_action("r", "add(Kf, r)"), "write K(r) for what is known"},
+      {with_action("K(r) and K(r)", "add(Kf, r)"), "'&' means and"},
+      {with_action("K(r)", "maybe(Kw, r)"), "its database is Kf"},
       {with_action("K(f(?x))", "add(Kf, r)"), "is a function: compare it"},
       {with_action("K(p(?x))", "add(Kq, r)"), "expected a database"},
       {with_action("K(p(?x))", "add(Kv, p(?x))"), "Kv holds a function term"},
@@ -39,7 +43,7 @@ TEST(Language, FindsMistakesAtLoad) {
       {kHead + "externals: g(object)\ngoal: K(r)", "bound to nothing"},
       {kHead + "externals: g(object)\ntable g: (a, b)\ngoal: K(r)", "takes 1 argument, not 2"},
       {kHead + "init: K(p(?x))\ngoal: K(r)", "unknown variable"},
-      {kHead, "no goal"},
+      {kHead, "no goal: give the problem's file"},
       {"goal: K(\x01)", "unexpected character"},
   };
   for (const auto& [text, expected] : cases)

@@ -192,7 +192,7 @@ TEST(Pddl, NamesWhatIsNotSupported) {
   EXPECT_NE(complaint("(define (domain d) (:requirements :typing) (:types a b) (:predicates (p ?x - "
                       "(either a b))))",
                       Language::Pddl)
-                .find("bad.pddl:1:82: error: (either ...) is not supported"),
+                .find("bad.pddl:1:78: error: (either ...) is not supported"),
             std::string::npos);
   for (const char* numeric : {":fluents", ":numeric-fluents", ":constraints", ":preferences"})
     EXPECT_NE(complaint(head + numeric + "))", Language::Pddl)
