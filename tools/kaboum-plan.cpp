@@ -245,9 +245,10 @@ int main(int argc, char** argv) {
   CLI::App* s = app.add_subcommand("solve", "Find a plan");
   add_inputs(*s, o);
   add_problem(*s, o);
-  s->add_option("--search", o.search,
-                "greedy: a plan, soon; astar: least cost; bfs, ids: fewest steps; dfs: any plan. With "
-                "sensing, the last three minimise parts, not the whole")
+  s->add_option(
+       "--search", o.search,
+       "greedy: a plan, soon; astar: least cost; bfs, ids: fewest steps; dfs: any plan. With "
+       "sensing, the last three minimise parts, not the whole")
       ->check(CLI::IsMember({"dfs", "bfs", "ids", "greedy", "astar"}))
       ->capture_default_str()
       ->type_name("NAME");

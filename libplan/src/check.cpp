@@ -109,7 +109,8 @@ class Evaluator {
 
   /// Another state: volatile functions are called again.
   void forget_calls() {
-    std::erase_if(calls_, [&](const auto& c) { return model_.externals[c.first.first].is_volatile; });
+    std::erase_if(calls_,
+                  [&](const auto& c) { return model_.externals[c.first.first].is_volatile; });
   }
 
  private:
@@ -290,8 +291,7 @@ class Checker {
           break;
         case Update::Database::Lcw:
           // Closed last: what is sensed or in a disjunction stays open.
-          if (!k.knows_whether(f) && !stated.contains(f))
-            ok = k.learn(f, false);
+          if (!k.knows_whether(f) && !stated.contains(f)) ok = k.learn(f, false);
           break;
       }
       if (!ok) throw Error(ErrorCode::InvalidInput, "the initial knowledge contradicts itself");

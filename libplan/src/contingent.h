@@ -16,11 +16,10 @@ namespace kaboum::plan {
 /// outcomes are planned for in turn; then the step joins the policy with its regressed condition.
 /// Later searches stop at any state that satisfies such a condition, so equal sub-plans are shared.
 /// A node is entered only after its successors: the graph cannot have cycles. A branch with an
-/// outcome that has no plan is forbidden in that state, and the search repeated. If that fails and a
-/// branch that nothing needed was left out, all states are looked at (exhaustive.h): only then is it
-/// proved that there is no plan. The same is tried, on a budget, where failures are many: repairs can
-/// take exponentially many searches among few states.
-/// docs/planning/search.md.
+/// outcome that has no plan is forbidden in that state, and the search repeated. If that fails and
+/// a branch that nothing needed was left out, all states are looked at (exhaustive.h): only then is
+/// it proved that there is no plan. The same is tried, on a budget, where failures are many:
+/// repairs can take exponentially many searches among few states. docs/planning/search.md.
 class ContingentPlanner final : private Target {
  public:
   using SearchFunction = Found (*)(const SearchInput&);
@@ -78,9 +77,9 @@ class ContingentPlanner final : private Target {
   std::unordered_map<State, Blame, StateHash> dead_;
   std::unordered_map<State, Index, StateHash> open_problems_;  ///< states being solved: depth
   Index root_ = kGoal;
-  std::uint64_t failures_ = 0;           ///< branches that were forbidden
-  std::uint64_t next_attempt_ = 50;      ///< failures at which to look at all states
-  std::optional<Status> verdict_;        ///< what that found
+  std::uint64_t failures_ = 0;       ///< branches that were forbidden
+  std::uint64_t next_attempt_ = 50;  ///< failures at which to look at all states
+  std::optional<Status> verdict_;    ///< what that found
 };
 
 }  // namespace kaboum::plan

@@ -33,8 +33,8 @@ void Exhaustive::expand(Index state) {
 
 bool Exhaustive::explore(std::size_t most_states) {
   for (Index i = 0; i < store_.size(); ++i) {
-    const std::size_t bytes = store_.bytes() + edges_.capacity() * sizeof(Edge) +
-                              targets_.capacity() * 3 * sizeof(Index);
+    const std::size_t bytes =
+        store_.bytes() + edges_.capacity() * sizeof(Edge) + targets_.capacity() * 3 * sizeof(Index);
     in_.statistics.states = std::max<std::uint64_t>(in_.statistics.states, store_.size());
     in_.statistics.state_bytes = std::max<std::uint64_t>(in_.statistics.state_bytes, bytes);
     if (store_.size() > most_states || in_.limits.exceeded(bytes)) return false;

@@ -225,8 +225,7 @@ Formula FormulaPool::ground(const Query& q, std::vector<Index>& slots) {
       if (p.fluent == kNone) {
         // A value outside the range is never the value.
         if (p.value == kNone)
-          return q.value && position == kNone &&
-                         (q.kind == Query::Kind::WhetherValue || q.negated)
+          return q.value && position == kNone && (q.kind == Query::Kind::WhetherValue || q.negated)
                      ? kTrue
                      : kFalse;
         if (q.kind != Query::Kind::KnownValue) return kTrue;

@@ -1,7 +1,7 @@
-// Greedy best-first search with two estimates, each with a queue of all states and one of those that
-// preferred operators lead to; preferred queues are boosted on progress, and estimates deferred to
-// expansion (Helmert 2006, [helmert2006fd]). The relaxed plan guides where deletions do little harm,
-// the landmark events where they do.
+// Greedy best-first search with two estimates, each with a queue of all states and one of those
+// that preferred operators lead to; preferred queues are boosted on progress, and estimates
+// deferred to expansion (Helmert 2006, [helmert2006fd]). The relaxed plan guides where deletions do
+// little harm, the landmark events where they do.
 #include <algorithm>
 #include <array>
 #include <queue>

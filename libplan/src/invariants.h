@@ -40,8 +40,8 @@ class Invariants {
     Index key = 0;
   };
 
-  /// The group's key if the fact belongs to the candidate: an object, or their number if the part has
-  /// no key; else kNone.
+  /// The group's key if the fact belongs to the candidate: an object, or their number if the part
+  /// has no key; else kNone.
   [[nodiscard]] Index key_of(const Candidate& c, FactId f) const;
   [[nodiscard]] Index key_of(const Part& p, FactId f) const;
   [[nodiscard]] bool deletes(Index op, FactId f) const;

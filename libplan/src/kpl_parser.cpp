@@ -502,8 +502,7 @@ class Parser {
       if (tokens_[i].is(")") && --depth == 0) return false;
       if (tokens_[i].is("=>")) return true;
       if ((tokens_[i].is("add") || tokens_[i].is("del") || tokens_[i].is("maybe")) &&
-          i + 1 < tokens_.size() &&
-          tokens_[i + 1].is("("))
+          i + 1 < tokens_.size() && tokens_[i + 1].is("("))
         return true;
     }
     return false;
@@ -521,9 +520,7 @@ class Parser {
   Effect update() {
     Effect e;
     e.place = place();
-    e.kind = is("add")   ? Effect::Kind::Add
-             : is("del") ? Effect::Kind::Delete
-                         : Effect::Kind::Maybe;
+    e.kind = is("add") ? Effect::Kind::Add : is("del") ? Effect::Kind::Delete : Effect::Kind::Maybe;
     ++next_;
     expect("(", "after add, del or maybe");
     if (const auto d = database()) {

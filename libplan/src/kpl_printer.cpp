@@ -162,8 +162,8 @@ namespace {
 void check_name(const syntax::Name& n) {
   if (n.text.empty()) return;
   static const std::set<std::string, std::less<>> kReserved = {
-      "K",      "Kf",     "Kw",     "Kv",     "Kx",  "LCW",     "add", "del",  "maybe",
-      "forall", "exists", "extern", "xor",    "true", "false", "forallK", "existsK"};
+      "K",      "Kf",     "Kw",     "Kv",  "Kx",   "LCW",   "add",     "del",    "maybe",
+      "forall", "exists", "extern", "xor", "true", "false", "forallK", "existsK"};
   bool readable = false;
   try {
     const std::vector<Token> tokens = tokenize({"", n.text});

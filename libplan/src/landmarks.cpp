@@ -289,10 +289,9 @@ std::uint64_t LandmarkHeuristic::bound(bool& contradiction) {
     if (sizes[i].actions > 0) shared += least;
   }
   // Events that pairwise cannot be the same occurrence, greedily: those of few actions first.
-  std::stable_sort(sizes.begin(), sizes.end(),
-                   [](const Size& a, const Size& b) {
-                     return std::pair(a.cost == 0, a.actions) < std::pair(b.cost == 0, b.actions);
-                   });
+  std::stable_sort(sizes.begin(), sizes.end(), [](const Size& a, const Size& b) {
+    return std::pair(a.cost == 0, a.actions) < std::pair(b.cost == 0, b.actions);
+  });
   std::vector<std::size_t> chosen;
   std::uint64_t distinct = 0;
   for (const Size& s : sizes) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kMaximumNumbered = 20'000'000;  // ground atoms and terms of one task
 constexpr std::size_t kMaximumPositions = 200'000'000;
-constexpr std::size_t kMaximumVisits = 2'000'000;     // bindings looked at to find what can change
+constexpr std::size_t kMaximumVisits = 2'000'000;  // bindings looked at to find what can change
 
 template <class Visit>
 void for_each_update(const std::vector<Effect>& effects, const Visit& visit) {
@@ -344,8 +344,7 @@ struct Layout::Builder {
 Layout::Layout(const Model& model, Limits& limits) : model_(model) {
   Builder{*this, model, limits, {}, {}, {}, 0, {}}.run();
   limits.work(atom_fluents_.size() * (sizeof(Index) + sizeof(AtomKnowledge)) +
-              term_fluents_.size() * 2 * sizeof(Index) +
-              fluents_.size() * (sizeof(Fluent) + 32) +
+              term_fluents_.size() * 2 * sizeof(Index) + fluents_.size() * (sizeof(Fluent) + 32) +
               model.types.size() * model.objects.size() * sizeof(Index));
 }
 

@@ -30,7 +30,8 @@ syntax::Document parse(const Text& domain, const Text* problem) {
   return problem == nullptr ? d : syntax::merge(std::move(d), parse(*problem));
 }
 
-/// Names that nothing declares are only found when the text is read: it must read as it was written.
+/// Names that nothing declares are only found when the text is read: it must read as it was
+/// written.
 std::string checked_kpl(std::string text, const std::string& of) {
   std::string again;
   try {

@@ -481,10 +481,9 @@ class Writer {
     document_ = &d;
     // PDDL's "object" is the root of all types; as one type among others it needs another name.
     const auto is_object = [](const syntax::Type& t) { return t.name.text == "object"; };
-    rename_object_ =
-        std::any_of(d.types.begin(), d.types.end(), is_object) && d.types.size() > 1 &&
-        std::none_of(d.types.begin(), d.types.end(),
-                     [](const syntax::Type& t) { return t.parent.text == "object"; });
+    rename_object_ = std::any_of(d.types.begin(), d.types.end(), is_object) && d.types.size() > 1 &&
+                     std::none_of(d.types.begin(), d.types.end(),
+                                  [](const syntax::Type& t) { return t.parent.text == "object"; });
     check_names(d);
     if (!d.externals.empty()) refuse("external function '" + d.externals[0].name.text + "'");
     const std::string title = d.name.text.empty() ? "unnamed" : d.name.text;
@@ -531,7 +530,8 @@ class Writer {
     std::map<std::string, std::string> seen;
     const auto add = [&](const std::string& kind, const Name& n) {
       std::string lower = kind;
-      for (const char c : n.text) lower += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+      for (const char c : n.text)
+        lower += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
       const auto [it, fresh] = seen.emplace(lower, n.text);
       if (!fresh && it->second != n.text)
         refuse("'" + it->second + "' and '" + n.text + "', which differ only in case");

@@ -156,8 +156,8 @@ Formula Regression::before(Step step, Formula condition, const Word* before) {
       const std::size_t requirements = required_.size();
       const auto touch_change = [&](const Change& change) {
         using K = Change::Kind;
-        observes |= change.kind == K::AddGroup || change.kind == K::Exclude ||
-                    change.kind == K::AddOptions;
+        observes |=
+            change.kind == K::AddGroup || change.kind == K::Exclude || change.kind == K::AddOptions;
         if (change.kind == K::AddGroup || change.kind == K::DeleteGroup) {
           for (const Index m : task_.layout().groups()[change.fluent].members) touch(m, false);
           touched_[task_.layout().groups()[change.fluent].word] = ~Word{0};

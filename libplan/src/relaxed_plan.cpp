@@ -5,7 +5,8 @@
 namespace kaboum::plan {
 namespace {
 
-constexpr std::uint64_t kLargest = std::uint64_t{1} << 62U;  // additive costs may grow exponentially
+constexpr std::uint64_t kLargest = std::uint64_t{1}
+                                   << 62U;  // additive costs may grow exponentially
 
 }  // namespace
 

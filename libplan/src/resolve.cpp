@@ -100,8 +100,8 @@ std::optional<Effect> possibly(Effect e) {
   return e;
 }
 
-/// `inner` for the value that each unfolded term has. Where a term's value is not known, `inner` may
-/// happen for any value that it may have, and takes the knowledge that would be wrong then.
+/// `inner` for the value that each unfolded term has. Where a term's value is not known, `inner`
+/// may happen for any value that it may have, and takes the knowledge that would be wrong then.
 Effect wrap(std::vector<Unfolded> unfolded, Effect inner) {
   std::optional<Effect> maybe = possibly(inner);
   for (auto u = unfolded.rbegin(); u != unfolded.rend(); ++u) {
@@ -825,7 +825,8 @@ class Resolver {
   static std::optional<std::int64_t> integer(const std::string& text) {
     std::int64_t value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || value < 0 || value > 1'000'000'000)
+    if (error != std::errc() || end != text.data() + text.size() || value < 0 ||
+        value > 1'000'000'000)
       return std::nullopt;
     return value;
   }
@@ -951,10 +952,11 @@ class Resolver {
     }
     model_.goal_slots = scope.slots;
     if (document_.goals.empty())
-      throw Error(ErrorCode::InvalidInput,
-                  (document_.sources.empty() ? "" : document_.sources.back()->name + ": ") +
-                      std::string("no goal: give the problem's file after the domain's, or a 'goal:' "
-                              "section"));
+      throw Error(
+          ErrorCode::InvalidInput,
+          (document_.sources.empty() ? "" : document_.sources.back()->name + ": ") +
+              std::string("no goal: give the problem's file after the domain's, or a 'goal:' "
+                          "section"));
   }
 
   const sx::Document& document_;

@@ -7,7 +7,8 @@
 
 namespace kaboum::plan {
 
-/// Thrown out of grounding and analysis when a limit is reached; `solve` turns it into Status::Limit.
+/// Thrown out of grounding and analysis when a limit is reached; `solve` turns it into
+/// Status::Limit.
 struct Stopped {};
 
 /// Time and memory of one call of `solve`, checked every so often.
@@ -23,8 +24,8 @@ class Limits {
   /// The same, at every call: where one step takes long.
   bool check(std::size_t bytes);
 
-  /// For grounding and analysis: some work was done, and this much more memory is held until `solve`
-  /// ends. @throws Stopped
+  /// For grounding and analysis: some work was done, and this much more memory is held until
+  /// `solve` ends. @throws Stopped
   void work(std::size_t more_bytes = 0) {
     held_ += more_bytes;
     if (++work_ % 1024 == 0 && check(0)) throw Stopped();

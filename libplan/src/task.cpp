@@ -311,9 +311,9 @@ void Task::ground_effects(const std::vector<Effect>& effects, Formula condition,
       case Effect::Kind::Update: {
         limits_.work(sizeof(Change));
         if (++grounded_updates_ > kMaximumUpdates)
-          throw Error(ErrorCode::LimitReached, "the effects of an action '" +
-                                                   model_.actions[action.schema].name +
-                                                   "' are too many");
+          throw Error(
+              ErrorCode::LimitReached,
+              "the effects of an action '" + model_.actions[action.schema].name + "' are too many");
         if (action.effects.empty() || action.effects.back().condition != condition) {
           Conditional c;
           c.condition = condition;
@@ -541,7 +541,8 @@ void Task::expand(const Word* state, std::vector<Step>& steps) {
   for (const Index fluent : sensible_) {
     const Fluent& f = layout_.fluents()[fluent];
     const Word sensed = f.function ? kValueSensed : static_cast<Word>(AtomKnowledge::Whether);
-    if (f.get(state) != sensed || std::binary_search(needs_.begin(), needs_.end(), fluent)) continue;
+    if (f.get(state) != sensed || std::binary_search(needs_.begin(), needs_.end(), fluent))
+      continue;
     held_back_ = true;
     if (branching_ == Branching::OnNeed) return;
     for (const Index value : outcomes(fluent, state)) steps.push_back(outcome_step(fluent, value));

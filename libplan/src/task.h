@@ -70,8 +70,8 @@ class Task {
   void branch(Branching b) { branching_ = b; }
   [[nodiscard]] bool held_back() const { return held_back_; }
 
-  /// Makes the step. @return false if an outcome or observation contradicts what is known; the state
-  /// is then meaningless and the step not possible.
+  /// Makes the step. @return false if an outcome or observation contradicts what is known; the
+  /// state is then meaningless and the step not possible.
   bool apply(Step step, Knowledge& state);
 
   [[nodiscard]] bool is_outcome(Step step) const { return (step & kOutcome) != 0; }

@@ -80,8 +80,9 @@ class Reader {
     }
     // The first line's column: where its text stands in the file, if it stands there as it is.
     const std::size_t start = line_start(line);
-    const std::string_view raw(source_->text.data() + start,
-                               std::min(source_->text.find('\n', start), source_->text.size()) - start);
+    const std::string_view raw(
+        source_->text.data() + start,
+        std::min(source_->text.find('\n', start), source_->text.size()) - start);
     const std::size_t at = raw.find(">" + content.substr(0, content.find('\n')));
     if (at != std::string_view::npos) content.insert(0, at + 1, ' ');
     document_.sources.push_back(std::make_shared<Source>(

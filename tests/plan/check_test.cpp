@@ -205,8 +205,7 @@ TEST(Check, AgreesWithSetsOfWorldsOnDamagedPlans) {
                                    static_cast<std::ptrdiff_t>(pick(n.branch.cases.size())));
             break;
           case 5:  // cases exchanged
-            if (n.branches)
-              std::swap(n.branch.cases.front().next, n.branch.cases.back().next);
+            if (n.branches) std::swap(n.branch.cases.front().next, n.branch.cases.back().next);
             break;
           case 6:  // the action, or the branch, forgotten
             if (n.acts && n.branches) {

@@ -63,9 +63,10 @@ TEST(Convert, NamesThatTheTargetCannotSay) {
     return convert({"t.kpl", kpl, Language::Kpl}, nullptr, Language::Pddl);
   };
   EXPECT_THROW(to_pddl("predicates: isOn, ison\nclosed: all\ngoal: K(isOn)"), Error);
-  EXPECT_THROW(to_pddl("types: v\nconstants: v a\npredicates: p(v)\nclosed: all\naction x(?a : v, ?b : v) "
-                       "preconds: true effects: add(Kf, p(?a)), add(Kf, !p(?b))\ngoal: K(p(a))"),
-               Error);
+  EXPECT_THROW(
+      to_pddl("types: v\nconstants: v a\npredicates: p(v)\nclosed: all\naction x(?a : v, ?b : v) "
+              "preconds: true effects: add(Kf, p(?a)), add(Kf, !p(?b))\ngoal: K(p(a))"),
+      Error);
 }
 
 TEST(Convert, ObjectMayBeOneTypeAmongOthers) {

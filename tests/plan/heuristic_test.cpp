@@ -163,9 +163,8 @@ TEST(Estimates, AreSafeAndAdmissibleInEveryReachableState) {
         now.push_back(facts.fact(f, task.layout().fluents()[f].get(store[i])));
       for (std::size_t k = 0; k < now.size(); ++k)
         for (std::size_t l = k + 1; l < now.size(); ++l)
-          EXPECT_FALSE(heuristics.invariants->exclusive(now[k], now[l]))
-              << "seed " << seed << "\n"
-              << text;
+          EXPECT_FALSE(heuristics.invariants->exclusive(now[k], now[l])) << "seed " << seed << "\n"
+                                                                         << text;
     }
     for (FactId x = 0; x < facts.facts(); ++x)
       for (FactId y = x + 1; y < facts.facts(); ++y)
@@ -178,8 +177,8 @@ TEST(Estimates, AreSafeAndAdmissibleInEveryReachableState) {
   EXPECT_GT(positive, 1000U);
   EXPECT_GT(dead, 1000U);
   EXPECT_GT(exclusive_pairs, 20U);
-  std::printf("%d tasks, %lu states, %lu positive estimates, %lu dead ends, %lu exclusive pairs\n", tasks,
-              static_cast<unsigned long>(states), static_cast<unsigned long>(positive),
+  std::printf("%d tasks, %lu states, %lu positive estimates, %lu dead ends, %lu exclusive pairs\n",
+              tasks, static_cast<unsigned long>(states), static_cast<unsigned long>(positive),
               static_cast<unsigned long>(dead), static_cast<unsigned long>(exclusive_pairs));
 }
 

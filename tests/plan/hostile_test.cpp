@@ -90,21 +90,24 @@ TEST(Hostile, LargeButFlat) {
   survive(types + "\npredicates: p\ngoal: K(p)", Language::Kpl);
   std::string objects = "constants: c0";
   for (int i = 1; i < 3000; ++i) objects += ", c" + std::to_string(i);
-  const std::string quantified =
-      "forall(?a, ?b, ?c, ?d) (K(p(?a, ?b)) => add(Kf, p(?c, ?d)))";
+  const std::string quantified = "forall(?a, ?b, ?c, ?d) (K(p(?a, ?b)) => add(Kf, p(?c, ?d)))";
   survive(objects + "\npredicates: p(object, object), q\naction a preconds: true effects: " +
               quantified + "\ngoal: K(q)",
           Language::Kpl);
-  survive(objects + "\npredicates: p(object, object, object), q\ninit: LCW(p(?a, ?b, ?c))\n"
-                    "goal: K(q)",
+  survive(objects +
+              "\npredicates: p(object, object, object), q\ninit: LCW(p(?a, ?b, ?c))\n"
+              "goal: K(q)",
           Language::Kpl);
-  survive(objects + "\npredicates: p(object, object), q\n"
-                    "goal: forallK(?a, ?b, ?c) (K(p(?a, ?b)) | K(p(?b, ?c)))",
+  survive(objects +
+              "\npredicates: p(object, object), q\n"
+              "goal: forallK(?a, ?b, ?c) (K(p(?a, ?b)) | K(p(?b, ?c)))",
           Language::Kpl);
   std::string actions;
-  for (int i = 0; i < 20'000; ++i) actions += "<action name=\"a" + std::to_string(i) + "\">\n"
-                                              "<params></params>\n<preconds>K(p)</preconds>\n"
-                                              "<effects>add(Kf, p)</effects>\n</action>\n";
+  for (int i = 0; i < 20'000; ++i)
+    actions += "<action name=\"a" + std::to_string(i) +
+               "\">\n"
+               "<params></params>\n<preconds>K(p)</preconds>\n"
+               "<effects>add(Kf, p)</effects>\n</action>\n";
   survive("<pks><domain name=\"d\"><symbols><predicates>p</predicates></symbols>\n" + actions +
               "</domain><problem><goal>K(p)</goal></problem></pks>",
           Language::Xml);

@@ -115,11 +115,13 @@ std::string blocks(const std::vector<std::vector<int>>& from,
          " :effect (and (not (holding ?x)) (clear ?x) (handempty) (ontable ?x)))"
          "(:action stack :parameters (?x ?y) :precondition (and (holding ?x) (clear ?y))"
          " :effect (and (not (holding ?x)) (not (clear ?y)) (clear ?x) (handempty) (on ?x ?y)))"
-         "(:action unstack :parameters (?x ?y) :precondition (and (on ?x ?y) (clear ?x) (handempty))"
-         " :effect (and (holding ?x) (clear ?y) (not (clear ?x)) (not (handempty)) (not (on ?x ?y)))))"
+         "(:action unstack :parameters (?x ?y) :precondition (and (on ?x ?y) (clear ?x) "
+         "(handempty))"
+         " :effect (and (holding ?x) (clear ?y) (not (clear ?x)) (not (handempty)) (not (on ?x "
+         "?y)))))"
          "(define (problem p) (:domain blocks) (:objects" +
-         objects + ") (:init (handempty)" + facts(from, true) + ") (:goal (and" +
-         facts(to, false) + ")))";
+         objects + ") (:init (handempty)" + facts(from, true) + ") (:goal (and" + facts(to, false) +
+         ")))";
 }
 
 TEST(Pddl, BlocksOptima) {
@@ -142,7 +144,8 @@ std::string logistics(int packages) {
     init += " (at " + p + " home)";
     goal += " (at " + p + " shop)";
   }
-  return "(define (domain logistics) (:requirements :strips :typing) (:types package vehicle - thing"
+  return "(define (domain logistics) (:requirements :strips :typing) (:types package vehicle - "
+         "thing"
          " truck plane - vehicle airport - place city thing place - object)"
          " (:predicates (at ?t - thing ?p - place) (in ?p - package ?v - vehicle) (in-city ?p - "
          "place ?c - city))"
@@ -189,11 +192,12 @@ TEST(Pddl, NamesWhatIsNotSupported) {
             std::string::npos);
   EXPECT_NE(complaint(head + ":derived-predicates))", Language::Pddl).find("':derived-predicates'"),
             std::string::npos);
-  EXPECT_NE(complaint("(define (domain d) (:requirements :typing) (:types a b) (:predicates (p ?x - "
-                      "(either a b))))",
-                      Language::Pddl)
-                .find("bad.pddl:1:78: error: (either ...) is not supported"),
-            std::string::npos);
+  EXPECT_NE(
+      complaint("(define (domain d) (:requirements :typing) (:types a b) (:predicates (p ?x - "
+                "(either a b))))",
+                Language::Pddl)
+          .find("bad.pddl:1:78: error: (either ...) is not supported"),
+      std::string::npos);
   for (const char* numeric : {":fluents", ":numeric-fluents", ":constraints", ":preferences"})
     EXPECT_NE(complaint(head + numeric + "))", Language::Pddl)
                   .find(std::string("unsupported requirement '") + numeric),

@@ -307,7 +307,8 @@ class Worlds {
         }
         // A value known to be none of the options has changed.
         if (l.function && std::none_of(b.begin(), b.end(), possible) &&
-            std::all_of(b.begin(), b.end(), [&](const World& w) { return w[i] == (*b.begin())[i]; }))
+            std::all_of(b.begin(), b.end(),
+                        [&](const World& w) { return w[i] == (*b.begin())[i]; }))
           free(b, i, any);
         std::erase_if(b, [&](const World& w) { return !possible(w); });
         return;

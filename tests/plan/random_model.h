@@ -14,7 +14,8 @@ class Generator {
 
   std::string model(int actions, int probes) {
     std::string text =
-        "types: v\nconstants: v a, b, c\npredicates: p, q, r(v), x0, x1, x2\nfunctions: f : v; g : v\n"
+        "types: v\nconstants: v a, b, c\npredicates: p, q, r(v), x0, x1, x2\nfunctions: f : v; g : "
+        "v\n"
         "init:\n";
     for (const char* atom : {"p", "q", "r(a)", "r(b)", "r(c)"}) {
       const int n = pick(4);
@@ -35,7 +36,8 @@ class Generator {
       const bool parameter = pick(2) != 0;
       variable_ = parameter ? "?y" : "";
       text += "action act" + std::to_string(i) + (parameter ? "(?y : v)" : "") +
-              "\n  preconds: " + (pick(3) ? query(1) : "true") + "\n  effects: " + effects(2) + "\n";
+              "\n  preconds: " + (pick(3) ? query(1) : "true") + "\n  effects: " + effects(2) +
+              "\n";
     }
     variable_.clear();
     for (int i = 0; i < probes; ++i)

@@ -10,8 +10,7 @@ namespace {
 void expect_all(const std::string& text, Status status) {
   const Model m = model_of(text);
   for (const Algorithm a : kAll)
-    EXPECT_EQ(solved(m, a).status, status)
-        << text << "\nsearch " << static_cast<int>(a);
+    EXPECT_EQ(solved(m, a).status, status) << text << "\nsearch " << static_cast<int>(a);
 }
 
 Plan straight(const Model& m, std::initializer_list<const char*> names) {
@@ -82,7 +81,8 @@ TEST(Soundness, AnUnknownTermInAnEffectTakesKnowledge) {
   EXPECT_FALSE(check(m, straight(m, {"bring"})).valid);
   expect_all(head + "goal: K(lit(a)) & K(box = a) & K(!lit(a))", Status::Unsolvable);
   // After bring, box = a and !lit(b) are gone; asking first keeps one of them in each branch.
-  const Model lost = model_of(head + "action stop preconds: !K(box = a) & !K(!lit(a)) effects: "
+  const Model lost = model_of(head +
+                              "action stop preconds: !K(box = a) & !K(!lit(a)) effects: "
                               "add(Kv, cart), add(Kv, box), add(Kw, lit(a))\n"
                               "goal: !Kw(lit(b)) & !Kw(lit(a))");
   EXPECT_TRUE(check(lost, straight(lost, {"bring"})).valid);
@@ -159,14 +159,15 @@ TEST(Soundness, PddlAdditionsWin) {
 
 TEST(Soundness, PddlConditionsThatAreUnknownTakeKnowledge) {
   // Whether the box is open is unknown; shaking empties it if so: full is unknown then.
-  const Model m = load(
-      {"t.pddl",
-       "(define (domain d) (:requirements :adl :contingent) (:predicates (open) (full) (done))"
-       " (:action shake :parameters () :effect (and (done) (when (open) (not (full)))))"
-       " (:action look :parameters () :observe (open)))"
-       "(define (problem p) (:domain d) (:init (full) (unknown (open))) (:goal (and (done) (full))))",
-       Language::Pddl},
-      nullptr);
+  const Model m =
+      load({"t.pddl",
+            "(define (domain d) (:requirements :adl :contingent) (:predicates (open) (full) (done))"
+            " (:action shake :parameters () :effect (and (done) (when (open) (not (full)))))"
+            " (:action look :parameters () :observe (open)))"
+            "(define (problem p) (:domain d) (:init (full) (unknown (open))) (:goal (and (done) "
+            "(full))))",
+            Language::Pddl},
+           nullptr);
   for (const Algorithm a : kAll) EXPECT_EQ(solved(m, a).status, Status::Unsolvable);
 }
 

@@ -197,7 +197,8 @@ TEST(Worlds, VerdictsAreThoseOfAnExhaustiveSearchOverBeliefs) {
     for (const Algorithm a : kAll) {
       const Solution s = solved(m, a);
       EXPECT_EQ(s.status, *expected ? Status::Solved : Status::Unsolvable)
-          << "seed " << seed << ", search " << static_cast<int>(a) << "\n" << text;
+          << "seed " << seed << ", search " << static_cast<int>(a) << "\n"
+          << text;
       if (s.status == Status::Solved && measure(m, s.plan).branches > 0) ++branching;
     }
   }
