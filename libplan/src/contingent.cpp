@@ -109,6 +109,7 @@ Status ContingentPlanner::cover(const State& at, Step step, Index next, Index& e
 Index ContingentPlanner::branch(const State& at, std::vector<std::pair<Step, Index>> cases) {
   FormulaPool& pool = task_.pool();
   std::vector<Formula> conditions;
+  conditions.reserve(cases.size());
   for (const auto& [outcome, then] : cases)
     conditions.push_back(regression_.before(outcome, entries_[then].condition, at.data()));
   // Values that are ruled out here must be ruled out wherever this branch is used.
