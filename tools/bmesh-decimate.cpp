@@ -111,7 +111,8 @@ void describe(CLI::App& app, Options& o) {
                "Never turn inconsistent triangles or inside-out components");
   app.add_flag("--verify", o.verify,
                "Decide enclosure and distances anew, exactly and by independent means, before the "
-               "result is written; a claim that does not hold gives exit code 1");
+               "result is written, against the input as prepared; a claim that does not hold gives "
+               "exit code 1, an undecided one 7");
   app.add_option("--log", o.log, "Write the log of all steps, for bmesh-replay")->type_name("FILE");
   app.add_option("--depfile", o.depfile, "Write a Makefile dependency rule")->type_name("FILE");
   app.add_option("--input-format", o.input_format, "Format of INPUT [by extension]")
@@ -399,14 +400,8 @@ class Job {
   }
 
   [[nodiscard]] Json verification() const {
-    const auto name = [](verify::Answer a) {
-      return a == verify::Answer::Verified    ? "verified"
-             : a == verify::Answer::Refuted   ? "refuted"
-             : a == verify::Answer::Undecided ? "undecided"
-                                              : "undefined";
-    };
     const auto claim = [&](const verify::Claim& c) {
-      Json json{{"answer", name(c.answer)}, {"reason", c.reason}};
+      Json json{{"answer", name_of(c.answer)}, {"reason", c.reason}};
       if (c.witness) {
         json["depth"] = c.witness->depth;
         json["triangles"] = c.inner_triangles.size() + c.outer_triangles.size();
@@ -416,8 +411,8 @@ class Job {
     Json json{{"solid", claim(verified_->solid)},
               {"relative", verified_->relative},
               {"surface", claim(verified_->surface)},
-              {"distance_original_to_result", name(verified_distance_[0])},
-              {"distance_result_to_original", name(verified_distance_[1])}};
+              {"distance_original_to_result", name_of(verified_distance_[0])},
+              {"distance_result_to_original", name_of(verified_distance_[1])}};
     return json;
   }
 
@@ -537,41 +532,39 @@ class Job {
       line += "; epsilon allows no fewer, " + std::to_string(*target_) + " were wished";
     say(line);
     warn_of_spikes();
-    const bool as_verified = !verified_ || conclude_verification();
+    const int verification = verified_ ? conclude_verification() : tools::kDone;
     if (target_ && result_.stop == bmesh::Stop::Exhausted && s.vertices_out > *target_) {
       tools::log(false, "bmesh-decimate: " + o_.input + ": " + std::to_string(*target_) +
                             " vertices cannot be reached: no further contraction is possible at " +
                             std::to_string(s.vertices_out) + "; the result so far is written");
       return tools::kNo;
     }
-    return as_verified ? tools::kDone : tools::kNo;
+    return verification;
   }
 
-  /// @return false if a claim is not verified, in which case it says which.
-  [[nodiscard]] bool conclude_verification() const {
+  /// Says which claims are not verified. @return the exit code that they give
+  [[nodiscard]] int conclude_verification() const {
     using verify::Answer;
-    std::vector<std::string> open;
+    int code = tools::kDone;
     const auto look = [&](const std::string& what, Answer answer, const std::string& detail) {
-      if (answer == Answer::Refuted) open.push_back(what + " is false" + detail);
-      if (answer == Answer::Undecided) open.push_back(what + " is undecided" + detail);
+      if (answer == Answer::Verified) return;
+      tools::log(false, "bmesh-decimate: " + o_.output + ": " + what + " is " + name_of(answer) +
+                            (detail.empty() ? "" : ": " + detail));
+      if (answer == Answer::Undecided && code == tools::kDone) code = tools::kLimit;
+      if (answer != Answer::Undecided) code = tools::kNo;
     };
-    look("the solid claim", verified_->solid.answer, "");
-    std::string depth;
-    if (verified_->surface.witness) {
-      depth = ": " + std::to_string(verified_->surface.inner_triangles.size()) +
-              " triangles bound no solid of their own and lie outside, as deep as " +
-              formatted(verified_->surface.witness->depth);
+    look("the solid claim", verified_->solid.answer, verified_->solid.reason);
+    const verify::Claim& surface = verified_->surface;
+    if (surface.witness) {
+      look("the surface claim", surface.answer,
+           std::to_string(surface.inner_triangles.size()) + " triangles lie outside, as deep as " +
+               formatted(surface.witness->depth));
+    } else if (surface.answer != Answer::Undefined) {  // open meshes have none
+      look("the surface claim", surface.answer, surface.reason);
     }
-    look("the surface claim", verified_->surface.answer, depth);
     for (const Answer answer : verified_distance_) look("a distance", answer, "");
-    if (open.empty()) {
-      say("verified from the written bytes");
-      return true;
-    }
-    for (const std::string& text : open) {
-      tools::log(false, "bmesh-decimate: " + o_.output + ": verified, but " + text);
-    }
-    return false;
+    if (code == tools::kDone) say("verified from the written bytes");
+    return code;
   }
 
   /// Without --epsilon nothing keeps vertices near the original, and few vertices mean spikes.

@@ -44,20 +44,6 @@ Input read(const std::string& path, const std::string& format, const char* optio
   return {std::move(r.mesh), r.format, io::sha256(bytes), std::move(notes)};
 }
 
-const char* name(Answer answer) {
-  switch (answer) {
-    case Answer::Verified:
-      return "verified";
-    case Answer::Refuted:
-      return "refuted";
-    case Answer::Undecided:
-      return "undecided";
-    case Answer::Undefined:
-      break;
-  }
-  return "undefined";
-}
-
 std::string number(double x) {
   std::ostringstream text;
   text << std::setprecision(6) << x;
@@ -73,7 +59,7 @@ std::string point(const geom::Vec3& p) {
 Json to_json(const geom::Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
 Json to_json(const verify::Claim& claim) {
-  Json json{{"answer", name(claim.answer)}, {"reason", claim.reason}};
+  Json json{{"answer", name_of(claim.answer)}, {"reason", claim.reason}};
   if (claim.witness) {
     json["witness"] = {{"point", to_json(claim.witness->point)},
                        {"depth", claim.witness->depth},
@@ -85,7 +71,7 @@ Json to_json(const verify::Claim& claim) {
 }
 
 Json to_json(const verify::DistanceClaim& claim) {
-  return {{"answer", name(claim.answer)},
+  return {{"answer", name_of(claim.answer)},
           {"reason", claim.reason},
           {"largest_found", claim.largest},
           {"at", to_json(claim.at)},
@@ -98,8 +84,8 @@ class Verdict {
   /// @param what     the claim, as a sentence
   /// @param refuted  what is true instead
   void add(const std::string& title, const std::string& what, const std::string& refuted,
-           const verify::Claim& claim, bool counts) {
-    std::string line = title + ": " + name(claim.answer) + ": ";
+           const verify::Claim& claim) {
+    std::string line = title + ": " + name_of(claim.answer) + ": ";
     line += claim.answer == Answer::Verified  ? what
             : claim.answer == Answer::Refuted ? refuted
                                               : claim.reason;
@@ -110,10 +96,11 @@ class Verdict {
       }
     }
     lines_.push_back(line);
-    if (counts) answers_.push_back(claim.answer);
   }
+  void count_enclosure(Answer answer) { enclosure_.push_back(answer); }
+  void count_besides(Answer answer) { besides_.push_back(answer); }
   void add(const std::string& title, double bound, const verify::DistanceClaim& claim) {
-    std::string line = title + ": " + name(claim.answer);
+    std::string line = title + ": " + name_of(claim.answer);
     if (claim.answer == Answer::Verified) line += ": nowhere more than " + number(bound);
     if (!claim.reason.empty()) line += ": " + claim.reason;
     if (claim.answer != Answer::Verified) {
@@ -121,22 +108,27 @@ class Verdict {
               number(bound);
     }
     lines_.push_back(line);
-    answers_.push_back(claim.answer);
+    besides_.push_back(claim.answer);
   }
 
   [[nodiscard]] const std::vector<std::string>& lines() const { return lines_; }
+  /// Of the claims of enclosure that decide; everything else can only worsen it.
   [[nodiscard]] Answer answer() const {
-    const auto any = [&](Answer a) {
-      return std::find(answers_.begin(), answers_.end(), a) != answers_.end();
+    const auto any = [](const std::vector<Answer>& answers, Answer a) {
+      return std::find(answers.begin(), answers.end(), a) != answers.end();
     };
-    if (any(Answer::Refuted)) return Answer::Refuted;
-    if (any(Answer::Undecided)) return Answer::Undecided;
-    return any(Answer::Verified) ? Answer::Verified : Answer::Undefined;
+    for (const Answer a : {Answer::Refuted, Answer::Undecided}) {
+      if (any(enclosure_, a) || any(besides_, a)) return a;
+    }
+    if (!any(enclosure_, Answer::Verified) || any(besides_, Answer::Undefined)) {
+      return Answer::Undefined;
+    }
+    return Answer::Verified;
   }
 
  private:
   std::vector<std::string> lines_;
-  std::vector<Answer> answers_;
+  std::vector<Answer> enclosure_, besides_;
 };
 
 int exit_code(Answer answer) {
@@ -223,6 +215,12 @@ int check(const Options& o) {
     }
   }
 
+  const double diagonal = geom::bounding_box(original.mesh).diagonal();
+  if (epsilon && !(epsilon->of(diagonal) > set.margin)) {
+    throw Error(ErrorCode::InvalidArgument, "--epsilon: it must be larger than the set's margin, " +
+                                                number(set.margin) + ", and than 0");
+  }
+
   tools::Progress progress(o.common.quiet);
   verify::InclusionOptions options;
   options.max_contacts = o.max_contacts;
@@ -237,7 +235,8 @@ int check(const Options& o) {
   if (o.cover) {
     const verify::Cover cover = verify::verify_cover(original.mesh, set, options);
     verdict.add("convexity", "all " + std::to_string(set.bodies.size()) + " bodies are convex",
-                cover.convex.reason, cover.convex, true);
+                cover.convex.reason, cover.convex);
+    verdict.count_besides(cover.convex.answer);
     claims["convex"] = to_json(cover.convex);
     inclusion = cover.inclusion;
   } else {
@@ -255,17 +254,18 @@ int check(const Options& o) {
               relative
                   ? inner_name + " winds more often than " + outer_name
                   : "a part of the solid of " + inner_name + " is outside that of " + outer_name,
-              inclusion.solid, wants_solid);
+              inclusion.solid);
+  if (wants_solid) verdict.count_enclosure(inclusion.solid.answer);
   verdict.add("surface claim",
-              "every triangle of " + inner_name + " is within the solid of " + outer_name,
+              "every triangle with area of " + inner_name + " is within the solid of " + outer_name,
               std::to_string(inclusion.surface.inner_triangles.size()) + " triangles of " +
                   inner_name + " are not all within the solid of " + outer_name,
-              inclusion.surface, wants_surface);
+              inclusion.surface);
+  if (wants_surface) verdict.count_enclosure(inclusion.surface.answer);
   claims["solid"] = to_json(inclusion.solid);
   claims["solid"]["relative"] = inclusion.relative;
   claims["surface"] = to_json(inclusion.surface);
 
-  const double diagonal = geom::bounding_box(original.mesh).diagonal();
   if (epsilon) {
     const double bound = epsilon->of(diagonal);
     const auto measure = [&](const char* title, const char* key, const geom::Mesh& from,
@@ -280,10 +280,6 @@ int check(const Options& o) {
     };
     if (o.cover) {
       const double with_margin = bound - set.margin;
-      if (!(with_margin > 0)) {
-        throw Error(ErrorCode::InvalidArgument,
-                    "--epsilon: not larger than the set's margin " + number(set.margin));
-      }
       const verify::DistanceClaim claim = [&] {
         progress.show("deciding: distance");
         verify::DistanceClaimOptions distance;
@@ -292,7 +288,7 @@ int check(const Options& o) {
       }();
       verdict.add(inclusion.inner_closed ? "distance from the union to the solid"
                                          : "distance from the union to the surface",
-                  with_margin, claim);
+                  bound, claim);
       claims["distance"] = to_json(claim);
       claims["distance"]["bound"] = bound;
       claims["distance"]["margin"] = set.margin;
@@ -326,7 +322,7 @@ int check(const Options& o) {
         {"relation", o.cover   ? "cover"
                      : o.inner ? "inner"
                                : "outer"},
-        {"verdict", name(answer)},
+        {"verdict", name_of(answer)},
         {"deciding_claims", o.claims},
         {"original",
          file(o.original, original, swap ? inclusion.outer_closed : inclusion.inner_closed,
@@ -350,6 +346,10 @@ int check(const Options& o) {
   if (!o.common.quiet) {
     for (const std::string& line : verdict.lines()) std::cout << line << '\n';
   }
+  if (answer == Answer::Undefined && inclusion.inner_closed && inclusion.outer_closed) {
+    throw Error(ErrorCode::InvalidInput,
+                "a mesh without any triangle that has an area; no distance to it is defined");
+  }
   if (answer == Answer::Undefined) {
     throw Error(ErrorCode::InvalidInput,
                 inclusion.outer_closed
@@ -361,7 +361,7 @@ int check(const Options& o) {
                           std::to_string(inclusion.outer_open_edges) +
                           " unbalanced edges); nothing can lie inside it. Close its holes first");
   }
-  if (!o.common.quiet) std::cout << name(answer) << '\n';
+  if (!o.common.quiet) std::cout << name_of(answer) << '\n';
   return exit_code(answer);
 }
 

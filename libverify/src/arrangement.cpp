@@ -8,23 +8,16 @@ namespace kaboum::verify {
 
 void Arrangement::need_mutual() {
   if (contacts_[kInside][kOutside]) return;
-  MutualContacts found = contacts_between(scene_, limit_);
+  MutualContacts found = contacts_between(scene_, limits_);
   contacts_[kInside][kOutside] = std::move(found.of_inside);
   contacts_[kOutside][kInside] = std::move(found.of_outside);
 }
 
 void Arrangement::need_own(int chain) {
-  if (!contacts_[chain][chain]) contacts_[chain][chain] = contacts_within(scene_, chain, limit_);
+  if (!contacts_[chain][chain]) contacts_[chain][chain] = contacts_within(scene_, chain, limits_);
 }
 
 namespace {
-
-int place_of(const Face& f, std::uint32_t vertex) {
-  for (int k = 0; k < 3; ++k) {
-    if (f.v[k] == vertex) return k;
-  }
-  return -1;
-}
 
 /// The sector between two neighbours at their common edge, on the side that is walked on.
 class Sector {
@@ -64,10 +57,10 @@ bool walkable(const Arrangement& arrangement, std::uint32_t f, int k, std::uint3
   // What lies along the edge: triangles that have it as an edge, and those in contact with it.
   thread_local std::vector<std::uint32_t> touching;
   touching.clear();
-  for (const std::uint32_t g : scene.around(u)) {
+  for (const std::uint32_t g : scene.around_edge(u, v)) {
     const Face& by = scene.face(g);
     if (g == f || g == other || by.axis < 0 || (mask & mask_of(by.chain)) == 0) continue;
-    if (place_of(by, v) >= 0) touching.push_back(g);
+    if (by.place_of(u) >= 0 && by.place_of(v) >= 0) touching.push_back(g);
   }
   for (int chain = 0; chain < 2; ++chain) {
     if ((mask & mask_of(chain)) == 0) continue;
@@ -117,11 +110,11 @@ std::vector<std::uint32_t> patches(const Arrangement& arrangement, int chain, Ch
       const std::uint32_t u = face.v[k], v = face.v[(k + 1) % 3];
       std::uint32_t other = kNone;
       int others = 0, other_edge = 0;
-      for (const std::uint32_t g : scene.around(u)) {
+      for (const std::uint32_t g : scene.around_edge(u, v)) {
         const Face& by = scene.face(g);
         if (g == f || by.chain != chain) continue;
-        const int at = place_of(by, v);
-        if (at < 0) continue;
+        const int at = by.place_of(v);
+        if (at < 0 || by.place_of(u) < 0) continue;
         ++others;
         other = g;
         other_edge = at;  // opposite direction: from v to u

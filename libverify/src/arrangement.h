@@ -11,12 +11,20 @@ namespace kaboum::verify {
 /// The scene and the contacts that have been asked for so far.
 class Arrangement {
  public:
-  /// @param limit  of the number of contacts of each kind
-  Arrangement(const Scene& scene, std::size_t limit) : scene_(scene), limit_(limit) {}
+  Arrangement(const Scene& scene, const ContactLimits& limits) : scene_(scene), limits_(limits) {}
 
   /// Finds the contacts between the two chains, or of a chain with itself, if not known yet.
   void need_mutual();
   void need_own(int chain);
+
+  /// Pairs of faces of different chains in which one cuts the other, as far as they were asked for.
+  [[nodiscard]] std::size_t mutual_cuts() const {
+    std::size_t count = 0;
+    for (int c = 0; c < 2; ++c) {
+      if (contacts_[c][1 - c]) count += contacts_[c][1 - c]->cut_count();
+    }
+    return count;
+  }
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
   /// @pre they were asked for
@@ -32,7 +40,7 @@ class Arrangement {
 
  private:
   const Scene& scene_;
-  std::size_t limit_;
+  ContactLimits limits_;
   std::array<std::array<std::optional<Contacts>, 2>, 2> contacts_;
 };
 

@@ -47,6 +47,8 @@ Sign sign_on(const Triple<Approx>& approx_line, const Triple<Exact>& line,
   return sign_of(dot(line, point));
 }
 
+constexpr std::size_t kTestsPerPiece = 200;  // of segments against each other, within the limit
+
 class Cutter {
  public:
   Cutter(const Arrangement& arrangement, std::uint32_t face, std::size_t limit,
@@ -68,12 +70,12 @@ class Cutter {
     if (segments_.size() > limit_) fail();
   }
 
-  std::vector<Spot> spots() {
+  void visit(const SpotVisitor& visitor) {
     for (Segment& s : segments_) finish(s);
     split();
-    std::vector<Spot> result;
-    for (std::size_t i = 0; i < segments_.size(); ++i) sample(i, result);
-    return result;
+    for (std::size_t i = 0; i < segments_.size(); ++i) {
+      if (!sample(i, visitor)) return;
+    }
   }
 
  private:
@@ -187,10 +189,10 @@ class Cutter {
   [[nodiscard]] bool between_settled(std::uint32_t gi, std::uint32_t a, std::uint32_t b) const {
     if (settled_.empty()) return false;
     int count = 0;
-    for (const std::uint32_t h : scene_.around(a)) {
+    for (const std::uint32_t h : scene_.around_edge(a, b)) {
       const Face& face = scene_.face(h);
       if (face.chain != scene_.face(gi).chain) continue;
-      if (std::find(face.v.begin(), face.v.end(), b) == face.v.end()) continue;
+      if (face.place_of(a) < 0 || face.place_of(b) < 0) continue;
       if (!std::binary_search(settled_.begin(), settled_.end(), h)) return false;
       ++count;
     }
@@ -216,19 +218,27 @@ class Cutter {
     s.approx_p = rounded(s.p);
     s.approx_q = rounded(s.q);
     s.box = {0, 0, 1, 1};
-    const auto ratio = [](const Triple<Approx>& x, int k) {
-      const Approx total = x[0] + x[1] + x[2];
-      return std::pair{x[k].value / total.value,
-                       (x[k].error + total.error) / (total.value - total.error) * 2 + 4 * kUnit};
-    };
+    const Approx total_p = sum(s.approx_p), total_q = sum(s.approx_q);
+    if (!usable(total_p) || !usable(total_q)) return;
     for (int k = 0; k < 2; ++k) {
-      const auto [a, ea] = ratio(s.approx_p, k);
-      const auto [b, eb] = ratio(s.approx_q, k);
-      const double low = std::min(a - ea, b - eb), high = std::max(a + ea, b + eb);
-      if (!(low >= -1) || !(high <= 2)) continue;  // too inexact to be of use
+      const Approx a = ratio(s.approx_p[k], total_p), b = ratio(s.approx_q[k], total_q);
+      const double low = std::min(a.value - a.error, b.value - b.error);
+      const double high = std::max(a.value + a.error, b.value + b.error);
+      // A weight lies between 0 and 1; anything else, NaN included, is too inexact to be of use.
+      if (!std::isfinite(a.value + a.error + b.value + b.error) || low < -1 || high > 2) continue;
       s.box[k] = low;
       s.box[2 + k] = high;
     }
+  }
+
+  static Approx sum(const Triple<Approx>& x) { return x[0] + x[1] + x[2]; }
+  /// Whether one can divide by it.
+  static bool usable(const Approx& total) {
+    return total.value > 1e-200 && total.value < 1e200 && total.error < 0.25 * total.value;
+  }
+  /// x / total for weights 0 ≤ x ≤ total; @pre usable(total)
+  static Approx ratio(const Approx& x, const Approx& total) {
+    return {x.value / total.value, (x.error + 2 * total.error) / (0.5 * total.value) + 4 * kUnit};
   }
 
   /// Finds where segments meet: each one's interior points that lie on another.
@@ -240,12 +250,13 @@ class Cutter {
       const double a = segments_[i].box[0], b = segments_[j].box[0];
       return a != b ? a < b : i < j;
     });
-    std::size_t pieces = segments_.size();
+    std::size_t pieces = segments_.size(), tests = 0;
     for (std::size_t x = 0; x < order.size(); ++x) {
       const Segment& s = segments_[order[x]];
       for (std::size_t y = x + 1; y < order.size(); ++y) {
         const Segment& t = segments_[order[y]];
         if (t.box[0] > s.box[2]) break;
+        if (++tests > kTestsPerPiece * limit_) fail();
         if (t.box[1] > s.box[3] || s.box[1] > t.box[3]) continue;
         meet(order[x], order[y]);
       }
@@ -279,8 +290,8 @@ class Cutter {
     if (within_t) splits_[j].push_back(point);
   }
 
-  /// Spots on both sides of every piece of segment i.
-  void sample(std::size_t i, std::vector<Spot>& result) const {
+  /// Spots on both sides of every piece of segment i. @return false if the visitor has seen enough
+  [[nodiscard]] bool sample(std::size_t i, const SpotVisitor& visitor) const {
     const Segment& s = segments_[i];
     int apex = 0;
     while (sign_of(s.line[apex]) == Sign::Zero) ++apex;
@@ -300,21 +311,21 @@ class Cutter {
     std::sort(points.begin(), points.end(), [&](const Triple<Exact>* a, const Triple<Exact>* b) {
       return turn(*a, *b) == forward;
     });
+    points.push_back(&s.q);
     const Triple<Exact>* last = &s.p;
-    const auto piece = [&](const Triple<Exact>* next) {
-      if (turn(*last, *next) == Sign::Zero) return;  // the same point twice
-      Spot spot;
-      spot.face = index_;
+    Spot spot;
+    spot.face = index_;
+    for (const Triple<Exact>* next : points) {
+      if (turn(*last, *next) == Sign::Zero) continue;  // the same point twice
       spot.exact = between(*last, *next);
       spot.approx = rounded(spot.exact);
       spot.line = s.line;
-      result.push_back(spot);
+      if (!visitor(spot)) return false;
       spot.line = Triple<Exact>{-s.line[0], -s.line[1], -s.line[2]};
-      result.push_back(std::move(spot));
+      if (!visitor(spot)) return false;
       last = next;
-    };
-    for (const Triple<Exact>* next : points) piece(next);
-    piece(&s.q);
+    }
+    return true;
   }
 
   /// A point between two, near the middle.
@@ -353,16 +364,20 @@ Vec3 position(const Scene& scene, const Spot& spot) {
   return p;
 }
 
-std::vector<Spot> spots(const Arrangement& arrangement, std::uint32_t face, ChainMask mask,
-                        std::size_t limit, std::span<const std::uint32_t> settled) {
-  if (arrangement.whole(face, mask)) return {middle_spot(face)};
+void visit_spots(const Arrangement& arrangement, std::uint32_t face, ChainMask mask,
+                 std::size_t limit, std::span<const std::uint32_t> settled,
+                 const SpotVisitor& visitor) {
+  if (arrangement.whole(face, mask)) {
+    visitor(middle_spot(face));
+    return;
+  }
   Cutter cutter(arrangement, face, limit, settled);
   const int chain = arrangement.scene().face(face).chain;
   for (int c = 0; c < 2; ++c) {
     if ((mask & mask_of(c)) == 0) continue;
     for (const Contacts::Cut& cut : arrangement.contacts(chain, c).cuts(face)) cutter.add(cut);
   }
-  return cutter.spots();
+  cutter.visit(visitor);
 }
 
 }  // namespace kaboum::verify

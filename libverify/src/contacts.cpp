@@ -15,13 +15,6 @@ using Sides = std::array<Sign, 3>;
 
 bool all(const Sides& s, Sign sign) { return s[0] == sign && s[1] == sign && s[2] == sign; }
 
-int place_of(const Face& f, std::uint32_t vertex) {
-  for (int k = 0; k < 3; ++k) {
-    if (f.v[k] == vertex) return k;
-  }
-  return -1;
-}
-
 /// What one task finds; X is the chain of the first face of a pair.
 struct Found {
   std::vector<Contacts::Cut> cuts;
@@ -37,12 +30,12 @@ class Classifier {
   void operator()(std::uint32_t fi, std::uint32_t gi) {
     const Face &f = scene_.face(fi), &g = scene_.face(gi);
     int common = 0;
-    for (const std::uint32_t v : f.v) common += static_cast<int>(place_of(g, v) >= 0);
+    for (const std::uint32_t v : f.v) common += static_cast<int>(g.place_of(v) >= 0);
     if (common == 3) return;  // the same triangle: contains and is contained
     if (common == 2) {
       // An edge in common, and nothing else unless they lie on each other.
       int k = 0;
-      while (place_of(f, g.v[k]) >= 0) ++k;
+      while (f.place_of(g.v[k]) >= 0) ++k;
       if (scene_.side(fi, scene_.point(g.v[k])) == Sign::Zero) coplanar(fi, gi);
       return;
     }
@@ -136,7 +129,7 @@ class Classifier {
     }
     const Face &f = scene_.face(fi), &g = scene_.face(gi);
     for (int e = 0; e < 3; ++e) {
-      if (place_of(g, f.v[e]) >= 0 && place_of(g, f.v[(e + 1) % 3]) >= 0) continue;
+      if (g.place_of(f.v[e]) >= 0 && g.place_of(f.v[(e + 1) % 3]) >= 0) continue;
       found.alongs.push_back({fi, gi, static_cast<std::uint8_t>(e), true});
     }
   }
@@ -171,24 +164,40 @@ void append(Found& all, Found&& part) {
   part = {};
 }
 
+/// Keeps all tasks together within the limits.
 class Counter {
  public:
-  explicit Counter(std::size_t limit) : limit_(limit) {}
-  void check(const Found& a, const Found& b) {
-    const std::size_t now = a.cuts.size() + a.alongs.size() + b.cuts.size() + b.alongs.size();
-    if (now > limit_) fail();
-  }
-  void add(const Found& a, const Found& b) {
-    sum_ += a.cuts.size() + a.alongs.size() + b.cuts.size() + b.alongs.size();
-    if (sum_ > limit_) fail();
-  }
+  explicit Counter(const ContactLimits& limits) : limits_(limits) {}
+
+  /// One task's share, told to the others now and then.
+  class Task {
+   public:
+    explicit Task(Counter& counter) : counter_(counter) {}
+    void looked_at(const Found& a, const Found& b) {
+      if (++pairs_ < kSharedEvery) return;
+      share(a, b);
+    }
+    void share(const Found& a, const Found& b) {
+      const std::size_t now = a.cuts.size() + a.alongs.size() + b.cuts.size() + b.alongs.size();
+      counter_.add(now - contacts_, pairs_);
+      contacts_ = now;
+      pairs_ = 0;
+    }
+
+   private:
+    static constexpr std::size_t kSharedEvery = 4096;
+    Counter& counter_;
+    std::size_t contacts_ = 0, pairs_ = 0;
+  };
 
  private:
-  [[noreturn]] static void fail() {
-    throw Error(ErrorCode::LimitReached, "more contacts between triangles than allowed");
+  void add(std::size_t contacts, std::size_t pairs) {
+    if ((contacts_ += contacts) > limits_.contacts || (pairs_ += pairs) > limits_.pairs) {
+      throw Error(ErrorCode::LimitReached, "more contacts between triangles than allowed");
+    }
   }
-  std::size_t limit_;
-  std::atomic<std::size_t> sum_ = 0;
+  ContactLimits limits_;
+  std::atomic<std::size_t> contacts_ = 0, pairs_ = 0;
 };
 
 }  // namespace
@@ -217,7 +226,7 @@ std::array<Sign, 3> sides_of(const Scene& scene, const Face& f, std::uint32_t g)
   std::array<Sign, 3> sides;
   for (int k = 0; k < 3; ++k) {
     sides[k] =
-        place_of(scene.face(g), f.v[k]) >= 0 ? Sign::Zero : scene.side(g, scene.point(f.v[k]));
+        scene.face(g).place_of(f.v[k]) >= 0 ? Sign::Zero : scene.side(g, scene.point(f.v[k]));
   }
   return sides;
 }
@@ -254,18 +263,19 @@ Sign order_of(const Scene& scene, const Crossing::End& p, const Crossing::End& q
                         scene.point(q.to));
 }
 
-MutualContacts contacts_between(const Scene& scene, std::size_t limit) {
+MutualContacts contacts_between(const Scene& scene, const ContactLimits& limits) {
   const BoxTree &inside = scene.tree(kInside), &outside = scene.tree(kOutside);
   const std::vector<std::uint32_t> roots = subtrees(inside, kTasks);
   std::vector<Found> first(roots.size()), second(roots.size());
-  Counter counter(limit);
+  Counter counter(limits);
   oneapi::tbb::parallel_for(std::size_t{0}, roots.size(), [&](std::size_t i) {
     Classifier classify(scene, first[i], second[i]);
+    Counter::Task task(counter);
     meeting_pairs(inside, roots[i], outside, [&](std::uint32_t f, std::uint32_t g) {
       classify(f, g);
-      counter.check(first[i], second[i]);
+      task.looked_at(first[i], second[i]);
     });
-    counter.add(first[i], second[i]);
+    task.share(first[i], second[i]);
   });
   Found of_inside, of_outside;
   for (std::size_t i = 0; i < roots.size(); ++i) {
@@ -278,19 +288,20 @@ MutualContacts contacts_between(const Scene& scene, std::size_t limit) {
                    std::move(of_outside.alongs))};
 }
 
-Contacts contacts_within(const Scene& scene, int chain, std::size_t limit) {
+Contacts contacts_within(const Scene& scene, int chain, const ContactLimits& limits) {
   const BoxTree& tree = scene.tree(chain);
   const std::vector<std::uint32_t> roots = subtrees(tree, kTasks);
   std::vector<Found> found(roots.size());
-  Counter counter(limit);
+  Counter counter(limits);
   oneapi::tbb::parallel_for(std::size_t{0}, roots.size(), [&](std::size_t i) {
     Classifier classify(scene, found[i], found[i]);
+    Counter::Task task(counter);
     meeting_pairs(tree, roots[i], tree, [&](std::uint32_t f, std::uint32_t g) {
       if (f >= g) return;  // each pair once
       classify(f, g);
-      counter.check(found[i], {});
+      task.looked_at(found[i], {});
     });
-    counter.add(found[i], {});
+    task.share(found[i], {});
   });
   Found all_found;
   for (Found& part : found) append(all_found, std::move(part));

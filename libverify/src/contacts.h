@@ -50,17 +50,23 @@ class Contacts {
   std::vector<std::uint32_t> first_cut_, first_along_;
 };
 
+/// When to give up.
+struct ContactLimits {
+  std::size_t contacts;
+  std::size_t pairs;  ///< looked at
+};
+
 /// Contacts of X's faces with Y's, and of Y's with X's; X ≠ Y. Parallel; the result does not depend
 /// on the number of threads.
-/// @throws Error{LimitReached} beyond `limit` contacts.
+/// @throws Error{LimitReached}
 struct MutualContacts {
   Contacts of_inside;
   Contacts of_outside;
 };
-MutualContacts contacts_between(const Scene& scene, std::size_t limit);
+MutualContacts contacts_between(const Scene& scene, const ContactLimits& limits);
 
 /// Contacts of a chain's faces with each other.
-Contacts contacts_within(const Scene& scene, int chain, std::size_t limit);
+Contacts contacts_within(const Scene& scene, int chain, const ContactLimits& limits);
 
 /// The segment in which two faces that are not coplanar meet, as the ends of it in either face: the
 /// places where an edge crosses the other face's plane.

@@ -1,3 +1,4 @@
+#include <kaboum/geom/error.h>
 #include <kaboum/verify/distance.h>
 
 #include <oneapi/tbb/parallel_for.h>
@@ -104,7 +105,8 @@ class Judge {
   }
 
   [[nodiscard]] bool near(const Piece& piece, std::uint32_t face) const {
-    return std::all_of(piece.corner.begin(), piece.corner.end(),
+    return face != NearestTriangle::kNone &&
+           std::all_of(piece.corner.begin(), piece.corner.end(),
                        [&](const Vec3& p) { return upper(p, face) <= epsilon_; });
   }
 
@@ -179,6 +181,10 @@ class Judge {
 DistanceClaim verify_distance(const geom::Mesh& from, const geom::Mesh& to, double epsilon,
                               const DistanceClaimOptions& options) {
   const Scene scene(from, to);
+  if (!scene.scaled()) {
+    throw Error(ErrorCode::InvalidInput,
+                "coordinates span too many orders of magnitude to measure distances");
+  }
   double largest = 0;
   for (const Face& face : scene.faces()) {
     for (const std::uint32_t v : face.v) {
@@ -187,9 +193,13 @@ DistanceClaim verify_distance(const geom::Mesh& from, const geom::Mesh& to, doub
   }
   // docs/algorithms/exact-inclusion.md, "Distance": 64 cuts and one closest point.
   const double slack = 1024 * kUnit * largest + kTiny;
-  const Judge judge(scene, epsilon, slack, options);
+  const Judge judge(scene, epsilon * scene.scale(), slack, options);
   const std::uint32_t count = scene.count(kInside);
   DistanceClaim result;
+  if (scene.tree(kOutside).empty()) {
+    result.reason = "no triangle of the mesh that is measured to has an area";
+    return result;
+  }
   result.answer = Answer::Verified;
   std::vector<DistanceClaim> claims;
   for (std::uint32_t first = 0; first < count; first += kBlock) {
@@ -218,6 +228,8 @@ DistanceClaim verify_distance(const geom::Mesh& from, const geom::Mesh& to, doub
       break;
     }
   }
+  result.largest = scene.length_outside(result.largest);
+  result.at = scene.point_outside(result.at);
   return result;
 }
 

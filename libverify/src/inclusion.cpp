@@ -44,10 +44,12 @@ std::vector<int> whole_values(const Arrangement& arrangement, int chain, ChainMa
 class Decision {
  public:
   Decision(const Scene& scene, const InclusionOptions& options)
-      : scene_(scene), options_(options), arrangement_(scene, options.max_contacts) {}
+      : scene_(scene),
+        options_(options),
+        arrangement_(scene, {options.max_contacts, options.max_pairs}) {}
 
   /// Closed chains: the solid claim and, for the inner chain's faces, the surface claim.
-  void decide_closed(Inclusion& result) {
+  void decide_closed() {
     say("pairs of triangles");
     arrangement_.need_mutual();
     for (const int chain : {kInside, kOutside}) {
@@ -58,19 +60,17 @@ class Decision {
       say("cells against their own mesh");
       second_level(chain, failing);
     }
-    finish(result);
   }
 
   /// The outer mesh is closed, the inner one need not be: the surface claim only.
-  void decide_surface(Inclusion& result) {
+  void decide_surface() {
     say("pairs of triangles");
     arrangement_.need_mutual();
     surface(first_level(kInside));
-    finish(result);
   }
 
   /// Open chains with one border: w_inner ≤ w_outer.
-  void decide_difference(Inclusion& result) {
+  void decide_difference() {
     say("pairs of triangles");
     arrangement_.need_mutual();
     arrangement_.need_own(kInside);
@@ -89,18 +89,37 @@ class Decision {
           if (values[i] < 0) report(solid_, bad[i], middle_spot(f), side);
           return;
         }
-        for (const Spot& spot : spots(arrangement_, f, 3, options_.max_pieces)) {
-          ++samples_;
-          if (value(spot) < 0) return report(solid_, bad[i], spot, side);
-        }
+        visit(f, 3, {}, [&](const Spot& spot) {
+          if (value(spot) >= 0) return true;
+          report(solid_, bad[i], spot, side);
+          return false;
+        });
       });
     }
-    finish(result);
+  }
+
+  /// Turns what was found into answers; claims that nothing refutes keep theirs.
+  void conclude(Inclusion& result) {
+    conclude(result.solid, solid_, false, result.relative,
+             result.relative ? "the inner mesh winds more often about a point than the outer one"
+                             : "a part of the inner solid is outside the outer one");
+    conclude(result.surface, surface_, true, false,
+             "a part of the inner mesh's surface is outside the outer solid");
+    result.samples = samples_;
+    result.contacts = arrangement_.mutual_cuts();
   }
 
  private:
   void say(const char* what) const {
     if (options_.progress) options_.progress(what);
+  }
+
+  void visit(std::uint32_t f, ChainMask mask, std::span<const std::uint32_t> settled,
+             const SpotVisitor& visitor) {
+    visit_spots(arrangement_, f, mask, options_.max_pieces, settled, [&](const Spot& spot) {
+      ++samples_;
+      return visitor(spot);
+    });
   }
 
   /// The side of a chain's faces on which an offending region can lie.
@@ -173,13 +192,10 @@ class Decision {
         fails[i] = static_cast<char>(!passes(chain, other_values_[i]));
         return;
       }
-      for (const Spot& spot :
-           spots(arrangement_, f, mask_of(other), options_.max_pieces, settled(f))) {
-        ++samples_;
-        if (passes(chain, value(spot))) continue;
-        fails[i] = 1;
-        return;
-      }
+      visit(f, mask_of(other), settled(f), [&](const Spot& spot) {
+        fails[i] = static_cast<char>(!passes(chain, value(spot)));
+        return fails[i] == 0;
+      });
     });
     std::vector<std::uint32_t> failing;
     for (std::uint32_t i = 0; i < fails.size(); ++i) {
@@ -204,13 +220,13 @@ class Decision {
       if (own_value != kCut && other_value != kCut) {
         return report(solid_, bad[f - begin], middle_spot(f), side);
       }
-      for (const Spot& spot : spots(arrangement_, f, 3, options_.max_pieces)) {
-        ++samples_;
+      visit(f, 3, {}, [&](const Spot& spot) {
         const int o = other_value != kCut ? other_value : winding(scene_, spot, side, other);
-        if (passes(chain, o)) continue;
-        if (!offends(chain, own_value != kCut ? own_value : own(spot))) continue;
-        return report(solid_, bad[f - begin], spot, side);
-      }
+        if (passes(chain, o)) return true;
+        if (!offends(chain, own_value != kCut ? own_value : own(spot))) return true;
+        report(solid_, bad[f - begin], spot, side);
+        return false;
+      });
     });
   }
 
@@ -231,11 +247,11 @@ class Decision {
         if (outer_values[f] < 1) report(surface_, bad[f], middle_spot(f), kOuter);
         return;
       }
-      for (const Spot& spot : spots(arrangement_, f, mask_of(kOutside), options_.max_pieces)) {
-        ++samples_;
-        if (at(spot, kInner) >= 1 || at(spot, kOuter) >= 1) continue;
-        return report(surface_, bad[f], spot, kOuter);
-      }
+      visit(f, mask_of(kOutside), {}, [&](const Spot& spot) {
+        if (at(spot, kInner) >= 1 || at(spot, kOuter) >= 1) return true;
+        report(surface_, bad[f], spot, kOuter);
+        return false;
+      });
     });
   }
 
@@ -265,18 +281,6 @@ class Decision {
     claim.reason = reason;
     say("a witness");
     claim.witness = find_witness(scene_, offences.list, on_surface, relative);
-  }
-
-  void finish(Inclusion& result) {
-    conclude(result.solid, solid_, false, result.relative,
-             result.relative ? "the inner mesh winds more often about a point than the outer one"
-                             : "a part of the inner solid is outside the outer one");
-    conclude(result.surface, surface_, true, false,
-             "a part of the inner mesh's surface is outside the outer solid");
-    result.samples = samples_;
-    for (const auto& [x, y] : {std::pair{kInside, kOutside}, std::pair{kOutside, kInside}}) {
-      result.contacts += arrangement_.contacts(x, y).cut_count();
-    }
   }
 
   const Scene& scene_;
@@ -320,24 +324,40 @@ Inclusion verify_inclusion(const geom::Mesh& inner, const geom::Mesh& outer,
   }
 
   Decision decision(scene, options);
+  bool limited = false;
   try {
     if (result.relative) {
-      decision.decide_difference(result);
+      decision.decide_difference();
     } else if (result.inner_closed && result.outer_closed) {
-      decision.decide_closed(result);
+      decision.decide_closed();
     } else if (result.outer_closed) {
-      decision.decide_surface(result);
+      decision.decide_surface();
     }
   } catch (const Error& error) {
     if (error.code() != ErrorCode::LimitReached) throw;
-    for (Claim* claim : {&result.solid, &result.surface}) {
-      if (claim->answer == Answer::Undefined) continue;
-      *claim = {};
-      claim->answer = Answer::Undecided;
-      claim->reason = error.what();
-    }
+    limited = true;
+  }
+  decision.conclude(result);
+  for (Claim* claim : {&result.solid, &result.surface}) {
+    if (!limited || claim->answer != Answer::Verified) continue;
+    claim->answer = Answer::Undecided;
+    claim->reason = "more contacts between triangles, or pieces of one, than the limits allow";
   }
   return result;
+}
+
+const char* name_of(Answer answer) {
+  switch (answer) {
+    case Answer::Verified:
+      return "verified";
+    case Answer::Refuted:
+      return "refuted";
+    case Answer::Undecided:
+      return "undecided";
+    case Answer::Undefined:
+      break;
+  }
+  return "undefined";
 }
 
 }  // namespace kaboum::verify

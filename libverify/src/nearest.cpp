@@ -43,7 +43,7 @@ Vec3 closest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
 }
 
 NearestTriangle::Hit NearestTriangle::nearest(const Vec3& p) const {
-  Hit best{0, std::numeric_limits<double>::infinity()};
+  Hit best{kNone, std::numeric_limits<double>::infinity()};
   if (tree_.empty()) return best;
   double square = std::numeric_limits<double>::infinity();
   struct Entry {

@@ -11,12 +11,13 @@ Vec3 closest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 /// Nearest triangle of a chain, in rounded arithmetic.
 class NearestTriangle {
  public:
+  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
   struct Hit {
-    std::uint32_t face;
+    std::uint32_t face = kNone;
     double distance;
   };
   NearestTriangle(const Scene& scene, int chain) : scene_(scene), tree_(scene.tree(chain)) {}
-  /// @pre the chain has triangles with area
+  /// kNone at an infinite distance when the chain has no triangle with area.
   [[nodiscard]] Hit nearest(const Vec3& p) const;
   /// Infinite when the chain has no triangle with area.
   [[nodiscard]] double distance(const Vec3& p) const;

@@ -6,6 +6,7 @@
 #include <oneapi/tbb/parallel_invoke.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 #include <string>
@@ -74,6 +75,7 @@ Scene::Scene(const geom::Mesh& inside, const geom::Mesh& outside) {
   for (const geom::Mesh* mesh : meshes) {
     for (const Vec3& p : mesh->vertices) points_.push_back(p + Vec3::Zero());  // −0 becomes +0
   }
+  rescale();
   const std::vector<std::uint32_t> same = merge_equal(points_);
 
   std::uint32_t offset = 0;
@@ -124,6 +126,27 @@ Scene::Scene(const geom::Mesh& inside, const geom::Mesh& outside) {
     tree_[chain] = BoxTree(std::move(boxes), std::move(items));
   };
   oneapi::tbb::parallel_invoke([&] { build_tree(kInside); }, [&] { build_tree(kOutside); });
+}
+
+void Scene::rescale() {
+  double largest = 0;
+  for (const Vec3& p : points_) {
+    if (p.allFinite()) largest = std::max(largest, p.cwiseAbs().maxCoeff());
+  }
+  if (largest == 0) {
+    scaled_ = true;
+    return;
+  }
+  const int exponent = std::ilogb(largest);
+  if (exponent < -1000 || exponent > 1000) return;
+  const double scale = std::ldexp(1.0, -exponent);
+  const auto survives = [&](double x) { return !std::isfinite(x) || (x * scale) / scale == x; };
+  for (const Vec3& p : points_) {
+    if (!survives(p.x()) || !survives(p.y()) || !survives(p.z())) return;
+  }
+  for (Vec3& p : points_) p *= scale;
+  scale_ = scale;
+  scaled_ = true;
 }
 
 std::size_t Scene::unbalanced(ChainMask chains, bool difference) const {

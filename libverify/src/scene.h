@@ -25,11 +25,23 @@ struct Face {
   bool upward;           ///< the projection along `axis` is counter-clockwise
   std::uint8_t chain;    ///< Chain
   std::uint32_t source;  ///< index in the mesh it comes from
+
+  /// Which corner a vertex is; −1: none.
+  [[nodiscard]] int place_of(std::uint32_t vertex) const {
+    for (int k = 0; k < 3; ++k) {
+      if (v[k] == vertex) return k;
+    }
+    return -1;
+  }
 };
 
 /// Both meshes with one set of vertices, equal coordinates merged (−0 = +0): faces of the inside
 /// chain first. Faces with repeated corners are left out; faces without area stay, as they count in
 /// the balance of edges, but are marked.
+///
+/// Coordinates are the meshes' times one power of two that brings the largest to about 1, so that
+/// products neither overflow nor underflow; if some coordinate would not survive that exactly, they
+/// stay as they are (scaled() is then false).
 class Scene {
  public:
   Scene(const geom::Mesh& inside, const geom::Mesh& outside);
@@ -44,8 +56,17 @@ class Scene {
 
   [[nodiscard]] const Vec3& point(std::uint32_t vertex) const { return points_[vertex]; }
   [[nodiscard]] const Vec3& corner(std::uint32_t f, int k) const { return points_[faces_[f].v[k]]; }
+  /// Length in the meshes' unit, and a point there, of what is one here.
+  [[nodiscard]] double length_outside(double length) const { return length / scale_; }
+  [[nodiscard]] Vec3 point_outside(const Vec3& p) const { return p / scale_; }
+  [[nodiscard]] double scale() const { return scale_; }
+  [[nodiscard]] bool scaled() const { return scaled_; }
   [[nodiscard]] std::size_t vertex_count() const { return points_.size(); }
 
+  /// Faces that touch both vertices of an edge are among these, in order of their numbers.
+  [[nodiscard]] std::span<const std::uint32_t> around_edge(std::uint32_t u, std::uint32_t v) const {
+    return around(first_[u + 1] - first_[u] <= first_[v + 1] - first_[v] ? u : v);
+  }
   /// Faces that touch a vertex, in order of their numbers.
   [[nodiscard]] std::span<const std::uint32_t> around(std::uint32_t vertex) const {
     return {incident_.data() + first_[vertex], incident_.data() + first_[vertex + 1]};
@@ -70,7 +91,11 @@ class Scene {
   }
 
  private:
+  void rescale();
+
   std::vector<Vec3> points_;
+  double scale_ = 1;
+  bool scaled_ = false;
   std::vector<Face> faces_;
   std::uint32_t split_ = 0;
   std::vector<std::uint32_t> first_, incident_;

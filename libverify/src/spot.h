@@ -1,7 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <optional>
-#include <vector>
+#include <span>
 
 #include "arrangement.h"
 #include "number.h"
@@ -25,16 +26,20 @@ Spot middle_spot(std::uint32_t face);
 /// Rounded coordinates.
 Vec3 position(const Scene& scene, const Spot& spot);
 
-/// One spot at least in each cell that the chains of `mask` cut the face into.
+/// Called with a spot; returns false when it has seen enough.
+using SpotVisitor = std::function<bool(const Spot&)>;
+
+/// Visits one spot at least in each cell that the chains of `mask` cut the face into.
 ///
 /// @param limit    of the number of pieces of lines on the face
 /// @param settled  cells that lie on one of these coplanar faces, each of them left whole by its
 /// own
-///   chain, may be left out: the result can be empty
+///   chain, may be left out: perhaps all
 /// @pre the contacts of the mask's chains with the face's chain are known.
 /// @throws Error{LimitReached} beyond `limit`.
-std::vector<Spot> spots(const Arrangement& arrangement, std::uint32_t face, ChainMask mask,
-                        std::size_t limit, std::span<const std::uint32_t> settled = {});
+void visit_spots(const Arrangement& arrangement, std::uint32_t face, ChainMask mask,
+                 std::size_t limit, std::span<const std::uint32_t> settled,
+                 const SpotVisitor& visitor);
 
 /// Winding number of a chain on one side of the face at the spot; exact.
 /// @pre the chain is closed.

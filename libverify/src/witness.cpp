@@ -20,6 +20,7 @@ constexpr int kHalvings = 60;
 struct Candidate {
   Vec3 point;
   Vec3 direction;  ///< into the offending region, unit length
+  bool corner;     ///< of the inner mesh: as it is
   double depth;
 };
 
@@ -47,13 +48,14 @@ Witness find_witness(const Scene& scene, const std::vector<Offence>& offences, b
     if (!(length > 0)) normal = Vec3::UnitZ();
     if (length > 0) normal /= length;
     normal *= offence.side;
-    candidates.push_back({offence.point, normal, 0});
+    candidates.push_back({offence.point, normal, false, 0});
+    const bool inner = scene.face(offence.face).chain == kInside;
     const Vec3 middle = (a + b + c) / 3;
-    candidates.push_back({middle, normal, 0});
+    candidates.push_back({middle, normal, false, 0});
     for (const Vec3* p : {&a, &b, &c}) {
       Vec3 inwards = middle - *p;
       if (inwards.norm() > 0) inwards.normalize();
-      candidates.push_back({*p, (normal + inwards).normalized(), 0});
+      candidates.push_back({*p, (normal + inwards).normalized(), inner, 0});
     }
   }
   const NearestTriangle nearest(scene, kOutside);
@@ -75,23 +77,29 @@ Witness find_witness(const Scene& scene, const std::vector<Offence>& offences, b
   const double extent = box.diagonal();
   std::optional<Witness> best;
   int found = 0;
-  const auto look_at = [&](const Vec3& p) {
+  const auto look_at = [&](const Vec3& p, bool exact) {
     if (!p.allFinite() || !contradicts(scene, p, on_surface, relative)) return false;
     const double depth = nearest.distance(p);
-    if (!best || depth > best->depth) best = Witness{p, depth, true};
+    const bool better = !best || (exact != best->exact ? exact : depth > best->depth);
+    if (better) best = Witness{p, depth, exact};
     return true;
   };
   for (std::size_t i = 0; i < std::min(kTried, candidates.size()) && found < kFound; ++i) {
     const Candidate& candidate = candidates[i];
-    // A point of a triangle shows by itself that it is outside.
-    bool success = on_surface && look_at(candidate.point);
-    for (int k = 1; k <= kHalvings && !success; ++k) {
-      success = look_at(candidate.point + std::ldexp(extent, -k) * candidate.direction);
+    if (on_surface) {  // the point must be one of the surface
+      found += static_cast<int>(look_at(candidate.point, candidate.corner));
+      continue;
     }
-    found += static_cast<int>(success);
+    for (int k = 1; k <= kHalvings; ++k) {
+      if (!look_at(candidate.point + std::ldexp(extent, -k) * candidate.direction, true)) continue;
+      ++found;
+      break;
+    }
   }
-  if (best) return *best;
-  return {offences.front().point, nearest.distance(offences.front().point), false};
+  if (!best) {
+    best = Witness{offences.front().point, nearest.distance(offences.front().point), false};
+  }
+  return {scene.point_outside(best->point), scene.length_outside(best->depth), best->exact};
 }
 
 }  // namespace kaboum::verify

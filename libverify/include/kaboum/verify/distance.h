@@ -31,8 +31,12 @@ struct DistanceClaimOptions {
 /// docs/algorithms/exact-inclusion.md, "Distance". Suprema closer to ε than the rounding stay
 /// undecided.
 ///
-/// @pre epsilon > 0; `to` has a triangle with area.
-/// @throws Error{InvalidInput} on indices out of range or coordinates that are not finite.
+/// Triangles of `to` without area are passed over; those of `from` count. Undefined if none of `to`
+/// has an area.
+///
+/// @pre epsilon > 0
+/// @throws Error{InvalidInput} on indices out of range or coordinates that are not finite, or that
+///   span more than 10^300 between them.
 DistanceClaim verify_distance(const geom::Mesh& from, const geom::Mesh& to, double epsilon,
                               const DistanceClaimOptions& options = {});
 

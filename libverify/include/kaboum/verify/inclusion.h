@@ -17,13 +17,15 @@ enum class Answer {
   Undefined,  ///< means nothing for these meshes
 };
 
+const char* name_of(Answer answer);
+
 /// A point that shows that a claim is false.
 struct Witness {
   geom::Vec3 point;
-  double depth = 0;  ///< distance to the outer mesh, rounded [length]
-  /// The winding numbers at `point` were found by exact arithmetic and contradict the claim. If
-  /// not, the offending region is too thin to hold a point with double coordinates, and `point` is
-  /// a rounded one beside it.
+  double depth = 0;  ///< distance to the outer mesh, rounded; infinite if it has no area [length]
+  /// The winding numbers at `point` were found by exact arithmetic and contradict the claim; for
+  /// the surface claim the point is a corner of the inner mesh. Otherwise no such point with double
+  /// coordinates was found, and `point` is the offending place, rounded.
   bool exact = false;
 };
 
@@ -37,8 +39,9 @@ struct Claim {
 };
 
 struct InclusionOptions {
-  std::size_t max_contacts = 200'000'000;  ///< pairs of triangles that touch, per kind
-  std::size_t max_pieces = 20'000'000;     ///< pieces of lines within one triangle
+  std::size_t max_contacts = 100'000'000;  ///< pairs of triangles that touch, per kind
+  std::size_t max_pairs = 4'000'000'000;   ///< pairs of triangles looked at, per kind
+  std::size_t max_pieces = 2'000'000;      ///< pieces of lines within one triangle
   /// From this many coplanar overlaps on, the cells between them are settled by the meshes' own
   /// winding numbers instead of being sampled; the answers are the same.
   std::size_t settle_from = 1000;
