@@ -92,6 +92,30 @@ TEST(Cover, VoidInTheMiddle) {
   }
 }
 
+// Four blocks leave one small hole: a cell whose sides are short parts of long cuts.
+TEST(Cover, HoleAmongLongCuts) {
+  const Mesh original = block({0, 0, 0}, {3, 3, 1});
+  for (const double x : {0.25, 1.5, 2.5}) {
+    for (const double y : {0.125, 1.0, 2.25}) {
+      for (const double width : {0.125, 0x1p-20}) {
+        for (const double above : {0.0, 1.0}) {  // coplanar lids, or blocks that reach through
+          const double low = -above, high = 1 + above;
+          std::vector<Mesh> blocks{
+              block({0, 0, low}, {x, 3, high}), block({x + width, 0, low}, {3, 3, high}),
+              block({0, 0, low}, {3, y, high}), block({0, y + width, low}, {3, 3, high})};
+          auto cover = verify::verify_cover(original, set_of(blocks));
+          EXPECT_EQ(cover.inclusion.solid.answer, Answer::Refuted) << x << ' ' << y;
+          EXPECT_EQ(cover.inclusion.surface.answer, Answer::Refuted) << x << ' ' << y;
+          blocks.push_back(block({x, y, low}, {x + width, y + width, high}));
+          cover = verify::verify_cover(original, set_of(blocks));
+          EXPECT_EQ(cover.inclusion.solid.answer, Answer::Verified) << x << ' ' << y;
+          EXPECT_EQ(cover.inclusion.surface.answer, Answer::Verified) << x << ' ' << y;
+        }
+      }
+    }
+  }
+}
+
 TEST(Cover, OpenOriginalsAreCoveredByTheirTriangles) {
   Mesh open = ell();
   open.triangles.pop_back();
