@@ -295,4 +295,15 @@ ArrangementVerdict arrangement_verdict(const geom::Mesh& inner, const geom::Mesh
   return verdict;
 }
 
+geom::Mesh with_area(geom::Mesh mesh) {
+  std::erase_if(mesh.triangles, [&](const geom::Triangle& t) {
+    const auto point = [&](int k) {
+      const geom::Vec3& p = mesh.vertices[t[k]];
+      return Point(p.x(), p.y(), p.z());
+    };
+    return CGAL::collinear(point(0), point(1), point(2));
+  });
+  return mesh;
+}
+
 }  // namespace kaboum::test

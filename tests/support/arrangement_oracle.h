@@ -32,4 +32,7 @@ struct ArrangementVerdict {
 /// @pre indices in range, coordinates finite
 ArrangementVerdict arrangement_verdict(const geom::Mesh& inner, const geom::Mesh& outer);
 
+/// The mesh without its triangles of exactly no area, which bound nothing.
+geom::Mesh with_area(geom::Mesh mesh);
+
 }  // namespace kaboum::test

@@ -151,7 +151,7 @@ TEST(Distance, TouchingSurfaces) {
 }
 
 TEST(Distance, AgainstDenseSamples) {
-  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
     Random random(seed);
     const auto odd = [&] { return std::ldexp(static_cast<double>(random() >> 11U), -53); };
     const Mesh a = noisy(icosphere(1), 0.3, static_cast<std::uint32_t>(seed));

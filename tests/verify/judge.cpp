@@ -74,6 +74,8 @@ void Tally::compare(const MeshPair& pair, const ArrangementVerdict& truth) {
   if (claim.surface.answer != surface) {
     fault(pair.name + ": surface claim " + name(claim.surface.answer) + " but " + name(surface));
   }
+  // Triangles without area bound nothing; a witness may lie on one.
+  const geom::Mesh inner = with_area(pair.inner), outer = with_area(pair.outer);
   for (const verify::Claim* c : {&claim.solid, &claim.surface}) {
     if (c->answer != Answer::Refuted) {
       if (c->witness) fault(pair.name + ": a witness of nothing");
@@ -94,7 +96,7 @@ void Tally::compare(const MeshPair& pair, const ArrangementVerdict& truth) {
     const geom::Vec3& p = c->witness->point;
     bool contradicts = false;
     if (c == &claim.solid && relative) {
-      MeshPair turned = pair;
+      MeshPair turned{"", inner, outer};
       for (geom::Triangle& t : turned.inner.triangles) std::swap(t[1], t[2]);
       const auto first = static_cast<std::uint32_t>(turned.outer.vertices.size());
       for (const geom::Vec3& v : turned.inner.vertices) turned.outer.vertices.push_back(v);
@@ -103,10 +105,10 @@ void Tally::compare(const MeshPair& pair, const ArrangementVerdict& truth) {
       const auto w = winding_number_slow(turned.outer, p);
       contradicts = w && *w < 0;
     } else if (c == &claim.solid) {
-      const auto a = winding_number_slow(pair.inner, p), b = winding_number_slow(pair.outer, p);
+      const auto a = winding_number_slow(inner, p), b = winding_number_slow(outer, p);
       contradicts = a && b && *a >= 1 && *b <= 0;
     } else {
-      const auto b = winding_number_slow(pair.outer, p);
+      const auto b = winding_number_slow(outer, p);
       contradicts = b && *b <= 0;
     }
     if (!contradicts) fault(pair.name + ": the witness contradicts nothing");

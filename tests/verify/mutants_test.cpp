@@ -49,12 +49,12 @@ TEST(Mutants, WrongOnesAreRefutedAndRightOnesVerified) {
       const MeshPair pair = bounding_pair(name, mesh, d, 0.6, bmesh::Precision::Double);
       const auto claim = verify::verify_inclusion(pair.inner, pair.outer);
       EXPECT_EQ(claim.solid.answer, verify::Answer::Verified) << pair.name;
-      for (const MeshPair& mutant : mutants(pair, ++seed, 3)) tally.judge_one(mutant, seed);
+      for (const MeshPair& mutant : mutants(pair, ++seed, 2)) tally.judge_one(mutant, seed);
     }
   }
   EXPECT_EQ(tally.faults(), "");
-  EXPECT_GE(tally.solid_false(), 25U);
-  EXPECT_GE(tally.solid_true(), 2U);
+  EXPECT_GE(tally.solid_false(), 20U);
+  EXPECT_GE(tally.solid_true(), 1U);
   RecordProperty("refuted", static_cast<int>(tally.solid_false()));
 }
 

@@ -443,7 +443,14 @@ MeshPair permuted(const MeshPair& pair, std::uint64_t seed) {
   std::shuffle(axis.begin(), axis.end(), random);
   std::array<double, 3> sign{};
   for (double& s : sign) s = chance(random, 50) ? 1 : -1;
-  const double scale = std::ldexp(1.0, below(random, 61) - 30);
+  // Tiny numbers would be rounded by a small factor.
+  const auto is_tiny = [](const Mesh& mesh) {
+    return std::any_of(mesh.vertices.begin(), mesh.vertices.end(), [](const Vec3& p) {
+      return (p.array() != 0 && p.array().abs() < 1e-250).any();
+    });
+  };
+  const bool tiny = is_tiny(pair.inner) || is_tiny(pair.outer);
+  const double scale = std::ldexp(1.0, tiny ? below(random, 31) : below(random, 61) - 30);
   const bool odd = (axis[1] != (axis[0] + 1) % 3) != (sign[0] * sign[1] * sign[2] < 0);
   MeshPair result = pair;
   result.name += " permuted " + std::to_string(seed);

@@ -32,7 +32,7 @@ MeshPair open_pair(std::uint64_t seed);
 
 /// The same sets of points, exactly, in another order: triangles, vertices and corners permuted,
 /// vertices duplicated, axes permuted and reflected (triangles turned accordingly), scaled by a
-/// power of two. No coordinate is rounded unless it leaves the range of double.
+/// power of two. No coordinate is rounded.
 MeshPair permuted(const MeshPair& pair, std::uint64_t seed);
 
 /// Claims about a bounding mesh spoilt in one place; some stay true. One vertex of either mesh,
