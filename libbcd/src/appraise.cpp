@@ -6,8 +6,25 @@
 namespace kaboum::bcd {
 
 Appraisal appraise(std::span<const Vec3> points, const Solid& solid, geom::HullBuilder& builder,
-                   double density) {
+                   bool shaken, double density) {
   Appraisal out;
+  static thread_local std::vector<Vec3> moved;
+  if (shaken && !points.empty()) {
+    Box3 extent;
+    for (const Vec3& p : points) extent.extend(p);
+    const double amount = 1e-9 * extent.diagonal() / 0x1p31;
+    moved.resize(points.size());
+    std::uint32_t state = 1;
+    const auto next = [&] {
+      state = state * 1664525U + 1013904223U;
+      return amount * (static_cast<double>(state) - 0x1p31);
+    };
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double x = next(), y = next(), z = next();
+      moved[i] = points[i] + Vec3(x, y, z);
+    }
+    points = moved;
+  }
   if (!builder.build(points)) return out;
   out.flat = false;
   Box3 box;
@@ -22,6 +39,20 @@ Appraisal appraise(std::span<const Vec3> points, const Solid& solid, geom::HullB
     out.volume += normal.dot(a - center) / 6;
     const double longest =
         std::sqrt(std::max({ab.squaredNorm(), ac.squaredNorm(), (c - b).squaredNorm()}));
+    // Pits are often widest below a hull's edge.
+    for (int k = 0; k < 3; ++k) {
+      if (t[k] > t[(k + 1) % 3]) continue;
+      const Vec3 &p = points[t[k]], &q = points[t[(k + 1) % 3]];
+      const int parts = std::clamp(static_cast<int>(std::ceil((q - p).norm() / unit)), 1, 16);
+      for (int i = 1; i < 2 * parts; i += 2) {
+        const Vec3 x = p + (0.5 * i / parts) * (q - p);
+        const double d = solid.field(x);
+        if (d > out.worst) {
+          out.worst = d;
+          out.at = x;
+        }
+      }
+    }
     // Slivers need few samples across.
     const double height = longest > 0 ? 2 * area / longest : 0;
     const int m = std::clamp(static_cast<int>(std::ceil(longest / unit)), 1, 16);

@@ -187,9 +187,9 @@ double CutTree::score(const Node& node, const Plane& plane) const {
     s.upper.push_back(p);
   }
   const double limit = node.appraisal.fourth;
-  const Appraisal lower = appraise(s.lower, solid_, s.builder);
+  const Appraisal lower = appraise(s.lower, solid_, s.builder, true);
   if (lower.fourth > 2 * limit) return lower.fourth;
-  const Appraisal upper = appraise(s.upper, solid_, s.builder);
+  const Appraisal upper = appraise(s.upper, solid_, s.builder, true);
   // Where no single cut helps, slicing off a little always seems to: cuts in the middle are
   // preferred up to a factor, for they bring the next cuts nearer.
   const double volume = lower.volume + upper.volume;

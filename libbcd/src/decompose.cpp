@@ -20,21 +20,23 @@ struct Tuning {
   SearchOptions search;
   std::vector<double> multiples;   ///< of the wished bodies, that the input is cut into
   std::vector<double> thresholds;  ///< of epsilon, that leaves are cut down to
+  int refinements;                 ///< rounds of taking the worst body apart
 };
 
 Tuning tuning(Effort effort) {
   switch (effort) {
     case Effort::Fast:
-      return {60000, {.offsets = 5, .reflex_planes = 6, .refinements = 1}, {1.5}, {0.8}};
+      return {60000, {.offsets = 5, .reflex_planes = 6, .refinements = 1}, {1.5}, {0.8}, 4};
     case Effort::Normal:
-      return {200000, {}, {1, 1.25, 1.5, 2, 3}, {1, 0.7, 0.5}};
+      return {200000, {}, {1, 1.25, 1.5, 2, 3}, {1, 0.7, 0.5}, 20};
     case Effort::Best:
       break;
   }
   return {1000000,
           {.offsets = 11, .reflex_planes = 16, .refinements = 4},
           {1, 1.25, 1.5, 2, 3, 4.5, 6},
-          {1, 0.85, 0.7, 0.5, 0.35}};
+          {1, 0.85, 0.7, 0.5, 0.35},
+          60};
 }
 
 /// A body on its way to the result.
@@ -127,6 +129,25 @@ class Decomposer {
     return best;
   }
 
+  /// Takes the worst body apart and merges others instead, while that helps.
+  void refine(std::vector<Body>& bodies, std::size_t target) {
+    for (int round = 0; round < tuning_.refinements && !bodies.empty(); ++round) {
+      std::size_t worst = 0;
+      for (std::size_t i = 1; i < bodies.size(); ++i)
+        if (bodies[i].appraisal.worst > bodies[worst].appraisal.worst) worst = i;
+      const double limit = bodies[worst].appraisal.worst;
+      const std::vector<Body> parts = take_apart(bodies[worst], limit);
+      if (parts.size() < 2) return;
+      std::vector<Body> changed;
+      for (std::size_t i = 0; i < bodies.size(); ++i)
+        if (i != worst) changed.push_back(bodies[i]);
+      changed.insert(changed.end(), parts.begin(), parts.end());
+      changed = merge(std::move(changed), solid_, target, 0.999 * limit);
+      if (changed.size() > target || worst_of(changed) >= limit) return;
+      bodies = std::move(changed);
+    }
+  }
+
   std::vector<Finished> at_most(std::size_t target) {
     std::vector<std::vector<Body>> snapshots;
     const double most = tuning_.multiples.back() * static_cast<double>(target);
@@ -140,6 +161,7 @@ class Decomposer {
     std::vector<Body> bodies = best_merge(snapshots, target);
     if (bodies.empty())
       bodies = merge(leaf_bodies(), solid_, target, std::numeric_limits<double>::infinity());
+    refine(bodies, target);
     report("simplifying", 0.8);
     return finish(bodies, 0.25 * worst_of(bodies));
   }

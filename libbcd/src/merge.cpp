@@ -35,7 +35,7 @@ void join(const Body& a, const Body& b, std::vector<Vec3>& points) {
 Pair judge(const std::vector<Body>& bodies, std::uint32_t a, std::uint32_t b, const Solid& solid) {
   static thread_local std::vector<Vec3> points;
   join(bodies[a], bodies[b], points);
-  const Appraisal h = appraise(points, solid, hull_builder());
+  const Appraisal h = appraise(points, solid, hull_builder(), true);
   const double added =
       std::max(0.0, h.volume - bodies[a].appraisal.volume - bodies[b].appraisal.volume);
   return {a, b, h.worst + 0.05 * std::cbrt(added), h.worst};

@@ -13,14 +13,25 @@ namespace {
 
 class Measure {
  public:
-  Measure(const Mesh& body, const Solid& solid, const ReachOptions& options, double floor)
-      : body_(body), solid_(solid), options_(options), floor_(floor) {
+  Measure(const Mesh& body, const Solid& solid, const ReachOptions& options)
+      : body_(body), solid_(solid), options_(options) {
     // Rounding of midpoints, far above what is possible.
     slack_ = 1e-13 * (solid.box().min.cwiseAbs().cwiseMax(solid.box().max.cwiseAbs()).maxCoeff() +
                       solid.diagonal());
   }
 
-  Reach run() {
+  /// A first lower bound, from the facets' centres.
+  double sample() {
+    for (const Triangle& t : body_.triangles) {
+      const Vec3 c = (body_.vertices[t[0]] + body_.vertices[t[1]] + body_.vertices[t[2]]) / 3;
+      if (solid_.field(c) > result_.lower - 2 * solid_.spacing() && !solid_.contains(c))
+        raise(solid_.surface().nearest(c).lower, c);
+    }
+    return result_.lower;
+  }
+
+  Reach run(double floor) {
+    floor_ = floor;
     facets();
     inside();
     result_.upper = std::max({result_.lower, settled_, 0.0});
@@ -55,12 +66,6 @@ class Measure {
     for (const Triangle& t : body_.triangles)
       stack.push_back({{body_.vertices[t[0]], body_.vertices[t[1]], body_.vertices[t[2]]},
                        geom::DistanceQuery::kNone});
-    // The centres first: a good lower bound settles much.
-    for (const Piece& p : stack) {
-      const Vec3 c = (p.corner[0] + p.corner[1] + p.corner[2]) / 3;
-      if (solid_.field(c) > result_.lower - 2 * solid_.spacing() && !solid_.contains(c))
-        raise(solid_.surface().nearest(c).lower, c);
-    }
     std::size_t work = 0;
     while (!stack.empty()) {
       Piece p = stack.back();
@@ -181,7 +186,7 @@ class Measure {
   const Mesh& body_;
   const Solid& solid_;
   const ReachOptions& options_;
-  double floor_;
+  double floor_ = 0;
   double slack_ = 0;
   double settled_ = 0;
   Reach result_;
@@ -191,10 +196,17 @@ class Measure {
 
 std::vector<Reach> measure(const std::vector<Mesh>& bodies, const Solid& solid,
                            const ReachOptions& options, double floor) {
+  std::vector<Measure> measures;
+  measures.reserve(bodies.size());
+  for (const Mesh& body : bodies) measures.emplace_back(body, solid, options);
+  std::vector<double> sampled(bodies.size());
+  tbb::parallel_for(std::size_t{0}, bodies.size(),
+                    [&](std::size_t i) { sampled[i] = measures[i].sample(); });
+  // Only the largest matters: the others are told from it, not measured.
+  for (const double s : sampled) floor = std::max(floor, 0.7 * s);
   std::vector<Reach> out(bodies.size());
-  tbb::parallel_for(std::size_t{0}, bodies.size(), [&](std::size_t i) {
-    out[i] = Measure(bodies[i], solid, options, floor).run();
-  });
+  tbb::parallel_for(std::size_t{0}, bodies.size(),
+                    [&](std::size_t i) { out[i] = measures[i].run(floor); });
   return out;
 }
 

@@ -19,7 +19,8 @@ struct ReachOptions {
 };
 
 /// One bracket per body. Branch and bound over facets and, for pits and cavities that a body spans,
-/// over its inside. `floor` is a distance that need not be told from smaller ones.
+/// over its inside. Distances below `floor`, and below 0.7 of the largest among all bodies, are
+/// only told to be below it.
 std::vector<Reach> measure(const std::vector<Mesh>& bodies, const Solid& solid,
                            const ReachOptions& options, double floor = 0);
 

@@ -8,6 +8,29 @@ namespace {
 
 constexpr float kUnset = std::numeric_limits<float>::infinity();
 
+/// Squared distance of p to the triangle (a, a + ab, a + ac), rounded.
+double squared(const Vec3& p, const Vec3& a, const Vec3& ab, const Vec3& ac) {
+  const Vec3 ap = p - a;
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) return ap.squaredNorm();
+  const double bb = ab.squaredNorm(), bc = ab.dot(ac), cc = ac.squaredNorm();
+  const double d3 = d1 - bb, d4 = d2 - bc;
+  if (d3 >= 0 && d4 <= d3) return (ap - ab).squaredNorm();
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return (ap - (d1 / (d1 - d3)) * ab).squaredNorm();
+  const double d5 = d1 - bc, d6 = d2 - cc;
+  if (d6 >= 0 && d5 <= d6) return (ap - ac).squaredNorm();
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return (ap - (d2 / (d2 - d6)) * ac).squaredNorm();
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 >= d3 && d5 >= d6) {
+    const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    return (ap - ab - w * (ac - ab)).squaredNorm();
+  }
+  const double sum = va + vb + vc;
+  return (ap - (vb / sum) * ab - (vc / sum) * ac).squaredNorm();
+}
+
 }  // namespace
 
 Solid::Solid(const Mesh& mesh, std::size_t nodes)
@@ -15,7 +38,13 @@ Solid::Solid(const Mesh& mesh, std::size_t nodes)
       box_(geom::bounding_box(mesh)),
       diagonal_(box_.diagonal()),
       surface_(mesh),
-      winding_(mesh) {
+      winding_(mesh),
+      bvh_(mesh) {
+  for (const std::uint32_t t : bvh_.order()) {
+    const Triangle& v = mesh.triangles[t];
+    const Vec3& a = mesh.vertices[v[0]];
+    corners_.push_back({a, mesh.vertices[v[1]] - a, mesh.vertices[v[2]] - a});
+  }
   const Vec3 size = (box_.max - box_.min).cwiseMax(0.02 * diagonal_);
   spacing_ = std::cbrt(size.prod() / static_cast<double>(nodes));
   origin_ = box_.center() - 0.5 * size - Vec3::Constant(1.5 * spacing_);
@@ -33,6 +62,33 @@ bool Solid::contains(const Vec3& p) const {
   return !w || *w >= 1;
 }
 
+double Solid::rough_distance(const Vec3& p, double limit) const {
+  double best = limit * limit;
+  const auto nodes = bvh_.nodes();
+  const auto to_box = [&](const Box3& box) {
+    return (box.min - p).cwiseMax(p - box.max).cwiseMax(0.0).squaredNorm();
+  };
+  std::array<std::pair<double, std::uint32_t>, geom::Bvh::kMaxDepth> stack;
+  int size = 0;
+  stack[size++] = {to_box(nodes[0].box), 0};
+  while (size > 0) {
+    const auto [bound, index] = stack[--size];
+    if (bound >= best) continue;
+    const geom::Bvh::Node& node = nodes[index];
+    if (node.leaf()) {
+      for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
+        best = std::min(best, squared(p, corners_[i].a, corners_[i].ab, corners_[i].ac));
+      continue;
+    }
+    std::pair<double, std::uint32_t> near{to_box(nodes[index + 1].box), index + 1};
+    std::pair<double, std::uint32_t> far{to_box(nodes[node.first].box), node.first};
+    if (far.first < near.first) std::swap(near, far);
+    if (far.first < best) stack[size++] = far;
+    if (near.first < best) stack[size++] = near;
+  }
+  return std::sqrt(best);
+}
+
 float Solid::node(int x, int y, int z) const {
   const std::array<int, 3> at{x, y, z};
   const std::array<std::size_t, 3> step{
@@ -43,19 +99,22 @@ float Solid::node(int x, int y, int z) const {
   const float known = value_[index].load(std::memory_order_relaxed);
   if (known != kUnset) return known;
   const Vec3 p = origin_ + spacing_ * Vec3(x, y, z);
-  const double distance = surface_.nearest(p).upper;
-  // A neighbour whose distance exceeds the way to here is on the same side.
+  // A neighbour whose distance exceeds the way to here is on the same side, and bounds the
+  // distance.
   int side = 0;
-  for (int k = 0; k < 3 && side == 0; ++k) {
+  double limit = std::numeric_limits<double>::max();
+  for (int k = 0; k < 3; ++k) {
     for (const int s : {-1, 1}) {
       if (at[k] + s < 0 || at[k] + s >= size_[k]) continue;
       const float v =
           value_[s < 0 ? index - step[k] : index + step[k]].load(std::memory_order_relaxed);
-      if (v == kUnset || std::abs(v) <= 1.001 * spacing_) continue;
-      side = v < 0 ? -1 : 1;
-      break;
+      if (v == kUnset) continue;
+      limit = std::min(limit, 1.001 * (std::abs(v) + spacing_));
+      if (std::abs(v) > 1.001 * spacing_) side = v < 0 ? -1 : 1;
     }
   }
+  // The bound from a neighbour must not show in the value: it is never attained.
+  const double distance = rough_distance(p, std::min(limit, 1e100));
   if (side == 0) side = contains(p) ? -1 : 1;
   const auto value = static_cast<float>(side * distance);
   value_[index].store(value, std::memory_order_relaxed);

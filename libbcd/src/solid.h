@@ -39,12 +39,19 @@ class Solid {
 
  private:
   [[nodiscard]] float node(int x, int y, int z) const;
+  /// Distance to the surface, rounded, if it is below `limit`.
+  [[nodiscard]] double rough_distance(const Vec3& p, double limit) const;
 
   const Mesh& mesh_;
   Box3 box_;
   double diagonal_;
   geom::DistanceQuery surface_;
   geom::WindingNumber winding_;
+  geom::Bvh bvh_;
+  struct Corner {
+    Vec3 a, ab, ac;
+  };
+  std::vector<Corner> corners_;  // of the triangles, in the tree's order
   double spacing_ = 0;
   Vec3 origin_;
   std::array<int, 3> size_{};
