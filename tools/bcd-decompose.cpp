@@ -1,117 +1,283 @@
+#include <kaboum/bcd/closure.h>
 #include <kaboum/bcd/decompose.h>
 #include <kaboum/geom/error.h>
 #include <kaboum/geom/prepare.h>
 #include <kaboum/io/convex_io.h>
+#include <kaboum/verify/cover.h>
 
+#include <filesystem>
 #include <sstream>
 
 #include "cli.h"
+#include "set_cache.h"
+#include "set_picture.h"
 
 namespace {
 
 using namespace kaboum;
 using tools::Json;
 
+/// Changes whenever the same options may give another result: cached results are then not found.
+constexpr const char* kAlgorithm = "planes 1";
+
 struct Options {
-  std::string input, output, input_format, output_format, epsilon, effort = "normal", depfile,
-                                                                   unit = "m", frame;
+  std::string input, output, input_format, output_format, epsilon, effort = "normal";
+  std::string unit = "m", frame, preview, depfile;
   std::size_t max_bodies = 0, max_vertices = 64;
+  double explode = 0.5;
+  bool no_cache = false;
   geom::PrepareOptions prepare;
   tools::CommonOptions common;
 };
 
 const std::map<std::string, bcd::Effort> kEfforts{
     {"fast", bcd::Effort::Fast}, {"normal", bcd::Effort::Normal}, {"best", bcd::Effort::Best}};
+const std::map<std::string, io::SetFormat> kSetFormats{{"glb", io::SetFormat::Glb},
+                                                       {"obj", io::SetFormat::Obj},
+                                                       {"stl-folder", io::SetFormat::Directory}};
 
-std::string percent(double x, double diagonal) {
+void describe(CLI::App& app, Options& o) {
+  app.add_option("INPUT", o.input, "Mesh to decompose (- for stdin)")
+      ->required()
+      ->type_name("FILE");
+  app.add_option("-o,--output", o.output,
+                 "Where the bodies go: a .glb container, an .obj with one object per body, or a "
+                 "folder with one STL per body (- for stdout)")
+      ->required()
+      ->type_name("PATH");
+  app.add_option("--epsilon", o.epsilon,
+                 "Fewest bodies with no point farther than this from the solid: a length in the "
+                 "mesh's unit, or a percentage of the bounding box's diagonal, as in 0.5% [1% "
+                 "unless --max-bodies is given]")
+      ->check([](const std::string& s) {
+        return tools::parse_length(s) ? std::string()
+                                      : "must be a positive number, or a percentage such as 0.5%, "
+                                        "without blanks or units";
+      })
+      ->type_name("LENGTH|P%");
+  app.add_option("--max-bodies", o.max_bodies,
+                 "Smallest distance with at most this many bodies (1 to 100000)")
+      ->check(CLI::Range(1, 100000).description(""))
+      ->type_name("N");
+  app.add_option("--max-vertices-per-body", o.max_vertices,
+                 "Most vertices of a body (8 to 100000); physics engines take 64 or 255")
+      ->check(CLI::Range(8, 100000).description(""))
+      ->capture_default_str()
+      ->type_name("N");
+  app.add_option("--effort", o.effort, "How long to search [normal]")
+      ->check(CLI::IsMember({"fast", "normal", "best"}).description(""))
+      ->type_name("fast|normal|best");
+  app.add_option("--unit", o.unit, "Unit of length, noted in the container")
+      ->capture_default_str()
+      ->type_name("NAME");
+  app.add_option("--frame", o.frame, "Coordinate frame, noted in the container")->type_name("NAME");
+  app.add_option("--preview", o.preview, "Write a picture of the bodies (PNG)")->type_name("FILE");
+  app.add_option("--explode", o.explode,
+                 "How far apart the picture's second panel draws the bodies; 0: no second panel")
+      ->check(CLI::Range(0.0, 10.0).description(""))
+      ->capture_default_str()
+      ->type_name("X");
+  app.add_flag("--no-cache", o.no_cache,
+               "Neither use nor store results of earlier runs ($KABOUM_CACHE, else "
+               "$XDG_CACHE_HOME/kaboum, else ~/.cache/kaboum)");
+  app.add_flag("--drop-sheets", o.prepare.drop_sheets,
+               "Drop back-to-back faces without volume (they are then not covered)");
+  app.add_flag("--require-closed", o.prepare.require_closed, "Refuse open meshes");
+  app.add_flag("--keep-orientation", o.prepare.keep_orientation,
+               "Never turn inconsistent triangles or inside-out components");
+  app.add_option("--depfile", o.depfile, "Write a Makefile dependency rule")->type_name("FILE");
+  app.add_option("--input-format", o.input_format, "Format of INPUT [by extension]")
+      ->type_name("NAME");
+  app.add_option("--output-format", o.output_format, "Format of the result [by extension]")
+      ->check(CLI::IsMember({"glb", "obj", "stl-folder"}).description(""))
+      ->type_name("glb|obj|stl-folder");
+  tools::add_common_options(app, o.common);
+  app.footer(
+      "The union of the bodies contains the solid of INPUT and every one of its triangles; this "
+      "is\n"
+      "decided exactly on the bytes that are written. An open INPUT is closed by filling its "
+      "holes\n"
+      "first.\n"
+      "Exit codes: 0 done; 1 epsilon is not reached, or not with --max-bodies (the best result is\n"
+      "written); 2 usage; 3 bad input; 4 output failed; 5 not built; 6 internal error; 7 limit.");
+}
+
+std::string percent(double length, double diagonal) {
   std::ostringstream out;
   out.precision(3);
-  out << x << " (" << (diagonal > 0 ? 100 * x / diagonal : 0) << " %)";
+  out << length << " (" << (diagonal > 0 ? 100 * length / diagonal : 0) << " % of the diagonal)";
   return out.str();
 }
 
-int decompose(const Options& o) {
-  const tools::ThreadLimit threads(o.common.threads);
-  std::vector<char> bytes;
-  const io::ReadResult read =
-      io::read_mesh(o.input, tools::format_for(o.input, o.input_format, "--input-format"), &bytes);
-  const geom::Prepared prepared = geom::prepare(read.mesh, o.prepare);
+io::SetFormat output_format(const Options& o) {
+  if (!o.output_format.empty()) return kSetFormats.at(o.output_format);
+  if (o.output == "-")
+    throw Error(ErrorCode::InvalidArgument, "--output-format is needed with '-': glb or obj");
+  if (const auto format = io::set_format_from_path(o.output)) return *format;
+  throw Error(ErrorCode::InvalidArgument,
+              o.output +
+                  ": unknown extension; use .glb, .obj or the name of a folder, or give "
+                  "--output-format");
+}
+
+/// The options that the result depends on, for the record.
+std::string parameters(const Options& o) {
+  std::ostringstream out;
+  if (!o.epsilon.empty() || o.max_bodies == 0)
+    out << "--epsilon " << (o.epsilon.empty() ? "1%" : o.epsilon) << ' ';
+  if (o.max_bodies > 0) out << "--max-bodies " << o.max_bodies << ' ';
+  out << "--max-vertices-per-body " << o.max_vertices << " --effort " << o.effort;
+  if (o.prepare.drop_sheets) out << " --drop-sheets";
+  if (o.prepare.require_closed) out << " --require-closed";
+  if (o.prepare.keep_orientation) out << " --keep-orientation";
+  return out.str();
+}
+
+const char* name_of(bcd::Stop stop) {
+  switch (stop) {
+    case bcd::Stop::Done:
+      return "done";
+    case bcd::Stop::TooManyBodies:
+      return "max-bodies";
+    case bcd::Stop::Stuck:
+      break;
+  }
+  return "stuck";
+}
+
+/// Decomposes, serialises, reads back and decides the cover.
+tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const std::string& hash) {
+  tools::Progress progress(o.common.quiet);
+  const geom::Prepared prepared = geom::prepare(mesh, o.prepare);
+  for (const std::string& note : prepared.notes) tools::log(o.common.quiet, o.input + ": " + note);
   const double diagonal = geom::bounding_box(prepared.mesh).diagonal();
   bcd::DecomposeOptions options;
-  if (!o.epsilon.empty()) options.epsilon = tools::parse_length(o.epsilon)->of(diagonal);
+  if (!o.epsilon.empty() || o.max_bodies == 0)
+    options.epsilon = tools::parse_length(o.epsilon.empty() ? "1%" : o.epsilon)->of(diagonal);
   if (o.max_bodies > 0) options.max_bodies = o.max_bodies;
-  if (o.epsilon.empty() && o.max_bodies == 0) options.epsilon = 0.01 * diagonal;
   options.max_vertices = o.max_vertices;
   options.effort = kEfforts.at(o.effort);
-  tools::Progress progress(o.common.quiet);
   options.progress = [&](const bcd::Progress& p) {
     progress.show(p.stage + " " + std::to_string(static_cast<int>(100 * p.fraction)) + " %");
   };
-  const double before = tools::user_seconds();
   bcd::DecomposeResult result = bcd::decompose(prepared, options);
-  const double seconds = tools::user_seconds() - before;
   geom::ConvexSet set;
   set.bodies = std::move(result.bodies);
   geom::Provenance& p = set.provenance;
-  p.source = o.input;
-  p.source_sha256 = io::sha256(bytes);
+  p.source = std::filesystem::path(o.input).filename().string();
+  p.source_sha256 = hash;
   p.tool = std::string("bcd-decompose ") + tools::version();
+  p.parameters = parameters(o);
   p.unit = o.unit;
   p.frame = o.frame;
   p.direction = "outer";
   p.epsilon = result.reach_upper;
-  io::write_convex_set(o.output, set);
-  tools::log(o.common.quiet, std::to_string(set.bodies.size()) + " bodies, " +
-                                 std::to_string(result.statistics.vertices) +
-                                 " vertices (largest " + std::to_string(result.statistics.largest) +
-                                 "), reach " + percent(result.reach_lower, diagonal) + " to " +
-                                 percent(result.reach_upper, diagonal));
-  if (!o.common.report.empty()) {
-    Json json;
-    json["bodies"] = set.bodies.size();
-    json["vertices"] = result.statistics.vertices;
-    json["largest"] = result.statistics.largest;
-    json["reach"] = {{"lower", result.reach_lower},
-                     {"upper", result.reach_upper},
-                     {"upper_percent", 100 * result.reach_upper / diagonal}};
-    json["diagonal"] = diagonal;
-    json["user_seconds"] = seconds;
-    tools::write_json(o.common.report, json);
+  p.covers_surface = true;
+  p.covers_solid = prepared.closed;
+  tools::SetCache::Entry entry;
+  entry.container = io::serialise_convex_set(set, io::SetFormat::Glb);
+  // What is written is what is verified.
+  progress.show("verifying");
+  const geom::ConvexSet written =
+      io::parse_convex_set(entry.container, io::Format::Glb, "the result");
+  const geom::Mesh target = prepared.closed ? prepared.mesh : bcd::close_holes(prepared.mesh);
+  const verify::Cover cover = verify::verify_cover(target, written);
+  if (cover.convex.answer != verify::Answer::Verified ||
+      cover.inclusion.solid.answer != verify::Answer::Verified ||
+      cover.inclusion.surface.answer != verify::Answer::Verified)
+    throw Error(ErrorCode::Internal,
+                o.input + ": the bodies found do not pass the exact check of their cover (" +
+                    cover.convex.reason + cover.inclusion.solid.reason +
+                    cover.inclusion.surface.reason + "); nothing is written");
+  const bcd::DecomposeStatistics& s = result.statistics;
+  entry.report = {
+      {"stop", name_of(result.stop)},
+      {"bodies", written.bodies.size()},
+      {"vertices", s.vertices},
+      {"largest_body_vertices", s.largest},
+      {"reach",
+       {{"lower", result.reach_lower},
+        {"upper", result.reach_upper},
+        {"upper_percent", diagonal > 0 ? 100 * result.reach_upper / diagonal : 0.0}}},
+      {"cover",
+       {{"surface", "verified"}, {"solid", prepared.closed ? "verified" : "of the closed mesh"}}},
+      {"closed", prepared.closed},
+      {"filled_triangles", s.filled_triangles},
+      {"pieces", s.leaves},
+      {"diagonal", diagonal},
+      {"notes", prepared.notes}};
+  return entry;
+}
+
+int decompose(const Options& o) {
+  const tools::ThreadLimit threads(o.common.threads);
+  const io::SetFormat format = output_format(o);
+  if (o.output == "-" && format == io::SetFormat::Directory)
+    throw Error(ErrorCode::InvalidArgument, "a folder cannot be written to stdout; use glb or obj");
+  const io::Format input_format = tools::format_for(o.input, o.input_format, "--input-format");
+  std::vector<char> bytes = io::read_file(o.input);
+  const std::string hash = io::sha256(bytes);
+  const std::string key = hash + '\n' + std::to_string(static_cast<int>(input_format)) + '\n' +
+                          parameters(o) + '\n' + o.unit + '\n' + o.frame + '\n' +
+                          std::filesystem::path(o.input).filename().string() + '\n' +
+                          tools::version() + '\n' + kAlgorithm;
+  // Formats that refer to other files depend on more than their own bytes.
+  const bool alone = input_format != io::Format::Gltf && input_format != io::Format::Vrml &&
+                     input_format != io::Format::Collada && input_format != io::Format::X3d;
+  const bool use_cache = !o.no_cache && alone;
+  const tools::SetCache cache(key);
+  std::optional<tools::SetCache::Entry> entry;
+  if (use_cache) entry = cache.find();
+  const bool cached = entry.has_value();
+  if (!cached) {
+    const std::string name = o.input == "-" ? "standard input" : o.input;
+    const std::filesystem::path file(o.input);
+    const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+    const io::ReadResult read = io::parse_mesh(bytes, input_format, name, folder);
+    for (const std::string& note : read.notes) tools::log(o.common.quiet, o.input + ": " + note);
+    entry = compute(o, read.mesh, hash);
+    if (use_cache) cache.store(*entry);
   }
-  return result.stop == bcd::Stop::Done ? tools::kDone : tools::kNo;
+  const geom::ConvexSet set = io::parse_convex_set(entry->container, io::Format::Glb, "the result");
+  Json report = entry->report;
+  const double diagonal = report["diagonal"].get<double>();
+  tools::log(o.common.quiet,
+             std::to_string(set.bodies.size()) +
+                 (set.bodies.size() == 1 ? " body, " : " bodies, ") +
+                 std::to_string(report["vertices"].get<std::size_t>()) +
+                 " vertices; cover verified exactly; no point farther from the solid than " +
+                 percent(report["reach"]["upper"].get<double>(), diagonal) +
+                 (cached ? " (from the cache)" : ""));
+  const bool done = report["stop"] == "done";
+  if (!done)
+    tools::log(o.common.quiet, report["stop"] == "stuck"
+                                   ? "epsilon could not be reached; allow more vertices per body"
+                                   : "epsilon needs more bodies than --max-bodies allows");
+  if (!o.preview.empty()) io::write_file(o.preview, tools::picture_of(set, o.explode));
+  if (!o.common.report.empty()) {
+    report["tool"] = std::string("bcd-decompose ") + tools::version();
+    report["input"] = {{"file", o.input}, {"sha256", hash}};
+    report["parameters"] = set.provenance.parameters;
+    report["cached"] = cached;
+    report["user_seconds"] = tools::user_seconds();
+    report["peak_megabytes"] = tools::peak_megabytes();
+    tools::write_json(o.common.report, report);
+  }
+  if (!o.depfile.empty()) tools::write_depfile(o.depfile, o.output, {o.input});
+  if (format == io::SetFormat::Glb) {
+    io::write_file(o.output, entry->container);
+  } else {
+    io::write_convex_set(o.output, set, format);
+  }
+  return done ? tools::kDone : tools::kNo;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Convex bodies that contain a solid.", "bcd-decompose"};
-  Options o;
-  app.add_option("INPUT", o.input, "Mesh to decompose (- for stdin)")
-      ->required()
-      ->type_name("FILE");
-  app.add_option("-o,--output", o.output, "Result: .glb, .obj, or a folder")
-      ->required()
-      ->type_name("PATH");
-  app.add_option("--epsilon", o.epsilon,
-                 "Largest distance from the bodies to the solid [1% unless --max-bodies is given]")
-      ->check([](const std::string& s) {
-        return tools::parse_length(s) ? std::string()
-                                      : "must be a positive number, or a percentage such as 0.5%";
-      })
-      ->type_name("LENGTH|P%");
-  app.add_option("--max-bodies", o.max_bodies, "Most bodies")
-      ->check(CLI::Range(1, 1000000))
-      ->type_name("N");
-  app.add_option("--max-vertices-per-body", o.max_vertices, "Most vertices of a body")
-      ->check(CLI::Range(8, 1000000))
-      ->capture_default_str()
-      ->type_name("N");
-  app.add_option("--effort", o.effort, "fast, normal, best")
-      ->check(CLI::IsMember({"fast", "normal", "best"}))
-      ->capture_default_str();
-  app.add_flag("--drop-sheets", o.prepare.drop_sheets, "Drop sheets");
-  app.add_option("--input-format", o.input_format, "Format of INPUT [by extension]")
-      ->type_name("NAME");
-  tools::add_common_options(app, o.common);
-  return tools::run(app, argc, argv, [&] { return decompose(o); });
+  CLI::App app{"Decomposes a solid into few convex bodies whose union provably contains it.",
+               "bcd-decompose"};
+  Options options;
+  describe(app, options);
+  return tools::run(app, argc, argv, [&] { return decompose(options); });
 }

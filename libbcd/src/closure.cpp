@@ -1,5 +1,4 @@
-#include "closure.h"
-
+#include <kaboum/bcd/closure.h>
 #include <kaboum/geom/error.h>
 #include <kaboum/geom/topology.h>
 

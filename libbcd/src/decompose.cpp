@@ -1,3 +1,4 @@
+#include <kaboum/bcd/closure.h>
 #include <kaboum/bcd/decompose.h>
 #include <kaboum/geom/error.h>
 #include <tbb/parallel_for.h>
@@ -6,7 +7,6 @@
 #include <cmath>
 #include <map>
 
-#include "closure.h"
 #include "outward.h"
 #include "reach.h"
 #include "search.h"
@@ -163,7 +163,49 @@ class Decomposer {
       bodies = merge(leaf_bodies(), solid_, target, std::numeric_limits<double>::infinity());
     refine(bodies, target);
     report("simplifying", 0.8);
-    return finish(bodies, 0.25 * worst_of(bodies));
+    std::vector<Finished> finished = finish(bodies, 0.25 * worst_of(bodies));
+    for (int round = 0; round < tuning_.refinements; ++round) {
+      report("refining", 0.8 + 0.2 * round / tuning_.refinements);
+      if (!improve(finished, target)) break;
+    }
+    return finished;
+  }
+
+  /// Takes the body with the largest certified distance apart, and merges others instead. @return
+  /// false when that did not help.
+  bool improve(std::vector<Finished>& finished, std::size_t target) {
+    std::size_t worst = 0;
+    for (std::size_t i = 1; i < finished.size(); ++i)
+      if (finished[i].reach.lower > finished[worst].reach.lower) worst = i;
+    const double limit = finished[worst].reach.upper;
+    const std::vector<Body> parts = take_apart(finished[worst].body, limit);
+    if (parts.size() < 2) return false;
+    std::vector<Body> bodies;
+    for (std::size_t i = 0; i < finished.size(); ++i)
+      if (i != worst) bodies.push_back(finished[i].body);
+    bodies.insert(bodies.end(), parts.begin(), parts.end());
+    bodies = merge(std::move(bodies), solid_, target, 0.95 * limit);
+    if (bodies.size() > target) return false;
+    // Bodies that stayed need not be finished again.
+    std::map<std::vector<int>, std::size_t> known;
+    for (std::size_t i = 0; i < finished.size(); ++i)
+      if (i != worst) known.emplace(finished[i].body.leaves, i);
+    std::vector<Body> fresh;
+    std::vector<std::size_t> kept;
+    for (Body& b : bodies) {
+      const auto at = known.find(b.leaves);
+      if (at != known.end()) {
+        kept.push_back(at->second);
+      } else {
+        fresh.push_back(std::move(b));
+      }
+    }
+    std::vector<Finished> changed = finish(fresh, 0.25 * limit, limit);
+    for (const Finished& f : changed)
+      if (f.reach.upper >= 0.995 * limit) return false;
+    for (const std::size_t i : kept) changed.push_back(std::move(finished[i]));
+    finished = std::move(changed);
+    return true;
   }
 
   std::vector<Finished> within(double epsilon) {

@@ -198,9 +198,11 @@ void draw_mesh(Image& image, int left, int top, int width, int height, const geo
     const Vec3 normal = (b - a).cross(c - a).normalized();
     normals.push_back(normal);
     const bool front = normal.dot(camera.eye() - a) >= 0;
+    const Colour surface =
+        style.of_triangle.empty() ? style.surface : style.of_triangle[normals.size() - 1];
     const double light = brightness(front ? normal : Vec3(-normal), camera);
     std::array<Colour, 3> base;
-    base.fill(times(front ? style.surface : Colour{0.62F, 0.36F, 0.34F}, light));
+    base.fill(times(front ? surface : Colour{0.62F, 0.36F, 0.34F}, light));
     if (!style.vertex_colours.empty())
       for (std::size_t k = 0; k < 3; ++k) base[k] = times(style.vertex_colours[t[k]], light);
     fill_triangle(buffer, projected[t[0]], projected[t[1]], projected[t[2]], base);

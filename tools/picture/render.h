@@ -5,6 +5,7 @@
 #include <kaboum/geom/mesh.h>
 
 #include <span>
+#include <vector>
 
 namespace kaboum::picture {
 
@@ -38,6 +39,7 @@ struct Style {
   bool outlines = true;  ///< draw sharp edges and borders
   /// One colour per vertex, blended across triangles, instead of `surface`; empty: none.
   std::span<const Colour> vertex_colours;
+  std::vector<Colour> of_triangle;  ///< per triangle, in place of `surface`; or empty
 };
 
 /// Draws the mesh into the panel whose left edge is at `left`: flat shading, z-buffer, two by two
