@@ -101,6 +101,24 @@ Appraisal appraise(std::span<const Vec3> points, const Solid& solid, geom::HullB
       }
     }
   }
+  for (const Solid::Probe& probe : solid.probes()) {
+    const Vec3& p = probe.point;
+    if ((p.array() <= box.min.array()).any() || (p.array() >= box.max.array()).any()) continue;
+    bool inside = true;
+    for (const Triangle& t : builder.triangles()) {
+      const Vec3& a = points[t[0]];
+      if ((points[t[1]] - a).cross(points[t[2]] - a).dot(p - a) < 0) continue;
+      inside = false;
+      break;
+    }
+    if (!inside) continue;
+    const double d = probe.distance;
+    out.fourth += solid.probe_area() * d * d * d * d;
+    if (d > out.worst) {
+      out.worst = d;
+      out.at = p;
+    }
+  }
   return out;
 }
 

@@ -51,7 +51,7 @@ class Decomposer {
   Decomposer(const geom::Prepared& input, const Mesh& closed, const DecomposeOptions& options)
       : options_(options),
         tuning_(tuning(options.effort)),
-        solid_(closed, tuning_.grid),
+        solid_(closed, tuning_.grid, options.epsilon ? 0.3 * *options.epsilon : 0),
         tree_(solid_, tuning_.search) {
     result_.statistics.filled_triangles = closed.triangles.size() - input.mesh.triangles.size();
     double magnitude = 0;

@@ -1,5 +1,7 @@
 #include "solid.h"
 
+#include <kaboum/geom/convex_hull.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -33,7 +35,7 @@ double squared(const Vec3& p, const Vec3& a, const Vec3& ab, const Vec3& ac) {
 
 }  // namespace
 
-Solid::Solid(const Mesh& mesh, std::size_t nodes)
+Solid::Solid(const Mesh& mesh, std::size_t nodes, double shallow)
     : mesh_(mesh),
       box_(geom::bounding_box(mesh)),
       diagonal_(box_.diagonal()),
@@ -55,6 +57,39 @@ Solid::Solid(const Mesh& mesh, std::size_t nodes)
   }
   value_ = std::make_unique<std::atomic<float>[]>(total);
   for (std::size_t i = 0; i < total; ++i) value_[i].store(kUnset, std::memory_order_relaxed);
+  find_probes(std::max(shallow, 0.8 * spacing_));
+}
+
+void Solid::find_probes(double shallow) {
+  geom::HullBuilder hull;
+  if (!hull.build(mesh_.vertices)) return;
+  std::vector<std::pair<Vec3, double>> planes;
+  for (const Triangle& t : hull.triangles()) {
+    const Vec3& a = mesh_.vertices[t[0]];
+    const Vec3 n = (mesh_.vertices[t[1]] - a).cross(mesh_.vertices[t[2]] - a);
+    planes.emplace_back(n, n.dot(a));
+  }
+  constexpr int kStep = 2;
+  for (int z = kStep; z + kStep < size_[2]; z += kStep) {
+    for (int y = kStep; y + kStep < size_[1]; y += kStep) {
+      for (int x = kStep; x + kStep < size_[0]; x += kStep) {
+        const Vec3 p = origin_ + spacing_ * Vec3(x, y, z);
+        bool inside = true;
+        for (const auto& [n, d] : planes) {
+          if (n.dot(p) < d) continue;
+          inside = false;
+          break;
+        }
+        if (!inside) continue;
+        const float v = node(x, y, z);
+        if (v < shallow) continue;
+        const int ridges = (v >= node(x - kStep, y, z) && v >= node(x + kStep, y, z) ? 1 : 0) +
+                           (v >= node(x, y - kStep, z) && v >= node(x, y + kStep, z) ? 1 : 0) +
+                           (v >= node(x, y, z - kStep) && v >= node(x, y, z + kStep) ? 1 : 0);
+        if (ridges >= 2) probes_.push_back({p, v});
+      }
+    }
+  }
 }
 
 bool Solid::contains(const Vec3& p) const {

@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <memory>
+#include <vector>
 
 namespace kaboum::bcd {
 
@@ -20,7 +21,8 @@ class Solid {
  public:
   /// @param mesh  a closed chain; kept by reference.
   /// @param nodes  wished number of nodes of the grid behind field().
-  Solid(const Mesh& mesh, std::size_t nodes);
+  /// @param shallow  probes nearer to the surface are left out. [length]
+  Solid(const Mesh& mesh, std::size_t nodes, double shallow);
 
   [[nodiscard]] const Mesh& mesh() const { return mesh_; }
   [[nodiscard]] const Box3& box() const { return box_; }
@@ -34,10 +36,20 @@ class Solid {
   /// computed when they are first needed. Good to about the grid's spacing; guides the search,
   /// never a claim. Same value whatever was asked before, from any thread.
   [[nodiscard]] double field(const Vec3& p) const;
+  /// Points outside the solid, far from it compared with their neighbours: where a hull that spans
+  /// a pit or a cavity is farthest from the solid, although its facets may be near.
+  struct Probe {
+    Vec3 point;
+    double distance;
+  };
+  [[nodiscard]] const std::vector<Probe>& probes() const { return probes_; }
+  /// What the square of a probe's distance from the next one is about. [length²]
+  [[nodiscard]] double probe_area() const { return 4 * spacing_ * spacing_; }
   [[nodiscard]] double spacing() const { return spacing_; }
   [[nodiscard]] std::size_t nodes_computed() const { return computed_; }
 
  private:
+  void find_probes(double shallow);
   [[nodiscard]] float node(int x, int y, int z) const;
   /// Distance to the surface, rounded, if it is below `limit`.
   [[nodiscard]] double rough_distance(const Vec3& p, double limit) const;
@@ -56,6 +68,7 @@ class Solid {
   Vec3 origin_;
   std::array<int, 3> size_{};
   std::unique_ptr<std::atomic<float>[]> value_;
+  std::vector<Probe> probes_;
   mutable std::atomic<std::size_t> computed_{0};
 };
 
