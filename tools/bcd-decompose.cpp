@@ -139,11 +139,16 @@ const char* name_of(bcd::Stop stop) {
       return "done";
     case bcd::Stop::TooManyBodies:
       return "max-bodies";
+    case bcd::Stop::TooCoarse:
+      return "float32 too coarse";
     case bcd::Stop::Stuck:
       break;
   }
   return "stuck";
 }
+
+/// float32 cannot hold the bodies closely enough: a valid "no", nothing is written.
+struct TooCoarse {};
 
 /// Decomposes, serialises, reads back and decides the cover.
 tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const std::string& hash) {
@@ -161,6 +166,7 @@ tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const s
     progress.show(p.stage + " " + std::to_string(static_cast<int>(100 * p.fraction)) + " %");
   };
   bcd::DecomposeResult result = bcd::decompose(prepared, options);
+  if (result.stop == bcd::Stop::TooCoarse) throw TooCoarse{};
   geom::ConvexSet set;
   set.bodies = std::move(result.bodies);
   geom::Provenance& p = set.provenance;
@@ -279,5 +285,14 @@ int main(int argc, char** argv) {
                "bcd-decompose"};
   Options options;
   describe(app, options);
-  return tools::run(app, argc, argv, [&] { return decompose(options); });
+  return tools::run(app, argc, argv, [&] {
+    try {
+      return decompose(options);
+    } catch (const TooCoarse&) {
+      tools::log(false, options.input +
+                            ": float32 is too coarse so far from the origin (or for this epsilon); "
+                            "move the mesh to the origin. Nothing is written");
+      return static_cast<int>(tools::kNo);
+    }
+  });
 }

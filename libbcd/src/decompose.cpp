@@ -1,6 +1,7 @@
 #include <kaboum/bcd/closure.h>
 #include <kaboum/bcd/decompose.h>
 #include <kaboum/geom/error.h>
+#include <kaboum/geom/float32.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -226,7 +227,9 @@ class Decomposer {
     report("simplifying", 0.6);
     // Simplify; where the vertices allowed are too few, take the body apart.
     std::vector<Finished> out;
-    for (int round = 0; round < 30 && !best.empty(); ++round) {
+    const std::size_t most_bodies = 200 + 8 * best.size();
+    for (int round = 0; round < 30 && !best.empty() && best.size() + out.size() < most_bodies;
+         ++round) {
       std::vector<Finished> tried = finish(best, 0.5 * wished, epsilon);
       best.clear();
       for (Finished& f : tried) {
@@ -329,6 +332,16 @@ DecomposeResult decompose(const geom::Prepared& input, const DecomposeOptions& o
     throw Error(ErrorCode::InvalidArgument, "decompose: max_bodies must be at least 1");
   if (options.max_vertices < 8)
     throw Error(ErrorCode::InvalidArgument, "decompose: fewer than 8 vertices per body");
+  double magnitude = 0;
+  for (const Vec3& p : input.mesh.vertices)
+    magnitude = std::max(magnitude, p.cwiseAbs().maxCoeff());
+  const double spacing = geom::float32_spacing(magnitude);
+  const double diagonal = geom::bounding_box(input.mesh).diagonal();
+  if (spacing > 1e-6 * diagonal || (options.epsilon && spacing > 0.01 * *options.epsilon)) {
+    DecomposeResult coarse;
+    coarse.stop = Stop::TooCoarse;
+    return coarse;
+  }
   const Mesh closed = input.closed ? input.mesh : close_holes(input.mesh);
   return Decomposer(input, closed, options).run();
 }

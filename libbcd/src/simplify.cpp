@@ -91,6 +91,8 @@ class Contractor {
   [[nodiscard]] std::size_t count() const { return alive_; }
 
  private:
+  /// Beyond, sets of three constraints are too many to try.
+  static constexpr std::size_t kMostConstraints = 40;
   static constexpr std::uint64_t kRetry = ~std::uint64_t{0};
   struct Entry {
     double cost;
@@ -267,6 +269,7 @@ class Contractor {
         }
       }
     }
+    if (k > kMostConstraints) return false;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < k; ++i) {
       for (std::size_t j = i + 1; j < k; ++j) {

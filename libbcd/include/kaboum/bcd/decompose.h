@@ -35,6 +35,7 @@ struct DecomposeOptions {
 enum class Stop {
   Done,           ///< epsilon reached, within max_bodies when given; or max_bodies alone was given
   TooManyBodies,  ///< epsilon is not reached with max_bodies
+  TooCoarse,      ///< float32's spacing here exceeds epsilon/100 or 1e-6 of the diagonal; no bodies
   Stuck,          ///< epsilon is not reached though everything was tried
 };
 

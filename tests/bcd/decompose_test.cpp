@@ -1,0 +1,239 @@
+#include <gtest/gtest.h>
+#include <kaboum/bcd/closure.h>
+#include <kaboum/bcd/decompose.h>
+#include <kaboum/geom/error.h>
+#include <kaboum/geom/float32.h>
+#include <kaboum/io/convex_io.h>
+#include <kaboum/verify/cover.h>
+#include <tbb/global_control.h>
+
+#include <random>
+
+#include "solids.h"
+#include "support/families.h"
+#include "support/oracle.h"
+#include "support/shapes.h"
+
+namespace kaboum::bcd {
+namespace {
+
+using geom::Mesh;
+using geom::Vec3;
+using test::prism;
+
+DecomposeResult run(const Mesh& mesh, double epsilon_percent, std::size_t max_vertices = 64) {
+  DecomposeOptions options;
+  options.epsilon = 0.01 * epsilon_percent * geom::bounding_box(mesh).diagonal();
+  options.max_vertices = max_vertices;
+  options.effort = Effort::Fast;
+  return decompose(geom::prepare(mesh), options);
+}
+
+geom::ConvexSet set_of(const DecomposeResult& result) {
+  geom::ConvexSet set;
+  set.bodies = result.bodies;
+  return set;
+}
+
+verify::Answer cover_of(const Mesh& mesh, const geom::ConvexSet& set) {
+  const verify::Cover cover = verify::verify_cover(mesh, set);
+  for (const auto answer :
+       {cover.convex.answer, cover.inclusion.solid.answer, cover.inclusion.surface.answer})
+    if (answer != verify::Answer::Verified) return answer;
+  return verify::Answer::Verified;
+}
+
+/// All that is claimed of a result.
+void expect_claims(const Mesh& mesh, const DecomposeResult& result, std::size_t max_vertices) {
+  const geom::ConvexSet set = set_of(result);
+  EXPECT_FALSE(geom::find_not_convex(set).has_value());
+  EXPECT_EQ(cover_of(mesh, set), verify::Answer::Verified);
+  EXPECT_LE(result.reach_lower, result.reach_upper);
+  for (const geom::ConvexBody& body : set.bodies) {
+    EXPECT_LE(body.hull.vertices.size(), max_vertices);
+    for (const Vec3& p : body.hull.vertices) EXPECT_TRUE(geom::is_float32(p));
+  }
+}
+
+TEST(Decompose, CoversEveryFamily) {
+  int seen = 0;
+  for (const auto& f : kaboum::test::closed_families()) {
+    if (!f.solid || f.mesh.triangles.size() > 1500) continue;
+    SCOPED_TRACE(f.name);
+    geom::Prepared prepared;
+    try {
+      prepared = geom::prepare(f.mesh);
+    } catch (const Error&) {
+      continue;  // sheets
+    }
+    const std::size_t most = seen % 2 == 0 ? 64 : 24;
+    const DecomposeResult result = run(prepared.mesh, 4, most);
+    if (result.stop == Stop::TooCoarse) {
+      EXPECT_TRUE(result.bodies.empty());
+      continue;
+    }
+    expect_claims(prepared.mesh, result, most);
+    if (f.convex && f.mesh.vertices.size() <= most) {
+      EXPECT_EQ(result.bodies.size(), 1U);
+    }
+    ++seen;
+  }
+  EXPECT_GE(seen, 10);
+}
+
+TEST(Decompose, CoversOpenMeshesAndTheirFilledHoles) {
+  int seen = 0;
+  for (const auto& f : kaboum::test::open_families()) {
+    if (f.mesh.triangles.size() > 1500) continue;
+    SCOPED_TRACE(f.name);
+    geom::Prepared prepared;
+    try {
+      prepared = geom::prepare(f.mesh);
+    } catch (const Error&) {
+      continue;
+    }
+    const DecomposeResult result = run(prepared.mesh, 5);
+    expect_claims(close_holes(prepared.mesh), result, 64);
+    ++seen;
+  }
+  EXPECT_GE(seen, 2);
+}
+
+TEST(Decompose, PointsOfTheSolidAreInABody) {
+  // Against the slow oracle, which shares nothing with the library.
+  const Mesh knot = geom::prepare(kaboum::test::torus_knot(2, 3, 0.15, 60, 8)).mesh;
+  const DecomposeResult result = run(knot, 3);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> unit(-1.5, 1.5);
+  int inside = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const Vec3 p(unit(random), unit(random), 0.5 * unit(random));
+    const auto w = kaboum::test::winding_number_slow(knot, p);
+    if (w && *w < 1) continue;
+    ++inside;
+    bool covered = false;
+    for (const geom::ConvexBody& body : result.bodies) {
+      const auto b = kaboum::test::winding_number_slow(body.hull, p);
+      covered = covered || !b || *b == 1;
+    }
+    EXPECT_TRUE(covered) << p.transpose();
+  }
+  EXPECT_GT(inside, 50);
+}
+
+TEST(Decompose, MutantsAreRefuted) {
+  const Mesh mesh = prism({{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}, 1);
+  const DecomposeResult result = run(mesh, 1);
+  const geom::ConvexSet good = set_of(result);
+  ASSERT_EQ(cover_of(mesh, good), verify::Answer::Verified);
+  ASSERT_EQ(good.bodies.size(), 2U);
+  for (std::size_t i = 0; i < good.bodies.size(); ++i) {
+    geom::ConvexSet mutant = good;  // a body missing
+    mutant.bodies.erase(mutant.bodies.begin() + static_cast<std::ptrdiff_t>(i));
+    EXPECT_EQ(cover_of(mesh, mutant), verify::Answer::Refuted);
+    mutant = good;  // a body shrunk by a millionth
+    const Vec3 center = geom::bounding_box(mutant.bodies[i].hull).center();
+    for (Vec3& p : mutant.bodies[i].hull.vertices) p = center + (1 - 1e-6) * (p - center);
+    EXPECT_EQ(cover_of(mesh, mutant), verify::Answer::Refuted);
+  }
+}
+
+TEST(Decompose, InteriorCornersOfCellsAreCovered) {
+  // A ball is cut into many cells only when told so: few vertices per body at a small epsilon.
+  const Mesh ball = kaboum::test::icosphere(3);
+  const DecomposeResult result = run(ball, 0.4, 12);
+  EXPECT_GT(result.bodies.size(), 8U);
+  expect_claims(ball, result, 12);
+}
+
+TEST(Decompose, ObviousDecompositionsAreFound) {
+  struct Case {
+    const char* name;
+    Mesh mesh;
+    std::size_t bodies;
+  };
+  const auto table = [] {
+    // One closed surface: legs below a plate, by a union along z.
+    std::vector<Mesh> parts{
+        kaboum::test::translated(kaboum::test::box(Vec3(8, 6, 1), 1), Vec3(0, 0, 5))};
+    for (const double x : {0.0, 7.0})
+      for (const double y : {0.0, 5.0})
+        parts.push_back(
+            kaboum::test::translated(kaboum::test::box(Vec3(1, 1, 5.5), 1), Vec3(x, y, 0)));
+    return kaboum::test::merged(parts);
+  };
+  const std::vector<Case> cases = {
+      {"L", prism({{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}, 1), 2},
+      {"U", prism({{0, 0}, {3, 0}, {3, 3}, {2, 3}, {2, 1}, {1, 1}, {1, 3}, {0, 3}}, 1), 3},
+      {"T", prism({{1, 0}, {2, 0}, {2, 2}, {3, 2}, {3, 3}, {0, 3}, {0, 2}, {1, 2}}, 1), 2},
+      {"H",
+       prism({{0, 0},
+              {5, 0},
+              {5, 1},
+              {3, 1},
+              {3, 4},
+              {5, 4},
+              {5, 5},
+              {0, 5},
+              {0, 4},
+              {2, 4},
+              {2, 1},
+              {0, 1}},
+             8),
+       3},
+      {"table", table(), 5},
+  };
+  for (const Case& c : cases) {
+    SCOPED_TRACE(c.name);
+    const DecomposeResult result = run(c.mesh, 0.5);
+    EXPECT_EQ(result.bodies.size(), c.bodies);
+    EXPECT_LE(result.reach_upper, 1e-4 * geom::bounding_box(c.mesh).diagonal());
+    expect_claims(geom::prepare(c.mesh).mesh, result, 64);
+  }
+}
+
+TEST(Decompose, SameBytesForAnyNumberOfThreads) {
+  const Mesh mesh = kaboum::test::torus(1, 0.3, 40, 16);
+  std::vector<std::vector<char>> bytes;
+  for (const std::size_t threads : {1U, 2U, 5U}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    bytes.push_back(io::serialise_convex_set(set_of(run(mesh, 2)), io::SetFormat::Glb));
+  }
+  EXPECT_EQ(bytes[0], bytes[1]);
+  EXPECT_EQ(bytes[0], bytes[2]);
+}
+
+TEST(Decompose, BodiesForADistanceAndDistanceForBodies) {
+  const Mesh mesh = kaboum::test::torus(1, 0.3, 40, 16);
+  const double diagonal = geom::bounding_box(mesh).diagonal();
+  std::size_t last = 1000;
+  for (const double percent : {1.0, 3.0, 10.0}) {
+    const DecomposeResult result = run(mesh, percent);
+    EXPECT_EQ(result.stop, Stop::Done);
+    EXPECT_LE(result.reach_upper, 0.01 * percent * diagonal);
+    EXPECT_LE(result.bodies.size(), last);
+    last = result.bodies.size();
+  }
+  DecomposeOptions options;
+  options.effort = Effort::Fast;
+  options.max_bodies = 6;
+  EXPECT_LE(decompose(geom::prepare(mesh), options).bodies.size(), 6U);
+  options.epsilon = 0.001 * diagonal;
+  const DecomposeResult both = decompose(geom::prepare(mesh), options);
+  EXPECT_EQ(both.stop, Stop::TooManyBodies);
+  EXPECT_LE(both.bodies.size(), 6U);
+}
+
+TEST(Decompose, ContradictoryOptions) {
+  const geom::Prepared input = geom::prepare(kaboum::test::box(Vec3(1, 1, 1), 1));
+  EXPECT_THROW(decompose(input, {}), Error);
+  DecomposeOptions options;
+  options.epsilon = -1;
+  EXPECT_THROW(decompose(input, options), Error);
+  options.epsilon = 1;
+  options.max_vertices = 7;
+  EXPECT_THROW(decompose(input, options), Error);
+}
+
+}  // namespace
+}  // namespace kaboum::bcd

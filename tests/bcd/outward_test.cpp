@@ -1,0 +1,103 @@
+#include "outward.h"
+
+#include <gtest/gtest.h>
+#include <kaboum/geom/convex_hull.h>
+#include <kaboum/geom/convex_set.h>
+#include <kaboum/geom/float32.h>
+
+#include <random>
+
+#include "simplify.h"
+#include "support/oracle.h"
+#include "support/shapes.h"
+
+namespace kaboum::bcd {
+namespace {
+
+/// Exactly: a float32 polytope that contains the points.
+void expect_enclosed(const geom::Mesh& body, const std::vector<Vec3>& points) {
+  EXPECT_TRUE(geom::is_convex(body));
+  EXPECT_TRUE(kaboum::test::exactly_convex(body));
+  for (const Vec3& p : body.vertices) EXPECT_TRUE(geom::is_float32(p));
+  for (const Vec3& p : points) {
+    const auto w = kaboum::test::winding_number_slow(body, p);
+    EXPECT_TRUE(!w || *w == 1) << p.transpose();
+  }
+}
+
+std::vector<Vec3> rounded(std::vector<Vec3> points) {
+  for (Vec3& p : points) p = geom::to_float32(p);
+  return points;
+}
+
+TEST(Enclose, ShapesThatAreALittleTooSmall) {
+  for (const auto cloud : {kaboum::test::Cloud::Ball, kaboum::test::Cloud::Cube})
+    for (std::uint32_t seed = 0; seed < 6; ++seed)
+      for (const double offset : {0.0, 1000.0}) {
+        std::vector<Vec3> points = kaboum::test::random_hull(40, cloud, seed).vertices;
+        for (Vec3& p : points) p += Vec3(offset, 0, -offset);
+        const std::vector<Vec3> required = rounded(points);
+        const geom::Mesh body = enclose(points, required, 1000);
+        expect_enclosed(body, required);
+        // Moved by little.
+        for (const Vec3& v : body.vertices) {
+          double nearest = 1e9;
+          for (const Vec3& p : points) nearest = std::min(nearest, (v - p).norm());
+          EXPECT_LT(nearest, 1e-4 * (1 + offset * 1e-1));
+        }
+      }
+}
+
+TEST(Enclose, ThinAndFlatOnes) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (const double thickness : {1e-3, 1e-7, 1e-12, 0.0}) {
+    std::vector<Vec3> points;
+    for (int i = 0; i < 30; ++i) {
+      const double x = unit(random), y = unit(random);
+      points.emplace_back(x, y, 0.3 * x - 0.2 * y + thickness * unit(random));
+    }
+    const std::vector<Vec3> required = rounded(points);
+    const geom::Mesh body = enclose(points, required, 16);
+    expect_enclosed(body, required);
+  }
+}
+
+TEST(Simplify, EnclosesUpToRoundingWithinTheCap) {
+  for (const int n : {80, 300}) {
+    for (std::uint32_t seed = 0; seed < 3; ++seed) {
+      const geom::Mesh hull = kaboum::test::random_hull(n, kaboum::test::Cloud::Sphere, seed);
+      const Solid solid(hull, 20000, 0);
+      for (const std::size_t cap : {64U, 32U, 16U, 8U}) {
+        const Simplified s = simplify(hull.vertices, cap, 0, solid);
+        EXPECT_LE(s.vertices.size(), std::max<std::size_t>(cap, 8));
+        const std::vector<Vec3> required = rounded(hull.vertices);
+        const geom::Mesh body = enclose(s.vertices, required, cap);
+        expect_enclosed(body, required);
+        EXPECT_LE(body.vertices.size(), std::max<std::size_t>(cap, 8));
+      }
+    }
+  }
+}
+
+TEST(OuterPoints, BoxesRoundComputedPoints) {
+  Piece piece;
+  piece.points = {Vec3(0.5, 0.25, 1), Vec3(0.1, 0.2, 0.3), Vec3(1, 0, 0), Vec3(0, 1, 0.7)};
+  piece.exact = {1, 1, 0, 0};
+  const std::vector<Vec3> points = outer_points(piece, 1e-9);
+  const auto hull = geom::convex_hull(points);
+  ASSERT_TRUE(hull.has_value());
+  for (const Vec3& p : points) EXPECT_TRUE(geom::is_float32(p));
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (int k = 0; k < 8; ++k) {
+      const double e = piece.exact[i] != 0 ? 0 : 1e-9;
+      const Vec3 p = piece.points[i] +
+                     e * Vec3((k & 1) != 0 ? 1 : -1, (k & 2) != 0 ? 1 : -1, (k & 4) != 0 ? 1 : -1);
+      const auto w = kaboum::test::winding_number_slow(*hull, p);
+      EXPECT_TRUE(!w || *w == 1);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace kaboum::bcd

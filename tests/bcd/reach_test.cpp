@@ -1,0 +1,83 @@
+#include "reach.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "solids.h"
+#include "support/shapes.h"
+
+namespace kaboum::bcd {
+namespace {
+
+using kaboum::test::box;
+using kaboum::test::flipped;
+using kaboum::test::merged;
+using kaboum::test::translated;
+
+Reach reach_of(const Mesh& body, const Mesh& solid_mesh) {
+  const Solid solid(solid_mesh, 20000, 0);
+  return measure({body}, solid, {})[0];
+}
+
+TEST(Reach, HullOfAnL) {
+  // The hull's facet from (3,1) to (1,3) is farthest from the corner (1,1): √2.
+  const Mesh l = test::prism({{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}, 1);
+  const Mesh hull = test::prism({{0, 0}, {3, 0}, {3, 1}, {1, 3}, {0, 3}}, 1);
+  const Reach r = reach_of(hull, l);
+  EXPECT_LE(r.lower, std::sqrt(2.0) / 2 * 2);
+  EXPECT_GE(r.upper, 1.0);
+  // d(x) = distance to the two inner walls: the point (2,2) is at distance 1.
+  EXPECT_LE(r.lower, 1.0 + 1e-9);
+  EXPECT_GE(r.lower, 0.97);
+  EXPECT_LE(r.upper, 1.03);
+}
+
+TEST(Reach, CavitiesCount) {
+  // A box with a cubic cavity of side 1: its centre is half a unit from the solid, though every
+  // facet of the hull lies on it.
+  const Mesh cavity = flipped(translated(box(Vec3(1, 1, 1), 1), Vec3(1, 1, 1)));
+  const Mesh solid = merged({box(Vec3(3, 3, 3), 1), cavity});
+  const Reach r = reach_of(box(Vec3(3, 3, 3), 1), solid);
+  EXPECT_LE(r.lower, 0.5 + 1e-9);
+  EXPECT_GE(r.lower, 0.48);
+  EXPECT_GE(r.upper, 0.5);
+  EXPECT_LE(r.upper, 0.52);
+}
+
+TEST(Reach, InsideIsZero) {
+  const Reach r = reach_of(translated(box(Vec3(1, 1, 1), 1), Vec3(1, 1, 1)), box(Vec3(3, 3, 3), 1));
+  EXPECT_EQ(r.lower, 0);
+  EXPECT_LE(r.upper, 1e-3);
+}
+
+TEST(Reach, NoPointIsFarther) {
+  const Mesh torus = kaboum::test::torus(1, 0.3, 24, 12);
+  const Solid solid(torus, 20000, 0);
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (std::uint32_t seed = 0; seed < 6; ++seed) {
+    Mesh body = kaboum::test::random_hull(12, kaboum::test::Cloud::Ball, seed);
+    for (Vec3& p : body.vertices) p = p.cwiseProduct(Vec3(1.3, 1.3, 0.4));
+    const Reach r = measure({body}, solid, {})[0];
+    EXPECT_LE(r.lower, r.upper);
+    EXPECT_LE(r.upper, 1.05 * r.lower + 1e-3);
+    for (int i = 0; i < 4000; ++i) {
+      // Convex combinations of corners.
+      Vec3 p = Vec3::Zero();
+      double sum = 0;
+      for (const Vec3& v : body.vertices) {
+        const double w = -std::log(1e-12 + unit(random));
+        p += w * v;
+        sum += w;
+      }
+      p /= sum;
+      if (!solid.contains(p)) {
+        EXPECT_LE(solid.surface().nearest(p).lower, r.upper);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace kaboum::bcd
