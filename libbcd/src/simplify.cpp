@@ -69,7 +69,8 @@ class Contractor {
       }
     while (!queue_.empty()) {
       const Entry e = queue_.top();
-      if (alive_ <= cap && e.cost > free_cost) break;
+      // A dozen vertices are few enough: no distance is spent on fewer.
+      if (alive_ <= cap && (e.cost > free_cost || alive_ <= 12)) break;
       if (alive_ <= 5) break;
       queue_.pop();
       if (star_[e.a].empty() || star_[e.b].empty()) continue;

@@ -1,0 +1,57 @@
+# shellcheck shell=sh disable=SC2154
+. "$(dirname "$0")/common.sh"
+D=$BIN/bcd-decompose
+KABOUM_CACHE=$WORK/cache
+export KABOUM_CACHE
+
+expect 0 'Decomposes' "$D" --help
+expect 0 'verified exactly' "$D" "$BRACKET" -o a.glb --epsilon 3% --effort fast --report a.json --preview a.png --depfile a.d
+for key in '"stop": "done"' '"surface": "verified"' '"solid": "verified"' '"cached": false' '"upper"'; do
+  grep -q "$key" a.json || fail "no $key in the report"
+done
+[ -s a.png ] || fail "no picture"
+grep -q "^a.glb: .*bracket" a.d || fail "dependency file"
+expect 0 'verified' "$BIN/bound-verify" --cover "$BRACKET" a.glb
+
+# The cache: same bytes; a damaged entry is rebuilt; --no-cache.
+expect 0 'from the cache' "$D" "$BRACKET" -o b.glb --epsilon 3% --effort fast
+cmp -s a.glb b.glb || fail "the cache gives other bytes"
+for f in cache/*.set; do printf 'x' | dd of="$f" bs=1 seek=200 conv=notrunc 2>/dev/null; done
+expect 0 '' "$D" "$BRACKET" -o c.glb --epsilon 3% --effort fast --report c.json
+grep -q '"cached": false' c.json || fail "a damaged entry was used"
+cmp -s a.glb c.glb || fail "rebuilding gives other bytes"
+expect 0 '' "$D" "$BRACKET" -o d.glb --epsilon 3% --effort fast --no-cache --threads 1 --quiet
+[ ! -s err.txt ] || fail "--quiet is not quiet"
+cmp -s a.glb d.glb || fail "one thread gives other bytes"
+
+# Other formats, and a pipe.
+expect 0 '' "$D" "$BRACKET" -o set.obj --epsilon 3% --effort fast
+expect 0 '' "$D" "$BRACKET" -o folder --epsilon 3% --effort fast
+expect 0 'verified' "$BIN/bound-verify" --cover "$BRACKET" set.obj
+expect 0 'verified' "$BIN/bound-verify" --cover "$BRACKET" folder
+"$D" - -o - --input-format obj --output-format obj --epsilon 3% --effort fast --quiet <"$BRACKET" >pipe.obj || fail "pipe"
+[ "$(grep -c '^o ' pipe.obj)" = "$(grep -c '^o ' set.obj)" ] || fail "the pipe gives another number of bodies"
+
+# Few bodies.
+expect 0 '' "$D" "$BRACKET" -o two.obj --max-bodies 2 --effort fast
+[ "$(grep -c '^o ' two.obj)" -le 2 ] || fail "more bodies than allowed"
+expect 1 'max-bodies' "$D" "$BRACKET" -o few.glb --max-bodies 2 --epsilon 0.5% --effort fast
+[ -s few.glb ] || fail "the best result was not written"
+
+# Valid "no", usage, bad input, output that cannot be written.
+tetrahedron >t.off
+awk 'NR>2 && NR<7 {printf "%.17g %.17g %.17g\n", $1+200000, $2, $3; next} {print}' t.off >far.off
+expect 1 'too coarse' "$D" far.off -o far.glb
+absent far.glb
+expect 2 '' "$D" t.off
+expect 2 '' "$D" t.off -o x.glb --epsilon -1
+expect 2 '' "$D" t.off -o x.glb --max-bodies 0
+expect 2 '' "$D" t.off -o x.glb --max-vertices-per-body 7
+expect 2 'extension' "$D" t.off -o x.step
+expect 2 'output-format' "$D" t.off -o -
+echo 'OFF nonsense' >bad.off
+expect 3 'bad.off' "$D" bad.off -o x.glb
+expect 3 '' "$D" none.off -o x.glb
+expect 4 '' "$D" t.off -o /nonexistent/dir/x.glb
+absent x.glb
+finish
