@@ -2,6 +2,8 @@
 
 #include <kaboum/verify/inclusion.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <exception>
 #include <fstream>
@@ -33,6 +35,27 @@ const char* name(Answer answer) {
       break;
   }
   return "undefined";
+}
+
+/// Distance of a point to the nearest triangle, rounded.
+double distance(const geom::Vec3& p, const geom::Mesh& mesh) {
+  const auto to_side = [&](const geom::Vec3& a, const geom::Vec3& b) {
+    const geom::Vec3 d = b - a;
+    const double square = d.squaredNorm();
+    const double t = square > 0 ? std::clamp((p - a).dot(d) / square, 0.0, 1.0) : 0.0;
+    return (p - a - t * d).norm();
+  };
+  double best = std::numeric_limits<double>::infinity();
+  for (const geom::Triangle& t : mesh.triangles) {
+    const geom::Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    best = std::min({best, to_side(a, b), to_side(b, c), to_side(c, a)});
+    const geom::Vec3 n = (b - a).cross(c - a);
+    if (n.cross(b - a).dot(p - a) >= 0 && n.cross(c - b).dot(p - b) >= 0 &&
+        n.cross(a - c).dot(p - c) >= 0 && n.norm() > 0) {
+      best = std::min(best, std::abs((p - a).dot(n.normalized())));
+    }
+  }
+  return best;
 }
 
 }  // namespace
@@ -108,9 +131,17 @@ void Tally::compare(const MeshPair& pair, const ArrangementVerdict& truth) {
       const auto a = winding_number_slow(inner, p), b = winding_number_slow(outer, p);
       contradicts = a && b && *a >= 1 && *b <= 0;
     } else {
+      // It speaks of the inner mesh's surface: p is on it, or can be moved to it without meeting
+      // the outer mesh.
       const auto b = winding_number_slow(outer, p);
-      contradicts = b && *b <= 0;
+      const double away = distance(p, inner);
+      contradicts =
+          b && *b <= 0 && (away < 0.999 * distance(p, outer) || away < 1e-5 * (1 + p.norm()));
     }
+    const double depth = distance(p, outer);
+    const double error = 1e-12 * (depth + p.norm());
+    if (!(std::abs(c->witness->depth - depth) <= error) && !outer.triangles.empty())
+      fault(pair.name + ": the depth of the witness");
     if (!contradicts) fault(pair.name + ": the witness contradicts nothing");
   }
   if (faults_ != before) keep(pair);
