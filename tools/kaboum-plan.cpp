@@ -202,7 +202,11 @@ int show(const Options& o) {
   const plan::Model model = plan::load(texts.domain, texts.second());
   plan::Plan p = load_plan(model, o.plan);
   if (o.tree) p = plan::expand_tree(p);
-  const std::string format = o.output_format.empty() ? "text" : o.output_format;
+  std::string format = o.output_format;
+  if (format.empty())
+    format = o.output.ends_with(".svg")                                ? "svg"
+             : o.output.ends_with(".dot") || o.output.ends_with(".gv") ? "dot"
+                                                                       : "text";
   io::write_file(o.output, format == "dot"   ? plan::plan_dot(model, p)
                            : format == "svg" ? plan::plan_svg(model, p)
                                              : plan::plan_text(model, p));
@@ -257,7 +261,11 @@ int main(int argc, char** argv) {
       ->type_name("FILE");
   s->add_flag("--tree", o.tree, "Write the plan as a tree, without shared sub-plans");
   s->add_option("--timeout", o.timeout, "Give up after this many seconds [never]")
-      ->check(CLI::PositiveNumber)
+      ->check([](const std::string& text) {
+        double seconds = 0;
+        const bool good = CLI::detail::lexical_cast(text, seconds) && seconds > 0;
+        return good ? std::string() : "expected a number of seconds above 0, not " + text;
+      })
       ->type_name("S");
   s->add_option("--max-memory", o.max_memory,
                 "Give up when grounding and search hold this much, e.g. 500M or 2G [no limit]")
@@ -278,7 +286,8 @@ int main(int argc, char** argv) {
   w->add_option("-o,--output", o.output, "Where to; - is stdout")
       ->capture_default_str()
       ->type_name("FILE");
-  w->add_option("--output-format", o.output_format, "text, dot or svg [text]")
+  w->add_option("--output-format", o.output_format,
+                "text, dot or svg [by extension: .dot, .gv, .svg; else text]")
       ->check(CLI::IsMember({"text", "dot", "svg"}))
       ->type_name("NAME");
   w->add_flag("--tree", o.tree, "Expand shared sub-plans");

@@ -162,6 +162,13 @@ std::optional<Index> FormulaPool::call(Index call, const Word* state) const {
   return results_[call];
 }
 
+bool FormulaPool::calls_volatile(Formula f) const {
+  const Node& n = nodes_[f];
+  if (!n.calls) return false;
+  if (n.kind == Kind::External) return model_.externals[calls_[n.a].external].is_volatile;
+  return std::any_of(begin(f), end(f), [&](Formula c) { return calls_volatile(c); });
+}
+
 Formula FormulaPool::ground(const Query& q, std::vector<Index>& slots) {
   limits_.work();
   const auto objects = [&] {

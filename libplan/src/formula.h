@@ -82,6 +82,8 @@ class FormulaPool {
 
   /// Cached by its arguments; if volatile, also by the state.
   [[nodiscard]] std::optional<Index> call(Index call, const Word* state) const;
+  /// Whether a volatile function is in it: then its truth in one state says nothing of others.
+  [[nodiscard]] bool calls_volatile(Formula f) const;
   [[nodiscard]] std::uint64_t external_calls() const { return external_calls_; }
   [[nodiscard]] double external_seconds() const { return external_seconds_; }
 

@@ -20,9 +20,17 @@ std::string variables(const std::vector<syntax::TypedVariable>& list) {
   return "(" + text + ")";
 }
 
+/// PDDL has connectives of one formula, which is then all they say; and of none, which are a word.
+const Formula& plain(const Formula& f) {
+  const bool connective = f.kind == K::And || f.kind == K::Or || f.kind == K::Xor;
+  return connective && f.children.size() == 1 ? plain(f.children[0]) : f;
+}
+
 /// How tightly an operator binds: a child that binds less is put in parentheses.
 int strength(const Formula& f) {
-  switch (f.kind) {
+  const Formula& p = plain(f);
+  if (p.children.empty()) return 4;
+  switch (p.kind) {
     case K::Or:
       return 1;
     case K::Xor:
@@ -117,7 +125,8 @@ std::string print_term(const Term& t) {
   return t.kind == Term::Kind::Extern ? "extern(" + text + ")" : text;
 }
 
-std::string print_formula(const Formula& f) {
+std::string print_formula(const Formula& formula) {
+  const Formula& f = plain(formula);
   switch (f.kind) {
     case K::True:
       return "true";

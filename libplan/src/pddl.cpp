@@ -558,13 +558,20 @@ class Writer {
       out += " ?x" + std::to_string(i) + " - " + type(s.parameters[i]);
     return out + ")";
   }
+  [[nodiscard]] bool is_function(const Term& t) const {
+    return t.kind != Term::Kind::Variable &&
+           std::any_of(document_->functions.begin(), document_->functions.end(),
+                       [&](const syntax::Signature& s) { return s.name.text == t.name.text; });
+  }
+  /// f(x) != c, in any form.
+  static bool rules_out(const Formula& f, bool negated = false) {
+    if (f.kind == K::Not) return rules_out(f.children.at(0), !negated);
+    return f.kind == (negated ? K::Equal : K::NotEqual);
+  }
   std::string term(const Term& t, bool call) const {
     if (t.kind == Term::Kind::Extern) refuse("extern(...)");
     if (t.kind == Term::Kind::Variable) return "?" + t.name.text;
-    const bool nullary =
-        t.kind == Term::Kind::Name && !call &&
-        std::any_of(document_->functions.begin(), document_->functions.end(),
-                    [&](const syntax::Signature& s) { return s.name.text == t.name.text; });
+    const bool nullary = t.kind == Term::Kind::Name && !call && is_function(t);
     if (t.kind == Term::Kind::Name && !call && !nullary) return t.name.text;
     std::string out = "(" + t.name.text;
     for (const Term& a : t.arguments) out += " " + term(a, false);
@@ -623,8 +630,10 @@ class Writer {
             observed = literal(e.formulas.at(0));
           } else if (e.database != syntax::Database::Kf) {
             refuse("an effect on Kx or LCW");
+          } else if (rules_out(e.formulas.at(0))) {
+            refuse("the observation that a term has not some value");
           } else if (e.formulas.at(0).kind == K::Equal) {
-            const bool swapped = e.formulas[0].terms.at(0).kind == Term::Kind::Variable;
+            const bool swapped = !is_function(e.formulas[0].terms.at(0));
             out += " (assign " + term(e.formulas[0].terms.at(swapped ? 1 : 0), true) + " " +
                    term(e.formulas[0].terms.at(swapped ? 0 : 1), false) + ")";
           } else {
@@ -655,13 +664,15 @@ class Writer {
                                     const std::string& action) {
     for (const Effect& e : list) {
       refuse_late_deletions(e.children, added, action);
+      // What one object of a quantified effect adds, the next one's negations come after.
+      if (e.kind == Effect::Kind::ForAll) refuse_late_deletions(e.children, added, action);
       if (e.kind != Effect::Kind::Add || e.database != syntax::Database::Kf) continue;
       const Formula& f = e.formulas.at(0);
       if (f.kind == K::Atom) added.insert(f.terms.at(0).name.text);
       if (f.kind == K::Not && f.children.at(0).kind == K::Atom &&
           added.contains(f.children[0].terms.at(0).name.text))
         refuse("action '" + action + "' adds " + f.children[0].terms[0].name.text +
-               " and then its negation; put negations first");
+               " and then its negation; put negations first, in a 'forall' of their own");
     }
   }
   std::string action(const syntax::Action& a, bool costs) const {

@@ -1,4 +1,5 @@
 // A plan for people: indented text, Graphviz DOT, and SVG drawn here.
+#include <kaboum/geom/error.h>
 #include <kaboum/plan/plan.h>
 
 #include <algorithm>
@@ -6,6 +7,8 @@
 
 namespace kaboum::plan {
 namespace {
+
+constexpr std::size_t kLongestText = std::size_t{1} << 28U;
 
 std::string escape_dot(const std::string& s) {
   std::string out;
@@ -72,9 +75,15 @@ std::string plan_text(const Model& model, const Plan& plan) {
     std::string label;
   };
   std::vector<Item> stack = {{plan.root, 0, ""}};
+  std::size_t length = 0;  // of the indentation
   while (!stack.empty()) {
     const Item item = stack.back();
     stack.pop_back();
+    // Each branch indents what follows: a chain of very many is a text of their square.
+    length += 2 * item.depth;
+    if (length > kLongestText)
+      throw Error(ErrorCode::LimitReached,
+                  "the plan's text is longer than 256 MiB; draw it as DOT instead");
     const std::string indent(2 * item.depth, ' ');
     if (!item.label.empty())
       out << std::string(2 * (item.depth - 1), ' ') << "if " << item.label << ":\n";

@@ -14,6 +14,14 @@ namespace {
 constexpr std::size_t kTabulated = 1U << 20U;       // entries of one table by arguments
 constexpr std::size_t kMaximumUpdates = 1'000'000;  // of one ground action
 
+/// "p(a, b)", for messages.
+std::string ground_text(const Model& model, const std::string& name,
+                        const std::vector<Index>& arguments) {
+  std::string text;
+  for (const Index o : arguments) text += (text.empty() ? "" : ", ") + model.objects[o].name;
+  return arguments.empty() ? name : name + "(" + text + ")";
+}
+
 }  // namespace
 
 Task::Task(const Model& model, Limits& limits)
@@ -89,7 +97,7 @@ void Task::make_initial() {
           consistent = k.learn_atom(p.fluent, false);
         break;
     }
-    if (!consistent) contradiction(name);
+    if (!consistent) contradiction(ground_text(model_, name, arguments));
   }
   initial_.assign(k.words(), k.words() + layout_.words());
 }
@@ -199,9 +207,10 @@ Step Task::action_step(Index schema, const std::vector<Index>& arguments) {
     const auto& table = model_.numbers[a.cost_function];
     const auto value = table.find(objects);
     if (value == table.end())
-      throw Error(ErrorCode::InvalidInput, "no initial value of '" +
-                                               model_.functions[a.cost_function].name +
-                                               "' for the cost of an action '" + a.name + "'");
+      throw Error(ErrorCode::InvalidInput,
+                  "no initial value of '" +
+                      ground_text(model_, model_.functions[a.cost_function].name, objects) +
+                      "' for the cost of an action '" + a.name + "'");
     ground->cost = value->second;
   }
   grounded_updates_ = 0;

@@ -44,6 +44,43 @@ TEST(Convert, PddlIsReadAndWritten) {
   EXPECT_EQ(plan_of(again, Language::Pddl), plan);
 }
 
+TEST(Convert, ConnectivesOfOneConditionOrNone) {
+  for (const char* condition :
+       {"(and (p))", "(or (p))", "(and (or (p)) (p))", "(and (and (p)))", "(and (p) (and))",
+        "(or (p) (or))", "(and (forall (?x - object) (and (r ?x))) (p))",
+        "(and (or (and (p) (p))) (p))", "(imply (and (p)) (and (p)))"}) {
+    const std::string pddl =
+        std::string(
+            "(define (domain d) (:requirements :adl) (:predicates (p) (q) (r ?x)) "
+            "(:action a :parameters () :precondition ") +
+        condition +
+        " :effect (and (q))))"
+        "(define (problem x) (:domain d) (:objects o) (:init (p) (r o)) (:goal (and (q))))";
+    std::string kpl;
+    ASSERT_NO_THROW(kpl = convert({"d.pddl", pddl, Language::Pddl}, nullptr, Language::Kpl))
+        << condition;
+    EXPECT_EQ(plan_of(kpl, Language::Kpl), plan_of(pddl, Language::Pddl)) << kpl;
+  }
+}
+
+TEST(Convert, EffectsThatPddlReadsOtherwise) {
+  const auto to_pddl = [](const std::string& effects) {
+    const std::string kpl =
+        "types: v\nconstants: v a, b\npredicates: p(v), q(v), done\nfunctions: f : v\n"
+        "init: K(f = a), K(q(a))\nclosed: all\naction s preconds: true effects: " +
+        effects + "\naction t preconds: K(p(b)) & K(f = b) effects: add(Kf, done)\ngoal: K(done)";
+    return convert({"t.kpl", kpl, Language::Kpl}, nullptr, Language::Pddl);
+  };
+  // The value may stand on the left.
+  EXPECT_NE(to_pddl("add(Kf, b = f), add(Kf, p(b))").find("(assign (f) b)"), std::string::npos);
+  EXPECT_THROW(to_pddl("add(Kf, f != a)"), Error);
+  EXPECT_THROW(to_pddl("add(Kf, !f = a)"), Error);
+  // For b, p(b) is deleted after it was added for a; PDDL would keep it.
+  EXPECT_THROW(to_pddl("forall(?o : v) { add(Kf, !p(?o)), K(q(?o)) => add(Kf, p(b)) }"), Error);
+  EXPECT_NO_THROW(
+      to_pddl("forall(?o : v) add(Kf, !p(?o)), forall(?o : v) { K(q(?o)) => add(Kf, p(b)) }"));
+}
+
 TEST(Convert, NamesThatTheTargetCannotSay) {
   const std::string pddl =
       "(define (domain d) (:predicates (p ?x) (NAME)) (:action a :parameters (?x) :effect (p ?x)))"
@@ -102,6 +139,20 @@ TEST(Convert, NamesWhatCannotBeSaid) {
                Language::Kpl};
   EXPECT_THROW(convert(d, nullptr, Language::Pddl), Error);
   EXPECT_THROW(convert(d, nullptr, Language::Xml), Error);
+}
+
+TEST(Show, TextOfAChainOfVeryManyBranchesIsALimit) {
+  const Model m = model_of("predicates: p\ninit: Kw(p)\ngoal: true");
+  Plan plan;
+  constexpr Index kNodes = 30'000;
+  plan.nodes.resize(kNodes);
+  for (Index i = 0; i < kNodes; ++i) {
+    plan.nodes[i].branches = true;
+    plan.nodes[i].branch = {false, 0, {}, {{1, i + 1 == kNodes ? kNone : i + 1}, {0, kNone}}};
+  }
+  plan.root = 0;
+  EXPECT_THROW(plan_text(m, plan), Error);
+  EXPECT_LT(plan_dot(m, plan).size(), 10'000'000U);
 }
 
 TEST(Show, TextDotAndSvgNameEveryAction) {

@@ -207,6 +207,35 @@ TEST(Soundness, AVolatileFunctionIsCalledOnceForEachUse) {
   EXPECT_EQ(calls, 2);
 }
 
+TEST(Soundness, AVolatileFunctionIsNotForetoldFromEarlierStates) {
+  // It says yes at every other call: what it says of one state says nothing of another.
+  for (const Algorithm a : kAll)
+    for (const bool sensing : {false, true}) {
+      int calls = 0;
+      ExternalBindings bindings;
+      bindings["free"] = [&](std::span<const std::string>) {
+        return std::string(calls++ % 2 == 0 ? "yes" : "");
+      };
+      const Model m = load({"t.kpl",
+                            std::string("predicates: x, y, z\nexternals: free volatile\n"
+                                        "init: K(!x), K(!y)") +
+                                (sensing ? ", Kw(z)" : "") +
+                                "\naction go preconds: K(!x) effects: add(Kf, x)\n"
+                                "action put preconds: K(x) & extern(free) effects: add(Kf, y)\n"
+                                "action back preconds: K(x) & K(!y) effects: add(Kf, !x)\n"
+                                "goal: K(y)" +
+                                (sensing ? " & (K(z) | K(!z))" : ""),
+                            Language::Kpl},
+                           nullptr, bindings);
+      const Solution s = solve(m, [&] {
+        SolveOptions o;
+        o.algorithm = a;
+        return o;
+      }());
+      EXPECT_EQ(s.status, Status::Solved);
+    }
+}
+
 TEST(Soundness, TimeAndMemoryLimitsHoldWhileGrounding) {
   std::string constants;
   for (int i = 0; i < 60; ++i) constants += (i ? ", c" : "c") + std::to_string(i);

@@ -60,6 +60,7 @@ std::string write_plan(const Model& model, const Plan& plan);
 Plan read_plan(const Model& model, const std::string& json, const std::string& file_name);
 
 /// An indented text, Graphviz DOT, or a drawing.
+/// @throws Error{LimitReached} if the text's indentation would take more than 256 MiB.
 std::string plan_text(const Model& model, const Plan& plan);
 std::string plan_dot(const Model& model, const Plan& plan);
 std::string plan_svg(const Model& model, const Plan& plan);
