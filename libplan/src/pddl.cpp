@@ -484,6 +484,9 @@ class Writer {
     rename_object_ = std::any_of(d.types.begin(), d.types.end(), is_object) && d.types.size() > 1 &&
                      std::none_of(d.types.begin(), d.types.end(),
                                   [](const syntax::Type& t) { return t.parent.text == "object"; });
+    incomplete_ = !d.unknown.empty() ||
+                  std::any_of(d.initial.begin(), d.initial.end(),
+                              [](const Effect& e) { return e.database == syntax::Database::Kx; });
     check_names(d);
     if (!d.externals.empty()) refuse("external function '" + d.externals[0].name.text + "'");
     const std::string title = d.name.text.empty() ? "unnamed" : d.name.text;
@@ -645,6 +648,10 @@ class Writer {
           refuse("loss of knowledge, del(...) or maybe(...)");
         case Effect::Kind::When: {
           std::string inner;
+          if (incomplete_)
+            refuse(
+                "a conditional effect where knowledge is incomplete: that of PDDL may happen while "
+                "its condition is not known");
           out += " (when " + condition(e.formulas.at(0)) + " " + effects(e.children, inner) + ")";
           if (!inner.empty()) refuse("a conditional observation");
           break;
@@ -706,6 +713,7 @@ class Writer {
 
   const syntax::Document* document_ = nullptr;
   bool rename_object_ = false;
+  bool incomplete_ = false;  ///< not all is known at the start
 };
 
 }  // namespace

@@ -12,6 +12,10 @@ for case in 'stacked 4 astar' 'stacked 4 bfs' 'force-sensing 5 dfs' 'bartender 3
 done
 expect 0 'digraph' "$P" show "$DOMAINS/$1/domain.kpl" problem.kpl --plan plan.json --output-format dot
 expect 0 '<svg' "$P" show "$DOMAINS/$1/domain.kpl" problem.kpl --plan plan.json --output-format svg
+expect 0 '' "$P" show "$DOMAINS/$1/domain.kpl" problem.kpl --plan plan.json -o plan.svg
+grep -q '<svg' plan.svg || fail "show -o plan.svg draws no SVG"
+expect 2 'seconds above 0' "$P" solve "$DOMAINS/$1/domain.kpl" problem.kpl --timeout nan
+expect 2 'seconds above 0' "$P" solve "$DOMAINS/$1/domain.kpl" problem.kpl --timeout -1
 
 # The optimal plan of four stacked objects has seven moves; another problem's plan is invalid.
 "$DOMAINS/stacked/make-problem" 4 >problem.kpl

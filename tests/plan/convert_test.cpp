@@ -81,6 +81,19 @@ TEST(Convert, EffectsThatPddlReadsOtherwise) {
       to_pddl("forall(?o : v) add(Kf, !p(?o)), forall(?o : v) { K(q(?o)) => add(Kf, p(b)) }"));
 }
 
+TEST(Convert, ConditionsThatMayBeUnknownAreNoPddl) {
+  // Here nothing happens unless p is known; in PDDL q might be lost, and there would be no plan.
+  const auto kpl = [](const char* unknown) {
+    return Text{"t.kpl",
+                std::string("predicates: p, q, r\ninit: K(q)\nclosed: all\n") + unknown +
+                    "action s preconds: true effects: K(p) => add(Kf, !q), add(Kf, r)\n"
+                    "goal: K(q) & K(r)",
+                Language::Kpl};
+  };
+  EXPECT_THROW(convert(kpl("unknown: p\n"), nullptr, Language::Pddl), Error);
+  EXPECT_NO_THROW(convert(kpl(""), nullptr, Language::Pddl));
+}
+
 TEST(Convert, NamesThatTheTargetCannotSay) {
   const std::string pddl =
       "(define (domain d) (:predicates (p ?x) (NAME)) (:action a :parameters (?x) :effect (p ?x)))"
