@@ -89,9 +89,12 @@ std::string effect(const Effect& e, const std::string& indent) {
     case Effect::Kind::Maybe:
     case Effect::Kind::Delete:
       return update(e);
-    case Effect::Kind::When:
-      return print_formula(e.formulas.at(0)) + " => {\n" + effects(e.children, indent + "  ") +
-             "\n" + indent + "}";
+    case Effect::Kind::When: {
+      // An effect that begins with "forallK" quantifies the condition and what follows alike.
+      const std::string condition = print_formula(e.formulas.at(0));
+      return (condition.starts_with("forallK") ? "(" + condition + ")" : condition) + " => {\n" +
+             effects(e.children, indent + "  ") + "\n" + indent + "}";
+    }
     case Effect::Kind::ForAll:
       return "forall" + variables(e.variables) + " {\n" + effects(e.children, indent + "  ") +
              "\n" + indent + "}";

@@ -63,6 +63,25 @@ TEST(Convert, ConnectivesOfOneConditionOrNone) {
   }
 }
 
+TEST(Convert, AQuantifiedConditionIsNoQuantifiedEffect) {
+  // Not all have r: nothing happens. "forallK(?x) K(r(?x)) => ..." would act for the one that has.
+  const std::string pddl =
+      "(define (domain d) (:requirements :adl) (:predicates (p) (q) (r ?x)) (:action a :parameters "
+      "() :effect (and (p) (when (and (forall (?x - object) (r ?x)) (and)) (q)))))"
+      "(define (problem x) (:domain d) (:objects o u) (:init (r o)) (:goal (q)))";
+  std::string kpl;
+  ASSERT_NO_THROW(kpl = convert({"d.pddl", pddl, Language::Pddl}, nullptr, Language::Kpl));
+  for (const Algorithm a : kAll)
+    EXPECT_EQ(solve(load({"d.kpl", kpl, Language::Kpl}, nullptr),
+                    [&] {
+                      SolveOptions o;
+                      o.algorithm = a;
+                      return o;
+                    }())
+                  .status,
+              Status::Unsolvable);
+}
+
 TEST(Convert, EffectsThatPddlReadsOtherwise) {
   const auto to_pddl = [](const std::string& effects) {
     const std::string kpl =
