@@ -248,19 +248,6 @@ class Decomposer {
     }
     if (!best.empty())
       for (Finished& f : finish(best, 0)) out.push_back(std::move(f));
-    // Far below epsilon: how far.
-    double lower = 0;
-    for (const Finished& f : out) lower = std::max(lower, f.reach.lower);
-    if (lower < 0.25 * epsilon) {
-      std::vector<Mesh> hulls;
-      for (const Finished& f : out) hulls.push_back(f.hull);
-      ReachOptions reach;
-      reach.absolute_gap = 1e-5 * solid_.diagonal();
-      reach.most = 20000;
-      const std::vector<Reach> measured = measure(hulls, solid_, reach);
-      for (std::size_t i = 0; i < out.size(); ++i)
-        if (measured[i].upper < out[i].reach.upper) out[i].reach = measured[i];
-    }
     return out;
   }
 
