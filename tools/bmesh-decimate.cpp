@@ -23,12 +23,13 @@ using tools::Json;
 
 struct Options {
   std::string input, output, input_format, output_format;
-  std::string direction_name = "outer", cost_name = "planes";
+  std::string direction_name = "outer", cost_name = "planes", effort_name = "fast";
   bmesh::Direction direction = bmesh::Direction::Outer;
   std::int64_t vertices = 0;
   double ratio = 0;
   std::string epsilon;
   bmesh::Cost cost = bmesh::Cost::Planes;
+  bmesh::Effort effort = bmesh::Effort::Fast;
   bool as_printed = false;
   std::string precision = "auto";
   double sharp_angle = 90;
@@ -42,10 +43,15 @@ struct Options {
 const std::map<std::string, bmesh::Direction> kDirections{{"outer", bmesh::Direction::Outer},
                                                           {"inner", bmesh::Direction::Inner},
                                                           {"any", bmesh::Direction::Any}};
-const std::map<std::string, bmesh::Cost> kCosts{{"planes", bmesh::Cost::Planes},
+const std::map<std::string, bmesh::Cost> kCosts{{"distance", bmesh::Cost::Distance},
+                                                {"planes", bmesh::Cost::Planes},
                                                 {"planes-adapted", bmesh::Cost::PlanesAdapted},
                                                 {"planes-diagonal", bmesh::Cost::PlanesDiagonal},
                                                 {"triangles", bmesh::Cost::Triangles}};
+
+const std::map<std::string, bmesh::Effort> kEfforts{{"fast", bmesh::Effort::Fast},
+                                                    {"normal", bmesh::Effort::Normal},
+                                                    {"best", bmesh::Effort::Best}};
 
 template <class T>
 std::string name_of(const std::map<std::string, T>& names, T value) {
@@ -85,10 +91,20 @@ void describe(CLI::App& app, Options& o) {
                                         "without blanks or units";
       })
       ->type_name("LENGTH|P%");
-  app.add_option("--cost", o.cost_name, "Cost of a contraction [planes]")
-      ->check(CLI::IsMember({"planes", "planes-adapted", "planes-diagonal", "triangles"})
-                  .description(""))
-      ->type_name("planes|planes-adapted|planes-diagonal|triangles");
+  app.add_option(
+         "--cost", o.cost_name,
+         "Cost of a contraction. distance: the measured distance, for results mostly nearer "
+         "to the input; much slower, and may stop at more vertices [planes]")
+      ->check(
+          CLI::IsMember({"planes", "planes-adapted", "planes-diagonal", "triangles", "distance"})
+              .description(""))
+      ->type_name("planes|planes-adapted|planes-diagonal|triangles|distance");
+  app.add_option("--effort", o.effort_name,
+                 "Tightness against time. fast: contractions only; normal and best: vertices are "
+                 "also pulled back towards the input and edges flipped, many times slower (not "
+                 "with --keep-convex, nor for open meshes) [fast]")
+      ->check(CLI::IsMember({"fast", "normal", "best"}).description(""))
+      ->type_name("fast|normal|best");
   app.add_flag("--as-printed", o.as_printed,
                "planes-diagonal with the thesis's formulas as printed, to reproduce its tables");
   app.add_option(
@@ -97,9 +113,10 @@ void describe(CLI::App& app, Options& o) {
          "and the format can hold it [auto]")
       ->check(CLI::IsMember({"auto", "float", "double"}).description(""))
       ->type_name("auto|float|double");
-  app.add_option(
-         "--sharp-angle", o.sharp_angle,
-         "Edges whose normals differ by more degrees than this resist growing spikes; 180: none")
+  app.add_option("--sharp-angle", o.sharp_angle,
+                 "Edges whose normals differ by more degrees than this resist growing spikes; 180: "
+                 "none. Not "
+                 "used by --cost distance")
       ->check(CLI::Range(0.0, 180.0).description(""))
       ->capture_default_str()
       ->type_name("DEG");
@@ -184,6 +201,7 @@ class Job {
   explicit Job(Options options) : o_(std::move(options)) {
     o_.direction = kDirections.at(o_.direction_name);
     o_.cost = kCosts.at(o_.cost_name);
+    o_.effort = kEfforts.at(o_.effort_name);
   }
 
   int run() {
@@ -320,6 +338,7 @@ class Job {
     bmesh::DecimateOptions d;
     d.direction = o_.direction;
     d.cost = o_.cost;
+    d.effort = o_.effort;
     d.as_printed = o_.as_printed;
     d.precision = precision_;
     d.keep_convex = o_.keep_convex;
@@ -437,6 +456,7 @@ class Job {
         {"notes", notes_}};
     r["options"] = {{"direction", name_of(kDirections, o_.direction)},
                     {"cost", name_of(kCosts, o_.cost)},
+                    {"effort", name_of(kEfforts, o_.effort)},
                     {"as_printed", o_.as_printed},
                     {"precision", precision_ == bmesh::Precision::Double ? "double" : "float"},
                     {"vertices", target_ ? Json(*target_) : Json()},
@@ -451,6 +471,8 @@ class Job {
     const bmesh::DecimateStatistics& s = result_.statistics;
     r["certificate"] = {{"contractions", s.contractions},
                         {"moves", s.moves},
+                        {"pull_backs", s.pull_backs},
+                        {"flips", s.flips},
                         {"placements", s.placements},
                         {"predicates", s.predicates},
                         {"exact_fallbacks", s.exact_fallbacks},
@@ -459,7 +481,9 @@ class Job {
                           {"no_position", s.rejected_no_position},
                           {"predicate", s.rejected_predicate},
                           {"fold", s.rejected_fold},
-                          {"distance", s.rejected_distance}}}};
+                          {"distance", s.rejected_distance},
+                          {"spike", s.rejected_spike},
+                          {"original", s.rejected_original}}}};
     const double diagonal = box_.diagonal();
     r["distance"] = {{"meaning",
                       "one-sided, surface to surface, certified brackets of the maximum, in the "

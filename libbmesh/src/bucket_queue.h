@@ -14,6 +14,8 @@ class BucketQueue {
   struct Entry {
     std::uint32_t a = 0, b = 0;  ///< end points
     std::uint32_t stamps = 0;    ///< sum of their stamps when the entry was made
+    /// What the key was measured for: sum of the changes around the end points until then.
+    std::uint32_t measured = ~0U;
   };
 
   BucketQueue() : heads_(kBuckets, kNone) {}
@@ -49,6 +51,11 @@ class BucketQueue {
 
   /// Whether an entry with this key would be popped no later than the one popped last.
   [[nodiscard]] bool due(double key) const { return bucket_of(key) <= lowest_; }
+
+  /// Upper end of the keys in the bucket popped last.
+  [[nodiscard]] double lowest_key() const {
+    return static_cast<double>(std::bit_cast<float>((lowest_ << 16) | 0xFFFFU));
+  }
 
   [[nodiscard]] std::size_t size() const { return size_; }
   void reserve(std::size_t n) { nodes_.reserve(n); }

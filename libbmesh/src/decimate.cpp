@@ -10,14 +10,19 @@
 #include <kaboum/geom/topology.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "bucket_queue.h"
 #include "connectivity.h"
+#include "deviation.h"
+#include "optimise.h"
+#include "original_solid.h"
 #include "placement.h"
 #include "quadric.h"
 #include "tolerance.h"
+#include "working_mesh.h"
 
 namespace kaboum::bmesh {
 namespace {
@@ -33,24 +38,47 @@ double spacing(double x, Precision precision) {
   return std::nextafter(a, std::numeric_limits<double>::infinity()) - a;
 }
 
+/// Distances are measured from this many times the wished number of vertices on; before, they are
+/// so small that the quadrics order the contractions as well.
+constexpr std::size_t kMeasureFrom = 5;
+constexpr double kMeasureFromEpsilon = 0.1;  ///< the same by an error bound
+
+/// The constrained minimum of a sum of planes is several times the unconstrained one. Edges that
+/// enter the queue with the latter are evaluated long before they are due, mostly in vain:
+/// something in their star changes first. The thesis's costs are ordered as in the thesis.
+constexpr double kAnticipationDistance = 8;
+
+/// Multiples of the wished number of vertices at which the best effort pauses for rounds of
+/// optimisation.
+constexpr std::array<double, 4> kStages{2.8, 2.0, 1.4, 1.2};
+
+/// A spike goes farther from the original than this share of the diagonal, and this many times
+/// farther than the original is from the new triangles there.
+constexpr double kSpike = 0.05, kSpikeRatio = 3;
+
+// Rounds of optimisation, at most: in the end, and at each stage before.
+constexpr int kFinalPasses = 6, kFinalPassesBest = 12, kStagePasses = 3;
+
 class Decimator {
  public:
   Decimator(const geom::Prepared& input, const DecimateOptions& options)
       : options_(options),
         sign_(options.direction == Direction::Inner ? -1 : 1),
         constrained_(options.direction != Direction::Any),
+        anticipation_(options.cost == Cost::Distance ? kAnticipationDistance : 1),
+        regularisation_(options.cost == Cost::Distance ? kRegularisationDistance : kRegularisation),
         origin_(geom::bounding_box(input.mesh).center()),
+        diagonal_(geom::bounding_box(input.mesh).diagonal()),
         reach_(reach(geom::bounding_box(input.mesh))),
-        position_(input.mesh.vertices),
-        border_(input.border),
-        mesh_(input.mesh.vertices.size(), input.mesh.triangles),
-        normal_(input.mesh.triangles.size()),
+        original_(input.mesh),
+        closed_(input.closed),
+        working_(input),
         quadric_(input.mesh.vertices.size()),
         stamp_(input.mesh.vertices.size(), 0),
+        around_(input.mesh.vertices.size(), 0),
         mark_(input.mesh.vertices.size(), 0),
         vertices_(input.mesh.vertices.size()) {
     statistics_.vertices_in = vertices_;
-    for (std::uint32_t t = 0; t < mesh_.size(); ++t) update_normal(t);
     init_quadrics(input.mesh);
     if (options.epsilon) tolerance_.emplace(input.mesh, *options.epsilon);
   }
@@ -75,25 +103,23 @@ class Decimator {
   // ---- set-up
   // -------------------------------------------------------------------------------------
 
-  void update_normal(std::uint32_t t) {
-    const Triangle& tri = mesh_[t];
-    const Vec3& a = position_[tri[0]];
-    const Vec3 n = (position_[tri[1]] - a).cross(position_[tri[2]] - a);
-    const double length = n.norm();
-    normal_[t] = length > 0 ? Vec3(n / length) : Vec3(Vec3::Zero());
-  }
-
   [[nodiscard]] Vec3 local(std::uint32_t v) const { return position_[v] - origin_; }
 
   void init_quadrics(const Mesh& mesh) {
     for (std::uint32_t t = 0; t < mesh_.size(); ++t) {
       const Triangle& tri = mesh_[t];
-      const Quadric q = options_.cost == Cost::Triangles
-                            ? point_quadric((local(tri[0]) + local(tri[1]) + local(tri[2])) / 3.0)
-                            : plane_quadric(local(tri[0]), normal_[t]);
+      Quadric q = options_.cost == Cost::Triangles
+                      ? point_quadric((local(tri[0]) + local(tri[1]) + local(tri[2])) / 3.0)
+                      : plane_quadric(local(tri[0]), normal_[t]);
+      if (options_.cost == Cost::Distance) {
+        const Vec3& a = position_[tri[0]];
+        q *= 0.5 * (position_[tri[1]] - a).cross(position_[tri[2]] - a).norm();
+      }
       for (const std::uint32_t v : tri) quadric_[v] += q;
     }
-    if (options_.cost != Cost::Triangles && options_.sharp_angle < 180) add_sharp_edges(mesh);
+    if (options_.cost != Cost::Triangles && options_.cost != Cost::Distance &&
+        options_.sharp_angle < 180)
+      add_sharp_edges(mesh);
   }
 
   void add_sharp_edges(const Mesh& mesh) {
@@ -126,6 +152,7 @@ class Decimator {
         if (length > 0) return add_diagonal(quadric_[a], quadric_[b], length, options_.as_printed);
         break;
       }
+      case Cost::Distance:
       case Cost::Planes:
       case Cost::Triangles:
         break;
@@ -136,13 +163,23 @@ class Decimator {
   // ---- the queue
   // ----------------------------------------------------------------------------------
 
-  /// Entered with a lower bound of the cost; the constrained cost is found when the edge is popped.
+  /// Entered with what the cost is expected to be; the constrained cost is found when the edge is
+  /// popped.
   void push_edge(std::uint32_t a, std::uint32_t b) {
     if (border_[a] != 0 && border_[b] != 0) return;
     const Quadric q = merged(a, b);
     const Vec3 middle = 0.5 * (local(a) + local(b));
-    const double lower = std::max(0.0, unconstrained_minimum(q, middle)) + length_cost(q, a, b);
-    queue_.push(lower, {a, b, stamp_[a] + stamp_[b]});
+    const double free = std::max(0.0, unconstrained_minimum(q, middle, regularisation_));
+    const double expected = key(q, anticipation_ * free + length_cost(q, a, b));
+    queue_.push(expected, {a, b, stamp_[a] + stamp_[b]});
+  }
+
+  /// What the queue is ordered by: the quadric's value or, for the distance, the root mean square
+  /// of the distances to the planes that it stands for. [length²] or [length]
+  [[nodiscard]] double key(const Quadric& q, double value) const {
+    if (options_.cost != Cost::Distance) return value;
+    const double trace = q.trace();
+    return trace > 0 ? std::sqrt(value / trace) : 0;
   }
 
   /// Prefers short edges where the quadric is indifferent, as in planes: 10^-4 of the length.
@@ -173,18 +210,61 @@ class Decimator {
 
   Stop contract_all() {
     const std::size_t target = options_.vertices.value_or(0);
-    bool bounded = false;  // some candidate failed for epsilon alone
+    if (options_.cost != Cost::Distance) {
+      contract_to(target);
+    } else {
+      // Small deviations need no measuring: the quadrics order the contractions as well.
+      contract_to(kMeasureFrom * target, options_.epsilon
+                                             ? kMeasureFromEpsilon * *options_.epsilon
+                                             : std::numeric_limits<double>::infinity());
+      start_measuring();
+      contract_in_stages(target);
+    }
+    optimise(options_.effort == Effort::Best ? kFinalPassesBest : kFinalPasses);
+    if (options_.vertices && vertices_ <= target) return Stop::VertexTarget;
+    return bounded_ ? Stop::ErrorBound : Stop::Exhausted;
+  }
+
+  void contract_in_stages(std::size_t target) {
+    if (options_.effort == Effort::Best) {
+      for (const double above : kStages) {
+        contract_to(static_cast<std::size_t>(above * static_cast<double>(target)));
+        optimise(kStagePasses);
+      }
+    }
+    contract_to(target);
+    if (!options_.epsilon || options_.effort == Effort::Fast) return;
+    // What is given back makes room for further contractions within the error bound.
+    for (std::size_t before = vertices_ + vertices_;
+         vertices_ > target && 100 * vertices_ < 99 * before;) {
+      before = vertices_;
+      optimise(kStagePasses);
+      contract_to(target);
+    }
+  }
+
+  /// Contracts until `target` vertices are left or the next costs more than `limit`.
+  void contract_to(std::size_t target, double limit = std::numeric_limits<double>::infinity()) {
     for (bool progress = true; progress && vertices_ > target;) {
       progress = false;
+      queue_ = {};
       push_all();
       std::size_t purge_at = 2 * queue_.size() + 1024;
       BucketQueue::Entry e;
       const std::uint64_t rejected_before = statistics_.rejected_distance;
       while (vertices_ > target && queue_.pop(e)) {
+        if (queue_.lowest_key() > limit) return;
         if (stale(e)) continue;
         // Evaluated anew each time it is popped: what is applied holds for the planes of this
         // moment.
         if (!evaluate(e.a, e.b)) continue;
+        if (measuring_) {
+          if (e.measured != around_[e.a] + around_[e.b]) {
+            if (queue_.due(candidate_.cost) && !measure(e)) continue;
+          } else {
+            candidate_.cost = 0;
+          }
+        }
         if (!queue_.due(candidate_.cost)) {
           queue_.push(candidate_.cost, e);
           continue;
@@ -197,10 +277,75 @@ class Decimator {
           purge_at = 2 * queue_.size() + 1024;
         }
       }
-      bounded = statistics_.rejected_distance > rejected_before;
+      bounded_ = statistics_.rejected_distance > rejected_before;  // by epsilon alone
     }
-    if (options_.vertices && vertices_ <= target) return Stop::VertexTarget;
-    return bounded ? Stop::ErrorBound : Stop::Exhausted;
+  }
+
+  // ---- measured distances
+  // -------------------------------------------------------------------------
+
+  void start_measuring() {
+    deviation_.emplace(original_);
+    deviation_->assign(position_, mesh_);
+    hint_.assign(position_.size(), 0);
+    measuring_ = true;
+    if (options_.effort != Effort::Fast) start_optimising();
+  }
+
+  /// Replaces the cost by the measured distance; when that turns out to be beyond what is due, the
+  /// edge goes back into the queue with what is known. @return whether the cost is known.
+  bool measure(BucketQueue::Entry& e) {
+    describe_change();
+    describe_points();
+    const double limit = 1.2 * std::max(queue_.lowest_key(), candidate_.cost);
+    const double squared =
+        deviation_->largest(removed_, added_, points_, hint_[e.a], limit * limit);
+    candidate_.cost = std::max(candidate_.cost, std::sqrt(squared));
+    if (options_.epsilon && candidate_.cost > *options_.epsilon)
+      return reject(statistics_.rejected_distance);
+    if (candidate_.cost > limit) {
+      e.measured = ~0U;
+      queue_.push(candidate_.cost, e);
+      return false;
+    }
+    if (spikes()) return reject(statistics_.rejected_spike);
+    e.measured = around_[e.a] + around_[e.b];
+    return true;
+  }
+
+  [[nodiscard]] bool spikes() {
+    const double least = kSpike * diagonal_;
+    if (candidate_.cost <= least) return false;
+    constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+    std::uint32_t& hint = hint_[candidate_.a];
+    const double out = deviation_->largest({}, added_, points_, hint, kNoLimit);
+    return out > least * least &&
+           out > kSpikeRatio * kSpikeRatio *
+                     deviation_->largest(removed_, added_, {}, hint, kNoLimit);
+  }
+
+  void describe_points() {
+    points_.clear();
+    points_.push_back({candidate_.position, 0});
+    for (const NewTriangle& t : added_) {
+      points_.push_back({0.5 * (t.corner[0] + t.corner[1]), 0});
+      points_.push_back({(t.corner[0] + t.corner[1] + t.corner[2]) / 3.0, 0});
+    }
+  }
+
+  void start_optimising() {
+    if (options_.keep_convex || (constrained_ && !closed_)) return;
+    if (constrained_) solid_.emplace(original_);
+    optimiser_.emplace(working_, *deviation_, constrained_ ? &*solid_ : nullptr, original_,
+                       tolerance_ ? &*tolerance_ : nullptr, options_, statistics_);
+  }
+
+  void optimise(int passes) {
+    if (options_.effort == Effort::Fast) return;
+    if (!deviation_) start_measuring();
+    if (!optimiser_) return;
+    for (int i = 0; i < passes; ++i)
+      if (optimiser_->pass() == 0) break;
   }
 
   // ---- one candidate
@@ -297,7 +442,8 @@ class Decimator {
       }
     }
     if (folds()) return reject(statistics_.rejected_fold);
-    candidate_.cost = std::max(0.0, q(candidate_.position - origin_)) + length_cost(q, a, b);
+    candidate_.cost =
+        key(q, std::max(0.0, q(candidate_.position - origin_)) + length_cost(q, a, b));
     return true;
   }
 
@@ -359,7 +505,7 @@ class Decimator {
         planes_.push_back({-n, margin + n.dot(middle - position_[mesh_[t][0]])});
       }
     }
-    const auto y = minimise(q, q.half_gradient(middle - origin_), planes_);
+    const auto y = minimise(q, q.half_gradient(middle - origin_), planes_, regularisation_);
     if (!y) return false;
     candidate_.position = middle + *y;
     if (options_.precision == Precision::Float) {
@@ -491,6 +637,10 @@ class Decimator {
     const std::uint32_t a = candidate_.a, b = candidate_.b;
     const Vec3 position = candidate_.position;
     if (tolerance_) tolerance_->commit(removed_);
+    if (measuring_) {
+      describe_change();
+      deviation_->commit(removed_, added_);
+    }
     if (options_.steps != nullptr) options_.steps->push_back({a, b, position});
     quadric_[a] = merged(a, b);
     mesh_.contract(a, b);
@@ -498,15 +648,21 @@ class Decimator {
     border_[a] = border_[a] | border_[b];
     ++stamp_[a];
     ++stamp_[b];
+    ++around_[a];
     --vertices_;
     ++statistics_.contractions;
-    mesh_.for_each_triangle(a, [&](std::uint32_t t, std::uint32_t) { update_normal(t); });
+    working_.update_normals_around(a);
+    if (optimiser_) {
+      optimiser_->disturb(a);
+      optimiser_->pull_back(a);
+    }
     const std::uint32_t seen = ++mark_value_;
     mesh_.for_each_triangle(a, [&](std::uint32_t t, std::uint32_t k) {
       for (std::uint32_t j = 1; j < 3; ++j) {
         const std::uint32_t w = mesh_[t][(k + j) % 3];
         if (mark_[w] == seen) continue;
         mark_[w] = seen;
+        ++around_[w];
         push_edge(a, w);
       }
     });
@@ -572,8 +728,12 @@ class Decimator {
         if (!tolerance_->admits(removed_, added_)) continue;
         tolerance_->commit(removed_);
       }
+      if (measuring_) {
+        describe_change();
+        deviation_->commit(removed_, added_);
+      }
       position_[v] = candidate_.position;
-      mesh_.for_each_triangle(v, [&](std::uint32_t t, std::uint32_t) { update_normal(t); });
+      working_.update_normals_around(v);
       if (options_.steps != nullptr) options_.steps->push_back({v, v, candidate_.position});
       ++statistics_.moves;
       return true;
@@ -603,19 +763,33 @@ class Decimator {
   const DecimateOptions& options_;
   double sign_;
   bool constrained_;
+  double anticipation_;  // of the constrained minimum, as a multiple of the unconstrained one
+  double regularisation_;
   Vec3 origin_;  // quadrics are relative to it, lest they cancel far from the origin
-  Vec3 reach_;   // of new vertices from the origin
-  std::vector<Vec3> position_;
-  std::vector<char> border_;
-  Connectivity mesh_;
-  std::vector<Vec3> normal_;  // unit, or zero for triangles without area
+  double diagonal_;
+  Vec3 reach_;  // of new vertices from the origin
+  const Mesh& original_;
+  bool closed_;
+  WorkingMesh working_;
+  std::vector<Vec3>& position_ = working_.position;
+  std::vector<char>& border_ = working_.border;
+  Connectivity& mesh_ = working_.mesh;
+  std::vector<Vec3>& normal_ = working_.normal;
   std::vector<Quadric> quadric_;
-  std::vector<std::uint32_t> stamp_;  // of a vertex: raised when it is moved or vanishes
+  std::vector<std::uint32_t> stamp_;   // of a vertex: raised when it is moved or vanishes
+  std::vector<std::uint32_t> around_;  // of a vertex: raised when anything in its star changes
   std::vector<std::uint32_t> mark_;
   std::uint32_t mark_value_ = 0;
   std::size_t vertices_;
+  bool bounded_ = false;  // some candidate failed for epsilon alone
   BucketQueue queue_;
   std::optional<Tolerance> tolerance_;
+  std::optional<Deviation> deviation_;
+  std::optional<OriginalSolid> solid_;
+  std::optional<Optimiser> optimiser_;
+  bool measuring_ = false;           // costs are measured distances
+  std::vector<std::uint32_t> hint_;  // per vertex: where the original is near
+  std::vector<Deviation::Point> points_;
   DecimateStatistics statistics_;
 
   // Of the candidate at hand.
@@ -624,7 +798,7 @@ class Decimator {
   std::vector<std::uint32_t> rim_;
   std::vector<HalfSpace> planes_;
   std::vector<std::uint32_t> removed_;
-  std::vector<Tolerance::NewTriangle> added_;
+  std::vector<NewTriangle> added_;
 };
 
 }  // namespace

@@ -8,9 +8,11 @@
 namespace kaboum::bmesh {
 namespace {
 
-constexpr char kMagic[] = "KABOUM-BMESH-LOG 1\n";
+constexpr char kMagic[] = "KABOUM-BMESH-LOG 2\n";
 constexpr std::size_t kMagicSize = sizeof(kMagic) - 1;
-constexpr std::size_t kStepSize = 2 * 4 + 3 * 8;
+// A kind, then: Contract two vertices and a position, Flip four vertices.
+constexpr std::size_t kContractSize = 1 + 2 * 4 + 3 * 8;
+constexpr std::size_t kFlipSize = 1 + 4 * 4;
 
 class Writer {
  public:
@@ -66,7 +68,7 @@ class Reader {
   }
   void magic() {
     if (bytes_.size() < kMagicSize || std::memcmp(bytes_.data(), kMagic, kMagicSize) != 0)
-      fail("is not a log of bmesh-decimate (it does not begin with \"KABOUM-BMESH-LOG 1\")");
+      fail("is not a log of bmesh-decimate (it does not begin with \"KABOUM-BMESH-LOG 2\")");
     at_ = kMagicSize;
   }
   void end() {
@@ -106,7 +108,7 @@ void record_preparation(const geom::Prepared& prepared, std::size_t input_triang
 
 std::vector<char> serialise_log(const Log& log) {
   Writer w;
-  w.out.reserve(kMagicSize + 256 + kStepSize * log.steps.size() +
+  w.out.reserve(kMagicSize + 256 + kContractSize * log.steps.size() +
                 4 * (log.dropped.size() + log.turned.size()));
   w.out.insert(w.out.end(), kMagic, kMagic + kMagicSize);
   w.number(static_cast<std::uint32_t>(log.direction));
@@ -116,8 +118,14 @@ std::vector<char> serialise_log(const Log& log) {
   w.indices(log.turned);
   w.number(static_cast<std::uint64_t>(log.steps.size()));
   for (const Step& s : log.steps) {
+    w.number(static_cast<std::uint8_t>(s.kind));
     w.number(s.kept);
     w.number(s.gone);
+    if (s.kind == Step::Kind::Flip) {
+      w.number(s.left);
+      w.number(s.right);
+      continue;
+    }
     for (int k = 0; k < 3; ++k) w.number(s.position[k]);
   }
   return std::move(w.out);
@@ -134,10 +142,18 @@ Log parse_log(std::span<const char> bytes, const std::string& name) {
   log.tool = r.text();
   log.dropped = r.indices();
   log.turned = r.indices();
-  log.steps.resize(r.count(kStepSize));
+  log.steps.resize(r.count(kFlipSize));
   for (Step& s : log.steps) {
+    const auto kind = r.number<std::uint8_t>();
+    if (kind > static_cast<std::uint8_t>(Step::Kind::Flip)) r.fail("names an unknown kind of step");
+    s.kind = static_cast<Step::Kind>(kind);
     s.kept = r.number<std::uint32_t>();
     s.gone = r.number<std::uint32_t>();
+    if (s.kind == Step::Kind::Flip) {
+      s.left = r.number<std::uint32_t>();
+      s.right = r.number<std::uint32_t>();
+      continue;
+    }
     for (int k = 0; k < 3; ++k) s.position[k] = r.number<double>();
   }
   r.end();

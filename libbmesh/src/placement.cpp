@@ -11,10 +11,10 @@ namespace {
 struct Cholesky {
   double l00, l10, l11, l20, l21, l22;
 
-  explicit Cholesky(const Quadric& q) {
+  Cholesky(const Quadric& q, double regularisation) {
     const double t = q.trace();
     const double s = t > 0 ? 1 / t : 0;
-    const double e = t > 0 ? kRegularisation : 1;
+    const double e = t > 0 ? regularisation : 1;
     l00 = std::sqrt(std::max(q.xx * s, 0.0) + e);
     l10 = q.xy * s / l00;
     l20 = q.xz * s / l00;
@@ -163,10 +163,10 @@ class ClosestPoint {
 }  // namespace
 
 std::optional<Vec3> minimise(const Quadric& quadratic, const Vec3& linear,
-                             std::span<const HalfSpace> half_spaces) {
+                             std::span<const HalfSpace> half_spaces, double regularisation) {
   // With A' = LLᵀ, z = Lᵀy + L⁻¹b': the objective is |z|² plus a constant, and n·y ≥ d becomes
   // (L⁻¹n)·z ≥ d + (L⁻¹n)·(L⁻¹b').
-  const Cholesky l(quadratic);
+  const Cholesky l(quadratic, regularisation);
   const Vec3 shift = l.forward(linear * l.scale);
   constexpr std::size_t kOnStack = 48;
   std::array<Plane, kOnStack> buffer;
@@ -188,8 +188,8 @@ std::optional<Vec3> minimise(const Quadric& quadratic, const Vec3& linear,
   return l.backward(*z - shift);
 }
 
-double unconstrained_minimum(const Quadric& q, const Vec3& near) {
-  const Cholesky l(q);
+double unconstrained_minimum(const Quadric& q, const Vec3& near, double regularisation) {
+  const Cholesky l(q, regularisation);
   const Vec3 shift = l.forward(q.half_gradient(near) * l.scale);
   return q(near - l.backward(shift));
 }

@@ -19,6 +19,12 @@ struct Quadric {
     c += q.c;
     return *this;
   }
+  Quadric& operator*=(double f) {
+    xx *= f, xy *= f, xz *= f, yy *= f, yz *= f, zz *= f;
+    bx *= f, by *= f, bz *= f;
+    c *= f;
+    return *this;
+  }
   friend Quadric operator+(Quadric a, const Quadric& b) { return a += b; }
 
   [[nodiscard]] double operator()(const Vec3& p) const {

@@ -1,20 +1,20 @@
 // The checker of decimation logs. It is kept apart from the decimation on purpose: nothing here may
 // use its predicates, its adjacency or its preparation.
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <kaboum/bmesh/replay.h>
 #include <kaboum/geom/error.h>
 
 #include <algorithm>
 #include <array>
 #include <map>
-#include <unordered_map>
+#include <optional>
+
+#include "replay_solid.h"
 
 namespace kaboum::bmesh {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Point = Kernel::Point_3;
-using Corners = std::array<std::uint32_t, 3>;
+using Point = ReplaySolid::Point;
+using Corners = ReplaySolid::Corners;
 
 std::string at_step(std::size_t i) { return "step " + std::to_string(i); }
 
@@ -50,12 +50,15 @@ class Replay {
     report_.turned = log_.turned.size();
     if (!interpret()) return report_;
     find_border();
+    original_points_ = points_;
+    original_triangles_ = triangles_;
     for (std::size_t i = 0; i < log_.steps.size(); ++i) {
       if (!step(i)) return report_;
       ++report_.steps;
     }
     if (!same_as(result)) return report_;
     report_.verified = true;
+    if (solid_) report_.predicates += solid_->predicates();
     return report_;
   }
 
@@ -154,8 +157,48 @@ class Replay {
     }
   }
 
+  /// Exact: what lies between triangle c and the point `to` may be added (outer) or taken away
+  /// (inner), or has nothing to do with the solid that must be kept.
+  bool harmless(const Corners& c, const Point& to) {
+    const CGAL::Sign wrong = log_.direction == Direction::Outer ? CGAL::NEGATIVE : CGAL::POSITIVE;
+    const Point &p = points_[c[0]], &q = points_[c[1]], &r = points_[c[2]];
+    ++report_.predicates;
+    if (CGAL::orientation(p, q, r, to) != wrong) return true;
+    if (!report_.closed) return false;
+    if (!solid_) solid_.emplace(original_points_, original_triangles_);
+    ++report_.against_original;
+    return solid_->contains({p, q, r, to}, log_.direction == Direction::Inner);
+  }
+
+  bool flip(std::size_t i) {
+    const Step& s = log_.steps[i];
+    for (const std::uint32_t v : {s.kept, s.gone, s.left, s.right})
+      if (v >= points_.size())
+        throw Error(ErrorCode::InvalidInput,
+                    at_step(i) + " of the log refers to a vertex that is not there");
+    const auto find = [&](const Corners& wished) {
+      for (const std::uint32_t t : around_[s.kept])
+        if (rotated(triangles_[t]) == rotated(wished)) return t;
+      return ~0U;
+    };
+    const std::uint32_t first = find({s.kept, s.gone, s.left}),
+                        second = find({s.gone, s.kept, s.right});
+    if (first == ~0U || second == ~0U || s.left == s.right)
+      return violated(at_step(i) + " flips an edge that is not there");
+    if (log_.direction != Direction::Any && !harmless(triangles_[first], points_[s.right]))
+      return violated(at_step(i) + " flips an edge through what must be kept");
+    triangles_[first] = {s.right, s.left, s.kept};
+    triangles_[second] = {s.left, s.right, s.gone};
+    std::erase(around_[s.gone], first);
+    std::erase(around_[s.kept], second);
+    around_[s.right].push_back(first);
+    around_[s.left].push_back(second);
+    return true;
+  }
+
   bool step(std::size_t i) {
     const Step& s = log_.steps[i];
+    if (s.kind == Step::Kind::Flip) return flip(i);
     if (s.kept >= points_.size() || s.gone >= points_.size())
       throw Error(ErrorCode::InvalidInput,
                   at_step(i) + " of the log refers to a vertex that is not there");
@@ -171,15 +214,10 @@ class Replay {
     star.erase(std::unique(star.begin(), star.end()), star.end());
     if (star.empty()) return violated(at_step(i) + " moves a vertex without triangles");
 
-    if (log_.direction != Direction::Any) {
-      const CGAL::Sign wrong = log_.direction == Direction::Outer ? CGAL::NEGATIVE : CGAL::POSITIVE;
-      for (const std::uint32_t t : star) {
-        const Corners& c = triangles_[t];
-        ++report_.predicates;
-        if (CGAL::orientation(points_[c[0]], points_[c[1]], points_[c[2]], to) == wrong)
+    if (log_.direction != Direction::Any)
+      for (const std::uint32_t t : star)
+        if (!harmless(triangles_[t], to))
           return violated(at_step(i) + " moves to the wrong side of a triangle it replaces");
-      }
-    }
 
     points_[s.kept] = to;
     border_[s.kept] |= border_[s.gone];
@@ -240,6 +278,9 @@ class Replay {
   std::vector<Corners> triangles_;
   std::vector<std::vector<std::uint32_t>> around_;
   std::vector<char> border_;
+  std::vector<Point> original_points_;
+  std::vector<Corners> original_triangles_;
+  std::optional<ReplaySolid> solid_;  // made when a step needs it
 };
 
 }  // namespace

@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "change.h"
+
 namespace kaboum::bmesh {
 
 using geom::Vec3;
@@ -21,10 +23,7 @@ using geom::Vec3;
 /// docs/algorithms/bounding-mesh.md, "The error bound".
 class Tolerance {
  public:
-  struct NewTriangle {
-    std::uint32_t index;  ///< the current mesh's triangle it becomes
-    std::array<Vec3, 3> corner;
-  };
+  using NewTriangle = bmesh::NewTriangle;
 
   /// @param original  carried initially triangle by triangle: triangle i of the current mesh is
   ///   triangle i of the original.

@@ -42,6 +42,24 @@ DecimateOptions to_vertices(std::size_t n, Direction direction = Direction::Oute
   return o;
 }
 
+struct Method {
+  Cost cost;
+  Effort effort;
+};
+
+/// The thesis's cost for all, the measured one where it does not take long.
+std::vector<Method> methods(const test::Family& f) {
+  std::vector<Method> out{{Cost::Planes, Effort::Fast}};
+  if (f.mesh.triangles.size() <= 300) out.push_back({Cost::Distance, Effort::Normal});
+  return out;
+}
+
+DecimateOptions with(const Method& method, DecimateOptions o) {
+  o.cost = method.cost;
+  o.effort = method.effort;
+  return o;
+}
+
 TEST(Decimate, NeedsATarget) {
   const auto p = geom::prepare(solids().front().mesh);
   EXPECT_THROW(decimate(p, {}), Error);
@@ -54,17 +72,19 @@ TEST(Decimate, ReachesTheWishedNumberOrSaysSo) {
   for (const auto& f : solids()) {
     const auto p = geom::prepare(f.mesh);
     const std::size_t n = p.mesh.vertices.size() / 2;
-    const auto r = decimate(p, to_vertices(n));
-    if (r.stop == Stop::VertexTarget) {
-      EXPECT_EQ(r.mesh.vertices.size(), n) << f.name;
-    } else {
-      EXPECT_EQ(r.stop, Stop::Exhausted) << f.name;
-      EXPECT_GT(r.mesh.vertices.size(), n) << f.name;
+    for (const Method& m : methods(f)) {
+      const auto r = decimate(p, with(m, to_vertices(n)));
+      if (r.stop == Stop::VertexTarget) {
+        EXPECT_EQ(r.mesh.vertices.size(), n) << f.name;
+      } else {
+        EXPECT_EQ(r.stop, Stop::Exhausted) << f.name;
+        EXPECT_GT(r.mesh.vertices.size(), n) << f.name;
+      }
+      EXPECT_TRUE(geom::analyse(r.mesh).closed()) << f.name;
+      EXPECT_EQ(r.statistics.vertices_out, r.mesh.vertices.size());
+      EXPECT_EQ(r.statistics.vertices_in, r.statistics.contractions + r.mesh.vertices.size())
+          << f.name;
     }
-    EXPECT_TRUE(geom::analyse(r.mesh).closed()) << f.name;
-    EXPECT_EQ(r.statistics.vertices_out, r.mesh.vertices.size());
-    EXPECT_EQ(r.statistics.vertices_in, r.statistics.contractions + r.mesh.vertices.size())
-        << f.name;
   }
 }
 
@@ -73,34 +93,42 @@ TEST(Decimate, VolumeOnlyGrowsOutwardsAndShrinksInwards) {
     const auto p = geom::prepare(f.mesh);
     const double v = geom::signed_volume(p.mesh);
     const std::size_t n = p.mesh.vertices.size() / 4 + 4;
-    EXPECT_GE(geom::signed_volume(decimate(p, to_vertices(n)).mesh), v * (1 - 1e-12)) << f.name;
-    EXPECT_LE(geom::signed_volume(decimate(p, to_vertices(n, Direction::Inner)).mesh),
-              v * (1 + 1e-12))
-        << f.name;
+    for (const Method& m : methods(f)) {
+      EXPECT_GE(geom::signed_volume(decimate(p, with(m, to_vertices(n))).mesh), v * (1 - 1e-12))
+          << f.name;
+      EXPECT_LE(geom::signed_volume(decimate(p, with(m, to_vertices(n, Direction::Inner))).mesh),
+                v * (1 + 1e-12))
+          << f.name;
+    }
   }
 }
 
 TEST(Decimate, GivesTheSameResultTwice) {
   for (const auto& f : solids()) {
     const auto p = geom::prepare(f.mesh);
-    const auto a = decimate(p, to_vertices(p.mesh.vertices.size() / 3)),
-               b = decimate(p, to_vertices(p.mesh.vertices.size() / 3));
-    ASSERT_EQ(a.mesh.triangles, b.mesh.triangles) << f.name;
-    for (std::size_t i = 0; i < a.mesh.vertices.size(); ++i)
-      ASSERT_EQ(a.mesh.vertices[i], b.mesh.vertices[i]);
+    for (const Method& m : methods(f)) {
+      const DecimateOptions o = with(m, to_vertices(p.mesh.vertices.size() / 3));
+      const auto a = decimate(p, o), b = decimate(p, o);
+      ASSERT_EQ(a.mesh.triangles, b.mesh.triangles) << f.name;
+      for (std::size_t i = 0; i < a.mesh.vertices.size(); ++i)
+        ASSERT_EQ(a.mesh.vertices[i], b.mesh.vertices[i]);
+    }
   }
 }
 
 TEST(Decimate, WritesFloatsWhenAsked) {
   for (const auto& f : solids()) {
     const auto p = geom::prepare(f.mesh);
-    DecimateOptions o = to_vertices(p.mesh.vertices.size() / 3 + 4);
-    o.precision = Precision::Float;
-    const auto r = decimate(p, o);
-    std::size_t not_float = 0;
-    for (const auto& v : r.mesh.vertices) not_float += !geom::is_float32(v);
-    EXPECT_EQ(not_float, r.unrepresentable) << f.name;
-    if (not_float != 0) std::cout << f.name << ": " << not_float << " vertices not representable\n";
+    for (const Method& m : methods(f)) {
+      DecimateOptions o = with(m, to_vertices(p.mesh.vertices.size() / 3 + 4));
+      o.precision = Precision::Float;
+      const auto r = decimate(p, o);
+      std::size_t not_float = 0;
+      for (const auto& v : r.mesh.vertices) not_float += !geom::is_float32(v);
+      EXPECT_EQ(not_float, r.unrepresentable) << f.name;
+      if (not_float != 0)
+        std::cout << f.name << ": " << not_float << " vertices not representable\n";
+    }
   }
 }
 
@@ -124,14 +152,15 @@ TEST(Decimate, EveryCostIsCertified) {
     if (f.mesh.triangles.size() > 1500) continue;
     const auto p = geom::prepare(f.mesh);
     std::size_t contractions = 0;
-    for (const Cost cost :
-         {Cost::Planes, Cost::PlanesAdapted, Cost::PlanesDiagonal, Cost::Triangles}) {
+    for (const Cost cost : {Cost::Distance, Cost::Planes, Cost::PlanesAdapted, Cost::PlanesDiagonal,
+                            Cost::Triangles}) {
       for (const Direction direction : {Direction::Outer, Direction::Inner}) {
         Log log;
         log.direction = direction;
         record_preparation(p, f.mesh.triangles.size(), log);
         DecimateOptions o = to_vertices(p.mesh.vertices.size() / 5 + 4, direction);
         o.cost = cost;
+        if (cost == Cost::Distance) o.effort = Effort::Normal;
         o.steps = &log.steps;
         const auto r = decimate(p, o);
         const auto checked = replay(f.mesh, log, r.mesh);
@@ -147,16 +176,17 @@ TEST(Decimate, EpsilonHoldsBothWays) {
   for (const auto& f : solids()) {
     const auto p = geom::prepare(f.mesh);
     const double diagonal = geom::bounding_box(p.mesh).diagonal();
-    for (const double percent : {0.1, 2.0}) {
-      DecimateOptions o;
-      o.precision = Precision::Double;
-      o.epsilon = 0.01 * percent * diagonal;
-      const auto r = decimate(p, o);
-      const auto there = geom::directed_distance(p.mesh, geom::DistanceQuery(r.mesh));
-      const auto back = geom::directed_distance(r.mesh, geom::DistanceQuery(p.mesh));
-      EXPECT_LE(there.max_lower, *o.epsilon) << f.name;
-      EXPECT_LE(back.max_lower, *o.epsilon) << f.name;
-    }
+    for (const Method& m : methods(f))
+      for (const double percent : {0.1, 2.0}) {
+        DecimateOptions o = with(m, {});
+        o.precision = Precision::Double;
+        o.epsilon = 0.01 * percent * diagonal;
+        const auto r = decimate(p, o);
+        const auto there = geom::directed_distance(p.mesh, geom::DistanceQuery(r.mesh));
+        const auto back = geom::directed_distance(r.mesh, geom::DistanceQuery(p.mesh));
+        EXPECT_LE(there.max_lower, *o.epsilon) << f.name;
+        EXPECT_LE(back.max_lower, *o.epsilon) << f.name;
+      }
   }
 }
 
@@ -219,14 +249,17 @@ TEST(Decimate, DoesNotDependOnTheScale) {
   for (const auto& f : solids()) {
     if (f.mesh.triangles.size() > 1500) continue;
     const auto p = geom::prepare(f.mesh);
-    const auto r = decimate(p, to_vertices(p.mesh.vertices.size() / 4 + 4));
-    for (const int exponent : {-20, 20}) {
-      geom::Mesh scaled = f.mesh;
-      for (auto& v : scaled.vertices) v *= std::ldexp(1.0, exponent);
-      const auto s = decimate(geom::prepare(scaled), to_vertices(p.mesh.vertices.size() / 4 + 4));
-      ASSERT_EQ(s.mesh.triangles, r.mesh.triangles) << f.name;
-      for (std::size_t i = 0; i < r.mesh.vertices.size(); ++i)
-        ASSERT_EQ(s.mesh.vertices[i], r.mesh.vertices[i] * std::ldexp(1.0, exponent)) << f.name;
+    for (const Method& m : methods(f)) {
+      const DecimateOptions o = with(m, to_vertices(p.mesh.vertices.size() / 4 + 4));
+      const auto r = decimate(p, o);
+      for (const int exponent : {-20, 20}) {
+        geom::Mesh scaled = f.mesh;
+        for (auto& v : scaled.vertices) v *= std::ldexp(1.0, exponent);
+        const auto s = decimate(geom::prepare(scaled), o);
+        ASSERT_EQ(s.mesh.triangles, r.mesh.triangles) << f.name;
+        for (std::size_t i = 0; i < r.mesh.vertices.size(); ++i)
+          ASSERT_EQ(s.mesh.vertices[i], r.mesh.vertices[i] * std::ldexp(1.0, exponent)) << f.name;
+      }
     }
   }
 }

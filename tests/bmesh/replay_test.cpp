@@ -19,13 +19,16 @@ struct Recorded {
   geom::Mesh result;
 };
 
-Recorded run(const geom::Mesh& mesh, Direction direction) {
+Recorded run(const geom::Mesh& mesh, Direction direction, Cost cost = Cost::Planes,
+             Effort effort = Effort::Fast) {
   Recorded r{mesh, {}, {}};
   const auto p = geom::prepare(mesh);
   r.log.direction = direction;
   record_preparation(p, mesh.triangles.size(), r.log);
   DecimateOptions o;
   o.direction = direction;
+  o.cost = cost;
+  o.effort = effort;
   o.vertices = p.mesh.vertices.size() / 3;
   o.steps = &r.log.steps;
   r.result = decimate(p, o).mesh;
@@ -70,6 +73,95 @@ TEST(Replay, RefutesInwardSteps) {
     Log swapped = r.log;
     swapped.direction = d == Direction::Outer ? Direction::Inner : Direction::Outer;
     EXPECT_FALSE(replay(r.input, swapped, r.result).verified);
+  }
+}
+
+// Steps against the original: what they leave in the result must be refuted when it is moved, and
+// so must any step into the solid that the result has to keep (outwards) or out of it (inwards).
+TEST(Replay, RefutesStepsThatCutTheOriginal) {
+  std::mt19937_64 random(52);
+  const geom::Vec3 center = geom::bounding_box(sphere()).center();
+  for (const Direction d : {Direction::Outer, Direction::Inner}) {
+    const Recorded r = run(sphere(), d, Cost::Distance, Effort::Best);
+    const auto checked = replay(r.input, r.log, r.result);
+    ASSERT_TRUE(checked.verified) << checked.violation;
+    EXPECT_GT(checked.against_original, 0U);
+    std::size_t pull_backs = 0, flips = 0;
+    for (const Step& s : r.log.steps) {
+      pull_backs += s.kind == Step::Kind::Contract && s.kept == s.gone;
+      flips += s.kind == Step::Kind::Flip;
+    }
+    EXPECT_GT(pull_backs, 0U);
+    EXPECT_GT(flips, 0U);
+    const double sign = d == Direction::Outer ? -1 : 1;
+    int tried = 0;
+    for (std::size_t i = 0; i < r.log.steps.size(); ++i) {
+      if (r.log.steps[i].kind != Step::Kind::Contract) continue;
+      // Far: through the surface of the sphere, whatever comes later.
+      if (random() % 16 == 0) {
+        Log mutant = r.log;
+        mutant.steps[i].position += sign * 0.3 * (mutant.steps[i].position - center);
+        const auto far = replay(r.input, mutant, r.result);
+        EXPECT_FALSE(far.verified);
+        EXPECT_NE(far.violation.find("step"), std::string::npos) << far.violation;
+      }
+      // Little: if it stays in the result.
+      const auto& v = r.result.vertices;
+      if (std::find(v.begin(), v.end(), r.log.steps[i].position) == v.end()) continue;
+      Log mutant = r.log;
+      mutant.steps[i].position += sign * 1e-6 * (mutant.steps[i].position - center);
+      EXPECT_FALSE(replay(r.input, mutant, r.result).verified);
+      ++tried;
+    }
+    EXPECT_GT(tried, 10);
+  }
+}
+
+TEST(Replay, RefutesFlipsThatCutTheOriginal) {
+  // A cube whose face diagonal is flipped is the same cube; flipping an edge of the cube itself
+  // cuts it off (and is fine inwards).
+  const geom::Mesh cube{
+      {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}},
+      {{0, 2, 1},
+       {0, 3, 2},
+       {4, 5, 6},
+       {4, 6, 7},
+       {0, 1, 5},
+       {0, 5, 4},
+       {1, 2, 6},
+       {1, 6, 5},
+       {2, 3, 7},
+       {2, 7, 6},
+       {3, 0, 4},
+       {3, 4, 7}}};
+  // Vertices are numbered by their first use: 0 2 1 3 4 5 6 7.
+  const auto number = [](std::uint32_t v) { return v == 1 ? 2U : v == 2 ? 1U : v; };
+  const auto flipped = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d,
+                           geom::Mesh* result) {
+    *result = cube;
+    for (auto& t : result->triangles) {
+      const auto is = [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+        for (int k = 0; k < 3; ++k)
+          if (t[k] == x && t[(k + 1) % 3] == y && t[(k + 2) % 3] == z) return true;
+        return false;
+      };
+      if (is(a, b, c))
+        t = {d, c, a};
+      else if (is(b, a, d))
+        t = {c, d, b};
+    }
+    return Step::flip(number(a), number(b), number(c), number(d));
+  };
+  for (const Direction d : {Direction::Outer, Direction::Inner}) {
+    Log log;
+    log.direction = d;
+    geom::Mesh result;
+    log.steps = {flipped(0, 2, 1, 3, &result)};
+    EXPECT_TRUE(replay(cube, log, result).verified) << replay(cube, log, result).violation;
+    log.steps = {flipped(0, 1, 5, 2, &result)};
+    EXPECT_EQ(replay(cube, log, result).verified, d == Direction::Inner);
+    log.steps = {Step::flip(0, 1, 2, 3)};
+    EXPECT_FALSE(replay(cube, log, result).verified) << "no such edge";
   }
 }
 

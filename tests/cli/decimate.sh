@@ -17,6 +17,15 @@ expect 0 '' "$D" "$BRACKET" -o any.off --direction any --ratio 0.5
 for cost in planes planes-adapted planes-diagonal triangles; do
   expect 0 'certified' "$D" "$BRACKET" -o c.glb --ratio 0.3 --cost $cost
 done
+for effort in fast normal; do
+  expect 0 'certified' "$D" "$BRACKET" -o c.glb --ratio 0.1 --cost distance --effort $effort
+done
+expect 0 'certified' "$D" "$BRACKET" -o c.glb --ratio 0.1 --effort normal --report n.json
+grep -q '"cost": "planes"' n.json && grep -q '"effort": "normal"' n.json || fail "no cost and effort in the report"
+# What is not asked for is not done.
+expect 0 '' "$D" "$BRACKET" -o default.ply --ratio 0.1 --log default.log --quiet
+expect 0 '' "$D" "$BRACKET" -o planes.ply --ratio 0.1 --log planes.log --quiet --cost planes --effort fast
+cmp -s default.ply planes.ply && cmp -s default.log planes.log || fail "planes and fast are not the defaults"
 for format in stl stl-ascii obj ply ply-ascii off glb; do
   expect 0 '' "$D" "$BRACKET" -o "f.$format" --output-format $format --ratio 0.5 --quiet
 done
@@ -64,6 +73,7 @@ expect 2 '' "$D" t.off -o x.off --epsilon -1%
 expect 2 '' "$D" t.off -o x.off --epsilon nan
 expect 2 '' "$D" t.off -o x.off --vertices 4 --direction sideways
 expect 2 '' "$D" t.off -o x.off --vertices 4 --cost volume
+expect 2 '' "$D" t.off -o x.off --vertices 4 --effort none
 expect 2 '' "$D" t.off -o x.off --vertices 4 --nonsense
 expect 2 'unknown' "$D" t.off -o x.xyz --vertices 4
 expect 2 '' "$D" t.off -o x.off --vertices 4 --threads many

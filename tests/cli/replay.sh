@@ -9,6 +9,10 @@ grep -q '"verified": true' r.json || fail "report"
 expect 0 'solid of the original contains' "$R" "$BRACKET" inner.log inner.ply
 expect 1 'refuted' "$R" "$BRACKET" outer.log inner.ply
 expect 1 'refuted' "$R" "$BRACKET" inner.log outer.stl
+# Steps against the original.
+"$D" "$BRACKET" -o tight.stl --ratio 0.1 --cost distance --effort normal --log tight.log --quiet || fail "decimation"
+expect 0 'contains that of the original' "$R" "$BRACKET" tight.log tight.stl
+expect 1 'refuted' "$R" "$BRACKET" tight.log outer.stl
 
 # Another original, a damaged log, missing files.
 tetrahedron >t.off

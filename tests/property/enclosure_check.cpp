@@ -34,7 +34,7 @@ struct Settings {
   std::size_t samples = 100000;
   std::size_t largest = ~std::size_t{0};
   std::vector<double> ratios{0.2, 0.1, 0.05};
-  std::vector<bmesh::Cost> costs{bmesh::Cost::Planes};
+  std::vector<bmesh::Cost> costs{bmesh::Cost::Planes, bmesh::Cost::Distance};
 };
 
 /// Half of the points within 1e-6 of the diagonal of either surface, half anywhere around.
@@ -128,6 +128,7 @@ class Check {
     bmesh::DecimateOptions o;
     o.direction = d;
     o.cost = cost;
+    if (cost == bmesh::Cost::Distance) o.effort = bmesh::Effort::Normal;
     o.vertices = std::max<std::size_t>(
         4, static_cast<std::size_t>(ratio * static_cast<double>(p.mesh.vertices.size())));
     o.steps = &log.steps;
@@ -185,7 +186,7 @@ int main(int argc, char** argv) try {
     if (args[i] == "--families") {
       families = true;
     } else if (args[i] == "--all-costs") {
-      settings.costs = {bmesh::Cost::Planes, bmesh::Cost::PlanesAdapted,
+      settings.costs = {bmesh::Cost::Distance, bmesh::Cost::Planes, bmesh::Cost::PlanesAdapted,
                         bmesh::Cost::PlanesDiagonal, bmesh::Cost::Triangles};
     } else if (args[i] == "--corpus") {
       const char* corpus = std::getenv("KABOUM_MESHES");

@@ -12,10 +12,19 @@ namespace kaboum::bmesh {
 
 /// What an edge contraction is said to cost. [gaschler2016] §4.3.2, §4.3.3.
 enum class Cost {
+  Distance,        ///< the measured distance between result and original, both ways
   Planes,          ///< sum of squared distances to the planes around, Eq. 4.4, 4.5
   PlanesAdapted,   ///< the same with the constant term adapted
   PlanesDiagonal,  ///< the same with all coefficients adapted, Eq. 4.6, 4.7
   Triangles,       ///< sum of squared distances to the triangles' centres
+};
+
+/// How much is done for tightness besides contracting. Anything but Fast needs a closed mesh (or
+/// Direction::Any) and excludes keep_convex; it is Fast otherwise.
+enum class Effort {
+  Fast,    ///< nothing
+  Normal,  ///< vertices are pulled back towards the original and edges flipped, in some rounds
+  Best,    ///< the same in more rounds, in between as well
 };
 
 /// Numbers that result vertices are made of.
@@ -24,6 +33,7 @@ enum class Precision { Float, Double };
 struct DecimateOptions {
   Direction direction = Direction::Outer;
   Cost cost = Cost::Planes;
+  Effort effort = Effort::Fast;
   bool as_printed =
       false;  ///< the thesis's formulas where they are known to be wrong (PlanesDiagonal)
   Precision precision = Precision::Float;
@@ -51,6 +61,8 @@ struct DecimateStatistics {
   std::size_t vertices_in = 0, vertices_out = 0;
   std::size_t contractions = 0;
   std::size_t moves = 0;              ///< single vertices moved to representable coordinates
+  std::size_t pull_backs = 0;         ///< vertices moved back towards the original
+  std::size_t flips = 0;              ///< edges flipped
   std::uint64_t placements = 0;       ///< minimisations solved
   std::uint64_t predicates = 0;       ///< exact orientation tests
   std::uint64_t exact_fallbacks = 0;  ///< of these, decided by exact arithmetic
@@ -60,6 +72,8 @@ struct DecimateStatistics {
   std::uint64_t rejected_predicate = 0;    ///< the rounded position fails an exact test
   std::uint64_t rejected_fold = 0;         ///< a triangle would turn over or collapse
   std::uint64_t rejected_distance = 0;     ///< would leave epsilon
+  std::uint64_t rejected_spike = 0;        ///< would stick out far beyond need (Distance only)
+  std::uint64_t rejected_original = 0;  ///< would cut into the original, or could not be certified
 };
 
 struct DecimateResult {

@@ -16,12 +16,27 @@ enum class Direction {
   Any,    ///< no constraint: for comparison
 };
 
-/// One certified operation: the triangles with both vertices vanish, `kept` moves to `position`,
-/// and `gone` becomes `kept`. A move of a single vertex has kept == gone.
+/// One certified operation.
 struct Step {
-  std::uint32_t kept;
-  std::uint32_t gone;
-  geom::Vec3 position;
+  enum class Kind : std::uint8_t {
+    /// The triangles with both vertices vanish, `kept` moves to `position`, and `gone` becomes
+    /// `kept`. A move of a single vertex has kept == gone.
+    Contract,
+    /// The triangles (kept, gone, left) and (gone, kept, right) become (right, left, kept) and
+    /// (left, right, gone).
+    Flip,
+  };
+
+  std::uint32_t kept = 0;
+  std::uint32_t gone = 0;
+  geom::Vec3 position = geom::Vec3::Zero();  ///< Contract only
+  Kind kind = Kind::Contract;
+  std::uint32_t left = 0, right = 0;  ///< Flip only
+
+  static Step flip(std::uint32_t kept, std::uint32_t gone, std::uint32_t left,
+                   std::uint32_t right) {
+    return {kept, gone, geom::Vec3::Zero(), Kind::Flip, left, right};
+  }
 };
 
 /// Everything needed to derive a result from its input again. Layout of the file: docs/formats.md.

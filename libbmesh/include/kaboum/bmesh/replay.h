@@ -10,12 +10,13 @@ namespace kaboum::bmesh {
 
 struct ReplayResult {
   bool verified = false;
-  std::string violation;         ///< what was found wrong, with the step; empty when verified
-  bool closed = false;           ///< the input, as interpreted, is a closed chain
-  std::size_t steps = 0;         ///< replayed
-  std::uint64_t predicates = 0;  ///< exact orientation tests
-  std::size_t dropped = 0;       ///< input triangles that the log leaves out
-  std::size_t turned = 0;        ///< input triangles that the log turns
+  std::string violation;               ///< what was found wrong, with the step; empty when verified
+  bool closed = false;                 ///< the input, as interpreted, is a closed chain
+  std::size_t steps = 0;               ///< replayed
+  std::uint64_t predicates = 0;        ///< exact orientation tests
+  std::uint64_t against_original = 0;  ///< tetrahedra tested against the original's solid
+  std::size_t dropped = 0;             ///< input triangles that the log leaves out
+  std::size_t turned = 0;              ///< input triangles that the log turns
 };
 
 /// Derives a result again from its input and its log, and checks every step.
@@ -23,9 +24,11 @@ struct ReplayResult {
 /// Shares no code with the decimation but the types: its own merging of vertices, its own
 /// adjacency, CGAL's exact orientation predicate directly. Verified means: dropped triangles have
 /// repeated corners, cancel in opposite pairs, or are copies that form closed chains by themselves;
-/// every step's new vertex is on the right side of, or on, the plane of every triangle it replaces
-/// (not checked for Direction::Any, which claims nothing); no vertex of an unbalanced edge moves;
-/// and the triangles left are exactly those of `result`, coordinate by coordinate.
+/// every step's new vertex is on the right side of, or on, the plane of every triangle it replaces,
+/// or the tetrahedron between them has no triangle of the original in its interior and lies outside
+/// its solid (inner: inside; not checked for Direction::Any, which claims nothing); no vertex of an
+/// unbalanced edge moves; and the triangles left are exactly those of `result`, coordinate by
+/// coordinate.
 ///
 /// The original is taken as the log interprets it: turned triangles are applied and counted,
 /// whether they should be turned is not checked. Dropped copies are checked to be closed chains

@@ -1,0 +1,201 @@
+// Table of decimation runs: models × methods × targets, as CSV (and JSON with --json FILE).
+//
+//   bmesh_table [--methods distance,distance-fast,distance-best,planes,...] [--ratios 0.2,0.1]
+//               [--epsilon 0.5,1] [--direction outer|inner] [--json FILE] MESH...
+//
+// Distances are in percent of the diagonal of the input's box. Maxima are certified upper bounds
+// (gap 1 %), means come from samples spread evenly over the area. Only closed meshes are measured.
+#include <kaboum/bmesh/decimate.h>
+#include <kaboum/geom/distance.h>
+#include <kaboum/geom/error.h>
+#include <kaboum/geom/prepare.h>
+#include <kaboum/io/mesh_io.h>
+
+#include <sys/resource.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace {
+
+using namespace kaboum;  // NOLINT: a program
+
+struct Method {
+  bmesh::Cost cost;
+  bmesh::Effort effort;
+};
+
+const std::map<std::string, Method> kMethods{
+    {"distance", {bmesh::Cost::Distance, bmesh::Effort::Normal}},
+    {"distance-fast", {bmesh::Cost::Distance, bmesh::Effort::Fast}},
+    {"distance-best", {bmesh::Cost::Distance, bmesh::Effort::Best}},
+    {"planes", {bmesh::Cost::Planes, bmesh::Effort::Fast}},
+    {"planes-normal", {bmesh::Cost::Planes, bmesh::Effort::Normal}},
+    {"planes-adapted", {bmesh::Cost::PlanesAdapted, bmesh::Effort::Fast}},
+    {"planes-diagonal", {bmesh::Cost::PlanesDiagonal, bmesh::Effort::Fast}},
+    {"triangles", {bmesh::Cost::Triangles, bmesh::Effort::Fast}}};
+
+double user_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_utime.tv_sec) +
+         1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
+}
+
+/// Mean distance of points spread over a's area from b: about `count` points, one at the middle of
+/// each of the equal parts that a triangle's share is cut into.
+double mean_distance(const geom::Mesh& a, const geom::DistanceQuery& b, double count) {
+  const double total = geom::area(a);
+  double sum = 0, weight = 0;
+  std::uint32_t hint = geom::DistanceQuery::kNone;
+  for (const geom::Triangle& t : a.triangles) {
+    const geom::Vec3 &p = a.vertices[t[0]], u = a.vertices[t[1]] - p, v = a.vertices[t[2]] - p;
+    const double area = 0.5 * u.cross(v).norm();
+    const int n = std::max(1, static_cast<int>(std::sqrt(count * area / total)));
+    // n² congruent parts: i, j and the orientation of the part.
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; i + j < n; ++j) {
+        for (int up = 0; up < (i + j + 1 < n ? 2 : 1); ++up) {
+          const double shift = up == 0 ? 1.0 / 3 : 2.0 / 3;
+          const auto at = b.nearest(p + (i + shift) / n * u + (j + shift) / n * v, hint);
+          hint = at.triangle;
+          sum += area / (n * n) * at.upper;
+          weight += area / (n * n);
+        }
+      }
+    }
+  }
+  return weight > 0 ? sum / weight : 0;
+}
+
+std::vector<double> numbers(const std::string& list) {
+  std::vector<double> out;
+  std::istringstream in(list);
+  for (std::string x; std::getline(in, x, ',');) out.push_back(std::stod(x));
+  return out;
+}
+
+struct Target {
+  double ratio = 0, epsilon = 0;
+};
+
+class Table {
+ public:
+  std::vector<std::string> methods{"planes", "distance-fast", "distance"};
+  std::vector<Target> targets;
+  bmesh::Direction direction = bmesh::Direction::Outer;
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+
+  void run(const std::string& file) {
+    geom::PrepareOptions how;
+    how.drop_sheets = true;
+    const geom::Prepared p = geom::prepare(io::read_mesh(file).mesh, how);
+    const std::string name = std::filesystem::path(file).stem().string();
+    if (!p.closed) {
+      std::cerr << name << ": open, left out\n";
+      return;
+    }
+    const geom::DistanceQuery original(p.mesh);
+    for (const Target& target : targets)
+      for (const std::string& method : methods) row(name, p, original, method, target);
+  }
+
+  static void header() {
+    std::cout
+        << "model,vertices_in,method,ratio,epsilon,vertices,stop,seconds,contractions_per_second,"
+           "to_result_max,to_original_max,to_result_mean,to_original_mean,pull_backs,flips,"
+           "rejected_original\n";
+  }
+
+ private:
+  void row(const std::string& name, const geom::Prepared& p, const geom::DistanceQuery& original,
+           const std::string& method, const Target& target) {
+    const double diagonal = geom::bounding_box(p.mesh).diagonal();
+    bmesh::DecimateOptions o;
+    o.cost = kMethods.at(method).cost;
+    o.effort = kMethods.at(method).effort;
+    o.direction = direction;
+    if (target.ratio > 0)
+      o.vertices = std::max<std::size_t>(
+          4, static_cast<std::size_t>(
+                 std::ceil(target.ratio * static_cast<double>(p.mesh.vertices.size()))));
+    if (target.epsilon > 0) o.epsilon = 0.01 * target.epsilon * diagonal;
+    const double start = user_seconds();
+    const bmesh::DecimateResult r = bmesh::decimate(p, o);
+    const double seconds = user_seconds() - start;
+    const geom::DistanceQuery result(r.mesh);
+    geom::DistanceOptions gap;
+    gap.relative_gap = 1e-2;
+    const double scale = 100 / diagonal;
+    const double there = geom::directed_distance(p.mesh, result, gap).max_upper * scale;
+    const double back = geom::directed_distance(r.mesh, original, gap).max_upper * scale;
+    const double there_mean = mean_distance(p.mesh, result, 1e5) * scale;
+    const double back_mean = mean_distance(r.mesh, original, 1e5) * scale;
+    const char* stop = r.stop == bmesh::Stop::VertexTarget ? "vertices"
+                       : r.stop == bmesh::Stop::ErrorBound ? "epsilon"
+                                                           : "exhausted";
+    const double speed = static_cast<double>(r.statistics.contractions) / seconds;
+    std::cout << name << ',' << p.mesh.vertices.size() << ',' << method << ',' << target.ratio
+              << ',' << target.epsilon << ',' << r.mesh.vertices.size() << ',' << stop << ','
+              << seconds << ',' << speed << ',' << there << ',' << back << ',' << there_mean << ','
+              << back_mean << ',' << r.statistics.pull_backs << ',' << r.statistics.flips << ','
+              << r.statistics.rejected_original << std::endl;
+    rows.push_back({{"model", name},
+                    {"vertices_in", p.mesh.vertices.size()},
+                    {"method", method},
+                    {"ratio", target.ratio},
+                    {"epsilon_percent", target.epsilon},
+                    {"vertices", r.mesh.vertices.size()},
+                    {"stop", stop},
+                    {"user_seconds", seconds},
+                    {"contractions_per_second", speed},
+                    {"to_result_max_percent", there},
+                    {"to_original_max_percent", back},
+                    {"to_result_mean_percent", there_mean},
+                    {"to_original_mean_percent", back_mean}});
+  }
+};
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  Table table;
+  std::vector<std::string> files;
+  std::string json;
+  const std::vector<std::string> args(argv + 1, argv + argc);
+  for (std::size_t i = 0; i < args.size(); ++i) {
+    const auto value = [&] { return args.at(++i); };
+    if (args[i] == "--methods") {
+      table.methods.clear();
+      std::istringstream list(value());
+      for (std::string m; std::getline(list, m, ',');) table.methods.push_back(m);
+    } else if (args[i] == "--ratios") {
+      for (const double r : numbers(value())) table.targets.push_back({r, 0});
+    } else if (args[i] == "--epsilon") {
+      for (const double e : numbers(value())) table.targets.push_back({0, e});
+    } else if (args[i] == "--direction") {
+      table.direction = value() == "inner" ? bmesh::Direction::Inner : bmesh::Direction::Outer;
+    } else if (args[i] == "--json") {
+      json = value();
+    } else {
+      files.push_back(args[i]);
+    }
+  }
+  if (table.targets.empty()) table.targets = {{0.2, 0}, {0.1, 0}, {0.05, 0}, {0.02, 0}};
+  Table::header();
+  for (const std::string& file : files) try {
+      table.run(file);
+    } catch (const Error& e) {
+      std::cerr << file << ": " << e.what() << '\n';
+    }
+  if (!json.empty()) std::ofstream(json) << table.rows.dump(1) << '\n';
+  return 0;
+} catch (const std::exception& e) {
+  std::cerr << "bmesh_table: " << e.what() << '\n';
+  return 2;
+}

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "change.h"
+#include "connectivity.h"
+#include "proximity.h"
+
+namespace kaboum::bmesh {
+
+/// How far a changing mesh is from its original, measured at sample points both ways: the costs of
+/// decimation and the objective of the optimisation. Nothing here is certified.
+///
+/// Samples of the original (its vertices, and points on its large triangles) are carried by the
+/// current triangle nearest to them, so that a change has to look at the samples of the triangles
+/// it removes only. Samples of the current mesh are measured against the original through a
+/// hierarchy.
+class Deviation {
+ public:
+  /// A point of the new triangles, and the area it stands for.
+  struct Point {
+    Vec3 position;
+    double weight;
+  };
+  struct Energy {
+    double sum = 0;      ///< Σ weight · distance⁴, in units of the diagonal
+    double squared = 0;  ///< largest squared distance [length²]
+  };
+  static constexpr std::uint32_t kNone = ~0U;
+
+  /// @pre the mesh has triangles.
+  explicit Deviation(const geom::Mesh& original);
+
+  /// Gives every sample to the current triangle nearest to it.
+  void assign(std::span<const Vec3> position, const Connectivity& mesh);
+
+  /// Largest squared distance after the change: from `points` to the original, and from the samples
+  /// of the triangles `removed` to the triangles `added`. Stops when it exceeds `limit` (squared)
+  /// and returns what it has by then.
+  double largest(std::span<const std::uint32_t> removed, std::span<const NewTriangle> added,
+                 std::span<const Point> points, std::uint32_t& hint, double limit) const;
+
+  /// The same as a sum, with the maximum besides. Stops when the sum exceeds `limit`.
+  Energy energy(std::span<const std::uint32_t> removed, std::span<const NewTriangle> added,
+                std::span<const Point> points, std::uint32_t& hint, double limit) const;
+
+  /// Hands the samples of `removed` to the nearest of `added`.
+  void commit(std::span<const std::uint32_t> removed, std::span<const NewTriangle> added);
+
+  /// Calls visit(point, weight) for each sample that triangle t carries.
+  template <class Visit>
+  void for_each_sample(std::uint32_t t, Visit&& visit) const {
+    for (std::uint32_t s = head_[t]; s != kNone; s = next_[s]) visit(point_[s], weight_[s]);
+  }
+
+  [[nodiscard]] const Proximity& original() const { return original_; }
+
+ private:
+  void add_samples(const geom::Mesh& original);
+  static double to_nearest(const Vec3& p, std::span<const NewTriangle> added, std::size_t first,
+                           double enough, std::size_t* which);
+
+  Proximity original_;
+  double unit_;  // 1 / diagonal²
+  std::vector<Vec3> point_;
+  std::vector<double> weight_;  // area of the original that the sample stands for
+  std::vector<std::uint32_t> next_;
+  std::vector<std::uint32_t> head_;  // per current triangle
+};
+
+}  // namespace kaboum::bmesh

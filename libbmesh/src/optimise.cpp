@@ -1,0 +1,344 @@
+#include "optimise.h"
+
+#include <kaboum/geom/clip.h>
+#include <kaboum/geom/float32.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace kaboum::bmesh {
+namespace {
+
+/// A step must lower the energy by this share at least.
+constexpr double kGain = 1e-3;
+/// Share of the way to the best place that a vertex goes at a time: if each went all the way, the
+/// first ones would leave their neighbours no room.
+constexpr double kDamping = 0.5;
+/// Placements tried for a vertex, each with what the one before cut off the original as constraint.
+constexpr int kAttempts = 5;
+
+double area(const std::array<Vec3, 3>& t) { return 0.5 * (t[1] - t[0]).cross(t[2] - t[0]).norm(); }
+
+/// How far rounding moves coordinates near p, at least.
+Vec3 rounding(const Vec3& p, Precision precision) {
+  if (precision == Precision::Double)
+    return Vec3::Constant(std::numeric_limits<double>::epsilon() * p.cwiseAbs().maxCoeff());
+  return {geom::float32_spacing(p.x()), geom::float32_spacing(p.y()), geom::float32_spacing(p.z())};
+}
+
+}  // namespace
+
+Optimiser::Optimiser(WorkingMesh& mesh, Deviation& deviation, OriginalSolid* solid,
+                     const geom::Mesh& original, Tolerance* tolerance,
+                     const DecimateOptions& options, DecimateStatistics& statistics)
+    : m_(mesh),
+      deviation_(deviation),
+      solid_(solid),
+      original_(original),
+      tolerance_(tolerance),
+      options_(options),
+      statistics_(statistics),
+      sign_(options.direction == Direction::Inner ? -1 : 1),
+      hint_(mesh.position.size(), 0),
+      movable_(mesh.position.size(), 1),
+      flippable_(mesh.position.size(), 1) {}
+
+void Optimiser::disturb(std::uint32_t v) {
+  movable_[v] = flippable_[v] = 1;
+  m_.mesh.for_each_triangle(v, [&](std::uint32_t t, std::uint32_t) {
+    for (const std::uint32_t w : m_.mesh[t]) movable_[w] = flippable_[w] = 1;
+  });
+}
+
+bool Optimiser::gather(std::uint32_t v) {
+  ring_.clear();
+  removed_.clear();
+  if (m_.border[v] != 0) return false;
+  m_.mesh.for_each_triangle(v, [&](std::uint32_t t, std::uint32_t k) {
+    const geom::Triangle& tri = m_.mesh[t];
+    ring_.push_back({t, tri[(k + 1) % 3], tri[(k + 2) % 3]});
+    removed_.push_back(t);
+  });
+  return ring_.size() >= 3;
+}
+
+/// The star of the vertex at `apex`, and the points at which it is measured.
+void Optimiser::place_star(const Vec3& apex) {
+  added_.clear();
+  points_.clear();
+  double total = 0;
+  for (const Ring& r : ring_) {
+    const NewTriangle t{r.triangle, {apex, m_.position[r.p], m_.position[r.q]}};
+    added_.push_back(t);
+    const double a = area(t.corner);
+    total += a;
+    points_.push_back({(apex + t.corner[1]) * 0.5, a / 3});
+    points_.push_back({(apex + t.corner[1] + t.corner[2]) / 3.0, a / 2});
+  }
+  points_.push_back({apex, total / 6});
+}
+
+void Optimiser::steepen(const Vec3& apex, const Ring& r, const Vec3& point,
+                        Steepest& steepest) const {
+  const Vec3& p = m_.position[r.p];
+  const Vec3& n = m_.normal[r.triangle];
+  const Vec3 across = n.cross(m_.position[r.q] - p);  // towards the apex
+  const double x = across.dot(point - p);
+  if (x <= 1e-3 * across.dot(apex - p)) return;
+  const double slope = sign_ * n.dot(point - p) / x;
+  if (slope <= steepest.slope) return;
+  steepest.slope = slope;
+  steepest.through = point;
+}
+
+/// Half-spaces of the displacement in which the triangles over the ring stay outside of the points
+/// that are known to bound them.
+void Optimiser::constrain(const Vec3& apex) {
+  planes_.clear();
+  const Vec3 spread = rounding(apex, options_.precision);
+  for (std::size_t i = 0; i < ring_.size(); ++i) {
+    if (!std::isfinite(steepest_[i].slope)) continue;
+    const Vec3 &p = m_.position[ring_[i].p], &q = m_.position[ring_[i].q];
+    Vec3 normal = sign_ * (q - p).cross(steepest_[i].through - p);
+    const double length = normal.norm();
+    if (!(length > 0)) continue;
+    normal /= length;
+    const double margin = 0.51 * normal.cwiseAbs().dot(spread);
+    planes_.push_back({normal, margin + normal.dot(p - apex)});
+  }
+}
+
+/// Exact: no triangle of the star at `to` cuts into the original. Where one does, the parts cut off
+/// become constraints.
+bool Optimiser::cut_off(const Vec3& apex, const Vec3& to) {
+  bool cuts = false;
+  for (std::size_t i = 0; i < ring_.size(); ++i) {
+    const Ring& r = ring_[i];
+    met_.clear();
+    if (certified(r.triangle, to, &met_)) continue;
+    cuts = true;
+    const Vec3 &p = m_.position[r.p], &q = m_.position[r.q];
+    // The four faces, with normals pointing inwards.
+    const std::array<Vec3, 4> corner{p, q, apex, to};
+    for (const std::uint32_t t : met_) {
+      const geom::Triangle& tri = original_.triangles[t];
+      geom::ConvexPolygon part(original_.vertices[tri[0]], original_.vertices[tri[1]],
+                               original_.vertices[tri[2]]);
+      for (std::size_t k = 0; k < 4; ++k) {
+        const Vec3& a = corner[(k + 1) % 4];
+        Vec3 n = (corner[(k + 2) % 4] - a).cross(corner[(k + 3) % 4] - a);
+        if (n.dot(corner[k] - a) < 0) n = -n;
+        geom::ConvexPolygon below, above;
+        if (geom::cut(part, a, n, below, above)) part = above;
+      }
+      for (int j = 0; j < part.size; ++j) steepen(apex, r, part.corner[j], steepest_[i]);
+    }
+  }
+  return cuts;
+}
+
+/// Squared distances of the samples, linear in the displacement of the apex, weighted by how far
+/// they are: (d / scale)².
+void Optimiser::linearise(const Vec3& apex, double scale) {
+  objective_ = {};
+  Vec3 b = Vec3::Zero();
+  const auto add = [&](const Vec3& n, double lambda, double residual, double weight) {
+    const double w = weight * (residual * residual / scale + 1e-4);
+    const Vec3 g = lambda * n;
+    objective_.xx += w * g.x() * g.x(), objective_.xy += w * g.x() * g.y();
+    objective_.xz += w * g.x() * g.z(), objective_.yy += w * g.y() * g.y();
+    objective_.yz += w * g.y() * g.z(), objective_.zz += w * g.z() * g.z();
+    b += w * residual * g;
+  };
+  for (const Ring& r : ring_) {
+    const Vec3 &p = m_.position[r.p], &q = m_.position[r.q];
+    const Vec3& n = m_.normal[r.triangle];
+    const Vec3 across = n.cross(q - p);
+    const double height = across.dot(apex - p);
+    if (!(height > 0)) continue;
+    // A point o of the original is n·(apex − o) below the triangle, at barycentric weight λ.
+    deviation_.for_each_sample(r.triangle, [&](const Vec3& o, double weight) {
+      const double lambda = std::clamp(across.dot(o - p) / height, 0.0, 1.0);
+      add(n, lambda, n.dot(apex - o), weight);
+    });
+  }
+  std::uint32_t hint = 0;
+  const auto add_point = [&](const Vec3& x, double lambda, double weight) {
+    deviation_.original().squared(x, hint);
+    const auto& c = deviation_.original().corners(hint);
+    const Vec3 offset = x - closest_point(x, c[0], c[1], c[2]);
+    const double d = offset.norm();
+    if (d > 0) add(offset / d, lambda, d, weight);
+  };
+  for (std::size_t i = 0; i + 1 < points_.size(); i += 2) {
+    add_point(points_[i].position, 0.5, points_[i].weight);
+    add_point(points_[i + 1].position, 1.0 / 3, points_[i + 1].weight);
+  }
+  add_point(points_.back().position, 1, points_.back().weight);
+  objective_.bx = b.x(), objective_.by = b.y(), objective_.bz = b.z();
+}
+
+bool Optimiser::folds(const Vec3& to) const {
+  return std::any_of(ring_.begin(), ring_.end(), [&](const Ring& r) {
+    const Vec3 n = (m_.position[r.p] - to).cross(m_.position[r.q] - to);
+    const double along = n.dot(m_.normal[r.triangle]);
+    return !(along > 0) || along * along < 0.03 * n.squaredNorm();
+  });
+}
+
+/// Exact: the tetrahedron between triangle t and the point leaves the original's solid alone.
+bool Optimiser::certified(std::uint32_t t, const Vec3& to, std::vector<std::uint32_t>* met) {
+  if (options_.direction == Direction::Any) return true;
+  const geom::Triangle& tri = m_.mesh[t];
+  const Vec3 &a = m_.position[tri[0]], &b = m_.position[tri[1]], &c = m_.position[tri[2]];
+  ++statistics_.predicates;
+  const geom::Sign side = geom::orient3d(a, b, c, to, &statistics_.exact_fallbacks);
+  const bool inner = options_.direction == Direction::Inner;
+  const geom::Sign wrong = inner ? geom::Sign::Positive : geom::Sign::Negative;
+  return side != wrong || solid_->contains({a, b, c, to}, inner, met);
+}
+
+bool Optimiser::pull_back(std::uint32_t v) {
+  if (movable_[v] == 0 || !gather(v)) return false;
+  movable_[v] = 0;
+  const Vec3 from = m_.position[v];
+  place_star(from);
+  std::uint32_t& hint = hint_[v];
+  const auto before =
+      deviation_.energy(removed_, added_, points_, hint, std::numeric_limits<double>::infinity());
+  if (!(before.squared > 0)) return false;
+  linearise(from, before.squared);
+  steepest_.assign(ring_.size(), {});
+  if (options_.direction != Direction::Any)
+    for (std::size_t i = 0; i < ring_.size(); ++i)
+      deviation_.for_each_sample(ring_[i].triangle, [&](const Vec3& o, double) {
+        steepen(from, ring_[i], o, steepest_[i]);
+      });
+  const double goal = (1 - kGain) * before.sum;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    constrain(from);
+    const auto step = minimise(objective_, {objective_.bx, objective_.by, objective_.bz}, planes_,
+                               kRegularisationDistance);
+    if (!step) return false;
+    Vec3 to = from + kDamping * *step;
+    if (options_.precision == Precision::Float) to = geom::to_float32(to);
+    if (to == from || !to.allFinite()) return false;
+    place_star(to);
+    const auto after = deviation_.energy(removed_, added_, points_, hint, goal);
+    if (folds(to) || !(after.sum < goal)) {
+      // Linearised too boldly, perhaps.
+      to = from + 0.5 * kDamping * *step;
+      if (options_.precision == Precision::Float) to = geom::to_float32(to);
+      if (to == from || folds(to)) return false;
+      place_star(to);
+      if (!(deviation_.energy(removed_, added_, points_, hint, goal).sum < goal)) return false;
+    }
+    if (cut_off(from, to)) {
+      ++statistics_.rejected_original;
+      continue;
+    }
+    if (tolerance_ != nullptr) {
+      if (!tolerance_->admits(removed_, added_)) {
+        ++statistics_.rejected_distance;
+        return false;
+      }
+      tolerance_->commit(removed_);
+    }
+    deviation_.commit(removed_, added_);
+    m_.position[v] = to;
+    m_.update_normals_around(v);
+    if (options_.steps != nullptr) options_.steps->push_back({v, v, to});
+    ++statistics_.pull_backs;
+    disturb(v);
+    return true;
+  }
+  return false;
+}
+
+bool Optimiser::flip(std::uint32_t a, std::uint32_t b) {
+  // The two triangles (a, b, c) and (b, a, d) of a manifold edge.
+  std::uint32_t first = 0, second = 0, c = 0, d = 0;
+  int forward = 0, backward = 0;
+  m_.mesh.for_each_triangle(a, [&](std::uint32_t t, std::uint32_t k) {
+    const geom::Triangle& tri = m_.mesh[t];
+    if (tri[(k + 1) % 3] == b) {
+      ++forward;
+      first = t;
+      c = tri[(k + 2) % 3];
+    }
+    if (tri[(k + 2) % 3] == b) {
+      ++backward;
+      second = t;
+      d = tri[(k + 1) % 3];
+    }
+  });
+  if (forward != 1 || backward != 1 || c == d) return false;
+  bool joined = false;
+  m_.mesh.for_each_triangle(c, [&](std::uint32_t t, std::uint32_t) {
+    for (const std::uint32_t w : m_.mesh[t]) joined = joined || w == d;
+  });
+  if (joined) return false;
+  const Vec3 &pa = m_.position[a], &pb = m_.position[b], &pc = m_.position[c], &pd = m_.position[d];
+  // Neither new triangle may turn over.
+  const Vec3 mean = m_.normal[first] + m_.normal[second];
+  for (const Vec3& n : {Vec3((pd - pa).cross(pc - pa)), Vec3((pb - pd).cross(pc - pd))}) {
+    const double along = n.dot(mean);
+    if (!(along > 0) || along * along < 0.03 * n.squaredNorm() * mean.squaredNorm()) return false;
+  }
+  const auto measure = [&](const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s,
+                           double limit) {
+    // Triangles (p, q, r) and (q, p, s) on the edge (p, q).
+    added_.clear();
+    added_.push_back({first, {p, q, r}});
+    added_.push_back({second, {q, p, s}});
+    const double a1 = area(added_[0].corner), a2 = area(added_[1].corner);
+    points_.clear();
+    points_.push_back({0.5 * (p + q), (a1 + a2) / 3});
+    points_.push_back({(p + q + r) / 3.0, a1 / 2});
+    points_.push_back({(q + p + s) / 3.0, a2 / 2});
+    return deviation_.energy(removed_, added_, points_, hint_[a], limit);
+  };
+  removed_.assign({first, second});
+  const auto before = measure(pa, pb, pc, pd, std::numeric_limits<double>::infinity());
+  // (a, d, c) and (d, b, c) are (d, c, a) and (c, d, b).
+  const double limit = (1 - kGain) * before.sum;
+  const auto after = measure(pd, pc, pa, pb, limit);
+  if (!(after.sum < limit)) return false;
+  if (!certified(first, pd)) {
+    ++statistics_.rejected_original;
+    return false;
+  }
+  if (tolerance_ != nullptr) {
+    if (!tolerance_->admits(removed_, added_)) {
+      ++statistics_.rejected_distance;
+      return false;
+    }
+    tolerance_->commit(removed_);
+  }
+  deviation_.commit(removed_, added_);
+  m_.mesh.replace(first, {d, c, a});
+  m_.mesh.replace(second, {c, d, b});
+  m_.update_normal(first);
+  m_.update_normal(second);
+  if (options_.steps != nullptr) options_.steps->push_back(Step::flip(a, b, c, d));
+  ++statistics_.flips;
+  for (const std::uint32_t v : {a, b, c, d}) movable_[v] = flippable_[v] = 1;
+  return true;
+}
+
+std::size_t Optimiser::pass() {
+  std::size_t steps = 0;
+  for (std::uint32_t v = 0; v < m_.position.size(); ++v)
+    if (m_.mesh.used(v)) steps += pull_back(v) ? 1 : 0;
+  for (std::uint32_t t = 0; t < m_.mesh.size(); ++t) {
+    for (std::uint32_t k = 0; k < 3 && m_.mesh.alive(t); ++k) {
+      const std::uint32_t a = m_.mesh[t][k], b = m_.mesh[t][(k + 1) % 3];
+      if (a < b && flippable_[a] != 0 && flippable_[b] != 0 && flip(a, b)) ++steps;
+    }
+  }
+  // What flips have changed is tried again after the next moves.
+  std::fill(flippable_.begin(), flippable_.end(), 0);
+  return steps;
+}
+
+}  // namespace kaboum::bmesh

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <kaboum/bmesh/decimate.h>
+
+#include "deviation.h"
+#include "original_solid.h"
+#include "placement.h"
+#include "tolerance.h"
+#include "working_mesh.h"
+
+namespace kaboum::bmesh {
+
+/// Gives back what decimation has added beyond need: moves vertices towards the original and flips
+/// edges, so that the deviation falls. Source: [gaschler2016] §7.2 names it as future work; how the
+/// steps are certified: docs/algorithms/bounding-mesh.md, "Steps against the original".
+///
+/// Every step keeps: the exact certificate against the original's solid (unless direction is Any),
+/// the carried error bound, border vertices, and float32 coordinates where they are wished for.
+class Optimiser {
+ public:
+  /// All references must outlive this object. `solid` may be null for Direction::Any only,
+  /// `tolerance` when there is no error bound.
+  Optimiser(WorkingMesh& mesh, Deviation& deviation, OriginalSolid* solid,
+            const geom::Mesh& original, Tolerance* tolerance, const DecimateOptions& options,
+            DecimateStatistics& statistics);
+
+  /// Moves v to a better place, if there is one. @return whether it has moved.
+  bool pull_back(std::uint32_t v);
+
+  /// Flips the edge (a, b) if that is better. @return whether it was flipped.
+  bool flip(std::uint32_t a, std::uint32_t b);
+
+  /// To be called when others have changed the star of v.
+  void disturb(std::uint32_t v);
+
+  /// One round over all vertices, then all edges. @return steps taken.
+  std::size_t pass();
+
+ private:
+  struct Ring {  // one triangle of the star: (v, p, q)
+    std::uint32_t triangle;
+    std::uint32_t p, q;
+  };
+
+  bool gather(std::uint32_t v);
+  void place_star(const Vec3& apex);
+  struct Steepest {  // of the planes through (p, q), the one turned farthest outwards
+    double slope = -std::numeric_limits<double>::infinity();
+    Vec3 through = Vec3::Zero();
+  };
+  void steepen(const Vec3& apex, const Ring& r, const Vec3& point, Steepest& steepest) const;
+  void constrain(const Vec3& apex);
+  [[nodiscard]] bool cut_off(const Vec3& apex, const Vec3& to);
+  void linearise(const Vec3& apex, double scale);
+  [[nodiscard]] bool folds(const Vec3& to) const;
+  [[nodiscard]] bool certified(std::uint32_t t, const Vec3& to,
+                               std::vector<std::uint32_t>* met = nullptr);
+
+  WorkingMesh& m_;
+  Deviation& deviation_;
+  OriginalSolid* solid_;
+  const geom::Mesh& original_;
+  Tolerance* tolerance_;
+  const DecimateOptions& options_;
+  DecimateStatistics& statistics_;
+  double sign_;
+  std::vector<std::uint32_t> hint_;  // per vertex: where the original is near
+  // Per vertex: its star has changed since it was last tried in vain to move it, and since the last
+  // round of flips.
+  std::vector<char> movable_, flippable_;
+
+  // Of the step at hand.
+  std::vector<Ring> ring_;
+  std::vector<std::uint32_t> removed_;
+  std::vector<NewTriangle> added_;
+  std::vector<Deviation::Point> points_;
+  std::vector<Steepest> steepest_;  // per triangle of the ring
+  std::vector<HalfSpace> planes_;
+  std::vector<std::uint32_t> met_;
+  Quadric objective_;  // of the displacement
+};
+
+}  // namespace kaboum::bmesh

@@ -1,0 +1,120 @@
+#include "original_solid.h"
+
+namespace kaboum::bmesh {
+namespace {
+
+using geom::Sign;
+
+/// The seven corners: 0 to 3 of the tetrahedron, 4 to 6 of the triangle.
+class Separation {
+ public:
+  Separation(const Tetrahedron& tetrahedron, const std::array<Vec3, 3>& triangle,
+             std::uint64_t* exact_calls)
+      : exact_calls_(exact_calls) {
+    for (std::size_t i = 0; i < 4; ++i) corner_[i] = &tetrahedron[i];
+    for (std::size_t i = 0; i < 3; ++i) corner_[4 + i] = &triangle[i];
+    orientation_ = static_cast<int>(geom::orient3d(tetrahedron[0], tetrahedron[1], tetrahedron[2],
+                                                   tetrahedron[3], exact_calls_));
+  }
+
+  /// Whether some plane has the tetrahedron and the triangle on its two closed sides. If there is
+  /// one, there is one through three of the seven corners.
+  bool exists() {
+    // The tetrahedron's faces first: they decide most cases.
+    for (int k = 0; k < 4; ++k)
+      if (beyond_face(k)) return true;
+    if (separates(4, 5, 6)) return true;
+    for (int i = 0; i < 4; ++i)
+      for (int j = i + 1; j < 4; ++j)
+        for (int t = 4; t < 7; ++t)
+          if (separates(i, j, t)) return true;
+    for (int i = 0; i < 4; ++i)
+      for (int t = 4; t < 7; ++t)
+        if (separates(i, t, t == 6 ? 4 : t + 1)) return true;
+    return false;
+  }
+
+ private:
+  /// The triangle is on the outer side of, or on, the face across from corner k.
+  bool beyond_face(int k) {
+    // With k at the end, an even permutation of the corners for odd k, an odd one for even k.
+    const Vec3 &a = *corner_[(k + 1) % 4], &b = *corner_[(k + 2) % 4], &c = *corner_[(k + 3) % 4];
+    const int interior = k % 2 == 1 ? orientation_ : -orientation_;
+    for (int i = 4; i < 7; ++i)
+      if (static_cast<int>(geom::orient3d(a, b, c, *corner_[i], exact_calls_)) == interior)
+        return false;
+    return true;
+  }
+
+  /// The plane through three corners; a plane that holds all of the tetrahedron is none (the three
+  /// corners are then on a line).
+  bool separates(int a, int b, int c) {
+    int tetrahedron = 0;  // the side its corners are on
+    int triangle = 0;
+    for (int i = 0; i < 7; ++i) {
+      if (i == a || i == b || i == c) continue;
+      const int s = static_cast<int>(
+          geom::orient3d(*corner_[a], *corner_[b], *corner_[c], *corner_[i], exact_calls_));
+      if (s == 0) continue;
+      int& side = i < 4 ? tetrahedron : triangle;
+      int& other = i < 4 ? triangle : tetrahedron;
+      if (side == -s || other == s) return false;
+      side = s;
+    }
+    return tetrahedron != 0;
+  }
+
+  std::array<const Vec3*, 7> corner_;
+  int orientation_;  // of the tetrahedron
+  std::uint64_t* exact_calls_;
+};
+
+}  // namespace
+
+bool meets_interior(const Tetrahedron& tetrahedron, const std::array<Vec3, 3>& triangle,
+                    std::uint64_t* exact_calls) {
+  return !Separation(tetrahedron, triangle, exact_calls).exists();
+}
+
+OriginalSolid::OriginalSolid(const geom::Mesh& original)
+    : original_(original), bvh_(original), winding_(original) {}
+
+bool OriginalSolid::contains(const Tetrahedron& tetrahedron, bool inside,
+                             std::vector<std::uint32_t>* met) {
+  ++tests_;
+  geom::Box3 box;
+  for (const Vec3& p : tetrahedron) box.extend(p);
+  bool clear = true, enough = false;
+  if (met != nullptr) met->clear();
+  // Boxes that only touch the open one are left out.
+  const auto overlaps = [&](const geom::Box3& b) {
+    return !enough && (b.min.array() < box.max.array()).all() &&
+           (b.max.array() > box.min.array()).all();
+  };
+  bvh_.traverse(overlaps, [&](std::uint32_t t) {
+    if (enough) return;
+    const geom::Triangle& tri = original_.triangles[t];
+    const std::array<Vec3, 3> corners{original_.vertices[tri[0]], original_.vertices[tri[1]],
+                                      original_.vertices[tri[2]]};
+    geom::Box3 own;
+    for (const Vec3& p : corners) own.extend(p);
+    if (!overlaps(own) || !meets_interior(tetrahedron, corners, &exact_calls_)) return;
+    clear = false;
+    if (met != nullptr) met->push_back(t);
+    enough = met == nullptr || met->size() == kMostMet;
+  });
+  if (!clear) return false;
+  // One point of the interior speaks for all of it, for the surface does not meet it.
+  const Vec3 middle =
+      0.25 * (tetrahedron[0] + tetrahedron[1]) + 0.25 * (tetrahedron[2] + tetrahedron[3]);
+  for (int k = 0; k < 4; ++k) {
+    const Vec3 &a = tetrahedron[(k + 1) % 4], &b = tetrahedron[(k + 2) % 4],
+               &c = tetrahedron[(k + 3) % 4];
+    const Sign own = geom::orient3d(a, b, c, tetrahedron[k], &exact_calls_);
+    if (own == Sign::Zero || geom::orient3d(a, b, c, middle, &exact_calls_) != own) return false;
+  }
+  const auto w = winding_(middle);
+  return w && (inside ? *w >= 1 : *w <= 0);
+}
+
+}  // namespace kaboum::bmesh

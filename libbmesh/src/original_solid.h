@@ -1,0 +1,52 @@
+#pragma once
+
+#include <kaboum/geom/bvh.h>
+#include <kaboum/geom/mesh.h>
+#include <kaboum/geom/predicates.h>
+#include <kaboum/geom/winding.h>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace kaboum::bmesh {
+
+using geom::Vec3;
+
+/// A tetrahedron with volume; the order of its corners does not matter.
+using Tetrahedron = std::array<Vec3, 4>;
+
+/// Whether the triangle (which may be degenerate) meets the tetrahedron's open interior. Exact: see
+/// docs/algorithms/bounding-mesh.md, "Separating planes".
+///
+/// @pre the tetrahedron has volume.
+bool meets_interior(const Tetrahedron& tetrahedron, const std::array<Vec3, 3>& triangle,
+                    std::uint64_t* exact_calls = nullptr);
+
+/// Exact questions about the solid of the original: the certificate of steps that give back what
+/// earlier steps have added.
+class OriginalSolid {
+ public:
+  /// Keeps a reference to `original`, which must outlive this object and be a closed chain.
+  explicit OriginalSolid(const geom::Mesh& original);
+
+  /// Whether the tetrahedron's open interior meets no triangle of the original and its winding
+  /// number there is at most 0 (`inside` false) or at least 1 (`inside` true). False also when the
+  /// tetrahedron is so thin that no double is found inside.
+  ///
+  /// @param met  receives, when not null, up to kMostMet of the triangles that meet the interior.
+  [[nodiscard]] bool contains(const Tetrahedron& tetrahedron, bool inside,
+                              std::vector<std::uint32_t>* met = nullptr);
+  static constexpr std::size_t kMostMet = 16;
+
+  [[nodiscard]] std::uint64_t tests() const { return tests_; }
+  [[nodiscard]] std::uint64_t exact_calls() const { return exact_calls_; }
+
+ private:
+  const geom::Mesh& original_;
+  geom::Bvh bvh_;
+  geom::WindingNumber winding_;
+  std::uint64_t tests_ = 0, exact_calls_ = 0;
+};
+
+}  // namespace kaboum::bmesh

@@ -1,0 +1,77 @@
+#include "proximity.h"
+
+#include <utility>
+
+namespace kaboum::bmesh {
+
+Vec3 closest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a, ap = p - a;
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) return a;
+  const Vec3 bp = p - b;
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) return b;
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + (d1 > d3 ? d1 / (d1 - d3) : 0) * ab;
+  const Vec3 cp = p - c;
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) return c;
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + (d2 > d6 ? d2 / (d2 - d6) : 0) * ac;
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 >= d3 && d5 >= d6) {
+    const double sum = (d4 - d3) + (d5 - d6);
+    return b + (sum > 0 ? (d4 - d3) / sum : 0) * (c - b);
+  }
+  const double sum = va + vb + vc;
+  if (!(sum > 0)) return a;
+  return a + (vb / sum) * ab + (vc / sum) * ac;
+}
+
+Proximity::Proximity(const geom::Mesh& mesh) : bvh_(mesh) {
+  corners_.reserve(mesh.triangles.size());
+  for (const std::uint32_t i : bvh_.order()) {
+    const geom::Triangle& t = mesh.triangles[i];
+    corners_.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
+  }
+}
+
+double Proximity::squared(const Vec3& p, std::uint32_t& hint, double enough) const {
+  const auto nodes = bvh_.nodes();
+  const auto to_box = [&](const geom::Box3& box) {
+    return (box.min - p).cwiseMax(p - box.max).cwiseMax(0.0).squaredNorm();
+  };
+  if (hint >= corners_.size()) hint = 0;
+  double best = squared_distance(p, corners_[hint]);
+  struct Entry {
+    double squared;
+    std::uint32_t node;
+  };
+  std::array<Entry, geom::Bvh::kMaxDepth> stack;
+  std::size_t size = 0;
+  stack[size++] = {0, 0};
+  while (size > 0 && best > enough) {
+    const Entry entry = stack[--size];
+    if (entry.squared >= best) continue;
+    std::uint32_t index = entry.node;
+    while (!nodes[index].leaf()) {
+      Entry near{to_box(nodes[index + 1].box), index + 1};
+      Entry far{to_box(nodes[nodes[index].first].box), nodes[index].first};
+      if (far.squared < near.squared) std::swap(near, far);
+      if (near.squared >= best) break;
+      if (far.squared < best) stack[size++] = far;
+      index = near.node;
+    }
+    const geom::Bvh::Node& node = nodes[index];
+    if (!node.leaf()) continue;
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+      const double d = squared_distance(p, corners_[i]);
+      if (d >= best) continue;
+      best = d;
+      hint = i;
+    }
+  }
+  return best;
+}
+
+}  // namespace kaboum::bmesh

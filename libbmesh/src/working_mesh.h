@@ -1,0 +1,40 @@
+#pragma once
+
+#include <kaboum/geom/prepare.h>
+
+#include <vector>
+
+#include "connectivity.h"
+#include "quadric.h"
+
+namespace kaboum::bmesh {
+
+/// The mesh that decimation and optimisation work on.
+struct WorkingMesh {
+  explicit WorkingMesh(const geom::Prepared& input)
+      : position(input.mesh.vertices),
+        border(input.border),
+        mesh(input.mesh.vertices.size(), input.mesh.triangles),
+        normal(input.mesh.triangles.size()) {
+    for (std::uint32_t t = 0; t < mesh.size(); ++t) update_normal(t);
+  }
+
+  void update_normal(std::uint32_t t) {
+    const geom::Triangle& tri = mesh[t];
+    const Vec3& a = position[tri[0]];
+    const Vec3 n = (position[tri[1]] - a).cross(position[tri[2]] - a);
+    const double length = n.norm();
+    normal[t] = length > 0 ? Vec3(n / length) : Vec3(Vec3::Zero());
+  }
+
+  void update_normals_around(std::uint32_t v) {
+    mesh.for_each_triangle(v, [&](std::uint32_t t, std::uint32_t) { update_normal(t); });
+  }
+
+  std::vector<Vec3> position;
+  std::vector<char> border;  // may not move
+  Connectivity mesh;
+  std::vector<Vec3> normal;  // unit, or zero for triangles without area
+};
+
+}  // namespace kaboum::bmesh
