@@ -81,6 +81,7 @@ void describe(CLI::App& app, Options& o) {
   app.add_option("--input-format", o.input_format, "Format of - and of unknown extensions")
       ->type_name("NAME");
   tools::add_common_options(app, o.common);
+  app.get_option("--seed")->description("Seed of the points behind mean and rms");
   app.footer(
       "Prints one-sided distances both ways and the Hausdorff distance, in the files' unit and\n"
       "relative to the diagonal of both bounding boxes. min and max are certified intervals; mean\n"
