@@ -69,6 +69,40 @@ TEST(Search, EveryBackendFindsWhatLookingAtAllTrianglesFinds) {
   }
 }
 
+// Triangles round a point whose distances differ by far less than float32 can tell apart at these
+// coordinates: the nearest one must still be found.
+TEST(Search, TellsNearTiesApartBelowFloatResolution) {
+  std::mt19937_64 random(12);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto vector = [&] { return Vec3(unit(random), unit(random), unit(random)); };
+  for (const double scale : {1.0, 1e-20, 1e20}) {
+    Mesh mesh;
+    const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+      for (const Vec3& v : {a, b, c}) mesh.vertices.emplace_back(scale * v);
+      mesh.triangles.push_back({first, first + 1, first + 2});
+    };
+    add({-1, -1, -1}, {-1, -1, -0.9}, {-1, -0.9, -1});
+    add({1, 1, 1}, {1, 1, 0.9}, {1, 0.9, 1});
+    std::vector<Vec3> points;
+    for (int i = 0; i < 300; ++i) {
+      points.emplace_back(0.9 * vector());
+      const double radius = std::pow(10, -4 - i % 4);
+      for (int t = 0; t < 24; ++t) {
+        const Vec3 at = points.back() + radius * (1 + 1e-4 * unit(random)) * vector().normalized();
+        add(at, at + 1e-3 * radius * vector(), at + 1e-3 * radius * vector());
+      }
+    }
+    for (const Backend backend : {Backend::Embree, Backend::Own}) {
+      const auto search = make_search(mesh, backend);
+      for (const Vec3& point : points) {
+        const Vec3 p = scale * point;
+        EXPECT_LE(search->nearest(p).upper, by_all(mesh, p).upper * (1 + 1e-12));
+      }
+    }
+  }
+}
+
 TEST(Search, BothBackendsGiveTheSameLargestDistance) {
   for (const auto& family : kaboum::test::closed_families()) {
     if (family.mesh.triangles.size() > 1500) continue;
