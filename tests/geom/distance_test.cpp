@@ -138,6 +138,79 @@ TEST(DirectedDistance, FindsMaximaInsideFaces) {
   EXPECT_GE(d.max_upper, 5 - 1e-6);
 }
 
+// One big triangle over a fine triangulation of itself with one triangle left out: the largest
+// distance is the radius of the hole's inscribed circle, and no vertex shows it. Whoever loses a
+// piece of the big triangle may lose the hole.
+TEST(DirectedDistance, FindsAHoleInACoplanarTriangulation) {
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> unit(0, 1);
+  constexpr int kRows = 9;
+  for (int run = 0; run < 60; ++run) {
+    const Vec3 o(unit(random), unit(random), unit(random));
+    const Vec3 u(1 + unit(random), unit(random), unit(random)),
+        v(unit(random), 1 + unit(random), -unit(random));
+    const Mesh a{{o, o + u, o + v}, {{0, 1, 2}}};
+    Mesh b;
+    const auto index = [](int i, int j) {
+      return static_cast<std::uint32_t>(i * (kRows + 1) - i * (i - 1) / 2 + j);
+    };
+    for (int i = 0; i <= kRows; ++i)
+      for (int j = 0; j <= kRows - i; ++j) b.vertices.push_back(o + (i * u + j * v) / kRows);
+    for (int i = 0; i < kRows; ++i)
+      for (int j = 0; j < kRows - i; ++j) {
+        b.triangles.push_back({index(i, j), index(i + 1, j), index(i, j + 1)});
+        if (j + 1 < kRows - i)
+          b.triangles.push_back({index(i + 1, j), index(i + 1, j + 1), index(i, j + 1)});
+      }
+    const auto hole = static_cast<std::ptrdiff_t>(random() % b.triangles.size());
+    const auto t = b.triangles[static_cast<std::size_t>(hole)];
+    b.triangles.erase(b.triangles.begin() + hole);
+    // A side of the hole on the big triangle's border has nothing beyond it.
+    const Vec3 &p = b.vertices[t[0]], &q = b.vertices[t[1]], &r = b.vertices[t[2]];
+    const auto d = directed_distance(a, DistanceQuery(b));
+    const double radius =
+        (q - p).cross(r - p).norm() / ((q - p).norm() + (r - q).norm() + (p - r).norm());
+    EXPECT_GE(d.max_upper, radius * (1 - 1e-12)) << run;
+    EXPECT_LE(d.max_upper, d.max_lower * (1 + 1.1e-3)) << run;
+    EXPECT_GE(d.max_lower, radius * (1 - 2e-3)) << run;
+    // And it is the distance at that point.
+    EXPECT_LE(d.max_lower, DistanceQuery(b).nearest(d.at).upper) << run;
+  }
+}
+
+// Against a plane the largest distance is at a vertex of A, whatever the clusters of A look like;
+// a wide gap lets them settle early.
+TEST(DirectedDistance, ClustersNeverHideAVertex) {
+  std::mt19937_64 random(9);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (int run = 0; run < 120; ++run) {
+    const Vec3 n = Vec3(unit(random), unit(random), unit(random)).normalized();
+    const Vec3 x = n.unitOrthogonal(), y = n.cross(x);
+    const Mesh b{{-50 * x - 50 * y, 90 * x - 10 * y, -10 * x + 90 * y}, {{0, 1, 2}}};
+    Mesh a;
+    constexpr int kSide = 30;
+    const double base = run % 2 == 0 ? 1.0 : 0.3;
+    for (int i = 0; i <= kSide; ++i)
+      for (int j = 0; j <= kSide; ++j)
+        a.vertices.push_back(0.01 * i * x + 0.01 * j * y + (base + 0.001 * unit(random)) * n);
+    a.vertices[random() % a.vertices.size()] += 0.3 * base * n;
+    for (std::uint32_t i = 0; i < kSide; ++i)
+      for (std::uint32_t j = 0; j < kSide; ++j) {
+        const std::uint32_t v = i * (kSide + 1) + j;
+        a.triangles.push_back({v, v + kSide + 1, v + 1});
+        a.triangles.push_back({v + kSide + 1, v + kSide + 2, v + 1});
+      }
+    double largest = 0;
+    for (const Vec3& v : a.vertices) largest = std::max(largest, n.dot(v));
+    for (const double gap : {1e-3, 0.05, 0.25, 0.5}) {
+      const auto d = directed_distance(a, DistanceQuery(b), {gap, 0});
+      EXPECT_GE(d.max_upper, largest * (1 - 1e-12)) << run << " " << gap;
+      EXPECT_LE(d.max_lower, largest * (1 + 1e-12)) << run << " " << gap;
+      EXPECT_LE(d.max_upper, d.max_lower * (1 + gap) + 1e-12) << run << " " << gap;
+    }
+  }
+}
+
 TEST(DirectedDistance, DoesNotDependOnTheNumberOfThreads) {
   const auto families = kaboum::test::closed_families();
   const Mesh& a = families.front().mesh;
