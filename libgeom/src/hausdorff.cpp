@@ -14,6 +14,9 @@ namespace {
 
 constexpr std::uint32_t kNone = TriangleSearch::kNone;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// A rounded centroid is this far from the exact one at most, times the largest |coordinate|:
+/// docs/algorithms/distances.md.
+constexpr double kCentroidError = 1.5e-15;
 
 /// A run of A's triangles in spatial order, with their box.
 struct Cluster {
@@ -33,10 +36,19 @@ struct Piece {
 
 /// What one round finds out about a cluster or piece.
 struct Finding {
-  double lower = 0;  // the distance at `at` is at least this
+  double lower = 0;     // some point of A, next to `at`, is at least this far from B
+  double measured = 0;  // the largest lower bound at any point, which rounding may have moved off A
   Vec3 at = Vec3::Zero();
   double settled = 0;  // upper bound of the parts that need no further work
   std::uint64_t queries = 0;
+
+  /// Takes note of a distance at a point that is at most `moved` away from a point of A.
+  void consider(double distance, const Vec3& point, double moved) {
+    measured = std::max(measured, distance);
+    if (distance - moved <= lower) return;
+    lower = distance - moved;
+    at = point;
+  }
 };
 
 class BranchAndBound {
@@ -53,22 +65,19 @@ class BranchAndBound {
 
   DirectedDistance run() {
     std::vector<Piece> open = bound_clusters();
-    int round = 1;
-    for (; !open.empty(); ++round) {
+    for (int round = 1; !open.empty(); ++round) {
       keep_unsettled(open);  // the lower bound may have risen
       if (round > kMaxRounds || open.size() > kMaxPieces) {
         // What is known of the rest is a bound all the same.
-        for (const Piece& p : open) settled_ = std::max(settled_, p.upper);
-        result_.within_gap = false;
+        for (const Piece& p : open) settled_ = std::max(settled_, p.upper + moved_);
         break;
       }
       open = cut_all(open, round);
+      moved_ = round * PrismCut::kCuts * ConvexPolygon::kCutError * magnitude_;
       evaluate(open);
     }
-    // What cuts may have left out lies this close to what they covered.
-    result_.max_upper =
-        std::max(settled_ + round * PrismCut::kCuts * ConvexPolygon::kCutError * magnitude_,
-                 result_.max_lower);
+    result_.max_upper = std::max(settled_, result_.max_lower);
+    result_.within_gap = result_.max_upper <= wished() * (1 + 1e-15);
     return result_;
   }
 
@@ -79,14 +88,21 @@ class BranchAndBound {
   static constexpr std::uint32_t kLargestCluster = 4096;
   static constexpr std::uint32_t kSmallestCluster = 8;
 
-  [[nodiscard]] double limit() const {
+  /// The largest upper bound that meets the wish.
+  [[nodiscard]] double wished() const {
     return std::max(result_.max_lower * (1 + options_.relative_gap),
                     result_.max_lower + absolute_gap_);
   }
 
+  /// The upper bound at which a piece needs no further work: the wish, less what cuts have moved
+  /// the piece by. Where rounding is wider than the wish, a gap of its size must do: upper bounds
+  /// may stay as much above the truth, and distances measured as much below.
+  [[nodiscard]] double limit() const { return std::max(wished() - moved_, measured_ + 3 * moved_); }
+
   void take(const Finding& f) {
     settled_ = std::max(settled_, f.settled);
     result_.queries += f.queries;
+    measured_ = std::max(measured_, f.measured);
     if (f.lower <= result_.max_lower) return;
     result_.max_lower = f.lower;
     result_.at = f.at;
@@ -163,7 +179,10 @@ class BranchAndBound {
     const double radius = (cluster.box.max - p).cwiseMax(p - cluster.box.min).norm();
     cluster.upper = std::min(cluster.upper, (at.upper + radius) * (1 + 1e-14));
     if (cluster.upper > enough) lower_by_corners(cluster, enough);
-    return {at.lower, p, 0, 1};
+    Finding finding;
+    finding.queries = 1;
+    finding.consider(at.lower, p, 0);
+    return finding;
   }
 
   bool lower_by_corners(Cluster& cluster, double enough) const {
@@ -209,6 +228,7 @@ class BranchAndBound {
       Piece piece{{a, b, c}, kInfinity, cluster.hint, hint};
       const Finding own = bound(piece, enough);
       finding.queries += own.queries;
+      finding.measured = std::max(finding.measured, own.measured);
       if (own.lower > finding.lower) {
         finding.lower = own.lower;
         finding.at = own.at;
@@ -260,7 +280,8 @@ class BranchAndBound {
     }
     const Vec3 center = piece.polygon.centroid();
     const auto at_center = b_.nearest(center, piece.nearest);
-    finding = {at_center.lower, center, 0, 1};
+    finding.queries = 1;
+    finding.consider(at_center.lower, center, moved_ + kCentroidError * magnitude_);
     double radius = 0;
     for (int i = 0; i < piece.polygon.size; ++i)
       radius = std::max(radius, (piece.polygon.corner[i] - center).norm());
@@ -274,10 +295,7 @@ class BranchAndBound {
     const Vec3& corner = piece.polygon.corner[where];
     const auto at_corner = b_.nearest(corner, at_center.triangle);
     ++finding.queries;
-    if (at_corner.lower > finding.lower) {
-      finding.lower = at_corner.lower;
-      finding.at = corner;
-    }
+    finding.consider(at_corner.lower, corner, moved_);
     piece.at_worst = at_corner.triangle;
     if (at_corner.triangle != at_center.triangle)
       piece.upper = std::min(piece.upper, worst_corner(piece.polygon, at_corner.triangle).first);
@@ -300,7 +318,7 @@ class BranchAndBound {
   /// Whether an upper bound is good enough; then it counts.
   bool settle(double upper) {
     if (upper > limit()) return false;
-    settled_ = std::max(settled_, upper);
+    settled_ = std::max(settled_, upper + moved_);
     return true;
   }
 
@@ -377,7 +395,9 @@ class BranchAndBound {
   const DistanceOptions& options_;
   double magnitude_ = 0;
   double absolute_gap_ = 0;
-  double settled_ = 0;  // largest upper bound among the pieces that need no further cut
+  double moved_ = 0;     // how far cuts have moved corners of the pieces from A
+  double measured_ = 0;  // largest lower bound of a distance at points that may be that far from A
+  double settled_ = 0;   // largest upper bound among the pieces that need no further cut
   std::vector<std::vector<Box3>> boxes_;  // of clusters, smallest first
   DirectedDistance result_;
 };

@@ -115,9 +115,9 @@ class DistanceQuery final : public TriangleSearch {
 struct DirectedDistance {
   double max_lower = 0;  ///< certified bracket of the supremum
   double max_upper = 0;
-  Vec3 at = Vec3::Zero();  ///< point of A at which max_lower is attained
-  bool within_gap =
-      true;  ///< false: the work allowed (2^23 pieces at a time) did not reach the gap
+  Vec3 at = Vec3::Zero();  ///< point of A, within rounding, whose distance is at least max_lower
+  bool within_gap = true;  ///< false: the gap was not reached in the work allowed (2^23 pieces at a
+                           ///< time), or coordinates are too large for it (see below)
   std::uint64_t queries = 0;
 };
 
@@ -133,6 +133,9 @@ struct DistanceOptions {
 /// A piece that is not settled is cut along the prism of t, so that coplanar surfaces fall apart
 /// into the cells in which one triangle of B is nearest, instead of being halved down to the gap.
 /// Rounds are evaluated in parallel (oneTBB); the result does not depend on the number of threads.
+///
+/// Corners made by cuts and centroids are rounded; the bracket allows for that, some 1e-14 times
+/// the largest |coordinate| of A. Translate meshes far from the origin first, where that is exact.
 ///
 /// @pre A and B have triangles and finite coordinates; B is given as a query.
 /// @throws Error{InvalidInput} when A has no triangles.
