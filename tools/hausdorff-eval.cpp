@@ -57,7 +57,7 @@ void describe(CLI::App& app, Options& o) {
            std::string(kind == &o.a_as ? "A" : "B") +
                " is a mesh, or a set of convex bodies of which the union's boundary counts; "
                "auto: a set if it is a folder, a container, or a GLB or OBJ file with "
-               "several bodies that are all convex [auto]")
+               "several bodies that are all convex; sets with a margin above 0 are refused [auto]")
         ->check(CLI::IsMember({"auto", "mesh", "set"}).description(""))
         ->type_name(kinds);
   app.add_option(
@@ -248,10 +248,33 @@ class Job {
                   a_.file + ", " + b_.file + ": extent below 1e-60; scale the meshes");
   }
 
-  void measure() {
+  /// Moves both surfaces near the origin, along the axes on which all differences are exact: then
+  /// distances stay what they are, and rounding that is proportional to coordinates shrinks.
+  void move_to_origin() {
     geom::Box3 box = geom::bounding_box(a_.mesh);
     box.extend(geom::bounding_box(b_.mesh));
     diagonal_ = box.diagonal();
+    for (int axis = 0; axis < 3; ++axis) {
+      const double shift = box.min[axis];
+      if (std::max(std::abs(shift), std::abs(box.max[axis])) <= box.max[axis] - shift) continue;
+      // Knuth's two-sum gives the rounding error of a difference.
+      const auto exact = [&](double x) {
+        const double d = x - shift, back = x - d;
+        return (x - (d + back)) + (back - shift) == 0;
+      };
+      const auto exact_everywhere = [&](const Side& side) {
+        return std::all_of(side.mesh.vertices.begin(), side.mesh.vertices.end(),
+                           [&](const Vec3& v) { return exact(v[axis]); });
+      };
+      if (!exact_everywhere(a_) || !exact_everywhere(b_)) continue;
+      origin_[axis] = shift;
+      for (Side* side : {&a_, &b_})
+        for (Vec3& v : side->mesh.vertices) v[axis] -= shift;
+    }
+  }
+
+  void measure() {
+    move_to_origin();
     const auto backend = o_.backend == "own" ? measure::Backend::Own : measure::Backend::Embree;
     progress_.show("building search structures");
     const auto search_a = measure::make_search(a_.mesh, backend);
@@ -341,9 +364,10 @@ class Job {
   void make_heatmap(const geom::TriangleSearch& search_a, const geom::TriangleSearch& search_b) {
     progress_.show("colours");
     const bool ply = std::filesystem::path(o_.heatmap).extension() == ".ply";
-    const geom::Mesh a = refined(a_.mesh);
+    geom::Mesh a = refined(a_.mesh);
     const std::vector<double> to_b = distances(a, search_b);
     if (ply) {
+      for (Vec3& v : a.vertices) v += origin_;
       heatmap_ = picture::heatmap_ply(a, to_b, to_b_.max.max_upper);
       return;
     }
@@ -417,10 +441,11 @@ class Job {
             {"mean_standard_error", way.sampled.mean.standard_error},
             {"rms", way.sampled.rms.value},
             {"rms_standard_error", way.sampled.rms.standard_error},
+            {"mean_and_rms_rounding", way.sampled.rounding},
             {"max_lower", way.max.max_lower},
             {"max_upper", way.max.max_upper},
-            {"max_at", to_json(way.max.at)},
-            {"max_nearest", to_json(way.nearest)},
+            {"max_at", to_json(Vec3(way.max.at + origin_))},
+            {"max_nearest", to_json(Vec3(way.nearest + origin_))},
             {"max_within_gap", way.max.within_gap},
             {"relative",
              {{"min", relative(min_.upper)},
@@ -450,7 +475,8 @@ class Job {
     r["hausdorff_upper"] = hausdorff_upper();
     r["hausdorff_relative"] = {{"lower", relative(hausdorff_lower())},
                                {"upper", relative(hausdorff_upper())}};
-    r["min_at"] = {{"a", to_json(min_.on_a)}, {"b", to_json(min_.on_b)}};
+    r["min_at"] = {{"a", to_json(Vec3(min_.on_a + origin_))},
+                   {"b", to_json(Vec3(min_.on_b + origin_))}};
     r["resources"] = {{"seconds_reading", seconds(start_, read_)},
                       {"seconds_building", seconds(read_, built_)},
                       {"seconds_measuring", seconds(built_, measured_)},
@@ -513,6 +539,7 @@ class Job {
   OneWay to_b_, to_a_;
   measure::Minimum min_;
   double diagonal_ = 0;
+  Vec3 origin_ = Vec3::Zero();  ///< in the files' coordinates
   std::vector<char> heatmap_;
   Time start_, read_, built_, measured_;
 };

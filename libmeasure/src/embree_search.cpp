@@ -14,12 +14,19 @@ namespace {
 
 using geom::Vec3;
 
-/// The next float32 number below (above) x's nearest one: a bound that rounding cannot cross.
+/// The float32 number nearest to x, the largest finite one beyond their range: a conversion out of
+/// range would be undefined.
+float nearest_float(double x) {
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  return static_cast<float>(std::clamp(x, -kLargest, kLargest));
+}
+/// The next float32 number below (above) x's nearest one: a bound that rounding cannot cross. Of
+/// x beyond their range, `above` is infinite.
 float below(double x) {
-  return std::nextafter(static_cast<float>(x), -std::numeric_limits<float>::infinity());
+  return std::nextafter(nearest_float(x), -std::numeric_limits<float>::infinity());
 }
 float above(double x) {
-  return std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity());
+  return std::nextafter(nearest_float(x), std::numeric_limits<float>::infinity());
 }
 
 // Query points are clamped to this distance from the origin of the scaled coordinates, in which the

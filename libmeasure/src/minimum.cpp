@@ -24,13 +24,14 @@ constexpr double kRounding = 1.6e-14;
 
 Kernel::Point_3 point(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
-/// The longest side of a triangle without area: as a set of points it is the triangle.
+/// The side of a triangle without area that holds all of it: its corners lie on a line, of which
+/// the order of coordinates is the order of points.
 Kernel::Segment_3 longest_side(const Corners& t) {
-  int best = 0;
-  for (int k = 1; k < 3; ++k)
-    if ((t[(k + 1) % 3] - t[k]).squaredNorm() > (t[(best + 1) % 3] - t[best]).squaredNorm())
-      best = k;
-  return {point(t[best]), point(t[(best + 1) % 3])};
+  const auto before = [](const Vec3& p, const Vec3& q) {
+    return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
+  };
+  const auto [first, last] = std::minmax_element(t.begin(), t.end(), before);
+  return {point(*first), point(*last)};
 }
 
 /// Whether the closed triangles have a point in common; exact, whatever their shapes.

@@ -36,6 +36,7 @@ class Random {
 /// Sums over strata: of the distances, their squares, and the squared differences in pairs.
 struct Sums {
   double distance = 0, square = 0, distance_spread = 0, square_spread = 0;
+  double width = 0;  // of the widest bracket
 };
 
 }  // namespace
@@ -85,6 +86,7 @@ Sampled sample_distances(const geom::Mesh& a, const geom::TriangleSearch& b, std
         const auto nearest = b.nearest(p, hint);
         hint = nearest.triangle;
         d = 0.5 * nearest.lower + 0.5 * nearest.upper;
+        sum.width = std::max(sum.width, nearest.upper - nearest.lower);
       }
       // Scaled, lest squares leave the range of double.
       const double x = scale * distance[0], y = scale * distance[1];
@@ -96,6 +98,7 @@ Sampled sample_distances(const geom::Mesh& a, const geom::TriangleSearch& b, std
   });
   Sums all;
   for (const Sums& s : sums) {
+    all.width = std::max(all.width, s.width);
     all.distance += s.distance;
     all.square += s.square;
     all.distance_spread += s.distance_spread;
@@ -111,6 +114,9 @@ Sampled sample_distances(const geom::Mesh& a, const geom::TriangleSearch& b, std
   // d(√m) = dm / (2√m).
   result.rms = {rms / scale,
                 rms > 0 ? std::sqrt(all.square_spread) / (2 * n) / (2 * rms) / scale : 0.0};
+  // docs/algorithms/distances.md.
+  result.rounding =
+      0.5 * all.width + 2e-15 * box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).maxCoeff();
   return result;
 }
 

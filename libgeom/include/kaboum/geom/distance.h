@@ -124,6 +124,7 @@ struct DirectedDistance {
 struct DistanceOptions {
   double relative_gap = 1e-3;  ///< stop when upper ≤ lower · (1 + relative_gap) …
   double absolute_gap = 1e-9;  ///< … or upper ≤ lower + absolute_gap · diagonal of A and B's box
+                               ///< (much smaller ones are reached slowly, if at all)
 };
 
 /// Branch and bound over convex pieces of A's triangles.

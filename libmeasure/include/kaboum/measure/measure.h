@@ -17,6 +17,7 @@ struct Estimate {
 /// Mean and root mean square of d(x, B) over the area of A. [length]
 struct Sampled {
   Estimate mean, rms;
+  double rounding = 0;  ///< what rounding of points and distances can move either by at most
   std::uint64_t samples = 0;
 };
 
