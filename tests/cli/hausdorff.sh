@@ -27,6 +27,13 @@ awk -F, 'NR>1 { bad = bad || !($2 <= 2 && $3 >= 2 && $3 < 2.0001 && $8 <= 3 && $
 expect 0 '' "$H" t.off t.off --csv k.csv
 awk -F, 'NR>1 { bad = bad || $3 != 0 || $9 > 2e-9 } END { exit bad }' k.csv || fail "same: $(cat k.csv)"
 
+# Far from the origin nothing changes where a common shift is exact.
+awk 'NR>2 && NR<7 {printf "%.17g %.17g %.17g\n", $1+1e9+1/512, $2-2e9, $3+3e9; next} {print}' t.off >far.off
+expect 0 '' "$H" far.off far.off --csv k.csv --report far.json
+awk -F, 'NR>1 { bad = bad || $8 != 0 || $9 > 2e-9 || $4 > 1e-12 } END { exit bad }' k.csv || fail "far: $(cat k.csv)"
+grep -q 'mean_and_rms_rounding' far.json || fail "no rounding of mean and rms"
+grep -A1 '"max_at"' far.json | grep -q '100000000' || fail "max_at is not in the file's coordinates"
+
 # Gap, backends, bounds.
 expect 0 '' "$H" "$BRACKET" b.ply --gap 1e-6 --csv fine.csv
 awk -F, 'NR>1 { bad = bad || $9 > $8 * (1 + 1.1e-6) } END { exit bad }' fine.csv || fail "gap: $(cat fine.csv)"

@@ -45,6 +45,20 @@ TEST(Minimum, IsExactlyZeroWhereSurfacesMeet) {
 }
 
 // Every sampled pair is farther apart than the lower bound, and the upper bound is attained.
+// Collinear corners of which two sides are equally long within rounding: only the longer one holds
+// the whole triangle, and only its far end touches the other triangle.
+TEST(Minimum, IsExactlyZeroAtTheEndOfACollinearTriangle) {
+  const double tiny = 0x1p-60;
+  const std::array<Vec3, 3> line{Vec3(-tiny, 0, 0), Vec3(0, 0, 0), Vec3(1, 0, 0)};
+  const Mesh other{{{-tiny, 0, 0}, {-tiny, 1, 0}, {-tiny, 0, 1}}, {{0, 1, 2}}};
+  for (std::uint32_t i = 0; i < 3; ++i)
+    for (const std::uint32_t turn : {1U, 2U}) {
+      const Mesh flat{{line[i], line[(i + turn) % 3], line[(i + 2 * turn) % 3]}, {{0, 1, 2}}};
+      EXPECT_EQ(minimum_distance(flat, other).upper, 0) << i << turn;
+      EXPECT_EQ(minimum_distance(other, flat).upper, 0) << i << turn;
+    }
+}
+
 TEST(Minimum, BracketsAllPairsOfTriangles) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> unit(-1, 1);
