@@ -75,11 +75,12 @@ void keep(const MeshPair& pair) {
   }
 }
 
-void Tally::compare(const MeshPair& pair, const ArrangementVerdict& truth) {
+void Tally::compare(const MeshPair& pair, const ArrangementVerdict& truth,
+                    const verify::InclusionOptions& options) {
   verify::Inclusion claim;
   const std::string before = faults_;
   try {
-    claim = verify::verify_inclusion(pair.inner, pair.outer);
+    claim = verify::verify_inclusion(pair.inner, pair.outer, options);
   } catch (const std::exception& e) {
     fault(pair.name + ": " + e.what());
     keep(pair);
@@ -153,8 +154,10 @@ void Tally::judge_one(const MeshPair& pair, std::uint64_t seed) {
   if (truth.solid) ++solid_[*truth.solid ? 1 : 0];
   if (truth.surface) ++surface_[*truth.surface ? 1 : 0];
   if (!truth.solid && truth.difference) ++difference_[*truth.difference ? 1 : 0];
-  compare(pair, truth);
-  compare(permuted(pair, seed), truth);
+  compare(pair, truth, {});
+  verify::InclusionOptions settling;  // the way of large coplanar overlaps
+  settling.settle_from = 0;
+  compare(permuted(pair, seed), truth, settling);
 }
 
 void Tally::judge(const MeshPair& pair, std::uint64_t seed) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <kaboum/verify/inclusion.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -13,7 +15,8 @@ namespace kaboum::test {
 class Tally {
  public:
   /// The pair both ways round, and the same pairs permuted: one verdict of the oracle, one claim
-  /// each by the verifier. Witnesses are checked with winding numbers computed another way.
+  /// each by the verifier, of the permuted pair with cells settled by coplanar faces. Witnesses are
+  /// checked with winding numbers computed another way.
   void judge(const MeshPair& pair, std::uint64_t seed);
   /// One direction only.
   void judge_one(const MeshPair& pair, std::uint64_t seed);
@@ -32,7 +35,8 @@ class Tally {
   [[nodiscard]] std::size_t inexact_witnesses() const { return inexact_; }
 
  private:
-  void compare(const MeshPair& pair, const ArrangementVerdict& truth);
+  void compare(const MeshPair& pair, const ArrangementVerdict& truth,
+               const verify::InclusionOptions& options);
   void fault(const std::string& text) { faults_ += text + '\n'; }
 
   std::string faults_;
