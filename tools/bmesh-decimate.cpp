@@ -407,8 +407,10 @@ class Job {
            "the verification refutes that the result is bounding; nothing is written");
     progress.show("verifying: distances");
     const double bound = std::max(to_result_->max_upper, to_original_->max_upper);
-    // The measured bound holds up to the rounding that both derive; some room keeps it decidable.
-    const double claimed = std::max(bound * (1 + 1e-6), 1e-9 * box_.diagonal());
+    // Epsilon, or the measured bound with room that keeps it decidable.
+    const double claimed =
+        epsilon_ ? *epsilon_ : std::max(bound * (1 + 1e-3), 1e-6 * box_.diagonal());
+    verified_bound_ = claimed;
     for (const bool forth : {true, false}) {
       const verify::DistanceClaim claim = verify::verify_distance(
           forth ? prepared_.mesh : back.mesh, forth ? back.mesh : prepared_.mesh, claimed);
@@ -430,6 +432,7 @@ class Job {
     Json json{{"solid", claim(verified_->solid)},
               {"relative", verified_->relative},
               {"surface", claim(verified_->surface)},
+              {"distance_bound", verified_bound_},
               {"distance_original_to_result", name_of(verified_distance_[0])},
               {"distance_result_to_original", name_of(verified_distance_[1])}};
     return json;
@@ -616,6 +619,7 @@ class Job {
   std::optional<geom::DirectedDistance> to_result_, to_original_;
   std::optional<verify::Inclusion> verified_;
   std::vector<verify::Answer> verified_distance_;
+  double verified_bound_ = 0;
   std::vector<std::string> notes_;
   double seconds_read_ = 0, seconds_decimated_ = 0;
 };

@@ -92,7 +92,7 @@ class Verdict {
     if (claim.witness) {
       line += "; at " + point(claim.witness->point) + ", " + number(claim.witness->depth) + " deep";
       if (!claim.witness->exact) {
-        line += " (too thin for a point with double coordinates, which is beside it)";
+        line += " (the point is rounded)";
       }
     }
     lines_.push_back(line);
@@ -169,12 +169,37 @@ void write_witness(const std::string& path, const geom::Mesh& inner, const geom:
   io::WriteOptions options;
   options.double_precision = true;
   options.comment = "triangles that bound what refutes the claim";
-  const io::Format format = io::format_from_name(std::filesystem::path(path).extension().string())
-                                .value_or(io::Format::Ply);
+  io::Format format = *io::format_from_name(std::filesystem::path(path).extension().string());
+  if (format == io::Format::Stl) format = io::Format::StlAscii;  // holds doubles
   io::write_file(path, io::serialise_mesh(geom::Mesh(mesh), format, options));
 }
 
+/// Nothing that is read may be written, nothing written twice; the witness's format holds doubles.
+void require_outputs(const Options& o) {
+  const auto place = [](const std::string& file) {
+    return file == "-" ? std::filesystem::path("-")
+                       : std::filesystem::weakly_canonical(std::filesystem::absolute(file));
+  };
+  const auto require = [](bool condition, const std::string& message) {
+    if (!condition) throw Error(ErrorCode::InvalidArgument, message);
+  };
+  for (const auto& [option, file] :
+       {std::pair{"--report", o.common.report}, std::pair{"--witness", o.witness}}) {
+    for (const std::string& input : {o.original, o.approximation}) {
+      require(file.empty() || input == "-" || place(file) != place(input),
+              std::string(option) + " would overwrite the input " + input);
+    }
+  }
+  if (o.witness.empty()) return;
+  require(o.common.report.empty() || place(o.common.report) != place(o.witness),
+          "--report and --witness cannot both be " + o.witness);
+  const auto format = io::format_from_name(std::filesystem::path(o.witness).extension().string());
+  require(format && (io::holds_double(*format) || *format == io::Format::Stl),
+          "--witness: write .ply, .obj, .off or .stl (as text)");
+}
+
 int check(const Options& o) {
+  require_outputs(o);
   const tools::ThreadLimit threads(o.common.threads);
   std::optional<tools::Length> epsilon;
   if (!o.epsilon.empty()) {
@@ -343,8 +368,9 @@ int check(const Options& o) {
                          {"peak_megabytes", tools::peak_megabytes()}};
     tools::write_json(o.common.report, json);
   }
+  std::ostream& out = o.common.report == "-" ? std::cerr : std::cout;
   if (!o.common.quiet) {
-    for (const std::string& line : verdict.lines()) std::cout << line << '\n';
+    for (const std::string& line : verdict.lines()) out << line << '\n';
   }
   if (answer == Answer::Undefined && inclusion.inner_closed && inclusion.outer_closed) {
     throw Error(ErrorCode::InvalidInput,
@@ -361,7 +387,11 @@ int check(const Options& o) {
                           std::to_string(inclusion.outer_open_edges) +
                           " unbalanced edges); nothing can lie inside it. Close its holes first");
   }
-  if (!o.common.quiet) std::cout << name_of(answer) << '\n';
+  if (!o.common.quiet) out << name_of(answer) << '\n';
+  if (answer == Answer::Refuted && !o.prepare) {
+    tools::log(o.common.quiet,
+               "note: bmesh-decimate speaks of the input as prepared; --prepare judges that");
+  }
   return exit_code(answer);
 }
 
