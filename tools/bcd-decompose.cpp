@@ -216,6 +216,11 @@ tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const s
 }
 
 int decompose(const Options& o) {
+  tools::require_apart({{"--output", o.output},
+                        {"--report", o.common.report},
+                        {"--preview", o.preview},
+                        {"--depfile", o.depfile}},
+                       {o.input});
   const tools::ThreadLimit threads(o.common.threads);
   const io::SetFormat format = output_format(o);
   if (o.output == "-" && format == io::SetFormat::Directory)

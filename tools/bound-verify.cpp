@@ -176,26 +176,12 @@ void write_witness(const std::string& path, const geom::Mesh& inner, const geom:
 
 /// Nothing that is read may be written, nothing written twice; the witness's format holds doubles.
 void require_outputs(const Options& o) {
-  const auto place = [](const std::string& file) {
-    return file == "-" ? std::filesystem::path("-")
-                       : std::filesystem::weakly_canonical(std::filesystem::absolute(file));
-  };
-  const auto require = [](bool condition, const std::string& message) {
-    if (!condition) throw Error(ErrorCode::InvalidArgument, message);
-  };
-  for (const auto& [option, file] :
-       {std::pair{"--report", o.common.report}, std::pair{"--witness", o.witness}}) {
-    for (const std::string& input : {o.original, o.approximation}) {
-      require(file.empty() || input == "-" || place(file) != place(input),
-              std::string(option) + " would overwrite the input " + input);
-    }
-  }
+  tools::require_apart({{"--report", o.common.report}, {"--witness", o.witness}},
+                       {o.original, o.approximation});
   if (o.witness.empty()) return;
-  require(o.common.report.empty() || place(o.common.report) != place(o.witness),
-          "--report and --witness cannot both be " + o.witness);
   const auto format = io::format_from_name(std::filesystem::path(o.witness).extension().string());
-  require(format && (io::holds_double(*format) || *format == io::Format::Stl),
-          "--witness: write .ply, .obj, .off or .stl (as text)");
+  if (!format || !(io::holds_double(*format) || *format == io::Format::Stl))
+    throw Error(ErrorCode::InvalidArgument, "--witness: write .ply, .obj, .off or .stl (as text)");
 }
 
 int check(const Options& o) {

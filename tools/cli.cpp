@@ -173,6 +173,28 @@ void write_json(const std::string& path, const Json& json) {
   io::write_file(path, text);
 }
 
+void require_apart(const std::vector<std::pair<std::string, std::string>>& outputs,
+                   const std::vector<std::string>& inputs) {
+  const auto place = [](const std::string& file) {
+    return file == "-" ? std::filesystem::path("-")
+                       : std::filesystem::weakly_canonical(std::filesystem::absolute(file));
+  };
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    const std::string& file = outputs[i].second;
+    if (file.empty()) continue;
+    for (const std::string& input : inputs) {
+      if (input != "-" && place(file) == place(input))
+        throw Error(ErrorCode::InvalidArgument,
+                    outputs[i].first + " would overwrite the input " + input);
+    }
+    for (std::size_t j = 0; j < i; ++j) {
+      if (!outputs[j].second.empty() && place(file) == place(outputs[j].second))
+        throw Error(ErrorCode::InvalidArgument,
+                    outputs[j].first + " and " + outputs[i].first + " cannot both be " + file);
+    }
+  }
+}
+
 void write_depfile(const std::string& path, const std::string& target,
                    const std::vector<std::string>& inputs) {
   const auto escaped = [](const std::string& s) {

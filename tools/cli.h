@@ -94,6 +94,12 @@ double peak_megabytes();
 
 void write_json(const std::string& path, const Json& json);
 
+/// Refuses to write a file twice or over an input; outputs are (option, file), empty files are
+/// none.
+/// @throws Error{InvalidArgument}
+void require_apart(const std::vector<std::pair<std::string, std::string>>& outputs,
+                   const std::vector<std::string>& inputs);
+
 /// A Makefile rule saying that `target` depends on `inputs`.
 void write_depfile(const std::string& path, const std::string& target,
                    const std::vector<std::string>& inputs);
