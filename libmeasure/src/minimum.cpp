@@ -198,7 +198,7 @@ class DualTraversal {
       box_q.extend(q[k]);
     }
     if (box_distance(box_p, box_q) > result_.upper) return;
-    const Vec3 origin = p[0];
+    const Vec3& origin = p[0];
     Corners x, y;
     for (int k = 0; k < 3; ++k) {
       x[k] = p[k] - origin;

@@ -86,9 +86,9 @@ struct Body {
 };
 
 bool coplanar(const Plane& plane, const std::array<Vec3, 3>& t) {
-  const auto& [a, b, c] = plane.corner;
-  return std::all_of(t.begin(), t.end(),
-                     [&](const Vec3& p) { return geom::orient3d(a, b, c, p) == Sign::Zero; });
+  return std::all_of(t.begin(), t.end(), [&](const Vec3& p) {
+    return geom::orient3d(plane.corner[0], plane.corner[1], plane.corner[2], p) == Sign::Zero;
+  });
 }
 
 Body make_body(const Mesh& hull) {

@@ -47,7 +47,7 @@ void find_axis(Face& face, const Vec3& a, const Vec3& b, const Vec3& c) {
   for (const int axis : axes) {
     const Sign sign = orient2d(axis, a, b, c);
     if (sign == Sign::Zero) continue;
-    face.axis = static_cast<std::int8_t>(axis);
+    face.axis = axis;
     face.upward = sign == Sign::Positive;
     return;
   }

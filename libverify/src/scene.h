@@ -21,7 +21,7 @@ inline constexpr ChainMask mask_of(int chain) { return 1U << chain; }
 
 struct Face {
   std::array<std::uint32_t, 3> v;
-  std::int8_t axis;      ///< a projection along it does not collapse the face; −1: no area
+  int axis;              ///< a projection along it does not collapse the face; −1: no area
   bool upward;           ///< the projection along `axis` is counter-clockwise
   std::uint8_t chain;    ///< Chain
   std::uint32_t source;  ///< index in the mesh it comes from
