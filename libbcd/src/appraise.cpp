@@ -63,7 +63,8 @@ Appraisal appraise(std::span<const Vec3> points, const Solid& solid, geom::HullB
         for (int j = 0; j < 2 * (m - i) - 1; ++j) {
           // Centroids of the m² similar triangles.
           const double s = (i + (j % 2 == 0 ? 1.0 : 2.0) / 3) / m;
-          const double r = (j / 2 + (j % 2 == 0 ? 1.0 : 2.0) / 3) / m;
+          const int row = j / 2;
+          const double r = (row + (j % 2 == 0 ? 1.0 : 2.0) / 3) / m;
           const Vec3 p = a + s * ab + r * ac;
           const double d = solid.field(p);
           if (d <= 0) continue;

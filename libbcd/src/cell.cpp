@@ -86,6 +86,7 @@ Cell clip(const Cell& cell, const Plane& plane, bool lower, double shift) {
     }
     std::sort(order.begin(), order.end());
     std::vector<std::uint32_t> loop;
+    loop.reserve(order.size());
     for (const auto& [angle, v] : order) loop.push_back(v);
     if (!lower) std::reverse(loop.begin(), loop.end());
     out.faces.push_back(std::move(loop));

@@ -281,6 +281,7 @@ class Decomposer {
         if (required_.try_emplace(leaf).second) open.push_back(leaf);
     }
     std::vector<std::vector<Vec3>*> place;
+    place.reserve(open.size());
     for (const int leaf : open) place.push_back(&required_.at(leaf));
     tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t i) {
       *place[i] = outer_points(tree_.nodes()[open[i]].piece, point_error_);

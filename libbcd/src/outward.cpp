@@ -95,7 +95,7 @@ std::optional<geom::Mesh> box_round(std::span<const Vec3> points, double ulp) {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (const Vec3& p : points) covariance += (p - mean) * (p - mean).transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance);
-  const Eigen::Matrix3d axes = eigen.eigenvectors();
+  const Eigen::Matrix3d& axes = eigen.eigenvectors();
   if (!axes.allFinite()) return std::nullopt;
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
   for (const Vec3& p : points) {
@@ -107,6 +107,7 @@ std::optional<geom::Mesh> box_round(std::span<const Vec3> points, double ulp) {
   double margin = 2 * ulp;
   for (int round = 0; round < 12; ++round, margin *= 2) {
     std::vector<Vec3> corners;
+    corners.reserve(8);
     for (int i = 0; i < 8; ++i)
       corners.push_back(geom::to_float32(
           Vec3(mean + axes * Vec3((i & 1) != 0 ? high.x() + margin : low.x() - margin,

@@ -420,7 +420,7 @@ std::vector<Vec3> box_round(std::span<const Vec3> points) {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (const Vec3& p : points) covariance += (p - mean) * (p - mean).transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance);
-  const Eigen::Matrix3d axes = eigen.eigenvectors();
+  const Eigen::Matrix3d& axes = eigen.eigenvectors();
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
   for (const Vec3& p : points) {
     const Vec3 q = axes.transpose() * (p - mean);
@@ -428,6 +428,7 @@ std::vector<Vec3> box_round(std::span<const Vec3> points) {
     high = high.cwiseMax(q);
   }
   std::vector<Vec3> out;
+  out.reserve(8);
   for (int i = 0; i < 8; ++i)
     out.emplace_back(mean + axes * Vec3((i & 1) != 0 ? high.x() : low.x(),
                                         (i & 2) != 0 ? high.y() : low.y(),
