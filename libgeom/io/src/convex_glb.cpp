@@ -131,7 +131,10 @@ class Reader {
     }
     if (triangles == 0) fail(source_, "mesh " + in_quotes(name) + " has no triangles");
     ReadResult result = builder.finish(Format::Glb, true);
-    for (const std::string& note : result.notes) details_.notes.push_back(name + ": " + note);
+    for (const std::string& note : result.notes) {
+      details_.notes.push_back(name);
+      details_.notes.back().append(": ").append(note);
+    }
     set.bodies.push_back({std::move(name), std::move(result.mesh)});
   }
 
