@@ -144,21 +144,9 @@ class Job {
 
   void check_files() const {
     require(o_.a != "-" || o_.b != "-", "A and B cannot both be standard input");
-    std::vector<std::pair<std::string, std::string>> out{
-        {"--report", o_.common.report}, {"--csv", o_.csv}, {"--heatmap", o_.heatmap}};
-    std::erase_if(out, [](const auto& f) { return f.second.empty(); });
-    const auto place = [](const std::string& file) {
-      return file == "-" ? std::filesystem::path("-")
-                         : std::filesystem::weakly_canonical(std::filesystem::absolute(file));
-    };
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      for (std::size_t j = i + 1; j < out.size(); ++j)
-        require(place(out[i].second) != place(out[j].second),
-                out[i].first + " and " + out[j].first + " cannot both be " + out[i].second);
-      for (const std::string& input : {o_.a, o_.b})
-        require(input == "-" || place(out[i].second) != place(input),
-                out[i].first + " would overwrite the input " + input);
-    }
+    tools::require_apart(
+        {{"--report", o_.common.report}, {"--csv", o_.csv}, {"--heatmap", o_.heatmap}},
+        {o_.a, o_.b});
     if (o_.heatmap.empty()) return;
     const std::string extension = std::filesystem::path(o_.heatmap).extension().string();
     require(extension == ".png" || extension == ".ply", "--heatmap: give a .png or .ply file");

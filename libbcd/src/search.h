@@ -13,7 +13,6 @@ struct SearchOptions {
   int offsets = 7;  ///< per direction
   int reflex_planes = 10;
   int refinements = 2;  ///< halvings of the best plane's offset
-  int lookahead = 0;    ///< best planes that are judged by the next cut
 };
 
 /// Binary tree of cuts. Leaves that are still open to cutting hold their piece.

@@ -23,20 +23,6 @@ Answer answer_for(const std::optional<bool>& truth) {
   return *truth ? Answer::Verified : Answer::Refuted;
 }
 
-const char* name(Answer answer) {
-  switch (answer) {
-    case Answer::Verified:
-      return "verified";
-    case Answer::Refuted:
-      return "refuted";
-    case Answer::Undecided:
-      return "undecided";
-    case Answer::Undefined:
-      break;
-  }
-  return "undefined";
-}
-
 /// Distance of a point to the nearest triangle, rounded.
 double distance(const geom::Vec3& p, const geom::Mesh& mesh) {
   const auto to_side = [&](const geom::Vec3& a, const geom::Vec3& b) {
@@ -92,11 +78,12 @@ void Tally::compare(const MeshPair& pair, const ArrangementVerdict& truth,
   if (claim.relative != relative) fault(pair.name + ": relative or not");
   const Answer solid = answer_for(relative ? truth.difference : truth.solid);
   if (claim.solid.answer != solid) {
-    fault(pair.name + ": solid claim " + name(claim.solid.answer) + " but " + name(solid));
+    fault(pair.name + ": solid claim " + name_of(claim.solid.answer) + " but " + name_of(solid));
   }
   const Answer surface = answer_for(truth.surface);
   if (claim.surface.answer != surface) {
-    fault(pair.name + ": surface claim " + name(claim.surface.answer) + " but " + name(surface));
+    fault(pair.name + ": surface claim " + name_of(claim.surface.answer) + " but " +
+          name_of(surface));
   }
   // Triangles without area bound nothing; a witness may lie on one.
   const geom::Mesh inner = with_area(pair.inner), outer = with_area(pair.outer);

@@ -37,20 +37,6 @@ using verify::Answer;
 
 double seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-const char* name(Answer answer) {
-  switch (answer) {
-    case Answer::Verified:
-      return "verified";
-    case Answer::Refuted:
-      return "refuted";
-    case Answer::Undecided:
-      return "undecided";
-    case Answer::Undefined:
-      break;
-  }
-  return "undefined";
-}
-
 struct Settings {
   std::size_t largest = ~std::size_t{0}, oracle = 0;
   std::vector<double> ratios{0.5, 0.2, 0.05};
@@ -150,7 +136,7 @@ class Attack {
 
   static std::string text(const verify::Claim& claim) {
     std::ostringstream text;
-    text << name(claim.answer);
+    text << name_of(claim.answer);
     if (claim.witness) {
       text << " (" << claim.inner_triangles.size() << " + " << claim.outer_triangles.size()
            << " triangles, " << std::setprecision(3) << claim.witness->depth << " deep"
