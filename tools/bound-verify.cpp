@@ -19,7 +19,7 @@ using tools::Json;
 using verify::Answer;
 
 struct Options {
-  bool outer = false, inner = false, cover = false, prepare = false;
+  bool outer = false, inner = false, cover = false, prepare = false, drop_sheets = false;
   std::string original, approximation, original_format, approximation_format;
   std::string epsilon, witness, claims = "all";
   std::size_t max_contacts = verify::InclusionOptions{}.max_contacts;
@@ -145,9 +145,15 @@ int exit_code(Answer answer) {
   return tools::kBadInput;
 }
 
+/// A triangle that is too far away.
+struct Far {
+  const geom::Mesh* mesh;
+  std::uint32_t triangle;
+};
+
 /// The offending triangles, of both meshes, as one mesh.
 void write_witness(const std::string& path, const geom::Mesh& inner, const geom::Mesh& outer,
-                   const std::vector<const verify::Claim*>& claims) {
+                   const std::vector<const verify::Claim*>& claims, const std::vector<Far>& far) {
   geom::Mesh mesh;
   const auto take = [&](const geom::Mesh& from, std::vector<std::uint32_t> triangles) {
     std::sort(triangles.begin(), triangles.end());
@@ -165,13 +171,41 @@ void write_witness(const std::string& path, const geom::Mesh& inner, const geom:
   }
   take(inner, std::move(of_inner));
   take(outer, std::move(of_outer));
-  if (mesh.triangles.empty()) return;  // only distances were refuted
+  for (const Far& f : far) take(*f.mesh, {f.triangle});
+  if (mesh.triangles.empty()) return;  // only the bodies' convexity was refuted
   io::WriteOptions options;
   options.double_precision = true;
   options.comment = "triangles that bound what refutes the claim";
   io::Format format = *io::format_from_name(std::filesystem::path(path).extension().string());
   if (format == io::Format::Stl) format = io::Format::StlAscii;  // holds doubles
   io::write_file(path, io::serialise_mesh(geom::Mesh(mesh), format, options));
+}
+
+/// What users most often got wrong when an enclosure is refuted.
+std::vector<std::string> hints(const geom::Mesh& original, const geom::Mesh& approximation,
+                               bool inner) {
+  std::vector<std::string> lines;
+  const geom::Box3 a = geom::bounding_box(original), b = geom::bounding_box(approximation);
+  const double ratio = b.diagonal() / a.diagonal();
+  if (ratio >= 20 || ratio <= 0.05) {
+    lines.push_back("the approximation's box is " + number(ratio) +
+                    " times as large as the original's: are both in the same unit?");
+  }
+  const geom::Box3 &enclosing = inner ? a : b, &enclosed = inner ? b : a;
+  const bool swapped = (enclosing.min.array() > enclosed.min.array()).all() &&
+                       (enclosing.max.array() < enclosed.max.array()).all();
+  if (swapped) {
+    lines.push_back(
+        "the enclosing box lies within the enclosed one: ORIGINAL comes first, "
+        "APPROXIMATION second; --outer and --inner say which encloses");
+  }
+  for (const auto& [mesh, name] :
+       {std::pair{&original, "the original"}, std::pair{&approximation, "the approximation"}}) {
+    if (geom::signed_volume(*mesh) < 0) {
+      lines.push_back(std::string(name) + " is inside out: its volume is negative");
+    }
+  }
+  return lines;
 }
 
 /// Nothing that is read may be written, nothing written twice; the witness's format holds doubles.
@@ -201,7 +235,9 @@ int check(const Options& o) {
 
   Input original = read(o.original, o.original_format, "--input-format");
   if (o.prepare) {
-    geom::Prepared prepared = geom::prepare(original.mesh);
+    geom::PrepareOptions options;
+    options.drop_sheets = o.drop_sheets;
+    geom::Prepared prepared = geom::prepare(original.mesh, options);
     original.mesh = std::move(prepared.mesh);
     original.notes.insert(original.notes.end(), prepared.notes.begin(), prepared.notes.end());
   }
@@ -211,14 +247,14 @@ int check(const Options& o) {
     io::SetReadDetails details;
     std::optional<io::Format> format;
     if (!o.approximation_format.empty() || o.approximation == "-") {
-      format = tools::format_for(o.approximation, o.approximation_format, "--input-format");
+      format = tools::format_for(o.approximation, o.approximation_format, "--approximation-format");
     }
     set = io::read_convex_set(o.approximation, format, &details);
     approximation.mesh = verify::sum_of(set);
     approximation.sha256 = io::sha256(details.bytes);
     approximation.notes = std::move(details.notes);
   } else {
-    approximation = read(o.approximation, o.approximation_format, "--input-format");
+    approximation = read(o.approximation, o.approximation_format, "--approximation-format");
   }
   for (const Input* input : {&original, &approximation}) {
     for (const std::string& note : input->notes) {
@@ -254,7 +290,9 @@ int check(const Options& o) {
     inclusion = verify::verify_inclusion(inner, outer, options);
   }
   const std::string inner_name = o.inner ? "the approximation" : "the original";
-  const std::string outer_name = o.cover   ? "the union of the bodies"
+  const std::string outer_name = o.cover
+                                     ? (set.margin > 0 ? "the union of the bodies, margin included"
+                                                       : "the union of the bodies")
                                  : o.inner ? "the original"
                                            : "the approximation";
   const bool relative = inclusion.relative;
@@ -277,6 +315,7 @@ int check(const Options& o) {
   claims["solid"]["relative"] = inclusion.relative;
   claims["surface"] = to_json(inclusion.surface);
 
+  std::vector<Far> far;
   if (epsilon) {
     const double bound = epsilon->of(diagonal);
     const auto measure = [&](const char* title, const char* key, const geom::Mesh& from,
@@ -286,17 +325,15 @@ int check(const Options& o) {
       distance.to_solid = to_solid;
       const verify::DistanceClaim claim = verify::verify_distance(from, to, bound, distance);
       verdict.add(title, bound, claim);
+      if (claim.answer == Answer::Refuted) far.push_back({&from, claim.triangle});
       claims[key] = to_json(claim);
       claims[key]["bound"] = bound;
     };
     if (o.cover) {
-      const double with_margin = bound - set.margin;
-      const verify::DistanceClaim claim = [&] {
-        progress.show("deciding: distance");
-        verify::DistanceClaimOptions distance;
-        distance.to_solid = inclusion.inner_closed;
-        return verify::verify_distance(approximation.mesh, original.mesh, with_margin, distance);
-      }();
+      progress.show("deciding: distance");
+      const verify::DistanceClaim claim =
+          verify::verify_reach(set, original.mesh, bound, inclusion.inner_closed);
+      if (claim.answer == Answer::Refuted) far.push_back({&approximation.mesh, claim.triangle});
       verdict.add(inclusion.inner_closed ? "distance from the union to the solid"
                                          : "distance from the union to the surface",
                   bound, claim);
@@ -314,7 +351,7 @@ int check(const Options& o) {
 
   const Answer answer = verdict.answer();
   if (!o.witness.empty() && answer == Answer::Refuted) {
-    write_witness(o.witness, inner, outer, {&inclusion.solid, &inclusion.surface});
+    write_witness(o.witness, inner, outer, {&inclusion.solid, &inclusion.surface}, far);
   }
   if (!o.common.report.empty()) {
     const auto file = [](const std::string& path, const Input& input, bool closed,
@@ -373,8 +410,20 @@ int check(const Options& o) {
                           std::to_string(inclusion.outer_open_edges) +
                           " unbalanced edges); nothing can lie inside it. Close its holes first");
   }
-  if (!o.common.quiet) out << name_of(answer) << '\n';
-  if (answer == Answer::Refuted && !o.prepare) {
+  if (!o.common.quiet) {
+    const bool open = !inclusion.inner_closed || !inclusion.outer_closed;
+    out << name_of(answer)
+        << (open && answer == Answer::Verified ? ", as far as an open mesh defines it" : "")
+        << '\n';
+  }
+  const bool not_enclosed =
+      inclusion.solid.answer == Answer::Refuted || inclusion.surface.answer == Answer::Refuted;
+  if (not_enclosed) {
+    for (const std::string& hint : hints(original.mesh, approximation.mesh, o.inner)) {
+      tools::log(o.common.quiet, "note: " + hint);
+    }
+  }
+  if (not_enclosed && !o.prepare) {
     tools::log(o.common.quiet,
                "note: bmesh-decimate speaks of the input as prepared; --prepare judges that");
   }
@@ -422,6 +471,10 @@ int main(int argc, char** argv) {
   app.add_flag("--prepare", o.prepare,
                "Judge against ORIGINAL as bmesh-decimate prepares it (parts that are inside out "
                "turned, copies and walls dropped) instead of the file as it is");
+  app.add_flag("--drop-sheets", o.drop_sheets,
+               "With --prepare: drop sheets (faces back to back without volume), as bmesh-decimate "
+               "does with this option; nothing is then said about them")
+      ->needs("--prepare");
   app.add_option("--witness", o.witness,
                  "When refuted, write the offending triangles to this mesh file")
       ->type_name("FILE");

@@ -49,7 +49,9 @@ int run(CLI::App& app, int argc, char** argv, const std::function<int()>& body) 
     return kUsage;
   }
   try {
-    return body();
+    const int code = body();
+    if (!std::cout.flush()) throw Error(ErrorCode::OutputFailed, "standard output: writing failed");
+    return code;
   } catch (const Error& error) {
     std::cerr << name << ": " << error.what() << '\n';
     return exit_code(error.code());
@@ -116,7 +118,7 @@ io::Format format_for(const std::string& path, const std::string& name, const ch
     for (const std::string& n : names) text += (text.empty() ? "" : ", ") + n;
     return text;
   };
-  const bool reading = std::string_view(option) == "--input-format";
+  const bool reading = std::string_view(option) != "--output-format";
   const std::string choices = listed(reading ? io::readable_formats() : io::writable_formats());
   if (!name.empty()) {
     if (const auto f = io::format_from_name(name)) return *f;
@@ -182,6 +184,10 @@ void require_apart(const std::vector<std::pair<std::string, std::string>>& outpu
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const std::string& file = outputs[i].second;
     if (file.empty()) continue;
+    const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+    if (file != "-" && !folder.empty() && !std::filesystem::is_directory(folder))
+      throw Error(ErrorCode::OutputFailed, outputs[i].first + ": there is no folder " +
+                                               folder.string() + "; create it first");
     for (const std::string& input : inputs) {
       if (input != "-" && place(file) == place(input))
         throw Error(ErrorCode::InvalidArgument,

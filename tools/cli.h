@@ -94,9 +94,9 @@ double peak_megabytes();
 
 void write_json(const std::string& path, const Json& json);
 
-/// Refuses to write a file twice or over an input; outputs are (option, file), empty files are
-/// none.
-/// @throws Error{InvalidArgument}
+/// Refuses to write a file twice, over an input, or into a folder that does not exist; outputs are
+/// (option, file), empty files are none.
+/// @throws Error{InvalidArgument}, Error{OutputFailed}
 void require_apart(const std::vector<std::pair<std::string, std::string>>& outputs,
                    const std::vector<std::string>& inputs);
 

@@ -1,9 +1,48 @@
 #include <kaboum/verify/cover.h>
 
+#include <algorithm>
+#include <iomanip>
+#include <optional>
+#include <sstream>
+
+#include "margin.h"
+#include "nearest.h"
 #include "scene.h"
+#include "spot.h"
 
 namespace kaboum::verify {
 namespace {
+
+/// A bound of the distance of a point of the scene to the outer chain, or to its solid.
+double distance_from_below(const Scene& scene, const Vec3& p, bool to_solid) {
+  if (to_solid && winding_at(scene, kOutside, p).value_or(1) >= 1) return 0;
+  const NearestTriangle nearest(scene, kOutside);
+  return nearest.lower_bound(p, nearest.distance(p)) -
+         rounding_of_distances(scene.largest_coordinate());
+}
+
+/// The vertex that is highest above the plane of some face, rounded.
+struct Highest {
+  std::optional<std::uint32_t> face;
+  double height = 0;
+
+  void take(const Scene& scene, std::uint32_t f, std::uint32_t vertex) {
+    const Vec3 normal =
+        (scene.corner(f, 1) - scene.corner(f, 0)).cross(scene.corner(f, 2) - scene.corner(f, 0));
+    const double above =
+        std::max(normal.normalized().dot(scene.point(vertex) - scene.corner(f, 0)), 0.0);
+    if (face && above <= height) return;
+    face = f;
+    height = above;
+  }
+
+  [[nodiscard]] std::string text(const Scene& scene) const {
+    std::ostringstream line;
+    line << "a vertex is above the plane of triangle " << scene.face(*face).source << ", by about "
+         << std::setprecision(2) << scene.length_outside(height);
+    return line.str();
+  }
+};
 
 /// Why a body is not convex; empty when it is.
 std::string fault_of(const geom::Mesh& body) {
@@ -16,17 +55,17 @@ std::string fault_of(const geom::Mesh& body) {
     for (const std::uint32_t v : face.v) used[v] = 1;
   }
   bool deep = false;
+  Highest highest;
   for (std::uint32_t f = 0; f < scene.faces().size(); ++f) {
     if (scene.face(f).axis < 0) continue;
     for (std::uint32_t v = 0; v < used.size(); ++v) {
       if (used[v] == 0) continue;
       const Sign side = scene.side(f, scene.point(v));
-      if (side == Sign::Positive) {
-        return "a vertex is above the plane of triangle " + std::to_string(scene.face(f).source);
-      }
+      if (side == Sign::Positive) highest.take(scene, f, v);
       deep = deep || side == Sign::Negative;
     }
   }
+  if (highest.face) return highest.text(scene);
   return deep ? "" : "it has no volume";
 }
 
@@ -56,24 +95,45 @@ Cover verify_cover(const geom::Mesh& original, const geom::ConvexSet& set,
   if (!cover.not_convex.empty()) {
     const auto& [index, why] = cover.not_convex.front();
     cover.convex.answer = Answer::Refuted;
-    cover.convex.reason =
-        "body " + std::to_string(index) + " (" + set.bodies[index].name + "): " + why;
+    cover.convex.reason = std::to_string(cover.not_convex.size()) + " of " +
+                          std::to_string(set.bodies.size()) + " bodies are not; body " +
+                          std::to_string(index) + " (" + set.bodies[index].name + "): " + why;
   }
-  cover.inclusion = verify_inclusion(original, sum_of(set), options);
-  if (set.margin > 0) {
-    for (Claim* claim : {&cover.inclusion.solid, &cover.inclusion.surface}) {
-      if (claim->answer != Answer::Refuted) continue;
-      // The depth is rounded to a few units in the last place of the coordinates.
-      const bool beyond = claim->witness && claim->witness->exact &&
-                          claim->witness->depth * (1 - 1e-12) >
-                              set.margin + 1e-12 * claim->witness->point.cwiseAbs().maxCoeff();
-      if (beyond) continue;
-      claim->answer = Answer::Undecided;
-      claim->reason =
-          "not covered without the margin; whether the margin covers the rest is not decided";
-    }
-  }
+  const geom::Mesh sum = sum_of(set);
+  cover.inclusion = verify_inclusion(original, sum, options);
+  if (set.margin > 0) allow_margin(original, sum, set.margin, options.max_cells, cover.inclusion);
   return cover;
+}
+
+DistanceClaim verify_reach(const geom::ConvexSet& set, const geom::Mesh& original, double epsilon,
+                           bool to_solid) {
+  DistanceClaimOptions options;
+  options.to_solid = to_solid;
+  const geom::Mesh sum = sum_of(set);
+  DistanceClaim claim = verify_distance(sum, original, epsilon - set.margin, options);
+  if (claim.answer != Answer::Refuted || !(set.margin > 0)) return claim;
+
+  // Pushed away from the original by the margin less what `at` errs by, it is a point of the union.
+  const Scene scene(sum, original);
+  const double push = set.margin * (1 - 0x1p-40) -
+                      scene.length_outside(rounding_of_distances(scene.largest_coordinate()));
+  const Vec3 at = claim.at * scene.scale();
+  const std::uint32_t f = NearestTriangle(scene, kOutside).nearest(at).face;
+  const Vec3 near = closest_point(at, scene.corner(f, 0), scene.corner(f, 1), scene.corner(f, 2));
+  const Vec3 pushed = claim.at + std::max(push, 0.0) * (at - near).normalized();
+  const double reached = distance_from_below(scene, pushed * scene.scale(), to_solid);
+  if (reached > epsilon * scene.scale()) {
+    claim.largest = scene.length_outside(reached);
+    claim.at = pushed;
+    return claim;
+  }
+  DistanceClaim beyond = verify_distance(sum, original, epsilon, options);
+  if (beyond.answer == Answer::Refuted) return beyond;
+  claim.answer = Answer::Undecided;
+  claim.reason =
+      "the bodies are farther away than the margin leaves room for; whether the margin's "
+      "outside is, too, is not decided";
+  return claim;
 }
 
 }  // namespace kaboum::verify

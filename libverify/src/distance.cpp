@@ -185,14 +185,7 @@ DistanceClaim verify_distance(const geom::Mesh& from, const geom::Mesh& to, doub
     throw Error(ErrorCode::InvalidInput,
                 "coordinates span too many orders of magnitude to measure distances");
   }
-  double largest = 0;
-  for (const Face& face : scene.faces()) {
-    for (const std::uint32_t v : face.v) {
-      largest = std::max(largest, scene.point(v).cwiseAbs().maxCoeff());
-    }
-  }
-  // docs/algorithms/exact-inclusion.md, "Distance": 64 cuts and one closest point.
-  const double slack = 1024 * kUnit * largest + kTiny;
+  const double slack = rounding_of_distances(scene.largest_coordinate());
   const Judge judge(scene, epsilon * scene.scale(), slack, options);
   const std::uint32_t count = scene.count(kInside);
   DistanceClaim result;
@@ -209,11 +202,13 @@ DistanceClaim verify_distance(const geom::Mesh& from, const geom::Mesh& to, doub
       const std::uint32_t f = first + i;
       claims[i] = judge(scene.corner(f, 0), scene.corner(f, 1), scene.corner(f, 2));
     });
-    for (const DistanceClaim& claim : claims) {
+    for (std::uint32_t i = 0; i < size; ++i) {
+      const DistanceClaim& claim = claims[i];
       result.pieces += claim.pieces;
       if (claim.largest > result.largest) {
         result.largest = claim.largest;
         result.at = claim.at;
+        result.triangle = scene.face(first + i).source;
       }
       if (claim.answer == Answer::Refuted ||
           (claim.answer == Answer::Undecided && result.answer == Answer::Verified)) {

@@ -324,7 +324,6 @@ Inclusion verify_inclusion(const geom::Mesh& inner, const geom::Mesh& outer,
   }
 
   Decision decision(scene, options);
-  bool limited = false;
   try {
     if (result.relative) {
       decision.decide_difference();
@@ -335,11 +334,11 @@ Inclusion verify_inclusion(const geom::Mesh& inner, const geom::Mesh& outer,
     }
   } catch (const Error& error) {
     if (error.code() != ErrorCode::LimitReached) throw;
-    limited = true;
+    result.limited = true;
   }
   decision.conclude(result);
   for (Claim* claim : {&result.solid, &result.surface}) {
-    if (!limited || claim->answer != Answer::Verified) continue;
+    if (!result.limited || claim->answer != Answer::Verified) continue;
     claim->answer = Answer::Undecided;
     claim->reason = "more contacts between triangles, or pieces of one, than the limits allow";
   }

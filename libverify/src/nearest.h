@@ -4,6 +4,10 @@
 
 namespace kaboum::verify {
 
+/// What a distance computed here errs by at most, points that come from up to 64 cuts included; in
+/// the unit of the largest |coordinate|. docs/algorithms/exact-inclusion.md, "Distance".
+inline double rounding_of_distances(double largest) { return 1024 * kUnit * largest + kTiny; }
+
 /// Closest point of a triangle to p, computed in rounded arithmetic as a convex combination of the
 /// corners.
 Vec3 closest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
@@ -16,7 +20,9 @@ class NearestTriangle {
     std::uint32_t face = kNone;
     double distance;
   };
-  NearestTriangle(const Scene& scene, int chain) : scene_(scene), tree_(scene.tree(chain)) {}
+  NearestTriangle(const Scene& scene, int chain) : NearestTriangle(scene, scene.tree(chain)) {}
+  /// Of some faces only.
+  NearestTriangle(const Scene& scene, const BoxTree& tree) : scene_(scene), tree_(tree) {}
   /// kNone at an infinite distance when the chain has no triangle with area.
   [[nodiscard]] Hit nearest(const Vec3& p) const;
   /// Infinite when the chain has no triangle with area.

@@ -174,4 +174,14 @@ std::size_t Scene::unbalanced(ChainMask chains, bool difference) const {
   return result;
 }
 
+double Scene::largest_coordinate() const {
+  double largest = 0;
+  for (const Face& face : faces_) {
+    for (const std::uint32_t v : face.v) {
+      largest = std::max(largest, points_[v].cwiseAbs().maxCoeff());
+    }
+  }
+  return largest;
+}
+
 }  // namespace kaboum::verify

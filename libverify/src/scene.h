@@ -62,6 +62,8 @@ class Scene {
   [[nodiscard]] double scale() const { return scale_; }
   [[nodiscard]] bool scaled() const { return scaled_; }
   [[nodiscard]] std::size_t vertex_count() const { return points_.size(); }
+  /// The largest |coordinate| of a face's corner; 0 without faces.
+  [[nodiscard]] double largest_coordinate() const;
 
   /// Faces that touch both vertices of an edge are among these, in order of their numbers.
   [[nodiscard]] std::span<const std::uint32_t> around_edge(std::uint32_t u, std::uint32_t v) const {

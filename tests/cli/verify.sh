@@ -41,6 +41,37 @@ expect 0 'same border' "$V" --outer open.off open.off
 expect 3 '' "$V" --inner open.off one.off
 expect 1 'surface claim: refuted' "$V" --outer open.off less.off
 
+expect 0 'as far as an open mesh defines it' "$V" --outer open.off three.off
+
+# What is said when something looks mistaken.
+expect 1 '' "$V" --outer three.off one.off
+grep -q 'ORIGINAL comes first' err.txt || fail 'no word of swapped files'
+cube 0 0.001 >small.off
+expect 1 '' "$V" --outer one.off small.off
+grep -q 'same unit' err.txt || fail 'no word of units'
+cube 1 0 >turned.off
+expect 1 '' "$V" --outer one.off turned.off
+grep -q 'the approximation is inside out' err.txt || fail 'no word of the orientation'
+expect 2 'approximation-format' "$V" --outer one.off - <three.off
+expect 2 'prepare' "$V" --outer one.off three.off --drop-sheets
+cube 0 1 | awk 'NR == 2 { $0 = "11 14 0" } { print } NR == 10 { print "5 0 0\n6 0 0\n5 1 0" }
+  END { print "3 8 9 10\n3 8 10 9" }' >sheeted.off
+expect 1 'surface claim: refuted' "$V" --outer sheeted.off three.off
+expect 3 'drop-sheets' "$V" --outer sheeted.off three.off --prepare
+expect 0 'surface claim: verified' "$V" --outer sheeted.off three.off --prepare --drop-sheets
+
+# A distance alone refuted: its triangle is the witness.
+expect 1 'refuted' "$V" --outer one.off three.off --epsilon 0.5 --witness far.obj
+[ "$(grep -c '^f' far.obj)" -ge 1 ] || fail 'no witness of a distance'
+
+# Where nothing can be written, nothing is computed and nothing is called verified.
+expect 4 'no-such-folder' "$V" --outer one.off three.off --report no-such-folder/r.json
+if [ -w /dev/full ]; then
+  code=0
+  "$V" --outer one.off three.off >/dev/full 2>err.txt || code=$?
+  [ "$code" -eq 4 ] || fail "exit code $code when standard output is full"
+fi
+
 # Limit.
 cube 0.5 1.5 >moved.off
 expect 7 'undecided' "$V" --outer one.off moved.off --max-contacts 1

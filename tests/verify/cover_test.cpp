@@ -160,23 +160,143 @@ TEST(Cover, BodiesMustBeConvex) {
   EXPECT_NE(fault(dented), "none");
 }
 
-TEST(Cover, MarginCountsAgainstTheSetOnly) {
+/// Both claims have the same answer; a witness of the solid claim is `depth` deep at most and
+/// nearly.
+void expect_margin(const Mesh& original, ConvexSet set, double margin, Answer expected,
+                   double depth, const std::string& what) {
+  set.margin = margin;
+  const auto cover = verify::verify_cover(original, set);
+  EXPECT_EQ(cover.inclusion.solid.answer, expected) << what << ' ' << margin;
+  if (expected == Answer::Refuted) {
+    ASSERT_TRUE(cover.inclusion.solid.witness.has_value()) << what;
+    EXPECT_LE(cover.inclusion.solid.witness->depth, depth + 1e-12) << what << ' ' << margin;
+    EXPECT_GT(cover.inclusion.solid.witness->depth, 0) << what << ' ' << margin;
+  }
+}
+
+TEST(Cover, AMarginClosesGapsUpToHalfTheirWidth) {
   const Mesh left = block({0, 0, 0}, {1, 2, 1}), right = block({1, 0, 0}, {2, 1, 1});
-  ConvexSet set = set_of({left, translated(right, {0.25, 0, 0})});
-  set.margin = 1e-9;  // does not close the gap
-  EXPECT_EQ(verify::verify_cover(ell(), set).inclusion.solid.answer, Answer::Refuted);
-  // Nor does this; but the witness need not be the deepest point, so that "undecided" is allowed.
-  set.margin = 1e-3;
-  EXPECT_NE(verify::verify_cover(ell(), set).inclusion.solid.answer, Answer::Verified);
-  set.margin = 0.5;  // does: nothing certain may be said
-  EXPECT_EQ(verify::verify_cover(ell(), set).inclusion.solid.answer, Answer::Undecided);
-  EXPECT_EQ(verify::verify_cover(ell(), set).inclusion.surface.answer, Answer::Undecided);
-  set = set_of({left, right});
-  set.margin = 0.5;
-  EXPECT_EQ(verify::verify_cover(ell(), set).inclusion.solid.answer, Answer::Verified);
-  set = set_of({});
-  set.margin = 100;  // the empty set has no margin
-  EXPECT_NE(verify::verify_cover(ell(), set).inclusion.solid.answer, Answer::Verified);
+  const ConvexSet set = set_of({left, translated(right, {0.25, 0, 0})});
+  for (const double margin : {1e-9, 1e-3, 0.1, 0.1249}) {
+    expect_margin(ell(), set, margin, Answer::Refuted, 0.125 - margin, "gap");
+  }
+  for (const double margin : {0.1251, 0.13, 0.5}) {
+    expect_margin(ell(), set, margin, Answer::Verified, 0, "gap");
+    ConvexSet with = set;
+    with.margin = margin;
+    EXPECT_EQ(verify::verify_cover(ell(), with).inclusion.surface.answer, Answer::Verified);
+  }
+  // The distance is the margin exactly: nothing may be said.
+  ConvexSet equal = set;
+  equal.margin = 0.125;
+  verify::InclusionOptions soon;
+  soon.max_cells = 20'000;
+  EXPECT_EQ(verify::verify_cover(ell(), equal, soon).inclusion.solid.answer, Answer::Undecided);
+  expect_margin(ell(), set_of({left, right}), 0.5, Answer::Verified, 0, "no gap");
+  // The empty set has no margin.
+  expect_margin(ell(), set_of({}), 100, Answer::Refuted, std::numeric_limits<double>::infinity(),
+                "nothing");
+}
+
+// No triangle of the original is uncovered: only a search of the void itself finds the deep point.
+TEST(Cover, AMarginFillsVoidsUpToTheirInnerRadius) {
+  const Mesh solid = box({3, 3, 3}, 2);
+  const ConvexSet set = set_of(cubes_but({13}));
+  for (const double margin : {0.01, 0.3, 0.49, 0.4999}) {
+    expect_margin(solid, set, margin, Answer::Refuted, 0.5 - margin, "void");
+  }
+  for (const double margin : {0.501, 0.6}) {
+    expect_margin(solid, set, margin, Answer::Verified, 0, "void");
+  }
+  // A void where the original has one too counts for nothing; nor does what is outside.
+  const Mesh hollow = merged({solid, flipped(block({1.1, 1.1, 1.1}, {1.9, 1.9, 1.9}))});
+  expect_margin(hollow, set, 0.11, Answer::Verified, 0, "hollow");
+  expect_margin(hollow, set, 0.09, Answer::Refuted, 0.01, "hollow");
+  // Turned, so that no side of a cell is parallel to a face.
+  std::vector<Mesh> turned;
+  for (const auto& body : set.bodies) turned.push_back(rotated(body.hull, 0.7));
+  expect_margin(rotated(solid, 0.7), set_of(turned), 0.505, Answer::Verified, 0, "turned");
+  expect_margin(rotated(solid, 0.7), set_of(turned), 0.495, Answer::Refuted, 0.005 + 1e-9,
+                "turned");
+}
+
+struct Block {
+  Vec3 low, high;
+  [[nodiscard]] double distance(const Vec3& p) const {
+    return (low - p).cwiseMax(p - high).cwiseMax(0.0).norm();
+  }
+};
+
+// Random blocks over random unit cubes: membership and distances are a line each.
+TEST(Cover, MarginsAgainstSamples) {
+  std::array<int, 3> answers{};
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    Random random(seed);
+    const auto uniform = [&] { return static_cast<double>(random() % 100'000) / 100'000; };
+    std::vector<std::array<int, 3>> cells{{0, 0, 0}};
+    for (int i = 1; i < 8; ++i) {
+      if (random() % 3 != 0) cells.push_back({i % 2, i / 2 % 2, i / 4});
+    }
+    std::vector<Block> blocks(3 + random() % 8);
+    std::vector<Mesh> bodies;
+    for (Block& b : blocks) {
+      for (int k = 0; k < 3; ++k) {
+        b.low[k] = 1.6 * uniform() - 0.6;
+        b.high[k] = b.low[k] + 0.6 + 2 * uniform();
+      }
+      bodies.push_back(block(b.low, b.high));
+    }
+    ConvexSet set = set_of(bodies);
+    set.margin = 0.05 + 0.8 * uniform();
+    const auto away = [&](const Vec3& p) {
+      double least = std::numeric_limits<double>::infinity();
+      for (const Block& b : blocks) least = std::min(least, b.distance(p));
+      return least;
+    };
+    verify::InclusionOptions soon;
+    soon.max_cells = 200'000;
+    const verify::Claim claim = verify::verify_cover(block_chain(cells), set, soon).inclusion.solid;
+    ++answers.at(static_cast<std::size_t>(claim.answer));
+    if (claim.answer == Answer::Refuted) {
+      ASSERT_TRUE(claim.witness.has_value()) << seed;
+      const Vec3& p = claim.witness->point;
+      EXPECT_NEAR(away(p) - set.margin, claim.witness->depth, 1e-9) << seed;
+      EXPECT_GT(away(p), set.margin) << seed;
+      EXPECT_TRUE(std::any_of(cells.begin(), cells.end(), [&](const std::array<int, 3>& c) {
+        const Vec3 low(c[0], c[1], c[2]);
+        return Block{low, low + Vec3::Ones()}.distance(p) == 0;
+      })) << seed;
+    } else if (claim.answer == Answer::Verified) {
+      for (int i = 0; i < 20'000; ++i) {
+        const std::array<int, 3>& c = cells[random() % cells.size()];
+        const Vec3 p = Vec3(c[0], c[1], c[2]) + Vec3(uniform(), uniform(), uniform());
+        ASSERT_LE(away(p), set.margin) << seed;
+      }
+    }
+  }
+  EXPECT_GE(answers[static_cast<std::size_t>(Answer::Verified)], 8);
+  EXPECT_GE(answers[static_cast<std::size_t>(Answer::Refuted)], 8);
+  EXPECT_LE(answers[static_cast<std::size_t>(Answer::Undecided)], 4);
+}
+
+TEST(Cover, ReachWithAMargin) {
+  const Mesh unit = block({0, 0, 0}, {1, 1, 1});
+  ConvexSet set = set_of({block({0, 0, 0}, {1.25, 1, 1})});
+  set.margin = 0.125;
+  EXPECT_EQ(verify::verify_reach(set, unit, 0.376, true).answer, Answer::Verified);
+  const auto beyond = verify::verify_reach(set, unit, 0.374, true);
+  EXPECT_EQ(beyond.answer, Answer::Refuted);
+  EXPECT_GT(beyond.largest, 0.374);
+  EXPECT_LE(beyond.largest, 0.375);
+  EXPECT_EQ(verify::verify_reach(set, unit, 0.2, true).answer, Answer::Refuted);
+  // Between two blocks: the margin leads from one to the other.
+  const Mesh two = merged({unit, block({1.25, 0, 0}, {2, 1, 1})});
+  const auto between =
+      verify::verify_reach(set_of({block({0, 0, 0}, {1.125, 1, 1})}), two, 0.2, true);
+  EXPECT_EQ(between.answer, Answer::Verified);
+  set = set_of({block({0, 0, 0}, {1.125, 1, 1})});
+  set.margin = 0.125;
+  EXPECT_EQ(verify::verify_reach(set, two, 0.2, true).answer, Answer::Undecided);
 }
 
 TEST(Cover, RandomBoxesOverRandomCubes) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/geom/convex_set.h>
+#include <kaboum/verify/distance.h>
 #include <kaboum/verify/inclusion.h>
 
 namespace kaboum::verify {
@@ -20,13 +21,23 @@ struct Cover {
 /// solid, without voids, and every one of its triangles.
 ///
 /// The sum of the bodies' chains winds about a point as often as there are bodies that contain it,
-/// so this is verify_inclusion(original, sum). The bodies' margin counts only against the set: what
-/// the bodies cover without it is verified; a point farther from all of them refutes; anything
-/// between is undecided.
+/// so this is verify_inclusion(original, sum). With a margin m > 0 the union is that of all balls
+/// of radius m about points of the bodies: what these leave out must be within m of them. Where its
+/// distance is m but for rounding, or where it would take too long, the answer is undecided.
 ///
 /// @throws as verify_inclusion
 Cover verify_cover(const geom::Mesh& original, const geom::ConvexSet& set,
                    const InclusionOptions& options = {});
+
+/// Decides whether every point of the union, its margin included, is within `epsilon` of the
+/// original's triangles or, with `to_solid`, of its solid: verify_distance from the bodies with
+/// what ε leaves beside the margin. Where that fails, only a point of the union that is farther
+/// away than ε refutes, since what the margin adds may be near another part of the original.
+///
+/// @pre epsilon > set.margin; with `to_solid` the original is a closed chain
+/// @throws as verify_distance
+DistanceClaim verify_reach(const geom::ConvexSet& set, const geom::Mesh& original, double epsilon,
+                           bool to_solid);
 
 /// The triangles of all bodies in one mesh.
 geom::Mesh sum_of(const geom::ConvexSet& set);

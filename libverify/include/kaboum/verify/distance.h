@@ -10,7 +10,8 @@ struct DistanceClaim {
   std::string reason;
   double largest = 0;  ///< a distance that is certainly reached somewhere, at `at` [length]
   geom::Vec3 at = geom::Vec3::Zero();
-  std::size_t pieces = 0;  ///< parts of triangles looked at
+  std::uint32_t triangle = 0;  ///< of `from`, the one that `at` lies on
+  std::size_t pieces = 0;      ///< parts of triangles looked at
 };
 
 struct DistanceClaimOptions {

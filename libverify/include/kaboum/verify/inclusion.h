@@ -22,7 +22,9 @@ const char* name_of(Answer answer);
 /// A point that shows that a claim is false.
 struct Witness {
   geom::Vec3 point;
-  double depth = 0;  ///< distance to the outer mesh, rounded; infinite if it has no area [length]
+  /// Distance to the outer mesh, less the margin where there is one; rounded; infinite if the outer
+  /// mesh has no area. [length]
+  double depth = 0;
   /// The winding numbers at `point` were found by exact arithmetic and contradict the claim; for
   /// the surface claim the point is a corner of the inner mesh. Otherwise no such point with double
   /// coordinates was found, and `point` is the offending place, rounded.
@@ -42,6 +44,7 @@ struct InclusionOptions {
   std::size_t max_contacts = 100'000'000;  ///< pairs of triangles that touch, per kind
   std::size_t max_pairs = 4'000'000'000;   ///< pairs of triangles looked at, per kind
   std::size_t max_pieces = 2'000'000;      ///< pieces of lines within one triangle
+  std::size_t max_cells = 4'000'000;       ///< boxes looked at where a margin decides
   /// From this many coplanar overlaps on, the cells between them are settled by the meshes' own
   /// winding numbers instead of being sampled; the answers are the same.
   std::size_t settle_from = 1000;
@@ -63,6 +66,7 @@ struct Inclusion {
   std::size_t triangles_without_area = 0;  ///< in both meshes; they bound nothing
   std::size_t contacts = 0;                ///< pairs of triangles in which one cuts the other
   std::size_t samples = 0;                 ///< winding numbers computed
+  bool limited = false;  ///< a limit ended the search; what is refuted may name too few triangles
 };
 
 /// Decides from the triangles alone whether one mesh encloses another, in exact arithmetic.
