@@ -2,12 +2,14 @@
 //
 //   verify_attack [--pairs N] [--first SEED] [--bent] [--open] [--families]
 //                 [--corpus] [--own DIR] [--largest TRIANGLES] [--ratios 0.5,0.2,0.05]
-//                 [--oracle TRIANGLES] [FILE...]
+//                 [--oracle TRIANGLES] [--mutants N] [FILE...]
 //
 // --pairs: N random lattice pairs (--bent, --open: of those kinds), both ways round and permuted,
 // against the exact oracle. Pairs that disagree are kept in the folder $KABOUM_KEEP.
 // --families, --corpus and files: closed meshes decimated outwards and inwards; a line per result
 // with the verdict of both claims; with --oracle also the oracle's, for pairs of no more triangles.
+// --mutants: each of these pairs spoilt in one place, N mutants a pair and kind, against the oracle
+// (pairs of no more triangles than --oracle; results in double precision).
 //
 // Exit status 0 if nothing disagrees and all solid claims of bounding meshes are verified.
 #include <kaboum/bmesh/decimate.h>
@@ -39,6 +41,7 @@ double seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 struct Settings {
   std::size_t largest = ~std::size_t{0}, oracle = 0;
+  int mutants = 0;
   std::vector<double> ratios{0.5, 0.2, 0.05};
 };
 
@@ -89,8 +92,13 @@ class Attack {
       std::cout << what << " claims of bounding meshes: " << count[0] << " verified, " << count[1]
                 << " refuted, " << count[2] << " undecided, " << count[3] << " undefined\n";
     }
+    if (s_.mutants != 0) {
+      std::cout << mutants_.pairs() << " mutants: solid claim true " << mutants_.solid_true()
+                << ", false " << mutants_.solid_false() << "; disagreements with the oracle:\n"
+                << mutants_.faults();
+    }
     std::cout << failures_ << " failures\n";
-    return failures_ == 0 ? 0 : 1;
+    return failures_ == 0 && mutants_.faults().empty() ? 0 : 1;
   }
 
  private:
@@ -99,6 +107,7 @@ class Attack {
   void bounding(const std::string& title, const geom::Prepared& p, Direction d, double ratio) {
     bmesh::DecimateOptions o;
     o.direction = d;
+    if (s_.mutants != 0) o.precision = bmesh::Precision::Double;
     o.vertices = std::max<std::size_t>(
         4, static_cast<std::size_t>(ratio * static_cast<double>(p.mesh.vertices.size())));
     const Mesh result = bmesh::decimate(p, o).mesh;
@@ -122,6 +131,11 @@ class Attack {
       good = good && agree;
     }
     std::cout << (good ? "\n" : "  <--\n") << std::flush;
+    if (s_.mutants != 0 && inner.triangles.size() + outer.triangles.size() <= s_.oracle) {
+      for (const MeshPair& mutant : mutants({title, inner, outer}, ++seed_, s_.mutants)) {
+        mutants_.judge_one(mutant, seed_);
+      }
+    }
     failures_ += good ? 0 : 1;
   }
 
@@ -147,6 +161,8 @@ class Attack {
 
   Settings s_;
   Counts solid_{}, surface_{};
+  Tally mutants_;
+  std::uint64_t seed_ = 0;
   int failures_ = 0;
 };
 
@@ -191,6 +207,8 @@ int main(int argc, char** argv) try {
       settings.largest = std::stoul(value());
     } else if (args[i] == "--oracle") {
       settings.oracle = std::stoul(value());
+    } else if (args[i] == "--mutants") {
+      settings.mutants = std::stoi(value());
     } else if (args[i] == "--ratios") {
       settings.ratios.clear();
       std::istringstream list(value());
