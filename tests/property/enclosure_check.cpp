@@ -22,6 +22,7 @@
 #include <sstream>
 
 #include "support/families.h"
+#include "support/mesh_files.h"
 
 namespace {
 
@@ -29,6 +30,7 @@ using namespace kaboum;  // NOLINT: a test program
 using bmesh::Direction;
 using geom::Mesh;
 using geom::Vec3;
+using test::mesh_files;
 
 struct Settings {
   std::size_t samples = 100000;
@@ -163,16 +165,6 @@ class Check {
               contractions_ = 0;
   std::uint64_t predicates_ = 0;
 };
-
-std::vector<std::string> mesh_files(const std::filesystem::path& directory) {
-  std::vector<std::string> files;
-  if (!std::filesystem::is_directory(directory)) return files;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(directory))
-    if (entry.is_regular_file() && io::format_from_name(entry.path().extension().string()))
-      files.push_back(entry.path().string());
-  std::sort(files.begin(), files.end());
-  return files;
-}
 
 }  // namespace
 

@@ -28,6 +28,7 @@
 #include "pairs.h"
 #include "support/arrangement_oracle.h"
 #include "support/families.h"
+#include "support/mesh_files.h"
 
 namespace {
 
@@ -165,16 +166,6 @@ class Attack {
   std::uint64_t seed_ = 0;
   int failures_ = 0;
 };
-
-std::vector<std::string> mesh_files(const std::filesystem::path& directory) {
-  std::vector<std::string> files;
-  if (!std::filesystem::is_directory(directory)) return files;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(directory))
-    if (entry.is_regular_file() && io::format_from_name(entry.path().extension().string()))
-      files.push_back(entry.path().string());
-  std::sort(files.begin(), files.end());
-  return files;
-}
 
 }  // namespace
 

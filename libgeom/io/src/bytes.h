@@ -37,7 +37,7 @@ class Output {
     if constexpr (std::endian::native == std::endian::big) std::reverse(raw.begin(), raw.end());
     bytes_.insert(bytes_.end(), raw.begin(), raw.end());
   }
-  void text(std::string_view s) { bytes_.insert(bytes_.end(), s.begin(), s.end()); }
+  void text(std::string_view s);
 
   /// The shortest digits that give the same value back (float's own digits for a float).
   template <typename T>

@@ -108,21 +108,7 @@ std::vector<char> write_off(const geom::Mesh& mesh, const WriteOptions& options)
   out.text(" ");
   out.number(mesh.triangles.size());
   out.text(" 0\n");
-  for (const geom::Vec3& p : mesh.vertices) {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (axis > 0) out.text(" ");
-      out.number(p[axis]);
-    }
-    out.text("\n");
-  }
-  for (const geom::Triangle& t : mesh.triangles) {
-    out.text("3");
-    for (const std::uint32_t corner : t) {
-      out.text(" ");
-      out.number(corner);
-    }
-    out.text("\n");
-  }
+  write_lines(out, mesh);
   return out.take();
 }
 

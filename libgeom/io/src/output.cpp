@@ -11,6 +11,8 @@
 
 namespace kaboum::io {
 
+void Output::text(std::string_view s) { bytes_.insert(bytes_.end(), s.begin(), s.end()); }
+
 bool is_float(double value) {
   return std::abs(value) <= std::numeric_limits<float>::max() && geom::is_float32(value);
 }
@@ -47,6 +49,24 @@ std::string one_line(std::string_view comment) {
   for (char& c : line)
     if ((c >= 0 && c < ' ') || c == 127) c = ' ';
   return line;
+}
+
+void write_lines(Output& out, const geom::Mesh& mesh) {
+  for (const geom::Vec3& p : mesh.vertices) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (axis > 0) out.text(" ");
+      out.number(p[axis]);
+    }
+    out.text("\n");
+  }
+  for (const geom::Triangle& t : mesh.triangles) {
+    out.text("3");
+    for (const std::uint32_t corner : t) {
+      out.text(" ");
+      out.number(corner);
+    }
+    out.text("\n");
+  }
 }
 
 Eigen::Vector3f facet_normal(const geom::Mesh& mesh, const geom::Triangle& t) {

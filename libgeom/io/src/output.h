@@ -9,6 +9,8 @@
 
 namespace kaboum::io {
 
+class Output;
+
 /// True when float32 holds the value exactly.
 bool is_float(double value);
 bool all_float(const geom::Mesh& mesh);
@@ -20,6 +22,9 @@ void require_float(const geom::Mesh& mesh, const std::vector<std::uint32_t>& ori
 
 /// `comment` as one line of printable characters.
 std::string one_line(std::string_view comment);
+
+/// A line per vertex, then a line per triangle that begins with its number of corners, 3.
+void write_lines(Output& out, const geom::Mesh& mesh);
 
 /// Unit normal of a facet, rounded to float; zero when it has no area.
 Eigen::Vector3f facet_normal(const geom::Mesh& mesh, const geom::Triangle& t);

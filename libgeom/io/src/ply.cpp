@@ -480,21 +480,7 @@ std::vector<char> write_ply_ascii(const geom::Mesh& mesh, const WriteOptions& op
   out.reserve(1024 + mesh.vertices.size() * 48 + mesh.triangles.size() * 24);
   // "float" would let other programs round.
   write_header(out, mesh, "ascii", options.double_precision || !all_float(mesh), options);
-  for (const geom::Vec3& p : mesh.vertices) {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (axis > 0) out.text(" ");
-      out.number(p[axis]);
-    }
-    out.text("\n");
-  }
-  for (const geom::Triangle& t : mesh.triangles) {
-    out.text("3");
-    for (const std::uint32_t corner : t) {
-      out.text(" ");
-      out.number(corner);
-    }
-    out.text("\n");
-  }
+  write_lines(out, mesh);
   return out.take();
 }
 
