@@ -19,7 +19,8 @@ using tools::Json;
 using verify::Answer;
 
 struct Options {
-  bool outer = false, inner = false, cover = false, prepare = false, drop_sheets = false;
+  bool outer = false, inner = false, cover = false, prepare = false, drop_sheets = false,
+       set = false;
   std::string original, approximation, original_format, approximation_format;
   std::string epsilon, witness, claims = "all";
   std::size_t max_contacts = verify::InclusionOptions{}.max_contacts;
@@ -76,6 +77,27 @@ Json to_json(const verify::DistanceClaim& claim) {
           {"largest_found", claim.largest},
           {"at", to_json(claim.at)},
           {"pieces", claim.pieces}};
+}
+
+/// A mesh, or the sum of a set's bodies.
+Input read_approximation(const Options& o, geom::ConvexSet& set, bool& is_set) {
+  const bool folder = std::filesystem::is_directory(o.approximation);
+  std::optional<io::Format> format;
+  if (!folder) {
+    format = tools::format_for(o.approximation, o.approximation_format, "--approximation-format");
+  }
+  const bool may_have_record = o.inner && o.approximation != "-" && format == io::Format::Glb;
+  if (o.cover || o.set || folder || may_have_record) {
+    io::SetReadDetails details;
+    set = io::read_convex_set(o.approximation, format, &details);
+    is_set = o.cover || o.set || folder || details.has_record;
+    if (is_set) {
+      return {verify::sum_of(set), format.value_or(io::Format::Stl), io::sha256(details.bytes),
+              std::move(details.notes)};
+    }
+    set = {};
+  }
+  return read(o.approximation, o.approximation_format, "--approximation-format");
 }
 
 /// Everything that was asked for, in the order of printing.
@@ -241,20 +263,13 @@ int check(const Options& o) {
     original.mesh = std::move(prepared.mesh);
     original.notes.insert(original.notes.end(), prepared.notes.begin(), prepared.notes.end());
   }
-  Input approximation;
   geom::ConvexSet set;
-  if (o.cover) {
-    io::SetReadDetails details;
-    std::optional<io::Format> format;
-    if (!o.approximation_format.empty() || o.approximation == "-") {
-      format = tools::format_for(o.approximation, o.approximation_format, "--approximation-format");
-    }
-    set = io::read_convex_set(o.approximation, format, &details);
-    approximation.mesh = verify::sum_of(set);
-    approximation.sha256 = io::sha256(details.bytes);
-    approximation.notes = std::move(details.notes);
-  } else {
-    approximation = read(o.approximation, o.approximation_format, "--approximation-format");
+  bool is_set = false;
+  Input approximation = read_approximation(o, set, is_set);
+  if (o.inner && set.margin > 0) {
+    throw Error(ErrorCode::InvalidInput, o.approximation + ": the set's margin, " +
+                                             number(set.margin) +
+                                             ", enlarges the bodies; an inner set must have none");
   }
   for (const Input* input : {&original, &approximation}) {
     for (const std::string& note : input->notes) {
@@ -279,17 +294,18 @@ int check(const Options& o) {
   const geom::Mesh& inner = o.inner ? approximation.mesh : original.mesh;
   const geom::Mesh& outer = o.inner ? original.mesh : approximation.mesh;
   verify::Inclusion inclusion;
-  if (o.cover) {
-    const verify::Cover cover = verify::verify_cover(original.mesh, set, options);
+  if (is_set) {
+    const verify::Claim convex = verify::verify_convexity(set).convex;
     verdict.add("convexity", "all " + std::to_string(set.bodies.size()) + " bodies are convex",
-                cover.convex.reason, cover.convex);
-    verdict.count_besides(cover.convex.answer);
-    claims["convex"] = to_json(cover.convex);
-    inclusion = cover.inclusion;
-  } else {
-    inclusion = verify::verify_inclusion(inner, outer, options);
+                convex.reason, convex);
+    verdict.count_besides(convex.answer);
+    claims["convex"] = to_json(convex);
   }
-  const std::string inner_name = o.inner ? "the approximation" : "the original";
+  inclusion = o.cover ? verify::verify_cover(original.mesh, set, options).inclusion
+                      : verify::verify_inclusion(inner, outer, options);
+  const std::string inner_name = is_set && o.inner ? "the union of the bodies"
+                                 : o.inner         ? "the approximation"
+                                                   : "the original";
   const std::string outer_name = o.cover
                                      ? (set.margin > 0 ? "the union of the bodies, margin included"
                                                        : "the union of the bodies")
@@ -316,6 +332,7 @@ int check(const Options& o) {
   claims["surface"] = to_json(inclusion.surface);
 
   std::vector<Far> far;
+  verify::Claim depth;  // its triangles are the original's and, as outer ones, the bodies'
   if (epsilon) {
     const double bound = epsilon->of(diagonal);
     const auto measure = [&](const char* title, const char* key, const geom::Mesh& from,
@@ -341,6 +358,17 @@ int check(const Options& o) {
       claims["distance"]["bound"] = bound;
       claims["distance"]["margin"] = set.margin;
       claims["distance"]["to_solid"] = inclusion.inner_closed;
+    } else if (is_set) {
+      progress.show("deciding: depth");
+      const verify::Claim claim = verify::verify_depth(original.mesh, set, bound, options);
+      verdict.add(
+          "depth",
+          "every point of the original more than " + number(bound) + " inside it is in a body",
+          claim.reason, claim);
+      verdict.count_besides(claim.answer);
+      claims["depth"] = to_json(claim);
+      depth = claim;
+      claims["depth"]["bound"] = bound;
     } else {
       measure("distance from approximation to original", "approximation_to_original",
               approximation.mesh, original.mesh, false);
@@ -351,6 +379,8 @@ int check(const Options& o) {
 
   const Answer answer = verdict.answer();
   if (!o.witness.empty() && answer == Answer::Refuted) {
+    for (const std::uint32_t t : depth.inner_triangles) far.push_back({&original.mesh, t});
+    for (const std::uint32_t t : depth.outer_triangles) far.push_back({&approximation.mesh, t});
     write_witness(o.witness, inner, outer, {&inclusion.solid, &inclusion.surface}, far);
   }
   if (!o.common.report.empty()) {
@@ -379,7 +409,7 @@ int check(const Options& o) {
                                swap ? inclusion.inner_closed : inclusion.outer_closed,
                                swap ? inclusion.inner_open_edges : inclusion.outer_open_edges)},
         {"bbox_diagonal", diagonal}};
-    if (o.cover) {
+    if (is_set) {
       json["approximation"]["bodies"] = set.bodies.size();
       json["approximation"]["margin"] = set.margin;
     }
@@ -453,7 +483,7 @@ int main(int argc, char** argv) {
       ->required()
       ->type_name("FILE");
   app.add_option("APPROXIMATION", o.approximation,
-                 "The result: a mesh; with --cover a set (.glb, .obj, a folder of .stl)")
+                 "The result: a mesh; with --cover or --set a set (.glb, .obj, a folder of .stl)")
       ->required()
       ->type_name("FILE");
   app.add_option("--claims", o.claims,
@@ -466,7 +496,8 @@ int main(int argc, char** argv) {
          "--epsilon", o.epsilon,
          "Also decide that no distance exceeds this: a length, or a percentage of ORIGINAL's "
          "bounding-box diagonal (0.5%); between the surfaces, both ways; with --cover from "
-         "the union to the solid (to the surface when ORIGINAL is open)")
+         "the union to the solid (to the surface when ORIGINAL is open); of an inner set, that it "
+         "leaves out no point deeper than this inside ORIGINAL")
       ->type_name("LENGTH");
   app.add_flag("--prepare", o.prepare,
                "Judge against ORIGINAL as bmesh-decimate prepares it (parts that are inside out "
@@ -475,6 +506,9 @@ int main(int argc, char** argv) {
                "With --prepare: drop sheets (faces back to back without volume), as bmesh-decimate "
                "does with this option; nothing is then said about them")
       ->needs("--prepare");
+  app.add_flag("--set", o.set,
+               "With --inner: APPROXIMATION is a set of convex bodies (known anyway of folders and "
+               "of containers)");
   app.add_option("--witness", o.witness,
                  "When refuted, write the offending triangles to this mesh file")
       ->type_name("FILE");

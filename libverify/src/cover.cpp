@@ -83,22 +83,27 @@ geom::Mesh sum_of(const geom::ConvexSet& set) {
   return sum;
 }
 
-Cover verify_cover(const geom::Mesh& original, const geom::ConvexSet& set,
-                   const InclusionOptions& options) {
-  Cover cover;
-  cover.convex.answer = Answer::Verified;
+Convexity verify_convexity(const geom::ConvexSet& set) {
+  Convexity result;
+  result.convex.answer = Answer::Verified;
   for (std::size_t i = 0; i < set.bodies.size(); ++i) {
     geom::require_valid(set.bodies[i].hull);
     std::string fault = fault_of(set.bodies[i].hull);
-    if (!fault.empty()) cover.not_convex.emplace_back(i, std::move(fault));
+    if (!fault.empty()) result.not_convex.emplace_back(i, std::move(fault));
   }
-  if (!cover.not_convex.empty()) {
-    const auto& [index, why] = cover.not_convex.front();
-    cover.convex.answer = Answer::Refuted;
-    cover.convex.reason = std::to_string(cover.not_convex.size()) + " of " +
-                          std::to_string(set.bodies.size()) + " bodies are not; body " +
-                          std::to_string(index) + " (" + set.bodies[index].name + "): " + why;
+  if (!result.not_convex.empty()) {
+    const auto& [index, why] = result.not_convex.front();
+    result.convex.answer = Answer::Refuted;
+    result.convex.reason = std::to_string(result.not_convex.size()) + " of " +
+                           std::to_string(set.bodies.size()) + " bodies are not; body " +
+                           std::to_string(index) + " (" + set.bodies[index].name + "): " + why;
   }
+  return result;
+}
+
+Cover verify_cover(const geom::Mesh& original, const geom::ConvexSet& set,
+                   const InclusionOptions& options) {
+  Cover cover{verify_convexity(set), {}};
   const geom::Mesh sum = sum_of(set);
   cover.inclusion = verify_inclusion(original, sum, options);
   if (set.margin > 0) allow_margin(original, sum, set.margin, options.max_cells, cover.inclusion);

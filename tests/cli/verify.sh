@@ -72,6 +72,17 @@ if [ -w /dev/full ]; then
   [ "$code" -eq 4 ] || fail "exit code $code when standard output is full"
 fi
 
+# Inner sets: bodies inside, and what they leave out.
+cube 0.25 0.75 >core.off
+mkdir -p core && "$BIN/bmesh-decimate" core.off -o core/a.stl --vertices 8 --quiet || fail 'core'
+expect 0 'convexity: verified' "$V" --inner one.off core
+expect 0 'depth: verified' "$V" --inner one.off core --epsilon 0.26
+expect 1 'depth: refuted' "$V" --inner one.off core --epsilon 0.24 --witness deep.obj
+[ "$(grep -c '^f' deep.obj)" -ge 1 ] || fail 'no witness of a depth'
+expect 0 'depth: verified' "$V" --inner one.off core.off --set --epsilon 0.26
+cube 0.3 0.7 >smaller.off
+expect 1 'solid claim: refuted' "$V" --inner smaller.off core
+
 # Limit.
 cube 0.5 1.5 >moved.off
 expect 7 'undecided' "$V" --outer one.off moved.off --max-contacts 1

@@ -279,6 +279,46 @@ TEST(Cover, MarginsAgainstSamples) {
   EXPECT_LE(answers[static_cast<std::size_t>(Answer::Undecided)], 4);
 }
 
+// Inner sets: what is deeper than epsilon inside the original must be in a body.
+TEST(Depth, OfBlocksInACube) {
+  const Mesh unit = box({1, 1, 1}, 3);
+  const auto depth = [&](const std::vector<Mesh>& bodies, double epsilon) {
+    return verify::verify_depth(unit, set_of(bodies), epsilon).answer;
+  };
+  const Mesh inset = block(Vec3::Constant(0.125), Vec3::Constant(0.875));
+  EXPECT_EQ(depth({unit}, 1e-6), Answer::Verified);
+  EXPECT_EQ(depth({inset}, 0.126), Answer::Verified);
+  EXPECT_EQ(depth({inset}, 0.124), Answer::Refuted);
+  EXPECT_EQ(depth({}, 0.499), Answer::Refuted);
+  EXPECT_EQ(depth({}, 0.501), Answer::Verified);
+  // A gap between two bodies is as deep as it is far from the surface, however thin.
+  const std::vector<Mesh> halves{block(Vec3::Zero(), {0.5, 1, 1}),
+                                 block({0.5 + 0x1p-10, 0, 0}, {1, 1, 1})};
+  EXPECT_EQ(depth(halves, 0.4), Answer::Refuted);
+  EXPECT_EQ(depth({halves[0], block({0.5, 0, 0}, {1, 1, 1})}, 1e-3), Answer::Verified);
+  const auto claim = verify::verify_depth(unit, set_of({inset}), 0.1);
+  ASSERT_TRUE(claim.witness.has_value());
+  EXPECT_LE(claim.witness->depth, 0.025 + 1e-9);
+}
+
+// A fold inside the original, and a part that is inside out, are no part of its boundary: what is
+// near them only is deep all the same.
+TEST(Depth, FoldsAreNoBoundary) {
+  const Mesh unit = box({1, 1, 1}, 3);
+  const Mesh within = block(Vec3::Constant(0.25), Vec3::Constant(0.75));
+  const auto depth = [&](const Mesh& original, double epsilon) {
+    verify::InclusionOptions soon;
+    soon.max_cells = 30'000;
+    return verify::verify_depth(original, set_of({}), epsilon, soon).answer;
+  };
+  EXPECT_EQ(depth(merged({unit, flipped(within)}), 0.26), Answer::Verified);  // a cavity
+  const Mesh doubled = merged({unit, within});
+  EXPECT_NE(depth(doubled, 0.26), Answer::Verified);
+  EXPECT_NE(depth(doubled, 0.49), Answer::Verified);
+  EXPECT_EQ(depth(doubled, 0.51), Answer::Verified);
+  EXPECT_EQ(depth(doubled, 0.1), Answer::Refuted);
+}
+
 TEST(Cover, ReachWithAMargin) {
   const Mesh unit = block({0, 0, 0}, {1, 1, 1});
   ConvexSet set = set_of({block({0, 0, 0}, {1.25, 1, 1})});

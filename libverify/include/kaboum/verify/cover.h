@@ -6,12 +6,20 @@
 
 namespace kaboum::verify {
 
-/// What verify_cover found.
-struct Cover {
+/// What verify_convexity found.
+struct Convexity {
   /// Every body is a closed chain of positive volume with no vertex above any of its planes.
   Claim convex;
   /// Indices of the bodies that are not, and why, in order.
   std::vector<std::pair<std::size_t, std::string>> not_convex;
+};
+
+/// Decides exactly whether all bodies of a set are convex. The margin plays no part.
+/// @throws Error{InvalidInput} on indices out of range or coordinates that are not finite.
+Convexity verify_convexity(const geom::ConvexSet& set);
+
+/// What verify_cover found.
+struct Cover : Convexity {
   /// The claims about the original and the union; triangles of the outer mesh are counted through
   /// the bodies one after the other.
   Inclusion inclusion;
@@ -38,6 +46,19 @@ Cover verify_cover(const geom::Mesh& original, const geom::ConvexSet& set,
 /// @throws as verify_distance
 DistanceClaim verify_reach(const geom::ConvexSet& set, const geom::Mesh& original, double epsilon,
                            bool to_solid);
+
+/// Decides whether every point of the original's solid that is deeper than `epsilon` inside it
+/// (farther from its boundary) is in a body: what an inner set promises besides lying within the
+/// solid. A witness is in no body, and `depth` deeper than epsilon.
+///
+/// Distances are measured to the triangles that bound the solid as wholes; where others, which the
+/// original itself cuts, would decide, the answer is undecided. Undefined unless the original is a
+/// closed chain.
+///
+/// @pre epsilon > 0; the bodies are convex (verify_cover, `convex`)
+/// @throws as verify_inclusion
+Claim verify_depth(const geom::Mesh& original, const geom::ConvexSet& set, double epsilon,
+                   const InclusionOptions& options = {});
 
 /// The triangles of all bodies in one mesh.
 geom::Mesh sum_of(const geom::ConvexSet& set);

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <kaboum/verify/inclusion.h>
+
+#include <vector>
+
+#include "scene.h"
+
+/// Z, the part of the inner solid that is outside the outer one: how far it reaches from something.
+/// docs/algorithms/exact-inclusion.md, "Pockets".
+namespace kaboum::verify {
+
+struct Limit {
+  const BoxTree& target;  ///< faces that distances are measured to; not empty
+  const BoxTree& all;     ///< these and more: what is farther from all of them is too far
+  double distance;        ///< in the scene's unit, > 0
+  std::size_t max_cells;  ///< boxes looked at before giving up
+};
+
+BoxTree tree_of(const Scene& scene, const std::vector<std::uint32_t>& faces);
+
+/// The faces that a refuted solid claim names, in order. They hold the boundary of Z, unless a
+/// limit ended the search for them.
+std::vector<std::uint32_t> offending_faces(const Scene& scene, const Claim& claim);
+
+/// Whether all of Z is within the limit: verified, refuted with a witness, whose depth is what it
+/// is beyond the limit (the reason is left to the caller), or undecided.
+///
+/// @param offending  faces that Z's boundary lies on; not empty
+/// @pre scene.scaled()
+Claim search_pockets(const Scene& scene, const std::vector<std::uint32_t>& offending,
+                     const Limit& limit);
+
+}  // namespace kaboum::verify
