@@ -6,7 +6,7 @@
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/measure/measure.h>
 #include <kaboum/measure/search.h>
-#include <kaboum/measure/surface.h>
+#include <kaboum/measure/solid.h>
 
 #include <algorithm>
 #include <chrono>
@@ -27,6 +27,7 @@ using tools::Json;
 
 struct Options {
   std::string a, b, input_format, a_as = "auto", b_as = "auto";
+  bool solid = false;
   double gap = 1e-3;
   std::uint64_t samples = 100000;
   std::string backend = "embree";
@@ -36,9 +37,21 @@ struct Options {
   tools::CommonOptions common;
 };
 
+/// Writes a whole number such as 1e6 in digits; leaves all else alone.
+std::string whole_number(const std::string& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0' || !(value >= 0 && value <= 1e15) || value != std::floor(value))
+    return text;
+  return std::to_string(static_cast<std::uint64_t>(value));
+}
+
 void describe(CLI::App& app, Options& o) {
   app.add_option("A", o.a, "Mesh or convex set (- for stdin)")->required()->type_name("A");
   app.add_option("B", o.b, "The other one")->required()->type_name("B");
+  app.add_flag("--solid", o.solid,
+               "Measure solid to solid: 0 inside the other one, the largest distance also of inner "
+               "points, no interior folds; both must be closed chains or sets");
   app.add_option(
          "--gap", o.gap,
          "Wished relative width of the certified intervals, from 1e-9 to 1; never finer than "
@@ -47,6 +60,7 @@ void describe(CLI::App& app, Options& o) {
       ->capture_default_str()
       ->type_name("G");
   app.add_option("--samples", o.samples, "Points for mean and rms, each way, from 2 to 1e9")
+      ->transform(whole_number)
       ->check(CLI::Range(std::uint64_t{2}, std::uint64_t{1000000000}).description(""))
       ->capture_default_str()
       ->type_name("N");
@@ -57,7 +71,7 @@ void describe(CLI::App& app, Options& o) {
            std::string(kind == &o.a_as ? "A" : "B") +
                " is a mesh, or a set of convex bodies of which the union's boundary counts; "
                "auto: a set if it is a folder, a container, or a GLB or OBJ file with "
-               "several bodies that are all convex; sets with a margin above 0 are refused [auto]")
+               "several bodies that are all convex; sets with a margin above 0 need --solid [auto]")
         ->check(CLI::IsMember({"auto", "mesh", "set"}).description(""))
         ->type_name(kinds);
   app.add_option(
@@ -83,6 +97,7 @@ void describe(CLI::App& app, Options& o) {
   tools::add_common_options(app, o.common);
   app.get_option("--seed")->description("Seed of the points behind mean and rms");
   app.footer(
+      "Measures surface to surface, or solid to solid with --solid.\n"
       "Prints one-sided distances both ways and the Hausdorff distance, in the files' unit and\n"
       "relative to the diagonal of both bounding boxes. min and max are certified intervals; mean\n"
       "and rms are estimates with their standard error.\n"
@@ -91,19 +106,28 @@ void describe(CLI::App& app, Options& o) {
       "wished (it is printed and holds all the same), or out of memory.");
 }
 
-/// One of the two inputs as a surface.
+/// One of the two inputs, and the surface that stands for it.
 struct Side {
   std::string file, sha256;
-  bool set = false;
-  std::size_t bodies = 0;
-  geom::Mesh mesh;
-  double error = 0;  ///< how far `mesh` may be from the surface that is meant
+  bool is_set = false;
+  geom::Mesh input;  ///< unless it is a set
+  geom::ConvexSet set;
+  std::unique_ptr<measure::Solid> solid;  ///< with --solid
+  geom::Mesh mesh;                        ///< the mesh, or the boundary of the union or the solid
+  double error = 0;                       ///< how far `mesh` may be from the surface that is meant
   std::vector<std::string> notes;
+
+  /// Calls visit(points) for every array of input coordinates.
+  template <class Visit>
+  void each_points(Visit&& visit) {
+    if (!is_set) visit(input.vertices);
+    for (geom::ConvexBody& body : set.bodies) visit(body.hull.vertices);
+  }
 };
 
 /// One-sided results.
 struct OneWay {
-  geom::DirectedDistance max;
+  measure::SolidDistance max;
   Vec3 nearest = Vec3::Zero();  ///< on the other surface, to max.at
   measure::Sampled sampled;
 };
@@ -181,12 +205,28 @@ class Job {
         set = io::parse_convex_set(bytes, *format, path, &details,
                                    std::filesystem::path(path).parent_path());
       }
-      const bool is_set = as == "set" || folder || details.has_record ||
-                          (set.bodies.size() > 1 && !geom::find_not_convex(set));
-      if (!is_set) return read_mesh(std::move(side), bytes, *format);
+      const std::optional<std::size_t> crooked =
+          set.bodies.size() > 1 ? geom::find_not_convex(set) : std::nullopt;
+      const bool is_set =
+          as == "set" || folder || details.has_record || (set.bodies.size() > 1 && !crooked);
+      if (!is_set) {
+        if (crooked)
+          side.notes.push_back("taken as a mesh, not as a set of bodies: body '" +
+                               set.bodies[*crooked].name + "' is not exactly convex");
+        return read_mesh(std::move(side), bytes, *format);
+      }
+      if (set.bodies.empty())
+        throw Error(ErrorCode::InvalidInput, side.file + ": the empty set has no distance");
       side.sha256 = io::sha256(bytes);
       side.notes = details.notes;
-      return as_set(std::move(side), set);
+      side.is_set = true;
+      side.set = std::move(set);
+      if (side.set.margin > 0 && !o_.solid)
+        throw Error(ErrorCode::InvalidInput,
+                    side.file +
+                        ": a set with a margin has a curved surface, to which distances are not "
+                        "stable (gaps close); measure solid to solid with --solid");
+      return side;
     }
     return read_mesh(std::move(side), io::read_file(path), *format);
   }
@@ -195,52 +235,44 @@ class Job {
     io::ReadResult result =
         io::parse_mesh(bytes, format, side.file, std::filesystem::path(side.file).parent_path());
     side.sha256 = io::sha256(bytes);
-    side.notes = result.notes;
-    side.mesh = std::move(result.mesh);
-    if (side.mesh.empty())
+    side.notes.insert(side.notes.end(), result.notes.begin(), result.notes.end());
+    side.input = std::move(result.mesh);
+    if (side.input.empty())
       throw Error(ErrorCode::InvalidInput, side.file + ": no triangles to measure to");
     return side;
   }
 
-  Side as_set(Side side, const geom::ConvexSet& set) const {
-    if (set.bodies.empty())
-      throw Error(ErrorCode::InvalidInput, side.file + ": the empty set has no distance");
-    side.set = true;
-    side.bodies = set.bodies.size();
-    try {
-      measure::UnionBoundary boundary = measure::union_boundary(set);
-      side.mesh = std::move(boundary.mesh);
-      side.error = boundary.error;
-    } catch (const Error& error) {
-      throw Error(error.code(), side.file + ": " + error.what());
+  static geom::Box3 box_of(Side& side) {
+    geom::Box3 box;
+    if (!side.is_set) box = geom::bounding_box(side.input);
+    for (const geom::ConvexBody& body : side.set.bodies) box.extend(geom::bounding_box(body.hull));
+    if (side.is_set) {
+      box.min.array() -= side.set.margin;
+      box.max.array() += side.set.margin;
     }
-    if (set.margin > 0)
-      throw Error(
-          ErrorCode::InvalidInput,
-          side.file + ": sets with a margin are not measured yet; make the offset explicit");
-    return side;
+    return box;
   }
 
   /// The distance bounds hold below 1e60 only.
-  void check_range() const {
-    for (const Side* side : {&a_, &b_}) {
-      const geom::Box3 box = geom::bounding_box(side->mesh);
+  void check_range() {
+    geom::Box3 both;
+    for (Side* side : {&a_, &b_}) {
+      const geom::Box3 box = box_of(*side);
       if (box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).maxCoeff() > 1e60)
         throw Error(ErrorCode::InvalidInput,
                     side->file + ": coordinates beyond 1e60; scale the mesh");
+      both.extend(box);
     }
-    geom::Box3 box = geom::bounding_box(a_.mesh);
-    box.extend(geom::bounding_box(b_.mesh));
-    if (box.diagonal() > 0 && box.diagonal() < 1e-60)
+    if (both.diagonal() > 0 && both.diagonal() < 1e-60)
       throw Error(ErrorCode::InvalidInput,
                   a_.file + ", " + b_.file + ": extent below 1e-60; scale the meshes");
   }
 
-  /// Moves both surfaces near the origin, along the axes on which all differences are exact: then
+  /// Moves both inputs near the origin, along the axes on which all differences are exact: then
   /// distances stay what they are, and rounding that is proportional to coordinates shrinks.
   void move_to_origin() {
-    geom::Box3 box = geom::bounding_box(a_.mesh);
-    box.extend(geom::bounding_box(b_.mesh));
+    geom::Box3 box = box_of(a_);
+    box.extend(box_of(b_));
     diagonal_ = box.diagonal();
     for (int axis = 0; axis < 3; ++axis) {
       const double shift = box.min[axis];
@@ -250,35 +282,64 @@ class Job {
         const double d = x - shift, back = x - d;
         return (x - (d + back)) + (back - shift) == 0;
       };
-      const auto exact_everywhere = [&](const Side& side) {
-        return std::all_of(side.mesh.vertices.begin(), side.mesh.vertices.end(),
-                           [&](const Vec3& v) { return exact(v[axis]); });
-      };
-      if (!exact_everywhere(a_) || !exact_everywhere(b_)) continue;
+      bool all = true;
+      for (Side* side : {&a_, &b_})
+        side->each_points([&](const std::vector<Vec3>& points) {
+          all = all && std::all_of(points.begin(), points.end(),
+                                   [&](const Vec3& v) { return exact(v[axis]); });
+        });
+      if (!all) continue;
       origin_[axis] = shift;
       for (Side* side : {&a_, &b_})
-        for (Vec3& v : side->mesh.vertices) v[axis] -= shift;
+        side->each_points([&](std::vector<Vec3>& points) {
+          for (Vec3& v : points) v[axis] -= shift;
+        });
+    }
+  }
+
+  /// The surface that stands for an input.
+  void find_surface(Side& side) {
+    progress_.show("boundary of " + side.file);
+    try {
+      if (o_.solid) {
+        side.solid = side.is_set ? std::make_unique<measure::Solid>(side.set)
+                                 : std::make_unique<measure::Solid>(side.input);
+        side.mesh = side.solid->boundary().mesh;
+        side.error = side.solid->boundary().error;
+      } else if (side.is_set) {
+        measure::Boundary boundary = measure::union_boundary(side.set);
+        side.mesh = std::move(boundary.mesh);
+        side.error = boundary.error;
+      } else {
+        side.mesh = side.input;
+      }
+    } catch (const Error& error) {
+      throw Error(error.code(), side.file + ": " + error.what());
     }
   }
 
   void measure() {
     move_to_origin();
+    find_surface(a_);
+    find_surface(b_);
     const auto backend = o_.backend == "own" ? measure::Backend::Own : measure::Backend::Embree;
     progress_.show("building search structures");
     const auto search_a = measure::make_search(a_.mesh, backend);
     const auto search_b = measure::make_search(b_.mesh, backend);
     built_ = now();
-    to_b_ = one_way("A to B", a_, *search_a, *search_b);
-    to_a_ = one_way("B to A", b_, *search_b, *search_a);
+    to_b_ = one_way("A to B", a_, *search_a, b_, *search_b);
+    to_a_ = one_way("B to A", b_, *search_b, a_, *search_a);
     progress_.show("smallest distance");
-    min_ = measure::minimum_distance(a_.mesh, b_.mesh);
-    // Surfaces that stand for others at a distance of at most `error`.
-    const double error = a_.error + b_.error;
-    for (OneWay* way : {&to_b_, &to_a_}) {
-      way->max.max_lower = std::max(0.0, way->max.max_lower - error);
-      way->max.max_upper += error;
-    }
-    if (error > 0) {
+    if (o_.solid) {
+      min_ = measure::solid_minimum(*a_.solid, *b_.solid);
+    } else {
+      min_ = measure::minimum_distance(a_.mesh, b_.mesh);
+      // Surfaces that stand for others at a distance of at most `error`.
+      const double error = a_.error + b_.error;
+      for (OneWay* way : {&to_b_, &to_a_}) {
+        way->max.max_lower = std::max(0.0, way->max.max_lower - error);
+        way->max.max_upper += error;
+      }
       min_.lower = std::max(0.0, min_.lower - error);
       min_.upper += error;
     }
@@ -286,17 +347,29 @@ class Job {
   }
 
   OneWay one_way(const char* name, const Side& from, const geom::TriangleSearch& from_search,
-                 const geom::TriangleSearch& to) {
+                 const Side& to, const geom::TriangleSearch& to_search) {
     OneWay way;
     geom::DistanceOptions d;
     d.relative_gap = o_.gap;
     progress_.show(std::string(name) + ": largest distance");
-    way.max = geom::directed_distance(from_search, to, d);
-    const auto& [a, b, c] = to.corners(to.nearest(way.max.at).triangle);
+    if (o_.solid) {
+      way.max = measure::solid_distance(*from.solid, *to.solid, from_search, to_search, d);
+    } else {
+      static_cast<geom::DirectedDistance&>(way.max) =
+          geom::directed_distance(from_search, to_search, d);
+    }
+    const auto& [a, b, c] = to_search.corners(to_search.nearest(way.max.at).triangle);
     way.nearest = geom::nearest_point(way.max.at, a, b, c);
     progress_.show(std::string(name) + ": sampling");
-    way.sampled = measure::sample_distances(from.mesh, to, o_.samples, o_.common.seed);
+    way.sampled = measure::sample_distances(from.mesh, to_search, o_.samples, o_.common.seed,
+                                            distance_to(to));
     return way;
+  }
+
+  /// How far a point is from a side, given how far it is from its surface.
+  static std::function<double(const Vec3&, double)> distance_to(const Side& side) {
+    if (!side.solid) return nullptr;
+    return [&](const Vec3& p, double d) { return side.solid->distance(p, d); };
   }
 
   [[nodiscard]] double hausdorff_lower() const {
@@ -338,13 +411,15 @@ class Job {
     return geom::weld(out);
   }
 
-  static std::vector<double> distances(const geom::Mesh& mesh, const geom::TriangleSearch& to) {
+  static std::vector<double> distances(const geom::Mesh& mesh, const Side& side,
+                                       const geom::TriangleSearch& to) {
+    const auto from = distance_to(side);
     std::vector<double> values(mesh.vertices.size(), 0);
     std::uint32_t hint = geom::TriangleSearch::kNone;
     for (std::size_t v = 0; v < values.size(); ++v) {
       const auto nearest = to.nearest(mesh.vertices[v], hint);
       hint = nearest.triangle;
-      values[v] = nearest.upper;
+      values[v] = from ? from(mesh.vertices[v], nearest.upper) : nearest.upper;
     }
     return values;
   }
@@ -353,14 +428,14 @@ class Job {
     progress_.show("colours");
     const bool ply = std::filesystem::path(o_.heatmap).extension() == ".ply";
     geom::Mesh a = refined(a_.mesh);
-    const std::vector<double> to_b = distances(a, search_b);
+    const std::vector<double> to_b = distances(a, b_, search_b);
     if (ply) {
       for (Vec3& v : a.vertices) v += origin_;
       heatmap_ = picture::heatmap_ply(a, to_b, to_b_.max.max_upper);
       return;
     }
     const geom::Mesh b = refined(b_.mesh);
-    const std::vector<double> to_a = distances(b, search_a);
+    const std::vector<double> to_a = distances(b, a_, search_a);
     heatmap_ = picture::encode_png(
         picture::draw_heatmap({{&a, &to_b, "A: distance to B"}, {&b, &to_a, "B: distance to A"}},
                               hausdorff_upper(), diagonal_, o_.width, o_.height));
@@ -386,8 +461,9 @@ class Job {
     const auto estimate = [](const measure::Estimate& e) {
       return formatted(e.value) + " ± " + formatted(e.standard_error, 2);
     };
-    out << (a_.set || b_.set ? "surface to surface (sets: boundary of the union)"
-                             : "surface to surface")
+    out << (o_.solid                 ? "solid to solid (mean and rms: over the boundaries)"
+            : a_.is_set || b_.is_set ? "surface to surface (sets: boundary of the union)"
+                                     : "surface to surface")
         << ", diagonal " << formatted(diagonal_) << '\n';
     row("", "A to B", "B to A");
     row("min", interval(min_.lower, min_.upper), interval(min_.lower, min_.upper));
@@ -408,13 +484,16 @@ class Job {
   [[nodiscard]] Json to_json(const Side& side) const {
     Json j{{"file", side.file},
            {"sha256", side.sha256},
-           {"kind", side.set ? "convex set: boundary of the union" : "mesh"}};
-    if (side.set) j["bodies"] = side.bodies;
+           {"kind", side.is_set
+                        ? (o_.solid ? "convex set: union" : "convex set: boundary of the union")
+                        : (o_.solid ? "mesh: its solid" : "mesh")}};
+    if (side.is_set) j["bodies"] = side.set.bodies.size();
+    if (side.is_set && o_.solid) j["margin"] = side.set.margin;
     const geom::TopologyReport topology = geom::analyse(side.mesh);
     j["vertices"] = topology.vertices;
     j["triangles"] = topology.triangles;
     j["components"] = topology.components;
-    if (!side.set) j["closed"] = topology.closed();
+    if (!side.is_set && !o_.solid) j["closed"] = topology.closed();
     j["degenerate_triangles"] = topology.degenerate_triangles;
     j["surface_error"] = side.error;
     j["notes"] = side.notes;
@@ -435,6 +514,7 @@ class Job {
             {"max_at", to_json(Vec3(way.max.at + origin_))},
             {"max_nearest", to_json(Vec3(way.nearest + origin_))},
             {"max_within_gap", way.max.within_gap},
+            {"max_inside", way.max.inside},
             {"relative",
              {{"min", relative(min_.upper)},
               {"mean", relative(way.sampled.mean.value)},
@@ -442,7 +522,8 @@ class Job {
               {"max_lower", relative(way.max.max_lower)},
               {"max_upper", relative(way.max.max_upper)}}},
             {"samples", way.sampled.samples},
-            {"queries", way.max.queries}};
+            {"queries", way.max.queries},
+            {"cells", way.max.cells}};
   }
 
   [[nodiscard]] Json report() const {
@@ -451,7 +532,7 @@ class Job {
     r["version"] = tools::version();
     r["a"] = to_json(a_);
     r["b"] = to_json(b_);
-    r["measure"] = "surface to surface";
+    r["measure"] = o_.solid ? "solid to solid" : "surface to surface";
     r["options"] = {{"gap", o_.gap},
                     {"samples", o_.samples},
                     {"seed", o_.common.seed},

@@ -55,12 +55,12 @@ class BranchAndBound {
  public:
   /// A's triangles in spatial order.
   BranchAndBound(std::span<const std::array<Vec3, 3>> a, const TriangleSearch& b,
-                 const DistanceOptions& options)
-      : a_(a), b_(b), options_(options) {
+                 const DistanceOptions& options, const Interior* inside)
+      : a_(a), b_(b), options_(options), inside_(inside) {
     Box3 box = box_clusters();
     magnitude_ = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
     box.extend(b.box());
-    absolute_gap_ = options.absolute_gap * box.diagonal();
+    diagonal_ = box.diagonal();
   }
 
   DirectedDistance run() {
@@ -89,10 +89,7 @@ class BranchAndBound {
   static constexpr std::uint32_t kSmallestCluster = 8;
 
   /// The largest upper bound that meets the wish.
-  [[nodiscard]] double wished() const {
-    return std::max(result_.max_lower * (1 + options_.relative_gap),
-                    result_.max_lower + absolute_gap_);
-  }
+  [[nodiscard]] double wished() const { return options_.wished(result_.max_lower, diagonal_); }
 
   /// The upper bound at which a piece needs no further work: the wish, less what cuts have moved
   /// the piece by. Where rounding is wider than the wish, a gap of its size must do: upper bounds
@@ -111,6 +108,16 @@ class BranchAndBound {
   [[nodiscard]] double upper_to(const Vec3& p, std::uint32_t triangle) const {
     const auto& [a, b, c] = b_.corners(triangle);
     return point_triangle_upper(p, a, b, c);
+  }
+
+  /// Takes note of a distance to B's triangles at a point, unless it lies inside.
+  void consider(Finding& finding, double distance, const Vec3& point, double moved) const {
+    // Distances that would change nothing are not worth the question; after the first rounds those
+    // are most.
+    if (inside_ != nullptr && (distance <= std::max(result_.max_lower, finding.lower) ||
+                               inside_->contains(point, distance) != std::optional(false)))
+      return;
+    finding.consider(distance, point, moved);
   }
 
   // -- clusters ----------------------------------------------------------------------------------
@@ -179,9 +186,11 @@ class BranchAndBound {
     const double radius = (cluster.box.max - p).cwiseMax(p - cluster.box.min).norm();
     cluster.upper = std::min(cluster.upper, (at.upper + radius) * (1 + 1e-14));
     if (cluster.upper > enough) lower_by_corners(cluster, enough);
+    if (inside_ != nullptr && cluster.upper > enough && inside_->covers_ball(p, radius, at.lower))
+      cluster.upper = 0;
     Finding finding;
     finding.queries = 1;
-    finding.consider(at.lower, p, 0);
+    consider(finding, at.lower, p, 0);
     return finding;
   }
 
@@ -281,7 +290,7 @@ class BranchAndBound {
     const Vec3 center = piece.polygon.centroid();
     const auto at_center = b_.nearest(center, piece.nearest);
     finding.queries = 1;
-    finding.consider(at_center.lower, center, moved_ + kCentroidError * magnitude_);
+    consider(finding, at_center.lower, center, moved_ + kCentroidError * magnitude_);
     double radius = 0;
     for (int i = 0; i < piece.polygon.size; ++i)
       radius = std::max(radius, (piece.polygon.corner[i] - center).norm());
@@ -290,16 +299,33 @@ class BranchAndBound {
     const auto [worst, where] = worst_corner(piece.polygon, at_center.triangle);
     piece.upper = std::min(piece.upper, worst);
     if (piece.upper <= enough) return finding;
+    if (inside_ != nullptr && settle_inside(piece, center, radius, at_center.lower, enough))
+      return finding;
     if (much_larger(piece, enough)) return finding;  // it will be halved, whatever its corners say
     // The corner that is far from this triangle may be near another one.
     const Vec3& corner = piece.polygon.corner[where];
     const auto at_corner = b_.nearest(corner, at_center.triangle);
     ++finding.queries;
-    finding.consider(at_corner.lower, corner, moved_);
+    consider(finding, at_corner.lower, corner, moved_);
     piece.at_worst = at_corner.triangle;
     if (at_corner.triangle != at_center.triangle)
       piece.upper = std::min(piece.upper, worst_corner(piece.polygon, at_corner.triangle).first);
     return finding;
+  }
+
+  /// Whether the piece lies in the solid, or so close to it that nothing is left to do.
+  bool settle_inside(Piece& piece, const Vec3& center, double radius, double distance,
+                     double enough) const {
+    if (inside_->covers_ball(center, radius, distance)) {
+      piece.upper = 0;
+      return true;
+    }
+    const double slack = 0.5 * enough;
+    if (!inside_->covers(
+            {piece.polygon.corner.data(), static_cast<std::size_t>(piece.polygon.size)}, slack))
+      return false;
+    piece.upper = slack;
+    return true;
   }
 
   /// Bounds all pieces and keeps those that are not settled.
@@ -393,8 +419,9 @@ class BranchAndBound {
   std::span<const std::array<Vec3, 3>> a_;
   const TriangleSearch& b_;
   const DistanceOptions& options_;
+  const Interior* inside_;
   double magnitude_ = 0;
-  double absolute_gap_ = 0;
+  double diagonal_ = 0;
   double moved_ = 0;     // how far cuts have moved corners of the pieces from A
   double measured_ = 0;  // largest lower bound of a distance at points that may be that far from A
   double settled_ = 0;   // largest upper bound among the pieces that need no further cut
@@ -405,7 +432,7 @@ class BranchAndBound {
 }  // namespace
 
 DirectedDistance directed_distance(const Mesh& a, const TriangleSearch& b,
-                                   const DistanceOptions& options) {
+                                   const DistanceOptions& options, const Interior* inside) {
   if (a.empty()) throw Error(ErrorCode::InvalidInput, "distance from a mesh without triangles");
   std::vector<std::array<Vec3, 3>> corners;
   corners.reserve(a.triangles.size());
@@ -413,12 +440,12 @@ DirectedDistance directed_distance(const Mesh& a, const TriangleSearch& b,
     const auto& [i, j, k] = a.triangles[t];
     corners.push_back({a.vertices[i], a.vertices[j], a.vertices[k]});
   }
-  return BranchAndBound(corners, b, options).run();
+  return BranchAndBound(corners, b, options, inside).run();
 }
 
 DirectedDistance directed_distance(const TriangleSearch& a, const TriangleSearch& b,
-                                   const DistanceOptions& options) {
-  return BranchAndBound(a.ordered(), b, options).run();
+                                   const DistanceOptions& options, const Interior* inside) {
+  return BranchAndBound(a.ordered(), b, options, inside).run();
 }
 
 }  // namespace kaboum::geom

@@ -42,7 +42,7 @@ struct Sums {
 }  // namespace
 
 Sampled sample_distances(const geom::Mesh& a, const geom::TriangleSearch& b, std::uint64_t samples,
-                         std::uint64_t seed) {
+                         std::uint64_t seed, const std::function<double(const Vec3&, double)>& of) {
   if (a.empty()) throw Error(ErrorCode::InvalidInput, "distance from a mesh without triangles");
   const geom::Box3 box = geom::bounding_box(a);
   const double scale = box.diagonal() > 0 ? 1 / box.diagonal() : 1;  // keeps products in range
@@ -86,6 +86,7 @@ Sampled sample_distances(const geom::Mesh& a, const geom::TriangleSearch& b, std
         const auto nearest = b.nearest(p, hint);
         hint = nearest.triangle;
         d = 0.5 * nearest.lower + 0.5 * nearest.upper;
+        if (of) d = of(p, d);
         sum.width = std::max(sum.width, nearest.upper - nearest.lower);
       }
       // Scaled, lest squares leave the range of double.

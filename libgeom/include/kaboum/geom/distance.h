@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -125,6 +126,40 @@ struct DistanceOptions {
   double relative_gap = 1e-3;  ///< stop when upper ≤ lower · (1 + relative_gap) …
   double absolute_gap = 1e-9;  ///< … or upper ≤ lower + absolute_gap · diagonal of A and B's box
                                ///< (much smaller ones are reached slowly, if at all)
+  double offset = 0;  ///< the gap is wanted for max(0, distance − offset); the bracket returned is
+                      ///< that of the distance itself [length]
+
+  /// The largest upper bound that meets the wish, given a lower bound. @param diagonal of the box.
+  [[nodiscard]] double wished(double lower, double diagonal) const {
+    const double beyond = lower > offset ? lower - offset : 0;
+    const double wide = beyond * (1 + relative_gap), least = beyond + absolute_gap * diagonal;
+    return offset + (wide > least ? wide : least);
+  }
+};
+
+/// The solid that B bounds, for distances that are 0 inside it.
+class Interior {
+ public:
+  Interior() = default;
+  Interior(const Interior&) = delete;
+  Interior& operator=(const Interior&) = delete;
+  virtual ~Interior() = default;
+
+  /// Whether p lies in the solid; decided exactly, or nullopt. Safe to call from several threads,
+  /// as all of these.
+  ///
+  /// @param free  lower bound of p's distance to the triangles of B, if one is known: within it
+  ///   nothing changes, which helps where p lies on a fold inside the solid.
+  [[nodiscard]] virtual std::optional<bool> contains(const Vec3& p, double free) const = 0;
+
+  /// Whether the ball is certainly part of the solid, given a lower bound of its centre's distance
+  /// to the triangles of B.
+  [[nodiscard]] virtual bool covers_ball(const Vec3& center, double radius,
+                                         double distance) const = 0;
+
+  /// Whether every point of the convex hull of the corners is certainly within `slack` of the
+  /// solid. May say no where it is hard to tell.
+  [[nodiscard]] virtual bool covers(std::span<const Vec3> corners, double slack) const = 0;
 };
 
 /// Branch and bound over convex pieces of A's triangles.
@@ -139,12 +174,15 @@ struct DistanceOptions {
 /// the largest |coordinate| of A. Translate meshes far from the origin first, where that is exact.
 ///
 /// @pre A and B have triangles and finite coordinates; B is given as a query.
+/// @param inside  when not null, the distance of points of A to the solid that B bounds: 0 inside.
 /// @throws Error{InvalidInput} when A has no triangles.
 DirectedDistance directed_distance(const Mesh& a, const TriangleSearch& b,
-                                   const DistanceOptions& options = {});
+                                   const DistanceOptions& options = {},
+                                   const Interior* inside = nullptr);
 
 /// The same for A's triangles as its own search structure holds them; faster where that exists.
 DirectedDistance directed_distance(const TriangleSearch& a, const TriangleSearch& b,
-                                   const DistanceOptions& options = {});
+                                   const DistanceOptions& options = {},
+                                   const Interior* inside = nullptr);
 
 }  // namespace kaboum::geom

@@ -29,9 +29,13 @@ struct Sampled {
 /// @param samples  rounded up to an even number, at least 2. A surface without area is sampled as
 /// if
 ///   its triangles had equal areas.
+/// @param distance  from a point, given its distance to B's triangles, which it is when there is no
+/// such
+///   function. Called from several threads.
 /// @throws Error{InvalidInput} when A has no triangles.
-Sampled sample_distances(const geom::Mesh& a, const geom::TriangleSearch& b, std::uint64_t samples,
-                         std::uint64_t seed);
+Sampled sample_distances(
+    const geom::Mesh& a, const geom::TriangleSearch& b, std::uint64_t samples, std::uint64_t seed,
+    const std::function<double(const geom::Vec3&, double)>& distance = nullptr);
 
 /// Bracket of the smallest distance between two surfaces, and a pair of nearest points.
 struct Minimum {

@@ -1,5 +1,4 @@
 // Boundary of a union of convex polytopes, by exact clipping.
-#include <CGAL/Exact_rational.h>
 #include <kaboum/geom/error.h>
 #include <kaboum/geom/predicates.h>
 #include <kaboum/measure/surface.h>
@@ -9,74 +8,23 @@
 #include <algorithm>
 #include <array>
 
+#include "exact_polygon.h"
+
 namespace kaboum::measure {
 namespace {
 
+using exact::Polygon;
 using geom::Box3;
 using geom::Mesh;
 using geom::Sign;
 using geom::Vec3;
-using Number = CGAL::Exact_rational;
-using Point = std::array<Number, 3>;
-using Polygon = std::vector<Point>;  // convex, planar, in order
 
-Point exact(const Vec3& p) { return {Number(p.x()), Number(p.y()), Number(p.z())}; }
-
-/// A facet's plane: corners as stored, and the normal in exact numbers, outwards.
-struct Plane {
+/// A facet's plane, exactly, and the corners as stored.
+struct Plane : exact::Plane {
   std::array<Vec3, 3> corner;
-  Point point, normal;
 };
 
-Plane plane_of(const std::array<Vec3, 3>& t) {
-  const Point a = exact(t[0]), b = exact(t[1]), c = exact(t[2]);
-  std::array<Number, 3> u, v;
-  for (int k = 0; k < 3; ++k) {
-    u[k] = b[k] - a[k];
-    v[k] = c[k] - a[k];
-  }
-  return {t, a, {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]}};
-}
-
-Number height(const Plane& plane, const Point& p) {
-  Number sum = 0;
-  for (int k = 0; k < 3; ++k) sum += plane.normal[k] * (p[k] - plane.point[k]);
-  return sum;
-}
-
-/// Cuts a convex polygon; parts without area are dropped.
-void split(const Polygon& polygon, const Plane& plane, Polygon& below, Polygon& above) {
-  below.clear();
-  above.clear();
-  std::vector<Number> h;
-  h.reserve(polygon.size());
-  bool any_below = false, any_above = false;
-  for (const Point& p : polygon) {
-    h.push_back(height(plane, p));
-    any_below = any_below || h.back() < 0;
-    any_above = any_above || h.back() > 0;
-  }
-  if (!any_above) {
-    below = polygon;
-    return;
-  }
-  if (!any_below) {
-    above = polygon;
-    return;
-  }
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const std::size_t j = (i + 1) % polygon.size();
-    if (h[i] <= 0) below.push_back(polygon[i]);
-    if (h[i] >= 0) above.push_back(polygon[i]);
-    if ((h[i] < 0 && h[j] > 0) || (h[i] > 0 && h[j] < 0)) {
-      const Number s = h[i] / (h[i] - h[j]);
-      Point x;
-      for (int k = 0; k < 3; ++k) x[k] = polygon[i][k] + s * (polygon[j][k] - polygon[i][k]);
-      below.push_back(x);
-      above.push_back(x);
-    }
-  }
-}
+Plane plane_of(const std::array<Vec3, 3>& t) { return {exact::plane_of(t), t}; }
 
 /// A body's facets, one plane for each group of coplanar triangles, and its box.
 struct Body {
@@ -109,10 +57,11 @@ bool overlap(const Box3& a, const Box3& b) {
 }
 
 bool same_direction(const std::array<Vec3, 3>& t, const Plane& plane) {
-  const Point n = plane_of(t).normal;
-  Number sum = 0;
-  for (int k = 0; k < 3; ++k) sum += n[k] * plane.normal[k];
-  return sum > 0;
+  return exact::dot(exact::plane_of(t).normal, plane.normal) > 0;
+}
+
+Polygon whole(const std::array<Vec3, 3>& t) {
+  return {exact::point(t[0]), exact::point(t[1]), exact::point(t[2])};
 }
 
 class Clipper {
@@ -121,7 +70,7 @@ class Clipper {
     for (const auto& body : set.bodies) bodies_.push_back(make_body(body.hull));
   }
 
-  UnionBoundary run() const {
+  Boundary run() const {
     std::vector<std::vector<Polygon>> parts;
     std::vector<std::pair<std::size_t, std::size_t>> facets;
     for (std::size_t i = 0; i < bodies_.size(); ++i)
@@ -130,22 +79,24 @@ class Clipper {
     tbb::parallel_for(std::size_t{0}, facets.size(), [&](std::size_t f) {
       parts[f] = uncovered(facets[f].first, facets[f].second);
     });
-    UnionBoundary out;
+    Boundary out;
     double largest = 0;
     for (std::size_t f = 0; f < facets.size(); ++f) {
       for (const Polygon& polygon : parts[f]) {
         const auto first = static_cast<std::uint32_t>(out.mesh.vertices.size());
-        for (const Point& p : polygon) {
-          out.mesh.vertices.emplace_back(CGAL::to_double(p[0]), CGAL::to_double(p[1]),
-                                         CGAL::to_double(p[2]));
+        for (const exact::Point& p : polygon) {
+          out.mesh.vertices.push_back(exact::rounded(p));
           largest = std::max(largest, out.mesh.vertices.back().cwiseAbs().maxCoeff());
         }
-        for (std::uint32_t k = 2; k < polygon.size(); ++k)
+        for (std::uint32_t k = 2; k < polygon.size(); ++k) {
           out.mesh.triangles.push_back({first, first + k - 1, first + k});
+          const auto& facet = bodies_[facets[f].first].triangles[facets[f].second];
+          out.facet.push_back(facet);
+          out.whole.push_back(polygon == whole(facet) ? 1 : 0);
+        }
       }
     }
-    // to_double errs by at most one ulp, 2^-52 relatively, per coordinate.
-    out.error = largest * 4e-16;
+    out.error = largest * exact::kRounding;
     return out;
   }
 
@@ -155,7 +106,7 @@ class Clipper {
     const auto& t = bodies_[body].triangles[triangle];
     Box3 box;
     for (const Vec3& p : t) box.extend(p);
-    std::vector<Polygon> parts{{exact(t[0]), exact(t[1]), exact(t[2])}};
+    std::vector<Polygon> parts{whole(t)};
     for (std::size_t j = 0; j < bodies_.size() && !parts.empty(); ++j)
       if (j != body && overlap(box, bodies_[j].box)) subtract(body, t, j, parts);
     return parts;
@@ -189,7 +140,7 @@ class Clipper {
       Polygon inside = std::move(part), below, above;
       std::vector<Polygon> outside;
       for (const Plane* plane : planes) {
-        split(inside, *plane, below, above);
+        exact::split(inside, *plane, below, above);
         if (!above.empty()) outside.push_back(above);
         inside = std::move(below);
         if (inside.empty()) break;
@@ -204,7 +155,7 @@ class Clipper {
 
 }  // namespace
 
-UnionBoundary union_boundary(const geom::ConvexSet& set) {
+Boundary union_boundary(const geom::ConvexSet& set) {
   for (const geom::ConvexBody& body : set.bodies)
     if (!geom::is_convex(body.hull))
       throw Error(ErrorCode::InvalidInput, "body '" + body.name +
