@@ -91,7 +91,7 @@ Solid::Solid(const Mesh& mesh)
 }
 
 Solid::Solid(const geom::ConvexSet& set)
-    : members_(std::make_unique<Members>()), boundary_(union_boundary(set)), margin_(set.margin) {
+    : members_(std::make_unique<Members>()), set_(set), boundary_(union_boundary(set)) {
   if (set.bodies.empty()) throw Error(ErrorCode::InvalidInput, "the empty set has no distance");
   for (const geom::ConvexBody& body : set.bodies) {
     Members::Body& own = members_->bodies.emplace_back();
@@ -173,7 +173,8 @@ std::optional<bool> Solid::contains(const Vec3& p, double free) const {
 }
 
 double Solid::distance(const Vec3& p, double to_boundary) const {
-  return contains(p, to_boundary) == std::optional(true) ? 0 : std::max(0.0, to_boundary - margin_);
+  return contains(p, to_boundary) == std::optional(true) ? 0
+                                                         : std::max(0.0, to_boundary - set_.margin);
 }
 
 bool Solid::covers_ball(const Vec3& center, double radius, double distance) const {

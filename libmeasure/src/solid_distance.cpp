@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "inflated.h"
+
 namespace kaboum::measure {
 namespace {
 
@@ -189,8 +191,8 @@ class Volume {
 
  private:
   static constexpr int kMaxRounds = 250;
-  static constexpr std::size_t kMaxOpen = std::size_t{1} << 21;
-  static constexpr std::uint64_t kMaxCells = std::uint64_t{1} << 26;
+  static constexpr std::size_t kMaxOpen = std::size_t{1} << 20;
+  static constexpr std::uint64_t kMaxCells = std::uint64_t{1} << 22;
   static constexpr std::size_t kMostNear = 400, kFew = 24;
 
   /// The box in six tetrahedra about a diagonal.
@@ -456,6 +458,41 @@ class Volume {
   double settled_ = 0;
 };
 
+/// Levels of subdivision of the ball that stands for a margin.
+constexpr int kFirstLevel = 2, kLastLevel = 6;
+
+/// The boundary of S(A) when A has a margin: the distance of points of A without it, enlarged by
+/// the margin, bounds it above, which is tight where B is convex; polytopes inside the bodies with
+/// their margin bound it below, and above by what they lack.
+geom::DirectedDistance distance_with_margin(const Solid& a, const Solid& b,
+                                            const TriangleSearch& boundary_a,
+                                            const TriangleSearch& boundary_b, double diagonal,
+                                            geom::DistanceOptions options) {
+  options.relative_gap *= 0.45;
+  options.absolute_gap *= 0.45;
+  geom::DistanceOptions bare = options;
+  bare.offset = std::max(0.0, options.offset - a.margin());
+  geom::DirectedDistance best = geom::directed_distance(boundary_a, boundary_b, bare, &b);
+  best.max_upper = (best.max_upper + a.margin()) * (1 + 1e-15);
+  options.relative_gap *= 2;  // of what both uses of it leave
+  options.absolute_gap *= 2;
+  for (int level = kFirstLevel; level <= kLastLevel; ++level) {
+    if (best.max_upper <= options.wished(best.max_lower, diagonal)) break;
+    const Inflated polytopes = inflate(a.set(), level);
+    geom::DistanceOptions half = options;
+    half.relative_gap *= 0.5;
+    half.absolute_gap *= 0.5;
+    const geom::DirectedDistance d = geom::directed_distance(polytopes.mesh, boundary_b, half, &b);
+    best.queries += d.queries;
+    best.max_upper = std::min(best.max_upper, d.max_upper + polytopes.defect);
+    if (const double lower = d.max_lower - polytopes.excess; lower > best.max_lower) {
+      best.max_lower = lower;
+      best.at = d.at;
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 SolidDistance solid_distance(const Solid& a, const Solid& b, const TriangleSearch& boundary_a,
@@ -467,14 +504,15 @@ SolidDistance solid_distance(const Solid& a, const Solid& b, const TriangleSearc
   finer.relative_gap *= 0.99;
   finer.absolute_gap *= 0.99;
   finer.offset = b.margin();
+  Box3 box = boundary_a.box();
+  box.extend(boundary_b.box());
   static_cast<geom::DirectedDistance&>(result) =
-      geom::directed_distance(boundary_a, boundary_b, finer, &b);
+      a.margin() > 0 ? distance_with_margin(a, b, boundary_a, boundary_b, box.diagonal(), finer)
+                     : geom::directed_distance(boundary_a, boundary_b, finer, &b);
   const double inside = Volume(a, b, boundary_a, boundary_b, finer, result).run();
   const double error = a.boundary().error + b.boundary().error;
   result.max_upper = std::max({result.max_upper, inside, result.max_lower}) + error;
   result.max_lower = std::max(0.0, result.max_lower - error);
-  Box3 box = boundary_a.box();
-  box.extend(boundary_b.box());
   geom::DistanceOptions wish = options;
   wish.offset = b.margin();
   result.within_gap =

@@ -20,7 +20,9 @@ class Solid final : public geom::Interior {
   ~Solid() override;
 
   [[nodiscard]] const Boundary& boundary() const { return boundary_; }
-  [[nodiscard]] double margin() const { return margin_; }
+  [[nodiscard]] double margin() const { return set_.margin; }
+  /// The bodies; none if it is a mesh's.
+  [[nodiscard]] const geom::ConvexSet& set() const { return set_; }
 
   /// Distance of a point from the solid, margin included, given its distance from the boundary
   /// without it.
@@ -48,11 +50,11 @@ class Solid final : public geom::Interior {
 
   struct Members;
   std::unique_ptr<Members> members_;
+  geom::ConvexSet set_;
   Boundary boundary_;
   geom::Bvh bvh_;  // of the boundary
   std::vector<std::uint8_t> exposed_;
   double magnitude_ = 0;
-  double margin_ = 0;
 };
 
 /// What became of the search inside A's solid.
