@@ -79,11 +79,46 @@ expect 0 '' "$H" two.obj one.obj --a-as mesh --csv m.csv
 awk -F, 'NR==2 { bad = !($8 > 0.49 && $9 < 0.51) } END { exit bad }' m.csv || fail "as mesh: $(cat m.csv)"
 expect 3 'not convex' "$H" "$BRACKET" one.obj --a-as set
 
+# Solid to solid: a cavity that A fills, an inner fold that does not count.
+block() { # low high first-index inwards
+  for z in $1 $2; do for y in $1 $2; do for x in $1 $2; do echo "v $x $y $z"; done; done; done
+  for f in '1 3 4 2' '5 6 8 7' '1 2 6 5' '3 7 8 4' '1 5 7 3' '2 4 8 6'; do
+    echo "$f" | awk -v s="$3" -v in="$4" '{ if (in) print "f", $4+s, $3+s, $2+s, $1+s; else print "f", $1+s, $2+s, $3+s, $4+s }'
+  done
+}
+block 0 1 0 0 >full.obj
+{ block 0 1 0 0; block 0.25 0.75 8 1; } >hollow.obj
+{ block 0 1 0 0; block 0.25 0.75 8 0; } >folded.obj
+expect 0 'solid to solid' "$H" --solid full.obj hollow.obj --csv solid.csv --report solid.json --samples 1e3
+awk -F, 'NR==2 { bad = !($8 > 0.2499 && $8 <= 0.25 && $9 >= 0.25 && $9 < 0.2503) }
+  NR==3 { bad = bad || $9 > 2e-9 } END { exit bad }' solid.csv || fail "cavity: $(cat solid.csv)"
+grep -q '"measure": "solid to solid"' solid.json || fail "the report does not say what was measured"
+grep -q '"max_inside": true' solid.json || fail "the largest distance is not inside"
+expect 0 '' "$H" --solid full.obj folded.obj --csv solid.csv
+awk -F, 'NR>1 { bad = bad || $9 > 2e-9 } END { exit bad }' solid.csv || fail "fold: $(cat solid.csv)"
+expect 0 '' "$H" full.obj folded.obj --csv solid.csv
+awk -F, 'NR==3 { bad = !($9 > 0.249) } END { exit bad }' solid.csv || fail "surface: $(cat solid.csv)"
+for n in 1 4; do
+  "$H" --solid full.obj hollow.obj --threads $n --report solid$n.json --quiet || fail "run"
+  sed -e '/"resources"/,/}/d' solid$n.json >s$n.json
+done
+cmp -s s1.json s4.json || fail "the solids' report differs on 4 threads"
+printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n' >open.off
+expect 3 'open.off: no closed chain' "$H" --solid full.obj open.off
+block 0 1 0 1 >inverted.obj
+expect 3 'solid is empty' "$H" --solid inverted.obj full.obj
+# Several bodies, one of which is not convex, are a mesh, and that is said.
+{ cube one 0 0; echo 'o two'; block 0 1 8 1; } >crooked.obj
+expect 0 '' "$H" crooked.obj full.obj --report crooked.json
+grep -q "not exactly convex" crooked.json || fail "a set taken as a mesh without a note"
+grep -q "not exactly convex" err.txt || fail "no note on stderr"
+
 # Usage and bad input.
 expect 2 '' "$H"
 expect 2 '' "$H" t.off
 expect 2 '' "$H" t.off t.off --gap 0
 expect 2 '' "$H" t.off t.off --samples 1
+expect 2 '' "$H" t.off t.off --samples 1e5.5
 expect 2 '' "$H" t.off t.off --backend best
 expect 2 '' "$H" t.off t.off --nonsense
 expect 2 'png or .ply' "$H" t.off t.off --heatmap x.jpg
@@ -96,7 +131,6 @@ printf 'OFF\n3 1 0\n0 0 0\n1 0 0\nnan 1 0\n3 0 1 2\n' >nan.off
 expect 3 'finite' "$H" t.off nan.off
 awk 'NR>2 && NR<7 {printf "%.17g %.17g %.17g\n", $1*1e80, $2*1e80, $3*1e80; next} {print}' t.off >vast.off
 expect 3 'scale' "$H" vast.off t.off
-printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n' >open.off
 expect 0 '' "$H" t.off open.off
 expect 4 '' "$H" t.off t.off --report /nonexistent/dir/r.json
 finish

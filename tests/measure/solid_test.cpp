@@ -135,7 +135,7 @@ Mesh tangle(std::mt19937_64& random, int parts, bool grid) {
 TEST(SolidBoundary, GoesRoundTheSolidOnce) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> unit(-0.3, 2);
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < 40; ++i) {
     const Mesh mesh = tangle(random, 1 + i % 5, i % 3 != 0);
     const Boundary boundary = solid_boundary(mesh);
     ASSERT_EQ(boundary.mesh.triangles.size(), boundary.facet.size());
@@ -249,7 +249,7 @@ struct Shape {
 /// Bounds of the largest distance from points of a grid: sampled below; above, by the points of B
 /// that are on the grid.
 std::pair<double, double> by_grid(const Shape& a, const Shape& b) {
-  constexpr int kSteps = 15;
+  constexpr int kSteps = 12;
   constexpr double kStep = 2.6 / kSteps, kLow = -0.3;
   const double half = 0.5 * std::sqrt(3.0) * kStep;
   std::vector<Vec3> of_a, of_b;
@@ -278,7 +278,7 @@ TEST(SolidDistance, OfRandomTanglesIsWhatAGridSays) {
   // Where solids touch themselves along an edge, finer gaps may not be reached.
   DistanceOptions options;
   options.absolute_gap = 1e-3;
-  for (int i = 0; i < 16; ++i) {
+  for (int i = 0; i < 8; ++i) {
     const Mesh a = tangle(random, 1 + i % 3, i % 2 == 0), b = tangle(random, 1 + i % 4, i % 2 == 0);
     const SolidDistance d = distance(a, b, options);
     const auto [lower, upper] = by_grid({{a}}, {{b}});
@@ -294,7 +294,7 @@ TEST(SolidDistance, OfRandomTanglesIsWhatAGridSays) {
 TEST(SolidDistance, OfRandomSetsIsThatOfTheirMeshes) {
   std::mt19937_64 random(23);
   std::uniform_real_distribution<double> unit(0, 1);
-  for (int i = 0; i < 6; ++i) {
+  for (int i = 0; i < 3; ++i) {
     const auto bodies = [&] {
       std::vector<Mesh> out;
       for (int k = 0; k < 3; ++k)
