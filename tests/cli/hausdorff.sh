@@ -83,7 +83,7 @@ expect 3 'not convex' "$H" "$BRACKET" one.obj --a-as set
 block() { # low high first-index inwards
   for z in $1 $2; do for y in $1 $2; do for x in $1 $2; do echo "v $x $y $z"; done; done; done
   for f in '1 3 4 2' '5 6 8 7' '1 2 6 5' '3 7 8 4' '1 5 7 3' '2 4 8 6'; do
-    echo "$f" | awk -v s="$3" -v in="$4" '{ if (in) print "f", $4+s, $3+s, $2+s, $1+s; else print "f", $1+s, $2+s, $3+s, $4+s }'
+    echo "$f" | awk -v s="$3" -v turn="$4" '{ if (turn > 0) print "f", $4+s, $3+s, $2+s, $1+s; else print "f", $1+s, $2+s, $3+s, $4+s }'
   done
 }
 block 0 1 0 0 >full.obj
@@ -94,9 +94,9 @@ awk -F, 'NR==2 { bad = !($8 > 0.2499 && $8 <= 0.25 && $9 >= 0.25 && $9 < 0.2503)
   NR==3 { bad = bad || $9 > 2e-9 } END { exit bad }' solid.csv || fail "cavity: $(cat solid.csv)"
 grep -q '"measure": "solid to solid"' solid.json || fail "the report does not say what was measured"
 grep -q '"max_inside": true' solid.json || fail "the largest distance is not inside"
-expect 0 '' "$H" --solid full.obj folded.obj --csv solid.csv
+expect 0 '' "$H" --solid full.obj folded.obj --b-as mesh --csv solid.csv
 awk -F, 'NR>1 { bad = bad || $9 > 2e-9 } END { exit bad }' solid.csv || fail "fold: $(cat solid.csv)"
-expect 0 '' "$H" full.obj folded.obj --csv solid.csv
+expect 0 '' "$H" full.obj folded.obj --b-as mesh --csv solid.csv
 awk -F, 'NR==3 { bad = !($9 > 0.249) } END { exit bad }' solid.csv || fail "surface: $(cat solid.csv)"
 for n in 1 4; do
   "$H" --solid full.obj hollow.obj --threads $n --report solid$n.json --quiet || fail "run"

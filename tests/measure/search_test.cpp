@@ -103,6 +103,60 @@ TEST(Search, TellsNearTiesApartBelowFloatResolution) {
   }
 }
 
+/// Small triangles in the box [−1, 1]³, whose coordinates the Embree search neither shifts nor
+/// scales.
+struct Specks {
+  Mesh mesh;
+  Specks() {
+    add({-1, -1, -1});
+    add({1, 1, 1});
+    mesh.vertices[1] += Vec3(0.01, 0, 0);
+    mesh.vertices[4] -= Vec3(0.01, 0, 0);
+  }
+  std::uint32_t add(const Vec3& at) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), 3, at);
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    return static_cast<std::uint32_t>(mesh.triangles.size() - 1);
+  }
+};
+
+// The triangle at the origin has a box without extent, at coordinates that float32 holds exactly:
+// only the allowance in the radius makes up for the rounding of Embree's squared distances. The
+// search starts with another triangle that is farther by less than that.
+TEST(Search, AllowsForTheTraversalsRounding) {
+  std::mt19937_64 random(13);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 400; ++i) {
+    const Vec3 direction = Vec3(normal(random), normal(random), normal(random)).normalized();
+    // Representable, so that the query point itself is not moved.
+    const Vec3 p = (0.43 * direction).cast<float>().cast<double>();
+    Specks specks;
+    specks.add(Vec3::Zero());
+    const std::uint32_t hint = specks.add((2 + 4e-12) * p);
+    const auto search = make_search(specks.mesh, Backend::Embree);
+    EXPECT_LE(search->nearest(p, hint).upper, by_all(specks.mesh, p).upper * (1 + 1e-12)) << i;
+  }
+}
+
+// Close to the query point, at coordinates between float32 numbers: only the outward step of the
+// boxes makes up for their rounding.
+TEST(Search, AllowsForTheRoundingOfBoxes) {
+  std::mt19937_64 random(14);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int i = 0; i < 400; ++i) {
+    const Vec3 p =
+        Vec3(0.5 + 0.4 * unit(random), 0.5 + 0.4 * unit(random), 0.6).cast<float>().cast<double>();
+    Vec3 by = Vec3::Zero();
+    by[i % 3] = (i % 2 == 0 ? 1 : -1) * 1e-3 * (1 + unit(random));
+    Specks specks;
+    specks.add(p + by);
+    const std::uint32_t hint = specks.add(p - (1 + 1e-9) * by);
+    const auto search = make_search(specks.mesh, Backend::Embree);
+    EXPECT_LE(search->nearest(p, hint).upper, by_all(specks.mesh, p).upper * (1 + 1e-11)) << i;
+  }
+}
+
 TEST(Search, BothBackendsGiveTheSameLargestDistance) {
   for (const auto& family : kaboum::test::closed_families()) {
     if (family.mesh.triangles.size() > 1500) continue;
