@@ -211,6 +211,13 @@ TEST(SolidDistance, OfConcaveAndDisconnectedSolids) {
   }
 }
 
+// Only the tip is outside; every triangle has its first corner and its centroid inside.
+TEST(SolidDistance, OfATipThatSticksOut) {
+  const Mesh tip{{{.3, .3, .2}, {.7, .3, .2}, {.5, .7, .2}, {.5, .5, 1.3}},
+                 {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+  expect_value(distance(tip, block({0, 0, 0}, {1, 1, 1})), 0.3);
+}
+
 TEST(SolidDistance, DoesNotSeeInteriorFolds) {
   const Mesh cube = block({0, 0, 0}, {1, 1, 1}, 3);
   const Mesh folded = merged({cube, block({.25, .25, .25}, {.75, .75, .75}), cube});
