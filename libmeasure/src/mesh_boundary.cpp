@@ -24,7 +24,6 @@ using exact::Number;
 using exact::Polygon;
 using geom::Box3;
 using geom::Mesh;
-using geom::Sign;
 using geom::Triangle;
 using geom::Vec3;
 using Corners = std::array<Vec3, 3>;
