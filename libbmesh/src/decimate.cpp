@@ -257,17 +257,25 @@ class Decimator {
         if (stale(e)) continue;
         // Evaluated anew each time it is popped: what is applied holds for the planes of this
         // moment.
-        if (!evaluate(e.a, e.b)) continue;
+        if (!evaluate(e.a, e.b, optimiser_.has_value())) continue;
+        if (optimiser_ && !settle()) continue;
         if (measuring_) {
-          if (e.measured != around_[e.a] + around_[e.b]) {
-            if (queue_.due(candidate_.cost) && !measure(e)) continue;
-          } else {
+          if (e.measured == around_[e.a] + around_[e.b]) {
             candidate_.cost = 0;
+          } else if (queue_.due(candidate_.cost) && !measure(e)) {
+            continue;
           }
         }
         if (!queue_.due(candidate_.cost)) {
           queue_.push(candidate_.cost, e);
           continue;
+        }
+        if (candidate_.settled) {
+          if (!certify(e)) continue;
+          if (!queue_.due(candidate_.cost)) {
+            queue_.push(candidate_.cost, e);
+            continue;
+          }
         }
         if (!admissible()) continue;
         apply();
@@ -311,6 +319,48 @@ class Decimator {
     if (spikes()) return reject(statistics_.rejected_spike);
     e.measured = around_[e.a] + around_[e.b];
     return true;
+  }
+
+  /// Moves the candidate to where the original bounds it instead of the present mesh.
+  bool settle() {
+    describe_change();
+    const Quadric q = merged(candidate_.a, candidate_.b);
+    const bool free = border_[candidate_.a] == 0 && border_[candidate_.b] == 0;
+    const auto place =
+        free ? optimiser_->settle(removed_, added_, q, origin_) : std::optional<Vec3>();
+    if (place && settle_at(*place)) return true;
+    return candidate_.encloses || reject(statistics_.rejected_no_position);
+  }
+
+  bool settle_at(const Vec3& place) {
+    const Vec3 before = candidate_.position;
+    candidate_.position = place;
+    if (((place - origin_).cwiseAbs().array() > reach_.array()).any() || folds()) {
+      candidate_.position = before;
+      return false;
+    }
+    candidate_.settled = true;
+    const Quadric q = merged(candidate_.a, candidate_.b);
+    candidate_.cost = key(q, std::max(0.0, q(candidate_.position - origin_)) +
+                                 length_cost(q, candidate_.a, candidate_.b));
+    return true;
+  }
+
+  /// The exact test of a settled candidate; seeks other places until it holds, or takes the one
+  /// that the present mesh bounds. @return whether the cost is known.
+  bool certify(BucketQueue::Entry& e) {
+    constexpr int kAttempts = 5;
+    bool moved = false;
+    for (int i = 0; i < kAttempts; ++i) {
+      if (optimiser_->settled(removed_, candidate_.position)) return !moved || measure(e);
+      const auto place = optimiser_->resettle();
+      if (!place || !settle_at(*place)) break;
+      moved = true;
+    }
+    if (!candidate_.encloses) return reject(statistics_.rejected_original);
+    candidate_.position = candidate_.enclosing;
+    candidate_.settled = false;
+    return measure(e);
   }
 
   [[nodiscard]] bool spikes() {
@@ -362,6 +412,9 @@ class Decimator {
     std::uint32_t a, b;
     Vec3 position;
     double cost;
+    Vec3 enclosing;  // the place that the present mesh bounds
+    bool encloses;   // there is one
+    bool settled;    // the position is one that the original bounds
   };
 
   void gather(std::uint32_t a, std::uint32_t b) {
@@ -418,7 +471,8 @@ class Decimator {
   }
 
   /// Fills candidate_ with the cheapest valid position for the edge (a, b); false if there is none.
-  bool evaluate(std::uint32_t a, std::uint32_t b) {
+  /// With `unbounded`, positions that the present mesh does not bound will do to begin with.
+  bool evaluate(std::uint32_t a, std::uint32_t b, bool unbounded = false) {
     candidate_.a = a;
     candidate_.b = b;
     gather(a, b);
@@ -438,10 +492,18 @@ class Decimator {
         if (placed || !found) break;
       }
       if (!placed && !at_end_point()) {
+        if (unbounded) {
+          candidate_.encloses = candidate_.settled = false;
+          candidate_.position = position_[a] + 0.5 * (position_[b] - position_[a]);
+          return true;
+        }
         return reject(found ? statistics_.rejected_predicate : statistics_.rejected_no_position);
       }
     }
-    if (folds()) return reject(statistics_.rejected_fold);
+    candidate_.enclosing = candidate_.position;
+    candidate_.encloses = !folds();
+    candidate_.settled = false;
+    if (!candidate_.encloses && !unbounded) return reject(statistics_.rejected_fold);
     candidate_.cost =
         key(q, std::max(0.0, q(candidate_.position - origin_)) + length_cost(q, a, b));
     return true;

@@ -78,14 +78,11 @@ double Deviation::to_nearest(const Vec3& p, std::span<const NewTriangle> added, 
   return best;
 }
 
-namespace {
-/// Where triangle t stays among the new ones; the first, if it vanishes.
-std::size_t place_of(std::uint32_t t, std::span<const NewTriangle> added) {
+std::size_t Deviation::place_of(std::uint32_t t, std::span<const NewTriangle> added) {
   for (std::size_t k = 0; k < added.size(); ++k)
     if (added[k].index == t) return k;
   return 0;
 }
-}  // namespace
 
 double Deviation::largest(std::span<const std::uint32_t> removed,
                           std::span<const NewTriangle> added, std::span<const Point> points,

@@ -55,9 +55,24 @@ class Deviation {
     for (std::uint32_t s = head_[t]; s != kNone; s = next_[s]) visit(point_[s], weight_[s]);
   }
 
+  /// Calls visit(i, point) for each sample of `removed`, i the place of the nearest of `added`.
+  template <class Visit>
+  void for_each_assignment(std::span<const std::uint32_t> removed,
+                           std::span<const NewTriangle> added, Visit&& visit) const {
+    for (const std::uint32_t t : removed) {
+      std::size_t last = place_of(t, added);
+      for (std::uint32_t s = head_[t]; s != kNone; s = next_[s]) {
+        to_nearest(point_[s], added, last, 0, &last);
+        visit(last, point_[s]);
+      }
+    }
+  }
+
   [[nodiscard]] const Proximity& original() const { return original_; }
 
  private:
+  /// Where triangle t stays among the new ones; the first, if it vanishes.
+  static std::size_t place_of(std::uint32_t t, std::span<const NewTriangle> added);
   void add_samples(const geom::Mesh& original);
   static double to_nearest(const Vec3& p, std::span<const NewTriangle> added, std::size_t first,
                            double enough, std::size_t* which);

@@ -1,6 +1,5 @@
 #include "optimise.h"
 
-#include <kaboum/geom/clip.h>
 #include <kaboum/geom/float32.h>
 
 #include <algorithm>
@@ -38,10 +37,10 @@ Optimiser::Optimiser(WorkingMesh& mesh, Deviation& deviation, OriginalSolid* sol
       tolerance_(tolerance),
       options_(options),
       statistics_(statistics),
-      sign_(options.direction == Direction::Inner ? -1 : 1),
       hint_(mesh.position.size(), 0),
       movable_(mesh.position.size(), 1),
-      flippable_(mesh.position.size(), 1) {}
+      flippable_(mesh.position.size(), 1),
+      fan_(options.direction == Direction::Inner ? -1 : 1) {}
 
 void Optimiser::disturb(std::uint32_t v) {
   movable_[v] = flippable_[v] = 1;
@@ -78,63 +77,58 @@ void Optimiser::place_star(const Vec3& apex) {
   points_.push_back({apex, total / 6});
 }
 
-void Optimiser::steepen(const Vec3& apex, const Ring& r, const Vec3& point,
-                        Steepest& steepest) const {
-  const Vec3& p = m_.position[r.p];
-  const Vec3& n = m_.normal[r.triangle];
-  const Vec3 across = n.cross(m_.position[r.q] - p);  // towards the apex
-  const double x = across.dot(point - p);
-  if (x <= 1e-3 * across.dot(apex - p)) return;
-  const double slope = sign_ * n.dot(point - p) / x;
-  if (slope <= steepest.slope) return;
-  steepest.slope = slope;
-  steepest.through = point;
-}
-
-/// Half-spaces of the displacement in which the triangles over the ring stay outside of the points
-/// that are known to bound them.
-void Optimiser::constrain(const Vec3& apex) {
-  planes_.clear();
-  const Vec3 spread = rounding(apex, options_.precision);
-  for (std::size_t i = 0; i < ring_.size(); ++i) {
-    if (!std::isfinite(steepest_[i].slope)) continue;
-    const Vec3 &p = m_.position[ring_[i].p], &q = m_.position[ring_[i].q];
-    Vec3 normal = sign_ * (q - p).cross(steepest_[i].through - p);
-    const double length = normal.norm();
-    if (!(length > 0)) continue;
-    normal /= length;
-    const double margin = 0.51 * normal.cwiseAbs().dot(spread);
-    planes_.push_back({normal, margin + normal.dot(p - apex)});
-  }
-}
-
-/// Exact: no triangle of the star at `to` cuts into the original. Where one does, the parts cut off
-/// become constraints.
-bool Optimiser::cut_off(const Vec3& apex, const Vec3& to) {
-  bool cuts = false;
-  for (std::size_t i = 0; i < ring_.size(); ++i) {
-    const Ring& r = ring_[i];
+/// Exact: no tetrahedron between a triangle that goes and `to` cuts into the original. Where one
+/// does, the parts cut off become constraints in fan_, whose triangle i belongs to removed[i] if
+/// `own`.
+bool Optimiser::spares(std::span<const std::uint32_t> removed, bool own, const Vec3& to) {
+  bool all = true;
+  for (std::size_t i = 0; i < removed.size(); ++i) {
     met_.clear();
-    if (certified(r.triangle, to, &met_)) continue;
-    cuts = true;
-    const Vec3 &p = m_.position[r.p], &q = m_.position[r.q];
-    // The four faces, with normals pointing inwards.
-    const std::array<Vec3, 4> corner{p, q, apex, to};
+    if (certified(removed[i], to, &met_)) continue;
+    all = false;
+    const geom::Triangle& c = m_.mesh[removed[i]];
+    const std::array<Vec3, 4> tetrahedron{m_.position[c[0]], m_.position[c[1]], m_.position[c[2]],
+                                          to};
     for (const std::uint32_t t : met_) {
       const geom::Triangle& tri = original_.triangles[t];
-      geom::ConvexPolygon part(original_.vertices[tri[0]], original_.vertices[tri[1]],
-                               original_.vertices[tri[2]]);
-      for (std::size_t k = 0; k < 4; ++k) {
-        const Vec3& a = corner[(k + 1) % 4];
-        Vec3 n = (corner[(k + 2) % 4] - a).cross(corner[(k + 3) % 4] - a);
-        if (n.dot(corner[k] - a) < 0) n = -n;
-        geom::ConvexPolygon below, above;
-        if (geom::cut(part, a, n, below, above)) part = above;
-      }
-      for (int j = 0; j < part.size; ++j) steepen(apex, r, part.corner[j], steepest_[i]);
+      fan_.keep(
+          own ? i : Fan::kNearest, tetrahedron,
+          {original_.vertices[tri[0]], original_.vertices[tri[1]], original_.vertices[tri[2]]});
     }
   }
-  return cuts;
+  return all;
+}
+
+std::optional<Vec3> Optimiser::settle(std::span<const std::uint32_t> removed,
+                                      std::span<const NewTriangle> added, const Quadric& quadric,
+                                      const Vec3& origin) {
+  apex_ = added.front().corner[0];
+  added_.assign(added.begin(), added.end());
+  fan_.assign(added_);
+  if (options_.direction != Direction::Any)
+    deviation_.for_each_assignment(removed, added_,
+                                   [&](std::size_t i, const Vec3& o) { fan_.keep(i, o); });
+  objective_ = quadric;
+  const Vec3 linear = quadric.half_gradient(apex_ - origin);
+  objective_.bx = linear.x(), objective_.by = linear.y(), objective_.bz = linear.z();
+  return resettle();
+}
+
+std::optional<Vec3> Optimiser::resettle() {
+  fan_.half_spaces(rounding(apex_, options_.precision), planes_);
+  const auto step = minimise(objective_, {objective_.bx, objective_.by, objective_.bz}, planes_,
+                             kRegularisationDistance);
+  if (!step) return std::nullopt;
+  Vec3 to = apex_ + *step;
+  if (options_.precision == Precision::Float) to = geom::to_float32(to);
+  if (!to.allFinite()) return std::nullopt;
+  return to;
+}
+
+bool Optimiser::settled(std::span<const std::uint32_t> removed, const Vec3& to) {
+  const bool spared = spares(removed, false, to);
+  if (!spared) ++statistics_.rejected_original;
+  return spared;
 }
 
 /// Squared distances of the samples, linear in the displacement of the apex, weighted by how far
@@ -208,15 +202,14 @@ bool Optimiser::pull_back(std::uint32_t v) {
       deviation_.energy(removed_, added_, points_, hint, std::numeric_limits<double>::infinity());
   if (!(before.squared > 0)) return false;
   linearise(from, before.squared);
-  steepest_.assign(ring_.size(), {});
+  fan_.assign(added_);
   if (options_.direction != Direction::Any)
     for (std::size_t i = 0; i < ring_.size(); ++i)
-      deviation_.for_each_sample(ring_[i].triangle, [&](const Vec3& o, double) {
-        steepen(from, ring_[i], o, steepest_[i]);
-      });
+      deviation_.for_each_sample(ring_[i].triangle,
+                                 [&](const Vec3& o, double) { fan_.keep(i, o); });
   const double goal = (1 - kGain) * before.sum;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    constrain(from);
+    fan_.half_spaces(rounding(from, options_.precision), planes_);
     const auto step = minimise(objective_, {objective_.bx, objective_.by, objective_.bz}, planes_,
                                kRegularisationDistance);
     if (!step) return false;
@@ -233,7 +226,7 @@ bool Optimiser::pull_back(std::uint32_t v) {
       place_star(to);
       if (!(deviation_.energy(removed_, added_, points_, hint, goal).sum < goal)) return false;
     }
-    if (cut_off(from, to)) {
+    if (!spares(removed_, true, to)) {
       ++statistics_.rejected_original;
       continue;
     }

@@ -3,6 +3,7 @@
 #include <kaboum/bmesh/decimate.h>
 
 #include "deviation.h"
+#include "fan.h"
 #include "original_solid.h"
 #include "placement.h"
 #include "tolerance.h"
@@ -27,6 +28,20 @@ class Optimiser {
   /// Moves v to a better place, if there is one. @return whether it has moved.
   bool pull_back(std::uint32_t v);
 
+  /// Seeks for a vertex that is to replace the star `removed` by the triangles `added`, whose first
+  /// corners are where it is now, a place that only the original bounds, not the present mesh.
+  ///
+  /// @param quadric  to be minimised, relative to `origin`.
+  /// @return the place, where float32 is wished for rounded; nullopt when there is none.
+  std::optional<Vec3> settle(std::span<const std::uint32_t> removed,
+                             std::span<const NewTriangle> added, const Quadric& quadric,
+                             const Vec3& origin);
+
+  /// Whether the place that `settle` has returned is certified. What would be cut off the original
+  /// is remembered otherwise, and `resettle` seeks another place.
+  bool settled(std::span<const std::uint32_t> removed, const Vec3& to);
+  std::optional<Vec3> resettle();
+
   /// Flips the edge (a, b) if that is better. @return whether it was flipped.
   bool flip(std::uint32_t a, std::uint32_t b);
 
@@ -44,13 +59,7 @@ class Optimiser {
 
   bool gather(std::uint32_t v);
   void place_star(const Vec3& apex);
-  struct Steepest {  // of the planes through (p, q), the one turned farthest outwards
-    double slope = -std::numeric_limits<double>::infinity();
-    Vec3 through = Vec3::Zero();
-  };
-  void steepen(const Vec3& apex, const Ring& r, const Vec3& point, Steepest& steepest) const;
-  void constrain(const Vec3& apex);
-  [[nodiscard]] bool cut_off(const Vec3& apex, const Vec3& to);
+  bool spares(std::span<const std::uint32_t> removed, bool own, const Vec3& to);
   void linearise(const Vec3& apex, double scale);
   [[nodiscard]] bool folds(const Vec3& to) const;
   [[nodiscard]] bool certified(std::uint32_t t, const Vec3& to,
@@ -63,7 +72,6 @@ class Optimiser {
   Tolerance* tolerance_;
   const DecimateOptions& options_;
   DecimateStatistics& statistics_;
-  double sign_;
   std::vector<std::uint32_t> hint_;  // per vertex: where the original is near
   // Per vertex: its star has changed since it was last tried in vain to move it, and since the last
   // round of flips.
@@ -74,10 +82,11 @@ class Optimiser {
   std::vector<std::uint32_t> removed_;
   std::vector<NewTriangle> added_;
   std::vector<Deviation::Point> points_;
-  std::vector<Steepest> steepest_;  // per triangle of the ring
+  Fan fan_;
   std::vector<HalfSpace> planes_;
   std::vector<std::uint32_t> met_;
-  Quadric objective_;  // of the displacement
+  Quadric objective_;         // of the displacement
+  Vec3 apex_ = Vec3::Zero();  // of fan_, when it settles a contraction
 };
 
 }  // namespace kaboum::bmesh
