@@ -81,6 +81,8 @@ class Decimator {
     statistics_.vertices_in = vertices_;
     init_quadrics(input.mesh);
     if (options.epsilon) tolerance_.emplace(input.mesh, *options.epsilon);
+    if (options.direction == Direction::Inner && closed_ && !options.keep_convex)
+      solid_.emplace(original_);
   }
 
   DecimateResult run() {
@@ -385,7 +387,7 @@ class Decimator {
 
   void start_optimising() {
     if (options_.keep_convex || (constrained_ && !closed_)) return;
-    if (constrained_) solid_.emplace(original_);
+    if (constrained_ && !solid_) solid_.emplace(original_);
     optimiser_.emplace(working_, *deviation_, constrained_ ? &*solid_ : nullptr, original_,
                        tolerance_ ? &*tolerance_ : nullptr, options_, statistics_);
   }
@@ -623,6 +625,32 @@ class Decimator {
     return false;
   }
 
+  // ---- inner surfaces
+  // ----------------------------------------------------------------------------------
+
+  /// Exact: all that an inner step takes away is inside the original, so that no new triangle
+  /// leaves it: no fold. docs/algorithms/bounding-mesh.md, "Inner surfaces".
+  [[nodiscard]] bool stays_inside() {
+    if (options_.direction != Direction::Inner || !solid_) return true;
+    const auto corners = [&](const Triangle& t) {
+      return std::array<Vec3, 3>{position_[t[0]], position_[t[1]], position_[t[2]]};
+    };
+    flat_.clear();
+    for (const StarTriangle& s : star_) {
+      const std::array<Vec3, 3> old = corners(mesh_[s.index]);
+      if (side(s.index) != Sign::Zero) {
+        if (!solid_->contains({old[0], old[1], old[2], candidate_.position}, true)) return false;
+        continue;
+      }
+      if (s.vanishes) continue;
+      std::array<Vec3, 3> now = old;
+      now[s.corner] = candidate_.position;
+      if (!same_orientation(old, now, &statistics_.exact_fallbacks)) return false;
+      flat_.push_back(normal_[s.index]);
+    }
+    return !opposed(flat_);
+  }
+
   // ---- convexity
   // ----------------------------------------------------------------------------------
 
@@ -689,6 +717,7 @@ class Decimator {
   /// The dearer tests, made only of candidates that are about to be applied.
   [[nodiscard]] bool admissible() {
     if (options_.keep_convex && !stays_convex()) return reject(statistics_.rejected_predicate);
+    if (!stays_inside()) return reject(statistics_.rejected_original);
     if (!tolerance_) return true;
     describe_change();
     if (!tolerance_->admits(removed_, added_)) return reject(statistics_.rejected_distance);
@@ -784,7 +813,7 @@ class Decimator {
     const Quadric nearest = point_quadric(local(v));
     for (const double care : {1.0, 4.0, 16.0}) {
       if (!place(nearest, care) || !encloses() || folds()) continue;
-      if (options_.keep_convex && !stays_convex()) continue;
+      if ((options_.keep_convex && !stays_convex()) || !stays_inside()) continue;
       if (tolerance_) {
         describe_change();
         if (!tolerance_->admits(removed_, added_)) continue;
@@ -858,6 +887,7 @@ class Decimator {
   Candidate candidate_{};
   std::vector<StarTriangle> star_;
   std::vector<std::uint32_t> rim_;
+  std::vector<Vec3> flat_;  // normals of triangles in whose plane the new vertex is
   std::vector<HalfSpace> planes_;
   std::vector<std::uint32_t> removed_;
   std::vector<NewTriangle> added_;

@@ -180,7 +180,8 @@ bool Optimiser::folds(const Vec3& to) const {
   });
 }
 
-/// Exact: the tetrahedron between triangle t and the point leaves the original's solid alone.
+/// Exact: the tetrahedron between triangle t and the point leaves the original's solid alone;
+/// inwards, it also lies in it.
 bool Optimiser::certified(std::uint32_t t, const Vec3& to, std::vector<std::uint32_t>* met) {
   if (options_.direction == Direction::Any) return true;
   const geom::Triangle& tri = m_.mesh[t];
@@ -189,7 +190,23 @@ bool Optimiser::certified(std::uint32_t t, const Vec3& to, std::vector<std::uint
   const geom::Sign side = geom::orient3d(a, b, c, to, &statistics_.exact_fallbacks);
   const bool inner = options_.direction == Direction::Inner;
   const geom::Sign wrong = inner ? geom::Sign::Positive : geom::Sign::Negative;
-  return side != wrong || solid_->contains({a, b, c, to}, inner, met);
+  if (side == geom::Sign::Zero || (side != wrong && !inner)) return true;
+  return solid_->contains({a, b, c, to}, inner, met);
+}
+
+/// Exact, for inner meshes: triangles of added_, whose apex is `to`, in the planes of those whose
+/// indices they take keep their orientation, and cannot cancel.
+bool Optimiser::stays_flat(const Vec3& to) {
+  if (options_.direction != Direction::Inner) return true;
+  flat_.clear();
+  for (const NewTriangle& n : added_) {
+    const geom::Triangle& tri = m_.mesh[n.index];
+    const std::array<Vec3, 3> old{m_.position[tri[0]], m_.position[tri[1]], m_.position[tri[2]]};
+    if (geom::orient3d(old[0], old[1], old[2], to) != geom::Sign::Zero) continue;
+    if (!same_orientation(old, n.corner)) return false;
+    flat_.push_back(m_.normal[n.index]);
+  }
+  return !opposed(flat_);
 }
 
 bool Optimiser::pull_back(std::uint32_t v) {
@@ -226,6 +243,7 @@ bool Optimiser::pull_back(std::uint32_t v) {
       place_star(to);
       if (!(deviation_.energy(removed_, added_, points_, hint, goal).sum < goal)) return false;
     }
+    if (!stays_flat(to)) return false;
     if (!spares(removed_, true, to)) {
       ++statistics_.rejected_original;
       continue;
@@ -297,7 +315,7 @@ bool Optimiser::flip(std::uint32_t a, std::uint32_t b) {
   const double limit = (1 - kGain) * before.sum;
   const auto after = measure(pd, pc, pa, pb, limit);
   if (!(after.sum < limit)) return false;
-  if (!certified(first, pd)) {
+  if (!certified(first, pd) || !stays_flat(pd)) {
     ++statistics_.rejected_original;
     return false;
   }

@@ -62,6 +62,7 @@ class Optimiser {
   bool spares(std::span<const std::uint32_t> removed, bool own, const Vec3& to);
   void linearise(const Vec3& apex, double scale);
   [[nodiscard]] bool folds(const Vec3& to) const;
+  [[nodiscard]] bool stays_flat(const Vec3& to);
   [[nodiscard]] bool certified(std::uint32_t t, const Vec3& to,
                                std::vector<std::uint32_t>* met = nullptr);
 
@@ -85,6 +86,7 @@ class Optimiser {
   Fan fan_;
   std::vector<HalfSpace> planes_;
   std::vector<std::uint32_t> met_;
+  std::vector<Vec3> flat_;
   Quadric objective_;         // of the displacement
   Vec3 apex_ = Vec3::Zero();  // of fan_, when it settles a contraction
 };

@@ -1,5 +1,7 @@
 #include "original_solid.h"
 
+#include <algorithm>
+
 namespace kaboum::bmesh {
 namespace {
 
@@ -74,6 +76,28 @@ class Separation {
 bool meets_interior(const Tetrahedron& tetrahedron, const std::array<Vec3, 3>& triangle,
                     std::uint64_t* exact_calls) {
   return !Separation(tetrahedron, triangle, exact_calls).exists();
+}
+
+bool same_orientation(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
+                      std::uint64_t* exact_calls) {
+  // Seen from any point off the plane; one of three is off it.
+  double size = 0;
+  for (const Vec3& p : a) size = std::max(size, (p - a[0]).lpNorm<Eigen::Infinity>());
+  for (int k = 0; k < 3; ++k) {
+    Vec3 eye = a[0];
+    eye[k] += size;
+    const Sign s = geom::orient3d(a[0], a[1], a[2], eye, exact_calls);
+    if (s == Sign::Zero) continue;
+    return geom::orient3d(b[0], b[1], b[2], eye, exact_calls) == s;
+  }
+  return false;
+}
+
+bool opposed(std::span<const Vec3> normals) {
+  for (std::size_t i = 0; i < normals.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (normals[i].dot(normals[j]) < -0.9) return true;
+  return false;
 }
 
 OriginalSolid::OriginalSolid(const geom::Mesh& original)

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace kaboum::bmesh {
@@ -22,6 +23,14 @@ using Tetrahedron = std::array<Vec3, 4>;
 /// @pre the tetrahedron has volume.
 bool meets_interior(const Tetrahedron& tetrahedron, const std::array<Vec3, 3>& triangle,
                     std::uint64_t* exact_calls = nullptr);
+
+/// Whether two triangles in one plane have areas of the same orientation; false when either has
+/// none. Exact.
+bool same_orientation(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
+                      std::uint64_t* exact_calls = nullptr);
+
+/// Whether two of the unit normals are nearly opposite.
+bool opposed(std::span<const Vec3> normals);
 
 /// Exact questions about the solid of the original: the certificate of steps that give back what
 /// earlier steps have added.

@@ -91,9 +91,10 @@ struct DecimateResult {
 /// Every contraction is accepted only after exact orientation tests of the new, already rounded
 /// vertex against the plane of every triangle it replaces, so that the winding number never falls
 /// (Outer) or never rises (Inner) anywhere off the surfaces: docs/algorithms/bounding-mesh.md has
-/// the theorem. Vertices on the border of an open mesh do not move. With `epsilon`, every
-/// contraction also keeps a certificate that no point of either surface is farther than epsilon
-/// from the other one.
+/// the theorem. Inner results of closed meshes do not fold, either: their triangles stay in the
+/// input's solid if its own do. Vertices on the border of an open mesh do not move. With `epsilon`,
+/// every contraction also keeps a certificate that no point of either surface is farther than
+/// epsilon from the other one.
 ///
 /// @pre options.vertices or options.epsilon is given; `input` comes from geom::prepare.
 /// @throws Error{InvalidArgument} on contradictory options; Error{InvalidInput} when keep_convex is
