@@ -45,8 +45,8 @@ constexpr double kMeasureFromEpsilon = 0.1;  ///< the same by an error bound
 
 /// The constrained minimum of a sum of planes is several times the unconstrained one. Edges that
 /// enter the queue with the latter are evaluated long before they are due, mostly in vain:
-/// something in their star changes first. The thesis's costs are ordered as in the thesis.
-constexpr double kAnticipationDistance = 8;
+/// something in their star changes first. The other costs are ordered as in the thesis.
+constexpr double kAnticipationPlanes = 3, kAnticipationDistance = 8;
 
 /// Multiples of the wished number of vertices at which the best effort pauses for rounds of
 /// optimisation.
@@ -65,7 +65,9 @@ class Decimator {
       : options_(options),
         sign_(options.direction == Direction::Inner ? -1 : 1),
         constrained_(options.direction != Direction::Any),
-        anticipation_(options.cost == Cost::Distance ? kAnticipationDistance : 1),
+        anticipation_(options.cost == Cost::Distance ? kAnticipationDistance
+                      : options.cost == Cost::Planes ? kAnticipationPlanes
+                                                     : 1),
         regularisation_(options.cost == Cost::Distance ? kRegularisationDistance : kRegularisation),
         origin_(geom::bounding_box(input.mesh).center()),
         diagonal_(geom::bounding_box(input.mesh).diagonal()),
@@ -190,7 +192,7 @@ class Decimator {
   }
 
   void push_all() {
-    queue_.reserve(mesh_.size() * 3 / 2);
+    queue_.reserve(room(mesh_.size() * 3 / 2));
     for (std::uint32_t v = 0; v < position_.size(); ++v) {
       if (!mesh_.used(v)) continue;
       ++mark_value_;
@@ -204,6 +206,9 @@ class Decimator {
       });
     }
   }
+
+  /// Entries at which stale ones are dropped, when there are so many without them.
+  static std::size_t room(std::size_t entries) { return entries + entries / 8 + 1024; }
 
   // Stamps only rise, so a sum of two is unchanged only if both are.
   [[nodiscard]] bool stale(const BucketQueue::Entry& e) const {
@@ -251,7 +256,7 @@ class Decimator {
       progress = false;
       queue_ = {};
       push_all();
-      std::size_t purge_at = 2 * queue_.size() + 1024;
+      std::size_t purge_at = room(queue_.size());
       BucketQueue::Entry e;
       const std::uint64_t rejected_before = statistics_.rejected_distance;
       while (vertices_ > target && queue_.pop(e)) {
@@ -259,7 +264,9 @@ class Decimator {
         if (stale(e)) continue;
         // Evaluated anew each time it is popped: what is applied holds for the planes of this
         // moment.
-        if (!evaluate(e.a, e.b, optimiser_.has_value())) continue;
+        const Validity validity = evaluate(e.a, e.b, optimiser_ ? Settled : Due);
+        if (validity == Validity::Later) queue_.push(candidate_.cost, e);
+        if (validity != Validity::Valid) continue;
         if (optimiser_ && !settle()) continue;
         if (measuring_) {
           if (e.measured == around_[e.a] + around_[e.b]) {
@@ -284,7 +291,7 @@ class Decimator {
         progress = true;
         if (queue_.size() > purge_at) {
           queue_.purge([&](const BucketQueue::Entry& x) { return stale(x); });
-          purge_at = 2 * queue_.size() + 1024;
+          purge_at = room(queue_.size());
         }
       }
       bounded_ = statistics_.rejected_distance > rejected_before;  // by epsilon alone
@@ -342,9 +349,7 @@ class Decimator {
       return false;
     }
     candidate_.settled = true;
-    const Quadric q = merged(candidate_.a, candidate_.b);
-    candidate_.cost = key(q, std::max(0.0, q(candidate_.position - origin_)) +
-                                 length_cost(q, candidate_.a, candidate_.b));
+    find_cost(merged(candidate_.a, candidate_.b));
     return true;
   }
 
@@ -472,43 +477,65 @@ class Decimator {
     return !common;
   }
 
-  /// Fills candidate_ with the cheapest valid position for the edge (a, b); false if there is none.
-  /// With `unbounded`, positions that the present mesh does not bound will do to begin with.
-  bool evaluate(std::uint32_t a, std::uint32_t b, bool unbounded = false) {
+  enum class Validity {
+    None,   // there is no valid position
+    Later,  // the cost is known and not due; nothing was tested
+    Valid,
+  };
+  enum Purpose {
+    Any,      // all tests are made
+    Due,      // only of what is due
+    Settled,  // positions that the present mesh does not bound will do to begin with
+  };
+
+  /// Fills candidate_ with the cheapest valid position for the edge (a, b).
+  Validity evaluate(std::uint32_t a, std::uint32_t b, Purpose purpose) {
     candidate_.a = a;
     candidate_.b = b;
+    candidate_.settled = false;
     gather(a, b);
-    if (!keeps_topology()) return reject(statistics_.rejected_topology);
     const Quadric q = merged(a, b);
-    if (border_[a] != 0 || border_[b] != 0) {
-      candidate_.position = border_[a] != 0 ? position_[a] : position_[b];
-      if (!encloses()) return reject(statistics_.rejected_predicate);
-    } else {
+    const bool free = border_[a] == 0 && border_[b] == 0;
+    bool found = false;
+    if (free) {
       if (options_.keep_convex) gather_rim();
+      found = place(q, 1);
+      if (found && purpose == Due) {
+        find_cost(q);
+        if (!queue_.due(candidate_.cost)) return Validity::Later;
+      }
+    }
+    const auto none = [](std::uint64_t& counter) {
+      ++counter;
+      return Validity::None;
+    };
+    if (!keeps_topology()) return none(statistics_.rejected_topology);
+    if (!free) {
+      candidate_.position = border_[a] != 0 ? position_[a] : position_[b];
+      if (!encloses()) return none(statistics_.rejected_predicate);
+    } else {
       // The second attempt keeps farther from the planes, for positions that rounding spoils; the
       // end points themselves serve in flat places, where every plane of the star is the same one.
-      bool found = false, placed = false;
-      for (const double care : {1.0, 16.0}) {
-        found = place(q, care);
-        placed = found && encloses();
-        if (placed || !found) break;
-      }
+      const bool placed = found && (encloses() || (place(q, 16) && encloses()));
       if (!placed && !at_end_point()) {
-        if (unbounded) {
-          candidate_.encloses = candidate_.settled = false;
+        if (purpose == Settled) {
+          candidate_.encloses = false;
           candidate_.position = position_[a] + 0.5 * (position_[b] - position_[a]);
-          return true;
+          return Validity::Valid;
         }
-        return reject(found ? statistics_.rejected_predicate : statistics_.rejected_no_position);
+        return none(found ? statistics_.rejected_predicate : statistics_.rejected_no_position);
       }
     }
     candidate_.enclosing = candidate_.position;
     candidate_.encloses = !folds();
-    candidate_.settled = false;
-    if (!candidate_.encloses && !unbounded) return reject(statistics_.rejected_fold);
-    candidate_.cost =
-        key(q, std::max(0.0, q(candidate_.position - origin_)) + length_cost(q, a, b));
-    return true;
+    if (!candidate_.encloses && purpose != Settled) return none(statistics_.rejected_fold);
+    find_cost(q);
+    return Validity::Valid;
+  }
+
+  void find_cost(const Quadric& q) {
+    candidate_.cost = key(q, std::max(0.0, q(candidate_.position - origin_)) +
+                                 length_cost(q, candidate_.a, candidate_.b));
   }
 
   /// Tries to contract to an end point of the edge, where it is.
@@ -790,13 +817,14 @@ class Decimator {
     neighbours.erase(std::unique(neighbours.begin(), neighbours.end()), neighbours.end());
     std::optional<Candidate> best;
     for (const std::uint32_t w : neighbours) {
-      if (!evaluate(v, w) || !geom::is_float32(candidate_.position)) continue;
+      if (evaluate(v, w, Any) != Validity::Valid || !geom::is_float32(candidate_.position))
+        continue;
       if (best && best->cost <= candidate_.cost) continue;
       const Candidate candidate = candidate_;
       if (admissible()) best = candidate;
     }
     if (!best) return false;
-    ensure(evaluate(best->a, best->b) && admissible(),
+    ensure(evaluate(best->a, best->b, Any) == Validity::Valid && admissible(),
            "an admitted contraction is no longer admissible");
     apply();
     return true;

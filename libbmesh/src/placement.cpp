@@ -7,33 +7,34 @@
 namespace kaboum::bmesh {
 namespace {
 
-/// Cholesky factor of the regularised, trace-scaled quadratic part.
+/// Cholesky factor of the regularised, trace-scaled quadratic part, with the reciprocals of its
+/// diagonal: every half-space is transformed by it.
 struct Cholesky {
-  double l00, l10, l11, l20, l21, l22;
+  double i00, l10, i11, l20, l21, i22;
 
   Cholesky(const Quadric& q, double regularisation) {
     const double t = q.trace();
     const double s = t > 0 ? 1 / t : 0;
     const double e = t > 0 ? regularisation : 1;
-    l00 = std::sqrt(std::max(q.xx * s, 0.0) + e);
-    l10 = q.xy * s / l00;
-    l20 = q.xz * s / l00;
-    l11 = std::sqrt(std::max(q.yy * s + e - l10 * l10, 0.5 * e));
-    l21 = (q.yz * s - l20 * l10) / l11;
-    l22 = std::sqrt(std::max(q.zz * s + e - l20 * l20 - l21 * l21, 0.5 * e));
+    i00 = 1 / std::sqrt(std::max(q.xx * s, 0.0) + e);
+    l10 = q.xy * s * i00;
+    l20 = q.xz * s * i00;
+    i11 = 1 / std::sqrt(std::max(q.yy * s + e - l10 * l10, 0.5 * e));
+    l21 = (q.yz * s - l20 * l10) * i11;
+    i22 = 1 / std::sqrt(std::max(q.zz * s + e - l20 * l20 - l21 * l21, 0.5 * e));
     scale = s;
   }
   /// L⁻¹ v
   [[nodiscard]] Vec3 forward(const Vec3& v) const {
-    const double x = v.x() / l00;
-    const double y = (v.y() - l10 * x) / l11;
-    return {x, y, (v.z() - l20 * x - l21 * y) / l22};
+    const double x = v.x() * i00;
+    const double y = (v.y() - l10 * x) * i11;
+    return {x, y, (v.z() - l20 * x - l21 * y) * i22};
   }
   /// L⁻ᵀ v
   [[nodiscard]] Vec3 backward(const Vec3& v) const {
-    const double z = v.z() / l22;
-    const double y = (v.y() - l21 * z) / l11;
-    return {(v.x() - l10 * y - l20 * z) / l00, y, z};
+    const double z = v.z() * i22;
+    const double y = (v.y() - l21 * z) * i11;
+    return {(v.x() - l10 * y - l20 * z) * i00, y, z};
   }
 
   double scale;
@@ -181,7 +182,8 @@ std::optional<Vec3> minimise(const Quadric& quadratic, const Vec3& linear,
     const Vec3 g = l.forward(h.normal);
     const double norm = g.norm();
     if (!(norm > 0)) continue;
-    planes[count++] = {g / norm, (h.offset + g.dot(shift)) / norm};
+    const double inverse = 1 / norm;
+    planes[count++] = {inverse * g, inverse * (h.offset + g.dot(shift))};
   }
   const auto z = ClosestPoint(planes.first(count)).solve();
   if (!z) return std::nullopt;
