@@ -208,7 +208,7 @@ class Decimator {
   }
 
   /// Entries at which stale ones are dropped, when there are so many without them.
-  static std::size_t room(std::size_t entries) { return entries + entries / 8 + 1024; }
+  static std::size_t room(std::size_t entries) { return entries + entries / 2 + 1024; }
 
   // Stamps only rise, so a sum of two is unchanged only if both are.
   [[nodiscard]] bool stale(const BucketQueue::Entry& e) const {
