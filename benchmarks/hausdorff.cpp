@@ -21,47 +21,25 @@
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/measure/measure.h>
 #include <kaboum/measure/search.h>
-#include <sys/resource.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <map>
 #include <string>
 #include <vector>
+
+#include "common.h"
 
 namespace {
 
 using namespace kaboum;
+using benchmark::subdivided;
+using benchmark::user_seconds;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using SurfaceMesh = CGAL::Surface_mesh<Kernel::Point_3>;
 constexpr double kError = 1e-4;  // of the diagonal
-
-double user_seconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_utime.tv_sec) +
-         1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
-}
-
-geom::Mesh subdivided(const geom::Mesh& mesh) {
-  geom::Mesh out;
-  out.vertices = mesh.vertices;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middle;
-  const auto between = [&](std::uint32_t a, std::uint32_t b) {
-    const auto [it, fresh] =
-        middle.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(out.vertices.size()));
-    if (fresh) out.vertices.emplace_back(0.5 * mesh.vertices[a] + 0.5 * mesh.vertices[b]);
-    return it->second;
-  };
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const std::uint32_t x = between(a, b), y = between(b, c), z = between(c, a);
-    out.triangles.insert(out.triangles.end(), {{a, x, z}, {x, b, y}, {z, y, c}, {x, y, z}});
-  }
-  return out;
-}
 
 SurfaceMesh converted(const geom::Mesh& mesh) {
   SurfaceMesh out;

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <kaboum/geom/mesh.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace kaboum::benchmark {
+
+/// User CPU time of this process so far. [s]
+inline double user_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_utime.tv_sec) +
+         1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
+}
+
+/// Largest resident size of this process so far. [MB]
+inline double peak_megabytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+/// Every triangle cut into four at the middles of its edges.
+inline geom::Mesh subdivided(const geom::Mesh& mesh) {
+  geom::Mesh out;
+  out.vertices = mesh.vertices;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middle;
+  const auto between = [&](std::uint32_t a, std::uint32_t b) {
+    const auto [it, fresh] =
+        middle.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(out.vertices.size()));
+    if (fresh) out.vertices.emplace_back(0.5 * mesh.vertices[a] + 0.5 * mesh.vertices[b]);
+    return it->second;
+  };
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const std::uint32_t x = between(a, b), y = between(b, c), z = between(c, a);
+    out.triangles.insert(out.triangles.end(), {{a, x, z}, {x, b, y}, {z, y, c}, {x, y, z}});
+  }
+  return out;
+}
+
+}  // namespace kaboum::benchmark
