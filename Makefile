@@ -1,10 +1,11 @@
 # What a newcomer types; the work is done by scripts/ and CMake.
-.PHONY: help demo build test clean
+.PHONY: help demo build test reproduce clean
 
 help:
 	@echo "make demo    simplify a bracket, check the result, draw it (into demo-output/)"
 	@echo "make build   build everything (into build/release/)"
 	@echo "make test    build everything and run the test suite"
+	@echo "make reproduce  the thesis's figures beside ours, on the models of KABOUM_MESHES (into reproduction/)"
 	@echo "make clean   remove build/ and demo-output/"
 
 demo:
@@ -15,6 +16,9 @@ build:
 
 test:
 	@scripts/test
+
+reproduce:
+	@scripts/reproduce-thesis
 
 clean:
 	rm -rf build demo-output

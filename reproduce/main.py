@@ -1,0 +1,64 @@
+"""Command line of scripts/reproduce-thesis."""
+
+import argparse
+import os
+import pathlib
+import sys
+
+import models
+import report
+from runs import Runner
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+
+
+def arguments(argv):
+    parser = argparse.ArgumentParser(
+        prog="reproduce-thesis",
+        description="Runs the thesis's evaluation of bounding meshes on public models (in $KABOUM_MESHES; without it "
+        "on the project's own) and writes the thesis's figures beside ours: index.html, report.md, CSV and SVG. "
+        "What has been run already is not run again.",
+        epilog="Exit codes: 0 done; 1 some runs gave no result (the report lists them); 2 usage; 3 a model is missing.")
+    parser.add_argument("--quick", action="store_true", help="few models, costs and vertex counts")
+    parser.add_argument("--out", type=pathlib.Path, metavar="DIR", default=ROOT / "reproduction",
+                        help="where results go [reproduction/ in the checkout]")
+    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="runs at a time, one thread each [1]")
+    parser.add_argument("--models", metavar="NAME,...", help="only these models")
+    parser.add_argument("--limit", type=int, default=900, metavar="SECONDS", help="CPU time of a program [900]")
+    parser.add_argument("--programs", type=pathlib.Path, metavar="DIR", default=ROOT / "build/release/bin",
+                        help="folder of the built programs [build/release/bin]")
+    options = parser.parse_args(argv)
+    if options.jobs < 1 or options.limit < 1:
+        parser.error("--jobs and --limit must be at least 1")
+    return parser, options
+
+
+def main(argv):
+    parser, options = arguments(argv)
+    folder = os.environ.get("KABOUM_MESHES")
+    known = models.corpus(folder) if folder else models.own(ROOT)
+    if not folder:
+        print("reproduce-thesis: KABOUM_MESHES is not set: the project's own meshes only", file=sys.stderr)
+    chosen = [m for m in known if m.quick] if options.quick else known
+    if options.models:
+        names = options.models.split(",")
+        unknown = set(names) - {m.name for m in known}
+        if unknown:
+            parser.error(f"unknown model {sorted(unknown)[0]}; there are {', '.join(m.name for m in known)}")
+        chosen = [m for m in known if m.name in names]
+    for model in chosen:
+        if not model.path.is_file():
+            print(f"reproduce-thesis: {model.path} is missing; correct KABOUM_MESHES, or leave the model out "
+                  "with --models", file=sys.stderr)
+            return 3
+    options.out.mkdir(parents=True, exist_ok=True)
+    out = options.out.resolve()
+    runner = Runner(options.programs.resolve(), out / "runs", options.jobs, options.limit)
+    report.make(chosen, runner, out, options.quick)
+    print(f"{out / 'index.html'}: {runner.executed} runs done, {len(runner.results) - runner.executed} kept"
+          + (f", {len(runner.failures)} without a result" if runner.failures else ""))
+    return 1 if runner.failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
