@@ -2,16 +2,18 @@
 // CGAL's Garland–Heckbert edge collapse and meshoptimizer. One thread.
 //
 //   simplifiers [--methods planes,distance-fast,distance,cgal,meshopt] [--ratios 0.05]
-//   [--subdivide]
-//               [--no-distances] [--repeat N] [--csv FILE] [--json FILE] MESH...
+//               [--no-distances] [--repeat N] [--csv FILE] [--json FILE]
+//               MESH... [--subdivided MESH]...
 //
 // Every run has a process of its own, whose user CPU time and peak memory are therefore its own.
 // Repeated runs alternate between the methods; the least time counts. `seconds` is the
 // simplification alone (for ours all of bmesh::decimate, for CGAL edge_collapse without making its
 // mesh), `seconds_all` includes making the method's own mesh and taking the result out.
 // Distances to the prepared input are in percent of the diagonal: maxima certified upper bounds
-// (gap 1 %), means from samples. --subdivide cuts every triangle into four first.
+// (gap 1 %), means from samples. --subdivided cuts every triangle into four first.
 // CGAL's part is GPL: this program is never installed.
+#include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
+#include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/GarlandHeckbert_plane_policies.h>
@@ -42,21 +44,29 @@ using namespace kaboum;  // NOLINT: a program
 using benchmark::peak_megabytes;
 using benchmark::user_seconds;
 using Json = nlohmann::ordered_json;
-using SurfaceMesh = CGAL::Surface_mesh<CGAL::Simple_cartesian<double>::Point_3>;
+using Point = CGAL::Simple_cartesian<double>::Point_3;
+using SurfaceMesh = CGAL::Surface_mesh<Point>;
+constexpr rlim_t kSecondsAllowed = 1800;  // CPU time of a run
 namespace sms = CGAL::Surface_mesh_simplification;
 
+struct Input {
+  std::string file;
+  bool subdivided = false;
+};
+
 struct Options {
-  std::vector<std::string> methods{"planes", "distance-fast", "distance", "cgal", "meshopt"}, files;
+  std::vector<std::string> methods{"planes", "distance-fast", "distance", "cgal", "meshopt"};
+  std::vector<Input> inputs;
   std::vector<double> ratios;
-  bool subdivide = false, distances = true;
+  bool distances = true;
   int repeat = 1;
   std::string csv, json;
 };
 
 struct Result {
   geom::Mesh mesh;
-  double seconds = 0;       // the simplification alone
-  std::size_t refused = 0;  // triangles that the method's mesh cannot hold
+  double seconds = 0;     // the simplification alone
+  std::size_t split = 0;  // vertices added to hold the input
 };
 
 bmesh::DecimateOptions bounding(const std::string& method) {
@@ -85,14 +95,33 @@ Result by_kaboum(const std::string& method, const geom::Prepared& input, std::si
   return result;
 }
 
-/// Garland–Heckbert without constraints (its default policies), until `target` vertices are left.
-Result by_cgal(const geom::Mesh& input, std::size_t target) {
-  Result result;
-  SurfaceMesh mesh;
+/// CGAL's mesh holds manifolds only: where the input is none, vertices are split until it is.
+/// @return how many vertices were added
+std::size_t convert(const geom::Mesh& input, SurfaceMesh& mesh) {
   using Vertex = SurfaceMesh::Vertex_index;
   for (const geom::Vec3& v : input.vertices) mesh.add_vertex({v.x(), v.y(), v.z()});
+  bool manifold = true;
   for (const auto& [a, b, c] : input.triangles)
-    result.refused += mesh.add_face(Vertex(a), Vertex(b), Vertex(c)) == SurfaceMesh::null_face();
+    manifold =
+        manifold && mesh.add_face(Vertex(a), Vertex(b), Vertex(c)) != SurfaceMesh::null_face();
+  if (manifold) return 0;
+  namespace pmp = CGAL::Polygon_mesh_processing;
+  mesh.clear();
+  std::vector<Point> points;
+  for (const geom::Vec3& v : input.vertices) points.emplace_back(v.x(), v.y(), v.z());
+  std::vector<std::vector<std::size_t>> polygons;
+  for (const geom::Triangle& t : input.triangles) polygons.emplace_back(t.begin(), t.end());
+  pmp::orient_polygon_soup(points, polygons);
+  pmp::polygon_soup_to_polygon_mesh(points, polygons, mesh);
+  return mesh.number_of_vertices() - input.vertices.size();
+}
+
+/// Garland–Heckbert without constraints (its default policies), until `target` vertices are left.
+Result by_cgal(const geom::Mesh& input, std::size_t target) {
+  using Vertex = SurfaceMesh::Vertex_index;
+  Result result;
+  SurfaceMesh mesh;
+  result.split = convert(input, mesh);
   const double start = user_seconds();
   const sms::GarlandHeckbert_plane_policies<SurfaceMesh, CGAL::Simple_cartesian<double>> policies(
       mesh);
@@ -158,13 +187,12 @@ void measure_into(Json& row, const geom::Mesh& original, const geom::Mesh& resul
   row["to_original_mean"] = percent * measure::sample_distances(result, *a, 100000, 1).mean.value;
 }
 
-Json run(const Options& o, const std::string& file, const std::string& method, double ratio,
-         bool distances) {
+Json run(const Input& input, const std::string& method, double ratio, bool distances) {
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   geom::PrepareOptions how;
   how.drop_sheets = true;
-  geom::Mesh mesh = io::read_mesh(file).mesh;
-  if (o.subdivide) mesh = benchmark::subdivided(mesh);
+  geom::Mesh mesh = io::read_mesh(input.file).mesh;
+  if (input.subdivided) mesh = benchmark::subdivided(mesh);
   const geom::Prepared p = geom::prepare(mesh, how);
   mesh = {};
   const std::size_t in = p.mesh.vertices.size();
@@ -175,37 +203,38 @@ Json run(const Options& o, const std::string& file, const std::string& method, d
                         : method == "meshopt" ? by_meshopt(p.mesh, target)
                                               : by_kaboum(method, p, target);
   const double all = user_seconds() - before;
-  Json row{
-      {"model", std::filesystem::path(file).stem().string() + (o.subdivide ? "-subdivided" : "")},
-      {"closed", p.closed},
-      {"vertices_in", in},
-      {"triangles_in", p.mesh.triangles.size()},
-      {"method", method},
-      {"ratio", ratio},
-      {"vertices", result.mesh.vertices.size()},
-      {"refused_triangles", result.refused},
-      {"seconds", result.seconds},
-      {"seconds_all", all},
-      {"contractions_per_second",
-       static_cast<double>(in - result.mesh.vertices.size()) / result.seconds},
-      {"peak_megabytes", peak_megabytes()},
-      {"peak_megabytes_read", megabytes}};
+  Json row{{"model", std::filesystem::path(input.file).stem().string() +
+                         (input.subdivided ? "-subdivided" : "")},
+           {"closed", p.closed},
+           {"vertices_in", in},
+           {"triangles_in", p.mesh.triangles.size()},
+           {"method", method},
+           {"ratio", ratio},
+           {"vertices", result.mesh.vertices.size()},
+           {"vertices_split", result.split},
+           {"seconds", result.seconds},
+           {"seconds_all", all},
+           {"contractions_per_second",
+            static_cast<double>(in - result.mesh.vertices.size()) / result.seconds},
+           {"peak_megabytes", peak_megabytes()},
+           {"peak_megabytes_read", megabytes}};
   if (distances) measure_into(row, p.mesh, result.mesh);
   return row;
 }
 
 /// run() in a process of its own.
-Json run_apart(const Options& o, const std::string& file, const std::string& method, double ratio,
-               bool distances) {
+Json run_apart(const Input& input, const std::string& method, double ratio, bool distances) {
   int ends[2];
   if (pipe(ends) != 0) throw Error(ErrorCode::Internal, "no pipe");
   const pid_t child = fork();
   if (child < 0) throw Error(ErrorCode::Internal, "no process");
   if (child == 0) {
     close(ends[0]);
+    const rlimit limit{kSecondsAllowed, kSecondsAllowed};
+    setrlimit(RLIMIT_CPU, &limit);
     Json row;
     try {
-      row = run(o, file, method, ratio, distances);
+      row = run(input, method, ratio, distances);
     } catch (const std::exception& e) {
       row = {{"error", e.what()}};
     }
@@ -224,8 +253,7 @@ Json run_apart(const Options& o, const std::string& file, const std::string& met
   Json row = Json::parse(text, nullptr, false);
   if (row.is_discarded())
     row = {{"error", "the process ended with status " + std::to_string(status)}};
-  if (row.contains("error"))
-    throw Error(ErrorCode::Internal, file + ": " + method + ": " + row["error"].get<std::string>());
+  if (row.contains("error")) row["error"] = method + ": " + row["error"].get<std::string>();
   return row;
 }
 
@@ -243,8 +271,8 @@ Options parse(const std::vector<std::string>& args) {
       o.methods = list(value());
     } else if (args[i] == "--ratios") {
       for (const std::string& r : list(value())) o.ratios.push_back(std::stod(r));
-    } else if (args[i] == "--subdivide") {
-      o.subdivide = true;
+    } else if (args[i] == "--subdivided") {
+      o.inputs.push_back({value(), true});
     } else if (args[i] == "--no-distances") {
       o.distances = false;
     } else if (args[i] == "--repeat") {
@@ -256,7 +284,7 @@ Options parse(const std::vector<std::string>& args) {
     } else if (args[i].starts_with("--")) {
       throw Error(ErrorCode::InvalidArgument, "unknown option " + args[i]);
     } else {
-      o.files.push_back(args[i]);
+      o.inputs.push_back({args[i]});
     }
   }
   if (o.ratios.empty()) o.ratios = {0.05};
@@ -282,36 +310,48 @@ std::string csv(const Json& rows) {
   return out.str();
 }
 
+/// All methods on one input: the first of the repeated runs, with the least time of all of them.
+/// A method that failed once is not tried again.
+std::vector<Json> compare(const Options& o, const Input& input, double ratio) {
+  std::vector<Json> best(o.methods.size());
+  for (int i = 0; i < o.repeat; ++i) {
+    for (std::size_t m = 0; m < o.methods.size(); ++m) {
+      if (best[m].contains("error")) continue;
+      const Json row = run_apart(input, o.methods[m], ratio, o.distances && i == 0);
+      if (i == 0 || row.contains("error")) best[m] = row;
+      if (row.contains("error")) continue;
+      for (const char* key : {"seconds", "seconds_all"})
+        best[m][key] = std::min(best[m][key].get<double>(), row[key].get<double>());
+      best[m]["contractions_per_second"] =
+          (row["vertices_in"].get<double>() - row["vertices"].get<double>()) /
+          best[m]["seconds"].get<double>();
+      best[m]["repeats"] = i + 1;
+      std::cerr << best[m].dump() << std::endl;
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
   const Options o = parse({argv + 1, argv + argc});
   Json rows = Json::array();
-  for (const std::string& file : o.files) {
+  bool complete = true;
+  for (const Input& input : o.inputs) {
     for (const double ratio : o.ratios) {
-      std::vector<Json> best(o.methods.size());
-      for (int i = 0; i < o.repeat; ++i) {
-        for (std::size_t m = 0; m < o.methods.size(); ++m) {
-          const Json row = run_apart(o, file, o.methods[m], ratio, o.distances && i == 0);
-          if (i == 0) best[m] = row;
-          for (const char* key : {"seconds", "seconds_all"})
-            best[m][key] = std::min(best[m][key].get<double>(), row[key].get<double>());
-        }
-      }
-      for (Json& row : best) {
-        row["contractions_per_second"] =
-            (row["vertices_in"].get<double>() - row["vertices"].get<double>()) /
-            row["seconds"].get<double>();
-        row["repeats"] = o.repeat;
-        std::cerr << row.dump() << std::endl;
-        rows.push_back(row);
+      for (const Json& row : compare(o, input, ratio)) {
+        if (!row.contains("error")) rows.push_back(row);
+        if (!row.contains("error")) continue;
+        complete = false;
+        std::cerr << input.file << ": " << row["error"].get<std::string>() << '\n';
       }
     }
   }
   std::cout << csv(rows);
   if (!o.csv.empty()) std::ofstream(o.csv) << csv(rows);
   if (!o.json.empty()) std::ofstream(o.json) << rows.dump(1) << '\n';
-  return 0;
+  return complete ? 0 : 1;
 } catch (const std::exception& e) {
   std::cerr << "simplifiers: " << e.what() << '\n';
   return 2;

@@ -50,7 +50,8 @@ class Document:
             elif kind == "table":
                 header, rows, numeric = block
                 rule = ["---:" if right else "---" for right in numeric]
-                out.append("\n".join("| " + " | ".join(line) + " |" for line in [header, rule, *rows]))
+                lines = [[cell.replace("|", "\\|") for cell in line] for line in (header, rule, *rows)]
+                out.append("\n".join("| " + " | ".join(line) + " |" for line in lines))
             else:
                 out.append(f"![{block[1]}]({os.path.relpath(block[0], folder)})")
         return "\n\n".join(out) + "\n"

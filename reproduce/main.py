@@ -18,7 +18,7 @@ def arguments(argv):
         description="Runs the thesis's evaluation of bounding meshes on public models (in $KABOUM_MESHES; without it "
         "on the project's own) and writes the thesis's figures beside ours: index.html, report.md, CSV and SVG. "
         "What has been run already is not run again.",
-        epilog="Exit codes: 0 done; 1 some runs gave no result (the report lists them); 2 usage; 3 a model is missing.")
+        epilog="Exit codes: 0 done; 1 some runs gave no result (the report lists them); 2 usage; 3 a model or a program is missing.")
     parser.add_argument("--quick", action="store_true", help="few models, costs and vertex counts")
     parser.add_argument("--out", type=pathlib.Path, metavar="DIR", default=ROOT / "reproduction",
                         help="where results go [reproduction/ in the checkout]")
@@ -50,6 +50,10 @@ def main(argv):
         if not model.path.is_file():
             print(f"reproduce-thesis: {model.path} is missing; correct KABOUM_MESHES, or leave the model out "
                   "with --models", file=sys.stderr)
+            return 3
+    for name in ("bmesh-decimate", "hausdorff-eval", "mesh-picture"):
+        if not (options.programs / name).is_file():
+            print(f"reproduce-thesis: {options.programs / name} is missing; scripts/build makes it", file=sys.stderr)
             return 3
     options.out.mkdir(parents=True, exist_ok=True)
     out = options.out.resolve()

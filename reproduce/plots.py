@@ -7,6 +7,7 @@ import subprocess
 # Wong's colours, told apart by the colour-blind too.
 COLOURS = {"planes": "#0072b2", "planes-adapted": "#e69f00", "planes-diagonal": "#cc79a7",
            "triangles": "#009e73", "distance": "#000000"}
+LARGEST = 30  # percent of the diagonal: spikes beyond it would squeeze everything else
 POINTS = {"planes": 4, "planes-adapted": 6, "planes-diagonal": 8, "triangles": 10, "distance": 7}
 
 
@@ -17,22 +18,28 @@ class Curve:
     thesis: bool = False
 
 
+def _quoted(text):
+    return "'" + text.replace("'", "''") + "'"
+
+
 def available():
     return shutil.which("gnuplot") is not None
 
 
 def distance_plot(path, panels):
-    """Writes `path` (.svg) and the gnuplot script beside it. `panels`: two rows of two
-    (title, label of the vertical axis, curves)."""
+    """Writes `path` (.svg) and the gnuplot script beside it.
+
+    `panels`: rows of two (title, label of the vertical axis, curves).
+    """
     script = [
         f"set terminal svg size 1040,{40 + 430 * (len(panels) // 2)} enhanced font 'sans-serif,13'"
         " background '#ffffff'",
         f"set output '{path.name}'",
         f"set multiplot layout {len(panels) // 2},2",
         "set logscale xy",
-        "set grid xtics ytics mxtics mytics lc rgb '#c8c8c8' lw 0.6, lc rgb '#ececec' lw 0.4",
+        "set grid xtics ytics mxtics mytics lc rgb '#b0b0b0' lw 0.6, lc rgb '#dddddd' lw 0.4",
         "set format y '%g %%'", "set format x '%.0f'", "set xlabel 'vertices'",
-        "set tics font ',11'", "set key top right font ',11' samplen 2.5 spacing 1.1",
+        "set tics font ',11'", "set key bottom left Left reverse font ',11' samplen 3 spacing 1.1",
     ]
     every = [n for _, _, curves in panels for curve in curves for n, _ in curve.points]
     script.append(f"set xrange [{min(every) / 1.25:g}:{max(every) * 1.25:g}]")
@@ -40,12 +47,13 @@ def distance_plot(path, panels):
              min(every) / 1.25 <= n <= max(every) * 1.25]
     script.append("set xtics (" + ", ".join(f"'{n:,}' {n}" for n in ticks) + ")")
     for number, (title, label, curves) in enumerate(panels):
-        values = [y for curve in curves for _, y in curve.points if y > 0]
-        if not values:
+        if not curves:
             script.append("set multiplot next")
             continue
-        script += [f"set title '{title}' noenhanced", f"set ylabel '{label}'",
-                   f"set yrange [{min(values) / 1.5:g}:{max(values) * 1.5:g}]"]
+        row = panels[number - number % 2:][:2]  # the same axis for outer and inner
+        values = [y for _, _, beside in row for curve in beside for _, y in curve.points if y > 0]
+        script += [f"set title {_quoted(title)} noenhanced", f"set ylabel {_quoted(label)}",
+                   f"set yrange [{min(values) / 1.5:g}:{min(max(values) * 1.5, LARGEST):g}]"]
         drawn = []
         for i, curve in enumerate(curves):
             block = f"$data_{number}_{i}"

@@ -1,0 +1,150 @@
+"""Tests of reproduce/, with the real programs on the project's bracket.
+
+    python3 reproduce_test.py FOLDER-OF-PROGRAMS
+"""
+
+import contextlib
+import csv
+import io
+import os
+import pathlib
+import re
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(ROOT / "reproduce"))
+sys.dont_write_bytecode = True
+
+import main  # noqa: E402
+import models  # noqa: E402
+import report  # noqa: E402
+import thesis  # noqa: E402
+from document import Document  # noqa: E402
+from runs import Run, Runner  # noqa: E402
+
+PROGRAMS = pathlib.Path(sys.argv.pop(1)).resolve()
+BRACKET = models.own(ROOT)[0]
+
+
+class Thesis(unittest.TestCase):
+    def test_both_tables_agree_where_they_print_the_same_runs(self):
+        outer = {(r.model, r.vertices): r.mm for r in thesis.table_4_2() if r.direction == "outer"}
+        again = {(r.model, r.vertices): r.mm for r in thesis.table_b_1() if r.cost == "planes-adapted"}
+        self.assertEqual(outer, again)
+        self.assertEqual(len(outer), 12)
+
+    def test_vertices_within(self):
+        rows = [r for r in thesis.table_4_2() if (r.model, r.direction) == ("COMAU", "outer")]
+        n = thesis.vertices_within(rows, 1)
+        self.assertTrue(11000 < n < 11500, n)  # the text: "roughly 11,000 vertices needed"
+        self.assertEqual(thesis.vertices_within(rows, 100), 2500)
+        self.assertIsNone(thesis.vertices_within(rows, 1e-6))
+        # On a line of the table: that line.
+        self.assertEqual(thesis.vertices_within(rows, rows[1].percent["hausdorff"]), 10000)
+
+
+class Runs(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def execute(self, run):
+        runner = Runner(PROGRAMS, self.folder)
+        with contextlib.redirect_stderr(io.StringIO()):
+            runner.run_all([run, run])
+        return runner
+
+    def test_second_run_is_kept_and_damage_is_noticed(self):
+        run = Run(BRACKET, "outer", "planes", vertices=300)
+        first = self.execute(run)
+        self.assertEqual((first.executed, first.failures), (1, {}))
+        row = first.results[run]
+        self.assertEqual(row["vertices"], 300)
+        self.assertLess(row["mean"], row["hausdorff_lower"])
+        self.assertLessEqual(row["hausdorff_lower"], row["hausdorff"])
+        second = self.execute(run)
+        self.assertEqual(second.executed, 0)
+        self.assertEqual(second.results[run], row)
+        mesh = pathlib.Path(row["mesh"])
+        for damage in (lambda: mesh.write_bytes(mesh.read_bytes()[:-1]), mesh.unlink,
+                       lambda: (mesh.parent / "distance.json").write_text("{"),
+                       lambda: (mesh.parent / "run.json").write_text("[]")):
+            damage()
+            again = self.execute(run)
+            self.assertEqual(again.executed, 1)
+            self.assertEqual(again.results[run]["hausdorff"], row["hausdorff"])
+        other = self.execute(Run(BRACKET, "outer", "planes", vertices=301))
+        self.assertEqual(other.executed, 1)
+
+    def test_a_failed_run_says_why_and_is_tried_again(self):
+        path = self.folder / "bad.obj"
+        path.write_text("v 0 0 0\nf 1 2 3\n")
+        run = Run(models.Model("bad", "bad", path), "outer", "planes", vertices=10)
+        for _ in range(2):
+            runner = self.execute(run)
+            self.assertEqual(runner.results, {})
+            self.assertIn("bad.obj", runner.failures[run])
+        path.write_bytes(BRACKET.path.read_bytes())
+        limited = Runner(PROGRAMS, self.folder, limit=1)
+        slow = Run(BRACKET, "inner", "distance", epsilon=0.001)
+        original, limited._call = limited._call, None
+
+        def impatient(program, *arguments, **options):
+            limited.limit = 0
+            return original(program, *arguments, **options)
+        limited._call = impatient
+        with contextlib.redirect_stderr(io.StringIO()):
+            limited.run_all([slow])
+        self.assertIn("CPU limit", limited.failures[slow])
+
+
+class Report(unittest.TestCase):
+    def test_document(self):
+        document = Document("a < b")
+        document.table(["n", "by"], [["1,000", "x | y & z"]])
+        self.assertIn("a &lt; b", document.html())
+        self.assertIn("x | y &amp; z", document.html())
+        self.assertIn("| ---: | --- |", document.markdown("."))
+        self.assertIn(r"x \| y & z", document.markdown("."))
+
+    def test_quick_on_own_mesh(self):
+        series, report.SERIES = report.SERIES, (625,)
+        self.addCleanup(setattr, report, "SERIES", series)
+        meshes = os.environ.pop("KABOUM_MESHES", None)
+        if meshes is not None:
+            self.addCleanup(os.environ.__setitem__, "KABOUM_MESHES", meshes)
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            arguments = ["--quick", "--out", name, "--programs", str(PROGRAMS)]
+            said = io.StringIO()
+            with contextlib.redirect_stderr(io.StringIO()), contextlib.redirect_stdout(said):
+                self.assertEqual(main.main(arguments), 0)
+                self.assertEqual(main.main(arguments), 0)
+            self.assertIn(" 0 runs done", said.getvalue())
+            page = (folder / "index.html").read_text()
+            self.assertIsNone(re.search(r'src="(?!data:)', page))
+            self.assertIn("data:image/png;base64,", page)
+            with open(folder / "results.csv", newline="") as file:
+                rows = list(csv.DictReader(file))
+            # 4 costs and 2 directions to 625 vertices, 2 costs and 2 directions to 1 %.
+            self.assertEqual(len(rows), 12)
+            for row in rows:
+                if row["target_epsilon"]:
+                    self.assertLessEqual(float(row["hausdorff_lower"]), 1)
+                else:
+                    self.assertEqual(row["vertices"], "625")
+
+    def test_errors(self):
+        with contextlib.redirect_stderr(io.StringIO()) as said:
+            with self.assertRaises(SystemExit) as stop:
+                main.main(["--models", "no-such-model"])
+            self.assertEqual(stop.exception.code, 2)
+            self.assertEqual(main.main(["--quick", "--programs", "/nonexistent"]), 3)
+        self.assertIn("no-such-model", said.getvalue())
+
+
+if __name__ == "__main__":
+    unittest.main()
