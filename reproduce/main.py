@@ -18,7 +18,8 @@ def arguments(argv):
         description="Runs the thesis's evaluation of bounding meshes on public models (in $KABOUM_MESHES; without it "
         "on the project's own) and writes the thesis's figures beside ours: index.html, report.md, CSV and SVG. "
         "What has been run already is not run again.",
-        epilog="Exit codes: 0 done; 1 some runs gave no result (the report lists them); 2 usage; 3 a model or a program is missing.")
+        epilog="Exit codes: 0 done; 1 some runs gave no result (the report lists them); 2 usage; "
+        "3 a model or a program is missing.")
     parser.add_argument("--quick", action="store_true", help="few models, costs and vertex counts")
     parser.add_argument("--out", type=pathlib.Path, metavar="DIR", default=ROOT / "reproduction",
                         help="where results go [reproduction/ in the checkout]")

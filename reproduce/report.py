@@ -98,11 +98,11 @@ def robots(context, document):
 def models_section(context, document):
     document.heading("Models")
     document.paragraph(
-        "The robots of the thesis are not public. These are the same makers' robots as far as published, with other "
-        "and coarser tessellations: distances in percent of the diagonal can be compared, if with care; a given "
-        "number of vertices is a milder simplification of a coarser mesh, but a coarser mesh also has sharper "
-        "features to lose. Open meshes bound no solid: enclosure is then certified of the generalised winding number "
-        "only, and bmesh-decimate contracts without global optimisation.")
+        "The robots of the thesis are not public. These are the same makers' robots as far as published, "
+        "with other and coarser tessellations: distances in percent of the diagonal can be compared, if "
+        "with care; a given number of vertices is a milder simplification of a coarser mesh, but a coarser "
+        "mesh also has sharper features to lose. Open meshes bound no solid: enclosure is then certified "
+        "of the generalised winding number only, and bmesh-decimate contracts without global optimisation.")
     rows, printed = [], thesis.diagonals()
     for model in context.models:
         any_run = next((row for run, row in context.runner.results.items() if run.model == model), None)
@@ -120,11 +120,12 @@ def models_section(context, document):
 def table_4_2_section(context, document):
     document.heading("Table 4.2: bounding meshes of robots, outer and inner")
     document.paragraph(
-        "o→a: distances from the original to the approximation, a→o: back; in percent of the diagonal of the "
-        "respective original. The thesis optimises plane distances with adaptation of the constant term "
-        "(planes-adapted). Maxima of ours are certified upper bounds, means come from 100,000 samples a side; all are "
-        "measured against the published file without its inner walls and sheets. All minima are 0, as in the thesis. Counts that are no simplification of our mesh are "
-        "left out. CSV: table-4-2.csv (with the thesis's millimetres).")
+        "o→a: distances from the original to the approximation, a→o: back; in percent of the diagonal of "
+        "the respective original. The thesis optimises plane distances with adaptation of the constant "
+        "term (planes-adapted). Maxima of ours are certified upper bounds, means come from 100,000 samples "
+        "a side; all are measured against the published file without its inner walls and sheets. All "
+        "minima are 0, as in the thesis. Counts that are no simplification of our mesh are left out. CSV: "
+        "table-4-2.csv (with the thesis's millimetres).")
     table, mm = [], thesis.table_4_2()
     for model in robots(context, document):
         document.heading(f"{model.thesis} ({model.title} here)", 3)
@@ -155,9 +156,10 @@ def same_share_section(context, document):
     """Table 4.2 again with the shares of the original's vertices that the thesis's counts are."""
     document.heading("Table 4.2 at the same share of the vertices")
     document.paragraph(
-        "Our robots have fewer vertices than the thesis's, so the same numbers of vertices flatter us. Here the targets "
-        "are the same shares of the original's vertices instead, which is harder than the thesis's: the shapes are about "
-        "as complex, but get far fewer vertices. The truth for the thesis's own meshes lies in between.")
+        "Our robots have fewer vertices than the thesis's, so the same numbers of vertices flatter us. "
+        "Here the targets are the same shares of the original's vertices instead, which is harder than the "
+        "thesis's: the shapes are about as complex, but get far fewer vertices. The truth for the thesis's "
+        "own meshes lies in between.")
     for model in robots(context, document):
         lines = []
         for direction in DIRECTIONS:
@@ -176,14 +178,16 @@ def same_share_section(context, document):
 def table_b_1_section(context, document):
     document.heading("Table B.1: cost functions, outer")
     document.paragraph(
-        "The thesis's costs as we run them (bmesh-decimate --effort fast), each beside the thesis's figures for it, then "
-        "our cost, the measured distance, as bmesh-decimate runs it by default. CSV: table-b-1.csv.")
+        "The thesis's costs as we run them (bmesh-decimate --effort fast), each beside the thesis's "
+        "figures for it, then our cost, the measured distance, as bmesh-decimate runs it by default. CSV: "
+        "table-b-1.csv.")
     table = []
     for model in robots(context, document):
         lines = []
         for n in TABLE_COUNTS:
             for cost in thesis.COSTS.values():
-                for row in (r for r in thesis.table_b_1() if (r.model, r.cost, r.vertices) == (model.thesis, cost, n)):
+                for row in (r for r in thesis.table_b_1()
+                            if (r.model, r.cost, r.vertices) == (model.thesis, cost, n)):
                     lines.append([count(n), f"thesis, {cost}", *distances(row.percent), ""])
                     table.append([model.thesis, n, cost, "thesis", *(row.mm[key] for key in thesis.DISTANCES),
                                   *(row.percent[key] for key in (*thesis.DISTANCES, "hausdorff"))])
@@ -210,8 +214,9 @@ def table_b_1_section(context, document):
 def figures_section(context, document):
     document.heading("Figures B.3–B.7: distance over vertices")
     document.paragraph(
-        "Upper row: Hausdorff distance, certified. Lower row: mean distance, the larger one of both ways. Percent of the "
-        f"diagonal, both axes logarithmic; cut off at {plots.LARGEST} %, where only spikes are. Dotted: the thesis's tables, of its own models.")
+        "Upper row: Hausdorff distance, certified. Lower row: mean distance, the larger one of both ways. "
+        f"Percent of the diagonal, both axes logarithmic; cut off at {plots.LARGEST} %, where only spikes "
+        "are. Dotted: the thesis's tables, of its own models.")
     printed = [*(r for r in thesis.table_4_2() if r.direction == "inner"), *thesis.table_b_1()]
     costs = [c for c in THESIS_COSTS if not context.quick or c != "planes-diagonal"] + [OURS]
     for model in sorted((m for m in context.models if m.figure or not m.robot), key=lambda m: m.figure):
@@ -265,9 +270,10 @@ def pictures_section(context, document):
 def proposition_1_section(context, document):
     document.heading("Proposition 1")
     document.paragraph(
-        "“The bounding mesh algorithm can reduce most robot geometries to an enclosing single-sided approximation at the "
-        "order of 4,000–12,000 vertices within a precision of 1% of the diagonal of the geometry. In relative numbers, "
-        "most triangulations from CAD software can be compressed by a factor of 10–20 at this precision.”")
+        "“The bounding mesh algorithm can reduce most robot geometries to an enclosing single-sided "
+        "approximation at the order of 4,000–12,000 vertices within a precision of 1% of the diagonal of "
+        "the geometry. In relative numbers, most triangulations from CAD software can be compressed by a "
+        "factor of 10–20 at this precision.”")
     lines = []
     for name in thesis.diagonals():
         for direction in DIRECTIONS:
@@ -275,13 +281,14 @@ def proposition_1_section(context, document):
             n, total = thesis.vertices_within(rows, 1), thesis.original_vertices()[name]
             lines.append([name, direction, count(total), count(n) if n else "more than 20,000",
                           f"{total / n:.1f}×" if n else NOTHING])
-    document.paragraph("What the thesis's Table 4.2 says of its own models, read off between its lines (straight on "
-                       "logarithmic axes):")
+    document.paragraph("What the thesis's Table 4.2 says of its own models, read off between its lines "
+                       "(straight on logarithmic axes):")
     document.table(["model", "direction", "vertices", "needed for 1 %", "factor"], lines)
 
-    document.paragraph("Ours: bmesh-decimate --epsilon 1%, as few vertices as a certified 1 % allows, and the certified "
-                       "Hausdorff distance of the result. “Holds” where 12,000 vertices or fewer, and a tenth "
-                       "of the original's or fewer, suffice; meshes of fewer than 4,000 vertices are not counted. CSV: proposition-1.csv.")
+    document.paragraph("Ours: bmesh-decimate --epsilon 1%, as few vertices as a certified 1 % allows, and "
+                       "the certified Hausdorff distance of the result. “Holds” where 12,000 vertices or "
+                       "fewer, and a tenth of the original's or fewer, suffice; meshes of fewer than 4,000 "
+                       "vertices are not counted. CSV: proposition-1.csv.")
     costs = ["planes-adapted", OURS] if context.quick else ["planes", "planes-adapted", OURS]
     lines, factors, needed, table = [], {}, {}, []
     for model in context.models:
@@ -312,10 +319,11 @@ def proposition_1_section(context, document):
     for (cost, direction), values in factors.items():
         mean = _geometric_mean(values)
         document.paragraph(
-            f"{cost}, {direction}: {count(min(needed[cost, direction]))}–{count(max(needed[cost, direction]))} vertices "
-            f"where the thesis says 4,000–12,000; factor {min(values):.1f}–{max(values):.1f}, geometric mean {mean:.1f}, "
-            f"over {len(values)} model{'s'[:len(values) > 1]}, at least 10 on {sum(v >= 10 for v in values)}, where the "
-            "thesis says 10–20.")
+            f"{cost}, {direction}: "
+            f"{count(min(needed[cost, direction]))}–{count(max(needed[cost, direction]))} vertices where "
+            f"the thesis says 4,000–12,000; factor {min(values):.1f}–{max(values):.1f}, geometric mean "
+            f"{mean:.1f}, over {len(values)} model{'s'[:len(values) > 1]}, at least 10 on "
+            f"{sum(v >= 10 for v in values)}, where the thesis says 10–20.")
     if not context.collecting:
         written(context.folder / "proposition-1.csv", ["model", "direction", "cost", "vertices_in", "vertices",
                                                        "factor", "hausdorff_percent", "verdict"], table)
@@ -330,10 +338,10 @@ def _geometric_mean(values):
 
 def resources_section(context, document):
     document.heading("Speed and memory")
-    document.paragraph("The thesis: about 10,000 contractions per second on a 2.8 GHz desktop and 25 MB for each 10,000 "
-                       "input vertices. Ours: one thread, user CPU time of the decimation without reading and "
-                       "measuring, peak memory of the whole process, at the smallest number of vertices of each series. "
-                       "Times on a shared machine are upper bounds.")
+    document.paragraph("The thesis: about 10,000 contractions per second on a 2.8 GHz desktop and 25 MB "
+                       "for each 10,000 input vertices. Ours: one thread, user CPU time of the decimation "
+                       "without reading and measuring, peak memory of the whole process, at the smallest "
+                       "number of vertices of each series. Times on a shared machine are upper bounds.")
     lines = []
     costs = ("planes", "planes-adapted", "triangles", OURS)
     for model in (m for m in context.models if m.figure or not m.robot):
@@ -365,8 +373,9 @@ def make(models, runner, folder, quick):
 
     document = Document("Figures of the thesis, reproduced" + (" (quick)" if quick else ""))
     document.paragraph(
-        "Bounding meshes after A. Gaschler, Efficient Geometric Predicates for Integrated Task and Motion Planning: the "
-        "figures that the thesis prints beside those of this build of KABouM. Written by scripts/reproduce-thesis.")
+        "Bounding meshes after A. Gaschler, Efficient Geometric Predicates for Integrated Task and Motion "
+        "Planning: the figures that the thesis prints beside those of this build of KABouM. Written by "
+        "scripts/reproduce-thesis.")
     for section in sections:
         section(context, document)
     if runner.failures:
