@@ -47,14 +47,13 @@ class Context:
 
 
 def figure(value):
-    """Four significant digits from 1 on, three below (six decimals at most), never powers of ten."""
+    """Four significant digits from 1 on, three below, at most six decimals, never powers of ten."""
     if value == 0:
         return "0"
     if value >= 1000:
         return f"{value:.0f}"
-    if value >= 1:
-        return f"{value:.4g}"
-    return f"{value:.{min(6, 2 - math.floor(math.log10(max(value, 1e-9))))}f}"
+    digits = 3 if value >= 1 else 2
+    return f"{value:.{min(6, digits - math.floor(math.log10(value)))}f}"
 
 
 def count(n):
