@@ -9,6 +9,8 @@ find_package(nlohmann_json 3.11 REQUIRED CONFIG)
 find_package(CLI11 2.1 REQUIRED CONFIG)
 find_package(PNG REQUIRED)
 find_package(tinyxml2 REQUIRED CONFIG)
+find_package(console_bridge REQUIRED CONFIG)
+find_package(urdfdom REQUIRED CONFIG)
 
 # CGAL's Kernel and number types (LGPL) only; its mesh packages are GPL and stay out of the libraries.
 set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)

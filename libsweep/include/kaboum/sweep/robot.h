@@ -1,0 +1,84 @@
+#pragma once
+
+#include <kaboum/sweep/transform.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kaboum::sweep {
+
+enum class JointType { Fixed, Revolute, Prismatic };
+
+/// A shape fixed to a link.
+struct Geometry {
+  enum class Shape { Mesh, Box, Cylinder, Sphere };
+  Shape shape = Shape::Box;
+  Transform origin;  ///< from the shape's frame to the link's
+  /// Mesh: scale of its coordinates. Box: lengths of the edges. Cylinder: radius, length along z.
+  /// Sphere: radius. [length, or a factor]
+  Vec3 size = Vec3::Ones();
+  std::string mesh;  ///< file or URI, as the robot's file states it
+};
+
+struct Link {
+  std::string name;
+  std::vector<Geometry> collision, visual;
+};
+
+/// Connects a link to its parent: pose of the link = pose of the parent · origin · motion, where
+/// the motion turns about (moves along) `axis` by multiplier · q[variable] + offset.
+struct Joint {
+  std::string name;
+  JointType type = JointType::Fixed;
+  std::uint32_t parent = 0;  ///< index of a link
+  Transform origin;
+  Vec3 axis = Vec3::UnitZ();   ///< of unit length, in the joint's frame
+  std::uint32_t variable = 0;  ///< not for fixed joints; shared by joints that mimic one another
+  double multiplier = 1, offset = 0;
+};
+
+/// A degree of freedom, and its limits. [rad or length]
+struct Variable {
+  std::string name;  ///< of the joint
+  std::optional<double> lower, upper;
+};
+
+/// A tree of links. Link 0 is the root; joints[i] moves links[i + 1], whose parent comes before it.
+struct Robot {
+  std::string name;
+  std::vector<Link> links;
+  std::vector<Joint> joints;
+  std::vector<Variable> variables;
+
+  [[nodiscard]] std::optional<std::uint32_t> find_link(std::string_view link_name) const;
+};
+
+/// Checks what Robot promises: indices, finite numbers, unit axes, rotations, limits in order.
+/// @throws Error{InvalidInput} naming the joint or link.
+void require_valid(const Robot& robot);
+
+/// Robot of a URDF document: revolute, continuous, prismatic, fixed and mimicking joints. Variables
+/// are numbered depth first from the root, the joints of one link in the order of their names.
+/// Rotations come from rpy within 40 · 2^-53. Source: <http://wiki.ros.org/urdf/XML>, by urdfdom.
+/// @param name  appears in messages.
+/// @throws Error{InvalidInput} naming the line where known: XML that is not well-formed, planar and
+///   floating joints, several or no roots, loops, links with two parents, mimicry of absent joints,
+///   numbers that are not finite.
+Robot parse_urdf(std::string_view text, const std::string& name);
+
+/// Robot of the Robotics Library: <rlkin> (Denavit–Hartenberg, distal) or <rlmdl>; degrees in the
+/// file. Shapes are not part of these files: links have none.
+/// @throws Error{InvalidInput} naming the line: not well-formed, other joints than revolute,
+///   prismatic and fixed, frames that are not connected to the world.
+Robot parse_rl(std::string_view text, const std::string& name);
+
+/// Points whose hull contains the box, cylinder or sphere: the box's corners, a prism with 32 sides
+/// round the cylinder (0.5 % of the radius), a polytope with 162 corners round the sphere (2 %). In
+/// the link's frame, up to rounding of 100 · 2^-53 of their distance.
+/// @pre shape is not Mesh; sizes are positive.
+std::vector<Vec3> bounding_points(const Geometry& geometry);
+
+}  // namespace kaboum::sweep

@@ -1,0 +1,84 @@
+#include <kaboum/geom/error.h>
+#include <kaboum/sweep/motion.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace kaboum::sweep {
+namespace {
+
+/// Covers the rounding of a few hundred operations on positive numbers.
+constexpr double kUp = 1 + 0x1p-40;
+
+}  // namespace
+
+MotionBounds::MotionBounds(const LinkMotion& motion, std::span<const Vec3> points) {
+  ensure(!points.empty(), "bounds of a body without points");
+  const auto& stages = motion.stages_;
+  // Largest distance from the origin of the moved frame of a stage, and across the last axis.
+  double distance = 0, across = 0;
+  for (const Vec3& p : points) {
+    const Vec3 q = motion.after_ * p;
+    distance = std::max(distance, q.norm());
+    if (!stages.empty()) across = std::max(across, (stages.back().across * q).norm());
+  }
+  double angles = 0;
+  for (std::size_t k = stages.size(); k-- > 0;) {
+    const auto& stage = stages[k];
+    if (stage.revolute) {
+      radius_ = std::max(radius_, across);
+      angles += std::max(std::abs(stage.from), std::abs(stage.to));
+      turn_ += std::abs(stage.delta);
+      if (stage.delta != 0) terms_.push_back({true, across * kUp, std::abs(stage.delta) * kUp});
+    } else {
+      distance += std::max(std::abs(stage.from), std::abs(stage.to));
+      slide_ += std::abs(stage.delta);
+      if (stage.delta != 0) terms_.push_back({false, 0, std::abs(stage.delta) * kUp});
+    }
+    const Vec3& to_origin = stage.before.translation;
+    if (k > 0) across = (stages[k - 1].across * to_origin).norm() + distance;
+    distance += to_origin.norm();
+  }
+  std::reverse(terms_.begin(), terms_.end());
+  extent_ = distance * kUp;
+  radius_ *= kUp;
+  turn_ *= kUp;
+  slide_ *= kUp;
+  relative_error_ = 0x1p-53 * (256 * static_cast<double>(motion.factors_ + 1) + 8 * angles) * kUp;
+}
+
+double MotionBounds::derivative(int n) const {
+  const auto power = [](double x, int e) {
+    double y = 1;
+    for (; e > 0; --e) y *= x;
+    return y;
+  };
+  double sum = 0, turned = 0;
+  for (const Term& t : terms_) {
+    if (t.revolute) {
+      // Expanded, so that all terms are positive: (a + b)^n − a^n = b Σ (a + b)^i a^(n−1−i).
+      double difference = 0;
+      for (int i = 0; i < n; ++i)
+        difference += power(turned + t.delta, i) * power(turned, n - 1 - i);
+      sum += t.radius * t.delta * difference;
+      turned += t.delta;
+    } else {
+      sum += n * t.delta * power(turned, n - 1);
+    }
+  }
+  return sum * kUp;
+}
+
+double MotionBounds::coarse_second_derivative() const {
+  return (radius_ * turn_ * turn_ + 2 * slide_ * turn_) * kUp;
+}
+
+double MotionBounds::error(int n) const {
+  double scale = extent_;
+  for (int i = 0; i < n; ++i) scale *= turn_;
+  double slides = n * slide_;
+  for (int i = 1; i < n; ++i) slides *= turn_;
+  return relative_error_ * (scale + slides) * kUp;
+}
+
+}  // namespace kaboum::sweep

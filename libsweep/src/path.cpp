@@ -1,0 +1,176 @@
+#include <kaboum/geom/error.h>
+#include <kaboum/sweep/kinematics.h>
+#include <kaboum/sweep/path.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace kaboum::sweep {
+namespace {
+
+using Json = nlohmann::json;
+
+[[noreturn]] void fail(const std::string& name, const std::string& what) {
+  throw Error(ErrorCode::InvalidInput, name + ": " + what);
+}
+
+std::vector<std::string> split(std::string_view line) {
+  std::vector<std::string> out;
+  const bool commas = line.find_first_of(",;") != std::string_view::npos;
+  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+  std::string field;
+  bool started = false;
+  for (const char c : line) {
+    if (commas ? c == ',' || c == ';' : blank(c)) {
+      if (commas || started) out.push_back(field);
+      field.clear();
+      started = false;
+    } else if (!blank(c)) {
+      field += c;
+      started = true;
+    }
+  }
+  if (started || (commas && !line.empty())) out.push_back(field);
+  return out;
+}
+
+std::optional<double> number(const std::string& text) {
+  double value = 0;
+  const char* begin = text.data();
+  const char* end = begin + text.size();
+  if (begin != end && *begin == '+') ++begin;
+  const auto [stop, error] = std::from_chars(begin, end, value);
+  if (error != std::errc() || stop != end || begin == end) return std::nullopt;
+  return value;
+}
+
+void append(NamedPath& path, std::vector<double> waypoint, const std::string& name,
+            const std::string& place) {
+  const std::size_t expected =
+      !path.joints.empty()
+          ? path.joints.size()
+          : (path.waypoints.empty() ? waypoint.size() : path.waypoints.front().size());
+  if (waypoint.size() != expected)
+    fail(name, place + ": " + std::to_string(waypoint.size()) + " numbers instead of " +
+                   std::to_string(expected));
+  for (const double x : waypoint)
+    if (!std::isfinite(x)) fail(name, place + ": a number that is not finite");
+  path.waypoints.push_back(std::move(waypoint));
+}
+
+}  // namespace
+
+NamedPath parse_path_csv(std::string_view text, const std::string& name) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  NamedPath path;
+  bool first = true;
+  std::size_t line_number = 0;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    ++line_number;
+    line = line.substr(0, line.find('#'));
+    const std::vector<std::string> fields = split(line);
+    if (fields.empty()) continue;
+    const std::string place = "line " + std::to_string(line_number);
+    std::vector<double> values;
+    std::string bad;
+    for (const std::string& field : fields) {
+      if (const auto value = number(field)) {
+        values.push_back(*value);
+      } else {
+        bad = field;
+      }
+    }
+    if (values.size() < fields.size()) {
+      if (!first) fail(name, place + ": '" + bad.substr(0, 40) + "' is not a number");
+      if (!values.empty())
+        fail(name, place + ": names of joints and numbers in one line ('" + bad.substr(0, 40) +
+                       "' is not a number)");
+      path.joints = fields;
+    } else {
+      append(path, std::move(values), name, place);
+    }
+    first = false;
+  }
+  if (path.waypoints.empty()) fail(name, "no waypoint: write one line of numbers for each");
+  return path;
+}
+
+NamedPath parse_path_json(std::string_view text, const std::string& name) {
+  // Depth is limited before anything is built.
+  const Json json = Json::parse(
+      text, [](int depth, Json::parse_event_t, Json&) { return depth <= 8; }, false);
+  if (json.is_discarded()) fail(name, "not well-formed JSON");
+  NamedPath path;
+  const Json* waypoints = &json;
+  if (json.is_object()) {
+    if (!json.contains("waypoints")) fail(name, "no \"waypoints\"");
+    waypoints = &json["waypoints"];
+    if (json.contains("joints")) {
+      const Json& joints = json["joints"];
+      if (!joints.is_array()) fail(name, "\"joints\" is not a list of names");
+      for (const Json& joint : joints) {
+        if (!joint.is_string()) fail(name, "\"joints\" is not a list of names");
+        path.joints.push_back(joint.get<std::string>());
+      }
+    }
+  }
+  if (!waypoints->is_array()) fail(name, "the waypoints are not a list");
+  for (const Json& row : *waypoints) {
+    const std::string place = "waypoint " + std::to_string(path.waypoints.size() + 1);
+    if (!row.is_array()) fail(name, place + " is not a list of numbers");
+    std::vector<double> values;
+    for (const Json& x : row) {
+      if (!x.is_number()) fail(name, place + " is not a list of numbers");
+      values.push_back(x.get<double>());
+    }
+    append(path, std::move(values), name, place);
+  }
+  if (path.waypoints.empty()) fail(name, "no waypoint");
+  return path;
+}
+
+Path arrange(const NamedPath& path, const Robot& robot, const std::string& name,
+             bool check_limits) {
+  const std::size_t count = robot.variables.size();
+  std::vector<std::size_t> column(count);
+  if (path.joints.empty()) {
+    if (path.waypoints.front().size() != count)
+      fail(name, std::to_string(path.waypoints.front().size()) + " columns for a robot with " +
+                     std::to_string(count) + " joints; name the joints in the first line");
+    for (std::size_t i = 0; i < count; ++i) column[i] = i;
+  } else {
+    for (const std::string& joint : path.joints) {
+      if (std::count(path.joints.begin(), path.joints.end(), joint) > 1)
+        fail(name, "joint '" + joint + "' is named twice");
+      if (std::none_of(robot.variables.begin(), robot.variables.end(),
+                       [&](const Variable& v) { return v.name == joint; }))
+        fail(name, "the robot has no joint '" + joint +
+                       "' that moves by itself (fixed and mimicking joints have no column)");
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto it = std::find(path.joints.begin(), path.joints.end(), robot.variables[i].name);
+      if (it == path.joints.end())
+        fail(name, "no column for joint '" + robot.variables[i].name + "'");
+      column[i] = static_cast<std::size_t>(it - path.joints.begin());
+    }
+  }
+  Path out;
+  for (const std::vector<double>& row : path.waypoints) {
+    std::vector<double> q(count);
+    for (std::size_t i = 0; i < count; ++i) q[i] = row[column[i]];
+    if (check_limits) {
+      if (const auto bad = find_out_of_limits(robot, q))
+        fail(name, "waypoint " + std::to_string(out.size() + 1) + ": joint '" +
+                       robot.variables[*bad].name + "' is outside its limits");
+    }
+    out.push_back(std::move(q));
+  }
+  return out;
+}
+
+}  // namespace kaboum::sweep

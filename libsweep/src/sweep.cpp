@@ -1,0 +1,190 @@
+#include <kaboum/geom/convex_hull.h>
+#include <kaboum/geom/error.h>
+#include <kaboum/geom/float32.h>
+#include <kaboum/sweep/sweep.h>
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace kaboum::sweep {
+namespace {
+
+constexpr double kUp = 1 + 0x1p-40;
+/// Circumscribed radius of the icosahedron that stands for a unit ball, see enlarge.
+constexpr double kOvershoot = 1.2585;
+
+/// What is known of a body before its hulls are built.
+struct Plan {
+  std::vector<Piece> pieces;
+  double spacing = 0;   // of float32 at the body's reach
+  double rounding = 0;  // most that a vertex is moved by rounding
+};
+
+struct Output {
+  geom::Mesh hull;
+  double deviation = 0, rounding = 0, reach = 0;
+};
+
+/// Largest distance of the body from the root's origin along the path.
+double extent(const Robot& robot, const Body& body, const Path& path) {
+  double most = 0;
+  for (std::size_t i = 0; i == 0 || i + 1 < path.size(); ++i) {
+    const LinkMotion motion(robot, body.link, path[i], path[std::min(i + 1, path.size() - 1)]);
+    most = std::max(most, MotionBounds(motion, body.points).extent());
+  }
+  return most;
+}
+
+std::vector<SharedBounds> shared_bounds(const Robot& robot, std::span<const Body> bodies,
+                                        const Path& path) {
+  std::vector<SharedBounds> out;
+  for (std::size_t i = 0; i == 0 || i + 1 < path.size(); ++i) {
+    SharedBounds shared;
+    for (const Body& body : bodies) {
+      const LinkMotion motion(robot, body.link, path[i], path[std::min(i + 1, path.size() - 1)]);
+      const MotionBounds bounds(motion, body.points);
+      shared.radius = std::max(shared.radius, bounds.radius());
+      shared.turn = std::max(shared.turn, bounds.turn());
+      shared.slide = std::max(shared.slide, bounds.slide());
+    }
+    out.push_back(shared);
+  }
+  return out;
+}
+
+/// Rounds points to float32 and gives the largest move, rounded up.
+double round_points(std::vector<Vec3>& points) {
+  double most = 0;
+  for (Vec3& p : points) {
+    const Vec3 q = geom::to_float32(p);
+    most = std::max(most, (q - p).squaredNorm());
+    p = q;
+  }
+  return std::sqrt(most) * kUp;
+}
+
+/// Hull of float32 points. Those too flat to have one get neighbours in float32.
+/// @return how far the neighbours are away.
+double build(geom::HullBuilder& builder, std::vector<Vec3>& points) {
+  if (builder.build(points)) return 0;
+  const Vec3 p = points.front();
+  const double step = 2 * geom::float32_spacing(p.cwiseAbs().maxCoeff());
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3 q = p;
+    q[axis] = geom::to_float32(q[axis] + step);
+    points.push_back(q);
+  }
+  ensure(builder.build(points), "a flat body cannot be thickened");
+  return 2 * step;
+}
+
+Output make_hull(const Body& body, const Piece& piece, const Plan& plan, bool explicit_margin,
+                 geom::HullBuilder& builder) {
+  std::vector<Vec3> points;
+  points.reserve(2 * body.points.size());
+  for (const Vec3& p : body.points) points.emplace_back(piece.start * p);
+  for (const Vec3& p : body.points) points.emplace_back(piece.finish * p);
+  Output out;
+  out.deviation = (piece.deviation + body.margin) * kUp;
+  out.reach = reach(piece, body.points);
+  if (explicit_margin) {
+    if (builder.build(points)) points = builder.mesh().vertices;
+    const double radius = (out.deviation + plan.rounding) * kUp;
+    points = enlarge(points, radius);
+    out.reach += kOvershoot * radius;
+  }
+  out.rounding = round_points(points);
+  out.reach += out.rounding + build(builder, points);
+  out.hull = builder.mesh();
+  return out;
+}
+
+void require_usable(const Robot& robot, std::span<const Body> bodies, const Path& path,
+                    const SweepOptions& options) {
+  if (!(options.epsilon > 0) || !std::isfinite(options.epsilon))
+    throw Error(ErrorCode::InvalidArgument, "epsilon must be a positive length");
+  if (path.empty()) throw Error(ErrorCode::InvalidArgument, "the path has no waypoint");
+  for (const auto& waypoint : path)
+    if (waypoint.size() != robot.variables.size())
+      throw Error(ErrorCode::InvalidArgument, "a waypoint has not one value per variable");
+  for (const Body& body : bodies) {
+    if (body.link >= robot.links.size() || body.points.empty() || !(body.margin >= 0))
+      throw Error(ErrorCode::InvalidArgument,
+                  "body " + body.name + " has no points, no link or a negative margin");
+    if (body.margin > 0.5 * options.epsilon)
+      throw Error(ErrorCode::InvalidArgument,
+                  "body " + body.name + " has a margin of more than half of epsilon");
+  }
+}
+
+}  // namespace
+
+SweepResult swept_volume(const Robot& robot, std::span<const Body> bodies, const Path& path,
+                         const SweepOptions& options) {
+  require_usable(robot, bodies, path, options);
+  SweepResult result;
+  result.certified = options.rule != StepRule::Baginski;
+  StepOptions steps;
+  steps.rule = options.rule;
+  steps.merge = options.merge;
+  steps.max_reach = options.max_reach;
+  double least_room = options.epsilon;
+  std::vector<Plan> plans(bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    Plan& plan = plans[i];
+    // The ends of a balanced piece lie up to epsilon beyond the poses; explicit margins as well.
+    plan.spacing = geom::float32_spacing(extent(robot, bodies[i], path) + 4 * options.epsilon);
+    plan.rounding = std::numbers::sqrt3 / 2 * plan.spacing * kUp;
+    if (plan.spacing > options.epsilon / 100) {
+      result.stop = SweepStop::TooCoarse;
+      return result;
+    }
+    least_room = std::min(least_room, options.epsilon - bodies[i].margin - plan.rounding);
+  }
+  if (options.rule == StepRule::Uniform || options.rule == StepRule::Baginski)
+    steps.shared = shared_bounds(robot, bodies, path);
+  tbb::parallel_for(std::size_t{0}, bodies.size(), [&](std::size_t i) {
+    StepOptions own = steps;
+    own.deviation =
+        own.shared.empty() ? options.epsilon - bodies[i].margin - plans[i].rounding : least_room;
+    own.deviation *= 1 - 1e-9;  // for the roundings up on the way to the margin
+    plans[i].pieces = choose_steps(robot, bodies[i].link, bodies[i].points, path, own);
+  });
+  std::vector<std::size_t> first(bodies.size() + 1, 0);
+  for (std::size_t i = 0; i < bodies.size(); ++i) first[i + 1] = first[i] + plans[i].pieces.size();
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    result.sources.insert(result.sources.end(), plans[i].pieces.size(), i);
+  std::vector<Output> outputs(first.back());
+  tbb::enumerable_thread_specific<geom::HullBuilder> builders;
+  tbb::parallel_for(std::size_t{0}, outputs.size(), [&](std::size_t k) {
+    const std::size_t i = result.sources[k];
+    outputs[k] = make_hull(bodies[i], plans[i].pieces[k - first[i]], plans[i],
+                           options.explicit_margin, builders.local());
+  });
+  result.of_link.assign(robot.links.size(), 0);
+  double margin = 0, far = 0;
+  for (std::size_t k = 0; k < outputs.size(); ++k) {
+    const std::size_t i = result.sources[k];
+    Output& out = outputs[k];
+    ++result.of_link[bodies[i].link];
+    result.deviation = std::max(result.deviation, out.deviation);
+    result.rounding = std::max(result.rounding, out.rounding);
+    margin = std::max(margin, (out.deviation + out.rounding) * kUp);
+    far = std::max(far, out.reach);
+    result.set.bodies.push_back(
+        {bodies[i].name + " " + std::to_string(k - first[i]), std::move(out.hull)});
+    result.pieces.push_back(plans[i].pieces[k - first[i]]);
+  }
+  if (!options.explicit_margin) {
+    ensure(margin <= options.epsilon || !result.certified, "the margin exceeds epsilon");
+    result.set.margin = margin;
+  }
+  result.reach = (far + result.set.margin) * kUp;
+  return result;
+}
+
+}  // namespace kaboum::sweep

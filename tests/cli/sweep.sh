@@ -1,0 +1,88 @@
+# shellcheck shell=sh disable=SC2154
+. "$(dirname "$0")/common.sh"
+S=$BIN/sweep-approx
+KABOUM_CACHE=$WORK/cache
+export KABOUM_CACHE
+
+# Two turning links and a sliding one; shapes of all kinds, a mesh by package:// and one beside it.
+mkdir -p robots/urdf shapes
+tetrahedron >shapes/t.off
+tetrahedron >robots/urdf/u.off
+cat >robots/urdf/r.urdf <<'END'
+<robot name="r">
+  <link name="base"><collision><geometry><box size="0.2 0.2 0.1"/></geometry></collision></link>
+  <link name="arm"><collision><geometry><mesh filename="package://shapes/t.off" scale="0.2 0.2 0.5"/></geometry></collision></link>
+  <link name="hand">
+    <collision><geometry><cylinder radius="0.05" length="0.2"/></geometry></collision>
+    <collision><geometry><mesh filename="u.off" scale="0.1 -0.1 0.1"/></geometry></collision>
+  </link>
+  <link name="finger"><collision><geometry><sphere radius="0.03"/></geometry></collision></link>
+  <joint name="shoulder" type="revolute"><parent link="base"/><child link="arm"/><axis xyz="0 1 0"/>
+    <limit lower="-2" upper="2" effort="1" velocity="1"/></joint>
+  <joint name="elbow" type="continuous"><parent link="arm"/><child link="hand"/><origin xyz="0 0 0.5"/><axis xyz="0 1 0"/></joint>
+  <joint name="grip" type="prismatic"><parent link="hand"/><child link="finger"/><origin xyz="0 0 0.2"/>
+    <limit lower="0" upper="0.1" effort="1" velocity="1"/></joint>
+</robot>
+END
+R=robots/urdf/r.urdf
+printf 'grip,shoulder,elbow\n0,0,0\n0.1,1,-1\n0,1.5,0\n' >path.csv
+printf '{"joints": ["shoulder", "elbow", "grip"], "waypoints": [[0, 0, 0], [1, -1, 0.1], [1.5, 0, 0]]}' >path.json
+
+expect 0 'Bounds the volume' "$S" --help
+expect 0 'margin' "$S" "$R" --path path.csv --epsilon 0.005 -o a.glb --report a.json --preview a.png --depfile a.d
+for key in '"certified": true' '"hand"' '"margin": 0.00' '"reach"' '"waypoints": 3'; do
+  grep -q "$key" a.json || fail "no $key in the report"
+done
+[ -s a.png ] || fail "no picture"
+grep -q '^a.glb: .*r.urdf.*path.csv.*t.off' a.d || fail "dependency file"
+expect 0 '' "$S" "$R" --path path.json -o b.glb --threads 1 --quiet
+[ ! -s err.txt ] || fail "--quiet is not quiet"
+cmp -s a.glb b.glb || fail "JSON, one thread or the cache give other bytes"
+
+# The start and the end of the path, at rest, are covered.
+printf '1 -1 0.1\n' >pose.csv
+expect 0 '' "$S" "$R" --path pose.csv --links hand -o pose.obj
+expect 0 '' "$S" "$R" --path path.csv --links hand -o swept.obj
+[ "$(grep -c '^o ' pose.obj)" -lt "$(grep -c '^o ' swept.obj)" ] || fail "a pose takes as many bodies as a path"
+
+# Every rule; those after the first need fewer bodies. Baginski's is not certified.
+last=100000
+for bound in uniform subset second-order adaptive balanced; do
+  expect 0 '' "$S" "$R" --path path.csv -o "$bound.obj" --bound "$bound"
+  n=$(grep -c '^o ' "$bound.obj")
+  [ "$n" -le "$last" ] || fail "$bound needs more bodies than the rule before"
+  last=$n
+done
+printf 'shoulder,elbow,grip\n0,0,0\n1,-1,0\n' >turn.csv
+expect 0 'NOT certified' "$S" "$R" --path turn.csv -o baginski.glb --bound baginski --report baginski.json
+grep -q '"certified": false' baginski.json || fail "baginski is called certified"
+expect 2 'revolute' "$S" "$R" --path path.csv -o x.glb --bound baginski
+
+# Margins that are explicit, folders, pipes, limits of reach.
+expect 0 'margin 0' "$S" "$R" --path path.csv -o folder
+expect 0 'margin 0;' "$S" "$R" --path path.csv -o c.glb --explicit-margin
+expect 0 '' "$S" "$R" --path path.csv -o d.glb --max-reach 0.01
+"$S" "$R" --path - --output-format obj -o - --quiet <path.csv >pipe.obj || fail "pipe"
+cmp -s pipe.obj balanced.obj || fail "the pipe gives other bytes"
+
+# Bad input, usage, valid "no".
+sed 's/type="continuous"/type="planar"/' "$R" >planar.urdf
+expect 3 "planar.urdf:1[0-9]*: joint 'elbow': joints of type planar" "$S" planar.urdf --path path.csv -o x.glb
+head -c 300 "$R" >cut.urdf
+expect 3 'cut.urdf' "$S" cut.urdf --path path.csv -o x.glb
+sed 's/t\.off/none.off/' "$R" >robots/urdf/lost.urdf
+expect 3 'package://shapes/none.off' "$S" robots/urdf/lost.urdf --path path.csv -o x.glb
+printf '0 0 0\n3 0 0\n' >limit.csv
+expect 3 "waypoint 2: joint 'shoulder' is outside" "$S" "$R" --path limit.csv -o x.glb
+expect 0 '' "$S" "$R" --path limit.csv -o ignored.glb --ignore-limits
+printf '0 0\n' >narrow.csv
+expect 3 'columns' "$S" "$R" --path narrow.csv -o x.glb
+expect 3 'none.csv' "$S" "$R" --path none.csv -o x.glb
+expect 2 'nothing' "$S" "$R" --path path.csv -o x.glb --links nothing
+expect 2 '' "$S" "$R" --path path.csv -o x.glb --epsilon 0
+expect 2 '' "$S" "$R" --path path.csv -o x.glb --bound best
+expect 2 '' "$S" "$R" --path path.csv
+expect 1 'too coarse' "$S" "$R" --path path.csv -o x.glb --epsilon 1e-6
+expect 4 '' "$S" "$R" --path path.csv -o /nonexistent/dir/x.glb
+absent x.glb
+finish

@@ -1,0 +1,209 @@
+#include <gtest/gtest.h>
+#include <kaboum/geom/convex_hull.h>
+#include <kaboum/geom/error.h>
+#include <kaboum/sweep/kinematics.h>
+
+#include <numbers>
+
+#include "robots.h"
+
+namespace kaboum::test {
+namespace {
+
+const std::string kLinks = "<link name='a'/><link name='b'/><link name='c'/>";
+
+std::string joint(const std::string& name, const std::string& type, const std::string& parent,
+                  const std::string& child, const std::string& inside = "") {
+  return "<joint name='" + name + "' type='" + type + "'><parent link='" + parent +
+         "'/><child link='" + child + "'/><axis xyz='0 0 2'/>" + inside + "</joint>";
+}
+
+std::string robot_of(const std::string& inside) { return "<robot name='r'>" + inside + "</robot>"; }
+
+Robot parse(const std::string& text) { return parse_urdf(text, "r.urdf"); }
+
+std::string message(const std::string& text, bool urdf = true) {
+  try {
+    urdf ? parse_urdf(text, "r.urdf") : parse_rl(text, "r.xml");
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::InvalidInput);
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Urdf, JointsOfAllKinds) {
+  const Robot robot = parse(robot_of(
+      kLinks + "<link name='d'/><link name='e'/>" +
+      joint("j1", "revolute", "a", "b",
+            "<origin xyz='1 2 3' rpy='0 0 1.5707963267948966'/>"
+            "<limit lower='-1' upper='2' effort='1' velocity='1'/>") +
+      joint("j2", "prismatic", "b", "c", "<limit lower='0' upper='1' effort='1' velocity='1'/>") +
+      joint("j3", "continuous", "c", "d", "<mimic joint='j1' multiplier='-2' offset='0.5'/>") +
+      joint("j4", "fixed", "d", "e", "<origin xyz='0 0 1'/>")));
+  ASSERT_EQ(robot.links.size(), 5U);
+  ASSERT_EQ(robot.variables.size(), 2U);
+  EXPECT_EQ(robot.variables[0].name, "j1");
+  EXPECT_EQ(robot.variables[0].lower, -1);
+  EXPECT_EQ(robot.joints[2].variable, 0U);
+  EXPECT_EQ(robot.joints[2].multiplier, -2);
+  EXPECT_EQ(robot.joints[0].axis, Vec3(0, 0, 1));
+  const std::vector<double> q{0.25, 0.75};
+  const std::vector<Transform> poses = forward(robot, q);
+  // j3 turns by −2 · 0.25 + 0.5 = 0.
+  EXPECT_LT((poses[4].translation - Vec3(1, 2, 4.75)).norm(), 1e-15);
+  EXPECT_LT((poses[4].linear - rotation_from_rpy(0, 0, std::numbers::pi / 2 + 0.25)).norm(), 1e-15);
+}
+
+TEST(Urdf, Shapes) {
+  const Robot robot = parse(robot_of(
+      "<link name='a'><collision><origin xyz='0 0 1'/><geometry><box size='1 2 3'/></geometry>"
+      "</collision><collision><geometry><cylinder radius='0.5' length='2'/></geometry></collision>"
+      "<visual><geometry><sphere radius='2'/></geometry></visual>"
+      "<visual><geometry><mesh filename='package://x/y.stl' scale='1 -1 0.001'/></geometry>"
+      "</visual></link>"));
+  const Link& link = robot.links[0];
+  ASSERT_EQ(link.collision.size(), 2U);
+  ASSERT_EQ(link.visual.size(), 2U);
+  EXPECT_EQ(link.collision[0].size, Vec3(1, 2, 3));
+  EXPECT_EQ(link.visual[1].mesh, "package://x/y.stl");
+  EXPECT_EQ(link.visual[1].size, Vec3(1, -1, 0.001));
+  // Polytopes round round shapes: every point of these is inside.
+  const auto cylinder = geom::convex_hull(bounding_points(link.collision[1]));
+  const auto sphere = geom::convex_hull(bounding_points(link.visual[0]));
+  ASSERT_TRUE(cylinder && sphere);
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 d = Vec3(normal(random), normal(random), normal(random)).normalized();
+    EXPECT_EQ(distance_to(*sphere, 2 * d), 0);
+    EXPECT_GT(distance_to(*sphere, 2.05 * d), 0);
+    const Vec3 round = 0.5 * Vec3(d.x(), d.y(), 0).normalized();
+    EXPECT_EQ(distance_to(*cylinder, round + Vec3(0, 0, i % 2 == 0 ? 1 : -0.3)), 0);
+    EXPECT_GT(distance_to(*cylinder, 1.01 * round), 0);
+  }
+}
+
+TEST(Urdf, BadFilesAreRefused) {
+  const std::string limit = "<limit lower='0' upper='1' effort='1' velocity='1'/>";
+  const auto has = [](const std::string& text, const std::string& words) {
+    const std::string got = message(text);
+    EXPECT_NE(got.find(words), std::string::npos) << got;
+    EXPECT_NE(got.find("r.urdf"), std::string::npos) << got;
+  };
+  has("", "XML");
+  has("<robot", "r.urdf:1");
+  has("<mesh/>", "expected <robot>");
+  has(robot_of(""), "r.urdf");
+  has(robot_of("\n" + kLinks + joint("j", "planar", "a", "b")),
+      ":2: joint 'j': joints of type planar");
+  has(robot_of(kLinks + joint("j", "floating", "a", "b")), "floating");
+  has(robot_of(kLinks + joint("j", "spring", "a", "b")), "");
+  has(robot_of(kLinks + joint("j", "fixed", "a", "b") + joint("k", "fixed", "c", "b")), "already");
+  has(robot_of(kLinks + joint("j", "fixed", "a", "b")), "");  // c is alone: two roots
+  has(robot_of(kLinks + joint("j", "fixed", "b", "c") + joint("k", "fixed", "c", "b")),
+      "connected");
+  has(robot_of(kLinks + joint("j", "fixed", "a", "x")), "");
+  has(robot_of(kLinks + joint("j", "revolute", "a", "b") + joint("k", "fixed", "b", "c")), "");
+  has(robot_of(kLinks + joint("j", "continuous", "a", "b", "<mimic joint='z'/>") +
+               joint("k", "fixed", "b", "c")),
+      "does not exist");
+  has(robot_of(kLinks + joint("j", "continuous", "a", "b", "<mimic joint='k'/>") +
+               joint("k", "continuous", "b", "c", "<mimic joint='j'/>")),
+      "circle");
+  has(robot_of(kLinks + joint("j", "continuous", "a", "b", "<mimic joint='k'/>") +
+               joint("k", "fixed", "b", "c")),
+      "fixed");
+  has(robot_of(kLinks +
+               "<joint name='j' type='continuous'><parent link='a'/><child link='b'/>"
+               "<axis xyz='0 0 0'/></joint>" +
+               joint("k", "fixed", "b", "c")),
+      "direction");
+  has(robot_of(kLinks + joint("j", "fixed", "a", "b", "<origin xyz='0 nan 0'/>") +
+               joint("k", "fixed", "b", "c")),
+      "");
+  has(robot_of(kLinks + joint("j", "fixed", "a", "b", "<origin xyz='0 1e999 0'/>") +
+               joint("k", "fixed", "b", "c")),
+      "");
+  has(robot_of("<link name='a'><collision><geometry><box size='1 0 1'/></geometry></collision>"
+               "</link>"),
+      "size");
+  has(robot_of("<link name='a'><collision><geometry><mesh filename='x' scale='1 0 1'/></geometry>"
+               "</collision></link>"),
+      "0");
+  std::string deep = "<robot name='r'>";
+  for (int i = 0; i < 100000; ++i) deep += "<link>";
+  has(deep, "r.urdf");
+  std::string closed = "<robot name='r'>";
+  for (int i = 0; i < 400; ++i) closed += "<x>";
+  for (int i = 0; i < 400; ++i) closed += "</x>";
+  has(closed + "</robot>", "DEPTH");
+  has(std::string("<robot>\0</robot>", 17), "text");
+}
+
+TEST(Urdf, SurvivesGarbage) {
+  // Cut short, and with bytes replaced: an error or a robot, nothing else.
+  const std::string good = robot_of(
+      kLinks +
+      joint("j1", "revolute", "a", "b", "<limit lower='-1' upper='2' effort='1' velocity='1'/>") +
+      joint("j2", "continuous", "b", "c", "<mimic joint='j1'/>"));
+  ASSERT_EQ(message(good), "no error");
+  std::mt19937_64 random(11);
+  for (int i = 0; i < 3000; ++i) {
+    std::string text = good;
+    if (i % 3 == 0) text.resize(random() % text.size());
+    for (int k = 0; k < 3 && !text.empty(); ++k)
+      text[random() % text.size()] = static_cast<char>("<>/'\"= 0-9az&;\n"[random() % 15]);
+    message(text);
+  }
+}
+
+TEST(Rl, BothDescriptionsOfThePuma) {
+  const std::string kin = robot_file("puma560-vrml/unimation-puma560-rlkin.xml");
+  const std::string mdl = robot_file("puma560-vrml/unimation-puma560-rlmdl.xml");
+  if (kin.empty()) GTEST_SKIP() << "needs KABOUM_MESHES";
+  const Robot a = parse_rl(kin, "kin"), b = parse_rl(mdl, "mdl");
+  ASSERT_EQ(a.variables.size(), 6U);
+  EXPECT_NEAR(*a.variables[1].lower, -225 * std::numbers::pi / 180, 1e-15);
+  std::mt19937_64 random(6);
+  for (int trial = 0; trial < 100; ++trial) {
+    const std::vector<double> q = random_path(a, random, 1, 3, false).front();
+    const auto pa = forward(a, q), pb = forward(b, q);
+    for (int l = 0; l <= 6; ++l) {
+      const Transform& x = pa[*a.find_link("link" + std::to_string(l))];
+      const Transform& y = pb[*b.find_link("body" + std::to_string(l))];
+      EXPECT_LT((x.linear - y.linear).norm() + (x.translation - y.translation).norm(), 1e-14);
+    }
+  }
+  // Where the scene draws the links at rest.
+  const auto rest = forward(a, std::vector<double>(6, 0));
+  EXPECT_LT((rest[*a.find_link("link2")].translation - Vec3(0.4318, 0.1291, 0.6604)).norm(), 1e-12);
+  EXPECT_LT((rest[*a.find_link("link4")].translation - Vec3(0.4115, 0.1291, 1.0935)).norm(), 1e-12);
+}
+
+TEST(Rl, BadFilesAreRefused) {
+  const auto has = [](const std::string& text, const std::string& words) {
+    const std::string got = message(text, false);
+    EXPECT_NE(got.find(words), std::string::npos) << got;
+  };
+  const auto of = [](const std::string& inside) { return "<rlkin><x>" + inside + "</x></rlkin>"; };
+  const std::string ends = "<frame><a idref='w'/><b idref='l'/></frame>";
+  const std::string frames = "<world id='w'/><link id='l'/>";
+  EXPECT_EQ(message(of(frames + "<transform id='t'>" + ends + "</transform>"), false), "no error");
+  has("<rlkin>", "XML");
+  has("<rlkin/>", "no kinematics");
+  has("<robot/>", "expected <rlkin>");
+  has(of("<link/>"), "no id");
+  has(of(frames + "<helical id='t'>" + ends + "</helical>"), "<helical>");
+  has(of("<world id='w'/><transform>" + ends + "</transform>"), "'l'");
+  has(of(frames + "<revolute id='t'>" + ends + "<dh><a>1x</a></dh></revolute>"), "'1x'");
+  has(of(frames + "<revolute>" + ends + "</revolute>"), "no id");
+  has(of(frames + "<link id='l'/>"), "exists already");
+  has(of(frames + "<fixed>" + ends + "</fixed><fixed>" + ends + "</fixed>"), "two joints");
+  has(of(frames + "<fixed>" + ends +
+         "</fixed><fixed><frame><a idref='l'/><b idref='w'/></frame></fixed>"),
+      "nothing moves");
+}
+
+}  // namespace
+}  // namespace kaboum::test

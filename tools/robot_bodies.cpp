@@ -1,0 +1,237 @@
+#include "robot_bodies.h"
+
+#include <kaboum/io/convex_io.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+#include <optional>
+
+extern char** environ;
+
+namespace kaboum::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using sweep::Geometry;
+
+bool is_file(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error);
+}
+
+/// Meshes of the Robotics Library's links are named by the scene; here by the links' names.
+void find_meshes(sweep::Robot& robot, const fs::path& folder) {
+  for (sweep::Link& link : robot.links) {
+    std::vector<std::string> names{link.name};
+    if (link.name.starts_with("body")) names.push_back("link" + link.name.substr(4));
+    for (const std::string& name : names) {
+      for (const char* extension : {".wrl", ".stl", ".obj", ".ply", ".off"}) {
+        if (!link.collision.empty() || !is_file(folder / (name + extension))) continue;
+        Geometry g;
+        g.shape = Geometry::Shape::Mesh;
+        g.mesh = name + extension;
+        link.collision.push_back(g);
+        link.visual.push_back(std::move(g));
+      }
+    }
+  }
+}
+
+/// A folder that vanishes with this object.
+class WorkFolder {
+ public:
+  WorkFolder() {
+    std::string name = (fs::temp_directory_path() / "kaboum-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr)
+      throw Error(ErrorCode::OutputFailed, name + ": no temporary folder can be made");
+    path_ = name;
+  }
+  ~WorkFolder() {
+    std::error_code error;
+    fs::remove_all(path_, error);
+  }
+  WorkFolder(const WorkFolder&) = delete;
+  WorkFolder& operator=(const WorkFolder&) = delete;
+  [[nodiscard]] const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+/// The program of that name beside this one, else the one on PATH.
+std::string program(const char* name) {
+  std::error_code error;
+  const fs::path self = fs::read_symlink("/proc/self/exe", error);
+  if (!error && is_file(self.parent_path() / name)) return (self.parent_path() / name).string();
+  return name;
+}
+
+/// Runs a program and waits for it. @return its exit code; 127 when it cannot be run.
+int run_program(std::vector<std::string> arguments,
+                const std::optional<std::string>& extra_variable) {
+  std::vector<char*> argv, environment;
+  for (std::string& a : arguments) argv.push_back(a.data());
+  argv.push_back(nullptr);
+  std::string extra = extra_variable.value_or("");
+  const std::string key = extra.substr(0, extra.find('=') + 1);
+  for (char** e = environ; *e != nullptr; ++e)
+    if (key.empty() || !std::string(*e).starts_with(key)) environment.push_back(*e);
+  if (!extra.empty()) environment.push_back(extra.data());
+  environment.push_back(nullptr);
+  pid_t child = 0;
+  if (posix_spawnp(&child, argv[0], nullptr, nullptr, argv.data(), environment.data()) != 0)
+    return 127;
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0)
+    if (errno != EINTR) return 127;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+}
+
+ErrorCode code_of(int exit_code) {
+  switch (exit_code) {
+    case kBadInput:
+    case kNo:
+      return ErrorCode::InvalidInput;
+    case kUsage:
+      return ErrorCode::InvalidArgument;
+    case kOutputFailed:
+      return ErrorCode::OutputFailed;
+    case kNotBuilt:
+      return ErrorCode::NotBuilt;
+    case kLimit:
+      return ErrorCode::LimitReached;
+    default:
+      return ErrorCode::Internal;
+  }
+}
+
+geom::ConvexSet decompose(const fs::path& mesh, const BodyOptions& options,
+                          const fs::path& result) {
+  std::vector<std::string> command{program("bcd-decompose"),
+                                   mesh.string(),
+                                   "-o",
+                                   result.string(),
+                                   "--epsilon",
+                                   options.epsilon,
+                                   "--max-vertices-per-body",
+                                   std::to_string(options.max_vertices),
+                                   "--effort",
+                                   options.effort,
+                                   "--quiet"};
+  if (options.no_cache) command.emplace_back("--no-cache");
+  std::optional<std::string> variable;
+  if (!options.cache.empty()) variable = "KABOUM_CACHE=" + options.cache;
+  const int code = run_program(command, variable);
+  if (code != kDone && (code != kNo || !is_file(result)))
+    throw Error(code_of(code), mesh.string() + ": its decomposition failed (exit code " +
+                                   std::to_string(code) + " of " + command.front() + ")");
+  if (code == kNo)
+    log(options.quiet, mesh.string() + ": the decomposition does not reach " + options.epsilon);
+  return io::read_convex_set(result);
+}
+
+}  // namespace
+
+RobotFile read_robot(const std::string& path) {
+  RobotFile out;
+  out.path = path;
+  const std::vector<char> bytes = io::read_file(path);
+  out.sha256 = io::sha256(bytes);
+  const std::string_view text(bytes.data(), bytes.size());
+  if (text.find("<rlkin") != std::string_view::npos ||
+      text.find("<rlmdl") != std::string_view::npos) {
+    out.robot = sweep::parse_rl(text, path);
+    find_meshes(out.robot, out.path.parent_path());
+  } else {
+    out.robot = sweep::parse_urdf(text, path);
+  }
+  return out;
+}
+
+fs::path resolve_mesh(const std::string& reference, const fs::path& robot,
+                      const std::vector<std::string>& packages) {
+  const auto fail = [&](const std::string& where) -> fs::path {
+    throw Error(ErrorCode::InvalidInput, robot.string() + ": no mesh file for '" + reference +
+                                             "'; looked for it in " + where);
+  };
+  const fs::path folder = robot.has_parent_path() ? robot.parent_path() : fs::path(".");
+  const std::string file = "file://", package = "package://";
+  if (reference.starts_with(package)) {
+    const fs::path rest = reference.substr(package.size());
+    std::vector<fs::path> places(packages.begin(), packages.end());
+    if (const char* variable = std::getenv("ROS_PACKAGE_PATH")) {
+      std::string list = variable;
+      for (std::size_t begin = 0; begin < list.size();) {
+        const std::size_t end = std::min(list.find(':', begin), list.size());
+        if (end > begin) places.emplace_back(list.substr(begin, end - begin));
+        begin = end + 1;
+      }
+    }
+    std::error_code error;
+    const fs::path start = fs::absolute(folder, error).lexically_normal();
+    for (fs::path up = start;; up = up.parent_path()) {
+      places.push_back(up);
+      if (up == up.root_path() || up.empty()) break;
+    }
+    for (const fs::path& place : places)
+      if (is_file(place / rest)) return place / rest;
+    return fail("--package-path, $ROS_PACKAGE_PATH and the folders above the robot's file");
+  }
+  if (reference.find("://") != std::string::npos && !reference.starts_with(file))
+    return fail("no place: only package:// and file:// are known");
+  fs::path path =
+      reference.starts_with(file) ? fs::path(reference.substr(file.size())) : fs::path(reference);
+  if (path.is_relative()) path = folder / path;
+  return is_file(path) ? path : fail(path.parent_path().string());
+}
+
+LinkBodies bodies_of(const RobotFile& robot, const BodyOptions& options) {
+  for (const std::string& name : options.links)
+    if (!robot.robot.find_link(name))
+      throw Error(ErrorCode::InvalidArgument,
+                  robot.path.string() + ": there is no link '" + name + "'");
+  const WorkFolder work;
+  LinkBodies out;
+  std::map<std::string, geom::ConvexSet> decomposed;
+  for (std::uint32_t l = 0; l < robot.robot.links.size(); ++l) {
+    const sweep::Link& link = robot.robot.links[l];
+    if (!options.links.empty() &&
+        std::find(options.links.begin(), options.links.end(), link.name) == options.links.end())
+      continue;
+    std::size_t number = 0;
+    for (const Geometry& g : options.visual ? link.visual : link.collision) {
+      const auto name = [&] { return link.name + "/" + std::to_string(number++); };
+      if (g.shape != Geometry::Shape::Mesh) {
+        out.bodies.push_back({name(), l, sweep::bounding_points(g), 0});
+        continue;
+      }
+      const fs::path mesh = resolve_mesh(g.mesh, robot.path, options.packages);
+      auto it = decomposed.find(mesh.string());
+      if (it == decomposed.end()) {
+        const fs::path result = work.path() / (std::to_string(decomposed.size()) + ".glb");
+        it = decomposed.emplace(mesh.string(), decompose(mesh, options, result)).first;
+        out.files.push_back(mesh.string());
+      }
+      const geom::ConvexSet& set = it->second;
+      const double scale = g.size.cwiseAbs().maxCoeff();
+      out.epsilon = std::max(out.epsilon, scale * std::max(set.provenance.epsilon, 0.0));
+      for (const geom::ConvexBody& body : set.bodies) {
+        sweep::Body b{name(), l, {}, scale * set.margin};
+        for (const geom::Vec3& p : body.hull.vertices)
+          b.points.emplace_back(g.origin * p.cwiseProduct(g.size));
+        out.bodies.push_back(std::move(b));
+      }
+    }
+  }
+  if (out.bodies.empty())
+    throw Error(ErrorCode::InvalidInput,
+                robot.path.string() + ": no link has a shape" +
+                    (options.visual ? std::string() : "; try --geometry visual"));
+  return out;
+}
+
+}  // namespace kaboum::tools

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <kaboum/geom/error.h>
+#include <kaboum/sweep/sweep.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "cli.h"
+
+/// What the tools that work on robots share: reading them, and the convex bodies of their links.
+namespace kaboum::tools {
+
+/// A robot as read from its file.
+struct RobotFile {
+  sweep::Robot robot;
+  std::filesystem::path path;
+  std::string sha256;
+};
+
+/// Reads URDF, or the Robotics Library's rlkin and rlmdl (told apart by the root element). Links of
+/// the latter get the mesh in the robot's folder that has their name; `bodyN` also that of `linkN`.
+/// @throws Error{InvalidInput}.
+RobotFile read_robot(const std::string& path);
+
+struct BodyOptions {
+  std::vector<std::string> links;     ///< only these; empty: all that have a shape
+  bool visual = false;                ///< shapes for drawing instead of those for collisions
+  std::vector<std::string> packages;  ///< folders that package:// URIs are looked up in
+  std::string epsilon = "1%";         ///< of the decomposition
+  std::size_t max_vertices = 64;
+  std::string effort = "normal";
+  std::string cache;  ///< folder; empty: as bcd-decompose
+  bool no_cache = false;
+  bool quiet = false;
+};
+
+struct LinkBodies {
+  std::vector<sweep::Body> bodies;
+  double epsilon = 0;              ///< largest certified distance of a body from its mesh [length]
+  std::vector<std::string> files;  ///< meshes read
+};
+
+/// Convex bodies of a robot's links: of meshes by the program bcd-decompose beside this one, which
+/// keeps them in its cache; boxes, cylinders and spheres as bounding polytopes.
+/// @throws Error naming the link and the file, which must exist.
+LinkBodies bodies_of(const RobotFile& robot, const BodyOptions& options);
+
+/// The file that a URDF's mesh reference stands for. `package://name/rest` is looked up as
+/// name/rest in the given folders, in $ROS_PACKAGE_PATH, and in all folders above the robot's file.
+/// @throws Error{InvalidInput} saying where it was looked for.
+std::filesystem::path resolve_mesh(const std::string& reference, const std::filesystem::path& robot,
+                                   const std::vector<std::string>& packages);
+
+}  // namespace kaboum::tools

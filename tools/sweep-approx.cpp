@@ -1,0 +1,254 @@
+#include <kaboum/io/convex_io.h>
+#include <kaboum/sweep/path.h>
+
+#include <sstream>
+
+#include "robot_bodies.h"
+#include "sweep_picture.h"
+
+namespace {
+
+using namespace kaboum;
+using tools::Json;
+
+struct Options {
+  std::string robot, path, output, output_format, epsilon = "0.005", bound = "balanced", reach;
+  std::string links, geometry = "collision", unit = "m", preview, depfile;
+  bool explicit_margin = false, no_merge = false, ignore_limits = false;
+  tools::BodyOptions bodies;
+  tools::CommonOptions common;
+};
+
+const std::map<std::string, sweep::StepRule> kRules{
+    {"baginski", sweep::StepRule::Baginski}, {"uniform", sweep::StepRule::Uniform},
+    {"subset", sweep::StepRule::Subset},     {"second-order", sweep::StepRule::SecondOrder},
+    {"adaptive", sweep::StepRule::Adaptive}, {"balanced", sweep::StepRule::Balanced}};
+const std::map<std::string, io::SetFormat> kSetFormats{{"glb", io::SetFormat::Glb},
+                                                       {"obj", io::SetFormat::Obj},
+                                                       {"stl-folder", io::SetFormat::Directory}};
+
+std::string check_length(const std::string& text) {
+  const auto length = tools::parse_length(text);
+  return length && !length->percent ? std::string() : "must be a positive length, as in 0.005";
+}
+
+void describe(CLI::App& app, Options& o) {
+  app.add_option("ROBOT", o.robot, "Robot: URDF, or the Robotics Library's rlkin or rlmdl XML")
+      ->required()
+      ->type_name("FILE");
+  app.add_option("--path", o.path,
+                 "Waypoints in joint space, joined linearly: .csv, one line each, the joints named "
+                 "in the first line or in the robot's order; or .json. Radians and metres")
+      ->required()
+      ->type_name("FILE");
+  app.add_option("-o,--output", o.output,
+                 "Where the bodies go: a .glb container, an .obj with one object per body, or a "
+                 "folder with one STL per body (- for stdout)")
+      ->required()
+      ->type_name("PATH");
+  app.add_option("--epsilon", o.epsilon, "Largest margin round the bodies [0.005]")
+      ->check(check_length)
+      ->type_name("LENGTH");
+  app.add_option("--bound", o.bound,
+                 "How steps are chosen: baginski (not proved), uniform (the thesis's), subset, "
+                 "second-order, adaptive (ends are poses), balanced (fewest) [balanced]")
+      ->check(
+          CLI::IsMember({"baginski", "uniform", "subset", "second-order", "adaptive", "balanced"})
+              .description(""))
+      ->type_name("NAME");
+  app.add_option("--max-reach", o.reach,
+                 "Largest distance of a hull, its margin apart, from what it bounds; takes more "
+                 "bodies [no limit]")
+      ->check(check_length)
+      ->type_name("LENGTH");
+  app.add_flag("--explicit-margin", o.explicit_margin,
+               "Enlarge the bodies by the margin, which then is 0; implied by OBJ and STL");
+  app.add_flag("--no-merge", o.no_merge, "One body at least between two waypoints");
+  app.add_flag("--ignore-limits", o.ignore_limits, "Allow waypoints outside the joints' limits");
+  app.add_option("--links", o.links, "Only these links, separated by commas [all]")
+      ->type_name("A,B");
+  app.add_option("--geometry", o.geometry, "Which shapes of a URDF [collision]")
+      ->check(CLI::IsMember({"collision", "visual"}).description(""))
+      ->type_name("collision|visual");
+  app.add_option("--package-path", o.bodies.packages,
+                 "Folder to look up package:// in, besides $ROS_PACKAGE_PATH and the folders above "
+                 "ROBOT; may be repeated")
+      ->type_name("DIR");
+  app.add_option("--body-epsilon", o.bodies.epsilon,
+                 "Largest distance of the links' convex bodies from their meshes, as for "
+                 "bcd-decompose [1%]")
+      ->check([](const std::string& s) {
+        return tools::parse_length(s) ? std::string() : "must be a positive number or percentage";
+      })
+      ->type_name("LENGTH|P%");
+  app.add_option("--max-vertices-per-body", o.bodies.max_vertices,
+                 "Most vertices of a link's body (8 to 100000)")
+      ->check(CLI::Range(8, 100000).description(""))
+      ->capture_default_str()
+      ->type_name("N");
+  app.add_option("--effort", o.bodies.effort, "Of the decomposition [normal]")
+      ->check(CLI::IsMember({"fast", "normal", "best"}).description(""))
+      ->type_name("fast|normal|best");
+  app.add_option("--from-cache", o.bodies.cache,
+                 "Cache of decompositions, used and filled [as bcd-decompose]")
+      ->type_name("DIR");
+  app.add_flag("--no-cache", o.bodies.no_cache, "Decompose anew and store nothing");
+  app.add_option("--unit", o.unit, "Unit of length, noted in the container")
+      ->capture_default_str()
+      ->type_name("NAME");
+  app.add_option("--preview", o.preview, "Write a picture of the swept volume (PNG)")
+      ->type_name("FILE");
+  app.add_option("--depfile", o.depfile, "Write a Makefile dependency rule")->type_name("FILE");
+  app.add_option("--output-format", o.output_format, "Format of the result [by extension]")
+      ->check(CLI::IsMember({"glb", "obj", "stl-folder"}).description(""))
+      ->type_name("glb|obj|stl-folder");
+  tools::add_common_options(app, o.common);
+  app.footer(
+      "The bodies, enlarged by their margin, contain the links' convex bodies, and these their\n"
+      "meshes, at every configuration of the path (docs/algorithms/swept-volumes.md).\n"
+      "Exit codes: 0 done; 1 float32 is too coarse for epsilon (nothing is written); 2 usage;\n"
+      "3 bad input; 4 output failed; 5 not built; 6 internal error; 7 limit.");
+}
+
+io::SetFormat output_format(const Options& o) {
+  if (!o.output_format.empty()) return kSetFormats.at(o.output_format);
+  if (o.output == "-")
+    throw Error(ErrorCode::InvalidArgument, "--output-format is needed with '-': glb or obj");
+  if (const auto format = io::set_format_from_path(o.output)) return *format;
+  throw Error(ErrorCode::InvalidArgument,
+              o.output +
+                  ": unknown extension; use .glb, .obj or the name of a folder, or give "
+                  "--output-format");
+}
+
+sweep::Path read_path(const Options& o, const sweep::Robot& robot) {
+  const std::vector<char> bytes = io::read_file(o.path);
+  const std::string_view text(bytes.data(), bytes.size());
+  const std::size_t start = text.find_first_not_of(" \t\r\n");
+  const bool json = start != std::string_view::npos && (text[start] == '{' || text[start] == '[');
+  const std::string name = o.path == "-" ? "standard input" : o.path;
+  const sweep::NamedPath path =
+      json ? sweep::parse_path_json(text, name) : sweep::parse_path_csv(text, name);
+  return sweep::arrange(path, robot, name, !o.ignore_limits);
+}
+
+std::vector<std::string> split(const std::string& list) {
+  std::vector<std::string> out;
+  std::istringstream stream(list);
+  for (std::string item; std::getline(stream, item, ',');)
+    if (!item.empty()) out.push_back(item);
+  return out;
+}
+
+std::string parameters(const Options& o, const io::SetFormat format) {
+  std::ostringstream out;
+  out << "--epsilon " << o.epsilon << " --bound " << o.bound << " --body-epsilon "
+      << o.bodies.epsilon << " --max-vertices-per-body " << o.bodies.max_vertices << " --effort "
+      << o.bodies.effort << " --geometry " << o.geometry;
+  if (!o.reach.empty()) out << " --max-reach " << o.reach;
+  if (!o.links.empty()) out << " --links " << o.links;
+  if (o.explicit_margin || format != io::SetFormat::Glb) out << " --explicit-margin";
+  if (o.no_merge) out << " --no-merge";
+  return out.str();
+}
+
+int sweep_path(Options o) {
+  tools::require_apart({{"--output", o.output},
+                        {"--report", o.common.report},
+                        {"--preview", o.preview},
+                        {"--depfile", o.depfile}},
+                       {o.robot, o.path});
+  const tools::ThreadLimit threads(o.common.threads);
+  const io::SetFormat format = output_format(o);
+  if (o.output == "-" && format == io::SetFormat::Directory)
+    throw Error(ErrorCode::InvalidArgument, "a folder cannot be written to stdout; use glb or obj");
+  const tools::RobotFile file = tools::read_robot(o.robot);
+  const sweep::Path path = read_path(o, file.robot);
+  o.bodies.links = split(o.links);
+  o.bodies.visual = o.geometry == "visual";
+  o.bodies.quiet = o.common.quiet;
+  const tools::LinkBodies links = tools::bodies_of(file, o.bodies);
+  sweep::SweepOptions options;
+  options.epsilon = tools::parse_length(o.epsilon)->value;
+  options.rule = kRules.at(o.bound);
+  options.merge = !o.no_merge;
+  options.explicit_margin = o.explicit_margin || format != io::SetFormat::Glb;
+  if (!o.reach.empty()) options.max_reach = tools::parse_length(o.reach)->value;
+  const double before = tools::user_seconds();
+  sweep::SweepResult result = sweep::swept_volume(file.robot, links.bodies, path, options);
+  const double seconds = tools::user_seconds() - before;
+  if (result.stop == sweep::SweepStop::TooCoarse) {
+    tools::log(false, o.robot +
+                          ": float32 is too coarse so far from the origin for this epsilon; allow "
+                          "a larger one. Nothing is written");
+    return tools::kNo;
+  }
+  geom::Provenance& p = result.set.provenance;
+  p.source = file.path.filename().string();
+  p.source_sha256 = file.sha256;
+  p.tool = std::string("sweep-approx ") + tools::version();
+  p.parameters = parameters(o, format);
+  p.unit = o.unit;
+  p.frame = file.robot.links[0].name;
+  if (result.certified) {
+    p.direction = "outer";
+    p.epsilon = (result.reach + links.epsilon) * (1 + 1e-15);
+  }
+  // What is written is read back.
+  const std::vector<char> bytes = io::serialise_convex_set(result.set, io::SetFormat::Glb);
+  const geom::ConvexSet written = io::parse_convex_set(bytes, io::Format::Glb, "the result");
+  ensure(!geom::find_not_convex(written), "a body of the swept volume is not convex");
+  ensure(written.margin == result.set.margin, "the margin does not survive writing");
+  std::ostringstream message;
+  message.precision(3);
+  message << written.bodies.size() << (written.bodies.size() == 1 ? " body" : " bodies") << " for "
+          << links.bodies.size() << " of the robot; margin " << written.margin
+          << "; no point farther than " << result.reach << " from what they sweep";
+  if (!result.certified) message << "; NOT certified: --bound baginski is not proved";
+  tools::log(o.common.quiet, message.str());
+  if (!o.preview.empty())
+    io::write_file(o.preview, tools::picture_of_sweep(file.robot, links.bodies, path, result));
+  if (!o.common.report.empty()) {
+    Json of_link = Json::object();
+    for (std::size_t l = 0; l < file.robot.links.size(); ++l)
+      if (result.of_link[l] > 0) of_link[file.robot.links[l].name] = result.of_link[l];
+    const Json report = {{"tool", p.tool},
+                         {"robot", {{"file", o.robot}, {"sha256", file.sha256}}},
+                         {"path", {{"file", o.path}, {"waypoints", path.size()}}},
+                         {"parameters", p.parameters},
+                         {"certified", result.certified},
+                         {"bodies", written.bodies.size()},
+                         {"bodies_of_links", of_link},
+                         {"bodies_at_rest", links.bodies.size()},
+                         {"margin", written.margin},
+                         {"deviation", result.deviation},
+                         {"rounding", result.rounding},
+                         {"reach", result.reach},
+                         {"bodies_epsilon", links.epsilon},
+                         {"sweep_user_seconds", seconds},
+                         {"user_seconds", tools::user_seconds()},
+                         {"peak_megabytes", tools::peak_megabytes()}};
+    tools::write_json(o.common.report, report);
+  }
+  if (!o.depfile.empty()) {
+    std::vector<std::string> inputs{o.robot, o.path};
+    inputs.insert(inputs.end(), links.files.begin(), links.files.end());
+    tools::write_depfile(o.depfile, o.output, inputs);
+  }
+  if (format == io::SetFormat::Glb) {
+    io::write_file(o.output, bytes);
+  } else {
+    io::write_convex_set(o.output, result.set, format);
+  }
+  return tools::kDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Bounds the volume that a robot sweeps along a path by convex bodies.",
+               "sweep-approx"};
+  Options options;
+  describe(app, options);
+  return tools::run(app, argc, argv, [&] { return sweep_path(options); });
+}

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <kaboum/geom/convex_set.h>
+#include <kaboum/sweep/sweep.h>
+
+#include <span>
+#include <vector>
+
+namespace kaboum::tools {
+
+/// PNG with two panels: the bodies where the path begins (blue) and ends (orange), and the set that
+/// they sweep, one colour per link.
+std::vector<char> picture_of_sweep(const sweep::Robot& robot, std::span<const sweep::Body> bodies,
+                                   const sweep::Path& path, const sweep::SweepResult& result);
+
+}  // namespace kaboum::tools
