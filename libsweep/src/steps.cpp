@@ -226,7 +226,7 @@ class Chooser {
     std::optional<Candidate> best;
     for (int round = 0; round < 200; ++round) {
       const double end = begin + h >= 1 - 1e-12 ? 1 : begin + h;
-      const Candidate c = candidate(i, begin, end, false);
+      Candidate c = candidate(i, begin, end, false);
       double next = predict(c, h, options_.deviation);
       if (allowed(c.piece)) {
         best = c;

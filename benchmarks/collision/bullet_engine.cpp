@@ -1,0 +1,104 @@
+#include <BulletCollision/CollisionDispatch/btGhostObject.h>
+#include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
+#include <BulletCollision/Gimpact/btGImpactShape.h>
+#include <btBulletCollisionCommon.h>
+
+#include <limits>
+
+#include "engine.h"
+
+namespace kaboum::collision {
+namespace {
+
+btVector3 vector_of(const geom::Vec3& v) {
+  return {static_cast<btScalar>(v.x()), static_cast<btScalar>(v.y()), static_cast<btScalar>(v.z())};
+}
+
+/// Convex parts by GJK, triangles of the robot by GImpact, all behind a tree of boxes.
+class BulletEngine : public Engine {
+ public:
+  explicit BulletEngine(const Model& model)
+      : dispatcher_(&configuration_), world_(&dispatcher_, &broadphase_, &configuration_) {
+    btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher_);
+    for (const Part& part : model.robot) {
+      links_.push_back(part.link);
+      robot_.push_back(add(part.mesh, model.convex, model.margin, kRobot, kScene));
+    }
+    for (const geom::Mesh& mesh : model.scene) add(mesh, true, 0, kScene, kRobot);
+  }
+
+  ~BulletEngine() override {
+    for (const auto& object : objects_) world_.removeCollisionObject(object.get());
+  }
+  BulletEngine(const BulletEngine&) = delete;
+  BulletEngine& operator=(const BulletEngine&) = delete;
+
+  void place(const std::vector<sweep::Transform>& poses) override {
+    for (std::size_t i = 0; i < links_.size(); ++i) {
+      const sweep::Transform& pose = poses[links_[i]];
+      btMatrix3x3 basis;
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) basis[r][c] = static_cast<btScalar>(pose.linear(r, c));
+      robot_[i]->setWorldTransform(btTransform(basis, vector_of(pose.translation)));
+    }
+  }
+
+  bool collide() override {
+    world_.performDiscreteCollisionDetection();
+    for (int i = 0; i < dispatcher_.getNumManifolds(); ++i) {
+      const btPersistentManifold* manifold = dispatcher_.getManifoldByIndexInternal(i);
+      for (int k = 0; k < manifold->getNumContacts(); ++k)
+        if (manifold->getContactPoint(k).getDistance() <= 0) return true;
+    }
+    return false;
+  }
+
+  double distance() override { return std::numeric_limits<double>::quiet_NaN(); }
+
+ private:
+  static constexpr int kRobot = 1, kScene = 2;
+
+  btCollisionObject* add(const geom::Mesh& mesh, bool convex, double margin, int group, int mask) {
+    if (convex) {
+      auto shape = std::make_unique<btConvexHullShape>();
+      for (const geom::Vec3& v : mesh.vertices) shape->addPoint(vector_of(v), false);
+      shape->recalcLocalAabb();
+      shape->setMargin(static_cast<btScalar>(margin));
+      shapes_.push_back(std::move(shape));
+    } else {
+      auto triangles = std::make_unique<btTriangleMesh>();
+      for (const geom::Triangle& t : mesh.triangles)
+        triangles->addTriangle(vector_of(mesh.vertices[t[0]]), vector_of(mesh.vertices[t[1]]),
+                               vector_of(mesh.vertices[t[2]]));
+      auto shape = std::make_unique<btGImpactMeshShape>(triangles.get());
+      shape->setMargin(0);
+      shape->updateBound();
+      triangles_.push_back(std::move(triangles));
+      shapes_.push_back(std::move(shape));
+    }
+    auto object = std::make_unique<btCollisionObject>();
+    object->setCollisionShape(shapes_.back().get());
+    object->setWorldTransform(btTransform::getIdentity());
+    world_.addCollisionObject(object.get(), group, mask);
+    objects_.push_back(std::move(object));
+    return objects_.back().get();
+  }
+
+  std::vector<std::unique_ptr<btTriangleMesh>> triangles_;
+  std::vector<std::unique_ptr<btCollisionShape>> shapes_;
+  std::vector<std::unique_ptr<btCollisionObject>> objects_;
+  btDefaultCollisionConfiguration configuration_;
+  btCollisionDispatcher dispatcher_;
+  btDbvtBroadphase broadphase_;
+  btCollisionWorld world_;
+  std::vector<std::uint32_t> links_;
+  std::vector<btCollisionObject*> robot_;
+};
+
+}  // namespace
+
+std::unique_ptr<Engine> make_bullet(const Model& model) {
+  return std::make_unique<BulletEngine>(model);
+}
+
+}  // namespace kaboum::collision
