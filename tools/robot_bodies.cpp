@@ -205,8 +205,12 @@ LinkBodies bodies_of(const RobotFile& robot, const BodyOptions& options) {
     std::size_t number = 0;
     for (const Geometry& g : options.visual ? link.visual : link.collision) {
       const auto name = [&] { return link.name + "/" + std::to_string(number++); };
+      // The points' own rounding where shape and link lie far from one another's origin.
+      const auto rounding = [&](double size) {
+        return 0x1p-46 * (size + g.origin.translation.norm());
+      };
       if (g.shape != Geometry::Shape::Mesh) {
-        out.bodies.push_back({name(), l, sweep::bounding_points(g), 0});
+        out.bodies.push_back({name(), l, sweep::bounding_points(g), rounding(2 * g.size.norm())});
         continue;
       }
       const fs::path mesh = resolve_mesh(g.mesh, robot.path, options.packages);
@@ -221,8 +225,13 @@ LinkBodies bodies_of(const RobotFile& robot, const BodyOptions& options) {
       out.epsilon = std::max(out.epsilon, scale * std::max(set.provenance.epsilon, 0.0));
       for (const geom::ConvexBody& body : set.bodies) {
         sweep::Body b{name(), l, {}, scale * set.margin};
-        for (const geom::Vec3& p : body.hull.vertices)
-          b.points.emplace_back(g.origin * p.cwiseProduct(g.size));
+        double size = 0;
+        for (const geom::Vec3& p : body.hull.vertices) {
+          const geom::Vec3 scaled = p.cwiseProduct(g.size);
+          size = std::max(size, scaled.norm());
+          b.points.emplace_back(g.origin * scaled);
+        }
+        b.margin += rounding(size);
         out.bodies.push_back(std::move(b));
       }
     }

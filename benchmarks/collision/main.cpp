@@ -15,20 +15,22 @@
 
 /// What convex sets buy in collision checking (the thesis's Fig. 4.9): the queries of RRT-Connect
 /// for a six-axis robot that reaches from a window in one wall into a window in the other, replayed
-/// on triangle meshes, on one hull per link, and on bounding sets of convex bodies.
+/// on triangle meshes, on one hull per link, and on bounding sets of convex bodies. The scene fits
+/// a robot that reaches SCALE · 0.9 m. bcd-decompose must be on PATH.
 namespace {
 
 using namespace kaboum;
 using namespace kaboum::collision;
 
-/// Two walls at y = ±0.5 with a window each, as boxes.
-std::vector<geom::Mesh> make_scene() {
+/// Two walls at y = ±0.5 · scale with a window each, as boxes.
+std::vector<geom::Mesh> make_scene(double scale) {
   std::vector<geom::Mesh> boxes;
   const auto add = [&](const geom::Vec3& low, const geom::Vec3& high) {
     std::vector<geom::Vec3> corners;
     for (const double x : {low.x(), high.x()})
       for (const double y : {low.y(), high.y()})
-        for (const double z : {low.z(), high.z()}) corners.emplace_back(x, y, z);
+        for (const double z : {low.z(), high.z()})
+          corners.emplace_back(scale * geom::Vec3(x, y, z));
     boxes.push_back(*geom::convex_hull(corners));
   };
   for (const double y : {-0.5, 0.45}) {
@@ -45,11 +47,11 @@ struct Shapes {
   Model triangles, hulls, sets;
 };
 
-Shapes load(const tools::RobotFile& file, const std::string& epsilon) {
+Shapes load(const tools::RobotFile& file, const std::string& epsilon, double scale) {
   Shapes out;
-  out.triangles = {"triangle meshes", false, 0, {}, make_scene()};
-  out.hulls = {"hulls of links", true, 0, {}, make_scene()};
-  out.sets = {"bounding sets", true, 0, {}, make_scene()};
+  out.triangles = {"triangle meshes", false, 0, {}, make_scene(scale)};
+  out.hulls = {"hulls of links", true, 0, {}, make_scene(scale)};
+  out.sets = {"bounding sets", true, 0, {}, make_scene(scale)};
   for (std::uint32_t l = 1; l < file.robot.links.size(); ++l) {
     geom::Mesh all;
     for (const sweep::Geometry& g : file.robot.links[l].collision) {
@@ -102,8 +104,8 @@ Statistics times_of(const std::vector<std::vector<sweep::Transform>>& queries,
           sorted.back()};
 }
 
-/// A configuration whose last link is behind the window at y = side · 0.5, without collision.
-Configuration reach_through(const sweep::Robot& robot, Engine& engine, double side,
+/// A configuration whose last link is behind the window of one side, without collision.
+Configuration reach_through(const sweep::Robot& robot, Engine& engine, double side, double scale,
                             std::mt19937_64& random) {
   std::uniform_real_distribution<double> value(-3.1, 3.1);
   for (int i = 0; i < 5'000'000; ++i) {
@@ -112,7 +114,8 @@ Configuration reach_through(const sweep::Robot& robot, Engine& engine, double si
     const auto poses = sweep::forward(robot, q);
     const geom::Vec3 hand =
         poses[robot.find_link("tool0").value_or(static_cast<std::uint32_t>(poses.size() - 1))]
-            .translation;
+            .translation /
+        scale;
     if (side * hand.y() < 0.6 || std::abs(hand.x()) > 0.2 || hand.z() < 0.2) continue;
     engine.place(poses);
     if (!engine.collide()) return q;
@@ -120,9 +123,10 @@ Configuration reach_through(const sweep::Robot& robot, Engine& engine, double si
   throw Error(ErrorCode::LimitReached, "no configuration reaches through the window");
 }
 
-int measure(const char* robot_path, std::size_t wanted, const char* csv, const char* epsilon) {
+int measure(const char* robot_path, std::size_t wanted, const char* csv, const char* epsilon,
+            double scale) {
   const tools::RobotFile file = tools::read_robot(robot_path);
-  const Shapes shapes = load(file, epsilon);
+  const Shapes shapes = load(file, epsilon, scale);
   for (const Model* model : {&shapes.triangles, &shapes.hulls, &shapes.sets}) {
     std::size_t vertices = 0;
     for (const Part& part : model->robot) vertices += part.mesh.vertices.size();
@@ -131,8 +135,8 @@ int measure(const char* robot_path, std::size_t wanted, const char* csv, const c
   }
   const auto planner = make_fcl(shapes.sets);
   std::mt19937_64 random(1);
-  const Configuration start = reach_through(file.robot, *planner, 1, random);
-  const Configuration goal = reach_through(file.robot, *planner, -1, random);
+  const Configuration start = reach_through(file.robot, *planner, 1, scale, random);
+  const Configuration goal = reach_through(file.robot, *planner, -1, scale, random);
   std::size_t solved = 0;
   const auto configurations = record_queries(
       start, goal, 3.1,
@@ -211,12 +215,13 @@ int measure(const char* robot_path, std::size_t wanted, const char* csv, const c
 
 int main(int argc, char** argv) {
   if (argc < 2) {
-    std::fprintf(stderr, "usage: collision-benchmark UR5.urdf [QUERIES [TIMES.csv [EPSILON]]]\n");
+    std::fprintf(stderr,
+                 "usage: collision-benchmark ROBOT [QUERIES [TIMES.csv [EPSILON [SCALE]]]]\n");
     return 2;
   }
   try {
-    return measure(argv[1], argc > 2 ? std::stoul(argv[2]) : 10000, argc > 3 ? argv[3] : nullptr,
-                   argc > 4 ? argv[4] : "3%");
+    return measure(argv[1], argc > 2 ? std::stoul(argv[2]) : 3000, argc > 3 ? argv[3] : nullptr,
+                   argc > 4 ? argv[4] : "3%", argc > 5 ? std::stod(argv[5]) : 1);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "collision-benchmark: %s\n", error.what());
     return 1;
