@@ -81,18 +81,21 @@ struct Statistics {
   double mean, p99, most;
 };
 
-/// Per query the fastest of a few runs: other programs of the machine only ever add.
+/// Per query the fastest of a few runs, or the only one when that is slow: other programs of the
+/// machine only ever add.
 Statistics times_of(const std::vector<std::vector<sweep::Transform>>& queries,
                     const std::function<void(const std::vector<sweep::Transform>&)>& query,
                     std::vector<double>& times) {
   times.assign(queries.size(), 1e9);
-  for (int run = 0; run < 4; ++run) {
+  double total = 0;  // microseconds
+  for (int run = 0; run < 4 && total < 5e6; ++run) {
     for (std::size_t i = 0; i < queries.size(); ++i) {
       const auto start = std::chrono::steady_clock::now();
       query(queries[i]);
       const std::chrono::duration<double, std::micro> took =
           std::chrono::steady_clock::now() - start;
       times[i] = std::min(times[i], took.count());
+      total += took.count();
     }
   }
   std::vector<double> sorted = times;
@@ -153,6 +156,7 @@ int measure(const char* robot_path, std::size_t wanted, const char* csv, const c
   std::vector<double> times;
   const auto report = [&](const std::string& library, const Model& model, const Statistics& s,
                           const std::string& more) {
+    std::fflush(stdout);
     std::printf("%-14s %-16s mean %8.2f  p99 %8.2f  max %8.2f us  %s\n", library.c_str(),
                 model.name.c_str(), s.mean, s.p99, s.most, more.c_str());
     for (std::size_t i = 0; out != nullptr && i < times.size(); ++i)

@@ -132,18 +132,19 @@ SweepResult swept_volume(const Robot& robot, std::span<const Body> bodies, const
   steps.rule = options.rule;
   steps.merge = options.merge;
   steps.max_reach = options.max_reach;
-  double least_room = options.epsilon;
   std::vector<Plan> plans(bodies.size());
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    Plan& plan = plans[i];
+  tbb::parallel_for(std::size_t{0}, bodies.size(), [&](std::size_t i) {
     // The ends of a balanced piece lie up to epsilon beyond the poses; explicit margins as well.
-    plan.spacing = geom::float32_spacing(extent(robot, bodies[i], path) + 4 * options.epsilon);
-    plan.rounding = std::numbers::sqrt3 / 2 * plan.spacing * kUp;
-    if (plan.spacing > options.epsilon / 100) {
+    plans[i].spacing = geom::float32_spacing(extent(robot, bodies[i], path) + 4 * options.epsilon);
+    plans[i].rounding = std::numbers::sqrt3 / 2 * plans[i].spacing * kUp;
+  });
+  double least_room = options.epsilon;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (plans[i].spacing > options.epsilon / 100) {
       result.stop = SweepStop::TooCoarse;
       return result;
     }
-    least_room = std::min(least_room, options.epsilon - bodies[i].margin - plan.rounding);
+    least_room = std::min(least_room, options.epsilon - bodies[i].margin - plans[i].rounding);
   }
   if (options.rule == StepRule::Uniform || options.rule == StepRule::Baginski)
     steps.shared = shared_bounds(robot, bodies, path);
