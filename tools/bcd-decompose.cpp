@@ -10,6 +10,7 @@
 
 #include "cli.h"
 #include "set_cache.h"
+#include "set_format.h"
 #include "set_picture.h"
 
 namespace {
@@ -32,9 +33,6 @@ struct Options {
 
 const std::map<std::string, bcd::Effort> kEfforts{
     {"fast", bcd::Effort::Fast}, {"normal", bcd::Effort::Normal}, {"best", bcd::Effort::Best}};
-const std::map<std::string, io::SetFormat> kSetFormats{{"glb", io::SetFormat::Glb},
-                                                       {"obj", io::SetFormat::Obj},
-                                                       {"stl-folder", io::SetFormat::Directory}};
 
 void describe(CLI::App& app, Options& o) {
   app.add_option("INPUT", o.input, "Mesh to decompose (- for stdin)")
@@ -88,9 +86,7 @@ void describe(CLI::App& app, Options& o) {
   app.add_option("--depfile", o.depfile, "Write a Makefile dependency rule")->type_name("FILE");
   app.add_option("--input-format", o.input_format, "Format of INPUT [by extension]")
       ->type_name("NAME");
-  app.add_option("--output-format", o.output_format, "Format of the result [by extension]")
-      ->check(CLI::IsMember({"glb", "obj", "stl-folder"}).description(""))
-      ->type_name("glb|obj|stl-folder");
+  tools::add_set_format_option(app, o.output_format);
   tools::add_common_options(app, o.common);
   app.footer(
       "The union of the bodies contains the solid of INPUT and every one of its triangles; this "
@@ -107,17 +103,6 @@ std::string percent(double length, double diagonal) {
   out.precision(3);
   out << length << " (" << (diagonal > 0 ? 100 * length / diagonal : 0) << " % of the diagonal)";
   return out.str();
-}
-
-io::SetFormat output_format(const Options& o) {
-  if (!o.output_format.empty()) return kSetFormats.at(o.output_format);
-  if (o.output == "-")
-    throw Error(ErrorCode::InvalidArgument, "--output-format is needed with '-': glb or obj");
-  if (const auto format = io::set_format_from_path(o.output)) return *format;
-  throw Error(ErrorCode::InvalidArgument,
-              o.output +
-                  ": unknown extension; use .glb, .obj or the name of a folder, or give "
-                  "--output-format");
 }
 
 /// The options that the result depends on, for the record.
@@ -222,9 +207,7 @@ int decompose(const Options& o) {
                         {"--depfile", o.depfile}},
                        {o.input});
   const tools::ThreadLimit threads(o.common.threads);
-  const io::SetFormat format = output_format(o);
-  if (o.output == "-" && format == io::SetFormat::Directory)
-    throw Error(ErrorCode::InvalidArgument, "a folder cannot be written to stdout; use glb or obj");
+  const io::SetFormat format = tools::set_format_for(o.output, o.output_format);
   const io::Format input_format = tools::format_for(o.input, o.input_format, "--input-format");
   std::vector<char> bytes = io::read_file(o.input);
   const std::string hash = io::sha256(bytes);

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "robot_bodies.h"
+#include "set_format.h"
 #include "sweep_picture.h"
 
 namespace {
@@ -23,9 +24,6 @@ const std::map<std::string, sweep::StepRule> kRules{
     {"baginski", sweep::StepRule::Baginski}, {"uniform", sweep::StepRule::Uniform},
     {"subset", sweep::StepRule::Subset},     {"second-order", sweep::StepRule::SecondOrder},
     {"adaptive", sweep::StepRule::Adaptive}, {"balanced", sweep::StepRule::Balanced}};
-const std::map<std::string, io::SetFormat> kSetFormats{{"glb", io::SetFormat::Glb},
-                                                       {"obj", io::SetFormat::Obj},
-                                                       {"stl-folder", io::SetFormat::Directory}};
 
 std::string check_length(const std::string& text) {
   const auto length = tools::parse_length(text);
@@ -99,26 +97,13 @@ void describe(CLI::App& app, Options& o) {
   app.add_option("--preview", o.preview, "Write a picture of the swept volume (PNG)")
       ->type_name("FILE");
   app.add_option("--depfile", o.depfile, "Write a Makefile dependency rule")->type_name("FILE");
-  app.add_option("--output-format", o.output_format, "Format of the result [by extension]")
-      ->check(CLI::IsMember({"glb", "obj", "stl-folder"}).description(""))
-      ->type_name("glb|obj|stl-folder");
+  tools::add_set_format_option(app, o.output_format);
   tools::add_common_options(app, o.common);
   app.footer(
       "The bodies, enlarged by their margin, contain the links' convex bodies, and these their\n"
       "meshes, at every configuration of the path (docs/algorithms/swept-volumes.md).\n"
       "Exit codes: 0 done; 1 float32 is too coarse for epsilon (nothing is written); 2 usage;\n"
       "3 bad input; 4 output failed; 5 not built; 6 internal error; 7 limit.");
-}
-
-io::SetFormat output_format(const Options& o) {
-  if (!o.output_format.empty()) return kSetFormats.at(o.output_format);
-  if (o.output == "-")
-    throw Error(ErrorCode::InvalidArgument, "--output-format is needed with '-': glb or obj");
-  if (const auto format = io::set_format_from_path(o.output)) return *format;
-  throw Error(ErrorCode::InvalidArgument,
-              o.output +
-                  ": unknown extension; use .glb, .obj or the name of a folder, or give "
-                  "--output-format");
 }
 
 sweep::Path read_path(const Options& o, const sweep::Robot& robot) {
@@ -159,9 +144,7 @@ int sweep_path(Options o) {
                         {"--depfile", o.depfile}},
                        {o.robot, o.path});
   const tools::ThreadLimit threads(o.common.threads);
-  const io::SetFormat format = output_format(o);
-  if (o.output == "-" && format == io::SetFormat::Directory)
-    throw Error(ErrorCode::InvalidArgument, "a folder cannot be written to stdout; use glb or obj");
+  const io::SetFormat format = tools::set_format_for(o.output, o.output_format);
   const tools::RobotFile file = tools::read_robot(o.robot);
   const sweep::Path path = read_path(o, file.robot);
   o.bodies.links = split(o.links);
