@@ -1,5 +1,6 @@
 #include <kaboum/bcd/closure.h>
 #include <kaboum/bcd/decompose.h>
+#include <kaboum/bcd/fill.h>
 #include <kaboum/geom/error.h>
 #include <kaboum/geom/prepare.h>
 #include <kaboum/io/convex_io.h>
@@ -19,10 +20,11 @@ using namespace kaboum;
 using tools::Json;
 
 /// Changes whenever the same options may give another result: cached results are then not found.
-constexpr const char* kAlgorithm = "planes 1";
+constexpr const char* kAlgorithm = "planes 2";
 
 struct Options {
-  std::string input, output, input_format, output_format, epsilon, effort = "normal";
+  std::string input, output, input_format, output_format, epsilon, direction = "outer";
+  std::string effort = "normal";
   std::string unit = "m", frame, preview, depfile;
   std::size_t max_bodies = 0, max_vertices = 64;
   double explode = 0.5;
@@ -62,6 +64,11 @@ void describe(CLI::App& app, Options& o) {
       ->check(CLI::Range(8, 100000).description(""))
       ->capture_default_str()
       ->type_name("N");
+  app.add_option("--direction", o.direction,
+                 "outer: bodies that cover the solid; inner: bodies inside it, which leave out no "
+                 "point deeper than epsilon [outer]")
+      ->check(CLI::IsMember({"outer", "inner"}).description(""))
+      ->type_name("outer|inner");
   app.add_option("--effort", o.effort, "How long to search [normal]")
       ->check(CLI::IsMember({"fast", "normal", "best"}).description(""))
       ->type_name("fast|normal|best");
@@ -93,7 +100,7 @@ void describe(CLI::App& app, Options& o) {
       "is\n"
       "decided exactly on the bytes that are written. An open INPUT is closed by filling its "
       "holes\n"
-      "first.\n"
+      "first. With --direction inner, every body lies inside the solid instead.\n"
       "Exit codes: 0 done; 1 epsilon is not reached, or not with --max-bodies (the best result is\n"
       "written); 2 usage; 3 bad input; 4 output failed; 5 not built; 6 internal error; 7 limit.");
 }
@@ -111,6 +118,7 @@ std::string parameters(const Options& o) {
   if (!o.epsilon.empty() || o.max_bodies == 0)
     out << "--epsilon " << (o.epsilon.empty() ? "1%" : o.epsilon) << ' ';
   if (o.max_bodies > 0) out << "--max-bodies " << o.max_bodies << ' ';
+  if (o.direction != "outer") out << "--direction " << o.direction << ' ';
   out << "--max-vertices-per-body " << o.max_vertices << " --effort " << o.effort;
   if (o.prepare.drop_sheets) out << " --drop-sheets";
   if (o.prepare.require_closed) out << " --require-closed";
@@ -135,12 +143,30 @@ const char* name_of(bcd::Stop stop) {
 /// float32 cannot hold the bodies closely enough: a valid "no", nothing is written.
 struct TooCoarse {};
 
-/// Decomposes, serialises, reads back and decides the cover.
+/// Why a set does not do what it should, decided exactly; empty when it does.
+std::string objection(const Options& o, const geom::Mesh& solid, const geom::ConvexSet& set) {
+  if (o.direction == "outer") {
+    const verify::Cover cover = verify::verify_cover(solid, set);
+    for (const verify::Claim* claim :
+         {&cover.convex, &cover.inclusion.solid, &cover.inclusion.surface})
+      if (claim->answer != verify::Answer::Verified) return claim->reason;
+    return {};
+  }
+  if (geom::find_not_convex(set)) return "a body is not convex";
+  const verify::Inclusion inside = verify::verify_inclusion(verify::sum_of(set), solid);
+  for (const verify::Claim* claim : {&inside.solid, &inside.surface})
+    if (claim->answer != verify::Answer::Verified) return claim->reason;
+  return {};
+}
+
+/// Decomposes, serialises, reads back and decides the claims.
 tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const std::string& hash) {
   tools::Progress progress(o.common.quiet);
+  const bool outer = o.direction == "outer";
   const geom::Prepared prepared = geom::prepare(mesh, o.prepare);
   for (const std::string& note : prepared.notes) tools::log(o.common.quiet, o.input + ": " + note);
   const double diagonal = geom::bounding_box(prepared.mesh).diagonal();
+  const geom::Mesh solid = prepared.closed ? prepared.mesh : bcd::close_holes(prepared.mesh);
   bcd::DecomposeOptions options;
   if (!o.epsilon.empty() || o.max_bodies == 0)
     options.epsilon = tools::parse_length(o.epsilon.empty() ? "1%" : o.epsilon)->of(diagonal);
@@ -150,10 +176,7 @@ tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const s
   options.progress = [&](const bcd::Progress& p) {
     progress.show(p.stage + " " + std::to_string(static_cast<int>(100 * p.fraction)) + " %");
   };
-  bcd::DecomposeResult result = bcd::decompose(prepared, options);
-  if (result.stop == bcd::Stop::TooCoarse) throw TooCoarse{};
   geom::ConvexSet set;
-  set.bodies = std::move(result.bodies);
   geom::Provenance& p = set.provenance;
   p.source = std::filesystem::path(o.input).filename().string();
   p.source_sha256 = hash;
@@ -161,42 +184,54 @@ tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const s
   p.parameters = parameters(o);
   p.unit = o.unit;
   p.frame = o.frame;
-  p.direction = "outer";
-  p.epsilon = result.reach_upper;
-  p.covers_surface = true;
-  p.covers_solid = prepared.closed;
+  p.direction = o.direction;
+  p.covers_surface = outer;
+  p.covers_solid = outer && prepared.closed;
   tools::SetCache::Entry entry;
-  entry.container = io::serialise_convex_set(set, io::SetFormat::Glb);
-  // What is written is what is verified.
-  progress.show("verifying");
-  const geom::ConvexSet written =
-      io::parse_convex_set(entry.container, io::Format::Glb, "the result");
-  const geom::Mesh target = prepared.closed ? prepared.mesh : bcd::close_holes(prepared.mesh);
-  const verify::Cover cover = verify::verify_cover(target, written);
-  if (cover.convex.answer != verify::Answer::Verified ||
-      cover.inclusion.solid.answer != verify::Answer::Verified ||
-      cover.inclusion.surface.answer != verify::Answer::Verified)
-    throw Error(ErrorCode::Internal,
-                o.input + ": the bodies found do not pass the exact check of their cover (" +
-                    cover.convex.reason + cover.inclusion.solid.reason +
-                    cover.inclusion.surface.reason + "); nothing is written");
+  bcd::DecomposeResult result;
+  std::string wrong;
+  // Where the exact check fails, more is allowed for rounding.
+  for (const double safety : {1.0, 64.0, 4096.0}) {
+    options.safety = safety;
+    result = outer ? bcd::decompose(prepared, options) : bcd::fill(prepared, options);
+    if (result.stop == bcd::Stop::TooCoarse) throw TooCoarse{};
+    set.bodies = std::move(result.bodies);
+    p.epsilon = result.reach_upper;
+    entry.container = io::serialise_convex_set(set, io::SetFormat::Glb);
+    // What is written is what is verified.
+    progress.show("verifying");
+    wrong =
+        objection(o, solid, io::parse_convex_set(entry.container, io::Format::Glb, "the result"));
+    if (wrong.empty()) break;
+    tools::log(o.common.quiet, o.input + ": the bodies found do not pass the exact check (" +
+                                   wrong + "); trying with larger allowances for rounding");
+  }
+  if (!wrong.empty())
+    throw Error(ErrorCode::Internal, o.input +
+                                         ": no bodies were found that pass the exact check (" +
+                                         wrong + "); nothing is written");
   const bcd::DecomposeStatistics& s = result.statistics;
-  entry.report = {
-      {"stop", name_of(result.stop)},
-      {"bodies", written.bodies.size()},
-      {"vertices", s.vertices},
-      {"largest_body_vertices", s.largest},
-      {"reach",
-       {{"lower", result.reach_lower},
-        {"upper", result.reach_upper},
-        {"upper_percent", diagonal > 0 ? 100 * result.reach_upper / diagonal : 0.0}}},
-      {"cover",
-       {{"surface", "verified"}, {"solid", prepared.closed ? "verified" : "of the closed mesh"}}},
-      {"closed", prepared.closed},
-      {"filled_triangles", s.filled_triangles},
-      {"pieces", s.leaves},
-      {"diagonal", diagonal},
-      {"notes", prepared.notes}};
+  entry.report = {{"stop", name_of(result.stop)},
+                  {"direction", o.direction},
+                  {"bodies", set.bodies.size()},
+                  {"vertices", s.vertices},
+                  {"largest_body_vertices", s.largest},
+                  {"reach",
+                   {{"lower", result.reach_lower},
+                    {"upper", result.reach_upper},
+                    {"upper_percent", diagonal > 0 ? 100 * result.reach_upper / diagonal : 0.0}}},
+                  {"closed", prepared.closed},
+                  {"filled_triangles", s.filled_triangles},
+                  {"pieces", s.leaves},
+                  {"safety", options.safety},
+                  {"diagonal", diagonal},
+                  {"notes", prepared.notes}};
+  if (outer) {
+    entry.report["cover"] = {{"surface", "verified"},
+                             {"solid", prepared.closed ? "verified" : "of the closed mesh"}};
+  } else {
+    entry.report["inside"] = "verified";
+  }
   return entry;
 }
 
@@ -239,7 +274,9 @@ int decompose(const Options& o) {
              std::to_string(set.bodies.size()) +
                  (set.bodies.size() == 1 ? " body, " : " bodies, ") +
                  std::to_string(report["vertices"].get<std::size_t>()) +
-                 " vertices; cover verified exactly; no point farther from the solid than " +
+                 (o.direction == "outer"
+                      ? " vertices; cover verified exactly; no point farther from the solid than "
+                      : " vertices; inside verified exactly; no point left out deeper than ") +
                  percent(report["reach"]["upper"].get<double>(), diagonal) +
                  (cached ? " (from the cache)" : ""));
   const bool done = report["stop"] == "done";

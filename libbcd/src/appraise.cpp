@@ -31,6 +31,16 @@ Appraisal appraise(std::span<const Vec3> points, const Solid& solid, geom::HullB
   for (const std::uint32_t v : builder.vertices()) box.extend(points[v]);
   const double unit = std::max(1.5 * solid.spacing(), box.diagonal() / density);
   const Vec3 center = box.center();
+  // A point that stands for `share` of the area.
+  const auto sample = [&](const Vec3& p, double share) {
+    const double d = solid.field(p);
+    if (d <= 0) return;
+    out.fourth += share * d * d * d * d;
+    if (d > out.worst) {
+      out.worst = d;
+      out.at = p;
+    }
+  };
   for (const Triangle& t : builder.triangles()) {
     const Vec3 &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];
     const Vec3 ab = b - a, ac = c - a;
@@ -45,12 +55,7 @@ Appraisal appraise(std::span<const Vec3> points, const Solid& solid, geom::HullB
       const Vec3 &p = points[t[k]], &q = points[t[(k + 1) % 3]];
       const int parts = std::clamp(static_cast<int>(std::ceil((q - p).norm() / unit)), 1, 16);
       for (int i = 1; i < 2 * parts; i += 2) {
-        const Vec3 x = p + (0.5 * i / parts) * (q - p);
-        const double d = solid.field(x);
-        if (d > out.worst) {
-          out.worst = d;
-          out.at = x;
-        }
+        sample(p + (0.5 * i / parts) * (q - p), 0);
       }
     }
     // Slivers need few samples across.
@@ -65,14 +70,7 @@ Appraisal appraise(std::span<const Vec3> points, const Solid& solid, geom::HullB
           const double s = (i + (j % 2 == 0 ? 1.0 : 2.0) / 3) / m;
           const int row = j / 2;
           const double r = (row + (j % 2 == 0 ? 1.0 : 2.0) / 3) / m;
-          const Vec3 p = a + s * ab + r * ac;
-          const double d = solid.field(p);
-          if (d <= 0) continue;
-          out.fourth += share * d * d * d * d;
-          if (d > out.worst) {
-            out.worst = d;
-            out.at = p;
-          }
+          sample(a + s * ab + r * ac, share);
         }
       }
     } else {
@@ -91,14 +89,7 @@ Appraisal appraise(std::span<const Vec3> points, const Solid& solid, geom::HullB
       const double share = area / m;
       for (int i = 0; i < m; ++i) {
         const Vec3 base = p0 + ((i + 0.5) / m) * (p1 - p0);
-        const Vec3 p = base + (top - base) / 3;
-        const double d = solid.field(p);
-        if (d <= 0) continue;
-        out.fourth += share * d * d * d * d;
-        if (d > out.worst) {
-          out.worst = d;
-          out.at = p;
-        }
+        sample(base + (top - base) / 3, share);
       }
     }
   }

@@ -2,12 +2,12 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
 
+#include "principal_box.h"
 #include "search.h"
 
 namespace kaboum::bcd {
@@ -29,12 +29,12 @@ Scratch& scratch() {
 
 }  // namespace
 
-CutTree::CutTree(const Solid& solid, const SearchOptions& options)
+CutTree::CutTree(const Solid& solid, const SearchOptions& options, double safety)
     : solid_(solid), options_(options) {
   double magnitude = 0;
   for (const Vec3& p : solid.mesh().vertices)
     magnitude = std::max(magnitude, p.cwiseAbs().maxCoeff());
-  shift_ = 0x1p-36 * magnitude;
+  shift_ = 0x1p-36 * safety * magnitude;
   find_reflex_planes();
   add_leaf(whole(solid), -1);
 }
@@ -200,20 +200,13 @@ double CutTree::score(const Node& node, const Plane& plane) const {
 std::vector<CutTree::Candidate> CutTree::candidates(const Node& node) const {
   std::vector<Candidate> out;
   Box3 box;
-  Vec3 mean = Vec3::Zero();
-  for (const Vec3& p : node.hull) {
-    box.extend(p);
-    mean += p / static_cast<double>(node.hull.size());
-  }
+  for (const Vec3& p : node.hull) box.extend(p);
   const double size = box.diagonal();
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (const Vec3& p : node.hull) covariance += (p - mean) * (p - mean).transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance);
   std::vector<Vec3> directions{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
-  for (int k = 0; k < 3; ++k) {
-    const Vec3 d = eigen.eigenvectors().col(k);
-    if (d.allFinite() && d.cwiseAbs().maxCoeff() < 0.99) directions.push_back(d);
-  }
+  if (const auto principal = principal_box(node.hull))
+    for (int k = 0; k < 3; ++k)
+      if (principal->axes.col(k).cwiseAbs().maxCoeff() < 0.99)
+        directions.emplace_back(principal->axes.col(k));
   for (const Vec3& n : directions) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const Vec3& p : node.hull) {

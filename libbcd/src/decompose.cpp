@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 
+#include "options.h"
 #include "outward.h"
 #include "reach.h"
 #include "search.h"
@@ -53,11 +54,11 @@ class Decomposer {
       : options_(options),
         tuning_(tuning(options.effort)),
         solid_(closed, tuning_.grid, options.epsilon ? 0.3 * *options.epsilon : 0),
-        tree_(solid_, tuning_.search) {
+        tree_(solid_, tuning_.search, options.safety) {
     result_.statistics.filled_triangles = closed.triangles.size() - input.mesh.triangles.size();
     double magnitude = 0;
     for (const Vec3& p : closed.vertices) magnitude = std::max(magnitude, p.cwiseAbs().maxCoeff());
-    point_error_ = 0x1p-40 * magnitude;
+    point_error_ = 0x1p-40 * options.safety * magnitude;
   }
 
   DecomposeResult run() {
@@ -324,21 +325,28 @@ class Decomposer {
 
 }  // namespace
 
-DecomposeResult decompose(const geom::Prepared& input, const DecomposeOptions& options) {
+void require_sound(const DecomposeOptions& options) {
   if (!options.epsilon && !options.max_bodies)
-    throw Error(ErrorCode::InvalidArgument, "decompose: neither epsilon nor max_bodies is given");
+    throw Error(ErrorCode::InvalidArgument, "neither epsilon nor max_bodies is given");
   if (options.epsilon && !(*options.epsilon > 0))
-    throw Error(ErrorCode::InvalidArgument, "decompose: epsilon must be positive");
+    throw Error(ErrorCode::InvalidArgument, "epsilon must be positive");
   if (options.max_bodies && *options.max_bodies == 0)
-    throw Error(ErrorCode::InvalidArgument, "decompose: max_bodies must be at least 1");
+    throw Error(ErrorCode::InvalidArgument, "max_bodies must be at least 1");
   if (options.max_vertices < 8)
-    throw Error(ErrorCode::InvalidArgument, "decompose: fewer than 8 vertices per body");
+    throw Error(ErrorCode::InvalidArgument, "fewer than 8 vertices per body");
+}
+
+bool too_coarse(const Mesh& mesh, const DecomposeOptions& options) {
   double magnitude = 0;
-  for (const Vec3& p : input.mesh.vertices)
-    magnitude = std::max(magnitude, p.cwiseAbs().maxCoeff());
+  for (const Vec3& p : mesh.vertices) magnitude = std::max(magnitude, p.cwiseAbs().maxCoeff());
   const double spacing = geom::float32_spacing(magnitude);
-  const double diagonal = geom::bounding_box(input.mesh).diagonal();
-  if (spacing > 1e-6 * diagonal || (options.epsilon && spacing > 0.01 * *options.epsilon)) {
+  return spacing > 1e-6 * geom::bounding_box(mesh).diagonal() ||
+         (options.epsilon && spacing > 0.01 * *options.epsilon);
+}
+
+DecomposeResult decompose(const geom::Prepared& input, const DecomposeOptions& options) {
+  require_sound(options);
+  if (too_coarse(input.mesh, options)) {
     DecomposeResult coarse;
     coarse.stop = Stop::TooCoarse;
     return coarse;

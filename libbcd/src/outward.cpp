@@ -5,10 +5,11 @@
 #include <kaboum/geom/float32.h>
 #include <kaboum/geom/predicates.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <optional>
+
+#include "principal_box.h"
 
 namespace kaboum::bcd {
 namespace {
@@ -90,29 +91,13 @@ std::vector<Vec3> distinct(std::span<const Vec3> points, const std::vector<Vec3>
 
 /// A float32 box along the principal axes that contains the points, exactly.
 std::optional<geom::Mesh> box_round(std::span<const Vec3> points, double ulp) {
-  Vec3 mean = Vec3::Zero();
-  for (const Vec3& p : points) mean += p / static_cast<double>(points.size());
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (const Vec3& p : points) covariance += (p - mean) * (p - mean).transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance);
-  const Eigen::Matrix3d& axes = eigen.eigenvectors();
-  if (!axes.allFinite()) return std::nullopt;
-  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
-  for (const Vec3& p : points) {
-    const Vec3 q = axes.transpose() * (p - mean);
-    low = low.cwiseMin(q);
-    high = high.cwiseMax(q);
-  }
+  const std::optional<PrincipalBox> box = principal_box(points);
+  if (!box) return std::nullopt;
   geom::HullBuilder builder;
   double margin = 2 * ulp;
   for (int round = 0; round < 12; ++round, margin *= 2) {
-    std::vector<Vec3> corners;
-    corners.reserve(8);
-    for (int i = 0; i < 8; ++i)
-      corners.push_back(geom::to_float32(
-          Vec3(mean + axes * Vec3((i & 1) != 0 ? high.x() + margin : low.x() - margin,
-                                  (i & 2) != 0 ? high.y() + margin : low.y() - margin,
-                                  (i & 4) != 0 ? high.z() + margin : low.z() - margin))));
+    std::vector<Vec3> corners = box->corners(margin);
+    for (Vec3& p : corners) p = geom::to_float32(p);
     if (!builder.build(corners)) continue;
     bool good = true;
     for (const Triangle& t : builder.triangles())

@@ -27,7 +27,8 @@ class CutTree {
     bool stuck = false;  ///< no plane makes it better
   };
 
-  CutTree(const Solid& solid, const SearchOptions& options);
+  /// @param safety  multiplies the overlap of neighbouring pieces.
+  CutTree(const Solid& solid, const SearchOptions& options, double safety = 1);
 
   /// Cuts the leaf with the largest distance. @return false when no leaf can be cut.
   bool cut_worst();

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <queue>
 
+#include "principal_box.h"
+
 namespace kaboum::bcd {
 namespace {
 
@@ -413,29 +415,6 @@ class Contractor {
   mutable std::vector<double> lack_;
 };
 
-/// Corners of a box round the points, along their principal axes.
-std::vector<Vec3> box_round(std::span<const Vec3> points) {
-  Vec3 mean = Vec3::Zero();
-  for (const Vec3& p : points) mean += p / static_cast<double>(points.size());
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (const Vec3& p : points) covariance += (p - mean) * (p - mean).transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance);
-  const Eigen::Matrix3d& axes = eigen.eigenvectors();
-  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
-  for (const Vec3& p : points) {
-    const Vec3 q = axes.transpose() * (p - mean);
-    low = low.cwiseMin(q);
-    high = high.cwiseMax(q);
-  }
-  std::vector<Vec3> out;
-  out.reserve(8);
-  for (int i = 0; i < 8; ++i)
-    out.emplace_back(mean + axes * Vec3((i & 1) != 0 ? high.x() : low.x(),
-                                        (i & 2) != 0 ? high.y() : low.y(),
-                                        (i & 4) != 0 ? high.z() : low.z()));
-  return out;
-}
-
 }  // namespace
 
 Simplified simplify(std::span<const Vec3> hull, std::size_t cap, double free_cost,
@@ -443,16 +422,20 @@ Simplified simplify(std::span<const Vec3> hull, std::size_t cap, double free_cos
   Simplified out;
   out.vertices.assign(hull.begin(), hull.end());
   if (hull.size() <= std::min<std::size_t>(cap, 4)) return out;
+  const auto box_round = [&] {
+    const std::optional<PrincipalBox> box = principal_box(hull);
+    return box ? box->corners() : std::vector<Vec3>(hull.begin(), hull.end());
+  };
   geom::HullBuilder builder;
   if (!builder.build(hull)) {
     // Flat: a box is as good as anything.
-    if (hull.size() > cap) out.vertices = box_round(hull);
+    if (hull.size() > cap) out.vertices = box_round();
     return out;
   }
   const Mesh mesh = builder.mesh();
   Contractor contractor(mesh.vertices, mesh.triangles, solid);
   out.cost = contractor.run(cap, free_cost);
-  out.vertices = contractor.count() <= cap ? contractor.result() : box_round(hull);
+  out.vertices = contractor.count() <= cap ? contractor.result() : box_round();
   return out;
 }
 

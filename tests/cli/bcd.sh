@@ -38,6 +38,11 @@ expect 0 '' "$D" "$BRACKET" -o two.obj --max-bodies 2 --effort fast
 expect 1 'max-bodies' "$D" "$BRACKET" -o few.glb --max-bodies 2 --epsilon 2% --effort fast
 [ -s few.glb ] || fail "the best result was not written"
 
+# Bodies inside.
+expect 0 'inside verified exactly' "$D" "$BRACKET" -o inner.glb --direction inner --epsilon 2% --effort fast --report inner.json
+grep -q '"inside": "verified"' inner.json || fail "no verdict in the report"
+expect 1 'refuted' "$BIN/bound-verify" --cover "$BRACKET" inner.glb
+
 # Valid "no", usage, bad input, output that cannot be written.
 tetrahedron >t.off
 awk 'NR>2 && NR<7 {printf "%.17g %.17g %.17g\n", $1+200000, $2, $3; next} {print}' t.off >far.off
@@ -47,6 +52,7 @@ expect 2 '' "$D" t.off
 expect 2 '' "$D" t.off -o x.glb --epsilon -1
 expect 2 '' "$D" t.off -o x.glb --max-bodies 0
 expect 2 '' "$D" t.off -o x.glb --max-vertices-per-body 7
+expect 2 '' "$D" t.off -o x.glb --direction sideways
 expect 2 'extension' "$D" t.off -o x.step
 expect 2 'output-format' "$D" t.off -o -
 echo 'OFF nonsense' >bad.off

@@ -27,6 +27,9 @@ struct DecomposeOptions {
   std::optional<std::size_t> max_bodies;
   std::size_t max_vertices = 64;  ///< per body, ≥ 8
   Effort effort = Effort::Normal;
+  /// Multiplies what is allowed for rounding (the overlap of pieces, the error of computed points);
+  /// larger where an exact check of the result fails.
+  double safety = 1;
   /// Called now and then, from the calling thread; may throw to cancel.
   std::function<void(const Progress&)> progress;
 };

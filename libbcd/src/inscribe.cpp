@@ -1,0 +1,351 @@
+// After Deits and Tedrake, "Computing large convex regions of obstacle-free space through
+// semidefinite programming" (2015): separating planes in the order of distance, then an ellipsoid,
+// in turn. The ellipsoid here is that of the body's covariance, which needs no optimisation.
+#include "inscribe.h"
+
+#include <kaboum/geom/convex_hull.h>
+#include <kaboum/geom/float32.h>
+#include <kaboum/geom/predicates.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace kaboum::bcd {
+namespace {
+
+using geom::Triangle;
+
+double volume_of(const Cell& cell) {
+  double volume = 0;
+  const Vec3 center = cell.center();
+  for (const auto& face : cell.faces) {
+    const Vec3 a = cell.corners[face[0]] - center;
+    for (std::size_t k = 1; k + 1 < face.size(); ++k)
+      volume += a.dot((cell.corners[face[k]] - center).cross(cell.corners[face[k + 1]] - center));
+  }
+  return std::abs(volume) / 6;
+}
+
+struct Ellipsoid {
+  Vec3 center;
+  Eigen::Matrix3d to_ball;  ///< p ↦ to_ball (p − center)
+};
+
+/// Center of mass and covariance of a hull, scaled to unit determinant.
+std::optional<Ellipsoid> ellipsoid_of(const Mesh& hull) {
+  const Vec3 origin = geom::bounding_box(hull).center();
+  double volume = 0;
+  Vec3 first = Vec3::Zero();
+  Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
+  for (const Triangle& t : hull.triangles) {
+    const Vec3 a = hull.vertices[t[0]] - origin, b = hull.vertices[t[1]] - origin,
+               c = hull.vertices[t[2]] - origin;
+    const double v = a.dot(b.cross(c)) / 6;
+    const Vec3 sum = a + b + c;
+    volume += v;
+    first += v / 4 * sum;
+    second += v / 20 *
+              (a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose());
+  }
+  if (!(volume > 0)) return std::nullopt;
+  const Vec3 mean = first / volume;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(
+      Eigen::Matrix3d(second / volume - mean * mean.transpose()));
+  const Vec3 variance = eigen.eigenvalues().cwiseMax(1e-4 * eigen.eigenvalues().maxCoeff());
+  if (!(variance.minCoeff() > 0) || !eigen.eigenvectors().allFinite()) return std::nullopt;
+  const double scale = std::pow(variance.prod(), 1.0 / 6);
+  Ellipsoid out;
+  out.center = origin + mean;
+  out.to_ball = eigen.eigenvectors() * (scale * variance.cwiseSqrt().cwiseInverse()).asDiagonal() *
+                eigen.eigenvectors().transpose();
+  return out;
+}
+
+/// The cell that planes leave which keep the triangles out, nearest first.
+std::optional<Cell> keep_out(const Mesh& boundary, const Box3& box, const Ellipsoid& e,
+                             const Vec3& seed, double depth, double margin) {
+  struct Obstacle {
+    double distance;
+    std::uint32_t triangle;
+    Vec3 at;  // nearest point, in the ball's space
+  };
+  const Eigen::Matrix3d back = e.to_ball.inverse();
+  std::vector<Vec3> moved;
+  moved.reserve(boundary.vertices.size());
+  for (const Vec3& p : boundary.vertices) moved.emplace_back(e.to_ball * (p - e.center));
+  std::vector<Obstacle> rest;
+  rest.reserve(boundary.triangles.size());
+  for (std::uint32_t i = 0; i < boundary.triangles.size(); ++i) {
+    const Triangle& t = boundary.triangles[i];
+    const Vec3 at = geom::nearest_point(Vec3::Zero(), moved[t[0]], moved[t[1]], moved[t[2]]);
+    rest.push_back({at.norm(), i, at});
+  }
+  std::sort(rest.begin(), rest.end(), [](const Obstacle& a, const Obstacle& b) {
+    return a.distance != b.distance ? a.distance < b.distance : a.triangle < b.triangle;
+  });
+  Cell cell = Cell::of(box);
+  const double touch = 1e-9 * box.diagonal();
+  const auto beyond = [&](const Plane& plane, std::uint32_t i) {
+    for (const std::uint32_t v : boundary.triangles[i])
+      if (plane.height(boundary.vertices[v]) < -touch) return false;
+    return true;
+  };
+  const auto plane_of = [&](std::uint32_t i, Plane& plane) {
+    const Triangle& t = boundary.triangles[i];
+    const Vec3& a = boundary.vertices[t[0]];
+    const Vec3 n = (boundary.vertices[t[1]] - a).cross(boundary.vertices[t[2]] - a);
+    const double length = n.norm();
+    if (!(length > 1e-12 * touch * touch)) return false;
+    plane = {n / length, n.dot(a) / length};
+    if (plane.height(seed) > 0) plane = {-plane.n, -plane.d};
+    return true;
+  };
+  while (!rest.empty()) {
+    const Obstacle nearest = rest.front();
+    double farthest = 0;
+    for (const Vec3& p : cell.corners)
+      farthest = std::max(farthest, (e.to_ball * (p - e.center)).norm());
+    if (nearest.distance > farthest) break;
+    if (!(nearest.distance > 0)) return std::nullopt;
+    // The plane that touches the ellipsoid, or a triangle's own: whichever leaves more.
+    Plane best;
+    best.n = (e.to_ball.transpose() * nearest.at).normalized();
+    best.d = best.n.dot(back * nearest.at + e.center);
+    Cell left = clip(cell, {best.n, best.d - margin}, true, 0);
+    double volume = left.corners.empty() ? 0 : volume_of(left);
+    for (std::size_t k = 0; k < rest.size() && k < 8; ++k) {
+      if (rest[k].distance > nearest.distance * (1 + 1e-6)) break;
+      Plane plane;
+      if (!plane_of(rest[k].triangle, plane)) continue;
+      if (plane.height(seed) > -0.5 * depth || plane.height(e.center) > -margin ||
+          !beyond(plane, nearest.triangle))
+        continue;
+      Cell other = clip(cell, {plane.n, plane.d - margin}, true, 0);
+      const double v = other.corners.empty() ? 0 : volume_of(other);
+      if (v <= volume * (1 + 1e-9)) continue;
+      volume = v;
+      best = plane;
+      left = std::move(other);
+    }
+    if (!(volume > 0) || best.height(seed) > -margin) return std::nullopt;
+    cell = std::move(left);
+    std::erase_if(rest, [&](const Obstacle& o) {
+      return o.triangle == nearest.triangle || beyond(best, o.triangle);
+    });
+  }
+  return cell;
+}
+
+/// The hull of `most` of the points: the extreme ones, then always the one farthest beyond the
+/// facet nearest to the seed, until the ball round it is inside; then the one farthest outside.
+std::vector<Vec3> subset(std::vector<Vec3> points, std::size_t most, const Vec3& seed,
+                         double ball) {
+  if (points.size() <= most) return points;
+  std::vector<Vec3> out;
+  std::vector<char> taken(points.size(), 0);
+  const auto take = [&](std::size_t i) {
+    if (taken[i] == 0) out.push_back(points[i]);
+    taken[i] = 1;
+  };
+  for (int k = 0; k < 3; ++k) {
+    std::size_t low = 0, high = 0;
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      if (points[i][k] < points[low][k]) low = i;
+      if (points[i][k] > points[high][k]) high = i;
+    }
+    take(low);
+    take(high);
+  }
+  geom::HullBuilder builder;
+  while (out.size() < most) {
+    std::size_t best = points.size();
+    double farthest = 0;
+    if (!builder.build(out)) {
+      // Still flat: any point more.
+      for (std::size_t i = 0; i < points.size() && best == points.size(); ++i)
+        if (taken[i] == 0) best = i;
+    } else {
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const Triangle& t : builder.triangles()) {
+        const Vec3 n = (out[t[1]] - out[t[0]]).cross(out[t[2]] - out[t[0]]);
+        const double length = n.norm();
+        if (!(length > 0)) continue;
+        std::size_t beyond = points.size();
+        double height = 0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+          const double h = n.dot(points[i] - out[t[0]]) / length;
+          if (taken[i] != 0 || h <= height) continue;
+          height = h;
+          beyond = i;
+        }
+        if (beyond == points.size()) continue;
+        const double from_seed = std::min(n.dot(out[t[0]] - seed) / length, ball);
+        if (from_seed > nearest || (from_seed == nearest && height <= farthest)) continue;
+        nearest = from_seed;
+        farthest = height;
+        best = beyond;
+      }
+    }
+    if (best == points.size()) break;
+    take(best);
+  }
+  return out;
+}
+
+std::optional<Inscribed> body_of(std::vector<Vec3> points, std::size_t most, const Vec3& seed,
+                                 double ball) {
+  for (Vec3& p : points) p = geom::to_float32(p);
+  geom::HullBuilder builder;
+  if (!builder.build(points)) return std::nullopt;
+  if (builder.vertices().size() > most) {
+    std::vector<Vec3> corners;
+    for (const std::uint32_t v : builder.vertices()) corners.push_back(points[v]);
+    points = subset(std::move(corners), most, seed, ball);
+    if (!builder.build(points)) return std::nullopt;
+  }
+  Inscribed out;
+  out.hull = builder.mesh();
+  out.box = geom::bounding_box(out.hull);
+  out.volume = geom::signed_volume(out.hull);
+  for (const Triangle& t : out.hull.triangles) {
+    const Vec3& a = out.hull.vertices[t[0]];
+    const Vec3 n = (out.hull.vertices[t[1]] - a).cross(out.hull.vertices[t[2]] - a);
+    const double length = n.norm();
+    if (length > 0) out.planes.push_back({n / length, n.dot(a) / length});
+  }
+  return out;
+}
+
+/// Whether an edge of one of the triangles runs through the other.
+bool cross(const Mesh& mesh, const Triangle& s, const Triangle& t) {
+  const auto& v = mesh.vertices;
+  for (int turn = 0; turn < 2; ++turn) {
+    const Triangle &edges = turn == 0 ? s : t, &face = turn == 0 ? t : s;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 &p = v[edges[k]], &q = v[edges[(k + 1) % 3]];
+      const geom::Sign up = geom::orient3d(v[face[0]], v[face[1]], v[face[2]], p);
+      const geom::Sign down = geom::orient3d(v[face[0]], v[face[1]], v[face[2]], q);
+      if (up == down || up == geom::Sign::Zero || down == geom::Sign::Zero) continue;
+      const geom::Sign a = geom::orient3d(p, q, v[face[0]], v[face[1]]);
+      const geom::Sign b = geom::orient3d(p, q, v[face[1]], v[face[2]]);
+      const geom::Sign c = geom::orient3d(p, q, v[face[2]], v[face[0]]);
+      if (a == b && b == c) return true;
+    }
+  }
+  return false;
+}
+
+bool crosses_another(const Mesh& mesh, const geom::Bvh& bvh, const Triangle& t) {
+  Box3 box;
+  for (const std::uint32_t v : t) box.extend(mesh.vertices[v]);
+  bool found = false;
+  bvh.traverse(
+      [&](const Box3& other) {
+        return !found && (box.min.array() <= other.max.array()).all() &&
+               (other.min.array() <= box.max.array()).all();
+      },
+      [&](std::uint32_t i) { found = found || cross(mesh, t, mesh.triangles[i]); });
+  return found;
+}
+
+}  // namespace
+
+Boundary boundary_of(const Mesh& mesh, const geom::WindingNumber& winding, double size) {
+  const double step = 1e-7 * geom::bounding_box(mesh).diagonal();
+  const double coarse = std::max(size, 0.05 * geom::bounding_box(mesh).diagonal());
+  const geom::Bvh bvh(mesh);
+  Boundary out;
+  out.mesh.vertices = mesh.vertices;
+  struct Part {
+    Triangle t;
+    int depth;
+  };
+  std::vector<Part> stack;
+  for (const Triangle& whole : mesh.triangles) {
+    const bool split = crosses_another(mesh, bvh, whole);
+    stack.push_back({whole, 0});
+    while (!stack.empty()) {
+      const Part part = stack.back();
+      stack.pop_back();
+      const auto& [t, depth] = part;
+      auto& vertices = out.mesh.vertices;
+      const Vec3 a = vertices[t[0]], b = vertices[t[1]], c = vertices[t[2]];
+      const std::array<double, 3> length{(b - a).norm(), (c - b).norm(), (a - c).norm()};
+      const auto k =
+          static_cast<std::size_t>(std::max_element(length.begin(), length.end()) - length.begin());
+      const Vec3 center = (a + b + c) / 3;
+      const Vec3 n = (b - a).cross(c - a).normalized();
+      const bool area = n.squaredNorm() > 0.5;
+      int samples = 0, open = 0;
+      for (const Vec3& p : {center, Vec3(0.8 * a + 0.2 * center), Vec3(0.8 * b + 0.2 * center),
+                            Vec3(0.8 * c + 0.2 * center)}) {
+        if (!area || (open > 0 && !split)) break;
+        ++samples;
+        for (const double side : {step, -step}) {
+          const Vec3 z = p + side * n;
+          const auto w = winding(z);
+          if (!w || *w > 0) continue;
+          out.outside.push_back(z);
+          ++open;
+          break;
+        }
+      }
+      const bool mixed = open > 0 && open < samples;
+      if (split && depth < 24 && length[k] > (mixed ? size : coarse)) {
+        const auto middle = static_cast<std::uint32_t>(vertices.size());
+        vertices.push_back(0.5 * vertices[t[k]] + 0.5 * vertices[t[(k + 1) % 3]]);
+        Part first = part, second = part;
+        ++first.depth;
+        ++second.depth;
+        first.t[(k + 1) % 3] = middle;
+        second.t[k] = middle;
+        stack.push_back(second);
+        stack.push_back(first);
+        continue;
+      }
+      if (open > 0 || !area) out.mesh.triangles.push_back(t);
+    }
+  }
+  return out;
+}
+
+bool Inscribed::contains(const Vec3& p, double slack) const {
+  for (const Plane& plane : planes)
+    if (plane.height(p) > -slack) return false;
+  return true;
+}
+
+std::optional<Inscribed> inscribe(const Mesh& boundary, const Vec3& seed, double depth,
+                                  std::size_t most, int rounds, double safety) {
+  Box3 box = geom::bounding_box(boundary);
+  const double ulp =
+      geom::float32_spacing(std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff()));
+  const double margin = 2 * ulp * safety;
+  if (!(depth > 4 * margin)) return std::nullopt;
+  std::optional<Inscribed> best;
+  Ellipsoid e{seed, Eigen::Matrix3d::Identity()};
+  for (int round = 0; round <= rounds; ++round) {
+    const std::optional<Cell> cell = keep_out(boundary, box, e, seed, depth, margin);
+    if (!cell) break;
+    std::optional<Inscribed> body = body_of(cell->corners, most, seed, 0.8 * depth);
+    if (!body || !body->contains(seed, margin)) break;
+    const bool better = !best || body->volume > 1.01 * best->volume;
+    if (better) best = std::move(body);
+    if (!better) break;
+    const std::optional<Ellipsoid> next = ellipsoid_of(best->hull);
+    if (!next) break;
+    e = *next;
+  }
+  if (!best) {
+    std::vector<Vec3> cube;
+    const double half = (depth - margin) / 1.7320508075688774;
+    for (int i = 0; i < 8; ++i)
+      cube.emplace_back(
+          seed + half * Vec3((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1));
+    best = body_of(cube, most, seed, depth);
+  }
+  return best;
+}
+
+}  // namespace kaboum::bcd

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <kaboum/geom/distance.h>
+#include <kaboum/geom/mesh.h>
+#include <kaboum/geom/winding.h>
+
+#include <optional>
+#include <vector>
+
+#include "cell.h"
+
+namespace kaboum::bcd {
+
+using geom::Mesh;
+
+/// The triangles that have the complement of the solid {w ≥ 1} on a side, as far as samples tell.
+struct Boundary {
+  /// Triangles that cross others are cut into pieces no longer than `size`; what is inside the
+  /// solid is left out.
+  Mesh mesh;
+  /// Points beside the triangles that are outside the solid, exactly.
+  std::vector<Vec3> outside;
+};
+
+Boundary boundary_of(const Mesh& mesh, const geom::WindingNumber& winding, double size);
+
+/// A convex body with float32 vertices, exactly convex.
+struct Inscribed {
+  Mesh hull;
+  std::vector<Plane> planes;  ///< of the hull's triangles
+  Box3 box;
+  double volume = 0;
+  /// Whether p is inside all planes by `slack`.
+  [[nodiscard]] bool contains(const Vec3& p, double slack) const;
+};
+
+/// A large convex body that contains `seed` and whose inside no triangle meets, up to rounding,
+/// with at most `most` vertices.
+/// @param depth  no triangle is nearer to the seed.
+/// @param rounds  fits of the ellipsoid.
+/// @param safety  multiplies the distance kept from triangles for rounding's sake, two float32
+/// steps.
+/// @return nullopt when the depth is below what float32 can hold.
+std::optional<Inscribed> inscribe(const Mesh& boundary, const Vec3& seed, double depth,
+                                  std::size_t most, int rounds, double safety = 1);
+
+}  // namespace kaboum::bcd

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <kaboum/geom/mesh.h>
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace kaboum::bcd {
+
+/// The box round points along the axes of their covariance.
+struct PrincipalBox {
+  geom::Vec3 mean = geom::Vec3::Zero();
+  Eigen::Matrix3d axes;  ///< columns, orthonormal up to rounding; variances ascending
+  geom::Vec3 low, high;  ///< extent along the axes, from the mean
+
+  /// Of the box enlarged by `margin` on every side.
+  [[nodiscard]] std::vector<geom::Vec3> corners(double margin = 0) const;
+};
+
+/// @return nullopt without points, or when their covariance overflows.
+std::optional<PrincipalBox> principal_box(std::span<const geom::Vec3> points);
+
+}  // namespace kaboum::bcd

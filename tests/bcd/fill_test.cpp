@@ -1,0 +1,157 @@
+#include <gtest/gtest.h>
+#include <kaboum/bcd/fill.h>
+#include <kaboum/geom/convex_set.h>
+#include <kaboum/geom/distance.h>
+#include <kaboum/geom/error.h>
+#include <kaboum/geom/float32.h>
+#include <kaboum/verify/cover.h>
+
+#include <random>
+
+#include "solids.h"
+#include "support/families.h"
+#include "support/oracle.h"
+#include "support/shapes.h"
+
+namespace kaboum::bcd {
+namespace {
+
+using geom::Mesh;
+using geom::Vec3;
+using test::prism;
+
+DecomposeResult run(const Mesh& mesh, double epsilon_percent, std::size_t max_vertices = 64) {
+  DecomposeOptions options;
+  options.epsilon = 0.01 * epsilon_percent * geom::bounding_box(mesh).diagonal();
+  options.max_vertices = max_vertices;
+  options.effort = Effort::Fast;
+  return fill(geom::prepare(mesh), options);
+}
+
+verify::Answer inside(const Mesh& mesh, const std::vector<geom::ConvexBody>& bodies) {
+  geom::ConvexSet set;
+  set.bodies = bodies;
+  return verify::verify_inclusion(verify::sum_of(set), mesh).solid.answer;
+}
+
+void expect_claims(const Mesh& mesh, const DecomposeResult& result, std::size_t max_vertices) {
+  geom::ConvexSet set;
+  set.bodies = result.bodies;
+  EXPECT_FALSE(geom::find_not_convex(set).has_value());
+  EXPECT_EQ(inside(mesh, result.bodies), verify::Answer::Verified);
+  EXPECT_LE(result.reach_lower, result.reach_upper);
+  for (const geom::ConvexBody& body : result.bodies) {
+    EXPECT_LE(body.hull.vertices.size(), max_vertices);
+    for (const Vec3& p : body.hull.vertices) EXPECT_TRUE(geom::is_float32(p));
+  }
+}
+
+/// Random points of the solid that are deeper than the bound, by the slow oracle: all in a body.
+void expect_no_deep_point_left(const Mesh& mesh, const DecomposeResult& result, int count) {
+  const geom::Box3 box = geom::bounding_box(mesh);
+  const geom::DistanceQuery surface(mesh);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> unit(0, 1);
+  int deep = 0;
+  for (int i = 0; i < count; ++i) {
+    const Vec3 p =
+        box.min + (box.max - box.min).cwiseProduct(Vec3(unit(random), unit(random), unit(random)));
+    if (surface.nearest(p).lower <= result.reach_upper) continue;
+    const auto w = kaboum::test::winding_number_slow(mesh, p);
+    if (!w || *w < 1) continue;
+    ++deep;
+    bool found = false;
+    for (const geom::ConvexBody& body : result.bodies) {
+      const auto b = kaboum::test::winding_number_slow(body.hull, p);
+      found = found || !b || *b == 1;
+    }
+    EXPECT_TRUE(found) << p.transpose();
+  }
+  EXPECT_GT(deep, 5);
+}
+
+TEST(Fill, LiesInEveryFamily) {
+  int seen = 0, done = 0;
+  for (const auto& f : kaboum::test::closed_families()) {
+    // A body beside its copy, rotated: every triangle crosses others; minutes.
+    if (!f.solid || f.mesh.triangles.size() > 400 || f.name == "component-twice-rotated") continue;
+    SCOPED_TRACE(f.name);
+    geom::Prepared prepared;
+    try {
+      prepared = geom::prepare(f.mesh);
+    } catch (const Error&) {
+      continue;  // sheets
+    }
+    const std::size_t most = seen % 2 == 0 ? 64 : 32;
+    const DecomposeResult result = run(prepared.mesh, 3, most);
+    if (result.stop == Stop::TooCoarse) continue;
+    expect_claims(prepared.mesh, result, most);
+    done += result.stop == Stop::Done ? 1 : 0;
+    ++seen;
+  }
+  EXPECT_GE(seen, 10);
+  EXPECT_GE(done, seen - 2);  // surfaces that cross themselves everywhere
+}
+
+TEST(Fill, NoDeepPointIsLeft) {
+  for (const double percent : {3.0}) {
+    const Mesh knot = geom::prepare(kaboum::test::torus_knot(2, 3, 0.3, 40, 8)).mesh;
+    const DecomposeResult result = run(knot, percent);
+    EXPECT_LE(result.reach_upper, 0.01 * percent * geom::bounding_box(knot).diagonal());
+    expect_claims(knot, result, 64);
+    expect_no_deep_point_left(knot, result, 1000);
+  }
+}
+
+TEST(Fill, WallsBetweenOverlappingBodiesAreNoObstacle) {
+  // Two boxes that share a part: the surfaces inside the union count for nothing.
+  using kaboum::test::box;
+  const Mesh two = kaboum::test::merged(
+      {box(Vec3(4, 1, 1), 1), kaboum::test::translated(box(Vec3(4, 1, 1), 1), Vec3(3, 0, 0))});
+  const Mesh mesh = geom::prepare(two).mesh;
+  const DecomposeResult result = run(mesh, 1);
+  EXPECT_EQ(result.stop, Stop::Done);
+  EXPECT_EQ(result.bodies.size(), 1U);
+  expect_claims(mesh, result, 64);
+}
+
+TEST(Fill, ObviousOnes) {
+  const Mesh l = prism({{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}, 1);
+  const DecomposeResult result = run(l, 0.5);
+  EXPECT_EQ(result.bodies.size(), 2U);
+  expect_claims(geom::prepare(l).mesh, result, 64);
+  const Mesh one = kaboum::test::box(Vec3(1, 2, 3), 1);
+  EXPECT_EQ(run(one, 0.1).bodies.size(), 1U);
+}
+
+TEST(Fill, MutantsAreRefuted) {
+  const Mesh l = geom::prepare(prism({{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}, 1)).mesh;
+  const DecomposeResult result = run(l, 0.5);
+  for (std::size_t i = 0; i < result.bodies.size(); ++i) {
+    std::vector<geom::ConvexBody> mutant = result.bodies;  // grown by a hundred thousandth
+    const Vec3 center = geom::bounding_box(mutant[i].hull).center();
+    for (Vec3& p : mutant[i].hull.vertices) p = center + (1 + 1e-5) * (p - center);
+    EXPECT_EQ(inside(l, mutant), verify::Answer::Refuted);
+  }
+}
+
+TEST(Fill, FewBodiesAndOpenMeshes) {
+  const Mesh torus = kaboum::test::torus(1, 0.3, 40, 16);
+  DecomposeOptions options;
+  options.effort = Effort::Fast;
+  double last = 1e9;
+  for (const std::size_t n : {1U, 4U, 12U}) {
+    options.max_bodies = n;
+    const DecomposeResult result = fill(geom::prepare(torus), options);
+    EXPECT_LE(result.bodies.size(), n);
+    EXPECT_LE(result.reach_upper, last);
+    EXPECT_LE(result.reach_upper, 1.02 * result.reach_lower + 1e-6);
+    last = result.reach_upper;
+  }
+  Mesh open = kaboum::test::box(Vec3(1, 1, 1), 1);
+  open.triangles.pop_back();
+  EXPECT_THROW(fill(geom::prepare(open), options), Error);
+}
+
+}  // namespace
+}  // namespace kaboum::bcd
