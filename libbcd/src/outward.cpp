@@ -44,33 +44,50 @@ void add_box(std::vector<Vec3>& out, const Vec3& p, double error) {
   }
 }
 
-/// A direction u with n·u ≥ 1 for all normals, as short as a few steps find it: along the shortest
-/// vector of their hull (Gilbert's algorithm).
-Vec3 outward(const std::vector<Vec3>& normals, const Vec3& otherwise) {
-  if (normals.empty()) {
-    const double length = otherwise.norm();
-    return length > 0 ? Vec3(otherwise / length) : Vec3::Zero();
-  }
+struct Direction {
+  Vec3 u;
+  double margin;  ///< least n·u of the normals; |u| = 1
+};
+
+/// The unit vector farthest from perpendicular to all normals, as far as a few steps find it: along
+/// the shortest vector of their hull (Gilbert's algorithm).
+Direction middle_of(const std::vector<Vec3>& normals) {
   Vec3 w = Vec3::Zero();
   for (const Vec3& n : normals) w += n / static_cast<double>(normals.size());
-  Vec3 best = w;
-  double margin = -1;
+  Direction best{w, -1};
   for (int step = 0; step < 60; ++step) {
     const Vec3* least = normals.data();
     for (const Vec3& n : normals)
       if (n.dot(w) < least->dot(w)) least = &n;
     const double length = w.norm();
     if (!(length > 1e-6)) break;
-    if (least->dot(w) / length > margin) {
-      margin = least->dot(w) / length;
-      best = w / length;
-    }
+    if (least->dot(w) / length > best.margin) best = {w / length, least->dot(w) / length};
     const Vec3 d = *least - w;
     const double square = d.squaredNorm();
     if (!(square > 1e-12)) break;
     w += std::clamp(-w.dot(d) / square, 0.0, 1.0) * d;
   }
-  return best / std::max(margin, 0.01);
+  return best;
+}
+
+/// Directions of which each normal has one with n·u ≥ 1: one, or at a knife's edge, where that
+/// would be long, one per side.
+std::vector<Vec3> outward(const std::vector<Vec3>& normals, const Vec3& otherwise) {
+  if (normals.empty()) {
+    const double length = otherwise.norm();
+    return {length > 0 ? Vec3(otherwise / length) : Vec3::Zero()};
+  }
+  const Direction all = middle_of(normals);
+  if (all.margin > 0.1) return {all.u / all.margin};
+  std::array<std::vector<Vec3>, 2> side;
+  for (const Vec3& n : normals) side[n.dot(normals[0]) > 0 ? 0 : 1].push_back(n);
+  std::vector<Vec3> out;
+  for (const std::vector<Vec3>& part : side) {
+    if (part.empty()) continue;
+    const Direction d = middle_of(part);
+    out.emplace_back(d.u / std::max(d.margin, 0.01));
+  }
+  return out;
 }
 
 /// The points without those closer than `radius` to an earlier one; points of `preferred` (sorted)
@@ -132,7 +149,10 @@ geom::Mesh enclose(std::span<const Vec3> shape, std::span<const Vec3> required, 
   const double ulp = geom::float32_spacing(magnitude);
   std::vector<Vec3> sorted(required.begin(), required.end());
   std::sort(sorted.begin(), sorted.end(), Less());
-  const double longest_push = std::max(64 * ulp, 1e-5 * magnitude);
+  // What is pushed farther fares better in a box.
+  Box3 extent;
+  for (const Vec3& p : required) extent.extend(p);
+  const double longest_push = std::max(64 * ulp, 2e-3 * extent.diagonal());
   geom::HullBuilder builder;
   const std::vector<Vec3> corners = distinct(shape, sorted, 4 * ulp);
   if (builder.build(corners)) {
@@ -150,18 +170,23 @@ geom::Mesh enclose(std::span<const Vec3> shape, std::span<const Vec3> required, 
     }
     Vec3 center = Vec3::Zero();
     for (const Vec3& p : hull.vertices) center += p / static_cast<double>(n);
-    std::vector<Vec3> direction(n);
+    std::vector<Vec3> start, direction;  // of what is moved, and the vertex that it is
+    std::vector<std::uint32_t> vertex;
     std::vector<double> push(n, 0);
-    for (std::size_t v = 0; v < n; ++v) {
-      direction[v] = outward(normals[v], hull.vertices[v] - center);
+    for (std::uint32_t v = 0; v < n; ++v) {
+      for (const Vec3& d : outward(normals[v], hull.vertices[v] - center)) {
+        start.push_back(hull.vertices[v]);
+        direction.push_back(d);
+        vertex.push_back(v);
+      }
       if (!std::binary_search(sorted.begin(), sorted.end(), hull.vertices[v], Less()))
         push[v] = 1.5 * ulp;
     }
+    std::vector<Vec3> moved(start.size());
     for (int round = 0; round < 40; ++round) {
-      std::vector<Vec3> moved(n);
-      for (std::size_t v = 0; v < n; ++v)
-        moved[v] = geom::to_float32(Vec3(hull.vertices[v] + push[v] * direction[v]));
-      if (!builder.build(moved)) break;
+      for (std::size_t i = 0; i < moved.size(); ++i)
+        moved[i] = geom::to_float32(Vec3(start[i] + push[vertex[i]] * direction[i]));
+      if (!builder.build(moved) || builder.vertices().size() > most) break;
       bool good = true;
       for (const Triangle& t : builder.triangles()) {
         bool outside = false;
@@ -173,7 +198,8 @@ geom::Mesh enclose(std::span<const Vec3> shape, std::span<const Vec3> required, 
         }
         if (!outside) continue;
         good = false;
-        for (const std::uint32_t v : t) push[v] = std::max(1.5 * ulp, 1.6 * push[v]);
+        for (const std::uint32_t i : t)
+          push[vertex[i]] = std::max(1.5 * ulp, 1.6 * push[vertex[i]]);
       }
       if (good) return builder.mesh();
       if (*std::max_element(push.begin(), push.end()) > longest_push) break;
