@@ -22,15 +22,17 @@ struct Tuning {
   SearchOptions search;
   std::vector<double> multiples;   ///< of the wished bodies, that the input is cut into
   std::vector<double> thresholds;  ///< of epsilon, that leaves are cut down to
-  int refinements;                 ///< rounds of taking the worst body apart
+  std::vector<double> bulks;       ///< weights of the added volume when merging, tried in turn
+  int refinements;                 ///< rounds of changing the worst body
 };
 
 Tuning tuning(Effort effort) {
   switch (effort) {
     case Effort::Fast:
-      return {60000, {.offsets = 5, .reflex_planes = 6, .refinements = 1}, {1.5}, {0.8}, 4};
+      return {60000, {.offsets = 5, .reflex_planes = 6, .refinements = 1}, {1.5}, {0.8}, {0.05},
+              12};
     case Effort::Normal:
-      return {200000, {}, {1, 1.25, 1.5, 2, 3}, {1, 0.7, 0.5}, 20};
+      return {200000, {}, {1, 1.25, 1.5, 2, 3}, {1, 0.7, 0.5}, {0.05, 0.15, 0.02}, 60};
     case Effort::Best:
       break;
   }
@@ -38,7 +40,8 @@ Tuning tuning(Effort effort) {
           {.offsets = 11, .reflex_planes = 16, .refinements = 4},
           {1, 1.25, 1.5, 2, 3, 4.5, 6},
           {1, 0.85, 0.7, 0.5, 0.35},
-          60};
+          {0.05, 0.15, 0.02, 0.3, 0},
+          200};
 }
 
 /// A body on its way to the result.
@@ -120,33 +123,88 @@ class Decomposer {
                                std::size_t target) {
     std::vector<Body> best;
     double least = std::numeric_limits<double>::infinity();
-    for (const auto& snapshot : snapshots) {
-      std::vector<Body> bodies = merge(snapshot, solid_, target, least);
-      if (bodies.size() > target) continue;
+    std::size_t chosen = snapshots.size();
+    const auto attempt = [&](std::size_t i, double bulk) {
+      std::vector<Body> bodies = merge(snapshots[i], solid_, target, least, bulk);
+      if (bodies.size() > target) return;
       const double worst = worst_of(bodies);
-      if (worst >= least) continue;
+      if (worst >= least) return;
       least = worst;
       best = std::move(bodies);
-    }
+      chosen = i;
+    };
+    for (std::size_t i = 0; i < snapshots.size(); ++i) attempt(i, tuning_.bulks[0]);
+    if (chosen == snapshots.size()) return best;
+    const std::size_t first = chosen;
+    for (std::size_t k = 1; k < tuning_.bulks.size(); ++k) attempt(first, tuning_.bulks[k]);
     return best;
   }
 
-  /// Takes the worst body apart and merges others instead, while that helps.
+  /// Gives a leaf of a body to another one if both are then better than the body was.
+  bool hand_over(std::vector<Body>& bodies, std::size_t from) const {
+    const Body& giver = bodies[from];
+    if (giver.leaves.size() < 2) return false;
+    struct Deal {
+      std::size_t leaf, to;
+      double worst = std::numeric_limits<double>::infinity();
+    };
+    std::vector<Deal> deals;
+    std::vector<Body> rests(giver.leaves.size()), parts(giver.leaves.size());
+    tbb::parallel_for(std::size_t{0}, giver.leaves.size(), [&](std::size_t i) {
+      std::vector<int> rest = giver.leaves;
+      rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
+      rests[i] = union_of(tree_, solid_, rest);
+      parts[i] = body_of(tree_, giver.leaves[i]);
+    });
+    const double limit = 0.999 * giver.appraisal.worst;
+    for (std::size_t i = 0; i < rests.size(); ++i) {
+      if (rests[i].appraisal.worst >= limit) continue;
+      for (std::size_t to = 0; to < bodies.size(); ++to)
+        if (to != from && touch(parts[i], bodies[to], solid_)) deals.push_back({i, to});
+    }
+    const auto taker = [&](const Deal& d) {
+      std::vector<int> leaves = bodies[d.to].leaves;
+      leaves.push_back(giver.leaves[d.leaf]);
+      std::sort(leaves.begin(), leaves.end());
+      return union_of(tree_, solid_, leaves);
+    };
+    tbb::parallel_for(std::size_t{0}, deals.size(), [&](std::size_t i) {
+      deals[i].worst =
+          std::max(taker(deals[i]).appraisal.worst, rests[deals[i].leaf].appraisal.worst);
+    });
+    const auto best = std::min_element(
+        deals.begin(), deals.end(), [](const Deal& a, const Deal& b) { return a.worst < b.worst; });
+    if (best == deals.end() || best->worst >= limit) return false;
+    Body larger = taker(*best);
+    bodies[best->to] = std::move(larger);
+    bodies[from] = std::move(rests[best->leaf]);
+    return true;
+  }
+
+  /// Moves leaves of the worst body to others, or takes it apart and merges others instead, while
+  /// that helps.
   void refine(std::vector<Body>& bodies, std::size_t target) {
     for (int round = 0; round < tuning_.refinements && !bodies.empty(); ++round) {
       std::size_t worst = 0;
       for (std::size_t i = 1; i < bodies.size(); ++i)
         if (bodies[i].appraisal.worst > bodies[worst].appraisal.worst) worst = i;
       const double limit = bodies[worst].appraisal.worst;
+      if (hand_over(bodies, worst)) continue;
       const std::vector<Body> parts = take_apart(bodies[worst], limit);
       if (parts.size() < 2) return;
       std::vector<Body> changed;
       for (std::size_t i = 0; i < bodies.size(); ++i)
         if (i != worst) changed.push_back(bodies[i]);
       changed.insert(changed.end(), parts.begin(), parts.end());
-      changed = merge(std::move(changed), solid_, target, 0.999 * limit);
-      if (changed.size() > target || worst_of(changed) >= limit) return;
-      bodies = std::move(changed);
+      bool better = false;
+      for (const double bulk : tuning_.bulks) {
+        std::vector<Body> merged = merge(changed, solid_, target, 0.999 * limit, bulk);
+        better = merged.size() <= target && worst_of(merged) < limit;
+        if (!better) continue;
+        bodies = std::move(merged);
+        break;
+      }
+      if (!better) return;
     }
   }
 
@@ -166,8 +224,9 @@ class Decomposer {
     refine(bodies, target);
     report("simplifying", 0.8);
     std::vector<Finished> finished = finish(bodies, 0.25 * worst_of(bodies));
-    for (int round = 0; round < tuning_.refinements; ++round) {
-      report("refining", 0.8 + 0.2 * round / tuning_.refinements);
+    const int rounds = tuning_.refinements / 3;
+    for (int round = 0; round < rounds; ++round) {
+      report("refining", 0.8 + 0.2 * round / rounds);
       if (!improve(finished, target)) break;
     }
     return finished;

@@ -53,7 +53,8 @@ class Depths {
       if (within(cube, bodies)) continue;
       // Bodies that touch leave slits that no center meets: what two bodies cover only together is
       // covered once more.
-      if (seeds && cube.half < 0.04 * cube.depth && cube.depth > out.depth && cube.depth >= 0.8 * enough) {
+      if (seeds && cube.half < 0.04 * cube.depth && cube.depth > out.depth &&
+          cube.depth >= 0.8 * enough) {
         out.depth = cube.depth;
         out.point = cube.center;
         cubes_.push(cube);

@@ -32,13 +32,28 @@ void join(const Body& a, const Body& b, std::vector<Vec3>& points) {
   points.insert(points.end(), b.hull.begin(), b.hull.end());
 }
 
-Pair judge(const std::vector<Body>& bodies, std::uint32_t a, std::uint32_t b, const Solid& solid) {
+Pair judge(const std::vector<Body>& bodies, std::uint32_t a, std::uint32_t b, const Solid& solid,
+           double bulk) {
   static thread_local std::vector<Vec3> points;
   join(bodies[a], bodies[b], points);
   const Appraisal h = appraise(points, solid, hull_builder(), true);
   const double added =
       std::max(0.0, h.volume - bodies[a].appraisal.volume - bodies[b].appraisal.volume);
-  return {a, b, h.worst + 0.05 * std::cbrt(added), h.worst};
+  return {a, b, h.worst + bulk * std::cbrt(added), h.worst};
+}
+
+Body body_round(const std::vector<Vec3>& points, const Solid& solid, std::vector<int> leaves) {
+  Body body;
+  geom::HullBuilder& builder = hull_builder();
+  body.appraisal = appraise(points, solid, builder);
+  if (body.appraisal.flat) {
+    body.hull = points;
+  } else {
+    for (const std::uint32_t v : builder.vertices()) body.hull.push_back(points[v]);
+  }
+  for (const Vec3& p : body.hull) body.box.extend(p);
+  body.leaves = std::move(leaves);
+  return body;
 }
 
 }  // namespace
@@ -50,21 +65,32 @@ Body body_of(const CutTree& tree, int leaf) {
   return body;
 }
 
+Body union_of(const CutTree& tree, const Solid& solid, const std::vector<int>& leaves) {
+  std::vector<Vec3> points;
+  for (const int leaf : leaves) {
+    const std::vector<Vec3>& hull = tree.nodes()[leaf].hull;
+    points.insert(points.end(), hull.begin(), hull.end());
+  }
+  return body_round(points, solid, leaves);
+}
+
+bool touch(const Body& a, const Body& b, const Solid& solid) {
+  const double reach = 1e-3 * solid.diagonal();
+  return ((a.box.min.array() - reach <= b.box.max.array()) &&
+          (b.box.min.array() - reach <= a.box.max.array()))
+      .all();
+}
+
 std::vector<Body> merge(std::vector<Body> bodies, const Solid& solid, std::size_t target,
-                        double epsilon) {
+                        double epsilon, double bulk) {
   std::vector<char> alive(bodies.size(), 1);
   std::size_t count = bodies.size();
-  const double reach = 1e-3 * solid.diagonal();
-  const auto near = [&](const Body& a, const Body& b) {
-    return ((a.box.min.array() - reach <= b.box.max.array()) &&
-            (b.box.min.array() - reach <= a.box.max.array()))
-        .all();
-  };
+  const auto near = [&](const Body& a, const Body& b) { return touch(a, b, solid); };
   std::priority_queue<Pair, std::vector<Pair>, decltype(&later)> queue(&later);
   std::vector<Pair> fresh;
   const auto judge_all = [&] {
     tbb::parallel_for(std::size_t{0}, fresh.size(), [&](std::size_t i) {
-      fresh[i] = judge(bodies, fresh[i].a, fresh[i].b, solid);
+      fresh[i] = judge(bodies, fresh[i].a, fresh[i].b, solid, bulk);
     });
     for (const Pair& p : fresh)
       if (p.worst <= epsilon) queue.push(p);
@@ -90,20 +116,12 @@ std::vector<Body> merge(std::vector<Body> bodies, const Solid& solid, std::size_
     const Pair p = queue.top();
     queue.pop();
     if (alive[p.a] == 0 || alive[p.b] == 0) continue;
-    Body merged;
     std::vector<Vec3> points;
     join(bodies[p.a], bodies[p.b], points);
-    geom::HullBuilder& builder = hull_builder();
-    merged.appraisal = appraise(points, solid, builder);
-    if (merged.appraisal.flat) {
-      merged.hull = points;
-    } else {
-      for (const std::uint32_t v : builder.vertices()) merged.hull.push_back(points[v]);
-    }
-    merged.leaves = bodies[p.a].leaves;
-    merged.leaves.insert(merged.leaves.end(), bodies[p.b].leaves.begin(), bodies[p.b].leaves.end());
-    std::sort(merged.leaves.begin(), merged.leaves.end());
-    for (const Vec3& q : merged.hull) merged.box.extend(q);
+    std::vector<int> leaves = bodies[p.a].leaves;
+    leaves.insert(leaves.end(), bodies[p.b].leaves.begin(), bodies[p.b].leaves.end());
+    std::sort(leaves.begin(), leaves.end());
+    Body merged = body_round(points, solid, std::move(leaves));
     alive[p.a] = alive[p.b] = 0;
     bodies[p.a].hull = {};
     bodies[p.b].hull = {};

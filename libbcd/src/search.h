@@ -77,10 +77,15 @@ struct Body {
 };
 
 Body body_of(const CutTree& tree, int leaf);
+/// One body round all of them.
+Body union_of(const CutTree& tree, const Solid& solid, const std::vector<int>& leaves);
+/// Whether the bodies' boxes are near each other.
+bool touch(const Body& a, const Body& b, const Solid& solid);
 
 /// Merges neighbours, cheapest first, while the merged distance stays ≤ `epsilon` and there are
-/// more than `target` bodies.
+/// more than `target` bodies. The cost is that distance, and `bulk` times the side of a cube of
+/// the volume added.
 std::vector<Body> merge(std::vector<Body> bodies, const Solid& solid, std::size_t target,
-                        double epsilon);
+                        double epsilon, double bulk = 0.05);
 
 }  // namespace kaboum::bcd

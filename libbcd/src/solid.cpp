@@ -165,14 +165,22 @@ double Solid::field(const Vec3& p) const {
     cell[k] = static_cast<int>(x);
     f[k] = x - cell[k];
   }
-  double sum = 0;
-  for (int c = 0; c < 8; ++c) {
-    const int i = c & 1, j = (c >> 1) & 1, k = c >> 2;
-    const double weight =
-        (i != 0 ? f.x() : 1 - f.x()) * (j != 0 ? f.y() : 1 - f.y()) * (k != 0 ? f.z() : 1 - f.z());
-    if (weight > 0) sum += weight * node(cell[0] + i, cell[1] + j, cell[2] + k);
+  const std::size_t row = static_cast<std::size_t>(size_[0]);
+  const std::size_t layer = row * static_cast<std::size_t>(size_[1]);
+  const std::size_t first = static_cast<std::size_t>(cell[0]) +
+                            row * static_cast<std::size_t>(cell[1]) +
+                            layer * static_cast<std::size_t>(cell[2]);
+  std::array<double, 8> v;
+  for (unsigned c = 0; c < 8; ++c) {
+    const unsigned i = c & 1U, j = (c >> 1U) & 1U, k = c >> 2U;
+    const float known = value_[first + i + j * row + k * layer].load(std::memory_order_relaxed);
+    v[c] = known != kUnset ? known
+                           : node(cell[0] + static_cast<int>(i), cell[1] + static_cast<int>(j),
+                                  cell[2] + static_cast<int>(k));
   }
-  return sum;
+  const auto mix = [](double a, double b, double t) { return a + t * (b - a); };
+  return mix(mix(mix(v[0], v[1], f.x()), mix(v[2], v[3], f.x()), f.y()),
+             mix(mix(v[4], v[5], f.x()), mix(v[6], v[7], f.x()), f.y()), f.z());
 }
 
 }  // namespace kaboum::bcd
