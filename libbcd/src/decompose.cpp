@@ -100,6 +100,11 @@ class Decomposer {
     return out;
   }
 
+  std::vector<Body> merged(std::vector<Body> bodies, std::size_t target, double epsilon,
+                           double bulk = 0.05) {
+    return merge(std::move(bodies), solid_, target, epsilon, bulk, memo_);
+  }
+
   /// Simplified shapes, not yet rounded; their appraisals by samples.
   void simplify_all(std::vector<Body>& bodies, double free_cost, std::vector<Body>& out) const {
     out.resize(bodies.size());
@@ -123,20 +128,16 @@ class Decomposer {
                                std::size_t target) {
     std::vector<Body> best;
     double least = std::numeric_limits<double>::infinity();
-    std::size_t chosen = snapshots.size();
-    const auto attempt = [&](std::size_t i, double bulk) {
-      std::vector<Body> bodies = merge(snapshots[i], solid_, target, least, bulk);
-      if (bodies.size() > target) return;
-      const double worst = worst_of(bodies);
-      if (worst >= least) return;
-      least = worst;
-      best = std::move(bodies);
-      chosen = i;
-    };
-    for (std::size_t i = 0; i < snapshots.size(); ++i) attempt(i, tuning_.bulks[0]);
-    if (chosen == snapshots.size()) return best;
-    const std::size_t first = chosen;
-    for (std::size_t k = 1; k < tuning_.bulks.size(); ++k) attempt(first, tuning_.bulks[k]);
+    for (const auto& snapshot : snapshots) {
+      for (const double bulk : tuning_.bulks) {
+        std::vector<Body> bodies = merged(snapshot, target, least, bulk);
+        if (bodies.size() > target) continue;
+        const double worst = worst_of(bodies);
+        if (worst >= least) continue;
+        least = worst;
+        best = std::move(bodies);
+      }
+    }
     return best;
   }
 
@@ -198,10 +199,10 @@ class Decomposer {
       changed.insert(changed.end(), parts.begin(), parts.end());
       bool better = false;
       for (const double bulk : tuning_.bulks) {
-        std::vector<Body> merged = merge(changed, solid_, target, 0.999 * limit, bulk);
-        better = merged.size() <= target && worst_of(merged) < limit;
+        std::vector<Body> fewer = merged(changed, target, 0.999 * limit, bulk);
+        better = fewer.size() <= target && worst_of(fewer) < limit;
         if (!better) continue;
-        bodies = std::move(merged);
+        bodies = std::move(fewer);
         break;
       }
       if (!better) return;
@@ -220,7 +221,7 @@ class Decomposer {
     report("merging", 0.7);
     std::vector<Body> bodies = best_merge(snapshots, target);
     if (bodies.empty())
-      bodies = merge(leaf_bodies(), solid_, target, std::numeric_limits<double>::infinity());
+      bodies = merged(leaf_bodies(), target, std::numeric_limits<double>::infinity());
     refine(bodies, target);
     report("simplifying", 0.8);
     std::vector<Finished> finished = finish(bodies, 0.25 * worst_of(bodies));
@@ -245,7 +246,7 @@ class Decomposer {
     for (std::size_t i = 0; i < finished.size(); ++i)
       if (i != worst) bodies.push_back(finished[i].body);
     bodies.insert(bodies.end(), parts.begin(), parts.end());
-    bodies = merge(std::move(bodies), solid_, target, 0.95 * limit);
+    bodies = merged(std::move(bodies), target, 0.95 * limit);
     if (bodies.size() > target) return false;
     // Bodies that stayed need not be finished again.
     std::map<std::vector<int>, std::size_t> known;
@@ -280,9 +281,13 @@ class Decomposer {
         report("cutting", 0.6 * std::clamp(std::log(begin / std::max(tree_.worst(), 1e-300)) /
                                                std::log(begin / (0.5 * wished)),
                                            0.0, 1.0));
-      std::vector<Body> bodies = merge(leaf_bodies(), solid_, 1, wished);
-      most_leaves = std::max<std::size_t>(200, 8 * bodies.size());
-      if (best.empty() || bodies.size() < best.size()) best = std::move(bodies);
+      std::size_t fewest = 0;
+      for (const double bulk : tuning_.bulks) {
+        std::vector<Body> bodies = merged(leaf_bodies(), 1, wished, bulk);
+        fewest = fewest == 0 ? bodies.size() : std::min(fewest, bodies.size());
+        if (best.empty() || bodies.size() < best.size()) best = std::move(bodies);
+      }
+      most_leaves = std::max<std::size_t>(200, 8 * fewest);
     }
     report("simplifying", 0.6);
     // Simplify; where the vertices allowed are too few, take the body apart.
@@ -324,7 +329,7 @@ class Decomposer {
       return leaves;
     }
     for (const int leaf : body.leaves) leaves.push_back(body_of(tree_, leaf));
-    return merge(std::move(leaves), solid_, 2, epsilon);
+    return merged(std::move(leaves), 2, epsilon);
   }
 
   /// Simplifies, rounds outwards and measures.
@@ -377,6 +382,7 @@ class Decomposer {
   Tuning tuning_;
   Solid solid_;
   CutTree tree_;
+  PairMemo memo_;
   double point_error_ = 0;
   std::map<int, std::vector<Vec3>> required_;
   DecomposeResult result_;

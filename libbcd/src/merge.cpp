@@ -12,8 +12,9 @@ namespace {
 /// Two bodies and what their hull would be.
 struct Pair {
   std::uint32_t a, b;
-  double cost;
   double worst;
+  double added;  // side of a cube of the volume added
+  double cost;
 };
 
 /// Cheapest first; ties by index, so that the order is always the same.
@@ -32,14 +33,13 @@ void join(const Body& a, const Body& b, std::vector<Vec3>& points) {
   points.insert(points.end(), b.hull.begin(), b.hull.end());
 }
 
-Pair judge(const std::vector<Body>& bodies, std::uint32_t a, std::uint32_t b, const Solid& solid,
-           double bulk) {
+Pair judge(const std::vector<Body>& bodies, std::uint32_t a, std::uint32_t b, const Solid& solid) {
   static thread_local std::vector<Vec3> points;
   join(bodies[a], bodies[b], points);
   const Appraisal h = appraise(points, solid, hull_builder(), true);
   const double added =
       std::max(0.0, h.volume - bodies[a].appraisal.volume - bodies[b].appraisal.volume);
-  return {a, b, h.worst + bulk * std::cbrt(added), h.worst};
+  return {a, b, h.worst, std::cbrt(added), 0};
 }
 
 Body body_round(const std::vector<Vec3>& points, const Solid& solid, std::vector<int> leaves) {
@@ -82,23 +82,40 @@ bool touch(const Body& a, const Body& b, const Solid& solid) {
 }
 
 std::vector<Body> merge(std::vector<Body> bodies, const Solid& solid, std::size_t target,
-                        double epsilon, double bulk) {
+                        double epsilon, double bulk, PairMemo& memo) {
+  std::vector<std::uint32_t> id;
+  for (const Body& b : bodies) id.push_back(memo.id_of(b.leaves));
   std::vector<char> alive(bodies.size(), 1);
   std::size_t count = bodies.size();
   const auto near = [&](const Body& a, const Body& b) { return touch(a, b, solid); };
   std::priority_queue<Pair, std::vector<Pair>, decltype(&later)> queue(&later);
   std::vector<Pair> fresh;
   const auto judge_all = [&] {
-    tbb::parallel_for(std::size_t{0}, fresh.size(), [&](std::size_t i) {
-      fresh[i] = judge(bodies, fresh[i].a, fresh[i].b, solid, bulk);
+    std::vector<std::size_t> open;
+    for (std::size_t i = 0; i < fresh.size(); ++i) {
+      Pair& p = fresh[i];
+      if (const PairMemo::Entry* known = memo.find(id[p.a], id[p.b])) {
+        p.worst = known->worst;
+        p.added = known->added;
+      } else {
+        open.push_back(i);
+      }
+    }
+    tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t i) {
+      Pair& p = fresh[open[i]];
+      p = judge(bodies, p.a, p.b, solid);
     });
-    for (const Pair& p : fresh)
+    for (const std::size_t i : open)
+      memo.add(id[fresh[i].a], id[fresh[i].b], {fresh[i].worst, fresh[i].added});
+    for (Pair& p : fresh) {
+      p.cost = p.worst + bulk * p.added;
       if (p.worst <= epsilon) queue.push(p);
+    }
     fresh.clear();
   };
   for (std::uint32_t a = 0; a < bodies.size(); ++a)
     for (std::uint32_t b = a + 1; b < bodies.size(); ++b)
-      if (near(bodies[a], bodies[b])) fresh.push_back({a, b, 0, 0});
+      if (near(bodies[a], bodies[b])) fresh.push_back({a, b, 0, 0, 0});
   judge_all();
   bool all_pairs = false;
   while (count > target) {
@@ -109,7 +126,7 @@ std::vector<Body> merge(std::vector<Body> bodies, const Solid& solid, std::size_
       for (std::uint32_t a = 0; a < bodies.size(); ++a)
         for (std::uint32_t b = a + 1; b < bodies.size(); ++b)
           if (alive[a] != 0 && alive[b] != 0 && !near(bodies[a], bodies[b]))
-            fresh.push_back({a, b, 0, 0});
+            fresh.push_back({a, b, 0, 0, 0});
       judge_all();
       if (queue.empty()) break;
     }
@@ -127,11 +144,12 @@ std::vector<Body> merge(std::vector<Body> bodies, const Solid& solid, std::size_
     bodies[p.b].hull = {};
     --count;
     const auto self = static_cast<std::uint32_t>(bodies.size());
+    id.push_back(memo.id_of(merged.leaves));
     bodies.push_back(std::move(merged));
     alive.push_back(1);
     for (std::uint32_t a = 0; a < self; ++a)
       if (alive[a] != 0 && (all_pairs || near(bodies[a], bodies[self])))
-        fresh.push_back({a, self, 0, 0});
+        fresh.push_back({a, self, 0, 0, 0});
     judge_all();
   }
   std::vector<Body> out;

@@ -2,6 +2,8 @@
 
 #include <functional>
 #include <limits>
+#include <map>
+#include <unordered_map>
 #include <vector>
 
 #include "appraise.h"
@@ -82,10 +84,33 @@ Body union_of(const CutTree& tree, const Solid& solid, const std::vector<int>& l
 /// Whether the bodies' boxes are near each other.
 bool touch(const Body& a, const Body& b, const Solid& solid);
 
+/// What hulls round two bodies were found to be like, remembered from one merge to the next.
+class PairMemo {
+ public:
+  struct Entry {
+    double worst, added;
+  };
+  std::uint32_t id_of(const std::vector<int>& leaves) {
+    return ids_.emplace(leaves, static_cast<std::uint32_t>(ids_.size())).first->second;
+  }
+  [[nodiscard]] const Entry* find(std::uint32_t a, std::uint32_t b) const {
+    const auto at = pairs_.find(key(a, b));
+    return at == pairs_.end() ? nullptr : &at->second;
+  }
+  void add(std::uint32_t a, std::uint32_t b, Entry entry) { pairs_.emplace(key(a, b), entry); }
+
+ private:
+  static std::uint64_t key(std::uint32_t a, std::uint32_t b) {
+    return std::uint64_t{std::min(a, b)} << 32U | std::max(a, b);
+  }
+  std::map<std::vector<int>, std::uint32_t> ids_;
+  std::unordered_map<std::uint64_t, Entry> pairs_;
+};
+
 /// Merges neighbours, cheapest first, while the merged distance stays ≤ `epsilon` and there are
 /// more than `target` bodies. The cost is that distance, and `bulk` times the side of a cube of
 /// the volume added.
 std::vector<Body> merge(std::vector<Body> bodies, const Solid& solid, std::size_t target,
-                        double epsilon, double bulk = 0.05);
+                        double epsilon, double bulk, PairMemo& memo);
 
 }  // namespace kaboum::bcd
