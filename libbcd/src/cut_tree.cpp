@@ -119,10 +119,24 @@ void CutTree::add_leaf(Piece&& piece, int parent) {
   ++leaf_count_;
 }
 
-std::vector<int> CutTree::leaves() const {
+std::vector<int> CutTree::leaves() const { return leaves(std::numeric_limits<std::size_t>::max()); }
+
+std::vector<int> CutTree::leaves(std::size_t count) const {
+  // Nodes are in the order of the cuts; children of one cut are neighbours.
+  const int all = static_cast<int>(nodes_.size());
+  int end = 1;
+  for (std::size_t reached = 1; end < all && reached < count;) {
+    const int parent = nodes_[end].parent;
+    while (end < all && nodes_[end].parent == parent) {
+      if (end == nodes_[parent].upper && nodes_[parent].lower >= 0) ++reached;
+      ++end;
+    }
+  }
   std::vector<int> out;
-  for (int i = 0; i < static_cast<int>(nodes_.size()); ++i)
-    if (nodes_[i].lower < 0 && nodes_[i].upper < 0) out.push_back(i);
+  for (int i = 0; i < end; ++i) {
+    const Node& n = nodes_[i];
+    if ((n.lower < 0 || n.lower >= end) && (n.upper < 0 || n.upper >= end)) out.push_back(i);
+  }
   return out;
 }
 

@@ -24,6 +24,7 @@ struct Tuning {
   std::vector<double> thresholds;  ///< of epsilon, that leaves are cut down to
   std::vector<double> bulks;       ///< weights of the added volume when merging, tried in turn
   int refinements;                 ///< rounds of changing the worst body
+  bool reduce;                     ///< look for fewer bodies within epsilon by their number
 };
 
 Tuning tuning(Effort effort) {
@@ -32,7 +33,7 @@ Tuning tuning(Effort effort) {
       return {60000, {.offsets = 5, .reflex_planes = 6, .refinements = 1}, {1.5}, {0.8}, {0.05},
               12};
     case Effort::Normal:
-      return {200000, {}, {1, 1.25, 1.5, 2, 3}, {1, 0.7, 0.5}, {0.05, 0.15, 0.02}, 60};
+      return {200000, {}, {1, 1.25, 1.5, 2, 3}, {1, 0.7, 0.5}, {0.05, 0.15, 0.02}, 60, true};
     case Effort::Best:
       break;
   }
@@ -41,7 +42,8 @@ Tuning tuning(Effort effort) {
           {1, 1.25, 1.5, 2, 3, 4.5, 6},
           {1, 0.85, 0.7, 0.5, 0.35},
           {0.05, 0.15, 0.02, 0.3, 0},
-          200};
+          200,
+          true};
 }
 
 /// A body on its way to the result.
@@ -68,6 +70,7 @@ class Decomposer {
     std::vector<Finished> bodies;
     if (options_.epsilon) {
       bodies = within(*options_.epsilon);
+      if (tuning_.reduce) reduce(bodies, *options_.epsilon);
       result_.stop = Stop::Done;
       for (const Finished& f : bodies)
         if (f.reach.upper > *options_.epsilon) result_.stop = Stop::Stuck;
@@ -94,9 +97,11 @@ class Decomposer {
     if (options_.progress) options_.progress({stage, fraction});
   }
 
-  [[nodiscard]] std::vector<Body> leaf_bodies() const {
+  /// One body per leaf, as they were when there were this many.
+  [[nodiscard]] std::vector<Body> leaf_bodies(
+      std::size_t count = std::numeric_limits<std::size_t>::max()) const {
     std::vector<Body> out;
-    for (const int leaf : tree_.leaves()) out.push_back(body_of(tree_, leaf));
+    for (const int leaf : tree_.leaves(count)) out.push_back(body_of(tree_, leaf));
     return out;
   }
 
@@ -209,20 +214,23 @@ class Decomposer {
     }
   }
 
-  std::vector<Finished> at_most(std::size_t target) {
+  /// @param hopeless  where the distance before simplification exceeds this, nothing is returned.
+  std::vector<Finished> at_most(std::size_t target,
+                                double hopeless = std::numeric_limits<double>::infinity()) {
     std::vector<std::vector<Body>> snapshots;
     const double most = tuning_.multiples.back() * static_cast<double>(target);
     for (const double multiple : tuning_.multiples) {
       const double wished = std::ceil(multiple * static_cast<double>(target));
       while (static_cast<double>(tree_.leaf_count()) < wished && tree_.cut_worst())
         report("cutting", 0.7 * static_cast<double>(tree_.leaf_count()) / most);
-      snapshots.push_back(leaf_bodies());
+      snapshots.push_back(leaf_bodies(static_cast<std::size_t>(wished)));
     }
     report("merging", 0.7);
     std::vector<Body> bodies = best_merge(snapshots, target);
     if (bodies.empty())
       bodies = merged(leaf_bodies(), target, std::numeric_limits<double>::infinity());
     refine(bodies, target);
+    if (worst_of(bodies) > hopeless) return {};
     report("simplifying", 0.8);
     std::vector<Finished> finished = finish(bodies, 0.25 * worst_of(bodies));
     const int rounds = tuning_.refinements / 3;
@@ -314,6 +322,25 @@ class Decomposer {
     if (!best.empty())
       for (Finished& f : finish(best, 0)) out.push_back(std::move(f));
     return out;
+  }
+
+  /// Looks for fewer bodies within epsilon, by bisection of the number allowed.
+  void reduce(std::vector<Finished>& bodies, double epsilon) {
+    for (const Finished& f : bodies)
+      if (f.reach.upper > epsilon) return;
+    std::size_t low = bodies.size() / 3;
+    while (bodies.size() > low + 1 + bodies.size() / 40) {
+      const std::size_t middle = (low + bodies.size()) / 2;
+      std::vector<Finished> fewer = at_most(middle, epsilon);
+      const bool good = !fewer.empty() && fewer.size() <= middle &&
+                        std::all_of(fewer.begin(), fewer.end(),
+                                    [&](const Finished& f) { return f.reach.upper <= epsilon; });
+      if (good) {
+        bodies = std::move(fewer);
+      } else {
+        low = middle;
+      }
+    }
   }
 
   /// Two or more bodies in place of one.

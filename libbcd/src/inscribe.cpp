@@ -339,6 +339,7 @@ std::optional<Inscribed> inscribe(const Mesh& boundary, const Vec3& seed, double
   }
   if (!best) {
     std::vector<Vec3> cube;
+    cube.reserve(8);
     const double half = (depth - margin) / 1.7320508075688774;
     for (int i = 0; i < 8; ++i)
       cube.emplace_back(

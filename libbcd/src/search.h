@@ -39,6 +39,8 @@ class CutTree {
 
   [[nodiscard]] const std::vector<Node>& nodes() const { return nodes_; }
   [[nodiscard]] std::vector<int> leaves() const;
+  /// The leaves when there were this many for the first time; all, if there never were.
+  [[nodiscard]] std::vector<int> leaves(std::size_t count) const;
   /// Appends the leaves that a node was cut into, itself when it was not.
   void leaves_below(int node, std::vector<int>& out) const;
   [[nodiscard]] std::size_t leaf_count() const { return leaf_count_; }
