@@ -72,13 +72,13 @@ Direction middle_of(const std::vector<Vec3>& normals) {
 
 /// Directions of which each normal has one with n·u ≥ 1: one, or at a knife's edge, where that
 /// would be long, one per side.
-std::vector<Vec3> outward(const std::vector<Vec3>& normals, const Vec3& otherwise) {
+std::vector<Vec3> outward(const std::vector<Vec3>& normals, const Vec3& otherwise, bool split) {
   if (normals.empty()) {
     const double length = otherwise.norm();
     return {length > 0 ? Vec3(otherwise / length) : Vec3::Zero()};
   }
   const Direction all = middle_of(normals);
-  if (all.margin > 0.1) return {all.u / all.margin};
+  if (all.margin > 0.1 || !split) return {all.u / std::max(all.margin, 0.01)};
   std::array<std::vector<Vec3>, 2> side;
   for (const Vec3& n : normals) side[n.dot(normals[0]) > 0 ? 0 : 1].push_back(n);
   std::vector<Vec3> out;
@@ -170,39 +170,42 @@ geom::Mesh enclose(std::span<const Vec3> shape, std::span<const Vec3> required, 
     }
     Vec3 center = Vec3::Zero();
     for (const Vec3& p : hull.vertices) center += p / static_cast<double>(n);
-    std::vector<Vec3> start, direction;  // of what is moved, and the vertex that it is
-    std::vector<std::uint32_t> vertex;
-    std::vector<double> push(n, 0);
-    for (std::uint32_t v = 0; v < n; ++v) {
-      for (const Vec3& d : outward(normals[v], hull.vertices[v] - center)) {
-        start.push_back(hull.vertices[v]);
-        direction.push_back(d);
-        vertex.push_back(v);
-      }
-      if (!std::binary_search(sorted.begin(), sorted.end(), hull.vertices[v], Less()))
-        push[v] = 1.5 * ulp;
-    }
-    std::vector<Vec3> moved(start.size());
-    for (int round = 0; round < 40; ++round) {
-      for (std::size_t i = 0; i < moved.size(); ++i)
-        moved[i] = geom::to_float32(Vec3(start[i] + push[vertex[i]] * direction[i]));
-      if (!builder.build(moved) || builder.vertices().size() > most) break;
-      bool good = true;
-      for (const Triangle& t : builder.triangles()) {
-        bool outside = false;
-        for (const Vec3& p : required) {
-          if (geom::orient3d(moved[t[0]], moved[t[1]], moved[t[2]], p) == geom::Sign::Positive) {
-            outside = true;
-            break;
-          }
+    // Both sides of knives' edges, unless that makes too many vertices.
+    for (const bool split : {true, false}) {
+      std::vector<Vec3> start, direction;  // of what is moved, and the vertex that it is
+      std::vector<std::uint32_t> vertex;
+      std::vector<double> push(n, 0);
+      for (std::uint32_t v = 0; v < n; ++v) {
+        for (const Vec3& d : outward(normals[v], hull.vertices[v] - center, split)) {
+          start.push_back(hull.vertices[v]);
+          direction.push_back(d);
+          vertex.push_back(v);
         }
-        if (!outside) continue;
-        good = false;
-        for (const std::uint32_t i : t)
-          push[vertex[i]] = std::max(1.5 * ulp, 1.6 * push[vertex[i]]);
+        if (!std::binary_search(sorted.begin(), sorted.end(), hull.vertices[v], Less()))
+          push[v] = 1.5 * ulp;
       }
-      if (good) return builder.mesh();
-      if (*std::max_element(push.begin(), push.end()) > longest_push) break;
+      std::vector<Vec3> moved(start.size());
+      for (int round = 0; round < 40; ++round) {
+        for (std::size_t i = 0; i < moved.size(); ++i)
+          moved[i] = geom::to_float32(Vec3(start[i] + push[vertex[i]] * direction[i]));
+        if (!builder.build(moved) || builder.vertices().size() > most) break;
+        bool good = true;
+        for (const Triangle& t : builder.triangles()) {
+          bool outside = false;
+          for (const Vec3& p : required) {
+            if (geom::orient3d(moved[t[0]], moved[t[1]], moved[t[2]], p) == geom::Sign::Positive) {
+              outside = true;
+              break;
+            }
+          }
+          if (!outside) continue;
+          good = false;
+          for (const std::uint32_t i : t)
+            push[vertex[i]] = std::max(1.5 * ulp, 1.6 * push[vertex[i]]);
+        }
+        if (good) return builder.mesh();
+        if (*std::max_element(push.begin(), push.end()) > longest_push) break;
+      }
     }
   }
   // Too thin to be pushed along normals: the points themselves, or a box round them.
