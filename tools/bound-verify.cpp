@@ -86,11 +86,17 @@ Input read_approximation(const Options& o, geom::ConvexSet& set, bool& is_set) {
   if (!folder) {
     format = tools::format_for(o.approximation, o.approximation_format, "--approximation-format");
   }
-  const bool may_have_record = o.inner && o.approximation != "-" && format == io::Format::Glb;
+  const bool may_have_record = o.approximation != "-" && format == io::Format::Glb;
   if (o.cover || o.set || folder || may_have_record) {
     io::SetReadDetails details;
     set = io::read_convex_set(o.approximation, format, &details);
     is_set = o.cover || o.set || folder || details.has_record;
+    if (is_set && o.outer) {
+      throw Error(ErrorCode::InvalidArgument,
+                  o.approximation +
+                      " is a set of convex bodies: ask with --cover whether it covers "
+                      "the original");
+    }
     if (is_set) {
       return {verify::sum_of(set), format.value_or(io::Format::Stl), io::sha256(details.bytes),
               std::move(details.notes)};
@@ -221,10 +227,18 @@ std::vector<std::string> hints(const geom::Mesh& original, const geom::Mesh& app
         "the enclosing box lies within the enclosed one: ORIGINAL comes first, "
         "APPROXIMATION second; --outer and --inner say which encloses");
   }
+  return lines;
+}
+
+/// What an enclosure says little about.
+std::vector<std::string> warnings(const geom::Mesh& original, const geom::Mesh& approximation) {
+  std::vector<std::string> lines;
   for (const auto& [mesh, name] :
        {std::pair{&original, "the original"}, std::pair{&approximation, "the approximation"}}) {
     if (geom::signed_volume(*mesh) < 0) {
-      lines.push_back(std::string(name) + " is inside out: its volume is negative");
+      lines.push_back(
+          std::string(name) +
+          " is inside out: its volume is negative, so that its solid is empty or nearly so");
     }
   }
   return lines;
@@ -352,7 +366,7 @@ int check(const Options& o) {
           verify::verify_reach(set, original.mesh, bound, inclusion.inner_closed);
       if (claim.answer == Answer::Refuted) far.push_back({&approximation.mesh, claim.triangle});
       verdict.add(inclusion.inner_closed ? "distance from the union to the solid"
-                                         : "distance from the union to the surface",
+                                         : "distance from the bodies' facets to the surface",
                   bound, claim);
       claims["distance"] = to_json(claim);
       claims["distance"]["bound"] = bound;
@@ -445,6 +459,9 @@ int check(const Options& o) {
     out << name_of(answer)
         << (open && answer == Answer::Verified ? ", as far as an open mesh defines it" : "")
         << '\n';
+  }
+  for (const std::string& warning : warnings(original.mesh, approximation.mesh)) {
+    tools::log(o.common.quiet, "note: " + warning);
   }
   const bool not_enclosed =
       inclusion.solid.answer == Answer::Refuted || inclusion.surface.answer == Answer::Refuted;

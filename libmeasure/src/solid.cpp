@@ -242,7 +242,8 @@ Minimum solid_minimum(const Solid& a, const Solid& b) {
   const double error = a.boundary().error + b.boundary().error;
   // Boundaries apart: every part of either lies in the other solid or outside it.
   if (m.lower > error) {
-    const auto meets = [](const Solid& inner, const Solid& outer) -> std::optional<Vec3> {
+    bool unknown = false;
+    const auto meets = [&](const Solid& inner, const Solid& outer) -> std::optional<Vec3> {
       const Mesh mesh = geom::weld(inner.boundary().mesh);
       std::uint32_t parts = 0;
       const std::vector<std::uint32_t> part = geom::components(mesh, false, &parts);
@@ -251,7 +252,9 @@ Minimum solid_minimum(const Solid& a, const Solid& b) {
         if (seen[part[t]] != 0) continue;
         seen[part[t]] = 1;
         const Vec3& p = mesh.vertices[mesh.triangles[t][0]];
-        if (outer.contains(p) == std::optional(true)) return p;
+        const std::optional<bool> within = outer.contains(p, m.lower - inner.boundary().error);
+        if (within == std::optional(true)) return p;
+        unknown = unknown || !within;
       }
       return std::nullopt;
     };
@@ -262,6 +265,7 @@ Minimum solid_minimum(const Solid& a, const Solid& b) {
       m.on_a = m.on_b = *common;
       return m;
     }
+    if (unknown) m.lower = 0;
   }
   const double margins = a.margin() + b.margin();
   // Where a boundary was cut and rounded, the true ones may be this much apart.

@@ -161,7 +161,7 @@ class Volume {
     box_.min.array() -= a.margin() * (1 + 1e-15);
     box_.max.array() += a.margin() * (1 + 1e-15);
     magnitude_ = box_.min.cwiseAbs().cwiseMax(box_.max.cwiseAbs()).maxCoeff();
-    Box3 all = box_;
+    Box3 all = to_a.box();  // as in the wish: without the margin
     all.extend(to_b.box());
     diagonal_ = all.diagonal();
     for (const std::array<Vec3, 3>& f : b.boundary().facet) {
@@ -301,7 +301,8 @@ class Volume {
     if (cell.upper <= enough) return settled(cell.upper);
     if (b_.covers_ball(c, radius, at.lower)) return settled(0);
     if (outside_a(c, radius)) return settled(0);
-    if (has_no_maximum(cell, c, radius, at.upper, enough, near, half_space)) return settled(0);
+    // Lower maxima than that there may be.
+    if (has_no_maximum(cell, c, radius, at.upper, enough, near, half_space)) return settled(enough);
     consider(finding, c, at.lower);
     if (cell.far) {
       const Vec3& corner = cell.corner[where];

@@ -43,6 +43,8 @@ Body make_body(const Mesh& hull) {
   Body body;
   for (const auto& [i, j, k] : hull.triangles) {
     const std::array<Vec3, 3> t{hull.vertices[i], hull.vertices[j], hull.vertices[k]};
+    const auto normal = exact::plane_of(t).normal;
+    if (exact::dot(normal, normal) == 0) continue;  // a segment has no plane and bounds nothing
     body.triangles.push_back(t);
     for (const Vec3& p : t) body.box.extend(p);
     if (std::none_of(body.planes.begin(), body.planes.end(),

@@ -7,6 +7,7 @@
 
 #include "margin.h"
 #include "nearest.h"
+#include "pockets.h"
 #include "scene.h"
 #include "spot.h"
 
@@ -111,11 +112,23 @@ Cover verify_cover(const geom::Mesh& original, const geom::ConvexSet& set,
 }
 
 DistanceClaim verify_reach(const geom::ConvexSet& set, const geom::Mesh& original, double epsilon,
-                           bool to_solid) {
+                           bool to_solid, const InclusionOptions& limits) {
   DistanceClaimOptions options;
   options.to_solid = to_solid;
   const geom::Mesh sum = sum_of(set);
   DistanceClaim claim = verify_distance(sum, original, epsilon - set.margin, options);
+  if (to_solid && claim.answer == Answer::Verified) {
+    // Cavities that the bodies fill are farther away inside the bodies than on their surfaces.
+    const Claim inside = reach_inside(sum, original, epsilon - set.margin, limits);
+    if (inside.answer == Answer::Verified) return claim;
+    claim.answer = inside.answer;
+    claim.reason = inside.reason;
+    if (inside.answer != Answer::Refuted) return claim;
+    claim.at = inside.witness->point;
+    claim.largest = inside.witness->depth + (epsilon - set.margin);
+    claim.reason = "a point inside the bodies is farther away";
+    if (claim.largest > epsilon || !(set.margin > 0)) return claim;
+  }
   if (claim.answer != Answer::Refuted || !(set.margin > 0)) return claim;
 
   // Pushed away from the original by the margin less what `at` errs by, it is a point of the union.

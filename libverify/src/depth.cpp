@@ -1,4 +1,4 @@
-// Which depths of a solid a set of bodies inside it leaves out.
+// Which depths of a solid a set of bodies inside it leaves out, and how far a union reaches.
 #include <kaboum/geom/error.h>
 #include <kaboum/verify/cover.h>
 
@@ -6,29 +6,6 @@
 #include "whole.h"
 
 namespace kaboum::verify {
-namespace {
-
-/// The faces of the inside chain that bound {w ≥ 1} as wholes: no other face of the chain cuts
-/// them, and they have w ≥ 1 on the inner side, w ≤ 0 on the outer one.
-std::vector<std::uint32_t> boundary_faces(const Scene& scene, const InclusionOptions& options) {
-  Arrangement arrangement(scene, {options.max_contacts, options.max_pairs});
-  arrangement.need_own(kInside);
-  std::atomic<std::size_t> samples = 0;
-  const auto values = [&](Side side) {
-    const auto own = [&](const Spot& spot) { return winding(scene, spot, side, kInside); };
-    return whole_values(arrangement, kInside, mask_of(kInside), side, own, samples);
-  };
-  const std::vector<int> inner = values(kInner), outer = values(kOuter);
-  std::vector<std::uint32_t> faces;
-  for (std::uint32_t f = scene.begin(kInside); f < scene.end(kInside); ++f) {
-    const std::uint32_t i = f - scene.begin(kInside);
-    if (inner[i] == kCut || outer[i] == kCut) continue;
-    if (inner[i] >= 1 && outer[i] <= 0) faces.push_back(f);
-  }
-  return faces;
-}
-
-}  // namespace
 
 Claim verify_depth(const geom::Mesh& original, const geom::ConvexSet& set, double epsilon,
                    const InclusionOptions& options) {
@@ -49,7 +26,8 @@ Claim verify_depth(const geom::Mesh& original, const geom::ConvexSet& set, doubl
   }
   std::vector<std::uint32_t> bounding;
   try {
-    bounding = boundary_faces(scene, options);
+    bounding = whole_faces(scene, kInside, options,
+                           [](int inner, int outer) { return inner >= 1 && outer <= 0; });
   } catch (const Error& error) {
     if (error.code() != ErrorCode::LimitReached) throw;
   }
@@ -58,13 +36,39 @@ Claim verify_depth(const geom::Mesh& original, const geom::ConvexSet& set, doubl
     return claim;
   }
   const BoxTree target = tree_of(scene, bounding);
-  claim = search_pockets(scene, offending_faces(scene, without.solid),
-                         {target, scene.tree(kInside), epsilon * scene.scale(), options.max_cells});
+  claim = search_pockets(
+      scene, offending_faces(scene, without.solid),
+      {target, scene.tree(kInside), epsilon * scene.scale(), options.max_cells, false});
   if (claim.answer != Answer::Refuted) return claim;
   claim.reason = "a point that is deeper than that inside the original is in no body";
   claim.inner_triangles = without.solid.inner_triangles;
   claim.outer_triangles = without.solid.outer_triangles;
   return claim;
+}
+
+Claim reach_inside(const geom::Mesh& sum, const geom::Mesh& original, double epsilon,
+                   const InclusionOptions& options) {
+  const Inclusion inclusion = verify_inclusion(sum, original, options);
+  Claim claim = inclusion.solid;
+  if (claim.answer != Answer::Refuted) return claim;
+  claim = {};
+  claim.answer = Answer::Undecided;
+  const Scene scene(sum, original);
+  std::vector<std::uint32_t> solid;
+  try {
+    solid = whole_faces(scene, kOutside, options,
+                        [](int inner, int outer) { return inner >= 1 || outer >= 1; });
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::LimitReached) throw;
+  }
+  if (inclusion.limited || solid.empty()) {
+    claim.reason = "which triangles are part of the original's solid was not found";
+    return claim;
+  }
+  const BoxTree target = tree_of(scene, solid);
+  return search_pockets(
+      scene, offending_faces(scene, inclusion.solid),
+      {target, scene.tree(kOutside), epsilon * scene.scale(), options.max_cells, true});
 }
 
 }  // namespace kaboum::verify

@@ -7,10 +7,11 @@
 namespace kaboum::verify {
 namespace {
 
-Claim solid_claim(const Scene& scene, double margin, std::size_t max_cells, const Claim& without) {
+Claim solid_claim(const Scene& scene, double margin, std::size_t max_cells, bool inside_only,
+                  const Claim& without) {
   const BoxTree& bodies = scene.tree(kOutside);
   Claim claim = search_pockets(scene, offending_faces(scene, without),
-                               {bodies, bodies, margin * scene.scale(), max_cells});
+                               {bodies, bodies, margin * scene.scale(), max_cells, inside_only});
   if (claim.answer == Answer::Refuted) {
     claim.reason = "a part of the inner solid is farther from the outer one than the margin";
   }
@@ -59,11 +60,12 @@ void allow_margin(const geom::Mesh& inner, const geom::Mesh& outer, double margi
     }
     claim = std::move(with);
   };
-  if (!inclusion.relative) {
-    decide(inclusion.solid,
-           [&](const Claim& c) { return solid_claim(scene, margin, max_cells, c); });
-  }
   decide(inclusion.surface, [&](const Claim& c) { return surface_claim(inner, outer, margin, c); });
+  if (inclusion.relative) return;
+  // The boundary of what is left out lies on the bodies and on triangles of the surface claim.
+  const bool inside_only = inclusion.surface.answer == Answer::Verified;
+  decide(inclusion.solid,
+         [&](const Claim& c) { return solid_claim(scene, margin, max_cells, inside_only, c); });
 }
 
 }  // namespace kaboum::verify

@@ -13,6 +13,7 @@ namespace kaboum::verify {
 namespace {
 
 constexpr int kClimbs = 200;
+constexpr std::size_t kFewFaces = 200;
 constexpr double kNowhere = -std::numeric_limits<double>::infinity();
 
 /// Halves boxes until each of them is settled.
@@ -34,7 +35,8 @@ class Search {
       seen += cells.size();
       if (seen > limit_.max_cells) {
         claim.answer = Answer::Undecided;
-        claim.reason = "what is left out reaches too close to the limit";
+        claim.reason =
+            "too many boxes would have to be looked at; the distance may be close to the limit";
         return claim;
       }
       looks.assign(cells.size(), {});
@@ -90,6 +92,9 @@ class Search {
     } else if (in.has_value()) {
       look.beyond = beyond(look.point);
     }
+    if (!look.settled && limit_.inside_only) {
+      look.settled = no_maximum(look.point, radius, hit.distance);
+    }
     if (!look.settled) {
       const std::vector<Vec3> part = in_front(cell, look.point, boundary.nearest(look.point).face);
       if (!part.empty()) {
@@ -99,6 +104,53 @@ class Search {
       }
     }
     return look;
+  }
+
+  /// Whether no point of the ball can be a local maximum of the distance: at one, the nearest
+  /// points lie in no open half-space. Those of all points of the ball are within distance +
+  /// 2·radius of its centre; all faces that reach there must be beyond a plane that has the ball
+  /// behind it.
+  [[nodiscard]] bool no_maximum(const Vec3& p, double radius, double distance) const {
+    if (distance <= radius) return false;
+    const double reach = (distance + 2 * radius + 2 * slack_) * (1 + 0x1p-40);
+    std::vector<std::uint32_t> faces;
+    bool few = true;
+    limit_.all.query(
+        [&](const Bounds& box) {
+          double square = 0;
+          for (int k = 0; k < 3; ++k) {
+            const double d = std::max({box.low[k] - p[k], p[k] - box.high[k], 0.0});
+            square += d * d;
+          }
+          return few && square <= reach * reach;
+        },
+        [&](std::uint32_t f) {
+          few = few && faces.size() < kFewFaces;
+          faces.push_back(f);
+        });
+    if (!few || faces.empty()) return false;
+    Vec3 sum = Vec3::Zero(), nearest = Vec3::Zero();
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t f : faces) {
+      const Vec3 to =
+          closest_point(p, scene_.corner(f, 0), scene_.corner(f, 1), scene_.corner(f, 2)) - p;
+      sum += to.normalized();
+      if (to.norm() < least) {
+        least = to.norm();
+        nearest = to;
+      }
+    }
+    for (const Vec3& towards : {nearest, sum}) {
+      if (!(towards.norm() > 0)) continue;
+      const Vec3 u = towards.normalized();
+      const bool beyond = std::all_of(faces.begin(), faces.end(), [&](std::uint32_t f) {
+        return u.dot(scene_.corner(f, 0) - p) > radius + slack_ &&
+               u.dot(scene_.corner(f, 1) - p) > radius + slack_ &&
+               u.dot(scene_.corner(f, 2) - p) > radius + slack_;
+      });
+      if (beyond) return true;
+    }
+    return false;
   }
 
   /// What a point's distance exceeds the limit by at least.

@@ -15,6 +15,9 @@ struct Limit {
   const BoxTree& all;     ///< these and more: what is farther from all of them is too far
   double distance;        ///< in the scene's unit, > 0
   std::size_t max_cells;  ///< boxes looked at before giving up
+  /// The boundary of Z is known to be within the limit, so that only local maxima of the distance
+  /// inside Z can exceed it. @pre what distances are measured to is made of faces of `all`
+  bool inside_only;
 };
 
 BoxTree tree_of(const Scene& scene, const std::vector<std::uint32_t>& faces);
@@ -30,5 +33,11 @@ std::vector<std::uint32_t> offending_faces(const Scene& scene, const Claim& clai
 /// @pre scene.scaled()
 Claim search_pockets(const Scene& scene, const std::vector<std::uint32_t>& offending,
                      const Limit& limit);
+
+/// Whether every point in which the sum of bodies winds at least once is within epsilon of the
+/// original's solid, given that the bodies' triangles are.
+/// @pre both are closed chains whose coordinates can be scaled
+Claim reach_inside(const geom::Mesh& sum, const geom::Mesh& original, double epsilon,
+                   const InclusionOptions& options);
 
 }  // namespace kaboum::verify

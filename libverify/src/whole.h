@@ -6,6 +6,8 @@
 #include <limits>
 #include <vector>
 
+#include <kaboum/verify/inclusion.h>
+
 #include "arrangement.h"
 #include "spot.h"
 
@@ -35,6 +37,30 @@ std::vector<int> whole_values(const Arrangement& arrangement, int chain, ChainMa
   samples += roots.size();
   for (std::uint32_t i = 0; i < count; ++i) result[i] = result[patch[i]];
   return result;
+}
+
+/// Faces of a chain that no other of its own cuts and whose winding numbers on the inner and the
+/// outer side satisfy a condition, in order.
+/// @throws Error{LimitReached} beyond the limits on contacts
+template <class Condition>
+std::vector<std::uint32_t> whole_faces(const Scene& scene, int chain,
+                                       const InclusionOptions& options,
+                                       const Condition& condition) {
+  Arrangement arrangement(scene, {options.max_contacts, options.max_pairs});
+  arrangement.need_own(chain);
+  std::atomic<std::size_t> samples = 0;
+  const auto values = [&](Side side) {
+    const auto own = [&](const Spot& spot) { return winding(scene, spot, side, chain); };
+    return whole_values(arrangement, chain, mask_of(chain), side, own, samples);
+  };
+  const std::vector<int> inner = values(kInner), outer = values(kOuter);
+  std::vector<std::uint32_t> faces;
+  for (std::uint32_t i = 0; i < inner.size(); ++i) {
+    if (inner[i] != kCut && outer[i] != kCut && condition(inner[i], outer[i])) {
+      faces.push_back(scene.begin(chain) + i);
+    }
+  }
+  return faces;
 }
 
 }  // namespace kaboum::verify

@@ -72,9 +72,14 @@ if [ -w /dev/full ]; then
   [ "$code" -eq 4 ] || fail "exit code $code when standard output is full"
 fi
 
-# Inner sets: bodies inside, and what they leave out.
 cube 0.25 0.75 >core.off
+
+# A set of bodies is no mesh: its margin would be lost.
 mkdir -p core && "$BIN/bmesh-decimate" core.off -o core/a.stl --vertices 8 --quiet || fail 'core'
+expect 2 'ask with --cover' "$V" --outer one.off core
+expect 2 'ask with --cover' "$V" --outer one.off core.off --set
+
+# Inner sets: bodies inside, and what they leave out.
 expect 0 'convexity: verified' "$V" --inner one.off core
 expect 0 'depth: verified' "$V" --inner one.off core --epsilon 0.26
 expect 1 'depth: refuted' "$V" --inner one.off core --epsilon 0.24 --witness deep.obj

@@ -408,4 +408,30 @@ TEST(SolidMinimum, IsZeroWhereSolidsMeet) {
   EXPECT_NEAR(m.upper, 1.25, 1e-12);
 }
 
+// A corner on a fold inside the other solid has no winding number there; it is inside all the same.
+TEST(SolidMinimum, CornersOnFolds) {
+  const Solid b(kaboum::test::merged({block({0, 0, 0}, {4, 4, 4}), block({2, 0, 0}, {6, 4, 4})}));
+  const Solid a(block({2, 1, 1}, {2.5, 2, 2}));
+  for (const auto& m : {solid_minimum(a, b), solid_minimum(b, a)}) {
+    EXPECT_EQ(m.lower, 0);
+    EXPECT_EQ(m.upper, 0);
+  }
+}
+
+// A body's triangle without area has no plane; the body is what it is without it.
+TEST(UnionBoundary, TrianglesWithoutArea) {
+  const Mesh without = block({0, 0, 0}, {2, 1, 1});
+  Mesh with = without;
+  const auto middle = static_cast<std::uint32_t>(with.vertices.size());
+  const auto [i, j, k] = with.triangles[0];
+  with.vertices.emplace_back(0.5 * with.vertices[i] + 0.5 * with.vertices[j]);
+  with.triangles[0] = {middle, j, k};
+  with.triangles.insert(with.triangles.begin(), {{i, j, middle}, {i, middle, k}});
+  const Mesh second = block({1, 0, 0.5}, {3, 1, 2});
+  const auto boundary = [&](const Mesh& mesh) {
+    return kaboum::geom::area(kaboum::measure::union_boundary(set_of({mesh, second})).mesh);
+  };
+  EXPECT_DOUBLE_EQ(boundary(with), boundary(without));
+}
+
 }  // namespace

@@ -319,6 +319,27 @@ TEST(Depth, FoldsAreNoBoundary) {
   EXPECT_EQ(depth(doubled, 0.1), Answer::Refuted);
 }
 
+TEST(Cover, ReachInsideCavitiesThatTheBodiesFill) {
+  // [0,10]³ without [3,7]³, closed and with a narrow neck: the deepest point is in the middle.
+  const Mesh cube = block(Vec3::Zero(), Vec3::Constant(10));
+  const Mesh hollow = merged({cube, flipped(block(Vec3::Constant(3), Vec3::Constant(7)))});
+  const ConvexSet set = set_of({cube});
+  EXPECT_EQ(verify::verify_reach(set, hollow, 2.01, true).answer, Answer::Verified);
+  const auto beyond = verify::verify_reach(set, hollow, 1.99, true);
+  EXPECT_EQ(beyond.answer, Answer::Refuted);
+  EXPECT_GT(beyond.largest, 1.99);
+  EXPECT_LE(beyond.largest, 2);
+  EXPECT_EQ(verify::verify_reach(set, hollow, 0.1, true).answer, Answer::Refuted);
+  std::vector<std::array<int, 3>> cells;
+  for (int i = 0; i < 27; ++i) {
+    if (i != 13 && i != 22) cells.push_back({i % 3, i / 3 % 3, i / 9});
+  }
+  const Mesh bottle = block_chain(cells);
+  const ConvexSet all = set_of({block(Vec3::Zero(), Vec3::Constant(3))});
+  EXPECT_EQ(verify::verify_reach(all, bottle, 0.6, true).answer, Answer::Verified);
+  EXPECT_EQ(verify::verify_reach(all, bottle, 0.45, true).answer, Answer::Refuted);
+}
+
 TEST(Cover, ReachWithAMargin) {
   const Mesh unit = block({0, 0, 0}, {1, 1, 1});
   ConvexSet set = set_of({block({0, 0, 0}, {1.25, 1, 1})});

@@ -38,14 +38,16 @@ Cover verify_cover(const geom::Mesh& original, const geom::ConvexSet& set,
                    const InclusionOptions& options = {});
 
 /// Decides whether every point of the union, its margin included, is within `epsilon` of the
-/// original's triangles or, with `to_solid`, of its solid: verify_distance from the bodies with
-/// what ε leaves beside the margin. Where that fails, only a point of the union that is farther
-/// away than ε refutes, since what the margin adds may be near another part of the original.
+/// original's triangles or, with `to_solid`, of its solid: verify_distance from the bodies'
+/// triangles with what ε leaves beside the margin and, for the solid, a search of what the bodies
+/// hold of its outside (to the triangles alone, the inside of bodies is not looked at). Where that
+/// fails, only a point of the union that is farther away than ε refutes, since what the margin adds
+/// may be near another part of the original.
 ///
 /// @pre epsilon > set.margin; with `to_solid` the original is a closed chain
 /// @throws as verify_distance
 DistanceClaim verify_reach(const geom::ConvexSet& set, const geom::Mesh& original, double epsilon,
-                           bool to_solid);
+                           bool to_solid, const InclusionOptions& limits = {});
 
 /// Decides whether every point of the original's solid that is deeper than `epsilon` inside it
 /// (farther from its boundary) is in a body: what an inner set promises besides lying within the
