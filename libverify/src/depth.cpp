@@ -26,8 +26,8 @@ Claim verify_depth(const geom::Mesh& original, const geom::ConvexSet& set, doubl
   }
   std::vector<std::uint32_t> bounding;
   try {
-    bounding = whole_faces(scene, kInside, options,
-                           [](int inner, int outer) { return inner >= 1 && outer <= 0; });
+    bounding = faces_with(scene, kInside, options,
+                          [](int inner, int outer) { return inner >= 1 && outer <= 0; });
   } catch (const Error& error) {
     if (error.code() != ErrorCode::LimitReached) throw;
   }
@@ -56,8 +56,8 @@ Claim reach_inside(const geom::Mesh& sum, const geom::Mesh& original, double eps
   const Scene scene(sum, original);
   std::vector<std::uint32_t> solid;
   try {
-    solid = whole_faces(scene, kOutside, options,
-                        [](int inner, int outer) { return inner >= 1 || outer >= 1; });
+    solid = faces_with(scene, kOutside, options,
+                       [](int inner, int outer) { return inner >= 1 || outer >= 1; });
   } catch (const Error& error) {
     if (error.code() != ErrorCode::LimitReached) throw;
   }

@@ -13,7 +13,8 @@ namespace kaboum::verify {
 namespace {
 
 constexpr int kClimbs = 200;
-constexpr std::size_t kFewFaces = 200;
+constexpr std::size_t kFewFaces = 1000;
+constexpr int kTurns = 8;
 constexpr double kNowhere = -std::numeric_limits<double>::infinity();
 
 /// Halves boxes until each of them is settled.
@@ -85,10 +86,18 @@ class Search {
     const std::optional<bool> in = in_pocket(look.point);
     const NearestTriangle boundary(scene_, boundary_);
     if (in.has_value() && !*in) {
-      // Without a triangle of the boundary the box lies outside Z as its middle does.
-      const double distance = boundary.nearest(look.point).distance;
+      // The box lies outside Z as its point does without a triangle of Z's boundary, or of the
+      // chain that the point is on the wrong side of.
+      const auto clear = [&](const BoxTree& tree) {
+        const NearestTriangle faces(scene_, tree);
+        const double distance = faces.nearest(look.point).distance;
+        return distance > radius && faces.lower_bound(look.point, distance) - slack_ > radius;
+      };
       look.settled =
-          distance > radius && boundary.lower_bound(look.point, distance) - slack_ > radius;
+          clear(boundary_) ||
+          (winding_at(scene_, kOutside, look.point).value_or(0) >= 1 &&
+           clear(scene_.tree(kOutside))) ||
+          (winding_at(scene_, kInside, look.point).value_or(1) < 1 && clear(scene_.tree(kInside)));
     } else if (in.has_value()) {
       look.beyond = beyond(look.point);
     }
@@ -129,28 +138,53 @@ class Search {
           faces.push_back(f);
         });
     if (!few || faces.empty()) return false;
-    Vec3 sum = Vec3::Zero(), nearest = Vec3::Zero();
+    Vec3 towards = Vec3::Zero();
     double least = std::numeric_limits<double>::infinity();
     for (const std::uint32_t f : faces) {
-      const Vec3 to =
-          closest_point(p, scene_.corner(f, 0), scene_.corner(f, 1), scene_.corner(f, 2)) - p;
-      sum += to.normalized();
-      if (to.norm() < least) {
-        least = to.norm();
-        nearest = to;
-      }
+      const Vec3 to = closest(p, f) - p;
+      if (!(to.norm() < least)) continue;
+      least = to.norm();
+      towards = to;
     }
-    for (const Vec3& towards : {nearest, sum}) {
-      if (!(towards.norm() > 0)) continue;
+    // The face that is beyond the plane least pulls it to its side.
+    for (int i = 0; i < kTurns && towards.norm() > 0; ++i) {
       const Vec3 u = towards.normalized();
-      const bool beyond = std::all_of(faces.begin(), faces.end(), [&](std::uint32_t f) {
-        return u.dot(scene_.corner(f, 0) - p) > radius + slack_ &&
-               u.dot(scene_.corner(f, 1) - p) > radius + slack_ &&
-               u.dot(scene_.corner(f, 2) - p) > radius + slack_;
-      });
-      if (beyond) return true;
+      double lowest = std::numeric_limits<double>::infinity();
+      std::uint32_t worst = faces.front();
+      for (const std::uint32_t f : faces) {
+        const double height = height_within(p, reach, u, f);
+        if (!(height < lowest)) continue;
+        lowest = height;
+        worst = f;
+      }
+      if (lowest > radius + slack_) return true;
+      towards = u + (closest(p, worst) - p).normalized();
     }
     return false;
+  }
+
+  [[nodiscard]] Vec3 closest(const Vec3& p, std::uint32_t f) const {
+    return closest_point(p, scene_.corner(f, 0), scene_.corner(f, 1), scene_.corner(f, 2));
+  }
+
+  /// A lower bound of u·(y − p) over the points y of a face within `reach` of p: the least at its
+  /// corners or, with y − p = αn + s, s ⊥ n, α ≥ h ≥ 0 for any unit vector n, that of αu·n + u·s,
+  /// |s|² ≤ reach² − α², which is least at α = h if u·n ≥ 0.
+  [[nodiscard]] double height_within(const Vec3& p, double reach, const Vec3& u,
+                                     std::uint32_t f) const {
+    const std::array<Vec3, 3> v{scene_.corner(f, 0) - p, scene_.corner(f, 1) - p,
+                                scene_.corner(f, 2) - p};
+    const double corners = std::min({u.dot(v[0]), u.dot(v[1]), u.dot(v[2])});
+    Vec3 n = (v[1] - v[0]).cross(v[2] - v[0]);
+    if (!(n.norm() > 0)) return corners;
+    n.normalize();
+    if (n.dot(v[0]) < 0) n = -n;
+    const double h = std::min({n.dot(v[0]), n.dot(v[1]), n.dot(v[2])}) - slack_;
+    const double along = u.dot(n);
+    if (!(h >= 0 && along >= 0 && h <= reach)) return corners;
+    const double across = (u - along * n).norm() + 0x1p-48;
+    return std::max(corners,
+                    h * along - std::sqrt(reach * reach - h * h) * across * (1 + 0x1p-48) - slack_);
   }
 
   /// What a point's distance exceeds the limit by at least.

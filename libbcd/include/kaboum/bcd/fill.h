@@ -14,11 +14,12 @@ namespace kaboum::bcd {
 /// "From inside".
 ///
 /// Bodies are exactly convex, with float32 coordinates and at most max_vertices vertices; they
-/// overlap. The reach of the result is the certified bracket of the largest depth (distance to the
-/// solid's complement) among the solid's points that are in no body: every point deeper than
-/// reach_upper is in a body. That the bodies lie inside is left to an exact check of what is
-/// written (verify::verify_inclusion): it can fail where features of the input are as small as
-/// float32's spacing. The same for any number of threads.
+/// overlap. The reach of the result brackets the largest depth (distance to the
+/// solid's complement) among the solid's points that are in no body. Its upper end is certified:
+/// every point deeper than reach_upper is in a body; the lower one rests on sampled membership.
+/// That the bodies lie inside is left to an exact check of what is written
+/// (verify::verify_inclusion): it can fail where features of the input are as small as float32's
+/// spacing. The same for any number of threads.
 ///
 /// @pre input comes from geom::prepare; epsilon or max_bodies is given.
 /// @throws Error{InvalidArgument} on contradictory options; Error{InvalidInput} for open meshes,
