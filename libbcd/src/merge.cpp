@@ -84,6 +84,7 @@ bool touch(const Body& a, const Body& b, const Solid& solid) {
 std::vector<Body> merge(std::vector<Body> bodies, const Solid& solid, std::size_t target,
                         double epsilon, double bulk, PairMemo& memo) {
   std::vector<std::uint32_t> id;
+  id.reserve(bodies.size());
   for (const Body& b : bodies) id.push_back(memo.id_of(b.leaves));
   std::vector<char> alive(bodies.size(), 1);
   std::size_t count = bodies.size();
