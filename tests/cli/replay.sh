@@ -30,16 +30,35 @@ tetrahedron | sed 's/^3 \([0-9]\) \([0-9]\) \([0-9]\)/3 \1 \3 \2/' >inverted.off
 "$D" inverted.off -o upright.off --vertices 4 --log i.log --quiet || fail "inverted"
 expect 0 'is not checked' "$R" inverted.off i.log upright.off
 
-# One flipped bit in the last step's position: refuted (or, in an unused bit of the header, refused).
+# Mutants of positions. One flipped bit of an exponent in the last step is refuted or refused. A step
+# before it may go another way and leave a proof that still holds, but not every way.
 size=$(wc -c <outer.log)
-for offset in 1 9 17 2001 20003; do
-  at=$((size - offset))
+step=33 # bytes: a kind, two indices, three doubles
+
+# mutant OFFSET BYTES: sets `code` to the verdict when BYTES (for printf) stand OFFSET bytes before the end.
+mutant() {
   cp outer.log mutant.log
-  byte=$(od -An -tu1 -j "$at" -N 1 outer.log | tr -d ' ')
-  printf "$(printf '\\%03o' $((byte ^ 4)))" | dd of=mutant.log bs=1 seek="$at" conv=notrunc 2>/dev/null
+  # shellcheck disable=SC2059
+  printf "$2" | dd of=mutant.log bs=1 seek=$((size - $1)) conv=notrunc 2>/dev/null
   cmp -s outer.log mutant.log && fail "no mutation"
   "$R" "$BRACKET" mutant.log outer.stl >/dev/null 2>&1
   code=$?
+}
+
+for offset in 1 9 17; do
+  byte=$(od -An -tu1 -j $((size - offset)) -N 1 outer.log | tr -d ' ')
+  mutant $offset "$(printf '\\%03o' $((byte ^ 4)))"
   [ $code = 1 ] || [ $code = 3 ] || fail "mutant at $offset bytes from the end: exit $code"
+done
+for before in 60 606; do
+  refuted=0
+  for axis in 2 10 18; do
+    for huge in '\340\177' '\340\377'; do
+      mutant $((before * step + axis)) "$huge"
+      [ $code = 0 ] || [ $code = 1 ] || fail "mutant $before steps before the last: exit $code"
+      refuted=$((refuted + code))
+    done
+  done
+  [ $refuted -ge 2 ] || fail "$refuted of 6 mutants refuted $before steps before the last"
 done
 finish
