@@ -228,7 +228,20 @@ class Job {
                         "stable (gaps close); measure solid to solid with --solid");
       return side;
     }
-    return read_mesh(std::move(side), io::read_file(path), *format);
+    const std::vector<char> bytes = io::read_file(path);
+    if (format == io::Format::Glb) note_margin(side, bytes);
+    return read_mesh(std::move(side), bytes, *format);
+  }
+
+  /// A set that is read as a mesh on request loses its margin.
+  static void note_margin(Side& side, const std::vector<char>& bytes) {
+    try {
+      const double margin = io::parse_convex_set(bytes, io::Format::Glb, side.file).margin;
+      if (margin > 0)
+        side.notes.push_back("read as a mesh: the set's margin of " + formatted(margin) +
+                             " is left out");
+    } catch (const Error&) {  // no set, no margin
+    }
   }
 
   Side read_mesh(Side side, const std::vector<char>& bytes, io::Format format) const {
@@ -263,7 +276,8 @@ class Job {
                     side->file + ": coordinates beyond 1e60; scale the mesh");
       both.extend(box);
     }
-    if (both.diagonal() > 0 && both.diagonal() < 1e-60)
+    const double extent = (both.max - both.min).maxCoeff();
+    if (extent > 0 && extent < 1e-60)
       throw Error(ErrorCode::InvalidInput,
                   a_.file + ", " + b_.file + ": extent below 1e-60; scale the meshes");
   }
@@ -379,16 +393,31 @@ class Job {
     return std::max(to_b_.max.max_upper, to_a_.max.max_upper);
   }
 
-  /// Triangles of A cut into parts of at most a hundredth of the diagonal, so that colours show
-  /// what happens inside them.
+  /// Into how many parts the edges of a triangle are cut, so that none is longer than the limit.
+  static int parts(const geom::Mesh& mesh, const geom::Triangle& t, double limit) {
+    const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+    return limit > 0 ? std::max(1, static_cast<int>(std::ceil(longest / limit))) : 1;
+  }
+
+  /// Triangles cut into parts of at most a hundredth of the diagonal, so that colours show what
+  /// happens inside them; longer parts where many needles would make more than a million.
   [[nodiscard]] geom::Mesh refined(const geom::Mesh& mesh) const {
+    constexpr double kMostParts = 1e6;
+    double limit = diagonal_ / 100;
+    for (; limit > 0 && limit < diagonal_; limit *= 1.25) {
+      double sum = 0;
+      for (const geom::Triangle& t : mesh.triangles) {
+        const double n = parts(mesh, t, limit);
+        if (n > 1) sum += n * n;
+      }
+      if (sum <= kMostParts) break;
+    }
     geom::Mesh out;
     out.vertices = mesh.vertices;
-    const double limit = diagonal_ / 100;
     for (const geom::Triangle& t : mesh.triangles) {
       const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
-      const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
-      const int n = limit > 0 ? static_cast<int>(std::ceil(longest / limit)) : 1;
+      const int n = parts(mesh, t, limit);
       if (n <= 1) {
         out.triangles.push_back(t);
         continue;

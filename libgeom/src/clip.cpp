@@ -34,6 +34,27 @@ bool cut(const ConvexPolygon& polygon, const Vec3& p, const Vec3& n, ConvexPolyg
   return true;
 }
 
+std::optional<CuttingPlane> bisector(const std::array<Vec3, 3>& first,
+                                     const std::array<Vec3, 3>& second, const Vec3& near,
+                                     double least) {
+  // The unit normal that looks at `near`, and the height of `near` above the plane; 0 without area.
+  const auto plane = [&](const std::array<Vec3, 3>& t, double& height) -> Vec3 {
+    const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
+    const double length = n.norm();
+    if (!(length > 0)) return Vec3::Zero();
+    const double h = n.dot(near - t[0]) / length;
+    height = std::abs(h);
+    return (h < 0 ? -1 : 1) * (n / length);
+  };
+  double h1 = 0, h2 = 0;
+  const Vec3 n1 = plane(first, h1), n2 = plane(second, h2);
+  if (n1.isZero(0) || n2.isZero(0)) return std::nullopt;
+  const Vec3 n = n1 - n2;
+  const double square = n.squaredNorm();
+  if (square < least) return std::nullopt;
+  return CuttingPlane{near - ((h1 - h2) / square) * n, n};
+}
+
 void halve(const ConvexPolygon& polygon, ConvexPolygon& first, ConvexPolygon& second) {
   if (polygon.size < ConvexPolygon::kCapacity) {
     int from = 0, to = 1;

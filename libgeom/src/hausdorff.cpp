@@ -356,28 +356,11 @@ class BranchAndBound {
   /// distance, which halving would only approach.
   bool cut_by_bisector(const Piece& piece, PrismCut& out) const {
     if (piece.at_worst == piece.nearest) return false;
-    const Vec3 center = piece.polygon.centroid();
-    const auto plane = [&](std::uint32_t triangle, Vec3& n, double& height) {
-      const auto& [a, b, c] = b_.corners(triangle);
-      n = (b - a).cross(c - a);
-      const double length = n.norm();
-      if (!(length > 0)) return false;
-      n /= length;
-      height = n.dot(center - a);
-      if (height < 0) {
-        n = -n;
-        height = -height;
-      }
-      return true;
-    };
-    Vec3 n1, n2;
-    double h1 = 0, h2 = 0;
-    if (!plane(piece.nearest, n1, h1) || !plane(piece.at_worst, n2, h2)) return false;
-    const Vec3 n = n1 - n2;
-    const double square = n.squaredNorm();
-    if (square < 1e-20) return false;
+    const auto plane = bisector(b_.corners(piece.nearest), b_.corners(piece.at_worst),
+                                piece.polygon.centroid(), 1e-20);
+    if (!plane) return false;
     out.count = 2;
-    return cut(piece.polygon, center - ((h1 - h2) / square) * n, n, out.piece[0], out.piece[1]);
+    return cut(piece.polygon, plane->point, plane->normal, out.piece[0], out.piece[1]);
   }
 
   /// Whether the piece is so much larger than the triangle next to it that cutting along that

@@ -405,27 +405,9 @@ class Volume {
 
   bool cut_by_bisector(const Cell& cell, std::vector<Cell>& out) const {
     if (cell.at_worst == cell.nearest) return false;
-    const Vec3 c = cell.center();
-    const auto plane = [&](std::uint32_t triangle, Vec3& n, double& height) {
-      const auto& [p, q, r] = to_b_.corners(triangle);
-      n = (q - p).cross(r - p);
-      const double length = n.norm();
-      if (!(length > 0)) return false;
-      n /= length;
-      height = n.dot(c - p);
-      if (height < 0) {
-        n = -n;
-        height = -height;
-      }
-      return true;
-    };
-    Vec3 n1, n2;
-    double h1 = 0, h2 = 0;
-    if (!plane(cell.nearest, n1, h1) || !plane(cell.at_worst, n2, h2)) return false;
-    const Vec3 n = n1 - n2;
-    const double square = n.squaredNorm();
-    if (square < 1e-12) return false;
-    return cut_by_plane(cell, c - ((h1 - h2) / square) * n, n, out);
+    const auto plane = geom::bisector(to_b_.corners(cell.nearest), to_b_.corners(cell.at_worst),
+                                      cell.center(), 1e-12);
+    return plane && cut_by_plane(cell, plane->point, plane->normal, out);
   }
 
   /// Cuts along the side of the nearest triangle's prism that the worst corner is farthest beyond.

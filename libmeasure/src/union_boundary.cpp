@@ -160,9 +160,10 @@ class Clipper {
 Boundary union_boundary(const geom::ConvexSet& set) {
   for (const geom::ConvexBody& body : set.bodies)
     if (!geom::is_convex(body.hull))
-      throw Error(ErrorCode::InvalidInput, "body '" + body.name +
-                                               "' is not convex (or has no volume); measure the "
-                                               "file as a mesh instead");
+      throw Error(ErrorCode::InvalidInput,
+                  "body '" + body.name +
+                      "' is not convex (or has no volume); measure it "
+                      "as a mesh: one file, with --a-as mesh or --b-as mesh");
   return Clipper(set).run();
 }
 

@@ -131,6 +131,8 @@ printf 'OFF\n3 1 0\n0 0 0\n1 0 0\nnan 1 0\n3 0 1 2\n' >nan.off
 expect 3 'finite' "$H" t.off nan.off
 awk 'NR>2 && NR<7 {printf "%.17g %.17g %.17g\n", $1*1e80, $2*1e80, $3*1e80; next} {print}' t.off >vast.off
 expect 3 'scale' "$H" vast.off t.off
+awk 'NR>2 && NR<7 {printf "%.17g %.17g %.17g\n", $1*1e-307, $2*1e-307, $3*1e-307; next} {print}' t.off >minute.off
+expect 3 'scale' "$H" minute.off minute.off
 expect 0 '' "$H" t.off open.off
 expect 4 '' "$H" t.off t.off --report /nonexistent/dir/r.json
 finish

@@ -30,6 +30,7 @@ printf '{"joints": ["shoulder", "elbow", "grip"], "waypoints": [[0, 0, 0], [1, -
 
 expect 0 'Bounds the volume' "$S" --help
 expect 0 'margin' "$S" "$R" --path path.csv --epsilon 0.005 -o a.glb --report a.json --preview a.png --depfile a.d
+expect 0 "margin of .* is left out" "$BIN/hausdorff-eval" a.glb "$BRACKET" --a-as mesh --samples 1000 --gap 0.9
 for key in '"certified": true' '"hand"' '"margin": 0.00' '"reach"' '"waypoints": 3'; do
   grep -q "$key" a.json || fail "no $key in the report"
 done

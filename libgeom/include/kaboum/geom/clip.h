@@ -3,6 +3,7 @@
 #include <kaboum/geom/mesh.h>
 
 #include <array>
+#include <optional>
 
 namespace kaboum::geom {
 
@@ -43,6 +44,18 @@ struct ConvexPolygon {
 /// would exceed the capacity; the parts are then undefined.
 bool cut(const ConvexPolygon& polygon, const Vec3& p, const Vec3& n, ConvexPolygon& below,
          ConvexPolygon& above);
+
+/// A plane through `point`; the normal has any length above 0.
+struct CuttingPlane {
+  Vec3 point, normal;
+};
+
+/// Where the planes of two triangles are equally far, next to the point `near`: a ridge of the
+/// distance to both, which halving would only approach. None where a triangle has no area, or where
+/// the unit normals that look at `near` differ by less than √least.
+std::optional<CuttingPlane> bisector(const std::array<Vec3, 3>& first,
+                                     const std::array<Vec3, 3>& second, const Vec3& near,
+                                     double least);
 
 /// Cuts in two across its longest extent; a polygon at capacity is cut along a diagonal.
 void halve(const ConvexPolygon& polygon, ConvexPolygon& first, ConvexPolygon& second);
