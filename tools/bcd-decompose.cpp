@@ -6,10 +6,13 @@
 #include <kaboum/io/convex_io.h>
 #include <kaboum/verify/cover.h>
 
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <sstream>
 
 #include "cli.h"
+#include "robot_decomposition.h"
 #include "set_cache.h"
 #include "set_format.h"
 #include "set_picture.h"
@@ -25,7 +28,8 @@ constexpr const char* kAlgorithm = "planes 3";
 struct Options {
   std::string input, output, input_format, output_format, epsilon, direction = "outer";
   std::string effort = "normal";
-  std::string unit = "m", frame, preview, depfile;
+  std::string unit = "m", frame, preview, depfile, geometry = "collision", prefix;
+  std::vector<std::string> packages;
   std::size_t max_bodies = 0, max_vertices = 64;
   double explode = 0.5;
   bool no_cache = false;
@@ -37,12 +41,14 @@ const std::map<std::string, bcd::Effort> kEfforts{
     {"fast", bcd::Effort::Fast}, {"normal", bcd::Effort::Normal}, {"best", bcd::Effort::Best}};
 
 void describe(CLI::App& app, Options& o) {
-  app.add_option("INPUT", o.input, "Mesh to decompose (- for stdin)")
+  app.add_option("INPUT", o.input,
+                 "Mesh to decompose (- for stdin), or a robot (.urdf), every link of it")
       ->required()
       ->type_name("FILE");
   app.add_option("-o,--output", o.output,
                  "Where the bodies go: a .glb container, an .obj with one object per body, or a "
-                 "folder with one STL per body (- for stdout)")
+                 "folder with one STL per body (- for stdout); for robots a folder, which gets a "
+                 "URDF, the bodies that it refers to, and a container per link")
       ->required()
       ->type_name("PATH");
   app.add_option("--epsilon", o.epsilon,
@@ -90,6 +96,19 @@ void describe(CLI::App& app, Options& o) {
   app.add_flag("--require-closed", o.prepare.require_closed, "Refuse open meshes");
   app.add_flag("--keep-orientation", o.prepare.keep_orientation,
                "Never turn inconsistent triangles or inside-out components");
+  app.add_option("--geometry", o.geometry, "Which shapes of a robot [collision]")
+      ->check(CLI::IsMember({"collision", "visual"}).description(""))
+      ->type_name("collision|visual");
+  app.add_flag_callback(
+      "--visual", [&o] { o.geometry = "visual"; }, "The same as --geometry visual");
+  app.add_option("--package-path", o.packages,
+                 "Folder to look up a robot's package:// in, besides $ROS_PACKAGE_PATH and the "
+                 "folders above the robot's file (repeatable)")
+      ->type_name("DIR");
+  app.add_option("--mesh-prefix", o.prefix,
+                 "Put before the bodies' file names in a robot's new URDF, as in package://arm/ "
+                 "[names relative to the URDF]")
+      ->type_name("URI");
   app.add_option("--depfile", o.depfile, "Write a Makefile dependency rule")->type_name("FILE");
   app.add_option("--input-format", o.input_format, "Format of INPUT [by extension]")
       ->type_name("NAME");
@@ -235,18 +254,20 @@ tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const s
   return entry;
 }
 
-int decompose(const Options& o) {
-  tools::require_apart({{"--output", o.output},
-                        {"--report", o.common.report},
-                        {"--preview", o.preview},
-                        {"--depfile", o.depfile}},
-                       {o.input});
-  const tools::ThreadLimit threads(o.common.threads);
-  const io::SetFormat format = tools::set_format_for(o.output, o.output_format);
+/// A mesh file and what came of it.
+struct Outcome {
+  std::string hash;
+  tools::SetCache::Entry entry;
+  bool cached = false;
+};
+
+/// The bodies of one mesh, from the cache where possible.
+Outcome decompose_mesh(const Options& o) {
   const io::Format input_format = tools::format_for(o.input, o.input_format, "--input-format");
   std::vector<char> bytes = io::read_file(o.input);
-  const std::string hash = io::sha256(bytes);
-  const std::string key = hash + '\n' + std::to_string(static_cast<int>(input_format)) + '\n' +
+  Outcome out;
+  out.hash = io::sha256(bytes);
+  const std::string key = out.hash + '\n' + std::to_string(static_cast<int>(input_format)) + '\n' +
                           parameters(o) + '\n' + o.unit + '\n' + o.frame + '\n' +
                           std::filesystem::path(o.input).filename().string() + '\n' +
                           tools::version() + '\n' + kAlgorithm;
@@ -255,52 +276,149 @@ int decompose(const Options& o) {
                      input_format != io::Format::Collada && input_format != io::Format::X3d;
   const bool use_cache = !o.no_cache && alone;
   const tools::SetCache cache(key);
-  std::optional<tools::SetCache::Entry> entry;
-  if (use_cache) entry = cache.find();
-  const bool cached = entry.has_value();
-  if (!cached) {
-    const std::string name = o.input == "-" ? "standard input" : o.input;
-    const std::filesystem::path file(o.input);
-    const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
-    const io::ReadResult read = io::parse_mesh(bytes, input_format, name, folder);
-    for (const std::string& note : read.notes) tools::log(o.common.quiet, o.input + ": " + note);
-    entry = compute(o, read.mesh, hash);
-    if (use_cache) cache.store(*entry);
+  if (use_cache) {
+    if (auto found = cache.find()) {
+      out.entry = std::move(*found);
+      out.cached = true;
+      return out;
+    }
   }
-  const geom::ConvexSet set = io::parse_convex_set(entry->container, io::Format::Glb, "the result");
-  Json report = entry->report;
-  const double diagonal = report["diagonal"].get<double>();
+  const std::string name = o.input == "-" ? "standard input" : o.input;
+  const std::filesystem::path file(o.input);
+  const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+  const io::ReadResult read = io::parse_mesh(bytes, input_format, name, folder);
+  for (const std::string& note : read.notes) tools::log(o.common.quiet, o.input + ": " + note);
+  out.entry = compute(o, read.mesh, out.hash);
+  if (use_cache) cache.store(out.entry);
+  return out;
+}
+
+/// What the report says about every run.
+void add_run(const Options& o, Json& report) {
+  report["tool"] = std::string("bcd-decompose ") + tools::version();
+  report["user_seconds"] = tools::user_seconds();
+  report["peak_megabytes"] = tools::peak_megabytes();
+  tools::write_json(o.common.report, report);
+}
+
+/// Why epsilon was not reached; empty when it was.
+std::string shortfall(const Json& report) {
+  if (report["stop"] == "done") return {};
+  return report["stop"] == "stuck" ? "epsilon could not be reached; allow more vertices per body"
+                                   : "epsilon needs more bodies than --max-bodies allows";
+}
+
+std::string summary(const Options& o, const Json& report, std::size_t bodies) {
+  return std::to_string(bodies) + (bodies == 1 ? " body, " : " bodies, ") +
+         std::to_string(report["vertices"].get<std::size_t>()) +
+         (o.direction == "outer"
+              ? " vertices; cover verified exactly; no point farther from the solid than "
+              : " vertices; inside verified exactly; no point left out deeper than ") +
+         percent(report["reach"]["upper"].get<double>(), report["diagonal"].get<double>());
+}
+
+bool is_robot(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return extension == ".urdf";
+}
+
+int decompose_robot(const Options& o) {
+  if (o.direction != "outer")
+    throw Error(ErrorCode::InvalidArgument,
+                "--direction inner: decompose the robot's meshes one by one");
+  if (!o.output_format.empty() || o.output == "-")
+    throw Error(ErrorCode::InvalidArgument, "-o: a robot's bodies need a folder");
+  tools::RobotDecomposition robot;
+  robot.robot = o.input;
+  robot.folder = o.output;
+  robot.visual = o.geometry == "visual";
+  robot.packages = o.packages;
+  robot.prefix = o.prefix;
+  robot.parameters = parameters(o);
+  robot.unit = o.unit;
+  bool done = true;
+  const tools::RobotResult result = tools::decompose_robot(
+      robot, [&](const std::filesystem::path& file, double scale) -> tools::MeshBodies {
+        Options mesh = o;
+        mesh.input = file.string();
+        if (const auto length = tools::parse_length(o.epsilon); length && !length->percent) {
+          std::ostringstream text;
+          text.precision(17);
+          text << length->value / scale;
+          mesh.epsilon = text.str();
+        }
+        Outcome out = decompose_mesh(mesh);
+        tools::MeshBodies bodies{
+            io::parse_convex_set(out.entry.container, io::Format::Glb, "the result"),
+            std::move(out.entry.report)};
+        tools::log(o.common.quiet, mesh.input + ": " +
+                                       summary(mesh, bodies.report, bodies.set.bodies.size()) +
+                                       (out.cached ? " (from the cache)" : ""));
+        if (const std::string why = shortfall(bodies.report); !why.empty()) {
+          tools::log(o.common.quiet, mesh.input + ": " + why);
+          done = false;
+        }
+        bodies.report["cached"] = out.cached;
+        return bodies;
+      });
+  const auto counted = [&](const char* key, const char* one, const char* many) {
+    const Json& value = result.report[key];
+    const std::size_t n = value.is_array() ? value.size() : value.get<std::size_t>();
+    return std::to_string(n) + ' ' + (n == 1 ? one : many);
+  };
+  tools::log(o.common.quiet, result.report["urdf"].get<std::string>() + ": " +
+                                 counted("bodies", "body", "bodies") + " of " +
+                                 counted("links", "link", "links") + ", from " +
+                                 counted("meshes", "mesh", "meshes"));
+  if (!o.preview.empty()) io::write_file(o.preview, tools::picture_of(result.at_rest, o.explode));
+  if (!o.common.report.empty()) {
+    Json report = result.report;
+    report["stop"] = done ? "done" : "epsilon not reached";
+    report["input"] = {{"file", o.input}};
+    report["parameters"] = robot.parameters;
+    add_run(o, report);
+  }
+  if (!o.depfile.empty()) {
+    std::vector<std::string> inputs;
+    for (const std::filesystem::path& p : result.inputs) inputs.push_back(p.string());
+    tools::write_depfile(o.depfile, result.report["urdf"].get<std::string>(), inputs);
+  }
+  return done ? tools::kDone : tools::kNo;
+}
+
+int decompose(const Options& o) {
+  tools::require_apart({{"--output", o.output},
+                        {"--report", o.common.report},
+                        {"--preview", o.preview},
+                        {"--depfile", o.depfile}},
+                       {o.input});
+  const tools::ThreadLimit threads(o.common.threads);
+  if (is_robot(o.input)) return decompose_robot(o);
+  const io::SetFormat format = tools::set_format_for(o.output, o.output_format);
+  const Outcome out = decompose_mesh(o);
+  const geom::ConvexSet set =
+      io::parse_convex_set(out.entry.container, io::Format::Glb, "the result");
+  Json report = out.entry.report;
   tools::log(o.common.quiet,
-             std::to_string(set.bodies.size()) +
-                 (set.bodies.size() == 1 ? " body, " : " bodies, ") +
-                 std::to_string(report["vertices"].get<std::size_t>()) +
-                 (o.direction == "outer"
-                      ? " vertices; cover verified exactly; no point farther from the solid than "
-                      : " vertices; inside verified exactly; no point left out deeper than ") +
-                 percent(report["reach"]["upper"].get<double>(), diagonal) +
-                 (cached ? " (from the cache)" : ""));
-  const bool done = report["stop"] == "done";
-  if (!done)
-    tools::log(o.common.quiet, report["stop"] == "stuck"
-                                   ? "epsilon could not be reached; allow more vertices per body"
-                                   : "epsilon needs more bodies than --max-bodies allows");
+             summary(o, report, set.bodies.size()) + (out.cached ? " (from the cache)" : ""));
+  const std::string why = shortfall(report);
+  if (!why.empty()) tools::log(o.common.quiet, why);
   if (!o.preview.empty()) io::write_file(o.preview, tools::picture_of(set, o.explode));
   if (!o.common.report.empty()) {
-    report["tool"] = std::string("bcd-decompose ") + tools::version();
-    report["input"] = {{"file", o.input}, {"sha256", hash}};
+    report["input"] = {{"file", o.input}, {"sha256", out.hash}};
     report["parameters"] = set.provenance.parameters;
-    report["cached"] = cached;
-    report["user_seconds"] = tools::user_seconds();
-    report["peak_megabytes"] = tools::peak_megabytes();
-    tools::write_json(o.common.report, report);
+    report["cached"] = out.cached;
+    add_run(o, report);
   }
   if (!o.depfile.empty()) tools::write_depfile(o.depfile, o.output, {o.input});
   if (format == io::SetFormat::Glb) {
-    io::write_file(o.output, entry->container);
+    io::write_file(o.output, out.entry.container);
   } else {
     io::write_convex_set(o.output, set, format);
   }
-  return done ? tools::kDone : tools::kNo;
+  return why.empty() ? tools::kDone : tools::kNo;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <map>
 #include <optional>
@@ -189,6 +190,36 @@ fs::path resolve_mesh(const std::string& reference, const fs::path& robot,
   return is_file(path) ? path : fail(path.parent_path().string());
 }
 
+void place_shape(const Geometry& g, const geom::ConvexSet* set, const std::string& link,
+                 std::uint32_t index, std::vector<sweep::Body>& bodies) {
+  const auto name = [&] {
+    const auto same = [&](const sweep::Body& b) { return b.link == index; };
+    return link + "/" + std::to_string(std::count_if(bodies.begin(), bodies.end(), same));
+  };
+  // The points' own rounding where shape and link lie far from one another's origin.
+  const auto rounding = [&](double size) { return 0x1p-46 * (size + g.origin.translation.norm()); };
+  if (g.shape != Geometry::Shape::Mesh) {
+    bodies.push_back({name(), index, sweep::bounding_points(g), rounding(2 * g.size.norm())});
+    return;
+  }
+  int exponent = 0;
+  const bool exact = g.origin.linear.isIdentity(0) && g.origin.translation.isZero(0) &&
+                     std::all_of(g.size.begin(), g.size.end(), [&](double s) {
+                       return std::abs(std::frexp(s, &exponent)) == 0.5;
+                     });
+  for (const geom::ConvexBody& body : set->bodies) {
+    sweep::Body b{name(), index, {}, g.size.cwiseAbs().maxCoeff() * set->margin};
+    double size = 0;
+    for (const geom::Vec3& p : body.hull.vertices) {
+      const geom::Vec3 scaled = p.cwiseProduct(g.size);
+      size = std::max(size, scaled.norm());
+      b.points.emplace_back(exact ? scaled : g.origin * scaled);
+    }
+    if (!exact) b.margin += rounding(size);
+    bodies.push_back(std::move(b));
+  }
+}
+
 LinkBodies bodies_of(const RobotFile& robot, const BodyOptions& options) {
   for (const std::string& name : options.links)
     if (!robot.robot.find_link(name))
@@ -202,15 +233,9 @@ LinkBodies bodies_of(const RobotFile& robot, const BodyOptions& options) {
     if (!options.links.empty() &&
         std::find(options.links.begin(), options.links.end(), link.name) == options.links.end())
       continue;
-    std::size_t number = 0;
     for (const Geometry& g : options.visual ? link.visual : link.collision) {
-      const auto name = [&] { return link.name + "/" + std::to_string(number++); };
-      // The points' own rounding where shape and link lie far from one another's origin.
-      const auto rounding = [&](double size) {
-        return 0x1p-46 * (size + g.origin.translation.norm());
-      };
       if (g.shape != Geometry::Shape::Mesh) {
-        out.bodies.push_back({name(), l, sweep::bounding_points(g), rounding(2 * g.size.norm())});
+        place_shape(g, nullptr, link.name, l, out.bodies);
         continue;
       }
       const fs::path mesh = resolve_mesh(g.mesh, robot.path, options.packages);
@@ -220,20 +245,9 @@ LinkBodies bodies_of(const RobotFile& robot, const BodyOptions& options) {
         it = decomposed.emplace(mesh.string(), decompose(mesh, options, result)).first;
         out.files.push_back(mesh.string());
       }
-      const geom::ConvexSet& set = it->second;
       const double scale = g.size.cwiseAbs().maxCoeff();
-      out.epsilon = std::max(out.epsilon, scale * std::max(set.provenance.epsilon, 0.0));
-      for (const geom::ConvexBody& body : set.bodies) {
-        sweep::Body b{name(), l, {}, scale * set.margin};
-        double size = 0;
-        for (const geom::Vec3& p : body.hull.vertices) {
-          const geom::Vec3 scaled = p.cwiseProduct(g.size);
-          size = std::max(size, scaled.norm());
-          b.points.emplace_back(g.origin * scaled);
-        }
-        b.margin += rounding(size);
-        out.bodies.push_back(std::move(b));
-      }
+      out.epsilon = std::max(out.epsilon, scale * std::max(it->second.provenance.epsilon, 0.0));
+      place_shape(g, &it->second, link.name, l, out.bodies);
     }
   }
   if (out.bodies.empty())

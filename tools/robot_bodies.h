@@ -47,6 +47,13 @@ struct LinkBodies {
 /// @throws Error naming the link and the file, which must exist.
 LinkBodies bodies_of(const RobotFile& robot, const BodyOptions& options);
 
+/// Appends the bodies of one shape in the frame of its link, points within the bodies' margins:
+/// those of `set` for a mesh, else a bounding polytope.
+/// @param set   of the mesh in its own frame and unit; unused for other shapes.
+/// @param link  name that the bodies' names begin with; `index` is the link's.
+void place_shape(const sweep::Geometry& shape, const geom::ConvexSet* set, const std::string& link,
+                 std::uint32_t index, std::vector<sweep::Body>& bodies);
+
 /// The file that a URDF's mesh reference stands for. `package://name/rest` is looked up as
 /// name/rest in the given folders, in $ROS_PACKAGE_PATH, and in all folders above the robot's file.
 /// @throws Error{InvalidInput} saying where it was looked for.

@@ -26,7 +26,4 @@ nlohmann::ordered_json record_of(const geom::ConvexSet& set);
 /// @throws Error{InvalidInput} when `record` is not what record_of writes.
 void take_record(const nlohmann::ordered_json& record, const Source& source, geom::ConvexSet& set);
 
-/// The number of a body as it appears in its name when it has none: "body-0007".
-std::string default_name(std::size_t index);
-
 }  // namespace kaboum::io

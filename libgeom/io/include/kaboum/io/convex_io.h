@@ -65,6 +65,10 @@ geom::ConvexSet read_convex_set(const std::filesystem::path& path,
 ///   that are empty or not valid, and for an empty set in OBJ.
 std::vector<char> serialise_convex_set(const geom::ConvexSet& set, SetFormat format);
 
+/// The number of a body as it appears in its name when it has none: "body-0007". Files of a folder
+/// have these names, and the extension .stl.
+std::string default_name(std::size_t index);
+
 /// Writes a set so that the path holds either what it held before or all of the new (folders: after
 /// a crash between two renames, the old content may be left in a hidden folder beside it).
 ///

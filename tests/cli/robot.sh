@@ -1,0 +1,74 @@
+# shellcheck shell=sh disable=SC2154
+. "$(dirname "$0")/common.sh"
+D=$BIN/bcd-decompose
+KABOUM_CACHE=$WORK/cache
+export KABOUM_CACHE
+
+# Shapes of all kinds: one mesh twice with another scale, two on one link, a pose, a box.
+mkdir -p robot/meshes
+tetrahedron >robot/meshes/t.off
+cp "$BRACKET" robot/meshes/bracket.obj
+cat >robot/r.urdf <<'END'
+<robot name="r">
+  <!-- kept -->
+  <link name="base">
+    <visual><geometry><mesh filename="meshes/seen.dae"/></geometry></visual>
+    <collision><geometry><mesh filename="meshes/bracket.obj"/></geometry></collision>
+  </link>
+  <link name="arm/1">
+    <collision><origin xyz="0.1 0 0" rpy="0.3 0 0"/><geometry><mesh filename="meshes/t.off" scale="0.2 -0.2 0.5"/></geometry></collision>
+    <collision name="tool"><geometry><mesh filename="meshes/t.off" scale="0.2 -0.2 0.5"/></geometry></collision>
+    <collision><geometry><box size="0.2 0.2 0.1"/></geometry></collision>
+  </link>
+  <link name="frame"/>
+  <joint name="shoulder" type="revolute"><parent link="base"/><child link="arm/1"/><axis xyz="0 1 0"/>
+    <limit lower="-2" upper="2" effort="1" velocity="1"/></joint>
+  <joint name="end" type="fixed"><parent link="arm/1"/><child link="frame"/></joint>
+</robot>
+END
+expect 0 'bodies of 2 links, from 2 meshes' "$D" robot/r.urdf -o out --epsilon 3% --effort fast --report r.json --preview p.png --depfile r.d
+for f in out/r.urdf out/links/base.glb out/links/arm_1.glb out/bodies/t/body-0000.stl out/bodies/bracket/body-0000.stl p.png; do
+  [ -s "$f" ] || fail "no $f"
+done
+grep -q '^out/r.urdf: .*t.off' r.d || fail "dependency file: $(cat r.d)"
+grep -q '"margin"' r.json || fail "report"
+# What has nothing to do with collisions stays; names lead to the same files.
+grep -q '<!-- kept -->' out/r.urdf || fail "comments are lost"
+grep -q 'filename="../robot/meshes/seen.dae"' out/r.urdf || fail "the drawing's mesh is not found from the folder"
+[ "$(grep -c 'bodies/t/body-0000.stl" scale="0.2 -0.2 0.5"' out/r.urdf)" = 2 ] || fail "scale"
+[ "$(grep -c 'box size' out/r.urdf)" = 1 ] || fail "box"
+[ "$(grep -c '<collision ' out/r.urdf)" = "$(($(find out/bodies/bracket -name '*.stl' | wc -l) + 3))" ] || fail "number of bodies"
+grep -q 'rpy="0.3 0 0"' out/r.urdf || fail "pose"
+# The claims hold of the files.
+expect 0 'verified' "$BIN/bound-verify" --cover robot/meshes/t.off out/bodies/t
+expect 0 'verified' "$BIN/bound-verify" --cover robot/meshes/bracket.obj out/bodies/bracket
+expect 0 'verified' "$BIN/bound-verify" --cover robot/meshes/bracket.obj out/links/base.glb
+# In the link's frame: the transformed mesh, rounded here to 12 digits and shrunk by as much, is covered.
+awk 'NR < 3 || NR > 6 { print; next } NR == 3 { c = cos(0.3); s = sin(0.3) }
+  { x = 0.2 * (0.5 + ($1 - 0.5) * 0.999999); y = -0.2 * (0.2 + ($2 - 0.2) * 0.999999); z = 0.5 * (0.2 + ($3 - 0.2) * 0.999999)
+    printf "%.12g %.12g %.12g\n", x + 0.1, c * y - s * z, s * y + c * z }' robot/meshes/t.off |
+  sed 's/^3 \([0-9]\) \([0-9]\) \([0-9]\)/3 \1 \3 \2/' >posed.off
+expect 0 'verified' "$BIN/bound-verify" --cover posed.off out/links/arm_1.glb
+# The new robot is a robot, and another run gives the same bytes.
+expect 0 'bodies of 2 links' "$D" out/r.urdf -o again --effort fast
+expect 0 '' "$D" robot/r.urdf -o out2 --epsilon 3% --effort fast --quiet --no-cache --mesh-prefix package://r/
+[ ! -s err.txt ] || fail "--quiet is not quiet"
+sed 's,package://r/,,' out2/r.urdf | cmp -s - out/r.urdf || fail "another URDF"
+cmp -s out/links/arm_1.glb out2/links/arm_1.glb || fail "another container"
+
+# Shapes for drawing; lengths in the robot's unit.
+sed 's/seen.dae/t.off/' robot/r.urdf >robot/v.urdf
+expect 0 'of 1 link, from 1 mesh$' "$D" robot/v.urdf -o seen --visual --epsilon 0.05
+grep -q 'bodies/t/body' seen/v.urdf || fail "no bodies for drawing shapes"
+grep -q 'box size' seen/v.urdf && fail "collision shapes stay beside those for drawing"
+
+expect 2 'overwrite' "$D" robot/r.urdf -o robot
+expect 2 'folder' "$D" robot/r.urdf -o -
+expect 2 'one by one' "$D" robot/r.urdf -o x --direction inner
+expect 3 'no mesh file for' "$D" robot/r.urdf -o x --visual
+sed 's/<link name="frame"\/>//' robot/r.urdf >robot/bad.urdf
+expect 3 'bad.urdf' "$D" robot/bad.urdf -o x
+absent x
+: >afile
+expect 4 '' "$D" robot/r.urdf -o afile --effort fast
+finish

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <kaboum/geom/convex_set.h>
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "cli.h"
+
+/// Whole robots: the shapes of every link as convex bodies, and a URDF that refers to them.
+namespace kaboum::tools {
+
+struct RobotDecomposition {
+  std::string robot;             ///< URDF file
+  std::filesystem::path folder;  ///< where everything goes; made when missing
+  bool visual = false;           ///< decompose the shapes for drawing, not those for collisions
+  std::vector<std::string> packages;  ///< folders that package:// URIs are looked up in
+  std::string prefix;      ///< of the bodies' file names in the URDF, e.g. package://arm/
+  std::string parameters;  ///< for the record
+  std::string unit;
+};
+
+/// The bodies of one mesh, in its own frame and unit.
+struct MeshBodies {
+  geom::ConvexSet set;
+  Json report;
+};
+
+/// Decomposes a mesh. `scale` is the largest factor from the mesh's unit to the robot's: a length
+/// in the robot's unit is divided by it.
+using MeshDecomposer = std::function<MeshBodies(const std::filesystem::path& mesh, double scale)>;
+
+struct RobotResult {
+  Json report;
+  geom::ConvexSet at_rest;  ///< all links at zero joint values, for pictures: not certified
+  std::vector<std::filesystem::path> inputs;
+};
+
+/// Writes to the folder, the URDF last:
+/// - `bodies/MESH/body-0000.stl` …: the bodies of every distinct mesh, once;
+/// - `links/LINK.glb`: all bodies of a link in its frame, a margin covering the rounding of scale
+/// and
+///   pose;
+/// - the URDF under its own name: each link's <collision> elements are the bodies, with the pose
+/// and
+///   scale of the shape that they stand for, so that the inclusion holds without rounding; boxes,
+///   cylinders and spheres stay. Relative names of other files are adapted to the folder.
+///
+/// @throws Error naming the file; nothing but complete files is left behind.
+RobotResult decompose_robot(const RobotDecomposition& options, const MeshDecomposer& decompose);
+
+}  // namespace kaboum::tools
