@@ -4,7 +4,6 @@
 #include <kaboum/sweep/kinematics.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <random>
@@ -12,6 +11,7 @@
 #include "engine.h"
 #include "queries.h"
 #include "robot_bodies.h"
+#include "timing.h"
 
 /// What convex sets buy in collision checking (the thesis's Fig. 4.9): the queries of RRT-Connect
 /// for a six-axis robot that reaches from a window in one wall into a window in the other, replayed
@@ -75,36 +75,6 @@ Shapes load(const tools::RobotFile& file, const std::string& epsilon, double sca
   };
   for (Model* model : {&out.triangles, &out.hulls, &out.sets}) std::erase_if(model->robot, base);
   return out;
-}
-
-struct Statistics {
-  double mean, p99, most;
-};
-
-/// Per query the fastest of a few runs, or the only one when that is slow: other programs of the
-/// machine only ever add.
-Statistics times_of(const std::vector<std::vector<sweep::Transform>>& queries,
-                    const std::function<void(const std::vector<sweep::Transform>&)>& query,
-                    std::vector<double>& times) {
-  times.assign(queries.size(), 1e9);
-  double total = 0;  // microseconds
-  for (int run = 0; run < 4 && total < 5e6; ++run) {
-    for (std::size_t i = 0; i < queries.size(); ++i) {
-      const auto start = std::chrono::steady_clock::now();
-      query(queries[i]);
-      const std::chrono::duration<double, std::micro> took =
-          std::chrono::steady_clock::now() - start;
-      times[i] = std::min(times[i], took.count());
-      total += took.count();
-    }
-  }
-  std::vector<double> sorted = times;
-  std::sort(sorted.begin(), sorted.end());
-  double sum = 0;
-  for (const double t : sorted) sum += t;
-  return {sum / static_cast<double>(sorted.size()),
-          sorted[static_cast<std::size_t>(0.99 * static_cast<double>(sorted.size() - 1))],
-          sorted.back()};
 }
 
 /// A configuration whose last link is behind the window of one side, without collision.
@@ -180,9 +150,9 @@ int measure(const char* robot_path, std::size_t wanted, const char* csv, const c
         missed += answers[i] < truth[i] ? 1 : 0;
       }
       const Statistics s = times_of(
-          queries,
-          [&](const auto& poses) {
-            engine->place(poses);
+          queries.size(),
+          [&](std::size_t i) {
+            engine->place(queries[i]);
             engine->collide();
           },
           times);
@@ -200,9 +170,9 @@ int measure(const char* robot_path, std::size_t wanted, const char* csv, const c
   for (const Model* model : {&shapes.triangles, &shapes.hulls, &shapes.sets}) {
     const auto engine = make_fcl(*model);
     const Statistics s = times_of(
-        queries,
-        [&](const auto& poses) {
-          engine->place(poses);
+        queries.size(),
+        [&](std::size_t i) {
+          engine->place(queries[i]);
           engine->distance();
         },
         times);
