@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "cli.h"
+#include "verify_sweep.h"
 
 namespace {
 
@@ -24,6 +25,7 @@ struct Options {
   std::string original, approximation, original_format, approximation_format;
   std::string epsilon, witness, claims = "all";
   std::size_t max_contacts = verify::InclusionOptions{}.max_contacts;
+  tools::VerifySweepOptions sweep;
   tools::CommonOptions common;
 };
 
@@ -245,17 +247,31 @@ std::vector<std::string> warnings(const geom::Mesh& original, const geom::Mesh& 
 }
 
 /// Nothing that is read may be written, nothing written twice; the witness's format holds doubles.
-void require_outputs(const Options& o) {
-  tools::require_apart({{"--report", o.common.report}, {"--witness", o.witness}},
-                       {o.original, o.approximation});
+void require_outputs(const Options& o, const std::vector<std::string>& inputs) {
+  tools::require_apart({{"--report", o.common.report}, {"--witness", o.witness}}, inputs);
   if (o.witness.empty()) return;
   const auto format = io::format_from_name(std::filesystem::path(o.witness).extension().string());
   if (!format || !(io::holds_double(*format) || *format == io::Format::Stl))
     throw Error(ErrorCode::InvalidArgument, "--witness: write .ply, .obj, .off or .stl (as text)");
 }
 
+int check_sweep(Options o) {
+  if (!o.original.empty())
+    throw Error(ErrorCode::InvalidArgument, "--sweep takes ROBOT PATH SWEPT and no more files");
+  if (o.claims == "solid")
+    throw Error(ErrorCode::InvalidArgument,
+                "--claims solid: with --sweep it follows from the surface claim; use all");
+  require_outputs(o, o.sweep.files);
+  o.sweep.claims = o.claims;
+  o.sweep.witness = o.witness;
+  o.sweep.set_format = o.approximation_format;
+  return tools::verify_sweep(o.sweep, o.common);
+}
+
 int check(const Options& o) {
-  require_outputs(o);
+  if (o.approximation.empty())
+    throw Error(ErrorCode::InvalidArgument, "ORIGINAL and APPROXIMATION are required");
+  require_outputs(o, {o.original, o.approximation});
   const tools::ThreadLimit threads(o.common.threads);
   std::optional<tools::Length> epsilon;
   if (!o.epsilon.empty()) {
@@ -483,7 +499,7 @@ int main(int argc, char** argv) {
   CLI::App app(
       "Decides from two files alone, in exact arithmetic, whether an approximation encloses the\n"
       "original (--outer), is enclosed by it (--inner) or, a set of convex bodies, covers it "
-      "(--cover).\n"
+      "(--cover); or whether a set of convex bodies holds a robot during a motion (--sweep).\n"
       "\n"
       "Solid claim: points about which one mesh winds at least once are so in the other.\n"
       "Surface claim: every triangle of the enclosed mesh lies in the solid of the enclosing one.\n"
@@ -495,13 +511,18 @@ int main(int argc, char** argv) {
   relation->add_flag("--inner", o.inner, "APPROXIMATION is enclosed by ORIGINAL");
   relation->add_flag("--cover", o.cover,
                      "APPROXIMATION is a set of convex bodies that covers ORIGINAL");
+  CLI::Option* sweep =
+      relation
+          ->add_option("--sweep", o.sweep.files,
+                       "SWEPT, a set of convex bodies, holds the links of ROBOT (URDF, rlkin, "
+                       "rlmdl) all along PATH (.csv, .json)")
+          ->expected(3)
+          ->type_name("ROBOT PATH SWEPT");
   relation->require_option(1);
   app.add_option("ORIGINAL", o.original, "The mesh that was approximated (- for standard input)")
-      ->required()
       ->type_name("FILE");
   app.add_option("APPROXIMATION", o.approximation,
                  "The result: a mesh; with --cover or --set a set (.glb, .obj, a folder of .stl)")
-      ->required()
       ->type_name("FILE");
   app.add_option("--claims", o.claims,
                  "Claims that decide: all, solid or surface; those that mean nothing for the files "
@@ -509,23 +530,27 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"all", "solid", "surface"}))
       ->capture_default_str()
       ->type_name("NAME");
-  app.add_option(
-         "--epsilon", o.epsilon,
-         "Also decide that no distance exceeds this: a length, or a percentage of ORIGINAL's "
-         "bounding-box diagonal (0.5%); between the surfaces, both ways; with --cover from "
-         "the union to the solid (to the surface when ORIGINAL is open); of an inner set, that it "
-         "leaves out no point deeper than this inside ORIGINAL")
-      ->type_name("LENGTH");
-  app.add_flag("--prepare", o.prepare,
-               "Judge against ORIGINAL as bmesh-decimate prepares it (parts that are inside out "
-               "turned, copies and walls dropped) instead of the file as it is");
+  CLI::Option* epsilon =
+      app.add_option(
+             "--epsilon", o.epsilon,
+             "Also decide that no distance exceeds this: a length, or a percentage of ORIGINAL's "
+             "bounding-box diagonal (0.5%); between the surfaces, both ways; with --cover from "
+             "the union to the solid (to the surface when ORIGINAL is open); of an inner set, that "
+             "it "
+             "leaves out no point deeper than this inside ORIGINAL")
+          ->type_name("LENGTH");
+  CLI::Option* prepare = app.add_flag(
+      "--prepare", o.prepare,
+      "Judge against ORIGINAL as bmesh-decimate prepares it (parts that are inside out "
+      "turned, copies and walls dropped) instead of the file as it is");
   app.add_flag("--drop-sheets", o.drop_sheets,
                "With --prepare: drop sheets (faces back to back without volume), as bmesh-decimate "
                "does with this option; nothing is then said about them")
       ->needs("--prepare");
-  app.add_flag("--set", o.set,
-               "With --inner: APPROXIMATION is a set of convex bodies (known anyway of folders and "
-               "of containers)");
+  CLI::Option* set = app.add_flag(
+      "--set", o.set,
+      "With --inner: APPROXIMATION is a set of convex bodies (known anyway of folders and "
+      "of containers)");
   app.add_option("--witness", o.witness,
                  "When refuted, write the offending triangles to this mesh file")
       ->type_name("FILE");
@@ -539,9 +564,37 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(std::size_t{1}, std::size_t{4'000'000'000}))
       ->capture_default_str()
       ->type_name("N");
+  for (CLI::Option* other : {epsilon, prepare, set}) other->excludes(sweep);
+  const auto of_sweep = [&](CLI::Option* option) { option->needs(sweep)->group("With --sweep"); };
+  of_sweep(app.add_option("--links", o.sweep.links, "Only these links, separated by commas [all]")
+               ->type_name("A,B"));
+  of_sweep(app.add_option("--geometry", o.sweep.geometry, "Which shapes of a URDF [collision]")
+               ->check(CLI::IsMember({"collision", "visual"}).description(""))
+               ->type_name("collision|visual"));
+  of_sweep(app.add_option("--package-path", o.sweep.packages,
+                          "Folder to look up package:// in, as for sweep-approx; may be repeated")
+               ->type_name("DIR"));
+  of_sweep(app.add_option("--gap", o.sweep.gap,
+                          "Parts that move and measure less are not divided further; where they "
+                          "are not known to be inside, the answer is undecided [margin / 10^6]")
+               ->check([](const std::string& s) {
+                 const auto length = tools::parse_length(s);
+                 return length && !length->percent ? std::string() : "must be a positive length";
+               })
+               ->type_name("LENGTH"));
+  of_sweep(app.add_option("--max-cells", o.sweep.max_cells,
+                          "Give up beyond this many parts of a triangle per segment of the path")
+               ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000'000}).description(""))
+               ->capture_default_str()
+               ->type_name("N"));
   tools::add_common_options(app, o.common);
   app.footer(
+      "--sweep: every triangle of the links' meshes, every box, cylinder and sphere, at every\n"
+      "configuration of PATH, lies in a body enlarged by the margin: during the whole motion, not\n"
+      "only at samples (docs/algorithms/swept-volumes.md); so do the insides of closed meshes. It\n"
+      "shares the parsers of ROBOT and PATH with sweep-approx, nothing else.\n\n"
       "Exit codes: 0 verified; 1 refuted; 2 usage; 3 bad input, or not closed where a claim needs "
       "it; 4 output failed; 6 internal error; 7 undecided within limits.");
-  return tools::run(app, argc, argv, [&] { return check(o); });
+  return tools::run(app, argc, argv,
+                    [&] { return o.sweep.files.empty() ? check(o) : check_sweep(o); });
 }

@@ -1,0 +1,437 @@
+// Whether a set of convex bodies holds what moves: docs/algorithms/swept-volumes.md, "Checked from
+// files alone".
+#include <kaboum/geom/error.h>
+#include <kaboum/geom/topology.h>
+#include <kaboum/verify/sweep.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <sstream>
+
+#include "swept_body.h"
+#include "swept_cell.h"
+
+namespace kaboum::verify {
+
+using geom::Vec3;
+
+namespace {
+
+using Pose = Eigen::Matrix<double, 3, 4>;
+using Waypoints = std::vector<std::vector<double>>;
+
+constexpr std::size_t kCellsPerTask = 32;
+constexpr double kUp = 1 + 0x1p-40;
+
+Vec3 apply(const Pose& pose, const Vec3& p) { return pose.leftCols<3>() * p + pose.col(3); }
+
+std::vector<double> between(const std::vector<double>& a, const std::vector<double>& b, double s) {
+  std::vector<double> q(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i)
+    q[i] = static_cast<double>(a[i] + s * (static_cast<long double>(b[i]) - a[i]));
+  return q;
+}
+
+/// Part of a shape during a segment, and what was found.
+struct Task {
+  std::size_t shape, segment, first, last;  // cells of the shape
+  std::size_t cells = 0, samples = 0, undecided_cells = 0;
+  bool limited = false;
+  std::optional<SweepPlace> refuting, undecided;
+  SweepPlace farthest;
+  std::vector<std::uint32_t> first_bodies;  // that hold parts at the segment's start
+};
+
+/// Decides one task.
+class Search {
+ public:
+  Search(Task& task, const MovingShape& shape, const Waypoints& path,
+         const std::vector<SweptBody>& bodies, double margin, const SweepOptions& options)
+      : task_(task),
+        shape_(shape),
+        from_(path[task.segment]),
+        to_(path[std::min(task.segment + 1, path.size() - 1)]),
+        bodies_(bodies),
+        margin_(margin),
+        options_(options),
+        most_cells_(options.max_cells * (task.last - task.first)) {}
+
+  void run(std::vector<SweptCell> cells) {
+    double radius = 0;
+    for (const SweptCell& c : cells) radius = std::max(radius, c.radius() + c.bulge());
+    bound_ = bound_motion(shape_.chain, from_, to_, radius);
+    moves_ = bound_.speed > 0;
+    std::vector<std::uint32_t> all(bodies_.size());
+    for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
+    task_.farthest.distance = -1;
+    stretch(0, 1, pose_at(0), moves_ ? pose_at(1) : pose_at(0), std::move(cells), all);
+  }
+
+ private:
+  enum class Next { Held, HalveTime, HalveCurve, HalveFlat, Refuted, Undecided };
+
+  [[nodiscard]] Pose pose_at(double s) const {
+    return pose_of(shape_.chain, between(from_, to_, s));
+  }
+
+  void stretch(double begin, double end, const Pose& start, const Pose& finish,
+               std::vector<SweptCell> cells, const std::vector<std::uint32_t>& candidates) {
+    begin_ = begin;
+    end_ = end;
+    start_ = &start;
+    finish_ = &finish;
+    const std::vector<std::uint32_t> near = those_near(cells, candidates);
+    std::vector<SweptCell> later;
+    while (!cells.empty()) {
+      SweptCell cell = std::move(cells.back());
+      cells.pop_back();
+      if (++task_.cells > most_cells_) {
+        task_.limited = true;
+        give_up(cell);
+        return;
+      }
+      switch (look_at(cell, near)) {
+        case Next::Held:
+          if (begin == 0) task_.first_bodies.push_back(cell.body);
+          break;
+        case Next::HalveTime:
+          later.push_back(cell);
+          break;
+        case Next::HalveCurve:
+        case Next::HalveFlat: {
+          auto halves = cell.halves(next_along_curve_);
+          cells.push_back(halves.second);
+          cells.push_back(halves.first);
+          break;
+        }
+        case Next::Refuted:
+          return;
+        case Next::Undecided:
+          give_up(cell);
+          break;
+      }
+    }
+    if (later.empty()) return;
+    const double middle = 0.5 * (begin + end);
+    const Pose pose = pose_at(middle);
+    stretch(begin, middle, start, pose, later, near);
+    if (task_.refuting || task_.limited) return;
+    stretch(middle, end, pose, finish, std::move(later), near);
+  }
+
+  /// Bodies that can hold a cell during the stretch.
+  [[nodiscard]] std::vector<std::uint32_t> those_near(
+      const std::vector<SweptCell>& cells, const std::vector<std::uint32_t>& candidates) const {
+    geom::Box3 box;
+    for (const SweptCell& cell : cells) {
+      for (const Vec3& p : cell.points()) {
+        box.extend(apply(*start_, p));
+        box.extend(apply(*finish_, p));
+      }
+    }
+    // Between its ends no point is farther from the nearer one than half of what it moves.
+    const Vec3 room = Vec3::Constant(
+        (margin_ + 0.5 * (end_ - begin_) * bound_.speed + 2 * bound_.rounding) * kUp);
+    std::vector<std::uint32_t> out;
+    for (const std::uint32_t i : candidates) {
+      const geom::Box3& b = bodies_[i].box();
+      if ((b.min.array() <= (box.max + room).array()).all() &&
+          (b.max.array() >= (box.min - room).array()).all())
+        out.push_back(i);
+    }
+    return out;
+  }
+
+  Next look_at(SweptCell& cell, const std::vector<std::uint32_t>& near) {
+    const std::size_t count = cell.points().size();
+    std::array<Vec3, 8> places;
+    for (std::size_t i = 0; i < count; ++i) {
+      places[i] = apply(*start_, cell.points()[i]);
+      places[count + i] = moves_ ? apply(*finish_, cell.points()[i]) : places[i];
+    }
+    const std::span<const Vec3> start(places.data(), count), finish(places.data() + count, count);
+    const std::span<const Vec3> both(places.data(), moves_ ? 2 * count : count);
+    sample(cell, start, begin_, near);
+    if (moves_) sample(cell, finish, end_, near);
+    const double length = end_ - begin_;
+    const double motion = moves_ ? length * length / 8 * bound_.acceleration * kUp : 0;
+    const double still = margin_ - bound_.rounding;  // what is left without motion and bulge
+    const double left = still - motion - cell.bulge();
+    if (holder(both, left, cell.body, near)) return Next::Held;
+
+    const bool at_start = holder(start, still - cell.bulge(), cell.body, near);
+    const bool at_finish = holder(finish, still - cell.bulge(), cell.body, near);
+    const double gap = options_.gap;
+    if (at_start && at_finish) {
+      if (length * bound_.speed > gap) return Next::HalveTime;
+      return Next::Undecided;
+    }
+    if (refute(cell, start, begin_) || refute(cell, finish, end_)) return Next::Refuted;
+    if (cell.curved()) {
+      std::uint32_t any = cell.body;
+      const bool bulge_alone = holder(start, still, any, near) && holder(finish, still, any, near);
+      next_along_curve_ = cell.bulge() > gap && (bulge_alone || cell.bulge() > margin_ / 8);
+      if (next_along_curve_) return Next::HalveCurve;
+    }
+    next_along_curve_ = false;
+    if (cell.size() > gap) return Next::HalveFlat;
+    return Next::Undecided;
+  }
+
+  /// Whether one body holds all places; `body` is tried first, and becomes it.
+  bool holder(std::span<const Vec3> places, double reach, std::uint32_t& body,
+              const std::vector<std::uint32_t>& near) const {
+    const auto holds = [&](std::uint32_t i) {
+      return std::all_of(places.begin(), places.end(), [&](const Vec3& p) {
+        return bodies_[i].distance_to_box(p) <= std::max(reach, 0.0) && bodies_[i].holds(p, reach);
+      });
+    };
+    if (bodies_.empty()) return false;
+    if (holds(body)) return true;
+    for (const std::uint32_t i : near) {
+      if (i == body || !holds(i)) continue;
+      body = i;
+      return true;
+    }
+    return false;
+  }
+
+  /// Remembers the place farthest from the bodies.
+  void sample(const SweptCell& cell, std::span<const Vec3> places, double s,
+              const std::vector<std::uint32_t>& near) {
+    for (const Vec3& p : places) {
+      ++task_.samples;
+      double nearest = std::numeric_limits<double>::infinity();
+      if (!bodies_.empty()) nearest = bodies_[cell.body].distance_from_above(p);
+      for (const std::uint32_t i : near) {
+        if (nearest <= task_.farthest.distance) break;
+        if (bodies_[i].distance_to_box(p) < nearest)
+          nearest = std::min(nearest, bodies_[i].distance_from_above(p));
+      }
+      // Bodies that are not near are farther away than the margin; the claim is then refuted.
+      if (nearest > task_.farthest.distance && nearest <= margin_) {
+        task_.farthest = place(cell, p, s);
+        task_.farthest.distance = nearest;
+      }
+    }
+  }
+
+  /// Whether a place is certainly farther from all bodies than the margin.
+  bool refute(const SweptCell& cell, std::span<const Vec3> places, double s) {
+    for (const Vec3& p : places) {
+      double nearest = std::numeric_limits<double>::infinity();
+      bool outside = true;
+      for (const SweptBody& body : bodies_) {
+        const double away = body.distance_to_box(p);
+        const double distance =
+            away > margin_ + bound_.rounding && away > nearest ? away : body.distance_from_below(p);
+        nearest = std::min(nearest, distance);
+        outside = distance - bound_.rounding > margin_;
+        if (!outside) break;
+      }
+      if (!outside) continue;
+      task_.refuting = place(cell, p, s);
+      task_.refuting->distance = nearest;
+      return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] SweepPlace place(const SweptCell& cell, const Vec3& p, double s) const {
+    SweepPlace out{task_.shape, task_.segment, s, p, 0, {}};
+    const Pose pose = pose_at(s);
+    for (const Vec3& corner : cell.points().last(3)) out.triangle.push_back(apply(pose, corner));
+    return out;
+  }
+
+  void give_up(const SweptCell& cell) {
+    ++task_.undecided_cells;
+    if (!task_.undecided) task_.undecided = place(cell, apply(*start_, cell.points()[0]), begin_);
+  }
+
+  Task& task_;
+  const MovingShape& shape_;
+  const std::vector<double>&from_, &to_;
+  const std::vector<SweptBody>& bodies_;
+  double margin_;
+  const SweepOptions& options_;
+  std::size_t most_cells_;
+  MotionBound bound_;
+  bool moves_ = false, next_along_curve_ = false;
+  double begin_ = 0, end_ = 1;
+  const Pose *start_ = nullptr, *finish_ = nullptr;
+};
+
+void require_usable(std::span<const MovingShape> shapes, const Waypoints& path,
+                    const SweepOptions& options) {
+  if (path.empty()) throw Error(ErrorCode::InvalidArgument, "the path has no waypoint");
+  if (!(options.gap > 0)) throw Error(ErrorCode::InvalidArgument, "the gap must be positive");
+  for (const auto& waypoint : path)
+    for (const double x : waypoint)
+      if (!std::isfinite(x)) throw Error(ErrorCode::InvalidInput, "a waypoint is not finite");
+  for (const MovingShape& shape : shapes) {
+    geom::require_valid(shape.mesh);
+    for (const ChainStage& stage : shape.chain)
+      for (const auto& waypoint : path)
+        if (stage.motion != ChainStage::Motion::None && stage.variable >= waypoint.size())
+          throw Error(ErrorCode::InvalidArgument, "a waypoint has no value for every variable");
+  }
+}
+
+void keep_unique(std::vector<std::uint32_t>& indices) {
+  std::sort(indices.begin(), indices.end());
+  indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+}
+
+/// @return for every shape the bodies that hold its surface at the path's start
+std::vector<std::vector<std::uint32_t>> surface_claim(std::span<const MovingShape> shapes,
+                                                      const Waypoints& path,
+                                                      const geom::ConvexSet& set,
+                                                      const SweepOptions& options,
+                                                      SweepClaims& claims) {
+  std::vector<std::vector<std::uint32_t>> first_bodies(shapes.size());
+  std::vector<SweptBody> bodies;
+  for (const geom::ConvexBody& b : set.bodies) bodies.emplace_back(b.hull);
+  claims.surface.answer = Answer::Verified;
+  claims.farthest.distance = -1;
+  const std::size_t segments = std::max<std::size_t>(path.size(), 2) - 1;
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    if (options.progress)
+      options.progress(shapes[i].name + " (" + std::to_string(i + 1) + " of " +
+                       std::to_string(shapes.size()) + ")");
+    const std::vector<SweptCell> cells = SweptCell::cells_of(shapes[i]);
+    std::vector<Task> tasks;
+    for (std::size_t segment = 0; segment < segments; ++segment)
+      for (std::size_t c = 0; c < cells.size(); c += kCellsPerTask)
+        tasks.push_back(
+            {i, segment, c, std::min(c + kCellsPerTask, cells.size()), 0, 0, 0, false, {}, {}, {}});
+    // Tasks after the first one that refutes need not be done: all before it are.
+    std::atomic<std::size_t> first_refuting = tasks.size();
+    tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t t) {
+      if (t > first_refuting) return;
+      Task& task = tasks[t];
+      Search search(task, shapes[i], path, bodies, set.margin, options);
+      search.run({cells.begin() + static_cast<std::ptrdiff_t>(task.first),
+                  cells.begin() + static_cast<std::ptrdiff_t>(task.last)});
+      keep_unique(task.first_bodies);
+      if (!task.refuting) return;
+      std::size_t known = first_refuting;
+      while (t < known && !first_refuting.compare_exchange_weak(known, t)) {
+      }
+    });
+    const std::size_t done = std::min(first_refuting.load() + 1, tasks.size());
+    for (std::size_t t = 0; t < done; ++t) {
+      Task& task = tasks[t];
+      claims.cells += task.cells;
+      claims.samples += task.samples;
+      claims.undecided_cells += task.undecided_cells;
+      if (task.farthest.distance > claims.farthest.distance) claims.farthest = task.farthest;
+      if (task.undecided && !claims.undecided) claims.undecided = task.undecided;
+      if (task.refuting) claims.refuting = task.refuting;
+      if (task.segment == 0)
+        first_bodies[i].insert(first_bodies[i].end(), task.first_bodies.begin(),
+                               task.first_bodies.end());
+    }
+    keep_unique(first_bodies[i]);
+    if (claims.refuting) break;
+  }
+  if (claims.refuting) {
+    claims.surface.answer = Answer::Refuted;
+    claims.farthest = *claims.refuting;
+    claims.surface.witness =
+        Witness{claims.refuting->point, claims.refuting->distance - set.margin, false};
+    claims.surface.reason = "a part of " + shapes[claims.refuting->shape].name + " is outside";
+  } else if (claims.undecided) {
+    claims.surface.answer = Answer::Undecided;
+    std::ostringstream reason;
+    reason << claims.undecided_cells << " parts of the motion are known to be inside only with a "
+           << "larger margin, or more were looked at than allowed; the first is of "
+           << shapes[claims.undecided->shape].name;
+    claims.surface.reason = reason.str();
+  }
+  return first_bodies;
+}
+
+/// Bodies that, margin included, may meet a box.
+geom::ConvexSet near(const geom::ConvexSet& set, const geom::Box3& box) {
+  geom::ConvexSet out;
+  out.margin = set.margin;
+  const Vec3 room = Vec3::Constant(set.margin * kUp);
+  for (const geom::ConvexBody& b : set.bodies) {
+    const geom::Box3 other = geom::bounding_box(b.hull);
+    if ((other.min.array() <= (box.max + room).array()).all() &&
+        (other.max.array() >= (box.min - room).array()).all())
+      out.bodies.push_back(b);
+  }
+  return out;
+}
+
+/// The solids at the path's start. Later nothing uncovered can get into them: it would have to pass
+/// their surfaces, which are covered throughout.
+void solid_claim(std::span<const MovingShape> shapes, const Waypoints& path,
+                 const geom::ConvexSet& set, const SweepOptions& options,
+                 const std::vector<std::vector<std::uint32_t>>& first_bodies, SweepClaims& claims) {
+  bool primitives = false, closed = false;
+  Claim& solid = claims.solid;
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    const MovingShape& shape = shapes[i];
+    if (shape.kind != MovingShape::Kind::Mesh) {
+      primitives = true;  // whose insides are part of the surface claim
+      continue;
+    }
+    geom::Mesh posed = shape.mesh;
+    const Pose pose = pose_of(shape.chain, path.front());
+    for (Vec3& v : posed.vertices) v = apply(pose, v);
+    if (options.progress) options.progress(shape.name + ", its inside");
+    // Few bodies are quicker; when they are not enough, all that are near.
+    geom::ConvexSet some;
+    some.margin = set.margin;
+    for (const std::uint32_t b : first_bodies[i]) some.bodies.push_back(set.bodies[b]);
+    Inclusion found = verify_cover(posed, some, options.inclusion).inclusion;
+    if (found.inner_closed && found.solid.answer != Answer::Verified)
+      found =
+          verify_cover(posed, near(set, geom::bounding_box(posed)), options.inclusion).inclusion;
+    if (!found.inner_closed) {
+      ++claims.open_meshes;
+      continue;
+    }
+    closed = true;
+    if (found.solid.answer == Answer::Verified || solid.answer == Answer::Refuted) continue;
+    if (found.solid.answer == Answer::Refuted || solid.answer != Answer::Undecided) {
+      solid = found.solid;
+      solid.reason = shape.name + ", at the start of the path: " + solid.reason;
+      solid.inner_triangles.clear();  // of meshes that the caller does not know
+      solid.outer_triangles.clear();
+    }
+  }
+  if (solid.answer == Answer::Undefined && (closed || primitives)) {
+    solid.answer = claims.surface.answer;
+    if (solid.answer != Answer::Verified) {
+      solid.answer = Answer::Undecided;
+      solid.reason = "the surfaces are not known to stay inside";
+    }
+  }
+}
+
+}  // namespace
+
+SweepClaims verify_sweep(std::span<const MovingShape> shapes, const Waypoints& path,
+                         const geom::ConvexSet& set, const SweepOptions& options) {
+  require_usable(shapes, path, options);
+  SweepClaims claims;
+  claims.convex = verify_convexity(set).convex;
+  if (claims.convex.answer != Answer::Verified) {
+    for (Claim* claim : {&claims.surface, &claims.solid}) {
+      claim->answer = Answer::Undecided;
+      claim->reason = "not all bodies are convex";
+    }
+    return claims;
+  }
+  const auto first_bodies = surface_claim(shapes, path, set, options, claims);
+  if (options.solids) solid_claim(shapes, path, set, options, first_bodies, claims);
+  return claims;
+}
+
+}  // namespace kaboum::verify

@@ -1,0 +1,118 @@
+#include "swept_body.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kaboum::verify {
+
+using geom::Vec3;
+
+namespace {
+
+/// A point of the triangle, the nearest to p but for rounding (Ericson, Real-Time Collision
+/// Detection, 5.1.5); whatever rounding chooses, the weights are those of a convex combination.
+Vec3 nearest_in_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a, ap = p - a;
+  const auto share = [](double x, double y) { return std::clamp(x / (x + y), 0.0, 1.0); };
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) return a;
+  const Vec3 bp = p - b;
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) return b;
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + share(d1, -d3) * ab;
+  const Vec3 cp = p - c;
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) return c;
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + share(d2, -d6) * ac;
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return b + share(d4 - d3, d5 - d6) * (c - b);
+  const double sum = va + vb + vc;
+  if (!(sum > 0)) return a;
+  const double v = std::clamp(vb / sum, 0.0, 1.0);
+  return a + v * ab + std::clamp(vc / sum, 0.0, 1 - v) * ac;
+}
+
+}  // namespace
+
+SweptBody::SweptBody(const geom::Mesh& hull) : vertices_(hull.vertices) {
+  for (const Vec3& v : vertices_) {
+    box_.extend(v);
+    size_ = std::max(size_, v.cwiseAbs().maxCoeff());
+  }
+  facets_.reserve(hull.triangles.size());
+  for (const geom::Triangle& t : hull.triangles) {
+    Facet f;
+    f.a = vertices_[t[0]];
+    f.b = vertices_[t[1]];
+    f.c = vertices_[t[2]];
+    const Vec3 ab = f.b - f.a, ac = f.c - f.a, normal = ab.cross(ac);
+    const double area = normal.norm(), edges = ab.norm() * ac.norm();
+    // A sliver's normal errs by as much as it is thin; without area its plane says nothing.
+    if (!(area > 0x1p-40 * edges)) {
+      f.normal = Vec3::Zero();
+      f.offset = 0;
+      f.slack = std::numeric_limits<double>::infinity();
+    } else {
+      f.normal = normal / area;
+      f.offset = f.normal.dot(f.a);
+      f.slack = 0x1p-47 * (edges / area);  // times the lengths involved, below
+    }
+    facets_.push_back(f);
+  }
+}
+
+double SweptBody::rounding(const Vec3& p) const {
+  return 0x1p-46 * std::max(size_, p.cwiseAbs().maxCoeff());
+}
+
+bool SweptBody::holds(const Vec3& p, double reach) const {
+  const double size = std::max(size_, p.cwiseAbs().maxCoeff());
+  const double deep = std::min(reach, 0.0);
+  bool inside = true;
+  for (const Facet& f : facets_) {
+    const double height = f.normal.dot(p) - f.offset, slack = f.slack * size;
+    if (height - slack > reach) return false;
+    inside = inside && height + slack <= deep;
+  }
+  if (inside) return true;
+  return reach > 0 && distance_from_above(p) <= reach;
+}
+
+Vec3 SweptBody::nearest(const Vec3& p) const {
+  const double size = std::max(size_, p.cwiseAbs().maxCoeff());
+  double least = std::numeric_limits<double>::infinity();
+  Vec3 best = vertices_.front();
+  for (const Facet& f : facets_) {
+    if (f.normal.dot(p) - f.offset < -f.slack * size) continue;  // seen from behind
+    const Vec3 q = nearest_in_triangle(p, f.a, f.b, f.c);
+    const double d = (p - q).squaredNorm();
+    if (d < least) {
+      least = d;
+      best = q;
+    }
+  }
+  return best;
+}
+
+double SweptBody::distance_from_above(const Vec3& p) const {
+  const double size = std::max(size_, p.cwiseAbs().maxCoeff());
+  if (std::all_of(facets_.begin(), facets_.end(),
+                  [&](const Facet& f) { return f.normal.dot(p) - f.offset + f.slack * size <= 0; }))
+    return 0;
+  return (p - nearest(p)).norm() + rounding(p);
+}
+
+double SweptBody::distance_from_below(const Vec3& p) const {
+  const Vec3 way = p - nearest(p);
+  const double length = way.norm();
+  if (!(length > 0)) return 0;
+  const Vec3 n = way / length;
+  // Of all vertices, and so of the body, none is higher than `top` along n.
+  double top = -std::numeric_limits<double>::infinity();
+  for (const Vec3& v : vertices_) top = std::max(top, n.dot(v));
+  return std::max(0.0, n.dot(p) - top - rounding(p));
+}
+
+}  // namespace kaboum::verify

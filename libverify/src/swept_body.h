@@ -1,0 +1,45 @@
+#pragma once
+
+#include <kaboum/geom/mesh.h>
+
+#include <span>
+
+namespace kaboum::verify {
+
+/// A convex body with bounds of distances to it, safe in double arithmetic.
+class SweptBody {
+ public:
+  /// @pre exactly convex, outward normals (verify_convexity)
+  explicit SweptBody(const geom::Mesh& hull);
+
+  /// Whether the point is certainly within `reach` of the body; with a negative reach, whether it
+  /// is certainly that deep inside. Points near the limit may get "no".
+  [[nodiscard]] bool holds(const geom::Vec3& p, double reach) const;
+  /// Not less than the distance of the point from the body.
+  [[nodiscard]] double distance_from_above(const geom::Vec3& p) const;
+  /// Not more than it.
+  [[nodiscard]] double distance_from_below(const geom::Vec3& p) const;
+  /// Not more than it, quickly.
+  [[nodiscard]] double distance_to_box(const geom::Vec3& p) const {
+    return (p - p.cwiseMax(box_.min).cwiseMin(box_.max)).norm() * (1 - 0x1p-40);
+  }
+  [[nodiscard]] const geom::Box3& box() const { return box_; }
+
+ private:
+  struct Facet {
+    geom::Vec3 normal;
+    double offset;
+    double slack;  // bound of what rounding does to normal · p − offset, for |p| ≤ reach_
+    geom::Vec3 a, b, c;
+  };
+  [[nodiscard]] double rounding(const geom::Vec3& p) const;
+  /// The point of the facets that seems nearest; certainly one of the body, but for rounding.
+  [[nodiscard]] geom::Vec3 nearest(const geom::Vec3& p) const;
+
+  std::vector<Facet> facets_;
+  std::vector<geom::Vec3> vertices_;
+  geom::Box3 box_;
+  double size_ = 0;  // largest coordinate
+};
+
+}  // namespace kaboum::verify

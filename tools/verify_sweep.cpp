@@ -1,0 +1,297 @@
+#include "verify_sweep.h"
+
+#include <kaboum/geom/error.h>
+#include <kaboum/io/convex_io.h>
+#include <kaboum/sweep/kinematics.h>
+#include <kaboum/sweep/path.h>
+#include <kaboum/verify/sweep.h>
+
+#include <algorithm>
+#include <iomanip>
+#include <iostream>
+#include <map>
+#include <sstream>
+
+#include "robot_bodies.h"
+
+namespace kaboum::tools {
+namespace {
+
+using verify::Answer;
+using Stage = verify::ChainStage;
+
+std::string number(double x, int digits = 6) {
+  std::ostringstream text;
+  text << std::setprecision(digits) << x;
+  return text.str();
+}
+
+Json to_json(const geom::Vec3& p) { return {p.x(), p.y(), p.z()}; }
+
+struct Shapes {
+  std::vector<verify::MovingShape> shapes;
+  std::vector<std::uint32_t> links;  // of the shapes
+  std::vector<std::string> files, notes;
+};
+
+/// The joints from the root to a link, in this verifier's words.
+verify::Chain chain_to(const sweep::Robot& robot, std::uint32_t link) {
+  verify::Chain chain;
+  for (std::uint32_t l = link; l > 0; l = robot.joints[l - 1].parent) {
+    const sweep::Joint& joint = robot.joints[l - 1];
+    Stage stage;
+    stage.rotation = joint.origin.linear;
+    stage.translation = joint.origin.translation;
+    if (joint.type != sweep::JointType::Fixed) {
+      stage.motion =
+          joint.type == sweep::JointType::Revolute ? Stage::Motion::Turn : Stage::Motion::Slide;
+      stage.axis = joint.axis;
+      stage.variable = joint.variable;
+      stage.multiplier = joint.multiplier;
+      stage.offset = joint.offset;
+    }
+    chain.push_back(stage);
+  }
+  std::reverse(chain.begin(), chain.end());
+  return chain;
+}
+
+geom::Mesh scaled(geom::Mesh mesh, const geom::Vec3& scale) {
+  for (geom::Vec3& v : mesh.vertices) v = v.cwiseProduct(scale);
+  if (scale.prod() < 0)  // a mirrored solid is still a solid
+    for (geom::Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+  return mesh;
+}
+
+Shapes read_shapes(const RobotFile& file, const VerifySweepOptions& o) {
+  std::vector<std::string> wanted;
+  std::istringstream list(o.links);
+  for (std::string name; std::getline(list, name, ',');)
+    if (!name.empty()) wanted.push_back(name);
+  for (const std::string& name : wanted)
+    if (!file.robot.find_link(name))
+      throw Error(ErrorCode::InvalidArgument,
+                  file.path.string() + ": there is no link '" + name + "'");
+  using From = sweep::Geometry::Shape;
+  using To = verify::MovingShape::Kind;
+  static const std::map<From, To> kKinds{{From::Mesh, To::Mesh},
+                                         {From::Box, To::Box},
+                                         {From::Cylinder, To::Cylinder},
+                                         {From::Sphere, To::Sphere}};
+  Shapes out;
+  for (std::uint32_t l = 0; l < file.robot.links.size(); ++l) {
+    const sweep::Link& link = file.robot.links[l];
+    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), link.name) == wanted.end())
+      continue;
+    std::size_t count = 0;
+    for (const sweep::Geometry& g : o.geometry == "visual" ? link.visual : link.collision) {
+      verify::MovingShape shape;
+      shape.name = link.name + "/" + std::to_string(count++);
+      shape.kind = kKinds.at(g.shape);
+      shape.size = g.size;
+      shape.chain = chain_to(file.robot, l);
+      Stage place;
+      place.rotation = g.origin.linear;
+      place.translation = g.origin.translation;
+      shape.chain.push_back(place);
+      if (shape.kind == To::Mesh) {
+        const std::string path = resolve_mesh(g.mesh, file.path, o.packages).string();
+        io::ReadResult read = io::read_mesh(path);
+        for (const std::string& note : read.notes) out.notes.push_back(path + ": " + note);
+        shape.mesh = scaled(std::move(read.mesh), g.size);
+        out.files.push_back(path);
+      }
+      out.shapes.push_back(std::move(shape));
+      out.links.push_back(l);
+    }
+  }
+  if (out.shapes.empty())
+    throw Error(ErrorCode::InvalidInput, file.path.string() + ": no link has a shape" +
+                                             (o.geometry == "visual" ? ""
+                                                                     : "; try --geometry "
+                                                                       "visual"));
+  return out;
+}
+
+/// Both kinematics of the project, written apart, must put everything in the same place.
+void require_same_poses(const sweep::Robot& robot, const Shapes& shapes, const sweep::Path& path) {
+  for (const auto& q : path) {
+    const std::vector<sweep::Transform> poses = sweep::forward(robot, q);
+    for (std::size_t i = 0; i < shapes.shapes.size(); ++i) {
+      verify::Chain chain = shapes.shapes[i].chain;
+      chain.pop_back();
+      const auto pose = verify::pose_of(chain, q);
+      const sweep::Transform& other = poses[shapes.links[i]];
+      const double size = 1 + other.translation.norm();
+      ensure((pose.leftCols<3>() - other.linear).norm() < 1e-9 &&
+                 (pose.col(3) - other.translation).norm() < 1e-9 * size,
+             "two ways to compute a link's pose disagree");
+    }
+  }
+}
+
+sweep::Path read_path(const std::string& file, const sweep::Robot& robot) {
+  const std::vector<char> bytes = io::read_file(file);
+  const std::string_view text(bytes.data(), bytes.size());
+  const std::size_t start = text.find_first_not_of(" \t\r\n");
+  const bool json = start != std::string_view::npos && (text[start] == '{' || text[start] == '[');
+  return sweep::arrange(
+      json ? sweep::parse_path_json(text, file) : sweep::parse_path_csv(text, file), robot, file,
+      false);  // limits are no matter of the set
+}
+
+std::vector<double> configuration(const sweep::Path& path, const verify::SweepPlace& p) {
+  const auto &a = path[p.segment], &b = path[std::min(p.segment + 1, path.size() - 1)];
+  std::vector<double> q(a.size());
+  for (std::size_t i = 0; i < q.size(); ++i) q[i] = a[i] + p.s * (b[i] - a[i]);
+  return q;
+}
+
+Json to_json(const verify::SweepPlace& p, const Shapes& shapes, const sweep::Path& path) {
+  return {{"shape", shapes.shapes[p.shape].name},
+          {"segment", p.segment + 1},
+          {"s", p.s},
+          {"configuration", configuration(path, p)},
+          {"point", to_json(p.point)},
+          {"distance", p.distance}};
+}
+
+Json to_json(const verify::Claim& claim) {
+  Json json{{"answer", name_of(claim.answer)}, {"reason", claim.reason}};
+  if (claim.witness)
+    json["witness"] = {{"point", to_json(claim.witness->point)}, {"depth", claim.witness->depth}};
+  return json;
+}
+
+std::string say(const verify::SweepPlace& p, const Shapes& shapes) {
+  return shapes.shapes[p.shape].name + " at " + number(p.s, 17) + " of segment " +
+         std::to_string(p.segment + 1) + ", (" + number(p.point.x(), 17) + ", " +
+         number(p.point.y(), 17) + ", " + number(p.point.z(), 17) + ")";
+}
+
+void write_witness(const std::string& path, const verify::SweepPlace& place) {
+  geom::Mesh mesh;
+  mesh.vertices = place.triangle;
+  mesh.triangles = {{0, 1, 2}};
+  io::WriteOptions options;
+  options.double_precision = true;
+  options.comment = "a part of the robot that is outside the swept set";
+  io::Format format = *io::format_from_name(std::filesystem::path(path).extension().string());
+  if (format == io::Format::Stl) format = io::Format::StlAscii;  // holds doubles
+  io::write_file(path, io::serialise_mesh(mesh, format, options));
+}
+
+/// Of the claims that decide: refuted before undecided before verified.
+Answer combine(const std::vector<Answer>& answers) {
+  for (const Answer a : {Answer::Refuted, Answer::Undecided})
+    if (std::find(answers.begin(), answers.end(), a) != answers.end()) return a;
+  return Answer::Verified;
+}
+
+}  // namespace
+
+int verify_sweep(const VerifySweepOptions& o, const CommonOptions& common) {
+  const std::string &robot_path = o.files[0], &path_path = o.files[1], &set_path = o.files[2];
+  require_apart({{"--report", common.report}, {"--witness", o.witness}}, o.files);
+  const ThreadLimit threads(common.threads);
+  const RobotFile file = read_robot(robot_path);
+  const sweep::Path path = read_path(path_path, file.robot);
+  const Shapes shapes = read_shapes(file, o);
+  require_same_poses(file.robot, shapes, path);
+  std::optional<io::Format> format;
+  if (!std::filesystem::is_directory(set_path))
+    format = format_for(set_path, o.set_format, "--approximation-format");
+  io::SetReadDetails details;
+  const geom::ConvexSet set = io::read_convex_set(set_path, format, &details);
+  for (const std::string& note : shapes.notes) log(common.quiet, note);
+  for (const std::string& note : details.notes) log(common.quiet, set_path + ": " + note);
+
+  geom::Box3 box;
+  for (const geom::ConvexBody& b : set.bodies) box.extend(geom::bounding_box(b.hull));
+  Progress progress(common.quiet);
+  verify::SweepOptions options;
+  options.gap = o.gap.empty()
+                    ? std::max({1e-6 * set.margin, box.empty() ? 0 : 1e-9 * box.diagonal(), 1e-12})
+                    : parse_length(o.gap)->value;
+  options.max_cells = o.max_cells;
+  options.solids = o.claims != "surface";
+  options.progress = [&](const std::string& what) { progress.show("deciding: " + what); };
+  const verify::SweepClaims claims = verify::verify_sweep(shapes.shapes, path, set, options);
+
+  std::vector<Answer> deciding{claims.convex.answer, claims.surface.answer};
+  if (o.claims == "all" && claims.solid.answer != Answer::Undefined)
+    deciding.push_back(claims.solid.answer);
+  const Answer answer = combine(deciding);
+
+  const bool at_most = claims.convex.answer == Answer::Verified;
+  if (!common.report.empty()) {
+    Json json{{"tool", "bound-verify"},
+              {"version", version()},
+              {"relation", "sweep"},
+              {"verdict", name_of(answer)},
+              {"deciding_claims", o.claims},
+              {"robot", {{"file", robot_path}, {"sha256", file.sha256}, {"meshes", shapes.files}}},
+              {"path", {{"file", path_path}, {"waypoints", path.size()}}},
+              {"swept",
+               {{"file", set_path},
+                {"sha256", io::sha256(details.bytes)},
+                {"bodies", set.bodies.size()},
+                {"margin", set.margin}}},
+              {"gap", options.gap},
+              {"claims",
+               {{"convex", to_json(claims.convex)},
+                {"surface", to_json(claims.surface)},
+                {"solid", to_json(claims.solid)}}}};
+    if (claims.refuting)
+      json["claims"]["surface"]["place"] = to_json(*claims.refuting, shapes, path);
+    if (claims.undecided)
+      json["claims"]["surface"]["first_undecided"] = to_json(*claims.undecided, shapes, path);
+    if (at_most && claims.farthest.distance >= 0)
+      json["largest_found"] = to_json(claims.farthest, shapes, path);
+    json["open_meshes"] = claims.open_meshes;
+    json["shapes"] = shapes.shapes.size();
+    json["cells"] = claims.cells;
+    json["samples"] = claims.samples;
+    json["resources"] = {{"user_seconds", user_seconds()}, {"peak_megabytes", peak_megabytes()}};
+    write_json(common.report, json);
+  }
+  if (!o.witness.empty() && claims.refuting) write_witness(o.witness, *claims.refuting);
+
+  if (!common.quiet) {
+    std::ostream& out = common.report == "-" ? std::cerr : std::cout;
+    const auto line = [&](const char* title, const verify::Claim& claim, const std::string& what) {
+      out << title << ": " << name_of(claim.answer) << ": "
+          << (claim.answer == Answer::Verified ? what : claim.reason) << '\n';
+    };
+    line("convexity", claims.convex,
+         "all " + std::to_string(set.bodies.size()) + " bodies are convex");
+    line("surface claim", claims.surface,
+         "during the whole path " + std::to_string(shapes.shapes.size()) +
+             " shapes of the links stay within " + number(set.margin) + " of the bodies");
+    if (claims.refuting) {
+      out << "  " << say(*claims.refuting, shapes) << ": " << number(claims.refuting->distance)
+          << " from the nearest body, margin " << number(set.margin) << '\n';
+    } else if (claims.undecided) {
+      out << "  " << say(*claims.undecided, shapes) << '\n';
+    }
+    if (!claims.refuting && at_most && claims.farthest.distance >= 0)
+      out << "  farthest of " << claims.samples
+          << " places sampled: " << number(claims.farthest.distance) << ", "
+          << say(claims.farthest, shapes) << '\n';
+    if (o.claims != "surface" && claims.solid.answer != Answer::Undefined)
+      line("solid claim", claims.solid, "so do the insides of the closed shapes");
+    if (claims.open_meshes > 0)
+      out << claims.open_meshes << " meshes are not closed: their surfaces alone are judged\n";
+    out << name_of(answer) << '\n';
+  }
+  switch (answer) {
+    case Answer::Verified:
+      return kDone;
+    case Answer::Refuted:
+      return kNo;
+    default:
+      return kLimit;
+  }
+}
+
+}  // namespace kaboum::tools

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli.h"
+
+namespace kaboum::tools {
+
+/// What `bound-verify --sweep ROBOT PATH SWEPT` is asked.
+struct VerifySweepOptions {
+  std::vector<std::string> files;  ///< robot, path, swept set
+  std::string links, geometry = "collision", gap, claims = "all", witness, set_format;
+  std::vector<std::string> packages;
+  std::size_t max_cells = 20000;
+};
+
+/// Decides the claims, prints and reports them. @return the exit code.
+/// @throws Error on bad input.
+int verify_sweep(const VerifySweepOptions& options, const CommonOptions& common);
+
+}  // namespace kaboum::tools
