@@ -35,8 +35,8 @@ struct Shapes {
 };
 
 /// The joints from the root to a link, in this verifier's words.
-verify::Chain chain_to(const sweep::Robot& robot, std::uint32_t link) {
-  verify::Chain chain;
+verify::LinkChain chain_to(const sweep::Robot& robot, std::uint32_t link) {
+  verify::LinkChain chain;
   for (std::uint32_t l = link; l > 0; l = robot.joints[l - 1].parent) {
     const sweep::Joint& joint = robot.joints[l - 1];
     Stage stage;
@@ -118,7 +118,7 @@ void require_same_poses(const sweep::Robot& robot, const Shapes& shapes, const s
   for (const auto& q : path) {
     const std::vector<sweep::Transform> poses = sweep::forward(robot, q);
     for (std::size_t i = 0; i < shapes.shapes.size(); ++i) {
-      verify::Chain chain = shapes.shapes[i].chain;
+      verify::LinkChain chain = shapes.shapes[i].chain;
       chain.pop_back();
       const auto pose = verify::pose_of(chain, q);
       const sweep::Transform& other = poses[shapes.links[i]];

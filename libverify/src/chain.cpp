@@ -25,7 +25,7 @@ Matrix turn(const Vector& a, Real angle) {
 
 }  // namespace
 
-Eigen::Matrix<double, 3, 4> pose_of(const Chain& chain, std::span<const double> q) {
+Eigen::Matrix<double, 3, 4> pose_of(const LinkChain& chain, std::span<const double> q) {
   Matrix rotation = Matrix::Identity();
   Vector translation = Vector::Zero();
   for (const ChainStage& stage : chain) {
@@ -47,7 +47,7 @@ Eigen::Matrix<double, 3, 4> pose_of(const Chain& chain, std::span<const double> 
   return pose;
 }
 
-MotionBound bound_motion(const Chain& chain, std::span<const double> from,
+MotionBound bound_motion(const LinkChain& chain, std::span<const double> from,
                          std::span<const double> to, double radius) {
   MotionBound b;
   b.distance = radius;

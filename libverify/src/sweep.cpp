@@ -1,7 +1,6 @@
 // Whether a set of convex bodies holds what moves: docs/algorithms/swept-volumes.md, "Checked from
 // files alone".
 #include <kaboum/geom/error.h>
-#include <kaboum/geom/topology.h>
 #include <kaboum/verify/sweep.h>
 #include <tbb/parallel_for.h>
 
@@ -12,6 +11,7 @@
 
 #include "swept_body.h"
 #include "swept_cell.h"
+#include "swept_inside.h"
 
 namespace kaboum::verify {
 
@@ -36,12 +36,11 @@ std::vector<double> between(const std::vector<double>& a, const std::vector<doub
 
 /// Part of a shape during a segment, and what was found.
 struct Task {
-  std::size_t shape, segment, first, last;  // cells of the shape
+  std::size_t shape = 0, segment = 0, first = 0, last = 0;  // cells of the shape
   std::size_t cells = 0, samples = 0, undecided_cells = 0;
   bool limited = false;
   std::optional<SweepPlace> refuting, undecided;
   SweepPlace farthest;
-  std::vector<std::uint32_t> first_bodies;  // that hold parts at the segment's start
 };
 
 /// Decides one task.
@@ -94,7 +93,6 @@ class Search {
       }
       switch (look_at(cell, near)) {
         case Next::Held:
-          if (begin == 0) task_.first_bodies.push_back(cell.body);
           break;
         case Next::HalveTime:
           later.push_back(cell);
@@ -280,20 +278,9 @@ void require_usable(std::span<const MovingShape> shapes, const Waypoints& path,
   }
 }
 
-void keep_unique(std::vector<std::uint32_t>& indices) {
-  std::sort(indices.begin(), indices.end());
-  indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
-}
-
-/// @return for every shape the bodies that hold its surface at the path's start
-std::vector<std::vector<std::uint32_t>> surface_claim(std::span<const MovingShape> shapes,
-                                                      const Waypoints& path,
-                                                      const geom::ConvexSet& set,
-                                                      const SweepOptions& options,
-                                                      SweepClaims& claims) {
-  std::vector<std::vector<std::uint32_t>> first_bodies(shapes.size());
-  std::vector<SweptBody> bodies;
-  for (const geom::ConvexBody& b : set.bodies) bodies.emplace_back(b.hull);
+void surface_claim(std::span<const MovingShape> shapes, const Waypoints& path,
+                   const std::vector<SweptBody>& bodies, double margin, const SweepOptions& options,
+                   SweepClaims& claims) {
   claims.surface.answer = Answer::Verified;
   claims.farthest.distance = -1;
   const std::size_t segments = std::max<std::size_t>(path.size(), 2) - 1;
@@ -304,18 +291,22 @@ std::vector<std::vector<std::uint32_t>> surface_claim(std::span<const MovingShap
     const std::vector<SweptCell> cells = SweptCell::cells_of(shapes[i]);
     std::vector<Task> tasks;
     for (std::size_t segment = 0; segment < segments; ++segment)
-      for (std::size_t c = 0; c < cells.size(); c += kCellsPerTask)
-        tasks.push_back(
-            {i, segment, c, std::min(c + kCellsPerTask, cells.size()), 0, 0, 0, false, {}, {}, {}});
+      for (std::size_t c = 0; c < cells.size(); c += kCellsPerTask) {
+        Task task;
+        task.shape = i;
+        task.segment = segment;
+        task.first = c;
+        task.last = std::min(c + kCellsPerTask, cells.size());
+        tasks.push_back(std::move(task));
+      }
     // Tasks after the first one that refutes need not be done: all before it are.
     std::atomic<std::size_t> first_refuting = tasks.size();
     tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t t) {
       if (t > first_refuting) return;
       Task& task = tasks[t];
-      Search search(task, shapes[i], path, bodies, set.margin, options);
+      Search search(task, shapes[i], path, bodies, margin, options);
       search.run({cells.begin() + static_cast<std::ptrdiff_t>(task.first),
                   cells.begin() + static_cast<std::ptrdiff_t>(task.last)});
-      keep_unique(task.first_bodies);
       if (!task.refuting) return;
       std::size_t known = first_refuting;
       while (t < known && !first_refuting.compare_exchange_weak(known, t)) {
@@ -330,18 +321,14 @@ std::vector<std::vector<std::uint32_t>> surface_claim(std::span<const MovingShap
       if (task.farthest.distance > claims.farthest.distance) claims.farthest = task.farthest;
       if (task.undecided && !claims.undecided) claims.undecided = task.undecided;
       if (task.refuting) claims.refuting = task.refuting;
-      if (task.segment == 0)
-        first_bodies[i].insert(first_bodies[i].end(), task.first_bodies.begin(),
-                               task.first_bodies.end());
     }
-    keep_unique(first_bodies[i]);
     if (claims.refuting) break;
   }
   if (claims.refuting) {
     claims.surface.answer = Answer::Refuted;
     claims.farthest = *claims.refuting;
     claims.surface.witness =
-        Witness{claims.refuting->point, claims.refuting->distance - set.margin, false};
+        Witness{claims.refuting->point, claims.refuting->distance - margin, false};
     claims.surface.reason = "a part of " + shapes[claims.refuting->shape].name + " is outside";
   } else if (claims.undecided) {
     claims.surface.answer = Answer::Undecided;
@@ -351,67 +338,35 @@ std::vector<std::vector<std::uint32_t>> surface_claim(std::span<const MovingShap
            << shapes[claims.undecided->shape].name;
     claims.surface.reason = reason.str();
   }
-  return first_bodies;
 }
 
-/// Bodies that, margin included, may meet a box.
-geom::ConvexSet near(const geom::ConvexSet& set, const geom::Box3& box) {
-  geom::ConvexSet out;
-  out.margin = set.margin;
-  const Vec3 room = Vec3::Constant(set.margin * kUp);
-  for (const geom::ConvexBody& b : set.bodies) {
-    const geom::Box3 other = geom::bounding_box(b.hull);
-    if ((other.min.array() <= (box.max + room).array()).all() &&
-        (other.max.array() >= (box.min - room).array()).all())
-      out.bodies.push_back(b);
-  }
-  return out;
-}
-
-/// The solids at the path's start. Later nothing uncovered can get into them: it would have to pass
-/// their surfaces, which are covered throughout.
+/// Of the insides of all shapes.
 void solid_claim(std::span<const MovingShape> shapes, const Waypoints& path,
-                 const geom::ConvexSet& set, const SweepOptions& options,
-                 const std::vector<std::vector<std::uint32_t>>& first_bodies, SweepClaims& claims) {
-  bool primitives = false, closed = false;
+                 const geom::ConvexSet& set, const std::vector<SweptBody>& bodies,
+                 const SweepOptions& options, SweepClaims& claims) {
   Claim& solid = claims.solid;
-  for (std::size_t i = 0; i < shapes.size(); ++i) {
-    const MovingShape& shape = shapes[i];
-    if (shape.kind != MovingShape::Kind::Mesh) {
-      primitives = true;  // whose insides are part of the surface claim
-      continue;
-    }
-    geom::Mesh posed = shape.mesh;
-    const Pose pose = pose_of(shape.chain, path.front());
-    for (Vec3& v : posed.vertices) v = apply(pose, v);
-    if (options.progress) options.progress(shape.name + ", its inside");
-    // Few bodies are quicker; when they are not enough, all that are near.
-    geom::ConvexSet some;
-    some.margin = set.margin;
-    for (const std::uint32_t b : first_bodies[i]) some.bodies.push_back(set.bodies[b]);
-    Inclusion found = verify_cover(posed, some, options.inclusion).inclusion;
-    if (found.inner_closed && found.solid.answer != Answer::Verified)
-      found =
-          verify_cover(posed, near(set, geom::bounding_box(posed)), options.inclusion).inclusion;
-    if (!found.inner_closed) {
+  const auto take = [&](Claim claim) {  // the worst of all
+    const auto rank = [](Answer a) {
+      return a == Answer::Refuted ? 3 : a == Answer::Undecided ? 2 : a == Answer::Verified ? 1 : 0;
+    };
+    if (rank(claim.answer) > rank(solid.answer)) solid = std::move(claim);
+  };
+  for (const MovingShape& shape : shapes) {
+    const bool mesh = shape.kind == MovingShape::Kind::Mesh;
+    if (mesh && !is_closed(shape.mesh)) {
       ++claims.open_meshes;
       continue;
     }
-    closed = true;
-    if (found.solid.answer == Answer::Verified || solid.answer == Answer::Refuted) continue;
-    if (found.solid.answer == Answer::Refuted || solid.answer != Answer::Undecided) {
-      solid = found.solid;
-      solid.reason = shape.name + ", at the start of the path: " + solid.reason;
-      solid.inner_triangles.clear();  // of meshes that the caller does not know
-      solid.outer_triangles.clear();
+    Claim claim = claims.surface;  // which the insides of boxes, cylinders and spheres are part of
+    if (claim.answer != Answer::Verified) {
+      claim = {};
+      claim.answer = Answer::Undecided;
+      claim.reason = "without the surface claim it is not looked at";
+    } else if (mesh) {
+      if (options.progress) options.progress(shape.name + ", its inside");
+      claim = verify_inside(shape, path, set, bodies, options);
     }
-  }
-  if (solid.answer == Answer::Undefined && (closed || primitives)) {
-    solid.answer = claims.surface.answer;
-    if (solid.answer != Answer::Verified) {
-      solid.answer = Answer::Undecided;
-      solid.reason = "the surfaces are not known to stay inside";
-    }
+    take(std::move(claim));
   }
 }
 
@@ -429,8 +384,10 @@ SweepClaims verify_sweep(std::span<const MovingShape> shapes, const Waypoints& p
     }
     return claims;
   }
-  const auto first_bodies = surface_claim(shapes, path, set, options, claims);
-  if (options.solids) solid_claim(shapes, path, set, options, first_bodies, claims);
+  std::vector<SweptBody> bodies;
+  for (const geom::ConvexBody& b : set.bodies) bodies.emplace_back(b.hull);
+  surface_claim(shapes, path, bodies, set.margin, options, claims);
+  if (options.solids) solid_claim(shapes, path, set, bodies, options, claims);
   return claims;
 }
 

@@ -47,17 +47,20 @@ SweptBody::SweptBody(const geom::Mesh& hull) : vertices_(hull.vertices) {
     f.a = vertices_[t[0]];
     f.b = vertices_[t[1]];
     f.c = vertices_[t[2]];
-    const Vec3 ab = f.b - f.a, ac = f.c - f.a, normal = ab.cross(ac);
-    const double area = normal.norm(), edges = ab.norm() * ac.norm();
-    // A sliver's normal errs by as much as it is thin; without area its plane says nothing.
-    if (!(area > 0x1p-40 * edges)) {
+    // In long double, since explicit margins make facets long and thin, whose normals err by as
+    // much more as they are thin. Without area a plane says nothing.
+    using Long = Eigen::Matrix<long double, 3, 1>;
+    const Long a = f.a.cast<long double>(), ab = f.b.cast<long double>() - a,
+               ac = f.c.cast<long double>() - a, normal = ab.cross(ac);
+    const long double area = normal.norm(), edges = ab.norm() * ac.norm();
+    if (!(area > 0x1p-40L * edges)) {
       f.normal = Vec3::Zero();
       f.offset = 0;
       f.slack = std::numeric_limits<double>::infinity();
     } else {
-      f.normal = normal / area;
+      f.normal = (normal / area).cast<double>();
       f.offset = f.normal.dot(f.a);
-      f.slack = 0x1p-47 * (edges / area);  // times the lengths involved, below
+      f.slack = 0x1p-49 + 0x1p-59 * static_cast<double>(edges / area);
     }
     facets_.push_back(f);
   }

@@ -29,7 +29,7 @@ class SweptBody {
   struct Facet {
     geom::Vec3 normal;
     double offset;
-    double slack;  // bound of what rounding does to normal · p − offset, for |p| ≤ reach_
+    double slack;  // times the largest coordinate: what rounding does to normal · p − offset
     geom::Vec3 a, b, c;
   };
   [[nodiscard]] double rounding(const geom::Vec3& p) const;

@@ -86,4 +86,46 @@ expect 2 '' "$S" "$R" --path path.csv
 expect 1 'too coarse' "$S" "$R" --path path.csv -o x.glb --epsilon 1e-6
 expect 4 '' "$S" "$R" --path path.csv -o /nonexistent/dir/x.glb
 absent x.glb
+
+# The whole motion decided from files alone; a set whose margin is cut, one that lacks a body, another path.
+V=$BIN/bound-verify
+expect 0 'surface claim: verified' "$V" --sweep "$R" path.csv a.glb --report v.json
+for key in '"relation": "sweep"' '"verdict": "verified"' '"largest_found"' '"configuration"' '"cells"'; do
+  grep -q "$key" v.json || fail "no $key in the report"
+done
+expect 0 'solid claim: verified' "$V" --sweep "$R" path.json b.glb
+for set in uniform.obj adaptive.obj folder c.glb d.glb; do
+  expect 0 '^verified$' "$V" --sweep "$R" path.csv "$set"
+done
+LC_ALL=C sed 's/"margin":0.0049/"margin":0.0029/' a.glb >thin.glb
+cmp -s a.glb thin.glb && fail "the margin was not cut"
+expect 1 'surface claim: refuted' "$V" --sweep "$R" path.csv thin.glb --witness w.obj --report thin.json
+grep -q '^f ' w.obj || fail "no witness"
+grep -q '"place"' thin.json || fail "no place in the report"
+awk '/^o / { n++ } n != 3 || !/^f / { print }' adaptive.obj >lacking.obj
+expect 1 'refuted' "$V" --sweep "$R" path.csv lacking.obj
+sed 's/1.5/1.6/' path.csv >other.csv
+expect 1 'refuted' "$V" --sweep "$R" other.csv a.glb
+expect 1 'refuted' "$V" --sweep "$R" path.csv swept.obj
+expect 0 '' "$V" --sweep "$R" path.csv swept.obj --links hand
+expect 7 'undecided' "$V" --sweep "$R" path.csv a.glb --gap 1
+expect 7 'undecided' "$V" --sweep "$R" path.csv a.glb --max-cells 1
+expect 3 'none.csv' "$V" --sweep "$R" none.csv a.glb
+expect 3 'cut.urdf' "$V" --sweep cut.urdf path.csv a.glb
+expect 3 'none.glb' "$V" --sweep "$R" path.csv none.glb
+expect 2 '' "$V" --sweep "$R" path.csv
+expect 2 '' "$V" --sweep "$R" path.csv a.glb x.off
+expect 2 '' "$V" --sweep "$R" path.csv a.glb --prepare
+expect 2 '' "$V" --sweep "$R" path.csv a.glb --claims solid
+expect 2 '' "$V" --outer shapes/t.off shapes/t.off --links hand
+expect 2 'nothing' "$V" --sweep "$R" path.csv a.glb --links nothing
+expect 4 'no-such' "$V" --sweep "$R" path.csv a.glb --report no-such/v.json
+"$V" --sweep "$R" path.csv a.glb --quiet >out.txt 2>err.txt || fail "quiet run"
+if [ -s out.txt ] || [ -s err.txt ]; then fail '--quiet is not quiet'; fi
+for n in 1 2; do
+  "$V" --sweep "$R" path.csv thin.glb --report "t$n.json" --threads $n >"t$n.txt"
+  sed -i '/"resources"/,/}/d' "t$n.json"
+done
+cmp -s t1.json t2.json || fail "the report differs on two threads"
+cmp -s t1.txt t2.txt || fail "the output differs on two threads"
 finish
