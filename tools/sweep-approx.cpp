@@ -6,6 +6,7 @@
 #include "robot_bodies.h"
 #include "set_format.h"
 #include "sweep_picture.h"
+#include "swept_urdf.h"
 
 namespace {
 
@@ -39,9 +40,11 @@ void describe(CLI::App& app, Options& o) {
                  "in the first line or in the robot's order; or .json. Radians and metres")
       ->required()
       ->type_name("FILE");
-  app.add_option("-o,--output", o.output,
-                 "Where the bodies go: a .glb container, an .obj with one object per body, or a "
-                 "folder with one STL per body (- for stdout)")
+  app.add_option(
+         "-o,--output", o.output,
+         "Where the bodies go: a .glb container, an .obj with one object per body, a folder "
+         "with one STL per body, or a .urdf with them as collision shapes of one link, and "
+         "a folder beside it (- for stdout)")
       ->required()
       ->type_name("PATH");
   app.add_option("--epsilon", o.epsilon, "Largest margin round the bodies [0.005]")
@@ -60,7 +63,7 @@ void describe(CLI::App& app, Options& o) {
       ->check(check_length)
       ->type_name("LENGTH");
   app.add_flag("--explicit-margin", o.explicit_margin,
-               "Enlarge the bodies by the margin, which then is 0; implied by OBJ and STL");
+               "Enlarge the bodies by the margin, which then is 0; implied by OBJ, STL and URDF");
   app.add_flag("--no-merge", o.no_merge, "One body at least between two waypoints");
   app.add_flag("--ignore-limits", o.ignore_limits, "Allow waypoints outside the joints' limits");
   app.add_option("--links", o.links, "Only these links, separated by commas [all]")
@@ -144,7 +147,10 @@ int sweep_path(Options o) {
                         {"--depfile", o.depfile}},
                        {o.robot, o.path});
   const tools::ThreadLimit threads(o.common.threads);
-  const io::SetFormat format = tools::set_format_for(o.output, o.output_format);
+  const bool urdf =
+      o.output_format.empty() && std::filesystem::path(o.output).extension() == ".urdf";
+  const io::SetFormat format =
+      urdf ? io::SetFormat::Directory : tools::set_format_for(o.output, o.output_format);
   const tools::RobotFile file = tools::read_robot(o.robot);
   const sweep::Path path = read_path(o, file.robot);
   o.bodies.links = split(o.links);
@@ -220,6 +226,8 @@ int sweep_path(Options o) {
   }
   if (format == io::SetFormat::Glb) {
     io::write_file(o.output, bytes);
+  } else if (urdf) {
+    tools::write_swept_urdf(o.output, result.set);
   } else {
     io::write_convex_set(o.output, result.set, format);
   }

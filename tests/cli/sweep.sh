@@ -62,6 +62,10 @@ expect 2 'revolute' "$S" "$R" --path path.csv -o x.glb --bound baginski
 # Margins that are explicit, folders, pipes, limits of reach.
 expect 0 'margin 0' "$S" "$R" --path path.csv -o folder
 expect 0 'margin 0;' "$S" "$R" --path path.csv -o c.glb --explicit-margin
+expect 0 'margin 0;' "$S" "$R" --path path.csv -o all.urdf
+[ "$(grep -c '<mesh' all.urdf)" = "$(find all -name '*.stl' | wc -l)" ] || fail "one collision shape per body"
+sed -n 's/.*filename="\([^"]*\)".*/\1/p' all.urdf | while read -r f; do [ -s "$f" ] || echo lost; done | grep -q lost &&
+  fail "a body's file is missing"
 expect 0 '' "$S" "$R" --path path.csv -o d.glb --max-reach 0.01
 "$S" "$R" --path - --output-format obj -o - --quiet <path.csv >pipe.obj || fail "pipe"
 cmp -s pipe.obj balanced.obj || fail "the pipe gives other bytes"
@@ -85,6 +89,7 @@ expect 2 '' "$S" "$R" --path path.csv -o x.glb --bound best
 expect 2 '' "$S" "$R" --path path.csv
 expect 1 'too coarse' "$S" "$R" --path path.csv -o x.glb --epsilon 1e-6
 expect 4 '' "$S" "$R" --path path.csv -o /nonexistent/dir/x.glb
+expect 4 '' "$S" "$R" --path path.csv -o /nonexistent/dir/x.urdf
 absent x.glb
 
 # The whole motion decided from files alone; a set whose margin is cut, one that lacks a body, another path.
@@ -94,7 +99,7 @@ for key in '"relation": "sweep"' '"verdict": "verified"' '"largest_found"' '"con
   grep -q "$key" v.json || fail "no $key in the report"
 done
 expect 0 'solid claim: verified' "$V" --sweep "$R" path.json b.glb
-for set in uniform.obj adaptive.obj folder c.glb d.glb; do
+for set in uniform.obj adaptive.obj folder all c.glb d.glb; do
   expect 0 '^verified$' "$V" --sweep "$R" path.csv "$set"
 done
 LC_ALL=C sed 's/"margin":0.0049/"margin":0.0029/' a.glb >thin.glb
