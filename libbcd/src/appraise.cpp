@@ -3,7 +3,29 @@
 #include <algorithm>
 #include <cmath>
 
+#include "principal_box.h"
+
 namespace kaboum::bcd {
+namespace {
+
+/// Points in one plane, moved to both sides of it by a millionth of the diagonal.
+std::vector<Vec3> thickened(std::span<const Vec3> points, double diagonal) {
+  const std::optional<PrincipalBox> box = principal_box(points);
+  if (!box) return {};
+  const double step = 1e-6 * diagonal;
+  std::vector<Vec3> out(points.begin(), points.end());
+  for (int k = 0; k < 2; ++k) {
+    if (box->high[k] - box->low[k] > step) continue;
+    const std::size_t size = out.size();
+    for (std::size_t i = 0; i < size; ++i) {
+      out.emplace_back(out[i] + step * box->axes.col(k));
+      out[i] -= step * box->axes.col(k);
+    }
+  }
+  return out;
+}
+
+}  // namespace
 
 Appraisal appraise(std::span<const Vec3> points, const Solid& solid, geom::HullBuilder& builder,
                    bool shaken, double density) {
@@ -25,21 +47,30 @@ Appraisal appraise(std::span<const Vec3> points, const Solid& solid, geom::HullB
     }
     points = moved;
   }
-  if (!builder.build(points)) return out;
-  out.flat = false;
+  std::vector<Vec3> thick;
+  out.flat = !builder.build(points);
+  if (out.flat) {
+    thick = thickened(points, solid.diagonal());
+    points = thick;
+    if (!builder.build(points)) return out;
+  }
   Box3 box;
   for (const std::uint32_t v : builder.vertices()) box.extend(points[v]);
   const double unit = std::max(1.5 * solid.spacing(), box.diagonal() / density);
   const Vec3 center = box.center();
+  // Where sheets and walls are thinner than the grid, the field is far above the distance.
+  const auto raise = [&](const Vec3& p, double field) {
+    const double d = solid.distance_above(out.worst, p, field);
+    if (d <= out.worst) return;
+    out.worst = d;
+    out.at = p;
+  };
   // A point that stands for `share` of the area.
   const auto sample = [&](const Vec3& p, double share) {
     const double d = solid.field(p);
     if (d <= 0) return;
     out.fourth += share * d * d * d * d;
-    if (d > out.worst) {
-      out.worst = d;
-      out.at = p;
-    }
+    raise(p, d);
   };
   for (const Triangle& t : builder.triangles()) {
     const Vec3 &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];
@@ -106,10 +137,7 @@ Appraisal appraise(std::span<const Vec3> points, const Solid& solid, geom::HullB
     if (!inside) continue;
     const double d = probe.distance;
     out.fourth += solid.probe_area() * d * d * d * d;
-    if (d > out.worst) {
-      out.worst = d;
-      out.at = p;
-    }
+    raise(p, d);
   }
   return out;
 }

@@ -10,16 +10,17 @@ namespace kaboum::bcd {
 
 /// How far a hull reaches from the solid, by samples of its facets: guides the search.
 struct Appraisal {
-  double fourth = 0;  ///< ∫ d⁴ over the facets
-  double worst = 0;   ///< largest d
+  double fourth = 0;  ///< ∫ d⁴ over the facets, d the field
+  double worst = 0;   ///< largest distance
   Vec3 at = Vec3::Zero();
   double volume = 0;
-  bool flat = true;  ///< no hull: the points are coplanar
+  bool flat = true;  ///< no hull: the points are coplanar; the rest is that of a thin plate
 };
 
 /// Builds the hull of the points (left in `builder`) and samples it. With `shaken` points are moved
 /// by less than a billionth of their extent first: points in one plane, which the builder would
-/// have to decide exactly, then cost no more than others. The builder's indices remain valid.
+/// have to decide exactly, then cost no more than others. The builder's indices remain valid,
+/// unless the result is flat.
 Appraisal appraise(std::span<const Vec3> points, const Solid& solid, geom::HullBuilder& builder,
                    bool shaken = false, double density = 14);
 

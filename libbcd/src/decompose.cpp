@@ -24,7 +24,7 @@ struct Tuning {
   std::vector<double> thresholds;  ///< of epsilon, that leaves are cut down to
   std::vector<double> bulks;       ///< weights of the added volume when merging, tried in turn
   int refinements;                 ///< rounds of changing the worst body
-  bool reduce;                     ///< look for fewer bodies within epsilon by their number
+  bool reduce = false;             ///< look for fewer bodies within epsilon by their number
 };
 
 Tuning tuning(Effort effort) {

@@ -124,6 +124,13 @@ double Solid::rough_distance(const Vec3& p, double limit) const {
   return std::sqrt(best);
 }
 
+double Solid::distance_above(double least, const Vec3& p, double guess) const {
+  if (guess <= least) return guess;
+  const double d = rough_distance(p, guess);
+  // Far from the surface the field's sign is certain.
+  return d > least && d < 2 * spacing_ && contains(p) ? 0 : d;
+}
+
 float Solid::node(int x, int y, int z) const {
   const std::array<int, 3> at{x, y, z};
   const std::array<std::size_t, 3> step{

@@ -36,6 +36,9 @@ class Solid {
   /// computed when they are first needed. Good to about the grid's spacing; guides the search,
   /// never a claim. Same value whatever was asked before, from any thread.
   [[nodiscard]] double field(const Vec3& p) const;
+  /// Distance to the solid or its triangles, up to rounding, if it exceeds `least`; else something
+  /// ≤ `least`. `guess` is the field there, which is trusted to be no less.
+  [[nodiscard]] double distance_above(double least, const Vec3& p, double guess) const;
   /// Points outside the solid, far from it compared with their neighbours: where a hull that spans
   /// a pit or a cavity is farthest from the solid, although its facets may be near.
   struct Probe {

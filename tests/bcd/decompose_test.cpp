@@ -167,6 +167,24 @@ TEST(Decompose, ObviousDecompositionsAreFound) {
   }
 }
 
+TEST(Decompose, WallsThinnerThanTheGridAndFlatParts) {
+  // Where the interpolated distance is wrong by more than epsilon the search must still end.
+  constexpr double t = 0.004;
+  const Mesh angle = prism({{0, 0}, {3, 0}, {3, t}, {t, t}, {t, 3}, {0, 3}}, 2);
+  Mesh flat = prism({{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}, 0);
+  std::erase_if(flat.triangles, [](const geom::Triangle& v) {
+    return std::any_of(v.begin(), v.end(), [](std::uint32_t i) { return i > 5; });
+  });
+  flat.vertices.resize(6);
+  for (const Mesh& mesh : {angle, flat}) {  // the flat one's hole is filled across the notch
+    const DecomposeResult result = run(mesh, 0.5);
+    EXPECT_EQ(result.stop, Stop::Done);
+    EXPECT_LE(result.bodies.size(), 3U);
+    EXPECT_LE(result.statistics.leaves, 20U);
+    expect_claims(close_holes(geom::prepare(mesh).mesh), result, 64);
+  }
+}
+
 TEST(Decompose, SameBytesForAnyNumberOfThreads) {
   const Mesh mesh = kaboum::test::torus(1, 0.3, 40, 16);
   std::vector<std::vector<char>> bytes;
