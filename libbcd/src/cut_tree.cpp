@@ -119,6 +119,16 @@ void CutTree::add_leaf(Piece&& piece, int parent) {
   ++leaf_count_;
 }
 
+void CutTree::reappraise(const Vec3& at) {
+  for (Node& n : nodes_) {
+    if (n.lower >= 0 || n.upper >= 0 || n.hull.empty()) continue;
+    Box3 box;
+    for (const Vec3& p : n.hull) box.extend(p);
+    if ((at.array() < box.min.array()).any() || (at.array() > box.max.array()).any()) continue;
+    n.appraisal = appraise(n.hull, solid_, scratch().builder);
+  }
+}
+
 std::vector<int> CutTree::leaves() const { return leaves(std::numeric_limits<std::size_t>::max()); }
 
 std::vector<int> CutTree::leaves(std::size_t count) const {

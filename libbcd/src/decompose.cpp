@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <numeric>
 
 #include "options.h"
 #include "outward.h"
@@ -16,6 +18,8 @@
 
 namespace kaboum::bcd {
 namespace {
+
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 struct Tuning {
   std::size_t grid;
@@ -58,7 +62,7 @@ class Decomposer {
   Decomposer(const geom::Prepared& input, const Mesh& closed, const DecomposeOptions& options)
       : options_(options),
         tuning_(tuning(options.effort)),
-        solid_(closed, tuning_.grid, options.epsilon ? 0.3 * *options.epsilon : 0),
+        solid_(closed, tuning_.grid, options.epsilon.value_or(0)),
         tree_(solid_, tuning_.search, options.safety) {
     result_.statistics.filled_triangles = closed.triangles.size() - input.mesh.triangles.size();
     double magnitude = 0;
@@ -108,19 +112,6 @@ class Decomposer {
   std::vector<Body> merged(std::vector<Body> bodies, std::size_t target, double epsilon,
                            double bulk = 0.05) {
     return merge(std::move(bodies), solid_, target, epsilon, bulk, memo_);
-  }
-
-  /// Simplified shapes, not yet rounded; their appraisals by samples.
-  void simplify_all(std::vector<Body>& bodies, double free_cost, std::vector<Body>& out) const {
-    out.resize(bodies.size());
-    tbb::parallel_for(std::size_t{0}, bodies.size(), [&](std::size_t i) {
-      out[i] = bodies[i];
-      if (bodies[i].appraisal.flat) return;
-      const double free = std::max(free_cost, 0.0);
-      out[i].hull = simplify(bodies[i].hull, options_.max_vertices, free, solid_).vertices;
-      geom::HullBuilder builder;
-      out[i].appraisal = appraise(out[i].hull, solid_, builder);
-    });
   }
 
   [[nodiscard]] static double worst_of(const std::vector<Body>& bodies) {
@@ -233,6 +224,7 @@ class Decomposer {
     if (worst_of(bodies) > hopeless) return {};
     report("simplifying", 0.8);
     std::vector<Finished> finished = finish(bodies, 0.25 * worst_of(bodies));
+    for (const Finished& f : finished) learn(f);
     const int rounds = tuning_.refinements / 3;
     for (int round = 0; round < rounds; ++round) {
       report("refining", 0.8 + 0.2 * round / rounds);
@@ -298,30 +290,44 @@ class Decomposer {
       most_leaves = std::max<std::size_t>(200, 8 * fewest);
     }
     report("simplifying", 0.6);
-    // Simplify; where the vertices allowed are too few, take the body apart.
     std::vector<Finished> out;
     const std::size_t most_bodies = 200 + 8 * best.size();
     for (int round = 0; round < 30 && !best.empty() && best.size() + out.size() < most_bodies;
          ++round) {
       std::vector<Finished> tried = finish(best, 0.5 * wished, epsilon);
       best.clear();
+      std::vector<Body> misjudged;  // leaves of bodies that were thought to be nearer
       for (Finished& f : tried) {
         if (f.reach.upper <= epsilon) {
           out.push_back(std::move(f));
+          continue;
+        }
+        const bool learnt = learn(f);
+        // Where the vertices allowed are too few, or the leaf itself is too far.
+        std::vector<Body> parts = take_apart(f.body, wished, learnt);
+        if (parts.size() < 2) {
+          out.push_back(std::move(f));
         } else {
-          std::vector<Body> parts = take_apart(f.body, wished);
-          if (parts.size() < 2) {
-            out.push_back(std::move(f));
-          } else {
-            for (Body& p : parts) best.push_back(std::move(p));
-          }
+          auto& to = learnt ? misjudged : best;
+          std::move(parts.begin(), parts.end(), std::back_inserter(to));
         }
       }
+      for (Body& b : merged(std::move(misjudged), 1, wished)) best.push_back(std::move(b));
       report("simplifying", 0.6 + 0.013 * (round + 1));
     }
     if (!best.empty())
       for (Finished& f : finish(best, 0)) out.push_back(std::move(f));
     return out;
+  }
+
+  /// Where a body reaches farther than samples told, that place is sampled from now on. @return
+  /// whether it was one of the body before simplification.
+  bool learn(const Finished& f) {
+    if (f.reach.lower <= 1.02 * f.body.appraisal.worst) return false;
+    if (!solid_.add_probe({f.reach.at, f.reach.lower}, f.body.hull)) return false;
+    memo_ = {};
+    tree_.reappraise(f.reach.at);
+    return true;
   }
 
   /// Looks for fewer bodies within epsilon, by bisection of the number allowed.
@@ -343,8 +349,8 @@ class Decomposer {
     }
   }
 
-  /// Two or more bodies in place of one.
-  std::vector<Body> take_apart(const Body& body, double epsilon) {
+  /// Two or more bodies in place of one; all its leaves, if wished.
+  std::vector<Body> take_apart(const Body& body, double epsilon, bool all = false) {
     std::vector<Body> leaves;
     if (body.leaves.size() == 1) {
       const int leaf = body.leaves[0];
@@ -352,57 +358,88 @@ class Decomposer {
       if (node.lower < 0 && node.upper < 0 && (node.stuck || !tree_.cut(leaf))) return {};
       for (const int child : {tree_.nodes()[leaf].lower, tree_.nodes()[leaf].upper})
         if (child >= 0) leaves.push_back(body_of(tree_, child));
-      if (leaves.size() == 1) return take_apart(leaves[0], epsilon);
+      if (leaves.size() == 1) return take_apart(leaves[0], epsilon, all);
       return leaves;
     }
     for (const int leaf : body.leaves) leaves.push_back(body_of(tree_, leaf));
+    if (all) return leaves;
     return merged(std::move(leaves), 2, epsilon);
   }
 
-  /// Simplifies, rounds outwards and measures.
-  std::vector<Finished> finish(std::vector<Body>& bodies, double free_cost, double floor = 0) {
-    std::vector<Body> shapes;
-    simplify_all(bodies, free_cost, shapes);
+  /// Simplifies, rounds outwards and measures. @param decisive  where given, it is told of every
+  /// body whether it reaches farther; else only the largest reach is exact.
+  std::vector<Finished> finish(std::vector<Body>& bodies, double free_cost, double decisive = 0) {
+    find_required(bodies);
     std::vector<Finished> out(bodies.size());
-    // Required points by leaf, each computed once.
-    std::vector<std::vector<int>> leaves(bodies.size());
-    std::vector<int> open;
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-      for (const int node : bodies[i].leaves) tree_.leaves_below(node, leaves[i]);
-      for (const int leaf : leaves[i])
-        if (required_.try_emplace(leaf).second) open.push_back(leaf);
+    for (std::size_t i = 0; i < bodies.size(); ++i) out[i].body = std::move(bodies[i]);
+    std::vector<std::size_t> open(bodies.size());
+    std::iota(open.begin(), open.end(), std::size_t{0});
+    // Where simplification took too much, no vertex more than needed is left out.
+    for (const double free : {free_cost, 0.0}) {
+      std::vector<Mesh> hulls(open.size());
+      tbb::parallel_for(std::size_t{0}, open.size(),
+                        [&](std::size_t i) { hulls[i] = rounded(out[open[i]].body, free); });
+      ReachOptions reach;
+      reach.absolute_gap = 1e-5 * solid_.diagonal();
+      const std::vector<Reach> measured =
+          measure(hulls, solid_, reach, 0.5 * decisive, decisive > 0 ? 0.7 * decisive : kUnbounded);
+      std::vector<std::size_t> failed;
+      for (std::size_t i = 0; i < open.size(); ++i) {
+        Finished& f = out[open[i]];
+        if (f.hull.vertices.empty() || measured[i].upper < f.reach.upper) {
+          f.hull = std::move(hulls[i]);
+          f.reach = measured[i];
+        }
+        if (decisive > 0 && f.reach.upper > decisive) failed.push_back(open[i]);
+      }
+      open = std::move(failed);
+      if (open.empty()) break;
     }
+    return out;
+  }
+
+  /// The points that a leaf's body has to contain, each leaf's once.
+  void find_required(const std::vector<Body>& bodies) {
+    std::vector<int> open;
+    for (const Body& body : bodies)
+      for (const int leaf : leaves_of(body))
+        if (required_.try_emplace(leaf).second) open.push_back(leaf);
     std::vector<std::vector<Vec3>*> place;
     place.reserve(open.size());
     for (const int leaf : open) place.push_back(&required_.at(leaf));
     tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t i) {
       *place[i] = outer_points(tree_.nodes()[open[i]].piece, point_error_);
     });
-    tbb::parallel_for(std::size_t{0}, bodies.size(), [&](std::size_t i) {
-      std::vector<Vec3> required;
-      for (const int leaf : leaves[i]) {
-        const auto& points = required_.at(leaf);
-        required.insert(required.end(), points.begin(), points.end());
-      }
-      ensure(!required.empty(), "a body that has to contain nothing");
-      geom::HullBuilder builder;
-      if (builder.build(required)) {
-        std::vector<Vec3> hull;
-        for (const std::uint32_t v : builder.vertices()) hull.push_back(required[v]);
-        required = std::move(hull);
-      }
-      out[i].hull = enclose(shapes[i].hull, required, options_.max_vertices);
-    });
-    std::vector<Mesh> hulls;
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-      hulls.push_back(out[i].hull);
-      out[i].body = std::move(bodies[i]);
-    }
-    ReachOptions reach;
-    reach.absolute_gap = 1e-5 * solid_.diagonal();
-    const std::vector<Reach> measured = measure(hulls, solid_, reach, 0.5 * floor);
-    for (std::size_t i = 0; i < out.size(); ++i) out[i].reach = measured[i];
+  }
+
+  [[nodiscard]] std::vector<int> leaves_of(const Body& body) const {
+    std::vector<int> out;
+    for (const int node : body.leaves) tree_.leaves_below(node, out);
     return out;
+  }
+
+  /// A body's hull simplified and rounded outwards.
+  [[nodiscard]] Mesh rounded(const Body& body, double free_cost) const {
+    std::vector<Vec3> required;
+    for (const int leaf : leaves_of(body)) {
+      const auto& points = required_.at(leaf);
+      required.insert(required.end(), points.begin(), points.end());
+    }
+    ensure(!required.empty(), "a body that has to contain nothing");
+    geom::HullBuilder builder;
+    if (builder.build(required)) {
+      std::vector<Vec3> hull;
+      for (const std::uint32_t v : builder.vertices()) hull.push_back(required[v]);
+      required = std::move(hull);
+    }
+    const std::size_t most = options_.max_vertices;
+    if (body.appraisal.flat) return enclose(body.hull, required, most);
+    for (const double free : {free_cost, 0.0}) {
+      const std::vector<Vec3> shape = simplify(body.hull, most, free, solid_).vertices;
+      if (auto hull = push_out(shape, required, most)) return *std::move(hull);
+      if (free == 0) break;
+    }
+    return enclose(body.hull, required, most);
   }
 
   const DecomposeOptions& options_;

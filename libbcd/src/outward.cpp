@@ -126,6 +126,15 @@ std::optional<geom::Mesh> box_round(std::span<const Vec3> points, double ulp) {
   return std::nullopt;
 }
 
+/// float32's spacing at the largest coordinate.
+double spacing_at(std::span<const Vec3> points) {
+  double magnitude = 0;
+  for (const Vec3& p : points) magnitude = std::max(magnitude, p.cwiseAbs().maxCoeff());
+  if (!(magnitude < 1e38))
+    throw Error(ErrorCode::LimitReached, "coordinates beyond float32; scale the mesh");
+  return geom::float32_spacing(magnitude);
+}
+
 }  // namespace
 
 std::vector<Vec3> outer_points(const Piece& piece, double error) {
@@ -141,12 +150,9 @@ std::vector<Vec3> outer_points(const Piece& piece, double error) {
   return hull;
 }
 
-geom::Mesh enclose(std::span<const Vec3> shape, std::span<const Vec3> required, std::size_t most) {
-  double magnitude = 0;
-  for (const Vec3& p : required) magnitude = std::max(magnitude, p.cwiseAbs().maxCoeff());
-  if (!(magnitude < 1e38))
-    throw Error(ErrorCode::LimitReached, "coordinates beyond float32; scale the mesh");
-  const double ulp = geom::float32_spacing(magnitude);
+std::optional<geom::Mesh> push_out(std::span<const Vec3> shape, std::span<const Vec3> required,
+                                   std::size_t most) {
+  const double ulp = spacing_at(required);
   std::vector<Vec3> sorted(required.begin(), required.end());
   std::sort(sorted.begin(), sorted.end(), Less());
   // What is pushed farther fares better in a box.
@@ -208,6 +214,13 @@ geom::Mesh enclose(std::span<const Vec3> shape, std::span<const Vec3> required, 
       }
     }
   }
+  return std::nullopt;
+}
+
+geom::Mesh enclose(std::span<const Vec3> shape, std::span<const Vec3> required, std::size_t most) {
+  if (std::optional<geom::Mesh> pushed = push_out(shape, required, most)) return *std::move(pushed);
+  const double ulp = spacing_at(required);
+  geom::HullBuilder builder;
   // Too thin to be pushed along normals: the points themselves, or a box round them.
   if (builder.build(required) && builder.vertices().size() <= most) return builder.mesh();
   if (!required.empty()) {

@@ -2,6 +2,7 @@
 
 #include <kaboum/geom/mesh.h>
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,9 +16,14 @@ namespace kaboum::bcd {
 std::vector<Vec3> outer_points(const Piece& piece, double error);
 
 /// An exactly convex float32 polytope that contains `required` (float32 points), exactly: the hull
-/// of `shape` with its vertices moved outwards as little as that takes. Shapes too thin for that
-/// give the hull of `required`, or, if it has more than `most` vertices, a box.
+/// of `shape` with its vertices moved outwards as little as that takes; nullopt when the shape is
+/// too thin for that or would get more than `most` vertices.
 /// @throws Error{LimitReached} when coordinates exceed float32.
+std::optional<geom::Mesh> push_out(std::span<const Vec3> shape, std::span<const Vec3> required,
+                                   std::size_t most);
+
+/// The same; instead of nothing the hull of `required`, or, if it has more than `most` vertices, a
+/// box.
 geom::Mesh enclose(std::span<const Vec3> shape, std::span<const Vec3> required, std::size_t most);
 
 }  // namespace kaboum::bcd

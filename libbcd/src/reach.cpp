@@ -195,7 +195,7 @@ class Measure {
 }  // namespace
 
 std::vector<Reach> measure(const std::vector<Mesh>& bodies, const Solid& solid,
-                           const ReachOptions& options, double floor) {
+                           const ReachOptions& options, double floor, double ceiling) {
   std::vector<Measure> measures;
   measures.reserve(bodies.size());
   for (const Mesh& body : bodies) measures.emplace_back(body, solid, options);
@@ -203,7 +203,7 @@ std::vector<Reach> measure(const std::vector<Mesh>& bodies, const Solid& solid,
   tbb::parallel_for(std::size_t{0}, bodies.size(),
                     [&](std::size_t i) { sampled[i] = measures[i].sample(); });
   // Only the largest matters: the others are told from it, not measured.
-  for (const double s : sampled) floor = std::max(floor, 0.7 * s);
+  for (const double s : sampled) floor = std::max(floor, std::min(0.7 * s, ceiling));
   std::vector<Reach> out(bodies.size());
   tbb::parallel_for(std::size_t{0}, bodies.size(),
                     [&](std::size_t i) { out[i] = measures[i].run(floor); });

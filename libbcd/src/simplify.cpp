@@ -6,7 +6,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <queue>
+#include <unordered_map>
 
 #include "principal_box.h"
 
@@ -138,8 +140,19 @@ class Contractor {
     return false;
   }
 
-  /// Plane through u and w that touches the original hull, seen from the side of the star.
-  bool tangent(const Vec3& u, const Vec3& w, HalfSpace& h) const {
+  /// Plane through the vertices that touches the original hull, seen from the side of the star. An
+  /// edge is asked for by all contractions round it: found once.
+  bool tangent(std::uint32_t from, std::uint32_t to, HalfSpace& h) {
+    const auto [at, fresh] = tangents_.try_emplace(std::uint64_t{from} << 32U | to);
+    if (fresh) {
+      HalfSpace found;
+      if (find_tangent(vertices_[from], vertices_[to], found)) at->second = found;
+    }
+    if (at->second) h = *at->second;
+    return at->second.has_value();
+  }
+
+  bool find_tangent(const Vec3& u, const Vec3& w, HalfSpace& h) const {
     const Vec3 e = w - u;
     const double length = e.norm();
     if (!(length > 0)) return false;
@@ -198,7 +211,7 @@ class Contractor {
     constraints_.clear();
     for (const auto& [u, w] : edges_) {
       HalfSpace h;
-      if (!tangent(vertices_[u], vertices_[w], h)) return false;
+      if (!tangent(u, w, h)) return false;
       bool known = false;
       for (const HalfSpace& c : constraints_)
         known = known || (c.n.dot(h.n) > 1 - 1e-14 && std::abs(c.d - h.d) < 1e-12 * size_);
@@ -400,6 +413,7 @@ class Contractor {
   const Solid& solid_;
   const std::vector<Vec3>& original_;
   std::vector<HalfSpace> planes_;
+  std::unordered_map<std::uint64_t, std::optional<HalfSpace>> tangents_;  // by edge
   double size_ = 0;
   std::vector<Vec3> vertices_;
   std::vector<std::vector<std::uint32_t>> star_;

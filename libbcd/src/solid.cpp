@@ -35,7 +35,7 @@ double squared(const Vec3& p, const Vec3& a, const Vec3& ab, const Vec3& ac) {
 
 }  // namespace
 
-Solid::Solid(const Mesh& mesh, std::size_t nodes, double shallow)
+Solid::Solid(const Mesh& mesh, std::size_t nodes, double epsilon)
     : mesh_(mesh),
       box_(geom::bounding_box(mesh)),
       diagonal_(box_.diagonal()),
@@ -48,7 +48,10 @@ Solid::Solid(const Mesh& mesh, std::size_t nodes, double shallow)
     corners_.push_back({a, mesh.vertices[v[1]] - a, mesh.vertices[v[2]] - a});
   }
   const Vec3 size = (box_.max - box_.min).cwiseMax(0.02 * diagonal_);
-  spacing_ = std::cbrt(size.prod() / static_cast<double>(nodes));
+  const double coarse = std::cbrt(size.prod() / static_cast<double>(nodes));
+  spacing_ = epsilon > 0 ? std::clamp(0.7 * epsilon, 0.5 * coarse, coarse) : coarse;
+  const int step = std::max(1, static_cast<int>(2 * coarse / spacing_));
+  probe_area_ = step * spacing_ * step * spacing_;
   origin_ = box_.center() - 0.5 * size - Vec3::Constant(1.5 * spacing_);
   std::size_t total = 1;
   for (int k = 0; k < 3; ++k) {
@@ -57,10 +60,10 @@ Solid::Solid(const Mesh& mesh, std::size_t nodes, double shallow)
   }
   value_ = std::make_unique<std::atomic<float>[]>(total);
   for (std::size_t i = 0; i < total; ++i) value_[i].store(kUnset, std::memory_order_relaxed);
-  find_probes(std::max(shallow, 0.8 * spacing_));
+  find_probes(std::max(0.3 * epsilon, 0.8 * spacing_), step);
 }
 
-void Solid::find_probes(double shallow) {
+void Solid::find_probes(double shallow, int step) {
   geom::HullBuilder hull;
   if (!hull.build(mesh_.vertices)) return;
   std::vector<std::pair<Vec3, double>> planes;
@@ -69,10 +72,9 @@ void Solid::find_probes(double shallow) {
     const Vec3 n = (mesh_.vertices[t[1]] - a).cross(mesh_.vertices[t[2]] - a);
     planes.emplace_back(n, n.dot(a));
   }
-  constexpr int kStep = 2;
-  for (int z = kStep; z + kStep < size_[2]; z += kStep) {
-    for (int y = kStep; y + kStep < size_[1]; y += kStep) {
-      for (int x = kStep; x + kStep < size_[0]; x += kStep) {
+  for (int z = step; z + step < size_[2]; z += step) {
+    for (int y = step; y + step < size_[1]; y += step) {
+      for (int x = step; x + step < size_[0]; x += step) {
         const Vec3 p = origin_ + spacing_ * Vec3(x, y, z);
         bool inside = true;
         for (const auto& [n, d] : planes) {
@@ -83,13 +85,24 @@ void Solid::find_probes(double shallow) {
         if (!inside) continue;
         const float v = node(x, y, z);
         if (v < shallow) continue;
-        const int ridges = (v >= node(x - kStep, y, z) && v >= node(x + kStep, y, z) ? 1 : 0) +
-                           (v >= node(x, y - kStep, z) && v >= node(x, y + kStep, z) ? 1 : 0) +
-                           (v >= node(x, y, z - kStep) && v >= node(x, y, z + kStep) ? 1 : 0);
+        const int ridges = (v >= node(x - step, y, z) && v >= node(x + step, y, z) ? 1 : 0) +
+                           (v >= node(x, y - step, z) && v >= node(x, y + step, z) ? 1 : 0) +
+                           (v >= node(x, y, z - step) && v >= node(x, y, z + step) ? 1 : 0);
         if (ridges >= 2) probes_.push_back({p, v});
       }
     }
   }
+}
+
+bool Solid::add_probe(const Probe& probe, std::span<const Vec3> hull) {
+  geom::HullBuilder builder;
+  if (!builder.build(hull)) return false;
+  for (const Triangle& t : builder.triangles()) {
+    const Vec3& a = hull[t[0]];
+    if ((hull[t[1]] - a).cross(hull[t[2]] - a).dot(probe.point - a) > 0) return false;
+  }
+  probes_.push_back(probe);
+  return true;
 }
 
 bool Solid::contains(const Vec3& p) const {

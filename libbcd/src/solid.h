@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace kaboum::bcd {
@@ -20,9 +21,10 @@ using geom::Vec3;
 class Solid {
  public:
   /// @param mesh  a closed chain; kept by reference.
-  /// @param nodes  wished number of nodes of the grid behind field().
-  /// @param shallow  probes nearer to the surface are left out. [length]
-  Solid(const Mesh& mesh, std::size_t nodes, double shallow);
+  /// @param nodes  wished number of nodes of the grid behind field(); with up to eight times as
+  /// many it is no coarser than 0.7 · epsilon.
+  /// @param epsilon  distances that matter; 0: all the same. [length]
+  Solid(const Mesh& mesh, std::size_t nodes, double epsilon);
 
   [[nodiscard]] const Mesh& mesh() const { return mesh_; }
   [[nodiscard]] const Box3& box() const { return box_; }
@@ -46,13 +48,16 @@ class Solid {
     double distance;
   };
   [[nodiscard]] const std::vector<Probe>& probes() const { return probes_; }
+  /// Adds a point whose distance was measured, if it lies in the hull of these points and they are
+  /// sampled to be nearer. @return whether it was added.
+  bool add_probe(const Probe& probe, std::span<const Vec3> hull);
   /// What the square of a probe's distance from the next one is about. [length²]
-  [[nodiscard]] double probe_area() const { return 4 * spacing_ * spacing_; }
+  [[nodiscard]] double probe_area() const { return probe_area_; }
   [[nodiscard]] double spacing() const { return spacing_; }
   [[nodiscard]] std::size_t nodes_computed() const { return computed_; }
 
  private:
-  void find_probes(double shallow);
+  void find_probes(double shallow, int step);
   [[nodiscard]] float node(int x, int y, int z) const;
   /// Distance to the surface, rounded, if it is below `limit`.
   [[nodiscard]] double rough_distance(const Vec3& p, double limit) const;
@@ -67,7 +72,7 @@ class Solid {
     Vec3 a, ab, ac;
   };
   std::vector<Corner> corners_;  // of the triangles, in the tree's order
-  double spacing_ = 0;
+  double spacing_ = 0, probe_area_ = 0;
   Vec3 origin_;
   std::array<int, 3> size_{};
   std::unique_ptr<std::atomic<float>[]> value_;
