@@ -28,7 +28,8 @@ std::vector<Vec3> thickened(std::span<const Vec3> points, double diagonal) {
 }  // namespace
 
 Appraisal appraise(std::span<const Vec3> points, const Solid& solid, geom::HullBuilder& builder,
-                   bool shaken, double density) {
+                   bool shaken, double limit) {
+  constexpr double density = 14;  // of samples, per diagonal
   Appraisal out;
   static thread_local std::vector<Vec3> moved;
   if (shaken && !points.empty()) {
@@ -73,6 +74,7 @@ Appraisal appraise(std::span<const Vec3> points, const Solid& solid, geom::HullB
     raise(p, d);
   };
   for (const Triangle& t : builder.triangles()) {
+    if (out.worst > limit) return out;
     const Vec3 &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];
     const Vec3 ab = b - a, ac = c - a;
     const Vec3 normal = ab.cross(ac);

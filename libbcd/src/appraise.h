@@ -17,11 +17,12 @@ struct Appraisal {
   bool flat = true;  ///< no hull: the points are coplanar; the rest is that of a thin plate
 };
 
-/// Builds the hull of the points (left in `builder`) and samples it. With `shaken` points are moved
-/// by less than a billionth of their extent first: points in one plane, which the builder would
-/// have to decide exactly, then cost no more than others. The builder's indices remain valid,
-/// unless the result is flat.
+/// Builds the hull of the points (left in `builder`) and samples it. Stops once the distance
+/// exceeds `limit`; the rest is then of no use. With `shaken` points are moved by less than a
+/// billionth of their extent first: points in one plane, which the builder would have to decide
+/// exactly, then cost no more than others. The builder's indices remain valid, unless the result is
+/// flat.
 Appraisal appraise(std::span<const Vec3> points, const Solid& solid, geom::HullBuilder& builder,
-                   bool shaken = false, double density = 14);
+                   bool shaken = false, double limit = std::numeric_limits<double>::infinity());
 
 }  // namespace kaboum::bcd

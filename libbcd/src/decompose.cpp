@@ -120,10 +120,15 @@ class Decomposer {
     return worst;
   }
 
-  std::vector<Body> best_merge(const std::vector<std::vector<Body>>& snapshots,
-                               std::size_t target) {
+  /// At most this many bodies, the first attempts of all that come nearest to the solid; none when
+  /// that is not below `least`.
+  std::vector<Body> best_merge(const std::vector<std::vector<Body>>& snapshots, std::size_t target,
+                               double least) {
     std::vector<Body> best;
-    double least = std::numeric_limits<double>::infinity();
+    if (snapshots[0].size() <= target && worst_of(snapshots[0]) < least) {
+      best = snapshots[0];
+      least = worst_of(best);
+    }
     for (const auto& snapshot : snapshots) {
       for (const double bulk : tuning_.bulks) {
         std::vector<Body> bodies = merged(snapshot, target, least, bulk);
@@ -206,8 +211,7 @@ class Decomposer {
   }
 
   /// @param hopeless  where the distance before simplification exceeds this, nothing is returned.
-  std::vector<Finished> at_most(std::size_t target,
-                                double hopeless = std::numeric_limits<double>::infinity()) {
+  std::vector<Finished> at_most(std::size_t target, double hopeless = kUnbounded) {
     std::vector<std::vector<Body>> snapshots;
     const double most = tuning_.multiples.back() * static_cast<double>(target);
     for (const double multiple : tuning_.multiples) {
@@ -217,11 +221,12 @@ class Decomposer {
       snapshots.push_back(leaf_bodies(static_cast<std::size_t>(wished)));
     }
     report("merging", 0.7);
-    std::vector<Body> bodies = best_merge(snapshots, target);
-    if (bodies.empty())
-      bodies = merged(leaf_bodies(), target, std::numeric_limits<double>::infinity());
+    std::vector<Body> bodies = best_merge(snapshots, target, hopeless);
+    if (bodies.empty()) {
+      if (hopeless < kUnbounded) return {};
+      bodies = merged(leaf_bodies(), target, kUnbounded);
+    }
     refine(bodies, target);
-    if (worst_of(bodies) > hopeless) return {};
     report("simplifying", 0.8);
     std::vector<Finished> finished = finish(bodies, 0.25 * worst_of(bodies));
     for (const Finished& f : finished) learn(f);

@@ -14,6 +14,7 @@ struct Pair {
   std::uint32_t a, b;
   double worst;
   double added;  // side of a cube of the volume added
+  bool whole;    // else the distance is a lower bound
   double cost;
 };
 
@@ -33,13 +34,30 @@ void join(const Body& a, const Body& b, std::vector<Vec3>& points) {
   points.insert(points.end(), b.hull.begin(), b.hull.end());
 }
 
-Pair judge(const std::vector<Body>& bodies, std::uint32_t a, std::uint32_t b, const Solid& solid) {
+/// Distance of some points between the bodies.
+double between(const Body& a, const Body& b, const Solid& solid) {
+  constexpr std::size_t kSamples = 12;
+  double worst = 0;
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    const Vec3& p = a.hull[i * a.hull.size() / kSamples];
+    const Vec3& q = b.hull[(i * 5 % kSamples) * b.hull.size() / kSamples];
+    const Vec3 middle = 0.5 * (p + q);
+    worst = std::max(worst, solid.distance_above(worst, middle, solid.field(middle)));
+  }
+  return worst;
+}
+
+/// Pairs farther than `limit` from the solid are not looked at any closer.
+Pair judge(const std::vector<Body>& bodies, std::uint32_t a, std::uint32_t b, const Solid& solid,
+           double limit) {
+  const double least = between(bodies[a], bodies[b], solid);
+  if (least > limit) return {a, b, least, 0, false, 0};
   static thread_local std::vector<Vec3> points;
   join(bodies[a], bodies[b], points);
-  const Appraisal h = appraise(points, solid, hull_builder(), true);
+  const Appraisal h = appraise(points, solid, hull_builder(), true, limit);
   const double added =
       std::max(0.0, h.volume - bodies[a].appraisal.volume - bodies[b].appraisal.volume);
-  return {a, b, h.worst, std::cbrt(added), 0};
+  return {a, b, h.worst, std::cbrt(added), h.worst <= limit, 0};
 }
 
 Body body_round(const std::vector<Vec3>& points, const Solid& solid, std::vector<int> leaves) {
@@ -95,7 +113,8 @@ std::vector<Body> merge(std::vector<Body> bodies, const Solid& solid, std::size_
     std::vector<std::size_t> open;
     for (std::size_t i = 0; i < fresh.size(); ++i) {
       Pair& p = fresh[i];
-      if (const PairMemo::Entry* known = memo.find(id[p.a], id[p.b])) {
+      const PairMemo::Entry* known = memo.find(id[p.a], id[p.b]);
+      if (known != nullptr && (known->whole || known->worst > epsilon)) {
         p.worst = known->worst;
         p.added = known->added;
       } else {
@@ -104,10 +123,10 @@ std::vector<Body> merge(std::vector<Body> bodies, const Solid& solid, std::size_
     }
     tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t i) {
       Pair& p = fresh[open[i]];
-      p = judge(bodies, p.a, p.b, solid);
+      p = judge(bodies, p.a, p.b, solid, epsilon);
     });
     for (const std::size_t i : open)
-      memo.add(id[fresh[i].a], id[fresh[i].b], {fresh[i].worst, fresh[i].added});
+      memo.add(id[fresh[i].a], id[fresh[i].b], {fresh[i].worst, fresh[i].added, fresh[i].whole});
     for (Pair& p : fresh) {
       p.cost = p.worst + bulk * p.added;
       if (p.worst <= epsilon) queue.push(p);
@@ -116,7 +135,7 @@ std::vector<Body> merge(std::vector<Body> bodies, const Solid& solid, std::size_
   };
   for (std::uint32_t a = 0; a < bodies.size(); ++a)
     for (std::uint32_t b = a + 1; b < bodies.size(); ++b)
-      if (near(bodies[a], bodies[b])) fresh.push_back({a, b, 0, 0, 0});
+      if (near(bodies[a], bodies[b])) fresh.push_back({a, b, 0, 0, false, 0});
   judge_all();
   bool all_pairs = false;
   while (count > target) {
@@ -127,7 +146,7 @@ std::vector<Body> merge(std::vector<Body> bodies, const Solid& solid, std::size_
       for (std::uint32_t a = 0; a < bodies.size(); ++a)
         for (std::uint32_t b = a + 1; b < bodies.size(); ++b)
           if (alive[a] != 0 && alive[b] != 0 && !near(bodies[a], bodies[b]))
-            fresh.push_back({a, b, 0, 0, 0});
+            fresh.push_back({a, b, 0, 0, false, 0});
       judge_all();
       if (queue.empty()) break;
     }
@@ -150,7 +169,7 @@ std::vector<Body> merge(std::vector<Body> bodies, const Solid& solid, std::size_
     alive.push_back(1);
     for (std::uint32_t a = 0; a < self; ++a)
       if (alive[a] != 0 && (all_pairs || near(bodies[a], bodies[self])))
-        fresh.push_back({a, self, 0, 0, 0});
+        fresh.push_back({a, self, 0, 0, false, 0});
     judge_all();
   }
   std::vector<Body> out;

@@ -93,6 +93,7 @@ class PairMemo {
  public:
   struct Entry {
     double worst, added;
+    bool whole;  ///< else `worst` is a lower bound, and nothing more is known
   };
   std::uint32_t id_of(const std::vector<int>& leaves) {
     return ids_.emplace(leaves, static_cast<std::uint32_t>(ids_.size())).first->second;
@@ -101,7 +102,7 @@ class PairMemo {
     const auto at = pairs_.find(key(a, b));
     return at == pairs_.end() ? nullptr : &at->second;
   }
-  void add(std::uint32_t a, std::uint32_t b, Entry entry) { pairs_.emplace(key(a, b), entry); }
+  void add(std::uint32_t a, std::uint32_t b, Entry entry) { pairs_[key(a, b)] = entry; }
 
  private:
   static std::uint64_t key(std::uint32_t a, std::uint32_t b) {
