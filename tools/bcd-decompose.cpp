@@ -412,7 +412,7 @@ int decompose(const Options& o) {
     report["cached"] = out.cached;
     add_run(o, report);
   }
-  if (!o.depfile.empty()) tools::write_depfile(o.depfile, o.output, {o.input});
+  if (!o.depfile.empty()) tools::write_depfile(o.depfile, {o.output}, {o.input});
   if (format == io::SetFormat::Glb) {
     io::write_file(o.output, out.entry.container);
   } else {

@@ -1,4 +1,5 @@
 #include <kaboum/bmesh/decimate.h>
+#include <kaboum/bmesh/progressive.h>
 #include <kaboum/geom/distance.h>
 #include <kaboum/geom/error.h>
 #include <kaboum/geom/float32.h>
@@ -9,12 +10,15 @@
 #include <kaboum/verify/distance.h>
 #include <kaboum/verify/inclusion.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <iomanip>
 #include <sstream>
 
 #include "cli.h"
+#include "extract_levels.h"
+#include "written_mesh.h"
 
 namespace {
 
@@ -25,7 +29,7 @@ struct Options {
   std::string input, output, input_format, output_format;
   std::string direction_name = "outer", cost_name = "planes", effort_name = "fast";
   bmesh::Direction direction = bmesh::Direction::Outer;
-  std::int64_t vertices = 0;
+  std::string vertices, progressive, from;
   double ratio = 0;
   std::string epsilon;
   bmesh::Cost cost = bmesh::Cost::Planes;
@@ -61,18 +65,43 @@ std::string name_of(const std::map<std::string, T>& names, T value) {
 }
 
 void describe(CLI::App& app, Options& o) {
-  app.add_option("INPUT", o.input, "Mesh to simplify (- for stdin)")->required()->type_name("FILE");
-  app.add_option("-o,--output", o.output, "Where the result goes (- for stdout)")
-      ->required()
+  CLI::Option* input =
+      app.add_option("INPUT", o.input, "Mesh to simplify (- for stdin)")->type_name("FILE");
+  app.add_option(
+         "-o,--output", o.output,
+         "Where the result goes (- for stdout); {vertices} in the name stands for the wished "
+         "number of vertices")
       ->type_name("FILE");
   app.add_option("--direction", o.direction_name,
                  "outer: the result encloses the input; inner: the input encloses the result; any: "
                  "neither, for comparison [outer]")
       ->check(CLI::IsMember({"outer", "inner", "any"}).description(""))
       ->type_name("outer|inner|any");
-  app.add_option("--vertices", o.vertices, "Stop at this many vertices (at least 4)")
-      ->check(CLI::Range(std::int64_t{4}, std::int64_t{1} << 40).description(""))
-      ->type_name("N");
+  app.add_option(
+         "--vertices", o.vertices,
+         "Stop at this many vertices (at least 4). Several numbers, as in 20000,10000,5000, "
+         "give a series in one pass: each result encloses (inner: is enclosed by) the finer "
+         "ones; the output's name then contains {vertices}")
+      ->check([](const std::string& s) {
+        return tools::parse_counts(s) ? std::string()
+                                      : "must be a number of vertices from 4 on, or different ones "
+                                        "separated by commas, without blanks";
+      })
+      ->type_name("N[,N...]");
+  CLI::Option* progressive =
+      app.add_option(
+             "--progressive", o.progressive,
+             "Also write the mesh, all steps and the levels of --vertices to this file: any "
+             "number of vertices can be taken from it later, and bound-verify --progressive "
+             "checks it")
+          ->type_name("FILE");
+  CLI::Option* from =
+      app.add_option("--from", o.from,
+                     "Instead of INPUT: take results from this progressive file, without computing "
+                     "anything anew")
+          ->type_name("FILE")
+          ->excludes(input)
+          ->excludes(progressive);
   app.add_option("--ratio", o.ratio,
                  "Stop at this fraction of the input's welded vertices (0 < R < 1)")
       ->check([](const std::string& s) {
@@ -137,33 +166,20 @@ void describe(CLI::App& app, Options& o) {
   app.add_option("--output-format", o.output_format, "Format of the result [by extension]")
       ->type_name("NAME");
   tools::add_common_options(app, o.common);
+  // What makes a result is in the file.
+  for (const char* name :
+       {"--direction", "--ratio", "--epsilon", "--cost", "--effort", "--as-printed", "--precision",
+        "--sharp-angle", "--keep-convex", "--drop-sheets", "--require-closed", "--keep-orientation",
+        "--verify", "--log", "--input-format"})
+    from->excludes(app.get_option(name));
   app.footer(
-      "Give at least one of --vertices, --ratio and --epsilon; the first one reached stops.\n"
+      "Give at least one of --vertices, --ratio and --epsilon; the first one reached stops. With\n"
+      "--from: --vertices.\n"
       "Exit codes: 0 done; 1 the wished number of vertices cannot be reached (the best result is\n"
       "written), float32 is too coarse here (nothing is written) or --verify found a claim that "
       "does\n"
       "not hold; 2 usage; 3 bad input;\n"
       "4 output failed; 5 feature not built; 6 internal error; 7 limit reached.");
-}
-
-/// What is written is what was certified: the bytes must read back as the result's triangles.
-void check_readback(const std::vector<char>& bytes, io::Format format, const geom::Mesh& mesh) {
-  if (mesh.triangles.empty()) return;
-  const io::ReadResult back = io::parse_mesh(bytes, format, "the result");
-  std::size_t at = 0;
-  const auto collapsed = [&](const geom::Triangle& t) {
-    return mesh.vertices[t[0]] == mesh.vertices[t[1]] ||
-           mesh.vertices[t[1]] == mesh.vertices[t[2]] || mesh.vertices[t[2]] == mesh.vertices[t[0]];
-  };
-  for (const geom::Triangle& t : mesh.triangles) {
-    if (collapsed(t)) continue;
-    ensure(at < back.mesh.triangles.size(), "the written mesh lost a triangle");
-    for (int k = 0; k < 3; ++k)
-      ensure(back.mesh.vertices[back.mesh.triangles[at][k]] == mesh.vertices[t[k]],
-             "a coordinate changed when it was written");
-    ++at;
-  }
-  ensure(at == back.mesh.triangles.size(), "the written mesh gained a triangle");
 }
 
 /// Faces whose inner side is not in the solid, among at most 100,000 looked at: only the surface
@@ -205,36 +221,96 @@ class Job {
   }
 
   int run() {
-    require(o_.vertices != 0 || o_.ratio > 0 || !o_.epsilon.empty(),
+    require(!o_.input.empty(), "give INPUT, or --from");
+    require(!o_.output.empty() || !o_.progressive.empty(),
+            "give -o for the result, or --progressive");
+    if (!o_.vertices.empty()) counts_ = *tools::parse_counts(o_.vertices);
+    require(!counts_.empty() || o_.ratio > 0 || !o_.epsilon.empty(),
             "give at least one of --vertices, --ratio and --epsilon");
+    require(counts_.size() < 2 || o_.ratio == 0,
+            "several numbers of --vertices cannot be joined with --ratio");
+    require(counts_.size() < 2 || o_.log.empty(),
+            "--log speaks of one result; --progressive holds the steps of a series");
+    require(o_.progressive.empty() || o_.log.empty(), "--progressive contains what --log writes");
+    outputs_ = tools::level_files(o_.output, counts_);
     require_separate_files();
-    require(o_.depfile.empty() || o_.output != "-", "--depfile needs a result that is a file");
-    const io::Format output_format =
-        tools::format_for(o_.output, o_.output_format, "--output-format");
+    require(o_.depfile.empty() || !(o_.output.empty() || o_.output == "-"),
+            "--depfile needs a result that is a file");
+    if (!o_.output.empty())
+      output_format_ = tools::format_for(o_.output, o_.output_format, "--output-format");
     const io::Format input_format = tools::format_for(o_.input, o_.input_format, "--input-format");
-    require(o_.precision != "double" || io::holds_double(output_format),
+    require(o_.precision != "double" || holds_double(),
             "--precision double: the output format holds float32 only; write .ply, .obj or .off");
     require(!o_.verify || o_.direction != bmesh::Direction::Any,
             "--verify: direction 'any' claims nothing that could be verified");
+    require(o_.progressive.empty() || o_.direction != bmesh::Direction::Any,
+            "--progressive: direction 'any' claims nothing that the file could prove");
     read(input_format);
-    if (!choose_precision(output_format)) return tools::kNo;
-    if (!decimate(output_format)) return tools::kNo;
-    const std::vector<char> bytes = serialise(output_format);
-    if (epsilon_ || o_.verify || !o_.common.report.empty()) measure();
-    if (o_.verify) verify(bytes, output_format);
-    write_all(bytes);
+    if (!choose_precision()) return tools::kNo;
+    if (!decimate()) return tools::kNo;
+    for (std::size_t i = 0; i < levels_.size(); ++i) {
+      Level& level = levels_[i];
+      if (i > 0 && level.result.stop != bmesh::Stop::VertexTarget &&
+          levels_[i - 1].result.stop != bmesh::Stop::VertexTarget) {
+        repeat(levels_[i - 1], level);
+        continue;
+      }
+      serialise(level);
+      if (epsilon_ || o_.verify || !o_.common.report.empty()) measure(level);
+      if (o_.verify) verify(level, i > 0 ? &levels_[i - 1] : nullptr);
+    }
+    write_all();
     return conclude();
   }
 
  private:
+  /// One result and what is known of it.
+  struct Level {
+    std::optional<std::size_t> wished;
+    std::string file;  // empty: none
+    bmesh::DecimateResult result;
+    bool double_precision = false;
+    std::vector<char> bytes;
+    std::optional<geom::DirectedDistance> to_result, to_original;
+    std::optional<verify::Inclusion> verified;
+    std::vector<verify::Answer> verified_distance;
+    double verified_bound = 0;
+    std::optional<verify::Answer> nested;  // in the level before
+
+    [[nodiscard]] double hausdorff() const {
+      return std::max(to_result->max_upper, to_original->max_upper);
+    }
+    [[nodiscard]] bool reached() const {
+      return result.stop != bmesh::Stop::Exhausted || !wished ||
+             result.mesh.vertices.size() <= *wished;
+    }
+  };
+
   static void require(bool condition, const char* message) {
     if (!condition) throw Error(ErrorCode::InvalidArgument, message);
   }
 
+  [[nodiscard]] bool holds_double() const {
+    return !output_format_ || io::holds_double(*output_format_);
+  }
+
+  /// A level that was not reached is also what the next one got to.
+  static void repeat(const Level& from, Level& to) {
+    const auto wished = to.wished;
+    const std::string file = to.file;
+    to = from;
+    to.wished = wished;
+    to.file = file;
+    to.nested.reset();
+  }
+
   /// No file may be written twice, nor the input overwritten when a log speaks of it.
   void require_separate_files() const {
-    std::vector<std::pair<std::string, std::string>> files{{"the result", o_.output}};
+    std::vector<std::pair<std::string, std::string>> files;
+    for (const std::string& file : outputs_)
+      if (!file.empty()) files.emplace_back("the result", file);
     if (!o_.log.empty()) files.emplace_back("the log", o_.log);
+    if (!o_.progressive.empty()) files.emplace_back("the progressive file", o_.progressive);
     if (!o_.common.report.empty()) files.emplace_back("the report", o_.common.report);
     if (!o_.depfile.empty()) files.emplace_back("the dependency file", o_.depfile);
     // In place is fine, unless a log would then speak of a file that is gone.
@@ -252,31 +328,39 @@ class Job {
                                                       " cannot both be " + files[i].second);
   }
 
-  /// The result comes last, so that it is there only if everything that belongs to it is; if it
-  /// cannot be written, the rest is taken back.
-  void write_all(const std::vector<char>& bytes) const {
-    std::vector<std::string> written;
-    try {
-      if (!o_.log.empty()) io::write_file(o_.log, bmesh::serialise_log(log_));
-      if (!o_.log.empty()) written.push_back(o_.log);
-      if (!o_.common.report.empty()) tools::write_json(o_.common.report, report());
-      if (!o_.common.report.empty()) written.push_back(o_.common.report);
-      if (!o_.depfile.empty()) tools::write_depfile(o_.depfile, o_.output, {o_.input});
-      if (!o_.depfile.empty()) written.push_back(o_.depfile);
-      io::write_file(o_.output, bytes);
-    } catch (...) {
-      for (const std::string& file : written) {
-        std::error_code ignored;
-        if (std::filesystem::is_regular_file(file, ignored)) std::filesystem::remove(file, ignored);
-      }
-      throw;
-    }
+  /// The results come last, so that they are there only if everything that belongs to them is.
+  void write_all() {
+    std::vector<std::pair<std::string, std::function<void()>>> files;
+    files.emplace_back(o_.log, [&] { io::write_file(o_.log, bmesh::serialise_log(log_)); });
+    files.emplace_back(o_.progressive, [&] {
+      io::write_file(o_.progressive, bmesh::serialise_progressive(progressive()));
+    });
+    files.emplace_back(o_.common.report, [&] { tools::write_json(o_.common.report, report()); });
+    files.emplace_back(o_.depfile, [&] {
+      std::vector<std::string> targets = outputs_;
+      if (!o_.progressive.empty()) targets.push_back(o_.progressive);
+      tools::write_depfile(o_.depfile, targets, {o_.input});
+    });
+    for (const Level& level : levels_)
+      files.emplace_back(level.file, [&level] { io::write_file(level.file, level.bytes); });
+    tools::write_together(files);
+  }
+
+  [[nodiscard]] bmesh::Progressive progressive() const {
+    bmesh::Progressive p{log_, precision_ == bmesh::Precision::Double, prepared_.mesh, {}};
+    for (const Level& level : levels_)
+      p.levels.push_back({level.wished.value_or(level.result.mesh.vertices.size()),
+                          level.result.mesh.vertices.size(), level.result.steps});
+    return p;
   }
 
   void say(const std::string& text) const { tools::log(o_.common.quiet, text); }
 
+  /// Whether the steps are wished for.
+  [[nodiscard]] bool records() const { return !o_.log.empty() || !o_.progressive.empty(); }
+
   void read(io::Format format) {
-    const bool hash = !o_.log.empty() || !o_.common.report.empty();
+    const bool hash = records() || !o_.common.report.empty();
     std::vector<char> bytes;
     input_ = io::read_mesh(o_.input, format, hash ? &bytes : nullptr);
     if (hash) log_.input_sha256 = io::sha256(bytes);
@@ -288,7 +372,7 @@ class Job {
     } catch (const Error& error) {
       throw Error(error.code(), o_.input + ": " + error.what());
     }
-    if (!o_.log.empty()) {
+    if (records()) {
       log_.direction = o_.direction;
       log_.tool = std::string("bmesh-decimate ") + tools::version();
       bmesh::record_preparation(prepared_, triangles, log_);
@@ -307,7 +391,7 @@ class Job {
     seconds_read_ = tools::user_seconds();
   }
 
-  bool choose_precision(io::Format format) {
+  bool choose_precision() {
     precision_ = o_.precision == "double" ? bmesh::Precision::Double : bmesh::Precision::Float;
     if (precision_ == bmesh::Precision::Double) return true;
     double limit = 1e-6 * box_.diagonal();
@@ -315,15 +399,17 @@ class Job {
     const double spacing = geom::float32_spacing(
         std::max(box_.min.cwiseAbs().maxCoeff(), box_.max.cwiseAbs().maxCoeff()));
     if (spacing <= limit) return true;
-    return double_instead(format, "float32 numbers are " + formatted(spacing) +
-                                      " apart at these coordinates, more than " + formatted(limit) +
-                                      " (a millionth of the diagonal, or a hundredth of epsilon)");
+    if (!double_instead("float32 numbers are " + formatted(spacing) +
+                        " apart at these coordinates, more than " + formatted(limit) +
+                        " (a millionth of the diagonal, or a hundredth of epsilon)"))
+      return false;
+    precision_ = bmesh::Precision::Double;
+    return true;
   }
 
   /// Falls back to double where that is allowed; else says what to do.
-  bool double_instead(io::Format format, const std::string& why) {
-    if (o_.precision == "auto" && io::holds_double(format)) {
-      precision_ = bmesh::Precision::Double;
+  bool double_instead(const std::string& why) const {
+    if (o_.precision == "auto" && holds_double()) {
       say("note: " + why + ": writing double");
       return true;
     }
@@ -334,7 +420,7 @@ class Job {
     return false;
   }
 
-  bool decimate(io::Format format) {
+  bool decimate() {
     bmesh::DecimateOptions d;
     d.direction = o_.direction;
     d.cost = o_.cost;
@@ -344,83 +430,98 @@ class Job {
     d.keep_convex = o_.keep_convex;
     d.sharp_angle = o_.sharp_angle;
     d.epsilon = epsilon_;
-    if (o_.vertices != 0) d.vertices = static_cast<std::size_t>(o_.vertices);
     if (o_.ratio > 0) {
       const auto n = static_cast<std::size_t>(
           std::ceil(o_.ratio * static_cast<double>(prepared_.mesh.vertices.size())));
-      d.vertices = std::max({n, d.vertices.value_or(0), std::size_t{4}});
+      counts_ = {std::max({n, counts_.empty() ? 0 : counts_.front(), std::size_t{4}})};
     }
-    target_ = d.vertices;
-    if (!o_.log.empty()) d.steps = &log_.steps;
+    if (records()) d.steps = &log_.steps;
     tools::Progress progress(o_.common.quiet);
     const std::size_t start = prepared_.mesh.vertices.size();
     d.progress = [&](std::size_t vertices) {
       std::string text =
           std::to_string(vertices) + " of " + std::to_string(start) + " vertices left";
-      if (target_) text += ", " + std::to_string(*target_) + " wished";
+      if (!counts_.empty()) text += ", " + std::to_string(counts_.back()) + " wished";
       progress.show(text);
     };
-    result_ = bmesh::decimate(prepared_, d);
+    std::vector<bmesh::DecimateResult> results;
+    if (counts_.empty())
+      results.push_back(bmesh::decimate(prepared_, d));
+    else
+      results = bmesh::decimate_series(prepared_, d, counts_);
     seconds_decimated_ = tools::user_seconds();
-    if (result_.unrepresentable == 0) return true;
-    return double_instead(
-        format,
-        std::to_string(result_.unrepresentable) +
-            (prepared_.closed ? " vertices" : " vertices (those of the border may not move)") +
-            " have no certified float32 position");
+    std::size_t unrepresentable = 0;
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      Level& level = levels_.emplace_back();
+      if (!counts_.empty()) level.wished = counts_[i];
+      level.file = outputs_[i];
+      level.result = std::move(results[i]);
+      level.double_precision =
+          precision_ == bmesh::Precision::Double || level.result.unrepresentable != 0;
+      unrepresentable = std::max(unrepresentable, level.result.unrepresentable);
+    }
+    return unrepresentable == 0 ||
+           double_instead(
+               std::to_string(unrepresentable) +
+               (prepared_.closed ? " vertices" : " vertices (those of the border may not move)") +
+               " have no certified float32 position");
   }
 
-  std::vector<char> serialise(io::Format format) const {
-    io::WriteOptions w;
-    w.double_precision = precision_ == bmesh::Precision::Double;
-    w.comment = std::string("bmesh-decimate ") + tools::version();
-    std::vector<char> bytes = io::serialise_mesh(result_.mesh, format, w);
-    check_readback(bytes, format, result_.mesh);
-    return bytes;
+  /// The bytes that are verified and written.
+  void serialise(Level& level) const {
+    level.bytes = tools::serialise_checked(
+        level.result.mesh, output_format_.value_or(io::Format::Ply), level.double_precision,
+        std::string("bmesh-decimate ") + tools::version());
   }
 
-  void measure() {
-    const geom::DistanceQuery original(prepared_.mesh), result(result_.mesh);
-    to_result_ = geom::directed_distance(prepared_.mesh, result);
-    to_original_ = geom::directed_distance(result_.mesh, original);
+  void measure(Level& level) const {
+    const geom::DistanceQuery original(prepared_.mesh), result(level.result.mesh);
+    level.to_result = geom::directed_distance(prepared_.mesh, result);
+    level.to_original = geom::directed_distance(level.result.mesh, original);
     if (!epsilon_) return;
-    ensure(std::max(to_result_->max_lower, to_original_->max_lower) <= *epsilon_,
+    ensure(std::max(level.to_result->max_lower, level.to_original->max_lower) <= *epsilon_,
            "the measured distance exceeds the carried bound");
     // The bound carried through the contractions holds as well; the measured one may lie above it
     // by its gap.
-    for (auto* d : {&*to_result_, &*to_original_}) d->max_upper = std::min(d->max_upper, *epsilon_);
+    for (auto* d : {&*level.to_result, &*level.to_original})
+      d->max_upper = std::min(d->max_upper, *epsilon_);
   }
 
   /// Decides the claims anew from the bytes that will be written, by other means than those that
   /// made them. A refuted certificate is our bug: nothing is written.
-  void verify(const std::vector<char>& bytes, io::Format format) {
-    const io::ReadResult back = io::parse_mesh(bytes, format, "the result");
-    const bool outer = o_.direction == bmesh::Direction::Outer;
-    const geom::Mesh &inner = outer ? prepared_.mesh : back.mesh,
-                     &enclosing = outer ? back.mesh : prepared_.mesh;
+  void verify(Level& level, const Level* before) const {
+    const io::Format format = output_format_.value_or(io::Format::Ply);
+    const io::ReadResult back = io::parse_mesh(level.bytes, format, "the result");
     tools::Progress progress(o_.common.quiet);
     verify::InclusionOptions options;
     options.progress = [&](const std::string& what) { progress.show("verifying: " + what); };
-    verified_ = verify::verify_inclusion(inner, enclosing, options);
+    const auto bounds = [&](const geom::Mesh& other) {
+      const bool outer = o_.direction == bmesh::Direction::Outer;
+      return verify::verify_inclusion(outer ? other : back.mesh, outer ? back.mesh : other,
+                                      options);
+    };
+    level.verified = bounds(prepared_.mesh);
+    if (before != nullptr)
+      level.nested =
+          bounds(io::parse_mesh(before->bytes, format, "the level before").mesh).solid.answer;
     const auto failed = [](verify::Answer a) { return a == verify::Answer::Refuted; };
-    ensure(!failed(verified_->solid.answer),
+    ensure(!failed(level.verified->solid.answer) && !(level.nested && failed(*level.nested)),
            "the verification refutes that the result is bounding; nothing is written");
     progress.show("verifying: distances");
-    const double bound = std::max(to_result_->max_upper, to_original_->max_upper);
     // Epsilon, or the measured bound with room that keeps it decidable.
-    const double claimed =
-        epsilon_ ? *epsilon_ : std::max(bound * (1 + 1e-3), 1e-6 * box_.diagonal());
-    verified_bound_ = claimed;
+    level.verified_bound =
+        epsilon_ ? *epsilon_ : std::max(level.hausdorff() * (1 + 1e-3), 1e-6 * box_.diagonal());
     for (const bool forth : {true, false}) {
-      const verify::DistanceClaim claim = verify::verify_distance(
-          forth ? prepared_.mesh : back.mesh, forth ? back.mesh : prepared_.mesh, claimed);
+      const verify::DistanceClaim claim =
+          verify::verify_distance(forth ? prepared_.mesh : back.mesh,
+                                  forth ? back.mesh : prepared_.mesh, level.verified_bound);
       ensure(!failed(claim.answer),
              "the verification refutes the measured distance; nothing is written");
-      verified_distance_.push_back(claim.answer);
+      level.verified_distance.push_back(claim.answer);
     }
   }
 
-  [[nodiscard]] Json verification() const {
+  static Json verification(const Level& level) {
     const auto claim = [&](const verify::Claim& c) {
       Json json{{"answer", name_of(c.answer)}, {"reason", c.reason}};
       if (c.witness) {
@@ -429,12 +530,13 @@ class Job {
       }
       return json;
     };
-    Json json{{"solid", claim(verified_->solid)},
-              {"relative", verified_->relative},
-              {"surface", claim(verified_->surface)},
-              {"distance_bound", verified_bound_},
-              {"distance_original_to_result", name_of(verified_distance_[0])},
-              {"distance_result_to_original", name_of(verified_distance_[1])}};
+    Json json{{"solid", claim(level.verified->solid)},
+              {"relative", level.verified->relative},
+              {"surface", claim(level.verified->surface)},
+              {"distance_bound", level.verified_bound},
+              {"distance_original_to_result", name_of(level.verified_distance[0])},
+              {"distance_result_to_original", name_of(level.verified_distance[1])}};
+    if (level.nested) json["nested"] = name_of(*level.nested);
     return json;
   }
 
@@ -462,16 +564,41 @@ class Job {
                     {"effort", name_of(kEfforts, o_.effort)},
                     {"as_printed", o_.as_printed},
                     {"precision", precision_ == bmesh::Precision::Double ? "double" : "float"},
-                    {"vertices", target_ ? Json(*target_) : Json()},
+                    {"vertices", counts_.empty()       ? Json()
+                                 : counts_.size() == 1 ? Json(counts_.front())
+                                                       : Json(counts_)},
                     {"epsilon", epsilon_ ? Json(*epsilon_) : Json()},
                     {"sharp_angle", o_.sharp_angle},
                     {"keep_convex", o_.keep_convex}};
-    r["stop"] = stop_name();
-    r["output"] = {{"file", o_.output}};
-    r["output"].update(tools::to_json(geom::analyse(result_.mesh)));
-    r["claims"] = claims();
-    if (verified_) r["verification"] = verification();
-    const bmesh::DecimateStatistics& s = result_.statistics;
+    if (!o_.progressive.empty()) r["progressive"] = o_.progressive;
+    if (levels_.size() == 1) {
+      r.update(result(levels_.front()));
+    } else {
+      for (const Level& level : levels_) {
+        Json& entry = r["levels"].emplace_back();
+        entry["vertices"] = *level.wished;
+        entry["reached"] = level.result.stop == bmesh::Stop::VertexTarget;
+        entry.update(result(level));
+      }
+    }
+    r["resources"] = {{"user_seconds_reading", seconds_read_},
+                      {"user_seconds_decimating", seconds_decimated_ - seconds_read_},
+                      {"user_seconds", tools::user_seconds()},
+                      {"peak_megabytes", tools::peak_megabytes()},
+                      {"threads", o_.common.threads}};
+    return r;
+  }
+
+  /// What the report says of one result.
+  [[nodiscard]] Json result(const Level& level) const {
+    Json r;
+    r["stop"] = stop_name(level);
+    r["output"] = {{"file", level.file.empty() ? Json() : Json(level.file)},
+                   {"precision", level.double_precision ? "double" : "float"}};
+    r["output"].update(tools::to_json(geom::analyse(level.result.mesh)));
+    r["claims"] = claims(level);
+    if (level.verified) r["verification"] = verification(level);
+    const bmesh::DecimateStatistics& s = level.result.statistics;
     r["certificate"] = {{"contractions", s.contractions},
                         {"moves", s.moves},
                         {"pull_backs", s.pull_backs},
@@ -493,18 +620,13 @@ class Job {
                       "input's unit; "
                       "the original is the input after preparation"},
                      {"bbox_diagonal", diagonal},
-                     {"original_to_result", tools::to_json(*to_result_, diagonal)},
-                     {"result_to_original", tools::to_json(*to_original_, diagonal)},
-                     {"hausdorff_upper", std::max(to_result_->max_upper, to_original_->max_upper)}};
-    r["resources"] = {{"user_seconds_reading", seconds_read_},
-                      {"user_seconds_decimating", seconds_decimated_ - seconds_read_},
-                      {"user_seconds", tools::user_seconds()},
-                      {"peak_megabytes", tools::peak_megabytes()},
-                      {"threads", o_.common.threads}};
+                     {"original_to_result", tools::to_json(*level.to_result, diagonal)},
+                     {"result_to_original", tools::to_json(*level.to_original, diagonal)},
+                     {"hausdorff_upper", level.hausdorff()}};
     return r;
   }
 
-  [[nodiscard]] Json claims() const {
+  [[nodiscard]] Json claims(const Level& level) const {
     if (o_.direction == bmesh::Direction::Any) return {{"solid", "none"}, {"surface", "none"}};
     const bool outer = o_.direction == bmesh::Direction::Outer;
     Json c;
@@ -517,8 +639,22 @@ class Job {
                               : "certified: the input's solid contains the result's")
                      : "open mesh: certified only that the generalised winding number nowhere " +
                            std::string(outer ? "falls" : "rises");
-    if (!outer || !prepared_.closed) {
+    if (levels_.size() > 1)
+      c["nested"] = outer ? "certified: contains the finer results"
+                          : "certified: contained in the finer results";
+    if (!prepared_.closed) {
       c["surface"] = "none";
+      return c;
+    }
+    if (level.verified) {
+      c["surface"] = decided_surface(level.verified->surface);
+      return c;
+    }
+    if (!outer) {
+      c["surface"] = o_.keep_convex
+                         ? "none"
+                         : "certified: every triangle of the result lies in the input's solid, "
+                           "unless those of the input do not";
       return c;
     }
     const SurfaceSamples s = sample_surface(prepared_.mesh, box_.diagonal());
@@ -531,8 +667,22 @@ class Job {
     return c;
   }
 
-  [[nodiscard]] const char* stop_name() const {
-    switch (result_.stop) {
+  /// The same words as under "verification".
+  [[nodiscard]] std::string decided_surface(const verify::Claim& surface) const {
+    const bool outer = o_.direction == bmesh::Direction::Outer;
+    std::string text = name_of(surface.answer);
+    if (surface.answer == verify::Answer::Verified)
+      return text + (outer ? ": every triangle of the input lies in the result's solid"
+                           : ": every triangle of the result lies in the input's solid");
+    if (surface.answer == verify::Answer::Refuted)
+      return text + ": " + std::to_string(surface.inner_triangles.size()) + " triangles of the " +
+             (outer ? "input do not lie in the result's solid"
+                    : "result do not lie in the input's solid");
+    return surface.reason.empty() ? text : text + ": " + surface.reason;
+  }
+
+  static const char* stop_name(const Level& level) {
+    switch (level.result.stop) {
       case bmesh::Stop::VertexTarget:
         return "vertices";
       case bmesh::Stop::ErrorBound:
@@ -544,44 +694,56 @@ class Job {
   }
 
   int conclude() const {
-    const bmesh::DecimateStatistics& s = result_.statistics;
-    std::string line = o_.output + ": " + std::to_string(s.vertices_in) + " → " +
-                       std::to_string(s.vertices_out) + " vertices, " +
-                       name_of(kDirections, o_.direction);
+    bool no = false, limit = false;
+    for (const Level& level : levels_) {
+      const int code = conclude(level);
+      no = no || code == tools::kNo;
+      limit = limit || code == tools::kLimit;
+    }
+    return no ? tools::kNo : limit ? tools::kLimit : tools::kDone;
+  }
+
+  int conclude(const Level& level) const {
+    const std::size_t vertices = level.result.mesh.vertices.size();
+    std::string line =
+        name_for_people(level) + ": " + std::to_string(level.result.statistics.vertices_in) +
+        " → " + std::to_string(vertices) + " vertices, " + name_of(kDirections, o_.direction);
     if (o_.direction != bmesh::Direction::Any)
       line += prepared_.closed ? ", certified" : ", certified as far as an open mesh allows";
-    if (to_result_) {
-      const double upper = std::max(to_result_->max_upper, to_original_->max_upper);
-      line +=
-          ", within " + formatted(upper) + " (" + formatted(100 * upper / box_.diagonal()) + "%)";
-    }
-    if (target_ && result_.stop == bmesh::Stop::ErrorBound)
-      line += "; epsilon allows no fewer, " + std::to_string(*target_) + " were wished";
+    if (level.to_result)
+      line += ", within " + formatted(level.hausdorff()) + " (" +
+              formatted(100 * level.hausdorff() / box_.diagonal()) + "%)";
+    if (level.wished && level.result.stop == bmesh::Stop::ErrorBound)
+      line += "; epsilon allows no fewer, " + std::to_string(*level.wished) + " were wished";
     say(line);
-    warn_of_spikes();
-    const int verification = verified_ ? conclude_verification() : tools::kDone;
-    if (target_ && result_.stop == bmesh::Stop::Exhausted && s.vertices_out > *target_) {
-      tools::log(false, "bmesh-decimate: " + o_.input + ": " + std::to_string(*target_) +
+    warn_of_spikes(level);
+    const int verification = level.verified ? conclude_verification(level) : tools::kDone;
+    if (!level.reached()) {
+      tools::log(false, "bmesh-decimate: " + o_.input + ": " + std::to_string(*level.wished) +
                             " vertices cannot be reached: no further contraction is possible at " +
-                            std::to_string(s.vertices_out) + "; the result so far is written");
+                            std::to_string(vertices) + "; the result so far is written");
       return tools::kNo;
     }
     return verification;
   }
 
+  [[nodiscard]] std::string name_for_people(const Level& level) const {
+    return level.file.empty() ? o_.progressive : level.file;
+  }
+
   /// Says which claims are not verified. @return the exit code that they give
-  [[nodiscard]] int conclude_verification() const {
+  [[nodiscard]] int conclude_verification(const Level& level) const {
     using verify::Answer;
     int code = tools::kDone;
     const auto look = [&](const std::string& what, Answer answer, const std::string& detail) {
       if (answer == Answer::Verified) return;
-      tools::log(false, "bmesh-decimate: " + o_.output + ": " + what + " is " + name_of(answer) +
-                            (detail.empty() ? "" : ": " + detail));
+      tools::log(false, "bmesh-decimate: " + name_for_people(level) + ": " + what + " is " +
+                            name_of(answer) + (detail.empty() ? "" : ": " + detail));
       if (answer == Answer::Undecided && code == tools::kDone) code = tools::kLimit;
       if (answer != Answer::Undecided) code = tools::kNo;
     };
-    look("the solid claim", verified_->solid.answer, verified_->solid.reason);
-    const verify::Claim& surface = verified_->surface;
+    look("the solid claim", level.verified->solid.answer, level.verified->solid.reason);
+    const verify::Claim& surface = level.verified->surface;
     if (surface.witness) {
       look("the surface claim", surface.answer,
            std::to_string(surface.inner_triangles.size()) + " triangles lie outside, as deep as " +
@@ -589,14 +751,15 @@ class Job {
     } else if (surface.answer != Answer::Undefined) {  // open meshes have none
       look("the surface claim", surface.answer, surface.reason);
     }
-    for (const Answer answer : verified_distance_) look("a distance", answer, "");
+    if (level.nested) look("the nesting in the level before", *level.nested, "");
+    for (const Answer answer : level.verified_distance) look("a distance", answer, "");
     if (code == tools::kDone) say("verified from the written bytes");
     return code;
   }
 
   /// Without --epsilon nothing keeps vertices near the original, and few vertices mean spikes.
-  void warn_of_spikes() const {
-    const geom::Box3 result = geom::bounding_box(result_.mesh);
+  void warn_of_spikes(const Level& level) const {
+    const geom::Box3 result = geom::bounding_box(level.result.mesh);
     if (result.empty()) return;
     const double beyond =
         std::max((box_.min - result.min).maxCoeff(), (result.max - box_.max).maxCoeff());
@@ -612,14 +775,12 @@ class Job {
   geom::Prepared prepared_;
   geom::Box3 box_;
   std::optional<double> epsilon_;
-  std::optional<std::size_t> target_;
+  std::vector<std::size_t> counts_;  // wished numbers of vertices, falling; none with epsilon alone
+  std::vector<std::string> outputs_;         // the file of each, or of the result
+  std::optional<io::Format> output_format_;  // none: only the progressive file is written
   bmesh::Precision precision_ = bmesh::Precision::Float;
-  bmesh::DecimateResult result_;
+  std::vector<Level> levels_;
   bmesh::Log log_;
-  std::optional<geom::DirectedDistance> to_result_, to_original_;
-  std::optional<verify::Inclusion> verified_;
-  std::vector<verify::Answer> verified_distance_;
-  double verified_bound_ = 0;
   std::vector<std::string> notes_;
   double seconds_read_ = 0, seconds_decimated_ = 0;
 };
@@ -634,6 +795,9 @@ int main(int argc, char** argv) {
   describe(app, options);
   return tools::run(app, argc, argv, [&] {
     const tools::ThreadLimit limit(options.common.threads);
+    if (!options.from.empty())
+      return tools::extract_levels({options.from, options.output, options.output_format,
+                                    options.vertices, options.depfile, options.common});
     return Job(options).run();
   });
 }

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "cli.h"
+#include "verify_progressive.h"
 #include "verify_sweep.h"
 
 namespace {
@@ -20,8 +21,8 @@ using tools::Json;
 using verify::Answer;
 
 struct Options {
-  bool outer = false, inner = false, cover = false, prepare = false, drop_sheets = false,
-       set = false;
+  bool outer = false, inner = false, cover = false, progressive = false, prepare = false,
+       drop_sheets = false, set = false;
   std::string original, approximation, original_format, approximation_format;
   std::string epsilon, witness, claims = "all";
   std::size_t max_contacts = verify::InclusionOptions{}.max_contacts;
@@ -500,6 +501,7 @@ int main(int argc, char** argv) {
       "Decides from two files alone, in exact arithmetic, whether an approximation encloses the\n"
       "original (--outer), is enclosed by it (--inner) or, a set of convex bodies, covers it "
       "(--cover); or whether a set of convex bodies holds a robot during a motion (--sweep).\n"
+      "With --progressive: replays a progressive file, every step checked exactly.\n"
       "\n"
       "Solid claim: points about which one mesh winds at least once are so in the other.\n"
       "Surface claim: every triangle of the enclosed mesh lies in the solid of the enclosing one.\n"
@@ -518,6 +520,9 @@ int main(int argc, char** argv) {
                        "rlmdl) all along PATH (.csv, .json)")
           ->expected(3)
           ->type_name("ROBOT PATH SWEPT");
+  CLI::Option* progressive = relation->add_flag(
+      "--progressive", o.progressive,
+      "APPROXIMATION is a progressive file of bmesh-decimate: all its steps and levels");
   relation->require_option(1);
   app.add_option("ORIGINAL", o.original, "The mesh that was approximated (- for standard input)")
       ->type_name("FILE");
@@ -587,6 +592,9 @@ int main(int argc, char** argv) {
                ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000'000}).description(""))
                ->capture_default_str()
                ->type_name("N"));
+  for (const char* name : {"--claims", "--epsilon", "--prepare", "--drop-sheets", "--set",
+                           "--witness", "--approximation-format", "--max-contacts"})
+    progressive->excludes(app.get_option(name));
   tools::add_common_options(app, o.common);
   app.footer(
       "--sweep: every triangle of the links' meshes, every box, cylinder and sphere, at every\n"
@@ -595,6 +603,10 @@ int main(int argc, char** argv) {
       "shares the parsers of ROBOT and PATH with sweep-approx, nothing else.\n\n"
       "Exit codes: 0 verified; 1 refuted; 2 usage; 3 bad input, or not closed where a claim needs "
       "it; 4 output failed; 6 internal error; 7 undecided within limits.");
-  return tools::run(app, argc, argv,
-                    [&] { return o.sweep.files.empty() ? check(o) : check_sweep(o); });
+  return tools::run(app, argc, argv, [&] {
+    if (!o.sweep.files.empty()) return check_sweep(o);
+    if (o.progressive)
+      return tools::verify_progressive(o.original, o.original_format, o.approximation, o.common);
+    return check(o);
+  });
 }

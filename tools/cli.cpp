@@ -201,7 +201,7 @@ void require_apart(const std::vector<std::pair<std::string, std::string>>& outpu
   }
 }
 
-void write_depfile(const std::string& path, const std::string& target,
+void write_depfile(const std::string& path, const std::vector<std::string>& targets,
                    const std::vector<std::string>& inputs) {
   const auto escaped = [](const std::string& s) {
     std::string out;
@@ -212,7 +212,10 @@ void write_depfile(const std::string& path, const std::string& target,
     }
     return out;
   };
-  std::string text = escaped(target) + ":";
+  std::string text;
+  for (const std::string& target : targets)
+    if (!target.empty()) text += (text.empty() ? "" : " ") + escaped(target);
+  text += ":";
   for (const std::string& input : inputs)
     if (input != "-") text += " " + escaped(input);
   text += "\n";

@@ -222,7 +222,7 @@ int sweep_path(Options o) {
   if (!o.depfile.empty()) {
     std::vector<std::string> inputs{o.robot, o.path};
     inputs.insert(inputs.end(), links.files.begin(), links.files.end());
-    tools::write_depfile(o.depfile, o.output, inputs);
+    tools::write_depfile(o.depfile, {o.output}, inputs);
   }
   if (format == io::SetFormat::Glb) {
     io::write_file(o.output, bytes);

@@ -15,6 +15,7 @@
 #include <numbers>
 
 #include "bucket_queue.h"
+#include "compact.h"
 #include "connectivity.h"
 #include "deviation.h"
 #include "optimise.h"
@@ -87,15 +88,33 @@ class Decimator {
       solid_.emplace(original_);
   }
 
-  DecimateResult run() {
+  /// Runs on from where the last call has stopped.
+  DecimateResult run(std::optional<std::size_t> target) {
+    target_ = target;
     const Stop stop = contract_all();
     DecimateResult result;
     if (options_.precision == Precision::Float) result.unrepresentable = make_representable();
     result.stop = stop;
-    result.mesh = extract();
+    result.mesh = compact(position_, mesh_);
     statistics_.vertices_out = result.mesh.vertices.size();
     result.statistics = statistics_;
+    if (options_.steps != nullptr) result.steps = options_.steps->size();
     return result;
+  }
+
+  /// Steps from now on are certified against this mesh, the present one, instead of the original.
+  /// It must outlive this object.
+  void nest_in(const Mesh& level) {
+    bound_ = &level;
+    if (solid_) solid_.emplace(level);
+    if (options_.cost == Cost::Distance) {
+      if (optimiser_) start_optimising();
+      return;
+    }
+    // Contractions are measured with cost distance only; the next rounds begin anew.
+    measuring_ = false;
+    optimiser_.reset();
+    deviation_.reset();
   }
 
  private:
@@ -216,19 +235,21 @@ class Decimator {
   }
 
   Stop contract_all() {
-    const std::size_t target = options_.vertices.value_or(0);
+    const std::size_t target = target_.value_or(0);
     if (options_.cost != Cost::Distance) {
       contract_to(target);
     } else {
-      // Small deviations need no measuring: the quadrics order the contractions as well.
-      contract_to(kMeasureFrom * target, options_.epsilon
-                                             ? kMeasureFromEpsilon * *options_.epsilon
-                                             : std::numeric_limits<double>::infinity());
-      start_measuring();
+      if (!measuring_) {
+        // Small deviations need no measuring: the quadrics order the contractions as well.
+        contract_to(kMeasureFrom * target, options_.epsilon
+                                               ? kMeasureFromEpsilon * *options_.epsilon
+                                               : std::numeric_limits<double>::infinity());
+        start_measuring();
+      }
       contract_in_stages(target);
     }
     optimise(options_.effort == Effort::Best ? kFinalPassesBest : kFinalPasses);
-    if (options_.vertices && vertices_ <= target) return Stop::VertexTarget;
+    if (target_ && vertices_ <= target) return Stop::VertexTarget;
     return bounded_ ? Stop::ErrorBound : Stop::Exhausted;
   }
 
@@ -392,8 +413,8 @@ class Decimator {
 
   void start_optimising() {
     if (options_.keep_convex || (constrained_ && !closed_)) return;
-    if (constrained_ && !solid_) solid_.emplace(original_);
-    optimiser_.emplace(working_, *deviation_, constrained_ ? &*solid_ : nullptr, original_,
+    if (constrained_ && !solid_) solid_.emplace(*bound_);
+    optimiser_.emplace(working_, *deviation_, constrained_ ? &*solid_ : nullptr, *bound_,
                        tolerance_ ? &*tolerance_ : nullptr, options_, statistics_);
   }
 
@@ -860,25 +881,6 @@ class Decimator {
     return false;
   }
 
-  [[nodiscard]] Mesh extract() const {
-    Mesh out;
-    std::vector<std::uint32_t> renumbered(position_.size(), Connectivity::kNone);
-    for (std::uint32_t t = 0; t < mesh_.size(); ++t) {
-      if (!mesh_.alive(t)) continue;
-      Triangle tri;
-      for (int k = 0; k < 3; ++k) {
-        std::uint32_t& r = renumbered[mesh_[t][k]];
-        if (r == Connectivity::kNone) {
-          r = static_cast<std::uint32_t>(out.vertices.size());
-          out.vertices.push_back(position_[mesh_[t][k]]);
-        }
-        tri[k] = r;
-      }
-      out.triangles.push_back(tri);
-    }
-    return out;
-  }
-
   const DecimateOptions& options_;
   double sign_;
   bool constrained_;
@@ -900,11 +902,13 @@ class Decimator {
   std::vector<std::uint32_t> mark_;
   std::uint32_t mark_value_ = 0;
   std::size_t vertices_;
-  bool bounded_ = false;  // some candidate failed for epsilon alone
+  std::optional<std::size_t> target_;  // to stop at
+  bool bounded_ = false;               // some candidate failed for epsilon alone
   BucketQueue queue_;
   std::optional<Tolerance> tolerance_;
   std::optional<Deviation> deviation_;
-  std::optional<OriginalSolid> solid_;
+  const Mesh* bound_ = &original_;      // what steps must enclose, or be enclosed by
+  std::optional<OriginalSolid> solid_;  // of bound_
   std::optional<Optimiser> optimiser_;
   bool measuring_ = false;           // costs are measured distances
   std::vector<std::uint32_t> hint_;  // per vertex: where the original is near
@@ -923,18 +927,52 @@ class Decimator {
 
 }  // namespace
 
-DecimateResult decimate(const geom::Prepared& input, const DecimateOptions& options) {
-  if (!options.vertices && !options.epsilon)
-    throw Error(ErrorCode::InvalidArgument,
-                "decimation needs a number of vertices or an error bound");
+namespace {
+
+void check_options(const geom::Prepared& input, const DecimateOptions& options) {
   if (options.epsilon && !(*options.epsilon > 0 && std::isfinite(*options.epsilon)))
     throw Error(ErrorCode::InvalidArgument, "the error bound must be a positive length");
   if (options.keep_convex && !geom::is_convex(input.mesh))
     throw Error(ErrorCode::InvalidInput, "the input is not convex, so convexity cannot be kept");
-  DecimateResult result = Decimator(input, options).run();
+}
+
+void check_result(const DecimateResult& result, const DecimateOptions& options) {
   if (options.keep_convex)
     ensure(geom::is_convex(geom::weld(result.mesh)), "a contraction lost convexity");
+}
+
+}  // namespace
+
+DecimateResult decimate(const geom::Prepared& input, const DecimateOptions& options) {
+  if (!options.vertices && !options.epsilon)
+    throw Error(ErrorCode::InvalidArgument,
+                "decimation needs a number of vertices or an error bound");
+  check_options(input, options);
+  DecimateResult result = Decimator(input, options).run(options.vertices);
+  check_result(result, options);
   return result;
+}
+
+std::vector<DecimateResult> decimate_series(const geom::Prepared& input,
+                                            const DecimateOptions& options,
+                                            std::span<const std::size_t> vertices) {
+  if (vertices.empty() || options.vertices ||
+      std::adjacent_find(vertices.begin(), vertices.end(), std::less_equal<>()) != vertices.end())
+    throw Error(ErrorCode::InvalidArgument, "a series needs falling numbers of vertices");
+  check_options(input, options);
+  Decimator decimator(input, options);
+  std::vector<DecimateResult> levels;
+  levels.reserve(vertices.size());  // what is nested in stays where it is
+  for (const std::size_t target : vertices) {
+    if (!levels.empty() && levels.back().stop != Stop::VertexTarget) {
+      levels.push_back(levels.back());
+      continue;
+    }
+    if (!levels.empty()) decimator.nest_in(levels.back().mesh);
+    levels.push_back(decimator.run(target));
+    check_result(levels.back(), options);
+  }
+  return levels;
 }
 
 }  // namespace kaboum::bmesh

@@ -1,95 +1,17 @@
 #include <kaboum/bmesh/log.h>
-#include <kaboum/geom/error.h>
 
 #include <algorithm>
-#include <bit>
-#include <cstring>
+#include <string_view>
+
+#include "byte_stream.h"
 
 namespace kaboum::bmesh {
 namespace {
 
-constexpr char kMagic[] = "KABOUM-BMESH-LOG 2\n";
-constexpr std::size_t kMagicSize = sizeof(kMagic) - 1;
+constexpr std::string_view kMagic = "KABOUM-BMESH-LOG 2\n";
 // A kind, then: Contract two vertices and a position, Flip four vertices.
 constexpr std::size_t kContractSize = 1 + 2 * 4 + 3 * 8;
 constexpr std::size_t kFlipSize = 1 + 4 * 4;
-
-class Writer {
- public:
-  template <class T>
-  void number(T value) {
-    char bytes[sizeof(T)];
-    std::memcpy(bytes, &value, sizeof(T));
-    if constexpr (std::endian::native == std::endian::big) std::reverse(bytes, bytes + sizeof(T));
-    out.insert(out.end(), bytes, bytes + sizeof(T));
-  }
-  void text(const std::string& s) {
-    number(static_cast<std::uint32_t>(s.size()));
-    out.insert(out.end(), s.begin(), s.end());
-  }
-  void indices(const std::vector<std::uint32_t>& v) {
-    number(static_cast<std::uint64_t>(v.size()));
-    for (const std::uint32_t i : v) number(i);
-  }
-  std::vector<char> out;
-};
-
-class Reader {
- public:
-  Reader(std::span<const char> bytes, const std::string& name) : bytes_(bytes), name_(name) {}
-
-  template <class T>
-  T number() {
-    require(sizeof(T));
-    char raw[sizeof(T)];
-    std::memcpy(raw, bytes_.data() + at_, sizeof(T));
-    if constexpr (std::endian::native == std::endian::big) std::reverse(raw, raw + sizeof(T));
-    at_ += sizeof(T);
-    T value;
-    std::memcpy(&value, raw, sizeof(T));
-    return value;
-  }
-  std::string text() {
-    const auto n = number<std::uint32_t>();
-    require(n);
-    std::string s(bytes_.data() + at_, n);
-    at_ += n;
-    return s;
-  }
-  std::uint64_t count(std::size_t item_size) {
-    const auto n = number<std::uint64_t>();
-    if (n > (bytes_.size() - at_) / item_size) truncated();
-    return n;
-  }
-  std::vector<std::uint32_t> indices() {
-    std::vector<std::uint32_t> v(count(4));
-    for (std::uint32_t& i : v) i = number<std::uint32_t>();
-    return v;
-  }
-  void magic() {
-    if (bytes_.size() < kMagicSize || std::memcmp(bytes_.data(), kMagic, kMagicSize) != 0)
-      fail("is not a log of bmesh-decimate (it does not begin with \"KABOUM-BMESH-LOG 2\")");
-    at_ = kMagicSize;
-  }
-  void end() {
-    if (at_ != bytes_.size()) fail("has bytes after its end, at byte " + std::to_string(at_));
-  }
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(ErrorCode::InvalidInput, name_ + " " + what);
-  }
-
- private:
-  void require(std::size_t n) const {
-    if (n > bytes_.size() - at_) truncated();
-  }
-  [[noreturn]] void truncated() const {
-    fail("is truncated at byte " + std::to_string(bytes_.size()));
-  }
-
-  std::span<const char> bytes_;
-  std::string name_;
-  std::size_t at_ = 0;
-};
 
 }  // namespace
 
@@ -106,11 +28,9 @@ void record_preparation(const geom::Prepared& prepared, std::size_t input_triang
     if (kept[t] == 0) log.dropped.push_back(t);
 }
 
-std::vector<char> serialise_log(const Log& log) {
-  Writer w;
-  w.out.reserve(kMagicSize + 256 + kContractSize * log.steps.size() +
+void write_log(Writer& w, const Log& log) {
+  w.out.reserve(w.out.size() + 256 + kContractSize * log.steps.size() +
                 4 * (log.dropped.size() + log.turned.size()));
-  w.out.insert(w.out.end(), kMagic, kMagic + kMagicSize);
   w.number(static_cast<std::uint32_t>(log.direction));
   w.text(log.input_sha256);
   w.text(log.tool);
@@ -128,12 +48,9 @@ std::vector<char> serialise_log(const Log& log) {
     }
     for (int k = 0; k < 3; ++k) w.number(s.position[k]);
   }
-  return std::move(w.out);
 }
 
-Log parse_log(std::span<const char> bytes, const std::string& name) {
-  Reader r(bytes, name);
-  r.magic();
+Log read_log(Reader& r) {
   Log log;
   const auto direction = r.number<std::uint32_t>();
   if (direction > static_cast<std::uint32_t>(Direction::Any)) r.fail("names an unknown direction");
@@ -156,6 +73,20 @@ Log parse_log(std::span<const char> bytes, const std::string& name) {
     }
     for (int k = 0; k < 3; ++k) s.position[k] = r.number<double>();
   }
+  return log;
+}
+
+std::vector<char> serialise_log(const Log& log) {
+  Writer w;
+  w.out.assign(kMagic.begin(), kMagic.end());
+  write_log(w, log);
+  return std::move(w.out);
+}
+
+Log parse_log(std::span<const char> bytes, const std::string& name) {
+  Reader r(bytes, name);
+  r.magic(kMagic, "a log of bmesh-decimate");
+  Log log = read_log(r);
   r.end();
   return log;
 }

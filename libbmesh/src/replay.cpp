@@ -1,5 +1,6 @@
 // The checker of decimation logs. It is kept apart from the decimation on purpose: nothing here may
 // use its predicates, its adjacency or its preparation.
+#include <kaboum/bmesh/progressive.h>
 #include <kaboum/bmesh/replay.h>
 #include <kaboum/geom/error.h>
 
@@ -46,23 +47,77 @@ class Replay {
   }
 
   ReplayResult run(const geom::Mesh& result) {
-    report_.dropped = log_.dropped.size();
-    report_.turned = log_.turned.size();
-    if (!interpret()) return report_;
-    find_border();
-    original_points_ = points_;
-    original_triangles_ = triangles_;
-    for (std::size_t i = 0; i < log_.steps.size(); ++i) {
-      if (!step(i)) return report_;
-      ++report_.steps;
+    if (!start() || !play_to(log_.steps.size()) || !same_as(result)) return report_;
+    return verified();
+  }
+
+  ReplayResult run(const Progressive& p) {
+    if (!start() || !is_base(p.base)) return report_;
+    for (std::size_t i = 0; i < p.levels.size(); ++i) {
+      if (!play_to(p.levels[i].steps) || !is_level(p.levels[i], i)) return report_;
+      keep_present();
+      ++report_.levels;
     }
-    if (!same_as(result)) return report_;
-    report_.verified = true;
-    if (solid_) report_.predicates += solid_->predicates();
-    return report_;
+    if (!play_to(log_.steps.size())) return report_;
+    return verified();
   }
 
  private:
+  bool start() {
+    report_.dropped = log_.dropped.size();
+    report_.turned = log_.turned.size();
+    if (!interpret()) return false;
+    find_border();
+    keep_present();
+    return true;
+  }
+
+  bool play_to(std::size_t steps) {
+    for (; report_.steps < steps; ++report_.steps)
+      if (!step(report_.steps)) return false;
+    return true;
+  }
+
+  ReplayResult verified() {
+    report_.verified = true;
+    count_predicates();
+    return report_;
+  }
+
+  void count_predicates() {
+    if (solid_) report_.predicates += solid_->predicates();
+  }
+
+  /// The mesh of this moment is what later steps must keep.
+  void keep_present() {
+    count_predicates();
+    solid_.reset();
+    original_points_ = points_;
+    original_triangles_.clear();
+    for (const Corners& c : triangles_)
+      if (!repeated(c)) original_triangles_.push_back(c);
+  }
+
+  /// Whether the base is the original as interpreted: numbering and orientation of triangles, and
+  /// coordinates, but for the sign of zero.
+  bool is_base(const geom::Mesh& base) {
+    bool same =
+        base.vertices.size() == points_.size() && base.triangles.size() == triangles_.size();
+    for (std::size_t v = 0; same && v < points_.size(); ++v)
+      same = base.vertices[v] == geom::Vec3(points_[v].x(), points_[v].y(), points_[v].z());
+    for (std::size_t t = 0; same && t < triangles_.size(); ++t)
+      same = rotated(Corners(base.triangles[t])) == rotated(triangles_[t]);
+    return same || violated("the base mesh is not that of the original");
+  }
+
+  bool is_level(const Progressive::Level& level, std::size_t i) {
+    std::size_t vertices = 0;
+    for (const auto& around : around_) vertices += around.empty() ? 0 : 1;
+    return vertices == level.vertices ||
+           violated("level " + std::to_string(i) + " has " + std::to_string(vertices) +
+                    " vertices instead of " + std::to_string(level.vertices));
+  }
+
   bool violated(const std::string& what) {
     report_.violation = what;
     return false;
@@ -287,6 +342,10 @@ class Replay {
 
 ReplayResult replay(const geom::Mesh& original, const Log& log, const geom::Mesh& result) {
   return Replay(original, log).run(result);
+}
+
+ReplayResult replay_progressive(const geom::Mesh& original, const Progressive& progressive) {
+  return Replay(original, progressive.log).run(progressive);
 }
 
 }  // namespace kaboum::bmesh

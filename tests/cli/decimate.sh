@@ -41,6 +41,48 @@ sed 's/^4 4 0/8 8 0/' t.off | awk '{print} NR==6{print "5 0 0\n6 0 0\n5 1 0\n5 0
 expect 1 'cannot be reached' "$D" two.off -o two-out.off --vertices 4
 [ -s two-out.off ] || fail "the best result was not written"
 
+# A series: nested, one file per level, the same from the progressive file.
+expect 0 'certified' "$D" "$BRACKET" --vertices 300,900,500 -o 's-{vertices}.ply' --progressive s.pm --report s.json \
+  --depfile s.d --verify
+for n in 900 500 300; do
+  [ "$(grep -ac "^element vertex $n\$" s-$n.ply)" = 1 ] || fail "s-$n.ply has not $n vertices"
+  grep -q "\"file\": \"s-$n.ply\"" s.json || fail "no s-$n.ply in the report"
+done
+[ "$(grep -c '"nested": "verified"' s.json)" = 2 ] || fail "nesting is not verified twice"
+[ "$(grep -c '"stop": "vertices"' s.json)" = 3 ] || fail "not every level is reported"
+grep -q '^s-900.ply s-500.ply s-300.ply s.pm: ' s.d || fail "dependency file: $(cat s.d)"
+expect 0 'a level' "$D" --from s.pm --vertices 900,300,500 -o 't-{vertices}.ply' --report t.json
+for n in 900 500 300; do cmp -s s-$n.ply t-$n.ply || fail "t-$n.ply is not s-$n.ply"; done
+expect 0 'between levels' "$D" --from s.pm --vertices 700 -o t.stl
+expect 1 'cannot be reached' "$D" --from s.pm --vertices 100 -o t-100.ply
+cmp -s t-100.ply s-300.ply || fail "the coarsest mesh was not written"
+expect 0 '' "$D" "$BRACKET" --vertices 500 --progressive only.pm --quiet
+expect 0 '' "$D" "$BRACKET" --epsilon 0.5% --progressive epsilon.pm -o epsilon.ply --quiet
+n=$(sed -n 's/^element vertex //p;/^end_header/q' epsilon.ply)
+expect 0 'a level' "$D" --from epsilon.pm --vertices "$n" -o e2.ply
+cmp -s epsilon.ply e2.ply || fail "the level within epsilon is another one"
+expect 1 'cannot be reached' "$D" two.off --vertices 7,6,4 -o 'two-{vertices}.off'
+for n in 7 6 4; do [ -s two-$n.off ] || fail "two-$n.off was not written"; done
+expect 0 'epsilon allows no fewer' "$D" "$BRACKET" --vertices 2000,10,5 --epsilon 0.5% -o 'b-{vertices}.ply'
+cmp -s b-10.ply b-5.ply || fail "levels beyond epsilon differ"
+expect 2 'need {vertices}' "$D" "$BRACKET" --vertices 300,200 -o x.ply
+expect 2 'need {vertices}' "$D" "$BRACKET" --vertices 300,200 -o - --output-format ply
+expect 2 'needs --vertices' "$D" "$BRACKET" --ratio 0.5 -o 'x-{vertices}.ply'
+expect 2 'joined with --ratio' "$D" "$BRACKET" --ratio 0.5 --vertices 300,200 -o 'x-{vertices}.ply'
+expect 2 '--progressive holds' "$D" "$BRACKET" --vertices 300,200 -o 'x-{vertices}.ply' --log x.log
+for bad in 300,300 300, ,300 300,3 300,x '300, 200' 99999999999999999999; do
+  expect 2 'different ones separated by commas' "$D" "$BRACKET" --vertices "$bad" -o 'x-{vertices}.ply'
+done
+expect 2 'INPUT, or --from' "$D" --vertices 300 -o x.ply
+expect 2 '' "$D" --from s.pm --vertices 300 -o x.ply --cost planes
+expect 2 '' "$D" "$BRACKET" --from s.pm --vertices 300 -o x.ply
+expect 2 'needs --vertices' "$D" --from s.pm -o x.ply
+expect 2 'overwrite' "$D" --from s.pm --vertices 300 -o s.pm --output-format ply
+expect 3 'not a progressive file' "$D" --from s.json --vertices 300 -o x.ply
+head -c 5000 s.pm >short.pm
+expect 3 'truncated' "$D" --from short.pm --vertices 300 -o x.ply
+absent x.ply x-300.ply x-200.ply x.log
+
 # Convexity.
 expect 3 'not convex' "$D" "$BRACKET" -o k.ply --ratio 0.5 --keep-convex
 expect 0 '' "$D" t.off -o k.ply --vertices 4 --keep-convex

@@ -14,9 +14,35 @@ expect 1 'refuted' "$R" "$BRACKET" inner.log outer.stl
 expect 0 'contains that of the original' "$R" "$BRACKET" tight.log tight.stl
 expect 1 'refuted' "$R" "$BRACKET" tight.log outer.stl
 
+# Progressive files: all levels at once.
+V=$BIN/bound-verify
+"$D" "$BRACKET" -o 'p-{vertices}.stl' --vertices 900,500 --effort normal --progressive p.pm --quiet || fail "decimation"
+expect 0 'contains that of the level before' "$V" --progressive "$BRACKET" p.pm --report p.json
+grep -q '"relation": "progressive"' p.json || fail "report"
+"$D" "$BRACKET" --direction inner --vertices 900,500 --progressive i.pm --quiet || fail "decimation"
+expect 0 'contained in that of the level before' "$V" --progressive "$BRACKET" i.pm
+expect 2 '' "$V" --progressive "$BRACKET" p.pm --epsilon 1%
+expect 3 'not a progressive file' "$V" --progressive "$BRACKET" outer.log
+size=$(wc -c <p.pm)
+level=$((size - 8)) # the last level's number of steps
+for at in $level $((level - 8)) $((level - 48)); do
+  cp p.pm mutant.pm
+  byte=$(od -An -tu1 -j "$at" -N 1 p.pm | tr -d ' ')
+  # shellcheck disable=SC2059
+  printf "$(printf '\\%03o' $((byte ^ 1)))" | dd of=mutant.pm bs=1 seek="$at" conv=notrunc 2>/dev/null
+  "$V" --progressive "$BRACKET" mutant.pm >/dev/null 2>&1
+  code=$?
+  # One step fewer or more before a level may leave its number of vertices.
+  [ $code = 1 ] || [ $code = 3 ] || [ "$at" = $level ] || fail "mutant at $at of $size bytes: exit $code"
+done
+cp p.pm mutant.pm
+printf '\001' | dd of=mutant.pm bs=1 seek=27 conv=notrunc 2>/dev/null # inner instead of outer
+expect 1 'refuted' "$V" --progressive "$BRACKET" mutant.pm
+
 # Another original, a damaged log, missing files.
 tetrahedron >t.off
 expect 3 'another file' "$R" t.off outer.log outer.stl
+expect 3 'from another one' "$V" --progressive t.off p.pm
 head -c 1000 outer.log >short.log
 expect 3 'truncated' "$R" "$BRACKET" short.log outer.stl
 printf 'not a log' >no.log

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace kaboum::bmesh {
@@ -84,6 +85,7 @@ struct DecimateResult {
   /// nearby (never any with Precision::Double). The mesh is valid, but not representable in
   /// float32.
   std::size_t unrepresentable = 0;
+  std::size_t steps = 0;  ///< number of options.steps that lead to it, where they are recorded
 };
 
 /// Single-sided decimation by edge contraction. Source: [gaschler2016] Alg. 1, Alg. 2.
@@ -100,5 +102,16 @@ struct DecimateResult {
 /// @throws Error{InvalidArgument} on contradictory options; Error{InvalidInput} when keep_convex is
 ///   wished for input that is not convex.
 DecimateResult decimate(const geom::Prepared& input, const DecimateOptions& options);
+
+/// The same for several numbers of vertices in one pass. The results are nested: each encloses
+/// (Inner: is enclosed by) the one before, of closed meshes their solids, as both do the original;
+/// docs/algorithms/bounding-mesh.md, "Series". Statistics count from the beginning. A result that
+/// is not reached stands for all after it.
+///
+/// @param vertices  falling; options.vertices must not be given.
+/// @throws as `decimate` does; Error{InvalidArgument} when `vertices` is empty or does not fall.
+std::vector<DecimateResult> decimate_series(const geom::Prepared& input,
+                                            const DecimateOptions& options,
+                                            std::span<const std::size_t> vertices);
 
 }  // namespace kaboum::bmesh

@@ -13,6 +13,7 @@ struct ReplayResult {
   std::string violation;               ///< what was found wrong, with the step; empty when verified
   bool closed = false;                 ///< the input, as interpreted, is a closed chain
   std::size_t steps = 0;               ///< replayed
+  std::size_t levels = 0;              ///< of a progressive mesh, reached
   std::uint64_t predicates = 0;        ///< exact orientation tests
   std::uint64_t against_original = 0;  ///< tetrahedra tested against the original's solid
   std::size_t dropped = 0;             ///< input triangles that the log leaves out

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <kaboum/bmesh/log.h>
+#include <kaboum/geom/error.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kaboum::bmesh {
+
+/// Appends little-endian numbers to bytes.
+class Writer {
+ public:
+  template <class T>
+  void number(T value) {
+    char bytes[sizeof(T)];
+    std::memcpy(bytes, &value, sizeof(T));
+    if constexpr (std::endian::native == std::endian::big) std::reverse(bytes, bytes + sizeof(T));
+    out.insert(out.end(), bytes, bytes + sizeof(T));
+  }
+  void text(const std::string& s) {
+    number(static_cast<std::uint32_t>(s.size()));
+    out.insert(out.end(), s.begin(), s.end());
+  }
+  void indices(const std::vector<std::uint32_t>& v) {
+    number(static_cast<std::uint64_t>(v.size()));
+    for (const std::uint32_t i : v) number(i);
+  }
+  std::vector<char> out;
+};
+
+/// Reads them again; everything that does not fit is an Error{InvalidInput} naming the file.
+class Reader {
+ public:
+  Reader(std::span<const char> bytes, const std::string& name) : bytes_(bytes), name_(name) {}
+
+  template <class T>
+  T number() {
+    require(sizeof(T));
+    char raw[sizeof(T)];
+    std::memcpy(raw, bytes_.data() + at_, sizeof(T));
+    if constexpr (std::endian::native == std::endian::big) std::reverse(raw, raw + sizeof(T));
+    at_ += sizeof(T);
+    T value;
+    std::memcpy(&value, raw, sizeof(T));
+    return value;
+  }
+  std::string text() {
+    const auto n = number<std::uint32_t>();
+    require(n);
+    std::string s(bytes_.data() + at_, n);
+    at_ += n;
+    return s;
+  }
+  std::uint64_t count(std::size_t item_size) {
+    const auto n = number<std::uint64_t>();
+    if (n > (bytes_.size() - at_) / item_size) truncated();
+    return n;
+  }
+  std::vector<std::uint32_t> indices() {
+    std::vector<std::uint32_t> v(count(4));
+    for (std::uint32_t& i : v) i = number<std::uint32_t>();
+    return v;
+  }
+  /// The bytes that a file of this kind begins with.
+  void magic(std::string_view expected, const std::string& what) {
+    if (!std::string_view(bytes_.data(), bytes_.size()).starts_with(expected))
+      fail("is not " + what + " (it does not begin with \"" +
+           std::string(expected.substr(0, expected.size() - 1)) + "\")");
+    at_ = expected.size();
+  }
+  void end() {
+    if (at_ != bytes_.size()) fail("has bytes after its end, at byte " + std::to_string(at_));
+  }
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(ErrorCode::InvalidInput, name_ + " " + what);
+  }
+
+ private:
+  void require(std::size_t n) const {
+    if (n > bytes_.size() - at_) truncated();
+  }
+  [[noreturn]] void truncated() const {
+    fail("is truncated at byte " + std::to_string(bytes_.size()));
+  }
+
+  std::span<const char> bytes_;
+  std::string name_;
+  std::size_t at_ = 0;
+};
+
+/// The log without the bytes that a log file begins with; docs/formats.md.
+void write_log(Writer& writer, const Log& log);
+Log read_log(Reader& reader);
+
+}  // namespace kaboum::bmesh

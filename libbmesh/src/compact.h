@@ -1,0 +1,31 @@
+#pragma once
+
+#include <kaboum/geom/mesh.h>
+
+#include <vector>
+
+#include "connectivity.h"
+
+namespace kaboum::bmesh {
+
+/// The triangles left, in their order, with vertices numbered by first use.
+inline geom::Mesh compact(const std::vector<geom::Vec3>& position, const Connectivity& mesh) {
+  geom::Mesh out;
+  std::vector<std::uint32_t> renumbered(position.size(), Connectivity::kNone);
+  for (std::uint32_t t = 0; t < mesh.size(); ++t) {
+    if (!mesh.alive(t)) continue;
+    geom::Triangle tri;
+    for (int k = 0; k < 3; ++k) {
+      std::uint32_t& r = renumbered[mesh[t][k]];
+      if (r == Connectivity::kNone) {
+        r = static_cast<std::uint32_t>(out.vertices.size());
+        out.vertices.push_back(position[mesh[t][k]]);
+      }
+      tri[k] = r;
+    }
+    out.triangles.push_back(tri);
+  }
+  return out;
+}
+
+}  // namespace kaboum::bmesh

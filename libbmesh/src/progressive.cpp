@@ -1,0 +1,183 @@
+#include <kaboum/bmesh/progressive.h>
+
+#include <string_view>
+
+#include "byte_stream.h"
+#include "compact.h"
+
+namespace kaboum::bmesh {
+namespace {
+
+constexpr std::string_view kMagic = "KABOUM-BMESH-PROGRESSIVE 1\n";
+
+/// The mesh under the steps. What a step needs is looked at before it is taken, since the file may
+/// be anybody's.
+class Player {
+ public:
+  Player(const Progressive& p, const std::string& name)
+      : steps_(p.log.steps),
+        name_(name),
+        position_(p.base.vertices),
+        mesh_(p.base.vertices.size(), p.base.triangles) {
+    for (std::uint32_t v = 0; v < position_.size(); ++v) vertices_ += mesh_.used(v) ? 1 : 0;
+  }
+
+  void play_to(std::size_t steps) {
+    while (at_ < steps) play();
+  }
+
+  /// Up to the first mesh that has no more vertices, and on until the next contraction.
+  void play_until(std::size_t vertices) {
+    while (at_ < steps_.size() && (vertices_ > vertices || !contracts())) play();
+  }
+
+  [[nodiscard]] std::size_t at() const { return at_; }
+  [[nodiscard]] std::size_t vertices() const { return vertices_; }
+  [[nodiscard]] geom::Mesh mesh() const { return compact(position_, mesh_); }
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(ErrorCode::InvalidInput, name_ + ": " + what + "; the file is damaged");
+  }
+
+ private:
+  [[nodiscard]] bool contracts() const {
+    const Step& s = steps_[at_];
+    return s.kind == Step::Kind::Contract && s.kept != s.gone;
+  }
+
+  [[noreturn]] void fail_step(const std::string& what) const {
+    fail("step " + std::to_string(at_) + " " + what);
+  }
+
+  void play() {
+    const Step& s = steps_[at_];
+    const bool flip = s.kind == Step::Kind::Flip;
+    for (const std::uint32_t v : {s.kept, s.gone, flip ? s.left : s.kept, flip ? s.right : s.kept})
+      if (v >= position_.size() || !mesh_.used(v))
+        fail_step("refers to a vertex that is not there");
+    if (flip) {
+      take_flip(s);
+    } else {
+      if (!s.position.allFinite()) fail_step("moves a vertex to no finite place");
+      position_[s.kept] = s.position;
+      if (s.gone != s.kept) contract(s);
+    }
+    ++at_;
+  }
+
+  void contract(const Step& s) {
+    // Neighbours of the edge's triangles may lose their last triangle with it.
+    around_.clear();
+    mesh_.for_each_triangle(s.gone, [&](std::uint32_t t, std::uint32_t k) {
+      for (const std::uint32_t j : {1U, 2U}) around_.push_back(mesh_[t][(k + j) % 3]);
+    });
+    std::sort(around_.begin(), around_.end());
+    around_.erase(std::unique(around_.begin(), around_.end()), around_.end());
+    if (!std::binary_search(around_.begin(), around_.end(), s.kept))
+      fail_step("contracts an edge that is not there");
+    mesh_.contract(s.kept, s.gone);
+    --vertices_;
+    for (const std::uint32_t v : around_)
+      if (!mesh_.used(v)) --vertices_;
+  }
+
+  void take_flip(const Step& s) {
+    const auto find = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+      std::uint32_t found = Connectivity::kNone;
+      mesh_.for_each_triangle(a, [&](std::uint32_t t, std::uint32_t k) {
+        if (mesh_[t][(k + 1) % 3] == b && mesh_[t][(k + 2) % 3] == c) found = t;
+      });
+      return found;
+    };
+    const std::uint32_t first = find(s.kept, s.gone, s.left),
+                        second = find(s.gone, s.kept, s.right);
+    if (first == Connectivity::kNone || second == Connectivity::kNone || s.left == s.right)
+      fail_step("flips an edge that is not there");
+    mesh_.replace(first, {s.right, s.left, s.kept});
+    mesh_.replace(second, {s.left, s.right, s.gone});
+  }
+
+  const std::vector<Step>& steps_;
+  const std::string& name_;
+  std::vector<geom::Vec3> position_;
+  Connectivity mesh_;
+  std::vector<std::uint32_t> around_;
+  std::size_t vertices_ = 0;
+  std::size_t at_ = 0;
+};
+
+}  // namespace
+
+std::vector<char> serialise_progressive(const Progressive& p) {
+  Writer w;
+  w.out.assign(kMagic.begin(), kMagic.end());
+  w.out.reserve(w.out.size() + 24 * p.base.vertices.size() + 12 * p.base.triangles.size() +
+                64 * p.levels.size() + 33 * p.log.steps.size() + 4096);
+  write_log(w, p.log);
+  w.number(static_cast<std::uint32_t>(p.double_precision));
+  w.number(static_cast<std::uint64_t>(p.base.vertices.size()));
+  for (const geom::Vec3& v : p.base.vertices)
+    for (int k = 0; k < 3; ++k) w.number(v[k]);
+  w.number(static_cast<std::uint64_t>(p.base.triangles.size()));
+  for (const geom::Triangle& t : p.base.triangles)
+    for (const std::uint32_t v : t) w.number(v);
+  w.number(static_cast<std::uint64_t>(p.levels.size()));
+  for (const Progressive::Level& level : p.levels)
+    for (const std::size_t n : {level.wished, level.vertices, level.steps})
+      w.number(static_cast<std::uint64_t>(n));
+  return std::move(w.out);
+}
+
+Progressive parse_progressive(std::span<const char> bytes, const std::string& name) {
+  Reader r(bytes, name);
+  r.magic(kMagic, "a progressive file of bmesh-decimate");
+  Progressive p;
+  p.log = read_log(r);
+  const auto precision = r.number<std::uint32_t>();
+  if (precision > 1) r.fail("names an unknown precision");
+  p.double_precision = precision == 1;
+  p.base.vertices.resize(r.count(24));
+  for (geom::Vec3& v : p.base.vertices) {
+    for (int k = 0; k < 3; ++k) v[k] = r.number<double>();
+    if (!v.allFinite()) r.fail("has a vertex that is not finite");
+  }
+  p.base.triangles.resize(r.count(12));
+  for (geom::Triangle& t : p.base.triangles) {
+    for (std::uint32_t& v : t) {
+      v = r.number<std::uint32_t>();
+      if (v >= p.base.vertices.size()) r.fail("has a triangle with a vertex that is not there");
+    }
+    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0])
+      r.fail("has a triangle without three corners");
+  }
+  p.levels.resize(r.count(24));
+  const Progressive::Level* before = nullptr;
+  for (Progressive::Level& level : p.levels) {
+    level.wished = r.number<std::uint64_t>();
+    level.vertices = r.number<std::uint64_t>();
+    level.steps = r.number<std::uint64_t>();
+    if (level.steps > p.log.steps.size() ||
+        (before != nullptr && (level.wished >= before->wished || level.steps < before->steps)))
+      r.fail("has levels out of order");
+    before = &level;
+  }
+  r.end();
+  return p;
+}
+
+Extracted extract(const Progressive& p, std::size_t vertices, const std::string& name) {
+  Player player(p, name);
+  for (const Progressive::Level& level : p.levels) {
+    if (level.wished != vertices) continue;
+    player.play_to(level.steps);
+    if (player.vertices() != level.vertices)
+      player.fail("the level of " + std::to_string(vertices) + " vertices has " +
+                  std::to_string(player.vertices()) + " instead of " +
+                  std::to_string(level.vertices));
+    return {player.mesh(), player.at(), true, level.vertices <= vertices};
+  }
+  player.play_until(vertices);
+  return {player.mesh(), player.at(), false, player.vertices() <= vertices};
+}
+
+}  // namespace kaboum::bmesh

@@ -1,0 +1,116 @@
+#include "extract_levels.h"
+
+#include <kaboum/bmesh/progressive.h>
+#include <kaboum/geom/error.h>
+#include <kaboum/geom/float32.h>
+#include <kaboum/io/mesh_io.h>
+
+#include <algorithm>
+
+#include "written_mesh.h"
+
+namespace kaboum::tools {
+namespace {
+
+struct Taken {
+  std::size_t wished;
+  std::string file;
+  bmesh::Extracted extracted;
+  std::vector<char> bytes;
+};
+
+bool is_float32(const geom::Mesh& mesh) {
+  return std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
+                     [](const geom::Vec3& p) { return geom::is_float32(p); });
+}
+
+const char* name_of(bmesh::Direction direction) {
+  switch (direction) {
+    case bmesh::Direction::Outer:
+      return "outer";
+    case bmesh::Direction::Inner:
+      return "inner";
+    case bmesh::Direction::Any:
+      break;
+  }
+  return "any";
+}
+
+Json report(const ExtractOptions& o, const bmesh::Progressive& p, const std::string& sha256,
+            const std::vector<Taken>& all) {
+  Json r{{"tool", "bmesh-decimate"},
+         {"version", version()},
+         {"from",
+          {{"file", o.from},
+           {"sha256", sha256},
+           {"made_by", p.log.tool},
+           {"input_sha256", p.log.input_sha256},
+           {"direction", name_of(p.log.direction)}}}};
+  for (const Taken& t : all) {
+    Json entry{{"vertices", t.wished},
+               {"reached", t.extracted.reached},
+               {"is_level", t.extracted.level},
+               {"steps", t.extracted.steps},
+               {"output", {{"file", t.file}}}};
+    entry["output"].update(to_json(geom::analyse(t.extracted.mesh)));
+    r["levels"].push_back(entry);
+  }
+  return r;
+}
+
+}  // namespace
+
+int extract_levels(const ExtractOptions& o) {
+  if (o.vertices.empty()) throw Error(ErrorCode::InvalidArgument, "--from needs --vertices");
+  if (o.output.empty()) throw Error(ErrorCode::InvalidArgument, "--from needs -o for the result");
+  const std::vector<std::size_t> counts = *parse_counts(o.vertices);
+  const std::vector<std::string> files = level_files(o.output, counts);
+  std::vector<std::pair<std::string, std::string>> outputs{{"--report", o.common.report},
+                                                           {"--depfile", o.depfile}};
+  for (const std::string& file : files) outputs.emplace_back("the result", file);
+  require_apart(outputs, {o.from});
+  const io::Format format = format_for(o.output, o.format, "--output-format");
+
+  std::vector<char> bytes = io::read_file(o.from);
+  const std::string sha256 = o.common.report.empty() ? std::string() : io::sha256(bytes);
+  const bmesh::Progressive p = bmesh::parse_progressive(bytes, o.from);
+  bytes = {};
+  std::vector<Taken> all;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    Taken& t =
+        all.emplace_back(Taken{counts[i], files[i], bmesh::extract(p, counts[i], o.from), {}});
+    const bool double_precision = p.double_precision || !is_float32(t.extracted.mesh);
+    if (double_precision && !io::holds_double(format)) {
+      log(false, "bmesh-decimate: " + o.from + ": the mesh of " + std::to_string(t.wished) +
+                     " vertices has coordinates that are no float32 numbers; nothing is written. "
+                     "Write .ply, .obj, .off or stl-ascii, or take a level that was asked for when "
+                     "the file was made");
+      return kNo;
+    }
+    t.bytes = serialise_checked(t.extracted.mesh, format, double_precision, p.log.tool);
+  }
+
+  std::vector<std::pair<std::string, std::function<void()>>> writes;
+  writes.emplace_back(o.common.report,
+                      [&] { write_json(o.common.report, report(o, p, sha256, all)); });
+  writes.emplace_back(o.depfile, [&] { write_depfile(o.depfile, files, {o.from}); });
+  for (const Taken& t : all) writes.emplace_back(t.file, [&t] { io::write_file(t.file, t.bytes); });
+  write_together(writes);
+
+  int code = kDone;
+  for (const Taken& t : all) {
+    const std::size_t vertices = t.extracted.mesh.vertices.size();
+    log(o.common.quiet, t.file + ": " + std::to_string(p.base.vertices.size()) + " → " +
+                            std::to_string(vertices) + " vertices, " + name_of(p.log.direction) +
+                            (t.extracted.level ? ", a level" : ", between levels") + " of " +
+                            o.from);
+    if (t.extracted.reached) continue;
+    log(false, "bmesh-decimate: " + o.from + ": " + std::to_string(t.wished) +
+                   " vertices cannot be reached: its steps end at " + std::to_string(vertices) +
+                   "; that mesh is written");
+    code = kNo;
+  }
+  return code;
+}
+
+}  // namespace kaboum::tools

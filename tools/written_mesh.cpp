@@ -1,0 +1,103 @@
+#include "written_mesh.h"
+
+#include <kaboum/geom/error.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <string_view>
+
+namespace kaboum::tools {
+namespace {
+
+constexpr std::string_view kCountInName = "{vertices}";
+
+/// The bytes must read back as the result's triangles.
+void check_readback(const std::vector<char>& bytes, io::Format format, const geom::Mesh& mesh) {
+  if (mesh.triangles.empty()) return;
+  const io::ReadResult back = io::parse_mesh(bytes, format, "the result");
+  std::size_t at = 0;
+  const auto collapsed = [&](const geom::Triangle& t) {
+    return mesh.vertices[t[0]] == mesh.vertices[t[1]] ||
+           mesh.vertices[t[1]] == mesh.vertices[t[2]] || mesh.vertices[t[2]] == mesh.vertices[t[0]];
+  };
+  for (const geom::Triangle& t : mesh.triangles) {
+    if (collapsed(t)) continue;
+    ensure(at < back.mesh.triangles.size(), "the written mesh lost a triangle");
+    for (int k = 0; k < 3; ++k)
+      ensure(back.mesh.vertices[back.mesh.triangles[at][k]] == mesh.vertices[t[k]],
+             "a coordinate changed when it was written");
+    ++at;
+  }
+  ensure(at == back.mesh.triangles.size(), "the written mesh gained a triangle");
+}
+
+}  // namespace
+
+std::vector<char> serialise_checked(const geom::Mesh& mesh, io::Format format,
+                                    bool double_precision, const std::string& comment) {
+  io::WriteOptions options;
+  options.double_precision = double_precision;
+  options.comment = comment;
+  std::vector<char> bytes = io::serialise_mesh(mesh, format, options);
+  check_readback(bytes, format, mesh);
+  return bytes;
+}
+
+void write_together(const std::vector<std::pair<std::string, std::function<void()>>>& files) {
+  std::vector<std::string> written;
+  try {
+    for (const auto& [file, write] : files) {
+      if (file.empty()) continue;
+      write();
+      written.push_back(file);
+    }
+  } catch (...) {
+    for (const std::string& file : written) {
+      std::error_code ignored;
+      if (std::filesystem::is_regular_file(file, ignored)) std::filesystem::remove(file, ignored);
+    }
+    throw;
+  }
+}
+
+std::optional<std::vector<std::size_t>> parse_counts(const std::string& text) {
+  std::vector<std::size_t> counts;
+  const char *at = text.data(), *end = at + text.size();
+  for (bool more = true; more;) {
+    std::size_t n = 0;
+    const auto [next, error] = std::from_chars(at, end, n);
+    if (error != std::errc() || n < 4 || n > 1ULL << 40) return std::nullopt;
+    counts.push_back(n);
+    more = next != end;
+    if (more && *next != ',') return std::nullopt;
+    at = next + (more ? 1 : 0);
+  }
+  std::sort(counts.begin(), counts.end(), std::greater<>());
+  if (std::adjacent_find(counts.begin(), counts.end()) != counts.end()) return std::nullopt;
+  return counts;
+}
+
+std::vector<std::string> level_files(const std::string& name,
+                                     const std::vector<std::size_t>& counts) {
+  const bool named = name.find(kCountInName) != std::string::npos;
+  if (counts.size() > 1 && !named && !name.empty())
+    throw Error(ErrorCode::InvalidArgument,
+                "several numbers of --vertices need {vertices} in the output's name, as in "
+                "part-{vertices}.ply, not " +
+                    name);
+  if (counts.empty() && named)
+    throw Error(ErrorCode::InvalidArgument,
+                "{vertices} in the output's name needs --vertices: " + name);
+  if (counts.empty()) return {name};
+  std::vector<std::string> files;
+  for (const std::size_t count : counts) {
+    std::string file = name;
+    for (std::size_t at = 0; (at = file.find(kCountInName, at)) != std::string::npos;)
+      file.replace(at, kCountInName.size(), std::to_string(count));
+    files.push_back(file);
+  }
+  return files;
+}
+
+}  // namespace kaboum::tools

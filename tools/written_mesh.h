@@ -1,0 +1,33 @@
+#pragma once
+
+#include <kaboum/geom/mesh.h>
+#include <kaboum/io/mesh_io.h>
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// What bmesh-decimate needs to write one result or several.
+namespace kaboum::tools {
+
+/// The bytes of a mesh file, read back and compared: what is written is what was certified.
+std::vector<char> serialise_checked(const geom::Mesh& mesh, io::Format format,
+                                    bool double_precision, const std::string& comment);
+
+/// Calls the functions in order, each of which writes the file of its name (an empty name: none).
+/// If one throws, the files written before are taken back.
+void write_together(const std::vector<std::pair<std::string, std::function<void()>>>& files);
+
+/// "20000,10000,5000", in any order, as falling numbers; nullopt unless they are from 4 on and all
+/// different.
+std::optional<std::vector<std::size_t>> parse_counts(const std::string& text);
+
+/// The file of each level: `name` with {vertices} replaced by its number.
+/// @throws Error{InvalidArgument} when there are several levels and no {vertices}, or the other way
+///   round none.
+std::vector<std::string> level_files(const std::string& name,
+                                     const std::vector<std::size_t>& counts);
+
+}  // namespace kaboum::tools
