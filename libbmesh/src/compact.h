@@ -9,7 +9,10 @@
 namespace kaboum::bmesh {
 
 /// The triangles left, in their order, with vertices numbered by first use.
-inline geom::Mesh compact(const std::vector<geom::Vec3>& position, const Connectivity& mesh) {
+///
+/// @param source  receives, when not null, the vertex that each was.
+inline geom::Mesh compact(const std::vector<geom::Vec3>& position, const Connectivity& mesh,
+                          std::vector<std::uint32_t>* source = nullptr) {
   geom::Mesh out;
   std::vector<std::uint32_t> renumbered(position.size(), Connectivity::kNone);
   for (std::uint32_t t = 0; t < mesh.size(); ++t) {
@@ -20,6 +23,7 @@ inline geom::Mesh compact(const std::vector<geom::Vec3>& position, const Connect
       if (r == Connectivity::kNone) {
         r = static_cast<std::uint32_t>(out.vertices.size());
         out.vertices.push_back(position[mesh[t][k]]);
+        if (source != nullptr) source->push_back(mesh[t][k]);
       }
       tri[k] = r;
     }

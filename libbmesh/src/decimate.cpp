@@ -18,6 +18,7 @@
 #include "compact.h"
 #include "connectivity.h"
 #include "deviation.h"
+#include "flatten.h"
 #include "optimise.h"
 #include "original_solid.h"
 #include "placement.h"
@@ -98,7 +99,6 @@ class Decimator {
     result.mesh = compact(position_, mesh_);
     statistics_.vertices_out = result.mesh.vertices.size();
     result.statistics = statistics_;
-    if (options_.steps != nullptr) result.steps = options_.steps->size();
     return result;
   }
 
@@ -936,10 +936,88 @@ void check_options(const geom::Prepared& input, const DecimateOptions& options) 
     throw Error(ErrorCode::InvalidInput, "the input is not convex, so convexity cannot be kept");
 }
 
-void check_result(const DecimateResult& result, const DecimateOptions& options) {
-  if (options.keep_convex)
-    ensure(geom::is_convex(geom::weld(result.mesh)), "a contraction lost convexity");
-}
+/// Coplanar regions first, without any loss; then the decimation proper, which knows nothing of the
+/// vertices that are gone by then.
+class Run {
+ public:
+  Run(const geom::Prepared& input, const DecimateOptions& options)
+      : input_(input), options_(options), inner_options_(options) {
+    if (options.keep_convex) return;
+    flattener_.emplace(input, options.steps);
+    if (options.steps != nullptr) inner_options_.steps = &inner_steps_;
+  }
+
+  DecimateResult to(std::optional<std::size_t> target) {
+    if (flattener_) {
+      flattener_->run(target.value_or(0));
+      if (target && flattener_->vertices() <= *target &&
+          (options_.precision == Precision::Double || flattener_->is_float32())) {
+        DecimateResult result;
+        result.mesh = flattener_->mesh();
+        result.stop = Stop::VertexTarget;
+        return finished(std::move(result));
+      }
+    }
+    if (!decimator_) start();
+    DecimateResult result = decimator_->run(target);
+    hand_over_steps();
+    return finished(std::move(result));
+  }
+
+  void nest_in(const Mesh& level) {
+    if (decimator_) decimator_->nest_in(level);  // what is flat nests anyway
+  }
+
+ private:
+  void start() {
+    if (flattener_) {
+      contractions_ = flattener_->contractions();
+      flips_ = flattener_->flips();
+      if (contractions_ + flips_ > 0) {
+        flat_.mesh = flattener_->mesh(&source_);
+        flat_.closed = input_.closed;
+        for (const std::uint32_t v : source_) flat_.border.push_back(input_.border[v]);
+      } else {
+        inner_options_.steps = options_.steps;
+      }
+      flattener_.reset();
+    }
+    decimator_.emplace(flat_.mesh.triangles.empty() ? input_ : flat_, inner_options_);
+  }
+
+  /// Numbers vertices as in the input.
+  void hand_over_steps() {
+    for (Step& s : inner_steps_) {
+      for (std::uint32_t* v : {&s.kept, &s.gone}) *v = source_[*v];
+      if (s.kind == Step::Kind::Flip)
+        for (std::uint32_t* v : {&s.left, &s.right}) *v = source_[*v];
+      options_.steps->push_back(s);
+    }
+    inner_steps_.clear();
+  }
+
+  DecimateResult finished(DecimateResult result) const {
+    DecimateStatistics& s = result.statistics;
+    s.contractions += flattener_ ? flattener_->contractions() : contractions_;
+    s.flips += flattener_ ? flattener_->flips() : flips_;
+    s.vertices_in = input_.mesh.vertices.size();
+    s.vertices_out = result.mesh.vertices.size();
+    if (options_.steps != nullptr) result.steps = options_.steps->size();
+    if (options_.keep_convex)
+      ensure(geom::is_convex(geom::weld(result.mesh)), "a contraction lost convexity");
+    return result;
+  }
+
+  const geom::Prepared& input_;
+  const DecimateOptions& options_;
+  DecimateOptions inner_options_;
+  std::vector<Step> inner_steps_;  // as the decimation numbers vertices
+  std::optional<Flattener> flattener_;
+  std::size_t contractions_ = 0, flips_ = 0;  // of the flattener
+  geom::Prepared flat_;                       // what it has left, when it has done anything
+  std::vector<std::uint32_t> source_;         // the input's vertices
+  std::optional<Decimator> decimator_;
+};
 
 }  // namespace
 
@@ -948,9 +1026,7 @@ DecimateResult decimate(const geom::Prepared& input, const DecimateOptions& opti
     throw Error(ErrorCode::InvalidArgument,
                 "decimation needs a number of vertices or an error bound");
   check_options(input, options);
-  DecimateResult result = Decimator(input, options).run(options.vertices);
-  check_result(result, options);
-  return result;
+  return Run(input, options).to(options.vertices);
 }
 
 std::vector<DecimateResult> decimate_series(const geom::Prepared& input,
@@ -960,7 +1036,7 @@ std::vector<DecimateResult> decimate_series(const geom::Prepared& input,
       std::adjacent_find(vertices.begin(), vertices.end(), std::less_equal<>()) != vertices.end())
     throw Error(ErrorCode::InvalidArgument, "a series needs falling numbers of vertices");
   check_options(input, options);
-  Decimator decimator(input, options);
+  Run run(input, options);
   std::vector<DecimateResult> levels;
   levels.reserve(vertices.size());  // what is nested in stays where it is
   for (const std::size_t target : vertices) {
@@ -968,9 +1044,8 @@ std::vector<DecimateResult> decimate_series(const geom::Prepared& input,
       levels.push_back(levels.back());
       continue;
     }
-    if (!levels.empty()) decimator.nest_in(levels.back().mesh);
-    levels.push_back(decimator.run(target));
-    check_result(levels.back(), options);
+    if (!levels.empty()) run.nest_in(levels.back().mesh);
+    levels.push_back(run.to(target));
   }
   return levels;
 }

@@ -80,10 +80,14 @@ bool meets_interior(const Tetrahedron& tetrahedron, const std::array<Vec3, 3>& t
 
 bool same_orientation(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                       std::uint64_t* exact_calls) {
-  // Seen from any point off the plane; one of three is off it.
+  // Seen from any point off the plane; one of three is off it, the one along the normal's largest
+  // component most probably: planes are often parallel to axes, and zeros are dear.
   double size = 0;
   for (const Vec3& p : a) size = std::max(size, (p - a[0]).lpNorm<Eigen::Infinity>());
-  for (int k = 0; k < 3; ++k) {
+  int first = 0;
+  (a[1] - a[0]).cross(a[2] - a[0]).cwiseAbs().maxCoeff(&first);
+  for (int i = 0; i < 3; ++i) {
+    const int k = (first + i) % 3;
     Vec3 eye = a[0];
     eye[k] += size;
     const Sign s = geom::orient3d(a[0], a[1], a[2], eye, exact_calls);

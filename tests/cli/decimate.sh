@@ -41,6 +41,22 @@ sed 's/^4 4 0/8 8 0/' t.off | awk '{print} NR==6{print "5 0 0\n6 0 0\n5 1 0\n5 0
 expect 1 'cannot be reached' "$D" two.off -o two-out.off --vertices 4
 [ -s two-out.off ] || fail "the best result was not written"
 
+# So it is in every mode: the reason is given, the result is written, and it is what it claims to be.
+for direction in outer inner; do
+  for method in 'planes fast' 'planes-adapted fast' 'planes-diagonal fast' 'triangles fast' 'distance fast' \
+    'planes normal' 'distance normal' 'distance best'; do
+    rm -f two-out.off
+    # shellcheck disable=SC2086
+    expect 1 'cannot be reached: no further contraction is possible at 8' "$D" two.off -o two-out.off --vertices 6 \
+      --direction $direction --cost ${method% *} --effort ${method#* }
+    expect 0 '' "$BIN/bound-verify" --$direction two.off two-out.off --quiet
+  done
+done
+expect 1 'cannot be reached' "$D" two.off -o two-out.off --ratio 0.5
+expect 1 'cannot be reached' "$D" two.off -o two-out.off --vertices 4 --precision double
+expect 1 'cannot be reached' "$D" two.off -o two-out.off --vertices 4 --epsilon 100
+expect 1 'cannot be reached' "$D" two.off -o - --output-format off --vertices 4
+
 # A series: nested, one file per level, the same from the progressive file.
 expect 0 'certified' "$D" "$BRACKET" --vertices 300,900,500 -o 's-{vertices}.ply' --progressive s.pm --report s.json \
   --depfile s.d --verify
