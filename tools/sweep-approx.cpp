@@ -16,6 +16,7 @@ using tools::Json;
 struct Options {
   std::string robot, path, output, output_format, epsilon = "0.005", bound = "balanced", reach;
   std::string links, geometry = "collision", unit = "m", preview, depfile;
+  double simplify = 0;
   bool explicit_margin = false, no_merge = false, ignore_limits = false;
   tools::BodyOptions bodies;
   tools::CommonOptions common;
@@ -62,6 +63,13 @@ void describe(CLI::App& app, Options& o) {
                  "bodies [no limit]")
       ->check(check_length)
       ->type_name("LENGTH");
+  app.add_option(
+         "--simplify", o.simplify,
+         "Share of epsilon, 0 to 0.9, by which vertices may be left out: fewer of them, more "
+         "bodies")
+      ->check(CLI::Range(0.0, 0.9).description(""))
+      ->capture_default_str()
+      ->type_name("SHARE");
   app.add_flag("--explicit-margin", o.explicit_margin,
                "Enlarge the bodies by the margin, which then is 0; implied by OBJ, STL and URDF");
   app.add_flag("--no-merge", o.no_merge, "One body at least between two waypoints");
@@ -134,6 +142,7 @@ std::string parameters(const Options& o, const io::SetFormat format) {
       << o.bodies.epsilon << " --max-vertices-per-body " << o.bodies.max_vertices << " --effort "
       << o.bodies.effort << " --geometry " << o.geometry;
   if (!o.reach.empty()) out << " --max-reach " << o.reach;
+  if (o.simplify > 0) out << " --simplify " << o.simplify;
   if (!o.links.empty()) out << " --links " << o.links;
   if (o.explicit_margin || format != io::SetFormat::Glb) out << " --explicit-margin";
   if (o.no_merge) out << " --no-merge";
@@ -161,6 +170,7 @@ int sweep_path(Options o) {
   options.epsilon = tools::parse_length(o.epsilon)->value;
   options.rule = kRules.at(o.bound);
   options.merge = !o.no_merge;
+  options.simplify = o.simplify;
   options.explicit_margin = o.explicit_margin || format != io::SetFormat::Glb;
   if (!o.reach.empty()) options.max_reach = tools::parse_length(o.reach)->value;
   const double before = tools::user_seconds();
@@ -198,6 +208,8 @@ int sweep_path(Options o) {
   if (!o.preview.empty())
     io::write_file(o.preview, tools::picture_of_sweep(file.robot, links.bodies, path, result));
   if (!o.common.report.empty()) {
+    std::size_t vertices = 0;
+    for (const geom::ConvexBody& body : written.bodies) vertices += body.hull.vertices.size();
     Json of_link = Json::object();
     for (std::size_t l = 0; l < file.robot.links.size(); ++l)
       if (result.of_link[l] > 0) of_link[file.robot.links[l].name] = result.of_link[l];
@@ -207,10 +219,12 @@ int sweep_path(Options o) {
                          {"parameters", p.parameters},
                          {"certified", result.certified},
                          {"bodies", written.bodies.size()},
+                         {"vertices", vertices},
                          {"bodies_of_links", of_link},
                          {"bodies_at_rest", links.bodies.size()},
                          {"margin", written.margin},
                          {"deviation", result.deviation},
+                         {"left_out", result.left_out},
                          {"rounding", result.rounding},
                          {"reach", result.reach},
                          {"bodies_epsilon", links.epsilon},

@@ -10,6 +10,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "thin_out.h"
+
 namespace kaboum::sweep {
 namespace {
 
@@ -26,7 +28,7 @@ struct Plan {
 
 struct Output {
   geom::Mesh hull;
-  double deviation = 0, rounding = 0, reach = 0;
+  double deviation = 0, left_out = 0, rounding = 0, reach = 0;
 };
 
 /// Largest distance of the body from the root's origin along the path.
@@ -82,8 +84,9 @@ double build(geom::HullBuilder& builder, std::vector<Vec3>& points) {
   return 2 * step;
 }
 
-Output make_hull(const Body& body, const Piece& piece, const Plan& plan, bool explicit_margin,
-                 geom::HullBuilder& builder) {
+/// @param left_out  how far vertices that are left out may be from the hull
+Output make_hull(const Body& body, const Piece& piece, const Plan& plan, double left_out,
+                 bool explicit_margin, geom::HullBuilder& builder) {
   std::vector<Vec3> points;
   points.reserve(2 * body.points.size());
   for (const Vec3& p : body.points) points.emplace_back(piece.start * p);
@@ -91,13 +94,17 @@ Output make_hull(const Body& body, const Piece& piece, const Plan& plan, bool ex
   Output out;
   out.deviation = (piece.deviation + body.margin) * kUp;
   out.reach = reach(piece, body.points);
+  if (!explicit_margin) out.rounding = round_points(points);
+  if ((explicit_margin || left_out > 0) && builder.build(points)) {
+    points = builder.mesh().vertices;
+    out.left_out = thin_out(points, left_out, builder);
+  }
   if (explicit_margin) {
-    if (builder.build(points)) points = builder.mesh().vertices;
-    const double radius = (out.deviation + plan.rounding) * kUp;
+    const double radius = (out.deviation + out.left_out + plan.rounding) * kUp;
     points = enlarge(points, radius);
     out.reach += kOvershoot * radius;
+    out.rounding = round_points(points);
   }
-  out.rounding = round_points(points);
   out.reach += out.rounding + build(builder, points);
   out.hull = builder.mesh();
   return out;
@@ -107,6 +114,8 @@ void require_usable(const Robot& robot, std::span<const Body> bodies, const Path
                     const SweepOptions& options) {
   if (!(options.epsilon > 0) || !std::isfinite(options.epsilon))
     throw Error(ErrorCode::InvalidArgument, "epsilon must be a positive length");
+  if (!(options.simplify >= 0 && options.simplify <= 0.9))
+    throw Error(ErrorCode::InvalidArgument, "the share of epsilon to simplify by must be 0 to 0.9");
   if (path.empty()) throw Error(ErrorCode::InvalidArgument, "the path has no waypoint");
   for (const auto& waypoint : path)
     if (waypoint.size() != robot.variables.size())
@@ -115,9 +124,10 @@ void require_usable(const Robot& robot, std::span<const Body> bodies, const Path
     if (body.link >= robot.links.size() || body.points.empty() || !(body.margin >= 0))
       throw Error(ErrorCode::InvalidArgument,
                   "body " + body.name + " has no points, no link or a negative margin");
-    if (body.margin > 0.5 * options.epsilon)
+    if (body.margin > 0.5 * (1 - options.simplify) * options.epsilon)
       throw Error(ErrorCode::InvalidArgument,
-                  "body " + body.name + " has a margin of more than half of epsilon");
+                  "body " + body.name + " has a margin of more than half of epsilon" +
+                      (options.simplify > 0 ? ", less its share to simplify by" : ""));
   }
 }
 
@@ -138,20 +148,22 @@ SweepResult swept_volume(const Robot& robot, std::span<const Body> bodies, const
     plans[i].spacing = geom::float32_spacing(extent(robot, bodies[i], path) + 4 * options.epsilon);
     plans[i].rounding = std::numbers::sqrt3 / 2 * plans[i].spacing * kUp;
   });
-  double least_room = options.epsilon;
+  const double left_out = options.simplify * options.epsilon,
+               for_motion = options.epsilon - left_out;
+  double least_room = for_motion;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (plans[i].spacing > options.epsilon / 100) {
       result.stop = SweepStop::TooCoarse;
       return result;
     }
-    least_room = std::min(least_room, options.epsilon - bodies[i].margin - plans[i].rounding);
+    least_room = std::min(least_room, for_motion - bodies[i].margin - plans[i].rounding);
   }
   if (options.rule == StepRule::Uniform || options.rule == StepRule::Baginski)
     steps.shared = shared_bounds(robot, bodies, path);
   tbb::parallel_for(std::size_t{0}, bodies.size(), [&](std::size_t i) {
     StepOptions own = steps;
     own.deviation =
-        own.shared.empty() ? options.epsilon - bodies[i].margin - plans[i].rounding : least_room;
+        own.shared.empty() ? for_motion - bodies[i].margin - plans[i].rounding : least_room;
     own.deviation *= 1 - 1e-9;  // for the roundings up on the way to the margin
     plans[i].pieces = choose_steps(robot, bodies[i].link, bodies[i].points, path, own);
   });
@@ -163,7 +175,7 @@ SweepResult swept_volume(const Robot& robot, std::span<const Body> bodies, const
   tbb::enumerable_thread_specific<geom::HullBuilder> builders;
   tbb::parallel_for(std::size_t{0}, outputs.size(), [&](std::size_t k) {
     const std::size_t i = result.sources[k];
-    outputs[k] = make_hull(bodies[i], plans[i].pieces[k - first[i]], plans[i],
+    outputs[k] = make_hull(bodies[i], plans[i].pieces[k - first[i]], plans[i], left_out,
                            options.explicit_margin, builders.local());
   });
   result.of_link.assign(robot.links.size(), 0);
@@ -174,7 +186,8 @@ SweepResult swept_volume(const Robot& robot, std::span<const Body> bodies, const
     ++result.of_link[bodies[i].link];
     result.deviation = std::max(result.deviation, out.deviation);
     result.rounding = std::max(result.rounding, out.rounding);
-    margin = std::max(margin, (out.deviation + out.rounding) * kUp);
+    result.left_out = std::max(result.left_out, out.left_out);
+    margin = std::max(margin, (out.deviation + out.left_out + out.rounding) * kUp);
     far = std::max(far, out.reach);
     result.set.bodies.push_back(
         {bodies[i].name + " " + std::to_string(k - first[i]), std::move(out.hull)});

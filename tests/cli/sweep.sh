@@ -67,6 +67,10 @@ expect 0 'margin 0;' "$S" "$R" --path path.csv -o all.urdf
 sed -n 's/.*filename="\([^"]*\)".*/\1/p' all.urdf | while read -r f; do [ -s "$f" ] || echo lost; done | grep -q lost &&
   fail "a body's file is missing"
 expect 0 '' "$S" "$R" --path path.csv -o d.glb --max-reach 0.01
+expect 0 '' "$S" "$R" --path path.csv -o e.glb --simplify 0.3 --report e.json
+[ "$(sed -n 's/.*"vertices": \([0-9]*\).*/\1/p' e.json)" -lt "$(sed -n 's/.*"vertices": \([0-9]*\).*/\1/p' a.json)" ] ||
+  fail "simplified hulls have as many vertices"
+expect 2 '' "$S" "$R" --path path.csv -o x.glb --simplify 1
 "$S" "$R" --path - --output-format obj -o - --quiet <path.csv >pipe.obj || fail "pipe"
 cmp -s pipe.obj balanced.obj || fail "the pipe gives other bytes"
 
@@ -99,7 +103,7 @@ for key in '"relation": "sweep"' '"verdict": "verified"' '"largest_found"' '"con
   grep -q "$key" v.json || fail "no $key in the report"
 done
 expect 0 'solid claim: verified' "$V" --sweep "$R" path.json b.glb
-for set in uniform.obj adaptive.obj folder all c.glb d.glb; do
+for set in uniform.obj adaptive.obj folder all c.glb d.glb e.glb; do
   expect 0 '^verified$' "$V" --sweep "$R" path.csv "$set"
 done
 LC_ALL=C sed 's/"margin":0.0049/"margin":0.0029/' a.glb >thin.glb

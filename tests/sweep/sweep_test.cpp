@@ -93,6 +93,61 @@ TEST(Sweep, ExplicitMarginContainsTheSum) {
   }
 }
 
+TEST(Sweep, SimplifiedHullsHaveFewerVerticesAndMissNothing) {
+  std::mt19937_64 random(37);
+  for (TestRobot r : {six_axis_arm(), prismatic_chain()}) {
+    for (Body& body : r.bodies) {  // round ones, of 162 corners
+      Geometry ball;
+      ball.shape = Geometry::Shape::Sphere;
+      ball.size.x() = 0.06;
+      ball.origin.translation = body.points.front();
+      body.points = bounding_points(ball);
+    }
+    const Path path = random_path(r.robot, random, 2, 1, false);
+    const auto vertices = [](const SweepResult& result) {  // of a body, on average
+      double sum = 0;
+      for (const auto& body : result.set.bodies)
+        sum += static_cast<double>(body.hull.vertices.size());
+      return sum / static_cast<double>(result.set.bodies.size());
+    };
+    for (const bool explicit_margin : {false, true}) {
+      SweepOptions options;
+      options.epsilon = 0.01;
+      options.explicit_margin = explicit_margin;
+      const SweepResult plain = swept_volume(r.robot, r.bodies, path, options);
+      EXPECT_EQ(plain.left_out, 0);
+      options.simplify = 0.4;
+      const SweepResult result = swept_volume(r.robot, r.bodies, path, options);
+      EXPECT_LT(vertices(result), 0.8 * vertices(plain)) << r.name;
+      EXPECT_LE(result.set.margin, options.epsilon);
+      EXPECT_GT(result.left_out, 0.1 * options.epsilon);
+      EXPECT_LE(result.left_out, 0.4 * options.epsilon);
+      EXPECT_EQ(geom::find_not_convex(result.set), std::nullopt);
+      EXPECT_EQ(sample_points(r, path, result, random, 1000, true).missed, 0U) << r.name;
+    }
+  }
+}
+
+TEST(Sweep, WhatSimplifyingLeavesOutIsAsFarAwayAsTheMarginSays) {
+  TestRobot r = six_axis_arm();
+  Geometry ball;
+  ball.shape = Geometry::Shape::Sphere;
+  ball.size.x() = 0.06;
+  r.bodies = {{"ball", 3, bounding_points(ball), 0}};
+  SweepOptions options;
+  options.epsilon = 0.01;
+  options.simplify = 0.4;
+  const std::vector<double> rest{0.1, 0.2, -0.3, 0.4, 0.5, 0.6};
+  const SweepResult result = swept_volume(r.robot, r.bodies, {rest}, options);
+  double farthest = 0;
+  for (const Vec3& p : r.bodies[0].points)
+    farthest = std::max(
+        farthest, distance_to(result.set.bodies[0].hull, reference_pose(r.robot, 3, rest) * p));
+  EXPECT_NEAR(farthest, result.left_out, 1e-6);
+  EXPECT_GT(result.left_out, 0.002);
+  EXPECT_GE(result.set.margin, farthest);
+}
+
 TEST(Sweep, ReachHoldsForPointsOfTheSet) {
   // Points of the hulls are near some configuration of the body, as `reach` promises.
   std::mt19937_64 random(35);
@@ -159,6 +214,12 @@ TEST(Sweep, RefusesWhatItCannotDo) {
   EXPECT_THROW(make(r, path, -1), Error);
   EXPECT_THROW(make(r, {}, 0.01), Error);
   EXPECT_THROW(make(r, {{1, 2}}, 0.01), Error);
+  for (const double share : {-0.1, 0.95}) {
+    SweepOptions options;
+    options.epsilon = 0.005;
+    options.simplify = share;
+    EXPECT_THROW(swept_volume(r.robot, r.bodies, path, options), Error);
+  }
   EXPECT_EQ(make(r, path, 1e-6).stop, SweepStop::TooCoarse);
   r.robot.joints[0].origin.translation.x() = 1e6;
   const SweepResult far = make(r, path, 0.005);

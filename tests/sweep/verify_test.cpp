@@ -55,8 +55,10 @@ verify::SweepClaims judge(const std::vector<MovingShape>& shapes, const Path& pa
 }
 
 SweepResult sweep(const TestRobot& r, const Path& path, double epsilon,
-                  StepRule rule = StepRule::Balanced, bool explicit_margin = false) {
+                  StepRule rule = StepRule::Balanced, bool explicit_margin = false,
+                  double simplify = 0) {
   SweepOptions options;
+  options.simplify = simplify;
   options.epsilon = epsilon;
   options.rule = rule;
   options.explicit_margin = explicit_margin;
@@ -73,10 +75,10 @@ geom::ConvexSet set_of(const std::vector<geom::Mesh>& bodies, double margin) {
 TEST(VerifySweep, AcceptsWhatSweepApproxMakes) {
   std::mt19937_64 random(71);
   for (const TestRobot& r : {six_axis_arm(), prismatic_chain()}) {
-    for (int motion = 0; motion < 4; ++motion) {
+    for (int motion = 0; motion < 5; ++motion) {
       const Path path = random_path(r.robot, random, 2 + motion % 2, 1.5, motion % 2 == 0);
       const StepRule rule = motion % 2 == 0 ? StepRule::Balanced : StepRule::Adaptive;
-      const SweepResult made = sweep(r, path, 0.005, rule, motion == 3);
+      const SweepResult made = sweep(r, path, 0.005, rule, motion == 3, motion == 4 ? 0.3 : 0);
       const auto claims = judge(shapes_of(r), path, made.set);
       EXPECT_EQ(claims.surface.answer, Answer::Verified) << r.name << claims.surface.reason;
       EXPECT_EQ(claims.solid.answer, Answer::Verified) << r.name << claims.solid.reason;

@@ -15,6 +15,9 @@ struct Body {
 
 struct SweepOptions {
   double epsilon = 0;  ///< largest margin of the result, > 0 [length]
+  /// Share of epsilon, 0 to 0.9, by which vertices of the hulls may be left out: fewer vertices,
+  /// more bodies.
+  double simplify = 0;
   StepRule rule = StepRule::Balanced;
   bool merge = true;
   std::optional<double> max_reach;  ///< see StepOptions
@@ -32,6 +35,7 @@ struct SweepResult {
   SweepStop stop = SweepStop::Done;
   bool certified = true;             ///< false for StepRule::Baginski
   double deviation = 0;              ///< largest of a piece, the bodies' margins included [length]
+  double left_out = 0;               ///< largest distance of a vertex left out [length]
   double rounding = 0;               ///< largest move of a vertex to float32 [length]
   double reach = 0;                  ///< bound of the distance from a point of the set to the
                                      ///< swept volume of the bodies [length]
@@ -44,8 +48,8 @@ struct SweepResult {
 /// the path. Source: [gaschler2016] Eq. 4.22, Prop. 3; docs/algorithms/swept-volumes.md.
 ///
 /// Each is the exactly convex float32 hull of a body's images at the ends of a piece; the margin
-/// covers the steps' deviation, the error of kinematics and the rounding, and is at most epsilon.
-/// The same for any number of threads. Order: by body, then along the path.
+/// covers the steps' deviation, the error of kinematics, the rounding and vertices left out, and is
+/// at most epsilon. The same for any number of threads. Order: by body, then along the path.
 ///
 /// @throws Error{InvalidArgument} on contradictory options, bodies without points, and margins that
 ///   leave no room for steps; as choose_steps.
