@@ -10,6 +10,7 @@ import math
 import subprocess
 
 import plots
+import sweeps
 import thesis
 from document import Document
 from runs import OURS, THESIS_COSTS, Run
@@ -356,9 +357,9 @@ def resources_section(context, document):
 
 
 SECTIONS = [models_section, proposition_1_section, table_4_2_section, same_share_section, table_b_1_section,
-            figures_section, pictures_section, resources_section]
+            figures_section, pictures_section, sweeps.section, resources_section]
 QUICK_SECTIONS = [models_section, proposition_1_section, table_4_2_section, figures_section, pictures_section,
-                  resources_section]
+                  sweeps.section, resources_section]
 
 
 def make(models, runner, folder, quick):

@@ -20,6 +20,7 @@ sys.dont_write_bytecode = True
 import main  # noqa: E402
 import models  # noqa: E402
 import report  # noqa: E402
+import sweeps  # noqa: E402
 import thesis  # noqa: E402
 from document import Document  # noqa: E402
 from runs import Run, Runner  # noqa: E402
@@ -125,6 +126,8 @@ class Report(unittest.TestCase):
                 self.assertEqual(main.main(arguments), 0)
             self.assertIn(" 0 runs done", said.getvalue())
             page = (folder / "index.html").read_text()
+            self.assertIn("Swept volumes", page)
+            self.assertIn("Left out: the robots", page)
             self.assertIsNone(re.search(r'src="(?!data:)', page))
             self.assertIn("data:image/png;base64,", page)
             with open(folder / "results.csv", newline="") as file:
@@ -136,6 +139,26 @@ class Report(unittest.TestCase):
                     self.assertLessEqual(float(row["hausdorff_lower"]), 1)
                 else:
                     self.assertEqual(row["vertices"], "625")
+
+    def test_sweeps(self):
+        self.assertAlmostEqual(sweeps.slope([(x, 3 * x ** -0.5) for x in (0.1, 1, 7)]), -0.5)
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            times = folder / "t.csv"
+            times.write_text("library,model,query,microseconds\n" + "".join(
+                f"L,{m},{i},{t}\n" for m in ("triangle meshes", "sets") for i, t in enumerate((3, 1, 2))))
+            self.assertEqual(sweeps.statistics(times)["L", "sets"], (2, 2, 3))
+            runner = Runner(PROGRAMS, folder)
+            call = sweeps.Calls(report.Context([], runner, folder, True))
+            program = PROGRAMS / "bmesh-decimate"
+            for _ in range(2):
+                with contextlib.redirect_stderr(io.StringIO()):
+                    self.assertIsNone(call("bad", program, ["--wrong"], [], []))
+            self.assertEqual(len(runner.failures), 1)
+            with contextlib.redirect_stderr(io.StringIO()) as said:
+                for _ in range(2):
+                    self.assertEqual(call("good", program, ["--version"], [], []), 0)
+            self.assertEqual(said.getvalue().count("good"), 1)  # kept
 
     def test_errors(self):
         with contextlib.redirect_stderr(io.StringIO()) as said:
