@@ -39,6 +39,8 @@ grep -q '^a.glb: .*r.urdf.*path.csv.*t.off' a.d || fail "dependency file"
 expect 0 '' "$S" "$R" --path path.json -o b.glb --threads 1 --quiet
 [ ! -s err.txt ] || fail "--quiet is not quiet"
 cmp -s a.glb b.glb || fail "JSON, one thread or the cache give other bytes"
+expect 0 '' "$S" "$R" --path path.csv -o two.glb --threads 2 --quiet
+cmp -s b.glb two.glb || fail "two threads give other bytes"
 
 # The start and the end of the path, at rest, are covered.
 printf '1 -1 0.1\n' >pose.csv
