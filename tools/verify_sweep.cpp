@@ -20,9 +20,9 @@ namespace {
 using verify::Answer;
 using Stage = verify::ChainStage;
 
-std::string number(double x, int digits = 6) {
+std::string number(double x) {
   std::ostringstream text;
-  text << std::setprecision(digits) << x;
+  text << std::setprecision(6) << x;
   return text.str();
 }
 
@@ -105,11 +105,12 @@ Shapes read_shapes(const RobotFile& file, const VerifySweepOptions& o) {
       out.links.push_back(l);
     }
   }
-  if (out.shapes.empty())
-    throw Error(ErrorCode::InvalidInput, file.path.string() + ": no link has a shape" +
-                                             (o.geometry == "visual" ? ""
-                                                                     : "; try --geometry "
-                                                                       "visual"));
+  if (out.shapes.empty()) {
+    std::string why = file.path.string();
+    why += ": no link has a shape";
+    if (o.geometry != "visual") why += "; try --geometry visual";
+    throw Error(ErrorCode::InvalidInput, why);
+  }
   return out;
 }
 
@@ -164,9 +165,11 @@ Json to_json(const verify::Claim& claim) {
 }
 
 std::string say(const verify::SweepPlace& p, const Shapes& shapes) {
-  return shapes.shapes[p.shape].name + " at " + number(p.s, 17) + " of segment " +
-         std::to_string(p.segment + 1) + ", (" + number(p.point.x(), 17) + ", " +
-         number(p.point.y(), 17) + ", " + number(p.point.z(), 17) + ")";
+  std::ostringstream text;
+  text << std::setprecision(17) << shapes.shapes[p.shape].name << " at " << p.s << " of segment "
+       << p.segment + 1 << ", (" << p.point.x() << ", " << p.point.y() << ", " << p.point.z()
+       << ')';
+  return text.str();
 }
 
 void write_witness(const std::string& path, const verify::SweepPlace& place) {
