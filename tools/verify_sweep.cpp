@@ -97,7 +97,8 @@ Shapes read_shapes(const RobotFile& file, const VerifySweepOptions& o) {
       if (shape.kind == To::Mesh) {
         const std::string path = resolve_mesh(g.mesh, file.path, o.packages).string();
         io::ReadResult read = io::read_mesh(path);
-        for (const std::string& note : read.notes) out.notes.push_back(path + ": " + note);
+        for (std::string& note : read.notes)
+          out.notes.push_back(std::move(note.insert(0, ": ").insert(0, path)));
         shape.mesh = scaled(std::move(read.mesh), g.size);
         out.files.push_back(path);
       }
@@ -207,7 +208,8 @@ int verify_sweep(const VerifySweepOptions& o, const CommonOptions& common) {
   io::SetReadDetails details;
   const geom::ConvexSet set = io::read_convex_set(set_path, format, &details);
   for (const std::string& note : shapes.notes) log(common.quiet, note);
-  for (const std::string& note : details.notes) log(common.quiet, set_path + ": " + note);
+  for (std::string& note : details.notes)
+    log(common.quiet, note.insert(0, ": ").insert(0, set_path));
 
   geom::Box3 box;
   for (const geom::ConvexBody& b : set.bodies) box.extend(geom::bounding_box(b.hull));
