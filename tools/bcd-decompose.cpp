@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "cli.h"
+#include "robot_bodies.h"
 #include "robot_decomposition.h"
 #include "set_cache.h"
 #include "set_format.h"
@@ -204,7 +205,7 @@ tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const s
   p.unit = o.unit;
   p.frame = o.frame;
   p.direction = o.direction;
-  p.covers_surface = outer;
+  p.covers_surface = outer && prepared.dropped_sheets == 0;
   p.covers_solid = outer && prepared.closed;
   tools::SetCache::Entry entry;
   bcd::DecomposeResult result;
@@ -343,12 +344,7 @@ int decompose_robot(const Options& o) {
       robot, [&](const std::filesystem::path& file, double scale) -> tools::MeshBodies {
         Options mesh = o;
         mesh.input = file.string();
-        if (const auto length = tools::parse_length(o.epsilon); length && !length->percent) {
-          std::ostringstream text;
-          text.precision(17);
-          text << length->value / scale;
-          mesh.epsilon = text.str();
-        }
+        mesh.epsilon = tools::epsilon_of_mesh(o.epsilon, scale);
         Outcome out = decompose_mesh(mesh);
         tools::MeshBodies bodies{
             io::parse_convex_set(out.entry.container, io::Format::Glb, "the result"),
@@ -383,7 +379,7 @@ int decompose_robot(const Options& o) {
   if (!o.depfile.empty()) {
     std::vector<std::string> inputs;
     for (const std::filesystem::path& p : result.inputs) inputs.push_back(p.string());
-    tools::write_depfile(o.depfile, result.report["urdf"].get<std::string>(), inputs);
+    tools::write_depfile(o.depfile, {result.report["urdf"].get<std::string>()}, inputs);
   }
   return done ? tools::kDone : tools::kNo;
 }

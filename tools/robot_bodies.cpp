@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <map>
 #include <optional>
+#include <sstream>
 
 extern char** environ;
 
@@ -111,19 +112,20 @@ ErrorCode code_of(int exit_code) {
 }
 
 geom::ConvexSet decompose(const fs::path& mesh, const BodyOptions& options,
-                          const fs::path& result) {
+                          const std::string& epsilon, const fs::path& result) {
   std::vector<std::string> command{program("bcd-decompose"),
                                    mesh.string(),
                                    "-o",
                                    result.string(),
                                    "--epsilon",
-                                   options.epsilon,
+                                   epsilon,
                                    "--max-vertices-per-body",
                                    std::to_string(options.max_vertices),
                                    "--effort",
                                    options.effort,
                                    "--quiet"};
   if (options.no_cache) command.emplace_back("--no-cache");
+  if (options.drop_sheets) command.emplace_back("--drop-sheets");
   std::optional<std::string> variable;
   if (!options.cache.empty()) variable = "KABOUM_CACHE=" + options.cache;
   const int code = run_program(command, variable);
@@ -131,7 +133,7 @@ geom::ConvexSet decompose(const fs::path& mesh, const BodyOptions& options,
     throw Error(code_of(code), mesh.string() + ": its decomposition failed (exit code " +
                                    std::to_string(code) + " of " + command.front() + ")");
   if (code == kNo)
-    log(options.quiet, mesh.string() + ": the decomposition does not reach " + options.epsilon);
+    log(options.quiet, mesh.string() + ": the decomposition does not reach " + epsilon);
   return io::read_convex_set(result);
 }
 
@@ -151,6 +153,15 @@ RobotFile read_robot(const std::string& path) {
     out.robot = sweep::parse_urdf(text, path);
   }
   return out;
+}
+
+std::string epsilon_of_mesh(const std::string& epsilon, double scale) {
+  const auto length = parse_length(epsilon);
+  if (!length || length->percent || scale == 1) return epsilon;
+  std::ostringstream text;
+  text.precision(17);
+  text << length->value / scale;
+  return text.str();
 }
 
 fs::path resolve_mesh(const std::string& reference, const fs::path& robot,
@@ -227,7 +238,7 @@ LinkBodies bodies_of(const RobotFile& robot, const BodyOptions& options) {
                   robot.path.string() + ": there is no link '" + name + "'");
   const WorkFolder work;
   LinkBodies out;
-  std::map<std::string, geom::ConvexSet> decomposed;
+  std::map<std::pair<std::string, std::string>, geom::ConvexSet> decomposed;
   for (std::uint32_t l = 0; l < robot.robot.links.size(); ++l) {
     const sweep::Link& link = robot.robot.links[l];
     if (!options.links.empty() &&
@@ -239,13 +250,15 @@ LinkBodies bodies_of(const RobotFile& robot, const BodyOptions& options) {
         continue;
       }
       const fs::path mesh = resolve_mesh(g.mesh, robot.path, options.packages);
-      auto it = decomposed.find(mesh.string());
+      const double scale = g.size.cwiseAbs().maxCoeff();
+      const std::pair key{mesh.string(), epsilon_of_mesh(options.epsilon, scale)};
+      auto it = decomposed.find(key);
       if (it == decomposed.end()) {
         const fs::path result = work.path() / (std::to_string(decomposed.size()) + ".glb");
-        it = decomposed.emplace(mesh.string(), decompose(mesh, options, result)).first;
-        out.files.push_back(mesh.string());
+        it = decomposed.emplace(key, decompose(mesh, options, key.second, result)).first;
+        if (std::find(out.files.begin(), out.files.end(), key.first) == out.files.end())
+          out.files.push_back(key.first);
       }
-      const double scale = g.size.cwiseAbs().maxCoeff();
       out.epsilon = std::max(out.epsilon, scale * std::max(it->second.provenance.epsilon, 0.0));
       place_shape(g, &it->second, link.name, l, out.bodies);
     }

@@ -28,11 +28,12 @@ struct BodyOptions {
   std::vector<std::string> links;     ///< only these; empty: all that have a shape
   bool visual = false;                ///< shapes for drawing instead of those for collisions
   std::vector<std::string> packages;  ///< folders that package:// URIs are looked up in
-  std::string epsilon = "1%";         ///< of the decomposition
+  std::string epsilon = "1%";         ///< of the decomposition; lengths in the robot's unit
   std::size_t max_vertices = 64;
   std::string effort = "normal";
   std::string cache;  ///< folder; empty: as bcd-decompose
   bool no_cache = false;
+  bool drop_sheets = false;  ///< back-to-back faces without volume are left out
   bool quiet = false;
 };
 
@@ -53,6 +54,10 @@ LinkBodies bodies_of(const RobotFile& robot, const BodyOptions& options);
 /// @param link  name that the bodies' names begin with; `index` is the link's.
 void place_shape(const sweep::Geometry& shape, const geom::ConvexSet* set, const std::string& link,
                  std::uint32_t index, std::vector<sweep::Body>& bodies);
+
+/// "5%" as it is; a length in the robot's unit in that of a mesh whose coordinates are multiplied by
+/// `scale`.
+std::string epsilon_of_mesh(const std::string& epsilon, double scale);
 
 /// The file that a URDF's mesh reference stands for. `package://name/rest` is looked up as
 /// name/rest in the given folders, in $ROS_PACKAGE_PATH, and in all folders above the robot's file.

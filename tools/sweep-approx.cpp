@@ -84,12 +84,14 @@ void describe(CLI::App& app, Options& o) {
                  "ROBOT; may be repeated")
       ->type_name("DIR");
   app.add_option("--body-epsilon", o.bodies.epsilon,
-                 "Largest distance of the links' convex bodies from their meshes, as for "
-                 "bcd-decompose [1%]")
+                 "Largest distance of the links' convex bodies from their meshes, a length or a "
+                 "percentage of each mesh's diagonal [as --epsilon]")
       ->check([](const std::string& s) {
         return tools::parse_length(s) ? std::string() : "must be a positive number or percentage";
       })
       ->type_name("LENGTH|P%");
+  app.add_flag("--drop-sheets", o.bodies.drop_sheets,
+               "Drop back-to-back faces without volume (they are then not covered)");
   app.add_option("--max-vertices-per-body", o.bodies.max_vertices,
                  "Most vertices of a link's body (8 to 100000)")
       ->check(CLI::Range(8, 100000).description(""))
@@ -144,6 +146,7 @@ std::string parameters(const Options& o, const io::SetFormat format) {
   if (!o.reach.empty()) out << " --max-reach " << o.reach;
   if (o.simplify > 0) out << " --simplify " << o.simplify;
   if (!o.links.empty()) out << " --links " << o.links;
+  if (o.bodies.drop_sheets) out << " --drop-sheets";
   if (o.explicit_margin || format != io::SetFormat::Glb) out << " --explicit-margin";
   if (o.no_merge) out << " --no-merge";
   return out.str();
@@ -165,6 +168,7 @@ int sweep_path(Options o) {
   o.bodies.links = split(o.links);
   o.bodies.visual = o.geometry == "visual";
   o.bodies.quiet = o.common.quiet;
+  if (o.bodies.epsilon.empty()) o.bodies.epsilon = o.epsilon;
   const tools::LinkBodies links = tools::bodies_of(file, o.bodies);
   sweep::SweepOptions options;
   options.epsilon = tools::parse_length(o.epsilon)->value;
@@ -254,6 +258,7 @@ int main(int argc, char** argv) {
   CLI::App app{"Bounds the volume that a robot sweeps along a path by convex bodies.",
                "sweep-approx"};
   Options options;
+  options.bodies.epsilon.clear();
   describe(app, options);
   return tools::run(app, argc, argv, [&] { return sweep_path(options); });
 }
