@@ -164,12 +164,10 @@ double CutTree::worst() const {
   return worst;
 }
 
-double CutTree::score(const Node& node, const Plane& plane) const {
+bool CutTree::part(const Piece& piece, const Plane& plane, std::vector<Vec3>& lower,
+                   std::vector<Vec3>& upper) const {
   Scratch& s = scratch();
-  const Piece& piece = node.piece;
   classify(piece, plane, solid_, shift_, s.height, s.side);
-  s.lower.clear();
-  s.upper.clear();
   s.mark.assign(piece.points.size(), 0);
   bool any[2]{};
   for (std::size_t f = 0; f < s.side.size(); ++f) {
@@ -188,28 +186,36 @@ double CutTree::score(const Node& node, const Plane& plane) const {
       s.mark[a] |= static_cast<char>((ha <= 0 ? 1 : 0) | (ha >= 0 ? 2 : 0));
       if ((ha < 0 && hb > 0) || (ha > 0 && hb < 0)) {
         const Vec3 p = piece.points[a] + (ha / (ha - hb)) * (piece.points[b] - piece.points[a]);
-        s.lower.push_back(p);
-        s.upper.push_back(p);
+        lower.push_back(p);
+        upper.push_back(p);
       }
     }
   }
-  if (!any[0] || !any[1]) return std::numeric_limits<double>::infinity();
+  if (!any[0] || !any[1]) return false;
   for (std::size_t i = 0; i < piece.points.size(); ++i) {
-    if ((s.mark[i] & 1) != 0) s.lower.push_back(piece.points[i]);
-    if ((s.mark[i] & 2) != 0) s.upper.push_back(piece.points[i]);
+    if ((s.mark[i] & 1) != 0) lower.push_back(piece.points[i]);
+    if ((s.mark[i] & 2) != 0) upper.push_back(piece.points[i]);
   }
   const Cell& cell = piece.cell;
   for (std::size_t i = 0; i < cell.corners.size(); ++i)
     if (piece.inside[i] != 0)
-      (plane.height(cell.corners[i]) <= 0 ? s.lower : s.upper).push_back(cell.corners[i]);
+      (plane.height(cell.corners[i]) <= 0 ? lower : upper).push_back(cell.corners[i]);
   for (const auto& [a, b] : cell.edges()) {
     const double ha = plane.height(cell.corners[a]), hb = plane.height(cell.corners[b]);
     if (!((ha < 0 && hb > 0) || (ha > 0 && hb < 0))) continue;
     const Vec3 p = cell.corners[a] + (ha / (ha - hb)) * (cell.corners[b] - cell.corners[a]);
     if (solid_.field(p) >= -0.25 * solid_.spacing()) continue;
-    s.lower.push_back(p);
-    s.upper.push_back(p);
+    lower.push_back(p);
+    upper.push_back(p);
   }
+  return true;
+}
+
+double CutTree::score(const Node& node, const Plane& plane) const {
+  Scratch& s = scratch();
+  s.lower.clear();
+  s.upper.clear();
+  if (!part(node.piece, plane, s.lower, s.upper)) return std::numeric_limits<double>::infinity();
   const double limit = node.appraisal.fourth;
   const Appraisal lower = appraise(s.lower, solid_, s.builder, true);
   if (lower.fourth > 2 * limit) return lower.fourth;
@@ -323,11 +329,17 @@ bool CutTree::cut(int leaf) {
     const Candidate c = best_of(near);
     if (c.score < best.score) best = c;
   }
+  cut(leaf, best.plane);
+  return true;
+}
+
+void CutTree::cut(int leaf, const Plane& plane) {
+  const Piece piece = std::move(nodes_[leaf].piece);
   Scratch& s = scratch();
-  classify(node.piece, best.plane, solid_, shift_, s.height, s.side);
-  Piece lower = clip(node.piece, best.plane, true, shift_, solid_, s.height, s.side);
-  Piece upper = clip(node.piece, best.plane, false, shift_, solid_, s.height, s.side);
-  nodes_[leaf].plane = best.plane;
+  classify(piece, plane, solid_, shift_, s.height, s.side);
+  Piece lower = clip(piece, plane, true, shift_, solid_, s.height, s.side);
+  Piece upper = clip(piece, plane, false, shift_, solid_, s.height, s.side);
+  nodes_[leaf].plane = plane;
   nodes_[leaf].piece = {};
   --leaf_count_;
   if (!lower.empty()) {
@@ -338,7 +350,80 @@ bool CutTree::cut(int leaf) {
     add_leaf(std::move(upper), leaf);
     nodes_[leaf].upper = static_cast<int>(nodes_.size()) - 1;
   }
-  return true;
+}
+
+std::optional<CutTree::Split> CutTree::find_split(const std::vector<int>& leaves,
+                                                  const Vec3& direction, double limit) const {
+  std::vector<Vec3> directions{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
+  if (direction.norm() > 0) directions.insert(directions.begin(), direction.normalized());
+  const auto range = [&](const Vec3& n) {
+    std::pair<double, double> out{std::numeric_limits<double>::infinity(),
+                                  -std::numeric_limits<double>::infinity()};
+    for (const int leaf : leaves) {
+      for (const Vec3& p : nodes_[leaf].hull) {
+        out.first = std::min(out.first, n.dot(p));
+        out.second = std::max(out.second, n.dot(p));
+      }
+    }
+    return out;
+  };
+  const auto worst = [&](const Plane& plane) {
+    Scratch& s = scratch();
+    s.lower.clear();
+    s.upper.clear();
+    for (const int leaf : leaves) {
+      const std::vector<Vec3>& hull = nodes_[leaf].hull;
+      bool below = false, above = false;
+      for (const Vec3& p : hull) (plane.height(p) <= 0 ? below : above) = true;
+      if (below && above && part(nodes_[leaf].piece, plane, s.lower, s.upper)) continue;
+      auto& to = above ? s.upper : s.lower;
+      to.insert(to.end(), hull.begin(), hull.end());
+    }
+    const double lower = appraise(s.lower, solid_, s.builder, true, limit).worst;
+    if (lower >= limit || s.lower.empty() || s.upper.empty())
+      return std::numeric_limits<double>::infinity();
+    const double upper = appraise(s.upper, solid_, s.builder, true, limit).worst;
+    return upper >= limit ? std::numeric_limits<double>::infinity() : std::max(lower, upper);
+  };
+  std::vector<Split> list;
+  for (const Vec3& n : directions) {
+    const auto [low, high] = range(n);
+    for (int i = 1; i <= options_.offsets; ++i)
+      list.push_back({{n, low + (high - low) * i / (options_.offsets + 1)}});
+  }
+  const auto evaluate = [&](std::vector<Split>& splits) {
+    tbb::parallel_for(std::size_t{0}, splits.size(),
+                      [&](std::size_t i) { splits[i].worst = worst(splits[i].plane); });
+  };
+  const auto better = [](const Split& a, const Split& b) { return a.worst < b.worst; };
+  evaluate(list);
+  Split best = *std::min_element(list.begin(), list.end(), better);
+  if (!(best.worst < limit)) return std::nullopt;
+  const auto [low, high] = range(best.plane.n);
+  double step = 0.5 * (high - low) / (options_.offsets + 1);
+  for (int r = 0; r < 2 + options_.refinements; ++r, step *= 0.5) {
+    list.clear();
+    for (const double s : {-step, step})
+      list.push_back({{best.plane.n, std::clamp(best.plane.d + s, low, high)}});
+    evaluate(list);
+    best = std::min(best, *std::min_element(list.begin(), list.end(), better), better);
+  }
+  return best;
+}
+
+void CutTree::split(const std::vector<int>& leaves, const Plane& plane, std::vector<int>& lower,
+                    std::vector<int>& upper) {
+  for (const int leaf : leaves) {
+    bool below = false, above = false;
+    for (const Vec3& p : nodes_[leaf].hull) (plane.height(p) <= 0 ? below : above) = true;
+    if (!below || !above) {
+      (above ? upper : lower).push_back(leaf);
+      continue;
+    }
+    cut(leaf, plane);
+    if (nodes_[leaf].lower >= 0) lower.push_back(nodes_[leaf].lower);
+    if (nodes_[leaf].upper >= 0) upper.push_back(nodes_[leaf].upper);
+  }
 }
 
 bool CutTree::cut_worst() {

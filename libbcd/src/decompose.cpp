@@ -37,7 +37,7 @@ Tuning tuning(Effort effort) {
       return {60000, {.offsets = 5, .reflex_planes = 6, .refinements = 1}, {1.5}, {0.8}, {0.05},
               12};
     case Effort::Normal:
-      return {200000, {}, {1, 1.25, 1.5, 2, 3}, {1, 0.7, 0.5}, {0.05, 0.15, 0.02}, 60, true};
+      return {200000, {}, {1, 1.25, 1.5, 2, 3}, {0.8}, {0.05, 0.15, 0.02}, 60, true};
     case Effort::Best:
       break;
   }
@@ -114,6 +114,16 @@ class Decomposer {
     return merge(std::move(bodies), solid_, target, epsilon, bulk, memo_);
   }
 
+  [[nodiscard]] static double reach_of(const std::vector<Finished>& bodies) {
+    double reach = 0;
+    for (const Finished& f : bodies) reach = std::max(reach, f.reach.upper);
+    return reach;
+  }
+  /// Whether nothing more is wished.
+  [[nodiscard]] static bool good(const std::vector<Finished>& bodies, double epsilon) {
+    return !bodies.empty() && epsilon < kUnbounded && reach_of(bodies) <= epsilon;
+  }
+
   [[nodiscard]] static double worst_of(const std::vector<Body>& bodies) {
     double worst = 0;
     for (const Body& b : bodies) worst = std::max(worst, b.appraisal.worst);
@@ -183,6 +193,45 @@ class Decomposer {
     return true;
   }
 
+  /// Parts the worst body and a neighbour anew, by a plane that leaves both nearer to the solid.
+  bool part_anew(std::vector<Body>& bodies, std::size_t from) {
+    const double limit = 0.98 * bodies[from].appraisal.worst;
+    std::vector<std::size_t> near;
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+      if (i != from && touch(bodies[from], bodies[i], solid_)) near.push_back(i);
+    std::sort(near.begin(), near.end(), [&](std::size_t a, std::size_t b) {
+      const double x = bodies[a].appraisal.worst, y = bodies[b].appraisal.worst;
+      return x != y ? x < y : a < b;
+    });
+    if (near.size() > 6) near.resize(6);
+    CutTree::Split best;
+    std::size_t with = from;
+    for (const std::size_t i : near) {
+      const auto split = tree_.find_split(leaves_of(bodies[from], bodies[i]),
+                                          bodies[from].box.center() - bodies[i].box.center(),
+                                          std::min(limit, best.worst));
+      if (!split) continue;
+      best = *split;
+      with = i;
+    }
+    if (with == from) return false;
+    std::vector<int> lower, upper;
+    tree_.split(leaves_of(bodies[from], bodies[with]), best.plane, lower, upper);
+    if (lower.empty() || upper.empty()) return false;
+    Body a = union_of(tree_, solid_, lower), b = union_of(tree_, solid_, upper);
+    if (std::max(a.appraisal.worst, b.appraisal.worst) > limit) return false;
+    bodies[from] = std::move(a);
+    bodies[with] = std::move(b);
+    return true;
+  }
+
+  [[nodiscard]] std::vector<int> leaves_of(const Body& a, const Body& b) const {
+    std::vector<int> out = leaves_of(a);
+    for (const int leaf : leaves_of(b)) out.push_back(leaf);
+    std::sort(out.begin(), out.end());
+    return out;
+  }
+
   /// Moves leaves of the worst body to others, or takes it apart and merges others instead, while
   /// that helps.
   void refine(std::vector<Body>& bodies, std::size_t target) {
@@ -191,7 +240,7 @@ class Decomposer {
       for (std::size_t i = 1; i < bodies.size(); ++i)
         if (bodies[i].appraisal.worst > bodies[worst].appraisal.worst) worst = i;
       const double limit = bodies[worst].appraisal.worst;
-      if (hand_over(bodies, worst)) continue;
+      if (hand_over(bodies, worst) || part_anew(bodies, worst)) continue;
       const std::vector<Body> parts = take_apart(bodies[worst], limit);
       if (parts.size() < 2) return;
       std::vector<Body> changed;
@@ -221,26 +270,47 @@ class Decomposer {
       snapshots.push_back(leaf_bodies(static_cast<std::size_t>(wished)));
     }
     report("merging", 0.7);
-    std::vector<Body> bodies = best_merge(snapshots, target, hopeless);
+    // What refinement gains is a guess.
+    std::vector<Body> bodies = best_merge(snapshots, target, 2 * hopeless);
     if (bodies.empty()) {
       if (hopeless < kUnbounded) return {};
       bodies = merged(leaf_bodies(), target, kUnbounded);
     }
-    refine(bodies, target);
-    report("simplifying", 0.8);
-    std::vector<Finished> finished = finish(bodies, 0.25 * worst_of(bodies));
-    for (const Finished& f : finished) learn(f);
+    std::vector<Finished> finished;
+    double free_cost = 0;  // the same for all rounds, so that bodies that stay need no work
+    // What measuring finds is refined once more.
+    for (int round = 0; round < 4 && !good(finished, hopeless); ++round) {
+      refine(bodies, target);
+      if (worst_of(bodies) > hopeless) break;
+      report("simplifying", 0.75 + 0.02 * round);
+      if (round == 0) free_cost = 0.25 * (hopeless < kUnbounded ? hopeless : worst_of(bodies));
+      std::vector<Finished> next = finish(bodies, free_cost, hopeless < kUnbounded ? hopeless : 0);
+      bool misjudged = false;
+      bodies.clear();
+      for (const Finished& f : next) {
+        learn(f);
+        bodies.push_back(f.body);
+        Appraisal& a = bodies.back().appraisal;
+        if (f.reach.lower <= 1.02 * a.worst) continue;
+        a.worst = f.reach.lower;
+        a.at = f.reach.at;
+        misjudged = true;
+      }
+      if (finished.empty() || reach_of(next) < reach_of(finished)) finished = std::move(next);
+      if (!misjudged) break;
+    }
+    if (finished.empty() || good(finished, hopeless)) return finished;
     const int rounds = tuning_.refinements / 3;
     for (int round = 0; round < rounds; ++round) {
       report("refining", 0.8 + 0.2 * round / rounds);
-      if (!improve(finished, target)) break;
+      if (!improve(finished, target, free_cost) || good(finished, hopeless)) break;
     }
     return finished;
   }
 
   /// Takes the body with the largest certified distance apart, and merges others instead. @return
   /// false when that did not help.
-  bool improve(std::vector<Finished>& finished, std::size_t target) {
+  bool improve(std::vector<Finished>& finished, std::size_t target, double free_cost) {
     std::size_t worst = 0;
     for (std::size_t i = 1; i < finished.size(); ++i)
       if (finished[i].reach.lower > finished[worst].reach.lower) worst = i;
@@ -267,7 +337,7 @@ class Decomposer {
         fresh.push_back(std::move(b));
       }
     }
-    std::vector<Finished> changed = finish(fresh, 0.25 * limit, limit);
+    std::vector<Finished> changed = finish(fresh, free_cost, limit);
     for (const Finished& f : changed)
       if (f.reach.upper >= 0.995 * limit) return false;
     for (const std::size_t i : kept) changed.push_back(std::move(finished[i]));
@@ -337,16 +407,12 @@ class Decomposer {
 
   /// Looks for fewer bodies within epsilon, by bisection of the number allowed.
   void reduce(std::vector<Finished>& bodies, double epsilon) {
-    for (const Finished& f : bodies)
-      if (f.reach.upper > epsilon) return;
+    if (!good(bodies, epsilon)) return;
     std::size_t low = bodies.size() / 3;
     while (bodies.size() > low + 1 + bodies.size() / 40) {
       const std::size_t middle = (low + bodies.size()) / 2;
       std::vector<Finished> fewer = at_most(middle, epsilon);
-      const bool good = !fewer.empty() && fewer.size() <= middle &&
-                        std::all_of(fewer.begin(), fewer.end(),
-                                    [&](const Finished& f) { return f.reach.upper <= epsilon; });
-      if (good) {
+      if (fewer.size() <= middle && good(fewer, epsilon)) {
         bodies = std::move(fewer);
       } else {
         low = middle;
@@ -453,7 +519,8 @@ class Decomposer {
   CutTree tree_;
   PairMemo memo_;
   double point_error_ = 0;
-  std::map<int, std::vector<Vec3>> required_;
+  std::map<int, std::vector<Vec3>> required_;                    // by leaf
+  std::map<std::pair<std::vector<int>, double>, Mesh> rounded_;  // by leaves and free cost
   DecomposeResult result_;
 };
 

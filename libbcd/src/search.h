@@ -3,6 +3,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -39,6 +40,19 @@ class CutTree {
   /// Cuts this leaf. @return false when no plane cuts it.
   bool cut(int leaf);
 
+  /// A plane that parts what is in these leaves, and the larger distance of the two hulls.
+  struct Split {
+    Plane plane;
+    double worst = std::numeric_limits<double>::infinity();
+  };
+  /// The plane with the smallest distance, if that is below `limit`, among some across `direction`
+  /// and the axes.
+  [[nodiscard]] std::optional<Split> find_split(const std::vector<int>& leaves,
+                                                const Vec3& direction, double limit) const;
+  /// Sorts leaves by the sides of a plane, cutting those that it crosses.
+  void split(const std::vector<int>& leaves, const Plane& plane, std::vector<int>& lower,
+             std::vector<int>& upper);
+
   [[nodiscard]] const std::vector<Node>& nodes() const { return nodes_; }
   [[nodiscard]] std::vector<int> leaves() const;
   /// The leaves when there were this many for the first time; all, if there never were.
@@ -62,7 +76,11 @@ class CutTree {
   void find_reflex_planes();
   void add_leaf(Piece&& piece, int parent);
   std::vector<Candidate> candidates(const Node& node) const;
+  /// Appends the hull points of what is on either side. @return whether there is something on both.
+  bool part(const Piece& piece, const Plane& plane, std::vector<Vec3>& lower,
+            std::vector<Vec3>& upper) const;
   double score(const Node& node, const Plane& plane) const;
+  void cut(int leaf, const Plane& plane);
   void evaluate(const Node& node, std::vector<Candidate>& list) const;
 
   const Solid& solid_;

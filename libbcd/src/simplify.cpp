@@ -49,18 +49,21 @@ class Contractor {
     version_.assign(points.size(), 0);
     quadric_.resize(points.size());
     alive_ = points.size();
+    planes_.resize(static_cast<Eigen::Index>(triangles.size()), 4);
+    Eigen::Index used = 0;
     for (const Triangle& t : triangles) {
       HalfSpace h;
       if (!plane(points[t[0]], points[t[1]], points[t[2]], h)) {
         add_triangle(t);
         continue;
       }
-      planes_.push_back(h);
+      planes_.row(used++) << h.n.transpose(), h.d;
       const double area = (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]).norm() +
                           1e-6 * size_ * size_;
       for (const std::uint32_t v : t) quadric_[v].add(h, area);
       add_triangle(t);
     }
+    planes_.conservativeResize(used, 4);
   }
 
   /// @return the largest cost of a contraction done.
@@ -96,8 +99,6 @@ class Contractor {
   [[nodiscard]] std::size_t count() const { return alive_; }
 
  private:
-  /// Beyond, sets of three constraints are too many to try.
-  static constexpr std::size_t kMostConstraints = 40;
   static constexpr std::uint64_t kRetry = ~std::uint64_t{0};
   struct Entry {
     double cost;
@@ -223,9 +224,12 @@ class Contractor {
     const double weight = 1e-7 * q.a.trace();
     q.a += weight * Eigen::Matrix3d::Identity();
     q.b += weight * middle;
-    if (!minimise(q, middle, best)) return false;
+    if (!minimise(q, best)) return false;
     double growth = 0;
-    for (const HalfSpace& h : planes_) growth = std::max(growth, h.height(best));
+    if (planes_.rows() > 0)
+      growth = std::max(growth, (planes_.col(0) * best.x() + planes_.col(1) * best.y() +
+                                 planes_.col(2) * best.z() - planes_.col(3))
+                                    .maxCoeff());
     double reach = solid_.field(best);
     for (const auto& [u, w] : edges_) {
       const Vec3 &p = vertices_[u], &r = vertices_[w];
@@ -236,79 +240,84 @@ class Contractor {
     return growth < 2 * size_;
   }
 
-  /// Minimiser of the quadric beyond all constraints: the first set of up to three active ones
-  /// whose multipliers are right.
-  bool minimise(const Quadric& q, const Vec3& origin, Vec3& best) const {
-    const double eps = 1e-11 * size_;
-    const auto feasible = [&](const Vec3& v) {
-      for (const HalfSpace& h : constraints_)
-        if (h.height(v) < -eps) return false;
-      return true;
-    };
+  /// Minimiser of the quadric beyond all constraints. The one most violated joins the up to three
+  /// that are active, and the minimiser for these alone is found among their subsets; the minimum
+  /// grows each time, so none comes back.
+  bool minimise(const Quadric& q, Vec3& best) const {
     const Eigen::Matrix3d inverse = q.a.inverse();
     if (!inverse.allFinite()) return false;
     const Vec3 free = inverse * q.b;
-    if (feasible(free)) {
-      best = free;
-      return true;
-    }
-    const auto k = constraints_.size();
-    std::vector<Vec3>& column = columns_;
-    column.resize(k);
-    std::vector<double>& lack = lack_;
-    lack.resize(k);
-    for (std::size_t i = 0; i < k; ++i) {
-      column[i] = inverse * constraints_[i].n;
-      lack[i] = -constraints_[i].height(free);
-    }
-    const auto g = [&](std::size_t i, std::size_t j) { return constraints_[i].n.dot(column[j]); };
-    for (std::size_t i = 0; i < k; ++i) {
-      if (lack[i] <= 0) continue;
-      const Vec3 v = free + column[i] * (lack[i] / g(i, i));
-      if (feasible(v)) {
-        best = v;
+    const double eps = 1e-11 * size_;
+    struct Active {
+      const HalfSpace* plane = nullptr;
+      Vec3 column = Vec3::Zero();
+    };
+    std::array<Active, 4> active;
+    std::size_t count = 0;
+    best = free;
+    for (int step = 0; step < 60; ++step) {
+      const HalfSpace* worst = nullptr;
+      double least = -eps;
+      for (const HalfSpace& h : constraints_) {
+        const double height = h.height(best);
+        if (height < least) {
+          least = height;
+          worst = &h;
+        }
+      }
+      if (worst == nullptr) return true;
+      active[count++] = {worst, inverse * worst->n};
+      const auto good = [&](const Vec3& v) {
+        for (std::size_t i = 0; i < count; ++i)
+          if (active[i].plane->height(v) < -eps) return false;
         return true;
+      };
+      // The newcomer, alone, with one of the others, or with two.
+      const Active& c = active[count - 1];
+      const auto lack = [&](const Active& x) { return -x.plane->height(free); };
+      std::array<Active, 4> next;
+      std::size_t size = 0;
+      const double gcc = c.plane->n.dot(c.column);
+      const Vec3 alone = free + (lack(c) / gcc) * c.column;
+      if (good(alone)) {
+        best = alone;
+        next[size++] = c;
       }
-    }
-    for (std::size_t i = 0; i < k; ++i) {
-      for (std::size_t j = i + 1; j < k; ++j) {
-        const double gii = g(i, i), gij = g(i, j), gjj = g(j, j);
-        const double det = gii * gjj - gij * gij;
-        if (!(det > 1e-12 * gii * gjj)) continue;
-        const double li = (lack[i] * gjj - lack[j] * gij) / det;
-        const double lj = (lack[j] * gii - lack[i] * gij) / det;
-        if (li < 0 || lj < 0) continue;
-        const Vec3 v = free + li * column[i] + lj * column[j];
-        if (feasible(v)) {
-          best = v;
-          return true;
-        }
+      for (std::size_t i = 0; i + 1 < count && size == 0; ++i) {
+        const Active& x = active[i];
+        const double gxx = x.plane->n.dot(x.column), gxc = x.plane->n.dot(c.column);
+        const double det = gxx * gcc - gxc * gxc;
+        if (!(det > 1e-12 * gxx * gcc)) continue;
+        const double lx = (lack(x) * gcc - lack(c) * gxc) / det;
+        const double lc = (lack(c) * gxx - lack(x) * gxc) / det;
+        const Vec3 v = free + lx * x.column + lc * c.column;
+        if (lx < 0 || lc < 0 || !good(v)) continue;
+        best = v;
+        next = {x, c};
+        size = 2;
       }
-    }
-    if (k > kMostConstraints) return false;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < k; ++i) {
-      for (std::size_t j = i + 1; j < k; ++j) {
-        for (std::size_t l = j + 1; l < k; ++l) {
-          const Vec3 &n1 = constraints_[i].n, &n2 = constraints_[j].n, &n3 = constraints_[l].n;
-          const Vec3 c23 = n2.cross(n3);
-          const double det = n1.dot(c23);
+      for (std::size_t i = 0; i + 1 < count && size == 0; ++i) {
+        for (std::size_t j = i + 1; j + 1 < count && size == 0; ++j) {
+          const HalfSpace &x = *active[i].plane, &y = *active[j].plane, &z = *c.plane;
+          const Vec3 yz = y.n.cross(z.n), zx = z.n.cross(x.n), xy = x.n.cross(y.n);
+          const double det = x.n.dot(yz);
           if (std::abs(det) < 1e-9) continue;
-          const Vec3 v = (constraints_[i].d * c23 + constraints_[j].d * n3.cross(n1) +
-                          constraints_[l].d * n1.cross(n2)) /
-                         det;
-          const Vec3 r = v - origin;
-          if (r.squaredNorm() > 16 * size_ * size_) continue;
-          const Vec3 f = v - free;
-          const double value = f.dot(q.a * f);
-          if (value < least && feasible(v)) {
-            least = value;
-            best = v;
-          }
+          const Vec3 v = (x.d * yz + y.d * zx + z.d * xy) / det;
+          const Vec3 gradient = q.a * (v - free) / det;  // = Σ multiplier · normal
+          const double tiny = 1e-12 * gradient.norm();
+          if (gradient.dot(yz) < -tiny || gradient.dot(zx) < -tiny || gradient.dot(xy) < -tiny ||
+              !good(v))
+            continue;
+          best = v;
+          next = {active[i], active[j], c};
+          size = 3;
         }
       }
+      if (size == 0) return false;
+      active = next;
+      count = size;
     }
-    return least < std::numeric_limits<double>::infinity();
+    return false;
   }
 
   bool contract(const Entry& e) {
@@ -412,7 +421,7 @@ class Contractor {
 
   const Solid& solid_;
   const std::vector<Vec3>& original_;
-  std::vector<HalfSpace> planes_;
+  Eigen::Matrix<double, Eigen::Dynamic, 4> planes_;  // of the original facets: n, d
   std::unordered_map<std::uint64_t, std::optional<HalfSpace>> tangents_;  // by edge
   double size_ = 0;
   std::vector<Vec3> vertices_;
@@ -425,8 +434,6 @@ class Contractor {
   std::priority_queue<Entry> queue_;
   std::vector<std::array<std::uint32_t, 2>> edges_;
   std::vector<HalfSpace> constraints_;
-  mutable std::vector<Vec3> columns_;
-  mutable std::vector<double> lack_;
 };
 
 }  // namespace
