@@ -59,12 +59,22 @@ Appraisal appraise(std::span<const Vec3> points, const Solid& solid, geom::HullB
   for (const std::uint32_t v : builder.vertices()) box.extend(points[v]);
   const double unit = std::max(1.5 * solid.spacing(), box.diagonal() / density);
   const Vec3 center = box.center();
-  // Where sheets and walls are thinner than the grid, the field is far above the distance.
-  const auto raise = [&](const Vec3& p, double field) {
+  // Where sheets and walls are thinner than the grid, the field is far above the distance: this is
+  // measured, where the field is largest first.
+  static thread_local std::vector<std::pair<double, Vec3>> open;
+  open.clear();
+  const auto measure = [&](double field, const Vec3& p) {
     const double d = solid.distance_above(out.worst, p, field);
     if (d <= out.worst) return;
     out.worst = d;
     out.at = p;
+  };
+  const auto raise = [&](const Vec3& p, double field) {
+    if (field > limit) {
+      measure(field, p);
+    } else {
+      open.emplace_back(field, p);
+    }
   };
   // A point that stands for `share` of the area.
   const auto sample = [&](const Vec3& p, double share) {
@@ -140,6 +150,13 @@ Appraisal appraise(std::span<const Vec3> points, const Solid& solid, geom::HullB
     const double d = probe.distance;
     out.fourth += solid.probe_area() * d * d * d * d;
     raise(p, d);
+  }
+  if (out.worst > limit) return out;
+  const auto less = [](const auto& a, const auto& b) { return a.first < b.first; };
+  std::make_heap(open.begin(), open.end(), less);
+  for (; !open.empty() && open.front().first > out.worst; open.pop_back()) {
+    measure(open.front().first, open.front().second);
+    std::pop_heap(open.begin(), open.end(), less);
   }
   return out;
 }

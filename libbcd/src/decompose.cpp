@@ -28,16 +28,17 @@ struct Tuning {
   std::vector<double> thresholds;  ///< of epsilon, that leaves are cut down to
   std::vector<double> bulks;       ///< weights of the added volume when merging, tried in turn
   int refinements;                 ///< rounds of changing the worst body
+  int rounds;                      ///< of refining what measuring finds
   bool reduce = false;             ///< look for fewer bodies within epsilon by their number
 };
 
 Tuning tuning(Effort effort) {
   switch (effort) {
     case Effort::Fast:
-      return {60000, {.offsets = 5, .reflex_planes = 6, .refinements = 1}, {1.5}, {0.8}, {0.05},
-              12};
+      return {60000, {.offsets = 5, .reflex_planes = 6, .refinements = 1}, {1.5}, {0.8}, {0.05}, 12,
+              1};
     case Effort::Normal:
-      return {200000, {}, {1, 1.25, 1.5, 2, 3}, {0.8}, {0.05, 0.15, 0.02}, 60, true};
+      return {200000, {}, {1, 1.25, 1.5, 2, 3}, {0.8}, {0.05, 0.15, 0.02}, 60, 2, true};
     case Effort::Best:
       break;
   }
@@ -47,6 +48,7 @@ Tuning tuning(Effort effort) {
           {1, 0.85, 0.7, 0.5, 0.35},
           {0.05, 0.15, 0.02, 0.3, 0},
           200,
+          4,
           true};
 }
 
@@ -259,8 +261,8 @@ class Decomposer {
     }
   }
 
-  /// @param hopeless  where the distance before simplification exceeds this, nothing is returned.
-  std::vector<Finished> at_most(std::size_t target, double hopeless = kUnbounded) {
+  /// At most this many bodies, not finished yet; none where twice `epsilon` is not reached.
+  std::vector<Body> gather(std::size_t target, double epsilon = kUnbounded) {
     std::vector<std::vector<Body>> snapshots;
     const double most = tuning_.multiples.back() * static_cast<double>(target);
     for (const double multiple : tuning_.multiples) {
@@ -271,20 +273,21 @@ class Decomposer {
     }
     report("merging", 0.7);
     // What refinement gains is a guess.
-    std::vector<Body> bodies = best_merge(snapshots, target, 2 * hopeless);
-    if (bodies.empty()) {
-      if (hopeless < kUnbounded) return {};
-      bodies = merged(leaf_bodies(), target, kUnbounded);
-    }
+    std::vector<Body> bodies = best_merge(snapshots, target, 2 * epsilon);
+    if (bodies.empty() && epsilon == kUnbounded) bodies = merged(leaf_bodies(), target, kUnbounded);
+    refine(bodies, target);
+    return bodies;
+  }
+
+  std::vector<Finished> at_most(std::size_t target) {
+    std::vector<Body> bodies = gather(target);
+    const double free_cost = 0.25 * worst_of(bodies);
     std::vector<Finished> finished;
-    double free_cost = 0;  // the same for all rounds, so that bodies that stay need no work
     // What measuring finds is refined once more.
-    for (int round = 0; round < 4 && !good(finished, hopeless); ++round) {
-      refine(bodies, target);
-      if (worst_of(bodies) > hopeless) break;
+    for (int round = 0; round < tuning_.rounds; ++round) {
+      if (round > 0) refine(bodies, target);
       report("simplifying", 0.75 + 0.02 * round);
-      if (round == 0) free_cost = 0.25 * (hopeless < kUnbounded ? hopeless : worst_of(bodies));
-      std::vector<Finished> next = finish(bodies, free_cost, hopeless < kUnbounded ? hopeless : 0);
+      std::vector<Finished> next = finish(bodies, free_cost);
       bool misjudged = false;
       bodies.clear();
       for (const Finished& f : next) {
@@ -299,11 +302,10 @@ class Decomposer {
       if (finished.empty() || reach_of(next) < reach_of(finished)) finished = std::move(next);
       if (!misjudged) break;
     }
-    if (finished.empty() || good(finished, hopeless)) return finished;
     const int rounds = tuning_.refinements / 3;
     for (int round = 0; round < rounds; ++round) {
       report("refining", 0.8 + 0.2 * round / rounds);
-      if (!improve(finished, target, free_cost) || good(finished, hopeless)) break;
+      if (!improve(finished, target, free_cost)) break;
     }
     return finished;
   }
@@ -365,9 +367,16 @@ class Decomposer {
       most_leaves = std::max<std::size_t>(200, 8 * fewest);
     }
     report("simplifying", 0.6);
+    return settle(std::move(best), epsilon, std::numeric_limits<std::size_t>::max());
+  }
+
+  /// Finishes bodies; those too far from the solid are taken apart, until all are within epsilon or
+  /// there are more than `most`.
+  std::vector<Finished> settle(std::vector<Body> best, double epsilon, std::size_t most) {
+    const double wished = 0.93 * epsilon;
     std::vector<Finished> out;
-    const std::size_t most_bodies = 200 + 8 * best.size();
-    for (int round = 0; round < 30 && !best.empty() && best.size() + out.size() < most_bodies;
+    const std::size_t most_bodies = std::min(most, 200 + 8 * best.size());
+    for (int round = 0; round < 30 && !best.empty() && best.size() + out.size() <= most_bodies;
          ++round) {
       std::vector<Finished> tried = finish(best, 0.5 * wished, epsilon);
       best.clear();
@@ -411,12 +420,15 @@ class Decomposer {
     std::size_t low = bodies.size() / 3;
     while (bodies.size() > low + 1 + bodies.size() / 40) {
       const std::size_t middle = (low + bodies.size()) / 2;
-      std::vector<Finished> fewer = at_most(middle, epsilon);
-      if (fewer.size() <= middle && good(fewer, epsilon)) {
-        bodies = std::move(fewer);
-      } else {
-        low = middle;
-      }
+      std::vector<Body> rough = gather(middle, epsilon);
+      // Some too far are taken apart.
+      const auto far = static_cast<std::size_t>(std::count_if(
+          rough.begin(), rough.end(), [&](const Body& b) { return b.appraisal.worst > epsilon; }));
+      const bool worth = !rough.empty() && rough.size() + far < bodies.size();
+      std::vector<Finished> fewer;
+      if (worth) fewer = settle(std::move(rough), epsilon, bodies.size() - 1);
+      if (fewer.size() > middle || !good(fewer, epsilon)) low = middle;
+      if (fewer.size() < bodies.size() && good(fewer, epsilon)) bodies = std::move(fewer);
     }
   }
 
