@@ -420,16 +420,23 @@ class Decomposer {
     std::size_t low = bodies.size() / 3;
     while (bodies.size() > low + 1 + bodies.size() / 40) {
       const std::size_t middle = (low + bodies.size()) / 2;
-      std::vector<Body> rough = gather(middle, epsilon);
-      // Some too far are taken apart.
-      const auto far = static_cast<std::size_t>(std::count_if(
-          rough.begin(), rough.end(), [&](const Body& b) { return b.appraisal.worst > epsilon; }));
-      const bool worth = !rough.empty() && rough.size() + far < bodies.size();
-      std::vector<Finished> fewer;
-      if (worth) fewer = settle(std::move(rough), epsilon, bodies.size() - 1);
-      if (fewer.size() > middle || !good(fewer, epsilon)) low = middle;
-      if (fewer.size() < bodies.size() && good(fewer, epsilon)) bodies = std::move(fewer);
+      if (!replace(bodies, middle, epsilon)) low = middle;
     }
+  }
+
+  /// Other bodies within epsilon if there are fewer, looked for by merging down to `target`.
+  /// @return whether there are that few.
+  bool replace(std::vector<Finished>& bodies, std::size_t target, double epsilon) {
+    if (target == 0) return false;
+    std::vector<Body> rough = gather(target, epsilon);
+    // Some too far are taken apart.
+    const auto far = static_cast<std::size_t>(std::count_if(
+        rough.begin(), rough.end(), [&](const Body& b) { return b.appraisal.worst > epsilon; }));
+    if (rough.empty() || rough.size() + far >= bodies.size()) return false;
+    std::vector<Finished> fewer = settle(std::move(rough), epsilon, bodies.size() - 1);
+    if (fewer.size() >= bodies.size() || !good(fewer, epsilon)) return false;
+    bodies = std::move(fewer);
+    return bodies.size() <= target;
   }
 
   /// Two or more bodies in place of one; all its leaves, if wished.
