@@ -21,8 +21,6 @@
 #include <kaboum/io/convex_io.h>
 #include <kaboum/verify/cover.h>
 
-#include <sys/resource.h>
-
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -31,21 +29,16 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "common.h"
 #include "reach.h"
 
 namespace {
 
 using namespace kaboum;  // NOLINT: a program
+using benchmark::user_seconds;
 
 const std::map<std::string, bcd::Effort> kEfforts{
     {"fast", bcd::Effort::Fast}, {"normal", bcd::Effort::Normal}, {"best", bcd::Effort::Best}};
-
-double user_seconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_utime.tv_sec) +
-         1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
-}
 
 std::vector<std::string> words(const std::string& list) {
   std::vector<std::string> out;

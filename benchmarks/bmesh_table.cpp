@@ -11,8 +11,6 @@
 #include <kaboum/geom/prepare.h>
 #include <kaboum/io/mesh_io.h>
 
-#include <sys/resource.h>
-
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -21,9 +19,12 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "common.h"
+
 namespace {
 
 using namespace kaboum;  // NOLINT: a program
+using benchmark::user_seconds;
 
 struct Method {
   bmesh::Cost cost;
@@ -34,18 +35,13 @@ const std::map<std::string, Method> kMethods{
     {"distance", {bmesh::Cost::Distance, bmesh::Effort::Normal}},
     {"distance-fast", {bmesh::Cost::Distance, bmesh::Effort::Fast}},
     {"distance-best", {bmesh::Cost::Distance, bmesh::Effort::Best}},
+    {"mean", {bmesh::Cost::Mean, bmesh::Effort::Fast}},
+    {"mean-normal", {bmesh::Cost::Mean, bmesh::Effort::Normal}},
     {"planes", {bmesh::Cost::Planes, bmesh::Effort::Fast}},
     {"planes-normal", {bmesh::Cost::Planes, bmesh::Effort::Normal}},
     {"planes-adapted", {bmesh::Cost::PlanesAdapted, bmesh::Effort::Fast}},
     {"planes-diagonal", {bmesh::Cost::PlanesDiagonal, bmesh::Effort::Fast}},
     {"triangles", {bmesh::Cost::Triangles, bmesh::Effort::Fast}}};
-
-double user_seconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_utime.tv_sec) +
-         1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
-}
 
 /// Mean distance of points spread over a's area from b: about `count` points, one at the middle of
 /// each of the equal parts that a triangle's share is cut into.

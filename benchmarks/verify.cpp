@@ -8,7 +8,6 @@
 #include <kaboum/bmesh/decimate.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/verify/inclusion.h>
-#include <sys/resource.h>
 #include <tbb/global_control.h>
 
 #include <cstdio>
@@ -16,21 +15,16 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "common.h"
 #include "support/shapes.h"
 #include "verify/pairs.h"
 
 namespace {
 
 using namespace kaboum;
+using benchmark::user_seconds;
 using geom::Mesh;
 using verify::Answer;
-
-double user_seconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_utime.tv_sec) +
-         1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
-}
 
 class Table {
  public:

@@ -48,6 +48,7 @@ const std::map<std::string, bmesh::Direction> kDirections{{"outer", bmesh::Direc
                                                           {"inner", bmesh::Direction::Inner},
                                                           {"any", bmesh::Direction::Any}};
 const std::map<std::string, bmesh::Cost> kCosts{{"distance", bmesh::Cost::Distance},
+                                                {"mean", bmesh::Cost::Mean},
                                                 {"planes", bmesh::Cost::Planes},
                                                 {"planes-adapted", bmesh::Cost::PlanesAdapted},
                                                 {"planes-diagonal", bmesh::Cost::PlanesDiagonal},
@@ -65,8 +66,7 @@ std::string name_of(const std::map<std::string, T>& names, T value) {
 }
 
 void describe(CLI::App& app, Options& o) {
-  CLI::Option* input =
-      app.add_option("INPUT", o.input, "Mesh to simplify (- for stdin)")->type_name("FILE");
+  app.add_option("INPUT", o.input, "Mesh to simplify (- for stdin)")->type_name("FILE");
   app.add_option(
          "-o,--output", o.output,
          "Where the result goes (- for stdout); {vertices} in the name stands for the wished "
@@ -88,20 +88,15 @@ void describe(CLI::App& app, Options& o) {
                                         "separated by commas, without blanks";
       })
       ->type_name("N[,N...]");
-  CLI::Option* progressive =
-      app.add_option(
-             "--progressive", o.progressive,
-             "Also write the mesh, all steps and the levels of --vertices to this file: any "
-             "number of vertices can be taken from it later, and bound-verify --progressive "
-             "checks it")
-          ->type_name("FILE");
-  CLI::Option* from =
-      app.add_option("--from", o.from,
-                     "Instead of INPUT: take results from this progressive file, without computing "
-                     "anything anew")
-          ->type_name("FILE")
-          ->excludes(input)
-          ->excludes(progressive);
+  app.add_option("--progressive", o.progressive,
+                 "Also write the mesh, all steps and the levels of --vertices to this file: any "
+                 "number of vertices can be taken from it later, and bound-verify --progressive "
+                 "checks it")
+      ->type_name("FILE");
+  app.add_option("--from", o.from,
+                 "Instead of INPUT: take results from this progressive file, without computing "
+                 "anything anew")
+      ->type_name("FILE");
   app.add_option("--ratio", o.ratio,
                  "Stop at this fraction of the input's welded vertices (0 < R < 1)")
       ->check([](const std::string& s) {
@@ -123,11 +118,12 @@ void describe(CLI::App& app, Options& o) {
   app.add_option(
          "--cost", o.cost_name,
          "Cost of a contraction. distance: the measured distance, for results mostly nearer "
-         "to the input; much slower, and may stop at more vertices [planes]")
-      ->check(
-          CLI::IsMember({"planes", "planes-adapted", "planes-diagonal", "triangles", "distance"})
-              .description(""))
-      ->type_name("planes|planes-adapted|planes-diagonal|triangles|distance");
+         "to the input; much slower, and may stop at more vertices. distance is for a small "
+         "largest distance, mean for a small mean distance [planes]")
+      ->check(CLI::IsMember(
+                  {"planes", "planes-adapted", "planes-diagonal", "triangles", "distance", "mean"})
+                  .description(""))
+      ->type_name("planes|planes-adapted|planes-diagonal|triangles|distance|mean");
   app.add_option("--effort", o.effort_name,
                  "Tightness against time. fast: contractions only; normal and best: vertices are "
                  "also pulled back towards the input and edges flipped, many times slower (not "
@@ -145,7 +141,7 @@ void describe(CLI::App& app, Options& o) {
   app.add_option("--sharp-angle", o.sharp_angle,
                  "Edges whose normals differ by more degrees than this resist growing spikes; 180: "
                  "none. Not "
-                 "used by --cost distance")
+                 "used by --cost distance and mean")
       ->check(CLI::Range(0.0, 180.0).description(""))
       ->capture_default_str()
       ->type_name("DEG");
@@ -166,12 +162,6 @@ void describe(CLI::App& app, Options& o) {
   app.add_option("--output-format", o.output_format, "Format of the result [by extension]")
       ->type_name("NAME");
   tools::add_common_options(app, o.common);
-  // What makes a result is in the file.
-  for (const char* name :
-       {"--direction", "--ratio", "--epsilon", "--cost", "--effort", "--as-printed", "--precision",
-        "--sharp-angle", "--keep-convex", "--drop-sheets", "--require-closed", "--keep-orientation",
-        "--verify", "--log", "--input-format"})
-    from->excludes(app.get_option(name));
   app.footer(
       "Give at least one of --vertices, --ratio and --epsilon; the first one reached stops. With\n"
       "--from: --vertices.\n"
@@ -795,9 +785,16 @@ int main(int argc, char** argv) {
   describe(app, options);
   return tools::run(app, argc, argv, [&] {
     const tools::ThreadLimit limit(options.common.threads);
-    if (!options.from.empty())
+    if (!options.from.empty()) {
+      // What makes a result is in the file.
+      tools::require_absent(
+          app, "--from",
+          {"INPUT", "--progressive", "--direction", "--ratio", "--epsilon", "--cost", "--effort",
+           "--as-printed", "--precision", "--sharp-angle", "--keep-convex", "--drop-sheets",
+           "--require-closed", "--keep-orientation", "--verify", "--log", "--input-format"});
       return tools::extract_levels({options.from, options.output, options.output_format,
                                     options.vertices, options.depfile, options.common});
+    }
     return Job(options).run();
   });
 }

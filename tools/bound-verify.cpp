@@ -520,7 +520,7 @@ int main(int argc, char** argv) {
                        "rlmdl) all along PATH (.csv, .json)")
           ->expected(3)
           ->type_name("ROBOT PATH SWEPT");
-  CLI::Option* progressive = relation->add_flag(
+  relation->add_flag(
       "--progressive", o.progressive,
       "APPROXIMATION is a progressive file of bmesh-decimate: all its steps and levels");
   relation->require_option(1);
@@ -592,9 +592,6 @@ int main(int argc, char** argv) {
                ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000'000}).description(""))
                ->capture_default_str()
                ->type_name("N"));
-  for (const char* name : {"--claims", "--epsilon", "--prepare", "--drop-sheets", "--set",
-                           "--witness", "--approximation-format", "--max-contacts"})
-    progressive->excludes(app.get_option(name));
   tools::add_common_options(app, o.common);
   app.footer(
       "--sweep: every triangle of the links' meshes, every box, cylinder and sphere, at every\n"
@@ -605,8 +602,10 @@ int main(int argc, char** argv) {
       "it; 4 output failed; 6 internal error; 7 undecided within limits.");
   return tools::run(app, argc, argv, [&] {
     if (!o.sweep.files.empty()) return check_sweep(o);
-    if (o.progressive)
-      return tools::verify_progressive(o.original, o.original_format, o.approximation, o.common);
-    return check(o);
+    if (!o.progressive) return check(o);
+    tools::require_absent(app, "--progressive",
+                          {"--claims", "--epsilon", "--prepare", "--drop-sheets", "--set",
+                           "--witness", "--approximation-format", "--max-contacts"});
+    return tools::verify_progressive(o.original, o.original_format, o.approximation, o.common);
   });
 }

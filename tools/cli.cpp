@@ -170,6 +170,13 @@ double peak_megabytes() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
+void require_absent(const CLI::App& app, const std::string& option,
+                    const std::vector<std::string>& others) {
+  for (const std::string& other : others)
+    if (app.get_option(other)->count() != 0)
+      throw Error(ErrorCode::InvalidArgument, option + " cannot be joined with " + other);
+}
+
 void write_json(const std::string& path, const Json& json) {
   const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   io::write_file(path, text);

@@ -32,6 +32,11 @@ const char* version();
 /// Parses the command line and runs `body`; prints errors on stderr and returns the exit code.
 int run(CLI::App& app, int argc, char** argv, const std::function<int()>& body);
 
+/// Refuses options that mean nothing beside `option`.
+/// @throws Error{InvalidArgument}
+void require_absent(const CLI::App& app, const std::string& option,
+                    const std::vector<std::string>& others);
+
 /// Options that every tool has.
 struct CommonOptions {
   std::string report;

@@ -68,9 +68,10 @@ class Decimator {
         sign_(options.direction == Direction::Inner ? -1 : 1),
         constrained_(options.direction != Direction::Any),
         anticipation_(options.cost == Cost::Distance ? kAnticipationDistance
-                      : options.cost == Cost::Planes ? kAnticipationPlanes
-                                                     : 1),
-        regularisation_(options.cost == Cost::Distance ? kRegularisationDistance : kRegularisation),
+                      : options.cost == Cost::Planes || options.cost == Cost::Mean
+                          ? kAnticipationPlanes
+                          : 1),
+        regularisation_(by_area() ? kRegularisationDistance : kRegularisation),
         origin_(geom::bounding_box(input.mesh).center()),
         diagonal_(geom::bounding_box(input.mesh).diagonal()),
         reach_(reach(geom::bounding_box(input.mesh))),
@@ -107,11 +108,11 @@ class Decimator {
   void nest_in(const Mesh& level) {
     bound_ = &level;
     if (solid_) solid_.emplace(level);
-    if (options_.cost == Cost::Distance) {
+    if (pulls_back_meanwhile()) {
       if (optimiser_) start_optimising();
       return;
     }
-    // Contractions are measured with cost distance only; the next rounds begin anew.
+    // Contractions to come are not measured; the next rounds begin anew.
     measuring_ = false;
     optimiser_.reset();
     deviation_.reset();
@@ -126,6 +127,17 @@ class Decimator {
   // ---- set-up
   // -------------------------------------------------------------------------------------
 
+  /// Whether deviations are followed while contracting, not only in the end.
+  [[nodiscard]] bool pulls_back_meanwhile() const {
+    return options_.cost == Cost::Distance ||
+           (options_.cost == Cost::Mean && options_.effort != Effort::Fast);
+  }
+
+  /// Whether planes count by the area of their triangles.
+  [[nodiscard]] bool by_area() const {
+    return options_.cost == Cost::Distance || options_.cost == Cost::Mean;
+  }
+
   [[nodiscard]] Vec3 local(std::uint32_t v) const { return position_[v] - origin_; }
 
   void init_quadrics(const Mesh& mesh) {
@@ -134,14 +146,13 @@ class Decimator {
       Quadric q = options_.cost == Cost::Triangles
                       ? point_quadric((local(tri[0]) + local(tri[1]) + local(tri[2])) / 3.0)
                       : plane_quadric(local(tri[0]), normal_[t]);
-      if (options_.cost == Cost::Distance) {
+      if (by_area()) {
         const Vec3& a = position_[tri[0]];
         q *= 0.5 * (position_[tri[1]] - a).cross(position_[tri[2]] - a).norm();
       }
       for (const std::uint32_t v : tri) quadric_[v] += q;
     }
-    if (options_.cost != Cost::Triangles && options_.cost != Cost::Distance &&
-        options_.sharp_angle < 180)
+    if (options_.cost != Cost::Triangles && !by_area() && options_.sharp_angle < 180)
       add_sharp_edges(mesh);
   }
 
@@ -176,6 +187,7 @@ class Decimator {
         break;
       }
       case Cost::Distance:
+      case Cost::Mean:
       case Cost::Planes:
       case Cost::Triangles:
         break;
@@ -236,12 +248,12 @@ class Decimator {
 
   Stop contract_all() {
     const std::size_t target = target_.value_or(0);
-    if (options_.cost != Cost::Distance) {
+    if (!pulls_back_meanwhile()) {
       contract_to(target);
     } else {
       if (!measuring_) {
         // Small deviations need no measuring: the quadrics order the contractions as well.
-        contract_to(kMeasureFrom * target, options_.epsilon
+        contract_to(kMeasureFrom * target, options_.epsilon && options_.cost == Cost::Distance
                                                ? kMeasureFromEpsilon * *options_.epsilon
                                                : std::numeric_limits<double>::infinity());
         start_measuring();
@@ -323,7 +335,7 @@ class Decimator {
   // -------------------------------------------------------------------------
 
   void start_measuring() {
-    deviation_.emplace(original_);
+    deviation_.emplace(original_, options_.cost == Cost::Mean ? 2 : 4);
     deviation_->assign(position_, mesh_);
     hint_.assign(position_.size(), 0);
     measuring_ = true;
@@ -335,6 +347,8 @@ class Decimator {
   bool measure(BucketQueue::Entry& e) {
     describe_change();
     describe_points();
+    if (options_.cost == Cost::Mean)  // whose cost is the quadric's
+      return !spikes() || reject(statistics_.rejected_spike);
     const double limit = 1.2 * std::max(queue_.lowest_key(), candidate_.cost);
     const double squared =
         deviation_->largest(removed_, added_, points_, hint_[e.a], limit * limit);
@@ -346,7 +360,7 @@ class Decimator {
       queue_.push(candidate_.cost, e);
       return false;
     }
-    if (spikes()) return reject(statistics_.rejected_spike);
+    if (candidate_.cost > kSpike * diagonal_ && spikes()) return reject(statistics_.rejected_spike);
     e.measured = around_[e.a] + around_[e.b];
     return true;
   }
@@ -393,10 +407,9 @@ class Decimator {
 
   [[nodiscard]] bool spikes() {
     const double least = kSpike * diagonal_;
-    if (candidate_.cost <= least) return false;
     constexpr double kNoLimit = std::numeric_limits<double>::infinity();
     std::uint32_t& hint = hint_[candidate_.a];
-    const double out = deviation_->largest({}, added_, points_, hint, kNoLimit);
+    const double out = deviation_->largest({}, added_, points_, hint, kNoLimit);  // squared
     return out > least * least &&
            out > kSpikeRatio * kSpikeRatio *
                      deviation_->largest(removed_, added_, {}, hint, kNoLimit);

@@ -5,8 +5,9 @@
 
 namespace kaboum::bmesh {
 
-Deviation::Deviation(const geom::Mesh& original)
+Deviation::Deviation(const geom::Mesh& original, int power)
     : original_(original),
+      power_(power),
       point_(original.vertices),
       weight_(original.vertices.size(), 0),
       head_(original.triangles.size(), kNone) {
@@ -109,7 +110,7 @@ Deviation::Energy Deviation::energy(std::span<const std::uint32_t> removed,
   Energy e;
   const auto add = [&](double squared, double weight) {
     // In units of the diagonal, lest the powers overflow.
-    e.sum += (weight * unit_) * (squared * unit_) * (squared * unit_);
+    e.sum += (weight * unit_) * (squared * unit_) * (power_ == 4 ? squared * unit_ : 1);
     e.squared = std::max(e.squared, squared);
     return e.sum <= limit;
   };

@@ -25,13 +25,15 @@ class Deviation {
     double weight;
   };
   struct Energy {
-    double sum = 0;      ///< Σ weight · distance⁴, in units of the diagonal
+    double sum = 0;      ///< Σ weight · distance^power, in units of the diagonal
     double squared = 0;  ///< largest squared distance [length²]
   };
   static constexpr std::uint32_t kNone = ~0U;
 
   /// @pre the mesh has triangles.
-  explicit Deviation(const geom::Mesh& original);
+  /// @param power  of the distances in the energy: 4, which goes after the largest, or 2.
+  explicit Deviation(const geom::Mesh& original, int power = 4);
+  [[nodiscard]] int power() const { return power_; }
 
   /// Gives every sample to the current triangle nearest to it.
   void assign(std::span<const Vec3> position, const Connectivity& mesh);
@@ -78,6 +80,7 @@ class Deviation {
                            double enough, std::size_t* which);
 
   Proximity original_;
+  int power_;
   double unit_;  // 1 / diagonal²
   std::vector<Vec3> point_;
   std::vector<double> weight_;  // area of the original that the sample stands for

@@ -137,7 +137,7 @@ void Optimiser::linearise(const Vec3& apex, double scale) {
   objective_ = {};
   Vec3 b = Vec3::Zero();
   const auto add = [&](const Vec3& n, double lambda, double residual, double weight) {
-    const double w = weight * (residual * residual / scale + 1e-4);
+    const double w = weight * (deviation_.power() == 4 ? residual * residual / scale + 1e-4 : 1);
     const Vec3 g = lambda * n;
     objective_.xx += w * g.x() * g.x(), objective_.xy += w * g.x() * g.y();
     objective_.xz += w * g.x() * g.z(), objective_.yy += w * g.y() * g.y();

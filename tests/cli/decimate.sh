@@ -14,7 +14,7 @@ expect 0 '' "$D" "$BRACKET" -o in.obj --direction inner --vertices 500 --quiet
 [ "$(grep -c '^v ' in.obj)" = 500 ] || fail "inner: $(grep -c '^v ' in.obj) vertices instead of 500"
 expect 0 'within' "$D" "$BRACKET" -o eps.ply --epsilon 0.5%
 expect 0 '' "$D" "$BRACKET" -o any.off --direction any --ratio 0.5
-for cost in planes planes-adapted planes-diagonal triangles; do
+for cost in planes planes-adapted planes-diagonal triangles mean; do
   expect 0 'certified' "$D" "$BRACKET" -o c.glb --ratio 0.3 --cost $cost
 done
 for effort in fast normal; do
@@ -44,7 +44,8 @@ expect 1 'cannot be reached' "$D" two.off -o two-out.off --vertices 4
 # So it is in every mode: the reason is given, the result is written, and it is what it claims to be.
 for direction in outer inner; do
   for method in 'planes fast' 'planes-adapted fast' 'planes-diagonal fast' 'triangles fast' 'distance fast' \
-    'planes normal' 'distance normal' 'distance best'; do
+    'planes normal' 'distance normal' 'distance best' \
+    'mean fast' 'mean normal'; do
     rm -f two-out.off
     # shellcheck disable=SC2086
     expect 1 'cannot be reached: no further contraction is possible at 8' "$D" two.off -o two-out.off --vertices 6 \
@@ -90,8 +91,8 @@ for bad in 300,300 300, ,300 300,3 300,x '300, 200' 99999999999999999999; do
   expect 2 'different ones separated by commas' "$D" "$BRACKET" --vertices "$bad" -o 'x-{vertices}.ply'
 done
 expect 2 'INPUT, or --from' "$D" --vertices 300 -o x.ply
-expect 2 '' "$D" --from s.pm --vertices 300 -o x.ply --cost planes
-expect 2 '' "$D" "$BRACKET" --from s.pm --vertices 300 -o x.ply
+expect 2 'joined with --cost' "$D" --from s.pm --vertices 300 -o x.ply --cost planes
+expect 2 'joined with INPUT' "$D" "$BRACKET" --from s.pm --vertices 300 -o x.ply
 expect 2 'needs --vertices' "$D" --from s.pm -o x.ply
 expect 2 'overwrite' "$D" --from s.pm --vertices 300 -o s.pm --output-format ply
 expect 3 'not a progressive file' "$D" --from s.json --vertices 300 -o x.ply

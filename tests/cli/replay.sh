@@ -21,7 +21,7 @@ expect 0 'contains that of the level before' "$V" --progressive "$BRACKET" p.pm 
 grep -q '"relation": "progressive"' p.json || fail "report"
 "$D" "$BRACKET" --direction inner --vertices 900,500 --progressive i.pm --quiet || fail "decimation"
 expect 0 'contained in that of the level before' "$V" --progressive "$BRACKET" i.pm
-expect 2 '' "$V" --progressive "$BRACKET" p.pm --epsilon 1%
+expect 2 'joined with --epsilon' "$V" --progressive "$BRACKET" p.pm --epsilon 1%
 expect 3 'not a progressive file' "$V" --progressive "$BRACKET" outer.log
 size=$(wc -c <p.pm)
 level=$((size - 8)) # the last level's number of steps

@@ -13,7 +13,8 @@ namespace kaboum::bmesh {
 
 /// What an edge contraction is said to cost. [gaschler2016] §4.3.2, §4.3.3.
 enum class Cost {
-  Distance,        ///< the measured distance between result and original, both ways
+  Distance,        ///< the measured distance between result and original, both ways: the maximum
+  Mean,            ///< squared distances to the planes around, integrated over their area
   Planes,          ///< sum of squared distances to the planes around, Eq. 4.4, 4.5
   PlanesAdapted,   ///< the same with the constant term adapted
   PlanesDiagonal,  ///< the same with all coefficients adapted, Eq. 4.6, 4.7
