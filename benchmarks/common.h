@@ -24,7 +24,8 @@ inline double peak_megabytes() {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
-/// Every triangle cut into four at the middles of its edges.
+/// Every triangle cut into four near the middles of its edges: off them by 2 % of the edge's
+/// length, lest the four be coplanar, which is easier to simplify than a scan of that size.
 inline geom::Mesh subdivided(const geom::Mesh& mesh) {
   geom::Mesh out;
   out.vertices = mesh.vertices;
@@ -32,7 +33,13 @@ inline geom::Mesh subdivided(const geom::Mesh& mesh) {
   const auto between = [&](std::uint32_t a, std::uint32_t b) {
     const auto [it, fresh] =
         middle.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(out.vertices.size()));
-    if (fresh) out.vertices.emplace_back(0.5 * mesh.vertices[a] + 0.5 * mesh.vertices[b]);
+    if (fresh) {
+      const geom::Vec3 &p = mesh.vertices[a], &q = mesh.vertices[b];
+      const std::uint32_t hash = (std::min(a, b) * 2654435761U) ^ (std::max(a, b) * 40503U);
+      geom::Vec3 off;
+      for (int k = 0; k < 3; ++k) off[k] = ((hash >> (8 * k)) & 255U) / 127.5 - 1;
+      out.vertices.emplace_back(0.5 * (p + q) + 0.02 * (q - p).norm() * off);
+    }
     return it->second;
   };
   for (const auto& [a, b, c] : mesh.triangles) {

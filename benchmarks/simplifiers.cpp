@@ -10,7 +10,7 @@
 // simplification alone (for ours all of bmesh::decimate, for CGAL edge_collapse without making its
 // mesh), `seconds_all` includes making the method's own mesh and taking the result out.
 // Distances to the prepared input are in percent of the diagonal: maxima certified upper bounds
-// (gap 1 %), means from samples. --subdivided cuts every triangle into four first.
+// (gap 1 %), means from samples. --subdivided cuts every triangle into four first (common.h).
 // CGAL's part is GPL: this program is never installed.
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>

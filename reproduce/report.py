@@ -86,6 +86,17 @@ def written(path, header, rows):
         writer.writerows(rows)
 
 
+def table_row(keys, by, percent, mm=None):
+    """A row of the CSV of a distance table; `mm` are millimetres that the thesis prints."""
+    return [*keys, by, *(mm[key] if mm else "" for key in thesis.DISTANCES),
+            *(percent[key] for key in (*thesis.DISTANCES, "hausdorff"))]
+
+
+def write_table(path, keys, rows):
+    written(path, [*keys, "by", *(f"{key}_mm" for key in thesis.DISTANCES),
+                   *(f"{key}_percent" for key in (*thesis.DISTANCES, "hausdorff"))], rows)
+
+
 def robots(context, document):
     """The models that stand for the robots of the thesis's tables; says which are not there."""
     here = [model for model in context.models if model.thesis in thesis.diagonals()]
@@ -134,22 +145,18 @@ def table_4_2_section(context, document):
             for n in TABLE_COUNTS:
                 for row in (r for r in mm if (r.model, r.direction, r.vertices) == (model.thesis, direction, n)):
                     lines.append([count(n), "thesis", *distances(row.percent), ""])
-                    table.append([model.thesis, direction, n, "thesis", *(row.mm[key] for key in thesis.DISTANCES),
-                                  *(row.percent[key] for key in (*thesis.DISTANCES, "hausdorff"))])
+                    table.append(table_row([model.thesis, direction, n], "thesis", row.percent, row.mm))
                 if n not in context.counts(model, TABLE_COUNTS):
                     continue
                 for cost in ("planes-adapted", OURS):
                     row = context.row(Run(model, direction, cost, vertices=n))
                     lines.append(result_line(row, n, cost))
                     if row:
-                        table.append([model.name, direction, n, cost, *[""] * 4,
-                                      *(row[key] for key in (*thesis.DISTANCES, "hausdorff"))])
+                        table.append(table_row([model.name, direction, n], cost, row))
             document.paragraph(f"{direction.capitalize()} bounding meshes")
             document.table(["vertices", "by", *HEADER, "user time"], lines)
     if not context.collecting:
-        written(context.folder / "table-4-2.csv",
-                ["model", "direction", "vertices", "by", *(f"{key}_mm" for key in thesis.DISTANCES),
-                 *(f"{key}_percent" for key in (*thesis.DISTANCES, "hausdorff"))], table)
+        write_table(context.folder / "table-4-2.csv", ["model", "direction", "vertices"], table)
 
 
 def same_share_section(context, document):
@@ -179,9 +186,18 @@ def table_b_1_section(context, document):
     document.heading("Table B.1: cost functions, outer")
     document.paragraph(
         "The thesis's costs as we run them (bmesh-decimate --effort fast), each beside the thesis's "
-        "figures for it, then our cost, the measured distance, as bmesh-decimate runs it by default. CSV: "
+        "figures for it, then our cost, the measured distance, with --effort normal. CSV: "
         "table-b-1.csv.")
     table = []
+
+    def add_ours(model, n, cost, lines):
+        if n not in context.counts(model, TABLE_COUNTS):
+            return
+        row = context.row(Run(model, "outer", cost, vertices=n))
+        lines.append(result_line(row, n, cost))
+        if row:
+            table.append(table_row([model.name, n, cost], "kaboum", row))
+
     for model in robots(context, document):
         lines = []
         for n in TABLE_COUNTS:
@@ -189,26 +205,13 @@ def table_b_1_section(context, document):
                 for row in (r for r in thesis.table_b_1()
                             if (r.model, r.cost, r.vertices) == (model.thesis, cost, n)):
                     lines.append([count(n), f"thesis, {cost}", *distances(row.percent), ""])
-                    table.append([model.thesis, n, cost, "thesis", *(row.mm[key] for key in thesis.DISTANCES),
-                                  *(row.percent[key] for key in (*thesis.DISTANCES, "hausdorff"))])
-                if n in context.counts(model, TABLE_COUNTS):
-                    row = context.row(Run(model, "outer", cost, vertices=n))
-                    lines.append(result_line(row, n, cost))
-                    if row:
-                        table.append([model.name, n, cost, "kaboum", *[""] * 4,
-                                      *(row[key] for key in (*thesis.DISTANCES, "hausdorff"))])
-            if n in context.counts(model, TABLE_COUNTS):
-                row = context.row(Run(model, "outer", OURS, vertices=n))
-                lines.append(result_line(row, n, OURS))
-                if row:
-                    table.append([model.name, n, OURS, "kaboum", *[""] * 4,
-                                  *(row[key] for key in (*thesis.DISTANCES, "hausdorff"))])
+                    table.append(table_row([model.thesis, n, cost], "thesis", row.percent, row.mm))
+                add_ours(model, n, cost, lines)
+            add_ours(model, n, OURS, lines)
         document.heading(f"{model.thesis} ({model.title} here)", 3)
         document.table(["vertices", "by", *HEADER, "user time"], lines)
     if not context.collecting:
-        written(context.folder / "table-b-1.csv",
-                ["model", "vertices", "cost", "by", *(f"{key}_mm" for key in thesis.DISTANCES),
-                 *(f"{key}_percent" for key in (*thesis.DISTANCES, "hausdorff"))], table)
+        write_table(context.folder / "table-b-1.csv", ["model", "vertices", "cost"], table)
 
 
 def figures_section(context, document):
@@ -245,7 +248,7 @@ def figures_section(context, document):
 
 def pictures_section(context, document):
     document.heading("Figures 4.6, B.1 and B.2: series of bounding meshes")
-    document.paragraph("Our default cost. Orange encloses the original, blue lies inside it. "
+    document.paragraph("--cost distance --effort normal. Orange encloses the original, blue lies inside it. "
                        "ε: certified Hausdorff distance in percent of the diagonal.")
     figures = {"MITSUBISHI": "Figure 4.6", "KUKA": "Figure B.1", "COMAU": "Figure B.2"}
     for model in (m for m in context.models if m.thesis in figures or not (m.thesis or m.robot)):

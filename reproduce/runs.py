@@ -30,11 +30,11 @@ class Run:
     epsilon: float = 0
 
     def options(self):
-        # The thesis contracts and does nothing else; our cost runs as bmesh-decimate does by default.
-        effort = ["--effort", "fast"] if self.cost in THESIS_COSTS else []
+        # The thesis contracts and does nothing else; our cost is for tightness.
+        effort = "fast" if self.cost in THESIS_COSTS else "normal"
         goal = ["--vertices", str(self.vertices)] if self.vertices else ["--epsilon",
                                                                          f"{self.epsilon:g}%"]
-        return ["--direction", self.direction, "--cost", self.cost, *effort, *goal, "--drop-sheets"]
+        return ["--direction", self.direction, "--cost", self.cost, "--effort", effort, *goal, "--drop-sheets"]
 
     def title(self):
         goal = f"{self.vertices}" if self.vertices else f"{self.epsilon:g}pc"
