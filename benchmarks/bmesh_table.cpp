@@ -175,7 +175,12 @@ int main(int argc, char** argv) try {
     } else if (args[i] == "--epsilon") {
       for (const double e : numbers(value())) table.targets.push_back({0, e});
     } else if (args[i] == "--direction") {
-      table.direction = value() == "inner" ? bmesh::Direction::Inner : bmesh::Direction::Outer;
+      {
+        const std::string d = value();
+        table.direction = d == "inner" ? bmesh::Direction::Inner
+                          : d == "any" ? bmesh::Direction::Any
+                                       : bmesh::Direction::Outer;
+      }
     } else if (args[i] == "--json") {
       json = value();
     } else {

@@ -45,6 +45,15 @@ class Connectivity {
     for (std::uint32_t k = 0; k < 3; ++k) insert(corners[k], 3 * t + k);
   }
 
+  /// Gives triangle t, which may have vanished, the corners that it had at another time.
+  void restore(std::uint32_t t, const geom::Triangle& corners) {
+    if (triangles_[t] == corners) return;
+    if (alive(t))
+      for (std::uint32_t k = 0; k < 3; ++k) remove(triangles_[t][k], 3 * t + k);
+    triangles_[t] = corners;
+    for (std::uint32_t k = 0; k < 3; ++k) insert(corners[k], 3 * t + k);
+  }
+
   /// Replaces `gone` by `kept` everywhere; triangles with both disappear.
   void contract(std::uint32_t kept, std::uint32_t gone) {
     std::uint32_t corners = detach(gone);

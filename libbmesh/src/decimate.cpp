@@ -58,6 +58,10 @@ constexpr std::array<double, 4> kStages{2.8, 2.0, 1.4, 1.2};
 /// farther than the original is from the new triangles there.
 constexpr double kSpike = 0.05, kSpikeRatio = 3;
 
+/// Samples of the original lie no farther apart than this share of the error bound, within reason,
+/// where contractions move the vertices around.
+constexpr double kSpacing = 0.7;
+
 // Rounds of optimisation, at most: in the end, and at each stage before.
 constexpr int kFinalPasses = 6, kFinalPassesBest = 12, kStagePasses = 3;
 
@@ -65,6 +69,7 @@ class Decimator {
  public:
   Decimator(const geom::Prepared& input, const DecimateOptions& options)
       : options_(options),
+        joint_(options.epsilon && options.cost == Cost::Distance && options.effort != Effort::Fast),
         sign_(options.direction == Direction::Inner ? -1 : 1),
         constrained_(options.direction != Direction::Any),
         anticipation_(options.cost == Cost::Distance ? kAnticipationDistance
@@ -281,6 +286,49 @@ class Decimator {
       optimise(kStagePasses);
       contract_to(target);
     }
+    if (!joint_ || !optimiser_) return;
+    for (std::size_t before = vertices_ + vertices_;
+         vertices_ > target && 100 * vertices_ < 99 * before;) {
+      before = vertices_;
+      collapse_to(target);
+      optimise(kStagePasses);
+    }
+  }
+
+  /// Contracts edges together with moves of the vertices around.
+  void collapse_to(std::size_t target) {
+    struct Edge {
+      double cost;
+      std::uint32_t a, b;
+    };
+    std::vector<Edge> edges;
+    for (std::uint32_t t = 0; t < mesh_.size(); ++t) {
+      if (!mesh_.alive(t)) continue;
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const std::uint32_t a = mesh_[t][k], b = mesh_[t][(k + 1) % 3];
+        if (a > b) continue;
+        const Quadric q = merged(a, b);
+        edges.push_back({key(q, std::max(0.0, unconstrained_minimum(q, 0.5 * (local(a) + local(b)),
+                                                                    regularisation_))),
+                         a, b});
+      }
+    }
+    std::stable_sort(edges.begin(), edges.end(),
+                     [](const Edge& x, const Edge& y) { return x.cost < y.cost; });
+    for (const Edge& e : edges) {
+      if (vertices_ <= target) return;
+      bool adjacent = false;
+      if (mesh_.used(e.a) && mesh_.used(e.b))
+        mesh_.for_each_triangle(e.a, [&](std::uint32_t t, std::uint32_t) {
+          for (const std::uint32_t w : mesh_[t]) adjacent = adjacent || w == e.b;
+        });
+      if (!adjacent) continue;
+      if (!optimiser_->collapse(e.a, e.b, *options_.epsilon)) continue;
+      quadric_[e.a] = merged(e.a, e.b);
+      ++stamp_[e.a];
+      ++stamp_[e.b];
+      --vertices_;
+    }
   }
 
   /// Contracts until `target` vertices are left or the next costs more than `limit`.
@@ -335,7 +383,8 @@ class Decimator {
   // -------------------------------------------------------------------------
 
   void start_measuring() {
-    deviation_.emplace(original_, options_.cost == Cost::Mean ? 2 : 4);
+    deviation_.emplace(original_, options_.cost == Cost::Mean ? 2 : 4,
+                       joint_ ? kSpacing * *options_.epsilon : 0);
     deviation_->assign(position_, mesh_);
     hint_.assign(position_.size(), 0);
     measuring_ = true;
@@ -421,6 +470,10 @@ class Decimator {
     for (const NewTriangle& t : added_) {
       points_.push_back({0.5 * (t.corner[0] + t.corner[1]), 0});
       points_.push_back({(t.corner[0] + t.corner[1] + t.corner[2]) / 3.0, 0});
+      if (joint_)
+        for (int k = 0; k < 3; ++k)
+          points_.push_back(
+              {t.corner[k] * (2.0 / 3) + (t.corner[(k + 1) % 3] + t.corner[(k + 2) % 3]) / 6, 0});
     }
   }
 
@@ -429,6 +482,7 @@ class Decimator {
     if (constrained_ && !solid_) solid_.emplace(*bound_);
     optimiser_.emplace(working_, *deviation_, constrained_ ? &*solid_ : nullptr, *bound_,
                        tolerance_ ? &*tolerance_ : nullptr, options_, statistics_);
+    optimiser_->set_dense(joint_);
   }
 
   void optimise(int passes) {
@@ -895,6 +949,7 @@ class Decimator {
   }
 
   const DecimateOptions& options_;
+  bool joint_;  // contractions may move the vertices around
   double sign_;
   bool constrained_;
   double anticipation_;  // of the constrained minimum, as a multiple of the unconstrained one

@@ -5,28 +5,35 @@
 
 namespace kaboum::bmesh {
 
-Deviation::Deviation(const geom::Mesh& original, int power)
+Deviation::Deviation(const geom::Mesh& original, int power, double spacing)
     : original_(original),
       power_(power),
       point_(original.vertices),
       weight_(original.vertices.size(), 0),
       head_(original.triangles.size(), kNone) {
   unit_ = 1 / (geom::bounding_box(original).max - geom::bounding_box(original).min).squaredNorm();
-  add_samples(original);
+  add_samples(original, spacing);
   next_.assign(point_.size(), kNone);
 }
 
-void Deviation::add_samples(const geom::Mesh& original) {
+void Deviation::add_samples(const geom::Mesh& original, double spacing) {
   // Triangles much larger than the average get inner samples: their corners say little of them.
   const double total = geom::area(original);
   const double large = 8 * total / static_cast<double>(original.triangles.size());
   constexpr int kMostCuts = 12;
+  constexpr double kMost = 6000;  // about; besides what the mesh has
+  if (spacing > 0) spacing = std::max(spacing, std::sqrt(2 * total / kMost));
   for (const geom::Triangle& t : original.triangles) {
     const Vec3 &a = original.vertices[t[0]], &b = original.vertices[t[1]],
                &c = original.vertices[t[2]];
     const double area = 0.5 * (b - a).cross(c - a).norm();
-    const int cuts =
+    int cuts =
         area > large ? std::min(kMostCuts, 1 + static_cast<int>(std::sqrt(area / large))) : 0;
+    if (spacing > 0) {
+      const double longest = std::sqrt(
+          std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()}));
+      cuts = std::max(cuts, static_cast<int>(std::min<double>(kMostCuts, longest / spacing)));
+    }
     // Barycentric grid of cuts + 2 points a side, without the corners.
     const int n = cuts + 1;
     const int inner = (n + 1) * (n + 2) / 2 - 3;
@@ -145,6 +152,28 @@ void Deviation::commit(std::span<const std::uint32_t> removed, std::span<const N
     const std::uint32_t t = added[last].index;
     next_[s] = head_[t];
     head_[t] = s;
+  }
+}
+
+void Deviation::save(std::span<const std::uint32_t> triangles,
+                     std::vector<std::uint32_t>& out) const {
+  for (const std::uint32_t t : triangles) {
+    for (std::uint32_t s = head_[t]; s != kNone; s = next_[s]) out.push_back(s);
+    out.push_back(kNone);
+  }
+}
+
+void Deviation::restore(std::span<const std::uint32_t> triangles,
+                        std::span<const std::uint32_t> saved) {
+  std::size_t i = 0;
+  for (const std::uint32_t t : triangles) {
+    std::uint32_t* link = &head_[t];
+    for (; saved[i] != kNone; ++i) {
+      *link = saved[i];
+      link = &next_[saved[i]];
+    }
+    *link = kNone;
+    ++i;
   }
 }
 

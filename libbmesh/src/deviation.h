@@ -23,6 +23,7 @@ class Deviation {
   struct Point {
     Vec3 position;
     double weight;
+    double share = 0;  ///< of the apex's moves that it follows
   };
   struct Energy {
     double sum = 0;      ///< Σ weight · distance^power, in units of the diagonal
@@ -31,8 +32,10 @@ class Deviation {
   static constexpr std::uint32_t kNone = ~0U;
 
   /// @pre the mesh has triangles.
-  /// @param power  of the distances in the energy: 4, which goes after the largest, or 2.
-  explicit Deviation(const geom::Mesh& original, int power = 4);
+  /// @param power    of the distances in the energy: 4, which goes after the largest, or 2.
+  /// @param spacing  samples lie no farther apart than this, within reason; 0: as the mesh has
+  /// them.
+  explicit Deviation(const geom::Mesh& original, int power = 4, double spacing = 0);
   [[nodiscard]] int power() const { return power_; }
 
   /// Gives every sample to the current triangle nearest to it.
@@ -50,6 +53,12 @@ class Deviation {
 
   /// Hands the samples of `removed` to the nearest of `added`.
   void commit(std::span<const std::uint32_t> removed, std::span<const NewTriangle> added);
+
+  /// Appends the samples that the triangles carry to `out`, each list ended by kNone.
+  void save(std::span<const std::uint32_t> triangles, std::vector<std::uint32_t>& out) const;
+  /// Gives back what `save` has written, for the same triangles. @pre since then samples have moved
+  /// among these triangles only.
+  void restore(std::span<const std::uint32_t> triangles, std::span<const std::uint32_t> saved);
 
   /// Calls visit(point, weight) for each sample that triangle t carries.
   template <class Visit>
@@ -75,7 +84,7 @@ class Deviation {
  private:
   /// Where triangle t stays among the new ones; the first, if it vanishes.
   static std::size_t place_of(std::uint32_t t, std::span<const NewTriangle> added);
-  void add_samples(const geom::Mesh& original);
+  void add_samples(const geom::Mesh& original, double spacing);
   static double to_nearest(const Vec3& p, std::span<const NewTriangle> added, std::size_t first,
                            double enough, std::size_t* which);
 

@@ -18,14 +18,13 @@ constexpr int kAttempts = 5;
 
 double area(const std::array<Vec3, 3>& t) { return 0.5 * (t[1] - t[0]).cross(t[2] - t[0]).norm(); }
 
-/// How far rounding moves coordinates near p, at least.
-Vec3 rounding(const Vec3& p, Precision precision) {
-  if (precision == Precision::Double)
+}  // namespace
+
+Vec3 Optimiser::rounding(const Vec3& p) const {
+  if (options_.precision == Precision::Double)
     return Vec3::Constant(std::numeric_limits<double>::epsilon() * p.cwiseAbs().maxCoeff());
   return {geom::float32_spacing(p.x()), geom::float32_spacing(p.y()), geom::float32_spacing(p.z())};
 }
-
-}  // namespace
 
 Optimiser::Optimiser(WorkingMesh& mesh, Deviation& deviation, OriginalSolid* solid,
                      const geom::Mesh& original, Tolerance* tolerance,
@@ -40,6 +39,7 @@ Optimiser::Optimiser(WorkingMesh& mesh, Deviation& deviation, OriginalSolid* sol
       hint_(mesh.position.size(), 0),
       movable_(mesh.position.size(), 1),
       flippable_(mesh.position.size(), 1),
+      mark_(mesh.position.size() + mesh.mesh.size(), 0),
       fan_(options.direction == Direction::Inner ? -1 : 1) {}
 
 void Optimiser::disturb(std::uint32_t v) {
@@ -71,10 +71,15 @@ void Optimiser::place_star(const Vec3& apex) {
     added_.push_back(t);
     const double a = area(t.corner);
     total += a;
-    points_.push_back({(apex + t.corner[1]) * 0.5, a / 3});
-    points_.push_back({(apex + t.corner[1] + t.corner[2]) / 3.0, a / 2});
+    points_.push_back({(apex + t.corner[1]) * 0.5, a / 3, 0.5});
+    points_.push_back({(apex + t.corner[1] + t.corner[2]) / 3.0, dense_ ? a / 8 : a / 2, 1.0 / 3});
+    if (!dense_) continue;
+    for (int k = 0; k < 3; ++k)
+      points_.push_back(
+          {t.corner[k] * (2.0 / 3) + (t.corner[(k + 1) % 3] + t.corner[(k + 2) % 3]) / 6, a / 8,
+           k == 0 ? 2.0 / 3 : 1.0 / 6});
   }
-  points_.push_back({apex, total / 6});
+  points_.push_back({apex, total / 6, 1});
 }
 
 /// Exact: no tetrahedron between a triangle that goes and `to` cuts into the original. Where one
@@ -115,7 +120,7 @@ std::optional<Vec3> Optimiser::settle(std::span<const std::uint32_t> removed,
 }
 
 std::optional<Vec3> Optimiser::resettle() {
-  fan_.half_spaces(rounding(apex_, options_.precision), planes_);
+  fan_.half_spaces(rounding(apex_), planes_);
   const auto step = minimise(objective_, {objective_.bx, objective_.by, objective_.bz}, planes_,
                              kRegularisationDistance);
   if (!step) return std::nullopt;
@@ -133,11 +138,13 @@ bool Optimiser::settled(std::span<const std::uint32_t> removed, const Vec3& to) 
 
 /// Squared distances of the samples, linear in the displacement of the apex, weighted by how far
 /// they are: (d / scale)².
-void Optimiser::linearise(const Vec3& apex, double scale) {
+void Optimiser::linearise(const Vec3& apex, double scale, double penalty) {
   objective_ = {};
   Vec3 b = Vec3::Zero();
+  const double sign = options_.direction == Direction::Inner ? -1 : 1;
   const auto add = [&](const Vec3& n, double lambda, double residual, double weight) {
-    const double w = weight * (deviation_.power() == 4 ? residual * residual / scale + 1e-4 : 1);
+    double w = weight * (deviation_.power() == 4 ? residual * residual / scale + 1e-4 : 1);
+    if (sign * residual < 0) w *= penalty;
     const Vec3 g = lambda * n;
     objective_.xx += w * g.x() * g.x(), objective_.xy += w * g.x() * g.y();
     objective_.xz += w * g.x() * g.z(), objective_.yy += w * g.y() * g.y();
@@ -161,14 +168,11 @@ void Optimiser::linearise(const Vec3& apex, double scale) {
     deviation_.original().squared(x, hint);
     const auto& c = deviation_.original().corners(hint);
     const Vec3 offset = x - closest_point(x, c[0], c[1], c[2]);
-    const double d = offset.norm();
-    if (d > 0) add(offset / d, lambda, d, weight);
+    double d = offset.norm();
+    if (offset.dot((c[1] - c[0]).cross(c[2] - c[0])) < 0) d = -d;
+    if (d != 0) add(offset / d, lambda, d, weight);
   };
-  for (std::size_t i = 0; i + 1 < points_.size(); i += 2) {
-    add_point(points_[i].position, 0.5, points_[i].weight);
-    add_point(points_[i + 1].position, 1.0 / 3, points_[i + 1].weight);
-  }
-  add_point(points_.back().position, 1, points_.back().weight);
+  for (const Deviation::Point& p : points_) add_point(p.position, p.share, p.weight);
   objective_.bx = b.x(), objective_.by = b.y(), objective_.bz = b.z();
 }
 
@@ -209,7 +213,16 @@ bool Optimiser::stays_flat(const Vec3& to) {
   return !opposed(flat_);
 }
 
-bool Optimiser::pull_back(std::uint32_t v) {
+/// Carries out the move of v that removed_ and added_ describe.
+void Optimiser::move(std::uint32_t v, const Vec3& to) {
+  deviation_.commit(removed_, added_);
+  m_.position[v] = to;
+  m_.update_normals_around(v);
+  if (options_.steps != nullptr) options_.steps->push_back({v, v, to});
+  ++statistics_.pull_backs;
+}
+
+bool Optimiser::pull_back(std::uint32_t v, bool alone) {
   if (movable_[v] == 0 || !gather(v)) return false;
   movable_[v] = 0;
   const Vec3 from = m_.position[v];
@@ -226,7 +239,7 @@ bool Optimiser::pull_back(std::uint32_t v) {
                                  [&](const Vec3& o, double) { fan_.keep(i, o); });
   const double goal = (1 - kGain) * before.sum;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    fan_.half_spaces(rounding(from, options_.precision), planes_);
+    fan_.half_spaces(rounding(from), planes_);
     const auto step = minimise(objective_, {objective_.bx, objective_.by, objective_.bz}, planes_,
                                kRegularisationDistance);
     if (!step) return false;
@@ -248,18 +261,14 @@ bool Optimiser::pull_back(std::uint32_t v) {
       ++statistics_.rejected_original;
       continue;
     }
-    if (tolerance_ != nullptr) {
+    if (alone && tolerance_ != nullptr) {
       if (!tolerance_->admits(removed_, added_)) {
         ++statistics_.rejected_distance;
         return false;
       }
       tolerance_->commit(removed_);
     }
-    deviation_.commit(removed_, added_);
-    m_.position[v] = to;
-    m_.update_normals_around(v);
-    if (options_.steps != nullptr) options_.steps->push_back({v, v, to});
-    ++statistics_.pull_backs;
+    move(v, to);
     disturb(v);
     return true;
   }

@@ -25,8 +25,11 @@ class Optimiser {
             const geom::Mesh& original, Tolerance* tolerance, const DecimateOptions& options,
             DecimateStatistics& statistics);
 
+  /// Whether new triangles are measured at more points.
+  void set_dense(bool dense) { dense_ = dense; }
+
   /// Moves v to a better place, if there is one. @return whether it has moved.
-  bool pull_back(std::uint32_t v);
+  bool pull_back(std::uint32_t v, bool alone = true);
 
   /// Seeks for a vertex that is to replace the star `removed` by the triangles `added`, whose first
   /// corners are where it is now, a place that only the original bounds, not the present mesh.
@@ -48,6 +51,10 @@ class Optimiser {
   /// To be called when others have changed the star of v.
   void disturb(std::uint32_t v);
 
+  /// Contracts the edge (a, b) and moves the vertices around with it, if the deviation around stays
+  /// within `limit` then. [length]
+  bool collapse(std::uint32_t a, std::uint32_t b, double limit);
+
   /// One round over all vertices, then all edges. @return steps taken.
   std::size_t pass();
 
@@ -57,10 +64,34 @@ class Optimiser {
     std::uint32_t p, q;
   };
 
+  /// A part of the mesh as it was: the triangles around some vertices, and these.
+  struct Snapshot {
+    std::vector<std::uint32_t> triangles, vertices;
+    std::vector<geom::Triangle> corners;
+    std::vector<Vec3> positions;
+    std::vector<std::uint32_t> samples;
+    std::size_t steps = 0, pull_backs = 0;
+  };
+  void neighbours(std::uint32_t v, std::vector<std::uint32_t>& out);
+  void take(std::span<const std::uint32_t> vertices);
+  void go_back();
+  void attract(std::uint32_t v, double scale, double penalty, double share, bool hand_over);
+  double star_largest(std::uint32_t v, double limit);
+  double region_largest(double limit);
+  std::optional<Vec3> seek(std::uint32_t a, std::uint32_t b, const Vec3& wish);
+  bool imagine(std::uint32_t a, std::uint32_t b, double limit);
+  bool joins(std::uint32_t a, std::uint32_t b);
+  bool gather_edge(std::uint32_t a, std::uint32_t b, const Vec3& to);
+  void contract(std::uint32_t a, std::uint32_t b, const Vec3& to);
+  void move(std::uint32_t v, const Vec3& to);
+
+  /// How far rounding moves coordinates near p, at least.
+  [[nodiscard]] Vec3 rounding(const Vec3& p) const;
   bool gather(std::uint32_t v);
   void place_star(const Vec3& apex);
   bool spares(std::span<const std::uint32_t> removed, bool own, const Vec3& to);
-  void linearise(const Vec3& apex, double scale);
+  void linearise(const Vec3& apex, double scale, double penalty = 1);
+  void approach(std::uint32_t v, const Vec3& target);
   [[nodiscard]] bool folds(const Vec3& to) const;
   [[nodiscard]] bool stays_flat(const Vec3& to);
   [[nodiscard]] bool certified(std::uint32_t t, const Vec3& to,
@@ -77,6 +108,14 @@ class Optimiser {
   // Per vertex: its star has changed since it was last tried in vain to move it, and since the last
   // round of flips.
   std::vector<char> movable_, flippable_;
+
+  bool dense_ = false;
+  Snapshot snapshot_;
+  std::vector<std::uint32_t> mark_;
+  std::uint32_t mark_value_ = 0;
+  std::vector<std::uint32_t> around_;  // vertices that move with a contraction, it first
+  std::vector<Vec3> target_;           // of these
+  std::vector<std::uint32_t> alive_;
 
   // Of the step at hand.
   std::vector<Ring> ring_;

@@ -10,6 +10,9 @@ namespace {
 /// uncovered is taken off ε beforehand.
 constexpr std::uint32_t kMaxTotalCuts = 1000;
 
+/// Pieces that a new triangle may fall into: large ones along an edge of the original need many.
+constexpr int kMaxCells = 4000;
+
 }  // namespace
 
 Tolerance::Tolerance(const geom::Mesh& original, double epsilon)
@@ -87,13 +90,16 @@ bool Tolerance::admits(std::span<const std::uint32_t> removed, std::span<const N
   last_carrier_ = 0;
   pieces_left_ = kMaxPieces;
   if (added.empty()) return false;
-  for (const std::uint32_t t : removed)
+  for (const std::uint32_t t : removed) {
+    for (std::size_t i = 0; i < added.size(); ++i)
+      if (added[i].index == t) last_carrier_ = i;
     for (std::uint32_t p = head_[t]; p != kNone; p = pieces_[p].next)
       if (const auto& [a, b, c] = pieces_[p].corner;
           !place({a, b, c}, pieces_[p].cuts, added, kMaxCuts))
         return false;
+  }
   return std::all_of(added.begin(), added.end(), [&](const NewTriangle& t) {
-    return original_.all_within({t.corner[0], t.corner[1], t.corner[2]}, epsilon_);
+    return original_.all_within({t.corner[0], t.corner[1], t.corner[2]}, epsilon_, kMaxCells);
   });
 }
 

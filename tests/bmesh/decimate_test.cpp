@@ -243,6 +243,34 @@ TEST(Decimate, EpsilonLeavesRoomForContractions) {
   EXPECT_LT(r.mesh.vertices.size(), p.mesh.vertices.size() * 3 / 4) << sphere.name;
 }
 
+// Contractions that move the vertices around with them: far fewer vertices than without, and every
+// step of them holds.
+TEST(Decimate, MovingTheVerticesAroundSavesVertices) {
+  const auto sphere = solids().front();
+  const auto p = geom::prepare(sphere.mesh);
+  const double epsilon = 0.02 * geom::bounding_box(p.mesh).diagonal();
+  for (const Direction direction : {Direction::Outer, Direction::Inner}) {
+    DecimateOptions o;
+    o.direction = direction;
+    o.epsilon = epsilon;
+    const std::size_t alone = decimate(p, o).mesh.vertices.size();
+    Log log;
+    log.direction = direction;
+    record_preparation(p, sphere.mesh.triangles.size(), log);
+    o.cost = Cost::Distance;
+    o.effort = Effort::Normal;
+    o.steps = &log.steps;
+    const auto r = decimate(p, o);
+    EXPECT_EQ(r.stop, Stop::ErrorBound);
+    EXPECT_LT(5 * r.mesh.vertices.size(), 4 * alone);
+    const auto checked = replay(sphere.mesh, log, r.mesh);
+    EXPECT_TRUE(checked.verified) << checked.violation;
+    const auto there = geom::directed_distance(p.mesh, geom::DistanceQuery(r.mesh));
+    const auto back = geom::directed_distance(r.mesh, geom::DistanceQuery(p.mesh));
+    EXPECT_LE(std::max(there.max_lower, back.max_lower), epsilon);
+  }
+}
+
 TEST(Decimate, KeepsConvexity) {
   int tried = 0;
   for (const auto& f : solids()) {

@@ -1,0 +1,326 @@
+// Contractions that move the vertices around with them: what one vertex cannot achieve alone, it
+// may with its neighbours. Such a step is tried first without any certificate, with positions that
+// need not bound the original, and taken back; where it promises something, nearly the same
+// positions are sought by certified steps.
+#include <kaboum/geom/float32.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "optimise.h"
+
+namespace kaboum::bmesh {
+namespace {
+
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+
+/// Share of the wrong side's deviations among the weights, at the end of a trial.
+constexpr double kPenalty = 3000;
+constexpr int kRounds = 6;          ///< of a trial
+constexpr double kHopeless = 3;     ///< times the limit, before the neighbours move
+constexpr int kSweeps = 3;          ///< of certified moves towards what the trial has found
+constexpr int kPulls = 2;           ///< and of pulling back after them, if that is near the limit:
+constexpr double kNearLimit = 1.5;  ///< within so many times of it
+constexpr int kPlaces = 5;          ///< tried for the contracted vertex
+
+bool turns(const Vec3& before, const Vec3& after) {
+  const double along = after.dot(before);
+  return !(along > 0) || along * along < 0.03 * after.squaredNorm();
+}
+
+}  // namespace
+
+/// Appends the neighbours of v that are not marked yet, and marks them.
+void Optimiser::neighbours(std::uint32_t v, std::vector<std::uint32_t>& out) {
+  m_.mesh.for_each_triangle(v, [&](std::uint32_t t, std::uint32_t k) {
+    for (std::uint32_t j = 1; j < 3; ++j) {
+      const std::uint32_t w = m_.mesh[t][(k + j) % 3];
+      if (mark_[w] == mark_value_) continue;
+      mark_[w] = mark_value_;
+      out.push_back(w);
+    }
+  });
+}
+
+void Optimiser::take(std::span<const std::uint32_t> vertices) {
+  Snapshot& s = snapshot_;
+  s.triangles.clear(), s.corners.clear(), s.positions.clear(), s.samples.clear();
+  s.vertices.assign(vertices.begin(), vertices.end());
+  const std::size_t offset = m_.position.size();
+  ++mark_value_;
+  for (const std::uint32_t v : vertices) {
+    s.positions.push_back(m_.position[v]);
+    m_.mesh.for_each_triangle(v, [&](std::uint32_t t, std::uint32_t) {
+      if (mark_[offset + t] == mark_value_) return;
+      mark_[offset + t] = mark_value_;
+      s.triangles.push_back(t);
+      s.corners.push_back(m_.mesh[t]);
+    });
+  }
+  deviation_.save(s.triangles, s.samples);
+  s.steps = options_.steps != nullptr ? options_.steps->size() : 0;
+  s.pull_backs = statistics_.pull_backs;
+}
+
+void Optimiser::go_back() {
+  const Snapshot& s = snapshot_;
+  for (std::size_t i = 0; i < s.vertices.size(); ++i) m_.position[s.vertices[i]] = s.positions[i];
+  for (std::size_t i = 0; i < s.triangles.size(); ++i)
+    m_.mesh.restore(s.triangles[i], s.corners[i]);
+  for (const std::uint32_t t : s.triangles) m_.update_normal(t);
+  deviation_.restore(s.triangles, s.samples);
+  if (options_.steps != nullptr) options_.steps->resize(s.steps);
+  statistics_.pull_backs = s.pull_backs;
+}
+
+/// The link condition, for an edge of two triangles between inner vertices.
+bool Optimiser::joins(std::uint32_t a, std::uint32_t b) {
+  if (m_.border[a] != 0 || m_.border[b] != 0) return false;
+  around_.clear();
+  ++mark_value_;
+  neighbours(a, around_);
+  const std::uint32_t of_a = mark_value_++;
+  int common = 0, together = 0;
+  m_.mesh.for_each_triangle(b, [&](std::uint32_t t, std::uint32_t k) {
+    const geom::Triangle& c = m_.mesh[t];
+    for (const std::uint32_t w : {c[(k + 1) % 3], c[(k + 2) % 3]}) {
+      together += w == a ? 1 : 0;
+      if (mark_[w] == of_a) ++common, mark_[w] = mark_value_;
+    }
+  });
+  if (together != 2 || common != 2) return false;
+  // A triangle between the two common neighbours on both sides would fold onto the other.
+  const auto between = [&](std::uint32_t v) {
+    bool found = false;
+    m_.mesh.for_each_triangle(v, [&](std::uint32_t t, std::uint32_t k) {
+      const geom::Triangle& c = m_.mesh[t];
+      found =
+          found || (mark_[c[(k + 1) % 3]] == mark_value_ && mark_[c[(k + 2) % 3]] == mark_value_);
+    });
+    return found;
+  };
+  return !(between(a) && between(b));
+}
+
+/// Fills removed_ and added_ for the contraction of (a, b) to a place. @return whether no triangle
+/// turns over.
+bool Optimiser::gather_edge(std::uint32_t a, std::uint32_t b, const Vec3& to) {
+  removed_.clear();
+  added_.clear();
+  bool good = true;
+  const auto visit = [&](std::uint32_t t, std::uint32_t k, std::uint32_t other, bool again) {
+    const geom::Triangle& c = m_.mesh[t];
+    const std::uint32_t p = c[(k + 1) % 3], q = c[(k + 2) % 3];
+    const bool vanishes = p == other || q == other;
+    if (vanishes && again) return;
+    removed_.push_back(t);
+    if (vanishes) return;
+    added_.push_back({t, {to, m_.position[p], m_.position[q]}});
+    good = good && !turns(m_.normal[t], (m_.position[p] - to).cross(m_.position[q] - to));
+  };
+  m_.mesh.for_each_triangle(a, [&](std::uint32_t t, std::uint32_t k) { visit(t, k, b, false); });
+  m_.mesh.for_each_triangle(b, [&](std::uint32_t t, std::uint32_t k) { visit(t, k, a, true); });
+  return good;
+}
+
+/// Carries out what gather_edge has described.
+void Optimiser::contract(std::uint32_t a, std::uint32_t b, const Vec3& to) {
+  deviation_.commit(removed_, added_);
+  m_.mesh.contract(a, b);
+  m_.position[a] = to;
+  m_.update_normals_around(a);
+}
+
+/// Moves v to where it deviates least, deviations on the wrong side weighted by `penalty`; without
+/// any certificate.
+void Optimiser::attract(std::uint32_t v, double scale, double penalty, double share,
+                        bool hand_over) {
+  if (!gather(v)) return;
+  const Vec3 from = m_.position[v];
+  place_star(from);
+  linearise(from, scale, penalty);
+  const auto step = minimise(objective_, {objective_.bx, objective_.by, objective_.bz}, {},
+                             kRegularisationDistance);
+  if (!step || !step->allFinite()) return;
+  Vec3 to = from + share * *step;
+  if (folds(to)) to = from + 0.3 * share * *step;
+  if (folds(to)) return;
+  if (hand_over) {
+    place_star(to);
+    deviation_.commit(removed_, added_);
+  }
+  m_.position[v] = to;
+  m_.update_normals_around(v);
+}
+
+/// Largest deviation of the star of v, or something above the limit.
+double Optimiser::star_largest(std::uint32_t v, double limit) {
+  if (!gather(v)) return kNoLimit;
+  place_star(m_.position[v]);
+  return std::sqrt(deviation_.largest(removed_, added_, points_, hint_[v], limit * limit));
+}
+
+/// The same for the triangles of the snapshot as they are now; leaves them in added_.
+double Optimiser::region_largest(double limit) {
+  alive_.clear();
+  added_.clear();
+  points_.clear();
+  for (const std::uint32_t t : snapshot_.triangles) {
+    if (!m_.mesh.alive(t)) continue;
+    const geom::Triangle& c = m_.mesh[t];
+    const std::array<Vec3, 3> p{m_.position[c[0]], m_.position[c[1]], m_.position[c[2]]};
+    alive_.push_back(t);
+    added_.push_back({t, p});
+    points_.push_back({(p[0] + p[1] + p[2]) / 3.0, 0});
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 &q = p[(k + 1) % 3], &r = p[(k + 2) % 3];
+      if (c[k] < c[(k + 1) % 3]) points_.push_back({0.5 * (p[k] + q), 0});
+      points_.push_back({p[k] * (2.0 / 3) + (q + r) / 6, 0});
+    }
+  }
+  for (const std::uint32_t v : snapshot_.vertices)
+    if (m_.mesh.used(v)) points_.push_back({m_.position[v], 0});
+  std::uint32_t& hint = hint_[snapshot_.vertices.front()];
+  return std::sqrt(deviation_.largest(alive_, added_, points_, hint, limit * limit));
+}
+
+/// Tries the contraction without a certificate: fills target_ with where the vertices of around_
+/// should go. The mesh is as before afterwards. @return whether that may stay within the limit.
+bool Optimiser::imagine(std::uint32_t a, std::uint32_t b, double limit) {
+  const Vec3 pa = m_.position[a], pb = m_.position[b], middle = 0.5 * (pa + pb);
+  const auto start = [&] {
+    for (const Vec3& p : {middle, pa, pb}) {
+      if (!gather_edge(a, b, p)) continue;
+      contract(a, b, p);
+      return true;
+    }
+    return false;
+  };
+  if (!start()) return false;
+  const double scale = limit * limit;
+  for (int i = 0; i < 3; ++i) attract(a, scale, 1, 1, true);
+  bool good = star_largest(a, kHopeless * limit) <= kHopeless * limit;
+  if (good) {
+    for (int i = 1; i <= kRounds; ++i) {
+      const double penalty = std::pow(kPenalty, static_cast<double>(i) / kRounds);
+      for (const std::uint32_t v : around_) attract(v, scale, penalty, 0.5, i % 2 == 0);
+    }
+    good = region_largest(limit) <= limit;
+  }
+  target_.clear();
+  for (const std::uint32_t v : around_) target_.push_back(m_.position[v]);
+  go_back();
+  return good;
+}
+
+/// A certified place near the wish for the contracted vertex; removed_ and added_ describe the
+/// contraction to it.
+std::optional<Vec3> Optimiser::seek(std::uint32_t a, std::uint32_t b, const Vec3& wish) {
+  if (!gather_edge(a, b, wish)) return std::nullopt;
+  const std::vector<std::uint32_t> removed = removed_;
+  const std::vector<NewTriangle> added = added_;
+  Quadric near;
+  near.xx = near.yy = near.zz = 1;
+  near.bx = -wish.x(), near.by = -wish.y(), near.bz = -wish.z();
+  const auto holds = [&](const Vec3& p) {
+    return gather_edge(a, b, p) && stays_flat(p) && settled(removed, p);
+  };
+  auto place = settle(removed, added, near, Vec3::Zero());
+  for (int i = 0; i < kPlaces && place; ++i) {
+    if (holds(*place)) return place;
+    place = resettle();
+  }
+  if (options_.direction == Direction::Any) return std::nullopt;
+  // Beyond all planes of the star, from where it can go back later.
+  const double sign = options_.direction == Direction::Inner ? -1 : 1;
+  const Vec3 spread = rounding(wish);
+  planes_.clear();
+  for (const std::uint32_t t : removed) {
+    const Vec3 n = sign * m_.normal[t];
+    planes_.push_back(
+        {n, 0.51 * n.cwiseAbs().dot(spread) + n.dot(m_.position[m_.mesh[t][0]] - wish)});
+  }
+  const auto step = minimise(objective_, Vec3::Zero(), planes_, kRegularisationDistance);
+  if (!step) return std::nullopt;
+  Vec3 to = wish + *step;
+  if (options_.precision == Precision::Float) to = geom::to_float32(to);
+  return to.allFinite() && holds(to) ? std::optional<Vec3>(to) : std::nullopt;
+}
+
+/// Moves v as near to the target as the original allows, by a certified step.
+void Optimiser::approach(std::uint32_t v, const Vec3& target) {
+  if (!gather(v)) return;
+  const Vec3 from = m_.position[v], wish = from - target;
+  place_star(from);
+  fan_.assign(added_);
+  if (options_.direction != Direction::Any)
+    for (std::size_t i = 0; i < ring_.size(); ++i)
+      deviation_.for_each_sample(ring_[i].triangle,
+                                 [&](const Vec3& o, double) { fan_.keep(i, o); });
+  objective_ = {};
+  objective_.xx = objective_.yy = objective_.zz = 1;
+  for (int i = 0; i < kPlaces; ++i) {
+    fan_.half_spaces(rounding(from), planes_);
+    const auto step = minimise(objective_, wish, planes_, kRegularisationDistance);
+    if (!step) return;
+    Vec3 to = from + *step;
+    if (options_.precision == Precision::Float) to = geom::to_float32(to);
+    if (to == from || !to.allFinite() || folds(to) ||
+        (to - target).squaredNorm() >= wish.squaredNorm())
+      return;
+    place_star(to);
+    if (!stays_flat(to)) return;
+    if (!spares(removed_, true, to)) {
+      ++statistics_.rejected_original;
+      continue;
+    }
+    move(v, to);
+    return;
+  }
+}
+
+bool Optimiser::collapse(std::uint32_t a, std::uint32_t b, double limit) {
+  if (!joins(a, b)) return false;
+  // The vertices that may move, and b.
+  around_.assign({a, b});
+  ++mark_value_;
+  mark_[a] = mark_[b] = mark_value_;
+  neighbours(a, around_);
+  neighbours(b, around_);
+  take(around_);
+  std::erase(around_, b);
+  if (!imagine(a, b, limit)) return false;
+
+  const auto give_up = [&](std::uint64_t& counter) {
+    ++counter;
+    go_back();
+    return false;
+  };
+  for (std::size_t i = 1; i < around_.size(); ++i) approach(around_[i], target_[i]);
+  const auto place = seek(a, b, target_[0]);
+  if (!place) return give_up(statistics_.rejected_original);
+  contract(a, b, *place);
+  if (options_.steps != nullptr) options_.steps->push_back({a, b, *place});
+  for (int k = 0; k < kSweeps; ++k)
+    for (std::size_t i = 0; i < around_.size(); ++i) approach(around_[i], target_[i]);
+  const double largest = region_largest(kNearLimit * limit);
+  if (largest > limit && largest <= kNearLimit * limit) {
+    for (int k = 0; k < kPulls; ++k) {
+      for (const std::uint32_t v : around_) {
+        movable_[v] = 1;
+        pull_back(v, false);
+      }
+    }
+  }
+  if (region_largest(limit) > limit) return give_up(statistics_.rejected_distance);
+  if (tolerance_ != nullptr) {
+    if (!tolerance_->admits(snapshot_.triangles, added_))
+      return give_up(statistics_.rejected_distance);
+    tolerance_->commit(snapshot_.triangles);
+  }
+  ++statistics_.contractions;
+  for (const std::uint32_t v : around_) disturb(v);
+  return true;
+}
+
+}  // namespace kaboum::bmesh
