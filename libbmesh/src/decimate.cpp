@@ -50,9 +50,11 @@ constexpr double kMeasureFromEpsilon = 0.1;  ///< the same by an error bound
 /// something in their star changes first. The other costs are ordered as in the thesis.
 constexpr double kAnticipationPlanes = 3, kAnticipationDistance = 8;
 
-/// Multiples of the wished number of vertices at which the best effort pauses for rounds of
-/// optimisation.
-constexpr std::array<double, 4> kStages{2.8, 2.0, 1.4, 1.2};
+/// From this multiple of the wished number of vertices on, the best effort contracts edges together
+/// with moves of the vertices around, at first within the deviation reached, then within that much
+/// more from round to round.
+constexpr double kJointFrom = 1.4, kJointGrowth = 1.15;
+constexpr int kJointRounds = 12;
 
 /// A spike goes farther from the original than this share of the diagonal, and this many times
 /// farther than the original is from the new triangles there.
@@ -271,10 +273,12 @@ class Decimator {
   }
 
   void contract_in_stages(std::size_t target) {
-    if (options_.effort == Effort::Best) {
-      for (const double above : kStages) {
-        contract_to(static_cast<std::size_t>(above * static_cast<double>(target)));
-        optimise(kStagePasses);
+    if (options_.effort == Effort::Best && optimiser_ && !options_.epsilon) {
+      contract_to(static_cast<std::size_t>(kJointFrom * static_cast<double>(target)));
+      double limit = queue_.lowest_key();
+      for (int i = 0; i < kJointRounds && vertices_ > target; ++i, limit *= kJointGrowth) {
+        optimise(1);
+        collapse_to(target, limit);
       }
     }
     contract_to(target);
@@ -290,13 +294,13 @@ class Decimator {
     for (std::size_t before = vertices_ + vertices_;
          vertices_ > target && 100 * vertices_ < 99 * before;) {
       before = vertices_;
-      collapse_to(target);
+      collapse_to(target, *options_.epsilon);
       optimise(kStagePasses);
     }
   }
 
-  /// Contracts edges together with moves of the vertices around.
-  void collapse_to(std::size_t target) {
+  /// Contracts edges together with moves of the vertices around, each within the limit. [length]
+  void collapse_to(std::size_t target, double limit) {
     struct Edge {
       double cost;
       std::uint32_t a, b;
@@ -323,7 +327,7 @@ class Decimator {
           for (const std::uint32_t w : mesh_[t]) adjacent = adjacent || w == e.b;
         });
       if (!adjacent) continue;
-      if (!optimiser_->collapse(e.a, e.b, *options_.epsilon)) continue;
+      if (!optimiser_->collapse(e.a, e.b, limit)) continue;
       quadric_[e.a] = merged(e.a, e.b);
       ++stamp_[e.a];
       ++stamp_[e.b];

@@ -24,9 +24,12 @@ enum class Cost {
 /// How much is done for tightness besides contracting. Anything but Fast needs a closed mesh (or
 /// Direction::Any) and excludes keep_convex; it is Fast otherwise.
 enum class Effort {
-  Fast,    ///< nothing
-  Normal,  ///< vertices are pulled back towards the original and edges flipped, in some rounds
-  Best,    ///< the same in more rounds, in between as well
+  Fast,  ///< nothing
+  /// Vertices are pulled back towards the original and edges flipped, in some rounds; within an
+  /// error bound (Cost::Distance) edges are also contracted together with moves of the vertices
+  /// around.
+  Normal,
+  Best,  ///< the same in more rounds, and such contractions also without an error bound
 };
 
 /// Numbers that result vertices are made of.
