@@ -35,6 +35,18 @@ Vec3 Cell::center() const {
   return sum;
 }
 
+std::vector<Cube> cubes_over(const Box3& box) {
+  const Vec3 size = box.max - box.min;
+  const double half = 0.5 * std::max(size.minCoeff(), size.maxCoeff() / 16);
+  const Eigen::Array3i count = (size / (2 * half)).array().ceil().max(1).cast<int>();
+  std::vector<Cube> out;
+  for (int x = 0; x < count[0]; ++x)
+    for (int y = 0; y < count[1]; ++y)
+      for (int z = 0; z < count[2]; ++z)
+        out.push_back({box.min + half * Vec3(2 * x + 1, 2 * y + 1, 2 * z + 1), half});
+  return out;
+}
+
 Cell clip(const Cell& cell, const Plane& plane, bool lower, double shift) {
   std::vector<double> h(cell.corners.size());
   for (std::size_t i = 0; i < h.size(); ++i) {

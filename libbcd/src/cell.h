@@ -28,6 +28,14 @@ struct Cell {
   [[nodiscard]] Vec3 center() const;
 };
 
+struct Cube {
+  Vec3 center;
+  double half;
+};
+/// Equal cubes that cover a box, none larger than its shortest side or, for flat ones, a sixteenth
+/// of the longest.
+std::vector<Cube> cubes_over(const Box3& box);
+
 /// The part where height ≤ shift (lower) or height ≥ −shift (upper). Empty if there is none.
 Cell clip(const Cell& cell, const Plane& plane, bool lower, double shift);
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <queue>
 
+#include "cell.h"
 #include "inscribe.h"
 #include "options.h"
 
@@ -22,14 +23,8 @@ class Depths {
     diagonal_ = box.diagonal();
     slack_ = 1e-12 *
              (diagonal_ + std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff()));
-    const Vec3 size = box.max - box.min;
-    const double half = 0.5 * std::max(size.minCoeff(), size.maxCoeff() / 16);
-    const Eigen::Array3i count = (size / (2 * half)).array().ceil().max(1).cast<int>();
-    for (int x = 0; x < count[0]; ++x)
-      for (int y = 0; y < count[1]; ++y)
-        for (int z = 0; z < count[2]; ++z)
-          add(box.min + half * Vec3(2 * x + 1, 2 * y + 1, 2 * z + 1), half,
-              geom::DistanceQuery::kNone, diagonal_);
+    for (const bcd::Cube& cube : cubes_over(box))
+      add(cube.center, cube.half, geom::DistanceQuery::kNone, diagonal_);
   }
 
   struct Deepest {

@@ -124,15 +124,8 @@ class Measure {
       if (length > 0) planes.push_back({n / length, n.dot(a) / length});
     }
     std::vector<Cube> stack;
-    // Cubes over the box, no larger than its shortest side.
-    const Vec3 size = box.max - box.min;
-    const double half = 0.5 * std::max(size.minCoeff(), size.maxCoeff() / 16);
-    const Eigen::Array3i count = (size / (2 * half)).array().ceil().max(1).cast<int>();
-    for (int x = 0; x < count[0]; ++x)
-      for (int y = 0; y < count[1]; ++y)
-        for (int z = 0; z < count[2]; ++z)
-          stack.push_back({box.min + half * Vec3(2 * x + 1, 2 * y + 1, 2 * z + 1), half,
-                           geom::DistanceQuery::kNone});
+    for (const bcd::Cube& cube : cubes_over(box))
+      stack.push_back({cube.center, cube.half, geom::DistanceQuery::kNone});
     std::size_t work = 0;
     while (!stack.empty()) {
       const Cube cube = stack.back();

@@ -21,11 +21,7 @@ using geom::Vec3;
 using test::prism;
 
 DecomposeResult run(const Mesh& mesh, double epsilon_percent, std::size_t max_vertices = 64) {
-  DecomposeOptions options;
-  options.epsilon = 0.01 * epsilon_percent * geom::bounding_box(mesh).diagonal();
-  options.max_vertices = max_vertices;
-  options.effort = Effort::Fast;
-  return fill(geom::prepare(mesh), options);
+  return fill(geom::prepare(mesh), test::quick(mesh, epsilon_percent, max_vertices));
 }
 
 verify::Answer inside(const Mesh& mesh, const std::vector<geom::ConvexBody>& bodies) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <kaboum/bcd/decompose.h>
 #include <kaboum/geom/mesh.h>
 
 #include <vector>
@@ -7,6 +8,16 @@
 #include "support/shapes.h"
 
 namespace kaboum::bcd::test {
+
+/// Little effort, epsilon in percent of the diagonal.
+inline DecomposeOptions quick(const geom::Mesh& mesh, double epsilon_percent,
+                              std::size_t max_vertices = 64) {
+  DecomposeOptions options;
+  options.epsilon = 0.01 * epsilon_percent * geom::bounding_box(mesh).diagonal();
+  options.max_vertices = max_vertices;
+  options.effort = Effort::Fast;
+  return options;
+}
 
 /// Prism over a simple polygon given counter-clockwise, from z = 0 to `height`.
 inline geom::Mesh prism(const std::vector<std::array<double, 2>>& polygon, double height) {
