@@ -1,7 +1,7 @@
 // Table of decimation runs: models × methods × targets, as CSV (and JSON with --json FILE).
 //
 //   bmesh_table [--methods distance,distance-fast,distance-best,planes,...] [--ratios 0.2,0.1]
-//               [--epsilon 0.5,1] [--direction outer|inner] [--json FILE] MESH...
+//               [--epsilon 0.5,1] [--direction outer|inner|any] [--json FILE] MESH...
 //
 // Distances are in percent of the diagonal of the input's box. Maxima are certified upper bounds
 // (gap 1 %), means come from samples spread evenly over the area. Only closed meshes are measured.

@@ -275,7 +275,8 @@ class Decimator {
   void contract_in_stages(std::size_t target) {
     if (options_.effort == Effort::Best && optimiser_ && !options_.epsilon) {
       contract_to(static_cast<std::size_t>(kJointFrom * static_cast<double>(target)));
-      double limit = queue_.lowest_key();
+      double limit = std::min(queue_.lowest_key(), diagonal_);
+      if (!(limit > 0)) limit = 1e-3 * diagonal_;  // nothing has been contracted yet
       for (int i = 0; i < kJointRounds && vertices_ > target; ++i, limit *= kJointGrowth) {
         optimise(1);
         collapse_to(target, limit);
