@@ -55,8 +55,8 @@ LinkBodies bodies_of(const RobotFile& robot, const BodyOptions& options);
 void place_shape(const sweep::Geometry& shape, const geom::ConvexSet* set, const std::string& link,
                  std::uint32_t index, std::vector<sweep::Body>& bodies);
 
-/// "5%" as it is; a length in the robot's unit in that of a mesh whose coordinates are multiplied by
-/// `scale`.
+/// "5%" as it is; a length in the robot's unit in that of a mesh whose coordinates are multiplied
+/// by `scale`.
 std::string epsilon_of_mesh(const std::string& epsilon, double scale);
 
 /// The file that a URDF's mesh reference stands for. `package://name/rest` is looked up as
