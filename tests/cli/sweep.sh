@@ -93,7 +93,7 @@ expect 2 'nothing' "$S" "$R" --path path.csv -o x.glb --links nothing
 expect 2 '' "$S" "$R" --path path.csv -o x.glb --epsilon 0
 expect 2 '' "$S" "$R" --path path.csv -o x.glb --bound best
 expect 2 '' "$S" "$R" --path path.csv
-expect 1 'too coarse' "$S" "$R" --path path.csv -o x.glb --epsilon 1e-6
+expect 1 'too coarse' "$S" "$R" --path path.csv -o x.glb --epsilon 1e-6 --body-epsilon 1%
 expect 4 '' "$S" "$R" --path path.csv -o /nonexistent/dir/x.glb
 expect 4 '' "$S" "$R" --path path.csv -o /nonexistent/dir/x.urdf
 absent x.glb

@@ -3,6 +3,7 @@
 //
 //   enclosure_check [--families] [--corpus] [--own DIR] [--samples N] [--ratios 0.2,0.1,0.05]
 //                   [--largest VERTICES] [--all-costs] [FILE...]
+// --largest leaves out larger meshes of --corpus and FILE.
 //
 // Exit status 0 if no violation was found, 1 otherwise.
 #include <kaboum/bmesh/decimate.h>
@@ -89,7 +90,8 @@ class Check {
  public:
   explicit Check(Settings settings) : s_(std::move(settings)) {}
 
-  void mesh(const std::string& name, const Mesh& input) {
+  /// Meshes with more than `largest` vertices are left out.
+  void mesh(const std::string& name, const Mesh& input, std::size_t largest = ~std::size_t{0}) {
     geom::Prepared p;
     try {
       p = geom::prepare(input);
@@ -98,16 +100,16 @@ class Check {
       ++refused_;
       return;
     }
-    if (!p.closed || p.mesh.vertices.size() > s_.largest) return;
+    if (!p.closed || p.mesh.vertices.size() > largest) return;
     ++meshes_;
     for (const bmesh::Cost cost : s_.costs)
       for (const Direction d : {Direction::Outer, Direction::Inner})
         for (const double ratio : s_.ratios) run(name, input, p, d, ratio, cost);
   }
 
-  void file(const std::string& path) {
+  void file(const std::string& path, std::size_t largest) {
     try {
-      mesh(path, io::read_mesh(path).mesh);
+      mesh(path, io::read_mesh(path).mesh, largest);
     } catch (const Error& e) {
       std::cout << path << ": not read: " << e.what() << '\n';
     }
@@ -171,7 +173,7 @@ class Check {
 int main(int argc, char** argv) try {
   Settings settings;
   bool families = false;
-  std::vector<std::string> files;
+  std::vector<std::string> files, own;
   const std::vector<std::string> args(argv + 1, argv + argc);
   for (std::size_t i = 0; i < args.size(); ++i) {
     const auto value = [&] { return args.at(++i); };
@@ -187,7 +189,7 @@ int main(int argc, char** argv) try {
       if (corpus != nullptr)
         for (std::string& f : mesh_files(corpus)) files.push_back(std::move(f));
     } else if (args[i] == "--own") {
-      for (std::string& f : mesh_files(value())) files.push_back(std::move(f));
+      for (std::string& f : mesh_files(value())) own.push_back(std::move(f));
     } else if (args[i] == "--samples") {
       settings.samples = std::stoul(value());
     } else if (args[i] == "--largest") {
@@ -204,7 +206,8 @@ int main(int argc, char** argv) try {
   if (families)
     for (const auto& list : {test::closed_families(), test::bad_families()})
       for (const auto& f : list) check.mesh(f.name, f.mesh);
-  for (const std::string& f : files) check.file(f);
+  for (const std::string& f : own) check.file(f, ~std::size_t{0});
+  for (const std::string& f : files) check.file(f, settings.largest);
   return check.conclude();
 } catch (const std::exception& e) {
   std::cerr << "enclosure_check: " << e.what() << '\n';
