@@ -9,7 +9,7 @@
 #include <cmath>
 #include <optional>
 
-#include "principal_box.h"
+#include "principal_prism.h"
 
 namespace kaboum::bcd {
 namespace {
@@ -106,14 +106,13 @@ std::vector<Vec3> distinct(std::span<const Vec3> points, const std::vector<Vec3>
   return out;
 }
 
-/// A float32 box along the principal axes that contains the points, exactly.
-std::optional<geom::Mesh> box_round(std::span<const Vec3> points, double ulp) {
-  const std::optional<PrincipalBox> box = principal_box(points);
-  if (!box) return std::nullopt;
+/// A float32 prism of at most `most` vertices that contains the points, exactly.
+std::optional<geom::Mesh> prism_round(std::span<const Vec3> points, double ulp, std::size_t most) {
+  const std::optional<PrincipalPrism> prism = PrincipalPrism::round(points, most);
+  if (!prism) return std::nullopt;
   geom::HullBuilder builder;
-  double margin = 2 * ulp;
-  for (int round = 0; round < 12; ++round, margin *= 2) {
-    std::vector<Vec3> corners = box->corners(margin);
+  for (double margin = 2 * ulp; margin < 1e4 * ulp; margin *= 2) {
+    std::vector<Vec3> corners = prism->corners(margin);
     for (Vec3& p : corners) p = geom::to_float32(p);
     if (!builder.build(corners)) continue;
     bool good = true;
@@ -155,7 +154,7 @@ std::optional<geom::Mesh> push_out(std::span<const Vec3> shape, std::span<const 
   const double ulp = spacing_at(required);
   std::vector<Vec3> sorted(required.begin(), required.end());
   std::sort(sorted.begin(), sorted.end(), Less());
-  // What is pushed farther fares better in a box.
+  // What is pushed farther fares better in a prism.
   Box3 extent;
   for (const Vec3& p : required) extent.extend(p);
   const double longest_push = std::max(64 * ulp, 2e-3 * extent.diagonal());
@@ -221,10 +220,10 @@ geom::Mesh enclose(std::span<const Vec3> shape, std::span<const Vec3> required, 
   if (std::optional<geom::Mesh> pushed = push_out(shape, required, most)) return *std::move(pushed);
   const double ulp = spacing_at(required);
   geom::HullBuilder builder;
-  // Too thin to be pushed along normals: the points themselves, or a box round them.
+  // Too thin to be pushed along normals: the points themselves, or a prism round them.
   if (builder.build(required) && builder.vertices().size() <= most) return builder.mesh();
   if (!required.empty()) {
-    if (auto box = box_round(required, ulp)) return *std::move(box);
+    if (auto prism = prism_round(required, ulp, most)) return *std::move(prism);
   }
   // Flat: boxes of a few float32 steps.
   std::vector<Vec3> thick;

@@ -23,7 +23,7 @@ std::optional<geom::Mesh> push_out(std::span<const Vec3> shape, std::span<const 
                                    std::size_t most);
 
 /// The same; instead of nothing the hull of `required`, or, if it has more than `most` vertices, a
-/// box.
+/// prism across its thinnest direction.
 geom::Mesh enclose(std::span<const Vec3> shape, std::span<const Vec3> required, std::size_t most);
 
 }  // namespace kaboum::bcd

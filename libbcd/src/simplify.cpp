@@ -10,7 +10,7 @@
 #include <queue>
 #include <unordered_map>
 
-#include "principal_box.h"
+#include "principal_prism.h"
 
 namespace kaboum::bcd {
 namespace {
@@ -443,20 +443,20 @@ Simplified simplify(std::span<const Vec3> hull, std::size_t cap, double free_cos
   Simplified out;
   out.vertices.assign(hull.begin(), hull.end());
   if (hull.size() <= std::min<std::size_t>(cap, 4)) return out;
-  const auto box_round = [&] {
-    const std::optional<PrincipalBox> box = principal_box(hull);
-    return box ? box->corners() : std::vector<Vec3>(hull.begin(), hull.end());
+  const auto prism_round = [&] {
+    const auto prism = PrincipalPrism::round(hull, cap);
+    return prism ? prism->corners() : std::vector<Vec3>(hull.begin(), hull.end());
   };
   geom::HullBuilder builder;
   if (!builder.build(hull)) {
-    // Flat: a box is as good as anything.
-    if (hull.size() > cap) out.vertices = box_round();
+    // Flat: a prism is as good as anything.
+    if (hull.size() > cap) out.vertices = prism_round();
     return out;
   }
   const Mesh mesh = builder.mesh();
   Contractor contractor(mesh.vertices, mesh.triangles, solid);
   out.cost = contractor.run(cap, free_cost);
-  out.vertices = contractor.count() <= cap ? contractor.result() : box_round();
+  out.vertices = contractor.count() <= cap ? contractor.result() : prism_round();
   return out;
 }
 

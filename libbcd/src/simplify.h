@@ -20,7 +20,7 @@ struct Simplified {
 ///
 /// A new vertex lies beyond the planes through the edges round the contracted one that touch the
 /// original hull, so that growth does not accumulate. When contractions get stuck above the cap the
-/// hull of a box round the points is taken instead.
+/// hull of a prism round the points is taken instead.
 Simplified simplify(std::span<const Vec3> hull, std::size_t cap, double free_cost,
                     const Solid& solid);
 

@@ -5,6 +5,8 @@
 #include <kaboum/geom/convex_set.h>
 #include <kaboum/geom/float32.h>
 
+#include <cmath>
+#include <numbers>
 #include <random>
 
 #include "simplify.h"
@@ -60,6 +62,22 @@ TEST(Enclose, ThinAndFlatOnes) {
     const std::vector<Vec3> required = rounded(points);
     const geom::Mesh body = enclose(points, required, 16);
     expect_enclosed(body, required);
+  }
+}
+
+/// A box would reach 0.41 beyond the disc; with 16 sides it is 0.02.
+TEST(Enclose, ThinDiscsByPrismsWithAsManySidesAsAllowed) {
+  for (const double thickness : {1e-5, 0.0}) {
+    std::vector<Vec3> points;
+    for (int i = 0; i < 200; ++i)
+      for (const double z : {0.0, thickness})
+        points.emplace_back(std::cos(i * std::numbers::pi / 100), z,
+                            std::sin(i * std::numbers::pi / 100));
+    const std::vector<Vec3> required = rounded(points);
+    const geom::Mesh body = enclose(points, required, 32);
+    expect_enclosed(body, required);
+    EXPECT_LE(body.vertices.size(), 32U);
+    for (const Vec3& v : body.vertices) EXPECT_LT(v.norm(), 1.03);
   }
 }
 
