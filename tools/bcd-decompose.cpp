@@ -368,10 +368,14 @@ int decompose_robot(const Options& o) {
                                  counted("bodies", "body", "bodies") + " of " +
                                  counted("links", "link", "links") + ", from " +
                                  counted("meshes", "mesh", "meshes"));
+  for (const std::string& link : result.bare)
+    tools::log(o.common.quiet, o.input + ": link '" + link + "' has no " + o.geometry +
+                                   " shape; it stays as it is");
   if (!o.preview.empty()) io::write_file(o.preview, tools::picture_of(result.at_rest, o.explode));
   if (!o.common.report.empty()) {
     Json report = result.report;
     report["stop"] = done ? "done" : "epsilon not reached";
+    report["links_without_shapes"] = result.bare;
     report["input"] = {{"file", o.input}};
     report["parameters"] = robot.parameters;
     add_run(o, report);

@@ -155,6 +155,13 @@ RobotFile read_robot(const std::string& path) {
   return out;
 }
 
+double overshoot_of(const Geometry& shape) {
+  // As sweep::bounding_points says: 2 % and 0.5 % of the radius.
+  if (shape.shape == Geometry::Shape::Sphere) return 0.02 * shape.size.x();
+  if (shape.shape == Geometry::Shape::Cylinder) return 0.005 * shape.size.x();
+  return 0;
+}
+
 std::string epsilon_of_mesh(const std::string& epsilon, double scale) {
   const auto length = parse_length(epsilon);
   if (!length || length->percent || scale == 1) return epsilon;
@@ -244,9 +251,12 @@ LinkBodies bodies_of(const RobotFile& robot, const BodyOptions& options) {
     if (!options.links.empty() &&
         std::find(options.links.begin(), options.links.end(), link.name) == options.links.end())
       continue;
-    for (const Geometry& g : options.visual ? link.visual : link.collision) {
+    const std::vector<Geometry>& shapes = options.visual ? link.visual : link.collision;
+    if (shapes.empty()) out.bare.push_back(link.name);
+    for (const Geometry& g : shapes) {
       if (g.shape != Geometry::Shape::Mesh) {
         place_shape(g, nullptr, link.name, l, out.bodies);
+        out.epsilon = std::max(out.epsilon, overshoot_of(g));
         continue;
       }
       const fs::path mesh = resolve_mesh(g.mesh, robot.path, options.packages);

@@ -39,8 +39,9 @@ struct BodyOptions {
 
 struct LinkBodies {
   std::vector<sweep::Body> bodies;
-  double epsilon = 0;              ///< largest certified distance of a body from its mesh [length]
+  double epsilon = 0;              ///< largest certified distance of a body from its shape [length]
   std::vector<std::string> files;  ///< meshes read
+  std::vector<std::string> bare;   ///< links asked for that have no shape
 };
 
 /// Convex bodies of a robot's links: of meshes by the program bcd-decompose beside this one, which
@@ -54,6 +55,10 @@ LinkBodies bodies_of(const RobotFile& robot, const BodyOptions& options);
 /// @param link  name that the bodies' names begin with; `index` is the link's.
 void place_shape(const sweep::Geometry& shape, const geom::ConvexSet* set, const std::string& link,
                  std::uint32_t index, std::vector<sweep::Body>& bodies);
+
+/// Largest distance of a point of a shape's bounding polytope from the shape; 0 for meshes and
+/// boxes.
+double overshoot_of(const sweep::Geometry& shape);
 
 /// "5%" as it is; a length in the robot's unit in that of a mesh whose coordinates are multiplied
 /// by `scale`.

@@ -135,7 +135,10 @@ class Writer {
   const Decomposed& decomposed(const Geometry& g) {
     const fs::path file = resolve_mesh(g.mesh, robot_.path, o_.packages);
     const double scale = g.size.cwiseAbs().maxCoeff();
-    const std::pair<std::string, double> key{io::sha256(io::read_file(file)), scale};
+    std::error_code error;
+    const fs::path canonical = fs::canonical(file, error);
+    // By its place, not by its bytes, which may refer to other files.
+    const std::pair<std::string, double> key{(error ? file : canonical).string(), scale};
     const auto it = meshes_.find(key);
     if (it != meshes_.end()) return it->second;
     result_.inputs.push_back(file);
@@ -173,6 +176,7 @@ class Writer {
       if (g.shape != Geometry::Shape::Mesh) {
         last = element->InsertAfterChild(last, collision(originals[i], link.name, bodies.size()));
         place_shape(g, nullptr, link.name, l, bodies);
+        reach = std::max(reach, overshoot_of(g));
         continue;
       }
       const Decomposed& d = decomposed(g);
@@ -190,8 +194,13 @@ class Writer {
       surface = surface && set.provenance.covers_surface;
       report["meshes"].push_back({{"file", d.file}, {"result", d.mesh.report}});
     }
+    if (shapes.empty()) {
+      // What the link has for collisions stays.
+      for (XMLElement* e : old) move_references(e);
+      result_.bare.push_back(link.name);
+      return;
+    }
     for (XMLElement* e : old) element->DeleteChild(e);
-    if (shapes.empty()) return;
     geom::ConvexSet set = container(bodies, link.name);
     geom::Provenance& p = set.provenance;
     p.source = fs::path(o_.robot).filename().string();

@@ -36,6 +36,7 @@ struct RobotResult {
   Json report;
   geom::ConvexSet at_rest;  ///< all links at zero joint values, for pictures: not certified
   std::vector<std::filesystem::path> inputs;
+  std::vector<std::string> bare;  ///< links without a shape of the kind asked for: left as they are
 };
 
 /// Writes to the folder, the URDF last:

@@ -170,6 +170,9 @@ int sweep_path(Options o) {
   o.bodies.quiet = o.common.quiet;
   if (o.bodies.epsilon.empty()) o.bodies.epsilon = o.epsilon;
   const tools::LinkBodies links = tools::bodies_of(file, o.bodies);
+  for (const std::string& link : links.bare)
+    tools::log(o.common.quiet, o.robot + ": link '" + link + "' has no " + o.geometry +
+                                   " shape: nothing of it is swept");
   sweep::SweepOptions options;
   options.epsilon = tools::parse_length(o.epsilon)->value;
   options.rule = kRules.at(o.bound);
@@ -209,6 +212,13 @@ int sweep_path(Options o) {
           << "; no point farther than " << result.reach << " from what they sweep";
   if (!result.certified) message << "; NOT certified: --bound baginski is not proved";
   tools::log(o.common.quiet, message.str());
+  if (format == io::SetFormat::Glb) {
+    io::write_file(o.output, bytes);
+  } else if (urdf) {
+    tools::write_swept_urdf(o.output, result.set);
+  } else {
+    io::write_convex_set(o.output, result.set, format);
+  }
   if (!o.preview.empty())
     io::write_file(o.preview, tools::picture_of_sweep(file.robot, links.bodies, path, result));
   if (!o.common.report.empty()) {
@@ -226,6 +236,7 @@ int sweep_path(Options o) {
                          {"vertices", vertices},
                          {"bodies_of_links", of_link},
                          {"bodies_at_rest", links.bodies.size()},
+                         {"links_without_shapes", links.bare},
                          {"margin", written.margin},
                          {"deviation", result.deviation},
                          {"left_out", result.left_out},
@@ -241,13 +252,6 @@ int sweep_path(Options o) {
     std::vector<std::string> inputs{o.robot, o.path};
     inputs.insert(inputs.end(), links.files.begin(), links.files.end());
     tools::write_depfile(o.depfile, {o.output}, inputs);
-  }
-  if (format == io::SetFormat::Glb) {
-    io::write_file(o.output, bytes);
-  } else if (urdf) {
-    tools::write_swept_urdf(o.output, result.set);
-  } else {
-    io::write_convex_set(o.output, result.set, format);
   }
   return tools::kDone;
 }

@@ -125,8 +125,9 @@ void require_same_poses(const sweep::Robot& robot, const Shapes& shapes, const s
       const auto pose = verify::pose_of(chain, q);
       const sweep::Transform& other = poses[shapes.links[i]];
       const double size = 1 + other.translation.norm();
-      ensure((pose.leftCols<3>() - other.linear).norm() < 1e-9 &&
-                 (pose.col(3) - other.translation).norm() < 1e-9 * size,
+      const double allowed = 1e-9 * size + 64 * verify::bound_motion(chain, q, q, size).rounding;
+      ensure((pose.leftCols<3>() - other.linear).norm() < allowed / size &&
+                 (pose.col(3) - other.translation).norm() < allowed,
              "two ways to compute a link's pose disagree");
     }
   }

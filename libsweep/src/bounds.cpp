@@ -27,11 +27,11 @@ MotionBounds::MotionBounds(const LinkMotion& motion, std::span<const Vec3> point
     const auto& stage = stages[k];
     if (stage.revolute) {
       radius_ = std::max(radius_, across);
-      angles += std::max(std::abs(stage.from), std::abs(stage.to));
+      angles += stage.magnitude;
       turn_ += std::abs(stage.delta);
       if (stage.delta != 0) terms_.push_back({true, across * kUp, std::abs(stage.delta) * kUp});
     } else {
-      distance += std::max(std::abs(stage.from), std::abs(stage.to));
+      distance += stage.magnitude;
       slide_ += std::abs(stage.delta);
       if (stage.delta != 0) terms_.push_back({false, 0, std::abs(stage.delta) * kUp});
     }

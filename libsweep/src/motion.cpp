@@ -27,6 +27,9 @@ LinkMotion::LinkMotion(const Robot& robot, std::uint32_t link, std::span<const d
     stage.across = Mat3::Identity() - a * a.transpose();
     stage.from = joint.multiplier * from[joint.variable] + joint.offset;
     stage.to = joint.multiplier * to[joint.variable] + joint.offset;
+    stage.magnitude = std::abs(joint.multiplier) *
+                          std::max(std::abs(from[joint.variable]), std::abs(to[joint.variable])) +
+                      std::abs(joint.offset);
     // Of the variable, not of the joint: exactly zero when the variable rests.
     stage.delta = joint.multiplier * (to[joint.variable] - from[joint.variable]);
     moves_ = moves_ || stage.delta != 0;

@@ -56,11 +56,13 @@ MotionBound bound_motion(const LinkChain& chain, std::span<const double> from,
   for (std::size_t i = chain.size(); i-- > 0;) {
     const ChainStage& stage = chain[i];
     if (stage.motion != ChainStage::Motion::None) {
-      const double a = stage.multiplier * from[stage.variable] + stage.offset;
-      const double z = stage.multiplier * to[stage.variable] + stage.offset;
       const double rate =
           std::abs(stage.multiplier) * std::abs(to[stage.variable] - from[stage.variable]) * kUp;
-      const double most = std::max(std::abs(a), std::abs(z));
+      // Not of the sum: its rounding is relative to what it is a sum of.
+      const double most = (std::abs(stage.multiplier) * std::max(std::abs(from[stage.variable]),
+                                                                 std::abs(to[stage.variable])) +
+                           std::abs(stage.offset)) *
+                          kUp;
       if (stage.motion == ChainStage::Motion::Turn) {
         b.acceleration += rate * rate * b.distance + 2 * rate * b.speed;
         b.speed += rate * b.distance;

@@ -58,10 +58,19 @@ cmp -s out/links/arm_1.glb out2/links/arm_1.glb || fail "another container"
 
 # Shapes for drawing; lengths in the robot's unit.
 sed 's/seen.dae/t.off/' robot/r.urdf >robot/v.urdf
-expect 0 'of 1 link, from 1 mesh$' "$D" robot/v.urdf -o seen --visual --epsilon 0.05
+expect 0 "link 'arm/1' has no visual shape; it stays" "$D" robot/v.urdf -o seen --visual --epsilon 0.05
+grep -q 'of 1 link, from 1 mesh$' err.txt || fail "counts: $(cat err.txt)"
 grep -q 'bodies/t/body' seen/v.urdf || fail "no bodies for drawing shapes"
-grep -q 'box size' seen/v.urdf && fail "collision shapes stay beside those for drawing"
+grep -q 'box size' seen/v.urdf || fail "a link without a shape for drawing lost its collision shape"
+grep -q 'filename="../robot/meshes/t.off"' seen/v.urdf || fail "a mesh that stays is not found from the folder"
 
+# Files that are not ours stay.
+mkdir -p mine && cp out/bodies/t/body-0000.stl mine/part.stl
+expect 4 'part.stl' "$D" robot/meshes/t.off -o mine --effort fast
+cp mine/part.stl out/bodies/t/part.stl
+expect 4 'part.stl' "$D" robot/r.urdf -o out --epsilon 3% --effort fast
+[ -s mine/part.stl ] && [ -s out/bodies/t/part.stl ] || fail "a file of the user is gone"
+rm out/bodies/t/part.stl
 expect 2 'overwrite' "$D" robot/r.urdf -o robot
 expect 2 'folder' "$D" robot/r.urdf -o -
 expect 2 'one by one' "$D" robot/r.urdf -o x --direction inner

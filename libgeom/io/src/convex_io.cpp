@@ -158,6 +158,14 @@ void refuse_margin(const geom::ConvexSet& set, const char* format) {
                     "write glb, or enlarge the bodies by the margin first");
 }
 
+/// Whether a file of a folder has a name that write_directory gives.
+bool is_part_of_set(const fs::path& file) {
+  if (file.filename() == kRecordFile) return true;
+  const std::string stem = file.stem().string(), start = "body-";
+  return file.extension() == ".stl" && stem.size() >= start.size() + 4 && stem.starts_with(start) &&
+         stem.find_first_not_of("0123456789", start.size()) == std::string::npos;
+}
+
 void write_directory(const fs::path& path, const geom::ConvexSet& set) {
   const auto cannot = [&](const std::string& why) {
     throw Error(ErrorCode::OutputFailed, path.string() + ": cannot be written: " + why);
@@ -169,11 +177,13 @@ void write_directory(const fs::path& path, const geom::ConvexSet& set) {
   if (target.filename().empty()) target = target.parent_path();
   const bool exists = fs::exists(target, error);
   if (exists && !fs::is_directory(target, error)) cannot("it is a file; name a folder");
-  if (exists)
+  if (exists) {
+    const bool ours = fs::exists(target / kRecordFile, error);
     for (const fs::directory_entry& entry : fs::directory_iterator(target))
-      if (!is_stl(entry.path()) && entry.path().filename() != kRecordFile)
+      if (!ours || !is_part_of_set(entry.path()))
         cannot("the folder holds '" + entry.path().filename().string() +
-               "', which is no part of a convex set; name another folder");
+               "', which is no part of a convex set written here; name another folder");
+  }
   const fs::path parent = target.has_parent_path() ? target.parent_path() : fs::path(".");
   const std::string suffix = std::to_string(::getpid()) + ".tmp";
   const fs::path fresh = parent / (".kaboum-new-" + suffix),

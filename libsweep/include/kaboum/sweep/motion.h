@@ -34,6 +34,8 @@ class LinkMotion {
     Vec3 axis;
     Mat3 cross, across;  // [axis]×, and the projection across the axis
     double from, to, delta;
+    double
+        magnitude;  // of all that the joint's value is a sum of: what its rounding is relative to
   };
   std::vector<Stage> stages_;
   Transform after_;

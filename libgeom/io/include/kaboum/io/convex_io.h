@@ -72,7 +72,8 @@ std::string default_name(std::size_t index);
 /// Writes a set so that the path holds either what it held before or all of the new (folders: after
 /// a crash between two renames, the old content may be left in a hidden folder beside it).
 ///
-/// A folder is replaced only when it is empty or holds nothing but STL files and convex-set.json.
+/// A folder is replaced only when it is empty or holds what this function wrote: convex-set.json
+/// and files body-NNNN.stl, nothing else.
 ///
 /// @throws as serialise_convex_set; Error{OutputFailed} when the path cannot be written.
 void write_convex_set(const std::filesystem::path& path, const geom::ConvexSet& set,
