@@ -174,7 +174,8 @@ void require_absent(const CLI::App& app, const std::string& option,
                     const std::vector<std::string>& others) {
   for (const std::string& other : others)
     if (app.get_option(other)->count() != 0)
-      throw Error(ErrorCode::InvalidArgument, option + " cannot be joined with " + other);
+      throw Error(ErrorCode::InvalidArgument,
+                  std::string(option).append(" cannot be joined with ").append(other));
 }
 
 void write_json(const std::string& path, const Json& json) {
