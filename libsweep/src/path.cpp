@@ -16,24 +16,20 @@ using Json = nlohmann::json;
   throw Error(ErrorCode::InvalidInput, name + ": " + what);
 }
 
+/// Fields between commas or semicolons, without the blanks round them; else words between blanks.
 std::vector<std::string> split(std::string_view line) {
-  std::vector<std::string> out;
+  constexpr std::string_view kBlanks = " \t\r";
   const bool commas = line.find_first_of(",;") != std::string_view::npos;
-  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-  std::string field;
-  bool started = false;
-  for (const char c : line) {
-    if (commas ? c == ',' || c == ';' : blank(c)) {
-      if (commas || started) out.push_back(field);
-      field.clear();
-      started = false;
-    } else if (!blank(c)) {
-      field += c;
-      started = true;
-    }
+  std::vector<std::string> out;
+  while (true) {
+    const std::size_t end = std::min(line.find_first_of(commas ? ",;" : kBlanks), line.size());
+    std::string_view field = line.substr(0, end);
+    field.remove_prefix(std::min(field.find_first_not_of(kBlanks), field.size()));
+    field = field.substr(0, field.find_last_not_of(kBlanks) + 1);
+    if (commas || !field.empty()) out.emplace_back(field);
+    if (end == line.size()) return out;
+    line.remove_prefix(end + 1);
   }
-  if (started || (commas && !line.empty())) out.push_back(field);
-  return out;
 }
 
 std::optional<double> number(const std::string& text) {

@@ -84,6 +84,9 @@ class Reader {
         if (id == nullptr) fail(e, "no id");
         if (std::find(frames_.begin(), frames_.end(), id) != frames_.end())
           fail(e, std::string("'") + id + "' exists already");
+        const Transform pose = transform(e);
+        if (kind == "world" && (!pose.linear.isIdentity(0) || !pose.translation.isZero(0)))
+          fail(e, "a world that is moved or turned is not supported; put a <fixed> after it");
         frames_.emplace_back(id);
       }
       return;

@@ -22,6 +22,8 @@ TEST(Path, CsvWithAndWithoutHeader) {
   EXPECT_EQ(a.joints, (std::vector<std::string>{"b", "a"}));
   EXPECT_EQ(a.waypoints, (Path{{1, 2}, {-0.3, 4}}));
   EXPECT_EQ(parse_path_csv("1 2\t3\r\n4 5 6", "p").waypoints, (Path{{1, 2, 3}, {4, 5, 6}}));
+  EXPECT_EQ(parse_path_csv(" joint a , joint b\n 1 , 2\r\n", "p").joints,
+            (std::vector<std::string>{"joint a", "joint b"}));
   EXPECT_EQ(parse_path_csv("1;2\n3;4", "p").waypoints, (Path{{1, 2}, {3, 4}}));
 }
 
@@ -35,6 +37,7 @@ TEST(Path, Json) {
 TEST(Path, BadFilesAreRefusedByPlace) {
   const auto csv = [](const char* text) { return message([&] { parse_path_csv(text, "p.csv"); }); };
   EXPECT_NE(csv("1,2\n3\n").find("p.csv: line 2"), std::string::npos);
+  EXPECT_NE(csv("1,2\n1 2,3 4\n").find("line 2: '3 4' is not a number"), std::string::npos);
   EXPECT_NE(csv("1,2\n3,x\n").find("line 2: 'x'"), std::string::npos);
   EXPECT_NE(csv("1,x\n").find("line 1"), std::string::npos);
   EXPECT_NE(csv("a,b\n").find("no waypoint"), std::string::npos);

@@ -194,6 +194,8 @@ TEST(Rl, BadFilesAreRefused) {
   has("<rlkin/>", "no kinematics");
   has("<robot/>", "expected <rlkin>");
   has(of("<link/>"), "no id");
+  has(of("<world id='w'><translation><x>5</x></translation></world>"), "moved or turned");
+  has(of("<world id='w'><rotation><z>90</z></rotation></world>"), "moved or turned");
   has(of(frames + "<helical id='t'>" + ends + "</helical>"), "<helical>");
   has(of("<world id='w'/><transform>" + ends + "</transform>"), "'l'");
   has(of(frames + "<revolute id='t'>" + ends + "<dh><a>1x</a></dh></revolute>"), "'1x'");
