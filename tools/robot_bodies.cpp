@@ -155,13 +155,6 @@ RobotFile read_robot(const std::string& path) {
   return out;
 }
 
-double overshoot_of(const Geometry& shape) {
-  // As sweep::bounding_points says: 2 % and 0.5 % of the radius.
-  if (shape.shape == Geometry::Shape::Sphere) return 0.02 * shape.size.x();
-  if (shape.shape == Geometry::Shape::Cylinder) return 0.005 * shape.size.x();
-  return 0;
-}
-
 std::string epsilon_of_mesh(const std::string& epsilon, double scale) {
   const auto length = parse_length(epsilon);
   if (!length || length->percent || scale == 1) return epsilon;
@@ -256,7 +249,7 @@ LinkBodies bodies_of(const RobotFile& robot, const BodyOptions& options) {
     for (const Geometry& g : shapes) {
       if (g.shape != Geometry::Shape::Mesh) {
         place_shape(g, nullptr, link.name, l, out.bodies);
-        out.epsilon = std::max(out.epsilon, overshoot_of(g));
+        out.epsilon = std::max(out.epsilon, sweep::bounding_excess(g));
         continue;
       }
       const fs::path mesh = resolve_mesh(g.mesh, robot.path, options.packages);

@@ -56,10 +56,6 @@ LinkBodies bodies_of(const RobotFile& robot, const BodyOptions& options);
 void place_shape(const sweep::Geometry& shape, const geom::ConvexSet* set, const std::string& link,
                  std::uint32_t index, std::vector<sweep::Body>& bodies);
 
-/// Largest distance of a point of a shape's bounding polytope from the shape; 0 for meshes and
-/// boxes.
-double overshoot_of(const sweep::Geometry& shape);
-
 /// "5%" as it is; a length in the robot's unit in that of a mesh whose coordinates are multiplied
 /// by `scale`.
 std::string epsilon_of_mesh(const std::string& epsilon, double scale);

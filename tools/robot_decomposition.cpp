@@ -176,7 +176,7 @@ class Writer {
       if (g.shape != Geometry::Shape::Mesh) {
         last = element->InsertAfterChild(last, collision(originals[i], link.name, bodies.size()));
         place_shape(g, nullptr, link.name, l, bodies);
-        reach = std::max(reach, overshoot_of(g));
+        reach = std::max(reach, sweep::bounding_excess(g));
         continue;
       }
       const Decomposed& d = decomposed(g);

@@ -349,11 +349,6 @@ class Decomposer {
 
   std::vector<Finished> within(double epsilon) {
     const double wished = 0.93 * epsilon;
-    std::vector<Body> whole = leaf_bodies();
-    if (whole.size() == 1) {  // convex, or nearly so
-      std::vector<Finished> one = finish(whole, 0.5 * wished, epsilon);
-      if (good(one, epsilon)) return one;
-    }
     std::vector<Body> best;
     const double begin = std::max(tree_.worst(), epsilon);
     std::size_t most_leaves = 20000;
@@ -544,7 +539,6 @@ class Decomposer {
   PairMemo memo_;
   double point_error_ = 0;
   std::map<int, std::vector<Vec3>> required_;                    // by leaf
-  std::map<std::pair<std::vector<int>, double>, Mesh> rounded_;  // by leaves and free cost
   DecomposeResult result_;
 };
 

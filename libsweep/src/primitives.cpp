@@ -69,6 +69,12 @@ std::vector<Vec3> sphere(double radius) {
 
 }  // namespace
 
+double bounding_excess(const Geometry& g) {
+  if (g.shape == Geometry::Shape::Sphere) return 0.02 * g.size.x();
+  if (g.shape == Geometry::Shape::Cylinder) return 0.005 * g.size.x();
+  return 0;
+}
+
 std::vector<Vec3> bounding_points(const Geometry& g) {
   std::vector<Vec3> points;
   switch (g.shape) {

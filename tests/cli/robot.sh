@@ -64,6 +64,26 @@ grep -q 'bodies/t/body' seen/v.urdf || fail "no bodies for drawing shapes"
 grep -q 'box size' seen/v.urdf || fail "a link without a shape for drawing lost its collision shape"
 grep -q 'filename="../robot/meshes/t.off"' seen/v.urdf || fail "a mesh that stays is not found from the folder"
 
+# Files of the same bytes that refer to other files are other meshes.
+for side in a b; do
+  mkdir -p "wrap/$side"
+  printf '#VRML V2.0 utf8\nInline { url "part.wrl" }\n' >"wrap/$side/m.wrl"
+done
+for size in a:1 b:3; do
+  s=${size#*:}
+  echo "#VRML V2.0 utf8
+Shape { geometry IndexedFaceSet { coord Coordinate { point [0 0 0, $s 0 0, 0 $s 0, 0 0 $s] }
+  coordIndex [0 2 1 -1 0 1 3 -1 1 2 3 -1 2 0 3 -1] } }" >"wrap/${size%:*}/part.wrl"
+done
+cat >wrap/r.urdf <<'END'
+<robot name="r"><link name="l">
+  <collision><geometry><mesh filename="a/m.wrl"/></geometry></collision>
+  <collision><geometry><mesh filename="b/m.wrl"/></geometry></collision>
+</link></robot>
+END
+expect 0 'from 2 meshes' "$D" wrap/r.urdf -o wrapped --epsilon 5% --effort fast
+expect 0 'verified' "$BIN/bound-verify" --cover wrap/b/m.wrl wrapped/links/l.glb
+
 # Files that are not ours stay.
 mkdir -p mine && cp out/bodies/t/body-0000.stl mine/part.stl
 expect 4 'part.stl' "$D" robot/meshes/t.off -o mine --effort fast

@@ -72,6 +72,15 @@ TEST(Urdf, Shapes) {
   const auto cylinder = geom::convex_hull(bounding_points(link.collision[1]));
   const auto sphere = geom::convex_hull(bounding_points(link.visual[0]));
   ASSERT_TRUE(cylinder && sphere);
+  double round_excess = 0, ball_excess = 0;
+  for (const Vec3& p : cylinder->vertices)
+    round_excess = std::max(round_excess, std::hypot(p.x(), p.y()) - 0.5);
+  for (const Vec3& p : sphere->vertices) ball_excess = std::max(ball_excess, p.norm() - 2);
+  EXPECT_LE(round_excess, bounding_excess(link.collision[1]));
+  EXPECT_GT(round_excess, 0.9 * bounding_excess(link.collision[1]));
+  EXPECT_LE(ball_excess, bounding_excess(link.visual[0]));
+  EXPECT_GT(ball_excess, 0.9 * bounding_excess(link.visual[0]));
+  EXPECT_EQ(bounding_excess(link.collision[0]), 0);
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
   for (int i = 0; i < 2000; ++i) {

@@ -81,4 +81,7 @@ Robot parse_rl(std::string_view text, const std::string& name);
 /// @pre shape is not Mesh; sizes are positive.
 std::vector<Vec3> bounding_points(const Geometry& geometry);
 
+/// How far that hull reaches beyond the shape at most. [length]
+double bounding_excess(const Geometry& geometry);
+
 }  // namespace kaboum::sweep
