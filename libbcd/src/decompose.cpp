@@ -538,7 +538,7 @@ class Decomposer {
   CutTree tree_;
   PairMemo memo_;
   double point_error_ = 0;
-  std::map<int, std::vector<Vec3>> required_;                    // by leaf
+  std::map<int, std::vector<Vec3>> required_;  // by leaf
   DecomposeResult result_;
 };
 
