@@ -46,17 +46,28 @@ struct Plane {
   double c;
 };
 
-/// Closest point to the origin in an intersection of half-spaces, by basis exchange.
+/// Closest point to the origin in an intersection of half-spaces, by basis exchange. Planes are
+/// compared as given; only those that enter the basis are transformed.
 class ClosestPoint {
  public:
-  explicit ClosestPoint(std::span<const Plane> planes) : planes_(planes) {}
+  /// z = Lᵀy + shift.
+  ClosestPoint(std::span<const HalfSpace> half_spaces, const Cholesky& l, const Vec3& shift)
+      : half_spaces_(half_spaces), l_(l), shift_(shift) {}
 
+  /// @return y
   std::optional<Vec3> solve() {
     constexpr int kMaxExchanges = 64;
     for (int i = 0; i < kMaxExchanges; ++i) {
-      const int worst = most_violated();
-      if (worst < 0) return z_;
-      if (!exchange(worst)) return std::nullopt;
+      const Vec3 y = l_.backward(z_ - shift_);
+      const HalfSpace* worst = most_violated(y);
+      if (worst == nullptr) return y;
+      const std::optional<Plane> plane = transformed(*worst);
+      if (!plane ||
+          plane->c - plane->u.dot(z_) <= kTolerance * (z_.lpNorm<1>() + std::abs(plane->c)))
+        return y;
+      const int slot = free_slot();
+      planes_[static_cast<std::size_t>(slot)] = *plane;
+      if (!exchange(slot)) return std::nullopt;
     }
     return std::nullopt;
   }
@@ -64,24 +75,36 @@ class ClosestPoint {
  private:
   static constexpr double kTolerance = 1e-12;
 
-  [[nodiscard]] int most_violated() const {
-    int worst = -1;
+  [[nodiscard]] const HalfSpace* most_violated(const Vec3& y) const {
+    const HalfSpace* worst = nullptr;
     double violation = 0;
-    for (std::size_t i = 0; i < planes_.size(); ++i) {
-      const double v = planes_[i].c - planes_[i].u.dot(z_);
+    for (const HalfSpace& h : half_spaces_) {
+      const double v = h.offset - h.normal.dot(y);
       if (v > violation) {
         violation = v;
-        worst = static_cast<int>(i);
+        worst = &h;
       }
     }
-    if (worst < 0) return -1;
-    const double scale = z_.lpNorm<1>() + std::abs(planes_[static_cast<std::size_t>(worst)].c);
-    return violation > kTolerance * scale ? worst : -1;
+    return worst;
+  }
+
+  [[nodiscard]] std::optional<Plane> transformed(const HalfSpace& h) const {
+    const Vec3 g = l_.forward(h.normal);
+    const double norm = g.norm();
+    if (!(norm > 0)) return std::nullopt;
+    const double inverse = 1 / norm;
+    return Plane{inverse * g, inverse * (h.offset + g.dot(shift_))};
+  }
+
+  /// The first of the four places that the basis does not use.
+  [[nodiscard]] int free_slot() const {
+    for (int slot = 0;; ++slot)
+      if (std::find(basis_.begin(), basis_.end(), slot) == basis_.end()) return slot;
   }
 
   [[nodiscard]] bool feasible(const Vec3& z, std::initializer_list<int> others) const {
     for (const int i : others) {
-      const Plane& p = planes_[static_cast<std::size_t>(i)];
+      const Plane& p = plane(i);
       if (p.u.dot(z) < p.c - kTolerance * (z.lpNorm<1>() + std::abs(p.c))) return false;
     }
     return true;
@@ -155,7 +178,10 @@ class ClosestPoint {
     return z;
   }
 
-  std::span<const Plane> planes_;
+  std::span<const HalfSpace> half_spaces_;
+  const Cholesky& l_;
+  const Vec3& shift_;
+  std::array<Plane, 4> planes_;  // the basis, and the one that enters
   Vec3 z_ = Vec3::Zero();
   std::array<int, 3> basis_{-1, -1, -1};
   int size_ = 0;
@@ -169,31 +195,27 @@ std::optional<Vec3> minimise(const Quadric& quadratic, const Vec3& linear,
   // (L⁻¹n)·z ≥ d + (L⁻¹n)·(L⁻¹b').
   const Cholesky l(quadratic, regularisation);
   const Vec3 shift = l.forward(linear * l.scale);
-  constexpr std::size_t kOnStack = 48;
-  std::array<Plane, kOnStack> buffer;
-  std::vector<Plane> heap;
-  std::span<Plane> planes(buffer.data(), std::min(half_spaces.size(), kOnStack));
-  if (half_spaces.size() > kOnStack) {
-    heap.resize(half_spaces.size());
-    planes = heap;
-  }
-  std::size_t count = 0;
-  for (const HalfSpace& h : half_spaces) {
-    const Vec3 g = l.forward(h.normal);
-    const double norm = g.norm();
-    if (!(norm > 0)) continue;
-    const double inverse = 1 / norm;
-    planes[count++] = {inverse * g, inverse * (h.offset + g.dot(shift))};
-  }
-  const auto z = ClosestPoint(planes.first(count)).solve();
-  if (!z) return std::nullopt;
-  return l.backward(*z - shift);
+  return ClosestPoint(half_spaces, l, shift).solve();
 }
 
 double unconstrained_minimum(const Quadric& q, const Vec3& near, double regularisation) {
-  const Cholesky l(q, regularisation);
-  const Vec3 shift = l.forward(q.half_gradient(near) * l.scale);
-  return q(near - l.backward(shift));
+  // (A + e·I) y = g, g half the gradient; A + e·I = L D Lᵀ.
+  const Vec3 g = q.half_gradient(near);
+  const double value = near.dot(g) + near.x() * q.bx + near.y() * q.by + near.z() * q.bz + q.c;
+  const double trace = q.trace();
+  if (!(trace > 0)) return value;
+  const double e = regularisation * trace;
+  const double i0 = 1 / (q.xx + e);
+  const double l10 = q.xy * i0, l20 = q.xz * i0;
+  const double i1 = 1 / std::max(q.yy + e - l10 * q.xy, 0.5 * e);
+  const double yz = q.yz - l20 * q.xy;
+  const double l21 = yz * i1;
+  const double i2 = 1 / std::max(q.zz + e - l20 * q.xz - l21 * yz, 0.5 * e);
+  const double z1 = g.y() - l10 * g.x();
+  const double y2 = (g.z() - l20 * g.x() - l21 * z1) * i2;
+  const double y1 = z1 * i1 - l21 * y2;
+  const double y0 = g.x() * i0 - l10 * y1 - l20 * y2;
+  return value - (g.x() * y0 + g.y() * y1 + g.z() * y2) - e * (y0 * y0 + y1 * y1 + y2 * y2);
 }
 
 }  // namespace kaboum::bmesh
