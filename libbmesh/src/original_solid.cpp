@@ -108,8 +108,7 @@ OriginalSolid::OriginalSolid(const geom::Mesh& original)
     : original_(original), bvh_(original), winding_(original) {}
 
 bool OriginalSolid::contains(const Tetrahedron& tetrahedron, bool inside,
-                             std::vector<std::uint32_t>* met) {
-  ++tests_;
+                             std::vector<std::uint32_t>* met) const {
   geom::Box3 box;
   for (const Vec3& p : tetrahedron) box.extend(p);
   bool clear = true, enough = false;
@@ -126,7 +125,7 @@ bool OriginalSolid::contains(const Tetrahedron& tetrahedron, bool inside,
                                       original_.vertices[tri[2]]};
     geom::Box3 own;
     for (const Vec3& p : corners) own.extend(p);
-    if (!overlaps(own) || !meets_interior(tetrahedron, corners, &exact_calls_)) return;
+    if (!overlaps(own) || !meets_interior(tetrahedron, corners)) return;
     clear = false;
     if (met != nullptr) met->push_back(t);
     enough = met == nullptr || met->size() == kMostMet;
@@ -138,8 +137,8 @@ bool OriginalSolid::contains(const Tetrahedron& tetrahedron, bool inside,
   for (int k = 0; k < 4; ++k) {
     const Vec3 &a = tetrahedron[(k + 1) % 4], &b = tetrahedron[(k + 2) % 4],
                &c = tetrahedron[(k + 3) % 4];
-    const Sign own = geom::orient3d(a, b, c, tetrahedron[k], &exact_calls_);
-    if (own == Sign::Zero || geom::orient3d(a, b, c, middle, &exact_calls_) != own) return false;
+    const Sign own = geom::orient3d(a, b, c, tetrahedron[k]);
+    if (own == Sign::Zero || geom::orient3d(a, b, c, middle) != own) return false;
   }
   const auto w = winding_(middle);
   return w && (inside ? *w >= 1 : *w <= 0);

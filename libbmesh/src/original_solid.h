@@ -41,21 +41,17 @@ class OriginalSolid {
 
   /// Whether the tetrahedron's open interior meets no triangle of the original and its winding
   /// number there is at most 0 (`inside` false) or at least 1 (`inside` true). False also when the
-  /// tetrahedron is so thin that no double is found inside.
+  /// tetrahedron is so thin that no double is found inside. Safe to call from several threads.
   ///
   /// @param met  receives, when not null, up to kMostMet of the triangles that meet the interior.
   [[nodiscard]] bool contains(const Tetrahedron& tetrahedron, bool inside,
-                              std::vector<std::uint32_t>* met = nullptr);
+                              std::vector<std::uint32_t>* met = nullptr) const;
   static constexpr std::size_t kMostMet = 16;
-
-  [[nodiscard]] std::uint64_t tests() const { return tests_; }
-  [[nodiscard]] std::uint64_t exact_calls() const { return exact_calls_; }
 
  private:
   const geom::Mesh& original_;
   geom::Bvh bvh_;
   geom::WindingNumber winding_;
-  std::uint64_t tests_ = 0, exact_calls_ = 0;
 };
 
 }  // namespace kaboum::bmesh

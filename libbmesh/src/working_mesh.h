@@ -12,10 +12,14 @@ namespace kaboum::bmesh {
 /// The mesh that decimation and optimisation work on.
 struct WorkingMesh {
   explicit WorkingMesh(const geom::Prepared& input)
-      : position(input.mesh.vertices),
-        border(input.border),
-        mesh(input.mesh.vertices.size(), input.mesh.triangles),
-        normal(input.mesh.triangles.size()) {
+      : WorkingMesh(input.mesh.vertices, input.border, input.mesh.triangles) {}
+
+  WorkingMesh(std::vector<Vec3> vertices, std::vector<char> may_not_move,
+              std::vector<geom::Triangle> triangles)
+      : position(std::move(vertices)),
+        border(std::move(may_not_move)),
+        mesh(position.size(), std::move(triangles)),
+        normal(mesh.size()) {
     for (std::uint32_t t = 0; t < mesh.size(); ++t) update_normal(t);
   }
 

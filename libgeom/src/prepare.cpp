@@ -37,7 +37,7 @@ class Preparation {
     drop_copies();
     number_by_first_use();
     find_border();
-    components(out_.mesh, true, &out_.components);
+    components(edges_, mesh().triangles.size(), &out_.components);
     if (options_.keep_orientation && out_.closed && !(signed_volume(out_.mesh) > 0))
       out_.notes.push_back(
           "the signed volume is not positive: as oriented, the mesh bounds little or no "
@@ -201,6 +201,11 @@ class Preparation {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> by_corner;
     for_each_edge([&](std::span<const EdgeUse> e) {
       if (e.size() < 2) return;
+      if (e.size() == 2) {
+        if (opposite_corner(e[0]) == opposite_corner(e[1]))
+          candidate[e[0].triangle] = candidate[e[1].triangle] = 1;
+        return;
+      }
       by_corner.clear();
       for (const EdgeUse& u : e) by_corner.emplace_back(opposite_corner(u), u.triangle);
       std::sort(by_corner.begin(), by_corner.end());

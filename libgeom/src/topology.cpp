@@ -20,6 +20,17 @@ class UnionFind {
     b = find(b);
     if (a != b) parent_[std::max(a, b)] = std::min(a, b);
   }
+  /// The group of each element, numbered by first element.
+  std::vector<std::uint32_t> labels(std::uint32_t* count) {
+    std::vector<std::uint32_t> label(parent_.size());
+    std::uint32_t n = 0;
+    for (std::uint32_t i = 0; i < label.size(); ++i) {
+      const std::uint32_t root = find(i);
+      label[i] = root == i ? n++ : label[root];
+    }
+    if (count != nullptr) *count = n;
+    return label;
+  }
 
  private:
   std::vector<std::uint32_t> parent_;
@@ -34,7 +45,7 @@ Triangle sorted(Triangle t) {
 
 /// Calls visit(first, last) for each run of uses of one edge.
 template <class Visit>
-void for_each_edge(const std::vector<EdgeUse>& uses, Visit&& visit) {
+void for_each_edge(std::span<const EdgeUse> uses, Visit&& visit) {
   for (std::size_t i = 0; i < uses.size();) {
     std::size_t j = i + 1;
     while (j < uses.size() && uses[j].lo == uses[i].lo && uses[j].hi == uses[i].hi) ++j;
@@ -101,30 +112,26 @@ std::vector<EdgeUse> edge_uses(const Mesh& mesh) {
   return uses;
 }
 
+std::vector<std::uint32_t> components(std::span<const EdgeUse> uses, std::size_t triangles,
+                                      std::uint32_t* count) {
+  UnionFind groups(triangles);
+  for_each_edge(uses, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first + 1; i < last; ++i)
+      groups.join(uses[first].triangle, uses[i].triangle);
+  });
+  return groups.labels(count);
+}
+
 std::vector<std::uint32_t> components(const Mesh& mesh, bool through_edges, std::uint32_t* count) {
+  if (through_edges) return components(edge_uses(mesh), mesh.triangles.size(), count);
   UnionFind groups(mesh.triangles.size());
-  if (through_edges) {
-    const std::vector<EdgeUse> uses = edge_uses(mesh);
-    for_each_edge(uses, [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first + 1; i < last; ++i)
-        groups.join(uses[first].triangle, uses[i].triangle);
-    });
-  } else {
-    std::vector<std::uint32_t> first_at(mesh.vertices.size(), ~0U);
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-      for (const std::uint32_t v : mesh.triangles[t]) {
-        if (first_at[v] == ~0U) first_at[v] = t;
-        groups.join(first_at[v], t);
-      }
-  }
-  std::vector<std::uint32_t> label(mesh.triangles.size());
-  std::uint32_t n = 0;
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    const std::uint32_t root = groups.find(t);
-    label[t] = root == t ? n++ : label[root];
-  }
-  if (count != nullptr) *count = n;
-  return label;
+  std::vector<std::uint32_t> first_at(mesh.vertices.size(), ~0U);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const std::uint32_t v : mesh.triangles[t]) {
+      if (first_at[v] == ~0U) first_at[v] = t;
+      groups.join(first_at[v], t);
+    }
+  return groups.labels(count);
 }
 
 TopologyReport analyse(const Mesh& mesh) {

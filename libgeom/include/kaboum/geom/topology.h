@@ -3,6 +3,7 @@
 #include <kaboum/geom/mesh.h>
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace kaboum::geom {
@@ -52,5 +53,9 @@ std::vector<EdgeUse> edge_uses(const Mesh& mesh);
 /// Component of each triangle (0, 1, …, numbered by first triangle), connected through shared
 /// vertices or, when `through_edges`, only through shared edges.
 std::vector<std::uint32_t> components(const Mesh& mesh, bool through_edges, std::uint32_t* count);
+
+/// The same through shared edges, which are known already. @param uses as edge_uses returns them.
+std::vector<std::uint32_t> components(std::span<const EdgeUse> uses, std::size_t triangles,
+                                      std::uint32_t* count);
 
 }  // namespace kaboum::geom

@@ -1,0 +1,95 @@
+#include "contraction.h"
+
+namespace kaboum::bmesh {
+namespace {
+
+/// Entries at which stale ones are dropped, when there are so many without them.
+std::size_t room(std::size_t entries) { return entries + entries / 2 + 1024; }
+
+}  // namespace
+
+Contraction::Contraction(const Setting& setting, WorkingMesh mesh, std::vector<Quadric> quadric,
+                         OriginalSolid* solid, std::vector<Step>* steps, Judge* judge)
+    : setting_(setting),
+      m_(std::move(mesh)),
+      quadric_(std::move(quadric)),
+      stamp_(m_.position.size(), 0),
+      steps_(steps),
+      judge_(judge),
+      vertices_(m_.position.size()),
+      evaluation_(setting, m_, solid, statistics_) {}
+
+void Contraction::push_edge(std::uint32_t a, std::uint32_t b) {
+  if (m_.border[a] != 0 && m_.border[b] != 0) return;
+  if (((m_.border[a] | m_.border[b]) & kLocked) != 0) return;
+  const double key = setting_.cost.expected_key(merged(a, b), m_.position[a], m_.position[b]);
+  if (key <= limit_) queue_.push(key, {a, b, stamp_[a] + stamp_[b]});
+}
+
+void Contraction::push_all() {
+  for (std::uint32_t v = 0; v < m_.position.size(); ++v) {
+    if (!m_.mesh.used(v)) continue;
+    for (const std::uint32_t w : evaluation_.neighbours(v))
+      if (w > v) push_edge(v, w);
+  }
+}
+
+bool Contraction::pass(std::size_t target, double limit) {
+  using Validity = Evaluation::Validity;
+  bool progress = false;
+  queue_ = {};
+  limit_ = limit;
+  if (limit == kNoLimit) queue_.reserve(room(m_.mesh.size() * 3 / 2));
+  push_all();
+  std::size_t purge_at = room(queue_.size());
+  BucketQueue::Entry e;
+  Evaluation::Candidate& candidate = evaluation_.candidate();
+  while (vertices_ > target && queue_.pop(e)) {
+    if (stale(e)) continue;
+    // Evaluated anew each time it is popped: what is applied holds for the planes of this moment.
+    const Validity validity =
+        evaluate(e.a, e.b, judge_ != nullptr ? judge_->purpose() : Evaluation::Purpose::Due);
+    if (validity == Validity::Later) postpone(e);
+    if (validity != Validity::Valid) continue;
+    if (judge_ != nullptr && !judge_->assess(e)) continue;
+    if (!queue_.due(candidate.cost)) {
+      postpone(e);
+      continue;
+    }
+    if (judge_ != nullptr ? !judge_->admit(e) : !evaluation_.keeps_shape()) continue;
+    apply();
+    progress = true;
+    if (queue_.size() > purge_at) {
+      queue_.purge([&](const BucketQueue::Entry& x) { return stale(x); });
+      purge_at = room(queue_.size());
+    }
+  }
+  return progress;
+}
+
+void Contraction::apply() {
+  const Evaluation::Candidate& candidate = evaluation_.candidate();
+  const std::uint32_t a = candidate.a, b = candidate.b;
+  if (judge_ != nullptr) judge_->before();
+  if (steps_ != nullptr) steps_->push_back({a, b, candidate.position});
+  quadric_[a] = merged(a, b);
+  m_.mesh.contract(a, b);
+  m_.position[a] = candidate.position;
+  m_.border[a] = static_cast<char>(m_.border[a] | m_.border[b]);
+  ++stamp_[a];
+  ++stamp_[b];
+  --vertices_;
+  ++statistics_.contractions;
+  m_.update_normals_around(a);
+  if (judge_ != nullptr) judge_->after();
+  for (const std::uint32_t w : evaluation_.neighbours(a)) push_edge(a, w);
+}
+
+void Contraction::contracted(std::uint32_t a, std::uint32_t b) {
+  quadric_[a] = merged(a, b);
+  ++stamp_[a];
+  ++stamp_[b];
+  --vertices_;
+}
+
+}  // namespace kaboum::bmesh

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <limits>
+
+#include "evaluation.h"
+
+namespace kaboum::bmesh {
+
+/// What is asked of contractions besides what the quadrics say. All calls are about the candidate
+/// at hand.
+class Judge {
+ public:
+  Judge() = default;
+  Judge(const Judge&) = delete;
+  Judge& operator=(const Judge&) = delete;
+  virtual ~Judge() = default;
+
+  [[nodiscard]] virtual Evaluation::Purpose purpose() const = 0;
+  /// Finds out what it costs. @return whether it stays a candidate now.
+  virtual bool assess(BucketQueue::Entry& e) = 0;
+  /// The last tests, when it is due. @return whether it may be applied.
+  virtual bool admit(BucketQueue::Entry& e) = 0;
+  virtual void before() = 0;
+  virtual void after() = 0;
+};
+
+/// Contracts the edges of a mesh in the order of what they cost. Source: [gaschler2016] Alg. 2.
+///
+/// The queue is lazy: an edge enters with what it is expected to cost; the place of its vertex is
+/// sought when it is popped, for the planes of that moment.
+class Contraction {
+ public:
+  static constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+  /// In WorkingMesh::border: the vertex has triangles elsewhere and is not touched at all.
+  static constexpr char kLocked = 2;
+
+  /// @param steps  receives the steps, when not null.
+  /// @param judge  may be null.
+  Contraction(const Setting& setting, WorkingMesh mesh, std::vector<Quadric> quadric,
+              OriginalSolid* solid, std::vector<Step>* steps, Judge* judge);
+  Contraction(const Contraction&) = delete;
+  Contraction& operator=(const Contraction&) = delete;
+  ~Contraction() = default;
+
+  /// Contracts until `target` vertices are left or the next costs more than `limit`.
+  /// @return whether the last pass over all edges contracted any.
+  bool pass(std::size_t target, double limit = kNoLimit);
+
+  /// Applies the candidate. @pre it is valid and admitted
+  void apply();
+
+  /// To be called after somebody else has contracted the edge (a, b).
+  void contracted(std::uint32_t a, std::uint32_t b);
+
+  /// Keeps an entry for when its cost is due. @return false
+  bool postpone(const BucketQueue::Entry& e) {
+    const double cost = evaluation_.candidate().cost;
+    if (cost <= limit_) queue_.push(cost, e);
+    return false;
+  }
+
+  [[nodiscard]] Quadric merged(std::uint32_t a, std::uint32_t b) const {
+    return setting_.cost.merged(quadric_[a], quadric_[b], m_.position[a], m_.position[b]);
+  }
+  [[nodiscard]] Evaluation::Validity evaluate(std::uint32_t a, std::uint32_t b,
+                                              Evaluation::Purpose purpose) {
+    return evaluation_.evaluate(a, b, merged(a, b), purpose, queue_);
+  }
+
+  [[nodiscard]] WorkingMesh& mesh() { return m_; }
+  [[nodiscard]] std::vector<Quadric>& quadrics() { return quadric_; }
+  [[nodiscard]] Evaluation& evaluation() { return evaluation_; }
+  [[nodiscard]] const BucketQueue& queue() const { return queue_; }
+  [[nodiscard]] std::size_t vertices() const { return vertices_; }
+  [[nodiscard]] DecimateStatistics& statistics() { return statistics_; }
+
+ private:
+  void push_all();
+  void push_edge(std::uint32_t a, std::uint32_t b);
+  // Stamps only rise, so a sum of two is unchanged only if both are.
+  [[nodiscard]] bool stale(const BucketQueue::Entry& e) const {
+    return stamp_[e.a] + stamp_[e.b] != e.stamps;
+  }
+
+  const Setting& setting_;
+  WorkingMesh m_;
+  std::vector<Quadric> quadric_;
+  std::vector<std::uint32_t> stamp_;  // of a vertex: raised when it is moved or vanishes
+  std::vector<Step>* steps_;
+  Judge* judge_;
+  BucketQueue queue_;
+  double limit_ = kNoLimit;  // of what enters the queue
+  std::size_t vertices_;
+  DecimateStatistics statistics_;
+  Evaluation evaluation_;
+};
+
+}  // namespace kaboum::bmesh

@@ -1,0 +1,392 @@
+#include "evaluation.h"
+
+#include <kaboum/geom/float32.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace kaboum::bmesh {
+namespace {
+
+using geom::Sign;
+using geom::Triangle;
+
+/// Spacing of the representable numbers at x, at least.
+double spacing(double x, Precision precision) {
+  if (precision == Precision::Float) return geom::float32_spacing(x);
+  const double a = std::abs(x);
+  return std::nextafter(a, std::numeric_limits<double>::infinity()) - a;
+}
+
+/// The axis that a unit normal is, or -1.
+int axis(const Vec3& n) {
+  if (n.x() != 0 && n.y() != 0) return -1;  // most
+  if ((n.x() == 0) + (n.y() == 0) + (n.z() == 0) != 2) return -1;
+  return n.x() != 0 ? 0 : n.y() != 0 ? 1 : 2;
+}
+
+}  // namespace
+
+Setting::Setting(const geom::Prepared& input, const DecimateOptions& wished)
+    : Setting(geom::bounding_box(input.mesh), input.closed, wished) {}
+
+Setting::Setting(const geom::Box3& box, bool is_closed, const DecimateOptions& wished)
+    : options(wished),
+      cost(wished, box),
+      sign(wished.direction == Direction::Inner ? -1 : 1),
+      constrained(wished.direction != Direction::Any),
+      closed(is_closed),
+      diagonal(box.diagonal()),
+      reach(0.5 * (box.max - box.min) + Vec3::Constant(box.diagonal())) {}
+
+Evaluation::Evaluation(const Setting& setting, const WorkingMesh& mesh, OriginalSolid* solid,
+                       DecimateStatistics& statistics)
+    : setting_(setting),
+      options_(setting.options),
+      m_(mesh),
+      solid_(solid),
+      statistics_(statistics),
+      mark_(mesh.position.size(), 0) {}
+
+Evaluation::Validity Evaluation::evaluate(std::uint32_t a, std::uint32_t b, const Quadric& q,
+                                          Purpose purpose, const BucketQueue& queue) {
+  candidate_.a = a;
+  candidate_.b = b;
+  candidate_.settled = false;
+  gather(a, b);
+  const bool free = m_.border[a] == 0 && m_.border[b] == 0;
+  bool found = false;
+  if (free) {
+    if (options_.keep_convex) gather_rim();
+    found = place(q, 1);
+    if (found && purpose == Purpose::Due) {
+      find_cost(q);
+      if (!queue.due(candidate_.cost)) return Validity::Later;
+    }
+  }
+  const auto none = [](std::uint64_t& counter) {
+    ++counter;
+    return Validity::None;
+  };
+  if (!keeps_topology()) return none(statistics_.rejected_topology);
+  if (!free) {
+    candidate_.position = m_.border[a] != 0 ? m_.position[a] : m_.position[b];
+    if (!encloses()) return none(statistics_.rejected_predicate);
+  } else {
+    // The second attempt keeps farther from the planes, for positions that rounding spoils; the
+    // end points themselves serve in flat places, where every plane of the star is the same one.
+    const bool placed = found && (encloses() || (place(q, 16) && encloses()));
+    if (!placed && !at_end_point()) {
+      if (purpose == Purpose::Settled) {
+        candidate_.encloses = false;
+        candidate_.position = m_.position[a] + 0.5 * (m_.position[b] - m_.position[a]);
+        return Validity::Valid;
+      }
+      return none(found ? statistics_.rejected_predicate : statistics_.rejected_no_position);
+    }
+  }
+  candidate_.enclosing = candidate_.position;
+  candidate_.encloses = !folds();
+  if (!candidate_.encloses && purpose != Purpose::Settled) return none(statistics_.rejected_fold);
+  find_cost(q);
+  return Validity::Valid;
+}
+
+bool Evaluation::evaluate_move(std::uint32_t v, double care) {
+  candidate_.a = candidate_.b = v;
+  star_.clear();
+  m_.mesh.for_each_triangle(v, [&](std::uint32_t t, std::uint32_t k) {
+    star_.push_back({t, k, false, false});
+  });
+  rim_.clear();
+  if (options_.keep_convex) gather_rim();
+  const Quadric nearest = point_quadric(m_.position[v] - setting_.cost.origin());
+  return place(nearest, care) && encloses() && !folds() && keeps_shape();
+}
+
+bool Evaluation::settle_at(const Vec3& place, const Quadric& q) {
+  const Vec3 before = candidate_.position;
+  candidate_.position = place;
+  if (out_of_reach() || folds()) {
+    candidate_.position = before;
+    return false;
+  }
+  candidate_.settled = true;
+  find_cost(q);
+  return true;
+}
+
+bool Evaluation::keeps_shape() {
+  if (options_.keep_convex && !stays_convex()) {
+    ++statistics_.rejected_predicate;
+    return false;
+  }
+  if (stays_inside()) return true;
+  ++statistics_.rejected_original;
+  return false;
+}
+
+void Evaluation::describe(std::vector<std::uint32_t>& removed,
+                          std::vector<NewTriangle>& added) const {
+  removed.clear();
+  added.clear();
+  for (const StarTriangle& s : star_) {
+    removed.push_back(s.index);
+    if (s.vanishes) continue;
+    const Triangle& t = m_.mesh[s.index];
+    added.push_back({s.index,
+                     {candidate_.position, m_.position[t[(s.corner + 1) % 3]],
+                      m_.position[t[(s.corner + 2) % 3]]}});
+  }
+}
+
+const std::vector<std::uint32_t>& Evaluation::neighbours(std::uint32_t v) {
+  neighbours_.clear();
+  const std::uint32_t seen = ++mark_value_;
+  m_.mesh.for_each_triangle(v, [&](std::uint32_t t, std::uint32_t k) {
+    for (std::uint32_t j = 1; j < 3; ++j) {
+      const std::uint32_t w = m_.mesh[t][(k + j) % 3];
+      if (mark_[w] == seen) continue;
+      mark_[w] = seen;
+      neighbours_.push_back(w);
+    }
+  });
+  return neighbours_;
+}
+
+void Evaluation::find_cost(const Quadric& q) {
+  candidate_.cost =
+      setting_.cost.key(q, candidate_.position,
+                        (m_.position[candidate_.b] - m_.position[candidate_.a]).squaredNorm());
+}
+
+void Evaluation::gather(std::uint32_t a, std::uint32_t b) {
+  star_.clear();
+  m_.mesh.for_each_triangle(a, [&](std::uint32_t t, std::uint32_t k) {
+    const Triangle& tri = m_.mesh[t];
+    star_.push_back({t, k, false, tri[(k + 1) % 3] == b || tri[(k + 2) % 3] == b});
+  });
+  m_.mesh.for_each_triangle(b, [&](std::uint32_t t, std::uint32_t k) {
+    const Triangle& tri = m_.mesh[t];
+    if (tri[(k + 1) % 3] != a && tri[(k + 2) % 3] != a) star_.push_back({t, k, true, false});
+  });
+}
+
+/// The link condition: the neighbours common to a and b are the corners opposite their edge, and
+/// no two triangles would come to coincide.
+bool Evaluation::keeps_topology() {
+  const std::uint32_t apex = ++mark_value_;
+  std::uint32_t apexes = 0;
+  for (const StarTriangle& s : star_) {
+    if (!s.vanishes) continue;
+    for (const std::uint32_t v : m_.mesh[s.index]) {
+      if (v == candidate_.a || v == candidate_.b || mark_[v] == apex) continue;
+      mark_[v] = apex;
+      ++apexes;
+    }
+  }
+  if (apexes == 0) return false;
+  const auto is_apex = [&](std::uint32_t v) { return mark_[v] == apex; };
+  // Triangles between two apexes on both sides would fold onto each other.
+  bool between[2] = {false, false};
+  for (const StarTriangle& s : star_) {
+    if (s.vanishes) continue;
+    const Triangle& t = m_.mesh[s.index];
+    if (is_apex(t[(s.corner + 1) % 3]) && is_apex(t[(s.corner + 2) % 3])) between[s.at_b] = true;
+  }
+  if (between[0] && between[1]) return false;
+  // Neighbours of a that are no apexes must not be neighbours of b.
+  const std::uint32_t neighbour = ++mark_value_;
+  bool common = false;
+  for (const StarTriangle& s : star_) {
+    if (s.vanishes) continue;
+    const Triangle& t = m_.mesh[s.index];
+    for (std::uint32_t j = 1; j < 3; ++j) {
+      const std::uint32_t v = t[(s.corner + j) % 3];
+      if (is_apex(v)) continue;
+      if (!s.at_b)
+        mark_[v] = neighbour;
+      else
+        common = common || mark_[v] == neighbour;
+    }
+  }
+  return !common;
+}
+
+/// Tries to contract to an end point of the edge, where it is.
+bool Evaluation::at_end_point() {
+  for (const std::uint32_t v : {candidate_.a, candidate_.b}) {
+    candidate_.position = m_.position[v];
+    if (options_.precision == Precision::Float && !geom::is_float32(candidate_.position)) continue;
+    if (encloses() && !folds()) return true;
+  }
+  return false;
+}
+
+/// Whether a rounded vertex can lie exactly on the triangle's plane: it is axis-aligned, at a
+/// representable coordinate.
+bool Evaluation::can_lie_on(std::uint32_t t) const {
+  const int k = axis(m_.normal[t]);
+  return k >= 0 && (options_.precision == Precision::Double ||
+                    geom::is_float32(m_.position[m_.mesh[t][0]][k]));
+}
+
+/// Minimises the quadric over the half-spaces of the star and rounds the result.
+bool Evaluation::place(const Quadric& q, double care) {
+  ++statistics_.placements;
+  const Vec3 &pa = m_.position[candidate_.a], &pb = m_.position[candidate_.b];
+  const Vec3 half = 0.5 * (pb - pa);
+  const Vec3 middle = pa + half;
+  // A rounded coordinate is off by half a spacing; what else is off is the minimiser's own error.
+  const Vec3 spread(spacing(middle.x(), options_.precision),
+                    spacing(middle.y(), options_.precision),
+                    spacing(middle.z(), options_.precision));
+  const double own_error = 1e-13 * half.lpNorm<1>();
+  planes_.clear();
+  if (setting_.constrained) {
+    const double sign = setting_.sign;
+    for (const StarTriangle& s : star_) {
+      const Vec3& n = m_.normal[s.index];
+      const double margin =
+          can_lie_on(s.index) ? 0 : care * (0.51 * n.cwiseAbs().dot(spread) + own_error);
+      // Height of the middle over the plane, which passes through a or b.
+      const double height = s.vanishes ? 0 : s.at_b ? -n.dot(half) : n.dot(half);
+      planes_.push_back({sign * n, margin - sign * height});
+    }
+    for (const std::uint32_t t : rim_) {
+      const Vec3& n = m_.normal[t];
+      const double margin =
+          can_lie_on(t) ? 0 : care * (0.51 * n.cwiseAbs().dot(spread) + own_error);
+      planes_.push_back({-n, margin + n.dot(middle - m_.position[m_.mesh[t][0]])});
+    }
+  }
+  const auto y = minimise(q, q.half_gradient(middle - setting_.cost.origin()), planes_,
+                          setting_.cost.regularisation());
+  if (!y) return false;
+  candidate_.position = middle + *y;
+  if (options_.precision == Precision::Float) {
+    candidate_.position = geom::to_float32(candidate_.position);
+  } else {
+    snap_to_axis_planes(half.lpNorm<1>());
+  }
+  return !out_of_reach();
+}
+
+bool Evaluation::out_of_reach() const {
+  return ((candidate_.position - setting_.cost.origin()).cwiseAbs().array() >
+          setting_.reach.array())
+      .any();
+}
+
+/// Puts the position exactly on axis-aligned planes that it is on but for rounding.
+void Evaluation::snap_to_axis_planes(double extent) {
+  for (const StarTriangle& s : star_) {
+    const int k = axis(m_.normal[s.index]);
+    if (k < 0) continue;
+    const double c = m_.position[m_.mesh[s.index][0]][k];
+    if (std::abs(candidate_.position[k] - c) <= 1e-9 * extent) candidate_.position[k] = c;
+  }
+}
+
+Sign Evaluation::side(std::uint32_t t) {
+  ++statistics_.predicates;
+  const Triangle& tri = m_.mesh[t];
+  return geom::orient3d(m_.position[tri[0]], m_.position[tri[1]], m_.position[tri[2]],
+                        candidate_.position, &statistics_.exact_fallbacks);
+}
+
+/// The exact test that the certificate rests on: the new vertex is on the right side of, or on,
+/// the plane of every triangle of the star.
+bool Evaluation::encloses() {
+  if (!setting_.constrained) return true;
+  const Sign wrong = options_.direction == Direction::Inner ? Sign::Positive : Sign::Negative;
+  for (const StarTriangle& s : star_)
+    if (side(s.index) == wrong) return false;
+  for (const std::uint32_t t : rim_)
+    if (side(t) == Sign::Positive) return false;
+  return true;
+}
+
+/// Whether a remaining triangle would collapse or turn by more than about 80 degrees.
+bool Evaluation::folds() const {
+  for (const StarTriangle& s : star_) {
+    if (s.vanishes) continue;
+    const Vec3& before = m_.normal[s.index];
+    if (before.x() == 0 && before.y() == 0 && before.z() == 0) continue;
+    const Triangle& t = m_.mesh[s.index];
+    const Vec3& p = m_.position[t[(s.corner + 1) % 3]];
+    const Vec3 n =
+        (p - candidate_.position).cross(m_.position[t[(s.corner + 2) % 3]] - candidate_.position);
+    const double along = n.dot(before);
+    if (!(along > 0) || along * along < 0.03 * n.squaredNorm()) return true;
+  }
+  return false;
+}
+
+/// Exact: all that an inner step takes away is inside the original, so that no new triangle
+/// leaves it: no fold. docs/algorithms/bounding-mesh.md, "Inner surfaces".
+bool Evaluation::stays_inside() {
+  if (options_.direction != Direction::Inner || solid_ == nullptr) return true;
+  flat_.clear();
+  for (const StarTriangle& s : star_) {
+    const Triangle& t = m_.mesh[s.index];
+    const std::array<Vec3, 3> old{m_.position[t[0]], m_.position[t[1]], m_.position[t[2]]};
+    if (side(s.index) != Sign::Zero) {
+      if (!solid_->contains({old[0], old[1], old[2], candidate_.position}, true)) return false;
+      continue;
+    }
+    if (s.vanishes) continue;
+    std::array<Vec3, 3> now = old;
+    now[s.corner] = candidate_.position;
+    if (!same_orientation(old, now, &statistics_.exact_fallbacks)) return false;
+    flat_.push_back(m_.normal[s.index]);
+  }
+  return !opposed(flat_);
+}
+
+/// Collects the triangles across the star's boundary: the new vertex must stay on or below them.
+void Evaluation::gather_rim() {
+  rim_.clear();
+  if (options_.direction == Direction::Inner) return;
+  for (const StarTriangle& s : star_) {
+    if (s.vanishes) continue;
+    const Triangle& t = m_.mesh[s.index];
+    const std::uint32_t p = t[(s.corner + 1) % 3], q = t[(s.corner + 2) % 3];
+    m_.mesh.for_each_triangle(q, [&](std::uint32_t u, std::uint32_t k) {
+      if (m_.mesh[u][(k + 1) % 3] == p) rim_.push_back(u);
+    });
+  }
+}
+
+/// Exact: no vertex would be above a new triangle. The other triangles keep all vertices below
+/// them: outwards the new vertex was tested against those across the star's boundary (beyond them
+/// none is visible from it), inwards it lies in the old, convex body.
+bool Evaluation::stays_convex() {
+  const bool inner = options_.direction == Direction::Inner;
+  bool solid = !inner;  // inwards the body might be flattened
+  for (const StarTriangle& s : star_) {
+    if (s.vanishes) continue;
+    const Triangle& t = m_.mesh[s.index];
+    const Vec3 &p = m_.position[t[(s.corner + 1) % 3]], &q = m_.position[t[(s.corner + 2) % 3]];
+    const auto below = [&](std::uint32_t v) {
+      if (v == candidate_.a || v == candidate_.b) return true;
+      ++statistics_.predicates;
+      const Sign height =
+          geom::orient3d(candidate_.position, p, q, m_.position[v], &statistics_.exact_fallbacks);
+      solid = solid || height == Sign::Negative;
+      return height != Sign::Positive;
+    };
+    if (inner) {
+      for (std::uint32_t v = 0; v < m_.position.size(); ++v)
+        if (m_.mesh.used(v) && !below(v)) return false;
+      continue;
+    }
+    for (const std::uint32_t r : rim_)
+      for (const std::uint32_t v : m_.mesh[r])
+        if (!below(v)) return false;
+  }
+  return solid;
+}
+
+}  // namespace kaboum::bmesh

@@ -1,0 +1,127 @@
+#pragma once
+
+#include <kaboum/bmesh/decimate.h>
+#include <kaboum/geom/predicates.h>
+
+#include <vector>
+
+#include "bucket_queue.h"
+#include "change.h"
+#include "cost.h"
+#include "original_solid.h"
+#include "placement.h"
+#include "working_mesh.h"
+
+namespace kaboum::bmesh {
+
+/// What all contractions of a run have in common.
+struct Setting {
+  /// Keeps a reference to the options, which must outlive this object.
+  Setting(const geom::Prepared& input, const DecimateOptions& wished);
+
+  const DecimateOptions& options;
+  CostModel cost;
+  double sign;  // of half-spaces that new vertices must be in
+  bool constrained;
+  bool closed;
+  double diagonal;
+  /// No vertex goes farther from the origin, whatever it costs: half the box, and its diagonal more
+  /// on every side.
+  Vec3 reach;
+
+ private:
+  Setting(const geom::Box3& box, bool is_closed, const DecimateOptions& wished);
+};
+
+/// What contracting an edge would do, and whether it may be done: the place of the new vertex, the
+/// exact tests that the certificate rests on, and the tests that serve quality only.
+/// Source: [gaschler2016] Alg. 1.
+class Evaluation {
+ public:
+  struct StarTriangle {
+    std::uint32_t index;
+    std::uint32_t corner;  // of the moved vertex
+    bool at_b;             // touches b and not a
+    bool vanishes;         // touches both
+  };
+
+  struct Candidate {
+    std::uint32_t a = 0, b = 0;
+    Vec3 position = Vec3::Zero();
+    double cost = 0;
+    Vec3 enclosing = Vec3::Zero();  // the place that the present mesh bounds
+    bool encloses = false;          // there is one
+    bool settled = false;           // the position is one that the original bounds
+  };
+
+  enum class Validity {
+    None,   // there is no valid position
+    Later,  // the cost is known and not due; nothing was tested
+    Valid,
+  };
+  enum class Purpose {
+    Any,      // all tests are made
+    Due,      // only of what is due
+    Settled,  // positions that the present mesh does not bound will do to begin with
+  };
+
+  /// References must outlive this object, as the setting must. `solid` may be null: then inner
+  /// surfaces are not kept from folding.
+  Evaluation(const Setting& setting, const WorkingMesh& mesh, OriginalSolid* solid,
+             DecimateStatistics& statistics);
+
+  /// Fills the candidate with the cheapest valid position for the edge (a, b), with quadric q.
+  Validity evaluate(std::uint32_t a, std::uint32_t b, const Quadric& q, Purpose purpose,
+                    const BucketQueue& queue);
+
+  /// Finds a place for v alone, near where it is, that keeps `care` times as far from the planes as
+  /// rounding asks for, and makes all tests.
+  bool evaluate_move(std::uint32_t v, double care);
+
+  /// Moves the candidate to another place, if no triangle folds there.
+  bool settle_at(const Vec3& place, const Quadric& q);
+
+  /// The dearer tests, made only of candidates that are about to be applied: no fold on the inner
+  /// side, convexity where it is to be kept. Exact.
+  [[nodiscard]] bool keeps_shape();
+
+  /// The triangles that the candidate takes away and puts in their place.
+  void describe(std::vector<std::uint32_t>& removed, std::vector<NewTriangle>& added) const;
+
+  [[nodiscard]] Candidate& candidate() { return candidate_; }
+
+  /// The vertices that share a triangle with v; valid until the next call of anything.
+  const std::vector<std::uint32_t>& neighbours(std::uint32_t v);
+
+ private:
+  void gather(std::uint32_t a, std::uint32_t b);
+  void gather_rim();
+  [[nodiscard]] bool keeps_topology();
+  [[nodiscard]] bool place(const Quadric& q, double care);
+  void snap_to_axis_planes(double extent);
+  [[nodiscard]] bool at_end_point();
+  [[nodiscard]] bool can_lie_on(std::uint32_t t) const;
+  [[nodiscard]] geom::Sign side(std::uint32_t t);
+  [[nodiscard]] bool encloses();
+  [[nodiscard]] bool folds() const;
+  [[nodiscard]] bool out_of_reach() const;
+  [[nodiscard]] bool stays_inside();
+  [[nodiscard]] bool stays_convex();
+  void find_cost(const Quadric& q);
+
+  const Setting& setting_;
+  const DecimateOptions& options_;
+  const WorkingMesh& m_;
+  OriginalSolid* solid_;
+  DecimateStatistics& statistics_;
+
+  Candidate candidate_;
+  std::vector<StarTriangle> star_;
+  std::vector<std::uint32_t> rim_;
+  std::vector<HalfSpace> planes_;
+  std::vector<Vec3> flat_;  // normals of triangles in whose plane the new vertex is
+  std::vector<std::uint32_t> mark_, neighbours_;
+  std::uint32_t mark_value_ = 0;
+};
+
+}  // namespace kaboum::bmesh
