@@ -1,47 +1,66 @@
 #include <kaboum/geom/bvh.h>
 
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
-#include <numeric>
+#include <utility>
 
 namespace kaboum::geom {
 namespace {
 
 constexpr std::uint32_t kLeafSize = 4;
 
-struct Builder {
-  std::vector<Bvh::Node>& nodes;
-  std::vector<std::uint32_t>& order;
-  const std::vector<Box3>& boxes;
+struct Item {
+  Vec3 center;
+  std::uint32_t triangle;
+};
 
-  void build(std::uint32_t begin, std::uint32_t end) {
-    const std::size_t self = nodes.size();
-    nodes.emplace_back();
-    Box3 box, center_box;
-    for (std::uint32_t i = begin; i < end; ++i) {
-      box.extend(boxes[order[i]]);
-      center_box.extend(boxes[order[i]].center());
-    }
-    nodes[self].box = box;
+/// Nodes of a tree over n triangles, and over n + 1.
+std::pair<std::uint32_t, std::uint32_t> nodes_of(std::uint32_t n) {
+  if (n < kLeafSize) return {1, 1};
+  if (n == kLeafSize) return {1, 3};
+  const auto [half, more] = nodes_of(n / 2);
+  if (n % 2 == 0) return {1 + 2 * half, 1 + half + more};
+  return {1 + half + more, 1 + 2 * more};
+}
+
+struct Builder {
+  const Mesh& mesh;
+  std::vector<Item>& items;
+  std::vector<Bvh::Node>& nodes;
+
+  void build(std::uint32_t self, std::uint32_t begin, std::uint32_t end) {
+    Bvh::Node& node = nodes[self];
     if (end - begin <= kLeafSize) {
-      nodes[self].first = begin;
-      nodes[self].count = end - begin;
+      node.first = begin;
+      node.count = end - begin;
+      for (std::uint32_t i = begin; i < end; ++i)
+        for (const std::uint32_t v : mesh.triangles[items[i].triangle])
+          node.box.extend(mesh.vertices[v]);
       return;
     }
+    Box3 centers;
+    for (std::uint32_t i = begin; i < end; ++i) centers.extend(items[i].center);
     int axis = 0;
-    (center_box.max - center_box.min).maxCoeff(&axis);
+    (centers.max - centers.min).maxCoeff(&axis);
     const std::uint32_t middle = begin + (end - begin) / 2;
-    const auto center = [&](std::uint32_t i) {
-      return 0.5 * boxes[i].min[axis] + 0.5 * boxes[i].max[axis];
-    };
-    std::nth_element(order.begin() + begin, order.begin() + middle, order.begin() + end,
-                     [&](std::uint32_t a, std::uint32_t b) {
-                       const double ca = center(a), cb = center(b);
-                       return ca < cb || (ca == cb && a < b);
+    std::nth_element(items.begin() + begin, items.begin() + middle, items.begin() + end,
+                     [axis](const Item& a, const Item& b) {
+                       const double ca = a.center[axis], cb = b.center[axis];
+                       return ca < cb || (ca == cb && a.triangle < b.triangle);
                      });
-    build(begin, middle);
-    nodes[self].first = static_cast<std::uint32_t>(nodes.size());
-    nodes[self].count = 0;
-    build(middle, end);
+    const std::uint32_t left = self + 1, right = left + nodes_of(middle - begin).first;
+    constexpr std::uint32_t kLarge = 4096;
+    if (end - begin > kLarge) {
+      tbb::parallel_invoke([&] { build(left, begin, middle); }, [&] { build(right, middle, end); });
+    } else {
+      build(left, begin, middle);
+      build(right, middle, end);
+    }
+    node.first = right;
+    node.count = 0;
+    node.box = nodes[left].box;
+    node.box.extend(nodes[right].box);
   }
 };
 
@@ -50,13 +69,16 @@ struct Builder {
 Bvh::Bvh(const Mesh& mesh) {
   const auto n = static_cast<std::uint32_t>(mesh.triangles.size());
   if (n == 0) return;
-  std::vector<Box3> boxes(n);
-  for (std::uint32_t i = 0; i < n; ++i)
-    for (const std::uint32_t v : mesh.triangles[i]) boxes[i].extend(mesh.vertices[v]);
+  std::vector<Item> items(n);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    Box3 box;
+    for (const std::uint32_t v : mesh.triangles[i]) box.extend(mesh.vertices[v]);
+    items[i] = {box.center(), i};
+  }
+  nodes_.resize(nodes_of(n).first);
+  Builder{mesh, items, nodes_}.build(0, 0, n);
   order_.resize(n);
-  std::iota(order_.begin(), order_.end(), 0U);
-  nodes_.reserve(2 * (n / (kLeafSize / 2) + 1));
-  Builder{nodes_, order_, boxes}.build(0, n);
+  for (std::uint32_t i = 0; i < n; ++i) order_[i] = items[i].triangle;
 }
 
 }  // namespace kaboum::geom
