@@ -1,5 +1,7 @@
 #include "deviation.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -63,12 +65,20 @@ void Deviation::assign(std::span<const Vec3> position, const Connectivity& mesh)
   std::fill(head_.begin(), head_.end(), kNone);
   if (current.empty()) return;
   const Proximity proximity(current);
-  std::uint32_t hint = 0;
+  // Runs of samples, each with hints of its own: the result does not depend on the threads.
+  constexpr std::size_t kRun = 1024;
+  std::vector<std::uint32_t> nearest(point_.size());
+  tbb::parallel_for(std::size_t{0}, (point_.size() + kRun - 1) / kRun, [&](std::size_t run) {
+    std::uint32_t hint = 0;
+    const std::size_t end = std::min(point_.size(), (run + 1) * kRun);
+    for (std::size_t s = run * kRun; s < end; ++s) {
+      proximity.squared(point_[s], hint);
+      nearest[s] = index[proximity.triangle(hint)];
+    }
+  });
   for (std::uint32_t s = 0; s < point_.size(); ++s) {
-    proximity.squared(point_[s], hint);
-    const std::uint32_t t = index[proximity.triangle(hint)];
-    next_[s] = head_[t];
-    head_[t] = s;
+    next_[s] = head_[nearest[s]];
+    head_[nearest[s]] = s;
   }
 }
 
