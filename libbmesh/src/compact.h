@@ -14,6 +14,12 @@ namespace kaboum::bmesh {
 inline geom::Mesh compact(const std::vector<geom::Vec3>& position, const Connectivity& mesh,
                           std::vector<std::uint32_t>* source = nullptr) {
   geom::Mesh out;
+  std::size_t vertices = 0, triangles = 0;
+  for (std::uint32_t v = 0; v < position.size(); ++v) vertices += mesh.used(v) ? 1 : 0;
+  for (std::uint32_t t = 0; t < mesh.size(); ++t) triangles += mesh.alive(t) ? 1 : 0;
+  out.vertices.reserve(vertices);
+  out.triangles.reserve(triangles);
+  if (source != nullptr) source->reserve(vertices);
   std::vector<std::uint32_t> renumbered(position.size(), Connectivity::kNone);
   for (std::uint32_t t = 0; t < mesh.size(); ++t) {
     if (!mesh.alive(t)) continue;

@@ -1,13 +1,11 @@
 #include "cost.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
 
+#include "in_parallel.h"
 #include "placement.h"
 
 namespace kaboum::bmesh {
@@ -31,16 +29,6 @@ struct Incidence {
   }
   std::vector<std::uint32_t> start, corner;
 };
-
-/// Calls visit(i) for all i < n, in parallel.
-template <class Visit>
-void in_parallel(std::size_t n, Visit&& visit) {
-  constexpr std::size_t kGrain = 4096;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, kGrain),
-                    [&](const tbb::blocked_range<std::size_t>& range) {
-                      for (std::size_t i = range.begin(); i != range.end(); ++i) visit(i);
-                    });
-}
 
 }  // namespace
 

@@ -144,8 +144,10 @@ void Evaluation::describe(std::vector<std::uint32_t>& removed,
 const std::vector<std::uint32_t>& Evaluation::neighbours(std::uint32_t v) {
   neighbours_.clear();
   const std::uint32_t seen = ++mark_value_;
+  // Off borders every neighbour is the next corner of some triangle.
+  const std::uint32_t corners = m_.border[v] == 0 ? 1 : 2;
   m_.mesh.for_each_triangle(v, [&](std::uint32_t t, std::uint32_t k) {
-    for (std::uint32_t j = 1; j < 3; ++j) {
+    for (std::uint32_t j = 1; j <= corners; ++j) {
       const std::uint32_t w = m_.mesh[t][(k + j) % 3];
       if (mark_[w] == seen) continue;
       mark_[w] = seen;

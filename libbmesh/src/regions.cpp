@@ -1,13 +1,14 @@
 #include "regions.h"
 
-#include <tbb/blocked_range.h>
+#include <kaboum/geom/spatial_order.h>
+
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include <kaboum/geom/spatial_order.h>
+#include "in_parallel.h"
 
 namespace kaboum::bmesh {
 namespace {
@@ -43,14 +44,14 @@ class Rounds {
       if (setting_.options.progress) setting_.options.progress(m_.position.size());
       if (100 * m_.position.size() > 97 * before) break;
     }
-    restore_order();
+    if (!order_.empty()) restore_order();
   }
 
  private:
   struct Region {
-    std::uint32_t first, last;  // vertices
-    std::uint32_t triangles, triangles_end;
-    std::uint32_t vertices_left = 0, triangles_left = 0;
+    std::uint32_t first, last;                       // vertices, in order_
+    std::uint32_t first_triangle, last_triangle;     // in place_
+    std::vector<std::uint32_t> vertices, triangles;  // left
     std::vector<Step> steps;
     DecimateStatistics statistics;
   };
@@ -72,27 +73,21 @@ class Rounds {
     return *at;
   }
 
-  /// Sorts vertices along the curve and triangles by region.
+  /// Gives every vertex and triangle a region.
   void cut(int round) {
     // The curve's grid lies elsewhere in each round, and with it the seams.
     const double golden = 0.3819660112501051;
-    const std::vector<std::uint32_t> order =
-        geom::spatial_order(m_.position, std::fmod(round * golden, 1.0));
-    permute(m_.position, order);
-    permute(m_.quadric, order);
-    permute(m_.border, order);
-    permute(m_.vertex, order);
-    const std::size_t n = order.size();
+    order_ = geom::spatial_order(m_.position, std::fmod(round * golden, 1.0));
+    const std::size_t n = order_.size();
     const std::size_t count = (n + kRegion - 1) / kRegion, size = (n + count - 1) / count;
     number_.resize(n);
-    for (std::uint32_t i = 0; i < n; ++i) number_[order[i]] = i;
+    for (std::uint32_t i = 0; i < n; ++i) number_[order_[i]] = i;
 
     std::vector<std::uint32_t> start(count + 2, 0), region(m_.triangles.size());
-    for (std::size_t t = 0; t < m_.triangles.size(); ++t) {
-      Triangle& tri = m_.triangles[t];
-      for (std::uint32_t& v : tri) v = number_[v];
-      region[t] = static_cast<std::uint32_t>(tri[0] / size);
-      if (tri[1] / size != region[t] || tri[2] / size != region[t]) {
+    for (std::size_t t = 0; t < region.size(); ++t) {
+      const Triangle& tri = m_.triangles[t];
+      region[t] = static_cast<std::uint32_t>(number_[tri[0]] / size);
+      if (number_[tri[1]] / size != region[t] || number_[tri[2]] / size != region[t]) {
         region[t] = static_cast<std::uint32_t>(count);
         for (const std::uint32_t v : tri)
           m_.border[v] = static_cast<char>(m_.border[v] | Contraction::kLocked);
@@ -100,111 +95,87 @@ class Rounds {
       ++start[region[t] + 1];
     }
     std::partial_sum(start.begin(), start.end(), start.begin());
-    regions_.assign(count, {});
+    regions_ = std::vector<Region>(count);
     for (std::size_t r = 0; r < count; ++r) {
       regions_[r].first = static_cast<std::uint32_t>(r * size);
       regions_[r].last = static_cast<std::uint32_t>(std::min(n, (r + 1) * size));
-      regions_[r].triangles = start[r];
-      regions_[r].triangles_end = start[r + 1];
+      regions_[r].first_triangle = start[r];
+      regions_[r].last_triangle = start[r + 1];
     }
-    std::vector<std::uint32_t> place(m_.triangles.size());
-    for (std::uint32_t t = 0; t < place.size(); ++t) place[start[region[t]]++] = t;
-    permute(m_.triangles, place);
-    permute(m_.triangle, place);
-  }
-
-  template <class T>
-  static void permute(std::vector<T>& values, const std::vector<std::uint32_t>& order) {
-    std::vector<T> sorted(order.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, order.size(), 8192),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        for (std::size_t i = range.begin(); i != range.end(); ++i)
-                          sorted[i] = values[order[i]];
-                      });
-    values.swap(sorted);
+    place_.resize(region.size());
+    for (std::uint32_t t = 0; t < place_.size(); ++t) place_[start[region[t]]++] = t;
   }
 
   /// @param share  of a region's vertices that stay at least.
   void contract(double share) {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, regions_.size(), 1),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        for (std::size_t r = range.begin(); r != range.end(); ++r)
-                          contract(regions_[r], share);
-                      });
+    tbb::parallel_for(std::size_t{0}, regions_.size(),
+                      [&](std::size_t r) { contract(regions_[r], share); });
   }
 
   /// Contracts within a region and writes what is left to where it was.
   void contract(Region& r, double share) {
-    const auto part = [](const auto& all, std::uint32_t first, std::uint32_t last) {
-      return std::vector(all.begin() + first, all.begin() + last);
-    };
-    std::vector<Triangle> triangles = part(m_.triangles, r.triangles, r.triangles_end);
-    for (Triangle& t : triangles)
-      for (std::uint32_t& v : t) v -= r.first;
-    WorkingMesh mesh(part(m_.position, r.first, r.last), part(m_.border, r.first, r.last),
-                     std::move(triangles));
-    Contraction contraction(setting_, std::move(mesh), part(m_.quadric, r.first, r.last), solid_,
-                            steps_ != nullptr ? &r.steps : nullptr, nullptr);
-    contraction.pass(static_cast<std::size_t>(share * (r.last - r.first)), limit_);
+    const std::uint32_t *vertex = &order_[r.first], *triangle = &place_[r.first_triangle];
+    const std::uint32_t n = r.last - r.first;
+    std::vector<Vec3> position(n);
+    std::vector<char> border(n);
+    std::vector<Quadric> quadric(n);
+    for (std::uint32_t v = 0; v < n; ++v) {
+      position[v] = m_.position[vertex[v]];
+      border[v] = m_.border[vertex[v]];
+      quadric[v] = m_.quadric[vertex[v]];
+    }
+    std::vector<Triangle> triangles(r.last_triangle - r.first_triangle);
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+      for (int k = 0; k < 3; ++k) triangles[t][k] = number_[m_.triangles[triangle[t]][k]] - r.first;
+    Contraction contraction(
+        setting_, WorkingMesh(std::move(position), std::move(border), std::move(triangles)),
+        std::move(quadric), solid_, steps_ != nullptr ? &r.steps : nullptr, nullptr);
+    contraction.pass(static_cast<std::size_t>(share * n), limit_);
     r.statistics = contraction.statistics();
     for (Step& s : r.steps) {
-      s.kept = m_.vertex[r.first + s.kept];
-      s.gone = m_.vertex[r.first + s.gone];
+      s.kept = m_.vertex[vertex[s.kept]];
+      s.gone = m_.vertex[vertex[s.gone]];
     }
     const WorkingMesh& left = contraction.mesh();
-    for (std::uint32_t v = 0; v < left.position.size(); ++v) {
-      if (!left.mesh.used(v) && (left.border[v] & Contraction::kLocked) == 0) continue;
-      number_[r.first + v] = r.vertices_left;
-      const std::uint32_t to = r.first + r.vertices_left++;
+    r.vertices.reserve(contraction.vertices());
+    for (std::uint32_t v = 0; v < n; ++v) {
+      const bool locked = (left.border[v] & Contraction::kLocked) != 0;
+      if (!left.mesh.used(v) && !locked) continue;
+      const std::uint32_t to = vertex[v];
+      r.vertices.push_back(to);
       m_.position[to] = left.position[v];
       m_.border[to] = static_cast<char>(left.border[v] & ~Contraction::kLocked);
       m_.quadric[to] = contraction.quadrics()[v];
-      m_.vertex[to] = m_.vertex[r.first + v];
     }
     for (std::uint32_t t = 0; t < left.mesh.size(); ++t) {
       if (!left.mesh.alive(t)) continue;
-      const std::uint32_t to = r.triangles + r.triangles_left++;
-      for (int k = 0; k < 3; ++k) m_.triangles[to][k] = number_[r.first + left.mesh[t][k]];
-      m_.triangle[to] = m_.triangle[r.triangles + t];
+      const std::uint32_t to = triangle[t];
+      r.triangles.push_back(to);
+      for (int k = 0; k < 3; ++k) m_.triangles[to][k] = vertex[left.mesh[t][k]];
     }
   }
 
-  /// Moves what the regions have left together.
+  /// Keeps what the regions have left: vertices in the order of the curve.
   void join() {
-    std::uint32_t vertices = 0, triangles = 0;
-    const std::size_t size = regions_.front().last;
-    std::vector<std::uint32_t> offset;
+    std::vector<std::uint32_t> vertices, triangles;
     for (Region& r : regions_) {
-      offset.push_back(vertices);
-      const auto move_down = [](auto& all, std::uint32_t from, std::uint32_t n, std::uint32_t to) {
-        if (from != to) std::move(all.begin() + from, all.begin() + from + n, all.begin() + to);
-      };
-      move_down(m_.position, r.first, r.vertices_left, vertices);
-      move_down(m_.border, r.first, r.vertices_left, vertices);
-      move_down(m_.quadric, r.first, r.vertices_left, vertices);
-      move_down(m_.vertex, r.first, r.vertices_left, vertices);
-      move_down(m_.triangle, r.triangles, r.triangles_left, triangles);
-      for (std::uint32_t t = 0; t < r.triangles_left; ++t)
-        for (int k = 0; k < 3; ++k)
-          m_.triangles[triangles + t][k] = m_.triangles[r.triangles + t][k] + vertices;
-      vertices += r.vertices_left;
-      triangles += r.triangles_left;
+      vertices.insert(vertices.end(), r.vertices.begin(), r.vertices.end());
+      triangles.insert(triangles.end(), r.triangles.begin(), r.triangles.end());
       add(statistics_, r.statistics);
       if (steps_ != nullptr) steps_->insert(steps_->end(), r.steps.begin(), r.steps.end());
     }
-    for (std::size_t t = regions_.back().triangles_end; t < m_.triangles.size(); ++t) {
-      for (int k = 0; k < 3; ++k) {
-        const std::uint32_t v = m_.triangles[t][k];
-        m_.triangles[triangles][k] = offset[v / size] + number_[v];
-      }
-      m_.triangle[triangles++] = m_.triangle[t];
-    }
-    m_.position.resize(vertices);
-    m_.border.resize(vertices);
-    m_.quadric.resize(vertices);
-    m_.vertex.resize(vertices);
-    m_.triangles.resize(triangles);
-    m_.triangle.resize(triangles);
+    triangles.insert(triangles.end(), place_.begin() + regions_.back().last_triangle, place_.end());
+    regions_.clear();
+    keep(m_.quadric, vertices);
+    keep(m_.position, vertices);
+    keep(m_.border, vertices);
+    keep(m_.vertex, vertices);
+    for (std::uint32_t i = 0; i < vertices.size(); ++i) number_[vertices[i]] = i;
+    keep(m_.triangle, triangles);
+    keep(m_.triangles, triangles);
+    in_parallel(m_.triangles.size(), [&](std::size_t t) {
+      for (std::uint32_t& v : m_.triangles[t]) v = number_[v];
+    });
   }
 
   void restore_order() {
@@ -212,8 +183,15 @@ class Rounds {
     std::iota(order.begin(), order.end(), 0U);
     std::sort(order.begin(), order.end(),
               [&](std::uint32_t a, std::uint32_t b) { return m_.triangle[a] < m_.triangle[b]; });
-    permute(m_.triangles, order);
-    permute(m_.triangle, order);
+    keep(m_.triangles, order);
+    keep(m_.triangle, order);
+  }
+
+  template <class T>
+  static void keep(std::vector<T>& values, const std::vector<std::uint32_t>& which) {
+    std::vector<T> kept(which.size());
+    in_parallel(kept.size(), [&](std::size_t i) { kept[i] = values[which[i]]; });
+    values = std::move(kept);
   }
 
   const Setting& setting_;
@@ -223,7 +201,9 @@ class Rounds {
   DecimateStatistics& statistics_;
   double limit_ = 0;
   std::vector<Region> regions_;
-  std::vector<std::uint32_t> number_;
+  std::vector<std::uint32_t> order_;   // vertices along the curve
+  std::vector<std::uint32_t> number_;  // of vertices: place in order_; when joined, the new number
+  std::vector<std::uint32_t> place_;   // triangles by region, those on seams last
 };
 
 }  // namespace

@@ -64,6 +64,11 @@ class Preparation {
               "; coordinates up to 1e60 and extents from 1e-60 can be worked on: scale the mesh");
   }
 
+  void find_edges() {
+    std::vector<EdgeUse>().swap(edges_);  // first, for they are large
+    edges_ = edge_uses(mesh());
+  }
+
   void turn(std::uint32_t t) {
     std::swap(mesh().triangles[t][1], mesh().triangles[t][2]);
     out_.turned[t] ^= 1;
@@ -86,7 +91,7 @@ class Preparation {
     out_.source.resize(n);
     out_.turned.resize(n);
     mesh() = weld(mesh());
-    edges_ = edge_uses(mesh());
+    find_edges();
   }
 
   void drop_collapsed() {
@@ -179,7 +184,7 @@ class Preparation {
       for (const std::uint32_t t : patch)
         if (sense[t] == against) turn(t);
     }
-    edges_ = edge_uses(mesh());
+    find_edges();
     out_.notes.push_back(count_of(inconsistent, "edge", "edges") +
                          " with neighbours of opposite orientation: triangles turned to agree");
   }
@@ -462,7 +467,7 @@ class Preparation {
     for (std::uint32_t t = 0; t < label.size(); ++t)
       if (sense[label[t]] < 0) turn(t);
     if (out_.turned_components == 0) return;
-    edges_ = edge_uses(mesh());
+    find_edges();
     out_.notes.push_back(count_of(out_.turned_components, "component was", "components were") +
                          " inside out and turned, with its cavities");
   }
@@ -478,7 +483,7 @@ class Preparation {
     turn_all();
     mesh() = weld(mesh());
     turn_all();
-    edges_ = edge_uses(mesh());
+    find_edges();
   }
 
   void find_border() {
