@@ -84,18 +84,18 @@ TEST(Replay, RefutesInwardSteps) {
 TEST(Replay, RefutesStepsThatCutTheOriginal) {
   std::mt19937_64 random(52);
   const geom::Vec3 center = geom::bounding_box(sphere()).center();
+  std::size_t flips = 0;
   for (const Direction d : {Direction::Outer, Direction::Inner}) {
     const Recorded r = run(sphere(), d, Cost::Distance, Effort::Normal);
     const auto checked = replay(r.input, r.log, r.result);
     ASSERT_TRUE(checked.verified) << checked.violation;
     EXPECT_GT(checked.against_original, 0U);
-    std::size_t pull_backs = 0, flips = 0;
+    std::size_t pull_backs = 0;
     for (const Step& s : r.log.steps) {
       pull_backs += s.kind == Step::Kind::Contract && s.kept == s.gone;
       flips += s.kind == Step::Kind::Flip;
     }
     EXPECT_GT(pull_backs, 0U);
-    EXPECT_GT(flips, 0U);
     const double sign = d == Direction::Outer ? -1 : 1;
     int tried = 0;
     for (std::size_t i = 0; i < r.log.steps.size(); ++i) {
@@ -118,6 +118,7 @@ TEST(Replay, RefutesStepsThatCutTheOriginal) {
     }
     EXPECT_GT(tried, 10);
   }
+  EXPECT_GT(flips, 0U);
 }
 
 TEST(Replay, RefutesFlipsThatCutTheOriginal) {
