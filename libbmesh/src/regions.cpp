@@ -81,18 +81,20 @@ class Rounds {
     const std::size_t n = order_.size();
     const std::size_t count = (n + kRegion - 1) / kRegion, size = (n + count - 1) / count;
     number_.resize(n);
-    for (std::uint32_t i = 0; i < n; ++i) number_[order_[i]] = i;
+    in_parallel(n, [&](std::size_t i) { number_[order_[i]] = static_cast<std::uint32_t>(i); });
 
     std::vector<std::uint32_t> start(count + 2, 0), region(m_.triangles.size());
-    for (std::size_t t = 0; t < region.size(); ++t) {
+    in_parallel(region.size(), [&](std::size_t t) {
       const Triangle& tri = m_.triangles[t];
-      region[t] = static_cast<std::uint32_t>(number_[tri[0]] / size);
-      if (number_[tri[1]] / size != region[t] || number_[tri[2]] / size != region[t]) {
-        region[t] = static_cast<std::uint32_t>(count);
-        for (const std::uint32_t v : tri)
-          m_.border[v] = static_cast<char>(m_.border[v] | Contraction::kLocked);
-      }
+      const std::size_t r = number_[tri[0]] / size;
+      const bool seam = number_[tri[1]] / size != r || number_[tri[2]] / size != r;
+      region[t] = static_cast<std::uint32_t>(seam ? count : r);
+    });
+    for (std::size_t t = 0; t < region.size(); ++t) {
       ++start[region[t] + 1];
+      if (region[t] < count) continue;
+      for (const std::uint32_t v : m_.triangles[t])
+        m_.border[v] = static_cast<char>(m_.border[v] | Contraction::kLocked);
     }
     std::partial_sum(start.begin(), start.end(), start.begin());
     regions_ = std::vector<Region>(count);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "connectivity.h"
+#include "in_parallel.h"
 #include "quadric.h"
 
 namespace kaboum::bmesh {
@@ -20,7 +21,7 @@ struct WorkingMesh {
         border(std::move(may_not_move)),
         mesh(position.size(), std::move(triangles)),
         normal(mesh.size()) {
-    for (std::uint32_t t = 0; t < mesh.size(); ++t) update_normal(t);
+    in_parallel(mesh.size(), [&](std::size_t t) { update_normal(static_cast<std::uint32_t>(t)); });
   }
 
   void update_normal(std::uint32_t t) {
