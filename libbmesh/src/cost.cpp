@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <span>
 
 #include "in_parallel.h"
 #include "placement.h"
@@ -16,18 +17,111 @@ using geom::Triangle;
 constexpr double kAnticipationPlanes = 3, kAnticipationDistance = 8;
 
 /// The corners (3·triangle + k) at each vertex, in their order.
-struct Incidence {
+class Incidence {
+ public:
   explicit Incidence(const geom::Mesh& mesh)
-      : start(mesh.vertices.size() + 1, 0), corner(3 * mesh.triangles.size()) {
+      : start_(mesh.vertices.size() + 1, 0), corner_(3 * mesh.triangles.size()) {
     for (const Triangle& t : mesh.triangles)
-      for (const std::uint32_t v : t) ++start[v + 1];
-    std::partial_sum(start.begin(), start.end(), start.begin());
-    std::vector<std::uint32_t> next(start.begin(), start.end() - 1);
+      for (const std::uint32_t v : t) ++start_[v + 1];
+    std::partial_sum(start_.begin(), start_.end(), start_.begin());
+    std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
     std::uint32_t c = 0;
     for (const Triangle& t : mesh.triangles)
-      for (const std::uint32_t v : t) corner[next[v]++] = c++;
+      for (const std::uint32_t v : t) corner_[next[v]++] = c++;
   }
-  std::vector<std::uint32_t> start, corner;
+  [[nodiscard]] std::span<const std::uint32_t> corners(std::uint32_t v) const {
+    return std::span(corner_).subspan(start_[v], start_[v + 1] - start_[v]);
+  }
+
+ private:
+  std::vector<std::uint32_t> start_, corner_;
+};
+
+/// Quadrics of the planes around each vertex.
+class InitialQuadrics {
+ public:
+  InitialQuadrics(const geom::Mesh& mesh, const Vec3& origin, bool by_area, double sharp_angle)
+      : mesh_(mesh),
+        origin_(origin),
+        by_area_(by_area),
+        limit_(std::cos(sharp_angle * std::numbers::pi / 180)),
+        half_limit_(std::cos(sharp_angle * std::numbers::pi / 360) + 1e-9),
+        at_(mesh),
+        plane_(mesh.triangles.size()) {
+    in_parallel(plane_.size(), [&](std::size_t t) {
+      const Triangle& tri = mesh.triangles[t];
+      const Vec3& a = mesh.vertices[tri[0]];
+      const Vec3 n = (mesh.vertices[tri[1]] - a).cross(mesh.vertices[tri[2]] - a);
+      const double length = n.norm();
+      plane_[t] = {length > 0 ? Vec3(n / length) : Vec3(Vec3::Zero()), 0.5 * length};
+    });
+  }
+
+  [[nodiscard]] Quadric planes(std::uint32_t v) const {
+    const Vec3 p = mesh_.vertices[v] - origin_;
+    Quadric sum;
+    for (const std::uint32_t c : at_.corners(v)) {
+      const Plane& plane = plane_[c / 3];
+      Quadric q = plane_quadric(p, plane.normal);
+      if (by_area_) q *= plane.area;
+      sum += q;
+    }
+    return sum;
+  }
+
+  /// Squared distances to the centres of the triangles.
+  [[nodiscard]] Quadric centres(std::uint32_t v) const {
+    Quadric sum;
+    for (const std::uint32_t c : at_.corners(v)) {
+      Vec3 centre = Vec3::Zero();
+      for (const std::uint32_t w : mesh_.triangles[c / 3]) centre += mesh_.vertices[w] - origin_;
+      sum += point_quadric(centre / 3.0);
+    }
+    return sum;
+  }
+
+  /// Planes across the sharp edges at v.
+  void add_sharp_edges(std::uint32_t v, Quadric& sum) const {
+    if (all_close(v)) return;
+    const Vec3 p = mesh_.vertices[v] - origin_;
+    for (const std::uint32_t c : at_.corners(v)) {
+      const Vec3& n = plane_[c / 3].normal;
+      const std::uint32_t w = corner_of(c, 1);
+      for (const std::uint32_t d : at_.corners(v)) {  // runs the edge the other way
+        if (corner_of(d, 2) != w || n.dot(plane_[d / 3].normal) >= limit_) continue;
+        const Vec3 both = n + plane_[d / 3].normal;
+        const Vec3 across =
+            both.norm() > 1e-6 ? both : Vec3((mesh_.vertices[w] - mesh_.vertices[v]).cross(n));
+        if (across.norm() > 0) sum += plane_quadric(p, across.normalized());
+      }
+    }
+  }
+
+ private:
+  struct Plane {
+    Vec3 normal;  // unit, or zero
+    double area;
+  };
+
+  [[nodiscard]] std::uint32_t corner_of(std::uint32_t c, std::uint32_t after) const {
+    return mesh_.triangles[c / 3][(c % 3 + after) % 3];
+  }
+
+  /// Whether no two of a vertex's normals are so far apart: each is within half of that of the
+  /// first.
+  [[nodiscard]] bool all_close(std::uint32_t v) const {
+    const std::span<const std::uint32_t> corners = at_.corners(v);
+    return std::all_of(corners.begin(), corners.end(), [&](std::uint32_t c) {
+      return plane_[c / 3].normal.dot(plane_[corners.front() / 3].normal) > half_limit_;
+    });
+  }
+
+  const geom::Mesh& mesh_;
+  const Vec3& origin_;
+  bool by_area_;
+  double limit_, half_limit_;  // cosines
+  Incidence at_;
+  std::vector<Plane> plane_;
 };
 
 }  // namespace
@@ -43,61 +137,14 @@ CostModel::CostModel(const DecimateOptions& options, const geom::Box3& box)
       origin_(box.center()) {}
 
 std::vector<Quadric> CostModel::initial(const geom::Mesh& mesh) const {
-  const Incidence at(mesh);
-  const auto local = [&](std::uint32_t v) -> Vec3 { return mesh.vertices[v] - origin_; };
-  struct Plane {
-    Vec3 normal;  // unit, or zero
-    double area;
-  };
-  std::vector<Plane> plane(mesh.triangles.size());
-  in_parallel(plane.size(), [&](std::size_t t) {
-    const Triangle& tri = mesh.triangles[t];
-    const Vec3& a = mesh.vertices[tri[0]];
-    const Vec3 n = (mesh.vertices[tri[1]] - a).cross(mesh.vertices[tri[2]] - a);
-    const double length = n.norm();
-    plane[t] = {length > 0 ? Vec3(n / length) : Vec3(Vec3::Zero()), 0.5 * length};
-  });
-  const bool sharp = options_.cost != Cost::Triangles && !by_area() && options_.sharp_angle < 180;
-  const double limit = std::cos(options_.sharp_angle * std::numbers::pi / 180);
-  // Whether no two of a vertex's normals can be farther apart: each is within half of that of one.
-  const double half_limit = std::cos(options_.sharp_angle * std::numbers::pi / 360) + 1e-9;
-  const auto all_close = [&](std::uint32_t v) {
-    if (at.start[v] == at.start[v + 1]) return true;
-    const Vec3& one = plane[at.corner[at.start[v]] / 3].normal;
-    for (std::uint32_t j = at.start[v] + 1; j < at.start[v + 1]; ++j)
-      if (!(plane[at.corner[j] / 3].normal.dot(one) > half_limit)) return false;
-    return true;
-  };
+  const InitialQuadrics around(mesh, origin_, by_area(), options_.sharp_angle);
+  const bool centres = options_.cost == Cost::Triangles;
+  const bool sharp = !centres && !by_area() && options_.sharp_angle < 180;
   std::vector<Quadric> quadric(mesh.vertices.size());
   in_parallel(quadric.size(), [&](std::size_t i) {
     const auto v = static_cast<std::uint32_t>(i);
-    Quadric& sum = quadric[v];
-    const std::uint32_t first = at.start[v], last = at.start[v + 1];
-    for (std::uint32_t j = first; j < last; ++j) {
-      const std::uint32_t t = at.corner[j] / 3;
-      const Triangle& tri = mesh.triangles[t];
-      Quadric q = options_.cost == Cost::Triangles
-                      ? point_quadric((local(tri[0]) + local(tri[1]) + local(tri[2])) / 3.0)
-                      : plane_quadric(local(tri[0]), plane[t].normal);
-      if (by_area()) q *= plane[t].area;
-      sum += q;
-    }
-    if (!sharp || all_close(v)) return;
-    // Every edge from v, where another triangle runs it the other way.
-    for (std::uint32_t j = first; j < last; ++j) {
-      const std::uint32_t t = at.corner[j] / 3,
-                          w = mesh.triangles[t][(at.corner[j] + 1 - 3 * t) % 3];
-      for (std::uint32_t k = first; k < last; ++k) {
-        const std::uint32_t u = at.corner[k] / 3;
-        if (mesh.triangles[u][(at.corner[k] + 2 - 3 * u) % 3] != w) continue;
-        if (plane[t].normal.dot(plane[u].normal) >= limit) continue;
-        const Vec3 both = plane[t].normal + plane[u].normal;
-        const Vec3 across =
-            both.norm() > 1e-6 ? both
-                               : Vec3((mesh.vertices[w] - mesh.vertices[v]).cross(plane[t].normal));
-        if (across.norm() > 0) sum += plane_quadric(local(std::min(v, w)), across.normalized());
-      }
-    }
+    quadric[v] = centres ? around.centres(v) : around.planes(v);
+    if (sharp) around.add_sharp_edges(v, quadric[v]);
   });
   return quadric;
 }

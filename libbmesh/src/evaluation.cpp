@@ -26,10 +26,16 @@ int axis(const Vec3& n) {
   return n.x() != 0 ? 0 : n.y() != 0 ? 1 : 2;
 }
 
+geom::Box3 box_of(const std::vector<Vec3>& points) {
+  geom::Box3 box;
+  for (const Vec3& p : points) box.extend(p);
+  return box;
+}
+
 }  // namespace
 
 Setting::Setting(const geom::Prepared& input, const DecimateOptions& wished)
-    : Setting(geom::bounding_box(input.mesh), input.closed, wished) {}
+    : Setting(box_of(input.mesh.vertices), input.closed, wished) {}
 
 Setting::Setting(const geom::Box3& box, bool is_closed, const DecimateOptions& wished)
     : options(wished),

@@ -50,12 +50,6 @@ Quadric point_quadric(const Vec3& p) {
   return q;
 }
 
-Quadric plane_quadric(const Vec3& p, const Vec3& n) {
-  const double d = -n.dot(p);
-  return {n.x() * n.x(), n.x() * n.y(), n.x() * n.z(), n.y() * n.y(), n.y() * n.z(),
-          n.z() * n.z(), d * n.x(),     d * n.y(),     d * n.z(),     d * d};
-}
-
 Quadric add_adapted(const Quadric& a, const Quadric& b) {
   Quadric sum = a + b;
   const Vec3 m = principal_frame(sum, anchor(a, b)).minimiser;

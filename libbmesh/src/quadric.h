@@ -44,7 +44,11 @@ struct Quadric {
 Quadric point_quadric(const Vec3& p);
 
 /// Squared distance to the plane through p with unit normal n. [gaschler2016] Eq. A.5.
-Quadric plane_quadric(const Vec3& p, const Vec3& n);
+inline Quadric plane_quadric(const Vec3& p, const Vec3& n) {
+  const double d = -n.dot(p);
+  return {n.x() * n.x(), n.x() * n.y(), n.x() * n.z(), n.y() * n.y(), n.y() * n.z(),
+          n.z() * n.z(), d * n.x(),     d * n.y(),     d * n.z(),     d * d};
+}
 
 /// Q1 + Q2 with its constant lowered by max(Q1(m), Q2(m)), m the minimiser of the sum.
 /// [gaschler2016] §4.3.3, "Adjustment of the Constant". A cost, not an upper bound of min(Q1, Q2)

@@ -137,7 +137,7 @@ class Preparation {
       return e.size() == 2 && opposite_corner(e[0]) != opposite_corner(e[1]);
     };
     for_each_edge(
-        [&](std::span<const EdgeUse> e) { inconsistent += neighbours(e) && !balanced(e); });
+        [&](std::span<const EdgeUse> e) { inconsistent += !balanced(e) && neighbours(e); });
     if (inconsistent == 0) return;
 
     const std::size_t n = mesh().triangles.size();

@@ -2,6 +2,7 @@
 
 #include <kaboum/geom/error.h>
 
+#include <algorithm>
 #include <bit>
 
 #include "polygon.h"
@@ -24,7 +25,10 @@ std::uint32_t hash_of(const geom::Vec3& p) {
 
 }  // namespace
 
-Welder::Welder() : slots_(1024, Slot{0, kNone}) {}
+Welder::Welder(std::size_t expected)
+    : slots_(std::max<std::size_t>(1024, std::bit_ceil(2 * expected)), Slot{0, kNone}) {
+  points_.reserve(expected);
+}
 
 std::uint32_t Welder::number_of(const geom::Vec3& position) {
   const geom::Vec3 p = position.array() + 0.0;  // −0 + 0 = +0
@@ -148,7 +152,7 @@ void MeshBuilder::split_polygons(ReadResult& result) {
 void MeshBuilder::weld(ReadResult& result) {
   // Numbers of the positions in order of first use, counting collapsed triangles too.
   std::vector<std::uint32_t> number;
-  Welder welder;
+  Welder welder(welded_ ? 0 : points_.size());
   if (!welded_) {
     number.assign(points_.size(), kNone);
     for (geom::Triangle& t : triangles_) {

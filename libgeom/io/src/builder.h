@@ -16,7 +16,8 @@ namespace kaboum::io {
 /// Open addressing on the coordinates' bits. Internal to kaboum_io.
 class Welder {
  public:
-  Welder();
+  /// @param expected  number of positions that there is room for from the beginning.
+  explicit Welder(std::size_t expected = 0);
   std::uint32_t number_of(const geom::Vec3& position);
   [[nodiscard]] std::vector<geom::Vec3>& points() { return points_; }
 
