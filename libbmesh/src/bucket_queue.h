@@ -58,6 +58,10 @@ class BucketQueue {
   }
 
   [[nodiscard]] std::size_t size() const { return size_; }
+  /// As new.
+  void clear() {
+    if (!nodes_.empty()) *this = BucketQueue();
+  }
   void reserve(std::size_t n) { nodes_.reserve(n); }
 
   /// Drops the entries for which stale(entry) holds; the others keep their order.

@@ -37,7 +37,7 @@ void Contraction::push_all() {
 bool Contraction::pass(std::size_t target, double limit) {
   using Validity = Evaluation::Validity;
   bool progress = false;
-  queue_ = {};
+  queue_.clear();
   limit_ = limit;
   if (limit == kNoLimit) queue_.reserve(room(m_.mesh.size() * 3 / 2));
   push_all();

@@ -2,6 +2,7 @@
 
 #include "quadric.h"
 
+#include <algorithm>
 #include <optional>
 #include <span>
 
@@ -37,7 +38,25 @@ std::optional<Vec3> minimise(const Quadric& quadratic, const Vec3& linear,
 
 /// Smallest value of a quadric plus the same pull towards `near`: a cheap lower bound (up to the
 /// pull) of what `minimise` reaches under any half-spaces.
-double unconstrained_minimum(const Quadric& q, const Vec3& near,
-                             double regularisation = kRegularisation);
+inline double unconstrained_minimum(const Quadric& q, const Vec3& near,
+                                    double regularisation = kRegularisation) {
+  // (A + e·I) y = g, g half the gradient; A + e·I = L D Lᵀ.
+  const Vec3 g = q.half_gradient(near);
+  const double value = near.dot(g) + near.x() * q.bx + near.y() * q.by + near.z() * q.bz + q.c;
+  const double trace = q.trace();
+  if (!(trace > 0)) return value;
+  const double e = regularisation * trace;
+  const double i0 = 1 / (q.xx + e);
+  const double l10 = q.xy * i0, l20 = q.xz * i0;
+  const double i1 = 1 / std::max(q.yy + e - l10 * q.xy, 0.5 * e);
+  const double yz = q.yz - l20 * q.xy;
+  const double l21 = yz * i1;
+  const double i2 = 1 / std::max(q.zz + e - l20 * q.xz - l21 * yz, 0.5 * e);
+  const double z1 = g.y() - l10 * g.x();
+  const double y2 = (g.z() - l20 * g.x() - l21 * z1) * i2;
+  const double y1 = z1 * i1 - l21 * y2;
+  const double y0 = g.x() * i0 - l10 * y1 - l20 * y2;
+  return value - (g.x() * y0 + g.y() * y1 + g.z() * y2) - e * (y0 * y0 + y1 * y1 + y2 * y2);
+}
 
 }  // namespace kaboum::bmesh
