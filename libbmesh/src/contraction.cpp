@@ -23,7 +23,7 @@ void Contraction::push_edge(std::uint32_t a, std::uint32_t b) {
   if (m_.border[a] != 0 && m_.border[b] != 0) return;
   if (((m_.border[a] | m_.border[b]) & kLocked) != 0) return;
   const double key = setting_.cost.expected_key(merged(a, b), m_.position[a], m_.position[b]);
-  if (key <= limit_) queue_.push(key, {a, b, stamp_[a] + stamp_[b]});
+  if (!(key > limit_)) queue_.push(key, {a, b, stamp_[a] + stamp_[b]});
 }
 
 void Contraction::push_all() {

@@ -55,7 +55,7 @@ class Contraction {
   /// Keeps an entry for when its cost is due. @return false
   bool postpone(const BucketQueue::Entry& e) {
     const double cost = evaluation_.candidate().cost;
-    if (cost <= limit_) queue_.push(cost, e);
+    if (!(cost > limit_)) queue_.push(cost, e);
     return false;
   }
 

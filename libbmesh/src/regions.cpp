@@ -64,9 +64,11 @@ class Rounds {
       const Triangle& t = m_.triangles[i / 3];
       const std::uint32_t a = t[i % 3], b = t[(i + 1) % 3];
       const Vec3 &pa = m_.position[a], &pb = m_.position[b];
-      keys.push_back(setting_.cost.expected_key(
-          setting_.cost.merged(m_.quadric[a], m_.quadric[b], pa, pb), pa, pb));
+      const double key = setting_.cost.expected_key(
+          setting_.cost.merged(m_.quadric[a], m_.quadric[b], pa, pb), pa, pb);
+      if (std::isfinite(key)) keys.push_back(key);
     }
+    if (keys.empty()) return 0;
     const auto at =
         keys.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(keys.size()));
     std::nth_element(keys.begin(), at, keys.end());
