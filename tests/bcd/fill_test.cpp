@@ -1,9 +1,7 @@
 #include <gtest/gtest.h>
 #include <kaboum/bcd/fill.h>
-#include <kaboum/geom/convex_set.h>
 #include <kaboum/geom/distance.h>
 #include <kaboum/geom/error.h>
-#include <kaboum/geom/float32.h>
 #include <kaboum/verify/cover.h>
 
 #include <random>
@@ -25,21 +23,12 @@ DecomposeResult run(const Mesh& mesh, double epsilon_percent, std::size_t max_ve
 }
 
 verify::Answer inside(const Mesh& mesh, const std::vector<geom::ConvexBody>& bodies) {
-  geom::ConvexSet set;
-  set.bodies = bodies;
-  return verify::verify_inclusion(verify::sum_of(set), mesh).solid.answer;
+  return verify::verify_inclusion(verify::sum_of(test::set_of(bodies)), mesh).solid.answer;
 }
 
 void expect_claims(const Mesh& mesh, const DecomposeResult& result, std::size_t max_vertices) {
-  geom::ConvexSet set;
-  set.bodies = result.bodies;
-  EXPECT_FALSE(geom::find_not_convex(set).has_value());
+  test::expect_bodies(result, max_vertices);
   EXPECT_EQ(inside(mesh, result.bodies), verify::Answer::Verified);
-  EXPECT_LE(result.reach_lower, result.reach_upper);
-  for (const geom::ConvexBody& body : result.bodies) {
-    EXPECT_LE(body.hull.vertices.size(), max_vertices);
-    for (const Vec3& p : body.hull.vertices) EXPECT_TRUE(geom::is_float32(p));
-  }
 }
 
 /// Random points of the solid that are deeper than the bound, by the slow oracle: all in a body.
@@ -56,12 +45,7 @@ void expect_no_deep_point_left(const Mesh& mesh, const DecomposeResult& result, 
     const auto w = kaboum::test::winding_number_slow(mesh, p);
     if (!w || *w < 1) continue;
     ++deep;
-    bool found = false;
-    for (const geom::ConvexBody& body : result.bodies) {
-      const auto b = kaboum::test::winding_number_slow(body.hull, p);
-      found = found || !b || *b == 1;
-    }
-    EXPECT_TRUE(found) << p.transpose();
+    EXPECT_TRUE(test::covered(result.bodies, p)) << p.transpose();
   }
   EXPECT_GT(deep, 5);
 }

@@ -1,10 +1,21 @@
 #pragma once
 
+#include <gtest/gtest.h>
 #include <kaboum/bcd/decompose.h>
+#include <kaboum/geom/convex_set.h>
+#include <kaboum/geom/float32.h>
 #include <kaboum/geom/mesh.h>
+#include <kaboum/verify/cover.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numbers>
 #include <vector>
 
+#include "support/oracle.h"
 #include "support/shapes.h"
 
 namespace kaboum::bcd::test {
@@ -17,6 +28,45 @@ inline DecomposeOptions quick(const geom::Mesh& mesh, double epsilon_percent,
   options.max_vertices = max_vertices;
   options.effort = Effort::Fast;
   return options;
+}
+
+/// Whether p lies in one of the bodies, by the slow oracle, which shares nothing with the library.
+inline bool covered(const std::vector<geom::ConvexBody>& bodies, const geom::Vec3& p) {
+  return std::any_of(bodies.begin(), bodies.end(), [&](const geom::ConvexBody& body) {
+    const auto w = kaboum::test::winding_number_slow(body.hull, p);
+    return !w || *w == 1;
+  });
+}
+
+inline geom::ConvexSet set_of(const std::vector<geom::ConvexBody>& bodies) {
+  geom::ConvexSet set;
+  set.bodies = bodies;
+  return set;
+}
+
+inline verify::Answer cover_of(const geom::Mesh& mesh, const geom::ConvexSet& set) {
+  const verify::Cover cover = verify::verify_cover(mesh, set);
+  for (const auto answer :
+       {cover.convex.answer, cover.inclusion.solid.answer, cover.inclusion.surface.answer})
+    if (answer != verify::Answer::Verified) return answer;
+  return verify::Answer::Verified;
+}
+
+/// What is claimed of every body: exactly convex, float32, not too many vertices.
+inline void expect_bodies(const DecomposeResult& result, std::size_t max_vertices) {
+  EXPECT_FALSE(geom::find_not_convex(set_of(result.bodies)).has_value());
+  EXPECT_LE(result.reach_lower, result.reach_upper);
+  for (const geom::ConvexBody& body : result.bodies) {
+    EXPECT_LE(body.hull.vertices.size(), max_vertices);
+    for (const geom::Vec3& p : body.hull.vertices) EXPECT_TRUE(geom::is_float32(p));
+  }
+}
+
+/// All that is claimed of bodies that cover.
+inline void expect_cover(const geom::Mesh& mesh, const DecomposeResult& result,
+                         std::size_t max_vertices) {
+  expect_bodies(result, max_vertices);
+  EXPECT_EQ(cover_of(mesh, set_of(result.bodies)), verify::Answer::Verified);
 }
 
 /// Prism over a simple polygon given counter-clockwise, from z = 0 to `height`.
@@ -55,6 +105,67 @@ inline geom::Mesh prism(const std::vector<std::array<double, 2>>& polygon, doubl
     }
     if (!cut) break;
   }
+  return mesh;
+}
+
+/// Corners of regular polygons in turn: `count` of them, on the circles of these radii, from the
+/// angle of half a step on.
+inline std::vector<std::array<double, 2>> ring(int count, const std::vector<double>& radii) {
+  std::vector<std::array<double, 2>> out;
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2 * std::numbers::pi * (i + 0.5) / count;
+    const double r = radii[static_cast<std::size_t>(i) % radii.size()];
+    out.push_back({r * std::cos(angle), r * std::sin(angle)});
+  }
+  return out;
+}
+
+/// The boundary of the cells of a grid for which `filled` holds, given by its planes across every
+/// axis: two triangles per cell face, exactly planar.
+inline geom::Mesh lattice_solid(const std::array<std::vector<double>, 3>& planes,
+                                const std::function<bool(int, int, int)>& filled) {
+  const std::array<int, 3> cells{static_cast<int>(planes[0].size()) - 1,
+                                 static_cast<int>(planes[1].size()) - 1,
+                                 static_cast<int>(planes[2].size()) - 1};
+  const auto in = [&](const std::array<int, 3>& c) {
+    for (std::size_t k = 0; k < 3; ++k)
+      if (c[k] < 0 || c[k] >= cells[k]) return false;
+    return filled(c[0], c[1], c[2]);
+  };
+  geom::Mesh mesh;
+  std::map<std::array<int, 3>, std::uint32_t> number;
+  const auto vertex = [&](const std::array<int, 3>& c) {
+    const auto [at, fresh] = number.emplace(c, static_cast<std::uint32_t>(mesh.vertices.size()));
+    if (fresh)
+      mesh.vertices.emplace_back(planes[0][static_cast<std::size_t>(c[0])],
+                                 planes[1][static_cast<std::size_t>(c[1])],
+                                 planes[2][static_cast<std::size_t>(c[2])]);
+    return at->second;
+  };
+  std::array<int, 3> c{};
+  for (c[0] = 0; c[0] < cells[0]; ++c[0])
+    for (c[1] = 0; c[1] < cells[1]; ++c[1])
+      for (c[2] = 0; c[2] < cells[2]; ++c[2]) {
+        if (!in(c)) continue;
+        for (std::size_t k = 0; k < 3; ++k)
+          for (const int side : {0, 1}) {
+            std::array<int, 3> next = c;
+            next[k] += 2 * side - 1;
+            if (in(next)) continue;
+            const std::size_t u = (k + 1) % 3, v = (k + 2) % 3;
+            std::array<std::uint32_t, 4> q{};
+            for (std::size_t i = 0; i < 4; ++i) {
+              std::array<int, 3> at = c;
+              at[k] += side;
+              at[u] += i == 1 || i == 2 ? 1 : 0;
+              at[v] += i >= 2 ? 1 : 0;
+              q[i] = vertex(at);
+            }
+            if (side == 0) std::swap(q[1], q[3]);
+            mesh.triangles.push_back({q[0], q[1], q[2]});
+            mesh.triangles.push_back({q[0], q[2], q[3]});
+          }
+      }
   return mesh;
 }
 

@@ -1,0 +1,123 @@
+/// Shapes that a person would take apart in one way, and that the search has to take apart so, too.
+
+#include <gtest/gtest.h>
+#include <kaboum/bcd/decompose.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "solids.h"
+#include "support/shapes.h"
+
+namespace kaboum::bcd {
+namespace {
+
+using geom::Mesh;
+using test::lattice_solid;
+using test::prism;
+using test::ring;
+
+struct Case {
+  const char* name;
+  Mesh mesh;
+  std::size_t bodies;
+  double percent = 0.5;  ///< epsilon
+  double within = 1e-4;  ///< of the diagonal: how near to the very parts the bodies come
+};
+
+/// A box without lid, walls of one tenth.
+Mesh open_box() {
+  return lattice_solid({{{0, 0.1, 2.9, 3}, {0, 0.1, 1.9, 2}, {0, 0.1, 1}}},
+                       [](int x, int y, int z) { return x != 1 || y != 1 || z == 0; });
+}
+
+/// A top on four legs, flush with its corners.
+Mesh table() {
+  return lattice_solid({{{0, 0.2, 2.8, 3}, {0, 0.2, 1.8, 2}, {0, 1.8, 2}}},
+                       [](int x, int y, int z) { return z == 1 || (x != 1 && y != 1); });
+}
+
+/// A hub with teeth that grow narrower outwards; as many as no two can share a bar.
+Mesh gear(int teeth) {
+  std::vector<std::array<double, 2>> outline;
+  for (int i = 0; i < teeth; ++i) {
+    const double turn = 2 * std::numbers::pi / teeth;
+    for (const auto& [radius, at] : {std::pair{1.0, -0.25}, {1.4, -0.15}, {1.4, 0.15}, {1.0, 0.25}})
+      outline.push_back({radius * std::cos(turn * (i + at)), radius * std::sin(turn * (i + at))});
+  }
+  return prism(outline, 0.4);
+}
+
+/// A ring of as many prisms as it has sides.
+Mesh thin_ring(int sides) {
+  const auto outer = ring(sides, {1}), inner = ring(sides, {0.9});
+  Mesh mesh;
+  const auto n = static_cast<std::uint32_t>(sides);
+  for (const double z : {0.0, 0.1})
+    for (const auto* circle : {&outer, &inner})
+      for (const auto& p : *circle) mesh.vertices.emplace_back(p[0], p[1], z);
+  const auto quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    mesh.triangles.push_back({a, b, c});
+    mesh.triangles.push_back({a, c, d});
+  };
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::uint32_t j = (i + 1) % n;
+    quad(i, j, 2 * n + j, 2 * n + i);                  // outside
+    quad(n + j, n + i, 3 * n + i, 3 * n + j);          // inside
+    quad(2 * n + i, 2 * n + j, 3 * n + j, 3 * n + i);  // above
+    quad(j, i, n + i, n + j);                          // below
+  }
+  return mesh;
+}
+
+void expect_obvious(const Case& c) {
+  SCOPED_TRACE(c.name);
+  const geom::Prepared input = geom::prepare(c.mesh);
+  ASSERT_TRUE(input.closed);
+  const DecomposeResult result = decompose(input, test::quick(c.mesh, c.percent));
+  const double diagonal = geom::bounding_box(c.mesh).diagonal();
+  EXPECT_EQ(result.stop, Stop::Done);
+  EXPECT_LE(result.bodies.size(), c.bodies);  // epsilon may save one
+  EXPECT_LE(result.reach_lower, c.within * diagonal);
+  EXPECT_LE(result.reach_upper, 0.01 * c.percent * diagonal);
+  test::expect_cover(input.mesh, result, 64);
+}
+
+TEST(Shapes, Letters) {
+  expect_obvious({"L", prism({{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}, 1), 2});
+  expect_obvious(
+      {"U", prism({{0, 0}, {3, 0}, {3, 3}, {2, 3}, {2, 1}, {1, 1}, {1, 3}, {0, 3}}, 1), 3});
+  expect_obvious(
+      {"T", prism({{1, 0}, {2, 0}, {2, 2}, {3, 2}, {3, 3}, {0, 3}, {0, 2}, {1, 2}}, 1), 2});
+}
+
+TEST(Shapes, HBeam) {
+  expect_obvious({"H beam",
+                  prism({{0, 0},
+                         {3, 0},
+                         {3, 0.3},
+                         {1.6, 0.3},
+                         {1.6, 2.7},
+                         {3, 2.7},
+                         {3, 3},
+                         {0, 3},
+                         {0, 2.7},
+                         {1.4, 2.7},
+                         {1.4, 0.3},
+                         {0, 0.3}},
+                        6),
+                  3});
+}
+
+TEST(Shapes, Table) { expect_obvious({"table", table(), 5}); }
+
+// The number is the obvious one; epsilon is made use of.
+TEST(Shapes, OpenBox) { expect_obvious({"open box", open_box(), 5, 0.5, 0.003}); }
+TEST(Shapes, Gear) { expect_obvious({"gear", gear(9), 10, 2, 0.02}); }
+TEST(Shapes, Torus) {
+  expect_obvious({"torus", kaboum::test::torus(1, 0.3, 12, 8), 12, 0.5, 0.005});
+}
+TEST(Shapes, ThinRing) { expect_obvious({"thin ring", thin_ring(12), 12, 0.5, 0.005}); }
+
+}  // namespace
+}  // namespace kaboum::bcd
