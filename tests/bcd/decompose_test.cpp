@@ -110,6 +110,12 @@ TEST(Decompose, InteriorCornersOfCellsAreCovered) {
   const DecomposeResult result = run(ball, 3, 16);
   expect_cover(ball, result, 16);
   EXPECT_GE(result.bodies.size(), 8U);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> unit(-0.5, 0.5);
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 p(unit(random), unit(random), unit(random));
+    EXPECT_TRUE(test::covered(result.bodies, p)) << p.transpose();
+  }
 }
 
 TEST(Decompose, WallsThinnerThanTheGridAndFlatParts) {
