@@ -3,6 +3,7 @@
 #include <kaboum/bcd/fill.h>
 #include <kaboum/geom/error.h>
 #include <kaboum/geom/prepare.h>
+#include <kaboum/geom/width.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/verify/cover.h>
 
@@ -32,7 +33,7 @@ struct Options {
   std::string unit = "m", frame, preview, depfile, geometry = "collision", prefix;
   std::vector<std::string> packages;
   std::size_t max_bodies = 0, max_vertices = 64;
-  double explode = 0.5;
+  double explode = 0.5, min_thickness = 0;
   bool no_cache = false;
   geom::PrepareOptions prepare;
   tools::CommonOptions common;
@@ -71,6 +72,11 @@ void describe(CLI::App& app, Options& o) {
       ->check(CLI::Range(8, 100000).description(""))
       ->capture_default_str()
       ->type_name("N");
+  app.add_option("--min-thickness", o.min_thickness,
+                 "Thicken bodies that are less wide than this in some direction, for engines that "
+                 "shrink hulls; counts towards epsilon [0]")
+      ->check(CLI::Range(0.0, 1e30).description(""))
+      ->type_name("LENGTH");
   app.add_option("--direction", o.direction,
                  "outer: bodies that cover the solid; inner: bodies inside it, which leave out no "
                  "point deeper than epsilon [outer]")
@@ -121,8 +127,9 @@ void describe(CLI::App& app, Options& o) {
       "decided exactly on the bytes that are written. An open INPUT is closed by filling its "
       "holes\n"
       "first. With --direction inner, every body lies inside the solid instead.\n"
-      "Exit codes: 0 done; 1 epsilon is not reached, or not with --max-bodies (the best result is\n"
-      "written); 2 usage; 3 bad input; 4 output failed; 5 not built; 6 internal error; 7 limit.");
+      "Exit codes: 0 done; 1 epsilon is not reached, or not with --max-bodies or --min-thickness\n"
+      "(the best result is written); 2 usage; 3 bad input; 4 output failed; 5 not built; 6 "
+      "internal error; 7 limit.");
 }
 
 std::string percent(double length, double diagonal) {
@@ -139,6 +146,10 @@ std::string parameters(const Options& o) {
     out << "--epsilon " << (o.epsilon.empty() ? "1%" : o.epsilon) << ' ';
   if (o.max_bodies > 0) out << "--max-bodies " << o.max_bodies << ' ';
   if (o.direction != "outer") out << "--direction " << o.direction << ' ';
+  if (o.min_thickness > 0) {
+    out.precision(17);
+    out << "--min-thickness " << o.min_thickness << ' ';
+  }
   out << "--max-vertices-per-body " << o.max_vertices << " --effort " << o.effort;
   if (o.prepare.drop_sheets) out << " --drop-sheets";
   if (o.prepare.require_closed) out << " --require-closed";
@@ -165,6 +176,10 @@ struct TooCoarse {};
 
 /// Why a set does not do what it should, decided exactly; empty when it does.
 std::string objection(const Options& o, const geom::Mesh& solid, const geom::ConvexSet& set) {
+  for (const geom::ConvexBody& body : set.bodies)
+    if (o.min_thickness > 0 &&
+        geom::least_width(body.hull, o.min_thickness).lower < o.min_thickness)
+      return "a body is thinner than --min-thickness";
   if (o.direction == "outer") {
     const verify::Cover cover = verify::verify_cover(solid, set);
     for (const verify::Claim* claim :
@@ -193,6 +208,7 @@ tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const s
   if (o.max_bodies > 0) options.max_bodies = o.max_bodies;
   options.max_vertices = o.max_vertices;
   options.effort = kEfforts.at(o.effort);
+  options.min_thickness = o.min_thickness;
   options.progress = [&](const bcd::Progress& p) {
     progress.show(p.stage + " " + std::to_string(static_cast<int>(100 * p.fraction)) + " %");
   };
@@ -246,6 +262,8 @@ tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const s
                   {"safety", options.safety},
                   {"diagonal", diagonal},
                   {"notes", prepared.notes}};
+  if (o.min_thickness > 0)
+    entry.report["min_thickness"] = {{"wished", o.min_thickness}, {"thickened", s.thickened}};
   if (outer) {
     entry.report["cover"] = {{"surface", "verified"},
                              {"solid", prepared.closed ? "verified" : "of the closed mesh"}};
@@ -305,6 +323,10 @@ void add_run(const Options& o, Json& report) {
 /// Why epsilon was not reached; empty when it was.
 std::string shortfall(const Json& report) {
   if (report["stop"] == "done") return {};
+  if (report["stop"] == "stuck" && report.contains("min_thickness") &&
+      report["min_thickness"]["thickened"] > 0)
+    return "epsilon could not be reached with --min-thickness; allow thinner bodies or a larger "
+           "epsilon";
   return report["stop"] == "stuck" ? "epsilon could not be reached; allow more vertices per body"
                                    : "epsilon needs more bodies than --max-bodies allows";
 }
@@ -341,10 +363,12 @@ int decompose_robot(const Options& o) {
   robot.unit = o.unit;
   bool done = true;
   const tools::RobotResult result = tools::decompose_robot(
-      robot, [&](const std::filesystem::path& file, double scale) -> tools::MeshBodies {
+      robot, [&](const std::filesystem::path& file, const geom::Vec3& scale) -> tools::MeshBodies {
         Options mesh = o;
         mesh.input = file.string();
-        mesh.epsilon = tools::epsilon_of_mesh(o.epsilon, scale);
+        mesh.epsilon = tools::epsilon_of_mesh(o.epsilon, scale.maxCoeff());
+        // A little more than rounding takes away.
+        mesh.min_thickness = o.min_thickness / scale.minCoeff() * (1 + 1e-12);
         Outcome out = decompose_mesh(mesh);
         tools::MeshBodies bodies{
             io::parse_convex_set(out.entry.container, io::Format::Glb, "the result"),

@@ -7,6 +7,7 @@
 #include <tinyxml2.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 
@@ -134,11 +135,11 @@ class Writer {
 
   const Decomposed& decomposed(const Geometry& g) {
     const fs::path file = resolve_mesh(g.mesh, robot_.path, o_.packages);
-    const double scale = g.size.cwiseAbs().maxCoeff();
+    const geom::Vec3 scale = g.size.cwiseAbs();
     std::error_code error;
     const fs::path canonical = fs::canonical(file, error);
     // By its place, not by its bytes, which may refer to other files.
-    const std::pair<std::string, double> key{(error ? file : canonical).string(), scale};
+    const MeshKey key{(error ? file : canonical).string(), {scale.x(), scale.y(), scale.z()}};
     const auto it = meshes_.find(key);
     if (it != meshes_.end()) return it->second;
     result_.inputs.push_back(file);
@@ -269,7 +270,8 @@ class Writer {
   fs::path urdf_;
   tinyxml2::XMLDocument document_;
   std::vector<sweep::Transform> rest_;
-  std::map<std::pair<std::string, double>, Decomposed> meshes_;
+  using MeshKey = std::pair<std::string, std::array<double, 3>>;  // file, scale
+  std::map<MeshKey, Decomposed> meshes_;
   std::vector<const Decomposed*> order_;
   std::vector<std::pair<std::string, geom::ConvexSet>> containers_;
   FileNames folders_, link_files_;

@@ -28,9 +28,10 @@ struct MeshBodies {
   Json report;
 };
 
-/// Decomposes a mesh. `scale` is the largest factor from the mesh's unit to the robot's: a length
-/// in the robot's unit is divided by it.
-using MeshDecomposer = std::function<MeshBodies(const std::filesystem::path& mesh, double scale)>;
+/// Decomposes a mesh. `scale` holds the factors from the mesh's unit to the robot's, positive: a
+/// length in the robot's unit that must not be exceeded is divided by the largest.
+using MeshDecomposer =
+    std::function<MeshBodies(const std::filesystem::path& mesh, const geom::Vec3& scale)>;
 
 struct RobotResult {
   Json report;

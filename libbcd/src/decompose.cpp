@@ -2,6 +2,7 @@
 #include <kaboum/bcd/decompose.h>
 #include <kaboum/geom/error.h>
 #include <kaboum/geom/float32.h>
+#include <kaboum/geom/width.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -15,6 +16,7 @@
 #include "reach.h"
 #include "search.h"
 #include "simplify.h"
+#include "thicken.h"
 
 namespace kaboum::bcd {
 namespace {
@@ -57,6 +59,7 @@ struct Finished {
   Body body;
   Mesh hull;
   Reach reach;
+  bool thickened = false;
 };
 
 class Decomposer {
@@ -93,6 +96,7 @@ class Decomposer {
       result_.reach_upper = std::max(result_.reach_upper, f.reach.upper);
       result_.statistics.vertices += f.hull.vertices.size();
       result_.statistics.largest = std::max(result_.statistics.largest, f.hull.vertices.size());
+      result_.statistics.thickened += f.thickened ? 1 : 0;
       result_.bodies.push_back({"", std::move(f.hull)});
     }
     return std::move(result_);
@@ -382,7 +386,8 @@ class Decomposer {
       best.clear();
       std::vector<Body> misjudged;  // leaves of bodies that were thought to be nearer
       for (Finished& f : tried) {
-        if (f.reach.upper <= epsilon) {
+        // Parts of what was too thin are no thicker.
+        if (f.reach.upper <= epsilon || (f.thickened && f.body.appraisal.worst <= wished)) {
           out.push_back(std::move(f));
           continue;
         }
@@ -467,8 +472,11 @@ class Decomposer {
     // Where simplification took too much, no vertex more than needed is left out.
     for (const double free : {free_cost, 0.0}) {
       std::vector<Mesh> hulls(open.size());
-      tbb::parallel_for(std::size_t{0}, open.size(),
-                        [&](std::size_t i) { hulls[i] = rounded(out[open[i]].body, free); });
+      std::vector<char> thickened(open.size(), 0);
+      tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t i) {
+        hulls[i] = rounded(out[open[i]].body, free);
+        if (options_.min_thickness > 0) thickened[i] = thicken(hulls[i]) ? 1 : 0;
+      });
       ReachOptions reach;
       reach.absolute_gap = 1e-5 * solid_.diagonal();
       const std::vector<Reach> measured =
@@ -479,6 +487,7 @@ class Decomposer {
         if (f.hull.vertices.empty() || measured[i].upper < f.reach.upper) {
           f.hull = std::move(hulls[i]);
           f.reach = measured[i];
+          f.thickened = thickened[i] != 0;
         }
         if (decisive > 0 && f.reach.upper > decisive) failed.push_back(open[i]);
       }
@@ -506,6 +515,14 @@ class Decomposer {
     std::vector<int> out;
     for (const int node : body.leaves) tree_.leaves_below(node, out);
     return out;
+  }
+
+  /// Makes a body as thick as wished. @return whether it was not.
+  bool thicken(Mesh& hull) const {
+    if (geom::least_width(hull, options_.min_thickness).lower >= options_.min_thickness)
+      return false;
+    hull = bcd::thicken(std::move(hull), options_.min_thickness, options_.max_vertices, solid_);
+    return true;
   }
 
   /// A body's hull simplified and rounded outwards.
@@ -553,6 +570,8 @@ void require_sound(const DecomposeOptions& options) {
     throw Error(ErrorCode::InvalidArgument, "max_bodies must be at least 1");
   if (options.max_vertices < 8)
     throw Error(ErrorCode::InvalidArgument, "fewer than 8 vertices per body");
+  if (!(options.min_thickness >= 0) || !std::isfinite(options.min_thickness))
+    throw Error(ErrorCode::InvalidArgument, "the least thickness must be finite and not negative");
 }
 
 bool too_coarse(const Mesh& mesh, const DecomposeOptions& options) {

@@ -38,6 +38,15 @@ expect 0 '' "$D" "$BRACKET" -o two.obj --max-bodies 2 --effort fast
 expect 1 'max-bodies' "$D" "$BRACKET" -o few.glb --max-bodies 2 --epsilon 2% --effort fast
 [ -s few.glb ] || fail "the best result was not written"
 
+# Thick bodies: within epsilon, or said not to be.
+expect 0 'verified exactly' "$D" "$BRACKET" -o thick.glb --epsilon 5% --effort fast --min-thickness 0.005 --report thick.json
+grep -q '"min_thickness"' thick.json || fail "no thickness in the report"
+expect 0 'verified' "$BIN/bound-verify" --cover "$BRACKET" thick.glb --epsilon 5%
+expect 1 'min-thickness' "$D" "$BRACKET" -o thick.glb --epsilon 3% --effort fast --min-thickness 0.1
+expect 2 'thicken' "$D" "$BRACKET" -o x.glb --direction inner --min-thickness 0.1
+expect 2 '' "$D" "$BRACKET" -o x.glb --min-thickness 1%
+expect 2 '' "$D" "$BRACKET" -o x.glb --min-thickness -1
+
 # Bodies inside.
 expect 0 'inside verified exactly' "$D" "$BRACKET" -o inner.glb --direction inner --epsilon 2% --effort fast --report inner.json
 grep -q '"inside": "verified"' inner.json || fail "no verdict in the report"

@@ -27,6 +27,9 @@ struct DecomposeOptions {
   std::optional<std::size_t> max_bodies;
   std::size_t max_vertices = 64;  ///< per body, ≥ 8
   Effort effort = Effort::Normal;
+  /// Bodies are at least this wide in every direction, for engines that shrink hulls; thinner ones
+  /// are thickened, which counts towards epsilon. Not for bodies inside. [length]
+  double min_thickness = 0;
   /// Multiplies what is allowed for rounding (the overlap of pieces, the error of computed points);
   /// larger where an exact check of the result fails.
   double safety = 1;
@@ -47,6 +50,7 @@ struct DecomposeStatistics {
   std::size_t filled_triangles = 0;  ///< that closed an open input
   std::size_t vertices = 0;          ///< of all bodies
   std::size_t largest = 0;           ///< vertices of the largest body
+  std::size_t thickened = 0;         ///< bodies that min_thickness changed
 };
 
 struct DecomposeResult {
