@@ -29,7 +29,7 @@ constexpr const char* kAlgorithm = "planes 5";
 
 struct Options {
   std::string input, output, input_format, output_format, epsilon, direction = "outer";
-  std::string effort = "normal";
+  std::string effort = "normal", method = "planes";
   std::string unit = "m", frame, preview, depfile, geometry = "collision", prefix;
   std::vector<std::string> packages;
   std::size_t max_bodies = 0, max_vertices = 64;
@@ -41,6 +41,10 @@ struct Options {
 
 const std::map<std::string, bcd::Effort> kEfforts{
     {"fast", bcd::Effort::Fast}, {"normal", bcd::Effort::Normal}, {"best", bcd::Effort::Best}};
+
+const std::map<std::string, bcd::Method> kMethods{{"planes", bcd::Method::Planes},
+                                                  {"clusters", bcd::Method::Clusters},
+                                                  {"voxels", bcd::Method::Voxels}};
 
 void describe(CLI::App& app, Options& o) {
   app.add_option("INPUT", o.input,
@@ -85,6 +89,12 @@ void describe(CLI::App& app, Options& o) {
   app.add_option("--effort", o.effort, "How long to search [normal]")
       ->check(CLI::IsMember({"fast", "normal", "best"}).description(""))
       ->type_name("fast|normal|best");
+  app.add_option("--method", o.method,
+                 "How to find bodies; the claims are the same. clusters (of triangles, as HACD "
+                 "does) and voxels (cuts across the axes, as V-HACD does) are there to be compared "
+                 "with [planes]")
+      ->check(CLI::IsMember({"planes", "clusters", "voxels"}).description(""))
+      ->type_name("planes|clusters|voxels");
   app.add_option("--unit", o.unit, "Unit of length, noted in the container")
       ->capture_default_str()
       ->type_name("NAME");
@@ -151,6 +161,7 @@ std::string parameters(const Options& o) {
     out << "--min-thickness " << o.min_thickness << ' ';
   }
   out << "--max-vertices-per-body " << o.max_vertices << " --effort " << o.effort;
+  if (o.method != "planes") out << " --method " << o.method;
   if (o.prepare.drop_sheets) out << " --drop-sheets";
   if (o.prepare.require_closed) out << " --require-closed";
   if (o.prepare.keep_orientation) out << " --keep-orientation";
@@ -208,6 +219,7 @@ tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const s
   if (o.max_bodies > 0) options.max_bodies = o.max_bodies;
   options.max_vertices = o.max_vertices;
   options.effort = kEfforts.at(o.effort);
+  options.method = kMethods.at(o.method);
   options.min_thickness = o.min_thickness;
   options.progress = [&](const bcd::Progress& p) {
     progress.show(p.stage + " " + std::to_string(static_cast<int>(100 * p.fraction)) + " %");
@@ -249,6 +261,7 @@ tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const s
   const bcd::DecomposeStatistics& s = result.statistics;
   entry.report = {{"stop", name_of(result.stop)},
                   {"direction", o.direction},
+                  {"method", o.method},
                   {"bodies", set.bodies.size()},
                   {"vertices", s.vertices},
                   {"largest_body_vertices", s.largest},

@@ -296,6 +296,15 @@ bool CutTree::cut(int leaf) {
     nodes_[leaf].stuck = true;
     return false;
   }
+  if (options_.choose) {
+    const std::optional<Plane> plane = options_.choose(node.piece.cell, node.hull);
+    if (plane) {
+      cut(leaf, *plane);
+    } else {
+      nodes_[leaf].stuck = true;
+    }
+    return plane.has_value();
+  }
   std::vector<Candidate> list = candidates(node);
   evaluate(node, list);
   const auto best_of = [](const std::vector<Candidate>& l) {

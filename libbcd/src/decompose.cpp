@@ -9,14 +9,17 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <numeric>
 
+#include "clusters.h"
 #include "options.h"
 #include "outward.h"
 #include "reach.h"
 #include "search.h"
 #include "simplify.h"
 #include "thicken.h"
+#include "voxel_cuts.h"
 
 namespace kaboum::bcd {
 namespace {
@@ -54,6 +57,19 @@ Tuning tuning(Effort effort) {
           true};
 }
 
+/// Nothing but what the other methods do; merging counts volume as they do.
+Tuning tuning(Effort effort, Method method) {
+  Tuning out = tuning(effort);
+  if (method == Method::Planes) return out;
+  out.multiples = {out.multiples.back()};
+  out.thresholds = {out.thresholds.front()};
+  out.bulks = {1};
+  out.refinements = 0;
+  out.rounds = 1;
+  out.reduce = false;
+  return out;
+}
+
 /// A body on its way to the result.
 struct Finished {
   Body body;
@@ -66,9 +82,9 @@ class Decomposer {
  public:
   Decomposer(const geom::Prepared& input, const Mesh& closed, const DecomposeOptions& options)
       : options_(options),
-        tuning_(tuning(options.effort)),
+        tuning_(tuning(options.effort, options.method)),
         solid_(closed, tuning_.grid, options.epsilon.value_or(0)),
-        tree_(solid_, tuning_.search, options.safety) {
+        tree_(solid_, search_options(), options.safety) {
     result_.statistics.filled_triangles = closed.triangles.size() - input.mesh.triangles.size();
     double magnitude = 0;
     for (const Vec3& p : closed.vertices) magnitude = std::max(magnitude, p.cwiseAbs().maxCoeff());
@@ -103,6 +119,16 @@ class Decomposer {
   }
 
  private:
+  [[nodiscard]] SearchOptions search_options() const {
+    SearchOptions out = tuning_.search;
+    if (options_.method == Method::Voxels)
+      out.choose = [voxels = std::make_shared<VoxelCuts>(solid_, tuning_.grid)](
+                       const Cell& cell, const std::vector<Vec3>& hull) {
+        return voxels->choose(cell, hull);
+      };
+    return out;
+  }
+
   void report(const char* stage, double fraction) {
     if (options_.progress) options_.progress({stage, fraction});
   }
@@ -276,10 +302,22 @@ class Decomposer {
       snapshots.push_back(leaf_bodies(static_cast<std::size_t>(wished)));
     }
     report("merging", 0.7);
+    if (options_.method == Method::Clusters) return clustered(target, kUnbounded);
     // What refinement gains is a guess.
     std::vector<Body> bodies = best_merge(snapshots, target, 2 * epsilon);
     if (bodies.empty() && epsilon == kUnbounded) bodies = merged(leaf_bodies(), target, kUnbounded);
     refine(bodies, target);
+    return bodies;
+  }
+
+  /// At most `target` bodies from clusters of triangles whose hulls are within `epsilon`, where
+  /// that is unbounded.
+  std::vector<Body> clustered(std::size_t target, double epsilon) {
+    std::vector<Body> bodies =
+        bodies_of_clusters(tree_, solid_, cluster_triangles(solid_, target, epsilon));
+    // Clusters that do not touch.
+    if (epsilon == kUnbounded && bodies.size() > target)
+      bodies = merged(std::move(bodies), target, kUnbounded);
     return bodies;
   }
 
@@ -362,6 +400,10 @@ class Decomposer {
         report("cutting", 0.6 * std::clamp(std::log(begin / std::max(tree_.worst(), 1e-300)) /
                                                std::log(begin / (0.5 * wished)),
                                            0.0, 1.0));
+      if (options_.method == Method::Clusters) {
+        best = clustered(1, wished);
+        continue;
+      }
       std::size_t fewest = 0;
       for (const double bulk : tuning_.bulks) {
         std::vector<Body> bodies = merged(leaf_bodies(), 1, wished, bulk);

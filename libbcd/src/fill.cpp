@@ -175,6 +175,8 @@ Tuning tuning(Effort effort) {
 
 DecomposeResult fill(const geom::Prepared& input, const DecomposeOptions& options) {
   require_sound(options);
+  if (options.method != Method::Planes)
+    throw Error(ErrorCode::InvalidArgument, "bodies inside the solid have no choice of methods");
   if (options.min_thickness > 0)
     throw Error(ErrorCode::InvalidArgument, "bodies inside the solid cannot be thickened");
   if (!input.closed)

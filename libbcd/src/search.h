@@ -16,6 +16,8 @@ struct SearchOptions {
   int offsets = 7;  ///< per direction
   int reflex_planes = 10;
   int refinements = 2;  ///< halvings of the best plane's offset
+  /// Chooses the planes instead, given a cell and the hull of what is in it; none: not to be cut.
+  std::function<std::optional<Plane>(const Cell&, const std::vector<Vec3>&)> choose = {};
 };
 
 /// Binary tree of cuts. Leaves that are still open to cutting hold their piece.

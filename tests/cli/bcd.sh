@@ -38,6 +38,15 @@ expect 0 '' "$D" "$BRACKET" -o two.obj --max-bodies 2 --effort fast
 expect 1 'max-bodies' "$D" "$BRACKET" -o few.glb --max-bodies 2 --epsilon 2% --effort fast
 [ -s few.glb ] || fail "the best result was not written"
 
+# Other methods, with the same claims.
+for method in clusters voxels; do
+  expect 0 'verified exactly' "$D" "$BRACKET" -o m.glb --max-bodies 6 --effort fast --method $method --report m.json
+  grep -q "\"method\": \"$method\"" m.json || fail "no method in the report"
+  expect 0 'verified' "$BIN/bound-verify" --cover "$BRACKET" m.glb
+done
+expect 2 'method' "$D" "$BRACKET" -o x.glb --direction inner --method voxels
+expect 2 '' "$D" "$BRACKET" -o x.glb --method spheres
+
 # Thick bodies: within epsilon, or said not to be.
 expect 0 'verified exactly' "$D" "$BRACKET" -o thick.glb --epsilon 5% --effort fast --min-thickness 0.005 --report thick.json
 grep -q '"min_thickness"' thick.json || fail "no thickness in the report"

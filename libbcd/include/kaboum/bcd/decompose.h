@@ -13,6 +13,13 @@ namespace kaboum::bcd {
 /// How much work the search spends.
 enum class Effort { Fast, Normal, Best };
 
+/// How bodies are found; the claims are the same. The last two are there to be compared with.
+enum class Method {
+  Planes,    ///< cuts that follow the shape, merging, refinement
+  Clusters,  ///< clusters of triangles, as HACD forms them, take the pieces of such cuts
+  Voxels,    ///< cuts across the axes, as V-HACD chooses them, and merging
+};
+
 /// How a decomposition stands.
 struct Progress {
   std::string stage;
@@ -27,6 +34,7 @@ struct DecomposeOptions {
   std::optional<std::size_t> max_bodies;
   std::size_t max_vertices = 64;  ///< per body, ≥ 8
   Effort effort = Effort::Normal;
+  Method method = Method::Planes;
   /// Bodies are at least this wide in every direction, for engines that shrink hulls; thinner ones
   /// are thickened, which counts towards epsilon. Not for bodies inside. [length]
   double min_thickness = 0;

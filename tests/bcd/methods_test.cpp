@@ -1,0 +1,143 @@
+/// Clusters of triangles, and cuts by voxels: other ways to bodies for which the same is claimed.
+
+#include <gtest/gtest.h>
+#include <kaboum/bcd/decompose.h>
+#include <kaboum/bcd/fill.h>
+#include <kaboum/geom/error.h>
+#include <kaboum/io/convex_io.h>
+#include <tbb/global_control.h>
+
+#include <set>
+
+#include "clusters.h"
+#include "solids.h"
+#include "support/families.h"
+#include "voxel_cuts.h"
+
+namespace kaboum::bcd {
+namespace {
+
+DecomposeOptions with(Method method, const Mesh& mesh, double epsilon_percent) {
+  DecomposeOptions options = test::quick(mesh, epsilon_percent);
+  options.method = method;
+  return options;
+}
+
+Mesh letter() { return test::prism({{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}, 1); }
+
+TEST(Methods, CoverWithinEpsilonOrSaySo) {
+  int done = 0, seen = 0;
+  for (const auto& f : kaboum::test::closed_families()) {
+    if (!f.solid || f.mesh.triangles.size() > 300) continue;
+    SCOPED_TRACE(f.name);
+    geom::Prepared prepared;
+    try {
+      prepared = geom::prepare(f.mesh);
+    } catch (const Error&) {
+      continue;  // sheets
+    }
+    const Method method = seen++ % 2 == 0 ? Method::Clusters : Method::Voxels;
+    const DecomposeOptions options = with(method, prepared.mesh, 6);
+    const DecomposeResult result = decompose(prepared, options);
+    if (result.stop == Stop::TooCoarse) continue;
+    test::expect_cover(prepared.mesh, result, 64);
+    EXPECT_EQ(result.stop == Stop::Done, result.reach_upper <= *options.epsilon);
+    done += result.stop == Stop::Done ? 1 : 0;
+  }
+  EXPECT_GE(seen, 8);
+  EXPECT_GE(done, seen - 3);
+}
+
+TEST(Methods, AtMostSoManyBodies) {
+  const Mesh torus = kaboum::test::torus(1, 0.3, 40, 16);
+  const geom::Prepared input = geom::prepare(torus);
+  for (const Method method : {Method::Clusters, Method::Voxels}) {
+    DecomposeOptions options;
+    options.effort = Effort::Fast;
+    options.method = method;
+    options.max_bodies = 8;
+    const DecomposeResult result = decompose(input, options);
+    EXPECT_LE(result.bodies.size(), 8U);
+    EXPECT_GE(result.bodies.size(), 3U);
+    EXPECT_LE(result.reach_upper, 0.2 * geom::bounding_box(torus).diagonal());
+    test::expect_cover(input.mesh, result, 64);
+  }
+}
+
+TEST(Methods, ALetterInTwo) {
+  const geom::Prepared input = geom::prepare(letter());
+  for (const Method method : {Method::Clusters, Method::Voxels}) {
+    const DecomposeResult result = decompose(input, with(method, input.mesh, 3));
+    EXPECT_EQ(result.bodies.size(), 2U);
+    test::expect_cover(input.mesh, result, 64);
+  }
+}
+
+TEST(Methods, SameBytesForAnyNumberOfThreads) {
+  const Mesh mesh = kaboum::test::torus(1, 0.3, 24, 10);
+  for (const Method method : {Method::Clusters, Method::Voxels}) {
+    std::vector<std::vector<char>> bytes;
+    for (const std::size_t threads : {1U, 3U}) {
+      const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+      const DecomposeResult result = decompose(geom::prepare(mesh), with(method, mesh, 4));
+      bytes.push_back(io::serialise_convex_set(test::set_of(result.bodies), io::SetFormat::Glb));
+    }
+    EXPECT_EQ(bytes[0], bytes[1]);
+  }
+}
+
+TEST(Methods, NoneForBodiesInside) {
+  const geom::Prepared input = geom::prepare(letter());
+  EXPECT_THROW(fill(input, with(Method::Voxels, input.mesh, 3)), Error);
+}
+
+TEST(VoxelCuts, TheLetterIsCutAtItsEdge) {
+  const Mesh mesh = letter();
+  const Solid solid(mesh, 5000, 0);
+  const VoxelCuts cuts(solid, 20000);
+  const Cell cell = Cell::of({Vec3::Constant(-1), Vec3::Constant(4)});
+  const auto plane = cuts.choose(cell, mesh.vertices);
+  ASSERT_TRUE(plane.has_value());
+  int axis = 0;
+  EXPECT_EQ(plane->n.cwiseAbs().maxCoeff(&axis), 1);
+  EXPECT_LT(axis, 2);
+  EXPECT_NEAR(plane->d, 1, 0.1);  // a voxel or two
+  // Too small to be cut, and smaller than a voxel.
+  EXPECT_FALSE(cuts.choose(cell, {Vec3(1, 1, 0.5)}).has_value());
+  const auto halved = cuts.choose(cell, {Vec3(0.5, 0.5, 0.5), Vec3(0.501, 0.5, 0.5)});
+  ASSERT_TRUE(halved.has_value());
+  EXPECT_NEAR(halved->d, 0.5005, 1e-9);
+}
+
+TEST(Clusters, ConvexPartsBecomeOneEach) {
+  const Mesh two = kaboum::test::merged(
+      {kaboum::test::icosphere(2),
+       kaboum::test::translated(kaboum::test::box(Vec3(1, 2, 3), 4), Vec3(5, 0, 0))});
+  const Solid solid(two, 20000, 0);
+  for (const double epsilon : {0.05, std::numeric_limits<double>::infinity()}) {
+    const std::vector<std::uint32_t> label = cluster_triangles(solid, 1, epsilon);
+    const std::set<std::uint32_t> different(label.begin(), label.end());
+    EXPECT_EQ(different.size(), 2U);
+    EXPECT_NE(label.front(), label.back());
+  }
+  EXPECT_EQ(cluster_triangles(solid, two.triangles.size(), 1).size(), two.triangles.size());
+}
+
+/// Whatever the clusters are, every leaf goes to one body.
+TEST(Clusters, EveryLeafIsInABody) {
+  const Mesh mesh = kaboum::test::icosphere(2);
+  const Solid solid(mesh, 20000, 0);
+  CutTree tree(solid, {});
+  while (tree.leaf_count() < 20 && tree.cut_worst()) {
+  }
+  std::vector<std::uint32_t> label(mesh.triangles.size());
+  for (std::uint32_t t = 0; t < label.size(); ++t) label[t] = t % 5;
+  std::vector<int> leaves;
+  for (const Body& body : bodies_of_clusters(tree, solid, label))
+    leaves.insert(leaves.end(), body.leaves.begin(), body.leaves.end());
+  std::sort(leaves.begin(), leaves.end());
+  EXPECT_EQ(leaves, tree.leaves());
+}
+
+}  // namespace
+}  // namespace kaboum::bcd
