@@ -1,7 +1,9 @@
 """A document of headings, paragraphs, tables and pictures, written as Markdown and as one HTML page."""
 
 import base64
+import csv
 import html
+import math
 import os
 
 STYLE = """
@@ -18,6 +20,23 @@ figcaption { color: #555; font-size: .9rem }
 """
 
 MIME = {".svg": "image/svg+xml", ".png": "image/png"}
+
+
+def figure(value):
+    """Four significant digits from 1 on, three below, at most six decimals, never powers of ten."""
+    if value == 0:
+        return "0"
+    if value >= 1000:
+        return f"{value:.0f}"
+    digits = 3 if value >= 1 else 2
+    return f"{value:.{min(6, digits - math.floor(math.log10(value)))}f}"
+
+
+def written(path, header, rows):
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(header)
+        writer.writerows(rows)
 
 
 class Document:

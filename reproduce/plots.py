@@ -6,9 +6,11 @@ import subprocess
 
 # Wong's colours, told apart by the colour-blind too.
 COLOURS = {"planes": "#0072b2", "planes-adapted": "#e69f00", "planes-diagonal": "#cc79a7",
-           "triangles": "#009e73", "distance": "#000000"}
+           "triangles": "#009e73", "distance": "#000000",
+           "30 bodies": "#0072b2", "64 bodies": "#000000", "105 bodies": "#e69f00"}
 LARGEST = 30  # percent of the diagonal: spikes beyond it would squeeze everything else
-POINTS = {"planes": 4, "planes-adapted": 6, "planes-diagonal": 8, "triangles": 10, "distance": 7}
+POINTS = {"planes": 4, "planes-adapted": 6, "planes-diagonal": 8, "triangles": 10, "distance": 7,
+          "30 bodies": 4, "64 bodies": 7, "105 bodies": 6}
 
 
 @dataclasses.dataclass
@@ -26,7 +28,7 @@ def available():
     return shutil.which("gnuplot") is not None
 
 
-def distance_plot(path, panels):
+def distance_plot(path, panels, across="vertices"):
     """Writes `path` (.svg) and the gnuplot script beside it.
 
     `panels`: rows of two (title, label of the vertical axis, curves).
@@ -38,7 +40,7 @@ def distance_plot(path, panels):
         f"set multiplot layout {len(panels) // 2},2",
         "set logscale xy",
         "set grid xtics ytics mxtics mytics lc rgb '#b0b0b0' lw 0.6, lc rgb '#dddddd' lw 0.4",
-        "set format y '%g %%'", "set format x '%.0f'", "set xlabel 'vertices'",
+        "set format y '%g %%'", "set format x '%.0f'", f"set xlabel {_quoted(across)}",
         "set tics font ',11'", "set key bottom left Left reverse font ',11' samplen 3 spacing 1.1",
     ]
     every = [n for _, _, curves in panels for curve in curves for n, _ in curve.points]

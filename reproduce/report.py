@@ -5,14 +5,13 @@ the document; SECTIONS lists them. Every section is called twice: first to colle
 for, then, with the results there, to be written.
 """
 
-import csv
-import math
 import subprocess
 
 import plots
+import sets
 import sweeps
 import thesis
-from document import Document
+from document import Document, figure, written
 from runs import OURS, THESIS_COSTS, Run
 
 TABLE_COUNTS = (20000, 10000, 5000, 2500)
@@ -47,16 +46,6 @@ class Context:
         return counts[::2] if self.quick else counts
 
 
-def figure(value):
-    """Four significant digits from 1 on, three below, at most six decimals, never powers of ten."""
-    if value == 0:
-        return "0"
-    if value >= 1000:
-        return f"{value:.0f}"
-    digits = 3 if value >= 1 else 2
-    return f"{value:.{min(6, digits - math.floor(math.log10(value)))}f}"
-
-
 def count(n):
     return f"{n:,}"
 
@@ -77,13 +66,6 @@ def result_line(row, target, title):
     if row["vertices"] > target:
         remark += f", stopped at {count(row['vertices'])}"
     return [count(target), title, *distances(row), remark]
-
-
-def written(path, header, rows):
-    with open(path, "w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(header)
-        writer.writerows(rows)
 
 
 def table_row(keys, by, percent, mm=None):
@@ -360,9 +342,9 @@ def resources_section(context, document):
 
 
 SECTIONS = [models_section, proposition_1_section, table_4_2_section, same_share_section, table_b_1_section,
-            figures_section, pictures_section, sweeps.section, resources_section]
+            figures_section, pictures_section, sets.section, sweeps.section, resources_section]
 QUICK_SECTIONS = [models_section, proposition_1_section, table_4_2_section, figures_section, pictures_section,
-                  sweeps.section, resources_section]
+                  sets.section, sweeps.section, resources_section]
 
 
 def make(models, runner, folder, quick):

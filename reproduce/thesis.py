@@ -1,6 +1,7 @@
-"""The figures that the thesis prints ([gaschler2016]: Table 4.2, Table B.1), in millimetres."""
+"""The figures that the thesis prints ([gaschler2016]: Tables 4.2, 4.3 and B.1), in millimetres."""
 
 import csv
+import dataclasses
 import math
 import pathlib
 
@@ -46,6 +47,23 @@ def table_b_1():
     diagonal = diagonals()
     return [Row(row, diagonal[row["model"]], COSTS[row["cost_function"]], "outer")
             for row in _read("table-b-1.csv")]
+
+
+@dataclasses.dataclass(frozen=True)
+class Set:
+    """One line of Table 4.3; distances in percent of the diagonal."""
+    stage: str  # hulls, segmentation, bounding
+    bodies: int
+    vertices: int
+    percent: dict
+
+
+def table_4_3():
+    diagonal = diagonals()["MITSUBISHI"]
+    stages = {"convex_hulls_of_rigid_bodies": "hulls"}
+    return [Set(stages.get(row["stage"], row["stage"]), int(row["convexes"]), int(row["vertices"]),
+                {key: 100 * float(row[key]) / diagonal for key in DISTANCES})
+            for row in _read("table-4-3.csv") if row["stage"] != "original"]
 
 
 def vertices_within(rows, percent):

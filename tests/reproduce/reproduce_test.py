@@ -20,6 +20,7 @@ sys.dont_write_bytecode = True
 import main  # noqa: E402
 import models  # noqa: E402
 import report  # noqa: E402
+import sets  # noqa: E402
 import sweeps  # noqa: E402
 import thesis  # noqa: E402
 from document import Document  # noqa: E402
@@ -128,6 +129,19 @@ class Report(unittest.TestCase):
             page = (folder / "index.html").read_text()
             self.assertIn("Swept volumes", page)
             self.assertIn("Left out: the robots", page)
+            # One part, a segmentation and a bounding set, none with figures of the thesis.
+            with open(folder / "table-4-3.csv", newline="") as file:
+                stages = list(csv.DictReader(file))
+            self.assertEqual([(row["stage"], row["by"]) for row in stages],
+                             [("hulls", "parts of the mesh"), ("segmentation", "planes"), ("bounding", "planes")])
+            for row in stages:
+                self.assertLessEqual(int(row["bodies"]), 6)
+                self.assertLessEqual(float(row["a2o_mean_percent"]), float(row["a2o_max_percent"]))
+            self.assertLessEqual(int(stages[2]["vertices"]), 140)
+            # What is far from the solid is about as far from its surface: cavities are filled, too.
+            self.assertLessEqual(float(stages[2]["a2o_max_percent"]),
+                                 1.01 * float(stages[2]["union_to_solid_percent"]) + 0.01)
+            self.assertIn("taken apart", page)
             self.assertIsNone(re.search(r'src="(?!data:)', page))
             self.assertIn("data:image/png;base64,", page)
             with open(folder / "results.csv", newline="") as file:
@@ -141,6 +155,27 @@ class Report(unittest.TestCase):
                     # Vertices without a float32 position may be contracted away beyond the wish.
                     self.assertTrue(615 <= int(row["vertices"]) <= 625, row["vertices"])
 
+    def test_parts(self):
+        points = [f"v {i} 0 0\n" for i in range(7)]
+        parts = sets.components(points, [[4, 5, 6], [0, 1, 2], [2, 1, 3]])
+        self.assertEqual(parts, [(points[:4], [[0, 1, 2], [2, 1, 3]]), (points[4:], [[0, 1, 2]])])
+        with tempfile.TemporaryDirectory() as name:
+            path = pathlib.Path(name) / "parts.obj"
+            sets.write_obj(path, parts)
+            self.assertEqual(sets.read_obj(path), (points, [[0, 1, 2], [2, 1, 3], [4, 5, 6]]))
+            self.assertEqual(path.read_text().count("o body-"), 2)
+
+    def test_table_4_3(self):
+        rows = thesis.table_4_3()
+        self.assertEqual([row.bodies for row in rows if row.stage != "bounding"], [7, 30, 64, 105])
+        self.assertEqual(len(rows), 22)
+        self.assertTrue(any((row.bodies, row.vertices) == (64, 942) and abs(row.percent["a2o_max"] - 1.586) < 1e-3
+                            for row in rows))  # 19.66 mm
+        robot = models.Model("mitsubishi", "", BRACKET.path, "MITSUBISHI")
+        self.assertEqual([(s.bodies, len(s.vertices)) for s in sets.settings(robot, False)],
+                         [(30, 6), (64, 6), (105, 6)])
+        self.assertEqual(sets.settings(robot, True), [sets.Setting(64, (942,))])
+
     def test_sweeps(self):
         self.assertAlmostEqual(sweeps.slope([(x, 3 * x ** -0.5) for x in (0.1, 1, 7)]), -0.5)
         with tempfile.TemporaryDirectory() as name:
@@ -150,7 +185,7 @@ class Report(unittest.TestCase):
                 f"L,{m},{i},{t}\n" for m in ("triangle meshes", "sets") for i, t in enumerate((3, 1, 2))))
             self.assertEqual(sweeps.statistics(times)["L", "sets"], (2, 2, 3))
             runner = Runner(PROGRAMS, folder)
-            call = sweeps.Calls(report.Context([], runner, folder, True))
+            call = sweeps.Calls(report.Context([], runner, folder, True), "sweeps")
             program = PROGRAMS / "bmesh-decimate"
             for _ in range(2):
                 with contextlib.redirect_stderr(io.StringIO()):

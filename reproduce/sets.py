@@ -1,0 +1,230 @@
+"""Bounding sets of convex bodies: Table 4.3 and Figure 4.7.
+
+Hulls of the rigid bodies, segmentations at the thesis's three numbers of bodies, and bounding sets of fewer and
+fewer vertices for each. On the project's own meshes when the thesis's robot is not there.
+"""
+
+import dataclasses
+
+import plots
+import thesis
+from calls import Calls
+from document import figure, written
+
+METHODS = ("planes", "clusters", "voxels")
+UNLIMITED = 100000  # vertices of a body
+KEYS = ("o2a_mean", "o2a_max", "a2o_mean", "a2o_max")
+HEADER = ["stage", "by", "bodies", "vertices", "mean o→a", "max o→a", "mean a→o", "max a→o", "union → solid"]
+NAME = "MITSUBISHI"
+
+
+@dataclasses.dataclass(frozen=True)
+class Setting:
+    """Numbers of bodies, and of vertices that the bounding sets may have in all."""
+    bodies: int
+    vertices: tuple
+
+
+def settings(model, quick):
+    if model.thesis != NAME:
+        return [Setting(6, (140,))]
+    rows = thesis.table_4_3()
+    out = [Setting(row.bodies, tuple(r.vertices for r in rows if r.stage == "bounding" and r.bodies == row.bodies))
+           for row in rows if row.stage == "segmentation"]
+    return [Setting(out[1].bodies, out[1].vertices[-2:-1])] if quick else out
+
+
+def read_obj(path):
+    """Points as lines of text, triangles as indices."""
+    points, triangles = [], []
+    with open(path, encoding="utf-8") as file:
+        for line in file:
+            if line.startswith("v "):
+                points.append(line)
+            elif line.startswith("f "):
+                triangles.append([int(word.split("/")[0]) - 1 for word in line.split()[1:]])
+    return points, triangles
+
+
+def write_obj(path, parts):
+    """`parts`: pairs of points and triangles, each an object."""
+    first = 1
+    with open(path, "w", encoding="utf-8") as file:
+        for number, (points, triangles) in enumerate(parts):
+            file.write(f"o body-{number:04}\n")
+            file.writelines(points)
+            file.writelines("f " + " ".join(str(i + first) for i in t) + "\n" for t in triangles)
+            first += len(points)
+
+
+def components(points, triangles):
+    """The parts that hang together by vertices, in the order of their first vertices."""
+    root = list(range(len(points)))
+
+    def find(i):
+        while root[i] != i:
+            root[i] = root[root[i]]
+            i = root[i]
+        return i
+    for triangle in triangles:
+        for i in triangle[1:]:
+            a, b = sorted((find(triangle[0]), find(i)))
+            root[b] = a
+    of_root = {}
+    for triangle in triangles:
+        of_root.setdefault(find(triangle[0]), []).append(triangle)
+    parts = []
+    for _, chosen in sorted(of_root.items()):
+        number = {i: n for n, i in enumerate(sorted({i for t in chosen for i in t}))}
+        parts.append(([points[i] for i in number], [[number[i] for i in t] for t in chosen]))
+    return parts
+
+
+class Sets:
+    """Makes sets and measures them; a row holds percent of the original's diagonal."""
+
+    def __init__(self, call, model, quick):
+        self.call, self.model = call, model
+        self.effort = "fast" if quick else "normal"
+        self.decompose = call.programs / "bcd-decompose"
+
+    def decomposed(self, name, mesh, options, picture=False):
+        """Whether NAME.obj, NAME-set.json and, if wished, NAME.png are there."""
+        extra = ["--preview", f"{name}.png"] if picture else []
+        code = self.call(name, self.decompose,
+                         [mesh, "-o", f"{name}.obj", "--effort", self.effort, "--drop-sheets", *options, "--report",
+                          f"{name}-set.json", *extra], [mesh],
+                         [f"{name}.obj", f"{name}-set.json", *extra[1:]], (0, 1))
+        return code is not None and (self.call.folder / f"{name}.obj").is_file()
+
+    def measured(self, name, bodies, vertices, reach=None):
+        """A row; None when measuring failed."""
+        original, here = self.model.path, self.call.folder / f"{name}.obj"
+        if self.call(f"{name}-distance", self.call.programs / "hausdorff-eval",
+                     [original, here, "--b-as", "set", "--report", f"{name}-distance-report.json"], [original, here],
+                     [f"{name}-distance-report.json"], (0, 7)) is None:
+            return None
+        report = self.call.report(f"{name}-distance-report.json")
+        percent, there, back = 100 / report["bbox_diagonal"], report["a_to_b"], report["b_to_a"]
+        return {"name": name, "bodies": bodies, "vertices": vertices, "o2a_mean": percent * there["mean"],
+                "o2a_max": percent * there["max_upper"], "a2o_mean": percent * back["mean"],
+                "a2o_max": percent * back["max_upper"], "reach": reach}
+
+    def set_of(self, name, options, picture=False):
+        name = f"{self.model.name}-{name}"
+        if not self.decomposed(name, self.model.path, options, picture):
+            return None
+        report = self.call.report(f"{name}-set.json")
+        return self.measured(name, report["bodies"], report["vertices"], report["reach"]["upper_percent"])
+
+    def hulls(self):
+        """One body round every part of the mesh; the row, and how many parts are too small for float32 where they
+        are."""
+        name, folder = f"{self.model.name}-hulls", self.call.folder
+        whole = f"{self.model.name}-whole"
+        if self.call(whole, self.call.programs / "bmesh-decimate",
+                     [self.model.path, "-o", f"{whole}.obj", "--drop-sheets", "--precision", "double", "--vertices",
+                      10 ** 9], [self.model.path], [f"{whole}.obj"], (0, 1)) is None:
+            return None, 0
+        bodies, small = [], 0
+        for number, part in enumerate(components(*read_obj(folder / f"{whole}.obj"))):
+            one = f"{name}-{number:02}"
+            write_obj(folder / f"{one}-part.obj", [part])
+            if not self.decomposed(one, folder / f"{one}-part.obj",
+                                   ["--max-bodies", 1, "--max-vertices-per-body", UNLIMITED]):
+                small += 1
+                continue
+            bodies.append(read_obj(folder / f"{one}.obj"))
+        if not bodies:
+            return None, small
+        write_obj(folder / f"{name}.obj", bodies)
+        return self.measured(name, len(bodies), sum(len(points) for points, _ in bodies)), small
+
+
+def line(stage, by, row, figure):
+    reach = row["reach"]
+    return [stage, by, str(row["bodies"]), f"{row['vertices']:,}", *(figure(row[key]) for key in KEYS),
+            "—" if reach is None else figure(reach)]
+
+
+def section(context, document):
+    if context.collecting:
+        return
+    document.heading("Table 4.3 and Figure 4.7: bounding sets of convex bodies")
+    if not (context.runner.programs / "bcd-decompose").is_file():
+        document.paragraph("Left out: bcd-decompose is not built; scripts/build makes it.")
+        return
+    models = [m for m in context.models if m.thesis == NAME] or [m for m in context.models if not m.robot][:1]
+    if not models:
+        document.paragraph("Left out: no model stands for the thesis's robot in this run.")
+        return
+    model = models[0]
+    printed = thesis.table_4_3() if model.thesis == NAME else []
+    make = Sets(Calls(context, "sets"), model, context.quick)
+    lines, table, curves, pictures = [], [], {}, []
+
+    def add(stage, by, row):
+        if row is None:
+            return
+        lines.append(line(stage, by, row, figure))
+        table.append([stage, by, row["bodies"], row["vertices"], *(row[key] for key in KEYS), row["reach"] or ""])
+
+    def add_thesis(stage, bodies, vertices=None):
+        for row in printed:
+            if (row.stage, row.bodies) == (stage, bodies) and vertices in (None, row.vertices):
+                add(stage, "thesis", {"bodies": row.bodies, "vertices": row.vertices, "reach": None, **row.percent})
+
+    hulls = [row.bodies for row in printed if row.stage == "hulls"]
+    for bodies in hulls:
+        add_thesis("hulls", bodies)
+    row, small = make.hulls()
+    add("hulls", "parts of the mesh" + (f" ({small} left out)" if small else ""), row)
+    for setting in settings(model, context.quick):
+        n = setting.bodies
+        add_thesis("segmentation", n)
+        for method in METHODS[:1] if context.quick else METHODS:
+            name = f"{n}-{method}"
+            row = make.set_of(name, ["--max-bodies", n, "--max-vertices-per-body", UNLIMITED, "--method", method],
+                              picture=True)
+            add("segmentation", method, row)
+            if row and method == "planes":
+                pictures.append((row, f"segmentation into {row['bodies']} bodies"))
+        points = []
+        for wished in setting.vertices:
+            add_thesis("bounding", n, wished)
+            row = make.set_of(f"{n}-{wished}", ["--max-bodies", n, "--max-vertices-per-body",
+                                                max(8, round(wished / n))], picture=True)
+            add("bounding", "planes", row)
+            if row:
+                points.append(row)
+        if points:
+            curves[n] = points
+            pictures.append((points[-1], f"{points[-1]['bodies']} bodies with {points[-1]['vertices']:,} vertices"))
+    document.paragraph(
+        f"{model.title}; percent of the diagonal. o→a: from the original's surface to the union's, a→o: back; maxima of "
+        "ours are certified. The last column is the certified distance of the farthest point of the union, inner ones "
+        "too, from the solid, which collision checks depend on. All bodies of ours cover the solid, exactly decided. "
+        "The thesis segments by HACD with three settings (30, 64 and 105 bodies) and then contracts edges; here "
+        "--max-bodies gives the number and --max-vertices-per-body the thesis's mean number of vertices of a body "
+        "(at least 8): no body of ours gets more than that, while the thesis's get up to three times as many. Hulls of "
+        "ours are round the parts that hang together, not round links, without those too small for float32 where they are; "
+        "vertices that a quarter of the distance allows to go without are left out. CSV: table-4-3.csv.")
+    document.table(HEADER, lines)
+    written(context.folder / "table-4-3.csv", ["stage", "by", "bodies", "vertices", *(f"{k}_percent" for k in KEYS),
+                                               "union_to_solid_percent"], table)
+    if plots.available() and any(len(points) > 1 for points in curves.values()):
+        path = context.folder / "table-4-3.svg"
+        panels = []
+        for key, label in (("a2o_max", "largest distance a→o"), ("o2a_max", "largest distance o→a"),
+                           ("a2o_mean", "mean distance a→o"), ("o2a_mean", "mean distance o→a")):
+            panels.append((model.title, label, [
+                plots.Curve(f"{n} bodies", [(row["vertices"], row[key]) for row in points])
+                for n, points in curves.items()] + [
+                plots.Curve(f"{n} bodies", [(row.vertices, row.percent[key]) for row in printed
+                                            if (row.stage, row.bodies) == ("bounding", n)], thesis=True)
+                for n in curves if printed]))
+        plots.distance_plot(path, panels, "vertices of all bodies")
+        document.picture(path, "Bounding sets: distance over the vertices of all bodies; dotted: the thesis's")
+    for row, text in pictures:
+        document.picture(make.call.folder / f"{row['name']}.png",
+                         f"{'Figure 4.7: ' if printed else ''}{text}; right: taken apart")
