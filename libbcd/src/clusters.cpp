@@ -168,6 +168,7 @@ std::vector<Body> bodies_of_clusters(const CutTree& tree, const Solid& solid,
   for (const int leaf : tree.leaves())
     leaves[owner(tree.nodes()[leaf].piece, solid, cluster)].push_back(leaf);
   std::vector<Body> out;
+  out.reserve(leaves.size());
   for (const auto& [number, of_cluster] : leaves) out.push_back(union_of(tree, solid, of_cluster));
   return out;
 }

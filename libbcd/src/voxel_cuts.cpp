@@ -32,6 +32,10 @@ VoxelCuts::Volumes VoxelCuts::volumes(const Range& range) const {
   };
   static thread_local std::vector<Line> lines;
   lines.assign(static_cast<std::size_t>(rows) * static_cast<std::size_t>(layers), {});
+  const auto line_at = [&](int y, int z) -> Line& {
+    return lines[static_cast<std::size_t>(z) * static_cast<std::size_t>(rows) +
+                 static_cast<std::size_t>(y)];
+  };
   Volumes out;
   for (int z = range.low[2]; z < range.high[2]; ++z) {
     for (int y = range.low[1]; y < range.high[1]; ++y) {
@@ -45,8 +49,7 @@ VoxelCuts::Volumes VoxelCuts::volumes(const Range& range) const {
       if (row.last < row.first) continue;
       for (const int dz : {0, 1}) {
         for (const int dy : {0, 1}) {
-          Line& line = lines[static_cast<std::size_t>((z - range.low[2] + dz) * rows + y -
-                                                      range.low[1] + dy)];
+          Line& line = line_at(y - range.low[1] + dy, z - range.low[2] + dz);
           line.first = std::min(line.first, row.first);
           line.last = std::max(line.last, row.last);
         }
@@ -57,7 +60,7 @@ VoxelCuts::Volumes VoxelCuts::volumes(const Range& range) const {
   points.clear();
   for (int z = 0; z < layers; ++z) {
     for (int y = 0; y < rows; ++y) {
-      const Line& line = lines[static_cast<std::size_t>(z * rows + y)];
+      const Line& line = line_at(y, z);
       if (line.last < line.first) continue;
       points.emplace_back(line.first, y, z);
       points.emplace_back(line.last, y, z);

@@ -68,7 +68,8 @@ class Search {
     radius_ *= 1 + 8 * kUnit;
     // Distances in which most directions are seen to be wide.
     for (int i = 0; i < 13; ++i) {
-      const Vec3 n((i + 14) % 3 - 1, (i + 14) / 3 % 3 - 1, (i + 14) / 9 - 1);
+      const int code = i + 14, y = code / 3 % 3, z = code / 9;
+      const Vec3 n(code % 3 - 1, y - 1, z - 1);
       Eigen::Index low = 0, high = 0;
       const Eigen::RowVectorXd h = n.transpose() * points_;
       h.minCoeff(&low);
