@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "cell.h"
+#include "nearly_within.h"
 
 namespace kaboum::bcd {
 namespace {
@@ -32,8 +33,12 @@ class Measure {
 
   Reach run(double floor) {
     floor_ = floor;
-    facets();
-    inside();
+    if (floor > 0 && nearly_within(body_, solid_, floor, slack_)) {
+      settle(floor);
+    } else {
+      facets();
+      inside();
+    }
     result_.upper = std::max({result_.lower, settled_, 0.0});
     if (result_.upper > 0) result_.upper += slack_;
     return result_;
