@@ -102,6 +102,7 @@ Known union_of_prisms(std::mt19937& random, int count) {
 /// Whether the bodies cover the mesh's solid and triangles, decided by the exact arrangement.
 bool truly_covered(const Mesh& mesh, const std::vector<ConvexBody>& bodies) {
   std::vector<Mesh> hulls;
+  hulls.reserve(bodies.size());
   for (const ConvexBody& body : bodies) hulls.push_back(body.hull);
   const auto verdict = kaboum::test::arrangement_verdict(mesh, kaboum::test::merged(hulls));
   return *verdict.solid && *verdict.surface;

@@ -48,6 +48,7 @@ TEST(NearlyWithin, NoPointIsFartherWhereItSaysSo) {
     // Hulls round a point of the tube's middle.
     const double angle = 6.28 * unit(random), size = 0.15 + 0.45 * unit(random);
     std::vector<Vec3> points;
+    points.reserve(12);
     for (int i = 0; i < 12; ++i)
       points.emplace_back(Vec3(std::cos(angle), std::sin(angle), 0) +
                           size * Vec3(normal(random), normal(random), normal(random)).normalized());

@@ -19,6 +19,7 @@ void expect_thick(const Mesh& hull, double thickness) {
   std::mt19937 random(2);
   std::normal_distribution<double> normal;
   std::vector<Vec3> directions;
+  directions.reserve(500 + hull.triangles.size());
   for (int i = 0; i < 500; ++i)
     directions.emplace_back(normal(random), normal(random), normal(random));
   for (const Triangle& t : hull.triangles) {
@@ -44,6 +45,7 @@ TEST(Thicken, PlatesRodsAndPointsOfAnyOrientation) {
                            Vec3(1, 0.8, 1e-6), Vec3(1, 0.04, 0.01), Vec3(1, 1, 1)}) {
     for (int trial = 0; trial < 4; ++trial) {
       std::vector<Vec3> points;
+      points.reserve(25);
       for (int i = 0; i < 25; ++i)
         points.emplace_back(size.cwiseProduct(Vec3(unit(random), unit(random), unit(random))));
       const Mesh cloud =
