@@ -27,13 +27,13 @@ using tools::Json;
 
 struct Options {
   std::string input, output, input_format, output_format;
-  std::string direction_name = "outer", cost_name = "planes", effort_name = "fast";
+  std::string direction_name = "outer", cost_name = "distance", effort_name = "normal";
   bmesh::Direction direction = bmesh::Direction::Outer;
   std::string vertices, progressive, from;
   double ratio = 0;
   std::string epsilon;
-  bmesh::Cost cost = bmesh::Cost::Planes;
-  bmesh::Effort effort = bmesh::Effort::Fast;
+  bmesh::Cost cost = bmesh::Cost::Distance;
+  bmesh::Effort effort = bmesh::Effort::Normal;
   bool as_printed = false;
   std::string precision = "auto";
   double sharp_angle = 90;
@@ -117,9 +117,9 @@ void describe(CLI::App& app, Options& o) {
       ->type_name("LENGTH|P%");
   app.add_option(
          "--cost", o.cost_name,
-         "Cost of a contraction. distance: the measured distance, for results mostly nearer "
-         "to the input; much slower, and may stop at more vertices. distance is for a small "
-         "largest distance, mean for a small mean distance [planes]")
+         "Cost of a contraction. distance: the measured distance, for a small largest distance; "
+         "mean: for a small mean distance; planes and the others: the thesis's, faster "
+         "[distance]")
       ->check(CLI::IsMember(
                   {"planes", "planes-adapted", "planes-diagonal", "triangles", "distance", "mean"})
                   .description(""))
@@ -127,7 +127,7 @@ void describe(CLI::App& app, Options& o) {
   app.add_option("--effort", o.effort_name,
                  "Tightness against time. fast: contractions only; normal and best: vertices are "
                  "also pulled back towards the input and edges flipped, many times slower (not "
-                 "with --keep-convex, nor for open meshes) [fast]")
+                 "with --keep-convex, nor for open meshes) [normal]")
       ->check(CLI::IsMember({"fast", "normal", "best"}).description(""))
       ->type_name("fast|normal|best");
   app.add_flag("--as-printed", o.as_printed,

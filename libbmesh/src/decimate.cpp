@@ -27,13 +27,13 @@ using geom::Mesh;
 
 /// Distances are measured from this many times the wished number of vertices on; before, they are
 /// so small that the quadrics order the contractions as well.
-constexpr std::size_t kMeasureFrom = 5;
+constexpr std::size_t kMeasureFrom = 3;
 constexpr double kMeasureFromEpsilon = 0.1;  ///< the same by an error bound
 
-/// From this multiple of the wished number of vertices on, the best effort contracts edges together
-/// with moves of the vertices around, at first within the deviation reached, then within that much
-/// more from round to round.
-constexpr double kJointFrom = 1.4, kJointGrowth = 1.15;
+/// From this multiple of the wished number of vertices on, edges are contracted together with moves
+/// of the vertices around, at first within the deviation reached, then within that much more from
+/// round to round.
+constexpr double kJointFrom = 1.25, kJointFromBest = 1.4, kJointGrowth = 1.15;
 constexpr int kJointRounds = 12;
 
 /// A spike goes farther from the original than this share of the diagonal, and this many times
@@ -127,8 +127,9 @@ class Decimator final : private Judge {
   }
 
   void contract_in_stages(std::size_t target) {
-    if (options_.effort == Effort::Best && optimiser_ && !options_.epsilon) {
-      contract_to(static_cast<std::size_t>(kJointFrom * static_cast<double>(target)));
+    if (options_.cost == Cost::Distance && optimiser_ && !options_.epsilon) {
+      const double from = options_.effort == Effort::Best ? kJointFromBest : kJointFrom;
+      contract_to(static_cast<std::size_t>(from * static_cast<double>(target)));
       double limit = std::min(contraction_.queue().lowest_key(), setting_.diagonal);
       if (!(limit > 0)) limit = 1e-3 * setting_.diagonal;  // nothing has been contracted yet
       for (int i = 0; i < kJointRounds && contraction_.vertices() > target;

@@ -25,11 +25,10 @@ enum class Cost {
 /// Direction::Any) and excludes keep_convex; it is Fast otherwise.
 enum class Effort {
   Fast,  ///< nothing
-  /// Vertices are pulled back towards the original and edges flipped, in some rounds; within an
-  /// error bound (Cost::Distance) edges are also contracted together with moves of the vertices
-  /// around.
+  /// Vertices are pulled back towards the original and edges flipped, in some rounds; with
+  /// Cost::Distance the last edges are contracted together with moves of the vertices around.
   Normal,
-  Best,  ///< the same in more rounds, and such contractions also without an error bound
+  Best,  ///< the same in more rounds, and more edges are contracted in this way
 };
 
 /// Numbers that result vertices are made of.
