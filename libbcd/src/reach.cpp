@@ -48,11 +48,13 @@ class Measure {
   struct Piece {
     std::array<Vec3, 3> corner;
     std::uint32_t hint;
+    double upper = 0;
   };
   struct Cube {
     Vec3 center;
     double half;
     std::uint32_t hint;
+    double upper = 0;
   };
 
   [[nodiscard]] double limit() const {
@@ -66,39 +68,64 @@ class Measure {
     result_.at = at;
   }
 
+  /// Branch and bound, the part with the largest bound first. `bound` gives a part's, or nothing
+  /// where it need not be looked at; `split` calls what it is given with each half.
+  template <class Part, class Bound, class Split>
+  void search(std::vector<Part> first, Bound&& bound, Split&& split) {
+    std::vector<Part> open;
+    const auto lower = [](const Part& p, const Part& q) { return p.upper < q.upper; };
+    const auto visit = [&](Part&& part) {
+      if (!bound(part)) return;
+      if (part.upper <= limit()) {
+        settle(part.upper);
+        return;
+      }
+      open.push_back(std::move(part));
+      std::push_heap(open.begin(), open.end(), lower);
+    };
+    for (Part& part : first) visit(std::move(part));
+    for (std::size_t work = 0; !open.empty(); ++work) {
+      std::pop_heap(open.begin(), open.end(), lower);
+      const Part part = std::move(open.back());
+      open.pop_back();
+      if (part.upper <= limit() || work >= options_.most) {
+        settle(part.upper);  // no other is larger
+        return;
+      }
+      split(part, visit);
+    }
+  }
+
   void facets() {
-    std::vector<Piece> stack;
+    std::vector<Piece> first;
     for (const Triangle& t : body_.triangles)
-      stack.push_back({{body_.vertices[t[0]], body_.vertices[t[1]], body_.vertices[t[2]]},
+      first.push_back({{body_.vertices[t[0]], body_.vertices[t[1]], body_.vertices[t[2]]},
                        geom::DistanceQuery::kNone});
-    std::size_t work = 0;
-    while (!stack.empty()) {
-      Piece p = stack.back();
-      stack.pop_back();
+    const auto bound = [&](Piece& p) {
       const auto& [a, b, c] = p.corner;
       const Vec3 center = (a + b + c) / 3;
       const double radius = std::sqrt(std::max(
           {(a - center).squaredNorm(), (b - center).squaredNorm(), (c - center).squaredNorm()}));
       const auto at = solid_.surface().nearest(center, p.hint);
-      double upper = at.upper + radius;
-      if (upper > limit()) {
+      p.hint = at.triangle;
+      p.upper = at.upper + radius;
+      if (p.upper > limit()) {
         double corners = 0;
         for (const Vec3& v : p.corner)
           corners = std::max(corners, solid_.surface().to_triangle(v, at.triangle).upper);
-        upper = std::min(upper, corners);
+        p.upper = std::min(p.upper, corners);
       }
-      if (upper > limit()) {
+      if (p.upper > limit()) {
         if (solid_.contains(center)) {
-          if (at.lower >= radius * (1 + 1e-12)) continue;
-          upper = std::min(upper, radius);
+          if (at.lower >= radius * (1 + 1e-12)) return false;
+          p.upper = std::min(p.upper, radius);
         } else {
           raise(at.lower, center);
         }
       }
-      if (upper <= limit() || ++work > options_.most) {
-        settle(upper);
-        continue;
-      }
+      return true;
+    };
+    search(std::move(first), bound, [](Piece p, const auto& visit) {
       int k = 0;
       double longest = -1;
       for (int i = 0; i < 3; ++i) {
@@ -112,10 +139,57 @@ class Measure {
       Piece q = p;
       p.corner[(k + 1) % 3] = middle;
       q.corner[k] = middle;
-      p.hint = q.hint = at.triangle;
-      stack.push_back(p);
-      stack.push_back(q);
+      visit(std::move(p));
+      visit(std::move(q));
+    });
+  }
+
+  /// The distance to one triangle is convex: largest at a corner.
+  [[nodiscard]] double farthest(const Cell& part, std::uint32_t triangle) const {
+    double out = 0;
+    for (const Vec3& v : part.corners)
+      out = std::max(out, solid_.surface().to_triangle(v, triangle).upper);
+    return out;
+  }
+
+  /// The same for the points outside the solid alone, where the part's centre is inside and few
+  /// triangles meet it: each such point is in the shadow of one of them, seen from the centre
+  /// (docs/algorithms/convex-decomposition.md, "Reach").
+  double farthest_outside(const Cell& part) {
+    if (part.corners.empty()) return kUnbounded;
+    const Vec3 center = part.center();
+    if (!solid_.contains_round(center)) return kUnbounded;
+    Box3 box;
+    for (const Vec3& p : part.corners) box.extend(p);
+    near_.clear();
+    if (!solid_.triangles_near(box, kMostNear, near_)) return kUnbounded;
+    double out = 0;
+    for (const std::uint32_t t : near_) {
+      Cell shadow = part;
+      // Beyond the plane through a point with this normal, allowing for rounding.
+      const auto keep_beyond = [&](const Vec3& u, const Vec3& w, const Vec3& at) {
+        const Vec3 n = u.cross(w);
+        const double length = n.norm(), edges = u.norm() * w.norm();
+        // A plane that is hardly known leaves everything.
+        if (!(length > 1e-6 * edges)) return;
+        const Plane plane{n / length, n.dot(at) / length};
+        shadow = clip(shadow, plane, false, slack_ * (1 + edges / length));
+      };
+      const auto& [a, b, c] = solid_.surface().corners(t);
+      const Vec3 ab = b - a, ac = c - a, n = ab.cross(ac);
+      const double height = n.dot(center - a);
+      const double error = slack_ * (n.norm() + ab.norm() * ac.norm());
+      if (height > error) continue;  // seen from outside
+      keep_beyond(ab, ac, a);
+      if (height < -error) {
+        const std::array<Vec3, 3> to{a - center, b - center, c - center};
+        for (int k = 0; k < 3; ++k)
+          if (!shadow.corners.empty()) keep_beyond(to[k], to[(k + 1) % 3], center);
+      }
+      out = std::max(out, farthest(shadow, t));
+      if (out > limit()) return kUnbounded;
     }
+    return out;
   }
 
   void inside() {
@@ -128,62 +202,56 @@ class Measure {
       const double length = n.norm();
       if (length > 0) planes.push_back({n / length, n.dot(a) / length});
     }
-    std::vector<Cube> stack;
+    std::vector<Cube> first;
     for (const bcd::Cube& cube : cubes_over(box))
-      stack.push_back({cube.center, cube.half, geom::DistanceQuery::kNone});
-    std::size_t work = 0;
-    while (!stack.empty()) {
-      const Cube cube = stack.back();
-      stack.pop_back();
-      bool outside = false, within = true;
+      first.push_back({cube.center, cube.half, geom::DistanceQuery::kNone});
+    const auto bound = [&](Cube& cube) {
+      bool within = true;
       crossing.clear();
       for (const Plane& plane : planes) {
         const double h = plane.height(cube.center), extent = cube.half * plane.n.cwiseAbs().sum();
-        if (h - extent > slack_) {
-          outside = true;
-          break;
-        }
+        if (h - extent > slack_) return false;
         within = within && h <= -slack_;
         if (h + extent > -slack_) crossing.push_back(plane);
       }
-      if (outside) continue;
       const double radius = cube.half * 1.7320508075688774;
       const auto at = solid_.surface().nearest(cube.center, cube.hint);
-      double upper = at.upper + radius;
-      if (upper > limit()) {
+      cube.hint = at.triangle;
+      cube.upper = at.upper + radius;
+      if (cube.upper > limit()) {
         if (solid_.contains(cube.center)) {
-          if (at.lower >= radius * (1 + 1e-12)) continue;
-          upper = std::min(upper, radius);
+          if (at.lower >= radius * (1 + 1e-12)) return false;
+          cube.upper = std::min(cube.upper, radius);
         } else if (within) {
           raise(at.lower, cube.center);
         }
       }
-      if (upper > limit() && crossing.size() <= 12) {
-        // The distance to one triangle is convex: largest at a corner of the cube's part in the
-        // body.
+      if (cube.upper > limit() && crossing.size() <= 12) {
         const Vec3 h = Vec3::Constant(cube.half);
         Cell part = Cell::of({cube.center - h, cube.center + h});
         for (const Plane& plane : crossing) part = clip(part, plane, true, slack_);
-        double corners = 0;
-        for (const Vec3& v : part.corners)
-          corners = std::max(corners, solid_.surface().to_triangle(v, at.triangle).upper);
-        upper = std::min(upper, corners);
+        cube.upper = std::min(cube.upper, farthest(part, at.triangle));
+        if (cube.upper > limit() && !crossing.empty())
+          cube.upper = std::min(cube.upper, farthest_outside(part));
       }
-      if (upper <= limit() || ++work > options_.most) {
-        settle(upper);
-        continue;
-      }
+      return true;
+    };
+    search(std::move(first), bound, [](const Cube& cube, const auto& visit) {
       const double h = 0.5 * cube.half;
       for (int i = 0; i < 8; ++i)
-        stack.push_back({cube.center + Vec3((i & 1) != 0 ? h : -h, (i & 2) != 0 ? h : -h,
-                                            (i & 4) != 0 ? h : -h),
-                         h, at.triangle});
-    }
+        visit(Cube{
+            cube.center + Vec3((i & 1) != 0 ? h : -h, (i & 2) != 0 ? h : -h, (i & 4) != 0 ? h : -h),
+            h, cube.hint});
+    });
   }
+
+  static constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+  static constexpr std::size_t kMostNear = 24;
 
   const Mesh& body_;
   const Solid& solid_;
   const ReachOptions& options_;
+  std::vector<std::uint32_t> near_;
   double floor_ = 0;
   double slack_ = 0;
   double settled_ = 0;

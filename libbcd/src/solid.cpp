@@ -110,6 +110,25 @@ bool Solid::contains(const Vec3& p) const {
   return !w || *w >= 1;
 }
 
+bool Solid::contains_round(const Vec3& p) const {
+  const auto w = winding_(p);
+  return w && *w >= 1;
+}
+
+bool Solid::triangles_near(const Box3& box, std::size_t most,
+                           std::vector<std::uint32_t>& out) const {
+  const auto meets = [&](const Box3& other) {
+    return out.size() <= most && (other.min.array() <= box.max.array()).all() &&
+           (box.min.array() <= other.max.array()).all();
+  };
+  bvh_.traverse(meets, [&](std::uint32_t t) {
+    Box3 own;
+    for (const std::uint32_t v : mesh_.triangles[t]) own.extend(mesh_.vertices[v]);
+    if (meets(own)) out.push_back(t);
+  });
+  return out.size() <= most;
+}
+
 double Solid::rough_distance(const Vec3& p, double limit) const {
   double best = limit * limit;
   const auto nodes = bvh_.nodes();

@@ -33,6 +33,10 @@ class Solid {
 
   /// Winding number ≥ 1, or on a triangle; exact.
   [[nodiscard]] bool contains(const Vec3& p) const;
+  /// Winding number ≥ 1, and on no triangle; exact.
+  [[nodiscard]] bool contains_round(const Vec3& p) const;
+  /// Appends the triangles whose boxes meet the box. @return false when there are more than `most`.
+  bool triangles_near(const Box3& box, std::size_t most, std::vector<std::uint32_t>& out) const;
 
   /// Signed distance to the surface, negative inside, interpolated on a grid whose nodes are
   /// computed when they are first needed. Good to about the grid's spacing; guides the search,

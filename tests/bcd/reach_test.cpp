@@ -17,7 +17,7 @@ using kaboum::test::translated;
 
 Reach reach_of(const Mesh& body, const Mesh& solid_mesh) {
   const Solid solid(solid_mesh, 20000, 0);
-  return measure({body}, solid, {})[0];
+  return measure({body}, solid, {.absolute_gap = 1e-5 * solid.diagonal()})[0];
 }
 
 TEST(Reach, HullOfAnL) {
@@ -45,10 +45,52 @@ TEST(Reach, CavitiesCount) {
   EXPECT_LE(r.upper, 0.52);
 }
 
+TEST(Reach, WhereverCavitiesAre) {
+  // Farthest is the middle of the widest one; cubes meet them in every way.
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int round = 0; round < 12; ++round) {
+    const Mesh block = box(Vec3(3, 3, 3), 1);
+    Mesh solid = block;
+    double expected = 0;
+    for (int i = 0; i < 1 + round % 3; ++i) {
+      const Vec3 size = (0.3 + 0.6 * unit(random)) * Vec3(1, 1.05, 1.1);
+      const Vec3 at(0.005 + i, 0.01 + 1.9 * unit(random), 0.01 + 1.9 * unit(random));
+      solid = merged({solid, flipped(translated(box(size, 1), at))});
+      expected = std::max(expected, 0.5 * size.minCoeff());
+    }
+    const Reach r = reach_of(block, solid);
+    EXPECT_GE(r.upper, expected);
+    EXPECT_LE(r.lower, expected + 1e-9);
+    EXPECT_LE(r.upper, 1.03 * expected);
+  }
+}
+
 TEST(Reach, InsideIsZero) {
   const Reach r = reach_of(translated(box(Vec3(1, 1, 1), 1), Vec3(1, 1, 1)), box(Vec3(3, 3, 3), 1));
   EXPECT_EQ(r.lower, 0);
   EXPECT_LE(r.upper, 1e-3);
+}
+
+TEST(Reach, BodiesOnTheSolidCostLittle) {
+  // Facets of several triangles each; were the bound that of cubes alone, millions would be needed.
+  const Mesh grid = test::prism({{0, 0}, {2, 0}, {3, 1}, {3, 3}, {1, 3}, {0, 2}}, 1);
+  for (const Mesh& mesh : {grid, kaboum::test::icosphere(1)}) {
+    const Solid solid(mesh, 20000, 0);
+    ReachOptions options;
+    options.absolute_gap = 1e-5;
+    options.most = 3000;
+    EXPECT_LE(measure({mesh}, solid, options)[0].upper, 1e-5);
+    // The distance to a convex solid is convex: largest at a vertex.
+    Mesh larger = mesh;
+    for (Vec3& p : larger.vertices) p *= 1.01;
+    const Reach r = measure({larger}, solid, {})[0];
+    double farthest = 0;
+    for (const Vec3& p : larger.vertices)
+      if (!solid.contains(p)) farthest = std::max(farthest, solid.surface().nearest(p).lower);
+    EXPECT_GE(r.upper, farthest);
+    EXPECT_LE(r.upper, 1.03 * farthest);
+  }
 }
 
 TEST(Reach, NoPointIsFarther) {
