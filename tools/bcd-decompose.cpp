@@ -32,7 +32,7 @@ struct Options {
   std::string effort = "normal", method = "planes";
   std::string unit = "m", frame, preview, depfile, geometry = "collision", prefix;
   std::vector<std::string> packages;
-  std::size_t max_bodies = 0, max_vertices = 64;
+  std::size_t max_bodies = 0, max_vertices = 64, max_total = 0;
   double explode = 0.5, min_thickness = 0;
   bool no_cache = false;
   geom::PrepareOptions prepare;
@@ -60,7 +60,7 @@ void describe(CLI::App& app, Options& o) {
   app.add_option("--epsilon", o.epsilon,
                  "Fewest bodies with no point farther than this from the solid: a length in the "
                  "mesh's unit, or a percentage of the bounding box's diagonal, as in 0.5% [1% "
-                 "unless --max-bodies is given]")
+                 "unless --max-bodies or --max-total-vertices is given]")
       ->check([](const std::string& s) {
         return tools::parse_length(s) ? std::string()
                                       : "must be a positive number, or a percentage such as 0.5%, "
@@ -81,6 +81,11 @@ void describe(CLI::App& app, Options& o) {
                  "shrink hulls; counts towards epsilon [0]")
       ->check(CLI::Range(0.0, 1e30).description(""))
       ->type_name("LENGTH");
+  app.add_option("--max-total-vertices", o.max_total,
+                 "Smallest distance with at most this many vertices of all bodies together (8 to "
+                 "10000000), and at most --max-bodies where that is given; searches longer")
+      ->check(CLI::Range(8, 10000000).description(""))
+      ->type_name("N");
   app.add_option("--direction", o.direction,
                  "outer: bodies that cover the solid; inner: bodies inside it, which leave out no "
                  "point deeper than epsilon [outer]")
@@ -137,9 +142,9 @@ void describe(CLI::App& app, Options& o) {
       "decided exactly on the bytes that are written. An open INPUT is closed by filling its "
       "holes\n"
       "first. With --direction inner, every body lies inside the solid instead.\n"
-      "Exit codes: 0 done; 1 epsilon is not reached, or not with --max-bodies or --min-thickness\n"
-      "(the best result is written); 2 usage; 3 bad input; 4 output failed; 5 not built; 6 "
-      "internal error; 7 limit.");
+      "Exit codes: 0 done; 1 epsilon is not reached, or not within the limits or with\n"
+      "--min-thickness (the best result is written); 2 usage; 3 bad input; 4 output failed; 5 not\n"
+      "built; 6 internal error; 7 limit.");
 }
 
 std::string percent(double length, double diagonal) {
@@ -149,12 +154,17 @@ std::string percent(double length, double diagonal) {
   return out.str();
 }
 
+/// Whether epsilon is given, or wished for because no limit is.
+bool has_epsilon(const Options& o) {
+  return !o.epsilon.empty() || (o.max_bodies == 0 && o.max_total == 0);
+}
+
 /// The options that the result depends on, for the record.
 std::string parameters(const Options& o) {
   std::ostringstream out;
-  if (!o.epsilon.empty() || o.max_bodies == 0)
-    out << "--epsilon " << (o.epsilon.empty() ? "1%" : o.epsilon) << ' ';
+  if (has_epsilon(o)) out << "--epsilon " << (o.epsilon.empty() ? "1%" : o.epsilon) << ' ';
   if (o.max_bodies > 0) out << "--max-bodies " << o.max_bodies << ' ';
+  if (o.max_total > 0) out << "--max-total-vertices " << o.max_total << ' ';
   if (o.direction != "outer") out << "--direction " << o.direction << ' ';
   if (o.min_thickness > 0) {
     out.precision(17);
@@ -173,7 +183,7 @@ const char* name_of(bcd::Stop stop) {
     case bcd::Stop::Done:
       return "done";
     case bcd::Stop::TooManyBodies:
-      return "max-bodies";
+      return "limits";
     case bcd::Stop::TooCoarse:
       return "float32 too coarse";
     case bcd::Stop::Stuck:
@@ -214,9 +224,10 @@ tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const s
   const double diagonal = geom::bounding_box(prepared.mesh).diagonal();
   const geom::Mesh solid = prepared.closed ? prepared.mesh : bcd::close_holes(prepared.mesh);
   bcd::DecomposeOptions options;
-  if (!o.epsilon.empty() || o.max_bodies == 0)
+  if (has_epsilon(o))
     options.epsilon = tools::parse_length(o.epsilon.empty() ? "1%" : o.epsilon)->of(diagonal);
   if (o.max_bodies > 0) options.max_bodies = o.max_bodies;
+  if (o.max_total > 0) options.max_total_vertices = o.max_total;
   options.max_vertices = o.max_vertices;
   options.effort = kEfforts.at(o.effort);
   options.method = kMethods.at(o.method);
@@ -340,8 +351,10 @@ std::string shortfall(const Json& report) {
       report["min_thickness"]["thickened"] > 0)
     return "epsilon could not be reached with --min-thickness; allow thinner bodies or a larger "
            "epsilon";
-  return report["stop"] == "stuck" ? "epsilon could not be reached; allow more vertices per body"
-                                   : "epsilon needs more bodies than --max-bodies allows";
+  return report["stop"] == "stuck"
+             ? "epsilon could not be reached; allow more vertices per body"
+             : "epsilon needs more bodies or vertices than the limits allow, or these are too "
+               "few for anything";
 }
 
 std::string summary(const Options& o, const Json& report, std::size_t bodies) {
@@ -426,6 +439,8 @@ int decompose_robot(const Options& o) {
 }
 
 int decompose(const Options& o) {
+  if (o.max_total > 0 && o.direction != "outer")
+    throw Error(ErrorCode::InvalidArgument, "--max-total-vertices needs --direction outer");
   tools::require_apart({{"--output", o.output},
                         {"--report", o.common.report},
                         {"--preview", o.preview},

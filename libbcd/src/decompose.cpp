@@ -25,6 +25,7 @@ namespace kaboum::bcd {
 namespace {
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max();
 
 struct Tuning {
   std::size_t grid;
@@ -96,15 +97,14 @@ class Decomposer {
     if (options_.epsilon) {
       bodies = within(*options_.epsilon);
       if (tuning_.reduce) reduce(bodies, *options_.epsilon);
+      if (options_.max_total_vertices) thin_out(bodies, *options_.epsilon);
       result_.stop = Stop::Done;
       for (const Finished& f : bodies)
         if (f.reach.upper > *options_.epsilon) result_.stop = Stop::Stuck;
-      if (options_.max_bodies && bodies.size() > *options_.max_bodies) {
-        result_.stop = Stop::TooManyBodies;
-        bodies = at_most(*options_.max_bodies);
-      }
-    } else {
-      bodies = at_most(*options_.max_bodies);
+    }
+    if (!options_.epsilon || !fits(bodies)) {
+      bodies = options_.max_total_vertices ? nearest_that_fit() : at_most(*options_.max_bodies);
+      result_.stop = options_.epsilon || !fits(bodies) ? Stop::TooManyBodies : Stop::Done;
     }
     result_.statistics.leaves = tree_.leaf_count();
     for (Finished& f : bodies) {
@@ -461,11 +461,12 @@ class Decomposer {
     return true;
   }
 
-  /// Looks for fewer bodies within epsilon, by bisection of the number allowed.
-  void reduce(std::vector<Finished>& bodies, double epsilon) {
+  /// Looks for fewer bodies within epsilon, by bisection of the number allowed, until there are
+  /// `enough`.
+  void reduce(std::vector<Finished>& bodies, double epsilon, std::size_t enough = 1) {
     if (!good(bodies, epsilon)) return;
     std::size_t low = bodies.size() / 3;
-    while (bodies.size() > low + 1 + bodies.size() / 40) {
+    while (bodies.size() > low + 1 + bodies.size() / 40 && bodies.size() > enough) {
       const std::size_t middle = (low + bodies.size()) / 2;
       if (!replace(bodies, middle, epsilon)) low = middle;
     }
@@ -516,7 +517,7 @@ class Decomposer {
       std::vector<Mesh> hulls(open.size());
       std::vector<char> thickened(open.size(), 0);
       tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t i) {
-        hulls[i] = rounded(out[open[i]].body, free);
+        hulls[i] = rounded(out[open[i]].body, free, options_.max_vertices);
         if (options_.min_thickness > 0) thickened[i] = thicken(hulls[i]) ? 1 : 0;
       });
       ReachOptions reach;
@@ -567,8 +568,120 @@ class Decomposer {
     return true;
   }
 
+  [[nodiscard]] static std::size_t vertices_of(const std::vector<Finished>& bodies) {
+    std::size_t sum = 0;
+    for (const Finished& f : bodies) sum += f.hull.vertices.size();
+    return sum;
+  }
+  /// Whether the limits of bodies and vertices hold.
+  [[nodiscard]] bool fits(const std::vector<Finished>& bodies) const {
+    return bodies.size() <= options_.max_bodies.value_or(kUnlimited) &&
+           vertices_of(bodies) <= options_.max_total_vertices.value_or(kUnlimited);
+  }
+
+  /// The bodies with the smallest distance found that keep to both limits; else those with the
+  /// fewest vertices.
+  std::vector<Finished> nearest_that_fit() {
+    const std::size_t total = *options_.max_total_vertices;
+    const std::size_t most =
+        std::min(options_.max_bodies.value_or(kUnlimited), std::max<std::size_t>(1, total / 6));
+    // Fewer bodies reach farther, but leave more vertices to each.
+    std::vector<Finished> best;
+    for (double share = 1; share > 0.1; share *= 0.75) {
+      const auto count = static_cast<std::size_t>(std::ceil(share * static_cast<double>(most)));
+      std::vector<Finished> tried = at_most(count);
+      if (!best.empty() && fits(best) && reach_of(tried) > reach_of(best)) break;
+      thin_to(tried, total);
+      if (best.empty() || (fits(tried) ? !fits(best) || reach_of(tried) < reach_of(best)
+                                       : vertices_of(tried) < vertices_of(best)))
+        best = std::move(tried);
+    }
+    if (!tuning_.reduce || !fits(best)) return best;
+    // By epsilon: those too far are taken apart, and fewer looked for.
+    int tries = 6;
+    for (double step = 0.08; step > 0.015 && tries > 0; --tries) {
+      const double epsilon = (1 - step) * reach_of(best);
+      if (!(epsilon > 1e-5 * solid_.diagonal())) break;
+      std::vector<Finished> tried = within(epsilon);
+      for (const std::size_t enough : {most, std::size_t{1}}) {
+        if (tried.size() > enough || enough == 1) reduce(tried, epsilon, enough);
+        thin_out(tried, epsilon);
+        if (fits(tried)) break;
+      }
+      if (fits(tried) && reach_of(tried) < reach_of(best)) {
+        best = std::move(tried);
+      } else {
+        step *= 0.5;
+      }
+    }
+    return best;
+  }
+
+  /// At most this many vertices, with the smallest distance that allows it.
+  void thin_to(std::vector<Finished>& bodies, std::size_t total) {
+    if (vertices_of(bodies) <= total) return;
+    const auto thinned = [&](double epsilon) {
+      std::vector<Finished> out = bodies;
+      thin_out(out, epsilon);
+      return out;
+    };
+    double low = reach_of(bodies), high = low;
+    std::vector<Finished> best = thinned(high);
+    while (vertices_of(best) > total && high < solid_.diagonal()) {
+      low = high;
+      high *= 1.5;
+      best = thinned(high);
+    }
+    while (vertices_of(best) <= total && high > 1.02 * low) {
+      const double middle = std::sqrt(low * high);
+      std::vector<Finished> tried = thinned(middle);
+      if (vertices_of(tried) <= total) {
+        high = middle;
+        best = std::move(tried);
+      } else {
+        low = middle;
+      }
+    }
+    bodies = std::move(best);
+  }
+
+  /// As few vertices as epsilon allows each body, by bisection of their number.
+  void thin_out(std::vector<Finished>& bodies, double epsilon) {
+    struct Open {
+      std::size_t body, low;
+    };
+    std::vector<Open> open;
+    for (std::size_t i = 0; i < bodies.size(); ++i) open.push_back({i, 3});
+    ReachOptions reach;
+    reach.absolute_gap = 1e-5 * solid_.diagonal();
+    reach.enough = std::max(epsilon, reach_of(bodies));
+    for (;;) {
+      std::erase_if(
+          open, [&](const Open& o) { return bodies[o.body].hull.vertices.size() <= o.low + 1; });
+      if (open.empty()) return;
+      std::vector<Mesh> hulls(open.size());
+      tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t i) {
+        const Finished& f = bodies[open[i].body];
+        hulls[i] = rounded(f.body, 0, (open[i].low + f.hull.vertices.size()) / 2);
+      });
+      const std::vector<Reach> measured =
+          measure(hulls, solid_, reach, 0.5 * epsilon, 0.7 * epsilon);
+      for (std::size_t i = 0; i < open.size(); ++i) {
+        Finished& f = bodies[open[i].body];
+        const std::size_t tried = (open[i].low + f.hull.vertices.size()) / 2;
+        if (hulls[i].vertices.size() <= tried &&
+            measured[i].upper <= std::max(epsilon, f.reach.upper)) {
+          f.hull = std::move(hulls[i]);
+          f.reach = measured[i];
+        } else {
+          open[i].low = tried;
+        }
+      }
+    }
+  }
+
   /// A body's hull simplified and rounded outwards.
-  [[nodiscard]] Mesh rounded(const Body& body, double free_cost) const {
+  [[nodiscard]] Mesh rounded(const Body& body, double free_cost, std::size_t most) const {
     std::vector<Vec3> required;
     for (const int leaf : leaves_of(body)) {
       const auto& points = required_.at(leaf);
@@ -581,7 +694,6 @@ class Decomposer {
       for (const std::uint32_t v : builder.vertices()) hull.push_back(required[v]);
       required = std::move(hull);
     }
-    const std::size_t most = options_.max_vertices;
     if (body.appraisal.flat) return enclose(body.hull, required, most);
     for (const double free : {free_cost, 0.0}) {
       const std::vector<Vec3> shape = simplify(body.hull, most, free, solid_).vertices;
@@ -604,16 +716,23 @@ class Decomposer {
 }  // namespace
 
 void require_sound(const DecomposeOptions& options) {
-  if (!options.epsilon && !options.max_bodies)
-    throw Error(ErrorCode::InvalidArgument, "neither epsilon nor max_bodies is given");
+  if (!options.epsilon && !options.max_bodies && !options.max_total_vertices)
+    throw Error(ErrorCode::InvalidArgument,
+                "neither epsilon nor max_bodies nor max_total_vertices is given");
   if (options.epsilon && !(*options.epsilon > 0))
     throw Error(ErrorCode::InvalidArgument, "epsilon must be positive");
+  if (options.max_total_vertices && *options.max_total_vertices < 8)
+    throw Error(ErrorCode::InvalidArgument, "max_total_vertices must be at least 8");
   if (options.max_bodies && *options.max_bodies == 0)
     throw Error(ErrorCode::InvalidArgument, "max_bodies must be at least 1");
   if (options.max_vertices < 8)
     throw Error(ErrorCode::InvalidArgument, "fewer than 8 vertices per body");
   if (!(options.min_thickness >= 0) || !std::isfinite(options.min_thickness))
     throw Error(ErrorCode::InvalidArgument, "the least thickness must be finite and not negative");
+  if (options.max_total_vertices && options.min_thickness > 0)
+    throw Error(ErrorCode::InvalidArgument,
+                "a limit on all vertices together does not go with a least thickness: bodies are "
+                "simplified after they are thickened");
 }
 
 bool too_coarse(const Mesh& mesh, const DecomposeOptions& options) {

@@ -179,6 +179,8 @@ DecomposeResult fill(const geom::Prepared& input, const DecomposeOptions& option
     throw Error(ErrorCode::InvalidArgument, "bodies inside the solid have no choice of methods");
   if (options.min_thickness > 0)
     throw Error(ErrorCode::InvalidArgument, "bodies inside the solid cannot be thickened");
+  if (options.max_total_vertices)
+    throw Error(ErrorCode::InvalidArgument, "max_total_vertices is not for bodies inside");
   if (!input.closed)
     throw Error(ErrorCode::InvalidInput, "the mesh is open: bodies inside it mean nothing");
   DecomposeResult result;

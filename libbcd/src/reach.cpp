@@ -36,8 +36,11 @@ class Measure {
     if (floor > 0 && nearly_within(body_, solid_, floor, slack_)) {
       settle(floor);
     } else {
+      // Facets are part of the inside; most bodies are farthest there, which helps.
       facets();
-      inside();
+      settled_ = 0;
+      if (result_.lower <= options_.enough) inside();
+      if (result_.lower > options_.enough) settle(kUnbounded);
     }
     result_.upper = std::max({result_.lower, settled_, 0.0});
     if (result_.upper > 0) result_.upper += slack_;
@@ -71,7 +74,7 @@ class Measure {
   /// Branch and bound, the part with the largest bound first. `bound` gives a part's, or nothing
   /// where it need not be looked at; `split` calls what it is given with each half.
   template <class Part, class Bound, class Split>
-  void search(std::vector<Part> first, Bound&& bound, Split&& split) {
+  void search(std::vector<Part> first, std::size_t most, Bound&& bound, Split&& split) {
     std::vector<Part> open;
     const auto lower = [](const Part& p, const Part& q) { return p.upper < q.upper; };
     const auto visit = [&](Part&& part) {
@@ -88,7 +91,7 @@ class Measure {
       std::pop_heap(open.begin(), open.end(), lower);
       const Part part = std::move(open.back());
       open.pop_back();
-      if (part.upper <= limit() || work >= options_.most) {
+      if (part.upper <= limit() || work >= most || result_.lower > options_.enough) {
         settle(part.upper);  // no other is larger
         return;
       }
@@ -125,23 +128,24 @@ class Measure {
       }
       return true;
     };
-    search(std::move(first), bound, [](Piece p, const auto& visit) {
-      int k = 0;
-      double longest = -1;
-      for (int i = 0; i < 3; ++i) {
-        const double l = (p.corner[(i + 1) % 3] - p.corner[i]).squaredNorm();
-        if (l > longest) {
-          longest = l;
-          k = i;
-        }
-      }
-      const Vec3 middle = 0.5 * p.corner[k] + 0.5 * p.corner[(k + 1) % 3];
-      Piece q = p;
-      p.corner[(k + 1) % 3] = middle;
-      q.corner[k] = middle;
-      visit(std::move(p));
-      visit(std::move(q));
-    });
+    search(std::move(first), std::min<std::size_t>(options_.most, 5000), bound,
+           [](Piece p, const auto& visit) {
+             int k = 0;
+             double longest = -1;
+             for (int i = 0; i < 3; ++i) {
+               const double l = (p.corner[(i + 1) % 3] - p.corner[i]).squaredNorm();
+               if (l > longest) {
+                 longest = l;
+                 k = i;
+               }
+             }
+             const Vec3 middle = 0.5 * p.corner[k] + 0.5 * p.corner[(k + 1) % 3];
+             Piece q = p;
+             p.corner[(k + 1) % 3] = middle;
+             q.corner[k] = middle;
+             visit(std::move(p));
+             visit(std::move(q));
+           });
   }
 
   /// The distance to one triangle is convex: largest at a corner.
@@ -152,12 +156,20 @@ class Measure {
     return out;
   }
 
-  /// The same for the points outside the solid alone, where the part's centre is inside and few
-  /// triangles meet it: each such point is in the shadow of one of them, seen from the centre
+  /// The same for the points outside the solid alone, where a point of the part is inside and few
+  /// triangles meet it: each such point is in the shadow of one of them, seen from there
   /// (docs/algorithms/convex-decomposition.md, "Reach").
   double farthest_outside(const Cell& part) {
     if (part.corners.empty()) return kUnbounded;
-    const Vec3 center = part.center();
+    // A little off the middle, where planes along the axes often are.
+    Vec3 center = Vec3::Zero();
+    double sum = 0;
+    for (std::size_t i = 0; i < part.corners.size(); ++i) {
+      const double weight = 8 + static_cast<double>(i);
+      center += weight * part.corners[i];
+      sum += weight;
+    }
+    center /= sum;
     if (!solid_.contains_round(center)) return kUnbounded;
     Box3 box;
     for (const Vec3& p : part.corners) box.extend(p);
@@ -236,7 +248,7 @@ class Measure {
       }
       return true;
     };
-    search(std::move(first), bound, [](const Cube& cube, const auto& visit) {
+    search(std::move(first), options_.most, bound, [](const Cube& cube, const auto& visit) {
       const double h = 0.5 * cube.half;
       for (int i = 0; i < 8; ++i)
         visit(Cube{

@@ -164,6 +164,32 @@ TEST(Decompose, BodiesForADistanceAndDistanceForBodies) {
   EXPECT_LE(decompose(geom::prepare(mesh), options).bodies.size(), 6U);
 }
 
+TEST(Decompose, LimitOfAllVerticesTogether) {
+  const Mesh mesh = kaboum::test::torus(1, 0.3, 16, 8);
+  DecomposeOptions options;
+  options.effort = Effort::Fast;
+  options.max_bodies = 6;
+  options.max_total_vertices = 90;
+  const DecomposeResult result = decompose(geom::prepare(mesh), options);
+  EXPECT_EQ(result.stop, Stop::Done);
+  EXPECT_LE(result.bodies.size(), 6U);
+  EXPECT_LE(result.statistics.vertices, 90U);
+  expect_claims(mesh, result, 64);
+  // The same share for each body reaches farther.
+  options.max_total_vertices.reset();
+  options.max_vertices = 15;
+  EXPECT_LT(result.reach_upper, decompose(geom::prepare(mesh), options).reach_upper);
+  // Within an epsilon that they do not allow, the best is given.
+  const Mesh beam = prism({{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}, 1);
+  options = test::quick(beam, 1);
+  options.max_total_vertices = 12;
+  const DecomposeResult few = decompose(geom::prepare(beam), options);
+  EXPECT_EQ(few.stop, Stop::TooManyBodies);
+  EXPECT_LE(few.statistics.vertices, 12U);
+  options.max_total_vertices = 16;
+  EXPECT_EQ(decompose(geom::prepare(beam), options).stop, Stop::Done);
+}
+
 TEST(Decompose, ContradictoryOptions) {
   const geom::Prepared input = geom::prepare(kaboum::test::box(Vec3(1, 1, 1), 1));
   EXPECT_THROW(decompose(input, {}), Error);
@@ -172,6 +198,9 @@ TEST(Decompose, ContradictoryOptions) {
   EXPECT_THROW(decompose(input, options), Error);
   options.epsilon = 1;
   options.max_vertices = 7;
+  EXPECT_THROW(decompose(input, options), Error);
+  options.max_vertices = 8;
+  options.max_total_vertices = 7;
   EXPECT_THROW(decompose(input, options), Error);
 }
 

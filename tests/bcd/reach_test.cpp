@@ -66,6 +66,17 @@ TEST(Reach, WhereverCavitiesAre) {
   }
 }
 
+TEST(Reach, StopsWhereItIsKnownToBeTooFar) {
+  const Mesh l = test::prism({{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}, 1);
+  const Mesh hull = test::prism({{0, 0}, {3, 0}, {3, 1}, {1, 3}, {0, 3}}, 1);
+  const Solid solid(l, 20000, 0);
+  const Reach far = measure({hull}, solid, {.enough = 0.5})[0];
+  EXPECT_GT(far.lower, 0.5);
+  EXPECT_LE(far.lower, 1.0 + 1e-9);
+  EXPECT_EQ(far.upper, std::numeric_limits<double>::infinity());
+  EXPECT_LE(measure({hull}, solid, {.enough = 1.1})[0].upper, 1.03);
+}
+
 TEST(Reach, InsideIsZero) {
   const Reach r = reach_of(translated(box(Vec3(1, 1, 1), 1), Vec3(1, 1, 1)), box(Vec3(3, 3, 3), 1));
   EXPECT_EQ(r.lower, 0);

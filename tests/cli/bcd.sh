@@ -35,7 +35,10 @@ expect 0 'verified' "$BIN/bound-verify" --cover "$BRACKET" folder
 # Few bodies.
 expect 0 '' "$D" "$BRACKET" -o two.obj --max-bodies 2 --effort fast
 [ "$(grep -c '^o ' two.obj)" -le 2 ] || fail "more bodies than allowed"
-expect 1 'max-bodies' "$D" "$BRACKET" -o few.glb --max-bodies 2 --epsilon 2% --effort fast
+expect 0 '' "$D" "$BRACKET" -o lean.glb --max-bodies 4 --max-total-vertices 40 --effort fast --report lean.json
+[ "$(sed -n 's/^ *"vertices": \([0-9]*\).*/\1/p' lean.json)" -le 40 ] || fail "more vertices than allowed"
+expect 2 'outer' "$D" "$BRACKET" -o no.glb --max-total-vertices 40 --direction inner
+expect 1 'limits' "$D" "$BRACKET" -o few.glb --max-bodies 2 --epsilon 2% --effort fast
 [ -s few.glb ] || fail "the best result was not written"
 
 # Other methods, with the same claims.

@@ -33,6 +33,9 @@ struct DecomposeOptions {
   /// best that this many allow.
   std::optional<std::size_t> max_bodies;
   std::size_t max_vertices = 64;  ///< per body, ≥ 8
+  /// Most vertices wished for, of all bodies together, ≥ 8; otherwise like max_bodies, and together
+  /// with it: the smallest distance with which both hold. Only outwards (decompose).
+  std::optional<std::size_t> max_total_vertices;
   Effort effort = Effort::Normal;
   Method method = Method::Planes;
   /// Bodies are at least this wide in every direction, for engines that shrink hulls; thinner ones
@@ -47,8 +50,9 @@ struct DecomposeOptions {
 
 /// Why decomposition ended.
 enum class Stop {
-  Done,           ///< epsilon reached, within max_bodies when given; or max_bodies alone was given
-  TooManyBodies,  ///< epsilon is not reached with max_bodies
+  Done,           ///< epsilon, if given, is reached, and so are the limits given
+  TooManyBodies,  ///< epsilon is not reached with max_bodies or max_total_vertices, or these are
+                  ///< too few for anything
   TooCoarse,      ///< float32's spacing here exceeds epsilon/100 or 1e-6 of the diagonal; no bodies
   Stuck,          ///< epsilon is not reached though everything was tried
 };
@@ -82,7 +86,7 @@ struct DecomposeResult {
 ///
 /// Bodies are exactly convex, with float32 coordinates; the same for any number of threads.
 ///
-/// @pre input comes from geom::prepare; epsilon or max_bodies is given.
+/// @pre input comes from geom::prepare; epsilon, max_bodies or max_total_vertices is given.
 /// @throws Error{InvalidArgument} on contradictory options.
 DecomposeResult decompose(const geom::Prepared& input, const DecomposeOptions& options);
 
