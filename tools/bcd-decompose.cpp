@@ -25,11 +25,11 @@ using namespace kaboum;
 using tools::Json;
 
 /// Changes whenever the same options may give another result: cached results are then not found.
-constexpr const char* kAlgorithm = "planes 6";
+constexpr const char* kAlgorithm = "planes 7";
 
 struct Options {
   std::string input, output, input_format, output_format, epsilon, direction = "outer";
-  std::string effort = "normal", method = "planes";
+  std::string effort = "normal", method = "planes", pre_step = "auto";
   std::string unit = "m", frame, preview, depfile, geometry = "collision", prefix;
   std::vector<std::string> packages;
   std::size_t max_bodies = 0, max_vertices = 64, max_total = 0;
@@ -45,6 +45,9 @@ const std::map<std::string, bcd::Effort> kEfforts{
 const std::map<std::string, bcd::Method> kMethods{{"planes", bcd::Method::Planes},
                                                   {"clusters", bcd::Method::Clusters},
                                                   {"voxels", bcd::Method::Voxels}};
+
+const std::map<std::string, bcd::PreStep> kPreSteps{
+    {"auto", bcd::PreStep::Auto}, {"on", bcd::PreStep::On}, {"off", bcd::PreStep::Off}};
 
 void describe(CLI::App& app, Options& o) {
   app.add_option("INPUT", o.input,
@@ -100,6 +103,12 @@ void describe(CLI::App& app, Options& o) {
                  "with [planes]")
       ->check(CLI::IsMember({"planes", "clusters", "voxels"}).description(""))
       ->type_name("planes|clusters|voxels");
+  app.add_option("--pre-step", o.pre_step,
+                 "Simplify the input first to a mesh round it, within a tenth of epsilon (0.05% "
+                 "where none is given); distances remain those to the input; auto: above 20000 "
+                 "triangles [auto]")
+      ->check(CLI::IsMember({"auto", "on", "off"}).description(""))
+      ->type_name("auto|on|off");
   app.add_option("--unit", o.unit, "Unit of length, noted in the container")
       ->capture_default_str()
       ->type_name("NAME");
@@ -172,6 +181,7 @@ std::string parameters(const Options& o) {
   }
   out << "--max-vertices-per-body " << o.max_vertices << " --effort " << o.effort;
   if (o.method != "planes") out << " --method " << o.method;
+  if (o.pre_step != "auto") out << " --pre-step " << o.pre_step;
   if (o.prepare.drop_sheets) out << " --drop-sheets";
   if (o.prepare.require_closed) out << " --require-closed";
   if (o.prepare.keep_orientation) out << " --keep-orientation";
@@ -232,6 +242,7 @@ tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const s
   options.effort = kEfforts.at(o.effort);
   options.method = kMethods.at(o.method);
   options.min_thickness = o.min_thickness;
+  options.pre_step = kPreSteps.at(o.pre_step);
   options.progress = [&](const bcd::Progress& p) {
     progress.show(p.stage + " " + std::to_string(static_cast<int>(100 * p.fraction)) + " %");
   };
@@ -249,9 +260,10 @@ tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const s
   tools::SetCache::Entry entry;
   bcd::DecomposeResult result;
   std::string wrong;
-  // Where the exact check fails, more is allowed for rounding.
-  for (const double safety : {1.0, 64.0, 4096.0}) {
-    options.safety = safety;
+  // Where the exact check fails, the input is not simplified, then more is allowed for rounding.
+  const std::vector<double> allowances{1, 64, 4096};
+  for (auto safety = allowances.begin(); safety != allowances.end();) {
+    options.safety = *safety;
     result = outer ? bcd::decompose(prepared, options) : bcd::fill(prepared, options);
     if (result.stop == bcd::Stop::TooCoarse) throw TooCoarse{};
     set.bodies = std::move(result.bodies);
@@ -262,8 +274,16 @@ tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const s
     wrong =
         objection(o, solid, io::parse_convex_set(entry.container, io::Format::Glb, "the result"));
     if (wrong.empty()) break;
+    const bool simplified = result.statistics.pre_step_triangles > 0;
     tools::log(o.common.quiet, o.input + ": the bodies found do not pass the exact check (" +
-                                   wrong + "); trying with larger allowances for rounding");
+                                   wrong + "); trying " +
+                                   (simplified ? "without simplifying the input first"
+                                               : "with larger allowances for rounding"));
+    if (simplified) {
+      options.pre_step = bcd::PreStep::Off;
+    } else {
+      ++safety;
+    }
   }
   if (!wrong.empty())
     throw Error(ErrorCode::Internal, o.input +
@@ -283,6 +303,7 @@ tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const s
                   {"closed", prepared.closed},
                   {"filled_triangles", s.filled_triangles},
                   {"pieces", s.leaves},
+                  {"pre_step_triangles", s.pre_step_triangles},
                   {"safety", options.safety},
                   {"diagonal", diagonal},
                   {"notes", prepared.notes}};

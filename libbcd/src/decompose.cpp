@@ -15,6 +15,7 @@
 #include "clusters.h"
 #include "options.h"
 #include "outward.h"
+#include "pre_step.h"
 #include "reach.h"
 #include "search.h"
 #include "simplify.h"
@@ -81,12 +82,11 @@ struct Finished {
 
 class Decomposer {
  public:
-  Decomposer(const geom::Prepared& input, const Mesh& closed, const DecomposeOptions& options)
+  Decomposer(const Mesh& closed, const DecomposeOptions& options)
       : options_(options),
         tuning_(tuning(options.effort, options.method)),
         solid_(closed, tuning_.grid, options.epsilon.value_or(0)),
         tree_(solid_, search_options(), options.safety) {
-    result_.statistics.filled_triangles = closed.triangles.size() - input.mesh.triangles.size();
     double magnitude = 0;
     for (const Vec3& p : closed.vertices) magnitude = std::max(magnitude, p.cwiseAbs().maxCoeff());
     point_error_ = 0x1p-40 * options.safety * magnitude;
@@ -713,6 +713,34 @@ class Decomposer {
   DecomposeResult result_;
 };
 
+/// The distance that counts is the one to the mesh that was not simplified.
+void measure_anew(DecomposeResult& result, const Mesh& closed) {
+  const Solid solid(closed, 2000, 0);
+  std::vector<Mesh> hulls;
+  for (const geom::ConvexBody& body : result.bodies) hulls.push_back(body.hull);
+  ReachOptions options;
+  options.absolute_gap = 1e-5 * solid.diagonal();
+  result.reach_lower = result.reach_upper = 0;
+  for (const Reach& r : measure(hulls, solid, options)) {
+    result.reach_lower = std::max(result.reach_lower, r.lower);
+    result.reach_upper = std::max(result.reach_upper, r.upper);
+  }
+}
+
+DecomposeResult decompose_closed(const Mesh& closed, const DecomposeOptions& options) {
+  if (const std::optional<Simpler> simpler = pre_step(closed, options)) {
+    DecomposeOptions rest = options;
+    if (rest.epsilon) *rest.epsilon -= simpler->epsilon;
+    DecomposeResult result = Decomposer(simpler->mesh, rest).run();
+    measure_anew(result, closed);
+    result.statistics.pre_step_triangles = simpler->mesh.triangles.size();
+    const bool lost =
+        options.epsilon && result.stop == Stop::Done && result.reach_upper > *options.epsilon;
+    if (!lost && result.stop != Stop::Stuck) return result;
+  }
+  return Decomposer(closed, options).run();
+}
+
 }  // namespace
 
 void require_sound(const DecomposeOptions& options) {
@@ -751,7 +779,9 @@ DecomposeResult decompose(const geom::Prepared& input, const DecomposeOptions& o
     return coarse;
   }
   const Mesh closed = input.closed ? input.mesh : close_holes(input.mesh);
-  return Decomposer(input, closed, options).run();
+  DecomposeResult result = decompose_closed(closed, options);
+  result.statistics.filled_triangles = closed.triangles.size() - input.mesh.triangles.size();
+  return result;
 }
 
 }  // namespace kaboum::bcd

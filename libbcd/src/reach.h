@@ -15,8 +15,9 @@ struct Reach {
 
 struct ReachOptions {
   double relative_gap = 0.02;
-  double absolute_gap = 0;    ///< [length]
-  /// A distance known to be larger is of no interest: measuring stops, with no upper bound. [length]
+  double absolute_gap = 0;  ///< [length]
+  /// A distance known to be larger is of no interest: measuring stops, with no upper bound.
+  /// [length]
   double enough = std::numeric_limits<double>::infinity();
   std::size_t most = 400000;  ///< pieces per body; beyond, the bracket is wider than the gaps
 };

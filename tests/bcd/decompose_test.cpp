@@ -7,6 +7,7 @@
 
 #include <random>
 
+#include "solid.h"
 #include "solids.h"
 #include "support/families.h"
 #include "support/oracle.h"
@@ -133,6 +134,40 @@ TEST(Decompose, WallsThinnerThanTheGridAndFlatParts) {
     EXPECT_LE(result.bodies.size(), 4U);
     EXPECT_LE(result.statistics.leaves, 20U);
     expect_cover(close_holes(geom::prepare(mesh).mesh), result, 64);
+  }
+}
+
+TEST(Decompose, PreStepKeepsCoverAndEpsilon) {
+  // A ball with a cavity, which simplification may narrow; an open one; a fold that is inside out.
+  Mesh hollow = kaboum::test::merged(
+      {kaboum::test::icosphere(3),
+       kaboum::test::flipped(kaboum::test::translated(kaboum::test::icosphere(1), Vec3(3, 0, 0)))});
+  for (std::size_t v = 0; v < hollow.vertices.size(); ++v)
+    if (hollow.vertices[v].x() > 1.5)
+      hollow.vertices[v] = 0.5 * (hollow.vertices[v] - Vec3(3, 0, 0));
+  Mesh open = kaboum::test::torus(1, 0.3, 40, 24);
+  open.triangles.resize(open.triangles.size() - 40);
+  for (const Mesh& mesh : {hollow, open}) {
+    DecomposeOptions options = test::quick(mesh, 8);
+    options.pre_step = PreStep::On;
+    const geom::Prepared input = geom::prepare(mesh);
+    const Mesh closed = close_holes(input.mesh);
+    const DecomposeResult result = decompose(input, options);
+    EXPECT_EQ(result.stop, Stop::Done);
+    EXPECT_GT(result.statistics.pre_step_triangles, 0U);
+    EXPECT_LT(2 * result.statistics.pre_step_triangles, closed.triangles.size());
+    EXPECT_LE(result.reach_upper, *options.epsilon);
+    expect_claims(closed, result, 64);
+    // The distance is the one to the input: no point of the bodies is farther.
+    const Solid solid(closed, 2000, 0);
+    double farthest = 0;
+    for (const geom::ConvexBody& body : result.bodies)
+      for (const Vec3& p : body.hull.vertices)
+        if (!solid.contains(p)) farthest = std::max(farthest, solid.surface().nearest(p).lower);
+    EXPECT_LE(farthest, result.reach_upper);
+    EXPECT_GT(farthest, 0);
+    options.pre_step = PreStep::Off;
+    EXPECT_EQ(decompose(input, options).statistics.pre_step_triangles, 0U);
   }
 }
 

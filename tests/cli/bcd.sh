@@ -35,6 +35,8 @@ expect 0 'verified' "$BIN/bound-verify" --cover "$BRACKET" folder
 # Few bodies.
 expect 0 '' "$D" "$BRACKET" -o two.obj --max-bodies 2 --effort fast
 [ "$(grep -c '^o ' two.obj)" -le 2 ] || fail "more bodies than allowed"
+expect 0 'verified exactly' "$D" "$BRACKET" -o pre.glb --epsilon 5% --effort fast --pre-step on --no-cache
+expect 0 'verified' "$BIN/bound-verify" --cover "$BRACKET" pre.glb --epsilon 5%
 expect 0 '' "$D" "$BRACKET" -o lean.glb --max-bodies 4 --max-total-vertices 40 --effort fast --report lean.json
 [ "$(sed -n 's/^ *"vertices": \([0-9]*\).*/\1/p' lean.json)" -le 40 ] || fail "more vertices than allowed"
 expect 2 'outer' "$D" "$BRACKET" -o no.glb --max-total-vertices 40 --direction inner

@@ -20,6 +20,14 @@ enum class Method {
   Voxels,    ///< cuts across the axes, as V-HACD chooses them, and merging
 };
 
+/// Whether the input is simplified to a bounding mesh first ([gaschler2016] §4.4.2): within a tenth
+/// of epsilon, which the bodies' distance to the input includes.
+enum class PreStep {
+  Auto,  ///< above 20,000 triangles
+  On,
+  Off
+};
+
 /// How a decomposition stands.
 struct Progress {
   std::string stage;
@@ -41,6 +49,7 @@ struct DecomposeOptions {
   /// Bodies are at least this wide in every direction, for engines that shrink hulls; thinner ones
   /// are thickened, which counts towards epsilon. Not for bodies inside. [length]
   double min_thickness = 0;
+  PreStep pre_step = PreStep::Auto;  ///< only outwards (decompose)
   /// Multiplies what is allowed for rounding (the overlap of pieces, the error of computed points);
   /// larger where an exact check of the result fails.
   double safety = 1;
@@ -58,11 +67,12 @@ enum class Stop {
 };
 
 struct DecomposeStatistics {
-  std::size_t leaves = 0;            ///< pieces that the input was cut into
-  std::size_t filled_triangles = 0;  ///< that closed an open input
-  std::size_t vertices = 0;          ///< of all bodies
-  std::size_t largest = 0;           ///< vertices of the largest body
-  std::size_t thickened = 0;         ///< bodies that min_thickness changed
+  std::size_t leaves = 0;              ///< pieces that the input was cut into
+  std::size_t filled_triangles = 0;    ///< that closed an open input
+  std::size_t pre_step_triangles = 0;  ///< of the bounding mesh that was decomposed; 0: none
+  std::size_t vertices = 0;            ///< of all bodies
+  std::size_t largest = 0;             ///< vertices of the largest body
+  std::size_t thickened = 0;           ///< bodies that min_thickness changed
 };
 
 struct DecomposeResult {

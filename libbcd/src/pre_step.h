@@ -1,0 +1,20 @@
+#pragma once
+
+#include <kaboum/bcd/decompose.h>
+
+#include <optional>
+
+namespace kaboum::bcd {
+
+/// A mesh with fewer triangles whose solid contains the closed mesh's, and how far its surface is
+/// from the other one at most.
+struct Simpler {
+  geom::Mesh mesh;
+  double epsilon;  ///< [length]
+};
+
+/// A bounding mesh within a tenth of epsilon (0.05 % of the diagonal, where only numbers are
+/// limited), if the options ask for it and it is worth while. Source: [gaschler2016] §4.4.2.
+std::optional<Simpler> pre_step(const geom::Mesh& closed, const DecomposeOptions& options);
+
+}  // namespace kaboum::bcd
