@@ -257,6 +257,16 @@ class Decomposer {
     return true;
   }
 
+  /// Where the worst body cannot be helped: parts those that are nearly as far anew, each with a
+  /// neighbour. Chains of bodies are evened out like that, step by step.
+  bool even_out(std::vector<Body>& bodies) {
+    const double limit = 0.85 * worst_of(bodies);
+    bool changed = false;
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+      if (bodies[i].appraisal.worst > limit) changed = part_anew(bodies, i) || changed;
+    return changed;
+  }
+
   [[nodiscard]] std::vector<int> leaves_of(const Body& a, const Body& b) const {
     std::vector<int> out = leaves_of(a);
     for (const int leaf : leaves_of(b)) out.push_back(leaf);
@@ -274,7 +284,10 @@ class Decomposer {
       const double limit = bodies[worst].appraisal.worst;
       if (hand_over(bodies, worst) || part_anew(bodies, worst)) continue;
       const std::vector<Body> parts = take_apart(bodies[worst], limit);
-      if (parts.size() < 2) return;
+      if (parts.size() < 2) {
+        if (even_out(bodies)) continue;
+        return;
+      }
       std::vector<Body> changed;
       for (std::size_t i = 0; i < bodies.size(); ++i)
         if (i != worst) changed.push_back(bodies[i]);
@@ -287,7 +300,7 @@ class Decomposer {
         bodies = std::move(fewer);
         break;
       }
-      if (!better) return;
+      if (!better && !even_out(bodies)) return;
     }
   }
 

@@ -119,6 +119,36 @@ TEST(Decompose, InteriorCornersOfCellsAreCovered) {
   }
 }
 
+TEST(Decompose, ThinRingsDistanceFallsWithTheSquareOfTheNumberOfBodies) {
+  // [gaschler2016] Fig. 4.8: n equal arcs of radius r are r (1 − cos π/n) from their hulls.
+  Mesh ring;
+  constexpr std::uint32_t n = 256;
+  constexpr double inner = 0.99;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const double a = 2 * M_PI * i / n, c = std::cos(a), s = std::sin(a);
+    for (const auto& [r, z] : {std::pair{inner, 0.0}, {1.0, 0.0}, {1.0, 0.02}, {inner, 0.02}})
+      ring.vertices.emplace_back(r * c, r * s, z);
+    const std::uint32_t j = (i + 1) % n;
+    for (std::uint32_t k = 0; k < 4; ++k) {
+      const std::uint32_t l = (k + 1) % 4;
+      ring.triangles.push_back({4 * i + k, 4 * j + l, 4 * i + l});
+      ring.triangles.push_back({4 * i + k, 4 * j + k, 4 * j + l});
+    }
+  }
+  const geom::Prepared input = geom::prepare(ring);
+  double xy = 0, xx = 0;  // of logarithms, about n = 16
+  for (const std::size_t bodies : {8U, 16U, 32U}) {
+    DecomposeOptions options;
+    options.max_bodies = bodies;
+    const double reach = decompose(input, options).reach_upper;
+    EXPECT_LE(reach, 1.3 * inner * (1 - std::cos(M_PI / static_cast<double>(bodies))));
+    const double x = std::log(static_cast<double>(bodies) / 16);
+    xy += x * std::log(reach);
+    xx += x * x;
+  }
+  EXPECT_NEAR(xy / xx, -2, 0.1);
+}
+
 TEST(Decompose, WallsThinnerThanTheGridAndFlatParts) {
   // Where the interpolated distance is wrong by more than epsilon the search must still end.
   constexpr double t = 0.004;
