@@ -96,7 +96,10 @@ class Decomposer {
     std::vector<Finished> bodies;
     if (options_.epsilon) {
       bodies = within(*options_.epsilon);
-      if (tuning_.reduce) reduce(bodies, *options_.epsilon);
+      if (tuning_.reduce) {
+        reduce(bodies, *options_.epsilon);
+        dissolve(bodies, *options_.epsilon);
+      }
       if (options_.max_total_vertices) thin_out(bodies, *options_.epsilon);
       result_.stop = Stop::Done;
       for (const Finished& f : bodies)
@@ -276,7 +279,7 @@ class Decomposer {
 
   /// Moves leaves of the worst body to others, or takes it apart and merges others instead, while
   /// that helps.
-  void refine(std::vector<Body>& bodies, std::size_t target) {
+  void refine(std::vector<Body>& bodies, std::size_t target, bool chains = true) {
     for (int round = 0; round < tuning_.refinements && !bodies.empty(); ++round) {
       std::size_t worst = 0;
       for (std::size_t i = 1; i < bodies.size(); ++i)
@@ -285,7 +288,7 @@ class Decomposer {
       if (hand_over(bodies, worst) || part_anew(bodies, worst)) continue;
       const std::vector<Body> parts = take_apart(bodies[worst], limit);
       if (parts.size() < 2) {
-        if (even_out(bodies)) continue;
+        if (chains && even_out(bodies)) continue;
         return;
       }
       std::vector<Body> changed;
@@ -300,7 +303,7 @@ class Decomposer {
         bodies = std::move(fewer);
         break;
       }
-      if (!better && !even_out(bodies)) return;
+      if (!better && !(chains && even_out(bodies))) return;
     }
   }
 
@@ -319,7 +322,7 @@ class Decomposer {
     // What refinement gains is a guess.
     std::vector<Body> bodies = best_merge(snapshots, target, 2 * epsilon);
     if (bodies.empty() && epsilon == kUnbounded) bodies = merged(leaf_bodies(), target, kUnbounded);
-    refine(bodies, target);
+    refine(bodies, target, epsilon == kUnbounded);
     return bodies;
   }
 
@@ -485,6 +488,87 @@ class Decomposer {
     }
   }
 
+  /// Shares out bodies among their neighbours, small ones first, while that keeps these within
+  /// epsilon.
+  void dissolve(std::vector<Finished>& bodies, double epsilon) {
+    if (!good(bodies, epsilon)) return;
+    std::sort(bodies.begin(), bodies.end(), [](const Finished& a, const Finished& b) {
+      const double x = a.body.appraisal.volume, y = b.body.appraisal.volume;
+      return x != y ? x < y : a.body.leaves < b.body.leaves;
+    });
+    for (std::size_t i = 0; i < bodies.size();) {
+      report("dissolving", 0.99);
+      if (!share_out(bodies, i, epsilon)) ++i;
+    }
+  }
+
+  /// Gives the pieces of a body to its neighbours. @return whether these stay within epsilon, which
+  /// is one body less.
+  bool share_out(std::vector<Finished>& bodies, std::size_t which, double epsilon) {
+    const double limit = 0.93 * epsilon;
+    const Body& body = bodies[which].body;
+    std::vector<Body> takers;
+    std::vector<std::size_t> origin;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      if (i == which || !touch(body, bodies[i].body, solid_)) continue;
+      takers.push_back(bodies[i].body);
+      origin.push_back(i);
+    }
+    if (takers.empty()) return false;
+    std::vector<int> pieces = leaves_of(body);
+    for (std::size_t from = 0; pieces.size() < 6 && from < pieces.size();) {
+      const int leaf = pieces[from];
+      if (tree_.nodes()[leaf].stuck || !tree_.cut(leaf)) {
+        ++from;
+        continue;
+      }
+      pieces.erase(pieces.begin() + static_cast<std::ptrdiff_t>(from));
+      tree_.leaves_below(leaf, pieces);
+    }
+    const std::size_t count = takers.size();
+    std::vector<Body> joint(pieces.size() * count);
+    std::vector<char> given(pieces.size(), 0), changed(count, 0);
+    const auto join = [&](std::size_t deal) {
+      const std::size_t piece = deal / count, to = deal % count;
+      if (given[piece] != 0) return;
+      std::vector<int> leaves = takers[to].leaves;
+      leaves.push_back(pieces[piece]);
+      std::sort(leaves.begin(), leaves.end());
+      joint[deal] = union_of(tree_, solid_, leaves);
+    };
+    tbb::parallel_for(std::size_t{0}, joint.size(), join);
+    for (std::size_t left = pieces.size(); left > 0; --left) {
+      std::size_t best = joint.size();
+      for (std::size_t piece = 0; piece < pieces.size(); ++piece) {
+        if (given[piece] != 0) continue;
+        double least = kUnbounded;
+        for (std::size_t deal = piece * count; deal < (piece + 1) * count; ++deal) {
+          const double worst = joint[deal].appraisal.worst;
+          least = std::min(least, worst);
+          if (best == joint.size() || worst < joint[best].appraisal.worst) best = deal;
+        }
+        if (least > limit) return false;
+      }
+      const std::size_t to = best % count;
+      takers[to] = joint[best];
+      given[best / count] = changed[to] = 1;
+      tbb::parallel_for(std::size_t{0}, pieces.size(),
+                        [&](std::size_t piece) { join(piece * count + to); });
+    }
+    std::vector<Body> fresh;
+    std::vector<std::size_t> place;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (changed[i] == 0) continue;
+      fresh.push_back(std::move(takers[i]));
+      place.push_back(origin[i]);
+    }
+    std::vector<Finished> finished = finish(fresh, 0.5 * limit, epsilon);
+    if (!good(finished, epsilon)) return false;
+    for (std::size_t i = 0; i < place.size(); ++i) bodies[place[i]] = std::move(finished[i]);
+    bodies.erase(bodies.begin() + static_cast<std::ptrdiff_t>(which));
+    return true;
+  }
+
   /// Other bodies within epsilon if there are fewer, looked for by merging down to `target`.
   /// @return whether there are that few.
   bool replace(std::vector<Finished>& bodies, std::size_t target, double epsilon) {
@@ -617,7 +701,10 @@ class Decomposer {
       if (!(epsilon > 1e-5 * solid_.diagonal())) break;
       std::vector<Finished> tried = within(epsilon);
       for (const std::size_t enough : {most, std::size_t{1}}) {
-        if (tried.size() > enough || enough == 1) reduce(tried, epsilon, enough);
+        if (tried.size() > enough || enough == 1) {
+          reduce(tried, epsilon, enough);
+          dissolve(tried, epsilon);
+        }
         thin_out(tried, epsilon);
         if (fits(tried)) break;
       }
