@@ -604,9 +604,9 @@ class Decomposer {
   /// Simplifies, rounds outwards and measures. @param decisive  where given, it is told of every
   /// body whether it reaches farther; else only the largest reach is exact.
   std::vector<Finished> finish(std::vector<Body>& bodies, double free_cost, double decisive = 0) {
-    find_required(bodies);
     std::vector<Finished> out(bodies.size());
     for (std::size_t i = 0; i < bodies.size(); ++i) out[i].body = std::move(bodies[i]);
+    find_required(out);
     std::vector<std::size_t> open(bodies.size());
     std::iota(open.begin(), open.end(), std::size_t{0});
     // Where simplification took too much, no vertex more than needed is left out.
@@ -638,10 +638,10 @@ class Decomposer {
   }
 
   /// The points that a leaf's body has to contain, each leaf's once.
-  void find_required(const std::vector<Body>& bodies) {
+  void find_required(const std::vector<Finished>& bodies) {
     std::vector<int> open;
-    for (const Body& body : bodies)
-      for (const int leaf : leaves_of(body))
+    for (const Finished& f : bodies)
+      for (const int leaf : leaves_of(f.body))
         if (required_.try_emplace(leaf).second) open.push_back(leaf);
     std::vector<std::vector<Vec3>*> place;
     place.reserve(open.size());
@@ -750,6 +750,7 @@ class Decomposer {
     struct Open {
       std::size_t body, low;
     };
+    find_required(bodies);  // leaves may have been cut since the bodies were finished
     std::vector<Open> open;
     for (std::size_t i = 0; i < bodies.size(); ++i) open.push_back({i, 3});
     ReachOptions reach;

@@ -230,19 +230,18 @@ TEST(Decompose, BodiesForADistanceAndDistanceForBodies) {
 }
 
 TEST(Decompose, LimitOfAllVerticesTogether) {
-  const Mesh mesh = kaboum::test::torus(1, 0.3, 16, 8);
+  const Mesh mesh = kaboum::test::torus(1, 0.3, 12, 6);
   DecomposeOptions options;
-  options.effort = Effort::Fast;
   options.max_bodies = 6;
-  options.max_total_vertices = 90;
+  options.max_total_vertices = 60;
   const DecomposeResult result = decompose(geom::prepare(mesh), options);
   EXPECT_EQ(result.stop, Stop::Done);
   EXPECT_LE(result.bodies.size(), 6U);
-  EXPECT_LE(result.statistics.vertices, 90U);
+  EXPECT_LE(result.statistics.vertices, 60U);
   expect_claims(mesh, result, 64);
   // The same share for each body reaches farther.
   options.max_total_vertices.reset();
-  options.max_vertices = 15;
+  options.max_vertices = 10;
   EXPECT_LT(result.reach_upper, decompose(geom::prepare(mesh), options).reach_upper);
   // Within an epsilon that they do not allow, the best is given.
   const Mesh beam = prism({{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}, 1);
