@@ -187,7 +187,7 @@ TEST(Decompose, PreStepKeepsCoverAndEpsilon) {
     EXPECT_GT(result.statistics.pre_step_triangles, 0U);
     EXPECT_LT(2 * result.statistics.pre_step_triangles, closed.triangles.size());
     EXPECT_LE(result.reach_upper, *options.epsilon);
-    expect_claims(closed, result, 64);
+    test::expect_cover(closed, result, 64);
     // The distance is the one to the input: no point of the bodies is farther.
     const Solid solid(closed, 2000, 0);
     double farthest = 0;
@@ -238,7 +238,7 @@ TEST(Decompose, LimitOfAllVerticesTogether) {
   EXPECT_EQ(result.stop, Stop::Done);
   EXPECT_LE(result.bodies.size(), 6U);
   EXPECT_LE(result.statistics.vertices, 60U);
-  expect_claims(mesh, result, 64);
+  test::expect_cover(mesh, result, 64);
   // The same share for each body reaches farther.
   options.max_total_vertices.reset();
   options.max_vertices = 10;
