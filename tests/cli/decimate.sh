@@ -9,29 +9,26 @@ for key in '"sha256"' '"contractions"' '"exact_fallbacks"' '"max_upper"' '"peak_
   grep -q "$key" a.json || fail "no $key in the report"
 done
 grep -q "^a.stl: .*bracket" a.d || fail "dependency file: $(cat a.d)"
-expect 0 '' "$D" "$BRACKET" -o in.obj --direction inner --vertices 500 --quiet
+expect 0 '' "$D" "$BRACKET" -o in.obj --direction inner --vertices 500 --effort fast --quiet
 [ ! -s err.txt ] || fail "--quiet is not quiet: $(cat err.txt)"
 [ "$(grep -c '^v ' in.obj)" = 500 ] || fail "inner: $(grep -c '^v ' in.obj) vertices instead of 500"
 expect 0 'within' "$D" "$BRACKET" -o eps.ply --epsilon 0.5%
-expect 0 '' "$D" "$BRACKET" -o any.off --direction any --ratio 0.5
+expect 0 '' "$D" "$BRACKET" -o any.off --direction any --ratio 0.5 --effort fast
 for cost in planes planes-adapted planes-diagonal triangles mean; do
-  expect 0 'certified' "$D" "$BRACKET" -o c.glb --ratio 0.3 --cost $cost
+  expect 0 'certified' "$D" "$BRACKET" -o c.glb --ratio 0.3 --cost $cost --effort fast
 done
-for effort in fast normal; do
-  expect 0 'certified' "$D" "$BRACKET" -o c.glb --ratio 0.1 --cost distance --effort $effort
-done
-expect 0 'certified' "$D" "$BRACKET" -o c.glb --ratio 0.1 --effort normal --report n.json
+expect 0 'certified' "$D" "$BRACKET" -o c.glb --ratio 0.1 --effort fast
+expect 0 'certified' "$D" "$BRACKET" -o c.glb --ratio 0.1 --cost planes --report n.json
 grep -q '"cost": "planes"' n.json && grep -q '"effort": "normal"' n.json || fail "no cost and effort in the report"
-# What is not asked for is not done.
 expect 0 '' "$D" "$BRACKET" -o default.ply --ratio 0.1 --log default.log --quiet
-expect 0 '' "$D" "$BRACKET" -o planes.ply --ratio 0.1 --log planes.log --quiet --cost planes --effort fast
-cmp -s default.ply planes.ply && cmp -s default.log planes.log || fail "planes and fast are not the defaults"
+expect 0 '' "$D" "$BRACKET" -o named.ply --ratio 0.1 --log named.log --quiet --cost distance --effort normal
+cmp -s default.ply named.ply && cmp -s default.log named.log || fail "distance and normal are not the defaults"
 for format in stl stl-ascii obj ply ply-ascii off glb; do
-  expect 0 '' "$D" "$BRACKET" -o "f.$format" --output-format $format --ratio 0.5 --quiet
+  expect 0 '' "$D" "$BRACKET" -o "f.$format" --output-format $format --ratio 0.5 --effort fast --quiet
 done
 
 # Stopping at epsilon before the wished count is success.
-expect 0 '' "$D" "$BRACKET" -o e.ply --vertices 4 --epsilon 0.1% --report e.json
+expect 0 '' "$D" "$BRACKET" -o e.ply --vertices 4 --epsilon 0.1% --cost planes --effort fast --report e.json
 grep -q '"stop": "epsilon"' e.json || fail "epsilon did not stop"
 
 # A count that cannot be reached: best result, exit code 1.
@@ -73,14 +70,14 @@ for n in 900 500 300; do cmp -s s-$n.ply t-$n.ply || fail "t-$n.ply is not s-$n.
 expect 0 'between levels' "$D" --from s.pm --vertices 700 -o t.stl
 expect 1 'cannot be reached' "$D" --from s.pm --vertices 100 -o t-100.ply
 cmp -s t-100.ply s-300.ply || fail "the coarsest mesh was not written"
-expect 0 '' "$D" "$BRACKET" --vertices 500 --progressive only.pm --quiet
-expect 0 '' "$D" "$BRACKET" --epsilon 0.5% --progressive epsilon.pm -o epsilon.ply --quiet
+expect 0 '' "$D" "$BRACKET" --vertices 500 --effort fast --progressive only.pm --quiet
+expect 0 '' "$D" "$BRACKET" --epsilon 0.5% --effort fast --progressive epsilon.pm -o epsilon.ply --quiet
 n=$(sed -n 's/^element vertex //p;/^end_header/q' epsilon.ply)
 expect 0 'a level' "$D" --from epsilon.pm --vertices "$n" -o e2.ply
 cmp -s epsilon.ply e2.ply || fail "the level within epsilon is another one"
 expect 1 'cannot be reached' "$D" two.off --vertices 7,6,4 -o 'two-{vertices}.off'
 for n in 7 6 4; do [ -s two-$n.off ] || fail "two-$n.off was not written"; done
-expect 0 'epsilon allows no fewer' "$D" "$BRACKET" --vertices 2000,10,5 --epsilon 0.5% -o 'b-{vertices}.ply'
+expect 0 'epsilon allows no fewer' "$D" "$BRACKET" --vertices 2000,10,5 --epsilon 0.5% --effort fast -o 'b-{vertices}.ply'
 cmp -s b-10.ply b-5.ply || fail "levels beyond epsilon differ"
 expect 2 'need {vertices}' "$D" "$BRACKET" --vertices 300,200 -o x.ply
 expect 2 'need {vertices}' "$D" "$BRACKET" --vertices 300,200 -o - --output-format ply

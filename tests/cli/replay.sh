@@ -2,24 +2,24 @@
 D=$BIN/bmesh-decimate
 R=$BIN/bmesh-replay
 
-"$D" "$BRACKET" -o outer.stl --ratio 0.1 --log outer.log --quiet || fail "decimation"
-"$D" "$BRACKET" -o inner.ply --ratio 0.1 --log inner.log --quiet --direction inner || fail "decimation"
+"$D" "$BRACKET" -o outer.stl --ratio 0.1 --cost planes --effort fast --log outer.log --quiet || fail "decimation"
+"$D" "$BRACKET" -o inner.ply --ratio 0.1 --cost planes --effort fast --log inner.log --quiet --direction inner || fail "decimation"
 expect 0 'solid of the result contains that of the original' "$R" "$BRACKET" outer.log outer.stl --report r.json
 grep -q '"verified": true' r.json || fail "report"
 expect 0 'solid of the original contains' "$R" "$BRACKET" inner.log inner.ply
 expect 1 'refuted' "$R" "$BRACKET" outer.log inner.ply
 expect 1 'refuted' "$R" "$BRACKET" inner.log outer.stl
 # Steps against the original.
-"$D" "$BRACKET" -o tight.stl --ratio 0.1 --cost distance --effort normal --log tight.log --quiet || fail "decimation"
+"$D" "$BRACKET" -o tight.stl --ratio 0.1 --log tight.log --quiet || fail "decimation"
 expect 0 'contains that of the original' "$R" "$BRACKET" tight.log tight.stl
 expect 1 'refuted' "$R" "$BRACKET" tight.log outer.stl
 
 # Progressive files: all levels at once.
 V=$BIN/bound-verify
-"$D" "$BRACKET" -o 'p-{vertices}.stl' --vertices 900,500 --effort normal --progressive p.pm --quiet || fail "decimation"
+"$D" "$BRACKET" -o 'p-{vertices}.stl' --vertices 900,500 --progressive p.pm --quiet || fail "decimation"
 expect 0 'contains that of the level before' "$V" --progressive "$BRACKET" p.pm --report p.json
 grep -q '"relation": "progressive"' p.json || fail "report"
-"$D" "$BRACKET" --direction inner --vertices 900,500 --progressive i.pm --quiet || fail "decimation"
+"$D" "$BRACKET" --direction inner --vertices 900,500 --effort fast --progressive i.pm --quiet || fail "decimation"
 expect 0 'contained in that of the level before' "$V" --progressive "$BRACKET" i.pm
 expect 2 'joined with --epsilon' "$V" --progressive "$BRACKET" p.pm --epsilon 1%
 expect 3 'not a progressive file' "$V" --progressive "$BRACKET" outer.log
