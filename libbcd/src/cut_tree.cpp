@@ -224,7 +224,8 @@ double CutTree::score(const Node& node, const Plane& plane) const {
   // preferred up to a factor, for they bring the next cuts nearer.
   const double volume = lower.volume + upper.volume;
   const double balance = volume > 0 ? std::min(lower.volume, upper.volume) / volume : 0;
-  return (lower.fourth + upper.fourth) * (1 - 0.6 * std::min(1.0, 4 * balance) - 0.2 * balance);
+  return (lower.fourth + upper.fourth) *
+         (1 - 0.6 * std::min(1.0, 4 * balance) - 2 * options_.halving_bonus * balance);
 }
 
 std::vector<CutTree::Candidate> CutTree::candidates(const Node& node) const {

@@ -124,6 +124,7 @@ class Decomposer {
  private:
   [[nodiscard]] SearchOptions search_options() const {
     SearchOptions out = tuning_.search;
+    if (!options_.epsilon && options_.method == Method::Planes) out.halving_bonus = 0.1;
     if (options_.method == Method::Voxels)
       out.choose = [voxels = std::make_shared<VoxelCuts>(solid_, tuning_.grid)](
                        const Cell& cell, const std::vector<Vec3>& hull) {
