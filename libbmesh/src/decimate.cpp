@@ -174,8 +174,10 @@ class Decimator final : private Judge {
     }
     std::stable_sort(edges.begin(), edges.end(),
                      [](const Edge& x, const Edge& y) { return x.cost < y.cost; });
+    std::size_t tried = 0;
     for (const Edge& e : edges) {
       if (contraction_.vertices() <= target) return;
+      if (options_.progress && ++tried % 256 == 0) options_.progress(contraction_.vertices());
       bool adjacent = false;
       if (mesh_.used(e.a) && mesh_.used(e.b))
         mesh_.for_each_triangle(e.a, [&](std::uint32_t t, std::uint32_t) {

@@ -282,9 +282,9 @@ bool Evaluation::place(const Quadric& q, double care) {
 }
 
 bool Evaluation::out_of_reach() const {
-  return ((candidate_.position - setting_.cost.origin()).cwiseAbs().array() >
-          setting_.reach.array())
-      .any();
+  return !((candidate_.position - setting_.cost.origin()).cwiseAbs().array() <=
+           setting_.reach.array())
+              .all();
 }
 
 /// Puts the position exactly on axis-aligned planes that it is on but for rounding.

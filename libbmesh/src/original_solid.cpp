@@ -109,6 +109,7 @@ class Faces {
         height[i] = f.normal.dot(x);
         error = std::max(error, f.error * x.lpNorm<Eigen::Infinity>());
       }
+      if (!(error > kLeastError)) return Place::Undecided;
       if (height[0] > error && height[1] > error && height[2] > error) return Place::Beyond;
       height[3] = 0.5 * (height[1] + height[2]);
       constexpr std::array<int, 4> kFirst{0, 1, 2, 0}, kSecond{1, 2, 0, 3};
@@ -132,6 +133,7 @@ class Faces {
   /// rounded differences, each rounded five times more at most, with room to spare.
   static constexpr double kError = 100 * 0x1p-53;
   static constexpr double kUnderflow = 1e-200;
+  static constexpr double kLeastError = 1e-290;  // products below may have underflowed
 
   struct Face {
     Vec3 a;

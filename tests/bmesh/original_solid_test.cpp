@@ -76,6 +76,23 @@ TEST(OriginalSolid, MeetsInteriorAsClippingSays) {
   EXPECT_GT(missed, 300);
 }
 
+// Products of such coordinates vanish: what rounded arithmetic says of them must not count.
+TEST(OriginalSolid, TinyTrianglesInACornerAreNotBeyondIt) {
+  const double u = 5e-324;
+  const Vec3 a(-u, u, -2 * u), b(-2 * u, 0, u), c(-u, -2 * u, 0);
+  const Tetrahedron tetrahedron{Vec3(0, 0, 0),
+                                Vec3(.4482383141361155, -.8563780165188051, -.7388230427502611),
+                                Vec3(-.3302976596304097, .27218280275438334, -.39474097649887385),
+                                Vec3(-.12444927496493863, .5511205687693266, .46266470608752086)};
+  ASSERT_TRUE(meets_by_clipping(tetrahedron, {a, b, c}));
+  geom::Mesh mesh;
+  mesh.vertices = {a, b, c, Vec3(-1, -1, -1)};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}};
+  std::vector<std::uint32_t> met;
+  EXPECT_FALSE(OriginalSolid(mesh).contains(tetrahedron, false, &met));
+  EXPECT_NE(std::find(met.begin(), met.end(), 0U), met.end());
+}
+
 // Against the slow oracle, and the checker's own implementation: tetrahedra that are accepted lie
 // outside (inside) at every point tried, and both implementations agree.
 TEST(OriginalSolid, AcceptsOnlyWhatLiesOutside) {

@@ -28,7 +28,7 @@ enum class Effort {
   /// Vertices are pulled back towards the original and edges flipped, in some rounds; with
   /// Cost::Distance the last edges are contracted together with moves of the vertices around.
   Normal,
-  Best,  ///< the same in more rounds, and more edges are contracted in this way
+  Best,  ///< the same in more rounds; with Cost::Distance more edges are contracted in this way
 };
 
 /// Numbers that result vertices are made of.
