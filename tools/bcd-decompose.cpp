@@ -25,7 +25,7 @@ using namespace kaboum;
 using tools::Json;
 
 /// Changes whenever the same options may give another result: cached results are then not found.
-constexpr const char* kAlgorithm = "planes 8";
+constexpr const char* kAlgorithm = "planes 9";
 
 struct Options {
   std::string input, output, input_format, output_format, epsilon, direction = "outer";
@@ -86,7 +86,8 @@ void describe(CLI::App& app, Options& o) {
       ->type_name("LENGTH");
   app.add_option("--max-total-vertices", o.max_total,
                  "Smallest distance with at most this many vertices of all bodies together (8 to "
-                 "10000000), and at most --max-bodies where that is given; searches longer")
+                 "10000000; of a robot, for each of its meshes), and at most --max-bodies where "
+                 "that is given; searches longer")
       ->check(CLI::Range(8, 10000000).description(""))
       ->type_name("N");
   app.add_option("--direction", o.direction,

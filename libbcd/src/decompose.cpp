@@ -107,7 +107,8 @@ class Decomposer {
     }
     if (!options_.epsilon || !fits(bodies)) {
       bodies = options_.max_total_vertices ? nearest_that_fit() : at_most(*options_.max_bodies);
-      result_.stop = options_.epsilon || !fits(bodies) ? Stop::TooManyBodies : Stop::Done;
+      const bool near = !options_.epsilon || reach_of(bodies) <= *options_.epsilon;
+      result_.stop = near && fits(bodies) ? Stop::Done : Stop::TooManyBodies;
     }
     result_.statistics.leaves = tree_.leaf_count();
     for (Finished& f : bodies) {
@@ -685,8 +686,11 @@ class Decomposer {
         std::min(options_.max_bodies.value_or(kUnlimited), std::max<std::size_t>(1, total / 6));
     // Fewer bodies reach farther, but leave more vertices to each.
     std::vector<Finished> best;
+    std::size_t last = 0;
     for (double share = 1; share > 0.1; share *= 0.75) {
       const auto count = static_cast<std::size_t>(std::ceil(share * static_cast<double>(most)));
+      if (count == last) continue;
+      last = count;
       std::vector<Finished> tried = at_most(count);
       if (!best.empty() && fits(best) && reach_of(tried) > reach_of(best)) break;
       thin_to(tried, total);
@@ -726,7 +730,7 @@ class Decomposer {
       thin_out(out, epsilon);
       return out;
     };
-    double low = reach_of(bodies), high = low;
+    double low = std::max(reach_of(bodies), 1e-4 * solid_.diagonal()), high = low;
     std::vector<Finished> best = thinned(high);
     while (vertices_of(best) > total && high < solid_.diagonal()) {
       low = high;
@@ -836,9 +840,9 @@ DecomposeResult decompose_closed(const Mesh& closed, const DecomposeOptions& opt
     DecomposeResult result = Decomposer(simpler->mesh, rest).run();
     measure_anew(result, closed);
     result.statistics.pre_step_triangles = simpler->mesh.triangles.size();
-    const bool lost =
-        options.epsilon && result.stop == Stop::Done && result.reach_upper > *options.epsilon;
-    if (!lost && result.stop != Stop::Stuck) return result;
+    // What a limit does not allow within the rest of epsilon, it may allow within all of it.
+    if (!options.epsilon || (result.stop == Stop::Done && result.reach_upper <= *options.epsilon))
+      return result;
   }
   return Decomposer(closed, options).run();
 }

@@ -17,8 +17,9 @@ class Measure {
   Measure(const Mesh& body, const Solid& solid, const ReachOptions& options)
       : body_(body), solid_(solid), options_(options) {
     // Rounding of midpoints, far above what is possible.
-    slack_ = 1e-13 * (solid.box().min.cwiseAbs().cwiseMax(solid.box().max.cwiseAbs()).maxCoeff() +
-                      solid.diagonal());
+    Box3 box = solid.box();
+    for (const Vec3& p : body.vertices) box.extend(p);
+    slack_ = 1e-13 * (box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).maxCoeff() + box.diagonal());
   }
 
   /// A first lower bound, from the facets' centres.
