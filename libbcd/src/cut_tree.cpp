@@ -27,6 +27,57 @@ Scratch& scratch() {
   return s;
 }
 
+/// An edge where the solid bends inwards, with the outer normals beside it.
+struct ReflexEdge {
+  Vec3 a, b;
+  Vec3 p, q;
+  std::array<std::uint32_t, 2> triangles;
+  double weight;
+};
+
+/// A plane through two reflex edges.
+struct Neck {
+  Plane plane;
+  std::array<std::uint32_t, 4> triangles;
+  double weight;
+};
+
+/// For the heaviest edges, planes through each and the nearest ones such that cutting there leaves
+/// neither reflex: a tooth is cut off at its foot.
+std::vector<Neck> necks(std::vector<ReflexEdge> edges, double diagonal) {
+  constexpr std::size_t kMostEdges = 256, kNearest = 2;
+  std::stable_sort(edges.begin(), edges.end(),
+                   [](const ReflexEdge& e, const ReflexEdge& f) { return e.weight > f.weight; });
+  if (edges.size() > kMostEdges) edges.resize(kMostEdges);
+  std::vector<Neck> out;
+  for (const ReflexEdge& e : edges) {
+    std::vector<std::pair<double, Neck>> found;
+    const Vec3 along = e.b - e.a, from = 0.5 * (e.a + e.b);
+    for (const ReflexEdge& f : edges) {
+      const Vec3 across = 0.5 * (f.a + f.b) - from;
+      const double length = across.norm();
+      const Vec3 n = along.cross(across);
+      if (!(n.norm() > 0.1 * along.norm() * length)) continue;
+      const double least = 1e-4 * length;
+      if (across.dot(e.p) > least || across.dot(e.q) > least || across.dot(f.p) < -least ||
+          across.dot(f.q) < -least)
+        continue;
+      const Plane plane{n.normalized(), n.normalized().dot(from)};
+      if (std::max(std::abs(plane.height(f.a)), std::abs(plane.height(f.b))) > 1e-3 * length)
+        continue;
+      found.emplace_back(length, Neck{plane,
+                                      {e.triangles[0], e.triangles[1], f.triangles[0],
+                                       f.triangles[1]},
+                                      (e.weight + f.weight) * (1 - length / diagonal)});
+    }
+    const std::size_t kept = std::min(kNearest, found.size());
+    std::stable_sort(found.begin(), found.end(),
+                     [](const auto& x, const auto& y) { return x.first < y.first; });
+    for (std::size_t i = 0; i < kept; ++i) out.push_back(found[i].second);
+  }
+  return out;
+}
+
 }  // namespace
 
 CutTree::CutTree(const Solid& solid, const SearchOptions& options, double safety)
@@ -72,6 +123,7 @@ void CutTree::find_reflex_planes() {
     if (fresh) reflex_.push_back({plane, weight});
     return at->second;
   };
+  std::vector<ReflexEdge> edges;
   for (std::size_t i = 0; i + 1 < uses.size(); ++i) {
     if (uses[i].lo != uses[i + 1].lo || uses[i].hi != uses[i + 1].hi) continue;
     const std::uint32_t s = uses[i].triangle, t = uses[i + 1].triangle;
@@ -84,6 +136,7 @@ void CutTree::find_reflex_planes() {
     if (std::atan2(sine, cosine) < 0.25) continue;
     const Vec3 &a = mesh.vertices[uses[i].lo], &b = mesh.vertices[uses[i].hi];
     const double weight = (b - a).norm() * std::atan2(sine, cosine);
+    edges.push_back({a, b, p.n, q.n, {s, t}, weight});
     for (const Plane& plane : {p, q}) {
       const std::uint32_t number = number_of(plane, 0);
       reflex_of_[s].push_back(number);
@@ -100,6 +153,11 @@ void CutTree::find_reflex_planes() {
       reflex_of_[t].push_back(number);
       reflex_[number].weight = std::max(reflex_[number].weight, 0.5 * weight);
     }
+  }
+  for (const Neck& neck : necks(std::move(edges), solid_.diagonal())) {
+    const std::uint32_t number = number_of(neck.plane, 0);
+    for (const std::uint32_t t : neck.triangles) reflex_of_[t].push_back(number);
+    reflex_[number].weight = std::max(reflex_[number].weight, neck.weight);
   }
 }
 

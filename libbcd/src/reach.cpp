@@ -1,10 +1,12 @@
 #include "reach.h"
 
+#include <kaboum/geom/predicates.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "cell.h"
 #include "nearly_within.h"
@@ -149,6 +151,21 @@ class Measure {
            });
   }
 
+  /// A plane, and by how much rounding may have moved it within the solid's reach.
+  struct KnownPlane {
+    Plane plane;
+    double slack;
+  };
+  /// The plane through a point along two vectors; none where these are too nearly parallel for it
+  /// to be known.
+  [[nodiscard]] std::optional<KnownPlane> plane_along(const Vec3& u, const Vec3& w,
+                                                      const Vec3& at) const {
+    const Vec3 n = u.cross(w);
+    const double length = n.norm(), edges = u.norm() * w.norm();
+    if (!(length > 1e-6 * edges)) return std::nullopt;
+    return KnownPlane{{n / length, n.dot(at) / length}, slack_ * (1 + edges / length)};
+  }
+
   /// The distance to one triangle is convex: largest at a corner.
   [[nodiscard]] double farthest(const Cell& part, std::uint32_t triangle) const {
     double out = 0;
@@ -179,14 +196,10 @@ class Measure {
     double out = 0;
     for (const std::uint32_t t : near_) {
       Cell shadow = part;
-      // Beyond the plane through a point with this normal, allowing for rounding.
+      // A plane that is hardly known leaves everything.
       const auto keep_beyond = [&](const Vec3& u, const Vec3& w, const Vec3& at) {
-        const Vec3 n = u.cross(w);
-        const double length = n.norm(), edges = u.norm() * w.norm();
-        // A plane that is hardly known leaves everything.
-        if (!(length > 1e-6 * edges)) return;
-        const Plane plane{n / length, n.dot(at) / length};
-        shadow = clip(shadow, plane, false, slack_ * (1 + edges / length));
+        if (const auto plane = plane_along(u, w, at))
+          shadow = clip(shadow, plane->plane, false, plane->slack);
       };
       const auto& [a, b, c] = solid_.surface().corners(t);
       const Vec3 ab = b - a, ac = c - a, n = ab.cross(ac);
@@ -205,27 +218,34 @@ class Measure {
     return out;
   }
 
+  /// Whether the body holds the point; exact.
+  [[nodiscard]] bool within(const Vec3& p) const {
+    return std::all_of(body_.triangles.begin(), body_.triangles.end(), [&](const Triangle& t) {
+      const auto& v = body_.vertices;
+      return geom::orient3d(v[t[0]], v[t[1]], v[t[2]], p) != geom::Sign::Positive;
+    });
+  }
+
   void inside() {
     Box3 box;
     for (const Vec3& p : body_.vertices) box.extend(p);
-    std::vector<Plane> planes, crossing;
+    std::vector<KnownPlane> planes, crossing;
     for (const Triangle& t : body_.triangles) {
       const Vec3& a = body_.vertices[t[0]];
-      const Vec3 n = (body_.vertices[t[1]] - a).cross(body_.vertices[t[2]] - a);
-      const double length = n.norm();
-      if (length > 0) planes.push_back({n / length, n.dot(a) / length});
+      // Slivers keep nothing out, which is safe.
+      if (const auto plane = plane_along(body_.vertices[t[1]] - a, body_.vertices[t[2]] - a, a))
+        planes.push_back(*plane);
     }
     std::vector<Cube> first;
     for (const bcd::Cube& cube : cubes_over(box))
       first.push_back({cube.center, cube.half, geom::DistanceQuery::kNone});
     const auto bound = [&](Cube& cube) {
-      bool within = true;
       crossing.clear();
-      for (const Plane& plane : planes) {
-        const double h = plane.height(cube.center), extent = cube.half * plane.n.cwiseAbs().sum();
-        if (h - extent > slack_) return false;
-        within = within && h <= -slack_;
-        if (h + extent > -slack_) crossing.push_back(plane);
+      for (const KnownPlane& k : planes) {
+        const double h = k.plane.height(cube.center);
+        const double extent = cube.half * k.plane.n.cwiseAbs().sum();
+        if (h - extent > k.slack) return false;
+        if (h + extent > -k.slack) crossing.push_back(k);
       }
       const double radius = cube.half * 1.7320508075688774;
       const auto at = solid_.surface().nearest(cube.center, cube.hint);
@@ -235,14 +255,14 @@ class Measure {
         if (solid_.contains(cube.center)) {
           if (at.lower >= radius * (1 + 1e-12)) return false;
           cube.upper = std::min(cube.upper, radius);
-        } else if (within) {
+        } else if (at.lower > result_.lower && within(cube.center)) {
           raise(at.lower, cube.center);
         }
       }
       if (cube.upper > limit() && crossing.size() <= 12) {
         const Vec3 h = Vec3::Constant(cube.half);
         Cell part = Cell::of({cube.center - h, cube.center + h});
-        for (const Plane& plane : crossing) part = clip(part, plane, true, slack_);
+        for (const KnownPlane& k : crossing) part = clip(part, k.plane, true, k.slack);
         cube.upper = std::min(cube.upper, farthest(part, at.triangle));
         if (cube.upper > limit() && !crossing.empty())
           cube.upper = std::min(cube.upper, farthest_outside(part));

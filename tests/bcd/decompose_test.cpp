@@ -29,27 +29,19 @@ DecomposeResult run(const Mesh& mesh, double epsilon_percent, std::size_t max_ve
 
 TEST(Decompose, CoversEveryFamily) {
   int seen = 0;
-  for (const auto& f : kaboum::test::closed_families()) {
-    if (!f.solid || f.mesh.triangles.size() > 1500) continue;
-    SCOPED_TRACE(f.name);
-    geom::Prepared prepared;
-    try {
-      prepared = geom::prepare(f.mesh);
-    } catch (const Error&) {
-      continue;  // sheets
-    }
+  test::for_each_solid(1500, [&](const kaboum::test::Family& f, const geom::Prepared& prepared) {
     const std::size_t most = seen % 2 == 0 ? 64 : 24;
     const DecomposeResult result = run(prepared.mesh, 4, most);
     if (result.stop == Stop::TooCoarse) {
       EXPECT_TRUE(result.bodies.empty());
-      continue;
+      return;
     }
     expect_cover(prepared.mesh, result, most);
     if (f.convex && f.mesh.vertices.size() <= most) {
       EXPECT_EQ(result.bodies.size(), 1U);
     }
     ++seen;
-  }
+  });
   EXPECT_GE(seen, 10);
 }
 

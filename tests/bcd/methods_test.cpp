@@ -11,7 +11,6 @@
 
 #include "clusters.h"
 #include "solids.h"
-#include "support/families.h"
 #include "voxel_cuts.h"
 
 namespace kaboum::bcd {
@@ -27,23 +26,15 @@ Mesh letter() { return test::prism({{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 
 
 TEST(Methods, CoverWithinEpsilonOrSaySo) {
   int done = 0, seen = 0;
-  for (const auto& f : kaboum::test::closed_families()) {
-    if (!f.solid || f.mesh.triangles.size() > 300) continue;
-    SCOPED_TRACE(f.name);
-    geom::Prepared prepared;
-    try {
-      prepared = geom::prepare(f.mesh);
-    } catch (const Error&) {
-      continue;  // sheets
-    }
+  test::for_each_solid(300, [&](const auto&, const geom::Prepared& prepared) {
     const Method method = seen++ % 2 == 0 ? Method::Clusters : Method::Voxels;
     const DecomposeOptions options = with(method, prepared.mesh, 6);
     const DecomposeResult result = decompose(prepared, options);
-    if (result.stop == Stop::TooCoarse) continue;
+    if (result.stop == Stop::TooCoarse) return;
     test::expect_cover(prepared.mesh, result, 64);
     EXPECT_EQ(result.stop == Stop::Done, result.reach_upper <= *options.epsilon);
     done += result.stop == Stop::Done ? 1 : 0;
-  }
+  });
   EXPECT_GE(seen, 8);
   EXPECT_GE(done, seen - 3);
 }

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 #include <kaboum/bcd/decompose.h>
 #include <kaboum/geom/convex_set.h>
+#include <kaboum/geom/error.h>
 #include <kaboum/geom/float32.h>
 #include <kaboum/geom/mesh.h>
+#include <kaboum/geom/prepare.h>
 #include <kaboum/verify/cover.h>
 
 #include <algorithm>
@@ -13,8 +15,10 @@
 #include <functional>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <vector>
 
+#include "support/families.h"
 #include "support/oracle.h"
 #include "support/shapes.h"
 
@@ -28,6 +32,23 @@ inline DecomposeOptions quick(const geom::Mesh& mesh, double epsilon_percent,
   options.max_vertices = max_vertices;
   options.effort = Effort::Fast;
   return options;
+}
+
+/// Calls visit(family, prepared) with every family of closed solids of at most `largest` triangles.
+inline void for_each_solid(
+    std::size_t largest,
+    const std::function<void(const kaboum::test::Family&, const geom::Prepared&)>& visit) {
+  for (const auto& family : kaboum::test::closed_families()) {
+    if (!family.solid || family.mesh.triangles.size() > largest) continue;
+    SCOPED_TRACE(family.name);
+    std::optional<geom::Prepared> prepared;
+    try {
+      prepared = geom::prepare(family.mesh);
+    } catch (const Error&) {
+      continue;  // sheets
+    }
+    visit(family, *prepared);
+  }
 }
 
 /// Whether p lies in one of the bodies, by the slow oracle, which shares nothing with the library.
