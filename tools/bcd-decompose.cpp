@@ -25,7 +25,7 @@ using namespace kaboum;
 using tools::Json;
 
 /// Changes whenever the same options may give another result: cached results are then not found.
-constexpr const char* kAlgorithm = "planes 9";
+constexpr const char* kAlgorithm = "planes 10";
 
 struct Options {
   std::string input, output, input_format, output_format, epsilon, direction = "outer";
@@ -105,9 +105,9 @@ void describe(CLI::App& app, Options& o) {
       ->check(CLI::IsMember({"planes", "clusters", "voxels"}).description(""))
       ->type_name("planes|clusters|voxels");
   app.add_option("--pre-step", o.pre_step,
-                 "Simplify the input first to a mesh round it, within a tenth of epsilon (0.05% "
+                 "Simplify the input first to a mesh round it, within a tenth of epsilon (0.1% "
                  "where none is given); distances remain those to the input; auto: above 20000 "
-                 "triangles [auto]")
+                 "triangles, if a quarter of the vertices suffices [auto]")
       ->check(CLI::IsMember({"auto", "on", "off"}).description(""))
       ->type_name("auto|on|off");
   app.add_option("--unit", o.unit, "Unit of length, noted in the container")

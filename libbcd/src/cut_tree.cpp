@@ -27,6 +27,17 @@ Scratch& scratch() {
   return s;
 }
 
+/// The least and the largest of the points' coordinates along n.
+std::pair<double, double> extent(const std::vector<Vec3>& points, const Vec3& n) {
+  std::pair<double, double> out{std::numeric_limits<double>::infinity(),
+                                -std::numeric_limits<double>::infinity()};
+  for (const Vec3& p : points) {
+    out.first = std::min(out.first, n.dot(p));
+    out.second = std::max(out.second, n.dot(p));
+  }
+  return out;
+}
+
 /// An edge where the solid bends inwards, with the outer normals beside it.
 struct ReflexEdge {
   Vec3 a, b;
@@ -65,10 +76,10 @@ std::vector<Neck> necks(std::vector<ReflexEdge> edges, double diagonal) {
       const Plane plane{n.normalized(), n.normalized().dot(from)};
       if (std::max(std::abs(plane.height(f.a)), std::abs(plane.height(f.b))) > 1e-3 * length)
         continue;
-      found.emplace_back(length, Neck{plane,
-                                      {e.triangles[0], e.triangles[1], f.triangles[0],
-                                       f.triangles[1]},
-                                      (e.weight + f.weight) * (1 - length / diagonal)});
+      found.emplace_back(length,
+                         Neck{plane,
+                              {e.triangles[0], e.triangles[1], f.triangles[0], f.triangles[1]},
+                              (e.weight + f.weight) * (1 - length / diagonal)});
     }
     const std::size_t kept = std::min(kNearest, found.size());
     std::stable_sort(found.begin(), found.end(),
@@ -286,22 +297,51 @@ double CutTree::score(const Node& node, const Plane& plane) const {
          (1 - 0.6 * std::min(1.0, 4 * balance) - 2 * options_.halving_bonus * balance);
 }
 
-std::vector<CutTree::Candidate> CutTree::candidates(const Node& node) const {
-  std::vector<Candidate> out;
+std::vector<std::uint32_t> CutTree::reflex_planes(const Node& node) const {
   Box3 box;
   for (const Vec3& p : node.hull) box.extend(p);
-  const double size = box.diagonal();
+  const double least = 1e-4 * box.diagonal();
+  std::map<std::uint32_t, double> weight;
+  for (const std::uint32_t t : node.piece.source)
+    for (const std::uint32_t r : reflex_of_[t]) weight[r] += reflex_[r].weight;
+  std::vector<std::pair<double, std::uint32_t>> order;
+  for (const auto& [r, w] : weight) {
+    const auto [low, high] = extent(node.hull, reflex_[r].plane.n);
+    if (low < reflex_[r].plane.d - least && high > reflex_[r].plane.d + least)
+      order.emplace_back(-w, r);
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<std::uint32_t> out;
+  for (const auto& [w, r] : order) out.push_back(r);
+  return out;
+}
+
+Plane CutTree::snapped(const Node& node, const Plane& plane) const {
+  Plane best = plane;
+  double nearest = solid_.spacing();
+  for (const std::uint32_t r : reflex_planes(node)) {
+    const Plane& other = reflex_[r].plane;
+    const double sign = other.n.dot(plane.n) < 0 ? -1 : 1;
+    if ((other.n - sign * plane.n).norm() > 0.01) continue;
+    double apart = 0;
+    for (const Vec3& p : node.hull)
+      apart = std::max(apart, std::abs(other.height(p) - sign * plane.height(p)));
+    if (apart >= nearest) continue;
+    nearest = apart;
+    best = other;
+  }
+  return best;
+}
+
+std::vector<CutTree::Candidate> CutTree::candidates(const Node& node) const {
+  std::vector<Candidate> out;
   std::vector<Vec3> directions{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
   if (const auto principal = principal_box(node.hull))
     for (int k = 0; k < 3; ++k)
       if (principal->axes.col(k).cwiseAbs().maxCoeff() < 0.99)
         directions.emplace_back(principal->axes.col(k));
   for (const Vec3& n : directions) {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const Vec3& p : node.hull) {
-      low = std::min(low, n.dot(p));
-      high = std::max(high, n.dot(p));
-    }
+    const auto [low, high] = extent(node.hull, n);
     for (int i = 1; i <= options_.offsets; ++i)
       out.push_back({{n, low + (high - low) * i / (options_.offsets + 1)}});
   }
@@ -323,23 +363,10 @@ std::vector<CutTree::Candidate> CutTree::candidates(const Node& node) const {
     }
   }
   if (options_.reflex_planes > 0) {
-    std::map<std::uint32_t, double> weight;
-    for (const std::uint32_t t : node.piece.source)
-      for (const std::uint32_t r : reflex_of_[t]) weight[r] += reflex_[r].weight;
-    std::vector<std::pair<double, std::uint32_t>> order;
-    for (const auto& [r, w] : weight) {
-      double low = std::numeric_limits<double>::infinity(), high = -low;
-      for (const Vec3& p : node.hull) {
-        const double h = reflex_[r].plane.height(p);
-        low = std::min(low, h);
-        high = std::max(high, h);
-      }
-      if (low < -1e-4 * size && high > 1e-4 * size) order.emplace_back(-w, r);
-    }
-    std::sort(order.begin(), order.end());
+    const std::vector<std::uint32_t> order = reflex_planes(node);
     for (std::size_t i = 0;
          i < order.size() && i < static_cast<std::size_t>(options_.reflex_planes); ++i)
-      out.push_back({reflex_[order[i].second].plane});
+      out.push_back({reflex_[order[i]].plane});
   }
   return out;
 }
@@ -381,11 +408,7 @@ bool CutTree::cut(int leaf) {
     nodes_[leaf].stuck = true;
     return false;
   }
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const Vec3& p : node.hull) {
-    low = std::min(low, best.plane.n.dot(p));
-    high = std::max(high, best.plane.n.dot(p));
-  }
+  const auto [low, high] = extent(node.hull, best.plane.n);
   double step = 0.5 * (high - low) / (options_.offsets + 1);
   for (int r = 0; r < options_.refinements; ++r, step *= 0.5) {
     std::vector<Candidate> near;
@@ -397,7 +420,7 @@ bool CutTree::cut(int leaf) {
     const Candidate c = best_of(near);
     if (c.score < best.score) best = c;
   }
-  cut(leaf, best.plane);
+  cut(leaf, snapped(node, best.plane));
   return true;
 }
 
@@ -428,10 +451,8 @@ std::optional<CutTree::Split> CutTree::find_split(const std::vector<int>& leaves
     std::pair<double, double> out{std::numeric_limits<double>::infinity(),
                                   -std::numeric_limits<double>::infinity()};
     for (const int leaf : leaves) {
-      for (const Vec3& p : nodes_[leaf].hull) {
-        out.first = std::min(out.first, n.dot(p));
-        out.second = std::max(out.second, n.dot(p));
-      }
+      const auto [low, high] = extent(nodes_[leaf].hull, n);
+      out = {std::min(out.first, low), std::max(out.second, high)};
     }
     return out;
   };

@@ -836,7 +836,7 @@ void measure_anew(DecomposeResult& result, const Mesh& closed) {
 DecomposeResult decompose_closed(const Mesh& closed, const DecomposeOptions& options) {
   if (const std::optional<Simpler> simpler = pre_step(closed, options)) {
     DecomposeOptions rest = options;
-    if (rest.epsilon) *rest.epsilon -= simpler->epsilon;
+    if (rest.epsilon) *rest.epsilon -= simpler->distance;
     DecomposeResult result = Decomposer(simpler->mesh, rest).run();
     measure_anew(result, closed);
     result.statistics.pre_step_triangles = simpler->mesh.triangles.size();

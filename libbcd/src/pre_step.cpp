@@ -1,6 +1,10 @@
 #include "pre_step.h"
 
 #include <kaboum/bmesh/decimate.h>
+#include <kaboum/geom/distance.h>
+#include <kaboum/geom/error.h>
+
+#include <vector>
 
 namespace kaboum::bcd {
 namespace {
@@ -8,23 +12,48 @@ namespace {
 /// Smaller meshes are decomposed about as fast as they are simplified.
 constexpr std::size_t kLarge = 20000;
 
+/// Bounding meshes with a share of the vertices, a half of that, …; the last one perhaps not quite.
+std::vector<bmesh::DecimateResult> coarser(const geom::Mesh& closed, std::size_t vertices,
+                                           const DecomposeOptions& options) {
+  geom::Prepared input;
+  input.mesh = closed;
+  input.border.assign(closed.vertices.size(), 0);
+  bmesh::DecimateOptions how;
+  how.cost = bmesh::Cost::Distance;
+  how.effort = bmesh::Effort::Fast;
+  how.precision = bmesh::Precision::Double;
+  if (options.progress)
+    how.progress = [&](std::size_t) { options.progress({"simplifying the input", 0}); };
+  std::vector<std::size_t> counts{vertices};
+  while (counts.size() < 6 && counts.back() >= 1000) counts.push_back(counts.back() / 2);
+  return bmesh::decimate_series(input, how, counts);
+}
+
 }  // namespace
 
 std::optional<Simpler> pre_step(const geom::Mesh& closed, const DecomposeOptions& options) {
   if (options.pre_step == PreStep::Off ||
       (options.pre_step == PreStep::Auto && closed.triangles.size() <= kLarge))
     return std::nullopt;
-  geom::Prepared input;
-  input.mesh = closed;
-  input.border.assign(closed.vertices.size(), 0);
-  bmesh::DecimateOptions how;
-  how.epsilon =
-      options.epsilon ? 0.1 * *options.epsilon : 0.0005 * geom::bounding_box(closed).diagonal();
-  if (options.progress)
-    how.progress = [&](std::size_t) { options.progress({"simplifying the input", 0}); };
-  Simpler out{bmesh::decimate(input, how).mesh, *how.epsilon};
-  if (2 * out.mesh.triangles.size() > closed.triangles.size()) return std::nullopt;
-  return out;
+  const double epsilon =
+      options.epsilon ? 0.1 * *options.epsilon : 0.001 * geom::bounding_box(closed).diagonal();
+  // With half the vertices, decomposition takes as long, but has less of epsilon.
+  const std::size_t most = closed.vertices.size() / (options.pre_step == PreStep::On ? 2 : 4);
+  std::vector<bmesh::DecimateResult> levels;
+  try {
+    levels = coarser(closed, most, options);
+  } catch (const Error&) {
+    return std::nullopt;  // what decimation refuses, decomposition need not
+  }
+  const geom::DistanceQuery original(closed);
+  geom::DistanceOptions gap;
+  gap.relative_gap = 0.1;
+  for (; !levels.empty(); levels.pop_back()) {
+    geom::Mesh& mesh = levels.back().mesh;
+    const double distance = geom::directed_distance(mesh, original, gap).max_upper;
+    if (distance <= epsilon) return Simpler{std::move(mesh), distance};
+  }
+  return std::nullopt;
 }
 
 }  // namespace kaboum::bcd

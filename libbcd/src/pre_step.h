@@ -10,10 +10,10 @@ namespace kaboum::bcd {
 /// from the other one at most.
 struct Simpler {
   geom::Mesh mesh;
-  double epsilon;  ///< [length]
+  double distance;  ///< [length]
 };
 
-/// A bounding mesh within a tenth of epsilon (0.05 % of the diagonal, where only numbers are
+/// A bounding mesh within a tenth of epsilon (0.1 % of the diagonal, where only numbers are
 /// limited), if the options ask for it and it is worth while. Source: [gaschler2016] §4.4.2.
 std::optional<Simpler> pre_step(const geom::Mesh& closed, const DecomposeOptions& options);
 

@@ -7,9 +7,9 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <tuple>
 
 #include "cell.h"
-#include "nearly_within.h"
 
 namespace kaboum::bcd {
 namespace {
@@ -21,7 +21,8 @@ class Measure {
     // Rounding of midpoints, far above what is possible.
     Box3 box = solid.box();
     for (const Vec3& p : body.vertices) box.extend(p);
-    slack_ = 1e-13 * (box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).maxCoeff() + box.diagonal());
+    scale_ = box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).maxCoeff() + box.diagonal();
+    slack_ = 1e-13 * scale_;
   }
 
   /// A first lower bound, from the facets' centres.
@@ -36,15 +37,11 @@ class Measure {
 
   Reach run(double floor) {
     floor_ = floor;
-    if (floor > 0 && nearly_within(body_, solid_, floor, slack_)) {
-      settle(floor);
-    } else {
-      // Facets are part of the inside; most bodies are farthest there, which helps.
-      facets();
-      settled_ = 0;
-      if (result_.lower <= options_.enough) inside();
-      if (result_.lower > options_.enough) settle(kUnbounded);
-    }
+    // Facets are part of the inside; most bodies are farthest there, which helps.
+    facets();
+    settled_ = 0;
+    if (result_.lower <= options_.enough) inside();
+    if (result_.lower > options_.enough) settle(kUnbounded);
     result_.upper = std::max({result_.lower, settled_, 0.0});
     if (result_.upper > 0) result_.upper += slack_;
     return result_;
@@ -151,19 +148,31 @@ class Measure {
            });
   }
 
-  /// A plane, and by how much rounding may have moved it within the solid's reach.
+  /// A plane, and by how much rounding may have moved it where bodies and solid are.
   struct KnownPlane {
     Plane plane;
     double slack;
   };
-  /// The plane through a point along two vectors; none where these are too nearly parallel for it
-  /// to be known.
-  [[nodiscard]] std::optional<KnownPlane> plane_along(const Vec3& u, const Vec3& w,
-                                                      const Vec3& at) const {
-    const Vec3 n = u.cross(w);
-    const double length = n.norm(), edges = u.norm() * w.norm();
-    if (!(length > 1e-6 * edges)) return std::nullopt;
-    return KnownPlane{{n / length, n.dot(at) / length}, slack_ * (1 + edges / length)};
+  /// The plane through three points, counter-clockwise seen from above; none where rounding leaves
+  /// its normal open. Slivers' are computed more precisely.
+  [[nodiscard]] std::optional<KnownPlane> plane_through(const Vec3& a, const Vec3& b,
+                                                        const Vec3& c) const {
+    auto [n, error] = normal_of<double>(a, b, c);
+    if (!(error < 1e-10 * n.norm())) std::tie(n, error) = normal_of<long double>(a, b, c);
+    const double length = n.norm();
+    if (!(error < 1e-4 * length)) return std::nullopt;
+    return KnownPlane{{n / length, n.dot(a) / length}, slack_ + 3 * error / length * scale_};
+  }
+  /// (b − a) × (c − a), computed in a type, and by how much rounding may falsify it.
+  template <class Number>
+  static std::pair<Vec3, double> normal_of(const Vec3& a, const Vec3& b, const Vec3& c) {
+    using Vector = Eigen::Matrix<Number, 3, 1>;
+    const Vector u = b.cast<Number>() - a.cast<Number>(), w = c.cast<Number>() - a.cast<Number>();
+    const Vec3 x = u.cwiseAbs().template cast<double>(), y = w.cwiseAbs().template cast<double>();
+    const Vec3 terms(x.y() * y.z() + x.z() * y.y(), x.z() * y.x() + x.x() * y.z(),
+                     x.x() * y.y() + x.y() * y.x());
+    return {u.cross(w).template cast<double>(),
+            4 * static_cast<double>(std::numeric_limits<Number>::epsilon()) * terms.norm()};
   }
 
   /// The distance to one triangle is convex: largest at a corner.
@@ -196,22 +205,19 @@ class Measure {
     double out = 0;
     for (const std::uint32_t t : near_) {
       Cell shadow = part;
-      // A plane that is hardly known leaves everything.
-      const auto keep_beyond = [&](const Vec3& u, const Vec3& w, const Vec3& at) {
-        if (const auto plane = plane_along(u, w, at))
-          shadow = clip(shadow, plane->plane, false, plane->slack);
+      const auto keep_beyond = [&](const Vec3& p, const Vec3& q, const Vec3& r) {
+        if (const auto known = plane_through(p, q, r))
+          shadow = clip(shadow, known->plane, false, known->slack);
       };
       const auto& [a, b, c] = solid_.surface().corners(t);
       const Vec3 ab = b - a, ac = c - a, n = ab.cross(ac);
       const double height = n.dot(center - a);
       const double error = slack_ * (n.norm() + ab.norm() * ac.norm());
       if (height > error) continue;  // seen from outside
-      keep_beyond(ab, ac, a);
-      if (height < -error) {
-        const std::array<Vec3, 3> to{a - center, b - center, c - center};
-        for (int k = 0; k < 3; ++k)
-          if (!shadow.corners.empty()) keep_beyond(to[k], to[(k + 1) % 3], center);
-      }
+      keep_beyond(a, b, c);
+      if (height < -error)
+        for (const auto& [p, q] : {std::tie(a, b), std::tie(b, c), std::tie(c, a)})
+          if (!shadow.corners.empty()) keep_beyond(center, p, q);
       out = std::max(out, farthest(shadow, t));
       if (out > limit()) return kUnbounded;
     }
@@ -231,10 +237,9 @@ class Measure {
     for (const Vec3& p : body_.vertices) box.extend(p);
     std::vector<KnownPlane> planes, crossing;
     for (const Triangle& t : body_.triangles) {
-      const Vec3& a = body_.vertices[t[0]];
-      // Slivers keep nothing out, which is safe.
-      if (const auto plane = plane_along(body_.vertices[t[1]] - a, body_.vertices[t[2]] - a, a))
-        planes.push_back(*plane);
+      const auto& v = body_.vertices;
+      // A facet whose plane is not known keeps nothing out, which is safe.
+      if (const auto known = plane_through(v[t[0]], v[t[1]], v[t[2]])) planes.push_back(*known);
     }
     std::vector<Cube> first;
     for (const bcd::Cube& cube : cubes_over(box))
@@ -286,7 +291,7 @@ class Measure {
   const ReachOptions& options_;
   std::vector<std::uint32_t> near_;
   double floor_ = 0;
-  double slack_ = 0;
+  double scale_ = 0, slack_ = 0;
   double settled_ = 0;
   Reach result_;
 };

@@ -82,6 +82,11 @@ class CutTree {
   void find_reflex_planes();
   void add_leaf(Piece&& piece, int parent);
   std::vector<Candidate> candidates(const Node& node) const;
+  /// Those of the piece's reflex edges that cut it, heaviest first.
+  [[nodiscard]] std::vector<std::uint32_t> reflex_planes(const Node& node) const;
+  /// A reflex edge's plane nearly the same, if there is one: scores, which the grid's spacing makes
+  /// rough, do not tell a cut along a face from one just beside it.
+  [[nodiscard]] Plane snapped(const Node& node, const Plane& plane) const;
   /// Appends the hull points of what is on either side. @return whether there is something on both.
   bool part(const Piece& piece, const Plane& plane, std::vector<Vec3>& lower,
             std::vector<Vec3>& upper) const;

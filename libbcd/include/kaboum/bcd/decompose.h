@@ -23,7 +23,7 @@ enum class Method {
 /// Whether the input is simplified to a bounding mesh first ([gaschler2016] §4.4.2): within a tenth
 /// of epsilon, which the bodies' distance to the input includes.
 enum class PreStep {
-  Auto,  ///< above 20,000 triangles
+  Auto,  ///< above 20,000 triangles, if a quarter of the vertices suffices
   On,
   Off
 };
