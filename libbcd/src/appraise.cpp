@@ -1,6 +1,7 @@
 #include "appraise.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "principal_box.h"
@@ -26,6 +27,27 @@ std::vector<Vec3> thickened(std::span<const Vec3> points, double diagonal) {
 }
 
 }  // namespace
+
+bool spans_beyond(std::span<const Vec3> points, const Solid& solid, double limit) {
+  static const std::array<Vec3, 7> kDirections{Vec3(1, 0, 0), Vec3(0, 1, 0),  Vec3(0, 0, 1),
+                                               Vec3(1, 1, 1), Vec3(-1, 1, 1), Vec3(1, -1, 1),
+                                               Vec3(1, 1, -1)};
+  std::array<const Vec3*, 14> extreme{};
+  for (std::size_t k = 0; k < kDirections.size(); ++k) {
+    const auto [low, high] =
+        std::minmax_element(points.begin(), points.end(), [&](const Vec3& p, const Vec3& q) {
+          return kDirections[k].dot(p) < kDirections[k].dot(q);
+        });
+    extreme[2 * k] = &*low;
+    extreme[2 * k + 1] = &*high;
+  }
+  for (std::size_t i = 0; i < extreme.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const Vec3 middle = 0.5 * (*extreme[i] + *extreme[j]);
+      if (solid.distance_above(limit, middle, solid.field(middle)) > limit) return true;
+    }
+  return false;
+}
 
 Appraisal appraise(std::span<const Vec3> points, const Solid& solid, geom::HullBuilder& builder,
                    bool shaken, double limit) {

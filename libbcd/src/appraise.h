@@ -25,4 +25,8 @@ struct Appraisal {
 Appraisal appraise(std::span<const Vec3> points, const Solid& solid, geom::HullBuilder& builder,
                    bool shaken = false, double limit = std::numeric_limits<double>::infinity());
 
+/// Whether a point between two extreme ones of the points (at least one) is farther from the solid
+/// than `limit`: then their hull is, and need not be built.
+bool spans_beyond(std::span<const Vec3> points, const Solid& solid, double limit);
+
 }  // namespace kaboum::bcd

@@ -468,9 +468,11 @@ std::optional<CutTree::Split> CutTree::find_split(const std::vector<int>& leaves
       auto& to = above ? s.upper : s.lower;
       to.insert(to.end(), hull.begin(), hull.end());
     }
-    const double lower = appraise(s.lower, solid_, s.builder, true, limit).worst;
-    if (lower >= limit || s.lower.empty() || s.upper.empty())
+    if (s.lower.empty() || s.upper.empty() || spans_beyond(s.lower, solid_, limit) ||
+        spans_beyond(s.upper, solid_, limit))
       return std::numeric_limits<double>::infinity();
+    const double lower = appraise(s.lower, solid_, s.builder, true, limit).worst;
+    if (lower >= limit) return std::numeric_limits<double>::infinity();
     const double upper = appraise(s.upper, solid_, s.builder, true, limit).worst;
     return upper >= limit ? std::numeric_limits<double>::infinity() : std::max(lower, upper);
   };
