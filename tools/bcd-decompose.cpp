@@ -8,6 +8,7 @@
 #include <kaboum/verify/cover.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cctype>
 #include <filesystem>
 #include <sstream>
@@ -71,7 +72,8 @@ void describe(CLI::App& app, Options& o) {
       })
       ->type_name("LENGTH|P%");
   app.add_option("--max-bodies", o.max_bodies,
-                 "Smallest distance with at most this many bodies (1 to 100000)")
+                 "Smallest distance with at most this many bodies (1 to 100000; of a robot, for "
+                 "each of its meshes)")
       ->check(CLI::Range(1, 100000).description(""))
       ->type_name("N");
   app.add_option("--max-vertices-per-body", o.max_vertices,
@@ -463,6 +465,10 @@ int decompose_robot(const Options& o) {
 int decompose(const Options& o) {
   if (o.max_total > 0 && o.direction != "outer")
     throw Error(ErrorCode::InvalidArgument, "--max-total-vertices needs --direction outer");
+  if (o.pre_step == "on" && o.direction != "outer")
+    throw Error(ErrorCode::InvalidArgument, "--pre-step on needs --direction outer");
+  if (!std::isfinite(o.min_thickness))
+    throw Error(ErrorCode::InvalidArgument, "--min-thickness must be a number");
   tools::require_apart({{"--output", o.output},
                         {"--report", o.common.report},
                         {"--preview", o.preview},

@@ -181,6 +181,8 @@ DecomposeResult fill(const geom::Prepared& input, const DecomposeOptions& option
     throw Error(ErrorCode::InvalidArgument, "bodies inside the solid cannot be thickened");
   if (options.max_total_vertices)
     throw Error(ErrorCode::InvalidArgument, "max_total_vertices is not for bodies inside");
+  if (options.pre_step == PreStep::On)
+    throw Error(ErrorCode::InvalidArgument, "bodies inside the solid have no pre-step");
   if (!input.closed)
     throw Error(ErrorCode::InvalidInput, "the mesh is open: bodies inside it mean nothing");
   DecomposeResult result;

@@ -246,6 +246,28 @@ TEST(Decompose, LimitOfAllVerticesTogether) {
   EXPECT_EQ(decompose(geom::prepare(beam), options).stop, Stop::Done);
 }
 
+TEST(Decompose, LimitsWithinEpsilonCountAsReached) {
+  // 40 × 24 × 2 triangles: the pre-step takes some of epsilon, and what limits then do not allow
+  // they may allow without it.
+  const Mesh mesh = kaboum::test::torus(1, 0.3, 40, 24);
+  const geom::Prepared input = geom::prepare(mesh);
+  DecomposeOptions options = test::quick(mesh, 8);
+  const std::size_t free = decompose(input, options).bodies.size();
+  for (const PreStep pre_step : {PreStep::Off, PreStep::On}) {
+    options.pre_step = pre_step;
+    options.max_bodies = free;
+    const DecomposeResult held = decompose(input, options);
+    EXPECT_EQ(held.stop, Stop::Done);
+    EXPECT_LE(held.bodies.size(), free);
+    EXPECT_LE(held.reach_upper, *options.epsilon);
+    options.max_bodies = 2;
+    const DecomposeResult few = decompose(input, options);
+    EXPECT_EQ(few.stop, Stop::TooManyBodies);
+    EXPECT_LE(few.bodies.size(), 2U);
+    EXPECT_GT(few.reach_upper, *options.epsilon);
+  }
+}
+
 TEST(Decompose, ContradictoryOptions) {
   const geom::Prepared input = geom::prepare(kaboum::test::box(Vec3(1, 1, 1), 1));
   EXPECT_THROW(decompose(input, {}), Error);

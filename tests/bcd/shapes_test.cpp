@@ -112,8 +112,8 @@ TEST(Shapes, HBeam) {
 TEST(Shapes, Table) { expect_obvious({"table", table(), 5}); }
 
 // The number is the obvious one; epsilon is made use of.
-TEST(Shapes, OpenBox) { expect_obvious({"open box", open_box(), 5, 0.5, 0.003}); }
-TEST(Shapes, Gear) { expect_obvious({"gear", gear(9), 10, 2, 0.02}); }
+TEST(Shapes, OpenBox) { expect_obvious({"open box", open_box(), 5, 0.05}); }
+TEST(Shapes, Gear) { expect_obvious({"gear", gear(9), 10}); }
 TEST(Shapes, Torus) {
   expect_obvious({"torus", kaboum::test::torus(1, 0.3, 12, 8), 12, 0.5, 0.005});
 }

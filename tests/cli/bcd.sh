@@ -58,6 +58,8 @@ grep -q '"min_thickness"' thick.json || fail "no thickness in the report"
 expect 0 'verified' "$BIN/bound-verify" --cover "$BRACKET" thick.glb --epsilon 5%
 expect 1 'min-thickness' "$D" "$BRACKET" -o thick.glb --epsilon 3% --effort fast --min-thickness 0.1
 expect 2 'thicken' "$D" "$BRACKET" -o x.glb --direction inner --min-thickness 0.1
+expect 2 'pre-step' "$D" "$BRACKET" -o x.glb --direction inner --pre-step on
+expect 2 'min-thickness' "$D" "$BRACKET" -o x.glb --min-thickness nan
 expect 2 '' "$D" "$BRACKET" -o x.glb --min-thickness 1%
 expect 2 '' "$D" "$BRACKET" -o x.glb --min-thickness -1
 
