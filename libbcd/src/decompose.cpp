@@ -312,9 +312,14 @@ class Decomposer {
   /// At most this many bodies, not finished yet; none where twice `epsilon` is not reached.
   std::vector<Body> gather(std::size_t target, double epsilon = kUnbounded) {
     std::vector<std::vector<Body>> snapshots;
-    const double most = tuning_.multiples.back() * static_cast<double>(target);
+    // Few bodies need relatively more pieces to choose from.
+    const auto pieces = [target](double multiple) {
+      const double few = 8;
+      return std::ceil(multiple * (static_cast<double>(target) + few) - few);
+    };
+    const double most = pieces(tuning_.multiples.back());
     for (const double multiple : tuning_.multiples) {
-      const double wished = std::ceil(multiple * static_cast<double>(target));
+      const double wished = pieces(multiple);
       while (static_cast<double>(tree_.leaf_count()) < wished && tree_.cut_worst())
         report("cutting", 0.7 * static_cast<double>(tree_.leaf_count()) / most);
       snapshots.push_back(leaf_bodies(static_cast<std::size_t>(wished)));
