@@ -230,9 +230,10 @@ class Decomposer {
     return true;
   }
 
-  /// Parts the worst body and a neighbour anew, by a plane that leaves both nearer to the solid.
-  bool part_anew(std::vector<Body>& bodies, std::size_t from) {
-    const double limit = 0.98 * bodies[from].appraisal.worst;
+  /// Parts a body and a neighbour anew, by a plane that leaves both nearer to the solid than this
+  /// share of the body's distance.
+  bool part_anew(std::vector<Body>& bodies, std::size_t from, double share = 0.98) {
+    const double limit = share * bodies[from].appraisal.worst;
     std::vector<std::size_t> near;
     for (std::size_t i = 0; i < bodies.size(); ++i)
       if (i != from && touch(bodies[from], bodies[i], solid_)) near.push_back(i);
@@ -268,7 +269,7 @@ class Decomposer {
     const double limit = 0.85 * worst_of(bodies);
     bool changed = false;
     for (std::size_t i = 0; i < bodies.size(); ++i)
-      if (bodies[i].appraisal.worst > limit) changed = part_anew(bodies, i) || changed;
+      if (bodies[i].appraisal.worst > limit) changed = part_anew(bodies, i, 0.99) || changed;
     return changed;
   }
 
