@@ -262,7 +262,8 @@ def section(context, document):
         "than 64 in one body, as bcd-decompose does by default. Where a set of ours has no more vertices than the "
         "thesis's next total already, none is made for it. Hulls of ours are round the parts that hang together, not "
         "round links, without those too small for float32 where they are; vertices that a quarter of the distance "
-        "allows to go without are left out. CSV: table-4-3.csv.")
+        "allows to go without are left out; a refuted verdict of theirs is of the parts left out. CSV: "
+        "table-4-3.csv.")
     if printed:
         document.paragraph(
             "The thesis's a→o are no measure of the same: it has 0.009 mm for the hulls of links, of which the facets "
