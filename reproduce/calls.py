@@ -4,12 +4,13 @@ import dataclasses
 import hashlib
 import json
 import os
+import resource
+import signal
 import subprocess
 import sys
+import time
 
-from runs import sha256
-
-LIMIT = 600  # seconds of a program
+from runs import hash_of, sha256, write_json
 
 
 @dataclasses.dataclass(frozen=True)
@@ -25,37 +26,51 @@ class Calls:
     """Runs programs; a result is kept while the programs, inputs and arguments stay the same."""
 
     def __init__(self, context, folder):
-        self.programs = context.runner.programs
+        self.programs, self.limit = context.runner.programs, context.runner.limit
         self.folder = context.folder / folder
         self.folder.mkdir(parents=True, exist_ok=True)
         self.failures = context.runner.failures
 
     def __call__(self, name, program, arguments, inputs, results, codes=(0,)):
-        """@return the exit code; None when the program failed, which is noted."""
+        """@return the exit code; None when the program failed, which is noted. Then, and where a code of `codes` means
+        so, results are missing, never those of an earlier call."""
         key = hashlib.sha256(json.dumps(
-            [sha256(program), [str(a) for a in arguments], [sha256(p) for p in inputs]]).encode()).hexdigest()
+            [sha256(program), [str(a) for a in arguments], [hash_of(p) for p in inputs]]).encode()).hexdigest()
         record = self.folder / f"{name}.json"
         try:
             kept = json.loads(record.read_text())
-            if kept["key"] == key and all((self.folder / r).is_file() for r in results):
+            if kept["key"] == key and kept["files"] == self._hashes(results):
                 return kept["code"]
         except (OSError, ValueError, KeyError, TypeError):
             pass
-        environment = dict(os.environ, KABOUM_CACHE=str(self.folder / "cache"),
+        for stale in (record, *(self.folder / r for r in results)):
+            stale.unlink(missing_ok=True)
+        # Another build's cached sets are not this one's results.
+        decompose = self.programs / "bcd-decompose"
+        cache = f"cache-{sha256(decompose)[:12]}" if decompose.is_file() else "cache"
+        environment = dict(os.environ, KABOUM_CACHE=str(self.folder / cache),
                            PATH=f"{self.programs}{os.pathsep}{os.environ.get('PATH', '')}")
-        print(f"{name} ...", file=sys.stderr)
-        try:
-            done = subprocess.run([program, *map(str, arguments)], cwd=self.folder, env=environment, timeout=LIMIT,
-                                  capture_output=True, text=True, check=False)
-            why = (done.stderr.strip().splitlines() or [f"exit code {done.returncode}"])[-1]
-            code = done.returncode
-        except subprocess.TimeoutExpired:
-            code, why = None, f"more than {LIMIT} s"
-        if code not in codes:
-            self.failures[Step(name)] = why
+        print(f"{name} ...", end="", file=sys.stderr, flush=True)
+        start = time.monotonic()
+        limit = (self.limit, self.limit + 5)
+        done = subprocess.run([program, *map(str, arguments)], cwd=self.folder, env=environment, capture_output=True,
+                              text=True, check=False,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, limit))
+        print(f" {time.monotonic() - start:.1f} s", file=sys.stderr, flush=True)
+        if done.returncode not in codes:
+            self.failures[Step(name)] = (
+                f"stopped (CPU limit {self.limit} s, or out of memory)"
+                if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL) else
+                (done.stderr.strip().splitlines() or [f"exit code {done.returncode}"])[-1])
+            for partial in results:
+                (self.folder / partial).unlink(missing_ok=True)
             return None
-        record.write_text(json.dumps({"key": key, "code": code}))
-        return code
+        write_json(record, {"key": key, "code": done.returncode, "files": self._hashes(results)})
+        return done.returncode
+
+    def _hashes(self, results):
+        """Of the results that are there."""
+        return {r: hash_of(self.folder / r) for r in results if (self.folder / r).is_file()}
 
     def report(self, name):
         return json.loads((self.folder / name).read_text())

@@ -13,6 +13,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 
 THESIS_COSTS = ("planes", "planes-adapted", "planes-diagonal", "triangles")
 OURS = "distance"
@@ -77,7 +78,7 @@ class Runner:
         """Fills `results` (Run -> dict) and `failures` (Run -> text)."""
         runs = [run for run in dict.fromkeys(runs)
                 if run not in self.results and run not in self.failures]
-        done = 0
+        done, start = 0, time.monotonic()
         with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
             futures = {pool.submit(self._one, run): run for run in runs}
             try:
@@ -89,7 +90,8 @@ class Runner:
                         self.failures[run], kept = str(failure), False
                     self.executed += not kept
                     if not kept:
-                        self._say(f"[{done}/{len(runs)}] {run.title()}: {self._summary(run)}")
+                        self._say(f"[{done}/{len(runs)}, {(time.monotonic() - start) / 60:.0f} min] {run.title()}: "
+                                  f"{self._summary(run)}")
             except BaseException:
                 pool.shutdown(wait=False, cancel_futures=True)
                 raise

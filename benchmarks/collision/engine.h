@@ -42,4 +42,14 @@ std::unique_ptr<Engine> make_fcl(const Model& model);
 std::unique_ptr<Engine> make_bullet(const Model& model);
 std::unique_ptr<Engine> make_ode(const Model& model);
 
+/// Convex parts only, in a tree of oriented boxes for every link (BodyTree); pairs are decided by
+/// FCL with libccd, by FCL's own GJK, and by libccd alone.
+std::unique_ptr<Engine> make_fcl_tree(const Model& model);
+std::unique_ptr<Engine> make_fcl_own_tree(const Model& model);
+std::unique_ptr<Engine> make_ccd_tree(const Model& model);
+
+/// The same, but asking only where no direction is found at once in which two parts are apart.
+std::unique_ptr<Engine> make_fcl_directions(const Model& model);
+std::unique_ptr<Engine> make_ccd_directions(const Model& model);
+
 }  // namespace kaboum::collision
