@@ -12,6 +12,7 @@
 
 #include <filesystem>
 
+#include "recorded.h"
 #include "support/families.h"
 
 namespace {
@@ -198,17 +199,13 @@ TEST(Decimate, EveryCostIsCertified) {
     for (const Cost cost : {Cost::Distance, Cost::Planes, Cost::PlanesAdapted, Cost::PlanesDiagonal,
                             Cost::Triangles}) {
       for (const Direction direction : {Direction::Outer, Direction::Inner}) {
-        Log log;
-        log.direction = direction;
-        record_preparation(p, f.mesh.triangles.size(), log);
         DecimateOptions o = to_vertices(p.mesh.vertices.size() / 5 + 4, direction);
         o.cost = cost;
         if (cost == Cost::Distance) o.effort = Effort::Normal;
-        o.steps = &log.steps;
-        const auto r = decimate(p, o);
-        const auto checked = replay(f.mesh, log, r.mesh);
+        const test::Recorded r = test::record(f.mesh, o);
+        const auto checked = replay(f.mesh, r.log, r.result.mesh);
         EXPECT_TRUE(checked.verified) << f.name << ": " << checked.violation;
-        contractions += r.statistics.contractions;
+        contractions += r.result.statistics.contractions;
       }
     }
     EXPECT_GT(contractions, 0U) << f.name;
@@ -254,16 +251,12 @@ TEST(Decimate, MovingTheVerticesAroundSavesVertices) {
     o.direction = direction;
     o.epsilon = epsilon;
     const std::size_t alone = decimate(p, o).mesh.vertices.size();
-    Log log;
-    log.direction = direction;
-    record_preparation(p, sphere.mesh.triangles.size(), log);
     o.cost = Cost::Distance;
     o.effort = Effort::Normal;
-    o.steps = &log.steps;
-    const auto r = decimate(p, o);
+    const auto [input, log, r] = test::record(sphere.mesh, o);
     EXPECT_EQ(r.stop, Stop::ErrorBound);
     EXPECT_LT(5 * r.mesh.vertices.size(), 4 * alone);
-    const auto checked = replay(sphere.mesh, log, r.mesh);
+    const auto checked = replay(input, log, r.mesh);
     EXPECT_TRUE(checked.verified) << checked.violation;
     const auto there = geom::directed_distance(p.mesh, geom::DistanceQuery(r.mesh));
     const auto back = geom::directed_distance(r.mesh, geom::DistanceQuery(p.mesh));
@@ -359,12 +352,8 @@ TEST(Decimate, IsAsGoodAtAnyScaleAndFarFromTheOrigin) {
       const auto q = geom::prepare(moved);
       const DecimateOptions to_quarter = to_vertices(p.mesh.vertices.size() / 4 + 4);
       const double reference = hausdorff(p.mesh, decimate(p, to_quarter).mesh) / diagonal;
-      Log log;
-      record_preparation(q, moved.triangles.size(), log);
-      DecimateOptions o = to_quarter;
-      o.steps = &log.steps;
-      const auto r = decimate(q, o);
-      EXPECT_TRUE(replay(moved, log, r.mesh).verified) << f.name << " " << factor;
+      const auto [input, log, r] = test::record(moved, to_quarter);
+      EXPECT_TRUE(replay(input, log, r.mesh).verified) << f.name << " " << factor;
       const double there = hausdorff(q.mesh, r.mesh) / geom::bounding_box(q.mesh).diagonal();
       EXPECT_LE(there, 2 * reference + 1e-7) << f.name << " " << factor;
       log_ratios += std::log((there + 1e-7) / (reference + 1e-7));
