@@ -130,9 +130,9 @@ class Decimator final : private Judge {
     if (options_.cost == Cost::Distance && optimiser_ && !options_.epsilon) {
       const double from = options_.effort == Effort::Best ? kJointFromBest : kJointFrom;
       contract_to(static_cast<std::size_t>(from * static_cast<double>(target)));
-      double limit = std::min(contraction_.queue().lowest_key(), setting_.diagonal);
-      if (!(limit > 0)) limit = 1e-3 * setting_.diagonal;  // nothing has been contracted yet
-      for (int i = 0; i < kJointRounds && contraction_.vertices() > target;
+      // Where hardly anything is contracted, nothing has been reached, and little is to be gained.
+      double limit = reached_ > 0 ? std::min(reached_, setting_.diagonal) : 0;
+      for (int i = 0; i < kJointRounds && limit > 0 && contraction_.vertices() > target;
            ++i, limit *= kJointGrowth) {
         optimise(1);
         collapse_to(target, limit);
@@ -238,6 +238,7 @@ class Decimator final : private Judge {
 
   void after() override {
     if (measuring_) {
+      reached_ = std::max(reached_, contraction_.queue().lowest_key());
       ++around_[candidate_.a];
       for (const std::uint32_t w : evaluation_.neighbours(candidate_.a)) ++around_[w];
     }
@@ -340,7 +341,6 @@ class Decimator final : private Judge {
   }
 
   void start_optimising() {
-    if (options_.keep_convex || (setting_.constrained && !setting_.closed)) return;
     if (setting_.constrained && !solid_) solid_.emplace(*bound_);
     optimiser_.emplace(contraction_.mesh(), *deviation_, setting_.constrained ? &*solid_ : nullptr,
                        *bound_, tolerance_ ? &*tolerance_ : nullptr, options_, statistics_);
@@ -446,6 +446,7 @@ class Decimator final : private Judge {
   std::optional<Deviation> deviation_;
   std::optional<Optimiser> optimiser_;
   bool measuring_ = false;             // costs are measured distances
+  double reached_ = 0;                 // largest measured cost of a contraction
   std::vector<std::uint32_t> around_;  // of a vertex: raised when anything in its star changes
   std::vector<std::uint32_t> hint_;    // per vertex: where the original is near
   std::vector<Deviation::Point> points_;
@@ -470,6 +471,7 @@ class Run {
  public:
   Run(const geom::Prepared& input, const DecimateOptions& options)
       : input_(input), options_(options) {
+    options_.effort = effective_effort(input, options);
     if (!options.keep_convex) flattener_.emplace(input, options.steps);
   }
 
@@ -556,7 +558,7 @@ class Run {
   }
 
   const geom::Prepared& input_;
-  const DecimateOptions& options_;
+  DecimateOptions options_;
   DecimateOptions inner_options_;
   std::vector<Step> inner_steps_;  // numbered as below
   std::optional<Flattener> flattener_;
@@ -570,6 +572,12 @@ class Run {
 };
 
 }  // namespace
+
+Effort effective_effort(const geom::Prepared& input, const DecimateOptions& options) {
+  const bool can_optimise =
+      !options.keep_convex && (input.closed || options.direction == Direction::Any);
+  return can_optimise ? options.effort : Effort::Fast;
+}
 
 DecimateResult decimate(const geom::Prepared& input, const DecimateOptions& options) {
   if (!options.vertices && !options.epsilon)

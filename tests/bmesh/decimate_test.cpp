@@ -14,6 +14,7 @@
 
 #include "recorded.h"
 #include "support/families.h"
+#include "support/shapes.h"
 
 namespace {
 
@@ -264,6 +265,39 @@ TEST(Decimate, MovingTheVerticesAroundSavesVertices) {
   }
 }
 
+double hausdorff(const geom::Mesh& a, const geom::Mesh& b) {
+  return std::max(geom::directed_distance(a, geom::DistanceQuery(b)).max_upper,
+                  geom::directed_distance(b, geom::DistanceQuery(a)).max_upper);
+}
+
+TEST(Decimate, EffortIsFastWhereMoreHasNoEffect) {
+  const auto open = geom::prepare(test::open_families().front().mesh);
+  const auto closed = geom::prepare(solids().front().mesh);
+  DecimateOptions o = to_vertices(open.mesh.vertices.size() / 2);
+  o.cost = Cost::Distance;
+  o.effort = Effort::Normal;
+  EXPECT_EQ(effective_effort(closed, o), Effort::Normal);
+  EXPECT_EQ(effective_effort(open, o), Effort::Fast);
+  const auto wished = decimate(open, o);
+  o.effort = Effort::Fast;
+  EXPECT_EQ(wished.mesh.vertices, decimate(open, o).mesh.vertices);
+  o.effort = Effort::Best;
+  o.direction = Direction::Any;
+  EXPECT_EQ(effective_effort(open, o), Effort::Best);
+  o.keep_convex = true;
+  EXPECT_EQ(effective_effort(closed, o), Effort::Fast);
+}
+
+// Hardly any contraction: nothing has been reached that joint ones could go by.
+TEST(Decimate, FewContractionsStayNear) {
+  const auto p = geom::prepare(test::icosphere(5));
+  DecimateOptions o = to_vertices(p.mesh.vertices.size() * 9 / 10);
+  const double fast = hausdorff(p.mesh, decimate(p, o).mesh);
+  o.cost = Cost::Distance;
+  o.effort = Effort::Normal;
+  EXPECT_LE(hausdorff(p.mesh, decimate(p, o).mesh), 1.2 * fast);
+}
+
 TEST(Decimate, KeepsConvexity) {
   int tried = 0;
   for (const auto& f : solids()) {
@@ -326,11 +360,6 @@ TEST(Decimate, DoesNotDependOnTheScale) {
       }
     }
   }
-}
-
-double hausdorff(const geom::Mesh& a, const geom::Mesh& b) {
-  return std::max(geom::directed_distance(a, geom::DistanceQuery(b)).max_upper,
-                  geom::directed_distance(b, geom::DistanceQuery(a)).max_upper);
 }
 
 // Other factors and far offsets round the input differently, and a greedy choice may then fall
