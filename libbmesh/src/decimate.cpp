@@ -369,14 +369,19 @@ class Decimator final : private Judge {
     std::vector<std::uint32_t> left;
     for (std::uint32_t v = 0; v < position_.size(); ++v)
       if (mesh_.used(v) && !geom::is_float32(position_[v])) left.push_back(v);
+    const auto take_out = [&](auto&& helps) {
+      const std::size_t before = left.size();
+      std::erase_if(
+          left, [&](std::uint32_t v) { return !mesh_.used(v) || (border_[v] == 0 && helps(v)); });
+      return left.size() < before;
+    };
     // What fails now may succeed once a neighbour has moved.
-    for (std::size_t before = left.size() + 1; left.size() < before;) {
-      before = left.size();
-      std::erase_if(left, [&](std::uint32_t v) {
-        if (!mesh_.used(v)) return true;
-        return border_[v] == 0 && (move_to_representable(v) || contract_away(v));
-      });
-    }
+    do {
+      while (take_out([&](std::uint32_t v) {
+        return move_to_representable(v) || (optimiser_ && optimiser_->round(v));
+      })) {
+      }
+    } while (take_out([&](std::uint32_t v) { return contract_away(v); }));
     return left.size();
   }
 

@@ -247,9 +247,10 @@ std::optional<Vec3> Optimiser::seek(std::uint32_t a, std::uint32_t b, const Vec3
   return to.allFinite() && holds(to) ? std::optional<Vec3>(to) : std::nullopt;
 }
 
-/// Moves v as near to the target as the original allows, by a certified step.
-void Optimiser::approach(std::uint32_t v, const Vec3& target) {
-  if (!gather(v)) return;
+/// Moves v as near to the target as the original allows, by a certified step; not if that leads
+/// away from it. @param alone  the error bound is kept by this step itself
+bool Optimiser::approach(std::uint32_t v, const Vec3& target, bool alone) {
+  if (!gather(v)) return false;
   const Vec3 from = m_.position[v], wish = from - target;
   place_star(from);
   fan_.assign(added_);
@@ -262,22 +263,28 @@ void Optimiser::approach(std::uint32_t v, const Vec3& target) {
   for (int i = 0; i < kPlaces; ++i) {
     fan_.half_spaces(rounding(from), planes_);
     const auto step = minimise(objective_, wish, planes_, kRegularisationDistance);
-    if (!step) return;
+    if (!step) return false;
     Vec3 to = from + *step;
     if (options_.precision == Precision::Float) to = geom::to_float32(to);
-    if (to == from || !to.allFinite() || folds(to) ||
-        (to - target).squaredNorm() >= wish.squaredNorm())
-      return;
+    if (to == from || !to.allFinite() || folds(to)) return false;
+    if (target != from && (to - target).squaredNorm() >= wish.squaredNorm()) return false;
     place_star(to);
-    if (!stays_flat(to)) return;
+    if (!stays_flat(to)) return false;
     if (!spares(removed_, true, to)) {
       ++statistics_.rejected_original;
       continue;
     }
+    if (alone && tolerance_ != nullptr) {
+      if (!tolerance_->admits(removed_, added_)) return false;
+      tolerance_->commit(removed_);
+    }
     move(v, to);
-    return;
+    return true;
   }
+  return false;
 }
+
+bool Optimiser::round(std::uint32_t v) { return approach(v, m_.position[v], true); }
 
 bool Optimiser::collapse(std::uint32_t a, std::uint32_t b, double limit) {
   if (!joins(a, b)) return false;
@@ -296,13 +303,13 @@ bool Optimiser::collapse(std::uint32_t a, std::uint32_t b, double limit) {
     go_back();
     return false;
   };
-  for (std::size_t i = 1; i < around_.size(); ++i) approach(around_[i], target_[i]);
+  for (std::size_t i = 1; i < around_.size(); ++i) approach(around_[i], target_[i], false);
   const auto place = seek(a, b, target_[0]);
   if (!place) return give_up(statistics_.rejected_original);
   contract(a, b, *place);
   if (options_.steps != nullptr) options_.steps->push_back({a, b, *place});
   for (int k = 0; k < kSweeps; ++k)
-    for (std::size_t i = 0; i < around_.size(); ++i) approach(around_[i], target_[i]);
+    for (std::size_t i = 0; i < around_.size(); ++i) approach(around_[i], target_[i], false);
   const double largest = region_largest(kNearLimit * limit);
   if (largest > limit && largest <= kNearLimit * limit) {
     for (int k = 0; k < kPulls; ++k) {

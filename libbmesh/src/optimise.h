@@ -55,6 +55,10 @@ class Optimiser {
   /// within `limit` then. [length]
   bool collapse(std::uint32_t a, std::uint32_t b, double limit);
 
+  /// Moves v to a representable place near by that the original bounds, though the present mesh may
+  /// not. @return whether it has moved.
+  bool round(std::uint32_t v);
+
   /// One round over all vertices, then all edges. @return steps taken.
   std::size_t pass();
 
@@ -91,7 +95,7 @@ class Optimiser {
   void place_star(const Vec3& apex);
   bool spares(std::span<const std::uint32_t> removed, bool own, const Vec3& to);
   void linearise(const Vec3& apex, double scale, double penalty = 1);
-  void approach(std::uint32_t v, const Vec3& target);
+  bool approach(std::uint32_t v, const Vec3& target, bool alone);
   [[nodiscard]] bool folds(const Vec3& to) const;
   [[nodiscard]] bool stays_flat(const Vec3& to);
   [[nodiscard]] bool certified(std::uint32_t t, const Vec3& to,

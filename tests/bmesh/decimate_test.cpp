@@ -12,6 +12,7 @@
 
 #include <filesystem>
 
+#include "part.h"
 #include "recorded.h"
 #include "support/families.h"
 #include "support/shapes.h"
@@ -268,6 +269,23 @@ TEST(Decimate, MovingTheVerticesAroundSavesVertices) {
 double hausdorff(const geom::Mesh& a, const geom::Mesh& b) {
   return std::max(geom::directed_distance(a, geom::DistanceQuery(b)).max_upper,
                   geom::directed_distance(b, geom::DistanceQuery(a)).max_upper);
+}
+
+// Vertices of the input that are left, between others that were pulled back to it: no place bounds
+// the present mesh, but some bound the original.
+TEST(Decimate, TightMeshesFindFloat32Places) {
+  const geom::Mesh bracket = examples::make_bracket();
+  for (const Cost cost : {Cost::Planes, Cost::Triangles}) {
+    DecimateOptions o = to_vertices(bracket.vertices.size() * 3 / 10);
+    o.cost = cost;
+    o.effort = Effort::Normal;
+    o.precision = Precision::Float;
+    const auto [input, log, r] = test::record(bracket, o);
+    EXPECT_EQ(r.unrepresentable, 0U);
+    EXPECT_GE(1000 * r.mesh.vertices.size(), 999 * *o.vertices);  // hardly any contracted away
+    const auto checked = replay(input, log, r.mesh);
+    EXPECT_TRUE(checked.verified) << checked.violation;
+  }
 }
 
 TEST(Decimate, EffortIsFastWhereMoreHasNoEffect) {
