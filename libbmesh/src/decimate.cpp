@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 #include "compact.h"
 #include "contraction.h"
@@ -35,6 +36,10 @@ constexpr double kMeasureFromEpsilon = 0.1;  ///< the same by an error bound
 /// round to round.
 constexpr double kJointFrom = 1.25, kJointFromBest = 1.4, kJointGrowth = 1.15;
 constexpr int kJointRounds = 12;
+
+/// So many of them may fail by their deviation, and so many more for each that does not: on parts
+/// with many sharp edges hardly any succeeds, and nothing is gained.
+constexpr int kPatience = 60, kPatienceGained = 2;
 
 /// A spike goes farther from the original than this share of the diagonal, and this many times
 /// farther than the original is from the new triangles there.
@@ -132,10 +137,12 @@ class Decimator final : private Judge {
       contract_to(static_cast<std::size_t>(from * static_cast<double>(target)));
       // Where hardly anything is contracted, nothing has been reached, and little is to be gained.
       double limit = reached_ > 0 ? std::min(reached_, setting_.diagonal) : 0;
+      patience_ = kPatience;
       for (int i = 0; i < kJointRounds && limit > 0 && contraction_.vertices() > target;
            ++i, limit *= kJointGrowth) {
         optimise(1);
         collapse_to(target, limit);
+        if (patience_ < 0) break;
       }
     }
     contract_to(target);
@@ -151,13 +158,16 @@ class Decimator final : private Judge {
     for (std::size_t before = contraction_.vertices() + contraction_.vertices();
          contraction_.vertices() > target && 100 * contraction_.vertices() < 99 * before;) {
       before = contraction_.vertices();
+      patience_ = std::numeric_limits<int>::max() / 2;
       collapse_to(target, *options_.epsilon);
       optimise(kStagePasses);
     }
   }
 
   /// Contracts edges together with moves of the vertices around, each within the limit. [length]
+  /// What has failed is tried again when the limit or something around has changed.
   void collapse_to(std::size_t target, double limit) {
+    joined_.resize(position_.size(), 0);
     struct Edge {
       double cost;
       std::uint32_t a, b;
@@ -176,7 +186,7 @@ class Decimator final : private Judge {
                      [](const Edge& x, const Edge& y) { return x.cost < y.cost; });
     std::size_t tried = 0;
     for (const Edge& e : edges) {
-      if (contraction_.vertices() <= target) return;
+      if (contraction_.vertices() <= target || e.cost > limit) return;
       if (options_.progress && ++tried % 256 == 0) options_.progress(contraction_.vertices());
       bool adjacent = false;
       if (mesh_.used(e.a) && mesh_.used(e.b))
@@ -184,7 +194,18 @@ class Decimator final : private Judge {
           for (const std::uint32_t w : mesh_[t]) adjacent = adjacent || w == e.b;
         });
       if (!adjacent) continue;
-      if (optimiser_->collapse(e.a, e.b, limit)) contraction_.contracted(e.a, e.b);
+      Failure& failure = failures_[std::uint64_t{e.a} << 32 | e.b];
+      const std::uint32_t joined = joined_[e.a] + joined_[e.b];
+      if (failure.joined == joined && failure.deviation > limit) continue;
+      failure = {joined, optimiser_->collapse(e.a, e.b, limit)};
+      if (failure.deviation > 0) {
+        if (std::isfinite(failure.deviation) && --patience_ < 0) return;
+        continue;
+      }
+      patience_ += kPatienceGained;
+      contraction_.contracted(e.a, e.b);
+      for (const std::uint32_t v : evaluation_.neighbours(e.a)) ++joined_[v];
+      ++joined_[e.a];
     }
   }
 
@@ -450,8 +471,15 @@ class Decimator final : private Judge {
   std::optional<Tolerance> tolerance_;
   std::optional<Deviation> deviation_;
   std::optional<Optimiser> optimiser_;
-  bool measuring_ = false;             // costs are measured distances
-  double reached_ = 0;                 // largest measured cost of a contraction
+  bool measuring_ = false;  // costs are measured distances
+  double reached_ = 0;      // largest measured cost of a contraction
+  struct Failure {
+    std::uint32_t joined = ~0U;  // of both ends
+    double deviation = 0;        // that the contraction would take
+  };
+  std::unordered_map<std::uint64_t, Failure> failures_;  // of joint contractions, by edge
+  int patience_ = 0;                                     // joint contractions that may fail yet
+  std::vector<std::uint32_t> joined_;  // of a vertex: raised by joint contractions around it
   std::vector<std::uint32_t> around_;  // of a vertex: raised when anything in its star changes
   std::vector<std::uint32_t> hint_;    // per vertex: where the original is near
   std::vector<Deviation::Point> points_;
