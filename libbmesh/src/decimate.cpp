@@ -505,19 +505,18 @@ class Run {
   Run(const geom::Prepared& input, const DecimateOptions& options)
       : input_(input), options_(options) {
     options_.effort = effective_effort(input, options);
-    if (!options.keep_convex) flattener_.emplace(input, options.steps);
+    if (options.keep_convex) return;
+    std::vector<std::uint32_t> flat = flat_vertices(input);
+    if (!flat.empty()) flattener_.emplace(input, std::move(flat), options.steps);
   }
 
   DecimateResult to(std::optional<std::size_t> target) {
-    if (flattener_) {
-      flattener_->run(target.value_or(0));
-      if (target && flattener_->vertices() <= *target &&
-          (options_.precision == Precision::Double || flattener_->is_float32())) {
-        DecimateResult result;
-        result.mesh = flattener_->mesh();
-        result.stop = Stop::VertexTarget;
-        return finished(std::move(result));
-      }
+    if (flattener_) flattener_->run(target.value_or(0));
+    if (target && !decimator_ && is_reached(*target)) {
+      DecimateResult result;
+      result.mesh = flattener_ ? flattener_->mesh() : input_.mesh;
+      result.stop = Stop::VertexTarget;
+      return finished(std::move(result));
     }
     if (!decimator_) start(target);
     DecimateResult result = decimator_->run(target);
@@ -530,6 +529,16 @@ class Run {
   }
 
  private:
+  /// Whether nothing is left to do but to flatten.
+  [[nodiscard]] bool is_reached(std::size_t target) const {
+    const std::size_t n = flattener_ ? flattener_->vertices() : input_.mesh.vertices.size();
+    if (n > target) return false;
+    if (options_.precision == Precision::Double) return true;
+    if (flattener_) return flattener_->is_float32();
+    return std::all_of(input_.mesh.vertices.begin(), input_.mesh.vertices.end(),
+                       [](const Vec3& p) { return geom::is_float32(p); });
+  }
+
   void start(std::optional<std::size_t> target) {
     if (flattener_) flatten();
     const geom::Prepared& input = flat_.mesh.triangles.empty() ? input_ : flat_;
