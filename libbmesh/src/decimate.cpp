@@ -39,7 +39,7 @@ constexpr int kJointRounds = 12;
 
 /// So many of them may fail by their deviation, and so many more for each that does not: on parts
 /// with many sharp edges hardly any succeeds, and nothing is gained.
-constexpr int kPatience = 60, kPatienceGained = 2;
+constexpr int kPatience = 120, kPatienceGained = 2;
 
 /// A spike goes farther from the original than this share of the diagonal, and this many times
 /// farther than the original is from the new triangles there.
