@@ -34,6 +34,7 @@ struct Options {
   std::string epsilon;
   bmesh::Cost cost = bmesh::Cost::Distance;
   bmesh::Effort effort = bmesh::Effort::Normal;
+  bool effort_given = false;
   bool as_printed = false;
   std::string precision = "auto";
   double sharp_angle = 90;
@@ -131,7 +132,8 @@ void describe(CLI::App& app, Options& o) {
       ->check(CLI::IsMember({"fast", "normal", "best"}).description(""))
       ->type_name("fast|normal|best");
   app.add_flag("--as-printed", o.as_printed,
-               "planes-diagonal with the thesis's formulas as printed, to reproduce its tables");
+               "With the thesis's formulas as printed, to reproduce its tables (only with --cost "
+               "planes-diagonal)");
   app.add_option(
          "--precision", o.precision,
          "Numbers of the result's coordinates; auto: float, or double where float is too coarse "
@@ -140,8 +142,7 @@ void describe(CLI::App& app, Options& o) {
       ->type_name("auto|float|double");
   app.add_option("--sharp-angle", o.sharp_angle,
                  "Edges whose normals differ by more degrees than this resist growing spikes; 180: "
-                 "none. Not "
-                 "used by --cost distance and mean")
+                 "none (only with --cost planes, planes-adapted and planes-diagonal)")
       ->check(CLI::Range(0.0, 180.0).description(""))
       ->capture_default_str()
       ->type_name("DEG");
@@ -414,10 +415,16 @@ class Job {
     bmesh::DecimateOptions d;
     d.direction = o_.direction;
     d.cost = o_.cost;
+    d.keep_convex = o_.keep_convex;
     d.effort = o_.effort;
+    effort_ = bmesh::effective_effort(prepared_, d);
+    if (o_.effort_given && effort_ != o_.effort) {
+      notes_.push_back("--effort " + o_.effort_name + " has no effect " +
+                       (o_.keep_convex ? "with --keep-convex" : "on open meshes"));
+      say("note: " + notes_.back());
+    }
     d.as_printed = o_.as_printed;
     d.precision = precision_;
-    d.keep_convex = o_.keep_convex;
     d.sharp_angle = o_.sharp_angle;
     d.epsilon = epsilon_;
     if (o_.ratio > 0) {
@@ -551,7 +558,7 @@ class Job {
         {"notes", notes_}};
     r["options"] = {{"direction", name_of(kDirections, o_.direction)},
                     {"cost", name_of(kCosts, o_.cost)},
-                    {"effort", name_of(kEfforts, o_.effort)},
+                    {"effort", name_of(kEfforts, effort_)},
                     {"as_printed", o_.as_printed},
                     {"precision", precision_ == bmesh::Precision::Double ? "double" : "float"},
                     {"vertices", counts_.empty()       ? Json()
@@ -772,8 +779,16 @@ class Job {
   std::vector<Level> levels_;
   bmesh::Log log_;
   std::vector<std::string> notes_;
+  bmesh::Effort effort_ = bmesh::Effort::Fast;  // that is made
   double seconds_read_ = 0, seconds_decimated_ = 0;
 };
+
+/// Options that only some costs follow are not ignored silently with others.
+void require_cost_follows(const CLI::App& app, const Options& o) {
+  const std::string with = "--cost " + o.cost_name;
+  if (o.cost_name != "planes-diagonal") tools::require_absent(app, with, {"--as-printed"});
+  if (!o.cost_name.starts_with("planes")) tools::require_absent(app, with, {"--sharp-angle"});
+}
 
 }  // namespace
 
@@ -795,6 +810,8 @@ int main(int argc, char** argv) {
       return tools::extract_levels({options.from, options.output, options.output_format,
                                     options.vertices, options.depfile, options.common});
     }
+    require_cost_follows(app, options);
+    options.effort_given = app.count("--effort") > 0;
     return Job(options).run();
   });
 }

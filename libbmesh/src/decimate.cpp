@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 #include "compact.h"
 #include "contraction.h"
@@ -35,6 +36,10 @@ constexpr double kMeasureFromEpsilon = 0.1;  ///< the same by an error bound
 /// round to round.
 constexpr double kJointFrom = 1.25, kJointFromBest = 1.4, kJointGrowth = 1.15;
 constexpr int kJointRounds = 12;
+
+/// So many of them may fail by their deviation, and so many more for each that does not: on parts
+/// with many sharp edges hardly any succeeds, and nothing is gained.
+constexpr int kPatience = 120, kPatienceGained = 2;
 
 /// A spike goes farther from the original than this share of the diagonal, and this many times
 /// farther than the original is from the new triangles there.
@@ -130,12 +135,14 @@ class Decimator final : private Judge {
     if (options_.cost == Cost::Distance && optimiser_ && !options_.epsilon) {
       const double from = options_.effort == Effort::Best ? kJointFromBest : kJointFrom;
       contract_to(static_cast<std::size_t>(from * static_cast<double>(target)));
-      double limit = std::min(contraction_.queue().lowest_key(), setting_.diagonal);
-      if (!(limit > 0)) limit = 1e-3 * setting_.diagonal;  // nothing has been contracted yet
-      for (int i = 0; i < kJointRounds && contraction_.vertices() > target;
+      // Where hardly anything is contracted, nothing has been reached, and little is to be gained.
+      double limit = reached_ > 0 ? std::min(reached_, setting_.diagonal) : 0;
+      patience_ = kPatience;
+      for (int i = 0; i < kJointRounds && limit > 0 && contraction_.vertices() > target;
            ++i, limit *= kJointGrowth) {
         optimise(1);
         collapse_to(target, limit);
+        if (patience_ < 0) break;
       }
     }
     contract_to(target);
@@ -151,13 +158,16 @@ class Decimator final : private Judge {
     for (std::size_t before = contraction_.vertices() + contraction_.vertices();
          contraction_.vertices() > target && 100 * contraction_.vertices() < 99 * before;) {
       before = contraction_.vertices();
+      patience_ = std::numeric_limits<int>::max() / 2;
       collapse_to(target, *options_.epsilon);
       optimise(kStagePasses);
     }
   }
 
   /// Contracts edges together with moves of the vertices around, each within the limit. [length]
+  /// What has failed is tried again when the limit or something around has changed.
   void collapse_to(std::size_t target, double limit) {
+    joined_.resize(position_.size(), 0);
     struct Edge {
       double cost;
       std::uint32_t a, b;
@@ -176,7 +186,7 @@ class Decimator final : private Judge {
                      [](const Edge& x, const Edge& y) { return x.cost < y.cost; });
     std::size_t tried = 0;
     for (const Edge& e : edges) {
-      if (contraction_.vertices() <= target) return;
+      if (contraction_.vertices() <= target || e.cost > limit) return;
       if (options_.progress && ++tried % 256 == 0) options_.progress(contraction_.vertices());
       bool adjacent = false;
       if (mesh_.used(e.a) && mesh_.used(e.b))
@@ -184,7 +194,18 @@ class Decimator final : private Judge {
           for (const std::uint32_t w : mesh_[t]) adjacent = adjacent || w == e.b;
         });
       if (!adjacent) continue;
-      if (optimiser_->collapse(e.a, e.b, limit)) contraction_.contracted(e.a, e.b);
+      Failure& failure = failures_[std::uint64_t{e.a} << 32 | e.b];
+      const std::uint32_t joined = joined_[e.a] + joined_[e.b];
+      if (failure.joined == joined && failure.deviation > limit) continue;
+      failure = {joined, optimiser_->collapse(e.a, e.b, limit)};
+      if (failure.deviation > 0) {
+        if (std::isfinite(failure.deviation) && --patience_ < 0) return;
+        continue;
+      }
+      patience_ += kPatienceGained;
+      contraction_.contracted(e.a, e.b);
+      for (const std::uint32_t v : evaluation_.neighbours(e.a)) ++joined_[v];
+      ++joined_[e.a];
     }
   }
 
@@ -238,6 +259,7 @@ class Decimator final : private Judge {
 
   void after() override {
     if (measuring_) {
+      reached_ = std::max(reached_, contraction_.queue().lowest_key());
       ++around_[candidate_.a];
       for (const std::uint32_t w : evaluation_.neighbours(candidate_.a)) ++around_[w];
     }
@@ -340,7 +362,6 @@ class Decimator final : private Judge {
   }
 
   void start_optimising() {
-    if (options_.keep_convex || (setting_.constrained && !setting_.closed)) return;
     if (setting_.constrained && !solid_) solid_.emplace(*bound_);
     optimiser_.emplace(contraction_.mesh(), *deviation_, setting_.constrained ? &*solid_ : nullptr,
                        *bound_, tolerance_ ? &*tolerance_ : nullptr, options_, statistics_);
@@ -369,14 +390,19 @@ class Decimator final : private Judge {
     std::vector<std::uint32_t> left;
     for (std::uint32_t v = 0; v < position_.size(); ++v)
       if (mesh_.used(v) && !geom::is_float32(position_[v])) left.push_back(v);
+    const auto take_out = [&](auto&& helps) {
+      const std::size_t before = left.size();
+      std::erase_if(
+          left, [&](std::uint32_t v) { return !mesh_.used(v) || (border_[v] == 0 && helps(v)); });
+      return left.size() < before;
+    };
     // What fails now may succeed once a neighbour has moved.
-    for (std::size_t before = left.size() + 1; left.size() < before;) {
-      before = left.size();
-      std::erase_if(left, [&](std::uint32_t v) {
-        if (!mesh_.used(v)) return true;
-        return border_[v] == 0 && (move_to_representable(v) || contract_away(v));
-      });
-    }
+    do {
+      while (take_out([&](std::uint32_t v) {
+        return move_to_representable(v) || (optimiser_ && optimiser_->round(v));
+      })) {
+      }
+    } while (take_out([&](std::uint32_t v) { return contract_away(v); }));
     return left.size();
   }
 
@@ -445,7 +471,15 @@ class Decimator final : private Judge {
   std::optional<Tolerance> tolerance_;
   std::optional<Deviation> deviation_;
   std::optional<Optimiser> optimiser_;
-  bool measuring_ = false;             // costs are measured distances
+  bool measuring_ = false;  // costs are measured distances
+  double reached_ = 0;      // largest measured cost of a contraction
+  struct Failure {
+    std::uint32_t joined = ~0U;  // of both ends
+    double deviation = 0;        // that the contraction would take
+  };
+  std::unordered_map<std::uint64_t, Failure> failures_;  // of joint contractions, by edge
+  int patience_ = 0;                                     // joint contractions that may fail yet
+  std::vector<std::uint32_t> joined_;  // of a vertex: raised by joint contractions around it
   std::vector<std::uint32_t> around_;  // of a vertex: raised when anything in its star changes
   std::vector<std::uint32_t> hint_;    // per vertex: where the original is near
   std::vector<Deviation::Point> points_;
@@ -470,19 +504,19 @@ class Run {
  public:
   Run(const geom::Prepared& input, const DecimateOptions& options)
       : input_(input), options_(options) {
-    if (!options.keep_convex) flattener_.emplace(input, options.steps);
+    options_.effort = effective_effort(input, options);
+    if (options.keep_convex) return;
+    std::vector<std::uint32_t> flat = flat_vertices(input);
+    if (!flat.empty()) flattener_.emplace(input, std::move(flat), options.steps);
   }
 
   DecimateResult to(std::optional<std::size_t> target) {
-    if (flattener_) {
-      flattener_->run(target.value_or(0));
-      if (target && flattener_->vertices() <= *target &&
-          (options_.precision == Precision::Double || flattener_->is_float32())) {
-        DecimateResult result;
-        result.mesh = flattener_->mesh();
-        result.stop = Stop::VertexTarget;
-        return finished(std::move(result));
-      }
+    if (flattener_) flattener_->run(target.value_or(0));
+    if (target && !decimator_ && is_reached(*target)) {
+      DecimateResult result;
+      result.mesh = flattener_ ? flattener_->mesh() : input_.mesh;
+      result.stop = Stop::VertexTarget;
+      return finished(std::move(result));
     }
     if (!decimator_) start(target);
     DecimateResult result = decimator_->run(target);
@@ -495,6 +529,16 @@ class Run {
   }
 
  private:
+  /// Whether nothing is left to do but to flatten.
+  [[nodiscard]] bool is_reached(std::size_t target) const {
+    const std::size_t n = flattener_ ? flattener_->vertices() : input_.mesh.vertices.size();
+    if (n > target) return false;
+    if (options_.precision == Precision::Double) return true;
+    if (flattener_) return flattener_->is_float32();
+    return std::all_of(input_.mesh.vertices.begin(), input_.mesh.vertices.end(),
+                       [](const Vec3& p) { return geom::is_float32(p); });
+  }
+
   void start(std::optional<std::size_t> target) {
     if (flattener_) flatten();
     const geom::Prepared& input = flat_.mesh.triangles.empty() ? input_ : flat_;
@@ -556,7 +600,7 @@ class Run {
   }
 
   const geom::Prepared& input_;
-  const DecimateOptions& options_;
+  DecimateOptions options_;
   DecimateOptions inner_options_;
   std::vector<Step> inner_steps_;  // numbered as below
   std::optional<Flattener> flattener_;
@@ -570,6 +614,12 @@ class Run {
 };
 
 }  // namespace
+
+Effort effective_effort(const geom::Prepared& input, const DecimateOptions& options) {
+  const bool can_optimise =
+      !options.keep_convex && (input.closed || options.direction == Direction::Any);
+  return can_optimise ? options.effort : Effort::Fast;
+}
 
 DecimateResult decimate(const geom::Prepared& input, const DecimateOptions& options) {
   if (!options.vertices && !options.epsilon)

@@ -39,14 +39,50 @@ bool keeps_orientation(const std::array<Vec3, 3>& before, const std::array<Vec3,
 
 }  // namespace
 
-Flattener::Flattener(const geom::Prepared& input, std::vector<Step>* steps)
-    : m_(input), steps_(steps), waits_(input.mesh.vertices.size(), 0) {
-  for (std::uint32_t v = 0; v < m_.position.size(); ++v) {
-    if (!m_.mesh.used(v)) continue;
-    ++vertices_;
-    waits_[v] = 1;
-    todo_.push_back(v);
+std::vector<std::uint32_t> flat_vertices(const geom::Prepared& input) {
+  const geom::Mesh& mesh = input.mesh;
+  std::vector<Vec3> normal(mesh.triangles.size());
+  in_parallel(normal.size(), [&](std::size_t t) {
+    const geom::Triangle& tri = mesh.triangles[t];
+    const Vec3& a = mesh.vertices[tri[0]];
+    const Vec3 n = (mesh.vertices[tri[1]] - a).cross(mesh.vertices[tri[2]] - a);
+    const double length = n.norm();
+    normal[t] = length > 0 ? Vec3(n / length) : Vec3(Vec3::Zero());
+  });
+  // Triangles that stand for the planes met so far at each vertex.
+  constexpr std::uint32_t kNone = ~0U, kRuledOut = ~0U - 1;
+  struct Planes {
+    std::uint32_t first = kNone, second = kNone;
+  };
+  std::vector<Planes> planes(mesh.vertices.size());
+  for (std::uint32_t t = 0; t < normal.size(); ++t) {
+    for (const std::uint32_t v : mesh.triangles[t]) {
+      Planes& p = planes[v];
+      if (p.first == kRuledOut) continue;
+      if (p.first == kNone)
+        p.first = normal[t].squaredNorm() > 0.5 ? t : kRuledOut;
+      else if (normal[t].dot(normal[p.first]) >= kSamePlane)
+        continue;
+      else if (p.second == kNone)
+        p.second = t;
+      else if (normal[t].dot(normal[p.second]) < kSamePlane)
+        p.first = kRuledOut;
+    }
   }
+  std::vector<std::uint32_t> flat;
+  for (std::uint32_t v = 0; v < planes.size(); ++v)
+    if (planes[v].first < kRuledOut && input.border[v] == 0) flat.push_back(v);
+  return flat;
+}
+
+Flattener::Flattener(const geom::Prepared& input, std::vector<std::uint32_t> flat,
+                     std::vector<Step>* steps)
+    : m_(input),
+      steps_(steps),
+      vertices_(input.mesh.vertices.size()),
+      todo_(std::move(flat)),
+      waits_(input.mesh.vertices.size(), 0) {
+  for (const std::uint32_t v : todo_) waits_[v] = 1;
 }
 
 void Flattener::run(std::size_t target) {

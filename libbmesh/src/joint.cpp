@@ -16,12 +16,12 @@ constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 /// Share of the wrong side's deviations among the weights, at the end of a trial.
 constexpr double kPenalty = 3000;
-constexpr int kRounds = 6;          ///< of a trial
-constexpr double kHopeless = 3;     ///< times the limit, before the neighbours move
-constexpr int kSweeps = 3;          ///< of certified moves towards what the trial has found
-constexpr int kPulls = 2;           ///< and of pulling back after them, if that is near the limit:
-constexpr double kNearLimit = 1.5;  ///< within so many times of it
-constexpr int kPlaces = 5;          ///< tried for the contracted vertex
+constexpr int kRounds = 6;           ///< of a trial
+constexpr double kHopeless = 2;      ///< times the limit, before the neighbours move
+constexpr int kSweeps = 3;           ///< of certified moves towards what the trial has found
+constexpr int kPulls = 2;            ///< and of pulling back after them, if that is near the limit:
+constexpr double kNearLimit = 1.15;  ///< within so many times of it
+constexpr int kPlaces = 5;           ///< tried for the contracted vertex
 
 bool turns(const Vec3& before, const Vec3& after) {
   const double along = after.dot(before);
@@ -138,7 +138,7 @@ void Optimiser::attract(std::uint32_t v, double scale, double penalty, double sh
   if (!gather(v)) return;
   const Vec3 from = m_.position[v];
   place_star(from);
-  linearise(from, scale, penalty);
+  linearise(v, from, scale, penalty);
   const auto step = minimise(objective_, {objective_.bx, objective_.by, objective_.bz}, {},
                              kRegularisationDistance);
   if (!step || !step->allFinite()) return;
@@ -185,8 +185,9 @@ double Optimiser::region_largest(double limit) {
 }
 
 /// Tries the contraction without a certificate: fills target_ with where the vertices of around_
-/// should go. The mesh is as before afterwards. @return whether that may stay within the limit.
-bool Optimiser::imagine(std::uint32_t a, std::uint32_t b, double limit) {
+/// should go. The mesh is as before afterwards. @return the deviation then, or something above the
+/// limit; infinite where no place can be certified.
+double Optimiser::imagine(std::uint32_t a, std::uint32_t b, double limit) {
   const Vec3 pa = m_.position[a], pb = m_.position[b], middle = 0.5 * (pa + pb);
   const auto start = [&] {
     for (const Vec3& p : {middle, pa, pb}) {
@@ -196,21 +197,21 @@ bool Optimiser::imagine(std::uint32_t a, std::uint32_t b, double limit) {
     }
     return false;
   };
-  if (!start()) return false;
+  if (!start()) return kNoLimit;
   const double scale = limit * limit;
   for (int i = 0; i < 3; ++i) attract(a, scale, 1, 1, true);
-  bool good = star_largest(a, kHopeless * limit) <= kHopeless * limit;
-  if (good) {
+  double deviation = star_largest(a, kHopeless * limit);
+  if (deviation <= kHopeless * limit) {
     for (int i = 1; i <= kRounds; ++i) {
       const double penalty = std::pow(kPenalty, static_cast<double>(i) / kRounds);
       for (const std::uint32_t v : around_) attract(v, scale, penalty, 0.5, i % 2 == 0);
     }
-    good = region_largest(limit) <= limit;
+    deviation = region_largest(limit);
   }
   target_.clear();
   for (const std::uint32_t v : around_) target_.push_back(m_.position[v]);
   go_back();
-  return good;
+  return deviation;
 }
 
 /// A certified place near the wish for the contracted vertex; removed_ and added_ describe the
@@ -247,9 +248,10 @@ std::optional<Vec3> Optimiser::seek(std::uint32_t a, std::uint32_t b, const Vec3
   return to.allFinite() && holds(to) ? std::optional<Vec3>(to) : std::nullopt;
 }
 
-/// Moves v as near to the target as the original allows, by a certified step.
-void Optimiser::approach(std::uint32_t v, const Vec3& target) {
-  if (!gather(v)) return;
+/// Moves v as near to the target as the original allows, by a certified step; not if that leads
+/// away from it. @param alone  the error bound is kept by this step itself
+bool Optimiser::approach(std::uint32_t v, const Vec3& target, bool alone) {
+  if (!gather(v)) return false;
   const Vec3 from = m_.position[v], wish = from - target;
   place_star(from);
   fan_.assign(added_);
@@ -262,49 +264,60 @@ void Optimiser::approach(std::uint32_t v, const Vec3& target) {
   for (int i = 0; i < kPlaces; ++i) {
     fan_.half_spaces(rounding(from), planes_);
     const auto step = minimise(objective_, wish, planes_, kRegularisationDistance);
-    if (!step) return;
+    if (!step) return false;
     Vec3 to = from + *step;
     if (options_.precision == Precision::Float) to = geom::to_float32(to);
-    if (to == from || !to.allFinite() || folds(to) ||
-        (to - target).squaredNorm() >= wish.squaredNorm())
-      return;
+    if (to == from || !to.allFinite() || folds(to)) return false;
+    if (target != from && (to - target).squaredNorm() >= wish.squaredNorm()) return false;
     place_star(to);
-    if (!stays_flat(to)) return;
+    if (!stays_flat(to)) return false;
     if (!spares(removed_, true, to)) {
       ++statistics_.rejected_original;
       continue;
     }
+    if (alone && tolerance_ != nullptr) {
+      if (!tolerance_->admits(removed_, added_)) return false;
+      tolerance_->commit(removed_);
+    }
     move(v, to);
-    return;
+    return true;
   }
+  return false;
 }
 
-bool Optimiser::collapse(std::uint32_t a, std::uint32_t b, double limit) {
-  if (!joins(a, b)) return false;
+bool Optimiser::round(std::uint32_t v) { return approach(v, m_.position[v], true); }
+
+double Optimiser::collapse(std::uint32_t a, std::uint32_t b, double limit) {
+  if (!joins(a, b)) return kNoLimit;
   // The vertices that may move, and b.
   around_.assign({a, b});
   ++mark_value_;
   mark_[a] = mark_[b] = mark_value_;
   neighbours(a, around_);
   neighbours(b, around_);
+  // Where no place is certified now, hardly any will be when the vertices around have moved.
+  if (!seek(a, b, 0.5 * (m_.position[a] + m_.position[b]))) return kNoLimit;
   take(around_);
   std::erase(around_, b);
-  if (!imagine(a, b, limit)) return false;
+  double deviation = imagine(a, b, limit);
+  if (deviation > limit) return deviation;
 
   const auto give_up = [&](std::uint64_t& counter) {
     ++counter;
     go_back();
-    return false;
   };
-  for (std::size_t i = 1; i < around_.size(); ++i) approach(around_[i], target_[i]);
+  for (std::size_t i = 1; i < around_.size(); ++i) approach(around_[i], target_[i], false);
   const auto place = seek(a, b, target_[0]);
-  if (!place) return give_up(statistics_.rejected_original);
+  if (!place) {
+    give_up(statistics_.rejected_original);
+    return kNoLimit;
+  }
   contract(a, b, *place);
   if (options_.steps != nullptr) options_.steps->push_back({a, b, *place});
   for (int k = 0; k < kSweeps; ++k)
-    for (std::size_t i = 0; i < around_.size(); ++i) approach(around_[i], target_[i]);
-  const double largest = region_largest(kNearLimit * limit);
-  if (largest > limit && largest <= kNearLimit * limit) {
+    for (std::size_t i = 0; i < around_.size(); ++i) approach(around_[i], target_[i], false);
+  deviation = region_largest(kNearLimit * limit);
+  if (deviation > limit && deviation <= kNearLimit * limit) {
     for (int k = 0; k < kPulls; ++k) {
       for (const std::uint32_t v : around_) {
         movable_[v] = 1;
@@ -312,15 +325,20 @@ bool Optimiser::collapse(std::uint32_t a, std::uint32_t b, double limit) {
       }
     }
   }
-  if (region_largest(limit) > limit) return give_up(statistics_.rejected_distance);
+  if (region_largest(limit) > limit) {
+    give_up(statistics_.rejected_distance);
+    return deviation;
+  }
   if (tolerance_ != nullptr) {
-    if (!tolerance_->admits(snapshot_.triangles, added_))
-      return give_up(statistics_.rejected_distance);
+    if (!tolerance_->admits(snapshot_.triangles, added_)) {
+      give_up(statistics_.rejected_distance);
+      return limit;
+    }
     tolerance_->commit(snapshot_.triangles);
   }
   ++statistics_.contractions;
   for (const std::uint32_t v : around_) disturb(v);
-  return true;
+  return 0;
 }
 
 }  // namespace kaboum::bmesh

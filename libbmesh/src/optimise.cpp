@@ -136,9 +136,9 @@ bool Optimiser::settled(std::span<const std::uint32_t> removed, const Vec3& to) 
   return spared;
 }
 
-/// Squared distances of the samples, linear in the displacement of the apex, weighted by how far
-/// they are: (d / scale)².
-void Optimiser::linearise(const Vec3& apex, double scale, double penalty) {
+/// Squared distances of the samples, linear in the displacement of v at the apex, weighted by how
+/// far they are: (d / scale)².
+void Optimiser::linearise(std::uint32_t v, const Vec3& apex, double scale, double penalty) {
   objective_ = {};
   Vec3 b = Vec3::Zero();
   const double sign = options_.direction == Direction::Inner ? -1 : 1;
@@ -163,7 +163,7 @@ void Optimiser::linearise(const Vec3& apex, double scale, double penalty) {
       add(n, lambda, n.dot(apex - o), weight);
     });
   }
-  std::uint32_t hint = 0;
+  std::uint32_t& hint = hint_[v];
   const auto add_point = [&](const Vec3& x, double lambda, double weight) {
     deviation_.original().squared(x, hint);
     const auto& c = deviation_.original().corners(hint);
@@ -231,7 +231,7 @@ bool Optimiser::pull_back(std::uint32_t v, bool alone) {
   const auto before =
       deviation_.energy(removed_, added_, points_, hint, std::numeric_limits<double>::infinity());
   if (!(before.squared > 0)) return false;
-  linearise(from, before.squared);
+  linearise(v, from, before.squared);
   fan_.assign(added_);
   if (options_.direction != Direction::Any)
     for (std::size_t i = 0; i < ring_.size(); ++i)

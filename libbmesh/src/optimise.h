@@ -53,7 +53,13 @@ class Optimiser {
 
   /// Contracts the edge (a, b) and moves the vertices around with it, if the deviation around stays
   /// within `limit` then. [length]
-  bool collapse(std::uint32_t a, std::uint32_t b, double limit);
+  /// @return 0 if that was done, else the deviation that it would take, roughly; infinite where no
+  ///   place can be certified.
+  double collapse(std::uint32_t a, std::uint32_t b, double limit);
+
+  /// Moves v to a representable place near by that the original bounds, though the present mesh may
+  /// not. @return whether it has moved.
+  bool round(std::uint32_t v);
 
   /// One round over all vertices, then all edges. @return steps taken.
   std::size_t pass();
@@ -79,7 +85,7 @@ class Optimiser {
   double star_largest(std::uint32_t v, double limit);
   double region_largest(double limit);
   std::optional<Vec3> seek(std::uint32_t a, std::uint32_t b, const Vec3& wish);
-  bool imagine(std::uint32_t a, std::uint32_t b, double limit);
+  double imagine(std::uint32_t a, std::uint32_t b, double limit);
   bool joins(std::uint32_t a, std::uint32_t b);
   bool gather_edge(std::uint32_t a, std::uint32_t b, const Vec3& to);
   void contract(std::uint32_t a, std::uint32_t b, const Vec3& to);
@@ -90,8 +96,8 @@ class Optimiser {
   bool gather(std::uint32_t v);
   void place_star(const Vec3& apex);
   bool spares(std::span<const std::uint32_t> removed, bool own, const Vec3& to);
-  void linearise(const Vec3& apex, double scale, double penalty = 1);
-  void approach(std::uint32_t v, const Vec3& target);
+  void linearise(std::uint32_t v, const Vec3& apex, double scale, double penalty = 1);
+  bool approach(std::uint32_t v, const Vec3& target, bool alone);
   [[nodiscard]] bool folds(const Vec3& to) const;
   [[nodiscard]] bool stays_flat(const Vec3& to);
   [[nodiscard]] bool certified(std::uint32_t t, const Vec3& to,

@@ -90,6 +90,19 @@ class Faces {
     }
   }
 
+  /// Whether all of the box is certainly beyond one of the faces: so is any triangle in it then.
+  [[nodiscard]] bool beyond(const geom::Box3& box) const {
+    if (!certain_) return false;
+    for (const Face& f : face_) {
+      const Vec3 low = box.min - f.a, high = box.max - f.a;
+      // Over the box, the rounded normal's heights are least at one of its corners.
+      const double least = f.normal.cwiseProduct(low).cwiseMin(f.normal.cwiseProduct(high)).sum();
+      const double error = 2 * f.error * low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff();
+      if (error > kLeastError && least > error) return true;
+    }
+    return false;
+  }
+
   enum class Place {
     Beyond,  ///< one of the faces, all of the triangle
     Within,  ///< some of it, and so is the answer if that is wrong by rounding
@@ -189,10 +202,12 @@ bool OriginalSolid::contains(const Tetrahedron& tetrahedron, bool inside,
   // Boxes that only touch the open one are left out.
   const Faces faces(tetrahedron);
   const auto overlaps = [&](const geom::Box3& b) {
-    return !enough && (b.min.array() < box.max.array()).all() &&
-           (b.max.array() > box.min.array()).all();
+    return (b.min.array() < box.max.array()).all() && (b.max.array() > box.min.array()).all();
   };
-  bvh_.traverse(overlaps, [&](std::uint32_t t) {
+  const auto may_meet = [&](const geom::Box3& b) {
+    return !enough && overlaps(b) && !faces.beyond(b);
+  };
+  bvh_.traverse(may_meet, [&](std::uint32_t t) {
     if (enough) return;
     const geom::Triangle& tri = original_.triangles[t];
     const std::array<Vec3, 3> corners{original_.vertices[tri[0]], original_.vertices[tri[1]],

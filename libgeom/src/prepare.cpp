@@ -3,6 +3,8 @@
 #include <kaboum/geom/topology.h>
 #include <kaboum/geom/winding.h>
 
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -36,8 +38,8 @@ class Preparation {
     if (!options_.keep_orientation) turn_components();
     drop_copies();
     number_by_first_use();
-    find_border();
-    components(edges_, mesh().triangles.size(), &out_.components);
+    tbb::parallel_invoke([&] { find_border(); },
+                         [&] { components(edges_, mesh().triangles.size(), &out_.components); });
     if (options_.keep_orientation && out_.closed && !(signed_volume(out_.mesh) > 0))
       out_.notes.push_back(
           "the signed volume is not positive: as oriented, the mesh bounds little or no "
@@ -65,6 +67,7 @@ class Preparation {
   }
 
   void find_edges() {
+    coincident_.reset();
     std::vector<EdgeUse>().swap(edges_);  // first, for they are large
     edges_ = edge_uses(mesh());
   }
@@ -194,6 +197,12 @@ class Preparation {
     std::vector<std::uint32_t> copies;  // further triangles like one that stays
   };
 
+  /// Found once for each state of the mesh.
+  const Coincident& coincident() {
+    if (!coincident_) coincident_ = find_coincident();
+    return *coincident_;
+  }
+
   Coincident find_coincident() {
     std::vector<std::pair<Triangle, std::uint32_t>> keyed;
     keyed.reserve(mesh().triangles.size());
@@ -243,10 +252,9 @@ class Preparation {
   }
 
   void cancel_pairs() {
-    const Coincident found = find_coincident();
-    if (found.pairs.empty()) return;
+    if (coincident().pairs.empty()) return;
     std::vector<char> keep(mesh().triangles.size(), 1);
-    drop_pairs(found.pairs, keep);
+    drop_pairs(coincident().pairs, keep);
     filter(keep);
     if (mesh().empty())
       throw Error(ErrorCode::InvalidInput,
@@ -291,7 +299,7 @@ class Preparation {
   /// lowers the winding number inside; that leaves the solid alone only where nothing else lowers
   /// it, so copies stay if any component is oriented inwards.
   void drop_copies() {
-    const std::vector<std::uint32_t> copies = find_coincident().copies;
+    const std::vector<std::uint32_t> copies = coincident().copies;
     if (copies.empty()) return;
     std::vector<char> closed_component;
     const std::vector<std::uint32_t> component = closed_components(closed_component);
@@ -509,6 +517,7 @@ class Preparation {
   PrepareOptions options_;
   Prepared out_;
   std::vector<EdgeUse> edges_;
+  std::optional<Coincident> coincident_;  // of the mesh with these edges
 };
 
 }  // namespace

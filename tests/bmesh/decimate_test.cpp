@@ -12,7 +12,10 @@
 
 #include <filesystem>
 
+#include "part.h"
+#include "recorded.h"
 #include "support/families.h"
+#include "support/shapes.h"
 
 namespace {
 
@@ -198,17 +201,13 @@ TEST(Decimate, EveryCostIsCertified) {
     for (const Cost cost : {Cost::Distance, Cost::Planes, Cost::PlanesAdapted, Cost::PlanesDiagonal,
                             Cost::Triangles}) {
       for (const Direction direction : {Direction::Outer, Direction::Inner}) {
-        Log log;
-        log.direction = direction;
-        record_preparation(p, f.mesh.triangles.size(), log);
         DecimateOptions o = to_vertices(p.mesh.vertices.size() / 5 + 4, direction);
         o.cost = cost;
         if (cost == Cost::Distance) o.effort = Effort::Normal;
-        o.steps = &log.steps;
-        const auto r = decimate(p, o);
-        const auto checked = replay(f.mesh, log, r.mesh);
+        const test::Recorded r = test::record(f.mesh, o);
+        const auto checked = replay(f.mesh, r.log, r.result.mesh);
         EXPECT_TRUE(checked.verified) << f.name << ": " << checked.violation;
-        contractions += r.statistics.contractions;
+        contractions += r.result.statistics.contractions;
       }
     }
     EXPECT_GT(contractions, 0U) << f.name;
@@ -254,21 +253,67 @@ TEST(Decimate, MovingTheVerticesAroundSavesVertices) {
     o.direction = direction;
     o.epsilon = epsilon;
     const std::size_t alone = decimate(p, o).mesh.vertices.size();
-    Log log;
-    log.direction = direction;
-    record_preparation(p, sphere.mesh.triangles.size(), log);
     o.cost = Cost::Distance;
     o.effort = Effort::Normal;
-    o.steps = &log.steps;
-    const auto r = decimate(p, o);
+    const auto [input, log, r] = test::record(sphere.mesh, o);
     EXPECT_EQ(r.stop, Stop::ErrorBound);
     EXPECT_LT(5 * r.mesh.vertices.size(), 4 * alone);
-    const auto checked = replay(sphere.mesh, log, r.mesh);
+    const auto checked = replay(input, log, r.mesh);
     EXPECT_TRUE(checked.verified) << checked.violation;
     const auto there = geom::directed_distance(p.mesh, geom::DistanceQuery(r.mesh));
     const auto back = geom::directed_distance(r.mesh, geom::DistanceQuery(p.mesh));
     EXPECT_LE(std::max(there.max_lower, back.max_lower), epsilon);
   }
+}
+
+double hausdorff(const geom::Mesh& a, const geom::Mesh& b) {
+  return std::max(geom::directed_distance(a, geom::DistanceQuery(b)).max_upper,
+                  geom::directed_distance(b, geom::DistanceQuery(a)).max_upper);
+}
+
+// Vertices of the input that are left, between others that were pulled back to it: no place bounds
+// the present mesh, but some bound the original.
+TEST(Decimate, TightMeshesFindFloat32Places) {
+  const geom::Mesh bracket = examples::make_bracket();
+  for (const Cost cost : {Cost::Planes, Cost::Triangles}) {
+    DecimateOptions o = to_vertices(bracket.vertices.size() * 3 / 10);
+    o.cost = cost;
+    o.effort = Effort::Normal;
+    o.precision = Precision::Float;
+    const auto [input, log, r] = test::record(bracket, o);
+    EXPECT_EQ(r.unrepresentable, 0U);
+    EXPECT_GE(1000 * r.mesh.vertices.size(), 999 * *o.vertices);  // hardly any contracted away
+    const auto checked = replay(input, log, r.mesh);
+    EXPECT_TRUE(checked.verified) << checked.violation;
+  }
+}
+
+TEST(Decimate, EffortIsFastWhereMoreHasNoEffect) {
+  const auto open = geom::prepare(test::open_families().front().mesh);
+  const auto closed = geom::prepare(solids().front().mesh);
+  DecimateOptions o = to_vertices(open.mesh.vertices.size() / 2);
+  o.cost = Cost::Distance;
+  o.effort = Effort::Normal;
+  EXPECT_EQ(effective_effort(closed, o), Effort::Normal);
+  EXPECT_EQ(effective_effort(open, o), Effort::Fast);
+  const auto wished = decimate(open, o);
+  o.effort = Effort::Fast;
+  EXPECT_EQ(wished.mesh.vertices, decimate(open, o).mesh.vertices);
+  o.effort = Effort::Best;
+  o.direction = Direction::Any;
+  EXPECT_EQ(effective_effort(open, o), Effort::Best);
+  o.keep_convex = true;
+  EXPECT_EQ(effective_effort(closed, o), Effort::Fast);
+}
+
+// Hardly any contraction: nothing has been reached that joint ones could go by.
+TEST(Decimate, FewContractionsStayNear) {
+  const auto p = geom::prepare(test::icosphere(5));
+  DecimateOptions o = to_vertices(p.mesh.vertices.size() * 9 / 10);
+  const double fast = hausdorff(p.mesh, decimate(p, o).mesh);
+  o.cost = Cost::Distance;
+  o.effort = Effort::Normal;
+  EXPECT_LE(hausdorff(p.mesh, decimate(p, o).mesh), 1.2 * fast);
 }
 
 TEST(Decimate, KeepsConvexity) {
@@ -335,11 +380,6 @@ TEST(Decimate, DoesNotDependOnTheScale) {
   }
 }
 
-double hausdorff(const geom::Mesh& a, const geom::Mesh& b) {
-  return std::max(geom::directed_distance(a, geom::DistanceQuery(b)).max_upper,
-                  geom::directed_distance(b, geom::DistanceQuery(a)).max_upper);
-}
-
 // Other factors and far offsets round the input differently, and a greedy choice may then fall
 // another way: no violation, and the same distance on the average over the families.
 TEST(Decimate, IsAsGoodAtAnyScaleAndFarFromTheOrigin) {
@@ -359,12 +399,8 @@ TEST(Decimate, IsAsGoodAtAnyScaleAndFarFromTheOrigin) {
       const auto q = geom::prepare(moved);
       const DecimateOptions to_quarter = to_vertices(p.mesh.vertices.size() / 4 + 4);
       const double reference = hausdorff(p.mesh, decimate(p, to_quarter).mesh) / diagonal;
-      Log log;
-      record_preparation(q, moved.triangles.size(), log);
-      DecimateOptions o = to_quarter;
-      o.steps = &log.steps;
-      const auto r = decimate(q, o);
-      EXPECT_TRUE(replay(moved, log, r.mesh).verified) << f.name << " " << factor;
+      const auto [input, log, r] = test::record(moved, to_quarter);
+      EXPECT_TRUE(replay(input, log, r.mesh).verified) << f.name << " " << factor;
       const double there = hausdorff(q.mesh, r.mesh) / geom::bounding_box(q.mesh).diagonal();
       EXPECT_LE(there, 2 * reference + 1e-7) << f.name << " " << factor;
       log_ratios += std::log((there + 1e-7) / (reference + 1e-7));

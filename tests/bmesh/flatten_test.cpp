@@ -9,6 +9,7 @@
 
 #include <set>
 
+#include "recorded.h"
 #include "support/shapes.h"
 
 namespace {
@@ -59,16 +60,11 @@ void expect_same(const geom::Mesh& input, const geom::Mesh& result) {
   for (const geom::Vec3& p : result.vertices) EXPECT_TRUE(corners.contains(key(p)));
 }
 
-DecimateResult run(const geom::Mesh& mesh, DecimateOptions o) {
-  Log log;
-  const auto p = geom::prepare(mesh);
-  log.direction = o.direction;
-  record_preparation(p, mesh.triangles.size(), log);
-  o.steps = &log.steps;
-  DecimateResult r = decimate(p, o);
-  const ReplayResult checked = replay(mesh, log, r.mesh);
+DecimateResult run(const geom::Mesh& mesh, const DecimateOptions& o) {
+  test::Recorded r = test::record(mesh, o);
+  const ReplayResult checked = replay(mesh, r.log, r.result.mesh);
   EXPECT_TRUE(checked.verified) << checked.violation;
-  return r;
+  return std::move(r.result);
 }
 
 std::vector<DecimateOptions> methods(std::size_t vertices) {

@@ -8,6 +8,7 @@
 
 #include <random>
 
+#include "recorded.h"
 #include "support/families.h"
 #include "support/shapes.h"
 
@@ -25,10 +26,9 @@ struct Series {
 Series run(const geom::Mesh& mesh, DecimateOptions o, const std::vector<std::size_t>& vertices) {
   Series s{mesh, {}, {}};
   const auto p = geom::prepare(mesh);
-  s.progressive.log.direction = o.direction;
+  s.progressive.log = test::log_of_preparation(mesh, p, o.direction);
   s.progressive.log.input_sha256 = std::string(64, 'a');
   s.progressive.log.tool = "test 1";
-  record_preparation(p, mesh.triangles.size(), s.progressive.log);
   s.progressive.base = p.mesh;
   s.progressive.double_precision = o.precision == Precision::Double;
   o.steps = &s.progressive.log.steps;

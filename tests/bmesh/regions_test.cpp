@@ -14,6 +14,7 @@
 #include <random>
 #include <set>
 
+#include "recorded.h"
 #include "support/shapes.h"
 
 namespace {
@@ -34,34 +35,21 @@ geom::Mesh open_mesh() {
                     [](double x, double y) { return 0.1 * std::sin(9 * x) * std::cos(7 * y); });
 }
 
-struct Recorded {
-  geom::Mesh input;
-  Log log;
-  DecimateResult result;
-};
-
-Recorded run(const geom::Mesh& mesh, Direction direction, Cost cost = Cost::Planes,
-             std::size_t threads = 0) {
+test::Recorded run(const geom::Mesh& mesh, Direction direction, Cost cost = Cost::Planes,
+                   std::size_t threads = 0) {
   std::optional<tbb::global_control> limit;
   if (threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, threads);
-  Recorded r{mesh, {}, {}};
-  const auto p = geom::prepare(mesh);
-  r.log.direction = direction;
-  record_preparation(p, mesh.triangles.size(), r.log);
   DecimateOptions o;
   o.direction = direction;
   o.cost = cost;
-  o.vertices = p.mesh.vertices.size() / 25;
-  o.steps = &r.log.steps;
-  r.result = decimate(p, o);
-  return r;
+  return test::record(mesh, o, 0.04);
 }
 
 // Across the tube of the torus, far from what the step may do.
 TEST(Regions, StepsAcrossTheSurfaceAreRefuted) {
   std::mt19937_64 random(12);
   for (const Direction d : {Direction::Outer, Direction::Inner}) {
-    const Recorded r = run(closed_mesh(), d);
+    const test::Recorded r = run(closed_mesh(), d);
     for (int i = 0; i < 20; ++i) {
       Log mutant = r.log;
       geom::Vec3& place = mutant.steps[random() % (mutant.steps.size() / 2)].position;
@@ -92,11 +80,13 @@ struct Reduced {
 };
 
 TEST(Regions, AreTheSameForAnyNumberOfThreads) {
-  for (const auto& [mesh, cost] :
-       {std::pair(closed_mesh(), Cost::Planes), std::pair(crossing_mesh(), Cost::Distance)}) {
-    const Recorded one = run(mesh, Direction::Outer, cost, 1);
+  for (const auto& [mesh, direction, cost] :
+       {std::tuple(closed_mesh(), Direction::Outer, Cost::Planes),
+        std::tuple(crossing_mesh(), Direction::Outer, Cost::Distance),
+        std::tuple(closed_mesh(), Direction::Inner, Cost::Distance)}) {
+    const test::Recorded one = run(mesh, direction, cost, 1);
     for (const std::size_t threads : {2, 5}) {
-      const Recorded other = run(mesh, Direction::Outer, cost, threads);
+      const test::Recorded other = run(mesh, direction, cost, threads);
       EXPECT_EQ(one.result.mesh.triangles, other.result.mesh.triangles);
       EXPECT_EQ(one.result.mesh.vertices, other.result.mesh.vertices);
       ASSERT_EQ(one.log.steps.size(), other.log.steps.size());
@@ -114,7 +104,7 @@ TEST(Regions, AreTheSameForAnyNumberOfThreads) {
 TEST(Regions, StepsAreReplayed) {
   for (const geom::Mesh& mesh : {closed_mesh(), crossing_mesh(), open_mesh()}) {
     for (const Direction d : {Direction::Outer, Direction::Inner}) {
-      const Recorded r = run(mesh, d);
+      const test::Recorded r = run(mesh, d);
       EXPECT_LT(r.result.mesh.vertices.size(), mesh.vertices.size() / 5);
       const auto checked = replay(r.input, r.log, r.result.mesh);
       EXPECT_TRUE(checked.verified) << checked.violation;
@@ -160,8 +150,7 @@ TEST(Regions, LeaveAMeshInOrder) {
     EXPECT_EQ(geom::analyse(left).closed(), r.input.closed);
     EXPECT_EQ(geom::analyse(left).nonmanifold_edges, 0U);
     // The steps lead to just this mesh.
-    Log log;
-    record_preparation(r.input, mesh.triangles.size(), log);
+    Log log = test::log_of_preparation(mesh, r.input, Direction::Outer);
     log.steps = r.steps;
     const auto checked = replay(mesh, log, left);
     EXPECT_TRUE(checked.verified) << checked.violation;

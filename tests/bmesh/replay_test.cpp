@@ -6,6 +6,7 @@
 
 #include <random>
 
+#include "recorded.h"
 #include "support/families.h"
 
 namespace {
@@ -13,26 +14,13 @@ namespace {
 using namespace kaboum;         // NOLINT: the test uses most of it
 using namespace kaboum::bmesh;  // NOLINT
 
-struct Recorded {
-  geom::Mesh input;
-  Log log;
-  geom::Mesh result;
-};
-
-Recorded run(const geom::Mesh& mesh, Direction direction, Cost cost = Cost::Planes,
-             Effort effort = Effort::Fast) {
-  Recorded r{mesh, {}, {}};
-  const auto p = geom::prepare(mesh);
-  r.log.direction = direction;
-  record_preparation(p, mesh.triangles.size(), r.log);
+test::Recorded run(const geom::Mesh& mesh, Direction direction, Cost cost = Cost::Planes,
+                   Effort effort = Effort::Fast) {
   DecimateOptions o;
   o.direction = direction;
   o.cost = cost;
   o.effort = effort;
-  o.vertices = p.mesh.vertices.size() / 3;
-  o.steps = &r.log.steps;
-  r.result = decimate(p, o).mesh;
-  return r;
+  return test::record(mesh, o, 1.0 / 3);
 }
 
 geom::Mesh sphere() {
@@ -43,14 +31,14 @@ geom::Mesh sphere() {
 
 TEST(Replay, VerifiesWhatDecimateDid) {
   for (const Direction d : {Direction::Outer, Direction::Inner, Direction::Any}) {
-    const Recorded r = run(sphere(), d);
-    const auto checked = replay(r.input, r.log, r.result);
+    const test::Recorded r = run(sphere(), d);
+    const auto checked = replay(r.input, r.log, r.result.mesh);
     EXPECT_TRUE(checked.verified) << checked.violation;
     EXPECT_TRUE(checked.closed);
     EXPECT_EQ(checked.steps, r.log.steps.size());
     EXPECT_EQ(checked.predicates == 0, d == Direction::Any);
-    const Recorded best = run(sphere(), d, Cost::Distance, Effort::Best);
-    const auto also = replay(best.input, best.log, best.result);
+    const test::Recorded best = run(sphere(), d, Cost::Distance, Effort::Best);
+    const auto also = replay(best.input, best.log, best.result.mesh);
     EXPECT_TRUE(also.verified) << also.violation;
   }
 }
@@ -61,21 +49,21 @@ TEST(Replay, RefutesInwardSteps) {
   std::mt19937_64 random(51);
   const geom::Vec3 center = geom::bounding_box(sphere()).center();
   for (const Direction d : {Direction::Outer, Direction::Inner}) {
-    const Recorded r = run(sphere(), d);
+    const test::Recorded r = run(sphere(), d);
     for (const double size : {1e-2, 1e-4, 1e-6}) {
       for (int i = 0; i < 20; ++i) {
         Log mutant = r.log;
         auto& step = mutant.steps[random() % mutant.steps.size()];
         const double sign = d == Direction::Outer ? -1 : 1;
         step.position += sign * size * (step.position - center);
-        const auto checked = replay(r.input, mutant, r.result);
+        const auto checked = replay(r.input, mutant, r.result.mesh);
         EXPECT_FALSE(checked.verified);
         EXPECT_FALSE(checked.violation.empty());
       }
     }
     Log swapped = r.log;
     swapped.direction = d == Direction::Outer ? Direction::Inner : Direction::Outer;
-    EXPECT_FALSE(replay(r.input, swapped, r.result).verified);
+    EXPECT_FALSE(replay(r.input, swapped, r.result.mesh).verified);
   }
 }
 
@@ -86,8 +74,8 @@ TEST(Replay, RefutesStepsThatCutTheOriginal) {
   const geom::Vec3 center = geom::bounding_box(sphere()).center();
   std::size_t flips = 0;
   for (const Direction d : {Direction::Outer, Direction::Inner}) {
-    const Recorded r = run(sphere(), d, Cost::Distance, Effort::Normal);
-    const auto checked = replay(r.input, r.log, r.result);
+    const test::Recorded r = run(sphere(), d, Cost::Distance, Effort::Normal);
+    const auto checked = replay(r.input, r.log, r.result.mesh);
     ASSERT_TRUE(checked.verified) << checked.violation;
     EXPECT_GT(checked.against_original, 0U);
     std::size_t pull_backs = 0;
@@ -104,16 +92,16 @@ TEST(Replay, RefutesStepsThatCutTheOriginal) {
       if (random() % 16 == 0) {
         Log mutant = r.log;
         mutant.steps[i].position += sign * 0.3 * (mutant.steps[i].position - center);
-        const auto far = replay(r.input, mutant, r.result);
+        const auto far = replay(r.input, mutant, r.result.mesh);
         EXPECT_FALSE(far.verified);
         EXPECT_NE(far.violation.find("step"), std::string::npos) << far.violation;
       }
       // Little: if it stays in the result.
-      const auto& v = r.result.vertices;
+      const auto& v = r.result.mesh.vertices;
       if (std::find(v.begin(), v.end(), r.log.steps[i].position) == v.end()) continue;
       Log mutant = r.log;
       mutant.steps[i].position += sign * 1e-6 * (mutant.steps[i].position - center);
-      EXPECT_FALSE(replay(r.input, mutant, r.result).verified);
+      EXPECT_FALSE(replay(r.input, mutant, r.result.mesh).verified);
       ++tried;
     }
     EXPECT_GT(tried, 10);
@@ -170,17 +158,17 @@ TEST(Replay, RefutesFlipsThatCutTheOriginal) {
 }
 
 TEST(Replay, RefutesAnotherResult) {
-  const Recorded r = run(sphere(), Direction::Outer);
-  geom::Mesh moved = r.result;
+  const test::Recorded r = run(sphere(), Direction::Outer);
+  geom::Mesh moved = r.result.mesh;
   moved.vertices[3].x() = std::nextafter(moved.vertices[3].x(), 1e9);
   EXPECT_FALSE(replay(r.input, r.log, moved).verified);
-  geom::Mesh fewer = r.result;
+  geom::Mesh fewer = r.result.mesh;
   fewer.triangles.pop_back();
   EXPECT_FALSE(replay(r.input, r.log, fewer).verified);
-  geom::Mesh turned = r.result;
+  geom::Mesh turned = r.result.mesh;
   std::swap(turned.triangles[0][0], turned.triangles[0][1]);
   EXPECT_FALSE(replay(r.input, r.log, turned).verified);
-  geom::Mesh rotated = r.result;
+  geom::Mesh rotated = r.result.mesh;
   std::rotate(rotated.triangles[0].begin(), rotated.triangles[0].begin() + 1,
               rotated.triangles[0].end());
   std::reverse(rotated.triangles.begin(), rotated.triangles.end());
@@ -188,25 +176,25 @@ TEST(Replay, RefutesAnotherResult) {
 }
 
 TEST(Replay, RefutesDropsThatChangeTheSolid) {
-  Recorded r = run(sphere(), Direction::Outer);
+  test::Recorded r = run(sphere(), Direction::Outer);
   r.log.dropped.push_back(5);
-  EXPECT_FALSE(replay(r.input, r.log, r.result).verified);
+  EXPECT_FALSE(replay(r.input, r.log, r.result.mesh).verified);
   // A real copy may go.
   geom::Mesh twice = sphere();
   const auto n = twice.triangles.size();
   for (std::size_t t = 0; t < n; ++t) twice.triangles.push_back(twice.triangles[t]);
-  const Recorded copy = run(twice, Direction::Outer);
+  const test::Recorded copy = run(twice, Direction::Outer);
   EXPECT_EQ(copy.log.dropped.size(), n);
-  EXPECT_TRUE(replay(copy.input, copy.log, copy.result).verified);
-  Recorded partial = copy;
+  EXPECT_TRUE(replay(copy.input, copy.log, copy.result.mesh).verified);
+  test::Recorded partial = copy;
   partial.log.dropped.pop_back();
-  EXPECT_FALSE(replay(partial.input, partial.log, partial.result).verified);
+  EXPECT_FALSE(replay(partial.input, partial.log, partial.result.mesh).verified);
 }
 
 TEST(Replay, RefutesMovesOfTheBorder) {
   for (const auto& f : test::open_families()) {
-    Recorded r = run(f.mesh, Direction::Outer);
-    const auto checked = replay(r.input, r.log, r.result);
+    test::Recorded r = run(f.mesh, Direction::Outer);
+    const auto checked = replay(r.input, r.log, r.result.mesh);
     EXPECT_TRUE(checked.verified) << f.name << ": " << checked.violation;
     EXPECT_FALSE(checked.closed);
     const auto p = geom::prepare(f.mesh);
@@ -215,23 +203,23 @@ TEST(Replay, RefutesMovesOfTheBorder) {
       Log mutant = r.log;
       mutant.steps.insert(mutant.steps.begin(),
                           {v, v, p.mesh.vertices[v] + geom::Vec3(0, 0, 1e-9)});
-      EXPECT_FALSE(replay(r.input, mutant, r.result).verified) << f.name;
+      EXPECT_FALSE(replay(r.input, mutant, r.result.mesh).verified) << f.name;
       break;
     }
   }
 }
 
 TEST(Replay, RefusesNonsense) {
-  Recorded r = run(sphere(), Direction::Outer);
+  test::Recorded r = run(sphere(), Direction::Outer);
   Log mutant = r.log;
   mutant.steps[0].gone = 1U << 30;
-  EXPECT_THROW(replay(r.input, mutant, r.result), Error);
+  EXPECT_THROW(replay(r.input, mutant, r.result.mesh), Error);
   mutant = r.log;
   mutant.turned.push_back(1U << 30);
-  EXPECT_THROW(replay(r.input, mutant, r.result), Error);
+  EXPECT_THROW(replay(r.input, mutant, r.result.mesh), Error);
   mutant = r.log;
   mutant.steps[0].position.x() = std::nan("");
-  EXPECT_FALSE(replay(r.input, mutant, r.result).verified);
+  EXPECT_FALSE(replay(r.input, mutant, r.result.mesh).verified);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ enum class Cost {
 };
 
 /// How much is done for tightness besides contracting. Anything but Fast needs a closed mesh (or
-/// Direction::Any) and excludes keep_convex; it is Fast otherwise.
+/// Direction::Any) and excludes keep_convex; it is Fast otherwise: see `effective_effort`.
 enum class Effort {
   Fast,  ///< nothing
   /// Vertices are pulled back towards the original and edges flipped, in some rounds; with
@@ -34,24 +34,28 @@ enum class Effort {
 /// Numbers that result vertices are made of.
 enum class Precision { Float, Double };
 
+/// The defaults are the thesis's: quick, and the same for every mesh, for callers that decimate in
+/// passing. bmesh-decimate's are Cost::Distance and Effort::Normal, for results that are kept.
 struct DecimateOptions {
   Direction direction = Direction::Outer;
   Cost cost = Cost::Planes;
   Effort effort = Effort::Fast;
-  bool as_printed =
-      false;  ///< the thesis's formulas where they are known to be wrong (PlanesDiagonal)
+  bool as_printed = false;  ///< PlanesDiagonal: with the thesis's formulas that are known wrong
   Precision precision = Precision::Float;
   std::optional<std::size_t> vertices;  ///< stop at this many vertices
   std::optional<double> epsilon;        ///< keep both one-sided distances within this. [length] > 0
   bool keep_convex = false;             ///< convex in, convex out, exactly
   /// Edges whose faces' normals differ by more than this also cost the distance to the plane
   /// through them across their mean normal ([gaschler2016] §4.3.5), against spikes off knife edges.
-  /// [degrees]
+  /// Costs Planes, PlanesAdapted and PlanesDiagonal only. [degrees]
   double sharp_angle = 90;
   std::vector<Step>* steps = nullptr;  ///< receives the steps, when not null
   /// Called now and then with the current number of vertices; may throw to cancel.
   std::function<void(std::size_t vertices)> progress;
 };
+
+/// The effort that is made: options.effort, or Fast where more has no effect on this mesh.
+Effort effective_effort(const geom::Prepared& input, const DecimateOptions& options);
 
 /// Why decimation ended.
 enum class Stop {

@@ -1,0 +1,39 @@
+// Decimation with the log of what it has done, as `bmesh-decimate --log` writes it.
+#pragma once
+
+#include <kaboum/bmesh/decimate.h>
+#include <kaboum/bmesh/log.h>
+#include <kaboum/geom/prepare.h>
+
+#include <cstddef>
+
+namespace kaboum::test {
+
+/// A log that holds the preparation and no step yet.
+inline bmesh::Log log_of_preparation(const geom::Mesh& input, const geom::Prepared& prepared,
+                                     bmesh::Direction direction) {
+  bmesh::Log log;
+  log.direction = direction;
+  bmesh::record_preparation(prepared, input.triangles.size(), log);
+  return log;
+}
+
+struct Recorded {
+  geom::Mesh input;
+  bmesh::Log log;
+  bmesh::DecimateResult result;
+};
+
+/// @param share  of the vertices of the mesh as prepared that are left; 0: as the options say.
+inline Recorded record(const geom::Mesh& mesh, bmesh::DecimateOptions options, double share = 0) {
+  const geom::Prepared p = geom::prepare(mesh);
+  Recorded r{mesh, log_of_preparation(mesh, p, options.direction), {}};
+  if (share > 0)
+    options.vertices =
+        static_cast<std::size_t>(share * static_cast<double>(p.mesh.vertices.size()));
+  options.steps = &r.log.steps;
+  r.result = bmesh::decimate(p, options);
+  return r;
+}
+
+}  // namespace kaboum::test
