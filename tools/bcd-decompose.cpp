@@ -8,8 +8,8 @@
 #include <kaboum/verify/cover.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 #include <sstream>
 

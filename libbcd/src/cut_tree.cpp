@@ -281,19 +281,27 @@ bool CutTree::part(const Piece& piece, const Plane& plane, std::vector<Vec3>& lo
 }
 
 double CutTree::score(const Node& node, const Plane& plane) const {
+  // Plates are split into thinner ones only where nothing else helps, and never into ones as thin
+  // as their overlap.
+  const auto [low, high] = extent(node.hull, plane.n);
+  const double thinnest = std::min(plane.d - low, high - plane.d);
+  if (thinnest < 8 * shift_) return std::numeric_limits<double>::infinity();
+  Box3 box;
+  for (const Vec3& p : node.hull) box.extend(p);
+  const double penalty = thinnest < 1e-6 * box.diagonal() ? 1e6 : 1;
   Scratch& s = scratch();
   s.lower.clear();
   s.upper.clear();
   if (!part(node.piece, plane, s.lower, s.upper)) return std::numeric_limits<double>::infinity();
   const double limit = node.appraisal.fourth;
   const Appraisal lower = appraise(s.lower, solid_, s.builder, true);
-  if (lower.fourth > 2 * limit) return lower.fourth;
+  if (lower.fourth > 2 * limit) return penalty * lower.fourth;
   const Appraisal upper = appraise(s.upper, solid_, s.builder, true);
   // Where no single cut helps, slicing off a little always seems to: cuts in the middle are
   // preferred up to a factor, for they bring the next cuts nearer.
   const double volume = lower.volume + upper.volume;
   const double balance = volume > 0 ? std::min(lower.volume, upper.volume) / volume : 0;
-  return (lower.fourth + upper.fourth) *
+  return penalty * (lower.fourth + upper.fourth) *
          (1 - 0.6 * std::min(1.0, 4 * balance) - 2 * options_.halving_bonus * balance);
 }
 
@@ -318,7 +326,8 @@ std::vector<std::uint32_t> CutTree::reflex_planes(const Node& node) const {
 
 Plane CutTree::snapped(const Node& node, const Plane& plane) const {
   Plane best = plane;
-  double nearest = solid_.spacing();
+  const auto [low, high] = extent(node.hull, plane.n);
+  double nearest = std::min(solid_.spacing(), 0.5 * (high - low) / (options_.offsets + 1));
   for (const std::uint32_t r : reflex_planes(node)) {
     const Plane& other = reflex_[r].plane;
     const double sign = other.n.dot(plane.n) < 0 ? -1 : 1;

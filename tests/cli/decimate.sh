@@ -34,6 +34,13 @@ grep -q '"stop": "epsilon"' e.json || fail "epsilon did not stop"
 # A count that cannot be reached: best result, exit code 1.
 tetrahedron >t.off
 expect 0 '' "$D" t.off -o t4.off --vertices 4
+expect 2 'cannot be joined' "$D" t.off -o x.off --vertices 4 --sharp-angle 60
+expect 2 'cannot be joined' "$D" t.off -o x.off --vertices 4 --cost planes --as-printed
+absent x.off
+# Open meshes are decimated without global optimisation, and the report says so.
+sed 's/^4 4 0/4 3 0/;$d' t.off >open.off
+expect 0 '' "$D" open.off -o open-out.off --vertices 4 --effort normal --report open.json
+grep -q '"effort": "fast"' open.json || fail "the report tells of an effort that was not made"
 sed 's/^4 4 0/8 8 0/' t.off | awk '{print} NR==6{print "5 0 0\n6 0 0\n5 1 0\n5 0 1"} END{print "3 4 6 5\n3 4 5 7\n3 5 6 7\n3 6 4 7"}' >two.off
 expect 1 'cannot be reached' "$D" two.off -o two-out.off --vertices 4
 [ -s two-out.off ] || fail "the best result was not written"
