@@ -82,8 +82,8 @@ def components(points, triangles):
 
 
 def closed(points, triangles):
-    """Points and triangles with a cone over every loop of unbalanced edges, from the mean of its points, as
-    bcd-decompose closes an open mesh."""
+    """Points and triangles with a cone over every loop of unbalanced edges, from the mean of its points (three edges: a
+    triangle), as bcd-decompose closes an open mesh whose loops do not touch."""
     balance = {}
     for triangle in triangles:
         for a, b in zip(triangle, triangle[1:] + triangle[:1]):
@@ -100,7 +100,10 @@ def closed(points, triangles):
             if end in path:  # a loop
                 loop = path[path.index(end):]
                 del path[path.index(end) + 1:]
-                mean = [sum(float(points[i].split()[k]) for i in loop) / len(loop) for k in (1, 2, 3)]
+                if len(loop) == 3:
+                    triangles.append(loop)
+                    continue
+                mean = [sum(float(points[i].split()[k]) / len(loop) for i in loop) for k in (1, 2, 3)]
                 triangles += [[a, b, len(points)] for a, b in zip(loop, loop[1:] + loop[:1])]
                 points.append("v {!r} {!r} {!r}\n".format(*mean))
             else:

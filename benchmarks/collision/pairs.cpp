@@ -1,13 +1,16 @@
 #include <kaboum/geom/convex_hull.h>
+#include <kaboum/geom/error.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/io/mesh_io.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <string>
 
@@ -285,10 +288,13 @@ bool parsed(int argc, char** argv, Options& options) {
       options.sets = argv[i];
     else if (word == "--peer")
       options.peer = argv[i];
-    else if (word == "--csv")
+    else if (word == "--csv") {
       options.csv = std::fopen(argv[i], "w");
-    else
+      if (options.csv == nullptr)
+        throw Error(ErrorCode::OutputFailed, std::string(argv[i]) + " cannot be written");
+    } else {
       return false;
+    }
   }
   return !options.meshes.empty() && options.queries > 0;
 }

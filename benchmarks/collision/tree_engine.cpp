@@ -3,7 +3,9 @@
 #include <fcl/narrowphase/detail/gjk_solver_indep.h>
 #include <fcl/narrowphase/detail/gjk_solver_libccd.h>
 
+#include <algorithm>
 #include <limits>
+#include <memory>
 
 #include "body_tree.h"
 #include "engine.h"

@@ -281,11 +281,11 @@ bool CutTree::part(const Piece& piece, const Plane& plane, std::vector<Vec3>& lo
 }
 
 double CutTree::score(const Node& node, const Plane& plane) const {
-  // Plates are split into thinner ones only where nothing else helps, and never into ones as thin
-  // as their overlap.
   const auto [low, high] = extent(node.hull, plane.n);
   const double thinnest = std::min(plane.d - low, high - plane.d);
+  // Pieces as thin as their overlap are no smaller.
   if (thinnest < 8 * shift_) return std::numeric_limits<double>::infinity();
+  // Plates are split into thinner ones only where nothing else helps.
   Box3 box;
   for (const Vec3& p : node.hull) box.extend(p);
   const double penalty = thinnest < 1e-6 * box.diagonal() ? 1e6 : 1;
@@ -332,6 +332,8 @@ Plane CutTree::snapped(const Node& node, const Plane& plane) const {
     const Plane& other = reflex_[r].plane;
     const double sign = other.n.dot(plane.n) < 0 ? -1 : 1;
     if ((other.n - sign * plane.n).norm() > 0.01) continue;
+    const auto [lowest, highest] = extent(node.hull, other.n);
+    if (std::min(other.d - lowest, highest - other.d) < 8 * shift_) continue;
     double apart = 0;
     for (const Vec3& p : node.hull)
       apart = std::max(apart, std::abs(other.height(p) - sign * plane.height(p)));
@@ -375,7 +377,7 @@ std::vector<CutTree::Candidate> CutTree::candidates(const Node& node) const {
     const std::vector<std::uint32_t> order = reflex_planes(node);
     for (std::size_t i = 0;
          i < order.size() && i < static_cast<std::size_t>(options_.reflex_planes); ++i)
-      out.push_back({reflex_[order[i]].plane});
+      out.push_back({.plane = reflex_[order[i]].plane, .reflex = true});
   }
   return out;
 }

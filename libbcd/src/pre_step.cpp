@@ -42,14 +42,17 @@ std::optional<Simpler> pre_step(const geom::Mesh& closed, const DecomposeOptions
   std::vector<bmesh::DecimateResult> levels;
   try {
     levels = coarser(closed, most, options);
-  } catch (const Error&) {
-    return std::nullopt;  // what decimation refuses, decomposition need not
+  } catch (const Error& error) {
+    // What decimation refuses, decomposition need not.
+    if (error.code() != ErrorCode::InvalidInput) throw;
+    return std::nullopt;
   }
   const geom::DistanceQuery original(closed);
   geom::DistanceOptions gap;
   gap.relative_gap = 0.1;
   for (; !levels.empty(); levels.pop_back()) {
     geom::Mesh& mesh = levels.back().mesh;
+    if (mesh.vertices.size() > most) continue;  // not reached
     const double distance = geom::directed_distance(mesh, original, gap).max_upper;
     if (distance <= epsilon) return Simpler{std::move(mesh), distance};
   }

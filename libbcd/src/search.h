@@ -74,6 +74,7 @@ class CutTree {
   struct Candidate {
     Plane plane;
     double score = std::numeric_limits<double>::infinity();
+    bool reflex = false;  ///< of reflex edges
   };
   struct ReflexPlane {
     Plane plane;

@@ -135,6 +135,7 @@ class Decimator final : private Judge {
     if (options_.cost == Cost::Distance && optimiser_ && !options_.epsilon) {
       const double from = options_.effort == Effort::Best ? kJointFromBest : kJointFrom;
       contract_to(static_cast<std::size_t>(from * static_cast<double>(target)));
+      failures_.clear();  // of an earlier level of a series
       // Where hardly anything is contracted, nothing has been reached, and little is to be gained.
       double limit = reached_ > 0 ? std::min(reached_, setting_.diagonal) : 0;
       patience_ = kPatience;
