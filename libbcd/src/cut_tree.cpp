@@ -377,7 +377,7 @@ std::vector<CutTree::Candidate> CutTree::candidates(const Node& node) const {
     const std::vector<std::uint32_t> order = reflex_planes(node);
     for (std::size_t i = 0;
          i < order.size() && i < static_cast<std::size_t>(options_.reflex_planes); ++i)
-      out.push_back({.plane = reflex_[order[i]].plane, .reflex = true});
+      out.push_back({reflex_[order[i]].plane});
   }
   return out;
 }

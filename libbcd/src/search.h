@@ -74,7 +74,6 @@ class CutTree {
   struct Candidate {
     Plane plane;
     double score = std::numeric_limits<double>::infinity();
-    bool reflex = false;  ///< of reflex edges
   };
   struct ReflexPlane {
     Plane plane;
