@@ -452,6 +452,18 @@ void CutTree::cut(int leaf, const Plane& plane) {
     add_leaf(std::move(upper), leaf);
     nodes_[leaf].upper = static_cast<int>(nodes_.size()) - 1;
   }
+  // Where both halves are as far as the whole was, it might go on in twice as many pieces each
+  // time.
+  const Node& whole = nodes_[leaf];
+  if (whole.lower < 0 || whole.upper < 0) return;
+  constexpr int kMostIdle = 8;
+  const double far = 0.99 * whole.appraisal.worst;
+  const bool idle =
+      std::min(nodes_[whole.lower].appraisal.worst, nodes_[whole.upper].appraisal.worst) > far;
+  for (const int half : {whole.lower, whole.upper}) {
+    nodes_[half].idle = whole.idle + (idle ? 1 : 0);
+    nodes_[half].stuck = nodes_[half].idle >= kMostIdle;
+  }
 }
 
 std::optional<CutTree::Split> CutTree::find_split(const std::vector<int>& leaves,

@@ -417,7 +417,7 @@ class Decomposer {
     const double wished = 0.93 * epsilon;
     std::vector<Body> best;
     const double begin = std::max(tree_.worst(), epsilon);
-    std::size_t most_leaves = 20000;
+    std::size_t most_leaves = 6000;
     for (const double threshold : tuning_.thresholds) {
       while (tree_.worst() > threshold * wished && tree_.leaf_count() < most_leaves &&
              tree_.cut_worst())

@@ -34,6 +34,7 @@ class CutTree {
     int parent = -1, lower = -1, upper = -1;
     Plane plane;
     bool stuck = false;  ///< no plane makes it better
+    int idle = 0;        ///< cuts above it that brought neither half nearer
   };
 
   /// @param safety  multiplies the overlap of neighbouring pieces.
