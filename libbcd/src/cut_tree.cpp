@@ -320,6 +320,7 @@ std::vector<std::uint32_t> CutTree::reflex_planes(const Node& node) const {
   }
   std::sort(order.begin(), order.end());
   std::vector<std::uint32_t> out;
+  out.reserve(order.size());
   for (const auto& [w, r] : order) out.push_back(r);
   return out;
 }
