@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 namespace kaboum::bcd {
@@ -33,6 +34,18 @@ Vec3 Cell::center() const {
   Vec3 sum = Vec3::Zero();
   for (const Vec3& p : corners) sum += p / static_cast<double>(corners.size());
   return sum;
+}
+
+double Cell::depth(const Vec3& p) const {
+  double depth = std::numeric_limits<double>::infinity();
+  for (const auto& face : faces) {
+    Vec3 normal = Vec3::Zero();
+    for (std::size_t k = 1; k + 1 < face.size(); ++k)
+      normal += (corners[face[k]] - corners[face[0]]).cross(corners[face[k + 1]] - corners[face[0]]);
+    const double length = normal.norm();
+    if (length > 0) depth = std::min(depth, std::abs(normal.dot(p - corners[face[0]])) / length);
+  }
+  return depth;
 }
 
 std::vector<Cube> cubes_over(const Box3& box) {

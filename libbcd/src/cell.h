@@ -26,6 +26,8 @@ struct Cell {
   /// Corner pairs, each edge once (from < to).
   [[nodiscard]] std::vector<std::array<std::uint32_t, 2>> edges() const;
   [[nodiscard]] Vec3 center() const;
+  /// Distance of a point inside to the nearest face's plane.
+  [[nodiscard]] double depth(const Vec3& p) const;
 };
 
 struct Cube {
