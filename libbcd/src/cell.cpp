@@ -41,7 +41,8 @@ double Cell::depth(const Vec3& p) const {
   for (const auto& face : faces) {
     Vec3 normal = Vec3::Zero();
     for (std::size_t k = 1; k + 1 < face.size(); ++k)
-      normal += (corners[face[k]] - corners[face[0]]).cross(corners[face[k + 1]] - corners[face[0]]);
+      normal +=
+          (corners[face[k]] - corners[face[0]]).cross(corners[face[k + 1]] - corners[face[0]]);
     const double length = normal.norm();
     if (length > 0) depth = std::min(depth, std::abs(normal.dot(p - corners[face[0]])) / length);
   }

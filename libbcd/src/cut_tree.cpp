@@ -9,6 +9,7 @@
 
 #include "principal_box.h"
 #include "search.h"
+#include "symmetry.h"
 
 namespace kaboum::bcd {
 namespace {
@@ -98,6 +99,7 @@ CutTree::CutTree(const Solid& solid, const SearchOptions& options, double safety
     magnitude = std::max(magnitude, p.cwiseAbs().maxCoeff());
   shift_ = 0x1p-36 * safety * magnitude;
   find_reflex_planes();
+  if (options.mirrors && !options.choose) mirrors_ = mirror_planes(solid);
   add_leaf(whole(solid), -1);
 }
 
@@ -356,6 +358,11 @@ std::vector<CutTree::Candidate> CutTree::candidates(const Node& node) const {
     const auto [low, high] = extent(node.hull, n);
     for (int i = 1; i <= options_.offsets; ++i)
       out.push_back({{n, low + (high - low) * i / (options_.offsets + 1)}});
+  }
+  // A part that is itself symmetric may best be cut into mirror images.
+  for (const Plane& plane : mirrors_) {
+    const auto [low, high] = extent(node.hull, plane.n);
+    if (std::abs(0.5 * (low + high) - plane.d) < 0.01 * (high - low)) out.push_back({plane});
   }
   // Planes that separate, or run through, the pit below the worst point.
   const Vec3& x = node.appraisal.at;

@@ -42,7 +42,9 @@ struct Tuning {
 Tuning tuning(Effort effort) {
   switch (effort) {
     case Effort::Fast:
-      return {60000, {.offsets = 5, .reflex_planes = 6, .refinements = 1}, {1.5}, {0.8}, {0.05}, 12,
+      return {60000,  {.offsets = 5, .reflex_planes = 6, .refinements = 1, .mirrors = false},
+              {1.5},  {0.8},
+              {0.05}, 12,
               1};
     case Effort::Normal:
       return {200000, {}, {1, 1.25, 1.5, 2, 3}, {0.8}, {0.05, 0.15, 0.02}, 60, 2, true};
@@ -83,8 +85,11 @@ struct Finished {
 class Decomposer {
  public:
   Decomposer(const Mesh& closed, const DecomposeOptions& options)
+      : Decomposer(closed, options, tuning(options.effort, options.method)) {}
+
+  Decomposer(const Mesh& closed, const DecomposeOptions& options, Tuning how)
       : options_(options),
-        tuning_(tuning(options.effort, options.method)),
+        tuning_(std::move(how)),
         solid_(closed, tuning_.grid, options.epsilon.value_or(0)),
         tree_(solid_, search_options(), options.safety) {
     double magnitude = 0;
@@ -839,6 +844,25 @@ void measure_anew(DecomposeResult& result, const Mesh& closed) {
   }
 }
 
+/// Few faces leave few cuts, and much hangs on the first: quick searches, with the planes of
+/// symmetry and without them, sometimes find fewer bodies than the thorough one.
+DecomposeResult with_quick_searches(const Mesh& closed, const DecomposeOptions& options) {
+  constexpr std::size_t kFew = 2000;  // triangles
+  DecomposeResult best = Decomposer(closed, options).run();
+  if (!options.epsilon || options.max_total_vertices || options.method != Method::Planes ||
+      options.effort == Effort::Fast || closed.triangles.size() > kFew)
+    return best;
+  for (const bool mirrors : {false, true}) {
+    Tuning quick = tuning(Effort::Fast);
+    quick.search.mirrors = mirrors;
+    DecomposeResult other = Decomposer(closed, options, quick).run();
+    if (other.stop == Stop::Done &&
+        (best.stop != Stop::Done || other.bodies.size() < best.bodies.size()))
+      best = std::move(other);
+  }
+  return best;
+}
+
 DecomposeResult decompose_closed(const Mesh& closed, const DecomposeOptions& options) {
   if (const std::optional<Simpler> simpler = pre_step(closed, options)) {
     DecomposeOptions rest = options;
@@ -850,7 +874,7 @@ DecomposeResult decompose_closed(const Mesh& closed, const DecomposeOptions& opt
     if (!options.epsilon || (result.stop == Stop::Done && result.reach_upper <= *options.epsilon))
       return result;
   }
-  return Decomposer(closed, options).run();
+  return with_quick_searches(closed, options);
 }
 
 }  // namespace

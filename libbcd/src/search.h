@@ -16,6 +16,7 @@ struct SearchOptions {
   int offsets = 7;  ///< per direction
   int reflex_planes = 10;
   int refinements = 2;  ///< halvings of the best plane's offset
+  bool mirrors = true;  ///< try the solid's planes of symmetry
   /// Bonus of a cut that halves a piece's volume, as a share of its score: for a given number of
   /// bodies, it makes them more alike. By an error bound, where slices are needed that only faces
   /// of the solid give, it has led to hundreds of bodies too many.
@@ -100,6 +101,7 @@ class CutTree {
   double shift_;
   std::vector<Node> nodes_;
   std::size_t leaf_count_ = 0;
+  std::vector<Plane> mirrors_;
   std::vector<ReflexPlane> reflex_;                    // distinct
   std::vector<std::vector<std::uint32_t>> reflex_of_;  // triangle → reflex_ entries
 };

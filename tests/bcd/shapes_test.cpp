@@ -8,6 +8,7 @@
 
 #include "solids.h"
 #include "support/shapes.h"
+#include "symmetry.h"
 
 namespace kaboum::bcd {
 namespace {
@@ -116,7 +117,28 @@ TEST(Shapes, Table) { expect_obvious({"table", table(), 5}); }
 
 // The number is the obvious one; epsilon is made use of.
 TEST(Shapes, OpenBox) { expect_obvious({"open box", open_box(), 5, 0.05}); }
-TEST(Shapes, Gear) { expect_obvious({"gear", gear(9), 10, 0.5, 0.005, Effort::Normal}); }
+TEST(Shapes, Gear) {
+  for (const int teeth : {9, 17})
+    expect_obvious(
+        {"gear", gear(teeth), static_cast<std::size_t>(teeth) + 1, 0.5, 0.005, Effort::Normal});
+}
+TEST(Shapes, BoxWithThinWalls) {
+  const std::vector<double> x{0, 0.01, 0.99, 1};
+  expect_obvious({"thin-walled box",
+                  lattice_solid({{x, x, {0, 0.01, 1}}},
+                                [](int i, int j, int k) { return i != 1 || j != 1 || k == 0; }),
+                  6, 0.5, 0.005});
+}
+
+/// Planes of symmetry are found whatever the triangles are, and no others.
+TEST(Shapes, Mirrors) {
+  const auto mirrors = [](const Mesh& mesh) { return mirror_planes(Solid(mesh, 1000, 0)).size(); };
+  EXPECT_EQ(mirrors(kaboum::test::box({1, 2, 3}, 2)), 3U);
+  EXPECT_EQ(mirrors(gear(9)), 10U);
+  EXPECT_EQ(mirrors(gear(12)), 13U);
+  EXPECT_EQ(mirrors(open_box()), 2U);
+  EXPECT_EQ(mirrors(prism({{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 2}, {0, 2}}, 1)), 1U);
+}
 TEST(Shapes, Torus) {
   expect_obvious({"torus", kaboum::test::torus(1, 0.3, 12, 8), 12, 0.5, 0.005});
 }
