@@ -121,9 +121,8 @@ double Deviation::largest(std::span<const std::uint32_t> removed,
 }
 
 Deviation::Energy Deviation::energy(std::span<const std::uint32_t> removed,
-                                    std::span<const NewTriangle> added,
-                                    std::span<const Point> points, std::uint32_t& hint,
-                                    double limit) const {
+                                    std::span<const NewTriangle> added, std::span<Point> points,
+                                    std::uint32_t& hint, double limit) const {
   Energy e;
   const auto add = [&](double squared, double weight) {
     // In units of the diagonal, lest the powers overflow.
@@ -131,8 +130,8 @@ Deviation::Energy Deviation::energy(std::span<const std::uint32_t> removed,
     e.squared = std::max(e.squared, squared);
     return e.sum <= limit;
   };
-  for (const Point& p : points)
-    if (!add(original_.squared(p.position, hint), p.weight)) return e;
+  for (Point& p : points)
+    if (!add(locate(p, hint), p.weight)) return e;
   for (const std::uint32_t t : removed) {
     std::size_t last = place_of(t, added);
     for (std::uint32_t s = head_[t]; s != kNone; s = next_[s])

@@ -19,17 +19,20 @@ namespace kaboum::bmesh {
 /// hierarchy.
 class Deviation {
  public:
+  static constexpr std::uint32_t kNone = ~0U;
+
   /// A point of the new triangles, and the area it stands for.
   struct Point {
     Vec3 position;
     double weight;
     double share = 0;  ///< of the apex's moves that it follows
+    /// Place of the original's triangle that it is nearest to, or was when it was somewhere near.
+    std::uint32_t nearest = kNone;
   };
   struct Energy {
     double sum = 0;      ///< Σ weight · distance^power, in units of the diagonal
     double squared = 0;  ///< largest squared distance [length²]
   };
-  static constexpr std::uint32_t kNone = ~0U;
 
   /// @pre the mesh has triangles.
   /// @param power    of the distances in the energy: 4, which goes after the largest, or 2.
@@ -47,9 +50,18 @@ class Deviation {
   double largest(std::span<const std::uint32_t> removed, std::span<const NewTriangle> added,
                  std::span<const Point> points, std::uint32_t& hint, double limit) const;
 
-  /// The same as a sum, with the maximum besides. Stops when the sum exceeds `limit`.
+  /// The same as a sum, with the maximum besides. Stops when the sum exceeds `limit`; the points up
+  /// to there are located.
   Energy energy(std::span<const std::uint32_t> removed, std::span<const NewTriangle> added,
-                std::span<const Point> points, std::uint32_t& hint, double limit) const;
+                std::span<Point> points, std::uint32_t& hint, double limit) const;
+
+  /// Finds where the original is nearest to a point. @return the squared distance
+  double locate(Point& point, std::uint32_t& hint) const {
+    if (point.nearest != kNone) hint = point.nearest;
+    const double squared = original_.squared(point.position, hint);
+    point.nearest = hint;
+    return squared;
+  }
 
   /// Hands the samples of `removed` to the nearest of `added`.
   void commit(std::span<const std::uint32_t> removed, std::span<const NewTriangle> added);

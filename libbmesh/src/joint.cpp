@@ -138,7 +138,8 @@ void Optimiser::attract(std::uint32_t v, double scale, double penalty, double sh
   if (!gather(v)) return;
   const Vec3 from = m_.position[v];
   place_star(from);
-  linearise(v, from, scale, penalty);
+  for (Deviation::Point& p : points_) deviation_.locate(p, hint_[v]);
+  linearise(from, scale, penalty);
   const auto step = minimise(objective_, {objective_.bx, objective_.by, objective_.bz}, {},
                              kRegularisationDistance);
   if (!step || !step->allFinite()) return;
