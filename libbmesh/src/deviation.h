@@ -34,7 +34,7 @@ class Deviation {
     double squared = 0;  ///< largest squared distance [length²]
   };
 
-  /// @pre the mesh has triangles.
+  /// Keeps a reference to the mesh, which must outlive this object. @pre it has triangles.
   /// @param power    of the distances in the energy: 4, which goes after the largest, or 2.
   /// @param spacing  samples lie no farther apart than this, within reason; 0: as the mesh has
   /// them.
@@ -66,6 +66,10 @@ class Deviation {
   /// Hands the samples of `removed` to the nearest of `added`.
   void commit(std::span<const std::uint32_t> removed, std::span<const NewTriangle> added);
 
+  /// Looks between the samples for points of the original that are farther than √enough from the
+  /// present mesh, and adds the farthest of each triangle to the samples.
+  void refine(std::span<const Vec3> position, const Connectivity& mesh, double enough);
+
   /// Appends the samples that the triangles carry to `out`, each list ended by kNone.
   void save(std::span<const std::uint32_t> triangles, std::vector<std::uint32_t>& out) const;
   /// Gives back what `save` has written, for the same triangles. @pre since then samples have moved
@@ -96,10 +100,11 @@ class Deviation {
  private:
   /// Where triangle t stays among the new ones; the first, if it vanishes.
   static std::size_t place_of(std::uint32_t t, std::span<const NewTriangle> added);
-  void add_samples(const geom::Mesh& original, double spacing);
+  void add_samples(double spacing);
   static double to_nearest(const Vec3& p, std::span<const NewTriangle> added, std::size_t first,
                            double enough, std::size_t* which);
 
+  const geom::Mesh& mesh_;
   Proximity original_;
   int power_;
   double unit_;  // 1 / diagonal²
