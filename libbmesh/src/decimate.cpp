@@ -36,8 +36,6 @@ constexpr double kMeasureFromEpsilon = 0.1;  ///< the same by an error bound
 /// of the vertices around, at first within the deviation reached, then within that much more from
 /// round to round.
 constexpr double kJointFrom = 1.25, kJointFromBest = 1.4, kJointGrowth = 1.05;
-/// At first within this share of the deviation reached.
-constexpr double kJointStart = 0.95;
 constexpr int kJointRounds = 36;
 
 /// From these multiples of the wished number of vertices on, and when edges are contracted together
@@ -156,7 +154,7 @@ class Decimator final : private Judge {
       contract_to(static_cast<std::size_t>(from * wished));
       failures_.clear();  // of an earlier level of a series
       // Where hardly anything is contracted, nothing has been reached, and little is to be gained.
-      double limit = kJointStart * (reached_ > 0 ? std::min(reached_, setting_.diagonal) : 0);
+      double limit = reached_ > 0 ? std::min(reached_, setting_.diagonal) : 0;
       patience_ = kPatience;
       std::size_t refined = 2 * contraction_.vertices();
       for (int i = 0; i < kJointRounds && limit > 0 && contraction_.vertices() > target;
