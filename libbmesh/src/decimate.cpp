@@ -342,7 +342,7 @@ class Decimator final : private Judge {
   /// The new triangles at more points, before they are made; what is found to be beyond what is due
   /// goes back into the queue. @return whether it is not.
   bool measure_densely(BucketQueue::Entry& e) {
-    if (!measuring_ || options_.cost != Cost::Distance || options_.epsilon) return true;
+    if (!optimiser_ || options_.cost != Cost::Distance || options_.epsilon) return true;
     describe_change();
     points_.clear();
     for (const NewTriangle& t : added_) {
