@@ -9,6 +9,7 @@
 #include <kaboum/geom/topology.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <unordered_map>
 
@@ -34,8 +35,17 @@ constexpr double kMeasureFromEpsilon = 0.1;  ///< the same by an error bound
 /// From this multiple of the wished number of vertices on, edges are contracted together with moves
 /// of the vertices around, at first within the deviation reached, then within that much more from
 /// round to round.
-constexpr double kJointFrom = 1.25, kJointFromBest = 1.4, kJointGrowth = 1.15;
-constexpr int kJointRounds = 12;
+constexpr double kJointFrom = 1.25, kJointFromBest = 1.4, kJointGrowth = 1.05;
+constexpr int kJointRounds = 36;
+
+/// From these multiples of the wished number of vertices on, and when edges are contracted together
+/// with moves, the original is looked at between the samples, too: where it is farther from the
+/// mesh than this share of the deviation reached. The first ones only if it has at most so many
+/// times the wished number of vertices; more are samples enough.
+constexpr std::array<double, 2> kRefineAt{2.2, 1.7};
+constexpr double kRefineFrom = 0.6, kRefineMost = 12;
+/// And again when so many of a hundred vertices are gone since.
+constexpr std::size_t kRefineAgain = 5;
 
 /// So many of them may fail by their deviation, and so many more for each that does not: on parts
 /// with many sharp edges hardly any succeeds, and nothing is gained.
@@ -134,13 +144,25 @@ class Decimator final : private Judge {
   void contract_in_stages(std::size_t target) {
     if (options_.cost == Cost::Distance && optimiser_ && !options_.epsilon) {
       const double from = options_.effort == Effort::Best ? kJointFromBest : kJointFrom;
-      contract_to(static_cast<std::size_t>(from * static_cast<double>(target)));
+      const auto wished = static_cast<double>(target);
+      if (static_cast<double>(original_.vertices.size()) <= kRefineMost * wished) {
+        for (const double multiple : kRefineAt) {
+          contract_to(static_cast<std::size_t>(multiple * wished));
+          refine();
+        }
+      }
+      contract_to(static_cast<std::size_t>(from * wished));
       failures_.clear();  // of an earlier level of a series
       // Where hardly anything is contracted, nothing has been reached, and little is to be gained.
       double limit = reached_ > 0 ? std::min(reached_, setting_.diagonal) : 0;
       patience_ = kPatience;
+      std::size_t refined = 2 * contraction_.vertices();
       for (int i = 0; i < kJointRounds && limit > 0 && contraction_.vertices() > target;
            ++i, limit *= kJointGrowth) {
+        if (100 * contraction_.vertices() <= (100 - kRefineAgain) * refined) {
+          refine();
+          refined = contraction_.vertices();
+        }
         optimise(1);
         collapse_to(target, limit);
         if (patience_ < 0) break;
@@ -165,8 +187,15 @@ class Decimator final : private Judge {
     }
   }
 
+  /// Samples are added where the mesh deviates most.
+  void refine() {
+    const double far = kRefineFrom * reached_;
+    deviation_->refine(position_, mesh_, far * far);
+  }
+
   /// Contracts edges together with moves of the vertices around, each within the limit. [length]
-  /// What has failed is tried again when the limit or something around has changed.
+  /// What has failed is tried again when another such contraction around has succeeded, or the
+  /// limit has risen to what it would have taken.
   void collapse_to(std::size_t target, double limit) {
     joined_.resize(position_.size(), 0);
     struct Edge {
@@ -240,7 +269,7 @@ class Decimator final : private Judge {
       if (!certify(e)) return false;
       if (!contraction_.queue().due(candidate_.cost)) return contraction_.postpone(e);
     }
-    return admissible();
+    return measure_densely(e) && admissible();
   }
 
   /// The dearer tests, made only of candidates that are about to be applied.
@@ -308,6 +337,26 @@ class Decimator final : private Judge {
       return reject(statistics_.rejected_spike);
     e.measured = around_[e.a] + around_[e.b];
     return true;
+  }
+
+  /// The new triangles at more points, before they are made; what is found to be beyond what is due
+  /// goes back into the queue. @return whether it is not.
+  bool measure_densely(BucketQueue::Entry& e) {
+    if (!optimiser_ || options_.cost != Cost::Distance || options_.epsilon) return true;
+    describe_change();
+    points_.clear();
+    for (const NewTriangle& t : added_) {
+      const auto& [v, p, q] = t.corner;
+      points_.push_back({0.75 * v + 0.25 * p, 0});
+      points_.push_back({0.25 * v + 0.75 * p, 0});
+      for (int k = 0; k < 3; ++k) points_.push_back({0.5 * t.corner[k] + (v + p + q) / 6, 0});
+    }
+    const double limit = 1.2 * contraction_.queue().lowest_key();
+    const double d = std::sqrt(deviation_->largest({}, {}, points_, hint_[e.a], limit * limit));
+    if (d <= limit) return true;
+    candidate_.cost = std::max(candidate_.cost, d);
+    e.measured = ~0U;
+    return contraction_.postpone(e);
   }
 
   /// Moves the candidate to where the original bounds it instead of the present mesh.

@@ -4,21 +4,24 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 namespace kaboum::bmesh {
 
 Deviation::Deviation(const geom::Mesh& original, int power, double spacing)
-    : original_(original),
+    : mesh_(original),
+      original_(original),
       power_(power),
       point_(original.vertices),
       weight_(original.vertices.size(), 0),
       head_(original.triangles.size(), kNone) {
   unit_ = 1 / (geom::bounding_box(original).max - geom::bounding_box(original).min).squaredNorm();
-  add_samples(original, spacing);
+  add_samples(spacing);
   next_.assign(point_.size(), kNone);
 }
 
-void Deviation::add_samples(const geom::Mesh& original, double spacing) {
+void Deviation::add_samples(double spacing) {
+  const geom::Mesh& original = mesh_;
   // Triangles much larger than the average get inner samples: their corners say little of them.
   const double total = geom::area(original);
   const double large = 8 * total / static_cast<double>(original.triangles.size());
@@ -53,15 +56,28 @@ void Deviation::add_samples(const geom::Mesh& original, double spacing) {
   }
 }
 
-void Deviation::assign(std::span<const Vec3> position, const Connectivity& mesh) {
-  geom::Mesh current;
-  current.vertices.assign(position.begin(), position.end());
-  std::vector<std::uint32_t> index;
-  for (std::uint32_t t = 0; t < mesh.size(); ++t) {
-    if (!mesh.alive(t)) continue;
-    current.triangles.push_back(mesh[t]);
-    index.push_back(t);
+namespace {
+
+/// The triangles of a working mesh, and their numbers there.
+struct Present {
+  Present(std::span<const Vec3> position, const Connectivity& working) {
+    mesh.vertices.assign(position.begin(), position.end());
+    for (std::uint32_t t = 0; t < working.size(); ++t) {
+      if (!working.alive(t)) continue;
+      mesh.triangles.push_back(working[t]);
+      index.push_back(t);
+    }
   }
+  geom::Mesh mesh;
+  std::vector<std::uint32_t> index;
+};
+
+}  // namespace
+
+void Deviation::assign(std::span<const Vec3> position, const Connectivity& mesh) {
+  const Present present(position, mesh);
+  const geom::Mesh& current = present.mesh;
+  const std::vector<std::uint32_t>& index = present.index;
   std::fill(head_.begin(), head_.end(), kNone);
   if (current.empty()) return;
   const Proximity proximity(current);
@@ -79,6 +95,119 @@ void Deviation::assign(std::span<const Vec3> position, const Connectivity& mesh)
   for (std::uint32_t s = 0; s < point_.size(); ++s) {
     next_[s] = head_[nearest[s]];
     head_[nearest[s]] = s;
+  }
+}
+
+namespace {
+
+/// Looks for the farthest points of the original between the samples.
+class Between {
+ public:
+  /// A point of the original, and the place of the triangle it is nearest to.
+  struct Found {
+    double squared;
+    Vec3 point;
+    std::uint32_t nearest;
+  };
+
+  Between(const Proximity& present, double enough) : present_(present), enough_(enough) {}
+
+  /// @param nearest  places of the triangles that the corners are nearest to.
+  /// @return the farthest point found, if it is farther than √enough.
+  std::optional<Found> operator()(const std::array<Vec3, 3>& corner,
+                                  const std::array<std::uint32_t, 3>& nearest) {
+    std::optional<Found> farthest;
+    pieces_.assign(1, {corner, nearest, 0});
+    while (!pieces_.empty()) {
+      const Piece p = pieces_.back();
+      pieces_.pop_back();
+      if (p.halvings == kMostHalvings || covered(p)) continue;
+      const Found middle = halve(p);
+      if (middle.squared > (farthest ? farthest->squared : enough_)) farthest = middle;
+    }
+    return farthest;
+  }
+
+ private:
+  static constexpr int kMostHalvings = 6;
+
+  struct Piece {
+    std::array<Vec3, 3> corner;
+    std::array<std::uint32_t, 3> nearest;
+    int halvings;
+  };
+
+  /// The distance to one triangle is convex, so that of the corners bounds that of the piece.
+  [[nodiscard]] bool covered(const Piece& p) const {
+    for (int k = 0; k < 3; ++k) {
+      if (k > 0 && p.nearest[k] == p.nearest[k - 1]) continue;
+      const std::array<Vec3, 3>& t = present_.corners(p.nearest[k]);
+      if (std::all_of(p.corner.begin(), p.corner.end(),
+                      [&](const Vec3& x) { return squared_distance(x, t) <= enough_; }))
+        return true;
+    }
+    return false;
+  }
+
+  /// Halves the longest side. @return its middle
+  Found halve(const Piece& p) {
+    int across = 0;
+    double longest = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double squared = (p.corner[(k + 2) % 3] - p.corner[(k + 1) % 3]).squaredNorm();
+      if (squared > longest) longest = squared, across = k;
+    }
+    const int first = (across + 1) % 3, second = (across + 2) % 3;
+    Found middle{0, 0.5 * (p.corner[first] + p.corner[second]), p.nearest[first]};
+    middle.squared = present_.squared(middle.point, middle.nearest);
+    for (const int k : {first, second}) {
+      Piece half = p;
+      half.corner[k] = middle.point;
+      half.nearest[k] = middle.nearest;
+      ++half.halvings;
+      pieces_.push_back(half);
+    }
+    return middle;
+  }
+
+  const Proximity& present_;
+  double enough_;
+  std::vector<Piece> pieces_;
+};
+
+}  // namespace
+
+void Deviation::refine(std::span<const Vec3> position, const Connectivity& mesh, double enough) {
+  const Present present(position, mesh);
+  if (present.mesh.empty()) return;
+  const Proximity proximity(present.mesh);
+  std::vector<std::uint32_t> place(mesh.size());  // of a triangle
+  for (std::uint32_t i = 0; i < present.index.size(); ++i)
+    place[present.index[proximity.triangle(i)]] = i;
+  std::vector<std::uint32_t> carrier(point_.size());
+  for (std::uint32_t t = 0; t < head_.size(); ++t)
+    for (std::uint32_t s = head_[t]; s != kNone; s = next_[s]) carrier[s] = place[t];
+
+  constexpr std::size_t kRun = 1024;
+  const std::size_t n = mesh_.triangles.size();
+  std::vector<std::optional<Between::Found>> found(n);
+  tbb::parallel_for(std::size_t{0}, (n + kRun - 1) / kRun, [&](std::size_t run) {
+    Between between(proximity, enough);
+    for (std::size_t i = run * kRun; i < std::min(n, (run + 1) * kRun); ++i) {
+      const geom::Triangle& t = mesh_.triangles[i];
+      found[i] = between({mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]},
+                         {carrier[t[0]], carrier[t[1]], carrier[t[2]]});
+    }
+  });
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!found[i]) continue;
+    const geom::Triangle& t = mesh_.triangles[i];
+    const Vec3& a = mesh_.vertices[t[0]];
+    const std::uint32_t to = present.index[proximity.triangle(found[i]->nearest)];
+    point_.push_back(found[i]->point);
+    weight_.push_back(0.125 * (mesh_.vertices[t[1]] - a).cross(mesh_.vertices[t[2]] - a).norm());
+    next_.push_back(head_[to]);
+    head_[to] = static_cast<std::uint32_t>(point_.size() - 1);
   }
 }
 
@@ -121,9 +250,8 @@ double Deviation::largest(std::span<const std::uint32_t> removed,
 }
 
 Deviation::Energy Deviation::energy(std::span<const std::uint32_t> removed,
-                                    std::span<const NewTriangle> added,
-                                    std::span<const Point> points, std::uint32_t& hint,
-                                    double limit) const {
+                                    std::span<const NewTriangle> added, std::span<Point> points,
+                                    std::uint32_t& hint, double limit) const {
   Energy e;
   const auto add = [&](double squared, double weight) {
     // In units of the diagonal, lest the powers overflow.
@@ -131,8 +259,8 @@ Deviation::Energy Deviation::energy(std::span<const std::uint32_t> removed,
     e.squared = std::max(e.squared, squared);
     return e.sum <= limit;
   };
-  for (const Point& p : points)
-    if (!add(original_.squared(p.position, hint), p.weight)) return e;
+  for (Point& p : points)
+    if (!add(locate(p, hint), p.weight)) return e;
   for (const std::uint32_t t : removed) {
     std::size_t last = place_of(t, added);
     for (std::uint32_t s = head_[t]; s != kNone; s = next_[s])

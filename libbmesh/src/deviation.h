@@ -19,19 +19,22 @@ namespace kaboum::bmesh {
 /// hierarchy.
 class Deviation {
  public:
+  static constexpr std::uint32_t kNone = ~0U;
+
   /// A point of the new triangles, and the area it stands for.
   struct Point {
     Vec3 position;
     double weight;
     double share = 0;  ///< of the apex's moves that it follows
+    /// Place of the original's triangle that it is nearest to, or was when it was somewhere near.
+    std::uint32_t nearest = kNone;
   };
   struct Energy {
     double sum = 0;      ///< Σ weight · distance^power, in units of the diagonal
     double squared = 0;  ///< largest squared distance [length²]
   };
-  static constexpr std::uint32_t kNone = ~0U;
 
-  /// @pre the mesh has triangles.
+  /// Keeps a reference to the mesh, which must outlive this object. @pre it has triangles.
   /// @param power    of the distances in the energy: 4, which goes after the largest, or 2.
   /// @param spacing  samples lie no farther apart than this, within reason; 0: as the mesh has
   /// them.
@@ -47,12 +50,25 @@ class Deviation {
   double largest(std::span<const std::uint32_t> removed, std::span<const NewTriangle> added,
                  std::span<const Point> points, std::uint32_t& hint, double limit) const;
 
-  /// The same as a sum, with the maximum besides. Stops when the sum exceeds `limit`.
+  /// The same as a sum, with the maximum besides. Stops when the sum exceeds `limit`; the points up
+  /// to there are located.
   Energy energy(std::span<const std::uint32_t> removed, std::span<const NewTriangle> added,
-                std::span<const Point> points, std::uint32_t& hint, double limit) const;
+                std::span<Point> points, std::uint32_t& hint, double limit) const;
+
+  /// Finds where the original is nearest to a point. @return the squared distance
+  double locate(Point& point, std::uint32_t& hint) const {
+    if (point.nearest != kNone) hint = point.nearest;
+    const double squared = original_.squared(point.position, hint);
+    point.nearest = hint;
+    return squared;
+  }
 
   /// Hands the samples of `removed` to the nearest of `added`.
   void commit(std::span<const std::uint32_t> removed, std::span<const NewTriangle> added);
+
+  /// Looks between the samples for points of the original that are farther than √enough from the
+  /// present mesh, and adds the farthest of each triangle to the samples.
+  void refine(std::span<const Vec3> position, const Connectivity& mesh, double enough);
 
   /// Appends the samples that the triangles carry to `out`, each list ended by kNone.
   void save(std::span<const std::uint32_t> triangles, std::vector<std::uint32_t>& out) const;
@@ -84,10 +100,11 @@ class Deviation {
  private:
   /// Where triangle t stays among the new ones; the first, if it vanishes.
   static std::size_t place_of(std::uint32_t t, std::span<const NewTriangle> added);
-  void add_samples(const geom::Mesh& original, double spacing);
+  void add_samples(double spacing);
   static double to_nearest(const Vec3& p, std::span<const NewTriangle> added, std::size_t first,
                            double enough, std::size_t* which);
 
+  const geom::Mesh& mesh_;
   Proximity original_;
   int power_;
   double unit_;  // 1 / diagonal²

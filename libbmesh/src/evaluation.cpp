@@ -240,6 +240,18 @@ bool Evaluation::can_lie_on(std::uint32_t t) const {
                     geom::is_float32(m_.position[m_.mesh[t][0]][k]));
 }
 
+/// How far the new vertex is from where its star was seen from: half the edge, or half the longest
+/// edge around a vertex that moves alone.
+double Evaluation::reach() const {
+  const Vec3& a = m_.position[candidate_.a];
+  if (candidate_.a != candidate_.b) return 0.5 * (m_.position[candidate_.b] - a).lpNorm<1>();
+  double longest = 0;
+  for (const StarTriangle& s : star_)
+    for (const std::uint32_t v : m_.mesh[s.index])
+      longest = std::max(longest, (m_.position[v] - a).lpNorm<1>());
+  return 0.5 * longest;
+}
+
 /// Minimises the quadric over the half-spaces of the star and rounds the result.
 bool Evaluation::place(const Quadric& q, double care) {
   ++statistics_.placements;
@@ -250,7 +262,7 @@ bool Evaluation::place(const Quadric& q, double care) {
   const Vec3 spread(spacing(middle.x(), options_.precision),
                     spacing(middle.y(), options_.precision),
                     spacing(middle.z(), options_.precision));
-  const double own_error = 1e-13 * half.lpNorm<1>();
+  const double extent = reach(), own_error = 1e-13 * extent;
   planes_.clear();
   if (setting_.constrained) {
     const double sign = setting_.sign;
@@ -274,9 +286,11 @@ bool Evaluation::place(const Quadric& q, double care) {
   if (!y) return false;
   candidate_.position = middle + *y;
   if (options_.precision == Precision::Float) {
+    // Numbers near 0 are finer than the minimiser; what keeps away from other planes stays so.
+    snap_to_axis_planes(0.01 * own_error);
     candidate_.position = geom::to_float32(candidate_.position);
   } else {
-    snap_to_axis_planes(half.lpNorm<1>());
+    snap_to_axis_planes(1e-9 * extent);
   }
   return !out_of_reach();
 }
@@ -288,12 +302,12 @@ bool Evaluation::out_of_reach() const {
 }
 
 /// Puts the position exactly on axis-aligned planes that it is on but for rounding.
-void Evaluation::snap_to_axis_planes(double extent) {
+void Evaluation::snap_to_axis_planes(double distance) {
   for (const StarTriangle& s : star_) {
     const int k = axis(m_.normal[s.index]);
     if (k < 0) continue;
     const double c = m_.position[m_.mesh[s.index][0]][k];
-    if (std::abs(candidate_.position[k] - c) <= 1e-9 * extent) candidate_.position[k] = c;
+    if (std::abs(candidate_.position[k] - c) <= distance) candidate_.position[k] = c;
   }
 }
 

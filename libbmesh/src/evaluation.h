@@ -97,8 +97,9 @@ class Evaluation {
   void gather(std::uint32_t a, std::uint32_t b);
   void gather_rim();
   [[nodiscard]] bool keeps_topology();
+  [[nodiscard]] double reach() const;
   [[nodiscard]] bool place(const Quadric& q, double care);
-  void snap_to_axis_planes(double extent);
+  void snap_to_axis_planes(double distance);
   [[nodiscard]] bool at_end_point();
   [[nodiscard]] bool can_lie_on(std::uint32_t t) const;
   [[nodiscard]] geom::Sign side(std::uint32_t t);

@@ -138,7 +138,8 @@ void Optimiser::attract(std::uint32_t v, double scale, double penalty, double sh
   if (!gather(v)) return;
   const Vec3 from = m_.position[v];
   place_star(from);
-  linearise(v, from, scale, penalty);
+  for (Deviation::Point& p : points_) deviation_.locate(p, hint_[v]);
+  linearise(from, scale, penalty);
   const auto step = minimise(objective_, {objective_.bx, objective_.by, objective_.bz}, {},
                              kRegularisationDistance);
   if (!step || !step->allFinite()) return;
@@ -174,7 +175,10 @@ double Optimiser::region_largest(double limit) {
     points_.push_back({(p[0] + p[1] + p[2]) / 3.0, 0});
     for (int k = 0; k < 3; ++k) {
       const Vec3 &q = p[(k + 1) % 3], &r = p[(k + 2) % 3];
-      if (c[k] < c[(k + 1) % 3]) points_.push_back({0.5 * (p[k] + q), 0});
+      if (c[k] < c[(k + 1) % 3]) {
+        for (const double w : {0.25, 0.5, 0.75}) points_.push_back({(1 - w) * p[k] + w * q, 0});
+      }
+      points_.push_back({p[k] / 6 + (q + r) * (5.0 / 12), 0});
       points_.push_back({p[k] * (2.0 / 3) + (q + r) / 6, 0});
     }
   }

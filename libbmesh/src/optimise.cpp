@@ -52,6 +52,7 @@ void Optimiser::disturb(std::uint32_t v) {
 bool Optimiser::gather(std::uint32_t v) {
   ring_.clear();
   removed_.clear();
+  points_.clear();
   if (m_.border[v] != 0) return false;
   m_.mesh.for_each_triangle(v, [&](std::uint32_t t, std::uint32_t k) {
     const geom::Triangle& tri = m_.mesh[t];
@@ -61,25 +62,30 @@ bool Optimiser::gather(std::uint32_t v) {
   return ring_.size() >= 3;
 }
 
-/// The star of the vertex at `apex`, and the points at which it is measured.
+/// The star of the vertex at `apex`, and the points at which it is measured, which remember where
+/// the original was near before.
 void Optimiser::place_star(const Vec3& apex) {
   added_.clear();
-  points_.clear();
+  points_.resize(ring_.size() * (dense_ ? 5 : 2) + 1);
+  auto next = points_.begin();
+  const auto put = [&](const Vec3& position, double weight, double share) {
+    next->position = position, next->weight = weight, next->share = share;
+    ++next;
+  };
   double total = 0;
   for (const Ring& r : ring_) {
     const NewTriangle t{r.triangle, {apex, m_.position[r.p], m_.position[r.q]}};
     added_.push_back(t);
     const double a = area(t.corner);
     total += a;
-    points_.push_back({(apex + t.corner[1]) * 0.5, a / 3, 0.5});
-    points_.push_back({(apex + t.corner[1] + t.corner[2]) / 3.0, dense_ ? a / 8 : a / 2, 1.0 / 3});
+    put((apex + t.corner[1]) * 0.5, a / 3, 0.5);
+    put((apex + t.corner[1] + t.corner[2]) / 3.0, dense_ ? a / 8 : a / 2, 1.0 / 3);
     if (!dense_) continue;
     for (int k = 0; k < 3; ++k)
-      points_.push_back(
-          {t.corner[k] * (2.0 / 3) + (t.corner[(k + 1) % 3] + t.corner[(k + 2) % 3]) / 6, a / 8,
-           k == 0 ? 2.0 / 3 : 1.0 / 6});
+      put(t.corner[k] * (2.0 / 3) + (t.corner[(k + 1) % 3] + t.corner[(k + 2) % 3]) / 6, a / 8,
+          k == 0 ? 2.0 / 3 : 1.0 / 6);
   }
-  points_.push_back({apex, total / 6, 1});
+  put(apex, total / 6, 1);
 }
 
 /// Exact: no tetrahedron between a triangle that goes and `to` cuts into the original. Where one
@@ -136,9 +142,9 @@ bool Optimiser::settled(std::span<const std::uint32_t> removed, const Vec3& to) 
   return spared;
 }
 
-/// Squared distances of the samples, linear in the displacement of v at the apex, weighted by how
-/// far they are: (d / scale)².
-void Optimiser::linearise(std::uint32_t v, const Vec3& apex, double scale, double penalty) {
+/// Squared distances of the samples and of the points, which are located, linear in the
+/// displacement of v at the apex, weighted by how far they are: (d / scale)².
+void Optimiser::linearise(const Vec3& apex, double scale, double penalty) {
   objective_ = {};
   Vec3 b = Vec3::Zero();
   const double sign = options_.direction == Direction::Inner ? -1 : 1;
@@ -163,16 +169,13 @@ void Optimiser::linearise(std::uint32_t v, const Vec3& apex, double scale, doubl
       add(n, lambda, n.dot(apex - o), weight);
     });
   }
-  std::uint32_t& hint = hint_[v];
-  const auto add_point = [&](const Vec3& x, double lambda, double weight) {
-    deviation_.original().squared(x, hint);
-    const auto& c = deviation_.original().corners(hint);
-    const Vec3 offset = x - closest_point(x, c[0], c[1], c[2]);
+  for (const Deviation::Point& p : points_) {
+    const auto& c = deviation_.original().corners(p.nearest);
+    const Vec3 offset = p.position - closest_point(p.position, c[0], c[1], c[2]);
     double d = offset.norm();
     if (offset.dot((c[1] - c[0]).cross(c[2] - c[0])) < 0) d = -d;
-    if (d != 0) add(offset / d, lambda, d, weight);
-  };
-  for (const Deviation::Point& p : points_) add_point(p.position, p.share, p.weight);
+    if (d != 0) add(offset / d, p.share, d, p.weight);
+  }
   objective_.bx = b.x(), objective_.by = b.y(), objective_.bz = b.z();
 }
 
@@ -231,7 +234,7 @@ bool Optimiser::pull_back(std::uint32_t v, bool alone) {
   const auto before =
       deviation_.energy(removed_, added_, points_, hint, std::numeric_limits<double>::infinity());
   if (!(before.squared > 0)) return false;
-  linearise(v, from, before.squared);
+  linearise(from, before.squared);
   fan_.assign(added_);
   if (options_.direction != Direction::Any)
     for (std::size_t i = 0; i < ring_.size(); ++i)

@@ -96,7 +96,7 @@ class Optimiser {
   bool gather(std::uint32_t v);
   void place_star(const Vec3& apex);
   bool spares(std::span<const std::uint32_t> removed, bool own, const Vec3& to);
-  void linearise(std::uint32_t v, const Vec3& apex, double scale, double penalty = 1);
+  void linearise(const Vec3& apex, double scale, double penalty = 1);
   bool approach(std::uint32_t v, const Vec3& target, bool alone);
   [[nodiscard]] bool folds(const Vec3& to) const;
   [[nodiscard]] bool stays_flat(const Vec3& to);

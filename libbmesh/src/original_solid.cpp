@@ -76,28 +76,35 @@ class Separation {
 /// its errors: quick, and decides nearly all cases.
 class Faces {
  public:
-  explicit Faces(const Tetrahedron& tetrahedron) {
+  explicit Faces(const Tetrahedron& tetrahedron) : corner_(tetrahedron) {
+    // The faces across from corners 0 to 2 pass through corner 3, from which all is measured.
+    constexpr std::array<std::array<int, 3>, 4> kFace{{{3, 2, 1}, {3, 2, 0}, {3, 1, 0}, {0, 1, 2}}};
     for (int k = 0; k < 4; ++k) {
-      const Vec3 &a = tetrahedron[(k + 1) % 4], &b = tetrahedron[(k + 2) % 4],
-                 &c = tetrahedron[(k + 3) % 4];
-      const Vec3 u = b - a, v = c - a, w = tetrahedron[k] - a;
-      Face f{a, u.cross(v), kError * u.lpNorm<Eigen::Infinity>() * v.lpNorm<Eigen::Infinity>()};
+      const Vec3& a = tetrahedron[kFace[k][0]];
+      const Vec3 u = tetrahedron[kFace[k][1]] - a, v = tetrahedron[kFace[k][2]] - a,
+                 w = tetrahedron[k] - a;
+      Face& f = face_[k];
+      f.normal = u.cross(v);
+      f.error = kError * u.lpNorm<Eigen::Infinity>() * v.lpNorm<Eigen::Infinity>();
       const double height = f.normal.dot(w);
       certain_ = certain_ && std::abs(height) > f.error * w.lpNorm<Eigen::Infinity>() &&
                  f.error > kUnderflow;
       if (height > 0) f.normal = -f.normal;
-      face_[k] = f;
+      const Vec3 shift = a - tetrahedron[3];
+      f.offset = f.normal.dot(shift);
+      f.size = shift.lpNorm<Eigen::Infinity>();
     }
   }
 
   /// Whether all of the box is certainly beyond one of the faces: so is any triangle in it then.
   [[nodiscard]] bool beyond(const geom::Box3& box) const {
     if (!certain_) return false;
+    const Vec3 low = box.min - corner_[3], high = box.max - corner_[3];
+    const Vec3 middle = 0.5 * (low + high), half = 0.5 * (high - low);
+    const double size = low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff();
     for (const Face& f : face_) {
-      const Vec3 low = box.min - f.a, high = box.max - f.a;
-      // Over the box, the rounded normal's heights are least at one of its corners.
-      const double least = f.normal.cwiseProduct(low).cwiseMin(f.normal.cwiseProduct(high)).sum();
-      const double error = 2 * f.error * low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff();
+      const double least = f.normal.dot(middle) - f.normal.cwiseAbs().dot(half) - f.offset;
+      const double error = 2 * f.error * (size + f.size);
       if (error > kLeastError && least > error) return true;
     }
     return false;
@@ -111,34 +118,24 @@ class Faces {
 
   [[nodiscard]] Place of(const std::array<Vec3, 3>& triangle) const {
     if (!certain_) return Place::Undecided;
-    // The part of each edge, and of the line from corner 0 to the opposite edge's middle, that is
-    // clearly within all faces.
-    std::array<double, 4> from{0, 0, 0, 0}, to{1, 1, 1, 1};
-    for (const Face& f : face_) {
-      std::array<double, 4> height;
-      double error = 0;
-      for (int i = 0; i < 3; ++i) {
-        const Vec3 x = triangle[i] - f.a;
-        height[i] = f.normal.dot(x);
-        error = std::max(error, f.error * x.lpNorm<Eigen::Infinity>());
-      }
-      if (!(error > kLeastError)) return Place::Undecided;
-      if (height[0] > error && height[1] > error && height[2] > error) return Place::Beyond;
-      height[3] = 0.5 * (height[1] + height[2]);
-      constexpr std::array<int, 4> kFirst{0, 1, 2, 0}, kSecond{1, 2, 0, 3};
-      for (int e = 0; e < 4; ++e) {
-        const double h = height[kFirst[e]] + 2 * error, d = height[kSecond[e]] + 2 * error - h;
-        if (d > 0)
-          to[e] = std::min(to[e], -h / d);
-        else if (d < 0)
-          from[e] = std::max(from[e], -h / d);
-        else if (h >= 0)
-          to[e] = -1;
-      }
+    std::array<std::array<double, 3>, 4> height;
+    std::array<double, 4> error;
+    std::array<Vec3, 3> x;
+    double size = 0;
+    for (int i = 0; i < 3; ++i) {
+      x[i] = triangle[i] - corner_[3];
+      size = std::max(size, x[i].lpNorm<Eigen::Infinity>());
     }
-    for (int e = 0; e < 4; ++e)
-      if (to[e] - from[e] > 1e-6) return Place::Within;
-    return Place::Undecided;
+    for (int k = 0; k < 4; ++k) {
+      const Face& f = face_[k];
+      for (int i = 0; i < 3; ++i) height[k][i] = f.normal.dot(x[i]) - f.offset;
+      error[k] = f.error * (size + f.size);
+      if (!(error[k] > kLeastError)) return Place::Undecided;
+      if (height[k][0] > error[k] && height[k][1] > error[k] && height[k][2] > error[k])
+        return Place::Beyond;
+    }
+    if (pierces(height, error)) return Place::Within;
+    return apart(triangle) ? Place::Beyond : Place::Undecided;
   }
 
  private:
@@ -148,11 +145,66 @@ class Faces {
   static constexpr double kUnderflow = 1e-200;
   static constexpr double kLeastError = 1e-290;  // products below may have underflowed
 
+  /// Whether a part of an edge, or of the line from corner 0 to the opposite edge's middle, is
+  /// clearly within all faces.
+  static bool pierces(const std::array<std::array<double, 3>, 4>& height,
+                      const std::array<double, 4>& error) {
+    std::array<double, 4> from{0, 0, 0, 0}, to{1, 1, 1, 1};
+    for (int k = 0; k < 4; ++k) {
+      const std::array<double, 4> h{height[k][0], height[k][1], height[k][2],
+                                    0.5 * (height[k][1] + height[k][2])};
+      constexpr std::array<int, 4> kFirst{0, 1, 2, 0}, kSecond{1, 2, 0, 3};
+      for (int e = 0; e < 4; ++e) {
+        const double start = h[kFirst[e]] + 2 * error[k];
+        const double d = h[kSecond[e]] + 2 * error[k] - start;
+        if (d > 0)
+          to[e] = std::min(to[e], -start / d);
+        else if (d < 0)
+          from[e] = std::max(from[e], -start / d);
+        else if (start >= 0)
+          to[e] = -1;
+      }
+    }
+    for (int e = 0; e < 4; ++e)
+      if (to[e] - from[e] > 1e-6) return true;
+    return false;
+  }
+
+  /// Whether the triangle's plane, or one along an edge of each, certainly has the two on its two
+  /// sides. Any double direction will do; that it is rounded itself does not matter.
+  [[nodiscard]] bool apart(const std::array<Vec3, 3>& triangle) const {
+    std::array<Vec3, 7> x;
+    double size = 0;
+    for (int i = 0; i < 7; ++i) {
+      x[i] = (i < 4 ? corner_[i] : triangle[i - 4]) - corner_[0];
+      size = std::max({size, std::abs(x[i].x()), std::abs(x[i].y()), std::abs(x[i].z())});
+    }
+    const auto separates = [&](const Vec3& n) {
+      std::array<double, 7> h;
+      for (int i = 0; i < 7; ++i) h[i] = n.dot(x[i]);
+      const double above = std::min({h[0], h[1], h[2], h[3]}) - std::max({h[4], h[5], h[6]});
+      const double below = std::min({h[4], h[5], h[6]}) - std::max({h[0], h[1], h[2], h[3]});
+      // Of either height: rounded differences, three products and two sums, with room to spare.
+      const double error = 32 * 0x1p-53 * n.lpNorm<1>() * size;
+      return error > kLeastError && std::max(above, below) > error;
+    };
+    std::array<Vec3, 3> edge;
+    for (int i = 0; i < 3; ++i) edge[i] = x[4 + (i + 1) % 3] - x[4 + i];
+    if (separates(edge[0].cross(edge[1]))) return true;
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < i; ++j)
+        for (const Vec3& e : edge)
+          if (separates(e.cross(x[i] - x[j]))) return true;
+    return false;
+  }
+
   struct Face {
-    Vec3 a;
-    Vec3 normal;  // outwards
-    double error;
+    Vec3 normal;    // outwards
+    double error;   // of heights, per length
+    double offset;  // of the plane from corner 3, along the normal
+    double size;    // of the way there, in the maximum norm
   };
+  const Tetrahedron& corner_;
   std::array<Face, 4> face_;
   bool certain_ = true;  // that the normals point outwards
 };

@@ -1,14 +1,24 @@
 #include "proximity.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace kaboum::bmesh {
 
 Proximity::Proximity(const geom::Mesh& mesh) : bvh_(mesh) {
   corners_.reserve(mesh.triangles.size());
+  ball_.reserve(mesh.triangles.size());
   for (const std::uint32_t i : bvh_.order()) {
     const geom::Triangle& t = mesh.triangles[i];
     corners_.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
+    const auto& c = corners_.back();
+    geom::Box3 box;
+    for (const Vec3& p : c) box.extend(p);
+    const Vec3 middle = box.center();
+    double squared = 0;
+    for (const Vec3& p : c) squared = std::max(squared, (p - middle).squaredNorm());
+    ball_.push_back({middle, (1 + 1e-12) * std::sqrt(squared)});
   }
 }
 
@@ -18,7 +28,7 @@ double Proximity::squared(const Vec3& p, std::uint32_t& hint, double enough) con
     return (box.min - p).cwiseMax(p - box.max).cwiseMax(0.0).squaredNorm();
   };
   if (hint >= corners_.size()) hint = 0;
-  double best = squared_distance(p, corners_[hint]);
+  double best = squared_distance(p, corners_[hint]), root = std::sqrt(best);
   struct Entry {
     double squared;
     std::uint32_t node;
@@ -41,9 +51,12 @@ double Proximity::squared(const Vec3& p, std::uint32_t& hint, double enough) con
     const geom::Bvh::Node& node = nodes[index];
     if (!node.leaf()) continue;
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+      const double reach = root + ball_[i].radius;
+      if ((p - ball_[i].middle).squaredNorm() > reach * reach) continue;
       const double d = squared_distance(p, corners_[i]);
       if (d >= best) continue;
       best = d;
+      root = std::sqrt(d);
       hint = i;
     }
   }

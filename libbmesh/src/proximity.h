@@ -61,8 +61,13 @@ class Proximity {
   [[nodiscard]] std::uint32_t triangle(std::uint32_t place) const { return bvh_.order()[place]; }
 
  private:
+  struct Ball {
+    Vec3 middle;
+    double radius;
+  };
   geom::Bvh bvh_;
   std::vector<std::array<Vec3, 3>> corners_;  // in the tree's order
+  std::vector<Ball> ball_;                    // around each, somewhat larger than need be
 };
 
 }  // namespace kaboum::bmesh

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 
 #include "part.h"
@@ -283,6 +284,26 @@ TEST(Decimate, TightMeshesFindFloat32Places) {
     const auto [input, log, r] = test::record(bracket, o);
     EXPECT_EQ(r.unrepresentable, 0U);
     EXPECT_GE(1000 * r.mesh.vertices.size(), 999 * *o.vertices);  // hardly any contracted away
+    const auto checked = replay(input, log, r.mesh);
+    EXPECT_TRUE(checked.verified) << checked.violation;
+  }
+}
+
+// A waved foot in the plane z = 0: near 0, float32 is finer than what is computed with double.
+TEST(Decimate, FlatFeetFindFloat32Places) {
+  geom::Mesh foot = test::icosphere(4);
+  for (geom::Vec3& p : foot.vertices) {
+    const double wave = (p.x() * p.x() + p.y() * p.y()) * std::cos(17 * std::atan2(p.y(), p.x()));
+    const double r = 30.1 * (1 + 0.15 * wave);
+    p = {r * p.x() + 7.3, r * p.y() - 3.1, std::max(30.1 * p.z(), -10.0) + 10};
+  }
+  for (const Cost cost : {Cost::Planes, Cost::Distance}) {
+    DecimateOptions o = to_vertices(foot.vertices.size() / 2);
+    o.cost = cost;
+    o.precision = Precision::Float;
+    const auto [input, log, r] = test::record(foot, o);
+    EXPECT_EQ(r.unrepresentable, 0U);
+    EXPECT_EQ(r.mesh.vertices.size(), *o.vertices);  // none is contracted away
     const auto checked = replay(input, log, r.mesh);
     EXPECT_TRUE(checked.verified) << checked.violation;
   }
