@@ -160,18 +160,24 @@ Appraisal appraise(std::span<const Vec3> points, const Solid& solid, geom::HullB
   }
   for (const Solid::Probe& probe : solid.probes()) {
     const Vec3& p = probe.point;
-    if ((p.array() <= box.min.array()).any() || (p.array() >= box.max.array()).any()) continue;
-    bool inside = true;
+    const double near = probe.near();
+    if ((p.array() <= box.min.array() - near).any() || (p.array() >= box.max.array() + near).any())
+      continue;
+    double outside = 0;
+    Vec3 back = Vec3::Zero();
     for (const Triangle& t : builder.triangles()) {
       const Vec3& a = points[t[0]];
-      if ((points[t[1]] - a).cross(points[t[2]] - a).dot(p - a) < 0) continue;
-      inside = false;
-      break;
+      const Vec3 normal = (points[t[1]] - a).cross(points[t[2]] - a);
+      const double height = normal.dot(p - a), length = normal.norm();
+      if (!(height > outside * length)) continue;
+      outside = height / length;
+      back = normal / length;
+      if (outside >= near) break;
     }
-    if (!inside) continue;
-    const double d = probe.distance;
+    if (outside >= near) continue;
+    const double d = probe.distance - outside;
     out.fourth += solid.probe_area() * d * d * d * d;
-    raise(p, d);
+    raise(p - outside * back, d);
   }
   if (out.worst > limit) return out;
   const auto less = [](const auto& a, const auto& b) { return a.first < b.first; };

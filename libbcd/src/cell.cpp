@@ -1,8 +1,8 @@
 #include "cell.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
 namespace kaboum::bcd {
@@ -36,17 +36,37 @@ Vec3 Cell::center() const {
   return sum;
 }
 
-double Cell::depth(const Vec3& p) const {
-  double depth = std::numeric_limits<double>::infinity();
+std::vector<Vec3> Cell::inward(double depth) const {
+  const Vec3 middle = center();
+  std::vector<std::vector<Vec3>> normals(corners.size());  // inwards, of the faces at each corner
   for (const auto& face : faces) {
     Vec3 normal = Vec3::Zero();
     for (std::size_t k = 1; k + 1 < face.size(); ++k)
       normal +=
           (corners[face[k]] - corners[face[0]]).cross(corners[face[k + 1]] - corners[face[0]]);
     const double length = normal.norm();
-    if (length > 0) depth = std::min(depth, std::abs(normal.dot(p - corners[face[0]])) / length);
+    if (!(length > 0)) continue;
+    normal /= normal.dot(middle - corners[face[0]]) < 0 ? -length : length;
+    for (const std::uint32_t v : face) normals[v].push_back(normal);
   }
-  return depth;
+  constexpr double kAlike = 1e-3;  // determinant of three normals
+  std::vector<Vec3> out;
+  for (std::size_t v = 0; v < corners.size(); ++v) {
+    const std::vector<Vec3>& at = normals[v];
+    Eigen::Matrix3d best = Eigen::Matrix3d::Zero();
+    double volume = kAlike;
+    for (std::size_t i = 0; i < at.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        for (std::size_t k = 0; k < j; ++k) {
+          const double v3 = std::abs(at[i].dot(at[j].cross(at[k])));
+          if (v3 <= volume) continue;
+          volume = v3;
+          best << at[i].transpose(), at[j].transpose(), at[k].transpose();
+        }
+    out.push_back(corners[v] + (volume > kAlike ? Vec3(best.inverse() * Vec3::Constant(depth))
+                                                : Vec3(0x1p-30 * (middle - corners[v]))));
+  }
+  return out;
 }
 
 std::vector<Cube> cubes_over(const Box3& box) {

@@ -26,8 +26,9 @@ struct Cell {
   /// Corner pairs, each edge once (from < to).
   [[nodiscard]] std::vector<std::array<std::uint32_t, 2>> edges() const;
   [[nodiscard]] Vec3 center() const;
-  /// Distance of a point inside to the nearest face's plane.
-  [[nodiscard]] double depth(const Vec3& p) const;
+  /// Every corner moved inwards, to this depth below the planes of three faces that meet there, the
+  /// least alike; by 2⁻³⁰ of the way to the centre where faces are too alike for that.
+  [[nodiscard]] std::vector<Vec3> inward(double depth) const;
 };
 
 struct Cube {

@@ -190,12 +190,15 @@ void CutTree::add_leaf(Piece&& piece, int parent) {
   ++leaf_count_;
 }
 
-void CutTree::reappraise(const Vec3& at) {
+void CutTree::reappraise(const Solid::Probe& probe) {
+  const Vec3& at = probe.point;
+  const double near = probe.near();
   for (Node& n : nodes_) {
     if (n.lower >= 0 || n.upper >= 0 || n.hull.empty()) continue;
     Box3 box;
     for (const Vec3& p : n.hull) box.extend(p);
-    if ((at.array() < box.min.array()).any() || (at.array() > box.max.array()).any()) continue;
+    if ((at.array() < box.min.array() - near).any() || (at.array() > box.max.array() + near).any())
+      continue;
     n.appraisal = appraise(n.hull, solid_, scratch().builder);
   }
 }
@@ -287,10 +290,12 @@ double CutTree::score(const Node& node, const Plane& plane) const {
   const double thinnest = std::min(plane.d - low, high - plane.d);
   // Pieces as thin as their overlap are no smaller.
   if (thinnest < 8 * shift_) return std::numeric_limits<double>::infinity();
-  // Plates are split into thinner ones only where nothing else helps.
+  // Plates are split into thinner ones only where nothing else helps: these reach as far but for
+  // the thickness.
   Box3 box;
   for (const Vec3& p : node.hull) box.extend(p);
-  const double penalty = thinnest < 1e-6 * box.diagonal() ? 1e6 : 1;
+  const bool plate = thinnest < 1e-6 * box.diagonal() || high - low < node.appraisal.worst;
+  const double penalty = plate ? 1e6 : 1;
   Scratch& s = scratch();
   s.lower.clear();
   s.upper.clear();

@@ -484,9 +484,10 @@ class Decomposer {
   /// whether it was one of the body before simplification.
   bool learn(const Finished& f) {
     if (f.reach.lower <= 1.02 * f.body.appraisal.worst) return false;
-    if (!solid_.add_probe({f.reach.at, f.reach.lower}, f.body.hull)) return false;
+    const Solid::Probe probe{f.reach.at, f.reach.lower};
+    if (!solid_.add_probe(probe, f.body.hull)) return false;
     memo_ = {};
-    tree_.reappraise(f.reach.at);
+    tree_.reappraise(probe);
     return true;
   }
 
@@ -850,12 +851,15 @@ DecomposeResult with_quick_searches(const Mesh& closed, const DecomposeOptions& 
   constexpr std::size_t kFew = 2000;  // triangles
   DecomposeResult best = Decomposer(closed, options).run();
   if (!options.epsilon || options.max_total_vertices || options.method != Method::Planes ||
-      options.effort == Effort::Fast || closed.triangles.size() > kFew)
+      options.effort == Effort::Fast || closed.triangles.size() > kFew ||
+      (best.stop == Stop::Done && best.bodies.size() == 1))
     return best;
+  DecomposeOptions silent = options;  // the progress has been told
+  silent.progress = nullptr;
   for (const bool mirrors : {false, true}) {
     Tuning quick = tuning(Effort::Fast);
     quick.search.mirrors = mirrors;
-    DecomposeResult other = Decomposer(closed, options, quick).run();
+    DecomposeResult other = Decomposer(closed, silent, quick).run();
     if (other.stop == Stop::Done &&
         (best.stop != Stop::Done || other.bodies.size() < best.bodies.size()))
       best = std::move(other);

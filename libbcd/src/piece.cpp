@@ -49,10 +49,9 @@ class EdgeMap {
   std::size_t used_ = 0;
 };
 
-/// Whether the corner is one of the solid's part in the cell: decided a share of the way to the
-/// cell's centre, so that surfaces through the corner itself do not count.
-bool corner_inside(const Solid& solid, const Vec3& corner, const Vec3& center, double share) {
-  const Vec3 p = corner + share * (center - corner);
+/// Whether a corner is one of the solid's part in the cell, given a point a little inside the cell,
+/// so that surfaces through the corner itself do not count.
+bool corner_inside(const Solid& solid, const Vec3& p) {
   if (!(p.array() > solid.box().min.array()).all() || !(p.array() < solid.box().max.array()).all())
     return false;
   return solid.contains(p);
@@ -163,11 +162,9 @@ Piece clip(const Piece& piece, const Plane& plane, bool lower, double shift, con
     out.source.push_back(piece.source[f]);
   }
   out.cell = clip(piece.cell, plane, lower, shift);
-  const Vec3 center = out.cell.center();
   // Beyond the overlap, which neighbours' faces may lie in: a corner that touches them spans a pit.
-  const double share = std::clamp(4 * shift / out.cell.depth(center), 0x1p-30, 0.01);
-  for (const Vec3& c : out.cell.corners)
-    out.inside.push_back(corner_inside(solid, c, center, share) ? 1 : 0);
+  for (const Vec3& p : out.cell.inward(4 * shift))
+    out.inside.push_back(corner_inside(solid, p) ? 1 : 0);
   return out;
 }
 

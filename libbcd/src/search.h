@@ -43,8 +43,8 @@ class CutTree {
 
   /// Cuts the leaf with the largest distance. @return false when no leaf can be cut.
   bool cut_worst();
-  /// Judges the leaves round a point anew, where a probe was added.
-  void reappraise(const Vec3& at);
+  /// Judges the leaves round a probe that was added anew.
+  void reappraise(const Solid::Probe& probe);
   /// Cuts this leaf. @return false when no plane cuts it.
   bool cut(int leaf);
 

@@ -50,6 +50,8 @@ class Solid {
   struct Probe {
     Vec3 point;
     double distance;
+    /// How far from it a hull is judged by it still: of one cut into thin slices, all are.
+    [[nodiscard]] double near() const { return 0.1 * distance; }
   };
   [[nodiscard]] const std::vector<Probe>& probes() const { return probes_; }
   /// Adds a point whose distance was measured, if it lies in the hull of these points and they are
