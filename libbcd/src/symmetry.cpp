@@ -43,7 +43,7 @@ Moments moments_of(const Mesh& mesh) {
   return out;
 }
 
-/// Centroids of triangles, spread evenly by area.
+/// Centroids of triangles, about as many as wished, the larger triangles' rather.
 std::vector<Vec3> samples_of(const Mesh& mesh, double area) {
   std::vector<Vec3> out;
   double sum = 0;

@@ -8,7 +8,8 @@
 namespace kaboum::bcd {
 
 /// Planes that the solid's surface is a mirror image of itself in, up to a thousandth of the
-/// diagonal at samples. Guides the search, never a claim; not all of a ball's are found.
+/// diagonal at some hundred samples, which small features may escape. At most sixteen. Guides the
+/// search, never a claim.
 std::vector<Plane> mirror_planes(const Solid& solid);
 
 }  // namespace kaboum::bcd

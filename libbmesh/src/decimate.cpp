@@ -156,13 +156,9 @@ class Decimator final : private Judge {
       // Where hardly anything is contracted, nothing has been reached, and little is to be gained.
       double limit = reached_ > 0 ? std::min(reached_, setting_.diagonal) : 0;
       patience_ = kPatience;
-      std::size_t refined = 2 * contraction_.vertices();
       for (int i = 0; i < kJointRounds && limit > 0 && contraction_.vertices() > target;
            ++i, limit *= kJointGrowth) {
-        if (100 * contraction_.vertices() <= (100 - kRefineAgain) * refined) {
-          refine();
-          refined = contraction_.vertices();
-        }
+        if (i == 0 || 100 * contraction_.vertices() <= (100 - kRefineAgain) * refined_) refine();
         optimise(1);
         collapse_to(target, limit);
         if (patience_ < 0) break;
@@ -187,8 +183,10 @@ class Decimator final : private Judge {
     }
   }
 
-  /// Samples are added where the mesh deviates most.
+  /// Samples are added where the mesh deviates most, if it has changed.
   void refine() {
+    if (!(reached_ > 0) || contraction_.vertices() == refined_) return;
+    refined_ = contraction_.vertices();
     const double far = kRefineFrom * reached_;
     deviation_->refine(position_, mesh_, far * far);
   }
@@ -521,8 +519,9 @@ class Decimator final : private Judge {
   std::optional<Tolerance> tolerance_;
   std::optional<Deviation> deviation_;
   std::optional<Optimiser> optimiser_;
-  bool measuring_ = false;  // costs are measured distances
-  double reached_ = 0;      // largest measured cost of a contraction
+  bool measuring_ = false;   // costs are measured distances
+  double reached_ = 0;       // largest measured cost of a contraction
+  std::size_t refined_ = 0;  // number of vertices when samples were added last
   struct Failure {
     std::uint32_t joined = ~0U;  // of both ends
     double deviation = 0;        // that the contraction would take

@@ -204,6 +204,10 @@ void Deviation::refine(std::span<const Vec3> position, const Connectivity& mesh,
     const geom::Triangle& t = mesh_.triangles[i];
     const Vec3& a = mesh_.vertices[t[0]];
     const std::uint32_t to = present.index[proximity.triangle(found[i]->nearest)];
+    bool known = false;  // from the neighbour across an edge, or from earlier
+    for (std::uint32_t s = head_[to]; s != kNone && !known; s = next_[s])
+      known = point_[s] == found[i]->point;
+    if (known) continue;
     point_.push_back(found[i]->point);
     weight_.push_back(0.125 * (mesh_.vertices[t[1]] - a).cross(mesh_.vertices[t[2]] - a).norm());
     next_.push_back(head_[to]);

@@ -40,6 +40,7 @@ class Deviation {
   /// them.
   explicit Deviation(const geom::Mesh& original, int power = 4, double spacing = 0);
   [[nodiscard]] int power() const { return power_; }
+  [[nodiscard]] std::size_t samples() const { return point_.size(); }
 
   /// Gives every sample to the current triangle nearest to it.
   void assign(std::span<const Vec3> position, const Connectivity& mesh);
@@ -67,7 +68,8 @@ class Deviation {
   void commit(std::span<const std::uint32_t> removed, std::span<const NewTriangle> added);
 
   /// Looks between the samples for points of the original that are farther than √enough from the
-  /// present mesh, and adds the farthest of each triangle to the samples.
+  /// present mesh, and adds the farthest of each triangle to the samples, with the weight of a
+  /// quarter of the triangle besides the others'.
   void refine(std::span<const Vec3> position, const Connectivity& mesh, double enough);
 
   /// Appends the samples that the triangles carry to `out`, each list ended by kNone.
@@ -109,7 +111,7 @@ class Deviation {
   int power_;
   double unit_;  // 1 / diagonal²
   std::vector<Vec3> point_;
-  std::vector<double> weight_;  // area of the original that the sample stands for
+  std::vector<double> weight_;  // area of the original; places that refine found count besides
   std::vector<std::uint32_t> next_;
   std::vector<std::uint32_t> head_;  // per current triangle
 };

@@ -130,7 +130,7 @@ TEST(Shapes, BoxWithThinWalls) {
                   6, 0.5, 0.005});
 }
 
-/// Planes of symmetry are found whatever the triangles are, and no others.
+/// Planes of symmetry are found whatever the triangles are.
 TEST(Shapes, Mirrors) {
   const auto mirrors = [](const Mesh& mesh) { return mirror_planes(Solid(mesh, 1000, 0)).size(); };
   EXPECT_EQ(mirrors(kaboum::test::box({1, 2, 3}, 2)), 3U);
