@@ -297,26 +297,12 @@ class Job {
 
   /// No file may be written twice, nor the input overwritten when a log speaks of it.
   void require_separate_files() const {
-    std::vector<std::pair<std::string, std::string>> files;
-    for (const std::string& file : outputs_)
-      if (!file.empty()) files.emplace_back("the result", file);
-    if (!o_.log.empty()) files.emplace_back("the log", o_.log);
-    if (!o_.progressive.empty()) files.emplace_back("the progressive file", o_.progressive);
-    if (!o_.common.report.empty()) files.emplace_back("the report", o_.common.report);
-    if (!o_.depfile.empty()) files.emplace_back("the dependency file", o_.depfile);
-    // In place is fine, unless a log would then speak of a file that is gone.
-    if (o_.input != "-" && files.size() > 1) files.emplace_back("the input", o_.input);
-    const auto place = [](const std::string& file) {
-      return std::filesystem::weakly_canonical(std::filesystem::absolute(file));
-    };
-    const auto same = [&](const std::string& a, const std::string& b) {
-      return a == b || (a != "-" && b != "-" && place(a) == place(b));
-    };
-    for (std::size_t i = 0; i < files.size(); ++i)
-      for (std::size_t j = i + 1; j < files.size(); ++j)
-        if (same(files[i].second, files[j].second))
-          throw Error(ErrorCode::InvalidArgument, files[i].first + " and " + files[j].first +
-                                                      " cannot both be " + files[i].second);
+    std::vector<std::pair<std::string, std::string>> files{{"--log", o_.log},
+                                                           {"--progressive", o_.progressive},
+                                                           {"--report", o_.common.report},
+                                                           {"--depfile", o_.depfile}};
+    for (const std::string& file : outputs_) files.emplace_back("--output", file);
+    tools::require_apart(files, {o_.input});
   }
 
   /// The results come last, so that they are there only if everything that belongs to them is.

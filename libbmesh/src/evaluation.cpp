@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "proximity.h"
+
 namespace kaboum::bmesh {
 namespace {
 
@@ -167,6 +169,19 @@ void Evaluation::find_cost(const Quadric& q) {
   candidate_.cost =
       setting_.cost.key(q, candidate_.position,
                         (m_.position[candidate_.b] - m_.position[candidate_.a]).squaredNorm());
+  if (options_.cost != Cost::Distance) return;
+  // Beyond a knife's edge a vertex is near all planes, and far from the triangles.
+  constexpr double kFar = 0.125;
+  const Vec3 &p = candidate_.position, &a = m_.position[candidate_.a],
+             &b = m_.position[candidate_.b];
+  double squared = squared_distance(p, {a, b, b});
+  const double enough = candidate_.cost * candidate_.cost / (kFar * kFar);
+  for (std::size_t i = 0; i < star_.size() && squared > enough; ++i) {
+    const Triangle& t = m_.mesh[star_[i].index];
+    squared = std::min(
+        squared, squared_distance(p, {m_.position[t[0]], m_.position[t[1]], m_.position[t[2]]}));
+  }
+  candidate_.cost = std::max(candidate_.cost, kFar * std::sqrt(squared));
 }
 
 void Evaluation::gather(std::uint32_t a, std::uint32_t b) {

@@ -98,6 +98,7 @@ expect 2 'INPUT, or --from' "$D" --vertices 300 -o x.ply
 expect 2 'joined with --cost' "$D" --from s.pm --vertices 300 -o x.ply --cost planes
 expect 2 'joined with INPUT' "$D" "$BRACKET" --from s.pm --vertices 300 -o x.ply
 expect 2 'needs --vertices' "$D" --from s.pm -o x.ply
+expect 2 'overwrite' "$D" epsilon.ply --vertices 100 -o ./epsilon.ply
 expect 2 'overwrite' "$D" --from s.pm --vertices 300 -o s.pm --output-format ply
 expect 3 'not a progressive file' "$D" --from s.json --vertices 300 -o x.ply
 head -c 5000 s.pm >short.pm
@@ -144,7 +145,7 @@ absent x.off
 
 # Every file once.
 expect 2 'cannot both be' "$D" t.off -o x.off --vertices 4 --log ./x.off
-expect 2 'cannot both be' "$D" t.off -o x.off --vertices 4 --report x.off
+expect 2 'overwrite' "$D" t.off -o x.off --vertices 4 --report x.off
 expect 2 'cannot both be' "$D" t.off -o t.off --vertices 4 --log l.log
 expect 2 'cannot both be' "$D" t.off -o - --output-format off --vertices 4 --log -
 
