@@ -145,8 +145,8 @@ absent x.off
 
 # Every file once.
 expect 2 'cannot both be' "$D" t.off -o x.off --vertices 4 --log ./x.off
-expect 2 'overwrite' "$D" t.off -o x.off --vertices 4 --report x.off
-expect 2 'cannot both be' "$D" t.off -o t.off --vertices 4 --log l.log
+expect 2 'cannot both be' "$D" t.off -o x.off --vertices 4 --report x.off
+expect 2 'overwrite' "$D" t.off -o t.off --vertices 4 --log l.log
 expect 2 'cannot both be' "$D" t.off -o - --output-format off --vertices 4 --log -
 
 # Output that cannot be written; nothing that belongs to it stays behind.
