@@ -295,7 +295,7 @@ class Job {
     to.nested.reset();
   }
 
-  /// No file may be written twice, nor the input overwritten when a log speaks of it.
+  /// No file may be written twice, nor the input overwritten.
   void require_separate_files() const {
     std::vector<std::pair<std::string, std::string>> files{{"--log", o_.log},
                                                            {"--progressive", o_.progressive},

@@ -42,10 +42,13 @@ struct Tuning {
 Tuning tuning(Effort effort) {
   switch (effort) {
     case Effort::Fast:
-      return {60000,  {.offsets = 5, .reflex_planes = 6, .refinements = 1, .mirrors = false},
-              {1.5},  {0.8},
-              {0.05}, 12,
-              1};
+      return {.grid = 60000,
+              .search = {.offsets = 5, .reflex_planes = 6, .refinements = 1, .mirrors = false},
+              .multiples = {1.5},
+              .thresholds = {0.8},
+              .bulks = {0.05},
+              .refinements = 12,
+              .rounds = 1};
     case Effort::Normal:
       return {200000, {}, {1, 1.25, 1.5, 2, 3}, {0.8}, {0.05, 0.15, 0.02}, 60, 2, true};
     case Effort::Best:

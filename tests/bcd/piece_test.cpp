@@ -56,22 +56,5 @@ TEST(Piece, ThinCellsThroughWallsHaveTheirCorners) {
       }
 }
 
-TEST(Piece, ThinCellsInTheSolidHaveAllTheirCorners) {
-  const Mesh box = test::box({10, 10, 2}, 3);
-  const Solid solid(box, 1000, 0);
-  const double shift = 0x1p-36 * 10;
-  const Vec3 middle = solid.box().center();
-  for (const double thickness : {0.5, 1e-3, 1e-6}) {
-    SCOPED_TRACE(thickness);
-    Piece piece = whole(solid);
-    for (const Vec3& n : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitY()), Vec3(Vec3::UnitZ())}) {
-      const double size = n.z() > 0 ? thickness : 1;
-      piece = part(piece, {n, n.dot(middle) - 0.5 * size}, false, solid, shift);
-      piece = part(piece, {n, n.dot(middle) + 0.5 * size}, true, solid, shift);
-    }
-    EXPECT_EQ(piece.hull_points().size(), 8U);
-  }
-}
-
 }  // namespace
 }  // namespace kaboum::bcd
