@@ -4,6 +4,7 @@
 // docs/algorithms/bounding-mesh.md.
 #include <kaboum/bmesh/decimate.h>
 #include <kaboum/geom/convex_set.h>
+#include <kaboum/geom/distance.h>
 #include <kaboum/geom/error.h>
 #include <kaboum/geom/float32.h>
 #include <kaboum/geom/topology.h>
@@ -47,6 +48,16 @@ constexpr double kRefineFrom = 0.6, kRefineMost = 12;
 /// And again when so many of a hundred vertices are gone since.
 constexpr std::size_t kRefineAgain = 5;
 
+/// Small meshes are decimated a second time, within a bound: at first this share of the distance
+/// measured at kJointFrom times the wished number of vertices. It rises by kBoundGrowth from round
+/// to round until the number is reached. Rounds that gain less than kBoundGain of what is missing
+/// raise it by more.
+constexpr double kBoundFrom = 0.85, kBoundFromBest = 0.75;
+constexpr double kBoundGrowth = 1.07, kBoundMostGrowth = 1.25, kBoundGain = 0.05;
+constexpr int kBoundPasses = 1;  ///< rounds of optimisation in each
+/// Small: at most so many vertices, and so many wished for, a third of them at most.
+constexpr std::size_t kBoundVertices = 20000, kBoundTarget = 1000, kBoundShare = 3;
+
 /// So many of them may fail by their deviation, and so many more for each that does not: on parts
 /// with many sharp edges hardly any succeeds, and nothing is gained.
 constexpr int kPatience = 120, kPatienceGained = 2;
@@ -69,17 +80,25 @@ std::size_t measured_from(const DecimateOptions& options, std::size_t target) {
   return follows ? kMeasureFrom * target : target;
 }
 
+/// An error bound that rises until the wished number of vertices is reached. [length]
+struct RisingBound {
+  double from, to;
+};
+
 /// Contractions, and what goes on between and after them: measured distances, optimisation against
 /// the original, representable coordinates.
 class Decimator final : private Judge {
  public:
   /// @param original  what `start` was made of, whatever has happened to it since.
+  /// @param bound     of a run to a number of vertices: the error bound that rises.
   Decimator(const Setting& setting, const Mesh& original, Reduction start,
-            std::optional<OriginalSolid>& solid, std::vector<Step>* steps)
+            std::optional<OriginalSolid>& solid, std::vector<Step>* steps,
+            const std::optional<RisingBound>& bound)
       : setting_(setting),
         options_(setting.options),
-        joint_(options_.epsilon && options_.cost == Cost::Distance &&
-               options_.effort != Effort::Fast),
+        epsilon_(bound ? bound->from : options_.epsilon),
+        most_(bound ? bound->to : 0),
+        joint_(epsilon_ && options_.cost == Cost::Distance && options_.effort != Effort::Fast),
         original_(original),
         solid_(solid),
         steps_(steps),
@@ -87,8 +106,12 @@ class Decimator final : private Judge {
                      WorkingMesh(std::move(start.position), std::move(start.border),
                                  std::move(start.triangles)),
                      std::move(start.quadric), solid ? &*solid : nullptr, steps, this) {
-    if (options_.epsilon) tolerance_.emplace(original, *options_.epsilon);
+    if (epsilon_) tolerance_.emplace(original, *epsilon_);
   }
+
+  /// The largest distance measured before edges were contracted together with moves; 0 where there
+  /// is none.
+  [[nodiscard]] double reached_alone() const { return reached_alone_; }
 
   /// Runs on from where the last call has stopped.
   DecimateResult run(std::optional<std::size_t> target) {
@@ -126,14 +149,7 @@ class Decimator final : private Judge {
     if (!pulls_back_meanwhile()) {
       contract_to(target);
     } else {
-      if (!measuring_) {
-        // Small deviations need no measuring: the quadrics order the contractions as well.
-        contract_to(measured_from(options_, target),
-                    options_.epsilon && options_.cost == Cost::Distance
-                        ? kMeasureFromEpsilon * *options_.epsilon
-                        : std::numeric_limits<double>::infinity());
-        start_measuring();
-      }
+      start_stages(target);
       contract_in_stages(target);
     }
     optimise(options_.effort == Effort::Best ? kFinalPassesBest : kFinalPasses);
@@ -141,31 +157,33 @@ class Decimator final : private Judge {
     return bounded_ ? Stop::ErrorBound : Stop::Exhausted;
   }
 
-  void contract_in_stages(std::size_t target) {
-    if (options_.cost == Cost::Distance && optimiser_ && !options_.epsilon) {
-      const double from = options_.effort == Effort::Best ? kJointFromBest : kJointFrom;
-      const auto wished = static_cast<double>(target);
-      if (static_cast<double>(original_.vertices.size()) <= kRefineMost * wished) {
-        for (const double multiple : kRefineAt) {
-          contract_to(static_cast<std::size_t>(multiple * wished));
-          refine();
-        }
-      }
-      contract_to(static_cast<std::size_t>(from * wished));
-      failures_.clear();  // of an earlier level of a series
-      // Where hardly anything is contracted, nothing has been reached, and little is to be gained.
-      double limit = reached_ > 0 ? std::min(reached_, setting_.diagonal) : 0;
-      patience_ = kPatience;
-      for (int i = 0; i < kJointRounds && limit > 0 && contraction_.vertices() > target;
-           ++i, limit *= kJointGrowth) {
-        if (i == 0 || 100 * contraction_.vertices() <= (100 - kRefineAgain) * refined_) refine();
-        optimise(1);
-        collapse_to(target, limit);
-        if (patience_ < 0) break;
+  void start_stages(std::size_t target) {
+    if (!measuring_) {
+      // Small deviations need no measuring: the quadrics order the contractions as well.
+      contract_to(measured_from(options_, target),
+                  options_.epsilon && options_.cost == Cost::Distance
+                      ? kMeasureFromEpsilon * *options_.epsilon
+                      : std::numeric_limits<double>::infinity());
+      start_measuring();
+    }
+    if (options_.cost != Cost::Distance || !optimiser_ || epsilon_) return;
+    const auto wished = static_cast<double>(target);
+    if (static_cast<double>(original_.vertices.size()) <= kRefineMost * wished) {
+      for (const double multiple : kRefineAt) {
+        contract_to(static_cast<std::size_t>(multiple * wished));
+        refine();
       }
     }
+    const double from = options_.effort == Effort::Best ? kJointFromBest : kJointFrom;
+    contract_to(static_cast<std::size_t>(from * wished));
+    reached_alone_ = reached_;
+  }
+
+  void contract_in_stages(std::size_t target) {
+    if (options_.cost == Cost::Distance && optimiser_ && !epsilon_) collapse_in_rounds(target);
     contract_to(target);
-    if (!options_.epsilon || options_.effort == Effort::Fast) return;
+    if (most_ > 0) return raise_bound(target);
+    if (!epsilon_ || options_.effort == Effort::Fast) return;
     // What is given back makes room for further contractions within the error bound.
     for (std::size_t before = contraction_.vertices() + contraction_.vertices();
          contraction_.vertices() > target && 100 * contraction_.vertices() < 99 * before;) {
@@ -177,9 +195,47 @@ class Decimator final : private Judge {
     for (std::size_t before = contraction_.vertices() + contraction_.vertices();
          contraction_.vertices() > target && 100 * contraction_.vertices() < 99 * before;) {
       before = contraction_.vertices();
-      patience_ = std::numeric_limits<int>::max() / 2;
-      collapse_to(target, *options_.epsilon);
+      collapse_within(target);
       optimise(kStagePasses);
+    }
+  }
+
+  /// Contracts edges together with moves within the deviation reached, then within more and more.
+  void collapse_in_rounds(std::size_t target) {
+    failures_.clear();  // of an earlier level of a series
+    // Where hardly anything is contracted, nothing has been reached, and little is to be gained.
+    double limit = reached_ > 0 ? std::min(reached_, setting_.diagonal) : 0;
+    patience_ = kPatience;
+    for (int i = 0; i < kJointRounds && limit > 0 && contraction_.vertices() > target;
+         ++i, limit *= kJointGrowth) {
+      if (i == 0 || 100 * contraction_.vertices() <= (100 - kRefineAgain) * refined_) refine();
+      optimise(1);
+      collapse_to(target, limit);
+      if (patience_ < 0) break;
+    }
+  }
+
+  /// The same within the error bound, as often as need be.
+  void collapse_within(std::size_t target) {
+    patience_ = std::numeric_limits<int>::max() / 2;
+    collapse_to(target, *epsilon_);
+  }
+
+  /// Goes on within a larger and larger error bound.
+  void raise_bound(std::size_t target) {
+    double growth = kBoundGrowth;
+    for (;;) {
+      const auto missing = static_cast<double>(contraction_.vertices() - target);
+      optimise(kBoundPasses);
+      collapse_within(target);
+      if (contraction_.vertices() <= target || *epsilon_ >= most_) return;
+      *epsilon_ = std::min(growth * *epsilon_, most_);
+      tolerance_->raise(*epsilon_);
+      contract_to(target);
+      if (contraction_.vertices() <= target) return;
+      const bool gained =
+          static_cast<double>(contraction_.vertices() - target) < (1 - kBoundGain) * missing;
+      growth = gained ? kBoundGrowth : std::min(growth * growth, kBoundMostGrowth);
     }
   }
 
@@ -306,7 +362,7 @@ class Decimator final : private Judge {
 
   void start_measuring() {
     deviation_.emplace(original_, options_.cost == Cost::Mean ? 2 : 4,
-                       joint_ ? kSpacing * *options_.epsilon : 0);
+                       joint_ ? kSpacing * *epsilon_ : 0);
     deviation_->assign(position_, mesh_);
     hint_.assign(position_.size(), 0);
     around_.assign(position_.size(), 0);
@@ -325,8 +381,7 @@ class Decimator final : private Judge {
     const double squared =
         deviation_->largest(removed_, added_, points_, hint_[e.a], limit * limit);
     candidate_.cost = std::max(candidate_.cost, std::sqrt(squared));
-    if (options_.epsilon && candidate_.cost > *options_.epsilon)
-      return reject(statistics_.rejected_distance);
+    if (epsilon_ && candidate_.cost > *epsilon_) return reject(statistics_.rejected_distance);
     if (candidate_.cost > limit) {
       e.measured = ~0U;
       return contraction_.postpone(e);
@@ -340,7 +395,7 @@ class Decimator final : private Judge {
   /// The new triangles at more points, before they are made; what is found to be beyond what is due
   /// goes back into the queue. @return whether it is not.
   bool measure_densely(BucketQueue::Entry& e) {
-    if (!optimiser_ || options_.cost != Cost::Distance || options_.epsilon) return true;
+    if (!optimiser_ || options_.cost != Cost::Distance || epsilon_) return true;
     describe_change();
     points_.clear();
     for (const NewTriangle& t : added_) {
@@ -502,7 +557,9 @@ class Decimator final : private Judge {
 
   const Setting& setting_;
   const DecimateOptions& options_;
-  bool joint_;  // contractions may move the vertices around
+  std::optional<double> epsilon_;  // that steps keep
+  double most_;                    // to which that rises; 0: it does not
+  bool joint_;                     // contractions may move the vertices around
   const Mesh& original_;
   const Mesh* bound_ = &original_;       // what steps must enclose, or be enclosed by
   std::optional<OriginalSolid>& solid_;  // of bound_
@@ -519,9 +576,10 @@ class Decimator final : private Judge {
   std::optional<Tolerance> tolerance_;
   std::optional<Deviation> deviation_;
   std::optional<Optimiser> optimiser_;
-  bool measuring_ = false;   // costs are measured distances
-  double reached_ = 0;       // largest measured cost of a contraction
-  std::size_t refined_ = 0;  // number of vertices when samples were added last
+  bool measuring_ = false;    // costs are measured distances
+  double reached_alone_ = 0;  // before contractions with moves
+  double reached_ = 0;        // largest measured cost of a contraction
+  std::size_t refined_ = 0;   // number of vertices when samples were added last
   struct Failure {
     std::uint32_t joined = ~0U;  // of both ends
     double deviation = 0;        // that the contraction would take
@@ -551,8 +609,10 @@ void check_options(const geom::Prepared& input, const DecimateOptions& options) 
 /// decimation proper, which knows nothing of the vertices that are gone by then.
 class Run {
  public:
-  Run(const geom::Prepared& input, const DecimateOptions& options)
-      : input_(input), options_(options) {
+  /// @param bound  as of Decimator
+  Run(const geom::Prepared& input, const DecimateOptions& options,
+      std::optional<RisingBound> bound = std::nullopt)
+      : input_(input), options_(options), bound_(bound) {
     options_.effort = effective_effort(input, options);
     if (options.keep_convex) return;
     std::vector<std::uint32_t> flat = flat_vertices(input);
@@ -571,6 +631,10 @@ class Run {
     DecimateResult result = decimator_->run(target);
     hand_over_steps();
     return finished(std::move(result));
+  }
+
+  [[nodiscard]] double reached_alone() const {
+    return decimator_ ? decimator_->reached_alone() : 0;
   }
 
   void nest_in(const Mesh& level) {
@@ -597,7 +661,7 @@ class Run {
     if (options_.direction == Direction::Inner && input.closed && !options_.keep_convex)
       solid_.emplace(input.mesh);
     Reduction mesh(input.mesh, input.border, setting_->cost.initial(input.mesh));
-    if (target && !options_.epsilon && !options_.keep_convex) {
+    if (target && !options_.epsilon && !bound_ && !options_.keep_convex) {
       contract_in_regions(*setting_, mesh, measured_from(options_, *target),
                           solid_ ? &*solid_ : nullptr, inner_options_.steps, before_);
       hand_over_steps();
@@ -605,7 +669,8 @@ class Run {
     number_ = mesh.vertex;
     if (!source_.empty())
       for (std::uint32_t& v : number_) v = source_[v];
-    decimator_.emplace(*setting_, input.mesh, std::move(mesh), solid_, inner_options_.steps);
+    decimator_.emplace(*setting_, input.mesh, std::move(mesh), solid_, inner_options_.steps,
+                       bound_);
   }
 
   void flatten() {
@@ -650,6 +715,7 @@ class Run {
 
   const geom::Prepared& input_;
   DecimateOptions options_;
+  std::optional<RisingBound> bound_;
   DecimateOptions inner_options_;
   std::vector<Step> inner_steps_;  // numbered as below
   std::optional<Flattener> flattener_;
@@ -661,6 +727,53 @@ class Run {
   std::optional<OriginalSolid> solid_;
   std::optional<Decimator> decimator_;
 };
+
+/// Whether a number of vertices may be sought within a rising error bound.
+bool is_small(const geom::Prepared& input, const DecimateOptions& options) {
+  return options.vertices && !options.epsilon && options.cost == Cost::Distance &&
+         effective_effort(input, options) != Effort::Fast &&
+         input.mesh.vertices.size() <= kBoundVertices && *options.vertices <= kBoundTarget &&
+         kBoundShare * *options.vertices <= input.mesh.vertices.size();
+}
+
+/// Certified upper bound of the Hausdorff distance.
+double largest_distance(const Mesh& a, const Mesh& b) {
+  geom::DistanceOptions gap;
+  gap.relative_gap = 0.02;
+  return std::max(geom::directed_distance(a, geom::DistanceQuery(b), gap).max_upper,
+                  geom::directed_distance(b, geom::DistanceQuery(a), gap).max_upper);
+}
+
+/// To a number of vertices, and again to the same within less than the distance found so, if that
+/// can be. @pre is_small
+DecimateResult decimate_twice(const geom::Prepared& input, const DecimateOptions& options) {
+  std::vector<Step> steps, again;
+  const auto recorded = [&](std::vector<Step>& to) {
+    DecimateOptions o = options;
+    o.steps = options.steps != nullptr ? &to : nullptr;
+    return o;
+  };
+  const auto chosen = [&](DecimateResult result, const std::vector<Step>& of) {
+    if (options.steps == nullptr) return result;
+    options.steps->insert(options.steps->end(), of.begin(), of.end());
+    result.steps = options.steps->size();
+    return result;
+  };
+  double from = options.effort == Effort::Best ? kBoundFromBest : kBoundFrom;
+  std::optional<DecimateResult> result;
+  {
+    Run run(input, recorded(steps));
+    result = run.to(options.vertices);
+    from *= run.reached_alone();
+  }
+  if (result->stop != Stop::VertexTarget || !(from > 0)) return chosen(*std::move(result), steps);
+  const RisingBound bound{from, largest_distance(result->mesh, input.mesh)};
+  if (!(bound.from < bound.to)) return chosen(*std::move(result), steps);
+  DecimateResult nearer = Run(input, recorded(again), bound).to(options.vertices);
+  if (nearer.stop != Stop::VertexTarget || nearer.unrepresentable > result->unrepresentable)
+    return chosen(*std::move(result), steps);
+  return chosen(std::move(nearer), again);
+}
 
 }  // namespace
 
@@ -675,6 +788,7 @@ DecimateResult decimate(const geom::Prepared& input, const DecimateOptions& opti
     throw Error(ErrorCode::InvalidArgument,
                 "decimation needs a number of vertices or an error bound");
   check_options(input, options);
+  if (is_small(input, options)) return decimate_twice(input, options);
   return Run(input, options).to(options.vertices);
 }
 

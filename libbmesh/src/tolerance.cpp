@@ -17,10 +17,7 @@ constexpr int kMaxCells = 4000;
 
 Tolerance::Tolerance(const geom::Mesh& original, double epsilon)
     : original_(original), head_(original.triangles.size(), kNone) {
-  const geom::Box3& box = original_.box();
-  const double magnitude = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
-  epsilon_ = epsilon - (magnitude + epsilon) * kMaxTotalCuts * geom::PrismCut::kCuts *
-                           geom::ConvexPolygon::kCutError;
+  raise(epsilon);
   pieces_.reserve(original.triangles.size());
   for (std::uint32_t t = 0; t < original.triangles.size(); ++t) {
     const geom::Triangle& tri = original.triangles[t];
@@ -30,6 +27,13 @@ Tolerance::Tolerance(const geom::Mesh& original, double epsilon)
          0,
          kNone});
   }
+}
+
+void Tolerance::raise(double epsilon) {
+  const geom::Box3& box = original_.box();
+  const double magnitude = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
+  epsilon_ = epsilon - (magnitude + epsilon) * kMaxTotalCuts * geom::PrismCut::kCuts *
+                           geom::ConvexPolygon::kCutError;
 }
 
 std::uint32_t Tolerance::allocate() {

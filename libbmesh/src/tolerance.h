@@ -29,6 +29,9 @@ class Tolerance {
   ///   triangle i of the original.
   Tolerance(const geom::Mesh& original, double epsilon);
 
+  /// Lets ε be larger from now on.
+  void raise(double epsilon);
+
   /// Whether triangles `removed` may be replaced by `added` (which reuse some of their indices).
   [[nodiscard]] bool admits(std::span<const std::uint32_t> removed,
                             std::span<const NewTriangle> added);

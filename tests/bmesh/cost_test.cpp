@@ -41,7 +41,7 @@ Distances measure(const geom::Mesh& original, const geom::Mesh& result) {
 // Of shapes with strongly and with weakly curved parts, the one has the smaller maximum, the other
 // the smaller mean.
 TEST(Cost, MeanAndDistanceTradeTheMaximumForTheMean) {
-  const std::vector<geom::Mesh> meshes{examples::make_bracket(40),
+  const std::vector<geom::Mesh> meshes{examples::make_bracket(16),
                                        test::scaled(test::uv_sphere(32, 20), {1, 0.2, 3})};
   for (const Effort effort : {Effort::Fast, Effort::Normal}) {
     Distances mean, distance;

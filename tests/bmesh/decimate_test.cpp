@@ -12,6 +12,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "part.h"
 #include "recorded.h"
@@ -325,6 +326,28 @@ TEST(Decimate, EffortIsFastWhereMoreHasNoEffect) {
   EXPECT_EQ(effective_effort(open, o), Effort::Best);
   o.keep_convex = true;
   EXPECT_EQ(effective_effort(closed, o), Effort::Fast);
+}
+
+// Small meshes are decimated again, within less than the distance that the first time, as levels of
+// a series are made, led to; every step holds.
+TEST(Decimate, SmallMeshesAreDecimatedWithinARisingBound) {
+  const geom::Mesh sphere = test::scaled(test::icosphere(3), {1, 2, 0.5});
+  const auto p = geom::prepare(sphere);
+  for (const Direction direction : {Direction::Outer, Direction::Inner}) {
+    DecimateOptions o = to_vertices(p.mesh.vertices.size() / 5, direction);
+    o.precision = Precision::Float;
+    o.cost = Cost::Distance;
+    o.effort = Effort::Normal;
+    const auto [input, log, r] = test::record(sphere, o);
+    EXPECT_EQ(r.stop, Stop::VertexTarget);
+    EXPECT_EQ(r.mesh.vertices.size(), *o.vertices);
+    EXPECT_EQ(r.steps, log.steps.size());  // none of the first time
+    const auto checked = replay(input, log, r.mesh);
+    EXPECT_TRUE(checked.verified) << checked.violation;
+    const std::size_t wished = *std::exchange(o.vertices, std::nullopt);
+    const auto once = decimate_series(p, o, std::vector{wished});
+    EXPECT_LT(hausdorff(p.mesh, r.mesh), 0.95 * hausdorff(p.mesh, once.front().mesh));
+  }
 }
 
 // Hardly any contraction: nothing has been reached that joint ones could go by.
