@@ -86,7 +86,8 @@ BENCHMARK(queue);
 
 void nearest_triangle(benchmark::State& state) {
   const int n = static_cast<int>(state.range(0));
-  const Proximity proximity(terrain(n));
+  const geom::Mesh mesh = terrain(n);
+  const Proximity proximity(mesh);
   const auto p = points(4096, n);
   std::size_t i = 0;
   for (auto _ : state) {

@@ -465,7 +465,8 @@ class Decimator final : private Judge {
   }
 
   void start_optimising() {
-    if (setting_.constrained && !solid_) solid_.emplace(*bound_);
+    if (setting_.constrained && !solid_)
+      solid_.emplace(*bound_, bound_ == &original_ ? deviation_->original().hierarchy() : nullptr);
     optimiser_.emplace(contraction_.mesh(), *deviation_, setting_.constrained ? &*solid_ : nullptr,
                        *bound_, tolerance_ ? &*tolerance_ : nullptr, options_, statistics_);
     optimiser_->set_dense(joint_);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
+#include <utility>
 
 namespace kaboum::bmesh {
 
@@ -141,7 +142,7 @@ class Between {
   [[nodiscard]] bool covered(const Piece& p) const {
     for (int k = 0; k < 3; ++k) {
       if (k > 0 && p.nearest[k] == p.nearest[k - 1]) continue;
-      const std::array<Vec3, 3>& t = present_.corners(p.nearest[k]);
+      const std::array<Vec3, 3> t = present_.corners(p.nearest[k]);
       if (std::all_of(p.corner.begin(), p.corner.end(),
                       [&](const Vec3& x) { return squared_distance(x, t) <= enough_; }))
         return true;
@@ -190,29 +191,32 @@ void Deviation::refine(std::span<const Vec3> position, const Connectivity& mesh,
 
   constexpr std::size_t kRun = 1024;
   const std::size_t n = mesh_.triangles.size();
-  std::vector<std::optional<Between::Found>> found(n);
-  tbb::parallel_for(std::size_t{0}, (n + kRun - 1) / kRun, [&](std::size_t run) {
+  using Of = std::pair<std::size_t, Between::Found>;  // of a triangle
+  std::vector<std::vector<Of>> found((n + kRun - 1) / kRun);
+  tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t run) {
     Between between(proximity, enough);
     for (std::size_t i = run * kRun; i < std::min(n, (run + 1) * kRun); ++i) {
       const geom::Triangle& t = mesh_.triangles[i];
-      found[i] = between({mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]},
-                         {carrier[t[0]], carrier[t[1]], carrier[t[2]]});
+      const auto at = between({mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]},
+                              {carrier[t[0]], carrier[t[1]], carrier[t[2]]});
+      if (at) found[run].emplace_back(i, *at);
     }
   });
-  for (std::size_t i = 0; i < n; ++i) {
-    if (!found[i]) continue;
+  const auto add = [&](std::size_t i, const Between::Found& at) {
     const geom::Triangle& t = mesh_.triangles[i];
     const Vec3& a = mesh_.vertices[t[0]];
-    const std::uint32_t to = present.index[proximity.triangle(found[i]->nearest)];
+    const std::uint32_t to = present.index[proximity.triangle(at.nearest)];
     bool known = false;  // from the neighbour across an edge, or from earlier
     for (std::uint32_t s = head_[to]; s != kNone && !known; s = next_[s])
-      known = point_[s] == found[i]->point;
-    if (known) continue;
-    point_.push_back(found[i]->point);
+      known = point_[s] == at.point;
+    if (known) return;
+    point_.push_back(at.point);
     weight_.push_back(0.125 * (mesh_.vertices[t[1]] - a).cross(mesh_.vertices[t[2]] - a).norm());
     next_.push_back(head_[to]);
     head_[to] = static_cast<std::uint32_t>(point_.size() - 1);
-  }
+  };
+  for (const std::vector<Of>& run : found)
+    for (const auto& [i, at] : run) add(i, at);
 }
 
 double Deviation::to_nearest(const Vec3& p, std::span<const NewTriangle> added, std::size_t first,

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "optimise.h"
 
@@ -304,9 +303,7 @@ double Optimiser::collapse(std::uint32_t a, std::uint32_t b, double limit) {
   if (!seek(a, b, 0.5 * (m_.position[a] + m_.position[b]))) return kNoLimit;
   take(around_);
   std::erase(around_, b);
-  const bool dense = std::exchange(dense_, false);
   double deviation = imagine(a, b, limit);
-  dense_ = dense;
   if (deviation > limit) return deviation;
 
   const auto give_up = [&](std::uint64_t& counter) {

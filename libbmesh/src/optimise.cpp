@@ -170,7 +170,7 @@ void Optimiser::linearise(const Vec3& apex, double scale, double penalty) {
     });
   }
   for (const Deviation::Point& p : points_) {
-    const auto& c = deviation_.original().corners(p.nearest);
+    const auto c = deviation_.original().corners(p.nearest);
     const Vec3 offset = p.position - closest_point(p.position, c[0], c[1], c[2]);
     double d = offset.norm();
     if (offset.dot((c[1] - c[0]).cross(c[2] - c[0])) < 0) d = -d;

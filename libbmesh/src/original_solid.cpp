@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace kaboum::bmesh {
 namespace {
@@ -242,8 +243,10 @@ bool opposed(std::span<const Vec3> normals) {
   return false;
 }
 
-OriginalSolid::OriginalSolid(const geom::Mesh& original)
-    : original_(original), bvh_(original), winding_(original) {}
+OriginalSolid::OriginalSolid(const geom::Mesh& original, std::shared_ptr<const geom::Bvh> hierarchy)
+    : original_(original),
+      bvh_(hierarchy ? std::move(hierarchy) : std::make_shared<const geom::Bvh>(original)),
+      winding_(original) {}
 
 bool OriginalSolid::contains(const Tetrahedron& tetrahedron, bool inside,
                              std::vector<std::uint32_t>* met) const {
@@ -259,7 +262,7 @@ bool OriginalSolid::contains(const Tetrahedron& tetrahedron, bool inside,
   const auto may_meet = [&](const geom::Box3& b) {
     return !enough && overlaps(b) && !faces.beyond(b);
   };
-  bvh_.traverse(may_meet, [&](std::uint32_t t) {
+  bvh_->traverse(may_meet, [&](std::uint32_t t) {
     if (enough) return;
     const geom::Triangle& tri = original_.triangles[t];
     const std::array<Vec3, 3> corners{original_.vertices[tri[0]], original_.vertices[tri[1]],

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -37,7 +38,9 @@ bool opposed(std::span<const Vec3> normals);
 class OriginalSolid {
  public:
   /// Keeps a reference to `original`, which must outlive this object and be a closed chain.
-  explicit OriginalSolid(const geom::Mesh& original);
+  /// @param hierarchy  over it, where there is one already.
+  explicit OriginalSolid(const geom::Mesh& original,
+                         std::shared_ptr<const geom::Bvh> hierarchy = nullptr);
 
   /// Whether the tetrahedron's open interior meets no triangle of the original and its winding
   /// number there is at most 0 (`inside` false) or at least 1 (`inside` true). False also when the
@@ -50,7 +53,7 @@ class OriginalSolid {
 
  private:
   const geom::Mesh& original_;
-  geom::Bvh bvh_;
+  std::shared_ptr<const geom::Bvh> bvh_;
   geom::WindingNumber winding_;
 };
 

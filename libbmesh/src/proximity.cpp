@@ -2,33 +2,36 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace kaboum::bmesh {
 
-Proximity::Proximity(const geom::Mesh& mesh) : bvh_(mesh) {
-  corners_.reserve(mesh.triangles.size());
+Proximity::Proximity(const geom::Mesh& mesh)
+    : mesh_(mesh), bvh_(std::make_shared<const geom::Bvh>(mesh)) {
+  triangles_.reserve(mesh.triangles.size());
   ball_.reserve(mesh.triangles.size());
-  for (const std::uint32_t i : bvh_.order()) {
-    const geom::Triangle& t = mesh.triangles[i];
-    corners_.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
-    const auto& c = corners_.back();
+  for (const std::uint32_t i : bvh_->order()) {
+    triangles_.push_back(mesh.triangles[i]);
+    const std::array<Vec3, 3> c = corners(static_cast<std::uint32_t>(triangles_.size() - 1));
     geom::Box3 box;
     for (const Vec3& p : c) box.extend(p);
-    const Vec3 middle = box.center();
+    const Eigen::Vector3f middle = box.center().cast<float>();
     double squared = 0;
-    for (const Vec3& p : c) squared = std::max(squared, (p - middle).squaredNorm());
-    ball_.push_back({middle, (1 + 1e-12) * std::sqrt(squared)});
+    for (const Vec3& p : c) squared = std::max(squared, (p - middle.cast<double>()).squaredNorm());
+    // Upwards, of the smallest, too.
+    const auto radius = static_cast<float>((1 + 1e-6) * std::sqrt(squared));
+    ball_.push_back({middle, std::nextafter(radius, std::numeric_limits<float>::infinity())});
   }
 }
 
 double Proximity::squared(const Vec3& p, std::uint32_t& hint, double enough) const {
-  const auto nodes = bvh_.nodes();
+  const auto nodes = bvh_->nodes();
   const auto to_box = [&](const geom::Box3& box) {
     return (box.min - p).cwiseMax(p - box.max).cwiseMax(0.0).squaredNorm();
   };
-  if (hint >= corners_.size()) hint = 0;
-  double best = squared_distance(p, corners_[hint]), root = std::sqrt(best);
+  if (hint >= triangles_.size()) hint = 0;
+  double best = squared_distance(p, corners(hint)), root = std::sqrt(best);
   struct Entry {
     double squared;
     std::uint32_t node;
@@ -52,8 +55,8 @@ double Proximity::squared(const Vec3& p, std::uint32_t& hint, double enough) con
     if (!node.leaf()) continue;
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
       const double reach = root + ball_[i].radius;
-      if ((p - ball_[i].middle).squaredNorm() > reach * reach) continue;
-      const double d = squared_distance(p, corners_[i]);
+      if ((p - ball_[i].middle.cast<double>()).squaredNorm() > reach * reach) continue;
+      const double d = squared_distance(p, corners(i));
       if (d >= best) continue;
       best = d;
       root = std::sqrt(d);

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace kaboum::bmesh {
@@ -45,7 +46,7 @@ inline double squared_distance(const Vec3& p, const std::array<Vec3, 3>& t) {
 /// Fast, uncertified distances to a fixed set of triangles.
 class Proximity {
  public:
-  /// Copies what it needs. @pre the mesh has triangles.
+  /// Keeps a reference to the mesh, which must outlive this object. @pre it has triangles.
   explicit Proximity(const geom::Mesh& mesh);
 
   /// Squared distance of p from the set, or of any triangle that is within √enough.
@@ -54,20 +55,25 @@ class Proximity {
   ///   of the triangle found, to be the hint of the next query near by.
   double squared(const Vec3& p, std::uint32_t& hint, double enough = 0) const;
 
-  [[nodiscard]] const std::array<Vec3, 3>& corners(std::uint32_t place) const {
-    return corners_[place];
+  [[nodiscard]] std::array<Vec3, 3> corners(std::uint32_t place) const {
+    const geom::Triangle& t = triangles_[place];
+    return {mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]};
   }
   /// The triangle's index in the mesh.
-  [[nodiscard]] std::uint32_t triangle(std::uint32_t place) const { return bvh_.order()[place]; }
+  [[nodiscard]] std::uint32_t triangle(std::uint32_t place) const { return bvh_->order()[place]; }
+
+  /// The hierarchy over the mesh, for others to search it, too.
+  [[nodiscard]] const std::shared_ptr<const geom::Bvh>& hierarchy() const { return bvh_; }
 
  private:
   struct Ball {
-    Vec3 middle;
-    double radius;
+    Eigen::Vector3f middle;
+    float radius;
   };
-  geom::Bvh bvh_;
-  std::vector<std::array<Vec3, 3>> corners_;  // in the tree's order
-  std::vector<Ball> ball_;                    // around each, somewhat larger than need be
+  const geom::Mesh& mesh_;
+  std::shared_ptr<const geom::Bvh> bvh_;
+  std::vector<geom::Triangle> triangles_;  // in the tree's order
+  std::vector<Ball> ball_;                 // around each, somewhat larger than need be
 };
 
 }  // namespace kaboum::bmesh
