@@ -36,9 +36,10 @@ Claim verify_depth(const geom::Mesh& original, const geom::ConvexSet& set, doubl
     return claim;
   }
   const BoxTree target = tree_of(scene, bounding);
+  const Uncovered bodies(scene, set);
   claim = search_pockets(
       scene, offending_faces(scene, without.solid),
-      {target, scene.tree(kInside), epsilon * scene.scale(), options.max_cells, false});
+      {target, scene.tree(kInside), epsilon * scene.scale(), options.max_cells, false, &bodies});
   if (claim.answer != Answer::Refuted) return claim;
   claim.reason = "a point that is deeper than that inside the original is in no body";
   claim.inner_triangles = without.solid.inner_triangles;

@@ -7,11 +7,13 @@
 namespace kaboum::verify {
 namespace {
 
-Claim solid_claim(const Scene& scene, double margin, std::size_t max_cells, bool inside_only,
-                  const Claim& without) {
-  const BoxTree& bodies = scene.tree(kOutside);
-  Claim claim = search_pockets(scene, offending_faces(scene, without),
-                               {bodies, bodies, margin * scene.scale(), max_cells, inside_only});
+Claim solid_claim(const Scene& scene, const geom::ConvexSet& set, std::size_t max_cells,
+                  bool inside_only, const Claim& without) {
+  const BoxTree& faces = scene.tree(kOutside);
+  const Uncovered bodies(scene, set);
+  Claim claim =
+      search_pockets(scene, offending_faces(scene, without),
+                     {faces, faces, set.margin * scene.scale(), max_cells, inside_only, &bodies});
   if (claim.answer == Answer::Refuted) {
     claim.reason = "a part of the inner solid is farther from the outer one than the margin";
   }
@@ -39,9 +41,9 @@ Claim surface_claim(const geom::Mesh& inner, const geom::Mesh& outer, double mar
 
 }  // namespace
 
-void allow_margin(const geom::Mesh& inner, const geom::Mesh& outer, double margin,
+void allow_margin(const geom::Mesh& inner, const geom::Mesh& sum, const geom::ConvexSet& set,
                   std::size_t max_cells, Inclusion& inclusion) {
-  const Scene scene(inner, outer);
+  const Scene scene(inner, sum);
   if (scene.tree(kOutside).empty()) return;  // nothing to be near
   const auto decide = [&](Claim& claim, const auto& anew) {
     if (claim.answer != Answer::Refuted) return;
@@ -60,12 +62,13 @@ void allow_margin(const geom::Mesh& inner, const geom::Mesh& outer, double margi
     }
     claim = std::move(with);
   };
-  decide(inclusion.surface, [&](const Claim& c) { return surface_claim(inner, outer, margin, c); });
+  decide(inclusion.surface,
+         [&](const Claim& c) { return surface_claim(inner, sum, set.margin, c); });
   if (inclusion.relative) return;
   // The boundary of what is left out lies on the bodies and on triangles of the surface claim.
   const bool inside_only = inclusion.surface.answer == Answer::Verified;
   decide(inclusion.solid,
-         [&](const Claim& c) { return solid_claim(scene, margin, max_cells, inside_only, c); });
+         [&](const Claim& c) { return solid_claim(scene, set, max_cells, inside_only, c); });
 }
 
 }  // namespace kaboum::verify

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <kaboum/geom/convex_set.h>
 #include <kaboum/verify/inclusion.h>
 
 namespace kaboum::verify {
 
-/// Decides anew, for a solid enlarged by a margin, the claims of enclosure that fail without it.
+/// Decides anew, for a set of bodies enlarged by its margin, the claims of enclosure that fail
+/// without it.
 ///
 /// Surface claim: every point of the offending triangles is within the margin of the outer solid.
 /// Solid claim: so is every point of Z, the part of the inner solid that is outside the outer one.
@@ -13,9 +15,10 @@ namespace kaboum::verify {
 /// (docs/algorithms/exact-inclusion.md, "Cover").
 ///
 /// @param max_cells  boxes looked at before giving up
-/// @param inclusion  verify_inclusion(inner, outer)
-/// @pre margin > 0; `outer` is a closed chain
-void allow_margin(const geom::Mesh& inner, const geom::Mesh& outer, double margin,
+/// @param sum        sum_of(set)
+/// @param inclusion  verify_inclusion(inner, sum)
+/// @pre set.margin > 0; `sum` is a closed chain
+void allow_margin(const geom::Mesh& inner, const geom::Mesh& sum, const geom::ConvexSet& set,
                   std::size_t max_cells, Inclusion& inclusion);
 
 }  // namespace kaboum::verify

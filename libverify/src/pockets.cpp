@@ -112,6 +112,7 @@ class Search {
         look.settled = near(part, hit.face) || near(part, target.nearest(middle).face);
       }
     }
+    if (!look.settled && limit_.bodies != nullptr) look.settled = left_by_bodies(cell, hit.face);
     return look;
   }
 
@@ -276,6 +277,22 @@ class Search {
       }
     }
     return points;
+  }
+
+  /// Whether all that the bodies leave of the box is within the limit.
+  [[nodiscard]] bool left_by_bodies(const Bounds& cell, std::uint32_t face) const {
+    std::vector<Uncovered::Tetrahedron> parts;
+    if (!limit_.bodies->parts(cell, parts)) return false;
+    const NearestTriangle target(scene_, limit_.target);
+    return std::all_of(parts.begin(), parts.end(), [&](const Uncovered::Tetrahedron& part) {
+      const std::vector<Vec3> points(part.begin(), part.end());
+      if (near(points, face)) return true;
+      const Vec3 middle = 0.25 * (part[0] + part[1] + part[2] + part[3]);
+      const NearestTriangle::Hit hit = target.nearest(middle);
+      double radius = 0;
+      for (const Vec3& p : points) radius = std::max(radius, (p - middle).norm());
+      return hit.distance + radius + 2 * slack_ <= limit_.distance || near(points, hit.face);
+    });
   }
 
   /// nullopt when the point may lie on a surface.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scene.h"
+#include "uncovered.h"
 
 /// Z, the part of the inner solid that is outside the outer one: how far it reaches from something.
 /// docs/algorithms/exact-inclusion.md, "Pockets".
@@ -18,6 +19,8 @@ struct Limit {
   /// The boundary of Z is known to be within the limit, so that only local maxima of the distance
   /// inside Z can exceed it. @pre what distances are measured to is made of faces of `all`
   bool inside_only;
+  /// The bodies whose sum the outer chain is, if it is that of a set.
+  const Uncovered* bodies = nullptr;
 };
 
 BoxTree tree_of(const Scene& scene, const std::vector<std::uint32_t>& faces);

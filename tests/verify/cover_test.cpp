@@ -2,6 +2,7 @@
 #include <kaboum/verify/cover.h>
 
 #include <gtest/gtest.h>
+#include <kaboum/geom/convex_hull.h>
 
 #include "pairs.h"
 #include "support/arrangement_oracle.h"
@@ -299,6 +300,33 @@ TEST(Depth, OfBlocksInACube) {
   const auto claim = verify::verify_depth(unit, set_of({inset}), 0.1);
   ASSERT_TRUE(claim.witness.has_value());
   EXPECT_LE(claim.witness->depth, 0.025 + 1e-9);
+}
+
+// Bodies overlap by little more than rounding; their common faces reach the original's surface, and
+// no direction is that of an axis. Only what both leave together tells what is in neither.
+TEST(Depth, OfPartsThatBarelyOverlap) {
+  const Mesh ball = icosphere(3);
+  const auto depth = [&](double overlap, double epsilon) {
+    std::vector<Mesh> bodies;
+    for (const double side : {-1.0, 1.0}) {
+      std::vector<Vec3> points;
+      for (const Vec3& p : ball.vertices) {
+        const Vec3 inside = 0.99 * p;
+        if (side * inside.x() > 0) points.push_back(inside);
+        const double x = -side * overlap / 2;
+        points.emplace_back(x, std::sqrt(1 - x * x) * 0.98 * p.normalized().y(),
+                            std::sqrt(1 - x * x) * 0.98 * p.normalized().z());
+      }
+      bodies.push_back(rotated(*geom::convex_hull(points), 0.7));
+    }
+    verify::InclusionOptions soon;
+    soon.max_cells = 30'000;
+    return verify::verify_depth(rotated(ball, 0.7), set_of(bodies), epsilon, soon).answer;
+  };
+  EXPECT_EQ(depth(1e-7, 0.1), Answer::Verified);
+  EXPECT_EQ(depth(0x1p-45, 0.1), Answer::Undecided);
+  EXPECT_NE(depth(-1e-7, 0.1), Answer::Verified);
+  EXPECT_EQ(depth(-1e-2, 0.1), Answer::Refuted);
 }
 
 // A fold inside the original, and a part that is inside out, are no part of its boundary: what is

@@ -1,0 +1,194 @@
+#include "uncovered.h"
+
+#include <algorithm>
+
+#include "nearest.h"
+
+namespace kaboum::verify {
+namespace {
+
+constexpr std::size_t kMostBodies = 8, kMostParts = 600;
+constexpr int kMostCuts = 64;   // what rounding_of_distances allows for
+constexpr double kAlike = 0.1;  // between normals of planes that are taken for one
+
+/// The six tetrahedra of a box that share a diagonal.
+std::array<Uncovered::Tetrahedron, 6> tetrahedra(const Bounds& box) {
+  std::array<Uncovered::Tetrahedron, 6> result;
+  std::array<int, 3> order{0, 1, 2};
+  for (auto& tetrahedron : result) {
+    Vec3 p(box.low.data());
+    tetrahedron[0] = p;
+    for (int i = 0; i < 3; ++i) {
+      p[order[i]] = box.high[order[i]];
+      tetrahedron[i + 1] = p;
+    }
+    std::next_permutation(order.begin(), order.end());
+  }
+  return result;
+}
+
+}  // namespace
+
+Uncovered::Uncovered(const Scene& scene, const geom::ConvexSet& set) {
+  std::vector<Bounds> boxes;
+  std::vector<std::uint32_t> items;
+  for (const geom::ConvexBody& body : set.bodies) {
+    if (body.hull.triangles.empty() || !Scene(geom::Mesh{}, body.hull).closed(kOutside)) continue;
+    Body planes = body_of(body.hull, scene);
+    if (planes.planes.empty()) continue;
+    const geom::Box3 box = geom::bounding_box(body.hull);
+    Bounds bounds;
+    for (int k = 0; k < 3; ++k) {
+      bounds.low[k] = box.min[k] * scene.scale();
+      bounds.high[k] = box.max[k] * scene.scale();
+    }
+    items.push_back(static_cast<std::uint32_t>(bodies_.size()));
+    boxes.push_back(bounds);
+    bodies_.push_back(std::move(planes));
+  }
+  if (!bodies_.empty()) tree_ = BoxTree(std::move(boxes), std::move(items));
+}
+
+Uncovered::Body Uncovered::body_of(const geom::Mesh& hull, const Scene& scene) {
+  const double largest = scene.largest_coordinate();
+  const double slack = rounding_of_distances(largest);
+  Body body;
+  for (const geom::Triangle& t : hull.triangles) {
+    const Vec3 a = hull.vertices[t[0]] * scene.scale(), b = hull.vertices[t[1]] * scene.scale(),
+               c = hull.vertices[t[2]] * scene.scale();
+    const Vec3 normal = (b - a).cross(c - a);
+    const double norm = normal.norm();
+    if (!(norm > 0)) return {};
+    // What the rounding of the normal turns the plane by, times how far away from `a` points are.
+    const double turned = 64 * kUnit * (b - a).norm() * (c - a).norm() / norm * 4 * largest;
+    const Vec3 unit = normal / norm;
+    const double height = std::min({unit.dot(a), unit.dot(b), unit.dot(c)}) - turned - 2 * slack;
+    if (!std::isfinite(height)) return {};
+    body.planes.push_back({unit, height});
+  }
+  return body;
+}
+
+void Uncovered::cut(const Part& part, const Plane& plane, std::vector<Part>& above,
+                    std::vector<Part>& below) {
+  std::array<double, 4> height;
+  std::array<int, 4> order{0, 1, 2, 3};
+  for (int i = 0; i < 4; ++i) height[i] = plane.normal.dot(part.corners[i]) - plane.height;
+  std::sort(order.begin(), order.end(), [&](int i, int j) { return height[i] > height[j]; });
+  const auto corner = [&](int i) -> const Vec3& { return part.corners[order[i]]; };
+  const auto between = [&](int i, int j) -> Vec3 {
+    const double h = height[order[i]], t = h / (h - height[order[j]]);
+    return (1 - t) * corner(i) + t * corner(j);
+  };
+  const int cuts = part.cuts + 1;
+  const auto prism = [&](std::vector<Part>& to, const std::array<Vec3, 3>& p,
+                         const std::array<Vec3, 3>& q) {
+    to.push_back({{p[0], p[1], p[2], q[0]}, cuts});
+    to.push_back({{p[1], p[2], q[0], q[1]}, cuts});
+    to.push_back({{p[2], q[0], q[1], q[2]}, cuts});
+  };
+  const auto positive = std::count_if(height.begin(), height.end(), [](double h) { return h > 0; });
+  if (positive == 1 || positive == 3) {
+    const bool tip_above = positive == 1;
+    const int tip = tip_above ? 0 : 3;
+    std::array<Vec3, 3> base, middle;
+    for (int k = 0; k < 3; ++k) {
+      const int other = tip_above ? k + 1 : k;
+      base[k] = corner(other);
+      middle[k] = tip_above ? between(tip, other) : between(other, tip);
+    }
+    (tip_above ? above : below).push_back({{corner(tip), middle[0], middle[1], middle[2]}, cuts});
+    prism(tip_above ? below : above, base, middle);
+  } else {
+    const Vec3 ac = between(0, 2), ad = between(0, 3), bc = between(1, 2), bd = between(1, 3);
+    prism(above, {corner(0), ac, ad}, {corner(1), bc, bd});
+    prism(below, {corner(2), ac, bc}, {corner(3), ad, bd});
+  }
+}
+
+std::optional<Uncovered::Cutters> Uncovered::cutters(const Body& body, const Bounds& box) {
+  const Vec3 low(box.low.data()), high(box.high.data());
+  const Vec3 middle = 0.5 * (low + high), half = 0.5 * (high - low);
+  Cutters result;
+  for (const Plane& plane : body.planes) {
+    const double at = plane.normal.dot(middle) - plane.height;
+    const double reach = plane.normal.cwiseAbs().dot(half);
+    result.depth = std::min(result.depth, -at);
+    if (at >= reach) return std::nullopt;
+    if (at <= -reach) continue;
+    const auto alike = std::find_if(
+        result.planes.begin(), result.planes.end(),
+        [&](const Plane& p) { return (p.normal - plane.normal).squaredNorm() < kAlike * kAlike; });
+    if (alike == result.planes.end()) {
+      result.planes.push_back(plane);
+      continue;
+    }
+    // In the box n·x is at most n'·x plus the largest (n − n')·x.
+    const Vec3 difference = plane.normal - alike->normal;
+    alike->height = std::min(
+        alike->height, plane.height - difference.dot(middle) - difference.cwiseAbs().dot(half));
+  }
+  return result;
+}
+
+bool Uncovered::subtract(const std::vector<Plane>& planes, const Part& part,
+                         std::vector<Part>& out) {
+  std::vector<const Plane*> crossing;
+  for (const Plane& plane : planes) {
+    int outside = 0;
+    for (const Vec3& p : part.corners) outside += plane.normal.dot(p) > plane.height ? 1 : 0;
+    if (outside == 4) {
+      out.push_back(part);
+      return true;
+    }
+    if (outside > 0) crossing.push_back(&plane);
+  }
+  std::vector<Part> inside{part}, next;
+  for (const Plane* plane : crossing) {
+    next.clear();
+    for (const Part& p : inside) {
+      int outside = 0;
+      for (const Vec3& x : p.corners) outside += plane->normal.dot(x) > plane->height ? 1 : 0;
+      if (outside == 0) {
+        next.push_back(p);
+      } else if (outside == 4) {
+        out.push_back(p);
+      } else if (p.cuts >= kMostCuts) {
+        return false;
+      } else {
+        cut(p, *plane, out, next);
+      }
+    }
+    inside.swap(next);
+    if (inside.size() + out.size() > kMostParts) return false;
+  }
+  return true;
+}
+
+bool Uncovered::parts(const Bounds& box, std::vector<Tetrahedron>& out) const {
+  out.clear();
+  std::vector<Cutters> near;
+  tree_.query([&](const Bounds& b) { return b.meets(box); },
+              [&](std::uint32_t body) {
+                if (auto cutters = this->cutters(bodies_[body], box))
+                  near.push_back(std::move(*cutters));
+              });
+  if (near.empty()) return false;
+  // What covers most comes first.
+  std::stable_sort(near.begin(), near.end(),
+                   [](const Cutters& a, const Cutters& b) { return a.depth > b.depth; });
+  if (near.size() > kMostBodies) near.resize(kMostBodies);
+  std::vector<Part> parts, left;
+  for (const Tetrahedron& t : tetrahedra(box)) parts.push_back({t, 0});
+  for (const Cutters& body : near) {
+    left.clear();
+    for (const Part& part : parts)
+      if (!subtract(body.planes, part, left)) return false;
+    parts.swap(left);
+    if (parts.empty()) break;
+  }
+  for (const Part& part : parts) out.push_back(part.corners);
+  return true;
+}
+
+}  // namespace kaboum::verify

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <kaboum/geom/convex_set.h>
+
+#include <array>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "scene.h"
+
+namespace kaboum::verify {
+
+/// What the bodies of a set leave of a box, by cutting it along their facets.
+/// docs/algorithms/exact-inclusion.md, "Pockets".
+class Uncovered {
+ public:
+  using Tetrahedron = std::array<Vec3, 4>;
+
+  /// @param scene  whose coordinates are the set's times scene.scale()
+  Uncovered(const Scene& scene, const geom::ConvexSet& set);
+
+  /// Tetrahedra that hold every point of the box about which no body winds, but for the rounding of
+  /// cut points (rounding_of_distances). False when there would be too many of them.
+  bool parts(const Bounds& box, std::vector<Tetrahedron>& out) const;
+
+ private:
+  /// Points with normal·x ≤ height for all planes lie inside the body.
+  struct Plane {
+    Vec3 normal;
+    double height;
+  };
+  struct Body {
+    std::vector<Plane> planes;
+  };
+  /// A tetrahedron and how often a cut made one of its corners.
+  struct Part {
+    Tetrahedron corners;
+    int cuts;
+  };
+
+  static Body body_of(const geom::Mesh& hull, const Scene& scene);
+  /// Planes that cross a box; those of about one direction are one, below all of them in the box.
+  struct Cutters {
+    std::vector<Plane> planes;
+    double depth = std::numeric_limits<double>::infinity();  ///< of the box's middle in the body
+  };
+  static std::optional<Cutters> cutters(const Body& body, const Bounds& box);
+  static bool subtract(const std::vector<Plane>& planes, const Part& part, std::vector<Part>& out);
+  static void cut(const Part& part, const Plane& plane, std::vector<Part>& above,
+                  std::vector<Part>& below);
+
+  std::vector<Body> bodies_;
+  BoxTree tree_;
+};
+
+}  // namespace kaboum::verify
