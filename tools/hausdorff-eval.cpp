@@ -7,6 +7,7 @@
 #include <kaboum/measure/measure.h>
 #include <kaboum/measure/search.h>
 #include <kaboum/measure/solid.h>
+#include <kaboum/verify/cover.h>
 
 #include <algorithm>
 #include <chrono>
@@ -360,6 +361,19 @@ class Job {
     if (!o_.heatmap.empty()) make_heatmap(*search_a, *search_b);
   }
 
+  /// Whether one solid lies within the other, decided exactly: all distances are then 0, which
+  /// branch and bound only approaches where their surfaces coincide.
+  static bool certainly_within(const Side& from, const Side& to) {
+    if (from.set.margin > to.set.margin) return false;
+    const auto chain = [](const Side& side) {
+      return side.is_set ? verify::sum_of(side.set) : side.input;
+    };
+    const geom::Mesh inner = chain(from);
+    for (const Vec3& v : from.mesh.vertices)
+      if (to.solid->contains(v) == std::optional(false)) return false;
+    return verify::verify_inclusion(inner, chain(to)).solid.answer == verify::Answer::Verified;
+  }
+
   OneWay one_way(const char* name, const Side& from, const geom::TriangleSearch& from_search,
                  const Side& to, const geom::TriangleSearch& to_search) {
     OneWay way;
@@ -367,7 +381,12 @@ class Job {
     d.relative_gap = o_.gap;
     progress_.show(std::string(name) + ": largest distance");
     if (o_.solid) {
-      way.max = measure::solid_distance(*from.solid, *to.solid, from_search, to_search, d);
+      if (certainly_within(from, to)) {
+        way.max.at = from.mesh.vertices[from.mesh.triangles.front()[0]];
+        way.max.within_gap = true;
+      } else {
+        way.max = measure::solid_distance(*from.solid, *to.solid, from_search, to_search, d);
+      }
     } else {
       static_cast<geom::DirectedDistance&>(way.max) =
           geom::directed_distance(from_search, to_search, d);

@@ -93,6 +93,10 @@ expect 0 'solid to solid' "$H" --solid full.obj hollow.obj --csv solid.csv --rep
 awk -F, 'NR==2 { bad = !($8 > 0.2499 && $8 <= 0.25 && $9 >= 0.25 && $9 < 0.2503) }
   NR==3 { bad = bad || $9 > 2e-9 } END { exit bad }' solid.csv || fail "cavity: $(cat solid.csv)"
 grep -q '"measure": "solid to solid"' solid.json || fail "the report does not say what was measured"
+# A solid within the other one is at distance 0 exactly, and nothing is searched.
+sed -n '/"b_to_a"/,/"cells"/p' solid.json >within.txt
+grep -q '"max_upper": 0.0,' within.txt || fail "no distance 0 of what lies within: $(cat within.txt)"
+grep -q '"cells": 0$' within.txt || fail 'space was searched for a solid within the other one'
 grep -q '"max_inside": true' solid.json || fail "the largest distance is not inside"
 expect 0 '' "$H" --solid full.obj folded.obj --b-as mesh --csv solid.csv
 awk -F, 'NR>1 { bad = bad || $9 > 2e-9 } END { exit bad }' solid.csv || fail "fold: $(cat solid.csv)"
