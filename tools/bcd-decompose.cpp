@@ -236,6 +236,13 @@ tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const s
   for (const std::string& note : prepared.notes) tools::log(o.common.quiet, o.input + ": " + note);
   const double diagonal = geom::bounding_box(prepared.mesh).diagonal();
   const geom::Mesh solid = prepared.closed ? prepared.mesh : bcd::close_holes(prepared.mesh);
+  if (!prepared.closed)
+    tools::log(
+        o.common.quiet,
+        o.input + ": its holes are filled with " +
+            std::to_string(solid.triangles.size() - prepared.mesh.triangles.size()) +
+            " triangles; what is said of the solid is about that one (bound-verify --prepare "
+            "checks it)");
   bcd::DecomposeOptions options;
   if (has_epsilon(o))
     options.epsilon = tools::parse_length(o.epsilon.empty() ? "1%" : o.epsilon)->of(diagonal);

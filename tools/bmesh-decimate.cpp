@@ -355,6 +355,11 @@ class Job {
       bmesh::record_preparation(prepared_, triangles, log_);
     }
     input_.mesh = {};
+    if (!prepared_.closed)
+      prepared_.notes.emplace_back(
+          "border vertices stay where they are, and enclosure is claimed of the generalised "
+          "winding "
+          "number only");
     for (const std::string& note : prepared_.notes) say("note: " + note);
     notes_.insert(notes_.end(), prepared_.notes.begin(), prepared_.notes.end());
     box_ = geom::bounding_box(prepared_.mesh);

@@ -1,3 +1,4 @@
+#include <kaboum/bcd/closure.h>
 #include <kaboum/geom/error.h>
 #include <kaboum/geom/prepare.h>
 #include <kaboum/io/convex_io.h>
@@ -35,6 +36,7 @@ struct Input {
   io::Format format;
   std::string sha256;
   std::vector<std::string> notes;
+  std::size_t filled_triangles = 0;
 };
 
 Input read(const std::string& path, const std::string& format, const char* option) {
@@ -212,6 +214,36 @@ void write_witness(const std::string& path, const geom::Mesh& inner, const geom:
   io::write_file(path, io::serialise_mesh(geom::Mesh(mesh), format, options));
 }
 
+/// The original as the tools prepare it: with `close` without holes, since what bcd-decompose
+/// claims is about a solid.
+void prepare(Input& original, bool drop_sheets, bool close) {
+  geom::PrepareOptions options;
+  options.drop_sheets = drop_sheets;
+  geom::Prepared prepared = geom::prepare(original.mesh, options);
+  original.mesh = std::move(prepared.mesh);
+  original.notes.insert(original.notes.end(), prepared.notes.begin(), prepared.notes.end());
+  if (!close || prepared.closed) return;
+  const std::size_t before = original.mesh.triangles.size();
+  original.mesh = bcd::close_holes(original.mesh);
+  original.filled_triangles = original.mesh.triangles.size() - before;
+  original.notes.push_back("its holes are filled with " +
+                           std::to_string(original.filled_triangles) +
+                           " triangles, as bcd-decompose does: the claims are about that solid");
+}
+
+/// What preparing would change of the original; empty if nothing.
+std::string change_by_preparing(const Input& original, bool close) {
+  Input prepared{original.mesh, original.format, {}, {}, 0};
+  try {
+    prepare(prepared, false, close);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  std::string text;
+  for (const std::string& note : prepared.notes) text += (text.empty() ? "" : "; ") + note;
+  return text;
+}
+
 /// What users most often got wrong when an enclosure is refuted.
 std::vector<std::string> hints(const geom::Mesh& original, const geom::Mesh& approximation,
                                bool inner) {
@@ -287,16 +319,10 @@ int check(const Options& o) {
   }
 
   Input original = read(o.original, o.original_format, "--input-format");
-  if (o.prepare) {
-    geom::PrepareOptions options;
-    options.drop_sheets = o.drop_sheets;
-    geom::Prepared prepared = geom::prepare(original.mesh, options);
-    original.mesh = std::move(prepared.mesh);
-    original.notes.insert(original.notes.end(), prepared.notes.begin(), prepared.notes.end());
-  }
   geom::ConvexSet set;
   bool is_set = false;
   Input approximation = read_approximation(o, set, is_set);
+  if (o.prepare) prepare(original, o.drop_sheets, o.cover);
   if (o.inner && set.margin > 0) {
     throw Error(ErrorCode::InvalidInput, o.approximation + ": the set's margin, " +
                                              number(set.margin) +
@@ -444,6 +470,7 @@ int check(const Options& o) {
       json["approximation"]["bodies"] = set.bodies.size();
       json["approximation"]["margin"] = set.margin;
     }
+    if (o.prepare) json["original"]["filled_triangles"] = original.filled_triangles;
     json["claims"] = claims;
     json["triangles_without_area"] = inclusion.triangles_without_area;
     json["contacts"] = inclusion.contacts;
@@ -455,6 +482,11 @@ int check(const Options& o) {
   std::ostream& out = o.common.report == "-" ? std::cerr : std::cout;
   if (!o.common.quiet) {
     for (const std::string& line : verdict.lines()) out << line << '\n';
+  }
+  if (answer != Answer::Verified && answer != Answer::Undecided && !o.prepare) {
+    if (const std::string change = change_by_preparing(original, o.cover); !change.empty())
+      tools::log(o.common.quiet, "note: bmesh-decimate and bcd-decompose speak of " + o.original +
+                                     " as prepared; --prepare judges that: " + change);
   }
   if (answer == Answer::Undefined && inclusion.inner_closed && inclusion.outer_closed) {
     throw Error(ErrorCode::InvalidInput,
@@ -486,10 +518,6 @@ int check(const Options& o) {
     for (const std::string& hint : hints(original.mesh, approximation.mesh, o.inner)) {
       tools::log(o.common.quiet, "note: " + hint);
     }
-  }
-  if (not_enclosed && !o.prepare) {
-    tools::log(o.common.quiet,
-               "note: bmesh-decimate speaks of the input as prepared; --prepare judges that");
   }
   return exit_code(answer);
 }
@@ -540,17 +568,19 @@ int main(int argc, char** argv) {
              "--epsilon", o.epsilon,
              "Also decide that no distance exceeds this: a length, or a percentage of ORIGINAL's "
              "bounding-box diagonal (0.5%); between the surfaces, both ways; with --cover from "
-             "the union to the solid (to the surface when ORIGINAL is open); of an inner set, that "
-             "it "
-             "leaves out no point deeper than this inside ORIGINAL")
+             "the union to the solid (to the surface when ORIGINAL is open and --prepare is not "
+             "given); of an inner set, that it leaves out no point deeper than this inside "
+             "ORIGINAL")
           ->type_name("LENGTH");
   CLI::Option* prepare = app.add_flag(
       "--prepare", o.prepare,
-      "Judge against ORIGINAL as bmesh-decimate prepares it (parts that are inside out "
-      "turned, copies and walls dropped) instead of the file as it is");
+      "Judge against ORIGINAL as bmesh-decimate and bcd-decompose prepare it (parts that are "
+      "inside "
+      "out turned, copies and walls dropped; with --cover also holes filled) instead of the "
+      "file as it is: what a container's epsilon is about");
   app.add_flag("--drop-sheets", o.drop_sheets,
                "With --prepare: drop sheets (faces back to back without volume), as bmesh-decimate "
-               "does with this option; nothing is then said about them")
+               "and bcd-decompose do with this option; nothing is then said about them")
       ->needs("--prepare");
   CLI::Option* set = app.add_flag(
       "--set", o.set,
@@ -594,6 +624,8 @@ int main(int argc, char** argv) {
                ->type_name("N"));
   tools::add_common_options(app, o.common);
   app.footer(
+      "A result of bcd-decompose, whatever its input: --cover INPUT RESULT --prepare --epsilon E\n"
+      "(--inner for --direction inner; E the epsilon that was asked for or is recorded).\n\n"
       "--sweep: every triangle of the links' meshes, every box, cylinder and sphere, at every\n"
       "configuration of PATH, lies in a body enlarged by the margin: during the whole motion, not\n"
       "only at samples (docs/algorithms/swept-volumes.md); so do the insides of closed meshes. It\n"

@@ -511,8 +511,7 @@ class Preparation {
                                                " and bounds no solid; close it, or leave out "
                                                "--require-closed to keep its border in place");
     out_.notes.push_back("the mesh is open at " + count_of(open, "edge", "edges") +
-                         ": border vertices stay where they are, and enclosure is claimed of the "
-                         "generalised winding number only");
+                         " and bounds no solid");
   }
 
   PrepareOptions options_;

@@ -144,6 +144,17 @@ expect 1 '' "$V" --cover one.off set.obj --epsilon 1.73
 expect 1 'convexity: refuted' "$V" --cover "$BRACKET" "$BRACKET"
 expect 1 'convexity: refuted' "$V" --cover open.off open.off
 
+# What bcd-decompose claims of an open mesh is about the mesh as prepared.
+cube 0 1 10 >gap.off
+"$BIN/bcd-decompose" gap.off -o gap.glb --epsilon 1% --no-cache --quiet || fail 'decompose gap'
+expect 1 'prepare judges that: the mesh is open at 4 edges' "$V" --cover gap.off gap.glb --epsilon 1%
+expect 0 'distance from the union to the solid: verified' "$V" --cover gap.off gap.glb --epsilon 1% --prepare
+grep -q 'holes are filled with 4 triangles' err.txt || fail 'no word of the filling'
+# So with one of mixed orientation.
+sed 's/^3 4 5 6$/3 4 6 5/' one.off >mixed.off
+expect 1 'prepare judges that: 3 edges with neighbours of opposite orientation' "$V" --outer mixed.off less.off
+expect 0 'solid claim: verified' "$V" --outer mixed.off three.off --prepare
+
 # Results of bmesh-decimate; a pipe; the report.
 "$D" "$BRACKET" -o outer.ply --ratio 0.1 --quiet || fail 'decimate'
 "$D" "$BRACKET" -o inner.ply --ratio 0.1 --direction inner --quiet || fail 'decimate'
