@@ -382,23 +382,25 @@ class Job {
         std::max(box_.min.cwiseAbs().maxCoeff(), box_.max.cwiseAbs().maxCoeff()));
     if (spacing <= limit) return true;
     if (!double_instead("float32 numbers are " + formatted(spacing) +
-                        " apart at these coordinates, more than " + formatted(limit) +
-                        " (a millionth of the diagonal, or a hundredth of epsilon)"))
+                            " apart at these coordinates, more than " + formatted(limit) +
+                            " (a millionth of the diagonal, or a hundredth of epsilon)",
+                        "move the mesh towards the origin"))
       return false;
     precision_ = bmesh::Precision::Double;
     return true;
   }
 
   /// Falls back to double where that is allowed; else says what to do.
-  bool double_instead(const std::string& why) const {
+  bool double_instead(const std::string& why, const std::string& remedy) const {
     if (o_.precision == "auto" && holds_double()) {
       say("note: " + why + ": writing double");
       return true;
     }
     tools::log(false,
                "bmesh-decimate: " + o_.input + ": " + why +
-                   "; nothing is written. Write .ply, .obj, .off or stl-ascii with --precision "
-                   "double, or move the mesh towards the origin");
+                   "; nothing is written. Write .ply, .obj, .off or (--output-format) stl-ascii, "
+                   "which hold doubles" +
+                   (o_.precision == "auto" ? "" : ", with --precision double") + "; or " + remedy);
     return false;
   }
 
@@ -448,11 +450,18 @@ class Job {
           precision_ == bmesh::Precision::Double || level.result.unrepresentable != 0;
       unrepresentable = std::max(unrepresentable, level.result.unrepresentable);
     }
-    return unrepresentable == 0 ||
-           double_instead(
-               std::to_string(unrepresentable) +
-               (prepared_.closed ? " vertices" : " vertices (those of the border may not move)") +
-               " have no certified float32 position");
+    if (unrepresentable == 0) return true;
+    const std::string vertices =
+        std::to_string(unrepresentable) + (unrepresentable == 1 ? " vertex" : " vertices");
+    return prepared_.closed
+               ? double_instead(vertices + " without a certified float32 position",
+                                "move the mesh towards the origin")
+               : double_instead(
+                     vertices +
+                         " without a certified float32 position: an open mesh's "
+                         "border stays where it is, and its coordinates are no "
+                         "float32 numbers",
+                     "round the input's coordinates to float32 first, or close its holes");
   }
 
   /// The bytes that are verified and written.

@@ -7,6 +7,7 @@
 #include <kaboum/verify/inclusion.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iomanip>
 #include <iostream>
 #include <sstream>
@@ -60,6 +61,14 @@ std::string point(const geom::Vec3& p) {
   std::ostringstream text;
   text << std::setprecision(17) << '(' << p.x() << ", " << p.y() << ", " << p.z() << ')';
   return text.str();
+}
+
+/// Of the box; its square may exceed all doubles, or vanish.
+double diagonal_of(const geom::Mesh& mesh) {
+  const geom::Box3 box = geom::bounding_box(mesh);
+  const double length = box.diagonal();
+  return box.empty() || (length > 1e-150 && length < 1e150) ? length
+                                                            : (box.max - box.min).stableNorm();
 }
 
 Json to_json(const geom::Vec3& p) { return {p.x(), p.y(), p.z()}; }
@@ -234,12 +243,17 @@ void prepare(Input& original, bool drop_sheets, bool close) {
 /// What preparing would change of the original; empty if nothing.
 std::string change_by_preparing(const Input& original, bool close) {
   Input prepared{original.mesh, original.format, {}, {}, 0};
-  try {
-    prepare(prepared, false, close);
-  } catch (const Error& error) {
-    return error.what();
-  }
   std::string text;
+  for (const bool drop_sheets : {false, true}) {
+    prepared.mesh = original.mesh;
+    try {
+      prepare(prepared, drop_sheets, close);
+      if (drop_sheets) text = "with --drop-sheets";
+      break;
+    } catch (const Error&) {  // it cannot be prepared
+      if (drop_sheets) return {};
+    }
+  }
   for (const std::string& note : prepared.notes) text += (text.empty() ? "" : "; ") + note;
   return text;
 }
@@ -249,7 +263,7 @@ std::vector<std::string> hints(const geom::Mesh& original, const geom::Mesh& app
                                bool inner) {
   std::vector<std::string> lines;
   const geom::Box3 a = geom::bounding_box(original), b = geom::bounding_box(approximation);
-  const double ratio = b.diagonal() / a.diagonal();
+  const double ratio = diagonal_of(approximation) / diagonal_of(original);
   if (ratio >= 20 || ratio <= 0.05) {
     lines.push_back("the approximation's box is " + number(ratio) +
                     " times as large as the original's: are both in the same unit?");
@@ -334,7 +348,10 @@ int check(const Options& o) {
     }
   }
 
-  const double diagonal = geom::bounding_box(original.mesh).diagonal();
+  const double diagonal = diagonal_of(original.mesh);
+  if (epsilon && !std::isfinite(epsilon->of(diagonal)))
+    throw Error(ErrorCode::InvalidInput,
+                o.original + ": its diagonal exceeds all numbers; give --epsilon as a length");
   if (epsilon && !(epsilon->of(diagonal) > set.margin)) {
     throw Error(ErrorCode::InvalidArgument, "--epsilon: it must be larger than the set's margin, " +
                                                 number(set.margin) + ", and than 0");

@@ -24,6 +24,16 @@ bool is_float32(const geom::Mesh& mesh) {
                      [](const geom::Vec3& p) { return geom::is_float32(p); });
 }
 
+/// The levels whose meshes have float32 coordinates, finest first.
+std::string float32_levels(const bmesh::Progressive& p, const std::string& name) {
+  std::string text;
+  if (p.double_precision) return text;
+  for (const bmesh::Progressive::Level& level : p.levels)
+    if (is_float32(bmesh::extract(p, level.wished, name).mesh))
+      text += (text.empty() ? "" : ", ") + std::to_string(level.wished);
+  return text;
+}
+
 const char* name_of(bmesh::Direction direction) {
   switch (direction) {
     case bmesh::Direction::Outer:
@@ -81,10 +91,11 @@ int extract_levels(const ExtractOptions& o) {
         all.emplace_back(Taken{counts[i], files[i], bmesh::extract(p, counts[i], o.from), {}});
     const bool double_precision = p.double_precision || !is_float32(t.extracted.mesh);
     if (double_precision && !io::holds_double(format)) {
+      const std::string levels = float32_levels(p, o.from);
       log(false, "bmesh-decimate: " + o.from + ": the mesh of " + std::to_string(t.wished) +
                      " vertices has coordinates that are no float32 numbers; nothing is written. "
-                     "Write .ply, .obj, .off or stl-ascii, or take a level that was asked for when "
-                     "the file was made");
+                     "Write .ply, .obj, .off or (--output-format) stl-ascii, which hold doubles" +
+                     (levels.empty() ? "" : "; or take one of the levels " + levels));
       return kNo;
     }
     t.bytes = serialise_checked(t.extracted.mesh, format, double_precision, p.log.tool);

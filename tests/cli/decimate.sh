@@ -94,6 +94,10 @@ expect 2 '--progressive holds' "$D" "$BRACKET" --vertices 300,200 -o 'x-{vertice
 for bad in 300,300 300, ,300 300,3 300,x '300, 200' 99999999999999999999; do
   expect 2 'different ones separated by commas' "$D" "$BRACKET" --vertices "$bad" -o 'x-{vertices}.ply'
 done
+awk '/^v / { print $1, 1.1 * $2, 1.1 * $3, 1.1 * $4; next } { print }' "$BRACKET" >decimal.obj
+expect 0 '' "$D" decimal.obj --vertices 900,800 --effort fast --cost planes --progressive decimal.pm --quiet
+expect 1 'hold doubles; or take one of the levels 900, 800' "$D" --from decimal.pm --vertices 1500 -o x.stl
+expect 0 'between levels' "$D" --from decimal.pm --vertices 1500 -o decimal.ply
 expect 2 'INPUT, or --from' "$D" --vertices 300 -o x.ply
 expect 2 'joined with --cost' "$D" --from s.pm --vertices 300 -o x.ply --cost planes
 expect 2 'joined with INPUT' "$D" "$BRACKET" --from s.pm --vertices 300 -o x.ply
@@ -117,6 +121,11 @@ absent far.stl far.ply
 expect 0 'writing double' "$D" far.off -o far.ply --vertices 4
 expect 0 '' "$D" far.off -o far.off2 --output-format off --vertices 4 --precision double
 expect 2 'float32 only' "$D" far.off -o far.stl --vertices 4 --precision double
+
+# The border of an open mesh does not move.
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0.1\nv 0 0 1\nf 1 3 2\nf 1 2 4\n' >open.obj
+expect 1 'border stays where it is.*Write .ply, .obj, .off' "$D" open.obj -o x.stl --vertices 4
+expect 0 'writing double' "$D" open.obj -o open.ply --vertices 4
 
 # Sizes whose products would overflow or vanish.
 awk 'NR>2 && NR<7 {printf "%.17g %.17g %.17g\n", $1*1e80, $2*1e80, $3*1e80; next} {print}' t.off >vast.off

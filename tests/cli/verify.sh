@@ -155,6 +155,15 @@ sed 's/^3 4 5 6$/3 4 6 5/' one.off >mixed.off
 expect 1 'prepare judges that: 3 edges with neighbours of opposite orientation' "$V" --outer mixed.off less.off
 expect 0 'solid claim: verified' "$V" --outer mixed.off three.off --prepare
 
+# Lengths whose squares exceed all doubles.
+cube 0 1e300 >vast.off
+cube 0 1.001e300 >vaster.off
+expect 0 'verified: nowhere more than 1.73205e+298' "$V" --outer vast.off vaster.off --epsilon 1%
+expect 1 'refuted: a point is farther away' "$V" --outer vast.off vaster.off --epsilon 0.01%
+expect 1 'distance from the union to the solid: refuted' "$V" --cover vast.off vaster.off --epsilon 0.01%
+cube -1.7e308 1.7e308 >beyond.off
+expect 3 'give --epsilon as a length' "$V" --outer beyond.off beyond.off --epsilon 1%
+
 # Results of bmesh-decimate; a pipe; the report.
 "$D" "$BRACKET" -o outer.ply --ratio 0.1 --quiet || fail 'decimate'
 "$D" "$BRACKET" -o inner.ply --ratio 0.1 --direction inner --quiet || fail 'decimate'
