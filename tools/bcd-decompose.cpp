@@ -84,7 +84,7 @@ void describe(CLI::App& app, Options& o) {
   app.add_option("--min-thickness", o.min_thickness,
                  "Thicken bodies that are less wide than this in some direction, for engines that "
                  "shrink hulls; counts towards epsilon [0]")
-      ->check(CLI::Range(0.0, 1e30).description(""))
+      ->check(tools::number_from(0, 1e30))
       ->type_name("LENGTH");
   app.add_option("--max-total-vertices", o.max_total,
                  "Smallest distance with at most this many vertices of all bodies together (8 to "
@@ -112,15 +112,20 @@ void describe(CLI::App& app, Options& o) {
                  "triangles, if a quarter of the vertices suffices [auto]")
       ->check(CLI::IsMember({"auto", "on", "off"}).description(""))
       ->type_name("auto|on|off");
-  app.add_option("--unit", o.unit, "Unit of length, noted in the container")
+  app.add_option("--unit", o.unit,
+                 "Unit of length, noted in the container: m, dm, cm, mm, um, km, in or ft")
+      ->check(tools::unit_name())
       ->capture_default_str()
       ->type_name("NAME");
   app.add_option("--frame", o.frame, "Coordinate frame, noted in the container")->type_name("NAME");
-  app.add_option("--preview", o.preview, "Write a picture of the bodies (PNG)")->type_name("FILE");
+  app.add_option("--preview", o.preview, "Write a picture of the bodies (PNG)")
+      ->check(tools::png_name())
+      ->type_name("FILE");
   app.add_option("--explode", o.explode,
                  "How far apart the picture's second panel draws the bodies; 0: no second panel")
-      ->check(CLI::Range(0.0, 10.0).description(""))
+      ->check(tools::number_from(0, 10))
       ->capture_default_str()
+      ->needs("--preview")
       ->type_name("X");
   app.add_flag("--no-cache", o.no_cache,
                "Neither use nor store results of earlier runs ($KABOUM_CACHE, else "
@@ -404,12 +409,29 @@ bool is_robot(const std::string& path) {
   return extension == ".urdf";
 }
 
+/// Options that a plain mesh has no use for are mistakes.
+void require_effect(const CLI::App& app, const Options& o) {
+  if (is_robot(o.input)) return;
+  for (const char* option : {"--geometry", "--visual", "--package-path", "--mesh-prefix"})
+    if (app.get_option(option)->count() != 0)
+      throw Error(ErrorCode::InvalidArgument, std::string(option) + " is for robots (.urdf); " +
+                                                  o.input + " is taken for a mesh");
+}
+
 int decompose_robot(const Options& o) {
   if (o.direction != "outer")
     throw Error(ErrorCode::InvalidArgument,
                 "--direction inner: decompose the robot's meshes one by one");
   if (!o.output_format.empty() || o.output == "-")
     throw Error(ErrorCode::InvalidArgument, "-o: a robot's bodies need a folder");
+  const std::filesystem::path folder(o.output);
+  const auto meant = io::set_format_from_path(folder);
+  if (!std::filesystem::is_directory(folder) && meant != io::SetFormat::Directory)
+    throw Error(ErrorCode::InvalidArgument,
+                "-o: a robot's bodies need a folder, which gets a URDF, the bodies and a container "
+                "per link; name one without an extension, such as " +
+                    std::filesystem::path(folder).replace_extension().string() + ", not " +
+                    o.output);
   tools::RobotDecomposition robot;
   robot.robot = o.input;
   robot.folder = o.output;
@@ -484,6 +506,7 @@ int decompose(const Options& o) {
   const tools::ThreadLimit threads(o.common.threads);
   if (is_robot(o.input)) return decompose_robot(o);
   const io::SetFormat format = tools::set_format_for(o.output, o.output_format);
+  if (format == io::SetFormat::Directory) io::require_replaceable(o.output);
   const Outcome out = decompose_mesh(o);
   const geom::ConvexSet set =
       io::parse_convex_set(out.entry.container, io::Format::Glb, "the result");
@@ -517,6 +540,7 @@ int main(int argc, char** argv) {
   describe(app, options);
   return tools::run(app, argc, argv, [&] {
     try {
+      require_effect(app, options);
       return decompose(options);
     } catch (const TooCoarse&) {
       tools::log(false, options.input +

@@ -143,7 +143,7 @@ void describe(CLI::App& app, Options& o) {
   app.add_option("--sharp-angle", o.sharp_angle,
                  "Edges whose normals differ by more degrees than this resist growing spikes; 180: "
                  "none (only with --cost planes, planes-adapted and planes-diagonal)")
-      ->check(CLI::Range(0.0, 180.0).description(""))
+      ->check(tools::number_from(0, 180))
       ->capture_default_str()
       ->type_name("DEG");
   app.add_flag("--keep-convex", o.keep_convex, "Convex in, convex out, exactly");

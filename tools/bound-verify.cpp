@@ -631,7 +631,10 @@ int main(int argc, char** argv) {
                           "are not known to be inside, the answer is undecided [margin / 10^6]")
                ->check([](const std::string& s) {
                  const auto length = tools::parse_length(s);
-                 return length && !length->percent ? std::string() : "must be a positive length";
+                 return length && !length->percent
+                            ? std::string()
+                            : "must be a positive length, a number above 0 without a unit, not " +
+                                  s;
                })
                ->type_name("LENGTH"));
   of_sweep(app.add_option("--max-cells", o.sweep.max_cells,

@@ -6,10 +6,13 @@
 #include <tbb/global_control.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <iostream>
 #include <new>
+#include <sstream>
 
 namespace kaboum::tools {
 namespace {
@@ -96,6 +99,34 @@ std::optional<Length> parse_length(const std::string& text) {
   length.percent = stop != end && *stop == '%';
   if (stop + (length.percent ? 1 : 0) != end) return std::nullopt;
   return length;
+}
+
+CLI::Validator number_from(double low, double high) {
+  std::ostringstream text;
+  text << "must be a number from " << low << " to " << high << ", without a unit";
+  return {[=, why = text.str()](std::string& s) {
+            double x = 0;
+            const auto [end, error] = std::from_chars(s.data(), s.data() + s.size(), x);
+            const bool whole = error == std::errc() && end == s.data() + s.size();
+            return whole && x >= low && x <= high ? std::string() : why + ", not " + s;
+          },
+          ""};
+}
+
+CLI::Validator png_name() {
+  return {[](std::string& s) {
+            std::string extension = std::filesystem::path(s).extension().string();
+            std::transform(extension.begin(), extension.end(), extension.begin(),
+                           [](unsigned char c) { return std::tolower(c); });
+            return s == "-" || extension == ".png"
+                       ? std::string()
+                       : "a PNG is written: give a name that ends with .png, not " + s;
+          },
+          ""};
+}
+
+CLI::Validator unit_name() {
+  return CLI::IsMember({"m", "dm", "cm", "mm", "um", "km", "in", "ft"}).description("");
 }
 
 Progress::Progress(bool quiet) : active_(!quiet && isatty(STDERR_FILENO) == 1) {}

@@ -71,6 +71,15 @@ struct Length {
 /// "0.005" or "0.5%"; nullopt unless it is a positive finite number.
 std::optional<Length> parse_length(const std::string& text);
 
+/// Refuses what is not a number from `low` to `high`, and says so.
+CLI::Validator number_from(double low, double high);
+
+/// Refuses names of pictures that are not .png: what is written is.
+CLI::Validator png_name();
+
+/// Units of length that a container may name.
+CLI::Validator unit_name();
+
 /// One line on stderr that is rewritten, if stderr is a terminal and not `quiet`; else nothing.
 class Progress {
  public:

@@ -57,7 +57,7 @@ void describe(CLI::App& app, Options& o) {
          "--gap", o.gap,
          "Wished relative width of the certified intervals, from 1e-9 to 1; never finer than "
          "1e-9 of the diagonal")
-      ->check(CLI::Range(1e-9, 1.0).description(""))
+      ->check(tools::number_from(1e-9, 1))
       ->capture_default_str()
       ->type_name("G");
   app.add_option("--samples", o.samples, "Points for mean and rms, each way, from 2 to 1e9")
@@ -78,7 +78,7 @@ void describe(CLI::App& app, Options& o) {
   app.add_option(
          "--at-most", o.at_most,
          "Exit with 1 unless the Hausdorff distance is certainly at most this: a length, or "
-         "a percentage of the diagonal, as in 0.5%")
+         "a percentage of the diagonal of both bounding boxes, as in 0.5%")
       ->check([](const std::string& s) {
         return tools::parse_length(s) ? std::string()
                                       : "must be a positive number, or a percentage such as 0.5%";
@@ -512,7 +512,7 @@ class Job {
     out << (o_.solid                 ? "solid to solid (mean and rms: over the boundaries)"
             : a_.is_set || b_.is_set ? "surface to surface (sets: boundary of the union)"
                                      : "surface to surface")
-        << ", diagonal " << formatted(diagonal_) << '\n';
+        << "; percentages of the diagonal of both boxes, " << formatted(diagonal_) << '\n';
     row("", "A to B", "B to A");
     row("min", interval(min_.lower, min_.upper), interval(min_.lower, min_.upper));
     row("mean", estimate(to_b_.sampled.mean), estimate(to_a_.sampled.mean));
@@ -523,7 +523,7 @@ class Job {
         interval(to_a_.max.max_lower, to_a_.max.max_upper));
     row("", percent(to_b_.max.max_upper), percent(to_a_.max.max_upper));
     out << "Hausdorff distance " << interval(hausdorff_lower(), hausdorff_upper()) << ", "
-        << percent(hausdorff_upper()) << " of the diagonal\n";
+        << percent(hausdorff_upper()) << " of that diagonal\n";
     return out.str();
   }
 

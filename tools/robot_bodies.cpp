@@ -123,6 +123,8 @@ geom::ConvexSet decompose(const fs::path& mesh, const BodyOptions& options,
                                    std::to_string(options.max_vertices),
                                    "--effort",
                                    options.effort,
+                                   "--threads",
+                                   std::to_string(options.threads),
                                    "--quiet"};
   if (options.no_cache) command.emplace_back("--no-cache");
   if (options.drop_sheets) command.emplace_back("--drop-sheets");

@@ -34,6 +34,7 @@ struct BodyOptions {
   std::string cache;  ///< folder; empty: as bcd-decompose
   bool no_cache = false;
   bool drop_sheets = false;  ///< back-to-back faces without volume are left out
+  int threads = 0;           ///< of the decomposition; 0: one per core
   bool quiet = false;
 };
 

@@ -144,9 +144,10 @@ class Writer {
     if (it != meshes_.end()) return it->second;
     result_.inputs.push_back(file);
     Decomposed& d = meshes_[key];
-    d.mesh = decompose_(file, scale);
     d.file = file.string();
     d.folder = "bodies/" + folders_.unique(file.stem().string());
+    io::require_replaceable(o_.folder / d.folder);
+    d.mesh = decompose_(file, scale);
     order_.push_back(&d);
     return d;
   }

@@ -29,7 +29,9 @@ const std::map<std::string, sweep::StepRule> kRules{
 
 std::string check_length(const std::string& text) {
   const auto length = tools::parse_length(text);
-  return length && !length->percent ? std::string() : "must be a positive length, as in 0.005";
+  return length && !length->percent
+             ? std::string()
+             : "must be a positive length without a unit, as in 0.005, not " + text;
 }
 
 void describe(CLI::App& app, Options& o) {
@@ -67,7 +69,7 @@ void describe(CLI::App& app, Options& o) {
          "--simplify", o.simplify,
          "Share of epsilon, 0 to 0.9, by which vertices may be left out: fewer of them, more "
          "bodies")
-      ->check(CLI::Range(0.0, 0.9).description(""))
+      ->check(tools::number_from(0, 0.9))
       ->capture_default_str()
       ->type_name("SHARE");
   app.add_flag("--explicit-margin", o.explicit_margin,
@@ -104,10 +106,13 @@ void describe(CLI::App& app, Options& o) {
                  "Cache of decompositions, used and filled [as bcd-decompose]")
       ->type_name("DIR");
   app.add_flag("--no-cache", o.bodies.no_cache, "Decompose anew and store nothing");
-  app.add_option("--unit", o.unit, "Unit of length, noted in the container")
+  app.add_option("--unit", o.unit,
+                 "Unit of length, noted in the container: m, dm, cm, mm, um, km, in or ft")
+      ->check(tools::unit_name())
       ->capture_default_str()
       ->type_name("NAME");
   app.add_option("--preview", o.preview, "Write a picture of the swept volume (PNG)")
+      ->check(tools::png_name())
       ->type_name("FILE");
   app.add_option("--depfile", o.depfile, "Write a Makefile dependency rule")->type_name("FILE");
   tools::add_set_format_option(app, o.output_format);
@@ -163,11 +168,15 @@ int sweep_path(Options o) {
       o.output_format.empty() && std::filesystem::path(o.output).extension() == ".urdf";
   const io::SetFormat format =
       urdf ? io::SetFormat::Directory : tools::set_format_for(o.output, o.output_format);
+  if (format == io::SetFormat::Directory)
+    io::require_replaceable(urdf ? std::filesystem::path(o.output).replace_extension()
+                                 : std::filesystem::path(o.output));
   const tools::RobotFile file = tools::read_robot(o.robot);
   const sweep::Path path = read_path(o, file.robot);
   o.bodies.links = split(o.links);
   o.bodies.visual = o.geometry == "visual";
   o.bodies.quiet = o.common.quiet;
+  o.bodies.threads = o.common.threads;
   if (o.bodies.epsilon.empty()) o.bodies.epsilon = o.epsilon;
   const tools::LinkBodies links = tools::bodies_of(file, o.bodies);
   for (const std::string& link : links.bare)

@@ -60,7 +60,7 @@ expect 1 'min-thickness' "$D" "$BRACKET" -o thick.glb --epsilon 3% --effort fast
 expect 2 'thicken' "$D" "$BRACKET" -o x.glb --direction inner --min-thickness 0.1
 expect 2 'pre-step' "$D" "$BRACKET" -o x.glb --direction inner --pre-step on
 expect 2 'min-thickness' "$D" "$BRACKET" -o x.glb --min-thickness nan
-expect 2 '' "$D" "$BRACKET" -o x.glb --min-thickness 1%
+expect 2 'must be a number from 0 to 1e+30' "$D" "$BRACKET" -o x.glb --min-thickness 1%
 expect 2 '' "$D" "$BRACKET" -o x.glb --min-thickness -1
 
 # Bodies inside.
@@ -80,6 +80,16 @@ expect 2 '' "$D" t.off -o x.glb --max-vertices-per-body 7
 expect 2 '' "$D" t.off -o x.glb --direction sideways
 expect 2 'extension' "$D" t.off -o x.step
 expect 2 'output-format' "$D" t.off -o -
+# What has no effect, or would be misread later, is refused at once.
+expect 2 'ends with .png' "$D" t.off -o x.glb --preview x.jpg
+expect 2 'unit' "$D" t.off -o x.glb --unit parsec
+expect 2 'preview' "$D" t.off -o x.glb --explode 1
+expect 2 'mesh-prefix is for robots' "$D" t.off -o x.glb --mesh-prefix package://r/
+expect 2 'geometry is for robots' "$D" t.off -o x.glb --geometry visual
+expect 2 'visual is for robots' "$D" t.off -o x.glb --visual
+expect 2 'package-path is for robots' "$D" t.off -o x.glb --package-path .
+mkdir foreign && echo note >foreign/note.txt
+expect 4 'note.txt' "$D" none.off -o foreign  # before the input is looked at
 echo 'OFF nonsense' >bad.off
 expect 3 'bad.off' "$D" bad.off -o x.glb
 expect 3 '' "$D" none.off -o x.glb

@@ -120,7 +120,7 @@ grep -q "not exactly convex" err.txt || fail "no note on stderr"
 # Usage and bad input.
 expect 2 '' "$H"
 expect 2 '' "$H" t.off
-expect 2 '' "$H" t.off t.off --gap 0
+expect 2 'from 1e-09 to 1' "$H" t.off t.off --gap 0
 expect 2 '' "$H" t.off t.off --samples 1
 expect 2 '' "$H" t.off t.off --samples 1e5.5
 expect 2 '' "$H" t.off t.off --backend best

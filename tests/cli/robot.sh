@@ -56,6 +56,12 @@ expect 0 '' "$D" robot/r.urdf -o out2 --epsilon 3% --effort fast --quiet --no-ca
 sed 's,package://r/,,' out2/r.urdf | cmp -s - out/r.urdf || fail "another URDF"
 cmp -s out/links/arm_1.glb out2/links/arm_1.glb || fail "another container"
 
+# A folder, not a file, and none that holds other things.
+expect 2 'such as out3, not out3.glb' "$D" robot/r.urdf -o out3.glb
+mkdir -p out4/bodies/t && echo note >out4/bodies/t/note.txt
+expect 4 'note.txt' "$D" robot/r.urdf -o out4 --effort fast
+absent out3 out3.glb
+
 # Shapes for drawing; lengths in the robot's unit.
 sed 's/seen.dae/t.off/' robot/r.urdf >robot/v.urdf
 expect 0 "link 'arm/1' has no visual shape; it stays" "$D" robot/v.urdf -o seen --visual --epsilon 0.05

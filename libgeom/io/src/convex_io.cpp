@@ -166,24 +166,24 @@ bool is_part_of_set(const fs::path& file) {
          stem.find_first_not_of("0123456789", start.size()) == std::string::npos;
 }
 
+/// The folder's path without a slash at the end.
+fs::path target_of(const fs::path& path) {
+  const fs::path target = path.lexically_normal();
+  return target.filename().empty() ? target.parent_path() : target;
+}
+
+[[noreturn]] void cannot_write(const fs::path& path, const std::string& why) {
+  throw Error(ErrorCode::OutputFailed, path.string() + ": cannot be written: " + why);
+}
+
 void write_directory(const fs::path& path, const geom::ConvexSet& set) {
-  const auto cannot = [&](const std::string& why) {
-    throw Error(ErrorCode::OutputFailed, path.string() + ": cannot be written: " + why);
-  };
+  const auto cannot = [&](const std::string& why) { cannot_write(path, why); };
   refuse_margin(set, "STL");
   const geom::ConvexSet clean = cleaned(set);
+  require_replaceable(path);
   std::error_code error;
-  fs::path target = path.lexically_normal();
-  if (target.filename().empty()) target = target.parent_path();
+  const fs::path target = target_of(path);
   const bool exists = fs::exists(target, error);
-  if (exists && !fs::is_directory(target, error)) cannot("it is a file; name a folder");
-  if (exists) {
-    const bool ours = fs::exists(target / kRecordFile, error);
-    for (const fs::directory_entry& entry : fs::directory_iterator(target))
-      if (!ours || !is_part_of_set(entry.path()))
-        cannot("the folder holds '" + entry.path().filename().string() +
-               "', which is no part of a convex set written here; name another folder");
-  }
   const fs::path parent = target.has_parent_path() ? target.parent_path() : fs::path(".");
   const std::string suffix = std::to_string(::getpid()) + ".tmp";
   const fs::path fresh = parent / (".kaboum-new-" + suffix),
@@ -211,6 +211,19 @@ void write_directory(const fs::path& path, const geom::ConvexSet& set) {
 }
 
 }  // namespace
+
+void require_replaceable(const fs::path& folder) {
+  std::error_code error;
+  const fs::path target = target_of(folder);
+  if (!fs::exists(target, error)) return;
+  if (!fs::is_directory(target, error)) cannot_write(folder, "it is a file; name a folder");
+  const bool ours = fs::exists(target / kRecordFile, error);
+  for (const fs::directory_entry& entry : fs::directory_iterator(target))
+    if (!ours || !is_part_of_set(entry.path()))
+      cannot_write(folder, "the folder holds '" + entry.path().filename().string() +
+                               "', which is no part of a convex set written here; name another "
+                               "folder");
+}
 
 std::string default_name(std::size_t index) {
   const std::string digits = std::to_string(index);

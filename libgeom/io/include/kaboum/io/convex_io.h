@@ -69,6 +69,10 @@ std::vector<char> serialise_convex_set(const geom::ConvexSet& set, SetFormat for
 /// have these names, and the extension .stl.
 std::string default_name(std::size_t index);
 
+/// Refuses, before anything is computed, a folder that write_convex_set would not replace.
+/// @throws Error{OutputFailed}
+void require_replaceable(const std::filesystem::path& folder);
+
 /// Writes a set so that the path holds either what it held before or all of the new (folders: after
 /// a crash between two renames, the old content may be left in a hidden folder beside it).
 ///
