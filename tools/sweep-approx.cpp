@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "robot_bodies.h"
+#include "robot_path.h"
 #include "set_format.h"
 #include "sweep_picture.h"
 #include "swept_urdf.h"
@@ -124,17 +125,6 @@ void describe(CLI::App& app, Options& o) {
       "3 bad input; 4 output failed; 5 not built; 6 internal error; 7 limit.");
 }
 
-sweep::Path read_path(const Options& o, const sweep::Robot& robot) {
-  const std::vector<char> bytes = io::read_file(o.path);
-  const std::string_view text(bytes.data(), bytes.size());
-  const std::size_t start = text.find_first_not_of(" \t\r\n");
-  const bool json = start != std::string_view::npos && (text[start] == '{' || text[start] == '[');
-  const std::string name = o.path == "-" ? "standard input" : o.path;
-  const sweep::NamedPath path =
-      json ? sweep::parse_path_json(text, name) : sweep::parse_path_csv(text, name);
-  return sweep::arrange(path, robot, name, !o.ignore_limits);
-}
-
 std::vector<std::string> split(const std::string& list) {
   std::vector<std::string> out;
   std::istringstream stream(list);
@@ -172,7 +162,7 @@ int sweep_path(Options o) {
     io::require_replaceable(urdf ? std::filesystem::path(o.output).replace_extension()
                                  : std::filesystem::path(o.output));
   const tools::RobotFile file = tools::read_robot(o.robot);
-  const sweep::Path path = read_path(o, file.robot);
+  const sweep::Path path = tools::read_path(o.path, file.robot, !o.ignore_limits);
   o.bodies.links = split(o.links);
   o.bodies.visual = o.geometry == "visual";
   o.bodies.quiet = o.common.quiet;
@@ -190,7 +180,16 @@ int sweep_path(Options o) {
   options.explicit_margin = o.explicit_margin || format != io::SetFormat::Glb;
   if (!o.reach.empty()) options.max_reach = tools::parse_length(o.reach)->value;
   const double before = tools::user_seconds();
-  sweep::SweepResult result = sweep::swept_volume(file.robot, links.bodies, path, options);
+  sweep::SweepResult result = [&] {
+    try {
+      return sweep::swept_volume(file.robot, links.bodies, path, options);
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::InvalidArgument) throw;
+      throw Error(error.code(), o.path + ": " + error.what() + "; " +
+                                    tools::largest_move(path, file.robot) +
+                                    " (in radians or metres)");
+    }
+  }();
   const double seconds = tools::user_seconds() - before;
   if (result.stop == sweep::SweepStop::TooCoarse) {
     tools::log(false, o.robot +

@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "robot_bodies.h"
+#include "robot_path.h"
 
 namespace kaboum::tools {
 namespace {
@@ -133,16 +134,6 @@ void require_same_poses(const sweep::Robot& robot, const Shapes& shapes, const s
   }
 }
 
-sweep::Path read_path(const std::string& file, const sweep::Robot& robot) {
-  const std::vector<char> bytes = io::read_file(file);
-  const std::string_view text(bytes.data(), bytes.size());
-  const std::size_t start = text.find_first_not_of(" \t\r\n");
-  const bool json = start != std::string_view::npos && (text[start] == '{' || text[start] == '[');
-  return sweep::arrange(
-      json ? sweep::parse_path_json(text, file) : sweep::parse_path_csv(text, file), robot, file,
-      false);  // limits are no matter of the set
-}
-
 std::vector<double> configuration(const sweep::Path& path, const verify::SweepPlace& p) {
   const auto &a = path[p.segment], &b = path[std::min(p.segment + 1, path.size() - 1)];
   std::vector<double> q(a.size());
@@ -200,7 +191,8 @@ int verify_sweep(const VerifySweepOptions& o, const CommonOptions& common) {
   require_apart({{"--report", common.report}, {"--witness", o.witness}}, o.files);
   const ThreadLimit threads(common.threads);
   const RobotFile file = read_robot(robot_path);
-  const sweep::Path path = read_path(path_path, file.robot);
+  // Limits are no matter of the set.
+  const sweep::Path path = read_path(path_path, file.robot, false);
   const Shapes shapes = read_shapes(file, o);
   require_same_poses(file.robot, shapes, path);
   std::optional<io::Format> format;

@@ -98,6 +98,16 @@ expect 4 '' "$S" "$R" --path path.csv -o /nonexistent/dir/x.glb
 expect 4 '' "$S" "$R" --path path.csv -o /nonexistent/dir/x.urdf
 absent x.glb
 
+# Huge moves are named; a path that could be read in two ways is refused.
+printf 'elbow,shoulder,grip\n0,0,0\n1e9,0,0\n' >huge.csv
+expect 2 "joint 'elbow' moves most, by 1e+09 to waypoint 2" "$S" "$R" --path huge.csv -o x.glb
+printf '# grip, shoulder, elbow\n0,0,0\n' >comment.csv
+expect 3 'line 1: a comment names joints in another order' "$S" "$R" --path comment.csv -o x.glb
+sed 's/"elbow"/"1"/; s/"shoulder"/"2"/; s/"grip"/"3"/' "$R" >robots/urdf/numbered.urdf
+printf '3,2,1\n0,0,0\n' >numbers.csv
+expect 3 'line 1: these numbers are also names of joints' "$S" robots/urdf/numbered.urdf --path numbers.csv -o x.glb
+absent x.glb
+
 # The whole motion decided from files alone; a set whose margin is cut, one that lacks a body, another path.
 V=$BIN/bound-verify
 expect 0 'surface claim: verified' "$V" --sweep "$R" path.csv a.glb --report v.json
