@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <kaboum/geom/convex_hull.h>
 
+#include <Eigen/Geometry>
+
 #include "pairs.h"
 #include "support/arrangement_oracle.h"
 #include "support/shapes.h"
@@ -327,6 +329,71 @@ TEST(Depth, OfPartsThatBarelyOverlap) {
   EXPECT_EQ(depth(0x1p-45, 0.1), Answer::Undecided);
   EXPECT_NE(depth(-1e-7, 0.1), Answer::Verified);
   EXPECT_EQ(depth(-1e-2, 0.1), Answer::Refuted);
+}
+
+// Turned blocks in a turned cube, many of which barely overlap: membership and depth are a line
+// each.
+TEST(Depth, AgainstSamples) {
+  std::array<int, 3> answers{};
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    Random random(seed);
+    const auto uniform = [&] { return static_cast<double>(random() % 100'000) / 100'000; };
+    const auto turn = [&] {
+      return Eigen::Quaterniond(uniform() - 0.5, uniform() - 0.5, uniform() - 0.5, 1)
+          .normalized()
+          .toRotationMatrix();
+    };
+    const auto turned = [](Mesh mesh, const Eigen::Matrix3d& r) {
+      for (Vec3& v : mesh.vertices) v = r * v;
+      return *geom::convex_hull(mesh.vertices);
+    };
+    const Eigen::Matrix3d frame = turn();
+    const Mesh original = turned(block(Vec3::Constant(-1), Vec3::Constant(1)), frame);
+    // Slabs side by side, overlapping by next to nothing, in a direction of their own.
+    const Eigen::Matrix3d slabs = turn();
+    std::vector<Block> blocks;
+    const double overlap = std::pow(10, -2 - 6 * uniform());
+    for (double x = -1.8; x < 1.8;) {
+      const double next = x + 0.3 + uniform();
+      const double wide = 1.75 - 0.9 * uniform() * (seed % 2 == 0 ? 0 : 1);
+      blocks.push_back({{x - overlap, -wide, -1.75}, {next, 1.75, wide}});
+      x = next + (seed % 5 == 0 && blocks.size() == 2 ? 2 * overlap : 0);
+    }
+    std::vector<Mesh> bodies;
+    for (const Block& b : blocks) bodies.push_back(turned(block(b.low, b.high), slabs));
+    const double epsilon = 0.05 + 0.2 * uniform();
+    verify::InclusionOptions soon;
+    soon.max_cells = 50'000;
+    const verify::Claim claim = verify::verify_depth(original, set_of(bodies), epsilon, soon);
+    ++answers.at(static_cast<std::size_t>(claim.answer));
+    const auto outside = [&](const Vec3& at, double by) {
+      const Vec3 p = slabs.transpose() * at;
+      return std::all_of(blocks.begin(), blocks.end(), [&](const Block& b) {
+        return (b.low - p).cwiseMax(p - b.high).maxCoeff() > by;
+      });
+    };
+    const auto depth = [&](const Vec3& p) {
+      return 1 - (frame.transpose() * p).cwiseAbs().maxCoeff();
+    };
+    if (claim.answer == Answer::Refuted) {
+      ASSERT_TRUE(claim.witness.has_value()) << seed;
+      EXPECT_TRUE(outside(claim.witness->point, -1e-12)) << seed;
+      EXPECT_GT(depth(claim.witness->point), epsilon) << seed;
+    } else if (claim.answer == Answer::Verified) {
+      for (int i = 0; i < 20'000; ++i) {
+        Vec3 p = frame * (2 * Vec3(uniform(), uniform(), uniform()) - Vec3::Ones());
+        if (i % 2 == 0) {  // near where two slabs meet
+          p = slabs.transpose() * p;
+          p.x() = blocks[random() % blocks.size()].low.x() + overlap * (2 * uniform() - 0.5);
+          p = slabs * p;
+        }
+        if (outside(p, 1e-12)) ASSERT_LE(depth(p), epsilon) << seed;
+      }
+    }
+  }
+  EXPECT_GE(answers[static_cast<std::size_t>(Answer::Verified)], 8);
+  EXPECT_GE(answers[static_cast<std::size_t>(Answer::Refuted)], 4);
+  EXPECT_LE(answers[static_cast<std::size_t>(Answer::Undecided)], 12);
 }
 
 // A fold inside the original, and a part that is inside out, are no part of its boundary: what is
