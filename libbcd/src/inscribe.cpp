@@ -193,17 +193,43 @@ std::vector<Vec3> subset(std::vector<Vec3> points, std::size_t most, const Vec3&
   return out;
 }
 
-std::optional<Inscribed> body_of(std::vector<Vec3> points, std::size_t most, const Vec3& seed,
-                                 double ball) {
+/// Corners of a large box that contains the seed and lies in the body, its axes those of the body's
+/// covariance: faces move outwards in turn, half as far as they can and at last all the way.
+std::vector<Vec3> box_within(const Inscribed& body, const Ellipsoid& e, const Vec3& seed) {
+  constexpr int kRounds = 12;
+  const Eigen::Matrix3d axes =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(e.to_ball).eigenvectors();
+  std::array<Vec3, 2> reach{Vec3::Zero(), Vec3::Zero()};  // from the seed, along −axes and axes
+  const auto room = [&](int side, int k) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Plane& plane : body.planes) {
+      const Vec3 slope = axes.transpose() * plane.n;
+      const double along = side == 0 ? -slope[k] : slope[k];
+      if (along <= 0) continue;
+      double height = plane.height(seed);
+      for (int i = 0; i < 3; ++i)
+        height += slope[i] > 0 ? slope[i] * reach[1][i] : -slope[i] * reach[0][i];
+      least = std::min(least, -height / along);
+    }
+    return std::max(0.0, least);
+  };
+  for (int round = 1; round <= kRounds; ++round)
+    for (int k = 0; k < 3; ++k)
+      for (const int side : {0, 1}) reach[side][k] += (round < kRounds ? 0.5 : 1.0) * room(side, k);
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 8; ++i) {
+    Vec3 p = seed;
+    for (int k = 0; k < 3; ++k) p += ((i >> k & 1) != 0 ? reach[1][k] : -reach[0][k]) * axes.col(k);
+    corners.push_back(p);
+  }
+  return corners;
+}
+
+/// The hull of the points, rounded to float32.
+std::optional<Inscribed> hull_of(std::vector<Vec3> points) {
   for (Vec3& p : points) p = geom::to_float32(p);
   geom::HullBuilder builder;
   if (!builder.build(points)) return std::nullopt;
-  if (builder.vertices().size() > most) {
-    std::vector<Vec3> corners;
-    for (const std::uint32_t v : builder.vertices()) corners.push_back(points[v]);
-    points = subset(std::move(corners), most, seed, ball);
-    if (!builder.build(points)) return std::nullopt;
-  }
   Inscribed out;
   out.hull = builder.mesh();
   out.box = geom::bounding_box(out.hull);
@@ -213,6 +239,24 @@ std::optional<Inscribed> body_of(std::vector<Vec3> points, std::size_t most, con
     const Vec3 n = (out.hull.vertices[t[1]] - a).cross(out.hull.vertices[t[2]] - a);
     const double length = n.norm();
     if (length > 0) out.planes.push_back({n / length, n.dot(a) / length});
+  }
+  return out;
+}
+
+/// A body round the seed with at most `most` of the hull's vertices, or a box in it if that is
+/// larger.
+std::optional<Inscribed> body_of(std::vector<Vec3> points, std::size_t most, const Vec3& seed,
+                                 double ball, double core) {
+  std::optional<Inscribed> whole = hull_of(std::move(points));
+  if (!whole || whole->hull.vertices.size() <= most) return whole;
+  std::optional<Inscribed> out = hull_of(subset(whole->hull.vertices, most, seed, ball));
+  if (out && !out->contains(seed, core)) out.reset();
+  if (most >= 8) {
+    if (const std::optional<Ellipsoid> e = ellipsoid_of(whole->hull)) {
+      std::optional<Inscribed> box = hull_of(box_within(*whole, *e, seed));
+      if (box && box->contains(seed, core) && (!out || box->volume > out->volume))
+        out = std::move(box);
+    }
   }
   return out;
 }
@@ -245,7 +289,8 @@ bool crosses_another(const Mesh& mesh, const geom::Bvh& bvh, const Triangle& t) 
         return !found && (box.min.array() <= other.max.array()).all() &&
                (other.min.array() <= box.max.array()).all();
       },
-      [&](std::uint32_t i) { found = found || cross(mesh, t, mesh.triangles[i]); });
+      [&](std::uint32_t i) {
+        found = found || cross(mesh, t, mesh.triangles[i]); });
   return found;
 }
 
@@ -323,13 +368,15 @@ std::optional<Inscribed> inscribe(const Mesh& boundary, const Vec3& seed, double
       geom::float32_spacing(std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff()));
   const double margin = 2 * ulp * safety;
   if (!(depth > 4 * margin)) return std::nullopt;
+  // Searching goes on elsewhere once a body holds the seed and what is next to it.
+  const double core = std::max(margin, 0.25 * depth);
   std::optional<Inscribed> best;
   Ellipsoid e{seed, Eigen::Matrix3d::Identity()};
   for (int round = 0; round <= rounds; ++round) {
     const std::optional<Cell> cell = keep_out(boundary, box, e, seed, depth, margin);
     if (!cell) break;
-    std::optional<Inscribed> body = body_of(cell->corners, most, seed, 0.8 * depth);
-    if (!body || !body->contains(seed, margin)) break;
+    std::optional<Inscribed> body = body_of(cell->corners, most, seed, 0.8 * depth, core);
+    if (!body || !body->contains(seed, core)) break;
     const bool better = !best || body->volume > 1.01 * best->volume;
     if (better) best = std::move(body);
     if (!better) break;
@@ -344,7 +391,7 @@ std::optional<Inscribed> inscribe(const Mesh& boundary, const Vec3& seed, double
     for (int i = 0; i < 8; ++i)
       cube.emplace_back(
           seed + half * Vec3((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1));
-    best = body_of(cube, most, seed, depth);
+    best = hull_of(std::move(cube));
   }
   return best;
 }

@@ -107,6 +107,15 @@ TEST(Fill, MutantsAreRefuted) {
   }
 }
 
+TEST(Fill, EightVerticesPerBodyGetOnInsideRoundWalls) {
+  // A body that holds little more than its seed leaves the next search the same place.
+  const Mesh torus = geom::prepare(kaboum::test::torus(1, 0.3, 40, 16)).mesh;
+  const DecomposeResult result = run(torus, 2, 8);
+  expect_claims(torus, result, 8);
+  EXPECT_EQ(result.stop, Stop::Done);
+  EXPECT_LE(result.bodies.size(), 400U);
+}
+
 TEST(Fill, FewBodiesAndOpenMeshes) {
   const Mesh torus = kaboum::test::torus(1, 0.3, 40, 16);
   DecomposeOptions options;
