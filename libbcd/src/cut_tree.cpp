@@ -174,9 +174,8 @@ void CutTree::find_reflex_planes() {
   }
 }
 
-void CutTree::add_leaf(Piece&& piece, int parent) {
+CutTree::Node CutTree::node_of(Piece&& piece) const {
   Node node;
-  node.parent = parent;
   geom::HullBuilder& builder = scratch().builder;
   const std::vector<Vec3> points = piece.hull_points();
   node.appraisal = appraise(points, solid_, builder);
@@ -186,6 +185,12 @@ void CutTree::add_leaf(Piece&& piece, int parent) {
     node.hull = points;
   }
   node.piece = std::move(piece);
+  return node;
+}
+
+void CutTree::add_leaf(Piece&& piece, int parent) {
+  Node node = node_of(std::move(piece));
+  node.parent = parent;
   nodes_.push_back(std::move(node));
   ++leaf_count_;
 }
@@ -304,12 +309,37 @@ double CutTree::score(const Node& node, const Plane& plane) const {
   const Appraisal lower = appraise(s.lower, solid_, s.builder, true);
   if (lower.fourth > 2 * limit) return penalty * lower.fourth;
   const Appraisal upper = appraise(s.upper, solid_, s.builder, true);
+  return penalty * (lower.fourth + upper.fourth) *
+         preference(std::min(lower.volume, upper.volume), lower.volume + upper.volume);
+}
+
+double CutTree::preference(double smaller, double volume) const {
   // Where no single cut helps, slicing off a little always seems to: cuts in the middle are
   // preferred up to a factor, for they bring the next cuts nearer.
-  const double volume = lower.volume + upper.volume;
-  const double balance = volume > 0 ? std::min(lower.volume, upper.volume) / volume : 0;
-  return penalty * (lower.fourth + upper.fourth) *
-         (1 - 0.6 * std::min(1.0, 4 * balance) - 2 * options_.halving_bonus * balance);
+  const double balance = volume > 0 ? smaller / volume : 0;
+  return 1 - 0.6 * std::min(1.0, 4 * balance) - 2 * options_.halving_bonus * balance;
+}
+
+double CutTree::look_ahead(const Node& node, const Plane& plane) const {
+  std::array<Piece, 2> parts;
+  {
+    Scratch& s = scratch();
+    classify(node.piece, plane, solid_, shift_, s.height, s.side);
+    for (const bool lower : {true, false})
+      parts[lower ? 0 : 1] = clip(node.piece, plane, lower, shift_, solid_, s.height, s.side);
+  }
+  double sum = 0, volume = 0, least = std::numeric_limits<double>::infinity();
+  for (Piece& part : parts) {
+    if (part.empty()) return std::numeric_limits<double>::infinity();
+    const Node child = node_of(std::move(part));
+    double best = child.appraisal.fourth;
+    if (child.piece.polygons() > 0)
+      for (const Candidate& c : candidates(child)) best = std::min(best, score(child, c.plane));
+    sum += best;
+    volume += child.appraisal.volume;
+    least = std::min(least, child.appraisal.volume);
+  }
+  return sum * preference(least, volume);
 }
 
 std::vector<std::uint32_t> CutTree::reflex_planes(const Node& node) const {
@@ -395,6 +425,16 @@ std::vector<CutTree::Candidate> CutTree::candidates(const Node& node) const {
   return out;
 }
 
+CutTree::Candidate CutTree::best_in_two(const Node& node, std::vector<Candidate> list) const {
+  std::stable_sort(list.begin(), list.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.score < b.score; });
+  list.resize(std::min(list.size(), static_cast<std::size_t>(options_.look_ahead)));
+  std::vector<double> deep(list.size());
+  tbb::parallel_for(std::size_t{0}, list.size(),
+                    [&](std::size_t i) { deep[i] = look_ahead(node, list[i].plane); });
+  return list[static_cast<std::size_t>(std::min_element(deep.begin(), deep.end()) - deep.begin())];
+}
+
 void CutTree::evaluate(const Node& node, std::vector<Candidate>& list) const {
   tbb::parallel_for(std::size_t{0}, list.size(),
                     [&](std::size_t i) { list[i].score = score(node, list[i].plane); });
@@ -432,6 +472,7 @@ bool CutTree::cut(int leaf) {
     nodes_[leaf].stuck = true;
     return false;
   }
+  if (options_.look_ahead > 1) best = best_in_two(node, std::move(list));
   const auto [low, high] = extent(node.hull, best.plane.n);
   double step = 0.5 * (high - low) / (options_.offsets + 1);
   for (int r = 0; r < options_.refinements; ++r, step *= 0.5) {

@@ -55,7 +55,7 @@ Tuning tuning(Effort effort) {
       break;
   }
   return {1000000,
-          {.offsets = 11, .reflex_planes = 16, .refinements = 4},
+          {.offsets = 11, .reflex_planes = 16, .refinements = 4, .look_ahead = 8},
           {1, 1.25, 1.5, 2, 3, 4.5, 6},
           {1, 0.85, 0.7, 0.5, 0.35},
           {0.05, 0.15, 0.02, 0.3, 0},
@@ -355,7 +355,7 @@ class Decomposer {
 
   std::vector<Finished> at_most(std::size_t target) {
     std::vector<Body> bodies = gather(target);
-    const double free_cost = 0.25 * worst_of(bodies);
+    const double free_cost = 0.5 * options_.simplify * worst_of(bodies);
     std::vector<Finished> finished;
     // What measuring finds is refined once more.
     for (int round = 0; round < tuning_.rounds; ++round) {
@@ -456,7 +456,7 @@ class Decomposer {
     const std::size_t most_bodies = std::min(most, 200 + 8 * best.size());
     for (int round = 0; round < 30 && !best.empty() && best.size() + out.size() <= most_bodies;
          ++round) {
-      std::vector<Finished> tried = finish(best, 0.5 * wished, epsilon);
+      std::vector<Finished> tried = finish(best, options_.simplify * wished, epsilon);
       best.clear();
       std::vector<Body> misjudged;  // leaves of bodies that were thought to be nearer
       for (Finished& f : tried) {
@@ -579,7 +579,7 @@ class Decomposer {
       fresh.push_back(std::move(takers[i]));
       place.push_back(origin[i]);
     }
-    std::vector<Finished> finished = finish(fresh, 0.5 * limit, epsilon);
+    std::vector<Finished> finished = finish(fresh, options_.simplify * limit, epsilon);
     if (!good(finished, epsilon)) return false;
     for (std::size_t i = 0; i < place.size(); ++i) bodies[place[i]] = std::move(finished[i]);
     bodies.erase(bodies.begin() + static_cast<std::ptrdiff_t>(which));
@@ -900,6 +900,8 @@ void require_sound(const DecomposeOptions& options) {
     throw Error(ErrorCode::InvalidArgument, "fewer than 8 vertices per body");
   if (!(options.min_thickness >= 0) || !std::isfinite(options.min_thickness))
     throw Error(ErrorCode::InvalidArgument, "the least thickness must be finite and not negative");
+  if (!(options.simplify >= 0 && options.simplify <= 1))
+    throw Error(ErrorCode::InvalidArgument, "the share for simplification must be from 0 to 1");
   if (options.max_total_vertices && options.min_thickness > 0)
     throw Error(ErrorCode::InvalidArgument,
                 "a limit on all vertices together does not go with a least thickness: bodies are "

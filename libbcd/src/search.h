@@ -17,6 +17,9 @@ struct SearchOptions {
   int reflex_planes = 10;
   int refinements = 2;  ///< halvings of the best plane's offset
   bool mirrors = true;  ///< try the solid's planes of symmetry
+  /// Of this many of the best cuts, the one is taken after which the next cuts bring most; ≤ 1: the
+  /// best by itself.
+  int look_ahead = 1;
   /// Bonus of a cut that halves a piece's volume, as a share of its score: for a given number of
   /// bodies, it makes them more alike. By an error bound, where slices are needed that only faces
   /// of the solid give, it has led to hundreds of bodies too many.
@@ -82,6 +85,7 @@ class CutTree {
     double weight;
   };
   void find_reflex_planes();
+  [[nodiscard]] Node node_of(Piece&& piece) const;
   void add_leaf(Piece&& piece, int parent);
   std::vector<Candidate> candidates(const Node& node) const;
   /// Those of the piece's reflex edges that cut it, heaviest first.
@@ -93,8 +97,14 @@ class CutTree {
   bool part(const Piece& piece, const Plane& plane, std::vector<Vec3>& lower,
             std::vector<Vec3>& upper) const;
   double score(const Node& node, const Plane& plane) const;
+  /// The score after the best cut of each half besides.
+  double look_ahead(const Node& node, const Plane& plane) const;
+  /// Factor ≤ 1 of a cut's score, given the smaller half's volume and both.
+  [[nodiscard]] double preference(double smaller, double volume) const;
   void cut(int leaf, const Plane& plane);
   void evaluate(const Node& node, std::vector<Candidate>& list) const;
+  /// The best by `look_ahead` among the few that are best by themselves.
+  [[nodiscard]] Candidate best_in_two(const Node& node, std::vector<Candidate> list) const;
 
   const Solid& solid_;
   SearchOptions options_;

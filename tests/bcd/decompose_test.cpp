@@ -221,6 +221,24 @@ TEST(Decompose, BodiesForADistanceAndDistanceForBodies) {
   EXPECT_LE(decompose(geom::prepare(mesh), options).bodies.size(), 6U);
 }
 
+TEST(Decompose, LessSimplifiedBodiesAreNearerOnTheWhole) {
+  const Mesh torus = geom::prepare(kaboum::test::torus(1, 0.3, 60, 24)).mesh;
+  double last_volume = 1e9;
+  std::size_t last_vertices = 0;
+  for (const double share : {0.5, 0.25, 0.05}) {
+    DecomposeOptions options = test::quick(torus, 3, 64);
+    options.simplify = share;
+    const DecomposeResult result = decompose(geom::prepare(torus), options);
+    expect_cover(torus, result, 64);
+    double volume = 0;
+    for (const geom::ConvexBody& body : result.bodies) volume += geom::signed_volume(body.hull);
+    EXPECT_LT(volume, last_volume);
+    EXPECT_GT(result.statistics.vertices, last_vertices);
+    last_volume = volume;
+    last_vertices = result.statistics.vertices;
+  }
+}
+
 TEST(Decompose, LimitOfAllVerticesTogether) {
   const Mesh mesh = kaboum::test::torus(1, 0.3, 12, 6);
   DecomposeOptions options;

@@ -49,6 +49,9 @@ struct DecomposeOptions {
   /// Bodies are at least this wide in every direction, for engines that shrink hulls; thinner ones
   /// are thickened, which counts towards epsilon. Not for bodies inside. [length]
   double min_thickness = 0;
+  /// Share of a body's distance, 0 to 1, that leaving out vertices may take; with less, bodies have
+  /// more vertices and are nearer to the solid on the whole, not at most. Only outwards (decompose).
+  double simplify = 0.5;
   PreStep pre_step = PreStep::Auto;  ///< only outwards (decompose)
   /// Multiplies what is allowed for rounding (the overlap of pieces, the error of computed points);
   /// larger where an exact check of the result fails.
