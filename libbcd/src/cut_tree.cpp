@@ -489,6 +489,20 @@ bool CutTree::cut(int leaf) {
   return true;
 }
 
+bool CutTree::halve(int leaf) {
+  const Node& node = nodes_[leaf];
+  const auto box = principal_box(node.hull);
+  if (node.piece.polygons() == 0 || !box) return false;
+  int axis = 0;
+  (box->high - box->low).maxCoeff(&axis);
+  Plane plane;
+  plane.n = box->axes.col(axis);
+  plane.d = plane.n.dot(box->mean) + 0.5 * (box->low[axis] + box->high[axis]);
+  if (!std::isfinite(score(node, plane))) return false;
+  cut(leaf, plane);
+  return true;
+}
+
 void CutTree::cut(int leaf, const Plane& plane) {
   const Piece piece = std::move(nodes_[leaf].piece);
   Scratch& s = scratch();

@@ -607,7 +607,10 @@ class Decomposer {
     if (body.leaves.size() == 1) {
       const int leaf = body.leaves[0];
       const CutTree::Node& node = tree_.nodes()[leaf];
-      if (node.lower < 0 && node.upper < 0 && (node.stuck || !tree_.cut(leaf))) return {};
+      const bool cut = node.lower >= 0 || node.upper >= 0;
+      // Where only the vertices allowed are too few, any smaller parts will do.
+      const bool near = body.appraisal.worst <= epsilon;
+      if (!cut && !(near && tree_.halve(leaf)) && (node.stuck || !tree_.cut(leaf))) return {};
       for (const int child : {tree_.nodes()[leaf].lower, tree_.nodes()[leaf].upper})
         if (child >= 0) leaves.push_back(body_of(tree_, child));
       if (leaves.size() == 1) return take_apart(leaves[0], epsilon, all);

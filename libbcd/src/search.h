@@ -51,6 +51,10 @@ class CutTree {
   /// Cuts this leaf. @return false when no plane cuts it.
   bool cut(int leaf);
 
+  /// Cuts this leaf across the longest side of the box along the axes of its hull's covariance: for
+  /// parts that are near enough, but have too many vertices. @return false when that cuts nothing.
+  bool halve(int leaf);
+
   /// A plane that parts what is in these leaves, and the larger distance of the two hulls.
   struct Split {
     Plane plane;

@@ -198,9 +198,11 @@ float Solid::node(int x, int y, int z) const {
 
 double Solid::field(const Vec3& p) const {
   std::array<int, 3> cell{};
-  Vec3 f;
+  Vec3 f, beyond;  // beyond the grid, the way to it counts as well
   for (int k = 0; k < 3; ++k) {
-    const double x = std::clamp((p[k] - origin_[k]) / spacing_, 0.0, size_[k] - 1.001);
+    const double from_origin = (p[k] - origin_[k]) / spacing_;
+    const double x = std::clamp(from_origin, 0.0, size_[k] - 1.001);
+    beyond[k] = spacing_ * (from_origin - x);
     cell[k] = static_cast<int>(x);
     f[k] = x - cell[k];
   }
@@ -219,7 +221,8 @@ double Solid::field(const Vec3& p) const {
   }
   const auto mix = [](double a, double b, double t) { return a + t * (b - a); };
   return mix(mix(mix(v[0], v[1], f.x()), mix(v[2], v[3], f.x()), f.y()),
-             mix(mix(v[4], v[5], f.x()), mix(v[6], v[7], f.x()), f.y()), f.z());
+             mix(mix(v[4], v[5], f.x()), mix(v[6], v[7], f.x()), f.y()), f.z()) +
+         beyond.norm();
 }
 
 }  // namespace kaboum::bcd
