@@ -85,7 +85,7 @@ void describe(CLI::App& app, Options& o) {
   app.add_option("--simplify", o.simplify,
                  "Share of epsilon that leaving out vertices may take (0 to 1): with 0.25, bodies "
                  "have up to half as many vertices more and collide falsely less often")
-      ->check(CLI::Range(0.0, 1.0).description(""))
+      ->check(tools::number_from(0, 1))
       ->capture_default_str()
       ->type_name("SHARE");
   app.add_option("--min-thickness", o.min_thickness,

@@ -289,8 +289,7 @@ bool crosses_another(const Mesh& mesh, const geom::Bvh& bvh, const Triangle& t) 
         return !found && (box.min.array() <= other.max.array()).all() &&
                (other.min.array() <= box.max.array()).all();
       },
-      [&](std::uint32_t i) {
-        found = found || cross(mesh, t, mesh.triangles[i]); });
+      [&](std::uint32_t i) { found = found || cross(mesh, t, mesh.triangles[i]); });
   return found;
 }
 

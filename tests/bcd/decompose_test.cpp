@@ -239,6 +239,18 @@ TEST(Decompose, LessSimplifiedBodiesAreNearerOnTheWhole) {
   }
 }
 
+TEST(Decompose, FewVerticesPerBodyReachEpsilonWithMoreBodies) {
+  const Mesh torus = geom::prepare(kaboum::test::torus(1, 0.3, 40, 16)).mesh;
+  std::size_t last = 1000;
+  for (const std::size_t most : {8U, 12U, 24U}) {
+    const DecomposeResult result = run(torus, 2, most);
+    expect_cover(torus, result, most);
+    EXPECT_EQ(result.stop, Stop::Done);
+    EXPECT_LT(result.bodies.size(), last);
+    last = result.bodies.size();
+  }
+}
+
 TEST(Decompose, LimitOfAllVerticesTogether) {
   const Mesh mesh = kaboum::test::torus(1, 0.3, 12, 6);
   DecomposeOptions options;
