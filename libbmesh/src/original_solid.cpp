@@ -246,7 +246,7 @@ bool opposed(std::span<const Vec3> normals) {
 OriginalSolid::OriginalSolid(const geom::Mesh& original, std::shared_ptr<const geom::Bvh> hierarchy)
     : original_(original),
       bvh_(hierarchy ? std::move(hierarchy) : std::make_shared<const geom::Bvh>(original)),
-      winding_(original) {}
+      winding_(original, bvh_) {}
 
 bool OriginalSolid::contains(const Tetrahedron& tetrahedron, bool inside,
                              std::vector<std::uint32_t>* met) const {

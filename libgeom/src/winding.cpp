@@ -1,6 +1,8 @@
 #include <kaboum/geom/predicates.h>
 #include <kaboum/geom/winding.h>
 
+#include <utility>
+
 namespace kaboum::geom {
 namespace {
 
@@ -48,13 +50,14 @@ bool on_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
 
 }  // namespace
 
-WindingNumber::WindingNumber(const Mesh& mesh) : mesh_(mesh), bvh_(mesh) {}
+WindingNumber::WindingNumber(const Mesh& mesh, std::shared_ptr<const Bvh> hierarchy)
+    : mesh_(mesh), bvh_(hierarchy ? std::move(hierarchy) : std::make_shared<const Bvh>(mesh)) {}
 
 std::optional<int> WindingNumber::weighted(const Vec3& p,
                                            std::span<const std::int8_t> weight) const {
   int winding = 0;
   bool on_surface = false;
-  bvh_.traverse(
+  bvh_->traverse(
       [&](const Box3& box) {
         return !on_surface && p.z() <= box.max.z() && p.x() >= box.min.x() &&
                p.x() <= box.max.x() && p.y() >= box.min.y() && p.y() <= box.max.y();

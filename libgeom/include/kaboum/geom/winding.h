@@ -4,6 +4,7 @@
 #include <kaboum/geom/mesh.h>
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 
@@ -19,8 +20,9 @@ namespace kaboum::geom {
 class WindingNumber {
  public:
   /// Keeps a reference to `mesh`, which must outlive this object.
+  /// @param hierarchy  over the mesh, where there is one already.
   /// @pre indices in range, coordinates finite.
-  explicit WindingNumber(const Mesh& mesh);
+  explicit WindingNumber(const Mesh& mesh, std::shared_ptr<const Bvh> hierarchy = nullptr);
 
   /// @return the winding number about p; nullopt if p lies on a triangle.
   [[nodiscard]] std::optional<int> operator()(const Vec3& p) const { return weighted(p, {}); }
@@ -32,7 +34,7 @@ class WindingNumber {
 
  private:
   const Mesh& mesh_;
-  Bvh bvh_;
+  std::shared_ptr<const Bvh> bvh_;
 };
 
 }  // namespace kaboum::geom
