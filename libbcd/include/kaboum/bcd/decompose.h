@@ -50,7 +50,8 @@ struct DecomposeOptions {
   /// are thickened, which counts towards epsilon. Not for bodies inside. [length]
   double min_thickness = 0;
   /// Share of a body's distance, 0 to 1, that leaving out vertices may take; with less, bodies have
-  /// more vertices and are nearer to the solid on the whole, not at most. Only outwards (decompose).
+  /// more vertices and are nearer to the solid on the whole, not at most. Only outwards
+  /// (decompose).
   double simplify = 0.5;
   PreStep pre_step = PreStep::Auto;  ///< only outwards (decompose)
   /// Multiplies what is allowed for rounding (the overlap of pieces, the error of computed points);
