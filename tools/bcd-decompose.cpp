@@ -25,7 +25,6 @@ namespace {
 using namespace kaboum;
 using tools::Json;
 
-const double kSimplify = bcd::DecomposeOptions{}.simplify;
 /// Changes whenever the same options may give another result: cached results are then not found.
 constexpr const char* kAlgorithm = "planes 16";
 
@@ -35,7 +34,8 @@ struct Options {
   std::string unit = "m", frame, preview, depfile, geometry = "collision", prefix;
   std::vector<std::string> packages;
   std::size_t max_bodies = 0, max_vertices = 64, max_total = 0;
-  double explode = 0.5, min_thickness = 0, simplify = kSimplify;
+  double explode = 0.5, min_thickness = 0;
+  std::optional<double> simplify;
   bool no_cache = false;
   geom::PrepareOptions prepare;
   tools::CommonOptions common;
@@ -84,9 +84,9 @@ void describe(CLI::App& app, Options& o) {
       ->type_name("N");
   app.add_option("--simplify", o.simplify,
                  "Share of epsilon that leaving out vertices may take (0 to 1): with 0.25, bodies "
-                 "have up to half as many vertices more and collide falsely less often")
+                 "have up to half as many vertices more and collide falsely less often; not with "
+                 "--max-total-vertices [0.5]")
       ->check(tools::number_from(0, 1))
-      ->capture_default_str()
       ->type_name("SHARE");
   app.add_option("--min-thickness", o.min_thickness,
                  "Thicken bodies that are less wide than this in some direction, for engines that "
@@ -193,7 +193,7 @@ std::string parameters(const Options& o) {
   if (o.direction != "outer") out << "--direction " << o.direction << ' ';
   if (o.min_thickness > 0) out << "--min-thickness " << o.min_thickness << ' ';
   out << "--max-vertices-per-body " << o.max_vertices << " --effort " << o.effort;
-  if (o.simplify != kSimplify) out << " --simplify " << o.simplify;
+  if (o.simplify) out << " --simplify " << *o.simplify;
   if (o.method != "planes") out << " --method " << o.method;
   if (o.pre_step != "auto") out << " --pre-step " << o.pre_step;
   if (o.prepare.drop_sheets) out << " --drop-sheets";
@@ -247,7 +247,7 @@ tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const s
   for (const std::string& note : prepared.notes) tools::log(o.common.quiet, o.input + ": " + note);
   const double diagonal = geom::bounding_box(prepared.mesh).diagonal();
   const geom::Mesh solid = prepared.closed ? prepared.mesh : bcd::close_holes(prepared.mesh);
-  if (!prepared.closed)
+  if (!prepared.closed && o.direction == "outer")
     tools::log(
         o.common.quiet,
         o.input + ": its holes are filled with " +
@@ -263,7 +263,7 @@ tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const s
   options.effort = kEfforts.at(o.effort);
   options.method = kMethods.at(o.method);
   options.min_thickness = o.min_thickness;
-  options.simplify = o.simplify;
+  if (o.simplify) options.simplify = *o.simplify;
   options.pre_step = kPreSteps.at(o.pre_step);
   options.progress = [&](const bcd::Progress& p) {
     progress.show(p.stage + " " + std::to_string(static_cast<int>(100 * p.fraction)) + " %");
@@ -394,6 +394,9 @@ std::string shortfall(const Json& report) {
       report["min_thickness"]["thickened"] > 0)
     return "epsilon could not be reached with --min-thickness; allow thinner bodies or a larger "
            "epsilon";
+  if (report["stop"] == "stuck" && report["direction"] == "inner")
+    return "epsilon could not be reached: the search for deep points gave up; allow a larger "
+           "epsilon, or --effort best";
   return report["stop"] == "stuck"
              ? "epsilon could not be reached; allow more vertices per body"
              : "epsilon needs more bodies or vertices than the limits allow, or these are too "
@@ -503,12 +506,12 @@ int decompose(const Options& o) {
     throw Error(ErrorCode::InvalidArgument, "--max-total-vertices needs --direction outer");
   if (o.pre_step == "on" && o.direction != "outer")
     throw Error(ErrorCode::InvalidArgument, "--pre-step on needs --direction outer");
-  if (o.simplify != kSimplify && o.direction != "outer")
+  if (o.simplify && o.direction != "outer")
     throw Error(ErrorCode::InvalidArgument, "--simplify needs --direction outer");
-  if (!std::isfinite(o.simplify))
-    throw Error(ErrorCode::InvalidArgument, "--simplify must be a number from 0 to 1");
-  if (!std::isfinite(o.min_thickness))
-    throw Error(ErrorCode::InvalidArgument, "--min-thickness must be a number");
+  if (o.simplify && o.max_total > 0)
+    throw Error(ErrorCode::InvalidArgument,
+                "--simplify means nothing with --max-total-vertices, which leaves out as many "
+                "vertices as the distance allows");
   tools::require_apart({{"--output", o.output},
                         {"--report", o.common.report},
                         {"--preview", o.preview},

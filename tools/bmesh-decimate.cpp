@@ -435,10 +435,12 @@ class Job {
       progress.show(text);
     };
     std::vector<bmesh::DecimateResult> results;
-    if (counts_.empty())
-      results.push_back(bmesh::decimate(prepared_, d));
-    else
+    if (counts_.size() > 1) {
       results = bmesh::decimate_series(prepared_, d, counts_);
+    } else {
+      if (!counts_.empty()) d.vertices = counts_.front();
+      results.push_back(bmesh::decimate(prepared_, d));
+    }
     seconds_decimated_ = tools::user_seconds();
     std::size_t unrepresentable = 0;
     for (std::size_t i = 0; i < results.size(); ++i) {

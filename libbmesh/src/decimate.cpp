@@ -55,8 +55,8 @@ constexpr std::size_t kRefineAgain = 5;
 constexpr double kBoundFrom = 0.85, kBoundFromBest = 0.75;
 constexpr double kBoundGrowth = 1.07, kBoundMostGrowth = 1.25, kBoundGain = 0.05;
 constexpr int kBoundPasses = 1;  ///< rounds of optimisation in each
-/// Small: at most so many vertices, and so many wished for, a third of them at most.
-constexpr std::size_t kBoundVertices = 20000, kBoundTarget = 1000, kBoundShare = 3;
+/// Small: at most so many vertices, and a third of them wished for at most.
+constexpr std::size_t kBoundVertices = 4000, kBoundShare = 3;
 
 /// So many of them may fail by their deviation, and so many more for each that does not: on parts
 /// with many sharp edges hardly any succeeds, and nothing is gained.
@@ -733,7 +733,7 @@ class Run {
 bool is_small(const geom::Prepared& input, const DecimateOptions& options) {
   return options.vertices && !options.epsilon && options.cost == Cost::Distance &&
          effective_effort(input, options) != Effort::Fast &&
-         input.mesh.vertices.size() <= kBoundVertices && *options.vertices <= kBoundTarget &&
+         input.mesh.vertices.size() <= kBoundVertices &&
          kBoundShare * *options.vertices <= input.mesh.vertices.size();
 }
 

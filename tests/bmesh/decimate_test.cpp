@@ -197,7 +197,7 @@ TEST(Decimate, InnerSurfacesStayInside) {
 // Every cost, both directions, replayed by the separate checker.
 TEST(Decimate, EveryCostIsCertified) {
   for (const auto& f : solids()) {
-    if (f.mesh.triangles.size() > 1500) continue;
+    if (f.mesh.triangles.size() > 600) continue;
     const auto p = geom::prepare(f.mesh);
     std::size_t contractions = 0;
     for (const Cost cost : {Cost::Distance, Cost::Planes, Cost::PlanesAdapted, Cost::PlanesDiagonal,
@@ -408,7 +408,7 @@ TEST(Decimate, TrianglesCostAloneLosesConvexity) {
 // Powers of two change no rounding, so the result must be the same but for the factor.
 TEST(Decimate, DoesNotDependOnTheScale) {
   for (const auto& f : solids()) {
-    if (f.mesh.triangles.size() > 1500) continue;
+    if (f.mesh.triangles.size() > 400) continue;
     const auto p = geom::prepare(f.mesh);
     for (const Method& m : methods(f)) {
       const DecimateOptions o = with(m, to_vertices(p.mesh.vertices.size() / 4 + 4));

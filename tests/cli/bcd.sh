@@ -62,7 +62,8 @@ expect 2 'pre-step' "$D" "$BRACKET" -o x.glb --direction inner --pre-step on
 expect 2 'min-thickness' "$D" "$BRACKET" -o x.glb --min-thickness nan
 expect 2 'must be a number from 0 to 1e+30' "$D" "$BRACKET" -o x.glb --min-thickness 1%
 expect 2 'simplify' "$D" "$BRACKET" -o x.glb --simplify nan
-expect 2 'simplify' "$D" "$BRACKET" -o x.glb --simplify 0.2 --direction inner
+expect 2 'simplify' "$D" "$BRACKET" -o x.glb --simplify 0.5 --direction inner
+expect 2 'simplify' "$D" "$BRACKET" -o x.glb --simplify 0.2 --max-total-vertices 100
 expect 2 '' "$D" "$BRACKET" -o x.glb --min-thickness -1
 
 # Bodies inside.

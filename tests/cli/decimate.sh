@@ -62,6 +62,13 @@ expect 1 'cannot be reached' "$D" two.off -o two-out.off --vertices 4 --precisio
 expect 1 'cannot be reached' "$D" two.off -o two-out.off --vertices 4 --epsilon 100
 expect 1 'cannot be reached' "$D" two.off -o - --output-format off --vertices 4
 
+# One number of vertices of a small mesh is reached twice, the second time nearer; a series is not.
+expect 0 '' "$D" "$BRACKET" -o small.ply --vertices 1000 --effort fast --quiet
+expect 0 '' "$D" small.ply -o twice.ply --vertices 150 --quiet
+expect 0 '' "$D" small.ply -o 'once-{vertices}.ply' --vertices 150,149 --quiet
+farthest() { "$BIN/hausdorff-eval" small.ply "$1" | sed -n 's/^max .*, \([0-9.e+-]*\)\]$/\1/p'; }
+awk "BEGIN { exit !($(farthest twice.ply) < 0.95 * $(farthest once-150.ply)) }" || fail "not nearer the second time"
+
 # A series: nested, one file per level, the same from the progressive file.
 expect 0 'certified' "$D" "$BRACKET" --vertices 300,900,500 -o 's-{vertices}.ply' --progressive s.pm --report s.json \
   --depfile s.d --verify
