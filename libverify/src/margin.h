@@ -17,7 +17,7 @@ namespace kaboum::verify {
 /// @param max_cells  boxes looked at before giving up
 /// @param sum        sum_of(set)
 /// @param inclusion  verify_inclusion(inner, sum)
-/// @pre set.margin > 0; `sum` is a closed chain
+/// @pre set.margin > 0; `sum` is a closed chain; the bodies are convex (verify_convexity)
 void allow_margin(const geom::Mesh& inner, const geom::Mesh& sum, const geom::ConvexSet& set,
                   std::size_t max_cells, Inclusion& inclusion);
 

@@ -1,6 +1,8 @@
 #include "uncovered.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "nearest.h"
 
@@ -106,10 +108,10 @@ void Uncovered::cut(const Part& part, const Plane& plane, std::vector<Part>& abo
   }
 }
 
-std::optional<Uncovered::Cutters> Uncovered::cutters(const Body& body, const Bounds& box) {
+std::optional<Uncovered::Crossing> Uncovered::crossing_planes(const Body& body, const Bounds& box) {
   const Vec3 low(box.low.data()), high(box.high.data());
   const Vec3 middle = 0.5 * (low + high), half = 0.5 * (high - low);
-  Cutters result;
+  Crossing result;
   for (const Plane& plane : body.planes) {
     const double at = plane.normal.dot(middle) - plane.height;
     const double reach = plane.normal.cwiseAbs().dot(half);
@@ -167,20 +169,20 @@ bool Uncovered::subtract(const std::vector<Plane>& planes, const Part& part,
 
 bool Uncovered::parts(const Bounds& box, std::vector<Tetrahedron>& out) const {
   out.clear();
-  std::vector<Cutters> near;
+  std::vector<Crossing> near;
   tree_.query([&](const Bounds& b) { return b.meets(box); },
               [&](std::uint32_t body) {
-                if (auto cutters = this->cutters(bodies_[body], box))
-                  near.push_back(std::move(*cutters));
+                if (auto crossing = crossing_planes(bodies_[body], box))
+                  near.push_back(std::move(*crossing));
               });
   if (near.empty()) return false;
   // What covers most comes first.
   std::stable_sort(near.begin(), near.end(),
-                   [](const Cutters& a, const Cutters& b) { return a.depth > b.depth; });
+                   [](const Crossing& a, const Crossing& b) { return a.depth > b.depth; });
   if (near.size() > kMostBodies) near.resize(kMostBodies);
   std::vector<Part> parts, left;
   for (const Tetrahedron& t : tetrahedra(box)) parts.push_back({t, 0});
-  for (const Cutters& body : near) {
+  for (const Crossing& body : near) {
     left.clear();
     for (const Part& part : parts)
       if (!subtract(body.planes, part, left)) return false;

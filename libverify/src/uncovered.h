@@ -20,8 +20,10 @@ class Uncovered {
   /// @param scene  whose coordinates are the set's times scene.scale()
   Uncovered(const Scene& scene, const geom::ConvexSet& set);
 
-  /// Tetrahedra that hold every point of the box about which no body winds, but for the rounding of
-  /// cut points (rounding_of_distances). False when there would be too many of them.
+  /// Tetrahedra that hold every point of the box about which no body winds, or that is less than
+  /// rounding_of_distances below a facet of each body that does (what was cut before may be off by
+  /// that), but for the rounding of cut points, which is at most as much. False when no body covers
+  /// anything of the box, or when there would be too many of them.
   bool parts(const Bounds& box, std::vector<Tetrahedron>& out) const;
 
  private:
@@ -41,11 +43,11 @@ class Uncovered {
 
   static Body body_of(const geom::Mesh& hull, const Scene& scene);
   /// Planes that cross a box; those of about one direction are one, below all of them in the box.
-  struct Cutters {
+  struct Crossing {
     std::vector<Plane> planes;
     double depth = std::numeric_limits<double>::infinity();  ///< of the box's middle in the body
   };
-  static std::optional<Cutters> cutters(const Body& body, const Bounds& box);
+  static std::optional<Crossing> crossing_planes(const Body& body, const Bounds& box);
   static bool subtract(const std::vector<Plane>& planes, const Part& part, std::vector<Part>& out);
   static void cut(const Part& part, const Plane& plane, std::vector<Part>& above,
                   std::vector<Part>& below);
