@@ -242,20 +242,18 @@ void prepare(Input& original, bool drop_sheets, bool close) {
 
 /// What preparing would change of the original; empty if nothing.
 std::string change_by_preparing(const Input& original, bool close) {
-  Input prepared{original.mesh, original.format, {}, {}, 0};
-  std::string text;
   for (const bool drop_sheets : {false, true}) {
-    prepared.mesh = original.mesh;
+    Input prepared{original.mesh, original.format, {}, {}, 0};
     try {
       prepare(prepared, drop_sheets, close);
-      if (drop_sheets) text = "with --drop-sheets";
-      break;
     } catch (const Error&) {  // it cannot be prepared
-      if (drop_sheets) return {};
+      continue;
     }
+    std::string text = drop_sheets ? "with --drop-sheets" : "";
+    for (const std::string& note : prepared.notes) text += (text.empty() ? "" : "; ") + note;
+    return text;
   }
-  for (const std::string& note : prepared.notes) text += (text.empty() ? "" : "; ") + note;
-  return text;
+  return {};
 }
 
 /// What users most often got wrong when an enclosure is refuted.
@@ -644,8 +642,10 @@ int main(int argc, char** argv) {
                ->type_name("N"));
   tools::add_common_options(app, o.common);
   app.footer(
-      "A result of bcd-decompose, whatever its input: --cover INPUT RESULT --prepare --epsilon E\n"
-      "(--inner for --direction inner; E the epsilon that was asked for or is recorded).\n\n"
+      "A result of bcd-decompose from a mesh: --cover INPUT RESULT --prepare --epsilon E (--inner\n"
+      "for --direction inner; E the epsilon that was asked for or is recorded), and --drop-sheets\n"
+      "where it was given. From a robot (URDF): so of each of its meshes, RESULT being the mesh's\n"
+      "folder in bodies/, E the epsilon recorded there.\n\n"
       "--sweep: every triangle of the links' meshes, every box, cylinder and sphere, at every\n"
       "configuration of PATH, lies in a body enlarged by the margin: during the whole motion, not\n"
       "only at samples (docs/algorithms/swept-volumes.md); so do the insides of closed meshes. It\n"

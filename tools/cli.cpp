@@ -35,6 +35,19 @@ int exit_code(ErrorCode code) {
   return kInternal;
 }
 
+/// As std::from_chars, after a plus sign that may come first.
+std::from_chars_result parse_number(std::string_view text, double& value) {
+  const char *begin = text.data(), *end = begin + text.size();
+  if (text.starts_with('+') && !text.starts_with("+-")) ++begin;
+  return std::from_chars(begin, end, value);
+}
+
+/// Without slashes at the end.
+std::filesystem::path without_slash(std::string name) {
+  while (name.size() > 1 && name.back() == '/') name.pop_back();
+  return name;
+}
+
 }  // namespace
 
 const char* version() { return KABOUM_VERSION; }
@@ -93,7 +106,7 @@ ThreadLimit::~ThreadLimit() = default;
 std::optional<Length> parse_length(const std::string& text) {
   Length length;
   const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, length.value);
+  const auto [stop, error] = parse_number(text, length.value);
   if (error != std::errc() || !std::isfinite(length.value) || !(length.value > 0))
     return std::nullopt;
   length.percent = stop != end && *stop == '%';
@@ -106,7 +119,7 @@ CLI::Validator number_from(double low, double high) {
   text << "must be a number from " << low << " to " << high << ", without a unit";
   return {[=, why = text.str()](std::string& s) {
             double x = 0;
-            const auto [end, error] = std::from_chars(s.data(), s.data() + s.size(), x);
+            const auto [end, error] = parse_number(s, x);
             const bool whole = error == std::errc() && end == s.data() + s.size();
             return whole && x >= low && x <= high ? std::string() : why + ", not " + s;
           },
@@ -150,6 +163,8 @@ io::Format format_for(const std::string& path, const std::string& name, const ch
     return text;
   };
   const bool reading = std::string_view(option) != "--output-format";
+  if (!reading && path.ends_with('/'))
+    throw Error(ErrorCode::InvalidArgument, path + ": name a file, not a folder");
   const std::string choices = listed(reading ? io::readable_formats() : io::writable_formats());
   if (!name.empty()) {
     if (const auto f = io::format_from_name(name)) return *f;
@@ -217,13 +232,17 @@ void write_json(const std::string& path, const Json& json) {
 void require_apart(const std::vector<std::pair<std::string, std::string>>& outputs,
                    const std::vector<std::string>& inputs) {
   const auto place = [](const std::string& file) {
-    return file == "-" ? std::filesystem::path("-")
-                       : std::filesystem::weakly_canonical(std::filesystem::absolute(file));
+    return file == "-"
+               ? std::filesystem::path("-")
+               : std::filesystem::weakly_canonical(std::filesystem::absolute(without_slash(file)));
   };
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const std::string& file = outputs[i].second;
     if (file.empty()) continue;
-    const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+    // Only results may be folders that are made.
+    const std::filesystem::path folder =
+        (outputs[i].first == "--output" ? without_slash(file) : std::filesystem::path(file))
+            .parent_path();
     if (file != "-" && !folder.empty() && !std::filesystem::is_directory(folder))
       throw Error(ErrorCode::OutputFailed, outputs[i].first + ": there is no folder " +
                                                folder.string() + "; create it first");

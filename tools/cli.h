@@ -68,7 +68,7 @@ struct Length {
   }
 };
 
-/// "0.005" or "0.5%"; nullopt unless it is a positive finite number.
+/// "0.005", "+0.005" or "0.5%"; nullopt unless it is a positive finite number.
 std::optional<Length> parse_length(const std::string& text);
 
 /// Refuses what is not a number from `low` to `high`, and says so.

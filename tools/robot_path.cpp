@@ -4,23 +4,67 @@
 #include <kaboum/io/mesh_io.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <sstream>
+#include <string_view>
 
 namespace kaboum::tools {
 namespace {
 
-/// The columns' variables of the robot, if every field of a line names one.
-std::vector<std::size_t> named(std::string line, const sweep::Robot& robot) {
-  std::replace_if(
-      line.begin(), line.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
-  std::istringstream fields(line);
+constexpr std::string_view kBlanks = " \t\r";
+
+/// The text from the first to the last character that is not blank.
+std::string_view trimmed(std::string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
+  return text.substr(0, text.find_last_not_of(kBlanks) + 1);
+}
+
+/// Whether every field of a line is the name of a joint.
+bool all_names(std::string_view line, const sweep::Robot& robot) {
+  const std::string_view separators =
+      line.find_first_of(",;") == std::string_view::npos ? kBlanks : ",;";
+  for (line = trimmed(line); !line.empty();) {
+    const std::size_t end = std::min(line.find_first_of(separators), line.size());
+    const std::string_view field = trimmed(line.substr(0, end));
+    if (std::none_of(robot.variables.begin(), robot.variables.end(),
+                     [&](const auto& variable) { return variable.name == field; }))
+      return false;
+    line = trimmed(line.substr(std::min(end + 1, line.size())));
+  }
+  return true;
+}
+
+/// Whether the character may be within a name: a letter, digit, '_' or '-', one beyond ASCII, or
+/// the point of a number.
+bool in_word(std::string_view text, std::size_t at) {
+  const auto digit = [&](std::size_t i) {
+    return i < text.size() && std::isdigit(static_cast<unsigned char>(text[i])) != 0;
+  };
+  if (at >= text.size()) return false;
+  const auto c = static_cast<unsigned char>(text[at]);
+  if (c == '.') return at > 0 && digit(at - 1) && digit(at + 1);
+  return std::isalnum(c) != 0 || c == '_' || c == '-' || c >= 0x80;
+}
+
+/// The joints that a text names, in the order in which it first does; other words, units and
+/// brackets are passed over. Of names that begin alike the longest counts.
+std::vector<std::size_t> joints_in(std::string_view text, const sweep::Robot& robot) {
   std::vector<std::size_t> result;
-  for (std::string field; fields >> field;) {
-    const auto at = std::find_if(robot.variables.begin(), robot.variables.end(),
-                                 [&](const auto& variable) { return variable.name == field; });
-    if (at == robot.variables.end()) return {};
-    result.push_back(static_cast<std::size_t>(at - robot.variables.begin()));
+  for (std::size_t at = 0; at < text.size();) {
+    std::size_t longest = 0, joint = 0;
+    const bool within = at > 0 && in_word(text, at - 1) && in_word(text, at);
+    for (std::size_t j = 0; j < robot.variables.size() && !within; ++j) {
+      const std::string& name = robot.variables[j].name;
+      if (name.size() > longest && text.substr(at).starts_with(name) &&
+          !in_word(text, at + name.size())) {
+        longest = name.size();
+        joint = j;
+      }
+    }
+    if (longest > 0 && std::find(result.begin(), result.end(), joint) == result.end())
+      result.push_back(joint);
+    at += std::max<std::size_t>(longest, 1);
   }
   return result;
 }
@@ -34,22 +78,20 @@ void require_one_reading(std::string_view text, const sweep::NamedPath& path,
   };
   std::istringstream lines{std::string(text)};
   std::size_t number = 0;
-  for (std::string line; std::getline(lines, line);) {
+  bool numbers = false;
+  for (std::string line; !numbers && std::getline(lines, line);) {
     ++number;
-    const std::size_t comment = line.find('#');
-    const std::string before = line.substr(0, comment);
-    if (before.find_first_not_of(" \t\r") != std::string::npos) {
-      if (!named(before, robot).empty())
-        refuse(number,
-               "these numbers are also names of joints; write the path as JSON, with \"joints\"");
-      return;
-    }
-    if (comment == std::string::npos) continue;
-    const std::vector<std::size_t> columns = named(line.substr(comment + 1), robot);
-    if (!std::is_sorted(columns.begin(), columns.end()))
+    const std::size_t comment = std::min(line.find('#'), line.size());
+    const std::string_view before = trimmed(std::string_view(line).substr(0, comment));
+    numbers = !before.empty();
+    if (numbers && all_names(before, robot))
       refuse(number,
-             "a comment names joints in another order than the robot's; without the # it is the "
-             "order of the columns");
+             "these numbers are also names of joints; write the path as JSON, with \"joints\"");
+    const std::vector<std::size_t> named = joints_in(std::string_view(line).substr(comment), robot);
+    if (!std::is_sorted(named.begin(), named.end()))
+      refuse(number,
+             "a comment names joints in another order than the robot's; if it is that of the "
+             "columns, write a first line of these names alone, without #");
   }
 }
 
@@ -57,7 +99,8 @@ void require_one_reading(std::string_view text, const sweep::NamedPath& path,
 
 sweep::Path read_path(const std::string& file, const sweep::Robot& robot, bool check_limits) {
   const std::vector<char> bytes = io::read_file(file);
-  const std::string_view text(bytes.data(), bytes.size());
+  std::string_view text(bytes.data(), bytes.size());
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   const std::size_t start = text.find_first_not_of(" \t\r\n");
   const std::string name = file == "-" ? "standard input" : file;
   if (start != std::string_view::npos && (text[start] == '{' || text[start] == '['))

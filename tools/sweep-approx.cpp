@@ -183,11 +183,10 @@ int sweep_path(Options o) {
   sweep::SweepResult result = [&] {
     try {
       return sweep::swept_volume(file.robot, links.bodies, path, options);
-    } catch (const Error& error) {
-      if (error.code() != ErrorCode::InvalidArgument) throw;
-      throw Error(error.code(), o.path + ": " + error.what() + "; " +
-                                    tools::largest_move(path, file.robot) +
-                                    " (in radians or metres)");
+    } catch (const sweep::NoStepError& error) {
+      const std::string move = tools::largest_move(path, file.robot);
+      throw Error(error.code(), o.path + ": " + error.what() +
+                                    (move.empty() ? "" : "; " + move + " (in radians or metres)"));
     }
   }();
   const double seconds = tools::user_seconds() - before;

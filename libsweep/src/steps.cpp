@@ -238,9 +238,7 @@ class Chooser {
         if (c.piece.deviation <= options_.deviation)  // the reach is too large
           next = h * *options_.max_reach / reach(c.piece, points_);
         h = std::min(next, 0.97 * h);
-        if (!(h > 1e-9))
-          throw Error(ErrorCode::InvalidArgument,
-                      "no step is short enough; allow a larger epsilon or reach");
+        if (!(h > 1e-9)) throw NoStepError();
       }
     }
     throw Error(ErrorCode::Internal, "internal error: the search for a step does not end");

@@ -42,6 +42,9 @@ grep -q 'rpy="0.3 0 0"' out/r.urdf || fail "pose"
 # The claims hold of the files.
 expect 0 'verified' "$BIN/bound-verify" --cover robot/meshes/t.off out/bodies/t
 expect 0 'verified' "$BIN/bound-verify" --cover robot/meshes/bracket.obj out/bodies/bracket
+epsilon=$(sed -n 's/.*"epsilon": \([^,]*\).*/\1/p' out/bodies/bracket/*.json)
+expect 0 'distance from the union to the solid: verified' "$BIN/bound-verify" --cover robot/meshes/bracket.obj \
+  out/bodies/bracket --prepare --epsilon "$epsilon"
 expect 0 'verified' "$BIN/bound-verify" --cover robot/meshes/bracket.obj out/links/base.glb
 # In the link's frame: the transformed mesh, rounded here to 12 digits and shrunk by as much, is covered.
 awk 'NR < 3 || NR > 6 { print; next } NR == 3 { c = cos(0.3); s = sin(0.3) }
@@ -55,6 +58,12 @@ expect 0 '' "$D" robot/r.urdf -o out2 --epsilon 3% --effort fast --quiet --no-ca
 [ ! -s err.txt ] || fail "--quiet is not quiet"
 sed 's,package://r/,,' out2/r.urdf | cmp -s - out/r.urdf || fail "another URDF"
 cmp -s out/links/arm_1.glb out2/links/arm_1.glb || fail "another container"
+
+# A slash after the folder's name; one that is within no folder.
+expect 0 '' "$D" robot/r.urdf -o out3/ --epsilon 3% --effort fast --quiet
+diff -r out out3 >diff.txt || fail "a slash after the folder's name makes a difference: $(cat diff.txt)"
+rm -r out3
+expect 4 'create it first' "$D" robot/r.urdf -o no/out3/
 
 # A folder, not a file, and none that holds other things.
 expect 2 'such as out3, not out3.glb' "$D" robot/r.urdf -o out3.glb

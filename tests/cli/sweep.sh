@@ -63,6 +63,11 @@ expect 2 'revolute' "$S" "$R" --path path.csv -o x.glb --bound baginski
 
 # Margins that are explicit, folders, pipes, limits of reach.
 expect 0 'margin 0' "$S" "$R" --path path.csv -o folder
+expect 0 'margin 0' "$S" "$R" --path path.csv -o slash/
+diff -r folder slash >diff.txt || fail "a slash after the folder's name makes a difference: $(cat diff.txt)"
+expect 4 'create it first' "$S" "$R" --path path.csv -o no/folder/
+expect 4 'create it first' "$S" "$R" --path path.csv -o x.glb --report no-file/
+expect 2 'cannot both' "$S" "$R" --path path.csv -o both/ --report both
 expect 0 'margin 0;' "$S" "$R" --path path.csv -o c.glb --explicit-margin
 expect 0 'margin 0;' "$S" "$R" --path path.csv -o all.urdf
 [ "$(grep -c '<mesh' all.urdf)" = "$(find all -name '*.stl' | wc -l)" ] || fail "one collision shape per body"
@@ -73,6 +78,8 @@ expect 0 '' "$S" "$R" --path path.csv -o e.glb --simplify 0.3 --report e.json
 [ "$(sed -n 's/.*"vertices": \([0-9]*\).*/\1/p' e.json)" -lt "$(sed -n 's/.*"vertices": \([0-9]*\).*/\1/p' a.json)" ] ||
   fail "simplified hulls have as many vertices"
 expect 2 '' "$S" "$R" --path path.csv -o x.glb --simplify 1
+expect 2 'from 0 to 0.9' "$S" "$R" --path path.csv -o x.glb --simplify +-0.3
+expect 0 '' "$S" "$R" --path path.csv -o plus.glb --simplify +0.3 --epsilon +0.005
 "$S" "$R" --path - --output-format obj -o - --quiet <path.csv >pipe.obj || fail "pipe"
 cmp -s pipe.obj balanced.obj || fail "the pipe gives other bytes"
 
@@ -101,11 +108,31 @@ absent x.glb
 # Huge moves are named; a path that could be read in two ways is refused.
 printf 'elbow,shoulder,grip\n0,0,0\n1e9,0,0\n' >huge.csv
 expect 2 "joint 'elbow' moves most, by 1e+09 to waypoint 2" "$S" "$R" --path huge.csv -o x.glb
-printf '# grip, shoulder, elbow\n0,0,0\n' >comment.csv
-expect 3 'line 1: a comment names joints in another order' "$S" "$R" --path comment.csv -o x.glb
+expect 2 'adaptive or balanced$' "$S" "$R" --path path.csv -o x.glb --bound uniform --max-reach 0.01
+expect 2 'only, and a prismatic one moves$' "$S" "$R" --path path.csv -o x.glb --bound baginski
+expect 2 'allow a larger epsilon or reach$' "$S" "$R" --path pose.csv -o x.glb --max-reach 1e-300
+for comment in '# grip, shoulder, elbow' '\0357\0273\0277# grip shoulder elbow' '# joints: grip, shoulder, elbow' \
+  '# shoulder [rad], grip [m], elbow [rad]' '#elbow(rad);shoulder(rad)' '# q = (grip, shoulder) and so on' \
+  '\n# of the arm\n  # waypoints of grip|elbow' '0,0,0 # grip, elbow'; do
+  printf '%b\n0,0,0\n' "$comment" >comment.csv
+  expect 3 'a comment names joints in another order' "$S" "$R" --path comment.csv -o x.glb
+done
+grep -q 'line 1:' err.txt || fail 'no line of the comment'
+for comment in '# joints: shoulder [rad], elbow [rad], grip [m]; shoulder first' '# grip-shoulder, elbow_2' '# grip: see below' \
+  '0,0,0\n# grip, elbow' 'shoulder, elbow, grip\n# grip, elbow'; do
+  printf '%b\n0,0,0\n' "$comment" >comment.csv
+  expect 0 '' "$S" "$R" --path comment.csv -o commented.glb
+done
+sed 's/"elbow"/"upper joint"/; s/"shoulder"/"lower joint"/' "$R" >robots/urdf/blanks.urdf
+printf '# upper joint, lower joint, grip\n0,0,0\n' >comment.csv
+expect 3 'line 1: a comment names joints in another order' "$S" robots/urdf/blanks.urdf --path comment.csv -o x.glb
 sed 's/"elbow"/"1"/; s/"shoulder"/"2"/; s/"grip"/"3"/' "$R" >robots/urdf/numbered.urdf
 printf '3,2,1\n0,0,0\n' >numbers.csv
 expect 3 'line 1: these numbers are also names of joints' "$S" robots/urdf/numbered.urdf --path numbers.csv -o x.glb
+printf '\357\273\2773;2;1\n0;0;0\n' >numbers.csv
+expect 3 'line 1: these numbers are also names of joints' "$S" robots/urdf/numbered.urdf --path numbers.csv -o x.glb
+printf '0.3,2,1 # in 3.2.1 steps\n' >numbers.csv
+expect 3 'outside its limits' "$S" robots/urdf/numbered.urdf --path numbers.csv -o x.glb
 absent x.glb
 
 # The whole motion decided from files alone; a set whose margin is cut, one that lacks a body, another path.

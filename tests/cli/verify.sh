@@ -155,6 +155,13 @@ sed 's/^3 4 5 6$/3 4 6 5/' one.off >mixed.off
 expect 1 'prepare judges that: 3 edges with neighbours of opposite orientation' "$V" --outer mixed.off less.off
 expect 0 'solid claim: verified' "$V" --outer mixed.off three.off --prepare
 
+# Sheets that were dropped are in no body; the note says what judges that.
+"$BIN/bcd-decompose" sheeted.off -o sheeted.glb --epsilon 1% --drop-sheets --no-cache --quiet || fail 'decompose sheeted'
+expect 1 'prepare judges that: with --drop-sheets' "$V" --cover sheeted.off sheeted.glb --epsilon 1%
+[ "$(grep 'prepare judges' err.txt | tr ';' '\n' | sed 's/.*judges that: //' | sort | uniq -d | wc -l)" = 0 ] ||
+  fail 'a note twice'
+expect 0 'distance from the union to the solid: verified' "$V" --cover sheeted.off sheeted.glb --epsilon 1% --prepare --drop-sheets
+
 # Lengths whose squares exceed all doubles.
 cube 0 1e300 >vast.off
 cube 0 1.001e300 >vaster.off

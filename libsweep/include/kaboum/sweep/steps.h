@@ -1,5 +1,6 @@
 #pragma once
 
+#include <kaboum/geom/error.h>
 #include <kaboum/sweep/motion.h>
 #include <kaboum/sweep/path.h>
 
@@ -41,11 +42,20 @@ struct StepOptions {
   std::vector<SharedBounds> shared;  ///< per segment; Uniform and Baginski only
 };
 
+/// InvalidArgument because no step of the path is short enough for the options.
+class NoStepError : public Error {
+ public:
+  NoStepError()
+      : Error(ErrorCode::InvalidArgument,
+              "no step is short enough; allow a larger epsilon or reach") {}
+};
+
 /// Splits the path into pieces for one body, greedily the longest that the options allow.
 /// @param points  whose hull is the body, in the link's frame; not empty.
 /// @pre path has at least one waypoint. With one, the result is one piece that does not move.
 /// @throws Error{LimitReached} when that takes more than 10^6 pieces; Error{InvalidArgument} for
-///   Baginski with prismatic joints, and when max_reach cannot be met.
+///   Baginski with prismatic joints, and for max_reach with rules but Adaptive and Balanced;
+///   NoStepError when the deviation or max_reach cannot be met.
 std::vector<Piece> choose_steps(const Robot& robot, std::uint32_t link,
                                 std::span<const Vec3> points, const Path& path,
                                 const StepOptions& options);
