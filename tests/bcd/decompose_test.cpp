@@ -298,6 +298,15 @@ TEST(Decompose, LimitsWithinEpsilonCountAsReached) {
   }
 }
 
+TEST(Decompose, ClosedMeshesInOnePlaneAreRefused) {
+  Mesh flat = kaboum::test::torus(1, 0.3, 12, 8);
+  for (Vec3& p : flat.vertices) p.z() = 0;
+  geom::Prepared input;
+  input.mesh = flat;
+  input.closed = true;
+  EXPECT_THROW(decompose(input, test::quick(flat, 2)), Error);
+}
+
 TEST(Decompose, ContradictoryOptions) {
   const geom::Prepared input = geom::prepare(kaboum::test::box(Vec3(1, 1, 1), 1));
   EXPECT_THROW(decompose(input, {}), Error);

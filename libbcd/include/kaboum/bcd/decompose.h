@@ -101,7 +101,8 @@ struct DecomposeResult {
 /// Bodies are exactly convex, with float32 coordinates; the same for any number of threads.
 ///
 /// @pre input comes from geom::prepare; epsilon, max_bodies or max_total_vertices is given.
-/// @throws Error{InvalidArgument} on contradictory options.
+/// @throws Error{InvalidArgument} on contradictory options, Error{InvalidInput} when the mesh is
+/// closed and all in one plane.
 DecomposeResult decompose(const geom::Prepared& input, const DecomposeOptions& options);
 
 }  // namespace kaboum::bcd
