@@ -435,11 +435,11 @@ int decompose_robot(const Options& o) {
   if (!o.output_format.empty() || o.output == "-")
     throw Error(ErrorCode::InvalidArgument, "-o: a robot's bodies need a folder");
   const std::filesystem::path folder(o.output);
-  const auto meant = io::set_format_from_path(folder);
-  if (!std::filesystem::is_directory(folder) && meant != io::SetFormat::Directory)
+  const bool names_file = is_robot(o.output) || io::format_from_name(folder.extension().string());
+  if (names_file && !std::filesystem::is_directory(folder))
     throw Error(ErrorCode::InvalidArgument,
                 "-o: a robot's bodies need a folder, which gets a URDF, the bodies and a container "
-                "per link; name one without an extension, such as " +
+                "per link; name one without the extension of a file, such as " +
                     std::filesystem::path(folder).replace_extension().string() + ", not " +
                     o.output);
   tools::RobotDecomposition robot;

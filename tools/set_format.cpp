@@ -30,6 +30,8 @@ io::SetFormat set_format_for(const std::string& path, const std::string& format)
                 path +
                     ": unknown extension; use .glb, .obj or the name of a folder, or give "
                     "--output-format");
+  if (path.ends_with('/') && *found != io::SetFormat::Directory)
+    throw Error(ErrorCode::InvalidArgument, path + ": name a file, not a folder");
   if (path == "-" && *found == io::SetFormat::Directory)
     throw Error(ErrorCode::InvalidArgument, "a folder cannot be written to stdout; use glb or obj");
   return *found;

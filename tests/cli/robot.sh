@@ -66,10 +66,15 @@ rm -r out3
 expect 4 'create it first' "$D" robot/r.urdf -o no/out3/
 
 # A folder, not a file, and none that holds other things.
-expect 2 'such as out3, not out3.glb' "$D" robot/r.urdf -o out3.glb
+for extension in glb obj STL urdf; do
+  expect 2 "such as out3, not out3.$extension" "$D" robot/r.urdf -o "out3.$extension"
+done
+expect 0 '' "$D" robot/r.urdf -o v1.2 --epsilon 3% --effort fast --quiet
+diff -r out v1.2 >diff.txt || fail "the folder's name makes a difference: $(cat diff.txt)"
+expect 2 'name a file' "$D" robot/meshes/t.off -o out3/ --output-format glb
 mkdir -p out4/bodies/t && echo note >out4/bodies/t/note.txt
 expect 4 'note.txt' "$D" robot/r.urdf -o out4 --effort fast
-absent out3 out3.glb
+absent out3 out3.glb out3.urdf
 
 # Shapes for drawing; lengths in the robot's unit.
 sed 's/seen.dae/t.off/' robot/r.urdf >robot/v.urdf
