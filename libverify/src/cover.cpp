@@ -107,7 +107,9 @@ Cover verify_cover(const geom::Mesh& original, const geom::ConvexSet& set,
   Cover cover{verify_convexity(set), {}};
   const geom::Mesh sum = sum_of(set);
   cover.inclusion = verify_inclusion(original, sum, options);
-  if (set.margin > 0) allow_margin(original, sum, set, options.max_cells, cover.inclusion);
+  // Without convexity the margin's proof says nothing.
+  if (set.margin > 0 && cover.convex.answer == Answer::Verified)
+    allow_margin(original, sum, set, options.max_cells, cover.inclusion);
   return cover;
 }
 
