@@ -107,9 +107,9 @@ Cover verify_cover(const geom::Mesh& original, const geom::ConvexSet& set,
   Cover cover{verify_convexity(set), {}};
   const geom::Mesh sum = sum_of(set);
   cover.inclusion = verify_inclusion(original, sum, options);
-  // Without convexity the margin's proof says nothing.
-  if (set.margin > 0 && cover.convex.answer == Answer::Verified)
-    allow_margin(original, sum, set, options.max_cells, cover.inclusion);
+  if (set.margin > 0)
+    allow_margin(original, sum, set, cover.convex.answer == Answer::Verified, options.max_cells,
+                 cover.inclusion);
   return cover;
 }
 

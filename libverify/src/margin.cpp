@@ -7,13 +7,13 @@
 namespace kaboum::verify {
 namespace {
 
-Claim solid_claim(const Scene& scene, const geom::ConvexSet& set, std::size_t max_cells,
-                  bool inside_only, const Claim& without) {
+Claim solid_claim(const Scene& scene, const geom::ConvexSet& set, bool convex,
+                  std::size_t max_cells, bool inside_only, const Claim& without) {
   const BoxTree& faces = scene.tree(kOutside);
   const Uncovered bodies(scene, set);
-  Claim claim =
-      search_pockets(scene, offending_faces(scene, without),
-                     {faces, faces, set.margin * scene.scale(), max_cells, inside_only, &bodies});
+  Claim claim = search_pockets(scene, offending_faces(scene, without),
+                               {faces, faces, set.margin * scene.scale(), max_cells, inside_only,
+                                convex ? &bodies : nullptr});
   if (claim.answer == Answer::Refuted) {
     claim.reason = "a part of the inner solid is farther from the outer one than the margin";
   }
@@ -42,7 +42,7 @@ Claim surface_claim(const geom::Mesh& inner, const geom::Mesh& outer, double mar
 }  // namespace
 
 void allow_margin(const geom::Mesh& inner, const geom::Mesh& sum, const geom::ConvexSet& set,
-                  std::size_t max_cells, Inclusion& inclusion) {
+                  bool convex, std::size_t max_cells, Inclusion& inclusion) {
   const Scene scene(inner, sum);
   if (scene.tree(kOutside).empty()) return;  // nothing to be near
   const auto decide = [&](Claim& claim, const auto& anew) {
@@ -67,8 +67,9 @@ void allow_margin(const geom::Mesh& inner, const geom::Mesh& sum, const geom::Co
   if (inclusion.relative) return;
   // The boundary of what is left out lies on the bodies and on triangles of the surface claim.
   const bool inside_only = inclusion.surface.answer == Answer::Verified;
-  decide(inclusion.solid,
-         [&](const Claim& c) { return solid_claim(scene, set, max_cells, inside_only, c); });
+  decide(inclusion.solid, [&](const Claim& c) {
+    return solid_claim(scene, set, convex, max_cells, inside_only, c);
+  });
 }
 
 }  // namespace kaboum::verify

@@ -14,11 +14,12 @@ namespace kaboum::verify {
 /// triangles on, until each is within the margin, misses Z, or shows a point of Z farther away
 /// (docs/algorithms/exact-inclusion.md, "Cover").
 ///
-/// @param max_cells  boxes looked at before giving up
 /// @param sum        sum_of(set)
+/// @param convex     whether the bodies are, exactly: boxes are then cut along their facets, too
+/// @param max_cells  boxes looked at before giving up
 /// @param inclusion  verify_inclusion(inner, sum)
-/// @pre set.margin > 0; `sum` is a closed chain; the bodies are convex (verify_convexity)
+/// @pre set.margin > 0; `sum` is a closed chain
 void allow_margin(const geom::Mesh& inner, const geom::Mesh& sum, const geom::ConvexSet& set,
-                  std::size_t max_cells, Inclusion& inclusion);
+                  bool convex, std::size_t max_cells, Inclusion& inclusion);
 
 }  // namespace kaboum::verify
