@@ -10,7 +10,6 @@
 #include <queue>
 #include <unordered_map>
 
-#include "appraise.h"
 #include "principal_prism.h"
 
 namespace kaboum::bcd {
@@ -457,17 +456,7 @@ Simplified simplify(std::span<const Vec3> hull, std::size_t cap, double free_cos
   const Mesh mesh = builder.mesh();
   Contractor contractor(mesh.vertices, mesh.triangles, solid);
   out.cost = contractor.run(cap, free_cost);
-  if (contractor.count() > cap) {
-    out.vertices = prism_round();
-    return out;
-  }
-  out.vertices = contractor.result();
-  if (out.cost <= free_cost) return out;
-  // The last contractions may go far.
-  const std::vector<Vec3> prism = prism_round();
-  if (prism.size() <= cap &&
-      appraise(prism, solid, builder).worst < appraise(out.vertices, solid, builder).worst)
-    out.vertices = prism;
+  out.vertices = contractor.count() <= cap ? contractor.result() : prism_round();
   return out;
 }
 
