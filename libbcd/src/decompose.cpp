@@ -610,7 +610,7 @@ class Decomposer {
       const CutTree::Node& node = tree_.nodes()[leaf];
       const bool cut = node.lower >= 0 || node.upper >= 0;
       // Where only the vertices allowed are too few, any smaller parts will do.
-      const bool near = body.appraisal.worst <= 0.5 * epsilon;
+      const bool near = !all && node.appraisal.worst <= 0.5 * epsilon;
       if (!cut && !(near && tree_.halve(leaf)) && (node.stuck || !tree_.cut(leaf))) return {};
       for (const int child : {tree_.nodes()[leaf].lower, tree_.nodes()[leaf].upper})
         if (child >= 0) leaves.push_back(body_of(tree_, child));
