@@ -220,21 +220,15 @@ class Decomposer {
       for (std::size_t to = 0; to < bodies.size(); ++to)
         if (to != from && touch(parts[i], bodies[to], solid_)) deals.push_back({i, to});
     }
-    const auto taker = [&](const Deal& d) {
-      std::vector<int> leaves = bodies[d.to].leaves;
-      leaves.push_back(giver.leaves[d.leaf]);
-      std::sort(leaves.begin(), leaves.end());
-      return union_of(tree_, solid_, leaves);
-    };
     tbb::parallel_for(std::size_t{0}, deals.size(), [&](std::size_t i) {
-      deals[i].worst =
-          std::max(taker(deals[i]).appraisal.worst, rests[deals[i].leaf].appraisal.worst);
+      Deal& d = deals[i];
+      d.worst = std::max(distance_of_union(bodies[d.to], parts[d.leaf], solid_, limit),
+                         rests[d.leaf].appraisal.worst);
     });
     const auto best = std::min_element(
         deals.begin(), deals.end(), [](const Deal& a, const Deal& b) { return a.worst < b.worst; });
     if (best == deals.end() || best->worst >= limit) return false;
-    Body larger = taker(*best);
-    bodies[best->to] = std::move(larger);
+    bodies[best->to] = union_of(bodies[best->to], parts[best->leaf], solid_);
     bodies[from] = std::move(rests[best->leaf]);
     return true;
   }
@@ -544,34 +538,37 @@ class Decomposer {
       tree_.leaves_below(leaf, pieces);
     }
     const std::size_t count = takers.size();
-    std::vector<Body> joint(pieces.size() * count);
-    std::vector<char> given(pieces.size(), 0), changed(count, 0);
-    const auto join = [&](std::size_t deal) {
-      const std::size_t piece = deal / count, to = deal % count;
-      if (given[piece] != 0) return;
-      std::vector<int> leaves = takers[to].leaves;
-      leaves.push_back(pieces[piece]);
-      std::sort(leaves.begin(), leaves.end());
-      joint[deal] = union_of(tree_, solid_, leaves);
+    std::vector<Body> gifts;
+    for (const int leaf : pieces) gifts.push_back(body_of(tree_, leaf));
+    // How far each taker would be with each piece; those too far stay so as the takers grow.
+    std::vector<double> worst(gifts.size() * count);
+    const auto join = [&](std::size_t piece, std::size_t to) {
+      double& w = worst[piece * count + to];
+      if (w <= limit) w = distance_of_union(takers[to], gifts[piece], solid_, limit);
     };
-    tbb::parallel_for(std::size_t{0}, joint.size(), join);
-    for (std::size_t left = pieces.size(); left > 0; --left) {
-      std::size_t best = joint.size();
-      for (std::size_t piece = 0; piece < pieces.size(); ++piece) {
+    const auto best_of = [&](std::size_t piece) {
+      const auto of = worst.begin() + static_cast<std::ptrdiff_t>(piece * count);
+      return std::min_element(of, of + static_cast<std::ptrdiff_t>(count)) - worst.begin();
+    };
+    for (std::size_t piece = 0; piece < gifts.size(); ++piece) {
+      tbb::parallel_for(std::size_t{0}, count, [&](std::size_t to) { join(piece, to); });
+      if (worst[best_of(piece)] > limit) return false;
+    }
+    std::vector<char> given(gifts.size(), 0), changed(count, 0);
+    for (std::size_t left = gifts.size(); left > 0; --left) {
+      std::ptrdiff_t best = -1;
+      for (std::size_t piece = 0; piece < gifts.size(); ++piece) {
         if (given[piece] != 0) continue;
-        double least = kUnbounded;
-        for (std::size_t deal = piece * count; deal < (piece + 1) * count; ++deal) {
-          const double worst = joint[deal].appraisal.worst;
-          least = std::min(least, worst);
-          if (best == joint.size() || worst < joint[best].appraisal.worst) best = deal;
-        }
-        if (least > limit) return false;
+        const std::ptrdiff_t deal = best_of(piece);
+        if (worst[deal] > limit) return false;
+        if (best < 0 || worst[deal] < worst[best]) best = deal;
       }
-      const std::size_t to = best % count;
-      takers[to] = joint[best];
-      given[best / count] = changed[to] = 1;
-      tbb::parallel_for(std::size_t{0}, pieces.size(),
-                        [&](std::size_t piece) { join(piece * count + to); });
+      const std::size_t taken = best / count, to = best % count;
+      takers[to] = union_of(takers[to], gifts[taken], solid_);
+      given[taken] = changed[to] = 1;
+      tbb::parallel_for(std::size_t{0}, gifts.size(), [&](std::size_t piece) {
+        if (given[piece] == 0) join(piece, to);
+      });
     }
     std::vector<Body> fresh;
     std::vector<std::size_t> place;

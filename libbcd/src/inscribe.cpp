@@ -251,12 +251,10 @@ std::optional<Inscribed> body_of(std::vector<Vec3> points, std::size_t most, con
   if (!whole || whole->hull.vertices.size() <= most) return whole;
   std::optional<Inscribed> out = hull_of(subset(whole->hull.vertices, most, seed, ball));
   if (out && !out->contains(seed, core)) out.reset();
-  if (most >= 8) {
-    if (const std::optional<Ellipsoid> e = ellipsoid_of(whole->hull)) {
-      std::optional<Inscribed> box = hull_of(box_within(*whole, *e, seed));
-      if (box && box->contains(seed, core) && (!out || box->volume > out->volume))
-        out = std::move(box);
-    }
+  if (const std::optional<Ellipsoid> e = ellipsoid_of(whole->hull)) {
+    std::optional<Inscribed> box = hull_of(box_within(*whole, *e, seed));
+    if (box && box->contains(seed, core) && (!out || box->volume > out->volume))
+      out = std::move(box);
   }
   return out;
 }

@@ -12,10 +12,8 @@ namespace {
 /// Two bodies and what their hull would be.
 struct Pair {
   std::uint32_t a, b;
-  double worst;
-  double added;  // side of a cube of the volume added
-  bool whole;    // else the distance is a lower bound
-  double cost;
+  PairMemo::Entry hull{};
+  double cost = 0;
 };
 
 /// Cheapest first; ties by index, so that the order is always the same.
@@ -48,16 +46,14 @@ double between(const Body& a, const Body& b, const Solid& solid) {
 }
 
 /// Pairs farther than `limit` from the solid are not looked at any closer.
-Pair judge(const std::vector<Body>& bodies, std::uint32_t a, std::uint32_t b, const Solid& solid,
-           double limit) {
-  const double least = between(bodies[a], bodies[b], solid);
-  if (least > limit) return {a, b, least, 0, false, 0};
+PairMemo::Entry judge(const Body& a, const Body& b, const Solid& solid, double limit) {
+  const double least = between(a, b, solid);
+  if (least > limit) return {least, 0, false};
   static thread_local std::vector<Vec3> points;
-  join(bodies[a], bodies[b], points);
+  join(a, b, points);
   const Appraisal h = appraise(points, solid, hull_builder(), true, limit);
-  const double added =
-      std::max(0.0, h.volume - bodies[a].appraisal.volume - bodies[b].appraisal.volume);
-  return {a, b, h.worst, std::cbrt(added), h.worst <= limit, 0};
+  const double added = std::max(0.0, h.volume - a.appraisal.volume - b.appraisal.volume);
+  return {h.worst, std::cbrt(added), h.worst <= limit};
 }
 
 Body body_round(const std::vector<Vec3>& points, const Solid& solid, std::vector<int> leaves) {
@@ -92,6 +88,19 @@ Body union_of(const CutTree& tree, const Solid& solid, const std::vector<int>& l
   return body_round(points, solid, leaves);
 }
 
+Body union_of(const Body& a, const Body& b, const Solid& solid) {
+  std::vector<Vec3> points;
+  join(a, b, points);
+  std::vector<int> leaves = a.leaves;
+  leaves.insert(leaves.end(), b.leaves.begin(), b.leaves.end());
+  std::sort(leaves.begin(), leaves.end());
+  return body_round(points, solid, std::move(leaves));
+}
+
+double distance_of_union(const Body& a, const Body& b, const Solid& solid, double limit) {
+  return judge(a, b, solid, limit).worst;
+}
+
 bool touch(const Body& a, const Body& b, const Solid& solid) {
   const double reach = 1e-3 * solid.diagonal();
   return ((a.box.min.array() - reach <= b.box.max.array()) &&
@@ -115,27 +124,25 @@ std::vector<Body> merge(std::vector<Body> bodies, const Solid& solid, std::size_
       Pair& p = fresh[i];
       const PairMemo::Entry* known = memo.find(id[p.a], id[p.b]);
       if (known != nullptr && (known->whole || known->worst > epsilon)) {
-        p.worst = known->worst;
-        p.added = known->added;
+        p.hull = *known;
       } else {
         open.push_back(i);
       }
     }
     tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t i) {
       Pair& p = fresh[open[i]];
-      p = judge(bodies, p.a, p.b, solid, epsilon);
+      p.hull = judge(bodies[p.a], bodies[p.b], solid, epsilon);
     });
-    for (const std::size_t i : open)
-      memo.add(id[fresh[i].a], id[fresh[i].b], {fresh[i].worst, fresh[i].added, fresh[i].whole});
+    for (const std::size_t i : open) memo.add(id[fresh[i].a], id[fresh[i].b], fresh[i].hull);
     for (Pair& p : fresh) {
-      p.cost = p.worst + bulk * p.added;
-      if (p.worst <= epsilon) queue.push(p);
+      p.cost = p.hull.worst + bulk * p.hull.added;
+      if (p.hull.worst <= epsilon) queue.push(p);
     }
     fresh.clear();
   };
   for (std::uint32_t a = 0; a < bodies.size(); ++a)
     for (std::uint32_t b = a + 1; b < bodies.size(); ++b)
-      if (near(bodies[a], bodies[b])) fresh.push_back({a, b, 0, 0, false, 0});
+      if (near(bodies[a], bodies[b])) fresh.push_back({a, b});
   judge_all();
   bool all_pairs = false;
   while (count > target) {
@@ -146,19 +153,14 @@ std::vector<Body> merge(std::vector<Body> bodies, const Solid& solid, std::size_
       for (std::uint32_t a = 0; a < bodies.size(); ++a)
         for (std::uint32_t b = a + 1; b < bodies.size(); ++b)
           if (alive[a] != 0 && alive[b] != 0 && !near(bodies[a], bodies[b]))
-            fresh.push_back({a, b, 0, 0, false, 0});
+            fresh.push_back({a, b});
       judge_all();
       if (queue.empty()) break;
     }
     const Pair p = queue.top();
     queue.pop();
     if (alive[p.a] == 0 || alive[p.b] == 0) continue;
-    std::vector<Vec3> points;
-    join(bodies[p.a], bodies[p.b], points);
-    std::vector<int> leaves = bodies[p.a].leaves;
-    leaves.insert(leaves.end(), bodies[p.b].leaves.begin(), bodies[p.b].leaves.end());
-    std::sort(leaves.begin(), leaves.end());
-    Body merged = body_round(points, solid, std::move(leaves));
+    Body merged = union_of(bodies[p.a], bodies[p.b], solid);
     alive[p.a] = alive[p.b] = 0;
     bodies[p.a].hull = {};
     bodies[p.b].hull = {};
@@ -168,8 +170,7 @@ std::vector<Body> merge(std::vector<Body> bodies, const Solid& solid, std::size_
     bodies.push_back(std::move(merged));
     alive.push_back(1);
     for (std::uint32_t a = 0; a < self; ++a)
-      if (alive[a] != 0 && (all_pairs || near(bodies[a], bodies[self])))
-        fresh.push_back({a, self, 0, 0, false, 0});
+      if (alive[a] != 0 && (all_pairs || near(bodies[a], bodies[self]))) fresh.push_back({a, self});
     judge_all();
   }
   std::vector<Body> out;

@@ -131,6 +131,9 @@ struct Body {
 Body body_of(const CutTree& tree, int leaf);
 /// One body round all of them.
 Body union_of(const CutTree& tree, const Solid& solid, const std::vector<int>& leaves);
+Body union_of(const Body& a, const Body& b, const Solid& solid);
+/// Distance of the body round both; where that is beyond `limit`, something between them.
+double distance_of_union(const Body& a, const Body& b, const Solid& solid, double limit);
 /// Whether the bodies' boxes are near each other.
 bool touch(const Body& a, const Body& b, const Solid& solid);
 
@@ -138,8 +141,9 @@ bool touch(const Body& a, const Body& b, const Solid& solid);
 class PairMemo {
  public:
   struct Entry {
-    double worst, added;
-    bool whole;  ///< else `worst` is a lower bound, and nothing more is known
+    double worst;  ///< distance
+    double added;  ///< side of a cube of the volume added
+    bool whole;    ///< else `worst` is a lower bound, and nothing more is known
   };
   std::uint32_t id_of(const std::vector<int>& leaves) {
     return ids_.emplace(leaves, static_cast<std::uint32_t>(ids_.size())).first->second;
