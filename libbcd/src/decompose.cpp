@@ -727,7 +727,10 @@ class Decomposer {
           dissolve(tried, epsilon);
         }
         thin_out(tried, epsilon);
-        if (fits(tried)) break;
+        // Still fewer bodies have somewhat fewer vertices.
+        const double vertices = static_cast<double>(vertices_of(tried));
+        if (fits(tried) || tried.size() > most || vertices > 1.15 * static_cast<double>(total))
+          break;
       }
       if (fits(tried) && reach_of(tried) < reach_of(best)) {
         best = std::move(tried);
