@@ -104,7 +104,7 @@ class Decomposer {
   DecomposeResult run() {
     std::vector<Finished> bodies;
     if (options_.epsilon) {
-      bodies = within(*options_.epsilon);
+      bodies = within(*options_.epsilon, hopeless());
       if (tuning_.reduce) {
         reduce(bodies, *options_.epsilon);
         dissolve(bodies, *options_.epsilon);
@@ -114,7 +114,7 @@ class Decomposer {
       for (const Finished& f : bodies)
         if (f.reach.upper > *options_.epsilon) result_.stop = Stop::Stuck;
     }
-    if (!options_.epsilon || !fits(bodies)) {
+    if (bodies.empty() || !fits(bodies)) {
       bodies = options_.max_total_vertices ? nearest_that_fit() : at_most(*options_.max_bodies);
       const bool near = !options_.epsilon || reach_of(bodies) <= *options_.epsilon;
       result_.stop = near && fits(bodies) ? Stop::Done : Stop::TooManyBodies;
@@ -416,7 +416,15 @@ class Decomposer {
     return true;
   }
 
-  std::vector<Finished> within(double epsilon) {
+  /// So many bodies that no search brings them down to the limits.
+  [[nodiscard]] std::size_t hopeless() const {
+    const std::size_t by_vertices = options_.max_total_vertices.value_or(kUnlimited) / 4;
+    const std::size_t limit = std::min(options_.max_bodies.value_or(kUnlimited), by_vertices);
+    return limit > kUnlimited / 4 ? kUnlimited : 4 * limit;
+  }
+
+  /// Bodies within epsilon; none when even the first are more than `most`.
+  std::vector<Finished> within(double epsilon, std::size_t most = kUnlimited) {
     const double wished = 0.93 * epsilon;
     std::vector<Body> best;
     const double begin = std::max(tree_.worst(), epsilon);
@@ -437,6 +445,7 @@ class Decomposer {
         fewest = fewest == 0 ? bodies.size() : std::min(fewest, bodies.size());
         if (best.empty() || bodies.size() < best.size()) best = std::move(bodies);
       }
+      if (fewest > most) return {};
       most_leaves = std::max<std::size_t>(200, 8 * fewest);
     }
     report("simplifying", 0.6);
