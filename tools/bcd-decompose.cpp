@@ -243,7 +243,8 @@ std::string objection(const Options& o, const geom::Mesh& solid, const geom::Con
 tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const std::string& hash) {
   tools::Progress progress(o.common.quiet);
   const bool outer = o.direction == "outer";
-  const geom::Prepared prepared = geom::prepare(mesh, o.prepare);
+  const geom::Prepared prepared =
+      tools::naming(o.input, [&] { return geom::prepare(mesh, o.prepare); });
   for (const std::string& note : prepared.notes) tools::log(o.common.quiet, o.input + ": " + note);
   const double diagonal = geom::bounding_box(prepared.mesh).diagonal();
   const geom::Mesh solid = prepared.closed ? prepared.mesh : bcd::close_holes(prepared.mesh);
@@ -286,7 +287,9 @@ tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const s
   const std::vector<double> allowances{1, 64, 4096};
   for (auto safety = allowances.begin(); safety != allowances.end();) {
     options.safety = *safety;
-    result = outer ? bcd::decompose(prepared, options) : bcd::fill(prepared, options);
+    result = tools::naming(o.input, [&] {
+      return outer ? bcd::decompose(prepared, options) : bcd::fill(prepared, options);
+    });
     if (result.stop == bcd::Stop::TooCoarse) throw TooCoarse{};
     set.bodies = std::move(result.bodies);
     p.epsilon = result.reach_upper;

@@ -344,11 +344,7 @@ class Job {
     for (const std::string& note : input_.notes) say("note: " + note);
     notes_ = input_.notes;
     const std::size_t triangles = input_.mesh.triangles.size();
-    try {
-      prepared_ = geom::prepare(input_.mesh, o_.prepare);
-    } catch (const Error& error) {
-      throw Error(error.code(), o_.input + ": " + error.what());
-    }
+    prepared_ = tools::naming(o_.input, [&] { return geom::prepare(input_.mesh, o_.prepare); });
     if (records()) {
       log_.direction = o_.direction;
       log_.tool = std::string("bmesh-decimate ") + tools::version();

@@ -334,7 +334,7 @@ int check(const Options& o) {
   geom::ConvexSet set;
   bool is_set = false;
   Input approximation = read_approximation(o, set, is_set);
-  if (o.prepare) prepare(original, o.drop_sheets, o.cover);
+  if (o.prepare) tools::naming(o.original, [&] { prepare(original, o.drop_sheets, o.cover); });
   if (o.inner && set.margin > 0) {
     throw Error(ErrorCode::InvalidInput, o.approximation + ": the set's margin, " +
                                              number(set.margin) +

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/geom/distance.h>
+#include <kaboum/geom/error.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/io/mesh_io.h>
 
@@ -94,6 +95,16 @@ class Progress {
 
 /// Prints a line on stderr unless `quiet`.
 void log(bool quiet, const std::string& text);
+
+/// Calls `work`; its errors name the file.
+template <class Work>
+auto naming(const std::string& file, const Work& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    throw Error(error.code(), file + ": " + error.what());
+  }
+}
 
 /// Format named by --input-format/--output-format, else by the file name's extension.
 /// @throws Error{InvalidArgument} when unknown.

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 namespace kaboum::sweep {
 namespace {
@@ -54,6 +55,20 @@ void append(NamedPath& path, std::vector<double> waypoint, const std::string& na
   for (const double x : waypoint)
     if (!std::isfinite(x)) fail(name, place + ": a number that is not finite");
   path.waypoints.push_back(std::move(waypoint));
+}
+
+std::string beyond_limits(const Variable& joint, double value) {
+  const auto text = [](double x) {
+    std::ostringstream out;
+    out << x;
+    return out.str();
+  };
+  const auto limit = [&](const std::optional<double>& x, const char* none) {
+    return x ? text(*x) : none;
+  };
+  return "joint '" + joint.name + "' at " + text(value) + " is outside its limits, " +
+         limit(joint.lower, "-inf") + " to " + limit(joint.upper, "inf") +
+         " (radians, or metres where it slides)";
 }
 
 }  // namespace
@@ -161,8 +176,8 @@ Path arrange(const NamedPath& path, const Robot& robot, const std::string& name,
     for (std::size_t i = 0; i < count; ++i) q[i] = row[column[i]];
     if (check_limits) {
       if (const auto bad = find_out_of_limits(robot, q))
-        fail(name, "waypoint " + std::to_string(out.size() + 1) + ": joint '" +
-                       robot.variables[*bad].name + "' is outside its limits");
+        fail(name, "waypoint " + std::to_string(out.size() + 1) + ": " +
+                       beyond_limits(robot.variables[*bad], q[*bad]));
     }
     out.push_back(std::move(q));
   }

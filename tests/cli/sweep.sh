@@ -91,7 +91,7 @@ expect 3 'cut.urdf' "$S" cut.urdf --path path.csv -o x.glb
 sed 's/t\.off/none.off/' "$R" >robots/urdf/lost.urdf
 expect 3 'package://shapes/none.off' "$S" robots/urdf/lost.urdf --path path.csv -o x.glb
 printf '0 0 0\n3 0 0\n' >limit.csv
-expect 3 "waypoint 2: joint 'shoulder' is outside" "$S" "$R" --path limit.csv -o x.glb
+expect 3 "waypoint 2: joint 'shoulder' at 3 is outside" "$S" "$R" --path limit.csv -o x.glb
 expect 0 '' "$S" "$R" --path limit.csv -o ignored.glb --ignore-limits
 printf '0 0\n' >narrow.csv
 expect 3 'columns' "$S" "$R" --path narrow.csv -o x.glb
@@ -132,7 +132,7 @@ expect 3 'line 1: these numbers are also names of joints' "$S" robots/urdf/numbe
 printf '\357\273\2773;2;1\n0;0;0\n' >numbers.csv
 expect 3 'line 1: these numbers are also names of joints' "$S" robots/urdf/numbered.urdf --path numbers.csv -o x.glb
 printf '0.3,2,1 # in 3.2.1 steps\n' >numbers.csv
-expect 3 'outside its limits' "$S" robots/urdf/numbered.urdf --path numbers.csv -o x.glb
+expect 3 'at .* is outside its limits, .* to .* (radians' "$S" robots/urdf/numbered.urdf --path numbers.csv -o x.glb
 absent x.glb
 
 # The whole motion decided from files alone; a set whose margin is cut, one that lacks a body, another path.
