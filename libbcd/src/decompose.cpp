@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <numeric>
+#include <set>
 
 #include "clusters.h"
 #include "options.h"
@@ -536,7 +537,7 @@ class Decomposer {
       origin.push_back(i);
     }
     if (takers.empty()) return false;
-    std::vector<int> pieces = leaves_of(body);
+    std::vector<int> pieces = nodes_of(body, 16);
     for (std::size_t from = 0; pieces.size() < 6 && from < pieces.size();) {
       const int leaf = pieces[from];
       if (tree_.nodes()[leaf].stuck || !tree_.cut(leaf)) {
@@ -676,6 +677,43 @@ class Decomposer {
     tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t i) {
       *place[i] = outer_points(tree_.nodes()[open[i]].piece, point_error_);
     });
+  }
+
+  /// The body as few nodes of the tree, but this many where there are more leaves than that.
+  [[nodiscard]] std::vector<int> nodes_of(const Body& body, std::size_t wished) const {
+    const auto& nodes = tree_.nodes();
+    const auto children = [&](int node) {
+      std::vector<int> out;
+      for (const int child : {nodes[node].lower, nodes[node].upper})
+        if (child >= 0) out.push_back(child);
+      return out;
+    };
+    const std::vector<int> leaves = leaves_of(body);
+    std::set<int, std::greater<>> whole(leaves.begin(), leaves.end());
+    // Parents come before their children in the tree, and so after them here.
+    for (auto it = whole.begin(); it != whole.end(); ++it) {
+      const int parent = nodes[*it].parent;
+      if (parent < 0) continue;
+      const std::vector<int> parts = children(parent);
+      if (std::all_of(parts.begin(), parts.end(), [&](int part) { return whole.contains(part); }))
+        whole.insert(parent);
+    }
+    std::vector<int> out;
+    for (const int node : whole)
+      if (!whole.contains(nodes[node].parent)) out.push_back(node);
+    while (out.size() < wished) {
+      auto largest = out.end();
+      for (auto it = out.begin(); it != out.end(); ++it)
+        if (!children(*it).empty() &&
+            (largest == out.end() ||
+             nodes[*it].appraisal.volume > nodes[*largest].appraisal.volume))
+          largest = it;
+      if (largest == out.end()) break;
+      const std::vector<int> parts = children(*largest);
+      out.erase(largest);
+      out.insert(out.end(), parts.begin(), parts.end());
+    }
+    return out;
   }
 
   [[nodiscard]] std::vector<int> leaves_of(const Body& body) const {
