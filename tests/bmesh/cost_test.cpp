@@ -41,8 +41,8 @@ Distances measure(const geom::Mesh& original, const geom::Mesh& result) {
 // Of shapes with strongly and with weakly curved parts, the one has the smaller maximum, the other
 // the smaller mean.
 TEST(Cost, MeanAndDistanceTradeTheMaximumForTheMean) {
-  const std::vector<geom::Mesh> meshes{examples::make_bracket(16),
-                                       test::scaled(test::uv_sphere(32, 20), {1, 0.2, 3})};
+  const std::vector<geom::Mesh> meshes{examples::make_bracket(12),
+                                       test::scaled(test::uv_sphere(24, 15), {1, 0.2, 3})};
   for (const Effort effort : {Effort::Fast, Effort::Normal}) {
     Distances mean, distance;
     for (const geom::Mesh& mesh : meshes) {
@@ -51,7 +51,7 @@ TEST(Cost, MeanAndDistanceTradeTheMaximumForTheMean) {
         DecimateOptions o;
         o.direction = d;
         o.effort = effort;
-        o.vertices = p.mesh.vertices.size() / 8;
+        o.vertices = p.mesh.vertices.size() * 7 / 20;
         for (const auto& [cost, sum] :
              {std::pair{Cost::Mean, &mean}, {Cost::Distance, &distance}}) {
           o.cost = cost;

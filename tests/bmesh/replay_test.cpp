@@ -20,7 +20,7 @@ test::Recorded run(const geom::Mesh& mesh, Direction direction, Cost cost = Cost
   o.direction = direction;
   o.cost = cost;
   o.effort = effort;
-  return test::record(mesh, o, 1.0 / 3);
+  return test::record(mesh, o, 0.4);
 }
 
 geom::Mesh sphere() {
