@@ -39,10 +39,10 @@ bool is_slender(const test::Family& f) {
 /// The slender families with a fifth of the triangles or fewer.
 std::vector<test::Family> coarse_slender_families() {
   const auto rod = test::scaled(test::cylinder(16, 1, 1, 1), {0.01, 0.01, 3});
-  const auto flat = test::scaled(test::random_hull(40, test::Cloud::Sphere, 5), {1, 1, 1e-4});
+  const auto flat = test::scaled(test::random_hull(32, test::Cloud::Sphere, 5), {1, 1, 1e-4});
   return {{"coarse-hull-flat", test::convex_hull(flat.vertices), true, true, true},
-          {"coarse-cone", test::cone(40, 1.7), true, true, true},
-          {"coarse-cone-flat", test::cone(40, 0.001), true, true, true},
+          {"coarse-cone", test::cone(28, 1.7), true, true, true},
+          {"coarse-cone-flat", test::cone(28, 0.001), true, true, true},
           {"coarse-cylinder-rotated", test::rotated(test::cylinder(16, 40, 1, 0), 0.4), true, true,
            false},
           {"coarse-rod", test::rotated(rod, 0.9), true, true, false}};
@@ -442,7 +442,7 @@ TEST(Decimate, DoesNotDependOnTheScale) {
     if (f.mesh.triangles.size() > 400) continue;
     const auto p = geom::prepare(f.mesh);
     for (const Method& m : methods(f)) {
-      const DecimateOptions o = with(m, to_vertices(p.mesh.vertices.size() / 4 + 4));
+      const DecimateOptions o = with(m, to_vertices(p.mesh.vertices.size() / 5 + 4));
       const auto r = decimate(p, o);
       for (const int exponent : {-20, 20}) {
         geom::Mesh scaled = f.mesh;
