@@ -549,6 +549,7 @@ class Decomposer {
     }
     const std::size_t count = takers.size();
     std::vector<Body> gifts;
+    gifts.reserve(pieces.size());
     for (const int leaf : pieces) gifts.push_back(body_of(tree_, leaf));
     // How far each taker would be with each piece; those too far stay so as the takers grow.
     std::vector<double> worst(gifts.size() * count);
