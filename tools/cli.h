@@ -102,7 +102,7 @@ auto naming(const std::string& file, const Work& work) {
   try {
     return work();
   } catch (const Error& error) {
-    throw Error(error.code(), file + ": " + error.what());
+    throw Error(error.code(), (file == "-" ? "standard input" : file) + ": " + error.what());
   }
 }
 

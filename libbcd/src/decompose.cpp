@@ -115,7 +115,7 @@ class Decomposer {
       for (const Finished& f : bodies)
         if (f.reach.upper > *options_.epsilon) result_.stop = Stop::Stuck;
     }
-    if (bodies.empty() || !fits(bodies)) {
+    if (!fits(bodies)) {
       bodies = options_.max_total_vertices ? nearest_that_fit() : at_most(*options_.max_bodies);
       const bool near = !options_.epsilon || reach_of(bodies) <= *options_.epsilon;
       result_.stop = near && fits(bodies) ? Stop::Done : Stop::TooManyBodies;
@@ -229,7 +229,9 @@ class Decomposer {
     const auto best = std::min_element(
         deals.begin(), deals.end(), [](const Deal& a, const Deal& b) { return a.worst < b.worst; });
     if (best == deals.end() || best->worst >= limit) return false;
-    bodies[best->to] = union_of(bodies[best->to], parts[best->leaf], solid_);
+    Body larger = union_of(bodies[best->to], parts[best->leaf], solid_);
+    if (larger.appraisal.worst >= limit) return false;
+    bodies[best->to] = std::move(larger);
     bodies[from] = std::move(rests[best->leaf]);
     return true;
   }
@@ -680,7 +682,7 @@ class Decomposer {
     });
   }
 
-  /// The body as few nodes of the tree, but this many where there are more leaves than that.
+  /// The body as few nodes of the tree, but at least this many where it has as many leaves.
   [[nodiscard]] std::vector<int> nodes_of(const Body& body, std::size_t wished) const {
     const auto& nodes = tree_.nodes();
     const auto children = [&](int node) {
@@ -714,6 +716,7 @@ class Decomposer {
       out.erase(largest);
       out.insert(out.end(), parts.begin(), parts.end());
     }
+    std::sort(out.begin(), out.end());
     return out;
   }
 
@@ -738,7 +741,7 @@ class Decomposer {
   }
   /// Whether the limits of bodies and vertices hold.
   [[nodiscard]] bool fits(const std::vector<Finished>& bodies) const {
-    return bodies.size() <= options_.max_bodies.value_or(kUnlimited) &&
+    return !bodies.empty() && bodies.size() <= options_.max_bodies.value_or(kUnlimited) &&
            vertices_of(bodies) <= options_.max_total_vertices.value_or(kUnlimited);
   }
 
@@ -770,15 +773,16 @@ class Decomposer {
       if (!(epsilon > 1e-5 * solid_.diagonal())) break;
       std::vector<Finished> tried = within(epsilon);
       for (const std::size_t enough : {most, std::size_t{1}}) {
-        if (tried.size() > enough || enough == 1) {
+        const bool looked = tried.size() > enough || enough == 1;
+        if (looked) {
           reduce(tried, epsilon, enough);
           dissolve(tried, epsilon);
         }
         thin_out(tried, epsilon);
-        // Still fewer bodies have somewhat fewer vertices.
-        const double vertices = static_cast<double>(vertices_of(tried));
-        if (fits(tried) || tried.size() > most || vertices > 1.15 * static_cast<double>(total))
-          break;
+        // Once there are few bodies, still fewer have only somewhat fewer vertices.
+        const bool near =
+            static_cast<double>(vertices_of(tried)) < 1.15 * static_cast<double>(total);
+        if (fits(tried) || tried.size() > most || (looked && !near)) break;
       }
       if (fits(tried) && reach_of(tried) < reach_of(best)) {
         best = std::move(tried);
