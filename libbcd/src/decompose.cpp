@@ -102,6 +102,7 @@ class Decomposer {
     point_error_ = 0x1p-40 * options.safety * magnitude;
   }
 
+  /// Stop::TooManyBodies, and no bodies, where epsilon asks for more than the limits allow.
   DecomposeResult run() {
     std::vector<Finished> bodies;
     if (options_.epsilon) {
@@ -114,11 +115,13 @@ class Decomposer {
       result_.stop = Stop::Done;
       for (const Finished& f : bodies)
         if (f.reach.upper > *options_.epsilon) result_.stop = Stop::Stuck;
-    }
-    if (!fits(bodies)) {
+      if (!fits(bodies)) {
+        result_.stop = Stop::TooManyBodies;
+        return std::move(result_);
+      }
+    } else {
       bodies = options_.max_total_vertices ? nearest_that_fit() : at_most(*options_.max_bodies);
-      const bool near = !options_.epsilon || reach_of(bodies) <= *options_.epsilon;
-      result_.stop = near && fits(bodies) ? Stop::Done : Stop::TooManyBodies;
+      result_.stop = fits(bodies) ? Stop::Done : Stop::TooManyBodies;
     }
     result_.statistics.leaves = tree_.leaf_count();
     for (Finished& f : bodies) {
@@ -904,11 +907,23 @@ void measure_anew(DecomposeResult& result, const Mesh& closed) {
   }
 }
 
+/// Where epsilon asks for more than the limits allow: the nearest that keep to these, as if no
+/// epsilon had been given.
+DecomposeResult search(const Mesh& closed, const DecomposeOptions& options) {
+  DecomposeResult result = Decomposer(closed, options).run();
+  if (!options.epsilon || result.stop != Stop::TooManyBodies) return result;
+  DecomposeOptions limited = options;
+  limited.epsilon.reset();
+  result = Decomposer(closed, limited).run();
+  if (result.reach_upper > *options.epsilon) result.stop = Stop::TooManyBodies;
+  return result;
+}
+
 /// Few faces leave few cuts, and much hangs on the first: quick searches, with the planes of
 /// symmetry and without them, sometimes find fewer bodies than the thorough one.
 DecomposeResult with_quick_searches(const Mesh& closed, const DecomposeOptions& options) {
   constexpr std::size_t kFew = 2000;  // triangles
-  DecomposeResult best = Decomposer(closed, options).run();
+  DecomposeResult best = search(closed, options);
   if (!options.epsilon || options.max_total_vertices || options.method != Method::Planes ||
       options.effort == Effort::Fast || closed.triangles.size() > kFew ||
       (best.stop == Stop::Done && best.bodies.size() == 1))
@@ -930,7 +945,7 @@ DecomposeResult decompose_closed(const Mesh& closed, const DecomposeOptions& opt
   if (const std::optional<Simpler> simpler = pre_step(closed, options)) {
     DecomposeOptions rest = options;
     if (rest.epsilon) *rest.epsilon -= simpler->distance;
-    DecomposeResult result = Decomposer(simpler->mesh, rest).run();
+    DecomposeResult result = search(simpler->mesh, rest);
     measure_anew(result, closed);
     result.statistics.pre_step_triangles = simpler->mesh.triangles.size();
     // What a limit does not allow within the rest of epsilon, it may allow within all of it.

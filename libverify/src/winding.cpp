@@ -207,6 +207,26 @@ int winding_difference(const Scene& scene, const Spot& spot, Side side) {
   });
 }
 
+namespace {
+
+/// Whether a point of the triangle's plane is in the triangle, its border included: then, and only
+/// then, it is so in the projections along all axes; those that are degenerate say nothing.
+bool holds(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    bool left = false, right = false;
+    for (const auto& [from, to] : {std::pair{&a, &b}, {&b, &c}, {&c, &a}}) {
+      const Sign s = geom::orient2d((*from)[u], (*from)[v], (*to)[u], (*to)[v], p[u], p[v]);
+      left = left || s == Sign::Positive;
+      right = right || s == Sign::Negative;
+    }
+    if (left && right) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
 std::optional<int> winding_at(const Scene& scene, int chain, const Vec3& p) {
   // A vertical ray from (x + ε, y + ε²): side of the displaced point with respect to a → b.
   const auto side = [&](const Vec3& a, const Vec3& b) {
@@ -226,8 +246,7 @@ std::optional<int> winding_at(const Scene& scene, int chain, const Vec3& p) {
       [&](std::uint32_t f) {
         const Vec3 &a = scene.corner(f, 0), &b = scene.corner(f, 1), &c = scene.corner(f, 2);
         const Sign height = scene.side(f, p);
-        // On the plane, within the box: taken for a touch, whether or not it is one.
-        if (height == Sign::Zero) touches = true;
+        if (height == Sign::Zero && holds(a, b, c, p)) touches = true;
         const int s = side(a, b);
         if (s == 0 || side(b, c) != s || side(c, a) != s) return;
         if (to_int(height) == -s) sum += s;
