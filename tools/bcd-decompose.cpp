@@ -73,8 +73,8 @@ void describe(CLI::App& app, Options& o) {
       })
       ->type_name("LENGTH|P%");
   app.add_option("--max-bodies", o.max_bodies,
-                 "Smallest distance with at most this many bodies (1 to 100000; of a robot, for "
-                 "each of its meshes)")
+                 "Look for the smallest distance with at most this many bodies (1 to 100000; of a "
+                 "robot, for each of its meshes)")
       ->check(CLI::Range(1, 100000).description(""))
       ->type_name("N");
   app.add_option("--max-vertices-per-body", o.max_vertices,
@@ -402,8 +402,8 @@ std::string shortfall(const Json& report) {
            "epsilon, or --effort best";
   return report["stop"] == "stuck"
              ? "epsilon could not be reached; allow more vertices per body"
-             : "epsilon needs more bodies or vertices than the limits allow, or these are too "
-               "few for anything";
+             : "within the limits of bodies and vertices nothing nearer was found; allow more, or "
+               "a larger epsilon";
 }
 
 std::string summary(const Options& o, const Json& report, std::size_t bodies) {

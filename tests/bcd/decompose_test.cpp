@@ -276,6 +276,25 @@ TEST(Decompose, LimitOfAllVerticesTogether) {
   EXPECT_EQ(decompose(geom::prepare(beam), options).stop, Stop::Done);
 }
 
+// What epsilon's search makes of the pieces must not make the limit's worse.
+TEST(Decompose, EpsilonThatTheLimitReachesIsReached) {
+  const geom::Prepared solid = geom::prepare(kaboum::test::torus(1, 0.3, 12, 6));
+  for (const Effort effort : {Effort::Fast, Effort::Normal}) {
+    for (const std::size_t most : {2, 3, 5}) {
+      DecomposeOptions options;
+      options.effort = effort;
+      options.max_bodies = most;
+      const DecomposeResult alone = decompose(solid, options);
+      options.epsilon = 1.001 * alone.reach_upper;
+      const DecomposeResult both = decompose(solid, options);
+      EXPECT_EQ(both.stop, Stop::Done) << most;
+      EXPECT_LE(both.reach_upper, *options.epsilon) << most;
+      options.epsilon = 0.3 * alone.reach_upper;
+      EXPECT_LE(decompose(solid, options).reach_upper, alone.reach_upper) << most;
+    }
+  }
+}
+
 TEST(Decompose, LimitsWithinEpsilonCountAsReached) {
   // 40 × 24 × 2 triangles: the pre-step takes some of epsilon, and what limits then do not allow
   // they may allow without it.
