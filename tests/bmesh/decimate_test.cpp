@@ -24,7 +24,7 @@ namespace {
 using namespace kaboum;         // NOLINT: the test uses most of it
 using namespace kaboum::bmesh;  // NOLINT
 
-/// So many triangles has no family that is tried; instrumented builds set a smaller limit.
+/// Families of so many triangles or more are left out; instrumented builds set a smaller limit.
 std::size_t largest() {
   const char* limit = std::getenv("KABOUM_TEST_LARGEST");
   return limit != nullptr ? std::stoul(limit) : 4000;
