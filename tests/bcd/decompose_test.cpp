@@ -7,6 +7,7 @@
 
 #include <random>
 
+#include "part.h"
 #include "solid.h"
 #include "solids.h"
 #include "support/families.h"
@@ -278,9 +279,9 @@ TEST(Decompose, LimitOfAllVerticesTogether) {
 
 // What epsilon's search makes of the pieces must not make the limit's worse.
 TEST(Decompose, EpsilonThatTheLimitReachesIsReached) {
-  const geom::Prepared solid = geom::prepare(kaboum::test::torus(1, 0.3, 12, 6));
+  const geom::Prepared solid = geom::prepare(kaboum::examples::make_bracket(16));
   for (const Effort effort : {Effort::Fast, Effort::Normal}) {
-    for (const std::size_t most : {2, 3, 5}) {
+    for (const std::size_t most : {2, 3, 6}) {
       DecomposeOptions options;
       options.effort = effort;
       options.max_bodies = most;
