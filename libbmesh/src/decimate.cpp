@@ -18,7 +18,7 @@
 #include "contraction.h"
 #include "deviation.h"
 #include "flatten.h"
-#include "optimise.h"
+#include "optimise_in_parallel.h"
 #include "original_solid.h"
 #include "regions.h"
 #include "tolerance.h"
@@ -61,6 +61,12 @@ constexpr std::size_t kBoundVertices = 4000, kBoundShare = 3;
 /// So many of them may fail by their deviation, and so many more for each that does not: on parts
 /// with many sharp edges hardly any succeeds, and nothing is gained.
 constexpr int kPatience = 120, kPatienceGained = 2;
+
+/// So many are tried at once, far enough from each other.
+constexpr std::size_t kJointBatch = 32;
+/// So many contractions are made before their vertices are pulled back, and no more than one for so
+/// many vertices that are left: the contractions to come should see them where they belong.
+constexpr std::size_t kRecent = 32, kRecentShare = 256;
 
 /// A spike goes farther from the original than this share of the diagonal, and this many times
 /// farther than the original is from the new triangles there.
@@ -252,38 +258,73 @@ class Decimator final : private Judge {
   /// limit has risen to what it would have taken.
   void collapse_to(std::size_t target, double limit) {
     joined_.resize(position_.size(), 0);
-    struct Edge {
-      double cost;
-      std::uint32_t a, b;
-    };
+    const std::vector<Edge> edges = edges_by_cost(limit);
+    std::vector<Edge> waiting, still, batch;
+    for (std::size_t next = 0;
+         contraction_.vertices() > target && (next < edges.size() || !waiting.empty());) {
+      const std::size_t most =
+          optimiser_->in_batches() ? std::min(kJointBatch, contraction_.vertices() - target) : 1;
+      batch.clear();
+      still.clear();
+      const auto consider = [&](const Edge& e) {
+        if (!may_succeed(e, limit)) return;
+        (batch.size() < most && optimiser_->claim({e.a, e.b}) ? batch : still).push_back(e);
+      };
+      for (const Edge& e : waiting) consider(e);
+      for (; next < edges.size() && batch.size() < most && still.size() < kJointBatch; ++next)
+        consider(edges[next]);
+      waiting.swap(still);
+      collapse_batch(batch, limit);
+      if (patience_ < 0) return;
+      if (options_.progress) options_.progress(contraction_.vertices());
+    }
+  }
+
+  struct Edge {
+    double cost;
+    std::uint32_t a, b;
+  };
+
+  /// Those that cost no more than the limit, at least.
+  std::vector<Edge> edges_by_cost(double limit) {
     std::vector<Edge> edges;
     for (std::uint32_t t = 0; t < mesh_.size(); ++t) {
       if (!mesh_.alive(t)) continue;
       for (std::uint32_t k = 0; k < 3; ++k) {
         const std::uint32_t a = mesh_[t][k], b = mesh_[t][(k + 1) % 3];
         if (a > b) continue;
-        edges.push_back(
-            {setting_.cost.least_key(contraction_.merged(a, b), position_[a], position_[b]), a, b});
+        const double cost =
+            setting_.cost.least_key(contraction_.merged(a, b), position_[a], position_[b]);
+        if (!(cost > limit)) edges.push_back({cost, a, b});
       }
     }
     std::stable_sort(edges.begin(), edges.end(),
                      [](const Edge& x, const Edge& y) { return x.cost < y.cost; });
-    std::size_t tried = 0;
-    for (const Edge& e : edges) {
-      if (contraction_.vertices() <= target || e.cost > limit) return;
-      if (options_.progress && ++tried % 256 == 0) options_.progress(contraction_.vertices());
-      bool adjacent = false;
-      if (mesh_.used(e.a) && mesh_.used(e.b))
-        mesh_.for_each_triangle(e.a, [&](std::uint32_t t, std::uint32_t) {
-          for (const std::uint32_t w : mesh_[t]) adjacent = adjacent || w == e.b;
-        });
-      if (!adjacent) continue;
-      Failure& failure = failures_[std::uint64_t{e.a} << 32 | e.b];
-      const std::uint32_t joined = joined_[e.a] + joined_[e.b];
-      if (failure.joined == joined && failure.deviation > limit) continue;
-      failure = {joined, optimiser_->collapse(e.a, e.b, limit)};
-      if (failure.deviation > 0) {
-        if (std::isfinite(failure.deviation) && --patience_ < 0) return;
+    return edges;
+  }
+
+  /// Whether it is still an edge, and has not failed where nothing has changed since.
+  [[nodiscard]] bool may_succeed(const Edge& e, double limit) const {
+    if (!mesh_.used(e.a) || !mesh_.used(e.b)) return false;
+    bool adjacent = false;
+    mesh_.for_each_triangle(e.a, [&](std::uint32_t t, std::uint32_t) {
+      for (const std::uint32_t w : mesh_[t]) adjacent = adjacent || w == e.b;
+    });
+    const auto failure = failures_.find(key(e));
+    return adjacent && (failure == failures_.end() || !(failure->second.deviation > limit) ||
+                        failure->second.joined != joined_[e.a] + joined_[e.b]);
+  }
+
+  static std::uint64_t key(const Edge& e) { return std::uint64_t{e.a} << 32 | e.b; }
+
+  /// Contracts what has been claimed.
+  void collapse_batch(std::span<const Edge> batch, double limit) {
+    const std::span<const double> outcome = optimiser_->collapse(limit);
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      const Edge& e = batch[i];
+      failures_[key(e)] = {joined_[e.a] + joined_[e.b], outcome[i]};
+      if (outcome[i] > 0) {
+        if (std::isfinite(outcome[i])) --patience_;
         continue;
       }
       patience_ += kPatienceGained;
@@ -300,6 +341,7 @@ class Decimator final : private Judge {
       progress = contraction_.pass(target, limit) && limit == Contraction::kNoLimit;
       bounded_ = statistics_.rejected_distance > rejected_before;  // by epsilon alone
     }
+    pull_back_recent();
   }
 
   // ---- what contractions are asked besides
@@ -344,15 +386,29 @@ class Decimator final : private Judge {
   void after() override {
     if (measuring_) {
       reached_ = std::max(reached_, contraction_.queue().lowest_key());
-      ++around_[candidate_.a];
-      for (const std::uint32_t w : evaluation_.neighbours(candidate_.a)) ++around_[w];
+      changed(candidate_.a);
     }
     if (optimiser_) {
-      optimiser_->disturb(candidate_.a);
-      optimiser_->pull_back(candidate_.a);
+      optimiser_->single().disturb(candidate_.a);
+      recent_.push_back(candidate_.a);
+      if (!optimiser_->in_batches() ||
+          recent_.size() >= std::min(kRecent, contraction_.vertices() / kRecentShare))
+        pull_back_recent();
     }
     if (options_.progress && statistics_.contractions % 1024 == 0)
       options_.progress(contraction_.vertices());
+  }
+
+  void pull_back_recent() {
+    if (!optimiser_) return;
+    optimiser_->pull_back(recent_, [&](std::uint32_t v) { changed(v); });
+    recent_.clear();
+  }
+
+  /// The star of v is not what has been measured.
+  void changed(std::uint32_t v) {
+    ++around_[v];
+    for (const std::uint32_t w : evaluation_.neighbours(v)) ++around_[w];
   }
 
   void describe_change() { evaluation_.describe(removed_, added_); }
@@ -416,8 +472,9 @@ class Decimator final : private Judge {
   bool settle() {
     describe_change();
     const bool free = border_[candidate_.a] == 0 && border_[candidate_.b] == 0;
-    const auto place = free ? optimiser_->settle(removed_, added_, merged(), setting_.cost.origin())
-                            : std::optional<Vec3>();
+    const auto place =
+        free ? optimiser_->single().settle(removed_, added_, merged(), setting_.cost.origin())
+             : std::optional<Vec3>();
     if (place && evaluation_.settle_at(*place, merged())) return true;
     return candidate_.encloses || reject(statistics_.rejected_no_position);
   }
@@ -430,9 +487,10 @@ class Decimator final : private Judge {
     constexpr int kAttempts = 5;
     bool moved = false;
     for (int i = 0; i < kAttempts; ++i) {
-      if (optimiser_->settled(removed_, candidate_.position)) return !moved || measure(e);
-      const auto place = optimiser_->resettle();
-      if (!place || !evaluation_.settle_at(*place, merged())) break;
+      if (optimiser_->single().settled(removed_, candidate_.position)) return !moved || measure(e);
+      const auto place = optimiser_->single().resettle();
+      if (!place || *place == candidate_.position || !evaluation_.settle_at(*place, merged()))
+        break;
       moved = true;
     }
     if (!candidate_.encloses) return reject(statistics_.rejected_original);
@@ -468,8 +526,7 @@ class Decimator final : private Judge {
     if (setting_.constrained && !solid_)
       solid_.emplace(*bound_, bound_ == &original_ ? deviation_->original().hierarchy() : nullptr);
     optimiser_.emplace(contraction_.mesh(), *deviation_, setting_.constrained ? &*solid_ : nullptr,
-                       *bound_, tolerance_ ? &*tolerance_ : nullptr, options_, statistics_);
-    optimiser_->set_dense(joint_);
+                       *bound_, tolerance_ ? &*tolerance_ : nullptr, options_, statistics_, joint_);
   }
 
   void optimise(int passes) {
@@ -503,7 +560,7 @@ class Decimator final : private Judge {
     // What fails now may succeed once a neighbour has moved.
     do {
       while (take_out([&](std::uint32_t v) {
-        return move_to_representable(v) || (optimiser_ && optimiser_->round(v));
+        return move_to_representable(v) || (optimiser_ && optimiser_->single().round(v));
       })) {
       }
     } while (take_out([&](std::uint32_t v) { return contract_away(v); }));
@@ -576,7 +633,7 @@ class Decimator final : private Judge {
   bool bounded_ = false;               // some candidate failed for epsilon alone
   std::optional<Tolerance> tolerance_;
   std::optional<Deviation> deviation_;
-  std::optional<Optimiser> optimiser_;
+  std::optional<ParallelOptimiser> optimiser_;
   bool measuring_ = false;    // costs are measured distances
   double reached_alone_ = 0;  // before contractions with moves
   double reached_ = 0;        // largest measured cost of a contraction
@@ -588,6 +645,7 @@ class Decimator final : private Judge {
   std::unordered_map<std::uint64_t, Failure> failures_;  // of joint contractions, by edge
   int patience_ = 0;                                     // joint contractions that may fail yet
   std::vector<std::uint32_t> joined_;  // of a vertex: raised by joint contractions around it
+  std::vector<std::uint32_t> recent_;  // contracted vertices that have not been pulled back yet
   std::vector<std::uint32_t> around_;  // of a vertex: raised when anything in its star changes
   std::vector<std::uint32_t> hint_;    // per vertex: where the original is near
   std::vector<Deviation::Point> points_;

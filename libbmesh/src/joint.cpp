@@ -58,7 +58,7 @@ void Optimiser::take(std::span<const std::uint32_t> vertices) {
     });
   }
   deviation_.save(s.triangles, s.samples);
-  s.steps = options_.steps != nullptr ? options_.steps->size() : 0;
+  s.steps = steps_ != nullptr ? steps_->size() : 0;
   s.pull_backs = statistics_.pull_backs;
 }
 
@@ -69,7 +69,7 @@ void Optimiser::go_back() {
     m_.mesh.restore(s.triangles[i], s.corners[i]);
   for (const std::uint32_t t : s.triangles) m_.update_normal(t);
   deviation_.restore(s.triangles, s.samples);
-  if (options_.steps != nullptr) options_.steps->resize(s.steps);
+  if (steps_ != nullptr) steps_->resize(s.steps);
   statistics_.pull_backs = s.pull_backs;
 }
 
@@ -138,7 +138,7 @@ void Optimiser::attract(std::uint32_t v, double scale, double penalty, double sh
   if (!gather(v)) return;
   const Vec3 from = m_.position[v];
   place_star(from);
-  for (Deviation::Point& p : points_) deviation_.locate(p, hint_[v]);
+  for (Deviation::Point& p : points_) deviation_.locate(p, notes_.hint[v]);
   linearise(from, scale, penalty);
   const auto step = minimise(objective_, {objective_.bx, objective_.by, objective_.bz}, {},
                              kRegularisationDistance);
@@ -158,7 +158,7 @@ void Optimiser::attract(std::uint32_t v, double scale, double penalty, double sh
 double Optimiser::star_largest(std::uint32_t v, double limit) {
   if (!gather(v)) return kNoLimit;
   place_star(m_.position[v]);
-  return std::sqrt(deviation_.largest(removed_, added_, points_, hint_[v], limit * limit));
+  return std::sqrt(deviation_.largest(removed_, added_, points_, notes_.hint[v], limit * limit));
 }
 
 /// The same for the triangles of the snapshot as they are now; leaves them in added_.
@@ -184,7 +184,7 @@ double Optimiser::region_largest(double limit) {
   }
   for (const std::uint32_t v : snapshot_.vertices)
     if (m_.mesh.used(v)) points_.push_back({m_.position[v], 0});
-  std::uint32_t& hint = hint_[snapshot_.vertices.front()];
+  std::uint32_t& hint = notes_.hint[snapshot_.vertices.front()];
   return std::sqrt(deviation_.largest(alive_, added_, points_, hint, limit * limit));
 }
 
@@ -233,7 +233,9 @@ std::optional<Vec3> Optimiser::seek(std::uint32_t a, std::uint32_t b, const Vec3
   auto place = settle(removed, added, near, Vec3::Zero());
   for (int i = 0; i < kPlaces && place; ++i) {
     if (holds(*place)) return place;
+    const Vec3 refused = *place;
     place = resettle();
+    if (place == refused) break;
   }
   if (options_.direction == Direction::Any) return std::nullopt;
   // Beyond all planes of the star, from where it can go back later.
@@ -265,18 +267,20 @@ bool Optimiser::approach(std::uint32_t v, const Vec3& target, bool alone) {
                                  [&](const Vec3& o, double) { fan_.keep(i, o); });
   objective_ = {};
   objective_.xx = objective_.yy = objective_.zz = 1;
+  Vec3 refused = from;
   for (int i = 0; i < kPlaces; ++i) {
     fan_.half_spaces(rounding(from), planes_);
     const auto step = minimise(objective_, wish, planes_, kRegularisationDistance);
     if (!step) return false;
     Vec3 to = from + *step;
     if (options_.precision == Precision::Float) to = geom::to_float32(to);
-    if (to == from || !to.allFinite() || folds(to)) return false;
+    if (to == from || to == refused || !to.allFinite() || folds(to)) return false;
     if (target != from && (to - target).squaredNorm() >= wish.squaredNorm()) return false;
     place_star(to);
     if (!stays_flat(to)) return false;
     if (!spares(removed_, true, to)) {
       ++statistics_.rejected_original;
+      refused = to;
       continue;
     }
     if (alone && tolerance_ != nullptr) {
@@ -317,14 +321,14 @@ double Optimiser::collapse(std::uint32_t a, std::uint32_t b, double limit) {
     return kNoLimit;
   }
   contract(a, b, *place);
-  if (options_.steps != nullptr) options_.steps->push_back({a, b, *place});
+  if (steps_ != nullptr) steps_->push_back({a, b, *place});
   for (int k = 0; k < kSweeps; ++k)
     for (std::size_t i = 0; i < around_.size(); ++i) approach(around_[i], target_[i], false);
   deviation = region_largest(kNearLimit * limit);
   if (deviation > limit && deviation <= kNearLimit * limit) {
     for (int k = 0; k < kPulls; ++k) {
       for (const std::uint32_t v : around_) {
-        movable_[v] = 1;
+        notes_.movable[v] = 1;
         pull_back(v, false);
       }
     }

@@ -26,26 +26,26 @@ Vec3 Optimiser::rounding(const Vec3& p) const {
   return {geom::float32_spacing(p.x()), geom::float32_spacing(p.y()), geom::float32_spacing(p.z())};
 }
 
-Optimiser::Optimiser(WorkingMesh& mesh, Deviation& deviation, OriginalSolid* solid,
-                     const geom::Mesh& original, Tolerance* tolerance,
-                     const DecimateOptions& options, DecimateStatistics& statistics)
+Optimiser::Optimiser(WorkingMesh& mesh, VertexNotes& notes, Deviation& deviation,
+                     OriginalSolid* solid, const geom::Mesh& original, Tolerance* tolerance,
+                     const DecimateOptions& options, DecimateStatistics& statistics,
+                     std::vector<Step>* steps)
     : m_(mesh),
+      notes_(notes),
       deviation_(deviation),
       solid_(solid),
       original_(original),
       tolerance_(tolerance),
       options_(options),
       statistics_(statistics),
-      hint_(mesh.position.size(), 0),
-      movable_(mesh.position.size(), 1),
-      flippable_(mesh.position.size(), 1),
+      steps_(steps),
       mark_(mesh.position.size() + mesh.mesh.size(), 0),
       fan_(options.direction == Direction::Inner ? -1 : 1) {}
 
 void Optimiser::disturb(std::uint32_t v) {
-  movable_[v] = flippable_[v] = 1;
+  notes_.disturb(v);
   m_.mesh.for_each_triangle(v, [&](std::uint32_t t, std::uint32_t) {
-    for (const std::uint32_t w : m_.mesh[t]) movable_[w] = flippable_[w] = 1;
+    for (const std::uint32_t w : m_.mesh[t]) notes_.disturb(w);
   });
 }
 
@@ -221,16 +221,16 @@ void Optimiser::move(std::uint32_t v, const Vec3& to) {
   deviation_.commit(removed_, added_);
   m_.position[v] = to;
   m_.update_normals_around(v);
-  if (options_.steps != nullptr) options_.steps->push_back({v, v, to});
+  if (steps_ != nullptr) steps_->push_back({v, v, to});
   ++statistics_.pull_backs;
 }
 
 bool Optimiser::pull_back(std::uint32_t v, bool alone) {
-  if (movable_[v] == 0 || !gather(v)) return false;
-  movable_[v] = 0;
+  if (notes_.movable[v] == 0 || !gather(v)) return false;
+  notes_.movable[v] = 0;
   const Vec3 from = m_.position[v];
   place_star(from);
-  std::uint32_t& hint = hint_[v];
+  std::uint32_t& hint = notes_.hint[v];
   const auto before =
       deviation_.energy(removed_, added_, points_, hint, std::numeric_limits<double>::infinity());
   if (!(before.squared > 0)) return false;
@@ -241,6 +241,7 @@ bool Optimiser::pull_back(std::uint32_t v, bool alone) {
       deviation_.for_each_sample(ring_[i].triangle,
                                  [&](const Vec3& o, double) { fan_.keep(i, o); });
   const double goal = (1 - kGain) * before.sum;
+  Vec3 refused = from;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     fan_.half_spaces(rounding(from), planes_);
     const auto step = minimise(objective_, {objective_.bx, objective_.by, objective_.bz}, planes_,
@@ -259,9 +260,10 @@ bool Optimiser::pull_back(std::uint32_t v, bool alone) {
       place_star(to);
       if (!(deviation_.energy(removed_, added_, points_, hint, goal).sum < goal)) return false;
     }
-    if (!stays_flat(to)) return false;
+    if (to == refused || !stays_flat(to)) return false;
     if (!spares(removed_, true, to)) {
       ++statistics_.rejected_original;
+      refused = to;
       continue;
     }
     if (alone && tolerance_ != nullptr) {
@@ -319,7 +321,7 @@ bool Optimiser::flip(std::uint32_t a, std::uint32_t b) {
     points_.push_back({0.5 * (p + q), (a1 + a2) / 3});
     points_.push_back({(p + q + r) / 3.0, a1 / 2});
     points_.push_back({(q + p + s) / 3.0, a2 / 2});
-    return deviation_.energy(removed_, added_, points_, hint_[a], limit);
+    return deviation_.energy(removed_, added_, points_, notes_.hint[a], limit);
   };
   removed_.assign({first, second});
   const auto before = measure(pa, pb, pc, pd, std::numeric_limits<double>::infinity());
@@ -343,25 +345,10 @@ bool Optimiser::flip(std::uint32_t a, std::uint32_t b) {
   m_.mesh.replace(second, {c, d, b});
   m_.update_normal(first);
   m_.update_normal(second);
-  if (options_.steps != nullptr) options_.steps->push_back(Step::flip(a, b, c, d));
+  if (steps_ != nullptr) steps_->push_back(Step::flip(a, b, c, d));
   ++statistics_.flips;
-  for (const std::uint32_t v : {a, b, c, d}) movable_[v] = flippable_[v] = 1;
+  for (const std::uint32_t v : {a, b, c, d}) notes_.disturb(v);
   return true;
-}
-
-std::size_t Optimiser::pass() {
-  std::size_t steps = 0;
-  for (std::uint32_t v = 0; v < m_.position.size(); ++v)
-    if (m_.mesh.used(v)) steps += pull_back(v) ? 1 : 0;
-  for (std::uint32_t t = 0; t < m_.mesh.size(); ++t) {
-    for (std::uint32_t k = 0; k < 3 && m_.mesh.alive(t); ++k) {
-      const std::uint32_t a = m_.mesh[t][k], b = m_.mesh[t][(k + 1) % 3];
-      if (a < b && flippable_[a] != 0 && flippable_[b] != 0 && flip(a, b)) ++steps;
-    }
-  }
-  // What flips have changed is tried again after the next moves.
-  std::fill(flippable_.begin(), flippable_.end(), 0);
-  return steps;
 }
 
 }  // namespace kaboum::bmesh

@@ -2,6 +2,8 @@
 
 #include <kaboum/bmesh/decimate.h>
 
+#include <atomic>
+
 #include "deviation.h"
 #include "fan.h"
 #include "original_solid.h"
@@ -11,19 +13,39 @@
 
 namespace kaboum::bmesh {
 
+/// What the optimisers of one mesh know of its vertices.
+struct VertexNotes {
+  explicit VertexNotes(std::size_t vertices)
+      : hint(vertices, 0), movable(vertices, 1), flippable(vertices, 1) {}
+
+  /// The star of v has changed. Safe to call from several threads.
+  void disturb(std::uint32_t v) {
+    std::atomic_ref(movable[v]).store(1, std::memory_order_relaxed);
+    std::atomic_ref(flippable[v]).store(1, std::memory_order_relaxed);
+  }
+
+  std::vector<std::uint32_t> hint;  // where the original is near
+  // Its star has changed since it was last tried in vain to move it, and since the last round of
+  // flips.
+  std::vector<char> movable, flippable;
+};
+
 /// Gives back what decimation has added beyond need: moves vertices towards the original and flips
 /// edges, so that the deviation falls. Source: [gaschler2016] §7.2 names it as future work; how the
 /// steps are certified: docs/algorithms/bounding-mesh.md, "Steps against the original".
 ///
 /// Every step keeps: the exact certificate against the original's solid (unless direction is Any),
 /// the carried error bound, border vertices, and float32 coordinates where they are wished for.
+///
+/// Several optimisers of one mesh, with the same notes and no error bound, may run at once where
+/// none moves a vertex that another one moves, or a neighbour of such a vertex.
 class Optimiser {
  public:
   /// All references must outlive this object. `solid` may be null for Direction::Any only,
-  /// `tolerance` when there is no error bound.
-  Optimiser(WorkingMesh& mesh, Deviation& deviation, OriginalSolid* solid,
+  /// `tolerance` when there is no error bound, `steps` when nobody asks for them.
+  Optimiser(WorkingMesh& mesh, VertexNotes& notes, Deviation& deviation, OriginalSolid* solid,
             const geom::Mesh& original, Tolerance* tolerance, const DecimateOptions& options,
-            DecimateStatistics& statistics);
+            DecimateStatistics& statistics, std::vector<Step>* steps);
 
   /// Whether new triangles are measured at more points.
   void set_dense(bool dense) { dense_ = dense; }
@@ -60,9 +82,6 @@ class Optimiser {
   /// Moves v to a representable place near by that the original bounds, though the present mesh may
   /// not. @return whether it has moved.
   bool round(std::uint32_t v);
-
-  /// One round over all vertices, then all edges. @return steps taken.
-  std::size_t pass();
 
  private:
   struct Ring {  // one triangle of the star: (v, p, q)
@@ -104,16 +123,14 @@ class Optimiser {
                                std::vector<std::uint32_t>* met = nullptr);
 
   WorkingMesh& m_;
+  VertexNotes& notes_;
   Deviation& deviation_;
   OriginalSolid* solid_;
   const geom::Mesh& original_;
   Tolerance* tolerance_;
   const DecimateOptions& options_;
   DecimateStatistics& statistics_;
-  std::vector<std::uint32_t> hint_;  // per vertex: where the original is near
-  // Per vertex: its star has changed since it was last tried in vain to move it, and since the last
-  // round of flips.
-  std::vector<char> movable_, flippable_;
+  std::vector<Step>* steps_;
 
   bool dense_ = false;
   Snapshot snapshot_;

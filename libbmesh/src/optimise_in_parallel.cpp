@@ -1,0 +1,164 @@
+#include "optimise_in_parallel.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "regions.h"
+
+namespace kaboum::bmesh {
+namespace {
+
+/// Vertices moved in one batch.
+constexpr std::size_t kMoves = 64;
+
+}  // namespace
+
+ParallelOptimiser::Lane::Lane(ParallelOptimiser& of)
+    : optimiser(of.m_, of.notes_, of.deviation_, of.solid_, of.original_, nullptr, of.options_,
+                statistics, of.options_.steps != nullptr ? &steps : nullptr) {
+  optimiser.set_dense(of.dense_);
+}
+
+ParallelOptimiser::ParallelOptimiser(WorkingMesh& mesh, Deviation& deviation, OriginalSolid* solid,
+                                     const geom::Mesh& original, Tolerance* tolerance,
+                                     const DecimateOptions& options, DecimateStatistics& statistics,
+                                     bool dense)
+    : m_(mesh),
+      notes_(mesh.position.size()),
+      deviation_(deviation),
+      solid_(solid),
+      original_(original),
+      tolerance_(tolerance),
+      options_(options),
+      statistics_(statistics),
+      dense_(dense),
+      single_(mesh, notes_, deviation, solid, original, tolerance, options, statistics,
+              options.steps),
+      lanes_([this] { return Lane(*this); }),
+      mark_(mesh.position.size(), 0) {
+  single_.set_dense(dense);
+}
+
+/// Calls task(optimiser, i) for all i < tasks, whose steps commute.
+template <class Task>
+void ParallelOptimiser::run(std::size_t tasks, Task&& task) {
+  if (tasks < 2) {
+    for (std::size_t i = 0; i < tasks; ++i) task(single_, i);
+    return;
+  }
+  const bool recorded = options_.steps != nullptr;
+  taken_.resize(std::max(taken_.size(), recorded ? tasks : 0));
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, tasks, 1),
+      [&](const tbb::blocked_range<std::size_t>& range) {
+        Lane& lane = lanes_.local();
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+          lane.steps.clear();
+          task(lane.optimiser, i);
+          if (recorded) taken_[i].assign(lane.steps.begin(), lane.steps.end());
+        }
+      },
+      tbb::simple_partitioner());
+  for (Lane& lane : lanes_) {
+    add(statistics_, lane.statistics);
+    lane.statistics = {};
+  }
+  if (!recorded) return;
+  for (std::size_t i = 0; i < tasks; ++i)
+    options_.steps->insert(options_.steps->end(), taken_[i].begin(), taken_[i].end());
+}
+
+void ParallelOptimiser::begin_batch() {
+  batch_.clear();
+  ++mark_value_;
+}
+
+/// Marks the vertices that are moved and their neighbours, unless one that is moved is marked.
+bool ParallelOptimiser::claim(std::span<const std::uint32_t> moved) {
+  if (std::any_of(moved.begin(), moved.end(),
+                  [&](std::uint32_t v) { return mark_[v] == mark_value_; }))
+    return false;
+  for (const std::uint32_t v : moved) {
+    mark_[v] = mark_value_;
+    m_.mesh.for_each_triangle(v, [&](std::uint32_t t, std::uint32_t) {
+      for (const std::uint32_t w : m_.mesh[t]) mark_[w] = mark_value_;
+    });
+  }
+  return true;
+}
+
+bool ParallelOptimiser::claim(Edge edge) {
+  moved_.clear();
+  for (const std::uint32_t v : {edge.a, edge.b})
+    m_.mesh.for_each_triangle(v, [&](std::uint32_t t, std::uint32_t) {
+      for (const std::uint32_t w : m_.mesh[t]) moved_.push_back(w);
+    });
+  if (!claim(moved_)) return false;
+  batch_.push_back(edge);
+  return true;
+}
+
+std::span<const double> ParallelOptimiser::collapse(double limit) {
+  outcome_.resize(batch_.size());
+  run(batch_.size(), [&](Optimiser& optimiser, std::size_t i) {
+    outcome_[i] = optimiser.collapse(batch_[i].a, batch_[i].b, limit);
+  });
+  begin_batch();
+  return outcome_;
+}
+
+/// Vertices come from next(), until it returns kNone, and are moved in this order, but for those
+/// that wait for a neighbour.
+void ParallelOptimiser::pull_back_each(const std::function<std::uint32_t()>& next,
+                                       const std::function<void(std::uint32_t)>& moved) {
+  std::vector<std::uint32_t> waiting, batch, still;
+  std::vector<char> moves;
+  const std::size_t most = in_batches() ? kMoves : 1;
+  bool more = true;
+  while (more || !waiting.empty()) {
+    begin_batch();
+    batch.clear();
+    still.clear();
+    const auto consider = [&](std::uint32_t v) {
+      if (!m_.mesh.used(v) || notes_.movable[v] == 0) return;
+      (batch.size() < most && claim(std::span(&v, 1)) ? batch : still).push_back(v);
+    };
+    for (const std::uint32_t v : waiting) consider(v);
+    while (more && batch.size() < most && still.size() < kMoves) {
+      const std::uint32_t v = next();
+      more = v != Connectivity::kNone;
+      if (more) consider(v);
+    }
+    moves.assign(batch.size(), 0);
+    run(batch.size(), [&](Optimiser& optimiser, std::size_t i) {
+      moves[i] = static_cast<char>(optimiser.pull_back(batch[i]));
+    });
+    for (std::size_t i = 0; i < batch.size(); ++i)
+      if (moves[i] != 0) moved(batch[i]);
+    waiting.swap(still);
+  }
+  begin_batch();
+}
+
+std::size_t ParallelOptimiser::pass() {
+  std::size_t steps = 0;
+  const auto vertices = static_cast<std::uint32_t>(m_.position.size());
+  pull_back_each(
+      [vertices, v = std::uint32_t{0}]() mutable {
+        return v < vertices ? v++ : Connectivity::kNone;
+      },
+      [&](std::uint32_t) { ++steps; });
+  for (std::uint32_t t = 0; t < m_.mesh.size(); ++t) {
+    for (std::uint32_t k = 0; k < 3 && m_.mesh.alive(t); ++k) {
+      const std::uint32_t a = m_.mesh[t][k], b = m_.mesh[t][(k + 1) % 3];
+      if (a < b && notes_.flippable[a] != 0 && notes_.flippable[b] != 0 && single_.flip(a, b))
+        ++steps;
+    }
+  }
+  // What flips have changed is tried again after the next moves.
+  std::fill(notes_.flippable.begin(), notes_.flippable.end(), 0);
+  return steps;
+}
+
+}  // namespace kaboum::bmesh

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <functional>
+#include <span>
+
+#include "optimise.h"
+
+namespace kaboum::bmesh {
+
+/// Optimisation by several threads: steps are taken in batches, each in a region of its own, so
+/// that the result does not depend on how many threads there are, or which is first.
+///
+/// A step moves some vertices, and reads the stars of those only. Two steps commute when no vertex
+/// that one moves is, or neighbours, one that the other moves: they have then no triangle in
+/// common.
+class ParallelOptimiser {
+ public:
+  struct Edge {
+    std::uint32_t a, b;
+  };
+
+  /// As of Optimiser.
+  ParallelOptimiser(WorkingMesh& mesh, Deviation& deviation, OriginalSolid* solid,
+                    const geom::Mesh& original, Tolerance* tolerance,
+                    const DecimateOptions& options, DecimateStatistics& statistics, bool dense);
+  ParallelOptimiser(const ParallelOptimiser&) = delete;
+  ParallelOptimiser& operator=(const ParallelOptimiser&) = delete;
+  ~ParallelOptimiser() = default;
+
+  /// For one step at a time.
+  Optimiser& single() { return single_; }
+
+  /// One round over all vertices, then all edges. @return steps taken.
+  std::size_t pass();
+
+  /// Tries to move these vertices, where they are still used; calls moved(v) for each that has.
+  template <class Moved>
+  void pull_back(std::span<const std::uint32_t> vertices, Moved&& moved) {
+    pull_back_each(
+        [vertices, i = std::size_t{0}]() mutable {
+          return i < vertices.size() ? vertices[i++] : Connectivity::kNone;
+        },
+        moved);
+  }
+
+  /// Whether steps are taken several at a time: an error bound is carried over all of the mesh, and
+  /// needs one after the other.
+  [[nodiscard]] bool in_batches() const { return tolerance_ == nullptr; }
+
+  /// Adds the edge to the batch at hand, if its contraction commutes with the others of the batch.
+  bool claim(Edge edge);
+
+  /// Contracts the batch's edges together with moves, as Optimiser::collapse does, and begins
+  /// another batch. @return what that returns for each, in the order of the claims.
+  std::span<const double> collapse(double limit);
+
+ private:
+  /// An optimiser for one thread.
+  struct Lane {
+    explicit Lane(ParallelOptimiser& of);
+    DecimateStatistics statistics;
+    std::vector<Step> steps;
+    Optimiser optimiser;
+  };
+
+  bool claim(std::span<const std::uint32_t> moved);
+  void begin_batch();
+  template <class Task>
+  void run(std::size_t tasks, Task&& task);
+  void pull_back_each(const std::function<std::uint32_t()>& next,
+                      const std::function<void(std::uint32_t)>& moved);
+
+  WorkingMesh& m_;
+  VertexNotes notes_;
+  Deviation& deviation_;
+  OriginalSolid* solid_;
+  const geom::Mesh& original_;
+  Tolerance* tolerance_;
+  const DecimateOptions& options_;
+  DecimateStatistics& statistics_;
+  bool dense_;
+  Optimiser single_;
+  tbb::enumerable_thread_specific<Lane> lanes_;
+
+  std::vector<Edge> batch_;
+  std::vector<double> outcome_;           // of the batch
+  std::vector<std::vector<Step>> taken_;  // steps, by task
+  std::vector<std::uint32_t> mark_;       // of a vertex: of the batch that moves it or a neighbour
+  std::uint32_t mark_value_ = 1;
+  std::vector<std::uint32_t> moved_;
+};
+
+}  // namespace kaboum::bmesh
