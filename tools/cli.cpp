@@ -165,6 +165,8 @@ io::Format format_for(const std::string& path, const std::string& name, const ch
   const bool reading = std::string_view(option) != "--output-format";
   if (!reading && path.ends_with('/'))
     throw Error(ErrorCode::InvalidArgument, path + ": name a file, not a folder");
+  if (reading && std::filesystem::is_directory(path))
+    throw Error(ErrorCode::InvalidInput, path + " is a folder, not a mesh file");
   const std::string choices = listed(reading ? io::readable_formats() : io::writable_formats());
   if (!name.empty()) {
     if (const auto f = io::format_from_name(name)) return *f;

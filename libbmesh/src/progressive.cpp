@@ -1,5 +1,6 @@
 #include <kaboum/bmesh/progressive.h>
 
+#include <algorithm>
 #include <string_view>
 
 #include "byte_stream.h"
@@ -177,7 +178,9 @@ Extracted extract(const Progressive& p, std::size_t vertices, const std::string&
     return {player.mesh(), player.at(), true, level.vertices <= vertices};
   }
   player.play_until(vertices);
-  return {player.mesh(), player.at(), false, player.vertices() <= vertices};
+  const bool level = std::any_of(
+      p.levels.begin(), p.levels.end(), [&](const auto& l) { return l.steps == player.at(); });
+  return {player.mesh(), player.at(), level, player.vertices() <= vertices};
 }
 
 }  // namespace kaboum::bmesh
