@@ -3,8 +3,8 @@
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/geom/error.h>
 #include <kaboum/geom/float32.h>
+#include <kaboum/geom/parallel.h>
 #include <kaboum/geom/width.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -212,7 +212,7 @@ class Decomposer {
     };
     std::vector<Deal> deals;
     std::vector<Body> rests(giver.leaves.size()), parts(giver.leaves.size());
-    tbb::parallel_for(std::size_t{0}, giver.leaves.size(), [&](std::size_t i) {
+    geom::parallel_loop(std::size_t{0}, giver.leaves.size(), [&](std::size_t i) {
       std::vector<int> rest = giver.leaves;
       rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
       rests[i] = union_of(tree_, solid_, rest);
@@ -224,7 +224,7 @@ class Decomposer {
       for (std::size_t to = 0; to < bodies.size(); ++to)
         if (to != from && touch(parts[i], bodies[to], solid_)) deals.push_back({i, to});
     }
-    tbb::parallel_for(std::size_t{0}, deals.size(), [&](std::size_t i) {
+    geom::parallel_loop(std::size_t{0}, deals.size(), [&](std::size_t i) {
       Deal& d = deals[i];
       d.worst = std::max(distance_of_union(bodies[d.to], parts[d.leaf], solid_, limit),
                          rests[d.leaf].appraisal.worst);
@@ -567,7 +567,7 @@ class Decomposer {
       return std::min_element(of, of + static_cast<std::ptrdiff_t>(count)) - worst.begin();
     };
     for (std::size_t piece = 0; piece < gifts.size(); ++piece) {
-      tbb::parallel_for(std::size_t{0}, count, [&](std::size_t to) { join(piece, to); });
+      geom::parallel_loop(std::size_t{0}, count, [&](std::size_t to) { join(piece, to); });
       if (worst[best_of(piece)] > limit) return false;
     }
     std::vector<char> given(gifts.size(), 0), changed(count, 0);
@@ -582,7 +582,7 @@ class Decomposer {
       const std::size_t taken = best / count, to = best % count;
       takers[to] = union_of(takers[to], gifts[taken], solid_);
       given[taken] = changed[to] = 1;
-      tbb::parallel_for(std::size_t{0}, gifts.size(), [&](std::size_t piece) {
+      geom::parallel_loop(std::size_t{0}, gifts.size(), [&](std::size_t piece) {
         if (given[piece] == 0) join(piece, to);
       });
     }
@@ -647,7 +647,7 @@ class Decomposer {
     for (const double free : {free_cost, 0.0}) {
       std::vector<Mesh> hulls(open.size());
       std::vector<char> thickened(open.size(), 0);
-      tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t i) {
+      geom::parallel_loop(std::size_t{0}, open.size(), [&](std::size_t i) {
         hulls[i] = rounded(out[open[i]].body, free, options_.max_vertices);
         if (options_.min_thickness > 0) thickened[i] = thicken(hulls[i]) ? 1 : 0;
       });
@@ -680,7 +680,7 @@ class Decomposer {
     std::vector<std::vector<Vec3>*> place;
     place.reserve(open.size());
     for (const int leaf : open) place.push_back(&required_.at(leaf));
-    tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t i) {
+    geom::parallel_loop(std::size_t{0}, open.size(), [&](std::size_t i) {
       *place[i] = outer_points(tree_.nodes()[open[i]].piece, point_error_);
     });
   }
@@ -840,7 +840,7 @@ class Decomposer {
           open, [&](const Open& o) { return bodies[o.body].hull.vertices.size() <= o.low + 1; });
       if (open.empty()) return;
       std::vector<Mesh> hulls(open.size());
-      tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t i) {
+      geom::parallel_loop(std::size_t{0}, open.size(), [&](std::size_t i) {
         const Finished& f = bodies[open[i].body];
         hulls[i] = rounded(f.body, 0, (open[i].low + f.hull.vertices.size()) / 2);
       });

@@ -1,4 +1,5 @@
-#include <tbb/parallel_for.h>
+
+#include <kaboum/geom/parallel.h>
 
 #include <algorithm>
 #include <cmath>
@@ -129,7 +130,7 @@ std::vector<Body> merge(std::vector<Body> bodies, const Solid& solid, std::size_
         open.push_back(i);
       }
     }
-    tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t i) {
+    geom::parallel_loop(std::size_t{0}, open.size(), [&](std::size_t i) {
       Pair& p = fresh[open[i]];
       p.hull = judge(bodies[p.a], bodies[p.b], solid, epsilon);
     });

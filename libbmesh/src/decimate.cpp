@@ -260,6 +260,7 @@ class Decimator final : private Judge {
     joined_.resize(position_.size(), 0);
     const std::vector<Edge> edges = edges_by_cost(limit);
     std::vector<Edge> waiting, still, batch;
+    std::size_t tried = 0;  // since progress was told
     for (std::size_t next = 0;
          contraction_.vertices() > target && (next < edges.size() || !waiting.empty());) {
       const std::size_t most =
@@ -276,7 +277,11 @@ class Decimator final : private Judge {
       waiting.swap(still);
       collapse_batch(batch, limit);
       if (patience_ < 0) return;
-      if (options_.progress) options_.progress(contraction_.vertices());
+      tried += batch.size();
+      if (options_.progress && tried >= 256) {
+        options_.progress(contraction_.vertices());
+        tried = 0;
+      }
     }
   }
 
@@ -400,7 +405,7 @@ class Decimator final : private Judge {
   }
 
   void pull_back_recent() {
-    if (!optimiser_) return;
+    if (recent_.empty()) return;
     optimiser_->pull_back(recent_, [&](std::uint32_t v) { changed(v); });
     recent_.clear();
   }
@@ -564,6 +569,7 @@ class Decimator final : private Judge {
       })) {
       }
     } while (take_out([&](std::uint32_t v) { return contract_away(v); }));
+    pull_back_recent();
     return left.size();
   }
 

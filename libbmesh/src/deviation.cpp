@@ -1,6 +1,6 @@
-#include "deviation.h"
+#include <kaboum/geom/parallel.h>
 
-#include <tbb/parallel_for.h>
+#include "deviation.h"
 
 #include <algorithm>
 #include <limits>
@@ -85,7 +85,7 @@ void Deviation::assign(std::span<const Vec3> position, const Connectivity& mesh)
   // Runs of samples, each with hints of its own: the result does not depend on the threads.
   constexpr std::size_t kRun = 1024;
   std::vector<std::uint32_t> nearest(point_.size());
-  tbb::parallel_for(std::size_t{0}, (point_.size() + kRun - 1) / kRun, [&](std::size_t run) {
+  geom::parallel_loop(std::size_t{0}, (point_.size() + kRun - 1) / kRun, [&](std::size_t run) {
     std::uint32_t hint = 0;
     const std::size_t end = std::min(point_.size(), (run + 1) * kRun);
     for (std::size_t s = run * kRun; s < end; ++s) {
@@ -193,7 +193,7 @@ void Deviation::refine(std::span<const Vec3> position, const Connectivity& mesh,
   const std::size_t n = mesh_.triangles.size();
   using Of = std::pair<std::size_t, Between::Found>;  // of a triangle
   std::vector<std::vector<Of>> found((n + kRun - 1) / kRun);
-  tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t run) {
+  geom::parallel_loop(std::size_t{0}, found.size(), [&](std::size_t run) {
     Between between(proximity, enough);
     for (std::size_t i = run * kRun; i < std::min(n, (run + 1) * kRun); ++i) {
       const geom::Triangle& t = mesh_.triangles[i];

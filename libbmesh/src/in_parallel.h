@@ -1,7 +1,8 @@
 #pragma once
 
+#include <kaboum/geom/parallel.h>
+
 #include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <cstddef>
 
@@ -15,10 +16,10 @@ void in_parallel(std::size_t n, Visit&& visit) {
     for (std::size_t i = 0; i < n; ++i) visit(i);
     return;
   }
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, kGrain),
-                    [&](const tbb::blocked_range<std::size_t>& range) {
-                      for (std::size_t i = range.begin(); i != range.end(); ++i) visit(i);
-                    });
+  geom::parallel_loop(tbb::blocked_range<std::size_t>(0, n, kGrain),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                        for (std::size_t i = range.begin(); i != range.end(); ++i) visit(i);
+                      });
 }
 
 }  // namespace kaboum::bmesh

@@ -37,8 +37,9 @@ struct VertexNotes {
 /// Every step keeps: the exact certificate against the original's solid (unless direction is Any),
 /// the carried error bound, border vertices, and float32 coordinates where they are wished for.
 ///
-/// Several optimisers of one mesh, with the same notes and no error bound, may run at once where
-/// none moves a vertex that another one moves, or a neighbour of such a vertex.
+/// Several optimisers of one mesh, with the same notes and no error bound, may pull back and
+/// collapse at once where none moves a vertex that another one moves, or a neighbour of such a
+/// vertex.
 class Optimiser {
  public:
   /// All references must outlive this object. `solid` may be null for Direction::Any only,

@@ -1,6 +1,6 @@
-#include "optimise_in_parallel.h"
+#include <kaboum/geom/parallel.h>
 
-#include <tbb/parallel_for.h>
+#include "optimise_in_parallel.h"
 
 #include <algorithm>
 
@@ -49,7 +49,7 @@ void ParallelOptimiser::run(std::size_t tasks, Task&& task) {
   }
   const bool recorded = options_.steps != nullptr;
   taken_.resize(std::max(taken_.size(), recorded ? tasks : 0));
-  tbb::parallel_for(
+  geom::parallel_loop(
       tbb::blocked_range<std::size_t>(0, tasks, 1),
       [&](const tbb::blocked_range<std::size_t>& range) {
         Lane& lane = lanes_.local();

@@ -60,6 +60,9 @@ class ParallelOptimiser {
   /// An optimiser for one thread.
   struct Lane {
     explicit Lane(ParallelOptimiser& of);
+    Lane(const Lane&) = delete;
+    Lane& operator=(const Lane&) = delete;
+    ~Lane() = default;
     DecimateStatistics statistics;
     std::vector<Step> steps;
     Optimiser optimiser;

@@ -178,8 +178,8 @@ Extracted extract(const Progressive& p, std::size_t vertices, const std::string&
     return {player.mesh(), player.at(), true, level.vertices <= vertices};
   }
   player.play_until(vertices);
-  const bool level = std::any_of(
-      p.levels.begin(), p.levels.end(), [&](const auto& l) { return l.steps == player.at(); });
+  const bool level = std::any_of(p.levels.begin(), p.levels.end(),
+                                 [&](const auto& l) { return l.steps == player.at(); });
   return {player.mesh(), player.at(), level, player.vertices() <= vertices};
 }
 

@@ -1,8 +1,7 @@
 #include "regions.h"
 
+#include <kaboum/geom/parallel.h>
 #include <kaboum/geom/spatial_order.h>
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -112,8 +111,8 @@ class Rounds {
 
   /// @param share  of a region's vertices that stay at least.
   void contract(double share) {
-    tbb::parallel_for(std::size_t{0}, regions_.size(),
-                      [&](std::size_t r) { contract(regions_[r], share); });
+    geom::parallel_loop(std::size_t{0}, regions_.size(),
+                        [&](std::size_t r) { contract(regions_[r], share); });
   }
 
   /// Contracts within a region and writes what is left to where it was.

@@ -1,6 +1,5 @@
 #include <kaboum/geom/bvh.h>
-
-#include <tbb/parallel_invoke.h>
+#include <kaboum/geom/parallel.h>
 
 #include <algorithm>
 #include <utility>
@@ -52,7 +51,7 @@ struct Builder {
     const std::uint32_t left = self + 1, right = left + nodes_of(middle - begin).first;
     constexpr std::uint32_t kLarge = 4096;
     if (end - begin > kLarge) {
-      tbb::parallel_invoke([&] { build(left, begin, middle); }, [&] { build(right, middle, end); });
+      geom::parallel_calls([&] { build(left, begin, middle); }, [&] { build(right, middle, end); });
     } else {
       build(left, begin, middle);
       build(right, middle, end);

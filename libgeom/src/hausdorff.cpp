@@ -1,8 +1,8 @@
 #include <kaboum/geom/distance.h>
 #include <kaboum/geom/error.h>
+#include <kaboum/geom/parallel.h>
 
 #include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -152,11 +152,11 @@ class BranchAndBound {
     for (std::size_t depth = boxes.size(); depth-- > 0; size /= 8) {
       std::vector<Finding> findings(level.size());
       const double enough = limit();
-      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, level.size(), 16),
-                        [&](const tbb::blocked_range<std::size_t>& range) {
-                          for (std::size_t i = range.begin(); i != range.end(); ++i)
-                            findings[i] = bound(level[i], enough);
-                        });
+      geom::parallel_loop(tbb::blocked_range<std::size_t>(0, level.size(), 16),
+                          [&](const tbb::blocked_range<std::size_t>& range) {
+                            for (std::size_t i = range.begin(); i != range.end(); ++i)
+                              findings[i] = bound(level[i], enough);
+                          });
       for (const Finding& f : findings) take(f);
       std::vector<Cluster> next;
       const std::uint32_t step = size / 8;
@@ -216,11 +216,12 @@ class BranchAndBound {
     };
     std::vector<Outcome> outcomes(clusters.size());
     const double enough = limit();
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, clusters.size(), 16),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        for (std::size_t i = range.begin(); i != range.end(); ++i)
-                          outcomes[i].finding = bound_each(clusters[i], enough, outcomes[i].pieces);
-                      });
+    geom::parallel_loop(tbb::blocked_range<std::size_t>(0, clusters.size(), 16),
+                        [&](const tbb::blocked_range<std::size_t>& range) {
+                          for (std::size_t i = range.begin(); i != range.end(); ++i)
+                            outcomes[i].finding =
+                                bound_each(clusters[i], enough, outcomes[i].pieces);
+                        });
     std::vector<Piece> open;
     for (const Outcome& o : outcomes) {
       take(o.finding);
@@ -332,11 +333,11 @@ class BranchAndBound {
   void evaluate(std::vector<Piece>& pieces) {
     std::vector<Finding> findings(pieces.size());
     const double enough = limit();
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pieces.size(), 64),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        for (std::size_t i = range.begin(); i != range.end(); ++i)
-                          findings[i] = bound(pieces[i], enough);
-                      });
+    geom::parallel_loop(tbb::blocked_range<std::size_t>(0, pieces.size(), 64),
+                        [&](const tbb::blocked_range<std::size_t>& range) {
+                          for (std::size_t i = range.begin(); i != range.end(); ++i)
+                            findings[i] = bound(pieces[i], enough);
+                        });
     for (const Finding& f : findings) take(f);
     keep_unsettled(pieces);
   }

@@ -1,9 +1,8 @@
 #include <kaboum/geom/error.h>
+#include <kaboum/geom/parallel.h>
 #include <kaboum/geom/prepare.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/geom/winding.h>
-
-#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
@@ -39,7 +38,7 @@ class Preparation {
     if (!options_.keep_orientation) turn_components();
     drop_copies();
     number_by_first_use();
-    tbb::parallel_invoke([&] { find_border(); },
+    geom::parallel_calls([&] { find_border(); },
                          [&] { components(edges_, mesh().triangles.size(), &out_.components); });
     if (options_.keep_orientation && out_.closed && !(signed_volume(out_.mesh) > 0))
       out_.notes.push_back(

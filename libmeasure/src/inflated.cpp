@@ -2,9 +2,8 @@
 
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/geom/error.h>
+#include <kaboum/geom/parallel.h>
 #include <kaboum/geom/topology.h>
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -89,7 +88,7 @@ Mesh inflated(const Mesh& hull, double margin, const Sphere& sphere) {
 Inflated inflate(const geom::ConvexSet& set, int level) {
   const Sphere sphere = icosphere(level);
   std::vector<Mesh> polytopes(set.bodies.size());
-  tbb::parallel_for(std::size_t{0}, polytopes.size(), [&](std::size_t i) {
+  geom::parallel_loop(std::size_t{0}, polytopes.size(), [&](std::size_t i) {
     polytopes[i] = inflated(set.bodies[i].hull, set.margin, sphere);
   });
   Inflated out;

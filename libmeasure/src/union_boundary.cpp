@@ -1,9 +1,8 @@
 // Boundary of a union of convex polytopes, by exact clipping.
 #include <kaboum/geom/error.h>
+#include <kaboum/geom/parallel.h>
 #include <kaboum/geom/predicates.h>
 #include <kaboum/measure/surface.h>
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -78,7 +77,7 @@ class Clipper {
     for (std::size_t i = 0; i < bodies_.size(); ++i)
       for (std::size_t t = 0; t < bodies_[i].triangles.size(); ++t) facets.emplace_back(i, t);
     parts.resize(facets.size());
-    tbb::parallel_for(std::size_t{0}, facets.size(), [&](std::size_t f) {
+    geom::parallel_loop(std::size_t{0}, facets.size(), [&](std::size_t f) {
       parts[f] = uncovered(facets[f].first, facets[f].second);
     });
     Boundary out;

@@ -1,10 +1,10 @@
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/geom/error.h>
 #include <kaboum/geom/float32.h>
+#include <kaboum/geom/parallel.h>
 #include <kaboum/sweep/sweep.h>
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -143,7 +143,7 @@ SweepResult swept_volume(const Robot& robot, std::span<const Body> bodies, const
   steps.merge = options.merge;
   steps.max_reach = options.max_reach;
   std::vector<Plan> plans(bodies.size());
-  tbb::parallel_for(std::size_t{0}, bodies.size(), [&](std::size_t i) {
+  geom::parallel_loop(std::size_t{0}, bodies.size(), [&](std::size_t i) {
     // The ends of a balanced piece lie up to epsilon beyond the poses; explicit margins as well.
     plans[i].spacing = geom::float32_spacing(extent(robot, bodies[i], path) + 4 * options.epsilon);
     plans[i].rounding = std::numbers::sqrt3 / 2 * plans[i].spacing * kUp;
@@ -160,7 +160,7 @@ SweepResult swept_volume(const Robot& robot, std::span<const Body> bodies, const
   }
   if (options.rule == StepRule::Uniform || options.rule == StepRule::Baginski)
     steps.shared = shared_bounds(robot, bodies, path);
-  tbb::parallel_for(std::size_t{0}, bodies.size(), [&](std::size_t i) {
+  geom::parallel_loop(std::size_t{0}, bodies.size(), [&](std::size_t i) {
     StepOptions own = steps;
     own.deviation =
         own.shared.empty() ? for_motion - bodies[i].margin - plans[i].rounding : least_room;
@@ -173,7 +173,7 @@ SweepResult swept_volume(const Robot& robot, std::span<const Body> bodies, const
     result.sources.insert(result.sources.end(), plans[i].pieces.size(), i);
   std::vector<Output> outputs(first.back());
   tbb::enumerable_thread_specific<geom::HullBuilder> builders;
-  tbb::parallel_for(std::size_t{0}, outputs.size(), [&](std::size_t k) {
+  geom::parallel_loop(std::size_t{0}, outputs.size(), [&](std::size_t k) {
     const std::size_t i = result.sources[k];
     outputs[k] = make_hull(bodies[i], plans[i].pieces[k - first[i]], plans[i], left_out,
                            options.explicit_margin, builders.local());

@@ -2,11 +2,10 @@
 
 #include <kaboum/geom/error.h>
 
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <atomic>
+
+#include "parallel.h"
 
 namespace kaboum::verify {
 namespace {
@@ -205,10 +204,10 @@ class Counter {
 Contacts::Contacts(std::uint32_t begin, std::uint32_t end, std::vector<Cut> cuts,
                    std::vector<Along> alongs)
     : begin_(begin), cuts_(std::move(cuts)), alongs_(std::move(alongs)) {
-  oneapi::tbb::parallel_sort(cuts_.begin(), cuts_.end(), [](const Cut& a, const Cut& b) {
+  verify::sort_in_parallel(cuts_.begin(), cuts_.end(), [](const Cut& a, const Cut& b) {
     return a.face != b.face ? a.face < b.face : a.by < b.by;
   });
-  oneapi::tbb::parallel_sort(alongs_.begin(), alongs_.end(), [](const Along& a, const Along& b) {
+  verify::sort_in_parallel(alongs_.begin(), alongs_.end(), [](const Along& a, const Along& b) {
     if (a.face != b.face) return a.face < b.face;
     return a.on != b.on ? a.on < b.on : a.edge < b.edge;
   });
@@ -268,7 +267,7 @@ MutualContacts contacts_between(const Scene& scene, const ContactLimits& limits)
   const std::vector<std::uint32_t> roots = subtrees(inside, kTasks);
   std::vector<Found> first(roots.size()), second(roots.size());
   Counter counter(limits);
-  oneapi::tbb::parallel_for(std::size_t{0}, roots.size(), [&](std::size_t i) {
+  verify::parallel_loop(std::size_t{0}, roots.size(), [&](std::size_t i) {
     Classifier classify(scene, first[i], second[i]);
     Counter::Task task(counter);
     meeting_pairs(inside, roots[i], outside, [&](std::uint32_t f, std::uint32_t g) {
@@ -293,7 +292,7 @@ Contacts contacts_within(const Scene& scene, int chain, const ContactLimits& lim
   const std::vector<std::uint32_t> roots = subtrees(tree, kTasks);
   std::vector<Found> found(roots.size());
   Counter counter(limits);
-  oneapi::tbb::parallel_for(std::size_t{0}, roots.size(), [&](std::size_t i) {
+  verify::parallel_loop(std::size_t{0}, roots.size(), [&](std::size_t i) {
     Classifier classify(scene, found[i], found[i]);
     Counter::Task task(counter);
     meeting_pairs(tree, roots[i], tree, [&](std::uint32_t f, std::uint32_t g) {

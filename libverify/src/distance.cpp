@@ -1,13 +1,12 @@
 #include <kaboum/geom/error.h>
 #include <kaboum/verify/distance.h>
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "nearest.h"
+#include "parallel.h"
 #include "spot.h"
 
 namespace kaboum::verify {
@@ -198,7 +197,7 @@ DistanceClaim verify_distance(const geom::Mesh& from, const geom::Mesh& to, doub
   for (std::uint32_t first = 0; first < count; first += kBlock) {
     const std::uint32_t size = std::min(kBlock, count - first);
     claims.assign(size, {});
-    oneapi::tbb::parallel_for(std::uint32_t{0}, size, [&](std::uint32_t i) {
+    verify::parallel_loop(std::uint32_t{0}, size, [&](std::uint32_t i) {
       const std::uint32_t f = first + i;
       claims[i] = judge(scene.corner(f, 0), scene.corner(f, 1), scene.corner(f, 2));
     });

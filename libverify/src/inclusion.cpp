@@ -1,13 +1,12 @@
 #include <kaboum/geom/error.h>
 #include <kaboum/verify/inclusion.h>
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <mutex>
 
 #include "arrangement.h"
+#include "parallel.h"
 #include "spot.h"
 #include "whole.h"
 #include "witness.h"
@@ -56,7 +55,7 @@ class Decision {
       const std::vector<int> values = whole_values(arrangement_, chain, 3, side, value, samples_);
       const std::uint32_t begin = scene_.begin(chain);
       std::vector<char> bad(values.size(), 0);
-      oneapi::tbb::parallel_for(std::size_t{0}, values.size(), [&](std::size_t i) {
+      verify::parallel_loop(std::size_t{0}, values.size(), [&](std::size_t i) {
         const auto f = begin + static_cast<std::uint32_t>(i);
         if (scene_.face(f).axis < 0) return;
         if (values[i] != kCut) {
@@ -159,7 +158,7 @@ class Decision {
     prepare_settled(chain);
     const std::uint32_t begin = scene_.begin(chain);
     std::vector<char> fails(other_values_.size(), 0);
-    oneapi::tbb::parallel_for(std::size_t{0}, fails.size(), [&](std::size_t i) {
+    verify::parallel_loop(std::size_t{0}, fails.size(), [&](std::size_t i) {
       const auto f = begin + static_cast<std::uint32_t>(i);
       if (scene_.face(f).axis < 0) return;
       if (other_values_[i] != kCut) {
@@ -186,7 +185,7 @@ class Decision {
     const auto own = [&](const Spot& spot) { return winding(scene_, spot, side, chain); };
     const std::uint32_t begin = scene_.begin(chain);
     std::vector<char> bad(scene_.count(chain), 0);
-    oneapi::tbb::parallel_for(std::size_t{0}, failing.size(), [&](std::size_t i) {
+    verify::parallel_loop(std::size_t{0}, failing.size(), [&](std::size_t i) {
       const std::uint32_t f = failing[i];
       const int own_value = values[f - begin], other_value = other_values_[f - begin];
       // The own number is the same all over the face and harmless.
@@ -215,7 +214,7 @@ class Decision {
         arrangement_, kInside, mask_of(kOutside), kOuter,
         [&](const Spot& spot) { return at(spot, kOuter); }, samples_);
     std::vector<char> bad(scene_.count(kInside), 0);
-    oneapi::tbb::parallel_for(std::size_t{0}, failing.size(), [&](std::size_t i) {
+    verify::parallel_loop(std::size_t{0}, failing.size(), [&](std::size_t i) {
       const std::uint32_t f = failing[i];
       if (outer_values[f] != kCut) {
         if (outer_values[f] < 1) report(surface_, bad[f], middle_spot(f), kOuter);

@@ -1,12 +1,11 @@
 #include "pockets.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "nearest.h"
+#include "parallel.h"
 #include "spot.h"
 
 namespace kaboum::verify {
@@ -41,8 +40,8 @@ class Search {
         return claim;
       }
       looks.assign(cells.size(), {});
-      oneapi::tbb::parallel_for(std::size_t{0}, cells.size(),
-                                [&](std::size_t i) { looks[i] = look_at(cells[i]); });
+      verify::parallel_loop(std::size_t{0}, cells.size(),
+                            [&](std::size_t i) { looks[i] = look_at(cells[i]); });
       const auto deepest =
           std::max_element(looks.begin(), looks.end(),
                            [](const Look& a, const Look& b) { return a.beyond < b.beyond; });

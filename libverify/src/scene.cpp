@@ -2,14 +2,13 @@
 
 #include <kaboum/geom/error.h>
 
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/parallel_invoke.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <numeric>
 #include <string>
+
+#include "parallel.h"
 
 namespace kaboum::verify {
 namespace {
@@ -96,7 +95,7 @@ Scene::Scene(const geom::Mesh& inside, const geom::Mesh& outside) {
     offset += static_cast<std::uint32_t>(mesh.vertices.size());
     if (chain == kInside) split_ = static_cast<std::uint32_t>(faces_.size());
   }
-  oneapi::tbb::parallel_for(std::size_t{0}, faces_.size(), [&](std::size_t f) {
+  verify::parallel_loop(std::size_t{0}, faces_.size(), [&](std::size_t f) {
     Face& face = faces_[f];
     find_axis(face, points_[face.v[0]], points_[face.v[1]], points_[face.v[2]]);
   });
@@ -125,7 +124,7 @@ Scene::Scene(const geom::Mesh& inside, const geom::Mesh& outside) {
     }
     tree_[chain] = BoxTree(std::move(boxes), std::move(items));
   };
-  oneapi::tbb::parallel_invoke([&] { build_tree(kInside); }, [&] { build_tree(kOutside); });
+  verify::parallel_calls([&] { build_tree(kInside); }, [&] { build_tree(kOutside); });
 }
 
 void Scene::rescale() {

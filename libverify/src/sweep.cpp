@@ -2,13 +2,13 @@
 // files alone".
 #include <kaboum/geom/error.h>
 #include <kaboum/verify/sweep.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <sstream>
 
+#include "parallel.h"
 #include "swept_body.h"
 #include "swept_cell.h"
 #include "swept_inside.h"
@@ -301,7 +301,7 @@ void surface_claim(std::span<const MovingShape> shapes, const Waypoints& path,
       }
     // Tasks after the first one that refutes need not be done: all before it are.
     std::atomic<std::size_t> first_refuting = tasks.size();
-    tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t t) {
+    verify::parallel_loop(std::size_t{0}, tasks.size(), [&](std::size_t t) {
       if (t > first_refuting) return;
       Task& task = tasks[t];
       Search search(task, shapes[i], path, bodies, margin, options);

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <atomic>
 #include <limits>
 #include <vector>
@@ -9,6 +7,7 @@
 #include <kaboum/verify/inclusion.h>
 
 #include "arrangement.h"
+#include "parallel.h"
 #include "spot.h"
 
 namespace kaboum::verify {
@@ -30,7 +29,7 @@ std::vector<int> whole_values(const Arrangement& arrangement, int chain, ChainMa
       roots.push_back(i);
     }
   }
-  oneapi::tbb::parallel_for(std::size_t{0}, roots.size(), [&](std::size_t r) {
+  verify::parallel_loop(std::size_t{0}, roots.size(), [&](std::size_t r) {
     const Spot spot = middle_spot(begin + roots[r]);
     result[roots[r]] = value(spot);
   });
@@ -56,7 +55,7 @@ std::vector<std::uint32_t> faces_with(const Scene& scene, int chain,
   };
   const std::vector<int> inner = values(kInner), outer = values(kOuter);
   std::vector<char> good(inner.size(), 0);
-  oneapi::tbb::parallel_for(std::size_t{0}, inner.size(), [&](std::size_t i) {
+  verify::parallel_loop(std::size_t{0}, inner.size(), [&](std::size_t i) {
     const auto f = scene.begin(chain) + static_cast<std::uint32_t>(i);
     if (scene.face(f).axis < 0) return;
     if (inner[i] != kCut && outer[i] != kCut) {

@@ -1,12 +1,11 @@
 #include "witness.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "nearest.h"
+#include "parallel.h"
 #include "spot.h"
 
 namespace kaboum::verify {
@@ -59,7 +58,7 @@ Witness find_witness(const Scene& scene, const std::vector<Offence>& offences, b
     }
   }
   const NearestTriangle nearest(scene, kOutside);
-  oneapi::tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t i) {
+  verify::parallel_loop(std::size_t{0}, candidates.size(), [&](std::size_t i) {
     Candidate& candidate = candidates[i];
     const std::optional<int> outer = winding_at(scene, kOutside, candidate.point);
     const bool enclosed = !relative && outer && *outer >= 1;

@@ -6,9 +6,15 @@
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <optional>
 #include <set>
+#include <stdexcept>
+#include <thread>
 
 #include "recorded.h"
 #include "support/shapes.h"
@@ -18,14 +24,14 @@ namespace {
 using namespace kaboum;         // NOLINT: the test uses most of it
 using namespace kaboum::bmesh;  // NOLINT
 
-test::Recorded run(Direction direction, Cost cost, std::size_t threads) {
+test::Recorded run(Direction direction, Cost cost, std::size_t threads, double share = 0.1) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
   DecimateOptions o;
   o.direction = direction;
   o.cost = cost;
   o.effort = Effort::Normal;
   // Large enough not to be decimated within an error bound.
-  return test::record(test::noisy(test::torus(1, 0.4, 90, 46), 3e-3, 3), o, 0.1);
+  return test::record(test::noisy(test::torus(1, 0.4, 90, 46), 3e-3, 3), o, share);
 }
 
 TEST(ParallelOptimiser, GivesTheSameForAnyNumberOfThreads) {
@@ -36,21 +42,81 @@ TEST(ParallelOptimiser, GivesTheSameForAnyNumberOfThreads) {
     EXPECT_GT(one.result.statistics.pull_backs, 100U);
     const auto checked = replay(one.input, one.log, one.result.mesh);
     EXPECT_TRUE(checked.verified) << checked.violation;
-    for (const std::size_t threads : {2, 5}) {
-      const test::Recorded other = run(direction, cost, threads);
-      EXPECT_EQ(one.result.mesh.triangles, other.result.mesh.triangles);
-      EXPECT_EQ(one.result.mesh.vertices, other.result.mesh.vertices);
-      ASSERT_EQ(one.log.steps.size(), other.log.steps.size());
-      for (std::size_t i = 0; i < one.log.steps.size(); ++i) {
-        EXPECT_EQ(one.log.steps[i].kept, other.log.steps[i].kept);
-        EXPECT_EQ(one.log.steps[i].gone, other.log.steps[i].gone);
-        EXPECT_EQ(one.log.steps[i].position, other.log.steps[i].position);
-      }
-      EXPECT_EQ(one.result.statistics.predicates, other.result.statistics.predicates);
-      EXPECT_EQ(one.result.statistics.pull_backs, other.result.statistics.pull_backs);
-      EXPECT_EQ(one.result.statistics.rejected_original, other.result.statistics.rejected_original);
+    const test::Recorded other = run(direction, cost, 5);
+    EXPECT_EQ(one.result.mesh.triangles, other.result.mesh.triangles);
+    EXPECT_EQ(one.result.mesh.vertices, other.result.mesh.vertices);
+    ASSERT_EQ(one.log.steps.size(), other.log.steps.size());
+    for (std::size_t i = 0; i < one.log.steps.size(); ++i) {
+      EXPECT_EQ(one.log.steps[i].kept, other.log.steps[i].kept);
+      EXPECT_EQ(one.log.steps[i].gone, other.log.steps[i].gone);
+      EXPECT_EQ(one.log.steps[i].position, other.log.steps[i].position);
+    }
+    EXPECT_EQ(one.result.statistics.predicates, other.result.statistics.predicates);
+    EXPECT_EQ(one.result.statistics.pull_backs, other.result.statistics.pull_backs);
+    EXPECT_EQ(one.result.statistics.rejected_original, other.result.statistics.rejected_original);
+  }
+}
+
+/// Boxes of which each meets the next one at an edge, and a series of them.
+std::vector<DecimateResult> series(Direction direction, std::size_t threads, bool open) {
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+  const geom::Mesh box = test::box({1, 1, 1}, 12);
+  std::vector<geom::Mesh> boxes;
+  for (int i = 0; i < 3; ++i) boxes.push_back(test::translated(box, {1.0 * i, 1.0 * i, 0}));
+  geom::Mesh mesh = test::welded(test::merged(boxes));
+  for (geom::Vec3& v : mesh.vertices)
+    v.z() += 0.02 * std::sin(9 * v.x()) * std::sin(7 * v.y()) * (2 * v.z() - 1);
+  if (open) mesh = test::without(mesh, [](const geom::Vec3& p) { return p.x() > 2.7; });
+  const auto p = geom::prepare(mesh);
+  DecimateOptions o;
+  o.direction = direction;
+  o.cost = Cost::Distance;
+  o.effort = Effort::Best;
+  o.precision = Precision::Float;
+  return decimate_series(p, o, std::vector<std::size_t>{600, 300, 150});
+}
+
+TEST(ParallelOptimiser, GivesTheSameSeriesForAnyNumberOfThreads) {
+  for (const auto& [direction, open] :
+       {std::pair(Direction::Outer, false), std::pair(Direction::Any, true)}) {
+    const auto one = series(direction, 1, open), other = series(direction, 5, open);
+    EXPECT_GT(one.back().statistics.pull_backs, 20U);
+    ASSERT_EQ(one.size(), other.size());
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      EXPECT_EQ(one[i].mesh.triangles, other[i].mesh.triangles);
+      EXPECT_EQ(one[i].mesh.vertices, other[i].mesh.vertices);
+      EXPECT_EQ(one[i].statistics.predicates, other[i].statistics.predicates);
     }
   }
+}
+
+// A task of the caller's own throws, which ends the caller's loop, but not what goes on within.
+TEST(ParallelOptimiser, IsDoneThoughTheCallersGroupIsCancelled) {
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 2);
+  std::atomic<bool> under_way = false, thrown = false;
+  std::optional<test::Recorded> r;
+  DecimateOptions o;
+  o.cost = Cost::Distance;
+  o.effort = Effort::Normal;
+  o.progress = [&](std::size_t) { under_way = true; };
+  EXPECT_THROW(tbb::parallel_for(
+                   0, 2,
+                   [&](int task) {
+                     if (task == 1) {
+                       while (!under_way) std::this_thread::yield();
+                       thrown = true;
+                       throw std::runtime_error("sibling");
+                     }
+                     r = test::record(test::noisy(test::torus(1, 0.4, 90, 46), 3e-3, 3), o, 0.14);
+                     EXPECT_TRUE(thrown);
+                   },
+                   tbb::simple_partitioner()),
+               std::runtime_error);
+  ASSERT_TRUE(r);
+  EXPECT_EQ(r->result.mesh.vertices,
+            run(Direction::Outer, Cost::Distance, 2, 0.14).result.mesh.vertices);
+  const auto checked = replay(r->input, r->log, r->result.mesh);
+  EXPECT_TRUE(checked.verified) << checked.violation;
 }
 
 /// Vertices that contracting an edge may move: its ends and their neighbours.
