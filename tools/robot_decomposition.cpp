@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "robot_bodies.h"
@@ -53,9 +54,62 @@ struct Decomposed {
   std::string folder;  // relative to the output folder
 };
 
-/// A link's bodies as a set: float32 points, their hulls, and a margin for all rounding.
-geom::ConvexSet container(const std::vector<sweep::Body>& bodies, const std::string& link) {
+/// A link's bodies as a set, and how far it reaches beyond them at most.
+struct Container {
   geom::ConvexSet set;
+  double beyond = 0;
+};
+
+struct Enlarged {
+  geom::Mesh hull;
+  double moved;  ///< how far vertices have been moved at most
+};
+
+/// A hull with float32 vertices that holds all that is within `radius` of this one; nullopt where
+/// vertices would be moved by more than `most`, since the body is too thin.
+///
+/// The hull is scaled about its middle c by 1 + s. A facet's plane, h from c, moves outwards by
+/// s·h, and back by no more than the largest rounding ρ of a vertex. So s·h ≥ radius + ρ for the
+/// least h will do.
+std::optional<Enlarged> enlarged(const geom::Mesh& hull, double radius, double most) {
+  geom::Vec3 middle = geom::Vec3::Zero();
+  for (const geom::Vec3& v : hull.vertices) middle += v / static_cast<double>(hull.vertices.size());
+  double largest = 0, extent = 0;
+  for (const geom::Vec3& v : hull.vertices) {
+    largest = std::max(largest, v.cwiseAbs().maxCoeff());
+    extent = std::max(extent, (v - middle).norm());
+  }
+  double height = extent;
+  for (const geom::Triangle& t : hull.triangles) {
+    const geom::Vec3& a = hull.vertices[t[0]];
+    const geom::Vec3 n = (hull.vertices[t[1]] - a).cross(hull.vertices[t[2]] - a);
+    if (!(n.norm() > 0)) return std::nullopt;
+    height = std::min(height, n.dot(a - middle) / n.norm());
+  }
+  height *= 1 - 1e-6;
+  // What rounding may have falsified heights by must not matter.
+  if (!(height > 1e-9 * (extent + largest))) return std::nullopt;
+  // Half a spacing of float32 a coordinate, and the rounding of what is computed here.
+  const double rounding = geom::float32_spacing(largest + most) + 0x1p-48 * largest;
+  const double share = (radius + rounding) / height * (1 + 1e-6);
+  std::vector<geom::Vec3> points;
+  Enlarged result{{}, 0};
+  for (const geom::Vec3& v : hull.vertices) {
+    points.push_back(geom::to_float32(geom::Vec3(middle + (1 + share) * (v - middle))));
+    result.moved = std::max(result.moved, (points.back() - v).norm() * (1 + 0x1p-50));
+  }
+  if (!(result.moved <= most)) return std::nullopt;
+  std::optional<geom::Mesh> larger = geom::convex_hull(points);
+  if (!larger) return std::nullopt;
+  result.hull = *std::move(larger);
+  return result;
+}
+
+/// Float32 points, their hulls, and what rounding may have moved them by: the bodies are enlarged
+/// by it, or where one is too thin for that, it is the set's margin.
+Container container(const std::vector<sweep::Body>& bodies, const std::string& link) {
+  Container out;
+  double margin = 0;
   for (const sweep::Body& body : bodies) {
     std::vector<geom::Vec3> points;
     double moved = 0;
@@ -68,10 +122,30 @@ geom::ConvexSet container(const std::vector<sweep::Body>& bodies, const std::str
     if (!hull)
       throw Error(ErrorCode::InvalidInput,
                   "link '" + link + "': a body is too thin for float32 in the link's frame");
-    set.bodies.push_back({body.name, *hull});
-    set.margin = std::max(set.margin, (body.margin + moved) * (1 + 0x1p-50));
+    out.set.bodies.push_back({body.name, *hull});
+    margin = std::max(margin, (body.margin + moved) * (1 + 0x1p-50));
   }
-  return set;
+  out.beyond = 2 * margin;
+  if (!(margin > 0)) return out;
+  constexpr double kMost = 1e-4;  // of the link's diagonal
+  geom::Box3 box;
+  for (const geom::ConvexBody& body : out.set.bodies)
+    for (const geom::Vec3& v : body.hull.vertices) box.extend(v);
+  double moved = 0;
+  std::vector<geom::ConvexBody> larger;
+  for (const geom::ConvexBody& body : out.set.bodies) {
+    std::optional<Enlarged> e = enlarged(body.hull, margin, kMost * box.diagonal());
+    if (!e) break;
+    moved = std::max(moved, e->moved);
+    larger.push_back({body.name, std::move(e->hull)});
+  }
+  if (larger.size() < out.set.bodies.size()) {
+    out.set.margin = margin;
+    return out;
+  }
+  out.set.bodies = std::move(larger);
+  out.beyond += moved;
+  return out;
 }
 
 class Writer {
@@ -203,7 +277,7 @@ class Writer {
       return;
     }
     for (XMLElement* e : old) element->DeleteChild(e);
-    geom::ConvexSet set = container(bodies, link.name);
+    auto [set, beyond] = container(bodies, link.name);
     geom::Provenance& p = set.provenance;
     p.source = fs::path(o_.robot).filename().string();
     p.source_sha256 = robot_.sha256;
@@ -212,7 +286,7 @@ class Writer {
     p.unit = o_.unit;
     p.frame = link.name;
     p.direction = "outer";
-    p.epsilon = reach + 2 * set.margin;
+    p.epsilon = reach + beyond;
     p.covers_solid = solid;
     p.covers_surface = surface;
     const std::string file = "links/" + link_files_.unique(link.name) + ".glb";
