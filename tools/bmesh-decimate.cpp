@@ -362,7 +362,7 @@ class Job {
     if (!o_.epsilon.empty()) epsilon_ = tools::parse_length(o_.epsilon)->of(box_.diagonal());
     if (epsilon_ && *epsilon_ > 0.1 * box_.diagonal())
       say("note: epsilon is " + formatted(100 * *epsilon_ / box_.diagonal()) +
-          "% of the diagonal; a percentage is written with its sign, as in --epsilon 1%");
+          "% of the diagonal, which bounds hardly anything; 1% is written --epsilon 1%");
     if (epsilon_ && !(*epsilon_ > 0))
       throw Error(ErrorCode::InvalidInput,
                   o_.input + ": a percentage of a mesh without extent is no length");
@@ -711,7 +711,7 @@ class Job {
     if (level.wished && level.result.stop == bmesh::Stop::ErrorBound)
       line += "; epsilon allows no fewer, " + std::to_string(*level.wished) + " were wished";
     say(line);
-    warn_of_spikes(level);
+    warn_of_distance(level);
     const int verification = level.verified ? conclude_verification(level) : tools::kDone;
     if (!level.reached()) {
       tools::log(false, "bmesh-decimate: " + o_.input + ": " + std::to_string(*level.wished) +
@@ -752,17 +752,31 @@ class Job {
     return code;
   }
 
-  /// Without --epsilon nothing keeps vertices near the original, and few vertices mean spikes.
-  void warn_of_spikes(const Level& level) const {
-    const geom::Box3 result = geom::bounding_box(level.result.mesh);
-    if (result.empty()) return;
+  /// Without --epsilon nothing keeps vertices near the original: few of them mean spikes, or
+  /// inwards that little is left. Some vertices of the input tell without measuring it all.
+  void warn_of_distance(const Level& level) const {
+    constexpr double kFar = 0.05;  // of the diagonal
+    constexpr std::size_t kSamples = 1000;
+    const geom::Mesh& mesh = level.result.mesh;
+    if (mesh.triangles.empty()) return;
+    const geom::Box3 result = geom::bounding_box(mesh);
     const double beyond =
         std::max((box_.min - result.min).maxCoeff(), (result.max - box_.max).maxCoeff());
-    if (beyond > 0.05 * box_.diagonal())
-      tools::log(o_.common.quiet, "warning: the result reaches " +
-                                      formatted(100 * beyond / box_.diagonal()) +
-                                      "% of the diagonal beyond the input's bounding box; use more "
-                                      "vertices, or --epsilon to bound the distance");
+    const geom::DistanceQuery surface(mesh);
+    double away = 0;
+    const std::vector<geom::Vec3>& vertices = prepared_.mesh.vertices;
+    for (std::size_t i = 0; i < vertices.size(); i += vertices.size() / kSamples + 1)
+      away = std::max(away, surface.nearest(vertices[i]).lower);
+    const auto warn = [&](const std::string& what, double length, const char* where) {
+      if (!(length > kFar * box_.diagonal())) return;
+      tools::log(o_.common.quiet,
+                 "warning: " + what + formatted(100 * length / box_.diagonal()) +
+                     "% of the diagonal " + where + "; " +
+                     (epsilon_ ? "use a smaller --epsilon"
+                               : "use more vertices, or --epsilon to bound the distance"));
+    };
+    warn("the result reaches ", beyond, "beyond the input's bounding box");
+    warn("the input has vertices ", away, "away from the result");
   }
 
   Options o_;

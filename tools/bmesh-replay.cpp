@@ -20,7 +20,7 @@ std::string original(const bmesh::ReplayResult& r) {
   std::string text = "the original";
   if (r.turned != 0)
     text += ", with " + std::to_string(r.turned) +
-            " triangles turned as the log says (whether they should be is not checked),";
+            " triangles turned as the log says (whether they should be is not checked)";
   return text;
 }
 

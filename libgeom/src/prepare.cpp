@@ -477,7 +477,7 @@ class Preparation {
     if (out_.turned_components == 0) return;
     find_edges();
     out_.notes.push_back(count_of(out_.turned_components, "component was", "components were") +
-                         " inside out and turned, with its cavities");
+                         " inside out and turned, cavities included");
   }
 
   /// Vertices in the order in which the triangles left use them in the input, before any was

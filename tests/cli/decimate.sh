@@ -62,6 +62,11 @@ expect 1 'cannot be reached' "$D" two.off -o two-out.off --vertices 4 --precisio
 expect 1 'cannot be reached' "$D" two.off -o two-out.off --vertices 4 --epsilon 100
 expect 1 'cannot be reached' "$D" two.off -o - --output-format off --vertices 4
 
+# What becomes of too few vertices is said without being measured.
+expect 1 '% of the diagonal away from the result; use more' "$D" "$BRACKET" -o warned.ply --vertices 8 --cost planes --effort fast
+expect 0 '' "$D" "$BRACKET" -o warned.ply --vertices 1000 --effort fast
+grep -q warning err.txt && fail "a warning of what is near"
+
 # One number of vertices of a small mesh is reached twice, the second time nearer; a series is not.
 expect 0 '' "$D" "$BRACKET" -o small.ply --vertices 1000 --effort fast --quiet
 expect 0 '' "$D" small.ply -o twice.ply --vertices 150 --quiet
