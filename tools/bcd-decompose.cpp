@@ -26,7 +26,7 @@ using namespace kaboum;
 using tools::Json;
 
 /// Changes whenever the same options may give another result: cached results are then not found.
-constexpr const char* kAlgorithm = "planes 18";
+constexpr const char* kAlgorithm = "planes 17";
 
 struct Options {
   std::string input, output, input_format, output_format, epsilon, direction = "outer";

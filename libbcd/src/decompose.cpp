@@ -430,13 +430,11 @@ class Decomposer {
   }
 
   /// Bodies within epsilon; none when even the first are more than `most`.
-  /// @param pieces  that these are merged of, at most; what is too far then is taken apart.
-  std::vector<Finished> within(double epsilon, std::size_t most = kUnlimited,
-                               std::size_t pieces = kUnlimited) {
+  std::vector<Finished> within(double epsilon, std::size_t most = kUnlimited) {
     const double wished = 0.93 * epsilon;
     std::vector<Body> best;
     const double begin = std::max(tree_.worst(), epsilon);
-    std::size_t most_leaves = std::min<std::size_t>(pieces, 6000);
+    std::size_t most_leaves = 6000;
     for (const double threshold : tuning_.thresholds) {
       while (tree_.worst() > threshold * wished && tree_.leaf_count() < most_leaves &&
              tree_.cut_worst())
@@ -449,12 +447,12 @@ class Decomposer {
       }
       std::size_t fewest = 0;
       for (const double bulk : tuning_.bulks) {
-        std::vector<Body> bodies = merged(leaf_bodies(pieces), 1, wished, bulk);
+        std::vector<Body> bodies = merged(leaf_bodies(), 1, wished, bulk);
         fewest = fewest == 0 ? bodies.size() : std::min(fewest, bodies.size());
         if (best.empty() || bodies.size() < best.size()) best = std::move(bodies);
       }
       if (fewest > most) return {};
-      most_leaves = std::min(pieces, std::max<std::size_t>(200, 8 * fewest));
+      most_leaves = std::max<std::size_t>(200, 8 * fewest);
     }
     report("simplifying", 0.6);
     return settle(std::move(best), epsilon, std::numeric_limits<std::size_t>::max());
@@ -776,11 +774,8 @@ class Decomposer {
     for (double step = 0.08; step > 0.015 && tries > 0; --tries) {
       const double epsilon = (1 - step) * reach_of(best);
       if (!(epsilon > 1e-5 * solid_.diagonal())) break;
-      // Far more pieces than bodies take long, and are too many when they have been taken apart.
-      std::vector<Finished> tried =
-          within(epsilon, 4 * most, std::max<std::size_t>(400, 24 * most));
+      std::vector<Finished> tried = within(epsilon);
       for (const std::size_t enough : {most, std::size_t{1}}) {
-        if (tried.empty()) break;
         const bool looked = tried.size() > enough || enough == 1;
         if (looked) {
           reduce(tried, epsilon, enough);
