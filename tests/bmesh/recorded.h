@@ -5,6 +5,8 @@
 #include <kaboum/bmesh/log.h>
 #include <kaboum/geom/prepare.h>
 
+#include <gtest/gtest.h>
+
 #include <cstddef>
 
 namespace kaboum::test {
@@ -34,6 +36,22 @@ inline Recorded record(const geom::Mesh& mesh, bmesh::DecimateOptions options, d
   options.steps = &r.log.steps;
   r.result = bmesh::decimate(p, options);
   return r;
+}
+
+/// The same mesh by the same steps.
+inline void expect_same(const Recorded& one, const Recorded& other) {
+  EXPECT_EQ(one.result.mesh.triangles, other.result.mesh.triangles);
+  EXPECT_EQ(one.result.mesh.vertices, other.result.mesh.vertices);
+  ASSERT_EQ(one.log.steps.size(), other.log.steps.size());
+  for (std::size_t i = 0; i < one.log.steps.size(); ++i) {
+    EXPECT_EQ(one.log.steps[i].kept, other.log.steps[i].kept);
+    EXPECT_EQ(one.log.steps[i].gone, other.log.steps[i].gone);
+    EXPECT_EQ(one.log.steps[i].position, other.log.steps[i].position);
+  }
+  EXPECT_EQ(one.result.statistics.predicates, other.result.statistics.predicates);
+  EXPECT_EQ(one.result.statistics.placements, other.result.statistics.placements);
+  EXPECT_EQ(one.result.statistics.pull_backs, other.result.statistics.pull_backs);
+  EXPECT_EQ(one.result.statistics.rejected_original, other.result.statistics.rejected_original);
 }
 
 }  // namespace kaboum::test
