@@ -13,6 +13,13 @@
 
 namespace kaboum::bmesh {
 
+/// FNV-1a: no change of a single byte keeps it, and of 2^64 others one does.
+inline std::uint64_t checksum_of(std::span<const char> bytes) {
+  std::uint64_t sum = 0xcbf29ce484222325;
+  for (const char byte : bytes) sum = (sum ^ static_cast<unsigned char>(byte)) * 0x100000001b3;
+  return sum;
+}
+
 /// Appends little-endian numbers to bytes.
 class Writer {
  public:
@@ -31,6 +38,8 @@ class Writer {
     number(static_cast<std::uint64_t>(v.size()));
     for (const std::uint32_t i : v) number(i);
   }
+  /// Appends the checksum of all bytes so far.
+  void checksum() { number(checksum_of(out)); }
   std::vector<char> out;
 };
 
@@ -73,6 +82,15 @@ class Reader {
       fail("is not " + what + " (it does not begin with \"" +
            std::string(expected.substr(0, expected.size() - 1)) + "\")");
     at_ = expected.size();
+  }
+  /// Whether the last eight bytes are the checksum of those before; they are left out from now on.
+  void checksum() {
+    const std::size_t size = bytes_.size() < at_ + 8 ? at_ : bytes_.size() - 8;
+    Reader last(bytes_.subspan(size), name_);
+    const std::span<const char> sealed = bytes_.first(size);
+    if (bytes_.size() - size != 8 || last.number<std::uint64_t>() != checksum_of(sealed))
+      fail("is damaged or truncated: its checksum is not that of its bytes");
+    bytes_ = sealed;
   }
   void end() {
     if (at_ != bytes_.size()) fail("has bytes after its end, at byte " + std::to_string(at_));

@@ -9,7 +9,7 @@
 namespace kaboum::bmesh {
 namespace {
 
-constexpr std::string_view kMagic = "KABOUM-BMESH-PROGRESSIVE 1\n";
+constexpr std::string_view kMagic = "KABOUM-BMESH-PROGRESSIVE 2\n";
 
 /// The mesh under the steps. What a step needs is looked at before it is taken, since the file may
 /// be anybody's.
@@ -126,12 +126,14 @@ std::vector<char> serialise_progressive(const Progressive& p) {
   for (const Progressive::Level& level : p.levels)
     for (const std::size_t n : {level.wished, level.vertices, level.steps})
       w.number(static_cast<std::uint64_t>(n));
+  w.checksum();
   return std::move(w.out);
 }
 
 Progressive parse_progressive(std::span<const char> bytes, const std::string& name) {
   Reader r(bytes, name);
   r.magic(kMagic, "a progressive file of bmesh-decimate");
+  r.checksum();
   Progressive p;
   p.log = read_log(r);
   const auto precision = r.number<std::uint32_t>();

@@ -160,6 +160,15 @@ TEST(Progressive, ExtractsEveryNumberOfVertices) {
   }
 }
 
+/// Writes the checksum anew.
+void seal(std::vector<char>& bytes) {
+  std::uint64_t sum = 14695981039346656037U;
+  for (std::size_t i = 0; i + 8 < bytes.size(); ++i)
+    sum = (sum ^ static_cast<std::uint8_t>(bytes[i])) * 1099511628211U;
+  for (int i = 0; i < 8; ++i)
+    bytes[bytes.size() - 8 + i] = static_cast<char>(static_cast<std::uint8_t>(sum >> (8 * i)));
+}
+
 TEST(Progressive, SurvivesARoundTrip) {
   const Series s = small();
   const auto bytes = serialise_progressive(s.progressive);
@@ -179,6 +188,15 @@ TEST(Progressive, RefusesEveryTruncationAndTrailingBytes) {
     EXPECT_THROW(parse_progressive(std::span(bytes).first(n), "pm"), Error) << n;
   bytes.push_back(0);
   EXPECT_THROW(parse_progressive(bytes, "pm"), Error);
+  // The same with a checksum that matches.
+  const std::vector<char> whole = serialise_progressive(p);
+  for (const std::size_t n :
+       {whole.size() - 1, whole.size() - 24, whole.size() / 2, whole.size() + 1}) {
+    bytes = whole;
+    bytes.resize(n);
+    seal(bytes);
+    EXPECT_THROW(parse_progressive(bytes, "pm"), Error) << n;
+  }
 }
 
 TEST(Progressive, RefusesWhatCannotBe) {
@@ -209,7 +227,23 @@ TEST(Progressive, RefusesWhatCannotBe) {
   }
 }
 
-// One byte anywhere, changed at random: an error, a refutation, or a file that still is a proof.
+TEST(Progressive, NoSingleDamagedBytePasses) {
+  Progressive p;
+  p.base = test::box({1, 1, 1}, 1);
+  p.log.steps = {{0, 1, {0, 0, 0}}};
+  p.levels = {{7, 7, 1}};
+  const std::vector<char> bytes = serialise_progressive(p);
+  for (std::size_t at = 0; at < bytes.size(); ++at) {
+    for (int bit = 0; bit < 8; ++bit) {
+      std::vector<char> damaged = bytes;
+      damaged[at] = static_cast<char>(damaged[at] ^ (1U << bit));
+      EXPECT_THROW(parse_progressive(damaged, "pm"), Error) << "byte " << at;
+    }
+  }
+}
+
+// One byte anywhere, changed at random by somebody who mends the checksum: an error, a refutation,
+// or a file that still is a proof.
 TEST(Progressive, MutantsAreRefusedRefutedOrHarmless) {
   std::mt19937_64 random(53);
   for (const Direction d : {Direction::Outer, Direction::Inner}) {
@@ -218,8 +252,9 @@ TEST(Progressive, MutantsAreRefusedRefutedOrHarmless) {
     int refused = 0, refuted = 0, harmless = 0;
     for (int i = 0; i < 100; ++i) {
       auto mutant = bytes;
-      const std::size_t at = random() % mutant.size();
+      const std::size_t at = random() % (mutant.size() - 8);
       mutant[at] = static_cast<char>(mutant[at] ^ (1U << (random() % 8)));
+      seal(mutant);
       try {
         const Progressive p = parse_progressive(mutant, "mutant");
         for (const std::size_t n : {80, 40, 20, 10}) extract(p, n, "mutant");
