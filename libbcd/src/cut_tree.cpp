@@ -199,7 +199,7 @@ void CutTree::reappraise(const Solid::Probe& probe) {
   const Vec3& at = probe.point;
   const double near = probe.near();
   for (Node& n : nodes_) {
-    if (n.lower >= 0 || n.upper >= 0 || n.hull.empty()) continue;
+    if (n.hull.empty()) continue;
     Box3 box;
     for (const Vec3& p : n.hull) box.extend(p);
     if ((at.array() < box.min.array() - near).any() || (at.array() > box.max.array() + near).any())
@@ -229,9 +229,26 @@ std::vector<int> CutTree::leaves(std::size_t count) const {
   return out;
 }
 
+std::vector<int> CutTree::nodes_within(double distance) const {
+  std::vector<int> out, open{0};
+  while (!open.empty()) {
+    const int node = open.back();
+    open.pop_back();
+    const Node& n = nodes_[node];
+    if (is_leaf(node) || n.appraisal.worst <= distance) {
+      out.push_back(node);
+    } else {
+      for (const int child : {n.upper, n.lower})
+        if (child >= 0) open.push_back(child);
+    }
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
 void CutTree::leaves_below(int node, std::vector<int>& out) const {
   const Node& n = nodes_[node];
-  if (n.lower < 0 && n.upper < 0) out.push_back(node);
+  if (is_leaf(node)) out.push_back(node);
   if (n.lower >= 0) leaves_below(n.lower, out);
   if (n.upper >= 0) leaves_below(n.upper, out);
 }
@@ -534,15 +551,28 @@ void CutTree::cut(int leaf, const Plane& plane) {
   }
 }
 
-std::optional<CutTree::Split> CutTree::find_split(const std::vector<int>& leaves,
+Side CutTree::side_of(int node, const Plane& plane) const {
+  // Slivers left by an earlier cut along the plane are no reason for another one.
+  const double least = 8 * shift_;
+  bool below = false, above = false;
+  for (const Vec3& p : nodes_[node].hull) {
+    const double height = plane.height(p);
+    below = below || height < -least;
+    above = above || height > least;
+  }
+  if (below && above) return Side::Both;
+  return above ? Side::Upper : Side::Lower;
+}
+
+std::optional<CutTree::Split> CutTree::find_split(const std::vector<int>& nodes,
                                                   const Vec3& direction, double limit) const {
   std::vector<Vec3> directions{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
   if (direction.norm() > 0) directions.insert(directions.begin(), direction.normalized());
   const auto range = [&](const Vec3& n) {
     std::pair<double, double> out{std::numeric_limits<double>::infinity(),
                                   -std::numeric_limits<double>::infinity()};
-    for (const int leaf : leaves) {
-      const auto [low, high] = extent(nodes_[leaf].hull, n);
+    for (const int node : nodes) {
+      const auto [low, high] = extent(nodes_[node].hull, n);
       out = {std::min(out.first, low), std::max(out.second, high)};
     }
     return out;
@@ -551,12 +581,21 @@ std::optional<CutTree::Split> CutTree::find_split(const std::vector<int>& leaves
     Scratch& s = scratch();
     s.lower.clear();
     s.upper.clear();
-    for (const int leaf : leaves) {
-      const std::vector<Vec3>& hull = nodes_[leaf].hull;
-      bool below = false, above = false;
-      for (const Vec3& p : hull) (plane.height(p) <= 0 ? below : above) = true;
-      if (below && above && part(nodes_[leaf].piece, plane, s.lower, s.upper)) continue;
-      auto& to = above ? s.upper : s.lower;
+    std::vector<int> open = nodes;
+    while (!open.empty()) {
+      const int node = open.back();
+      open.pop_back();
+      const Side side = side_of(node, plane);
+      if (side == Side::Both) {
+        if (is_leaf(node) && part(nodes_[node].piece, plane, s.lower, s.upper)) continue;
+        if (!is_leaf(node)) {
+          for (const int child : {nodes_[node].lower, nodes_[node].upper})
+            if (child >= 0) open.push_back(child);
+          continue;
+        }
+      }
+      const std::vector<Vec3>& hull = nodes_[node].hull;
+      auto& to = side == Side::Lower ? s.lower : s.upper;
       to.insert(to.end(), hull.begin(), hull.end());
     }
     if (s.lower.empty() || s.upper.empty() || spans_beyond(s.lower, solid_, limit) ||
@@ -593,19 +632,27 @@ std::optional<CutTree::Split> CutTree::find_split(const std::vector<int>& leaves
   return best;
 }
 
-void CutTree::split(const std::vector<int>& leaves, const Plane& plane, std::vector<int>& lower,
+void CutTree::split(std::vector<int> nodes, const Plane& plane, std::vector<int>& lower,
                     std::vector<int>& upper) {
-  for (const int leaf : leaves) {
-    bool below = false, above = false;
-    for (const Vec3& p : nodes_[leaf].hull) (plane.height(p) <= 0 ? below : above) = true;
-    if (!below || !above) {
-      (above ? upper : lower).push_back(leaf);
+  while (!nodes.empty()) {
+    const int node = nodes.back();
+    nodes.pop_back();
+    const Side side = side_of(node, plane);
+    if (side != Side::Both) {
+      (side == Side::Upper ? upper : lower).push_back(node);
       continue;
     }
-    cut(leaf, plane);
-    if (nodes_[leaf].lower >= 0) lower.push_back(nodes_[leaf].lower);
-    if (nodes_[leaf].upper >= 0) upper.push_back(nodes_[leaf].upper);
+    if (is_leaf(node)) {
+      cut(node, plane);
+      if (nodes_[node].lower >= 0) lower.push_back(nodes_[node].lower);
+      if (nodes_[node].upper >= 0) upper.push_back(nodes_[node].upper);
+    } else {
+      for (const int child : {nodes_[node].lower, nodes_[node].upper})
+        if (child >= 0) nodes.push_back(child);
+    }
   }
+  std::sort(lower.begin(), lower.end());
+  std::sort(upper.begin(), upper.end());
 }
 
 bool CutTree::cut_worst() {

@@ -28,6 +28,8 @@ namespace kaboum::bcd {
 namespace {
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+/// A body's nodes of the tree that may be parted, if it has as many.
+constexpr std::size_t kPieces = 24;
 constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max();
 
 struct Tuning {
@@ -206,17 +208,18 @@ class Decomposer {
   bool hand_over(std::vector<Body>& bodies, std::size_t from) const {
     const Body& giver = bodies[from];
     if (giver.leaves.size() < 2) return false;
+    const std::vector<int> pieces = nodes_of(giver, kPieces);
     struct Deal {
       std::size_t leaf, to;
       double worst = std::numeric_limits<double>::infinity();
     };
     std::vector<Deal> deals;
-    std::vector<Body> rests(giver.leaves.size()), parts(giver.leaves.size());
-    geom::parallel_loop(std::size_t{0}, giver.leaves.size(), [&](std::size_t i) {
-      std::vector<int> rest = giver.leaves;
+    std::vector<Body> rests(pieces.size()), parts(pieces.size());
+    geom::parallel_loop(std::size_t{0}, pieces.size(), [&](std::size_t i) {
+      std::vector<int> rest = pieces;
       rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
       rests[i] = union_of(tree_, solid_, rest);
-      parts[i] = body_of(tree_, giver.leaves[i]);
+      parts[i] = body_of(tree_, pieces[i]);
     });
     const double limit = 0.999 * giver.appraisal.worst;
     for (std::size_t i = 0; i < rests.size(); ++i) {
@@ -254,7 +257,7 @@ class Decomposer {
     CutTree::Split best;
     std::size_t with = from;
     for (const std::size_t i : near) {
-      const auto split = tree_.find_split(leaves_of(bodies[from], bodies[i]),
+      const auto split = tree_.find_split(nodes_of(bodies[from], bodies[i]),
                                           bodies[from].box.center() - bodies[i].box.center(),
                                           std::min(limit, best.worst));
       if (!split) continue;
@@ -263,7 +266,7 @@ class Decomposer {
     }
     if (with == from) return false;
     std::vector<int> lower, upper;
-    tree_.split(leaves_of(bodies[from], bodies[with]), best.plane, lower, upper);
+    tree_.split(nodes_of(bodies[from], bodies[with]), best.plane, lower, upper);
     if (lower.empty() || upper.empty()) return false;
     Body a = union_of(tree_, solid_, lower), b = union_of(tree_, solid_, upper);
     if (std::max(a.appraisal.worst, b.appraisal.worst) > limit) return false;
@@ -282,9 +285,9 @@ class Decomposer {
     return changed;
   }
 
-  [[nodiscard]] std::vector<int> leaves_of(const Body& a, const Body& b) const {
-    std::vector<int> out = leaves_of(a);
-    for (const int leaf : leaves_of(b)) out.push_back(leaf);
+  [[nodiscard]] std::vector<int> nodes_of(const Body& a, const Body& b) const {
+    std::vector<int> out = nodes_of(a, 1);
+    for (const int node : nodes_of(b, 1)) out.push_back(node);
     std::sort(out.begin(), out.end());
     return out;
   }
@@ -446,8 +449,11 @@ class Decomposer {
         continue;
       }
       std::size_t fewest = 0;
+      std::vector<Body> parts;
+      for (const int node : tree_.nodes_within(0.5 * threshold * wished))
+        parts.push_back(body_of(tree_, node));
       for (const double bulk : tuning_.bulks) {
-        std::vector<Body> bodies = merged(leaf_bodies(), 1, wished, bulk);
+        std::vector<Body> bodies = merged(parts, 1, wished, bulk);
         fewest = fewest == 0 ? bodies.size() : std::min(fewest, bodies.size());
         if (best.empty() || bodies.size() < best.size()) best = std::move(bodies);
       }
@@ -630,7 +636,7 @@ class Decomposer {
       if (leaves.size() == 1) return take_apart(leaves[0], epsilon, all);
       return leaves;
     }
-    for (const int leaf : body.leaves) leaves.push_back(body_of(tree_, leaf));
+    for (const int node : nodes_of(body, kPieces, epsilon)) leaves.push_back(body_of(tree_, node));
     if (all) return leaves;
     return merged(std::move(leaves), 2, epsilon);
   }
@@ -685,8 +691,10 @@ class Decomposer {
     });
   }
 
-  /// The body as few nodes of the tree, but at least this many where it has as many leaves.
-  [[nodiscard]] std::vector<int> nodes_of(const Body& body, std::size_t wished) const {
+  /// The body as few nodes of the tree that are within a distance, but at least as many as wished
+  /// where it has as many leaves.
+  [[nodiscard]] std::vector<int> nodes_of(const Body& body, std::size_t wished,
+                                          double distance = kUnbounded) const {
     const auto& nodes = tree_.nodes();
     const auto children = [&](int node) {
       std::vector<int> out;
@@ -704,9 +712,18 @@ class Decomposer {
       if (std::all_of(parts.begin(), parts.end(), [&](int part) { return whole.contains(part); }))
         whole.insert(parent);
     }
-    std::vector<int> out;
+    std::vector<int> out, open;
     for (const int node : whole)
-      if (!whole.contains(nodes[node].parent)) out.push_back(node);
+      if (!whole.contains(nodes[node].parent)) open.push_back(node);
+    while (!open.empty()) {
+      const int node = open.back();
+      open.pop_back();
+      if (tree_.is_leaf(node) || nodes[node].appraisal.worst <= distance) {
+        out.push_back(node);
+      } else {
+        for (const int child : children(node)) open.push_back(child);
+      }
+    }
     while (out.size() < wished) {
       auto largest = out.end();
       for (auto it = out.begin(); it != out.end(); ++it)

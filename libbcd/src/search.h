@@ -55,25 +55,31 @@ class CutTree {
   /// parts that are near enough, but have too many vertices. @return false when that cuts nothing.
   bool halve(int leaf);
 
-  /// A plane that parts what is in these leaves, and the larger distance of the two hulls.
+  /// A plane that parts what is in these nodes, and the larger distance of the two hulls.
   struct Split {
     Plane plane;
     double worst = std::numeric_limits<double>::infinity();
   };
   /// The plane with the smallest distance, if that is below `limit`, among some across `direction`
   /// and the axes.
-  [[nodiscard]] std::optional<Split> find_split(const std::vector<int>& leaves,
+  [[nodiscard]] std::optional<Split> find_split(const std::vector<int>& nodes,
                                                 const Vec3& direction, double limit) const;
-  /// Sorts leaves by the sides of a plane, cutting those that it crosses.
-  void split(const std::vector<int>& leaves, const Plane& plane, std::vector<int>& lower,
+  /// Sorts nodes by the sides of a plane: in place of those that it crosses the ones that they were
+  /// cut into, and leaves are cut.
+  void split(std::vector<int> nodes, const Plane& plane, std::vector<int>& lower,
              std::vector<int>& upper);
 
   [[nodiscard]] const std::vector<Node>& nodes() const { return nodes_; }
   [[nodiscard]] std::vector<int> leaves() const;
   /// The leaves when there were this many for the first time; all, if there never were.
   [[nodiscard]] std::vector<int> leaves(std::size_t count) const;
+  /// The coarsest nodes within this distance, and the leaves that are farther.
+  [[nodiscard]] std::vector<int> nodes_within(double distance) const;
   /// Appends the leaves that a node was cut into, itself when it was not.
   void leaves_below(int node, std::vector<int>& out) const;
+  [[nodiscard]] bool is_leaf(int node) const {
+    return nodes_[node].lower < 0 && nodes_[node].upper < 0;
+  }
   [[nodiscard]] std::size_t leaf_count() const { return leaf_count_; }
   /// Largest distance among the leaves that can be cut.
   [[nodiscard]] double worst() const;
@@ -88,6 +94,7 @@ class CutTree {
     Plane plane;
     double weight;
   };
+  [[nodiscard]] Side side_of(int node, const Plane& plane) const;
   void find_reflex_planes();
   [[nodiscard]] Node node_of(Piece&& piece) const;
   void add_leaf(Piece&& piece, int parent);

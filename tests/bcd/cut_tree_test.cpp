@@ -1,0 +1,82 @@
+/// The tree of cuts: its pieces, coarse and fine, and how planes sort them.
+
+#include <gtest/gtest.h>
+
+#include "search.h"
+#include "solids.h"
+
+namespace kaboum::bcd {
+namespace {
+
+/// Every leaf is below one of the nodes, and below no two of them.
+void expect_whole(const CutTree& tree, const std::vector<int>& nodes) {
+  std::vector<int> leaves;
+  for (const int node : nodes) tree.leaves_below(node, leaves);
+  std::sort(leaves.begin(), leaves.end());
+  EXPECT_EQ(leaves, tree.leaves());
+}
+
+class CutTreeTest : public ::testing::Test {
+ protected:
+  CutTreeTest() {
+    while (tree_.leaf_count() < 40 && tree_.cut_worst()) {
+    }
+  }
+  const Mesh mesh_ = kaboum::test::torus(1, 0.35, 24, 12);
+  const Solid solid_{mesh_, 20000, 0};
+  CutTree tree_{solid_, {}};
+};
+
+TEST_F(CutTreeTest, NodesWithinADistanceAreTheCoarsest) {
+  const auto& nodes = tree_.nodes();
+  std::size_t inner = 0;
+  for (const double percent : {0., 1., 2., 5., 10., 50.}) {
+    const double distance = 0.01 * percent * solid_.diagonal();
+    const std::vector<int> found = tree_.nodes_within(distance);
+    expect_whole(tree_, found);
+    for (const int node : found) {
+      inner += tree_.is_leaf(node) ? 0 : 1;
+      EXPECT_TRUE(tree_.is_leaf(node) || nodes[node].appraisal.worst <= distance);
+      for (int above = nodes[node].parent; above >= 0; above = nodes[above].parent)
+        EXPECT_GT(nodes[above].appraisal.worst, distance);
+    }
+  }
+  EXPECT_GT(inner, 0U);
+}
+
+TEST_F(CutTreeTest, SplitSortsNodesAndLeavesAlike) {
+  const Plane plane{Vec3(1, 2, 0.5).normalized(), 0.1};
+  std::vector<int> lower, upper;
+  tree_.split({0}, plane, lower, upper);
+  std::vector<int> all = lower;
+  all.insert(all.end(), upper.begin(), upper.end());
+  expect_whole(tree_, all);
+  EXPECT_LT(all.size(), tree_.leaf_count());  // no finer than the plane asks for
+  const double least = 8.001 * tree_.shift();
+  for (const int node : lower)
+    for (const Vec3& p : tree_.nodes()[node].hull) EXPECT_LT(plane.height(p), least);
+  for (const int node : upper)
+    for (const Vec3& p : tree_.nodes()[node].hull) EXPECT_GT(plane.height(p), -least);
+
+  // The same plane again cuts nothing, whether asked of the whole or of its leaves.
+  const std::size_t leaves = tree_.leaf_count();
+  for (const std::vector<int>& from : {std::vector<int>{0}, tree_.leaves()}) {
+    std::vector<int> below, above;
+    tree_.split(from, plane, below, above);
+    EXPECT_EQ(tree_.leaf_count(), leaves);
+    below.insert(below.end(), above.begin(), above.end());
+    expect_whole(tree_, below);
+  }
+}
+
+TEST_F(CutTreeTest, ThePlaneFoundIsThatOfTheLeaves) {
+  const double far = tree_.nodes()[0].appraisal.worst;
+  const auto coarse = tree_.find_split({0}, Vec3(1, 1, 0), 2 * far);
+  const auto fine = tree_.find_split(tree_.leaves(), Vec3(1, 1, 0), 2 * far);
+  ASSERT_TRUE(coarse && fine);
+  EXPECT_NEAR(coarse->worst, fine->worst, 1e-3 * far);
+  EXPECT_LT(coarse->worst, 1.01 * far);
+}
+
+}  // namespace
+}  // namespace kaboum::bcd
