@@ -1,6 +1,4 @@
-#include <kaboum/bcd/closure.h>
 #include <kaboum/geom/error.h>
-#include <kaboum/geom/prepare.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/verify/cover.h>
 #include <kaboum/verify/distance.h>
@@ -13,7 +11,9 @@
 #include <sstream>
 
 #include "cli.h"
+#include "prepared_original.h"
 #include "verify_progressive.h"
+#include "verify_robot.h"
 #include "verify_sweep.h"
 
 namespace {
@@ -23,8 +23,8 @@ using tools::Json;
 using verify::Answer;
 
 struct Options {
-  bool outer = false, inner = false, cover = false, progressive = false, prepare = false,
-       drop_sheets = false, set = false;
+  bool outer = false, inner = false, cover = false, progressive = false, robot = false,
+       prepare = false, drop_sheets = false, set = false;
   std::string original, approximation, original_format, approximation_format;
   std::string epsilon, witness, claims = "all";
   std::size_t max_contacts = verify::InclusionOptions{}.max_contacts;
@@ -226,18 +226,10 @@ void write_witness(const std::string& path, const geom::Mesh& inner, const geom:
 /// The original as the tools prepare it: with `close` without holes, since what bcd-decompose
 /// claims is about a solid.
 void prepare(Input& original, bool drop_sheets, bool close) {
-  geom::PrepareOptions options;
-  options.drop_sheets = drop_sheets;
-  geom::Prepared prepared = geom::prepare(original.mesh, options);
+  tools::PreparedOriginal prepared = tools::prepare_original(original.mesh, drop_sheets, close);
   original.mesh = std::move(prepared.mesh);
   original.notes.insert(original.notes.end(), prepared.notes.begin(), prepared.notes.end());
-  if (!close || prepared.closed) return;
-  const std::size_t before = original.mesh.triangles.size();
-  original.mesh = bcd::close_holes(original.mesh);
-  original.filled_triangles = original.mesh.triangles.size() - before;
-  original.notes.push_back("its holes are filled with " +
-                           std::to_string(original.filled_triangles) +
-                           " triangles, as bcd-decompose does: the claims are about that solid");
+  original.filled_triangles = prepared.filled_triangles;
 }
 
 /// What preparing would change of the original; empty if nothing.
@@ -311,6 +303,20 @@ int check_sweep(Options o) {
   o.sweep.witness = o.witness;
   o.sweep.set_format = o.approximation_format;
   return tools::verify_sweep(o.sweep, o.common);
+}
+
+int check_robot(const Options& o) {
+  tools::VerifyRobotOptions robot;
+  robot.original = o.original;
+  robot.result = o.approximation;
+  robot.claims = o.claims;
+  robot.epsilon = o.epsilon;
+  robot.geometry = o.sweep.geometry;
+  robot.packages = o.sweep.packages;
+  robot.prepare = o.prepare;
+  robot.drop_sheets = o.drop_sheets;
+  robot.max_contacts = o.max_contacts;
+  return tools::verify_robot(robot, o.common);
 }
 
 int check(const Options& o) {
@@ -543,7 +549,8 @@ int main(int argc, char** argv) {
   CLI::App app(
       "Decides from two files alone, in exact arithmetic, whether an approximation encloses the\n"
       "original (--outer), is enclosed by it (--inner) or, a set of convex bodies, covers it "
-      "(--cover); or whether a set of convex bodies holds a robot during a motion (--sweep).\n"
+      "(--cover); whether the collision shapes of one robot hold those of another (--robot); or "
+      "whether a set of convex bodies holds a robot during a motion (--sweep).\n"
       "With --progressive: replays a progressive file, every step checked exactly.\n"
       "\n"
       "Solid claim: points about which one mesh winds at least once are so in the other.\n"
@@ -566,6 +573,9 @@ int main(int argc, char** argv) {
   relation->add_flag(
       "--progressive", o.progressive,
       "APPROXIMATION is a progressive file of bmesh-decimate: all its steps and levels");
+  relation->add_flag("--robot", o.robot,
+                     "ORIGINAL and APPROXIMATION are robots (URDF) that move alike, and the "
+                     "collision shapes of each link of the second hold those of the first");
   relation->require_option(1);
   app.add_option("ORIGINAL", o.original, "The mesh that was approximated (- for standard input)")
       ->type_name("FILE");
@@ -618,12 +628,15 @@ int main(int argc, char** argv) {
   const auto of_sweep = [&](CLI::Option* option) { option->needs(sweep)->group("With --sweep"); };
   of_sweep(app.add_option("--links", o.sweep.links, "Only these links, separated by commas [all]")
                ->type_name("A,B"));
-  of_sweep(app.add_option("--geometry", o.sweep.geometry, "Which shapes of a URDF [collision]")
-               ->check(CLI::IsMember({"collision", "visual"}).description(""))
-               ->type_name("collision|visual"));
-  of_sweep(app.add_option("--package-path", o.sweep.packages,
-                          "Folder to look up package:// in, as for sweep-approx; may be repeated")
-               ->type_name("DIR"));
+  app.add_option("--geometry", o.sweep.geometry,
+                 "Which shapes of ROBOT, or of ORIGINAL, are to be held [collision]")
+      ->check(CLI::IsMember({"collision", "visual"}).description(""))
+      ->type_name("collision|visual")
+      ->group("With --sweep or --robot");
+  app.add_option("--package-path", o.sweep.packages,
+                 "Folder to look up package:// in, as for sweep-approx; may be repeated")
+      ->type_name("DIR")
+      ->group("With --sweep or --robot");
   of_sweep(app.add_option("--gap", o.sweep.gap,
                           "Parts that move and measure less are not divided further; where they "
                           "are not known to be inside, the answer is undecided [margin / 10^6]")
@@ -644,8 +657,11 @@ int main(int argc, char** argv) {
   app.footer(
       "A result of bcd-decompose from a mesh: --cover INPUT RESULT --prepare --epsilon E (--inner\n"
       "for --direction inner; E the epsilon that was asked for or is recorded), and --drop-sheets\n"
-      "where it was given. From a robot (URDF): so of each of its meshes, RESULT being the mesh's\n"
-      "folder in bodies/, E the epsilon recorded there.\n\n"
+      "where it was given. From a robot (URDF): --robot INPUT.urdf DIR/INPUT.urdf --prepare, with\n"
+      "--geometry visual where --visual was given: all its links at once.\n\n"
+      "--robot: a mesh is held by the meshes of the same pose and scale in the same link, so that\n"
+      "no rounding of poses matters; boxes, cylinders and spheres must be there again. --epsilon:\n"
+      "a length in the robot's unit, or a percentage of each mesh's diagonal.\n\n"
       "--sweep: every triangle of the links' meshes, every box, cylinder and sphere, at every\n"
       "configuration of PATH, lies in a body enlarged by the margin: during the whole motion, not\n"
       "only at samples (docs/algorithms/swept-volumes.md); so do the insides of closed meshes. It\n"
@@ -654,6 +670,16 @@ int main(int argc, char** argv) {
       "it; 4 output failed; 6 internal error; 7 undecided within limits.");
   return tools::run(app, argc, argv, [&] {
     if (!o.sweep.files.empty()) return check_sweep(o);
+    if (o.robot) {
+      tools::require_absent(app, "--robot",
+                            {"--set", "--witness", "--input-format", "--approximation-format"});
+      return check_robot(o);
+    }
+    const char* relation_name = o.progressive ? "--progressive"
+                                : o.cover     ? "--cover"
+                                : o.inner     ? "--inner"
+                                              : "--outer";
+    tools::require_absent(app, relation_name, {"--geometry", "--package-path"});
     if (!o.progressive) return check(o);
     tools::require_absent(app, "--progressive",
                           {"--claims", "--epsilon", "--prepare", "--drop-sheets", "--set",

@@ -52,6 +52,30 @@ awk 'NR < 3 || NR > 6 { print; next } NR == 3 { c = cos(0.3); s = sin(0.3) }
     printf "%.17g %.17g %.17g\n", x + 0.1, c * y - s * z, s * y + c * z }' robot/meshes/t.off |
   sed 's/^3 \([0-9]\) \([0-9]\) \([0-9]\)/3 \1 \3 \2/' >posed.off
 expect 0 'verified' "$BIN/bound-verify" --cover posed.off out/links/arm_1.glb
+# All links at once, from the two robots' files.
+V=$BIN/bound-verify
+expect 0 "link 'arm/1': box: verified" "$V" --robot robot/r.urdf out/r.urdf --prepare --epsilon 3% --report v.json
+[ "$(grep -c ': verified' out.txt)" = 5 ] || fail "not all shapes: $(cat out.txt)"
+grep -q '"relation": "robot"' v.json || fail "report"
+expect 0 'verified' "$V" --robot robot/r.urdf out/r.urdf --claims surface
+expect 1 'distance\|whether these are within' "$V" --robot robot/r.urdf out/r.urdf --epsilon 0.01%
+# What is no longer there, somewhere else, or moves in another way is noticed.
+cp -r out bad
+sed 's,<collision name="base_1">,<collision name="x"><origin xyz="0 0 1e-9"/>,' out/r.urdf >bad/r.urdf
+cmp -s out/r.urdf bad/r.urdf && fail "no second body of the base"
+expect 1 "link 'base': mesh meshes/bracket.obj: refuted" "$V" --robot robot/r.urdf bad/r.urdf
+sed 's/scale="0.2 -0.2 0.5"/scale="0.2 -0.2 0.4"/' out/r.urdf >bad/r.urdf
+expect 7 'no mesh of its pose and scale' "$V" --robot robot/r.urdf bad/r.urdf
+sed 's/box size="0.2 0.2 0.1"/box size="0.2 0.2 0.11"/' out/r.urdf >bad/r.urdf
+expect 7 'box: undecided' "$V" --robot robot/r.urdf bad/r.urdf
+sed 's/<axis xyz="0 1 0"/<axis xyz="0 0 1"/' out/r.urdf >bad/r.urdf
+expect 1 "joints: refuted: joint 'shoulder'" "$V" --robot robot/r.urdf bad/r.urdf
+sed 's/"frame"/"other"/' out/r.urdf >bad/r.urdf
+expect 1 "no link 'frame'" "$V" --robot robot/r.urdf bad/r.urdf
+rm -r bad
+expect 3 't.off' "$V" --robot robot/r.urdf robot/meshes/t.off
+expect 2 'two URDFs' "$V" --robot robot/r.urdf
+expect 2 'cannot be joined with --geometry' "$V" --cover robot/meshes/t.off out/bodies/t --geometry visual
 # The new robot is a robot, and another run gives the same bytes.
 expect 0 'bodies of 2 links' "$D" out/r.urdf -o again --effort fast
 expect 0 '' "$D" robot/r.urdf -o out2 --epsilon 3% --effort fast --quiet --no-cache --mesh-prefix package://r/
@@ -82,6 +106,7 @@ expect 0 "link 'arm/1' has no visual shape; it stays" "$D" robot/v.urdf -o seen 
 grep -q 'of 1 link, from 1 mesh$' err.txt || fail "counts: $(cat err.txt)"
 grep -q 'bodies/t/body' seen/v.urdf || fail "no bodies for drawing shapes"
 grep -q 'box size' seen/v.urdf || fail "a link without a shape for drawing lost its collision shape"
+expect 0 'verified' "$V" --robot robot/v.urdf seen/v.urdf --geometry visual
 grep -q 'filename="../robot/meshes/t.off"' seen/v.urdf || fail "a mesh that stays is not found from the folder"
 
 # Files of the same bytes that refer to other files are other meshes.
