@@ -101,7 +101,7 @@ void describe(CLI::App& app, Options& o) {
       ->type_name("N");
   app.add_option("--direction", o.direction,
                  "outer: bodies that cover the solid; inner: bodies inside it, which leave out no "
-                 "point deeper than epsilon [outer]")
+                 "point deeper than epsilon (not of robots) [outer]")
       ->check(CLI::IsMember({"outer", "inner"}).description(""))
       ->type_name("outer|inner");
   app.add_option("--effort", o.effort, "How long to search [normal]")

@@ -59,7 +59,10 @@ int run(CLI::App& app, int argc, char** argv, const std::function<int()>& body) 
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {
-    return app.exit(success) == 0 ? kDone : kInternal;
+    if (app.exit(success) != 0) return kInternal;
+    if (std::cout.flush()) return kDone;
+    std::cerr << name << ": standard output: writing failed\n";
+    return kOutputFailed;
   } catch (const CLI::ParseError& error) {
     std::cerr << name << ": " << error.what() << " (see " << name << " --help)\n";
     return kUsage;

@@ -191,6 +191,10 @@ class Writer {
     if (fs::equivalent(urdf_, o_.robot, error))
       throw Error(ErrorCode::InvalidArgument,
                   urdf_.string() + ": would overwrite the input; name another folder");
+    if (fs::exists(urdf_, error) && !fs::exists(o_.folder / "bodies", error))
+      throw Error(ErrorCode::OutputFailed,
+                  urdf_.string() + ": exists, and not with bodies/ beside it as a result of this " +
+                      "program would; remove it or name another folder");
     const std::vector<char> bytes = io::read_file(o_.robot);
     if (document_.Parse(bytes.data(), bytes.size()) != tinyxml2::XML_SUCCESS ||
         document_.RootElement() == nullptr ||

@@ -137,6 +137,9 @@ expect 4 'part.stl' "$D" robot/r.urdf -o out --epsilon 3% --effort fast
 [ -s mine/part.stl ] && [ -s out/bodies/t/part.stl ] || fail "a file of the user is gone"
 rm out/bodies/t/part.stl
 expect 2 'overwrite' "$D" robot/r.urdf -o robot
+mkdir -p theirs && echo '<robot name="theirs"/>' >theirs/r.urdf
+expect 4 'theirs/r.urdf: exists' "$D" robot/r.urdf -o theirs
+[ "$(ls theirs)" = r.urdf ] && grep -q theirs theirs/r.urdf || fail "a robot of the user is gone"
 expect 2 'folder' "$D" robot/r.urdf -o -
 expect 2 'one by one' "$D" robot/r.urdf -o x --direction inner
 expect 3 'no mesh file for' "$D" robot/r.urdf -o x --visual

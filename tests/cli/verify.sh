@@ -70,6 +70,9 @@ if [ -w /dev/full ]; then
   code=0
   "$V" --outer one.off three.off >/dev/full 2>err.txt || code=$?
   [ "$code" -eq 4 ] || fail "exit code $code when standard output is full"
+  code=0
+  "$V" --help >/dev/full 2>err.txt || code=$?
+  [ "$code" -eq 4 ] || fail "exit code $code when the help does not fit"
 fi
 
 cube 0.25 0.75 >core.off
