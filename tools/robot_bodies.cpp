@@ -166,9 +166,9 @@ std::string epsilon_of_mesh(const std::string& epsilon, double scale) {
   return text.str();
 }
 
-fs::path resolve_mesh(const std::string& reference, const fs::path& robot,
-                      const std::vector<std::string>& packages) {
-  const auto fail = [&](const std::string& where) -> fs::path {
+std::vector<fs::path> find_mesh(const std::string& reference, const fs::path& robot,
+                                const std::vector<std::string>& packages) {
+  const auto fail = [&](const std::string& where) -> std::vector<fs::path> {
     throw Error(ErrorCode::InvalidInput, robot.string() + ": no mesh file for '" + reference +
                                              "'; looked for it in " + where);
   };
@@ -191,16 +191,25 @@ fs::path resolve_mesh(const std::string& reference, const fs::path& robot,
       places.push_back(up);
       if (up == up.root_path() || up.empty()) break;
     }
+    std::vector<fs::path> found;
     for (const fs::path& place : places)
-      if (is_file(place / rest)) return place / rest;
-    return fail("--package-path, $ROS_PACKAGE_PATH and the folders above the robot's file");
+      if (is_file(place / rest)) found.push_back(place / rest);
+    return found.empty()
+               ? fail("--package-path, $ROS_PACKAGE_PATH and the folders above the robot's file")
+               : found;
   }
   if (reference.find("://") != std::string::npos && !reference.starts_with(file))
     return fail("no place: only package:// and file:// are known");
   fs::path path =
       reference.starts_with(file) ? fs::path(reference.substr(file.size())) : fs::path(reference);
   if (path.is_relative()) path = folder / path;
-  return is_file(path) ? path : fail(path.parent_path().string());
+  if (is_file(path)) return {path};
+  return fail(path.parent_path().string());
+}
+
+fs::path resolve_mesh(const std::string& reference, const fs::path& robot,
+                      const std::vector<std::string>& packages) {
+  return find_mesh(reference, robot, packages).front();
 }
 
 void place_shape(const Geometry& g, const geom::ConvexSet* set, const std::string& link,

@@ -61,9 +61,16 @@ void place_shape(const sweep::Geometry& shape, const geom::ConvexSet* set, const
 /// by `scale`.
 std::string epsilon_of_mesh(const std::string& epsilon, double scale);
 
-/// The file that a URDF's mesh reference stands for. `package://name/rest` is looked up as
-/// name/rest in the given folders, in $ROS_PACKAGE_PATH, and in all folders above the robot's file.
+/// The files that a URDF's mesh reference may stand for, at least one. `package://name/rest` is
+/// looked up as name/rest in the given folders, in $ROS_PACKAGE_PATH, and in all folders above the
+/// robot's file, in this order.
 /// @throws Error{InvalidInput} saying where it was looked for.
+std::vector<std::filesystem::path> find_mesh(const std::string& reference,
+                                             const std::filesystem::path& robot,
+                                             const std::vector<std::string>& packages);
+
+/// The first of them.
+/// @throws as find_mesh
 std::filesystem::path resolve_mesh(const std::string& reference, const std::filesystem::path& robot,
                                    const std::vector<std::string>& packages);
 

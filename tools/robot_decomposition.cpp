@@ -191,10 +191,7 @@ class Writer {
     if (fs::equivalent(urdf_, o_.robot, error))
       throw Error(ErrorCode::InvalidArgument,
                   urdf_.string() + ": would overwrite the input; name another folder");
-    if (fs::exists(urdf_, error) && !fs::exists(o_.folder / "bodies", error))
-      throw Error(ErrorCode::OutputFailed,
-                  urdf_.string() + ": exists, and not with bodies/ beside it as a result of this " +
-                      "program would; remove it or name another folder");
+    require_own_folder();
     const std::vector<char> bytes = io::read_file(o_.robot);
     if (document_.Parse(bytes.data(), bytes.size()) != tinyxml2::XML_SUCCESS ||
         document_.RootElement() == nullptr ||
@@ -202,6 +199,20 @@ class Writer {
       throw Error(ErrorCode::InvalidInput, o_.robot + ": not a URDF");
     result_.inputs.emplace_back(o_.robot);
     rest_ = sweep::forward(robot_.robot, std::vector<double>(robot_.robot.variables.size(), 0.0));
+  }
+
+  /// Bodies are named after their meshes: those of another robot in the folder would be replaced.
+  void require_own_folder() const {
+    std::error_code error;
+    if (fs::exists(urdf_, error) && !fs::exists(o_.folder / "bodies", error))
+      throw Error(ErrorCode::OutputFailed,
+                  urdf_.string() + ": exists, and not with bodies/ beside it as a result of this " +
+                      "program would; remove it or name another folder");
+    for (const auto& entry : fs::directory_iterator(o_.folder, error))
+      if (entry.path().extension() == ".urdf" && entry.path().filename() != urdf_.filename())
+        throw Error(ErrorCode::OutputFailed,
+                    entry.path().string() +
+                        ": another robot, whose bodies would be replaced; name another folder");
   }
 
   XMLElement* element_of(const std::string& link) {

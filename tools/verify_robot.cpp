@@ -1,14 +1,17 @@
 #include "verify_robot.h"
 
 #include <kaboum/geom/error.h>
+#include <kaboum/geom/topology.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/verify/cover.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iomanip>
 #include <iostream>
 #include <map>
 #include <optional>
+#include <set>
 #include <sstream>
 
 #include "prepared_original.h"
@@ -64,6 +67,9 @@ const char* name_of_shape(Geometry::Shape shape) {
 
 /// Why the robots do not move alike; empty if they do. Limits of joints are no matter of shapes.
 std::string difference_in_motion(const sweep::Robot& original, const sweep::Robot& result) {
+  if (original.links[0].name != result.links[0].name)
+    return "the result's root is '" + result.links[0].name + "' instead of '" +
+           original.links[0].name + "'";
   for (const sweep::Link& link : original.links)
     if (!result.find_link(link.name)) return "the result has no link '" + link.name + "'";
   for (std::size_t i = 0; i < original.joints.size(); ++i) {
@@ -74,24 +80,71 @@ std::string difference_in_motion(const sweep::Robot& original, const sweep::Robo
     const sweep::Joint& b = *at;
     const auto child = static_cast<std::size_t>(at - result.joints.begin()) + 1;
     const bool fixed = a.type == sweep::JointType::Fixed;
-    const bool alike =
-        a.type == b.type && same(a.origin, b.origin) &&
-        original.links[a.parent].name == result.links[b.parent].name &&
-        original.links[i + 1].name == result.links[child].name &&
-        (fixed || (a.axis == b.axis && a.multiplier == b.multiplier && a.offset == b.offset &&
-                   original.variables[a.variable].name == result.variables[b.variable].name));
-    if (!alike) return "joint '" + a.name + "' moves its link in another way";
+    const char* what = nullptr;
+    if (a.type != b.type)
+      what = "is of another type";
+    else if (original.links[a.parent].name != result.links[b.parent].name)
+      what = "has another parent";
+    else if (original.links[i + 1].name != result.links[child].name)
+      what = "has another child";
+    else if (!same(a.origin, b.origin))
+      what = "has another origin";
+    else if (!fixed && a.axis != b.axis)
+      what = "has another axis";
+    else if (!fixed && (a.multiplier != b.multiplier || a.offset != b.offset ||
+                        original.variables[a.variable].name != result.variables[b.variable].name))
+      what = "mimics in another way";
+    if (what != nullptr) return "joint '" + a.name + "' " + what;
   }
   return {};
 }
 
-/// What was found of one mesh and the meshes that are to hold it.
-struct Held {
-  Answer answer = Answer::Undefined;
-  std::string text;  ///< one clause
-  Json json;
+/// A mesh file that a robot's shape stands for.
+struct File {
+  std::string path, sha256;
+  geom::Mesh mesh;
   std::vector<std::string> notes;
 };
+
+/// What was found of one shape.
+struct Finding {
+  Answer answer = Answer::Undefined;
+  std::string text;  ///< one clause
+  Json json = Json::object();
+};
+
+/// The shapes of a link with one frame: what the original has there, and what is to hold it.
+struct Group {
+  const Geometry* frame = nullptr;
+  std::vector<const File*> originals, bodies;
+};
+
+/// What is to hold the originals of a group, as far as it can.
+struct Holders {
+  geom::ConvexSet set;
+  bool convex = true;                 ///< all of them
+  std::vector<std::string> left_out;  ///< files that bound no solid, and why
+};
+
+std::string count(std::size_t n, const char* one, const char* many) {
+  return std::to_string(n) + " " + (n == 1 ? one : many);
+}
+
+Holders holders_of(const Group& group) {
+  Holders out;
+  for (const File* file : group.bodies) {
+    // Where each is closed, and the sum winds about a point, so does one of them.
+    if (!geom::analyse(geom::weld(file->mesh)).closed()) {
+      out.left_out.push_back(file->path + " is not closed and holds nothing");
+    } else if (!(geom::signed_volume(file->mesh) > 0)) {
+      out.left_out.push_back(file->path + " is inside out and holds nothing");
+    } else {
+      out.set.bodies.push_back({file->path, file->mesh});
+    }
+  }
+  out.convex = verify::verify_convexity(out.set).convex.answer == Answer::Verified;
+  return out;
+}
 
 class RobotVerifier {
  public:
@@ -101,6 +154,7 @@ class RobotVerifier {
         original_(read_robot(o_.original)),
         result_(read_robot(o_.result)),
         progress_(common.quiet) {
+    limits_.max_contacts = o_.max_contacts;
     if (o_.epsilon.empty()) return;
     epsilon_ = parse_length(o_.epsilon);
     if (!epsilon_)
@@ -109,21 +163,21 @@ class RobotVerifier {
   }
 
   int run() {
+    read_meshes();
     const std::string motion = difference_in_motion(original_.robot, result_.robot);
     lines_.push_back(motion.empty() ? "joints: verified: both robots move alike"
                                     : "joints: refuted: " + motion);
     answer_ = motion.empty() ? Answer::Verified : Answer::Refuted;
     for (const sweep::Link& link : original_.robot.links) check(link);
-    if (shapes_ == 0)
-      throw Error(ErrorCode::InvalidInput,
-                  o_.original + ": no link has a shape" +
-                      (o_.geometry == "visual" ? "" : "; try --geometry visual"));
+    if (epsilon_) look_for_strangers();
     if (!common_.report.empty()) report(motion);
-    for (const std::string& note : notes_) log(common_.quiet, note);
+    for (const std::string& note : notes_) log(common_.quiet, "note: " + note);
     if (!common_.quiet) {
       std::ostream& out = common_.report == "-" ? std::cerr : std::cout;
       for (const std::string& line : lines_) out << line << '\n';
-      out << name_of(answer_) << '\n';
+      out << name_of(answer_)
+          << (open_ && answer_ == Answer::Verified ? ", as far as open meshes define it" : "")
+          << '\n';
     }
     switch (answer_) {
       case Answer::Verified:
@@ -139,147 +193,289 @@ class RobotVerifier {
   }
 
  private:
-  void check(const sweep::Link& link) {
-    const std::vector<Geometry>& shapes = o_.geometry == "visual" ? link.visual : link.collision;
-    if (shapes.empty()) return;
+  /// Those to be held: for drawings, of links without, those for collisions, which
+  /// `bcd-decompose --visual` leaves as they are.
+  [[nodiscard]] const std::vector<Geometry>& shapes_of(const sweep::Link& link) const {
+    return o_.geometry == "visual" && !link.visual.empty() ? link.visual : link.collision;
+  }
+  [[nodiscard]] const std::vector<Geometry>& result_of(const std::string& link) const {
     static const std::vector<Geometry> kNone;
-    const auto index = result_.robot.find_link(link.name);
-    const std::vector<Geometry>& there = index ? result_.robot.links[*index].collision : kNone;
+    const auto index = result_.robot.find_link(link);
+    return index ? result_.robot.links[*index].collision : kNone;
+  }
+
+  /// Before anything is written, so that no mesh is written over.
+  void read_meshes() {
+    std::size_t shapes = 0;
+    std::vector<std::string> inputs{o_.original, o_.result};
+    const auto read_all = [&](const std::vector<Geometry>& of, const RobotFile& robot) {
+      for (const Geometry& g : of)
+        if (g.shape == Geometry::Shape::Mesh) inputs.push_back(file_of(g, robot).path);
+    };
+    for (const sweep::Link& link : original_.robot.links) {
+      shapes += shapes_of(link).size();
+      read_all(shapes_of(link), original_);
+      if (!shapes_of(link).empty()) read_all(result_of(link.name), result_);
+    }
+    if (shapes == 0)
+      throw Error(ErrorCode::InvalidInput,
+                  o_.original + ": no link has a shape" +
+                      (o_.geometry == "visual" ? "" : "; try --geometry visual"));
+    require_apart({{"--report", common_.report}}, inputs);
+  }
+
+  /// The file of a mesh. A package's that is found with different contents is nobody's: another
+  /// program may take the other one.
+  const File& file_of(const Geometry& g, const RobotFile& robot) {
+    const std::vector<fs::path> places = find_mesh(g.mesh, robot.path, o_.packages);
+    const File& file = read(places.front().string());
+    for (const fs::path& other : places)
+      if (read(other.string()).sha256 != file.sha256)
+        throw Error(ErrorCode::InvalidInput,
+                    robot.path.string() + ": '" + g.mesh + "' is found twice, as " + file.path +
+                        " and, with other contents, as " + other.string() +
+                        "; which one it stands for is not known: name it without package://");
+    return file;
+  }
+
+  const File& read(const std::string& path) {
+    const auto at = files_.find(path);
+    if (at != files_.end()) return at->second;
+    std::vector<char> bytes;
+    io::ReadResult read = io::read_mesh(path, {}, &bytes);
+    return files_
+        .emplace(path, File{path, io::sha256(bytes), std::move(read.mesh), std::move(read.notes)})
+        .first->second;
+  }
+
+  void check(const sweep::Link& link) {
+    const std::vector<Geometry>& shapes = shapes_of(link);
+    if (shapes.empty()) return;
+    const std::vector<Geometry>& there = result_of(link.name);
     Json json{{"link", link.name}, {"shapes", Json::array()}};
-    for (const Geometry& g : shapes) {
-      ++shapes_;
-      const std::string title = "link '" + link.name + "': " + name_of_shape(g.shape) +
-                                (g.mesh.empty() ? "" : " " + g.mesh);
-      const Held held = g.shape == Geometry::Shape::Mesh ? mesh(g, there) : primitive(g, there);
-      answer_ = worse(answer_, held.answer);
-      lines_.push_back(title + ": " + name_of(held.answer) + ": " + held.text);
-      Json shape{{"shape", name_of_shape(g.shape)}, {"answer", name_of(held.answer)}};
-      if (!held.json.is_null()) shape.update(held.json);
-      json["shapes"].push_back(std::move(shape));
+    std::vector<char> seen(shapes.size(), 0);
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+      const Geometry& g = shapes[i];
+      if (seen[i] != 0) continue;
+      if (g.shape != Geometry::Shape::Mesh) {
+        add(json, link, g, primitive(g, there));
+        continue;
+      }
+      Group group{&g, {}, {}};
+      for (std::size_t k = i; k < shapes.size(); ++k) {
+        if (!same_frame(g, shapes[k])) continue;
+        seen[k] = 1;
+        group.originals.push_back(&file_of(shapes[k], original_));
+      }
+      for (const Geometry& h : there)
+        if (same_frame(g, h)) group.bodies.push_back(&file_of(h, result_));
+      check(json, link, group, there.size() - group.bodies.size());
     }
     links_.push_back(std::move(json));
   }
 
-  static Held primitive(const Geometry& g, const std::vector<Geometry>& there) {
+  /// @param others  shapes of the result's link in other frames.
+  void check(Json& json, const sweep::Link& link, const Group& group, std::size_t others) {
+    std::vector<geom::Mesh> judged;
+    Holders holders = holders_of(group);
+    for (const std::string& why : holders.left_out) notes_.push_back(why);
+    bool held = true;
+    for (const File* file : group.originals) {
+      geom::Mesh mesh = judged_mesh(*file);
+      // The same file in the same frame, as many links have it, is decided once.
+      const std::vector<const File*> key = [&] {
+        std::vector<const File*> all{file};
+        all.insert(all.end(), group.bodies.begin(), group.bodies.end());
+        return all;
+      }();
+      auto at = decided_.find(key);
+      if (at == decided_.end()) {
+        progress_.show("deciding: " + file->path);
+        at = decided_.emplace(key, hold(*file, mesh, holders)).first;
+      }
+      Finding f = at->second;
+      if (f.answer == Answer::Refuted && others > 0) {
+        f.answer = Answer::Undecided;
+        f.text += "; what the " + count(others, "shape", "shapes") +
+                  " of other poses hold is not looked at";
+      }
+      held = held && f.answer == Answer::Verified;
+      f.json["file"] = file->path;
+      f.json["sha256"] = file->sha256;
+      for (const File* body : group.bodies)
+        f.json["held_by"].push_back({{"file", body->path}, {"sha256", body->sha256}});
+      add(json, link, *group.frame, f, file->path);
+      judged.push_back(std::move(mesh));
+    }
+    if (epsilon_ && held) add(json, link, *group.frame, distance(group, judged, holders), "bodies");
+  }
+
+  void add(Json& json, const sweep::Link& link, const Geometry& g, const Finding& f,
+           const std::string& what = {}) {
+    answer_ = worse(answer_, f.answer);
+    lines_.push_back("link '" + link.name + "': " + (what.empty() ? name_of_shape(g.shape) : what) +
+                     ": " + name_of(f.answer) + ": " + f.text);
+    Json shape{{"shape", what == "bodies" ? what : name_of_shape(g.shape)},
+               {"answer", name_of(f.answer)},
+               {"text", f.text}};
+    shape.update(f.json);
+    json["shapes"].push_back(std::move(shape));
+  }
+
+  static Finding primitive(const Geometry& g, const std::vector<Geometry>& there) {
     const bool found = std::any_of(there.begin(), there.end(),
                                    [&](const Geometry& h) { return same_frame(g, h); });
-    if (found) return {Answer::Verified, "the result has it as well", {}, {}};
-    return {Answer::Undecided, "the result has none of its size and pose", {}, {}};
+    if (found) return {Answer::Verified, "the result has it as well"};
+    return {Answer::Undecided, "the result has none of its size and pose"};
   }
 
-  Held mesh(const Geometry& g, const std::vector<Geometry>& there) {
-    std::vector<std::string> files{resolve_mesh(g.mesh, original_.path, o_.packages).string()};
-    for (const Geometry& h : there)
-      if (same_frame(g, h))
-        files.push_back(resolve_mesh(h.mesh, result_.path, o_.packages).string());
-    std::sort(files.begin() + 1, files.end());
-    Json json{{"file", files[0]}, {"bodies", files.size() - 1}};
-    if (files.size() == 1)
-      return {Answer::Undecided, "the result's link has no mesh of its pose and scale", json, {}};
-    const double scale = g.size.cwiseAbs().maxCoeff();
-    const auto key = std::pair{files, epsilon_ && !epsilon_->percent ? scale : 0.0};
-    auto at = held_.find(key);
-    if (at == held_.end()) {
-      progress_.show("deciding: " + files[0]);
-      at = held_.emplace(key, decide(files, scale)).first;
-      for (const std::string& note : at->second.notes) notes_.push_back(files[0] + ": " + note);
-    }
-    Held held = at->second;
-    if (!held.json.is_null()) json.update(held.json);
-    held.json = std::move(json);
-    return held;
-  }
-
-  /// Of files, the first is to be held by all others; lengths are those of the robot divided by
-  /// `scale`.
-  Held decide(const std::vector<std::string>& files, double scale) const {
-    Held held;
-    io::ReadResult read = io::read_mesh(files[0]);
-    geom::Mesh original = std::move(read.mesh);
-    held.notes = std::move(read.notes);
-    if (o_.prepare) {
-      PreparedOriginal prepared =
-          naming(files[0], [&] { return prepare_original(original, o_.drop_sheets, true); });
-      original = std::move(prepared.mesh);
-      held.notes.insert(held.notes.end(), prepared.notes.begin(), prepared.notes.end());
-    }
-    geom::ConvexSet set;
-    for (std::size_t i = 1; i < files.size(); ++i)
-      set.bodies.push_back({fs::path(files[i]).stem().string(), io::read_mesh(files[i]).mesh});
-    verify::InclusionOptions limits;
-    limits.max_contacts = o_.max_contacts;
-    const verify::Cover cover =
-        naming(files[0], [&] { return verify::verify_cover(original, set, limits); });
-    const verify::Inclusion& in = cover.inclusion;
-    const auto add = [&](const char* name, Answer answer, const std::string& reason) {
-      held.json["claims"][name] = {{"answer", name_of(answer)}, {"reason", reason}};
+  /// As the file is, or as prepared.
+  geom::Mesh judged_mesh(const File& file) {
+    const bool first = told_.insert(file.path).second;
+    const auto note = [&](const std::vector<std::string>& notes) {
+      if (!first) return;
+      for (const std::string& n : notes) notes_.push_back(file.path + ": " + n);
     };
-    add("convex", cover.convex.answer, cover.convex.reason);
-    add("solid", in.solid.answer, in.solid.reason);
-    add("surface", in.surface.answer, in.surface.reason);
+    note(file.notes);
+    if (!o_.prepare) return file.mesh;
+    PreparedOriginal prepared =
+        naming(file.path, [&] { return prepare_original(file.mesh, o_.drop_sheets, true); });
+    note(prepared.notes);
+    return std::move(prepared.mesh);
+  }
 
-    // Claims that mean nothing for an open mesh do not count beside one that does.
-    Answer enclosed = Answer::Undefined;
+  /// Whether the mesh is held.
+  Finding hold(const File& file, const geom::Mesh& mesh, const Holders& holders) {
+    if (holders.set.bodies.empty())
+      return {Answer::Undecided, "the result's link has no closed mesh of its pose and scale"};
+    if (std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const geom::Triangle& t) {
+          return geom::is_degenerate(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+        }))
+      return {Answer::Undecided, "none of its triangles has an area"};
+    if (geom::signed_volume(mesh) < 0 && geom::analyse(geom::weld(mesh)).closed())
+      return {Answer::Undecided,
+              "it is inside out: its volume is negative" +
+                  std::string(o_.prepare ? "" : "; --prepare judges it as bcd-decompose takes it")};
+    const verify::Cover cover =
+        naming(file.path, [&] { return verify::verify_cover(mesh, holders.set, limits_); });
+    const verify::Inclusion& in = cover.inclusion;
+    Finding f;
+    f.json["claims"] = {{"convex", claim_json(cover.convex)},
+                        {"solid", claim_json(in.solid)},
+                        {"surface", claim_json(in.surface)}};
+    f.json["triangles_without_area"] = in.triangles_without_area;
+    const bool solid = o_.claims != "surface" && in.inner_closed, surface = o_.claims != "solid";
     const verify::Claim* worst = nullptr;
-    for (const verify::Claim* claim : {&in.solid, &in.surface}) {
-      if (o_.claims == (claim == &in.solid ? "surface" : "solid")) continue;
-      if (claim->answer == Answer::Undefined) continue;
-      const Answer both = worst != nullptr ? worse(enclosed, claim->answer) : claim->answer;
-      if (both != enclosed) worst = claim;
-      enclosed = both;
-    }
-    const bool convex = cover.convex.answer == Answer::Verified;
+    for (const auto& [claim, counts] :
+         {std::pair{&in.solid, solid}, std::pair{&in.surface, surface}})
+      if (counts && (worst == nullptr || worse(claim->answer, worst->answer) != worst->answer))
+        worst = claim;
+    if (worst == nullptr)
+      return {Answer::Undefined, "it is not closed, so that it bounds no solid"};
+    f.answer = worst->answer;
+    open_ = open_ || !in.inner_closed;
     const std::string bodies =
-        std::to_string(set.bodies.size()) + (convex ? " convex bod" : " mesh") +
-        (set.bodies.size() == 1 ? (convex ? "y" : "") : (convex ? "ies" : "es"));
-    held.answer = enclosed;
-    switch (enclosed) {
+        holders.convex ? count(holders.set.bodies.size(), "convex body", "convex bodies")
+                       : count(holders.set.bodies.size(), "mesh", "meshes, not all convex");
+    switch (f.answer) {
       case Answer::Verified:
-        held.text =
-            (in.inner_closed ? "its solid is within " : "its surface (it is open) is within ") +
-            bodies + (convex ? "" : ", not all convex");
+        f.text = std::string(solid && surface ? "its solid and surface are"
+                             : solid          ? "its solid is"
+                                              : "its surface is") +
+                 " within " + bodies;
         break;
       case Answer::Refuted:
-        held.text = "it is not within the " + bodies + " of its pose";
+        // Negative windings of what is not convex lower the sum.
+        if (!holders.convex) f.answer = Answer::Undecided;
+        f.text = "it is not known to be within the " + bodies + " of its pose";
+        if (holders.convex) f.text = "it is not within the " + bodies + " of its pose";
         if (worst->witness)
-          held.text += ": " + point(worst->witness->point) + " is " +
-                       number(worst->witness->depth) + " outside, in the mesh's own unit";
+          f.text += ": " + point(worst->witness->point) + " is " + number(worst->witness->depth) +
+                    " outside, in the mesh's own unit";
         break;
       case Answer::Undecided:
-        held.text = worst->reason;
-        break;
       case Answer::Undefined:
-        held.text = "it, or what is to hold it, is not closed: no solid is defined";
+        f.text = worst->reason;
         break;
     }
-    if (!o_.prepare && enclosed != Answer::Verified)
-      held.notes.emplace_back(
-          "bcd-decompose speaks of the mesh as prepared; --prepare judges that");
-    if (epsilon_ && enclosed == Answer::Verified)
-      add_distance(held, set, original, in, convex, scale);
-    return held;
+    if (f.answer != Answer::Verified && !o_.prepare && changes_by_preparing(mesh))
+      notes_.push_back(file.path +
+                       ": bcd-decompose speaks of the mesh as prepared; --prepare judges that");
+    return f;
   }
 
-  void add_distance(Held& held, const geom::ConvexSet& set, const geom::Mesh& original,
-                    const verify::Inclusion& in, bool convex, double scale) const {
-    if (!convex) {
-      held.answer = Answer::Undecided;
-      held.text += "; of these no distance is decided";
-      return;
+  static bool changes_by_preparing(const geom::Mesh& mesh) {
+    try {
+      return !prepare_original(mesh, false, true).notes.empty();
+    } catch (const Error&) {
+      return false;
     }
-    const double bound = epsilon_->percent ? epsilon_->of(geom::bounding_box(original).diagonal())
-                                           : epsilon_->value / scale;
-    const verify::DistanceClaim claim = verify::verify_reach(set, original, bound, in.inner_closed);
-    held.json["claims"]["distance"] = {{"answer", name_of(claim.answer)},
-                                       {"reason", claim.reason},
-                                       {"bound", bound},
-                                       {"largest_found", claim.largest}};
-    held.answer = worse(held.answer, claim.answer);
-    held.text += claim.answer == Answer::Verified
-                     ? ", these nowhere more than " + number(bound) + " from it"
-                     : ", but whether these are within " + number(bound) + " of it is " +
-                           name_of(claim.answer) + ": at least " + number(claim.largest) + " at " +
-                           point(claim.at);
+  }
+
+  /// How far the bodies of a group reach from all of its originals together.
+  Finding distance(const Group& group, const std::vector<geom::Mesh>& originals,
+                   const Holders& holders) {
+    if (!holders.convex || !holders.left_out.empty())
+      return {Answer::Undecided, "distances are decided of convex bodies only, and not all are"};
+    geom::ConvexSet all;
+    bool closed = true;
+    double diagonal = 0;
+    for (const geom::Mesh& mesh : originals) {
+      all.bodies.push_back({"", mesh});
+      closed = closed && geom::analyse(geom::weld(mesh)).closed();
+      diagonal = std::max(diagonal, geom::bounding_box(mesh).diagonal());
+    }
+    const geom::Vec3 scale = group.frame->size.cwiseAbs();
+    const double bound =
+        epsilon_->percent ? epsilon_->of(diagonal) : epsilon_->value / scale.maxCoeff();
+    if (!(bound > 0) || !std::isfinite(bound))
+      throw Error(ErrorCode::InvalidInput, o_.original +
+                                               ": --epsilon is no length in the unit of " +
+                                               group.originals.front()->path + ", whose scale is " +
+                                               number(scale.maxCoeff()));
+    progress_.show("deciding: distance to " + group.originals.front()->path);
+    const verify::DistanceClaim claim =
+        verify::verify_reach(holders.set, verify::sum_of(all), bound, closed, limits_);
+    Finding f;
+    f.answer = claim.answer;
+    // By the largest factor; in other directions less may be far enough.
+    const bool uneven = !epsilon_->percent && scale.minCoeff() < scale.maxCoeff();
+    if (f.answer == Answer::Refuted && uneven) f.answer = Answer::Undecided;
+    f.json["distance"] = {{"answer", name_of(claim.answer)},
+                          {"reason", claim.reason},
+                          {"bound", bound},
+                          {"largest_found", claim.largest}};
+    f.text = f.answer == Answer::Verified
+                 ? "nowhere more than " + number(bound) + " from the solid"
+                 : "at least " + number(claim.largest) + " from the solid at " + point(claim.at) +
+                       ", claimed " + number(bound);
+    f.text += ", in the mesh's own unit";
+    if (!closed) f.text += " (to the surface, as it is open)";
+    if (f.answer == Answer::Undecided) f.text += uneven ? "; the scale is uneven" : "";
+    return f;
+  }
+
+  /// Shapes of the result that stand for none of the original's: their distance is not judged.
+  void look_for_strangers() {
+    for (const sweep::Link& link : result_.robot.links) {
+      const auto index = original_.robot.find_link(link.name);
+      static const std::vector<Geometry> kNone;
+      const std::vector<Geometry>& known = index ? shapes_of(original_.robot.links[*index]) : kNone;
+      const auto strangers = static_cast<std::size_t>(
+          std::count_if(link.collision.begin(), link.collision.end(), [&](const Geometry& h) {
+            return std::none_of(known.begin(), known.end(),
+                                [&](const Geometry& g) { return same_frame(g, h); });
+          }));
+      if (strangers == 0) continue;
+      answer_ = worse(answer_, Answer::Undecided);
+      lines_.push_back("link '" + link.name + "': undecided: how far " +
+                       count(strangers, "shape", "shapes") +
+                       " of the result that the original has no match for reach from it");
+    }
+  }
+
+  static Json claim_json(const verify::Claim& claim) {
+    return {{"answer", name_of(claim.answer)}, {"reason", claim.reason}};
   }
 
   void report(const std::string& motion) const {
@@ -293,11 +489,13 @@ class RobotVerifier {
          {"relation", "robot"},
          {"verdict", name_of(answer_)},
          {"deciding_claims", o_.claims},
+         {"geometry", o_.geometry},
+         {"prepared", o_.prepare},
          {"original", file(o_.original, original_)},
          {"result", file(o_.result, result_)},
          {"joints", {{"answer", motion.empty() ? "verified" : "refuted"}, {"reason", motion}}},
-         {"shapes", shapes_},
          {"links", links_},
+         {"notes", notes_},
          {"resources", {{"user_seconds", user_seconds()}, {"peak_megabytes", peak_megabytes()}}}});
   }
 
@@ -305,12 +503,15 @@ class RobotVerifier {
   const CommonOptions& common_;
   RobotFile original_, result_;
   Progress progress_;
+  verify::InclusionOptions limits_;
   std::optional<Length> epsilon_;
-  std::map<std::pair<std::vector<std::string>, double>, Held> held_;
+  std::map<std::string, File> files_;
+  std::map<std::vector<const File*>, Finding> decided_;
+  std::set<std::string> told_;
   Answer answer_ = Answer::Verified;
+  bool open_ = false;
   std::vector<std::string> lines_, notes_;
   Json links_ = Json::array();
-  std::size_t shapes_ = 0;
 };
 
 }  // namespace
@@ -318,7 +519,6 @@ class RobotVerifier {
 int verify_robot(const VerifyRobotOptions& options, const CommonOptions& common) {
   if (options.result.empty())
     throw Error(ErrorCode::InvalidArgument, "--robot takes ORIGINAL and APPROXIMATION, two URDFs");
-  require_apart({{"--report", common.report}}, {options.original, options.result});
   const ThreadLimit threads(common.threads);
   return RobotVerifier(options, common).run();
 }

@@ -194,6 +194,7 @@ int verify_sweep(const VerifySweepOptions& o, const CommonOptions& common) {
   // Limits are no matter of the set.
   const sweep::Path path = read_path(path_path, file.robot, false);
   const Shapes shapes = read_shapes(file, o);
+  require_apart({{"--report", common.report}, {"--witness", o.witness}}, shapes.files);
   require_same_poses(file.robot, shapes, path);
   std::optional<io::Format> format;
   if (!std::filesystem::is_directory(set_path))

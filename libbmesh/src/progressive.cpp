@@ -132,6 +132,9 @@ std::vector<char> serialise_progressive(const Progressive& p) {
 
 Progressive parse_progressive(std::span<const char> bytes, const std::string& name) {
   Reader r(bytes, name);
+  const std::string_view text(bytes.data(), bytes.size());
+  if (text.starts_with("KABOUM-BMESH-PROGRESSIVE 1\n"))
+    r.fail("is a progressive file of an earlier version, without checksum; make it again");
   r.magic(kMagic, "a progressive file of bmesh-decimate");
   r.checksum();
   Progressive p;

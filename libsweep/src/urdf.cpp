@@ -47,11 +47,20 @@ urdf::ModelInterfaceSharedPtr parse_by_urdfdom(std::string_view text, const std:
   return model;
 }
 
+/// Rotations as quaternions, which urdfdom passes over.
+void refuse_quaternions(const tinyxml2::XMLElement& element, const std::string& name) {
+  if (element.Attribute("quat_xyzw") != nullptr)
+    fail_at(name, element.GetLineNum(), "quat_xyzw is not supported: write the rotation as rpy");
+  for (const auto* e = element.FirstChildElement(); e != nullptr; e = e->NextSiblingElement())
+    refuse_quaternions(*e, name);
+}
+
 /// What urdfdom tolerates or says nothing of.
 void check_document(const tinyxml2::XMLDocument& xml, const std::string& name) {
   const tinyxml2::XMLElement& root = *xml.RootElement();
   if (std::string(root.Name()) != "robot")
     fail_at(name, root.GetLineNum(), std::string("expected <robot>, found <") + root.Name() + ">");
+  refuse_quaternions(root, name);
   std::map<std::string, std::string> parent_joint;
   for (const auto* e = root.FirstChildElement("joint"); e != nullptr;
        e = e->NextSiblingElement("joint")) {

@@ -55,27 +55,81 @@ expect 0 'verified' "$BIN/bound-verify" --cover posed.off out/links/arm_1.glb
 # All links at once, from the two robots' files.
 V=$BIN/bound-verify
 expect 0 "link 'arm/1': box: verified" "$V" --robot robot/r.urdf out/r.urdf --prepare --epsilon 3% --report v.json
-[ "$(grep -c ': verified' out.txt)" = 5 ] || fail "not all shapes: $(cat out.txt)"
+[ "$(grep -c ': verified' out.txt)" = 8 ] || fail "not all shapes: $(cat out.txt)"
 grep -q '"relation": "robot"' v.json || fail "report"
-expect 0 'verified' "$V" --robot robot/r.urdf out/r.urdf --claims surface
-expect 1 'distance\|whether these are within' "$V" --robot robot/r.urdf out/r.urdf --epsilon 0.01%
+grep -q 'bodies/t/body-0000.stl' v.json || fail "the report does not name what holds the meshes"
+expect 0 'surface is within' "$V" --robot robot/r.urdf out/r.urdf --claims surface
+expect 1 'bodies: refuted' "$V" --robot robot/r.urdf out/r.urdf --epsilon 0.01%
 # What is no longer there, somewhere else, or moves in another way is noticed.
 cp -r out bad
-sed 's,<collision name="base_1">,<collision name="x"><origin xyz="0 0 1e-9"/>,' out/r.urdf >bad/r.urdf
+sed 's,body-0001.stl,body-0000.stl,' out/r.urdf >bad/r.urdf
 cmp -s out/r.urdf bad/r.urdf && fail "no second body of the base"
-expect 1 "link 'base': mesh meshes/bracket.obj: refuted" "$V" --robot robot/r.urdf bad/r.urdf
+expect 1 "bracket.obj: refuted" "$V" --robot robot/r.urdf bad/r.urdf
+sed 's,<collision name="base_1">,<collision name="x"><origin xyz="0 0 1e-9"/>,' out/r.urdf >bad/r.urdf
+expect 7 'the 1 shape of other poses' "$V" --robot robot/r.urdf bad/r.urdf
 sed 's/scale="0.2 -0.2 0.5"/scale="0.2 -0.2 0.4"/' out/r.urdf >bad/r.urdf
-expect 7 'no mesh of its pose and scale' "$V" --robot robot/r.urdf bad/r.urdf
+expect 7 'no closed mesh of its pose and scale' "$V" --robot robot/r.urdf bad/r.urdf
 sed 's/box size="0.2 0.2 0.1"/box size="0.2 0.2 0.11"/' out/r.urdf >bad/r.urdf
 expect 7 'box: undecided' "$V" --robot robot/r.urdf bad/r.urdf
+sed 's,<link name="frame">,<link name="frame"><collision><geometry><sphere radius="9"/></geometry></collision>,
+  s,<link name="frame"/>,<link name="frame"><collision><geometry><sphere radius="9"/></geometry></collision></link>,' \
+  out/r.urdf >bad/r.urdf
+expect 0 'verified' "$V" --robot robot/r.urdf bad/r.urdf
+expect 7 "link 'frame': undecided: how far 1 shape" "$V" --robot robot/r.urdf bad/r.urdf --epsilon 3%
 sed 's/<axis xyz="0 1 0"/<axis xyz="0 0 1"/' out/r.urdf >bad/r.urdf
 expect 1 "joints: refuted: joint 'shoulder'" "$V" --robot robot/r.urdf bad/r.urdf
 sed 's/"frame"/"other"/' out/r.urdf >bad/r.urdf
 expect 1 "no link 'frame'" "$V" --robot robot/r.urdf bad/r.urdf
+sed 's,</robot>,<link name="world"/><joint name="w" type="prismatic"><parent link="world"/><child link="base"/><limit lower="0" upper="1" effort="1" velocity="1"/></joint></robot>,' \
+  out/r.urdf >bad/r.urdf
+expect 1 "root is 'world'" "$V" --robot robot/r.urdf bad/r.urdf
+sed 's/rpy="0.3 0 0"/quat_xyzw="0 0 0 1"/' out/r.urdf >bad/r.urdf
+expect 3 'write the rotation as rpy' "$V" --robot robot/r.urdf bad/r.urdf
 rm -r bad
 expect 3 't.off' "$V" --robot robot/r.urdf robot/meshes/t.off
 expect 2 'two URDFs' "$V" --robot robot/r.urdf
 expect 2 'cannot be joined with --geometry' "$V" --cover robot/meshes/t.off out/bodies/t --geometry visual
+# Meshes that are closed only together hold nothing; one that is inside out is not held by anything.
+mkdir -p one
+cp robot/meshes/t.off one/t.off
+for i in 3 4 5 6; do
+  awk -v keep="$((i + 4))" 'NR == 2 { $2 = 1 } NR < 7 || NR == keep' robot/meshes/t.off >"one/face$i.off"
+done
+sed 's/^3 \([0-9]\) \([0-9]\) \([0-9]\)/3 \1 \3 \2/' one/t.off >one/inverse.off
+# one_link FILE MESH...
+one_link() {
+  urdf=$1
+  shift
+  echo '<robot name="o"><link name="l">' >"$urdf"
+  for mesh; do echo "<collision><geometry><mesh filename=\"$mesh\"/></geometry></collision>" >>"$urdf"; done
+  echo '</link></robot>' >>"$urdf"
+}
+one_link one/t.urdf t.off
+one_link one/faces.urdf face3.off face4.off face5.off face6.off
+one_link one/inverse.urdf inverse.off
+one_link one/both.urdf t.off face3.off
+one_link one/face.urdf face3.off
+expect 0 'verified' "$V" --robot one/t.urdf one/t.urdf
+expect 7 'no closed mesh' "$V" --robot one/t.urdf one/faces.urdf
+grep -q 'face3.off is not closed' err.txt || fail "the open mesh is not named"
+expect 7 'no closed mesh' "$V" --robot one/face.urdf one/face.urdf
+expect 0 'within 1 convex body' "$V" --robot one/t.urdf one/both.urdf
+expect 0 'as far as open meshes define it' "$V" --robot one/face.urdf one/t.urdf
+expect 7 'inside out' "$V" --robot one/inverse.urdf one/t.urdf --claims solid
+expect 2 'report' "$V" --robot one/t.urdf one/t.urdf --report one/t.off
+cmp -s one/t.off robot/meshes/t.off || fail "a report was written over a mesh"
+# Two meshes of one pose are measured together.
+sed 's/^\([-0-9.]*\) \([-0-9.]*\) \([-0-9.]*\)$/\1 \2 1\3/; 2s/.*/4 4 0/' one/t.off >one/u.off
+one_link one/two.urdf t.off u.off
+expect 0 'bodies' "$D" one/two.urdf -o two --epsilon 3% --effort fast
+expect 0 'verified' "$V" --robot one/two.urdf two/two.urdf --epsilon 3%
+# A mesh found twice, with other contents.
+mkdir -p old/pack/meshes new/pack/meshes
+cp one/t.off old/pack/meshes/t.off
+sed '3s/.*/0.4 0 0/' one/t.off >new/pack/meshes/t.off
+one_link old/pack/r.urdf package://pack/meshes/t.off
+cp old/pack/r.urdf new/pack/r.urdf
+expect 3 'is found twice' "$V" --robot old/pack/r.urdf new/pack/r.urdf --package-path old
 # The new robot is a robot, and another run gives the same bytes.
 expect 0 'bodies of 2 links' "$D" out/r.urdf -o again --effort fast
 expect 0 '' "$D" robot/r.urdf -o out2 --epsilon 3% --effort fast --quiet --no-cache --mesh-prefix package://r/
@@ -107,6 +161,7 @@ grep -q 'of 1 link, from 1 mesh$' err.txt || fail "counts: $(cat err.txt)"
 grep -q 'bodies/t/body' seen/v.urdf || fail "no bodies for drawing shapes"
 grep -q 'box size' seen/v.urdf || fail "a link without a shape for drawing lost its collision shape"
 expect 0 'verified' "$V" --robot robot/v.urdf seen/v.urdf --geometry visual
+grep -q "link 'arm/1': box: verified" out.txt || fail "collision shapes of a link that is not drawn are not judged"
 grep -q 'filename="../robot/meshes/t.off"' seen/v.urdf || fail "a mesh that stays is not found from the folder"
 
 # Files of the same bytes that refer to other files are other meshes.
@@ -137,6 +192,9 @@ expect 4 'part.stl' "$D" robot/r.urdf -o out --epsilon 3% --effort fast
 [ -s mine/part.stl ] && [ -s out/bodies/t/part.stl ] || fail "a file of the user is gone"
 rm out/bodies/t/part.stl
 expect 2 'overwrite' "$D" robot/r.urdf -o robot
+cp robot/r.urdf robot/s.urdf
+expect 4 'out/r.urdf: another robot' "$D" robot/s.urdf -o out --epsilon 3% --effort fast
+[ ! -e out/s.urdf ] || fail "two robots in one folder"
 mkdir -p theirs && echo '<robot name="theirs"/>' >theirs/r.urdf
 expect 4 'theirs/r.urdf: exists' "$D" robot/r.urdf -o theirs
 [ "$(ls theirs)" = r.urdf ] && grep -q theirs theirs/r.urdf || fail "a robot of the user is gone"
