@@ -204,7 +204,7 @@ class Decomposer {
     return best;
   }
 
-  /// Gives a leaf of a body to another one if both are then better than the body was.
+  /// Gives a piece of a body to another one if both are then better than the body was.
   bool hand_over(std::vector<Body>& bodies, std::size_t from) const {
     const Body& giver = bodies[from];
     if (giver.leaves.size() < 2) return false;
@@ -621,7 +621,7 @@ class Decomposer {
     return bodies.size() <= target;
   }
 
-  /// Two or more bodies in place of one; all its leaves, if wished.
+  /// Two or more bodies in place of one; all its pieces, if wished.
   std::vector<Body> take_apart(const Body& body, double epsilon, bool all = false) {
     std::vector<Body> leaves;
     if (body.leaves.size() == 1) {

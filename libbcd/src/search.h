@@ -46,7 +46,7 @@ class CutTree {
 
   /// Cuts the leaf with the largest distance. @return false when no leaf can be cut.
   bool cut_worst();
-  /// Judges the leaves round a probe that was added anew.
+  /// Judges the nodes round a probe that was added anew.
   void reappraise(const Solid::Probe& probe);
   /// Cuts this leaf. @return false when no plane cuts it.
   bool cut(int leaf);
@@ -127,10 +127,10 @@ class CutTree {
   std::vector<std::vector<std::uint32_t>> reflex_of_;  // triangle → reflex_ entries
 };
 
-/// Bodies as unions of leaves, one hull round each.
+/// Bodies as unions of the tree's nodes, one hull round each.
 struct Body {
   std::vector<Vec3> hull;   ///< vertices
-  std::vector<int> leaves;  ///< of the tree
+  std::vector<int> leaves;  ///< nodes of the tree; none is below another one
   Appraisal appraisal;
   Box3 box;
 };
