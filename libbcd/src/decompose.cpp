@@ -1000,8 +1000,10 @@ bool too_coarse(const Mesh& mesh, const DecomposeOptions& options) {
   double magnitude = 0;
   for (const Vec3& p : mesh.vertices) magnitude = std::max(magnitude, p.cwiseAbs().maxCoeff());
   const double spacing = geom::float32_spacing(magnitude);
-  return spacing > 1e-6 * geom::bounding_box(mesh).diagonal() ||
-         (options.epsilon && spacing > 0.01 * *options.epsilon);
+  // Rounding outwards takes some spacings.
+  return spacing > (options.epsilon ? std::min(1e-4 * geom::bounding_box(mesh).diagonal(),
+                                               0.01 * *options.epsilon)
+                                    : 1e-6 * geom::bounding_box(mesh).diagonal());
 }
 
 DecomposeResult decompose(const geom::Prepared& input, const DecomposeOptions& options) {

@@ -16,6 +16,8 @@ namespace kaboum::bcd {
 namespace {
 
 constexpr std::uint32_t kNone = 0xFFFFFFFF;
+/// Links of no more edges are looked at in full, others by samples.
+constexpr std::size_t kFewEdges = 64;
 
 struct HalfSpace {
   Vec3 n;  // unit
@@ -210,12 +212,16 @@ class Contractor {
   bool place(std::uint32_t a, std::uint32_t b, Vec3& best, double& cost) {
     if (!link(a, b, edges_)) return false;
     constraints_.clear();
+    // Round the tip of a cone of a thousand facets, all pairs and all samples would take minutes.
+    const bool few = edges_.size() <= kFewEdges;
     for (const auto& [u, w] : edges_) {
       HalfSpace h;
       if (!tangent(u, w, h)) return false;
       bool known = false;
-      for (const HalfSpace& c : constraints_)
+      for (std::size_t i = 0; few && i < constraints_.size(); ++i) {
+        const HalfSpace& c = constraints_[i];
         known = known || (c.n.dot(h.n) > 1 - 1e-14 && std::abs(c.d - h.d) < 1e-12 * size_);
+      }
       if (!known) constraints_.push_back(h);
     }
     Quadric q = quadric_[a];
@@ -231,7 +237,8 @@ class Contractor {
                                  planes_.col(2) * best.z() - planes_.col(3))
                                     .maxCoeff());
     double reach = solid_.field(best);
-    for (const auto& [u, w] : edges_) {
+    for (std::size_t i = 0; i < edges_.size(); i += 1 + edges_.size() / (kFewEdges + 1)) {
+      const auto& [u, w] = edges_[i];
       const Vec3 &p = vertices_[u], &r = vertices_[w];
       reach = std::max({reach, solid_.field(0.5 * (best + p)), solid_.field((best + p + r) / 3),
                         solid_.field(0.6 * best + 0.2 * p + 0.2 * r)});

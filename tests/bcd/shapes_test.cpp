@@ -131,6 +131,37 @@ TEST(Shapes, BoxWithThinWalls) {
 }
 
 /// Planes of symmetry are found whatever the triangles are.
+/// A vertex with hundreds of neighbours, as the tips of cones and the middles of discs have in CAD.
+TEST(Shapes, FinelyTriangulatedCone) {
+  constexpr std::uint32_t kSides = 400;
+  Mesh cone;
+  for (std::uint32_t i = 0; i < kSides; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kSides;
+    cone.vertices.emplace_back(std::cos(angle), std::sin(angle), 0);
+    const std::uint32_t next = (i + 1) % kSides;
+    cone.triangles.push_back({i, next, kSides});
+    cone.triangles.push_back({next, i, kSides + 1});
+  }
+  cone.vertices.emplace_back(0, 0, 1.5);
+  cone.vertices.emplace_back(0, 0, 0);
+  const DecomposeOptions options = test::quick(cone, 1);
+  const DecomposeResult result = decompose(geom::prepare(cone), options);
+  EXPECT_EQ(result.bodies.size(), 1U);
+  EXPECT_LE(result.statistics.vertices, 64U);
+  EXPECT_LE(result.reach_upper, *options.epsilon);
+}
+
+/// Float32 steps that are a hundredth of epsilon leave enough to round to.
+TEST(Shapes, FarFromTheOrigin) {
+  const Mesh cube = kaboum::test::translated(kaboum::test::box(Vec3(1, 1, 1), 1), Vec3(500, 0, 0));
+  const DecomposeOptions options = test::quick(cube, 5);
+  const DecomposeResult result = decompose(geom::prepare(cube), options);
+  EXPECT_EQ(result.stop, Stop::Done);
+  EXPECT_EQ(result.bodies.size(), 1U);
+  DecomposeOptions finer = test::quick(cube, 0.05);
+  EXPECT_EQ(decompose(geom::prepare(cube), finer).stop, Stop::TooCoarse);
+}
+
 TEST(Shapes, Mirrors) {
   const auto mirrors = [](const Mesh& mesh) { return mirror_planes(Solid(mesh, 1000, 0)).size(); };
   EXPECT_EQ(mirrors(kaboum::test::box({1, 2, 3}, 2)), 3U);
