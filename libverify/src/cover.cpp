@@ -1,7 +1,9 @@
+#include <kaboum/geom/topology.h>
 #include <kaboum/verify/cover.h>
 
 #include <algorithm>
 #include <iomanip>
+#include <numeric>
 #include <optional>
 #include <sstream>
 
@@ -70,6 +72,29 @@ std::string fault_of(const geom::Mesh& body) {
   return deep ? "" : "it has no volume";
 }
 
+std::vector<std::uint32_t> all_of(const geom::Mesh& mesh) {
+  std::vector<std::uint32_t> out(mesh.triangles.size());
+  std::iota(out.begin(), out.end(), 0U);
+  return out;
+}
+
+/// Triangles that are not known to lie in the outer solid as wholes. @param inclusion  of the mesh
+/// in it; what it does not name, and has an area, does.
+std::vector<std::uint32_t> not_within(const geom::Mesh& mesh, const Inclusion& inclusion) {
+  const Answer answer = inclusion.surface.answer;
+  if (inclusion.limited || (answer != Answer::Verified && answer != Answer::Refuted))
+    return all_of(mesh);
+  std::vector<std::uint32_t> out = inclusion.surface.inner_triangles;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const geom::Triangle& v = mesh.triangles[t];
+    if (geom::is_degenerate(mesh.vertices[v[0]], mesh.vertices[v[1]], mesh.vertices[v[2]]))
+      out.push_back(t);
+  }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
 }  // namespace
 
 geom::Mesh sum_of(const geom::ConvexSet& set) {
@@ -118,10 +143,19 @@ DistanceClaim verify_reach(const geom::ConvexSet& set, const geom::Mesh& origina
   DistanceClaimOptions options;
   options.to_solid = to_solid;
   const geom::Mesh sum = sum_of(set);
-  DistanceClaim claim = verify_distance(sum, original, epsilon - set.margin, options);
+  const Inclusion inclusion = to_solid ? verify_inclusion(sum, original, limits) : Inclusion{};
+  const std::vector<std::uint32_t> open = to_solid ? not_within(sum, inclusion) : all_of(sum);
+  DistanceClaim claim;
+  claim.answer = Answer::Verified;
+  if (!open.empty()) {
+    geom::Mesh part{sum.vertices, {}};
+    for (const std::uint32_t t : open) part.triangles.push_back(sum.triangles[t]);
+    claim = verify_distance(part, original, epsilon - set.margin, options);
+    claim.triangle = open[claim.triangle];
+  }
   if (to_solid && claim.answer == Answer::Verified) {
     // Cavities that the bodies fill are farther away inside the bodies than on their surfaces.
-    const Claim inside = reach_inside(sum, original, epsilon - set.margin, limits);
+    const Claim inside = reach_inside(sum, original, inclusion, epsilon - set.margin, limits);
     if (inside.answer == Answer::Verified) return claim;
     claim.answer = inside.answer;
     claim.reason = inside.reason;

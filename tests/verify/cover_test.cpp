@@ -436,6 +436,32 @@ TEST(Cover, ReachInsideCavitiesThatTheBodiesFill) {
   EXPECT_EQ(verify::verify_reach(all, bottle, 0.45, true).answer, Answer::Refuted);
 }
 
+TEST(Cover, ReachAlongASlantedSeam) {
+  // The L of three unit cubes, cut from its outer to its inner corner: nothing is outside it.
+  const auto prism = [](const std::vector<Vec3>& base) {
+    std::vector<Vec3> points = base;
+    for (const Vec3& p : base) points.push_back(p + Vec3::UnitZ());
+    return *geom::convex_hull(points);
+  };
+  const Mesh letter = block_chain({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  const auto cut = [&](double end) {
+    return set_of({prism({{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}}),
+                   prism({{0, 0, 0}, {0, 2, 0}, {end, 2, 0}, {1, 1, 0}})});
+  };
+  for (const double epsilon : {1e-2, 1e-6, 1e-12})
+    EXPECT_EQ(verify::verify_reach(cut(1), letter, epsilon, true).answer, Answer::Verified);
+  // A wedge that sticks out by 1/8 at its end.
+  EXPECT_EQ(verify::verify_reach(cut(1.125), letter, 0.126, true).answer, Answer::Verified);
+  const auto beyond = verify::verify_reach(cut(1.125), letter, 0.124, true);
+  EXPECT_EQ(beyond.answer, Answer::Refuted);
+  EXPECT_GT(beyond.largest, 0.124);
+  const Mesh sum = verify::sum_of(cut(1.125));
+  double farthest = 0;  // the triangle named is one of the set's that reach out
+  for (const std::uint32_t v : sum.triangles[beyond.triangle])
+    farthest = std::max(farthest, sum.vertices[v].x());
+  EXPECT_GT(farthest, 1.1);
+}
+
 TEST(Cover, ReachWithAMargin) {
   const Mesh unit = block({0, 0, 0}, {1, 1, 1});
   ConvexSet set = set_of({block({0, 0, 0}, {1.25, 1, 1})});
