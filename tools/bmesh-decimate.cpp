@@ -715,8 +715,9 @@ class Job {
     const int verification = level.verified ? conclude_verification(level) : tools::kDone;
     if (!level.reached()) {
       tools::log(false, "bmesh-decimate: " + o_.input + ": " + std::to_string(*level.wished) +
-                            " vertices cannot be reached: no further contraction is possible at " +
-                            std::to_string(vertices) + "; the result so far is written");
+                            " vertices cannot be reached with --cost " + o_.cost_name +
+                            ": no further contraction is possible at " + std::to_string(vertices) +
+                            "; the result so far is written");
       return tools::kNo;
     }
     return verification;
