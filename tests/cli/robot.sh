@@ -10,7 +10,7 @@ tetrahedron >robot/meshes/t.off
 cp "$BRACKET" robot/meshes/bracket.obj
 cat >robot/r.urdf <<'END'
 <robot name="r">
-  <!-- kept -->
+  <!-- kept: no <rlkin> -->
   <link name="base">
     <visual><geometry><mesh filename="meshes/seen.dae"/></geometry></visual>
     <collision><geometry><mesh filename="meshes/bracket.obj"/></geometry></collision>
@@ -33,7 +33,7 @@ done
 grep -q '^out/r.urdf: .*t.off' r.d || fail "dependency file: $(cat r.d)"
 grep -q '"margin"' r.json || fail "report"
 # What has nothing to do with collisions stays; names lead to the same files.
-grep -q '<!-- kept -->' out/r.urdf || fail "comments are lost"
+grep -q '<!-- kept: no <rlkin> -->' out/r.urdf || fail "comments are lost"
 grep -q 'filename="../robot/meshes/seen.dae"' out/r.urdf || fail "the drawing's mesh is not found from the folder"
 [ "$(grep -c 'bodies/t/body-0000.stl" scale="0.2 -0.2 0.5"' out/r.urdf)" = 2 ] || fail "scale"
 [ "$(grep -c 'box size' out/r.urdf)" = 1 ] || fail "box"
