@@ -367,6 +367,15 @@ int check(const Options& o) {
   options.progress = [&](const std::string& what) { progress.show("deciding: " + what); };
 
   Verdict verdict;
+  // What is decided is said at once: a distance may take long.
+  std::ostream& out = o.common.report == "-" ? std::cerr : std::cout;
+  std::size_t said = 0;
+  const auto say = [&] {
+    if (o.common.quiet) return;
+    progress.show("");
+    for (; said < verdict.lines().size(); ++said) out << verdict.lines()[said] << '\n';
+    out.flush();
+  };
   Json claims;
   const bool wants_solid = o.claims != "surface", wants_surface = o.claims != "solid";
   const geom::Mesh& inner = o.inner ? approximation.mesh : original.mesh;
@@ -408,6 +417,7 @@ int check(const Options& o) {
   claims["solid"] = to_json(inclusion.solid);
   claims["solid"]["relative"] = inclusion.relative;
   claims["surface"] = to_json(inclusion.surface);
+  say();
 
   std::vector<Far> far;
   verify::Claim depth;  // its triangles are the original's and, as outer ones, the bodies'
@@ -500,10 +510,7 @@ int check(const Options& o) {
                          {"peak_megabytes", tools::peak_megabytes()}};
     tools::write_json(o.common.report, json);
   }
-  std::ostream& out = o.common.report == "-" ? std::cerr : std::cout;
-  if (!o.common.quiet) {
-    for (const std::string& line : verdict.lines()) out << line << '\n';
-  }
+  say();
   if (answer != Answer::Verified && answer != Answer::Undecided && !o.prepare) {
     if (const std::string change = change_by_preparing(original, o.cover); !change.empty())
       tools::log(o.common.quiet, "note: bmesh-decimate and bcd-decompose speak of " + o.original +
