@@ -387,8 +387,8 @@ class RobotVerifier {
       case Answer::Refuted:
         // Negative windings of what is not convex lower the sum.
         if (!holders.convex) f.answer = Answer::Undecided;
-        f.text = "it is not known to be within the " + bodies + " of its pose";
-        if (holders.convex) f.text = "it is not within the " + bodies + " of its pose";
+        f.text = (holders.convex ? "it is not within the " : "it is not known to be within the ") +
+                 bodies + " of its pose";
         if (worst->witness)
           f.text += ": " + point(worst->witness->point) + " is " + number(worst->witness->depth) +
                     " outside, in the mesh's own unit";
