@@ -12,6 +12,7 @@
 
 #include "cli.h"
 #include "prepared_original.h"
+#include "verdict.h"
 #include "verify_progressive.h"
 #include "verify_robot.h"
 #include "verify_sweep.h"
@@ -20,6 +21,8 @@ namespace {
 
 using namespace kaboum;
 using tools::Json;
+using tools::number;
+using tools::point;
 using verify::Answer;
 
 struct Options {
@@ -49,18 +52,6 @@ Input read(const std::string& path, const std::string& format, const char* optio
                     " triangles with repeated corners bound nothing and are left out");
   }
   return {std::move(r.mesh), r.format, io::sha256(bytes), std::move(notes)};
-}
-
-std::string number(double x) {
-  std::ostringstream text;
-  text << std::setprecision(6) << x;
-  return text.str();
-}
-
-std::string point(const geom::Vec3& p) {
-  std::ostringstream text;
-  text << std::setprecision(17) << '(' << p.x() << ", " << p.y() << ", " << p.z() << ')';
-  return text.str();
 }
 
 /// Of the box; its square may exceed all doubles, or vanish.
@@ -172,20 +163,6 @@ class Verdict {
   std::vector<std::string> lines_;
   std::vector<Answer> enclosure_, besides_;
 };
-
-int exit_code(Answer answer) {
-  switch (answer) {
-    case Answer::Verified:
-      return tools::kDone;
-    case Answer::Refuted:
-      return tools::kNo;
-    case Answer::Undecided:
-      return tools::kLimit;
-    case Answer::Undefined:
-      break;
-  }
-  return tools::kBadInput;
-}
 
 /// A triangle that is too far away.
 struct Far {
@@ -547,7 +524,7 @@ int check(const Options& o) {
       tools::log(o.common.quiet, "note: " + hint);
     }
   }
-  return exit_code(answer);
+  return tools::exit_code(answer);
 }
 
 }  // namespace

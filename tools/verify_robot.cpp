@@ -7,15 +7,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
 #include <iostream>
 #include <map>
 #include <optional>
-#include <set>
-#include <sstream>
+#include <tuple>
 
 #include "prepared_original.h"
 #include "robot_bodies.h"
+#include "verdict.h"
 
 namespace kaboum::tools {
 namespace {
@@ -23,25 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 using sweep::Geometry;
 using verify::Answer;
-
-std::string number(double x) {
-  std::ostringstream text;
-  text << std::setprecision(6) << x;
-  return text.str();
-}
-
-std::string point(const geom::Vec3& p) {
-  std::ostringstream text;
-  text << std::setprecision(17) << '(' << p.x() << ", " << p.y() << ", " << p.z() << ')';
-  return text.str();
-}
-
-/// Refuted before undecided before undefined before verified.
-Answer worse(Answer a, Answer b) {
-  for (const Answer x : {Answer::Refuted, Answer::Undecided, Answer::Undefined})
-    if (a == x || b == x) return x;
-  return Answer::Verified;
-}
 
 bool same(const sweep::Transform& a, const sweep::Transform& b) {
   return a.linear == b.linear && a.translation == b.translation;
@@ -115,36 +95,28 @@ struct Finding {
 
 /// The shapes of a link with one frame: what the original has there, and what is to hold it.
 struct Group {
-  const Geometry* frame = nullptr;
   std::vector<const File*> originals, bodies;
+  geom::Vec3 scale;
+};
+
+/// What was found of a group.
+struct Judgement {
+  std::vector<Finding> originals;
+  std::optional<Finding> distance;  ///< of the bodies, where it was asked for and all are held
 };
 
 /// What is to hold the originals of a group, as far as it can.
 struct Holders {
   geom::ConvexSet set;
-  bool convex = true;                 ///< all of them
-  std::vector<std::string> left_out;  ///< files that bound no solid, and why
+  verify::Claim convex;  ///< all of them
+  geom::Mesh sum;
 };
 
 std::string count(std::size_t n, const char* one, const char* many) {
   return std::to_string(n) + " " + (n == 1 ? one : many);
 }
 
-Holders holders_of(const Group& group) {
-  Holders out;
-  for (const File* file : group.bodies) {
-    // Where each is closed, and the sum winds about a point, so does one of them.
-    if (!geom::analyse(geom::weld(file->mesh)).closed()) {
-      out.left_out.push_back(file->path + " is not closed and holds nothing");
-    } else if (!(geom::signed_volume(file->mesh) > 0)) {
-      out.left_out.push_back(file->path + " is inside out and holds nothing");
-    } else {
-      out.set.bodies.push_back({file->path, file->mesh});
-    }
-  }
-  out.convex = verify::verify_convexity(out.set).convex.answer == Answer::Verified;
-  return out;
-}
+bool closed(const geom::Mesh& mesh) { return geom::analyse(geom::weld(mesh)).closed(); }
 
 class RobotVerifier {
  public:
@@ -179,17 +151,7 @@ class RobotVerifier {
           << (open_ && answer_ == Answer::Verified ? ", as far as open meshes define it" : "")
           << '\n';
     }
-    switch (answer_) {
-      case Answer::Verified:
-        return kDone;
-      case Answer::Refuted:
-        return kNo;
-      case Answer::Undecided:
-        return kLimit;
-      case Answer::Undefined:
-        break;
-    }
-    return kBadInput;
+    return exit_code(answer_);
   }
 
  private:
@@ -215,8 +177,8 @@ class RobotVerifier {
     for (const sweep::Link& link : original_.robot.links) {
       shapes += shapes_of(link).size();
       read_all(shapes_of(link), original_);
-      if (!shapes_of(link).empty()) read_all(result_of(link.name), result_);
     }
+    for (const sweep::Link& link : result_.robot.links) read_all(link.collision, result_);
     if (shapes == 0)
       throw Error(ErrorCode::InvalidInput,
                   o_.original + ": no link has a shape" +
@@ -227,14 +189,17 @@ class RobotVerifier {
   /// The file of a mesh. A package's that is found with different contents is nobody's: another
   /// program may take the other one.
   const File& file_of(const Geometry& g, const RobotFile& robot) {
+    const auto [at, fresh] = named_.try_emplace({robot.path.string(), g.mesh});
+    if (!fresh) return *at->second;
     const std::vector<fs::path> places = find_mesh(g.mesh, robot.path, o_.packages);
     const File& file = read(places.front().string());
-    for (const fs::path& other : places)
-      if (read(other.string()).sha256 != file.sha256)
+    for (auto other = places.begin() + 1; other != places.end(); ++other)
+      if (io::sha256(io::read_file(*other)) != file.sha256)
         throw Error(ErrorCode::InvalidInput,
                     robot.path.string() + ": '" + g.mesh + "' is found twice, as " + file.path +
-                        " and, with other contents, as " + other.string() +
+                        " and, with other contents, as " + other->string() +
                         "; which one it stands for is not known: name it without package://");
+    at->second = &file;
     return file;
   }
 
@@ -258,10 +223,10 @@ class RobotVerifier {
       const Geometry& g = shapes[i];
       if (seen[i] != 0) continue;
       if (g.shape != Geometry::Shape::Mesh) {
-        add(json, link, g, primitive(g, there));
+        add(json, link, name_of_shape(g.shape), name_of_shape(g.shape), primitive(g, there));
         continue;
       }
-      Group group{&g, {}, {}};
+      Group group{{}, {}, g.size.cwiseAbs()};
       for (std::size_t k = i; k < shapes.size(); ++k) {
         if (!same_frame(g, shapes[k])) continue;
         seen[k] = 1;
@@ -269,57 +234,39 @@ class RobotVerifier {
       }
       for (const Geometry& h : there)
         if (same_frame(g, h)) group.bodies.push_back(&file_of(h, result_));
-      check(json, link, group, there.size() - group.bodies.size());
+      add(json, link, group, there.size() - group.bodies.size());
     }
     links_.push_back(std::move(json));
   }
 
   /// @param others  shapes of the result's link in other frames.
-  void check(Json& json, const sweep::Link& link, const Group& group, std::size_t others) {
-    std::vector<geom::Mesh> judged;
-    Holders holders = holders_of(group);
-    for (const std::string& why : holders.left_out) notes_.push_back(why);
-    bool held = true;
-    for (const File* file : group.originals) {
-      geom::Mesh mesh = judged_mesh(*file);
-      // The same file in the same frame, as many links have it, is decided once.
-      const std::vector<const File*> key = [&] {
-        std::vector<const File*> all{file};
-        all.insert(all.end(), group.bodies.begin(), group.bodies.end());
-        return all;
-      }();
-      auto at = decided_.find(key);
-      if (at == decided_.end()) {
-        progress_.show("deciding: " + file->path);
-        at = decided_.emplace(key, hold(*file, mesh, holders)).first;
-      }
-      Finding f = at->second;
+  void add(Json& json, const sweep::Link& link, const Group& group, std::size_t others) {
+    const Judgement& judged = judgement_of(group);
+    for (std::size_t i = 0; i < group.originals.size(); ++i) {
+      const File& file = *group.originals[i];
+      Finding f = judged.originals[i];
       if (f.answer == Answer::Refuted && others > 0) {
         f.answer = Answer::Undecided;
         f.text += "; what the " + count(others, "shape", "shapes") +
                   " of other poses hold is not looked at";
       }
-      held = held && f.answer == Answer::Verified;
-      f.json["file"] = file->path;
-      f.json["sha256"] = file->sha256;
+      f.json["file"] = file.path;
+      f.json["sha256"] = file.sha256;
       for (const File* body : group.bodies)
         f.json["held_by"].push_back({{"file", body->path}, {"sha256", body->sha256}});
-      add(json, link, *group.frame, f, file->path);
-      judged.push_back(std::move(mesh));
+      add(json, link, "mesh", file.path, f);
     }
-    if (epsilon_ && held) add(json, link, *group.frame, distance(group, judged, holders), "bodies");
+    if (judged.distance) add(json, link, "bodies", "bodies", *judged.distance);
   }
 
-  void add(Json& json, const sweep::Link& link, const Geometry& g, const Finding& f,
-           const std::string& what = {}) {
+  void add(Json& json, const sweep::Link& link, const std::string& shape, const std::string& title,
+           const Finding& f) {
     answer_ = worse(answer_, f.answer);
-    lines_.push_back("link '" + link.name + "': " + (what.empty() ? name_of_shape(g.shape) : what) +
-                     ": " + name_of(f.answer) + ": " + f.text);
-    Json shape{{"shape", what == "bodies" ? what : name_of_shape(g.shape)},
-               {"answer", name_of(f.answer)},
-               {"text", f.text}};
-    shape.update(f.json);
-    json["shapes"].push_back(std::move(shape));
+    lines_.push_back("link '" + link.name + "': " + title + ": " + name_of(f.answer) + ": " +
+                     f.text);
+    Json entry{{"shape", shape}, {"answer", name_of(f.answer)}, {"text", f.text}};
+    entry.update(f.json);
+    json["shapes"].push_back(std::move(entry));
   }
 
   static Finding primitive(const Geometry& g, const std::vector<Geometry>& there) {
@@ -329,18 +276,60 @@ class RobotVerifier {
     return {Answer::Undecided, "the result has none of its size and pose"};
   }
 
+  void note(const std::string& path, const std::vector<std::string>& notes) {
+    for (const std::string& n : notes)
+      if (const std::string text = path + ": " + n;
+          std::find(notes_.begin(), notes_.end(), text) == notes_.end())
+        notes_.push_back(text);
+  }
+
+  /// The same meshes with the same bodies, as many links have them, are judged once.
+  const Judgement& judgement_of(const Group& group) {
+    const std::tuple key{group.originals, group.bodies, group.scale.x(), group.scale.y(),
+                         group.scale.z()};
+    const auto at = judged_.find(key);
+    return at != judged_.end() ? at->second : judged_.emplace(key, judge(group)).first->second;
+  }
+
+  Judgement judge(const Group& group) {
+    const Holders holders = holders_of(group);
+    Judgement out;
+    std::vector<geom::Mesh> meshes;
+    bool held = true;
+    for (const File* file : group.originals) {
+      progress_.show("deciding: " + file->path);
+      meshes.push_back(judged_mesh(*file));
+      out.originals.push_back(hold(*file, meshes.back(), holders));
+      held = held && out.originals.back().answer == Answer::Verified;
+    }
+    if (epsilon_ && held) out.distance = distance(group, meshes, holders);
+    return out;
+  }
+
+  Holders holders_of(const Group& group) {
+    Holders out;
+    for (const File* file : group.bodies) {
+      // Where each is closed, and the sum winds about a point, so does one of them.
+      if (!closed(file->mesh)) {
+        note(file->path, {"it is not closed and holds nothing"});
+      } else if (!(geom::signed_volume(file->mesh) > 0)) {
+        note(file->path, {"it is inside out and holds nothing"});
+      } else {
+        out.set.bodies.push_back({file->path, file->mesh});
+      }
+    }
+    out.convex = verify::verify_convexity(out.set).convex;
+    out.sum = verify::sum_of(out.set);
+    return out;
+  }
+
   /// As the file is, or as prepared.
   geom::Mesh judged_mesh(const File& file) {
-    const bool first = told_.insert(file.path).second;
-    const auto note = [&](const std::vector<std::string>& notes) {
-      if (!first) return;
-      for (const std::string& n : notes) notes_.push_back(file.path + ": " + n);
-    };
-    note(file.notes);
+    note(file.path, file.notes);
     if (!o_.prepare) return file.mesh;
     PreparedOriginal prepared =
         naming(file.path, [&] { return prepare_original(file.mesh, o_.drop_sheets, true); });
-    note(prepared.notes);
+    note(file.path, prepared.notes);
     return std::move(prepared.mesh);
   }
 
@@ -352,15 +341,15 @@ class RobotVerifier {
           return geom::is_degenerate(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
         }))
       return {Answer::Undecided, "none of its triangles has an area"};
-    if (geom::signed_volume(mesh) < 0 && geom::analyse(geom::weld(mesh)).closed())
+    if (geom::signed_volume(mesh) < 0 && closed(mesh))
       return {Answer::Undecided,
               "it is inside out: its volume is negative" +
                   std::string(o_.prepare ? "" : "; --prepare judges it as bcd-decompose takes it")};
-    const verify::Cover cover =
-        naming(file.path, [&] { return verify::verify_cover(mesh, holders.set, limits_); });
-    const verify::Inclusion& in = cover.inclusion;
+    const bool convex = holders.convex.answer == Answer::Verified;
+    const verify::Inclusion in =
+        naming(file.path, [&] { return verify::verify_inclusion(mesh, holders.sum, limits_); });
     Finding f;
-    f.json["claims"] = {{"convex", claim_json(cover.convex)},
+    f.json["claims"] = {{"convex", claim_json(holders.convex)},
                         {"solid", claim_json(in.solid)},
                         {"surface", claim_json(in.surface)}};
     f.json["triangles_without_area"] = in.triangles_without_area;
@@ -375,8 +364,8 @@ class RobotVerifier {
     f.answer = worst->answer;
     open_ = open_ || !in.inner_closed;
     const std::string bodies =
-        holders.convex ? count(holders.set.bodies.size(), "convex body", "convex bodies")
-                       : count(holders.set.bodies.size(), "mesh", "meshes, not all convex");
+        convex ? count(holders.set.bodies.size(), "convex body", "convex bodies")
+               : count(holders.set.bodies.size(), "mesh", "meshes, not all convex");
     switch (f.answer) {
       case Answer::Verified:
         f.text = std::string(solid && surface ? "its solid and surface are"
@@ -386,9 +375,9 @@ class RobotVerifier {
         break;
       case Answer::Refuted:
         // Negative windings of what is not convex lower the sum.
-        if (!holders.convex) f.answer = Answer::Undecided;
-        f.text = (holders.convex ? "it is not within the " : "it is not known to be within the ") +
-                 bodies + " of its pose";
+        if (!convex) f.answer = Answer::Undecided;
+        f.text = (convex ? "it is not within the " : "it is not known to be within the ") + bodies +
+                 " of its pose";
         if (worst->witness)
           f.text += ": " + point(worst->witness->point) + " is " + number(worst->witness->depth) +
                     " outside, in the mesh's own unit";
@@ -399,8 +388,7 @@ class RobotVerifier {
         break;
     }
     if (f.answer != Answer::Verified && !o_.prepare && changes_by_preparing(mesh))
-      notes_.push_back(file.path +
-                       ": bcd-decompose speaks of the mesh as prepared; --prepare judges that");
+      note(file.path, {"bcd-decompose speaks of the mesh as prepared; --prepare judges that"});
     return f;
   }
 
@@ -415,31 +403,31 @@ class RobotVerifier {
   /// How far the bodies of a group reach from all of its originals together.
   Finding distance(const Group& group, const std::vector<geom::Mesh>& originals,
                    const Holders& holders) {
-    if (!holders.convex || !holders.left_out.empty())
+    if (holders.convex.answer != Answer::Verified ||
+        holders.set.bodies.size() < group.bodies.size())
       return {Answer::Undecided, "distances are decided of convex bodies only, and not all are"};
     geom::ConvexSet all;
-    bool closed = true;
+    bool solid = true;
     double diagonal = 0;
     for (const geom::Mesh& mesh : originals) {
       all.bodies.push_back({"", mesh});
-      closed = closed && geom::analyse(geom::weld(mesh)).closed();
+      solid = solid && closed(mesh);
       diagonal = std::max(diagonal, geom::bounding_box(mesh).diagonal());
     }
-    const geom::Vec3 scale = group.frame->size.cwiseAbs();
     const double bound =
-        epsilon_->percent ? epsilon_->of(diagonal) : epsilon_->value / scale.maxCoeff();
+        epsilon_->percent ? epsilon_->of(diagonal) : epsilon_->value / group.scale.maxCoeff();
     if (!(bound > 0) || !std::isfinite(bound))
       throw Error(ErrorCode::InvalidInput, o_.original +
                                                ": --epsilon is no length in the unit of " +
                                                group.originals.front()->path + ", whose scale is " +
-                                               number(scale.maxCoeff()));
+                                               number(group.scale.maxCoeff()));
     progress_.show("deciding: distance to " + group.originals.front()->path);
     const verify::DistanceClaim claim =
-        verify::verify_reach(holders.set, verify::sum_of(all), bound, closed, limits_);
+        verify::verify_reach(holders.set, verify::sum_of(all), bound, solid, limits_);
     Finding f;
     f.answer = claim.answer;
     // By the largest factor; in other directions less may be far enough.
-    const bool uneven = !epsilon_->percent && scale.minCoeff() < scale.maxCoeff();
+    const bool uneven = !epsilon_->percent && group.scale.minCoeff() < group.scale.maxCoeff();
     if (f.answer == Answer::Refuted && uneven) f.answer = Answer::Undecided;
     f.json["distance"] = {{"answer", name_of(claim.answer)},
                           {"reason", claim.reason},
@@ -450,8 +438,8 @@ class RobotVerifier {
                  : "at least " + number(claim.largest) + " from the solid at " + point(claim.at) +
                        ", claimed " + number(bound);
     f.text += ", in the mesh's own unit";
-    if (!closed) f.text += " (to the surface, as it is open)";
-    if (f.answer == Answer::Undecided) f.text += uneven ? "; the scale is uneven" : "";
+    if (!solid) f.text += " (to the surface, as it is open)";
+    if (f.answer == Answer::Undecided && uneven) f.text += "; the scale is uneven";
     return f;
   }
 
@@ -459,8 +447,8 @@ class RobotVerifier {
   void look_for_strangers() {
     for (const sweep::Link& link : result_.robot.links) {
       const auto index = original_.robot.find_link(link.name);
-      static const std::vector<Geometry> kNone;
-      const std::vector<Geometry>& known = index ? shapes_of(original_.robot.links[*index]) : kNone;
+      const std::vector<Geometry> known =
+          index ? shapes_of(original_.robot.links[*index]) : std::vector<Geometry>{};
       const auto strangers = static_cast<std::size_t>(
           std::count_if(link.collision.begin(), link.collision.end(), [&](const Geometry& h) {
             return std::none_of(known.begin(), known.end(),
@@ -506,8 +494,10 @@ class RobotVerifier {
   verify::InclusionOptions limits_;
   std::optional<Length> epsilon_;
   std::map<std::string, File> files_;
-  std::map<std::vector<const File*>, Finding> decided_;
-  std::set<std::string> told_;
+  std::map<std::pair<std::string, std::string>, const File*> named_;  // robot, reference
+  using GroupKey =
+      std::tuple<std::vector<const File*>, std::vector<const File*>, double, double, double>;
+  std::map<GroupKey, Judgement> judged_;
   Answer answer_ = Answer::Verified;
   bool open_ = false;
   std::vector<std::string> lines_, notes_;

@@ -14,18 +14,13 @@
 
 #include "robot_bodies.h"
 #include "robot_path.h"
+#include "verdict.h"
 
 namespace kaboum::tools {
 namespace {
 
 using verify::Answer;
 using Stage = verify::ChainStage;
-
-std::string number(double x) {
-  std::ostringstream text;
-  text << std::setprecision(6) << x;
-  return text.str();
-}
 
 Json to_json(const geom::Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
@@ -160,8 +155,7 @@ Json to_json(const verify::Claim& claim) {
 std::string say(const verify::SweepPlace& p, const Shapes& shapes) {
   std::ostringstream text;
   text << std::setprecision(17) << shapes.shapes[p.shape].name << " at " << p.s << " of segment "
-       << p.segment + 1 << ", (" << p.point.x() << ", " << p.point.y() << ", " << p.point.z()
-       << ')';
+       << p.segment + 1 << ", " << point(p.point);
   return text.str();
 }
 
@@ -175,13 +169,6 @@ void write_witness(const std::string& path, const verify::SweepPlace& place) {
   io::Format format = *io::format_from_name(std::filesystem::path(path).extension().string());
   if (format == io::Format::Stl) format = io::Format::StlAscii;  // holds doubles
   io::write_file(path, io::serialise_mesh(mesh, format, options));
-}
-
-/// Of the claims that decide: refuted before undecided before verified.
-Answer combine(const std::vector<Answer>& answers) {
-  for (const Answer a : {Answer::Refuted, Answer::Undecided})
-    if (std::find(answers.begin(), answers.end(), a) != answers.end()) return a;
-  return Answer::Verified;
 }
 
 }  // namespace
@@ -217,10 +204,9 @@ int verify_sweep(const VerifySweepOptions& o, const CommonOptions& common) {
   options.progress = [&](const std::string& what) { progress.show("deciding: " + what); };
   const verify::SweepClaims claims = verify::verify_sweep(shapes.shapes, path, set, options);
 
-  std::vector<Answer> deciding{claims.convex.answer, claims.surface.answer};
+  Answer answer = worse(claims.convex.answer, claims.surface.answer);
   if (o.claims == "all" && claims.solid.answer != Answer::Undefined)
-    deciding.push_back(claims.solid.answer);
-  const Answer answer = combine(deciding);
+    answer = worse(answer, claims.solid.answer);
 
   const bool at_most = claims.convex.answer == Answer::Verified;
   if (!common.report.empty()) {
@@ -283,14 +269,7 @@ int verify_sweep(const VerifySweepOptions& o, const CommonOptions& common) {
       out << claims.open_meshes << " meshes are not closed: their surfaces alone are judged\n";
     out << name_of(answer) << '\n';
   }
-  switch (answer) {
-    case Answer::Verified:
-      return kDone;
-    case Answer::Refuted:
-      return kNo;
-    default:
-      return kLimit;
-  }
+  return exit_code(answer);
 }
 
 }  // namespace kaboum::tools

@@ -229,21 +229,24 @@ std::vector<int> CutTree::leaves(std::size_t count) const {
   return out;
 }
 
-std::vector<int> CutTree::nodes_within(double distance) const {
-  std::vector<int> out, open{0};
-  while (!open.empty()) {
-    const int node = open.back();
-    open.pop_back();
-    const Node& n = nodes_[node];
-    if (is_leaf(node) || n.appraisal.worst <= distance) {
+std::vector<int> CutTree::nodes_within(double distance, std::vector<int> nodes) const {
+  std::vector<int> out;
+  while (!nodes.empty()) {
+    const int node = nodes.back();
+    nodes.pop_back();
+    if (is_leaf(node) || nodes_[node].appraisal.worst <= distance) {
       out.push_back(node);
     } else {
-      for (const int child : {n.upper, n.lower})
-        if (child >= 0) open.push_back(child);
+      append_children(node, nodes);
     }
   }
   std::sort(out.begin(), out.end());
   return out;
+}
+
+void CutTree::append_children(int node, std::vector<int>& out) const {
+  for (const int child : {nodes_[node].lower, nodes_[node].upper})
+    if (child >= 0) out.push_back(child);
 }
 
 void CutTree::leaves_below(int node, std::vector<int>& out) const {
@@ -586,14 +589,11 @@ std::optional<CutTree::Split> CutTree::find_split(const std::vector<int>& nodes,
       const int node = open.back();
       open.pop_back();
       const Side side = side_of(node, plane);
-      if (side == Side::Both) {
-        if (is_leaf(node) && part(nodes_[node].piece, plane, s.lower, s.upper)) continue;
-        if (!is_leaf(node)) {
-          for (const int child : {nodes_[node].lower, nodes_[node].upper})
-            if (child >= 0) open.push_back(child);
-          continue;
-        }
+      if (side == Side::Both && !is_leaf(node)) {
+        append_children(node, open);
+        continue;
       }
+      if (side == Side::Both && part(nodes_[node].piece, plane, s.lower, s.upper)) continue;
       const std::vector<Vec3>& hull = nodes_[node].hull;
       auto& to = side == Side::Lower ? s.lower : s.upper;
       to.insert(to.end(), hull.begin(), hull.end());
@@ -647,8 +647,7 @@ void CutTree::split(std::vector<int> nodes, const Plane& plane, std::vector<int>
       if (nodes_[node].lower >= 0) lower.push_back(nodes_[node].lower);
       if (nodes_[node].upper >= 0) upper.push_back(nodes_[node].upper);
     } else {
-      for (const int child : {nodes_[node].lower, nodes_[node].upper})
-        if (child >= 0) nodes.push_back(child);
+      append_children(node, nodes);
     }
   }
   std::sort(lower.begin(), lower.end());

@@ -698,8 +698,7 @@ class Decomposer {
     const auto& nodes = tree_.nodes();
     const auto children = [&](int node) {
       std::vector<int> out;
-      for (const int child : {nodes[node].lower, nodes[node].upper})
-        if (child >= 0) out.push_back(child);
+      tree_.append_children(node, out);
       return out;
     };
     const std::vector<int> leaves = leaves_of(body);
@@ -712,18 +711,10 @@ class Decomposer {
       if (std::all_of(parts.begin(), parts.end(), [&](int part) { return whole.contains(part); }))
         whole.insert(parent);
     }
-    std::vector<int> out, open;
+    std::vector<int> coarsest;
     for (const int node : whole)
-      if (!whole.contains(nodes[node].parent)) open.push_back(node);
-    while (!open.empty()) {
-      const int node = open.back();
-      open.pop_back();
-      if (tree_.is_leaf(node) || nodes[node].appraisal.worst <= distance) {
-        out.push_back(node);
-      } else {
-        for (const int child : children(node)) open.push_back(child);
-      }
-    }
+      if (!whole.contains(nodes[node].parent)) coarsest.push_back(node);
+    std::vector<int> out = tree_.nodes_within(distance, std::move(coarsest));
     while (out.size() < wished) {
       auto largest = out.end();
       for (auto it = out.begin(); it != out.end(); ++it)

@@ -73,8 +73,10 @@ class CutTree {
   [[nodiscard]] std::vector<int> leaves() const;
   /// The leaves when there were this many for the first time; all, if there never were.
   [[nodiscard]] std::vector<int> leaves(std::size_t count) const;
-  /// The coarsest nodes within this distance, and the leaves that are farther.
-  [[nodiscard]] std::vector<int> nodes_within(double distance) const;
+  /// In place of these nodes the coarsest within this distance, and the leaves that are farther.
+  [[nodiscard]] std::vector<int> nodes_within(double distance, std::vector<int> nodes = {0}) const;
+  /// Appends what a node was cut into: one or two nodes; none for a leaf.
+  void append_children(int node, std::vector<int>& out) const;
   /// Appends the leaves that a node was cut into, itself when it was not.
   void leaves_below(int node, std::vector<int>& out) const;
   [[nodiscard]] bool is_leaf(int node) const {

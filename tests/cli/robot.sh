@@ -111,13 +111,20 @@ one_link one/both.urdf t.off face3.off
 one_link one/face.urdf face3.off
 expect 0 'verified' "$V" --robot one/t.urdf one/t.urdf
 expect 7 'no closed mesh' "$V" --robot one/t.urdf one/faces.urdf
-grep -q 'face3.off is not closed' err.txt || fail "the open mesh is not named"
+grep -q 'face3.off: it is not closed' err.txt || fail "the open mesh is not named"
 expect 7 'no closed mesh' "$V" --robot one/face.urdf one/face.urdf
 expect 0 'within 1 convex body' "$V" --robot one/t.urdf one/both.urdf
 expect 0 'as far as open meshes define it' "$V" --robot one/face.urdf one/t.urdf
 expect 7 'inside out' "$V" --robot one/inverse.urdf one/t.urdf --claims solid
 expect 2 'report' "$V" --robot one/t.urdf one/t.urdf --report one/t.off
-cmp -s one/t.off robot/meshes/t.off || fail "a report was written over a mesh"
+cp one/t.off one/more.off
+sed '$d' one/t.urdf >one/more.urdf
+cat >>one/more.urdf <<'END'
+</link><link name="m"><collision><geometry><mesh filename="more.off"/></geometry></collision></link>
+<joint name="j" type="fixed"><parent link="l"/><child link="m"/></joint></robot>
+END
+expect 2 'report' "$V" --robot one/t.urdf one/more.urdf --report one/more.off
+cmp -s one/more.off one/t.off && cmp -s one/t.off robot/meshes/t.off || fail "a report was written over a mesh"
 # Two meshes of one pose are measured together.
 sed 's/^\([-0-9.]*\) \([-0-9.]*\) \([-0-9.]*\)$/\1 \2 1\3/; 2s/.*/4 4 0/' one/t.off >one/u.off
 one_link one/two.urdf t.off u.off

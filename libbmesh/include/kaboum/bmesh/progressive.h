@@ -29,8 +29,8 @@ struct Progressive {
 std::vector<char> serialise_progressive(const Progressive& progressive);
 
 /// @throws Error{InvalidInput} on bytes without their checksum, malformed or truncated ones,
-/// indices out of range, coordinates
-///   that are not finite, levels out of order.
+/// indices
+///   out of range, coordinates that are not finite, levels out of order.
 Progressive parse_progressive(std::span<const char> bytes, const std::string& name);
 
 /// A mesh taken from a progressive one.

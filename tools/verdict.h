@@ -1,0 +1,22 @@
+#pragma once
+
+#include <kaboum/geom/mesh.h>
+#include <kaboum/verify/inclusion.h>
+
+#include <string>
+
+/// What the relations of bound-verify share in telling what they found.
+namespace kaboum::tools {
+
+/// Six digits.
+std::string number(double x);
+
+/// All digits.
+std::string point(const geom::Vec3& p);
+
+/// Refuted before undecided before undefined before verified.
+verify::Answer worse(verify::Answer a, verify::Answer b);
+
+int exit_code(verify::Answer answer);
+
+}  // namespace kaboum::tools
