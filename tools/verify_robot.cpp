@@ -277,10 +277,12 @@ class RobotVerifier {
   }
 
   void note(const std::string& path, const std::vector<std::string>& notes) {
-    for (const std::string& n : notes)
-      if (const std::string text = path + ": " + n;
-          std::find(notes_.begin(), notes_.end(), text) == notes_.end())
-        notes_.push_back(text);
+    for (const std::string& n : notes) {
+      std::string text = path;
+      text.append(": ").append(n);
+      if (std::find(notes_.begin(), notes_.end(), text) == notes_.end())
+        notes_.push_back(std::move(text));
+    }
   }
 
   /// The same meshes with the same bodies, as many links have them, are judged once.
