@@ -14,6 +14,8 @@
 #include <new>
 #include <sstream>
 
+#include "help.h"
+
 namespace kaboum::tools {
 namespace {
 
@@ -53,8 +55,8 @@ std::filesystem::path without_slash(std::string name) {
 const char* version() { return KABOUM_VERSION; }
 
 int run(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
-  app.set_version_flag("--version", std::string(KABOUM_VERSION));
-  app.get_formatter()->column_width(34);
+  app.set_version_flag("--version", app.get_name() + " " + KABOUM_VERSION);
+  wrap_help(app);
   const std::string name = app.get_name();
   try {
     app.parse(argc, argv);
@@ -64,7 +66,9 @@ int run(CLI::App& app, int argc, char** argv, const std::function<int()>& body) 
     std::cerr << name << ": standard output: writing failed\n";
     return kOutputFailed;
   } catch (const CLI::ParseError& error) {
-    std::cerr << name << ": " << error.what() << " (see " << name << " --help)\n";
+    const std::string unknown = explain_unknown(app, argc, argv);
+    std::cerr << name << ": " << (unknown.empty() ? error.what() : unknown) << " (see " << name
+              << " --help)\n";
     return kUsage;
   }
   try {

@@ -485,7 +485,8 @@ class Job {
     const geom::Mesh b = refined(b_.mesh);
     const std::vector<double> to_a = distances(b, a_, search_a);
     heatmap_ = picture::encode_png(
-        picture::draw_heatmap({{&a, &to_b, "A: distance to B"}, {&b, &to_a, "B: distance to A"}},
+        picture::draw_heatmap({{&a, &to_b, "A: distance to B", to_b_.max.at},
+                               {&b, &to_a, "B: distance to A", to_a_.max.at}},
                               hausdorff_upper(), diagonal_, o_.width, o_.height));
   }
 

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <map>
 
@@ -197,16 +198,25 @@ int check(const Options& o) {
   return tools::kDone;
 }
 
+/// @throws Error{InvalidArgument} for an extension that names none of them.
+std::string drawing_format(const Options& o) {
+  if (!o.output_format.empty()) return o.output_format;
+  const std::string extension = std::filesystem::path(o.output).extension().string();
+  if (extension == ".svg") return "svg";
+  if (extension == ".dot" || extension == ".gv") return "dot";
+  if (extension.empty() || extension == ".txt") return "text";
+  throw Error(ErrorCode::InvalidArgument,
+              o.output +
+                  ": plans are drawn as .svg, .dot, .gv or .txt; give such a name, or "
+                  "--output-format");
+}
+
 int show(const Options& o) {
+  const std::string format = drawing_format(o);
   const Texts texts = read_texts(o);
   const plan::Model model = plan::load(texts.domain, texts.second());
   plan::Plan p = load_plan(model, o.plan);
   if (o.tree) p = plan::expand_tree(p);
-  std::string format = o.output_format;
-  if (format.empty())
-    format = o.output.ends_with(".svg")                                ? "svg"
-             : o.output.ends_with(".dot") || o.output.ends_with(".gv") ? "dot"
-                                                                       : "text";
   io::write_file(o.output, format == "dot"   ? plan::plan_dot(model, p)
                            : format == "svg" ? plan::plan_svg(model, p)
                                              : plan::plan_text(model, p));
@@ -287,7 +297,7 @@ int main(int argc, char** argv) {
       ->capture_default_str()
       ->type_name("FILE");
   w->add_option("--output-format", o.output_format,
-                "text, dot or svg [by extension: .dot, .gv, .svg; else text]")
+                "text, dot or svg [by extension: .dot, .gv, .svg, .txt; text without one]")
       ->check(CLI::IsMember({"text", "dot", "svg"}))
       ->type_name("NAME");
   w->add_flag("--tree", o.tree, "Expand shared sub-plans");

@@ -13,6 +13,8 @@ done
 expect 0 'digraph' "$P" show "$DOMAINS/$1/domain.kpl" problem.kpl --plan plan.json --output-format dot
 expect 0 '<svg' "$P" show "$DOMAINS/$1/domain.kpl" problem.kpl --plan plan.json --output-format svg
 expect 0 '' "$P" show "$DOMAINS/$1/domain.kpl" problem.kpl --plan plan.json -o plan.svg
+expect 2 'plan.png: plans are drawn as' "$P" show "$DOMAINS/$1/domain.kpl" problem.kpl --plan plan.json -o plan.png
+[ ! -e plan.png ] || fail "text was written to plan.png"
 grep -q '<svg' plan.svg || fail "show -o plan.svg draws no SVG"
 expect 2 'seconds above 0' "$P" solve "$DOMAINS/$1/domain.kpl" problem.kpl --timeout nan
 expect 2 'seconds above 0' "$P" solve "$DOMAINS/$1/domain.kpl" problem.kpl --timeout -1

@@ -32,6 +32,41 @@ std::string number(double x) {
 
 double share(double value, double largest) { return largest > 0 ? value / largest : 0; }
 
+/// The first view that shows the point: the usual one, then others round the object.
+struct Sight {
+  View view;
+  bool turned = false;
+  bool visible = false;
+};
+
+Sight sight_of(const geom::Vec3& point, const geom::Mesh& mesh, const geom::Box3& box, int width,
+               int height) {
+  constexpr double kSlack = 1e-3;
+  Sight sight;
+  for (const double elevation : {28.0, -28.0, 80.0, -80.0}) {
+    for (int turn = 0; turn < 360; turn += 45) {
+      const View view{View{}.azimuth + turn, elevation};
+      if (!sees(Camera(box, view, width, height), mesh, point, kSlack)) continue;
+      return {view, turn != 0 || elevation != View{}.elevation, true};
+    }
+  }
+  return sight;
+}
+
+/// A ring round (x, y), white within dark so that it is seen on every colour.
+void draw_ring(Image& image, int x, int y, int radius, int thickness, bool dashed) {
+  const int reach = radius + 2 * thickness;
+  for (int i = -reach; i <= reach; ++i) {
+    for (int j = -reach; j <= reach; ++j) {
+      if (x + i < 0 || y + j < 0 || x + i >= image.width || y + j >= image.height) continue;
+      const double off = std::hypot(i, j) - radius;
+      if (std::abs(off) > thickness) continue;
+      if (dashed && static_cast<int>(std::floor(std::atan2(j, i) * 4)) % 2 != 0) continue;
+      image.at(x + i, y + j) = std::abs(off) < 0.5 * thickness ? Colour{1, 1, 1} : kInk;
+    }
+  }
+}
+
 }  // namespace
 
 Colour heat(double value) {
@@ -52,9 +87,10 @@ Image draw_heatmap(const std::vector<HeatPanel>& panels, double largest, double 
   const int panel_width = width / columns, panel_height = height - title - legend;
   geom::Box3 box;
   for (const HeatPanel& p : panels) box.extend(geom::bounding_box(*p.mesh));
-  const Camera camera(box, View{}, panel_width, panel_height);
   for (int i = 0; i < columns; ++i) {
     const HeatPanel& panel = panels[static_cast<std::size_t>(i)];
+    const Sight sight = sight_of(panel.maximum, *panel.mesh, box, panel_width, panel_height);
+    const Camera camera(box, sight.view, panel_width, panel_height);
     std::vector<Colour> colours;
     colours.reserve(panel.values->size());
     for (const double v : *panel.values) colours.push_back(heat(share(v, largest)));
@@ -62,8 +98,13 @@ Image draw_heatmap(const std::vector<HeatPanel>& panels, double largest, double 
     style.outlines = false;
     style.vertex_colours = colours;
     draw_mesh(image, i * panel_width, title, panel_width, panel_height, *panel.mesh, camera, style);
-    draw_text(image, panel.title,
-              i * panel_width + (panel_width - text_width(panel.title, scale)) / 2, 4 * scale,
+    const geom::Vec3 at = camera.project(panel.maximum);
+    draw_ring(image, i * panel_width + static_cast<int>(at.x()), title + static_cast<int>(at.y()),
+              7 * scale, 2 * scale, !sight.visible);
+    const std::string text = panel.title + (sight.turned    ? " (turned to the maximum)"
+                                            : sight.visible ? ""
+                                                            : " (maximum hidden: dashed)");
+    draw_text(image, text, i * panel_width + (panel_width - text_width(text, scale)) / 2, 4 * scale,
               scale, kInk);
   }
   // The scale: a bar, and lengths below it.

@@ -17,10 +17,12 @@ struct HeatPanel {
   const geom::Mesh* mesh;
   const std::vector<double>* values;
   std::string title;
+  geom::Vec3 maximum;  ///< where the largest value is, on the mesh; marked by a ring
 };
 
 /// Meshes side by side, coloured from 0 to `largest`, above a scale with lengths and percentages of
-/// `diagonal`.
+/// `diagonal`. All are seen from one side unless that hides a maximum: its panel is turned, and
+/// says so; where no side shows it, the ring is dashed.
 Image draw_heatmap(const std::vector<HeatPanel>& panels, double largest, double diagonal, int width,
                    int height);
 

@@ -181,6 +181,21 @@ geom::Vec3 Camera::project(const geom::Vec3& p) const {
           1 - distance_ / away};
 }
 
+bool sees(const Camera& camera, const geom::Mesh& mesh, const geom::Vec3& point, double slack) {
+  const Vec3 ray = camera.eye() - point;
+  const double least = slack * geom::bounding_box(mesh).diagonal() / ray.norm();
+  for (const geom::Triangle& t : mesh.triangles) {
+    // Möller and Trumbore's intersection, from the point to the eye.
+    const Vec3 &a = mesh.vertices[t[0]], e1 = mesh.vertices[t[1]] - a, e2 = mesh.vertices[t[2]] - a;
+    const Vec3 p = ray.cross(e2), s = point - a, q = s.cross(e1);
+    const double determinant = e1.dot(p);
+    if (determinant == 0) continue;
+    const double u = s.dot(p) / determinant, v = ray.dot(q) / determinant;
+    if (u >= 0 && v >= 0 && u + v <= 1 && e2.dot(q) / determinant > least) return false;
+  }
+  return true;
+}
+
 void draw_mesh(Image& image, int left, int top, int width, int height, const geom::Mesh& mesh,
                const Camera& camera, const Style& style) {
   Buffer buffer(kSamples * width, kSamples * height);

@@ -42,6 +42,10 @@ struct Style {
   std::vector<Colour> of_triangle;  ///< per triangle, in place of `surface`; or empty
 };
 
+/// Whether the surface hides no more than `slack` (relative to the box's diagonal) in front of the
+/// point from the camera.
+bool sees(const Camera& camera, const geom::Mesh& mesh, const geom::Vec3& point, double slack);
+
 /// Draws the mesh into the panel whose left edge is at `left`: flat shading, z-buffer, two by two
 /// samples per pixel. Back faces are shown in dull red, so a wrong orientation is seen.
 /// @pre indices in range; coordinates finite.
