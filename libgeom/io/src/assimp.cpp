@@ -1,4 +1,4 @@
-// glTF, COLLADA, FBX, 3MF and X3D through assimp, which delivers float32 coordinates in a tree of
+// glTF, COLLADA, FBX and X3D through assimp, which delivers float32 coordinates in a tree of
 // nodes. No post-processing step runs: none of them may merge, drop or reorder geometry; polygons
 // are split by our own splitter.
 
@@ -108,8 +108,6 @@ std::string extension_of(Format format) {
       return "dae";
     case Format::Fbx:
       return "fbx";
-    case Format::ThreeMf:
-      return "3mf";
     default:
       return "x3d";
   }
@@ -242,9 +240,6 @@ void add_unit_notes(MeshBuilder& builder, const Source& source, const aiScene& s
     if (scene.mMetaData != nullptr && scene.mMetaData->Get("UnitScaleFactor", unit) && unit != 1)
       builder.note("The file's unit is " + std::to_string(unit) +
                    " centimetres; coordinates were not scaled.");
-  } else if (format == Format::ThreeMf) {
-    builder.note(
-        "Coordinates are in the 3MF file's own unit (millimetres unless it says otherwise).");
   }
 }
 

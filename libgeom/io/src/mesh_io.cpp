@@ -20,7 +20,7 @@ struct FormatInfo {
 };
 
 constexpr std::array kFormats = {
-    FormatInfo{"3mf", Format::ThreeMf, false, true, true},
+    FormatInfo{"3mf", Format::ThreeMf, false, false, true},
     FormatInfo{"collada", Format::Collada, false, true, false},
     FormatInfo{"dae", Format::Collada, false, true, true},
     FormatInfo{"fbx", Format::Fbx, false, true, true},
@@ -65,11 +65,12 @@ ReadResult read_as(const Source& source, Format format) {
       return read_off(source);
     case Format::Vrml:
       return read_vrml(source);
+    case Format::ThreeMf:
+      return read_three_mf(source);
     case Format::Glb:
     case Format::Gltf:
     case Format::Collada:
     case Format::Fbx:
-    case Format::ThreeMf:
     case Format::X3d:
       return read_with_assimp(source, format);
   }
