@@ -38,7 +38,7 @@ Claim search_pockets(const Scene& scene, const std::vector<std::uint32_t>& offen
                      const Limit& limit);
 
 /// Whether every point in which the sum of bodies winds at least once is within epsilon of the
-/// original's solid, given that the bodies' triangles are.
+/// original's solid or triangles, given that the bodies' triangles are.
 /// @param inclusion  of the sum in the original
 /// @pre both are closed chains whose coordinates can be scaled
 Claim reach_inside(const geom::Mesh& sum, const geom::Mesh& original, const Inclusion& inclusion,

@@ -437,6 +437,29 @@ TEST(Cover, ReachInsideCavitiesThatTheBodiesFill) {
   EXPECT_EQ(verify::verify_reach(all, bottle, 0.45, true).answer, Answer::Refuted);
 }
 
+// Walls about which nothing winds, and sheets, are to be covered like all triangles: so what covers
+// them is not far away. The depth inside what is inside out counts from its walls.
+TEST(Cover, ReachFromTrianglesThatBoundNoSolid) {
+  const Mesh unit = block({0, 0, 0}, {1, 1, 1});
+  const auto grown = [](const Vec3& low, const Vec3& high) {
+    return block(low - Vec3::Constant(0.1), high + Vec3::Constant(0.1));
+  };
+  const Mesh plate = block({5, 0, 0}, {6, 1, 0.25});
+  const Mesh turned = merged({unit, flipped(plate)});
+  const ConvexSet set = set_of({grown({0, 0, 0}, {1, 1, 1}), grown({5, 0, 0}, {6, 1, 0.25})});
+  EXPECT_EQ(verify::verify_reach(set, turned, 0.18, true).answer, Answer::Verified);
+  EXPECT_EQ(verify::verify_reach(set, turned, 0.17, true).answer, Answer::Refuted);
+  const ConvexSet cube = set_of({grown({0, 0, 0}, {1, 1, 1})});
+  EXPECT_EQ(verify::verify_reach(cube, flipped(unit), 0.51, true).answer, Answer::Verified);
+  EXPECT_EQ(verify::verify_reach(cube, flipped(unit), 0.49, true).answer, Answer::Refuted);
+
+  Mesh half = plate;
+  half.triangles.resize(2);
+  const Mesh sheet = merged({half, flipped(half)});
+  EXPECT_EQ(verify::verify_reach(set_of({grown({5, 0, 0}, {6, 1, 0})}), sheet, 1.42, true).answer,
+            Answer::Verified);
+}
+
 TEST(Cover, ReachAlongASlantedSeam) {
   // The L of three unit cubes, cut from its outer to its inner corner: nothing is outside it.
   const auto prism = [](const std::vector<Vec3>& base) {

@@ -38,11 +38,11 @@ Cover verify_cover(const geom::Mesh& original, const geom::ConvexSet& set,
                    const InclusionOptions& options = {});
 
 /// Decides whether every point of the union, its margin included, is within `epsilon` of the
-/// original's triangles or, with `to_solid`, of its solid: verify_distance from the bodies'
-/// triangles with what ε leaves beside the margin and, for the solid, a search of what the bodies
-/// hold of its outside (to the triangles alone, the inside of bodies is not looked at). Where that
-/// fails, only a point of the union that is farther away than ε refutes, since what the margin adds
-/// may be near another part of the original.
+/// original's triangles or, with `to_solid`, of these or its solid: verify_distance from the
+/// bodies' triangles with what ε leaves beside the margin and, for the solid, a search of what the
+/// bodies hold of its outside (to the triangles alone, the inside of bodies is not looked at).
+/// Where that fails, only a point of the union that is farther away than ε refutes, since what the
+/// margin adds may be near another part of the original.
 ///
 /// @pre epsilon > set.margin; with `to_solid` the original is a closed chain
 /// @throws as verify_distance
