@@ -14,7 +14,8 @@ ReadResult read_ply(Source source);
 ReadResult read_off(const Source& source);
 ReadResult read_vrml(const Source& source);
 ReadResult read_three_mf(Source source);
-/// glTF, GLB, COLLADA, FBX, X3D.
+ReadResult read_collada(const Source& source);
+/// glTF, GLB, FBX, X3D.
 /// @throws Error{NotBuilt} without assimp.
 ReadResult read_with_assimp(const Source& source, Format format);
 bool has_assimp();

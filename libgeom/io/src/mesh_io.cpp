@@ -21,8 +21,8 @@ struct FormatInfo {
 
 constexpr std::array kFormats = {
     FormatInfo{"3mf", Format::ThreeMf, false, false, true},
-    FormatInfo{"collada", Format::Collada, false, true, false},
-    FormatInfo{"dae", Format::Collada, false, true, true},
+    FormatInfo{"collada", Format::Collada, false, false, false},
+    FormatInfo{"dae", Format::Collada, false, false, true},
     FormatInfo{"fbx", Format::Fbx, false, true, true},
     FormatInfo{"glb", Format::Glb, true, true, true},
     FormatInfo{"gltf", Format::Gltf, false, true, true},
@@ -67,9 +67,10 @@ ReadResult read_as(const Source& source, Format format) {
       return read_vrml(source);
     case Format::ThreeMf:
       return read_three_mf(source);
+    case Format::Collada:
+      return read_collada(source);
     case Format::Glb:
     case Format::Gltf:
-    case Format::Collada:
     case Format::Fbx:
     case Format::X3d:
       return read_with_assimp(source, format);

@@ -28,24 +28,27 @@ bool underflows(std::string_view digits) {
 
 }  // namespace
 
-double parse_coordinate(const Source& source, std::string_view token) {
-  std::string_view digits = token;
-  if (digits.starts_with('+') && !digits.starts_with("+-")) digits.remove_prefix(1);
+std::optional<double> to_double(std::string_view token) {
+  if (token.starts_with('+') && !token.starts_with("+-")) token.remove_prefix(1);
   double value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (end != digits.data() + digits.size() || error == std::errc::invalid_argument)
+  const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);
+  if (end != token.data() + token.size() || error == std::errc::invalid_argument)
+    return std::nullopt;
+  if (error == std::errc::result_out_of_range) return underflows(token) ? 0.0 : HUGE_VAL;
+  return value;
+}
+
+double parse_coordinate(const Source& source, std::string_view token) {
+  const std::optional<double> value = to_double(token);
+  if (!value)
     fail(source, token.data(),
          in_quotes(token) +
              " is not a number; check that the file is complete and uses a decimal point");
-  if (error == std::errc::result_out_of_range) {
-    if (underflows(digits)) return 0.0;
-    value = HUGE_VAL;
-  }
-  if (!std::isfinite(value))
+  if (!std::isfinite(*value))
     fail(source, token.data(),
          "the coordinate " + in_quotes(token) +
              " is not a finite double; remove or repair this vertex");
-  return value;
+  return *value;
 }
 
 std::int64_t parse_integer(const Source& source, std::string_view token, std::string_view what) {

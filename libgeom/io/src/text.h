@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "source.h"
@@ -18,6 +19,10 @@ inline constexpr std::array<unsigned char, 256> kCharClass = [] {
 }();
 inline unsigned char char_class(char c) { return kCharClass[static_cast<unsigned char>(c)]; }
 }  // namespace detail
+
+/// The double nearest to the number in `token`, which may begin with '+': infinite when it
+/// overflows; nullopt when the token is not a number.
+std::optional<double> to_double(std::string_view token);
 
 /// The double nearest to the number in `token`; underflow gives the nearest subnormal or zero.
 /// Accepts a leading '+'. Fails when the token is not a number, overflows, or is not finite.

@@ -45,6 +45,14 @@ XmlDocument::XmlDocument(std::string_view text, std::string name) : name_(std::m
   const tinyxml2::XMLNode* const more = xml_.RootElement()->NextSiblingElement();
   if (more != nullptr) fail(*more, "a second root element; the file is damaged");
   check(xml_);
+  lines_.push_back(text.data());
+  for (const char& c : text)
+    if (c == '\n') lines_.push_back(&c + 1);
+}
+
+const char* XmlDocument::where(const tinyxml2::XMLNode& node) const {
+  const auto line = static_cast<std::size_t>(std::max(node.GetLineNum(), 1));
+  return lines_[std::min(line, lines_.size()) - 1];
 }
 
 /// Everything in `parent`, at most as deep as tinyxml2 allows.
@@ -69,26 +77,24 @@ void XmlDocument::fail(const tinyxml2::XMLNode& where, const std::string& what) 
 }
 
 void XmlDocument::fail_unknown(const tinyxml2::XMLElement& element) const {
-  fail(element, "the element <" + std::string(element.Name()) +
-                    "> is not known here and might hold geometry; export without it");
+  fail(element, "the element " + tag(element) +
+                    " is not known here and might hold geometry; export without it");
 }
 
 std::string_view XmlDocument::need(const tinyxml2::XMLElement& element, const char* name) const {
   const auto value = attribute(element, name);
   if (!value)
-    fail(element, "<" + std::string(element.Name()) + "> has no attribute " + in_quotes(name) +
-                      "; the file is damaged");
+    fail(element, tag(element) + " has no attribute " + in_quotes(name) + "; the file is damaged");
   return *value;
 }
 
 double XmlDocument::number(const tinyxml2::XMLElement& element, std::string_view token) const {
-  double value = 0;
-  const char* const end = token.data() + token.size();
-  const auto [stop, error] = std::from_chars(token.data(), end, value);
-  if (stop == end && error == std::errc() && std::isfinite(value)) return value;
-  const std::string name =
-      name_ + ": line " + std::to_string(element.GetLineNum()) + ": <" + element.Name() + ">";
-  return parse_coordinate({token, name, {}, false}, token);
+  const std::optional<double> value = to_double(token);
+  if (!value || !std::isfinite(*value))
+    fail(element, tag(element) + ": " + in_quotes(token) +
+                      (value ? " is not a finite double; repair or remove it"
+                             : " is not a number; check that the file is complete"));
+  return *value;
 }
 
 std::int64_t XmlDocument::integer(const tinyxml2::XMLElement& element,
@@ -97,7 +103,7 @@ std::int64_t XmlDocument::integer(const tinyxml2::XMLElement& element,
   const char* const end = token.data() + token.size();
   const auto [stop, error] = std::from_chars(token.data(), end, value);
   if (stop == end && error == std::errc()) return value;
-  fail(element, "<" + std::string(element.Name()) + ">: " + in_quotes(token) +
+  fail(element, tag(element) + ": " + in_quotes(token) +
                     " where an integer is expected; the file is damaged");
 }
 
@@ -114,6 +120,10 @@ void XmlDocument::refuse_text(const tinyxml2::XMLNode& node) const {
   if (!is_blank(node.Value()))
     fail(node, "the text " + in_quotes(node.Value()) +
                    " where elements are expected; the file is damaged");
+}
+
+std::string tag(const tinyxml2::XMLElement& element) {
+  return std::string("<").append(element.Name()).append(">");
 }
 
 std::optional<std::string_view> attribute(const tinyxml2::XMLElement& element, const char* name) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace kaboum::io {
 
@@ -22,6 +23,9 @@ class XmlDocument {
 
   [[nodiscard]] const tinyxml2::XMLElement& root() const { return *xml_.RootElement(); }
 
+  /// The beginning of its line in the text, which has to be there still.
+  [[nodiscard]] const char* where(const tinyxml2::XMLNode& node) const;
+
   /// Throws Error{InvalidInput} "<name>: line <n>: <what>".
   [[noreturn]] void fail(const tinyxml2::XMLNode& where, const std::string& what) const;
 
@@ -31,7 +35,7 @@ class XmlDocument {
   /// An attribute that has to be there.
   [[nodiscard]] std::string_view need(const tinyxml2::XMLElement& element, const char* name) const;
 
-  /// The number in `token`, which is part of `element`; see parse_coordinate and parse_integer.
+  /// The number in `token`, which is part of `element`; it has to be finite.
   [[nodiscard]] double number(const tinyxml2::XMLElement& element, std::string_view token) const;
   [[nodiscard]] std::int64_t integer(const tinyxml2::XMLElement& element,
                                      std::string_view token) const;
@@ -54,7 +58,11 @@ class XmlDocument {
 
   std::string name_;
   tinyxml2::XMLDocument xml_;
+  std::vector<const char*> lines_;
 };
+
+/// "<name>", for messages.
+std::string tag(const tinyxml2::XMLElement& element);
 
 /// The attribute's value, if it is there.
 std::optional<std::string_view> attribute(const tinyxml2::XMLElement& element, const char* name);
