@@ -1,8 +1,7 @@
-// glTF, COLLADA, FBX and X3D through assimp, which delivers float32 coordinates in a tree of
+// glTF, FBX and X3D through assimp, which delivers float32 coordinates in a tree of
 // nodes. No post-processing step runs: none of them may merge, drop or reorder geometry; polygons
 // are split by our own splitter.
 
-#include <assimp/config.h>
 #include <assimp/scene.h>
 #include <kaboum/geom/error.h>
 #include <assimp/DefaultLogger.hpp>
@@ -104,8 +103,6 @@ std::string extension_of(Format format) {
       return "glb";
     case Format::Gltf:
       return "gltf";
-    case Format::Collada:
-      return "dae";
     case Format::Fbx:
       return "fbx";
     default:
@@ -201,68 +198,12 @@ class SceneReader {
   bool deformed_ = false;
 };
 
-/// The value of an XML attribute of the first element `tag`, or the element's text for an empty
-/// attribute name. For notes only; no parser.
-std::string xml_value(std::string_view bytes, std::string_view tag, std::string_view attribute) {
-  const std::size_t at = bytes.find(tag);
-  if (at == std::string_view::npos) return {};
-  const std::size_t close = std::min(bytes.find('>', at), bytes.size());
-  std::string_view text;
-  if (attribute.empty()) {
-    if (close == bytes.size()) return {};
-    text = bytes.substr(close + 1, 16);
-    text = text.substr(0, text.find('<'));
-  } else {
-    const std::string_view element = bytes.substr(at, close - at);
-    const std::size_t name = element.find(attribute);
-    if (name == std::string_view::npos) return {};
-    text = element.substr(name + attribute.size(), 24);
-    const std::size_t quote = text.find_first_of("\"'");
-    if (quote == std::string_view::npos) return {};
-    text.remove_prefix(quote + 1);
-    text = text.substr(0, text.find_first_of("\"'"));
-  }
-  return std::string(text);
-}
-
-void add_unit_notes(MeshBuilder& builder, const Source& source, const aiScene& scene,
-                    Format format) {
-  if (format == Format::Collada) {
-    const std::string unit = xml_value(source.bytes, "<unit", "meter=");
-    if (!unit.empty() && unit != "1" && unit != "1.0" && unit != "1.000000")
-      builder.note("The file's unit is " + in_quotes(unit) +
-                   " metres; coordinates were scaled to metres.");
-    const std::string up = xml_value(source.bytes, "<up_axis>", "");
-    if (!up.empty())
-      builder.note("The file's up axis is " + in_quotes(up) + "; the axes were left as they are.");
-  } else if (format == Format::Fbx) {
+void add_unit_notes(MeshBuilder& builder, const aiScene& scene, Format format) {
+  if (format == Format::Fbx) {
     double unit = 0;
     if (scene.mMetaData != nullptr && scene.mMetaData->Get("UnitScaleFactor", unit) && unit != 1)
       builder.note("The file's unit is " + std::to_string(unit) +
                    " centimetres; coordinates were not scaled.");
-  }
-}
-
-/// COLLADA's index lists <p> and <vcount> hold digits and white space. assimp (5.2) never returns,
-/// and allocates without end, when it meets anything else there; so it must not see such files.
-void check_collada_lists(const Source& source) {
-  for (const std::string_view tag : {"<p", "<vcount"}) {
-    for (std::size_t at = source.bytes.find(tag); at != std::string_view::npos;
-         at = source.bytes.find(tag, at)) {
-      at += tag.size();
-      constexpr std::string_view kAfterName = "> \t\r\n";
-      if (at >= source.bytes.size() || kAfterName.find(source.bytes[at]) == std::string_view::npos)
-        continue;
-      const std::size_t first = source.bytes.find('>', at);
-      if (first == std::string_view::npos) return;  // not XML; assimp says so
-      if (source.bytes[first - 1] == '/') continue;
-      const std::size_t end = source.bytes.find_first_not_of("0123456789 \t\r\n", first + 1);
-      if (end == std::string_view::npos || source.bytes.substr(end, 2) != "</")
-        fail(source, source.begin() + std::min(end, source.bytes.size()),
-             "an index list holds something else than numbers; the file is damaged, export it "
-             "again");
-      at = end;
-    }
   }
 }
 
@@ -271,11 +212,8 @@ void check_collada_lists(const Source& source) {
 bool has_assimp() { return true; }
 
 ReadResult read_with_assimp(const Source& source, Format format) {
-  if (format == Format::Collada) check_collada_lists(source);
   const std::string main = "kaboum-input." + extension_of(format);
   Assimp::Importer importer;
-  // COLLADA: robot descriptions (URDF) use the file's own axes, whatever it calls up.
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   auto files = std::make_unique<MemoryWithDirectory>(source, main);
   const MemoryWithDirectory& opened = *files;
   importer.SetIOHandler(files.release());
@@ -296,7 +234,7 @@ ReadResult read_with_assimp(const Source& source, Format format) {
     builder.note(counted(opened.others().size(), "other file was", "other files were") +
                  " read besides (first: " + *opened.others().begin() + ").");
   SceneReader(source, *scene, builder).read();
-  add_unit_notes(builder, source, *scene, format);
+  add_unit_notes(builder, *scene, format);
   return builder.finish(format, true);
 }
 
