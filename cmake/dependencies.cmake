@@ -24,6 +24,11 @@ if(KABOUM_WITH_ASSIMP)
 endif()
 if(KABOUM_BUILD_TESTS)
   find_package(GTest 1.12 REQUIRED)
+  # What users load our results with: tested where it is installed (tests/engines).
+  find_path(KABOUM_MUJOCO_INCLUDE mujoco/mujoco.h)
+  find_library(KABOUM_MUJOCO mujoco)  # Debian's package configuration names folders of other packages
+  find_package(sdformat12 CONFIG QUIET)
+  find_package(Bullet MODULE QUIET)
 endif()
 if(KABOUM_BUILD_BENCHMARKS)
   find_package(benchmark REQUIRED)

@@ -19,6 +19,7 @@
 #include "set_cache.h"
 #include "set_format.h"
 #include "set_picture.h"
+#include "urdf_output.h"
 
 namespace {
 
@@ -151,9 +152,10 @@ void describe(CLI::App& app, Options& o) {
                  "Folder to look up a robot's package:// in, besides $ROS_PACKAGE_PATH and the "
                  "folders above the robot's file (repeatable)")
       ->type_name("DIR");
-  app.add_option("--mesh-prefix", o.prefix,
-                 "Put before the bodies' file names in a robot's new URDF, as in package://arm/ "
-                 "[names relative to the URDF]")
+  app.add_option(
+         "--mesh-prefix", o.prefix,
+         "Put before the bodies' file names in a robot's new URDF, as in package://arm, with "
+         "a slash between; RViz and MoveIt need it [names relative to the URDF]")
       ->type_name("URI");
   app.add_option("--depfile", o.depfile, "Write a Makefile dependency rule")->type_name("FILE");
   app.add_option("--input-format", o.input_format, "Format of INPUT [by extension]")
@@ -450,7 +452,7 @@ int decompose_robot(const Options& o) {
   robot.folder = o.output;
   robot.visual = o.geometry == "visual";
   robot.packages = o.packages;
-  robot.prefix = o.prefix;
+  robot.prefix = tools::with_slash(o.prefix);
   robot.parameters = parameters(o);
   robot.unit = o.unit;
   bool done = true;
@@ -484,6 +486,8 @@ int decompose_robot(const Options& o) {
                                  counted("bodies", "body", "bodies") + " of " +
                                  counted("links", "link", "links") + ", from " +
                                  counted("meshes", "mesh", "meshes"));
+  tools::log(o.common.quiet, tools::how_meshes_are_found(result.report["urdf"].get<std::string>(),
+                                                         "bodies", robot.prefix));
   for (const std::string& link : result.bare)
     tools::log(o.common.quiet, o.input + ": link '" + link + "' has no " + o.geometry +
                                    " shape; it stays as it is");

@@ -1,7 +1,5 @@
 #include "robot_decomposition.h"
 
-#include <kaboum/geom/convex_hull.h>
-#include <kaboum/geom/float32.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/sweep/kinematics.h>
 #include <tinyxml2.h>
@@ -9,10 +7,12 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <optional>
-#include <set>
+#include <string_view>
 
+#include "file_names.h"
+#include "link_container.h"
 #include "robot_bodies.h"
+#include "urdf_output.h"
 
 namespace kaboum::tools {
 namespace {
@@ -21,132 +21,18 @@ namespace fs = std::filesystem;
 using sweep::Geometry;
 using tinyxml2::XMLElement;
 
-/// A name for a file: what is no letter, digit, '-', '_' or '.' becomes '_'; never twice the same.
-class FileNames {
- public:
-  std::string unique(const std::string& wish) {
-    std::string name;
-    for (const char c : wish) {
-      const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
-                         (c >= '0' && c <= '9') || c == '-' || c == '_' || c == '.';
-      name += plain ? c : '_';
-    }
-    if (name.empty() || name.front() == '.') name.insert(0, "_");
-    std::string result = name;
-    for (int i = 2; !taken_.insert(lower(result)).second; ++i)
-      result = name + "-" + std::to_string(i);
-    return result;
-  }
-
- private:
-  static std::string lower(std::string s) {
-    std::transform(s.begin(), s.end(), s.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-    return s;
-  }
-  std::set<std::string> taken_;
-};
-
-/// The bodies of a mesh, and the folder that they are in.
+/// The bodies of a mesh.
 struct Decomposed {
   MeshBodies mesh;
   std::string file;
-  std::string folder;  // relative to the output folder
 };
 
-/// A link's bodies as a set, and how far it reaches beyond them at most.
-struct Container {
-  geom::ConvexSet set;
-  double beyond = 0;
+/// Where they are written: once for every scale that the mesh has. MuJoCo tells meshes apart by the
+/// stems of their names, and its versions differ where a mesh has several scales.
+struct Stored {
+  const Decomposed* bodies = nullptr;
+  std::string name;  ///< of the folder in bodies/, and the stem of its files
 };
-
-struct Enlarged {
-  geom::Mesh hull;
-  double moved;  ///< how far vertices have been moved at most
-};
-
-/// A hull with float32 vertices that holds all that is within `radius` of this one; nullopt where
-/// vertices would be moved by more than `most`, since the body is too thin.
-///
-/// The hull is scaled about its middle c by 1 + s. A facet's plane, h from c, moves outwards by
-/// s·h, and back by no more than the largest rounding ρ of a vertex. So s·h ≥ radius + ρ for the
-/// least h will do.
-std::optional<Enlarged> enlarged(const geom::Mesh& hull, double radius, double most) {
-  geom::Vec3 middle = geom::Vec3::Zero();
-  for (const geom::Vec3& v : hull.vertices) middle += v / static_cast<double>(hull.vertices.size());
-  double largest = 0, extent = 0;
-  for (const geom::Vec3& v : hull.vertices) {
-    largest = std::max(largest, v.cwiseAbs().maxCoeff());
-    extent = std::max(extent, (v - middle).norm());
-  }
-  double height = extent;
-  for (const geom::Triangle& t : hull.triangles) {
-    const geom::Vec3& a = hull.vertices[t[0]];
-    const geom::Vec3 n = (hull.vertices[t[1]] - a).cross(hull.vertices[t[2]] - a);
-    if (!(n.norm() > 0)) return std::nullopt;
-    height = std::min(height, n.dot(a - middle) / n.norm());
-  }
-  height *= 1 - 1e-6;
-  // What rounding may have falsified heights by must not matter.
-  if (!(height > 1e-9 * (extent + largest))) return std::nullopt;
-  // Half a spacing of float32 a coordinate, and the rounding of what is computed here.
-  const double rounding = geom::float32_spacing(largest + most) + 0x1p-48 * largest;
-  const double share = (radius + rounding) / height * (1 + 1e-6);
-  std::vector<geom::Vec3> points;
-  Enlarged result{{}, 0};
-  for (const geom::Vec3& v : hull.vertices) {
-    points.push_back(geom::to_float32(geom::Vec3(middle + (1 + share) * (v - middle))));
-    result.moved = std::max(result.moved, (points.back() - v).norm() * (1 + 0x1p-50));
-  }
-  if (!(result.moved <= most)) return std::nullopt;
-  std::optional<geom::Mesh> larger = geom::convex_hull(points);
-  if (!larger) return std::nullopt;
-  result.hull = *std::move(larger);
-  return result;
-}
-
-/// Float32 points, their hulls, and what rounding may have moved them by: the bodies are enlarged
-/// by it, or where one is too thin for that, it is the set's margin.
-Container container(const std::vector<sweep::Body>& bodies, const std::string& link) {
-  Container out;
-  double margin = 0;
-  for (const sweep::Body& body : bodies) {
-    std::vector<geom::Vec3> points;
-    double moved = 0;
-    for (const geom::Vec3& p : body.points) {
-      points.push_back(geom::to_float32(p));
-      // The difference of a double and its float32 neighbour is exact; its norm is not.
-      moved = std::max(moved, (points.back() - p).norm() * (1 + 0x1p-50));
-    }
-    const auto hull = geom::convex_hull(points);
-    if (!hull)
-      throw Error(ErrorCode::InvalidInput,
-                  "link '" + link + "': a body is too thin for float32 in the link's frame");
-    out.set.bodies.push_back({body.name, *hull});
-    margin = std::max(margin, (body.margin + moved) * (1 + 0x1p-50));
-  }
-  out.beyond = 2 * margin;
-  if (!(margin > 0)) return out;
-  constexpr double kMost = 1e-4;  // of the link's diagonal
-  geom::Box3 box;
-  for (const geom::ConvexBody& body : out.set.bodies)
-    for (const geom::Vec3& v : body.hull.vertices) box.extend(v);
-  double moved = 0;
-  std::vector<geom::ConvexBody> larger;
-  for (const geom::ConvexBody& body : out.set.bodies) {
-    std::optional<Enlarged> e = enlarged(body.hull, margin, kMost * box.diagonal());
-    if (!e) break;
-    moved = std::max(moved, e->moved);
-    larger.push_back({body.name, std::move(e->hull)});
-  }
-  if (larger.size() < out.set.bodies.size()) {
-    out.set.margin = margin;
-    return out;
-  }
-  out.set.bodies = std::move(larger);
-  out.beyond += moved;
-  return out;
-}
 
 class Writer {
  public:
@@ -165,14 +51,15 @@ class Writer {
                       (o_.visual ? std::string() : "; try --geometry visual"));
     create(o_.folder / "bodies");
     create(o_.folder / "links");
-    for (const Decomposed* d : order_)
-      io::write_convex_set(o_.folder / d->folder, d->mesh.set, io::SetFormat::Directory);
+    for (const Stored* s : order_)
+      io::write_convex_set(o_.folder / "bodies" / s->name, s->bodies->mesh.set,
+                           io::SetFormat::Directory, s->name);
     for (const auto& [file, set] : containers_)
       io::write_convex_set(o_.folder / file, set, io::SetFormat::Glb);
     write_urdf();
     result_.report["bodies"] = total_bodies_;
     result_.report["vertices"] = total_vertices_;
-    result_.report["meshes"] = order_.size();
+    result_.report["meshes"] = meshes_.size();
     result_.report["links"] = links_;
     return std::move(result_);
   }
@@ -198,6 +85,7 @@ class Writer {
         std::string(document_.RootElement()->Name()) != "robot")
       throw Error(ErrorCode::InvalidInput, o_.robot + ": not a URDF");
     result_.inputs.emplace_back(o_.robot);
+    reserve_names(document_.RootElement());
     rest_ = sweep::forward(robot_.robot, std::vector<double>(robot_.robot.variables.size(), 0.0));
   }
 
@@ -222,23 +110,41 @@ class Writer {
     throw Error(ErrorCode::Internal, o_.robot + ": link '" + link + "' is lost");
   }
 
-  const Decomposed& decomposed(const Geometry& g) {
+  const Stored& stored(const Geometry& g) {
     const fs::path file = resolve_mesh(g.mesh, robot_.path, o_.packages);
-    const geom::Vec3 scale = g.size.cwiseAbs();
     std::error_code error;
     const fs::path canonical = fs::canonical(file, error);
     // By its place, not by its bytes, which may refer to other files.
-    const MeshKey key{(error ? file : canonical).string(), {scale.x(), scale.y(), scale.z()}};
-    const auto it = meshes_.find(key);
-    if (it != meshes_.end()) return it->second;
-    result_.inputs.push_back(file);
-    Decomposed& d = meshes_[key];
-    d.file = file.string();
-    d.folder = "bodies/" + folders_.unique(file.stem().string());
-    io::require_replaceable(o_.folder / d.folder);
-    d.mesh = decompose_(file, scale);
-    order_.push_back(&d);
-    return d;
+    const std::string place = (error ? file : canonical).string();
+    Stored& s = stored_[{place, {g.size.x(), g.size.y(), g.size.z()}}];
+    if (s.bodies != nullptr) return s;
+    s.name = names_.unique(file.stem().string());
+    io::require_replaceable(o_.folder / "bodies" / s.name);
+    // Turned over, the bodies are the same.
+    const geom::Vec3 scale = g.size.cwiseAbs();
+    Decomposed& d = meshes_[{place, {scale.x(), scale.y(), scale.z()}}];
+    if (d.file.empty()) {
+      result_.inputs.push_back(file);
+      d.file = file.string();
+      d.mesh = decompose_(file, scale);
+    }
+    s.bodies = &d;
+    order_.push_back(&s);
+    return s;
+  }
+
+  /// No body gets the stem of a mesh that stays.
+  void reserve_names(const XMLElement* element) {
+    for (const XMLElement* e = element->FirstChildElement(); e != nullptr;
+         e = e->NextSiblingElement()) {
+      reserve_names(e);
+      const char* name = e->Attribute("filename");
+      if (name == nullptr || std::string_view(e->Name()) != "mesh") continue;
+      const std::string stem = fs::path(name).stem().string();
+      const std::size_t dash = stem.rfind('-');
+      if (dash != std::string::npos && stem.find_first_not_of("0123456789", dash + 1) == stem.npos)
+        if (stem.size() - dash > 4) names_.reserve(stem.substr(0, dash));
+    }
   }
 
   void decompose_link(std::uint32_t l) {
@@ -270,13 +176,14 @@ class Writer {
         reach = std::max(reach, sweep::bounding_excess(g));
         continue;
       }
-      const Decomposed& d = decomposed(g);
+      const Stored& file = stored(g);
+      const Decomposed& d = *file.bodies;
       const geom::ConvexSet& set = d.mesh.set;
       for (std::size_t b = 0; b < set.bodies.size(); ++b) {
         XMLElement* copy = collision(originals[i], link.name, bodies.size() + b);
         XMLElement* mesh = copy->FirstChildElement("geometry")->FirstChildElement("mesh");
-        mesh->SetAttribute("filename",
-                           (o_.prefix + d.folder + "/" + io::default_name(b) + ".stl").c_str());
+        const std::string name = io::default_name(b, file.name) + ".stl";
+        mesh->SetAttribute("filename", (o_.prefix + "bodies/" + file.name + "/" + name).c_str());
         last = element->InsertAfterChild(last, copy);
       }
       place_shape(g, &set, link.name, l, bodies);
@@ -292,7 +199,7 @@ class Writer {
       return;
     }
     for (XMLElement* e : old) element->DeleteChild(e);
-    auto [set, beyond] = container(bodies, link.name);
+    auto [set, beyond] = link_container(bodies);
     geom::Provenance& p = set.provenance;
     p.source = fs::path(o_.robot).filename().string();
     p.source_sha256 = robot_.sha256;
@@ -304,11 +211,10 @@ class Writer {
     p.epsilon = reach + beyond;
     p.covers_solid = solid;
     p.covers_surface = surface;
-    const std::string file = "links/" + link_files_.unique(link.name) + ".glb";
-    report["file"] = file;
+    const std::string container_file = "links/" + link_names_.unique(link.name) + ".glb";
+    report["file"] = container_file;
     report["bodies"] = bodies.size();
     report["reach_upper"] = reach;
-    report["margin"] = set.margin;
     links_.push_back(std::move(report));
     total_bodies_ += set.bodies.size();
     for (const geom::ConvexBody& body : set.bodies) {
@@ -317,7 +223,7 @@ class Writer {
       for (geom::Vec3& v : posed.hull.vertices) v = rest_[l] * v;
       result_.at_rest.bodies.push_back(std::move(posed));
     }
-    containers_.emplace_back(file, std::move(set));
+    containers_.emplace_back(container_file, std::move(set));
   }
 
   /// A <collision> with the pose and geometry of a <collision> or <visual>.
@@ -348,6 +254,7 @@ class Writer {
 
   void write_urdf() {
     move_references(document_.RootElement());
+    let_mujoco_find_meshes(*document_.RootElement());
     tinyxml2::XMLPrinter printer;
     document_.Print(&printer);
     io::write_file(urdf_, std::string_view(printer.CStr()));
@@ -361,10 +268,11 @@ class Writer {
   tinyxml2::XMLDocument document_;
   std::vector<sweep::Transform> rest_;
   using MeshKey = std::pair<std::string, std::array<double, 3>>;  // file, scale
-  std::map<MeshKey, Decomposed> meshes_;
-  std::vector<const Decomposed*> order_;
+  std::map<MeshKey, Decomposed> meshes_;                          // turned over or not
+  std::map<MeshKey, Stored> stored_;
+  std::vector<const Stored*> order_;
   std::vector<std::pair<std::string, geom::ConvexSet>> containers_;
-  FileNames folders_, link_files_;
+  FileNames names_, link_names_;
   std::size_t total_bodies_ = 0, total_vertices_ = 0;
   Json links_ = Json::array();
   RobotResult result_;

@@ -41,10 +41,10 @@ struct RobotResult {
 };
 
 /// Writes to the folder, the URDF last:
-/// - `bodies/MESH/body-0000.stl` …: the bodies of every distinct mesh, once;
-/// - `links/LINK.glb`: all bodies of a link in its frame, a margin covering the rounding of scale
-/// and
-///   pose;
+/// - `bodies/MESH/MESH-0000.stl` …: the bodies of every distinct mesh and scale, once; no name of a
+///   file, folder and extension apart, is there twice;
+/// - `links/LINK.glb`: all bodies of a link in its frame, enlarged by the rounding of scale and
+/// pose;
 /// - the URDF under its own name: each link's <collision> elements are the bodies, with the pose
 /// and
 ///   scale of the shape that they stand for, so that the inclusion holds without rounding; boxes,

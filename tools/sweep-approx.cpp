@@ -8,6 +8,7 @@
 #include "set_format.h"
 #include "sweep_picture.h"
 #include "swept_urdf.h"
+#include "urdf_output.h"
 
 namespace {
 
@@ -16,9 +17,9 @@ using tools::Json;
 
 struct Options {
   std::string robot, path, output, output_format, epsilon = "0.005", bound = "balanced", reach;
-  std::string links, geometry = "collision", unit = "m", preview, depfile;
+  std::string links, geometry = "collision", unit = "m", preview, depfile, prefix;
   double simplify = 0;
-  bool explicit_margin = false, no_merge = false, ignore_limits = false;
+  bool implicit_margin = false, no_merge = false, ignore_limits = false;
   tools::BodyOptions bodies;
   tools::CommonOptions common;
 };
@@ -47,7 +48,7 @@ void describe(CLI::App& app, Options& o) {
   app.add_option(
          "-o,--output", o.output,
          "Where the bodies go: a .glb container, an .obj with one object per body, a folder "
-         "with one STL per body, or a .urdf with them as collision shapes of one link, and "
+         "with one STL per body, or a .urdf with them as shapes of one link, and "
          "a folder beside it (- for stdout)")
       ->required()
       ->type_name("PATH");
@@ -73,8 +74,9 @@ void describe(CLI::App& app, Options& o) {
       ->check(tools::number_from(0, 0.9))
       ->capture_default_str()
       ->type_name("SHARE");
-  app.add_flag("--explicit-margin", o.explicit_margin,
-               "Enlarge the bodies by the margin, which then is 0; implied by OBJ, STL and URDF");
+  app.add_flag("--implicit-margin", o.implicit_margin,
+               "Do not enlarge the bodies of a .glb by the margin, but state it in the file: fewer "
+               "vertices, but whatever reads them has to add it");
   app.add_flag("--no-merge", o.no_merge, "One body at least between two waypoints");
   app.add_flag("--ignore-limits", o.ignore_limits, "Allow waypoints outside the joints' limits");
   app.add_option("--links", o.links, "Only these links, separated by commas [all]")
@@ -112,6 +114,10 @@ void describe(CLI::App& app, Options& o) {
       ->check(tools::unit_name())
       ->capture_default_str()
       ->type_name("NAME");
+  app.add_option("--mesh-prefix", o.prefix,
+                 "Put before the bodies' file names in a .urdf, as in package://cell, with a slash "
+                 "between; RViz and MoveIt need it [names relative to the URDF]")
+      ->type_name("URI");
   app.add_option("--preview", o.preview, "Write a picture of the swept volume (PNG)")
       ->check(tools::png_name())
       ->type_name("FILE");
@@ -119,8 +125,9 @@ void describe(CLI::App& app, Options& o) {
   tools::add_set_format_option(app, o.output_format);
   tools::add_common_options(app, o.common);
   app.footer(
-      "The bodies, enlarged by their margin, contain the links' convex bodies, and these their\n"
-      "meshes, at every configuration of the path (docs/algorithms/swept-volumes.md).\n"
+      "The bodies contain the links' convex bodies, and these their meshes, at every "
+      "configuration\n"
+      "of the path (docs/algorithms/swept-volumes.md).\n"
       "Exit codes: 0 done; 1 float32 is too coarse for epsilon (nothing is written); 2 usage;\n"
       "3 bad input; 4 output failed; 5 not built; 6 internal error; 7 limit.");
 }
@@ -133,7 +140,7 @@ std::vector<std::string> split(const std::string& list) {
   return out;
 }
 
-std::string parameters(const Options& o, const io::SetFormat format) {
+std::string parameters(const Options& o) {
   std::ostringstream out;
   out << "--epsilon " << o.epsilon << " --bound " << o.bound << " --body-epsilon "
       << o.bodies.epsilon << " --max-vertices-per-body " << o.bodies.max_vertices << " --effort "
@@ -142,7 +149,7 @@ std::string parameters(const Options& o, const io::SetFormat format) {
   if (o.simplify > 0) out << " --simplify " << o.simplify;
   if (!o.links.empty()) out << " --links " << o.links;
   if (o.bodies.drop_sheets) out << " --drop-sheets";
-  if (o.explicit_margin || format != io::SetFormat::Glb) out << " --explicit-margin";
+  if (o.implicit_margin) out << " --implicit-margin";
   if (o.no_merge) out << " --no-merge";
   return out.str();
 }
@@ -158,6 +165,11 @@ int sweep_path(Options o) {
       o.output_format.empty() && std::filesystem::path(o.output).extension() == ".urdf";
   const io::SetFormat format =
       urdf ? io::SetFormat::Directory : tools::set_format_for(o.output, o.output_format);
+  if (o.implicit_margin && format != io::SetFormat::Glb)
+    throw Error(ErrorCode::InvalidArgument,
+                "--implicit-margin: only .glb can state a margin; " + o.output + " cannot");
+  if (!o.prefix.empty() && !urdf)
+    throw Error(ErrorCode::InvalidArgument, "--mesh-prefix is for an output that is a .urdf");
   if (format == io::SetFormat::Directory)
     io::require_replaceable(urdf ? std::filesystem::path(o.output).replace_extension()
                                  : std::filesystem::path(o.output));
@@ -177,7 +189,7 @@ int sweep_path(Options o) {
   options.rule = kRules.at(o.bound);
   options.merge = !o.no_merge;
   options.simplify = o.simplify;
-  options.explicit_margin = o.explicit_margin || format != io::SetFormat::Glb;
+  options.explicit_margin = !o.implicit_margin;
   if (!o.reach.empty()) options.max_reach = tools::parse_length(o.reach)->value;
   const double before = tools::user_seconds();
   sweep::SweepResult result = [&] {
@@ -200,7 +212,7 @@ int sweep_path(Options o) {
   p.source = file.path.filename().string();
   p.source_sha256 = file.sha256;
   p.tool = std::string("sweep-approx ") + tools::version();
-  p.parameters = parameters(o, format);
+  p.parameters = parameters(o);
   p.unit = o.unit;
   p.frame = file.robot.links[0].name;
   if (result.certified) {
@@ -222,9 +234,20 @@ int sweep_path(Options o) {
   if (format == io::SetFormat::Glb) {
     io::write_file(o.output, bytes);
   } else if (urdf) {
-    tools::write_swept_urdf(o.output, result.set);
+    const std::string prefix = tools::with_slash(o.prefix);
+    tools::write_swept_urdf(o.output, result.set, prefix);
+    tools::log(o.common.quiet,
+               tools::how_meshes_are_found(
+                   o.output, std::filesystem::path(o.output).stem().string(), prefix));
   } else {
     io::write_convex_set(o.output, result.set, format);
+  }
+  if (written.margin > 0) {
+    std::ostringstream warning;
+    warning.precision(17);
+    warning << "WARNING: " << o.output << ": its bodies alone do NOT contain the robot: add "
+            << written.margin << " to every body (collision margin, padding)";
+    tools::log(false, warning.str());
   }
   if (!o.preview.empty())
     io::write_file(o.preview, tools::picture_of_sweep(file.robot, links.bodies, path, result));

@@ -18,6 +18,9 @@ namespace {
 constexpr double kUp = 1 + 0x1p-40;
 /// Circumscribed radius of the icosahedron that stands for a unit ball, see enlarge.
 constexpr double kOvershoot = 1.2585;
+/// Share of epsilon that bodies with an explicit margin are enlarged by at least: where hardly
+/// anything moves, neighbours overlap enough for a check from outside to see no gap between them.
+constexpr double kLeastOverlap = 0.125;
 
 /// What is known of a body before its hulls are built.
 struct Plan {
@@ -84,9 +87,9 @@ double build(geom::HullBuilder& builder, std::vector<Vec3>& points) {
   return 2 * step;
 }
 
-/// @param left_out  how far vertices that are left out may be from the hull
-Output make_hull(const Body& body, const Piece& piece, const Plan& plan, double left_out,
-                 bool explicit_margin, geom::HullBuilder& builder) {
+Output make_hull(const Body& body, const Piece& piece, const Plan& plan,
+                 const SweepOptions& options, geom::HullBuilder& builder) {
+  const double left_out = options.simplify * options.epsilon;
   std::vector<Vec3> points;
   points.reserve(2 * body.points.size());
   for (const Vec3& p : body.points) points.emplace_back(piece.start * p);
@@ -94,13 +97,14 @@ Output make_hull(const Body& body, const Piece& piece, const Plan& plan, double 
   Output out;
   out.deviation = (piece.deviation + body.margin) * kUp;
   out.reach = reach(piece, body.points);
-  if (!explicit_margin) out.rounding = round_points(points);
-  if ((explicit_margin || left_out > 0) && builder.build(points)) {
+  if (!options.explicit_margin) out.rounding = round_points(points);
+  if ((options.explicit_margin || left_out > 0) && builder.build(points)) {
     points = builder.mesh().vertices;
     out.left_out = thin_out(points, left_out, builder);
   }
-  if (explicit_margin) {
-    const double radius = (out.deviation + out.left_out + plan.rounding) * kUp;
+  if (options.explicit_margin) {
+    const double radius = std::max((out.deviation + out.left_out + plan.rounding) * kUp,
+                                   kLeastOverlap * options.epsilon);
     points = enlarge(points, radius);
     out.reach += kOvershoot * radius;
     out.rounding = round_points(points);
@@ -175,8 +179,8 @@ SweepResult swept_volume(const Robot& robot, std::span<const Body> bodies, const
   tbb::enumerable_thread_specific<geom::HullBuilder> builders;
   geom::parallel_loop(std::size_t{0}, outputs.size(), [&](std::size_t k) {
     const std::size_t i = result.sources[k];
-    outputs[k] = make_hull(bodies[i], plans[i].pieces[k - first[i]], plans[i], left_out,
-                           options.explicit_margin, builders.local());
+    outputs[k] =
+        make_hull(bodies[i], plans[i].pieces[k - first[i]], plans[i], options, builders.local());
   });
   result.of_link.assign(robot.links.size(), 0);
   double margin = 0, far = 0;

@@ -27,15 +27,16 @@ cat >robot/r.urdf <<'END'
 </robot>
 END
 expect 0 'bodies of 2 links, from 2 meshes' "$D" robot/r.urdf -o out --epsilon 3% --effort fast --report r.json --preview p.png --depfile r.d
-for f in out/r.urdf out/links/base.glb out/links/arm_1.glb out/bodies/t/body-0000.stl out/bodies/bracket/body-0000.stl p.png; do
+mv err.txt err0.txt
+for f in out/r.urdf out/links/base.glb out/links/arm_1.glb out/bodies/t/t-0000.stl out/bodies/bracket/bracket-0000.stl p.png; do
   [ -s "$f" ] || fail "no $f"
 done
 grep -q '^out/r.urdf: .*t.off' r.d || fail "dependency file: $(cat r.d)"
-grep -q '"margin"' r.json || fail "report"
+grep -q '"reach_upper"' r.json || fail "report"
 # What has nothing to do with collisions stays; names lead to the same files.
 grep -q '<!-- kept: no <rlkin> -->' out/r.urdf || fail "comments are lost"
 grep -q 'filename="../robot/meshes/seen.dae"' out/r.urdf || fail "the drawing's mesh is not found from the folder"
-[ "$(grep -c 'bodies/t/body-0000.stl" scale="0.2 -0.2 0.5"' out/r.urdf)" = 2 ] || fail "scale"
+[ "$(grep -c 'bodies/t/t-0000.stl" scale="0.2 -0.2 0.5"' out/r.urdf)" = 2 ] || fail "scale"
 [ "$(grep -c 'box size' out/r.urdf)" = 1 ] || fail "box"
 [ "$(grep -c '<collision ' out/r.urdf)" = "$(($(find out/bodies/bracket -name '*.stl' | wc -l) + 3))" ] || fail "number of bodies"
 grep -q 'rpy="0.3 0 0"' out/r.urdf || fail "pose"
@@ -52,17 +53,40 @@ awk 'NR < 3 || NR > 6 { print; next } NR == 3 { c = cos(0.3); s = sin(0.3) }
     printf "%.17g %.17g %.17g\n", x + 0.1, c * y - s * z, s * y + c * z }' robot/meshes/t.off |
   sed 's/^3 \([0-9]\) \([0-9]\) \([0-9]\)/3 \1 \3 \2/' >posed.off
 expect 0 'verified' "$BIN/bound-verify" --cover posed.off out/links/arm_1.glb
+# Files are told apart by their stems alone; whoever loads the URDF finds them.
+[ -z "$(find out -name '*.stl' | sed 's,.*/,,' | sort -f | uniq -di)" ] || fail "two meshes of one name"
+grep -q 'out/r.urdf names its meshes relative to itself (bodies/...), .*RViz and MoveIt need --mesh-prefix' err0.txt ||
+  fail "how meshes are found"
+[ "$(grep -c '<compiler strippath="false"/>' out/r.urdf)" = 1 ] || fail "MuJoCo does not find the meshes"
+sed 's,<link name="frame"/>,&<mujoco><compiler meshdir="nowhere" balanceinertia="true"/><option timestep="0.001"/></mujoco>,' \
+  robot/r.urdf >robot/m.urdf
+expect 0 '' "$D" robot/m.urdf -o merged --epsilon 3% --effort fast
+[ "$(grep -c '<mujoco>' merged/m.urdf)" = 1 ] && grep -q 'timestep="0.001"' merged/m.urdf || fail "<mujoco> is not merged"
+grep -q '<compiler balanceinertia="true" strippath="false"/>' merged/m.urdf || fail "what is said to MuJoCo: $(grep compiler merged/m.urdf)"
+# Thin bodies that rounding moves are enlarged like others: no container leaves a margin to its readers.
+mkdir -p thin
+awk 'NR > 2 && NR < 7 { $3 = $3 * 1e-5 } { print }' robot/meshes/t.off >thin/plate.off
+cat >thin/p.urdf <<'END'
+<robot name="p"><link name="l"><collision><origin xyz="0.1 0 0" rpy="0.3 0 0"/><geometry><mesh filename="plate.off"/></geometry></collision></link></robot>
+END
+expect 0 '' "$D" thin/p.urdf -o thin/out --effort fast
+for set in thin/out/links/l.glb out/links/*.glb; do
+  LC_ALL=C grep -a -q '"margin":0\.0,' "$set" || fail "$set has a margin"
+done
+awk 'NR < 3 || NR > 6 { print; next } NR == 3 { c = cos(0.3); s = sin(0.3) }
+  { printf "%.17g %.17g %.17g\n", $1 + 0.1, c * $2 - s * $3, s * $2 + c * $3 }' thin/plate.off >thin/posed.off
+expect 0 'verified' "$BIN/bound-verify" --cover thin/posed.off thin/out/links/l.glb
 # All links at once, from the two robots' files.
 V=$BIN/bound-verify
 expect 0 "link 'arm/1': box: verified" "$V" --robot robot/r.urdf out/r.urdf --prepare --epsilon 3% --report v.json
 [ "$(grep -c ': verified' out.txt)" = 8 ] || fail "not all shapes: $(cat out.txt)"
 grep -q '"relation": "robot"' v.json || fail "report"
-grep -q 'bodies/t/body-0000.stl' v.json || fail "the report does not name what holds the meshes"
+grep -q 'bodies/t/t-0000.stl' v.json || fail "the report does not name what holds the meshes"
 expect 0 'surface is within' "$V" --robot robot/r.urdf out/r.urdf --claims surface
 expect 1 'bodies: refuted' "$V" --robot robot/r.urdf out/r.urdf --epsilon 0.01%
 # What is no longer there, somewhere else, or moves in another way is noticed.
 cp -r out bad
-sed 's,body-0001.stl,body-0000.stl,' out/r.urdf >bad/r.urdf
+sed 's,bracket-0001.stl,bracket-0000.stl,' out/r.urdf >bad/r.urdf
 cmp -s out/r.urdf bad/r.urdf && fail "no second body of the base"
 expect 1 "bracket.obj: refuted" "$V" --robot robot/r.urdf bad/r.urdf
 sed 's,<collision name="base_1">,<collision name="x"><origin xyz="0 0 1e-9"/>,' out/r.urdf >bad/r.urdf
@@ -142,6 +166,8 @@ expect 0 'bodies of 2 links' "$D" out/r.urdf -o again --effort fast
 expect 0 '' "$D" robot/r.urdf -o out2 --epsilon 3% --effort fast --quiet --no-cache --mesh-prefix package://r/
 [ ! -s err.txt ] || fail "--quiet is not quiet"
 sed 's,package://r/,,' out2/r.urdf | cmp -s - out/r.urdf || fail "another URDF"
+expect 0 'MuJoCo needs names without' "$D" robot/r.urdf -o slashless --epsilon 3% --effort fast --mesh-prefix package://r
+cmp -s out2/r.urdf slashless/r.urdf || fail "a slash after the prefix makes a difference"
 cmp -s out/links/arm_1.glb out2/links/arm_1.glb || fail "another container"
 
 # A slash after the folder's name; one that is within no folder.
@@ -165,7 +191,7 @@ absent out3 out3.glb out3.urdf
 sed 's/seen.dae/t.off/' robot/r.urdf >robot/v.urdf
 expect 0 "link 'arm/1' has no visual shape; it stays" "$D" robot/v.urdf -o seen --visual --epsilon 0.05
 grep -q 'of 1 link, from 1 mesh$' err.txt || fail "counts: $(cat err.txt)"
-grep -q 'bodies/t/body' seen/v.urdf || fail "no bodies for drawing shapes"
+grep -q 'bodies/t/t-0000.stl' seen/v.urdf || fail "no bodies for drawing shapes"
 grep -q 'box size' seen/v.urdf || fail "a link without a shape for drawing lost its collision shape"
 expect 0 'verified' "$V" --robot robot/v.urdf seen/v.urdf --geometry visual
 grep -q "link 'arm/1': box: verified" out.txt || fail "collision shapes of a link that is not drawn are not judged"
@@ -192,7 +218,7 @@ expect 0 'from 2 meshes' "$D" wrap/r.urdf -o wrapped --epsilon 5% --effort fast
 expect 0 'verified' "$BIN/bound-verify" --cover wrap/b/m.wrl wrapped/links/l.glb
 
 # Files that are not ours stay.
-mkdir -p mine && cp out/bodies/t/body-0000.stl mine/part.stl
+mkdir -p mine && cp out/bodies/t/t-0000.stl mine/part.stl
 expect 4 'part.stl' "$D" robot/meshes/t.off -o mine --effort fast
 cp mine/part.stl out/bodies/t/part.stl
 expect 4 'part.stl' "$D" robot/r.urdf -o out --epsilon 3% --effort fast

@@ -29,7 +29,9 @@ printf 'grip,shoulder,elbow\n0,0,0\n0.1,1,-1\n0,1.5,0\n' >path.csv
 printf '{"joints": ["shoulder", "elbow", "grip"], "waypoints": [[0, 0, 0], [1, -1, 0.1], [1.5, 0, 0]]}' >path.json
 
 expect 0 'Bounds the volume' "$S" --help
-expect 0 'margin' "$S" "$R" --path path.csv --epsilon 0.005 -o a.glb --report a.json --preview a.png --depfile a.d
+expect 0 'margin' "$S" "$R" --path path.csv --epsilon 0.005 -o a.glb --report a.json --preview a.png --depfile a.d --implicit-margin
+grep -q '^WARNING: a.glb: its bodies alone do NOT contain the robot: add 0.00[0-9]* to every body' err.txt ||
+  fail "nobody says that the margin is to be added"
 expect 0 "margin of .* is left out" "$BIN/hausdorff-eval" a.glb "$BRACKET" --a-as mesh --samples 1000 --gap 0.9
 for key in '"certified": true' '"hand"' '"margin": 0.00' '"reach"' '"waypoints": 3'; do
   grep -q "$key" a.json || fail "no $key in the report"
@@ -38,9 +40,11 @@ done
 grep -q '^a.glb: .*r.urdf.*path.csv.*t.off' a.d || fail "dependency file"
 expect 0 '' "$S" "$R" --path path.json -o b.glb --threads 1 --quiet
 [ ! -s err.txt ] || fail "--quiet is not quiet"
-cmp -s a.glb b.glb || fail "JSON, one thread or the cache give other bytes"
-expect 0 '' "$S" "$R" --path path.csv -o two.glb --threads 2 --quiet
+expect 0 'margin 0;' "$S" "$R" --path path.csv -o two.glb --threads 2
 cmp -s b.glb two.glb || fail "two threads give other bytes"
+"$S" "$R" --path path.json -o c.glb --threads 1 --quiet --implicit-margin 2>err.txt
+grep -q '^WARNING' err.txt || fail "--quiet hides that the margin is to be added"
+cmp -s a.glb c.glb || fail "JSON, one thread or the cache give other bytes"
 
 # The start and the end of the path, at rest, are covered.
 printf '1 -1 0.1\n' >pose.csv
@@ -68,13 +72,23 @@ diff -r folder slash >diff.txt || fail "a slash after the folder's name makes a 
 expect 4 'create it first' "$S" "$R" --path path.csv -o no/folder/
 expect 4 'create it first' "$S" "$R" --path path.csv -o x.glb --report no-file/
 expect 2 'cannot both' "$S" "$R" --path path.csv -o both/ --report both
-expect 0 'margin 0;' "$S" "$R" --path path.csv -o c.glb --explicit-margin
+expect 2 'only .glb can state' "$S" "$R" --path path.csv -o x.obj --implicit-margin
+expect 2 'for an output that is a .urdf' "$S" "$R" --path path.csv -o x.glb --mesh-prefix package://cell
 expect 0 'margin 0;' "$S" "$R" --path path.csv -o all.urdf
-[ "$(grep -c '<mesh' all.urdf)" = "$(find all -name '*.stl' | wc -l)" ] || fail "one collision shape per body"
+grep -q 'all.urdf names its meshes relative to itself (all/...)' err.txt || fail "how meshes are found"
+for kind in collision visual; do
+  [ "$(grep -c "<$kind " all.urdf)" = "$(find all -name 'all-*.stl' | wc -l)" ] || fail "one $kind shape per body"
+done
+cp all.urdf all0.urdf
+for prefix in package://cell package://cell/; do
+  expect 0 'package://cell/all/' "$S" "$R" --path path.csv -o all.urdf --mesh-prefix "$prefix"
+  sed 's,package://cell/,,' all.urdf | cmp -s - all0.urdf || fail "a prefix changes more than names"
+done
+cp all0.urdf all.urdf
 sed -n 's/.*filename="\([^"]*\)".*/\1/p' all.urdf | while read -r f; do [ -s "$f" ] || echo lost; done | grep -q lost &&
   fail "a body's file is missing"
 expect 0 '' "$S" "$R" --path path.csv -o d.glb --max-reach 0.01
-expect 0 '' "$S" "$R" --path path.csv -o e.glb --simplify 0.3 --report e.json
+expect 0 '' "$S" "$R" --path path.csv -o e.glb --simplify 0.3 --report e.json --implicit-margin
 [ "$(sed -n 's/.*"vertices": \([0-9]*\).*/\1/p' e.json)" -lt "$(sed -n 's/.*"vertices": \([0-9]*\).*/\1/p' a.json)" ] ||
   fail "simplified hulls have as many vertices"
 expect 2 '' "$S" "$R" --path path.csv -o x.glb --simplify 1

@@ -18,6 +18,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kRecordFile = "convex-set.json";
+constexpr const char* kStem = "files";  // key of the stem of a folder's files in its record
 
 /// One body per component connected through edges.
 std::vector<geom::ConvexBody> split_components(const geom::Mesh& mesh) {
@@ -158,10 +159,26 @@ void refuse_margin(const geom::ConvexSet& set, const char* format) {
                     "write glb, or enlarge the bodies by the margin first");
 }
 
+/// The stem of the files that the folder's record speaks of; nullopt without a record.
+std::optional<std::string> stem_of(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::exists(folder / kRecordFile, error)) return std::nullopt;
+  std::optional<std::string> stem = "body";
+  try {
+    const std::vector<char> bytes = read_file(folder / kRecordFile);
+    const Json record = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
+    if (record.is_object() && record.contains(kStem) && record[kStem].is_string())
+      stem = record[kStem].get<std::string>();
+  } catch (const Error&) {
+    stem.reset();
+  }
+  return stem;
+}
+
 /// Whether a file of a folder has a name that write_directory gives.
-bool is_part_of_set(const fs::path& file) {
+bool is_part_of_set(const fs::path& file, const std::string& files) {
   if (file.filename() == kRecordFile) return true;
-  const std::string stem = file.stem().string(), start = "body-";
+  const std::string stem = file.stem().string(), start = files + "-";
   return file.extension() == ".stl" && stem.size() >= start.size() + 4 && stem.starts_with(start) &&
          stem.find_first_not_of("0123456789", start.size()) == std::string::npos;
 }
@@ -176,7 +193,7 @@ fs::path target_of(const fs::path& path) {
   throw Error(ErrorCode::OutputFailed, path.string() + ": cannot be written: " + why);
 }
 
-void write_directory(const fs::path& path, const geom::ConvexSet& set) {
+void write_directory(const fs::path& path, const geom::ConvexSet& set, const std::string& stem) {
   const auto cannot = [&](const std::string& why) { cannot_write(path, why); };
   refuse_margin(set, "STL");
   const geom::ConvexSet clean = cleaned(set);
@@ -193,10 +210,12 @@ void write_directory(const fs::path& path, const geom::ConvexSet& set) {
     cannot("no folder can be created in '" + parent.string() + "': " + error.message());
   try {
     for (std::size_t i = 0; i < clean.bodies.size(); ++i)
-      write_file(fresh / (default_name(i) + ".stl"),
+      write_file(fresh / (default_name(i, stem) + ".stl"),
                  serialise_mesh(clean.bodies[i].hull, Format::Stl));
-    const std::string record = record_of(clean).dump(2, ' ', false, Json::error_handler_t::replace);
-    write_file(fresh / kRecordFile, record + "\n");
+    Json record = record_of(clean);
+    record[kStem] = stem;
+    write_file(fresh / kRecordFile,
+               record.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
     if (exists) fs::rename(target, old);
     fs::rename(fresh, target);
   } catch (const std::system_error& e) {
@@ -217,17 +236,18 @@ void require_replaceable(const fs::path& folder) {
   const fs::path target = target_of(folder);
   if (!fs::exists(target, error)) return;
   if (!fs::is_directory(target, error)) cannot_write(folder, "it is a file; name a folder");
-  const bool ours = fs::exists(target / kRecordFile, error);
+  const std::optional<std::string> ours = stem_of(target);
   for (const fs::directory_entry& entry : fs::directory_iterator(target))
-    if (!ours || !is_part_of_set(entry.path()))
+    if (!ours || !is_part_of_set(entry.path(), *ours))
       cannot_write(folder, "the folder holds '" + entry.path().filename().string() +
                                "', which is no part of a convex set written here; name another "
                                "folder");
 }
 
-std::string default_name(std::size_t index) {
+std::string default_name(std::size_t index, std::string_view stem) {
   const std::string digits = std::to_string(index);
-  std::string name = "body-";
+  std::string name(stem);
+  name += '-';
   if (digits.size() < 4) name.append(4 - digits.size(), '0');
   return name + digits;
 }
@@ -329,14 +349,14 @@ std::vector<char> serialise_convex_set(const geom::ConvexSet& set, SetFormat for
 }
 
 void write_convex_set(const fs::path& path, const geom::ConvexSet& set,
-                      std::optional<SetFormat> format) {
+                      std::optional<SetFormat> format, const std::string& stem) {
   if (!format) format = set_format_from_path(path);
   if (!format)
     throw Error(ErrorCode::InvalidArgument,
                 path.string() +
                     ": convex sets are written as .glb, .obj, or a folder (a name without "
                     "extension)");
-  if (*format == SetFormat::Directory) return write_directory(path, set);
+  if (*format == SetFormat::Directory) return write_directory(path, set, stem);
   write_file(path, serialise_convex_set(set, *format));
 }
 

@@ -65,9 +65,9 @@ geom::ConvexSet read_convex_set(const std::filesystem::path& path,
 ///   that are empty or not valid, and for an empty set in OBJ.
 std::vector<char> serialise_convex_set(const geom::ConvexSet& set, SetFormat format);
 
-/// The number of a body as it appears in its name when it has none: "body-0007". Files of a folder
-/// have these names, and the extension .stl.
-std::string default_name(std::size_t index);
+/// The name of a body that has none, by its number: "body-0007". Files of a folder have these
+/// names, with the folder's stem for "body", and the extension .stl.
+std::string default_name(std::size_t index, std::string_view stem = "body");
 
 /// Refuses, before anything is computed, a folder that write_convex_set would not replace.
 /// @throws Error{OutputFailed}
@@ -77,10 +77,11 @@ void require_replaceable(const std::filesystem::path& folder);
 /// a crash between two renames, the old content may be left in a hidden folder beside it).
 ///
 /// A folder is replaced only when it is empty or holds what this function wrote: convex-set.json
-/// and files body-NNNN.stl, nothing else.
+/// and the files STEM-NNNN.stl of the stem in it, nothing else.
 ///
+/// @param stem  of a folder's files: engines tell meshes apart by it. No separators of paths.
 /// @throws as serialise_convex_set; Error{OutputFailed} when the path cannot be written.
 void write_convex_set(const std::filesystem::path& path, const geom::ConvexSet& set,
-                      std::optional<SetFormat> format = {});
+                      std::optional<SetFormat> format = {}, const std::string& stem = "body");
 
 }  // namespace kaboum::io

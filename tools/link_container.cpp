@@ -1,0 +1,112 @@
+// Bodies in the frame of their link, where scale and pose are rounded, as float32 polytopes that
+// contain them and what rounding may have moved them by.
+
+#include "link_container.h"
+
+#include <kaboum/geom/convex_hull.h>
+#include <kaboum/geom/error.h>
+#include <kaboum/geom/float32.h>
+#include <kaboum/geom/predicates.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace kaboum::tools {
+namespace {
+
+using geom::Vec3;
+
+/// Corners of the cubes round the points that contain the balls of the radius, rounding included:
+/// in one coordinate p ± half errs by less than 2^-52 of the largest.
+std::vector<Vec3> cubes(const std::vector<Vec3>& points, double radius) {
+  double largest = radius;
+  for (const Vec3& p : points) largest = std::max(largest, p.cwiseAbs().maxCoeff() + radius);
+  const double half = radius * (1 + 0x1p-50) + 0x1p-51 * largest;
+  std::vector<Vec3> corners;
+  corners.reserve(8 * points.size());
+  for (const Vec3& p : points)
+    for (int corner = 0; corner < 8; ++corner)
+      corners.emplace_back(p + Vec3((corner & 1) != 0 ? half : -half,
+                                    (corner & 2) != 0 ? half : -half,
+                                    (corner & 4) != 0 ? half : -half));
+  return corners;
+}
+
+bool contains(const geom::Mesh& hull, const std::vector<Vec3>& points) {
+  for (const geom::Triangle& t : hull.triangles)
+    for (const Vec3& p : points)
+      if (geom::orient3d(hull.vertices[t[0]], hull.vertices[t[1]], hull.vertices[t[2]], p) ==
+          geom::Sign::Positive)
+        return false;
+  return true;
+}
+
+/// The float32 hull scaled about its middle c, so that the planes move outwards by `distance`, all
+/// rounding apart; nullopt where a vertex would move by more than `most`, the body being thin.
+std::optional<geom::Mesh> scaled(const geom::Mesh& hull, double distance, double most) {
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& v : hull.vertices) middle += v / static_cast<double>(hull.vertices.size());
+  double height = std::numeric_limits<double>::infinity(), extent = 0;
+  for (const Vec3& v : hull.vertices) extent = std::max(extent, (v - middle).norm());
+  for (const geom::Triangle& t : hull.triangles) {
+    const Vec3& a = hull.vertices[t[0]];
+    const Vec3 n = (hull.vertices[t[1]] - a).cross(hull.vertices[t[2]] - a);
+    if (n.norm() > 0) height = std::min(height, n.dot(a - middle) / n.norm());
+  }
+  const double share = distance / height;
+  if (!(share > 0 && share * extent <= most)) return std::nullopt;
+  std::vector<Vec3> points;
+  for (const Vec3& v : hull.vertices)
+    points.push_back(geom::to_float32(Vec3(middle + (1 + share) * (v - middle))));
+  return geom::convex_hull(points);
+}
+
+/// The hull of the points moved outwards by a float32 spacing, then rounded by half of one at most.
+geom::Mesh rounded_outwards(const std::vector<Vec3>& corners, double spacing) {
+  std::vector<Vec3> points;
+  for (const Vec3& p : cubes(corners, spacing)) points.push_back(geom::to_float32(p));
+  std::optional<geom::Mesh> hull = geom::convex_hull(points);
+  ensure(hull.has_value(), "cubes have no hull");
+  return *std::move(hull);
+}
+
+}  // namespace
+
+LinkContainer link_container(const std::vector<sweep::Body>& bodies) {
+  LinkContainer out;
+  for (const sweep::Body& body : bodies) {
+    std::vector<Vec3> points;
+    geom::Box3 box;
+    double moved = 0;
+    for (const Vec3& p : body.points) {
+      points.push_back(geom::to_float32(p));
+      box.extend(p);
+      moved = std::max(moved, (points.back() - p).norm());
+    }
+    std::optional<geom::Mesh> hull = geom::convex_hull(points);
+    if (moved > 0 || body.margin > 0) {
+      const std::vector<Vec3> held = cubes(body.points, body.margin);
+      double largest = 0;
+      for (const Vec3& p : held) largest = std::max(largest, p.cwiseAbs().maxCoeff());
+      const double spacing = geom::float32_spacing(largest);
+      // To the cubes' corners, and twice the rounding of a vertex.
+      const double distance = 2 * (body.margin + moved + 2 * spacing);
+      if (hull) hull = scaled(*hull, distance, 1e-4 * box.diagonal());
+      if (!hull || !contains(*hull, held)) hull = rounded_outwards(held, spacing);
+      ensure(contains(*hull, held), "a polytope does not contain its body");
+      double reach = 0;  // of the polytope from the points of the body
+      for (const Vec3& v : hull->vertices) {
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const Vec3& p : body.points) nearest = std::min(nearest, (v - p).norm());
+        reach = std::max(reach, nearest);
+      }
+      out.beyond = std::max(out.beyond, (reach + body.margin) * (1 + 0x1p-40));
+    }
+    ensure(hull.has_value(), "a body of a link is flat");
+    out.set.bodies.push_back({body.name, *std::move(hull)});
+  }
+  return out;
+}
+
+}  // namespace kaboum::tools
