@@ -262,7 +262,8 @@ int verify_sweep(const VerifySweepOptions& o, const CommonOptions& common) {
     if (!claims.refuting && at_most && claims.farthest.distance >= 0)
       out << "  farthest of " << claims.samples
           << " places sampled: " << number(claims.farthest.distance) << ", "
-          << say(claims.farthest, shapes) << '\n';
+          << (claims.farthest.distance > 0 ? say(claims.farthest, shapes) : "none is outside")
+          << '\n';
     if (o.claims != "surface" && claims.solid.answer != Answer::Undefined)
       line("solid claim", claims.solid, "so do the insides of the closed shapes");
     if (claims.open_meshes > 0)

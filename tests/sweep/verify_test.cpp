@@ -87,6 +87,29 @@ TEST(VerifySweep, AcceptsWhatSweepApproxMakes) {
   }
 }
 
+TEST(VerifySweep, AcceptsExplicitMarginsWhereNothingMoves) {
+  // Two halves of a box on the base, cut askew: enlarged by what rounding moves them by alone, they
+  // would overlap by too little for the triangles that the cut crosses to be divided so finely.
+  TestRobot r = six_axis_arm();
+  std::vector<Vec3> box, lower, upper;
+  for (const double x : {0.0, 0.3})
+    for (const double y : {0.0, 0.2}) {
+      const Vec3 cut(x, y, 0.1 + 0.37 * x + 0.21 * y);
+      box.insert(box.end(), {{x, y, 0}, {x, y, 0.4}});
+      lower.insert(lower.end(), {{x, y, 0}, cut});
+      upper.insert(upper.end(), {{x, y, 0.4}, cut});
+    }
+  r.bodies = {{"box", 0, box, 0}};
+  const auto shapes = shapes_of(r);
+  r.bodies = {{"lower", 0, lower, 0}, {"upper", 0, upper, 0}};
+  std::mt19937_64 random(79);
+  const Path path = random_path(r.robot, random, 2, 1.5, false);
+  const SweepResult made = sweep(r, path, 0.005, StepRule::Balanced, true);
+  const auto claims = judge(shapes, path, made.set, 1e-9);
+  EXPECT_EQ(claims.surface.answer, Answer::Verified) << claims.surface.reason;
+  EXPECT_EQ(claims.solid.answer, Answer::Verified) << claims.solid.reason;
+}
+
 TEST(VerifySweep, RefutesACutMargin) {
   std::mt19937_64 random(72);
   for (const TestRobot& r : {six_axis_arm(), prismatic_chain()}) {
