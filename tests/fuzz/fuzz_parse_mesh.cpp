@@ -10,8 +10,8 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using kaboum::io::Format;
-  constexpr std::array kFormats = {Format::Stl, Format::Obj, Format::Ply, Format::Off,
-                                   Format::Vrml};
+  constexpr std::array kFormats = {Format::Stl,  Format::Obj, Format::Ply,     Format::Off,
+                                   Format::Vrml, Format::X3d, Format::Collada, Format::ThreeMf};
   if (size == 0) return 0;
   const Format format = kFormats[data[0] % kFormats.size()];
   const std::span<const char> bytes(reinterpret_cast<const char*>(data) + 1, size - 1);

@@ -51,19 +51,6 @@ TEST(Assimp, NoGeometryIsLostOrMerged) {
   fs::remove_all(directory);
 }
 
-TEST(Assimp, X3d) {
-  if (!with_assimp()) return;
-  const ReadResult r = parse(
-      R"(<?xml version="1.0" encoding="UTF-8"?>
-<X3D profile="Interchange" version="3.0"><Scene><Transform translation="0 0 2"><Shape>
-<IndexedFaceSet coordIndex="0 1 2 3 -1"><Coordinate point="0 0 0 1 0 0 1 1 0 0 1 0"/></IndexedFaceSet>
-</Shape></Transform></Scene></X3D>)",
-      Format::X3d);
-  EXPECT_EQ(r.mesh.vertices.size(), 4U);
-  EXPECT_EQ(r.mesh.triangles.size(), 2U);
-  EXPECT_EQ(r.mesh.vertices[0], Vec3(0, 0, 2));
-}
-
 TEST(Assimp, GlbOfOurs) {
   if (!with_assimp()) return;
   const std::vector<char> bytes = serialise_mesh(tetrahedron(), Format::Glb);
@@ -76,7 +63,7 @@ TEST(Assimp, Errors) {
     expect_error("x", Format::Fbx, {"assimp"}, ErrorCode::NotBuilt);
     return;
   }
-  for (const Format format : {Format::Glb, Format::Gltf, Format::Fbx, Format::X3d})
+  for (const Format format : {Format::Glb, Format::Gltf, Format::Fbx})
     expect_error("this is not such a file", format, {});
 }
 

@@ -1,9 +1,11 @@
 // Whatever the bytes, parse_mesh returns a valid mesh or throws Error.
 
+#include <cstdlib>
 #include <random>
 #include <sstream>
 
 #include "io_test.h"
+#include "package.h"
 #include "samples.h"
 
 namespace kaboum::io::test {
@@ -46,6 +48,31 @@ std::vector<Sample> samples() {
        "3 4 -1 0 1 4 ] } }\n"
        "Switch { whichChoice 0 choice [ Shape { geometry USE G } ] } ] }\nUSE A WorldInfo { title "
        "\"x\" }\n"},
+      {"x3d", Format::X3d,
+       "<X3D><Scene><Transform DEF='A' rotation='0 0 1 0.5' scale='1 2 3' center='1 1 1'><Shape>"
+       "<Appearance/><IndexedFaceSet DEF='G' ccw='false' coordIndex='0 1 2 3 4 -1 0 1 4'>"
+       "<Coordinate DEF='C' point='0 0 0, 4 0 0, 4 4 0, 1 1 0, 0 4 0'/></IndexedFaceSet></Shape>"
+       "<Switch whichChoice='0'><Shape><IndexedTriangleStripSet index='0 1 2 3 -1'><Coordinate "
+       "USE='C'/></IndexedTriangleStripSet></Shape></Switch></Transform><LOD><Transform USE='A'/>"
+       "</LOD><Shape><QuadSet><CoordinateDouble point='0 0 0 1 0 0 1 1 0 0 1 0'/></QuadSet></Shape>"
+       "</Scene></X3D>"},
+      {"collada", Format::Collada,
+       "<COLLADA version='1.4.1'><asset><unit meter='0.5'/></asset><library_geometries><geometry "
+       "id='g'><mesh><source id='p'><float_array id='a' count='12'>0 0 0 4 0 0 4 4 0 1 1 1"
+       "</float_array><technique_common><accessor source='#a' count='4' stride='3'><param "
+       "name='X'/>"
+       "<param name='Y'/><param name='Z'/></accessor></technique_common></source><vertices id='v'>"
+       "<input semantic='POSITION' source='#p'/></vertices><polylist count='2'><input "
+       "semantic='VERTEX' source='#v' offset='0'/><vcount>4 3</vcount><p>0 1 2 3 2 1 0</p>"
+       "</polylist><tristrips count='1'><input semantic='VERTEX' source='#v' offset='1'/><p>0 0 0 "
+       "1 "
+       "0 2 0 3</p></tristrips></mesh></geometry></library_geometries><library_visual_scenes>"
+       "<visual_scene id='s'><node id='n'><rotate>0 0 1 30</rotate><matrix>1 0 0 0 0 1 0 0 0 0 1 2 "
+       "0 "
+       "0 0 1</matrix><instance_geometry url='#g'/></node><node><instance_node url='#n'/></node>"
+       "</visual_scene></library_visual_scenes><scene><instance_visual_scene url='#s'/></scene>"
+       "</COLLADA>"},
+      {"3mf", Format::ThreeMf, three_mf(three_mf_model())},
   };
 }
 
@@ -87,30 +114,47 @@ TEST(Hostile, BinaryFilesNeverParseTruncated) {
   }
 }
 
+/// Some bytes changed, cut out, copied or replaced by ones that texts are made of.
+std::string mutated(std::string bytes, std::mt19937_64& random) {
+  for (std::size_t n = 1 + random() % 4; n > 0 && !bytes.empty(); --n) {
+    const std::size_t at = random() % bytes.size();
+    switch (random() % 5) {
+      case 0:
+        bytes[at] = static_cast<char>(bytes[at] ^ (1 << (random() % 8)));
+        break;
+      case 1:
+        bytes[at] = static_cast<char>(random());
+        break;
+      case 2:
+        bytes.erase(at, 1 + random() % 8);
+        break;
+      case 3:
+        bytes.insert(at, bytes.substr(random() % bytes.size(), random() % 16));
+        break;
+      default:
+        bytes[at] = "0123456789-.e{}[]#\\\n \""[random() % 22];
+    }
+  }
+  return bytes;
+}
+
+/// How many mutations of each sample; more by the environment variable KABOUM_MUTATIONS.
+int mutations() {
+  const char* const asked = std::getenv("KABOUM_MUTATIONS");
+  return asked != nullptr ? std::atoi(asked) : 2000;
+}
+
+TEST(Hostile, MutatedModelsInSoundPackages) {
+  std::mt19937_64 random(4);
+  for (int round = 0; round < mutations() / 4; ++round)
+    expect_mesh_or_error(three_mf(mutated(three_mf_model(), random)), Format::ThreeMf);
+}
+
 TEST(Hostile, RandomMutations) {
   std::mt19937_64 random(1);
   for (const Sample& s : samples()) {
-    for (int round = 0; round < 2000; ++round) {
-      std::string bytes = s.bytes;
-      for (std::size_t n = 1 + random() % 4; n > 0 && !bytes.empty(); --n) {
-        const std::size_t at = random() % bytes.size();
-        switch (random() % 5) {
-          case 0:
-            bytes[at] = static_cast<char>(bytes[at] ^ (1 << (random() % 8)));
-            break;
-          case 1:
-            bytes[at] = static_cast<char>(random());
-            break;
-          case 2:
-            bytes.erase(at, 1 + random() % 8);
-            break;
-          case 3:
-            bytes.insert(at, bytes.substr(random() % bytes.size(), random() % 16));
-            break;
-          default:
-            bytes[at] = "0123456789-.e{}[]#\\\n \""[random() % 22];
-        }
-      }
+    for (int round = 0; round < mutations(); ++round) {
+      const std::string bytes = mutated(s.bytes, random);
       const std::vector<char> exact(bytes.begin(), bytes.end());
       expect_mesh_or_error({exact.data(), exact.size()}, s.format);
     }

@@ -55,4 +55,12 @@ std::string three_mf_mesh(const std::string& x) {
          R"(<triangle v1="1" v2="2" v3="3"/><triangle v1="2" v2="0" v3="3"/></triangles></mesh>)";
 }
 
+std::string three_mf_model() {
+  return "<model " + kCoreSpace + " " + kProductionSpace + "><resources><object id=\"1\">" +
+         three_mf_mesh("0") +
+         "</object><object id=\"2\"><components><component objectid=\"1\" "
+         "transform=\"0 1 0 0 0 1 1 0 0 1 2 3\"/></components></object></resources>"
+         "<build><item objectid=\"2\"/><item objectid=\"1\"/></build></model>";
+}
+
 }  // namespace kaboum::io::test

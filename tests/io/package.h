@@ -21,4 +21,7 @@ std::string three_mf(const std::string& model,
 /// A tetrahedron from `x` to x + 1 as <mesh>.
 std::string three_mf_mesh(const std::string& x);
 
+/// A model with a component, transforms and a second object.
+std::string three_mf_model();
+
 }  // namespace kaboum::io::test

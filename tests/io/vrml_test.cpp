@@ -57,7 +57,7 @@ TEST(Vrml, DefAndUse) {
             (std::vector<Vec3>{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0.5), Vec3(5, 0, 0),
                                Vec3(6, 0, 0), Vec3(5, 1, 0.5)}));
   // A coordinate node shared; a DEF inside of a node that is skipped.
-  EXPECT_EQ(read("Unknown { field DEF C Coordinate { point [ 0 0 0 1 0 0 0 1 0 ] } }\n"
+  EXPECT_EQ(read("Script { field SFNode c DEF C Coordinate { point [ 0 0 0 1 0 0 0 1 0 ] } }\n"
                  "Shape { geometry IndexedFaceSet { coord USE C coordIndex [ 0 1 2 -1 ] } }\n"
                  "Shape { geometry IndexedFaceSet { coord USE C coordIndex [ 2 1 0 ] } }")
                 .size(),
@@ -81,12 +81,16 @@ TEST(Vrml, SkipsWhatHasNoSurface) {
                 kTriangle +
                 "Shape { geometry IndexedLineSet { coord Coordinate { point [ 0 0 0 1 1 1 ] } "
                 "coordIndex [ 0 1 ] } }\n"
-                "ROUTE V.position TO V.position\nMystery { a [ B { c 1 } ] d NULL }\n",
+                "ROUTE V.position TO V.position\n",
             Format::Vrml);
   EXPECT_EQ(r.mesh.triangles.size(), 1U);
   EXPECT_TRUE(has_note(r, "lines or points"));
-  EXPECT_TRUE(has_note(r, "'Mystery'"));
+  EXPECT_TRUE(has_note(r, "animations"));
   EXPECT_FALSE(has_note(r, "Viewpoint"));
+  // What is not known might hold a surface.
+  for (const char* node : {"Mystery { a [ B { c 1 } ] d NULL }", "Billboard { children [ ] }",
+                           "Group { mystery 1 }", "Shape { geometry IndexedFaceSet { points 1 } }"})
+    expect_error(kHeader + kTriangle + node, Format::Vrml, {"line 5"});
 }
 
 TEST(Vrml, Errors) {
@@ -105,11 +109,15 @@ TEST(Vrml, Errors) {
                    "coordIndex [ 0 1 2 ] } }",
                Format::Vrml, {"line 3", "vertex 1", "there are 1"});
   expect_error(kHeader + "Shape { geometry IndexedFaceSet { coord Coordinate { point [ 0 0 ] } } }",
-               Format::Vrml, {"']'", "not a number"});
+               Format::Vrml, {"line 2", "too few"});
   expect_error(kHeader +
                    "Transform { scale 1e308 1 1 children Transform { scale 1e308 1 1 children " +
                    kTriangle + "} }",
                Format::Vrml, {"not finite"});
+  expect_error(kHeader + "Group { children [ NULL ] }", Format::Vrml, {"NULL"});
+  expect_error(kHeader + "Group { children [ 1 ] }", Format::Vrml, {"no nodes"});
+  expect_error(kHeader + "Transform { scale 1 1 1 scale 2 2 2 }", Format::Vrml, {"twice"});
+  expect_error(kHeader + "Shape { geometry IndexedFaceSet { ccw 1 } }", Format::Vrml, {"'ccw'"});
   expect_error(kHeader + "Inline { url \"other.wrl\" }", Format::Vrml, {"directory"});
 }
 

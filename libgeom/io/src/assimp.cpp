@@ -1,4 +1,4 @@
-// glTF, FBX and X3D through assimp, which delivers float32 coordinates in a tree of
+// glTF and FBX through assimp, which delivers float32 coordinates in a tree of
 // nodes. No post-processing step runs: none of them may merge, drop or reorder geometry; polygons
 // are split by our own splitter.
 
@@ -103,10 +103,8 @@ std::string extension_of(Format format) {
       return "glb";
     case Format::Gltf:
       return "gltf";
-    case Format::Fbx:
-      return "fbx";
     default:
-      return "x3d";
+      return "fbx";
   }
 }
 

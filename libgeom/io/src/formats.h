@@ -12,10 +12,11 @@ ReadResult read_stl(Source source);
 ReadResult read_obj(const Source& source);
 ReadResult read_ply(Source source);
 ReadResult read_off(const Source& source);
-ReadResult read_vrml(const Source& source);
+/// VRML 97 and X3D.
+ReadResult read_scene(const Source& source, Format format);
 ReadResult read_three_mf(Source source);
 ReadResult read_collada(const Source& source);
-/// glTF, GLB, FBX, X3D.
+/// glTF, GLB, FBX.
 /// @throws Error{NotBuilt} without assimp.
 ReadResult read_with_assimp(const Source& source, Format format);
 bool has_assimp();

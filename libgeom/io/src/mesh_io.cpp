@@ -34,7 +34,7 @@ constexpr std::array kFormats = {
     FormatInfo{"stl-ascii", Format::StlAscii, true, false, true},
     FormatInfo{"vrml", Format::Vrml, false, false, false},
     FormatInfo{"wrl", Format::Vrml, false, false, true},
-    FormatInfo{"x3d", Format::X3d, false, true, true},
+    FormatInfo{"x3d", Format::X3d, false, false, true},
 };
 
 std::string joined(const std::vector<std::string>& names) {
@@ -64,7 +64,8 @@ ReadResult read_as(const Source& source, Format format) {
     case Format::Off:
       return read_off(source);
     case Format::Vrml:
-      return read_vrml(source);
+    case Format::X3d:
+      return read_scene(source, format);
     case Format::ThreeMf:
       return read_three_mf(source);
     case Format::Collada:
@@ -72,7 +73,6 @@ ReadResult read_as(const Source& source, Format format) {
     case Format::Glb:
     case Format::Gltf:
     case Format::Fbx:
-    case Format::X3d:
       return read_with_assimp(source, format);
   }
   throw Error(ErrorCode::InvalidArgument, "unknown format");

@@ -29,6 +29,9 @@ class SceneCopier {
   /// Counts a node of the scene, so that nested references to empty nodes end, too.
   void visit() { spend(16); }
 
+  /// Counts work that can be repeated without limit otherwise.
+  void spend(std::uint64_t count);
+
   /// Bytes of further files that belong to the scene.
   void allow(std::size_t bytes) { budget_ += 64 * std::uint64_t{bytes}; }
 
@@ -36,8 +39,6 @@ class SceneCopier {
   void add_notes() const;
 
  private:
-  void spend(std::uint64_t count);
-
   MeshBuilder& builder_;
   std::uint64_t budget_;
   std::size_t first_ = 0;  ///< of the latest points

@@ -62,11 +62,11 @@ struct ReadResult {
 /// that closed polygon meshes stay closed. `name` appears in messages only. Time and memory are
 /// bounded by the size of the input, whatever it states about itself (assimp's formats excepted).
 ///
-/// Scenes (VRML, COLLADA, 3MF and assimp's formats): all meshes are merged, moved by their nodes'
-/// transforms, which are applied in rounded double precision; a mirroring transform reverses the
-/// faces. COLLADA: scaled to metres by its <unit>, its <up_axis> is ignored, as robot descriptions
-/// expect. FBX and 3MF: not scaled. A note says so in each case. VRML: LOD gives its finest level,
-/// Switch its choice; PROTO and the primitives (Box, Sphere, ...) are refused.
+/// Scenes (VRML, X3D, COLLADA, 3MF and assimp's formats): all meshes are merged, moved by their
+/// nodes' transforms, which are applied in rounded double precision; a mirroring transform reverses
+/// the faces. COLLADA: scaled to metres by its <unit>, its <up_axis> is ignored, as robot
+/// descriptions expect. FBX, 3MF and X3D: not scaled. A note says so in each case. VRML and X3D:
+/// LOD gives its finest level, Switch its choice. What is refused: docs/formats.md.
 ///
 /// @param base_directory  where files that this one refers to are found (VRML's Inline, glTF's
 ///   buffers), by relative paths; empty: nowhere.

@@ -1,0 +1,239 @@
+// X3D in XML: the nodes of VRML and those that X3D has added, in double precision.
+
+#include <unistd.h>
+
+#include <fstream>
+
+#include "io_test.h"
+
+namespace kaboum::io::test {
+namespace {
+
+const std::string kPoints = R"(<Coordinate point="0 0 0, 1 0 0, 1 1 0.1, 0 1 0"/>)";
+const std::string kTriangle =
+    "<Shape><Appearance><Material diffuseColor='1 0 0'/></Appearance>"
+    R"(<IndexedFaceSet solid="false" coordIndex="0 1 2 -1">)" +
+    kPoints + "</IndexedFaceSet></Shape>";
+const std::vector<Vec3> kExpected = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0.1)};
+
+std::string x3d(const std::string& scene, const std::string& head = "") {
+  return R"(<?xml version="1.0" encoding="UTF-8"?>
+<!DOCTYPE X3D PUBLIC "ISO//Web3D//DTD X3D 3.0//EN" "http://www.web3d.org/specifications/x3d-3.0.dtd">
+<X3D profile="Interchange" version="3.0">)" +
+         head + "<Scene>\n" + scene + "</Scene></X3D>";
+}
+
+ReadResult read(const std::string& scene) { return parse(x3d(scene), Format::X3d); }
+std::vector<Vec3> triangles(const std::string& scene) { return soup(read(scene).mesh); }
+
+void expect_refused(const std::string& scene, const std::vector<std::string>& parts) {
+  expect_error(x3d(scene), Format::X3d, parts);
+}
+
+std::string shape(const std::string& geometry) { return "<Shape>" + geometry + "</Shape>"; }
+
+/// A geometry node with the four points.
+std::string with_points(const std::string& type, const std::string& attributes) {
+  return shape("<" + type + " " + attributes + ">" + kPoints + "</" + type + ">");
+}
+
+TEST(X3d, FaceSet) {
+  const ReadResult r = read(kTriangle);
+  EXPECT_EQ(soup(r.mesh), kExpected);
+  EXPECT_FALSE(r.single_precision);
+  EXPECT_EQ(r.notes.size(), 1U);  // a vertex that is not used
+  EXPECT_EQ(triangles(with_points("IndexedFaceSet", R"(ccw="false" coordIndex="0 1 2")"))[0],
+            kExpected[2]);
+  EXPECT_EQ(triangles(shape(R"(<IndexedFaceSet coordIndex="0 1 2"><CoordinateDouble )"
+                            R"(containerField="coord" point="0 0 0 1 0 0 1 1 0.1"/>)"
+                            "<Normal vector='0 0 1'/></IndexedFaceSet>")),
+            kExpected);
+}
+
+TEST(X3d, OtherSurfaces) {
+  const Vec3 a(0, 0, 0), b(1, 0, 0), c(1, 1, 0.1), d(0, 1, 0);
+  using Corners = std::vector<Vec3>;
+  EXPECT_EQ(triangles(with_points("IndexedTriangleSet", R"(index="0 1 2 0 2 3")")),
+            (Corners{a, b, c, a, c, d}));
+  EXPECT_EQ(triangles(with_points("IndexedTriangleSet", R"(index="0 1 2" ccw="false")")),
+            (Corners{c, b, a}));
+  EXPECT_EQ(triangles(with_points("IndexedTriangleStripSet", R"(index="0 1 3 2 -1 0 1 2")")),
+            (Corners{a, b, d, d, b, c, a, b, c}));
+  EXPECT_EQ(triangles(with_points("IndexedTriangleFanSet", R"(index="0 1 2 3 -1")")),
+            (Corners{a, b, c, a, c, d}));
+  EXPECT_EQ(triangles(with_points("TriangleFanSet", R"(fanCount="4")")),
+            (Corners{a, b, c, a, c, d}));
+  EXPECT_EQ(triangles(with_points("TriangleFanSet", R"(fanCount="4" ccw="false")")),
+            (Corners{b, a, c, c, a, d}));
+  EXPECT_EQ(triangles(with_points("TriangleStripSet", R"(stripCount="4")")),
+            (Corners{a, b, c, c, b, d}));
+  for (const char* type : {"QuadSet", "IndexedQuadSet"}) {
+    const ReadResult quad = read(with_points(type, type[0] == 'Q' ? "" : R"(index="0 1 2 3")"));
+    EXPECT_EQ(quad.split_polygons, 1U);
+    EXPECT_EQ(quad.mesh.triangles.size(), 2U);
+  }
+  EXPECT_EQ(
+      triangles(shape(R"(<TriangleSet><Coordinate point="0 0 0 1 0 0 1 1 0.1"/></TriangleSet>)")),
+      kExpected);
+  // What does not come out even is not guessed.
+  expect_refused(with_points("TriangleSet", ""), {"4 points"});
+}
+
+TEST(X3d, IncompleteSurfacesAreRefused) {
+  expect_refused(with_points("IndexedTriangleSet", R"(index="0 1 2 3")"), {"last face"});
+  expect_refused(with_points("IndexedQuadSet", R"(index="0 1 2")"), {"last face"});
+  expect_refused(with_points("TriangleStripSet", R"(stripCount="3")"), {"4 points", "faces of 3"});
+  expect_refused(with_points("TriangleFanSet", R"(fanCount="2 2")"), {"run of 2"});
+  expect_refused(with_points("TriangleFanSet", ""), {"faces of 0"});
+  expect_refused(with_points("IndexedFaceSet", R"(coordIndex="0 1 4")"),
+                 {"vertex 4", "there are 4"});
+  expect_refused(with_points("IndexedTriangleSet", R"(index="0 1 -1")"), {"vertex -1"});
+  expect_refused(with_points("IndexedFaceSet", R"(coordIndex="0 1 x")"), {"line 4", "'x'"});
+  expect_refused(with_points("IndexedFaceSet", R"(coordindex="0 1 2")"), {"'coordindex'"});
+  expect_refused(shape(R"(<TriangleSet><Coordinate point="0 0 0 1 0"/></TriangleSet>)"),
+                 {"too few"});
+}
+
+TEST(X3d, Groups) {
+  for (const char* group : {"Group", "StaticGroup", "Anchor", "Collision", "PickableGroup",
+                            "Transform", "CADAssembly", "CADLayer", "CADPart", "CADFace", "LOD"}) {
+    const std::string name = group;
+    EXPECT_EQ(triangles("<" + name + " DEF='g'>" + kTriangle + "</" + name + ">"), kExpected);
+    EXPECT_EQ(triangles("<" + name + " DEF='g'>" + kTriangle + "</" + name +
+                        "><Transform "
+                        "translation='0 0 1'><" +
+                        name + " USE='g'/></Transform>")
+                  .size(),
+              6U);
+  }
+  EXPECT_EQ(
+      triangles("<CADFace><Shape containerField='shape'>" + kTriangle.substr(7) + "</CADFace>"),
+      kExpected);
+  EXPECT_EQ(triangles("<CADPart translation='1 2 3'>" + kTriangle + "</CADPart>")[0],
+            Vec3(1, 2, 3));
+  const std::string other = shape("<Box/>");
+  EXPECT_EQ(triangles("<LOD range='1'>" + kTriangle + other + "</LOD>"), kExpected);
+  EXPECT_EQ(triangles("<Switch whichChoice='1'>" + other + kTriangle + "</Switch>"), kExpected);
+  const ReadResult proxy =
+      read("<Collision><Shape containerField='proxy'><Box/></Shape>" + kTriangle + "</Collision>");
+  EXPECT_EQ(soup(proxy.mesh), kExpected);
+  EXPECT_TRUE(has_note(proxy, "proxies"));
+  const ReadResult hidden = read("<Switch>" + other + "</Switch>" + kTriangle);
+  EXPECT_TRUE(has_note(hidden, "Switch"));
+}
+
+TEST(X3d, Transforms) {
+  EXPECT_EQ(
+      triangles("<Transform translation='0 0 2' scale='2 3 1'>" + kTriangle + "</Transform>")[2],
+      Vec3(2, 3, 2.1));
+  const std::vector<Vec3> turned =
+      triangles("<Transform rotation='0 0 1 1.5707963267948966'>" + kTriangle + "</Transform>");
+  EXPECT_LT((turned[1] - Vec3(0, 1, 0)).norm(), 1e-15);
+  const ReadResult mirrored = read("<Transform scale='-1 1 1'>" + kTriangle + "</Transform>");
+  EXPECT_EQ(soup(mirrored.mesh)[2], Vec3(0, 0, 0));
+  EXPECT_TRUE(has_note(mirrored, "mirror"));
+  expect_refused("<Transform translation='0 0'>" + kTriangle + "</Transform>", {"too few"});
+  expect_refused("<Transform translation='0 0 0 0'>" + kTriangle + "</Transform>", {"too many"});
+  expect_refused("<Group translation='0 0 1'>" + kTriangle + "</Group>", {"'translation'"});
+}
+
+TEST(X3d, WhatMayHoldASurfaceIsRefusedByName) {
+  for (const char* geometry :
+       {"Box", "Sphere", "Cone", "Cylinder", "Text", "ElevationGrid", "Extrusion", "Disk2D",
+        "Rectangle2D", "TriangleSet2D", "ArcClose2D", "NurbsPatchSurface", "NurbsTrimmedSurface",
+        "GeoElevationGrid", "Mystery"})
+    expect_refused(kTriangle + shape(std::string("<") + geometry + "/>"), {"line 4", geometry});
+  for (const char* node :
+       {"Billboard", "GeoTransform", "GeoLocation", "GeoLOD", "HAnimHumanoid", "ParticleSystem",
+        "LayerSet", "LayoutGroup", "ScreenGroup", "EspduTransform", "VolumeData", "NurbsSet",
+        "CollidableShape", "ClipPlane", "Mystery"})
+    expect_refused(kTriangle + "<" + node + "/>", {node});
+  for (const char* node : {"ProtoInstance", "ProtoDeclare", "ExternProtoDeclare"})
+    expect_refused(kTriangle + "<" + node + " name='P'/>", {node, "prototypes"});
+  expect_refused(shape(R"(<IndexedFaceSet coordIndex="0"><GeoCoordinate containerField="coord"/>)"
+                       "</IndexedFaceSet>"),
+                 {"GeoCoordinate"});
+  expect_refused(shape(R"(<IndexedFaceSet coordIndex="0"><GeoCoordinate/></IndexedFaceSet>)"),
+                 {"GeoCoordinate"});
+  expect_refused(shape("<Box containerField='appearance'/>"), {"Box"});
+  expect_refused("<Group><Shape containerField='metadata'/></Group>", {"Shape"});
+  expect_refused("<Group visible='false'>" + kTriangle + "</Group>", {"visible"});
+  expect_refused(kTriangle + "text", {"'text"});
+}
+
+TEST(X3d, IgnoresWhatHoldsNone) {
+  const ReadResult r = read(
+      "<WorldInfo title='x'/><Viewpoint DEF='V'/><DirectionalLight/><TimeSensor DEF='T'/>"
+      "<Script><field name='a' type='SFNode' accessType='initializeOnly'/><![CDATA[code <> ]]>"
+      "</Script><ROUTE fromNode='T' fromField='x' toNode='V' toField='y'/>" +
+      kTriangle + shape("<IndexedLineSet coordIndex='0 1'>" + kPoints + "</IndexedLineSet>"));
+  EXPECT_EQ(soup(r.mesh), kExpected);
+  EXPECT_TRUE(has_note(r, "lines"));
+  EXPECT_TRUE(has_note(r, "animations"));
+}
+
+TEST(X3d, Units) {
+  const auto unit = [](const std::string& attributes) {
+    return x3d(kTriangle, "<head><meta name='a' content='b'/><unit " + attributes + "/></head>");
+  };
+  const ReadResult r =
+      parse(unit("category='length' name='mm' conversionFactor='0.001'"), Format::X3d);
+  EXPECT_EQ(soup(r.mesh), kExpected);
+  EXPECT_TRUE(has_note(r, "0.001"));
+  EXPECT_NO_THROW(parse(unit("category='mass' name='g' conversionFactor='0.001'"), Format::X3d));
+  expect_error(unit("category='angle' name='degree' conversionFactor='0.01745'"), Format::X3d,
+               {"radians"});
+}
+
+TEST(X3d, Damaged) {
+  expect_error("#X3D V3.0 utf8\n", Format::X3d, {"classic"});
+  expect_error("#VRML V2.0 utf8\n", Format::X3d, {"VRML"});
+  expect_error(std::string("\xE0\0\0\1xyz", 7), Format::X3d, {"binary"});
+  expect_error("<html/>", Format::X3d, {"no X3D"});
+  expect_error("<X3D/>", Format::X3d, {"no triangles"});
+  expect_error(x3d(kTriangle) + x3d(kTriangle), Format::X3d, {});
+  expect_error("<X3D><Scene/><Scene/></X3D>", Format::X3d, {"second"});
+  expect_refused("<Group USE='x'/>", {"'x'", "DEF"});
+  expect_refused("<Group DEF='x'/><Shape USE='x'/>", {"'x'"});
+  expect_refused("<Shape>" + kTriangle.substr(7, kTriangle.size() - 15) +
+                     "<IndexedFaceSet coordIndex=''/></Shape>",
+                 {"several"});
+  // Its own descendant.
+  expect_refused("<Group DEF='x'><Group USE='x'/></Group>", {"deep"});
+  std::string bomb = "<Group DEF='g0'>" + kTriangle + "</Group>";
+  for (int i = 1; i < 60; ++i) {
+    const std::string before = "<Group USE='g" + std::to_string(i - 1) + "'/>";
+    bomb += "<Group DEF='g" + std::to_string(i) + "'>" + before + before + "</Group>";
+  }
+  expect_error(x3d(bomb), Format::X3d, {"repeat"}, ErrorCode::LimitReached);
+}
+
+TEST(X3d, Inline) {
+  const std::filesystem::path directory =
+      std::filesystem::path(::testing::TempDir()) / ("kaboum-x3d-" + std::to_string(::getpid()));
+  std::filesystem::create_directories(directory);
+  std::ofstream(directory / "a.x3d") << x3d(kTriangle);
+  std::ofstream(directory / "b.wrl")
+      << "#VRML V2.0 utf8\nShape { geometry IndexedFaceSet { coordIndex [ 0 1 2 ]\n"
+         "coord Coordinate { point [ 0 0 0, 1 0 0, 1 1 0.1 ] } } }";
+  std::ofstream(directory / "mm.x3d")
+      << x3d(kTriangle, "<head><unit category='length' conversionFactor='0.001'/></head>");
+  std::ofstream(directory / "loop.x3d") << x3d("<Inline url='loop.x3d'/>");
+  const auto inlined = [&](const std::string& attributes) {
+    return parse(x3d("<Transform translation='0 0 1'><Inline " + attributes + "/></Transform>"),
+                 Format::X3d, directory);
+  };
+  for (const char* url :
+       {R"(url='"a.x3d" "other.x3d"')", "url='a.x3d'", R"(url='"b.wrl"' load='true')"}) {
+    const ReadResult r = inlined(url);
+    EXPECT_EQ(soup(r.mesh)[1], Vec3(1, 0, 1));
+    EXPECT_TRUE(has_note(r, "Inline"));
+  }
+  for (const char* bad : {"url='loop.x3d'", "url='mm.x3d'", "url='none.x3d'", "url='/etc/passwd'",
+                          "url='http://example.org/a.x3d'", "url='a.x3d' load='false'"})
+    EXPECT_THROW(inlined(bad), Error) << bad;
+  std::filesystem::remove_all(directory);
+}
+
+}  // namespace
+}  // namespace kaboum::io::test
