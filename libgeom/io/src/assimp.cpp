@@ -16,6 +16,7 @@
 #include <set>
 
 #include "builder.h"
+#include "fbx_objects.h"
 #include "formats.h"
 
 namespace kaboum::io {
@@ -210,6 +211,7 @@ void add_unit_notes(MeshBuilder& builder, const aiScene& scene, Format format) {
 bool has_assimp() { return true; }
 
 ReadResult read_with_assimp(const Source& source, Format format) {
+  if (format == Format::Fbx) check_fbx_objects(source);
   const std::string main = "kaboum-input." + extension_of(format);
   Assimp::Importer importer;
   auto files = std::make_unique<MemoryWithDirectory>(source, main);
