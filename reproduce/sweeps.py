@@ -55,8 +55,8 @@ def _sweeps(call, robot, title, goal, document):
     rows, uniform = [], None
     for rule, name in RULES.items():
         step, picture = f"{short}-{rule}", ["--preview", f"{short}.png"] if rule == "balanced" else []
-        arguments = [robot, "--path", path, "--epsilon", "0.005", "--bound", rule, "-o", f"{step}.glb", "--report",
-                     f"{step}-report.json", *picture]
+        arguments = [robot, "--path", path, "--epsilon", "0.005", "--bound", rule, "-o", f"{step}.glb",
+                     "--implicit-margin", "--report", f"{step}-report.json", *picture]
         if call(step, program, arguments, inputs, [f"{step}.glb", f"{step}-report.json"]) is None:
             continue
         report = call.report(f"{step}-report.json")
@@ -91,7 +91,7 @@ def _convergence(call, robot, title, goal, document):
         step = f"convergence-{epsilon:g}"
         if call(step, call.programs / "sweep-approx",
                 [robot, "--path", path, "--epsilon", f"{epsilon:f}", "--bound", "uniform", "-o", f"{step}.glb",
-                 "--report", f"{step}-report.json"], [robot, path], [f"{step}-report.json"]) is not None:
+                 "--implicit-margin", "--report", f"{step}-report.json"], [robot, path], [f"{step}-report.json"]) is not None:
             points.append((epsilon, call.report(f"{step}-report.json")["bodies"]))
     if len(points) > 2:
         document.heading("Quadratic convergence (Proposition 3)", 3)

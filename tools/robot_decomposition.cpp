@@ -86,6 +86,7 @@ class Writer {
       throw Error(ErrorCode::InvalidInput, o_.robot + ": not a URDF");
     result_.inputs.emplace_back(o_.robot);
     reserve_names(document_.RootElement());
+    for (const sweep::Link& link : robot_.robot.links) reserve_stem(plain_file_name(link.name));
     rest_ = sweep::forward(robot_.robot, std::vector<double>(robot_.robot.variables.size(), 0.0));
   }
 
@@ -140,11 +141,16 @@ class Writer {
       reserve_names(e);
       const char* name = e->Attribute("filename");
       if (name == nullptr || std::string_view(e->Name()) != "mesh") continue;
-      const std::string stem = fs::path(name).stem().string();
-      const std::size_t dash = stem.rfind('-');
-      if (dash != std::string::npos && stem.find_first_not_of("0123456789", dash + 1) == stem.npos)
-        if (stem.size() - dash > 4) names_.reserve(stem.substr(0, dash));
+      reserve_stem(fs::path(name).stem().string());
     }
+  }
+
+  /// No body is to get this name: those of bodies end with a number.
+  void reserve_stem(const std::string& stem) {
+    const std::size_t dash = stem.rfind('-');
+    if (dash != std::string::npos && stem.size() - dash > 4 &&
+        stem.find_first_not_of("0123456789", dash + 1) == std::string::npos)
+      names_.reserve(stem.substr(0, dash));
   }
 
   void decompose_link(std::uint32_t l) {

@@ -45,5 +45,31 @@ TEST(Bullet, HullsAreTheBodiesThatWereWritten) {
                       {measure_hull(shape)});
 }
 
+TEST(Bullet, AddsMoreThanItsOwnRoundingTakesAway) {
+  // What its URDF importer does besides: it rounds vertices, and adds a margin of 1 mm
+  // (docs/engines.md).
+  for (const std::filesystem::path& urdf : outputs())
+    for (const Link& link : read_urdf(urdf).links)
+      for (const Shape& shape : link.collisions) {
+        if (shape.mesh.empty()) continue;
+        btConvexHullShape hull;
+        const auto corners = corners_of_stl(shape.file, shape.scale, Eigen::Isometry3d::Identity());
+        for (const Eigen::Vector3d& p : corners) hull.addPoint(vector(p), false);
+        hull.setMargin(0);
+        hull.optimizeConvexHull();
+        hull.recalcLocalAabb();
+        const Measure written = measure(shape.mesh, corners);
+        double extent = 0;
+        for (std::size_t d = 0; d < 13; ++d)
+          extent = std::max(extent, written.reach[d] + written.reach[25 - d]);
+        for (std::size_t d = 0; d < written.reach.size(); ++d) {
+          const btVector3 v = hull.localGetSupportingVertex(vector(directions()[d]));
+          EXPECT_GE(Eigen::Vector3d(v.x(), v.y(), v.z()).dot(directions()[d]),
+                    written.reach[d] - 2e-4 * extent)
+              << urdf << ": " << shape.mesh;
+        }
+      }
+}
+
 }  // namespace
 }  // namespace engines

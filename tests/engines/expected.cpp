@@ -182,6 +182,10 @@ std::vector<std::filesystem::path> outputs() {
   return out;
 }
 
+std::filesystem::path prefixed() {
+  return std::filesystem::path(KABOUM_ENGINE_OUTPUTS) / "prefixed" / "hard.urdf";
+}
+
 void expect_same(const std::string& where, std::vector<Measure> expected,
                  std::vector<Measure> loaded) {
   EXPECT_EQ(loaded.size(), expected.size()) << where;

@@ -63,6 +63,9 @@ Robot read_urdf(const std::filesystem::path& urdf, const std::string& prefix = {
 /// The URDFs that outputs.sh has listed.
 std::vector<std::filesystem::path> outputs();
 
+/// One whose meshes are those of package://cell/prefixed/.
+std::filesystem::path prefixed();
+
 /// Fails the test unless both hold the same bodies, within 1e-6 of volume and size, in any order.
 void expect_same(const std::string& where, std::vector<Measure> expected,
                  std::vector<Measure> loaded);

@@ -5,9 +5,11 @@ BIN=$(cd "$1" && pwd)
 rm -rf "$2"
 mkdir -p "$2/robots/a" "$2/robots/b" "$2/robots/c d é" "$2/set"
 cd "$2"
+KABOUM_CACHE=$PWD/cache  # the sweeps' bodies are those of the robots
+export KABOUM_CACHE
 
-decompose() { "$BIN/bcd-decompose" --quiet --no-cache --effort fast "$@"; }
-sweep() { "$BIN/sweep-approx" --quiet --no-cache --effort fast "$@"; }
+decompose() { "$BIN/bcd-decompose" --quiet --effort fast "$@"; }
+sweep() { "$BIN/sweep-approx" --quiet --effort fast "$@"; }
 
 # A prism over an L: not convex, not symmetric. ell WIDTH HEIGHT
 ell() {
@@ -78,6 +80,8 @@ sed '/<robot/a <mujoco><compiler meshdir="nowhere" balanceinertia="true" fusesta
 decompose robots/mujoco.urdf -o 'for mujoco' --epsilon 5% --max-vertices-per-body 16
 echo 'for mujoco/mujoco.urdf' >>list.txt
 
+decompose robots/hard.urdf -o prefixed --epsilon 5% --mesh-prefix package://cell/prefixed
+
 printf 'first,second,fourth\n0,0,0\n0.3,-0.4,0.1\n' >path.csv
 sweep robots/hard.urdf --path path.csv -o swept.urdf --epsilon 0.02 --body-epsilon 5%
 echo swept.urdf >>list.txt
@@ -91,8 +95,15 @@ if [ -n "${KABOUM_MESHES:-}" ]; then
   mkdir real
   find "$KABOUM_MESHES" -name '*.urdf' | sort | while read -r robot; do
     name=$(basename "$robot" .urdf)
-    decompose "$robot" -o "real/$name" --epsilon 5% --report report.json
+    decompose "$robot" -o "real/$name" --epsilon 5% --drop-sheets --report report.json
     mv report.json "real/$name"
     echo "real/$name/$name.urdf" >>list.txt
+  done
+  printf '0,0,0,0,0,0\n0.3,-0.2,0.2,0.1,0.2,0.3\n' >six.csv
+  find "$KABOUM_MESHES" -name '*.urdf' -o -name '*rlmdl.xml' | sort | while read -r robot; do
+    name=$(basename "$robot")
+    name=${name%.*}
+    sweep "$robot" --path six.csv -o "real/swept $name.urdf" --epsilon 0.01 --body-epsilon 5% --ignore-limits --drop-sheets
+    echo "real/swept $name.urdf" >>list.txt
   done
 fi
