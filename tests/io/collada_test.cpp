@@ -272,7 +272,9 @@ TEST(Collada, NestingIsLimited) {
   d.libraries = "<library_nodes><node id=\"m0\">" + twice(0) + "</node></library_nodes>";
   d.node = "<node>" + twice(0) + "</node>";
   expect_refused(d, {"nested"});
-  for (const std::string leaf : {"", R"(<instance_geometry url="#g"/>)"}) {
+  const std::string blank = "<translate>0 0 1" + std::string(100'000, ' ') + "</translate>";
+  for (const std::string& leaf :
+       {std::string(), std::string(R"(<instance_geometry url="#g"/>)"), blank}) {
     d.libraries = "<library_nodes><node id=\"m0\">" + leaf + "</node>";
     for (int i = 1; i < 60; ++i)
       d.libraries += "<node id=\"m" + std::to_string(i) + "\">" + twice(i - 1) + "</node>";

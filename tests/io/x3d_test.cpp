@@ -208,6 +208,31 @@ TEST(X3d, Damaged) {
   expect_error(x3d(bomb), Format::X3d, {"repeat"}, ErrorCode::LimitReached);
 }
 
+TEST(X3d, CrowdedElementsEnd) {
+  // Pairs of attributes are compared somewhere: more than so many are refused before that.
+  std::string crowded = "<X3D";
+  for (int i = 0; i < 300'000; ++i) crowded += " a" + std::to_string(i) + "='>'";
+  expect_error(crowded + "/>", Format::X3d, {"attributes"});
+  std::string fields = "<Group>";
+  for (int i = 0; i < 100'000; ++i)
+    fields += "<Group containerField='f" + std::to_string(i) + "'/>";
+  expect_refused(fields + "</Group>", {"too many fields"});
+  // Text that makes nothing, read again and again.
+  std::string empty =
+      "<Group DEF='g0'>" +
+      with_points("IndexedFaceSet", "coordIndex='" + std::string(100'000, ' ') + "'") + "</Group>";
+  for (int i = 1; i < 60; ++i) {
+    const std::string before = "<Group USE='g" + std::to_string(i - 1) + "'/>";
+    empty += "<Group DEF='g" + std::to_string(i) + "'>" + before + before + "</Group>";
+  }
+  expect_error(x3d(empty), Format::X3d, {"repeat"}, ErrorCode::LimitReached);
+  // Quotation marks elsewhere are none.
+  const std::string quotes(1000, '"');
+  EXPECT_EQ(triangles("<!-- " + quotes + " --><Script><![CDATA[<a " + quotes + ">]]></Script>" +
+                      kTriangle),
+            kExpected);
+}
+
 TEST(X3d, Inline) {
   const std::filesystem::path directory =
       std::filesystem::path(::testing::TempDir()) / ("kaboum-x3d-" + std::to_string(::getpid()));

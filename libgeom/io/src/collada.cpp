@@ -190,6 +190,7 @@ class ColladaReader {
                           " deep; does a node hold itself?");
     scene_.visit();
     xml_.each(node, [&](const XMLElement& e) {
+      scene_.visit();
       if (const auto step = transform(e)) placement = placement * *step;
       if (obstacle == nullptr && (is_named(e, "skew") || is_named(e, "lookat"))) obstacle = &e;
     });
@@ -221,7 +222,7 @@ class ColladaReader {
       "matrix", "rotate", "scale",           "skew",           "translate"};
 
   /// The placement that a transform element stands for; nullopt for other elements.
-  [[nodiscard]] std::optional<Placement> transform(const XMLElement& e) const {
+  [[nodiscard]] std::optional<Placement> transform(const XMLElement& e) {
     Placement result;
     if (is_named(e, "translate")) {
       const auto v = numbers<3>(e);
@@ -248,8 +249,9 @@ class ColladaReader {
   }
 
   template <std::size_t N>
-  [[nodiscard]] std::array<double, N> numbers(const XMLElement& e) const {
+  [[nodiscard]] std::array<double, N> numbers(const XMLElement& e) {
     const std::string text = xml_.text(e);
+    scene_.spend(text);
     std::string_view words = text;
     std::array<double, N> values{};
     for (double& x : values) x = xml_.number(e, next_word(words));

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "builder.h"
@@ -29,8 +30,10 @@ class SceneCopier {
   /// Counts a node of the scene, so that nested references to empty nodes end, too.
   void visit() { spend(16); }
 
-  /// Counts work that can be repeated without limit otherwise.
+  /// Counts work that references can repeat; copying a point is 1.
   void spend(std::uint64_t count);
+  /// Counts text that is read each time it is referred to.
+  void spend(std::string_view text) { spend(text.size() / 8); }
 
   /// Bytes of further files that belong to the scene.
   void allow(std::size_t bytes) { budget_ += 64 * std::uint64_t{bytes}; }

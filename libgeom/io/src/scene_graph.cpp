@@ -239,6 +239,7 @@ class SceneReader {
   template <typename Vector>
   void read_vector(const SceneField& field, Vector& v) const {
     std::string_view text = field.text;
+    scene_.copier.spend(text);
     for (double& x : v) x = number(field, next_value(text));
     if (!next_value(text).empty())
       fail_at(field.where, in_quotes(field.name) + " has too many numbers");
@@ -287,6 +288,7 @@ class SceneReader {
     }
     if (field.name != "visible") return false;
     std::string_view text = field.text;
+    scene_.copier.spend(text);
     for (auto v = next_value(text); !v.empty(); v = next_value(text))
       if (v != "TRUE" && v != "true")
         fail_at(field.where, "nodes that are not visible are not supported; delete them");
@@ -443,6 +445,7 @@ class SceneReader {
         fail_field(node, field);
       }
     }
+    if (index != nullptr) scene_.copier.spend(index->text);
     points_.clear();
     if (coordinates != nullptr)
       if (const SceneNode* const points = only(*coordinates)) read_points(*points);
@@ -467,6 +470,7 @@ class SceneReader {
     for (const SceneField& field : node.fields) {
       if (field.name == "point") {
         std::string_view text = field.text;
+        scene_.copier.spend(text);
         for (auto v = next_value(text); !v.empty(); v = next_value(text)) {
           geom::Vec3 p;
           p.x() = number(field, v);

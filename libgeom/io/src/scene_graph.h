@@ -48,6 +48,7 @@ struct SceneFile {
 };
 
 constexpr std::size_t kMaxSceneDepth = 256;
+constexpr std::size_t kMaxSceneFields = 256;  ///< of one node; looked through one by one
 
 /// Parses VRML 97 into `file`.
 void parse_vrml(SceneFile& file);

@@ -185,11 +185,12 @@ class ThreeMfReader {
   }
 
   /// Row vectors times the matrix: the first nine numbers are the transposed linear part.
-  static Placement transform(const Part& part, const XMLElement& e) {
+  Placement transform(const Part& part, const XMLElement& e) {
     Placement result;
     const auto value = attribute(e, "transform");
     if (!value) return result;
     std::string_view words = *value;
+    scene_.spend(words);
     for (int row = 0; row < 4; ++row) {
       for (int column = 0; column < 3; ++column) {
         const std::string_view word = next_word(words);
@@ -209,6 +210,7 @@ class ThreeMfReader {
     const bool first = shown_.insert(&object).second;
     const XMLElement* content = nullptr;
     part.xml.each(object, [&](const XMLElement& e) {
+      scene_.visit();
       const QualifiedName name = qualified(e);
       if (name == QualifiedName{kCore, "mesh"} || name == QualifiedName{kCore, "components"}) {
         if (content != nullptr) part.xml.fail(e, "an object has more than one mesh");
@@ -246,6 +248,7 @@ class ThreeMfReader {
     const XMLElement* vertices = nullptr;
     const XMLElement* triangles = nullptr;
     part.xml.each(mesh, [&](const XMLElement& e) {
+      scene_.visit();
       const QualifiedName name = qualified(e);
       const bool is_vertices = name == QualifiedName{kCore, "vertices"};
       if (is_vertices || name == QualifiedName{kCore, "triangles"}) {

@@ -198,6 +198,8 @@ class VrmlParser {
     } else if (const SceneNode* const inner = read_node(word)) {
       field.nodes.push_back(inner);
     }
+    if (node.fields.size() >= kMaxSceneFields)
+      fail(source_, field.where, "a node with too many fields; the file is damaged");
     for (const SceneField& other : node.fields)
       if (other.name == field.name)
         fail(source_, field.where,

@@ -121,6 +121,8 @@ class X3dParser {
       const auto stated = attribute(child, "containerField");
       SceneField& field = node.field(
           stated && !stated->empty() ? *stated : default_field(inner->type), inner->where);
+      if (node.fields.size() > kMaxSceneFields)
+        xml_.fail(child, "a node with too many fields; the file is damaged");
       if (!field.text.empty())
         xml_.fail(child, "the field " + in_quotes(field.name) + " is given twice");
       field.nodes.push_back(inner);

@@ -6,6 +6,7 @@
 #include <kaboum/geom/error.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -16,10 +17,36 @@ namespace kaboum::io {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n";
-constexpr std::ptrdiff_t kMostTags = 20'000'000;  // about 200 bytes each in tinyxml2's tree
+constexpr std::ptrdiff_t kMostItems = 60'000'000;  // about 100 bytes each in tinyxml2's tree
+constexpr std::size_t kMostAttributes = 64;        // of one element
 
 bool is_blank(std::string_view text) {
   return text.find_first_not_of(kBlanks) == std::string_view::npos;
+}
+
+/// A tag with very many attributes, or nullptr: tinyxml2 compares all pairs of them. Quotation
+/// marks are counted between '<' and the '>' that ends the tag; comments and the like are passed
+/// over.
+const char* crowded_tag(std::string_view text) {
+  constexpr std::array<std::array<std::string_view, 2>, 3> kOther = {
+      {{"<!--", "-->"}, {"<![CDATA[", "]]>"}, {"<?", "?>"}}};
+  for (std::size_t at = text.find('<'); at < text.size(); at = text.find('<', at)) {
+    const std::size_t first = at;
+    const std::string_view rest = text.substr(at);
+    const auto other =
+        std::ranges::find_if(kOther, [&](const auto& marks) { return rest.starts_with(marks[0]); });
+    if (other != kOther.end()) {
+      at = text.find((*other)[1], at);
+      continue;
+    }
+    std::size_t attributes = 0;
+    for (++at; at < text.size() && text[at] != '>'; ++at) {
+      if (text[at] != '"' && text[at] != '\'') continue;
+      if (++attributes > kMostAttributes) return text.data() + first;
+      at = std::min(text.find(text[at], at + 1), text.size() - 1);
+    }
+  }
+  return nullptr;
 }
 
 }  // namespace
@@ -28,9 +55,13 @@ XmlDocument::XmlDocument(std::string_view text, std::string name) : name_(std::m
   const Source whole{text, name_, {}, true};
   if (text.find('\0') != std::string_view::npos)
     io::fail(whole, "not XML in UTF-8; the file is of another format or encoding");
-  if (std::ranges::count(text, '<') > kMostTags)
-    throw Error(ErrorCode::LimitReached,
-                name_ + ": more than " + std::to_string(kMostTags) + " tags; split the file");
+  if (std::ranges::count_if(text, [](char c) { return c == '<' || c == '='; }) > kMostItems)
+    throw Error(ErrorCode::LimitReached, name_ + ": more than " + std::to_string(kMostItems) +
+                                             " elements and attributes; split the file");
+  if (const char* const tag = crowded_tag(text))
+    io::fail(whole, tag,
+             "an element with more than " + std::to_string(kMostAttributes) +
+                 " attributes; the file is damaged");
   const auto error = xml_.Parse(text.data(), text.size());
   if (error == tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED)
     io::fail(whole, "line " + std::to_string(xml_.ErrorLineNum()) +

@@ -18,7 +18,8 @@ namespace kaboum::io {
 class XmlDocument {
  public:
   /// @param name  of the file, or of the part of a file, for messages.
-  /// @throws Error{InvalidInput} naming the line; Error{LimitReached} on more than 20 million tags.
+  /// @throws Error{InvalidInput} naming the line; Error{LimitReached} on more than 60 million
+  ///   elements and attributes.
   XmlDocument(std::string_view text, std::string name);
 
   [[nodiscard]] const tinyxml2::XMLElement& root() const { return *xml_.RootElement(); }
