@@ -7,6 +7,7 @@
 #include <kaboum/geom/topology.h>
 #include <kaboum/geom/winding.h>
 #include <kaboum/io/mesh_io.h>
+#include <kaboum/verify/bracket.h>
 #include <kaboum/verify/distance.h>
 #include <kaboum/verify/inclusion.h>
 
@@ -18,6 +19,7 @@
 
 #include "cli.h"
 #include "extract_levels.h"
+#include "verdict.h"
 #include "written_mesh.h"
 
 namespace {
@@ -173,7 +175,7 @@ void describe(CLI::App& app, Options& o) {
       "4 output failed; 5 feature not built; 6 internal error; 7 limit reached.");
 }
 
-/// Faces whose inner side is not in the solid, among at most 100,000 looked at: only the surface
+/// Faces whose inner side is not in the solid, among at most 20,000 looked at: only the surface
 /// claim would protect them. Evidence, not proof.
 struct SurfaceSamples {
   std::size_t faces = 0, outside = 0;
@@ -181,7 +183,7 @@ struct SurfaceSamples {
 
 SurfaceSamples sample_surface(const geom::Mesh& mesh, double diagonal) {
   const geom::WindingNumber winding(mesh);
-  const std::size_t step = mesh.triangles.size() / 100000 + 1;
+  const std::size_t step = mesh.triangles.size() / 20000 + 1;
   SurfaceSamples samples;
   for (std::size_t t = 0; t < mesh.triangles.size(); t += step) {
     const auto& tri = mesh.triangles[t];
@@ -249,6 +251,7 @@ class Job {
       serialise(level);
       if (epsilon_ || o_.verify || !o_.common.report.empty()) measure(level);
       if (o_.verify) verify(level, i > 0 ? &levels_[i - 1] : nullptr);
+      look_at_surface(level);
     }
     write_all();
     return conclude();
@@ -267,6 +270,9 @@ class Job {
     std::vector<verify::Answer> verified_distance;
     double verified_bound = 0;
     std::optional<verify::Answer> nested;  // in the level before
+    // Decided with --verify, and where faces of the input do not bound its solid.
+    std::optional<verify::Claim> surface;
+    verify::Bracket sticks_out;  // if it is refuted
 
     [[nodiscard]] double hausdorff() const {
       return std::max(to_result->max_upper, to_original->max_upper);
@@ -482,6 +488,28 @@ class Job {
       d->max_upper = std::min(d->max_upper, *epsilon_);
   }
 
+  /// The solid claim is certified; whether triangles stick out is decided where the input has faces
+  /// that do not bound its solid (folds, inside-out parts): the surface claim fails only there.
+  void look_at_surface(Level& level) {
+    if (!prepared_.closed || o_.direction == bmesh::Direction::Any) return;
+    const bool outer = o_.direction == bmesh::Direction::Outer;
+    if (level.verified) {
+      level.surface = level.verified->surface;
+    } else {
+      if (!samples_) samples_ = sample_surface(prepared_.mesh, box_.diagonal());
+      if (samples_->outside == 0) return;
+      const geom::Mesh& result = level.result.mesh;
+      level.surface =
+          verify::verify_inclusion(outer ? prepared_.mesh : result, outer ? result : prepared_.mesh)
+              .surface;
+    }
+    if (level.surface->answer != verify::Answer::Refuted) return;
+    const geom::Mesh &from = outer ? prepared_.mesh : level.result.mesh,
+                     &to = outer ? level.result.mesh : prepared_.mesh;
+    level.sticks_out = verify::bracket_distance(from, level.surface->inner_triangles, to, true);
+    if (outer) level.sticks_out.triangle = prepared_.source[level.sticks_out.triangle];
+  }
+
   /// Decides the claims anew from the bytes that will be written, by other means than those that
   /// made them. A refuted certificate is our bug: nothing is written.
   void verify(Level& level, const Level* before) const {
@@ -641,8 +669,16 @@ class Job {
       c["surface"] = "none";
       return c;
     }
-    if (level.verified) {
-      c["surface"] = decided_surface(level.verified->surface);
+    if (level.surface) {
+      c["surface"] = decided_surface(*level.surface);
+      if (level.surface->answer == verify::Answer::Refuted) {
+        const verify::Bracket& out = level.sticks_out;
+        c["surface_triangles_outside"] = level.surface->inner_triangles.size();
+        c["surface_depth"] = {{"lower", out.lower},
+                              {"upper", std::isfinite(out.upper) ? Json(out.upper) : Json()},
+                              {"at", {out.at.x(), out.at.y(), out.at.z()}},
+                              {"triangle", out.triangle}};
+      }
       return c;
     }
     if (!outer) {
@@ -652,13 +688,10 @@ class Job {
                            "unless those of the input do not";
       return c;
     }
-    const SurfaceSamples s = sample_surface(prepared_.mesh, box_.diagonal());
     c["surface"] =
-        s.outside == 0
-            ? "sampled: every input face looked at bounds the input's solid, which is contained"
-            : "not claimed: some input faces do not bound the input's solid";
-    c["surface_faces_sampled"] = s.faces;
-    c["surface_faces_outside_solid"] = s.outside;
+        "sampled: every input face looked at bounds the input's solid, which is contained";
+    c["surface_faces_sampled"] = samples_->faces;
+    c["surface_faces_outside_solid"] = samples_->outside;
     return c;
   }
 
@@ -712,6 +745,7 @@ class Job {
       line += "; epsilon allows no fewer, " + std::to_string(*level.wished) + " were wished";
     say(line);
     warn_of_distance(level);
+    warn_of_surface(level);
     const int verification = level.verified ? conclude_verification(level) : tools::kDone;
     if (!level.reached()) {
       tools::log(false, "bmesh-decimate: " + o_.input + ": " + std::to_string(*level.wished) +
@@ -740,10 +774,10 @@ class Job {
     };
     look("the solid claim", level.verified->solid.answer, level.verified->solid.reason);
     const verify::Claim& surface = level.verified->surface;
-    if (surface.witness) {
+    if (surface.answer == Answer::Refuted) {
       look("the surface claim", surface.answer,
-           std::to_string(surface.inner_triangles.size()) + " triangles lie outside, as deep as " +
-               formatted(surface.witness->depth));
+           std::to_string(surface.inner_triangles.size()) + " triangles stick out, by " +
+               tools::in_words(level.sticks_out));
     } else if (surface.answer != Answer::Undefined) {  // open meshes have none
       look("the surface claim", surface.answer, surface.reason);
     }
@@ -751,6 +785,25 @@ class Job {
     for (const Answer answer : level.verified_distance) look("a distance", answer, "");
     if (code == tools::kDone) say("verified from the written bytes");
     return code;
+  }
+
+  /// Which claim holds and which does not, where they differ.
+  void warn_of_surface(const Level& level) const {
+    if (!level.surface || level.surface->answer != verify::Answer::Refuted) return;
+    const bool outer = o_.direction == bmesh::Direction::Outer;
+    const std::size_t count = level.surface->inner_triangles.size();
+    const std::string depth = tools::in_words(level.sticks_out);
+    std::string text =
+        outer ? "the input's solid is enclosed, but not all of its triangles"
+              : "the result's solid is inside the input's, but not all of its triangles";
+    text += ": " + std::to_string(count) + (count == 1 ? " sticks out" : " stick out");
+    if (!depth.empty()) text += ", by " + depth;
+    if (level.sticks_out.lower > 0)
+      text += ", farthest at " + tools::point(level.sticks_out.at) + ", triangle " +
+              std::to_string(level.sticks_out.triangle) +
+              (outer ? " of the input" : " of the result");
+    text += " (the input is folded or inside out there: such faces bound no solid)";
+    tools::log(o_.common.quiet, "warning: " + text);
   }
 
   /// Without --epsilon nothing keeps vertices near the original: few of them mean spikes, or
@@ -783,6 +836,7 @@ class Job {
   Options o_;
   io::ReadResult input_{};
   geom::Prepared prepared_;
+  std::optional<SurfaceSamples> samples_;
   geom::Box3 box_;
   std::optional<double> epsilon_;
   std::vector<std::size_t> counts_;  // wished numbers of vertices, falling; none with epsilon alone

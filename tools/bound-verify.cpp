@@ -1,5 +1,6 @@
 #include <kaboum/geom/error.h>
 #include <kaboum/io/convex_io.h>
+#include <kaboum/verify/bracket.h>
 #include <kaboum/verify/cover.h>
 #include <kaboum/verify/distance.h>
 #include <kaboum/verify/inclusion.h>
@@ -8,6 +9,8 @@
 #include <cmath>
 #include <iomanip>
 #include <iostream>
+#include <limits>
+#include <numeric>
 #include <sstream>
 
 #include "cli.h"
@@ -41,6 +44,7 @@ struct Input {
   std::string sha256;
   std::vector<std::string> notes;
   std::size_t filled_triangles = 0;
+  std::vector<std::uint32_t> source;  // per triangle, if prepared: its index in the file
 };
 
 Input read(const std::string& path, const std::string& format, const char* option) {
@@ -51,7 +55,7 @@ Input read(const std::string& path, const std::string& format, const char* optio
     notes.push_back(std::to_string(r.collapsed_triangles) +
                     " triangles with repeated corners bound nothing and are left out");
   }
-  return {std::move(r.mesh), r.format, io::sha256(bytes), std::move(notes)};
+  return {std::move(r.mesh), r.format, io::sha256(bytes), std::move(notes), 0, {}};
 }
 
 /// Of the box; its square may exceed all doubles, or vanish.
@@ -63,6 +67,13 @@ double diagonal_of(const geom::Mesh& mesh) {
 }
 
 Json to_json(const geom::Vec3& p) { return {p.x(), p.y(), p.z()}; }
+
+Json to_json(const verify::Bracket& bracket) {
+  return {{"lower", bracket.lower},
+          {"upper", std::isfinite(bracket.upper) ? Json(bracket.upper) : Json()},
+          {"at", to_json(bracket.at)},
+          {"triangle", bracket.triangle}};
+}
 
 Json to_json(const verify::Claim& claim) {
   Json json{{"answer", name_of(claim.answer)}, {"reason", claim.reason}};
@@ -103,12 +114,56 @@ Input read_approximation(const Options& o, geom::ConvexSet& set, bool& is_set) {
                       "the original");
     }
     if (is_set) {
-      return {verify::sum_of(set), format.value_or(io::Format::Stl), io::sha256(details.bytes),
-              std::move(details.notes)};
+      return {verify::sum_of(set),
+              format.value_or(io::Format::Stl),
+              io::sha256(details.bytes),
+              std::move(details.notes),
+              0,
+              {}};
     }
     set = {};
   }
   return read(o.approximation, o.approximation_format, "--approximation-format");
+}
+
+/// What refutes the claims of enclosure sticks out this far.
+struct Depths {
+  std::optional<verify::Bracket> solid, surface;
+  std::string solid_text, surface_text;
+};
+
+/// @param margin  of the set that encloses
+Depths depths_of(const geom::Mesh& inner, const geom::Mesh& outer,
+                 const verify::Inclusion& inclusion, double margin,
+                 const std::vector<std::uint32_t>& source_of_inner) {
+  Depths depths;
+  const auto beyond_margin = [&](verify::Bracket b) {
+    b.lower = std::max(0.0, b.lower - margin * (1 + 0x1p-50));
+    b.upper -= margin * (1 - 0x1p-50);
+    return b;
+  };
+  const auto text = [](const char* stick, const verify::Bracket& b, const verify::Claim& claim) {
+    const std::string extent = tools::in_words(b);
+    const bool known = b.lower > 0 || !claim.witness;
+    return stick + (extent.empty() ? "" : " by " + extent) + (known ? ", farthest at " : "; at ") +
+           point(known ? b.at : claim.witness->point);
+  };
+  if (inclusion.solid.answer == Answer::Refuted && !inclusion.relative && !inclusion.limited) {
+    depths.solid = beyond_margin(verify::bracket_solid(inner, outer, inclusion.solid));
+    depths.solid_text = text("it sticks out", *depths.solid, inclusion.solid);
+  }
+  if (inclusion.surface.answer == Answer::Refuted) {
+    const auto& triangles = inclusion.surface.inner_triangles;
+    verify::Bracket b = beyond_margin(verify::bracket_distance(inner, triangles, outer, true));
+    depths.surface_text = text("they stick out", b, inclusion.surface);
+    const bool in_file = source_of_inner.empty() || b.triangle < source_of_inner.size();
+    if (!source_of_inner.empty() && in_file) b.triangle = source_of_inner[b.triangle];
+    if (b.lower > 0)
+      depths.surface_text +=
+          in_file ? ", triangle " + std::to_string(b.triangle) : ", where a hole was filled";
+    depths.surface = b;
+  }
+  return depths;
 }
 
 /// Everything that was asked for, in the order of printing.
@@ -116,13 +171,16 @@ class Verdict {
  public:
   /// @param what     the claim, as a sentence
   /// @param refuted  what is true instead
+  /// @param depth    how far what refutes it sticks out, if that was measured
   void add(const std::string& title, const std::string& what, const std::string& refuted,
-           const verify::Claim& claim) {
+           const verify::Claim& claim, const std::string& depth = {}) {
     std::string line = title + ": " + name_of(claim.answer) + ": ";
     line += claim.answer == Answer::Verified  ? what
             : claim.answer == Answer::Refuted ? refuted
                                               : claim.reason;
-    if (claim.witness) {
+    if (claim.answer == Answer::Refuted && !depth.empty()) {
+      line += "; " + depth;
+    } else if (claim.witness) {
       line += "; at " + point(claim.witness->point) + ", " + number(claim.witness->depth) + " deep";
       if (!claim.witness->exact) {
         line += " (the point is rounded)";
@@ -132,13 +190,14 @@ class Verdict {
   }
   void count_enclosure(Answer answer) { enclosure_.push_back(answer); }
   void count_besides(Answer answer) { besides_.push_back(answer); }
-  void add(const std::string& title, double bound, const verify::DistanceClaim& claim) {
+  void add(const std::string& title, double bound, const verify::DistanceClaim& claim,
+           const verify::Bracket& bracket) {
     std::string line = title + ": " + name_of(claim.answer);
     if (claim.answer == Answer::Verified) line += ": nowhere more than " + number(bound);
     if (!claim.reason.empty()) line += ": " + claim.reason;
     if (claim.answer != Answer::Verified) {
-      line += "; at least " + number(claim.largest) + " at " + point(claim.at) + ", claimed " +
-              number(bound);
+      line += "; " + tools::in_words(bracket) + ", farthest at " + point(bracket.at) +
+              ", claimed " + number(bound);
     }
     lines_.push_back(line);
     besides_.push_back(claim.answer);
@@ -207,12 +266,13 @@ void prepare(Input& original, bool drop_sheets, bool close) {
   original.mesh = std::move(prepared.mesh);
   original.notes.insert(original.notes.end(), prepared.notes.begin(), prepared.notes.end());
   original.filled_triangles = prepared.filled_triangles;
+  original.source = std::move(prepared.source);
 }
 
 /// What preparing would change of the original; empty if nothing.
 std::string change_by_preparing(const Input& original, bool close) {
   for (const bool drop_sheets : {false, true}) {
-    Input prepared{original.mesh, original.format, {}, {}, 0};
+    Input prepared{original.mesh, original.format, {}, {}, 0, {}};
     try {
       prepare(prepared, drop_sheets, close);
     } catch (const Error&) {  // it cannot be prepared
@@ -376,6 +436,9 @@ int check(const Options& o) {
                                  : o.inner ? "the original"
                                            : "the approximation";
   const bool relative = inclusion.relative;
+  progress.show("measuring what sticks out");
+  const Depths depths = depths_of(inner, outer, inclusion, o.cover ? set.margin : 0,
+                                  o.inner ? std::vector<std::uint32_t>{} : original.source);
   verdict.add("solid claim",
               relative ? "nowhere does " + inner_name + " wind more often than " + outer_name +
                              " (both are open, with the same border)"
@@ -383,17 +446,19 @@ int check(const Options& o) {
               relative
                   ? inner_name + " winds more often than " + outer_name
                   : "a part of the solid of " + inner_name + " is outside that of " + outer_name,
-              inclusion.solid);
+              inclusion.solid, depths.solid_text);
   if (wants_solid) verdict.count_enclosure(inclusion.solid.answer);
   verdict.add("surface claim",
               "every triangle with area of " + inner_name + " is within the solid of " + outer_name,
               std::to_string(inclusion.surface.inner_triangles.size()) + " triangles of " +
                   inner_name + " are not all within the solid of " + outer_name,
-              inclusion.surface);
+              inclusion.surface, depths.surface_text);
   if (wants_surface) verdict.count_enclosure(inclusion.surface.answer);
   claims["solid"] = to_json(inclusion.solid);
   claims["solid"]["relative"] = inclusion.relative;
   claims["surface"] = to_json(inclusion.surface);
+  if (depths.solid) claims["solid"]["depth"] = to_json(*depths.solid);
+  if (depths.surface) claims["surface"]["depth"] = to_json(*depths.surface);
   say();
 
   std::vector<Far> far;
@@ -406,7 +471,16 @@ int check(const Options& o) {
       verify::DistanceClaimOptions distance;
       distance.to_solid = to_solid;
       const verify::DistanceClaim claim = verify::verify_distance(from, to, bound, distance);
-      verdict.add(title, bound, claim);
+      verify::Bracket bracket{claim.largest, std::numeric_limits<double>::infinity(), claim.at,
+                              claim.triangle};
+      if (claim.answer != Answer::Verified) {
+        std::vector<std::uint32_t> all(from.triangles.size());
+        std::iota(all.begin(), all.end(), 0U);
+        const verify::Bracket found = verify::bracket_distance(from, all, to, to_solid);
+        bracket.upper = found.upper;
+        if (found.lower > bracket.lower) bracket = found;
+      }
+      verdict.add(title, bound, claim, bracket);
       if (claim.answer == Answer::Refuted) far.push_back({&from, claim.triangle});
       claims[key] = to_json(claim);
       claims[key]["bound"] = bound;
@@ -416,9 +490,21 @@ int check(const Options& o) {
       const verify::DistanceClaim claim =
           verify::verify_reach(set, original.mesh, bound, inclusion.inner_closed);
       if (claim.answer == Answer::Refuted) far.push_back({&approximation.mesh, claim.triangle});
+      verify::Bracket bracket{claim.largest, std::numeric_limits<double>::infinity(), claim.at,
+                              claim.triangle};
+      if (claim.answer != Answer::Verified) {  // inside the bodies it may be farther
+        std::vector<std::uint32_t> all(approximation.mesh.triangles.size());
+        std::iota(all.begin(), all.end(), 0U);
+        const verify::Bracket found = verify::bracket_distance(
+            approximation.mesh, all, original.mesh, inclusion.inner_closed);
+        if (found.lower > bracket.lower) {
+          bracket.lower = found.lower;
+          bracket.at = found.at;
+        }
+      }
       verdict.add(inclusion.inner_closed ? "distance from the union to the solid"
                                          : "distance from the bodies' facets to the surface",
-                  bound, claim);
+                  bound, claim, bracket);
       claims["distance"] = to_json(claim);
       claims["distance"]["bound"] = bound;
       claims["distance"]["margin"] = set.margin;

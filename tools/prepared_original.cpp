@@ -9,7 +9,8 @@ PreparedOriginal prepare_original(const geom::Mesh& mesh, bool drop_sheets, bool
   geom::PrepareOptions options;
   options.drop_sheets = drop_sheets;
   geom::Prepared prepared = geom::prepare(mesh, options);
-  PreparedOriginal out{std::move(prepared.mesh), std::move(prepared.notes)};
+  PreparedOriginal out{std::move(prepared.mesh), std::move(prepared.notes), 0,
+                       std::move(prepared.source)};
   if (!close || prepared.closed) return out;
   const std::size_t before = out.mesh.triangles.size();
   out.mesh = bcd::close_holes(out.mesh);

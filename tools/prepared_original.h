@@ -2,6 +2,7 @@
 
 #include <kaboum/geom/mesh.h>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,8 @@ struct PreparedOriginal {
   geom::Mesh mesh;
   std::vector<std::string> notes;
   std::size_t filled_triangles = 0;
+  /// Per triangle its index in the file's mesh; those that fill holes, the last ones, have none.
+  std::vector<std::uint32_t> source;
 };
 
 /// @param close  fill holes as bcd-decompose does, whose claims are about a solid.

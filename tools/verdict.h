@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/geom/mesh.h>
+#include <kaboum/verify/bracket.h>
 #include <kaboum/verify/inclusion.h>
 
 #include <string>
@@ -10,6 +11,13 @@ namespace kaboum::tools {
 
 /// Six digits.
 std::string number(double x);
+
+/// Six digits, not above (not below) the number.
+std::string number_down(double x);
+std::string number_up(double x);
+
+/// "at least X and at most Y", as far as they are known.
+std::string in_words(const verify::Bracket& bracket);
 
 /// All digits.
 std::string point(const geom::Vec3& p);

@@ -7,6 +7,7 @@
 #include "nearest.h"
 #include "parallel.h"
 #include "spot.h"
+#include "tetrahedra.h"
 
 namespace kaboum::verify {
 namespace {
@@ -14,6 +15,7 @@ namespace {
 constexpr int kClimbs = 200;
 constexpr std::size_t kFewFaces = 1000;
 constexpr int kTurns = 8;
+constexpr std::size_t kMostFaces = 200, kMostParts = 300, kMostPrisms = 100;
 constexpr double kNowhere = -std::numeric_limits<double>::infinity();
 
 /// Halves boxes until each of them is settled.
@@ -83,7 +85,6 @@ class Search {
     if (look.settled) return look;
 
     const std::optional<bool> in = in_pocket(look.point);
-    const NearestTriangle boundary(scene_, boundary_);
     if (in.has_value() && !*in) {
       // The box lies outside Z as its point does without a triangle of Z's boundary, or of the
       // chain that the point is on the wrong side of.
@@ -103,14 +104,7 @@ class Search {
     if (!look.settled && limit_.inside_only) {
       look.settled = no_maximum(look.point, radius, hit.distance);
     }
-    if (!look.settled) {
-      const std::vector<Vec3> part = in_front(cell, look.point, boundary.nearest(look.point).face);
-      if (!part.empty()) {
-        Vec3 middle = Vec3::Zero();
-        for (const Vec3& p : part) middle += p / static_cast<double>(part.size());
-        look.settled = near(part, hit.face) || near(part, target.nearest(middle).face);
-      }
-    }
+    if (!look.settled) look.settled = thin(cell, look.point, hit.face);
     if (!look.settled && limit_.bodies != nullptr) look.settled = left_by_bodies(cell, hit.face);
     return look;
   }
@@ -235,55 +229,175 @@ class Search {
     });
   }
 
-  /// Corners of a part of the box that holds all of the box's part of Z: without what lies behind
-  /// all of the boundary's triangles in the box, seen from the side of `face` where Z is, if that
-  /// is not in Z. Empty when nothing can be left out so.
-  /// @param p  of the box
-  [[nodiscard]] std::vector<Vec3> in_front(const Bounds& box, const Vec3& p,
-                                           std::uint32_t face) const {
-    const Vec3& a = scene_.corner(face, 0);
-    Vec3 normal = (scene_.corner(face, 1) - a).cross(scene_.corner(face, 2) - a).normalized();
-    if (scene_.face(face).chain == kInside) normal = -normal;
-    // Nothing of the boundary is below this height.
-    double height = std::numeric_limits<double>::infinity();
-    boundary_.query([&](const Bounds& b) { return b.meets(box); },
-                    [&](std::uint32_t f) {
-                      for (int k = 0; k < 3; ++k) {
-                        height = std::min(height, normal.dot(scene_.corner(f, k) - a) - slack_);
-                      }
-                    });
-    std::array<double, 8> of;
-    unsigned lowest = 0;
-    for (unsigned i = 0; i < 8; ++i) {
-      of[i] = normal.dot(corner(box, i) - a);
-      if (of[i] < of[lowest]) lowest = i;
-    }
-    const double above = normal.dot(p - a) - of[lowest], behind = height - slack_ - of[lowest];
-    if (!(behind > 0) || !(above > 0)) return {};
-    // A point behind, off the box's corner, where planes of round coordinates are wont to meet.
-    const Vec3 q =
-        corner(box, lowest) + 0.4877 * std::min(behind / above, 1.0) * (p - corner(box, lowest));
-    if (in_pocket(q) != std::optional(false)) return {};
-    height -= 2 * slack_;
-    std::vector<Vec3> points;
-    for (unsigned i = 0; i < 8; ++i) {
-      if (of[i] >= height) points.push_back(corner(box, i));
-      for (const unsigned bit : {1U, 2U, 4U}) {
-        const unsigned j = i ^ bit;
-        if (!(of[i] < height && of[j] >= height)) continue;
-        const double t = (height - of[i]) / (of[j] - of[i]);
-        points.emplace_back((1 - t) * corner(box, i) + t * corner(box, j));
+  /// Whether what is left of the box is within the limit: without what lies beyond all of Z's
+  /// boundary, or of one chain, in the box, along the normals of the nearest faces, where that is
+  /// not in Z; the rest cut along the prisms of the triangles that distances are measured to.
+  [[nodiscard]] bool thin(const Bounds& box, const Vec3& p, std::uint32_t face) const {
+    const std::vector<Vec3> normals = directions(p, face);
+    std::vector<Part> parts, next;
+    for (const Tetrahedron& t : tetrahedra(box)) parts.push_back({t, 0});
+    const std::array<const BoxTree*, 3> trees{&boundary_, &scene_.tree(kOutside),
+                                              &scene_.tree(kInside)};
+    std::array<std::vector<Vec3>, 3> points;
+    for (std::size_t k = 0; k < trees.size(); ++k) {
+      if (!points_in(box, *trees[k], points[k])) continue;
+      for (const Vec3& normal : normals) {
+        const std::optional<double> height = free_below(box, p, normal, points[k], k);
+        if (!height) continue;
+        next.clear();
+        for (const Part& part : parts) keep_above(part, {normal, *height}, next);
+        parts.swap(next);
+        if (parts.empty()) return true;
+        if (parts.size() > kMostParts) return false;
       }
     }
-    return points;
+    return std::all_of(parts.begin(), parts.end(),
+                       [&](const Part& part) { return near_after_cuts(part, face); });
+  }
+
+  /// Normals of the nearest face of each kind, both ways.
+  [[nodiscard]] std::vector<Vec3> directions(const Vec3& p, std::uint32_t face) const {
+    std::vector<Vec3> out;
+    const std::array<std::uint32_t, 3> faces{NearestTriangle(scene_, boundary_).nearest(p).face,
+                                             face,
+                                             NearestTriangle(scene_, kInside).nearest(p).face};
+    for (const std::uint32_t f : faces) {
+      if (f == NearestTriangle::kNone) continue;
+      const Vec3& a = scene_.corner(f, 0);
+      const Vec3 normal = (scene_.corner(f, 1) - a).cross(scene_.corner(f, 2) - a);
+      const double length = normal.norm();
+      if (!(length > 0)) continue;
+      const Vec3 unit = normal / length;
+      if (std::any_of(out.begin(), out.end(),
+                      [&](const Vec3& n) { return std::abs(n.dot(unit)) > 1 - 0x1p-30; }))
+        continue;
+      out.push_back(unit);
+      out.emplace_back(-unit);
+    }
+    return out;
+  }
+
+  /// Corners of what faces have in the box, a little enlarged. False when they are too many.
+  [[nodiscard]] bool points_in(const Bounds& box, const BoxTree& tree,
+                               std::vector<Vec3>& points) const {
+    std::size_t count = 0;
+    tree.query(
+        [&](const Bounds& b) { return count <= kMostFaces && b.meets(box); },
+        [&](std::uint32_t f) {
+          if (++count > kMostFaces) return;
+          std::vector<Vec3> polygon{scene_.corner(f, 0), scene_.corner(f, 1), scene_.corner(f, 2)};
+          for (int axis = 0; axis < 3 && !polygon.empty(); ++axis) {
+            polygon = clip(polygon, axis, 1, box.high[axis] + 2 * slack_);
+            polygon = clip(polygon, axis, -1, -box.low[axis] + 2 * slack_);
+          }
+          points.insert(points.end(), polygon.begin(), polygon.end());
+        });
+    return count <= kMostFaces;
+  }
+
+  /// The part of a convex polygon where side · x[axis] ≤ most.
+  static std::vector<Vec3> clip(const std::vector<Vec3>& polygon, int axis, int side, double most) {
+    std::vector<Vec3> out;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const Vec3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+      const double x = side * a[axis] - most, y = side * b[axis] - most;
+      if (x <= 0) out.push_back(a);
+      if ((x <= 0) == (y <= 0)) continue;
+      const double t = x / (x - y);
+      out.emplace_back((1 - t) * a + t * b);
+    }
+    return out;
+  }
+
+  /// A height below which, along the normal, the box has none of the faces whose points these are,
+  /// and is not in Z: the box's part there is convex, so that a point of it tells.
+  /// @param kind  of the faces: 0, Z's boundary; 1, the outer chain's; 2, the inner one's
+  [[nodiscard]] std::optional<double> free_below(const Bounds& box, const Vec3& p,
+                                                 const Vec3& normal,
+                                                 const std::vector<Vec3>& points,
+                                                 std::size_t kind) const {
+    double height = std::numeric_limits<double>::infinity();
+    for (const Vec3& q : points) height = std::min(height, normal.dot(q - p));
+    height -= 4 * slack_;
+    Vec3 lowest;
+    for (int k = 0; k < 3; ++k) lowest[k] = normal[k] > 0 ? box.low[k] : box.high[k];
+    const double below = normal.dot(lowest - p);
+    if (!(height > below && below < 0)) return std::nullopt;
+    // A point there, off the box's corner, where planes of round coordinates are wont to meet.
+    const double share = 0.4877 * std::min((height - below) / -below, 1.0);
+    const Vec3 q = lowest + share * (p - lowest);
+    const bool out = kind == 0   ? in_pocket(q) == std::optional(false)
+                     : kind == 1 ? winding_at(scene_, kOutside, q).value_or(0) >= 1
+                                 : winding_at(scene_, kInside, q).value_or(1) < 1;
+    if (!out) return std::nullopt;
+    return std::min(height, 0x1p100) + normal.dot(p) - 2 * slack_;
+  }
+
+  static void keep_above(const Part& part, const Plane& plane, std::vector<Part>& out) {
+    int above = 0;
+    for (const Vec3& x : part.corners) above += plane.normal.dot(x) > plane.height ? 1 : 0;
+    if (above == 4) out.push_back(part);
+    if (above == 0 || above == 4) return;
+    std::vector<Part> dropped;
+    cut(part, plane, out, dropped);
+  }
+
+  /// Whether the part is within the limit of one triangle, or its cuts along the sides of the prism
+  /// over the nearest one are.
+  [[nodiscard]] bool near_after_cuts(const Part& part, std::uint32_t face) const {
+    const NearestTriangle target(scene_, limit_.target);
+    std::vector<Part> open{part}, pieces, next;
+    std::size_t seen = 0;
+    while (!open.empty()) {
+      const Part piece = open.back();
+      open.pop_back();
+      const std::vector<Vec3> points(piece.corners.begin(), piece.corners.end());
+      if (near(points, face)) continue;
+      const Vec3 middle = 0.25 * (points[0] + points[1] + points[2] + points[3]);
+      const std::uint32_t f = target.nearest(middle).face;
+      if (f == NearestTriangle::kNone) return false;
+      if (near(points, f)) continue;
+      if (++seen > kMostPrisms || piece.cuts > kMostCuts - 4) return false;
+      pieces.assign(1, piece);
+      const Vec3& a = scene_.corner(f, 0);
+      const Vec3 normal = (scene_.corner(f, 1) - a).cross(scene_.corner(f, 2) - a);
+      for (int k = 0; k < 3; ++k) {
+        const Vec3 across = (scene_.corner(f, (k + 1) % 3) - scene_.corner(f, k)).cross(normal);
+        const double length = across.norm();
+        if (!(length > 0)) return false;
+        const Plane side{across / length, across.dot(scene_.corner(f, k)) / length};
+        next.clear();
+        for (const Part& x : pieces) {
+          const auto [low, high] = range(x, side);
+          if (low >= -4 * slack_ || high <= 4 * slack_) {
+            next.push_back(x);
+          } else {
+            cut(x, side, next, next);
+          }
+        }
+        pieces.swap(next);
+      }
+      if (pieces.size() == 1) return false;
+      open.insert(open.end(), pieces.begin(), pieces.end());
+    }
+    return true;
+  }
+
+  static std::pair<double, double> range(const Part& part, const Plane& plane) {
+    std::pair<double, double> out{std::numeric_limits<double>::infinity(), kNowhere};
+    for (const Vec3& x : part.corners) {
+      const double h = plane.normal.dot(x) - plane.height;
+      out = {std::min(out.first, h), std::max(out.second, h)};
+    }
+    return out;
   }
 
   /// Whether all that the bodies leave of the box is within the limit.
   [[nodiscard]] bool left_by_bodies(const Bounds& cell, std::uint32_t face) const {
-    std::vector<Uncovered::Tetrahedron> parts;
+    std::vector<Tetrahedron> parts;
     if (!limit_.bodies->parts(cell, parts)) return false;
     const NearestTriangle target(scene_, limit_.target);
-    return std::all_of(parts.begin(), parts.end(), [&](const Uncovered::Tetrahedron& part) {
+    return std::all_of(parts.begin(), parts.end(), [&](const Tetrahedron& part) {
       const std::vector<Vec3> points(part.begin(), part.end());
       if (near(points, face)) return true;
       const Vec3 middle = 0.25 * (part[0] + part[1] + part[2] + part[3]);

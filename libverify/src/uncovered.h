@@ -2,12 +2,12 @@
 
 #include <kaboum/geom/convex_set.h>
 
-#include <array>
 #include <limits>
 #include <optional>
 #include <vector>
 
 #include "scene.h"
+#include "tetrahedra.h"
 
 namespace kaboum::verify {
 
@@ -15,8 +15,6 @@ namespace kaboum::verify {
 /// docs/algorithms/exact-inclusion.md, "Pockets".
 class Uncovered {
  public:
-  using Tetrahedron = std::array<Vec3, 4>;
-
   /// @param scene  whose coordinates are the set's times scene.scale()
   Uncovered(const Scene& scene, const geom::ConvexSet& set);
 
@@ -27,20 +25,10 @@ class Uncovered {
   bool parts(const Bounds& box, std::vector<Tetrahedron>& out) const;
 
  private:
-  /// Points with normal·x ≤ height for all planes lie inside the body.
-  struct Plane {
-    Vec3 normal;
-    double height;
-  };
+  /// Points below all planes lie inside.
   struct Body {
     std::vector<Plane> planes;
   };
-  /// A tetrahedron and how often a cut made one of its corners.
-  struct Part {
-    Tetrahedron corners;
-    int cuts;
-  };
-
   static Body body_of(const geom::Mesh& hull, const Scene& scene);
   /// Planes that cross a box; those of about one direction are one, below all of them in the box.
   struct Crossing {
@@ -49,8 +37,6 @@ class Uncovered {
   };
   static std::optional<Crossing> crossing_planes(const Body& body, const Bounds& box);
   static bool subtract(const std::vector<Plane>& planes, const Part& part, std::vector<Part>& out);
-  static void cut(const Part& part, const Plane& plane, std::vector<Part>& above,
-                  std::vector<Part>& below);
 
   std::vector<Body> bodies_;
   BoxTree tree_;

@@ -203,6 +203,23 @@ TEST(Cover, AMarginClosesGapsUpToHalfTheirWidth) {
 }
 
 // No triangle of the original is uncovered: only a search of the void itself finds the deep point.
+// Layers that stick out within a margin that is hardly thicker: over several bodies and triangles,
+// round an edge, however thin.
+TEST(Cover, ThinLayersWithinAMargin) {
+  verify::InclusionOptions few;
+  few.max_cells = 3000;
+  for (const double out : {1e-3, 1e-6, 1e-9}) {
+    const Mesh grown = translated(box(Vec3::Constant(2 + 2 * out), 3), Vec3::Constant(-out));
+    ConvexSet set = set_of({block({0, 0, 0}, {2, 2, 2})});
+    set.margin = 2 * out;  // more than at the corners, √3
+    EXPECT_EQ(verify::verify_cover(grown, set, few).inclusion.solid.answer, Answer::Verified)
+        << out;
+    set.margin = 1.7 * out;
+    EXPECT_NE(verify::verify_cover(grown, set, few).inclusion.solid.answer, Answer::Verified)
+        << out;
+  }
+}
+
 TEST(Cover, AMarginFillsVoidsUpToTheirInnerRadius) {
   const Mesh solid = box({3, 3, 3}, 2);
   const ConvexSet set = set_of(cubes_but({13}));

@@ -24,7 +24,7 @@ namespace {
 using namespace kaboum;          // NOLINT: a test
 using namespace kaboum::verify;  // NOLINT: a test
 using geom::Mesh;
-using Parts = std::vector<Uncovered::Tetrahedron>;
+using Parts = std::vector<verify::Tetrahedron>;
 
 class Random {
  public:
@@ -106,7 +106,7 @@ class Bodies {
 };
 
 /// Whether p is in a tetrahedron, exactly, or within `rounding` of one of its faces.
-bool held(const Vec3& p, const Uncovered::Tetrahedron& t, double rounding) {
+bool held(const Vec3& p, const verify::Tetrahedron& t, double rounding) {
   const auto low = t[0].cwiseMin(t[1]).cwiseMin(t[2]).cwiseMin(t[3]).eval();
   const auto high = t[0].cwiseMax(t[1]).cwiseMax(t[2]).cwiseMax(t[3]).eval();
   if ((low - p).maxCoeff() > rounding || (p - high).maxCoeff() > rounding) return false;
