@@ -29,6 +29,9 @@ using tools::Json;
 /// Changes whenever the same options may give another result: cached results are then not found.
 constexpr const char* kAlgorithm = "planes 17";
 
+/// The same of containers' bytes.
+constexpr const char* kContainer = "coloured";
+
 struct Options {
   std::string input, output, input_format, output_format, epsilon, direction = "outer";
   std::string effort = "normal", method = "planes", pre_step = "auto";
@@ -361,7 +364,7 @@ Outcome decompose_mesh(const Options& o) {
   const std::string key = out.hash + '\n' + std::to_string(static_cast<int>(input_format)) + '\n' +
                           parameters(o) + '\n' + o.unit + '\n' + o.frame + '\n' +
                           std::filesystem::path(o.input).filename().string() + '\n' +
-                          tools::version() + '\n' + kAlgorithm;
+                          tools::version() + '\n' + kAlgorithm + '\n' + kContainer;
   // Formats that refer to other files depend on more than their own bytes.
   const bool alone = input_format != io::Format::Gltf && input_format != io::Format::Vrml &&
                      input_format != io::Format::Collada && input_format != io::Format::X3d;

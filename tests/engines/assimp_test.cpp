@@ -70,6 +70,23 @@ TEST(Assimp, HasTheBodiesOfContainers) {
     expect_same(file, expected, measure_scene(folder / file));
 }
 
+/// A viewer shows neighbours in different colours.
+TEST(Assimp, HasColoursOfBodies) {
+  Assimp::Importer importer;
+  const auto file = std::filesystem::path(KABOUM_ENGINE_OUTPUTS) / "set" / "parts.glb";
+  const aiScene* scene = importer.ReadFile(file.string(), 0);
+  ASSERT_NE(scene, nullptr);
+  std::vector<aiColor4D> colours;
+  for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
+    aiColor4D colour;
+    const aiMaterial& material = *scene->mMaterials[scene->mMeshes[m]->mMaterialIndex];
+    ASSERT_EQ(material.Get(AI_MATKEY_BASE_COLOR, colour), aiReturn_SUCCESS);
+    for (const aiColor4D& other : colours) EXPECT_NE(colour, other);
+    colours.push_back(colour);
+  }
+  EXPECT_EQ(colours.size(), 2U);
+}
+
 /// Files of links by the report beside a robot; none of a swept volume.
 std::map<std::string, std::string> containers(const std::filesystem::path& folder) {
   std::map<std::string, std::string> out;

@@ -3,6 +3,8 @@
 
 #include <kaboum/geom/error.h>
 
+#include <algorithm>
+#include <array>
 #include <limits>
 #include <numeric>
 
@@ -238,6 +240,31 @@ std::optional<geom::ConvexSet> read_glb_set(const Source& source, SetReadDetails
   }
 }
 
+namespace {
+
+/// Colours that tell neighbouring bodies apart in a viewer; linear red, green and blue.
+constexpr std::array<std::array<double, 3>, 10> kColours{{{0.08, 0.23, 0.50},
+                                                          {0.80, 0.25, 0.02},
+                                                          {0.06, 0.40, 0.10},
+                                                          {0.60, 0.06, 0.07},
+                                                          {0.32, 0.17, 0.55},
+                                                          {0.27, 0.12, 0.09},
+                                                          {0.76, 0.22, 0.53},
+                                                          {0.25, 0.25, 0.25},
+                                                          {0.50, 0.51, 0.05},
+                                                          {0.03, 0.52, 0.62}}};
+
+Json material(std::size_t index) {
+  const auto& [red, green, blue] = kColours[index];
+  return {{"name", "colour " + std::to_string(index)},
+          {"pbrMetallicRoughness",
+           {{"baseColorFactor", {red, green, blue, 1}},
+            {"metallicFactor", 0},
+            {"roughnessFactor", 0.7}}}};
+}
+
+}  // namespace
+
 std::vector<char> write_glb_set(const geom::ConvexSet& set) {
   Json meshes = Json::array(), nodes = Json::array(), roots = Json::array();
   Json accessors = Json::array(), views = Json::array();
@@ -273,6 +300,7 @@ std::vector<char> write_glb_set(const geom::ConvexSet& set) {
                          {"type", "SCALAR"}});
     const Json primitive = {{"attributes", {{"POSITION", 2 * index}}},
                             {"indices", 2 * index + 1},
+                            {"material", index % kColours.size()},
                             {"mode", kTriangles}};
     meshes.push_back({{"name", body.name}, {"primitives", Json::array({primitive})}});
     nodes.push_back({{"name", body.name}, {"mesh", index}});
@@ -286,6 +314,8 @@ std::vector<char> write_glb_set(const geom::ConvexSet& set) {
     json["scenes"][0]["nodes"] = roots;
     json["nodes"] = nodes;
     json["meshes"] = meshes;
+    for (std::size_t i = 0; i < std::min(set.bodies.size(), kColours.size()); ++i)
+      json["materials"].push_back(material(i));
     json["accessors"] = accessors;
     json["bufferViews"] = views;
     json["buffers"] = Json::array({{{"byteLength", offset}}});
