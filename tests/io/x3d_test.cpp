@@ -30,6 +30,23 @@ void expect_refused(const std::string& scene, const std::vector<std::string>& pa
   expect_error(x3d(scene), Format::X3d, parts);
 }
 
+std::string element(const std::string& name, const std::string& attributes,
+                    const std::string& content) {
+  std::string text = "<";
+  return text.append(name).append(" ").append(attributes).append(">").append(content) + "</" +
+         name + ">";
+}
+
+/// A group of `leaf`, used twice by a group that is used twice, and so on.
+std::string doubled(const std::string& leaf) {
+  std::string text = element("Group", "DEF='g0'", leaf);
+  for (int i = 1; i < 60; ++i) {
+    const std::string before = element("Group", "USE='g" + std::to_string(i - 1) + "'", "");
+    text += element("Group", "DEF='g" + std::to_string(i) + "'", before + before);
+  }
+  return text;
+}
+
 std::string shape(const std::string& geometry) { return "<Shape>" + geometry + "</Shape>"; }
 
 /// A geometry node with the four points.
@@ -97,12 +114,10 @@ TEST(X3d, IncompleteSurfacesAreRefused) {
 TEST(X3d, Groups) {
   for (const char* group : {"Group", "StaticGroup", "Anchor", "Collision", "PickableGroup",
                             "Transform", "CADAssembly", "CADLayer", "CADPart", "CADFace", "LOD"}) {
-    const std::string name = group;
-    EXPECT_EQ(triangles("<" + name + " DEF='g'>" + kTriangle + "</" + name + ">"), kExpected);
-    EXPECT_EQ(triangles("<" + name + " DEF='g'>" + kTriangle + "</" + name +
-                        "><Transform "
-                        "translation='0 0 1'><" +
-                        name + " USE='g'/></Transform>")
+    const std::string shown = element(group, "DEF='g'", kTriangle);
+    EXPECT_EQ(triangles(shown), kExpected);
+    EXPECT_EQ(triangles(shown +
+                        element("Transform", "translation='0 0 1'", element(group, "USE='g'", "")))
                   .size(),
               6U);
   }
@@ -200,12 +215,7 @@ TEST(X3d, Damaged) {
                  {"several"});
   // Its own descendant.
   expect_refused("<Group DEF='x'><Group USE='x'/></Group>", {"deep"});
-  std::string bomb = "<Group DEF='g0'>" + kTriangle + "</Group>";
-  for (int i = 1; i < 60; ++i) {
-    const std::string before = "<Group USE='g" + std::to_string(i - 1) + "'/>";
-    bomb += "<Group DEF='g" + std::to_string(i) + "'>" + before + before + "</Group>";
-  }
-  expect_error(x3d(bomb), Format::X3d, {"repeat"}, ErrorCode::LimitReached);
+  expect_error(x3d(doubled(kTriangle)), Format::X3d, {"repeat"}, ErrorCode::LimitReached);
 }
 
 TEST(X3d, CrowdedElementsEnd) {
@@ -218,14 +228,9 @@ TEST(X3d, CrowdedElementsEnd) {
     fields += "<Group containerField='f" + std::to_string(i) + "'/>";
   expect_refused(fields + "</Group>", {"too many fields"});
   // Text that makes nothing, read again and again.
-  std::string empty =
-      "<Group DEF='g0'>" +
-      with_points("IndexedFaceSet", "coordIndex='" + std::string(100'000, ' ') + "'") + "</Group>";
-  for (int i = 1; i < 60; ++i) {
-    const std::string before = "<Group USE='g" + std::to_string(i - 1) + "'/>";
-    empty += "<Group DEF='g" + std::to_string(i) + "'>" + before + before + "</Group>";
-  }
-  expect_error(x3d(empty), Format::X3d, {"repeat"}, ErrorCode::LimitReached);
+  const std::string blank = "coordIndex='" + std::string(100'000, ' ') + "'";
+  expect_error(x3d(doubled(with_points("IndexedFaceSet", blank))), Format::X3d, {"repeat"},
+               ErrorCode::LimitReached);
   // Quotation marks elsewhere are none.
   const std::string quotes(1000, '"');
   EXPECT_EQ(triangles("<!-- " + quotes + " --><Script><![CDATA[<a " + quotes + ">]]></Script>" +
