@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <numeric>
 #include <optional>
+#include <sstream>
 
 namespace kaboum::geom {
 namespace {
@@ -58,12 +60,13 @@ class Preparation {
     if (box.empty()) return;
     const double magnitude = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
     const double extent = (box.max - box.min).maxCoeff();
-    if (magnitude > 1e60 || (extent > 0 && extent < 1e-60))
-      throw Error(
-          ErrorCode::InvalidInput,
-          "the mesh's coordinates reach " + std::to_string(std::log10(magnitude)) +
-              " in powers of ten and its extent " + std::to_string(std::log10(extent)) +
-              "; coordinates up to 1e60 and extents from 1e-60 can be worked on: scale the mesh");
+    if (magnitude > 1e60 || (extent > 0 && extent < 1e-60)) {
+      std::ostringstream text;
+      text << std::setprecision(2) << "the mesh's coordinates reach " << magnitude
+           << " and its extent is " << extent
+           << "; coordinates up to 1e60 and extents from 1e-60 can be worked on: scale the mesh";
+      throw Error(ErrorCode::InvalidInput, text.str());
+    }
   }
 
   void find_edges() {

@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <numbers>
+#include <numeric>
 #include <sstream>
+#include <utility>
 
 #include "parallel.h"
 #include "swept_body.h"
@@ -23,6 +26,7 @@ using Pose = Eigen::Matrix<double, 3, 4>;
 using Waypoints = std::vector<std::vector<double>>;
 
 constexpr std::size_t kCellsPerTask = 32;
+constexpr int kWholeHalvings = 16;
 constexpr double kUp = 1 + 0x1p-40;
 
 Vec3 apply(const Pose& pose, const Vec3& p) { return pose.leftCols<3>() * p + pose.col(3); }
@@ -43,6 +47,55 @@ struct Task {
   SweepPlace farthest;
 };
 
+/// Part of a segment of the path.
+struct Stretch {
+  double begin, end;
+};
+
+/// Points whose hull the shape is within `bulge` of.
+struct Outline {
+  std::vector<Vec3> points;
+  double bulge = 0;
+};
+
+Outline outline_of(const MovingShape& shape) {
+  constexpr int kSides = 64;
+  Outline out;
+  const Vec3 half = 0.5 * shape.size;
+  switch (shape.kind) {
+    case MovingShape::Kind::Mesh: {
+      std::vector<char> used(shape.mesh.vertices.size(), 0);
+      for (const geom::Triangle& t : shape.mesh.triangles)
+        for (const std::uint32_t v : t)
+          if (std::exchange(used[v], 1) == 0) out.points.push_back(shape.mesh.vertices[v]);
+      break;
+    }
+    case MovingShape::Kind::Box:
+      for (int i = 0; i < 8; ++i)
+        out.points.emplace_back((i & 1) != 0 ? half.x() : -half.x(),
+                                (i & 2) != 0 ? half.y() : -half.y(),
+                                (i & 4) != 0 ? half.z() : -half.z());
+      break;
+    case MovingShape::Kind::Cylinder: {
+      const double radius = shape.size.x();
+      for (int i = 0; i < kSides; ++i) {
+        const double angle = 2 * std::numbers::pi * i / kSides;
+        for (const double z : {-half.y(), half.y()})
+          out.points.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
+      }
+      // As of a patch of the surface: between neighbours the arc is within ℓ²/(3r) of the chord.
+      const double edge = 2 * std::numbers::pi * radius / kSides;
+      out.bulge = (edge * edge / (3 * radius) + 0x1p-48 * (radius + shape.size.y())) * kUp;
+      break;
+    }
+    case MovingShape::Kind::Sphere:
+      out.points.push_back(Vec3::Zero());
+      out.bulge = shape.size.x();
+      break;
+  }
+  return out;
+}
+
 /// Decides one task.
 class Search {
  public:
@@ -57,19 +110,94 @@ class Search {
         options_(options),
         most_cells_(options.max_cells * (task.last - task.first)) {}
 
-  void run(std::vector<SweptCell> cells) {
+  void run(const std::vector<SweptCell>& cells, const std::vector<Stretch>& open) {
     double radius = 0;
     for (const SweptCell& c : cells) radius = std::max(radius, c.radius() + c.bulge());
-    bound_ = bound_motion(shape_.chain, from_, to_, radius);
-    moves_ = bound_.speed > 0;
-    std::vector<std::uint32_t> all(bodies_.size());
-    for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
-    task_.farthest.distance = -1;
-    stretch(0, 1, pose_at(0), moves_ ? pose_at(1) : pose_at(0), std::move(cells), all);
+    prepare(radius);
+    const std::vector<std::uint32_t> all = all_bodies();
+    for (const Stretch& s : open) {
+      if (task_.refuting || task_.limited) return;
+      stretch(s.begin, s.end, pose_at(s.begin), pose_at(moves_ ? s.end : s.begin), cells, all);
+    }
+  }
+
+  /// Stretches during which no one body is known to hold the whole shape; in the others the claim
+  /// holds.
+  std::vector<Stretch> not_held_whole(const Outline& outline) {
+    double radius = 0;
+    for (const Vec3& p : outline.points) radius = std::max(radius, p.norm() * kUp);
+    prepare(radius + outline.bulge);
+    std::vector<Stretch> open;
+    std::uint32_t body = 0;
+    const Pose start = pose_at(0), finish = moves_ ? pose_at(1) : start;
+    if (!bodies_.empty() && !outline.points.empty()) {
+      whole(0, 1, start, finish, outline, all_bodies(), 0, body, open);
+    } else {
+      open.push_back({0, 1});
+    }
+    return open;
   }
 
  private:
   enum class Next { Held, HalveTime, HalveCurve, HalveFlat, Refuted, Undecided };
+
+  void prepare(double radius) {
+    bound_ = bound_motion(shape_.chain, from_, to_, radius);
+    moves_ = bound_.speed > 0;
+    task_.farthest.distance = -1;
+  }
+
+  [[nodiscard]] std::vector<std::uint32_t> all_bodies() const {
+    std::vector<std::uint32_t> all(bodies_.size());
+    std::iota(all.begin(), all.end(), 0U);
+    return all;
+  }
+
+  /// The shape as one cell, halved in time only; where it is in one body at neither end, or the
+  /// stretch is short, it is left to the cells.
+  void whole(double begin, double end, const Pose& start, const Pose& finish,
+             const Outline& outline, const std::vector<std::uint32_t>& candidates, int halvings,
+             std::uint32_t& body, std::vector<Stretch>& open) {
+    begin_ = begin;
+    end_ = end;
+    const std::size_t count = outline.points.size();
+    std::vector<Vec3> places(2 * count);
+    geom::Box3 box;
+    for (std::size_t i = 0; i < count; ++i) {
+      places[i] = apply(start, outline.points[i]);
+      places[count + i] = apply(finish, outline.points[i]);
+      box.extend(places[i]);
+      box.extend(places[count + i]);
+    }
+    ++task_.cells;
+    const std::vector<std::uint32_t> near = those_near(box, candidates);
+    const std::span<const Vec3> both(places), at_start = both.first(count),
+                                              at_end = both.last(count);
+    const double length = end - begin;
+    const double motion = moves_ ? length * length / 8 * bound_.acceleration * kUp : 0;
+    const double still = margin_ - bound_.rounding - outline.bulge;
+    if (holder(both, still - motion, body, near)) {
+      // Part of a sphere is not at its centre: no place of it is sampled here.
+      if (outline.points.size() > 1) {
+        SweptCell cell;
+        cell.body = body;
+        sample(cell, at_start, begin, near);
+        if (moves_) sample(cell, at_end, end, near);
+        task_.farthest.triangle.clear();
+      }
+      return;
+    }
+    std::uint32_t first = body, last = body;
+    const bool held = holder(at_start, still, first, near) || holder(at_end, still, last, near);
+    if (!held || halvings == kWholeHalvings || !(length * bound_.speed > options_.gap)) {
+      open.push_back({begin, end});
+      return;
+    }
+    const double middle = 0.5 * (begin + end);
+    const Pose pose = pose_at(middle);
+    whole(begin, middle, start, pose, outline, near, halvings + 1, body, open);
+    whole(middle, end, pose, finish, outline, near, halvings + 1, body, open);
+  }
 
   [[nodiscard]] Pose pose_at(double s) const {
     return pose_of(shape_.chain, between(from_, to_, s));
@@ -129,6 +257,11 @@ class Search {
         box.extend(apply(*finish_, p));
       }
     }
+    return those_near(box, candidates);
+  }
+
+  [[nodiscard]] std::vector<std::uint32_t> those_near(
+      const geom::Box3& box, const std::vector<std::uint32_t>& candidates) const {
     // Between its ends no point is farther from the nearer one than half of what it moves.
     const Vec3 room = Vec3::Constant(
         (margin_ + 0.5 * (end_ - begin_) * bound_.speed + 2 * bound_.rounding) * kUp);
@@ -289,8 +422,23 @@ void surface_claim(std::span<const MovingShape> shapes, const Waypoints& path,
       options.progress(shapes[i].name + " (" + std::to_string(i + 1) + " of " +
                        std::to_string(shapes.size()) + ")");
     const std::vector<SweptCell> cells = SweptCell::cells_of(shapes[i]);
+    const Outline outline = outline_of(shapes[i]);
+    std::vector<std::vector<Stretch>> open(segments);
+    std::vector<Task> wholes(segments);
+    verify::parallel_loop(std::size_t{0}, segments, [&](std::size_t segment) {
+      wholes[segment].shape = i;
+      wholes[segment].segment = segment;
+      open[segment] =
+          Search(wholes[segment], shapes[i], path, bodies, margin, options).not_held_whole(outline);
+    });
+    for (const Task& task : wholes) {
+      claims.cells += task.cells;
+      claims.samples += task.samples;
+      if (task.farthest.distance > claims.farthest.distance) claims.farthest = task.farthest;
+    }
     std::vector<Task> tasks;
-    for (std::size_t segment = 0; segment < segments; ++segment)
+    for (std::size_t segment = 0; segment < segments; ++segment) {
+      if (open[segment].empty()) continue;
       for (std::size_t c = 0; c < cells.size(); c += kCellsPerTask) {
         Task task;
         task.shape = i;
@@ -299,6 +447,7 @@ void surface_claim(std::span<const MovingShape> shapes, const Waypoints& path,
         task.last = std::min(c + kCellsPerTask, cells.size());
         tasks.push_back(std::move(task));
       }
+    }
     // Tasks after the first one that refutes need not be done: all before it are.
     std::atomic<std::size_t> first_refuting = tasks.size();
     verify::parallel_loop(std::size_t{0}, tasks.size(), [&](std::size_t t) {
@@ -306,7 +455,8 @@ void surface_claim(std::span<const MovingShape> shapes, const Waypoints& path,
       Task& task = tasks[t];
       Search search(task, shapes[i], path, bodies, margin, options);
       search.run({cells.begin() + static_cast<std::ptrdiff_t>(task.first),
-                  cells.begin() + static_cast<std::ptrdiff_t>(task.last)});
+                  cells.begin() + static_cast<std::ptrdiff_t>(task.last)},
+                 open[task.segment]);
       if (!task.refuting) return;
       std::size_t known = first_refuting;
       while (t < known && !first_refuting.compare_exchange_weak(known, t)) {

@@ -87,6 +87,46 @@ TEST(VerifySweep, AcceptsWhatSweepApproxMakes) {
   }
 }
 
+// One body holds a whole shape during most of the motion: few cells are looked at, curved shapes
+// included.
+TEST(VerifySweep, HoldsShapesAsWholes) {
+  std::mt19937_64 random(75);
+  TestRobot r = prismatic_chain();
+  Joint& follows = r.robot.joints.back();
+  follows.variable = r.robot.joints.front().variable;
+  follows.multiplier = -0.7;
+  follows.offset = 0.2;
+  std::vector<MovingShape> shapes;
+  r.bodies.clear();
+  for (std::uint32_t link = 1; link <= r.robot.joints.size(); ++link) {
+    MovingShape shape;
+    shape.name = "shape";
+    shape.kind = link % 3 == 0   ? MovingShape::Kind::Box
+                 : link % 3 == 1 ? MovingShape::Kind::Cylinder
+                                 : MovingShape::Kind::Sphere;
+    shape.size = {0.06, 0.1, 0.08};
+    shape.chain = chain_to(r.robot, link);
+    shapes.push_back(shape);
+    std::vector<Vec3> around;  // a box that holds it
+    for (const double x : {-0.061, 0.061})
+      for (const double y : {-0.061, 0.061})
+        for (const double z : {-0.061, 0.061}) around.emplace_back(x, y, z);
+    r.bodies.push_back({"around", link, around, 0});
+  }
+  const Path path = random_path(r.robot, random, 2, 1.5, false);
+  const SweepResult made = sweep(r, path, 0.005, StepRule::Balanced, true);
+  const auto claims = judge(shapes, path, made.set);
+  EXPECT_EQ(claims.surface.answer, Answer::Verified) << claims.surface.reason;
+  EXPECT_EQ(claims.solid.answer, Answer::Verified) << claims.solid.reason;
+  EXPECT_LT(claims.cells, 20 * made.set.bodies.size());
+  // Without some body, or with all of them a little smaller, it must not.
+  for (std::size_t i = 0; i < made.set.bodies.size(); i += 3) {
+    geom::ConvexSet some = made.set;
+    some.bodies.erase(some.bodies.begin() + static_cast<std::ptrdiff_t>(i));
+    EXPECT_NE(judge(shapes, path, some, 1e-4).surface.answer, Answer::Verified) << i;
+  }
+}
+
 TEST(VerifySweep, AcceptsExplicitMarginsWhereNothingMoves) {
   // Two halves of a box on the base, cut askew: enlarged by what rounding moves them by alone, they
   // would overlap by too little for the triangles that the cut crosses to be divided so finely.
@@ -355,7 +395,17 @@ TEST(VerifySweep, LimitsAndBadSets) {
   verify::SweepOptions options;
   options.gap = 1e-7;
   options.max_cells = 1;
-  const auto limited = verify::verify_sweep(shapes_of(r), path, made.set, options);
+  // A shape in two pieces, each with bodies of its own, is held by its triangles alone.
+  TestRobot two = r;
+  const Body piece = two.bodies.back();
+  two.bodies = {piece, piece};
+  for (Vec3& p : two.bodies[1].points) p += Vec3(0.5, 0, 0);
+  std::vector<MovingShape> apart = shapes_of(two);
+  apart[0].mesh = merged({apart[0].mesh, apart[1].mesh});
+  apart.pop_back();
+  const SweepResult both = sweep(two, path, 0.005);
+  EXPECT_EQ(judge(apart, path, both.set).surface.answer, Answer::Verified);
+  const auto limited = verify::verify_sweep(apart, path, both.set, options);
   EXPECT_EQ(limited.surface.answer, Answer::Undecided);
   EXPECT_NE(limited.solid.answer, Answer::Verified);
   options.max_cells = 20000;
