@@ -14,6 +14,7 @@
 #include <sstream>
 
 #include "cli.h"
+#include "notes.h"
 #include "robot_bodies.h"
 #include "robot_decomposition.h"
 #include "set_cache.h"
@@ -43,7 +44,17 @@ struct Options {
   bool no_cache = false;
   geom::PrepareOptions prepare;
   tools::CommonOptions common;
+  tools::Notes* notes = nullptr;  ///< of a robot's meshes; null: said at once
 };
+
+/// Something that a user should know of the input.
+void note(const Options& o, const std::string& text) {
+  if (o.notes != nullptr) {
+    o.notes->add(o.input, text);
+  } else {
+    tools::log(o.common.quiet, o.input + ": " + text);
+  }
+}
 
 const std::map<std::string, bcd::Effort> kEfforts{
     {"fast", bcd::Effort::Fast}, {"normal", bcd::Effort::Normal}, {"best", bcd::Effort::Best}};
@@ -152,8 +163,9 @@ void describe(CLI::App& app, Options& o) {
   app.add_flag_callback(
       "--visual", [&o] { o.geometry = "visual"; }, "The same as --geometry visual");
   app.add_option("--package-path", o.packages,
-                 "Folder to look up a robot's package:// in, besides $ROS_PACKAGE_PATH and the "
-                 "folders above the robot's file (repeatable)")
+                 "A package of a robot's package:// or a folder that holds it, besides "
+                 "$ROS_PACKAGE_PATH, $AMENT_PREFIX_PATH and the folders above the robot's file "
+                 "(repeatable)")
       ->type_name("DIR");
   app.add_option(
          "--mesh-prefix", o.prefix,
@@ -244,22 +256,34 @@ std::string objection(const Options& o, const geom::Mesh& solid, const geom::Con
   return {};
 }
 
+/// What a set says of where it comes from, the claims apart.
+geom::Provenance origin(const Options& o, const std::string& hash) {
+  geom::Provenance p;
+  p.source = std::filesystem::path(o.input).filename().string();
+  p.source_sha256 = hash;
+  p.tool = std::string("bcd-decompose ") + tools::version();
+  p.parameters = parameters(o);
+  p.unit = o.unit;
+  p.frame = o.frame;
+  p.direction = o.direction;
+  return p;
+}
+
 /// Decomposes, serialises, reads back and decides the claims.
 tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const std::string& hash) {
   tools::Progress progress(o.common.quiet);
   const bool outer = o.direction == "outer";
   const geom::Prepared prepared =
       tools::naming(o.input, [&] { return geom::prepare(mesh, o.prepare); });
-  for (const std::string& note : prepared.notes) tools::log(o.common.quiet, o.input + ": " + note);
   const double diagonal = geom::bounding_box(prepared.mesh).diagonal();
   const geom::Mesh solid = prepared.closed ? prepared.mesh : bcd::close_holes(prepared.mesh);
+  std::vector<std::string> notes = prepared.notes;
   if (!prepared.closed && o.direction == "outer")
-    tools::log(
-        o.common.quiet,
-        o.input + ": its holes are filled with " +
-            std::to_string(solid.triangles.size() - prepared.mesh.triangles.size()) +
-            " triangles; what is said of the solid is about that one (bound-verify --prepare "
-            "checks it)");
+    notes.push_back("its holes are filled with " +
+                    std::to_string(solid.triangles.size() - prepared.mesh.triangles.size()) +
+                    " triangles; what is said of the solid is about that one (bound-verify "
+                    "--prepare checks it)");
+  for (const std::string& text : notes) note(o, text);
   bcd::DecomposeOptions options;
   if (has_epsilon(o))
     options.epsilon = tools::parse_length(o.epsilon.empty() ? "1%" : o.epsilon)->of(diagonal);
@@ -276,13 +300,7 @@ tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const s
   };
   geom::ConvexSet set;
   geom::Provenance& p = set.provenance;
-  p.source = std::filesystem::path(o.input).filename().string();
-  p.source_sha256 = hash;
-  p.tool = std::string("bcd-decompose ") + tools::version();
-  p.parameters = parameters(o);
-  p.unit = o.unit;
-  p.frame = o.frame;
-  p.direction = o.direction;
+  p = origin(o, hash);
   p.covers_surface = outer && prepared.dropped_sheets == 0;
   p.covers_solid = outer && prepared.closed;
   tools::SetCache::Entry entry;
@@ -336,7 +354,7 @@ tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const s
                   {"pre_step_triangles", s.pre_step_triangles},
                   {"safety", options.safety},
                   {"diagonal", diagonal},
-                  {"notes", prepared.notes}};
+                  {"notes", notes}};
   if (o.min_thickness > 0)
     entry.report["min_thickness"] = {{"wished", o.min_thickness}, {"thickened", s.thickened}};
   if (outer) {
@@ -355,35 +373,76 @@ struct Outcome {
   bool cached = false;
 };
 
+/// Hash of the triangles as read. Their bytes say more than a file's, which may refer to others,
+/// and than a reader's version.
+std::string hash_of(const geom::Mesh& mesh) {
+  std::vector<char> bytes;
+  const auto append = [&](const void* data, std::size_t size) {
+    const auto* begin = static_cast<const char*>(data);
+    bytes.insert(bytes.end(), begin, begin + size);
+  };
+  const std::uint64_t vertices = mesh.vertices.size();
+  append(&vertices, sizeof vertices);
+  for (const geom::Vec3& v : mesh.vertices) append(v.data(), 3 * sizeof(double));
+  for (const geom::Triangle& t : mesh.triangles) append(t.data(), sizeof t);
+  return io::sha256(bytes);
+}
+
+/// Why an entry of the cache is not what it should be; empty when it is.
+std::string objection(const Options& o, const std::string& hash,
+                      const tools::SetCache::Entry& entry) {
+  try {
+    const geom::ConvexSet set =
+        io::parse_convex_set(entry.container, io::Format::Glb, "the container");
+    geom::Provenance stated = set.provenance;
+    const geom::Provenance expected = origin(o, hash);
+    stated.epsilon = expected.epsilon;
+    stated.covers_solid = expected.covers_solid;
+    stated.covers_surface = expected.covers_surface;
+    if (stated == expected && entry.report.value("bodies", std::size_t{0}) == set.bodies.size() &&
+        set.margin == 0)
+      return {};
+    return "its container is that of another input or of other options";
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+}
+
 /// The bodies of one mesh, from the cache where possible.
 Outcome decompose_mesh(const Options& o) {
   const io::Format input_format = tools::format_for(o.input, o.input_format, "--input-format");
-  std::vector<char> bytes = io::read_file(o.input);
+  std::vector<char> bytes;
+  const io::ReadResult read = io::read_mesh(o.input, input_format, &bytes);
+  for (const std::string& text : read.notes) note(o, text);
   Outcome out;
   out.hash = io::sha256(bytes);
-  const std::string key = out.hash + '\n' + std::to_string(static_cast<int>(input_format)) + '\n' +
-                          parameters(o) + '\n' + o.unit + '\n' + o.frame + '\n' +
+  const std::string key = hash_of(read.mesh) + '\n' + out.hash + '\n' + parameters(o) + '\n' +
+                          o.unit + '\n' + o.frame + '\n' +
                           std::filesystem::path(o.input).filename().string() + '\n' +
                           tools::version() + '\n' + kAlgorithm + '\n' + kContainer;
-  // Formats that refer to other files depend on more than their own bytes.
-  const bool alone = input_format != io::Format::Gltf && input_format != io::Format::Vrml &&
-                     input_format != io::Format::Collada && input_format != io::Format::X3d;
-  const bool use_cache = !o.no_cache && alone;
   const tools::SetCache cache(key);
-  if (use_cache) {
-    if (auto found = cache.find()) {
+  if (!o.no_cache) {
+    std::string flaw;
+    auto found = cache.find(flaw);
+    if (found) {
+      if (const std::string why = objection(o, out.hash, *found); !why.empty())
+        flaw = cache.path().string() + ": " + why;
+    }
+    if (!flaw.empty())
+      tools::log(o.common.quiet, "the cache's entry " + flaw + "; it is made again");
+    if (found && flaw.empty()) {
       out.entry = std::move(*found);
       out.cached = true;
-      return out;
+      for (const Json& text : out.entry.report["notes"]) note(o, text.get<std::string>());
     }
   }
-  const std::string name = o.input == "-" ? "standard input" : o.input;
-  const std::filesystem::path file(o.input);
-  const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
-  const io::ReadResult read = io::parse_mesh(bytes, input_format, name, folder);
-  for (const std::string& note : read.notes) tools::log(o.common.quiet, o.input + ": " + note);
-  out.entry = compute(o, read.mesh, out.hash);
-  if (use_cache) cache.store(out.entry);
+  if (!out.cached) {
+    out.entry = compute(o, read.mesh, out.hash);
+    if (!o.no_cache) cache.store(out.entry);
+  }
+  Json notes = read.notes;
+  for (const Json& text : out.entry.report["notes"]) notes.push_back(text);
+  out.entry.report["notes"] = std::move(notes);
   return out;
 }
 
@@ -444,7 +503,7 @@ int decompose_robot(const Options& o) {
     throw Error(ErrorCode::InvalidArgument, "-o: a robot's bodies need a folder");
   const std::filesystem::path folder(o.output);
   const bool names_file = is_robot(o.output) || io::format_from_name(folder.extension().string());
-  if (names_file && !std::filesystem::is_directory(folder))
+  if (names_file && !tools::is_folder(folder))
     throw Error(ErrorCode::InvalidArgument,
                 "-o: a robot's bodies need a folder, which gets a URDF, the bodies and a container "
                 "per link; name one without the extension of a file, such as " +
@@ -459,10 +518,12 @@ int decompose_robot(const Options& o) {
   robot.parameters = parameters(o);
   robot.unit = o.unit;
   bool done = true;
+  tools::Notes notes;
   const tools::RobotResult result = tools::decompose_robot(
       robot, [&](const std::filesystem::path& file, const geom::Vec3& scale) -> tools::MeshBodies {
         Options mesh = o;
         mesh.input = file.string();
+        mesh.notes = &notes;
         mesh.epsilon = tools::epsilon_of_mesh(o.epsilon, scale.maxCoeff());
         // A little more than rounding takes away.
         mesh.min_thickness = o.min_thickness / scale.minCoeff() * (1 + 1e-12);
@@ -491,14 +552,18 @@ int decompose_robot(const Options& o) {
                                  counted("meshes", "mesh", "meshes"));
   tools::log(o.common.quiet, tools::how_meshes_are_found(result.report["urdf"].get<std::string>(),
                                                          "bodies", robot.prefix));
-  for (const std::string& link : result.bare)
-    tools::log(o.common.quiet, o.input + ": link '" + link + "' has no " + o.geometry +
-                                   " shape; it stays as it is");
+  for (const std::string& text : notes.lines()) tools::log(o.common.quiet, text);
+  for (const std::string& text : result.notes) tools::log(o.common.quiet, text);
+  for (const std::string& text :
+       tools::notes_on({{}, result.bare.other}, robot.visual,
+                       robot.visual ? ", which stay as they are"
+                                    : ": nothing of this is covered (--visual covers those)"))
+    tools::log(o.common.quiet, o.input + ": " + text);
   if (!o.preview.empty()) io::write_file(o.preview, tools::picture_of(result.at_rest, o.explode));
   if (!o.common.report.empty()) {
     Json report = result.report;
     report["stop"] = done ? "done" : "epsilon not reached";
-    report["links_without_shapes"] = result.bare;
+    report["links_without_shapes"] = result.bare.all();
     report["input"] = {{"file", o.input}};
     report["parameters"] = robot.parameters;
     add_run(o, report);

@@ -15,6 +15,7 @@
 
 #include "cli.h"
 #include "prepared_original.h"
+#include "robot_path.h"
 #include "verdict.h"
 #include "verify_progressive.h"
 #include "verify_robot.h"
@@ -97,7 +98,7 @@ Json to_json(const verify::DistanceClaim& claim) {
 
 /// A mesh, or the sum of a set's bodies.
 Input read_approximation(const Options& o, geom::ConvexSet& set, bool& is_set) {
-  const bool folder = std::filesystem::is_directory(o.approximation);
+  const bool folder = tools::is_folder(o.approximation);
   std::optional<io::Format> format;
   if (!folder) {
     format = tools::format_for(o.approximation, o.approximation_format, "--approximation-format");
@@ -430,11 +431,13 @@ int check(const Options& o) {
   const std::string inner_name = is_set && o.inner ? "the union of the bodies"
                                  : o.inner         ? "the approximation"
                                                    : "the original";
-  const std::string outer_name = o.cover
-                                     ? (set.margin > 0 ? "the union of the bodies, margin included"
-                                                       : "the union of the bodies")
-                                 : o.inner ? "the original"
-                                           : "the approximation";
+  const std::string outer_name =
+      o.cover
+          ? (set.margin > 0
+                 ? "the union of the bodies, with the margin " + number(set.margin) + " included"
+                 : "the union of the bodies")
+      : o.inner ? "the original"
+                : "the approximation";
   const bool relative = inclusion.relative;
   progress.show("measuring what sticks out");
   const Depths depths = depths_of(inner, outer, inclusion, o.cover ? set.margin : 0,
@@ -703,10 +706,15 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"collision", "visual"}).description(""))
       ->type_name("collision|visual")
       ->group("With --sweep or --robot");
+  app.add_flag_callback(
+         "--visual", [&o] { o.sweep.geometry = "visual"; }, "The same as --geometry visual")
+      ->group("With --sweep or --robot");
   app.add_option("--package-path", o.sweep.packages,
-                 "Folder to look up package:// in, as for sweep-approx; may be repeated")
+                 "A package of package:// or a folder that holds it, as for sweep-approx; may be "
+                 "repeated")
       ->type_name("DIR")
       ->group("With --sweep or --robot");
+  of_sweep(tools::add_joint_option(app, o.sweep.joints));
   of_sweep(app.add_option("--gap", o.sweep.gap,
                           "Parts that move and measure less are not divided further; where they "
                           "are not known to be inside, the answer is undecided [margin / 10^6]")
@@ -749,7 +757,7 @@ int main(int argc, char** argv) {
                                 : o.cover     ? "--cover"
                                 : o.inner     ? "--inner"
                                               : "--outer";
-    tools::require_absent(app, relation_name, {"--geometry", "--package-path"});
+    tools::require_absent(app, relation_name, {"--geometry", "--visual", "--package-path"});
     if (!o.progressive) return check(o);
     tools::require_absent(app, "--progressive",
                           {"--claims", "--epsilon", "--prepare", "--drop-sheets", "--set",

@@ -44,6 +44,29 @@ std::from_chars_result parse_number(std::string_view text, double& value) {
   return std::from_chars(begin, end, value);
 }
 
+std::string lower_extension(const std::string& path) {
+  std::string out = std::filesystem::path(path).extension().string();
+  std::transform(out.begin(), out.end(), out.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return out;
+}
+
+/// What to do with a file of a kind that is no mesh to read; empty when there is nothing to say.
+std::string route(const std::string& path) {
+  const std::string extension = lower_extension(path);
+  if (extension == ".step" || extension == ".stp" || extension == ".iges" || extension == ".igs" ||
+      extension == ".brep")
+    return "CAD files are not read; make a mesh of it, for example by gmsh: gmsh " + path +
+           " -2 -clmax 5 -o part.stl (5: longest edge, in its unit)";
+  if (extension == ".xacro") return "xacro is not read; run: xacro " + path + " > robot.urdf";
+  if (extension == ".urdf")
+    return "a robot, not a mesh: bcd-decompose " + path +
+           " -o FOLDER decomposes all its links; other tools take its meshes one by one";
+  if (extension == ".sdf" || extension == ".world" || extension == ".xml" || extension == ".mjcf")
+    return "SDF and MJCF are not read; give the meshes that it names, or the robot as URDF";
+  return {};
+}
+
 /// Without slashes at the end.
 std::filesystem::path without_slash(std::string name) {
   while (name.size() > 1 && name.back() == '/') name.pop_back();
@@ -81,6 +104,9 @@ int run(CLI::App& app, int argc, char** argv, const std::function<int()>& body) 
   } catch (const std::bad_alloc&) {
     std::cerr << name << ": out of memory\n";
     return kLimit;
+  } catch (const std::filesystem::filesystem_error& error) {
+    std::cerr << name << ": " << error.path1().string() << ": " << error.code().message() << '\n';
+    return kOutputFailed;  // inputs are opened, not looked at
   } catch (const std::exception& error) {
     std::cerr << name << ": internal error: " << error.what() << '\n';
     return kInternal;
@@ -163,6 +189,11 @@ void log(bool quiet, const std::string& text) {
   if (!quiet) std::cerr << text << '\n';
 }
 
+bool is_folder(const std::filesystem::path& path) {
+  std::error_code error;
+  return std::filesystem::is_directory(path, error);
+}
+
 io::Format format_for(const std::string& path, const std::string& name, const char* option) {
   const auto listed = [](const std::vector<std::string>& names) {
     std::string text;
@@ -172,7 +203,7 @@ io::Format format_for(const std::string& path, const std::string& name, const ch
   const bool reading = std::string_view(option) != "--output-format";
   if (!reading && path.ends_with('/'))
     throw Error(ErrorCode::InvalidArgument, path + ": name a file, not a folder");
-  if (reading && std::filesystem::is_directory(path))
+  if (reading && is_folder(path))
     throw Error(ErrorCode::InvalidInput, path + " is a folder, not a mesh file");
   const std::string choices = listed(reading ? io::readable_formats() : io::writable_formats());
   if (!name.empty()) {
@@ -185,6 +216,8 @@ io::Format format_for(const std::string& path, const std::string& name, const ch
                 std::string(option) + " is needed with '-'; known: " + choices);
   if (const auto f = io::format_from_name(std::filesystem::path(path).extension().string()))
     return *f;
+  if (const std::string way = reading ? route(path) : std::string(); !way.empty())
+    throw Error(ErrorCode::InvalidInput, path + ": " + way);
   throw Error(reading ? ErrorCode::InvalidInput : ErrorCode::InvalidArgument,
               path + ": unknown file extension; use one of " + choices + ", or give " + option);
 }
@@ -241,9 +274,11 @@ void write_json(const std::string& path, const Json& json) {
 void require_apart(const std::vector<std::pair<std::string, std::string>>& outputs,
                    const std::vector<std::string>& inputs) {
   const auto place = [](const std::string& file) {
-    return file == "-"
-               ? std::filesystem::path("-")
-               : std::filesystem::weakly_canonical(std::filesystem::absolute(without_slash(file)));
+    if (file == "-") return std::filesystem::path("-");
+    std::error_code error;
+    const std::filesystem::path whole = std::filesystem::absolute(without_slash(file), error);
+    const std::filesystem::path found = std::filesystem::weakly_canonical(whole, error);
+    return error ? whole.lexically_normal() : found;
   };
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const std::string& file = outputs[i].second;
@@ -252,9 +287,16 @@ void require_apart(const std::vector<std::pair<std::string, std::string>>& outpu
     const std::filesystem::path folder =
         (outputs[i].first == "--output" ? without_slash(file) : std::filesystem::path(file))
             .parent_path();
-    if (file != "-" && !folder.empty() && !std::filesystem::is_directory(folder))
-      throw Error(ErrorCode::OutputFailed, outputs[i].first + ": there is no folder " +
-                                               folder.string() + "; create it first");
+    if (file != "-" && !folder.empty()) {
+      std::error_code error;
+      const auto type = std::filesystem::status(folder, error).type();
+      if (type == std::filesystem::file_type::none && error)
+        throw Error(ErrorCode::OutputFailed,
+                    outputs[i].first + ": " + folder.string() + ": " + error.message());
+      if (type != std::filesystem::file_type::directory)
+        throw Error(ErrorCode::OutputFailed, outputs[i].first + ": there is no folder " +
+                                                 folder.string() + "; create it first");
+    }
     for (const std::string& input : inputs) {
       if (input != "-" && place(file) == place(input))
         throw Error(ErrorCode::InvalidArgument,

@@ -106,6 +106,9 @@ auto naming(const std::string& file, const Work& work) {
   }
 }
 
+/// Whether there is a folder of that name; false where that cannot be told.
+bool is_folder(const std::filesystem::path& path);
+
 /// Format named by --input-format/--output-format, else by the file name's extension.
 /// @throws Error{InvalidArgument} when unknown.
 io::Format format_for(const std::string& path, const std::string& name, const char* option);
@@ -119,7 +122,8 @@ double peak_megabytes();
 
 void write_json(const std::string& path, const Json& json);
 
-/// Refuses to write a file twice, over an input, or into a folder that does not exist; outputs are
+/// Refuses to write a file twice, over an input, or into a folder that does not exist or cannot be
+/// looked into; outputs are
 /// (option, file), empty files are none.
 /// @throws Error{InvalidArgument}, Error{OutputFailed}
 void require_apart(const std::vector<std::pair<std::string, std::string>>& outputs,

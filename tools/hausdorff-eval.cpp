@@ -183,7 +183,7 @@ class Job {
     progress_.show("reading " + path);
     Side side;
     side.file = path;
-    const bool folder = path != "-" && std::filesystem::is_directory(path);
+    const bool folder = path != "-" && tools::is_folder(path);
     std::optional<io::Format> format;
     if (!folder) {
       const bool known =

@@ -7,10 +7,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <map>
 #include <optional>
 #include <sstream>
+
+#include "find_mesh.h"
+#include "notes.h"
 
 extern char** environ;
 
@@ -112,7 +114,8 @@ ErrorCode code_of(int exit_code) {
 }
 
 geom::ConvexSet decompose(const fs::path& mesh, const BodyOptions& options,
-                          const std::string& epsilon, const fs::path& result) {
+                          const std::string& epsilon, const fs::path& result, Notes& notes) {
+  const fs::path report = fs::path(result).replace_extension(".json");
   std::vector<std::string> command{program("bcd-decompose"),
                                    mesh.string(),
                                    "-o",
@@ -125,6 +128,8 @@ geom::ConvexSet decompose(const fs::path& mesh, const BodyOptions& options,
                                    options.effort,
                                    "--threads",
                                    std::to_string(options.threads),
+                                   "--report",
+                                   report.string(),
                                    "--quiet"};
   if (options.no_cache) command.emplace_back("--no-cache");
   if (options.drop_sheets) command.emplace_back("--drop-sheets");
@@ -136,6 +141,10 @@ geom::ConvexSet decompose(const fs::path& mesh, const BodyOptions& options,
                                    std::to_string(code) + " of " + command.front() + ")");
   if (code == kNo)
     log(options.quiet, mesh.string() + ": the decomposition does not reach " + epsilon);
+  const std::vector<char> text = io::read_file(report);
+  const Json said = Json::parse(text.begin(), text.end(), nullptr, false);
+  ensure(said.is_object() && said.contains("notes"), "a report without notes");
+  for (const Json& note : said["notes"]) notes.add(mesh.string(), note.get<std::string>());
   return io::read_convex_set(result);
 }
 
@@ -173,6 +182,74 @@ RobotFile read_robot(const std::string& path) {
   return out;
 }
 
+std::string names_of(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 6;
+  const std::size_t shown = names.size() <= kMost ? names.size() : kMost - 1;
+  std::string text;
+  for (std::size_t i = 0; i < shown; ++i) {
+    const bool last = i + 1 == names.size();
+    text += (i == 0 ? "'" : last ? " and '" : ", '") + names[i] + "'";
+  }
+  if (shown < names.size()) text += " and " + std::to_string(names.size() - shown) + " more";
+  return text;
+}
+
+std::vector<std::string> BareLinks::all() const {
+  std::vector<std::string> out = empty;
+  out.insert(out.end(), other.begin(), other.end());
+  return out;
+}
+
+BareLinks bare_links(const sweep::Robot& robot, bool visual,
+                     const std::vector<std::string>& links) {
+  BareLinks out;
+  for (const sweep::Link& link : robot.links) {
+    if (!links.empty() && std::find(links.begin(), links.end(), link.name) == links.end()) continue;
+    const auto &shapes = visual ? link.visual : link.collision,
+               &others = visual ? link.collision : link.visual;
+    if (shapes.empty()) (others.empty() ? out.empty : out.other).push_back(link.name);
+  }
+  return out;
+}
+
+std::vector<std::string> notes_on(const BareLinks& bare, bool visual,
+                                  const std::string& consequence) {
+  std::vector<std::string> out;
+  const auto add = [&](const std::vector<std::string>& names, const std::string& what) {
+    if (names.empty()) return;
+    out.push_back((names.size() == 1 ? "link " : "links ") + names_of(names) +
+                  (names.size() == 1 ? " has no " : " have no ") + what + consequence);
+  };
+  const std::string kind = visual ? "visual" : "collision", other = visual ? "collision" : "visual";
+  add(bare.empty, kind + " shape");
+  add(bare.other, kind + " shape, only " + other + " ones");
+  return out;
+}
+
+std::string links_judged(std::size_t judged, std::size_t asked, const BareLinks& bare) {
+  std::string text = std::to_string(judged) + " of " + std::to_string(asked) +
+                     (asked == 1 ? " link judged" : " links judged");
+  if (!bare.other.empty())
+    text += "; not " + names_of(bare.other) + ", with shapes of the other kind only";
+  return text;
+}
+
+std::vector<std::string> notes_on_flat_shapes(const RobotFile& robot, bool visual,
+                                              const std::vector<std::string>& links) {
+  std::vector<std::string> out;
+  for (const sweep::Link& link : robot.robot.links) {
+    if (!links.empty() && std::find(links.begin(), links.end(), link.name) == links.end()) continue;
+    for (const Geometry& g : visual ? link.visual : link.collision)
+      if (sweep::is_flat(g))
+        out.push_back(robot.path.string() + (g.line > 0 ? ":" + std::to_string(g.line) : "") +
+                      ": link '" + link.name + "': a " + describe(g) +
+                      (sweep::is_point(g) ? " is a point: it is not covered"
+                                          : " has no volume; its surface is covered, but engines "
+                                            "may refuse it: give it a thickness"));
+  }
+  return out;
+}
+
 std::string epsilon_of_mesh(const std::string& epsilon, double scale) {
   const auto length = parse_length(epsilon);
   if (!length || length->percent || scale == 1) return epsilon;
@@ -180,52 +257,6 @@ std::string epsilon_of_mesh(const std::string& epsilon, double scale) {
   text.precision(17);
   text << length->value / scale;
   return text.str();
-}
-
-std::vector<fs::path> find_mesh(const std::string& reference, const fs::path& robot,
-                                const std::vector<std::string>& packages) {
-  const auto fail = [&](const std::string& where) -> std::vector<fs::path> {
-    throw Error(ErrorCode::InvalidInput, robot.string() + ": no mesh file for '" + reference +
-                                             "'; looked for it in " + where);
-  };
-  const fs::path folder = robot.has_parent_path() ? robot.parent_path() : fs::path(".");
-  const std::string file = "file://", package = "package://";
-  if (reference.starts_with(package)) {
-    const fs::path rest = reference.substr(package.size());
-    std::vector<fs::path> places(packages.begin(), packages.end());
-    if (const char* variable = std::getenv("ROS_PACKAGE_PATH")) {
-      std::string list = variable;
-      for (std::size_t begin = 0; begin < list.size();) {
-        const std::size_t end = std::min(list.find(':', begin), list.size());
-        if (end > begin) places.emplace_back(list.substr(begin, end - begin));
-        begin = end + 1;
-      }
-    }
-    std::error_code error;
-    const fs::path start = fs::absolute(folder, error).lexically_normal();
-    for (fs::path up = start;; up = up.parent_path()) {
-      places.push_back(up);
-      if (up == up.root_path() || up.empty()) break;
-    }
-    std::vector<fs::path> found;
-    for (const fs::path& place : places)
-      if (is_file(place / rest)) found.push_back(place / rest);
-    return found.empty()
-               ? fail("--package-path, $ROS_PACKAGE_PATH and the folders above the robot's file")
-               : found;
-  }
-  if (reference.find("://") != std::string::npos && !reference.starts_with(file))
-    return fail("no place: only package:// and file:// are known");
-  fs::path path =
-      reference.starts_with(file) ? fs::path(reference.substr(file.size())) : fs::path(reference);
-  if (path.is_relative()) path = folder / path;
-  if (is_file(path)) return {path};
-  return fail(path.parent_path().string());
-}
-
-fs::path resolve_mesh(const std::string& reference, const fs::path& robot,
-                      const std::vector<std::string>& packages) {
-  return find_mesh(reference, robot, packages).front();
 }
 
 void place_shape(const Geometry& g, const geom::ConvexSet* set, const std::string& link,
@@ -236,6 +267,7 @@ void place_shape(const Geometry& g, const geom::ConvexSet* set, const std::strin
   };
   // The points' own rounding where shape and link lie far from one another's origin.
   const auto rounding = [&](double size) { return 0x1p-46 * (size + g.origin.translation.norm()); };
+  if (sweep::is_point(g)) return;
   if (g.shape != Geometry::Shape::Mesh) {
     bodies.push_back({name(), index, sweep::bounding_points(g), rounding(2 * g.size.norm())});
     return;
@@ -264,7 +296,10 @@ LinkBodies bodies_of(const RobotFile& robot, const BodyOptions& options) {
       throw Error(ErrorCode::InvalidArgument,
                   robot.path.string() + ": there is no link '" + name + "'");
   const WorkFolder work;
+  Notes notes;
   LinkBodies out;
+  out.bare = bare_links(robot.robot, options.visual, options.links);
+  out.notes = notes_on_flat_shapes(robot, options.visual, options.links);
   std::map<std::pair<std::string, std::string>, geom::ConvexSet> decomposed;
   for (std::uint32_t l = 0; l < robot.robot.links.size(); ++l) {
     const sweep::Link& link = robot.robot.links[l];
@@ -272,7 +307,6 @@ LinkBodies bodies_of(const RobotFile& robot, const BodyOptions& options) {
         std::find(options.links.begin(), options.links.end(), link.name) == options.links.end())
       continue;
     const std::vector<Geometry>& shapes = options.visual ? link.visual : link.collision;
-    if (shapes.empty()) out.bare.push_back(link.name);
     for (const Geometry& g : shapes) {
       if (g.shape != Geometry::Shape::Mesh) {
         place_shape(g, nullptr, link.name, l, out.bodies);
@@ -285,7 +319,7 @@ LinkBodies bodies_of(const RobotFile& robot, const BodyOptions& options) {
       auto it = decomposed.find(key);
       if (it == decomposed.end()) {
         const fs::path result = work.path() / (std::to_string(decomposed.size()) + ".glb");
-        it = decomposed.emplace(key, decompose(mesh, options, key.second, result)).first;
+        it = decomposed.emplace(key, decompose(mesh, options, key.second, result, notes)).first;
         if (std::find(out.files.begin(), out.files.end(), key.first) == out.files.end())
           out.files.push_back(key.first);
       }
@@ -293,6 +327,7 @@ LinkBodies bodies_of(const RobotFile& robot, const BodyOptions& options) {
       place_shape(g, &it->second, link.name, l, out.bodies);
     }
   }
+  for (std::string& line : notes.lines()) out.notes.push_back(std::move(line));
   if (out.bodies.empty())
     throw Error(ErrorCode::InvalidInput,
                 robot.path.string() + ": no link has a shape" +

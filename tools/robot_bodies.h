@@ -24,6 +24,31 @@ struct RobotFile {
 /// @throws Error{InvalidInput}.
 RobotFile read_robot(const std::string& path);
 
+/// Links that have no shape of the kind asked for.
+struct BareLinks {
+  std::vector<std::string> empty;  ///< that have none at all
+  std::vector<std::string> other;  ///< that have shapes of the other kind
+  [[nodiscard]] std::vector<std::string> all() const;
+};
+/// @param visual  the kind: shapes for drawing, else those for collisions
+/// @param links   only these; empty: all
+BareLinks bare_links(const sweep::Robot& robot, bool visual,
+                     const std::vector<std::string>& links = {});
+
+/// One line for each kind of bare links; `consequence` ends it.
+std::vector<std::string> notes_on(const BareLinks& bare, bool visual,
+                                  const std::string& consequence);
+
+/// "8 of 9 links judged; 'l1' has shapes of the other kind only".
+std::string links_judged(std::size_t judged, std::size_t asked, const BareLinks& bare);
+
+/// One line for each box, cylinder and sphere without volume, with its place in the robot's file.
+std::vector<std::string> notes_on_flat_shapes(const RobotFile& robot, bool visual,
+                                              const std::vector<std::string>& links = {});
+
+/// 'a', 'b' and 2 more.
+std::string names_of(const std::vector<std::string>& names);
+
 struct BodyOptions {
   std::vector<std::string> links;     ///< only these; empty: all that have a shape
   bool visual = false;                ///< shapes for drawing instead of those for collisions
@@ -42,7 +67,8 @@ struct LinkBodies {
   std::vector<sweep::Body> bodies;
   double epsilon = 0;              ///< largest certified distance of a body from its shape [length]
   std::vector<std::string> files;  ///< meshes read
-  std::vector<std::string> bare;   ///< links asked for that have no shape
+  BareLinks bare;                  ///< of the links asked for
+  std::vector<std::string> notes;  ///< things a user should know; one sentence each
 };
 
 /// Convex bodies of a robot's links: of meshes by the program bcd-decompose beside this one, which
@@ -51,7 +77,7 @@ struct LinkBodies {
 LinkBodies bodies_of(const RobotFile& robot, const BodyOptions& options);
 
 /// Appends the bodies of one shape in the frame of its link, points within the bodies' margins:
-/// those of `set` for a mesh, else a bounding polytope.
+/// those of `set` for a mesh, else a bounding polytope; none for a point.
 /// @param set   of the mesh in its own frame and unit; unused for other shapes.
 /// @param link  name that the bodies' names begin with; `index` is the link's.
 void place_shape(const sweep::Geometry& shape, const geom::ConvexSet* set, const std::string& link,
@@ -60,18 +86,5 @@ void place_shape(const sweep::Geometry& shape, const geom::ConvexSet* set, const
 /// "5%" as it is; a length in the robot's unit in that of a mesh whose coordinates are multiplied
 /// by `scale`.
 std::string epsilon_of_mesh(const std::string& epsilon, double scale);
-
-/// The files that a URDF's mesh reference may stand for, at least one. `package://name/rest` is
-/// looked up as name/rest in the given folders, in $ROS_PACKAGE_PATH, and in all folders above the
-/// robot's file, in this order.
-/// @throws Error{InvalidInput} saying where it was looked for.
-std::vector<std::filesystem::path> find_mesh(const std::string& reference,
-                                             const std::filesystem::path& robot,
-                                             const std::vector<std::string>& packages);
-
-/// The first of them.
-/// @throws as find_mesh
-std::filesystem::path resolve_mesh(const std::string& reference, const std::filesystem::path& robot,
-                                   const std::vector<std::string>& packages);
 
 }  // namespace kaboum::tools

@@ -10,8 +10,8 @@
 #include <string_view>
 
 #include "file_names.h"
+#include "find_mesh.h"
 #include "link_container.h"
-#include "robot_bodies.h"
 #include "urdf_output.h"
 
 namespace kaboum::tools {
@@ -44,6 +44,8 @@ class Writer {
 
   RobotResult run() {
     parse();
+    result_.bare = bare_links(robot_.robot, o_.visual);
+    result_.notes = notes_on_flat_shapes(robot_, o_.visual);
     for (std::uint32_t l = 0; l < robot_.robot.links.size(); ++l) decompose_link(l);
     if (total_bodies_ == 0)
       throw Error(ErrorCode::InvalidInput,
@@ -201,7 +203,6 @@ class Writer {
     if (shapes.empty()) {
       // What the link has for collisions stays.
       for (XMLElement* e : old) move_references(e);
-      result_.bare.push_back(link.name);
       return;
     }
     for (XMLElement* e : old) element->DeleteChild(e);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli.h"
+#include "robot_bodies.h"
 
 /// Whole robots: the shapes of every link as convex bodies, and a URDF that refers to them.
 namespace kaboum::tools {
@@ -37,7 +38,8 @@ struct RobotResult {
   Json report;
   geom::ConvexSet at_rest;  ///< all links at zero joint values, for pictures: not certified
   std::vector<std::filesystem::path> inputs;
-  std::vector<std::string> bare;  ///< links without a shape of the kind asked for: left as they are
+  BareLinks bare;  ///< links without a shape of the kind asked for: left as they are
+  std::vector<std::string> notes;  ///< things a user should know of shapes; one sentence each
 };
 
 /// Writes to the folder, the URDF last:

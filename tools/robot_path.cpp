@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <sstream>
 #include <string_view>
@@ -26,7 +27,9 @@ bool all_names(std::string_view line, const sweep::Robot& robot) {
       line.find_first_of(",;") == std::string_view::npos ? kBlanks : ",;";
   for (line = trimmed(line); !line.empty();) {
     const std::size_t end = std::min(line.find_first_of(separators), line.size());
-    const std::string_view field = trimmed(line.substr(0, end));
+    std::string_view field = trimmed(line.substr(0, end));
+    if (field.size() >= 2 && field.front() == '"' && field.back() == '"')
+      field = field.substr(1, field.size() - 2);
     if (std::none_of(robot.variables.begin(), robot.variables.end(),
                      [&](const auto& variable) { return variable.name == field; }))
       return false;
@@ -97,17 +100,49 @@ void require_one_reading(std::string_view text, const sweep::NamedPath& path,
 
 }  // namespace
 
-sweep::Path read_path(const std::string& file, const sweep::Robot& robot, bool check_limits) {
+sweep::Path read_path(const std::string& file, const sweep::Robot& robot, bool check_limits,
+                      const sweep::FixedJoints& fixed, std::vector<std::string>& notes) {
   const std::vector<char> bytes = io::read_file(file);
   std::string_view text(bytes.data(), bytes.size());
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   const std::size_t start = text.find_first_not_of(" \t\r\n");
   const std::string name = file == "-" ? "standard input" : file;
-  if (start != std::string_view::npos && (text[start] == '{' || text[start] == '['))
-    return sweep::arrange(sweep::parse_path_json(text, name), robot, name, check_limits);
-  const sweep::NamedPath path = sweep::parse_path_csv(text, name);
-  require_one_reading(text, path, robot, name);
-  return sweep::arrange(path, robot, name, check_limits);
+  const bool json = start != std::string_view::npos && (text[start] == '{' || text[start] == '[');
+  const sweep::NamedPath path =
+      json ? sweep::parse_path_json(text, name) : sweep::parse_path_csv(text, name);
+  if (!json) require_one_reading(text, path, robot, name);
+  for (const std::size_t column : sweep::time_columns(path, robot))
+    notes.push_back(name + ": the column '" + path.joints[column] +
+                    "' is passed over: what is swept does not depend on times");
+  return sweep::arrange(path, robot, name, check_limits, fixed);
+}
+
+CLI::Option* add_joint_option(CLI::App& app, std::vector<std::string>& values) {
+  return app
+      .add_option(
+          "--joint", values,
+          "Value of a joint that does not move and has no column in the path, in radians or "
+          "metres, as in finger=0.04; may be repeated")
+      ->type_name("NAME=X");
+}
+
+sweep::FixedJoints fixed_joints(const std::vector<std::string>& values) {
+  sweep::FixedJoints out;
+  for (const std::string& text : values) {
+    const std::size_t sign = text.rfind('=');
+    double value = 0;
+    const char* end = text.data() + text.size();
+    const char* begin = sign == std::string::npos ? end : text.data() + sign + 1;
+    if (begin != end && *begin == '+') ++begin;
+    const auto [stop, error] = std::from_chars(begin, end, value);
+    if (begin == end || error != std::errc() || stop != end || !std::isfinite(value) || sign == 0)
+      throw Error(ErrorCode::InvalidArgument,
+                  "--joint: write NAME=NUMBER, as in finger=0.04, not " + text);
+    if (!out.emplace(text.substr(0, sign), value).second)
+      throw Error(ErrorCode::InvalidArgument,
+                  "--joint: '" + text.substr(0, sign) + "' is given twice");
+  }
+  return out;
 }
 
 std::string largest_move(const sweep::Path& path, const sweep::Robot& robot) {

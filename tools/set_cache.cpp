@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <string_view>
 
 namespace kaboum::tools {
 namespace {
@@ -21,15 +22,20 @@ fs::path directory() {
   return {};
 }
 
+// An entry is the name of this format, the hash of what follows, the hash of the key, the report in
+// one line, and the container; the first four end with a line feed.
+constexpr std::string_view kFormat = "KABOUM-SET 2\n";
+constexpr std::size_t kHash = 64;
+
 }  // namespace
 
-SetCache::SetCache(const std::string& key) {
+SetCache::SetCache(const std::string& key) : key_(io::sha256({key.data(), key.size()})) {
   const fs::path where = directory();
-  if (!where.empty()) path_ = where / (io::sha256({key.data(), key.size()}) + ".set");
+  if (!where.empty()) path_ = where / (key_ + ".set");
 }
 
-// An entry is the hash of the rest, a line feed, the report in one line, and the container.
-std::optional<SetCache::Entry> SetCache::find() const {
+std::optional<SetCache::Entry> SetCache::find(std::string& flaw) const {
+  flaw.clear();
   std::error_code error;
   if (path_.empty() || !fs::is_regular_file(path_, error)) return std::nullopt;
   std::vector<char> bytes;
@@ -38,29 +44,40 @@ std::optional<SetCache::Entry> SetCache::find() const {
   } catch (const Error&) {
     return std::nullopt;
   }
-  constexpr std::size_t kHash = 64;
-  if (bytes.size() <= kHash + 1) return std::nullopt;
-  const std::span<const char> rest = std::span<const char>(bytes).subspan(kHash + 1);
-  const std::string stated(bytes.begin(), bytes.begin() + kHash);
-  if (io::sha256(rest) != stated) return std::nullopt;
-  const auto end = std::find(rest.begin(), rest.end(), '\n');
-  if (end == rest.end()) return std::nullopt;
+  const auto useless = [&](const char* why) {
+    flaw = path_.string() + ": " + why;
+    return std::nullopt;
+  };
+  std::string_view rest(bytes.data(), bytes.size());
+  const auto take_hash = [&] {
+    const std::string_view hash = rest.substr(0, kHash);
+    rest.remove_prefix(std::min(kHash + 1, rest.size()));
+    return hash;
+  };
+  if (!rest.starts_with(kFormat)) return useless("damaged, or of another version");
+  rest.remove_prefix(kFormat.size());
+  const std::string_view stated = take_hash();
+  if (io::sha256(rest) != stated) return useless("damaged");
+  if (take_hash() != key_) return useless("the result of another input or of other options");
+  const std::size_t end = rest.find('\n');
+  if (end == std::string_view::npos) return useless("damaged");
   Entry entry;
-  entry.report = Json::parse(rest.begin(), end, nullptr, false);
-  if (entry.report.is_discarded()) return std::nullopt;
-  entry.container.assign(end + 1, rest.end());
+  entry.report = Json::parse(rest.substr(0, end), nullptr, false);
+  if (!entry.report.is_object()) return useless("damaged");
+  entry.container.assign(rest.begin() + static_cast<std::ptrdiff_t>(end) + 1, rest.end());
   return entry;
 }
 
 void SetCache::store(const Entry& entry) const {
   if (path_.empty()) return;
-  std::string rest = entry.report.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  std::string rest =
+      key_ + "\n" + entry.report.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
   rest.append(entry.container.begin(), entry.container.end());
-  const std::string bytes = io::sha256({rest.data(), rest.size()}) + "\n" + rest;
+  const std::string bytes = std::string(kFormat) + io::sha256(rest) + "\n" + rest;
   std::error_code error;
   fs::create_directories(path_.parent_path(), error);
   try {
-    io::write_file(path_, {bytes.data(), bytes.size()});
+    io::write_file(path_, bytes);
   } catch (const Error&) {  // NOLINT(bugprone-empty-catch): a cache is a convenience
   }
 }

@@ -18,6 +18,7 @@ using tools::Json;
 struct Options {
   std::string robot, path, output, output_format, epsilon = "0.005", bound = "balanced", reach;
   std::string links, geometry = "collision", unit = "m", preview, depfile, prefix;
+  std::vector<std::string> joints;
   double simplify = 0;
   bool implicit_margin = false, no_merge = false, ignore_limits = false;
   tools::BodyOptions bodies;
@@ -33,7 +34,10 @@ std::string check_length(const std::string& text) {
   const auto length = tools::parse_length(text);
   return length && !length->percent
              ? std::string()
-             : "must be a positive length without a unit, as in 0.005, not " + text;
+             : "must be a positive length without a unit, as in 0.005, not " + text +
+                   (length ? " (there is no diagonal that it could be a percentage of before the "
+                             "volume is made)"
+                           : "");
 }
 
 void describe(CLI::App& app, Options& o) {
@@ -52,7 +56,10 @@ void describe(CLI::App& app, Options& o) {
          "a folder beside it (- for stdout)")
       ->required()
       ->type_name("PATH");
-  app.add_option("--epsilon", o.epsilon, "Largest margin round the bodies [0.005]")
+  app.add_option(
+         "--epsilon", o.epsilon,
+         "Largest margin round the bodies, by which they are enlarged. How far they then reach "
+         "beyond what is swept is said at the end, and limited by --max-reach [0.005]")
       ->check(check_length)
       ->type_name("LENGTH");
   app.add_option("--bound", o.bound,
@@ -79,14 +86,17 @@ void describe(CLI::App& app, Options& o) {
                "vertices, but whatever reads them has to add it");
   app.add_flag("--no-merge", o.no_merge, "One body at least between two waypoints");
   app.add_flag("--ignore-limits", o.ignore_limits, "Allow waypoints outside the joints' limits");
+  tools::add_joint_option(app, o.joints);
   app.add_option("--links", o.links, "Only these links, separated by commas [all]")
       ->type_name("A,B");
   app.add_option("--geometry", o.geometry, "Which shapes of a URDF [collision]")
       ->check(CLI::IsMember({"collision", "visual"}).description(""))
       ->type_name("collision|visual");
+  app.add_flag_callback(
+      "--visual", [&o] { o.geometry = "visual"; }, "The same as --geometry visual");
   app.add_option("--package-path", o.bodies.packages,
-                 "Folder to look up package:// in, besides $ROS_PACKAGE_PATH and the folders above "
-                 "ROBOT; may be repeated")
+                 "A package of package:// or a folder that holds it, besides $ROS_PACKAGE_PATH, "
+                 "$AMENT_PREFIX_PATH and the folders above ROBOT; may be repeated")
       ->type_name("DIR");
   app.add_option("--body-epsilon", o.bodies.epsilon,
                  "Largest distance of the links' convex bodies from their meshes, a length or a "
@@ -148,6 +158,7 @@ std::string parameters(const Options& o) {
   if (!o.reach.empty()) out << " --max-reach " << o.reach;
   if (o.simplify > 0) out << " --simplify " << o.simplify;
   if (!o.links.empty()) out << " --links " << o.links;
+  for (const std::string& joint : o.joints) out << " --joint " << joint;
   if (o.bodies.drop_sheets) out << " --drop-sheets";
   if (o.implicit_margin) out << " --implicit-margin";
   if (o.no_merge) out << " --no-merge";
@@ -174,16 +185,20 @@ int sweep_path(Options o) {
     io::require_replaceable(urdf ? std::filesystem::path(o.output).replace_extension()
                                  : std::filesystem::path(o.output));
   const tools::RobotFile file = tools::read_robot(o.robot);
-  const sweep::Path path = tools::read_path(o.path, file.robot, !o.ignore_limits);
+  std::vector<std::string> notes;
+  const sweep::Path path =
+      tools::read_path(o.path, file.robot, !o.ignore_limits, tools::fixed_joints(o.joints), notes);
+  for (const std::string& note : notes) tools::log(o.common.quiet, note);
   o.bodies.links = split(o.links);
   o.bodies.visual = o.geometry == "visual";
   o.bodies.quiet = o.common.quiet;
   o.bodies.threads = o.common.threads;
   if (o.bodies.epsilon.empty()) o.bodies.epsilon = o.epsilon;
   const tools::LinkBodies links = tools::bodies_of(file, o.bodies);
-  for (const std::string& link : links.bare)
-    tools::log(o.common.quiet, o.robot + ": link '" + link + "' has no " + o.geometry +
-                                   " shape: nothing of it is swept");
+  for (const std::string& note : links.notes) tools::log(o.common.quiet, note);
+  for (const std::string& note :
+       tools::notes_on({{}, links.bare.other}, o.bodies.visual, ": nothing of this is swept"))
+    tools::log(o.common.quiet, o.robot + ": " + note);
   sweep::SweepOptions options;
   options.epsilon = tools::parse_length(o.epsilon)->value;
   options.rule = kRules.at(o.bound);
@@ -228,7 +243,9 @@ int sweep_path(Options o) {
   message.precision(3);
   message << written.bodies.size() << (written.bodies.size() == 1 ? " body" : " bodies") << " for "
           << links.bodies.size() << " of the robot; margin " << written.margin
-          << "; no point farther than " << result.reach << " from what they sweep";
+          << "; no point farther than " << result.reach
+          << " from what the robot's bodies sweep, these within " << links.epsilon
+          << " of its shapes";
   if (!result.certified) message << "; NOT certified: --bound baginski is not proved";
   tools::log(o.common.quiet, message.str());
   if (format == io::SetFormat::Glb) {
@@ -266,7 +283,7 @@ int sweep_path(Options o) {
                          {"vertices", vertices},
                          {"bodies_of_links", of_link},
                          {"bodies_at_rest", links.bodies.size()},
-                         {"links_without_shapes", links.bare},
+                         {"links_without_shapes", links.bare.all()},
                          {"margin", written.margin},
                          {"deviation", result.deviation},
                          {"left_out", result.left_out},

@@ -10,8 +10,11 @@
 #include <iostream>
 #include <map>
 #include <optional>
+#include <set>
 #include <tuple>
 
+#include "find_mesh.h"
+#include "notes.h"
 #include "prepared_original.h"
 #include "robot_bodies.h"
 #include "verdict.h"
@@ -137,24 +140,80 @@ class RobotVerifier {
   int run() {
     read_meshes();
     const std::string motion = difference_in_motion(original_.robot, result_.robot);
-    lines_.push_back(motion.empty() ? "joints: verified: both robots move alike"
-                                    : "joints: refuted: " + motion);
+    find_bare_links();
+    say(motion.empty() ? "joints: verified: both robots move alike" : "joints: refuted: " + motion);
     answer_ = motion.empty() ? Answer::Verified : Answer::Refuted;
     for (const sweep::Link& link : original_.robot.links) check(link);
     if (epsilon_) look_for_strangers();
     if (!common_.report.empty()) report(motion);
-    for (const std::string& note : notes_) log(common_.quiet, "note: " + note);
-    if (!common_.quiet) {
-      std::ostream& out = common_.report == "-" ? std::cerr : std::cout;
-      for (const std::string& line : lines_) out << line << '\n';
-      out << name_of(answer_)
-          << (open_ && answer_ == Answer::Verified ? ", as far as open meshes define it" : "")
-          << '\n';
-    }
+    progress_.show("");
+    note_other_kind();
+    for (const std::string& note : notes_.lines()) log(common_.quiet, "note: " + note);
+    const std::string open =
+        open_ && answer_ == Answer::Verified ? ", as far as open meshes define it" : "";
+    say(name_of(answer_) + open + ": " +
+        links_judged(links_.size(), original_.robot.links.size(), bare_));
     return exit_code(answer_);
   }
 
  private:
+  /// Prints at once: what follows may take long.
+  void say(const std::string& line) {
+    if (common_.quiet) return;
+    progress_.show("");
+    std::ostream& out = common_.report == "-" ? std::cerr : std::cout;
+    out << line << std::endl;
+  }
+
+  /// What is drawn, but does not collide, is easily overlooked.
+  void find_bare_links() {
+    const bool visual = o_.geometry == "visual";
+    bare_ = bare_links(original_.robot, visual);
+    if (visual) bare_.other.clear();  // their shapes for collisions are judged
+    for (const std::string& note : notes_on(bare_, visual, ": nothing of this is judged"))
+      log(common_.quiet, "note: " + o_.original + ": " + note);
+    for (const std::string& note : notes_on_flat_shapes(original_, visual))
+      log(common_.quiet, "note: " + note);
+  }
+
+  /// Hashes of the original's meshes that can be read.
+  [[nodiscard]] std::set<std::string> hashes_of(bool visual) const {
+    std::set<std::string> out;
+    for (const sweep::Link& link : original_.robot.links)
+      for (const Geometry& g : visual ? link.visual : link.collision) try {
+          if (g.shape == Geometry::Shape::Mesh)
+            out.insert(
+                io::sha256(io::read_file(resolve_mesh(g.mesh, original_.path, o_.packages))));
+        } catch (const Error&) {  // NOLINT(bugprone-empty-catch): a note is not worth an error
+        }
+    return out;
+  }
+
+  /// Says so where the records beside the result's bodies name meshes of the kind that was not
+  /// judged: --visual was given for one of both programs only.
+  void note_other_kind() {
+    if (answer_ == Answer::Verified) return;
+    const bool visual = o_.geometry == "visual";
+    const std::set<std::string> judged = hashes_of(visual), others = hashes_of(!visual);
+    for (const auto& [path, file] : files_) {
+      const fs::path record = fs::path(path).parent_path() / "convex-set.json";
+      std::error_code error;
+      if (!fs::is_regular_file(record, error)) continue;
+      const std::vector<char> text = io::read_file(record);
+      const Json json = Json::parse(text.begin(), text.end(), nullptr, false);
+      if (!json.is_object() || !json.contains("source_sha256")) continue;
+      const Json& hash = json["source_sha256"];
+      if (!hash.is_string() || !others.contains(hash.get<std::string>()) ||
+          judged.contains(hash.get<std::string>()))
+        continue;
+      notes_.add(record.string(), std::string("these bodies were made of a ") +
+                                      (visual ? "collision" : "visual") +
+                                      " mesh of the original: judge them with" +
+                                      (visual ? "out --visual" : " --visual"));
+      return;
+    }
+  }
+
   /// Those to be held: for drawings, of links without, those for collisions, which
   /// `bcd-decompose --visual` leaves as they are.
   [[nodiscard]] const std::vector<Geometry>& shapes_of(const sweep::Link& link) const {
@@ -186,19 +245,11 @@ class RobotVerifier {
     require_apart({{"--report", common_.report}}, inputs);
   }
 
-  /// The file of a mesh. A package's that is found with different contents is nobody's: another
-  /// program may take the other one.
+  /// The file of a mesh.
   const File& file_of(const Geometry& g, const RobotFile& robot) {
     const auto [at, fresh] = named_.try_emplace({robot.path.string(), g.mesh});
     if (!fresh) return *at->second;
-    const std::vector<fs::path> places = find_mesh(g.mesh, robot.path, o_.packages);
-    const File& file = read(places.front().string());
-    for (auto other = places.begin() + 1; other != places.end(); ++other)
-      if (io::sha256(io::read_file(*other)) != file.sha256)
-        throw Error(ErrorCode::InvalidInput,
-                    robot.path.string() + ": '" + g.mesh + "' is found twice, as " + file.path +
-                        " and, with other contents, as " + other->string() +
-                        "; which one it stands for is not known: name it without package://");
+    const File& file = read(find_only_mesh(g.mesh, robot.path, o_.packages).string());
     at->second = &file;
     return file;
   }
@@ -214,6 +265,7 @@ class RobotVerifier {
   }
 
   void check(const sweep::Link& link) {
+    ++at_;
     const std::vector<Geometry>& shapes = shapes_of(link);
     if (shapes.empty()) return;
     const std::vector<Geometry>& there = result_of(link.name);
@@ -223,7 +275,7 @@ class RobotVerifier {
       const Geometry& g = shapes[i];
       if (seen[i] != 0) continue;
       if (g.shape != Geometry::Shape::Mesh) {
-        add(json, link, name_of_shape(g.shape), name_of_shape(g.shape), primitive(g, there));
+        add(json, link, name_of_shape(g.shape), describe(g), primitive(g, there));
         continue;
       }
       Group group{{}, {}, g.size.cwiseAbs()};
@@ -262,8 +314,7 @@ class RobotVerifier {
   void add(Json& json, const sweep::Link& link, const std::string& shape, const std::string& title,
            const Finding& f) {
     answer_ = worse(answer_, f.answer);
-    lines_.push_back("link '" + link.name + "': " + title + ": " + name_of(f.answer) + ": " +
-                     f.text);
+    say("link '" + link.name + "': " + title + ": " + name_of(f.answer) + ": " + f.text);
     Json entry{{"shape", shape}, {"answer", name_of(f.answer)}, {"text", f.text}};
     entry.update(f.json);
     json["shapes"].push_back(std::move(entry));
@@ -277,12 +328,7 @@ class RobotVerifier {
   }
 
   void note(const std::string& path, const std::vector<std::string>& notes) {
-    for (const std::string& n : notes) {
-      std::string text = path;
-      text.append(": ").append(n);
-      if (std::find(notes_.begin(), notes_.end(), text) == notes_.end())
-        notes_.push_back(std::move(text));
-    }
+    for (const std::string& n : notes) notes_.add(path, n);
   }
 
   /// The same meshes with the same bodies, as many links have them, are judged once.
@@ -299,7 +345,7 @@ class RobotVerifier {
     std::vector<geom::Mesh> meshes;
     bool held = true;
     for (const File* file : group.originals) {
-      progress_.show("deciding: " + file->path);
+      show(file->path);
       meshes.push_back(judged_mesh(*file));
       out.originals.push_back(hold(*file, meshes.back(), holders));
       held = held && out.originals.back().answer == Answer::Verified;
@@ -394,6 +440,11 @@ class RobotVerifier {
     return f;
   }
 
+  void show(const std::string& what) {
+    progress_.show("link " + std::to_string(at_) + " of " +
+                   std::to_string(original_.robot.links.size()) + ": deciding: " + what);
+  }
+
   static bool changes_by_preparing(const geom::Mesh& mesh) {
     try {
       return !prepare_original(mesh, false, true).notes.empty();
@@ -423,7 +474,7 @@ class RobotVerifier {
                                                ": --epsilon is no length in the unit of " +
                                                group.originals.front()->path + ", whose scale is " +
                                                number(group.scale.maxCoeff()));
-    progress_.show("deciding: distance to " + group.originals.front()->path);
+    show("distance to " + group.originals.front()->path);
     const verify::DistanceClaim claim =
         verify::verify_reach(holders.set, verify::sum_of(all), bound, solid, limits_);
     Finding f;
@@ -458,14 +509,26 @@ class RobotVerifier {
           }));
       if (strangers == 0) continue;
       answer_ = worse(answer_, Answer::Undecided);
-      lines_.push_back("link '" + link.name + "': undecided: how far " +
-                       count(strangers, "shape", "shapes") +
-                       " of the result that the original has no match for reach from it");
+      say("link '" + link.name + "': undecided: how far " + count(strangers, "shape", "shapes") +
+          " of the result that the original has no match for reach from it");
     }
   }
 
+  /// Triangles are numbered as read, or as prepared; not all of many are listed.
   static Json claim_json(const verify::Claim& claim) {
-    return {{"answer", name_of(claim.answer)}, {"reason", claim.reason}};
+    Json json{{"answer", name_of(claim.answer)}, {"reason", claim.reason}};
+    if (!claim.witness) return json;
+    constexpr std::size_t kMost = 100;
+    std::vector<std::uint32_t> triangles = claim.inner_triangles;
+    std::sort(triangles.begin(), triangles.end());
+    const std::size_t all = triangles.size();
+    triangles.resize(std::min(all, kMost));
+    const geom::Vec3& p = claim.witness->point;
+    json["witness"] = {{"point", {p.x(), p.y(), p.z()}},
+                       {"depth", claim.witness->depth},
+                       {"triangles_outside", all},
+                       {"triangles", triangles}};
+    return json;
   }
 
   void report(const std::string& motion) const {
@@ -485,7 +548,9 @@ class RobotVerifier {
          {"result", file(o_.result, result_)},
          {"joints", {{"answer", motion.empty() ? "verified" : "refuted"}, {"reason", motion}}},
          {"links", links_},
-         {"notes", notes_},
+         {"links_without_shapes", bare_.all()},
+         {"links_with_other_shapes_only", bare_.other},
+         {"notes", notes_.lines()},
          {"resources", {{"user_seconds", user_seconds()}, {"peak_megabytes", peak_megabytes()}}}});
   }
 
@@ -502,7 +567,9 @@ class RobotVerifier {
   std::map<GroupKey, Judgement> judged_;
   Answer answer_ = Answer::Verified;
   bool open_ = false;
-  std::vector<std::string> lines_, notes_;
+  BareLinks bare_;
+  std::size_t at_ = 0;  // number of the link
+  Notes notes_;
   Json links_ = Json::array();
 };
 

@@ -12,6 +12,7 @@
 #include <map>
 #include <sstream>
 
+#include "find_mesh.h"
 #include "robot_bodies.h"
 #include "robot_path.h"
 #include "verdict.h"
@@ -28,6 +29,8 @@ struct Shapes {
   std::vector<verify::MovingShape> shapes;
   std::vector<std::uint32_t> links;  // of the shapes
   std::vector<std::string> files, notes;
+  BareLinks bare;
+  std::size_t judged = 0, asked = 0;  // links
 };
 
 /// The joints from the root to a link, in this verifier's words.
@@ -75,23 +78,35 @@ Shapes read_shapes(const RobotFile& file, const VerifySweepOptions& o) {
                                          {From::Cylinder, To::Cylinder},
                                          {From::Sphere, To::Sphere}};
   Shapes out;
+  out.bare = bare_links(file.robot, o.geometry == "visual", wanted);
+  out.notes = notes_on_flat_shapes(file, o.geometry == "visual", wanted);
+  for (const std::string& note :
+       notes_on(out.bare, o.geometry == "visual", ": nothing of this is judged"))
+    out.notes.push_back(o.files[0] + ": " + note);
   for (std::uint32_t l = 0; l < file.robot.links.size(); ++l) {
     const sweep::Link& link = file.robot.links[l];
     if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), link.name) == wanted.end())
       continue;
+    ++out.asked;
     std::size_t count = 0;
+    const std::size_t before = out.shapes.size();
     for (const sweep::Geometry& g : o.geometry == "visual" ? link.visual : link.collision) {
       verify::MovingShape shape;
       shape.name = link.name + "/" + std::to_string(count++);
+      if (sweep::is_point(g)) continue;
       shape.kind = kKinds.at(g.shape);
       shape.size = g.size;
+      if (g.shape == From::Cylinder && g.size.x() == 0) {
+        shape.kind = To::Box;  // a line, without a curved side
+        shape.size = {0, 0, g.size.y()};
+      }
       shape.chain = chain_to(file.robot, l);
       Stage place;
       place.rotation = g.origin.linear;
       place.translation = g.origin.translation;
       shape.chain.push_back(place);
       if (shape.kind == To::Mesh) {
-        const std::string path = resolve_mesh(g.mesh, file.path, o.packages).string();
+        const std::string path = find_only_mesh(g.mesh, file.path, o.packages).string();
         io::ReadResult read = io::read_mesh(path);
         for (std::string& note : read.notes)
           out.notes.push_back(std::move(note.insert(0, ": ").insert(0, path)));
@@ -101,6 +116,7 @@ Shapes read_shapes(const RobotFile& file, const VerifySweepOptions& o) {
       out.shapes.push_back(std::move(shape));
       out.links.push_back(l);
     }
+    if (out.shapes.size() > before) ++out.judged;
   }
   if (out.shapes.empty()) {
     std::string why = file.path.string();
@@ -159,6 +175,42 @@ std::string say(const verify::SweepPlace& p, const Shapes& shapes) {
   return text.str();
 }
 
+/// The bodies of a URDF as sweep-approx writes it: the only link's collision shapes, meshes in the
+/// link's frame and unit.
+geom::ConvexSet read_swept_urdf(const std::string& path, const VerifySweepOptions& o,
+                                io::SetReadDetails& details) {
+  const RobotFile file = read_robot(path);
+  const auto refuse = [&](const std::string& why) {
+    throw Error(ErrorCode::InvalidInput, path + ": " + why +
+                                             "; a swept volume as sweep-approx writes it is the "
+                                             "collision meshes of one link, neither moved nor "
+                                             "scaled");
+  };
+  if (file.robot.links.size() != 1) refuse("it has several links");
+  details.bytes = io::read_file(path);
+  geom::ConvexSet set;
+  for (const sweep::Geometry& g : file.robot.links[0].collision) {
+    if (g.shape != sweep::Geometry::Shape::Mesh) refuse("it has a " + describe(g));
+    if (!g.origin.linear.isIdentity(0) || !g.origin.translation.isZero(0) || !g.size.isOnes(0))
+      refuse("a mesh is moved or scaled");
+    const std::filesystem::path mesh = find_only_mesh(g.mesh, file.path, o.packages);
+    std::vector<char> bytes;
+    set.bodies.push_back({mesh.filename().string(), io::read_mesh(mesh, {}, &bytes).mesh});
+    details.bytes.insert(details.bytes.end(), bytes.begin(), bytes.end());
+  }
+  if (set.bodies.empty()) refuse("it has no collision shape");
+  return set;
+}
+
+geom::ConvexSet read_swept(const std::string& path, const VerifySweepOptions& o,
+                           io::SetReadDetails& details) {
+  if (o.set_format.empty() && std::filesystem::path(path).extension() == ".urdf")
+    return read_swept_urdf(path, o, details);
+  std::optional<io::Format> format;
+  if (!is_folder(path)) format = format_for(path, o.set_format, "--approximation-format");
+  return io::read_convex_set(path, format, &details);
+}
+
 void write_witness(const std::string& path, const verify::SweepPlace& place) {
   geom::Mesh mesh;
   mesh.vertices = place.triangle;
@@ -179,16 +231,15 @@ int verify_sweep(const VerifySweepOptions& o, const CommonOptions& common) {
   const ThreadLimit threads(common.threads);
   const RobotFile file = read_robot(robot_path);
   // Limits are no matter of the set.
-  const sweep::Path path = read_path(path_path, file.robot, false);
+  std::vector<std::string> notes;
+  const sweep::Path path = read_path(path_path, file.robot, false, fixed_joints(o.joints), notes);
   const Shapes shapes = read_shapes(file, o);
   require_apart({{"--report", common.report}, {"--witness", o.witness}}, shapes.files);
   require_same_poses(file.robot, shapes, path);
-  std::optional<io::Format> format;
-  if (!std::filesystem::is_directory(set_path))
-    format = format_for(set_path, o.set_format, "--approximation-format");
   io::SetReadDetails details;
-  const geom::ConvexSet set = io::read_convex_set(set_path, format, &details);
-  for (const std::string& note : shapes.notes) log(common.quiet, note);
+  const geom::ConvexSet set = read_swept(set_path, o, details);
+  notes.insert(notes.end(), shapes.notes.begin(), shapes.notes.end());
+  for (const std::string& note : notes) log(common.quiet, note);
   for (std::string& note : details.notes)
     log(common.quiet, note.insert(0, ": ").insert(0, set_path));
 
@@ -235,6 +286,10 @@ int verify_sweep(const VerifySweepOptions& o, const CommonOptions& common) {
       json["largest_found"] = to_json(claims.farthest, shapes, path);
     json["open_meshes"] = claims.open_meshes;
     json["shapes"] = shapes.shapes.size();
+    json["links"] = {{"asked", shapes.asked},
+                     {"judged", shapes.judged},
+                     {"without_shapes", shapes.bare.all()},
+                     {"with_other_shapes_only", shapes.bare.other}};
     json["cells"] = claims.cells;
     json["samples"] = claims.samples;
     json["resources"] = {{"user_seconds", user_seconds()}, {"peak_megabytes", peak_megabytes()}};
@@ -252,7 +307,9 @@ int verify_sweep(const VerifySweepOptions& o, const CommonOptions& common) {
          "all " + std::to_string(set.bodies.size()) + " bodies are convex");
     line("surface claim", claims.surface,
          "during the whole path " + std::to_string(shapes.shapes.size()) +
-             " shapes of the links stay within " + number(set.margin) + " of the bodies");
+             " shapes of the links stay within " +
+             (set.margin > 0 ? "the bodies, with the margin " + number(set.margin) + " included"
+                             : std::string("the bodies")));
     if (claims.refuting) {
       out << "  " << say(*claims.refuting, shapes) << ": " << number(claims.refuting->distance)
           << " from the nearest body, margin " << number(set.margin) << '\n';
@@ -268,7 +325,8 @@ int verify_sweep(const VerifySweepOptions& o, const CommonOptions& common) {
       line("solid claim", claims.solid, "so do the insides of the closed shapes");
     if (claims.open_meshes > 0)
       out << claims.open_meshes << " meshes are not closed: their surfaces alone are judged\n";
-    out << name_of(answer) << '\n';
+    out << name_of(answer) << ": " << links_judged(shapes.judged, shapes.asked, shapes.bare)
+        << '\n';
   }
   return exit_code(answer);
 }

@@ -11,7 +11,7 @@ namespace kaboum::tools {
 struct VerifySweepOptions {
   std::vector<std::string> files;  ///< robot, path, swept set
   std::string links, geometry = "collision", gap, claims = "all", witness, set_format;
-  std::vector<std::string> packages;
+  std::vector<std::string> packages, joints;  ///< joints: of --joint
   std::size_t max_cells = 20000;
 };
 

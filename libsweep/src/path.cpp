@@ -3,6 +3,7 @@
 #include <kaboum/sweep/path.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -17,7 +18,14 @@ using Json = nlohmann::json;
   throw Error(ErrorCode::InvalidInput, name + ": " + what);
 }
 
-/// Fields between commas or semicolons, without the blanks round them; else words between blanks.
+/// Without quotation marks round it.
+std::string_view unquoted(std::string_view field) {
+  const bool quoted = field.size() >= 2 && field.front() == '"' && field.back() == '"';
+  return quoted ? field.substr(1, field.size() - 2) : field;
+}
+
+/// Fields between commas or semicolons, without the blanks and quotation marks round them, the last
+/// one perhaps ended by a separator; else words between blanks.
 std::vector<std::string> split(std::string_view line) {
   constexpr std::string_view kBlanks = " \t\r";
   const bool commas = line.find_first_of(",;") != std::string_view::npos;
@@ -27,8 +35,10 @@ std::vector<std::string> split(std::string_view line) {
     std::string_view field = line.substr(0, end);
     field.remove_prefix(std::min(field.find_first_not_of(kBlanks), field.size()));
     field = field.substr(0, field.find_last_not_of(kBlanks) + 1);
-    if (commas || !field.empty()) out.emplace_back(field);
-    if (end == line.size()) return out;
+    const bool last = end == line.size();
+    if (last && commas && field.empty() && !out.empty()) return out;
+    if (commas || !field.empty()) out.emplace_back(unquoted(field));
+    if (last) return out;
     line.remove_prefix(end + 1);
   }
 }
@@ -55,6 +65,11 @@ void append(NamedPath& path, std::vector<double> waypoint, const std::string& na
   for (const double x : waypoint)
     if (!std::isfinite(x)) fail(name, place + ": a number that is not finite");
   path.waypoints.push_back(std::move(waypoint));
+}
+
+bool has_variable(const Robot& robot, const std::string& name) {
+  return std::any_of(robot.variables.begin(), robot.variables.end(),
+                     [&](const Variable& v) { return v.name == name; });
 }
 
 std::string beyond_limits(const Variable& joint, double value) {
@@ -145,35 +160,68 @@ NamedPath parse_path_json(std::string_view text, const std::string& name) {
   return path;
 }
 
-Path arrange(const NamedPath& path, const Robot& robot, const std::string& name,
-             bool check_limits) {
+std::vector<std::size_t> time_columns(const NamedPath& path, const Robot& robot) {
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < path.joints.size(); ++i) {
+    std::string name = path.joints[i];
+    if (has_variable(robot, name)) continue;
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char c) { return std::tolower(c); });
+    for (const char* time :
+         {"time", "%time", "__time", "timestamp", "stamp", "time_from_start", "t"})
+      if (name == time) out.push_back(i);
+  }
+  return out;
+}
+
+Path arrange(const NamedPath& path, const Robot& robot, const std::string& name, bool check_limits,
+             const FixedJoints& fixed) {
   const std::size_t count = robot.variables.size();
-  std::vector<std::size_t> column(count);
+  const auto none = [&](const std::string& joint) {
+    return "the robot has no joint '" + joint +
+           "' that moves by itself (fixed and mimicking joints have no column)";
+  };
+  for (const auto& [joint, value] : fixed) {
+    if (!has_variable(robot, joint)) throw Error(ErrorCode::InvalidArgument, none(joint));
+    if (std::find(path.joints.begin(), path.joints.end(), joint) != path.joints.end())
+      throw Error(ErrorCode::InvalidArgument,
+                  name + ": joint '" + joint + "' has a column and a value besides");
+  }
+  constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  std::vector<std::size_t> column(count, kNone);
   if (path.joints.empty()) {
-    if (path.waypoints.front().size() != count)
+    const std::size_t moving = count - fixed.size();
+    if (path.waypoints.front().size() != moving)
       fail(name, std::to_string(path.waypoints.front().size()) + " columns for a robot with " +
-                     std::to_string(count) + " joints; name the joints in the first line");
-    for (std::size_t i = 0; i < count; ++i) column[i] = i;
+                     std::to_string(moving) + (fixed.empty() ? "" : " other") +
+                     " joints; name the joints in the first line");
+    for (std::size_t i = 0, next = 0; i < count; ++i)
+      if (!fixed.contains(robot.variables[i].name)) column[i] = next++;
   } else {
-    for (const std::string& joint : path.joints) {
+    const std::vector<std::size_t> times = time_columns(path, robot);
+    for (std::size_t j = 0; j < path.joints.size(); ++j) {
+      const std::string& joint = path.joints[j];
+      if (std::find(times.begin(), times.end(), j) != times.end()) continue;
       if (std::count(path.joints.begin(), path.joints.end(), joint) > 1)
         fail(name, "joint '" + joint + "' is named twice");
-      if (std::none_of(robot.variables.begin(), robot.variables.end(),
-                       [&](const Variable& v) { return v.name == joint; }))
-        fail(name, "the robot has no joint '" + joint +
-                       "' that moves by itself (fixed and mimicking joints have no column)");
+      if (!has_variable(robot, joint)) fail(name, none(joint));
     }
     for (std::size_t i = 0; i < count; ++i) {
-      const auto it = std::find(path.joints.begin(), path.joints.end(), robot.variables[i].name);
+      const std::string& joint = robot.variables[i].name;
+      if (fixed.contains(joint)) continue;
+      const auto it = std::find(path.joints.begin(), path.joints.end(), joint);
       if (it == path.joints.end())
-        fail(name, "no column for joint '" + robot.variables[i].name + "'");
+        fail(name, "no column for joint '" + joint +
+                       "'; where it does not move, give its value instead (--joint " + joint +
+                       "=0)");
       column[i] = static_cast<std::size_t>(it - path.joints.begin());
     }
   }
   Path out;
   for (const std::vector<double>& row : path.waypoints) {
     std::vector<double> q(count);
-    for (std::size_t i = 0; i < count; ++i) q[i] = row[column[i]];
+    for (std::size_t i = 0; i < count; ++i)
+      q[i] = column[i] == kNone ? fixed.at(robot.variables[i].name) : row[column[i]];
     if (check_limits) {
       if (const auto bad = find_out_of_limits(robot, q))
         fail(name, "waypoint " + std::to_string(out.size() + 1) + ": " +

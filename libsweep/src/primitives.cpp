@@ -67,25 +67,65 @@ std::vector<Vec3> sphere(double radius) {
   return points;
 }
 
+/// Sizes none of which is 0.
+Vec3 thickened(const Vec3& size) {
+  const double least = 1e-3 * size.maxCoeff();
+  return (size.array() == 0).select(least, size);
+}
+
 }  // namespace
 
+bool is_flat(const Geometry& g) {
+  return g.shape != Geometry::Shape::Mesh && (g.size.array() == 0).any();
+}
+
+bool is_point(const Geometry& g) {
+  return g.shape != Geometry::Shape::Mesh && (g.size.array() == 0).all();
+}
+
+std::string describe(const Geometry& g) {
+  const auto nothing = [&](const char* name, double x, const char* other, double y) {
+    std::string text = name;
+    if (x == 0) text += other;
+    return y == 0 ? text + (x == 0 ? " and length 0" : " of length 0") : text;
+  };
+  switch (g.shape) {
+    case Geometry::Shape::Mesh:
+      return "mesh";
+    case Geometry::Shape::Box: {
+      const auto sides = (g.size.array() == 0).count();
+      return sides == 0 ? "box" : "box with " + std::to_string(sides) + " of 3 sides 0";
+    }
+    case Geometry::Shape::Cylinder:
+      return nothing("cylinder", g.size.x(), " of radius 0", g.size.y());
+    case Geometry::Shape::Sphere:
+      break;
+  }
+  return g.size.x() == 0 ? "sphere of radius 0" : "sphere";
+}
+
 double bounding_excess(const Geometry& g) {
-  if (g.shape == Geometry::Shape::Sphere) return 0.02 * g.size.x();
-  if (g.shape == Geometry::Shape::Cylinder) return 0.005 * g.size.x();
-  return 0;
+  if (g.shape == Geometry::Shape::Mesh) return 0;
+  const Vec3 size = thickened(g.size);
+  const double added = (size - g.size).norm();
+  if (g.shape == Geometry::Shape::Sphere) return 0.02 * size.x();
+  if (g.shape == Geometry::Shape::Cylinder) return 0.005 * size.x() + added;
+  return added;
 }
 
 std::vector<Vec3> bounding_points(const Geometry& g) {
+  if (is_point(g)) throw Error(ErrorCode::InvalidArgument, "a point is not bounded by a polytope");
   std::vector<Vec3> points;
+  const Vec3 size = thickened(g.size);
   switch (g.shape) {
     case Geometry::Shape::Box:
-      points = box(g.size);
+      points = box(size);
       break;
     case Geometry::Shape::Cylinder:
-      points = cylinder(g.size.x(), g.size.y());
+      points = cylinder(size.x(), size.y());
       break;
     case Geometry::Shape::Sphere:
-      points = sphere(g.size.x());
+      points = sphere(size.x());
       break;
     case Geometry::Shape::Mesh:
       throw Error(ErrorCode::InvalidArgument, "a mesh is not bounded by a formula");

@@ -32,8 +32,8 @@ void require_valid(const Link& link, const Geometry& g) {
   if (g.shape == Geometry::Shape::Mesh) {
     if (g.mesh.empty()) fail(name + "a mesh without file name");
     if ((g.size.array() == 0).any()) fail(name + "a mesh scaled by 0");
-  } else if (!(g.size.array() > 0).all()) {
-    fail(name + "a shape whose size is not positive");
+  } else if (!(g.size.array() >= 0).all()) {
+    fail(name + "a " + describe(g) + " whose size is negative");
   }
 }
 

@@ -27,7 +27,20 @@ class Messages : public console_bridge::OutputHandler {
   std::string text_;
 };
 
-urdf::ModelInterfaceSharedPtr parse_by_urdfdom(std::string_view text, const std::string& name) {
+/// Where the first link or joint begins whose name is in brackets in a text, as in urdfdom's
+/// messages: "name:line: "; "name: " when none is.
+std::string place_of(const std::string& text, const tinyxml2::XMLElement& root,
+                     const std::string& name) {
+  for (const auto* e = root.FirstChildElement(); e != nullptr; e = e->NextSiblingElement())
+    if (const char* id = e->Attribute("name");
+        id != nullptr && text.find("[" + std::string(id) + "]") != std::string::npos)
+      return name + ":" + std::to_string(e->GetLineNum()) + ": ";
+  return name + ": ";
+}
+
+urdf::ModelInterfaceSharedPtr parse_by_urdfdom(std::string_view text,
+                                               const tinyxml2::XMLElement& root,
+                                               const std::string& name) {
   static std::mutex mutex;  // the output handler belongs to the process
   const std::lock_guard lock(mutex);
   Messages messages;
@@ -41,9 +54,10 @@ urdf::ModelInterfaceSharedPtr parse_by_urdfdom(std::string_view text, const std:
     thrown = error.what();
   }
   console_bridge::useOutputHandler(before);
-  if (model == nullptr || !thrown.empty() || !messages.text().empty())
-    throw Error(ErrorCode::InvalidInput,
-                name + ": not a valid URDF: " + (thrown.empty() ? messages.text() : thrown));
+  if (model == nullptr || !thrown.empty() || !messages.text().empty()) {
+    const std::string& what = thrown.empty() ? messages.text() : thrown;
+    throw Error(ErrorCode::InvalidInput, place_of(what, root, name) + "not a valid URDF: " + what);
+  }
   return model;
 }
 
@@ -55,11 +69,29 @@ void refuse_quaternions(const tinyxml2::XMLElement& element, const std::string& 
     refuse_quaternions(*e, name);
 }
 
+/// What xacro would have expanded: urdfdom passes over its elements.
+void refuse_xacro(const tinyxml2::XMLElement& element, const std::string& name) {
+  const auto refuse = [&](const std::string& what) {
+    fail_at(name, element.GetLineNum(),
+            what + " is xacro that is not expanded; run: xacro " + name + " > robot.urdf");
+  };
+  const std::string tag = element.Name();
+  if (tag.starts_with("xacro:")) refuse("<" + tag + ">");
+  for (const auto* a = element.FirstAttribute(); a != nullptr; a = a->Next()) {
+    const std::string value = a->Value();
+    if (value.find("${") != std::string::npos || value.starts_with("$("))
+      refuse(std::string(a->Name()) + "=\"" + value.substr(0, 60) + "\"");
+  }
+  for (const auto* e = element.FirstChildElement(); e != nullptr; e = e->NextSiblingElement())
+    refuse_xacro(*e, name);
+}
+
 /// What urdfdom tolerates or says nothing of.
 void check_document(const tinyxml2::XMLDocument& xml, const std::string& name) {
   const tinyxml2::XMLElement& root = *xml.RootElement();
   if (std::string(root.Name()) != "robot")
     fail_at(name, root.GetLineNum(), std::string("expected <robot>, found <") + root.Name() + ">");
+  refuse_xacro(root, name);
   refuse_quaternions(root, name);
   std::map<std::string, std::string> parent_joint;
   for (const auto* e = root.FirstChildElement("joint"); e != nullptr;
@@ -86,10 +118,12 @@ Transform transform_of(const urdf::Pose& pose) {
   return {q.toRotationMatrix(), vector_of(pose.position)};
 }
 
-Geometry geometry_of(const urdf::Pose& origin, const urdf::GeometrySharedPtr& shape,
+/// @param place  of the shape, for messages
+Geometry geometry_of(const urdf::Pose& origin, const urdf::GeometrySharedPtr& shape, int line,
                      const std::string& place) {
   if (shape == nullptr) throw Error(ErrorCode::InvalidInput, place + "a shape without geometry");
   Geometry g;
+  g.line = line;
   g.origin = transform_of(origin);
   switch (shape->type) {
     case urdf::Geometry::BOX:
@@ -111,16 +145,25 @@ Geometry geometry_of(const urdf::Pose& origin, const urdf::GeometrySharedPtr& sh
       g.shape = Geometry::Shape::Mesh;
       g.mesh = m.filename;
       g.size = vector_of(m.scale);
-      break;
+      if ((g.size.array() == 0).any())
+        throw Error(ErrorCode::InvalidInput, place + "a mesh scaled by 0");
+      return g;
     }
   }
+  if ((g.size.array() < 0).any())
+    throw Error(ErrorCode::InvalidInput, place + "a " + describe(g) + " whose size is negative");
   return g;
 }
 
 class Builder {
  public:
-  Builder(const urdf::ModelInterface& model, const std::string& name)
-      : model_(model), name_(name) {}
+  Builder(const urdf::ModelInterface& model, const tinyxml2::XMLElement& root,
+          const std::string& name)
+      : model_(model), name_(name) {
+    for (const auto* e = root.FirstChildElement("link"); e != nullptr;
+         e = e->NextSiblingElement("link"))
+      if (const char* id = e->Attribute("name"); id != nullptr) elements_.emplace(id, e);
+  }
 
   Robot build() {
     robot_.name = model_.getName();
@@ -157,14 +200,32 @@ class Builder {
     throw Error(ErrorCode::InvalidInput, name_ + ": " + what);
   }
 
+  /// Of the <box>, <cylinder>, ... of a <collision> or <visual>; 0 when there is none.
+  static int line_of_shape(const tinyxml2::XMLElement* element) {
+    if (element == nullptr) return 0;
+    const auto* geometry = element->FirstChildElement("geometry");
+    const auto* shape = geometry != nullptr ? geometry->FirstChildElement() : nullptr;
+    return (shape != nullptr ? shape : element)->GetLineNum();
+  }
+
   void add_link(const urdf::Link& link) {
     Link out;
     out.name = link.name;
-    const std::string place = name_ + ": link '" + link.name + "': ";
-    for (const auto& c : link.collision_array)
-      out.collision.push_back(geometry_of(c->origin, c->geometry, place));
-    for (const auto& v : link.visual_array)
-      out.visual.push_back(geometry_of(v->origin, v->geometry, place));
+    const auto add = [&](const auto& shapes, const char* tag, std::vector<Geometry>& to) {
+      const auto at = elements_.find(link.name);
+      const tinyxml2::XMLElement* e =
+          at != elements_.end() ? at->second->FirstChildElement(tag) : nullptr;
+      for (const auto& shape : shapes) {
+        const int line = line_of_shape(e);
+        std::string place = name_;
+        if (line > 0) place.append(":").append(std::to_string(line));
+        place.append(": link '").append(link.name).append("': ");
+        to.push_back(geometry_of(shape->origin, shape->geometry, line, place));
+        if (e != nullptr) e = e->NextSiblingElement(tag);
+      }
+    };
+    add(link.collision_array, "collision", out.collision);
+    add(link.visual_array, "visual", out.visual);
     robot_.links.push_back(std::move(out));
   }
 
@@ -239,6 +300,7 @@ class Builder {
 
   const urdf::ModelInterface& model_;
   const std::string& name_;
+  std::map<std::string, const tinyxml2::XMLElement*> elements_;  // of the links
   Robot robot_;
   std::map<std::string, std::uint32_t> by_name_;
   std::vector<urdf::JointMimicSharedPtr> mimicry_;
@@ -251,8 +313,8 @@ Robot parse_urdf(std::string_view text, const std::string& name) {
   tinyxml2::XMLDocument xml;
   parse_xml(xml, text, name);
   check_document(xml, name);
-  const urdf::ModelInterfaceSharedPtr model = parse_by_urdfdom(text, name);
-  Robot robot = Builder(*model, name).build();
+  const urdf::ModelInterfaceSharedPtr model = parse_by_urdfdom(text, *xml.RootElement(), name);
+  Robot robot = Builder(*model, *xml.RootElement(), name).build();
   try {
     require_valid(robot);
   } catch (const Error& error) {

@@ -40,6 +40,29 @@ awk 'BEGIN { n = 5; print "OFF"; print 2 * n, 2 * n, 0; pi = atan2(0, -1)
 expect 3 'one-sided' "$D" moebius.off -o x.off --vertices 4
 absent x.off
 
+# Folders that cannot be looked into (here: names too long) are no internal errors; nor is /proc.
+tetrahedron >t.off
+long=$(printf '%300s' '' | tr ' ' x)
+for tool in bmesh-decimate bcd-decompose; do
+  for name in "$long.off" "$long/x.off" "$long/$long/x.glb"; do
+    case $tool$name in bcd*.off) name=${name%off}glb ;; esac
+    expect 4 'too long' "$BIN/$tool" t.off -o "$name" --epsilon 5%
+  done
+  expect 4 'too long' "$BIN/$tool" t.off -o x.obj --epsilon 5% --report "$long/r.json"
+  expect 3 'too long' "$BIN/$tool" "$long.off" -o x.obj --epsilon 5%
+done
+expect 4 "no file can be created in '/proc'" "$D" t.off -o /proc/y.off --epsilon 5%
+expect 3 'too long' "$BIN/hausdorff-eval" t.off "$long.off"
+expect 3 'too long' "$BIN/bound-verify" --cover t.off "$long.glb"
+expect 3 '' "$BIN/bound-verify" --cover t.off "$long"
+# What is no mesh is answered with a way to one.
+for f in part.step part.STP part.iges robot.urdf robot.urdf.xacro world.sdf arm.xml; do : >$f; done
+for f in part.step part.STP part.iges; do expect 3 "gmsh $f -2" "$D" $f -o x.off --epsilon 1%; done
+expect 3 'bcd-decompose robot.urdf -o FOLDER' "$D" robot.urdf -o x.off --epsilon 1%
+expect 3 'xacro robot.urdf.xacro > robot.urdf' "$BIN/bcd-decompose" robot.urdf.xacro -o x
+for f in world.sdf arm.xml; do expect 3 'SDF and MJCF' "$D" $f -o x.off --epsilon 1%; done
+absent x.off x.obj
+
 # A file cut at many places gives an error or, when only trailing bytes are missing, a result.
 "$D" "$BRACKET" -o whole.stl --vertices 60 --quiet
 for f in whole.stl; do

@@ -24,6 +24,37 @@ expect 0 '' "$D" "$BRACKET" -o d.glb --epsilon 3% --effort fast --no-cache --thr
 [ ! -s err.txt ] || fail "--quiet is not quiet"
 cmp -s a.glb d.glb || fail "one thread gives other bytes"
 
+# An entry under another one's name is found out, even if only its container is; so is a cut one.
+mkdir swapped
+expect 0 '' env KABOUM_CACHE=swapped "$D" "$BRACKET" -o e.glb --epsilon 3% --effort fast --quiet
+mine=$(ls swapped)
+tetrahedron >other.off
+expect 0 '' env KABOUM_CACHE=other "$D" other.off -o other.glb --epsilon 3% --effort fast
+cp other/*.set "swapped/$mine"
+expect 0 'another input or of other options; it is made again' env KABOUM_CACHE=swapped "$D" "$BRACKET" -o e.glb --epsilon 3% --effort fast
+cmp -s a.glb e.glb || fail "an entry of another mesh was used"
+expect 0 'from the cache' env KABOUM_CACHE=swapped "$D" "$BRACKET" -o e.glb --epsilon 3% --effort fast
+cat other/*.set >forged.set
+key=${mine%.set}
+{ echo "$key"; tail -n +4 forged.set; } >rest
+{ echo 'KABOUM-SET 2'; sha256sum rest | cut -d ' ' -f 1; cat rest; } >"swapped/$mine"
+expect 0 'container is that of another input' env KABOUM_CACHE=swapped "$D" "$BRACKET" -o e.glb --epsilon 3% --effort fast
+cmp -s a.glb e.glb || fail "a container of another mesh was used"
+head -c 300 "swapped/$mine" >short && cp short "swapped/$mine"
+expect 0 'damaged; it is made again' env KABOUM_CACHE=swapped "$D" "$BRACKET" -o e.glb --epsilon 3% --effort fast
+: >"swapped/$mine"
+expect 0 'damaged, or of another version' env KABOUM_CACHE=swapped "$D" "$BRACKET" -o e.glb --epsilon 3% --effort fast
+# Files that refer to others: by what is read, not by their own bytes.
+printf '#VRML V2.0 utf8\nInline { url "part.wrl" }\n' >whole.wrl
+for size in 1 3 1; do
+  echo "#VRML V2.0 utf8
+Shape { geometry IndexedFaceSet { coord Coordinate { point [0 0 0, $size 0 0, 0 $size 0, 0 0 $size] }
+  coordIndex [0 2 1 -1 0 1 3 -1 1 2 3 -1 2 0 3 -1] } }" >part.wrl
+  expect 0 '' "$D" whole.wrl -o "w$size.glb" --epsilon 3% --effort fast --report w.json
+  expect 0 'verified' "$BIN/bound-verify" --cover whole.wrl "w$size.glb"
+done
+grep -q '"cached": true' w.json || fail "a file that refers to another is not cached"
+
 # Other formats, and a pipe.
 expect 0 '' "$D" "$BRACKET" -o set.obj --epsilon 3% --effort fast
 expect 0 '' "$D" "$BRACKET" -o folder --epsilon 3% --effort fast

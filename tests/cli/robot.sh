@@ -135,7 +135,7 @@ one_link one/both.urdf t.off face3.off
 one_link one/face.urdf face3.off
 expect 0 'verified' "$V" --robot one/t.urdf one/t.urdf
 expect 7 'no closed mesh' "$V" --robot one/t.urdf one/faces.urdf
-grep -q 'face3.off: it is not closed' err.txt || fail "the open mesh is not named"
+grep -q 'face3.off and 3 more meshes: it is not closed' err.txt || fail "the open mesh is not named"
 expect 7 'no closed mesh' "$V" --robot one/face.urdf one/face.urdf
 expect 0 'within 1 convex body' "$V" --robot one/t.urdf one/both.urdf
 expect 0 'as far as open meshes define it' "$V" --robot one/face.urdf one/t.urdf
@@ -189,11 +189,13 @@ absent out3 out3.glb out3.urdf
 
 # Shapes for drawing; lengths in the robot's unit.
 sed 's/seen.dae/t.off/' robot/r.urdf >robot/v.urdf
-expect 0 "link 'arm/1' has no visual shape; it stays" "$D" robot/v.urdf -o seen --visual --epsilon 0.05
+expect 0 "link 'arm/1' has no visual shape, only collision ones, which stay" "$D" robot/v.urdf -o seen --visual --epsilon 0.05
 grep -q 'of 1 link, from 1 mesh$' err.txt || fail "counts: $(cat err.txt)"
 grep -q 'bodies/t/t-0000.stl' seen/v.urdf || fail "no bodies for drawing shapes"
 grep -q 'box size' seen/v.urdf || fail "a link without a shape for drawing lost its collision shape"
 expect 0 'verified' "$V" --robot robot/v.urdf seen/v.urdf --geometry visual
+expect 7 'made of a visual mesh of the original: judge them with --visual' "$V" --robot robot/v.urdf seen/v.urdf
+expect 0 'verified' "$V" --robot robot/v.urdf seen/v.urdf --visual
 grep -q "link 'arm/1': box: verified" out.txt || fail "collision shapes of a link that is not drawn are not judged"
 grep -q 'filename="../robot/meshes/t.off"' seen/v.urdf || fail "a mesh that stays is not found from the folder"
 

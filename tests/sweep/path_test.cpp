@@ -27,6 +27,42 @@ TEST(Path, CsvWithAndWithoutHeader) {
   EXPECT_EQ(parse_path_csv("1;2\n3;4", "p").waypoints, (Path{{1, 2}, {3, 4}}));
 }
 
+TEST(Path, CsvAsOtherProgramsWriteIt) {
+  const NamedPath a = parse_path_csv("\"joint a\", \"b\",\r\n\"1\",2,\r\n3,4\n", "p");
+  EXPECT_EQ(a.joints, (std::vector<std::string>{"joint a", "b"}));
+  EXPECT_EQ(a.waypoints, (Path{{1, 2}, {3, 4}}));
+  EXPECT_EQ(parse_path_csv("1,\n2,\n", "p").waypoints, (Path{{1}, {2}}));
+  for (const char* text : {"1,,\n", ",\n", ",,\n", "1,2,,\n", "\"1,2\n"})
+    EXPECT_NE(message([&] { parse_path_csv(text, "p"); }).find("line 1"), std::string::npos)
+        << text;
+  EXPECT_NE(message([&] { parse_path_csv("1,2\n3,\n", "p"); }).find("line 2"), std::string::npos);
+}
+
+TEST(Path, TimesAreNoJoints) {
+  Robot robot;
+  robot.variables = {{"a", -1, 1}, {"T", {}, {}}};
+  EXPECT_EQ(arrange({{"Time", "T", "a"}, {{9, 5, 1}}}, robot, "p"), (Path{{1, 5}}));
+  EXPECT_EQ(time_columns({{"Time", "T", "a", "%time"}, {}}, robot),
+            (std::vector<std::size_t>{0, 3}));
+  EXPECT_TRUE(time_columns({{}, {{1, 2}}}, robot).empty());
+  robot.variables[1].name = "time";
+  EXPECT_EQ(arrange({{"time", "a"}, {{5, 1}}}, robot, "p"), (Path{{1, 5}}));
+}
+
+TEST(Path, JointsThatDoNotMove) {
+  Robot robot;
+  robot.variables = {{"a", -1, 1}, {"b", {}, {}}, {"c", {}, {}}};
+  const FixedJoints fixed{{"b", 7}};
+  EXPECT_EQ(arrange({{"c", "a"}, {{5, 1}}}, robot, "p", true, fixed), (Path{{1, 7, 5}}));
+  EXPECT_EQ(arrange({{}, {{1, 5}}}, robot, "p", true, fixed), (Path{{1, 7, 5}}));
+  EXPECT_EQ(arrange({{}, {{}}}, robot, "p", true, {{"a", 0}, {"b", 1}, {"c", 2}}),
+            (Path{{0, 1, 2}}));
+  EXPECT_THROW(arrange({{}, {{1, 2, 5}}}, robot, "p", true, fixed), Error);
+  EXPECT_THROW(arrange({{"a", "b", "c"}, {{1, 2, 5}}}, robot, "p", true, fixed), Error);
+  EXPECT_THROW(arrange({{"a", "c"}, {{1, 5}}}, robot, "p", true, {{"d", 7}}), Error);
+  EXPECT_THROW(arrange({{"b", "c"}, {{1, 5}}}, robot, "p", true, {{"a", 2}}), Error);
+}
+
 TEST(Path, Json) {
   const NamedPath a = parse_path_json(R"({"joints": ["x"], "waypoints": [[1], [2.5]]})", "p");
   EXPECT_EQ(a.joints, (std::vector<std::string>{"x"}));

@@ -93,6 +93,45 @@ TEST(Urdf, Shapes) {
   }
 }
 
+TEST(Urdf, ShapesOfSizeZeroAreKept) {
+  const Robot robot = parse(
+      robot_of("<link name='a'>\n"
+               "<collision><geometry><cylinder radius='0.2' length='0'/></geometry></collision>\n"
+               "<collision><geometry><cylinder radius='0' length='3'/></geometry></collision>\n"
+               "<collision><geometry><box size='1 0 2'/></geometry></collision>\n"
+               "<collision><geometry><box size='0 0 4'/></geometry></collision>\n"
+               "<collision><geometry><box size='0 0 0'/></geometry></collision>\n"
+               "<collision><geometry><sphere radius='0'/></geometry></collision></link>"));
+  const std::vector<Geometry>& shapes = robot.links[0].collision;
+  ASSERT_EQ(shapes.size(), 6U);
+  const std::vector<std::string> words{"cylinder of length 0",    "cylinder of radius 0",
+                                       "box with 1 of 3 sides 0", "box with 2 of 3 sides 0",
+                                       "box with 3 of 3 sides 0", "sphere of radius 0"};
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    EXPECT_EQ(shapes[i].line, static_cast<int>(i) + 2);
+    EXPECT_EQ(describe(shapes[i]), words[i]);
+    EXPECT_TRUE(is_flat(shapes[i]));
+    EXPECT_EQ(is_point(shapes[i]), i >= 4);
+    if (i >= 4) EXPECT_THROW(bounding_points(shapes[i]), Error);
+  }
+  // What bounds them has a volume, holds them, and is no larger than said.
+  const std::vector<std::vector<Vec3>> held{
+      {{0.2, 0, 0}, {0, -0.2, 0}, {0.14, 0.14, 0}},
+      {{0, 0, 1.5}, {0, 0, -1.5}},
+      {{0.5, 0, 1}, {-0.5, 0, 1}, {0.5, 0, -1}, {-0.5, 0, -1}},
+      {{0, 0, 2}, {0, 0, -2}}};
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    const auto hull = geom::convex_hull(bounding_points(shapes[i]));
+    ASSERT_TRUE(hull);
+    EXPECT_GT(geom::signed_volume(*hull), 0);
+    for (const Vec3& p : held[i]) EXPECT_EQ(distance_to(*hull, p), 0);
+    const auto flat = geom::bounding_box(geom::Mesh{held[i], {}});
+    for (const Vec3& p : hull->vertices)
+      EXPECT_LE((p.cwiseAbs() - flat.max.cwiseAbs()).maxCoeff(), bounding_excess(shapes[i]));
+    EXPECT_LT(bounding_excess(shapes[i]), 0.006 * 4);
+  }
+}
+
 TEST(Urdf, BadFilesAreRefused) {
   const std::string limit = "<limit lower='0' upper='1' effort='1' velocity='1'/>";
   const auto has = [](const std::string& text, const std::string& words) {
@@ -134,9 +173,17 @@ TEST(Urdf, BadFilesAreRefused) {
   has(robot_of(kLinks + joint("j", "fixed", "a", "b", "<origin xyz='0 1e999 0'/>") +
                joint("k", "fixed", "b", "c")),
       "");
-  has(robot_of("<link name='a'><collision><geometry><box size='1 0 1'/></geometry></collision>"
-               "</link>"),
-      "size");
+  has(robot_of("<link name='a'>\n<collision><geometry>\n<box size='1 -2 1'/></geometry>"
+               "</collision></link>"),
+      "r.urdf:3: link 'a': a box whose size is negative");
+  has(robot_of(
+          "\n<link name='a'><visual><geometry><sphere radius='x'/></geometry></visual></link>"),
+      "r.urdf:2: not a valid URDF");
+  has(robot_of(kLinks + "\n<gazebo><xacro:if value='1'/></gazebo>"), "r.urdf:2: <xacro:if>");
+  has(robot_of("<link name='${prefix}a'/>"), "run: xacro");
+  has(robot_of("<link name='a'><visual><geometry><mesh filename='$(find p)/m.stl'/></geometry>"
+               "</visual></link>"),
+      "run: xacro");
   has(robot_of("<link name='a'><collision><geometry><mesh filename='x' scale='1 0 1'/></geometry>"
                "</collision></link>"),
       "0");

@@ -82,7 +82,7 @@ geom::ConvexSet read_directory(const fs::path& path, SetReadDetails& details) {
     if (is_stl(at->path())) files.push_back(at->path());
   const Source source{{}, path.native(), {}, true};
   if (error) fail(source, "the folder cannot be read: " + error.message());
-  if (files.empty() && !fs::exists(path / kRecordFile))
+  if (files.empty() && !fs::exists(path / kRecordFile, error))
     fail(source, "the folder holds no STL file; a set is stored as one STL file per body");
   std::ranges::sort(files, [](const fs::path& a, const fs::path& b) {
     return natural_less(a.filename().string(), b.filename().string());
@@ -237,11 +237,13 @@ void require_replaceable(const fs::path& folder) {
   if (!fs::exists(target, error)) return;
   if (!fs::is_directory(target, error)) cannot_write(folder, "it is a file; name a folder");
   const std::optional<std::string> ours = stem_of(target);
-  for (const fs::directory_entry& entry : fs::directory_iterator(target))
-    if (!ours || !is_part_of_set(entry.path(), *ours))
-      cannot_write(folder, "the folder holds '" + entry.path().filename().string() +
+  fs::directory_iterator at(target, error);
+  for (const fs::directory_iterator end; !error && at != end; at.increment(error))
+    if (!ours || !is_part_of_set(at->path(), *ours))
+      cannot_write(folder, "the folder holds '" + at->path().filename().string() +
                                "', which is no part of a convex set written here; name another "
                                "folder");
+  if (error) cannot_write(folder, error.message());
 }
 
 std::string default_name(std::size_t index, std::string_view stem) {

@@ -122,7 +122,8 @@ std::pair<fs::path, int> create_beside(const fs::path& target, mode_t mode) {
   }
   const int error = errno;
   const std::string directory = target.parent_path().empty() ? "." : target.parent_path().string();
-  if (error == ENOENT)
+  std::error_code ignored;
+  if (error == ENOENT && !fs::exists(directory, ignored))
     fail_write(target.string(),
                "the directory '" + directory + "' does not exist; create it first");
   fail_write(target.string(), "no file can be created in '" + directory + "': " + reason(error));

@@ -2,6 +2,7 @@
 
 #include <kaboum/sweep/robot.h>
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,7 +20,8 @@ struct NamedPath {
 };
 
 /// Comma-, semicolon- or blank-separated numbers, one waypoint per line; a first line that is not
-/// all numbers names the joints; `#` begins a comment.
+/// all numbers names the joints, perhaps in quotation marks; a separator may end lines; `#` begins
+/// a comment.
 /// @throws Error{InvalidInput} naming the line.
 NamedPath parse_path_csv(std::string_view text, const std::string& name);
 
@@ -27,10 +29,19 @@ NamedPath parse_path_csv(std::string_view text, const std::string& name);
 /// @throws Error{InvalidInput}.
 NamedPath parse_path_json(std::string_view text, const std::string& name);
 
-/// The path in the robot's order of variables.
+/// The columns that are times, not joints: called time, %time, __time, timestamp, stamp,
+/// time_from_start or t, whatever the case, when the robot has no joint of this name.
+std::vector<std::size_t> time_columns(const NamedPath& path, const Robot& robot);
+
+/// Values of joints that do not move, by their names. [rad or length]
+using FixedJoints = std::map<std::string, double>;
+
+/// The path in the robot's order of variables. Columns of times are left out.
 /// @param check_limits  whether waypoints outside the joints' limits are refused.
-/// @throws Error{InvalidInput} naming the joint (absent, unknown, named twice) or the waypoint.
+/// @param fixed  joints without a column.
+/// @throws Error{InvalidInput} naming the joint (absent, unknown, named twice) or the waypoint;
+///   Error{InvalidArgument} where a fixed joint is unknown or has a column.
 Path arrange(const NamedPath& path, const Robot& robot, const std::string& name,
-             bool check_limits = true);
+             bool check_limits = true, const FixedJoints& fixed = {});
 
 }  // namespace kaboum::sweep

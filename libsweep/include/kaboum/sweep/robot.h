@@ -21,7 +21,15 @@ struct Geometry {
   /// Sphere: radius. [length, or a factor]
   Vec3 size = Vec3::Ones();
   std::string mesh;  ///< file or URI, as the robot's file states it
+  int line = 0;      ///< of the robot's file; 0: not known
 };
+
+/// Whether a box, cylinder or sphere has a size of 0: no volume, but perhaps an area or a length.
+bool is_flat(const Geometry& geometry);
+/// Whether it is a point: nothing is left that could be held.
+bool is_point(const Geometry& geometry);
+/// Its kind and what is special of its size: "cylinder of length 0".
+std::string describe(const Geometry& geometry);
 
 struct Link {
   std::string name;
@@ -64,9 +72,10 @@ void require_valid(const Robot& robot);
 /// are numbered depth first from the root, the joints of one link in the order of their names.
 /// Rotations come from rpy within 40 · 2^-53. Source: <http://wiki.ros.org/urdf/XML>, by urdfdom.
 /// @param name  appears in messages.
-/// @throws Error{InvalidInput} naming the line where known: XML that is not well-formed, planar and
-///   floating joints, several or no roots, loops, links with two parents, mimicry of absent joints,
-///   numbers that are not finite.
+/// Shapes of size 0 are kept (is_flat): robots in wide use have some.
+/// @throws Error{InvalidInput} naming the line where known: XML that is not well-formed or has
+///   xacro in it, planar and floating joints, several or no roots, loops, links with two parents,
+///   mimicry of absent joints, numbers that are not finite, shapes of negative size.
 Robot parse_urdf(std::string_view text, const std::string& name);
 
 /// Robot of the Robotics Library: <rlkin> (Denavit–Hartenberg, distal) or <rlmdl>; degrees in the
@@ -76,9 +85,10 @@ Robot parse_urdf(std::string_view text, const std::string& name);
 Robot parse_rl(std::string_view text, const std::string& name);
 
 /// Points whose hull contains the box, cylinder or sphere: the box's corners, a prism with 32 sides
-/// round the cylinder (0.5 % of the radius), a polytope with 162 corners round the sphere (2 %). In
-/// the link's frame, up to rounding of 100 · 2^-53 of their distance.
-/// @pre shape is not Mesh; sizes are positive.
+/// round the cylinder (0.5 % of the radius), a polytope with 162 corners round the sphere (2 %).
+/// What is flat is given a thousandth of its largest size as thickness. In the link's frame, up to
+/// rounding of 100 · 2^-53 of their distance.
+/// @pre shape is not Mesh; it is no point.
 std::vector<Vec3> bounding_points(const Geometry& geometry);
 
 /// How far that hull reaches beyond the shape at most. [length]

@@ -1,0 +1,135 @@
+# shellcheck shell=sh disable=SC2154
+. "$(dirname "$0")/common.sh"
+D=$BIN/bcd-decompose
+S=$BIN/sweep-approx
+V=$BIN/bound-verify
+KABOUM_CACHE=$WORK/cache
+export KABOUM_CACHE
+unset ROS_PACKAGE_PATH AMENT_PREFIX_PATH
+
+# one_link FILE SHAPES: a robot of one link
+one_link() {
+  echo "<robot name=\"r\"><link name=\"l\">$2</link></robot>" >"$1"
+}
+# collision GEOMETRY, visual GEOMETRY
+collision() { echo "<collision><geometry>$1</geometry></collision>"; }
+visual() { echo "<visual><geometry>$1</geometry></visual>"; }
+mesh() { echo "<mesh filename=\"$1\"/>"; }
+
+# A package: by its folder's name or by package.xml, given itself or by a folder that holds it.
+mkdir -p ros/stack/arm-1.2/meshes plain/arm/meshes prefix/share/arm/meshes else/deep
+echo '<package><name> arm </name></package>' >ros/stack/arm-1.2/package.xml
+for folder in ros/stack/arm-1.2 plain/arm prefix/share/arm; do tetrahedron >$folder/meshes/t.off; done
+one_link else/deep/r.urdf "$(collision "$(mesh package://arm/meshes/t.off)")"
+E=else/deep/r.urdf
+# shellcheck disable=SC2317
+decompose_with() { env "$@" "$D" "$E" -o out --epsilon 5% --effort fast --quiet; }
+# shellcheck disable=SC2317
+decompose_from() { "$D" "$E" -o out --epsilon 5% --effort fast --quiet --package-path "$@"; }
+# shellcheck disable=SC2016
+expect 3 'no folder called arm, or with a package.xml of that <name>, is in or is one of --package-path (none), $ROS_PACKAGE_PATH (none)' decompose_with A=B
+grep -q "above ($WORK/else/deep, $WORK/else, $WORK" err.txt || fail "the folders tried are not listed: $(cat err.txt)"
+for place in ros ros/stack ros/stack/arm-1.2 ros/stack/arm-1.2/ plain plain/arm; do
+  expect 0 '' decompose_from $place
+  expect 0 '' decompose_with ROS_PACKAGE_PATH="nowhere:$WORK/$place"
+done
+expect 0 '' decompose_with AMENT_PREFIX_PATH="$WORK/nowhere:$WORK/prefix"
+expect 3 "(out), .*(else)" decompose_with ROS_PACKAGE_PATH=out AMENT_PREFIX_PATH=else
+expect 0 'verified' "$V" --robot $E out/r.urdf --package-path plain/arm
+(cd plain/arm && sed 's,t.off,../meshes/t.off,' ../../$E >r.urdf)
+expect 0 '' "$D" plain/arm/r.urdf -o out2 --epsilon 5% --effort fast --quiet
+sed 's/meshes/parts/' $E >else/deep/lost.urdf
+expect 3 'the package is plain/arm, without a file parts/t.off' "$D" else/deep/lost.urdf -o x --package-path plain/arm
+sed 's,package://arm/,package://,; s,meshes/t.off,arm,' $E >else/deep/odd.urdf
+expect 3 'package://NAME/FILE' "$D" else/deep/odd.urdf -o x
+# A folder that hides packages; one package that is found twice.
+: >ros/stack/COLCON_IGNORE
+expect 3 'one of --package-path (ros)' decompose_from ros
+rm ros/stack/COLCON_IGNORE
+sed -i '3s/.*/0.4 0 0/' ros/stack/arm-1.2/meshes/t.off
+expect 3 'is found twice' "$V" --robot $E out/r.urdf --package-path plain --package-path ros
+printf "[[]]" >pose.json
+expect 3 'is found twice' "$V" --sweep $E pose.json out/bodies --package-path plain --package-path ros
+
+# Shapes without volume: named with their line, kept, covered.
+cat >flat.urdf <<END
+<robot name="r">
+  <link name="base">
+    <collision><geometry><sphere radius="0.1"/></geometry></collision>
+    <collision><origin xyz="0 0 1"/><geometry>
+      <cylinder length="0" radius="0.2"/>
+    </geometry></collision>
+  </link>
+  <link name="arm">
+    <collision><geometry><box size="0.1 0 0.2"/></geometry></collision>
+    <collision><geometry><cylinder length="0.3" radius="0"/></geometry></collision>
+    <collision><geometry><sphere radius="0"/></geometry></collision>
+  </link>
+  <link name="seen">$(visual '<box size="1 1 1"/>')</link>
+  <link name="tool"/>
+  <joint name="j" type="revolute"><parent link="base"/><child link="arm"/><axis xyz="0 1 0"/>
+    <limit lower="-2" upper="2" effort="1" velocity="1"/></joint>
+  <joint name="k" type="prismatic"><parent link="arm"/><child link="tool"/><limit lower="0" upper="1" effort="1" velocity="1"/></joint>
+  <joint name="f" type="fixed"><parent link="arm"/><child link="seen"/></joint>
+</robot>
+END
+expect 0 "flat.urdf:5: link 'base': a cylinder of length 0 has no volume" "$D" flat.urdf -o flat --epsilon 5%
+grep -q "flat.urdf:9: link 'arm': a box with 1 of 3 sides 0" err.txt || fail "no box: $(cat err.txt)"
+grep -q "flat.urdf:10: link 'arm': a cylinder of radius 0" err.txt || fail "no line: $(cat err.txt)"
+grep -q "flat.urdf:11: link 'arm': a sphere of radius 0 is a point: it is not covered" err.txt || fail "no point: $(cat err.txt)"
+grep -q "link 'seen' has no collision shape, only visual ones" err.txt || fail "no bare link: $(cat err.txt)"
+grep -q "'tool'" err.txt && fail "a link without any shape is named"
+grep -q 'cylinder length="0" radius="0.2"' flat/flat.urdf || fail "the disc is gone"
+expect 0 "link 'base': cylinder of length 0: verified" "$V" --robot flat.urdf flat/flat.urdf --report v.json
+grep -q "^verified: 2 of 4 links judged; not 'seen'" out.txt || fail "verdict: $(cat out.txt)"
+grep -q "link 'seen' has no collision shape, only visual ones: nothing of this is judged" err.txt || fail "$(cat err.txt)"
+grep -q "link 'tool' has no collision shape: nothing" err.txt || fail "$(cat err.txt)"
+tr -d ' \n' <v.json | grep -q '"links_without_shapes":\["tool","seen"\],"links_with_other_shapes_only":\["seen"\]' || fail "$(cat v.json)"
+expect 0 "2 of 4 links judged; not 'seen'" "$V" --robot flat.urdf flat/flat.urdf --epsilon 1%
+printf '0\n1\n' >turn.csv
+expect 0 "cylinder of length 0" "$S" flat.urdf --path turn.csv --joint k=0 -o flat.glb
+expect 0 "^verified: 2 of 4 links judged; not 'seen'" "$V" --sweep flat.urdf turn.csv flat.glb --joint k=0 --report v.json
+grep -q "flat.urdf:11: .* a point" err.txt || fail "the point is not named: $(cat err.txt)"
+tr -d ' \n' <v.json | grep -q '"links":{"asked":4,"judged":2,"without_shapes":\["tool","seen"\]' || fail "$(cat v.json)"
+expect 0 "2 of 2 links judged" "$V" --sweep flat.urdf turn.csv flat.glb --joint k=0 --links base,arm
+sed 's/length="0"/length="-1"/' flat.urdf >negative.urdf
+expect 3 "negative.urdf:5: link 'base': a cylinder whose size is negative" "$D" negative.urdf -o x
+sed 's/radius="0.2"/radius="wide"/' flat.urdf >word.urdf
+expect 3 "word.urdf:2: " "$D" word.urdf -o x
+
+# xacro that is not expanded.
+sed 's,<link name="tool"/>,&\n<xacro:include filename="more.xacro"/>,' flat.urdf >include.urdf
+expect 3 'include.urdf:15: <xacro:include> is xacro that is not expanded; run: xacro include.urdf' "$D" include.urdf -o x
+# shellcheck disable=SC2016
+sed 's,radius="0.2",radius="${r}",' flat.urdf >value.urdf
+expect 3 'value.urdf:5: radius=' "$S" value.urdf --path turn.csv -o x.glb
+absent x x.glb
+
+# Paths: times, quotation marks, separators at the end, joints that stay where they are.
+printf 'j,k\n0,0.5\n1,0.5\n' >plain.csv
+expect 0 '' "$S" flat.urdf --path plain.csv -o a.obj
+printf 'time,"j","k",\n0,0,0.5,\n1.5,1,0.5,\n' >timed.csv
+expect 0 "the column 'time' is passed over" "$S" flat.urdf --path timed.csv -o b.obj
+cmp -s a.obj b.obj || fail "a column of times makes a difference"
+printf '{"joints": ["j"], "waypoints": [[0], [1]]}' >j.json
+expect 0 '' "$S" flat.urdf --path j.json -o c.obj --joint k=0.5
+for set in a c; do grep -v '^#' $set.obj >$set.txt; done
+cmp -s a.txt c.txt || fail "a joint that does not move makes a difference"
+expect 3 "no column for joint 'k'; .*--joint k=0" "$S" flat.urdf --path j.json -o x.glb
+expect 3 "joint 'k' at 3 is outside" "$S" flat.urdf --path j.json -o x.glb --joint k=3
+expect 2 'has a column and a value' "$S" flat.urdf --path plain.csv -o x.glb --joint k=3
+expect 2 "no joint 'q'" "$S" flat.urdf --path plain.csv -o x.glb --joint q=3
+for joint in k= k =1 k=x k=nan; do expect 2 'NAME=NUMBER' "$S" flat.urdf --path j.json -o x.glb --joint $joint; done
+expect 2 'given twice' "$S" flat.urdf --path j.json -o x.glb --joint k=1 --joint k=2
+expect 2 'there is no diagonal' "$S" flat.urdf --path plain.csv -o x.glb --epsilon 1%
+absent x.glb
+# What sweep-approx writes as a URDF is read as a set.
+expect 0 '' "$S" flat.urdf --path plain.csv -o swept.urdf
+expect 0 '^verified' "$V" --sweep flat.urdf timed.csv swept.urdf
+sed 's/<mesh /<mesh scale="1 1 1.5" /' swept.urdf >scaled.urdf
+expect 3 'moved or scaled' "$V" --sweep flat.urdf timed.csv scaled.urdf
+expect 3 'several links' "$V" --sweep flat.urdf timed.csv flat.urdf
+# Shapes for drawing.
+expect 0 "no visual shape, only collision ones" "$S" flat.urdf --path plain.csv -o seen.glb --visual
+expect 0 '1 of 4 links judged' "$V" --sweep flat.urdf plain.csv seen.glb --visual
+finish
