@@ -37,7 +37,7 @@ struct Options {
   std::string input, output, input_format, output_format, epsilon, direction = "outer";
   std::string effort = "normal", method = "planes", pre_step = "auto";
   std::string unit = "m", frame, preview, depfile, geometry = "collision", prefix;
-  std::vector<std::string> packages;
+  std::vector<std::string> packages, links;
   std::size_t max_bodies = 0, max_vertices = 64, max_total = 0;
   double explode = 0.5, min_thickness = 0;
   std::optional<double> simplify;
@@ -162,6 +162,11 @@ void describe(CLI::App& app, Options& o) {
       ->type_name("collision|visual");
   app.add_flag_callback(
       "--visual", [&o] { o.geometry = "visual"; }, "The same as --geometry visual");
+  app.add_option("--links", o.links,
+                 "Only these links of a robot, separated by commas; the others stay as they are "
+                 "[all]")
+      ->delimiter(',')
+      ->type_name("A,B");
   app.add_option("--package-path", o.packages,
                  "A package of a robot's package:// or a folder that holds it, besides "
                  "$ROS_PACKAGE_PATH, $AMENT_PREFIX_PATH and the folders above the robot's file "
@@ -489,7 +494,8 @@ bool is_robot(const std::string& path) {
 /// Options that a plain mesh has no use for are mistakes.
 void require_effect(const CLI::App& app, const Options& o) {
   if (is_robot(o.input)) return;
-  for (const char* option : {"--geometry", "--visual", "--package-path", "--mesh-prefix"})
+  for (const char* option :
+       {"--geometry", "--visual", "--links", "--package-path", "--mesh-prefix"})
     if (app.get_option(option)->count() != 0)
       throw Error(ErrorCode::InvalidArgument, std::string(option) + " is for robots (.urdf); " +
                                                   o.input + " is taken for a mesh");
@@ -513,6 +519,7 @@ int decompose_robot(const Options& o) {
   robot.robot = o.input;
   robot.folder = o.output;
   robot.visual = o.geometry == "visual";
+  robot.links = o.links;
   robot.packages = o.packages;
   robot.prefix = tools::with_slash(o.prefix);
   robot.parameters = parameters(o);

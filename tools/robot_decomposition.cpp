@@ -44,8 +44,12 @@ class Writer {
 
   RobotResult run() {
     parse();
-    result_.bare = bare_links(robot_.robot, o_.visual);
-    result_.notes = notes_on_flat_shapes(robot_, o_.visual);
+    for (const std::string& name : o_.links)
+      if (!robot_.robot.find_link(name))
+        throw Error(ErrorCode::InvalidArgument,
+                    o_.robot + ": --links: there is no link '" + name + "'");
+    result_.bare = bare_links(robot_.robot, o_.visual, o_.links);
+    result_.notes = notes_on_flat_shapes(robot_, o_.visual, o_.links);
     for (std::uint32_t l = 0; l < robot_.robot.links.size(); ++l) decompose_link(l);
     if (total_bodies_ == 0)
       throw Error(ErrorCode::InvalidInput,
@@ -157,14 +161,17 @@ class Writer {
 
   void decompose_link(std::uint32_t l) {
     const sweep::Link& link = robot_.robot.links[l];
-    const std::vector<Geometry>& shapes = o_.visual ? link.visual : link.collision;
+    static const std::vector<Geometry> kNone;
+    const bool asked = o_.links.empty() ||
+                       std::find(o_.links.begin(), o_.links.end(), link.name) != o_.links.end();
+    const std::vector<Geometry>& shapes = !asked ? kNone : o_.visual ? link.visual : link.collision;
     XMLElement* element = element_of(link.name);
     const char* tag = o_.visual ? "visual" : "collision";
     std::vector<XMLElement*> originals;
     for (XMLElement* e = element->FirstChildElement(tag); e != nullptr;
          e = e->NextSiblingElement(tag))
       originals.push_back(e);
-    if (originals.size() != shapes.size())
+    if (asked && originals.size() != shapes.size())
       throw Error(ErrorCode::InvalidInput, o_.robot + ": link '" + link.name + "' has <" + tag +
                                                "> elements that cannot be read");
     std::vector<XMLElement*> old;

@@ -14,9 +14,10 @@
 namespace kaboum::tools {
 
 struct RobotDecomposition {
-  std::string robot;             ///< URDF file
-  std::filesystem::path folder;  ///< where everything goes; made when missing
-  bool visual = false;           ///< decompose the shapes for drawing, not those for collisions
+  std::string robot;               ///< URDF file
+  std::filesystem::path folder;    ///< where everything goes; made when missing
+  bool visual = false;             ///< decompose the shapes for drawing, not those for collisions
+  std::vector<std::string> links;  ///< only these; the others stay as they are. Empty: all
   std::vector<std::string> packages;  ///< folders that package:// URIs are looked up in
   std::string prefix;      ///< of the bodies' file names in the URDF, e.g. package://arm/
   std::string parameters;  ///< for the record

@@ -219,6 +219,13 @@ END
 expect 0 'from 2 meshes' "$D" wrap/r.urdf -o wrapped --epsilon 5% --effort fast
 expect 0 'verified' "$BIN/bound-verify" --cover wrap/b/m.wrl wrapped/links/l.glb
 
+# Some links only.
+expect 0 'of 1 link, from 1 mesh$' "$D" robot/r.urdf -o some --links arm/1 --epsilon 3% --effort fast
+grep -q 'filename="../robot/meshes/bracket.obj"' some/r.urdf || fail "a link that was not asked for is changed"
+expect 0 'verified' "$V" --robot robot/r.urdf some/r.urdf
+expect 2 "no link 'leg'" "$D" robot/r.urdf -o x --links arm/1,leg
+expect 2 'for robots' "$D" robot/meshes/t.off -o x --links a
+
 # Files that are not ours stay.
 mkdir -p mine && cp out/bodies/t/t-0000.stl mine/part.stl
 expect 4 'part.stl' "$D" robot/meshes/t.off -o mine --effort fast
