@@ -522,7 +522,7 @@ int decompose_robot(const Options& o) {
   robot.links = o.links;
   robot.packages = o.packages;
   robot.prefix = tools::with_slash(o.prefix);
-  robot.parameters = parameters(o);
+  robot.parameters = parameters(o) + (robot.visual ? " --geometry visual" : "");
   robot.unit = o.unit;
   bool done = true;
   tools::Notes notes;
