@@ -67,9 +67,9 @@ std::vector<Vec3> sphere(double radius) {
   return points;
 }
 
-/// Sizes none of which is 0.
+/// Sizes none of which is 0. What is added leaves the verifier room to decide.
 Vec3 thickened(const Vec3& size) {
-  const double least = 1e-3 * size.maxCoeff();
+  const double least = 0.005 * size.maxCoeff();
   return (size.array() == 0).select(least, size);
 }
 

@@ -194,10 +194,16 @@ grep -q 'of 1 link, from 1 mesh$' err.txt || fail "counts: $(cat err.txt)"
 grep -q 'bodies/t/t-0000.stl' seen/v.urdf || fail "no bodies for drawing shapes"
 grep -q 'box size' seen/v.urdf || fail "a link without a shape for drawing lost its collision shape"
 expect 0 'verified' "$V" --robot robot/v.urdf seen/v.urdf --geometry visual
-expect 7 'made of a visual mesh of the original: judge them with --visual' "$V" --robot robot/v.urdf seen/v.urdf
-expect 0 'verified' "$V" --robot robot/v.urdf seen/v.urdf --visual
 grep -q "link 'arm/1': box: verified" out.txt || fail "collision shapes of a link that is not drawn are not judged"
 grep -q 'filename="../robot/meshes/t.off"' seen/v.urdf || fail "a mesh that stays is not found from the folder"
+
+sed '3,6s/1/3/' robot/meshes/t.off >robot/meshes/large.off
+echo '<robot name="k"><link name="l"><visual><geometry><mesh filename="meshes/t.off"/></geometry></visual>
+<collision><geometry><mesh filename="meshes/large.off"/></geometry></collision></link></robot>' >robot/kinds.urdf
+expect 0 '' "$D" robot/kinds.urdf -o kinds --visual --epsilon 3% --effort fast
+expect 1 'made of a visual mesh of the original: judge them with --visual' "$V" --robot robot/kinds.urdf kinds/kinds.urdf --report kinds.json
+grep -q '"triangles_outside"' kinds.json || fail "no witness in the report"
+expect 0 '^verified: 1 of 1 link judged' "$V" --robot robot/kinds.urdf kinds/kinds.urdf --visual
 
 # Files of the same bytes that refer to other files are other meshes.
 for side in a b; do

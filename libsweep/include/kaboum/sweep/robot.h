@@ -86,7 +86,7 @@ Robot parse_rl(std::string_view text, const std::string& name);
 
 /// Points whose hull contains the box, cylinder or sphere: the box's corners, a prism with 32 sides
 /// round the cylinder (0.5 % of the radius), a polytope with 162 corners round the sphere (2 %).
-/// What is flat is given a thousandth of its largest size as thickness. In the link's frame, up to
+/// What is flat is given 0.5 % of its largest size as thickness. In the link's frame, up to
 /// rounding of 100 · 2^-53 of their distance.
 /// @pre shape is not Mesh; it is no point.
 std::vector<Vec3> bounding_points(const Geometry& geometry);
