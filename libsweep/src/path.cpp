@@ -116,6 +116,8 @@ NamedPath parse_path_csv(std::string_view text, const std::string& name) {
       if (!values.empty())
         fail(name, place + ": names of joints and numbers in one line ('" + bad.substr(0, 40) +
                        "' is not a number)");
+      if (std::find(fields.begin(), fields.end(), "") != fields.end())
+        fail(name, place + ": a joint without a name");
       path.joints = fields;
     } else {
       append(path, std::move(values), name, place);
