@@ -154,6 +154,10 @@ void wrap_help(CLI::App& app) { set_formatter(app, std::make_shared<WrappedHelp>
 std::string explain_unknown(const CLI::App& app, int argc, char** argv) {
   std::vector<const CLI::App*> apps{&app};
   for (const CLI::App* sub : app.get_subcommands()) apps.push_back(sub);
+  // Groups of options are commands without a name.
+  for (const CLI::App* group :
+       app.get_subcommands([](const CLI::App* sub) { return sub->get_name().empty(); }))
+    apps.push_back(group);
   std::vector<std::string> known;
   for (const CLI::App* a : apps)
     for (const CLI::Option* option : a->get_options())
