@@ -30,9 +30,9 @@ FORMATS = {".off", ".obj", ".ply", ".stl", ".wrl", ".dae", ".glb", ".3mf"}
 CASES = {
     "outer": ("bmesh-decimate", ["--ratio", "0.1"], "--outer"),
     "inner": ("bmesh-decimate", ["--ratio", "0.1", "--direction", "inner"], "--inner"),
-    "cover": ("bcd-decompose", ["--epsilon", "2%"], "--cover"),
-    "cover-fast": ("bcd-decompose", ["--epsilon", "2%", "--effort", "fast"], "--cover"),
-    "inside": ("bcd-decompose", ["--epsilon", "2%", "--direction", "inner"], "--inner"),
+    "cover": ("bcd-decompose", ["--no-cache", "--epsilon", "2%"], "--cover"),
+    "cover-fast": ("bcd-decompose", ["--no-cache", "--epsilon", "2%", "--effort", "fast"], "--cover"),
+    "inside": ("bcd-decompose", ["--no-cache", "--epsilon", "2%", "--direction", "inner"], "--inner"),
 }
 SLOW = 60  # seconds of CPU
 FACTOR = 10

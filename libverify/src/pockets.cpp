@@ -239,11 +239,13 @@ class Search {
     const std::array<const BoxTree*, 3> trees{&boundary_, &scene_.tree(kOutside),
                                               &scene_.tree(kInside)};
     std::array<std::vector<Vec3>, 3> points;
+    bool thinner = false;
     for (std::size_t k = 0; k < trees.size(); ++k) {
       if (!points_in(box, *trees[k], points[k])) continue;
       for (const Vec3& normal : normals) {
         const std::optional<double> height = free_below(box, p, normal, points[k], k);
         if (!height) continue;
+        thinner = true;
         next.clear();
         for (const Part& part : parts) keep_above(part, {normal, *height}, next);
         parts.swap(next);
@@ -251,8 +253,8 @@ class Search {
         if (parts.size() > kMostParts) return false;
       }
     }
-    return std::all_of(parts.begin(), parts.end(),
-                       [&](const Part& part) { return near_after_cuts(part, face); });
+    return thinner && std::all_of(parts.begin(), parts.end(),
+                                  [&](const Part& part) { return near_after_cuts(part, face); });
   }
 
   /// Normals of the nearest face of each kind, both ways.
@@ -354,8 +356,9 @@ class Search {
       const std::vector<Vec3> points(piece.corners.begin(), piece.corners.end());
       if (near(points, face)) continue;
       const Vec3 middle = 0.25 * (points[0] + points[1] + points[2] + points[3]);
-      const std::uint32_t f = target.nearest(middle).face;
-      if (f == NearestTriangle::kNone) return false;
+      const NearestTriangle::Hit hit = target.nearest(middle);
+      const std::uint32_t f = hit.face;
+      if (f == NearestTriangle::kNone || hit.distance > limit_.distance) return false;
       if (near(points, f)) continue;
       if (++seen > kMostPrisms || piece.cuts > kMostCuts - 4) return false;
       pieces.assign(1, piece);
