@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <utility>
 
 #include "principal_box.h"
 #include "search.h"
@@ -98,9 +99,13 @@ CutTree::CutTree(const Solid& solid, const SearchOptions& options, double safety
   for (const Vec3& p : solid.mesh().vertices)
     magnitude = std::max(magnitude, p.cwiseAbs().maxCoeff());
   shift_ = 0x1p-36 * safety * magnitude;
-  find_reflex_planes();
-  if (options.mirrors && !options.choose) mirrors_ = mirror_planes(solid);
   add_leaf(whole(solid), -1);
+}
+
+void CutTree::find_planes() {
+  if (std::exchange(planes_found_, true) || options_.choose) return;
+  find_reflex_planes();
+  if (options_.mirrors) mirrors_ = mirror_planes(solid_);
 }
 
 void CutTree::find_reflex_planes() {
@@ -193,6 +198,11 @@ void CutTree::add_leaf(Piece&& piece, int parent) {
   node.parent = parent;
   nodes_.push_back(std::move(node));
   ++leaf_count_;
+}
+
+void CutTree::reappraise() {
+  for (Node& n : nodes_)
+    if (!n.hull.empty()) n.appraisal = appraise(n.hull, solid_, scratch().builder);
 }
 
 void CutTree::reappraise(const Solid::Probe& probe) {
@@ -461,6 +471,7 @@ void CutTree::evaluate(const Node& node, std::vector<Candidate>& list) const {
 }
 
 bool CutTree::cut(int leaf) {
+  find_planes();
   const Node& node = nodes_[leaf];
   if (node.piece.polygons() == 0) {
     nodes_[leaf].stuck = true;

@@ -13,6 +13,7 @@
 #include <memory>
 #include <numeric>
 #include <set>
+#include <utility>
 
 #include "clusters.h"
 #include "options.h"
@@ -97,7 +98,7 @@ class Decomposer {
   Decomposer(const Mesh& closed, const DecomposeOptions& options, Tuning how)
       : options_(options),
         tuning_(std::move(how)),
-        solid_(closed, tuning_.grid, options.epsilon.value_or(0)),
+        solid_(closed, tuning_.grid, options.epsilon.value_or(0), false),
         tree_(solid_, search_options(), options.safety) {
     double magnitude = 0;
     for (const Vec3& p : closed.vertices) magnitude = std::max(magnitude, p.cwiseAbs().maxCoeff());
@@ -151,6 +152,23 @@ class Decomposer {
 
   void report(const char* stage, double fraction) {
     if (options_.progress) options_.progress({stage, fraction});
+  }
+
+  /// What only a search for cuts needs.
+  void begin_search() {
+    if (std::exchange(begun_, true)) return;
+    report("looking for pits", 0);
+    solid_.find_probes();
+    tree_.reappraise();
+  }
+
+  /// The hull of everything, if that is within epsilon: no search finds fewer bodies.
+  std::vector<Finished> hull_within(double epsilon) {
+    std::vector<Body> whole{body_of(tree_, 0)};
+    if (options_.method != Method::Planes || whole[0].appraisal.worst > epsilon) return {};
+    std::vector<Finished> out = finish(whole, options_.simplify * 0.93 * epsilon, epsilon);
+    if (!good(out, epsilon)) out.clear();
+    return out;
   }
 
   /// One body per leaf, as they were when there were this many.
@@ -324,6 +342,8 @@ class Decomposer {
 
   /// At most this many bodies, not finished yet; none where twice `epsilon` is not reached.
   std::vector<Body> gather(std::size_t target, double epsilon = kUnbounded) {
+    begin_search();
+    if (target == 1 && options_.method == Method::Planes) return {body_of(tree_, 0)};
     std::vector<std::vector<Body>> snapshots;
     // Few bodies need relatively more pieces to choose from.
     const auto pieces = [target](double multiple) {
@@ -363,7 +383,7 @@ class Decomposer {
     std::vector<Finished> finished;
     // What measuring finds is refined once more.
     for (int round = 0; round < tuning_.rounds; ++round) {
-      if (round > 0) refine(bodies, target);
+      if (round > 0 && target > 1) refine(bodies, target);
       report("simplifying", 0.75 + 0.02 * round);
       std::vector<Finished> next = finish(bodies, free_cost);
       bool misjudged = false;
@@ -380,7 +400,7 @@ class Decomposer {
       if (finished.empty() || reach_of(next) < reach_of(finished)) finished = std::move(next);
       if (!misjudged) break;
     }
-    const int rounds = tuning_.refinements / 3;
+    const int rounds = target > 1 ? tuning_.refinements / 3 : 0;
     for (int round = 0; round < rounds; ++round) {
       report("refining", 0.8 + 0.2 * round / rounds);
       if (!improve(finished, target, free_cost)) break;
@@ -432,9 +452,13 @@ class Decomposer {
     return limit > kUnlimited / 4 ? kUnlimited : 4 * limit;
   }
 
-  /// Bodies within epsilon; none when even the first are more than `most`.
+  /// Bodies within epsilon, one only where that suffices; none when even the first are more than
+  /// `most`.
   std::vector<Finished> within(double epsilon, std::size_t most = kUnlimited) {
+    if (std::vector<Finished> one = hull_within(epsilon); !one.empty()) return one;
+    begin_search();
     const double wished = 0.93 * epsilon;
+    const std::size_t least = options_.method == Method::Planes ? 2 : 1;
     std::vector<Body> best;
     const double begin = std::max(tree_.worst(), epsilon);
     std::size_t most_leaves = 6000;
@@ -453,7 +477,7 @@ class Decomposer {
       for (const int node : tree_.nodes_within(0.5 * threshold * wished))
         parts.push_back(body_of(tree_, node));
       for (const double bulk : tuning_.bulks) {
-        std::vector<Body> bodies = merged(parts, 1, wished, bulk);
+        std::vector<Body> bodies = merged(parts, least, wished, bulk);
         fewest = fewest == 0 ? bodies.size() : std::min(fewest, bodies.size());
         if (best.empty() || bodies.size() < best.size()) best = std::move(bodies);
       }
@@ -511,10 +535,10 @@ class Decomposer {
   }
 
   /// Looks for fewer bodies within epsilon, by bisection of the number allowed, until there are
-  /// `enough`.
+  /// `enough`; one alone has been tried.
   void reduce(std::vector<Finished>& bodies, double epsilon, std::size_t enough = 1) {
     if (!good(bodies, epsilon)) return;
-    std::size_t low = bodies.size() / 3;
+    std::size_t low = std::max<std::size_t>(1, bodies.size() / 3);
     while (bodies.size() > low + 1 + bodies.size() / 40 && bodies.size() > enough) {
       const std::size_t middle = (low + bodies.size()) / 2;
       if (!replace(bodies, middle, epsilon)) low = middle;
@@ -522,14 +546,14 @@ class Decomposer {
   }
 
   /// Shares out bodies among their neighbours, small ones first, while that keeps these within
-  /// epsilon.
+  /// epsilon; one alone has been tried.
   void dissolve(std::vector<Finished>& bodies, double epsilon) {
     if (!good(bodies, epsilon)) return;
     std::sort(bodies.begin(), bodies.end(), [](const Finished& a, const Finished& b) {
       const double x = a.body.appraisal.volume, y = b.body.appraisal.volume;
       return x != y ? x < y : a.body.leaves < b.body.leaves;
     });
-    for (std::size_t i = 0; i < bodies.size();) {
+    for (std::size_t i = 0; i < bodies.size() && bodies.size() > 2;) {
       report("dissolving", 0.99);
       if (!share_out(bodies, i, epsilon)) ++i;
     }
@@ -649,12 +673,21 @@ class Decomposer {
     find_required(out);
     std::vector<std::size_t> open(bodies.size());
     std::iota(open.begin(), open.end(), std::size_t{0});
+    std::vector<Simplified> shapes(bodies.size());
     // Where simplification took too much, no vertex more than needed is left out.
-    for (const double free : {free_cost, 0.0}) {
+    for (const bool first : {true, false}) {
       std::vector<Mesh> hulls(open.size());
       std::vector<char> thickened(open.size(), 0);
       geom::parallel_loop(std::size_t{0}, open.size(), [&](std::size_t i) {
-        hulls[i] = rounded(out[open[i]].body, free, options_.max_vertices);
+        const Body& body = out[open[i]].body;
+        Simplified& shape = shapes[open[i]];
+        if (first) {
+          if (!body.appraisal.flat)
+            shape = simplify(body.hull, options_.max_vertices, free_cost, solid_);
+          hulls[i] = rounded(body, shape, options_.max_vertices);
+        } else {
+          hulls[i] = rounded(body, {shape.needed, 0, {}}, options_.max_vertices);
+        }
         if (options_.min_thickness > 0) thickened[i] = thicken(hulls[i]) ? 1 : 0;
       });
       ReachOptions reach;
@@ -669,7 +702,9 @@ class Decomposer {
           f.reach = measured[i];
           f.thickened = thickened[i] != 0;
         }
-        if (decisive > 0 && f.reach.upper > decisive) failed.push_back(open[i]);
+        if (decisive > 0 && f.reach.upper > decisive &&
+            shapes[open[i]].needed.size() > shapes[open[i]].vertices.size())
+          failed.push_back(open[i]);
       }
       open = std::move(failed);
       if (open.empty()) break;
@@ -850,7 +885,8 @@ class Decomposer {
       std::vector<Mesh> hulls(open.size());
       geom::parallel_loop(std::size_t{0}, open.size(), [&](std::size_t i) {
         const Finished& f = bodies[open[i].body];
-        hulls[i] = rounded(f.body, 0, (open[i].low + f.hull.vertices.size()) / 2);
+        const std::size_t most = (open[i].low + f.hull.vertices.size()) / 2;
+        hulls[i] = rounded(f.body, simplify(f.body.hull, most, 0, solid_), most);
       });
       const std::vector<Reach> measured =
           measure(hulls, solid_, reach, 0.5 * epsilon, 0.7 * epsilon);
@@ -868,8 +904,8 @@ class Decomposer {
     }
   }
 
-  /// A body's hull simplified and rounded outwards.
-  [[nodiscard]] Mesh rounded(const Body& body, double free_cost, std::size_t most) const {
+  /// A body's simplified hull rounded outwards.
+  [[nodiscard]] Mesh rounded(const Body& body, const Simplified& shape, std::size_t most) const {
     std::vector<Vec3> required;
     for (const int leaf : leaves_of(body)) {
       const auto& points = required_.at(leaf);
@@ -882,11 +918,10 @@ class Decomposer {
       for (const std::uint32_t v : builder.vertices()) hull.push_back(required[v]);
       required = std::move(hull);
     }
-    if (body.appraisal.flat) return enclose(body.hull, required, most);
-    for (const double free : {free_cost, 0.0}) {
-      const std::vector<Vec3> shape = simplify(body.hull, most, free, solid_).vertices;
-      if (auto hull = push_out(shape, required, most)) return *std::move(hull);
-      if (free == 0) break;
+    if (!body.appraisal.flat) {
+      if (auto hull = push_out(shape.vertices, required, most)) return *std::move(hull);
+      if (shape.needed.size() > shape.vertices.size())
+        if (auto hull = push_out(shape.needed, required, most)) return *std::move(hull);
     }
     return enclose(body.hull, required, most);
   }
@@ -896,6 +931,7 @@ class Decomposer {
   Solid solid_;
   CutTree tree_;
   PairMemo memo_;
+  bool begun_ = false;
   double point_error_ = 0;
   std::map<int, std::vector<Vec3>> required_;  // by leaf
   DecomposeResult result_;
@@ -934,8 +970,8 @@ DecomposeResult with_quick_searches(const Mesh& closed, const DecomposeOptions& 
   DecomposeResult best = search(closed, options);
   if (!options.epsilon || options.max_total_vertices || options.method != Method::Planes ||
       options.effort == Effort::Fast || closed.triangles.size() > kFew ||
-      (best.stop == Stop::Done && best.bodies.size() == 1))
-    return best;
+      (best.stop == Stop::Done && best.bodies.size() <= 2))
+    return best;  // one body has been tried
   DecomposeOptions silent = options;  // the progress has been told
   silent.progress = nullptr;
   for (const bool mirrors : {false, true}) {

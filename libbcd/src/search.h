@@ -46,6 +46,8 @@ class CutTree {
 
   /// Cuts the leaf with the largest distance. @return false when no leaf can be cut.
   bool cut_worst();
+  /// Judges all nodes anew, by the probes that there are now.
+  void reappraise();
   /// Judges the nodes round a probe that was added anew.
   void reappraise(const Solid::Probe& probe);
   /// Cuts this leaf. @return false when no plane cuts it.
@@ -97,6 +99,8 @@ class CutTree {
     double weight;
   };
   [[nodiscard]] Side side_of(int node, const Plane& plane) const;
+  /// Before the first cut: the planes that the solid itself suggests.
+  void find_planes();
   void find_reflex_planes();
   [[nodiscard]] Node node_of(Piece&& piece) const;
   void add_leaf(Piece&& piece, int parent);
@@ -124,6 +128,7 @@ class CutTree {
   double shift_;
   std::vector<Node> nodes_;
   std::size_t leaf_count_ = 0;
+  bool planes_found_ = false;
   std::vector<Plane> mirrors_;
   std::vector<ReflexPlane> reflex_;                    // distinct
   std::vector<std::vector<std::uint32_t>> reflex_of_;  // triangle → reflex_ entries

@@ -10,6 +10,8 @@
 #include <queue>
 #include <unordered_map>
 
+#include "facet_tree.h"
+#include "point_tree.h"
 #include "principal_prism.h"
 
 namespace kaboum::bcd {
@@ -43,34 +45,33 @@ class Contractor {
  public:
   Contractor(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
              const Solid& solid)
-      : solid_(solid), original_(points), vertices_(points) {
-    Box3 box;
-    for (const Vec3& p : points) box.extend(p);
-    size_ = box.diagonal();
+      : solid_(solid), original_(points), size_(size_of(points)), vertices_(points) {
     star_.resize(points.size());
     version_.assign(points.size(), 0);
     quadric_.resize(points.size());
     alive_ = points.size();
-    planes_.resize(static_cast<Eigen::Index>(triangles.size()), 4);
-    Eigen::Index used = 0;
+    std::vector<FacetTree::Facet> facets;
     for (const Triangle& t : triangles) {
       HalfSpace h;
       if (!plane(points[t[0]], points[t[1]], points[t[2]], h)) {
         add_triangle(t);
         continue;
       }
-      planes_.row(used++) << h.n.transpose(), h.d;
+      facets.push_back({h.n, h.d});
       const double area = (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]).norm() +
                           1e-6 * size_ * size_;
       for (const std::uint32_t v : t) quadric_[v].add(h, area);
       add_triangle(t);
     }
-    planes_.conservativeResize(used, 4);
+    facets_.emplace(std::move(facets), points[0], size_);
   }
 
-  /// @return the largest cost of a contraction done.
-  double run(std::size_t cap, double free_cost) {
+  /// Contracts while there are more vertices than `cap`, then calls reached(), then contracts what
+  /// costs at most `free_cost`. @return the largest cost of a contraction done.
+  template <class Reached>
+  double run(std::size_t cap, double free_cost, Reached&& reached) {
     double largest = 0;
+    bool told = false;
     for (std::uint32_t t = 0; t < triangles_.size(); ++t)
       for (int k = 0; k < 3; ++k) {
         const std::uint32_t a = triangles_[t][k], b = triangles_[t][(k + 1) % 3];
@@ -78,6 +79,10 @@ class Contractor {
       }
     while (!queue_.empty()) {
       const Entry e = queue_.top();
+      if (!told && alive_ <= cap && (e.cost > 0 || alive_ <= 12)) {
+        reached();
+        told = true;
+      }
       // A dozen vertices are few enough: no distance is spent on fewer.
       if (alive_ <= cap && (e.cost > free_cost || alive_ <= 12)) break;
       if (alive_ <= 5) break;
@@ -89,6 +94,7 @@ class Contractor {
       }
       if (contract(e)) largest = std::max(largest, e.cost);
     }
+    if (!told) reached();
     return largest;
   }
 
@@ -112,6 +118,12 @@ class Contractor {
       return a != o.a ? a > o.a : b > o.b;
     }
   };
+
+  static double size_of(const std::vector<Vec3>& points) {
+    Box3 box;
+    for (const Vec3& p : points) box.extend(p);
+    return box.diagonal();
+  }
 
   static bool plane(const Vec3& a, const Vec3& b, const Vec3& c, HalfSpace& h) {
     const Vec3 u = b - a, w = c - a;
@@ -161,17 +173,22 @@ class Contractor {
     if (!(length > 0)) return false;
     const double eps = 1e-12 * size_;
     Vec3 n = Vec3::Zero();
+    double below = -1;  // boxes that are, hold nothing of interest
     bool found = false;
-    for (const Vec3& p : original_) {
-      const Vec3 r = p - u;
-      if (found && n.dot(r) <= eps) continue;
-      // Facet (p, u, w): normal (u − p) × (w − p) = r × … oriented with e and r.
-      const Vec3 m = e.cross(r);
-      const double size = m.norm();
-      if (size <= 1e-9 * length * size_) continue;
-      n = m / size;
-      found = true;
-    }
+    original_.visit_above([&] { return std::pair<const Vec3&, double>(n, below); },
+                          [&](const Vec3& p) {
+                            const Vec3 r = p - u;
+                            if (found && n.dot(r) <= eps) return true;
+                            // Facet (p, u, w): normal (u − p) × (w − p) = r × … oriented with e and
+                            // r.
+                            const Vec3 m = e.cross(r);
+                            const double size = m.norm();
+                            if (size <= 1e-9 * length * size_) return true;
+                            n = m / size;
+                            below = n.dot(u);
+                            found = true;
+                            return true;
+                          });
     if (!found) return false;
     h.n = n;
     h.d = n.dot(u);
@@ -231,11 +248,7 @@ class Contractor {
     q.a += weight * Eigen::Matrix3d::Identity();
     q.b += weight * middle;
     if (!minimise(q, best)) return false;
-    double growth = 0;
-    if (planes_.rows() > 0)
-      growth = std::max(growth, (planes_.col(0) * best.x() + planes_.col(1) * best.y() +
-                                 planes_.col(2) * best.z() - planes_.col(3))
-                                    .maxCoeff());
+    const double growth = facets_->beyond(best);
     double reach = solid_.field(best);
     for (std::size_t i = 0; i < edges_.size(); i += 1 + edges_.size() / (kFewEdges + 1)) {
       const auto& [u, w] = edges_[i];
@@ -389,14 +402,14 @@ class Contractor {
       if (ring.size() > horizon.size()) return undo();
     }
     if (ring.size() != horizon.size()) return undo();
+    std::vector<Vec3> around;
+    for (const std::uint32_t v : ring) around.push_back(vertices_[v]);
+    const PointTree round(around);
     for (std::size_t i = 0; i < ring.size(); ++i) {
       HalfSpace h;
-      if (!plane(vertices_[ring[i]], vertices_[ring[(i + 1) % ring.size()]], e.position, h))
+      if (!plane(around[i], around[(i + 1) % ring.size()], e.position, h) ||
+          round.any_above(h.n, h.d + eps) || original_.any_above(h.n, h.d + eps))
         return undo();
-      for (const Vec3& p : original_)
-        if (h.height(p) > eps) return undo();
-      for (const std::uint32_t v : ring)
-        if (h.height(vertices_[v]) > eps) return undo();
     }
     Quadric q;
     for (const std::uint32_t v : {e.a, e.b}) q.add(quadric_[v]);
@@ -427,10 +440,10 @@ class Contractor {
   }
 
   const Solid& solid_;
-  const std::vector<Vec3>& original_;
-  Eigen::Matrix<double, Eigen::Dynamic, 4> planes_;  // of the original facets: n, d
+  PointTree original_;
+  std::optional<FacetTree> facets_;  // original
   std::unordered_map<std::uint64_t, std::optional<HalfSpace>> tangents_;  // by edge
-  double size_ = 0;
+  double size_;
   std::vector<Vec3> vertices_;
   std::vector<std::vector<std::uint32_t>> star_;
   std::vector<std::uint64_t> version_;
@@ -449,6 +462,7 @@ Simplified simplify(std::span<const Vec3> hull, std::size_t cap, double free_cos
                     const Solid& solid) {
   Simplified out;
   out.vertices.assign(hull.begin(), hull.end());
+  out.needed = out.vertices;
   if (hull.size() <= std::min<std::size_t>(cap, 4)) return out;
   const auto prism_round = [&] {
     const auto prism = PrincipalPrism::round(hull, cap);
@@ -457,13 +471,16 @@ Simplified simplify(std::span<const Vec3> hull, std::size_t cap, double free_cos
   geom::HullBuilder builder;
   if (!builder.build(hull)) {
     // Flat: a prism is as good as anything.
-    if (hull.size() > cap) out.vertices = prism_round();
+    if (hull.size() > cap) out.needed = out.vertices = prism_round();
     return out;
   }
   const Mesh mesh = builder.mesh();
   Contractor contractor(mesh.vertices, mesh.triangles, solid);
-  out.cost = contractor.run(cap, free_cost);
-  out.vertices = contractor.count() <= cap ? contractor.result() : prism_round();
+  const auto result = [&] {
+    return contractor.count() <= cap ? contractor.result() : prism_round();
+  };
+  out.cost = contractor.run(cap, free_cost, [&] { out.needed = result(); });
+  out.vertices = result();
   return out;
 }
 

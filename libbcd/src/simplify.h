@@ -12,6 +12,8 @@ namespace kaboum::bcd {
 struct Simplified {
   std::vector<Vec3> vertices;
   double cost = 0;  ///< estimate of the largest distance to the solid that was added
+  /// What it was when no more than `cap` were left: no vertex is missing that need not.
+  std::vector<Vec3> needed;
 };
 
 /// Contracts edges of a convex hull outwards until at most `cap` vertices are left, and beyond that

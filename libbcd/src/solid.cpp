@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace kaboum::bcd {
 namespace {
@@ -35,7 +36,7 @@ double squared(const Vec3& p, const Vec3& a, const Vec3& ab, const Vec3& ac) {
 
 }  // namespace
 
-Solid::Solid(const Mesh& mesh, std::size_t nodes, double epsilon)
+Solid::Solid(const Mesh& mesh, std::size_t nodes, double epsilon, bool probes)
     : mesh_(mesh),
       box_(geom::bounding_box(mesh)),
       diagonal_(box_.diagonal()),
@@ -50,8 +51,9 @@ Solid::Solid(const Mesh& mesh, std::size_t nodes, double epsilon)
   const Vec3 size = (box_.max - box_.min).cwiseMax(0.02 * diagonal_);
   const double coarse = std::cbrt(size.prod() / static_cast<double>(nodes));
   spacing_ = epsilon > 0 ? std::clamp(0.7 * epsilon, 0.5 * coarse, coarse) : coarse;
-  const int step = std::max(1, static_cast<int>(2 * coarse / spacing_));
-  probe_area_ = step * spacing_ * step * spacing_;
+  step_ = std::max(1, static_cast<int>(2 * coarse / spacing_));
+  probe_area_ = step_ * spacing_ * step_ * spacing_;
+  shallow_ = std::max(0.3 * epsilon, 0.8 * spacing_);
   origin_ = box_.center() - 0.5 * size - Vec3::Constant(1.5 * spacing_);
   std::size_t total = 1;
   for (int k = 0; k < 3; ++k) {
@@ -60,10 +62,12 @@ Solid::Solid(const Mesh& mesh, std::size_t nodes, double epsilon)
   }
   value_ = std::make_unique<std::atomic<float>[]>(total);
   for (std::size_t i = 0; i < total; ++i) value_[i].store(kUnset, std::memory_order_relaxed);
-  find_probes(std::max(0.3 * epsilon, 0.8 * spacing_), step);
+  if (probes) find_probes();
 }
 
-void Solid::find_probes(double shallow, int step) {
+void Solid::find_probes() {
+  if (std::exchange(probed_, true)) return;
+  const int step = step_;
   geom::HullBuilder hull;
   if (!hull.build(mesh_.vertices)) return;
   std::vector<std::pair<Vec3, double>> planes;
@@ -72,19 +76,26 @@ void Solid::find_probes(double shallow, int step) {
     const Vec3 n = (mesh_.vertices[t[1]] - a).cross(mesh_.vertices[t[2]] - a);
     planes.emplace_back(n, n.dot(a));
   }
+  const auto inside = [&](const Vec3& p) {
+    return std::all_of(planes.begin(), planes.end(),
+                       [&](const auto& plane) { return plane.first.dot(p) < plane.second; });
+  };
   for (int z = step; z + step < size_[2]; z += step) {
     for (int y = step; y + step < size_[1]; y += step) {
+      // Of a row of nodes, those in the hull; the ones near its ends are asked by themselves.
+      const Vec3 begin = origin_ + spacing_ * Vec3(0, y, z);
+      double low = 0, high = size_[0];
+      for (const auto& [n, d] : planes) {
+        const double slope = spacing_ * n.x(), rest = d - n.dot(begin);
+        if (slope > 0) high = std::min(high, rest / slope);
+        if (slope < 0) low = std::max(low, rest / slope);
+      }
       for (int x = step; x + step < size_[0]; x += step) {
+        if (x < low - 0.5 || x > high + 0.5) continue;
         const Vec3 p = origin_ + spacing_ * Vec3(x, y, z);
-        bool inside = true;
-        for (const auto& [n, d] : planes) {
-          if (n.dot(p) < d) continue;
-          inside = false;
-          break;
-        }
-        if (!inside) continue;
+        if (!(x > low + 0.5 && x < high - 0.5) && !inside(p)) continue;
         const float v = node(x, y, z);
-        if (v < shallow) continue;
+        if (v < shallow_) continue;
         const int ridges = (v >= node(x - step, y, z) && v >= node(x + step, y, z) ? 1 : 0) +
                            (v >= node(x, y - step, z) && v >= node(x, y + step, z) ? 1 : 0) +
                            (v >= node(x, y, z - step) && v >= node(x, y, z + step) ? 1 : 0);

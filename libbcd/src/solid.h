@@ -24,7 +24,10 @@ class Solid {
   /// @param nodes  wished number of nodes of the grid behind field(); with up to eight times as
   /// many it is no coarser than 0.7 · epsilon.
   /// @param epsilon  distances that matter; 0: all the same. [length]
-  Solid(const Mesh& mesh, std::size_t nodes, double epsilon);
+  /// @param probes  whether to look for probes at once.
+  Solid(const Mesh& mesh, std::size_t nodes, double epsilon, bool probes = true);
+  /// Looks for probes all over the grid, unless that has been done.
+  void find_probes();
 
   [[nodiscard]] const Mesh& mesh() const { return mesh_; }
   [[nodiscard]] const Box3& box() const { return box_; }
@@ -64,7 +67,6 @@ class Solid {
   [[nodiscard]] std::size_t nodes_computed() const { return computed_; }
 
  private:
-  void find_probes(double shallow, int step);
   [[nodiscard]] float node(int x, int y, int z) const;
   /// Distance to the surface, rounded, if it is below `limit`.
   [[nodiscard]] double rough_distance(const Vec3& p, double limit) const;
@@ -80,6 +82,9 @@ class Solid {
   };
   std::vector<Corner> corners_;  // of the triangles, in the tree's order
   double spacing_ = 0, probe_area_ = 0;
+  double shallow_ = 0;  // pits that are no deeper need no probe
+  int step_ = 1;        // of the grid, from one place looked at for a probe to the next
+  bool probed_ = false;
   Vec3 origin_;
   std::array<int, 3> size_{};
   std::unique_ptr<std::atomic<float>[]> value_;

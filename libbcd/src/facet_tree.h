@@ -1,0 +1,39 @@
+#pragma once
+
+#include <kaboum/geom/mesh.h>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace kaboum::bcd {
+
+/// Planes of a convex polytope's facets, in a tree by their normals: how far a point is beyond.
+class FacetTree {
+ public:
+  struct Facet {
+    geom::Vec3 n;  ///< unit
+    double d;
+  };
+  /// @param size  about that of the polytope, and `center` in it. [length]
+  FacetTree(std::vector<Facet> facets, const geom::Vec3& center, double size);
+
+  /// The largest n·p − d; 0 if none is positive.
+  [[nodiscard]] double beyond(const geom::Vec3& p) const;
+
+ private:
+  struct Node {
+    geom::Vec3 low, high;        ///< of the normals
+    double least;                ///< of d, from the centre
+    std::uint32_t first, count;  ///< a leaf's facets; an inner node: its right child, and 0
+  };
+  std::uint32_t add(std::uint32_t first, std::uint32_t last);
+  [[nodiscard]] double bound(const Node& node, const geom::Vec3& from_center) const;
+
+  std::vector<Facet> facets_;
+  std::vector<Node> nodes_;  ///< a left child follows its parent
+  geom::Vec3 center_;
+  double slack_;
+};
+
+}  // namespace kaboum::bcd

@@ -1,0 +1,47 @@
+// A tree of boxes over points by halving their order; queries leave out boxes below a plane.
+
+#include "point_tree.h"
+
+namespace kaboum::bcd {
+namespace {
+
+constexpr std::uint32_t kLeaf = 8;  // points
+
+}  // namespace
+
+PointTree::PointTree(std::span<const geom::Vec3> points) : points_(points) {
+  if (!points.empty()) add(0, static_cast<std::uint32_t>(points.size()));
+}
+
+geom::Box3 PointTree::add(std::uint32_t first, std::uint32_t last) {
+  const std::size_t self = nodes_.size();
+  nodes_.emplace_back();
+  geom::Box3 box;
+  if (last - first <= kLeaf) {
+    for (std::uint32_t i = first; i < last; ++i) box.extend(points_[i]);
+  } else {
+    const std::uint32_t middle = first + (last - first) / 2;
+    for (const geom::Box3& half : {add(first, middle), add(middle, last)}) {
+      box.extend(half.min);
+      box.extend(half.max);
+    }
+  }
+  // A little wider, for rounding.
+  const geom::Vec3 center = box.center();
+  const double slack = 0x1p-50 * (box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs())).maxCoeff();
+  const geom::Vec3 half = 0.5 * (box.max - box.min) + geom::Vec3::Constant(slack);
+  nodes_[self] = {center, half, first, last, static_cast<std::uint32_t>(nodes_.size())};
+  return box;
+}
+
+bool PointTree::any_above(const geom::Vec3& n, double d) const {
+  bool found = false;
+  visit_above([&] { return std::pair<const geom::Vec3&, double>(n, d); },
+              [&](const geom::Vec3& p) {
+                found = n.dot(p) > d;
+                return !found;
+              });
+  return found;
+}
+
+}  // namespace kaboum::bcd
