@@ -28,7 +28,7 @@ using namespace kaboum;
 using tools::Json;
 
 /// Changes whenever the same options may give another result: cached results are then not found.
-constexpr const char* kAlgorithm = "planes 17";
+constexpr const char* kAlgorithm = "planes 18";
 
 /// The same of containers' bytes.
 constexpr const char* kContainer = "coloured";
@@ -40,7 +40,7 @@ struct Options {
   std::vector<std::string> packages, links;
   std::size_t max_bodies = 0, max_vertices = 64, max_total = 0;
   double explode = 0.5, min_thickness = 0;
-  std::optional<double> simplify;
+  std::optional<double> simplify, max_work;
   bool no_cache = false;
   geom::PrepareOptions prepare;
   tools::CommonOptions common;
@@ -122,6 +122,13 @@ void describe(CLI::App& app, Options& o) {
   app.add_option("--effort", o.effort, "How long to search [normal]")
       ->check(CLI::IsMember({"fast", "normal", "best"}).description(""))
       ->type_name("fast|normal|best");
+  app.add_option("--max-work", o.max_work,
+                 "End the search after so much work, counted in steps that take about so many "
+                 "seconds of one core, so that the result is the same on any machine; what was "
+                 "found is then checked and written [15, and 1 per 1000 triangles beyond 10000; no "
+                 "limit with --effort best]")
+      ->check(tools::number_from(0.001, 1e9))
+      ->type_name("SECONDS");
   app.add_option("--method", o.method,
                  "How to find bodies; the claims are the same. clusters (of triangles, as HACD "
                  "does) and voxels (cuts across the axes, as V-HACD does) are there to be compared "
@@ -190,7 +197,8 @@ void describe(CLI::App& app, Options& o) {
       "first. With --direction inner, every body lies inside the solid instead.\n"
       "Exit codes: 0 done; 1 epsilon is not reached, or not within the limits or with\n"
       "--min-thickness (the best result is written); 2 usage; 3 bad input; 4 output failed; 5 not\n"
-      "built; 6 internal error; 7 limit.");
+      "built; 6 internal error; 7 limit (epsilon is not reached with --max-work: the best result\n"
+      "is written).");
 }
 
 std::string percent(double length, double diagonal) {
@@ -216,6 +224,7 @@ std::string parameters(const Options& o) {
   if (o.min_thickness > 0) out << "--min-thickness " << o.min_thickness << ' ';
   out << "--max-vertices-per-body " << o.max_vertices << " --effort " << o.effort;
   if (o.simplify) out << " --simplify " << *o.simplify;
+  if (o.max_work) out << " --max-work " << *o.max_work;
   if (o.method != "planes") out << " --method " << o.method;
   if (o.pre_step != "auto") out << " --pre-step " << o.pre_step;
   if (o.prepare.drop_sheets) out << " --drop-sheets";
@@ -232,6 +241,8 @@ const char* name_of(bcd::Stop stop) {
       return "limits";
     case bcd::Stop::TooCoarse:
       return "float32 too coarse";
+    case bcd::Stop::OutOfWork:
+      return "out of work";
     case bcd::Stop::Stuck:
       break;
   }
@@ -299,6 +310,7 @@ tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const s
   options.method = kMethods.at(o.method);
   options.min_thickness = o.min_thickness;
   if (o.simplify) options.simplify = *o.simplify;
+  options.max_work = o.max_work;
   options.pre_step = kPreSteps.at(o.pre_step);
   options.progress = [&](const bcd::Progress& p) {
     progress.show(p.stage + " " + std::to_string(static_cast<int>(100 * p.fraction)) + " %");
@@ -357,6 +369,7 @@ tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const s
                   {"filled_triangles", s.filled_triangles},
                   {"pieces", s.leaves},
                   {"pre_step_triangles", s.pre_step_triangles},
+                  {"out_of_work", s.out_of_work},
                   {"safety", options.safety},
                   {"diagonal", diagonal},
                   {"notes", notes}};
@@ -469,10 +482,20 @@ std::string shortfall(const Json& report) {
   if (report["stop"] == "stuck" && report["direction"] == "inner")
     return "epsilon could not be reached: the search for deep points gave up; allow a larger "
            "epsilon, or --effort best";
+  if (report["stop"] == "out of work")
+    return "epsilon was not reached within the work allowed; allow more with --max-work, or a "
+           "larger "
+           "epsilon";
   return report["stop"] == "stuck"
              ? "epsilon could not be reached; allow more vertices per body"
              : "within the limits of bodies and vertices nothing nearer was found; allow more, or "
                "a larger epsilon";
+}
+
+/// The exit code of a mesh's outcome.
+int code_of(const Json& report) {
+  if (report["stop"] == "done") return tools::kDone;
+  return report["stop"] == "out of work" ? tools::kLimit : tools::kNo;
 }
 
 std::string summary(const Options& o, const Json& report, std::size_t bodies) {
@@ -524,7 +547,7 @@ int decompose_robot(const Options& o) {
   robot.prefix = tools::with_slash(o.prefix);
   robot.parameters = parameters(o) + (robot.visual ? " --geometry visual" : "");
   robot.unit = o.unit;
-  bool done = true;
+  int code = tools::kDone;
   tools::Notes notes;
   const tools::RobotResult result = tools::decompose_robot(
       robot, [&](const std::filesystem::path& file, const geom::Vec3& scale) -> tools::MeshBodies {
@@ -543,7 +566,7 @@ int decompose_robot(const Options& o) {
                                        (out.cached ? " (from the cache)" : ""));
         if (const std::string why = shortfall(bodies.report); !why.empty()) {
           tools::log(o.common.quiet, mesh.input + ": " + why);
-          done = false;
+          code = std::max(code, code_of(bodies.report));
         }
         bodies.report["cached"] = out.cached;
         return bodies;
@@ -569,7 +592,7 @@ int decompose_robot(const Options& o) {
   if (!o.preview.empty()) io::write_file(o.preview, tools::picture_of(result.at_rest, o.explode));
   if (!o.common.report.empty()) {
     Json report = result.report;
-    report["stop"] = done ? "done" : "epsilon not reached";
+    report["stop"] = code == tools::kDone ? "done" : "epsilon not reached";
     report["links_without_shapes"] = result.bare.all();
     report["input"] = {{"file", o.input}};
     report["parameters"] = robot.parameters;
@@ -580,7 +603,7 @@ int decompose_robot(const Options& o) {
     for (const std::filesystem::path& p : result.inputs) inputs.push_back(p.string());
     tools::write_depfile(o.depfile, {result.report["urdf"].get<std::string>()}, inputs);
   }
-  return done ? tools::kDone : tools::kNo;
+  return code;
 }
 
 int decompose(const Options& o) {
@@ -624,7 +647,7 @@ int decompose(const Options& o) {
   } else {
     io::write_convex_set(o.output, set, format);
   }
-  return why.empty() ? tools::kDone : tools::kNo;
+  return code_of(report);
 }
 
 }  // namespace

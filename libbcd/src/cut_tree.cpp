@@ -278,6 +278,7 @@ bool CutTree::part(const Piece& piece, const Plane& plane, std::vector<Vec3>& lo
   Scratch& s = scratch();
   classify(piece, plane, solid_, shift_, s.height, s.side);
   s.mark.assign(piece.points.size(), 0);
+  solid_.work().add(40 * piece.polygons());
   bool any[2]{};
   for (std::size_t f = 0; f < s.side.size(); ++f) {
     const std::uint32_t first = piece.start[f], last = piece.start[f + 1];

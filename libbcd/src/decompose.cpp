@@ -33,6 +33,10 @@ constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 constexpr std::size_t kPieces = 24;
 constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max();
 
+/// Shares of the work allowed: after the first, no more pieces are cut; after the second, nothing
+/// is improved; after the last, no body is taken apart or thinned out.
+constexpr double kCutting = 0.4, kImproving = 0.7, kFinishing = 0.85;
+
 struct Tuning {
   std::size_t grid;
   SearchOptions search;
@@ -92,13 +96,14 @@ struct Finished {
 
 class Decomposer {
  public:
-  Decomposer(const Mesh& closed, const DecomposeOptions& options)
-      : Decomposer(closed, options, tuning(options.effort, options.method)) {}
+  Decomposer(const Mesh& closed, const DecomposeOptions& options, std::uint64_t work)
+      : Decomposer(closed, options, work, tuning(options.effort, options.method)) {}
 
-  Decomposer(const Mesh& closed, const DecomposeOptions& options, Tuning how)
+  /// @param work  allowed. [ns]
+  Decomposer(const Mesh& closed, const DecomposeOptions& options, std::uint64_t work, Tuning how)
       : options_(options),
         tuning_(std::move(how)),
-        solid_(closed, tuning_.grid, options.epsilon.value_or(0), false),
+        solid_(closed, tuning_.grid, options.epsilon.value_or(0), false, work),
         tree_(solid_, search_options(), options.safety) {
     double magnitude = 0;
     for (const Vec3& p : closed.vertices) magnitude = std::max(magnitude, p.cwiseAbs().maxCoeff());
@@ -117,7 +122,8 @@ class Decomposer {
       if (options_.max_total_vertices) thin_out(bodies, *options_.epsilon);
       result_.stop = Stop::Done;
       for (const Finished& f : bodies)
-        if (f.reach.upper > *options_.epsilon) result_.stop = Stop::Stuck;
+        if (f.reach.upper > *options_.epsilon)
+          result_.stop = out_of_work_ ? Stop::OutOfWork : Stop::Stuck;
       if (!fits(bodies)) {
         result_.stop = Stop::TooManyBodies;
         return std::move(result_);
@@ -126,6 +132,7 @@ class Decomposer {
       bodies = options_.max_total_vertices ? nearest_that_fit() : at_most(*options_.max_bodies);
       result_.stop = fits(bodies) ? Stop::Done : Stop::TooManyBodies;
     }
+    result_.statistics.out_of_work = out_of_work_;
     result_.statistics.leaves = tree_.leaf_count();
     for (Finished& f : bodies) {
       result_.reach_lower = std::max(result_.reach_lower, f.reach.lower);
@@ -138,6 +145,8 @@ class Decomposer {
     return std::move(result_);
   }
 
+  [[nodiscard]] std::uint64_t work_done() const { return solid_.work().done(); }
+
  private:
   [[nodiscard]] SearchOptions search_options() const {
     SearchOptions out = tuning_.search;
@@ -147,6 +156,13 @@ class Decomposer {
                        const Cell& cell, const std::vector<Vec3>& hull) {
         return voxels->choose(cell, hull);
       };
+    return out;
+  }
+
+  /// Whether this share of the work allowed has been done; the result then says that it was.
+  bool spent(double share) {
+    const bool out = solid_.work().spent(share);
+    out_of_work_ = out_of_work_ || out;
     return out;
   }
 
@@ -211,6 +227,7 @@ class Decomposer {
     }
     for (const auto& snapshot : snapshots) {
       for (const double bulk : tuning_.bulks) {
+        if (!best.empty() && spent(kImproving)) return best;
         std::vector<Body> bodies = merged(snapshot, target, least, bulk);
         if (bodies.size() > target) continue;
         const double worst = worst_of(bodies);
@@ -314,6 +331,7 @@ class Decomposer {
   /// that helps.
   void refine(std::vector<Body>& bodies, std::size_t target, bool chains = true) {
     for (int round = 0; round < tuning_.refinements && !bodies.empty(); ++round) {
+      if (spent(kImproving)) return;
       std::size_t worst = 0;
       for (std::size_t i = 1; i < bodies.size(); ++i)
         if (bodies[i].appraisal.worst > bodies[worst].appraisal.worst) worst = i;
@@ -353,7 +371,8 @@ class Decomposer {
     const double most = pieces(tuning_.multiples.back());
     for (const double multiple : tuning_.multiples) {
       const double wished = pieces(multiple);
-      while (static_cast<double>(tree_.leaf_count()) < wished && tree_.cut_worst())
+      while (static_cast<double>(tree_.leaf_count()) < wished && !spent(kCutting) &&
+             tree_.cut_worst())
         report("cutting", 0.7 * static_cast<double>(tree_.leaf_count()) / most);
       snapshots.push_back(leaf_bodies(static_cast<std::size_t>(wished)));
     }
@@ -398,12 +417,12 @@ class Decomposer {
         misjudged = true;
       }
       if (finished.empty() || reach_of(next) < reach_of(finished)) finished = std::move(next);
-      if (!misjudged) break;
+      if (!misjudged || spent(kImproving)) break;
     }
     const int rounds = target > 1 ? tuning_.refinements / 3 : 0;
     for (int round = 0; round < rounds; ++round) {
       report("refining", 0.8 + 0.2 * round / rounds);
-      if (!improve(finished, target, free_cost)) break;
+      if (spent(kImproving) || !improve(finished, target, free_cost)) break;
     }
     return finished;
   }
@@ -464,7 +483,7 @@ class Decomposer {
     std::size_t most_leaves = 6000;
     for (const double threshold : tuning_.thresholds) {
       while (tree_.worst() > threshold * wished && tree_.leaf_count() < most_leaves &&
-             tree_.cut_worst())
+             !spent(kCutting) && tree_.cut_worst())
         report("cutting", 0.6 * std::clamp(std::log(begin / std::max(tree_.worst(), 1e-300)) /
                                                std::log(begin / (0.5 * wished)),
                                            0.0, 1.0));
@@ -477,6 +496,7 @@ class Decomposer {
       for (const int node : tree_.nodes_within(0.5 * threshold * wished))
         parts.push_back(body_of(tree_, node));
       for (const double bulk : tuning_.bulks) {
+        if (!best.empty() && spent(kImproving)) break;
         std::vector<Body> bodies = merged(parts, least, wished, bulk);
         fewest = fewest == 0 ? bodies.size() : std::min(fewest, bodies.size());
         if (best.empty() || bodies.size() < best.size()) best = std::move(bodies);
@@ -502,6 +522,10 @@ class Decomposer {
       for (Finished& f : tried) {
         // Parts of what was too thin are no thicker.
         if (f.reach.upper <= epsilon || (f.thickened && f.body.appraisal.worst <= wished)) {
+          out.push_back(std::move(f));
+          continue;
+        }
+        if (spent(kFinishing)) {
           out.push_back(std::move(f));
           continue;
         }
@@ -539,7 +563,8 @@ class Decomposer {
   void reduce(std::vector<Finished>& bodies, double epsilon, std::size_t enough = 1) {
     if (!good(bodies, epsilon)) return;
     std::size_t low = std::max<std::size_t>(1, bodies.size() / 3);
-    while (bodies.size() > low + 1 + bodies.size() / 40 && bodies.size() > enough) {
+    while (bodies.size() > low + 1 + bodies.size() / 40 && bodies.size() > enough &&
+           !spent(kImproving)) {
       const std::size_t middle = (low + bodies.size()) / 2;
       if (!replace(bodies, middle, epsilon)) low = middle;
     }
@@ -553,7 +578,7 @@ class Decomposer {
       const double x = a.body.appraisal.volume, y = b.body.appraisal.volume;
       return x != y ? x < y : a.body.leaves < b.body.leaves;
     });
-    for (std::size_t i = 0; i < bodies.size() && bodies.size() > 2;) {
+    for (std::size_t i = 0; i < bodies.size() && bodies.size() > 2 && !spent(kImproving);) {
       report("dissolving", 0.99);
       if (!share_out(bodies, i, epsilon)) ++i;
     }
@@ -690,8 +715,7 @@ class Decomposer {
         }
         if (options_.min_thickness > 0) thickened[i] = thicken(hulls[i]) ? 1 : 0;
       });
-      ReachOptions reach;
-      reach.absolute_gap = 1e-5 * solid_.diagonal();
+      const ReachOptions reach = reach_options(hulls.size());
       const std::vector<Reach> measured =
           measure(hulls, solid_, reach, 0.5 * decisive, decisive > 0 ? 0.7 * decisive : kUnbounded);
       std::vector<std::size_t> failed;
@@ -709,6 +733,20 @@ class Decomposer {
       open = std::move(failed);
       if (open.empty()) break;
     }
+    return out;
+  }
+
+  /// How bodies are measured: fewer pieces of each where the work left is little.
+  [[nodiscard]] ReachOptions reach_options(std::size_t bodies) const {
+    constexpr double kPiece = 20'000;  // work
+    constexpr double kFewest = 2000;   // pieces per body
+    ReachOptions out;
+    out.absolute_gap = 1e-5 * solid_.diagonal();
+    const double left =
+        static_cast<double>(solid_.work().most()) - static_cast<double>(solid_.work().done());
+    const double share = left / (kPiece * static_cast<double>(std::max<std::size_t>(1, bodies)));
+    if (share < static_cast<double>(out.most))
+      out.most = static_cast<std::size_t>(std::max(kFewest, share));
     return out;
   }
 
@@ -803,6 +841,7 @@ class Decomposer {
     for (double share = 1; share > 0.1; share *= 0.75) {
       const auto count = static_cast<std::size_t>(std::ceil(share * static_cast<double>(most)));
       if (count == last) continue;
+      if (!best.empty() && spent(kImproving)) break;
       last = count;
       std::vector<Finished> tried = at_most(count);
       if (!best.empty() && fits(best) && reach_of(tried) > reach_of(best)) break;
@@ -814,7 +853,7 @@ class Decomposer {
     if (!tuning_.reduce || !fits(best)) return best;
     // By epsilon: those too far are taken apart, and fewer looked for.
     int tries = 6;
-    for (double step = 0.08; step > 0.015 && tries > 0; --tries) {
+    for (double step = 0.08; step > 0.015 && tries > 0 && !spent(kImproving); --tries) {
       const double epsilon = (1 - step) * reach_of(best);
       if (!(epsilon > 1e-5 * solid_.diagonal())) break;
       std::vector<Finished> tried = within(epsilon);
@@ -875,13 +914,13 @@ class Decomposer {
     find_required(bodies);  // leaves may have been cut since the bodies were finished
     std::vector<Open> open;
     for (std::size_t i = 0; i < bodies.size(); ++i) open.push_back({i, 3});
-    ReachOptions reach;
-    reach.absolute_gap = 1e-5 * solid_.diagonal();
-    reach.enough = std::max(epsilon, reach_of(bodies));
     for (;;) {
+      if (spent(kFinishing)) return;
       std::erase_if(
           open, [&](const Open& o) { return bodies[o.body].hull.vertices.size() <= o.low + 1; });
       if (open.empty()) return;
+      ReachOptions reach = reach_options(open.size());
+      reach.enough = std::max(epsilon, reach_of(bodies));
       std::vector<Mesh> hulls(open.size());
       geom::parallel_loop(std::size_t{0}, open.size(), [&](std::size_t i) {
         const Finished& f = bodies[open[i].body];
@@ -931,7 +970,7 @@ class Decomposer {
   Solid solid_;
   CutTree tree_;
   PairMemo memo_;
-  bool begun_ = false;
+  bool begun_ = false, out_of_work_ = false;
   double point_error_ = 0;
   std::map<int, std::vector<Vec3>> required_;  // by leaf
   DecomposeResult result_;
@@ -951,33 +990,56 @@ void measure_anew(DecomposeResult& result, const Mesh& closed) {
   }
 }
 
+/// Work that is left, but not less than a share of all. [ns]
+class Allowance {
+ public:
+  explicit Allowance(double seconds) {
+    constexpr double kMost = 1e18;
+    all_ = left_ = static_cast<std::uint64_t>(std::min(kMost, 1e9 * seconds));
+  }
+  [[nodiscard]] std::uint64_t left() const { return std::max(left_, all_ / 4); }
+  [[nodiscard]] bool plenty() const { return left_ > all_ / 2; }
+  void spend(std::uint64_t work) { left_ -= std::min(left_, work); }
+
+ private:
+  std::uint64_t all_, left_;
+};
+
 /// Where epsilon asks for more than the limits allow: the nearest that keep to these, as if no
 /// epsilon had been given.
-DecomposeResult search(const Mesh& closed, const DecomposeOptions& options) {
-  DecomposeResult result = Decomposer(closed, options).run();
+DecomposeResult search(const Mesh& closed, const DecomposeOptions& options, Allowance& allowance) {
+  Decomposer first(closed, options, allowance.left());
+  DecomposeResult result = first.run();
+  allowance.spend(first.work_done());
   if (!options.epsilon || result.stop != Stop::TooManyBodies) return result;
   DecomposeOptions limited = options;
   limited.epsilon.reset();
-  result = Decomposer(closed, limited).run();
+  Decomposer second(closed, limited, allowance.left());
+  result = second.run();
+  allowance.spend(second.work_done());
   if (result.reach_upper > *options.epsilon) result.stop = Stop::TooManyBodies;
   return result;
 }
 
 /// Few faces leave few cuts, and much hangs on the first: quick searches, with the planes of
 /// symmetry and without them, sometimes find fewer bodies than the thorough one.
-DecomposeResult with_quick_searches(const Mesh& closed, const DecomposeOptions& options) {
+DecomposeResult with_quick_searches(const Mesh& closed, const DecomposeOptions& options,
+                                    Allowance& allowance) {
   constexpr std::size_t kFew = 2000;  // triangles
-  DecomposeResult best = search(closed, options);
+  DecomposeResult best = search(closed, options, allowance);
   if (!options.epsilon || options.max_total_vertices || options.method != Method::Planes ||
       options.effort == Effort::Fast || closed.triangles.size() > kFew ||
       (best.stop == Stop::Done && best.bodies.size() <= 2))
-    return best;  // one body has been tried
+    return best;                      // one body has been tried
   DecomposeOptions silent = options;  // the progress has been told
   silent.progress = nullptr;
   for (const bool mirrors : {false, true}) {
+    if (!allowance.plenty()) break;
     Tuning quick = tuning(Effort::Fast);
     quick.search.mirrors = mirrors;
-    DecomposeResult other = Decomposer(closed, silent, quick).run();
+    Decomposer decomposer(closed, silent, allowance.left(), quick);
+    DecomposeResult other = decomposer.run();
+    allowance.spend(decomposer.work_done());
     if (other.stop == Stop::Done &&
         (best.stop != Stop::Done || other.bodies.size() < best.bodies.size()))
       best = std::move(other);
@@ -986,20 +1048,31 @@ DecomposeResult with_quick_searches(const Mesh& closed, const DecomposeOptions& 
 }
 
 DecomposeResult decompose_closed(const Mesh& closed, const DecomposeOptions& options) {
+  Allowance allowance(work_allowed(options, closed.triangles.size()));
   if (const std::optional<Simpler> simpler = pre_step(closed, options)) {
     DecomposeOptions rest = options;
     if (rest.epsilon) *rest.epsilon -= simpler->distance;
-    DecomposeResult result = search(simpler->mesh, rest);
+    DecomposeResult result = search(simpler->mesh, rest, allowance);
     measure_anew(result, closed);
     result.statistics.pre_step_triangles = simpler->mesh.triangles.size();
     // What a limit does not allow within the rest of epsilon, it may allow within all of it.
     if (!options.epsilon || (result.stop == Stop::Done && result.reach_upper <= *options.epsilon))
       return result;
   }
-  return with_quick_searches(closed, options);
+  return with_quick_searches(closed, options, allowance);
 }
 
 }  // namespace
+
+double default_work(std::size_t triangles) {
+  return 15 + 1e-3 * std::max(0.0, static_cast<double>(triangles) - 1e4);
+}
+
+double work_allowed(const DecomposeOptions& options, std::size_t triangles) {
+  return options.max_work.value_or(options.effort == Effort::Best
+                                       ? std::numeric_limits<double>::infinity()
+                                       : default_work(triangles));
+}
 
 void require_sound(const DecomposeOptions& options) {
   if (!options.epsilon && !options.max_bodies && !options.max_total_vertices)
@@ -1015,6 +1088,8 @@ void require_sound(const DecomposeOptions& options) {
     throw Error(ErrorCode::InvalidArgument, "fewer than 8 vertices per body");
   if (!(options.min_thickness >= 0) || !std::isfinite(options.min_thickness))
     throw Error(ErrorCode::InvalidArgument, "the least thickness must be finite and not negative");
+  if (options.max_work && !(*options.max_work > 0))
+    throw Error(ErrorCode::InvalidArgument, "max_work must be positive");
   if (!(options.simplify >= 0 && options.simplify <= 1))
     throw Error(ErrorCode::InvalidArgument, "the share for simplification must be from 0 to 1");
   if (options.max_total_vertices && options.min_thickness > 0)

@@ -46,14 +46,14 @@ double FacetTree::bound(const Node& node, const geom::Vec3& from_center) const {
          node.least + slack_;
 }
 
-double FacetTree::beyond(const geom::Vec3& p) const {
-  double best = 0;
+double FacetTree::beyond(const geom::Vec3& p, double least, double enough) const {
+  double best = least;
   if (nodes_.empty()) return best;
   const geom::Vec3 from_center = p - center_;
   std::array<std::pair<double, std::uint32_t>, 64> stack;  // the facets are halved each time
   int size = 0;
   stack[size++] = {bound(nodes_[0], from_center), 0};
-  while (size > 0) {
+  while (size > 0 && best <= enough) {
     const auto [most, index] = stack[--size];
     if (most <= best) continue;
     const Node& node = nodes_[index];

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace kaboum::bcd {
@@ -18,8 +19,10 @@ class FacetTree {
   /// @param size  about that of the polytope, and `center` in it. [length]
   FacetTree(std::vector<Facet> facets, const geom::Vec3& center, double size);
 
-  /// The largest n·p − d; 0 if none is positive.
-  [[nodiscard]] double beyond(const geom::Vec3& p) const;
+  /// The largest n·p − d if that is more than `least`, which it is until a facet is found; where it
+  /// exceeds `enough`, something between them.
+  [[nodiscard]] double beyond(const geom::Vec3& p, double least = 0,
+                              double enough = std::numeric_limits<double>::infinity()) const;
 
  private:
   struct Node {

@@ -40,7 +40,7 @@ class Depths {
   Deepest search(const std::vector<Inscribed>& bodies, double enough, double gap, bool seeds,
                  std::size_t most) {
     Deepest out;
-    for (std::size_t work = 0; !cubes_.empty() && work < most; ++work) {
+    for (std::size_t work = 0; !cubes_.empty() && work < most; ++work, ++looked_) {
       const Cube cube = cubes_.top();
       if (cube.upper <= std::max(enough, out.lower * (1 + gap))) break;
       if (out.lower > 0 && out.lower >= 0.8 * enough && enough > 0) break;
@@ -67,6 +67,9 @@ class Depths {
     out.upper = std::max(out.lower, cubes_.empty() ? 0.0 : cubes_.top().upper);
     return out;
   }
+
+  /// Cubes looked at so far.
+  [[nodiscard]] std::size_t looked() const { return looked_; }
 
  private:
   static Mesh points_of(const Boundary& boundary) {
@@ -152,6 +155,7 @@ class Depths {
   double diagonal_ = 0, slack_ = 0;
   std::priority_queue<Cube> cubes_;
   std::uint64_t count_ = 0;
+  std::size_t looked_ = 0;
 };
 
 struct Tuning {
@@ -202,9 +206,19 @@ DecomposeResult fill(const geom::Prepared& input, const DecomposeOptions& option
   std::vector<Inscribed> bodies;
   Depths::Deepest deepest;
   double begin = 0;
+  // About what a cube takes that is looked at, and growing a body per triangle. [s]
+  constexpr double kCube = 60e-6, kTriangle = 2e-6;
+  const double allowed = work_allowed(options, input.mesh.triangles.size());
+  const double per_body =
+      kTriangle * effort.rounds * static_cast<double>(boundary.mesh.triangles.size());
+  double work = 0;
   for (;;) {
     const bool last = bodies.size() >= most;
-    deepest = depths.search(bodies, enough, last ? 0.02 : 0.3, !last, effort.cubes);
+    const auto cubes = static_cast<std::size_t>(
+        std::clamp((allowed - work) / kCube, 1000.0, static_cast<double>(effort.cubes)));
+    const std::size_t before = depths.looked();
+    deepest = depths.search(bodies, enough, last ? 0.02 : 0.3, !last, cubes);
+    work += kCube * static_cast<double>(depths.looked() - before) + per_body;
     if (bodies.empty()) begin = deepest.upper;
     if (deepest.upper <= enough || last || deepest.depth <= 1e-6 * diagonal) break;
     if (options.progress) {
@@ -214,6 +228,10 @@ DecomposeResult fill(const geom::Prepared& input, const DecomposeOptions& option
               : std::log(begin / deepest.upper) / std::log(std::max(begin / enough, 1.01));
       options.progress({"filling", std::clamp(share, 0.0, 1.0)});
     }
+    if (work >= allowed) {
+      result.statistics.out_of_work = true;
+      break;
+    }
     std::optional<Inscribed> body = inscribe(boundary.mesh, deepest.point, deepest.depth,
                                              options.max_vertices, effort.rounds, options.safety);
     if (!body) break;
@@ -222,7 +240,9 @@ DecomposeResult fill(const geom::Prepared& input, const DecomposeOptions& option
   result.reach_lower = deepest.lower;
   result.reach_upper = deepest.upper;
   if (options.epsilon && deepest.upper > *options.epsilon)
-    result.stop = bodies.size() >= most ? Stop::TooManyBodies : Stop::Stuck;
+    result.stop = bodies.size() >= most           ? Stop::TooManyBodies
+                  : result.statistics.out_of_work ? Stop::OutOfWork
+                                                  : Stop::Stuck;
   result.statistics.leaves = bodies.size();
   for (Inscribed& body : bodies) {
     result.statistics.vertices += body.hull.vertices.size();

@@ -10,6 +10,8 @@
 namespace kaboum::bcd {
 namespace {
 
+constexpr double kMergeWork = 0.8;  ///< share of the work allowed, after which merging ends
+
 /// Two bodies and what their hull would be.
 struct Pair {
   std::uint32_t a, b;
@@ -48,6 +50,7 @@ double between(const Body& a, const Body& b, const Solid& solid) {
 
 /// Pairs farther than `limit` from the solid are not looked at any closer.
 PairMemo::Entry judge(const Body& a, const Body& b, const Solid& solid, double limit) {
+  solid.work().add(2000);
   const double least = between(a, b, solid);
   if (least > limit) return {least, 0, false};
   static thread_local std::vector<Vec3> points;
@@ -145,8 +148,10 @@ std::vector<Body> merge(std::vector<Body> bodies, const Solid& solid, std::size_
     for (std::uint32_t b = a + 1; b < bodies.size(); ++b)
       if (near(bodies[a], bodies[b])) fresh.push_back({a, b});
   judge_all();
+  // Where any distance will do, the number is what is wished.
+  const bool unlimited = !std::isfinite(epsilon);
   bool all_pairs = false;
-  while (count > target) {
+  while (count > target && (unlimited || !solid.work().spent(kMergeWork))) {
     if (queue.empty()) {
       // Parts that do not touch may still share a hull.
       if (all_pairs || count > 400) break;

@@ -11,4 +11,7 @@ void require_sound(const DecomposeOptions& options);
 /// millionth of the diagonal.
 bool too_coarse(const geom::Mesh& mesh, const DecomposeOptions& options);
 
+/// max_work, or its default for an input of so many triangles. [s]
+double work_allowed(const DecomposeOptions& options, std::size_t triangles);
+
 }  // namespace kaboum::bcd

@@ -44,6 +44,7 @@ class Measure {
     if (result_.lower > options_.enough) settle(kUnbounded);
     result_.upper = std::max({result_.lower, settled_, 0.0});
     if (result_.upper > 0) result_.upper += slack_;
+    solid_.work().add(kLook * looked_);
     return result_;
   }
 
@@ -109,6 +110,7 @@ class Measure {
       const Vec3 center = (a + b + c) / 3;
       const double radius = std::sqrt(std::max(
           {(a - center).squaredNorm(), (b - center).squaredNorm(), (c - center).squaredNorm()}));
+      ++looked_;
       const auto at = solid_.surface().nearest(center, p.hint);
       p.hint = at.triangle;
       p.upper = at.upper + radius;
@@ -253,6 +255,7 @@ class Measure {
         if (h + extent > -k.slack) crossing.push_back(k);
       }
       const double radius = cube.half * 1.7320508075688774;
+      ++looked_;
       const auto at = solid_.surface().nearest(cube.center, cube.hint);
       cube.hint = at.triangle;
       cube.upper = at.upper + radius;
@@ -285,6 +288,7 @@ class Measure {
 
   static constexpr double kUnbounded = std::numeric_limits<double>::infinity();
   static constexpr std::size_t kMostNear = 24;
+  static constexpr std::uint64_t kLook = 8000;  ///< work of bounding a part
 
   const Mesh& body_;
   const Solid& solid_;
@@ -293,6 +297,7 @@ class Measure {
   double floor_ = 0;
   double scale_ = 0, slack_ = 0;
   double settled_ = 0;
+  std::uint64_t looked_ = 0;
   Reach result_;
 };
 

@@ -20,6 +20,8 @@ namespace {
 constexpr std::uint32_t kNone = 0xFFFFFFFF;
 /// Links of no more edges are looked at in full, others by samples.
 constexpr std::size_t kFewEdges = 64;
+/// Vertices above which not every contraction is the cheapest.
+constexpr std::size_t kMany = 384;
 
 struct HalfSpace {
   Vec3 n;  // unit
@@ -50,6 +52,7 @@ class Contractor {
     version_.assign(points.size(), 0);
     quadric_.resize(points.size());
     alive_ = points.size();
+    large_ = alive_ > kMany;
     std::vector<FacetTree::Facet> facets;
     for (const Triangle& t : triangles) {
       HalfSpace h;
@@ -66,18 +69,43 @@ class Contractor {
     facets_.emplace(std::move(facets), points[0], size_);
   }
 
+  /// Contracts edges in any order, those first that bring a vertex little beyond the hull, while
+  /// there are more vertices than `cap`: of many, which go first matters little, and looking for
+  /// the cheapest each time would take long.
+  void thin_out(std::size_t cap) {
+    for (double growth = 1e-5 * size_; growth < 1e-2 * size_ && alive_ > cap; growth *= 4) {
+      const std::size_t old = vertices_.size();
+      // The vertices that are new join the end.
+      for (std::uint32_t v = 0; v < vertices_.size() && alive_ > cap; ++v) {
+        if (star_[v].size() > kFewEdges) continue;
+        const std::vector<std::uint32_t> star = star_[v];
+        for (const std::uint32_t t : star) {
+          Entry e{};
+          e.a = v;
+          for (int k = 0; k < 3; ++k)
+            if (triangles_[t][k] == v) e.b = triangles_[t][(k + 1) % 3];
+          const bool tried = e.b < v && v < old;
+          if (tried || in_fan(e.a, e.b) || !position(e.a, e.b, e.position)) continue;
+          if (facets_->beyond(e.position, growth, growth) <= growth && contract(e)) break;
+        }
+      }
+    }
+  }
+
   /// Contracts while there are more vertices than `cap`, then calls reached(), then contracts what
   /// costs at most `free_cost`. @return the largest cost of a contraction done.
   template <class Reached>
   double run(std::size_t cap, double free_cost, Reached&& reached) {
     double largest = 0;
     bool told = false;
-    for (std::uint32_t t = 0; t < triangles_.size(); ++t)
-      for (int k = 0; k < 3; ++k) {
-        const std::uint32_t a = triangles_[t][k], b = triangles_[t][(k + 1) % 3];
-        if (a < b) push(a, b);
-      }
+    queued_ = true;
+    few_ = alive_ <= cap + kFewEdges;
+    push_all();
     while (!queue_.empty()) {
+      if (!few_ && alive_ <= cap + kFewEdges) {
+        few_ = true;
+        push_all();
+      }
       const Entry e = queue_.top();
       if (!told && alive_ <= cap && (e.cost > 0 || alive_ <= 12)) {
         reached();
@@ -89,7 +117,11 @@ class Contractor {
       queue_.pop();
       if (star_[e.a].empty() || star_[e.b].empty()) continue;
       if (e.stamp != version_[e.a] + version_[e.b]) {
-        if (e.stamp == kRetry || adjacent(e.a, e.b)) push(e.a, e.b);
+        if (adjacent(e.a, e.b)) push(e.a, e.b);
+        continue;
+      }
+      if (e.guessed) {
+        push(e.a, e.b, true);
         continue;
       }
       if (contract(e)) largest = std::max(largest, e.cost);
@@ -107,12 +139,12 @@ class Contractor {
   [[nodiscard]] std::size_t count() const { return alive_; }
 
  private:
-  static constexpr std::uint64_t kRetry = ~std::uint64_t{0};
   struct Entry {
     double cost;
     std::uint32_t a, b;
     std::uint64_t stamp;
-    Vec3 position;
+    bool guessed;  ///< the cost; there is no position
+    Vec3 position = Vec3::Zero();
     bool operator<(const Entry& o) const {
       if (cost != o.cost) return cost > o.cost;
       return a != o.a ? a > o.a : b > o.b;
@@ -141,12 +173,18 @@ class Contractor {
     live_.push_back(1);
     for (const std::uint32_t v : t) star_[v].push_back(index);
   }
-  void remove_triangle(std::uint32_t t) {
-    live_[t] = 0;
-    for (const std::uint32_t v : triangles_[t]) {
-      auto& s = star_[v];
-      s.erase(std::find(s.begin(), s.end(), t));
+  /// The triangle of the hull beyond an edge of one that is marked to go; none if it is marked too.
+  [[nodiscard]] std::uint32_t across(std::uint32_t a, std::uint32_t b) const {
+    for (const std::uint32_t t : star_[star_[a].size() < star_[b].size() ? a : b]) {
+      const Triangle& w = triangles_[t];
+      if (live_[t] == 1 &&
+          ((w[0] == b && w[1] == a) || (w[1] == b && w[2] == a) || (w[2] == b && w[0] == a)))
+        return t;
     }
+    return kNone;
+  }
+  [[nodiscard]] bool in_fan(std::uint32_t a, std::uint32_t b) const {
+    return star_[a].size() + star_[b].size() > kFewEdges;
   }
   [[nodiscard]] bool adjacent(std::uint32_t a, std::uint32_t b) const {
     for (const std::uint32_t t : star_[a])
@@ -216,18 +254,50 @@ class Contractor {
     return both == 4 && edges.size() >= 3;
   }
 
-  void push(std::uint32_t a, std::uint32_t b) {
+  void push_all() {
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t)
+      for (int k = 0; k < 3 && live_[t] == 1; ++k) {
+        const std::uint32_t a = triangles_[t][k], b = triangles_[t][(k + 1) % 3];
+        if (a < b) push(a, b);
+      }
+  }
+
+  /// Round the tips of large fans costs are guessed at first: each contraction there changes all.
+  void push(std::uint32_t a, std::uint32_t b, bool certain = false) {
     if (a > b) std::swap(a, b);
     Entry e{};
     e.a = a;
     e.b = b;
     e.stamp = version_[a] + version_[b];
+    if (!certain && in_fan(a, b)) {
+      e.guessed = true;
+      e.cost = (few_ ? 0.1 : 1) * (vertices_[a] - vertices_[b]).norm();
+      queue_.push(e);
+      return;
+    }
     if (place(a, b, e.position, e.cost)) queue_.push(e);
   }
 
-  /// Cheapest position for the vertex that replaces a and b.
+  /// Cheapest position for the vertex that replaces a and b, and what it costs.
   bool place(std::uint32_t a, std::uint32_t b, Vec3& best, double& cost) {
+    if (!position(a, b, best)) return false;
+    const double growth = facets_->beyond(best);
+    double reach = solid_.field(best);
+    for (std::size_t i = 0; i < edges_.size(); i += 1 + edges_.size() / (kFewEdges + 1)) {
+      const auto& [u, w] = edges_[i];
+      const Vec3 &p = vertices_[u], &r = vertices_[w];
+      reach = std::max({reach, solid_.field(0.5 * (best + p)), solid_.field((best + p + r) / 3),
+                        solid_.field(0.6 * best + 0.2 * p + 0.2 * r)});
+    }
+    cost = std::max(reach, 0.3 * growth) + 0.02 * growth;
+    return growth < 2 * size_;
+  }
+
+  /// The position beyond the planes round an edge with the least sum of squared distances; leaves
+  /// the edges round it in edges_.
+  bool position(std::uint32_t a, std::uint32_t b, Vec3& best) {
     if (!link(a, b, edges_)) return false;
+    solid_.work().add(2000 + 300 * edges_.size());
     constraints_.clear();
     // Round the tip of a cone of a thousand facets, all pairs and all samples would take minutes.
     const bool few = edges_.size() <= kFewEdges;
@@ -247,17 +317,7 @@ class Contractor {
     const double weight = 1e-7 * q.a.trace();
     q.a += weight * Eigen::Matrix3d::Identity();
     q.b += weight * middle;
-    if (!minimise(q, best)) return false;
-    const double growth = facets_->beyond(best);
-    double reach = solid_.field(best);
-    for (std::size_t i = 0; i < edges_.size(); i += 1 + edges_.size() / (kFewEdges + 1)) {
-      const auto& [u, w] = edges_[i];
-      const Vec3 &p = vertices_[u], &r = vertices_[w];
-      reach = std::max({reach, solid_.field(0.5 * (best + p)), solid_.field((best + p + r) / 3),
-                        solid_.field(0.6 * best + 0.2 * p + 0.2 * r)});
-    }
-    cost = std::max(reach, 0.3 * growth) + 0.02 * growth;
-    return growth < 2 * size_;
+    return minimise(q, best);
   }
 
   /// Minimiser of the quadric beyond all constraints. The one most violated joins the up to three
@@ -341,7 +401,8 @@ class Contractor {
   }
 
   bool contract(const Entry& e) {
-    const double eps = 1e-10 * size_;
+    // Far below float32's spacing, which comes last; the many facets of large hulls are narrower.
+    const double eps = (large_ ? 1e-8 : 1e-10) * size_;
     // Facets that the new vertex sees, and the star.
     std::vector<std::uint32_t> gone;
     const auto mark = [&](std::uint32_t t) {
@@ -360,69 +421,62 @@ class Contractor {
     for (std::size_t i = 0; i < gone.size(); ++i) {
       const Triangle v = triangles_[gone[i]];
       for (int k = 0; k < 3; ++k) {
-        const std::uint32_t a = v[k], b = v[(k + 1) % 3];
-        for (const std::uint32_t t : star_[a]) {
-          if (live_[t] != 1) continue;
-          const Triangle& w = triangles_[t];
-          const bool across =
-              (w[0] == b && w[1] == a) || (w[1] == b && w[2] == a) || (w[2] == b && w[0] == a);
-          if (!across) continue;
-          HalfSpace h;
-          const bool flat = !plane(vertices_[w[0]], vertices_[w[1]], vertices_[w[2]], h);
-          if (flat || h.height(e.position) > -eps) mark(t);
-          break;
-        }
+        const std::uint32_t t = across(v[k], v[(k + 1) % 3]);
+        if (t == kNone) continue;
+        const Triangle& w = triangles_[t];
+        HalfSpace h;
+        const bool flat = !plane(vertices_[w[0]], vertices_[w[1]], vertices_[w[2]], h);
+        if (flat || h.height(e.position) > -eps) mark(t);
       }
     }
     for (const std::uint32_t t : gone) {
       const Triangle& v = triangles_[t];
-      for (int k = 0; k < 3; ++k) {
-        const std::uint32_t a = v[k], b = v[(k + 1) % 3];
-        for (const std::uint32_t s : star_[a]) {
-          if (live_[s] != 1) continue;
-          const Triangle& w = triangles_[s];
-          if ((w[0] == b && w[1] == a) || (w[1] == b && w[2] == a) || (w[2] == b && w[0] == a))
-            horizon.push_back({a, b});
-        }
-      }
+      for (int k = 0; k < 3; ++k)
+        if (across(v[k], v[(k + 1) % 3]) != kNone) horizon.push_back({v[k], v[(k + 1) % 3]});
     }
+    solid_.work().add(1000 * gone.size());
     if (horizon.size() < 3) return undo();
     // One loop: every vertex once.
     std::vector<std::uint32_t> ring{horizon[0][0]};
-    for (std::size_t i = 0; i < horizon.size(); ++i) {
-      std::uint32_t to = kNone;
-      for (const auto& h : horizon)
-        if (h[0] == ring.back()) {
-          if (to != kNone) return undo();
-          to = h[1];
-        }
-      if (to == kNone) return undo();
-      if (to == ring[0]) break;
-      ring.push_back(to);
-      if (ring.size() > horizon.size()) return undo();
+    std::sort(horizon.begin(), horizon.end());
+    while (ring.size() <= horizon.size()) {
+      const auto next = std::lower_bound(horizon.begin(), horizon.end(),
+                                         std::array<std::uint32_t, 2>{ring.back(), 0});
+      if (next == horizon.end() || (*next)[0] != ring.back() ||
+          (next + 1 != horizon.end() && (*(next + 1))[0] == ring.back()))
+        return undo();
+      if ((*next)[1] == ring[0]) break;
+      ring.push_back((*next)[1]);
     }
     if (ring.size() != horizon.size()) return undo();
     std::vector<Vec3> around;
     for (const std::uint32_t v : ring) around.push_back(vertices_[v]);
     const PointTree round(around);
+    HalfSpace last{Vec3::Zero(), 0};
     for (std::size_t i = 0; i < ring.size(); ++i) {
       HalfSpace h;
-      if (!plane(around[i], around[(i + 1) % ring.size()], e.position, h) ||
-          round.any_above(h.n, h.d + eps) || original_.any_above(h.n, h.d + eps))
-        return undo();
+      if (!plane(around[i], around[(i + 1) % ring.size()], e.position, h)) return undo();
+      // Large fans are often flat.
+      const bool known = ring.size() > kFewEdges && h.n.dot(last.n) > 1 - 1e-15 &&
+                         std::abs(h.d - last.d) < 1e-3 * eps;
+      last = h;
+      if (known) continue;
+      if (round.any_above(h.n, h.d + eps) || original_.any_above(h.n, h.d + eps)) return undo();
     }
     Quadric q;
     for (const std::uint32_t v : {e.a, e.b}) q.add(quadric_[v]);
     std::vector<std::uint32_t> lost;
     for (const std::uint32_t t : gone)
       for (const std::uint32_t v : triangles_[t]) lost.push_back(v);
-    for (const std::uint32_t t : gone) remove_triangle(t);
+    std::sort(lost.begin(), lost.end());
+    lost.erase(std::unique(lost.begin(), lost.end()), lost.end());
+    for (const std::uint32_t t : gone) live_[t] = 0;
+    for (const std::uint32_t v : lost)
+      std::erase_if(star_[v], [&](std::uint32_t t) { return live_[t] == 0; });
     const auto fresh = static_cast<std::uint32_t>(vertices_.size());
     vertices_.push_back(e.position);
     star_.emplace_back();
     version_.push_back(0);
-    std::sort(lost.begin(), lost.end());
-    lost.erase(std::unique(lost.begin(), lost.end()), lost.end());
     for (std::size_t i = 0; i < ring.size(); ++i)
       add_triangle({ring[i], ring[(i + 1) % ring.size()], fresh});
     ++alive_;
@@ -435,13 +489,14 @@ class Contractor {
       }
     }
     quadric_.push_back(q);
-    for (const std::uint32_t v : ring) push(fresh, v);
+    if (queued_)
+      for (const std::uint32_t v : ring) push(fresh, v);
     return true;
   }
 
   const Solid& solid_;
   PointTree original_;
-  std::optional<FacetTree> facets_;  // original
+  std::optional<FacetTree> facets_;                                       // original
   std::unordered_map<std::uint64_t, std::optional<HalfSpace>> tangents_;  // by edge
   double size_;
   std::vector<Vec3> vertices_;
@@ -451,6 +506,9 @@ class Contractor {
   std::vector<Triangle> triangles_;
   std::vector<char> live_;
   std::size_t alive_ = 0;
+  bool large_ = false;   // at first
+  bool queued_ = false;  // all edges are in the queue
+  bool few_ = false;     // vertices are left, so that fans are worth a closer look
   std::priority_queue<Entry> queue_;
   std::vector<std::array<std::uint32_t, 2>> edges_;
   std::vector<HalfSpace> constraints_;
@@ -479,6 +537,7 @@ Simplified simplify(std::span<const Vec3> hull, std::size_t cap, double free_cos
   const auto result = [&] {
     return contractor.count() <= cap ? contractor.result() : prism_round();
   };
+  contractor.thin_out(std::max(kMany, 6 * cap));
   out.cost = contractor.run(cap, free_cost, [&] { out.needed = result(); });
   out.vertices = result();
   return out;

@@ -36,13 +36,14 @@ double squared(const Vec3& p, const Vec3& a, const Vec3& ab, const Vec3& ac) {
 
 }  // namespace
 
-Solid::Solid(const Mesh& mesh, std::size_t nodes, double epsilon, bool probes)
+Solid::Solid(const Mesh& mesh, std::size_t nodes, double epsilon, bool probes, std::uint64_t work)
     : mesh_(mesh),
       box_(geom::bounding_box(mesh)),
       diagonal_(box_.diagonal()),
       surface_(mesh),
       winding_(mesh),
-      bvh_(mesh) {
+      bvh_(mesh),
+      work_(work) {
   for (const std::uint32_t t : bvh_.order()) {
     const Triangle& v = mesh.triangles[t];
     const Vec3& a = mesh.vertices[v[0]];
@@ -94,6 +95,7 @@ void Solid::find_probes() {
         if (x < low - 0.5 || x > high + 0.5) continue;
         const Vec3 p = origin_ + spacing_ * Vec3(x, y, z);
         if (!(x > low + 0.5 && x < high - 0.5) && !inside(p)) continue;
+        work_.add(2000);
         const float v = node(x, y, z);
         if (v < shallow_) continue;
         const int ridges = (v >= node(x - step, y, z) && v >= node(x + step, y, z) ? 1 : 0) +

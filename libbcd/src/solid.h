@@ -9,6 +9,8 @@
 #include <span>
 #include <vector>
 
+#include "work.h"
+
 namespace kaboum::bcd {
 
 using geom::Box3;
@@ -25,7 +27,9 @@ class Solid {
   /// many it is no coarser than 0.7 · epsilon.
   /// @param epsilon  distances that matter; 0: all the same. [length]
   /// @param probes  whether to look for probes at once.
-  Solid(const Mesh& mesh, std::size_t nodes, double epsilon, bool probes = true);
+  /// @param work  what is counted there is what the search may do. [ns]
+  Solid(const Mesh& mesh, std::size_t nodes, double epsilon, bool probes = true,
+        std::uint64_t work = ~std::uint64_t{0});
   /// Looks for probes all over the grid, unless that has been done.
   void find_probes();
 
@@ -64,6 +68,8 @@ class Solid {
   /// What the square of a probe's distance from the next one is about. [length²]
   [[nodiscard]] double probe_area() const { return probe_area_; }
   [[nodiscard]] double spacing() const { return spacing_; }
+  /// Of all that looks at this solid.
+  [[nodiscard]] Work& work() const { return work_; }
   [[nodiscard]] std::size_t nodes_computed() const { return computed_; }
 
  private:
@@ -90,6 +96,7 @@ class Solid {
   std::unique_ptr<std::atomic<float>[]> value_;
   std::vector<Probe> probes_;
   mutable std::atomic<std::size_t> computed_{0};
+  mutable Work work_;
 };
 
 }  // namespace kaboum::bcd

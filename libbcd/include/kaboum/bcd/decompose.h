@@ -54,6 +54,12 @@ struct DecomposeOptions {
   /// (decompose).
   double simplify = 0.5;
   PreStep pre_step = PreStep::Auto;  ///< only outwards (decompose)
+  /// Most work of the search: steps are counted, each as long as it takes on one core of a machine
+  /// of 2020, so the result is the same on any machine, however fast or busy. Then the search ends
+  /// with the best found, measured like any other. What comes before and after (a pre-step, the
+  /// exact check) does not count. [s]
+  /// By default `default_work` of the triangles, or without limit for Effort::Best.
+  std::optional<double> max_work;
   /// Multiplies what is allowed for rounding (the overlap of pieces, the error of computed points);
   /// larger where an exact check of the result fails.
   double safety = 1;
@@ -68,6 +74,7 @@ enum class Stop {
                   ///< too few for anything
   TooCoarse,      ///< float32's spacing here exceeds epsilon/100 or 1e-6 of the diagonal; no bodies
   Stuck,          ///< epsilon is not reached though everything was tried
+  OutOfWork,      ///< epsilon is not reached with max_work
 };
 
 struct DecomposeStatistics {
@@ -77,7 +84,11 @@ struct DecomposeStatistics {
   std::size_t vertices = 0;            ///< of all bodies
   std::size_t largest = 0;             ///< vertices of the largest body
   std::size_t thickened = 0;           ///< bodies that min_thickness changed
+  bool out_of_work = false;            ///< max_work ended the search: with more, it might do better
 };
+
+/// 15 s, and 1 s per thousand triangles beyond ten thousand. [s]
+double default_work(std::size_t triangles);
 
 struct DecomposeResult {
   std::vector<geom::ConvexBody> bodies;
