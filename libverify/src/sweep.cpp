@@ -71,10 +71,10 @@ Outline outline_of(const MovingShape& shape) {
       break;
     }
     case MovingShape::Kind::Box:
-      for (int i = 0; i < 8; ++i)
-        out.points.emplace_back((i & 1) != 0 ? half.x() : -half.x(),
-                                (i & 2) != 0 ? half.y() : -half.y(),
-                                (i & 4) != 0 ? half.z() : -half.z());
+      for (unsigned i = 0; i < 8; ++i)
+        out.points.emplace_back((i & 1U) != 0 ? half.x() : -half.x(),
+                                (i & 2U) != 0 ? half.y() : -half.y(),
+                                (i & 4U) != 0 ? half.z() : -half.z());
       break;
     case MovingShape::Kind::Cylinder: {
       const double radius = shape.size.x();
