@@ -45,11 +45,12 @@ bool Contraction::pass(std::size_t target, double limit) {
   BucketQueue::Entry e;
   Evaluation::Candidate& candidate = evaluation_.candidate();
   while (vertices_ > target && queue_.pop(e)) {
-    if (stale(e)) continue;
+    if (stale(e) || (judge_ != nullptr && !judge_->is_hopeful(e))) continue;
     // Evaluated anew each time it is popped: what is applied holds for the planes of this moment.
     const Validity validity =
         evaluate(e.a, e.b, judge_ != nullptr ? judge_->purpose() : Evaluation::Purpose::Due);
     if (validity == Validity::Later) postpone(e);
+    if (validity == Validity::None && judge_ != nullptr) judge_->has_no_place(e);
     if (validity != Validity::Valid) continue;
     if (judge_ != nullptr && !judge_->assess(e)) continue;
     if (!queue_.due(candidate.cost)) {

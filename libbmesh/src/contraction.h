@@ -16,6 +16,10 @@ class Judge {
   virtual ~Judge() = default;
 
   [[nodiscard]] virtual Evaluation::Purpose purpose() const = 0;
+  /// Whether the edge is worth looking at: asked before it is the candidate.
+  [[nodiscard]] virtual bool is_hopeful(const BucketQueue::Entry& e) = 0;
+  /// To be told that there is no valid place for its vertex.
+  virtual void has_no_place(const BucketQueue::Entry& e) = 0;
   /// Finds out what it costs. @return whether it stays a candidate now.
   virtual bool assess(BucketQueue::Entry& e) = 0;
   /// The last tests, when it is due. @return whether it may be applied.

@@ -68,6 +68,9 @@ constexpr std::size_t kJointBatch = 32;
 /// many vertices that are left: the contractions to come should see them where they belong.
 constexpr std::size_t kRecent = 32, kRecentShare = 256;
 
+/// Measuring stops when the distance exceeds what is due by this factor.
+constexpr double kMeasureTo = 2;
+
 /// A spike goes farther from the original than this share of the diagonal, and this many times
 /// farther than the original is from the new triangles there.
 constexpr double kSpike = 0.05, kSpikeRatio = 3;
@@ -97,13 +100,16 @@ class Decimator final : private Judge {
  public:
   /// @param original  what `start` was made of, whatever has happened to it since.
   /// @param bound     of a run to a number of vertices: the error bound that rises.
+  /// @param sketch    whether another run with such a bound follows: contractions with moves are
+  ///   left to that.
   Decimator(const Setting& setting, const Mesh& original, Reduction start,
             std::optional<OriginalSolid>& solid, std::vector<Step>* steps,
-            const std::optional<RisingBound>& bound)
+            const std::optional<RisingBound>& bound, bool sketch)
       : setting_(setting),
         options_(setting.options),
         epsilon_(bound ? bound->from : options_.epsilon),
         most_(bound ? bound->to : 0),
+        sketch_(sketch),
         joint_(epsilon_ && options_.cost == Cost::Distance && options_.effort != Effort::Fast),
         original_(original),
         solid_(solid),
@@ -186,7 +192,8 @@ class Decimator final : private Judge {
   }
 
   void contract_in_stages(std::size_t target) {
-    if (options_.cost == Cost::Distance && optimiser_ && !epsilon_) collapse_in_rounds(target);
+    if (options_.cost == Cost::Distance && optimiser_ && !epsilon_ && !sketch_)
+      collapse_in_rounds(target);
     contract_to(target);
     if (most_ > 0) return raise_bound(target);
     if (!epsilon_ || options_.effort == Effort::Fast) return;
@@ -320,7 +327,8 @@ class Decimator final : private Judge {
                         failure->second.joined != joined_[e.a] + joined_[e.b]);
   }
 
-  static std::uint64_t key(const Edge& e) { return std::uint64_t{e.a} << 32 | e.b; }
+  static std::uint64_t key(std::uint32_t a, std::uint32_t b) { return std::uint64_t{a} << 32 | b; }
+  static std::uint64_t key(const Edge& e) { return key(e.a, e.b); }
 
   /// Contracts what has been claimed.
   void collapse_batch(std::span<const Edge> batch, double limit) {
@@ -342,9 +350,8 @@ class Decimator final : private Judge {
   /// Contracts until `target` vertices are left or the next costs more than `limit`.
   void contract_to(std::size_t target, double limit = Contraction::kNoLimit) {
     for (bool progress = true; progress && contraction_.vertices() > target;) {
-      const std::uint64_t rejected_before = statistics_.rejected_distance;
+      bounded_ = false;
       progress = contraction_.pass(target, limit) && limit == Contraction::kNoLimit;
-      bounded_ = statistics_.rejected_distance > rejected_before;  // by epsilon alone
     }
     pull_back_recent();
   }
@@ -353,6 +360,29 @@ class Decimator final : private Judge {
 
   [[nodiscard]] Evaluation::Purpose purpose() const override {
     return optimiser_ ? Evaluation::Purpose::Settled : Evaluation::Purpose::Due;
+  }
+
+  /// What was refused is refused again, unless something has changed around it or the error bound
+  /// has risen to what it takes.
+  bool is_hopeful(const BucketQueue::Entry& e) override {
+    if (!optimiser_) return true;
+    const auto at = refusals_.find(key(std::min(e.a, e.b), std::max(e.a, e.b)));
+    if (at == refusals_.end()) return true;
+    const Refusal& r = at->second;
+    if (r.version != optimiser_->version(e.a, e.b)) return true;
+    if (epsilon_ && !(r.takes > *epsilon_)) return true;
+    bounded_ = bounded_ || r.by_epsilon;
+    return false;
+  }
+
+  void has_no_place(const BucketQueue::Entry& e) override { refuse(e.a, e.b, kNever, false); }
+
+  static constexpr double kNever = std::numeric_limits<double>::infinity();
+
+  void refuse(std::uint32_t a, std::uint32_t b, double takes, bool by_epsilon) {
+    if (optimiser_)
+      refusals_[key(std::min(a, b), std::max(a, b))] = {optimiser_->version(a, b), takes,
+                                                        by_epsilon};
   }
 
   bool assess(BucketQueue::Entry& e) override {
@@ -375,10 +405,13 @@ class Decimator final : private Judge {
 
   /// The dearer tests, made only of candidates that are about to be applied.
   [[nodiscard]] bool admissible() {
-    if (!evaluation_.keeps_shape()) return false;
+    if (!evaluation_.keeps_shape()) {
+      refuse(candidate_.a, candidate_.b, kNever, false);
+      return false;
+    }
     if (!tolerance_) return true;
     describe_change();
-    return tolerance_->admits(removed_, added_) || reject(statistics_.rejected_distance);
+    return tolerance_->admits(removed_, added_) || reject_by_epsilon(*epsilon_);
   }
 
   void before() override {
@@ -438,11 +471,13 @@ class Decimator final : private Judge {
     describe_points();
     if (options_.cost == Cost::Mean)  // whose cost is the quadric's
       return !spikes() || reject(statistics_.rejected_spike);
-    const double limit = 1.2 * std::max(contraction_.queue().lowest_key(), candidate_.cost);
+    // Far enough beyond what is due that the edge does not come back time and again.
+    double limit = kMeasureTo * std::max(contraction_.queue().lowest_key(), candidate_.cost);
+    if (epsilon_) limit = std::min(limit, std::max(*epsilon_, candidate_.cost));
     const double squared =
         deviation_->largest(removed_, added_, points_, hint_[e.a], limit * limit);
     candidate_.cost = std::max(candidate_.cost, std::sqrt(squared));
-    if (epsilon_ && candidate_.cost > *epsilon_) return reject(statistics_.rejected_distance);
+    if (epsilon_ && candidate_.cost > *epsilon_) return reject_by_epsilon(candidate_.cost);
     if (candidate_.cost > limit) {
       e.measured = ~0U;
       return contraction_.postpone(e);
@@ -532,6 +567,7 @@ class Decimator final : private Judge {
       solid_.emplace(*bound_, bound_ == &original_ ? deviation_->original().hierarchy() : nullptr);
     optimiser_.emplace(contraction_.mesh(), *deviation_, setting_.constrained ? &*solid_ : nullptr,
                        *bound_, tolerance_ ? &*tolerance_ : nullptr, options_, statistics_, joint_);
+    refusals_.clear();
   }
 
   void optimise(int passes) {
@@ -542,8 +578,18 @@ class Decimator final : private Judge {
       if (optimiser_->pass() == 0) break;
   }
 
-  static bool reject(std::uint64_t& counter) {
+  /// Refuses the candidate for good. @return false
+  bool reject(std::uint64_t& counter) {
     ++counter;
+    refuse(candidate_.a, candidate_.b, kNever, false);
+    return false;
+  }
+
+  /// The same, until the error bound is above what it takes.
+  bool reject_by_epsilon(double takes) {
+    ++statistics_.rejected_distance;
+    bounded_ = true;
+    refuse(candidate_.a, candidate_.b, std::nextafter(takes, kNever), true);
     return false;
   }
 
@@ -623,6 +669,7 @@ class Decimator final : private Judge {
   const DecimateOptions& options_;
   std::optional<double> epsilon_;  // that steps keep
   double most_;                    // to which that rises; 0: it does not
+  bool sketch_;                    // no contractions with moves: another run will follow
   bool joint_;                     // contractions may move the vertices around
   const Mesh& original_;
   const Mesh* bound_ = &original_;       // what steps must enclose, or be enclosed by
@@ -649,6 +696,12 @@ class Decimator final : private Judge {
     double deviation = 0;        // that the contraction would take
   };
   std::unordered_map<std::uint64_t, Failure> failures_;  // of joint contractions, by edge
+  struct Refusal {
+    std::uint32_t version = 0;  // of both ends
+    double takes = 0;           // the error bound that it takes, at least
+    bool by_epsilon = false;    // that alone stands against it
+  };
+  std::unordered_map<std::uint64_t, Refusal> refusals_;  // of contractions alone, by edge
   int patience_ = 0;                                     // joint contractions that may fail yet
   std::vector<std::uint32_t> joined_;  // of a vertex: raised by joint contractions around it
   std::vector<std::uint32_t> recent_;  // contracted vertices that have not been pulled back yet
@@ -674,10 +727,10 @@ void check_options(const geom::Prepared& input, const DecimateOptions& options) 
 /// decimation proper, which knows nothing of the vertices that are gone by then.
 class Run {
  public:
-  /// @param bound  as of Decimator
+  /// @param bound, sketch  as of Decimator
   Run(const geom::Prepared& input, const DecimateOptions& options,
-      std::optional<RisingBound> bound = std::nullopt)
-      : input_(input), options_(options), bound_(bound) {
+      std::optional<RisingBound> bound = std::nullopt, bool sketch = false)
+      : input_(input), options_(options), bound_(bound), sketch_(sketch) {
     options_.effort = effective_effort(input, options);
     if (options.keep_convex) return;
     std::vector<std::uint32_t> flat = flat_vertices(input);
@@ -734,8 +787,8 @@ class Run {
     number_ = mesh.vertex;
     if (!source_.empty())
       for (std::uint32_t& v : number_) v = source_[v];
-    decimator_.emplace(*setting_, input.mesh, std::move(mesh), solid_, inner_options_.steps,
-                       bound_);
+    decimator_.emplace(*setting_, input.mesh, std::move(mesh), solid_, inner_options_.steps, bound_,
+                       sketch_);
   }
 
   void flatten() {
@@ -781,6 +834,7 @@ class Run {
   const geom::Prepared& input_;
   DecimateOptions options_;
   std::optional<RisingBound> bound_;
+  bool sketch_;
   DecimateOptions inner_options_;
   std::vector<Step> inner_steps_;  // numbered as below
   std::optional<Flattener> flattener_;
@@ -812,32 +866,34 @@ double largest_distance(const Mesh& a, const Mesh& b) {
 /// To a number of vertices, and again to the same within less than the distance found so, if that
 /// can be. @pre is_small
 DecimateResult decimate_twice(const geom::Prepared& input, const DecimateOptions& options) {
-  std::vector<Step> steps, again;
-  const auto recorded = [&](std::vector<Step>& to) {
-    DecimateOptions o = options;
-    o.steps = options.steps != nullptr ? &to : nullptr;
-    return o;
+  std::vector<Step> steps;
+  const auto run = [&](std::optional<RisingBound> bound, bool sketch, double* reached) {
+    steps.clear();
+    DecimateOptions recorded = options;
+    recorded.steps = options.steps != nullptr ? &steps : nullptr;
+    Run r(input, recorded, bound, sketch);
+    DecimateResult result = r.to(options.vertices);
+    if (reached != nullptr) *reached = r.reached_alone();
+    return result;
   };
-  const auto chosen = [&](DecimateResult result, const std::vector<Step>& of) {
+  const auto chosen = [&](DecimateResult result) {
     if (options.steps == nullptr) return result;
-    options.steps->insert(options.steps->end(), of.begin(), of.end());
+    options.steps->insert(options.steps->end(), steps.begin(), steps.end());
     result.steps = options.steps->size();
     return result;
   };
-  double from = options.effort == Effort::Best ? kBoundFromBest : kBoundFrom;
-  std::optional<DecimateResult> result;
-  {
-    Run run(input, recorded(steps));
-    result = run.to(options.vertices);
-    from *= run.reached_alone();
+  double reached = 0;
+  const DecimateResult sketch = run(std::nullopt, true, &reached);
+  if (sketch.stop == Stop::VertexTarget && reached > 0) {
+    const double from = (options.effort == Effort::Best ? kBoundFromBest : kBoundFrom) * reached;
+    const RisingBound bound{from, largest_distance(sketch.mesh, input.mesh)};
+    if (bound.from < bound.to) {
+      DecimateResult nearer = run(bound, false, nullptr);
+      if (nearer.stop == Stop::VertexTarget && nearer.unrepresentable <= sketch.unrepresentable)
+        return chosen(std::move(nearer));
+    }
   }
-  if (result->stop != Stop::VertexTarget || !(from > 0)) return chosen(*std::move(result), steps);
-  const RisingBound bound{from, largest_distance(result->mesh, input.mesh)};
-  if (!(bound.from < bound.to)) return chosen(*std::move(result), steps);
-  DecimateResult nearer = Run(input, recorded(again), bound).to(options.vertices);
-  if (nearer.stop != Stop::VertexTarget || nearer.unrepresentable > result->unrepresentable)
-    return chosen(*std::move(result), steps);
-  return chosen(std::move(nearer), again);
+  return chosen(run(std::nullopt, false, nullptr));
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ void Deviation::add_samples(double spacing) {
   // Triangles much larger than the average get inner samples: their corners say little of them.
   const double total = geom::area(original);
   const double large = 8 * total / static_cast<double>(original.triangles.size());
-  constexpr int kMostCuts = 12;
+  constexpr int kMostCuts = 12, kMostInRow = 6;
   constexpr double kMost = 6000;  // about; besides what the mesh has
   if (spacing > 0) spacing = std::max(spacing, std::sqrt(2 * total / kMost));
   for (const geom::Triangle& t : original.triangles) {
@@ -36,8 +36,27 @@ void Deviation::add_samples(double spacing) {
     int cuts =
         area > large ? std::min(kMostCuts, 1 + static_cast<int>(std::sqrt(area / large))) : 0;
     if (spacing > 0) {
-      const double longest = std::sqrt(
-          std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()}));
+      int first = 0;
+      double longest = 0;
+      for (int k = 0; k < 3; ++k) {
+        const double length = (original.vertices[t[(k + 1) % 3]] - original.vertices[t[k]]).norm();
+        if (length > longest) longest = length, first = k;
+      }
+      // Narrow ones get a row of samples: a grid would put dozens where its corners' neighbours
+      // have theirs.
+      if (2 * area < longest * spacing && cuts == 0) {
+        const int row = static_cast<int>(std::min<double>(kMostInRow, longest / spacing));
+        const double share = area / (row + 3);
+        for (const std::uint32_t v : t) weight_[v] += share;
+        const Vec3 &p = original.vertices[t[first]], &q = original.vertices[t[(first + 1) % 3]],
+                   &r = original.vertices[t[(first + 2) % 3]];
+        for (int i = 1; i <= row; ++i) {
+          const double f = static_cast<double>(i) / (row + 1);
+          point_.push_back((2 * (p + f * (q - p)) + r) / 3);
+          weight_.push_back(share);
+        }
+        continue;
+      }
       cuts = std::max(cuts, static_cast<int>(std::min<double>(kMostCuts, longest / spacing)));
     }
     // Barycentric grid of cuts + 2 points a side, without the corners.
@@ -219,20 +238,6 @@ void Deviation::refine(std::span<const Vec3> position, const Connectivity& mesh,
     for (const auto& [i, at] : run) add(i, at);
 }
 
-double Deviation::to_nearest(const Vec3& p, std::span<const NewTriangle> added, std::size_t first,
-                             double enough, std::size_t* which) {
-  double best = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < added.size(); ++i) {
-    const std::size_t k = first + i < added.size() ? first + i : first + i - added.size();
-    const double d = squared_distance(p, added[k].corner);
-    if (d >= best) continue;
-    best = d;
-    if (which != nullptr) *which = k;
-    if (best <= enough) break;
-  }
-  return best;
-}
-
 std::size_t Deviation::place_of(std::uint32_t t, std::span<const NewTriangle> added) {
   for (std::size_t k = 0; k < added.size(); ++k)
     if (added[k].index == t) return k;
@@ -247,10 +252,11 @@ double Deviation::largest(std::span<const std::uint32_t> removed,
     worst = std::max(worst, original_.squared(p.position, hint, worst));
     if (worst > limit) return worst;
   }
+  const NearestOf nearest(removed.empty() ? added.first(0) : added);
   for (const std::uint32_t t : removed) {
     std::size_t last = place_of(t, added);
     for (std::uint32_t s = head_[t]; s != kNone; s = next_[s]) {
-      worst = std::max(worst, to_nearest(point_[s], added, last, worst, &last));
+      worst = std::max(worst, nearest.squared(point_[s], last, worst));
       if (worst > limit) return worst;
     }
   }
@@ -269,10 +275,11 @@ Deviation::Energy Deviation::energy(std::span<const std::uint32_t> removed,
   };
   for (Point& p : points)
     if (!add(locate(p, hint), p.weight)) return e;
+  const NearestOf nearest(added);
   for (const std::uint32_t t : removed) {
     std::size_t last = place_of(t, added);
     for (std::uint32_t s = head_[t]; s != kNone; s = next_[s])
-      if (!add(to_nearest(point_[s], added, last, 0, &last), weight_[s])) return e;
+      if (!add(nearest.squared(point_[s], last), weight_[s])) return e;
   }
   return e;
 }
@@ -290,11 +297,13 @@ void Deviation::commit(std::span<const std::uint32_t> removed, std::span<const N
       s = next;
     }
   }
+  if (all == kNone) return;
+  const NearestOf nearest(added);
   std::size_t last = 0;
   while (all != kNone) {
     const std::uint32_t s = all;
     all = next_[s];
-    to_nearest(point_[s], added, last, 0, &last);
+    nearest.squared(point_[s], last);
     const std::uint32_t t = added[last].index;
     next_[s] = head_[t];
     head_[t] = s;

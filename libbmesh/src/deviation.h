@@ -6,6 +6,7 @@
 
 #include "change.h"
 #include "connectivity.h"
+#include "nearest_of.h"
 #include "proximity.h"
 
 namespace kaboum::bmesh {
@@ -88,10 +89,11 @@ class Deviation {
   template <class Visit>
   void for_each_assignment(std::span<const std::uint32_t> removed,
                            std::span<const NewTriangle> added, Visit&& visit) const {
+    const NearestOf nearest(added);
     for (const std::uint32_t t : removed) {
       std::size_t last = place_of(t, added);
       for (std::uint32_t s = head_[t]; s != kNone; s = next_[s]) {
-        to_nearest(point_[s], added, last, 0, &last);
+        nearest.squared(point_[s], last);
         visit(last, point_[s]);
       }
     }
@@ -103,8 +105,6 @@ class Deviation {
   /// Where triangle t stays among the new ones; the first, if it vanishes.
   static std::size_t place_of(std::uint32_t t, std::span<const NewTriangle> added);
   void add_samples(double spacing);
-  static double to_nearest(const Vec3& p, std::span<const NewTriangle> added, std::size_t first,
-                           double enough, std::size_t* which);
 
   const geom::Mesh& mesh_;
   Proximity original_;

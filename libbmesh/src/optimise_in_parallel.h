@@ -32,6 +32,11 @@ class ParallelOptimiser {
   /// For one step at a time.
   Optimiser& single() { return single_; }
 
+  /// Of the edge's ends' stars: the same only if nothing has changed in them.
+  [[nodiscard]] std::uint32_t version(std::uint32_t a, std::uint32_t b) const {
+    return notes_.version[a] + notes_.version[b];
+  }
+
   /// One round over all vertices, then all edges. @return steps taken.
   std::size_t pass();
 

@@ -1,66 +1,106 @@
+// The tree of boxes that exact queries use is binary and in double precision. Here four boxes at a
+// time are compared, and four triangles, in single precision, which decides nothing but where to
+// look.
 #include "proximity.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <utility>
 
 namespace kaboum::bmesh {
+
+namespace {
+
+constexpr std::uint32_t kLeaf = 1U << 31;
+
+}  // namespace
 
 Proximity::Proximity(const geom::Mesh& mesh)
     : mesh_(mesh), bvh_(std::make_shared<const geom::Bvh>(mesh)) {
   triangles_.reserve(mesh.triangles.size());
-  ball_.reserve(mesh.triangles.size());
-  for (const std::uint32_t i : bvh_->order()) {
-    triangles_.push_back(mesh.triangles[i]);
-    const std::array<Vec3, 3> c = corners(static_cast<std::uint32_t>(triangles_.size() - 1));
-    geom::Box3 box;
-    for (const Vec3& p : c) box.extend(p);
-    const Eigen::Vector3f middle = box.center().cast<float>();
-    double squared = 0;
-    for (const Vec3& p : c) squared = std::max(squared, (p - middle.cast<double>()).squaredNorm());
-    // Upwards, of the smallest, too.
-    const auto radius = static_cast<float>((1 + 1e-6) * std::sqrt(squared));
-    ball_.push_back({middle, std::nextafter(radius, std::numeric_limits<float>::infinity())});
+  for (const std::uint32_t i : bvh_->order()) triangles_.push_back(mesh.triangles[i]);
+  frame_ = Frame(bvh_->nodes().front().box);
+  root_ = add(0);
+}
+
+/// Makes a node of the tree's node: of up to four nodes below it, or a leaf. @return its place
+std::uint32_t Proximity::add(std::uint32_t index) {
+  const auto nodes = bvh_->nodes();
+  if (nodes[index].leaf()) {
+    const geom::Bvh::Node& from = nodes[index];
+    Leaf leaf{{}, from.first, from.count};
+    for (std::uint32_t i = 0; i < std::min(from.count, 4U); ++i)
+      leaf.triangles.put(static_cast<int>(i), corners(from.first + i), frame_);
+    leaves_.push_back(leaf);
+    return kLeaf | static_cast<std::uint32_t>(leaves_.size() - 1);
   }
+  std::array<std::uint32_t, 4> below{index + 1, nodes[index].first};
+  int count = 0;
+  for (const std::uint32_t side : {index + 1, nodes[index].first}) {
+    if (nodes[side].leaf()) {
+      below[count++] = side;
+      continue;
+    }
+    below[count++] = side + 1;
+    below[count++] = nodes[side].first;
+  }
+  const auto place = static_cast<std::uint32_t>(nodes_.size());
+  nodes_.emplace_back();
+  for (int i = 0; i < count; ++i) {
+    const geom::Box3& box = nodes[below[i]].box;
+    const Eigen::Vector3f low = frame_(box.min), high = frame_(box.max);
+    const std::uint32_t child = add(below[i]);
+    for (int k = 0; k < 3; ++k) {
+      nodes_[place].low[k][i] = low[k];
+      nodes_[place].high[k][i] = high[k];
+    }
+    nodes_[place].child[i] = child;
+  }
+  return place;
 }
 
 double Proximity::squared(const Vec3& p, std::uint32_t& hint, double enough) const {
-  const auto nodes = bvh_->nodes();
-  const auto to_box = [&](const geom::Box3& box) {
-    return (box.min - p).cwiseMax(p - box.max).cwiseMax(0.0).squaredNorm();
-  };
   if (hint >= triangles_.size()) hint = 0;
-  double best = squared_distance(p, corners(hint)), root = std::sqrt(best);
+  double best = squared_distance(p, corners(hint));
+  float reach = frame_.reach(best);
+  const Eigen::Vector3f x = frame_(p);
   struct Entry {
-    double squared;
+    float squared;
     std::uint32_t node;
   };
-  std::array<Entry, geom::Bvh::kMaxDepth> stack;
+  std::array<Entry, 3 * geom::Bvh::kMaxDepth + 1> stack;
   std::size_t size = 0;
-  stack[size++] = {0, 0};
+  stack[size++] = {0, root_};
+  std::array<float, 4> bound;
   while (size > 0 && best > enough) {
     const Entry entry = stack[--size];
-    if (entry.squared >= best) continue;
-    std::uint32_t index = entry.node;
-    while (!nodes[index].leaf()) {
-      Entry near{to_box(nodes[index + 1].box), index + 1};
-      Entry far{to_box(nodes[nodes[index].first].box), nodes[index].first};
-      if (far.squared < near.squared) std::swap(near, far);
-      if (near.squared >= best) break;
-      if (far.squared < best) stack[size++] = far;
-      index = near.node;
+    if (!(entry.squared < reach)) continue;
+    if ((entry.node & kLeaf) != 0) {
+      const Leaf& leaf = leaves_[entry.node & ~kLeaf];
+      leaf.triangles.at_least(x, bound);
+      for (std::uint32_t i = 0; i < leaf.count; ++i) {
+        if (i < 4 && !(bound[i] < reach)) continue;
+        const double d = squared_distance(p, corners(leaf.first + i));
+        if (d >= best) continue;
+        best = d;
+        reach = frame_.reach(best);
+        hint = leaf.first + i;
+      }
+      continue;
     }
-    const geom::Bvh::Node& node = nodes[index];
-    if (!node.leaf()) continue;
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const double reach = root + ball_[i].radius;
-      if ((p - ball_[i].middle.cast<double>()).squaredNorm() > reach * reach) continue;
-      const double d = squared_distance(p, corners(i));
-      if (d >= best) continue;
-      best = d;
-      root = std::sqrt(d);
-      hint = i;
+    const Node& node = nodes_[entry.node];
+    for (int i = 0; i < 4; ++i) {
+      const float dx = std::max(std::max(node.low[0][i] - x[0], x[0] - node.high[0][i]), 0.0F);
+      const float dy = std::max(std::max(node.low[1][i] - x[1], x[1] - node.high[1][i]), 0.0F);
+      const float dz = std::max(std::max(node.low[2][i] - x[2], x[2] - node.high[2][i]), 0.0F);
+      bound[i] = dx * dx + dy * dy + dz * dz;
+    }
+    // The nearest comes last.
+    const std::size_t first = size;
+    for (int i = 0; i < 4; ++i) {
+      if (!(bound[i] < reach)) continue;
+      std::size_t at = size++;
+      for (; at > first && stack[at - 1].squared < bound[i]; --at) stack[at] = stack[at - 1];
+      stack[at] = {bound[i], node.child[i]};
     }
   }
   return best;

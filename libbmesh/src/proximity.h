@@ -5,12 +5,13 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
-namespace kaboum::bmesh {
+#include "four_triangles.h"
 
-using geom::Vec3;
+namespace kaboum::bmesh {
 
 /// Point of the triangle (a, b, c) closest to p, in rounded arithmetic: for costs, never for
 /// certificates. Source: C. Ericson, Real-Time Collision Detection (2005), 5.1.5.
@@ -66,14 +67,28 @@ class Proximity {
   [[nodiscard]] const std::shared_ptr<const geom::Bvh>& hierarchy() const { return bvh_; }
 
  private:
-  struct Ball {
-    Eigen::Vector3f middle;
-    float radius;
+  /// Boxes of four nodes; those that are not there are nowhere.
+  struct Node {
+    static constexpr float kFar = std::numeric_limits<float>::infinity();
+    std::array<std::array<float, 4>, 3> low{
+        {{kFar, kFar, kFar, kFar}, {kFar, kFar, kFar, kFar}, {kFar, kFar, kFar, kFar}}};
+    std::array<std::array<float, 4>, 3> high{
+        {{-kFar, -kFar, -kFar, -kFar}, {-kFar, -kFar, -kFar, -kFar}, {-kFar, -kFar, -kFar, -kFar}}};
+    std::array<std::uint32_t, 4> child{};
   };
+  struct Leaf {
+    FourTriangles triangles;
+    std::uint32_t first, count;  // places
+  };
+  std::uint32_t add(std::uint32_t index);
+
   const geom::Mesh& mesh_;
   std::shared_ptr<const geom::Bvh> bvh_;
   std::vector<geom::Triangle> triangles_;  // in the tree's order
-  std::vector<Ball> ball_;                 // around each, somewhat larger than need be
+  Frame frame_;
+  std::vector<Node> nodes_;
+  std::vector<Leaf> leaves_;
+  std::uint32_t root_ = 0;
 };
 
 }  // namespace kaboum::bmesh

@@ -16,7 +16,12 @@ constexpr int kMaxCells = 4000;
 }  // namespace
 
 Tolerance::Tolerance(const geom::Mesh& original, double epsilon)
-    : original_(original), head_(original.triangles.size(), kNone) {
+    : near_(original),
+      magnitude_(geom::bounding_box(original)
+                     .min.cwiseAbs()
+                     .cwiseMax(geom::bounding_box(original).max.cwiseAbs())
+                     .maxCoeff()),
+      head_(original.triangles.size(), kNone) {
   raise(epsilon);
   pieces_.reserve(original.triangles.size());
   for (std::uint32_t t = 0; t < original.triangles.size(); ++t) {
@@ -30,10 +35,36 @@ Tolerance::Tolerance(const geom::Mesh& original, double epsilon)
 }
 
 void Tolerance::raise(double epsilon) {
-  const geom::Box3& box = original_.box();
-  const double magnitude = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
-  epsilon_ = epsilon - (magnitude + epsilon) * kMaxTotalCuts * geom::PrismCut::kCuts *
+  epsilon_ = epsilon - (magnitude_ + epsilon) * kMaxTotalCuts * geom::PrismCut::kCuts *
                            geom::ConvexPolygon::kCutError;
+}
+
+/// Whether every point of the triangle is within ε of the original. Where it is looked for is a
+/// guess in rounded arithmetic; what accepts are upper bounds of the corners' distances.
+bool Tolerance::is_near(const std::array<Vec3, 3>& triangle) {
+  struct Entry {
+    geom::ConvexPolygon polygon;
+    int depth;
+  };
+  constexpr int kStack = 96;
+  std::array<Entry, kStack> stack;
+  int size = 0;
+  stack[size++] = {{triangle[0], triangle[1], triangle[2]}, 0};
+  for (int cells = kMaxCells; size > 0;) {
+    const Entry e = stack[--size];
+    if (--cells < 0) return false;
+    ++work_;
+    if (!(near_.squared(e.polygon.centroid(), hint_) <= epsilon_ * epsilon_)) return false;
+    const auto [a, b, c] = near_.corners(hint_);
+    bool covered = true;
+    for (int i = 0; i < e.polygon.size && covered; ++i)
+      covered = geom::point_triangle_upper(e.polygon.corner[i], a, b, c) <= epsilon_;
+    if (covered) continue;
+    const geom::PrismCut pieces = geom::cut_by_prism(e.polygon, a, b, c, e.depth % 3 == 2);
+    if (size + pieces.count > kStack) return false;
+    for (int i = 0; i < pieces.count; ++i) stack[size++] = {pieces.piece[i], e.depth + 1};
+  }
+  return true;
 }
 
 std::uint32_t Tolerance::allocate() {
@@ -49,7 +80,7 @@ std::uint32_t Tolerance::allocate() {
 bool Tolerance::carries(const NewTriangle& triangle, const geom::ConvexPolygon& piece) const {
   const auto& [a, b, c] = triangle.corner;
   for (int i = 0; i < piece.size; ++i)
-    if (!(geom::point_triangle_distance(piece.corner[i], a, b, c).upper <= epsilon_)) return false;
+    if (!(geom::point_triangle_upper(piece.corner[i], a, b, c) <= epsilon_)) return false;
   return true;
 }
 
@@ -67,20 +98,21 @@ bool Tolerance::place(const geom::ConvexPolygon& piece, std::uint32_t cuts,
     put(piece, cuts, added[k].index);
     return true;
   }
+  work_ += added.size();
   if (cuts_left == 0 || cuts >= kMaxTotalCuts || --pieces_left_ < 0) return false;
   // Cut along the prism of the new triangle nearest to the middle; if that is too far, no cut
   // helps.
+  work_ += added.size();
   const Vec3 center = piece.centroid();
   std::size_t nearest = 0;
   double distance = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < added.size(); ++k) {
-    const auto& [a, b, c] = added[k].corner;
-    const double d = geom::point_triangle_distance(center, a, b, c).upper;
+    const double d = squared_distance(center, added[k].corner);
     if (d >= distance) continue;
     distance = d;
     nearest = k;
   }
-  if (!(distance <= epsilon_)) return false;
+  if (!(distance <= epsilon_ * epsilon_)) return false;
   const auto& [a, b, c] = added[nearest].corner;
   const geom::PrismCut pieces = geom::cut_by_prism(piece, a, b, c, cuts_left % 3 == 0);
   last_carrier_ = nearest;
@@ -93,7 +125,7 @@ bool Tolerance::admits(std::span<const std::uint32_t> removed, std::span<const N
   placed_.clear();
   last_carrier_ = 0;
   pieces_left_ = kMaxPieces;
-  if (added.empty()) return false;
+  if (added.empty() || !(epsilon_ > 0)) return false;
   for (const std::uint32_t t : removed) {
     for (std::size_t i = 0; i < added.size(); ++i)
       if (added[i].index == t) last_carrier_ = i;
@@ -102,9 +134,8 @@ bool Tolerance::admits(std::span<const std::uint32_t> removed, std::span<const N
           !place({a, b, c}, pieces_[p].cuts, added, kMaxCuts))
         return false;
   }
-  return std::all_of(added.begin(), added.end(), [&](const NewTriangle& t) {
-    return original_.all_within({t.corner[0], t.corner[1], t.corner[2]}, epsilon_, kMaxCells);
-  });
+  return std::all_of(added.begin(), added.end(),
+                     [&](const NewTriangle& t) { return is_near(t.corner); });
 }
 
 void Tolerance::commit(std::span<const std::uint32_t> removed) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "change.h"
+#include "proximity.h"
 
 namespace kaboum::bmesh {
 
@@ -26,7 +27,7 @@ class Tolerance {
   using NewTriangle = bmesh::NewTriangle;
 
   /// @param original  carried initially triangle by triangle: triangle i of the current mesh is
-  ///   triangle i of the original.
+  ///   triangle i of the original. It must outlive this object.
   Tolerance(const geom::Mesh& original, double epsilon);
 
   /// Lets ε be larger from now on.
@@ -37,6 +38,9 @@ class Tolerance {
                             std::span<const NewTriangle> added);
   /// Carries out the change that `admits` has just accepted.
   void commit(std::span<const std::uint32_t> removed);
+
+  /// Distances looked at until now, about.
+  [[nodiscard]] std::uint64_t work() const { return work_; }
 
  private:
   static constexpr std::uint32_t kNone = ~0U;
@@ -60,7 +64,10 @@ class Tolerance {
   [[nodiscard]] bool carries(const NewTriangle& triangle, const geom::ConvexPolygon& piece) const;
   std::uint32_t allocate();
 
-  geom::DistanceQuery original_;
+  [[nodiscard]] bool is_near(const std::array<Vec3, 3>& triangle);
+
+  Proximity near_;
+  double magnitude_;  // of the original's coordinates
   double epsilon_;
   std::vector<Piece> pieces_;
   std::vector<std::uint32_t> head_;  // per current triangle
@@ -68,6 +75,8 @@ class Tolerance {
   std::vector<Placed> placed_;  // of the change under consideration
   std::size_t last_carrier_ = 0;
   int pieces_left_ = 0;
+  std::uint32_t hint_ = 0;
+  std::uint64_t work_ = 0;
 };
 
 }  // namespace kaboum::bmesh

@@ -2,12 +2,22 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "nearest_of.h"
 #include "support/shapes.h"
 
 namespace {
 
 using kaboum::bmesh::Connectivity;
 using kaboum::bmesh::Deviation;
+using kaboum::bmesh::NearestOf;
+using kaboum::bmesh::NewTriangle;
+using kaboum::bmesh::Proximity;
+using kaboum::geom::Vec3;
 
 // The original between its vertices is seen, each place once.
 TEST(Deviation, RefinesWherePlacesAreFarOnce) {
@@ -26,6 +36,54 @@ TEST(Deviation, RefinesWherePlacesAreFarOnce) {
   EXPECT_GT(refined, before);
   deviation.refine(smaller, mesh, 0.05 * 0.05);
   EXPECT_EQ(deviation.samples(), refined);
+}
+
+// Long narrow triangles were given dozens of samples each, which made all that looks at them slow.
+TEST(Deviation, NarrowTrianglesHaveFewSamples) {
+  const auto rod = kaboum::test::cylinder(200, 1, 1, 0);
+  const Deviation plain(rod), dense(rod, 4, 0.01);
+  EXPECT_LT(dense.samples(), plain.samples() + 6 * rod.triangles.size() + 6000);
+}
+
+/// Triangles around the origin: ordinary ones, needles, some without area.
+std::vector<NewTriangle> scattered(int count, double size, std::mt19937& random) {
+  std::uniform_real_distribution<double> at(-size, size);
+  std::vector<NewTriangle> triangles;
+  for (int i = 0; i < count; ++i) {
+    NewTriangle t{static_cast<std::uint32_t>(i), {}};
+    for (Vec3& p : t.corner) p = {at(random), at(random), at(random)};
+    if (i % 3 == 1) t.corner[2] = t.corner[0] + 1e-6 * (t.corner[2] - t.corner[1]);
+    if (i % 7 == 2) t.corner[2] = t.corner[1];
+    triangles.push_back(t);
+  }
+  return triangles;
+}
+
+// What is passed over in single precision is never nearer by more than its rounding, at any scale.
+TEST(Deviation, TheNearestTriangleIsFound) {
+  std::mt19937 random(7);
+  for (const double size : {1.0, 1e-70, 1e-30, 1e30, 1e70}) {
+    const std::vector<NewTriangle> triangles = scattered(43, size, random);
+    kaboum::geom::Mesh mesh;
+    for (const NewTriangle& t : triangles) {
+      const auto n = static_cast<std::uint32_t>(mesh.vertices.size());
+      mesh.vertices.insert(mesh.vertices.end(), t.corner.begin(), t.corner.end());
+      mesh.triangles.push_back({n, n + 1, n + 2});
+    }
+    const NearestOf nearest(triangles);
+    const Proximity proximity(mesh);
+    std::uniform_real_distribution<double> at(-1.5 * size, 1.5 * size);
+    std::size_t which = 0;
+    std::uint32_t hint = 0;
+    for (int i = 0; i < 300; ++i) {
+      const Vec3 p(at(random), at(random), at(random));
+      double least = std::numeric_limits<double>::infinity();
+      for (const NewTriangle& t : triangles)
+        least = std::min(least, kaboum::bmesh::squared_distance(p, t.corner));
+      EXPECT_LE(std::sqrt(nearest.squared(p, which)), std::sqrt(least) + 1e-5 * size);
+      EXPECT_LE(std::sqrt(proximity.squared(p, hint)), std::sqrt(least) + 1e-5 * size);
+    }
+  }
 }
 
 }  // namespace

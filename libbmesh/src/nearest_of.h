@@ -1,0 +1,60 @@
+#pragma once
+
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "change.h"
+#include "four_triangles.h"
+#include "proximity.h"
+
+namespace kaboum::bmesh {
+
+/// The nearest of a few triangles, for many points: for costs, never for certificates.
+class NearestOf {
+ public:
+  /// The triangles must outlive this object.
+  explicit NearestOf(std::span<const NewTriangle> triangles) : triangles_(triangles) {
+    geom::Box3 box;
+    for (const NewTriangle& t : triangles)
+      for (const Vec3& p : t.corner) box.extend(p);
+    frame_ = Frame(box);
+    fours_.resize((triangles.size() + 3) / 4);
+    for (std::size_t i = 0; i < triangles.size(); ++i)
+      fours_[i / 4].put(static_cast<int>(i % 4), triangles[i].corner, frame_);
+  }
+
+  /// Squared distance of p from the nearest triangle, or from one that is within √enough; infinite
+  /// where there are none.
+  /// @param which  where it is looked for first; receives where that is.
+  double squared(const Vec3& p, std::size_t& which, double enough = 0) const {
+    if (triangles_.empty()) return std::numeric_limits<double>::infinity();
+    const std::size_t first = which;
+    double best = squared_distance(p, triangles_[first].corner);
+    float reach = frame_.reach(best);
+    const Eigen::Vector3f x = frame_(p);
+    std::array<float, 4> bound;
+    std::size_t f = first / 4;
+    for (std::size_t i = 0; i < fours_.size() && best > enough; ++i, ++f) {
+      if (f == fours_.size()) f = 0;
+      fours_[f].at_least(x, bound);
+      const std::size_t end = std::min(triangles_.size(), 4 * f + 4);
+      for (std::size_t k = 4 * f; k < end; ++k) {
+        if (!(bound[k % 4] < reach) || k == first) continue;
+        const double d = squared_distance(p, triangles_[k].corner);
+        if (d >= best) continue;
+        best = d;
+        reach = frame_.reach(best);
+        which = k;
+      }
+    }
+    return best;
+  }
+
+ private:
+  std::span<const NewTriangle> triangles_;
+  Frame frame_;
+  std::vector<FourTriangles> fours_;
+};
+
+}  // namespace kaboum::bmesh
