@@ -186,8 +186,10 @@ Path arrange(const NamedPath& path, const Robot& robot, const std::string& name,
   for (const auto& [joint, value] : fixed) {
     if (!has_variable(robot, joint)) throw Error(ErrorCode::InvalidArgument, none(joint));
     if (std::find(path.joints.begin(), path.joints.end(), joint) != path.joints.end())
-      throw Error(ErrorCode::InvalidArgument,
-                  name + ": joint '" + joint + "' has a column and a value besides");
+      throw Error(ErrorCode::InvalidArgument, std::string(name)
+                                                  .append(": joint '")
+                                                  .append(joint)
+                                                  .append("' has a column and a value besides"));
   }
   constexpr std::size_t kNone = static_cast<std::size_t>(-1);
   std::vector<std::size_t> column(count, kNone);
@@ -213,9 +215,11 @@ Path arrange(const NamedPath& path, const Robot& robot, const std::string& name,
       if (fixed.contains(joint)) continue;
       const auto it = std::find(path.joints.begin(), path.joints.end(), joint);
       if (it == path.joints.end())
-        fail(name, "no column for joint '" + joint +
-                       "'; where it does not move, give its value instead (--joint " + joint +
-                       "=0)");
+        fail(name, std::string("no column for joint '")
+                       .append(joint)
+                       .append("'; where it does not move, give its value instead (--joint ")
+                       .append(joint)
+                       .append("=0)"));
       column[i] = static_cast<std::size_t>(it - path.joints.begin());
     }
   }
