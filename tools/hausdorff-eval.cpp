@@ -230,19 +230,24 @@ class Job {
       return side;
     }
     const std::vector<char> bytes = io::read_file(path);
-    if (format == io::Format::Glb) note_margin(side, bytes);
+    if (format == io::Format::Glb && read_without_margin(side, bytes)) return side;
     return read_mesh(std::move(side), bytes, *format);
   }
 
-  /// A set that is read as a mesh on request loses its margin.
-  static void note_margin(Side& side, const std::vector<char>& bytes) {
+  /// A set with a margin that is measured as a mesh on request, with a note. False: no such set.
+  static bool read_without_margin(Side& side, const std::vector<char>& bytes) {
+    geom::ConvexSet set;
     try {
-      const double margin = io::parse_convex_set(bytes, io::Format::Glb, side.file).margin;
-      if (margin > 0)
-        side.notes.push_back("read as a mesh: the set's margin of " + formatted(margin) +
-                             " is left out");
-    } catch (const Error&) {  // no set, no margin
+      set = io::parse_convex_set(bytes, io::Format::Glb, side.file);
+    } catch (const Error&) {  // the mesh reader says what is wrong
+      return false;
     }
+    if (!(set.margin > 0)) return false;
+    side.sha256 = io::sha256(bytes);
+    side.notes.push_back("read as a mesh: the set's margin of " + formatted(set.margin) +
+                         " is left out");
+    side.input = verify::sum_of(set);
+    return true;
   }
 
   Side read_mesh(Side side, const std::vector<char>& bytes, io::Format format) const {

@@ -4,8 +4,10 @@
 #include "png_file.h"
 #include "render.h"
 
+#include <kaboum/geom/convex_set.h>
 #include <kaboum/geom/error.h>
 #include <kaboum/geom/mesh.h>
+#include <kaboum/io/convex_io.h>
 
 #include <algorithm>
 #include <charconv>
@@ -79,6 +81,19 @@ Image background(int width, int height) {
   return image;
 }
 
+/// A mesh, or the bodies of a set, which are drawn without its margin.
+geom::Mesh read(const std::string& input, io::Format format) {
+  if (format != io::Format::Glb) return io::read_mesh(input, format).mesh;
+  geom::Mesh sum;
+  for (const geom::ConvexBody& body : io::read_convex_set(input, format).bodies) {
+    const auto first = static_cast<std::uint32_t>(sum.vertices.size());
+    sum.vertices.insert(sum.vertices.end(), body.hull.vertices.begin(), body.hull.vertices.end());
+    for (const geom::Triangle& t : body.hull.triangles)
+      sum.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  return sum;
+}
+
 int make_picture(const Options& options) {
   const View view = parse_view(options.view);
   const std::vector<Colour> colours = parse_colours(options.colours);
@@ -91,7 +106,7 @@ int make_picture(const Options& options) {
   geom::Box3 box;
   for (const std::string& input : options.inputs) {
     const io::Format format = tools::format_for(input, options.input_format, "--input-format");
-    meshes.push_back(io::read_mesh(input, format).mesh);
+    meshes.push_back(read(input, format));
     box.extend(geom::bounding_box(meshes.back()));
   }
 

@@ -1,6 +1,7 @@
-// glTF and FBX through assimp, which delivers float32 coordinates in a tree of
+// FBX through assimp, which delivers float32 coordinates in a tree of
 // nodes. No post-processing step runs: none of them may merge, drop or reorder geometry; polygons
-// are split by our own splitter.
+// are split by our own splitter. It runs in a child process: damaged and even some valid files make
+// it crash.
 
 #include <assimp/scene.h>
 #include <kaboum/geom/error.h>
@@ -16,6 +17,7 @@
 #include <set>
 
 #include "builder.h"
+#include "child.h"
 #include "fbx_objects.h"
 #include "formats.h"
 
@@ -60,8 +62,7 @@ class MemoryStream : public Assimp::IOStream {
   std::size_t at_ = 0;
 };
 
-/// Shows assimp the file in memory and, read-only, the regular files of its directory (external
-/// buffers of glTF).
+/// Shows assimp the file in memory and, read-only, the regular files of its directory.
 class MemoryWithDirectory : public Assimp::IOSystem {
  public:
   MemoryWithDirectory(const Source& source, std::string main)
@@ -97,17 +98,6 @@ class MemoryWithDirectory : public Assimp::IOSystem {
   std::string main_;
   std::set<std::string> others_;
 };
-
-std::string extension_of(Format format) {
-  switch (format) {
-    case Format::Glb:
-      return "glb";
-    case Format::Gltf:
-      return "gltf";
-    default:
-      return "fbx";
-  }
-}
 
 Eigen::Matrix4d in_double(const aiMatrix4x4& m) {
   Eigen::Matrix4d result;
@@ -206,13 +196,9 @@ void add_unit_notes(MeshBuilder& builder, const aiScene& scene, Format format) {
   }
 }
 
-}  // namespace
-
-bool has_assimp() { return true; }
-
-ReadResult read_with_assimp(const Source& source, Format format) {
+ReadResult read_here(const Source& source, Format format) {
   if (format == Format::Fbx) check_fbx_objects(source);
-  const std::string main = "kaboum-input." + extension_of(format);
+  const std::string main = "kaboum-input.fbx";
   Assimp::Importer importer;
   auto files = std::make_unique<MemoryWithDirectory>(source, main);
   const MemoryWithDirectory& opened = *files;
@@ -224,8 +210,7 @@ ReadResult read_with_assimp(const Source& source, Format format) {
     fail(source, std::string("the importer failed: ") + e.what());
   }
   if (scene == nullptr)
-    fail(source, "the file cannot be read as " + extension_of(format) + ": " +
-                     importer.GetErrorString() +
+    fail(source, std::string("the file cannot be read as fbx: ") + importer.GetErrorString() +
                      "; check its format and that files it refers to are "
                      "beside it");
   MeshBuilder builder(source);
@@ -236,6 +221,15 @@ ReadResult read_with_assimp(const Source& source, Format format) {
   SceneReader(source, *scene, builder).read();
   add_unit_notes(builder, *scene, format);
   return builder.finish(format, true);
+}
+
+}  // namespace
+
+bool has_assimp() { return true; }
+
+ReadResult read_with_assimp(const Source& source, Format format) {
+  return read_in_child(source, child_limits(source.bytes.size()),
+                       [&] { return read_here(source, format); });
 }
 
 }  // namespace kaboum::io

@@ -56,6 +56,7 @@ class MeshBuilder {
   std::uint32_t corner(std::int64_t index, std::int64_t first, const char* where) const;
 
   void note(std::string text) { notes_.push_back(std::move(text)); }
+  [[nodiscard]] bool has_faces() const { return !triangles_.empty() || !polygons_.empty(); }
   [[nodiscard]] std::size_t point_count() const { return points_.size(); }
   [[nodiscard]] const Source& source() const { return source_; }
 

@@ -11,9 +11,8 @@
 // The readers and writers behind parse_convex_set and serialise_convex_set. Internal to kaboum_io.
 namespace kaboum::io {
 
-/// nullopt when the file is not one that this reader understands; `why` then says what it met.
-std::optional<geom::ConvexSet> read_glb_set(const Source& source, SetReadDetails& details,
-                                            std::string& why);
+/// glTF, binary or not: one body per place of a mesh in the scene.
+geom::ConvexSet read_gltf_set(const Source& source, SetReadDetails& details);
 /// One body per group; nullopt when there are fewer than two groups.
 std::optional<geom::ConvexSet> read_obj_set(const Source& source, SetReadDetails& details);
 

@@ -111,12 +111,7 @@ geom::ConvexSet read_directory(const fs::path& path, SetReadDetails& details) {
 }
 
 geom::ConvexSet parse(const Source& source, Format format, SetReadDetails& details) {
-  if (format == Format::Glb) {
-    std::string why;
-    if (auto set = read_glb_set(source, details, why)) return *std::move(set);
-    details.notes.push_back("Read as a plain mesh (" + why +
-                            "): one body per connected component.");
-  }
+  if (format == Format::Glb || format == Format::Gltf) return read_gltf_set(source, details);
   if (format == Format::Obj) {
     if (auto set = read_obj_set(source, details)) return *std::move(set);
   }

@@ -16,7 +16,9 @@ ReadResult read_off(const Source& source);
 ReadResult read_scene(const Source& source, Format format);
 ReadResult read_three_mf(Source source);
 ReadResult read_collada(const Source& source);
-/// glTF, GLB, FBX.
+/// glTF, binary or not.
+ReadResult read_gltf(const Source& source, Format format);
+/// FBX.
 /// @throws Error{NotBuilt} without assimp.
 ReadResult read_with_assimp(const Source& source, Format format);
 bool has_assimp();

@@ -24,8 +24,8 @@ constexpr std::array kFormats = {
     FormatInfo{"collada", Format::Collada, false, false, false},
     FormatInfo{"dae", Format::Collada, false, false, true},
     FormatInfo{"fbx", Format::Fbx, false, true, true},
-    FormatInfo{"glb", Format::Glb, true, true, true},
-    FormatInfo{"gltf", Format::Gltf, false, true, true},
+    FormatInfo{"glb", Format::Glb, true, false, true},
+    FormatInfo{"gltf", Format::Gltf, false, false, true},
     FormatInfo{"obj", Format::Obj, true, false, true},
     FormatInfo{"off", Format::Off, true, false, true},
     FormatInfo{"ply", Format::Ply, true, false, true},
@@ -72,6 +72,7 @@ ReadResult read_as(const Source& source, Format format) {
       return read_collada(source);
     case Format::Glb:
     case Format::Gltf:
+      return read_gltf(source, format);
     case Format::Fbx:
       return read_with_assimp(source, format);
   }

@@ -1,5 +1,8 @@
-// Wavefront OBJ: vertices and faces; everything else is ignored.
+// Wavefront OBJ: vertices and faces. Statements that make other surfaces, and unknown ones, are
+// refused; those that cannot make a surface are ignored.
 
+#include <algorithm>
+#include <array>
 #include <limits>
 
 #include "builder.h"
@@ -10,6 +13,16 @@
 
 namespace kaboum::io {
 namespace {
+
+/// Statements without surface: texture and normal coordinates, names, looks, and what only matters
+/// to free-form surfaces, which are refused.
+constexpr std::array<std::string_view, 31> kIgnored = {
+    "vn",         "vt",   "vp",       "usemtl", "s",         "g",     "o",        "mtllib",
+    "bevel",      "bmat", "c_interp", "con",    "cstype",    "ctech", "d_interp", "deg",
+    "end",        "hole", "lod",      "maplib", "mg",        "parm",  "res",      "scrv",
+    "shadow_obj", "sp",   "stech",    "step",   "trace_obj", "trim",  "usemap"};
+constexpr std::array<std::string_view, 4> kSurfaces = {"bsp", "bzp", "cdp", "surf"};
+constexpr std::array<std::string_view, 3> kCurves = {"cdc", "curv", "curv2"};
 
 class ObjReader {
  public:
@@ -25,13 +38,16 @@ class ObjReader {
         read_vertex();
       } else if (record == "f" || record == "fo") {
         read_face();
-      } else if (record == "curv" || record == "surf") {
-        ++free_form_;
+      } else if (!record.empty()) {
+        read_other(record);
       }
     }
     if (highest_at_ != nullptr && highest_ >= builder_.point_count())
       builder_.corner(static_cast<std::int64_t>(highest_) + 1, 1, highest_at_);
-    if (free_form_ > 0) builder_.note("Free-form curves and surfaces (curv, surf) were ignored.");
+    if (lines_ > 0)
+      builder_.note(counted(lines_, "statement of points, lines or curves was",
+                            "statements of points, lines or curves were") +
+                    " ignored.");
     return builder_.finish(Format::Obj, false);
   }
 
@@ -45,7 +61,32 @@ class ObjReader {
         fail(source_, where, "a vertex with fewer than three coordinates; the file is damaged");
       x = parse_coordinate(source_, token);
     }
+    // A fourth number alone is a weight, by which some programs divide; more are colours.
+    const std::string_view weight = scan_.token_on_line();
+    if (!weight.empty() && scan_.token_on_line().empty() && parse_coordinate(source_, weight) != 1)
+      fail(source_, where,
+           "a vertex with the weight " + in_quotes(weight) + "; export without weights");
     builder_.add_point(p, where);
+  }
+
+  void read_other(std::string_view record) {
+    const auto is_in = [&](const auto& names) {
+      return std::ranges::find(names, record) != names.end();
+    };
+    if (is_in(kIgnored)) return;
+    if (record == "p" || record == "l" || is_in(kCurves)) {
+      ++lines_;
+    } else if (is_in(kSurfaces)) {
+      fail(source_, record.data(),
+           "a free-form surface (" + std::string(record) + "); export it as polygons");
+    } else if (record == "call" || record == "csh") {
+      fail(source_, record.data(),
+           in_quotes(record) + " brings in other files or commands; put all into one file");
+    } else {
+      fail(source_, record.data(),
+           "unknown statement " + in_quotes(record) +
+               ", which may hold geometry; the file is damaged, or remove the line");
+    }
   }
 
   void read_face() {
@@ -79,7 +120,7 @@ class ObjReader {
   std::vector<std::uint32_t> corners_;
   std::uint32_t highest_ = 0;
   const char* highest_at_ = nullptr;
-  std::size_t free_form_ = 0;
+  std::size_t lines_ = 0;  ///< and points and curves
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 // OFF, with the prefixes ST, C and N. One vertex or face per line: what follows the coordinates or
-// the indices (normals, colours) is ignored.
+// the indices (normals, colours) is ignored. What follows the last face is an error.
 
 #include "builder.h"
 #include "bytes.h"
@@ -27,6 +27,12 @@ class OffReader {
     scan_.skip_line();  // the number of edges, which may be missing
     read_vertices(vertices);
     read_faces(faces);
+    if (const std::string_view more = scan_.token(); !more.empty())
+      fail(source_, scan_.last(),
+           in_quotes(more) + " after the " + std::to_string(vertices) + " vertices and " +
+               std::to_string(faces) +
+               " faces that the header states; correct the counts, or split the file into one per "
+               "object");
     return builder_.finish(Format::Off, false);
   }
 

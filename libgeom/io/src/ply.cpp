@@ -212,6 +212,8 @@ class AsciiValues {
   void skip(Scalar /*type*/, std::uint64_t count) {
     for (; count > 0; --count) scan_.need("a value");
   }
+  /// Where something follows that is neither white space nor read; else nullptr.
+  const char* rest() { return scan_.token().empty() ? nullptr : scan_.last(); }
   [[nodiscard]] const char* where() const { return scan_.last(); }
   /// Records of `values` values that can be left: each takes a digit and a space.
   [[nodiscard]] std::uint64_t room(std::uint64_t values, std::uint64_t /*bytes*/) const {
@@ -237,6 +239,10 @@ class BinaryValues {
     return static_cast<std::int64_t>(value);
   }
   void skip(Scalar type, std::uint64_t count) { take(type, count); }
+  const char* rest() {
+    while (at_ != source_.end() && detail::char_class(*at_) != detail::kOther) ++at_;
+    return at_ == source_.end() ? nullptr : at_;
+  }
   [[nodiscard]] const char* where() const { return at_; }
   [[nodiscard]] std::uint64_t room(std::uint64_t /*values*/, std::uint64_t bytes) const {
     return left() / bytes;
@@ -278,10 +284,15 @@ class DataReader {
       } else if (element.name == "tristrips") {
         read_strips(element);
       } else {
+        refuse_geometry(element);
         for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i)
           for (const Property& p : element.properties) skip(p);
       }
     }
+    if (const char* const rest = values_.rest(); rest != nullptr)
+      fail(source_, rest,
+           "the file goes on after the elements that its header states; correct the counts, or "
+           "export it again");
     const bool floats =
         !header_.ascii && std::ranges::all_of(vertex->properties, [](const Property& p) {
           const bool wide = p.type != Scalar::Float32 && size_of(p.type) > 2;
@@ -328,6 +339,24 @@ class DataReader {
     return static_cast<std::uint64_t>(n);
   }
 
+  /// Elements of unknown names may be faces in disguise: those with lists of integers or with three
+  /// and more integers that are wide enough for indices.
+  void refuse_geometry(const Element& element) const {
+    constexpr std::array<std::string_view, 6> kNoFaces = {
+        "camera", "edge", "material", "multi_texture_face", "multi_texture_vertex", "user"};
+    if (element.count == 0 || std::ranges::find(kNoFaces, element.name) != kNoFaces.end()) return;
+    std::size_t integers = 0, lists = 0;
+    for (const Property& p : element.properties) {
+      const bool integer = p.type != Scalar::Float32 && p.type != Scalar::Float64;
+      lists += p.count && integer ? 1 : 0;
+      integers += !p.count && integer && size_of(p.type) >= 2 ? 1 : 0;
+    }
+    if (lists > 0 || integers >= 3)
+      fail(source_, "the PLY element " + in_quotes(element.name) +
+                        " may hold geometry and cannot be read; export the mesh with elements "
+                        "'vertex' and 'face' only");
+  }
+
   void read_vertices(const Element& element) {
     std::array<int, 3> found{};
     std::vector<int> axes;  // 0, 1, 2 for coordinates, else −1
@@ -368,10 +397,23 @@ class DataReader {
   }
 
   const Property& index_property(const Element& element) {
-    for (const Property& p : element.properties)
-      if (p.count && (p.name == "vertex_indices" || p.name == "vertex_index")) return p;
-    fail(source_, "element " + in_quotes(element.name) +
-                      " has no list property vertex_indices or vertex_index; export again");
+    const Property* found = nullptr;
+    for (const Property& p : element.properties) {
+      if (!p.count) continue;
+      if (p.name == "vertex_indices" || p.name == "vertex_index") {
+        if (found != nullptr)
+          fail(source_, "element " + in_quotes(element.name) +
+                            " has two lists of vertex indices; export the mesh with one");
+        found = &p;
+      } else if (p.type != Scalar::Float32 && p.type != Scalar::Float64) {
+        builder_.note("The list " + in_quotes(p.name) + " of element " + in_quotes(element.name) +
+                      " was ignored.");
+      }
+    }
+    if (found == nullptr)
+      fail(source_, "element " + in_quotes(element.name) +
+                        " has no list property vertex_indices or vertex_index; export again");
+    return *found;
   }
 
   void read_faces(const Element& element) {

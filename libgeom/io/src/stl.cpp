@@ -36,9 +36,11 @@ class AsciiReader {
 
   ReadResult read() {
     bool in_solid = false;
+    std::size_t solids = 0;
     for (std::string_view word = scan_.token(); !word.empty(); word = scan_.token()) {
       if (same_word(word, in_solid ? "endsolid" : "solid")) {
         scan_.skip_line();  // the name
+        if (!in_solid) ++solids;
         in_solid = !in_solid;
       } else if (in_solid && same_word(word, "facet")) {
         read_facet();
@@ -51,6 +53,8 @@ class AsciiReader {
     if (in_solid)
       fail(source_, source_.end(),
            "the file ends before 'endsolid'; it is truncated, get it again");
+    if (solids > 1)
+      builder_.note("The file has " + std::to_string(solids) + " solids; all were read.");
     const std::size_t stored = stored_;
     builder_.adopt_welded_points(std::move(welder_.points()), stored);
     return builder_.finish(Format::Stl, false);
@@ -109,9 +113,15 @@ ReadResult read_binary(const Source& source) {
              std::to_string(size) + " bytes, but the file has " +
              std::to_string(source.bytes.size()) + "; it is truncated or not an STL file");
   MeshBuilder builder(source);
-  if (size < source.bytes.size())
-    builder.note(counted(source.bytes.size() - size, "byte", "bytes") +
-                 " after the last triangle were ignored.");
+  const std::string_view rest = source.bytes.substr(static_cast<std::size_t>(size));
+  if (rest.size() >= kFacet &&
+      rest.find_first_not_of(std::string_view("\0 \t\r\n", 5)) != rest.npos)
+    fail(source, rest.data(),
+         "the file goes on for " + std::to_string(rest.size()) + " bytes after the " +
+             counted(facets, "triangle", "triangles") +
+             " that its header states; correct the number, or split the file into one per solid");
+  if (!rest.empty())
+    builder.note(counted(rest.size(), "byte", "bytes") + " after the last triangle were ignored.");
   builder.reserve_triangles(facets);
   Welder welder;
   const char* at = source.begin() + kPreamble;
