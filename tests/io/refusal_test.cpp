@@ -121,7 +121,7 @@ TEST(Refusal, VrmlNodesAndFields) {
   const std::string shape = "Shape { geometry " + faces + "} }\n", header = "#VRML V2.0 utf8\n";
   EXPECT_NO_THROW(parse(header + shape, Format::Vrml));
   for (const std::string& more : std::initializer_list<std::string>{
-           "NurbsSurface { }", "CADFace { shape " + shape + "}", "EspduTransform { children [ ] }",
+           "NurbsSurface { }", "EspduTransform { children [ ] }",
            "Group { shapes [ " + shape + "] }", "Shape { mesh " + faces + "} }",
            "Shape { geometry " + faces + "coordIndex [ 0 2 1 ] } }", faces + "}"})
     expect_error(header + shape + more, Format::Vrml, {"line 3"});
