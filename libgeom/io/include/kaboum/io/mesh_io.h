@@ -60,8 +60,7 @@ struct ReadResult {
 /// Coordinates become the doubles nearest to the numbers in the file. Polygons are triangulated
 /// without adding vertices; the directed edges of the triangles sum up to those of the polygon, so
 /// that closed polygon meshes stay closed. `name` appears in messages only. Time and memory are
-/// bounded by the size of the input, whatever it states about itself. Formats that assimp reads are
-/// read in a child process (fork), so that its crashes are errors here.
+/// bounded by the size of the input, whatever it states about itself (assimp's formats excepted).
 ///
 /// Scenes (VRML, X3D, COLLADA, 3MF and assimp's formats): all meshes are merged, moved by their
 /// nodes' transforms, which are applied in rounded double precision; a mirroring transform reverses
