@@ -14,7 +14,7 @@
 // solid and triangles (holes filled), in percent of the diagonal of the input's box; those of the
 // peer, whose bodies are replaced by their hulls, are measured in the same way. Every result's
 // cover is decided exactly. Ratios are to the peer; their geometric means come last.
-#include <kaboum/bcd/closure.h>
+#include <kaboum/geom/holes.h>
 #include <kaboum/bcd/decompose.h>
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/geom/error.h>
@@ -66,7 +66,7 @@ class Table {
     geom::PrepareOptions how;
     how.drop_sheets = true;
     const geom::Prepared input = geom::prepare(io::read_mesh(file).mesh, how);
-    const geom::Mesh closed = input.closed ? input.mesh : bcd::close_holes(input.mesh);
+    const geom::Mesh closed = input.closed ? input.mesh : geom::fill_holes(input.mesh).mesh;
     const std::filesystem::path path(file);
     const std::string name = path.stem().string();
     std::optional<Peer> peer;

@@ -1,8 +1,8 @@
-#include <kaboum/bcd/closure.h>
 #include <kaboum/bcd/decompose.h>
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/geom/error.h>
 #include <kaboum/geom/float32.h>
+#include <kaboum/geom/holes.h>
 #include <kaboum/geom/parallel.h>
 #include <kaboum/geom/width.h>
 
@@ -1115,12 +1115,14 @@ DecomposeResult decompose(const geom::Prepared& input, const DecomposeOptions& o
     coarse.stop = Stop::TooCoarse;
     return coarse;
   }
-  if (input.closed && !geom::HullBuilder().build(input.mesh.vertices))
+  if (input.closed && input.filled_triangles == 0 &&
+      !geom::HullBuilder().build(input.mesh.vertices))
     throw Error(ErrorCode::InvalidInput,
                 "the mesh is closed and lies in one plane, so it bounds no solid");
-  const Mesh closed = input.closed ? input.mesh : close_holes(input.mesh);
+  const Mesh closed = input.closed ? input.mesh : geom::fill_holes(input.mesh).mesh;
   DecomposeResult result = decompose_closed(closed, options);
-  result.statistics.filled_triangles = closed.triangles.size() - input.mesh.triangles.size();
+  result.statistics.filled_triangles =
+      input.filled_triangles + closed.triangles.size() - input.mesh.triangles.size();
   return result;
 }
 

@@ -1,4 +1,7 @@
+// Preparation: from the triangles of a file to a mesh whose solid is the one that is meant.
+// docs/algorithms/preparation.md.
 #include <kaboum/geom/error.h>
+#include <kaboum/geom/holes.h>
 #include <kaboum/geom/parallel.h>
 #include <kaboum/geom/prepare.h>
 #include <kaboum/geom/topology.h>
@@ -11,11 +14,27 @@
 #include <optional>
 #include <sstream>
 
+#include "shells.h"
+
 namespace kaboum::geom {
 namespace {
 
 std::string count_of(std::size_t n, const char* singular, const char* plural) {
   return std::to_string(n) + " " + (n == 1 ? singular : plural);
+}
+
+std::string text_of(const Vec3& p) {
+  std::ostringstream s;
+  s.precision(6);
+  s << '(' << p.x() << ", " << p.y() << ", " << p.z() << ')';
+  return s.str();
+}
+
+std::string text_of(double x) {
+  std::ostringstream s;
+  s.precision(4);
+  s << x;
+  return s.str();
 }
 
 class Preparation {
@@ -37,8 +56,10 @@ class Preparation {
     edges_ = edge_uses(out_.mesh);
     if (!options_.keep_orientation) agree_with_neighbours();
     cancel_pairs();
-    if (!options_.keep_orientation) turn_components();
+    if (options_.holes == Holes::Fill) fill();
+    turn_shells();
     drop_copies();
+    judge_pairs();
     number_by_first_use();
     geom::parallel_calls([&] { find_border(); },
                          [&] { components(edges_, mesh().triangles.size(), &out_.components); });
@@ -46,6 +67,7 @@ class Preparation {
       out_.notes.push_back(
           "the signed volume is not positive: as oriented, the mesh bounds little or no "
           "solid, and what is certified of its solid says nothing of its surface");
+    settle_filled();
     out_.turned_triangles =
         static_cast<std::size_t>(std::count(out_.turned.begin(), out_.turned.end(), 1));
     return std::move(out_);
@@ -85,7 +107,8 @@ class Preparation {
     std::size_t n = 0;
     for (std::size_t t = 0; t < keep.size(); ++t) {
       if (keep[t] == 0) {
-        if (out_.turned[t] != 0) out_.turned_and_dropped.push_back(out_.source[t]);
+        if (out_.turned[t] != 0 && out_.source[t] != kFilled)
+          out_.turned_and_dropped.push_back(out_.source[t]);
         continue;
       }
       mesh().triangles[n] = mesh().triangles[t];
@@ -231,7 +254,7 @@ class Preparation {
           candidate[by_corner[i].second] = candidate[by_corner[i - 1].second] = 1;
     });
     for (std::uint32_t t = 0; t < candidate.size(); ++t) {
-      if (candidate[t] == 0) continue;
+      if (candidate[t] == 0 || out_.source[t] == kFilled) continue;
       Triangle key = mesh().triangles[t];
       std::sort(key.begin(), key.end());
       keyed.emplace_back(key, t);
@@ -254,29 +277,35 @@ class Preparation {
     return found;
   }
 
+  /// Opposite pairs add nothing to the chain. They are judged when its solid is known.
   void cancel_pairs() {
-    if (coincident().pairs.empty()) return;
+    const std::vector<std::uint32_t> pairs = coincident().pairs;
+    if (pairs.empty()) return;
     std::vector<char> keep(mesh().triangles.size(), 1);
-    drop_pairs(coincident().pairs, keep);
+    for (const std::uint32_t t : pairs) {
+      const Triangle& tri = mesh().triangles[t];
+      keep[t] = 0;
+      cancelled_.push_back(
+          {out_.source[t],
+           {mesh().vertices[tri[0]], mesh().vertices[tri[1]], mesh().vertices[tri[2]]}});
+    }
     filter(keep);
     if (mesh().empty())
       throw Error(ErrorCode::InvalidInput,
                   "nothing is left once opposite coincident faces cancel; the input has no volume");
   }
 
-  /// Opposite pairs add nothing to the chain. Inside the rest's solid they are walls between
-  /// touching bodies; elsewhere they are sheets, which no solid protects.
-  void drop_pairs(const std::vector<std::uint32_t>& pairs, std::vector<char>& keep) {
-    std::vector<std::int8_t> weight(mesh().triangles.size(), 1);
-    for (const std::uint32_t t : pairs) weight[t] = 0;
+  /// Inside the rest's solid, opposite pairs are walls between touching bodies; elsewhere they are
+  /// sheets, which no solid protects.
+  void judge_pairs() {
+    if (cancelled_.empty()) return;
     const WindingNumber winding(mesh());
     std::vector<std::uint32_t> sheets;
-    for (const std::uint32_t t : pairs) {
-      const Triangle& tri = mesh().triangles[t];
-      const Vec3 center =
-          (mesh().vertices[tri[0]] + mesh().vertices[tri[1]] + mesh().vertices[tri[2]]) / 3.0;
-      const std::optional<int> w = winding.weighted(center, weight);
-      if (!w || *w <= 0) sheets.push_back(t);
+    for (const auto& [source, corners] : cancelled_) {
+      const auto outside = [&](const Vec3& p) { return winding(p).value_or(1) <= 0; };
+      if (outside((corners[0] + corners[1] + corners[2]) / 3.0) ||
+          std::any_of(corners.begin(), corners.end(), outside))
+        sheets.push_back(source);
     }
     if (!sheets.empty() && !options_.drop_sheets)
       throw Error(
@@ -284,12 +313,11 @@ class Preparation {
           count_of(sheets.size(), "face lies", "faces lie") +
               " back to back with an opposite copy and no volume between (sheets; the first is "
               "input triangle " +
-              std::to_string(out_.source[*std::min_element(sheets.begin(), sheets.end())]) +
+              std::to_string(*std::min_element(sheets.begin(), sheets.end())) +
               "); give the sheets a thickness, or drop them with --drop-sheets: they are then "
               "not enclosed");
-    for (const std::uint32_t t : pairs) keep[t] = 0;
     out_.dropped_sheets = sheets.size();
-    out_.cancelled_walls = pairs.size() - sheets.size();
+    out_.cancelled_walls = cancelled_.size() - sheets.size();
     if (!sheets.empty())
       out_.notes.push_back(count_of(sheets.size(), "triangle", "triangles") +
                            " of sheets without volume dropped on request: they are NOT enclosed");
@@ -298,17 +326,47 @@ class Preparation {
                            " of walls between touching bodies cancelled");
   }
 
+  void fill() {
+    FilledHoles filled = fill_holes(mesh());
+    if (filled.holes == 0) return;
+    out_.holes = filled.holes;
+    out_.largest_hole = filled.largest;
+    mesh() = std::move(filled.mesh);
+    out_.source.resize(mesh().triangles.size(), kFilled);
+    out_.turned.resize(mesh().triangles.size(), 0);
+    std::vector<char> keep(mesh().triangles.size(), 1);
+    mesh() = weld(mesh());  // a middle may lie on a vertex
+    for (std::size_t t = 0; t < keep.size(); ++t) {
+      const Triangle& tri = mesh().triangles[t];
+      keep[t] = tri[0] != tri[1] && tri[1] != tri[2] && tri[2] != tri[0] ? 1 : 0;
+    }
+    filter(keep);
+    out_.notes.push_back(count_of(filled.holes, "hole is", "holes are") + " filled, the largest " +
+                         text_of(filled.largest) + " across, near " + text_of(filled.largest_at) +
+                         ": the solid that is meant is the one so closed");
+  }
+
+  /// Sources are of the input alone.
+  void settle_filled() {
+    const auto first = std::find(out_.source.begin(), out_.source.end(), kFilled);
+    out_.filled_triangles = static_cast<std::size_t>(out_.source.end() - first);
+    if (out_.filled_triangles == 0) return;
+    std::vector<char> used(mesh().vertices.size(), 0);
+    for (std::size_t t = 0; t + out_.filled_triangles < out_.source.size(); ++t)
+      for (const std::uint32_t v : mesh().triangles[t]) used[v] = 1;
+    out_.filled_vertices = static_cast<std::size_t>(std::count(used.begin(), used.end(), 0));
+    std::fill(out_.turned.begin() + (first - out_.source.begin()), out_.turned.end(), 0);
+    out_.source.erase(first, out_.source.end());
+  }
+
   /// Drops copies whose edges balance among the dropped ones alone, component by component. A copy
   /// lowers the winding number inside; that leaves the solid alone only where nothing else lowers
   /// it, so copies stay if any component is oriented inwards.
   void drop_copies() {
     const std::vector<std::uint32_t> copies = coincident().copies;
     if (copies.empty()) return;
-    std::vector<char> closed_component;
-    const std::vector<std::uint32_t> component = closed_components(closed_component);
-    const std::vector<double> volume = volumes(component, closed_component.size());
-    for (std::size_t c = 0; c < volume.size(); ++c)
-      if (closed_component[c] != 0 && volume[c] < 0) return;
+    const Chains chains = find_chains(mesh(), edges_);
+    if (std::find(chains.sign.begin(), chains.sign.end(), -1) != chains.sign.end()) return;
     std::vector<char> keep(mesh().triangles.size(), 1);
     Mesh dropped{mesh().vertices, {}};
     for (const std::uint32_t t : copies) dropped.triangles.push_back(mesh().triangles[t]);
@@ -333,154 +391,47 @@ class Preparation {
                          " of identically oriented copies dropped");
   }
 
-  /// Smallest sets of triangles that are closed chains: patches joined through edges of two
-  /// triangles, and further through other edges as long as they are not balanced by themselves.
-  std::vector<std::uint32_t> closed_components(std::vector<char>& closed) {
-    const std::size_t n = mesh().triangles.size();
-    std::vector<std::uint32_t> parent(n);
-    std::iota(parent.begin(), parent.end(), 0U);
-    const auto find = [&](std::uint32_t x) {
-      while (parent[x] != x) x = parent[x] = parent[parent[x]];
-      return x;
-    };
-    const auto join = [&](std::uint32_t a, std::uint32_t b) {
-      a = find(a);
-      b = find(b);
-      if (a != b) parent[std::max(a, b)] = std::min(a, b);
-    };
-    for_each_edge([&](std::span<const EdgeUse> e) {
-      if (e.size() == 2) join(e[0].triangle, e[1].triangle);
-    });
-    std::vector<std::pair<std::uint32_t, int>> sums;  // per patch at an edge: forward − backward
-    for (bool changed = true; changed;) {
-      changed = false;
-      for_each_edge([&](std::span<const EdgeUse> e) {
-        if (e.size() <= 2 || !balanced(e)) return;
-        sums.clear();
-        for (const EdgeUse& u : e) sums.emplace_back(find(u.triangle), u.forward ? 1 : -1);
-        std::sort(sums.begin(), sums.end());
-        bool alone = true;
-        for (std::size_t i = 0; i < sums.size() && alone;) {
-          const std::uint32_t root = sums[i].first;
-          int sum = 0;
-          for (; i < sums.size() && sums[i].first == root; ++i) sum += sums[i].second;
-          alone = sum == 0;
-        }
-        if (alone) return;
-        for (const EdgeUse& u : e.subspan(1)) {
-          changed = changed || find(u.triangle) != find(e[0].triangle);
-          join(e[0].triangle, u.triangle);
-        }
-      });
+  /// Turns the shells that are inside out.
+  void turn_shells() {
+    const Judgement judged = judge_shells(mesh(), edges_);
+    if (options_.keep_orientation) {
+      if (!judged.inside_out.empty())
+        out_.notes.push_back(count_of(judged.inside_out.size(), "component is", "components are") +
+                             " inside out, the first at input triangle " +
+                             source_text(judged.inside_out[0]) +
+                             ", and kept so: what it encloses counts as outside");
+      return;
     }
-    std::vector<std::uint32_t> label(n);
-    std::uint32_t count = 0;
-    for (std::uint32_t t = 0; t < n; ++t) {
-      const std::uint32_t root = find(t);
-      label[t] = root == t ? count++ : label[root];
-    }
-    closed.assign(count, 1);
-    for_each_edge([&](std::span<const EdgeUse> e) {
-      if (balanced(e)) return;
-      for (const EdgeUse& u : e) closed[label[u.triangle]] = 0;
-    });
-    return label;
-  }
-
-  std::vector<double> volumes(const std::vector<std::uint32_t>& label, std::size_t count) {
-    const Vec3 origin = bounding_box(mesh()).center();
-    std::vector<double> volume(count, 0);
-    for (std::size_t t = 0; t < label.size(); ++t) {
-      const Triangle& tri = mesh().triangles[t];
-      const Vec3 a = mesh().vertices[tri[0]] - origin, b = mesh().vertices[tri[1]] - origin,
-                 c = mesh().vertices[tri[2]] - origin;
-      volume[label[t]] += a.dot(b.cross(c));
-    }
-    return volume;
-  }
-
-  /// A component with negative volume is a cavity if all of it lies in the solid of the others;
-  /// otherwise it is inside out and turned. It takes along what lies inside it as long as that has
-  /// no solid of its own: the cavities of a file that is inside out as a whole.
-  void turn_components() {
-    std::vector<char> closed;
-    const std::vector<std::uint32_t> label = closed_components(closed);
-    const std::size_t count = closed.size();
-    std::vector<double> volume = volumes(label, count);
-    const auto inward = [&](std::uint32_t c) { return closed[c] != 0 && volume[c] < 0; };
-    bool any = false;
-    for (std::uint32_t c = 0; c < count; ++c) any = any || inward(c);
-    if (!any) return;
-
-    std::vector<std::vector<std::uint32_t>> members(count);
-    std::vector<Box3> box(count);
-    for (std::uint32_t t = 0; t < label.size(); ++t) {
-      members[label[t]].push_back(t);
-      for (const std::uint32_t v : mesh().triangles[t]) box[label[t]].extend(mesh().vertices[v]);
-    }
-    std::vector<std::uint32_t> by_size(count);
-    std::iota(by_size.begin(), by_size.end(), 0U);
-    std::stable_sort(by_size.begin(), by_size.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return std::abs(volume[a]) > std::abs(volume[b]);
-    });
-    const WindingNumber winding(mesh());
-    std::vector<std::int8_t> weight(label.size(), 1);  // of the whole chain as turned so far
-    for (std::size_t t = 0; t < label.size(); ++t)
-      if (closed[label[t]] == 0) weight[t] = 0;
-    std::vector<std::int8_t> only(label.size(), 0);  // of the nest looked at
-    std::vector<std::int8_t> sense(count, 1);
-    const auto set = [&](std::vector<std::int8_t>& weights, std::uint32_t c, std::int8_t w) {
-      for (const std::uint32_t t : members[c]) weights[t] = w;
-    };
-    // Whether holds(w) at every corner of c that is on none of the weighted triangles.
-    const auto everywhere = [&](std::uint32_t c, const std::vector<std::int8_t>& weights,
-                                auto&& holds) {
-      for (const std::uint32_t t : members[c]) {
-        for (const std::uint32_t v : mesh().triangles[t]) {
-          const auto w = winding.weighted(mesh().vertices[v], weights);
-          if (w && !holds(*w)) return false;
-        }
-      }
-      return true;
-    };
-    for (const std::uint32_t c : by_size) {
-      if (!inward(c)) continue;
-      set(weight, c, 0);
-      const bool cavity = everywhere(c, weight, [](int w) { return w >= 1; });
-      set(weight, c, sense[c]);
-      if (cavity) continue;
-      ++out_.turned_components;
-      std::vector<std::uint32_t> nest{c};
-      set(only, c, sense[c]);
-      for (std::uint32_t d = 0; d < count; ++d) {
-        if (d == c || closed[d] == 0 || std::abs(volume[d]) >= std::abs(volume[c])) continue;
-        if (!(box[d].min.array() >= box[c].min.array()).all() ||
-            !(box[d].max.array() <= box[c].max.array()).all())
-          continue;
-        if (everywhere(d, only, [](int w) { return w < 0; })) nest.push_back(d);
-      }
-      for (const std::uint32_t d : nest) set(only, d, sense[d]);
-      const bool hollow = std::all_of(nest.begin(), nest.end(), [&](std::uint32_t d) {
-        set(only, d, 0);
-        const int inside = volume[d] > 0 ? 1 : -1;
-        const bool none = everywhere(d, only, [&](int w) { return w <= 0 && w + inside <= 0; });
-        set(only, d, sense[d]);
-        return none;
-      });
-      for (const std::uint32_t d : nest) set(only, d, 0);
-      if (!hollow) nest.resize(1);
-      for (const std::uint32_t d : nest) {
-        sense[d] = static_cast<std::int8_t>(-sense[d]);
-        volume[d] = -volume[d];
-        set(weight, d, sense[d]);
-      }
-    }
-    for (std::uint32_t t = 0; t < label.size(); ++t)
-      if (sense[label[t]] < 0) turn(t);
-    if (out_.turned_components == 0) return;
+    if (judged.left && judged.left->at_wall)
+      throw Error(ErrorCode::InvalidInput,
+                  "bodies that share a wall are oriented against each other and cannot be told "
+                  "apart, at input triangle " +
+                      source_text(judged.left->triangle) + " near " + text_of(judged.left->at) +
+                      ": one of them would count as hollow; orient all normals outwards, or give "
+                      "each body a mesh of its own");
+    if (judged.left)
+      out_.notes.push_back("the surface crosses itself, and what it encloses near " +
+                           text_of(judged.left->at) +
+                           " is inside out: that part counts as outside");
+    if (judged.inside_out.empty()) return;
+    out_.turned_components = judged.inside_out.size();
+    out_.turned_cavities = judged.cavities_turned;
+    for (const std::uint32_t t : judged.inside_out)
+      if (out_.source[t] != kFilled) out_.inside_out.push_back(out_.source[t]);
+    for (std::uint32_t t = 0; t < judged.turn.size(); ++t)
+      if (judged.turn[t] != 0) turn(t);
     find_edges();
-    out_.notes.push_back(count_of(out_.turned_components, "component was", "components were") +
-                         " inside out and turned, cavities included");
+    cancel_pairs();  // walls that are opposite now
+    out_.notes.push_back(
+        count_of(out_.turned_components, "component was", "components were") +
+        " inside out and turned" +
+        (out_.turned_cavities == 0
+             ? ""
+             : ", with " + count_of(out_.turned_cavities, "cavity", "cavities") + " inside"));
+  }
+
+  [[nodiscard]] std::string source_text(std::uint32_t t) const {
+    return out_.source[t] == kFilled ? "(of a filled hole)" : std::to_string(out_.source[t]);
   }
 
   /// Vertices in the order in which the triangles left use them in the input, before any was
@@ -507,17 +458,26 @@ class Preparation {
     });
     out_.closed = open == 0;
     if (out_.closed) return;
-    if (options_.require_closed)
-      throw Error(ErrorCode::InvalidInput, "the mesh is open at " +
-                                               count_of(open, "edge", "edges") +
-                                               " and bounds no solid; close it, or leave out "
-                                               "--require-closed to keep its border in place");
+    if (options_.holes == Holes::Refuse)
+      throw Error(ErrorCode::InvalidInput,
+                  "the mesh is open at " + count_of(open, "edge", "edges") +
+                      " and bounds no solid; close it, or have its holes filled (--holes fill)");
+    ensure(options_.holes == Holes::Keep, "a mesh whose holes are filled is still open");
     out_.notes.push_back("the mesh is open at " + count_of(open, "edge", "edges") +
                          " and bounds no solid");
   }
 
+  /// The source of triangles that fill holes; a mesh has fewer triangles.
+  static constexpr std::uint32_t kFilled = ~0U;
+
+  struct Cancelled {
+    std::uint32_t source;
+    std::array<Vec3, 3> corners;
+  };
+
   PrepareOptions options_;
   Prepared out_;
+  std::vector<Cancelled> cancelled_;
   std::vector<EdgeUse> edges_;
   std::optional<Coincident> coincident_;  // of the mesh with these edges
 };

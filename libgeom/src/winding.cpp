@@ -53,33 +53,63 @@ bool on_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
 WindingNumber::WindingNumber(const Mesh& mesh, std::shared_ptr<const Bvh> hierarchy)
     : mesh_(mesh), bvh_(hierarchy ? std::move(hierarchy) : std::make_shared<const Bvh>(mesh)) {}
 
+/// What a triangle is to the ray upwards from p.
+struct WindingNumber::Hit {
+  int crossing = 0;  ///< ±1: it is crossed
+  bool on = false;   ///< p lies on it
+};
+
+WindingNumber::Hit WindingNumber::hit(const Vec3& p, std::uint32_t index) const {
+  const Triangle& t = mesh_.triangles[index];
+  const Vec3 &a = mesh_.vertices[t[0]], &b = mesh_.vertices[t[1]], &c = mesh_.vertices[t[2]];
+  if (p.z() > std::max({a.z(), b.z(), c.z()})) return {};
+  Hit out;
+  const Sign height = orient3d(a, b, c, p);
+  out.on = height == Sign::Zero && on_triangle(a, b, c, p);
+  const int ab = perturbed_side(a, b, p);
+  if (ab == 0 || perturbed_side(b, c, p) != ab || perturbed_side(c, a, p) != ab) return out;
+  // The ray crosses the triangle's interior, or p is on its plane. The normal points up when
+  // the projection is counter-clockwise; p is below the triangle when it is on the side away
+  // from an upward normal.
+  const Sign below = ab > 0 ? Sign::Negative : Sign::Positive;
+  if (height == below) out.crossing = ab;
+  return out;
+}
+
+namespace {
+
+/// Whether the ray upwards from p meets the box.
+bool meets(const Box3& box, const Vec3& p) {
+  return p.z() <= box.max.z() && p.x() >= box.min.x() && p.x() <= box.max.x() &&
+         p.y() >= box.min.y() && p.y() <= box.max.y();
+}
+
+}  // namespace
+
 std::optional<int> WindingNumber::weighted(const Vec3& p,
                                            std::span<const std::int8_t> weight) const {
   int winding = 0;
   bool on_surface = false;
-  bvh_->traverse(
-      [&](const Box3& box) {
-        return !on_surface && p.z() <= box.max.z() && p.x() >= box.min.x() &&
-               p.x() <= box.max.x() && p.y() >= box.min.y() && p.y() <= box.max.y();
-      },
-      [&](std::uint32_t index) {
-        const int factor = weight.empty() ? 1 : weight[index];
-        if (factor == 0) return;
-        const Triangle& t = mesh_.triangles[index];
-        const Vec3 &a = mesh_.vertices[t[0]], &b = mesh_.vertices[t[1]], &c = mesh_.vertices[t[2]];
-        if (on_surface || p.z() > std::max({a.z(), b.z(), c.z()})) return;
-        const Sign height = orient3d(a, b, c, p);
-        if (height == Sign::Zero && on_triangle(a, b, c, p)) on_surface = true;
-        const int ab = perturbed_side(a, b, p);
-        if (ab == 0 || perturbed_side(b, c, p) != ab || perturbed_side(c, a, p) != ab) return;
-        // The ray crosses the triangle's interior, or p is on its plane. The normal points up when
-        // the projection is counter-clockwise; p is below the triangle when it is on the side away
-        // from an upward normal.
-        const Sign below = ab > 0 ? Sign::Negative : Sign::Positive;
-        if (height == below) winding += factor * ab;
-      });
+  bvh_->traverse([&](const Box3& box) { return !on_surface && meets(box, p); },
+                 [&](std::uint32_t index) {
+                   const int factor = weight.empty() ? 1 : weight[index];
+                   if (factor == 0 || on_surface) return;
+                   const Hit h = hit(p, index);
+                   on_surface = h.on;
+                   winding += factor * h.crossing;
+                 });
   if (on_surface) return std::nullopt;
   return winding;
+}
+
+void WindingNumber::crossings(const Vec3& p,
+                              const std::function<void(std::uint32_t, int)>& visit) const {
+  bvh_->traverse([&](const Box3& box) { return meets(box, p); },
+                 [&](std::uint32_t index) {
+                   const Hit h = hit(p, index);
+                   if (h.on) visit(index, 0);
+                   if (h.crossing != 0) visit(index, h.crossing);
+                 });
 }
 
 }  // namespace kaboum::geom

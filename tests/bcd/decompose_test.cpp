@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <kaboum/bcd/closure.h>
+#include <kaboum/geom/holes.h>
 #include <kaboum/bcd/decompose.h>
 #include <kaboum/geom/error.h>
 #include <kaboum/io/convex_io.h>
@@ -59,7 +59,7 @@ TEST(Decompose, CoversOpenMeshesAndTheirFilledHoles) {
     }
     const DecomposeResult result = run(prepared.mesh, 5);
     if (result.stop == Stop::TooCoarse) continue;
-    expect_cover(close_holes(prepared.mesh), result, 64);
+    expect_cover(geom::fill_holes(prepared.mesh).mesh, result, 64);
     ++seen;
   }
   EXPECT_GE(seen, 2);
@@ -156,7 +156,7 @@ TEST(Decompose, WallsThinnerThanTheGridAndFlatParts) {
     EXPECT_EQ(result.stop, Stop::Done);
     EXPECT_LE(result.bodies.size(), 4U);
     EXPECT_LE(result.statistics.leaves, 20U);
-    expect_cover(close_holes(geom::prepare(mesh).mesh), result, 64);
+    expect_cover(geom::fill_holes(geom::prepare(mesh).mesh).mesh, result, 64);
   }
 }
 
@@ -174,7 +174,7 @@ TEST(Decompose, PreStepKeepsCoverAndEpsilon) {
     DecomposeOptions options = test::quick(mesh, 8);
     options.pre_step = PreStep::On;
     const geom::Prepared input = geom::prepare(mesh);
-    const Mesh closed = close_holes(input.mesh);
+    const Mesh closed = geom::fill_holes(input.mesh).mesh;
     const DecomposeResult result = decompose(input, options);
     EXPECT_EQ(result.stop, Stop::Done);
     EXPECT_GT(result.statistics.pre_step_triangles, 0U);

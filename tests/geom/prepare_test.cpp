@@ -224,7 +224,7 @@ TEST(Prepare, KeepsTheBorderOfOpenMeshes) {
   }
   EXPECT_EQ(border, 4);
   PrepareOptions strict;
-  strict.require_closed = true;
+  strict.holes = kaboum::geom::Holes::Refuse;
   EXPECT_EQ(refusal(open, strict), ErrorCode::InvalidInput);
 }
 

@@ -8,9 +8,16 @@
 
 namespace kaboum::geom {
 
+/// What becomes of an open mesh, which bounds no solid.
+enum class Holes {
+  Keep,    ///< it stays open
+  Fill,    ///< fill_holes closes it, before orientation is judged
+  Refuse,  ///< an error
+};
+
 struct PrepareOptions {
-  bool drop_sheets = false;       ///< drop opposite coincident faces without volume, with a note
-  bool require_closed = false;    ///< refuse open meshes
+  bool drop_sheets = false;  ///< drop opposite coincident faces without volume, with a note
+  Holes holes = Holes::Keep;
   bool keep_orientation = false;  ///< never turn a triangle
 };
 
@@ -19,7 +26,9 @@ struct Prepared {
   /// Welded, without unused vertices; vertices in the order of their first use by the triangles
   /// left, as the input orients these.
   Mesh mesh;
-  std::vector<std::uint32_t> source;              ///< per triangle: its index in the input
+  /// Per triangle: its index in the input. Triangles that fill holes come last, and are not in it:
+  /// their vertices that no other triangle uses are the mesh's last ones.
+  std::vector<std::uint32_t> source;
   std::vector<char> turned;                       ///< per triangle: orientation reversed
   std::vector<std::uint32_t> turned_and_dropped;  ///< input triangles: turned first, dropped later
   std::vector<char> border;      ///< per vertex: lies on an unbalanced edge and must not move
@@ -29,32 +38,38 @@ struct Prepared {
   std::size_t dropped_copies = 0;       ///< dropped: identically oriented copies
   std::size_t cancelled_walls = 0;      ///< dropped: triangles in opposite pairs inside the solid
   std::size_t dropped_sheets = 0;     ///< dropped: triangles in opposite pairs outside, on request
-  std::size_t turned_components = 0;  ///< inside out, turned as a whole
-  std::size_t turned_triangles = 0;   ///< against their neighbours or in a turned component
+  std::size_t turned_components = 0;  ///< shells that were inside out, turned as a whole
+  std::vector<std::uint32_t> inside_out;  ///< an input triangle of each of those
+  std::size_t turned_cavities = 0;        ///< shells turned along with those that they lie in
+  std::size_t turned_triangles = 0;       ///< against their neighbours or in a turned component
+  std::size_t holes = 0;                  ///< filled
+  std::size_t filled_triangles = 0;       ///< that fill them: the last ones of the mesh
+  std::size_t filled_vertices = 0;        ///< that only those use: the last ones of the mesh
+  double largest_hole = 0;                ///< diagonal of its box [length]
   std::vector<std::string> notes;
 };
 
-/// Gives the input a solid, or says why it has none.
+/// Gives the input a solid, or says why it has none. docs/algorithms/preparation.md states which
+/// solid is meant, and proves that nothing of it is lost.
 ///
 /// In this order: equal vertices are merged and triangles with repeated corners dropped;
-/// inconsistent neighbours are turned to agree; opposite coincident faces inside the solid (walls
-/// between touching bodies) cancel; components that are inside out are turned; identically oriented
-/// copies are dropped where what is dropped is itself a closed chain and nothing is oriented
-/// inwards.
+/// inconsistent neighbours are turned to agree; opposite coincident faces cancel; holes are filled,
+/// if wished; shells that are inside out are turned, each by itself also where shells share walls;
+/// identically oriented copies are dropped where what is dropped is itself a closed chain and
+/// nothing is oriented inwards.
 ///
-/// A component of negative volume is a cavity, and stays one, if all of its corners lie in the
-/// solid of the others; otherwise it is inside out. It is turned together with what lies inside it
-/// if that nest has no solid of its own (a file inside out as a whole), else alone. A body inside
-/// another body stays a body. Components that cross themselves or each other are judged by volumes
-/// and corners.
+/// A shell oriented inwards is a cavity, and stays one, if it lies in one shell oriented outwards,
+/// in none of that one's other cavities, and meets none of these in more than corners and edges
+/// that both have; exactly. Otherwise it is inside out. It is turned together with what lies inside
+/// it if that nest has no solid of its own (a file inside out as a whole), else alone. A body
+/// inside another body stays a body.
 ///
-/// Claims about a result are claims about this mesh; the counts below say how it differs from the
-/// input.
+/// Claims about a result are claims about this mesh; the counts say how it differs from the input.
 ///
 /// @throws Error{InvalidInput} when no solid can be given: no triangles, a one-sided surface,
-/// sheets
-///   (unless dropped on request), nothing left, open while `require_closed`, coordinates beyond
-///   1e60 or an extent below 1e-60 (their products would overflow or vanish).
+///   sheets (opposite coincident faces that lie in no solid, unless dropped on request), nothing
+///   left, open with Holes::Refuse, shells that share a wall and cannot be told apart, coordinates
+///   beyond 1e60 or an extent below 1e-60 (their products would overflow or vanish).
 Prepared prepare(const Mesh& input, const PrepareOptions& options = {});
 
 }  // namespace kaboum::geom

@@ -4,6 +4,7 @@
 #include <kaboum/geom/mesh.h>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -32,7 +33,15 @@ class WindingNumber {
   [[nodiscard]] std::optional<int> weighted(const Vec3& p,
                                             std::span<const std::int8_t> weight) const;
 
+  /// What the number is the sum of: calls visit(triangle, ±1) for each triangle that is crossed,
+  /// and visit(triangle, 0) for each that p lies on. The sum over the triangles of a closed chain
+  /// is the chain's winding number, unless p lies on it.
+  void crossings(const Vec3& p, const std::function<void(std::uint32_t, int)>& visit) const;
+
  private:
+  struct Hit;
+  [[nodiscard]] Hit hit(const Vec3& p, std::uint32_t index) const;
+
   const Mesh& mesh_;
   std::shared_ptr<const Bvh> bvh_;
 };

@@ -1,18 +1,18 @@
 #include <gtest/gtest.h>
-#include <kaboum/bcd/closure.h>
+#include <kaboum/geom/holes.h>
 #include <kaboum/geom/topology.h>
 
 #include "support/families.h"
 #include "support/oracle.h"
 
-namespace kaboum::bcd {
+namespace kaboum::geom {
 namespace {
 
-TEST(CloseHoles, MakesAClosedChainAndKeepsTheTriangles) {
+TEST(FillHoles, MakesAClosedChainAndKeepsTheTriangles) {
   int open = 0;
   for (const auto& f : kaboum::test::open_families()) {
-    const geom::Mesh mesh = geom::weld(f.mesh);
-    const geom::Mesh closed = close_holes(mesh);
+    const Mesh mesh = weld(f.mesh);
+    const Mesh closed = fill_holes(mesh).mesh;
     EXPECT_TRUE(kaboum::test::closed_chain(closed)) << f.name;
     ASSERT_GE(closed.triangles.size(), mesh.triangles.size());
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
@@ -22,13 +22,13 @@ TEST(CloseHoles, MakesAClosedChainAndKeepsTheTriangles) {
   EXPECT_GE(open, 2);
 }
 
-TEST(CloseHoles, LeavesClosedMeshesAlone) {
+TEST(FillHoles, LeavesClosedMeshesAlone) {
   for (const auto& f : kaboum::test::closed_families()) {
     if (f.mesh.triangles.size() > 3000) continue;
-    const geom::Mesh mesh = geom::weld(f.mesh);
-    EXPECT_EQ(close_holes(mesh).triangles.size(), mesh.triangles.size()) << f.name;
+    const Mesh mesh = weld(f.mesh);
+    EXPECT_EQ(fill_holes(mesh).mesh.triangles.size(), mesh.triangles.size()) << f.name;
   }
 }
 
 }  // namespace
-}  // namespace kaboum::bcd
+}  // namespace kaboum::geom

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <kaboum/geom/mesh.h>
+#include <kaboum/geom/topology.h>
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace kaboum::geom {
+
+/// A mesh's triangles divided into chains, as fine as edges that balance allow.
+struct Chains {
+  std::vector<std::uint32_t> label;  ///< per triangle
+  std::vector<char> closed;          ///< per chain: every directed edge cancels within it
+  std::vector<char> joined;          ///< per chain: of several patches
+  std::vector<int> sign;             ///< per chain: exact sign of its volume; 0 where not closed
+  std::vector<double> volume;        ///< per chain, rounded [6 · length³]
+};
+
+/// Patches are joined through edges of two triangles. At other edges, patches that balance by
+/// themselves stay apart, and the rest is joined.
+/// @param uses   as edge_uses returns them.
+/// @param group  per triangle: triangles of different groups are never joined; empty: one group.
+Chains find_chains(const Mesh& mesh, std::span<const EdgeUse> uses,
+                   std::span<const std::uint32_t> group = {});
+
+/// What is inside out, and what cannot be told.
+struct Judgement {
+  /// A place where a part is inside out in spite of the turns.
+  struct Place {
+    std::uint32_t triangle;
+    Vec3 at;
+    bool at_wall;  ///< of bodies that share a wall and could not be told apart
+  };
+
+  std::vector<char> turn;                 ///< per triangle: to be turned
+  std::vector<std::uint32_t> inside_out;  ///< a triangle of each shell turned for its own sake
+  std::size_t cavities_turned = 0;        ///< shells turned along with those
+  std::size_t cavities = 0;               ///< shells that stay oriented inwards
+  std::optional<Place> left;              ///< the first place that stays inside out
+};
+
+/// Divides the closed part of a mesh into shells and finds those that are inside out;
+/// docs/algorithms/preparation.md says how, and proves what follows.
+/// @pre welded; no opposite coincident triangles but those that fill holes.
+Judgement judge_shells(const Mesh& mesh, std::span<const EdgeUse> uses);
+
+}  // namespace kaboum::geom

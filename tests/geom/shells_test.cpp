@@ -1,0 +1,268 @@
+// Shells that touch, share walls or lie in each other, in all combinations of orientation: what any
+// of them encloses is in the solid, unless it is a cavity.
+#include <kaboum/geom/error.h>
+#include <kaboum/geom/prepare.h>
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <numeric>
+#include <random>
+
+#include "support/oracle.h"
+#include "support/shapes.h"
+
+namespace {
+
+using kaboum::geom::Holes;
+using kaboum::geom::Mesh;
+using kaboum::geom::prepare;
+using kaboum::geom::Prepared;
+using kaboum::geom::PrepareOptions;
+using kaboum::geom::Triangle;
+using kaboum::geom::Vec3;
+
+struct Box {
+  Vec3 lo, hi;
+  bool inward = false;
+
+  [[nodiscard]] bool holds(const Vec3& p) const {
+    return (p.array() > lo.array()).all() && (p.array() < hi.array()).all();
+  }
+};
+
+/// A box whose faces are grids of the given coordinates, so that boxes that share some of them
+/// share triangles. `other` takes the other diagonal of every square.
+Mesh mesh_of(const Box& box, const std::vector<double>& lines, bool other = false) {
+  Mesh mesh;
+  std::array<std::vector<double>, 3> grid;
+  for (int k = 0; k < 3; ++k) {
+    grid[k] = {box.lo[k]};
+    for (const double x : lines)
+      if (x > box.lo[k] && x < box.hi[k]) grid[k].push_back(x);
+    grid[k].push_back(box.hi[k]);
+  }
+  for (int k = 0; k < 3; ++k) {
+    const int u = (k + 1) % 3, v = (k + 2) % 3;
+    for (const bool high : {false, true}) {
+      for (std::size_t i = 0; i + 1 < grid[u].size(); ++i) {
+        for (std::size_t j = 0; j + 1 < grid[v].size(); ++j) {
+          const auto n = static_cast<std::uint32_t>(mesh.vertices.size());
+          for (const auto& [a, b] : {std::pair{i, j}, {i + 1, j}, {i + 1, j + 1}, {i, j + 1}}) {
+            Vec3 p;
+            p[k] = high ? box.hi[k] : box.lo[k];
+            p[u] = grid[u][a];
+            p[v] = grid[v][b];
+            mesh.vertices.push_back(p);
+          }
+          for (Triangle t : other ? std::array<Triangle, 2>{{{0, 1, 3}, {1, 2, 3}}}
+                                  : std::array<Triangle, 2>{{{0, 1, 2}, {0, 2, 3}}}) {
+            if (high == box.inward) std::swap(t[1], t[2]);
+            mesh.triangles.push_back({n + t[0], n + t[1], n + t[2]});
+          }
+        }
+      }
+    }
+  }
+  return mesh;
+}
+
+Mesh shuffled(Mesh mesh, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::shuffle(mesh.triangles.begin(), mesh.triangles.end(), random);
+  for (Triangle& t : mesh.triangles)
+    std::rotate(t.begin(), t.begin() + static_cast<std::ptrdiff_t>(random() % 3), t.end());
+  return mesh;
+}
+
+Vec3 turned(const Vec3& p, double angle) {
+  return kaboum::test::rotated(Mesh{{p}, {}}, angle).vertices[0];
+}
+
+/// A point in every cell of the unit grid, on no box.
+std::vector<Vec3> points(const std::vector<Box>& boxes) {
+  kaboum::geom::Box3 all;
+  for (const Box& b : boxes) {
+    all.extend(b.lo);
+    all.extend(b.hi);
+  }
+  std::vector<Vec3> out;
+  for (double x = std::floor(all.min.x()) - 0.63; x < all.max.x() + 1; ++x)
+    for (double y = std::floor(all.min.y()) + 0.43; y < all.max.y(); ++y)
+      for (double z = std::floor(all.min.z()) + 0.31; z < all.max.z(); ++z)
+        out.emplace_back(x, y, z);
+  return out;
+}
+
+/// Prepares in several orders and rotations and compares with what is meant.
+void expect_solid(const std::string& name, const std::vector<Box>& boxes,
+                  const std::vector<double>& lines, const std::function<bool(const Vec3&)>& meant,
+                  int other = -1) {
+  std::vector<Mesh> parts;
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    parts.push_back(mesh_of(boxes[i], lines, static_cast<int>(i) == other));
+  const Mesh file = kaboum::test::merged(parts);
+  for (const auto& [mesh, angle] : {std::pair{file, 0.0},
+                                    {shuffled(file, 1), 0.0},
+                                    {kaboum::test::rotated(shuffled(file, 2), 0.7), 0.7}}) {
+    Prepared p;
+    try {
+      p = prepare(mesh);
+    } catch (const kaboum::Error& e) {
+      ADD_FAILURE() << name << ": " << e.what();
+      return;
+    }
+    ASSERT_TRUE(p.closed) << name;
+    for (const Vec3& x : points(boxes)) {
+      const auto w = kaboum::test::winding_number_slow(p.mesh, angle == 0 ? x : turned(x, angle));
+      ASSERT_TRUE(w.has_value()) << name;
+      EXPECT_EQ(*w >= 1, meant(x))
+          << name << ", angle " << angle << " at " << x.transpose() << ": " << *w;
+      EXPECT_GE(*w, 0) << name;
+    }
+    if (testing::Test::HasFailure()) return;
+  }
+}
+
+/// In all combinations of orientation: the union.
+void expect_union(const std::string& name, std::vector<Box> boxes, const std::vector<double>& lines,
+                  int other = -1) {
+  for (unsigned signs = 0; signs < 1U << boxes.size(); ++signs) {
+    for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i].inward = (signs >> i & 1U) != 0;
+    expect_solid(
+        name + ", signs " + std::to_string(signs), boxes, lines,
+        [&](const Vec3& x) {
+          return std::any_of(boxes.begin(), boxes.end(), [&](const Box& b) { return b.holds(x); });
+        },
+        other);
+    if (testing::Test::HasFailure()) return;
+  }
+}
+
+const std::vector<double> kUnits{0, 1, 2, 3, 4, 5};
+
+TEST(Shells, TwoBoxesShareAWall) {
+  expect_union("equal", {{{0, 0, 0}, {1, 1, 1}}, {{1, 0, 0}, {2, 1, 1}}}, kUnits);
+  expect_union("longer", {{{0, 0, 0}, {1, 1, 1}}, {{1, 0, 0}, {4, 1, 1}}}, kUnits);
+  expect_union("wall of four squares", {{{0, 0, 0}, {1, 2, 2}}, {{1, 0, 0}, {2, 2, 2}}}, kUnits);
+}
+
+TEST(Shells, WallsDoubledInPart) {
+  expect_union("in the middle", {{{0, 0, 0}, {1, 3, 3}}, {{1, 1, 1}, {2, 2, 2}}}, kUnits);
+  expect_union("at a corner", {{{0, 0, 0}, {1, 3, 3}}, {{1, 0, 0}, {2, 2, 2}}}, kUnits);
+  expect_union("both stick out", {{{0, 0, 0}, {1, 2, 2}}, {{1, 1, 1}, {2, 3, 3}}}, kUnits);
+}
+
+TEST(Shells, RowsAndBlocks) {
+  expect_union("row", {{{0, 0, 0}, {1, 1, 1}}, {{1, 0, 0}, {2, 1, 1}}, {{2, 0, 0}, {3, 1, 1}}},
+               kUnits);
+  expect_union("two by two",
+               {{{0, 0, 0}, {1, 1, 1}},
+                {{1, 0, 0}, {2, 1, 1}},
+                {{0, 1, 0}, {1, 2, 1}},
+                {{1, 1, 0}, {2, 2, 1}}},
+               kUnits);
+}
+
+TEST(Shells, WallsTriangulatedDifferently) {
+  expect_union("equal", {{{0, 0, 0}, {1, 1, 1}}, {{1, 0, 0}, {2, 1, 1}}}, kUnits, 1);
+  expect_union("row", {{{0, 0, 0}, {1, 1, 1}}, {{1, 0, 0}, {2, 1, 1}}, {{2, 0, 0}, {3, 1, 1}}},
+               kUnits, 1);
+  expect_union("in part", {{{0, 0, 0}, {1, 2, 2}}, {{1, 0, 0}, {2, 1, 2}}}, kUnits, 1);
+  expect_union("a line more", {{{0, 0, 0}, {1, 2, 2}}, {{1, 0, 0}, {2, 2, 2}}}, {0, 2});
+}
+
+TEST(Shells, JoinedAtAnEdgeOrVertex) {
+  expect_union("edge", {{{0, 0, 0}, {1, 1, 1}}, {{1, 1, 0}, {2, 2, 1}}}, kUnits);
+  expect_union("vertex", {{{0, 0, 0}, {1, 1, 1}}, {{1, 1, 1}, {2, 2, 2}}}, kUnits);
+  expect_union("edges in a block",
+               {{{0, 0, 0}, {1, 1, 1}}, {{1, 1, 0}, {2, 2, 1}}, {{1, 0, 0}, {2, 1, 1}}}, kUnits);
+}
+
+TEST(Shells, BoxesCross) {
+  expect_union("corner", {{{0, 0, 0}, {2, 2, 2}}, {{1, 1, 1}, {3, 3, 3}}}, {});
+  expect_union("through", {{{0, 0, 0}, {3, 3, 3}}, {{-1, 1, 1}, {4, 2, 2}}}, {});
+  expect_union("coplanar sides", {{{0, 0, 0}, {2, 2, 2}}, {{1, 0, 0}, {3, 2, 2}}}, {});
+}
+
+TEST(Shells, Copies) {
+  expect_union("both alike", {{{0, 0, 0}, {1, 1, 1}, false}}, kUnits);
+  for (const bool inward : {false, true}) {
+    const Box box{{0, 0, 0}, {2, 2, 2}, inward}, beside{{2, 0, 0}, {3, 2, 2}, !inward};
+    expect_solid("copies", {box, box}, kUnits, [&](const Vec3& x) { return box.holds(x); });
+    expect_solid("copies beside another", {box, box, beside}, kUnits,
+                 [&](const Vec3& x) { return box.holds(x) || beside.holds(x); });
+  }
+}
+
+// All corners of the bar lie in the other's solid, a part does not.
+TEST(Shells, ABarInsideOutAcrossANotch) {
+  for (const bool flush : {false, true}) {
+    const double top = flush ? 3 : 2.5;
+    const Box left{{0, 0, 0}, {1, 3, 3}}, bottom{{1, 0, 0}, {3, 3, 1}}, right{{3, 0, 0}, {4, 3, 3}},
+        bar{{0.5, 1, 1.5}, {3.5, 2, top}, true};
+    expect_solid("notch", {left, bottom, right, bar}, {1, 3}, [&](const Vec3& x) {
+      return left.holds(x) || bottom.holds(x) || right.holds(x) || bar.holds(x);
+    });
+  }
+}
+
+TEST(Shells, CavitiesStay) {
+  const Box body{{0, 0, 0}, {5, 5, 5}}, cavity{{1, 1, 1}, {4, 4, 4}, true};
+  const auto shell = [&](const Vec3& x) { return body.holds(x) && !cavity.holds(x); };
+  expect_solid("cavity", {body, cavity}, kUnits, shell);
+  const Box piece{{2, 2, 2}, {3, 3, 3}, true}, right{{2, 2, 2}, {3, 3, 3}};
+  for (const Box& b : {piece, right})
+    expect_solid("a body within", {body, cavity, b}, kUnits,
+                 [&](const Vec3& x) { return shell(x) || b.holds(x); });
+  // A body inside out at the cavity's wall.
+  const Box at_wall{{1, 2, 2}, {2, 3, 3}, true};
+  expect_solid("a body at the wall", {body, cavity, at_wall}, kUnits,
+               [&](const Vec3& x) { return shell(x) || at_wall.holds(x); });
+  // Two cavities that touch in an edge, and in a corner.
+  const Box a{{1, 1, 1}, {2, 2, 2}, true}, b{{2, 2, 1}, {3, 3, 2}, true},
+      c{{3, 3, 2}, {4, 4, 3}, true};
+  expect_solid("touching cavities", {body, a, b, c}, kUnits, [&](const Vec3& x) {
+    return body.holds(x) && !a.holds(x) && !b.holds(x) && !c.holds(x);
+  });
+  // The cavity of a body that shares a wall with another one.
+  const Box beside{{5, 0, 0}, {6, 5, 5}, true};
+  expect_solid("beside another", {body, cavity, beside}, kUnits,
+               [&](const Vec3& x) { return shell(x) || beside.holds(x); });
+}
+
+TEST(Shells, FilesInsideOutAsAWhole) {
+  const Box body{{0, 0, 0}, {5, 5, 5}, true}, cavity{{1, 1, 1}, {4, 4, 4}},
+      beside{{5, 0, 0}, {6, 5, 5}, true};
+  expect_solid("with a cavity", {body, cavity, beside}, kUnits, [&](const Vec3& x) {
+    return (body.holds(x) && !cavity.holds(x)) || beside.holds(x);
+  });
+}
+
+// The hole is closed before orientation is judged.
+TEST(Shells, OpenPartsAreFilledFirst) {
+  for (const bool inward : {false, true}) {
+    for (const bool beside : {false, true}) {
+      const Box box{{0, 0, 0}, {2, 2, 2}, inward}, closed{{2, 0, 0}, {4, 2, 2}};
+      Mesh mesh = mesh_of(box, kUnits);
+      mesh = kaboum::test::without(mesh, [](const Vec3& p) { return p.x() == 2; });
+      if (beside) mesh = kaboum::test::merged({mesh, mesh_of(closed, kUnits)});
+      PrepareOptions fill;
+      fill.holes = Holes::Fill;
+      const Prepared p = prepare(mesh, fill);
+      ASSERT_TRUE(p.closed);
+      EXPECT_EQ(p.holes, 1U);
+      EXPECT_EQ(p.filled_triangles, 8U);
+      EXPECT_EQ(p.filled_vertices, beside ? 0U : 1U) << "the middle of the other box's wall";
+      EXPECT_NEAR(p.largest_hole, std::sqrt(8), 1e-9);
+      EXPECT_EQ(p.source.size() + p.filled_triangles, p.mesh.triangles.size());
+      EXPECT_EQ(p.turned_components, inward ? 1U : 0U);
+      for (const Vec3& x : points({box, closed})) {
+        EXPECT_EQ(*kaboum::test::winding_number_slow(p.mesh, x) >= 1,
+                  box.holds(x) || (beside && closed.holds(x)));
+      }
+    }
+  }
+}
+
+}  // namespace
