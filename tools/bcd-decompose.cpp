@@ -1,4 +1,3 @@
-#include <kaboum/bcd/closure.h>
 #include <kaboum/bcd/decompose.h>
 #include <kaboum/bcd/fill.h>
 #include <kaboum/geom/error.h>
@@ -14,6 +13,7 @@
 #include <sstream>
 
 #include "cli.h"
+#include "holes_option.h"
 #include "notes.h"
 #include "robot_bodies.h"
 #include "robot_decomposition.h"
@@ -43,6 +43,7 @@ struct Options {
   std::optional<double> simplify, max_work;
   bool no_cache = false;
   geom::PrepareOptions prepare;
+  tools::HolesOption holes;
   tools::CommonOptions common;
   tools::Notes* notes = nullptr;  ///< of a robot's meshes; null: said at once
 };
@@ -161,7 +162,7 @@ void describe(CLI::App& app, Options& o) {
                "$XDG_CACHE_HOME/kaboum, else ~/.cache/kaboum)");
   app.add_flag("--drop-sheets", o.prepare.drop_sheets,
                "Drop back-to-back faces without volume (they are then not covered)");
-  app.add_flag("--require-closed", o.prepare.require_closed, "Refuse open meshes");
+  tools::add_holes_options(app, o.holes, false);
   app.add_flag("--keep-orientation", o.prepare.keep_orientation,
                "Never turn inconsistent triangles or inside-out components");
   app.add_option("--geometry", o.geometry, "Which shapes of a robot [collision]")
@@ -228,7 +229,7 @@ std::string parameters(const Options& o) {
   if (o.method != "planes") out << " --method " << o.method;
   if (o.pre_step != "auto") out << " --pre-step " << o.pre_step;
   if (o.prepare.drop_sheets) out << " --drop-sheets";
-  if (o.prepare.require_closed) out << " --require-closed";
+  if (o.holes.value() == geom::Holes::Refuse) out << " --holes refuse";
   if (o.prepare.keep_orientation) out << " --keep-orientation";
   return out.str();
 }
@@ -289,17 +290,12 @@ geom::Provenance origin(const Options& o, const std::string& hash) {
 tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const std::string& hash) {
   tools::Progress progress(o.common.quiet);
   const bool outer = o.direction == "outer";
+  geom::PrepareOptions preparation = o.prepare;
+  preparation.holes = o.holes.value();
   const geom::Prepared prepared =
-      tools::naming(o.input, [&] { return geom::prepare(mesh, o.prepare); });
+      tools::naming(o.input, [&] { return geom::prepare(mesh, preparation); });
   const double diagonal = geom::bounding_box(prepared.mesh).diagonal();
-  const geom::Mesh solid = prepared.closed ? prepared.mesh : bcd::close_holes(prepared.mesh);
-  std::vector<std::string> notes = prepared.notes;
-  if (!prepared.closed && o.direction == "outer")
-    notes.push_back("its holes are filled with " +
-                    std::to_string(solid.triangles.size() - prepared.mesh.triangles.size()) +
-                    " triangles; what is said of the solid is about that one (bound-verify "
-                    "--prepare checks it)");
-  for (const std::string& text : notes) note(o, text);
+  for (const std::string& text : prepared.notes) note(o, text);
   bcd::DecomposeOptions options;
   if (has_epsilon(o))
     options.epsilon = tools::parse_length(o.epsilon.empty() ? "1%" : o.epsilon)->of(diagonal);
@@ -319,7 +315,7 @@ tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const s
   geom::Provenance& p = set.provenance;
   p = origin(o, hash);
   p.covers_surface = outer && prepared.dropped_sheets == 0;
-  p.covers_solid = outer && prepared.closed;
+  p.covers_solid = outer && prepared.holes == 0;
   tools::SetCache::Entry entry;
   bcd::DecomposeResult result;
   std::string wrong;
@@ -336,8 +332,8 @@ tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const s
     entry.container = io::serialise_convex_set(set, io::SetFormat::Glb);
     // What is written is what is verified.
     progress.show("verifying");
-    wrong =
-        objection(o, solid, io::parse_convex_set(entry.container, io::Format::Glb, "the result"));
+    wrong = objection(o, prepared.mesh,
+                      io::parse_convex_set(entry.container, io::Format::Glb, "the result"));
     if (wrong.empty()) break;
     const bool simplified = result.statistics.pre_step_triangles > 0;
     tools::log(o.common.quiet, o.input + ": the bodies found do not pass the exact check (" +
@@ -365,21 +361,23 @@ tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const s
                    {{"lower", result.reach_lower},
                     {"upper", result.reach_upper},
                     {"upper_percent", diagonal > 0 ? 100 * result.reach_upper / diagonal : 0.0}}},
-                  {"closed", prepared.closed},
+                  {"closed", prepared.holes == 0},
+                  {"holes", prepared.holes},
+                  {"largest_hole", prepared.largest_hole},
                   {"filled_triangles", s.filled_triangles},
                   {"pieces", s.leaves},
                   {"pre_step_triangles", s.pre_step_triangles},
                   {"out_of_work", s.out_of_work},
                   {"safety", options.safety},
                   {"diagonal", diagonal},
-                  {"notes", notes}};
+                  {"notes", prepared.notes}};
   if (o.min_thickness > 0)
     entry.report["min_thickness"] = {{"wished", o.min_thickness}, {"thickened", s.thickened}};
   if (outer) {
     entry.report["cover"] = {{"surface", "verified"},
-                             {"solid", prepared.closed ? "verified" : "of the closed mesh"}};
+                             {"solid", prepared.holes == 0 ? "verified" : "of the closed mesh"}};
   } else {
-    entry.report["inside"] = "verified";
+    entry.report["inside"] = prepared.holes == 0 ? "verified" : "verified, of the closed mesh";
   }
   return entry;
 }

@@ -19,6 +19,7 @@
 
 #include "cli.h"
 #include "extract_levels.h"
+#include "holes_option.h"
 #include "verdict.h"
 #include "written_mesh.h"
 
@@ -43,6 +44,7 @@ struct Options {
   bool keep_convex = false;
   bool verify = false;
   geom::PrepareOptions prepare;
+  tools::HolesOption holes;
   std::string log, depfile;
   tools::CommonOptions common;
 };
@@ -151,7 +153,7 @@ void describe(CLI::App& app, Options& o) {
   app.add_flag("--keep-convex", o.keep_convex, "Convex in, convex out, exactly");
   app.add_flag("--drop-sheets", o.prepare.drop_sheets,
                "Drop back-to-back faces without volume (they are then not enclosed)");
-  app.add_flag("--require-closed", o.prepare.require_closed, "Refuse open meshes");
+  tools::add_holes_options(app, o.holes, true);
   app.add_flag("--keep-orientation", o.prepare.keep_orientation,
                "Never turn inconsistent triangles or inside-out components");
   app.add_flag("--verify", o.verify,
@@ -169,7 +171,9 @@ void describe(CLI::App& app, Options& o) {
       "Give at least one of --vertices, --ratio and --epsilon; the first one reached stops. With\n"
       "--from: --vertices.\n"
       "Exit codes: 0 done; 1 the wished number of vertices cannot be reached (the best result is\n"
-      "written), float32 is too coarse here (nothing is written) or --verify found a claim that "
+      "written), the mesh is open and --holes keep leaves it so (the result is written and "
+      "encloses\n"
+      "nothing), float32 is too coarse here (nothing is written) or --verify found a claim that "
       "does\n"
       "not hold; 2 usage; 3 bad input;\n"
       "4 output failed; 5 feature not built; 6 internal error; 7 limit reached.");
@@ -211,6 +215,7 @@ class Job {
     o_.direction = kDirections.at(o_.direction_name);
     o_.cost = kCosts.at(o_.cost_name);
     o_.effort = kEfforts.at(o_.effort_name);
+    o_.prepare.holes = o_.holes.value();
   }
 
   int run() {
@@ -273,6 +278,7 @@ class Job {
     // Decided with --verify, and where faces of the input do not bound its solid.
     std::optional<verify::Claim> surface;
     verify::Bracket sticks_out;  // if it is refuted
+    bool at_filling = false;     // its triangle fills a hole
 
     [[nodiscard]] double hausdorff() const {
       return std::max(to_result->max_upper, to_original->max_upper);
@@ -358,10 +364,7 @@ class Job {
     }
     input_.mesh = {};
     if (!prepared_.closed)
-      prepared_.notes.emplace_back(
-          "border vertices stay where they are, and enclosure is claimed of the generalised "
-          "winding "
-          "number only");
+      prepared_.notes.emplace_back("its border stays where it is, as --holes keep asks");
     for (const std::string& note : prepared_.notes) say("note: " + note);
     notes_.insert(notes_.end(), prepared_.notes.begin(), prepared_.notes.end());
     box_ = geom::bounding_box(prepared_.mesh);
@@ -507,7 +510,9 @@ class Job {
     const geom::Mesh &from = outer ? prepared_.mesh : level.result.mesh,
                      &to = outer ? level.result.mesh : prepared_.mesh;
     level.sticks_out = verify::bracket_distance(from, level.surface->inner_triangles, to, true);
-    if (outer) level.sticks_out.triangle = prepared_.source[level.sticks_out.triangle];
+    std::uint32_t& triangle = level.sticks_out.triangle;
+    level.at_filling = outer && triangle >= prepared_.source.size();
+    if (outer && !level.at_filling) triangle = prepared_.source[triangle];
   }
 
   /// Decides the claims anew from the bytes that will be written, by other means than those that
@@ -581,6 +586,9 @@ class Job {
         {"dropped_sheets", prepared_.dropped_sheets},
         {"turned_components", prepared_.turned_components},
         {"turned_triangles", prepared_.turned_triangles},
+        {"holes", prepared_.holes},
+        {"filled_triangles", prepared_.filled_triangles},
+        {"largest_hole", prepared_.largest_hole},
         {"notes", notes_}};
     r["options"] = {{"direction", name_of(kDirections, o_.direction)},
                     {"cost", name_of(kCosts, o_.cost)},
@@ -657,6 +665,9 @@ class Job {
         prepared_.turned_triangles + prepared_.dropped_copies + prepared_.dropped_sheets == 0
             ? "as in the file"
             : "as prepared: with triangles turned or dropped as listed under preparation";
+    if (prepared_.holes != 0)
+      c["input"] =
+          c["input"].get<std::string>() + "; its holes filled: the solid is the one so closed";
     c["solid"] = prepared_.closed
                      ? (outer ? "certified: the result's solid contains the input's"
                               : "certified: the input's solid contains the result's")
@@ -677,7 +688,7 @@ class Job {
         c["surface_depth"] = {{"lower", out.lower},
                               {"upper", std::isfinite(out.upper) ? Json(out.upper) : Json()},
                               {"at", {out.at.x(), out.at.y(), out.at.z()}},
-                              {"triangle", out.triangle}};
+                              {"triangle", level.at_filling ? Json() : Json(out.triangle)}};
       }
       return c;
     }
@@ -737,7 +748,7 @@ class Job {
         name_for_people(level) + ": " + std::to_string(level.result.statistics.vertices_in) +
         " → " + std::to_string(vertices) + " vertices, " + name_of(kDirections, o_.direction);
     if (o_.direction != bmesh::Direction::Any)
-      line += prepared_.closed ? ", certified" : ", certified as far as an open mesh allows";
+      line += prepared_.closed ? ", certified" : ", NOTHING IS ENCLOSED: the mesh is open";
     if (level.to_result)
       line += ", within " + formatted(level.hausdorff()) + " (" +
               formatted(100 * level.hausdorff() / box_.diagonal()) + "%)";
@@ -747,6 +758,13 @@ class Job {
     warn_of_distance(level);
     warn_of_surface(level);
     const int verification = level.verified ? conclude_verification(level) : tools::kDone;
+    const bool claims_nothing = !prepared_.closed && o_.direction != bmesh::Direction::Any;
+    if (claims_nothing)
+      tools::log(false, "bmesh-decimate: " + o_.input +
+                            ": the mesh is open, so it has no solid that the result could " +
+                            (o_.direction == bmesh::Direction::Outer ? "enclose" : "lie in") +
+                            "; the result is written. Leave out --holes keep to have the holes "
+                            "filled, or give --direction any if no enclosure is wished for");
     if (!level.reached()) {
       tools::log(false, "bmesh-decimate: " + o_.input + ": " + std::to_string(*level.wished) +
                             " vertices cannot be reached with --cost " + o_.cost_name +
@@ -754,7 +772,7 @@ class Job {
                             "; the result so far is written");
       return tools::kNo;
     }
-    return verification;
+    return claims_nothing ? tools::kNo : verification;
   }
 
   [[nodiscard]] std::string name_for_people(const Level& level) const {
@@ -799,9 +817,10 @@ class Job {
     text += ": " + std::to_string(count) + (count == 1 ? " sticks out" : " stick out");
     if (!depth.empty()) text += ", by " + depth;
     if (level.sticks_out.lower > 0)
-      text += ", farthest at " + tools::point(level.sticks_out.at) + ", triangle " +
-              std::to_string(level.sticks_out.triangle) +
-              (outer ? " of the input" : " of the result");
+      text += ", farthest at " + tools::point(level.sticks_out.at) +
+              (level.at_filling ? ", where a hole was filled"
+                                : ", triangle " + std::to_string(level.sticks_out.triangle) +
+                                      (outer ? " of the input" : " of the result"));
     text += " (the input is folded or inside out there: such faces bound no solid)";
     tools::log(o_.common.quiet, "warning: " + text);
   }
@@ -869,11 +888,11 @@ int main(int argc, char** argv) {
     const tools::ThreadLimit limit(options.common.threads);
     if (!options.from.empty()) {
       // What makes a result is in the file.
-      tools::require_absent(
-          app, "--from",
-          {"INPUT", "--progressive", "--direction", "--ratio", "--epsilon", "--cost", "--effort",
-           "--as-printed", "--precision", "--sharp-angle", "--keep-convex", "--drop-sheets",
-           "--require-closed", "--keep-orientation", "--verify", "--log", "--input-format"});
+      tools::require_absent(app, "--from",
+                            {"INPUT", "--progressive", "--direction", "--ratio", "--epsilon",
+                             "--cost", "--effort", "--as-printed", "--precision", "--sharp-angle",
+                             "--keep-convex", "--drop-sheets", "--holes", "--require-closed",
+                             "--keep-orientation", "--verify", "--log", "--input-format"});
       return tools::extract_levels({options.from, options.output, options.output_format,
                                     options.vertices, options.depfile, options.common});
     }

@@ -21,6 +21,9 @@ std::string original(const bmesh::ReplayResult& r) {
   if (r.turned != 0)
     text += ", with " + std::to_string(r.turned) +
             " triangles turned as the log says (whether they should be is not checked)";
+  if (r.filled != 0)
+    text += ", its holes filled with " + std::to_string(r.filled) +
+            " triangles that the log adds (it is closed with them; how they run is not checked)";
   return text;
 }
 
@@ -56,7 +59,8 @@ int check(const Options& o) {
                                         {"steps", r.steps},
                                         {"predicates", r.predicates},
                                         {"dropped_triangles", r.dropped},
-                                        {"turned_triangles", r.turned}});
+                                        {"turned_triangles", r.turned},
+                                        {"filled_triangles", r.filled}});
   if (!r.verified) {
     std::cout << "refuted: " << r.violation << '\n';
     return tools::kNo;

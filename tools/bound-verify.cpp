@@ -260,10 +260,9 @@ void write_witness(const std::string& path, const geom::Mesh& inner, const geom:
   io::write_file(path, io::serialise_mesh(geom::Mesh(mesh), format, options));
 }
 
-/// The original as the tools prepare it: with `close` without holes, since what bcd-decompose
-/// claims is about a solid.
-void prepare(Input& original, bool drop_sheets, bool close) {
-  tools::PreparedOriginal prepared = tools::prepare_original(original.mesh, drop_sheets, close);
+/// The original as the tools prepare it, without holes.
+void prepare(Input& original, bool drop_sheets) {
+  geom::Prepared prepared = tools::prepare_original(original.mesh, drop_sheets, true);
   original.mesh = std::move(prepared.mesh);
   original.notes.insert(original.notes.end(), prepared.notes.begin(), prepared.notes.end());
   original.filled_triangles = prepared.filled_triangles;
@@ -271,11 +270,11 @@ void prepare(Input& original, bool drop_sheets, bool close) {
 }
 
 /// What preparing would change of the original; empty if nothing.
-std::string change_by_preparing(const Input& original, bool close) {
+std::string change_by_preparing(const Input& original) {
   for (const bool drop_sheets : {false, true}) {
     Input prepared{original.mesh, original.format, {}, {}, 0, {}};
     try {
-      prepare(prepared, drop_sheets, close);
+      prepare(prepared, drop_sheets);
     } catch (const Error&) {  // it cannot be prepared
       continue;
     }
@@ -378,7 +377,7 @@ int check(const Options& o) {
   geom::ConvexSet set;
   bool is_set = false;
   Input approximation = read_approximation(o, set, is_set);
-  if (o.prepare) tools::naming(o.original, [&] { prepare(original, o.drop_sheets, o.cover); });
+  if (o.prepare) tools::naming(o.original, [&] { prepare(original, o.drop_sheets); });
   if (o.inner && set.margin > 0) {
     throw Error(ErrorCode::InvalidInput, o.approximation + ": the set's margin, " +
                                              number(set.margin) +
@@ -389,6 +388,10 @@ int check(const Options& o) {
       tools::log(o.common.quiet, (input == &original ? o.original : o.approximation) + ": " + note);
     }
   }
+
+  std::optional<tools::InsideOut> inside_out;
+  if (!o.prepare) inside_out = tools::find_inside_out(original.mesh);
+  if (inside_out) tools::log(false, "warning: " + o.original + ": " + tools::text_of(*inside_out));
 
   const double diagonal = diagonal_of(original.mesh);
   if (epsilon && !std::isfinite(epsilon->of(diagonal)))
@@ -567,7 +570,15 @@ int check(const Options& o) {
       json["approximation"]["bodies"] = set.bodies.size();
       json["approximation"]["margin"] = set.margin;
     }
-    if (o.prepare) json["original"]["filled_triangles"] = original.filled_triangles;
+    if (o.prepare) {
+      json["original"]["filled_triangles"] = original.filled_triangles;
+    } else {
+      json["original"]["inside_out_parts"] = inside_out ? inside_out->parts : 0;
+      if (inside_out)
+        json["original"]["inside_out"] = {{"triangle", inside_out->triangle},
+                                          {"at", to_json(inside_out->at)},
+                                          {"remedy", "--prepare"}};
+    }
     json["claims"] = claims;
     json["triangles_without_area"] = inclusion.triangles_without_area;
     json["contacts"] = inclusion.contacts;
@@ -578,7 +589,7 @@ int check(const Options& o) {
   }
   say();
   if (answer != Answer::Verified && answer != Answer::Undecided && !o.prepare) {
-    if (const std::string change = change_by_preparing(original, o.cover); !change.empty())
+    if (const std::string change = change_by_preparing(original); !change.empty())
       tools::log(o.common.quiet, "note: bmesh-decimate and bcd-decompose speak of " + o.original +
                                      " as prepared; --prepare judges that: " + change);
   }
@@ -674,8 +685,8 @@ int main(int argc, char** argv) {
       "--prepare", o.prepare,
       "Judge against ORIGINAL as bmesh-decimate and bcd-decompose prepare it (parts that are "
       "inside "
-      "out turned, copies and walls dropped; with --cover also holes filled) instead of the "
-      "file as it is: what a container's epsilon is about");
+      "out turned, copies and walls dropped, holes filled) instead of the file as it is: what "
+      "their claims, and a container's epsilon, are about");
   app.add_flag("--drop-sheets", o.drop_sheets,
                "With --prepare: drop sheets (faces back to back without volume), as bmesh-decimate "
                "and bcd-decompose do with this option; nothing is then said about them")

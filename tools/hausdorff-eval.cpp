@@ -255,6 +255,11 @@ class Job {
         io::parse_mesh(bytes, format, side.file, std::filesystem::path(side.file).parent_path());
     side.sha256 = io::sha256(bytes);
     side.notes.insert(side.notes.end(), result.notes.begin(), result.notes.end());
+    if (result.collapsed_triangles != 0)
+      side.notes.push_back(std::to_string(result.collapsed_triangles) +
+                           (result.collapsed_triangles == 1 ? " triangle" : " triangles") +
+                           " with repeated corners left out: no distance from or to the segments "
+                           "that they span is measured");
     side.input = std::move(result.mesh);
     if (side.input.empty())
       throw Error(ErrorCode::InvalidInput, side.file + ": no triangles to measure to");

@@ -1,23 +1,36 @@
 #include "prepared_original.h"
 
-#include <kaboum/bcd/closure.h>
-#include <kaboum/geom/prepare.h>
+#include <kaboum/geom/error.h>
+
+#include "verdict.h"
 
 namespace kaboum::tools {
 
-PreparedOriginal prepare_original(const geom::Mesh& mesh, bool drop_sheets, bool close) {
+geom::Prepared prepare_original(const geom::Mesh& mesh, bool drop_sheets, bool fill) {
   geom::PrepareOptions options;
   options.drop_sheets = drop_sheets;
-  geom::Prepared prepared = geom::prepare(mesh, options);
-  PreparedOriginal out{std::move(prepared.mesh), std::move(prepared.notes), 0,
-                       std::move(prepared.source)};
-  if (!close || prepared.closed) return out;
-  const std::size_t before = out.mesh.triangles.size();
-  out.mesh = bcd::close_holes(out.mesh);
-  out.filled_triangles = out.mesh.triangles.size() - before;
-  out.notes.push_back("its holes are filled with " + std::to_string(out.filled_triangles) +
-                      " triangles, as bcd-decompose does: the claims are about that solid");
-  return out;
+  options.holes = fill ? geom::Holes::Fill : geom::Holes::Keep;
+  return geom::prepare(mesh, options);
+}
+
+std::optional<InsideOut> find_inside_out(const geom::Mesh& mesh) {
+  try {
+    const geom::Prepared prepared = prepare_original(mesh, true, false);
+    if (prepared.inside_out.empty()) return {};
+    InsideOut out{prepared.turned_components, prepared.inside_out.front(), geom::Vec3::Zero()};
+    for (const std::uint32_t v : mesh.triangles[out.triangle]) out.at += mesh.vertices[v] / 3;
+    return out;
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+std::string text_of(const InsideOut& found) {
+  return std::to_string(found.parts) + (found.parts == 1 ? " part of it is" : " parts of it are") +
+         " inside out (the first at triangle " + std::to_string(found.triangle) + ", at " +
+         point(found.at) +
+         "): as the file is, what that encloses is not in the solid, and nothing is decided about "
+         "it; --prepare turns it and judges that solid";
 }
 
 }  // namespace kaboum::tools

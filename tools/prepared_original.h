@@ -1,24 +1,28 @@
 #pragma once
 
-#include <kaboum/geom/mesh.h>
+#include <kaboum/geom/prepare.h>
 
-#include <cstdint>
+#include <optional>
 #include <string>
-#include <vector>
 
 namespace kaboum::tools {
 
 /// A mesh as bmesh-decimate and bcd-decompose prepare it: what they claim is about that.
-struct PreparedOriginal {
-  geom::Mesh mesh;
-  std::vector<std::string> notes;
-  std::size_t filled_triangles = 0;
-  /// Per triangle its index in the file's mesh; those that fill holes, the last ones, have none.
-  std::vector<std::uint32_t> source;
+/// @param fill  fill its holes, as both do by default.
+/// @throws Error{InvalidInput} as geom::prepare.
+geom::Prepared prepare_original(const geom::Mesh& mesh, bool drop_sheets, bool fill);
+
+/// What of a mesh as it is encloses nothing because it is oriented inwards.
+struct InsideOut {
+  std::size_t parts = 0;
+  std::uint32_t triangle = 0;  ///< of the first
+  geom::Vec3 at;               ///< its middle
 };
 
-/// @param close  fill holes as bcd-decompose does, whose claims are about a solid.
-/// @throws Error{InvalidInput} as geom::prepare.
-PreparedOriginal prepare_original(const geom::Mesh& mesh, bool drop_sheets, bool close);
+/// The closed parts of a mesh that preparing would turn; none where it cannot be prepared.
+std::optional<InsideOut> find_inside_out(const geom::Mesh& mesh);
+
+/// What is said of it.
+std::string text_of(const InsideOut& found);
 
 }  // namespace kaboum::tools

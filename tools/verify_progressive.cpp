@@ -54,7 +54,8 @@ int verify_progressive(const std::string& original, const std::string& original_
               {"predicates", r.predicates},
               {"against_solids", r.against_original},
               {"dropped_triangles", r.dropped},
-              {"turned_triangles", r.turned}};
+              {"turned_triangles", r.turned},
+              {"filled_triangles", r.filled}};
     for (std::size_t i = 0; i < r.levels; ++i)
       json["levels"].push_back({{"wished", p.levels[i].wished},
                                 {"vertices", p.levels[i].vertices},
@@ -75,6 +76,10 @@ int verify_progressive(const std::string& original, const std::string& original_
     out << r.turned
         << " triangles of the original are turned as the file says; whether they should be is not "
            "checked\n";
+  if (r.filled != 0)
+    out << "the original's holes are filled with " << r.filled
+        << " triangles that the file adds to its own; it is closed with them, and how they run is "
+           "not checked\n";
   if (r.dropped != 0) out << r.dropped << " triangles of the original are dropped, harmlessly\n";
   out << "verified: " << claim(p, r) << "; " << r.steps << " steps, " << r.predicates
       << " exact tests\n";

@@ -374,8 +374,11 @@ class RobotVerifier {
   /// As the file is, or as prepared.
   geom::Mesh judged_mesh(const File& file) {
     note(file.path, file.notes);
-    if (!o_.prepare) return file.mesh;
-    PreparedOriginal prepared =
+    if (!o_.prepare) {
+      if (const auto found = find_inside_out(file.mesh)) note(file.path, {text_of(*found)});
+      return file.mesh;
+    }
+    geom::Prepared prepared =
         naming(file.path, [&] { return prepare_original(file.mesh, o_.drop_sheets, true); });
     note(file.path, prepared.notes);
     return std::move(prepared.mesh);

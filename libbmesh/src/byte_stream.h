@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
@@ -37,6 +38,16 @@ class Writer {
   void indices(const std::vector<std::uint32_t>& v) {
     number(static_cast<std::uint64_t>(v.size()));
     for (const std::uint32_t i : v) number(i);
+  }
+  void points(const std::vector<geom::Vec3>& v) {
+    number(static_cast<std::uint64_t>(v.size()));
+    for (const geom::Vec3& p : v)
+      for (int k = 0; k < 3; ++k) number(p[k]);
+  }
+  void triangles(const std::vector<geom::Triangle>& v) {
+    number(static_cast<std::uint64_t>(v.size()));
+    for (const geom::Triangle& t : v)
+      for (const std::uint32_t i : t) number(i);
   }
   /// Appends the checksum of all bytes so far.
   void checksum() { number(checksum_of(out)); }
@@ -75,6 +86,30 @@ class Reader {
     std::vector<std::uint32_t> v(count(4));
     for (std::uint32_t& i : v) i = number<std::uint32_t>();
     return v;
+  }
+  std::vector<geom::Vec3> points() {
+    std::vector<geom::Vec3> v(count(24));
+    for (geom::Vec3& p : v) {
+      for (int k = 0; k < 3; ++k) p[k] = number<double>();
+      if (!p.allFinite()) fail("has a vertex that is not finite");
+    }
+    return v;
+  }
+  std::vector<geom::Triangle> triangles() {
+    std::vector<geom::Triangle> v(count(12));
+    for (geom::Triangle& t : v) {
+      for (std::uint32_t& i : t) i = number<std::uint32_t>();
+      if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0])
+        fail("has a triangle without three corners");
+    }
+    return v;
+  }
+  /// Versions that can no longer be read.
+  void refuse_earlier(const std::string& kind, std::initializer_list<const char*> versions,
+                      const char* what) const {
+    for (const char* version : versions)
+      if (std::string_view(bytes_.data(), bytes_.size()).starts_with(kind + version + "\n"))
+        fail(std::string("is ") + what + " of an earlier version (" + version + "); make it again");
   }
   /// The bytes that a file of this kind begins with.
   void magic(std::string_view expected, const std::string& what) {

@@ -9,7 +9,7 @@
 namespace kaboum::bmesh {
 namespace {
 
-constexpr std::string_view kMagic = "KABOUM-BMESH-PROGRESSIVE 2\n";
+constexpr std::string_view kMagic = "KABOUM-BMESH-PROGRESSIVE 3\n";
 
 /// The mesh under the steps. What a step needs is looked at before it is taken, since the file may
 /// be anybody's.
@@ -116,12 +116,8 @@ std::vector<char> serialise_progressive(const Progressive& p) {
                 64 * p.levels.size() + 33 * p.log.steps.size() + 4096);
   write_log(w, p.log);
   w.number(static_cast<std::uint32_t>(p.double_precision));
-  w.number(static_cast<std::uint64_t>(p.base.vertices.size()));
-  for (const geom::Vec3& v : p.base.vertices)
-    for (int k = 0; k < 3; ++k) w.number(v[k]);
-  w.number(static_cast<std::uint64_t>(p.base.triangles.size()));
-  for (const geom::Triangle& t : p.base.triangles)
-    for (const std::uint32_t v : t) w.number(v);
+  w.points(p.base.vertices);
+  w.triangles(p.base.triangles);
   w.number(static_cast<std::uint64_t>(p.levels.size()));
   for (const Progressive::Level& level : p.levels)
     for (const std::size_t n : {level.wished, level.vertices, level.steps})
@@ -132,9 +128,7 @@ std::vector<char> serialise_progressive(const Progressive& p) {
 
 Progressive parse_progressive(std::span<const char> bytes, const std::string& name) {
   Reader r(bytes, name);
-  const std::string_view text(bytes.data(), bytes.size());
-  if (text.starts_with("KABOUM-BMESH-PROGRESSIVE 1\n"))
-    r.fail("is a progressive file of an earlier version, without checksum; make it again");
+  r.refuse_earlier("KABOUM-BMESH-PROGRESSIVE ", {"1", "2"}, "a progressive file");
   r.magic(kMagic, "a progressive file of bmesh-decimate");
   r.checksum();
   Progressive p;
@@ -142,20 +136,11 @@ Progressive parse_progressive(std::span<const char> bytes, const std::string& na
   const auto precision = r.number<std::uint32_t>();
   if (precision > 1) r.fail("names an unknown precision");
   p.double_precision = precision == 1;
-  p.base.vertices.resize(r.count(24));
-  for (geom::Vec3& v : p.base.vertices) {
-    for (int k = 0; k < 3; ++k) v[k] = r.number<double>();
-    if (!v.allFinite()) r.fail("has a vertex that is not finite");
-  }
-  p.base.triangles.resize(r.count(12));
-  for (geom::Triangle& t : p.base.triangles) {
-    for (std::uint32_t& v : t) {
-      v = r.number<std::uint32_t>();
+  p.base.vertices = r.points();
+  p.base.triangles = r.triangles();
+  for (const geom::Triangle& t : p.base.triangles)
+    for (const std::uint32_t v : t)
       if (v >= p.base.vertices.size()) r.fail("has a triangle with a vertex that is not there");
-    }
-    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0])
-      r.fail("has a triangle without three corners");
-  }
   p.levels.resize(r.count(24));
   const Progressive::Level* before = nullptr;
   for (Progressive::Level& level : p.levels) {

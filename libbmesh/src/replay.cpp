@@ -66,8 +66,11 @@ class Replay {
   bool start() {
     report_.dropped = log_.dropped.size();
     report_.turned = log_.turned.size();
+    report_.filled = log_.filled_triangles.size();
     if (!interpret()) return false;
     find_border();
+    if (report_.filled != 0 && !report_.closed)
+      return violated("the triangles that fill holes leave the mesh open");
     keep_present();
     return true;
   }
@@ -166,6 +169,18 @@ class Replay {
     for (std::size_t t = 0; t < input_.size(); ++t)
       if (dropped[t] == 0)
         triangles_.push_back({number[input_[t][0]], number[input_[t][1]], number[input_[t][2]]});
+    for (const geom::Vec3& p : log_.filled_vertices) {
+      if (!p.allFinite()) return violated("a vertex that fills a hole is not finite");
+      points_.emplace_back(p.x(), p.y(), p.z());
+    }
+    for (const geom::Triangle& t : log_.filled_triangles) {
+      for (const std::uint32_t v : t)
+        if (v >= points_.size())
+          throw Error(ErrorCode::InvalidInput,
+                      "the log fills a hole with a vertex that is not there");
+      if (repeated(t)) return violated("a triangle that fills a hole has a repeated corner");
+      triangles_.push_back(t);
+    }
     around_.resize(points_.size());
     for (std::uint32_t t = 0; t < triangles_.size(); ++t)
       for (const std::uint32_t v : triangles_[t]) around_[v].push_back(t);

@@ -341,9 +341,13 @@ class Preparation {
       keep[t] = tri[0] != tri[1] && tri[1] != tri[2] && tri[2] != tri[0] ? 1 : 0;
     }
     filter(keep);
-    out_.notes.push_back(count_of(filled.holes, "hole is", "holes are") + " filled, the largest " +
-                         text_of(filled.largest) + " across, near " + text_of(filled.largest_at) +
-                         ": the solid that is meant is the one so closed");
+    const auto triangles =
+        static_cast<std::size_t>(std::count(out_.source.begin(), out_.source.end(), kFilled));
+    out_.notes.push_back(count_of(filled.holes, "hole is", "holes are") + " filled with " +
+                         count_of(triangles, "triangle", "triangles") +
+                         (filled.holes == 1 ? ", " : ", the largest ") + text_of(filled.largest) +
+                         " across near " + text_of(filled.largest_at) +
+                         ": what is said of the solid is about the one so closed");
   }
 
   /// Sources are of the input alone.

@@ -46,10 +46,14 @@ struct Log {
   std::string tool;                    ///< program and version
   std::vector<std::uint32_t> dropped;  ///< input triangles left out, ascending
   std::vector<std::uint32_t> turned;   ///< input triangles with reversed orientation, ascending
+  /// What fills holes: vertices, numbered on from those of the triangles left, and triangles.
+  std::vector<geom::Vec3> filled_vertices;
+  std::vector<geom::Triangle> filled_triangles;
   std::vector<Step> steps;
 };
 
-/// The triangles that preparation dropped and turned. `input_triangles` is the number before it.
+/// The triangles that preparation dropped, turned and added. `input_triangles` is the number before
+/// it.
 void record_preparation(const geom::Prepared& prepared, std::size_t input_triangles, Log& log);
 
 std::vector<char> serialise_log(const Log& log);

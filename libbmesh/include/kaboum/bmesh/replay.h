@@ -18,6 +18,7 @@ struct ReplayResult {
   std::uint64_t against_original = 0;  ///< tetrahedra tested against the original's solid
   std::size_t dropped = 0;             ///< input triangles that the log leaves out
   std::size_t turned = 0;              ///< input triangles that the log turns
+  std::size_t filled = 0;              ///< triangles that the log adds to fill holes
 };
 
 /// Derives a result again from its input and its log, and checks every step.
@@ -34,7 +35,8 @@ struct ReplayResult {
 /// The original is taken as the log interprets it: turned triangles are applied and counted,
 /// whether they should be turned is not checked. Dropped copies are checked to be closed chains
 /// that also stay; they lower the winding number but, unless something is oriented inwards, not the
-/// solid.
+/// solid. Triangles that fill holes are added to those of the input, which stay as they are; with
+/// them the mesh is checked to be a closed chain; how they fill the holes is not checked.
 ///
 /// @param original  as read from the input file.
 /// @param result    as read from the result file.
