@@ -35,7 +35,8 @@ class Run:
         effort = "fast" if self.cost in THESIS_COSTS else "normal"
         goal = ["--vertices", str(self.vertices)] if self.vertices else ["--epsilon",
                                                                          f"{self.epsilon:g}%"]
-        return ["--direction", self.direction, "--cost", self.cost, "--effort", effort, *goal, "--drop-sheets"]
+        return ["--direction", self.direction, "--cost", self.cost, "--effort", effort, *goal, "--drop-sheets",
+                "--holes", "keep"]
 
     def title(self):
         goal = f"{self.vertices}" if self.vertices else f"{self.epsilon:g}pc"
@@ -140,8 +141,8 @@ class Runner:
         with self._lock:
             if not mesh.exists():
                 part = mesh.with_name(f"part-{mesh.name}")
-                self._call("bmesh-decimate", model.path, "-o", part, "--drop-sheets", "--precision", "double",
-                           "--vertices", 10 ** 9)
+                self._call("bmesh-decimate", model.path, "-o", part, "--drop-sheets", "--holes", "keep",
+                           "--precision", "double", "--vertices", 10 ** 9)
                 os.replace(part, mesh)
         return mesh
 

@@ -163,8 +163,8 @@ class Sets:
     def prepared(self):
         """Whether the original without sheets, and the same closed, are there."""
         if self.call(self.whole.stem, self.call.programs / "bmesh-decimate",
-                     [self.model.path, "-o", self.whole.name, "--drop-sheets", "--precision", "double", "--vertices",
-                      10 ** 9], [self.model.path], [self.whole.name], (0, 1)) is None:
+                     [self.model.path, "-o", self.whole.name, "--drop-sheets", "--holes", "keep", "--precision",
+                      "double", "--vertices", 10 ** 9], [self.model.path], [self.whole.name], (0, 1)) is None:
             return False
         points, triangles = closed(*read_obj(self.whole))
         write_obj(self.closed, [(points, triangles)])

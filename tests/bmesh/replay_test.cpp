@@ -209,6 +209,47 @@ TEST(Replay, RefutesMovesOfTheBorder) {
   }
 }
 
+// What fills holes is in the log, and only added.
+TEST(Replay, FillsHoles) {
+  for (const auto& f : test::open_families()) {
+    geom::PrepareOptions fill;
+    fill.holes = geom::Holes::Fill;
+    geom::Prepared p;
+    try {
+      p = geom::prepare(f.mesh, fill);
+    } catch (const Error&) {
+      continue;  // one-sided
+    }
+    if (p.filled_triangles == 0) continue;
+    Log log = test::log_of_preparation(f.mesh, p, Direction::Outer);
+    EXPECT_EQ(log.filled_triangles.size(), p.filled_triangles);
+    DecimateOptions options;
+    options.vertices = std::max<std::size_t>(p.mesh.vertices.size() / 2, 4);
+    options.steps = &log.steps;
+    const geom::Mesh result = decimate(p, options).mesh;
+    const Log read = parse_log(serialise_log(log), "the log");
+    const auto checked = replay(f.mesh, read, result);
+    EXPECT_TRUE(checked.verified) << f.name << ": " << checked.violation;
+    EXPECT_TRUE(checked.closed) << f.name;
+    EXPECT_EQ(checked.filled, p.filled_triangles);
+    Log mutant = log;
+    mutant.filled_triangles.pop_back();
+    EXPECT_FALSE(replay(f.mesh, mutant, result).verified) << f.name;
+    mutant = log;
+    std::swap(mutant.filled_triangles[0][0], mutant.filled_triangles[0][1]);
+    EXPECT_FALSE(replay(f.mesh, mutant, result).verified) << f.name;
+    mutant = log;
+    mutant.filled_triangles[0][0] = 1U << 30;
+    EXPECT_THROW(replay(f.mesh, mutant, result), Error) << f.name;
+    if (!log.filled_vertices.empty()) {
+      mutant = log;
+      mutant.filled_vertices[0].x() = std::nan("");
+      EXPECT_FALSE(replay(f.mesh, mutant, result).verified) << f.name;
+      EXPECT_THROW(parse_log(serialise_log(mutant), "the log"), Error);
+    }
+  }
+}
+
 TEST(Replay, RefusesNonsense) {
   test::Recorded r = run(sphere(), Direction::Outer);
   Log mutant = r.log;

@@ -39,7 +39,7 @@ expect 2 'cannot be joined' "$D" t.off -o x.off --vertices 4 --cost planes --as-
 absent x.off
 # Open meshes are decimated without global optimisation, and the report says so.
 sed 's/^4 4 0/4 3 0/;$d' t.off >open.off
-expect 0 '' "$D" open.off -o open-out.off --vertices 4 --effort normal --report open.json
+expect 1 '' "$D" open.off -o open-out.off --vertices 4 --effort normal --holes keep --report open.json
 grep -q '"effort": "fast"' open.json || fail "the report tells of an effort that was not made"
 sed 's/^4 4 0/8 8 0/' t.off | awk '{print} NR==6{print "5 0 0\n6 0 0\n5 1 0\n5 0 1"} END{print "3 4 6 5\n3 4 5 7\n3 5 6 7\n3 6 4 7"}' >two.off
 expect 1 'cannot be reached' "$D" two.off -o two-out.off --vertices 4
@@ -139,8 +139,26 @@ expect 2 'float32 only' "$D" far.off -o far.stl --vertices 4 --precision double
 
 # The border of an open mesh does not move.
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0.1\nv 0 0 1\nf 1 3 2\nf 1 2 4\n' >open.obj
-expect 1 'border stays where it is.*Write .ply, .obj, .off' "$D" open.obj -o x.stl --vertices 4
-expect 0 'writing double' "$D" open.obj -o open.ply --vertices 4
+expect 1 'border stays where it is.*Write .ply, .obj, .off' "$D" open.obj -o x.stl --vertices 4 --holes keep
+expect 1 'writing double' "$D" open.obj -o open.ply --vertices 4 --holes keep
+grep -q 'it has no solid that the result could enclose' err.txt || fail 'no word that nothing is enclosed'
+grep -q 'NOTHING IS ENCLOSED' err.txt || fail 'the summary does not say that nothing is enclosed'
+expect 0 '' "$D" open.obj -o open.ply --vertices 4 --holes keep --direction any
+
+# Without --holes keep, holes are filled, the steps are replayed, and the original is held.
+expect 0 '1 hole is filled with 4 triangles, 1.7' "$D" open.obj -o filled.ply --vertices 4 --log filled.log \
+  --report filled.json --verify
+grep -q '"filled_triangles": 4' filled.json || fail 'no word of the filling in the report'
+grep -q 'its holes filled' filled.json || fail 'the claim does not say of which solid it is'
+expect 0 'its holes filled with 4 triangles that the log adds' "$BIN/bmesh-replay" open.obj filled.log filled.ply
+expect 0 'surface claim: verified' "$BIN/bound-verify" --outer open.obj filled.ply --prepare
+expect 0 '' "$D" open.obj -o filled.ply --vertices 4 --progressive filled.pm
+expect 0 'filled with 4 triangles that the file adds' "$BIN/bound-verify" --progressive open.obj filled.pm
+expect 0 '' "$D" --from filled.pm --vertices 4 -o again.ply
+cmp -s filled.ply again.ply || fail 'a level of a mesh whose holes are filled is another one'
+for kind in LOG PROGRESSIVE; do printf 'KABOUM-BMESH-%s 2\n0123456789' $kind >"old.$kind"; done
+expect 3 'earlier version (2); make it again' "$BIN/bmesh-replay" open.obj old.LOG filled.ply
+expect 3 'earlier version (2); make it again' "$D" --from old.PROGRESSIVE --vertices 4 -o x.off
 
 # Sizes whose products would overflow or vanish.
 awk 'NR>2 && NR<7 {printf "%.17g %.17g %.17g\n", $1*1e80, $2*1e80, $3*1e80; next} {print}' t.off >vast.off

@@ -163,13 +163,26 @@ expect 1 'convexity: refuted' "$V" --cover open.off open.off
 # What bcd-decompose claims of an open mesh is about the mesh as prepared.
 cube 0 1 10 >gap.off
 "$BIN/bcd-decompose" gap.off -o gap.glb --epsilon 1% --no-cache --quiet || fail 'decompose gap'
-expect 1 'prepare judges that: the mesh is open at 4 edges' "$V" --cover gap.off gap.glb --epsilon 1%
+expect 1 'prepare judges that: 1 hole is filled with 4 triangles' "$V" --cover gap.off gap.glb --epsilon 1%
 expect 0 'distance from the union to the solid: verified' "$V" --cover gap.off gap.glb --epsilon 1% --prepare
-grep -q 'holes are filled with 4 triangles' err.txt || fail 'no word of the filling'
+grep -q '1 hole is filled with 4 triangles, 10.* across' err.txt || fail 'no word of the filling'
 # So with one of mixed orientation.
 sed 's/^3 4 5 6$/3 4 6 5/' one.off >mixed.off
 expect 1 'prepare judges that: 3 edges with neighbours of opposite orientation' "$V" --outer mixed.off less.off
 expect 0 'solid claim: verified' "$V" --outer mixed.off three.off --prepare
+
+# A part that is inside out is said even where everything is verified, and --prepare judges it.
+{
+  printf 'OFF\n16 24 0\n'
+  cube 0 4 | sed -n 3,10p
+  cube 6 7 | sed -n 3,10p
+  cube 0 4 | sed -n 11,22p
+  cube 6 7 | sed -n 11,22p | awk '{ print 3, $2 + 8, $4 + 8, $3 + 8 }'
+} >inverted.off
+expect 0 'solid claim: verified' "$V" --outer inverted.off inverted.off --claims solid --report inverted.json
+grep -q 'warning: inverted.off: 1 part of it is inside out (the first at triangle 12' err.txt || fail 'no word of the part'
+grep -q '"inside_out_parts": 1' inverted.json || fail 'no word of the part in the report'
+expect 1 'solid claim: refuted' "$V" --outer inverted.off inverted.off --prepare
 
 # Sheets that were dropped are in no body; the note says what judges that.
 "$BIN/bcd-decompose" sheeted.off -o sheeted.glb --epsilon 1% --drop-sheets --no-cache --quiet || fail 'decompose sheeted'
