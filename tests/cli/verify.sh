@@ -165,7 +165,7 @@ cube 0 1 10 >gap.off
 "$BIN/bcd-decompose" gap.off -o gap.glb --epsilon 1% --no-cache --quiet || fail 'decompose gap'
 expect 1 'prepare judges that: 1 hole is filled with 4 triangles' "$V" --cover gap.off gap.glb --epsilon 1%
 expect 0 'distance from the union to the solid: verified' "$V" --cover gap.off gap.glb --epsilon 1% --prepare
-grep -q '1 hole is filled with 4 triangles, 10.* across' err.txt || fail 'no word of the filling'
+grep -q '1 hole is filled with 4 triangles, 1.414 across' err.txt || fail 'no word of the filling'
 # So with one of mixed orientation.
 sed 's/^3 4 5 6$/3 4 6 5/' one.off >mixed.off
 expect 1 'prepare judges that: 3 edges with neighbours of opposite orientation' "$V" --outer mixed.off less.off
