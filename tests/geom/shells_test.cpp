@@ -210,33 +210,37 @@ TEST(Shells, ABarInsideOutAcrossANotch) {
 TEST(Shells, CavitiesStay) {
   const Box body{{0, 0, 0}, {5, 5, 5}}, cavity{{1, 1, 1}, {4, 4, 4}, true};
   const auto shell = [&](const Vec3& x) { return body.holds(x) && !cavity.holds(x); };
-  expect_solid("cavity", {body, cavity}, kUnits, shell);
+  expect_solid("cavity", {body, cavity}, {2, 3}, shell);
   const Box piece{{2, 2, 2}, {3, 3, 3}, true}, right{{2, 2, 2}, {3, 3, 3}};
   for (const Box& b : {piece, right})
-    expect_solid("a body within", {body, cavity, b}, kUnits,
+    expect_solid("a body within", {body, cavity, b}, {2, 3},
                  [&](const Vec3& x) { return shell(x) || b.holds(x); });
   // A body inside out at the cavity's wall.
   const Box at_wall{{1, 2, 2}, {2, 3, 3}, true};
-  expect_solid("a body at the wall", {body, cavity, at_wall}, kUnits,
+  expect_solid("a body at the wall", {body, cavity, at_wall}, {2, 3},
                [&](const Vec3& x) { return shell(x) || at_wall.holds(x); });
   // Two cavities that touch in an edge, and in a corner.
   const Box a{{1, 1, 1}, {2, 2, 2}, true}, b{{2, 2, 1}, {3, 3, 2}, true},
       c{{3, 3, 2}, {4, 4, 3}, true};
-  expect_solid("touching cavities", {body, a, b, c}, kUnits, [&](const Vec3& x) {
+  expect_solid("touching cavities", {body, a, b, c}, {2, 3}, [&](const Vec3& x) {
     return body.holds(x) && !a.holds(x) && !b.holds(x) && !c.holds(x);
   });
   // The cavity of a body that shares a wall with another one.
   const Box beside{{5, 0, 0}, {6, 5, 5}, true};
-  expect_solid("beside another", {body, cavity, beside}, kUnits,
+  expect_solid("beside another", {body, cavity, beside}, {2, 3},
                [&](const Vec3& x) { return shell(x) || beside.holds(x); });
 }
 
 TEST(Shells, FilesInsideOutAsAWhole) {
   const Box body{{0, 0, 0}, {5, 5, 5}, true}, cavity{{1, 1, 1}, {4, 4, 4}},
       beside{{5, 0, 0}, {6, 5, 5}, true};
-  expect_solid("with a cavity", {body, cavity, beside}, kUnits, [&](const Vec3& x) {
+  expect_solid("with a cavity", {body, cavity, beside}, {2, 3}, [&](const Vec3& x) {
     return (body.holds(x) && !cavity.holds(x)) || beside.holds(x);
   });
+  // Not if that would take from a solid within.
+  const Box piece{{2, 2, 2}, {3, 3, 3}};
+  expect_solid("round two bodies", {body, cavity, piece}, {},
+               [&](const Vec3& x) { return body.holds(x); });
 }
 
 // The hole is closed before orientation is judged.
