@@ -290,6 +290,7 @@ class Preparation {
            {mesh().vertices[tri[0]], mesh().vertices[tri[1]], mesh().vertices[tri[2]]}});
     }
     filter(keep);
+    if (mesh().empty() && !options_.drop_sheets) refuse_sheets(cancelled_);
     if (mesh().empty())
       throw Error(ErrorCode::InvalidInput,
                   "nothing is left once opposite coincident faces cancel; the input has no volume");
@@ -300,22 +301,15 @@ class Preparation {
   void judge_pairs() {
     if (cancelled_.empty()) return;
     const WindingNumber winding(mesh());
-    std::vector<std::uint32_t> sheets;
-    for (const auto& [source, corners] : cancelled_) {
+    std::vector<Cancelled> sheets;
+    for (const Cancelled& c : cancelled_) {
+      const auto& corners = c.corners;
       const auto outside = [&](const Vec3& p) { return winding(p).value_or(1) <= 0; };
       if (outside((corners[0] + corners[1] + corners[2]) / 3.0) ||
           std::any_of(corners.begin(), corners.end(), outside))
-        sheets.push_back(source);
+        sheets.push_back(c);
     }
-    if (!sheets.empty() && !options_.drop_sheets)
-      throw Error(
-          ErrorCode::InvalidInput,
-          count_of(sheets.size(), "face lies", "faces lie") +
-              " back to back with an opposite copy and no volume between (sheets; the first is "
-              "input triangle " +
-              std::to_string(*std::min_element(sheets.begin(), sheets.end())) +
-              "); give the sheets a thickness, or drop them with --drop-sheets: they are then "
-              "not enclosed");
+    if (!sheets.empty() && !options_.drop_sheets) refuse_sheets(sheets);
     out_.dropped_sheets = sheets.size();
     out_.cancelled_walls = cancelled_.size() - sheets.size();
     if (!sheets.empty())
@@ -324,6 +318,23 @@ class Preparation {
     if (out_.cancelled_walls != 0)
       out_.notes.push_back(count_of(out_.cancelled_walls, "triangle", "triangles") +
                            " of walls between touching bodies cancelled");
+  }
+
+  struct Cancelled {
+    std::uint32_t source;
+    std::array<Vec3, 3> corners;
+  };
+
+  [[noreturn]] static void refuse_sheets(const std::vector<Cancelled>& sheets) {
+    std::uint32_t first = kFilled;
+    for (const Cancelled& c : sheets) first = std::min(first, c.source);
+    throw Error(ErrorCode::InvalidInput,
+                count_of(sheets.size(), "face lies", "faces lie") +
+                    " back to back with an opposite copy and no volume between (sheets; the first "
+                    "is input triangle " +
+                    std::to_string(first) +
+                    "); give the sheets a thickness, or drop them with --drop-sheets: they are "
+                    "then not enclosed");
   }
 
   void fill() {
@@ -473,11 +484,6 @@ class Preparation {
 
   /// The source of triangles that fill holes; a mesh has fewer triangles.
   static constexpr std::uint32_t kFilled = ~0U;
-
-  struct Cancelled {
-    std::uint32_t source;
-    std::array<Vec3, 3> corners;
-  };
 
   PrepareOptions options_;
   Prepared out_;
