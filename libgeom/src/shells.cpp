@@ -562,11 +562,10 @@ class Judge {
     for (const auto& [d, w] : p.winding) {
       if (sign_[d] <= 0 || !p.clear(d) || w * sense_[d] < 1) continue;
       const std::vector<std::uint32_t>& others = cavities_[d];
-      if (std::all_of(others.begin(), others.end(),
-                      [&](std::uint32_t e) {
-                        const Position& q = position(e);
-                        return p.clear(e) && p.of(e) == 0 && q.clear(c) && q.of(c) == 0;
-                      }))
+      if (std::all_of(others.begin(), others.end(), [&](std::uint32_t e) {
+            const Position& q = position(e);
+            return p.clear(e) && p.of(e) == 0 && q.clear(c) && q.of(c) == 0;
+          }))
         return d;
     }
     return {};
