@@ -1065,7 +1065,7 @@ DecomposeResult decompose_closed(const Mesh& closed, const DecomposeOptions& opt
 }  // namespace
 
 double default_work(std::size_t triangles) {
-  return 15 + 1e-3 * std::max(0.0, static_cast<double>(triangles) - 1e4);
+  return 25 + 1e-3 * std::max(0.0, static_cast<double>(triangles) - 1e4);
 }
 
 double work_allowed(const DecomposeOptions& options, std::size_t triangles) {
