@@ -288,7 +288,7 @@ class Measure {
 
   static constexpr double kUnbounded = std::numeric_limits<double>::infinity();
   static constexpr std::size_t kMostNear = 24;
-  static constexpr std::uint64_t kLook = 8000;  ///< work of bounding a part
+  static constexpr std::uint64_t kLook = 2000;  ///< work of bounding a part
 
   const Mesh& body_;
   const Solid& solid_;

@@ -297,7 +297,7 @@ class Contractor {
   /// the edges round it in edges_.
   bool position(std::uint32_t a, std::uint32_t b, Vec3& best) {
     if (!link(a, b, edges_)) return false;
-    solid_.work().add(2000 + 300 * edges_.size());
+    solid_.work().add(500 + 100 * edges_.size());
     constraints_.clear();
     // Round the tip of a cone of a thousand facets, all pairs and all samples would take minutes.
     const bool few = edges_.size() <= kFewEdges;
