@@ -18,9 +18,8 @@ ReadResult read_three_mf(Source source);
 ReadResult read_collada(const Source& source);
 /// glTF, binary or not.
 ReadResult read_gltf(const Source& source, Format format);
-/// FBX.
 /// @throws Error{NotBuilt} without assimp.
-ReadResult read_with_assimp(const Source& source, Format format);
+ReadResult read_fbx(const Source& source);
 bool has_assimp();
 
 /// `mesh` holds only used vertices, all finite, no −0, and valid indices.

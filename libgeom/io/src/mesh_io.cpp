@@ -74,7 +74,7 @@ ReadResult read_as(const Source& source, Format format) {
     case Format::Gltf:
       return read_gltf(source, format);
     case Format::Fbx:
-      return read_with_assimp(source, format);
+      return read_fbx(source);
   }
   throw Error(ErrorCode::InvalidArgument, "unknown format");
 }

@@ -8,10 +8,10 @@ namespace kaboum::io {
 
 bool has_assimp() { return false; }
 
-ReadResult read_with_assimp(const Source& source, Format /*format*/) {
+ReadResult read_fbx(const Source& source) {
   throw Error(ErrorCode::NotBuilt,
               std::string(source.name) +
-                  ": reading this format needs assimp, which this build leaves out; build with "
+                  ": reading FBX needs assimp, which this build leaves out; build with "
                   "KABOUM_WITH_ASSIMP=ON or convert the file to obj, off, ply or stl");
 }
 

@@ -62,7 +62,7 @@ struct ReadResult {
 /// that closed polygon meshes stay closed. `name` appears in messages only. Time and memory are
 /// bounded by the size of the input, whatever it states about itself (assimp's formats excepted).
 ///
-/// Scenes (VRML, X3D, COLLADA, 3MF and assimp's formats): all meshes are merged, moved by their
+/// Scenes (VRML, X3D, COLLADA, 3MF, glTF and FBX): all meshes are merged, moved by their
 /// nodes' transforms, which are applied in rounded double precision; a mirroring transform reverses
 /// the faces. COLLADA: scaled to metres by its <unit>, its <up_axis> is ignored, as robot
 /// descriptions expect. FBX, 3MF and X3D: not scaled. A note says so in each case. VRML and X3D:
