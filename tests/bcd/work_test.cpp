@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
-#include <kaboum/bcd/closure.h>
 #include <kaboum/bcd/fill.h>
+#include <kaboum/geom/holes.h>
 #include <kaboum/io/convex_io.h>
 #include <tbb/global_control.h>
 
@@ -102,7 +102,7 @@ TEST(Work, FansOfThousandsAreOneBody) {
 
 TEST(Work, TheBestFoundIsGivenAndMeasuredWhenTheWorkIsDone) {
   const geom::Prepared input = geom::prepare(soup(40));
-  const Mesh mesh = close_holes(input.mesh);
+  const Mesh mesh = geom::fill_holes(input.mesh).mesh;
   for (const bool limited : {false, true}) {
     DecomposeOptions options = test::quick(mesh, 0.7);
     options.effort = Effort::Normal;

@@ -22,9 +22,10 @@ void expect_mesh_or_error(std::string_view bytes, Format format) {
       for (const std::uint32_t c : t) ASSERT_LT(c, r.mesh.vertices.size());
     for (const Vec3& p : r.mesh.vertices) ASSERT_TRUE(p.allFinite());
     // Sets have a reader of their own, which may refuse more.
-    if (format == Format::Glb || format == Format::Gltf)
+    if (format == Format::Glb || format == Format::Gltf) {
       for (const geom::ConvexBody& body : parse_convex_set(bytes, format, "sample").bodies)
         ASSERT_FALSE(body.hull.empty());
+    }
   } catch (const Error& e) {
     EXPECT_NE(e.code(), ErrorCode::Internal);
     EXPECT_TRUE(std::string_view(e.what()).starts_with("sample: ")) << e.what();
