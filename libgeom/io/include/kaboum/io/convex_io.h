@@ -39,8 +39,8 @@ geom::ConvexSet parse_convex_set(std::span<const char> bytes, Format format,
 
 /// Reads a set of bodies. They need not be convex: geom::find_not_convex tells.
 ///
-/// - GLB: one body per mesh, in the order of the scene's nodes. Files without node transforms,
-///   compression and sparse accessors are read here, others as plain meshes.
+/// - GLB and glTF: one body per place of a mesh, in the order of the scene's nodes. A file with a
+///   record and with transforms of nodes is refused: the record would not hold.
 /// - OBJ: one body per `o` or `g` statement that is followed by faces, if there are at least two.
 /// - A folder: one body per STL file in it, in natural order of the names (2 before 10).
 /// - Otherwise a plain mesh: one body per component connected through edges.
