@@ -450,6 +450,7 @@ class Contractor {
     }
     if (ring.size() != horizon.size()) return undo();
     std::vector<Vec3> around;
+    around.reserve(ring.size());
     for (const std::uint32_t v : ring) around.push_back(vertices_[v]);
     const PointTree round(around);
     HalfSpace last{Vec3::Zero(), 0};
