@@ -574,7 +574,9 @@ int check(const Options& o) {
       json["original"]["filled_triangles"] = original.filled_triangles;
     } else {
       json["original"]["inside_out_parts"] = inside_out ? inside_out->parts : 0;
-      if (inside_out)
+      if (inside_out && !inside_out->refusal.empty())
+        json["original"]["cannot_be_prepared"] = inside_out->refusal;
+      else if (inside_out)
         json["original"]["inside_out"] = {{"triangle", inside_out->triangle},
                                           {"at", to_json(inside_out->at)},
                                           {"remedy", "--prepare"}};

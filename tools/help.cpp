@@ -116,6 +116,7 @@ class WrappedHelp : public CLI::Formatter {
  private:
   static std::string names(const std::set<CLI::Option*>& options) {
     std::vector<std::string> sorted;  // the set is in the order of addresses
+    sorted.reserve(options.size());
     for (const CLI::Option* option : options) sorted.push_back(option->get_name());
     std::sort(sorted.begin(), sorted.end());
     std::string list;

@@ -18,7 +18,7 @@ std::vector<std::string> Notes::lines() const {
     std::string line = files.front();
     if (files.size() == 2) line += " and " + files.back();
     if (files.size() > 2) line += " and " + std::to_string(files.size() - 1) + " more meshes";
-    out.push_back(line + ": " + text);
+    out.push_back(line.append(": ").append(text));
   }
   return out;
 }

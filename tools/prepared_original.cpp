@@ -17,15 +17,22 @@ std::optional<InsideOut> find_inside_out(const geom::Mesh& mesh) {
   try {
     const geom::Prepared prepared = prepare_original(mesh, true, false);
     if (prepared.inside_out.empty()) return {};
-    InsideOut out{prepared.turned_components, prepared.inside_out.front(), geom::Vec3::Zero()};
+    InsideOut out;
+    out.parts = prepared.turned_components;
+    out.triangle = prepared.inside_out.front();
     for (const std::uint32_t v : mesh.triangles[out.triangle]) out.at += mesh.vertices[v] / 3;
     return out;
-  } catch (const Error&) {
-    return {};
+  } catch (const Error& error) {
+    InsideOut out;
+    out.refusal = error.what();
+    return out;
   }
 }
 
 std::string text_of(const InsideOut& found) {
+  if (!found.refusal.empty())
+    return "whether parts of it are inside out is not known, for it cannot be prepared (" +
+           found.refusal + "); such parts are not in the solid, and nothing is decided about them";
   return std::to_string(found.parts) + (found.parts == 1 ? " part of it is" : " parts of it are") +
          " inside out (the first at triangle " + std::to_string(found.triangle) + ", at " +
          point(found.at) +

@@ -340,6 +340,10 @@ class Preparation {
   void fill() {
     FilledHoles filled = fill_holes(mesh());
     if (filled.holes == 0) return;
+    const Chains chains = find_chains(mesh(), edges_);
+    std::vector<char> open(*std::max_element(out_.source.begin(), out_.source.end()) + 1, 0);
+    for (std::size_t t = 0; t < out_.source.size(); ++t)
+      if (chains.closed[chains.label[t]] == 0) open[out_.source[t]] = 1;
     out_.holes = filled.holes;
     out_.largest_hole = filled.largest;
     mesh() = std::move(filled.mesh);
@@ -352,6 +356,9 @@ class Preparation {
       keep[t] = tri[0] != tri[1] && tri[1] != tri[2] && tri[2] != tri[0] ? 1 : 0;
     }
     filter(keep);
+    was_open_.assign(out_.source.size(), 1);
+    for (std::size_t t = 0; t < out_.source.size(); ++t)
+      if (out_.source[t] != kFilled) was_open_[t] = open[out_.source[t]] != 0 ? 1 : 0;
     const auto triangles =
         static_cast<std::size_t>(std::count(out_.source.begin(), out_.source.end(), kFilled));
     out_.notes.push_back(count_of(filled.holes, "hole is", "holes are") + " filled with " +
@@ -408,7 +415,7 @@ class Preparation {
 
   /// Turns the shells that are inside out.
   void turn_shells() {
-    const Judgement judged = judge_shells(mesh(), edges_);
+    const Judgement judged = judge_shells(mesh(), edges_, was_open_);
     if (options_.keep_orientation) {
       if (!judged.inside_out.empty())
         out_.notes.push_back(count_of(judged.inside_out.size(), "component is", "components are") +
@@ -489,6 +496,7 @@ class Preparation {
   Prepared out_;
   std::vector<Cancelled> cancelled_;
   std::vector<EdgeUse> edges_;
+  std::vector<std::uint32_t> was_open_;   // per triangle, when holes are filled: before that
   std::optional<Coincident> coincident_;  // of the mesh with these edges
 };
 

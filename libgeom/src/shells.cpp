@@ -177,8 +177,8 @@ Crossing crossing(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, co
 
 class Judge {
  public:
-  Judge(const Mesh& mesh, std::span<const EdgeUse> uses)
-      : mesh_(mesh), uses_(uses), chains_(find_chains(mesh, uses)) {}
+  Judge(const Mesh& mesh, std::span<const EdgeUse> uses, std::span<const std::uint32_t> was_open)
+      : mesh_(mesh), uses_(uses), was_open_(was_open), chains_(find_chains(mesh, uses, was_open)) {}
 
   Judgement run() {
     out_.turn.assign(mesh_.triangles.size(), 0);
@@ -517,16 +517,17 @@ class Judge {
     // the inside of a triangle, and at those of its corners that are not on that shell.
     std::map<std::uint32_t, std::map<std::uint32_t, int>> at_vertex;
     const auto windings = [&](std::uint32_t v) -> const std::map<std::uint32_t, int>& {
-      const auto [at, fresh] = at_vertex.try_emplace(v);
-      if (!fresh) return at->second;
+      const auto entry = at_vertex.try_emplace(v);
+      std::map<std::uint32_t, int>& numbers = entry.first->second;
+      if (!entry.second) return numbers;
       std::set<std::uint32_t> on;
       winding_->crossings(mesh_.vertices[v], [&](std::uint32_t t, int sign) {
         const std::uint32_t d = chains_.label[t];
         if (sign == 0) on.insert(d);
-        at->second[d] += sign;
+        numbers[d] += sign;
       });
-      for (const std::uint32_t d : on) at->second[d] = kOn;
-      return at->second;
+      for (const std::uint32_t d : on) numbers[d] = kOn;
+      return numbers;
     };
     for (const auto& [d, w] : windings(mesh_.triangles[members_[c][0]][0]))
       if (d != c && w != 0 && !touched.contains(d)) out.winding.emplace(d, w);
@@ -602,6 +603,9 @@ class Judge {
     members_.assign(count, {});
     box_.assign(count, {});
     cavities_.assign(count, {});
+    std::vector<char> filled(count, 0);
+    for (std::uint32_t t = 0; t < was_open_.size(); ++t)
+      if (was_open_[t] != 0) filled[chains_.label[t]] = 1;
     for (std::uint32_t t = 0; t < chains_.label.size(); ++t) {
       members_[chains_.label[t]].push_back(t);
       for (int k = 0; k < 3; ++k) box_[chains_.label[t]].extend(corner(t, k));
@@ -613,8 +617,10 @@ class Judge {
     });
     for (const std::uint32_t c : by_size) {
       if (sign_[c] >= 0) continue;
-      if (const auto d = owner(c)) {
-        cavities_[*d].push_back(c);
+      // What was open is never a cavity: that would take from a solid that was closed before.
+      const auto around = filled[c] != 0 ? std::nullopt : owner(c);
+      if (around) {
+        cavities_[*around].push_back(c);
         ++out_.cavities;
         continue;
       }
@@ -634,12 +640,42 @@ class Judge {
       if (out_.left) continue;
       out_.left = {p.triangle, sense_[c] * p.front < 0 ? p.in_front : p.behind, !crosses_itself(c)};
     }
+    if (!out_.left) look_everywhere();
+  }
+
+  /// Whether a joined chain, as turned, still winds less than 0 times somewhere beside its
+  /// triangles. Faces of two bodies that lie in each other without common corners change the
+  /// winding number within a region, so one probe does not speak for all of it. Of large chains
+  /// only some triangles are looked at.
+  void look_everywhere() {
+    constexpr std::size_t kMost = 20'000;
+    std::vector<std::int8_t> weight(mesh_.triangles.size(), 0);
+    for (std::uint32_t c = 0; c < chains_.closed.size(); ++c) {
+      if (chains_.closed[c] == 0 || chains_.joined[c] == 0 || sign_[c] < 0) continue;
+      const std::vector<std::uint32_t>& all = members_[c];
+      for (const std::uint32_t t : all) weight[t] = static_cast<std::int8_t>(sense_[c]);
+      for (std::size_t i = 0; i < all.size(); i += 1 + all.size() / kMost) {
+        const Vec3 &p = corner(all[i], 0), &q = corner(all[i], 1), &r = corner(all[i], 2);
+        const Vec3 normal = (q - p).cross(r - p);
+        const double size = std::sqrt(normal.norm());
+        if (!(size > 0)) continue;
+        for (const double h : {1e-3, -1e-3, 1e-6, -1e-6}) {
+          const Vec3 at = (p + q + r) / 3 + normal * (h / size);
+          const std::optional<int> w = winding_->weighted(at, weight);
+          if (!w || *w >= 0) continue;
+          out_.left = {all[i], at, !crosses_itself(c)};
+          return;
+        }
+      }
+      for (const std::uint32_t t : all) weight[t] = 0;
+    }
   }
 
   static constexpr int kOn = std::numeric_limits<int>::min();
 
   const Mesh& mesh_;
   std::span<const EdgeUse> uses_;
+  std::span<const std::uint32_t> was_open_;
   Chains chains_;
   Judgement out_;
   std::shared_ptr<const Bvh> bvh_;
@@ -716,8 +752,9 @@ Chains find_chains(const Mesh& mesh, std::span<const EdgeUse> uses,
   return out;
 }
 
-Judgement judge_shells(const Mesh& mesh, std::span<const EdgeUse> uses) {
-  return Judge(mesh, uses).run();
+Judgement judge_shells(const Mesh& mesh, std::span<const EdgeUse> uses,
+                       std::span<const std::uint32_t> was_open) {
+  return Judge(mesh, uses, was_open).run();
 }
 
 }  // namespace kaboum::geom

@@ -44,7 +44,11 @@ struct Judgement {
 
 /// Divides the closed part of a mesh into shells and finds those that are inside out;
 /// docs/algorithms/preparation.md says how, and proves what follows.
+/// @param was_open  per triangle: 1 where it is of a part that was open before its holes were
+///   filled, or fills one, else 0; empty: all 0. Such parts are judged apart from the others and
+///   are never cavities.
 /// @pre welded; no opposite coincident triangles but those that fill holes.
-Judgement judge_shells(const Mesh& mesh, std::span<const EdgeUse> uses);
+Judgement judge_shells(const Mesh& mesh, std::span<const EdgeUse> uses,
+                       std::span<const std::uint32_t> was_open = {});
 
 }  // namespace kaboum::geom

@@ -50,6 +50,7 @@ double LayeredGraph::place() {
   };
   sweep([&](std::vector<std::size_t>& row, std::vector<std::size_t> Node::*side) {
     std::vector<std::pair<double, std::size_t>> wished;
+    wished.reserve(row.size());
     for (const std::size_t n : row) wished.emplace_back(mean(at, nodes[n].*side, at[n]), n);
     std::stable_sort(wished.begin(), wished.end(),
                      [](const auto& a, const auto& b) { return a.first < b.first; });

@@ -269,4 +269,59 @@ TEST(Shells, OpenPartsAreFilledFirst) {
   }
 }
 
+// A body that was closed loses nothing to a part that was open: what is filled is no cavity.
+TEST(Shells, FilledPartsAreNoCavities) {
+  const Box outer{{0, 0, 0}, {5, 5, 5}};
+  for (const bool inward : {false, true}) {
+    const Box inner{{1, 1, 1}, {3, 3, 3}, inward};
+    const Mesh open =
+        kaboum::test::without(mesh_of(inner, kUnits), [](const Vec3& p) { return p.z() == 3; });
+    PrepareOptions fill;
+    fill.holes = Holes::Fill;
+    const Prepared p = prepare(kaboum::test::merged({mesh_of(outer, kUnits), open}), fill);
+    ASSERT_TRUE(p.closed);
+    for (const Vec3& x : points({outer}))
+      EXPECT_EQ(*kaboum::test::winding_number_slow(p.mesh, x) >= 1, outer.holds(x));
+  }
+}
+
+// Walls of boxes without common grids lie in each other in part: what stays inside out is refused
+// or noted, whatever the boxes.
+TEST(Shells, WhatStaysInsideOutIsSaid) {
+  std::mt19937 random(11);
+  const auto random_box = [&] {
+    Box box;
+    for (int k = 0; k < 3; ++k) {
+      box.lo[k] = static_cast<double>(random() % 3);
+      box.hi[k] = box.lo[k] + 1 + static_cast<double>(random() % 2);
+    }
+    box.inward = random() % 2 == 0;
+    return box;
+  };
+  std::vector<std::pair<std::vector<Box>, std::uint32_t>> cases{
+      {{{{2, 1, 1}, {3, 2, 3}}, {{1, 1, 1}, {3, 2, 2}, true}, {{2, 1, 1}, {3, 2, 2}}}, 1}};
+  for (int i = 0; i < 300; ++i)
+    cases.push_back(
+        {{random_box(), random_box(), random_box()}, static_cast<std::uint32_t>(random() % 8)});
+  for (const auto& [boxes, diagonals] : cases) {
+    std::vector<Mesh> parts;
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+      parts.push_back(mesh_of(boxes[i], {}, (diagonals >> i & 1U) != 0));
+    Prepared p;
+    try {
+      p = prepare(kaboum::test::merged(parts));
+    } catch (const kaboum::Error&) {
+      continue;
+    }
+    const bool noted = std::any_of(p.notes.begin(), p.notes.end(), [](const std::string& note) {
+      return note.find("counts as outside") != std::string::npos;
+    });
+    for (const Vec3& x : points(boxes)) {
+      const auto w = kaboum::test::winding_number_slow(p.mesh, x);
+      ASSERT_TRUE(w.has_value());
+      EXPECT_TRUE(*w >= 0 || noted) << *w << " at " << x.transpose();
+    }
+  }
+}
+
 }  // namespace

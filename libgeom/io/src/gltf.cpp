@@ -103,9 +103,9 @@ class SceneReader {
       const std::vector<double> m = matrix.numbers(16);  // column by column
       if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
         matrix.fail("its last row is not 0 0 0 1; apply the transform before export");
-      for (int column = 0; column < 3; ++column)
-        for (int row = 0; row < 3; ++row)
-          placement.linear(row, column) = m[static_cast<std::size_t>(4 * column + row)];
+      for (std::size_t column = 0; column < 3; ++column)
+        for (std::size_t row = 0; row < 3; ++row)
+          placement.linear(static_cast<int>(row), static_cast<int>(column)) = m[4 * column + row];
       placement.translation = {m[12], m[13], m[14]};
       return placement;
     }
