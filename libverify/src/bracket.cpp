@@ -231,6 +231,7 @@ class Farthest {
 Bracket bracket_faces(const Scene& scene, const std::vector<std::uint32_t>& faces, bool to_solid,
                       const Target& target, const BracketEffort& effort) {
   std::vector<Part> parts;
+  parts.reserve(faces.size());
   for (const std::uint32_t f : faces)
     parts.push_back({{scene.corner(f, 0), scene.corner(f, 1), scene.corner(f, 2)},
                      f,
