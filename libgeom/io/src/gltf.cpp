@@ -13,7 +13,7 @@
 namespace kaboum::io {
 namespace {
 
-constexpr int kMaxNodeDepth = 1000;
+constexpr int kMaxNodeDepth = 256;
 constexpr const char* kQuantization = "KHR_mesh_quantization";
 constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 constexpr const char* kDraco = "KHR_draco_mesh_compression";
