@@ -4,7 +4,7 @@
 #include <regex>
 #include <set>
 
-#include "layered_drawing.h"
+#include "plan/layered_drawing.h"
 #include "plan_test.h"
 
 namespace kaboum::plan::test {

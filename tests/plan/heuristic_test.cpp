@@ -4,12 +4,12 @@
 #include <map>
 #include <random>
 
-#include "invariants.h"
-#include "landmarks.h"
 #include "plan_test.h"
-#include "relaxed_plan.h"
-#include "search.h"
-#include "state_store.h"
+#include "search/invariants.h"
+#include "search/landmarks.h"
+#include "search/relaxed_plan.h"
+#include "search/search.h"
+#include "search/state_store.h"
 
 namespace kaboum::plan::test {
 namespace {

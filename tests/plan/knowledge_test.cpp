@@ -2,9 +2,9 @@
 #include <random>
 #include <set>
 
-#include "knowledge.h"
 #include "plan_test.h"
-#include "task.h"
+#include "task/knowledge.h"
+#include "task/task.h"
 
 namespace kaboum::plan::test {
 namespace {

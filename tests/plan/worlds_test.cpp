@@ -5,7 +5,7 @@
 #include "plan_test.h"
 #include "possible_worlds.h"
 #include "random_model.h"
-#include "task.h"
+#include "task/task.h"
 
 namespace kaboum::plan::test {
 namespace {

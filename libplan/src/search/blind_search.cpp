@@ -1,0 +1,211 @@
+// Depth-first, breadth-first and iterative-deepening search, as the thesis compares them in
+// Tables 6.2, 6.4 and 6.7.
+#include <algorithm>
+
+#include "search/search.h"
+#include "search/state_store.h"
+
+namespace kaboum::plan {
+
+namespace {
+
+void count_states(const StateStore& store, Statistics& s) {
+  if (store.size() < s.states) return;
+  s.states = store.size();
+  s.state_bytes = store.bytes();
+}
+
+/// Successors of one state, made together so that the table's lines are fetched ahead.
+struct Successors {
+  std::vector<Step> steps;
+  std::vector<Word> words;
+  std::vector<std::uint64_t> hashes;
+
+  void make(const SearchInput& in, const Word* state, Knowledge& scratch, const StateStore& store) {
+    in.task.expand(state, steps);
+    const Index n = in.task.layout().words();
+    words.clear();
+    hashes.clear();
+    std::size_t kept = 0;
+    for (const Step step : steps) {
+      if (in.task.is_outcome(step) && !in.target.allowed(state, step)) continue;
+      scratch.assign(state);
+      if (!in.task.apply(step, scratch)) continue;
+      words.insert(words.end(), scratch.words(), scratch.words() + n);
+      hashes.push_back(scratch.hash());
+      store.prefetch(scratch.hash());
+      steps[kept++] = step;
+    }
+    steps.resize(kept);
+    ++in.statistics.expanded;
+    in.statistics.generated += kept;
+  }
+};
+
+}  // namespace
+
+Found breadth_first(const SearchInput& in) {
+  const Index n = in.task.layout().words();
+  StateStore store(n);
+  Knowledge scratch(in.task.layout());
+  store.insert(in.start.data(), Knowledge::hash_of(in.start.data(), n), kNone, 0);
+  Found found;
+  if (in.target.reached(in.start.data())) {
+    found.status = Status::Solved;
+    return found;
+  }
+  Successors next;
+  std::size_t layer_end = 1;
+  std::uint64_t depth = 0;
+  for (std::size_t i = 0; i < store.size(); ++i) {
+    if (i == layer_end) {
+      layer_end = store.size();
+      in.statistics.depth = std::max(in.statistics.depth, ++depth);
+    }
+    if (in.limits.exceeded(store.bytes())) {
+      count_states(store, in.statistics);
+      return found;
+    }
+    next.make(in, store[static_cast<Index>(i)], scratch, store);
+    for (std::size_t k = 0; k < next.steps.size(); ++k) {
+      const Word* state = next.words.data() + k * n;
+      const auto [number, fresh] =
+          store.insert(state, next.hashes[k], static_cast<Index>(i), next.steps[k]);
+      if (!fresh || !in.target.reached(state)) continue;
+      in.statistics.depth = std::max(in.statistics.depth, depth + 1);
+      count_states(store, in.statistics);
+      found.status = Status::Solved;
+      found.steps = store.path(number);
+      return found;
+    }
+  }
+  count_states(store, in.statistics);
+  found.status = Status::Unsolvable;
+  return found;
+}
+
+Found depth_first(const SearchInput& in) {
+  const Index n = in.task.layout().words();
+  StateStore store(n);
+  Knowledge scratch(in.task.layout());
+  Found found;
+  struct Frame {
+    Index state;
+    std::vector<Step> steps;
+    std::size_t next;
+  };
+  std::vector<Frame> stack;
+  std::size_t top = 0;  // frames are kept for their capacity
+  const auto push = [&](Index state) {
+    if (stack.size() == top) stack.emplace_back();
+    Frame& f = stack[top++];
+    f.state = state;
+    f.next = 0;
+    in.task.expand(store[state], f.steps);
+    ++in.statistics.expanded;
+    in.statistics.depth = std::max<std::uint64_t>(in.statistics.depth, top);
+  };
+  store.insert(in.start.data(), Knowledge::hash_of(in.start.data(), n), kNone, 0);
+  if (in.target.reached(in.start.data())) {
+    found.status = Status::Solved;
+    return found;
+  }
+  push(0);
+  while (top > 0) {
+    if (in.limits.exceeded(store.bytes())) {
+      count_states(store, in.statistics);
+      return found;
+    }
+    Frame& f = stack[top - 1];
+    if (f.next == f.steps.size()) {
+      --top;
+      continue;
+    }
+    const Step step = f.steps[f.next++];
+    const Word* state = store[f.state];
+    if (in.task.is_outcome(step) && !in.target.allowed(state, step)) continue;
+    scratch.assign(state);
+    if (!in.task.apply(step, scratch)) continue;
+    ++in.statistics.generated;
+    const auto [number, fresh] = store.insert(scratch.words(), scratch.hash(), f.state, step);
+    if (!fresh) continue;
+    if (in.target.reached(scratch.words())) {
+      count_states(store, in.statistics);
+      found.status = Status::Solved;
+      found.steps = store.path(number);
+      return found;
+    }
+    push(number);
+  }
+  count_states(store, in.statistics);
+  found.status = Status::Unsolvable;
+  return found;
+}
+
+/// Depth-first within a growing depth limit. A state is searched again only with more depth left
+/// than ever before, so each round is at most as long as a breadth-first search of the same depth
+/// and the plan has the fewest steps. A round that reaches no new state proves that there is none.
+Found iterative_deepening(const SearchInput& in) {
+  const Index n = in.task.layout().words();
+  StateStore store(n);  // link.step: most depth left with which it was searched
+  Knowledge state(in.task.layout());
+  state.keep_log(true);
+  Found found;
+  store.insert(in.start.data(), Knowledge::hash_of(in.start.data(), n), 0, 0);
+  if (in.target.reached(in.start.data())) {
+    found.status = Status::Solved;
+    return found;
+  }
+  std::vector<std::vector<Step>> steps;
+  std::vector<Step> path;
+  enum class Round { Solved, Limit, Failed };
+  const auto descend = [&](const auto& self, Index left) -> Round {
+    const std::size_t depth = path.size();
+    if (in.limits.exceeded(store.bytes())) return Round::Limit;
+    in.task.expand(state.words(), steps[depth]);
+    ++in.statistics.expanded;
+    for (std::size_t i = 0; i < steps[depth].size(); ++i) {
+      const Step step = steps[depth][i];
+      if (in.task.is_outcome(step) && !in.target.allowed(state.words(), step)) continue;
+      const std::size_t mark = state.mark();
+      if (in.task.apply(step, state)) {
+        ++in.statistics.generated;
+        const auto [number, fresh] = store.insert(state.words(), state.hash(), 0, left - 1);
+        path.push_back(step);
+        if (fresh && in.target.reached(state.words())) return Round::Solved;
+        if (left > 1 && (fresh || store.link(number).step < left - 1)) {
+          store.link(number).step = left - 1;
+          const Round r = self(self, left - 1);
+          if (r != Round::Failed) return r;
+        }
+        path.pop_back();
+      }
+      state.undo(mark);
+    }
+    return Round::Failed;
+  };
+  constexpr Index kDeepest = 10'000;  // the recursion's depth
+  for (Index limit = 1; limit <= kDeepest; ++limit) {
+    in.statistics.depth = std::max<std::uint64_t>(in.statistics.depth, limit);
+    steps.resize(limit);
+    path.clear();
+    state.assign(in.start.data());
+    const std::size_t before = store.size();
+    store.link(0).step = limit;
+    const Round r = descend(descend, limit);
+    count_states(store, in.statistics);
+    if (r == Round::Solved) {
+      found.status = Status::Solved;
+      found.steps = path;
+      return found;
+    }
+    if (r == Round::Limit) return found;
+    if (store.size() == before) {
+      found.status = Status::Unsolvable;
+      return found;
+    }
+  }
+  return found;
+}
+
+}  // namespace kaboum::plan

@@ -1,0 +1,25 @@
+#include "search/invariants.h"
+#include "search/landmarks.h"
+#include "search/relaxation.h"
+#include "search/relaxed_plan.h"
+#include "search/search.h"
+
+namespace kaboum::plan {
+
+Heuristics::Heuristics() = default;
+Heuristics::~Heuristics() = default;
+
+RelaxedPlan& Heuristics::relaxed(Task& task, Limits& limits) {
+  if (!relaxation) relaxation = std::make_unique<Relaxation>(task, limits);
+  if (!relaxed_plan) relaxed_plan = std::make_unique<RelaxedPlan>(task, *relaxation);
+  return *relaxed_plan;
+}
+
+LandmarkHeuristic& Heuristics::landmark(Task& task, Limits& limits) {
+  if (!relaxation) relaxation = std::make_unique<Relaxation>(task, limits);
+  if (!invariants) invariants = std::make_unique<Invariants>(task, *relaxation, limits);
+  if (!landmarks) landmarks = std::make_unique<LandmarkHeuristic>(task, *relaxation, *invariants);
+  return *landmarks;
+}
+
+}  // namespace kaboum::plan

@@ -1,0 +1,326 @@
+#include "search/landmarks.h"
+
+#include <algorithm>
+#include <bit>
+#include <map>
+#include <set>
+
+namespace kaboum::plan {
+namespace {
+
+constexpr std::size_t kLargestOption = 4;  // disjunctive landmarks of more facts are left out
+constexpr std::size_t kMaximumEvents = 1500;
+
+std::vector<FactId> intersection(const std::vector<FactId>& a, const std::vector<FactId>& b) {
+  std::vector<FactId> r;
+  std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(r));
+  return r;
+}
+
+std::vector<FactId> united(const std::vector<FactId>& a, const std::vector<FactId>& b) {
+  std::vector<FactId> r;
+  std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(r));
+  return r;
+}
+
+bool disjoint(const std::vector<std::uint64_t>& a, const std::vector<std::uint64_t>& b) {
+  for (std::size_t i = 0; i < a.size(); ++i)
+    if ((a[i] & b[i]) != 0) return false;
+  return true;
+}
+
+}  // namespace
+
+LandmarkHeuristic::LandmarkHeuristic(Task& task, const Relaxation& relaxation,
+                                     const Invariants& invariants)
+    : task_(task), relaxation_(relaxation), invariants_(invariants) {
+  number_of_.assign(task.action_count(), kNone);
+  for (const Step a : relaxation.actions()) {
+    number_of_[a] = static_cast<Index>(costs_.size());
+    costs_.push_back(task.cost(a));
+  }
+  // Outcomes of sensing are steps as well, free ones.
+  for (const Relaxation::Operator& o : relaxation.operators())
+    if (task.is_outcome(o.step) && number_of_outcome_.try_emplace(o.step, costs_.size()).second)
+      costs_.push_back(0);
+  words_ = (costs_.size() + 63) / 64;
+  achievers_.resize(relaxation.facts());
+  common_.resize(relaxation.facts());
+  common_ready_.assign(relaxation.facts(), 0);
+  infos_.resize(relaxation.facts());
+  const auto& operators = relaxation.operators();
+  for (Index o = 0; o < operators.size(); ++o)
+    for (const FactId f : operators[o].adds) achievers_[f].push_back(o);
+  // Facts that disjunctive knowledge can bring about without a step are no events.
+  const auto opaque = [&](FactId f) {
+    const Fluent& fluent = task.layout().fluents()[relaxation.fluent_of(f)];
+    return !fluent.groups.empty() || fluent.exclusions != kNone;
+  };
+  opaque_.resize(relaxation.facts());
+  for (FactId f = 0; f < relaxation.facts(); ++f) opaque_[f] = opaque(f) ? 1 : 0;
+  for (const FactId f : relaxation.necessary_facts(task.goal()))
+    if (!opaque_[f]) goals_.push_back(f);
+  goals_in_group_.resize(invariants.groups());
+  for (Index g = 0; g < goals_.size(); ++g)
+    for (const Index group : invariants.groups_of(goals_[g])) goals_in_group_[group].push_back(g);
+}
+
+/// Facts that every achiever of `f` needs.
+std::vector<FactId> LandmarkHeuristic::common_conditions(FactId f) {
+  if (!common_ready_[f]) {
+    common_ready_[f] = 1;
+    bool first = true;
+    for (const Index o : achievers_[f]) {
+      const auto& conditions = relaxation_.operators()[o].preconditions;
+      common_[f] = first ? conditions : intersection(common_[f], conditions);
+      first = false;
+    }
+  }
+  return common_[f];
+}
+
+LandmarkHeuristic::FactInfo& LandmarkHeuristic::info(FactId f) {
+  FactInfo& info = infos_[f];
+  if (info.ready) return info;
+  info.ready = true;
+  info.conditions = common_conditions(f);
+  std::map<std::vector<FactId>, std::vector<Index>> by_guards;
+  for (const Index o : achievers_[f]) {
+    // A condition that itself needs f first cannot lead to f's first achievement, unless it holds
+    // now.
+    std::vector<FactId> guards;
+    for (const FactId c : relaxation_.operators()[o].preconditions) {
+      if (c == f || opaque_[c]) continue;
+      common_conditions(c);
+      if (std::binary_search(common_[c].begin(), common_[c].end(), f)) guards.push_back(c);
+    }
+    by_guards[guards].push_back(o);
+  }
+  for (const auto& [guards, operators] : by_guards) {
+    Bucket b;
+    b.guards = guards;
+    b.actions.assign(words_, 0);
+    bool first = true;
+    std::map<std::pair<bool, Index>, std::vector<FactId>> options;
+    for (const Index o : operators) {
+      const Relaxation::Operator& op = relaxation_.operators()[o];
+      const Index number =
+          task_.is_outcome(op.step) ? number_of_outcome_.at(op.step) : number_of_[op.step];
+      b.actions[number / 64] |= std::uint64_t{1} << (number % 64);
+      b.conditions = first ? op.preconditions : intersection(b.conditions, op.preconditions);
+      std::map<std::pair<bool, Index>, std::vector<FactId>> mine;
+      for (const FactId c : op.preconditions) {
+        const Fluent& fluent = task_.layout().fluents()[relaxation_.fluent_of(c)];
+        if (!opaque_[c]) mine[{fluent.function, fluent.symbol}].push_back(c);
+      }
+      if (first) {
+        options = std::move(mine);
+      } else {
+        std::erase_if(options, [&](const auto& e) { return !mine.contains(e.first); });
+        for (auto& [symbol, facts] : options) facts = united(facts, mine[symbol]);
+      }
+      std::erase_if(options, [](const auto& e) { return e.second.size() > kLargestOption; });
+      first = false;
+    }
+    for (auto& [symbol, facts] : options)
+      if (facts.size() > 1) b.options.push_back(std::move(facts));
+    info.buckets.push_back(std::move(b));
+  }
+  std::set<Index> excludes;
+  for (const Index group : invariants_.groups_of(f))
+    for (const Index g : goals_in_group_[group]) excludes.insert(g);
+  for (Index g = 0; g < goals_.size(); ++g)
+    if (relaxation_.fluent_of(goals_[g]) == relaxation_.fluent_of(f)) excludes.insert(g);
+  for (const Index g : excludes)
+    if (goals_[g] != f) info.excludes.push_back(g);
+  return info;
+}
+
+Index LandmarkHeuristic::first_event(std::vector<FactId> facts, const Word* state) {
+  const auto [it, fresh] = first_.emplace(facts, static_cast<Index>(events_.size()));
+  if (!fresh) return it->second;
+  Event e;
+  e.facts = std::move(facts);
+  e.actions.assign(words_, 0);
+  bool first = true;
+  bool one_bucket = true;
+  for (const FactId f : e.facts)
+    for (const Bucket& b : info(f).buckets) {
+      if (!std::all_of(b.guards.begin(), b.guards.end(),
+                       [&](FactId g) { return relaxation_.holds(g, state); }))
+        continue;
+      for (std::size_t i = 0; i < words_; ++i) e.actions[i] |= b.actions[i];
+      e.conditions = first ? b.conditions : intersection(e.conditions, b.conditions);
+      if (first) {
+        e.options = b.options;
+      } else {
+        one_bucket = false;
+      }
+      first = false;
+    }
+  if (!one_bucket && e.facts.size() == 1) {
+    // Options of several buckets: unite those of the same symbol.
+    std::vector<std::vector<FactId>> merged;
+    for (const auto& option : e.options) {
+      const Fluent& symbol = task_.layout().fluents()[relaxation_.fluent_of(option[0])];
+      std::vector<FactId> all = option;
+      bool everywhere = true;
+      for (const Bucket& b : info(e.facts[0]).buckets) {
+        if (!std::all_of(b.guards.begin(), b.guards.end(),
+                         [&](FactId g) { return relaxation_.holds(g, state); }))
+          continue;
+        const auto same = std::find_if(b.options.begin(), b.options.end(), [&](const auto& o) {
+          const Fluent& f = task_.layout().fluents()[relaxation_.fluent_of(o[0])];
+          return f.function == symbol.function && f.symbol == symbol.symbol;
+        });
+        everywhere = everywhere && same != b.options.end();
+        if (everywhere) all = united(all, *same);
+      }
+      if (everywhere && all.size() <= kLargestOption) merged.push_back(std::move(all));
+    }
+    e.options = std::move(merged);
+  } else if (!one_bucket) {
+    e.options.clear();
+  }
+  if (first) dead_ = true;  // nothing can achieve it first
+  events_.push_back(std::move(e));
+  return static_cast<Index>(events_.size() - 1);
+}
+
+Index LandmarkHeuristic::last_event(Index goal) {
+  if (last_[goal] != kNone) return last_[goal];
+  last_[goal] = static_cast<Index>(events_.size());
+  const FactInfo& i = info(goals_[goal]);
+  Event e;
+  e.last = true;
+  e.facts = {goals_[goal]};
+  e.actions.assign(words_, 0);
+  e.conditions = i.conditions;
+  for (const Bucket& b : i.buckets)
+    for (std::size_t w = 0; w < words_; ++w) e.actions[w] |= b.actions[w];
+  if (i.buckets.size() == 1) e.options = i.buckets[0].options;
+  if (i.buckets.empty()) dead_ = true;
+  events_.push_back(std::move(e));
+  return last_[goal];
+}
+
+void LandmarkHeuristic::order(Index before, Index after, bool strict) {
+  if (before != after || strict) orders_.push_back({before, after, strict});
+}
+
+/// Draws the conclusions of one event. @return false if there are too many events to go on.
+bool LandmarkHeuristic::relate(Index event, const Word* state) {
+  if (events_.size() > kMaximumEvents) return false;
+  const Event e = events_[event];
+  for (const FactId p : e.conditions) {
+    if (opaque_[p]) continue;
+    if (!relaxation_.holds(p, state)) order(first_event({p}, state), event, true);
+    // p holds just before the event: goals that exclude it are achieved (again) with it or later.
+    for (const Index g : info(p).excludes) order(event, last_event(g), false);
+  }
+  for (const auto& option : e.options) {
+    if (std::any_of(option.begin(), option.end(),
+                    [&](FactId f) { return relaxation_.holds(f, state); }))
+      continue;
+    order(first_event(option, state), event, true);
+  }
+  if (e.facts.size() == 1) {
+    // The fact holds just after the event: excluded goals are achieved strictly later.
+    for (const Index g : info(e.facts[0]).excludes) order(event, last_event(g), true);
+    if (!e.last)
+      for (Index g = 0; g < goals_.size(); ++g)
+        if (goals_[g] == e.facts[0]) order(event, last_event(g), false);
+  }
+  return true;
+}
+
+std::uint64_t LandmarkHeuristic::bound(bool& contradiction) {
+  const std::size_t n = events_.size();
+  const std::size_t words = (n + 63) / 64;
+  // Transitive closure of "not after", then "before" through any strict order.
+  std::vector<Bits> not_after(n, Bits(words, 0)), before(n, Bits(words, 0));
+  const auto set = [](Bits& b, std::size_t i) { b[i / 64] |= std::uint64_t{1} << (i % 64); };
+  const auto get = [](const Bits& b, std::size_t i) { return ((b[i / 64] >> (i % 64)) & 1U) != 0; };
+  for (std::size_t i = 0; i < n; ++i) set(not_after[i], i);
+  for (const Order& o : orders_) set(not_after[o.before], o.after);
+  for (std::size_t k = 0; k < n; ++k)
+    for (std::size_t i = 0; i < n; ++i)
+      if (get(not_after[i], k))
+        for (std::size_t w = 0; w < words; ++w) not_after[i][w] |= not_after[k][w];
+  for (const Order& o : orders_) {
+    if (!o.strict) continue;
+    for (std::size_t i = 0; i < n; ++i)
+      if (get(not_after[i], o.before))
+        for (std::size_t w = 0; w < words; ++w) before[i][w] |= not_after[o.after][w];
+  }
+  contradiction = false;
+  for (std::size_t i = 0; i < n; ++i) contradiction |= get(before[i], i);
+  if (contradiction) return 0;
+
+  struct Size {
+    std::size_t event;
+    int actions;
+    std::uint64_t cost;
+  };
+  std::vector<Size> sizes;
+  std::vector<std::uint32_t> uses(costs_.size(), 0);
+  const auto each_action = [&](const Event& e, const auto& visit) {
+    for (std::size_t w = 0; w < words_; ++w)
+      for (std::uint64_t left = e.actions[w]; left != 0; left &= left - 1)
+        visit(w * 64 + static_cast<std::size_t>(std::countr_zero(left)));
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    Size s{i, 0, ~std::uint64_t{0}};
+    each_action(events_[i], [&](std::size_t a) {
+      ++s.actions;
+      ++uses[a];
+      s.cost = std::min(s.cost, static_cast<std::uint64_t>(costs_[a]));
+    });
+    sizes.push_back(s);
+  }
+  // Uniform cost partitioning: an action's cost is shared by the events it could be.
+  constexpr std::uint64_t kUnit = 720720;  // divisible by 1 ... 16
+  std::uint64_t shared = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    std::uint64_t least = ~std::uint64_t{0};
+    each_action(events_[i], [&](std::size_t a) {
+      least = std::min(least, static_cast<std::uint64_t>(costs_[a]) * kUnit / uses[a]);
+    });
+    if (sizes[i].actions > 0) shared += least;
+  }
+  // Events that pairwise cannot be the same occurrence, greedily: those of few actions first.
+  std::stable_sort(sizes.begin(), sizes.end(), [](const Size& a, const Size& b) {
+    return std::pair(a.cost == 0, a.actions) < std::pair(b.cost == 0, b.actions);
+  });
+  std::vector<std::size_t> chosen;
+  std::uint64_t distinct = 0;
+  for (const Size& s : sizes) {
+    const bool fits = std::all_of(chosen.begin(), chosen.end(), [&](std::size_t c) {
+      return get(before[c], s.event) || get(before[s.event], c) ||
+             disjoint(events_[c].actions, events_[s.event].actions);
+    });
+    if (!fits) continue;
+    chosen.push_back(s.event);
+    distinct += s.cost;
+  }
+  return std::max(distinct, (shared + kUnit - 1) / kUnit);
+}
+
+std::optional<std::uint64_t> LandmarkHeuristic::evaluate(const Word* state) {
+  events_.clear();
+  first_.clear();
+  orders_.clear();
+  last_.assign(goals_.size(), kNone);
+  dead_ = false;
+  for (Index g = 0; g < goals_.size(); ++g)
+    if (!relaxation_.holds(goals_[g], state)) last_event(g);
+  for (Index i = 0; i < events_.size() && !dead_; ++i)
+    if (!relate(i, state)) break;
+  if (dead_) return std::nullopt;
+  bool contradiction = false;
+  const std::uint64_t h = bound(contradiction);
+  if (contradiction) return std::nullopt;
+  return h;
+}
+
+}  // namespace kaboum::plan

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "search/invariants.h"
+#include "search/relaxation.h"
+
+namespace kaboum::plan {
+
+/// Admissible, domain-independent estimate from landmark events.
+///
+/// An event is an occurrence of some action that every plan from the state must contain: the first
+/// time a landmark becomes true, or the last time a goal does. Backward chaining finds events and
+/// orders them: a precondition comes before; what excludes a goal comes before the goal's last
+/// achievement. When the same actions must happen both before and after something else (a cycle
+/// among landmarks, [buechner2021cyclic]) the orders make two events of them, which cost twice. The
+/// estimate is the larger of
+///   - the cost of events that pairwise cannot be one and the same occurrence, and
+///   - uniform cost partitioning over all events ([karpas2009landmarks]).
+/// Proof of admissibility: docs/planning/search.md.
+class LandmarkHeuristic {
+ public:
+  LandmarkHeuristic(Task& task, const Relaxation& relaxation, const Invariants& invariants);
+
+  /// Lower bound on the cost to the goal; nullopt: the goal cannot be reached.
+  std::optional<std::uint64_t> evaluate(const Word* state);
+
+  /// Events of the last evaluation, whose time grows with their cube.
+  [[nodiscard]] std::size_t events() const { return events_.size(); }
+
+ private:
+  using Bits = std::vector<std::uint64_t>;
+
+  /// Achievers of a fact that can only be its first achievers while all of `guards` hold.
+  struct Bucket {
+    std::vector<FactId> guards;
+    Bits actions;
+    std::vector<FactId> conditions;  ///< common to all
+    std::vector<std::vector<FactId>>
+        options;  ///< every achiever has a condition among each of these
+  };
+  struct FactInfo {
+    bool ready = false;
+    std::vector<Bucket> buckets;
+    std::vector<FactId> conditions;  ///< common to all achievers
+    std::vector<Index> excludes;     ///< goals that exclude this fact
+  };
+  struct Event {
+    bool last = false;  ///< last achievement of a goal; else first of `facts`
+    std::vector<FactId> facts;
+    Bits actions;
+    std::vector<FactId> conditions;
+    std::vector<std::vector<FactId>> options;
+  };
+
+  FactInfo& info(FactId f);
+  std::vector<FactId> common_conditions(FactId f);
+  Index first_event(std::vector<FactId> facts, const Word* state);
+  Index last_event(Index goal);
+  void order(Index before, Index after, bool strict);
+  bool relate(Index event, const Word* state);
+  [[nodiscard]] std::uint64_t bound(bool& contradiction);
+
+  Task& task_;
+  const Relaxation& relaxation_;
+  const Invariants& invariants_;
+  std::size_t words_ = 0;            ///< of a set of actions
+  std::vector<std::int64_t> costs_;  ///< by action number
+  std::vector<Index> number_of_;     ///< by step
+  std::map<Step, Index> number_of_outcome_;
+  std::vector<std::vector<Index>> achievers_;  ///< by fact
+  std::vector<std::vector<FactId>> common_;    ///< by fact, once common_ready_
+  std::vector<char> common_ready_;
+  std::vector<FactInfo> infos_;
+  std::vector<char> opaque_;  ///< by fact
+  std::vector<FactId> goals_;
+  std::vector<std::vector<Index>> goals_in_group_;
+
+  // of the state at hand
+  std::vector<Event> events_;
+  std::map<std::vector<FactId>, Index> first_;
+  std::vector<Index> last_;
+  struct Order {
+    Index before, after;
+    bool strict;
+  };
+  std::vector<Order> orders_;
+  bool dead_ = false;
+};
+
+}  // namespace kaboum::plan

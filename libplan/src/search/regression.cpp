@@ -1,0 +1,208 @@
+#include "search/regression.h"
+
+#include <kaboum/geom/error.h>
+
+#include <algorithm>
+#include <set>
+
+namespace kaboum::plan {
+
+namespace {
+
+using Kind = FormulaPool::Kind;
+
+bool is_connective(Kind k) {
+  return k == Kind::And || k == Kind::Or || k == Kind::Xor || k == Kind::Not;
+}
+
+/// Whether a formula reads a field that `touched` covers.
+bool leaf_touched(const FormulaPool& pool, const Layout& layout, Formula f,
+                  const std::vector<Word>& touched) {
+  const FormulaPool::Node& n = pool.node(f);
+  if (n.kind == Kind::Bits) return (touched[n.a] & pool.bits_mask(n)) != 0;
+  if (n.kind == Kind::True || n.kind == Kind::False || n.kind == Kind::External) return false;
+  const Fluent& fluent = layout.fluents()[n.a];
+  if ((touched[fluent.word] & fluent.mask) != 0) return true;
+  for (Index i = 0; i < fluent.exclusion_words; ++i)
+    if (touched[fluent.exclusions + i] != 0) return true;
+  return false;
+}
+
+}  // namespace
+
+bool Regression::overlaps(Formula f) const {
+  const FormulaPool& pool = task_.pool();
+  if (is_connective(pool.node(f).kind))
+    return std::any_of(pool.begin(f), pool.end(f), [&](Formula c) { return overlaps(c); });
+  return leaf_touched(pool, task_.layout(), f, touched_);
+}
+
+void Regression::require_as_before(const Fluent& fluent) {
+  FormulaPool& pool = task_.pool();
+  required_.push_back(pool.bits(fluent.word, fluent.mask, before_[fluent.word] & fluent.mask));
+  for (Index i = 0; i < fluent.exclusion_words; ++i)
+    required_.push_back(pool.bits(fluent.exclusions + i, ~Word{0}, before_[fluent.exclusions + i]));
+}
+
+/// The fluent's content after the step is not (always) what it was; if `plain`, it does not depend
+/// on what it was either. Knowledge in Kx groups spreads: all fluents tied to it count as touched.
+void Regression::touch(Index fluent, bool plain) {
+  const Layout& layout = task_.layout();
+  for (const Index tied : tied_to(fluent)) {
+    const Fluent& f = layout.fluents()[tied];
+    touched_[f.word] |= f.mask;
+    for (Index i = 0; i < f.exclusion_words; ++i) touched_[f.exclusions + i] = ~Word{0};
+    const bool depends = !plain || !f.groups.empty();
+    if (depends) require_as_before(f);
+    for (const auto& [g, bit] : f.groups) {
+      touched_[layout.groups()[g].word] = ~Word{0};
+      require_word(layout.groups()[g].word);
+    }
+  }
+}
+
+void Regression::require_word(Index word) {
+  required_.push_back(task_.pool().bits(word, ~Word{0}, before_[word]));
+}
+
+/// The fluent, and all that Kx entries tie to it, whether they hold now or not.
+std::vector<Index> Regression::tied_to(Index fluent) const {
+  const Layout& layout = task_.layout();
+  std::vector<Index> all = {fluent};
+  std::set<Index> seen = {fluent};
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (const auto& [g, bit] : layout.fluents()[all[i]].groups)
+      for (const Index m : layout.groups()[g].members)
+        if (seen.insert(m).second) all.push_back(m);
+  return all;
+}
+
+/// Fluents that `f` reads: their content before the step is required to be what it was.
+void Regression::require_read(Formula f) {
+  FormulaPool& pool = task_.pool();
+  const Kind kind = pool.node(f).kind;
+  if (is_connective(kind)) {
+    const std::vector<Formula> children(pool.begin(f), pool.end(f));
+    for (const Formula c : children) require_read(c);
+  } else if (kind == Kind::Bits) {
+    const FormulaPool::Node n = pool.node(f);
+    required_.push_back(pool.bits(n.a, pool.bits_mask(n), before_[n.a] & pool.bits_mask(n)));
+  } else if (kind != Kind::True && kind != Kind::False && kind != Kind::External) {
+    for (const Index fluent : tied_to(pool.node(f).a)) {
+      const Fluent& read = task_.layout().fluents()[fluent];
+      require_as_before(read);
+      for (const auto& [g, bit] : read.groups) require_word(task_.layout().groups()[g].word);
+    }
+  }
+}
+
+Formula Regression::rewrite(Formula f) {
+  FormulaPool& pool = task_.pool();
+  const FormulaPool::Node n = pool.node(f);
+  if (is_connective(n.kind)) {
+    std::vector<Formula> children(pool.begin(f), pool.end(f));
+    for (Formula& c : children) c = rewrite(c);
+    switch (n.kind) {
+      case Kind::And:
+        return pool.all(children);
+      case Kind::Or:
+        return pool.any(children);
+      case Kind::Xor:
+        return pool.one(children);
+      default:
+        return pool.negate(children[0]);
+    }
+  }
+  if (!leaf_touched(pool, task_.layout(), f, touched_)) return f;
+  if (n.kind == Kind::Bits) {
+    const Word mask = pool.bits_mask(n);
+    const Word value = pool.bits_value(n);
+    const Word set = mask & touched_[n.a];
+    if (((after_.words()[n.a] ^ value) & set) != 0) return kFalse;
+    return pool.bits(n.a, mask & ~set, value & ~set);
+  }
+  const Truth t = pool.evaluate(f, after_.words());
+  if (t == Truth::Open) {
+    open_ = true;
+    return f;
+  }
+  return t == Truth::Yes ? kTrue : kFalse;
+}
+
+Formula Regression::before(Step step, Formula condition, const Word* before) {
+  FormulaPool& pool = task_.pool();
+  before_ = before;
+  touched_.assign(task_.layout().words(), 0);
+  required_.clear();
+  after_.assign(before);
+  ensure(task_.apply(step, after_), "a planned step is possible");
+
+  if (task_.is_outcome(step)) {
+    // The fluent must be sensed or known; learning it then gives this content whatever it was.
+    const Task::Outcome o = task_.outcome(step);
+    const bool function = task_.layout().fluents()[o.fluent].function;
+    required_.push_back(pool.leaf(function ? Kind::ValueKnown : Kind::Whether, o.fluent));
+    touch(o.fluent, true);
+  } else {
+    const GroundAction& a = task_.action(step);
+    required_.push_back(a.precondition);
+    std::vector<Formula> fired, idle;
+    for (const Conditional& c : a.effects) {
+      const bool happens = pool.holds(c.condition, before);
+      // An effect that does not happen here must not happen, if it could touch what is asked for or
+      // be an observation that contradicts what is known there.
+      bool observes = false;
+      const std::vector<Word> kept = touched_;
+      const std::size_t requirements = required_.size();
+      const auto touch_change = [&](const Change& change) {
+        using K = Change::Kind;
+        observes |=
+            change.kind == K::AddGroup || change.kind == K::Exclude || change.kind == K::AddOptions;
+        if (change.kind == K::AddGroup || change.kind == K::DeleteGroup) {
+          for (const Index m : task_.layout().groups()[change.fluent].members) touch(m, false);
+          touched_[task_.layout().groups()[change.fluent].word] = ~Word{0};
+        } else {
+          touch(change.fluent, change.kind == K::AddTrue || change.kind == K::AddFalse ||
+                                   change.kind == K::AddValue || change.kind == K::Forget);
+        }
+      };
+      if (!happens) touched_.assign(touched_.size(), 0);
+      for (const Change& d : c.deletions) touch_change(d);
+      for (const Change& d : c.additions) touch_change(d);
+      for (const Change& d : c.sensing) touch_change(d);
+      for (const Conditional::Write& w : c.writes) touch_field(w.mask, w.word);
+      if (happens) {
+        fired.push_back(c.condition);
+      } else {
+        if (observes || overlaps(condition)) idle.push_back(pool.negate(c.condition));
+        touched_ = kept;
+        required_.resize(requirements);
+      }
+    }
+    required_.insert(required_.end(), fired.begin(), fired.end());
+    required_.insert(required_.end(), idle.begin(), idle.end());
+  }
+
+  std::vector<Formula> conjuncts = {condition};
+  if (pool.node(condition).kind == Kind::And)
+    conjuncts.assign(pool.begin(condition), pool.end(condition));
+  std::vector<Formula> result;
+  for (const Formula c : conjuncts) {
+    if (pool.calls_volatile(c)) {  // it holds in the very state that the step leads to from here
+      for (Index i = 0; i < task_.layout().words(); ++i) require_word(i);
+      continue;
+    }
+    open_ = false;
+    const Formula r = rewrite(c);
+    ensure(r != kFalse || open_, "regression keeps the planned state");
+    if (open_) {
+      require_read(c);  // its truth rests on values still to be sensed: ask for the same knowledge
+    } else {
+      result.push_back(r);
+    }
+  }
+  required_.insert(required_.end(), result.begin(), result.end());
+  return pool.all(required_);
+}
+
+}  // namespace kaboum::plan

@@ -1,0 +1,355 @@
+#include "search/relaxation.h"
+
+#include <algorithm>
+
+namespace kaboum::plan {
+
+using Kind = FormulaPool::Kind;
+
+Relaxation::Relaxation(Task& task, Limits& limits) : task_(task), limits_(limits) {
+  for (Index i = 0; i < task.layout().fluents().size(); ++i) {
+    const Fluent& f = task.layout().fluents()[i];
+    first_fact_.push_back(static_cast<FactId>(facts_));
+    const std::size_t contents = f.function ? task.layout().range_size(f) + kFirstValue : 4;
+    fluent_of_.insert(fluent_of_.end(), contents, i);
+    facts_ += contents;
+  }
+  reached_.assign(facts_, 0);
+  nodes_.resize(facts_);
+  reach();
+  std::sort(actions_.begin(), actions_.end());
+  for (const Step a : actions_) add_action(a);
+  for (Index i = 0; i < task.layout().fluents().size(); ++i) {
+    const Fluent& f = task.layout().fluents()[i];
+    const FactId sensed =
+        fact(i, f.function ? kValueSensed : static_cast<Word>(AtomKnowledge::Whether));
+    if (!reached_[sensed]) continue;
+    for (Index v = 0; v < (f.function ? task.layout().range_size(f) : 2); ++v) {
+      Operator o;
+      o.step = task.outcome_step(i, v);
+      o.preconditions = {sensed};
+      o.adds = {fact(
+          i, f.function ? kFirstValue + v
+                        : static_cast<Word>(v == 1 ? AtomKnowledge::True : AtomKnowledge::False))};
+      add_operator(std::move(o), {sensed});
+    }
+  }
+  // Kx and exclusions may decide or sense without an action that says so: free, to be safe.
+  for (Index i = 0; i < task.layout().fluents().size(); ++i) {
+    const Fluent& f = task.layout().fluents()[i];
+    if (f.groups.empty() && f.exclusions == kNone) continue;
+    Operator o;
+    o.step = task.outcome_step(i, 0);
+    const Word contents = f.function ? task.layout().range_size(f) + kFirstValue : 4;
+    for (Word c = 1; c < contents; ++c)
+      if (!f.function || c != kValueSensed) o.adds.push_back(fact(i, c));
+    add_operator(std::move(o), {});
+  }
+  node(task.goal());
+}
+
+bool Relaxation::mark(FactId f) {
+  if (reached_[f]) return false;
+  reached_[f] = 1;
+  return true;
+}
+
+/// Contents of a leaf's fluent for which the leaf holds (or, if not positive, fails).
+std::vector<FactId> Relaxation::contents(const FormulaPool::Node& n, bool positive,
+                                         bool& always) const {
+  const Fluent& f = task_.layout().fluents()[n.a];
+  always = false;
+  std::vector<FactId> result;
+  const std::size_t count = f.function ? task_.layout().range_size(f) + kFirstValue : 4;
+  for (Word c = 0; c < count; ++c) {
+    bool holds = false;
+    bool open = false;
+    switch (n.kind) {
+      case Kind::IsTrue:
+        holds = c == static_cast<Word>(AtomKnowledge::True);
+        open = c == static_cast<Word>(AtomKnowledge::Whether);
+        break;
+      case Kind::IsFalse:
+        holds = c == static_cast<Word>(AtomKnowledge::False);
+        open = c == static_cast<Word>(AtomKnowledge::Whether);
+        break;
+      case Kind::Whether:
+      case Kind::ValueKnown:
+        holds = c != 0;
+        break;
+      case Kind::ValueIs:
+        holds = c == kFirstValue + n.b;
+        open = c == kValueSensed;
+        break;
+      case Kind::ValueIsNot:
+        holds = c >= kFirstValue && c != kFirstValue + n.b;
+        open = c == kValueSensed;
+        break;
+      case Kind::ValueWhether:
+        holds = c != kValueUnknown;
+        break;
+      default:
+        break;
+    }
+    if (!open && holds == positive) result.push_back(fact(n.a, c));
+  }
+  // Exclusions and exclusive-or groups may decide without the content: optimistic then.
+  always = f.exclusions != kNone || (!f.groups.empty() && !positive);
+  return result;
+}
+
+bool Relaxation::possible(Formula f, bool positive) const {
+  const FormulaPool& pool = task_.pool();
+  const FormulaPool::Node& n = pool.node(f);
+  switch (n.kind) {
+    case Kind::False:
+      return !positive;
+    case Kind::True:
+      return positive;
+    case Kind::Xor:
+    case Kind::Bits:
+    case Kind::External:
+      return true;
+    case Kind::Not:
+      return possible(*pool.begin(f), !positive);
+    case Kind::And:
+    case Kind::Or:
+      if ((n.kind == Kind::And) == positive)
+        return std::all_of(pool.begin(f), pool.end(f),
+                           [&](Formula c) { return possible(c, positive); });
+      return std::any_of(pool.begin(f), pool.end(f),
+                         [&](Formula c) { return possible(c, positive); });
+    default: {
+      bool always = false;
+      const std::vector<FactId> any = contents(n, positive, always);
+      return always ||
+             std::any_of(any.begin(), any.end(), [&](FactId x) { return reached_[x] != 0; });
+    }
+  }
+}
+
+std::vector<FactId> Relaxation::added(const Change& c) const {
+  using K = Change::Kind;
+  const auto atom = [&](AtomKnowledge k) { return fact(c.fluent, static_cast<Word>(k)); };
+  switch (c.kind) {
+    case K::AddTrue:
+      return {atom(AtomKnowledge::True)};
+    case K::AddFalse:
+      return {atom(AtomKnowledge::False)};
+    case K::DeleteTrue:
+    case K::DeleteFalse:
+    case K::DeleteClosed:
+    case K::Forget:
+    case K::DeleteValue:
+    case K::DeleteExclude:
+    case K::Exclude:
+      return {fact(c.fluent, 0)};
+    case K::AddWhether:
+    case K::AddClosed:
+      return {atom(AtomKnowledge::Whether)};
+    case K::AddValue:
+      return {fact(c.fluent, kFirstValue + c.value)};
+    case K::AddSensed:
+      return {fact(c.fluent, kValueSensed)};
+    case K::AddOptions: {
+      std::vector<FactId> all;
+      for (const Index o : c.options) all.push_back(fact(c.fluent, kFirstValue + o));
+      return all;
+    }
+    case K::AddGroup:
+    case K::DeleteGroup:
+      return {};
+  }
+  return {};
+}
+
+bool Relaxation::ends(const Operator& op, FactId f) const {
+  if (task_.is_outcome(op.step)) return false;  // learning changes nothing
+  using K = Change::Kind;
+  const Index fluent = fluent_of(f);
+  const Word content = content_of(f);
+  const auto is = [&](AtomKnowledge k) { return content == static_cast<Word>(k); };
+  const Conditional& c = task_.action(op.step).effects[op.conditional];
+  for (const auto* list : {&c.deletions, &c.plain, &c.additions})
+    for (const Change& change : *list) {
+      if (change.kind == K::AddGroup || change.kind == K::DeleteGroup || change.fluent != fluent)
+        continue;
+      switch (change.kind) {
+        case K::AddTrue:
+          if (!is(AtomKnowledge::True)) return true;
+          break;
+        case K::AddFalse:
+          if (!is(AtomKnowledge::False)) return true;
+          break;
+        case K::DeleteTrue:
+          if (is(AtomKnowledge::True)) return true;
+          break;
+        case K::DeleteFalse:
+        case K::DeleteClosed:
+          if (is(AtomKnowledge::False)) return true;
+          break;
+        case K::Forget:
+          if (content != 0) return true;
+          break;
+        case K::AddValue:
+          if (content != kFirstValue + change.value) return true;
+          break;
+        case K::DeleteValue:
+          if (content == kFirstValue + change.value) return true;
+          break;
+        case K::DeleteExclude:
+          if (content >= kFirstValue && content != kFirstValue + change.value) return true;
+          break;
+        default:
+          break;  // observations: certain of nothing
+      }
+    }
+  return false;
+}
+
+void Relaxation::reach() {
+  const Layout& layout = task_.layout();
+  for (Index i = 0; i < layout.fluents().size(); ++i) {
+    const Fluent& f = layout.fluents()[i];
+    mark(fact(i, f.get(task_.initial().data())));
+    // What Kx or exclusions may reveal is taken for reachable.
+    if (!f.groups.empty())
+      for (Word c = 0; c < 4; ++c) mark(fact(i, c));
+    if (f.exclusions != kNone)
+      for (Word c = 0; c < layout.range_size(f) + kFirstValue; ++c) mark(fact(i, c));
+  }
+  for (bool again = true; again;) {
+    again = false;
+    for (Index s = 0; s < task_.model().actions.size(); ++s) {
+      task_.instances(
+          s, [&](Formula f) { return possible(f, true); },
+          [&](const std::vector<Index>& arguments) {
+            const Step step = task_.action_step(s, arguments);
+            if (step >= reached_action_.size()) reached_action_.resize(step + 1, 0);
+            if (!reached_action_[step]) {
+              reached_action_[step] = 1;
+              actions_.push_back(step);
+              again = true;
+            }
+            for (const Conditional& c : task_.action(step).effects) {
+              if (!possible(c.condition, true)) continue;
+              for (const auto* list : {&c.deletions, &c.plain, &c.additions, &c.sensing})
+                for (const Change& change : *list)
+                  for (const FactId x : added(change)) again |= mark(x);
+            }
+          });
+    }
+    for (Index i = 0; i < layout.fluents().size(); ++i) {
+      const Fluent& f = layout.fluents()[i];
+      const Word sensed = f.function ? kValueSensed : static_cast<Word>(AtomKnowledge::Whether);
+      if (!reached_[fact(i, sensed)]) continue;
+      const Word count = f.function ? layout.range_size(f) + kFirstValue : 3;
+      for (Word c = f.function ? kFirstValue : 1; c < count; ++c) again |= mark(fact(i, c));
+    }
+  }
+}
+
+Index Relaxation::node(Formula f, bool positive) {
+  const std::uint64_t key = (std::uint64_t{f} << 1U) | (positive ? 1U : 0U);
+  if (const auto known = node_index_.find(key); known != node_index_.end()) return known->second;
+  const FormulaPool& pool = task_.pool();
+  const FormulaPool::Node n = pool.node(f);
+  Node made;
+  switch (n.kind) {
+    case Kind::True:
+    case Kind::False:
+      made.kind = (n.kind == Kind::True) == positive ? Node::Kind::All : Node::Kind::Any;
+      break;
+    case Kind::Not: {
+      const Index child = node(*pool.begin(f), !positive);
+      node_index_[key] = child;
+      return child;
+    }
+    case Kind::And:
+    case Kind::Or:
+      made.kind = (n.kind == Kind::And) == positive ? Node::Kind::All : Node::Kind::Any;
+      for (const Formula* c = pool.begin(f); c != pool.end(f); ++c)
+        made.children.push_back(node(*c, positive));
+      break;
+    case Kind::Xor:
+      made.kind = positive ? Node::Kind::Any : Node::Kind::All;
+      if (positive)
+        for (const Formula* c = pool.begin(f); c != pool.end(f); ++c)
+          made.children.push_back(node(*c, true));
+      break;
+    case Kind::Bits:
+    case Kind::External:
+      made.kind = Node::Kind::All;  // optimistic; calling is left to the search
+      break;
+    default: {
+      bool always = false;
+      std::vector<FactId> any = contents(n, positive, always);
+      made.kind = Node::Kind::Any;
+      if (always) made.kind = Node::Kind::All;
+      if (!always) {
+        std::erase_if(any, [&](FactId x) { return !reached_[x]; });
+        if (any.size() == 1) {
+          node_index_[key] = any[0];
+          return any[0];
+        }
+        made.children.assign(any.begin(), any.end());
+      }
+    }
+  }
+  const auto index = static_cast<Index>(nodes_.size());
+  limits_.work(sizeof(Node) + made.children.size() * sizeof(Index) + 32);
+  nodes_.push_back(std::move(made));
+  node_index_[key] = index;
+  return index;
+}
+
+std::vector<FactId> Relaxation::necessary_facts(Formula f) const {
+  const FormulaPool& pool = task_.pool();
+  const FormulaPool::Node& n = pool.node(f);
+  std::vector<FactId> result;
+  if (n.kind == Kind::And) {
+    for (const Formula* c = pool.begin(f); c != pool.end(f); ++c)
+      for (const FactId x : necessary_facts(*c)) result.push_back(x);
+  } else if (n.kind == Kind::IsTrue || n.kind == Kind::IsFalse || n.kind == Kind::ValueIs) {
+    bool always = false;
+    const std::vector<FactId> any = contents(n, true, always);
+    if (!always && any.size() == 1) result = any;
+  }
+  std::sort(result.begin(), result.end());
+  result.erase(std::unique(result.begin(), result.end()), result.end());
+  return result;
+}
+
+void Relaxation::add_operator(Operator o, std::vector<Index> conditions) {
+  o.node = static_cast<Index>(nodes_.size());
+  limits_.work(2 * sizeof(Operator) + sizeof(Node) +
+               (conditions.size() + o.preconditions.size() + o.adds.size()) * sizeof(Index));
+  nodes_.push_back({Node::Kind::All, std::move(conditions)});
+  operators_.push_back(std::move(o));
+}
+
+void Relaxation::add_action(Step step) {
+  const GroundAction& a = task_.action(step);
+  const Index precondition = node(a.precondition);
+  const std::vector<FactId> needed = necessary_facts(a.precondition);
+  for (Index i = 0; i < a.effects.size(); ++i) {
+    const Conditional& c = a.effects[i];
+    if (!possible(c.condition, true)) continue;
+    Operator o;
+    o.step = step;
+    o.cost = a.cost;
+    o.conditional = i;
+    for (const auto* list : {&c.deletions, &c.plain, &c.additions, &c.sensing})
+      for (const Change& change : *list)
+        for (const FactId x : added(change)) o.adds.push_back(x);
+    if (o.adds.empty()) continue;
+    const std::vector<FactId> condition = necessary_facts(c.condition);
+    std::set_union(needed.begin(), needed.end(), condition.begin(), condition.end(),
+                   std::back_inserter(o.preconditions));
+    std::vector<Index> conditions = {precondition};
+    if (c.condition != kTrue) conditions.push_back(node(c.condition));
+    add_operator(std::move(o), std::move(conditions));
+  }
+}
+
+}  // namespace kaboum::plan

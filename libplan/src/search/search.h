@@ -1,0 +1,60 @@
+#pragma once
+
+#include <kaboum/plan/solve.h>
+
+#include <memory>
+#include <vector>
+
+#include "task/solve_limits.h"
+#include "task/task.h"
+
+namespace kaboum::plan {
+
+class Relaxation;
+class RelaxedPlan;
+class Invariants;
+class LandmarkHeuristic;
+
+/// What a search for one unbranched part looks for, and which outcomes it may suppose.
+class Target {
+ public:
+  virtual ~Target() = default;
+  virtual bool reached(const Word* state) = 0;
+  /// Whether branching on this outcome's fluent in this state is still worth trying.
+  virtual bool allowed(const Word* state, Step outcome) = 0;
+};
+
+struct Found {
+  Status status = Status::Limit;
+  std::vector<Step> steps;
+};
+
+/// Heuristics of a task, made when a search first needs them and kept for the next.
+struct Heuristics {
+  Heuristics();
+  ~Heuristics();
+  RelaxedPlan& relaxed(Task& task, Limits& limits);
+  LandmarkHeuristic& landmark(Task& task, Limits& limits);
+  std::unique_ptr<Relaxation> relaxation;
+  std::unique_ptr<RelaxedPlan> relaxed_plan;
+  std::unique_ptr<Invariants> invariants;
+  std::unique_ptr<LandmarkHeuristic> landmarks;
+};
+
+/// One search from `start` to the target. The algorithm's header tells what it guarantees.
+struct SearchInput {
+  Task& task;
+  const std::vector<Word>& start;
+  Target& target;
+  Limits& limits;
+  Statistics& statistics;
+  Heuristics& heuristics;
+};
+
+Found depth_first(const SearchInput& in);
+Found breadth_first(const SearchInput& in);
+Found iterative_deepening(const SearchInput& in);
+Found greedy_best_first(const SearchInput& in);
+Found a_star(const SearchInput& in);
+
+}  // namespace kaboum::plan

@@ -1,0 +1,58 @@
+#include <kaboum/geom/error.h>
+#include <kaboum/plan/solve.h>
+
+#include "search/contingent.h"
+#include "search/search.h"
+#include "task/task.h"
+
+namespace kaboum::plan {
+namespace {
+
+ContingentPlanner::SearchFunction search_function(Algorithm a) {
+  switch (a) {
+    case Algorithm::DepthFirst:
+      return depth_first;
+    case Algorithm::BreadthFirst:
+      return breadth_first;
+    case Algorithm::IterativeDeepening:
+      return iterative_deepening;
+    case Algorithm::Greedy:
+      return greedy_best_first;
+    case Algorithm::AStar:
+      return a_star;
+  }
+  throw Error(ErrorCode::InvalidArgument, "unknown search algorithm");
+}
+
+}  // namespace
+
+Solution solve(const Model& model, const SolveOptions& options) {
+  Solution solution;
+  Limits limits(options, solution.statistics);
+  try {
+    Task task(model, limits);
+    const auto count = [&] {
+      solution.statistics.ground_actions = task.action_count();
+      solution.statistics.external_calls = task.pool().external_calls();
+      solution.statistics.external_seconds = task.pool().external_seconds();
+    };
+    try {
+      ContingentPlanner planner(task, search_function(options.algorithm), limits,
+                                solution.statistics);
+      solution.status = planner.run();
+      if (solution.status == Status::Solved) solution.plan = planner.plan();
+    } catch (const Stopped&) {
+      count();
+      throw;
+    }
+    count();
+  } catch (const Stopped&) {
+    solution.status = Status::Limit;
+  }
+  if (solution.status == Status::Limit)
+    solution.limit =
+        limits.reason().empty() ? "depth limit of nested searches reached" : limits.reason();
+  return solution;
+}
+
+}  // namespace kaboum::plan

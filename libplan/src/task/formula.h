@@ -1,0 +1,125 @@
+#pragma once
+
+#include <kaboum/plan/model.h>
+
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "task/layout.h"
+#include "task/solve_limits.h"
+
+namespace kaboum::plan {
+
+/// A ground formula; equal formulas of one pool have equal numbers.
+using Formula = std::uint32_t;
+inline constexpr Formula kFalse = 0;
+inline constexpr Formula kTrue = 1;
+
+/// What a plan-time state says of a query: it stands for every way its sensed values may turn out.
+/// Open: the query holds for some of them and fails for others.
+enum class Truth : std::uint8_t { No, Yes, Open };
+
+/// Hash-consed ground formulas over the fields of a layout.
+class FormulaPool {
+ public:
+  enum class Kind : std::uint8_t {
+    False,
+    True,
+    And,
+    Or,
+    Xor,
+    Not,
+    IsTrue,        ///< K(p)
+    IsFalse,       ///< K(!p)
+    Whether,       ///< Kw(p)
+    ValueIs,       ///< K(f = v), v a position in the range
+    ValueIsNot,    ///< K(f != v)
+    ValueWhether,  ///< Kw(f = v)
+    ValueKnown,    ///< Kv(f)
+    Bits,          ///< state[a] & masks_[b] == values_[b]
+    External       ///< call a, expected value b (kNone: true)
+  };
+  struct Node {
+    Kind kind = Kind::False;
+    bool calls = false;  ///< an External is in it
+    Index a = 0;         ///< fluent, word or call; of a connective: first child in children_
+    Index b = 0;         ///< value; of a connective: number of children
+  };
+
+  FormulaPool(const Model& model, const Layout& layout, Limits& limits);
+
+  Formula leaf(Kind kind, Index fluent, Index value = 0);
+  Formula negate(Formula f);
+  Formula all(const std::vector<Formula>& children);  ///< conjunction, in order; flattened
+  Formula any(const std::vector<Formula>& children);  ///< disjunction
+  Formula one(const std::vector<Formula>& children);  ///< exclusive or: exactly one
+  Formula bits(Index word, Word mask, Word value);
+  Formula external(Index external, std::vector<Index> arguments, Index expected);
+
+  /// The query for these slots. Constant knowledge is folded in.
+  Formula ground(const Query& query, std::vector<Index>& slots);
+
+  /// Conjunctions and disjunctions are evaluated from left to right and stop at the first child
+  /// that decides; an External is not called once an earlier child is open.
+  [[nodiscard]] Truth evaluate(Formula f, const Word* state) const;
+  [[nodiscard]] bool holds(Formula f, const Word* state) const {
+    return evaluate(f, state) == Truth::Yes;
+  }
+
+  /// Fluents whose sensed value leaves `f` open in `state`.
+  void open_fluents(Formula f, const Word* state, std::vector<Index>& out) const;
+
+  [[nodiscard]] const Node& node(Formula f) const { return nodes_[f]; }
+  [[nodiscard]] const Formula* begin(Formula f) const { return children_.data() + nodes_[f].a; }
+  [[nodiscard]] const Formula* end(Formula f) const { return begin(f) + nodes_[f].b; }
+  [[nodiscard]] Word bits_mask(const Node& n) const { return masks_[n.b].first; }
+  [[nodiscard]] Word bits_value(const Node& n) const { return masks_[n.b].second; }
+  [[nodiscard]] std::size_t size() const { return nodes_.size(); }
+
+  /// If `f` is "this field has this content": word, mask and content.
+  bool as_bits(Formula f, Index& word, Word& mask, Word& value) const;
+
+  /// Cached by its arguments; if volatile, also by the state.
+  [[nodiscard]] std::optional<Index> call(Index call, const Word* state) const;
+  /// Whether a volatile function is in it: then its truth in one state says nothing of others.
+  [[nodiscard]] bool calls_volatile(Formula f) const;
+  [[nodiscard]] std::uint64_t external_calls() const { return external_calls_; }
+  [[nodiscard]] double external_seconds() const { return external_seconds_; }
+
+ private:
+  struct Call {
+    Index external = 0;
+    std::vector<Index> arguments;
+  };
+  enum class Cached : std::uint8_t { No, Yes };
+
+  Formula add(Node node, std::vector<Formula> children);
+  Formula join(Kind kind, const std::vector<Formula>& children);
+  /// Undecided now, but a sensed atom of the same exclusive-or entries may decide it.
+  [[nodiscard]] bool tied(Index fluent, AtomKnowledge k, const Word* state) const {
+    return k == AtomKnowledge::Unknown && !layout_.fluents()[fluent].groups.empty() &&
+           layout_.sensed_tie(fluent, state) != kNone;
+  }
+  [[nodiscard]] bool excluded(const Fluent& f, const Word* state, Index value) const {
+    return f.exclusions != kNone && ((state[f.exclusions + value / 64] >> (value % 64)) & 1U) != 0;
+  }
+
+  const Model& model_;
+  const Layout& layout_;
+  Limits& limits_;
+  std::vector<Node> nodes_;
+  std::vector<Formula> children_;
+  std::vector<std::pair<Word, Word>> masks_;
+  std::unordered_multimap<std::uint64_t, Formula> index_;
+  std::map<std::pair<Word, Word>, Index> mask_index_;
+  std::vector<Call> calls_;
+  std::map<std::pair<Index, std::vector<Index>>, Index> call_index_;
+  mutable std::vector<Cached> cached_;
+  mutable std::vector<std::optional<Index>> results_;
+  mutable std::map<std::pair<Index, std::vector<Word>>, std::optional<Index>> volatile_;
+  mutable std::uint64_t external_calls_ = 0;
+  mutable double external_seconds_ = 0;
+};
+
+}  // namespace kaboum::plan

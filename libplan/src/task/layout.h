@@ -1,0 +1,102 @@
+#pragma once
+
+#include <kaboum/plan/model.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "task/solve_limits.h"
+
+namespace kaboum::plan {
+
+using Word = std::uint64_t;
+
+/// Knowledge of one ground atom, as stored: two bits.
+enum class AtomKnowledge : std::uint8_t { Unknown = 0, True = 1, False = 2, Whether = 3 };
+
+/// Knowledge of one function term, as stored: an index. Larger values are kFirstValue + the
+/// position of the known value in the range type.
+inline constexpr Word kValueUnknown = 0;
+inline constexpr Word kValueSensed = 1;  ///< in Kv
+inline constexpr Word kFirstValue = 2;
+
+/// A ground atom or function term that actions, sensing or disjunctive knowledge can change: a
+/// field of the state. Fields never straddle words.
+struct Fluent {
+  bool function = false;
+  Index symbol = 0;
+  std::vector<Index> arguments;
+  Index word = 0;
+  unsigned shift = 0;
+  Word mask = 0;             ///< in place
+  Index range = kNone;       ///< of a function
+  Index exclusions = kNone;  ///< first word of the bit set of excluded values, if one is kept
+  Index exclusion_words = 0;
+  std::vector<std::pair<Index, Index>> groups;  ///< Kx groups it is in, and its bit there
+
+  [[nodiscard]] Word get(const Word* state) const { return (state[word] & mask) >> shift; }
+};
+
+/// An exclusive-or entry of Kx: exactly one of the members whose bit is set holds.
+struct Group {
+  std::vector<Index> members;  ///< fluents
+  Index word = 0;
+};
+
+/// Where each piece of knowledge is in a state. Atoms and terms that nothing can change have no
+/// field; what is known of them is constant. So a state of STACKED 8 is one 64-bit word.
+class Layout {
+ public:
+  Layout(const Model& model, Limits& limits);
+
+  struct Place {
+    Index fluent = kNone;                         ///< kNone: constant
+    AtomKnowledge atom = AtomKnowledge::Unknown;  ///< constant knowledge of an atom
+    Index value = kNone;                          ///< constant value of a term; kNone: unknown
+    bool exists = true;                           ///< false: an argument is not of its type
+  };
+  [[nodiscard]] Place atom(Index predicate, const Index* arguments) const;
+  [[nodiscard]] Place term(Index function, const Index* arguments) const;
+
+  /// Position of an object among those of a type; kNone if it is not one of them.
+  [[nodiscard]] Index position(Index type, Index object) const { return positions_[type][object]; }
+
+  [[nodiscard]] const std::vector<Fluent>& fluents() const { return fluents_; }
+  [[nodiscard]] const std::vector<Group>& groups() const { return groups_; }
+  /// The group with these members (any order); kNone if there is none.
+  [[nodiscard]] Index group(std::vector<Index> members) const;
+  [[nodiscard]] Index words() const { return words_; }
+  [[nodiscard]] std::size_t range_size(const Fluent& f) const {
+    return model_.types[f.range].objects.size();
+  }
+  /// For an undecided atom in exclusive-or entries: a sensed atom whose value, once known, may
+  /// decide it. kNone: there is none, and the atom will stay undecided.
+  [[nodiscard]] Index sensed_tie(Index fluent, const Word* state) const;
+  /// Whether sensing can happen at all, so that queries may be open.
+  [[nodiscard]] bool sensing() const { return sensing_; }
+
+ private:
+  struct Block {
+    std::size_t first = 0;
+    bool changes = false;
+    bool exclusions = false;
+  };
+  struct Builder;
+
+  [[nodiscard]] std::size_t number(const Symbol& symbol, const Block& block,
+                                   const Index* arguments) const;
+
+  const Model& model_;
+  std::vector<std::vector<Index>> positions_;
+  std::vector<Block> predicates_, functions_;
+  std::vector<Index> atom_fluents_, term_fluents_;  ///< by number; kNone: constant
+  std::vector<AtomKnowledge> atom_constants_;
+  std::vector<Index> term_constants_;
+  std::vector<Fluent> fluents_;
+  std::vector<Group> groups_;
+  std::map<std::vector<Index>, Index> group_by_members_;
+  Index words_ = 0;
+  bool sensing_ = false;
+};
+
+}  // namespace kaboum::plan
