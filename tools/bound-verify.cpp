@@ -728,6 +728,7 @@ int main(int argc, char** argv) {
       ->type_name("DIR")
       ->group("With --sweep or --robot");
   of_sweep(tools::add_joint_option(app, o.sweep.joints));
+  of_sweep(tools::add_degrees_option(app, o.sweep.degrees));
   of_sweep(app.add_option("--gap", o.sweep.gap,
                           "Parts that move and measure less are not divided further; where they "
                           "are not known to be inside, the answer is undecided [margin / 10^6]")

@@ -2,6 +2,8 @@
 
 #include "help.h"
 
+#include <kaboum/geom/similar_name.h>
+
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -127,20 +129,21 @@ class WrappedHelp : public CLI::Formatter {
   std::size_t width_ = terminal_width();
 };
 
-/// Fewest insertions, deletions and replacements of one character that turn `a` into `b`.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
-    }
+/// What is said of the first argument that is no option, where a command is to come; empty if there
+/// is none.
+std::string explain_command(const CLI::App& app, int argc, char** argv) {
+  std::vector<std::string> known;
+  for (const CLI::App* sub : app.get_subcommands(nullptr))
+    if (!sub->get_name().empty()) known.push_back(sub->get_name());
+  std::string list;
+  for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
+  for (int i = 1; i < argc; ++i) {
+    const std::string name = argv[i];
+    if (name.starts_with('-') && name != "-") return {};
+    const std::string hint = geom::did_you_mean(name, known);
+    return "unknown command '" + name + "'" + (hint.empty() ? "; commands: " + list : hint);
   }
-  return row[b.size()];
+  return "a command is to come first: " + list;
 }
 
 void set_formatter(CLI::App& app, const std::shared_ptr<WrappedHelp>& formatter) {
@@ -159,6 +162,8 @@ std::string explain_unknown(const CLI::App& app, int argc, char** argv) {
   for (const CLI::App* group :
        app.get_subcommands([](const CLI::App* sub) { return sub->get_name().empty(); }))
     apps.push_back(group);
+  if (app.get_require_subcommand_min() > 0 && app.get_subcommands().empty())
+    if (std::string why = explain_command(app, argc, argv); !why.empty()) return why;
   std::vector<std::string> known;
   for (const CLI::App* a : apps)
     for (const CLI::Option* option : a->get_options())
@@ -169,17 +174,8 @@ std::string explain_unknown(const CLI::App& app, int argc, char** argv) {
     if (!argument.starts_with("--")) continue;
     const std::string name(argument.substr(0, argument.find('=')));
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    std::string nearest;
-    std::size_t least = 3;  // as many slips are no slip
-    for (const std::string& candidate : known) {
-      const bool begins = name.size() > 3 && candidate.starts_with(name);
-      const std::size_t distance = begins ? 0 : edit_distance(name, candidate);
-      if (distance < least) {
-        least = distance;
-        nearest = candidate;
-      }
-    }
-    return "unknown option " + name + (nearest.empty() ? "" : "; did you mean " + nearest + "?");
+    const std::optional<std::string> similar = geom::similar_name(name, known);
+    return "unknown option " + name + (similar ? "; did you mean " + *similar + "?" : "");
   }
   return {};
 }

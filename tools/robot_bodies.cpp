@@ -1,5 +1,6 @@
 #include "robot_bodies.h"
 
+#include <kaboum/geom/similar_name.h>
 #include <kaboum/io/convex_io.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -182,6 +183,18 @@ RobotFile read_robot(const std::string& path) {
   return out;
 }
 
+void require_links(const RobotFile& robot, const std::vector<std::string>& links) {
+  std::vector<std::string> known;
+  for (const sweep::Link& link : robot.robot.links) known.push_back(link.name);
+  for (const std::string& name : links) {
+    if (robot.robot.find_link(name)) continue;
+    std::string hint = geom::did_you_mean(name, known);
+    if (hint.empty()) hint = "; it has " + names_of(known);
+    throw Error(ErrorCode::InvalidArgument,
+                robot.path.string() + ": --links: there is no link '" + name + "'" + hint);
+  }
+}
+
 std::string names_of(const std::vector<std::string>& names) {
   constexpr std::size_t kMost = 6;
   const std::size_t shown = names.size() <= kMost ? names.size() : kMost - 1;
@@ -291,10 +304,7 @@ void place_shape(const Geometry& g, const geom::ConvexSet* set, const std::strin
 }
 
 LinkBodies bodies_of(const RobotFile& robot, const BodyOptions& options) {
-  for (const std::string& name : options.links)
-    if (!robot.robot.find_link(name))
-      throw Error(ErrorCode::InvalidArgument,
-                  robot.path.string() + ": there is no link '" + name + "'");
+  require_links(robot, options.links);
   const WorkFolder work;
   Notes notes;
   LinkBodies out;

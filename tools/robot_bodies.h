@@ -24,6 +24,9 @@ struct RobotFile {
 /// @throws Error{InvalidInput}.
 RobotFile read_robot(const std::string& path);
 
+/// @throws Error{InvalidArgument} naming the first of `links` that the robot does not have.
+void require_links(const RobotFile& robot, const std::vector<std::string>& links);
+
 /// Links that have no shape of the kind asked for.
 struct BareLinks {
   std::vector<std::string> empty;  ///< that have none at all

@@ -44,10 +44,7 @@ class Writer {
 
   RobotResult run() {
     parse();
-    for (const std::string& name : o_.links)
-      if (!robot_.robot.find_link(name))
-        throw Error(ErrorCode::InvalidArgument,
-                    o_.robot + ": --links: there is no link '" + name + "'");
+    require_links(robot_, o_.links);
     result_.bare = bare_links(robot_.robot, o_.visual, o_.links);
     result_.notes = notes_on_flat_shapes(robot_, o_.visual, o_.links);
     for (std::uint32_t l = 0; l < robot_.robot.links.size(); ++l) decompose_link(l);

@@ -100,8 +100,8 @@ void require_one_reading(std::string_view text, const sweep::NamedPath& path,
 
 }  // namespace
 
-sweep::Path read_path(const std::string& file, const sweep::Robot& robot, bool check_limits,
-                      const sweep::FixedJoints& fixed, std::vector<std::string>& notes) {
+sweep::Path read_path(const std::string& file, const sweep::Robot& robot,
+                      const PathOptions& options, std::vector<std::string>& notes) {
   const std::vector<char> bytes = io::read_file(file);
   std::string_view text(bytes.data(), bytes.size());
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
@@ -114,7 +114,27 @@ sweep::Path read_path(const std::string& file, const sweep::Robot& robot, bool c
   for (const std::size_t column : sweep::time_columns(path, robot))
     notes.push_back(name + ": the column '" + path.joints[column] +
                     "' is passed over: what is swept does not depend on times");
-  return sweep::arrange(path, robot, name, check_limits, fixed);
+  sweep::Path result = sweep::arrange(path, robot, name, false, options.fixed);
+  if (options.degrees) result = sweep::from_degrees(std::move(result), robot);
+  if (options.check_limits) sweep::require_within_limits(result, robot, name);
+  if (const auto found = sweep::find_likely_degrees(result, robot)) {
+    std::ostringstream warning;
+    warning << "WARNING: " << name << ": ";
+    if (found->waypoint < path.lines.size())
+      warning << "line " << path.lines[found->waypoint] << ", ";
+    warning << "waypoint " << found->waypoint + 1 << ": joint '"
+            << robot.variables[found->variable].name << "' at "
+            << result[found->waypoint][found->variable] << " radians is turned more than twice; "
+            << (options.degrees ? "are the values degrees?"
+                                : "if these are degrees, give --degrees");
+    notes.push_back(warning.str());
+  }
+  return result;
+}
+
+CLI::Option* add_degrees_option(CLI::App& app, bool& degrees) {
+  return app.add_flag("--degrees", degrees,
+                      "Angles of the path and of --joint are in degrees, not radians");
 }
 
 CLI::Option* add_joint_option(CLI::App& app, std::vector<std::string>& values) {

@@ -20,7 +20,7 @@ struct Options {
   std::string links, geometry = "collision", unit = "m", preview, depfile, prefix;
   std::vector<std::string> joints;
   double simplify = 0;
-  bool implicit_margin = false, no_merge = false, ignore_limits = false;
+  bool implicit_margin = false, no_merge = false, ignore_limits = false, degrees = false;
   tools::BodyOptions bodies;
   tools::CommonOptions common;
 };
@@ -46,7 +46,8 @@ void describe(CLI::App& app, Options& o) {
       ->type_name("FILE");
   app.add_option("--path", o.path,
                  "Waypoints in joint space, joined linearly: .csv, one line each, the joints named "
-                 "in the first line or in the robot's order; or .json. Radians and metres")
+                 "in the first line or in the robot's order; or .json. Radians (--degrees: degrees) and "
+                 "metres")
       ->required()
       ->type_name("FILE");
   app.add_option(
@@ -87,6 +88,7 @@ void describe(CLI::App& app, Options& o) {
   app.add_flag("--no-merge", o.no_merge, "One body at least between two waypoints");
   app.add_flag("--ignore-limits", o.ignore_limits, "Allow waypoints outside the joints' limits");
   tools::add_joint_option(app, o.joints);
+  tools::add_degrees_option(app, o.degrees);
   app.add_option("--links", o.links, "Only these links, separated by commas [all]")
       ->type_name("A,B");
   app.add_option("--geometry", o.geometry, "Which shapes of a URDF [collision]")
@@ -159,6 +161,7 @@ std::string parameters(const Options& o) {
   if (o.simplify > 0) out << " --simplify " << o.simplify;
   if (!o.links.empty()) out << " --links " << o.links;
   for (const std::string& joint : o.joints) out << " --joint " << joint;
+  if (o.degrees) out << " --degrees";
   if (o.bodies.drop_sheets) out << " --drop-sheets";
   if (o.implicit_margin) out << " --implicit-margin";
   if (o.no_merge) out << " --no-merge";
@@ -187,7 +190,8 @@ int sweep_path(Options o) {
   const tools::RobotFile file = tools::read_robot(o.robot);
   std::vector<std::string> notes;
   const sweep::Path path =
-      tools::read_path(o.path, file.robot, !o.ignore_limits, tools::fixed_joints(o.joints), notes);
+      tools::read_path(o.path, file.robot,
+                       {!o.ignore_limits, o.degrees, tools::fixed_joints(o.joints)}, notes);
   for (const std::string& note : notes) tools::log(o.common.quiet, note);
   o.bodies.links = split(o.links);
   o.bodies.visual = o.geometry == "visual";

@@ -67,10 +67,7 @@ Shapes read_shapes(const RobotFile& file, const VerifySweepOptions& o) {
   std::istringstream list(o.links);
   for (std::string name; std::getline(list, name, ',');)
     if (!name.empty()) wanted.push_back(name);
-  for (const std::string& name : wanted)
-    if (!file.robot.find_link(name))
-      throw Error(ErrorCode::InvalidArgument,
-                  file.path.string() + ": there is no link '" + name + "'");
+  require_links(file, wanted);
   using From = sweep::Geometry::Shape;
   using To = verify::MovingShape::Kind;
   static const std::map<From, To> kKinds{{From::Mesh, To::Mesh},
@@ -232,7 +229,8 @@ int verify_sweep(const VerifySweepOptions& o, const CommonOptions& common) {
   const RobotFile file = read_robot(robot_path);
   // Limits are no matter of the set.
   std::vector<std::string> notes;
-  const sweep::Path path = read_path(path_path, file.robot, false, fixed_joints(o.joints), notes);
+  const sweep::Path path =
+      read_path(path_path, file.robot, {false, o.degrees, fixed_joints(o.joints)}, notes);
   const Shapes shapes = read_shapes(file, o);
   require_apart({{"--report", common.report}, {"--witness", o.witness}}, shapes.files);
   require_same_poses(file.robot, shapes, path);

@@ -1,4 +1,5 @@
 #include <kaboum/geom/error.h>
+#include <kaboum/geom/similar_name.h>
 #include <kaboum/sweep/kinematics.h>
 #include <kaboum/sweep/path.h>
 
@@ -7,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <sstream>
 
 namespace kaboum::sweep {
@@ -83,7 +85,28 @@ std::string beyond_limits(const Variable& joint, double value) {
   };
   return "joint '" + joint.name + "' at " + text(value) + " is outside its limits, " +
          limit(joint.lower, "-inf") + " to " + limit(joint.upper, "inf") +
-         " (radians, or metres where it slides)";
+         " (radians, or metres where it slides; --degrees if it is in degrees)";
+}
+
+/// @param times  the columns
+void require_times_in_order(const NamedPath& path, const std::vector<std::size_t>& times,
+                            const std::string& name) {
+  for (std::size_t w = 1; w < path.waypoints.size(); ++w)
+    for (const std::size_t column : times) {
+      const double before = path.waypoints[w - 1][column], time = path.waypoints[w][column];
+      if (time >= before) continue;
+      std::ostringstream text;
+      text.precision(17);
+      if (w < path.lines.size())
+        text << "line " << path.lines[w];
+      else
+        text << "waypoint " << w + 1;
+      text << ", column " << column + 1 << ": " << path.joints[column] << " " << time
+           << " is before " << before
+           << " of the waypoint above; put the waypoints in their order (several recordings: in "
+              "files of their own), or take the column out";
+      fail(name, text.str());
+    }
 }
 
 }  // namespace
@@ -121,6 +144,7 @@ NamedPath parse_path_csv(std::string_view text, const std::string& name) {
       path.joints = fields;
     } else {
       append(path, std::move(values), name, place);
+      path.lines.push_back(line_number);
     }
     first = false;
   }
@@ -180,8 +204,11 @@ Path arrange(const NamedPath& path, const Robot& robot, const std::string& name,
              const FixedJoints& fixed) {
   const std::size_t count = robot.variables.size();
   const auto none = [&](const std::string& joint) {
+    std::vector<std::string> known;
+    for (const Variable& v : robot.variables) known.push_back(v.name);
     return "the robot has no joint '" + joint +
-           "' that moves by itself (fixed and mimicking joints have no column)";
+           "' that moves by itself (fixed and mimicking joints have no column)" +
+           geom::did_you_mean(joint, known);
   };
   for (const auto& [joint, value] : fixed) {
     if (!has_variable(robot, joint)) throw Error(ErrorCode::InvalidArgument, none(joint));
@@ -210,6 +237,7 @@ Path arrange(const NamedPath& path, const Robot& robot, const std::string& name,
         fail(name, "joint '" + joint + "' is named twice");
       if (!has_variable(robot, joint)) fail(name, none(joint));
     }
+    require_times_in_order(path, times, name);
     for (std::size_t i = 0; i < count; ++i) {
       const std::string& joint = robot.variables[i].name;
       if (fixed.contains(joint)) continue;
@@ -228,14 +256,38 @@ Path arrange(const NamedPath& path, const Robot& robot, const std::string& name,
     std::vector<double> q(count);
     for (std::size_t i = 0; i < count; ++i)
       q[i] = column[i] == kNone ? fixed.at(robot.variables[i].name) : row[column[i]];
-    if (check_limits) {
-      if (const auto bad = find_out_of_limits(robot, q))
-        fail(name, "waypoint " + std::to_string(out.size() + 1) + ": " +
-                       beyond_limits(robot.variables[*bad], q[*bad]));
-    }
     out.push_back(std::move(q));
   }
+  if (check_limits) require_within_limits(out, robot, name);
   return out;
+}
+
+void require_within_limits(const Path& path, const Robot& robot, const std::string& name) {
+  for (std::size_t w = 0; w < path.size(); ++w)
+    if (const auto bad = find_out_of_limits(robot, path[w]))
+      fail(name, "waypoint " + std::to_string(w + 1) + ": " +
+                     beyond_limits(robot.variables[*bad], path[w][*bad]));
+}
+
+bool is_angle(const Robot& robot, const Variable& variable) {
+  return std::any_of(robot.joints.begin(), robot.joints.end(), [&](const Joint& joint) {
+    return joint.name == variable.name && joint.type == JointType::Revolute;
+  });
+}
+
+Path from_degrees(Path path, const Robot& robot) {
+  for (std::size_t i = 0; i < robot.variables.size(); ++i)
+    if (is_angle(robot, robot.variables[i]))
+      for (std::vector<double>& q : path) q[i] *= std::numbers::pi / 180;
+  return path;
+}
+
+std::optional<LikelyDegrees> find_likely_degrees(const Path& path, const Robot& robot) {
+  for (std::size_t w = 0; w < path.size(); ++w)
+    for (std::size_t i = 0; i < robot.variables.size(); ++i)
+      if (std::abs(path[w][i]) > 4 * std::numbers::pi && is_angle(robot, robot.variables[i]))
+        return LikelyDegrees{w, i};
+  return std::nullopt;
 }
 
 }  // namespace kaboum::sweep

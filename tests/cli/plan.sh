@@ -32,4 +32,9 @@ expect 2 '' "$P"
 "$DOMAINS/stacked/make-problem" 9 >nine.kpl
 expect 7 '' "$P" solve "$DOMAINS/stacked/domain.kpl" nine.kpl --search bfs --max-memory 1M -o none.json
 absent none.json
+# Commands that are misspelt, or lacking.
+expect 2 "unknown command 'sovle'; did you mean 'solve'?" "$BIN/kaboum-plan" sovle x.kpl
+expect 2 "unknown command 'x.kpl'; commands: solve, check, show, convert" "$BIN/kaboum-plan" x.kpl
+expect 2 'a command is to come first: solve, check' "$BIN/kaboum-plan"
+expect 2 'unknown option --tre; did you mean --tree?' "$BIN/kaboum-plan" solve x.kpl --tre
 finish

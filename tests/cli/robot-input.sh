@@ -112,6 +112,28 @@ printf 'time,"j","k",\n0,0,0.5,\n1.5,1,0.5,\n' >timed.csv
 expect 0 "the column 'time' is passed over" "$S" flat.urdf --path timed.csv -o b.obj
 cmp -s a.obj b.obj || fail "a column of times makes a difference"
 printf '{"joints": ["j"], "waypoints": [[0], [1]]}' >j.json
+# Times may stay, but not go back.
+printf 'j,time,k\n0,0,0.5\n# a pause\n0,0,0.5\n1,2.5,0.5\n' >pause.csv
+expect 0 '' "$S" flat.urdf --path pause.csv -o pause.obj
+printf 'j,time,k\n0,0,0.5\n# a pause\n0,2,0.5\n1,1.5,0.5\n' >back.csv
+expect 3 'back.csv: line 5, column 2: time 1.5 is before 2 ' "$S" flat.urdf --path back.csv -o x.glb
+expect 3 'back.csv: line 5, column 2: time 1.5 is before 2 ' "$V" --sweep flat.urdf back.csv pause.obj
+printf '{"joints": ["t", "j", "k"], "waypoints": [[1, 0, 0.5], [0, 1, 0.5]]}' >back.json
+expect 3 'back.json: waypoint 2, column 1: t 0 is before 1 ' "$S" flat.urdf --path back.json -o x.glb
+# Degrees: converted where asked for, warned about where likely.
+printf 'j,k\n0,0.5\n90,0.5\n' >degrees.csv
+expect 0 "^WARNING: degrees.csv: line 3, waypoint 2: joint 'j' at 90 radians .* give --degrees" "$S" flat.urdf --path degrees.csv -o wound.obj --ignore-limits
+expect 0 "^WARNING: degrees.csv: line 3" "$V" --sweep flat.urdf degrees.csv wound.obj
+printf 'j,k\n0,0.5\n1.5707963267948966,0.5\n' >radians.csv
+expect 0 '' "$S" flat.urdf --path radians.csv -o radians.obj
+expect 0 '' "$S" flat.urdf --path degrees.csv -o degrees.obj --degrees
+grep -q WARNING err.txt && fail "a warning about degrees that are given as such"
+for set in radians degrees; do grep -v '^#' $set.obj >$set.txt; done
+cmp -s radians.txt degrees.txt || fail "90 degrees are not a quarter turn"
+expect 0 '^verified' "$V" --sweep flat.urdf degrees.csv degrees.obj --degrees
+expect 1 '^refuted' "$V" --sweep flat.urdf degrees.csv degrees.obj
+expect 3 "outside its limits, -2 to 2 (radians.*--degrees" "$S" flat.urdf --path degrees.csv -o x.glb
+
 expect 0 '' "$S" flat.urdf --path j.json -o c.obj --joint k=0.5
 for set in a c; do grep -v '^#' $set.obj >$set.txt; done
 cmp -s a.txt c.txt || fail "a joint that does not move makes a difference"
@@ -123,6 +145,24 @@ for joint in k= k =1 k=x k=nan; do expect 2 'NAME=NUMBER' "$S" flat.urdf --path 
 expect 2 'given twice' "$S" flat.urdf --path j.json -o x.glb --joint k=1 --joint k=2
 expect 2 'there is no diagonal' "$S" flat.urdf --path plain.csv -o x.glb --epsilon 1%
 absent x.glb
+# Names that are misspelt.
+cat >named.urdf <<END
+<robot name="r">
+  <link name="base">$(collision '<box size="1 1 1"/>')</link>
+  <link name="upper-arm">$(collision '<box size="1 1 1"/>')</link>
+  <link name="hand">$(collision '<box size="1 1 1"/>')</link>
+  <joint name="elbow" type="continuous"><parent link="base"/><child link="upper-arm"/></joint>
+  <joint name="grip" type="continuous"><parent link="upper-arm"/><child link="hand"/></joint>
+</robot>
+END
+printf '[[0, 0]]' >names.json
+expect 2 "no joint 'gripp' .*did you mean 'grip'?" "$S" named.urdf --path j.json -o x.glb --joint gripp=3
+printf 'Elbow,grip\n0,0\n' >names.csv
+expect 3 "no joint 'Elbow' .*did you mean 'elbow'?" "$S" named.urdf --path names.csv -o x.glb
+expect 2 "no link 'uper-arm'; did you mean 'upper-arm'?" "$D" named.urdf -o x --links uper-arm,hand
+expect 2 "no link 'uper-arm'; did you mean 'upper-arm'?" "$S" named.urdf --path names.json -o x.glb --links uper-arm
+expect 2 "no link 'uper-arm'; did you mean 'upper-arm'?" "$V" --sweep named.urdf names.json a.obj --links uper-arm
+expect 2 "no link 'wheel'; it has 'base', 'upper-arm' and 'hand'" "$D" named.urdf -o x --links wheel
 # What sweep-approx writes as a URDF is read as a set.
 expect 0 '' "$S" flat.urdf --path plain.csv -o swept.urdf
 expect 0 '^verified' "$V" --sweep flat.urdf timed.csv swept.urdf

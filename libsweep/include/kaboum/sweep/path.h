@@ -3,6 +3,7 @@
 #include <kaboum/sweep/robot.h>
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +18,7 @@ using Path = std::vector<std::vector<double>>;
 struct NamedPath {
   std::vector<std::string> joints;  ///< of the columns; empty: in the robot's order
   Path waypoints;
+  std::vector<std::size_t> lines = {};  ///< of the waypoints, in a file that has lines; else empty
 };
 
 /// Comma-, semicolon- or blank-separated numbers, one waypoint per line; a first line that is not
@@ -36,12 +38,30 @@ std::vector<std::size_t> time_columns(const NamedPath& path, const Robot& robot)
 /// Values of joints that do not move, by their names. [rad or length]
 using FixedJoints = std::map<std::string, double>;
 
-/// The path in the robot's order of variables. Columns of times are left out.
+/// The path in the robot's order of variables. Columns of times are left out; times may be equal,
+/// but not decrease.
 /// @param check_limits  whether waypoints outside the joints' limits are refused.
 /// @param fixed  joints without a column.
-/// @throws Error{InvalidInput} naming the joint (absent, unknown, named twice) or the waypoint;
+/// @throws Error{InvalidInput} naming the joint (absent, unknown, named twice), the waypoint
+///   or the line and column of a time;
 ///   Error{InvalidArgument} where a fixed joint is unknown or has a column.
 Path arrange(const NamedPath& path, const Robot& robot, const std::string& name,
              bool check_limits = true, const FixedJoints& fixed = {});
+
+/// @throws Error{InvalidInput} naming the first waypoint and joint outside the joint's limits.
+void require_within_limits(const Path& path, const Robot& robot, const std::string& name);
+
+/// Whether the variable is an angle: it belongs to a joint that turns.
+bool is_angle(const Robot& robot, const Variable& variable);
+
+/// The path with its angles, given in degrees, in radians: times pi / 180, as rounded doubles.
+Path from_degrees(Path path, const Robot& robot);
+
+/// A value that is hardly meant in radians.
+struct LikelyDegrees {
+  std::size_t waypoint = 0, variable = 0;
+};
+/// The first angle of more than two turns either way, if there is one.
+std::optional<LikelyDegrees> find_likely_degrees(const Path& path, const Robot& robot);
 
 }  // namespace kaboum::sweep
