@@ -192,14 +192,12 @@ void describe(CLI::App& app, Options& o) {
   tools::add_common_options(app, o.common);
   app.footer(
       "The union of the bodies contains the solid of INPUT and every one of its triangles; this "
-      "is\n"
-      "decided exactly on the bytes that are written. An open INPUT is closed by filling its "
-      "holes\n"
-      "first. With --direction inner, every body lies inside the solid instead.\n"
-      "Exit codes: 0 done; 1 epsilon is not reached, or not within the limits or with\n"
-      "--min-thickness (the best result is written); 2 usage; 3 bad input; 4 output failed; 5 not\n"
-      "built; 6 internal error; 7 limit (epsilon is not reached with --max-work: the best result\n"
-      "is written).");
+      "is decided exactly on the bytes that are written. An open INPUT is closed by filling its "
+      "holes first. With --direction inner, every body lies inside the solid instead.\n"
+      "Exit codes: 0 done; 1 epsilon is not reached, or not within the limits or with "
+      "--min-thickness (the best result is written); 2 usage; 3 bad input; 4 output failed; 5 "
+      "not built; 6 internal error; 7 limit (epsilon is not reached with --max-work: the best "
+      "result is written).");
 }
 
 std::string percent(double length, double diagonal) {

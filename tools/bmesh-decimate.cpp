@@ -168,15 +168,13 @@ void describe(CLI::App& app, Options& o) {
       ->type_name("NAME");
   tools::add_common_options(app, o.common);
   app.footer(
-      "Give at least one of --vertices, --ratio and --epsilon; the first one reached stops. With\n"
+      "Give at least one of --vertices, --ratio and --epsilon; the first one reached stops. With "
       "--from: --vertices.\n"
-      "Exit codes: 0 done; 1 the wished number of vertices cannot be reached (the best result is\n"
+      "Exit codes: 0 done; 1 the wished number of vertices cannot be reached (the best result is "
       "written), the mesh is open and --holes keep leaves it so (the result is written and "
-      "encloses\n"
-      "nothing), float32 is too coarse here (nothing is written) or --verify found a claim that "
-      "does\n"
-      "not hold; 2 usage; 3 bad input;\n"
-      "4 output failed; 5 feature not built; 6 internal error; 7 limit reached.");
+      "encloses nothing), float32 is too coarse here (nothing is written) or --verify found a "
+      "claim that does not hold; 2 usage; 3 bad input; 4 output failed; 5 feature not built; 6 "
+      "internal error; 7 limit reached.");
 }
 
 /// Faces whose inner side is not in the solid, among at most 20,000 looked at: only the surface

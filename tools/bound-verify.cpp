@@ -633,7 +633,7 @@ int check(const Options& o) {
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Decides from two files alone, in exact arithmetic, whether an approximation encloses the\n"
+      "Decides from two files alone, in exact arithmetic, whether an approximation encloses the "
       "original (--outer), is enclosed by it (--inner) or, a set of convex bodies, covers it "
       "(--cover); whether the collision shapes of one robot hold those of another (--robot); or "
       "whether a set of convex bodies holds a robot during a motion (--sweep).\n"
@@ -747,16 +747,16 @@ int main(int argc, char** argv) {
                ->type_name("N"));
   tools::add_common_options(app, o.common);
   app.footer(
-      "A result of bcd-decompose from a mesh: --cover INPUT RESULT --prepare --epsilon E (--inner\n"
-      "for --direction inner; E the epsilon that was asked for or is recorded), and --drop-sheets\n"
-      "where it was given. From a robot (URDF): --robot INPUT.urdf DIR/INPUT.urdf --prepare, with\n"
+      "A result of bcd-decompose from a mesh: --cover INPUT RESULT --prepare --epsilon E (--inner "
+      "for --direction inner; E the epsilon that was asked for or is recorded), and --drop-sheets "
+      "where it was given. From a robot (URDF): --robot INPUT.urdf DIR/INPUT.urdf --prepare, with "
       "--geometry visual where --visual was given: all its links at once.\n\n"
-      "--robot: a mesh is held by the meshes of the same pose and scale in the same link, so that\n"
-      "no rounding of poses matters; boxes, cylinders and spheres must be there again. --epsilon:\n"
+      "--robot: a mesh is held by the meshes of the same pose and scale in the same link, so that "
+      "no rounding of poses matters; boxes, cylinders and spheres must be there again. --epsilon: "
       "a length in the robot's unit, or a percentage of each mesh's diagonal.\n\n"
-      "--sweep: every triangle of the links' meshes, every box, cylinder and sphere, at every\n"
-      "configuration of PATH, lies in a body enlarged by the margin: during the whole motion, not\n"
-      "only at samples (docs/algorithms/swept-volumes.md); so do the insides of closed meshes. It\n"
+      "--sweep: every triangle of the links' meshes, every box, cylinder and sphere, at every "
+      "configuration of PATH, lies in a body enlarged by the margin: during the whole motion, not "
+      "only at samples (docs/algorithms/swept-volumes.md); so do the insides of closed meshes. It "
       "shares the parsers of ROBOT and PATH with sweep-approx, nothing else.\n\n"
       "Exit codes: 0 verified; 1 refuted; 2 usage; 3 bad input, or not closed where a claim needs "
       "it; 4 output failed; 6 internal error; 7 undecided within limits.");

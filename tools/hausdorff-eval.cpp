@@ -99,11 +99,11 @@ void describe(CLI::App& app, Options& o) {
   app.get_option("--seed")->description("Seed of the points behind mean and rms");
   app.footer(
       "Measures surface to surface, or solid to solid with --solid.\n"
-      "Prints one-sided distances both ways and the Hausdorff distance, in the files' unit and\n"
-      "relative to the diagonal of both bounding boxes. min and max are certified intervals; mean\n"
-      "and rms are estimates with their standard error.\n"
-      "Exit codes: 0 done; 1 --at-most does not hold (or is not certain); 2 usage; 3 bad input;\n"
-      "4 output failed; 5 feature not built; 6 internal error; 7 an interval stayed wider than\n"
+      "Prints one-sided distances both ways and the Hausdorff distance, in the files' unit and "
+      "relative to the diagonal of both bounding boxes. min and max are certified intervals; "
+      "mean and rms are estimates with their standard error.\n"
+      "Exit codes: 0 done; 1 --at-most does not hold (or is not certain); 2 usage; 3 bad input; "
+      "4 output failed; 5 feature not built; 6 internal error; 7 an interval stayed wider than "
       "wished (it is printed and holds all the same), or out of memory.");
 }
 

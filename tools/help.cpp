@@ -19,6 +19,7 @@ namespace {
 
 constexpr std::size_t kNarrowest = 40, kWidest = 110;
 constexpr std::size_t kIndent = 6;  ///< of descriptions
+constexpr std::size_t kGroupIndent = 2;
 
 std::size_t terminal_width() {
   std::size_t width = 0;
@@ -106,6 +107,12 @@ class WrappedHelp : public CLI::Formatter {
   }
   std::string make_subcommand(const CLI::App* sub) const override {
     return wrapped(sub->get_name(), 2, width_) + wrapped(sub->get_description(), kIndent, width_);
+  }
+  /// Groups of options are indented.
+  std::string make_expanded(const CLI::App* group) const override {
+    WrappedHelp narrower = *this;
+    narrower.width_ -= kGroupIndent;
+    return narrower.Formatter::make_expanded(group);
   }
   std::string make_description(const CLI::App* app) const override {
     return wrapped(app->get_description(), 0, width_) + "\n";

@@ -317,7 +317,7 @@ int main(int argc, char** argv) {
 
   app.footer(
       "Exit codes: 0 done; 1 unsolvable, or the plan is invalid; 2 usage; 3 bad input; 4 output "
-      "failed;\n"
+      "failed; "
       "6 internal error; 7 time, memory or size limit reached.");
   return tools::run(app, argc, argv, [&] {
     if (s->parsed()) return solve(o);

@@ -44,10 +44,11 @@ void describe(CLI::App& app, Options& o) {
   app.add_option("ROBOT", o.robot, "Robot: URDF, or the Robotics Library's rlkin or rlmdl XML")
       ->required()
       ->type_name("FILE");
-  app.add_option("--path", o.path,
-                 "Waypoints in joint space, joined linearly: .csv, one line each, the joints named "
-                 "in the first line or in the robot's order; or .json. Radians (--degrees: degrees) and "
-                 "metres")
+  app.add_option(
+         "--path", o.path,
+         "Waypoints in joint space, joined linearly: .csv, one line each, the joints named "
+         "in the first line or in the robot's order; or .json. Radians (--degrees: degrees) and "
+         "metres")
       ->required()
       ->type_name("FILE");
   app.add_option(
@@ -138,9 +139,9 @@ void describe(CLI::App& app, Options& o) {
   tools::add_common_options(app, o.common);
   app.footer(
       "The bodies contain the links' convex bodies, and these their meshes, at every "
-      "configuration\n"
+      "configuration "
       "of the path (docs/algorithms/swept-volumes.md).\n"
-      "Exit codes: 0 done; 1 float32 is too coarse for epsilon (nothing is written); 2 usage;\n"
+      "Exit codes: 0 done; 1 float32 is too coarse for epsilon (nothing is written); 2 usage; "
       "3 bad input; 4 output failed; 5 not built; 6 internal error; 7 limit.");
 }
 
@@ -189,9 +190,8 @@ int sweep_path(Options o) {
                                  : std::filesystem::path(o.output));
   const tools::RobotFile file = tools::read_robot(o.robot);
   std::vector<std::string> notes;
-  const sweep::Path path =
-      tools::read_path(o.path, file.robot,
-                       {!o.ignore_limits, o.degrees, tools::fixed_joints(o.joints)}, notes);
+  const sweep::Path path = tools::read_path(
+      o.path, file.robot, {!o.ignore_limits, o.degrees, tools::fixed_joints(o.joints)}, notes);
   for (const std::string& note : notes) tools::log(o.common.quiet, note);
   o.bodies.links = split(o.links);
   o.bodies.visual = o.geometry == "visual";

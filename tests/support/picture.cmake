@@ -1,6 +1,7 @@
 # mesh-picture writes a PNG of the wished size, the same every time, and its exit codes are right.
 function(expect code)
   execute_process(COMMAND ${PICTURE} ${ARGN} RESULT_VARIABLE got OUTPUT_QUIET ERROR_VARIABLE message)
+  set(message "${message}" PARENT_SCOPE)
   if(NOT got EQUAL code)
     message(FATAL_ERROR "mesh-picture ${ARGN}: exit code ${got}, expected ${code}\n${message}")
   endif()
@@ -13,8 +14,8 @@ file(READ ${png} head LIMIT 24 HEX)
 if(NOT head STREQUAL "89504e470d0a1a0a0000000d4948445200000140000000c8")
   message(FATAL_ERROR "no PNG of 320 x 200: ${head}")
 endif()
-expect(0 ${MESH} ${MESH} -o ${png}.again --width 320 --height 200 --titles "one,two" --edges)
-execute_process(COMMAND ${CMAKE_COMMAND} -E compare_files ${png} ${png}.again
+expect(0 ${MESH} ${MESH} -o ${png}.again.png --width 320 --height 200 --titles "one,two" --edges)
+execute_process(COMMAND ${CMAKE_COMMAND} -E compare_files ${png} ${png}.again.png
                 COMMAND_ERROR_IS_FATAL ANY)
 
 expect(0 --help)
@@ -24,5 +25,12 @@ expect(2 ${MESH} -o ${png} --no-such-option)
 expect(2 ${MESH} -o ${png} --view nonsense)
 expect(2 ${MESH} -o ${png} --titles "one,two")
 expect(2 ${MESH} -o ${png} --colours mauve)
+foreach(name picture.jpg picture picture.png.gz)  # only PNG is written, and says so
+  file(REMOVE ${WORK}/${name})
+  expect(2 ${MESH} -o ${WORK}/${name})
+  if(NOT message MATCHES "ends with .png, not .*${name}" OR EXISTS ${WORK}/${name})
+    message(FATAL_ERROR "${name}: ${message}")
+  endif()
+endforeach()
 expect(3 ${WORK}/absent.obj -o ${png})
 expect(4 ${MESH} -o ${WORK}/absent/picture.png)

@@ -95,6 +95,7 @@ geom::Mesh read(const std::string& input, io::Format format) {
 }
 
 int make_picture(const Options& options) {
+  tools::require_apart({{"--output", options.output}}, options.inputs);
   const View view = parse_view(options.view);
   const std::vector<Colour> colours = parse_colours(options.colours);
   const std::vector<std::string> titles = split(options.titles);
@@ -139,6 +140,7 @@ int main(int argc, char** argv) {
   app.add_option("meshes", options.inputs, "Mesh files, or -")->required()->type_name("FILE");
   app.add_option("-o,--output", options.output, "PNG file to write; - is standard output")
       ->required()
+      ->check(tools::png_name())
       ->type_name("FILE");
   app.add_option("--width", options.width, "Width of the picture, pixels")
       ->check(CLI::Range(32, 16384))
@@ -149,7 +151,7 @@ int main(int argc, char** argv) {
   app.add_option("--titles", options.titles, "Titles of the panels, separated by commas");
   app.add_option("--view", options.view, "Camera: azimuth,elevation in degrees")
       ->capture_default_str();
-  app.add_option("--colours", options.colours,
+  app.add_option("--colours,--colors", options.colours,
                  "Colours of the panels: grey, blue, orange, green, red; the last one repeats")
       ->capture_default_str();
   app.add_flag("--edges", options.edges, "Draw every edge, not only sharp ones and borders");
