@@ -44,7 +44,7 @@ struct Input {
   io::Format format;
   std::string sha256;
   std::vector<std::string> notes;
-  std::size_t filled_triangles = 0;
+  std::size_t filled_triangles = 0, dropped_sheets = 0;
   std::vector<std::uint32_t> source;  // per triangle, if prepared: its index in the file
 };
 
@@ -56,7 +56,7 @@ Input read(const std::string& path, const std::string& format, const char* optio
     notes.push_back(std::to_string(r.collapsed_triangles) +
                     " triangles with repeated corners bound nothing and are left out");
   }
-  return {std::move(r.mesh), r.format, io::sha256(bytes), std::move(notes), 0, {}};
+  return {std::move(r.mesh), r.format, io::sha256(bytes), std::move(notes), 0, 0, {}};
 }
 
 /// Of the box; its square may exceed all doubles, or vanish.
@@ -119,6 +119,7 @@ Input read_approximation(const Options& o, geom::ConvexSet& set, bool& is_set) {
               format.value_or(io::Format::Stl),
               io::sha256(details.bytes),
               std::move(details.notes),
+              0,
               0,
               {}};
     }
@@ -266,13 +267,14 @@ void prepare(Input& original, bool drop_sheets) {
   original.mesh = std::move(prepared.mesh);
   original.notes.insert(original.notes.end(), prepared.notes.begin(), prepared.notes.end());
   original.filled_triangles = prepared.filled_triangles;
+  original.dropped_sheets = prepared.dropped_sheets;
   original.source = std::move(prepared.source);
 }
 
 /// What preparing would change of the original; empty if nothing.
 std::string change_by_preparing(const Input& original) {
   for (const bool drop_sheets : {false, true}) {
-    Input prepared{original.mesh, original.format, {}, {}, 0, {}};
+    Input prepared{original.mesh, original.format, {}, {}, 0, 0, {}};
     try {
       prepare(prepared, drop_sheets);
     } catch (const Error&) {  // it cannot be prepared
@@ -337,6 +339,8 @@ int check_sweep(Options o) {
                 "--claims solid: with --sweep it follows from the surface claim; use all");
   require_outputs(o, o.sweep.files);
   o.sweep.claims = o.claims;
+  o.sweep.prepare = o.prepare;
+  o.sweep.drop_sheets = o.drop_sheets;
   o.sweep.witness = o.witness;
   o.sweep.set_format = o.approximation_format;
   return tools::verify_sweep(o.sweep, o.common);
@@ -572,6 +576,7 @@ int check(const Options& o) {
     }
     if (o.prepare) {
       json["original"]["filled_triangles"] = original.filled_triangles;
+      json["original"]["dropped_sheet_triangles"] = original.dropped_sheets;
     } else {
       json["original"]["inside_out_parts"] = inside_out ? inside_out->parts : 0;
       if (inside_out && !inside_out->refusal.empty())
@@ -614,7 +619,7 @@ int check(const Options& o) {
     const bool open = !inclusion.inner_closed || !inclusion.outer_closed;
     out << name_of(answer)
         << (open && answer == Answer::Verified ? ", as far as an open mesh defines it" : "")
-        << '\n';
+        << tools::except_sheets({{o.original, original.dropped_sheets}}) << '\n';
   }
   for (const std::string& warning : warnings(original.mesh, approximation.mesh)) {
     tools::log(o.common.quiet, "note: " + warning);
@@ -683,15 +688,17 @@ int main(int argc, char** argv) {
              "given); of an inner set, that it leaves out no point deeper than this inside "
              "ORIGINAL")
           ->type_name("LENGTH");
-  CLI::Option* prepare = app.add_flag(
+  app.add_flag(
       "--prepare", o.prepare,
       "Judge against ORIGINAL as bmesh-decimate and bcd-decompose prepare it (parts that are "
       "inside "
       "out turned, copies and walls dropped, holes filled) instead of the file as it is: what "
-      "their claims, and a container's epsilon, are about");
+      "their claims, and a container's epsilon, are about. With --sweep and --robot: the links' "
+      "meshes");
   app.add_flag("--drop-sheets", o.drop_sheets,
                "With --prepare: drop sheets (faces back to back without volume), as bmesh-decimate "
-               "and bcd-decompose do with this option; nothing is then said about them")
+               "and bcd-decompose do with this option; nothing is then said about them, and the "
+               "verdict names them")
       ->needs("--prepare");
   CLI::Option* set = app.add_flag(
       "--set", o.set,
@@ -710,7 +717,7 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(std::size_t{1}, std::size_t{4'000'000'000}))
       ->capture_default_str()
       ->type_name("N");
-  for (CLI::Option* other : {epsilon, prepare, set}) other->excludes(sweep);
+  for (CLI::Option* other : {epsilon, set}) other->excludes(sweep);
   const auto of_sweep = [&](CLI::Option* option) { option->needs(sweep)->group("With --sweep"); };
   of_sweep(app.add_option("--links", o.sweep.links, "Only these links, separated by commas [all]")
                ->type_name("A,B"));
@@ -757,7 +764,9 @@ int main(int argc, char** argv) {
       "--sweep: every triangle of the links' meshes, every box, cylinder and sphere, at every "
       "configuration of PATH, lies in a body enlarged by the margin: during the whole motion, not "
       "only at samples (docs/algorithms/swept-volumes.md); so do the insides of closed meshes. It "
-      "shares the parsers of ROBOT and PATH with sweep-approx, nothing else.\n\n"
+      "shares the parsers of ROBOT and PATH with sweep-approx, and with --prepare what prepares "
+      "meshes; nothing else. Meshes that sweep-approx prepared (its notes say so) need --prepare, "
+      "and --drop-sheets where it was given.\n\n"
       "Exit codes: 0 verified; 1 refuted; 2 usage; 3 bad input, or not closed where a claim needs "
       "it; 4 output failed; 6 internal error; 7 undecided within limits.");
   return tools::run(app, argc, argv, [&] {

@@ -56,6 +56,16 @@ Answer worse(Answer a, Answer b) {
   return Answer::Verified;
 }
 
+std::string except_sheets(const DroppedSheets& dropped) {
+  std::string text;
+  for (const auto& [file, count] : dropped) {
+    if (count == 0) continue;
+    text += text.empty() ? "; nothing is said of the " : ", the ";
+    text += std::to_string(count) + " triangles of sheets dropped from " + file;
+  }
+  return text;
+}
+
 int exit_code(Answer answer) {
   switch (answer) {
     case Answer::Verified:

@@ -4,6 +4,7 @@
 #include <kaboum/verify/bracket.h>
 #include <kaboum/verify/inclusion.h>
 
+#include <map>
 #include <string>
 
 /// What the relations of bound-verify share in telling what they found.
@@ -24,6 +25,13 @@ std::string point(const geom::Vec3& p);
 
 /// Refuted before undecided before undefined before verified.
 verify::Answer worse(verify::Answer a, verify::Answer b);
+
+/// Triangles of sheets that were dropped on request, of each file.
+using DroppedSheets = std::map<std::string, std::size_t>;
+
+/// "; nothing is said of the 2 triangles of sheets dropped from FILE", which ends verdicts; empty
+/// where none were dropped.
+std::string except_sheets(const DroppedSheets& dropped);
 
 int exit_code(verify::Answer answer);
 

@@ -152,7 +152,7 @@ class RobotVerifier {
     const std::string open =
         open_ && answer_ == Answer::Verified ? ", as far as open meshes define it" : "";
     say(name_of(answer_) + open + ": " +
-        links_judged(links_.size(), original_.robot.links.size(), bare_));
+        links_judged(links_.size(), original_.robot.links.size(), bare_) + except_sheets(dropped_));
     return exit_code(answer_);
   }
 
@@ -381,6 +381,7 @@ class RobotVerifier {
     geom::Prepared prepared =
         naming(file.path, [&] { return prepare_original(file.mesh, o_.drop_sheets, true); });
     note(file.path, prepared.notes);
+    if (prepared.dropped_sheets > 0) dropped_[file.path] = prepared.dropped_sheets;
     return std::move(prepared.mesh);
   }
 
@@ -547,6 +548,7 @@ class RobotVerifier {
          {"deciding_claims", o_.claims},
          {"geometry", o_.geometry},
          {"prepared", o_.prepare},
+         {"dropped_sheet_triangles", dropped_},
          {"original", file(o_.original, original_)},
          {"result", file(o_.result, result_)},
          {"joints", {{"answer", motion.empty() ? "verified" : "refuted"}, {"reason", motion}}},
@@ -571,6 +573,7 @@ class RobotVerifier {
   Answer answer_ = Answer::Verified;
   bool open_ = false;
   BareLinks bare_;
+  DroppedSheets dropped_;
   std::size_t at_ = 0;  // number of the link
   Notes notes_;
   Json links_ = Json::array();

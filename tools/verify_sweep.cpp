@@ -13,6 +13,8 @@
 #include <sstream>
 
 #include "find_mesh.h"
+#include "notes.h"
+#include "prepared_original.h"
 #include "robot_bodies.h"
 #include "robot_path.h"
 #include "verdict.h"
@@ -29,6 +31,8 @@ struct Shapes {
   std::vector<verify::MovingShape> shapes;
   std::vector<std::uint32_t> links;  // of the shapes
   std::vector<std::string> files, notes;
+  Notes mesh_notes;
+  DroppedSheets dropped;
   BareLinks bare;
   std::size_t judged = 0, asked = 0;  // links
 };
@@ -60,6 +64,42 @@ geom::Mesh scaled(geom::Mesh mesh, const geom::Vec3& scale) {
   if (scale.prod() < 0)  // a mirrored solid is still a solid
     for (geom::Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
   return mesh;
+}
+
+/// A mesh of the robot as the file has it, or as prepared.
+geom::Mesh read_link_mesh(const std::string& path, const VerifySweepOptions& o, Shapes& out) {
+  io::ReadResult read = io::read_mesh(path);
+  for (const std::string& note : read.notes) out.mesh_notes.add(path, note);
+  if (!o.prepare) return std::move(read.mesh);
+  geom::Prepared prepared =
+      naming(path, [&] { return prepare_original(read.mesh, o.drop_sheets, true); });
+  for (const std::string& note : prepared.notes) out.mesh_notes.add(path, note);
+  if (prepared.dropped_sheets > 0) out.dropped[path] = prepared.dropped_sheets;
+  return std::move(prepared.mesh);
+}
+
+/// What to try where the meshes as they are were not found within the set; empty if nothing.
+std::string preparing_hint(const Shapes& shapes) {
+  std::string changed;
+  for (const std::string& path : shapes.files) {
+    const geom::Mesh mesh = io::read_mesh(path).mesh;
+    const auto prepared = [&](bool drop_sheets) -> std::optional<geom::Prepared> {
+      try {
+        return prepare_original(mesh, drop_sheets, true);
+      } catch (const Error&) {
+        return std::nullopt;
+      }
+    };
+    if (const auto plain = prepared(false)) {
+      if (changed.empty() && !plain->notes.empty()) changed = path;
+    } else if (prepared(true)) {
+      return path +
+             ": sweep-approx takes it with --drop-sheets only, and as prepared; --prepare "
+             "--drop-sheets judges that";
+    }
+  }
+  if (changed.empty()) return {};
+  return changed + ": sweep-approx speaks of the mesh as prepared; --prepare judges that";
 }
 
 Shapes read_shapes(const RobotFile& file, const VerifySweepOptions& o) {
@@ -104,10 +144,7 @@ Shapes read_shapes(const RobotFile& file, const VerifySweepOptions& o) {
       shape.chain.push_back(place);
       if (shape.kind == To::Mesh) {
         const std::string path = find_only_mesh(g.mesh, file.path, o.packages).string();
-        io::ReadResult read = io::read_mesh(path);
-        for (std::string& note : read.notes)
-          out.notes.push_back(std::move(note.insert(0, ": ").insert(0, path)));
-        shape.mesh = scaled(std::move(read.mesh), g.size);
+        shape.mesh = scaled(read_link_mesh(path, o, out), g.size);
         out.files.push_back(path);
       }
       out.shapes.push_back(std::move(shape));
@@ -236,7 +273,8 @@ int verify_sweep(const VerifySweepOptions& o, const CommonOptions& common) {
   require_same_poses(file.robot, shapes, path);
   io::SetReadDetails details;
   const geom::ConvexSet set = read_swept(set_path, o, details);
-  notes.insert(notes.end(), shapes.notes.begin(), shapes.notes.end());
+  for (const auto& more : {shapes.notes, shapes.mesh_notes.lines()})
+    notes.insert(notes.end(), more.begin(), more.end());
   for (const std::string& note : notes) log(common.quiet, note);
   for (std::string& note : details.notes)
     log(common.quiet, note.insert(0, ": ").insert(0, set_path));
@@ -282,6 +320,8 @@ int verify_sweep(const VerifySweepOptions& o, const CommonOptions& common) {
       json["claims"]["surface"]["first_undecided"] = to_json(*claims.undecided, shapes, path);
     if (at_most && claims.farthest.distance >= 0)
       json["largest_found"] = to_json(claims.farthest, shapes, path);
+    json["prepared"] = o.prepare;
+    json["dropped_sheet_triangles"] = shapes.dropped;
     json["open_meshes"] = claims.open_meshes;
     json["shapes"] = shapes.shapes.size();
     json["links"] = {{"asked", shapes.asked},
@@ -324,7 +364,10 @@ int verify_sweep(const VerifySweepOptions& o, const CommonOptions& common) {
     if (claims.open_meshes > 0)
       out << claims.open_meshes << " meshes are not closed: their surfaces alone are judged\n";
     out << name_of(answer) << ": " << links_judged(shapes.judged, shapes.asked, shapes.bare)
-        << '\n';
+        << except_sheets(shapes.dropped) << '\n';
+    if (answer != Answer::Verified && !o.prepare)
+      if (const std::string hint = preparing_hint(shapes); !hint.empty())
+        log(common.quiet, "note: " + hint);
   }
   return exit_code(answer);
 }

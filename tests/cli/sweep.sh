@@ -177,11 +177,31 @@ expect 3 'cut.urdf' "$V" --sweep cut.urdf path.csv a.glb
 expect 3 'none.glb' "$V" --sweep "$R" path.csv none.glb
 expect 2 '' "$V" --sweep "$R" path.csv
 expect 2 '' "$V" --sweep "$R" path.csv a.glb x.off
-expect 2 '' "$V" --sweep "$R" path.csv a.glb --prepare
+expect 2 '' "$V" --sweep "$R" path.csv a.glb --epsilon 1
+expect 2 '' "$V" --sweep "$R" path.csv a.glb --drop-sheets
 expect 2 '' "$V" --sweep "$R" path.csv a.glb --claims solid
 expect 2 '' "$V" --outer shapes/t.off shapes/t.off --links hand
 expect 2 'nothing' "$V" --sweep "$R" path.csv a.glb --links nothing
 expect 4 'no-such' "$V" --sweep "$R" path.csv a.glb --report no-such/v.json
+# Meshes as sweep-approx prepared them: a part that is inside out, a hole, a sheet beside it.
+{ printf 'OFF\n7 5 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n5 0 0\n6 0 0\n5 1 0\n'
+  printf '3 0 1 2\n3 0 3 1\n3 1 3 2\n3 4 5 6\n3 4 6 5\n'; } >robots/urdf/sheeted.off
+sed 's/u\.off/sheeted.off/' "$R" >robots/urdf/sheeted.urdf
+H=robots/urdf/sheeted.urdf
+expect 3 'drop-sheets' "$S" $H --path path.csv -o x.glb
+expect 0 'NOT enclosed' "$S" $H --path path.csv -o sheeted.glb --drop-sheets
+expect 1 "sheeted.off: .*--prepare --drop-sheets judges that" "$V" --sweep $H path.csv sheeted.glb
+expect 3 'sheeted.off: .*sheets.*--drop-sheets' "$V" --sweep $H path.csv sheeted.glb --prepare
+expect 0 '^verified: 4 of 4 links judged; nothing is said of the 2 triangles of sheets dropped from robots/urdf/sheeted.off$' \
+  "$V" --sweep $H path.csv sheeted.glb --prepare --drop-sheets --report v.json
+tr -d ' \n' <v.json | grep -q '"prepared":true,"dropped_sheet_triangles":{"robots/urdf/sheeted.off":2}' || fail "$(cat v.json)"
+grep -q 'meshes are not closed' out.txt && fail 'the filled hole is open'
+expect 0 'NOT enclosed' "$BIN/bcd-decompose" $H -o sheeted --drop-sheets --epsilon 1%
+expect 0 'judged; nothing is said of the 2 triangles of sheets dropped from robots/urdf/sheeted.off$' \
+  "$V" --robot $H sheeted/sheeted.urdf --prepare --drop-sheets
+expect 0 'NOT enclosed' "$BIN/bcd-decompose" robots/urdf/sheeted.off -o cover.glb --drop-sheets --epsilon 1%
+expect 0 '^verified; nothing is said of the 2 triangles of sheets dropped from robots/urdf/sheeted.off$' \
+  "$V" --cover robots/urdf/sheeted.off cover.glb --prepare --drop-sheets
 "$V" --sweep "$R" path.csv a.glb --quiet >out.txt 2>err.txt || fail "quiet run"
 if [ -s out.txt ] || [ -s err.txt ]; then fail '--quiet is not quiet'; fi
 for n in 1 2; do
