@@ -123,14 +123,14 @@ class Measure {
       if (p.upper > limit()) {
         if (solid_.contains(center)) {
           if (at.lower >= radius * (1 + 1e-12)) return false;
-          p.upper = std::min(p.upper, radius);
+          p.upper = std::min(p.upper, radius - at.lower);
         } else {
           raise(at.lower, center);
         }
       }
       return true;
     };
-    search(std::move(first), std::min<std::size_t>(options_.most, 5000), bound,
+    search(std::move(first), std::min<std::size_t>(options_.most, 1000), bound,
            [](Piece p, const auto& visit) {
              int k = 0;
              double longest = -1;
@@ -259,10 +259,12 @@ class Measure {
       const auto at = solid_.surface().nearest(cube.center, cube.hint);
       cube.hint = at.triangle;
       cube.upper = at.upper + radius;
+      bool covered = false;  // the centre
       if (cube.upper > limit()) {
         if (solid_.contains(cube.center)) {
           if (at.lower >= radius * (1 + 1e-12)) return false;
-          cube.upper = std::min(cube.upper, radius);
+          cube.upper = std::min(cube.upper, radius - at.lower);
+          covered = true;
         } else if (at.lower > result_.lower && within(cube.center)) {
           raise(at.lower, cube.center);
         }
@@ -272,6 +274,11 @@ class Measure {
         Cell part = Cell::of({cube.center - h, cube.center + h});
         for (const KnownPlane& k : crossing) part = clip(part, k.plane, true, k.slack);
         cube.upper = std::min(cube.upper, farthest(part, at.triangle));
+        if (covered && !crossing.empty()) {
+          double far = 0;
+          for (const Vec3& v : part.corners) far = std::max(far, (v - cube.center).norm());
+          cube.upper = std::min(cube.upper, std::max(0.0, far - at.lower));
+        }
         if (cube.upper > limit() && !crossing.empty())
           cube.upper = std::min(cube.upper, farthest_outside(part));
       }

@@ -65,15 +65,23 @@ class Contractor {
                           1e-6 * size_ * size_;
       for (const std::uint32_t v : t) quadric_[v].add(h, area);
       add_triangle(t);
+      know_tangents(t, h);
     }
     facets_.emplace(std::move(facets), points[0], size_);
   }
 
   /// Contracts edges in any order, those first that bring a vertex little beyond the hull, while
   /// there are more vertices than `cap`: of many, which go first matters little, and looking for
-  /// the cheapest each time would take long.
-  void thin_out(std::size_t cap) {
-    for (double growth = 1e-5 * size_; growth < 1e-2 * size_ && alive_ > cap; growth *= 4) {
+  /// the cheapest each time would take long. What is far less than `free_cost` is all the same.
+  void thin_out(std::size_t cap, double free_cost) {
+    struct Tried {
+      std::uint64_t stamp;
+      double growth;  ///< or less than it is
+      Vec3 position;
+    };
+    std::unordered_map<std::uint64_t, Tried> known;  // by edge
+    const double least = std::clamp(0.02 * free_cost, 1e-5 * size_, 2e-4 * size_);
+    for (double growth = least; growth < 1e-2 * size_ && alive_ > cap; growth *= 4) {
       const std::size_t old = vertices_.size();
       // The vertices that are new join the end.
       for (std::uint32_t v = 0; v < vertices_.size() && alive_ > cap; ++v) {
@@ -85,8 +93,18 @@ class Contractor {
           for (int k = 0; k < 3; ++k)
             if (triangles_[t][k] == v) e.b = triangles_[t][(k + 1) % 3];
           const bool tried = e.b < v && v < old;
-          if (tried || in_fan(e.a, e.b) || !position(e.a, e.b, e.position)) continue;
-          if (facets_->beyond(e.position, growth, growth) <= growth && contract(e)) break;
+          if (tried || in_fan(e.a, e.b)) continue;
+          const auto key = std::minmax(e.a, e.b);
+          const std::uint64_t stamp = version_[e.a] + version_[e.b];
+          Tried& last = known[std::uint64_t{key.first} << 32U | key.second];
+          if (last.growth == 0 || last.stamp != stamp) {
+            last = {stamp, std::numeric_limits<double>::infinity(), Vec3::Zero()};
+            if (position(e.a, e.b, last.position)) last.growth = growth;
+          }
+          if (last.growth > growth) continue;
+          last.growth = facets_->beyond(last.position, growth, growth);
+          e.position = last.position;
+          if (last.growth <= growth && contract(e)) break;
         }
       }
     }
@@ -203,6 +221,18 @@ class Contractor {
     }
     if (at->second) h = *at->second;
     return at->second.has_value();
+  }
+
+  /// Of the hull's own edges, the plane is that of the facet there.
+  void know_tangents(const Triangle& t, const HalfSpace& h) {
+    std::array<double, 3> length{};
+    for (int k = 0; k < 3; ++k) length[k] = (vertices_[t[(k + 1) % 3]] - vertices_[t[k]]).norm();
+    const Vec3& a = vertices_[t[0]];
+    const double area = (vertices_[t[1]] - a).cross(vertices_[t[2]] - a).norm();
+    // A sliver's plane is left to a search.
+    if (!(area > 1e-6 * *std::max_element(length.begin(), length.end()) * size_)) return;
+    for (int k = 0; k < 3; ++k)
+      tangents_.try_emplace(std::uint64_t{t[k]} << 32U | t[(k + 1) % 3], h);
   }
 
   bool find_tangent(const Vec3& u, const Vec3& w, HalfSpace& h) const {
@@ -538,7 +568,7 @@ Simplified simplify(std::span<const Vec3> hull, std::size_t cap, double free_cos
   const auto result = [&] {
     return contractor.count() <= cap ? contractor.result() : prism_round();
   };
-  contractor.thin_out(std::max(kMany, 6 * cap));
+  contractor.thin_out(std::max(kMany, 6 * cap), free_cost);
   out.cost = contractor.run(cap, free_cost, [&] { out.needed = result(); });
   out.vertices = result();
   return out;
