@@ -3,7 +3,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace kaboum::bcd {
 
@@ -87,13 +86,21 @@ Cell clip(const Cell& cell, const Plane& plane, bool lower, double shift) {
     h[i] = plane.height(cell.corners[i]);
     h[i] = (lower ? h[i] : -h[i]) - shift;  // kept where ≤ 0
   }
+  if (std::all_of(h.begin(), h.end(), [](double x) { return x < 0; })) return cell;
+  if (std::all_of(h.begin(), h.end(), [](double x) { return x > 0; })) return {};
   Cell out;
   constexpr std::uint32_t kNone = 0xFFFFFFFF;
   std::vector<std::uint32_t> number(h.size(), kNone);
-  std::map<std::array<std::uint32_t, 2>, std::uint32_t> on_edge;
+  std::vector<std::pair<std::array<std::uint32_t, 2>, std::uint32_t>> on_edge;  // each met twice
+  const auto found = [&](const std::array<std::uint32_t, 2>& edge) {
+    for (const auto& [known, at] : on_edge)
+      if (known == edge) return at;
+    return kNone;
+  };
   std::vector<std::uint32_t> cap;
   for (const auto& face : cell.faces) {
     std::vector<std::uint32_t> loop;
+    loop.reserve(face.size() + 1);
     for (std::size_t k = 0; k < face.size(); ++k) {
       const std::uint32_t a = face[k], b = face[(k + 1) % face.size()];
       if (h[a] <= 0) {
@@ -106,14 +113,15 @@ Cell clip(const Cell& cell, const Plane& plane, bool lower, double shift) {
       }
       if ((h[a] < 0 && h[b] > 0) || (h[a] > 0 && h[b] < 0)) {
         const std::array<std::uint32_t, 2> edge{std::min(a, b), std::max(a, b)};
-        const auto [at, fresh] =
-            on_edge.emplace(edge, static_cast<std::uint32_t>(out.corners.size()));
-        if (fresh) {
+        std::uint32_t at = found(edge);
+        if (at == kNone) {
+          at = static_cast<std::uint32_t>(out.corners.size());
+          on_edge.emplace_back(edge, at);
           const Vec3 &p = cell.corners[edge[0]], &q = cell.corners[edge[1]];
           out.corners.push_back(p + (h[edge[0]] / (h[edge[0]] - h[edge[1]])) * (q - p));
-          cap.push_back(at->second);
+          cap.push_back(at);
         }
-        loop.push_back(at->second);
+        loop.push_back(at);
       }
     }
     if (loop.size() >= 3) out.faces.push_back(std::move(loop));

@@ -2,15 +2,38 @@
 
 #include "point_tree.h"
 
+#include <algorithm>
+
 namespace kaboum::bcd {
 namespace {
 
 constexpr std::uint32_t kLeaf = 8;  // points
 
+/// Halves the points by their order along the longest side of their box, and each half again.
+void sort_halves(std::span<geom::Vec3> points) {
+  if (points.size() <= kLeaf) return;
+  geom::Box3 box;
+  for (const geom::Vec3& p : points) box.extend(p);
+  int axis = 0;
+  (box.max - box.min).maxCoeff(&axis);
+  const std::size_t middle = points.size() / 2;
+  std::nth_element(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(middle),
+                   points.end(),
+                   [axis](const geom::Vec3& a, const geom::Vec3& b) { return a[axis] < b[axis]; });
+  sort_halves(points.first(middle));
+  sort_halves(points.subspan(middle));
+}
+
 }  // namespace
 
 PointTree::PointTree(std::span<const geom::Vec3> points) : points_(points) {
   if (!points.empty()) add(0, static_cast<std::uint32_t>(points.size()));
+}
+
+std::vector<geom::Vec3> PointTree::ordered(std::span<const geom::Vec3> points) {
+  std::vector<geom::Vec3> out(points.begin(), points.end());
+  sort_halves(out);
+  return out;
 }
 
 geom::Box3 PointTree::add(std::uint32_t first, std::uint32_t last) {

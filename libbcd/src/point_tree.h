@@ -15,6 +15,9 @@ class PointTree {
   /// @param points  kept by reference.
   explicit PointTree(std::span<const geom::Vec3> points);
 
+  /// An order of points in which neighbours are near each other.
+  static std::vector<geom::Vec3> ordered(std::span<const geom::Vec3> points);
+
   /// Calls visit(p), in the points' order, for all with n·p > d, and some others; before each box,
   /// plane() tells n and d anew. Ends where visit returns false.
   template <class CurrentPlane, class Visit>

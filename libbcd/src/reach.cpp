@@ -54,11 +54,14 @@ class Measure {
     std::uint32_t hint;
     double upper = 0;
   };
+  enum class Side : char { Unknown, Inside, Outside };
   struct Cube {
     Vec3 center;
     double half;
     std::uint32_t hint;
     double upper = 0;
+    Side side = Side::Unknown;       ///< of the surface, where the centre is
+    Side inherited = Side::Unknown;  ///< where the centres of its eighths are
   };
 
   [[nodiscard]] double limit() const {
@@ -226,6 +229,11 @@ class Measure {
     return out;
   }
 
+  /// From a cube's centre to a corner.
+  static Vec3 corner_of(int i, double half) {
+    return {(i & 1) != 0 ? half : -half, (i & 2) != 0 ? half : -half, (i & 4) != 0 ? half : -half};
+  }
+
   /// Whether the body holds the point; exact.
   [[nodiscard]] bool within(const Vec3& p) const {
     return std::all_of(body_.triangles.begin(), body_.triangles.end(), [&](const Triangle& t) {
@@ -245,7 +253,8 @@ class Measure {
     }
     std::vector<Cube> first;
     for (const bcd::Cube& cube : cubes_over(box))
-      first.push_back({cube.center, cube.half, geom::DistanceQuery::kNone});
+      first.push_back(
+          {cube.center, cube.half, geom::DistanceQuery::kNone, 0, Side::Unknown, Side::Unknown});
     const auto bound = [&](Cube& cube) {
       crossing.clear();
       for (const KnownPlane& k : planes) {
@@ -259,37 +268,45 @@ class Measure {
       const auto at = solid_.surface().nearest(cube.center, cube.hint);
       cube.hint = at.triangle;
       cube.upper = at.upper + radius;
-      bool covered = false;  // the centre
       if (cube.upper > limit()) {
-        if (solid_.contains(cube.center)) {
+        if (cube.side == Side::Unknown)
+          cube.side = solid_.contains(cube.center) ? Side::Inside : Side::Outside;
+        if (cube.side == Side::Inside) {
           if (at.lower >= radius * (1 + 1e-12)) return false;
           cube.upper = std::min(cube.upper, radius - at.lower);
-          covered = true;
         } else if (at.lower > result_.lower && within(cube.center)) {
           raise(at.lower, cube.center);
         }
       }
-      if (cube.upper > limit() && crossing.size() <= 12) {
+      // Where no triangle is between here and there.
+      cube.inherited = at.lower > 0.5 * radius * (1 + 1e-12) ? cube.side : Side::Unknown;
+      if (cube.upper > limit() && crossing.empty()) {
+        double corners = 0;
+        for (int i = 0; i < 8; ++i)
+          corners =
+              std::max(corners, solid_.surface()
+                                    .to_triangle(cube.center + corner_of(i, cube.half), at.triangle)
+                                    .upper);
+        cube.upper = std::min(cube.upper, corners);
+      }
+      if (cube.upper > limit() && !crossing.empty() && crossing.size() <= 12) {
         const Vec3 h = Vec3::Constant(cube.half);
         Cell part = Cell::of({cube.center - h, cube.center + h});
         for (const KnownPlane& k : crossing) part = clip(part, k.plane, true, k.slack);
         cube.upper = std::min(cube.upper, farthest(part, at.triangle));
-        if (covered && !crossing.empty()) {
+        if (cube.side == Side::Inside) {
           double far = 0;
           for (const Vec3& v : part.corners) far = std::max(far, (v - cube.center).norm());
           cube.upper = std::min(cube.upper, std::max(0.0, far - at.lower));
         }
-        if (cube.upper > limit() && !crossing.empty())
-          cube.upper = std::min(cube.upper, farthest_outside(part));
+        if (cube.upper > limit()) cube.upper = std::min(cube.upper, farthest_outside(part));
       }
       return true;
     };
     search(std::move(first), options_.most, bound, [](const Cube& cube, const auto& visit) {
       const double h = 0.5 * cube.half;
       for (int i = 0; i < 8; ++i)
-        visit(Cube{
-            cube.center + Vec3((i & 1) != 0 ? h : -h, (i & 2) != 0 ? h : -h, (i & 4) != 0 ? h : -h),
-            h, cube.hint});
+        visit(Cube{cube.center + corner_of(i, h), h, cube.hint, 0, cube.inherited});
     });
   }
 

@@ -47,7 +47,11 @@ class Contractor {
  public:
   Contractor(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
              const Solid& solid)
-      : solid_(solid), original_(points), size_(size_of(points)), vertices_(points) {
+      : solid_(solid),
+        near_(PointTree::ordered(points)),
+        original_(near_),
+        size_(size_of(points)),
+        vertices_(points) {
     star_.resize(points.size());
     version_.assign(points.size(), 0);
     quadric_.resize(points.size());
@@ -526,6 +530,7 @@ class Contractor {
   }
 
   const Solid& solid_;
+  std::vector<Vec3> near_;  // the original's vertices, neighbours near each other
   PointTree original_;
   std::optional<FacetTree> facets_;                                       // original
   std::unordered_map<std::uint64_t, std::optional<HalfSpace>> tangents_;  // by edge
