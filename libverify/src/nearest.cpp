@@ -42,10 +42,20 @@ Vec3 closest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   return best;
 }
 
-NearestTriangle::Hit NearestTriangle::nearest(const Vec3& p) const {
+NearestTriangle::Hit NearestTriangle::nearest(const Vec3& p, std::uint32_t guess) const {
   Hit best{kNone, std::numeric_limits<double>::infinity()};
   if (tree_.empty()) return best;
   double square = std::numeric_limits<double>::infinity();
+  const auto look = [&](std::uint32_t f) {
+    const double d =
+        (closest_point(p, scene_.corner(f, 0), scene_.corner(f, 1), scene_.corner(f, 2)) - p)
+            .squaredNorm();
+    if (d < square) {
+      square = d;
+      best.face = f;
+    }
+  };
+  if (guess != kNone) look(guess);
   struct Entry {
     std::uint32_t node;
     double distance;
@@ -66,14 +76,7 @@ NearestTriangle::Hit NearestTriangle::nearest(const Vec3& p) const {
       continue;
     }
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const std::uint32_t f = tree_.item(i);
-      const double d =
-          (closest_point(p, scene_.corner(f, 0), scene_.corner(f, 1), scene_.corner(f, 2)) - p)
-              .squaredNorm();
-      if (d < square) {
-        square = d;
-        best.face = f;
-      }
+      if (squared_distance(p, tree_.box(i)) < square) look(tree_.item(i));
     }
   }
   best.distance = std::sqrt(square);

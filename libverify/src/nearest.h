@@ -24,7 +24,8 @@ class NearestTriangle {
   /// Of some faces only.
   NearestTriangle(const Scene& scene, const BoxTree& tree) : scene_(scene), tree_(tree) {}
   /// kNone at an infinite distance when the chain has no triangle with area.
-  [[nodiscard]] Hit nearest(const Vec3& p) const;
+  /// @param guess  a face of the tree that may be near, which saves time; any does
+  [[nodiscard]] Hit nearest(const Vec3& p, std::uint32_t guess = kNone) const;
   /// Infinite when the chain has no triangle with area.
   [[nodiscard]] double distance(const Vec3& p) const;
   /// A bound of the distance from below, but for an absolute error of a few units in the last place

@@ -16,6 +16,7 @@ constexpr int kClimbs = 200;
 constexpr std::size_t kFewFaces = 1000;
 constexpr int kTurns = 8;
 constexpr std::size_t kMostFaces = 200, kMostParts = 300, kMostPrisms = 100;
+constexpr double kSoon = 4;  // radii of boxes, in what distances are below the limit
 constexpr double kNowhere = -std::numeric_limits<double>::infinity();
 
 /// Halves boxes until each of them is settled.
@@ -104,7 +105,9 @@ class Search {
     if (!look.settled && limit_.inside_only) {
       look.settled = no_maximum(look.point, radius, hit.distance);
     }
-    if (!look.settled) look.settled = thin(cell, look.point, hit.face);
+    // Where a few halvings will do, cutting costs more than they.
+    const bool soon = radius <= kSoon * (limit_.distance - hit.distance);
+    if (!look.settled && !soon) look.settled = thin(cell, look.point, hit.face);
     if (!look.settled && limit_.bodies != nullptr) look.settled = left_by_bodies(cell, hit.face);
     return look;
   }
@@ -253,8 +256,10 @@ class Search {
         if (parts.size() > kMostParts) return false;
       }
     }
-    return thinner && std::all_of(parts.begin(), parts.end(),
-                                  [&](const Part& part) { return near_after_cuts(part, face); });
+    std::size_t prisms = 0;
+    return thinner && std::all_of(parts.begin(), parts.end(), [&](const Part& part) {
+             return near_after_cuts(part, face, prisms);
+           });
   }
 
   /// Normals of the nearest face of each kind, both ways.
@@ -345,22 +350,22 @@ class Search {
   }
 
   /// Whether the part is within the limit of one triangle, or its cuts along the sides of the prism
-  /// over the nearest one are.
-  [[nodiscard]] bool near_after_cuts(const Part& part, std::uint32_t face) const {
+  /// over the nearest one are. @param prisms  that were cut along, in all
+  [[nodiscard]] bool near_after_cuts(const Part& part, std::uint32_t face,
+                                     std::size_t& prisms) const {
     const NearestTriangle target(scene_, limit_.target);
     std::vector<Part> open{part}, pieces, next;
-    std::size_t seen = 0;
     while (!open.empty()) {
       const Part piece = open.back();
       open.pop_back();
       const std::vector<Vec3> points(piece.corners.begin(), piece.corners.end());
       if (near(points, face)) continue;
       const Vec3 middle = 0.25 * (points[0] + points[1] + points[2] + points[3]);
-      const NearestTriangle::Hit hit = target.nearest(middle);
+      const NearestTriangle::Hit hit = target.nearest(middle, face);
       const std::uint32_t f = hit.face;
       if (f == NearestTriangle::kNone || hit.distance > limit_.distance) return false;
       if (near(points, f)) continue;
-      if (++seen > kMostPrisms || piece.cuts > kMostCuts - 4) return false;
+      if (++prisms > kMostPrisms || piece.cuts > kMostCuts - 4) return false;
       pieces.assign(1, piece);
       const Vec3& a = scene_.corner(f, 0);
       const Vec3 normal = (scene_.corner(f, 1) - a).cross(scene_.corner(f, 2) - a);
@@ -404,7 +409,7 @@ class Search {
       const std::vector<Vec3> points(part.begin(), part.end());
       if (near(points, face)) return true;
       const Vec3 middle = 0.25 * (part[0] + part[1] + part[2] + part[3]);
-      const NearestTriangle::Hit hit = target.nearest(middle);
+      const NearestTriangle::Hit hit = target.nearest(middle, face);
       double radius = 0;
       for (const Vec3& p : points) radius = std::max(radius, (p - middle).norm());
       return hit.distance + radius + 2 * slack_ <= limit_.distance || near(points, hit.face);
