@@ -538,7 +538,10 @@ int check(const Options& o) {
     }
   }
 
-  const Answer answer = verdict.answer();
+  // A solid that is empty is within any other.
+  const bool vacuous = !wants_surface && geom::signed_volume(inner) < 0;
+  const Answer answer =
+      vacuous && verdict.answer() == Answer::Verified ? Answer::Undefined : verdict.answer();
   if (!o.witness.empty() && answer == Answer::Refuted) {
     for (const std::uint32_t t : depth.inner_triangles) far.push_back({&original.mesh, t});
     for (const std::uint32_t t : depth.outer_triangles) far.push_back({&approximation.mesh, t});
@@ -599,6 +602,13 @@ int check(const Options& o) {
     if (const std::string change = change_by_preparing(original); !change.empty())
       tools::log(o.common.quiet, "note: bmesh-decimate and bcd-decompose speak of " + o.original +
                                      " as prepared; --prepare judges that: " + change);
+  }
+  if (answer == Answer::Undefined && vacuous) {
+    throw Error(ErrorCode::InvalidInput,
+                (o.inner ? o.approximation : o.original) +
+                    " is inside out: its volume is negative, so that its solid is empty or nearly "
+                    "so, and that it is enclosed says nothing. Turn its triangles round" +
+                    (o.inner ? "" : " (--prepare does)") + ", or ask for --claims all");
   }
   if (answer == Answer::Undefined && inclusion.inner_closed && inclusion.outer_closed) {
     throw Error(ErrorCode::InvalidInput,

@@ -216,6 +216,8 @@ io::Format format_for(const std::string& path, const std::string& name, const ch
                 std::string(option) + " is needed with '-'; known: " + choices);
   if (const auto f = io::format_from_name(std::filesystem::path(path).extension().string()))
     return *f;
+  if (std::error_code error; reading && !std::filesystem::exists(path, error))
+    throw Error(ErrorCode::InvalidInput, path + ": no such file or folder");
   if (const std::string way = reading ? route(path) : std::string(); !way.empty())
     throw Error(ErrorCode::InvalidInput, path + ": " + way);
   throw Error(reading ? ErrorCode::InvalidInput : ErrorCode::InvalidArgument,

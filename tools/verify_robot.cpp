@@ -34,6 +34,10 @@ bool same_frame(const Geometry& a, const Geometry& b) {
   return a.shape == b.shape && a.size == b.size && same(a.origin, b.origin);
 }
 
+bool same_limits(const sweep::Variable& a, const sweep::Variable& b) {
+  return a.lower == b.lower && a.upper == b.upper;
+}
+
 const char* name_of_shape(Geometry::Shape shape) {
   switch (shape) {
     case Geometry::Shape::Mesh:
@@ -48,7 +52,7 @@ const char* name_of_shape(Geometry::Shape shape) {
   return "sphere";
 }
 
-/// Why the robots do not move alike; empty if they do. Limits of joints are no matter of shapes.
+/// Why the robots do not move alike; empty if they do.
 std::string difference_in_motion(const sweep::Robot& original, const sweep::Robot& result) {
   if (original.links[0].name != result.links[0].name)
     return "the result's root is '" + result.links[0].name + "' instead of '" +
@@ -77,6 +81,8 @@ std::string difference_in_motion(const sweep::Robot& original, const sweep::Robo
     else if (!fixed && (a.multiplier != b.multiplier || a.offset != b.offset ||
                         original.variables[a.variable].name != result.variables[b.variable].name))
       what = "mimics in another way";
+    else if (!fixed && !same_limits(original.variables[a.variable], result.variables[b.variable]))
+      what = "has other limits";
     if (what != nullptr) return "joint '" + a.name + "' " + what;
   }
   return {};
@@ -321,6 +327,8 @@ class RobotVerifier {
   }
 
   static Finding primitive(const Geometry& g, const std::vector<Geometry>& there) {
+    if (there.empty() && !sweep::is_flat(g))
+      return {Answer::Refuted, "the result's link has no shape at all"};
     const bool found = std::any_of(there.begin(), there.end(),
                                    [&](const Geometry& h) { return same_frame(g, h); });
     if (found) return {Answer::Verified, "the result has it as well"};
@@ -347,7 +355,7 @@ class RobotVerifier {
     for (const File* file : group.originals) {
       show(file->path);
       meshes.push_back(judged_mesh(*file));
-      out.originals.push_back(hold(*file, meshes.back(), holders));
+      out.originals.push_back(hold(*file, meshes.back(), holders, group.bodies.empty()));
       held = held && out.originals.back().answer == Answer::Verified;
     }
     if (epsilon_ && held) out.distance = distance(group, meshes, holders);
@@ -385,10 +393,8 @@ class RobotVerifier {
     return std::move(prepared.mesh);
   }
 
-  /// Whether the mesh is held.
-  Finding hold(const File& file, const geom::Mesh& mesh, const Holders& holders) {
-    if (holders.set.bodies.empty())
-      return {Answer::Undecided, "the result's link has no closed mesh of its pose and scale"};
+  /// Whether the mesh is held. @param none  the result has nothing of its frame
+  Finding hold(const File& file, const geom::Mesh& mesh, const Holders& holders, bool none) {
     if (std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const geom::Triangle& t) {
           return geom::is_degenerate(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
         }))
@@ -397,6 +403,10 @@ class RobotVerifier {
       return {Answer::Undecided,
               "it is inside out: its volume is negative" +
                   std::string(o_.prepare ? "" : "; --prepare judges it as bcd-decompose takes it")};
+    const bool any = o_.claims != "solid" || (closed(mesh) && geom::signed_volume(mesh) > 0);
+    if (holders.set.bodies.empty())
+      return {none && any ? Answer::Refuted : Answer::Undecided,
+              "the result's link has no closed mesh of its pose and scale"};
     const bool convex = holders.convex.answer == Answer::Verified;
     const verify::Inclusion in =
         naming(file.path, [&] { return verify::verify_inclusion(mesh, holders.sum, limits_); });

@@ -2,20 +2,70 @@
 #include <kaboum/geom/error.h>
 #include <kaboum/verify/cover.h>
 
+#include <algorithm>
+
+#include "nearest.h"
 #include "pockets.h"
 #include "whole.h"
 
 namespace kaboum::verify {
 
+namespace {
+
+/// Enough for most bodies that overlap; which of their triangles bound what is left out takes far
+/// longer to tell than this.
+constexpr std::size_t kFewCells = 150'000;
+
+/// The triangles of both chains nearest to the witness.
+void name_nearest(const Scene& scene, Claim& claim) {
+  const Vec3 at = claim.witness->point * scene.scale();
+  for (const int chain : {kInside, kOutside}) {
+    const std::uint32_t f = NearestTriangle(scene, chain).nearest(at).face;
+    if (f != NearestTriangle::kNone)
+      (chain == kInside ? claim.inner_triangles : claim.outer_triangles)
+          .push_back(scene.face(f).source);
+  }
+}
+
+}  // namespace
+
 Claim verify_depth(const geom::Mesh& original, const geom::ConvexSet& set, double epsilon,
                    const InclusionOptions& options) {
   const geom::Mesh sum = sum_of(set);
+  const Scene scene(original, sum);
+  std::vector<std::uint32_t> bounding;
+  if (scene.scaled() && scene.closed(kInside) && scene.closed(kOutside)) {
+    try {
+      bounding = faces_with(scene, kInside, options,
+                            [](int inner, int outer) { return inner >= 1 && outer <= 0; });
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::LimitReached) throw;
+    }
+  }
+  const BoxTree target = bounding.empty() ? BoxTree() : tree_of(scene, bounding);
+  const Uncovered bodies(scene, set);
+  const auto search = [&](const std::vector<std::uint32_t>& faces, std::size_t cells) {
+    Claim claim = search_pockets(
+        scene, faces,
+        {target, scene.tree(kInside), epsilon * scene.scale(), cells, false, &bodies});
+    if (claim.answer == Answer::Refuted)
+      claim.reason = "a point that is deeper than that inside the original is in no body";
+    return claim;
+  };
+  if (!bounding.empty()) {
+    std::vector<std::uint32_t> all;  // hold the boundary of Z, whatever it is
+    for (std::uint32_t f = 0; f < scene.faces().size(); ++f)
+      if (scene.face(f).axis >= 0) all.push_back(f);
+    Claim claim = search(all, std::min(kFewCells, options.max_cells));
+    if (claim.answer == Answer::Refuted) name_nearest(scene, claim);
+    if (claim.answer != Answer::Undecided) return claim;
+  }
+
   const Inclusion without = verify_inclusion(original, sum, options);
   Claim claim = without.solid;
   if (claim.answer != Answer::Refuted) return claim;
   claim = {};
   claim.answer = Answer::Undecided;
-  const Scene scene(original, sum);
   if (without.limited) {
     claim.reason = "not all that is left out was found within the limits";
     return claim;
@@ -24,24 +74,12 @@ Claim verify_depth(const geom::Mesh& original, const geom::ConvexSet& set, doubl
     claim.reason = "coordinates span too many orders of magnitude to measure distances";
     return claim;
   }
-  std::vector<std::uint32_t> bounding;
-  try {
-    bounding = faces_with(scene, kInside, options,
-                          [](int inner, int outer) { return inner >= 1 && outer <= 0; });
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::LimitReached) throw;
-  }
   if (bounding.empty()) {
     claim.reason = "no triangle of the original is known to bound its solid";
     return claim;
   }
-  const BoxTree target = tree_of(scene, bounding);
-  const Uncovered bodies(scene, set);
-  claim = search_pockets(
-      scene, offending_faces(scene, without.solid),
-      {target, scene.tree(kInside), epsilon * scene.scale(), options.max_cells, false, &bodies});
+  claim = search(offending_faces(scene, without.solid), options.max_cells);
   if (claim.answer != Answer::Refuted) return claim;
-  claim.reason = "a point that is deeper than that inside the original is in no body";
   claim.inner_triangles = without.solid.inner_triangles;
   claim.outer_triangles = without.solid.outer_triangles;
   return claim;

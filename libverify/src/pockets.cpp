@@ -83,6 +83,7 @@ class Search {
     const NearestTriangle::Hit hit = target.nearest(look.point);
     look.settled =
         hit.distance + slack_ + radius <= limit_.distance || near(corners(cell), hit.face);
+    if (!look.settled && limit_.bodies != nullptr) look.settled = limit_.bodies->one_holds(cell);
     if (look.settled) return look;
 
     const std::optional<bool> in = in_pocket(look.point);
@@ -364,7 +365,9 @@ class Search {
       const NearestTriangle::Hit hit = target.nearest(middle, face);
       const std::uint32_t f = hit.face;
       if (f == NearestTriangle::kNone || hit.distance > limit_.distance) return false;
-      if (near(points, f)) continue;
+      double radius = 0;
+      for (const Vec3& x : points) radius = std::max(radius, (x - middle).norm());
+      if (hit.distance + radius + 2 * slack_ <= limit_.distance || near(points, f)) continue;
       if (++prisms > kMostPrisms || piece.cuts > kMostCuts - 4) return false;
       pieces.assign(1, piece);
       const Vec3& a = scene_.corner(f, 0);
@@ -402,18 +405,11 @@ class Search {
 
   /// Whether all that the bodies leave of the box is within the limit.
   [[nodiscard]] bool left_by_bodies(const Bounds& cell, std::uint32_t face) const {
-    std::vector<Tetrahedron> parts;
+    std::vector<Part> parts;
     if (!limit_.bodies->parts(cell, parts)) return false;
-    const NearestTriangle target(scene_, limit_.target);
-    return std::all_of(parts.begin(), parts.end(), [&](const Tetrahedron& part) {
-      const std::vector<Vec3> points(part.begin(), part.end());
-      if (near(points, face)) return true;
-      const Vec3 middle = 0.25 * (part[0] + part[1] + part[2] + part[3]);
-      const NearestTriangle::Hit hit = target.nearest(middle, face);
-      double radius = 0;
-      for (const Vec3& p : points) radius = std::max(radius, (p - middle).norm());
-      return hit.distance + radius + 2 * slack_ <= limit_.distance || near(points, hit.face);
-    });
+    std::size_t prisms = 0;
+    return std::all_of(parts.begin(), parts.end(),
+                       [&](const Part& part) { return near_after_cuts(part, face, prisms); });
   }
 
   /// nullopt when the point may lie on a surface.

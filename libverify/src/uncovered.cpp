@@ -113,7 +113,22 @@ bool Uncovered::subtract(const std::vector<Plane>& planes, const Part& part,
   return true;
 }
 
-bool Uncovered::parts(const Bounds& box, std::vector<Tetrahedron>& out) const {
+bool Uncovered::one_holds(const Bounds& box) const {
+  const Vec3 low(box.low.data()), high(box.high.data());
+  const Vec3 middle = 0.5 * (low + high), half = 0.5 * (high - low);
+  bool held = false;
+  tree_.query(
+      [&](const Bounds& b) { return !held && b.meets(box); },
+      [&](std::uint32_t body) {
+        held = std::all_of(
+            bodies_[body].planes.begin(), bodies_[body].planes.end(), [&](const Plane& plane) {
+              return plane.normal.dot(middle) + plane.normal.cwiseAbs().dot(half) <= plane.height;
+            });
+      });
+  return held;
+}
+
+bool Uncovered::parts(const Bounds& box, std::vector<Part>& out) const {
   out.clear();
   std::vector<Crossing> near;
   tree_.query([&](const Bounds& b) { return b.meets(box); },
@@ -126,16 +141,15 @@ bool Uncovered::parts(const Bounds& box, std::vector<Tetrahedron>& out) const {
   std::stable_sort(near.begin(), near.end(),
                    [](const Crossing& a, const Crossing& b) { return a.depth > b.depth; });
   if (near.size() > kMostBodies) near.resize(kMostBodies);
-  std::vector<Part> parts, left;
-  for (const Tetrahedron& t : tetrahedra(box)) parts.push_back({t, 0});
+  std::vector<Part> left;
+  for (const Tetrahedron& t : tetrahedra(box)) out.push_back({t, 0});
   for (const Crossing& body : near) {
     left.clear();
-    for (const Part& part : parts)
+    for (const Part& part : out)
       if (!subtract(body.planes, part, left)) return false;
-    parts.swap(left);
-    if (parts.empty()) break;
+    out.swap(left);
+    if (out.empty()) break;
   }
-  for (const Part& part : parts) out.push_back(part.corners);
   return true;
 }
 

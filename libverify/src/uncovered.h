@@ -22,7 +22,10 @@ class Uncovered {
   /// rounding_of_distances below a facet of each body that does (what was cut before may be off by
   /// that), but for the rounding of cut points, which is at most as much. False when no body covers
   /// anything of the box, or when there would be too many of them.
-  bool parts(const Bounds& box, std::vector<Tetrahedron>& out) const;
+  bool parts(const Bounds& box, std::vector<Part>& out) const;
+
+  /// Whether some body winds about all of the box. @pre as for parts, the box's corners rounded
+  [[nodiscard]] bool one_holds(const Bounds& box) const;
 
  private:
   /// Points below all planes lie inside.

@@ -100,6 +100,12 @@ sed 's,<link name="frame">,<link name="frame"><collision><geometry><sphere radiu
   out/r.urdf >bad/r.urdf
 expect 0 'verified' "$V" --robot robot/r.urdf bad/r.urdf
 expect 7 "link 'frame': undecided: how far 1 shape" "$V" --robot robot/r.urdf bad/r.urdf --epsilon 3%
+# A link that lost its shapes holds nothing, whatever they were; limits are the robot's, too.
+sed '/<collision/,/<\/collision>/d' out/r.urdf >bad/r.urdf
+expect 1 "t.off: refuted: the result's link has no" "$V" --robot robot/r.urdf bad/r.urdf
+grep -q "box: refuted: the result's link has no shape" out.txt || fail "a box that is gone: $(cat out.txt)"
+sed 's/upper="2"/upper="2.5"/' out/r.urdf >bad/r.urdf
+expect 1 "joints: refuted: joint '[a-z]*' has other limits" "$V" --robot robot/r.urdf bad/r.urdf
 sed 's/<axis xyz="0 1 0"/<axis xyz="0 0 1"/' out/r.urdf >bad/r.urdf
 expect 1 "joints: refuted: joint 'shoulder'" "$V" --robot robot/r.urdf bad/r.urdf
 sed 's/"frame"/"other"/' out/r.urdf >bad/r.urdf

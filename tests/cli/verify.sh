@@ -65,6 +65,16 @@ grep -q 'same unit' err.txt || fail 'no word of units'
 cube 1 0 >turned.off
 expect 1 '' "$V" --outer one.off turned.off
 grep -q 'the approximation is inside out' err.txt || fail 'no word of the orientation'
+# An empty solid is within any other: that alone is no verdict.
+expect 3 'turned.off is inside out.*says nothing' "$V" --inner one.off turned.off --claims solid
+expect 3 'turned.off is inside out.*--prepare' "$V" --outer turned.off three.off --claims solid --report empty.json
+grep -q '"verdict": "undefined"' empty.json || fail 'the report has a verdict of an empty solid'
+expect 3 'is inside out' "$V" --outer turned.off one.off --claims solid
+expect 0 '' "$V" --outer turned.off three.off --claims solid --prepare
+expect 0 '' "$V" --outer turned.off three.off
+expect 1 '' "$V" --inner less.off turned.off --claims all
+expect 3 'nowhere: no such file or folder' "$V" --cover one.off nowhere
+expect 3 'nowhere: no such file or folder' "$V" --outer nowhere one.off
 expect 2 'approximation-format' "$V" --outer one.off - <three.off
 expect 2 'prepare' "$V" --outer one.off three.off --drop-sheets
 cube 0 1 | awk 'NR == 2 { $0 = "11 14 0" } { print } NR == 10 { print "5 0 0\n6 0 0\n5 1 0" }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <kaboum/geom/convex_hull.h>
+#include <kaboum/geom/predicates.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -413,6 +414,58 @@ TEST(Depth, AgainstSamples) {
   EXPECT_GE(answers[static_cast<std::size_t>(Answer::Verified)], 8);
   EXPECT_GE(answers[static_cast<std::size_t>(Answer::Refuted)], 4);
   EXPECT_LE(answers[static_cast<std::size_t>(Answer::Undecided)], 12);
+}
+
+// Bodies that overlap all over: what is left out is found without the lines in which they meet, of
+// which there are too many here.
+TEST(Depth, OfBodiesThatOverlapManyTimes) {
+  Random random(18);
+  const auto uniform = [&] { return static_cast<double>(random() % 100'000) / 50'000 - 1; };
+  const Mesh ball = icosphere(2);
+  std::vector<Mesh> bodies;
+  for (int i = 0; i < 60; ++i) {
+    const Vec3 centre = Vec3(uniform(), uniform(), uniform()).normalized() * 0.4;
+    std::vector<Vec3> points;
+    for (int k = 0; k < 60; ++k)
+      points.push_back(centre + 0.5 * Vec3(uniform(), uniform(), uniform()).normalized());
+    bodies.push_back(*geom::convex_hull(points));
+  }
+  const auto in_a_body = [&](const Vec3& p) {
+    return std::any_of(bodies.begin(), bodies.end(), [&](const Mesh& body) {
+      return std::all_of(body.triangles.begin(), body.triangles.end(),
+                         [&](const geom::Triangle& t) {
+                           return geom::orient3d(body.vertices[t[0]], body.vertices[t[1]],
+                                                 body.vertices[t[2]], p) != geom::Sign::Positive;
+                         });
+    });
+  };
+  double deepest = 0;
+  for (int i = 0; i < 200'000; ++i) {
+    const Vec3 p(uniform(), uniform(), uniform());
+    double depth = 2;
+    for (const geom::Triangle& t : ball.triangles) {
+      const Vec3 &a = ball.vertices[t[0]], &b = ball.vertices[t[1]], &c = ball.vertices[t[2]];
+      depth = std::min(depth, (b - a).cross(c - a).normalized().dot(a - p));
+      if (depth <= deepest) break;
+    }
+    if (depth > deepest && !in_a_body(p)) deepest = depth;
+  }
+  ASSERT_GT(deepest, 0.05);
+  verify::InclusionOptions few;
+  few.max_contacts = 2000;
+  int verified = 0;
+  for (const double share : {0.5, 0.9, 0.999, 1.2, 1.5, 2.0}) {
+    const verify::Claim claim = verify::verify_depth(ball, set_of(bodies), share * deepest, few);
+    if (share < 1) {
+      EXPECT_EQ(claim.answer, Answer::Refuted) << share;
+      ASSERT_TRUE(claim.witness.has_value());
+      EXPECT_FALSE(in_a_body(claim.witness->point)) << share;
+      EXPECT_EQ(claim.inner_triangles.size(), 1U);
+    }
+    EXPECT_NE(claim.answer, Answer::Undecided) << share;
+    verified += claim.answer == Answer::Verified ? 1 : 0;
+  }
+  EXPECT_GE(verified, 1);
 }
 
 // A fold inside the original, and a part that is inside out, are no part of its boundary: what is

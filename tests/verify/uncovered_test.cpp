@@ -69,11 +69,14 @@ class Bodies {
       box.low[k] *= scene_.scale();
       box.high[k] *= scene_.scale();
     }
-    Parts parts;
+    std::vector<Part> parts;
     if (!uncovered_.parts(box, parts)) return std::nullopt;
-    for (auto& part : parts)
-      for (Vec3& p : part) p = scene_.point_outside(p);
-    return parts;
+    Parts out;
+    for (Part& part : parts) {
+      for (Vec3& p : part.corners) p = scene_.point_outside(p);
+      out.push_back(part.corners);
+    }
+    return out;
   }
 
   /// Whether p is outside all bodies, or moves out of each by less than rounding(); exact.
