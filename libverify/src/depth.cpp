@@ -37,7 +37,7 @@ Claim verify_depth(const geom::Mesh& original, const geom::ConvexSet& set, doubl
   if (scene.scaled() && scene.closed(kInside) && scene.closed(kOutside)) {
     try {
       bounding = faces_with(scene, kInside, options,
-                            [](int inner, int outer) { return inner >= 1 && outer <= 0; });
+                            [](int inner, int outer) { return std::min(inner, outer) <= 0; });
     } catch (const Error& error) {
       if (error.code() != ErrorCode::LimitReached) throw;
     }
@@ -47,7 +47,7 @@ Claim verify_depth(const geom::Mesh& original, const geom::ConvexSet& set, doubl
   const auto search = [&](const std::vector<std::uint32_t>& faces, std::size_t cells) {
     Claim claim = search_pockets(
         scene, faces,
-        {target, scene.tree(kInside), epsilon * scene.scale(), cells, false, &bodies});
+        {target, scene.tree(kInside), epsilon * scene.scale(), cells, false, true, &bodies});
     if (claim.answer == Answer::Refuted)
       claim.reason = "a point that is deeper than that inside the original is in no body";
     return claim;

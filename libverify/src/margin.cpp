@@ -13,7 +13,7 @@ Claim solid_claim(const Scene& scene, const geom::ConvexSet& set, bool convex,
   const Uncovered bodies(scene, set);
   Claim claim = search_pockets(scene, offending_faces(scene, without),
                                {faces, faces, set.margin * scene.scale(), max_cells, inside_only,
-                                convex ? &bodies : nullptr});
+                                false, convex ? &bodies : nullptr});
   if (claim.answer == Answer::Refuted) {
     claim.reason = "a part of the inner solid is farther from the outer one than the margin";
   }

@@ -84,6 +84,7 @@ class Search {
     look.settled =
         hit.distance + slack_ + radius <= limit_.distance || near(corners(cell), hit.face);
     if (!look.settled && limit_.bodies != nullptr) look.settled = limit_.bodies->one_holds(cell);
+    if (!look.settled && limit_.to_outside) look.settled = near_outside(look.point, radius);
     if (look.settled) return look;
 
     const std::optional<bool> in = in_pocket(look.point);
@@ -111,6 +112,22 @@ class Search {
     if (!look.settled && !soon) look.settled = thin(cell, look.point, hit.face);
     if (!look.settled && limit_.bodies != nullptr) look.settled = left_by_bodies(cell, hit.face);
     return look;
+  }
+
+  /// Whether some point outside the inner solid is within the limit of the whole ball: its centre,
+  /// or a point beyond the face nearest to that.
+  [[nodiscard]] bool near_outside(const Vec3& p, double radius) const {
+    const auto outside = [&](const Vec3& x) {
+      return winding_at(scene_, kInside, x).value_or(1) < 1;
+    };
+    if (radius > limit_.distance) return false;
+    if (outside(p)) return true;
+    const NearestTriangle::Hit hit = NearestTriangle(scene_, kInside).nearest(p);
+    const double left = limit_.distance - radius - hit.distance;
+    if (!(left > 4 * slack_) || !(hit.distance > 0)) return false;
+    const Vec3 way = (closest(p, hit.face) - p) / hit.distance;
+    const Vec3 beyond_it = p + (hit.distance + std::min(left / 2, hit.distance / 16)) * way;
+    return (beyond_it - p).norm() + slack_ + radius <= limit_.distance && outside(beyond_it);
   }
 
   /// Whether no point of the ball can be a local maximum of the distance: at one, the nearest

@@ -19,6 +19,9 @@ struct Limit {
   /// The boundary of Z is known to be within the limit, so that only local maxima of the distance
   /// inside Z can exceed it. @pre what distances are measured to is made of faces of `all`
   bool inside_only;
+  /// Distances are those to the outside of the inner solid: from a point of it, those to any point
+  /// about which the inner chain winds less than once are as large, or larger.
+  bool to_outside = false;
   /// The bodies whose sum the outer chain is, if it is that of a set.
   const Uncovered* bodies = nullptr;
 };

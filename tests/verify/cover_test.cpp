@@ -468,6 +468,69 @@ TEST(Depth, OfBodiesThatOverlapManyTimes) {
   EXPECT_GE(verified, 1);
 }
 
+// Originals of blocks that run through one another, so that hardly a triangle bounds the solid as a
+// whole. How deep a point is the empty cubes of a grid tell.
+TEST(Depth, OfOriginalsThatCutThemselves) {
+  constexpr int kSide = 6;
+  std::array<int, 3> answers{};
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    Random random(seed);
+    const auto uniform = [&] { return static_cast<double>(random() % 100'000) / 100'000; };
+    const double inset = 0.1 + 0.6 * uniform();
+    std::vector<Mesh> blocks, bodies;
+    std::vector<Block> of_original, of_bodies;
+    for (int i = 0; i < 4; ++i) {
+      Vec3 low, high;
+      for (int k = 0; k < 3; ++k) {
+        low[k] = static_cast<double>(random() % (kSide - 1));
+        high[k] = std::min<double>(kSide, low[k] + 2 + static_cast<double>(random() % 3));
+      }
+      blocks.push_back(block(low, high));
+      of_original.push_back({low, high});
+      const Vec3 by = Vec3::Constant(inset);
+      if (((high - low).array() <= 2 * inset).any() || seed % 3 == 0) continue;
+      bodies.push_back(block(low + by, high - by));
+      of_bodies.push_back({low + by, high - by});
+    }
+    std::vector<Block> empty;
+    for (int c = 0; c < (kSide + 2) * (kSide + 2) * (kSide + 2); ++c) {
+      const Vec3 low(c % (kSide + 2) - 1, c / (kSide + 2) % (kSide + 2) - 1,
+                     c / (kSide + 2) / (kSide + 2) - 1);
+      const Block cube{low, low + Vec3::Ones()};
+      if (std::none_of(of_original.begin(), of_original.end(),
+                       [&](const Block& b) { return b.distance(low + Vec3::Constant(0.5)) == 0; }))
+        empty.push_back(cube);
+    }
+    const auto depth = [&](const Vec3& p) {
+      double least = 100;
+      for (const Block& b : empty) least = std::min(least, b.distance(p));
+      return least;
+    };
+    const auto in_a_body = [&](const Vec3& p) {
+      return std::any_of(of_bodies.begin(), of_bodies.end(),
+                         [&](const Block& b) { return b.distance(p) == 0; });
+    };
+    const double epsilon = 0.15 + 1.2 * uniform();
+    verify::InclusionOptions soon;
+    soon.max_cells = 10'000;
+    const verify::Claim claim = verify::verify_depth(merged(blocks), set_of(bodies), epsilon, soon);
+    ++answers.at(static_cast<std::size_t>(claim.answer));
+    if (claim.answer == Answer::Refuted) {
+      ASSERT_TRUE(claim.witness.has_value()) << seed;
+      EXPECT_FALSE(in_a_body(claim.witness->point)) << seed;
+      EXPECT_GT(depth(claim.witness->point), epsilon) << seed;
+    } else if (claim.answer == Answer::Verified) {
+      for (int i = 0; i < 4000; ++i) {
+        const Vec3 p = kSide * Vec3(uniform(), uniform(), uniform());
+        if (in_a_body(p)) continue;
+        ASSERT_LE(depth(p), epsilon) << seed;
+      }
+    }
+  }
+  EXPECT_GE(answers[static_cast<std::size_t>(Answer::Verified)], 3);
+  EXPECT_GE(answers[static_cast<std::size_t>(Answer::Refuted)], 8);
+}
+
 // A fold inside the original, and a part that is inside out, are no part of its boundary: what is
 // near them only is deep all the same.
 TEST(Depth, FoldsAreNoBoundary) {

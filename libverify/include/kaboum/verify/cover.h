@@ -53,8 +53,8 @@ DistanceClaim verify_reach(const geom::ConvexSet& set, const geom::Mesh& origina
 /// (farther from its boundary) is in a body: what an inner set promises besides lying within the
 /// solid. A witness is in no body, and `depth` deeper than epsilon.
 ///
-/// Distances are measured to the triangles that bound the solid as wholes; where others, parts of
-/// which lie inside it, would decide, the answer is undecided. Undefined unless the original is a
+/// Distances are measured to triangles with an outside along all of them, and to places outside;
+/// where these do not tell, the answer is undecided. Undefined unless the original is a
 /// closed chain.
 ///
 /// @pre epsilon > 0; the bodies are convex (verify_cover, `convex`)
