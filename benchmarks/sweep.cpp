@@ -21,8 +21,8 @@ struct Times {
   double wall, processor;  // seconds
 };
 
-Times seconds_of(const sweep::Robot& robot, const std::vector<sweep::Body>& bodies,
-                 const sweep::Path& path, const sweep::SweepOptions& options,
+Times seconds_of(const robot::Robot& robot, const std::vector<robot::LinkBody>& bodies,
+                 const robot::Path& path, const sweep::SweepOptions& options,
                  sweep::SweepResult& result) {
   std::vector<double> wall, processor;
   for (int run = 0; run < 101; ++run) {
@@ -47,10 +47,10 @@ int measure(const char* file, const char* epsilon, int most_vertices) {
   body_options.effort = "fast";
   const tools::LinkBodies links = tools::bodies_of(robot, body_options);
   std::size_t points = 0;
-  for (const sweep::Body& body : links.bodies) points += body.points.size();
+  for (const robot::LinkBody& body : links.bodies) points += body.points.size();
   std::printf("%s: %zu bodies with %zu vertices\n", file, links.bodies.size(), points);
   const std::size_t joints = robot.robot.variables.size();
-  const sweep::Path path{std::vector<double>(joints, 0), std::vector<double>(joints, 1)};
+  const robot::Path path{std::vector<double>(joints, 0), std::vector<double>(joints, 1)};
   sweep::SweepOptions options;
   options.epsilon = 0.005;
   sweep::SweepResult result;
@@ -75,7 +75,7 @@ int measure(const char* file, const char* epsilon, int most_vertices) {
     options.rule = rule;
     double bodies = 0;
     for (int motion = 0; motion < 60; ++motion) {
-      sweep::Path random_path(2, std::vector<double>(joints));
+      robot::Path random_path(2, std::vector<double>(joints));
       for (std::size_t i = 0; i < joints; ++i) {
         random_path[0][i] = value(random);
         random_path[1][i] =

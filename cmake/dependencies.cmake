@@ -12,8 +12,6 @@ find_package(tinyxml2 REQUIRED CONFIG)
 # Not by its own configuration: Debian's names programs that are in other packages.
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(libzip REQUIRED IMPORTED_TARGET libzip)
-find_package(console_bridge REQUIRED CONFIG)
-find_package(urdfdom REQUIRED CONFIG)
 
 # CGAL's Kernel and number types (LGPL) only; its mesh packages are GPL and stay out of the libraries.
 set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
@@ -24,6 +22,8 @@ if(KABOUM_WITH_ASSIMP)
 endif()
 if(KABOUM_BUILD_TESTS)
   find_package(GTest 1.12 REQUIRED)
+  find_package(console_bridge REQUIRED CONFIG)
+  find_package(urdfdom REQUIRED CONFIG)  # whose reading ours is compared with
   # What users load our results with: tested where it is installed (tests/engines).
   find_path(KABOUM_MUJOCO_INCLUDE mujoco/mujoco.h)
   find_library(KABOUM_MUJOCO mujoco)  # Debian's package configuration names folders of other packages

@@ -73,9 +73,9 @@ geom::Mesh rounded_outwards(const std::vector<Vec3>& corners, double spacing) {
 
 }  // namespace
 
-LinkContainer link_container(const std::vector<sweep::Body>& bodies) {
+LinkContainer link_container(const std::vector<robot::LinkBody>& bodies) {
   LinkContainer out;
-  for (const sweep::Body& body : bodies) {
+  for (const robot::LinkBody& body : bodies) {
     std::vector<Vec3> points;
     geom::Box3 box;
     double moved = 0;

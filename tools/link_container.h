@@ -17,6 +17,6 @@ struct LinkContainer {
 /// exactly. Bodies of float32 points and no margin are their hulls.
 ///
 /// @pre the points are finite; those of a body without a margin that are float32 are not flat.
-LinkContainer link_container(const std::vector<sweep::Body>& bodies);
+LinkContainer link_container(const std::vector<robot::LinkBody>& bodies);
 
 }  // namespace kaboum::tools

@@ -21,7 +21,7 @@ namespace kaboum::tools {
 namespace {
 
 namespace fs = std::filesystem;
-using sweep::Geometry;
+using robot::Geometry;
 
 bool is_file(const fs::path& path) {
   std::error_code error;
@@ -29,8 +29,8 @@ bool is_file(const fs::path& path) {
 }
 
 /// Meshes of the Robotics Library's links are named by the scene; here by the links' names.
-void find_meshes(sweep::Robot& robot, const fs::path& folder) {
-  for (sweep::Link& link : robot.links) {
+void find_meshes(robot::Robot& robot, const fs::path& folder) {
+  for (robot::Link& link : robot.links) {
     std::vector<std::string> names{link.name};
     if (link.name.starts_with("body")) names.push_back("link" + link.name.substr(4));
     for (const std::string& name : names) {
@@ -175,17 +175,17 @@ RobotFile read_robot(const std::string& path) {
   out.sha256 = io::sha256(bytes);
   const std::string_view text(bytes.data(), bytes.size());
   if (const std::string_view root = root_of(text); root == "rlkin" || root == "rlmdl") {
-    out.robot = sweep::parse_rl(text, path);
+    out.robot = robot::parse_rl(text, path);
     find_meshes(out.robot, out.path.parent_path());
   } else {
-    out.robot = sweep::parse_urdf(text, path);
+    out.robot = robot::parse_urdf(text, path);
   }
   return out;
 }
 
 void require_links(const RobotFile& robot, const std::vector<std::string>& links) {
   std::vector<std::string> known;
-  for (const sweep::Link& link : robot.robot.links) known.push_back(link.name);
+  for (const robot::Link& link : robot.robot.links) known.push_back(link.name);
   for (const std::string& name : links) {
     if (robot.robot.find_link(name)) continue;
     std::string hint = geom::did_you_mean(name, known);
@@ -213,10 +213,10 @@ std::vector<std::string> BareLinks::all() const {
   return out;
 }
 
-BareLinks bare_links(const sweep::Robot& robot, bool visual,
+BareLinks bare_links(const robot::Robot& robot, bool visual,
                      const std::vector<std::string>& links) {
   BareLinks out;
-  for (const sweep::Link& link : robot.links) {
+  for (const robot::Link& link : robot.links) {
     if (!links.empty() && std::find(links.begin(), links.end(), link.name) == links.end()) continue;
     const auto &shapes = visual ? link.visual : link.collision,
                &others = visual ? link.collision : link.visual;
@@ -250,13 +250,13 @@ std::string links_judged(std::size_t judged, std::size_t asked, const BareLinks&
 std::vector<std::string> notes_on_flat_shapes(const RobotFile& robot, bool visual,
                                               const std::vector<std::string>& links) {
   std::vector<std::string> out;
-  for (const sweep::Link& link : robot.robot.links) {
+  for (const robot::Link& link : robot.robot.links) {
     if (!links.empty() && std::find(links.begin(), links.end(), link.name) == links.end()) continue;
     for (const Geometry& g : visual ? link.visual : link.collision)
-      if (sweep::is_flat(g))
+      if (robot::is_flat(g))
         out.push_back(robot.path.string() + (g.line > 0 ? ":" + std::to_string(g.line) : "") +
                       ": link '" + link.name + "': a " + describe(g) +
-                      (sweep::is_point(g) ? " is a point: it is not covered"
+                      (robot::is_point(g) ? " is a point: it is not covered"
                                           : " has no volume; its surface is covered, but engines "
                                             "may refuse it: give it a thickness"));
   }
@@ -273,16 +273,16 @@ std::string epsilon_of_mesh(const std::string& epsilon, double scale) {
 }
 
 void place_shape(const Geometry& g, const geom::ConvexSet* set, const std::string& link,
-                 std::uint32_t index, std::vector<sweep::Body>& bodies) {
+                 std::uint32_t index, std::vector<robot::LinkBody>& bodies) {
   const auto name = [&] {
-    const auto same = [&](const sweep::Body& b) { return b.link == index; };
+    const auto same = [&](const robot::LinkBody& b) { return b.link == index; };
     return link + "/" + std::to_string(std::count_if(bodies.begin(), bodies.end(), same));
   };
   // The points' own rounding where shape and link lie far from one another's origin.
   const auto rounding = [&](double size) { return 0x1p-46 * (size + g.origin.translation.norm()); };
-  if (sweep::is_point(g)) return;
+  if (robot::is_point(g)) return;
   if (g.shape != Geometry::Shape::Mesh) {
-    bodies.push_back({name(), index, sweep::bounding_points(g), rounding(2 * g.size.norm())});
+    bodies.push_back({name(), index, robot::bounding_points(g), rounding(2 * g.size.norm())});
     return;
   }
   int exponent = 0;
@@ -291,7 +291,7 @@ void place_shape(const Geometry& g, const geom::ConvexSet* set, const std::strin
                        return std::abs(std::frexp(s, &exponent)) == 0.5;
                      });
   for (const geom::ConvexBody& body : set->bodies) {
-    sweep::Body b{name(), index, {}, g.size.cwiseAbs().maxCoeff() * set->margin};
+    robot::LinkBody b{name(), index, {}, g.size.cwiseAbs().maxCoeff() * set->margin};
     double size = 0;
     for (const geom::Vec3& p : body.hull.vertices) {
       const geom::Vec3 scaled = p.cwiseProduct(g.size);
@@ -312,7 +312,7 @@ LinkBodies bodies_of(const RobotFile& robot, const BodyOptions& options) {
   out.notes = notes_on_flat_shapes(robot, options.visual, options.links);
   std::map<std::pair<std::string, std::string>, geom::ConvexSet> decomposed;
   for (std::uint32_t l = 0; l < robot.robot.links.size(); ++l) {
-    const sweep::Link& link = robot.robot.links[l];
+    const robot::Link& link = robot.robot.links[l];
     if (!options.links.empty() &&
         std::find(options.links.begin(), options.links.end(), link.name) == options.links.end())
       continue;
@@ -320,7 +320,7 @@ LinkBodies bodies_of(const RobotFile& robot, const BodyOptions& options) {
     for (const Geometry& g : shapes) {
       if (g.shape != Geometry::Shape::Mesh) {
         place_shape(g, nullptr, link.name, l, out.bodies);
-        out.epsilon = std::max(out.epsilon, sweep::bounding_excess(g));
+        out.epsilon = std::max(out.epsilon, robot::bounding_excess(g));
         continue;
       }
       const fs::path mesh = resolve_mesh(g.mesh, robot.path, options.packages);

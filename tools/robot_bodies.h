@@ -14,7 +14,7 @@ namespace kaboum::tools {
 
 /// A robot as read from its file.
 struct RobotFile {
-  sweep::Robot robot;
+  robot::Robot robot;
   std::filesystem::path path;
   std::string sha256;
 };
@@ -35,7 +35,7 @@ struct BareLinks {
 };
 /// @param visual  the kind: shapes for drawing, else those for collisions
 /// @param links   only these; empty: all
-BareLinks bare_links(const sweep::Robot& robot, bool visual,
+BareLinks bare_links(const robot::Robot& robot, bool visual,
                      const std::vector<std::string>& links = {});
 
 /// One line for each kind of bare links; `consequence` ends it.
@@ -67,7 +67,7 @@ struct BodyOptions {
 };
 
 struct LinkBodies {
-  std::vector<sweep::Body> bodies;
+  std::vector<robot::LinkBody> bodies;
   double epsilon = 0;              ///< largest certified distance of a body from its shape [length]
   std::vector<std::string> files;  ///< meshes read
   BareLinks bare;                  ///< of the links asked for
@@ -83,8 +83,8 @@ LinkBodies bodies_of(const RobotFile& robot, const BodyOptions& options);
 /// those of `set` for a mesh, else a bounding polytope; none for a point.
 /// @param set   of the mesh in its own frame and unit; unused for other shapes.
 /// @param link  name that the bodies' names begin with; `index` is the link's.
-void place_shape(const sweep::Geometry& shape, const geom::ConvexSet* set, const std::string& link,
-                 std::uint32_t index, std::vector<sweep::Body>& bodies);
+void place_shape(const robot::Geometry& shape, const geom::ConvexSet* set, const std::string& link,
+                 std::uint32_t index, std::vector<robot::LinkBody>& bodies);
 
 /// "5%" as it is; a length in the robot's unit in that of a mesh whose coordinates are multiplied
 /// by `scale`.

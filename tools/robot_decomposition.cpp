@@ -1,7 +1,7 @@
 #include "robot_decomposition.h"
 
 #include <kaboum/io/convex_io.h>
-#include <kaboum/sweep/kinematics.h>
+#include <kaboum/robot/kinematics.h>
 #include <tinyxml2.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace kaboum::tools {
 namespace {
 
 namespace fs = std::filesystem;
-using sweep::Geometry;
+using robot::Geometry;
 using tinyxml2::XMLElement;
 
 /// The bodies of a mesh.
@@ -89,8 +89,8 @@ class Writer {
       throw Error(ErrorCode::InvalidInput, o_.robot + ": not a URDF");
     result_.inputs.emplace_back(o_.robot);
     reserve_names(document_.RootElement());
-    for (const sweep::Link& link : robot_.robot.links) reserve_stem(plain_file_name(link.name));
-    rest_ = sweep::forward(robot_.robot, std::vector<double>(robot_.robot.variables.size(), 0.0));
+    for (const robot::Link& link : robot_.robot.links) reserve_stem(plain_file_name(link.name));
+    rest_ = robot::forward(robot_.robot, std::vector<double>(robot_.robot.variables.size(), 0.0));
   }
 
   /// Bodies are named after their meshes: those of another robot in the folder would be replaced.
@@ -157,7 +157,7 @@ class Writer {
   }
 
   void decompose_link(std::uint32_t l) {
-    const sweep::Link& link = robot_.robot.links[l];
+    const robot::Link& link = robot_.robot.links[l];
     static const std::vector<Geometry> kNone;
     const bool asked = o_.links.empty() ||
                        std::find(o_.links.begin(), o_.links.end(), link.name) != o_.links.end();
@@ -175,7 +175,7 @@ class Writer {
     for (XMLElement* e = element->FirstChildElement("collision"); e != nullptr;
          e = e->NextSiblingElement("collision"))
       old.push_back(e);
-    std::vector<sweep::Body> bodies;
+    std::vector<robot::LinkBody> bodies;
     double reach = 0;
     bool solid = true, surface = true;
     Json report = {{"link", link.name}, {"shapes", shapes.size()}};
@@ -185,7 +185,7 @@ class Writer {
       if (g.shape != Geometry::Shape::Mesh) {
         last = element->InsertAfterChild(last, collision(originals[i], link.name, bodies.size()));
         place_shape(g, nullptr, link.name, l, bodies);
-        reach = std::max(reach, sweep::bounding_excess(g));
+        reach = std::max(reach, robot::bounding_excess(g));
         continue;
       }
       const Stored& file = stored(g);
@@ -277,7 +277,7 @@ class Writer {
   RobotFile robot_;
   fs::path urdf_;
   tinyxml2::XMLDocument document_;
-  std::vector<sweep::Transform> rest_;
+  std::vector<robot::Transform> rest_;
   using MeshKey = std::pair<std::string, std::array<double, 3>>;  // file, scale
   std::map<MeshKey, Decomposed> meshes_;                          // turned over or not
   std::map<MeshKey, Stored> stored_;

@@ -22,7 +22,7 @@ std::string_view trimmed(std::string_view text) {
 }
 
 /// Whether every field of a line is the name of a joint.
-bool all_names(std::string_view line, const sweep::Robot& robot) {
+bool all_names(std::string_view line, const robot::Robot& robot) {
   const std::string_view separators =
       line.find_first_of(",;") == std::string_view::npos ? kBlanks : ",;";
   for (line = trimmed(line); !line.empty();) {
@@ -52,7 +52,7 @@ bool in_word(std::string_view text, std::size_t at) {
 
 /// The joints that a text names, in the order in which it first does; other words, units and
 /// brackets are passed over. Of names that begin alike the longest counts.
-std::vector<std::size_t> joints_in(std::string_view text, const sweep::Robot& robot) {
+std::vector<std::size_t> joints_in(std::string_view text, const robot::Robot& robot) {
   std::vector<std::size_t> result;
   for (std::size_t at = 0; at < text.size();) {
     std::size_t longest = 0, joint = 0;
@@ -73,8 +73,8 @@ std::vector<std::size_t> joints_in(std::string_view text, const sweep::Robot& ro
 }
 
 /// @param path  as parsed: whether a first line named the joints
-void require_one_reading(std::string_view text, const sweep::NamedPath& path,
-                         const sweep::Robot& robot, const std::string& name) {
+void require_one_reading(std::string_view text, const robot::NamedPath& path,
+                         const robot::Robot& robot, const std::string& name) {
   if (!path.joints.empty()) return;
   const auto refuse = [&](std::size_t line, const std::string& what) {
     throw Error(ErrorCode::InvalidInput, name + ": line " + std::to_string(line) + ": " + what);
@@ -100,7 +100,7 @@ void require_one_reading(std::string_view text, const sweep::NamedPath& path,
 
 }  // namespace
 
-sweep::Path read_path(const std::string& file, const sweep::Robot& robot,
+robot::Path read_path(const std::string& file, const robot::Robot& robot,
                       const PathOptions& options, std::vector<std::string>& notes) {
   const std::vector<char> bytes = io::read_file(file);
   std::string_view text(bytes.data(), bytes.size());
@@ -108,16 +108,16 @@ sweep::Path read_path(const std::string& file, const sweep::Robot& robot,
   const std::size_t start = text.find_first_not_of(" \t\r\n");
   const std::string name = file == "-" ? "standard input" : file;
   const bool json = start != std::string_view::npos && (text[start] == '{' || text[start] == '[');
-  const sweep::NamedPath path =
-      json ? sweep::parse_path_json(text, name) : sweep::parse_path_csv(text, name);
+  const robot::NamedPath path =
+      json ? robot::parse_path_json(text, name) : robot::parse_path_csv(text, name);
   if (!json) require_one_reading(text, path, robot, name);
-  for (const std::size_t column : sweep::time_columns(path, robot))
+  for (const std::size_t column : robot::time_columns(path, robot))
     notes.push_back(name + ": the column '" + path.joints[column] +
                     "' is passed over: what is swept does not depend on times");
-  sweep::Path result = sweep::arrange(path, robot, name, false, options.fixed);
-  if (options.degrees) result = sweep::from_degrees(std::move(result), robot);
-  if (options.check_limits) sweep::require_within_limits(result, robot, name);
-  if (const auto found = sweep::find_likely_degrees(result, robot)) {
+  robot::Path result = robot::arrange(path, robot, name, false, options.fixed);
+  if (options.degrees) result = robot::from_degrees(std::move(result), robot);
+  if (options.check_limits) robot::require_within_limits(result, robot, name);
+  if (const auto found = robot::find_likely_degrees(result, robot)) {
     std::ostringstream warning;
     warning << "WARNING: " << name << ": ";
     if (found->waypoint < path.lines.size())
@@ -146,8 +146,8 @@ CLI::Option* add_joint_option(CLI::App& app, std::vector<std::string>& values) {
       ->type_name("NAME=X");
 }
 
-sweep::FixedJoints fixed_joints(const std::vector<std::string>& values) {
-  sweep::FixedJoints out;
+robot::FixedJoints fixed_joints(const std::vector<std::string>& values) {
+  robot::FixedJoints out;
   for (const std::string& text : values) {
     const std::size_t sign = text.rfind('=');
     double value = 0;
@@ -165,7 +165,7 @@ sweep::FixedJoints fixed_joints(const std::vector<std::string>& values) {
   return out;
 }
 
-std::string largest_move(const sweep::Path& path, const sweep::Robot& robot) {
+std::string largest_move(const robot::Path& path, const robot::Robot& robot) {
   double largest = 0;
   std::ostringstream text;
   for (std::size_t w = 1; w < path.size(); ++w)

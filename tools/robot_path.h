@@ -1,6 +1,6 @@
 #pragma once
 
-#include <kaboum/sweep/path.h>
+#include <kaboum/robot/path.h>
 
 #include <CLI/CLI.hpp>
 #include <string>
@@ -12,7 +12,7 @@ namespace kaboum::tools {
 struct PathOptions {
   bool check_limits = true;  ///< refuse waypoints outside the joints' limits
   bool degrees = false;      ///< angles of the file and of `fixed` are in degrees
-  sweep::FixedJoints fixed;  ///< joints without a column
+  robot::FixedJoints fixed;  ///< joints without a column
 };
 
 /// Reads a path for a robot, CSV or JSON (docs/formats.md). What could be read in two ways is
@@ -20,8 +20,8 @@ struct PathOptions {
 /// the first numbers that are in another order than the robot's.
 /// @param file  `-` for standard input
 /// @param notes  gets what a user should know; one sentence each
-/// @throws Error{InvalidInput} naming the line, the joint or the waypoint; as sweep::arrange.
-sweep::Path read_path(const std::string& file, const sweep::Robot& robot,
+/// @throws Error{InvalidInput} naming the line, the joint or the waypoint; as robot::arrange.
+robot::Path read_path(const std::string& file, const robot::Robot& robot,
                       const PathOptions& options, std::vector<std::string>& notes);
 
 /// Adds the option --joint NAME=VALUE, which may be repeated.
@@ -29,9 +29,9 @@ CLI::Option* add_joint_option(CLI::App& app, std::vector<std::string>& values);
 /// Adds the flag --degrees.
 CLI::Option* add_degrees_option(CLI::App& app, bool& degrees);
 /// @throws Error{InvalidArgument} on what is not NAME=VALUE, and on joints given twice.
-sweep::FixedJoints fixed_joints(const std::vector<std::string>& values);
+robot::FixedJoints fixed_joints(const std::vector<std::string>& values);
 
 /// The largest move of a joint between two waypoints, in words; empty if none moves.
-std::string largest_move(const sweep::Path& path, const sweep::Robot& robot);
+std::string largest_move(const robot::Path& path, const robot::Robot& robot);
 
 }  // namespace kaboum::tools

@@ -1,5 +1,5 @@
 #include <kaboum/io/convex_io.h>
-#include <kaboum/sweep/path.h>
+#include <kaboum/robot/path.h>
 
 #include <sstream>
 
@@ -190,7 +190,7 @@ int sweep_path(Options o) {
                                  : std::filesystem::path(o.output));
   const tools::RobotFile file = tools::read_robot(o.robot);
   std::vector<std::string> notes;
-  const sweep::Path path = tools::read_path(
+  const robot::Path path = tools::read_path(
       o.path, file.robot, {!o.ignore_limits, o.degrees, tools::fixed_joints(o.joints)}, notes);
   for (const std::string& note : notes) tools::log(o.common.quiet, note);
   o.bodies.links = split(o.links);

@@ -1,7 +1,7 @@
 #include "sweep_picture.h"
 
 #include <kaboum/geom/convex_hull.h>
-#include <kaboum/sweep/kinematics.h>
+#include <kaboum/robot/kinematics.h>
 
 #include <array>
 
@@ -31,8 +31,9 @@ struct Scene {
 
 }  // namespace
 
-std::vector<char> picture_of_sweep(const sweep::Robot& robot, std::span<const sweep::Body> bodies,
-                                   const sweep::Path& path, const sweep::SweepResult& result) {
+std::vector<char> picture_of_sweep(const robot::Robot& robot,
+                                   std::span<const robot::LinkBody> bodies, const robot::Path& path,
+                                   const sweep::SweepResult& result) {
   constexpr std::array<Colour, 8> kLinks{{{0.55F, 0.57F, 0.60F},
                                           {0.86F, 0.45F, 0.40F},
                                           {0.93F, 0.68F, 0.36F},
@@ -43,8 +44,8 @@ std::vector<char> picture_of_sweep(const sweep::Robot& robot, std::span<const sw
                                           {0.70F, 0.52F, 0.82F}}};
   Scene ends, swept;
   for (const bool last : {false, true}) {
-    const auto poses = sweep::forward(robot, last ? path.back() : path.front());
-    for (const sweep::Body& body : bodies) {
+    const auto poses = robot::forward(robot, last ? path.back() : path.front());
+    for (const robot::LinkBody& body : bodies) {
       std::vector<geom::Vec3> points;
       for (const geom::Vec3& p : body.points) points.emplace_back(poses[body.link] * p);
       if (const auto hull = geom::convex_hull(points))

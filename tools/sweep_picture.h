@@ -10,7 +10,8 @@ namespace kaboum::tools {
 
 /// PNG with two panels: the bodies where the path begins (blue) and ends (orange), and the set that
 /// they sweep, one colour per link.
-std::vector<char> picture_of_sweep(const sweep::Robot& robot, std::span<const sweep::Body> bodies,
-                                   const sweep::Path& path, const sweep::SweepResult& result);
+std::vector<char> picture_of_sweep(const robot::Robot& robot,
+                                   std::span<const robot::LinkBody> bodies, const robot::Path& path,
+                                   const sweep::SweepResult& result);
 
 }  // namespace kaboum::tools

@@ -23,10 +23,10 @@ namespace kaboum::tools {
 namespace {
 
 namespace fs = std::filesystem;
-using sweep::Geometry;
+using robot::Geometry;
 using verify::Answer;
 
-bool same(const sweep::Transform& a, const sweep::Transform& b) {
+bool same(const robot::Transform& a, const robot::Transform& b) {
   return a.linear == b.linear && a.translation == b.translation;
 }
 /// Whether a point of the one's frame is the same point of the link in the other's.
@@ -34,7 +34,7 @@ bool same_frame(const Geometry& a, const Geometry& b) {
   return a.shape == b.shape && a.size == b.size && same(a.origin, b.origin);
 }
 
-bool same_limits(const sweep::Variable& a, const sweep::Variable& b) {
+bool same_limits(const robot::Variable& a, const robot::Variable& b) {
   return a.lower == b.lower && a.upper == b.upper;
 }
 
@@ -53,20 +53,20 @@ const char* name_of_shape(Geometry::Shape shape) {
 }
 
 /// Why the robots do not move alike; empty if they do.
-std::string difference_in_motion(const sweep::Robot& original, const sweep::Robot& result) {
+std::string difference_in_motion(const robot::Robot& original, const robot::Robot& result) {
   if (original.links[0].name != result.links[0].name)
     return "the result's root is '" + result.links[0].name + "' instead of '" +
            original.links[0].name + "'";
-  for (const sweep::Link& link : original.links)
+  for (const robot::Link& link : original.links)
     if (!result.find_link(link.name)) return "the result has no link '" + link.name + "'";
   for (std::size_t i = 0; i < original.joints.size(); ++i) {
-    const sweep::Joint& a = original.joints[i];
+    const robot::Joint& a = original.joints[i];
     const auto at = std::find_if(result.joints.begin(), result.joints.end(),
-                                 [&](const sweep::Joint& b) { return b.name == a.name; });
+                                 [&](const robot::Joint& b) { return b.name == a.name; });
     if (at == result.joints.end()) return "the result has no joint '" + a.name + "'";
-    const sweep::Joint& b = *at;
+    const robot::Joint& b = *at;
     const auto child = static_cast<std::size_t>(at - result.joints.begin()) + 1;
-    const bool fixed = a.type == sweep::JointType::Fixed;
+    const bool fixed = a.type == robot::JointType::Fixed;
     const char* what = nullptr;
     if (a.type != b.type)
       what = "is of another type";
@@ -149,7 +149,7 @@ class RobotVerifier {
     find_bare_links();
     say(motion.empty() ? "joints: verified: both robots move alike" : "joints: refuted: " + motion);
     answer_ = motion.empty() ? Answer::Verified : Answer::Refuted;
-    for (const sweep::Link& link : original_.robot.links) check(link);
+    for (const robot::Link& link : original_.robot.links) check(link);
     if (epsilon_) look_for_strangers();
     if (!common_.report.empty()) report(motion);
     progress_.show("");
@@ -185,7 +185,7 @@ class RobotVerifier {
   /// Hashes of the original's meshes that can be read.
   [[nodiscard]] std::set<std::string> hashes_of(bool visual) const {
     std::set<std::string> out;
-    for (const sweep::Link& link : original_.robot.links)
+    for (const robot::Link& link : original_.robot.links)
       for (const Geometry& g : visual ? link.visual : link.collision) try {
           if (g.shape == Geometry::Shape::Mesh)
             out.insert(
@@ -222,7 +222,7 @@ class RobotVerifier {
 
   /// Those to be held: for drawings, of links without, those for collisions, which
   /// `bcd-decompose --visual` leaves as they are.
-  [[nodiscard]] const std::vector<Geometry>& shapes_of(const sweep::Link& link) const {
+  [[nodiscard]] const std::vector<Geometry>& shapes_of(const robot::Link& link) const {
     return o_.geometry == "visual" && !link.visual.empty() ? link.visual : link.collision;
   }
   [[nodiscard]] const std::vector<Geometry>& result_of(const std::string& link) const {
@@ -239,11 +239,11 @@ class RobotVerifier {
       for (const Geometry& g : of)
         if (g.shape == Geometry::Shape::Mesh) inputs.push_back(file_of(g, robot).path);
     };
-    for (const sweep::Link& link : original_.robot.links) {
+    for (const robot::Link& link : original_.robot.links) {
       shapes += shapes_of(link).size();
       read_all(shapes_of(link), original_);
     }
-    for (const sweep::Link& link : result_.robot.links) read_all(link.collision, result_);
+    for (const robot::Link& link : result_.robot.links) read_all(link.collision, result_);
     if (shapes == 0)
       throw Error(ErrorCode::InvalidInput,
                   o_.original + ": no link has a shape" +
@@ -270,7 +270,7 @@ class RobotVerifier {
         .first->second;
   }
 
-  void check(const sweep::Link& link) {
+  void check(const robot::Link& link) {
     ++at_;
     const std::vector<Geometry>& shapes = shapes_of(link);
     if (shapes.empty()) return;
@@ -298,7 +298,7 @@ class RobotVerifier {
   }
 
   /// @param others  shapes of the result's link in other frames.
-  void add(Json& json, const sweep::Link& link, const Group& group, std::size_t others) {
+  void add(Json& json, const robot::Link& link, const Group& group, std::size_t others) {
     const Judgement& judged = judgement_of(group);
     for (std::size_t i = 0; i < group.originals.size(); ++i) {
       const File& file = *group.originals[i];
@@ -317,7 +317,7 @@ class RobotVerifier {
     if (judged.distance) add(json, link, "bodies", "bodies", *judged.distance);
   }
 
-  void add(Json& json, const sweep::Link& link, const std::string& shape, const std::string& title,
+  void add(Json& json, const robot::Link& link, const std::string& shape, const std::string& title,
            const Finding& f) {
     answer_ = worse(answer_, f.answer);
     say("link '" + link.name + "': " + title + ": " + name_of(f.answer) + ": " + f.text);
@@ -327,7 +327,7 @@ class RobotVerifier {
   }
 
   static Finding primitive(const Geometry& g, const std::vector<Geometry>& there) {
-    if (there.empty() && !sweep::is_flat(g))
+    if (there.empty() && !robot::is_flat(g))
       return {Answer::Refuted, "the result's link has no shape at all"};
     const bool found = std::any_of(there.begin(), there.end(),
                                    [&](const Geometry& h) { return same_frame(g, h); });
@@ -512,7 +512,7 @@ class RobotVerifier {
 
   /// Shapes of the result that stand for none of the original's: their distance is not judged.
   void look_for_strangers() {
-    for (const sweep::Link& link : result_.robot.links) {
+    for (const robot::Link& link : result_.robot.links) {
       const auto index = original_.robot.find_link(link.name);
       const std::vector<Geometry> known =
           index ? shapes_of(original_.robot.links[*index]) : std::vector<Geometry>{};

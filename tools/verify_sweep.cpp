@@ -2,8 +2,8 @@
 
 #include <kaboum/geom/error.h>
 #include <kaboum/io/convex_io.h>
-#include <kaboum/sweep/kinematics.h>
-#include <kaboum/sweep/path.h>
+#include <kaboum/robot/kinematics.h>
+#include <kaboum/robot/path.h>
 #include <kaboum/verify/sweep.h>
 
 #include <algorithm>
@@ -38,16 +38,16 @@ struct Shapes {
 };
 
 /// The joints from the root to a link, in this verifier's words.
-verify::LinkChain chain_to(const sweep::Robot& robot, std::uint32_t link) {
+verify::LinkChain chain_to(const robot::Robot& robot, std::uint32_t link) {
   verify::LinkChain chain;
   for (std::uint32_t l = link; l > 0; l = robot.joints[l - 1].parent) {
-    const sweep::Joint& joint = robot.joints[l - 1];
+    const robot::Joint& joint = robot.joints[l - 1];
     Stage stage;
     stage.rotation = joint.origin.linear;
     stage.translation = joint.origin.translation;
-    if (joint.type != sweep::JointType::Fixed) {
+    if (joint.type != robot::JointType::Fixed) {
       stage.motion =
-          joint.type == sweep::JointType::Revolute ? Stage::Motion::Turn : Stage::Motion::Slide;
+          joint.type == robot::JointType::Revolute ? Stage::Motion::Turn : Stage::Motion::Slide;
       stage.axis = joint.axis;
       stage.variable = joint.variable;
       stage.multiplier = joint.multiplier;
@@ -108,7 +108,7 @@ Shapes read_shapes(const RobotFile& file, const VerifySweepOptions& o) {
   for (std::string name; std::getline(list, name, ',');)
     if (!name.empty()) wanted.push_back(name);
   require_links(file, wanted);
-  using From = sweep::Geometry::Shape;
+  using From = robot::Geometry::Shape;
   using To = verify::MovingShape::Kind;
   static const std::map<From, To> kKinds{{From::Mesh, To::Mesh},
                                          {From::Box, To::Box},
@@ -121,16 +121,16 @@ Shapes read_shapes(const RobotFile& file, const VerifySweepOptions& o) {
        notes_on(out.bare, o.geometry == "visual", ": nothing of this is judged"))
     out.notes.push_back(o.files[0] + ": " + note);
   for (std::uint32_t l = 0; l < file.robot.links.size(); ++l) {
-    const sweep::Link& link = file.robot.links[l];
+    const robot::Link& link = file.robot.links[l];
     if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), link.name) == wanted.end())
       continue;
     ++out.asked;
     std::size_t count = 0;
     const std::size_t before = out.shapes.size();
-    for (const sweep::Geometry& g : o.geometry == "visual" ? link.visual : link.collision) {
+    for (const robot::Geometry& g : o.geometry == "visual" ? link.visual : link.collision) {
       verify::MovingShape shape;
       shape.name = link.name + "/" + std::to_string(count++);
-      if (sweep::is_point(g)) continue;
+      if (robot::is_point(g)) continue;
       shape.kind = kKinds.at(g.shape);
       shape.size = g.size;
       if (g.shape == From::Cylinder && g.size.x() == 0) {
@@ -162,14 +162,14 @@ Shapes read_shapes(const RobotFile& file, const VerifySweepOptions& o) {
 }
 
 /// Both kinematics of the project, written apart, must put everything in the same place.
-void require_same_poses(const sweep::Robot& robot, const Shapes& shapes, const sweep::Path& path) {
+void require_same_poses(const robot::Robot& robot, const Shapes& shapes, const robot::Path& path) {
   for (const auto& q : path) {
-    const std::vector<sweep::Transform> poses = sweep::forward(robot, q);
+    const std::vector<robot::Transform> poses = robot::forward(robot, q);
     for (std::size_t i = 0; i < shapes.shapes.size(); ++i) {
       verify::LinkChain chain = shapes.shapes[i].chain;
       chain.pop_back();
       const auto pose = verify::pose_of(chain, q);
-      const sweep::Transform& other = poses[shapes.links[i]];
+      const robot::Transform& other = poses[shapes.links[i]];
       const double size = 1 + other.translation.norm();
       const double allowed = 1e-9 * size + 64 * verify::bound_motion(chain, q, q, size).rounding;
       ensure((pose.leftCols<3>() - other.linear).norm() < allowed / size &&
@@ -179,14 +179,14 @@ void require_same_poses(const sweep::Robot& robot, const Shapes& shapes, const s
   }
 }
 
-std::vector<double> configuration(const sweep::Path& path, const verify::SweepPlace& p) {
+std::vector<double> configuration(const robot::Path& path, const verify::SweepPlace& p) {
   const auto &a = path[p.segment], &b = path[std::min(p.segment + 1, path.size() - 1)];
   std::vector<double> q(a.size());
   for (std::size_t i = 0; i < q.size(); ++i) q[i] = a[i] + p.s * (b[i] - a[i]);
   return q;
 }
 
-Json to_json(const verify::SweepPlace& p, const Shapes& shapes, const sweep::Path& path) {
+Json to_json(const verify::SweepPlace& p, const Shapes& shapes, const robot::Path& path) {
   return {{"shape", shapes.shapes[p.shape].name},
           {"segment", p.segment + 1},
           {"s", p.s},
@@ -223,8 +223,8 @@ geom::ConvexSet read_swept_urdf(const std::string& path, const VerifySweepOption
   if (file.robot.links.size() != 1) refuse("it has several links");
   details.bytes = io::read_file(path);
   geom::ConvexSet set;
-  for (const sweep::Geometry& g : file.robot.links[0].collision) {
-    if (g.shape != sweep::Geometry::Shape::Mesh) refuse("it has a " + describe(g));
+  for (const robot::Geometry& g : file.robot.links[0].collision) {
+    if (g.shape != robot::Geometry::Shape::Mesh) refuse("it has a " + describe(g));
     if (!g.origin.linear.isIdentity(0) || !g.origin.translation.isZero(0) || !g.size.isOnes(0))
       refuse("a mesh is moved or scaled");
     const std::filesystem::path mesh = find_only_mesh(g.mesh, file.path, o.packages);
@@ -266,7 +266,7 @@ int verify_sweep(const VerifySweepOptions& o, const CommonOptions& common) {
   const RobotFile file = read_robot(robot_path);
   // Limits are no matter of the set.
   std::vector<std::string> notes;
-  const sweep::Path path =
+  const robot::Path path =
       read_path(path_path, file.robot, {false, o.degrees, fixed_joints(o.joints)}, notes);
   const Shapes shapes = read_shapes(file, o);
   require_apart({{"--report", common.report}, {"--witness", o.witness}}, shapes.files);

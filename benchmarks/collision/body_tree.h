@@ -2,7 +2,7 @@
 
 #include <fcl/math/bv/OBB.h>
 #include <kaboum/geom/mesh.h>
-#include <kaboum/sweep/transform.h>
+#include <kaboum/robot/transform.h>
 
 #include <vector>
 
@@ -20,7 +20,7 @@ class BodyTree {
   /// Whether narrow(i, j) says so for body i of `a` and body j of `b`, which `pose` takes into the
   /// frame of `a`; asked of pairs whose boxes meet, until it does.
   template <typename Narrow>
-  friend bool any_pair(const BodyTree& a, const BodyTree& b, const sweep::Transform& pose,
+  friend bool any_pair(const BodyTree& a, const BodyTree& b, const robot::Transform& pose,
                        const Narrow& narrow) {
     return !a.nodes_.empty() && !b.nodes_.empty() &&
            any_below(a, a.nodes_.back(), b, b.nodes_.back(), pose, narrow);
@@ -40,7 +40,7 @@ class BodyTree {
 
   template <typename Narrow>
   static bool any_below(const BodyTree& a, const Node& x, const BodyTree& b, const Node& y,
-                        const sweep::Transform& pose, const Narrow& narrow) {
+                        const robot::Transform& pose, const Narrow& narrow) {
     const geom::Vec3 between = pose.linear * y.center + pose.translation - x.center;
     if (between.squaredNorm() > (x.radius + y.radius) * (x.radius + y.radius)) return false;
     const Eigen::Matrix3d turn = x.axes.transpose() * (pose.linear * y.axes);

@@ -33,9 +33,9 @@ class BulletEngine : public Engine {
   BulletEngine(const BulletEngine&) = delete;
   BulletEngine& operator=(const BulletEngine&) = delete;
 
-  void place(const std::vector<sweep::Transform>& poses) override {
+  void place(const std::vector<robot::Transform>& poses) override {
     for (std::size_t i = 0; i < links_.size(); ++i) {
-      const sweep::Transform& pose = poses[links_[i]];
+      const robot::Transform& pose = poses[links_[i]];
       btMatrix3x3 basis;
       for (int r = 0; r < 3; ++r)
         for (int c = 0; c < 3; ++c) basis[r][c] = static_cast<btScalar>(pose.linear(r, c));

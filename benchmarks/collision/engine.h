@@ -31,7 +31,7 @@ class Engine {
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
   /// Moves the robot's parts; `poses` are of the links.
-  virtual void place(const std::vector<sweep::Transform>& poses) = 0;
+  virtual void place(const std::vector<robot::Transform>& poses) = 0;
   /// Whether robot and scene collide.
   virtual bool collide() = 0;
   /// Distance between robot and scene, 0 or negative when they collide; NaN: not offered.

@@ -52,9 +52,9 @@ class FclEngine : public Engine {
     scene_.setup();
   }
 
-  void place(const std::vector<sweep::Transform>& poses) override {
+  void place(const std::vector<robot::Transform>& poses) override {
     for (std::size_t i = 0; i < links_.size(); ++i) {
-      const sweep::Transform& pose = poses[links_[i]];
+      const robot::Transform& pose = poses[links_[i]];
       fcl::Transform3d t = fcl::Transform3d::Identity();
       t.linear() = pose.linear;
       t.translation() = pose.translation;

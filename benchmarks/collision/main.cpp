@@ -1,7 +1,7 @@
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/geom/error.h>
 #include <kaboum/io/convex_io.h>
-#include <kaboum/sweep/kinematics.h>
+#include <kaboum/robot/kinematics.h>
 
 #include <algorithm>
 #include <cmath>
@@ -54,8 +54,8 @@ Shapes load(const tools::RobotFile& file, const std::string& epsilon, double sca
   out.sets = {"bounding sets", true, 0, {}, make_scene(scale)};
   for (std::uint32_t l = 1; l < file.robot.links.size(); ++l) {
     geom::Mesh all;
-    for (const sweep::Geometry& g : file.robot.links[l].collision) {
-      if (g.shape != sweep::Geometry::Shape::Mesh) continue;
+    for (const robot::Geometry& g : file.robot.links[l].collision) {
+      if (g.shape != robot::Geometry::Shape::Mesh) continue;
       geom::Mesh mesh = io::read_mesh(tools::resolve_mesh(g.mesh, file.path, {})).mesh;
       for (geom::Vec3& v : mesh.vertices) v = g.origin * v.cwiseProduct(g.size);
       if (const auto hull = geom::convex_hull(mesh.vertices)) out.hulls.robot.push_back({l, *hull});
@@ -65,7 +65,7 @@ Shapes load(const tools::RobotFile& file, const std::string& epsilon, double sca
   tools::BodyOptions options;
   options.epsilon = epsilon;
   options.effort = "fast";
-  for (const sweep::Body& body : tools::bodies_of(file, options).bodies)
+  for (const robot::LinkBody& body : tools::bodies_of(file, options).bodies)
     if (body.link > 0)
       if (const auto hull = geom::convex_hull(body.points))
         out.sets.robot.push_back({body.link, *hull});
@@ -78,13 +78,13 @@ Shapes load(const tools::RobotFile& file, const std::string& epsilon, double sca
 }
 
 /// A configuration whose last link is behind the window of one side, without collision.
-Configuration reach_through(const sweep::Robot& robot, Engine& engine, double side, double scale,
+Configuration reach_through(const robot::Robot& robot, Engine& engine, double side, double scale,
                             std::mt19937_64& random) {
   std::uniform_real_distribution<double> value(-3.1, 3.1);
   for (int i = 0; i < 5'000'000; ++i) {
     Configuration q(robot.variables.size());
     for (double& x : q) x = value(random);
-    const auto poses = sweep::forward(robot, q);
+    const auto poses = robot::forward(robot, q);
     const geom::Vec3 hand =
         poses[robot.find_link("tool0").value_or(static_cast<std::uint32_t>(poses.size() - 1))]
             .translation /
@@ -114,12 +114,12 @@ int measure(const char* robot_path, std::size_t wanted, const char* csv, const c
   const auto configurations = record_queries(
       start, goal, 3.1,
       [&](const Configuration& q) {
-        planner->place(sweep::forward(file.robot, q));
+        planner->place(robot::forward(file.robot, q));
         return !planner->collide();
       },
       wanted, solved);
-  std::vector<std::vector<sweep::Transform>> queries;
-  for (const Configuration& q : configurations) queries.push_back(sweep::forward(file.robot, q));
+  std::vector<std::vector<robot::Transform>> queries;
+  for (const Configuration& q : configurations) queries.push_back(robot::forward(file.robot, q));
   std::printf("%zu queries of RRT-Connect, %zu plans found\n", queries.size(), solved);
   FILE* out = csv != nullptr ? std::fopen(csv, "w") : nullptr;
   if (out != nullptr) std::fprintf(out, "library,model,query,microseconds\n");

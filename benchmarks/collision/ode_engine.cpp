@@ -36,9 +36,9 @@ class OdeEngine : public Engine {
   OdeEngine(const OdeEngine&) = delete;
   OdeEngine& operator=(const OdeEngine&) = delete;
 
-  void place(const std::vector<sweep::Transform>& poses) override {
+  void place(const std::vector<robot::Transform>& poses) override {
     for (std::size_t i = 0; i < links_.size(); ++i) {
-      const sweep::Transform& pose = poses[links_[i]];
+      const robot::Transform& pose = poses[links_[i]];
       dGeomSetPosition(geoms_[i], pose.translation.x(), pose.translation.y(), pose.translation.z());
       dMatrix3 r{};
       for (int row = 0; row < 3; ++row)

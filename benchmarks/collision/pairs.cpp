@@ -52,17 +52,17 @@ geom::Vec3 random_direction(std::mt19937_64& random) {
 
 /// Poses of the second copy: turned at random, moved along a random direction to the last contact
 /// (by bisection), then between 1 % of the diagonal nearer and 2 % farther.
-std::vector<sweep::Transform> near_contact(const geom::Mesh& mesh, Engine& engine,
+std::vector<robot::Transform> near_contact(const geom::Mesh& mesh, Engine& engine,
                                            std::size_t count) {
   const geom::Box3 box = geom::bounding_box(mesh);
   const geom::Vec3 center = 0.5 * (box.min + box.max);
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> unit(0, 1);
-  std::vector<sweep::Transform> poses;
+  std::vector<robot::Transform> poses;
   while (poses.size() < count) {
-    sweep::Transform pose;
+    robot::Transform pose;
     pose.linear =
-        sweep::rotation_about(random_direction(random), 2 * std::numbers::pi * unit(random));
+        robot::rotation_about(random_direction(random), 2 * std::numbers::pi * unit(random));
     const geom::Vec3 direction = random_direction(random);
     // The line goes past the middle, so that not only the bulk of both meets.
     const geom::Vec3 aside = 0.4 * unit(random) * box.diagonal() *
@@ -266,7 +266,7 @@ class Benchmark {
 
   const Options& options_;
   std::string name_;
-  std::vector<sweep::Transform> poses_;
+  std::vector<robot::Transform> poses_;
   std::vector<char> truth_;
   Statistics reference_{};
   std::optional<std::size_t> peer_alarms_;

@@ -13,7 +13,7 @@
 namespace kaboum::collision {
 namespace {
 
-fcl::Transform3d transform_of(const sweep::Transform& pose) {
+fcl::Transform3d transform_of(const robot::Transform& pose) {
   fcl::Transform3d t = fcl::Transform3d::Identity();
   t.linear() = pose.linear;
   t.translation() = pose.translation;
@@ -55,7 +55,7 @@ class Vertices {
 /// Whether a direction is found, within a few steps, along which two bodies are apart: mirrored at
 /// the vector between the supporting points until it is one (K. Chung, W. Wang: Quick collision
 /// detection of polytopes in virtual environments, 1996). `pose` takes b into the frame of a.
-bool found_apart(const Vertices& a, const Vertices& b, const sweep::Transform& pose) {
+bool found_apart(const Vertices& a, const Vertices& b, const robot::Transform& pose) {
   geom::Vec3 direction = pose * b.center() - a.center();
   for (int step = 0; step < 8; ++step) {
     const geom::Vec3 p = a.support(direction);
@@ -86,7 +86,7 @@ class FclPairs {
         static_cast<int>(mesh.triangles.size()), faces, true);
   }
 
-  void place(const sweep::Transform& pose) { pose_ = transform_of(pose); }
+  void place(const robot::Transform& pose) { pose_ = transform_of(pose); }
 
   bool operator()(const Body& a, const Body& b) const {
     return solver_.shapeIntersect(*a, fcl::Transform3d::Identity(), *b, pose_, nullptr);
@@ -104,7 +104,7 @@ class CcdPairs {
 
   static Body body_of(const geom::Mesh& mesh) { return Body(mesh); }
 
-  void place(const sweep::Transform& pose) { pose_ = pose; }
+  void place(const robot::Transform& pose) { pose_ = pose; }
 
   bool operator()(const Body& a, const Body& b) const {
     const Placed still{&a, nullptr}, moved{&b, &pose_};
@@ -120,7 +120,7 @@ class CcdPairs {
  private:
   struct Placed {
     const Body* body;
-    const sweep::Transform* pose;  ///< none: in its place
+    const robot::Transform* pose;  ///< none: in its place
   };
 
   static void write(const Placed& placed, const geom::Vec3& point, ccd_vec3_t* out) {
@@ -140,7 +140,7 @@ class CcdPairs {
     write(placed, placed.body->support(d), out);
   }
 
-  sweep::Transform pose_;
+  robot::Transform pose_;
 };
 
 /// A tree of bodies for every link and one for the scene.
@@ -159,7 +159,7 @@ class TreeEngine : public Engine {
     poses_.resize(links);
   }
 
-  void place(const std::vector<sweep::Transform>& poses) override {
+  void place(const std::vector<robot::Transform>& poses) override {
     for (std::size_t link = 0; link < robot_.size(); ++link) poses_[link] = poses[link];
   }
 
@@ -194,7 +194,7 @@ class TreeEngine : public Engine {
 
   Object scene_;
   std::vector<Object> robot_;
-  std::vector<sweep::Transform> poses_;
+  std::vector<robot::Transform> poses_;
   Pairs pairs_;
 };
 

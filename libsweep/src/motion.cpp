@@ -14,13 +14,13 @@ LinkMotion::LinkMotion(const Robot& robot, std::uint32_t link, std::span<const d
   factors_ = chain.size() + 1;
   Transform fixed;
   for (const std::uint32_t j : chain) {
-    const Joint& joint = robot.joints[j];
+    const robot::Joint& joint = robot.joints[j];
     fixed = fixed * joint.origin;
-    if (joint.type == JointType::Fixed) continue;
+    if (joint.type == robot::JointType::Fixed) continue;
     Stage stage;
     stage.before = fixed;
     fixed = {};
-    stage.revolute = joint.type == JointType::Revolute;
+    stage.revolute = joint.type == robot::JointType::Revolute;
     stage.axis = joint.axis;
     const Vec3& a = joint.axis;
     stage.cross << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;

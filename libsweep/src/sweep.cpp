@@ -35,7 +35,7 @@ struct Output {
 };
 
 /// Largest distance of the body from the root's origin along the path.
-double extent(const Robot& robot, const Body& body, const Path& path) {
+double extent(const Robot& robot, const LinkBody& body, const Path& path) {
   double most = 0;
   for (std::size_t i = 0; i == 0 || i + 1 < path.size(); ++i) {
     const LinkMotion motion(robot, body.link, path[i], path[std::min(i + 1, path.size() - 1)]);
@@ -44,12 +44,12 @@ double extent(const Robot& robot, const Body& body, const Path& path) {
   return most;
 }
 
-std::vector<SharedBounds> shared_bounds(const Robot& robot, std::span<const Body> bodies,
+std::vector<SharedBounds> shared_bounds(const Robot& robot, std::span<const LinkBody> bodies,
                                         const Path& path) {
   std::vector<SharedBounds> out;
   for (std::size_t i = 0; i == 0 || i + 1 < path.size(); ++i) {
     SharedBounds shared;
-    for (const Body& body : bodies) {
+    for (const LinkBody& body : bodies) {
       const LinkMotion motion(robot, body.link, path[i], path[std::min(i + 1, path.size() - 1)]);
       const MotionBounds bounds(motion, body.points);
       shared.radius = std::max(shared.radius, bounds.radius());
@@ -87,7 +87,7 @@ double build(geom::HullBuilder& builder, std::vector<Vec3>& points) {
   return 2 * step;
 }
 
-Output make_hull(const Body& body, const Piece& piece, const Plan& plan,
+Output make_hull(const LinkBody& body, const Piece& piece, const Plan& plan,
                  const SweepOptions& options, geom::HullBuilder& builder) {
   const double left_out = options.simplify * options.epsilon;
   std::vector<Vec3> points;
@@ -114,7 +114,7 @@ Output make_hull(const Body& body, const Piece& piece, const Plan& plan,
   return out;
 }
 
-void require_usable(const Robot& robot, std::span<const Body> bodies, const Path& path,
+void require_usable(const Robot& robot, std::span<const LinkBody> bodies, const Path& path,
                     const SweepOptions& options) {
   if (!(options.epsilon > 0) || !std::isfinite(options.epsilon))
     throw Error(ErrorCode::InvalidArgument, "epsilon must be a positive length");
@@ -124,7 +124,7 @@ void require_usable(const Robot& robot, std::span<const Body> bodies, const Path
   for (const auto& waypoint : path)
     if (waypoint.size() != robot.variables.size())
       throw Error(ErrorCode::InvalidArgument, "a waypoint has not one value per variable");
-  for (const Body& body : bodies) {
+  for (const LinkBody& body : bodies) {
     if (body.link >= robot.links.size() || body.points.empty() || !(body.margin >= 0))
       throw Error(ErrorCode::InvalidArgument,
                   "body " + body.name + " has no points, no link or a negative margin");
@@ -137,7 +137,7 @@ void require_usable(const Robot& robot, std::span<const Body> bodies, const Path
 
 }  // namespace
 
-SweepResult swept_volume(const Robot& robot, std::span<const Body> bodies, const Path& path,
+SweepResult swept_volume(const Robot& robot, std::span<const LinkBody> bodies, const Path& path,
                          const SweepOptions& options) {
   require_usable(robot, bodies, path, options);
   SweepResult result;

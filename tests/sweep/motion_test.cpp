@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "robots.h"
+#include "sampling.h"
 
 namespace kaboum::test {
 namespace {
@@ -13,7 +13,7 @@ TEST(Motion, PosesAgreeWithTheReferenceWithinTheStatedError) {
   for (const TestRobot& r : test_robots()) {
     for (int trial = 0; trial < 30; ++trial) {
       const Path path = random_path(r.robot, random, 2, 3, trial % 2 == 0);
-      for (const Body& body : r.bodies) {
+      for (const LinkBody& body : r.bodies) {
         const LinkMotion motion(r.robot, body.link, path[0], path[1]);
         const MotionBounds bounds(motion, body.points);
         for (const double s : {0.0, 0.3, 1.0}) {
@@ -37,7 +37,7 @@ TEST(Motion, TaylorCoefficientsAreThoseOfTheMotion) {
   for (const TestRobot& r : {six_axis_arm(), prismatic_chain()}) {
     for (int trial = 0; trial < 20; ++trial) {
       const Path path = random_path(r.robot, random, 2, 1.5, trial % 2 == 0);
-      const Body& body = r.bodies.back();
+      const LinkBody& body = r.bodies.back();
       const LinkMotion motion(r.robot, body.link, path[0], path[1]);
       const MotionBounds bounds(motion, body.points);
       const double s = 0.4;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "robots.h"
+#include "sampling.h"
 
 namespace kaboum::test {
 namespace {
@@ -26,7 +26,7 @@ TEST(Steps, PiecesCoverThePathInOrder) {
   std::mt19937_64 random(21);
   for (const TestRobot& r : {six_axis_arm(), prismatic_chain()}) {
     const Path path = random_path(r.robot, random, 5, 1, false);
-    for (const Body& body : r.bodies) {
+    for (const LinkBody& body : r.bodies) {
       for (const StepRule rule : {StepRule::SecondOrder, StepRule::Adaptive, StepRule::Balanced}) {
         StepOptions options;
         options.rule = rule;
@@ -65,7 +65,7 @@ TEST(Steps, PointsStayWithinTheDeviationOfTheirSegment) {
         if (piece.first_segment != piece.last_segment) continue;
         const double u = static_cast<double>(k % 21) / 20;
         const double s = piece.begin + u * (piece.end - piece.begin);
-        const Body& body = r.bodies[result.sources[i]];
+        const LinkBody& body = r.bodies[result.sources[i]];
         const Transform pose =
             reference_pose(r.robot, body.link,
                            between(path[piece.first_segment], path[piece.first_segment + 1], s));
@@ -113,7 +113,7 @@ TEST(Steps, ConvergeQuadratically) {
     for (double epsilon = 0.05; epsilon > 0.00004; epsilon /= std::pow(10, 0.5)) {
       double total = 0;
       for (const Path& path : paths)
-        for (const Body& body : r.bodies) {
+        for (const LinkBody& body : r.bodies) {
           StepOptions options;
           options.rule = rule;
           options.deviation = epsilon;

@@ -1,7 +1,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "robots.h"
+#include "sampling.h"
 
 /// Samples points of robots at configurations of random motions and looks for any that the bounding
 /// swept volume misses. Arguments: motions (1000), samples (10 000 000), in all. Exit code 1 when

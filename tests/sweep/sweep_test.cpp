@@ -3,7 +3,7 @@
 #include <kaboum/geom/error.h>
 #include <tbb/global_control.h>
 
-#include "robots.h"
+#include "sampling.h"
 
 namespace kaboum::test {
 namespace {
@@ -96,7 +96,7 @@ TEST(Sweep, ExplicitMarginContainsTheSum) {
 TEST(Sweep, SimplifiedHullsHaveFewerVerticesAndMissNothing) {
   std::mt19937_64 random(37);
   for (TestRobot r : {six_axis_arm(), prismatic_chain()}) {
-    for (Body& body : r.bodies) {  // round ones, of 162 corners
+    for (LinkBody& body : r.bodies) {  // round ones, of 162 corners
       Geometry ball;
       ball.shape = Geometry::Shape::Sphere;
       ball.size.x() = 0.06;
@@ -155,11 +155,11 @@ TEST(Sweep, ReachHoldsForPointsOfTheSet) {
   const Path path = random_path(r.robot, random, 2, 1, false);
   const SweepResult result = make(r, path, 0.005);
   std::vector<geom::Mesh> hulls;
-  for (const Body& body : r.bodies) hulls.push_back(*geom::convex_hull(body.points));
+  for (const LinkBody& body : r.bodies) hulls.push_back(*geom::convex_hull(body.points));
   double most = 0;
   for (int k = 0; k < 300; ++k) {
     const std::size_t i = random() % result.pieces.size();
-    const Body& body = r.bodies[result.sources[i]];
+    const LinkBody& body = r.bodies[result.sources[i]];
     const auto& v = result.set.bodies[i].hull.vertices;
     const Vec3 p = 0.5 * (v[random() % v.size()] + v[random() % v.size()]);
     double nearest = 1e9;

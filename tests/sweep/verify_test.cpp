@@ -1,11 +1,11 @@
 // bound-verify's own judgement of swept sets, attacked with sets whose truth is known.
 #include <gtest/gtest.h>
 #include <kaboum/geom/convex_hull.h>
-#include <kaboum/sweep/kinematics.h>
+#include <kaboum/robot/kinematics.h>
 #include <kaboum/verify/sweep.h>
 #include <tbb/global_control.h>
 
-#include "robots.h"
+#include "sampling.h"
 #include "support/shapes.h"
 #include "swept_body.h"
 #include "swept_cell.h"
@@ -37,7 +37,7 @@ verify::LinkChain chain_to(const Robot& robot, std::uint32_t link) {
 
 std::vector<MovingShape> shapes_of(const TestRobot& r) {
   std::vector<MovingShape> out;
-  for (const Body& body : r.bodies) {
+  for (const LinkBody& body : r.bodies) {
     MovingShape shape;
     shape.name = body.name;
     shape.mesh = *geom::convex_hull(body.points);
@@ -315,7 +315,7 @@ TEST(VerifySweep, BoundsOfMotionHold) {
   std::uniform_real_distribution<double> unit(0, 1);
   for (const TestRobot& r : test_robots()) {
     const Path path = random_path(r.robot, random, 2, 2, false);
-    for (const Body& body : r.bodies) {
+    for (const LinkBody& body : r.bodies) {
       const verify::LinkChain chain = chain_to(r.robot, body.link);
       double radius = 0;
       for (const Vec3& p : body.points) radius = std::max(radius, p.norm());
@@ -397,7 +397,7 @@ TEST(VerifySweep, LimitsAndBadSets) {
   options.max_cells = 1;
   // A shape in two pieces, each with bodies of its own, is held by its triangles alone.
   TestRobot two = r;
-  const Body piece = two.bodies.back();
+  const LinkBody piece = two.bodies.back();
   two.bodies = {piece, piece};
   for (Vec3& p : two.bodies[1].points) p += Vec3(0.5, 0, 0);
   std::vector<MovingShape> apart = shapes_of(two);

@@ -1,11 +1,16 @@
 #pragma once
 
-#include <kaboum/sweep/robot.h>
+#include <kaboum/robot/robot.h>
 
 #include <array>
 #include <span>
 
 namespace kaboum::sweep {
+
+using geom::Vec3;
+using robot::Mat3;
+using robot::Robot;
+using robot::Transform;
 
 /// The motion of a link while the variables change linearly, q(s) = from + s · (to − from), s in
 /// [0, 1].

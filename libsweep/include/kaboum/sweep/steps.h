@@ -1,12 +1,14 @@
 #pragma once
 
 #include <kaboum/geom/error.h>
+#include <kaboum/robot/path.h>
 #include <kaboum/sweep/motion.h>
-#include <kaboum/sweep/path.h>
 
 #include <optional>
 
 namespace kaboum::sweep {
+
+using robot::Path;
 
 /// How the steps along a path are chosen. docs/algorithms/swept-volumes.md proves all but Baginski.
 enum class StepRule {

@@ -1,17 +1,12 @@
 #pragma once
 
 #include <kaboum/geom/convex_set.h>
+#include <kaboum/robot/link_body.h>
 #include <kaboum/sweep/steps.h>
 
 namespace kaboum::sweep {
 
-/// A convex body fixed to a link.
-struct Body {
-  std::string name;
-  std::uint32_t link = 0;
-  std::vector<Vec3> points;  ///< its hull is the body, in the link's frame (100 · 2^-53 exact)
-  double margin = 0;         ///< the body is the hull and a ball of this radius (Minkowski sum)
-};
+using robot::LinkBody;
 
 struct SweepOptions {
   double epsilon = 0;  ///< largest margin of the result, > 0 [length]
@@ -41,7 +36,7 @@ struct SweepResult {
                                      ///< swept volume of the bodies [length]
   std::vector<std::size_t> of_link;  ///< bodies made, per link of the robot
   std::vector<Piece> pieces;         ///< of every body in the set
-  std::vector<std::size_t> sources;  ///< index of the Body that each body of the set sweeps
+  std::vector<std::size_t> sources;  ///< index of the LinkBody that each body of the set sweeps
 };
 
 /// Convex bodies that, enlarged by the set's margin, contain the bodies at every configuration of
@@ -53,7 +48,7 @@ struct SweepResult {
 ///
 /// @throws Error{InvalidArgument} on contradictory options, bodies without points, and margins that
 ///   leave no room for steps; as choose_steps.
-SweepResult swept_volume(const Robot& robot, std::span<const Body> bodies, const Path& path,
+SweepResult swept_volume(const Robot& robot, std::span<const LinkBody> bodies, const Path& path,
                          const SweepOptions& options);
 
 /// Points whose hull contains every ball of the radius round the points (which need not be

@@ -1,7 +1,7 @@
 #include <kaboum/geom/error.h>
 #include <kaboum/geom/similar_name.h>
-#include <kaboum/sweep/kinematics.h>
-#include <kaboum/sweep/path.h>
+#include <kaboum/robot/kinematics.h>
+#include <kaboum/robot/path.h>
 
 #include <algorithm>
 #include <cctype>
@@ -11,7 +11,7 @@
 #include <numbers>
 #include <sstream>
 
-namespace kaboum::sweep {
+namespace kaboum::robot {
 namespace {
 
 using Json = nlohmann::json;
@@ -290,4 +290,4 @@ std::optional<LikelyDegrees> find_likely_degrees(const Path& path, const Robot& 
   return std::nullopt;
 }
 
-}  // namespace kaboum::sweep
+}  // namespace kaboum::robot

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <kaboum/sweep/robot.h>
+#include <kaboum/robot/robot.h>
 
 #include <map>
 #include <optional>
@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace kaboum::sweep {
+namespace kaboum::robot {
 
 /// A joint-space path: linear between its waypoints, each a value per variable of the robot, in the
 /// robot's order. [rad or length]
@@ -64,4 +64,4 @@ struct LikelyDegrees {
 /// The first angle of more than two turns either way, if there is one.
 std::optional<LikelyDegrees> find_likely_degrees(const Path& path, const Robot& robot);
 
-}  // namespace kaboum::sweep
+}  // namespace kaboum::robot

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/geom/error.h>
-#include <kaboum/sweep/kinematics.h>
+#include <kaboum/robot/kinematics.h>
 
 #include <numbers>
 
@@ -178,7 +178,7 @@ TEST(Urdf, BadFilesAreRefused) {
       "r.urdf:3: link 'a': a box whose size is negative");
   has(robot_of(
           "\n<link name='a'><visual><geometry><sphere radius='x'/></geometry></visual></link>"),
-      "r.urdf:2: not a valid URDF");
+      "r.urdf:2: <sphere>: radius is 'x', no finite number");
   has(robot_of(kLinks + "\n<gazebo><xacro:if value='1'/></gazebo>"), "r.urdf:2: <xacro:if>");
   has(robot_of("<link name='${prefix}a'/>"), "run: xacro");
   has(robot_of("<link name='a'><visual><geometry><mesh filename='$(find p)/m.stl'/></geometry>"

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <kaboum/sweep/robot.h>
+#include <kaboum/robot/robot.h>
 
 #include <span>
 
-namespace kaboum::sweep {
+namespace kaboum::robot {
 
 /// Poses of all links relative to the root, in the order of robot.links.
 /// @param q  values of robot.variables. [rad or length]
@@ -21,4 +21,4 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian(const Robot& robot, std::span<
 /// The first variable outside its limits; nullopt when all are within.
 std::optional<std::uint32_t> find_out_of_limits(const Robot& robot, std::span<const double> q);
 
-}  // namespace kaboum::sweep
+}  // namespace kaboum::robot

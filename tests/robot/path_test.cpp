@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 #include <kaboum/geom/error.h>
-#include <kaboum/sweep/path.h>
+#include <kaboum/robot/path.h>
 
 #include "robots.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <kaboum/sweep/transform.h>
+#include <kaboum/robot/transform.h>
 
 #include <cstdint>
 #include <optional>
@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace kaboum::sweep {
+namespace kaboum::robot {
 
 enum class JointType { Fixed, Revolute, Prismatic };
 
@@ -70,12 +70,14 @@ void require_valid(const Robot& robot);
 
 /// Robot of a URDF document: revolute, continuous, prismatic, fixed and mimicking joints. Variables
 /// are numbered depth first from the root, the joints of one link in the order of their names.
-/// Rotations come from rpy within 40 · 2^-53. Source: <http://wiki.ros.org/urdf/XML>, by urdfdom.
+/// Rotations come from rpy within 40 · 2^-53. Shapes of size 0 are kept (is_flat): robots in wide
+/// use have some. Inertia, materials and transmissions are not looked at. Source:
+/// <http://wiki.ros.org/urdf/XML>; where that is silent, as urdfdom 3.0.
 /// @param name  appears in messages.
-/// Shapes of size 0 are kept (is_flat): robots in wide use have some.
 /// @throws Error{InvalidInput} naming the line where known: XML that is not well-formed or has
 ///   xacro in it, planar and floating joints, several or no roots, loops, links with two parents,
-///   mimicry of absent joints, numbers that are not finite, shapes of negative size.
+///   names used twice, mimicry of absent joints, numbers that are not finite, shapes of negative
+///   size or unknown kind, two origins, axes or shapes where one is meant.
 Robot parse_urdf(std::string_view text, const std::string& name);
 
 /// Robot of the Robotics Library: <rlkin> (Denavit–Hartenberg, distal) or <rlmdl>; degrees in the
@@ -94,4 +96,4 @@ std::vector<Vec3> bounding_points(const Geometry& geometry);
 /// How far that hull reaches beyond the shape at most. [length]
 double bounding_excess(const Geometry& geometry);
 
-}  // namespace kaboum::sweep
+}  // namespace kaboum::robot

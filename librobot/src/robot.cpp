@@ -1,9 +1,9 @@
 #include <kaboum/geom/error.h>
-#include <kaboum/sweep/robot.h>
+#include <kaboum/robot/robot.h>
 
 #include <cmath>
 
-namespace kaboum::sweep {
+namespace kaboum::robot {
 namespace {
 
 [[noreturn]] void fail(const std::string& what) { throw Error(ErrorCode::InvalidInput, what); }
@@ -59,4 +59,4 @@ void require_valid(const Robot& robot) {
       fail("joint '" + v.name + "': its limits are not finite or not in order");
 }
 
-}  // namespace kaboum::sweep
+}  // namespace kaboum::robot

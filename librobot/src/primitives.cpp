@@ -1,12 +1,12 @@
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/geom/error.h>
-#include <kaboum/sweep/robot.h>
+#include <kaboum/robot/robot.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-namespace kaboum::sweep {
+namespace kaboum::robot {
 namespace {
 
 constexpr double kUp = 1 + 1e-12;
@@ -134,4 +134,4 @@ std::vector<Vec3> bounding_points(const Geometry& g) {
   return points;
 }
 
-}  // namespace kaboum::sweep
+}  // namespace kaboum::robot

@@ -2,7 +2,7 @@
 
 #include <kaboum/geom/mesh.h>
 
-namespace kaboum::sweep {
+namespace kaboum::robot {
 
 using geom::Vec3;
 using Mat3 = Eigen::Matrix3d;
@@ -37,4 +37,4 @@ Transform dh_distal(const Dh& p);
 /// Proximal convention (Khalil–Kleinfinger, Craig): Rx(alpha) · Tx(a) · Rz(theta) · Tz(d).
 Transform dh_proximal(const Dh& p);
 
-}  // namespace kaboum::sweep
+}  // namespace kaboum::robot

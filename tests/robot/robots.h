@@ -1,19 +1,23 @@
 #pragma once
 
-#include <kaboum/sweep/sweep.h>
+#include <kaboum/geom/mesh.h>
+#include <kaboum/robot/link_body.h>
+#include <kaboum/robot/path.h>
 
 #include <random>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace kaboum::test {
 
-using namespace kaboum::sweep;
+using namespace kaboum::robot;
 
 /// A robot with one convex body per link that has a shape.
 struct TestRobot {
   std::string name;
   Robot robot;
-  std::vector<Body> bodies;
+  std::vector<LinkBody> bodies;
 };
 
 /// Six revolute axes; 1.18 m from the first axis to the farthest corner, summing up all links.
@@ -39,20 +43,10 @@ Transform reference_pose(const Robot& robot, std::uint32_t link, std::span<const
 /// Configuration between two waypoints.
 std::vector<double> between(const std::vector<double>& a, const std::vector<double>& b, double s);
 
+/// Distance of a point from the segment ab. Rounded arithmetic.
+double segment_distance(const Vec3& a, const Vec3& b, const Vec3& p);
+
 /// Distance of a point from a convex polytope, 0 inside. Rounded arithmetic.
 double distance_to(const geom::Mesh& hull, const Vec3& point);
-
-/// Samples points of the bodies at configurations of the path and looks for those outside the set.
-struct Missed {
-  std::size_t tested = 0, missed = 0;
-  double largest = 0;  ///< distance from the polytopes, without the margin
-};
-/// By default a sample is compared with the piece of its time; `anywhere`: with all hulls.
-Missed sample_points(const TestRobot& robot, const Path& path, const SweepResult& result,
-                     std::mt19937_64& random, std::size_t samples, bool anywhere = false);
-
-/// The first hull that is not exactly convex, not in float32, or does not contain all images of
-/// its body's points (rounded to float32), by exact predicates; nullopt when all are right.
-std::optional<std::size_t> find_bad_hull(const TestRobot& robot, const SweepResult& result);
 
 }  // namespace kaboum::test

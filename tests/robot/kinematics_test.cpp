@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 #include <kaboum/geom/error.h>
-#include <kaboum/sweep/kinematics.h>
+#include <kaboum/robot/kinematics.h>
 
 #include <cmath>
 #include <kdl/chain.hpp>

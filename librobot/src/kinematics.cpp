@@ -1,9 +1,9 @@
 #include <kaboum/geom/error.h>
-#include <kaboum/sweep/kinematics.h>
+#include <kaboum/robot/kinematics.h>
 
 #include <cmath>
 
-namespace kaboum::sweep {
+namespace kaboum::robot {
 namespace {
 
 double value(const Joint& joint, std::span<const double> q) {
@@ -92,4 +92,4 @@ std::optional<std::uint32_t> find_out_of_limits(const Robot& robot, std::span<co
   return std::nullopt;
 }
 
-}  // namespace kaboum::sweep
+}  // namespace kaboum::robot

@@ -1,8 +1,7 @@
 #include <kaboum/geom/error.h>
-#include <kaboum/sweep/robot.h>
+#include <kaboum/robot/robot.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -10,7 +9,7 @@
 
 #include "xml.h"
 
-namespace kaboum::sweep {
+namespace kaboum::robot {
 namespace {
 
 using tinyxml2::XMLElement;
@@ -52,15 +51,10 @@ class Reader {
   double number(const XMLElement* e, const char* child, double otherwise) const {
     const XMLElement* c = e != nullptr ? e->FirstChildElement(child) : nullptr;
     if (c == nullptr) return otherwise;
-    std::string text = c->GetText() != nullptr ? c->GetText() : "";
-    const auto blank = [](char x) { return x == ' ' || x == '\t' || x == '\n' || x == '\r'; };
-    while (!text.empty() && blank(text.back())) text.pop_back();
-    text.erase(text.begin(), std::find_if_not(text.begin(), text.end(), blank));
-    double value = 0;
-    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || stop != text.data() + text.size() || !std::isfinite(value))
-      fail(*c, "'" + text.substr(0, 40) + "' is not a finite number");
-    return value;
+    const std::string text = c->GetText() != nullptr ? c->GetText() : "";
+    const auto value = finite_number(text);
+    if (!value) fail(*c, "'" + text.substr(0, 40) + "' is not a finite number");
+    return *value;
   }
 
   Vec3 vector(const XMLElement& e, const char* child, const Vec3& otherwise) const {
@@ -216,4 +210,4 @@ Robot parse_rl(std::string_view text, const std::string& name) {
   return Reader(name).read(xml);
 }
 
-}  // namespace kaboum::sweep
+}  // namespace kaboum::robot

@@ -1,0 +1,344 @@
+// Reads URDF, the robot descriptions of ROS: <http://wiki.ros.org/urdf/XML>. Meanings and defaults
+// are those of urdfdom 3.0, the reader of ROS, which is laxer in places (two origins, two shapes in
+// a geometry: it takes the first) and stricter in others (inertia and materials, which this reader
+// does not look at). tests/engines compares the two.
+
+#include <kaboum/geom/error.h>
+#include <kaboum/robot/robot.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "xml.h"
+
+namespace kaboum::robot {
+namespace {
+
+using tinyxml2::XMLElement;
+
+/// Rotations as quaternions, which URDF does not have; readers pass over them.
+void refuse_quaternions(const XMLElement& element, const std::string& name) {
+  if (element.Attribute("quat_xyzw") != nullptr)
+    fail_at(name, element.GetLineNum(), "quat_xyzw is not supported: write the rotation as rpy");
+  for (const auto* e = element.FirstChildElement(); e != nullptr; e = e->NextSiblingElement())
+    refuse_quaternions(*e, name);
+}
+
+/// What xacro would have expanded.
+void refuse_xacro(const XMLElement& element, const std::string& name) {
+  const auto refuse = [&](const std::string& what) {
+    fail_at(name, element.GetLineNum(),
+            what + " is xacro that is not expanded; run: xacro " + name + " > robot.urdf");
+  };
+  const std::string tag = element.Name();
+  if (tag.starts_with("xacro:")) refuse("<" + tag + ">");
+  for (const auto* a = element.FirstAttribute(); a != nullptr; a = a->Next()) {
+    const std::string value = a->Value();
+    if (value.find("${") != std::string::npos || value.starts_with("$("))
+      refuse(std::string(a->Name()) + "=\"" + value.substr(0, 60) + "\"");
+  }
+  for (const auto* e = element.FirstChildElement(); e != nullptr; e = e->NextSiblingElement())
+    refuse_xacro(*e, name);
+}
+
+struct Mimicry {
+  std::string leader;
+  double multiplier, offset;
+};
+
+/// A joint as its element states it.
+struct JointEntry {
+  Joint joint;
+  std::string parent, child;
+  Variable variable;
+  std::optional<Mimicry> mimicry;
+  int line;
+};
+
+/// Links and joints of a document, one element at a time.
+class Elements {
+ public:
+  explicit Elements(const std::string& name) : name_(name), file_(name) {}
+
+  void read(const XMLElement& root) {
+    for (const auto* e = root.FirstChildElement("link"); e != nullptr;
+         e = e->NextSiblingElement("link")) {
+      const std::string link = file_.text(*e, "name");
+      if (!links.emplace(link, read_link(*e, link)).second)
+        fail_at(name_, e->GetLineNum(), "link '" + link + "' exists already");
+    }
+    for (const auto* e = root.FirstChildElement("joint"); e != nullptr;
+         e = e->NextSiblingElement("joint")) {
+      JointEntry entry = read_joint(*e);
+      const std::string joint = entry.joint.name;
+      if (!joints.emplace(joint, std::move(entry)).second)
+        fail_at(name_, e->GetLineNum(), "joint '" + joint + "' exists already");
+    }
+  }
+
+  std::map<std::string, Link> links;         ///< by name
+  std::map<std::string, JointEntry> joints;  ///< by name
+
+ private:
+  /// Roll, pitch and yaw become a quaternion, and that a matrix, as in urdfdom: the same bits.
+  [[nodiscard]] Transform read_origin(const XMLElement& parent) const {
+    const XMLElement* e = file_.only_child(parent, "origin");
+    if (e == nullptr) return {};
+    const Vec3 half = file_.vector(*e, "rpy", Vec3::Zero()) / 2;
+    const Vec3 s = half.array().sin(), c = half.array().cos();
+    Eigen::Quaterniond q(c[0] * c[1] * c[2] + s[0] * s[1] * s[2],   // w
+                         s[0] * c[1] * c[2] - c[0] * s[1] * s[2],   // x
+                         c[0] * s[1] * c[2] + s[0] * c[1] * s[2],   // y
+                         c[0] * c[1] * s[2] - s[0] * s[1] * c[2]);  // z
+    const double norm = std::sqrt(q.x() * q.x() + q.y() * q.y() + q.z() * q.z() + q.w() * q.w());
+    q.coeffs() /= norm;
+    return {q.toRotationMatrix(), file_.vector(*e, "xyz", Vec3::Zero())};
+  }
+
+  [[nodiscard]] Geometry read_geometry(const XMLElement& shape, const std::string& link) const {
+    const XMLElement* geometry = file_.only_child(shape, "geometry");
+    const XMLElement* e = geometry != nullptr ? geometry->FirstChildElement() : nullptr;
+    const std::string place = "link '" + link + "': ";
+    if (e == nullptr)
+      fail_at(name_, shape.GetLineNum(), place + "a <" + shape.Name() + "> without geometry");
+    if (e->NextSiblingElement() != nullptr)
+      fail_at(
+          name_, e->NextSiblingElement()->GetLineNum(),
+          place + "a second shape in one <geometry>: give it a <" + shape.Name() + "> of its own");
+    Geometry g;
+    g.line = e->GetLineNum();
+    g.origin = read_origin(shape);
+    const std::string kind = e->Name();
+    if (kind == "box") {
+      g.shape = Geometry::Shape::Box;
+      g.size = file_.vector(*e, "size");
+    } else if (kind == "sphere") {
+      g.shape = Geometry::Shape::Sphere;
+      g.size = Vec3::Constant(file_.number(*e, "radius"));
+    } else if (kind == "cylinder") {
+      const double length = file_.number(*e, "length");
+      g.shape = Geometry::Shape::Cylinder;
+      g.size = {file_.number(*e, "radius"), length, length};
+    } else if (kind == "mesh") {
+      g.shape = Geometry::Shape::Mesh;
+      g.mesh = file_.text(*e, "filename");
+      g.size = file_.vector(*e, "scale", Vec3::Ones());
+      if ((g.size.array() == 0).any()) fail_at(name_, g.line, place + "a mesh scaled by 0");
+      return g;
+    } else {
+      fail_at(
+          name_, g.line,
+          place + "a shape of kind <" + kind + ">; supported are box, cylinder, sphere and mesh");
+    }
+    if ((g.size.array() < 0).any())
+      fail_at(name_, g.line, place + "a " + describe(g) + " whose size is negative");
+    return g;
+  }
+
+  [[nodiscard]] Link read_link(const XMLElement& element, const std::string& link) const {
+    Link out;
+    out.name = link;
+    for (const auto& [tag, to] :
+         {std::pair{"collision", &out.collision}, std::pair{"visual", &out.visual}})
+      for (const auto* e = element.FirstChildElement(tag); e != nullptr;
+           e = e->NextSiblingElement(tag))
+        to->push_back(read_geometry(*e, link));
+    return out;
+  }
+
+  [[nodiscard]] JointEntry read_joint(const XMLElement& e) const {
+    JointEntry out;
+    out.line = e.GetLineNum();
+    out.joint.name = out.variable.name = file_.text(e, "name");
+    const auto fail = [&](const std::string& what) {
+      fail_at(name_, out.line, "joint '" + out.joint.name + "': " + what);
+    };
+    for (const auto& [tag, to] : {std::pair{"parent", &out.parent}, std::pair{"child", &out.child}}) {
+      const XMLElement* end = file_.only_child(e, tag);
+      if (end == nullptr) fail(std::string("no <") + tag + " link=...>");
+      *to = file_.text(*end, "link");
+    }
+    out.joint.origin = read_origin(e);
+    const std::string type = file_.text(e, "type");
+    if (type == "revolute" || type == "continuous") {
+      out.joint.type = JointType::Revolute;
+    } else if (type == "prismatic") {
+      out.joint.type = JointType::Prismatic;
+    } else if (type != "fixed") {
+      fail("joints of type " + type + " are not supported");
+    }
+    if (out.joint.type == JointType::Fixed) return out;
+
+    const XMLElement* axis = file_.only_child(e, "axis");
+    const Vec3 direction = axis != nullptr ? file_.vector(*axis, "xyz") : Vec3::UnitX();
+    const double length = direction.stableNorm();
+    if (!(length > 0) || !std::isfinite(length)) fail("the axis has no direction");
+    out.joint.axis = (direction / length).normalized();
+    if (const XMLElement* limit = file_.only_child(e, "limit"); limit != nullptr) {
+      const double lower = file_.number(*limit, "lower", 0),
+                   upper = file_.number(*limit, "upper", 0);
+      if (type != "continuous") {
+        out.variable.lower = lower;
+        out.variable.upper = upper;
+      }
+    } else if (type != "continuous") {
+      fail("a " + type + " joint needs <limit lower=... upper=.../>");
+    }
+    if (const XMLElement* mimic = file_.only_child(e, "mimic"); mimic != nullptr)
+      out.mimicry = Mimicry{file_.text(*mimic, "joint"), file_.number(*mimic, "multiplier", 1),
+                            file_.number(*mimic, "offset", 0)};
+    return out;
+  }
+
+  const std::string& name_;
+  XmlFile file_;
+};
+
+/// Puts links and joints in order: from the root on, depth first.
+class Assembly {
+ public:
+  Assembly(Elements elements, const std::string& name)
+      : elements_(std::move(elements)), name_(name) {
+    for (const auto& [id, entry] : elements_.joints) {
+      const auto require = [&](const std::string& link, const char* role) {
+        if (!elements_.links.contains(link))
+          fail(entry, std::string("its ") + role + " link '" + link + "' does not exist");
+      };
+      require(entry.parent, "parent");
+      require(entry.child, "child");
+      const auto [other, fresh] = moved_by_.emplace(entry.child, &entry);
+      if (!fresh) {
+        // The later of the two in the file.
+        const JointEntry& first = entry.line < other->second->line ? entry : *other->second;
+        const JointEntry& second = entry.line < other->second->line ? *other->second : entry;
+        fail(second,
+             "link '" + entry.child + "' is moved by joint '" + first.joint.name + "' already");
+      }
+      children_[entry.parent].push_back(&entry);
+    }
+  }
+
+  Robot build() {
+    struct Step {
+      const std::string* link;
+      const JointEntry* joint;
+      std::uint32_t parent;
+    };
+    const std::string& root = find_root();
+    std::vector<Step> stack{{&root, nullptr, 0}};
+    while (!stack.empty()) {
+      const Step step = stack.back();
+      stack.pop_back();
+      const auto index = static_cast<std::uint32_t>(robot_.links.size());
+      robot_.links.push_back(std::move(elements_.links.at(*step.link)));
+      if (step.joint != nullptr) add_joint(*step.joint, step.parent);
+      const std::vector<const JointEntry*>& joints = children_[*step.link];
+      for (std::size_t i = joints.size(); i-- > 0;)
+        stack.push_back({&joints[i]->child, joints[i], index});
+    }
+    if (robot_.links.size() != elements_.links.size())
+      fail("some links are not connected to the root '" + root +
+           "': their joints lead in a circle");
+    for (std::size_t j = 0; j < order_.size(); ++j)
+      if (order_[j]->mimicry) follow(j);
+    return std::move(robot_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(ErrorCode::InvalidInput, name_ + ": " + what);
+  }
+  [[noreturn]] void fail(const JointEntry& entry, const std::string& what) const {
+    fail_at(name_, entry.line, "joint '" + entry.joint.name + "': " + what);
+  }
+
+  /// The one link that no joint moves.
+  [[nodiscard]] const std::string& find_root() const {
+    const std::string* root = nullptr;
+    for (const auto& [link, unused] : elements_.links) {
+      if (moved_by_.contains(link)) continue;
+      if (root != nullptr)
+        fail("two root links, '" + *root + "' and '" + link + "': connect them by a joint");
+      root = &link;
+    }
+    if (root == nullptr)
+      fail(elements_.links.empty() ? "a robot without links"
+                                   : "no root link: the joints are connected in a loop");
+    return *root;
+  }
+
+  void add_joint(const JointEntry& entry, std::uint32_t parent) {
+    Joint joint = entry.joint;
+    joint.parent = parent;
+    if (joint.type != JointType::Fixed && !entry.mimicry) {
+      joint.variable = static_cast<std::uint32_t>(robot_.variables.size());
+      robot_.variables.push_back(entry.variable);
+    }
+    place_[joint.name] = robot_.joints.size();
+    robot_.joints.push_back(std::move(joint));
+    order_.push_back(&entry);
+  }
+
+  /// From a mimicking joint to the one that moves by itself.
+  void follow(std::size_t index) {
+    Joint& joint = robot_.joints[index];
+    std::set<std::size_t> seen{index};
+    joint.multiplier = 1;
+    for (const Mimicry* m = &*order_[index]->mimicry;;) {
+      joint.offset += joint.multiplier * m->offset;
+      joint.multiplier *= m->multiplier;
+      const auto it = place_.find(m->leader);
+      const std::string what = "it mimics '" + m->leader + "'";
+      if (it == place_.end()) fail(*order_[index], what + ", which does not exist");
+      if (!seen.insert(it->second).second)
+        fail(*order_[index], what + ": joints mimic one another in a circle");
+      if (robot_.joints[it->second].type == JointType::Fixed)
+        fail(*order_[index], what + ", which is fixed");
+      const JointEntry& other = *order_[it->second];
+      if (!other.mimicry) {
+        joint.variable = robot_.joints[it->second].variable;
+        return;
+      }
+      m = &*other.mimicry;
+    }
+  }
+
+  Elements elements_;
+  const std::string& name_;
+  std::map<std::string, const JointEntry*> moved_by_;               // by link
+  std::map<std::string, std::vector<const JointEntry*>> children_;  // by link, by name of the joint
+  Robot robot_;
+  std::vector<const JointEntry*> order_;      // of robot_.joints
+  std::map<std::string, std::size_t> place_;  // in robot_.joints, by name
+};
+
+}  // namespace
+
+Robot parse_urdf(std::string_view text, const std::string& name) {
+  tinyxml2::XMLDocument xml;
+  parse_xml(xml, text, name);
+  const XMLElement& root = *xml.RootElement();
+  if (std::string(root.Name()) != "robot")
+    fail_at(name, root.GetLineNum(), std::string("expected <robot>, found <") + root.Name() + ">");
+  refuse_xacro(root, name);
+  refuse_quaternions(root, name);
+  const XmlFile file(name);
+  const std::string robot_name = file.text(root, "name");
+  if (root.Attribute("version") != nullptr && file.number(root, "version") != 1)
+    file.fail(root, "only version 1.0 is supported");
+  Elements elements(name);
+  elements.read(root);
+  Robot robot = Assembly(std::move(elements), name).build();
+  robot.name = robot_name;
+  try {
+    require_valid(robot);
+  } catch (const Error& error) {
+    throw Error(error.code(), name + ": " + error.what());
+  }
+  return robot;
+}
+
+}  // namespace kaboum::robot

@@ -1,0 +1,98 @@
+#include "xml.h"
+
+#include <kaboum/geom/error.h>
+
+#include <charconv>
+#include <cmath>
+
+namespace kaboum::robot {
+namespace {
+
+constexpr std::string_view kBlanks = " \t\r\n";
+
+/// For messages: without what would fill a screen.
+std::string quoted(const char* text) { return "'" + std::string(text).substr(0, 60) + "'"; }
+
+}  // namespace
+
+void fail_at(const std::string& name, int line, const std::string& what) {
+  throw Error(ErrorCode::InvalidInput, name + ":" + std::to_string(line) + ": " + what);
+}
+
+void parse_xml(tinyxml2::XMLDocument& document, std::string_view text, const std::string& name) {
+  if (text.find('\0') != std::string_view::npos)
+    throw Error(ErrorCode::InvalidInput, name + ": not a text file");
+  if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
+    fail_at(name, document.ErrorLineNum(),
+            std::string("not well-formed XML (") +
+                tinyxml2::XMLDocument::ErrorIDToName(document.ErrorID()) + ")");
+  if (document.RootElement() == nullptr)
+    throw Error(ErrorCode::InvalidInput, name + ": no XML element");
+}
+
+std::optional<double> finite_number(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(kBlanks);
+  if (first == std::string_view::npos) return std::nullopt;
+  text = text.substr(first, text.find_last_not_of(kBlanks) + 1 - first);
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+  double value = 0;
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || stop != text.data() + text.size() || !std::isfinite(value))
+    return std::nullopt;
+  return value;
+}
+
+void XmlFile::fail(const tinyxml2::XMLElement& element, const std::string& what) const {
+  fail_at(name_, element.GetLineNum(), std::string("<") + element.Name() + ">: " + what);
+}
+
+const tinyxml2::XMLElement* XmlFile::only_child(const tinyxml2::XMLElement& element,
+                                                const char* tag) const {
+  const auto* child = element.FirstChildElement(tag);
+  const auto* second = child != nullptr ? child->NextSiblingElement(tag) : nullptr;
+  if (second != nullptr) fail(*second, std::string("a second one in <") + element.Name() + ">");
+  return child;
+}
+
+std::string XmlFile::text(const tinyxml2::XMLElement& element, const char* key) const {
+  const char* value = element.Attribute(key);
+  if (value == nullptr) fail(element, std::string("needs the attribute '") + key + "'");
+  return value;
+}
+
+double XmlFile::number(const tinyxml2::XMLElement& element, const char* key) const {
+  const std::string value = text(element, key);
+  const auto x = finite_number(value);
+  if (!x) fail(element, std::string(key) + " is " + quoted(value.c_str()) + ", no finite number");
+  return *x;
+}
+
+double XmlFile::number(const tinyxml2::XMLElement& element, const char* key,
+                       double otherwise) const {
+  return element.Attribute(key) != nullptr ? number(element, key) : otherwise;
+}
+
+geom::Vec3 XmlFile::vector(const tinyxml2::XMLElement& element, const char* key) const {
+  const std::string value = text(element, key);
+  geom::Vec3 out;
+  int count = 0;
+  for (std::size_t end = 0;;) {
+    const std::size_t begin = value.find_first_not_of(kBlanks, end);
+    if (begin == std::string::npos) break;
+    end = std::min(value.find_first_of(kBlanks, begin), value.size());
+    const auto x = finite_number(std::string_view(value).substr(begin, end - begin));
+    if (!x || count == 3) count = 4;
+    if (count == 4) break;
+    out[count++] = *x;
+  }
+  if (count != 3)
+    fail(element, std::string(key) + " is " + quoted(value.c_str()) + ", not three finite numbers");
+  return out;
+}
+
+geom::Vec3 XmlFile::vector(const tinyxml2::XMLElement& element, const char* key,
+                           const geom::Vec3& otherwise) const {
+  return element.Attribute(key) != nullptr ? vector(element, key) : otherwise;
+}
+
+}  // namespace kaboum::robot
