@@ -34,3 +34,6 @@ if(KABOUM_BUILD_BENCHMARKS)
   find_package(benchmark REQUIRED)
   find_package(meshoptimizer REQUIRED CONFIG)
 endif()
+if(KABOUM_BUILD_TESTS OR KABOUM_BUILD_BENCHMARKS)
+  pkg_check_modules(KABOUM_COLLISION_ENGINES QUIET fcl ccd ode bullet)  # libcollide's, to compare with
+endif()

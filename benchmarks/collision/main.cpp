@@ -20,7 +20,7 @@
 namespace {
 
 using namespace kaboum;
-using namespace kaboum::collision;
+using namespace kaboum::collide;
 
 /// Two walls at y = ±0.5 · scale with a window each, as boxes.
 std::vector<geom::Mesh> make_scene(double scale) {

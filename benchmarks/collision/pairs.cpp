@@ -29,7 +29,7 @@
 namespace {
 
 using namespace kaboum;
-using namespace kaboum::collision;
+using namespace kaboum::collide;
 
 Model model_of(const std::string& name, bool convex, const std::vector<geom::Mesh>& bodies) {
   Model model{name, convex, 0, {}, bodies};

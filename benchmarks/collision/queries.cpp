@@ -6,7 +6,7 @@
 #include <ompl/util/Console.h>
 #include <ompl/util/RandomNumbers.h>
 
-namespace kaboum::collision {
+namespace kaboum::collide {
 
 std::vector<Configuration> record_queries(const Configuration& start, const Configuration& goal,
                                           double range,
@@ -47,4 +47,4 @@ std::vector<Configuration> record_queries(const Configuration& start, const Conf
   return queries;
 }
 
-}  // namespace kaboum::collision
+}  // namespace kaboum::collide

@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-namespace kaboum::collision {
+namespace kaboum::collide {
 
 using Configuration = std::vector<double>;
 
@@ -16,4 +16,4 @@ std::vector<Configuration> record_queries(const Configuration& start, const Conf
                                           const std::function<bool(const Configuration&)>& valid,
                                           std::size_t wanted, std::size_t& solved);
 
-}  // namespace kaboum::collision
+}  // namespace kaboum::collide

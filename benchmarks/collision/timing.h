@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-namespace kaboum::collision {
+namespace kaboum::collide {
 
 /// Of the times of queries. [microseconds]
 struct Statistics {
@@ -39,4 +39,4 @@ inline Statistics times_of(std::size_t count, const std::function<void(std::size
   return {sum / static_cast<double>(count), below(0.5), below(0.99), sorted.back()};
 }
 
-}  // namespace kaboum::collision
+}  // namespace kaboum::collide

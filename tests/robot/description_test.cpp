@@ -112,7 +112,9 @@ TEST(Urdf, ShapesOfSizeZeroAreKept) {
     EXPECT_EQ(describe(shapes[i]), words[i]);
     EXPECT_TRUE(is_flat(shapes[i]));
     EXPECT_EQ(is_point(shapes[i]), i >= 4);
-    if (i >= 4) EXPECT_THROW(bounding_points(shapes[i]), Error);
+    if (i >= 4) {
+      EXPECT_THROW(bounding_points(shapes[i]), Error);
+    }
   }
   // What bounds them has a volume, holds them, and is no larger than said.
   const std::vector<std::vector<Vec3>> held{

@@ -111,7 +111,9 @@ std::string random_robot(std::mt19937_64& random) {
     out.precision(1 + below(17));
     if (below(3) == 0) out << std::scientific;
     out << unit(random);
-    return below(9) == 0 ? "+" + std::to_string(below(100)) + "." : out.str();
+    std::string text = out.str();
+    if (below(9) == 0) text.assign("+").append(std::to_string(below(100))).append(".");
+    return text;
   };
   const auto three = [&] {
     const std::string gap = below(5) == 0 ? "  " : " ";

@@ -1,24 +1,12 @@
 #pragma once
 
-#include <kaboum/geom/mesh.h>
+#include <kaboum/geom/transform.h>
 
 namespace kaboum::robot {
 
+using geom::Transform;
 using geom::Vec3;
 using Mat3 = Eigen::Matrix3d;
-
-/// The affine map p ↦ linear · p + translation; for poses, `linear` is a rotation up to rounding.
-struct Transform {
-  Mat3 linear = Mat3::Identity();
-  Vec3 translation = Vec3::Zero();
-};
-
-inline Vec3 operator*(const Transform& t, const Vec3& p) { return t.linear * p + t.translation; }
-
-/// First b, then a.
-inline Transform operator*(const Transform& a, const Transform& b) {
-  return {a.linear * b.linear, a.linear * b.translation + a.translation};
-}
 
 /// Rotation by `angle` [rad] about a unit vector (Rodrigues).
 Mat3 rotation_about(const Vec3& unit_axis, double angle);

@@ -8,7 +8,7 @@
 
 #include "engine.h"
 
-namespace kaboum::collision {
+namespace kaboum::collide {
 namespace {
 
 using Geometry = std::shared_ptr<fcl::CollisionGeometryd>;
@@ -52,9 +52,9 @@ class FclEngine : public Engine {
     scene_.setup();
   }
 
-  void place(const std::vector<robot::Transform>& poses) override {
+  void place(const std::vector<geom::Transform>& poses) override {
     for (std::size_t i = 0; i < links_.size(); ++i) {
-      const robot::Transform& pose = poses[links_[i]];
+      const geom::Transform& pose = poses[links_[i]];
       fcl::Transform3d t = fcl::Transform3d::Identity();
       t.linear() = pose.linear;
       t.translation() = pose.translation;
@@ -88,4 +88,4 @@ class FclEngine : public Engine {
 
 std::unique_ptr<Engine> make_fcl(const Model& model) { return std::make_unique<FclEngine>(model); }
 
-}  // namespace kaboum::collision
+}  // namespace kaboum::collide

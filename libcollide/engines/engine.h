@@ -1,12 +1,13 @@
 #pragma once
 
-#include <kaboum/sweep/sweep.h>
+#include <kaboum/geom/transform.h>
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
-namespace kaboum::collision {
+namespace kaboum::collide {
 
 /// One shape of a link, or of the scene.
 struct Part {
@@ -31,7 +32,7 @@ class Engine {
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
   /// Moves the robot's parts; `poses` are of the links.
-  virtual void place(const std::vector<robot::Transform>& poses) = 0;
+  virtual void place(const std::vector<geom::Transform>& poses) = 0;
   /// Whether robot and scene collide.
   virtual bool collide() = 0;
   /// Distance between robot and scene, 0 or negative when they collide; NaN: not offered.
@@ -40,6 +41,7 @@ class Engine {
 
 std::unique_ptr<Engine> make_fcl(const Model& model);
 std::unique_ptr<Engine> make_bullet(const Model& model);
+/// Parts of the scene are taken as their bounding boxes: for scenes of boxes.
 std::unique_ptr<Engine> make_ode(const Model& model);
 
 /// Convex parts only, in a tree of oriented boxes for every link (BodyTree); pairs are decided by
@@ -52,4 +54,4 @@ std::unique_ptr<Engine> make_ccd_tree(const Model& model);
 std::unique_ptr<Engine> make_fcl_directions(const Model& model);
 std::unique_ptr<Engine> make_ccd_directions(const Model& model);
 
-}  // namespace kaboum::collision
+}  // namespace kaboum::collide

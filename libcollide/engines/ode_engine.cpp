@@ -5,7 +5,7 @@
 
 #include "engine.h"
 
-namespace kaboum::collision {
+namespace kaboum::collide {
 namespace {
 
 /// Everything as triangle meshes for ODE's OPCODE: its convex shapes test every edge against every
@@ -36,9 +36,9 @@ class OdeEngine : public Engine {
   OdeEngine(const OdeEngine&) = delete;
   OdeEngine& operator=(const OdeEngine&) = delete;
 
-  void place(const std::vector<robot::Transform>& poses) override {
+  void place(const std::vector<geom::Transform>& poses) override {
     for (std::size_t i = 0; i < links_.size(); ++i) {
-      const robot::Transform& pose = poses[links_[i]];
+      const geom::Transform& pose = poses[links_[i]];
       dGeomSetPosition(geoms_[i], pose.translation.x(), pose.translation.y(), pose.translation.z());
       dMatrix3 r{};
       for (int row = 0; row < 3; ++row)
@@ -89,4 +89,4 @@ class OdeEngine : public Engine {
 
 std::unique_ptr<Engine> make_ode(const Model& model) { return std::make_unique<OdeEngine>(model); }
 
-}  // namespace kaboum::collision
+}  // namespace kaboum::collide

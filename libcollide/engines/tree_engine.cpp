@@ -2,71 +2,22 @@
 #include <fcl/geometry/shape/convex.h>
 #include <fcl/narrowphase/detail/gjk_solver_indep.h>
 #include <fcl/narrowphase/detail/gjk_solver_libccd.h>
+#include <kaboum/collide/body_tree.h>
+#include <kaboum/collide/separation.h>
+#include "engine.h"
 
 #include <algorithm>
 #include <limits>
 #include <memory>
 
-#include "body_tree.h"
-#include "engine.h"
-
-namespace kaboum::collision {
+namespace kaboum::collide {
 namespace {
 
-fcl::Transform3d transform_of(const robot::Transform& pose) {
+fcl::Transform3d transform_of(const geom::Transform& pose) {
   fcl::Transform3d t = fcl::Transform3d::Identity();
   t.linear() = pose.linear;
   t.translation() = pose.translation;
   return t;
-}
-
-/// Vertices of a convex body, coordinate by coordinate, for the processor's sake.
-class Vertices {
- public:
-  explicit Vertices(const geom::Mesh& mesh) {
-    for (const geom::Vec3& v : mesh.vertices)
-      center_ += v / static_cast<double>(mesh.vertices.size());
-    for (const geom::Vec3& v : mesh.vertices) {
-      x_.push_back(v.x());
-      y_.push_back(v.y());
-      z_.push_back(v.z());
-    }
-  }
-
-  [[nodiscard]] const geom::Vec3& center() const { return center_; }
-
-  /// The vertex farthest along d.
-  [[nodiscard]] geom::Vec3 support(const geom::Vec3& d) const {
-    std::size_t best = 0;
-    double farthest = -std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < x_.size(); ++i) {
-      const double along = d.x() * x_[i] + d.y() * y_[i] + d.z() * z_[i];
-      best = along > farthest ? i : best;
-      farthest = along > farthest ? along : farthest;
-    }
-    return {x_[best], y_[best], z_[best]};
-  }
-
- private:
-  std::vector<double> x_, y_, z_;
-  geom::Vec3 center_ = geom::Vec3::Zero();
-};
-
-/// Whether a direction is found, within a few steps, along which two bodies are apart: mirrored at
-/// the vector between the supporting points until it is one (K. Chung, W. Wang: Quick collision
-/// detection of polytopes in virtual environments, 1996). `pose` takes b into the frame of a.
-bool found_apart(const Vertices& a, const Vertices& b, const robot::Transform& pose) {
-  geom::Vec3 direction = pose * b.center() - a.center();
-  for (int step = 0; step < 8; ++step) {
-    const geom::Vec3 p = a.support(direction);
-    const geom::Vec3 q = pose * b.support(-(pose.linear.transpose() * direction));
-    const geom::Vec3 between = q - p;
-    const double gap = between.dot(direction);
-    if (gap > 0) return true;
-    direction -= 2 * gap / between.squaredNorm() * between;
-    if (!direction.allFinite()) return false;
-  }
-  return false;
 }
 
 /// FCL's test of two convex bodies; Solver: with libccd, or FCL's own.
@@ -86,7 +37,7 @@ class FclPairs {
         static_cast<int>(mesh.triangles.size()), faces, true);
   }
 
-  void place(const robot::Transform& pose) { pose_ = transform_of(pose); }
+  void place(const geom::Transform& pose) { pose_ = transform_of(pose); }
 
   bool operator()(const Body& a, const Body& b) const {
     return solver_.shapeIntersect(*a, fcl::Transform3d::Identity(), *b, pose_, nullptr);
@@ -100,11 +51,11 @@ class FclPairs {
 /// libccd without FCL.
 class CcdPairs {
  public:
-  using Body = Vertices;
+  using Body = SupportPoints;
 
   static Body body_of(const geom::Mesh& mesh) { return Body(mesh); }
 
-  void place(const robot::Transform& pose) { pose_ = pose; }
+  void place(const geom::Transform& pose) { pose_ = pose; }
 
   bool operator()(const Body& a, const Body& b) const {
     const Placed still{&a, nullptr}, moved{&b, &pose_};
@@ -120,7 +71,7 @@ class CcdPairs {
  private:
   struct Placed {
     const Body* body;
-    const robot::Transform* pose;  ///< none: in its place
+    const geom::Transform* pose;  ///< none: in its place
   };
 
   static void write(const Placed& placed, const geom::Vec3& point, ccd_vec3_t* out) {
@@ -140,7 +91,7 @@ class CcdPairs {
     write(placed, placed.body->support(d), out);
   }
 
-  robot::Transform pose_;
+  geom::Transform pose_;
 };
 
 /// A tree of bodies for every link and one for the scene.
@@ -159,7 +110,7 @@ class TreeEngine : public Engine {
     poses_.resize(links);
   }
 
-  void place(const std::vector<robot::Transform>& poses) override {
+  void place(const std::vector<geom::Transform>& poses) override {
     for (std::size_t link = 0; link < robot_.size(); ++link) poses_[link] = poses[link];
   }
 
@@ -168,8 +119,8 @@ class TreeEngine : public Engine {
       const Object& object = robot_[link];
       pairs_.place(poses_[link]);
       if (any_pair(scene_.tree, object.tree, poses_[link], [&](int i, int j) {
-            return !(kDirections &&
-                     found_apart(scene_.vertices[i], object.vertices[j], poses_[link])) &&
+            return !(kDirections && find_separating_direction(scene_.vertices[i],
+                                                              object.vertices[j], poses_[link])) &&
                    pairs_(scene_.bodies[i], object.bodies[j]);
           }))
         return true;
@@ -189,12 +140,12 @@ class TreeEngine : public Engine {
     }
     BodyTree tree;
     std::vector<typename Pairs::Body> bodies;
-    std::vector<Vertices> vertices;
+    std::vector<SupportPoints> vertices;
   };
 
   Object scene_;
   std::vector<Object> robot_;
-  std::vector<robot::Transform> poses_;
+  std::vector<geom::Transform> poses_;
   Pairs pairs_;
 };
 
@@ -220,4 +171,4 @@ std::unique_ptr<Engine> make_ccd_directions(const Model& model) {
   return std::make_unique<TreeEngine<CcdPairs, true>>(model);
 }
 
-}  // namespace kaboum::collision
+}  // namespace kaboum::collide

@@ -1,17 +1,17 @@
 #pragma once
 
-#include <fcl/math/bv/OBB.h>
-#include <kaboum/geom/mesh.h>
-#include <kaboum/robot/transform.h>
+#include <kaboum/collide/box_overlap.h>
+#include <kaboum/geom/transform.h>
 
+#include <cstddef>
 #include <vector>
 
-namespace kaboum::collision {
+namespace kaboum::collide {
 
 /// Tree of oriented boxes over the bodies of one rigid object, in its frame.
 ///
-/// FCL gives an object that is turned the box of its bounding sphere; in a tree made once, boxes
-/// turn with the object and stay tight.
+/// Boxes are made once and turn with the object, so they stay tight. (FCL gives an object that is
+/// turned the box of its bounding sphere.)
 class BodyTree {
  public:
   /// @pre bodies are convex and not empty.
@@ -20,7 +20,7 @@ class BodyTree {
   /// Whether narrow(i, j) says so for body i of `a` and body j of `b`, which `pose` takes into the
   /// frame of `a`; asked of pairs whose boxes meet, until it does.
   template <typename Narrow>
-  friend bool any_pair(const BodyTree& a, const BodyTree& b, const robot::Transform& pose,
+  friend bool any_pair(const BodyTree& a, const BodyTree& b, const geom::Transform& pose,
                        const Narrow& narrow) {
     return !a.nodes_.empty() && !b.nodes_.empty() &&
            any_below(a, a.nodes_.back(), b, b.nodes_.back(), pose, narrow);
@@ -40,12 +40,11 @@ class BodyTree {
 
   template <typename Narrow>
   static bool any_below(const BodyTree& a, const Node& x, const BodyTree& b, const Node& y,
-                        const robot::Transform& pose, const Narrow& narrow) {
+                        const geom::Transform& pose, const Narrow& narrow) {
     const geom::Vec3 between = pose.linear * y.center + pose.translation - x.center;
     if (between.squaredNorm() > (x.radius + y.radius) * (x.radius + y.radius)) return false;
     const Eigen::Matrix3d turn = x.axes.transpose() * (pose.linear * y.axes);
-    if (fcl::obbDisjoint(turn, geom::Vec3(x.axes.transpose() * between), x.half, y.half))
-      return false;
+    if (boxes_are_apart(turn, x.axes.transpose() * between, x.half, y.half)) return false;
     if (x.body >= 0 && y.body >= 0) return narrow(x.body, y.body);
     if (y.body >= 0 || (x.body < 0 && x.half.squaredNorm() > y.half.squaredNorm()))
       return any_below(a, a.nodes_[x.left], b, y, pose, narrow) ||
@@ -57,4 +56,4 @@ class BodyTree {
   std::vector<Node> nodes_;  ///< the root last
 };
 
-}  // namespace kaboum::collision
+}  // namespace kaboum::collide

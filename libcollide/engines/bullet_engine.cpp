@@ -7,7 +7,7 @@
 
 #include "engine.h"
 
-namespace kaboum::collision {
+namespace kaboum::collide {
 namespace {
 
 btVector3 vector_of(const geom::Vec3& v) {
@@ -33,9 +33,9 @@ class BulletEngine : public Engine {
   BulletEngine(const BulletEngine&) = delete;
   BulletEngine& operator=(const BulletEngine&) = delete;
 
-  void place(const std::vector<robot::Transform>& poses) override {
+  void place(const std::vector<geom::Transform>& poses) override {
     for (std::size_t i = 0; i < links_.size(); ++i) {
-      const robot::Transform& pose = poses[links_[i]];
+      const geom::Transform& pose = poses[links_[i]];
       btMatrix3x3 basis;
       for (int r = 0; r < 3; ++r)
         for (int c = 0; c < 3; ++c) basis[r][c] = static_cast<btScalar>(pose.linear(r, c));
@@ -101,4 +101,4 @@ std::unique_ptr<Engine> make_bullet(const Model& model) {
   return std::make_unique<BulletEngine>(model);
 }
 
-}  // namespace kaboum::collision
+}  // namespace kaboum::collide

@@ -1,12 +1,13 @@
-#include "body_tree.h"
+// A tree of oriented boxes over convex bodies, built from below.
 
+#include <kaboum/collide/body_tree.h>
 #include <kaboum/geom/convex_hull.h>
 
 #include <Eigen/Eigenvalues>
 #include <limits>
 #include <list>
 
-namespace kaboum::collision {
+namespace kaboum::collide {
 namespace {
 
 using Frames = std::vector<Eigen::Matrix3d>;
@@ -102,4 +103,4 @@ BodyTree::BodyTree(const std::vector<geom::Mesh>& bodies) {
   }
 }
 
-}  // namespace kaboum::collision
+}  // namespace kaboum::collide
