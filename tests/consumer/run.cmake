@@ -1,5 +1,5 @@
 # Installs the build tree BUILD (configuration CONFIG) below WORK, then configures, builds and runs
-# the project SOURCE against it with the compiler COMPILER and nothing else of this tree.
+# the examples SOURCE against it with the compiler COMPILER and nothing else of this tree.
 file(REMOVE_RECURSE ${WORK})
 file(MAKE_DIRECTORY ${WORK})
 execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix
@@ -10,4 +10,5 @@ execute_process(COMMAND ${CMAKE_COMMAND} -G ${GENERATOR} -S ${SOURCE} -B ${WORK}
                         -DCMAKE_FIND_PACKAGE_NO_PACKAGE_REGISTRY=ON
                 COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${CMAKE_COMMAND} --build ${WORK}/build COMMAND_ERROR_IS_FATAL ANY)
-execute_process(COMMAND ${WORK}/build/consumer COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${CMAKE_CTEST_COMMAND} --test-dir ${WORK}/build --output-on-failure --no-tests=error
+                COMMAND_ERROR_IS_FATAL ANY)

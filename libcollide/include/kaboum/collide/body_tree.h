@@ -17,16 +17,11 @@ class BodyTree {
   /// @pre bodies are convex and not empty.
   explicit BodyTree(const std::vector<geom::Mesh>& bodies);
 
-  /// Whether narrow(i, j) says so for body i of `a` and body j of `b`, which `pose` takes into the
-  /// frame of `a`; asked of pairs whose boxes meet, until it does.
+ private:
   template <typename Narrow>
   friend bool any_pair(const BodyTree& a, const BodyTree& b, const geom::Transform& pose,
-                       const Narrow& narrow) {
-    return !a.nodes_.empty() && !b.nodes_.empty() &&
-           any_below(a, a.nodes_.back(), b, b.nodes_.back(), pose, narrow);
-  }
+                       const Narrow& narrow);
 
- private:
   struct Node {
     Eigen::Matrix3d axes;  ///< of the box, columns
     geom::Vec3 center, half;
@@ -55,5 +50,14 @@ class BodyTree {
 
   std::vector<Node> nodes_;  ///< the root last
 };
+
+/// Whether narrow(i, j) says so for body i of `a` and body j of `b`, which `pose` takes into the
+/// frame of `a`; asked of pairs whose boxes meet, until it does.
+template <typename Narrow>
+bool any_pair(const BodyTree& a, const BodyTree& b, const geom::Transform& pose,
+              const Narrow& narrow) {
+  return !a.nodes_.empty() && !b.nodes_.empty() &&
+         BodyTree::any_below(a, a.nodes_.back(), b, b.nodes_.back(), pose, narrow);
+}
 
 }  // namespace kaboum::collide

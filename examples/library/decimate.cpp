@@ -1,5 +1,4 @@
-// The smallest use of the installed libraries: a sphere, simplified outwards, through a file
-// format.
+// A sphere, simplified outwards, through a file format.
 #include <kaboum/bmesh/decimate.h>
 #include <kaboum/geom/mesh.h>
 #include <kaboum/geom/prepare.h>
