@@ -95,7 +95,7 @@ expect 0 "2 of 2 links judged" "$V" --sweep flat.urdf turn.csv flat.glb --joint 
 sed 's/length="0"/length="-1"/' flat.urdf >negative.urdf
 expect 3 "negative.urdf:5: link 'base': a cylinder whose size is negative" "$D" negative.urdf -o x
 sed 's/radius="0.2"/radius="wide"/' flat.urdf >word.urdf
-expect 3 "word.urdf:2: " "$D" word.urdf -o x
+expect 3 "word.urdf:5: <cylinder>: " "$D" word.urdf -o x
 
 # xacro that is not expanded.
 sed 's,<link name="tool"/>,&\n<xacro:include filename="more.xacro"/>,' flat.urdf >include.urdf
