@@ -15,6 +15,7 @@
 #include <sstream>
 
 #include "help.h"
+#include "xml_kind.h"
 
 namespace kaboum::tools {
 namespace {
@@ -58,13 +59,21 @@ std::string route(const std::string& path) {
       extension == ".brep")
     return "CAD files are not read; make a mesh of it, for example by gmsh: gmsh " + path +
            " -2 -clmax 5 -o part.stl (5: longest edge, in its unit)";
-  if (extension == ".xacro") return "xacro is not read; run: xacro " + path + " > robot.urdf";
-  if (extension == ".urdf")
-    return "a robot, not a mesh: bcd-decompose " + path +
-           " -o FOLDER decomposes all its links; other tools take its meshes one by one";
-  if (extension == ".sdf" || extension == ".world" || extension == ".xml" || extension == ".mjcf")
-    return "SDF and MJCF are not read; give the meshes that it names, or the robot as URDF";
-  return {};
+  const auto is = [&](std::initializer_list<const char*> names) {
+    return std::any_of(names.begin(), names.end(), [&](const char* n) { return extension == n; });
+  };
+  if (!is({".xacro", ".urdf", ".srdf", ".sdf", ".world", ".mjcf", ".xml", ".rlkin", ".rlmdl"}))
+    return {};
+  XmlKind kind = XmlKind::None;
+  try {
+    const std::vector<char> bytes = io::read_file(path);
+    kind = xml_kind({bytes.data(), bytes.size()});
+  } catch (const Error& error) {
+    return error.what();
+  }
+  if (extension == ".xacro") kind = XmlKind::Xacro;
+  if (kind != XmlKind::None) return route_to_mesh(kind, path);
+  return "neither a mesh nor well-formed XML";
 }
 
 /// Without slashes at the end.

@@ -14,6 +14,7 @@
 
 #include "find_mesh.h"
 #include "notes.h"
+#include "xml_kind.h"
 
 extern char** environ;
 
@@ -149,23 +150,6 @@ geom::ConvexSet decompose(const fs::path& mesh, const BodyOptions& options,
   return io::read_convex_set(result);
 }
 
-/// Name of a document's first element; empty when there is none.
-std::string_view root_of(std::string_view text) {
-  while (true) {
-    const std::size_t begin = text.find('<');
-    if (begin == std::string_view::npos) return {};
-    text.remove_prefix(begin + 1);
-    const std::string_view end = text.starts_with("!--") ? "-->"
-                                 : text.starts_with("?") ? "?>"
-                                 : text.starts_with("!") ? ">"
-                                                         : "";
-    if (end.empty()) return text.substr(0, text.find_first_of(" \t\r\n/>"));
-    const std::size_t close = text.find(end);
-    if (close == std::string_view::npos) return {};
-    text.remove_prefix(close + end.size());
-  }
-}
-
 }  // namespace
 
 RobotFile read_robot(const std::string& path) {
@@ -174,7 +158,10 @@ RobotFile read_robot(const std::string& path) {
   const std::vector<char> bytes = io::read_file(path);
   out.sha256 = io::sha256(bytes);
   const std::string_view text(bytes.data(), bytes.size());
-  if (const std::string_view root = root_of(text); root == "rlkin" || root == "rlmdl") {
+  const XmlKind kind = xml_kind(text);
+  if (const std::string route = route_to_robot(kind); !route.empty())
+    throw Error(ErrorCode::InvalidInput, path + ": " + route);
+  if (kind == XmlKind::RlRobot) {
     out.robot = robot::parse_rl(text, path);
     find_meshes(out.robot, out.path.parent_path());
   } else {

@@ -1,4 +1,5 @@
 #include <kaboum/geom/error.h>
+#include <kaboum/geom/json_damage.h>
 #include <kaboum/geom/similar_name.h>
 #include <kaboum/robot/kinematics.h>
 #include <kaboum/robot/path.h>
@@ -154,9 +155,15 @@ NamedPath parse_path_csv(std::string_view text, const std::string& name) {
 
 NamedPath parse_path_json(std::string_view text, const std::string& name) {
   // Depth is limited before anything is built.
-  const Json json = Json::parse(
-      text, [](int depth, Json::parse_event_t, Json&) { return depth <= 8; }, false);
-  if (json.is_discarded()) fail(name, "not well-formed JSON");
+  Json json;
+  try {
+    json = Json::parse(text, [](int depth, Json::parse_event_t, Json&) { return depth <= 8; });
+  } catch (const Json::parse_error& e) {
+    fail(name, geom::describe_json_damage(text, e.byte) + "; mend the path there");
+  } catch (const Json::exception&) {
+    fail(name, "a number in it is out of range");
+  }
+  if (json.is_discarded()) fail(name, "it is nested too deep; write a list of waypoints");
   NamedPath path;
   const Json* waypoints = &json;
   if (json.is_object()) {

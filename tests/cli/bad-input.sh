@@ -60,12 +60,36 @@ expect 3 'too long' "$BIN/hausdorff-eval" t.off "$long.off"
 expect 3 'too long' "$BIN/bound-verify" --cover t.off "$long.glb"
 expect 3 '' "$BIN/bound-verify" --cover t.off "$long"
 # What is no mesh is answered with a way to one.
-for f in part.step part.STP part.iges robot.urdf robot.urdf.xacro world.sdf arm.xml; do : >$f; done
+for f in part.step part.STP part.iges robot.urdf.xacro empty.xml; do : >$f; done
 for f in part.step part.STP part.iges; do expect 3 "gmsh $f -2" "$D" $f -o x.off --epsilon 1%; done
-expect 3 'bcd-decompose robot.urdf -o FOLDER' "$D" robot.urdf -o x.off --epsilon 1%
+echo '<robot name="r"><link name="l"/></robot>' >robot.urdf
+echo '<!-- c --><sdf version="1.9"/>' >world.sdf
+cp world.sdf world.xml
+echo '<mujoco/>' >arm.xml
+echo '<rlkin><kinematics/></rlkin>' >rl.xml
+echo '<rlsg><scene href="a.wrl"/></rlsg>' >scene.xml
+echo '<robot name="r"><group name="g"><link name="l"/></group></robot>' >robot.srdf
+echo '<package/>' >package.xml
+cp robot.urdf urdf.xml
+for f in robot.urdf urdf.xml; do expect 3 "bcd-decompose $f -o FOLDER" "$D" $f -o x.off --epsilon 1%; done
 expect 3 'xacro robot.urdf.xacro > robot.urdf' "$BIN/bcd-decompose" robot.urdf.xacro -o x
-for f in world.sdf arm.xml; do expect 3 'SDF and MJCF' "$D" $f -o x.off --epsilon 1%; done
-absent x.off x.obj
+for tool in "$D" "$BIN/bcd-decompose"; do
+  for f in world.sdf world.xml; do expect 3 "^[a-z-]*: $f: SDF .*give the meshes that it names" "$tool" $f -o x.obj --epsilon 1%; done
+  expect 3 'arm.xml: MJCF .*give the meshes that it names' "$tool" arm.xml -o x.obj --epsilon 1%
+  expect 3 'rl.xml: a robot of the Robotics Library.*sweep-approx' "$tool" rl.xml -o x.obj --epsilon 1%
+  expect 3 'scene.xml: a scene of the Robotics Library.*href' "$tool" scene.xml -o x.obj --epsilon 1%
+  expect 3 'robot.srdf: SRDF .*give the URDF' "$tool" robot.srdf -o x.obj --epsilon 1%
+  expect 3 'package.xml: XML of a kind that is not known' "$tool" package.xml -o x.obj --epsilon 1%
+  expect 3 'empty.xml: neither a mesh nor well-formed XML' "$tool" empty.xml -o x.obj --epsilon 1%
+  expect 3 'none.xml: cannot be read' "$tool" none.xml -o x.obj --epsilon 1%
+done
+for f in world.xml arm.xml robot.srdf scene.xml package.xml; do
+  mkdir -p kinds
+  cp $f kinds/$f.urdf
+  expect 3 "give the \(robot as \)\?\(URDF\|rlkin\)" "$BIN/bcd-decompose" kinds/$f.urdf -o x
+  expect 3 "$f: .*give the \(robot as \)\?\(URDF\|rlkin\)" "$BIN/sweep-approx" $f --path t.off -o x.glb
+done
+absent x.off x.obj x.glb x
 
 # A file cut at many places gives an error or, when only trailing bytes are missing, a result.
 "$D" "$BRACKET" -o whole.stl --vertices 60 --quiet

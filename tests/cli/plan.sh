@@ -32,6 +32,17 @@ expect 2 '' "$P"
 "$DOMAINS/stacked/make-problem" 9 >nine.kpl
 expect 7 '' "$P" solve "$DOMAINS/stacked/domain.kpl" nine.kpl --search bfs --max-memory 1M -o none.json
 absent none.json
+# Plans that are damaged: where, and what to do.
+head -c 200 four.json >cut.json
+expect 3 '^kaboum-plan: cut.json: the JSON is cut short: it ends at line [0-9]*, column [0-9]*; write the plan again' \
+  "$P" check "$DOMAINS/stacked/domain.kpl" problem.kpl --plan cut.json
+sed '3s/:/;/' four.json >bad.json
+expect 3 "bad.json: not JSON at line 3, column [0-9]*, near '.*;.*'; write the plan again" \
+  "$P" show "$DOMAINS/stacked/domain.kpl" problem.kpl --plan bad.json
+: >empty.json
+expect 3 'empty.json: the JSON is cut short: it ends at line 1, column 1' "$P" check "$DOMAINS/stacked/domain.kpl" problem.kpl --plan empty.json
+sed '3s/: *[^,]*/: 1e999/' four.json >big.json
+expect 3 'big.json: a number in it is out of range' "$P" check "$DOMAINS/stacked/domain.kpl" problem.kpl --plan big.json
 # Commands that are misspelt, or lacking.
 expect 2 "unknown command 'sovle'; did you mean 'solve'?" "$BIN/kaboum-plan" sovle x.kpl
 expect 2 "unknown command 'x.kpl'; commands: solve, check, show, convert" "$BIN/kaboum-plan" x.kpl

@@ -145,6 +145,16 @@ for joint in k= k =1 k=x k=nan; do expect 2 'NAME=NUMBER' "$S" flat.urdf --path 
 expect 2 'given twice' "$S" flat.urdf --path j.json -o x.glb --joint k=1 --joint k=2
 expect 2 'there is no diagonal' "$S" flat.urdf --path plain.csv -o x.glb --epsilon 1%
 absent x.glb
+# JSON that is cut or wrong.
+printf '{"joints": ["j"],\n "waypoints": [[0], [1' >cut.json
+expect 3 'cut.json: the JSON is cut short: it ends at line 2, column' "$S" flat.urdf --path cut.json -o x.glb --joint k=0.5
+printf '{"joints": ["j"],\n "waypoints": [[0], [1,]]}' >comma.json
+expect 3 "comma.json: not JSON at line 2, column 24, near '.*\[1,\]" "$S" flat.urdf --path comma.json -o x.glb --joint k=0.5
+"$S" flat.urdf --path plain.csv -o recorded --quiet
+printf '{\n"unit": m}' >recorded/convex-set.json
+expect 3 'recorded/convex-set.json: not JSON at line 2, column 9.*; write the set again' "$V" --sweep flat.urdf plain.csv recorded
+printf '{"asset": {"version": "2.0"}\n, "meshes": [' >cut.gltf
+expect 3 'cut.gltf: the JSON is cut short: it ends at line 2, column 13; .*get or export it again' "$D" cut.gltf -o x.glb --epsilon 1%
 # Names that are misspelt.
 cat >named.urdf <<END
 <robot name="r">

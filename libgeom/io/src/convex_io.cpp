@@ -1,4 +1,5 @@
 #include <kaboum/geom/error.h>
+#include <kaboum/geom/json_damage.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/io/convex_io.h>
 #include <unistd.h>
@@ -102,8 +103,15 @@ geom::ConvexSet read_directory(const fs::path& path, SetReadDetails& details) {
     const std::vector<char> bytes = read_file(path / kRecordFile);
     const std::string name = (path / kRecordFile).string();
     const Source record_source{{bytes.data(), bytes.size()}, name, {}, true};
-    const Json record = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
-    if (record.is_discarded()) fail(record_source, "not valid JSON; write the set again");
+    Json record;
+    try {
+      record = Json::parse(bytes.begin(), bytes.end());
+    } catch (const Json::parse_error& e) {
+      fail(record_source, geom::describe_json_damage({bytes.data(), bytes.size()}, e.byte) +
+                              "; write the set again");
+    } catch (const Json::exception&) {
+      fail(record_source, "a number in it is out of range; write the set again");
+    }
     take_record(record, record_source, set);
     details.has_record = true;
   }

@@ -3,6 +3,7 @@
 #include "gltf_file.h"
 
 #include <kaboum/geom/error.h>
+#include <kaboum/geom/json_damage.h>
 #include <kaboum/io/mesh_io.h>
 
 #include <algorithm>
@@ -258,9 +259,12 @@ void GltfFile::parse(std::string_view text) {
   };
   try {
     json_ = JsonItem::Json::parse(text.begin(), text.end(), look);
-  } catch (const JsonItem::Json::exception& e) {
-    io::fail(source_, "its JSON cannot be read (" + std::string(e.what()) +
-                          "); it is damaged or not a glTF file");
+  } catch (const JsonItem::Json::parse_error& e) {
+    io::fail(source_, geom::describe_json_damage(text, e.byte) +
+                          "; it is damaged or not a glTF file, get or export it again");
+  } catch (const JsonItem::Json::exception&) {
+    io::fail(source_,
+             "a number in its JSON is out of range; it is damaged, get or export it again");
   }
 }
 

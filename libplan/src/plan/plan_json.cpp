@@ -1,4 +1,5 @@
 #include <kaboum/geom/error.h>
+#include <kaboum/geom/json_damage.h>
 #include <kaboum/plan/plan.h>
 
 #include <algorithm>
@@ -25,8 +26,10 @@ class Reader {
     Json json;
     try {
       json = Json::parse(text);
-    } catch (const nlohmann::json::exception& e) {
-      fail(e.what());
+    } catch (const Json::parse_error& e) {
+      fail(geom::describe_json_damage(text, e.byte) + "; write the plan again (kaboum-plan solve)");
+    } catch (const Json::exception&) {
+      fail("a number in it is out of range; write the plan again (kaboum-plan solve)");
     }
     if (!json.is_object() || json.value("format", Json()) != Json("kaboum-plan"))
       fail("not a kaboum-plan file");
