@@ -81,7 +81,7 @@ for tool in "$D" "$BIN/bcd-decompose"; do
   expect 3 'robot.srdf: SRDF .*give the URDF' "$tool" robot.srdf -o x.obj --epsilon 1%
   expect 3 'package.xml: XML of a kind that is not known' "$tool" package.xml -o x.obj --epsilon 1%
   expect 3 'empty.xml: neither a mesh nor well-formed XML' "$tool" empty.xml -o x.obj --epsilon 1%
-  expect 3 'none.xml: cannot be read' "$tool" none.xml -o x.obj --epsilon 1%
+  expect 3 'none.xml: no such file' "$tool" none.xml -o x.obj --epsilon 1%
 done
 for f in world.xml arm.xml robot.srdf scene.xml package.xml; do
   mkdir -p kinds
