@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <utility>
 
+#include "replay_fill.h"
 #include "replay_solid.h"
 
 namespace kaboum::bmesh {
@@ -171,6 +171,9 @@ class Replay {
     for (std::size_t t = 0; t < input_.size(); ++t)
       if (dropped[t] == 0)
         triangles_.push_back({number[input_[t][0]], number[input_[t][1]], number[input_[t][2]]});
+    const std::vector<Corners> input = triangles_;
+    std::vector<geom::Vec3> input_points;
+    for (const Point& p : points_) input_points.emplace_back(p.x(), p.y(), p.z());
     for (const geom::Vec3& p : log_.filled_vertices) {
       if (!p.allFinite()) return violated("a vertex that fills a hole is not finite");
       points_.emplace_back(p.x(), p.y(), p.z());
@@ -183,42 +186,11 @@ class Replay {
       if (repeated(t)) return violated("a triangle that fills a hole has a repeated corner");
       triangles_.push_back(t);
     }
-    if (!fills_have_borders())
-      return violated("triangles that are said to fill a hole are closed by themselves");
+    if (const std::string wrong = find_wrong_fill(input, input_points, log_); !wrong.empty())
+      return violated(wrong);
     around_.resize(points_.size());
     for (std::uint32_t t = 0; t < triangles_.size(); ++t)
       for (const std::uint32_t v : triangles_[t]) around_[v].push_back(t);
-    return true;
-  }
-
-  /// Whether what fills holes, in parts joined by edges, has a border: a closed part fills nothing.
-  [[nodiscard]] bool fills_have_borders() const {
-    const std::size_t n = log_.filled_triangles.size();
-    std::vector<std::size_t> part(n);
-    std::iota(part.begin(), part.end(), std::size_t{0});
-    const auto root = [&](std::size_t i) {
-      while (part[i] != i) i = part[i] = part[part[i]];
-      return i;
-    };
-    struct Use {
-      std::size_t triangle;
-      int balance;
-    };
-    std::map<std::pair<std::uint32_t, std::uint32_t>, Use> edges;
-    for (std::size_t i = 0; i < n; ++i) {
-      const geom::Triangle& t = log_.filled_triangles[i];
-      for (int k = 0; k < 3; ++k) {
-        const std::uint32_t a = t[k], b = t[(k + 1) % 3];
-        Use& use = edges.try_emplace(std::minmax(a, b), Use{i, 0}).first->second;
-        use.balance += a < b ? 1 : -1;
-        part[root(i)] = root(use.triangle);
-      }
-    }
-    std::vector<char> bordered(n, 0);
-    for (const auto& [edge, use] : edges)
-      if (use.balance != 0) bordered[root(use.triangle)] = 1;
-    for (std::size_t i = 0; i < n; ++i)
-      if (bordered[root(i)] == 0) return false;
     return true;
   }
 

@@ -250,6 +250,96 @@ TEST(Replay, FillsHoles) {
   }
 }
 
+// The triangles of a log without steps: the input's, then what fills its holes.
+geom::Mesh filled_by(const geom::Mesh& input, const Log& log) {
+  geom::Mesh out = input;
+  out.vertices.insert(out.vertices.end(), log.filled_vertices.begin(), log.filled_vertices.end());
+  out.triangles.insert(out.triangles.end(), log.filled_triangles.begin(),
+                       log.filled_triangles.end());
+  return out;
+}
+
+// What fills holes decides about the solid: fills that close every edge, but are no fans on the
+// holes' rims from their means, are refused.
+TEST(Replay, RefusesFillsThatAreNoFans) {
+  geom::Mesh box;  // without its top
+  for (const double z : {0.0, 1.0})
+    for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}})
+      box.vertices.emplace_back(x, y, z);
+  box.triangles = {{0, 2, 1}, {0, 3, 2}, {0, 1, 5}, {0, 5, 4}, {1, 2, 6},
+                   {1, 6, 5}, {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7}};
+  // Numbered as the replay does: by first use.
+  const std::array<std::uint32_t, 8> number{0, 2, 1, 3, 5, 4, 6, 7};
+  geom::Mesh input;
+  input.vertices.resize(8);
+  for (std::size_t v = 0; v < 8; ++v) input.vertices[number[v]] = box.vertices[v];
+  for (const geom::Triangle& t : box.triangles)
+    input.triangles.push_back({number[t[0]], number[t[1]], number[t[2]]});
+
+  geom::PrepareOptions options;
+  options.holes = geom::Holes::Fill;
+  const geom::Prepared p = geom::prepare(input, options);
+  const Log log = test::log_of_preparation(input, p, Direction::Outer);
+  ASSERT_EQ(log.filled_triangles.size(), 4U);
+  ASSERT_EQ(log.filled_vertices.size(), 1U);
+  const auto judged = [&](const Log& l) { return replay(input, l, filled_by(input, l)); };
+  ASSERT_TRUE(judged(log).verified) << judged(log).violation;
+  const auto refused = [&](const Log& l, const char* why) {
+    const auto checked = judged(l);
+    EXPECT_FALSE(checked.verified) << why;
+    EXPECT_NE(checked.violation.find(why), std::string::npos) << checked.violation;
+  };
+  const auto rim = [&](std::size_t k) { return log.filled_triangles[k][0]; };
+
+  Log mutant = log;  // a tip below the bottom takes the inside from the solid
+  mutant.filled_vertices[0].z() = -5;
+  refused(mutant, "from its mean");
+  mutant = log;
+  mutant.filled_vertices[0].z() = std::nextafter(1.0, 0.0);
+  refused(mutant, "from its mean");
+
+  mutant = log;  // triangles in another order: still a fan, but not in the order of its rim
+  std::swap(mutant.filled_triangles[1], mutant.filled_triangles[2]);
+  refused(mutant, "from its mean");
+
+  mutant = log;  // two triangles instead of the fan: the rim is not theirs alone
+  mutant.filled_vertices.clear();
+  mutant.filled_triangles = {{rim(0), rim(1), rim(2)}, {rim(2), rim(3), rim(0)}};
+  refused(mutant, "of those that fill holes");
+
+  // A shell that is inside out, hung on the fan by an edge that both have.
+  for (const bool apart : {false, true}) {
+    mutant = log;
+    const std::uint32_t tip = log.filled_triangles[0][2], far = tip + 1;
+    mutant.filled_vertices.emplace_back(0.5, 0.5, apart ? 0.1 : -9);
+    mutant.filled_triangles.push_back({rim(0), tip, far});
+    mutant.filled_triangles.push_back({rim(0), rim(1), tip});
+    mutant.filled_triangles.push_back({tip, rim(1), far});
+    mutant.filled_triangles.push_back({rim(1), rim(0), far});
+    refused(mutant, "of those that fill holes");
+  }
+
+  mutant = log;  // a vertex besides
+  mutant.filled_vertices.emplace_back(0, 0, 9);
+  refused(mutant, "does not");
+
+  // Three fans that close one another, on edges of a closed mesh.
+  mutant = log;
+  const std::uint32_t tip = log.filled_triangles[0][2];
+  const std::array<std::vector<std::uint32_t>, 3> paths{
+      {{rim(0), rim(1), rim(2)}, {rim(0), tip, rim(2)}, {rim(0), rim(3), rim(2)}}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto &there = paths[k], &back = paths[(k + 1) % 3];
+    const std::vector<std::uint32_t> loop{there[0], there[1], there[2], back[1]};
+    const auto center =
+        static_cast<std::uint32_t>(input.vertices.size() + mutant.filled_vertices.size());
+    mutant.filled_vertices.emplace_back(0.5, 0.5, 3 - 2.0 * static_cast<double>(k));
+    for (std::size_t i = 0; i < 4; ++i)
+      mutant.filled_triangles.push_back({loop[i], loop[(i + 1) % 4], center});
+  }
+  refused(mutant, "of those that fill holes");
+}
+
 TEST(Replay, RefusesNonsense) {
   test::Recorded r = run(sphere(), Direction::Outer);
   Log mutant = r.log;

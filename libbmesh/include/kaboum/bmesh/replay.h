@@ -36,7 +36,8 @@ struct ReplayResult {
 /// whether they should be turned is not checked. Dropped copies are checked to be closed chains
 /// that also stay; they lower the winding number but, unless something is oriented inwards, not the
 /// solid. Triangles that fill holes are added to those of the input, which stay as they are; with
-/// them the mesh is checked to be a closed chain; how they fill the holes is not checked.
+/// them the mesh is checked to be a closed chain, and they to be triangles and fans on the rims of
+/// holes, each from the mean of its rim (docs/algorithms/preparation.md).
 ///
 /// @param original  as read from the input file.
 /// @param result    as read from the result file.
