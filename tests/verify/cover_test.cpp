@@ -426,6 +426,7 @@ TEST(Depth, OfBodiesThatOverlapManyTimes) {
   for (int i = 0; i < 60; ++i) {
     const Vec3 centre = Vec3(uniform(), uniform(), uniform()).normalized() * 0.4;
     std::vector<Vec3> points;
+    points.reserve(60);
     for (int k = 0; k < 60; ++k)
       points.push_back(centre + 0.5 * Vec3(uniform(), uniform(), uniform()).normalized());
     bodies.push_back(*geom::convex_hull(points));
@@ -494,8 +495,9 @@ TEST(Depth, OfOriginalsThatCutThemselves) {
     }
     std::vector<Block> empty;
     for (int c = 0; c < (kSide + 2) * (kSide + 2) * (kSide + 2); ++c) {
-      const Vec3 low(c % (kSide + 2) - 1, c / (kSide + 2) % (kSide + 2) - 1,
-                     c / (kSide + 2) / (kSide + 2) - 1);
+      const std::array<int, 3> at{c % (kSide + 2) - 1, c / (kSide + 2) % (kSide + 2) - 1,
+                                  c / (kSide + 2) / (kSide + 2) - 1};
+      const Vec3 low(at[0], at[1], at[2]);
       const Block cube{low, low + Vec3::Ones()};
       if (std::none_of(of_original.begin(), of_original.end(),
                        [&](const Block& b) { return b.distance(low + Vec3::Constant(0.5)) == 0; }))
