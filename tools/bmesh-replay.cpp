@@ -23,7 +23,7 @@ std::string original(const bmesh::ReplayResult& r) {
             " triangles turned as the log says (whether they should be is not checked)";
   if (r.filled != 0)
     text += ", its holes filled with " + std::to_string(r.filled) +
-            " triangles that the log adds (it is closed with them; how they run is not checked)";
+            " triangles that the log adds (it is closed with them, fans on the rims of its holes)";
   return text;
 }
 

@@ -78,8 +78,8 @@ int verify_progressive(const std::string& original, const std::string& original_
            "checked\n";
   if (r.filled != 0)
     out << "the original's holes are filled with " << r.filled
-        << " triangles that the file adds to its own; it is closed with them, and how they run is "
-           "not checked\n";
+        << " triangles that the file adds to its own; it is closed with them, fans on the rims of "
+           "its holes\n";
   if (r.dropped != 0) out << r.dropped << " triangles of the original are dropped, harmlessly\n";
   out << "verified: " << claim(p, r) << "; " << r.steps << " steps, " << r.predicates
       << " exact tests\n";
