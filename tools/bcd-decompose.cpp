@@ -28,7 +28,7 @@ using namespace kaboum;
 using tools::Json;
 
 /// Changes whenever the same options may give another result: cached results are then not found.
-constexpr const char* kAlgorithm = "planes 20";
+constexpr const char* kAlgorithm = "planes 21";
 
 /// The same of containers' bytes.
 constexpr const char* kContainer = "coloured";

@@ -47,8 +47,14 @@ double FacetTree::bound(const Node& node, const geom::Vec3& from_center) const {
 }
 
 double FacetTree::beyond(const geom::Vec3& p, double least, double enough) const {
+  return farthest(p, least, enough).first;
+}
+
+std::pair<double, std::uint32_t> FacetTree::farthest(const geom::Vec3& p, double least,
+                                                     double enough) const {
   double best = least;
-  if (nodes_.empty()) return best;
+  std::uint32_t facet = 0;
+  if (nodes_.empty()) return {best, facet};
   const geom::Vec3 from_center = p - center_;
   std::array<std::pair<double, std::uint32_t>, 64> stack;  // the facets are halved each time
   int size = 0;
@@ -58,9 +64,14 @@ double FacetTree::beyond(const geom::Vec3& p, double least, double enough) const
     if (most <= best) continue;
     const Node& node = nodes_[index];
     if (node.count > 0) {
-      for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-        best = std::max(best, facets_[i].n.x() * p.x() + facets_[i].n.y() * p.y() +
-                                  facets_[i].n.z() * p.z() - facets_[i].d);
+      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+        const Facet& f = facets_[i];
+        const double height = f.n.x() * p.x() + f.n.y() * p.y() + f.n.z() * p.z() - f.d;
+        if (height > best) {
+          best = height;
+          facet = i;
+        }
+      }
       continue;
     }
     std::pair<double, std::uint32_t> left{bound(nodes_[index + 1], from_center), index + 1};
@@ -69,7 +80,7 @@ double FacetTree::beyond(const geom::Vec3& p, double least, double enough) const
     stack[size++] = left;
     stack[size++] = right;
   }
-  return best;
+  return {best, facet};
 }
 
 }  // namespace kaboum::bcd

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace kaboum::bcd {
@@ -23,6 +24,10 @@ class FacetTree {
   /// exceeds `enough`, something between them.
   [[nodiscard]] double beyond(const geom::Vec3& p, double least = 0,
                               double enough = std::numeric_limits<double>::infinity()) const;
+  /// That, and the facet's place in the tree; the same for the same facets.
+  [[nodiscard]] std::pair<double, std::uint32_t> farthest(
+      const geom::Vec3& p, double least = 0,
+      double enough = std::numeric_limits<double>::infinity()) const;
 
  private:
   struct Node {

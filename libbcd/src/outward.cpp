@@ -195,19 +195,25 @@ std::optional<geom::Mesh> push_out(std::span<const Vec3> shape, std::span<const 
           moved[i] = geom::to_float32(Vec3(start[i] + push[vertex[i]] * direction[i]));
         if (!builder.build(moved) || builder.vertices().size() > most) break;
         bool good = true;
+        std::vector<double> farther = push;
         for (const Triangle& t : builder.triangles()) {
-          bool outside = false;
-          for (const Vec3& p : required) {
-            if (geom::orient3d(moved[t[0]], moved[t[1]], moved[t[2]], p) == geom::Sign::Positive) {
-              outside = true;
-              break;
-            }
-          }
-          if (!outside) continue;
+          const Vec3 &a = moved[t[0]], &b = moved[t[1]], &c = moved[t[2]];
+          if (std::none_of(required.begin(), required.end(), [&](const Vec3& p) {
+                return geom::orient3d(a, b, c, p) == geom::Sign::Positive;
+              }))
+            continue;
           good = false;
-          for (const std::uint32_t i : t)
-            push[vertex[i]] = std::max(1.5 * ulp, 1.6 * push[vertex[i]]);
+          const Vec3 m = (b - a).cross(c - a);
+          double lack = 0;
+          for (const Vec3& p : required) lack = std::max(lack, m.dot(p - a));
+          lack = m.norm() > 0 ? lack / m.norm() : 0;
+          for (const std::uint32_t i : t) {
+            const double now = push[vertex[i]];
+            farther[vertex[i]] =
+                std::max({farther[vertex[i]], 1.5 * ulp, 1.6 * now, now + 1.1 * lack});
+          }
         }
+        push = std::move(farther);
         if (good) return builder.mesh();
         if (*std::max_element(push.begin(), push.end()) > longest_push) break;
       }

@@ -6,6 +6,8 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numeric>
 #include <optional>
 #include <queue>
 #include <unordered_map>
@@ -42,6 +44,17 @@ struct Quadric {
     b += q.b;
   }
 };
+
+double size_of(std::span<const Vec3> points) {
+  Box3 box;
+  for (const Vec3& p : points) box.extend(p);
+  return box.diagonal();
+}
+
+/// What adds no more to a hull is all the same.
+double negligible(double free_cost, double size) {
+  return std::clamp(0.02 * free_cost, 1e-5 * size, 2e-4 * size);
+}
 
 class Contractor {
  public:
@@ -84,8 +97,8 @@ class Contractor {
       Vec3 position;
     };
     std::unordered_map<std::uint64_t, Tried> known;  // by edge
-    const double least = std::clamp(0.02 * free_cost, 1e-5 * size_, 2e-4 * size_);
-    for (double growth = least; growth < 1e-2 * size_ && alive_ > cap; growth *= 4) {
+    for (double growth = negligible(free_cost, size_); growth < 1e-2 * size_ && alive_ > cap;
+         growth *= 4) {
       const std::size_t old = vertices_.size();
       // The vertices that are new join the end.
       for (std::uint32_t v = 0; v < vertices_.size() && alive_ > cap; ++v) {
@@ -172,12 +185,6 @@ class Contractor {
       return a != o.a ? a > o.a : b > o.b;
     }
   };
-
-  static double size_of(const std::vector<Vec3>& points) {
-    Box3 box;
-    for (const Vec3& p : points) box.extend(p);
-    return box.diagonal();
-  }
 
   static bool plane(const Vec3& a, const Vec3& b, const Vec3& c, HalfSpace& h) {
     const Vec3 u = b - a, w = c - a;
@@ -550,6 +557,50 @@ class Contractor {
   std::vector<HalfSpace> constraints_;
 };
 
+/// Vertices of a convex hull whose own hull no other is farther beyond than `tolerance`: of each
+/// facet's, the farthest joins, round by round. Thousands of corners of a disc come down to a few
+/// hundred, and slivers, of no certain normals, with them.
+std::vector<Vec3> main_vertices(std::span<const Vec3> hull, double tolerance) {
+  const double size = size_of(hull);
+  std::vector<std::uint32_t> open(hull.size());
+  std::iota(open.begin(), open.end(), 0U);
+  std::vector<Vec3> out;
+  // First the extreme ones along the axes and the cube's diagonals.
+  for (int i = 0; i < 27; ++i) {
+    const Vec3 n(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+    if (n.isZero()) continue;
+    out.push_back(*std::max_element(hull.begin(), hull.end(), [&](const Vec3& p, const Vec3& q) {
+      return n.dot(p) < n.dot(q);
+    }));
+  }
+  geom::HullBuilder builder;
+  for (int round = 0; round < 40; ++round) {
+    if (!builder.build(out)) return {hull.begin(), hull.end()};
+    std::vector<FacetTree::Facet> facets;
+    for (const Triangle& t : builder.triangles()) {
+      const Vec3& a = out[t[0]];
+      const Vec3 n = (out[t[1]] - a).cross(out[t[2]] - a);
+      const double length = n.norm();
+      if (length > 0) facets.push_back({n / length, n.dot(a) / length});
+    }
+    const FacetTree tree(facets, out[0], size);
+    std::map<std::uint32_t, std::pair<double, std::uint32_t>> farthest;  // by facet
+    std::erase_if(open, [&](std::uint32_t v) {
+      const auto [height, facet] = tree.farthest(hull[v], tolerance);
+      if (height <= tolerance) return true;  // the hull only grows
+      auto& [most, at] = farthest[facet];
+      if (height > most) {
+        most = height;
+        at = v;
+      }
+      return false;
+    });
+    if (farthest.empty()) return out;
+    for (const auto& [facet, point] : farthest) out.push_back(hull[point.second]);
+  }
+  return {hull.begin(), hull.end()};
+}
+
 }  // namespace
 
 Simplified simplify(std::span<const Vec3> hull, std::size_t cap, double free_cost,
@@ -567,6 +618,10 @@ Simplified simplify(std::span<const Vec3> hull, std::size_t cap, double free_cos
     // Flat: a prism is as good as anything.
     if (hull.size() > cap) out.needed = out.vertices = prism_round();
     return out;
+  }
+  if (const std::size_t all = builder.vertices().size(); all > kMany) {
+    solid.work().add(10000 * all);
+    builder.build(out.vertices = main_vertices(hull, negligible(free_cost, size_of(hull))));
   }
   const Mesh mesh = builder.mesh();
   Contractor contractor(mesh.vertices, mesh.triangles, solid);

@@ -91,7 +91,7 @@ TEST(Work, NearlyConvexSolidsAreOneBodyAtOnce) {
 
 TEST(Work, FansOfThousandsAreOneBody) {
   // A cone, and its base as another fan.
-  const Mesh cone = geom::prepare(revolved({{0, 0}, {1, 0}, {0, 1}}, 1500)).mesh;
+  const Mesh cone = geom::prepare(revolved({{0, 0}, {1, 0}, {0, 1}}, 2500)).mesh;
   DecomposeOptions options = test::quick(cone, 1);
   options.max_work = 5;
   const DecomposeResult result = decompose(geom::prepare(cone), options);
