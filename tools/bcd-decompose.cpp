@@ -28,7 +28,7 @@ using namespace kaboum;
 using tools::Json;
 
 /// Changes whenever the same options may give another result: cached results are then not found.
-constexpr const char* kAlgorithm = "planes 21";
+constexpr const char* kAlgorithm = "planes 22";
 
 /// The same of containers' bytes.
 constexpr const char* kContainer = "coloured";
@@ -126,7 +126,7 @@ void describe(CLI::App& app, Options& o) {
   app.add_option("--max-work", o.max_work,
                  "End the search after so much work, counted in steps that take about so many "
                  "seconds of one core, so that the result is the same on any machine; what was "
-                 "found is then checked and written [25, and 1 per 1000 triangles beyond 10000; no "
+                 "found is then checked and written [20, and 1 per 1000 triangles beyond 10000; no "
                  "limit with --effort best]")
       ->check(tools::number_from(0.001, 1e9))
       ->type_name("SECONDS");

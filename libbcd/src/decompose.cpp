@@ -736,17 +736,20 @@ class Decomposer {
     return out;
   }
 
-  /// How bodies are measured: fewer pieces of each where the work left is little.
+  /// How bodies are measured: fewer pieces of each where the work left is little, and for all no
+  /// more than what is kept for the end, but some.
   [[nodiscard]] ReachOptions reach_options(std::size_t bodies) const {
     constexpr double kPiece = 20'000;  // work
-    constexpr double kFewest = 2000;   // pieces per body
+    const double kept = (1 - kFinishing) * static_cast<double>(solid_.work().most());
+    const double fewest = std::clamp(
+        kept / (kPiece * static_cast<double>(std::max<std::size_t>(1, bodies))), 100.0, 2000.0);
     ReachOptions out;
     out.absolute_gap = 1e-5 * solid_.diagonal();
     const double left =
         static_cast<double>(solid_.work().most()) - static_cast<double>(solid_.work().done());
     const double share = left / (kPiece * static_cast<double>(std::max<std::size_t>(1, bodies)));
     if (share < static_cast<double>(out.most))
-      out.most = static_cast<std::size_t>(std::max(kFewest, share));
+      out.most = static_cast<std::size_t>(std::max(fewest, share));
     return out;
   }
 
@@ -1065,7 +1068,7 @@ DecomposeResult decompose_closed(const Mesh& closed, const DecomposeOptions& opt
 }  // namespace
 
 double default_work(std::size_t triangles) {
-  return 25 + 1e-3 * std::max(0.0, static_cast<double>(triangles) - 1e4);
+  return 20 + 1e-3 * std::max(0.0, static_cast<double>(triangles) - 1e4);
 }
 
 double work_allowed(const DecomposeOptions& options, std::size_t triangles) {

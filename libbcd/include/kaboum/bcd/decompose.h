@@ -87,7 +87,7 @@ struct DecomposeStatistics {
   bool out_of_work = false;            ///< max_work ended the search: with more, it might do better
 };
 
-/// 25 s, and 1 s per thousand triangles beyond ten thousand. [s]
+/// 20 s, and 1 s per thousand triangles beyond ten thousand. [s]
 double default_work(std::size_t triangles);
 
 struct DecomposeResult {
