@@ -584,10 +584,12 @@ int check(const Options& o) {
       json["original"]["inside_out_parts"] = inside_out ? inside_out->parts : 0;
       if (inside_out && !inside_out->refusal.empty())
         json["original"]["cannot_be_prepared"] = inside_out->refusal;
-      else if (inside_out)
+      else if (inside_out && inside_out->parts != 0)
         json["original"]["inside_out"] = {{"triangle", inside_out->triangle},
                                           {"at", to_json(inside_out->at)},
                                           {"remedy", "--prepare"}};
+      if (inside_out && inside_out->hollow)
+        json["original"]["hollow_at"] = to_json(*inside_out->hollow);
     }
     json["claims"] = claims;
     json["triangles_without_area"] = inclusion.triangles_without_area;

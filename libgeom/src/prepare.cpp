@@ -14,6 +14,7 @@
 #include <optional>
 #include <sstream>
 
+#include "hollows.h"
 #include "shells.h"
 
 namespace kaboum::geom {
@@ -68,6 +69,7 @@ class Preparation {
           "the signed volume is not positive: as oriented, the mesh bounds little or no "
           "solid, and what is certified of its solid says nothing of its surface");
     settle_filled();
+    find_hollows();
     out_.turned_triangles =
         static_cast<std::size_t>(std::count(out_.turned.begin(), out_.turned.end(), 1));
     return std::move(out_);
@@ -425,16 +427,14 @@ class Preparation {
       return;
     }
     if (judged.left && judged.left->at_wall)
-      throw Error(ErrorCode::InvalidInput,
-                  "bodies that share a wall are oriented against each other and cannot be told "
-                  "apart, at input triangle " +
-                      source_text(judged.left->triangle) + " near " + text_of(judged.left->at) +
-                      ": one of them would count as hollow; orient all normals outwards, or give "
-                      "each body a mesh of its own");
-    if (judged.left)
+      refuse_wall("at input triangle " + source_text(judged.left->triangle) + " near " +
+                  text_of(judged.left->at));
+    if (judged.left) {
       out_.notes.push_back("the surface crosses itself, and what it encloses near " +
                            text_of(judged.left->at) +
                            " is inside out: that part counts as outside");
+      out_.hollow = judged.left->at;
+    }
     if (judged.inside_out.empty()) return;
     out_.turned_components = judged.inside_out.size();
     out_.turned_cavities = judged.cavities_turned;
@@ -450,6 +450,41 @@ class Preparation {
         (out_.turned_cavities == 0
              ? ""
              : ", with " + count_of(out_.turned_cavities, "cavity", "cavities") + " inside"));
+  }
+
+  /// Looks at the walls that have cancelled as well: they tell that parts met there.
+  void find_hollows() {
+    bool branched = !cancelled_.empty();
+    for_each_edge([&](std::span<const EdgeUse> e) { branched = branched || e.size() > 2; });
+    if (!out_.closed || !branched) return;
+    Mesh walls = mesh();
+    for (const Cancelled& c : cancelled_) {
+      const auto n = static_cast<std::uint32_t>(walls.vertices.size());
+      walls.vertices.insert(walls.vertices.end(), c.corners.begin(), c.corners.end());
+      walls.triangles.push_back({n, n + 1, n + 2});
+    }
+    if (!cancelled_.empty()) walls = weld(walls);
+    const std::optional<Hollow> hollow = find_hollow(walls);
+    if (!hollow) return;
+    const std::string where =
+        (hollow->triangle < out_.source.size()
+             ? "at input triangle " + std::to_string(out_.source[hollow->triangle]) + " "
+             : "") +
+        "near " + text_of(hollow->at);
+    if (hollow->at_wall && !options_.keep_orientation && !options_.drop_sheets) refuse_wall(where);
+    if (!out_.hollow)
+      out_.notes.push_back("parts that share edges enclose a hollow " + where +
+                           ", which need not be a cavity: that part counts as outside");
+    out_.hollow = hollow->at;
+  }
+
+  [[noreturn]] static void refuse_wall(const std::string& where) {
+    throw Error(ErrorCode::InvalidInput,
+                "bodies that share a wall are oriented against each other and cannot be told "
+                "apart, " +
+                    where +
+                    ": one of them would count as hollow; orient all normals outwards, or give "
+                    "each body a mesh of its own");
   }
 
   [[nodiscard]] std::string source_text(std::uint32_t t) const {

@@ -428,6 +428,9 @@ class Judge {
                      ? levels.label[t]
                      : static_cast<std::uint32_t>(levels.closed.size()) + chains_.label[t];
     chains_ = find_chains(mesh_, uses_, group);
+    // A piece may be of one patch and wind both ways: it is looked at like its chain.
+    for (std::uint32_t t = 0; t < n; ++t)
+      if (stack_[t] != kNone) chains_.joined[chains_.label[t]] = 1;
     keep_doubts(probes, weight);
   }
 
@@ -643,9 +646,9 @@ class Judge {
     if (!out_.left) look_everywhere();
   }
 
-  /// Whether a joined chain, as turned, still winds less than 0 times somewhere beside its
-  /// triangles. Faces of two bodies that lie in each other without common corners change the
-  /// winding number within a region, so one probe does not speak for all of it. Of large chains
+  /// Whether a joined chain, or a piece of one, still winds less than 0 times somewhere beside its
+  /// triangles, as turned. Faces of two bodies that lie in each other without common corners change
+  /// the winding number within a region, so one probe does not speak for all of it. Of large chains
   /// only some triangles are looked at.
   void look_everywhere() {
     constexpr std::size_t kMost = 20'000;

@@ -194,6 +194,22 @@ grep -q 'warning: inverted.off: 1 part of it is inside out (the first at triangl
 grep -q '"inside_out_parts": 1' inverted.json || fail 'no word of the part in the report'
 expect 1 'solid claim: refuted' "$V" --outer inverted.off inverted.off --prepare
 
+# An inward box at a wall of the one round it: as well a notch. It is said, and cannot be prepared.
+{
+  printf 'OFF\n16 24 0\n'
+  printf '%s\n' '3 0 3' '4 0 3' '3 2 3' '4 2 3' '3 0 4' '4 0 4' '3 2 4' '4 2 4'
+  printf '%s\n' '3 0 3' '4 0 3' '3 1 3' '4 1 3' '3 0 4' '4 0 4' '3 1 4' '4 1 4'
+  cube 0 1 | sed -n 11,22p
+  cube 0 1 | sed -n 11,22p | awk '
+    { t[NR] = $2 + 8 " " $4 + 8 " " $3 + 8 }
+    END { for (i = 1; i <= NR; ++i) if (i != 5 && i != 6) print 3, t[i]; print "3 8 13 9"; print "3 8 12 13" }'
+} >notch.off
+expect 0 'solid claim: verified' "$V" --outer notch.off notch.off --claims solid --report notch.json
+grep -q 'warning: notch.off: what its surfaces enclose near (3' err.txt || fail 'no word of the hollow'
+grep -q '"hollow_at"' notch.json || fail 'no word of the hollow in the report'
+expect 3 'bodies that share a wall' "$V" --outer notch.off notch.off --prepare
+expect 3 'bodies that share a wall' "$BIN/bmesh-decimate" notch.off -o n.off
+
 # Sheets that were dropped are in no body; the note says what judges that.
 "$BIN/bcd-decompose" sheeted.off -o sheeted.glb --epsilon 1% --drop-sheets --no-cache --quiet || fail 'decompose sheeted'
 expect 1 'prepare judges that: with --drop-sheets' "$V" --cover sheeted.off sheeted.glb --epsilon 1%

@@ -2,12 +2,14 @@
 // of them encloses is in the solid, unless it is a cavity.
 #include <kaboum/geom/error.h>
 #include <kaboum/geom/prepare.h>
+#include <kaboum/geom/winding.h>
 
 #include <gtest/gtest.h>
 
 #include <functional>
 #include <numeric>
 #include <random>
+#include <sstream>
 
 #include "support/oracle.h"
 #include "support/shapes.h"
@@ -29,6 +31,7 @@ struct Box {
   [[nodiscard]] bool holds(const Vec3& p) const {
     return (p.array() > lo.array()).all() && (p.array() < hi.array()).all();
   }
+  [[nodiscard]] bool holds_strictly(const Box& b) const { return holds(b.lo) && holds(b.hi); }
 };
 
 /// A box whose faces are grids of the given coordinates, so that boxes that share some of them
@@ -322,6 +325,137 @@ TEST(Shells, WhatStaysInsideOutIsSaid) {
       EXPECT_TRUE(*w >= 0 || noted) << *w << " at " << x.transpose();
     }
   }
+}
+
+/// Whether a point is in the solid that is meant: a box holds it, and it may not count as hollow.
+/// It may if every box that holds it is a cavity there, or has one: strictly inside, and oriented
+/// the other way.
+bool meant(const std::vector<Box>& boxes, const Vec3& x) {
+  bool held = false, hollow = true;
+  for (const Box& b : boxes) {
+    if (!b.holds(x)) continue;
+    held = true;
+    hollow =
+        hollow && std::any_of(boxes.begin(), boxes.end(), [&](const Box& c) {
+          return c.holds(x) && c.inward != b.inward && (c.holds_strictly(b) || b.holds_strictly(c));
+        });
+  }
+  return held && !hollow;
+}
+
+enum class Answer { Right, Noted, Refused, Silent };
+
+/// Whether all that is meant is enclosed, or it is said that it is not.
+Answer answer(const std::vector<Box>& boxes, const Mesh& mesh) {
+  Prepared p;
+  try {
+    p = prepare(mesh);
+  } catch (const kaboum::Error&) {
+    return Answer::Refused;
+  }
+  const kaboum::geom::WindingNumber winding(p.mesh);
+  for (const Vec3& x : points(boxes)) {
+    const int w = winding(x).value();
+    if (w >= 0 && (w >= 1 || !meant(boxes, x))) continue;
+    const bool noted = std::any_of(p.notes.begin(), p.notes.end(), [](const std::string& note) {
+      return note.find("counts as outside") != std::string::npos;
+    });
+    return noted && p.hollow ? Answer::Noted : Answer::Silent;
+  }
+  return Answer::Right;
+}
+
+// An inward box in an outward one, with a common wall: as well a notch with a sheet before it.
+TEST(Shells, AnInwardBoxAtAWallIsNotHollowedSilently) {
+  const std::vector<Box> boxes{{{3, 0, 3}, {4, 2, 4}}, {{3, 0, 3}, {4, 1, 4}, true}};
+  for (const bool same : {false, true}) {
+    const Mesh mesh = kaboum::test::merged({mesh_of(boxes[0], {}), mesh_of(boxes[1], {}, !same)});
+    try {
+      prepare(mesh);
+      ADD_FAILURE() << "same diagonals: " << same;
+    } catch (const kaboum::Error& e) {
+      EXPECT_NE(std::string(e.what()).find(same ? "sheets" : "share a wall"), std::string::npos)
+          << e.what();
+    }
+  }
+}
+
+// The wall of three: with a body beyond it, the hollow lies between bodies.
+TEST(Shells, AnInwardBoxAtAWallOfTwoBodies) {
+  const std::vector<Box> boxes{
+      {{0, 0, 0}, {2, 1, 1}}, {{1, 0, 0}, {2, 1, 1}, true}, {{2, 0, 0}, {3, 1, 1}}};
+  for (unsigned diagonals = 0; diagonals < 8; ++diagonals) {
+    std::vector<Mesh> parts;
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+      parts.push_back(mesh_of(boxes[i], {}, (diagonals >> i & 1U) != 0));
+    EXPECT_NE(answer(boxes, kaboum::test::merged(parts)), Answer::Silent) << diagonals;
+  }
+}
+
+// What is left of two boxes once levels are taken off is one patch, and winds both ways.
+TEST(Shells, APieceOfOnePatchThatWindsBothWays) {
+  const std::vector<Box> boxes{
+      {{2, 0, 1}, {4, 3, 4}, true}, {{3, 2, 0}, {4, 3, 4}}, {{3, 1, 2}, {4, 4, 3}, true}};
+  const Mesh mesh = kaboum::test::merged(
+      {mesh_of(boxes[0], {}), mesh_of(boxes[1], {1, 2}), mesh_of(boxes[2], {2, 3})});
+  for (std::uint32_t seed = 0; seed < 4; ++seed)
+    EXPECT_NE(answer(boxes, shuffled(mesh, seed)), Answer::Silent);
+}
+
+// A hollow between bodies that nobody's shell encloses is noted, if walls do not tell it to be one;
+// bodies that enclose none are not.
+TEST(Shells, NoFalseAlarms) {
+  const std::vector<Box> boxes{{{0, 0, 0}, {1, 3, 3}},
+                               {{2, 0, 0}, {3, 3, 3}},
+                               {{1, 0, 0}, {2, 1, 3}},
+                               {{1, 2, 0}, {2, 3, 3}}};
+  for (const bool other : {false, true}) {
+    std::vector<Mesh> parts;
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+      parts.push_back(mesh_of(boxes[i], kUnits, other && i > 1));
+    const Prepared p = prepare(kaboum::test::merged(parts));
+    EXPECT_FALSE(p.hollow) << "a ring";
+    parts.push_back(mesh_of({{1, 1, 0}, {2, 2, 1}}, kUnits));
+    parts.push_back(mesh_of({{1, 1, 2}, {2, 2, 3}}, kUnits));
+    const Prepared box = prepare(kaboum::test::merged(parts));
+    EXPECT_TRUE(box.hollow) << "a box";
+  }
+}
+
+// Random boxes: faces cut at no, all or some lines, any diagonals.
+TEST(Shells, RandomBoxesAreEnclosedOrRefusedOrNoted) {
+  std::mt19937 random(20);
+  std::array<int, 4> counts{};
+  for (int i = 0; i < 2500; ++i) {
+    const int range = 3 + static_cast<int>(random() % 2);
+    std::vector<Box> boxes(2 + random() % 4);
+    std::vector<Mesh> parts;
+    const auto cuts = random() % 3;
+    for (Box& b : boxes) {
+      for (int k = 0; k < 3; ++k) {
+        const auto lo = static_cast<int>(random() % static_cast<unsigned>(range));
+        b.lo[k] = lo;
+        b.hi[k] = lo + 1 + static_cast<int>(random() % static_cast<unsigned>(range - lo));
+      }
+      b.inward = random() % 2 == 0;
+      std::vector<double> lines;
+      for (int x = 0; x < range; ++x)
+        if (cuts == 1 || (cuts == 2 && random() % 2 == 0)) lines.push_back(x);
+      parts.push_back(mesh_of(b, lines, random() % 2 == 0));
+    }
+    const Answer a = answer(boxes, kaboum::test::merged(parts));
+    ++counts[static_cast<std::size_t>(a)];
+    if (a != Answer::Silent) continue;
+    std::string text;
+    for (const Box& b : boxes) {
+      std::ostringstream s;
+      s << " (" << b.lo.transpose() << ")-(" << b.hi.transpose() << ")"
+        << (b.inward ? " inward" : "");
+      text += s.str();
+    }
+    ADD_FAILURE() << "round " << i << ", cuts " << cuts << ":" << text;
+  }
+  EXPECT_GT(counts[0], 1500);
 }
 
 }  // namespace

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <kaboum/geom/mesh.h>
+
+#include <cstdint>
+#include <optional>
+
+namespace kaboum::geom {
+
+/// A place that surfaces enclose and that is no part of the solid, although it need not be a
+/// cavity.
+struct Hollow {
+  std::uint32_t triangle;  ///< beside it
+  Vec3 at;
+  bool at_wall;  ///< the triangle lies on an opposite one: the walls of two parts
+};
+
+/// Looks for a point with winding number 0, or less, that parts which share edges enclose.
+///
+/// Where parts share edges, their triangles can be put together into closed surfaces in more than
+/// one way: an inward box with a wall in common with the outward one round it is as well a notch.
+/// A point is enclosed if closed surfaces of any kind, made of a part's triangles, wind round it;
+/// it is told by the winding number of one such surface, drawn at random (with a fixed seed).
+/// docs/algorithms/preparation.md.
+///
+/// @param walls  all triangles of a prepared mesh, and those that cancelled: both of each pair.
+/// @return the first found, beside the triangles in their order, those at walls first; every point
+///   returned is enclosed and not in the solid. Of parts of more than 20,000 triangles so many are
+///   looked at.
+std::optional<Hollow> find_hollow(const Mesh& walls);
+
+}  // namespace kaboum::geom
