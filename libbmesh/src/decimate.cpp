@@ -18,6 +18,7 @@
 #include "contraction.h"
 #include "deviation.h"
 #include "flatten.h"
+#include "loosen.h"
 #include "optimise_in_parallel.h"
 #include "original_solid.h"
 #include "regions.h"
@@ -614,9 +615,24 @@ class Decimator final : private Judge {
         return move_to_representable(v) || (optimiser_ && optimiser_->single().round(v));
       })) {
       }
-    } while (take_out([&](std::uint32_t v) { return contract_away(v); }));
+    } while (take_out([&](std::uint32_t v) { return contract_away(v); }) ||
+             take_out([&](std::uint32_t v) { return make_room(v); }) ||
+             take_out([&](std::uint32_t v) { return move_to_representable(v, true); }));
     pull_back_recent();
     return left.size();
+  }
+
+  /// Flips edges of v until it can be moved, or contracted away.
+  bool make_room(std::uint32_t v) {
+    if (options_.keep_convex || !setting_.constrained) return false;
+    Loosener loosener(setting_, contraction_.mesh(), solid_ ? &*solid_ : nullptr,
+                      tolerance_ ? &*tolerance_ : nullptr, measuring_ ? &*deviation_ : nullptr,
+                      steps_, statistics_);
+    while (loosener.loosen(v)) {
+      if (optimiser_) optimiser_->single().disturb(v);
+      if (move_to_representable(v) || contract_away(v)) return true;
+    }
+    return false;
   }
 
   /// Contracts the cheapest admissible edge of v.
@@ -644,9 +660,9 @@ class Decimator final : private Judge {
     return true;
   }
 
-  bool move_to_representable(std::uint32_t v) {
+  bool move_to_representable(std::uint32_t v, bool may_fold = false) {
     for (const double care : {1.0, 4.0, 16.0}) {
-      if (!evaluation_.evaluate_move(v, care)) continue;
+      if (!evaluation_.evaluate_move(v, care, may_fold)) continue;
       if (tolerance_) {
         describe_change();
         if (!tolerance_->admits(removed_, added_)) continue;

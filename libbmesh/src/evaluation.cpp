@@ -101,7 +101,7 @@ Evaluation::Validity Evaluation::evaluate(std::uint32_t a, std::uint32_t b, cons
   return Validity::Valid;
 }
 
-bool Evaluation::evaluate_move(std::uint32_t v, double care) {
+bool Evaluation::evaluate_move(std::uint32_t v, double care, bool may_fold) {
   candidate_.a = candidate_.b = v;
   star_.clear();
   m_.mesh.for_each_triangle(v, [&](std::uint32_t t, std::uint32_t k) {
@@ -110,7 +110,7 @@ bool Evaluation::evaluate_move(std::uint32_t v, double care) {
   rim_.clear();
   if (options_.keep_convex) gather_rim();
   const Quadric nearest = point_quadric(m_.position[v] - setting_.cost.origin());
-  return place(nearest, care) && encloses() && !folds() && keeps_shape();
+  return place(nearest, care) && encloses() && (may_fold || !folds()) && keeps_shape();
 }
 
 bool Evaluation::settle_at(const Vec3& place, const Quadric& q) {

@@ -75,8 +75,9 @@ class Evaluation {
                     const BucketQueue& queue);
 
   /// Finds a place for v alone, near where it is, that keeps `care` times as far from the planes as
-  /// rounding asks for, and makes all tests.
-  bool evaluate_move(std::uint32_t v, double care);
+  /// rounding asks for, and makes all tests; that of folds, which no certificate rests on, if
+  /// wished.
+  bool evaluate_move(std::uint32_t v, double care, bool may_fold = false);
 
   /// Moves the candidate to another place, if no triangle folds there.
   bool settle_at(const Vec3& place, const Quadric& q);

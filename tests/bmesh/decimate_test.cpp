@@ -341,6 +341,47 @@ TEST(Decimate, FlatFeetFindFloat32Places) {
   }
 }
 
+/// Cubes of the unit grid as one body, turned so that no coordinate is a float32 number.
+geom::Mesh cubes(const std::vector<std::array<int, 3>>& filled) {
+  geom::Mesh mesh;
+  for (const std::array<int, 3>& cube : filled) {
+    for (int k = 0; k < 3; ++k) {
+      for (const int side : {0, 1}) {
+        std::array<int, 3> beside = cube;
+        beside[k] += side == 1 ? 1 : -1;
+        if (std::find(filled.begin(), filled.end(), beside) != filled.end()) continue;
+        const auto n = static_cast<std::uint32_t>(mesh.vertices.size());
+        for (const auto& [i, j] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}}) {
+          geom::Vec3 p(cube[0], cube[1], cube[2]);
+          p[k] += side;
+          p[(k + 1) % 3] += i;
+          p[(k + 2) % 3] += j;
+          mesh.vertices.push_back(p);
+        }
+        for (geom::Triangle t : {geom::Triangle{0, 1, 2}, {0, 2, 3}}) {
+          if (side == 0) std::swap(t[1], t[2]);
+          mesh.triangles.push_back({n + t[0], n + t[1], n + t[2]});
+        }
+      }
+    }
+  }
+  return test::rotated(mesh, 0.7);
+}
+
+// The corner in the middle has faces of all directions: no point lies behind all their planes, and
+// none is float32. Flipped edges give it room.
+TEST(Decimate, VerticesWithoutRoomGetIt) {
+  DecimateOptions o = to_vertices(20);
+  o.direction = Direction::Inner;
+  o.precision = Precision::Float;
+  const auto [input, log, r] = test::record(cubes({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, 1, 1}}), o);
+  EXPECT_EQ(r.unrepresentable, 0U);
+  EXPECT_GT(r.statistics.flips, 0U);
+  const auto checked = replay(input, log, r.mesh);
+  EXPECT_TRUE(checked.verified) << checked.violation;
+  EXPECT_EQ(verify::verify_inclusion(r.mesh, input).solid.answer, verify::Answer::Verified);
+}
+
 TEST(Decimate, EffortIsFastWhereMoreHasNoEffect) {
   const auto open = geom::prepare(test::open_families().front().mesh);
   const auto closed = geom::prepare(solids().front().mesh);
