@@ -532,8 +532,14 @@ class Judge {
       for (const std::uint32_t d : on) numbers[d] = kOn;
       return numbers;
     };
-    for (const auto& [d, w] : windings(mesh_.triangles[members_[c][0]][0]))
-      if (d != c && w != 0 && !touched.contains(d)) out.winding.emplace(d, w);
+    for (const auto& [d, w] : windings(mesh_.triangles[members_[c][0]][0])) {
+      if (d == c || w == 0 || touched.contains(d)) continue;
+      if (w == kOn) {  // where only triangles without area meet
+        out.unclear.insert(d);
+      } else {
+        out.winding.emplace(d, w);
+      }
+    }
     for (const std::uint32_t d : touched) {
       std::optional<int> all;
       bool same = true;

@@ -1,5 +1,5 @@
 // Any bytes given to parse_mesh either make a valid mesh or throw Error. The first byte selects the
-// format. Formats read by assimp are left out: its own robustness is not ours to fuzz.
+// format. FBX, which assimp reads, is left out: its own robustness is not ours to fuzz.
 
 #include <kaboum/geom/error.h>
 #include <kaboum/io/mesh_io.h>
@@ -11,7 +11,8 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using kaboum::io::Format;
   constexpr std::array kFormats = {Format::Stl,  Format::Obj, Format::Ply,     Format::Off,
-                                   Format::Vrml, Format::X3d, Format::Collada, Format::ThreeMf};
+                                   Format::Vrml, Format::X3d, Format::Collada, Format::ThreeMf,
+                                   Format::Glb,  Format::Gltf};
   if (size == 0) return 0;
   const Format format = kFormats[data[0] % kFormats.size()];
   const std::span<const char> bytes(reinterpret_cast<const char*>(data) + 1, size - 1);

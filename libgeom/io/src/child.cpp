@@ -117,7 +117,9 @@ class Receiver {
 
   ReadResult mesh() {
     ReadResult r;
-    r.format = value<Format>();
+    const auto format = value<std::underlying_type_t<Format>>();
+    ok_ = ok_ && format >= 0 && format <= static_cast<int>(Format::Vrml);
+    if (ok_) r.format = static_cast<Format>(format);
     r.single_precision = value<std::uint8_t>() != 0;
     for (std::size_t* n :
          {&r.file_vertices, &r.file_triangles, &r.split_polygons, &r.collapsed_triangles})
