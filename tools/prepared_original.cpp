@@ -1,6 +1,8 @@
 #include "prepared_original.h"
 
 #include <kaboum/geom/error.h>
+#include <kaboum/geom/hollows.h>
+#include <kaboum/geom/topology.h>
 
 #include "verdict.h"
 
@@ -16,10 +18,14 @@ geom::Prepared prepare_original(const geom::Mesh& mesh, bool drop_sheets, bool f
 std::optional<InsideOut> find_inside_out(const geom::Mesh& mesh) {
   try {
     const geom::Prepared prepared = prepare_original(mesh, true, false);
-    if (prepared.inside_out.empty() && !prepared.hollow) return {};
     InsideOut out;
-    out.hollow = prepared.hollow;
-    if (prepared.inside_out.empty()) return out;
+    if (prepared.inside_out.empty()) {
+      if (!prepared.closed) return {};
+      const std::optional<geom::Hollow> hollow = geom::find_hollow(geom::weld(mesh));
+      if (!hollow) return {};
+      out.hollow = hollow->at;
+      return out;
+    }
     out.parts = prepared.turned_components;
     out.triangle = prepared.inside_out.front();
     for (const std::uint32_t v : mesh.triangles[out.triangle]) out.at += mesh.vertices[v] / 3;
@@ -35,19 +41,14 @@ std::string text_of(const InsideOut& found) {
   if (!found.refusal.empty())
     return "whether parts of it are inside out is not known, for it cannot be prepared (" +
            found.refusal + "); such parts are not in the solid, and nothing is decided about them";
-  std::string text;
-  if (found.parts != 0)
-    text =
-        std::to_string(found.parts) + (found.parts == 1 ? " part of it is" : " parts of it are") +
-        " inside out (the first at triangle " + std::to_string(found.triangle) + ", at " +
-        point(found.at) +
-        "): as the file is, what that encloses is not in the solid, and nothing is decided about "
-        "it; --prepare turns it and judges that solid";
   if (found.hollow)
-    text += (text.empty() ? "" : "; ") + std::string("what its surfaces enclose near ") +
-            point(*found.hollow) +
-            " counts as outside, although it need not be a cavity: nothing is decided about it";
-  return text;
+    return "what its surfaces enclose near " + point(*found.hollow) +
+           " counts as outside, although it need not be a cavity: nothing is decided about it";
+  return std::to_string(found.parts) + (found.parts == 1 ? " part of it is" : " parts of it are") +
+         " inside out (the first at triangle " + std::to_string(found.triangle) + ", at " +
+         point(found.at) +
+         "): as the file is, what that encloses is not in the solid, and nothing is decided about "
+         "it; --prepare turns it and judges that solid";
 }
 
 }  // namespace kaboum::tools

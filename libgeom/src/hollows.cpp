@@ -1,9 +1,8 @@
 // Hollows between parts that share edges. A surface may be any integer combination of triangles
 // without border; those of a part are the kernel of its boundary operator. A random element of the
 // kernel winds round a point 0 times only if all of them do, but for a chance of 2^-61.
-#include "hollows.h"
-
 #include <kaboum/geom/bvh.h>
+#include <kaboum/geom/hollows.h>
 #include <kaboum/geom/predicates.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/geom/winding.h>

@@ -2,6 +2,7 @@
 // docs/algorithms/preparation.md.
 #include <kaboum/geom/error.h>
 #include <kaboum/geom/holes.h>
+#include <kaboum/geom/hollows.h>
 #include <kaboum/geom/parallel.h>
 #include <kaboum/geom/prepare.h>
 #include <kaboum/geom/topology.h>
@@ -14,7 +15,6 @@
 #include <optional>
 #include <sstream>
 
-#include "hollows.h"
 #include "shells.h"
 
 namespace kaboum::geom {
@@ -433,7 +433,7 @@ class Preparation {
       out_.notes.push_back("the surface crosses itself, and what it encloses near " +
                            text_of(judged.left->at) +
                            " is inside out: that part counts as outside");
-      out_.hollow = judged.left->at;
+      noted_hollow_ = true;
     }
     if (judged.inside_out.empty()) return;
     out_.turned_components = judged.inside_out.size();
@@ -472,10 +472,9 @@ class Preparation {
              : "") +
         "near " + text_of(hollow->at);
     if (hollow->at_wall && !options_.keep_orientation && !options_.drop_sheets) refuse_wall(where);
-    if (!out_.hollow)
+    if (!noted_hollow_)
       out_.notes.push_back("parts that share edges enclose a hollow " + where +
                            ", which need not be a cavity: that part counts as outside");
-    out_.hollow = hollow->at;
   }
 
   [[noreturn]] static void refuse_wall(const std::string& where) {
@@ -530,6 +529,7 @@ class Preparation {
   PrepareOptions options_;
   Prepared out_;
   std::vector<Cancelled> cancelled_;
+  bool noted_hollow_ = false;
   std::vector<EdgeUse> edges_;
   std::vector<std::uint32_t> was_open_;   // per triangle, when holes are filled: before that
   std::optional<Coincident> coincident_;  // of the mesh with these edges

@@ -23,7 +23,8 @@ struct Hollow {
 /// it is told by the winding number of one such surface, drawn at random (with a fixed seed).
 /// docs/algorithms/preparation.md.
 ///
-/// @param walls  all triangles of a prepared mesh, and those that cancelled: both of each pair.
+/// @param walls  welded and a closed chain: all triangles of a prepared mesh, and both of each pair
+///   that has cancelled; or a mesh as it is.
 /// @return the first found, beside the triangles in their order, those at walls first; every point
 ///   returned is enclosed and not in the solid. Of parts of more than 20,000 triangles so many are
 ///   looked at.
