@@ -44,7 +44,8 @@ bool Contraction::pass(std::size_t target, double limit) {
   std::size_t purge_at = room(queue_.size());
   BucketQueue::Entry e;
   Evaluation::Candidate& candidate = evaluation_.candidate();
-  while (vertices_ > target && queue_.pop(e)) {
+  const auto goes_on = [&] { return judge_ == nullptr || judge_->goes_on(); };
+  while (vertices_ > target && goes_on() && queue_.pop(e)) {
     if (stale(e) || (judge_ != nullptr && !judge_->is_hopeful(e))) continue;
     // Evaluated anew each time it is popped: what is applied holds for the planes of this moment.
     const Validity validity =

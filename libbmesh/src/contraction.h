@@ -24,6 +24,8 @@ class Judge {
   virtual bool assess(BucketQueue::Entry& e) = 0;
   /// The last tests, when it is due. @return whether it may be applied.
   virtual bool admit(BucketQueue::Entry& e) = 0;
+  /// Whether further edges are looked at.
+  [[nodiscard]] virtual bool goes_on() = 0;
   virtual void before() = 0;
   virtual void after() = 0;
 };

@@ -54,7 +54,7 @@ constexpr std::size_t kRefineAgain = 5;
 /// to round until the number is reached. Rounds that gain less than kBoundGain of what is missing
 /// raise it by more.
 constexpr double kBoundFrom = 0.85, kBoundFromBest = 0.75;
-constexpr double kBoundGrowth = 1.07, kBoundMostGrowth = 1.25, kBoundGain = 0.05;
+constexpr double kBoundGrowth = 1.1, kBoundMostGrowth = 1.25, kBoundGain = 0.05;
 constexpr int kBoundPasses = 1;  ///< rounds of optimisation in each
 /// Small: at most so many vertices, and a third of them wished for at most.
 constexpr std::size_t kBoundVertices = 4000, kBoundShare = 3;
@@ -79,6 +79,8 @@ constexpr double kSpike = 0.05, kSpikeRatio = 3;
 /// Samples of the original lie no farther apart than this share of the error bound, within reason,
 /// where contractions move the vertices around.
 constexpr double kSpacing = 0.7;
+/// But no more than so many are added; fewer where the error bound rises: it is no promise there.
+constexpr double kSamples = 4000, kSamplesRising = 2500;
 
 // Rounds of optimisation, at most: in the end, and at each stage before.
 constexpr int kFinalPasses = 6, kFinalPassesBest = 12, kStagePasses = 3;
@@ -119,7 +121,7 @@ class Decimator final : private Judge {
                      WorkingMesh(std::move(start.position), std::move(start.border),
                                  std::move(start.triangles)),
                      std::move(start.quadric), solid ? &*solid : nullptr, steps, this) {
-    if (epsilon_) tolerance_.emplace(original, *epsilon_);
+    if (epsilon_) tolerance_.emplace(original, *epsilon_, setting.work);
   }
 
   /// The largest distance measured before edges were contracted together with moves; 0 where there
@@ -133,6 +135,7 @@ class Decimator final : private Judge {
     DecimateResult result;
     if (options_.precision == Precision::Float) result.unrepresentable = make_representable();
     result.stop = stop;
+    result.out_of_work = ended_early_;
     result.mesh = compact(position_, mesh_);
     result.statistics = statistics_;
     return result;
@@ -167,6 +170,7 @@ class Decimator final : private Judge {
     }
     optimise(options_.effort == Effort::Best ? kFinalPassesBest : kFinalPasses);
     if (target_ && contraction_.vertices() <= target) return Stop::VertexTarget;
+    if (spent(kNoneContracts) || (most_ > 0 && spent(kNoneMoves))) return Stop::OutOfWork;
     return bounded_ ? Stop::ErrorBound : Stop::Exhausted;
   }
 
@@ -200,14 +204,16 @@ class Decimator final : private Judge {
     if (!epsilon_ || options_.effort == Effort::Fast) return;
     // What is given back makes room for further contractions within the error bound.
     for (std::size_t before = contraction_.vertices() + contraction_.vertices();
-         contraction_.vertices() > target && 100 * contraction_.vertices() < 99 * before;) {
+         !spent(kNoneMoves) && contraction_.vertices() > target &&
+         100 * contraction_.vertices() < 99 * before;) {
       before = contraction_.vertices();
       optimise(kStagePasses);
       contract_to(target);
     }
     if (!joint_ || !optimiser_) return;
     for (std::size_t before = contraction_.vertices() + contraction_.vertices();
-         contraction_.vertices() > target && 100 * contraction_.vertices() < 99 * before;) {
+         !spent(kNoneMoves) && contraction_.vertices() > target &&
+         100 * contraction_.vertices() < 99 * before;) {
       before = contraction_.vertices();
       collapse_within(target);
       optimise(kStagePasses);
@@ -220,7 +226,8 @@ class Decimator final : private Judge {
     // Where hardly anything is contracted, nothing has been reached, and little is to be gained.
     double limit = reached_ > 0 ? std::min(reached_, setting_.diagonal) : 0;
     patience_ = kPatience;
-    for (int i = 0; i < kJointRounds && limit > 0 && contraction_.vertices() > target;
+    for (int i = 0;
+         i < kJointRounds && limit > 0 && contraction_.vertices() > target && !spent(kNoneMoves);
          ++i, limit *= kJointGrowth) {
       if (i == 0 || 100 * contraction_.vertices() <= (100 - kRefineAgain) * refined_) refine();
       optimise(1);
@@ -242,7 +249,7 @@ class Decimator final : private Judge {
       const auto missing = static_cast<double>(contraction_.vertices() - target);
       optimise(kBoundPasses);
       collapse_within(target);
-      if (contraction_.vertices() <= target || *epsilon_ >= most_) return;
+      if (contraction_.vertices() <= target || *epsilon_ >= most_ || spent(kNoneMoves)) return;
       *epsilon_ = std::min(growth * *epsilon_, most_);
       tolerance_->raise(*epsilon_);
       contract_to(target);
@@ -255,7 +262,7 @@ class Decimator final : private Judge {
 
   /// Samples are added where the mesh deviates most, if it has changed.
   void refine() {
-    if (!(reached_ > 0) || contraction_.vertices() == refined_) return;
+    if (!(reached_ > 0) || contraction_.vertices() == refined_ || spent(kNoneMoves)) return;
     refined_ = contraction_.vertices();
     const double far = kRefineFrom * reached_;
     deviation_->refine(position_, mesh_, far * far);
@@ -269,8 +276,8 @@ class Decimator final : private Judge {
     const std::vector<Edge> edges = edges_by_cost(limit);
     std::vector<Edge> waiting, still, batch;
     std::size_t tried = 0;  // since progress was told
-    for (std::size_t next = 0;
-         contraction_.vertices() > target && (next < edges.size() || !waiting.empty());) {
+    for (std::size_t next = 0; contraction_.vertices() > target &&
+                               (next < edges.size() || !waiting.empty()) && !spent(kNoneMoves);) {
       const std::size_t most =
           optimiser_->in_batches() ? std::min(kJointBatch, contraction_.vertices() - target) : 1;
       batch.clear();
@@ -350,23 +357,37 @@ class Decimator final : private Judge {
 
   /// Contracts until `target` vertices are left or the next costs more than `limit`.
   void contract_to(std::size_t target, double limit = Contraction::kNoLimit) {
-    for (bool progress = true; progress && contraction_.vertices() > target;) {
+    for (bool progress = true;
+         progress && contraction_.vertices() > target && !spent(kNoneContracts);) {
       bounded_ = false;
       progress = contraction_.pass(target, limit) && limit == Contraction::kNoLimit;
+      if (hurries_ || !measuring_ || !spent(kNoneMoves)) continue;
+      if (most_ > 0) break;  // what has been found without a bound will do
+      pull_back_recent();
+      hurries_ = progress = true;
     }
     pull_back_recent();
+  }
+
+  /// Whether this share of the work allowed has been done, and something is left undone for it.
+  [[nodiscard]] bool spent(double share) {
+    if (setting_.work == nullptr || !setting_.work->spent(share)) return false;
+    ended_early_ = true;
+    return true;
   }
 
   // ---- what contractions are asked besides
 
   [[nodiscard]] Evaluation::Purpose purpose() const override {
-    return optimiser_ ? Evaluation::Purpose::Settled : Evaluation::Purpose::Due;
+    return optimiser_ && !hurries_ ? Evaluation::Purpose::Settled : Evaluation::Purpose::Due;
   }
+
+  bool goes_on() override { return !spent(measuring_ && !hurries_ ? kNoneMoves : kNoneContracts); }
 
   /// What was refused is refused again, unless something has changed around it or the error bound
   /// has risen to what it takes.
   bool is_hopeful(const BucketQueue::Entry& e) override {
-    if (!optimiser_) return true;
+    if (!optimiser_ || hurries_) return true;
     const auto at = refusals_.find(key(std::min(e.a, e.b), std::max(e.a, e.b)));
     if (at == refusals_.end()) return true;
     const Refusal& r = at->second;
@@ -387,6 +408,7 @@ class Decimator final : private Judge {
   }
 
   bool assess(BucketQueue::Entry& e) override {
+    if (hurries_) return true;
     if (optimiser_ && !settle()) return false;
     if (!measuring_) return true;
     if (e.measured == around_[e.a] + around_[e.b]) {
@@ -397,6 +419,7 @@ class Decimator final : private Judge {
   }
 
   bool admit(BucketQueue::Entry& e) override {
+    if (hurries_) return admissible();
     if (candidate_.settled) {
       if (!certify(e)) return false;
       if (!contraction_.queue().due(candidate_.cost)) return contraction_.postpone(e);
@@ -427,7 +450,7 @@ class Decimator final : private Judge {
       reached_ = std::max(reached_, contraction_.queue().lowest_key());
       changed(candidate_.a);
     }
-    if (optimiser_) {
+    if (optimiser_ && !hurries_) {
       optimiser_->single().disturb(candidate_.a);
       recent_.push_back(candidate_.a);
       if (!optimiser_->in_batches() ||
@@ -439,7 +462,7 @@ class Decimator final : private Judge {
   }
 
   void pull_back_recent() {
-    if (recent_.empty()) return;
+    if (recent_.empty() || hurries_) return;
     optimiser_->pull_back(recent_, [&](std::uint32_t v) { changed(v); });
     recent_.clear();
   }
@@ -457,7 +480,8 @@ class Decimator final : private Judge {
 
   void start_measuring() {
     deviation_.emplace(original_, options_.cost == Cost::Mean ? 2 : 4,
-                       joint_ ? kSpacing * *epsilon_ : 0);
+                       joint_ ? kSpacing * *epsilon_ : 0, most_ > 0 ? kSamplesRising : kSamples,
+                       setting_.work);
     deviation_->assign(position_, mesh_);
     hint_.assign(position_.size(), 0);
     around_.assign(position_.size(), 0);
@@ -512,6 +536,7 @@ class Decimator final : private Judge {
   /// Moves the candidate to where the original bounds it instead of the present mesh.
   bool settle() {
     describe_change();
+    if (added_.empty()) return reject(statistics_.rejected_topology);  // nothing would be left
     const bool free = border_[candidate_.a] == 0 && border_[candidate_.b] == 0;
     const auto place =
         free ? optimiser_->single().settle(removed_, added_, merged(), setting_.cost.origin())
@@ -565,17 +590,19 @@ class Decimator final : private Judge {
 
   void start_optimising() {
     if (setting_.constrained && !solid_)
-      solid_.emplace(*bound_, bound_ == &original_ ? deviation_->original().hierarchy() : nullptr);
+      solid_.emplace(*bound_, bound_ == &original_ ? deviation_->original().hierarchy() : nullptr,
+                     setting_.work);
     optimiser_.emplace(contraction_.mesh(), *deviation_, setting_.constrained ? &*solid_ : nullptr,
-                       *bound_, tolerance_ ? &*tolerance_ : nullptr, options_, statistics_, joint_);
+                       *bound_, tolerance_ ? &*tolerance_ : nullptr, options_, statistics_, joint_,
+                       setting_.work);
     refusals_.clear();
   }
 
   void optimise(int passes) {
-    if (options_.effort == Effort::Fast) return;
+    if (options_.effort == Effort::Fast || hurries_ || spent(kNoneMoves)) return;
     if (!deviation_) start_measuring();
     if (!optimiser_) return;
-    for (int i = 0; i < passes; ++i)
+    for (int i = 0; i < passes && !spent(kNoneMoves); ++i)
       if (optimiser_->pass() == 0) break;
   }
 
@@ -704,6 +731,8 @@ class Decimator final : private Judge {
   std::optional<Deviation> deviation_;
   std::optional<ParallelOptimiser> optimiser_;
   bool measuring_ = false;    // costs are measured distances
+  bool hurries_ = false;      // no more, nor are vertices pulled back: too much work is done
+  bool ended_early_ = false;  // something was left undone for that
   double reached_alone_ = 0;  // before contractions with moves
   double reached_ = 0;        // largest measured cost of a contraction
   std::size_t refined_ = 0;   // number of vertices when samples were added last
@@ -735,8 +764,19 @@ namespace {
 void check_options(const geom::Prepared& input, const DecimateOptions& options) {
   if (options.epsilon && !(*options.epsilon > 0 && std::isfinite(*options.epsilon)))
     throw Error(ErrorCode::InvalidArgument, "the error bound must be a positive length");
+  if (options.max_work && !(*options.max_work > 0))
+    throw Error(ErrorCode::InvalidArgument, "max_work must be positive");
   if (options.keep_convex && !geom::is_convex(input.mesh))
     throw Error(ErrorCode::InvalidInput, "the input is not convex, so convexity cannot be kept");
+}
+
+/// [ns]
+double work_allowed(const geom::Prepared& input, const DecimateOptions& options) {
+  if (options.max_work) return 1e9 * *options.max_work;
+  if (options.effort == Effort::Best) return std::numeric_limits<double>::infinity();
+  constexpr double kTriangles = 10000, kLeast = 12, kEach = 2e-3;
+  const auto triangles = static_cast<double>(input.mesh.triangles.size());
+  return 1e9 * (kLeast + kEach * std::max(0.0, triangles - kTriangles));
 }
 
 /// Coplanar regions first, without any loss; then large meshes region by region; then the
@@ -744,9 +784,9 @@ void check_options(const geom::Prepared& input, const DecimateOptions& options) 
 class Run {
  public:
   /// @param bound, sketch  as of Decimator
-  Run(const geom::Prepared& input, const DecimateOptions& options,
+  Run(const geom::Prepared& input, const DecimateOptions& options, Work& work,
       std::optional<RisingBound> bound = std::nullopt, bool sketch = false)
-      : input_(input), options_(options), bound_(bound), sketch_(sketch) {
+      : input_(input), options_(options), work_(work), bound_(bound), sketch_(sketch) {
     options_.effort = effective_effort(input, options);
     if (options.keep_convex) return;
     std::vector<std::uint32_t> flat = flat_vertices(input);
@@ -791,9 +831,9 @@ class Run {
     const geom::Prepared& input = flat_.mesh.triangles.empty() ? input_ : flat_;
     inner_options_ = options_;
     inner_options_.steps = options_.steps != nullptr ? &inner_steps_ : nullptr;
-    setting_.emplace(input, inner_options_);
+    setting_.emplace(input, inner_options_, &work_);
     if (options_.direction == Direction::Inner && input.closed && !options_.keep_convex)
-      solid_.emplace(input.mesh);
+      solid_.emplace(input.mesh, nullptr, &work_);
     Reduction mesh(input.mesh, input.border, setting_->cost.initial(input.mesh));
     if (target && !options_.epsilon && !bound_ && !options_.keep_convex) {
       contract_in_regions(*setting_, mesh, measured_from(options_, *target),
@@ -849,6 +889,7 @@ class Run {
 
   const geom::Prepared& input_;
   DecimateOptions options_;
+  Work& work_;
   std::optional<RisingBound> bound_;
   bool sketch_;
   DecimateOptions inner_options_;
@@ -881,13 +922,14 @@ double largest_distance(const Mesh& a, const Mesh& b) {
 
 /// To a number of vertices, and again to the same within less than the distance found so, if that
 /// can be. @pre is_small
-DecimateResult decimate_twice(const geom::Prepared& input, const DecimateOptions& options) {
+DecimateResult decimate_twice(const geom::Prepared& input, const DecimateOptions& options,
+                              Work& work) {
   std::vector<Step> steps;
   const auto run = [&](std::optional<RisingBound> bound, bool sketch, double* reached) {
     steps.clear();
     DecimateOptions recorded = options;
     recorded.steps = options.steps != nullptr ? &steps : nullptr;
-    Run r(input, recorded, bound, sketch);
+    Run r(input, recorded, work, bound, sketch);
     DecimateResult result = r.to(options.vertices);
     if (reached != nullptr) *reached = r.reached_alone();
     return result;
@@ -899,7 +941,14 @@ DecimateResult decimate_twice(const geom::Prepared& input, const DecimateOptions
     return result;
   };
   double reached = 0;
-  const DecimateResult sketch = run(std::nullopt, true, &reached);
+  DecimateResult sketch = run(std::nullopt, true, &reached);
+  std::vector<Step> sketch_steps = steps;
+  const auto settle_for_sketch = [&] {
+    steps = std::move(sketch_steps);
+    sketch.out_of_work = true;
+    return chosen(std::move(sketch));
+  };
+  if (work.spent(kNoneBegins)) return settle_for_sketch();
   if (sketch.stop == Stop::VertexTarget && reached > 0) {
     const double from = (options.effort == Effort::Best ? kBoundFromBest : kBoundFrom) * reached;
     const RisingBound bound{from, largest_distance(sketch.mesh, input.mesh)};
@@ -907,6 +956,7 @@ DecimateResult decimate_twice(const geom::Prepared& input, const DecimateOptions
       DecimateResult nearer = run(bound, false, nullptr);
       if (nearer.stop == Stop::VertexTarget && nearer.unrepresentable <= sketch.unrepresentable)
         return chosen(std::move(nearer));
+      if (work.spent(kNoneMoves)) return settle_for_sketch();
     }
   }
   return chosen(run(std::nullopt, false, nullptr));
@@ -925,8 +975,9 @@ DecimateResult decimate(const geom::Prepared& input, const DecimateOptions& opti
     throw Error(ErrorCode::InvalidArgument,
                 "decimation needs a number of vertices or an error bound");
   check_options(input, options);
-  if (is_small(input, options)) return decimate_twice(input, options);
-  return Run(input, options).to(options.vertices);
+  Work work(work_allowed(input, options));
+  if (is_small(input, options)) return decimate_twice(input, options, work);
+  return Run(input, options, work).to(options.vertices);
 }
 
 std::vector<DecimateResult> decimate_series(const geom::Prepared& input,
@@ -936,7 +987,8 @@ std::vector<DecimateResult> decimate_series(const geom::Prepared& input,
       std::adjacent_find(vertices.begin(), vertices.end(), std::less_equal<>()) != vertices.end())
     throw Error(ErrorCode::InvalidArgument, "a series needs falling numbers of vertices");
   check_options(input, options);
-  Run run(input, options);
+  Work work(work_allowed(input, options));
+  Run run(input, options, work);
   std::vector<DecimateResult> levels;
   levels.reserve(vertices.size());  // what is nested in stays where it is
   for (const std::size_t target : vertices) {

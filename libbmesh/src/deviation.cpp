@@ -9,26 +9,26 @@
 
 namespace kaboum::bmesh {
 
-Deviation::Deviation(const geom::Mesh& original, int power, double spacing)
+Deviation::Deviation(const geom::Mesh& original, int power, double spacing, double most, Work* work)
     : mesh_(original),
       original_(original),
       power_(power),
+      work_(work),
       point_(original.vertices),
       weight_(original.vertices.size(), 0),
       head_(original.triangles.size(), kNone) {
   unit_ = 1 / (geom::bounding_box(original).max - geom::bounding_box(original).min).squaredNorm();
-  add_samples(spacing);
+  add_samples(spacing, most);
   next_.assign(point_.size(), kNone);
 }
 
-void Deviation::add_samples(double spacing) {
+void Deviation::add_samples(double spacing, double most) {
   const geom::Mesh& original = mesh_;
   // Triangles much larger than the average get inner samples: their corners say little of them.
   const double total = geom::area(original);
   const double large = 8 * total / static_cast<double>(original.triangles.size());
   constexpr int kMostCuts = 12, kMostInRow = 6;
-  constexpr double kMost = 6000;  // about; besides what the mesh has
-  if (spacing > 0) spacing = std::max(spacing, std::sqrt(2 * total / kMost));
+  if (spacing > 0) spacing = std::max(spacing, std::sqrt(2 * total / most));
   for (const geom::Triangle& t : original.triangles) {
     const Vec3 &a = original.vertices[t[0]], &b = original.vertices[t[1]],
                &c = original.vertices[t[2]];
@@ -106,11 +106,13 @@ void Deviation::assign(std::span<const Vec3> position, const Connectivity& mesh)
   std::vector<std::uint32_t> nearest(point_.size());
   geom::parallel_loop(std::size_t{0}, (point_.size() + kRun - 1) / kRun, [&](std::size_t run) {
     std::uint32_t hint = 0;
+    std::uint64_t steps = 0;
     const std::size_t end = std::min(point_.size(), (run + 1) * kRun);
     for (std::size_t s = run * kRun; s < end; ++s) {
-      proximity.squared(point_[s], hint);
+      proximity.squared(point_[s], hint, 0, &steps);
       nearest[s] = index[proximity.triangle(hint)];
     }
+    count(work_, steps);
   });
   for (std::uint32_t s = 0; s < point_.size(); ++s) {
     next_[s] = head_[nearest[s]];
@@ -131,6 +133,8 @@ class Between {
   };
 
   Between(const Proximity& present, double enough) : present_(present), enough_(enough) {}
+  /// Taken until now. [ns]
+  [[nodiscard]] std::uint64_t steps() const { return steps_; }
 
   /// @param nearest  places of the triangles that the corners are nearest to.
   /// @return the farthest point found, if it is farther than √enough.
@@ -179,7 +183,7 @@ class Between {
     }
     const int first = (across + 1) % 3, second = (across + 2) % 3;
     Found middle{0, 0.5 * (p.corner[first] + p.corner[second]), p.nearest[first]};
-    middle.squared = present_.squared(middle.point, middle.nearest);
+    middle.squared = present_.squared(middle.point, middle.nearest, 0, &steps_);
     for (const int k : {first, second}) {
       Piece half = p;
       half.corner[k] = middle.point;
@@ -192,6 +196,7 @@ class Between {
 
   const Proximity& present_;
   double enough_;
+  std::uint64_t steps_ = 0;
   std::vector<Piece> pieces_;
 };
 
@@ -209,17 +214,20 @@ void Deviation::refine(std::span<const Vec3> position, const Connectivity& mesh,
     for (std::uint32_t s = head_[t]; s != kNone; s = next_[s]) carrier[s] = place[t];
 
   constexpr std::size_t kRun = 1024;
+  constexpr std::uint64_t kMostSteps = 100'000'000;  // each; needles and wide fans take far more
   const std::size_t n = mesh_.triangles.size();
   using Of = std::pair<std::size_t, Between::Found>;  // of a triangle
   std::vector<std::vector<Of>> found((n + kRun - 1) / kRun);
   geom::parallel_loop(std::size_t{0}, found.size(), [&](std::size_t run) {
     Between between(proximity, enough);
-    for (std::size_t i = run * kRun; i < std::min(n, (run + 1) * kRun); ++i) {
+    const std::size_t end = std::min(n, (run + 1) * kRun);
+    for (std::size_t i = run * kRun; i < end && between.steps() < kMostSteps; ++i) {
       const geom::Triangle& t = mesh_.triangles[i];
       const auto at = between({mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]},
                               {carrier[t[0]], carrier[t[1]], carrier[t[2]]});
       if (at) found[run].emplace_back(i, *at);
     }
+    count(work_, between.steps());
   });
   const auto add = [&](std::size_t i, const Between::Found& at) {
     const geom::Triangle& t = mesh_.triangles[i];
@@ -238,9 +246,14 @@ void Deviation::refine(std::span<const Vec3> position, const Connectivity& mesh,
     for (const auto& [i, at] : run) add(i, at);
 }
 
-std::size_t Deviation::place_of(std::uint32_t t, std::span<const NewTriangle> added) {
-  for (std::size_t k = 0; k < added.size(); ++k)
-    if (added[k].index == t) return k;
+std::size_t Deviation::place_of(std::uint32_t t, std::span<const NewTriangle> added,
+                                std::size_t& from) {
+  for (std::size_t i = 0; i < added.size(); ++i) {
+    const std::size_t k = from + i < added.size() ? from + i : from + i - added.size();
+    if (added[k].index != t) continue;
+    from = k + 1 < added.size() ? k + 1 : 0;
+    return k;
+  }
   return 0;
 }
 
@@ -248,18 +261,24 @@ double Deviation::largest(std::span<const std::uint32_t> removed,
                           std::span<const NewTriangle> added, std::span<const Point> points,
                           std::uint32_t& hint, double limit) const {
   double worst = 0;
+  std::uint64_t steps = 0;
   for (const Point& p : points) {
-    worst = std::max(worst, original_.squared(p.position, hint, worst));
-    if (worst > limit) return worst;
+    worst = std::max(worst, original_.squared(p.position, hint, worst, &steps));
+    if (worst > limit) break;
   }
+  count(work_, steps);
+  if (worst > limit) return worst;
   const NearestOf nearest(removed.empty() ? added.first(0) : added);
-  for (const std::uint32_t t : removed) {
-    std::size_t last = place_of(t, added);
-    for (std::uint32_t s = head_[t]; s != kNone; s = next_[s]) {
+  std::uint64_t looked = 0;
+  std::size_t from = 0;
+  for (std::size_t i = 0; i < removed.size() && !(worst > limit); ++i) {
+    std::size_t last = place_of(removed[i], added, from);
+    for (std::uint32_t s = head_[removed[i]]; s != kNone && !(worst > limit); s = next_[s]) {
       worst = std::max(worst, nearest.squared(point_[s], last, worst));
-      if (worst > limit) return worst;
+      ++looked;
     }
   }
+  count(work_, looked * nearest.steps());
   return worst;
 }
 
@@ -273,14 +292,22 @@ Deviation::Energy Deviation::energy(std::span<const std::uint32_t> removed,
     e.squared = std::max(e.squared, squared);
     return e.sum <= limit;
   };
-  for (Point& p : points)
-    if (!add(locate(p, hint), p.weight)) return e;
-  const NearestOf nearest(added);
-  for (const std::uint32_t t : removed) {
-    std::size_t last = place_of(t, added);
-    for (std::uint32_t s = head_[t]; s != kNone; s = next_[s])
-      if (!add(nearest.squared(point_[s], last), weight_[s])) return e;
+  std::uint64_t steps = 0;
+  bool within = true;
+  for (std::size_t i = 0; i < points.size() && within; ++i)
+    within = add(locate(points[i], hint, steps), points[i].weight);
+  if (within) {
+    const NearestOf nearest(added);
+    std::size_t from = 0;
+    for (std::size_t i = 0; i < removed.size() && within; ++i) {
+      std::size_t last = place_of(removed[i], added, from);
+      for (std::uint32_t s = head_[removed[i]]; s != kNone && within; s = next_[s]) {
+        within = add(nearest.squared(point_[s], last), weight_[s]);
+        steps += nearest.steps();
+      }
+    }
   }
+  count(work_, steps);
   return e;
 }
 
@@ -300,14 +327,17 @@ void Deviation::commit(std::span<const std::uint32_t> removed, std::span<const N
   if (all == kNone) return;
   const NearestOf nearest(added);
   std::size_t last = 0;
+  std::uint64_t moved = 0;
   while (all != kNone) {
     const std::uint32_t s = all;
     all = next_[s];
+    ++moved;
     nearest.squared(point_[s], last);
     const std::uint32_t t = added[last].index;
     next_[s] = head_[t];
     head_[t] = s;
   }
+  count(work_, moved * nearest.steps());
 }
 
 void Deviation::save(std::span<const std::uint32_t> triangles,

@@ -8,6 +8,7 @@
 #include "connectivity.h"
 #include "nearest_of.h"
 #include "proximity.h"
+#include "work.h"
 
 namespace kaboum::bmesh {
 
@@ -38,8 +39,11 @@ class Deviation {
   /// Keeps a reference to the mesh, which must outlive this object. @pre it has triangles.
   /// @param power    of the distances in the energy: 4, which goes after the largest, or 2.
   /// @param spacing  samples lie no farther apart than this, within reason; 0: as the mesh has
-  /// them.
-  explicit Deviation(const geom::Mesh& original, int power = 4, double spacing = 0);
+  ///   them.
+  /// @param most  so many samples, about, are added for that.
+  /// @param work  counts what is done, if not null.
+  explicit Deviation(const geom::Mesh& original, int power = 4, double spacing = 0,
+                     double most = 6000, Work* work = nullptr);
   [[nodiscard]] int power() const { return power_; }
   [[nodiscard]] std::size_t samples() const { return point_.size(); }
 
@@ -59,9 +63,9 @@ class Deviation {
 
   /// Finds where the original is nearest to a point. @return the squared distance
   double locate(Point& point, std::uint32_t& hint) const {
-    if (point.nearest != kNone) hint = point.nearest;
-    const double squared = original_.squared(point.position, hint);
-    point.nearest = hint;
+    std::uint64_t steps = 0;
+    const double squared = locate(point, hint, steps);
+    count(work_, steps);
     return squared;
   }
 
@@ -90,25 +94,37 @@ class Deviation {
   void for_each_assignment(std::span<const std::uint32_t> removed,
                            std::span<const NewTriangle> added, Visit&& visit) const {
     const NearestOf nearest(added);
+    std::uint64_t found = 0;
+    std::size_t from = 0;
     for (const std::uint32_t t : removed) {
-      std::size_t last = place_of(t, added);
-      for (std::uint32_t s = head_[t]; s != kNone; s = next_[s]) {
+      std::size_t last = place_of(t, added, from);
+      for (std::uint32_t s = head_[t]; s != kNone; s = next_[s], ++found) {
         nearest.squared(point_[s], last);
         visit(last, point_[s]);
       }
     }
+    count(work_, found * nearest.steps());
   }
 
   [[nodiscard]] const Proximity& original() const { return original_; }
 
  private:
   /// Where triangle t stays among the new ones; the first, if it vanishes.
-  static std::size_t place_of(std::uint32_t t, std::span<const NewTriangle> added);
-  void add_samples(double spacing);
+  /// @param from  where it is looked for first; receives where the next one is likely to be.
+  static std::size_t place_of(std::uint32_t t, std::span<const NewTriangle> added,
+                              std::size_t& from);
+  void add_samples(double spacing, double most);
+  double locate(Point& point, std::uint32_t& hint, std::uint64_t& steps) const {
+    if (point.nearest != kNone) hint = point.nearest;
+    const double squared = original_.squared(point.position, hint, 0, &steps);
+    point.nearest = hint;
+    return squared;
+  }
 
   const geom::Mesh& mesh_;
   Proximity original_;
   int power_;
+  Work* work_;
   double unit_;  // 1 / diagonal²
   std::vector<Vec3> point_;
   std::vector<double> weight_;  // area of the original; places that refine found count besides

@@ -10,6 +10,7 @@
 #include "cost.h"
 #include "original_solid.h"
 #include "placement.h"
+#include "work.h"
 #include "working_mesh.h"
 
 namespace kaboum::bmesh {
@@ -17,7 +18,8 @@ namespace kaboum::bmesh {
 /// What all contractions of a run have in common.
 struct Setting {
   /// Keeps a reference to the options, which must outlive this object.
-  Setting(const geom::Prepared& input, const DecimateOptions& wished);
+  /// @param counter  of what is done, for as long; may be null.
+  Setting(const geom::Prepared& input, const DecimateOptions& wished, Work* counter = nullptr);
 
   const DecimateOptions& options;
   CostModel cost;
@@ -28,9 +30,10 @@ struct Setting {
   /// No vertex goes farther from the origin, whatever it costs: half the box, and its diagonal more
   /// on every side.
   Vec3 reach;
+  Work* work;
 
  private:
-  Setting(const geom::Box3& box, bool is_closed, const DecimateOptions& wished);
+  Setting(const geom::Box3& box, bool is_closed, const DecimateOptions& wished, Work* counter);
 };
 
 /// What contracting an edge would do, and whether it may be done: the place of the new vertex, the

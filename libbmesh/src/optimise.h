@@ -100,10 +100,18 @@ class Optimiser {
     std::vector<std::uint32_t> samples;
     std::size_t steps = 0, pull_backs = 0;
   };
+  /// Where a point was when the original was last sought from it, how far, and where.
+  struct Trail {
+    Vec3 position;
+    double distance;
+    std::uint32_t nearest = Deviation::kNone;
+  };
+
   void neighbours(std::uint32_t v, std::vector<std::uint32_t>& out);
   void take(std::span<const std::uint32_t> vertices);
   void go_back();
-  void attract(std::uint32_t v, double scale, double penalty, double share, bool hand_over);
+  void attract(std::size_t i, double scale, double penalty, double share, bool hand_over);
+  void follow(Deviation::Point& point, Trail& trail, double close, std::uint32_t& hint);
   double star_largest(std::uint32_t v, double limit);
   double region_largest(double limit);
   std::optional<Vec3> seek(std::uint32_t a, std::uint32_t b, const Vec3& wish);
@@ -139,8 +147,9 @@ class Optimiser {
   Snapshot snapshot_;
   std::vector<std::uint32_t> mark_;
   std::uint32_t mark_value_ = 0;
-  std::vector<std::uint32_t> around_;  // vertices that move with a contraction, it first
-  std::vector<Vec3> target_;           // of these
+  std::vector<std::uint32_t> around_;       // vertices that move with a contraction, it first
+  std::vector<Vec3> target_;                // of these
+  std::vector<std::vector<Trail>> trails_;  // of the points at which their stars are measured
   std::vector<std::uint32_t> alive_;
 
   // Of the step at hand.

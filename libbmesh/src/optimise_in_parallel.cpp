@@ -23,7 +23,7 @@ ParallelOptimiser::Lane::Lane(ParallelOptimiser& of)
 ParallelOptimiser::ParallelOptimiser(WorkingMesh& mesh, Deviation& deviation, OriginalSolid* solid,
                                      const geom::Mesh& original, Tolerance* tolerance,
                                      const DecimateOptions& options, DecimateStatistics& statistics,
-                                     bool dense)
+                                     bool dense, Work* work)
     : m_(mesh),
       notes_(mesh.position.size()),
       deviation_(deviation),
@@ -33,6 +33,7 @@ ParallelOptimiser::ParallelOptimiser(WorkingMesh& mesh, Deviation& deviation, Or
       options_(options),
       statistics_(statistics),
       dense_(dense),
+      work_(work),
       single_(mesh, notes_, deviation, solid, original, tolerance, options, statistics,
               options.steps),
       lanes_([this] { return Lane(*this); }),
@@ -116,7 +117,7 @@ void ParallelOptimiser::pull_back_each(const std::function<std::uint32_t()>& nex
   std::vector<char> moves;
   const std::size_t most = in_batches() ? kMoves : 1;
   bool more = true;
-  while (more || !waiting.empty()) {
+  while ((more || !waiting.empty()) && goes_on()) {
     begin_batch();
     batch.clear();
     still.clear();
@@ -149,7 +150,7 @@ std::size_t ParallelOptimiser::pass() {
         return v < vertices ? v++ : Connectivity::kNone;
       },
       [&](std::uint32_t) { ++steps; });
-  for (std::uint32_t t = 0; t < m_.mesh.size(); ++t) {
+  for (std::uint32_t t = 0; t < m_.mesh.size() && goes_on(); ++t) {
     for (std::uint32_t k = 0; k < 3 && m_.mesh.alive(t); ++k) {
       const std::uint32_t a = m_.mesh[t][k], b = m_.mesh[t][(k + 1) % 3];
       if (a < b && notes_.flippable[a] != 0 && notes_.flippable[b] != 0 && single_.flip(a, b))

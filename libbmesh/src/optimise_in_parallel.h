@@ -6,6 +6,7 @@
 #include <span>
 
 #include "optimise.h"
+#include "work.h"
 
 namespace kaboum::bmesh {
 
@@ -21,10 +22,12 @@ class ParallelOptimiser {
     std::uint32_t a, b;
   };
 
-  /// As of Optimiser.
+  /// As of Optimiser. Rounds end early when so much work is done that no vertex is to be moved any
+  /// more; `work` may be null.
   ParallelOptimiser(WorkingMesh& mesh, Deviation& deviation, OriginalSolid* solid,
                     const geom::Mesh& original, Tolerance* tolerance,
-                    const DecimateOptions& options, DecimateStatistics& statistics, bool dense);
+                    const DecimateOptions& options, DecimateStatistics& statistics, bool dense,
+                    Work* work = nullptr);
   ParallelOptimiser(const ParallelOptimiser&) = delete;
   ParallelOptimiser& operator=(const ParallelOptimiser&) = delete;
   ~ParallelOptimiser() = default;
@@ -73,6 +76,7 @@ class ParallelOptimiser {
     Optimiser optimiser;
   };
 
+  [[nodiscard]] bool goes_on() const { return work_ == nullptr || !work_->spent(kNoneMoves); }
   bool claim(std::span<const std::uint32_t> moved);
   void begin_batch();
   template <class Task>
@@ -89,6 +93,7 @@ class ParallelOptimiser {
   const DecimateOptions& options_;
   DecimateStatistics& statistics_;
   bool dense_;
+  Work* work_;
   Optimiser single_;
   tbb::enumerable_thread_specific<Lane> lanes_;
 

@@ -243,10 +243,20 @@ bool opposed(std::span<const Vec3> normals) {
   return false;
 }
 
-OriginalSolid::OriginalSolid(const geom::Mesh& original, std::shared_ptr<const geom::Bvh> hierarchy)
+namespace {
+
+/// About the nanoseconds that a box, a triangle, one that rounded arithmetic does not decide, and a
+/// winding number take.
+constexpr std::uint64_t kBox = 20, kTriangle = 200, kExact = 4000, kWinding = 1000;
+
+}  // namespace
+
+OriginalSolid::OriginalSolid(const geom::Mesh& original, std::shared_ptr<const geom::Bvh> hierarchy,
+                             Work* work)
     : original_(original),
       bvh_(hierarchy ? std::move(hierarchy) : std::make_shared<const geom::Bvh>(original)),
-      winding_(original, bvh_) {}
+      winding_(original, bvh_),
+      work_(work) {}
 
 bool OriginalSolid::contains(const Tetrahedron& tetrahedron, bool inside,
                              std::vector<std::uint32_t>* met) const {
@@ -259,7 +269,9 @@ bool OriginalSolid::contains(const Tetrahedron& tetrahedron, bool inside,
   const auto overlaps = [&](const geom::Box3& b) {
     return (b.min.array() < box.max.array()).all() && (b.max.array() > box.min.array()).all();
   };
+  std::uint64_t steps = 0;
   const auto may_meet = [&](const geom::Box3& b) {
+    steps += kBox;
     return !enough && overlaps(b) && !faces.beyond(b);
   };
   bvh_->traverse(may_meet, [&](std::uint32_t t) {
@@ -269,10 +281,13 @@ bool OriginalSolid::contains(const Tetrahedron& tetrahedron, bool inside,
                                       original_.vertices[tri[2]]};
     geom::Box3 own;
     for (const Vec3& p : corners) own.extend(p);
+    steps += kBox;
     if (!overlaps(own)) return;
+    steps += kTriangle;
     // Where a step would be taken, the answer is never that of rounded arithmetic: what is beyond a
     // face is so for certain, and what seems to be within only makes the step fail.
     const Faces::Place place = faces.of(corners);
+    if (place == Faces::Place::Undecided) steps += kExact;
     if (place == Faces::Place::Beyond ||
         (place == Faces::Place::Undecided && !meets_interior(tetrahedron, corners)))
       return;
@@ -280,6 +295,7 @@ bool OriginalSolid::contains(const Tetrahedron& tetrahedron, bool inside,
     if (met != nullptr) met->push_back(t);
     enough = met == nullptr || met->size() == kMostMet;
   });
+  count(work_, steps + (clear ? kWinding : 0));
   if (!clear) return false;
   // One point of the interior speaks for all of it, for the surface does not meet it.
   const Vec3 middle =

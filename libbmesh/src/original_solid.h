@@ -11,6 +11,8 @@
 #include <span>
 #include <vector>
 
+#include "work.h"
+
 namespace kaboum::bmesh {
 
 using geom::Vec3;
@@ -39,8 +41,10 @@ class OriginalSolid {
  public:
   /// Keeps a reference to `original`, which must outlive this object and be a closed chain.
   /// @param hierarchy  over it, where there is one already.
+  /// @param work  counts what is done, if not null.
   explicit OriginalSolid(const geom::Mesh& original,
-                         std::shared_ptr<const geom::Bvh> hierarchy = nullptr);
+                         std::shared_ptr<const geom::Bvh> hierarchy = nullptr,
+                         Work* work = nullptr);
 
   /// Whether the tetrahedron's open interior meets no triangle of the original and its winding
   /// number there is at most 0 (`inside` false) or at least 1 (`inside` true). False also when the
@@ -55,6 +59,7 @@ class OriginalSolid {
   const geom::Mesh& original_;
   std::shared_ptr<const geom::Bvh> bvh_;
   geom::WindingNumber winding_;
+  Work* work_;
 };
 
 }  // namespace kaboum::bmesh

@@ -58,7 +58,8 @@ std::uint32_t Proximity::add(std::uint32_t index) {
   return place;
 }
 
-double Proximity::squared(const Vec3& p, std::uint32_t& hint, double enough) const {
+double Proximity::squared(const Vec3& p, std::uint32_t& hint, double enough,
+                          std::uint64_t* steps) const {
   if (hint >= triangles_.size()) hint = 0;
   double best = squared_distance(p, corners(hint));
   float reach = frame_.reach(best);
@@ -71,9 +72,11 @@ double Proximity::squared(const Vec3& p, std::uint32_t& hint, double enough) con
   std::size_t size = 0;
   stack[size++] = {0, root_};
   std::array<float, 4> bound;
+  std::uint64_t visited = 1;
   while (size > 0 && best > enough) {
     const Entry entry = stack[--size];
     if (!(entry.squared < reach)) continue;
+    ++visited;
     if ((entry.node & kLeaf) != 0) {
       const Leaf& leaf = leaves_[entry.node & ~kLeaf];
       leaf.triangles.at_least(x, bound);
@@ -103,6 +106,8 @@ double Proximity::squared(const Vec3& p, std::uint32_t& hint, double enough) con
       stack[at] = {bound[i], node.child[i]};
     }
   }
+  constexpr std::uint64_t kNode = 30;
+  if (steps != nullptr) *steps += kNode * visited;
   return best;
 }
 

@@ -32,6 +32,7 @@ class Rounds {
   void run(std::size_t target) {
     const double wished = static_cast<double>(target);
     for (int round = 0;; ++round) {
+      if (setting_.work != nullptr && setting_.work->spent(kNoneContracts)) break;
       const std::size_t before = m_.position.size();
       const auto n = static_cast<double>(before);
       if (before < 2 * kRegion || n < kEnd * wished) break;

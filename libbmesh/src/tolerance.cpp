@@ -10,18 +10,22 @@ namespace {
 /// uncovered is taken off ε beforehand.
 constexpr std::uint32_t kMaxTotalCuts = 1000;
 
+/// About the nanoseconds that it takes to look whether a triangle carries a piece, and to cut one.
+constexpr std::uint64_t kCarry = 50, kCut = 300;
+
 /// Pieces that a new triangle may fall into: large ones along an edge of the original need many.
 constexpr int kMaxCells = 4000;
 
 }  // namespace
 
-Tolerance::Tolerance(const geom::Mesh& original, double epsilon)
+Tolerance::Tolerance(const geom::Mesh& original, double epsilon, Work* work)
     : near_(original),
       magnitude_(geom::bounding_box(original)
                      .min.cwiseAbs()
                      .cwiseMax(geom::bounding_box(original).max.cwiseAbs())
                      .maxCoeff()),
-      head_(original.triangles.size(), kNone) {
+      head_(original.triangles.size(), kNone),
+      work_(work) {
   raise(epsilon);
   pieces_.reserve(original.triangles.size());
   for (std::uint32_t t = 0; t < original.triangles.size(); ++t) {
@@ -53,8 +57,9 @@ bool Tolerance::is_near(const std::array<Vec3, 3>& triangle) {
   for (int cells = kMaxCells; size > 0;) {
     const Entry e = stack[--size];
     if (--cells < 0) return false;
-    ++work_;
-    if (!(near_.squared(e.polygon.centroid(), hint_) <= epsilon_ * epsilon_)) return false;
+    steps_ += kCut;
+    if (!(near_.squared(e.polygon.centroid(), hint_, 0, &steps_) <= epsilon_ * epsilon_))
+      return false;
     const auto [a, b, c] = near_.corners(hint_);
     bool covered = true;
     for (int i = 0; i < e.polygon.size && covered; ++i)
@@ -90,34 +95,42 @@ void Tolerance::put(const geom::ConvexPolygon& piece, std::uint32_t cuts, std::u
 }
 
 bool Tolerance::place(const geom::ConvexPolygon& piece, std::uint32_t cuts,
-                      std::span<const NewTriangle> added, int cuts_left) {
-  for (std::size_t i = 0; i < added.size(); ++i) {
-    const std::size_t k = (last_carrier_ + i) % added.size();
-    if (!carries(added[k], piece)) continue;
+                      std::span<const NewTriangle> added, const NearestOf& nearest_of,
+                      int cuts_left) {
+  const auto is_carried_by = [&](std::size_t k) {
+    if (!carries(added[k], piece)) return false;
     last_carrier_ = k;
     put(piece, cuts, added[k].index);
     return true;
+  };
+  const std::size_t last = last_carrier_;
+  steps_ += kCarry;
+  if (is_carried_by(last)) return true;
+  steps_ += piece.size * nearest_of.steps();
+  // Most are too far from some corner by bounds that cost little.
+  may_carry_.assign(added.size(), 1);
+  may_carry_[last] = 0;
+  for (int i = 0; i < piece.size; ++i)
+    nearest_of.within(piece.corner[i], epsilon_ * epsilon_, may_carry_);
+  for (std::size_t i = 1; i < added.size(); ++i) {
+    const std::size_t k = (last + i) % added.size();
+    if (may_carry_[k] == 0) continue;
+    steps_ += kCarry;
+    if (is_carried_by(k)) return true;
   }
-  work_ += added.size();
   if (cuts_left == 0 || cuts >= kMaxTotalCuts || --pieces_left_ < 0) return false;
   // Cut along the prism of the new triangle nearest to the middle; if that is too far, no cut
   // helps.
-  work_ += added.size();
+  steps_ += kCut;
   const Vec3 center = piece.centroid();
-  std::size_t nearest = 0;
-  double distance = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < added.size(); ++k) {
-    const double d = squared_distance(center, added[k].corner);
-    if (d >= distance) continue;
-    distance = d;
-    nearest = k;
-  }
+  std::size_t nearest = last;
+  const double distance = nearest_of.squared(center, nearest);
   if (!(distance <= epsilon_ * epsilon_)) return false;
   const auto& [a, b, c] = added[nearest].corner;
   const geom::PrismCut pieces = geom::cut_by_prism(piece, a, b, c, cuts_left % 3 == 0);
   last_carrier_ = nearest;
   for (int i = 0; i < pieces.count; ++i)
-    if (!place(pieces.piece[i], cuts + 1, added, cuts_left - 1)) return false;
+    if (!place(pieces.piece[i], cuts + 1, added, nearest_of, cuts_left - 1)) return false;
   return true;
 }
 
@@ -126,16 +139,22 @@ bool Tolerance::admits(std::span<const std::uint32_t> removed, std::span<const N
   last_carrier_ = 0;
   pieces_left_ = kMaxPieces;
   if (added.empty() || !(epsilon_ > 0)) return false;
-  for (const std::uint32_t t : removed) {
+  const NearestOf nearest(added);
+  steps_ = 0;
+  const auto is_placed = [&](std::uint32_t t) {
     for (std::size_t i = 0; i < added.size(); ++i)
       if (added[i].index == t) last_carrier_ = i;
     for (std::uint32_t p = head_[t]; p != kNone; p = pieces_[p].next)
       if (const auto& [a, b, c] = pieces_[p].corner;
-          !place({a, b, c}, pieces_[p].cuts, added, kMaxCuts))
+          !place({a, b, c}, pieces_[p].cuts, added, nearest, kMaxCuts))
         return false;
-  }
-  return std::all_of(added.begin(), added.end(),
-                     [&](const NewTriangle& t) { return is_near(t.corner); });
+    return true;
+  };
+  const bool admitted = std::all_of(removed.begin(), removed.end(), is_placed) &&
+                        std::all_of(added.begin(), added.end(),
+                                    [&](const NewTriangle& t) { return is_near(t.corner); });
+  count(work_, steps_);
+  return admitted;
 }
 
 void Tolerance::commit(std::span<const std::uint32_t> removed) {

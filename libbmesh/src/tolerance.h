@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "change.h"
+#include "nearest_of.h"
 #include "proximity.h"
+#include "work.h"
 
 namespace kaboum::bmesh {
 
@@ -28,7 +30,8 @@ class Tolerance {
 
   /// @param original  carried initially triangle by triangle: triangle i of the current mesh is
   ///   triangle i of the original. It must outlive this object.
-  Tolerance(const geom::Mesh& original, double epsilon);
+  /// @param work  counts what is done, if not null.
+  Tolerance(const geom::Mesh& original, double epsilon, Work* work = nullptr);
 
   /// Lets ε be larger from now on.
   void raise(double epsilon);
@@ -38,9 +41,6 @@ class Tolerance {
                             std::span<const NewTriangle> added);
   /// Carries out the change that `admits` has just accepted.
   void commit(std::span<const std::uint32_t> removed);
-
-  /// Distances looked at until now, about.
-  [[nodiscard]] std::uint64_t work() const { return work_; }
 
  private:
   static constexpr std::uint32_t kNone = ~0U;
@@ -59,7 +59,8 @@ class Tolerance {
   };
 
   [[nodiscard]] bool place(const geom::ConvexPolygon& piece, std::uint32_t cuts,
-                           std::span<const NewTriangle> added, int cuts_left);
+                           std::span<const NewTriangle> added, const NearestOf& nearest,
+                           int cuts_left);
   void put(const geom::ConvexPolygon& piece, std::uint32_t cuts, std::uint32_t carrier);
   [[nodiscard]] bool carries(const NewTriangle& triangle, const geom::ConvexPolygon& piece) const;
   std::uint32_t allocate();
@@ -72,11 +73,13 @@ class Tolerance {
   std::vector<Piece> pieces_;
   std::vector<std::uint32_t> head_;  // per current triangle
   std::uint32_t free_ = kNone;
-  std::vector<Placed> placed_;  // of the change under consideration
+  std::vector<Placed> placed_;   // of the change under consideration
+  std::vector<char> may_carry_;  // of the new triangles
   std::size_t last_carrier_ = 0;
   int pieces_left_ = 0;
   std::uint32_t hint_ = 0;
-  std::uint64_t work_ = 0;
+  std::uint64_t steps_ = 0;  // of the change under consideration
+  Work* work_;
 };
 
 }  // namespace kaboum::bmesh

@@ -69,6 +69,10 @@ grep -q warning err.txt && fail "a warning of what is near"
 
 # One number of vertices of a small mesh is reached twice, the second time nearer; a series is not.
 expect 0 '' "$D" "$BRACKET" -o small.ply --vertices 1000 --effort fast --quiet
+expect 7 'the work allowed has ended' "$D" small.ply -o work.ply --ratio 0.1 --max-work 0.001 --report work.json
+grep -q '"out_of_work": true' work.json && grep -q '"stop": "out of work"' work.json || fail "report of a limit"
+expect 0 '' "$BIN/bound-verify" --outer small.ply work.ply --quiet
+expect 2 '' "$D" small.ply -o x.ply --ratio 0.1 --max-work 0
 expect 0 '' "$D" small.ply -o twice.ply --vertices 150 --quiet
 expect 0 '' "$D" small.ply -o 'once-{vertices}.ply' --vertices 150,149 --quiet
 farthest() { "$BIN/hausdorff-eval" small.ply "$1" | sed -n 's/^max .*, \([0-9.e+-]*\)\]$/\1/p'; }
