@@ -54,7 +54,7 @@ constexpr std::size_t kRefineAgain = 5;
 /// to round until the number is reached. Rounds that gain less than kBoundGain of what is missing
 /// raise it by more.
 constexpr double kBoundFrom = 0.85, kBoundFromBest = 0.75;
-constexpr double kBoundGrowth = 1.1, kBoundMostGrowth = 1.25, kBoundGain = 0.05;
+constexpr double kBoundGrowth = 1.07, kBoundMostGrowth = 1.25, kBoundGain = 0.05;
 constexpr int kBoundPasses = 1;  ///< rounds of optimisation in each
 /// Small: at most so many vertices, and a third of them wished for at most.
 constexpr std::size_t kBoundVertices = 4000, kBoundShare = 3;
