@@ -56,7 +56,8 @@ class Residue {
     if (low.value_ == kPrime) low.value_ = 0;
     return low + high;
   }
-  friend auto operator<=>(const Residue&, const Residue&) = default;
+  friend bool operator==(Residue a, Residue b) { return a.value_ == b.value_; }
+  friend bool operator<(Residue a, Residue b) { return a.value_ < b.value_; }
 
  private:
   std::uint64_t value_ = 0;
@@ -167,6 +168,7 @@ class Hollows {
     });
     // Short ones first: little fills in.
     std::vector<const Equation*> by_size;
+    by_size.reserve(equations.size());
     for (const Equation& e : equations) by_size.push_back(&e);
     std::stable_sort(by_size.begin(), by_size.end(),
                      [](const Equation* a, const Equation* b) { return a->size() < b->size(); });
