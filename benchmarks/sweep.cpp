@@ -8,6 +8,7 @@
 #include <random>
 #include <string>
 
+#include "cli.h"
 #include "robot_bodies.h"
 
 /// Times bounding swept volumes of a robot whose bodies are in memory, and counts bodies by rule.
@@ -42,9 +43,9 @@ Times seconds_of(const robot::Robot& robot, const std::vector<robot::LinkBody>& 
 int measure(const char* file, const char* epsilon, int most_vertices) {
   const tools::RobotFile robot = tools::read_robot(file);
   tools::BodyOptions body_options;
-  body_options.epsilon = epsilon;
+  body_options.epsilon = tools::parse_length(epsilon).value();
   body_options.max_vertices = static_cast<std::size_t>(most_vertices);
-  body_options.effort = "fast";
+  body_options.effort = bcd::Effort::Fast;
   const tools::LinkBodies links = tools::bodies_of(robot, body_options);
   std::size_t points = 0;
   for (const robot::LinkBody& body : links.bodies) points += body.points.size();

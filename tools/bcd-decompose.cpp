@@ -1,14 +1,9 @@
-#include <kaboum/bcd/decompose.h>
-#include <kaboum/bcd/fill.h>
+#include <kaboum/certify/set_cache.h>
 #include <kaboum/geom/error.h>
-#include <kaboum/geom/prepare.h>
-#include <kaboum/geom/width.h>
 #include <kaboum/io/convex_io.h>
-#include <kaboum/verify/cover.h>
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <filesystem>
 #include <sstream>
 
@@ -17,7 +12,6 @@
 #include "notes.h"
 #include "robot_bodies.h"
 #include "robot_decomposition.h"
-#include "set_cache.h"
 #include "set_format.h"
 #include "set_picture.h"
 #include "urdf_output.h"
@@ -26,12 +20,6 @@ namespace {
 
 using namespace kaboum;
 using tools::Json;
-
-/// Changes whenever the same options may give another result: cached results are then not found.
-constexpr const char* kAlgorithm = "planes 22";
-
-/// The same of containers' bytes.
-constexpr const char* kContainer = "coloured";
 
 struct Options {
   std::string input, output, input_format, output_format, epsilon, direction = "outer";
@@ -207,220 +195,38 @@ std::string percent(double length, double diagonal) {
   return out.str();
 }
 
-/// Whether epsilon is given, or wished for because no limit is.
-bool has_epsilon(const Options& o) {
-  return !o.epsilon.empty() || (o.max_bodies == 0 && o.max_total == 0);
-}
-
-/// The options that the result depends on, for the record.
-std::string parameters(const Options& o) {
-  std::ostringstream out;
-  out.precision(17);
-  if (has_epsilon(o)) out << "--epsilon " << (o.epsilon.empty() ? "1%" : o.epsilon) << ' ';
-  if (o.max_bodies > 0) out << "--max-bodies " << o.max_bodies << ' ';
-  if (o.max_total > 0) out << "--max-total-vertices " << o.max_total << ' ';
-  if (o.direction != "outer") out << "--direction " << o.direction << ' ';
-  if (o.min_thickness > 0) out << "--min-thickness " << o.min_thickness << ' ';
-  out << "--max-vertices-per-body " << o.max_vertices << " --effort " << o.effort;
-  if (o.simplify) out << " --simplify " << *o.simplify;
-  if (o.max_work) out << " --max-work " << *o.max_work;
-  if (o.method != "planes") out << " --method " << o.method;
-  if (o.pre_step != "auto") out << " --pre-step " << o.pre_step;
-  if (o.prepare.drop_sheets) out << " --drop-sheets";
-  if (o.holes.value() == geom::Holes::Refuse) out << " --holes refuse";
-  if (o.prepare.keep_orientation) out << " --keep-orientation";
-  return out.str();
-}
-
-const char* name_of(bcd::Stop stop) {
-  switch (stop) {
-    case bcd::Stop::Done:
-      return "done";
-    case bcd::Stop::TooManyBodies:
-      return "limits";
-    case bcd::Stop::TooCoarse:
-      return "float32 too coarse";
-    case bcd::Stop::OutOfWork:
-      return "out of work";
-    case bcd::Stop::Stuck:
-      break;
-  }
-  return "stuck";
-}
-
-/// float32 cannot hold the bodies closely enough: a valid "no", nothing is written.
-struct TooCoarse {};
-
-/// Why a set does not do what it should, decided exactly; empty when it does.
-std::string objection(const Options& o, const geom::Mesh& solid, const geom::ConvexSet& set) {
-  for (const geom::ConvexBody& body : set.bodies)
-    if (o.min_thickness > 0 &&
-        geom::least_width(body.hull, o.min_thickness).lower < o.min_thickness)
-      return "a body is thinner than --min-thickness";
-  if (o.direction == "outer") {
-    const verify::Cover cover = verify::verify_cover(solid, set);
-    for (const verify::Claim* claim :
-         {&cover.convex, &cover.inclusion.solid, &cover.inclusion.surface})
-      if (claim->answer != verify::Answer::Verified) return claim->reason;
-    return {};
-  }
-  if (geom::find_not_convex(set)) return "a body is not convex";
-  const verify::Inclusion inside = verify::verify_inclusion(verify::sum_of(set), solid);
-  for (const verify::Claim* claim : {&inside.solid, &inside.surface})
-    if (claim->answer != verify::Answer::Verified) return claim->reason;
-  return {};
-}
-
-/// What a set says of where it comes from, the claims apart.
-geom::Provenance origin(const Options& o, const std::string& hash) {
-  geom::Provenance p;
-  p.source = std::filesystem::path(o.input).filename().string();
-  p.source_sha256 = hash;
-  p.tool = std::string("bcd-decompose ") + tools::version();
-  p.parameters = parameters(o);
-  p.unit = o.unit;
-  p.frame = o.frame;
-  p.direction = o.direction;
-  return p;
-}
-
-/// Decomposes, serialises, reads back and decides the claims.
-tools::SetCache::Entry compute(const Options& o, const geom::Mesh& mesh, const std::string& hash) {
-  tools::Progress progress(o.common.quiet);
-  const bool outer = o.direction == "outer";
-  geom::PrepareOptions preparation = o.prepare;
-  preparation.holes = o.holes.value();
-  const geom::Prepared prepared =
-      tools::naming(o.input, [&] { return geom::prepare(mesh, preparation); });
-  const double diagonal = geom::bounding_box(prepared.mesh).diagonal();
-  for (const std::string& text : prepared.notes) note(o, text);
-  bcd::DecomposeOptions options;
-  if (has_epsilon(o))
-    options.epsilon = tools::parse_length(o.epsilon.empty() ? "1%" : o.epsilon)->of(diagonal);
-  if (o.max_bodies > 0) options.max_bodies = o.max_bodies;
-  if (o.max_total > 0) options.max_total_vertices = o.max_total;
-  options.max_vertices = o.max_vertices;
-  options.effort = kEfforts.at(o.effort);
-  options.method = kMethods.at(o.method);
-  options.min_thickness = o.min_thickness;
-  if (o.simplify) options.simplify = *o.simplify;
-  options.max_work = o.max_work;
-  options.pre_step = kPreSteps.at(o.pre_step);
-  options.progress = [&](const bcd::Progress& p) {
-    progress.show(p.stage + " " + std::to_string(static_cast<int>(100 * p.fraction)) + " %");
-  };
-  geom::ConvexSet set;
-  geom::Provenance& p = set.provenance;
-  p = origin(o, hash);
-  p.covers_surface = outer && prepared.dropped_sheets == 0;
-  p.covers_solid = outer && prepared.holes == 0;
-  tools::SetCache::Entry entry;
-  bcd::DecomposeResult result;
-  std::string wrong;
-  // Where the exact check fails, the input is not simplified, then more is allowed for rounding.
-  const std::vector<double> allowances{1, 64, 4096};
-  for (auto safety = allowances.begin(); safety != allowances.end();) {
-    options.safety = *safety;
-    result = tools::naming(o.input, [&] {
-      return outer ? bcd::decompose(prepared, options) : bcd::fill(prepared, options);
-    });
-    if (result.stop == bcd::Stop::TooCoarse) throw TooCoarse{};
-    set.bodies = std::move(result.bodies);
-    p.epsilon = result.reach_upper;
-    entry.container = io::serialise_convex_set(set, io::SetFormat::Glb);
-    // What is written is what is verified.
-    progress.show("verifying");
-    wrong = objection(o, prepared.mesh,
-                      io::parse_convex_set(entry.container, io::Format::Glb, "the result"));
-    if (wrong.empty()) break;
-    const bool simplified = result.statistics.pre_step_triangles > 0;
-    tools::log(o.common.quiet, o.input + ": the bodies found do not pass the exact check (" +
-                                   wrong + "); trying " +
-                                   (simplified ? "without simplifying the input first"
-                                               : "with larger allowances for rounding"));
-    if (simplified) {
-      options.pre_step = bcd::PreStep::Off;
-    } else {
-      ++safety;
-    }
-  }
-  if (!wrong.empty())
-    throw Error(ErrorCode::Internal, o.input +
-                                         ": no bodies were found that pass the exact check (" +
-                                         wrong + "); nothing is written");
-  const bcd::DecomposeStatistics& s = result.statistics;
-  entry.report = {{"stop", name_of(result.stop)},
-                  {"direction", o.direction},
-                  {"method", o.method},
-                  {"bodies", set.bodies.size()},
-                  {"vertices", s.vertices},
-                  {"largest_body_vertices", s.largest},
-                  {"reach",
-                   {{"lower", result.reach_lower},
-                    {"upper", result.reach_upper},
-                    {"upper_percent", diagonal > 0 ? 100 * result.reach_upper / diagonal : 0.0}}},
-                  {"closed", prepared.holes == 0},
-                  {"holes", prepared.holes},
-                  {"largest_hole", prepared.largest_hole},
-                  {"filled_triangles", s.filled_triangles},
-                  {"pieces", s.leaves},
-                  {"pre_step_triangles", s.pre_step_triangles},
-                  {"out_of_work", s.out_of_work},
-                  {"safety", options.safety},
-                  {"diagonal", diagonal},
-                  {"notes", prepared.notes}};
-  if (o.min_thickness > 0)
-    entry.report["min_thickness"] = {{"wished", o.min_thickness}, {"thickened", s.thickened}};
-  if (outer) {
-    entry.report["cover"] = {{"surface", "verified"},
-                             {"solid", prepared.holes == 0 ? "verified" : "of the closed mesh"}};
-  } else {
-    entry.report["inside"] = prepared.holes == 0 ? "verified" : "verified, of the closed mesh";
-  }
-  return entry;
+/// What the options ask for.
+certify::SetRequest request_of(const Options& o) {
+  certify::SetRequest r;
+  if (o.direction != "outer") r.direction = certify::SetRequest::Direction::Inner;
+  if (!o.epsilon.empty()) r.epsilon = tools::parse_length(o.epsilon);
+  if (o.max_bodies > 0) r.max_bodies = o.max_bodies;
+  if (o.max_total > 0) r.max_total_vertices = o.max_total;
+  r.max_vertices = o.max_vertices;
+  r.effort = kEfforts.at(o.effort);
+  r.method = kMethods.at(o.method);
+  r.pre_step = kPreSteps.at(o.pre_step);
+  r.simplify = o.simplify;
+  r.max_work = o.max_work;
+  r.min_thickness = o.min_thickness;
+  r.preparation = o.prepare;
+  r.preparation.holes = o.holes.value();
+  r.source = std::filesystem::path(o.input).filename().string();
+  r.unit = o.unit;
+  r.frame = o.frame;
+  return r;
 }
 
 /// A mesh file and what came of it.
 struct Outcome {
   std::string hash;
-  tools::SetCache::Entry entry;
+  certify::CertifiedSet made;
   bool cached = false;
+  Json report;  ///< of the certificate, with what reading noted
 };
 
-/// Hash of the triangles as read. Their bytes say more than a file's, which may refer to others,
-/// and than a reader's version.
-std::string hash_of(const geom::Mesh& mesh) {
-  std::vector<char> bytes;
-  const auto append = [&](const void* data, std::size_t size) {
-    const auto* begin = static_cast<const char*>(data);
-    bytes.insert(bytes.end(), begin, begin + size);
-  };
-  const std::uint64_t vertices = mesh.vertices.size();
-  append(&vertices, sizeof vertices);
-  for (const geom::Vec3& v : mesh.vertices) append(v.data(), 3 * sizeof(double));
-  for (const geom::Triangle& t : mesh.triangles) append(t.data(), sizeof t);
-  return io::sha256(bytes);
-}
-
-/// Why an entry of the cache is not what it should be; empty when it is.
-std::string objection(const Options& o, const std::string& hash,
-                      const tools::SetCache::Entry& entry) {
-  try {
-    const geom::ConvexSet set =
-        io::parse_convex_set(entry.container, io::Format::Glb, "the container");
-    geom::Provenance stated = set.provenance;
-    const geom::Provenance expected = origin(o, hash);
-    stated.epsilon = expected.epsilon;
-    stated.covers_solid = expected.covers_solid;
-    stated.covers_surface = expected.covers_surface;
-    if (stated == expected && entry.report.value("bodies", std::size_t{0}) == set.bodies.size() &&
-        set.margin == 0)
-      return {};
-    return "its container is that of another input or of other options";
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-}
+/// float32 cannot hold the bodies closely enough: a valid "no", nothing is written.
+struct TooCoarse {};
 
 /// The bodies of one mesh, from the cache where possible.
 Outcome decompose_mesh(const Options& o) {
@@ -430,33 +236,21 @@ Outcome decompose_mesh(const Options& o) {
   for (const std::string& text : read.notes) note(o, text);
   Outcome out;
   out.hash = io::sha256(bytes);
-  const std::string key = hash_of(read.mesh) + '\n' + out.hash + '\n' + parameters(o) + '\n' +
-                          o.unit + '\n' + o.frame + '\n' +
-                          std::filesystem::path(o.input).filename().string() + '\n' +
-                          tools::version() + '\n' + kAlgorithm + '\n' + kContainer;
-  const tools::SetCache cache(key);
-  if (!o.no_cache) {
-    std::string flaw;
-    auto found = cache.find(flaw);
-    if (found) {
-      if (const std::string why = objection(o, out.hash, *found); !why.empty())
-        flaw = cache.path().string() + ": " + why;
-    }
-    if (!flaw.empty())
-      tools::log(o.common.quiet, "the cache's entry " + flaw + "; it is made again");
-    if (found && flaw.empty()) {
-      out.entry = std::move(*found);
-      out.cached = true;
-      for (const Json& text : out.entry.report["notes"]) note(o, text.get<std::string>());
-    }
-  }
-  if (!out.cached) {
-    out.entry = compute(o, read.mesh, out.hash);
-    if (!o.no_cache) cache.store(out.entry);
-  }
+  tools::Progress progress(o.common.quiet);
+  const certify::Hooks hooks{[&](const std::string& stage) { progress.show(stage); },
+                             [&](const std::string& text) { note(o, text); }};
+  const certify::SetCache cache(certify::SetCache::default_folder());
+  auto found = tools::naming(o.input, [&] {
+    return certify::find_or_certify(read.mesh, out.hash, request_of(o),
+                                    o.no_cache ? nullptr : &cache, hooks);
+  });
+  if (!found) throw TooCoarse{};
+  out.made = std::move(found->set);
+  out.cached = found->cached;
+  out.report = Json::parse(out.made.certificate.to_json());
   Json notes = read.notes;
-  for (const Json& text : out.entry.report["notes"]) notes.push_back(text);
-  out.entry.report["notes"] = std::move(notes);
+  for (const std::string& text : out.made.certificate.notes) notes.push_back(text);
+  out.report["notes"] = std::move(notes);
   return out;
 }
 
@@ -468,39 +262,19 @@ void add_run(const Options& o, Json& report) {
   tools::write_json(o.common.report, report);
 }
 
-/// Why epsilon was not reached; empty when it was.
-std::string shortfall(const Json& report) {
-  if (report["stop"] == "done") return {};
-  if (report["stop"] == "stuck" && report.contains("min_thickness") &&
-      report["min_thickness"]["thickened"] > 0)
-    return "epsilon could not be reached with --min-thickness; allow thinner bodies or a larger "
-           "epsilon";
-  if (report["stop"] == "stuck" && report["direction"] == "inner")
-    return "epsilon could not be reached: the search for deep points gave up; allow a larger "
-           "epsilon, or --effort best";
-  if (report["stop"] == "out of work")
-    return "epsilon was not reached within the work allowed; allow more with --max-work, or a "
-           "larger "
-           "epsilon";
-  return report["stop"] == "stuck"
-             ? "epsilon could not be reached; allow more vertices per body"
-             : "within the limits of bodies and vertices nothing nearer was found; allow more, or "
-               "a larger epsilon";
-}
-
 /// The exit code of a mesh's outcome.
-int code_of(const Json& report) {
-  if (report["stop"] == "done") return tools::kDone;
-  return report["stop"] == "out of work" ? tools::kLimit : tools::kNo;
+int code_of(const certify::SetCertificate& certificate) {
+  if (certificate.stop == bcd::Stop::Done) return tools::kDone;
+  return certificate.stop == bcd::Stop::OutOfWork ? tools::kLimit : tools::kNo;
 }
 
-std::string summary(const Options& o, const Json& report, std::size_t bodies) {
-  return std::to_string(bodies) + (bodies == 1 ? " body, " : " bodies, ") +
-         std::to_string(report["vertices"].get<std::size_t>()) +
-         (o.direction == "outer"
+std::string summary(const certify::SetCertificate& c) {
+  return std::to_string(c.bodies) + (c.bodies == 1 ? " body, " : " bodies, ") +
+         std::to_string(c.vertices) +
+         (c.direction == certify::SetRequest::Direction::Outer
               ? " vertices; cover verified exactly; no point farther from the solid than "
               : " vertices; inside verified exactly; no point left out deeper than ") +
-         percent(report["reach"]["upper"].get<double>(), report["diagonal"].get<double>());
+         percent(c.distance_upper, c.diagonal);
 }
 
 bool is_robot(const std::string& path) {
@@ -541,7 +315,7 @@ int decompose_robot(const Options& o) {
   robot.links = o.links;
   robot.packages = o.packages;
   robot.prefix = tools::with_slash(o.prefix);
-  robot.parameters = parameters(o) + (robot.visual ? " --geometry visual" : "");
+  robot.parameters = request_of(o).parameters() + (robot.visual ? " --geometry visual" : "");
   robot.unit = o.unit;
   int code = tools::kDone;
   tools::Notes notes;
@@ -550,19 +324,18 @@ int decompose_robot(const Options& o) {
         Options mesh = o;
         mesh.input = file.string();
         mesh.notes = &notes;
-        mesh.epsilon = tools::epsilon_of_mesh(o.epsilon, scale.maxCoeff());
+        if (const auto epsilon = tools::parse_length(o.epsilon))
+          mesh.epsilon = tools::epsilon_of_mesh(*epsilon, scale.maxCoeff()).text();
         // A little more than rounding takes away.
         mesh.min_thickness = o.min_thickness / scale.minCoeff() * (1 + 1e-12);
         Outcome out = decompose_mesh(mesh);
-        tools::MeshBodies bodies{
-            io::parse_convex_set(out.entry.container, io::Format::Glb, "the result"),
-            std::move(out.entry.report)};
-        tools::log(o.common.quiet, mesh.input + ": " +
-                                       summary(mesh, bodies.report, bodies.set.bodies.size()) +
+        const certify::SetCertificate& certificate = out.made.certificate;
+        tools::MeshBodies bodies{std::move(out.made.set), std::move(out.report)};
+        tools::log(o.common.quiet, mesh.input + ": " + summary(certificate) +
                                        (out.cached ? " (from the cache)" : ""));
-        if (const std::string why = shortfall(bodies.report); !why.empty()) {
+        if (const std::string why = certificate.shortfall(); !why.empty()) {
           tools::log(o.common.quiet, mesh.input + ": " + why);
-          code = std::max(code, code_of(bodies.report));
+          code = std::max(code, code_of(certificate));
         }
         bodies.report["cached"] = out.cached;
         return bodies;
@@ -623,12 +396,11 @@ int decompose(const Options& o) {
   const io::SetFormat format = tools::set_format_for(o.output, o.output_format);
   if (format == io::SetFormat::Directory) io::require_replaceable(o.output);
   const Outcome out = decompose_mesh(o);
-  const geom::ConvexSet set =
-      io::parse_convex_set(out.entry.container, io::Format::Glb, "the result");
-  Json report = out.entry.report;
+  const geom::ConvexSet& set = out.made.set;
+  Json report = out.report;
   tools::log(o.common.quiet,
-             summary(o, report, set.bodies.size()) + (out.cached ? " (from the cache)" : ""));
-  const std::string why = shortfall(report);
+             summary(out.made.certificate) + (out.cached ? " (from the cache)" : ""));
+  const std::string why = out.made.certificate.shortfall();
   if (!why.empty()) tools::log(o.common.quiet, why);
   if (!o.preview.empty()) io::write_file(o.preview, tools::picture_of(set, o.explode));
   if (!o.common.report.empty()) {
@@ -639,11 +411,11 @@ int decompose(const Options& o) {
   }
   if (!o.depfile.empty()) tools::write_depfile(o.depfile, {o.output}, {o.input});
   if (format == io::SetFormat::Glb) {
-    io::write_file(o.output, out.entry.container);
+    io::write_file(o.output, out.made.container);
   } else {
     io::write_convex_set(o.output, set, format);
   }
-  return code_of(report);
+  return code_of(out.made.certificate);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <kaboum/geom/distance.h>
 #include <kaboum/geom/error.h>
+#include <kaboum/geom/length.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/io/mesh_io.h>
 
@@ -60,14 +61,7 @@ class ThreadLimit {
   std::unique_ptr<Impl> impl_;
 };
 
-/// A length, or a percentage of something.
-struct Length {
-  double value = 0;
-  bool percent = false;
-  [[nodiscard]] double of(double diagonal) const {
-    return percent ? 0.01 * value * diagonal : value;
-  }
-};
+using geom::Length;
 
 /// "0.005", "+0.005" or "0.5%"; nullopt unless it is a positive finite number.
 std::optional<Length> parse_length(const std::string& text);

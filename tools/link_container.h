@@ -1,7 +1,7 @@
 #pragma once
 
 #include <kaboum/geom/convex_set.h>
-#include <kaboum/sweep/sweep.h>
+#include <kaboum/robot/link_body.h>
 
 #include <vector>
 

@@ -3,6 +3,7 @@
 
 #include <sstream>
 
+#include "cli.h"
 #include "robot_bodies.h"
 #include "robot_path.h"
 #include "set_format.h"
@@ -21,6 +22,8 @@ struct Options {
   std::vector<std::string> joints;
   double simplify = 0;
   bool implicit_margin = false, no_merge = false, ignore_limits = false, degrees = false;
+  std::string body_epsilon, body_effort = "normal", cache;
+  bool no_cache = false;
   tools::BodyOptions bodies;
   tools::CommonOptions common;
 };
@@ -29,6 +32,9 @@ const std::map<std::string, sweep::StepRule> kRules{
     {"baginski", sweep::StepRule::Baginski}, {"uniform", sweep::StepRule::Uniform},
     {"subset", sweep::StepRule::Subset},     {"second-order", sweep::StepRule::SecondOrder},
     {"adaptive", sweep::StepRule::Adaptive}, {"balanced", sweep::StepRule::Balanced}};
+
+const std::map<std::string, bcd::Effort> kEfforts{
+    {"fast", bcd::Effort::Fast}, {"normal", bcd::Effort::Normal}, {"best", bcd::Effort::Best}};
 
 std::string check_length(const std::string& text) {
   const auto length = tools::parse_length(text);
@@ -101,7 +107,7 @@ void describe(CLI::App& app, Options& o) {
                  "A package of package:// or a folder that holds it, besides $ROS_PACKAGE_PATH, "
                  "$AMENT_PREFIX_PATH and the folders above ROBOT; may be repeated")
       ->type_name("DIR");
-  app.add_option("--body-epsilon", o.bodies.epsilon,
+  app.add_option("--body-epsilon", o.body_epsilon,
                  "Largest distance of the links' convex bodies from their meshes, a length or a "
                  "percentage of each mesh's diagonal [as --epsilon]")
       ->check([](const std::string& s) {
@@ -115,13 +121,13 @@ void describe(CLI::App& app, Options& o) {
       ->check(CLI::Range(8, 100000).description(""))
       ->capture_default_str()
       ->type_name("N");
-  app.add_option("--effort", o.bodies.effort, "Of the decomposition [normal]")
+  app.add_option("--effort", o.body_effort, "Of the decomposition [normal]")
       ->check(CLI::IsMember({"fast", "normal", "best"}).description(""))
       ->type_name("fast|normal|best");
-  app.add_option("--from-cache", o.bodies.cache,
+  app.add_option("--from-cache", o.cache,
                  "Cache of decompositions, used and filled [as bcd-decompose]")
       ->type_name("DIR");
-  app.add_flag("--no-cache", o.bodies.no_cache, "Decompose anew and store nothing");
+  app.add_flag("--no-cache", o.no_cache, "Decompose anew and store nothing");
   app.add_option("--unit", o.unit,
                  "Unit of length, noted in the container: m, dm, cm, mm, um, km, in or ft")
       ->check(tools::unit_name())
@@ -155,9 +161,9 @@ std::vector<std::string> split(const std::string& list) {
 
 std::string parameters(const Options& o) {
   std::ostringstream out;
-  out << "--epsilon " << o.epsilon << " --bound " << o.bound << " --body-epsilon "
-      << o.bodies.epsilon << " --max-vertices-per-body " << o.bodies.max_vertices << " --effort "
-      << o.bodies.effort << " --geometry " << o.geometry;
+  out << "--epsilon " << o.epsilon << " --bound " << o.bound << " --body-epsilon " << o.body_epsilon
+      << " --max-vertices-per-body " << o.bodies.max_vertices << " --effort " << o.body_effort
+      << " --geometry " << o.geometry;
   if (!o.reach.empty()) out << " --max-reach " << o.reach;
   if (o.simplify > 0) out << " --simplify " << o.simplify;
   if (!o.links.empty()) out << " --links " << o.links;
@@ -167,6 +173,16 @@ std::string parameters(const Options& o) {
   if (o.implicit_margin) out << " --implicit-margin";
   if (o.no_merge) out << " --no-merge";
   return out.str();
+}
+
+tools::LinkBodies bodies_of_links(const tools::RobotFile& file, const Options& o) {
+  const certify::SetCache cache(o.cache.empty() ? certify::SetCache::default_folder()
+                                                : std::filesystem::path(o.cache));
+  tools::Progress progress(o.common.quiet);
+  tools::BodyOptions options = o.bodies;
+  if (!o.no_cache) options.cache = &cache;
+  options.progress = [&](const std::string& stage) { progress.show(stage); };
+  return tools::bodies_of(file, options);
 }
 
 int sweep_path(Options o) {
@@ -195,10 +211,10 @@ int sweep_path(Options o) {
   for (const std::string& note : notes) tools::log(o.common.quiet, note);
   o.bodies.links = split(o.links);
   o.bodies.visual = o.geometry == "visual";
-  o.bodies.quiet = o.common.quiet;
-  o.bodies.threads = o.common.threads;
-  if (o.bodies.epsilon.empty()) o.bodies.epsilon = o.epsilon;
-  const tools::LinkBodies links = tools::bodies_of(file, o.bodies);
+  if (o.body_epsilon.empty()) o.body_epsilon = o.epsilon;
+  o.bodies.epsilon = *tools::parse_length(o.body_epsilon);
+  o.bodies.effort = kEfforts.at(o.body_effort);
+  const tools::LinkBodies links = bodies_of_links(file, o);
   for (const std::string& note : links.notes) tools::log(o.common.quiet, note);
   for (const std::string& note :
        tools::notes_on({{}, links.bare.other}, o.bodies.visual, ": nothing of this is swept"))
@@ -313,7 +329,6 @@ int main(int argc, char** argv) {
   CLI::App app{"Bounds the volume that a robot sweeps along a path by convex bodies.",
                "sweep-approx"};
   Options options;
-  options.bodies.epsilon.clear();
   describe(app, options);
   return tools::run(app, argc, argv, [&] { return sweep_path(options); });
 }

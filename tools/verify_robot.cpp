@@ -16,7 +16,7 @@
 #include "find_mesh.h"
 #include "notes.h"
 #include "prepared_original.h"
-#include "robot_bodies.h"
+#include "robot_file.h"
 #include "verdict.h"
 
 namespace kaboum::tools {

@@ -15,7 +15,7 @@
 #include "find_mesh.h"
 #include "notes.h"
 #include "prepared_original.h"
-#include "robot_bodies.h"
+#include "robot_file.h"
 #include "robot_path.h"
 #include "verdict.h"
 

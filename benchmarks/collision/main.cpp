@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <random>
 
+#include "cli.h"
 #include "engine.h"
 #include "queries.h"
 #include "robot_bodies.h"
@@ -16,7 +17,7 @@
 /// What convex sets buy in collision checking (the thesis's Fig. 4.9): the queries of RRT-Connect
 /// for a six-axis robot that reaches from a window in one wall into a window in the other, replayed
 /// on triangle meshes, on one hull per link, and on bounding sets of convex bodies. The scene fits
-/// a robot that reaches SCALE · 0.9 m. bcd-decompose must be on PATH.
+/// a robot that reaches SCALE · 0.9 m.
 namespace {
 
 using namespace kaboum;
@@ -63,8 +64,8 @@ Shapes load(const tools::RobotFile& file, const std::string& epsilon, double sca
     }
   }
   tools::BodyOptions options;
-  options.epsilon = epsilon;
-  options.effort = "fast";
+  options.epsilon = tools::parse_length(epsilon).value();
+  options.effort = bcd::Effort::Fast;
   for (const robot::LinkBody& body : tools::bodies_of(file, options).bodies)
     if (body.link > 0)
       if (const auto hull = geom::convex_hull(body.points))

@@ -156,7 +156,8 @@ class Elements {
     const auto fail = [&](const std::string& what) {
       fail_at(name_, out.line, "joint '" + out.joint.name + "': " + what);
     };
-    for (const auto& [tag, to] : {std::pair{"parent", &out.parent}, std::pair{"child", &out.child}}) {
+    for (const auto& [tag, to] :
+         {std::pair{"parent", &out.parent}, std::pair{"child", &out.child}}) {
       const XMLElement* end = file_.only_child(e, tag);
       if (end == nullptr) fail(std::string("no <") + tag + " link=...>");
       *to = file_.text(*end, "link");

@@ -11,7 +11,10 @@ namespace {
 constexpr std::string_view kBlanks = " \t\r\n";
 
 /// For messages: without what would fill a screen.
-std::string quoted(const char* text) { return "'" + std::string(text).substr(0, 60) + "'"; }
+std::string quoted(const std::string& text) {
+  std::string out = "'";
+  return out.append(text, 0, 60).append("'");
+}
 
 }  // namespace
 
@@ -63,7 +66,7 @@ std::string XmlFile::text(const tinyxml2::XMLElement& element, const char* key) 
 double XmlFile::number(const tinyxml2::XMLElement& element, const char* key) const {
   const std::string value = text(element, key);
   const auto x = finite_number(value);
-  if (!x) fail(element, std::string(key) + " is " + quoted(value.c_str()) + ", no finite number");
+  if (!x) fail(element, std::string(key) + " is " + quoted(value) + ", no finite number");
   return *x;
 }
 
@@ -86,7 +89,7 @@ geom::Vec3 XmlFile::vector(const tinyxml2::XMLElement& element, const char* key)
     out[count++] = *x;
   }
   if (count != 3)
-    fail(element, std::string(key) + " is " + quoted(value.c_str()) + ", not three finite numbers");
+    fail(element, std::string(key) + " is " + quoted(value) + ", not three finite numbers");
   return out;
 }
 

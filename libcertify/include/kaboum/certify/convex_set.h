@@ -1,0 +1,99 @@
+#pragma once
+
+#include <kaboum/bcd/decompose.h>
+#include <kaboum/geom/convex_set.h>
+#include <kaboum/geom/length.h>
+#include <kaboum/geom/prepare.h>
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kaboum::certify {
+
+/// What a set of convex bodies is asked to be.
+struct SetRequest {
+  /// Outer: the bodies cover the solid. Inner: each lies in it.
+  enum class Direction { Outer, Inner } direction = Direction::Outer;
+  /// Farthest that a point of an outer set may be from the solid, or deepest that a point left out
+  /// by an inner set may be. By default 1 % where no limit is given, else none.
+  std::optional<geom::Length> epsilon;
+  std::optional<std::size_t> max_bodies, max_total_vertices;
+  std::size_t max_vertices = 64;  ///< of one body
+  bcd::Effort effort = bcd::Effort::Normal;
+  bcd::Method method = bcd::Method::Planes;
+  bcd::PreStep pre_step = bcd::PreStep::Auto;
+  std::optional<double> simplify;  ///< share of epsilon for leaving out vertices
+  std::optional<double> max_work;  ///< nominal seconds, see bcd::DecomposeOptions
+  double min_thickness = 0;        ///< [length]
+  /// Holes are filled or refused; kept ones are filled as well.
+  geom::PrepareOptions preparation{.holes = geom::Holes::Fill};
+
+  // What the container says of itself.
+  std::string source;  ///< name of the file
+  std::string unit = "m", frame;
+
+  /// epsilon, or what stands for it.
+  [[nodiscard]] std::optional<geom::Length> wanted_epsilon() const;
+  /// The options that the bodies depend on, as bcd-decompose spells them: the container's record.
+  [[nodiscard]] std::string parameters() const;
+};
+
+/// What is certified of a set, and what came of the search for it.
+struct SetCertificate {
+  SetRequest::Direction direction = SetRequest::Direction::Outer;
+  bcd::Stop stop = bcd::Stop::Done;
+  std::size_t bodies = 0, vertices = 0, largest_body_vertices = 0;
+  /// Certified bracket of the largest distance from a point of the set to the solid (outer), or of
+  /// the depth of what is left out (inner). [length]
+  double distance_lower = 0, distance_upper = 0;
+  double diagonal = 0;  ///< of the prepared input's bounding box [length]
+  /// The solid is that of the input with its holes filled, where it has some.
+  std::size_t holes = 0;
+  double largest_hole = 0;  ///< longest diagonal of a hole's box [length]
+  std::size_t filled_triangles = 0, pieces = 0, pre_step_triangles = 0, thickened = 0;
+  double min_thickness = 0;        ///< asked for [length]
+  double safety = 1;               ///< allowance for rounding with which the exact check passed
+  bool out_of_work = false;        ///< with more work the search might do better
+  std::vector<std::string> notes;  ///< of preparation: what a user should know of the input
+  std::string method = "planes";
+
+  /// Why epsilon, if asked for, is not reached; empty when it is.
+  [[nodiscard]] std::string shortfall() const;
+
+  /// As in reports of bcd-decompose and the cache: a JSON object.
+  [[nodiscard]] std::string to_json() const;
+  /// @throws Error{InvalidInput} when the text is none of to_json.
+  static SetCertificate from_json(std::string_view text);
+};
+
+/// A set that was serialised, read back, and decided exactly by libverify to be what it should be.
+struct CertifiedSet {
+  geom::ConvexSet set;  ///< as read back from the container
+  SetCertificate certificate;
+  std::vector<char> container;  ///< GLB
+};
+
+/// How long work is watched. Both may be empty; called from the calling thread.
+struct Hooks {
+  std::function<void(const std::string& stage)> progress;  ///< often; may throw to cancel
+  std::function<void(const std::string& text)> note;       ///< things a user should know
+};
+
+/// Searches for bodies, writes them as a GLB container, reads that back, and has libverify decide
+/// exactly that they are convex and cover the solid and every triangle (outer), or lie in the solid
+/// (inner). Where that fails the search is repeated, without its pre-step, then with larger
+/// allowances for rounding.
+///
+/// @param mesh    as read; it is prepared here.
+/// @param sha256  of the file it was read from, for the record.
+/// @return nullopt when float32 cannot hold bodies as near as asked for: too far from the origin,
+/// or
+///   epsilon too small.
+/// @throws Error{InvalidInput} as geom::prepare and the search; Error{InvalidArgument} on
+///   contradictory options; Error{Internal} when no bodies pass the exact check.
+std::optional<CertifiedSet> certify_set(const geom::Mesh& mesh, const std::string& sha256,
+                                        const SetRequest& request, const Hooks& hooks = {});
+
+}  // namespace kaboum::certify

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <kaboum/certify/convex_set.h>
+
+#include <filesystem>
+
+namespace kaboum::certify {
+
+/// Results kept between runs: files named by a hash of everything that they depend on (the
+/// triangles as read, the file's hash, the request, the version). Entries are written whole or not
+/// at all; each states the hash of its key and one of all its bytes, and its container says what it
+/// is of, so that one that is damaged, or that lies under another one's name, is not used.
+/// Concurrent writers write the same.
+class SetCache {
+ public:
+  /// In $KABOUM_CACHE, else $XDG_CACHE_HOME/kaboum, else ~/.cache/kaboum; empty where there is none
+  /// of these: nothing is kept then.
+  static std::filesystem::path default_folder();
+
+  explicit SetCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  /// @param flaw  becomes the reason why a file that is there is not used, else empty.
+  [[nodiscard]] std::optional<CertifiedSet> find(const geom::Mesh& mesh, const std::string& sha256,
+                                                 const SetRequest& request,
+                                                 std::string& flaw) const;
+
+  /// Does nothing when the folder cannot be written.
+  void store(const geom::Mesh& mesh, const std::string& sha256, const SetRequest& request,
+             const CertifiedSet& set) const;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+/// What certify_set made, or an earlier run of it.
+struct FoundSet {
+  CertifiedSet set;
+  bool cached = false;
+};
+
+/// certify_set, unless the cache has the result.
+/// @param cache  null: none.
+std::optional<FoundSet> find_or_certify(const geom::Mesh& mesh, const std::string& sha256,
+                                        const SetRequest& request, const SetCache* cache,
+                                        const Hooks& hooks = {});
+
+}  // namespace kaboum::certify

@@ -1,0 +1,138 @@
+// Sets of convex bodies that are decided to be what they should be on the bytes that are written:
+// search, serialise, read back, decide, and once more with other means where that fails.
+
+#include <kaboum/bcd/fill.h>
+#include <kaboum/certify/convex_set.h>
+#include <kaboum/geom/error.h>
+#include <kaboum/geom/width.h>
+#include <kaboum/io/convex_io.h>
+#include <kaboum/verify/cover.h>
+
+#include <array>
+
+#include "request.h"
+
+namespace kaboum::certify {
+namespace {
+
+/// Allowances for rounding, tried one after the other.
+constexpr std::array<double, 3> kSafety{1, 64, 4096};
+
+bcd::DecomposeOptions options_of(const SetRequest& r, double diagonal, const Hooks& hooks) {
+  bcd::DecomposeOptions options;
+  if (const auto epsilon = r.wanted_epsilon()) options.epsilon = epsilon->of(diagonal);
+  options.max_bodies = r.max_bodies;
+  options.max_total_vertices = r.max_total_vertices;
+  options.max_vertices = r.max_vertices;
+  options.effort = r.effort;
+  options.method = r.method;
+  options.min_thickness = r.min_thickness;
+  if (r.simplify) options.simplify = *r.simplify;
+  options.max_work = r.max_work;
+  options.pre_step = r.pre_step;
+  if (hooks.progress)
+    options.progress = [&](const bcd::Progress& p) {
+      hooks.progress(p.stage + " " + std::to_string(static_cast<int>(100 * p.fraction)) + " %");
+    };
+  return options;
+}
+
+/// Why a set does not do what it should, decided exactly; empty when it does.
+std::string objection(const SetRequest& r, const geom::Mesh& solid, const geom::ConvexSet& set) {
+  for (const geom::ConvexBody& body : set.bodies)
+    if (r.min_thickness > 0 &&
+        geom::least_width(body.hull, r.min_thickness).lower < r.min_thickness)
+      return "a body is thinner than --min-thickness";
+  if (r.direction == SetRequest::Direction::Outer) {
+    const verify::Cover cover = verify::verify_cover(solid, set);
+    for (const verify::Claim* claim :
+         {&cover.convex, &cover.inclusion.solid, &cover.inclusion.surface})
+      if (claim->answer != verify::Answer::Verified) return claim->reason;
+    return {};
+  }
+  if (geom::find_not_convex(set)) return "a body is not convex";
+  const verify::Inclusion inside = verify::verify_inclusion(verify::sum_of(set), solid);
+  for (const verify::Claim* claim : {&inside.solid, &inside.surface})
+    if (claim->answer != verify::Answer::Verified) return claim->reason;
+  return {};
+}
+
+SetCertificate certificate_of(const SetRequest& r, const geom::Prepared& prepared,
+                              const bcd::DecomposeResult& result, std::size_t bodies,
+                              double diagonal, double safety) {
+  const bcd::DecomposeStatistics& s = result.statistics;
+  SetCertificate c;
+  c.direction = r.direction;
+  c.stop = result.stop;
+  c.bodies = bodies;
+  c.vertices = s.vertices;
+  c.largest_body_vertices = s.largest;
+  c.distance_lower = result.reach_lower;
+  c.distance_upper = result.reach_upper;
+  c.diagonal = diagonal;
+  c.holes = prepared.holes;
+  c.largest_hole = prepared.largest_hole;
+  c.filled_triangles = s.filled_triangles;
+  c.pieces = s.leaves;
+  c.pre_step_triangles = s.pre_step_triangles;
+  c.thickened = s.thickened;
+  c.min_thickness = r.min_thickness;
+  c.safety = safety;
+  c.out_of_work = s.out_of_work;
+  c.notes = prepared.notes;
+  c.method = r.method == bcd::Method::Planes     ? "planes"
+             : r.method == bcd::Method::Clusters ? "clusters"
+                                                 : "voxels";
+  return c;
+}
+
+}  // namespace
+
+std::optional<CertifiedSet> certify_set(const geom::Mesh& mesh, const std::string& sha256,
+                                        const SetRequest& request, const Hooks& hooks) {
+  const auto note = [&](const std::string& text) {
+    if (hooks.note) hooks.note(text);
+  };
+  const bool outer = request.direction == SetRequest::Direction::Outer;
+  const geom::Prepared prepared = geom::prepare(mesh, request.preparation);
+  const double diagonal = geom::bounding_box(prepared.mesh).diagonal();
+  for (const std::string& text : prepared.notes) note(text);
+  bcd::DecomposeOptions options = options_of(request, diagonal, hooks);
+  geom::ConvexSet made;
+  made.provenance = origin_of(request, sha256);
+  made.provenance.covers_surface = outer && prepared.dropped_sheets == 0;
+  made.provenance.covers_solid = outer && prepared.holes == 0;
+  std::string wrong;
+  for (auto safety = kSafety.begin(); safety != kSafety.end();) {
+    options.safety = *safety;
+    bcd::DecomposeResult result =
+        outer ? bcd::decompose(prepared, options) : bcd::fill(prepared, options);
+    if (result.stop == bcd::Stop::TooCoarse) return std::nullopt;
+    made.bodies = std::move(result.bodies);
+    made.provenance.epsilon = result.reach_upper;
+    CertifiedSet out;
+    out.container = io::serialise_convex_set(made, io::SetFormat::Glb);
+    // What is written is what is verified.
+    if (hooks.progress) hooks.progress("verifying");
+    out.set = io::parse_convex_set(out.container, io::Format::Glb, "the result");
+    wrong = objection(request, prepared.mesh, out.set);
+    if (wrong.empty()) {
+      out.certificate =
+          certificate_of(request, prepared, result, made.bodies.size(), diagonal, *safety);
+      return out;
+    }
+    const bool simplified = result.statistics.pre_step_triangles > 0;
+    note("the bodies found do not pass the exact check (" + wrong + "); trying " +
+         (simplified ? "without simplifying the input first"
+                     : "with larger allowances for rounding"));
+    if (simplified) {
+      options.pre_step = bcd::PreStep::Off;
+    } else {
+      ++safety;
+    }
+  }
+  throw Error(ErrorCode::Internal,
+              "no bodies were found that pass the exact check (" + wrong + "); nothing is written");
+}
+
+}  // namespace kaboum::certify

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <kaboum/certify/convex_set.h>
+
+// What requests and the records in containers have in common. Internal to kaboum_certify.
+namespace kaboum::certify {
+
+/// What a set's container says of where it comes from; claims and distance apart.
+geom::Provenance origin_of(const SetRequest& request, const std::string& sha256);
+
+const char* name_of(SetRequest::Direction direction);
+
+}  // namespace kaboum::certify

@@ -1,0 +1,152 @@
+// Certified sets kept between runs.
+
+#include <kaboum/certify/set_cache.h>
+#include <kaboum/geom/error.h>
+#include <kaboum/io/convex_io.h>
+#include <kaboum/io/mesh_io.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string_view>
+
+#include "request.h"
+
+namespace kaboum::certify {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Changes whenever the same request may give another result: cached results are then not found.
+constexpr const char* kAlgorithm = "planes 22";
+
+/// The same of containers' bytes.
+constexpr const char* kContainer = "coloured";
+
+// An entry is the name of this format, the hash of what follows, the hash of the key, the
+// certificate in one line, and the container; the first four end with a line feed.
+constexpr std::string_view kFormat = "KABOUM-SET 3\n";
+constexpr std::size_t kHash = 64;
+
+/// Hash of the triangles as read. Their bytes say more than a file's, which may refer to others,
+/// and than a reader's version.
+std::string hash_of(const geom::Mesh& mesh) {
+  std::vector<char> bytes;
+  const auto append = [&](const void* data, std::size_t size) {
+    const auto* begin = static_cast<const char*>(data);
+    bytes.insert(bytes.end(), begin, begin + size);
+  };
+  const std::uint64_t vertices = mesh.vertices.size();
+  append(&vertices, sizeof vertices);
+  for (const geom::Vec3& v : mesh.vertices) append(v.data(), 3 * sizeof(double));
+  for (const geom::Triangle& t : mesh.triangles) append(t.data(), sizeof t);
+  return io::sha256(bytes);
+}
+
+/// Hash of everything that the result depends on.
+std::string key_of(const geom::Mesh& mesh, const std::string& sha256, const SetRequest& r) {
+  const std::string key = hash_of(mesh) + '\n' + sha256 + '\n' + r.parameters() + '\n' + r.unit +
+                          '\n' + r.frame + '\n' + r.source + '\n' + KABOUM_VERSION + '\n' +
+                          kAlgorithm + '\n' + kContainer;
+  return io::sha256({key.data(), key.size()});
+}
+
+/// @throws Error saying why the entry is not that of the request.
+CertifiedSet read_entry(std::string_view rest, const std::string& key, const std::string& sha256,
+                        const SetRequest& request) {
+  const auto fail = [](const char* why) -> void { throw Error(ErrorCode::InvalidInput, why); };
+  const auto take_hash = [&] {
+    const std::string_view hash = rest.substr(0, kHash);
+    rest.remove_prefix(std::min(kHash + 1, rest.size()));
+    return hash;
+  };
+  if (!rest.starts_with(kFormat)) fail("damaged, or of another version");
+  rest.remove_prefix(kFormat.size());
+  const std::string_view stated = take_hash();
+  if (io::sha256(rest) != stated) fail("damaged");
+  if (take_hash() != key) fail("the result of another input or of other options");
+  const std::size_t end = rest.find('\n');
+  if (end == std::string_view::npos) fail("damaged");
+  CertifiedSet out;
+  out.certificate = SetCertificate::from_json(rest.substr(0, end));
+  out.container.assign(rest.begin() + static_cast<std::ptrdiff_t>(end) + 1, rest.end());
+  out.set = io::parse_convex_set(out.container, io::Format::Glb, "the container");
+  geom::Provenance expected = origin_of(request, sha256);
+  expected.epsilon = out.set.provenance.epsilon;
+  expected.covers_solid = out.set.provenance.covers_solid;
+  expected.covers_surface = out.set.provenance.covers_surface;
+  if (out.set.provenance != expected || out.certificate.bodies != out.set.bodies.size() ||
+      out.set.margin != 0)
+    fail("its container is that of another input or of other options");
+  return out;
+}
+
+}  // namespace
+
+fs::path SetCache::default_folder() {
+  const auto variable = [](const char* name) -> fs::path {
+    const char* value = std::getenv(name);
+    return value != nullptr ? value : "";
+  };
+  if (fs::path p = variable("KABOUM_CACHE"); !p.empty()) return p;
+  if (const fs::path p = variable("XDG_CACHE_HOME"); p.is_absolute()) return p / "kaboum";
+  if (const fs::path p = variable("HOME"); !p.empty()) return p / ".cache" / "kaboum";
+  return {};
+}
+
+std::optional<CertifiedSet> SetCache::find(const geom::Mesh& mesh, const std::string& sha256,
+                                           const SetRequest& request, std::string& flaw) const {
+  flaw.clear();
+  if (folder_.empty()) return std::nullopt;
+  const std::string key = key_of(mesh, sha256, request);
+  const fs::path path = folder_ / (key + ".set");
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return std::nullopt;
+  std::vector<char> bytes;
+  try {
+    bytes = io::read_file(path);
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+  try {
+    return read_entry({bytes.data(), bytes.size()}, key, sha256, request);
+  } catch (const Error& why) {
+    flaw = path.string() + ": " + why.what();
+    return std::nullopt;
+  }
+}
+
+void SetCache::store(const geom::Mesh& mesh, const std::string& sha256, const SetRequest& request,
+                     const CertifiedSet& set) const {
+  if (folder_.empty()) return;
+  const std::string key = key_of(mesh, sha256, request);
+  std::string rest = key + "\n" + set.certificate.to_json() + "\n";
+  rest.append(set.container.begin(), set.container.end());
+  const std::string bytes = std::string(kFormat) + io::sha256(rest) + "\n" + rest;
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  try {
+    io::write_file(folder_ / (key + ".set"), bytes);
+  } catch (const Error&) {  // NOLINT(bugprone-empty-catch): a cache is a convenience
+  }
+}
+
+std::optional<FoundSet> find_or_certify(const geom::Mesh& mesh, const std::string& sha256,
+                                        const SetRequest& request, const SetCache* cache,
+                                        const Hooks& hooks) {
+  if (cache != nullptr) {
+    std::string flaw;
+    auto found = cache->find(mesh, sha256, request, flaw);
+    if (hooks.note && !flaw.empty()) hooks.note("the cache's entry " + flaw + "; it is made again");
+    if (found) {
+      if (hooks.note)
+        for (const std::string& text : found->certificate.notes) hooks.note(text);
+      return FoundSet{std::move(*found), true};
+    }
+  }
+  auto made = certify_set(mesh, sha256, request, hooks);
+  if (!made) return std::nullopt;
+  if (cache != nullptr) cache->store(mesh, sha256, request, *made);
+  return FoundSet{std::move(*made), false};
+}
+
+}  // namespace kaboum::certify

@@ -1,0 +1,140 @@
+#include "robot_file.h"
+
+#include <kaboum/geom/error.h>
+#include <kaboum/geom/similar_name.h>
+#include <kaboum/io/mesh_io.h>
+
+#include <algorithm>
+
+#include "xml_kind.h"
+
+namespace kaboum::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using robot::Geometry;
+
+bool is_file(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error);
+}
+
+/// Meshes of the Robotics Library's links are named by the scene; here by the links' names.
+void find_meshes(robot::Robot& robot, const fs::path& folder) {
+  for (robot::Link& link : robot.links) {
+    std::vector<std::string> names{link.name};
+    if (link.name.starts_with("body")) names.push_back("link" + link.name.substr(4));
+    for (const std::string& name : names) {
+      for (const char* extension : {".wrl", ".stl", ".obj", ".ply", ".off"}) {
+        if (!link.collision.empty() || !is_file(folder / (name + extension))) continue;
+        Geometry g;
+        g.shape = Geometry::Shape::Mesh;
+        g.mesh = name + extension;
+        link.collision.push_back(g);
+        link.visual.push_back(std::move(g));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+RobotFile read_robot(const std::string& path) {
+  RobotFile out;
+  out.path = path;
+  const std::vector<char> bytes = io::read_file(path);
+  out.sha256 = io::sha256(bytes);
+  const std::string_view text(bytes.data(), bytes.size());
+  const XmlKind kind = xml_kind(text);
+  if (const std::string route = route_to_robot(kind); !route.empty())
+    throw Error(ErrorCode::InvalidInput, path + ": " + route);
+  if (kind == XmlKind::RlRobot) {
+    out.robot = robot::parse_rl(text, path);
+    find_meshes(out.robot, out.path.parent_path());
+  } else {
+    out.robot = robot::parse_urdf(text, path);
+  }
+  return out;
+}
+
+void require_links(const RobotFile& robot, const std::vector<std::string>& links) {
+  std::vector<std::string> known;
+  for (const robot::Link& link : robot.robot.links) known.push_back(link.name);
+  for (const std::string& name : links) {
+    if (robot.robot.find_link(name)) continue;
+    std::string hint = geom::did_you_mean(name, known);
+    if (hint.empty()) hint = "; it has " + names_of(known);
+    throw Error(ErrorCode::InvalidArgument,
+                robot.path.string() + ": --links: there is no link '" + name + "'" + hint);
+  }
+}
+
+std::string names_of(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 6;
+  const std::size_t shown = names.size() <= kMost ? names.size() : kMost - 1;
+  std::string text;
+  for (std::size_t i = 0; i < shown; ++i) {
+    const bool last = i + 1 == names.size();
+    text += (i == 0 ? "'" : last ? " and '" : ", '") + names[i] + "'";
+  }
+  if (shown < names.size()) text += " and " + std::to_string(names.size() - shown) + " more";
+  return text;
+}
+
+std::vector<std::string> BareLinks::all() const {
+  std::vector<std::string> out = empty;
+  out.insert(out.end(), other.begin(), other.end());
+  return out;
+}
+
+BareLinks bare_links(const robot::Robot& robot, bool visual,
+                     const std::vector<std::string>& links) {
+  BareLinks out;
+  for (const robot::Link& link : robot.links) {
+    if (!links.empty() && std::find(links.begin(), links.end(), link.name) == links.end()) continue;
+    const auto &shapes = visual ? link.visual : link.collision,
+               &others = visual ? link.collision : link.visual;
+    if (shapes.empty()) (others.empty() ? out.empty : out.other).push_back(link.name);
+  }
+  return out;
+}
+
+std::vector<std::string> notes_on(const BareLinks& bare, bool visual,
+                                  const std::string& consequence) {
+  std::vector<std::string> out;
+  const auto add = [&](const std::vector<std::string>& names, const std::string& what) {
+    if (names.empty()) return;
+    out.push_back((names.size() == 1 ? "link " : "links ") + names_of(names) +
+                  (names.size() == 1 ? " has no " : " have no ") + what + consequence);
+  };
+  const std::string kind = visual ? "visual" : "collision", other = visual ? "collision" : "visual";
+  add(bare.empty, kind + " shape");
+  add(bare.other, kind + " shape, only " + other + " ones");
+  return out;
+}
+
+std::string links_judged(std::size_t judged, std::size_t asked, const BareLinks& bare) {
+  std::string text = std::to_string(judged) + " of " + std::to_string(asked) +
+                     (asked == 1 ? " link judged" : " links judged");
+  if (!bare.other.empty())
+    text += "; not " + names_of(bare.other) + ", with shapes of the other kind only";
+  return text;
+}
+
+std::vector<std::string> notes_on_flat_shapes(const RobotFile& robot, bool visual,
+                                              const std::vector<std::string>& links) {
+  std::vector<std::string> out;
+  for (const robot::Link& link : robot.robot.links) {
+    if (!links.empty() && std::find(links.begin(), links.end(), link.name) == links.end()) continue;
+    for (const Geometry& g : visual ? link.visual : link.collision)
+      if (robot::is_flat(g))
+        out.push_back(robot.path.string() + (g.line > 0 ? ":" + std::to_string(g.line) : "") +
+                      ": link '" + link.name + "': a " + describe(g) +
+                      (robot::is_point(g) ? " is a point: it is not covered"
+                                          : " has no volume; its surface is covered, but engines "
+                                            "may refuse it: give it a thickness"));
+  }
+  return out;
+}
+
+}  // namespace kaboum::tools

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <kaboum/robot/robot.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+/// Robots as files: reading them, and what is to be said of their links.
+namespace kaboum::tools {
+
+/// A robot as read from its file.
+struct RobotFile {
+  robot::Robot robot;
+  std::filesystem::path path;
+  std::string sha256;
+};
+
+/// Reads URDF, or the Robotics Library's rlkin and rlmdl (told apart by the root element). Links of
+/// the latter get the mesh in the robot's folder that has their name; `bodyN` also that of `linkN`.
+/// @throws Error{InvalidInput}.
+RobotFile read_robot(const std::string& path);
+
+/// @throws Error{InvalidArgument} naming the first of `links` that the robot does not have.
+void require_links(const RobotFile& robot, const std::vector<std::string>& links);
+
+/// Links that have no shape of the kind asked for.
+struct BareLinks {
+  std::vector<std::string> empty;  ///< that have none at all
+  std::vector<std::string> other;  ///< that have shapes of the other kind
+  [[nodiscard]] std::vector<std::string> all() const;
+};
+/// @param visual  the kind: shapes for drawing, else those for collisions
+/// @param links   only these; empty: all
+BareLinks bare_links(const robot::Robot& robot, bool visual,
+                     const std::vector<std::string>& links = {});
+
+/// One line for each kind of bare links; `consequence` ends it.
+std::vector<std::string> notes_on(const BareLinks& bare, bool visual,
+                                  const std::string& consequence);
+
+/// "8 of 9 links judged; 'l1' has shapes of the other kind only".
+std::string links_judged(std::size_t judged, std::size_t asked, const BareLinks& bare);
+
+/// One line for each box, cylinder and sphere without volume, with its place in the robot's file.
+std::vector<std::string> notes_on_flat_shapes(const RobotFile& robot, bool visual,
+                                              const std::vector<std::string>& links = {});
+
+/// 'a', 'b' and 2 more.
+std::string names_of(const std::vector<std::string>& names);
+
+}  // namespace kaboum::tools
