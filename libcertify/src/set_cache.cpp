@@ -24,7 +24,7 @@ constexpr const char* kContainer = "coloured";
 
 // An entry is the name of this format, the hash of what follows, the hash of the key, the
 // certificate in one line, and the container; the first four end with a line feed.
-constexpr std::string_view kFormat = "KABOUM-SET 3\n";
+constexpr std::string_view kFormat = "KABOUM-SET 2\n";
 constexpr std::size_t kHash = 64;
 
 /// Hash of the triangles as read. Their bytes say more than a file's, which may refer to others,

@@ -1,0 +1,165 @@
+// Certified sets: what is returned is what is in the container, holds by the verifier, and comes
+// out of the cache only for the request that it was made for.
+
+#include <gtest/gtest.h>
+#include <kaboum/certify/set_cache.h>
+#include <kaboum/geom/error.h>
+#include <kaboum/io/convex_io.h>
+#include <kaboum/verify/cover.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "support/shapes.h"
+
+namespace kaboum::certify {
+namespace {
+
+namespace fs = std::filesystem;
+
+SetRequest fast(double percent) {
+  SetRequest request;
+  request.epsilon = geom::Length{percent, true};
+  request.effort = bcd::Effort::Fast;
+  request.source = "torus.off";
+  return request;
+}
+
+geom::Mesh torus() { return test::torus(1, 0.3, 24, 12); }
+
+bool same_bodies(const geom::ConvexSet& a, const geom::ConvexSet& b) {
+  if (a.bodies.size() != b.bodies.size()) return false;
+  for (std::size_t i = 0; i < a.bodies.size(); ++i)
+    if (a.bodies[i].hull.vertices != b.bodies[i].hull.vertices ||
+        a.bodies[i].hull.triangles != b.bodies[i].hull.triangles)
+      return false;
+  return true;
+}
+
+TEST(CertifySet, IsWhatItsContainerHolds) {
+  const auto made = certify_set(torus(), "abc", fast(5));
+  ASSERT_TRUE(made);
+  const geom::ConvexSet back =
+      io::parse_convex_set(made->container, io::Format::Glb, "the container");
+  EXPECT_TRUE(same_bodies(made->set, back));
+  EXPECT_EQ(back.provenance.source_sha256, "abc");
+  EXPECT_EQ(back.provenance.parameters, "--epsilon 5% --max-vertices-per-body 64 --effort fast");
+  EXPECT_EQ(back.provenance.epsilon, made->certificate.distance_upper);
+  EXPECT_EQ(made->certificate.stop, bcd::Stop::Done);
+  EXPECT_LE(made->certificate.distance_upper, 0.05 * made->certificate.diagonal);
+  const verify::Cover cover = verify::verify_cover(torus(), made->set);
+  EXPECT_EQ(cover.inclusion.solid.answer, verify::Answer::Verified);
+  EXPECT_EQ(cover.inclusion.surface.answer, verify::Answer::Verified);
+}
+
+TEST(CertifySet, InnerSetsLieInside) {
+  SetRequest request = fast(10);
+  request.direction = SetRequest::Direction::Inner;
+  const auto made = certify_set(torus(), "", request);
+  ASSERT_TRUE(made);
+  const verify::Inclusion inside = verify::verify_inclusion(verify::sum_of(made->set), torus());
+  EXPECT_EQ(inside.solid.answer, verify::Answer::Verified);
+}
+
+TEST(CertifySet, WhatFloat32CannotHoldIsNotMade) {
+  EXPECT_FALSE(certify_set(test::translated(torus(), {1e9, 0, 0}), "", fast(1)));
+}
+
+TEST(CertifySet, ProgressMayCancel) {
+  struct Cancelled {};
+  Hooks hooks;
+  hooks.progress = [](const std::string&) { throw Cancelled(); };
+  EXPECT_THROW(certify_set(torus(), "", fast(1), hooks), Cancelled);
+}
+
+TEST(SetCertificate, SurvivesJson) {
+  auto made = certify_set(test::without(torus(), [](const geom::Vec3& p) { return p.x() > 1.2; }),
+                          "", fast(5));
+  ASSERT_TRUE(made);
+  SetCertificate& c = made->certificate;
+  EXPECT_GT(c.holes, 0U);
+  EXPECT_FALSE(c.notes.empty());
+  c.min_thickness = 0.25;
+  c.thickened = 3;
+  c.stop = bcd::Stop::Stuck;
+  EXPECT_EQ(SetCertificate::from_json(c.to_json()).to_json(), c.to_json());
+  EXPECT_NE(c.shortfall().find("--min-thickness"), std::string::npos);
+  for (const char* bad : {"", "{}", "[]", "{\"stop\": \"whenever\"}", "{\"stop\": 3}"})
+    EXPECT_THROW(SetCertificate::from_json(bad), Error) << bad;
+}
+
+TEST(SetRequest, OnePercentStandsForNoTarget) {
+  SetRequest request;
+  EXPECT_EQ(request.wanted_epsilon(), (geom::Length{1, true}));
+  request.max_bodies = 3;
+  EXPECT_FALSE(request.wanted_epsilon());
+  request.epsilon = geom::Length{0.1, false};
+  EXPECT_EQ(request.parameters().substr(0, 13), "--epsilon 0.1");
+}
+
+class SetCacheTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "kaboum-cache-XXXXXX").string();
+    ASSERT_NE(mkdtemp(name.data()), nullptr);
+    folder_ = name;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::vector<fs::path> entries() const {
+    return {fs::directory_iterator(folder_), fs::directory_iterator()};
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(SetCacheTest, HasTheSameBytesForTheSameRequestOnly) {
+  const SetCache cache(folder_);
+  const auto first = find_or_certify(torus(), "abc", fast(5), &cache);
+  ASSERT_TRUE(first);
+  EXPECT_FALSE(first->cached);
+  const auto again = find_or_certify(torus(), "abc", fast(5), &cache);
+  ASSERT_TRUE(again);
+  EXPECT_TRUE(again->cached);
+  EXPECT_EQ(again->set.container, first->set.container);
+  EXPECT_EQ(again->set.certificate.to_json(), first->set.certificate.to_json());
+  std::string flaw;
+  EXPECT_FALSE(cache.find(torus(), "abc", fast(4), flaw));
+  EXPECT_FALSE(cache.find(torus(), "abd", fast(5), flaw));
+  EXPECT_FALSE(cache.find(test::scaled(torus(), {1, 1, 1.0000001}), "abc", fast(5), flaw));
+  SetRequest inner = fast(5);
+  inner.direction = SetRequest::Direction::Inner;
+  EXPECT_FALSE(cache.find(torus(), "abc", inner, flaw));
+  EXPECT_TRUE(flaw.empty());
+}
+
+TEST_F(SetCacheTest, DamagedEntriesAreMadeAgain) {
+  const SetCache cache(folder_);
+  const auto made = find_or_certify(torus(), "abc", fast(5), &cache);
+  ASSERT_TRUE(made);
+  ASSERT_EQ(entries().size(), 1U);
+  const fs::path entry = entries()[0];
+  std::ifstream in(entry, std::ios::binary);
+  const std::string whole{std::istreambuf_iterator<char>(in), {}};
+  for (const std::size_t at :
+       {std::size_t{0}, std::size_t{20}, std::size_t{100}, whole.size() / 2, whole.size() - 1}) {
+    std::string damaged = whole;
+    damaged[at] = static_cast<char>(damaged[at] ^ 1);
+    std::ofstream(entry, std::ios::binary) << damaged;
+    std::string flaw;
+    EXPECT_FALSE(cache.find(torus(), "abc", fast(5), flaw)) << at;
+    EXPECT_FALSE(flaw.empty()) << at;
+  }
+  std::vector<std::string> notes;
+  Hooks hooks;
+  hooks.note = [&](const std::string& text) { notes.push_back(text); };
+  const auto again = find_or_certify(torus(), "abc", fast(5), &cache, hooks);
+  ASSERT_TRUE(again);
+  EXPECT_FALSE(again->cached);
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_NE(notes[0].find("it is made again"), std::string::npos);
+  EXPECT_EQ(again->set.container, made->set.container);
+}
+
+}  // namespace
+}  // namespace kaboum::certify
