@@ -1,6 +1,6 @@
-#include <kaboum/bmesh/replay.h>
 #include <kaboum/geom/error.h>
 #include <kaboum/io/mesh_io.h>
+#include <kaboum/verify/replay.h>
 
 #include <iostream>
 
@@ -16,7 +16,7 @@ struct Options {
 };
 
 /// The original as the log interprets it: turns are taken from the log, not judged.
-std::string original(const bmesh::ReplayResult& r) {
+std::string original(const verify::ReplayResult& r) {
   std::string text = "the original";
   if (r.turned != 0)
     text += ", with " + std::to_string(r.turned) +
@@ -27,7 +27,7 @@ std::string original(const bmesh::ReplayResult& r) {
   return text;
 }
 
-std::string claim(const bmesh::Log& log, const bmesh::ReplayResult& r) {
+std::string claim(const bmesh::Log& log, const verify::ReplayResult& r) {
   if (log.direction == bmesh::Direction::Any)
     return "replayed; direction 'any' claims no enclosure";
   const bool outer = log.direction == bmesh::Direction::Outer;
@@ -49,7 +49,7 @@ int check(const Options& o) {
   bytes = {};
   const io::ReadResult result =
       io::read_mesh(o.result, tools::format_for(o.result, o.result_format, "--input-format"));
-  const bmesh::ReplayResult r = bmesh::replay(input.mesh, log, result.mesh);
+  const verify::ReplayResult r = verify::replay(input.mesh, log, result.mesh);
   if (!o.common.report.empty())
     tools::write_json(o.common.report, {{"tool", "bmesh-replay"},
                                         {"version", tools::version()},

@@ -1,6 +1,6 @@
 #include "extract_levels.h"
 
-#include <kaboum/bmesh/progressive.h>
+#include <kaboum/bmesh/extract.h>
 #include <kaboum/geom/error.h>
 #include <kaboum/geom/float32.h>
 #include <kaboum/io/mesh_io.h>

@@ -3,6 +3,7 @@
 #include <kaboum/bmesh/progressive.h>
 #include <kaboum/geom/error.h>
 #include <kaboum/io/mesh_io.h>
+#include <kaboum/verify/replay.h>
 
 #include <iostream>
 
@@ -11,7 +12,7 @@ namespace {
 
 using bmesh::Direction;
 
-std::string claim(const bmesh::Progressive& p, const bmesh::ReplayResult& r) {
+std::string claim(const bmesh::Progressive& p, const verify::ReplayResult& r) {
   const bool outer = p.log.direction == Direction::Outer;
   std::string text;
   if (!r.closed)
@@ -39,7 +40,7 @@ int verify_progressive(const std::string& original, const std::string& original_
     throw Error(ErrorCode::InvalidInput,
                 progressive + ": direction 'any' claims nothing that could be verified");
   bytes = {};
-  const bmesh::ReplayResult r = bmesh::replay_progressive(input.mesh, p);
+  const verify::ReplayResult r = verify::replay_progressive(input.mesh, p);
   if (!common.report.empty()) {
     Json json{{"tool", "bound-verify"},
               {"version", version()},

@@ -1,5 +1,4 @@
 #include <kaboum/bmesh/decimate.h>
-#include <kaboum/bmesh/replay.h>
 #include <kaboum/geom/convex_set.h>
 #include <kaboum/geom/distance.h>
 #include <kaboum/geom/error.h>
@@ -7,6 +6,7 @@
 #include <kaboum/geom/topology.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/verify/inclusion.h>
+#include <kaboum/verify/replay.h>
 
 #include <gtest/gtest.h>
 
@@ -23,6 +23,7 @@ namespace {
 
 using namespace kaboum;         // NOLINT: the test uses most of it
 using namespace kaboum::bmesh;  // NOLINT
+using verify::replay;
 
 /// Families of so many triangles or more are left out; instrumented builds set a smaller limit.
 std::size_t largest() {

@@ -1,9 +1,9 @@
 // Coplanar regions lose the vertices that they do not need, and nothing else.
 
 #include <kaboum/bmesh/decimate.h>
-#include <kaboum/bmesh/replay.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/verify/inclusion.h>
+#include <kaboum/verify/replay.h>
 
 #include <gtest/gtest.h>
 
@@ -16,6 +16,8 @@ namespace {
 
 using namespace kaboum;         // NOLINT: the test uses most of it
 using namespace kaboum::bmesh;  // NOLINT
+using verify::replay;
+using verify::ReplayResult;
 
 /// A square plate with n × n square holes, all faces grids of unit squares; closed.
 geom::Mesh plate(int n) {

@@ -1,8 +1,8 @@
 // Steps against the original are taken several at a time, by any number of threads.
 #include "optimise_in_parallel.h"
 
-#include <kaboum/bmesh/replay.h>
 #include <kaboum/geom/topology.h>
+#include <kaboum/verify/replay.h>
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -23,6 +23,7 @@ namespace {
 
 using namespace kaboum;         // NOLINT: the test uses most of it
 using namespace kaboum::bmesh;  // NOLINT
+using verify::replay;
 
 test::Recorded run(Direction direction, Cost cost, std::size_t threads, double share = 0.1) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);

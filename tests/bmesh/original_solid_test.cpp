@@ -108,9 +108,9 @@ TEST(OriginalSolid, AcceptsOnlyWhatLiesOutside) {
       continue;
     }
     OriginalSolid solid(p.mesh);
-    std::vector<ReplaySolid::Point> points;
+    std::vector<verify::ReplaySolid::Point> points;
     for (const Vec3& v : p.mesh.vertices) points.emplace_back(v.x(), v.y(), v.z());
-    ReplaySolid checker(points, p.mesh.triangles);
+    verify::ReplaySolid checker(points, p.mesh.triangles);
     const geom::WindingNumber winding(p.mesh);
     const geom::Box3 box = geom::bounding_box(p.mesh);
     for (int i = 0; i < 60; ++i) {
@@ -127,11 +127,12 @@ TEST(OriginalSolid, AcceptsOnlyWhatLiesOutside) {
       for (const bool inside : {false, true}) {
         const bool ok = solid.contains(t, inside);
         // The checker goes on where the other finds no double inside.
-        const auto checked = checker.contains({ReplaySolid::Point(t[0].x(), t[0].y(), t[0].z()),
-                                               ReplaySolid::Point(t[1].x(), t[1].y(), t[1].z()),
-                                               ReplaySolid::Point(t[2].x(), t[2].y(), t[2].z()),
-                                               ReplaySolid::Point(t[3].x(), t[3].y(), t[3].z())},
-                                              inside);
+        const auto checked =
+            checker.contains({verify::ReplaySolid::Point(t[0].x(), t[0].y(), t[0].z()),
+                              verify::ReplaySolid::Point(t[1].x(), t[1].y(), t[1].z()),
+                              verify::ReplaySolid::Point(t[2].x(), t[2].y(), t[2].z()),
+                              verify::ReplaySolid::Point(t[3].x(), t[3].y(), t[3].z())},
+                             inside);
         ASSERT_GE(checked, ok) << f.name;
         differ += checked != ok;
         ++(ok ? accepted : refused);

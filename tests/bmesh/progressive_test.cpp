@@ -1,10 +1,11 @@
 #include <kaboum/bmesh/decimate.h>
-#include <kaboum/bmesh/progressive.h>
+#include <kaboum/bmesh/extract.h>
 #include <kaboum/geom/error.h>
 #include <kaboum/geom/float32.h>
 #include <kaboum/verify/inclusion.h>
 
 #include <gtest/gtest.h>
+#include <kaboum/verify/replay.h>
 
 #include <random>
 
@@ -16,6 +17,8 @@ namespace {
 
 using namespace kaboum;         // NOLINT: the test uses most of it
 using namespace kaboum::bmesh;  // NOLINT
+using verify::replay_progressive;
+using verify::ReplayResult;
 
 struct Series {
   geom::Mesh input;

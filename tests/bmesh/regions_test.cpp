@@ -2,8 +2,8 @@
 // threads, certified like everything else, and in order.
 #include "regions.h"
 
-#include <kaboum/bmesh/replay.h>
 #include <kaboum/geom/topology.h>
+#include <kaboum/verify/replay.h>
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -21,6 +21,7 @@ namespace {
 
 using namespace kaboum;         // NOLINT: the test uses most of it
 using namespace kaboum::bmesh;  // NOLINT
+using verify::replay;
 
 geom::Mesh closed_mesh() { return test::noisy(test::torus(1, 0.4, 160, 64), 1e-3, 3); }
 

@@ -1,6 +1,6 @@
 #include <kaboum/bmesh/decimate.h>
-#include <kaboum/bmesh/replay.h>
 #include <kaboum/geom/error.h>
+#include <kaboum/verify/replay.h>
 
 #include <gtest/gtest.h>
 
@@ -13,6 +13,7 @@ namespace {
 
 using namespace kaboum;         // NOLINT: the test uses most of it
 using namespace kaboum::bmesh;  // NOLINT
+using verify::replay;
 
 test::Recorded run(const geom::Mesh& mesh, Direction direction, Cost cost = Cost::Planes,
                    Effort effort = Effort::Fast) {

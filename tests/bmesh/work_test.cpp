@@ -1,9 +1,9 @@
 // Inputs that would take long: an end to them, the same on any number of threads, with a result
 // that encloses as ever.
 #include <gtest/gtest.h>
-#include <kaboum/bmesh/replay.h>
 #include <kaboum/geom/distance.h>
 #include <kaboum/geom/error.h>
+#include <kaboum/verify/replay.h>
 #include <tbb/global_control.h>
 
 #include <cmath>
@@ -15,6 +15,8 @@
 
 namespace kaboum::bmesh {
 namespace {
+using verify::replay;
+using verify::ReplayResult;
 
 using geom::Mesh;
 

@@ -1,7 +1,7 @@
 // Any bytes given to parse_progressive either make a file whose levels are valid meshes, and which
 // the checker verifies or refutes, or throw Error.
 
-#include <kaboum/bmesh/progressive.h>
+#include <kaboum/bmesh/extract.h>
 #include <kaboum/geom/error.h>
 
 #include <cstdint>
@@ -17,7 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (int i = 0; i < 8; ++i) bytes.push_back(static_cast<char>(sum >> (8 * i)));
   try {
     const bmesh::Progressive p = bmesh::parse_progressive(bytes, "fuzz");
-    bmesh::replay_progressive(p.base, p);
+    verify::replay_progressive(p.base, p);
     for (const std::size_t n : {std::size_t{4}, p.base.vertices.size() / 2}) {
       const kaboum::geom::Mesh mesh = bmesh::extract(p, n, "fuzz").mesh;
       for (const auto& t : mesh.triangles)

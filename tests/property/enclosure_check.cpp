@@ -8,11 +8,11 @@
 //
 // Exit status 0 if no violation was found, 1 otherwise.
 #include <kaboum/bmesh/decimate.h>
-#include <kaboum/bmesh/replay.h>
 #include <kaboum/geom/error.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/geom/winding.h>
 #include <kaboum/io/mesh_io.h>
+#include <kaboum/verify/replay.h>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -142,7 +142,7 @@ class Check {
         4, static_cast<std::size_t>(ratio * static_cast<double>(p.mesh.vertices.size())));
     o.steps = &log.steps;
     const auto r = bmesh::decimate(p, o);
-    const auto checked = bmesh::replay(input, log, r.mesh);
+    const auto checked = verify::replay(input, log, r.mesh);
     const auto points = sample_points(p.mesh, r.mesh, s_.samples);
     std::size_t solid = 0;
     std::size_t bad = d == Direction::Outer ? violations(p.mesh, r.mesh, points, &solid)

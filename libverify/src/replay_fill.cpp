@@ -10,7 +10,7 @@
 #include <set>
 #include <utility>
 
-namespace kaboum::bmesh {
+namespace kaboum::verify {
 namespace {
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
@@ -141,7 +141,7 @@ class Fan {
 }  // namespace
 
 std::string find_wrong_fill(const std::vector<std::array<std::uint32_t, 3>>& triangles,
-                            const std::vector<geom::Vec3>& points, const Log& log) {
+                            const std::vector<geom::Vec3>& points, const bmesh::Log& log) {
   const std::vector<geom::Triangle>& fill = log.filled_triangles;
   std::vector<char> used(log.filled_vertices.size(), 0);
   if (fill.empty() && used.empty()) return {};
@@ -171,4 +171,4 @@ std::string find_wrong_fill(const std::vector<std::array<std::uint32_t, 3>>& tri
   return {};
 }
 
-}  // namespace kaboum::bmesh
+}  // namespace kaboum::verify

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace kaboum::bmesh {
+namespace kaboum::verify {
 
 /// Why what a log fills holes with is not what docs/algorithms/preparation.md states; empty if it
 /// is: each hole is a loop of edges of one component where the triangles do not cancel, without a
@@ -23,6 +23,6 @@ namespace kaboum::bmesh {
 /// @param triangles  those of the input that are left, oriented; @param points theirs.
 /// @pre the log's filling triangles name points or filling vertices, and none of them twice.
 std::string find_wrong_fill(const std::vector<std::array<std::uint32_t, 3>>& triangles,
-                            const std::vector<geom::Vec3>& points, const Log& log);
+                            const std::vector<geom::Vec3>& points, const bmesh::Log& log);
 
-}  // namespace kaboum::bmesh
+}  // namespace kaboum::verify

@@ -1,8 +1,7 @@
 // The checker of decimation logs. It is kept apart from the decimation on purpose: nothing here may
 // use its predicates, its adjacency or its preparation.
-#include <kaboum/bmesh/progressive.h>
-#include <kaboum/bmesh/replay.h>
 #include <kaboum/geom/error.h>
+#include <kaboum/verify/replay.h>
 
 #include <algorithm>
 #include <array>
@@ -13,8 +12,13 @@
 #include "replay_fill.h"
 #include "replay_solid.h"
 
-namespace kaboum::bmesh {
+namespace kaboum::verify {
 namespace {
+
+using bmesh::Direction;
+using bmesh::Log;
+using bmesh::Progressive;
+using bmesh::Step;
 
 using Point = ReplaySolid::Point;
 using Corners = ReplaySolid::Corners;
@@ -362,12 +366,12 @@ class Replay {
 
 }  // namespace
 
-ReplayResult replay(const geom::Mesh& original, const Log& log, const geom::Mesh& result) {
+ReplayResult replay(const geom::Mesh& original, const bmesh::Log& log, const geom::Mesh& result) {
   return Replay(original, log).run(result);
 }
 
-ReplayResult replay_progressive(const geom::Mesh& original, const Progressive& progressive) {
+ReplayResult replay_progressive(const geom::Mesh& original, const bmesh::Progressive& progressive) {
   return Replay(original, progressive.log).run(progressive);
 }
 
-}  // namespace kaboum::bmesh
+}  // namespace kaboum::verify

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace kaboum::bmesh {
+namespace kaboum::verify {
 
 namespace {
 using Exact = CGAL::Simple_cartesian<CGAL::Exact_rational>;
@@ -212,4 +212,4 @@ bool ReplaySolid::crossings(const PointType& p, const PointType& q, const Box& s
   });
 }
 
-}  // namespace kaboum::bmesh
+}  // namespace kaboum::verify

@@ -1,12 +1,13 @@
 #pragma once
 
 #include <kaboum/bmesh/log.h>
+#include <kaboum/bmesh/progressive.h>
 #include <kaboum/geom/mesh.h>
 
 #include <cstdint>
 #include <string>
 
-namespace kaboum::bmesh {
+namespace kaboum::verify {
 
 struct ReplayResult {
   bool verified = false;
@@ -28,9 +29,9 @@ struct ReplayResult {
 /// repeated corners, cancel in opposite pairs, or are copies that form closed chains by themselves;
 /// every step's new vertex is on the right side of, or on, the plane of every triangle it replaces,
 /// or the tetrahedron between them has no triangle of the original in its interior and lies outside
-/// its solid (inner: inside; not checked for Direction::Any, which claims nothing); no vertex of an
-/// unbalanced edge moves; and the triangles left are exactly those of `result`, coordinate by
-/// coordinate.
+/// its solid (inner: inside; not checked for bmesh::Direction::Any, which claims nothing); no
+/// vertex of an unbalanced edge moves; and the triangles left are exactly those of `result`,
+/// coordinate by coordinate.
 ///
 /// The original is taken as the log interprets it: turned triangles are applied and counted,
 /// whether they should be turned is not checked. Dropped copies are checked to be closed chains
@@ -42,6 +43,16 @@ struct ReplayResult {
 /// @param original  as read from the input file.
 /// @param result    as read from the result file.
 /// @throws Error{InvalidInput} when the log refers to triangles or vertices that do not exist.
-ReplayResult replay(const geom::Mesh& original, const Log& log, const geom::Mesh& result);
+ReplayResult replay(const geom::Mesh& original, const bmesh::Log& log, const geom::Mesh& result);
 
-}  // namespace kaboum::bmesh
+/// Checks as `replay` does, but the base mesh and all levels instead of one result: the base is the
+/// original as the log interprets it; every step is certified, against the level before (the
+/// original, before the first level) where the mesh before the step alone does not do so; and
+/// every level has the number of vertices it says. So each level encloses (Inner: is enclosed by)
+/// the level before and the original; docs/algorithms/bounding-mesh.md, "Series".
+///
+/// @param original  as read from the input file.
+/// @throws Error{InvalidInput} when the log refers to triangles or vertices that do not exist.
+ReplayResult replay_progressive(const geom::Mesh& original, const bmesh::Progressive& progressive);
+
+}  // namespace kaboum::verify

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace kaboum::bmesh {
+namespace kaboum::verify {
 
 /// The checker's own view of the original's solid; shares nothing with OriginalSolid, which the
 /// optimisation uses.
@@ -48,4 +48,4 @@ class ReplaySolid {
   std::uint64_t predicates_ = 0;
 };
 
-}  // namespace kaboum::bmesh
+}  // namespace kaboum::verify
