@@ -1,5 +1,6 @@
 #include <kaboum/bmesh/decimate.h>
 #include <kaboum/bmesh/progressive.h>
+#include <kaboum/geom/convex_hull.h>
 #include <kaboum/geom/distance.h>
 #include <kaboum/geom/error.h>
 #include <kaboum/geom/float32.h>
@@ -364,6 +365,12 @@ class Job {
     notes_ = input_.notes;
     const std::size_t triangles = input_.mesh.triangles.size();
     prepared_ = tools::naming(o_.input, [&] { return geom::prepare(input_.mesh, o_.prepare); });
+    // Closed by its own fill, a flat sheet would be certified to lie in a solid that is nothing.
+    if (prepared_.filled_triangles > 0 && !geom::convex_hull(prepared_.mesh.vertices))
+      throw Error(ErrorCode::InvalidInput,
+                  o_.input +
+                      ": all triangles lie in one plane and enclose nothing; give the sheet a "
+                      "thickness, or have bcd-decompose cover it");
     if (records()) {
       log_.direction = o_.direction;
       log_.tool = std::string("bmesh-decimate ") + tools::version();

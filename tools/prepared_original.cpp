@@ -4,6 +4,8 @@
 #include <kaboum/geom/hollows.h>
 #include <kaboum/geom/topology.h>
 
+#include <numeric>
+
 #include "verdict.h"
 
 namespace kaboum::tools {
@@ -21,7 +23,13 @@ std::optional<InsideOut> find_inside_out(const geom::Mesh& mesh) {
     InsideOut out;
     if (prepared.inside_out.empty()) {
       if (!prepared.closed) return {};
-      const std::optional<geom::Hollow> hollow = geom::find_hollow(geom::weld(mesh));
+      const geom::Mesh welded = geom::weld(mesh);
+      std::optional<geom::Hollow> hollow = geom::find_hollow(welded);
+      if (!hollow && prepared.turned_triangles == 0) {
+        std::vector<std::uint32_t> all(welded.triangles.size());
+        std::iota(all.begin(), all.end(), 0U);
+        hollow = geom::find_inverted(welded, all);
+      }
       if (!hollow) return {};
       out.hollow = hollow->at;
       return out;

@@ -303,6 +303,22 @@ class Hollows {
 
 }  // namespace
 
+std::optional<Hollow> find_inverted(const Mesh& mesh, std::span<const std::uint32_t> beside) {
+  constexpr std::size_t kMost = 20'000;
+  const WindingNumber winding(mesh);
+  for (std::size_t i = 0; i < beside.size(); i += 1 + beside.size() / kMost) {
+    const auto& [p, q, r] = mesh.triangles[beside[i]];
+    const Vec3 &a = mesh.vertices[p], &b = mesh.vertices[q], &c = mesh.vertices[r];
+    const Vec3 normal = (b - a).cross(c - a);
+    const double size = std::sqrt(normal.norm());
+    if (!(size > 0)) continue;
+    const Vec3 at = 0.34 * a + 0.35 * b + 0.31 * c, step = normal * (1e-3 / size);
+    for (const Vec3& x : {Vec3(at + step), Vec3(at - step)})
+      if (winding(x).value_or(0) < 0) return Hollow{beside[i], x, false};
+  }
+  return {};
+}
+
 std::optional<Hollow> find_hollow(const Mesh& walls) { return Hollows(walls).find(); }
 
 }  // namespace kaboum::geom

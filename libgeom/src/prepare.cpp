@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <sstream>
@@ -48,6 +49,8 @@ class Preparation {
     out_.source.resize(n);
     std::iota(out_.source.begin(), out_.source.end(), 0U);
     out_.turned.assign(n, 0);
+    agreed_.assign(n, 0);
+    opened_.assign(n, 0);
   }
 
   Prepared run() {
@@ -70,6 +73,7 @@ class Preparation {
           "solid, and what is certified of its solid says nothing of its surface");
     settle_filled();
     find_hollows();
+    find_inverted();
     out_.turned_triangles =
         static_cast<std::size_t>(std::count(out_.turned.begin(), out_.turned.end(), 1));
     return std::move(out_);
@@ -212,8 +216,14 @@ class Preparation {
         }
       }
       const std::int8_t against = balance < 0 ? 1 : -1;
+      bool turned = false;
       for (const std::uint32_t t : patch)
-        if (sense[t] == against) turn(t);
+        if (sense[t] == against) {
+          turn(t);
+          turned = true;
+        }
+      if (turned)
+        for (const std::uint32_t t : patch) agreed_[out_.source[t]] = 1;
     }
     find_edges();
     out_.notes.push_back(count_of(inconsistent, "edge", "edges") +
@@ -345,7 +355,7 @@ class Preparation {
     const Chains chains = find_chains(mesh(), edges_);
     std::vector<char> open(*std::max_element(out_.source.begin(), out_.source.end()) + 1, 0);
     for (std::size_t t = 0; t < out_.source.size(); ++t)
-      if (chains.closed[chains.label[t]] == 0) open[out_.source[t]] = 1;
+      if (chains.closed[chains.label[t]] == 0) opened_[out_.source[t]] = open[out_.source[t]] = 1;
     out_.holes = filled.holes;
     out_.largest_hole = filled.largest;
     mesh() = std::move(filled.mesh);
@@ -477,6 +487,64 @@ class Preparation {
                            ", which need not be a cavity: that part counts as outside");
   }
 
+  /// Parts that were open, or that were turned to agree, are judged by themselves: their holes'
+  /// fill and the edges that they agree at are guesses. Where one of them winds backwards round a
+  /// point, the guess joined bodies against each other; where the point is inside another body,
+  /// that would be hollow. Then the whole, where a surface crosses itself.
+  void find_inverted() {
+    if (!out_.closed || options_.keep_orientation) return;
+    const auto both = std::find_if(out_.source.begin(), out_.source.end(), [&](std::uint32_t s) {
+      return agreed_[s] != 0 && opened_[s] != 0;
+    });
+    if (both != out_.source.end())
+      out_.notes.push_back(
+          "WARNING: the part with input triangle " + std::to_string(*both) +
+          " was open, and its triangles were turned to agree: which solid it bounds is a guess");
+    const std::vector<std::uint32_t> label = components(edges_, mesh().triangles.size(), nullptr);
+    std::map<std::uint32_t, std::vector<std::uint32_t>> guessed;
+    for (std::uint32_t t = 0; t < label.size(); ++t)
+      if (is_guessed(t)) guessed[label[t]];
+    for (std::uint32_t t = 0; t < label.size(); ++t)
+      if (const auto part = guessed.find(label[t]); part != guessed.end())
+        part->second.push_back(t);
+    for (const auto& [unused, triangles] : guessed) {
+      Mesh part{mesh().vertices, {}};
+      for (const std::uint32_t t : triangles) part.triangles.push_back(mesh().triangles[t]);
+      std::vector<std::uint32_t> all(triangles.size());
+      std::iota(all.begin(), all.end(), 0U);
+      if (const auto found = geom::find_inverted(part, all))
+        say_inverted(triangles[found->triangle], found->at);
+    }
+    if (noted_hollow_) return;
+    std::vector<std::uint32_t> all(mesh().triangles.size());
+    std::iota(all.begin(), all.end(), 0U);
+    if (const auto found = geom::find_inverted(mesh(), all))
+      say_inverted(found->triangle, found->at);
+  }
+
+  /// Whether the triangle is of the file and of a part that was open, or was turned to agree.
+  [[nodiscard]] bool is_guessed(std::uint32_t t) const {
+    return t < out_.source.size() && (agreed_[out_.source[t]] != 0 || opened_[out_.source[t]] != 0);
+  }
+
+  void say_inverted(std::uint32_t t, const Vec3& at) {
+    const bool filling = t >= out_.source.size();
+    const std::string where =
+        (filling ? "" : "at input triangle " + std::to_string(out_.source[t]) + " ") + "near " +
+        text_of(at);
+    if (!filling && agreed_[out_.source[t]] != 0)
+      throw Error(ErrorCode::InvalidInput,
+                  "triangles were turned to agree with their neighbours, and what they enclose is "
+                  "inside out now, " +
+                      where +
+                      ": bodies that share an edge cannot be told apart; give each body a mesh of "
+                      "its own, or orient all normals outwards");
+    if (noted_hollow_) return;
+    noted_hollow_ = true;
+    out_.notes.push_back("WARNING: the surface crosses itself, and what it encloses " + where +
+                         " is inside out: that part counts as outside, and is NOT enclosed");
+  }
+
   [[noreturn]] static void refuse_wall(const std::string& where) {
     throw Error(ErrorCode::InvalidInput,
                 "bodies that share a wall are oriented against each other and cannot be told "
@@ -530,6 +598,7 @@ class Preparation {
   Prepared out_;
   std::vector<Cancelled> cancelled_;
   bool noted_hollow_ = false;
+  std::vector<char> agreed_, opened_;  // per input triangle: its part was turned to agree, was open
   std::vector<EdgeUse> edges_;
   std::vector<std::uint32_t> was_open_;   // per triangle, when holes are filled: before that
   std::optional<Coincident> coincident_;  // of the mesh with these edges

@@ -23,6 +23,8 @@ expect 3 '' "$D" huge.off -o x.off --vertices 4
 expect 3 '' "$D" huge.stl -o x.off --vertices 4
 printf 'ply\nformat binary_little_endian 1.0\nelement vertex 4294967295\nproperty float x\nproperty float y\nproperty float z\nelement face 4294967295\nproperty list uchar int vertex_indices\nend_header\nabcdefgh' >huge.ply
 expect 3 '' "$D" huge.ply -o x.off --vertices 4
+printf 'OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n' >flat.off
+expect 3 'lie in one plane' "$D" flat.off -o x.off --vertices 4
 printf 'OFF\n3 2 0\n0 0 0\n1 0 0\n2 0 0\n3 0 0 1\n3 1 1 1\n' >degenerate.off
 expect 3 '' "$D" degenerate.off -o x.off --vertices 4
 printf 'OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 2 1\n' >sheet.off
@@ -102,14 +104,16 @@ for f in whole.stl; do
 done
 absent x.off
 
-# The corpus's dirty meshes: a result (0), a valid "no" (1), or a clear refusal (3); nothing else.
+# The corpus's dirty meshes: a result (0), a valid "no" (1), the best within the work allowed (7), or a
+# clear refusal (3); nothing else.
 if [ -n "${KABOUM_MESHES:-}" ]; then
   for f in "$KABOUM_MESHES"/dirty-*; do
     rm -f dirty.ply
-    timeout 60 "$D" "$f" -o dirty.ply --ratio 0.1 --log dirty.log >out.txt 2>err.txt
+    # 60 s of processor time, so that other work on the machine does not matter.
+    (ulimit -t 60 && exec "$D" "$f" -o dirty.ply --ratio 0.1 --log dirty.log) >out.txt 2>err.txt
     code=$?
     case $code in
-      0 | 1) "$BIN/bmesh-replay" "$f" dirty.log dirty.ply >/dev/null || fail "replay of $f" ;;
+      0 | 1 | 7) "$BIN/bmesh-replay" "$f" dirty.log dirty.ply >/dev/null || fail "replay of $f" ;;
       3) grep -q "$(basename "$f")" err.txt || fail "message for $f: $(cat err.txt)"
          absent dirty.ply ;;
       *) fail "$f: exit $code: $(head -c 300 err.txt)" ;;

@@ -294,6 +294,42 @@ bool notes_hollow(const Prepared& p) {
   });
 }
 
+// Two open boxes, both outward, share one edge of their rims. Turning one of them to agree at that
+// edge would hollow it, and the closed body that it lies in.
+TEST(Shells, OpenBodiesThatShareAnEdgeAreNotTurnedAgainstEachOther) {
+  Mesh mesh;
+  mesh.vertices = {{0, 1, 1}, {0, 3, 1}, {1, 3, 1}, {1, 1, 1}, {0, 1, 2}, {1, 1, 2}, {1, 3, 2},
+                   {0, 3, 2}, {0, 0, 3}, {1, 0, 3}, {1, 1, 3}, {0, 1, 3}, {0, 0, 1}, {1, 0, 1}};
+  mesh.triangles = {{0, 1, 2},  {0, 2, 3},   {4, 5, 6},   {4, 6, 7},   {1, 7, 6},
+                    {1, 6, 2},  {0, 4, 7},   {0, 7, 1},   {3, 2, 6},   {3, 6, 5},
+                    {8, 9, 10}, {8, 10, 11}, {12, 13, 9}, {12, 9, 8},  {0, 11, 10},
+                    {0, 10, 3}, {12, 8, 11}, {12, 11, 0}, {13, 3, 10}, {13, 10, 9}};
+  PrepareOptions fill;
+  fill.holes = Holes::Fill;
+  EXPECT_THROW(prepare(mesh, fill), kaboum::Error);
+  const Box round{{-1, -1, -1}, {4, 4, 4}};
+  EXPECT_THROW(prepare(kaboum::test::merged({mesh_of(round, kUnits), mesh}), fill), kaboum::Error);
+}
+
+// A closed surface that crosses itself, most of it oriented outwards: two boxes as one, joined
+// through a neck along which it turns inside out.
+TEST(Shells, ALobeInsideOutIsNoted) {
+  // A prism over a bow tie: the crossing square of the smaller lobe is inside out.
+  Mesh mesh;
+  for (const double z : {0.0, 1.0})
+    for (const auto& [x, y] : {std::pair{0.0, 0.0}, {4.0, 3.0}, {4.0, 0.0}, {0.0, 1.0}})
+      mesh.vertices.emplace_back(x, y, z);
+  for (std::uint32_t k = 0; k < 4; ++k) {
+    const std::uint32_t n = (k + 1) % 4;
+    mesh.triangles.push_back({k, n, n + 4});
+    mesh.triangles.push_back({k, n + 4, k + 4});
+  }
+  mesh.triangles.insert(mesh.triangles.end(), {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}});
+  const Prepared p = prepare(mesh);
+  EXPECT_TRUE(p.closed);
+  EXPECT_TRUE(notes_hollow(p));
+}
+
 // Walls of boxes without common grids lie in each other in part: what stays inside out is refused
 // or noted, whatever the boxes.
 TEST(Shells, WhatStaysInsideOutIsSaid) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 
 namespace kaboum::geom {
 
@@ -29,5 +30,13 @@ struct Hollow {
 ///   returned is enclosed and not in the solid. Of parts of more than 20,000 triangles so many are
 ///   looked at.
 std::optional<Hollow> find_hollow(const Mesh& walls);
+
+/// Looks beside triangles for a point with a winding number below 0: what a surface that crosses
+/// itself, or parts joined against each other, enclose inside out.
+///
+/// @param mesh    a closed chain.
+/// @param beside  triangles to look beside; of more than 20,000 so many are looked at, evenly.
+/// @return the first found, in their order.
+std::optional<Hollow> find_inverted(const Mesh& mesh, std::span<const std::uint32_t> beside);
 
 }  // namespace kaboum::geom
