@@ -567,7 +567,8 @@ std::vector<Vec3> main_vertices(std::span<const Vec3> hull, double tolerance) {
   std::vector<Vec3> out;
   // First the extreme ones along the axes and the cube's diagonals.
   for (int i = 0; i < 27; ++i) {
-    const Vec3 n(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+    const int x = i % 3 - 1, y = i / 3 % 3 - 1, z = i / 9 - 1;
+    const Vec3 n(x, y, z);
     if (n.isZero()) continue;
     out.push_back(*std::max_element(hull.begin(), hull.end(), [&](const Vec3& p, const Vec3& q) {
       return n.dot(p) < n.dot(q);
