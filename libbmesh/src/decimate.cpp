@@ -959,7 +959,18 @@ DecimateResult decimate_twice(const geom::Prepared& input, const DecimateOptions
       if (work.spent(kNoneMoves)) return settle_for_sketch();
     }
   }
-  return chosen(run(std::nullopt, false, nullptr));
+  // Made again with moves. Where the number can hardly be reached, the first may still be nearer.
+  DecimateResult again = run(std::nullopt, false, nullptr);
+  const std::size_t n = sketch.mesh.vertices.size(), m = again.mesh.vertices.size();
+  const bool nearer =
+      n == m && sketch.unrepresentable <= again.unrepresentable &&
+      largest_distance(sketch.mesh, input.mesh) < largest_distance(again.mesh, input.mesh);
+  if (n > m || (n == m && !nearer)) return chosen(std::move(again));
+  steps = std::move(sketch_steps);
+  sketch.out_of_work = again.out_of_work;
+  if (sketch.stop != Stop::VertexTarget && again.stop == Stop::OutOfWork)
+    sketch.stop = Stop::OutOfWork;
+  return chosen(std::move(sketch));
 }
 
 }  // namespace

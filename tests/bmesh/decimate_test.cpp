@@ -277,7 +277,10 @@ TEST(Decimate, EpsilonLeavesRoomForContractions) {
 }
 
 // Contractions that move the vertices around with them: far fewer vertices than without, and every
-// step of them holds.
+// step of them holds. On the sphere of 642 vertices 52 instead of 84 are left, and 50 instead of
+// 68; on that of 162, which is nearer to what can be reached, 57 instead of 78 and 52 instead of
+// 64: with so few, one vertex more or less hangs on ties between equal triangles, and four fifths
+// are 51.
 TEST(Decimate, MovingTheVerticesAroundSavesVertices) {
   const geom::Mesh sphere = test::icosphere(3);
   const auto p = geom::prepare(sphere);
