@@ -493,10 +493,15 @@ class Job {
         std::string("bmesh-decimate ") + tools::version());
   }
 
+  /// Distances not far above rounding may take any number: then the bracket is wider.
+  static constexpr std::size_t kMaxPieces = std::size_t{1} << 20;
+
   void measure(Level& level) const {
     const geom::DistanceQuery original(prepared_.mesh), result(level.result.mesh);
-    level.to_result = geom::directed_distance(prepared_.mesh, result);
-    level.to_original = geom::directed_distance(level.result.mesh, original);
+    geom::DistanceOptions wished;
+    wished.max_pieces = kMaxPieces;
+    level.to_result = geom::directed_distance(prepared_.mesh, result, wished);
+    level.to_original = geom::directed_distance(level.result.mesh, original, wished);
     if (!epsilon_) return;
     ensure(std::max(level.to_result->max_lower, level.to_original->max_lower) <= *epsilon_,
            "the measured distance exceeds the carried bound");

@@ -67,7 +67,7 @@ class BranchAndBound {
     std::vector<Piece> open = bound_clusters();
     for (int round = 1; !open.empty(); ++round) {
       keep_unsettled(open);  // the lower bound may have risen
-      if (round > kMaxRounds || open.size() > kMaxPieces) {
+      if (round > kMaxRounds || open.size() > options_.max_pieces) {
         // What is known of the rest is a bound all the same.
         for (const Piece& p : open) settled_ = std::max(settled_, p.upper + moved_);
         break;
@@ -82,7 +82,6 @@ class BranchAndBound {
   }
 
  private:
-  static constexpr std::size_t kMaxPieces = std::size_t{1} << 23;
   static constexpr int kMaxRounds = 200;
   // Sizes of clusters, halving eightfold.
   static constexpr std::uint32_t kLargestCluster = 4096;

@@ -117,7 +117,7 @@ struct DirectedDistance {
   double max_lower = 0;  ///< certified bracket of the supremum
   double max_upper = 0;
   Vec3 at = Vec3::Zero();  ///< point of A, within rounding, whose distance is at least max_lower
-  bool within_gap = true;  ///< false: the gap was not reached in the work allowed (2^23 pieces at a
+  bool within_gap = true;  ///< false: the gap was not reached in the work allowed (max_pieces at a
                            ///< time), or coordinates are too large for it (see below)
   std::uint64_t queries = 0;
 };
@@ -128,6 +128,7 @@ struct DistanceOptions {
                                ///< (much smaller ones are reached slowly, if at all)
   double offset = 0;  ///< the gap is wanted for max(0, distance − offset); the bracket returned is
                       ///< that of the distance itself [length]
+  std::size_t max_pieces = std::size_t{1} << 23;  ///< at a time, of some 400 bytes each
 
   /// The largest upper bound that meets the wish, given a lower bound. @param diagonal of the box.
   [[nodiscard]] double wished(double lower, double diagonal) const {
