@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "number.h"
+
 namespace kaboum::verify {
 
 using geom::Vec3;
@@ -36,6 +38,30 @@ Vec3 nearest_in_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3
 
 }  // namespace
 
+// The plane: docs/algorithms/swept-volumes.md, "Planes". Explicit margins make facets long and
+// thin, down to corners in a line but for the last bits of float32; only exact products tell their
+// normals.
+void SweptBody::set_plane(Facet& f) {
+  Triple<Exact> ab, ac;
+  for (int i = 0; i < 3; ++i) {
+    ab[i] = difference<Exact>(f.b[i], f.a[i]);
+    ac[i] = difference<Exact>(f.c[i], f.a[i]);
+  }
+  Eigen::Matrix<long double, 3, 1> normal;  // whose squares do not underflow
+  double error = 0;
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    const Approx x = rounded(ab[j] * ac[k] - ab[k] * ac[j]);
+    normal[i] = x.value;
+    error += x.error;
+  }
+  const long double area = normal.norm();
+  if (!(error < area)) return;  // without area, or beyond the range of double
+  f.normal = (normal / area).cast<double>();
+  f.offset = f.normal.dot(f.a);
+  f.slack = 0x1p-48 + 8 * static_cast<double>(error / area);
+}
+
 SweptBody::SweptBody(const geom::Mesh& hull) : vertices_(hull.vertices) {
   for (const Vec3& v : vertices_) {
     box_.extend(v);
@@ -47,21 +73,7 @@ SweptBody::SweptBody(const geom::Mesh& hull) : vertices_(hull.vertices) {
     f.a = vertices_[t[0]];
     f.b = vertices_[t[1]];
     f.c = vertices_[t[2]];
-    // In long double, since explicit margins make facets long and thin, whose normals err by as
-    // much more as they are thin. Without area a plane says nothing.
-    using Long = Eigen::Matrix<long double, 3, 1>;
-    const Long a = f.a.cast<long double>(), ab = f.b.cast<long double>() - a,
-               ac = f.c.cast<long double>() - a, normal = ab.cross(ac);
-    const long double area = normal.norm(), edges = ab.norm() * ac.norm();
-    if (!(area > 0x1p-40L * edges)) {
-      f.normal = Vec3::Zero();
-      f.offset = 0;
-      f.slack = std::numeric_limits<double>::infinity();
-    } else {
-      f.normal = (normal / area).cast<double>();
-      f.offset = f.normal.dot(f.a);
-      f.slack = 0x1p-49 + 0x1p-59 * static_cast<double>(edges / area);
-    }
+    set_plane(f);
     facets_.push_back(f);
   }
 }

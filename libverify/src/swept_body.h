@@ -2,6 +2,7 @@
 
 #include <kaboum/geom/mesh.h>
 
+#include <limits>
 #include <span>
 
 namespace kaboum::verify {
@@ -27,11 +28,14 @@ class SweptBody {
 
  private:
   struct Facet {
-    geom::Vec3 normal;
-    double offset;
-    double slack;  // times the largest coordinate: what rounding does to normal · p − offset
     geom::Vec3 a, b, c;
+    geom::Vec3 normal = geom::Vec3::Zero();
+    double offset = 0;
+    /// Times the largest coordinate: what rounding does to normal · p − offset. Without bound until
+    /// the plane is known.
+    double slack = std::numeric_limits<double>::infinity();
   };
+  static void set_plane(Facet& f);
   [[nodiscard]] double rounding(const geom::Vec3& p) const;
   /// The point of the facets that seems nearest; certainly one of the body, but for rounding.
   [[nodiscard]] geom::Vec3 nearest(const geom::Vec3& p) const;

@@ -159,6 +159,18 @@ expect 0 'solid claim: verified' "$V" --sweep "$R" path.json b.glb
 for set in uniform.obj adaptive.obj folder all c.glb d.glb e.glb; do
   expect 0 '^verified: 4 of 4 links judged$' "$V" --sweep "$R" path.csv "$set"
 done
+# Upright and leaning cylinders, whose hulls have corners in a line but for the last bits.
+cat >drum.urdf <<'END'
+<robot name="drum">
+  <link name="base"><collision><geometry><cylinder radius="0.2" length="0.1"/></geometry></collision>
+    <collision><origin rpy="0.3 0.2 0.1"/><geometry><cylinder radius="0.1" length="0.5"/></geometry></collision></link>
+  <link name="arm"><collision><geometry><cylinder radius="0.1" length="0.3"/></geometry></collision></link>
+  <joint name="turn" type="continuous"><parent link="base"/><child link="arm"/><origin xyz="0 0 0.2"/><axis xyz="0 0 1"/></joint>
+</robot>
+END
+printf '0\n1\n' >drum.csv
+expect 0 '' "$S" drum.urdf --path drum.csv -o drum.glb
+expect 0 '^verified: 2 of 2 links judged$' "$V" --sweep drum.urdf drum.csv drum.glb
 LC_ALL=C sed 's/"margin":0.0049/"margin":0.0029/' a.glb >thin.glb
 cmp -s a.glb thin.glb && fail "the margin was not cut"
 expect 1 'surface claim: refuted' "$V" --sweep "$R" path.csv thin.glb --witness w.obj --report thin.json

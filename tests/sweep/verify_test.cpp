@@ -1,9 +1,13 @@
 // bound-verify's own judgement of swept sets, attacked with sets whose truth is known.
 #include <gtest/gtest.h>
 #include <kaboum/geom/convex_hull.h>
+#include <kaboum/geom/float32.h>
+#include <kaboum/geom/predicates.h>
 #include <kaboum/robot/kinematics.h>
 #include <kaboum/verify/sweep.h>
 #include <tbb/global_control.h>
+
+#include <numbers>
 
 #include "sampling.h"
 #include "support/shapes.h"
@@ -363,6 +367,44 @@ TEST(VerifySweep, DistancesToBodiesAreBounds) {
             distance_to(
                 hull, p + 0.1 * Vec3(normal(random), normal(random), normal(random)).normalized()),
             0);
+      }
+    }
+  }
+}
+
+TEST(VerifySweep, PlanesOfSliversAreKnown) {
+  // A cylinder with an explicit margin: its caps have corners in a line but for 1e-17, since the
+  // cosine of a right angle is not 0. Leaning ones, where slivers have planes of their own.
+  std::mt19937_64 random(80);
+  std::normal_distribution<double> normal;
+  for (int leaning = 0; leaning < 6; ++leaning) {
+    Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
+    if (leaning > 0) {
+      for (double& x : turn.coeffs()) x = normal(random);
+      turn.normalize();
+    }
+    std::vector<Vec3> points;
+    for (int i = 0; i < 32; ++i) {
+      const double angle = 2 * std::numbers::pi * i / 32;
+      for (const double z : {-0.05, 0.05})
+        points.emplace_back(turn * Vec3(0.2 * std::cos(angle), 0.2 * std::sin(angle), z));
+    }
+    points = sweep::enlarge(points, 0.0006);
+    for (Vec3& p : points) p = geom::to_float32(p);
+    const geom::Mesh hull = *geom::convex_hull(points);
+    const verify::SweptBody body(hull);
+    EXPECT_TRUE(body.holds(Vec3::Zero(), -0.0505)) << leaning;
+    EXPECT_FALSE(body.holds(Vec3::Zero(), -0.051)) << leaning;
+    // What it holds, exact predicates hold: points about facets, as near as rounding puts them.
+    for (const geom::Triangle& t : hull.triangles) {
+      const Vec3 &a = hull.vertices[t[0]], &b = hull.vertices[t[1]], &c = hull.vertices[t[2]];
+      for (int k = 0; k < 20; ++k) {
+        const Vec3 p = (a + b + c) / 3 * (1 + std::ldexp(normal(random), -48 - k / 2));
+        if (!body.holds(p, 0)) continue;
+        for (const geom::Triangle& u : hull.triangles)
+          EXPECT_NE(
+              geom::orient3d(hull.vertices[u[0]], hull.vertices[u[1]], hull.vertices[u[2]], p),
+              geom::Sign::Positive);
       }
     }
   }
