@@ -19,6 +19,7 @@ void fill(const std::vector<std::uint32_t>& loop, FilledHoles& out) {
     box.extend(mesh.vertices[v]);
   }
   ++out.holes;
+  out.rims.push_back(loop);
   if (out.holes == 1 || box.diagonal() > out.largest) {
     out.largest = box.diagonal();
     out.largest_at = box.center();

@@ -45,6 +45,7 @@ class Preparation {
     require_valid(input);
     require_moderate(input);
     out_.mesh = weld(input);
+    input_triangles_ = static_cast<std::uint32_t>(input.triangles.size());
     const std::size_t n = out_.mesh.triangles.size();
     out_.source.resize(n);
     std::iota(out_.source.begin(), out_.source.end(), 0U);
@@ -357,6 +358,7 @@ class Preparation {
     for (std::size_t t = 0; t < out_.source.size(); ++t)
       if (chains.closed[chains.label[t]] == 0) opened_[out_.source[t]] = open[out_.source[t]] = 1;
     out_.holes = filled.holes;
+    name_rims(filled.rims);
     out_.largest_hole = filled.largest;
     mesh() = std::move(filled.mesh);
     out_.source.resize(mesh().triangles.size(), kFilled);
@@ -378,6 +380,20 @@ class Preparation {
                          (filled.holes == 1 ? ", " : ", the largest ") + text_of(filled.largest) +
                          " across near " + text_of(filled.largest_at) +
                          ": what is said of the solid is about the one so closed");
+  }
+
+  /// A vertex is named by the first corner of the input that is there, as the input orients it.
+  void name_rims(const std::vector<std::vector<std::uint32_t>>& rims) {
+    std::vector<std::uint32_t> corner(mesh().vertices.size(), ~0U);
+    for (std::size_t t = mesh().triangles.size(); t-- > 0;)
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const std::uint32_t in_input = out_.turned[t] != 0 && k != 0 ? 3 - k : k;
+        corner[mesh().triangles[t][k]] = 3 * out_.source[t] + in_input;
+      }
+    for (const auto& rim : rims) {
+      auto& named = out_.rims.emplace_back();
+      for (const std::uint32_t v : rim) named.push_back(corner[v]);
+    }
   }
 
   /// Sources are of the input alone.
@@ -450,8 +466,15 @@ class Preparation {
     out_.turned_cavities = judged.cavities_turned;
     for (const std::uint32_t t : judged.inside_out)
       if (out_.source[t] != kFilled) out_.inside_out.push_back(out_.source[t]);
-    for (std::uint32_t t = 0; t < judged.turn.size(); ++t)
-      if (judged.turn[t] != 0) turn(t);
+    const auto first_fill = static_cast<std::uint32_t>(
+        std::find(out_.source.begin(), out_.source.end(), kFilled) - out_.source.begin());
+    for (std::uint32_t t = 0; t < judged.turn.size(); ++t) {
+      if (judged.turn[t] == 0) continue;
+      turn(t);
+      if (out_.holes != 0)
+        out_.turned_after_filling.push_back(t < first_fill ? out_.source[t]
+                                                           : input_triangles_ + t - first_fill);
+    }
     find_edges();
     cancel_pairs();  // walls that are opposite now
     out_.notes.push_back(
@@ -596,6 +619,7 @@ class Preparation {
 
   PrepareOptions options_;
   Prepared out_;
+  std::uint32_t input_triangles_ = 0;
   std::vector<Cancelled> cancelled_;
   bool noted_hollow_ = false;
   std::vector<char> agreed_, opened_;  // per input triangle: its part was turned to agree, was open

@@ -72,7 +72,6 @@ class Replay {
   bool start() {
     report_.dropped = log_.dropped.size();
     report_.turned = log_.turned.size();
-    report_.filled = log_.filled_triangles.size();
     if (!interpret()) return false;
     find_border();
     if (report_.filled != 0 && !report_.closed)
@@ -134,22 +133,25 @@ class Replay {
 
   /// Equal coordinates become one point of all_points_; triangles refer to those.
   void merge_vertices(const geom::Mesh& original) {
-    std::map<std::array<double, 3>, std::uint32_t> known;
     for (const geom::Triangle& t : original.triangles) {
       Corners c;
       for (int k = 0; k < 3; ++k) {
-        const geom::Vec3& p = original.vertices.at(t[k]);
-        const auto [it, fresh] = known.try_emplace({p.x() + 0.0, p.y() + 0.0, p.z() + 0.0},
-                                                   static_cast<std::uint32_t>(all_points_.size()));
-        if (fresh) all_points_.emplace_back(p.x(), p.y(), p.z());
-        c[k] = it->second;
+        c[k] = point_at(original.vertices.at(t[k]));
       }
       input_.push_back(c);
     }
   }
 
+  /// The index of p in all_points_; added if it is not there.
+  std::uint32_t point_at(const geom::Vec3& p) {
+    const auto [it, fresh] = known_.try_emplace({p.x() + 0.0, p.y() + 0.0, p.z() + 0.0},
+                                                static_cast<std::uint32_t>(all_points_.size()));
+    if (fresh) all_points_.emplace_back(p.x(), p.y(), p.z());
+    return it->second;
+  }
+
   /// Numbers the vertices of the triangles left by first use, as the input has them; applies the
-  /// log's turns; checks its drops.
+  /// log's turns; checks its drops; fills its holes.
   bool interpret() {
     std::vector<char> dropped(input_.size(), 0);
     for (const std::uint32_t t : log_.dropped) {
@@ -167,35 +169,105 @@ class Replay {
         points_.push_back(all_points_[v]);
       }
     }
+    const std::vector<std::vector<std::uint32_t>> rims = rims_of_log();
     for (const std::uint32_t t : log_.turned) {
       require_triangle(t);
-      std::swap(input_[t][1], input_[t][2]);
+      turn(input_[t]);
     }
     if (!drops_are_harmless(dropped)) return false;
+    std::vector<Corners> fill;
+    if (!fill_holes(rims, fill)) return false;
+    known_.clear();
+    number.resize(all_points_.size(), ~0U);
     for (std::size_t t = 0; t < input_.size(); ++t)
       if (dropped[t] == 0)
         triangles_.push_back({number[input_[t][0]], number[input_[t][1]], number[input_[t][2]]});
-    const std::vector<Corners> input = triangles_;
-    std::vector<geom::Vec3> input_points;
-    for (const Point& p : points_) input_points.emplace_back(p.x(), p.y(), p.z());
-    for (const geom::Vec3& p : log_.filled_vertices) {
-      if (!p.allFinite()) return violated("a vertex that fills a hole is not finite");
-      points_.emplace_back(p.x(), p.y(), p.z());
+    const std::size_t first_fill = input_.size();
+    for (std::size_t i = 0; i < fill.size(); ++i) {
+      Corners c;
+      for (int k = 0; k < 3; ++k) c[k] = numbered(fill[i][k], number);
+      if (std::ranges::binary_search(log_.turned_after_filling, first_fill + i)) turn(c);
+      triangles_.push_back(c);
     }
-    for (const geom::Triangle& t : log_.filled_triangles) {
-      for (const std::uint32_t v : t)
-        if (v >= points_.size())
-          throw Error(ErrorCode::InvalidInput,
-                      "the log fills a hole with a vertex that is not there");
-      if (repeated(t)) return violated("a triangle that fills a hole has a repeated corner");
-      triangles_.push_back(t);
-    }
-    if (const std::string wrong = find_wrong_fill(input, input_points, log_); !wrong.empty())
-      return violated(wrong);
     around_.resize(points_.size());
     for (std::uint32_t t = 0; t < triangles_.size(); ++t)
       for (const std::uint32_t v : triangles_[t]) around_[v].push_back(t);
     return true;
+  }
+
+  static void turn(Corners& c) { std::swap(c[1], c[2]); }
+
+  /// The number of a point of all_points_, given to it if it has none.
+  std::uint32_t numbered(std::uint32_t v, std::vector<std::uint32_t>& number) {
+    if (number[v] == ~0U) {
+      number[v] = static_cast<std::uint32_t>(points_.size());
+      points_.push_back(all_points_[v]);
+    }
+    return number[v];
+  }
+
+  /// Checks that the log's rims are those of holes of the triangles before the last turns, and that
+  /// these turned closed chains; what fills the holes follows from the rims.
+  /// @param fill  the triangles, before the last turns; they refer to all_points_.
+  bool fill_holes(const std::vector<std::vector<std::uint32_t>>& rims, std::vector<Corners>& fill) {
+    if (rims.empty() && log_.turned_after_filling.empty()) return true;
+    std::vector<Corners> before = input_;
+    if (!std::ranges::is_sorted(log_.turned_after_filling, std::ranges::less_equal{}))
+      throw Error(ErrorCode::InvalidInput, "the log's turned triangles are not ascending");
+    for (const std::uint32_t t : log_.turned_after_filling)
+      if (t < before.size()) turn(before[t]);
+    std::erase_if(before, repeated);
+    if (const std::string wrong = find_wrong_rim(before, rims); !wrong.empty())
+      return violated(wrong);
+    for (const auto& rim : rims) add_fan(rim, fill);
+    report_.filled = fill.size();
+
+    EdgeBalance balance;
+    for (const std::uint32_t t : log_.turned_after_filling) {
+      if (t >= input_.size() + fill.size())
+        return violated("a triangle turned after filling holes is not there");
+      add_edges(t < input_.size() ? input_[t] : turned(fill[t - input_.size()]), balance);
+    }
+    for (const auto& [edge, surplus] : balance)
+      if (surplus != 0)
+        return violated("the triangles turned after filling holes are no closed chain");
+    return true;
+  }
+
+  static Corners turned(Corners c) {
+    turn(c);
+    return c;
+  }
+
+  /// As points of all_points_. @pre no triangle is turned yet.
+  std::vector<std::vector<std::uint32_t>> rims_of_log() const {
+    std::vector<std::vector<std::uint32_t>> rims;
+    for (const auto& named : log_.rims) {
+      auto& rim = rims.emplace_back();
+      for (const std::uint32_t corner : named) {
+        require_triangle(corner / 3);
+        rim.push_back(input_[corner / 3][corner % 3]);
+      }
+    }
+    return rims;
+  }
+
+  /// One triangle, or a fan from the mean; triangles with repeated corners are left out.
+  void add_fan(const std::vector<std::uint32_t>& rim, std::vector<Corners>& fill) {
+    if (rim.size() == 3) {
+      fill.push_back({rim[0], rim[1], rim[2]});
+      return;
+    }
+    geom::Vec3 mean = geom::Vec3::Zero();
+    for (const std::uint32_t v : rim) {
+      const Point& p = all_points_[v];
+      mean += geom::Vec3(p.x(), p.y(), p.z()) / static_cast<double>(rim.size());
+    }
+    const std::uint32_t tip = point_at(mean);
+    for (std::size_t i = 0; i < rim.size(); ++i) {
+      const Corners c{rim[i], rim[(i + 1) % rim.size()], tip};
+      if (!repeated(c)) fill.push_back(c);
+    }
   }
 
   void require_triangle(std::uint32_t t) const {
@@ -353,6 +425,7 @@ class Replay {
 
   const Log& log_;
   ReplayResult report_;
+  std::map<std::array<double, 3>, std::uint32_t> known_;  // of all_points_, until holes are filled
   std::vector<Point> all_points_;
   std::vector<Corners> input_;
   std::vector<Point> points_;

@@ -13,14 +13,30 @@
 namespace kaboum::verify {
 namespace {
 
+using Corners = std::array<std::uint32_t, 3>;
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
+
+/// Of triangles with the same corners, as many of one orientation as it has more of than the other.
+std::vector<Corners> without_opposite_pairs(const std::vector<Corners>& triangles) {
+  std::map<Corners, std::int64_t> surplus;  // beginning with the smallest corner, then the middle
+  for (Corners c : triangles) {
+    std::rotate(c.begin(), std::ranges::min_element(c), c.end());
+    const bool even = c[1] < c[2];
+    if (!even) std::swap(c[1], c[2]);
+    surplus[c] += even ? 1 : -1;
+  }
+  std::vector<Corners> out;
+  for (const auto& [c, n] : surplus)
+    out.insert(out.end(), static_cast<std::size_t>(n < 0 ? -n : n),
+               n > 0 ? c : Corners{c[0], c[2], c[1]});
+  return out;
+}
 
 /// The boundary of the triangles, reversed: directed edges to be filled, each with its component
 /// (triangles joined by edges).
 class Holes {
  public:
-  explicit Holes(const std::vector<std::array<std::uint32_t, 3>>& triangles)
-      : component_(triangles.size()) {
+  explicit Holes(const std::vector<Corners>& triangles) : component_(triangles.size()) {
     std::iota(component_.begin(), component_.end(), std::size_t{0});
     std::map<Edge, std::pair<std::int64_t, std::size_t>> edges;  // balance, a triangle
     for (std::size_t t = 0; t < triangles.size(); ++t)
@@ -37,23 +53,20 @@ class Holes {
     }
   }
 
-  /// Whether the edges are to be filled, of one component, and pass no vertex twice.
-  [[nodiscard]] bool has(const std::vector<Edge>& rim) const {
-    std::set<std::uint32_t> corners;
+  /// Fills them once, if they are to be filled, of one component, and pass no vertex twice.
+  /// @return whether they are.
+  bool take(const std::vector<std::uint32_t>& rim) {
+    if (rim.size() < 3 || std::set(rim.begin(), rim.end()).size() != rim.size()) return false;
+    std::vector<std::int64_t*> left;
     std::optional<std::size_t> component;
-    for (const Edge& edge : rim) {
-      const auto at = open_.find(edge);
+    for (std::size_t k = 0; k < rim.size(); ++k) {
+      const auto at = open_.find({rim[k], rim[(k + 1) % rim.size()]});
       if (at == open_.end() || at->second.first == 0) return false;
       if (component.value_or(at->second.second) != at->second.second) return false;
       component = at->second.second;
-      if (!corners.insert(edge.first).second) return false;
+      left.push_back(&at->second.first);
     }
-    return true;
-  }
-  /// Fills them once. @return whether it has them.
-  bool take(const std::vector<Edge>& rim) {
-    if (!has(rim)) return false;
-    for (const Edge& edge : rim) --open_.at(edge).first;
+    for (std::int64_t* n : left) --*n;
     return true;
   }
 
@@ -67,107 +80,15 @@ class Holes {
   std::map<Edge, std::pair<std::int64_t, std::size_t>> open_;  // how often, component
 };
 
-/// Triangles with one corner in common, the tip, as preparing makes them: {loop[k], loop[k + 1],
-/// tip} or, turned, {loop[k], tip, loop[k + 1]}. Where the tip is on the loop, two are missing.
-class Fan {
- public:
-  /// The longest fan of triangles from `first` on.
-  Fan(const std::vector<geom::Triangle>& fill, std::size_t first, bool turned)
-      : turned_(turned), tip_(fill[first][turned ? 1 : 2]) {
-    for (std::size_t i = first; i < fill.size() && fill[i][turned ? 1 : 2] == tip_; ++i) {
-      const Edge edge{fill[i][0], fill[i][turned ? 2 : 1]};
-      if (!edges_.empty() && edges_.back().second != edge.first) {
-        if (gap_ != 0) break;
-        gap_ = edges_.size();
-      }
-      edges_.push_back(edge);
-      if (closed()) break;
-    }
-    if (!closed()) {  // the tip comes first or last, and what follows a gap is another fan
-      if (gap_ != 0) edges_.resize(gap_);
-      gap_ = edges_.size();
-    }
-  }
-
-  [[nodiscard]] std::size_t triangles() const { return edges_.size(); }
-  [[nodiscard]] std::uint32_t tip() const { return tip_; }
-
-  /// The loop's vertices, in its order.
-  [[nodiscard]] std::vector<std::uint32_t> loop() const {
-    std::vector<std::uint32_t> out;
-    for (std::size_t k = 0; k < edges_.size(); ++k) {
-      out.push_back(edges_[k].first);
-      if (k + 1 == gap_) {
-        out.push_back(edges_[k].second);
-        out.push_back(tip_);
-      }
-    }
-    return out;
-  }
-
-  /// Whether the tip is the mean of the loop, beginning with it or ending with it if it is there.
-  template <class PointOf>
-  [[nodiscard]] bool begins_at_mean(const PointOf& point) const {
-    std::vector<std::uint32_t> rim = loop();
-    for (int turn = 0; turn < 2; ++turn) {
-      geom::Vec3 mean = geom::Vec3::Zero();
-      for (const std::uint32_t v : rim) mean += point(v) / static_cast<double>(rim.size());
-      if (mean == point(tip_)) return true;
-      std::rotate(rim.begin(), rim.end() - 1, rim.end());
-    }
-    return false;
-  }
-
-  /// Of the rim, as the fan's triangles run through them.
-  [[nodiscard]] std::vector<Edge> rim() const {
-    const std::vector<std::uint32_t> vertices = loop();
-    std::vector<Edge> out;
-    for (std::size_t k = 0; k < vertices.size(); ++k) {
-      const std::uint32_t a = vertices[k], b = vertices[(k + 1) % vertices.size()];
-      out.push_back(turned_ ? Edge{b, a} : Edge{a, b});
-    }
-    return out;
-  }
-
- private:
-  [[nodiscard]] bool closed() const { return edges_.back().second == edges_.front().first; }
-
-  bool turned_;
-  std::uint32_t tip_;
-  std::vector<Edge> edges_;  // of the loop, in its order
-  std::size_t gap_ = 0;      // after so many edges comes the tip; 0: it is not on the loop
-};
-
 }  // namespace
 
-std::string find_wrong_fill(const std::vector<std::array<std::uint32_t, 3>>& triangles,
-                            const std::vector<geom::Vec3>& points, const bmesh::Log& log) {
-  const std::vector<geom::Triangle>& fill = log.filled_triangles;
-  std::vector<char> used(log.filled_vertices.size(), 0);
-  if (fill.empty() && used.empty()) return {};
-  const auto point = [&](std::uint32_t v) -> const geom::Vec3& {
-    return v < points.size() ? points[v] : log.filled_vertices[v - points.size()];
-  };
-  Holes holes(triangles);
-  for (std::size_t i = 0; i < fill.size();) {
-    const std::string what = "triangle " + std::to_string(i) + " of those that fill holes ";
-    const geom::Triangle& t = fill[i];
-    std::vector<Edge> rim{{t[0], t[1]}, {t[1], t[2]}, {t[2], t[0]}};
-    std::size_t count = 1;
-    if (!holes.has(rim)) {
-      const Fan fans[] = {{fill, i, false}, {fill, i, true}};
-      const Fan* fan = std::ranges::find_if(
-          fans, [&](const Fan& f) { return f.loop().size() > 3 && f.begins_at_mean(point); });
-      if (fan == std::end(fans))
-        return what + "is no hole, and begins no fan round a loop from its mean";
-      rim = fan->rim();
-      count = fan->triangles();
-      if (fan->tip() >= points.size()) used[fan->tip() - points.size()] = 1;
-    }
-    if (!holes.take(rim)) return what + "is, or begins a fan, on edges that are no hole's";
-    i += count;
-  }
-  if (std::ranges::find(used, 0) != used.end()) return "a vertex that is to fill a hole does not";
+std::string find_wrong_rim(const std::vector<std::array<std::uint32_t, 3>>& triangles,
+                           const std::vector<std::vector<std::uint32_t>>& rims) {
+  if (rims.empty()) return {};
+  Holes holes(without_opposite_pairs(triangles));
+  for (std::size_t i = 0; i < rims.size(); ++i)
+    if (!holes.take(rims[i]))
+      return "what is filled is no hole, the " + std::to_string(i + 1) + ". of the log";
   return {};
 }
 

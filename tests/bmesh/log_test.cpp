@@ -18,8 +18,8 @@ Log sample() {
   log.tool = "test 1";
   log.dropped = {3, 9};
   log.turned = {1};
-  log.filled_vertices = {{0.5, 1, 2}};
-  log.filled_triangles = {{0, 1, 5}, {1, 2, 5}};
+  log.rims = {{0, 1, 5}, {1, 2, 5, 7}};
+  log.turned_after_filling = {1, 12};
   log.steps = {{1, 2, {0.1, -0.0, 1e300}}, {4, 4, {1, 2, 3}}};
   return log;
 }
@@ -32,8 +32,8 @@ TEST(Log, SurvivesARoundTrip) {
   EXPECT_EQ(back.tool, log.tool);
   EXPECT_EQ(back.dropped, log.dropped);
   EXPECT_EQ(back.turned, log.turned);
-  EXPECT_EQ(back.filled_vertices, log.filled_vertices);
-  EXPECT_EQ(back.filled_triangles, log.filled_triangles);
+  EXPECT_EQ(back.rims, log.rims);
+  EXPECT_EQ(back.turned_after_filling, log.turned_after_filling);
   ASSERT_EQ(back.steps.size(), 2U);
   EXPECT_EQ(back.steps[0].gone, 2U);
   EXPECT_EQ(back.steps[0].position, log.steps[0].position);

@@ -223,7 +223,7 @@ TEST(Replay, FillsHoles) {
     }
     if (p.filled_triangles == 0) continue;
     Log log = test::log_of_preparation(f.mesh, p, Direction::Outer);
-    EXPECT_EQ(log.filled_triangles.size(), p.filled_triangles);
+    EXPECT_EQ(log.rims.size(), p.holes);
     DecimateOptions options;
     options.vertices = std::max<std::size_t>(p.mesh.vertices.size() / 2, 4);
     options.steps = &log.steps;
@@ -234,111 +234,152 @@ TEST(Replay, FillsHoles) {
     EXPECT_TRUE(checked.closed) << f.name;
     EXPECT_EQ(checked.filled, p.filled_triangles);
     Log mutant = log;
-    mutant.filled_triangles.pop_back();
+    mutant.rims.pop_back();
     EXPECT_FALSE(replay(f.mesh, mutant, result).verified) << f.name;
     mutant = log;
-    std::swap(mutant.filled_triangles[0][0], mutant.filled_triangles[0][1]);
+    std::ranges::reverse(mutant.rims[0]);
     EXPECT_FALSE(replay(f.mesh, mutant, result).verified) << f.name;
     mutant = log;
-    mutant.filled_triangles[0][0] = 1U << 30;
+    mutant.rims[0].pop_back();
+    EXPECT_FALSE(replay(f.mesh, mutant, result).verified) << f.name;
+    mutant = log;
+    mutant.rims[0][0] = 1U << 30;
     EXPECT_THROW(replay(f.mesh, mutant, result), Error) << f.name;
-    if (!log.filled_vertices.empty()) {
-      mutant = log;
-      mutant.filled_vertices[0].x() = std::nan("");
-      EXPECT_FALSE(replay(f.mesh, mutant, result).verified) << f.name;
-      EXPECT_THROW(parse_log(serialise_log(mutant), "the log"), Error);
-    }
   }
 }
 
-// The triangles of a log without steps: the input's, then what fills its holes.
-geom::Mesh filled_by(const geom::Mesh& input, const Log& log) {
-  geom::Mesh out = input;
-  out.vertices.insert(out.vertices.end(), log.filled_vertices.begin(), log.filled_vertices.end());
-  out.triangles.insert(out.triangles.end(), log.filled_triangles.begin(),
-                       log.filled_triangles.end());
-  return out;
-}
-
-// What fills holes decides about the solid: fills that close every edge, but are no fans on the
-// holes' rims from their means, are refused.
-TEST(Replay, RefusesFillsThatAreNoFans) {
-  geom::Mesh box;  // without its top
+geom::Mesh box_without_top() {
+  geom::Mesh box;
   for (const double z : {0.0, 1.0})
     for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}})
       box.vertices.emplace_back(x, y, z);
   box.triangles = {{0, 2, 1}, {0, 3, 2}, {0, 1, 5}, {0, 5, 4}, {1, 2, 6},
                    {1, 6, 5}, {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7}};
-  // Numbered as the replay does: by first use.
-  const std::array<std::uint32_t, 8> number{0, 2, 1, 3, 5, 4, 6, 7};
-  geom::Mesh input;
-  input.vertices.resize(8);
-  for (std::size_t v = 0; v < 8; ++v) input.vertices[number[v]] = box.vertices[v];
-  for (const geom::Triangle& t : box.triangles)
-    input.triangles.push_back({number[t[0]], number[t[1]], number[t[2]]});
+  return box;
+}
 
+// What fills holes decides about the solid: whatever closes the mesh, but is no fan on the rim of a
+// hole from its mean, is refused.
+TEST(Replay, RefusesFillsThatAreNoFans) {
+  const geom::Mesh input = box_without_top();
   geom::PrepareOptions options;
   options.holes = geom::Holes::Fill;
   const geom::Prepared p = geom::prepare(input, options);
   const Log log = test::log_of_preparation(input, p, Direction::Outer);
-  ASSERT_EQ(log.filled_triangles.size(), 4U);
-  ASSERT_EQ(log.filled_vertices.size(), 1U);
-  const auto judged = [&](const Log& l) { return replay(input, l, filled_by(input, l)); };
-  ASSERT_TRUE(judged(log).verified) << judged(log).violation;
+  ASSERT_EQ(log.rims.size(), 1U);
+  const std::vector<std::uint32_t> rim = log.rims[0];
+  ASSERT_EQ(rim.size(), 4U);
+  ASSERT_TRUE(replay(input, log, p.mesh).verified) << replay(input, log, p.mesh).violation;
   const auto refused = [&](const Log& l, const char* why) {
-    const auto checked = judged(l);
+    const auto checked = replay(input, l, p.mesh);
     EXPECT_FALSE(checked.verified) << why;
     EXPECT_NE(checked.violation.find(why), std::string::npos) << checked.violation;
   };
-  const auto rim = [&](std::size_t k) { return log.filled_triangles[k][0]; };
 
-  Log mutant = log;  // a tip below the bottom takes the inside from the solid
-  mutant.filled_vertices[0].z() = -5;
-  refused(mutant, "from its mean");
-  mutant = log;
-  mutant.filled_vertices[0].z() = std::nextafter(1.0, 0.0);
-  refused(mutant, "from its mean");
-
-  mutant = log;  // triangles in another order: still a fan, but not in the order of its rim
-  std::swap(mutant.filled_triangles[1], mutant.filled_triangles[2]);
-  refused(mutant, "from its mean");
-
-  mutant = log;  // two triangles instead of the fan: the rim is not theirs alone
-  mutant.filled_vertices.clear();
-  mutant.filled_triangles = {{rim(0), rim(1), rim(2)}, {rim(2), rim(3), rim(0)}};
-  refused(mutant, "of those that fill holes");
-
-  // A shell that is inside out, hung on the fan by an edge that both have.
-  for (const bool apart : {false, true}) {
-    mutant = log;
-    const std::uint32_t tip = log.filled_triangles[0][2], far = tip + 1;
-    mutant.filled_vertices.emplace_back(0.5, 0.5, apart ? 0.1 : -9);
-    mutant.filled_triangles.push_back({rim(0), tip, far});
-    mutant.filled_triangles.push_back({rim(0), rim(1), tip});
-    mutant.filled_triangles.push_back({tip, rim(1), far});
-    mutant.filled_triangles.push_back({rim(1), rim(0), far});
-    refused(mutant, "of those that fill holes");
+  for (const double z : {-5.0, std::nextafter(1.0, 0.0)}) {  // the tip follows from the rim
+    geom::Mesh other = p.mesh;
+    other.vertices.back().z() = z;
+    const auto checked = replay(input, log, other);
+    EXPECT_FALSE(checked.verified);
+    EXPECT_NE(checked.violation.find("not those of the result"), std::string::npos);
   }
 
-  mutant = log;  // a vertex besides
-  mutant.filled_vertices.emplace_back(0, 0, 9);
-  refused(mutant, "does not");
+  Log mutant = log;  // two triangles instead of the fan: the rim is not theirs alone
+  mutant.rims = {{rim[0], rim[1], rim[2]}, {rim[2], rim[3], rim[0]}};
+  refused(mutant, "is no hole");
+  mutant = log;  // a loop to and fro
+  mutant.rims.push_back({rim[0], rim[1]});
+  refused(mutant, "is no hole");
+  mutant = log;  // a vertex twice
+  mutant.rims[0].insert(mutant.rims[0].end(), rim.begin(), rim.end());
+  refused(mutant, "is no hole");
+  mutant = log;  // the hole twice, once backwards: closed as well
+  mutant.rims.push_back(rim);
+  refused(mutant, "is no hole");
+  mutant.rims[1] = {rim[0], rim[3], rim[2], rim[1]};
+  mutant.rims.push_back(rim);
+  refused(mutant, "is no hole");
+  mutant = log;  // on edges of a closed part
+  mutant.rims.push_back({0, 1, 2});
+  refused(mutant, "is no hole");
+  mutant = log;  // not closed
+  mutant.rims.clear();
+  refused(mutant, "not those of the result");
 
-  // Three fans that close one another, on edges of a closed mesh.
+  // Later turns are of closed chains: the fan alone is none, nor is what leaves a part out.
   mutant = log;
-  const std::uint32_t tip = log.filled_triangles[0][2];
-  const std::array<std::vector<std::uint32_t>, 3> paths{
-      {{rim(0), rim(1), rim(2)}, {rim(0), tip, rim(2)}, {rim(0), rim(3), rim(2)}}};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const auto &there = paths[k], &back = paths[(k + 1) % 3];
-    const std::vector<std::uint32_t> loop{there[0], there[1], there[2], back[1]};
-    const auto center =
-        static_cast<std::uint32_t>(input.vertices.size() + mutant.filled_vertices.size());
-    mutant.filled_vertices.emplace_back(0.5, 0.5, 3 - 2.0 * static_cast<double>(k));
-    for (std::size_t i = 0; i < 4; ++i)
-      mutant.filled_triangles.push_back({loop[i], loop[(i + 1) % 4], center});
+  mutant.turned_after_filling = {10, 11, 12, 13};
+  refused(mutant, "no closed chain");
+  mutant = log;
+  for (std::uint32_t t = 0; t < 13; ++t) mutant.turned_after_filling.push_back(t);
+  refused(mutant, "is no hole");
+  mutant = log;  // as if the input had been inside out when it was filled
+  for (std::uint32_t t = 0; t < 14; ++t) mutant.turned_after_filling.push_back(t);
+  refused(mutant, "is no hole");
+  mutant = log;
+  mutant.turned_after_filling = {14};
+  refused(mutant, "is not there");
+  mutant.turned_after_filling = {3, 3};
+  EXPECT_THROW(replay(input, mutant, p.mesh), Error);
+}
+
+/// Three tetrahedra round the edge that they share, apart elsewhere. Each has faces missing, as the
+/// bits of its two digits (base 4) of `missing` say, and is inside out where its bit of `turned` is
+/// set.
+geom::Mesh tetrahedra_round_an_edge(unsigned missing, unsigned turned) {
+  geom::Mesh mesh;
+  mesh.vertices = {{0, 0, 0}, {0, 0, 1}};
+  const std::array<std::pair<double, double>, 6> round{
+      {{2, 0}, {1, 2}, {-1, 2}, {-2, 0}, {-1, -2}, {1, -2}}};
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    const std::uint32_t k = 2 + 2 * i;
+    for (std::size_t j = 0; j < 2; ++j)
+      mesh.vertices.emplace_back(round[2 * i + j].first, round[2 * i + j].second,
+                                 0.25 * static_cast<double>(1 + j));
+    const std::array<geom::Triangle, 4> faces{
+        {{0, 1, k + 1}, {0, k, 1}, {0, k + 1, k}, {1, k, k + 1}}};
+    const std::array<std::array<bool, 4>, 4> present{{{true, true, true, true},
+                                                      {false, true, true, true},
+                                                      {true, false, true, true},
+                                                      {false, true, false, true}}};
+    for (std::size_t j = 0; j < 4; ++j) {
+      if (!present[missing >> 2 * i & 3U][j]) continue;
+      geom::Triangle t = faces[j];
+      if ((turned >> i & 1U) != 0) std::swap(t[1], t[2]);
+      mesh.triangles.push_back(t);
+    }
   }
-  refused(mutant, "of those that fill holes");
+  return mesh;
+}
+
+// Shells that share a rim, and are turned against each other after its holes are filled.
+TEST(Replay, FillsHolesOfShellsTurnedLater) {
+  geom::PrepareOptions fill;
+  fill.holes = geom::Holes::Fill;
+  std::size_t fans_turned = 0;
+  for (unsigned missing = 1; missing < 64; ++missing)
+    for (unsigned turned = 0; turned < 8; ++turned) {
+      const geom::Mesh input = tetrahedra_round_an_edge(missing, turned);
+      geom::Prepared p;
+      try {
+        p = geom::prepare(input, fill);
+      } catch (const Error&) {
+        continue;  // what was meant cannot be told
+      }
+      const Log log = test::log_of_preparation(input, p, Direction::Outer);
+      const auto checked = replay(input, log, p.mesh);
+      EXPECT_TRUE(checked.verified) << missing << ' ' << turned << ": " << checked.violation;
+      EXPECT_EQ(checked.filled, p.filled_triangles);
+      if (log.turned_after_filling.empty()) continue;
+      Log mutant = log;
+      mutant.turned_after_filling.pop_back();
+      EXPECT_FALSE(replay(input, mutant, p.mesh).verified) << missing << ' ' << turned;
+      if (log.turned_after_filling.back() < input.triangles.size()) continue;  // a closed shell
+      ++fans_turned;
+      mutant.turned_after_filling.clear();
+      EXPECT_FALSE(replay(input, mutant, p.mesh).verified) << missing << ' ' << turned;
+    }
+  EXPECT_GT(fans_turned, 100U);
 }
 
 TEST(Replay, RefusesNonsense) {

@@ -8,7 +8,7 @@
 namespace kaboum::bmesh {
 namespace {
 
-constexpr std::string_view kMagic = "KABOUM-BMESH-LOG 3\n";
+constexpr std::string_view kMagic = "KABOUM-BMESH-LOG 4\n";
 // A kind, then: Contract two vertices and a position, Flip four vertices.
 constexpr std::size_t kContractSize = 1 + 2 * 4 + 3 * 8;
 constexpr std::size_t kFlipSize = 1 + 4 * 4;
@@ -26,25 +26,21 @@ void record_preparation(const geom::Prepared& prepared, std::size_t input_triang
   std::sort(log.turned.begin(), log.turned.end());
   for (std::uint32_t t = 0; t < input_triangles; ++t)
     if (kept[t] == 0) log.dropped.push_back(t);
-  log.filled_vertices.assign(
-      prepared.mesh.vertices.end() - static_cast<std::ptrdiff_t>(prepared.filled_vertices),
-      prepared.mesh.vertices.end());
-  log.filled_triangles.assign(
-      prepared.mesh.triangles.end() - static_cast<std::ptrdiff_t>(prepared.filled_triangles),
-      prepared.mesh.triangles.end());
+  log.rims = prepared.rims;
+  log.turned_after_filling = prepared.turned_after_filling;
 }
 
 void write_log(Writer& w, const Log& log) {
   w.out.reserve(w.out.size() + 256 + kContractSize * log.steps.size() +
-                4 * (log.dropped.size() + log.turned.size()) + 24 * log.filled_vertices.size() +
-                12 * log.filled_triangles.size());
+                4 * (log.dropped.size() + log.turned.size() + log.turned_after_filling.size()));
   w.number(static_cast<std::uint32_t>(log.direction));
   w.text(log.input_sha256);
   w.text(log.tool);
   w.indices(log.dropped);
   w.indices(log.turned);
-  w.points(log.filled_vertices);
-  w.triangles(log.filled_triangles);
+  w.number(static_cast<std::uint64_t>(log.rims.size()));
+  for (const auto& rim : log.rims) w.indices(rim);
+  w.indices(log.turned_after_filling);
   w.number(static_cast<std::uint64_t>(log.steps.size()));
   for (const Step& s : log.steps) {
     w.number(static_cast<std::uint8_t>(s.kind));
@@ -68,8 +64,9 @@ Log read_log(Reader& r) {
   log.tool = r.text();
   log.dropped = r.indices();
   log.turned = r.indices();
-  log.filled_vertices = r.points();
-  log.filled_triangles = r.triangles();
+  log.rims.resize(r.count(sizeof(std::uint64_t)));
+  for (auto& rim : log.rims) rim = r.indices();
+  log.turned_after_filling = r.indices();
   log.steps.resize(r.count(kFlipSize));
   for (Step& s : log.steps) {
     const auto kind = r.number<std::uint8_t>();
@@ -96,7 +93,7 @@ std::vector<char> serialise_log(const Log& log) {
 
 Log parse_log(std::span<const char> bytes, const std::string& name) {
   Reader r(bytes, name);
-  r.refuse_earlier("KABOUM-BMESH-LOG ", {"1", "2"}, "a log");
+  r.refuse_earlier("KABOUM-BMESH-LOG ", {"1", "2", "3"}, "a log");
   r.magic(kMagic, "a log of bmesh-decimate");
   Log log = read_log(r);
   r.end();

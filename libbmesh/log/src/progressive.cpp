@@ -10,7 +10,7 @@
 namespace kaboum::bmesh {
 namespace {
 
-constexpr std::string_view kMagic = "KABOUM-BMESH-PROGRESSIVE 3\n";
+constexpr std::string_view kMagic = "KABOUM-BMESH-PROGRESSIVE 4\n";
 
 }  // namespace
 
@@ -33,7 +33,7 @@ std::vector<char> serialise_progressive(const Progressive& p) {
 
 Progressive parse_progressive(std::span<const char> bytes, const std::string& name) {
   Reader r(bytes, name);
-  r.refuse_earlier("KABOUM-BMESH-PROGRESSIVE ", {"1", "2"}, "a progressive file");
+  r.refuse_earlier("KABOUM-BMESH-PROGRESSIVE ", {"1", "2", "3"}, "a progressive file");
   r.magic(kMagic, "a progressive file of bmesh-decimate");
   r.checksum();
   Progressive p;

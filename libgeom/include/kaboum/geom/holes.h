@@ -3,6 +3,8 @@
 #include <kaboum/geom/mesh.h>
 
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 namespace kaboum::geom {
 
@@ -10,9 +12,10 @@ namespace kaboum::geom {
 struct FilledHoles {
   /// The mesh's vertices and triangles, unchanged and first, then what fills the holes.
   Mesh mesh;
-  std::size_t holes = 0;           ///< loops of unbalanced edges
-  double largest = 0;              ///< diagonal of the largest hole's box [length]
-  Vec3 largest_at = Vec3::Zero();  ///< middle of the largest hole
+  std::size_t holes = 0;                         ///< loops of unbalanced edges
+  std::vector<std::vector<std::uint32_t>> rims;  ///< their vertices, as the fill runs round them
+  double largest = 0;                            ///< diagonal of the largest hole's box [length]
+  Vec3 largest_at = Vec3::Zero();                ///< middle of the largest hole
 };
 
 /// Every loop of unbalanced edges gets a fan of triangles round the loop's centroid; loops do not

@@ -43,9 +43,15 @@ struct Prepared {
   std::size_t turned_cavities = 0;        ///< shells turned along with those that they lie in
   std::size_t turned_triangles = 0;       ///< against their neighbours or in a turned component
   std::size_t holes = 0;                  ///< filled
-  std::size_t filled_triangles = 0;       ///< that fill them: the last ones of the mesh
-  std::size_t filled_vertices = 0;        ///< that only those use: the last ones of the mesh
-  double largest_hole = 0;                ///< diagonal of its box [length]
+  /// Of each of those, the vertices in the order of fill_holes: vertex k of input triangle t is
+  /// 3 t + k.
+  std::vector<std::vector<std::uint32_t>> rims;
+  /// Triangles that were turned after holes had been filled, ascending: input triangles, and
+  /// numbered on from those the ones that fill holes.
+  std::vector<std::uint32_t> turned_after_filling;
+  std::size_t filled_triangles = 0;  ///< that fill them: the last ones of the mesh
+  std::size_t filled_vertices = 0;   ///< that only those use: the last ones of the mesh
+  double largest_hole = 0;           ///< diagonal of its box [length]
   std::vector<std::string> notes;
 };
 

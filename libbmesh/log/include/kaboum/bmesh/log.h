@@ -46,9 +46,12 @@ struct Log {
   std::string tool;                    ///< program and version
   std::vector<std::uint32_t> dropped;  ///< input triangles left out, ascending
   std::vector<std::uint32_t> turned;   ///< input triangles with reversed orientation, ascending
-  /// What fills holes: vertices, numbered on from those of the triangles left, and triangles.
-  std::vector<geom::Vec3> filled_vertices;
-  std::vector<geom::Triangle> filled_triangles;
+  /// The holes that were filled: vertices round each, as the fill runs; corner k of input triangle
+  /// t is 3 t + k. Three are a triangle, more a fan from their mean, {rim[i], rim[i + 1], mean}.
+  std::vector<std::vector<std::uint32_t>> rims;
+  /// Triangles turned after that, ascending: of the input, where `turned` counts those turns as
+  /// well, and numbered on from these the ones that fill holes (without repeated corners).
+  std::vector<std::uint32_t> turned_after_filling;
   std::vector<Step> steps;
 };
 
