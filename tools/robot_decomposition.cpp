@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <set>
 #include <string_view>
 
 #include "file_names.h"
@@ -60,6 +61,7 @@ class Writer {
     for (const auto& [file, set] : containers_)
       io::write_convex_set(o_.folder / file, set, io::SetFormat::Glb);
     write_urdf();
+    note_stale();
     result_.report["bodies"] = total_bodies_;
     result_.report["vertices"] = total_vertices_;
     result_.report["meshes"] = meshes_.size();
@@ -270,6 +272,28 @@ class Writer {
     document_.Print(&printer);
     io::write_file(urdf_, std::string_view(printer.CStr()));
     result_.report["urdf"] = urdf_.string();
+  }
+
+  /// Names what is in bodies/ and links/ and not of this result, as an earlier one with other
+  /// options leaves it. It stays: it may be somebody's own.
+  void note_stale() {
+    std::set<fs::path> written;
+    for (const Stored* s : order_) written.insert(fs::path("bodies") / s->name);
+    for (const auto& container : containers_) written.insert(container.first);
+    std::vector<std::string> stale;
+    for (const char* part : {"bodies", "links"}) {
+      std::error_code error;
+      for (const auto& entry : fs::directory_iterator(o_.folder / part, error)) {
+        const fs::path name = fs::path(part) / entry.path().filename();
+        if (!written.contains(name)) stale.push_back(name.generic_string());
+      }
+    }
+    std::ranges::sort(stale);
+    result_.report["stale"] = stale;
+    if (!stale.empty())
+      result_.notes.push_back(o_.folder.string() + ": " + names_of(stale) +
+                              (stale.size() == 1 ? " is" : " are") +
+                              " not of this result (perhaps of an earlier one), and left there");
   }
 
   const RobotDecomposition& o_;

@@ -52,6 +52,7 @@ struct RobotResult {
 /// and
 ///   scale of the shape that they stand for, so that the inclusion holds without rounding; boxes,
 ///   cylinders and spheres stay. Relative names of other files are adapted to the folder.
+/// What else is in bodies/ and links/ stays, and is named in the notes and the report (`stale`).
 ///
 /// @throws Error naming the file; nothing but complete files is left behind.
 RobotResult decompose_robot(const RobotDecomposition& options, const MeshDecomposer& decompose);

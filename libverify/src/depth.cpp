@@ -15,6 +15,9 @@ namespace {
 /// Enough for most bodies that overlap; which of their triangles bound what is left out takes far
 /// longer to tell than this.
 constexpr std::size_t kFewCells = 150'000;
+/// What is not decided with so many, seldom is with more: boxes beside triangles that lie in the
+/// solid in part, and are no targets, halve for ever.
+constexpr std::size_t kMostCells = 400'000;
 
 /// The triangles of both chains nearest to the witness.
 void name_nearest(const Scene& scene, Claim& claim) {
@@ -78,7 +81,7 @@ Claim verify_depth(const geom::Mesh& original, const geom::ConvexSet& set, doubl
     claim.reason = "no triangle of the original is known to bound its solid";
     return claim;
   }
-  claim = search(offending_faces(scene, without.solid), options.max_cells);
+  claim = search(offending_faces(scene, without.solid), std::min(kMostCells, options.max_cells));
   if (claim.answer != Answer::Refuted) return claim;
   claim.inner_triangles = without.solid.inner_triangles;
   claim.outer_triangles = without.solid.outer_triangles;

@@ -235,6 +235,12 @@ expect 0 'verified' "$BIN/bound-verify" --cover wrap/b/m.wrl wrapped/links/l.glb
 expect 0 'of 1 link, from 1 mesh$' "$D" robot/r.urdf -o some --links arm/1 --epsilon 3% --effort fast
 grep -q 'filename="../robot/meshes/bracket.obj"' some/r.urdf || fail "a link that was not asked for is changed"
 expect 0 'verified' "$V" --robot robot/r.urdf some/r.urdf
+expect 0 'from 2 meshes' "$D" robot/r.urdf -o rerun --epsilon 3% --effort fast
+grep -q 'not of this result' err.txt && fail "stale files in a new folder"
+expect 0 "rerun: 'bodies/bracket' and 'links/base.glb' are not of this result" "$D" robot/r.urdf -o rerun --links arm/1 \
+  --epsilon 3% --effort fast --report rerun.json
+[ -f rerun/links/base.glb ] || fail "a file is gone that may be somebody's own"
+grep -q '"links/base.glb"' rerun.json || fail "no word of what is stale in the report"
 expect 2 "no link 'leg'" "$D" robot/r.urdf -o x --links arm/1,leg
 expect 2 'for robots' "$D" robot/meshes/t.off -o x --links a
 
