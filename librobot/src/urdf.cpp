@@ -7,6 +7,8 @@
 #include <kaboum/robot/robot.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -44,6 +46,36 @@ void refuse_xacro(const XMLElement& element, const std::string& name) {
     refuse_xacro(*e, name);
 }
 
+/// Whether an element, or one below it, has a name of what makes links and shapes, whatever its
+/// case.
+bool holds_shapes(const XMLElement& element) {
+  std::string tag = element.Name();
+  std::transform(tag.begin(), tag.end(), tag.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const char* kind : {"link", "joint", "collision", "visual", "geometry", "mesh", "include"})
+    if (tag == kind || tag.ends_with(std::string(":") + kind)) return true;
+  for (const auto* e = element.FirstChildElement(); e != nullptr; e = e->NextSiblingElement())
+    if (holds_shapes(*e)) return true;
+  return false;
+}
+
+/// Elements that readers pass over, and the shapes in them with it. Extensions for simulators
+/// (<gazebo>, <transmission>, <sensor> ...) describe no shapes of the robot.
+void refuse_unread(const XMLElement& parent, std::initializer_list<std::string_view> read,
+                   const std::string& name) {
+  for (const auto* e = parent.FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
+    const std::string_view tag = e->Name();
+    if (std::find(read.begin(), read.end(), tag) != read.end()) continue;
+    if (tag == "gazebo" || tag == "transmission" || tag == "sensor" || tag == "ros2_control")
+      continue;
+    if (holds_shapes(*e))
+      fail_at(name, e->GetLineNum(),
+              std::string(parent.Name()).insert(0, "> in <").insert(0, tag).insert(0, "<") +
+                  "> is no element of URDF, and readers leave out what is in it: links and shapes "
+                  "would be lost");
+  }
+}
+
 struct Mimicry {
   std::string leader;
   double multiplier, offset;
@@ -64,6 +96,7 @@ class Elements {
   explicit Elements(const std::string& name) : name_(name), file_(name) {}
 
   void read(const XMLElement& root) {
+    refuse_unread(root, {"link", "joint"}, name_);
     for (const auto* e = root.FirstChildElement("link"); e != nullptr;
          e = e->NextSiblingElement("link")) {
       const std::string link = file_.text(*e, "name");
@@ -108,6 +141,10 @@ class Elements {
       fail_at(
           name_, e->NextSiblingElement()->GetLineNum(),
           place + "a second shape in one <geometry>: give it a <" + shape.Name() + "> of its own");
+    if (e->FirstChildElement() != nullptr)
+      fail_at(name_, e->FirstChildElement()->GetLineNum(),
+              place + "<" + e->FirstChildElement()->Name() + "> in <" + e->Name() +
+                  "> means nothing: an <origin> belongs beside <geometry>");
     Geometry g;
     g.line = e->GetLineNum();
     g.origin = read_origin(shape);
@@ -139,6 +176,7 @@ class Elements {
   }
 
   [[nodiscard]] Link read_link(const XMLElement& element, const std::string& link) const {
+    refuse_unread(element, {"collision", "visual"}, name_);
     Link out;
     out.name = link;
     for (const auto& [tag, to] :
@@ -324,6 +362,9 @@ Robot parse_urdf(std::string_view text, const std::string& name) {
   const XMLElement& root = *xml.RootElement();
   if (std::string(root.Name()) != "robot")
     fail_at(name, root.GetLineNum(), std::string("expected <robot>, found <") + root.Name() + ">");
+  if (const auto* more = root.NextSiblingElement(); more != nullptr)
+    fail_at(name, more->GetLineNum(),
+            std::string("<") + more->Name() + "> after </robot>: a file holds one robot");
   refuse_xacro(root, name);
   refuse_quaternions(root, name);
   const XmlFile file(name);

@@ -183,6 +183,23 @@ TEST(Urdf, BadFilesAreRefused) {
       "r.urdf:2: <sphere>: radius is 'x', no finite number");
   has(robot_of(kLinks + "\n<gazebo><xacro:if value='1'/></gazebo>"), "r.urdf:2: <xacro:if>");
   has(robot_of("<link name='${prefix}a'/>"), "run: xacro");
+  // What readers would leave out without a word.
+  const std::string box = "<geometry><box size='1 1 1'/></geometry>";
+  has(robot_of("<link name='a'>\n<Collision>" + box + "</Collision></link>"), ":2: <Collision>");
+  has(robot_of("<link name='a'><group><collision>" + box + "</collision></group></link>"),
+      "<group>");
+  has(robot_of("<link name='a'/><include filename='b.urdf'/>"), "<include>");
+  has(robot_of("<link name='a'/><xi:include href='b.urdf'/>"), "<xi:include>");
+  has(robot_of("<link name='a'><link name='b'/></link>"), "<link> in <link>");
+  has(robot_of("<link name='a'/><group><joint name='j'/></group>"), "<group>");
+  has(robot_of("<link name='a'><collision><geometry><mesh filename='m.stl'><origin xyz='0 0 1'/>"
+               "</mesh></geometry></collision></link>"),
+      "belongs beside <geometry>");
+  has(robot_of("<link name='a'/>") + robot_of("<link name='b'/>"), "one robot");
+  EXPECT_EQ(message(robot_of("<link name='a'/><gazebo reference='a'><visual/></gazebo>"
+                             "<transmission name='t'><joint name='j'/></transmission>"
+                             "<material name='grey'/>")),
+            "no error");
   has(robot_of("<link name='a'><visual><geometry><mesh filename='$(find p)/m.stl'/></geometry>"
                "</visual></link>"),
       "run: xacro");

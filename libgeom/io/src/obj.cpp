@@ -95,6 +95,8 @@ class ObjReader {
     for (std::string_view token = scan_.token_on_line(); !token.empty();
          token = scan_.token_on_line())
       corners_.push_back(corner(token.substr(0, token.find('/'))));
+    if (corners_.size() < 3)
+      fail(source_, where, "a face with fewer than three corners; the file is damaged");
     builder_.add_face(corners_, where);
   }
 
