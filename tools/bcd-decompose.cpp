@@ -222,7 +222,8 @@ struct Outcome {
   std::string hash;
   certify::CertifiedSet made;
   bool cached = false;
-  Json report;  ///< of the certificate, with what reading noted
+  Json report;                           ///< of the certificate, with what reading noted
+  std::vector<std::string> other_files;  ///< read besides the mesh
 };
 
 /// float32 cannot hold the bodies closely enough: a valid "no", nothing is written.
@@ -236,6 +237,7 @@ Outcome decompose_mesh(const Options& o) {
   for (const std::string& text : read.notes) note(o, text);
   Outcome out;
   out.hash = io::sha256(bytes);
+  out.other_files = read.other_files;
   tools::Progress progress(o.common.quiet);
   const certify::Hooks hooks{[&](const std::string& stage) { progress.show(stage); },
                              [&](const std::string& text) { note(o, text); }};
@@ -330,7 +332,8 @@ int decompose_robot(const Options& o) {
         mesh.min_thickness = o.min_thickness / scale.minCoeff() * (1 + 1e-12);
         Outcome out = decompose_mesh(mesh);
         const certify::SetCertificate& certificate = out.made.certificate;
-        tools::MeshBodies bodies{std::move(out.made.set), std::move(out.report)};
+        tools::MeshBodies bodies{std::move(out.made.set), std::move(out.report),
+                                 std::move(out.other_files)};
         tools::log(o.common.quiet, mesh.input + ": " + summary(certificate) +
                                        (out.cached ? " (from the cache)" : ""));
         if (const std::string why = certificate.shortfall(); !why.empty()) {
@@ -409,7 +412,11 @@ int decompose(const Options& o) {
     report["cached"] = out.cached;
     add_run(o, report);
   }
-  if (!o.depfile.empty()) tools::write_depfile(o.depfile, {o.output}, {o.input});
+  if (!o.depfile.empty()) {
+    std::vector<std::string> inputs{o.input};
+    inputs.insert(inputs.end(), out.other_files.begin(), out.other_files.end());
+    tools::write_depfile(o.depfile, {o.output}, inputs);
+  }
   if (format == io::SetFormat::Glb) {
     io::write_file(o.output, out.made.container);
   } else {

@@ -336,7 +336,9 @@ class Job {
     files.emplace_back(o_.depfile, [&] {
       std::vector<std::string> targets = outputs_;
       if (!o_.progressive.empty()) targets.push_back(o_.progressive);
-      tools::write_depfile(o_.depfile, targets, {o_.input});
+      std::vector<std::string> inputs{o_.input};
+      inputs.insert(inputs.end(), input_.other_files.begin(), input_.other_files.end());
+      tools::write_depfile(o_.depfile, targets, inputs);
     });
     for (const Level& level : levels_)
       files.emplace_back(level.file, [&level] { io::write_file(level.file, level.bytes); });

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <iostream>
 #include <new>
+#include <set>
 #include <sstream>
 
 #include "help.h"
@@ -336,8 +337,9 @@ void write_depfile(const std::string& path, const std::vector<std::string>& targ
   for (const std::string& target : targets)
     if (!target.empty()) text += (text.empty() ? "" : " ") + escaped(target);
   text += ":";
+  std::set<std::string> listed{"-"};
   for (const std::string& input : inputs)
-    if (input != "-") text += " " + escaped(input);
+    if (listed.insert(input).second) text += " " + escaped(input);
   text += "\n";
   io::write_file(path, text);
 }

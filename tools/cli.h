@@ -123,7 +123,8 @@ void write_json(const std::string& path, const Json& json);
 void require_apart(const std::vector<std::pair<std::string, std::string>>& outputs,
                    const std::vector<std::string>& inputs);
 
-/// A Makefile rule saying that the targets (empty names are none) depend on `inputs`.
+/// A Makefile rule saying that the targets (empty names are none) depend on `inputs`, each listed
+/// once.
 void write_depfile(const std::string& path, const std::vector<std::string>& targets,
                    const std::vector<std::string>& inputs);
 

@@ -130,7 +130,11 @@ std::vector<fs::path> find_mesh(const std::string& reference, const fs::path& ro
                                 const std::vector<std::string>& packages) {
   const auto fail = [&](const std::string& why) -> std::vector<fs::path> {
     throw Error(ErrorCode::InvalidInput,
-                robot.string() + ": no mesh file for '" + reference + "': " + why);
+                robot.string() + ": no mesh file for '" + reference + "': " + why +
+                    (reference.find("%20") != std::string::npos
+                         ? "; %20 stands for a blank in URIs, but is not decoded here: name the "
+                           "file with a blank"
+                         : ""));
   };
   const fs::path folder = robot.has_parent_path() ? robot.parent_path() : fs::path(".");
   const std::string file = "file://", package = "package://";

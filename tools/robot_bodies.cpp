@@ -17,14 +17,16 @@ namespace {
 namespace fs = std::filesystem;
 using robot::Geometry;
 
-/// The certified bodies of a mesh.
+/// The certified bodies of a mesh. Appends the files read to `files`.
 geom::ConvexSet decompose(const fs::path& mesh, const BodyOptions& options, geom::Length epsilon,
-                          Notes& notes) {
+                          Notes& notes, std::vector<std::string>& files) {
   const std::string file = mesh.string();
   const auto note = [&](const std::string& text) { notes.add(file, text); };
   std::vector<char> bytes;
   const io::ReadResult read = io::read_mesh(file, format_for(file, "", "--input-format"), &bytes);
   for (const std::string& text : read.notes) note(text);
+  files.push_back(file);
+  files.insert(files.end(), read.other_files.begin(), read.other_files.end());
   certify::SetRequest request;
   request.epsilon = epsilon;
   request.max_vertices = options.max_vertices;
@@ -108,9 +110,7 @@ LinkBodies bodies_of(const RobotFile& robot, const BodyOptions& options) {
       const std::pair key{mesh.string(), epsilon.value};
       auto it = decomposed.find(key);
       if (it == decomposed.end()) {
-        it = decomposed.emplace(key, decompose(mesh, options, epsilon, notes)).first;
-        if (std::find(out.files.begin(), out.files.end(), key.first) == out.files.end())
-          out.files.push_back(key.first);
+        it = decomposed.emplace(key, decompose(mesh, options, epsilon, notes, out.files)).first;
       }
       out.epsilon = std::max(out.epsilon, scale * std::max(it->second.provenance.epsilon, 0.0));
       place_shape(g, &it->second, link.name, l, out.bodies);

@@ -27,7 +27,7 @@ struct BodyOptions {
 struct LinkBodies {
   std::vector<robot::LinkBody> bodies;
   double epsilon = 0;              ///< largest certified distance of a body from its shape [length]
-  std::vector<std::string> files;  ///< meshes read
+  std::vector<std::string> files;  ///< meshes read, and what they refer to; some may be there twice
   BareLinks bare;                  ///< of the links asked for
   std::vector<std::string> notes;  ///< things a user should know; one sentence each
 };

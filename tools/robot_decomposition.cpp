@@ -133,6 +133,7 @@ class Writer {
       result_.inputs.push_back(file);
       d.file = file.string();
       d.mesh = decompose_(file, scale);
+      for (const std::string& other : d.mesh.other_files) result_.inputs.emplace_back(other);
     }
     s.bodies = &d;
     order_.push_back(&s);

@@ -28,6 +28,7 @@ struct RobotDecomposition {
 struct MeshBodies {
   geom::ConvexSet set;
   Json report;
+  std::vector<std::string> other_files;  ///< read besides the mesh
 };
 
 /// Decomposes a mesh. `scale` holds the factors from the mesh's unit to the robot's, positive: a
@@ -38,7 +39,7 @@ using MeshDecomposer =
 struct RobotResult {
   Json report;
   geom::ConvexSet at_rest;  ///< all links at zero joint values, for pictures: not certified
-  std::vector<std::filesystem::path> inputs;
+  std::vector<std::filesystem::path> inputs;  ///< all files read; some may be there twice
   BareLinks bare;  ///< links without a shape of the kind asked for: left as they are
   std::vector<std::string> notes;  ///< things a user should know of shapes; one sentence each
 };

@@ -47,10 +47,9 @@ expect 0 'damaged, or of another version' env KABOUM_CACHE=swapped "$D" "$BRACKE
 # Files that refer to others: by what is read, not by their own bytes.
 printf '#VRML V2.0 utf8\nInline { url "part.wrl" }\n' >whole.wrl
 for size in 1 3 1; do
-  echo "#VRML V2.0 utf8
-Shape { geometry IndexedFaceSet { coord Coordinate { point [0 0 0, $size 0 0, 0 $size 0, 0 0 $size] }
-  coordIndex [0 2 1 -1 0 1 3 -1 1 2 3 -1 2 0 3 -1] } }" >part.wrl
-  expect 0 '' "$D" whole.wrl -o "w$size.glb" --epsilon 3% --effort fast --report w.json
+  inlined $size >part.wrl
+  expect 0 '' "$D" whole.wrl -o "w$size.glb" --epsilon 3% --effort fast --report w.json --depfile w.d
+  [ "$(cat w.d)" = "w$size.glb: whole.wrl ./part.wrl" ] || fail "dependency file: $(cat w.d)"
   expect 0 'verified' "$BIN/bound-verify" --cover whole.wrl "w$size.glb"
 done
 grep -q '"cached": true' w.json || fail "a file that refers to another is not cached"

@@ -38,3 +38,26 @@ finish() {
 tetrahedron() {
   printf 'OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n'
 }
+
+# A VRML file of a tetrahedron of the size $1, 1 unless given.
+inlined() {
+  echo "#VRML V2.0 utf8
+Shape { geometry IndexedFaceSet { coord Coordinate { point [0 0 0, ${1:-1} 0 0, 0 ${1:-1} 0, 0 0 ${1:-1}] }
+  coordIndex [0 2 1 -1 0 1 3 -1 1 2 3 -1 2 0 3 -1] } }"
+}
+
+# t.gltf and its buffer, 'my buf.bin'.
+tetrahedron_gltf() {
+  one='\000\000\200\077' zero='\000\000\000\000'
+  {
+    printf '%b' "$zero$zero$zero" "$one$zero$zero" "$zero$one$zero" "$zero$zero$one"
+    printf '\000\002\001\000\001\003\001\002\003\002\000\003'
+  } >'my buf.bin'
+  echo '{"asset": {"version": "2.0"}, "buffers": [{"uri": "my%20buf.bin", "byteLength": 60}],
+    "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 12}],
+    "accessors": [
+      {"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1]},
+      {"bufferView": 1, "componentType": 5121, "count": 12, "type": "SCALAR"}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+    "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}], "scene": 0}' >t.gltf
+}

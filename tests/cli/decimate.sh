@@ -9,6 +9,14 @@ for key in '"sha256"' '"contractions"' '"exact_fallbacks"' '"max_upper"' '"peak_
   grep -q "$key" a.json || fail "no $key in the report"
 done
 grep -q "^a.stl: .*bracket" a.d || fail "dependency file: $(cat a.d)"
+# It lists what the input refers to, each file once; make takes its names as they are.
+inlined >'part $1 #a.wrl'
+printf '#VRML V2.0 utf8\nInline { url "part $1 #a.wrl" }\nTransform { translation 5 0 0 children Inline { url "part $1 #a.wrl" } }\n' >whole.wrl
+expect 0 '' "$D" whole.wrl -o whole.stl --vertices 4 --depfile whole.d --quiet
+[ "$(cat whole.d)" = 'whole.stl: whole.wrl ./part\ $$1\ \#a.wrl' ] || fail "dependency file: $(cat whole.d)"
+tetrahedron_gltf
+expect 0 '' "$D" t.gltf -o g.stl --vertices 4 --depfile g.d --quiet
+[ "$(cat g.d)" = 'g.stl: t.gltf ./my\ buf.bin' ] || fail "dependency file: $(cat g.d)"
 expect 0 '' "$D" "$BRACKET" -o in.obj --direction inner --vertices 500 --effort fast --quiet
 [ ! -s err.txt ] || fail "--quiet is not quiet: $(cat err.txt)"
 [ "$(grep -c '^v ' in.obj)" = 500 ] || fail "inner: $(grep -c '^v ' in.obj) vertices instead of 500"

@@ -216,19 +216,20 @@ for side in a b; do
   mkdir -p "wrap/$side"
   printf '#VRML V2.0 utf8\nInline { url "part.wrl" }\n' >"wrap/$side/m.wrl"
 done
-for size in a:1 b:3; do
-  s=${size#*:}
-  echo "#VRML V2.0 utf8
-Shape { geometry IndexedFaceSet { coord Coordinate { point [0 0 0, $s 0 0, 0 $s 0, 0 0 $s] }
-  coordIndex [0 2 1 -1 0 1 3 -1 1 2 3 -1 2 0 3 -1] } }" >"wrap/${size%:*}/part.wrl"
-done
+inlined 1 >wrap/a/part.wrl
+inlined 3 >wrap/b/part.wrl
 cat >wrap/r.urdf <<'END'
 <robot name="r"><link name="l">
   <collision><geometry><mesh filename="a/m.wrl"/></geometry></collision>
   <collision><geometry><mesh filename="b/m.wrl"/></geometry></collision>
 </link></robot>
 END
-expect 0 'from 2 meshes' "$D" wrap/r.urdf -o wrapped --epsilon 5% --effort fast
+# The dependency file lists those as well, whether the cache has the bodies or not.
+for run in made cached; do
+  expect 0 'from 2 meshes' "$D" wrap/r.urdf -o wrapped --epsilon 5% --effort fast --depfile w.d
+  [ "$(cat w.d)" = 'wrapped/r.urdf: wrap/r.urdf wrap/a/m.wrl wrap/a/part.wrl wrap/b/m.wrl wrap/b/part.wrl' ] ||
+    fail "dependency file, $run: $(cat w.d)"
+done
 expect 0 'verified' "$BIN/bound-verify" --cover wrap/b/m.wrl wrapped/links/l.glb
 
 # Some links only.
@@ -261,6 +262,8 @@ expect 4 'theirs/r.urdf: exists' "$D" robot/r.urdf -o theirs
 expect 2 'folder' "$D" robot/r.urdf -o -
 expect 2 'one by one' "$D" robot/r.urdf -o x --direction inner
 expect 3 'no mesh file for' "$D" robot/r.urdf -o x --visual
+sed 's,meshes/t.off,meshes/finger%201.off,' robot/r.urdf >robot/percent.urdf
+expect 3 '%20 stands for a blank in URIs, .*name the file with a blank' "$D" robot/percent.urdf -o x
 sed 's/<link name="frame"\/>//' robot/r.urdf >robot/bad.urdf
 expect 3 'bad.urdf' "$D" robot/bad.urdf -o x
 absent x

@@ -222,4 +222,11 @@ for n in 1 2; do
 done
 cmp -s t1.json t2.json || fail "the report differs on two threads"
 cmp -s t1.txt t2.txt || fail "the output differs on two threads"
+# The dependency file lists what meshes refer to.
+inlined 0.1 >robots/part.wrl
+printf '#VRML V2.0 utf8\nInline { url "part.wrl" }\n' >robots/whole.wrl
+echo '<robot name="w"><link name="l"><visual><geometry><mesh filename="whole.wrl"/></geometry></visual></link></robot>' >robots/w.urdf
+printf '[[]]' >rest.json
+expect 0 '' "$S" robots/w.urdf --path rest.json -o w.glb --visual --depfile w.d
+[ "$(cat w.d)" = 'w.glb: robots/w.urdf rest.json robots/whole.wrl robots/part.wrl' ] || fail "dependency file: $(cat w.d)"
 finish

@@ -32,6 +32,7 @@ ReadResult sample_result() {
   r.split_polygons = 3;
   r.collapsed_triangles = 1;
   r.notes = {"one", "", std::string(100'000, 'x')};
+  r.other_files = {"a file", "another"};
   return r;
 }
 
@@ -64,6 +65,7 @@ TEST(Child, ResultsAreTheSame) {
   EXPECT_EQ(r.split_polygons, s.split_polygons);
   EXPECT_EQ(r.collapsed_triangles, s.collapsed_triangles);
   EXPECT_EQ(r.notes, s.notes);
+  EXPECT_EQ(r.other_files, s.other_files);
 }
 
 TEST(Child, CrashesAreErrors) {

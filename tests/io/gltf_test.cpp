@@ -435,6 +435,7 @@ TEST(Gltf, BuffersInDataUrisAndFiles) {
   const ReadResult r = parse(text("inner/a%20b.bin", 36), Format::Gltf, directory);
   EXPECT_EQ(soup(r.mesh), kTriangle);
   EXPECT_TRUE(has_note(r, "a b.bin"));
+  EXPECT_EQ(r.other_files, std::vector{(directory / "inner/a b.bin").string()});
   EXPECT_NO_THROW(parse(text("./out.bin", 36), Format::Gltf, directory));
   const std::string absolute = (directory / "out.bin").string();
   for (const std::string& bad : {std::string("../out.bin"), std::string("inner/../../out.bin"),

@@ -150,6 +150,7 @@ TEST(Vrml, Inline) {
   const ReadResult r = parse(text("parts/a.wrl"), Format::Vrml, directory);
   EXPECT_EQ(soup(r.mesh), (std::vector<Vec3>{Vec3(1, 0, 0), Vec3(2, 0, 0), Vec3(1, 1, 0.5)}));
   EXPECT_TRUE(has_note(r, "Inline"));
+  EXPECT_EQ(r.other_files, std::vector{(directory / "parts/a.wrl").string()});
   const auto message = [&](const std::string& url) -> std::string {
     try {
       parse(text(url), Format::Vrml, directory);

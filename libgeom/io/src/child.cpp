@@ -90,6 +90,8 @@ class Sender {
       value(n);
     value(r.notes.size());
     for (const std::string& note : r.notes) text(note);
+    value(r.other_files.size());
+    for (const std::string& file : r.other_files) text(file);
     value(r.mesh.vertices.size());
     bytes(r.mesh.vertices.data(), r.mesh.vertices.size() * sizeof(geom::Vec3));
     value(r.mesh.triangles.size());
@@ -125,6 +127,7 @@ class Receiver {
          {&r.file_vertices, &r.file_triangles, &r.split_polygons, &r.collapsed_triangles})
       *n = value<std::size_t>();
     for (auto n = value<std::size_t>(); n > 0 && ok_; --n) r.notes.push_back(text());
+    for (auto n = value<std::size_t>(); n > 0 && ok_; --n) r.other_files.push_back(text());
     array(r.mesh.vertices);
     array(r.mesh.triangles);
     for (const geom::Vec3& p : r.mesh.vertices) ok_ = ok_ && p.allFinite();

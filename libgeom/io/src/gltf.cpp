@@ -322,7 +322,9 @@ ReadResult read_gltf(const Source& source, Format format) {
   refuse_margin(file);
   note_gltf_facts(facts, file);
   for (std::string& note : file.take_notes()) builder.note(std::move(note));
-  return builder.finish(format, facts.floats);
+  ReadResult result = builder.finish(format, facts.floats);
+  result.other_files = file.other_files();
+  return result;
 }
 
 }  // namespace kaboum::io

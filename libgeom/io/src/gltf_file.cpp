@@ -402,4 +402,10 @@ std::vector<std::string> GltfFile::take_notes() {
   return std::move(notes_);
 }
 
+std::vector<std::string> GltfFile::other_files() const {
+  std::vector<std::string> names;
+  for (const auto& [path, bytes] : files_) names.push_back(path.string());
+  return names;
+}
+
 }  // namespace kaboum::io

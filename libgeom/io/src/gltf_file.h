@@ -78,6 +78,8 @@ class GltfFile {
   void note(std::string text) { notes_.push_back(std::move(text)); }
   /// All notes, those about the file's layout included.
   std::vector<std::string> take_notes();
+  /// Files read besides this one, each once.
+  [[nodiscard]] std::vector<std::string> other_files() const;
 
  private:
   void split_chunks();

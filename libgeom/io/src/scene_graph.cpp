@@ -698,7 +698,9 @@ ReadResult read_scene(const Source& source, Format format) {
   Scene scene{builder, SceneCopier(builder), file.metres};
   SceneReader(file, scene, 0, nullptr).read({});
   add_notes(scene);
-  return builder.finish(format, false);
+  ReadResult result = builder.finish(format, false);
+  for (const fs::path& path : scene.inlined) result.other_files.push_back(path.string());
+  return result;
 }
 
 }  // namespace kaboum::io

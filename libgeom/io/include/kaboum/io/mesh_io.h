@@ -53,6 +53,8 @@ struct ReadResult {
   std::size_t split_polygons = 0;  ///< faces with more than three corners that were triangulated
   std::size_t collapsed_triangles = 0;  ///< dropped: two or three equal corners after merging
   std::vector<std::string> notes;       ///< things a user should know; one sentence each
+  /// Files read besides this one, each once: VRML's and X3D's Inline, glTF's buffers.
+  std::vector<std::string> other_files = {};
 };
 
 /// Parses a file held in memory.
