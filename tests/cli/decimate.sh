@@ -12,7 +12,7 @@ grep -q "^a.stl: .*bracket" a.d || fail "dependency file: $(cat a.d)"
 # It lists what the input refers to, each file once; make takes its names as they are.
 inlined >'part $1 #a.wrl'
 printf '#VRML V2.0 utf8\nInline { url "part $1 #a.wrl" }\nTransform { translation 5 0 0 children Inline { url "part $1 #a.wrl" } }\n' >whole.wrl
-expect 0 '' "$D" whole.wrl -o whole.stl --vertices 4 --depfile whole.d --quiet
+expect 0 '' "$D" whole.wrl -o whole.stl --vertices 8 --depfile whole.d --quiet
 [ "$(cat whole.d)" = 'whole.stl: whole.wrl ./part\ $$1\ \#a.wrl' ] || fail "dependency file: $(cat whole.d)"
 tetrahedron_gltf
 expect 0 '' "$D" t.gltf -o g.stl --vertices 4 --depfile g.d --quiet
