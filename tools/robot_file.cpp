@@ -64,8 +64,9 @@ void require_links(const RobotFile& robot, const std::vector<std::string>& links
     if (robot.robot.find_link(name)) continue;
     std::string hint = geom::did_you_mean(name, known);
     if (hint.empty()) hint = "; it has " + names_of(known);
-    throw Error(ErrorCode::InvalidArgument,
-                robot.path.string() + ": --links: there is no link '" + name + "'" + hint);
+    std::string message = robot.path.string();
+    message.append(": --links: there is no link '").append(name).append("'").append(hint);
+    throw Error(ErrorCode::InvalidArgument, message);
   }
 }
 

@@ -241,7 +241,8 @@ class Assembly {
  public:
   Assembly(Elements elements, const std::string& name)
       : elements_(std::move(elements)), name_(name) {
-    for (const auto& [id, entry] : elements_.joints) {
+    for (const auto& named : elements_.joints) {
+      const JointEntry& entry = named.second;
       const auto require = [&](const std::string& link, const char* role) {
         if (!elements_.links.contains(link))
           fail(entry, std::string("its ") + role + " link '" + link + "' does not exist");
