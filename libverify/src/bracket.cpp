@@ -12,7 +12,6 @@
 #include "parallel.h"
 #include "pockets.h"
 #include "spot.h"
-#include "whole.h"
 
 namespace kaboum::verify {
 namespace {
@@ -36,37 +35,23 @@ struct Found {
   Vec3 at = Vec3::Zero();
 };
 
-/// Faces that distances to a mesh, or to its solid, are measured to.
-struct Target {
-  BoxTree surely;   ///< lie in it as wholes: bounds from above
-  BoxTree perhaps;  ///< have a part in it: bounds from below
-};
-
+/// What distances to a mesh, or to its solid, are measured to: what lies in it for sure, for bounds
+/// from above, and all that has a part in it, for bounds from below.
 /// @throws Error{LimitReached}
-Target target_of(const Scene& scene, bool to_solid) {
-  std::vector<std::uint32_t> surely, perhaps;
-  if (!to_solid) return {scene.tree(kOutside), scene.tree(kOutside)};
-  const InclusionOptions limits;
-  const auto in_solid = [](int inner, int outer) { return inner >= 1 || outer >= 1; };
-  surely = faces_with(scene, kOutside, limits, in_solid);
-  const std::vector<std::uint32_t> not_at_all = faces_with(
-      scene, kOutside, limits, [&](int inner, int outer) { return !in_solid(inner, outer); });
-  for (std::uint32_t f = scene.begin(kOutside); f < scene.end(kOutside); ++f)
-    if (scene.face(f).axis >= 0 && !std::binary_search(not_at_all.begin(), not_at_all.end(), f))
-      perhaps.push_back(f);
-  const auto tree = [&](const std::vector<std::uint32_t>& faces) {
-    return faces.empty() ? BoxTree() : tree_of(scene, faces);
-  };
-  return {tree(surely), tree(perhaps)};
+Pieces target_of(const Scene& scene, bool to_solid) {
+  if (!to_solid) return {{}, {}, scene.tree(kOutside), scene.tree(kOutside)};
+  return pieces_with(scene, kOutside, {},
+                     [](int inner, int outer) { return inner >= 1 || outer >= 1; });
 }
 
 class Farthest {
  public:
-  Farthest(const Scene& scene, const Target& target, bool to_solid)
+  Farthest(const Scene& scene, const Pieces& target, bool to_solid)
       : scene_(scene),
+        triangles_(scene, target.parts),
         surface_(scene, kOutside),
-        surely_(scene, target.surely),
-        perhaps_(scene, target.perhaps),
+        surely_(triangles_, target.surely),
+        perhaps_(triangles_, target.perhaps),
         to_solid_(to_solid),
         slack_(rounding_of_distances(scene.largest_coordinate())) {}
 
@@ -149,8 +134,8 @@ class Farthest {
   /// outward normal of `face`, if a point there is in the solid: no face is there, so all of it is.
   [[nodiscard]] std::vector<Vec3> without_inside(const Part& part, std::uint32_t face) const {
     std::vector<Vec3> all(part.corner.begin(), part.corner.end());
-    const Vec3& a = scene_.corner(face, 0);
-    Vec3 normal = (scene_.corner(face, 1) - a).cross(scene_.corner(face, 2) - a);
+    const Vec3& a = triangles_.corner(face, 0);
+    Vec3 normal = (triangles_.corner(face, 1) - a).cross(triangles_.corner(face, 2) - a);
     if (!(normal.norm() > 0)) return all;
     normal.normalize();
     Bounds box;
@@ -162,7 +147,8 @@ class Farthest {
     scene_.tree(kOutside).query([&](const Bounds& b) { return b.meets(box); },
                                 [&](std::uint32_t f) {
                                   for (int k = 0; k < 3; ++k)
-                                    height = std::min(height, normal.dot(scene_.corner(f, k) - a));
+                                    height =
+                                        std::min(height, normal.dot(triangles_.corner(f, k) - a));
                                 });
     height -= 4 * slack_;
     std::array<double, 3> of;
@@ -187,8 +173,8 @@ class Farthest {
     if (f == NearestTriangle::kNone) return std::numeric_limits<double>::infinity();
     double most = 0;
     for (const Vec3& p : points) {
-      const Vec3 q =
-          closest_point(p, scene_.corner(f, 0), scene_.corner(f, 1), scene_.corner(f, 2));
+      const Vec3 q = closest_point(p, triangles_.corner(f, 0), triangles_.corner(f, 1),
+                                   triangles_.corner(f, 2));
       most = std::max(most, (q - p).norm());
     }
     return most + slack_;
@@ -222,6 +208,7 @@ class Farthest {
   }
 
   const Scene& scene_;
+  Triangles triangles_;
   NearestTriangle surface_, surely_, perhaps_;
   bool to_solid_;
   double slack_;
@@ -229,7 +216,7 @@ class Farthest {
 
 /// In the scene's unit.
 Bracket bracket_faces(const Scene& scene, const std::vector<std::uint32_t>& faces, bool to_solid,
-                      const Target& target, const BracketEffort& effort) {
+                      const Pieces& target, const BracketEffort& effort) {
   std::vector<Part> parts;
   parts.reserve(faces.size());
   for (const std::uint32_t f : faces)
@@ -250,7 +237,7 @@ Bracket outside_of(const Scene& scene, Bracket bracket) {
 }
 
 /// nullopt where no distance can be measured.
-std::optional<Target> measurable(const Scene& scene, bool to_solid) {
+std::optional<Pieces> measurable(const Scene& scene, bool to_solid) {
   if (!scene.scaled() || scene.tree(kOutside).empty()) return std::nullopt;
   try {
     return target_of(scene, to_solid);
@@ -267,7 +254,7 @@ Bracket bracket_distance(const geom::Mesh& from, std::span<const std::uint32_t> 
   geom::Mesh part{from.vertices, {}};
   for (const std::uint32_t t : triangles) part.triangles.push_back(from.triangles[t]);
   const Scene scene(part, to);
-  const std::optional<Target> target = measurable(scene, to_solid);
+  const std::optional<Pieces> target = measurable(scene, to_solid);
   if (!target) return {};
   std::vector<std::uint32_t> faces;
   for (std::uint32_t f = scene.begin(kInside); f < scene.end(kInside); ++f) faces.push_back(f);
@@ -279,14 +266,15 @@ Bracket bracket_distance(const geom::Mesh& from, std::span<const std::uint32_t> 
 Bracket bracket_solid(const geom::Mesh& inner, const geom::Mesh& outer, const Claim& solid,
                       const BracketEffort& effort) {
   const Scene scene(inner, outer);
-  const std::optional<Target> target = measurable(scene, true);
+  const std::optional<Pieces> target = measurable(scene, true);
   if (!target || !solid.witness) return {};
   const std::vector<std::uint32_t> offending = offending_faces(scene, solid);
   std::vector<std::uint32_t> of_inner;
   for (const std::uint32_t f : offending)
     if (scene.face(f).chain == kInside) of_inner.push_back(f);
   const double slack = rounding_of_distances(scene.largest_coordinate());
-  const NearestTriangle perhaps(scene, target->perhaps);
+  const Triangles triangles(scene, target->parts);
+  const NearestTriangle perhaps(triangles, target->perhaps);
 
   // The boundary of Z lies on these and on the outer solid's.
   Bracket result = bracket_faces(scene, of_inner, true, *target, effort);
@@ -317,7 +305,7 @@ Bracket bracket_solid(const geom::Mesh& inner, const geom::Mesh& outer, const Cl
   for (int i = 0; i < kLimits && std::isfinite(limit); ++i) {
     limit = limit * (1 + effort.gap) + 4 * slack;
     const Claim within = search_pockets(
-        scene, offending, {target->surely, target->perhaps, limit, effort.parts, true});
+        scene, offending, {triangles, target->surely, target->perhaps, limit, effort.parts, true});
     if (within.answer == Answer::Verified) {
       result.upper = limit;
       break;

@@ -5,73 +5,22 @@
 #include <kaboum/geom/error.h>
 
 #include <algorithm>
-#include <cmath>
-#include <set>
+#include <utility>
 
+#include "segments.h"
 #include "spot.h"
 
 namespace kaboum::verify {
 namespace {
 
-/// A segment within the face: barycentric coordinates of its ends (non-negative up to a positive
-/// factor) and of its line (linear function, zero on it).
-struct Segment {
-  Triple<Exact> line, p, q;
-  Triple<Approx> approx_line, approx_p, approx_q;
-  std::array<double, 4> box;  ///< of the first two coordinates, normalised: low, low, high, high
-};
-
-Triple<Approx> rounded(const Triple<Exact>& x) {
-  return {verify::rounded(x[0]), verify::rounded(x[1]), verify::rounded(x[2])};
-}
-
-Triple<Exact> cross(const Triple<Exact>& a, const Triple<Exact>& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-Triple<Exact> combine(const Exact& x, const Triple<Exact>& a, const Exact& y,
-                      const Triple<Exact>& b) {
-  return {x * a[0] + y * b[0], x * a[1] + y * b[1], x * a[2] + y * b[2]};
-}
-
-Triple<Exact> made_positive(Triple<Exact> a) {
-  if (sign_of(a[0] + a[1] + a[2]) == Sign::Negative) {
-    for (Exact& x : a) x = -x;
-  }
-  return a;
-}
-
-Sign sign_on(const Triple<Approx>& approx_line, const Triple<Exact>& line,
-             const Triple<Approx>& approx_point, const Triple<Exact>& point) {
-  if (const auto sign = sign_of(dot(approx_line, approx_point))) return *sign;
-  return sign_of(dot(line, point));
-}
-
 constexpr std::size_t kTestsPerPiece = 200;  // of segments against each other, within the limit
 
 class Cutter {
  public:
-  Cutter(const Arrangement& arrangement, std::uint32_t face, std::size_t limit,
-         std::span<const std::uint32_t> settled)
-      : scene_(arrangement.scene()),
-        index_(face),
-        face_(scene_.face(face)),
-        limit_(limit),
-        settled_(settled.begin(), settled.end()) {
-    std::sort(settled_.begin(), settled_.end());
-  }
-
-  void add(const Contacts::Cut& cut) {
-    if (cut.coplanar) {
-      add_coplanar(cut.by);
-    } else {
-      add_crossing(cut.by);
-    }
-    if (segments_.size() > limit_) fail();
-  }
+  Cutter(std::vector<Segment> segments, std::uint32_t face, std::size_t limit)
+      : index_(face), limit_(limit), segments_(std::move(segments)) {}
 
   void visit(const SpotVisitor& visitor) {
-    for (Segment& s : segments_) finish(s);
     split();
     for (std::size_t i = 0; i < segments_.size(); ++i) {
       if (!sample(i, visitor)) return;
@@ -81,164 +30,6 @@ class Cutter {
  private:
   [[noreturn]] void fail() const {
     throw Error(ErrorCode::LimitReached, "a triangle is cut into more pieces than allowed");
-  }
-
-  [[nodiscard]] const Vec3& corner(int k) const { return scene_.point(face_.v[k]); }
-
-  /// Doubled areas in f's projection, positive for an upward turn of f.
-  [[nodiscard]] Exact area(const Vec3& a, const Vec3& b, const Vec3& c) const {
-    const Exact value = orient2d_value<Exact>(face_.axis, a, b, c);
-    return face_.upward ? value : -value;
-  }
-
-  /// Barycentric coordinates of a vertex in the face's plane, times the face's doubled area.
-  [[nodiscard]] Triple<Exact> barycentric(std::uint32_t vertex) const {
-    for (int k = 0; k < 3; ++k) {
-      if (face_.v[k] != vertex) continue;
-      Triple<Exact> unit{Exact(0), Exact(0), Exact(0)};
-      unit[k] = area(corner(0), corner(1), corner(2));
-      return unit;
-    }
-    const Vec3& p = scene_.point(vertex);
-    return {area(corner(1), corner(2), p), area(corner(2), corner(0), p),
-            area(corner(0), corner(1), p)};
-  }
-
-  [[nodiscard]] Exact height(std::uint32_t vertex) const {
-    for (const std::uint32_t v : face_.v) {
-      if (v == vertex) return {0};
-    }
-    return orient3d_value<Exact>(corner(0), corner(1), corner(2), scene_.point(vertex));
-  }
-
-  /// The segment that is the intersection with a face in another plane.
-  void add_crossing(std::uint32_t gi) {
-    const Face& g = scene_.face(gi);
-    Segment s;
-    for (int k = 0; k < 3; ++k) {
-      const std::uint32_t v = face_.v[k];
-      s.line[k] = v == g.v[0] || v == g.v[1] || v == g.v[2]
-                      ? Exact(0)
-                      : orient3d_value<Exact>(scene_.point(g.v[0]), scene_.point(g.v[1]),
-                                              scene_.point(g.v[2]), corner(k));
-    }
-    const Crossing f_ends = crossing(face_, sides_of(scene_, face_, gi));
-    const Crossing g_ends = crossing(g, sides_of(scene_, g, index_));
-    std::array<std::array<int, 2>, 2> order{};
-    for (int i = 0; i < 2; ++i) {
-      for (int j = 0; j < 2; ++j)
-        order[i][j] = to_int(order_of(scene_, f_ends.ends[i], g_ends.ends[j]));
-    }
-    // The ends of the overlap: f's ends within g, and g's ends strictly within f.
-    int found = 0;
-    std::array<Triple<Exact>, 2> ends;
-    for (int i = 0; i < 2; ++i) {
-      if (order[i][0] * order[i][1] <= 0 && found < 2)
-        ends[found++] = on_own_edge(s.line, f_ends.ends[i]);
-    }
-    for (int j = 0; j < 2; ++j) {
-      if (order[0][j] * order[1][j] < 0 && found < 2) ends[found++] = on_other_edge(g_ends.ends[j]);
-    }
-    if (found != 2) {
-      throw Error(ErrorCode::Internal, "a segment between two triangles without two ends");
-    }
-    s.p = std::move(ends[0]);
-    s.q = std::move(ends[1]);
-    segments_.push_back(std::move(s));
-  }
-
-  /// Where an edge of the face crosses the line.
-  [[nodiscard]] Triple<Exact> on_own_edge(const Triple<Exact>& line,
-                                          const Crossing::End& end) const {
-    int i = 0, j = 0;
-    for (int k = 0; k < 3; ++k) {
-      if (face_.v[k] == end.from) i = k;
-      if (face_.v[k] == end.to) j = k;
-    }
-    Triple<Exact> point{Exact(0), Exact(0), Exact(0)};
-    point[i] = -line[j];  // `to` is below or on the plane, `from` above or on it
-    point[j] = line[i];
-    return point;
-  }
-
-  /// Where an edge of the other face crosses this face's plane.
-  [[nodiscard]] Triple<Exact> on_other_edge(const Crossing::End& end) const {
-    return combine(height(end.from), barycentric(end.to), -height(end.to), barycentric(end.from));
-  }
-
-  /// The edges of a face in the same plane, as far as they run through the interior.
-  void add_coplanar(std::uint32_t gi) {
-    const Face& g = scene_.face(gi);
-    for (int e = 0; e < 3; ++e) {
-      const std::uint32_t a = std::min(g.v[e], g.v[(e + 1) % 3]),
-                          b = std::max(g.v[e], g.v[(e + 1) % 3]);
-      if (!edges_.emplace(a, b).second || between_settled(gi, a, b)) continue;
-      Segment s;
-      s.p = barycentric(a);
-      s.q = barycentric(b);
-      if (!clip(s.p, s.q)) continue;
-      const Vec3 &from = scene_.point(a), &to = scene_.point(b);
-      for (int k = 0; k < 3; ++k) {
-        s.line[k] = face_.v[k] == a || face_.v[k] == b ? Exact(0) : area(from, to, corner(k));
-      }
-      segments_.push_back(std::move(s));
-    }
-  }
-
-  /// Whether the only faces of g's chain along its edge are settled ones.
-  [[nodiscard]] bool between_settled(std::uint32_t gi, std::uint32_t a, std::uint32_t b) const {
-    if (settled_.empty()) return false;
-    int count = 0;
-    for (const std::uint32_t h : scene_.around_edge(a, b)) {
-      const Face& face = scene_.face(h);
-      if (face.chain != scene_.face(gi).chain) continue;
-      if (face.place_of(a) < 0 || face.place_of(b) < 0) continue;
-      if (!std::binary_search(settled_.begin(), settled_.end(), h)) return false;
-      ++count;
-    }
-    return count == 2;
-  }
-
-  /// Cuts off what lies outside the face. @return false when nothing of the interior is left.
-  static bool clip(Triple<Exact>& p, Triple<Exact>& q) {
-    for (int k = 0; k < 3; ++k) {
-      const Sign sp = sign_of(p[k]), sq = sign_of(q[k]);
-      if (sp != Sign::Positive && sq != Sign::Positive) return false;
-      if (sp == Sign::Negative) {
-        p = combine(q[k], p, -p[k], q);
-      } else if (sq == Sign::Negative) {
-        q = combine(p[k], q, -q[k], p);
-      }
-    }
-    return true;
-  }
-
-  static void finish(Segment& s) {
-    s.approx_line = rounded(s.line);
-    s.approx_p = rounded(s.p);
-    s.approx_q = rounded(s.q);
-    s.box = {0, 0, 1, 1};
-    const Approx total_p = sum(s.approx_p), total_q = sum(s.approx_q);
-    if (!usable(total_p) || !usable(total_q)) return;
-    for (int k = 0; k < 2; ++k) {
-      const Approx a = ratio(s.approx_p[k], total_p), b = ratio(s.approx_q[k], total_q);
-      const double low = std::min(a.value - a.error, b.value - b.error);
-      const double high = std::max(a.value + a.error, b.value + b.error);
-      // A weight lies between 0 and 1; anything else, NaN included, is too inexact to be of use.
-      if (!std::isfinite(a.value + a.error + b.value + b.error) || low < -1 || high > 2) continue;
-      s.box[k] = low;
-      s.box[2 + k] = high;
-    }
-  }
-
-  static Approx sum(const Triple<Approx>& x) { return x[0] + x[1] + x[2]; }
-  /// Whether one can divide by it.
-  static bool usable(const Approx& total) {
-    return total.value > 1e-200 && total.value < 1e200 && total.error < 0.25 * total.value;
-  }
-  /// x / total for weights 0 ≤ x ≤ total; @pre usable(total)
-  static Approx ratio(const Approx& x, const Approx& total) {
-    return {x.value / total.value, (x.error + 2 * total.error) / (0.5 * total.value) + 4 * kUnit};
   }
 
   /// Finds where segments meet: each one's interior points that lie on another.
@@ -330,23 +121,13 @@ class Cutter {
 
   /// A point between two, near the middle.
   static Triple<Exact> between(const Triple<Exact>& a, const Triple<Exact>& b) {
-    const auto magnitude = [](const Triple<Exact>& x) {
-      return verify::rounded(x[0] + x[1] + x[2]).value;
-    };
-    const double ratio = magnitude(b) / magnitude(a);
-    double factor = 1;
-    if (ratio > 1e-200 && ratio < 1e200) factor = std::exp2(std::round(std::log2(ratio)));
-    return combine(Exact(factor), a, Exact(1), b);
+    return combine(Exact(ratio_of(a, b)), a, Exact(1), b);
   }
 
-  const Scene& scene_;
   std::uint32_t index_;
-  const Face& face_;
   std::size_t limit_;
   std::vector<Segment> segments_;
   std::vector<std::vector<Triple<Exact>>> splits_;
-  std::vector<std::uint32_t> settled_;
-  std::set<std::pair<std::uint32_t, std::uint32_t>> edges_;
 };
 
 }  // namespace
@@ -371,12 +152,7 @@ void visit_spots(const Arrangement& arrangement, std::uint32_t face, ChainMask m
     visitor(middle_spot(face));
     return;
   }
-  Cutter cutter(arrangement, face, limit, settled);
-  const int chain = arrangement.scene().face(face).chain;
-  for (int c = 0; c < 2; ++c) {
-    if ((mask & mask_of(c)) == 0) continue;
-    for (const Contacts::Cut& cut : arrangement.contacts(chain, c).cuts(face)) cutter.add(cut);
-  }
+  Cutter cutter(segments_of(arrangement, face, mask, limit, settled), face, limit);
   cutter.visit(visitor);
 }
 

@@ -6,7 +6,6 @@
 
 #include "nearest.h"
 #include "pockets.h"
-#include "whole.h"
 
 namespace kaboum::verify {
 
@@ -36,26 +35,26 @@ Claim verify_depth(const geom::Mesh& original, const geom::ConvexSet& set, doubl
                    const InclusionOptions& options) {
   const geom::Mesh sum = sum_of(set);
   const Scene scene(original, sum);
-  std::vector<std::uint32_t> bounding;
+  Pieces bounding;
   if (scene.scaled() && scene.closed(kInside) && scene.closed(kOutside)) {
     try {
-      bounding = faces_with(scene, kInside, options,
-                            [](int inner, int outer) { return std::min(inner, outer) <= 0; });
+      bounding = pieces_with(scene, kInside, options,
+                             [](int inner, int outer) { return std::min(inner, outer) <= 0; });
     } catch (const Error& error) {
       if (error.code() != ErrorCode::LimitReached) throw;
     }
   }
-  const BoxTree target = bounding.empty() ? BoxTree() : tree_of(scene, bounding);
   const Uncovered bodies(scene, set);
   const auto search = [&](const std::vector<std::uint32_t>& faces, std::size_t cells) {
-    Claim claim = search_pockets(
-        scene, faces,
-        {target, scene.tree(kInside), epsilon * scene.scale(), cells, false, true, &bodies});
+    Claim claim =
+        search_pockets(scene, faces,
+                       {Triangles(scene, bounding.parts), bounding.surely, bounding.perhaps,
+                        epsilon * scene.scale(), cells, false, true, &bodies});
     if (claim.answer == Answer::Refuted)
       claim.reason = "a point that is deeper than that inside the original is in no body";
     return claim;
   };
-  if (!bounding.empty()) {
+  if (!bounding.surely.empty()) {
     std::vector<std::uint32_t> all;  // hold the boundary of Z, whatever it is
     for (std::uint32_t f = 0; f < scene.faces().size(); ++f)
       if (scene.face(f).axis >= 0) all.push_back(f);
@@ -77,7 +76,7 @@ Claim verify_depth(const geom::Mesh& original, const geom::ConvexSet& set, doubl
     claim.reason = "coordinates span too many orders of magnitude to measure distances";
     return claim;
   }
-  if (bounding.empty()) {
+  if (bounding.surely.empty()) {
     claim.reason = "no triangle of the original is known to bound its solid";
     return claim;
   }
@@ -101,7 +100,7 @@ Claim reach_inside(const geom::Mesh& sum, const geom::Mesh& original, const Incl
   }
   const BoxTree& faces = scene.tree(kOutside);
   return search_pockets(scene, offending_faces(scene, inclusion.solid),
-                        {faces, faces, epsilon * scene.scale(), options.max_cells, true});
+                        {scene, faces, faces, epsilon * scene.scale(), options.max_cells, true});
 }
 
 }  // namespace kaboum::verify

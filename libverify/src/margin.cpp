@@ -12,8 +12,8 @@ Claim solid_claim(const Scene& scene, const geom::ConvexSet& set, bool convex,
   const BoxTree& faces = scene.tree(kOutside);
   const Uncovered bodies(scene, set);
   Claim claim = search_pockets(scene, offending_faces(scene, without),
-                               {faces, faces, set.margin * scene.scale(), max_cells, inside_only,
-                                false, convex ? &bodies : nullptr});
+                               {scene, faces, faces, set.margin * scene.scale(), max_cells,
+                                inside_only, false, convex ? &bodies : nullptr});
   if (claim.answer == Answer::Refuted) {
     claim.reason = "a part of the inner solid is farther from the outer one than the margin";
   }

@@ -47,9 +47,10 @@ NearestTriangle::Hit NearestTriangle::nearest(const Vec3& p, std::uint32_t guess
   if (tree_.empty()) return best;
   double square = std::numeric_limits<double>::infinity();
   const auto look = [&](std::uint32_t f) {
-    const double d =
-        (closest_point(p, scene_.corner(f, 0), scene_.corner(f, 1), scene_.corner(f, 2)) - p)
-            .squaredNorm();
+    const double d = (closest_point(p, triangles_.corner(f, 0), triangles_.corner(f, 1),
+                                    triangles_.corner(f, 2)) -
+                      p)
+                         .squaredNorm();
     if (d < square) {
       square = d;
       best.face = f;
@@ -89,8 +90,8 @@ double NearestTriangle::lower_bound(const Vec3& p, double within) const {
   const double limit = within * within;
   tree_.query([&](const Bounds& box) { return squared_distance(p, box) <= limit; },
               [&](std::uint32_t f) {
-                const Vec3 &a = scene_.corner(f, 0), &b = scene_.corner(f, 1),
-                           &c = scene_.corner(f, 2);
+                const Vec3 &a = triangles_.corner(f, 0), &b = triangles_.corner(f, 1),
+                           &c = triangles_.corner(f, 2);
                 const Vec3 away = p - closest_point(p, a, b, c);
                 const double length = away.norm();
                 if (!(length > 0)) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "pieces.h"
 #include "scene.h"
 
 namespace kaboum::verify {
@@ -21,8 +22,9 @@ class NearestTriangle {
     double distance;
   };
   NearestTriangle(const Scene& scene, int chain) : NearestTriangle(scene, scene.tree(chain)) {}
-  /// Of some faces only.
-  NearestTriangle(const Scene& scene, const BoxTree& tree) : scene_(scene), tree_(tree) {}
+  /// Of some faces, or parts of faces, only.
+  NearestTriangle(const Triangles& triangles, const BoxTree& tree)
+      : triangles_(triangles), tree_(tree) {}
   /// kNone at an infinite distance when the chain has no triangle with area.
   /// @param guess  a face of the tree that may be near, which saves time; any does
   [[nodiscard]] Hit nearest(const Vec3& p, std::uint32_t guess = kNone) const;
@@ -35,7 +37,7 @@ class NearestTriangle {
   [[nodiscard]] double lower_bound(const Vec3& p, double within) const;
 
  private:
-  const Scene& scene_;
+  Triangles triangles_;
   const BoxTree& tree_;
 };
 

@@ -79,7 +79,7 @@ class Search {
     look.point = low + kPlace.cwiseProduct(high - low);
     const double radius = (high - look.point).cwiseMax(look.point - low).norm() + slack_;
 
-    const NearestTriangle target(scene_, limit_.target);
+    const NearestTriangle target(limit_.triangles, limit_.target);
     const NearestTriangle::Hit hit = target.nearest(look.point);
     look.settled =
         hit.distance + slack_ + radius <= limit_.distance || near(corners(cell), hit.face);
@@ -179,7 +179,8 @@ class Search {
   }
 
   [[nodiscard]] Vec3 closest(const Vec3& p, std::uint32_t f) const {
-    return closest_point(p, scene_.corner(f, 0), scene_.corner(f, 1), scene_.corner(f, 2));
+    return closest_point(p, limit_.triangles.corner(f, 0), limit_.triangles.corner(f, 1),
+                         limit_.triangles.corner(f, 2));
   }
 
   /// A lower bound of u·(y − p) over the points y of a face within `reach` of p: the least at its
@@ -187,8 +188,9 @@ class Search {
   /// |s|² ≤ reach² − α², which is least at α = h if u·n ≥ 0.
   [[nodiscard]] double height_within(const Vec3& p, double reach, const Vec3& u,
                                      std::uint32_t f) const {
-    const std::array<Vec3, 3> v{scene_.corner(f, 0) - p, scene_.corner(f, 1) - p,
-                                scene_.corner(f, 2) - p};
+    const std::array<Vec3, 3> v{limit_.triangles.corner(f, 0) - p,
+                                limit_.triangles.corner(f, 1) - p,
+                                limit_.triangles.corner(f, 2) - p};
     const double corners = std::min({u.dot(v[0]), u.dot(v[1]), u.dot(v[2])});
     Vec3 n = (v[1] - v[0]).cross(v[2] - v[0]);
     if (!(n.norm() > 0)) return corners;
@@ -204,18 +206,19 @@ class Search {
 
   /// What a point's distance exceeds the limit by at least.
   [[nodiscard]] double beyond(const Vec3& p) const {
-    const NearestTriangle all(scene_, limit_.all);
+    const NearestTriangle all(limit_.triangles, limit_.all);
     return all.lower_bound(p, all.distance(p)) - slack_ - limit_.distance;
   }
 
   /// Moves the point within Z away from what is nearest, by less and less, while it gets deeper.
   double climb(Look& look) const {
-    const NearestTriangle target(scene_, limit_.all);
+    const NearestTriangle target(limit_.triangles, limit_.all);
     double step = std::max(limit_.distance, -look.beyond);
     for (int i = 0; i < kClimbs && look.beyond > kNowhere && step > slack_; ++i) {
       const std::uint32_t f = target.nearest(look.point).face;
-      const Vec3 away = look.point - closest_point(look.point, scene_.corner(f, 0),
-                                                   scene_.corner(f, 1), scene_.corner(f, 2));
+      const Vec3 away =
+          look.point - closest_point(look.point, limit_.triangles.corner(f, 0),
+                                     limit_.triangles.corner(f, 1), limit_.triangles.corner(f, 2));
       if (!(away.norm() > 0)) break;
       const Vec3 next = look.point + step * away.normalized();
       const double reached = in_pocket(next).value_or(false) ? beyond(next) : kNowhere;
@@ -244,8 +247,8 @@ class Search {
   /// Whether the points, and so their hull, are within the limit of one triangle.
   [[nodiscard]] bool near(const std::vector<Vec3>& points, std::uint32_t f) const {
     return std::all_of(points.begin(), points.end(), [&](const Vec3& p) {
-      const Vec3 q =
-          closest_point(p, scene_.corner(f, 0), scene_.corner(f, 1), scene_.corner(f, 2));
+      const Vec3 q = closest_point(p, limit_.triangles.corner(f, 0), limit_.triangles.corner(f, 1),
+                                   limit_.triangles.corner(f, 2));
       return (q - p).norm() + slack_ <= limit_.distance;
     });
   }
@@ -288,8 +291,9 @@ class Search {
                                              NearestTriangle(scene_, kInside).nearest(p).face};
     for (const std::uint32_t f : faces) {
       if (f == NearestTriangle::kNone) continue;
-      const Vec3& a = scene_.corner(f, 0);
-      const Vec3 normal = (scene_.corner(f, 1) - a).cross(scene_.corner(f, 2) - a);
+      const Vec3& a = limit_.triangles.corner(f, 0);
+      const Vec3 normal =
+          (limit_.triangles.corner(f, 1) - a).cross(limit_.triangles.corner(f, 2) - a);
       const double length = normal.norm();
       if (!(length > 0)) continue;
       const Vec3 unit = normal / length;
@@ -306,17 +310,18 @@ class Search {
   [[nodiscard]] bool points_in(const Bounds& box, const BoxTree& tree,
                                std::vector<Vec3>& points) const {
     std::size_t count = 0;
-    tree.query(
-        [&](const Bounds& b) { return count <= kMostFaces && b.meets(box); },
-        [&](std::uint32_t f) {
-          if (++count > kMostFaces) return;
-          std::vector<Vec3> polygon{scene_.corner(f, 0), scene_.corner(f, 1), scene_.corner(f, 2)};
-          for (int axis = 0; axis < 3 && !polygon.empty(); ++axis) {
-            polygon = clip(polygon, axis, 1, box.high[axis] + 2 * slack_);
-            polygon = clip(polygon, axis, -1, -box.low[axis] + 2 * slack_);
-          }
-          points.insert(points.end(), polygon.begin(), polygon.end());
-        });
+    tree.query([&](const Bounds& b) { return count <= kMostFaces && b.meets(box); },
+               [&](std::uint32_t f) {
+                 if (++count > kMostFaces) return;
+                 std::vector<Vec3> polygon{limit_.triangles.corner(f, 0),
+                                           limit_.triangles.corner(f, 1),
+                                           limit_.triangles.corner(f, 2)};
+                 for (int axis = 0; axis < 3 && !polygon.empty(); ++axis) {
+                   polygon = clip(polygon, axis, 1, box.high[axis] + 2 * slack_);
+                   polygon = clip(polygon, axis, -1, -box.low[axis] + 2 * slack_);
+                 }
+                 points.insert(points.end(), polygon.begin(), polygon.end());
+               });
     return count <= kMostFaces;
   }
 
@@ -371,7 +376,7 @@ class Search {
   /// over the nearest one are. @param prisms  that were cut along, in all
   [[nodiscard]] bool near_after_cuts(const Part& part, std::uint32_t face,
                                      std::size_t& prisms) const {
-    const NearestTriangle target(scene_, limit_.target);
+    const NearestTriangle target(limit_.triangles, limit_.target);
     std::vector<Part> open{part}, pieces, next;
     while (!open.empty()) {
       const Part piece = open.back();
@@ -387,13 +392,15 @@ class Search {
       if (hit.distance + radius + 2 * slack_ <= limit_.distance || near(points, f)) continue;
       if (++prisms > kMostPrisms || piece.cuts > kMostCuts - 4) return false;
       pieces.assign(1, piece);
-      const Vec3& a = scene_.corner(f, 0);
-      const Vec3 normal = (scene_.corner(f, 1) - a).cross(scene_.corner(f, 2) - a);
+      const Vec3& a = limit_.triangles.corner(f, 0);
+      const Vec3 normal =
+          (limit_.triangles.corner(f, 1) - a).cross(limit_.triangles.corner(f, 2) - a);
       for (int k = 0; k < 3; ++k) {
-        const Vec3 across = (scene_.corner(f, (k + 1) % 3) - scene_.corner(f, k)).cross(normal);
+        const Vec3 across =
+            (limit_.triangles.corner(f, (k + 1) % 3) - limit_.triangles.corner(f, k)).cross(normal);
         const double length = across.norm();
         if (!(length > 0)) return false;
-        const Plane side{across / length, across.dot(scene_.corner(f, k)) / length};
+        const Plane side{across / length, across.dot(limit_.triangles.corner(f, k)) / length};
         next.clear();
         for (const Part& x : pieces) {
           const auto [low, high] = range(x, side);
@@ -459,18 +466,20 @@ class Search {
 
 }  // namespace
 
-BoxTree tree_of(const Scene& scene, const std::vector<std::uint32_t>& faces) {
+BoxTree tree_of(const Triangles& triangles, const std::vector<std::uint32_t>& chosen) {
   std::vector<Bounds> boxes;
-  boxes.reserve(faces.size());
-  for (const std::uint32_t f : faces) {
+  boxes.reserve(chosen.size());
+  for (const std::uint32_t t : chosen) {
+    const Vec3 &a = triangles.corner(t, 0), &b = triangles.corner(t, 1),
+               &c = triangles.corner(t, 2);
     Bounds box;
     for (int k = 0; k < 3; ++k) {
-      box.low[k] = std::min({scene.corner(f, 0)[k], scene.corner(f, 1)[k], scene.corner(f, 2)[k]});
-      box.high[k] = std::max({scene.corner(f, 0)[k], scene.corner(f, 1)[k], scene.corner(f, 2)[k]});
+      box.low[k] = std::min({a[k], b[k], c[k]});
+      box.high[k] = std::max({a[k], b[k], c[k]});
     }
     boxes.push_back(box);
   }
-  return {std::move(boxes), faces};
+  return {std::move(boxes), chosen};
 }
 
 std::vector<std::uint32_t> offending_faces(const Scene& scene, const Claim& claim) {

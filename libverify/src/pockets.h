@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "pieces.h"
 #include "scene.h"
 #include "uncovered.h"
 
@@ -12,7 +13,8 @@
 namespace kaboum::verify {
 
 struct Limit {
-  const BoxTree& target;  ///< faces that distances are measured to; not empty
+  Triangles triangles;    ///< what the trees hold
+  const BoxTree& target;  ///< triangles that distances are measured to; not empty
   const BoxTree& all;     ///< these and more: what is farther from all of them is too far
   double distance;        ///< in the scene's unit, > 0
   std::size_t max_cells;  ///< boxes looked at before giving up
@@ -26,7 +28,7 @@ struct Limit {
   const Uncovered* bodies = nullptr;
 };
 
-BoxTree tree_of(const Scene& scene, const std::vector<std::uint32_t>& faces);
+BoxTree tree_of(const Triangles& triangles, const std::vector<std::uint32_t>& chosen);
 
 /// The faces that a refuted solid claim names, in order. They hold the boundary of Z, unless a
 /// limit ended the search for them.

@@ -34,6 +34,8 @@ Uncovered::Uncovered(const Scene& scene, const geom::ConvexSet& set) {
   if (!bodies_.empty()) tree_ = BoxTree(std::move(boxes), std::move(items));
 }
 
+// Normals from exact products: facets may be slivers, whose corners are in a line but for the last
+// bits of float32.
 Uncovered::Body Uncovered::body_of(const geom::Mesh& hull, const Scene& scene) {
   const double largest = scene.largest_coordinate();
   const double slack = rounding_of_distances(largest);
@@ -41,14 +43,29 @@ Uncovered::Body Uncovered::body_of(const geom::Mesh& hull, const Scene& scene) {
   for (const geom::Triangle& t : hull.triangles) {
     const Vec3 a = hull.vertices[t[0]] * scene.scale(), b = hull.vertices[t[1]] * scene.scale(),
                c = hull.vertices[t[2]] * scene.scale();
-    const Vec3 normal = (b - a).cross(c - a);
+    Triple<Exact> ab, ac;
+    for (int k = 0; k < 3; ++k) {
+      ab[k] = difference<Exact>(b[k], a[k]);
+      ac[k] = difference<Exact>(c[k], a[k]);
+    }
+    Vec3 normal;
+    double error = 0;
+    bool area = false;
+    for (int k = 0; k < 3; ++k) {
+      const int u = (k + 1) % 3, v = (k + 2) % 3;
+      const Exact exact = ab[u] * ac[v] - ab[v] * ac[u];
+      const Approx x = rounded(exact);
+      normal[k] = x.value;
+      error += x.error;
+      area = area || sign_of(exact) != Sign::Zero;
+    }
+    if (!area) continue;  // seen from nowhere
     const double norm = normal.norm();
-    if (!(norm > 0)) return {};
     // What the rounding of the normal turns the plane by, times how far away from `a` points are.
-    const double turned = 64 * kUnit * (b - a).norm() * (c - a).norm() / norm * 4 * largest;
+    const double turned = (4 * error / norm + 64 * kUnit) * 4 * largest;
     const Vec3 unit = normal / norm;
     const double height = std::min({unit.dot(a), unit.dot(b), unit.dot(c)}) - turned - 2 * slack;
-    if (!std::isfinite(height)) return {};
+    if (!(norm > 0) || !std::isfinite(height)) return {};
     body.planes.push_back({unit, height});
   }
   return body;
@@ -58,23 +75,32 @@ std::optional<Uncovered::Crossing> Uncovered::crossing_planes(const Body& body, 
   const Vec3 low(box.low.data()), high(box.high.data());
   const Vec3 middle = 0.5 * (low + high), half = 0.5 * (high - low);
   Crossing result;
+  struct Met {
+    const Plane* plane;
+    double at;  ///< height of the box's middle above it
+  };
+  std::vector<Met> met;
   for (const Plane& plane : body.planes) {
     const double at = plane.normal.dot(middle) - plane.height;
     const double reach = plane.normal.cwiseAbs().dot(half);
     result.depth = std::min(result.depth, -at);
     if (at >= reach) return std::nullopt;
-    if (at <= -reach) continue;
+    if (at > -reach) met.push_back({&plane, at});
+  }
+  // The lowest ones first: what is above them in all of the box takes nothing from them.
+  std::stable_sort(met.begin(), met.end(), [](const Met& a, const Met& b) { return a.at > b.at; });
+  for (const auto& [plane, at] : met) {
     const auto alike = std::find_if(
         result.planes.begin(), result.planes.end(),
-        [&](const Plane& p) { return (p.normal - plane.normal).squaredNorm() < kAlike * kAlike; });
+        [&](const Plane& p) { return (p.normal - plane->normal).squaredNorm() < kAlike * kAlike; });
     if (alike == result.planes.end()) {
-      result.planes.push_back(plane);
+      result.planes.push_back(*plane);
       continue;
     }
     // In the box n·x is at most n'·x plus the largest (n − n')·x.
-    const Vec3 difference = plane.normal - alike->normal;
+    const Vec3 difference = plane->normal - alike->normal;
     alike->height = std::min(
-        alike->height, plane.height - difference.dot(middle) - difference.cwiseAbs().dot(half));
+        alike->height, plane->height - difference.dot(middle) - difference.cwiseAbs().dot(half));
   }
   return result;
 }
@@ -117,14 +143,15 @@ bool Uncovered::one_holds(const Bounds& box) const {
   const Vec3 low(box.low.data()), high(box.high.data());
   const Vec3 middle = 0.5 * (low + high), half = 0.5 * (high - low);
   bool held = false;
-  tree_.query(
-      [&](const Bounds& b) { return !held && b.meets(box); },
-      [&](std::uint32_t body) {
-        held = std::all_of(
-            bodies_[body].planes.begin(), bodies_[body].planes.end(), [&](const Plane& plane) {
-              return plane.normal.dot(middle) + plane.normal.cwiseAbs().dot(half) <= plane.height;
-            });
-      });
+  tree_.query([&](const Bounds& b) { return !held && b.meets(box); },
+              [&](std::uint32_t body) {
+                held = held || std::all_of(bodies_[body].planes.begin(), bodies_[body].planes.end(),
+                                           [&](const Plane& plane) {
+                                             return plane.normal.dot(middle) +
+                                                        plane.normal.cwiseAbs().dot(half) <=
+                                                    plane.height;
+                                           });
+              });
   return held;
 }
 

@@ -53,9 +53,9 @@ DistanceClaim verify_reach(const geom::ConvexSet& set, const geom::Mesh& origina
 /// (farther from its boundary) is in a body: what an inner set promises besides lying within the
 /// solid. A witness is in no body, and `depth` deeper than epsilon.
 ///
-/// Distances are measured to triangles with an outside along all of them, and to places outside;
-/// where these do not tell, the answer is undecided. Undefined unless the original is a
-/// closed chain.
+/// Distances are measured to the parts of triangles with an outside along them, and to places
+/// outside. Where the deepest point is epsilon deep but for rounding, or it would take too long,
+/// the answer is undecided. Undefined unless the original is a closed chain.
 ///
 /// @pre epsilon > 0; the bodies are convex (verify_cover, `convex`)
 /// @throws as verify_inclusion
