@@ -1,10 +1,6 @@
 #include "prepared_original.h"
 
 #include <kaboum/geom/error.h>
-#include <kaboum/geom/hollows.h>
-#include <kaboum/geom/topology.h>
-
-#include <numeric>
 
 #include "verdict.h"
 
@@ -22,16 +18,8 @@ std::optional<InsideOut> find_inside_out(const geom::Mesh& mesh) {
     const geom::Prepared prepared = prepare_original(mesh, true, false);
     InsideOut out;
     if (prepared.inside_out.empty()) {
-      if (!prepared.closed) return {};
-      const geom::Mesh welded = geom::weld(mesh);
-      std::optional<geom::Hollow> hollow = geom::find_hollow(welded);
-      if (!hollow && prepared.turned_triangles == 0) {
-        std::vector<std::uint32_t> all(welded.triangles.size());
-        std::iota(all.begin(), all.end(), 0U);
-        hollow = geom::find_inverted(welded, all);
-      }
-      if (!hollow) return {};
-      out.hollow = hollow->at;
+      if (!prepared.hollow) return {};
+      out.hollow = prepared.hollow;
       return out;
     }
     out.parts = prepared.turned_components;

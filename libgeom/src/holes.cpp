@@ -45,14 +45,13 @@ FilledHoles fill_holes(const Mesh& mesh) {
   // belongs to one component, a vertex may belong to several.
   using Corner = std::pair<std::uint32_t, std::uint32_t>;  // component, vertex
   std::map<Corner, std::vector<std::uint32_t>> next;
-  for (std::size_t i = 0; i < uses.size();) {
+  for_each_edge(uses, [&](std::span<const EdgeUse> e) {
     int balance = 0;
-    const std::uint32_t lo = uses[i].lo, hi = uses[i].hi, c = component[uses[i].triangle];
-    for (; i < uses.size() && uses[i].lo == lo && uses[i].hi == hi; ++i)
-      balance += uses[i].forward ? 1 : -1;
-    for (; balance > 0; --balance) next[{c, hi}].push_back(lo);
-    for (; balance < 0; ++balance) next[{c, lo}].push_back(hi);
-  }
+    for (const EdgeUse& u : e) balance += u.forward ? 1 : -1;
+    const std::uint32_t c = component[e[0].triangle];
+    for (; balance > 0; --balance) next[{c, e[0].hi}].push_back(e[0].lo);
+    for (; balance < 0; ++balance) next[{c, e[0].lo}].push_back(e[0].hi);
+  });
   // A boundary has as many edges into a vertex as out of it, so every walk returns.
   while (!next.empty()) {
     const std::uint32_t c = next.begin()->first.first;

@@ -87,23 +87,13 @@ class Hollows {
   }
 
  private:
-  template <class Visit>
-  void for_each_edge(Visit&& visit) const {
-    for (std::size_t i = 0; i < uses_.size();) {
-      std::size_t j = i + 1;
-      while (j < uses_.size() && uses_[j].lo == uses_[i].lo && uses_[j].hi == uses_[i].hi) ++j;
-      visit(std::span(uses_).subspan(i, j - i));
-      i = j;
-    }
-  }
-
   /// Triangles at edges of two have the same factor, or opposite ones where they disagree.
   /// @return whether there are other edges of more.
   bool join_patches() {
     const std::size_t n = mesh_.triangles.size();
     std::vector<std::vector<std::pair<std::uint32_t, int>>> across(n);
     bool branched = false;
-    for_each_edge([&](std::span<const EdgeUse> e) {
+    for_each_edge(uses_, [&](std::span<const EdgeUse> e) {
       branched = branched || e.size() > 2;
       if (e.size() != 2) return;
       const int same = e[0].forward != e[1].forward ? 1 : -1;
@@ -140,7 +130,7 @@ class Hollows {
   /// Parts: patches that share edges.
   void find_parts() {
     UnionFind sets(factor_.size());
-    for_each_edge([&](std::span<const EdgeUse> e) {
+    for_each_edge(uses_, [&](std::span<const EdgeUse> e) {
       for (const EdgeUse& u : e) sets.join(patch_[e[0].triangle], patch_[u.triangle]);
     });
     std::uint32_t count = 0;
@@ -155,7 +145,7 @@ class Hollows {
     std::set<Equation> equations;
     for (std::uint32_t p = 0; p < nothing_.size(); ++p)
       if (nothing_[p] != 0) equations.insert({{p, Residue(1)}});
-    for_each_edge([&](std::span<const EdgeUse> e) {
+    for_each_edge(uses_, [&](std::span<const EdgeUse> e) {
       if (e.size() == 2) return;
       Equation equation;
       for (const EdgeUse& u : e)
@@ -303,18 +293,26 @@ class Hollows {
 
 }  // namespace
 
-std::optional<Hollow> find_inverted(const Mesh& mesh, std::span<const std::uint32_t> beside) {
-  constexpr std::size_t kMost = 20'000;
-  const WindingNumber winding(mesh);
-  for (std::size_t i = 0; i < beside.size(); i += 1 + beside.size() / kMost) {
-    const auto& [p, q, r] = mesh.triangles[beside[i]];
+std::optional<Hollow> find_inverted(const Mesh& mesh, const WindingNumber& winding,
+                                    std::span<const std::uint32_t> beside,
+                                    std::span<const std::uint32_t> part) {
+  for (const std::uint32_t t : beside) {
+    const auto& [p, q, r] = mesh.triangles[t];
     const Vec3 &a = mesh.vertices[p], &b = mesh.vertices[q], &c = mesh.vertices[r];
     const Vec3 normal = (b - a).cross(c - a);
     const double size = std::sqrt(normal.norm());
     if (!(size > 0)) continue;
     const Vec3 at = 0.34 * a + 0.35 * b + 0.31 * c, step = normal * (1e-3 / size);
-    for (const Vec3& x : {Vec3(at + step), Vec3(at - step)})
-      if (winding(x).value_or(0) < 0) return Hollow{beside[i], x, false};
+    for (const Vec3& x : {Vec3(at + step), Vec3(at - step)}) {
+      int number = 0;
+      bool on = false;
+      winding.crossings(x, [&](std::uint32_t u, int crossing) {
+        if (!part.empty() && part[u] != part[t]) return;
+        on = on || crossing == 0;
+        number += crossing;
+      });
+      if (!on && number < 0) return Hollow{t, x, false};
+    }
   }
   return {};
 }

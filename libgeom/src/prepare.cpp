@@ -145,16 +145,6 @@ class Preparation {
                          " with repeated corners dropped");
   }
 
-  template <class Visit>
-  void for_each_edge(Visit&& visit) const {
-    for (std::size_t i = 0; i < edges_.size();) {
-      std::size_t j = i + 1;
-      while (j < edges_.size() && edges_[j].lo == edges_[i].lo && edges_[j].hi == edges_[i].hi) ++j;
-      visit(std::span(edges_).subspan(i, j - i));
-      i = j;
-    }
-  }
-
   static bool balanced(std::span<const EdgeUse> uses) {
     const auto forward =
         std::count_if(uses.begin(), uses.end(), [](const EdgeUse& e) { return e.forward; });
@@ -173,7 +163,7 @@ class Preparation {
       return e.size() == 2 && opposite_corner(e[0]) != opposite_corner(e[1]);
     };
     for_each_edge(
-        [&](std::span<const EdgeUse> e) { inconsistent += !balanced(e) && neighbours(e); });
+        edges_, [&](std::span<const EdgeUse> e) { inconsistent += !balanced(e) && neighbours(e); });
     if (inconsistent == 0) return;
 
     const std::size_t n = mesh().triangles.size();
@@ -182,7 +172,7 @@ class Preparation {
       bool agrees = true;
     };
     std::vector<std::array<Neighbour, 3>> across(n);
-    for_each_edge([&](std::span<const EdgeUse> e) {
+    for_each_edge(edges_, [&](std::span<const EdgeUse> e) {
       if (!neighbours(e)) return;  // copies of one triangle are none
       const bool agrees = e[0].forward != e[1].forward;
       across[e[0].triangle][e[0].corner] = {e[1].triangle, agrees};
@@ -252,7 +242,7 @@ class Preparation {
     // Only triangles that share an edge and the corner opposite to it can coincide.
     std::vector<char> candidate(mesh().triangles.size(), 0);
     std::vector<std::pair<std::uint32_t, std::uint32_t>> by_corner;
-    for_each_edge([&](std::span<const EdgeUse> e) {
+    for_each_edge(edges_, [&](std::span<const EdgeUse> e) {
       if (e.size() < 2) return;
       if (e.size() == 2) {
         if (opposite_corner(e[0]) == opposite_corner(e[1]))
@@ -353,10 +343,10 @@ class Preparation {
   void fill() {
     FilledHoles filled = fill_holes(mesh());
     if (filled.holes == 0) return;
+    judge_rims();
     const Chains chains = find_chains(mesh(), edges_);
-    std::vector<char> open(*std::max_element(out_.source.begin(), out_.source.end()) + 1, 0);
     for (std::size_t t = 0; t < out_.source.size(); ++t)
-      if (chains.closed[chains.label[t]] == 0) opened_[out_.source[t]] = open[out_.source[t]] = 1;
+      if (chains.closed[chains.label[t]] == 0) opened_[out_.source[t]] = 1;
     out_.holes = filled.holes;
     name_rims(filled.rims);
     out_.largest_hole = filled.largest;
@@ -372,7 +362,7 @@ class Preparation {
     filter(keep);
     was_open_.assign(out_.source.size(), 1);
     for (std::size_t t = 0; t < out_.source.size(); ++t)
-      if (out_.source[t] != kFilled) was_open_[t] = open[out_.source[t]] != 0 ? 1 : 0;
+      if (out_.source[t] != kFilled) was_open_[t] = opened_[out_.source[t]];
     const auto triangles =
         static_cast<std::size_t>(std::count(out_.source.begin(), out_.source.end(), kFilled));
     out_.notes.push_back(count_of(filled.holes, "hole is", "holes are") + " filled with " +
@@ -380,6 +370,31 @@ class Preparation {
                          (filled.holes == 1 ? ", " : ", the largest ") + text_of(filled.largest) +
                          " across near " + text_of(filled.largest_at) +
                          ": what is said of the solid is about the one so closed");
+  }
+
+  /// Where three triangles or more meet and do not balance, a hole's rim runs along a wall: which
+  /// side of the wall has the hole depends on its orientation.
+  void judge_rims() {
+    std::optional<std::uint32_t> found;
+    for_each_edge(edges_, [&](std::span<const EdgeUse> e) {
+      if (e.size() < 3 || balanced(e)) return;
+      for (const EdgeUse& u : e) {
+        found = found.value_or(out_.source[u.triangle]);
+        if (agreed_[out_.source[u.triangle]] == 0) continue;
+        throw Error(ErrorCode::InvalidInput,
+                    "a hole's rim runs along a wall that several bodies share, at input triangle " +
+                        std::to_string(out_.source[u.triangle]) +
+                        ", and triangles there were turned to agree with their neighbours: which "
+                        "body the hole is in cannot be told; close the hole, give each body a mesh "
+                        "of its own, or orient all normals outwards");
+      }
+    });
+    if (found)
+      out_.notes.push_back(
+          "WARNING: a hole's rim runs along a wall, where three triangles or more "
+          "meet (at input triangle " +
+          std::to_string(*found) +
+          "): which side of the wall is filled depends on its orientation");
   }
 
   /// A vertex is named by the first corner of the input that is there, as the input orients it.
@@ -423,13 +438,9 @@ class Preparation {
     std::uint32_t count = 0;
     const std::vector<std::uint32_t> label = components(dropped, true, &count);
     std::vector<char> closed(count, 1);
-    const std::vector<EdgeUse> uses = edge_uses(dropped);
-    for (std::size_t i = 0; i < uses.size();) {
-      std::size_t j = i;
-      while (j < uses.size() && uses[j].lo == uses[i].lo && uses[j].hi == uses[i].hi) ++j;
-      if (!balanced(std::span(uses).subspan(i, j - i))) closed[label[uses[i].triangle]] = 0;
-      i = j;
-    }
+    for_each_edge(edge_uses(dropped), [&](std::span<const EdgeUse> e) {
+      if (!balanced(e)) closed[label[e[0].triangle]] = 0;
+    });
     for (std::size_t i = 0; i < copies.size(); ++i) {
       if (closed[label[i]] == 0) continue;
       keep[copies[i]] = 0;
@@ -459,7 +470,7 @@ class Preparation {
       out_.notes.push_back("the surface crosses itself, and what it encloses near " +
                            text_of(judged.left->at) +
                            " is inside out: that part counts as outside");
-      noted_hollow_ = true;
+      out_.hollow = judged.left->at;
     }
     if (judged.inside_out.empty()) return;
     out_.turned_components = judged.inside_out.size();
@@ -488,7 +499,7 @@ class Preparation {
   /// Looks at the walls that have cancelled as well: they tell that parts met there.
   void find_hollows() {
     bool branched = !cancelled_.empty();
-    for_each_edge([&](std::span<const EdgeUse> e) { branched = branched || e.size() > 2; });
+    for_each_edge(edges_, [&](std::span<const EdgeUse> e) { branched = branched || e.size() > 2; });
     if (!out_.closed || !branched) return;
     Mesh walls = mesh();
     for (const Cancelled& c : cancelled_) {
@@ -499,15 +510,12 @@ class Preparation {
     if (!cancelled_.empty()) walls = weld(walls);
     const std::optional<Hollow> hollow = find_hollow(walls);
     if (!hollow) return;
-    const std::string where =
-        (hollow->triangle < out_.source.size()
-             ? "at input triangle " + std::to_string(out_.source[hollow->triangle]) + " "
-             : "") +
-        "near " + text_of(hollow->at);
-    if (hollow->at_wall && !options_.keep_orientation && !options_.drop_sheets) refuse_wall(where);
-    if (!noted_hollow_)
-      out_.notes.push_back("parts that share edges enclose a hollow " + where +
-                           ", which need not be a cavity: that part counts as outside");
+    if (hollow->at_wall && !options_.keep_orientation && !options_.drop_sheets)
+      refuse_wall(where(*hollow));
+    if (out_.hollow) return;
+    out_.hollow = hollow->at;
+    out_.notes.push_back("parts that share edges enclose a hollow " + where(*hollow) +
+                         ", which need not be a cavity: that part counts as outside");
   }
 
   /// Parts that were open, or that were turned to agree, are judged by themselves: their holes'
@@ -516,56 +524,70 @@ class Preparation {
   /// that would be hollow. Then the whole, where a surface crosses itself.
   void find_inverted() {
     if (!out_.closed || options_.keep_orientation) return;
-    const auto both = std::find_if(out_.source.begin(), out_.source.end(), [&](std::uint32_t s) {
-      return agreed_[s] != 0 && opened_[s] != 0;
-    });
-    if (both != out_.source.end())
-      out_.notes.push_back(
-          "WARNING: the part with input triangle " + std::to_string(*both) +
-          " was open, and its triangles were turned to agree: which solid it bounds is a guess");
-    const std::vector<std::uint32_t> label = components(edges_, mesh().triangles.size(), nullptr);
-    std::map<std::uint32_t, std::vector<std::uint32_t>> guessed;
-    for (std::uint32_t t = 0; t < label.size(); ++t)
-      if (is_guessed(t)) guessed[label[t]];
-    for (std::uint32_t t = 0; t < label.size(); ++t)
-      if (const auto part = guessed.find(label[t]); part != guessed.end())
-        part->second.push_back(t);
-    for (const auto& [unused, triangles] : guessed) {
-      Mesh part{mesh().vertices, {}};
-      for (const std::uint32_t t : triangles) part.triangles.push_back(mesh().triangles[t]);
-      std::vector<std::uint32_t> all(triangles.size());
-      std::iota(all.begin(), all.end(), 0U);
-      if (const auto found = geom::find_inverted(part, all))
-        say_inverted(triangles[found->triangle], found->at);
-    }
-    if (noted_hollow_) return;
-    std::vector<std::uint32_t> all(mesh().triangles.size());
+    const std::vector<std::uint32_t> part = components(edges_, mesh().triangles.size(), nullptr);
+    std::vector<char> is_guessed(part.size(), 0);
+    std::vector<std::uint32_t> agreed, guessed, all(part.size());
     std::iota(all.begin(), all.end(), 0U);
-    if (const auto found = geom::find_inverted(mesh(), all))
-      say_inverted(found->triangle, found->at);
-  }
-
-  /// Whether the triangle is of the file and of a part that was open, or was turned to agree.
-  [[nodiscard]] bool is_guessed(std::uint32_t t) const {
-    return t < out_.source.size() && (agreed_[out_.source[t]] != 0 || opened_[out_.source[t]] != 0);
-  }
-
-  void say_inverted(std::uint32_t t, const Vec3& at) {
-    const bool filling = t >= out_.source.size();
-    const std::string where =
-        (filling ? "" : "at input triangle " + std::to_string(out_.source[t]) + " ") + "near " +
-        text_of(at);
-    if (!filling && agreed_[out_.source[t]] != 0)
+    for (std::uint32_t t = 0; t < out_.source.size(); ++t) {
+      if (agreed_[out_.source[t]] != 0) agreed.push_back(t);
+      if (agreed_[out_.source[t]] != 0 || opened_[out_.source[t]] != 0) is_guessed[part[t]] = 1;
+    }
+    warn_of_guess(part);
+    std::copy_if(all.begin(), all.end(), std::back_inserter(guessed),
+                 [&](std::uint32_t t) { return is_guessed[part[t]] != 0; });
+    const WindingNumber winding(mesh());
+    if (const auto found = geom::find_inverted(mesh(), winding, some_of(agreed, part), part))
       throw Error(ErrorCode::InvalidInput,
                   "triangles were turned to agree with their neighbours, and what they enclose is "
                   "inside out now, " +
-                      where +
+                      where(*found) +
                       ": bodies that share an edge cannot be told apart; give each body a mesh of "
                       "its own, or orient all normals outwards");
-    if (noted_hollow_) return;
-    noted_hollow_ = true;
-    out_.notes.push_back("WARNING: the surface crosses itself, and what it encloses " + where +
+    if (out_.hollow) return;
+    std::optional<Hollow> found =
+        geom::find_inverted(mesh(), winding, some_of(guessed, part), part);
+    if (!found) found = geom::find_inverted(mesh(), winding, some_of(all, {}));
+    if (!found) return;
+    out_.hollow = found->at;
+    out_.notes.push_back("WARNING: the surface crosses itself, and what it encloses " +
+                         where(*found) +
                          " is inside out: that part counts as outside, and is NOT enclosed");
+  }
+
+  /// Without edges at which several sheets meet, a part can be turned to agree in one way only.
+  void warn_of_guess(const std::vector<std::uint32_t>& part) {
+    std::map<std::uint32_t, char> branched;
+    for_each_edge(edges_, [&](std::span<const EdgeUse> e) {
+      if (e.size() > 2) branched[part[e[0].triangle]] = 1;
+    });
+    for (std::uint32_t t = 0; t < out_.source.size(); ++t) {
+      const std::uint32_t s = out_.source[t];
+      if (agreed_[s] == 0 || opened_[s] == 0 || !branched.contains(part[t])) continue;
+      out_.notes.push_back(
+          "WARNING: the part with input triangle " + std::to_string(s) +
+          " was open, and its triangles were turned to agree: which solid it bounds is a guess");
+      return;
+    }
+  }
+
+  /// Of each part at most 20,000 triangles, evenly; without parts, of all.
+  static std::vector<std::uint32_t> some_of(const std::vector<std::uint32_t>& triangles,
+                                            const std::vector<std::uint32_t>& part) {
+    constexpr std::size_t kMost = 20'000;
+    std::map<std::uint32_t, std::size_t> size, seen;
+    const auto part_of = [&](std::uint32_t t) { return part.empty() ? 0 : part[t]; };
+    for (const std::uint32_t t : triangles) ++size[part_of(t)];
+    std::vector<std::uint32_t> some;
+    for (const std::uint32_t t : triangles)
+      if (seen[part_of(t)]++ % (1 + size[part_of(t)] / kMost) == 0) some.push_back(t);
+    return some;
+  }
+
+  [[nodiscard]] std::string where(const Hollow& found) const {
+    return (found.triangle < out_.source.size()
+                ? "at input triangle " + std::to_string(out_.source[found.triangle]) + " "
+                : "") +
+           "near " + text_of(found.at);
   }
 
   [[noreturn]] static void refuse_wall(const std::string& where) {
@@ -598,7 +620,7 @@ class Preparation {
   void find_border() {
     out_.border.assign(mesh().vertices.size(), 0);
     std::size_t open = 0;
-    for_each_edge([&](std::span<const EdgeUse> e) {
+    for_each_edge(edges_, [&](std::span<const EdgeUse> e) {
       if (balanced(e)) return;
       out_.border[e[0].lo] = out_.border[e[0].hi] = 1;
       ++open;
@@ -621,7 +643,6 @@ class Preparation {
   Prepared out_;
   std::uint32_t input_triangles_ = 0;
   std::vector<Cancelled> cancelled_;
-  bool noted_hollow_ = false;
   std::vector<char> agreed_, opened_;  // per input triangle: its part was turned to agree, was open
   std::vector<EdgeUse> edges_;
   std::vector<std::uint32_t> was_open_;   // per triangle, when holes are filled: before that

@@ -31,18 +31,11 @@ template <class Visit>
 void for_each_run(std::span<const EdgeUse> uses, std::span<const std::uint32_t> group,
                   Visit&& visit) {
   std::vector<EdgeUse> sorted;
-  for (std::size_t i = 0; i < uses.size();) {
-    std::size_t j = i + 1;
-    while (j < uses.size() && uses[j].lo == uses[i].lo && uses[j].hi == uses[i].hi) ++j;
-    const std::span<const EdgeUse> edge = uses.subspan(i, j - i);
-    i = j;
+  for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
     const bool one = group.empty() || std::all_of(edge.begin(), edge.end(), [&](const EdgeUse& u) {
                        return group[u.triangle] == group[edge[0].triangle];
                      });
-    if (one) {
-      visit(edge);
-      continue;
-    }
+    if (one) return visit(edge);
     sorted.assign(edge.begin(), edge.end());
     std::stable_sort(sorted.begin(), sorted.end(), [&](const EdgeUse& a, const EdgeUse& b) {
       return group[a.triangle] < group[b.triangle];
@@ -53,7 +46,7 @@ void for_each_run(std::span<const EdgeUse> uses, std::span<const std::uint32_t> 
       visit(std::span<const EdgeUse>(sorted).subspan(k, l - k));
       k = l;
     }
-  }
+  });
 }
 
 int balance(std::span<const EdgeUse> uses) {

@@ -20,17 +20,6 @@ Triangle sorted(Triangle t) {
   return t;
 }
 
-/// Calls visit(first, last) for each run of uses of one edge.
-template <class Visit>
-void for_each_edge(std::span<const EdgeUse> uses, Visit&& visit) {
-  for (std::size_t i = 0; i < uses.size();) {
-    std::size_t j = i + 1;
-    while (j < uses.size() && uses[j].lo == uses[i].lo && uses[j].hi == uses[i].hi) ++j;
-    visit(i, j);
-    i = j;
-  }
-}
-
 /// Vertices whose triangles, joined through shared edges at the vertex, form more than one group.
 std::size_t count_nonmanifold_vertices(const Mesh& mesh, const std::vector<EdgeUse>& uses) {
   // Corners 3·triangle + k; an edge joins the corners of all its triangles at each of its ends.
@@ -40,10 +29,10 @@ std::size_t count_nonmanifold_vertices(const Mesh& mesh, const std::vector<EdgeU
     const std::uint32_t k = t[0] == vertex ? 0 : t[1] == vertex ? 1 : 2;
     return 3 * triangle + k;
   };
-  for_each_edge(uses, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first + 1; i < last; ++i)
-      for (const std::uint32_t v : {uses[first].lo, uses[first].hi})
-        groups.join(corner_at(uses[first].triangle, v), corner_at(uses[i].triangle, v));
+  for_each_edge(uses, [&](std::span<const EdgeUse> e) {
+    for (const EdgeUse& u : e.subspan(1))
+      for (const std::uint32_t v : {u.lo, u.hi})
+        groups.join(corner_at(e[0].triangle, v), corner_at(u.triangle, v));
   });
   std::vector<std::uint32_t> fans(mesh.vertices.size(), 0);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -96,9 +85,8 @@ std::vector<EdgeUse> edge_uses(const Mesh& mesh) {
 std::vector<std::uint32_t> components(std::span<const EdgeUse> uses, std::size_t triangles,
                                       std::uint32_t* count) {
   UnionFind groups(triangles);
-  for_each_edge(uses, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first + 1; i < last; ++i)
-      groups.join(uses[first].triangle, uses[i].triangle);
+  for_each_edge(uses, [&](std::span<const EdgeUse> e) {
+    for (const EdgeUse& u : e.subspan(1)) groups.join(e[0].triangle, u.triangle);
   });
   return groups.labels(count);
 }
@@ -130,12 +118,10 @@ TopologyReport analyse(const Mesh& mesh) {
   report.components = count;
 
   const std::vector<EdgeUse> uses = edge_uses(mesh);
-  for_each_edge(uses, [&](std::size_t first, std::size_t last) {
-    const auto n = last - first;
-    const auto forward =
-        static_cast<std::size_t>(std::count_if(uses.begin() + static_cast<std::ptrdiff_t>(first),
-                                               uses.begin() + static_cast<std::ptrdiff_t>(last),
-                                               [](const EdgeUse& e) { return e.forward; }));
+  for_each_edge(uses, [&](std::span<const EdgeUse> e) {
+    const std::size_t n = e.size();
+    const auto forward = static_cast<std::size_t>(
+        std::count_if(e.begin(), e.end(), [](const EdgeUse& u) { return u.forward; }));
     ++report.edges;
     report.open_edges += n == 1;
     report.nonmanifold_edges += n > 2;

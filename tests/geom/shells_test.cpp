@@ -311,6 +311,41 @@ TEST(Shells, OpenBodiesThatShareAnEdgeAreNotTurnedAgainstEachOther) {
   EXPECT_THROW(prepare(kaboum::test::merged({mesh_of(round, kUnits), mesh}), fill), kaboum::Error);
 }
 
+// Two rooms with one wall between them, there once, and a floor of the first one missing: the
+// hole's rim runs along the wall. Which room it opens depends on how the wall is oriented.
+TEST(Shells, AHoleAtASharedWallIsRefusedOrSaid) {
+  const auto rooms = [](bool wall_of_first) {
+    Mesh mesh;  // 4 × 2 × 2 corners, of x = 0, 1, 2
+    for (const double x : {0.0, 1.0, 2.0})
+      for (const double y : {0.0, 1.0})
+        for (const double z : {0.0, 1.0}) mesh.vertices.emplace_back(x, y, z);
+    const auto quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+      mesh.triangles.push_back({a, b, c});
+      mesh.triangles.push_back({a, c, d});
+    };
+    quad(0, 1, 3, 2);                                    // x = 0
+    quad(8, 10, 11, 9);                                  // x = 2
+    for (const std::uint32_t first : {0U, 4U}) {         // of each room
+      quad(first, first + 4, first + 5, first + 1);      // y = 0
+      quad(first + 2, first + 3, first + 7, first + 6);  // y = 1
+      quad(first + 1, first + 5, first + 7, first + 3);  // z = 1
+    }
+    quad(4, 6, 10, 8);  // z = 0, of the second room only
+    if (wall_of_first)
+      quad(4, 6, 7, 5);
+    else
+      quad(4, 5, 7, 6);
+    return mesh;
+  };
+  PrepareOptions fill;
+  fill.holes = Holes::Fill;
+  EXPECT_THROW(prepare(rooms(true), fill), kaboum::Error);
+  const Prepared p = prepare(rooms(false), fill);
+  EXPECT_TRUE(std::any_of(p.notes.begin(), p.notes.end(), [](const std::string& note) {
+    return note.find("rim runs along a wall") != std::string::npos;
+  }));
+}
+
 // A closed surface that crosses itself, most of it oriented outwards: two boxes as one, joined
 // through a neck along which it turns inside out.
 TEST(Shells, ALobeInsideOutIsNoted) {

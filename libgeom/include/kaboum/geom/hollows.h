@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/geom/mesh.h>
+#include <kaboum/geom/winding.h>
 
 #include <cstdint>
 #include <optional>
@@ -35,8 +36,13 @@ std::optional<Hollow> find_hollow(const Mesh& walls);
 /// itself, or parts joined against each other, enclose inside out.
 ///
 /// @param mesh    a closed chain.
-/// @param beside  triangles to look beside; of more than 20,000 so many are looked at, evenly.
-/// @return the first found, in their order.
-std::optional<Hollow> find_inverted(const Mesh& mesh, std::span<const std::uint32_t> beside);
+/// @param winding its winding number.
+/// @param beside  triangles to look beside, on both sides.
+/// @param part    per triangle: only those of the same part as the one looked beside count; each
+///   part is a closed chain. Empty: all count.
+/// @return the first found, in the order of `beside`.
+std::optional<Hollow> find_inverted(const Mesh& mesh, const WindingNumber& winding,
+                                    std::span<const std::uint32_t> beside,
+                                    std::span<const std::uint32_t> part = {});
 
 }  // namespace kaboum::geom

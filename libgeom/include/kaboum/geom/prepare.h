@@ -3,6 +3,7 @@
 #include <kaboum/geom/mesh.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,9 @@ struct Prepared {
   std::size_t filled_triangles = 0;  ///< that fill them: the last ones of the mesh
   std::size_t filled_vertices = 0;   ///< that only those use: the last ones of the mesh
   double largest_hole = 0;           ///< diagonal of its box [length]
+  /// A place that surfaces enclose and that counts as outside, although it need not be a cavity:
+  /// the first found, and noted.
+  std::optional<Vec3> hollow;
   std::vector<std::string> notes;
 };
 
@@ -74,7 +78,8 @@ struct Prepared {
 ///
 /// @throws Error{InvalidInput} when no solid can be given: no triangles, a one-sided surface,
 ///   sheets (opposite coincident faces that lie in no solid, unless dropped on request), nothing
-///   left, open with Holes::Refuse, shells that share a wall and cannot be told apart, coordinates
+///   left, open with Holes::Refuse, shells that share a wall and cannot be told apart, a hole in
+///   one of them when they had to be turned to agree, coordinates
 ///   beyond 1e60 or an extent below 1e-60 (their products would overflow or vanish).
 Prepared prepare(const Mesh& input, const PrepareOptions& options = {});
 

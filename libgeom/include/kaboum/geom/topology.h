@@ -50,6 +50,18 @@ struct EdgeUse {
 /// All sides of all triangles without a repeated corner, sorted by (lo, hi, triangle).
 std::vector<EdgeUse> edge_uses(const Mesh& mesh);
 
+/// Calls visit(std::span<const EdgeUse>) once for each edge, with all its uses.
+/// @param uses  as edge_uses returns them.
+template <class Visit>
+void for_each_edge(std::span<const EdgeUse> uses, Visit&& visit) {
+  for (std::size_t i = 0; i < uses.size();) {
+    std::size_t j = i + 1;
+    while (j < uses.size() && uses[j].lo == uses[i].lo && uses[j].hi == uses[i].hi) ++j;
+    visit(uses.subspan(i, j - i));
+    i = j;
+  }
+}
+
 /// Component of each triangle (0, 1, …, numbered by first triangle), connected through shared
 /// vertices or, when `through_edges`, only through shared edges.
 std::vector<std::uint32_t> components(const Mesh& mesh, bool through_edges, std::uint32_t* count);
