@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "certified_file.h"
 #include "cli.h"
 #include "holes_option.h"
 #include "notes.h"
@@ -211,49 +212,34 @@ certify::SetRequest request_of(const Options& o) {
   r.min_thickness = o.min_thickness;
   r.preparation = o.prepare;
   r.preparation.holes = o.holes.value();
-  r.source = std::filesystem::path(o.input).filename().string();
   r.unit = o.unit;
   r.frame = o.frame;
   return r;
 }
 
-/// A mesh file and what came of it.
-struct Outcome {
-  std::string hash;
-  certify::CertifiedSet made;
-  bool cached = false;
-  Json report;                           ///< of the certificate, with what reading noted
-  std::vector<std::string> other_files;  ///< read besides the mesh
-};
-
 /// float32 cannot hold the bodies closely enough: a valid "no", nothing is written.
 struct TooCoarse {};
 
 /// The bodies of one mesh, from the cache where possible.
-Outcome decompose_mesh(const Options& o) {
-  const io::Format input_format = tools::format_for(o.input, o.input_format, "--input-format");
-  std::vector<char> bytes;
-  const io::ReadResult read = io::read_mesh(o.input, input_format, &bytes);
-  for (const std::string& text : read.notes) note(o, text);
-  Outcome out;
-  out.hash = io::sha256(bytes);
-  out.other_files = read.other_files;
+tools::CertifiedFile decompose_mesh(const Options& o) {
   tools::Progress progress(o.common.quiet);
   const certify::Hooks hooks{[&](const std::string& stage) { progress.show(stage); },
                              [&](const std::string& text) { note(o, text); }};
   const certify::SetCache cache(certify::SetCache::default_folder());
-  auto found = tools::naming(o.input, [&] {
-    return certify::find_or_certify(read.mesh, out.hash, request_of(o),
-                                    o.no_cache ? nullptr : &cache, hooks);
-  });
-  if (!found) throw TooCoarse{};
-  out.made = std::move(found->set);
-  out.cached = found->cached;
-  out.report = Json::parse(out.made.certificate.to_json());
-  Json notes = read.notes;
-  for (const std::string& text : out.made.certificate.notes) notes.push_back(text);
-  out.report["notes"] = std::move(notes);
-  return out;
+  auto made = tools::certify_file(o.input, o.input_format, request_of(o),
+                                  o.no_cache ? nullptr : &cache, hooks);
+  if (!made) throw TooCoarse{};
+  return std::move(*made);
+}
+
+/// What the report says of one mesh: of its certificate, with what reading noted.
+Json report_of(const tools::CertifiedFile& made) {
+  Json report = Json::parse(made.found.set.certificate.to_json());
+  Json notes = made.read_notes;
+  for (const std::string& text : made.found.set.certificate.notes) notes.push_back(text);
+  report["notes"] = std::move(notes);
+  report["cached"] = made.found.cached;
+  return report;
 }
 
 /// What the report says about every run.
@@ -268,6 +254,30 @@ void add_run(const Options& o, Json& report) {
 int code_of(const certify::SetCertificate& certificate) {
   if (certificate.stop == bcd::Stop::Done) return tools::kDone;
   return certificate.stop == bcd::Stop::OutOfWork ? tools::kLimit : tools::kNo;
+}
+
+/// Why epsilon, if asked for, is not reached, and what helps; empty when it is.
+std::string shortfall(const certify::SetCertificate& c) {
+  switch (c.stop) {
+    case bcd::Stop::Done:
+      return {};
+    case bcd::Stop::OutOfWork:
+      return "epsilon was not reached within the work allowed; allow more with --max-work, or a "
+             "larger epsilon";
+    case bcd::Stop::Stuck:
+      if (c.thickened > 0)
+        return "epsilon could not be reached with --min-thickness; allow thinner bodies or a "
+               "larger epsilon";
+      if (c.direction == certify::SetRequest::Direction::Inner)
+        return "epsilon could not be reached: the search for deep points gave up; allow a larger "
+               "epsilon, or --effort best";
+      return "epsilon could not be reached; allow more vertices per body";
+    case bcd::Stop::TooManyBodies:
+    case bcd::Stop::TooCoarse:
+      break;
+  }
+  return "within the limits of bodies and vertices nothing nearer was found; allow more, or a "
+         "larger epsilon";
 }
 
 std::string summary(const certify::SetCertificate& c) {
@@ -330,17 +340,16 @@ int decompose_robot(const Options& o) {
           mesh.epsilon = tools::epsilon_of_mesh(*epsilon, scale.maxCoeff()).text();
         // A little more than rounding takes away.
         mesh.min_thickness = o.min_thickness / scale.minCoeff() * (1 + 1e-12);
-        Outcome out = decompose_mesh(mesh);
-        const certify::SetCertificate& certificate = out.made.certificate;
-        tools::MeshBodies bodies{std::move(out.made.set), std::move(out.report),
-                                 std::move(out.other_files)};
+        tools::CertifiedFile made = decompose_mesh(mesh);
+        const certify::SetCertificate& certificate = made.found.set.certificate;
+        tools::MeshBodies bodies{std::move(made.found.set.set), report_of(made),
+                                 std::move(made.other_files)};
         tools::log(o.common.quiet, mesh.input + ": " + summary(certificate) +
-                                       (out.cached ? " (from the cache)" : ""));
-        if (const std::string why = certificate.shortfall(); !why.empty()) {
+                                       (made.found.cached ? " (from the cache)" : ""));
+        if (const std::string why = shortfall(certificate); !why.empty()) {
           tools::log(o.common.quiet, mesh.input + ": " + why);
           code = std::max(code, code_of(certificate));
         }
-        bodies.report["cached"] = out.cached;
         return bodies;
       });
   const auto counted = [&](const char* key, const char* one, const char* many) {
@@ -398,31 +407,29 @@ int decompose(const Options& o) {
   if (is_robot(o.input)) return decompose_robot(o);
   const io::SetFormat format = tools::set_format_for(o.output, o.output_format);
   if (format == io::SetFormat::Directory) io::require_replaceable(o.output);
-  const Outcome out = decompose_mesh(o);
-  const geom::ConvexSet& set = out.made.set;
-  Json report = out.report;
-  tools::log(o.common.quiet,
-             summary(out.made.certificate) + (out.cached ? " (from the cache)" : ""));
-  const std::string why = out.made.certificate.shortfall();
+  const tools::CertifiedFile made = decompose_mesh(o);
+  const auto& [set, certificate, container] = made.found.set;
+  tools::log(o.common.quiet, summary(certificate) + (made.found.cached ? " (from the cache)" : ""));
+  const std::string why = shortfall(certificate);
   if (!why.empty()) tools::log(o.common.quiet, why);
   if (!o.preview.empty()) io::write_file(o.preview, tools::picture_of(set, o.explode));
   if (!o.common.report.empty()) {
-    report["input"] = {{"file", o.input}, {"sha256", out.hash}};
+    Json report = report_of(made);
+    report["input"] = {{"file", o.input}, {"sha256", made.sha256}};
     report["parameters"] = set.provenance.parameters;
-    report["cached"] = out.cached;
     add_run(o, report);
   }
   if (!o.depfile.empty()) {
     std::vector<std::string> inputs{o.input};
-    inputs.insert(inputs.end(), out.other_files.begin(), out.other_files.end());
+    inputs.insert(inputs.end(), made.other_files.begin(), made.other_files.end());
     tools::write_depfile(o.depfile, {o.output}, inputs);
   }
   if (format == io::SetFormat::Glb) {
-    io::write_file(o.output, out.made.container);
+    io::write_file(o.output, container);
   } else {
     io::write_convex_set(o.output, set, format);
   }
-  return code_of(out.made.certificate);
+  return code_of(certificate);
 }
 
 }  // namespace
@@ -437,9 +444,7 @@ int main(int argc, char** argv) {
       require_effect(app, options);
       return decompose(options);
     } catch (const TooCoarse&) {
-      tools::log(false, options.input +
-                            ": float32 is too coarse so far from the origin (or for this epsilon); "
-                            "move the mesh to the origin. Nothing is written");
+      tools::log(false, tools::too_coarse(options.input) + ". Nothing is written");
       return static_cast<int>(tools::kNo);
     }
   });

@@ -1,12 +1,12 @@
 #include "robot_bodies.h"
 
 #include <kaboum/geom/error.h>
-#include <kaboum/io/mesh_io.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
+#include "certified_file.h"
 #include "cli.h"
 #include "find_mesh.h"
 #include "notes.h"
@@ -22,29 +22,18 @@ geom::ConvexSet decompose(const fs::path& mesh, const BodyOptions& options, geom
                           Notes& notes, std::vector<std::string>& files) {
   const std::string file = mesh.string();
   const auto note = [&](const std::string& text) { notes.add(file, text); };
-  std::vector<char> bytes;
-  const io::ReadResult read = io::read_mesh(file, format_for(file, "", "--input-format"), &bytes);
-  for (const std::string& text : read.notes) note(text);
-  files.push_back(file);
-  files.insert(files.end(), read.other_files.begin(), read.other_files.end());
   certify::SetRequest request;
   request.epsilon = epsilon;
   request.max_vertices = options.max_vertices;
   request.effort = options.effort;
   request.preparation.drop_sheets = options.drop_sheets;
-  request.source = mesh.filename().string();
-  const auto found = naming(file, [&] {
-    return certify::find_or_certify(read.mesh, io::sha256(bytes), request, options.cache,
-                                    {options.progress, note});
-  });
-  if (!found)
-    throw Error(ErrorCode::InvalidInput,
-                file +
-                    ": float32 is too coarse so far from the origin (or for this epsilon); move "
-                    "the mesh to the origin");
-  if (found->set.certificate.stop != bcd::Stop::Done)
+  auto made = certify_file(file, "", request, options.cache, {options.progress, note});
+  if (!made) throw Error(ErrorCode::InvalidInput, too_coarse(file));
+  files.push_back(file);
+  files.insert(files.end(), made->other_files.begin(), made->other_files.end());
+  if (!made->found.set.certificate.reached())
     note("the decomposition does not reach " + epsilon.text());
-  return found->set.set;
+  return std::move(made->found.set.set);
 }
 
 }  // namespace

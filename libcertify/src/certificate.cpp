@@ -1,4 +1,4 @@
-// Certificates of convex sets as JSON, and in words.
+// Certificates of convex sets as JSON.
 
 #include <kaboum/certify/convex_set.h>
 #include <kaboum/geom/error.h>
@@ -25,35 +25,12 @@ constexpr std::array<StopName, 5> kStops{{{bcd::Stop::Done, "done"},
 
 }  // namespace
 
-std::string SetCertificate::shortfall() const {
-  switch (stop) {
-    case bcd::Stop::Done:
-      return {};
-    case bcd::Stop::OutOfWork:
-      return "epsilon was not reached within the work allowed; allow more with --max-work, or a "
-             "larger epsilon";
-    case bcd::Stop::Stuck:
-      if (thickened > 0)
-        return "epsilon could not be reached with --min-thickness; allow thinner bodies or a "
-               "larger epsilon";
-      if (direction == SetRequest::Direction::Inner)
-        return "epsilon could not be reached: the search for deep points gave up; allow a larger "
-               "epsilon, or --effort best";
-      return "epsilon could not be reached; allow more vertices per body";
-    case bcd::Stop::TooManyBodies:
-    case bcd::Stop::TooCoarse:
-      break;
-  }
-  return "within the limits of bodies and vertices nothing nearer was found; allow more, or a "
-         "larger epsilon";
-}
-
 std::string SetCertificate::to_json() const {
   Json j;
   for (const StopName& s : kStops)
     if (s.stop == stop) j["stop"] = s.name;
   j["direction"] = name_of(direction);
-  j["method"] = method;
+  j["method"] = name_of(method);
   j["bodies"] = bodies;
   j["vertices"] = vertices;
   j["largest_body_vertices"] = largest_body_vertices;
@@ -94,7 +71,9 @@ SetCertificate SetCertificate::from_json(std::string_view text) {
     if (!known) throw Error(ErrorCode::InvalidInput, "no certificate: unknown stop");
     c.direction = j.at("direction").get<std::string>() == "outer" ? SetRequest::Direction::Outer
                                                                   : SetRequest::Direction::Inner;
-    c.method = j.at("method").get<std::string>();
+    const std::optional<bcd::Method> method = method_of(j.at("method").get<std::string>());
+    if (!method) throw Error(ErrorCode::InvalidInput, "no certificate: unknown method");
+    c.method = *method;
     j.at("bodies").get_to(c.bodies);
     j.at("vertices").get_to(c.vertices);
     j.at("largest_body_vertices").get_to(c.largest_body_vertices);

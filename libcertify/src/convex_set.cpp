@@ -43,18 +43,18 @@ std::string objection(const SetRequest& r, const geom::Mesh& solid, const geom::
     if (r.min_thickness > 0 &&
         geom::least_width(body.hull, r.min_thickness).lower < r.min_thickness)
       return "a body is thinner than --min-thickness";
-  if (r.direction == SetRequest::Direction::Outer) {
-    const verify::Cover cover = verify::verify_cover(solid, set);
-    for (const verify::Claim* claim :
-         {&cover.convex, &cover.inclusion.solid, &cover.inclusion.surface})
+  const auto first_of = [](std::initializer_list<const verify::Claim*> claims) -> std::string {
+    for (const verify::Claim* claim : claims)
       if (claim->answer != verify::Answer::Verified) return claim->reason;
     return {};
+  };
+  if (r.direction == SetRequest::Direction::Outer) {
+    const verify::Cover cover = verify::verify_cover(solid, set);
+    return first_of({&cover.convex, &cover.inclusion.solid, &cover.inclusion.surface});
   }
   if (geom::find_not_convex(set)) return "a body is not convex";
   const verify::Inclusion inside = verify::verify_inclusion(verify::sum_of(set), solid);
-  for (const verify::Claim* claim : {&inside.solid, &inside.surface})
-    if (claim->answer != verify::Answer::Verified) return claim->reason;
-  return {};
+  return first_of({&inside.solid, &inside.surface});
 }
 
 SetCertificate certificate_of(const SetRequest& r, const geom::Prepared& prepared,
@@ -80,9 +80,7 @@ SetCertificate certificate_of(const SetRequest& r, const geom::Prepared& prepare
   c.safety = safety;
   c.out_of_work = s.out_of_work;
   c.notes = prepared.notes;
-  c.method = r.method == bcd::Method::Planes     ? "planes"
-             : r.method == bcd::Method::Clusters ? "clusters"
-                                                 : "voxels";
+  c.method = r.method;
   return c;
 }
 

@@ -26,7 +26,27 @@ const char* name_of(bcd::Effort effort) {
   return "best";
 }
 
+struct MethodName {
+  bcd::Method method;
+  const char* name;
+};
+constexpr std::array<MethodName, 3> kMethods{{{bcd::Method::Planes, "planes"},
+                                              {bcd::Method::Clusters, "clusters"},
+                                              {bcd::Method::Voxels, "voxels"}}};
+
 }  // namespace
+
+const char* name_of(bcd::Method method) {
+  for (const MethodName& m : kMethods)
+    if (m.method == method) return m.name;
+  return "";
+}
+
+std::optional<bcd::Method> method_of(std::string_view name) {
+  for (const MethodName& m : kMethods)
+    if (m.name == name) return m.method;
+  return {};
+}
 
 const char* name_of(SetRequest::Direction direction) {
   return direction == SetRequest::Direction::Outer ? "outer" : "inner";
@@ -49,8 +69,7 @@ std::string SetRequest::parameters() const {
   add(std::string("--effort ") + name_of(effort));
   if (simplify) add("--simplify " + digits(*simplify));
   if (max_work) add("--max-work " + digits(*max_work));
-  if (method != bcd::Method::Planes)
-    add(method == bcd::Method::Clusters ? "--method clusters" : "--method voxels");
+  if (method != bcd::Method::Planes) add(std::string("--method ") + name_of(method));
   if (pre_step != bcd::PreStep::Auto)
     add(pre_step == bcd::PreStep::On ? "--pre-step on" : "--pre-step off");
   if (preparation.drop_sheets) add("--drop-sheets");

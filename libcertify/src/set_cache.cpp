@@ -42,17 +42,8 @@ std::string hash_of(const geom::Mesh& mesh) {
   return io::sha256(bytes);
 }
 
-/// Hash of everything that the result depends on.
-std::string key_of(const geom::Mesh& mesh, const std::string& sha256, const SetRequest& r) {
-  const std::string key = hash_of(mesh) + '\n' + sha256 + '\n' + r.parameters() + '\n' + r.unit +
-                          '\n' + r.frame + '\n' + r.source + '\n' + KABOUM_VERSION + '\n' +
-                          kAlgorithm + '\n' + kContainer;
-  return io::sha256({key.data(), key.size()});
-}
-
-/// @throws Error saying why the entry is not that of the request.
-CertifiedSet read_entry(std::string_view rest, const std::string& key, const std::string& sha256,
-                        const SetRequest& request) {
+/// @throws Error saying why the entry is not that of the key.
+CertifiedSet read_entry(std::string_view rest, const SetCache::Key& key) {
   const auto fail = [](const char* why) -> void { throw Error(ErrorCode::InvalidInput, why); };
   const auto take_hash = [&] {
     const std::string_view hash = rest.substr(0, kHash);
@@ -63,14 +54,14 @@ CertifiedSet read_entry(std::string_view rest, const std::string& key, const std
   rest.remove_prefix(kFormat.size());
   const std::string_view stated = take_hash();
   if (io::sha256(rest) != stated) fail("damaged");
-  if (take_hash() != key) fail("the result of another input or of other options");
+  if (take_hash() != key.hash) fail("the result of another input or of other options");
   const std::size_t end = rest.find('\n');
   if (end == std::string_view::npos) fail("damaged");
   CertifiedSet out;
   out.certificate = SetCertificate::from_json(rest.substr(0, end));
   out.container.assign(rest.begin() + static_cast<std::ptrdiff_t>(end) + 1, rest.end());
   out.set = io::parse_convex_set(out.container, io::Format::Glb, "the container");
-  geom::Provenance expected = origin_of(request, sha256);
+  geom::Provenance expected = key.origin;
   expected.epsilon = out.set.provenance.epsilon;
   expected.covers_solid = out.set.provenance.covers_solid;
   expected.covers_surface = out.set.provenance.covers_surface;
@@ -93,12 +84,18 @@ fs::path SetCache::default_folder() {
   return {};
 }
 
-std::optional<CertifiedSet> SetCache::find(const geom::Mesh& mesh, const std::string& sha256,
-                                           const SetRequest& request, std::string& flaw) const {
+SetCache::Key SetCache::key_of(const geom::Mesh& mesh, const std::string& sha256,
+                               const SetRequest& r) {
+  const std::string text = hash_of(mesh) + '\n' + sha256 + '\n' + r.parameters() + '\n' + r.unit +
+                           '\n' + r.frame + '\n' + r.source + '\n' + KABOUM_VERSION + '\n' +
+                           kAlgorithm + '\n' + kContainer;
+  return {io::sha256(text), origin_of(r, sha256)};
+}
+
+std::optional<CertifiedSet> SetCache::find(const Key& key, std::string& flaw) const {
   flaw.clear();
   if (folder_.empty()) return std::nullopt;
-  const std::string key = key_of(mesh, sha256, request);
-  const fs::path path = folder_ / (key + ".set");
+  const fs::path path = folder_ / (key.hash + ".set");
   std::error_code error;
   if (!fs::is_regular_file(path, error)) return std::nullopt;
   std::vector<char> bytes;
@@ -108,24 +105,22 @@ std::optional<CertifiedSet> SetCache::find(const geom::Mesh& mesh, const std::st
     return std::nullopt;
   }
   try {
-    return read_entry({bytes.data(), bytes.size()}, key, sha256, request);
+    return read_entry({bytes.data(), bytes.size()}, key);
   } catch (const Error& why) {
     flaw = path.string() + ": " + why.what();
     return std::nullopt;
   }
 }
 
-void SetCache::store(const geom::Mesh& mesh, const std::string& sha256, const SetRequest& request,
-                     const CertifiedSet& set) const {
+void SetCache::store(const Key& key, const CertifiedSet& set) const {
   if (folder_.empty()) return;
-  const std::string key = key_of(mesh, sha256, request);
-  std::string rest = key + "\n" + set.certificate.to_json() + "\n";
+  std::string rest = key.hash + "\n" + set.certificate.to_json() + "\n";
   rest.append(set.container.begin(), set.container.end());
   const std::string bytes = std::string(kFormat) + io::sha256(rest) + "\n" + rest;
   std::error_code error;
   fs::create_directories(folder_, error);
   try {
-    io::write_file(folder_ / (key + ".set"), bytes);
+    io::write_file(folder_ / (key.hash + ".set"), bytes);
   } catch (const Error&) {  // NOLINT(bugprone-empty-catch): a cache is a convenience
   }
 }
@@ -133,9 +128,11 @@ void SetCache::store(const geom::Mesh& mesh, const std::string& sha256, const Se
 std::optional<FoundSet> find_or_certify(const geom::Mesh& mesh, const std::string& sha256,
                                         const SetRequest& request, const SetCache* cache,
                                         const Hooks& hooks) {
+  SetCache::Key key;
   if (cache != nullptr) {
+    key = SetCache::key_of(mesh, sha256, request);
     std::string flaw;
-    auto found = cache->find(mesh, sha256, request, flaw);
+    auto found = cache->find(key, flaw);
     if (hooks.note && !flaw.empty()) hooks.note("the cache's entry " + flaw + "; it is made again");
     if (found) {
       if (hooks.note)
@@ -145,7 +142,7 @@ std::optional<FoundSet> find_or_certify(const geom::Mesh& mesh, const std::strin
   }
   auto made = certify_set(mesh, sha256, request, hooks);
   if (!made) return std::nullopt;
-  if (cache != nullptr) cache->store(mesh, sha256, request, *made);
+  if (cache != nullptr) cache->store(key, *made);
   return FoundSet{std::move(*made), false};
 }
 

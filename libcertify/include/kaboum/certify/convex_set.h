@@ -57,10 +57,10 @@ struct SetCertificate {
   double safety = 1;               ///< allowance for rounding with which the exact check passed
   bool out_of_work = false;        ///< with more work the search might do better
   std::vector<std::string> notes;  ///< of preparation: what a user should know of the input
-  std::string method = "planes";
+  bcd::Method method = bcd::Method::Planes;
 
-  /// Why epsilon, if asked for, is not reached; empty when it is.
-  [[nodiscard]] std::string shortfall() const;
+  /// Whether epsilon, if asked for, is reached, within all limits.
+  [[nodiscard]] bool reached() const { return stop == bcd::Stop::Done; }
 
   /// As in reports of bcd-decompose and the cache: a JSON object.
   [[nodiscard]] std::string to_json() const;

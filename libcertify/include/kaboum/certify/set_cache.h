@@ -19,14 +19,18 @@ class SetCache {
 
   explicit SetCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
+  /// Of everything that a result depends on.
+  struct Key {
+    std::string hash;         ///< SHA-256
+    geom::Provenance origin;  ///< what the container says of itself; its claims apart
+  };
+  static Key key_of(const geom::Mesh& mesh, const std::string& sha256, const SetRequest& request);
+
   /// @param flaw  becomes the reason why a file that is there is not used, else empty.
-  [[nodiscard]] std::optional<CertifiedSet> find(const geom::Mesh& mesh, const std::string& sha256,
-                                                 const SetRequest& request,
-                                                 std::string& flaw) const;
+  [[nodiscard]] std::optional<CertifiedSet> find(const Key& key, std::string& flaw) const;
 
   /// Does nothing when the folder cannot be written.
-  void store(const geom::Mesh& mesh, const std::string& sha256, const SetRequest& request,
-             const CertifiedSet& set) const;
+  void store(const Key& key, const CertifiedSet& set) const;
 
  private:
   std::filesystem::path folder_;
