@@ -50,12 +50,6 @@ std::string point(const geom::Vec3& p) {
   return text.str();
 }
 
-Answer worse(Answer a, Answer b) {
-  for (const Answer x : {Answer::Refuted, Answer::Undecided, Answer::Undefined})
-    if (a == x || b == x) return x;
-  return Answer::Verified;
-}
-
 std::string except_sheets(const DroppedSheets& dropped) {
   std::string text;
   for (const auto& [file, count] : dropped) {

@@ -23,9 +23,6 @@ std::string in_words(const verify::Bracket& bracket);
 /// All digits.
 std::string point(const geom::Vec3& p);
 
-/// Refuted before undecided before undefined before verified.
-verify::Answer worse(verify::Answer a, verify::Answer b);
-
 /// Triangles of sheets that were dropped on request, of each file.
 using DroppedSheets = std::map<std::string, std::size_t>;
 

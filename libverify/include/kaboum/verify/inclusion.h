@@ -19,6 +19,13 @@ enum class Answer {
 
 const char* name_of(Answer answer);
 
+/// Refuted before undecided before undefined before verified.
+inline Answer worse(Answer a, Answer b) {
+  for (const Answer x : {Answer::Refuted, Answer::Undecided, Answer::Undefined})
+    if (a == x || b == x) return x;
+  return Answer::Verified;
+}
+
 /// A point that shows that a claim is false.
 struct Witness {
   geom::Vec3 point;

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <kaboum/verify/cover.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kaboum::verify {
+
+/// Which claims about a mesh have to hold.
+enum class Claims { All, Solid, Surface };
+
+/// What was decided of one mesh of a link.
+struct HeldShape {
+  Answer answer = Answer::Undefined;
+  std::string reason;                   ///< one clause, where no decision about the claims says it
+  bool solid = false, surface = false;  ///< the claims that count
+  std::optional<Claim> decisive;        ///< the worst of these
+  std::optional<Inclusion> inclusion;   ///< where it was decided
+  bool prepare_helps = false;           ///< it is inside out, which preparing mends
+};
+
+/// How far what holds meshes is from them.
+struct HeldDistance {
+  std::optional<DistanceClaim> claim;  ///< none: not all of what holds is convex
+  bool to_solid = true;                ///< else to the surface, as a mesh is open
+};
+
+/// The meshes of a result that have one frame of a link, of which each, or several together, are to
+/// hold meshes of the original with the same frame.
+class Holders {
+ public:
+  struct NamedMesh {
+    std::string name;
+    const geom::Mesh* mesh;
+  };
+
+  /// Those that are open or inside out hold nothing, and are left out. The sum of the others winds
+  /// about a point only where one of them does.
+  explicit Holders(const std::vector<NamedMesh>& meshes);
+
+  /// Whether the mesh is in the union of the holders. Where these are not all convex, negative
+  /// windings of one may hide what another holds: what would be refuted is undecided then.
+  /// @throws as verify_inclusion
+  [[nodiscard]] HeldShape hold(const geom::Mesh& mesh, Claims claims,
+                               const InclusionOptions& limits = {}) const;
+
+  /// Whether no point of the holders is farther than `bound` from the solids of the meshes.
+  /// @pre bound > 0 [length, as the meshes]
+  [[nodiscard]] HeldDistance distance(const std::vector<geom::Mesh>& meshes, double bound,
+                                      const InclusionOptions& limits = {}) const;
+
+  /// The ones that hold.
+  [[nodiscard]] const geom::ConvexSet& set() const { return set_; }
+  [[nodiscard]] const Claim& convex() const { return convex_; }
+  [[nodiscard]] bool all_convex() const { return convex_.answer == Answer::Verified; }
+  /// Names of those that are left out, and why.
+  [[nodiscard]] const std::vector<std::pair<std::string, std::string>>& left_out() const {
+    return left_out_;
+  }
+
+ private:
+  std::size_t given_;
+  geom::ConvexSet set_;
+  geom::Mesh sum_;
+  Claim convex_;
+  std::vector<std::pair<std::string, std::string>> left_out_;
+};
+
+}  // namespace kaboum::verify

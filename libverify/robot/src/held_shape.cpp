@@ -1,0 +1,86 @@
+// Whether the meshes that a result has in a frame of a link hold what the original has there.
+#include <kaboum/geom/topology.h>
+#include <kaboum/verify/held_shape.h>
+
+#include <algorithm>
+
+namespace kaboum::verify {
+namespace {
+
+bool closed(const geom::Mesh& mesh) { return geom::analyse(geom::weld(mesh)).closed(); }
+
+bool has_area(const geom::Mesh& mesh) {
+  return std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const geom::Triangle& t) {
+    return !geom::is_degenerate(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+  });
+}
+
+}  // namespace
+
+Holders::Holders(const std::vector<NamedMesh>& meshes) : given_(meshes.size()) {
+  for (const auto& [name, mesh] : meshes) {
+    if (!closed(*mesh)) {
+      left_out_.emplace_back(name, "it is not closed and holds nothing");
+    } else if (!(geom::signed_volume(*mesh) > 0)) {
+      left_out_.emplace_back(name, "it is inside out and holds nothing");
+    } else {
+      set_.bodies.push_back({name, *mesh});
+    }
+  }
+  convex_ = verify_convexity(set_).convex;
+  sum_ = sum_of(set_);
+}
+
+HeldShape Holders::hold(const geom::Mesh& mesh, Claims claims,
+                        const InclusionOptions& limits) const {
+  HeldShape out;
+  const auto undecided = [&](const char* why) {
+    out.answer = Answer::Undecided;
+    out.reason = why;
+    return out;
+  };
+  if (!has_area(mesh)) return undecided("none of its triangles has an area");
+  const double volume = geom::signed_volume(mesh);
+  if (volume < 0 && closed(mesh)) {
+    out.prepare_helps = true;
+    return undecided("it is inside out: its volume is negative");
+  }
+  if (set_.bodies.empty()) {
+    const bool any = claims != Claims::Solid || (closed(mesh) && volume > 0);
+    undecided("the result's link has no closed mesh of its pose and scale");
+    if (given_ == 0 && any) out.answer = Answer::Refuted;
+    return out;
+  }
+  const Inclusion& in = out.inclusion.emplace(verify_inclusion(mesh, sum_, limits));
+  out.solid = claims != Claims::Surface && in.inner_closed;
+  out.surface = claims != Claims::Solid;
+  for (const auto& [claim, counts] :
+       {std::pair{&in.solid, out.solid}, std::pair{&in.surface, out.surface}})
+    if (counts &&
+        (!out.decisive || worse(claim->answer, out.decisive->answer) != out.decisive->answer))
+      out.decisive = *claim;
+  if (!out.decisive) {
+    out.answer = Answer::Undefined;
+    out.reason = "it is not closed, so that it bounds no solid";
+    return out;
+  }
+  out.answer = out.decisive->answer;
+  if (out.answer == Answer::Refuted && !all_convex()) out.answer = Answer::Undecided;
+  if (out.decisive->answer != Answer::Refuted) out.reason = out.decisive->reason;
+  return out;
+}
+
+HeldDistance Holders::distance(const std::vector<geom::Mesh>& meshes, double bound,
+                               const InclusionOptions& limits) const {
+  HeldDistance out;
+  if (!all_convex() || set_.bodies.size() < given_) return out;
+  geom::ConvexSet all;
+  for (const geom::Mesh& mesh : meshes) {
+    all.bodies.push_back({"", mesh});
+    out.to_solid = out.to_solid && closed(mesh);
+  }
+  out.claim = verify_reach(set_, sum_of(all), bound, out.to_solid, limits);
+  return out;
+}
+
+}  // namespace kaboum::verify

@@ -1,0 +1,62 @@
+#include "robot_meshes.h"
+
+#include <kaboum/geom/error.h>
+#include <kaboum/io/mesh_io.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "find_mesh.h"
+
+namespace kaboum::tools {
+
+namespace fs = std::filesystem;
+using robot::Geometry;
+
+const RobotMeshes::File& RobotMeshes::file_of(const Geometry& g, const RobotFile& robot) {
+  const auto [at, fresh] = named_.try_emplace({robot.path.string(), g.mesh});
+  if (!fresh) return *at->second;
+  const File& file = read(find_only_mesh(g.mesh, robot.path, packages_).string());
+  at->second = &file;
+  return file;
+}
+
+const RobotMeshes::File& RobotMeshes::read(const std::string& path) {
+  const auto at = files_.find(path);
+  if (at != files_.end()) return at->second;
+  std::vector<char> bytes;
+  io::ReadResult read = io::read_mesh(path, {}, &bytes);
+  return files_
+      .emplace(path, File{path, io::sha256(bytes), std::move(read.mesh), std::move(read.notes)})
+      .first->second;
+}
+
+std::string RobotMeshes::record_of_other_kind(const RobotFile& original, bool visual) const {
+  const auto hashes_of = [&](bool drawn) {
+    std::set<std::string> out;
+    for (const robot::Link& link : original.robot.links)
+      for (const Geometry& g : drawn ? link.visual : link.collision) try {
+          if (g.shape == Geometry::Shape::Mesh)
+            out.insert(io::sha256(io::read_file(resolve_mesh(g.mesh, original.path, packages_))));
+        } catch (const Error&) {  // NOLINT(bugprone-empty-catch): a note is not worth an error
+        }
+    return out;
+  };
+  const std::set<std::string> judged = hashes_of(visual), others = hashes_of(!visual);
+  for (const auto& [path, file] : files_) {
+    const fs::path record = fs::path(path).parent_path() / "convex-set.json";
+    std::error_code error;
+    if (!fs::is_regular_file(record, error)) continue;
+    const std::vector<char> text = io::read_file(record);
+    const auto json = nlohmann::json::parse(text.begin(), text.end(), nullptr, false);
+    if (!json.is_object() || !json.contains("source_sha256")) continue;
+    const auto& hash = json["source_sha256"];
+    if (hash.is_string() && others.contains(hash.get<std::string>()) &&
+        !judged.contains(hash.get<std::string>()))
+      return record.string();
+  }
+  return {};
+}
+
+}  // namespace kaboum::tools

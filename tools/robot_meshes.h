@@ -1,0 +1,41 @@
+#pragma once
+
+#include <kaboum/geom/mesh.h>
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "robot_file.h"
+
+namespace kaboum::tools {
+
+/// The mesh files that robots' shapes stand for, each read once.
+class RobotMeshes {
+ public:
+  struct File {
+    std::string path, sha256;
+    geom::Mesh mesh;
+    std::vector<std::string> notes;
+  };
+
+  /// @param packages  folders that package:// URIs are looked up in.
+  explicit RobotMeshes(std::vector<std::string> packages) : packages_(std::move(packages)) {}
+
+  /// The file of a mesh, where there is only one that may be meant. @throws Error naming it.
+  const File& file_of(const robot::Geometry& mesh, const RobotFile& robot);
+
+  /// A record beside one of the files read that names a mesh which the original has among its
+  /// shapes of the other kind only; empty: there is none. @param visual  the kind that is judged.
+  [[nodiscard]] std::string record_of_other_kind(const RobotFile& original, bool visual) const;
+
+ private:
+  const File& read(const std::string& path);
+
+  std::vector<std::string> packages_;
+  std::map<std::string, File> files_;
+  std::map<std::pair<std::string, std::string>, const File*> named_;  // robot, reference
+};
+
+}  // namespace kaboum::tools
