@@ -1,0 +1,30 @@
+#pragma once
+
+#include <kaboum/measure/compare.h>
+
+#include <string>
+#include <vector>
+
+namespace kaboum::tools {
+
+/// A mesh or a set of bodies from a file.
+struct ShapeFile {
+  measure::Shape shape;
+  bool is_set = false;
+  std::size_t bodies = 0;  ///< of a set
+  double margin = 0;       ///< of a set [length]
+  std::string sha256;
+  std::vector<std::string> notes;  ///< things a user should know
+};
+
+struct ShapeOptions {
+  /// auto: a set if it is a folder, a container, or a GLB or OBJ file with several bodies that are
+  /// all convex.
+  std::string as = "auto";  ///< auto, mesh or set
+  std::string format;       ///< of standard input and unknown extensions
+};
+
+/// @throws Error naming the file.
+ShapeFile read_shape(const std::string& path, const ShapeOptions& options);
+
+}  // namespace kaboum::tools
