@@ -11,12 +11,8 @@ namespace kaboum::verify {
 
 namespace {
 
-/// Enough for most bodies that overlap; which of their triangles bound what is left out takes far
-/// longer to tell than this.
-constexpr std::size_t kFewCells = 150'000;
-/// What is not decided with so many, seldom is with more: boxes beside triangles that lie in the
-/// solid in part, and are no targets, halve for ever.
-constexpr std::size_t kMostCells = 400'000;
+/// Enough for most bodies; which of their triangles bound what is left out takes longer to tell.
+constexpr std::size_t kFewWork = kMostWork / 4;
 
 /// The triangles of both chains nearest to the witness.
 void name_nearest(const Scene& scene, Claim& claim) {
@@ -45,11 +41,11 @@ Claim verify_depth(const geom::Mesh& original, const geom::ConvexSet& set, doubl
     }
   }
   const Uncovered bodies(scene, set);
-  const auto search = [&](const std::vector<std::uint32_t>& faces, std::size_t cells) {
+  const auto search = [&](const std::vector<std::uint32_t>& faces, std::size_t work) {
     Claim claim =
         search_pockets(scene, faces,
                        {Triangles(scene, bounding.parts), bounding.surely, bounding.perhaps,
-                        epsilon * scene.scale(), cells, false, true, &bodies});
+                        epsilon * scene.scale(), options.max_cells, false, true, &bodies, work});
     if (claim.answer == Answer::Refuted)
       claim.reason = "a point that is deeper than that inside the original is in no body";
     return claim;
@@ -58,7 +54,7 @@ Claim verify_depth(const geom::Mesh& original, const geom::ConvexSet& set, doubl
     std::vector<std::uint32_t> all;  // hold the boundary of Z, whatever it is
     for (std::uint32_t f = 0; f < scene.faces().size(); ++f)
       if (scene.face(f).axis >= 0) all.push_back(f);
-    Claim claim = search(all, std::min(kFewCells, options.max_cells));
+    Claim claim = search(all, kFewWork);
     if (claim.answer == Answer::Refuted) name_nearest(scene, claim);
     if (claim.answer != Answer::Undecided) return claim;
   }
@@ -80,7 +76,7 @@ Claim verify_depth(const geom::Mesh& original, const geom::ConvexSet& set, doubl
     claim.reason = "no triangle of the original is known to bound its solid";
     return claim;
   }
-  claim = search(offending_faces(scene, without.solid), std::min(kMostCells, options.max_cells));
+  claim = search(offending_faces(scene, without.solid), kMostWork - kFewWork);
   if (claim.answer != Answer::Refuted) return claim;
   claim.inner_triangles = without.solid.inner_triangles;
   claim.outer_triangles = without.solid.outer_triangles;

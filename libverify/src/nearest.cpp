@@ -84,24 +84,31 @@ NearestTriangle::Hit NearestTriangle::nearest(const Vec3& p, std::uint32_t guess
   return best;
 }
 
+double NearestTriangle::lower_bound_of(const Vec3& p, std::uint32_t triangle) const {
+  const Vec3 &a = triangles_.corner(triangle, 0), &b = triangles_.corner(triangle, 1),
+             &c = triangles_.corner(triangle, 2);
+  const Vec3 away = p - closest_point(p, a, b, c);
+  const double length = away.norm();
+  if (!(length > 0)) return 0;
+  const Vec3 n = away / length;
+  return std::max(std::min({n.dot(p - a), n.dot(p - b), n.dot(p - c)}), 0.0);
+}
+
 double NearestTriangle::lower_bound(const Vec3& p, double within) const {
   // Triangles in boxes that are passed over are at least `within` away, up to rounding.
   double least = within;
   const double limit = within * within;
   tree_.query([&](const Bounds& box) { return squared_distance(p, box) <= limit; },
-              [&](std::uint32_t f) {
-                const Vec3 &a = triangles_.corner(f, 0), &b = triangles_.corner(f, 1),
-                           &c = triangles_.corner(f, 2);
-                const Vec3 away = p - closest_point(p, a, b, c);
-                const double length = away.norm();
-                if (!(length > 0)) {
-                  least = 0;
-                  return;
-                }
-                const Vec3 n = away / length;
-                least = std::min(least, std::min({n.dot(p - a), n.dot(p - b), n.dot(p - c)}));
-              });
+              [&](std::uint32_t t) { least = std::min(least, lower_bound_of(p, t)); });
   return std::max(least, 0.0);
+}
+
+bool NearestTriangle::all_beyond(const Vec3& p, double radius) const {
+  bool all = true;
+  const double limit = radius * radius * (1 + 0x1p-48);
+  tree_.query([&](const Bounds& box) { return all && squared_distance(p, box) <= limit; },
+              [&](std::uint32_t t) { all = all && lower_bound_of(p, t) > radius; });
+  return all;
 }
 
 double NearestTriangle::distance(const Vec3& p) const { return nearest(p).distance; }

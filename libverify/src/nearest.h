@@ -35,8 +35,13 @@ class NearestTriangle {
   /// from the triangle. Boxes farther away than `within` are passed over.
   /// @param within  about the distance, from above
   [[nodiscard]] double lower_bound(const Vec3& p, double within) const;
+  /// Whether lower_bound, whatever it is, exceeds `radius`.
+  [[nodiscard]] bool all_beyond(const Vec3& p, double radius) const;
 
  private:
+  /// Of the distance to one triangle, as above.
+  [[nodiscard]] double lower_bound_of(const Vec3& p, std::uint32_t triangle) const;
+
   Triangles triangles_;
   const BoxTree& tree_;
 };

@@ -16,6 +16,8 @@ constexpr int kClimbs = 200;
 constexpr std::size_t kFewFaces = 1000;
 constexpr int kTurns = 8;
 constexpr std::size_t kMostFaces = 200, kMostParts = 300, kMostPrisms = 100;
+// What a box takes, and trying to cut it, in parts.
+constexpr std::size_t kBoxWork = 8, kThinWork = 32, kBodiesWork = 8;
 constexpr double kSoon = 4;  // radii of boxes, in what distances are below the limit
 constexpr double kNowhere = -std::numeric_limits<double>::infinity();
 
@@ -33,13 +35,15 @@ class Search {
     Claim claim;
     std::vector<Bounds> cells{boundary_.nodes().front().box}, open;
     std::vector<Look> looks;
-    std::size_t seen = 0;
+    std::size_t seen = 0, work = 0;
     for (; !cells.empty(); cells.swap(open)) {
       seen += cells.size();
-      if (seen > limit_.max_cells) {
+      if (seen > limit_.max_cells || work > limit_.max_work) {
         claim.answer = Answer::Undecided;
         claim.reason =
-            "too many boxes would have to be looked at; the distance may be close to the limit";
+            "not decided within the work allowed, " + std::to_string(seen - cells.size()) +
+            " boxes looked at; the largest distance may be close to the limit, and a slightly "
+            "larger one be decided";
         return claim;
       }
       looks.assign(cells.size(), {});
@@ -56,6 +60,7 @@ class Search {
       }
       open.clear();
       for (std::size_t i = 0; i < cells.size(); ++i) {
+        work += looks[i].work;
         if (!looks[i].settled) halve(cells[i], open);
       }
     }
@@ -69,6 +74,7 @@ class Search {
     Vec3 point = Vec3::Zero();
     /// `point` is in Z, and its distance exceeds the limit by at least this; −∞: not in Z.
     double beyond = kNowhere;
+    std::size_t work = kBoxWork;
   };
 
   [[nodiscard]] Look look_at(const Bounds& cell) const {
@@ -92,9 +98,7 @@ class Search {
       // The box lies outside Z as its point does without a triangle of Z's boundary, or of the
       // chain that the point is on the wrong side of.
       const auto clear = [&](const BoxTree& tree) {
-        const NearestTriangle faces(scene_, tree);
-        const double distance = faces.nearest(look.point).distance;
-        return distance > radius && faces.lower_bound(look.point, distance) - slack_ > radius;
+        return NearestTriangle(scene_, tree).all_beyond(look.point, radius + slack_);
       };
       look.settled =
           clear(boundary_) ||
@@ -109,8 +113,9 @@ class Search {
     }
     // Where a few halvings will do, cutting costs more than they.
     const bool soon = radius <= kSoon * (limit_.distance - hit.distance);
-    if (!look.settled && !soon) look.settled = thin(cell, look.point, hit.face);
-    if (!look.settled && limit_.bodies != nullptr) look.settled = left_by_bodies(cell, hit.face);
+    if (!look.settled && limit_.bodies != nullptr)
+      look.settled = left_by_bodies(cell, hit.face, look.work);
+    if (!look.settled && !soon) look.settled = thin(cell, look.point, hit.face, look.work);
     return look;
   }
 
@@ -256,7 +261,9 @@ class Search {
   /// Whether what is left of the box is within the limit: without what lies beyond all of Z's
   /// boundary, or of one chain, in the box, along the normals of the nearest faces, where that is
   /// not in Z; the rest cut along the prisms of the triangles that distances are measured to.
-  [[nodiscard]] bool thin(const Bounds& box, const Vec3& p, std::uint32_t face) const {
+  [[nodiscard]] bool thin(const Bounds& box, const Vec3& p, std::uint32_t face,
+                          std::size_t& work) const {
+    work += kThinWork;
     const std::vector<Vec3> normals = directions(p, face);
     std::vector<Part> parts, next;
     for (const Tetrahedron& t : tetrahedra(box)) parts.push_back({t, 0});
@@ -277,10 +284,7 @@ class Search {
         if (parts.size() > kMostParts) return false;
       }
     }
-    std::size_t prisms = 0;
-    return thinner && std::all_of(parts.begin(), parts.end(), [&](const Part& part) {
-             return near_after_cuts(part, face, prisms);
-           });
+    return thinner && near_after_cuts(parts, face, work);
   }
 
   /// Normals of the nearest face of each kind, both ways.
@@ -372,15 +376,39 @@ class Search {
     cut(part, plane, out, dropped);
   }
 
+  /// Whether all parts are within the limit. Where the corner farthest from the face is not,
+  /// cutting will not help.
+  [[nodiscard]] bool near_after_cuts(const std::vector<Part>& parts, std::uint32_t face,
+                                     std::size_t& work) const {
+    double most = -1;
+    Vec3 farthest = Vec3::Zero();
+    for (const Part& part : parts) {
+      for (const Vec3& x : part.corners) {
+        const double square = (x - closest(x, face)).squaredNorm();
+        if (square <= most) continue;
+        most = square;
+        farthest = x;
+      }
+    }
+    const NearestTriangle target(limit_.triangles, limit_.target);
+    if (most > limit_.distance * limit_.distance &&
+        target.nearest(farthest, face).distance > limit_.distance)
+      return false;
+    std::size_t prisms = 0;
+    return std::all_of(parts.begin(), parts.end(),
+                       [&](const Part& part) { return near_after_cuts(part, face, prisms, work); });
+  }
+
   /// Whether the part is within the limit of one triangle, or its cuts along the sides of the prism
-  /// over the nearest one are. @param prisms  that were cut along, in all
-  [[nodiscard]] bool near_after_cuts(const Part& part, std::uint32_t face,
-                                     std::size_t& prisms) const {
+  /// over the nearest one are. @param prisms  that were cut along, in all; @param work  so far
+  [[nodiscard]] bool near_after_cuts(const Part& part, std::uint32_t face, std::size_t& prisms,
+                                     std::size_t& work) const {
     const NearestTriangle target(limit_.triangles, limit_.target);
     std::vector<Part> open{part}, pieces, next;
     while (!open.empty()) {
       const Part piece = open.back();
       open.pop_back();
+      ++work;
       const std::vector<Vec3> points(piece.corners.begin(), piece.corners.end());
       if (near(points, face)) continue;
       const Vec3 middle = 0.25 * (points[0] + points[1] + points[2] + points[3]);
@@ -428,12 +456,12 @@ class Search {
   }
 
   /// Whether all that the bodies leave of the box is within the limit.
-  [[nodiscard]] bool left_by_bodies(const Bounds& cell, std::uint32_t face) const {
+  [[nodiscard]] bool left_by_bodies(const Bounds& cell, std::uint32_t face,
+                                    std::size_t& work) const {
+    work += kBodiesWork;
     std::vector<Part> parts;
     if (!limit_.bodies->parts(cell, parts)) return false;
-    std::size_t prisms = 0;
-    return std::all_of(parts.begin(), parts.end(),
-                       [&](const Part& part) { return near_after_cuts(part, face, prisms); });
+    return near_after_cuts(parts, face, work);
   }
 
   /// nullopt when the point may lie on a surface.

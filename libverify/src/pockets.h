@@ -12,6 +12,10 @@
 /// docs/algorithms/exact-inclusion.md, "Pockets".
 namespace kaboum::verify {
 
+/// Work that a search takes, in parts of boxes looked at for what they are near to, about 5 μs
+/// each: a minute of CPU.
+constexpr std::size_t kMostWork = 20'000'000;
+
 struct Limit {
   Triangles triangles;    ///< what the trees hold
   const BoxTree& target;  ///< triangles that distances are measured to; not empty
@@ -26,6 +30,7 @@ struct Limit {
   bool to_outside = false;
   /// The bodies whose sum the outer chain is, if it is that of a set.
   const Uncovered* bodies = nullptr;
+  std::size_t max_work = kMostWork;
 };
 
 BoxTree tree_of(const Triangles& triangles, const std::vector<std::uint32_t>& chosen);

@@ -5,10 +5,13 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <numeric>
+#include <string>
 #include <vector>
 
 #include "nearest.h"
 #include "pairs.h"
+#include "pockets.h"
 #include "spot.h"
 #include "support/shapes.h"
 
@@ -138,6 +141,26 @@ TEST(Pieces, OfTooManyAreNotKnown) {
   const Vec3 p = Vec3(0.25 / 36, 0.25 / 36, 1) * scene.scale();  // on it, off all walls
   EXPECT_GT(verify::NearestTriangle(triangles, pieces.surely).distance(p), 0);
   EXPECT_EQ(verify::NearestTriangle(triangles, pieces.perhaps).distance(p), 0);
+}
+
+// The deepest point of a cube is exactly as deep as the limit: no number of boxes tells.
+TEST(Pockets, EndWhenTheWorkIsDone) {
+  const Scene scene(block({0, 0, 0}, {1, 1, 1}), Mesh{});
+  const BoxTree& faces = scene.tree(kInside);
+  std::vector<std::uint32_t> all(scene.faces().size());
+  std::iota(all.begin(), all.end(), 0U);
+  const auto search = [&](double limit, std::size_t boxes, std::size_t work) {
+    return verify::search_pockets(
+        scene, all,
+        {scene, faces, faces, limit * scene.scale(), boxes, false, true, nullptr, work});
+  };
+  const std::size_t many = 1'000'000'000;
+  EXPECT_EQ(search(0.5, many, 20'000).answer, verify::Answer::Undecided);
+  EXPECT_NE(search(0.5, many, 20'000).reason.find("within the work allowed"), std::string::npos);
+  EXPECT_EQ(search(0.5, 500, many).answer, verify::Answer::Undecided);
+  EXPECT_EQ(search(0.51, many, 20'000).answer, verify::Answer::Verified);
+  EXPECT_EQ(search(0.49, many, 20'000).answer, verify::Answer::Refuted);
+  EXPECT_EQ(search(0.51, many, 10).answer, verify::Answer::Undecided);
 }
 
 }  // namespace

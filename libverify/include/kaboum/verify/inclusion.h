@@ -51,7 +51,7 @@ struct InclusionOptions {
   std::size_t max_contacts = 100'000'000;  ///< pairs of triangles that touch, per kind
   std::size_t max_pairs = 4'000'000'000;   ///< pairs of triangles looked at, per kind
   std::size_t max_pieces = 2'000'000;      ///< pieces of lines within one triangle
-  std::size_t max_cells = 4'000'000;       ///< boxes looked at where a margin decides
+  std::size_t max_cells = 4'000'000;       ///< boxes looked at for margins and depths, at most
   /// From this many coplanar overlaps on, the cells between them are settled by the meshes' own
   /// winding numbers instead of being sampled; the answers are the same.
   std::size_t settle_from = 1000;
