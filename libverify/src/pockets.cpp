@@ -61,7 +61,15 @@ class Search {
       open.clear();
       for (std::size_t i = 0; i < cells.size(); ++i) {
         work += looks[i].work;
-        if (!looks[i].settled) halve(cells[i], open);
+        if (looks[i].settled) continue;
+        if (size(cells[i]) <= slack_) {
+          claim.answer = Answer::Undecided;
+          claim.reason =
+              "the largest distance is the limit, but for rounding, as far as can be told; a "
+              "slightly larger one may be decided";
+          return claim;
+        }
+        halve(cells[i], open);
       }
     }
     claim.answer = Answer::Verified;
@@ -472,6 +480,10 @@ class Search {
     if (outer && *outer >= 1) return false;
     if (!inner || !outer) return std::nullopt;
     return true;
+  }
+
+  static double size(const Bounds& cell) {
+    return (Vec3(cell.high.data()) - Vec3(cell.low.data())).norm();
   }
 
   static void halve(const Bounds& cell, std::vector<Bounds>& into) {
