@@ -41,10 +41,10 @@ Solid::Solid(const Mesh& mesh, std::size_t nodes, double epsilon, bool probes, s
       box_(geom::bounding_box(mesh)),
       diagonal_(box_.diagonal()),
       surface_(mesh),
-      winding_(mesh),
-      bvh_(mesh),
+      bvh_(std::make_shared<const geom::Bvh>(mesh)),
+      winding_(mesh, bvh_),
       work_(work) {
-  for (const std::uint32_t t : bvh_.order()) {
+  for (const std::uint32_t t : surface_.hierarchy().order()) {
     const Triangle& v = mesh.triangles[t];
     const Vec3& a = mesh.vertices[v[0]];
     corners_.push_back({a, mesh.vertices[v[1]] - a, mesh.vertices[v[2]] - a});
@@ -134,7 +134,7 @@ bool Solid::triangles_near(const Box3& box, std::size_t most,
     return out.size() <= most && (other.min.array() <= box.max.array()).all() &&
            (box.min.array() <= other.max.array()).all();
   };
-  bvh_.traverse(meets, [&](std::uint32_t t) {
+  bvh_->traverse(meets, [&](std::uint32_t t) {
     Box3 own;
     for (const std::uint32_t v : mesh_.triangles[t]) own.extend(mesh_.vertices[v]);
     if (meets(own)) out.push_back(t);
@@ -144,7 +144,7 @@ bool Solid::triangles_near(const Box3& box, std::size_t most,
 
 double Solid::rough_distance(const Vec3& p, double limit) const {
   double best = limit * limit;
-  const auto nodes = bvh_.nodes();
+  const auto nodes = surface_.hierarchy().nodes();
   const auto to_box = [&](const Box3& box) {
     return (box.min - p).cwiseMax(p - box.max).cwiseMax(0.0).squaredNorm();
   };

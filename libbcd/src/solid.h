@@ -81,12 +81,12 @@ class Solid {
   Box3 box_;
   double diagonal_;
   geom::DistanceQuery surface_;
+  std::shared_ptr<const geom::Bvh> bvh_;
   geom::WindingNumber winding_;
-  geom::Bvh bvh_;
   struct Corner {
     Vec3 a, ab, ac;
   };
-  std::vector<Corner> corners_;  // of the triangles, in the tree's order
+  std::vector<Corner> corners_;  // of the triangles, in the order of surface_'s tree
   double spacing_ = 0, probe_area_ = 0;
   double shallow_ = 0;  // pits that are no deeper need no probe
   int step_ = 1;        // of the grid, from one place looked at for a probe to the next

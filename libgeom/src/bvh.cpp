@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "slanted.h"
+
 namespace kaboum::geom {
 namespace {
 
@@ -11,7 +13,7 @@ constexpr std::uint32_t kLeafSize = 4;
 
 struct Item {
   Vec3 center;
-  std::uint32_t triangle;
+  std::uint32_t index;
 };
 
 /// Nodes of a tree over n triangles, and over n + 1.
@@ -23,8 +25,10 @@ std::pair<std::uint32_t, std::uint32_t> nodes_of(std::uint32_t n) {
   return {1 + half + more, 1 + 2 * more};
 }
 
+/// @tparam BoxOf  of what an item's index stands for.
+template <class BoxOf>
 struct Builder {
-  const Mesh& mesh;
+  const BoxOf& box_of;
   std::vector<Item>& items;
   std::vector<Bvh::Node>& nodes;
 
@@ -33,9 +37,7 @@ struct Builder {
     if (end - begin <= kLeafSize) {
       node.first = begin;
       node.count = end - begin;
-      for (std::uint32_t i = begin; i < end; ++i)
-        for (const std::uint32_t v : mesh.triangles[items[i].triangle])
-          node.box.extend(mesh.vertices[v]);
+      for (std::uint32_t i = begin; i < end; ++i) node.box.extend(box_of(items[i].index));
       return;
     }
     Box3 centers;
@@ -46,7 +48,7 @@ struct Builder {
     std::nth_element(items.begin() + begin, items.begin() + middle, items.begin() + end,
                      [axis](const Item& a, const Item& b) {
                        const double ca = a.center[axis], cb = b.center[axis];
-                       return ca < cb || (ca == cb && a.triangle < b.triangle);
+                       return ca < cb || (ca == cb && a.index < b.index);
                      });
     const std::uint32_t left = self + 1, right = left + nodes_of(middle - begin).first;
     constexpr std::uint32_t kLarge = 4096;
@@ -63,21 +65,39 @@ struct Builder {
   }
 };
 
+/// The tree over n boxes; order[i] is the index of the i-th box in the leaves.
+template <class BoxOf>
+void build(std::uint32_t n, const BoxOf& box_of, std::vector<Bvh::Node>& nodes,
+           std::vector<std::uint32_t>& order) {
+  if (n == 0) return;
+  std::vector<Item> items(n);
+  for (std::uint32_t i = 0; i < n; ++i) items[i] = {box_of(i).center(), i};
+  nodes.resize(nodes_of(n).first);
+  Builder<BoxOf>{box_of, items, nodes}.build(0, 0, n);
+  order.resize(n);
+  for (std::uint32_t i = 0; i < n; ++i) order[i] = items[i].index;
+}
+
 }  // namespace
 
 Bvh::Bvh(const Mesh& mesh) {
-  const auto n = static_cast<std::uint32_t>(mesh.triangles.size());
-  if (n == 0) return;
-  std::vector<Item> items(n);
-  for (std::uint32_t i = 0; i < n; ++i) {
+  const auto box_of = [&](std::uint32_t i) {
     Box3 box;
     for (const std::uint32_t v : mesh.triangles[i]) box.extend(mesh.vertices[v]);
-    items[i] = {box.center(), i};
-  }
-  nodes_.resize(nodes_of(n).first);
-  Builder{mesh, items, nodes_}.build(0, 0, n);
-  order_.resize(n);
-  for (std::uint32_t i = 0; i < n; ++i) order_[i] = items[i].triangle;
+    return box;
+  };
+  build(static_cast<std::uint32_t>(mesh.triangles.size()), box_of, nodes_, order_);
+}
+
+Bvh Bvh::of_parts(const Mesh& mesh) {
+  const std::vector<BoxedPiece> parts = cut_slanted(mesh);
+  if (parts.empty()) return Bvh(mesh);
+  Bvh out;
+  build(
+      static_cast<std::uint32_t>(parts.size()), [&](std::uint32_t i) { return parts[i].box; },
+      out.nodes_, out.order_);
+  for (std::uint32_t& i : out.order_) i = parts[i].triangle;
+  return out;
 }
 
 }  // namespace kaboum::geom

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace kaboum::geom {
 namespace {
@@ -50,8 +51,10 @@ DistanceBounds bounds_from(const Vec3& q, const Vec3& direction, const Vec3& a, 
   return {std::max(0.0, support * (1 - kRounding) - slack), upper};
 }
 
-/// Bounds for the triangle (a, b, c) given relative to the query point.
-DistanceBounds bounds_at_origin(const Vec3& a, const Vec3& b, const Vec3& c) {
+/// Bounds for the triangle (a, b, c) given relative to the query point; wider ones where it is
+/// farther than `enough`.
+DistanceBounds bounds_at_origin(const Vec3& a, const Vec3& b, const Vec3& c,
+                                double enough = std::numeric_limits<double>::infinity()) {
   const double slack =
       kRounding * a.cwiseAbs().cwiseMax(b.cwiseAbs()).cwiseMax(c.cwiseAbs()).maxCoeff();
   const auto [s, t] = closest_weights(a, b, c);
@@ -65,7 +68,7 @@ DistanceBounds bounds_at_origin(const Vec3& a, const Vec3& b, const Vec3& c) {
   } else {
     best.upper = slack;
   }
-  if (best.upper - best.lower <= 4 * slack + 1e-12 * best.upper) return best;
+  if (best.upper - best.lower <= 4 * slack + 1e-12 * best.upper || best.lower > enough) return best;
   // A sliver, or a point very close: the weights come from differences of squares, and the
   // direction to the nearest point from a difference of neighbours. Normals and edges lose fewer
   // digits.
@@ -154,18 +157,36 @@ TriangleSearch::TriangleSearch(const Mesh& mesh, std::span<const std::uint32_t> 
   }
 }
 
-DistanceQuery::DistanceQuery(const Mesh& mesh) : DistanceQuery(mesh, Bvh(mesh)) {}
+namespace {
+
+/// Each index once, where it is first.
+std::vector<std::uint32_t> distinct(std::span<const std::uint32_t> order, std::size_t count) {
+  std::vector<char> seen(count, 0);
+  std::vector<std::uint32_t> out;
+  out.reserve(count);
+  for (const std::uint32_t i : order)
+    if (std::exchange(seen[i], 1) == 0) out.push_back(i);
+  return out;
+}
+
+}  // namespace
+
+DistanceQuery::DistanceQuery(const Mesh& mesh) : DistanceQuery(mesh, Bvh::of_parts(mesh)) {}
 
 DistanceQuery::DistanceQuery(const Mesh& mesh, Bvh bvh)
-    : TriangleSearch(mesh, bvh.order()), bvh_(std::move(bvh)) {}
+    : TriangleSearch(mesh, distinct(bvh.order(), mesh.triangles.size())), bvh_(std::move(bvh)) {
+  place_.reserve(bvh_.order().size());
+  for (const std::uint32_t triangle : bvh_.order()) place_.push_back(position_[triangle]);
+}
 
 TriangleSearch::Nearest DistanceQuery::nearest(const Vec3& p, std::uint32_t hint) const {
   Nearest best{0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   double best_squared = best.upper;
   const auto consider = [&](std::uint32_t place, std::uint32_t triangle) {
     const auto& [a, b, c] = corners_[place];
+    ++best.looked;
     if (box_beyond(p, corners_[place], best.upper)) return;
-    const DistanceBounds d = point_triangle_distance(p, a, b, c);
+    const DistanceBounds d = bounds_at_origin(a - p, b - p, c - p, best.upper);
     best.lower = std::min(best.lower, d.lower);
     if (d.upper < best.upper) {
       best.upper = d.upper;
@@ -189,7 +210,7 @@ TriangleSearch::Nearest DistanceQuery::nearest(const Vec3& p, std::uint32_t hint
     const Bvh::Node& node = nodes[entry.node];
     if (node.leaf()) {
       for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-        consider(i, bvh_.order()[i]);
+        consider(place_[i], bvh_.order()[i]);
       continue;
     }
     Entry near{squared_distance(p, nodes[entry.node + 1].box), entry.node + 1};
@@ -214,7 +235,7 @@ std::uint32_t DistanceQuery::within(const Vec3& p, double radius, std::uint32_t 
     if (squared_distance(p, node.box) > limit) continue;
     if (node.leaf()) {
       for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-        const auto& [a, b, c] = corners_[i];
+        const auto& [a, b, c] = corners_[place_[i]];
         if (point_triangle_distance(p, a, b, c).upper <= radius) return bvh_.order()[i];
       }
       continue;

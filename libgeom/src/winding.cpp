@@ -6,10 +6,10 @@
 namespace kaboum::geom {
 namespace {
 
-/// Side of p with respect to the directed line a → b seen from above. Zeros are broken as if p were
-/// at (x + ε, y + ε²); a pair of points with equal projection has no sides and gives 0.
-int perturbed_side(const Vec3& a, const Vec3& b, const Vec3& p) {
-  const Sign s = orient2d(a.x(), a.y(), b.x(), b.y(), p.x(), p.y());
+/// Side of p = (x, y, z) with respect to the directed line a → b seen from above, given the exact
+/// one. Zeros are broken as if p were at (x + ε, y + ε²); a pair of points with equal projection
+/// has no sides and gives 0.
+int perturbed_side(const Vec3& a, const Vec3& b, Sign s) {
   if (s != Sign::Zero) return static_cast<int>(s);
   // Derivative of (b−a)×(p−a) by p.x is −(b.y−a.y), by p.y it is b.x−a.x.
   if (a.y() != b.y()) return a.y() > b.y() ? 1 : -1;
@@ -63,11 +63,20 @@ WindingNumber::Hit WindingNumber::hit(const Vec3& p, std::uint32_t index) const 
   const Triangle& t = mesh_.triangles[index];
   const Vec3 &a = mesh_.vertices[t[0]], &b = mesh_.vertices[t[1]], &c = mesh_.vertices[t[2]];
   if (p.z() > std::max({a.z(), b.z(), c.z()})) return {};
+  // On different sides of two edges seen from above, p is neither below nor above the triangle.
+  const Sign over_ab = orient2d(a.x(), a.y(), b.x(), b.y(), p.x(), p.y());
+  const Sign over_bc = orient2d(b.x(), b.y(), c.x(), c.y(), p.x(), p.y());
+  if (over_ab != Sign::Zero && over_bc != Sign::Zero && over_ab != over_bc) return {};
+  const Sign over_ca = orient2d(c.x(), c.y(), a.x(), a.y(), p.x(), p.y());
+  if (over_ca != Sign::Zero && ((over_ab != Sign::Zero && over_ab != over_ca) ||
+                                (over_bc != Sign::Zero && over_bc != over_ca)))
+    return {};
   Hit out;
   const Sign height = orient3d(a, b, c, p);
   out.on = height == Sign::Zero && on_triangle(a, b, c, p);
-  const int ab = perturbed_side(a, b, p);
-  if (ab == 0 || perturbed_side(b, c, p) != ab || perturbed_side(c, a, p) != ab) return out;
+  const int ab = perturbed_side(a, b, over_ab);
+  if (ab == 0 || perturbed_side(b, c, over_bc) != ab || perturbed_side(c, a, over_ca) != ab)
+    return out;
   // The ray crosses the triangle's interior, or p is on its plane. The normal points up when
   // the projection is counter-clockwise; p is below the triangle when it is on the side away
   // from an upward normal.

@@ -24,10 +24,14 @@ class Bvh {
   /// Splits at the median of the centroids along the longest axis: O(n log n), deterministic.
   /// @pre indices in range, coordinates finite.
   explicit Bvh(const Mesh& mesh);
+  /// The same, but triangles that lie slantwise in boxes much larger than themselves, as needles do
+  /// round the tip of a cone, are cut into parts first: these are in several leaves then, where
+  /// boxes hold parts of them. For searches that may look at a triangle more than once.
+  static Bvh of_parts(const Mesh& mesh);
 
   [[nodiscard]] bool empty() const { return nodes_.empty(); }
   [[nodiscard]] std::span<const Node> nodes() const { return nodes_; }
-  /// Triangle indices, grouped by leaf.
+  /// Triangle indices, grouped by leaf; of_parts: some several times.
   [[nodiscard]] std::span<const std::uint32_t> order() const { return order_; }
 
   /// Calls visit(triangle) for every triangle of each leaf whose box, and whose ancestors' boxes,

@@ -47,6 +47,7 @@ class TriangleSearch {
     std::uint32_t triangle;  ///< a triangle whose distance is ≤ upper
     double lower;            ///< bracket of the distance to the whole set
     double upper;
+    std::uint32_t looked = 0;  ///< triangles looked at: what it took
   };
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
@@ -106,10 +107,14 @@ class DistanceQuery final : public TriangleSearch {
   [[nodiscard]] bool all_within(const ConvexPolygon& polygon, double radius,
                                 int max_pieces = 256) const;
 
+  /// The hierarchy, Bvh::of_parts.
+  [[nodiscard]] const Bvh& hierarchy() const { return bvh_; }
+
  private:
   DistanceQuery(const Mesh& mesh, Bvh bvh);
 
   Bvh bvh_;
+  std::vector<std::uint32_t> place_;  // of the hierarchy's entries in corners_
 };
 
 /// One-sided Hausdorff distance sup_{x∈A} d(x, B) between surfaces. [length]
