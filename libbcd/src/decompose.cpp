@@ -750,6 +750,8 @@ class Decomposer {
     const double share = left / (kPiece * static_cast<double>(std::max<std::size_t>(1, bodies)));
     if (share < static_cast<double>(out.most))
       out.most = static_cast<std::size_t>(std::max(fewest, share));
+    // Pieces that take longer than usual are fewer.
+    out.work = static_cast<std::uint64_t>(kPiece) * out.most;
     return out;
   }
 

@@ -44,7 +44,7 @@ class Measure {
     if (result_.lower > options_.enough) settle(kUnbounded);
     result_.upper = std::max({result_.lower, settled_, 0.0});
     if (result_.upper > 0) result_.upper += slack_;
-    solid_.work().add(kLook * looked_);
+    solid_.work().add(work_);
     return result_;
   }
 
@@ -95,12 +95,20 @@ class Measure {
       std::pop_heap(open.begin(), open.end(), lower);
       const Part part = std::move(open.back());
       open.pop_back();
-      if (part.upper <= limit() || work >= most || result_.lower > options_.enough) {
+      if (part.upper <= limit() || work >= most || work_ > options_.work ||
+          result_.lower > options_.enough) {
         settle(part.upper);  // no other is larger
         return;
       }
       split(part, visit);
     }
+  }
+
+  /// The triangle nearest to a part's centre; counted.
+  geom::TriangleSearch::Nearest nearest(const Vec3& p, std::uint32_t hint) {
+    const auto at = solid_.surface().nearest(p, hint);
+    work_ += kLook + kTriangle * at.looked;
+    return at;
   }
 
   void facets() {
@@ -113,8 +121,7 @@ class Measure {
       const Vec3 center = (a + b + c) / 3;
       const double radius = std::sqrt(std::max(
           {(a - center).squaredNorm(), (b - center).squaredNorm(), (c - center).squaredNorm()}));
-      ++looked_;
-      const auto at = solid_.surface().nearest(center, p.hint);
+      const auto at = nearest(center, p.hint);
       p.hint = at.triangle;
       p.upper = at.upper + radius;
       if (p.upper > limit()) {
@@ -264,8 +271,7 @@ class Measure {
         if (h + extent > -k.slack) crossing.push_back(k);
       }
       const double radius = cube.half * 1.7320508075688774;
-      ++looked_;
-      const auto at = solid_.surface().nearest(cube.center, cube.hint);
+      const auto at = nearest(cube.center, cube.hint);
       cube.hint = at.triangle;
       cube.upper = at.upper + radius;
       if (cube.upper > limit()) {
@@ -312,7 +318,8 @@ class Measure {
 
   static constexpr double kUnbounded = std::numeric_limits<double>::infinity();
   static constexpr std::size_t kMostNear = 24;
-  static constexpr std::uint64_t kLook = 2000;  ///< work of bounding a part
+  static constexpr std::uint64_t kLook = 800;     ///< work of bounding a part
+  static constexpr std::uint64_t kTriangle = 60;  ///< and for each triangle that is looked at
 
   const Mesh& body_;
   const Solid& solid_;
@@ -321,7 +328,7 @@ class Measure {
   double floor_ = 0;
   double scale_ = 0, slack_ = 0;
   double settled_ = 0;
-  std::uint64_t looked_ = 0;
+  std::uint64_t work_ = 0;
   Reach result_;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -19,7 +20,10 @@ struct ReachOptions {
   /// A distance known to be larger is of no interest: measuring stops, with no upper bound.
   /// [length]
   double enough = std::numeric_limits<double>::infinity();
-  std::size_t most = 400000;  ///< pieces per body; beyond, the bracket is wider than the gaps
+  /// Pieces per body; beyond, the bracket is wider than the gaps.
+  std::size_t most = 400000;
+  /// The same for the work of a body's pieces, where many triangles are equally near. [ns]
+  std::uint64_t work = ~std::uint64_t{0};
 };
 
 /// One bracket per body. Branch and bound over facets and, for pits and cavities that a body spans,

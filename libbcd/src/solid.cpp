@@ -41,8 +41,9 @@ Solid::Solid(const Mesh& mesh, std::size_t nodes, double epsilon, bool probes, s
       box_(geom::bounding_box(mesh)),
       diagonal_(box_.diagonal()),
       surface_(mesh),
-      bvh_(std::make_shared<const geom::Bvh>(mesh)),
-      winding_(mesh, bvh_),
+      // No owner: both live as long as this.
+      winding_(mesh,
+               std::shared_ptr<const geom::Bvh>(std::shared_ptr<void>(), &surface_.hierarchy())),
       work_(work) {
   for (const std::uint32_t t : surface_.hierarchy().order()) {
     const Triangle& v = mesh.triangles[t];
@@ -134,10 +135,10 @@ bool Solid::triangles_near(const Box3& box, std::size_t most,
     return out.size() <= most && (other.min.array() <= box.max.array()).all() &&
            (box.min.array() <= other.max.array()).all();
   };
-  bvh_->traverse(meets, [&](std::uint32_t t) {
+  surface_.hierarchy().traverse(meets, [&](std::uint32_t t) {
     Box3 own;
     for (const std::uint32_t v : mesh_.triangles[t]) own.extend(mesh_.vertices[v]);
-    if (meets(own)) out.push_back(t);
+    if (meets(own) && std::find(out.begin(), out.end(), t) == out.end()) out.push_back(t);
   });
   return out.size() <= most;
 }

@@ -81,7 +81,6 @@ class Solid {
   Box3 box_;
   double diagonal_;
   geom::DistanceQuery surface_;
-  std::shared_ptr<const geom::Bvh> bvh_;
   geom::WindingNumber winding_;
   struct Corner {
     Vec3 a, ab, ac;

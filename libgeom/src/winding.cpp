@@ -1,7 +1,9 @@
 #include <kaboum/geom/predicates.h>
 #include <kaboum/geom/winding.h>
 
+#include <algorithm>
 #include <utility>
+#include <vector>
 
 namespace kaboum::geom {
 namespace {
@@ -93,19 +95,36 @@ bool meets(const Box3& box, const Vec3& p) {
          p.y() >= box.min.y() && p.y() <= box.max.y();
 }
 
+/// Tells the triangles that are met again, in hierarchies in which they are several times.
+class Once {
+ public:
+  Once(const Bvh& bvh, const Mesh& mesh) : needed_(bvh.order().size() > mesh.triangles.size()) {}
+  bool first(std::uint32_t triangle) {
+    if (!needed_) return true;
+    if (std::find(seen_.begin(), seen_.end(), triangle) != seen_.end()) return false;
+    seen_.push_back(triangle);
+    return true;
+  }
+
+ private:
+  bool needed_;
+  std::vector<std::uint32_t> seen_;  // few: those that the ray crosses
+};
+
 }  // namespace
 
 std::optional<int> WindingNumber::weighted(const Vec3& p,
                                            std::span<const std::int8_t> weight) const {
   int winding = 0;
   bool on_surface = false;
+  Once once(*bvh_, mesh_);
   bvh_->traverse([&](const Box3& box) { return !on_surface && meets(box, p); },
                  [&](std::uint32_t index) {
                    const int factor = weight.empty() ? 1 : weight[index];
                    if (factor == 0 || on_surface) return;
                    const Hit h = hit(p, index);
                    on_surface = h.on;
-                   winding += factor * h.crossing;
+                   if (h.crossing != 0 && once.first(index)) winding += factor * h.crossing;
                  });
   if (on_surface) return std::nullopt;
   return winding;
@@ -113,9 +132,11 @@ std::optional<int> WindingNumber::weighted(const Vec3& p,
 
 void WindingNumber::crossings(const Vec3& p,
                               const std::function<void(std::uint32_t, int)>& visit) const {
+  Once once(*bvh_, mesh_);
   bvh_->traverse([&](const Box3& box) { return meets(box, p); },
                  [&](std::uint32_t index) {
                    const Hit h = hit(p, index);
+                   if ((!h.on && h.crossing == 0) || !once.first(index)) return;
                    if (h.on) visit(index, 0);
                    if (h.crossing != 0) visit(index, h.crossing);
                  });

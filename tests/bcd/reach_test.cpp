@@ -5,6 +5,7 @@
 #include <random>
 
 #include "solids.h"
+#include "support/fan.h"
 #include "support/shapes.h"
 
 namespace kaboum::bcd {
@@ -102,6 +103,23 @@ TEST(Reach, BodiesOnTheSolidCostLittle) {
     EXPECT_GE(r.upper, farthest);
     EXPECT_LE(r.upper, 1.03 * farthest);
   }
+}
+
+TEST(Reach, EndsWithTheWork) {
+  // Of a thousand needles, many are equally near to what is inside.
+  const Mesh fan = kaboum::test::double_fan(1000);
+  const Solid solid(fan, 20000, 0);
+  Mesh body = kaboum::test::double_fan(16);
+  for (Vec3& p : body.vertices) p *= 1.05;
+  const Reach all = measure({body}, solid, {})[0];
+  const std::uint64_t before = solid.work().done();
+  const Reach some = measure({body}, solid, {.work = 2'000'000})[0];
+  const std::uint64_t done = solid.work().done() - before;
+  EXPECT_GT(before, 2 * done);
+  EXPECT_LT(done, 4'000'000U);
+  EXPECT_GE(some.upper, all.lower);
+  EXPECT_LE(some.lower, all.upper);
+  EXPECT_LT(some.upper, 1.5);
 }
 
 TEST(Reach, NoPointIsFarther) {

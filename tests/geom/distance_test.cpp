@@ -8,6 +8,7 @@
 #include <random>
 
 #include "support/families.h"
+#include "support/fan.h"
 
 namespace {
 
@@ -88,6 +89,60 @@ TEST(DistanceQuery, FindsTheNearestTriangle) {
                 DistanceQuery::kNone);
       EXPECT_EQ(query.within(p, static_cast<double>(slow) * 0.999), DistanceQuery::kNone);
     }
+  }
+}
+
+// The boxes of needles round a tip, slanted, all hold each other.
+TEST(DistanceQuery, LooksAtFewOfManyNeedles) {
+  const Mesh mesh = kaboum::test::double_fan(1000);
+  const DistanceQuery query(mesh);
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::uint64_t looked = 0;
+  constexpr int kPoints = 100;
+  for (int i = 0; i < kPoints; ++i) {
+    const auto& at = mesh.triangles[random() % mesh.triangles.size()];
+    Vec3 p = mesh.vertices[at[0]];
+    p += unit(random) * (mesh.vertices[at[2]] - p);
+    p *= 0.97;
+    double lower = std::numeric_limits<double>::infinity(), upper = lower;
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      const auto d = query.to_triangle(p, t);
+      lower = std::min(lower, d.lower);
+      upper = std::min(upper, d.upper);
+    }
+    const auto n = query.nearest(p);
+    looked += n.looked;
+    EXPECT_EQ(n.upper, upper);
+    EXPECT_EQ(n.lower, lower);
+    EXPECT_EQ(query.to_triangle(p, n.triangle).upper, upper);
+    EXPECT_NE(query.within(p, 1.001 * upper), DistanceQuery::kNone);
+    EXPECT_EQ(query.within(p, 0.999 * lower), DistanceQuery::kNone);
+  }
+  EXPECT_LT(looked, 100U * kPoints);
+}
+
+TEST(DistanceQuery, PartsOfTrianglesCoverThem) {
+  std::mt19937_64 random(9);
+  std::uniform_real_distribution<double> unit(0, 1);
+  const Mesh mesh = kaboum::test::double_fan(500);
+  const auto tree = kaboum::geom::Bvh::of_parts(mesh);
+  ASSERT_GT(tree.order().size(), 2 * mesh.triangles.size());
+  for (int i = 0; i < 5000; ++i) {
+    const auto index = static_cast<std::uint32_t>(random() % mesh.triangles.size());
+    const auto& t = mesh.triangles[index];
+    double r = unit(random), s = unit(random);
+    if (r + s > 1) r = 1 - r, s = 1 - s;
+    if (i % 9 == 0) r = 0;
+    const Vec3& a = mesh.vertices[t[0]];
+    const Vec3 p = a + r * (mesh.vertices[t[1]] - a) + s * (mesh.vertices[t[2]] - a);
+    bool found = false;
+    tree.traverse(
+        [&](const kaboum::geom::Box3& box) {
+          return (p.array() >= box.min.array()).all() && (p.array() <= box.max.array()).all();
+        },
+        [&](std::uint32_t triangle) { found = found || triangle == index; });
+    ASSERT_TRUE(found) << i;
   }
 }
 

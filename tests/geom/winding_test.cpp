@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <random>
 
 #include "support/families.h"
+#include "support/fan.h"
 #include "support/oracle.h"
 
 namespace {
@@ -34,6 +36,33 @@ TEST(WindingNumber, AgreesWithTheOracleOnEveryFamily) {
       if (!w) continue;  // on the surface
       ASSERT_EQ(*w, kaboum::test::winding_number_slow(mesh, p)) << family.name << " sample " << i;
     }
+  }
+}
+
+// Needles round two tips, in a hierarchy that holds parts of them: each counts once.
+TEST(WindingNumber, CountsTrianglesInSeveralLeavesOnce) {
+  const Mesh mesh = kaboum::test::double_fan(1000);
+  const auto parts = std::make_shared<const kaboum::geom::Bvh>(kaboum::geom::Bvh::of_parts(mesh));
+  EXPECT_GT(parts->order().size(), mesh.triangles.size());
+  const WindingNumber winding(mesh), of_parts(mesh, parts);
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::uniform_int_distribution<std::size_t> any(0, mesh.triangles.size() - 1);
+  const auto box = kaboum::geom::bounding_box(mesh);
+  for (int i = 0; i < 2000; ++i) {
+    Vec3 p =
+        box.min + Vec3(unit(random), unit(random), unit(random)).cwiseProduct(box.max - box.min);
+    const auto& t = mesh.triangles[any(random)];
+    const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    if (i % 4 == 1) p.head<2>() = a.head<2>();
+    if (i % 4 == 2) p.head<2>() = (0.5 * (a + b)).head<2>();
+    if (i % 4 == 3) p = a + 0.3 * unit(random) * (b - a) + 0.7 * unit(random) * (c - a);
+    if (i % 40 == 3) p = a;
+    ASSERT_EQ(winding(p), of_parts(p)) << i;
+    int sum = 0, all = 0;
+    winding.crossings(p, [&](std::uint32_t, int crossing) { sum += 3 + crossing; });
+    of_parts.crossings(p, [&](std::uint32_t, int crossing) { all += 3 + crossing; });
+    ASSERT_EQ(sum, all) << i;
   }
 }
 

@@ -21,7 +21,7 @@ namespace kaboum::geom {
 class WindingNumber {
  public:
   /// Keeps a reference to `mesh`, which must outlive this object.
-  /// @param hierarchy  over the mesh, where there is one already.
+  /// @param hierarchy  over the mesh (Bvh::of_parts is as good), where there is one already.
   /// @pre indices in range, coordinates finite.
   explicit WindingNumber(const Mesh& mesh, std::shared_ptr<const Bvh> hierarchy = nullptr);
 
