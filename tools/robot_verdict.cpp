@@ -62,23 +62,40 @@ Finding finding_of(const verify::HeldShape& held, const verify::Holders& holders
   return f;
 }
 
-Finding finding_of(const verify::HeldDistance& held, double bound, bool uneven) {
-  if (!held.claim)
-    return {Answer::Undecided, "distances are decided of convex bodies only, and not all are"};
+Finding finding_of(const verify::HeldDistance& held, const verify::ScaledBound& scaled) {
+  Finding f{answer_of(held, scaled), {}};
+  if (!held.claim) {
+    f.text = "distances are decided of convex bodies only, and not all are";
+    return f;
+  }
   const verify::DistanceClaim& claim = *held.claim;
-  Finding f{claim.answer, {}};
-  if (f.answer == Answer::Refuted && uneven) f.answer = Answer::Undecided;
   f.json["distance"] = {{"answer", name_of(claim.answer)},
                         {"reason", claim.reason},
-                        {"bound", bound},
+                        {"bound", scaled.bound},
                         {"largest_found", claim.largest}};
   f.text = f.answer == Answer::Verified
-               ? "nowhere more than " + number(bound) + " from the solid"
+               ? "nowhere more than " + number(scaled.bound) + " from the solid"
                : "at least " + number(claim.largest) + " from the solid at " + point(claim.at) +
-                     ", claimed " + number(bound);
+                     ", claimed " + number(scaled.bound);
   f.text += ", in the mesh's own unit";
   if (!held.to_solid) f.text += " (to the surface, as it is open)";
-  if (f.answer == Answer::Undecided && uneven) f.text += "; the scale is uneven";
+  if (f.answer == Answer::Undecided && scaled.uneven) f.text += "; the scale is uneven";
+  return f;
+}
+
+Finding finding_of(const robot::Geometry& shape, const verify::MatchedShapes& match) {
+  const Answer answer = find_again(shape, match);
+  return {answer, answer == Answer::Verified  ? "the result has it as well"
+                  : answer == Answer::Refuted ? "the result's link has no shape at all"
+                                              : "the result has none of its size and pose"};
+}
+
+Finding beside_others(Finding f, const verify::MatchedShapes& match) {
+  const Answer answer = verify::beside_others(f.answer, match);
+  if (answer != f.answer)
+    f.text += "; what the " + count(match.elsewhere, "shape", "shapes") +
+              " of other poses hold is not looked at";
+  f.answer = answer;
   return f;
 }
 

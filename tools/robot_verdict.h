@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/verify/held_shape.h>
+#include <kaboum/verify/matching_shapes.h>
 
 #include <string>
 
@@ -18,8 +19,13 @@ struct Finding {
 /// @param prepared  the mesh was prepared.
 Finding finding_of(const verify::HeldShape& held, const verify::Holders& holders, bool prepared);
 
-/// @param uneven  the scale: what is too far by the largest factor may be near enough.
-Finding finding_of(const verify::HeldDistance& held, double bound, bool uneven);
+Finding finding_of(const verify::HeldDistance& held, const verify::ScaledBound& bound);
+
+/// Of a box, cylinder or sphere.
+Finding finding_of(const robot::Geometry& shape, const verify::MatchedShapes& match);
+
+/// The finding of a mesh that other shapes of the result may hold.
+Finding beside_others(Finding finding, const verify::MatchedShapes& match);
 
 /// "1 body", "2 bodies".
 std::string count(std::size_t n, const char* one, const char* many);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <kaboum/verify/claims.h>
 #include <kaboum/verify/cover.h>
 
 #include <optional>
@@ -7,9 +8,6 @@
 #include <vector>
 
 namespace kaboum::verify {
-
-/// Which claims about a mesh have to hold.
-enum class Claims { All, Solid, Surface };
 
 /// What was decided of one mesh of a link.
 struct HeldShape {

@@ -1,0 +1,165 @@
+// All claims about an original and its approximation, decided one after the other.
+#include <kaboum/geom/topology.h>
+#include <kaboum/verify/cover.h>
+#include <kaboum/verify/mesh_verdict.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace kaboum::verify {
+namespace {
+
+void measure_depths(const MeshQuestion& q, MeshVerdict& out) {
+  const double margin = q.relation == Relation::Cover ? q.set->margin : 0;
+  const auto beyond_margin = [&](Bracket b) {
+    b.lower = std::max(0.0, b.lower - margin * (1 + 0x1p-50));
+    b.upper -= margin * (1 - 0x1p-50);
+    return b;
+  };
+  const Inclusion& in = out.inclusion;
+  if (in.solid.answer == Answer::Refuted && !in.relative && !in.limited)
+    out.solid_depth = beyond_margin(bracket_solid(q.inner(), q.outer(), in.solid));
+  if (in.surface.answer == Answer::Refuted)
+    out.surface_depth =
+        beyond_margin(bracket_distance(q.inner(), in.surface.inner_triangles, q.outer(), true));
+}
+
+Bracket bracket_all(const geom::Mesh& from, const geom::Mesh& to, bool to_solid) {
+  std::vector<std::uint32_t> all(from.triangles.size());
+  std::iota(all.begin(), all.end(), 0U);
+  return bracket_distance(from, all, to, to_solid);
+}
+
+/// As far as the claim tells.
+Bracket bracket_of(const DistanceClaim& claim) {
+  return {claim.largest, std::numeric_limits<double>::infinity(), claim.at, claim.triangle};
+}
+
+DistanceVerdict decide_distance(Between between, const geom::Mesh& from, const geom::Mesh& to,
+                                double bound) {
+  DistanceVerdict out{between, verify_distance(from, to, bound), {}};
+  out.bracket = bracket_of(out.claim);
+  if (out.claim.answer == Answer::Verified) return out;
+  const Bracket found = bracket_all(from, to, false);
+  out.bracket.upper = found.upper;
+  if (found.lower > out.bracket.lower) out.bracket = found;
+  return out;
+}
+
+DistanceVerdict decide_reach(const MeshQuestion& q, bool to_solid) {
+  DistanceVerdict out{to_solid ? Between::UnionToSolid : Between::FacetsToSurface,
+                      verify_reach(*q.set, q.original, *q.bound, to_solid),
+                      {}};
+  out.bracket = bracket_of(out.claim);
+  if (out.claim.answer == Answer::Verified) return out;
+  // Inside the bodies it may be farther: only the lower bound counts.
+  const Bracket found = bracket_all(q.approximation, q.original, to_solid);
+  if (found.lower > out.bracket.lower) {
+    out.bracket.lower = found.lower;
+    out.bracket.at = found.at;
+  }
+  return out;
+}
+
+void decide_distances(const MeshQuestion& q, const InclusionOptions& options, MeshVerdict& out) {
+  if (q.relation == Relation::Cover) {
+    options.progress("distance");
+    out.distances.push_back(decide_reach(q, out.inclusion.inner_closed));
+  } else if (q.set != nullptr) {
+    options.progress("depth");
+    out.depth = verify_depth(q.original, *q.set, *q.bound, options);
+  } else {
+    for (const Between between :
+         {Between::ApproximationToOriginal, Between::OriginalToApproximation}) {
+      options.progress(name_of(between));
+      const bool there = between == Between::ApproximationToOriginal;
+      out.distances.push_back(decide_distance(between, there ? q.approximation : q.original,
+                                              there ? q.original : q.approximation, *q.bound));
+    }
+  }
+}
+
+}  // namespace
+
+const char* name_of(Between between) {
+  switch (between) {
+    case Between::ApproximationToOriginal:
+      return "distance from approximation to original";
+    case Between::OriginalToApproximation:
+      return "distance from original to approximation";
+    case Between::UnionToSolid:
+      return "distance from the union to the solid";
+    case Between::FacetsToSurface:
+      break;
+  }
+  return "distance from the bodies' facets to the surface";
+}
+
+Answer answer_of(const MeshVerdict& verdict, Claims claims) {
+  std::vector<Answer> enclosure, besides;
+  if (claims != Claims::Surface) enclosure.push_back(verdict.inclusion.solid.answer);
+  if (claims != Claims::Solid) enclosure.push_back(verdict.inclusion.surface.answer);
+  if (verdict.convex) besides.push_back(verdict.convex->answer);
+  for (const DistanceVerdict& d : verdict.distances) besides.push_back(d.claim.answer);
+  if (verdict.depth) besides.push_back(verdict.depth->answer);
+  const auto any = [](const std::vector<Answer>& answers, Answer a) {
+    return std::find(answers.begin(), answers.end(), a) != answers.end();
+  };
+  for (const Answer a : {Answer::Refuted, Answer::Undecided})
+    if (any(enclosure, a) || any(besides, a)) return a;
+  const bool defined = any(enclosure, Answer::Verified) && !any(besides, Answer::Undefined);
+  return defined && !verdict.vacuous ? Answer::Verified : Answer::Undefined;
+}
+
+MeshVerdict decide(const MeshQuestion& q,
+                   const std::function<void(const MeshVerdict&)>& enclosure) {
+  const auto show = [&](const std::string& what) {
+    if (q.progress) q.progress(what);
+  };
+  InclusionOptions options;
+  options.max_contacts = q.max_contacts;
+  options.progress = [&](const std::string& what) { show("deciding: " + what); };
+  MeshVerdict out;
+  if (q.set != nullptr) out.convex = verify_convexity(*q.set).convex;
+  out.inclusion = q.relation == Relation::Cover
+                      ? verify_cover(q.original, *q.set, options).inclusion
+                      : verify_inclusion(q.inner(), q.outer(), options);
+  out.vacuous = q.claims == Claims::Solid && geom::signed_volume(q.inner()) < 0;
+  show("measuring what sticks out");
+  measure_depths(q, out);
+  if (enclosure) enclosure(out);
+  if (q.bound) decide_distances(q, options, out);
+  out.answer = answer_of(out, q.claims);
+  return out;
+}
+
+geom::Mesh offending_triangles(const MeshQuestion& q, const MeshVerdict& verdict) {
+  geom::Mesh mesh;
+  const auto take = [&](const geom::Mesh& from, std::vector<std::uint32_t> triangles) {
+    std::sort(triangles.begin(), triangles.end());
+    triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+    for (const std::uint32_t t : triangles) {
+      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+      for (const std::uint32_t v : from.triangles[t]) mesh.vertices.push_back(from.vertices[v]);
+      mesh.triangles.push_back({first, first + 1, first + 2});
+    }
+  };
+  std::vector<std::uint32_t> of_inner, of_outer;
+  for (const Claim* claim : {&verdict.inclusion.solid, &verdict.inclusion.surface}) {
+    of_inner.insert(of_inner.end(), claim->inner_triangles.begin(), claim->inner_triangles.end());
+    of_outer.insert(of_outer.end(), claim->outer_triangles.begin(), claim->outer_triangles.end());
+  }
+  take(q.inner(), std::move(of_inner));
+  take(q.outer(), std::move(of_outer));
+  for (const DistanceVerdict& d : verdict.distances)
+    if (d.claim.answer == Answer::Refuted)
+      take(d.between == Between::OriginalToApproximation ? q.original : q.approximation,
+           {d.claim.triangle});
+  if (!verdict.depth) return mesh;
+  for (const std::uint32_t t : verdict.depth->inner_triangles) take(q.original, {t});
+  for (const std::uint32_t t : verdict.depth->outer_triangles) take(q.approximation, {t});
+  return mesh;
+}
+
+}  // namespace kaboum::verify

@@ -1,0 +1,131 @@
+# bound-verify's commands: each does what its flag does, and has the options that mean something for it.
+. "$(dirname "$0")/common.sh"
+V=$BIN/bound-verify
+
+# cube LOW HIGH: an axis-aligned cube as OFF.
+cube() {
+  awk -v a="$1" -v b="$2" 'BEGIN {
+    print "OFF"; print 8, 12, 0
+    for (i = 0; i < 8; i++) print (i % 2 ? b : a), (int(i / 2) % 2 ? b : a), (i > 3 ? b : a)
+    split("0 2 1,1 2 3,4 5 6,5 7 6,0 1 4,1 5 4,2 6 3,3 6 7,0 4 2,2 4 6,1 3 5,3 7 5", t, ",")
+    for (i = 1; i <= 12; i++) print 3, t[i] }'
+}
+cube 0 1 >one.off
+cube -1 2 >three.off
+
+# run NAME COMMAND...: its output, code, report and witness as NAME.*
+run() {
+  name=$1
+  shift
+  rm -f r.json w.obj
+  "$V" "$@" --report r.json </dev/null >"$name.out" 2>"$name.err"
+  echo $? >"$name.code"
+  sed '/"resources"/,/}/d' r.json >"$name.json" 2>/dev/null
+  cat w.obj >"$name.obj" 2>/dev/null
+}
+
+# both CODE 'FLAGS' 'COMMAND': the same by either spelling.
+both() {
+  # shellcheck disable=SC2086
+  run flag $2
+  # shellcheck disable=SC2086
+  run command $3
+  [ "$(cat command.code)" = "$1" ] || fail "exit $(cat command.code) instead of $1: $3: $(cat command.err)"
+  for part in out err code json obj; do
+    cmp -s flag.$part command.$part || fail "$part differs: $2, $3: $(diff flag.$part command.$part | head -5)"
+  done
+}
+
+both 0 '--outer one.off three.off' 'mesh --outer one.off three.off'
+both 1 '--outer three.off one.off --witness w.obj' 'mesh three.off one.off --outer --witness w.obj'
+both 0 '--inner three.off one.off --epsilon 2' 'mesh --inner three.off one.off --epsilon 2'
+both 3 '--outer one.off nowhere.off' 'mesh --outer one.off nowhere.off'
+both 7 '--outer one.off three.off --max-contacts 1 --claims solid --epsilon 1.7320508075688772' \
+  'mesh --outer one.off three.off --max-contacts 1 --claims solid --epsilon 1.7320508075688772'
+both 0 '--cover one.off three.off --epsilon 1.74 --prepare' 'cover one.off three.off --epsilon 1.74 --prepare'
+both 1 '--cover three.off one.off --claims surface --witness w.obj' \
+  'cover three.off one.off --claims surface --witness w.obj'
+
+# robot NAME MESH: one link that turns.
+robot() {
+  cat >"$1.urdf" <<END
+<robot name="r"><link name="base"/>
+  <link name="arm"><collision><geometry><mesh filename="$2"/></geometry></collision></link>
+  <joint name="turn" type="continuous"><parent link="base"/><child link="arm"/><axis xyz="0 0 1"/></joint>
+</robot>
+END
+}
+robot thin one.off
+robot thick three.off
+both 0 '--robot thin.urdf thick.urdf --epsilon 2' 'robot thin.urdf thick.urdf --epsilon 2'
+both 1 '--robot thick.urdf thin.urdf' 'robot thick.urdf thin.urdf'
+both 0 '--robot thin.urdf thick.urdf --geometry visual' 'robot thin.urdf thick.urdf --visual'
+printf '0\n0.5\n' >path.csv
+both 0 '--sweep thin.urdf path.csv three.off' 'sweep thin.urdf path.csv three.off'
+both 1 '--sweep thick.urdf path.csv one.off --claims surface --witness w.obj' \
+  'sweep thick.urdf path.csv one.off --claims surface --witness w.obj'
+cube -0.5 1.4 >near.off
+both 0 '--sweep thin.urdf path.csv near.off' 'sweep thin.urdf path.csv near.off'
+both 7 '--sweep thin.urdf path.csv near.off --gap 9' 'sweep thin.urdf path.csv near.off --gap 9'
+both 2 '--sweep thin.urdf path.csv three.off --links no' 'sweep thin.urdf path.csv three.off --links no'
+"$BIN/bmesh-decimate" "$BRACKET" --vertices 900 --effort fast --progressive p.pm --quiet || fail 'decimation'
+both 0 "--progressive $BRACKET p.pm" "progressive $BRACKET p.pm"
+both 3 '--progressive one.off p.pm' 'progressive one.off p.pm'
+
+# Options that mean nothing for a command, files that are missing or too many.
+refused() {
+  expect 2 '' "$V" "$@"
+  [ -s err.txt ] || fail "nothing is said: $*"
+}
+for option in '--geometry visual' --visual '--links arm' '--gap 1' --degrees '--joint a=1' '--package-path .' --cover; do
+  # shellcheck disable=SC2086
+  refused mesh --outer one.off three.off $option
+  # shellcheck disable=SC2086
+  refused cover one.off three.off $option
+done
+for option in --outer --inner --set; do refused cover one.off three.off $option; done
+for option in --set '--witness w.obj' '--input-format off' '--approximation-format off' '--links arm' '--gap 1'; do
+  # shellcheck disable=SC2086
+  refused robot thin.urdf thick.urdf $option
+done
+for option in '--epsilon 1' --set '--claims solid' '--input-format off' '--max-contacts 5' --drop-sheets; do
+  # shellcheck disable=SC2086
+  refused sweep thin.urdf path.csv three.off $option
+done
+for option in '--epsilon 1' --prepare '--claims all' '--witness w.obj' '--max-contacts 5' --visual; do
+  # shellcheck disable=SC2086
+  refused progressive "$BRACKET" p.pm $option
+done
+expect 2 'unknown option --esilon; did you mean --epsilon' "$V" cover one.off three.off --esilon 1
+refused mesh one.off three.off
+refused mesh --outer --inner one.off three.off
+refused mesh --outer one.off
+refused cover one.off
+refused robot thin.urdf
+refused sweep thin.urdf path.csv
+refused sweep thin.urdf path.csv three.off one.off
+refused progressive p.pm
+refused --quiet mesh --outer one.off three.off
+
+# Files may be called like commands, but for the first.
+cp three.off cover
+expect 0 '^verified$' "$V" mesh --outer one.off cover --approximation-format off
+expect 0 '^verified$' "$V" --outer one.off cover --approximation-format off
+expect 1 '^refuted$' "$V" --outer ./cover one.off --input-format off
+
+# Each command's help: its own options and files.
+expect 0 'bound-verify sweep ROBOT PATH SWEPT' "$V" --help
+grep -q -- '--cover$' out.txt || fail "no flags in the help: $(cat out.txt)"
+for command in mesh cover robot sweep progressive; do
+  for width in 80 100; do
+    expect 0 'Exit codes' env COLUMNS=$width "$V" $command --help
+    LC_ALL=C awk -v width=$width 'length > width' out.txt >wide.txt
+    [ ! -s wide.txt ] || fail "wider than $width columns: $command: $(cat wide.txt)"
+  done
+  grep -q -- "Usage: bound-verify $command " out.txt || fail "usage of $command"
+  case $command in
+    sweep) grep -q -- '--gap' out.txt || fail 'no --gap' ;;
+    *) if grep -q -- '--gap' out.txt; then fail "$command has --gap"; fi ;;
+  esac
+done
+finish

@@ -1,0 +1,143 @@
+// All claims about two meshes together: which of them decide, and what is measured beside them.
+#include <kaboum/verify/mesh_verdict.h>
+
+#include <gtest/gtest.h>
+#include <kaboum/verify/cover.h>
+
+#include "support/shapes.h"
+
+namespace {
+
+using namespace kaboum;        // NOLINT: a test
+using namespace kaboum::test;  // NOLINT: a test
+using verify::Answer;
+using verify::Between;
+using verify::Claims;
+using verify::MeshQuestion;
+using verify::MeshVerdict;
+using verify::Relation;
+
+Mesh cube(double low, double high) {
+  return translated(box(Vec3::Constant(high - low), 1), Vec3::Constant(low));
+}
+
+MeshVerdict decided(const Mesh& original, const Mesh& approximation, Relation relation,
+                    Claims claims = Claims::All, std::optional<double> bound = {}) {
+  return verify::decide({original, approximation, nullptr, relation, claims, bound});
+}
+
+TEST(MeshVerdict, RelationSaysWhichEncloses) {
+  const Mesh small = cube(0, 1), large = cube(-1, 2);
+  EXPECT_EQ(decided(small, large, Relation::Outer).answer, Answer::Verified);
+  EXPECT_EQ(decided(large, small, Relation::Inner).answer, Answer::Verified);
+  EXPECT_EQ(decided(large, small, Relation::Outer).answer, Answer::Refuted);
+  EXPECT_EQ(decided(small, large, Relation::Inner).answer, Answer::Refuted);
+}
+
+TEST(MeshVerdict, DepthsAreMeasuredWhereRefuted) {
+  const Mesh small = cube(0, 1), large = cube(-1, 2);
+  const MeshVerdict refuted = decided(large, small, Relation::Outer);
+  ASSERT_TRUE(refuted.solid_depth && refuted.surface_depth);
+  EXPECT_LE(refuted.surface_depth->lower, std::sqrt(3.0));
+  EXPECT_GE(refuted.surface_depth->upper, std::sqrt(3.0));
+  EXPECT_GT(refuted.surface_depth->lower, 1.7);
+  const MeshVerdict verified = decided(small, large, Relation::Outer);
+  EXPECT_FALSE(verified.solid_depth || verified.surface_depth);
+}
+
+// The margin of a cover is taken off what sticks out, and the claim knows of it.
+TEST(MeshVerdict, MarginOfACover) {
+  const Mesh original = cube(0, 2);
+  geom::ConvexSet set;
+  set.bodies.push_back({"body", cube(0.5, 1.5)});
+  for (const double margin : {0.25, 1.0}) {
+    set.margin = margin;
+    const Mesh sum = verify::sum_of(set);
+    const MeshVerdict verdict =
+        verify::decide({original, sum, &set, Relation::Cover, Claims::All, 1.5});
+    ASSERT_TRUE(verdict.convex);
+    EXPECT_EQ(verdict.convex->answer, Answer::Verified);
+    ASSERT_EQ(verdict.distances.size(), 1U);
+    EXPECT_EQ(verdict.distances[0].between, Between::UnionToSolid);
+    EXPECT_EQ(verdict.answer, margin < 0.8 ? Answer::Refuted : Answer::Verified);
+    if (margin > 0.8) continue;
+    const double corner = 0.5 * std::sqrt(3.0) - margin;
+    EXPECT_LE(verdict.surface_depth->lower, corner);
+    EXPECT_GE(verdict.surface_depth->upper, corner);
+  }
+}
+
+TEST(MeshVerdict, ClaimsThatDecide) {
+  const auto made = [](Answer solid, Answer surface) {
+    MeshVerdict v;
+    v.inclusion.solid.answer = solid;
+    v.inclusion.surface.answer = surface;
+    return v;
+  };
+  using enum Answer;
+  EXPECT_EQ(answer_of(made(Verified, Refuted), Claims::All), Refuted);
+  EXPECT_EQ(answer_of(made(Verified, Refuted), Claims::Solid), Verified);
+  EXPECT_EQ(answer_of(made(Undefined, Verified), Claims::All), Verified);
+  EXPECT_EQ(answer_of(made(Undefined, Verified), Claims::Solid), Undefined);
+  EXPECT_EQ(answer_of(made(Undecided, Verified), Claims::All), Undecided);
+  // Everything else can only worsen it.
+  MeshVerdict besides = made(Verified, Verified);
+  besides.convex.emplace().answer = Refuted;
+  EXPECT_EQ(answer_of(besides, Claims::All), Refuted);
+  besides.convex->answer = Verified;
+  besides.distances.emplace_back().claim.answer = Undefined;
+  EXPECT_EQ(answer_of(besides, Claims::All), Undefined);
+  besides.distances[0].claim.answer = Undecided;
+  EXPECT_EQ(answer_of(besides, Claims::All), Undecided);
+  besides.distances.clear();
+  besides.depth.emplace().answer = Refuted;
+  EXPECT_EQ(answer_of(besides, Claims::Solid), Refuted);
+}
+
+// That an empty solid is within another says nothing.
+TEST(MeshVerdict, EmptySolidIsNoVerdict) {
+  const Mesh turned = flipped(cube(0, 1)), large = cube(-1, 2);
+  const MeshVerdict alone = decided(turned, large, Relation::Outer, Claims::Solid);
+  EXPECT_TRUE(alone.vacuous);
+  EXPECT_EQ(alone.inclusion.solid.answer, Answer::Verified);
+  EXPECT_EQ(alone.answer, Answer::Undefined);
+  EXPECT_EQ(decided(turned, large, Relation::Outer).answer, Answer::Verified);
+}
+
+TEST(MeshVerdict, DistancesBothWaysAndTheirWitness) {
+  const Mesh small = cube(0, 1), large = cube(-1, 2);
+  std::size_t calls = 0;
+  const MeshQuestion question{small, large, nullptr, Relation::Outer, Claims::All, 1.5};
+  const MeshVerdict verdict = verify::decide(question, [&](const MeshVerdict& so_far) {
+    ++calls;
+    EXPECT_EQ(so_far.inclusion.solid.answer, Answer::Verified);
+    EXPECT_TRUE(so_far.distances.empty());
+  });
+  EXPECT_EQ(calls, 1U);
+  ASSERT_EQ(verdict.distances.size(), 2U);
+  EXPECT_EQ(verdict.distances[0].between, Between::ApproximationToOriginal);
+  EXPECT_EQ(verdict.distances[0].claim.answer, Answer::Refuted);
+  EXPECT_EQ(verdict.distances[1].claim.answer, Answer::Verified);
+  EXPECT_EQ(verdict.answer, Answer::Refuted);
+  const Mesh witness = verify::offending_triangles(question, verdict);
+  ASSERT_EQ(witness.triangles.size(), 1U);
+  EXPECT_GT(witness.vertices[0].cwiseAbs().maxCoeff(), 0.99);  // of the larger cube
+  EXPECT_TRUE(
+      verify::offending_triangles(question, decided(small, large, Relation::Outer)).empty());
+}
+
+TEST(MeshVerdict, InnerSetLeavesOut) {
+  const Mesh original = cube(0, 1);
+  geom::ConvexSet set;
+  set.bodies.push_back({"body", cube(0.25, 0.75)});
+  const Mesh sum = verify::sum_of(set);
+  for (const double bound : {0.24, 0.26}) {
+    const MeshVerdict verdict =
+        verify::decide({original, sum, &set, Relation::Inner, Claims::All, bound});
+    ASSERT_TRUE(verdict.depth);
+    EXPECT_EQ(verdict.depth->answer, bound < 0.25 ? Answer::Refuted : Answer::Verified);
+    EXPECT_EQ(verdict.answer, verdict.depth->answer);
+  }
+}
+
+}  // namespace

@@ -1,0 +1,85 @@
+#include "mesh_input.h"
+
+#include <kaboum/geom/error.h>
+#include <kaboum/io/convex_io.h>
+#include <kaboum/verify/cover.h>
+
+#include "prepared_original.h"
+
+namespace kaboum::tools {
+namespace {
+
+MeshInput read(const std::string& path, const std::string& format, const char* option) {
+  std::vector<char> bytes;
+  io::ReadResult r = io::read_mesh(path, format_for(path, format, option), &bytes);
+  MeshInput out;
+  out.mesh = std::move(r.mesh);
+  out.sha256 = io::sha256(bytes);
+  out.notes = std::move(r.notes);
+  if (r.collapsed_triangles != 0)
+    out.notes.push_back(std::to_string(r.collapsed_triangles) +
+                        " triangles with repeated corners bound nothing and are left out");
+  return out;
+}
+
+}  // namespace
+
+MeshInput read_original(const VerifyMeshOptions& o) {
+  return read(o.original, o.original_format, "--input-format");
+}
+
+ApproximationInput read_approximation(const VerifyMeshOptions& o) {
+  constexpr const char* kOption = "--approximation-format";
+  const bool folder = is_folder(o.approximation);
+  const bool surely_set = o.relation == verify::Relation::Cover || o.set || folder;
+  std::optional<io::Format> format;
+  if (!folder) format = format_for(o.approximation, o.approximation_format, kOption);
+  const bool may_have_record = o.approximation != "-" && format == io::Format::Glb;
+  ApproximationInput out;
+  if (surely_set || may_have_record) {
+    io::SetReadDetails details;
+    out.set = io::read_convex_set(o.approximation, format, &details);
+    out.is_set = surely_set || details.has_record;
+    if (out.is_set && o.relation == verify::Relation::Outer)
+      throw Error(ErrorCode::InvalidArgument,
+                  o.approximation +
+                      " is a set of convex bodies: ask with --cover whether it covers "
+                      "the original");
+    if (out.is_set) {
+      out.mesh = verify::sum_of(out.set);
+      out.sha256 = io::sha256(details.bytes);
+      out.notes = std::move(details.notes);
+      return out;
+    }
+    out.set = {};
+  }
+  static_cast<MeshInput&>(out) = read(o.approximation, o.approximation_format, kOption);
+  return out;
+}
+
+void prepare(MeshInput& original, bool drop_sheets) {
+  geom::Prepared prepared = prepare_original(original.mesh, drop_sheets, true);
+  original.mesh = std::move(prepared.mesh);
+  original.notes.insert(original.notes.end(), prepared.notes.begin(), prepared.notes.end());
+  original.filled_triangles = prepared.filled_triangles;
+  original.dropped_sheets = prepared.dropped_sheets;
+  original.source = std::move(prepared.source);
+}
+
+std::string change_by_preparing(const MeshInput& original) {
+  for (const bool drop_sheets : {false, true}) {
+    MeshInput prepared;
+    prepared.mesh = original.mesh;
+    try {
+      prepare(prepared, drop_sheets);
+    } catch (const Error&) {  // it cannot be prepared
+      continue;
+    }
+    std::string text = drop_sheets ? "with --drop-sheets" : "";
+    for (const std::string& note : prepared.notes) text += (text.empty() ? "" : "; ") + note;
+    return text;
+  }
+  return {};
+}
+
+}  // namespace kaboum::tools

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <kaboum/geom/convex_set.h>
+#include <kaboum/geom/mesh.h>
+
+#include <string>
+#include <vector>
+
+#include "verify_mesh.h"
+
+/// The files that `bound-verify mesh` and `cover` judge.
+namespace kaboum::tools {
+
+struct MeshInput {
+  geom::Mesh mesh;
+  std::string sha256;
+  std::vector<std::string> notes;
+  std::size_t filled_triangles = 0, dropped_sheets = 0;
+  std::vector<std::uint32_t> source;  ///< per triangle, if prepared: its index in the file
+};
+
+/// A mesh, or a set: `mesh` is the sum of its bodies then.
+struct ApproximationInput : MeshInput {
+  geom::ConvexSet set;
+  bool is_set = false;
+};
+
+/// @throws Error naming the file.
+MeshInput read_original(const VerifyMeshOptions& options);
+
+/// @throws Error naming the file; where the claims mean nothing for a set.
+ApproximationInput read_approximation(const VerifyMeshOptions& options);
+
+/// The original as the tools prepare it, without holes.
+/// @throws Error as prepare_original.
+void prepare(MeshInput& original, bool drop_sheets);
+
+/// What preparing would change of the original; empty if nothing.
+std::string change_by_preparing(const MeshInput& original);
+
+}  // namespace kaboum::tools

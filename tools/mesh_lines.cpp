@@ -1,0 +1,194 @@
+// What was found of two meshes, in words.
+#include <cmath>
+
+#include "mesh_case.h"
+#include "verdict.h"
+
+namespace kaboum::tools {
+
+using verify::Answer;
+using verify::Relation;
+
+namespace {
+
+/// @param what     the claim, as a sentence
+/// @param refuted  what is true instead
+/// @param depth    how far what refutes it sticks out, if that was measured
+std::string line(const std::string& title, const std::string& what, const std::string& refuted,
+                 const verify::Claim& claim, const std::string& depth = {}) {
+  std::string line = title + ": " + name_of(claim.answer) + ": ";
+  line += claim.answer == Answer::Verified  ? what
+          : claim.answer == Answer::Refuted ? refuted
+                                            : claim.reason;
+  if (claim.answer == Answer::Refuted && !depth.empty()) {
+    line += "; " + depth;
+  } else if (claim.witness) {
+    line += "; at " + point(claim.witness->point) + ", " + number(claim.witness->depth) + " deep";
+    if (!claim.witness->exact) line += " (the point is rounded)";
+  }
+  return line;
+}
+
+std::string line(const verify::DistanceVerdict& distance, double bound) {
+  const verify::DistanceClaim& claim = distance.claim;
+  std::string line = std::string(name_of(distance.between)) + ": " + name_of(claim.answer);
+  if (claim.answer == Answer::Verified) line += ": nowhere more than " + number(bound);
+  if (!claim.reason.empty()) line += ": " + claim.reason;
+  if (claim.answer != Answer::Verified)
+    line += "; " + in_words(distance.bracket) + ", farthest at " + point(distance.bracket.at) +
+            ", claimed " + number(bound);
+  return line;
+}
+
+/// @param stick  "it sticks out"
+std::string extent(const char* stick, const verify::Bracket& b, const verify::Claim& claim) {
+  const std::string size = in_words(b);
+  const bool known = b.lower > 0 || !claim.witness;
+  return stick + (size.empty() ? "" : " by " + size) + (known ? ", farthest at " : "; at ") +
+         point(known ? b.at : claim.witness->point);
+}
+
+std::string solid_extent(const MeshCase& run) {
+  const auto& depth = run.verdict.solid_depth;
+  return depth ? extent("it sticks out", *depth, run.verdict.inclusion.solid) : std::string();
+}
+
+std::string surface_extent(const MeshCase& run) {
+  const auto& depth = run.verdict.surface_depth;
+  if (!depth) return {};
+  std::string text = extent("they stick out", *depth, run.verdict.inclusion.surface);
+  if (!(depth->lower > 0)) return text;
+  const auto triangle = triangle_in_file(run, depth->triangle);
+  return text +
+         (triangle ? ", triangle " + std::to_string(*triangle) : ", where a hole was filled");
+}
+
+std::string inner_name(const MeshCase& run) {
+  if (!run.inner()) return "the original";
+  return run.approximation.is_set ? "the union of the bodies" : "the approximation";
+}
+
+std::string outer_name(const MeshCase& run) {
+  if (run.inner()) return "the original";
+  if (run.asked.relation != Relation::Cover) return "the approximation";
+  const double margin = run.approximation.set.margin;
+  return std::string("the union of the bodies") +
+         (margin > 0 ? ", with the margin " + number(margin) + " included" : "");
+}
+
+/// What users most often got wrong when an enclosure is refuted.
+std::vector<std::string> hints(const MeshCase& run) {
+  std::vector<std::string> lines;
+  const geom::Mesh &original = run.original.mesh, &approximation = run.approximation.mesh;
+  const geom::Box3 a = geom::bounding_box(original), b = geom::bounding_box(approximation);
+  const double ratio = diagonal_of(approximation) / diagonal_of(original);
+  if (ratio >= 20 || ratio <= 0.05)
+    lines.push_back("the approximation's box is " + number(ratio) +
+                    " times as large as the original's: are both in the same unit?");
+  const geom::Box3 &enclosing = run.inner() ? a : b, &enclosed = run.inner() ? b : a;
+  const bool swapped = (enclosing.min.array() > enclosed.min.array()).all() &&
+                       (enclosing.max.array() < enclosed.max.array()).all();
+  if (swapped)
+    lines.emplace_back(
+        "the enclosing box lies within the enclosed one: ORIGINAL comes first, "
+        "APPROXIMATION second; --outer and --inner say which encloses");
+  return lines;
+}
+
+}  // namespace
+
+double diagonal_of(const geom::Mesh& mesh) {
+  const geom::Box3 box = geom::bounding_box(mesh);
+  const double length = box.diagonal();
+  return box.empty() || (length > 1e-150 && length < 1e150) ? length
+                                                            : (box.max - box.min).stableNorm();
+}
+
+std::optional<std::uint32_t> triangle_in_file(const MeshCase& run, std::uint32_t triangle) {
+  const std::vector<std::uint32_t>& source = run.original.source;
+  if (run.inner() || source.empty()) return triangle;
+  if (triangle >= source.size()) return std::nullopt;
+  return source[triangle];
+}
+
+std::vector<std::string> lines_of_enclosure(const MeshCase& run) {
+  std::vector<std::string> lines;
+  const verify::MeshVerdict& v = run.verdict;
+  const std::string inner = inner_name(run), outer = outer_name(run);
+  if (v.convex)
+    lines.push_back(
+        line("convexity",
+             "all " + std::to_string(run.approximation.set.bodies.size()) + " bodies are convex",
+             v.convex->reason, *v.convex));
+  const bool relative = v.inclusion.relative;
+  lines.push_back(line("solid claim",
+                       relative ? "nowhere does " + inner + " wind more often than " + outer +
+                                      " (both are open, with the same border)"
+                                : "the solid of " + inner + " is within that of " + outer,
+                       relative
+                           ? inner + " winds more often than " + outer
+                           : "a part of the solid of " + inner + " is outside that of " + outer,
+                       v.inclusion.solid, solid_extent(run)));
+  lines.push_back(line("surface claim",
+                       "every triangle with area of " + inner + " is within the solid of " + outer,
+                       std::to_string(v.inclusion.surface.inner_triangles.size()) +
+                           " triangles of " + inner + " are not all within the solid of " + outer,
+                       v.inclusion.surface, surface_extent(run)));
+  return lines;
+}
+
+std::vector<std::string> lines_of_distances(const MeshCase& run) {
+  std::vector<std::string> lines;
+  for (const verify::DistanceVerdict& distance : run.verdict.distances)
+    lines.push_back(line(distance, *run.bound));
+  if (const auto& depth = run.verdict.depth)
+    lines.push_back(line(
+        "depth",
+        "every point of the original more than " + number(*run.bound) + " inside it is in a body",
+        depth->reason, *depth));
+  return lines;
+}
+
+std::string last_line(const MeshCase& run) {
+  const verify::Inclusion& in = run.verdict.inclusion;
+  const bool open = !in.inner_closed || !in.outer_closed;
+  const Answer answer = run.verdict.answer;
+  return std::string(name_of(answer)) +
+         (open && answer == Answer::Verified ? ", as far as an open mesh defines it" : "") +
+         except_sheets({{run.asked.original, run.original.dropped_sheets}});
+}
+
+std::vector<std::string> notes_on(const MeshCase& run) {
+  std::vector<std::string> lines;
+  for (const auto& [mesh, name] : {std::pair{&run.original.mesh, "the original"},
+                                   std::pair{&run.approximation.mesh, "the approximation"}})
+    if (geom::signed_volume(*mesh) < 0)
+      lines.push_back(
+          std::string(name) +
+          " is inside out: its volume is negative, so that its solid is empty or nearly so");
+  const verify::Inclusion& in = run.verdict.inclusion;
+  if (in.solid.answer == Answer::Refuted || in.surface.answer == Answer::Refuted)
+    for (std::string& hint : hints(run)) lines.push_back(std::move(hint));
+  return lines;
+}
+
+std::string why_undefined(const MeshCase& run) {
+  const verify::Inclusion& in = run.verdict.inclusion;
+  const std::string& inner = run.inner() ? run.asked.approximation : run.asked.original;
+  const std::string& outer = run.inner() ? run.asked.original : run.asked.approximation;
+  if (run.verdict.vacuous)
+    return inner +
+           " is inside out: its volume is negative, so that its solid is empty or nearly "
+           "so, and that it is enclosed says nothing. Turn its triangles round" +
+           (run.inner() ? "" : " (--prepare does)") + ", or ask for --claims all";
+  if (in.inner_closed && in.outer_closed)
+    return "a mesh without any triangle that has an area; no distance to it is defined";
+  if (in.outer_closed)
+    return inner + ": not a closed mesh (" + std::to_string(in.inner_open_edges) +
+           " unbalanced edges); its solid is not defined. The surface claim is: "
+           "--claims surface";
+  return outer + ": not a closed mesh (" + std::to_string(in.outer_open_edges) +
+         " unbalanced edges); nothing can lie inside it. Close its holes first";
+}
+
+}  // namespace kaboum::tools

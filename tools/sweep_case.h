@@ -1,0 +1,37 @@
+#pragma once
+
+#include <kaboum/robot/path.h>
+#include <kaboum/verify/sweep.h>
+
+#include <string>
+#include <vector>
+
+#include "sweep_input.h"
+
+/// What is said of a motion that was judged, in words and as a report.
+namespace kaboum::tools {
+
+/// What was asked, of which files, and what was found.
+struct SweepCase {
+  const VerifySweepOptions& asked;
+  RobotFile robot;
+  robot::Path path;
+  SweepShapes shapes;
+  SweptInput swept;
+  double gap = 0;  ///< verify::SweepOptions::gap
+  verify::SweepClaims claims;
+  verify::Answer answer = verify::Answer::Undefined;  ///< of those that decide
+
+  /// Whether a distance from the bodies was measured that is to be told.
+  [[nodiscard]] bool knows_farthest() const {
+    return claims.convex.answer == verify::Answer::Verified && claims.farthest.distance >= 0;
+  }
+};
+
+/// All that is said, the verdict last.
+std::vector<std::string> lines_of(const SweepCase& run);
+
+/// The report; without the time it took, the same for any number of threads.
+Json report_of(const SweepCase& run);
+
+}  // namespace kaboum::tools

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <kaboum/verify/mesh_verdict.h>
+
+#include <string>
+
+#include "cli.h"
+
+namespace kaboum::tools {
+
+/// What `bound-verify mesh` and `bound-verify cover` are asked.
+struct VerifyMeshOptions {
+  verify::Relation relation = verify::Relation::Outer;
+  std::string original, approximation;  ///< `-`: standard input
+  std::string original_format, approximation_format;
+  std::string epsilon, witness, claims = "all";
+  bool prepare = false, drop_sheets = false;
+  bool set = false;  ///< the approximation is a set, whatever the file looks like
+  std::size_t max_contacts = verify::InclusionOptions{}.max_contacts;
+};
+
+/// Decides the claims, prints and reports them.
+/// @return the exit code.
+/// @throws Error on bad input, and where the claims are not defined.
+int verify_mesh(const VerifyMeshOptions& options, const CommonOptions& common);
+
+}  // namespace kaboum::tools

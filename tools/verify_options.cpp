@@ -1,0 +1,107 @@
+// The options of bound-verify, each defined once.
+#include "verify_options.h"
+
+#include "robot_path.h"
+
+namespace kaboum::tools {
+
+void add_claims(CLI::App& app, VerifyOptions& o, const std::vector<std::string>& names) {
+  app.add_option("--claims", o.claims,
+                 names.size() > 2
+                     ? "Claims that decide: all, solid or surface; those that mean nothing for the "
+                       "files do not count"
+                     : "Claims that decide: all, or the surface's alone")
+      ->check(CLI::IsMember(names))
+      ->capture_default_str()
+      ->type_name("NAME");
+}
+
+CLI::Option* add_epsilon(CLI::App& app, VerifyOptions& o, const char* what) {
+  return app.add_option("--epsilon", o.epsilon, what)->type_name("LENGTH");
+}
+
+/// @param what  is prepared: "ORIGINAL"
+void add_preparation(CLI::App& app, VerifyOptions& o, const std::string& what) {
+  app.add_flag("--prepare", o.prepare,
+               "Judge " + what +
+                   " as bmesh-decimate and bcd-decompose prepare it (parts that are inside out "
+                   "turned, copies and walls dropped, holes filled) instead of the file as it is: "
+                   "what their claims, and a container's epsilon, are about");
+  app.add_flag("--drop-sheets", o.drop_sheets,
+               "With --prepare: drop sheets (faces back to back without volume), as bmesh-decimate "
+               "and bcd-decompose do with this option; nothing is then said about them, and the "
+               "verdict names them")
+      ->needs("--prepare");
+}
+
+void add_witness(CLI::App& app, VerifyOptions& o) {
+  app.add_option("--witness", o.witness,
+                 "When refuted, write the offending triangles to this mesh file")
+      ->type_name("FILE");
+}
+
+void add_input_format(CLI::App& app, VerifyOptions& o) {
+  app.add_option("--input-format", o.original_format, "Format of ORIGINAL [by extension]")
+      ->type_name("NAME");
+}
+
+void add_approximation_format(CLI::App& app, VerifyOptions& o, const std::string& of) {
+  app.add_option("--approximation-format", o.approximation_format,
+                 "Format of " + of + " [by extension]")
+      ->type_name("NAME");
+}
+
+void add_max_contacts(CLI::App& app, VerifyOptions& o) {
+  app.add_option("--max-contacts", o.max_contacts,
+                 "Give up (exit code 7) beyond this many pairs of triangles that touch")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{4'000'000'000}))
+      ->capture_default_str()
+      ->type_name("N");
+}
+
+CLI::Option* add_set(CLI::App& app, VerifyOptions& o) {
+  return app.add_flag("--set", o.set,
+                      "With --inner: APPROXIMATION is a set of convex bodies (known anyway of "
+                      "folders and of containers)");
+}
+
+CLI::Option* add_links(CLI::App& app, VerifyOptions& o) {
+  return app.add_option("--links", o.links, "Only these links, separated by commas [all]")
+      ->type_name("A,B");
+}
+
+void add_geometry(CLI::App& app, VerifyOptions& o, const std::string& of) {
+  app.add_option("--geometry", o.geometry, "Which shapes of " + of + " are to be held [collision]")
+      ->check(CLI::IsMember({"collision", "visual"}).description(""))
+      ->type_name("collision|visual");
+  app.add_flag_callback(
+      "--visual", [&o] { o.geometry = "visual"; }, "The same as --geometry visual");
+  app.add_option("--package-path", o.packages,
+                 "A package of package:// or a folder that holds it, as for sweep-approx; may be "
+                 "repeated")
+      ->type_name("DIR");
+}
+
+std::vector<CLI::Option*> add_motion(CLI::App& app, VerifyOptions& o) {
+  CLI::Option* gap =
+      app.add_option("--gap", o.gap,
+                     "Parts that move and measure less are not divided further; where they are not "
+                     "known to be inside, the answer is undecided [margin / 10^6]")
+          ->check([](const std::string& s) {
+            const auto length = parse_length(s);
+            return length && !length->percent
+                       ? std::string()
+                       : "must be a positive length, a number above 0 without a unit, not " + s;
+          })
+          ->type_name("LENGTH");
+  CLI::Option* cells =
+      app.add_option("--max-cells", o.max_cells,
+                     "Give up beyond this many parts of a triangle per segment of the path")
+          ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000'000}).description(""))
+          ->capture_default_str()
+          ->type_name("N");
+  CLI::Option* joint = add_joint_option(app, o.joints);
+  return {joint, add_degrees_option(app, o.degrees), gap, cells};
+}
+
+}  // namespace kaboum::tools

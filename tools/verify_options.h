@@ -1,0 +1,55 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "cli.h"
+#include "verify_mesh.h"
+#include "verify_sweep.h"
+
+/// The command line of bound-verify, which has two spellings: commands (`bound-verify cover A S`,
+/// verify_commands.h) and flags (`bound-verify --cover A S`, verify_flags.h). Both fill the same
+/// structure.
+namespace kaboum::tools {
+
+/// What bound-verify is asked: one relation of files.
+struct VerifyOptions {
+  bool outer = false, inner = false, cover = false, robot = false, progressive = false;
+  std::vector<std::string> sweep;       ///< ROBOT, PATH and SWEPT; else empty
+  std::string original, approximation;  ///< of all other relations
+  std::string original_format, approximation_format;
+  std::string claims = "all", epsilon, witness;
+  bool prepare = false, drop_sheets = false, set = false;
+  std::size_t max_contacts = VerifyMeshOptions{}.max_contacts;
+  std::string geometry = "collision";  ///< of robots and sweeps
+  std::vector<std::string> packages;   ///< of robots and sweeps
+  std::string links, gap;              ///< of sweeps, as all below
+  std::vector<std::string> joints;
+  bool degrees = false;
+  std::size_t max_cells = VerifySweepOptions{}.max_cells;
+  CommonOptions common;
+};
+
+inline constexpr const char* kVerifyExitCodes =
+    "Exit codes: 0 verified; 1 refuted; 2 usage; 3 bad input, or not closed where a claim needs "
+    "it; 4 output failed; 6 internal error; 7 undecided within limits.";
+
+void add_claims(CLI::App& app, VerifyOptions& options, const std::vector<std::string>& names);
+/// @param what  it decides
+CLI::Option* add_epsilon(CLI::App& app, VerifyOptions& options, const char* what);
+/// --prepare and --drop-sheets. @param what  is prepared
+void add_preparation(CLI::App& app, VerifyOptions& options, const std::string& what);
+CLI::Option* add_set(CLI::App& app, VerifyOptions& options);
+void add_witness(CLI::App& app, VerifyOptions& options);
+void add_input_format(CLI::App& app, VerifyOptions& options);
+/// @param of  the file
+void add_approximation_format(CLI::App& app, VerifyOptions& options, const std::string& of);
+void add_max_contacts(CLI::App& app, VerifyOptions& options);
+CLI::Option* add_links(CLI::App& app, VerifyOptions& options);
+/// --geometry, --visual and --package-path. @param of  the robot
+void add_geometry(CLI::App& app, VerifyOptions& options, const std::string& of);
+/// --joint, --degrees, --gap and --max-cells.
+std::vector<CLI::Option*> add_motion(CLI::App& app, VerifyOptions& options);
+
+}  // namespace kaboum::tools
