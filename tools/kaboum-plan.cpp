@@ -129,9 +129,9 @@ int solve(const Options& o) {
   const double solved = tools::user_seconds();
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const char* status = solution.status == plan::Status::Solved       ? "solved"
-                       : solution.status == plan::Status::Unsolvable ? "unsolvable"
-                                                                     : "limit";
+  const char* status = solution.outcome == plan::Outcome::Solved       ? "solved"
+                       : solution.outcome == plan::Outcome::Unsolvable ? "unsolvable"
+                                                                       : "limit";
   tools::Json report = {{"tool", "kaboum-plan"},
                         {"version", tools::version()},
                         {"command", "solve"},
@@ -142,7 +142,7 @@ int solve(const Options& o) {
                         {"limit", solution.limit},
                         {"statistics", statistics_json(solution.statistics)}};
   plan::PlanSize size;
-  if (solution.status == plan::Status::Solved) {
+  if (solution.outcome == plan::Outcome::Solved) {
     size = plan::measure(model, solution.plan);
     report["plan"] = size_json(size);
     const plan::Plan& graph = solution.plan;
@@ -154,18 +154,18 @@ int solve(const Options& o) {
                        {"wall_s", wall},
                        {"peak_mb", tools::peak_megabytes()}};
   if (!o.common.report.empty()) tools::write_json(o.common.report, report);
-  if (solution.status == plan::Status::Solved) {
+  if (solution.outcome == plan::Outcome::Solved) {
     tools::log(o.common.quiet, "solved: " + std::to_string(size.nodes) + " nodes, " +
                                    std::to_string(size.leaves) + " leaves, longest path " +
                                    std::to_string(size.longest) + " actions");
     return tools::kDone;
   }
   std::cerr << "kaboum-plan: "
-            << (solution.status == plan::Status::Unsolvable
+            << (solution.outcome == plan::Outcome::Unsolvable
                     ? "unsolvable: every possibility was tried"
                     : "no plan found: " + solution.limit)
             << '\n';
-  return solution.status == plan::Status::Unsolvable ? tools::kNo : tools::kLimit;
+  return solution.outcome == plan::Outcome::Unsolvable ? tools::kNo : tools::kLimit;
 }
 
 plan::Plan load_plan(const plan::Model& model, const std::string& file) {

@@ -25,7 +25,7 @@ goal: K(inside)
                         plan::Language::Kpl};
   const plan::Model model = plan::load(door, nullptr);
   const plan::Solution solution = plan::solve(model, {});
-  if (solution.status != plan::Status::Solved) return 1;
+  if (solution.outcome != plan::Outcome::Solved) return 1;
   const plan::CheckResult check = plan::check(model, solution.plan);
   std::cout << solution.plan.nodes.size() << " steps; every outcome of sensing leads to the goal: "
             << (check.valid ? "yes" : check.violation) << '\n';

@@ -33,7 +33,8 @@ TEST(Check, SkippingAnyActionIsNoticed) {
           if (c.next == i) c.next = after;
       }
       if (broken.root == i) broken.root = after;
-      EXPECT_FALSE(valid(m, broken)) << name << ": without " << step_text(m, plan.nodes[i].action);
+      EXPECT_FALSE(valid(m, broken))
+          << name << ": without " << action_text(m, plan.nodes[i].action);
     }
   }
 }
@@ -171,7 +172,7 @@ TEST(Check, AgreesWithSetsOfWorldsOnDamagedPlans) {
     } catch (const Error&) {
       continue;  // the initial knowledge contradicts itself
     }
-    if (s.status != Status::Solved || s.plan.root == kNone) continue;
+    if (s.outcome != Outcome::Solved || s.plan.root == kNone) continue;
     ASSERT_TRUE(valid(m, s.plan)) << text;
     ASSERT_TRUE(valid_in_worlds(m, s.plan)) << text;
     for (int i = 0; i < 12; ++i) {

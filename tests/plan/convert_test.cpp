@@ -78,8 +78,8 @@ TEST(Convert, AQuantifiedConditionIsNoQuantifiedEffect) {
                       o.algorithm = a;
                       return o;
                     }())
-                  .status,
-              Status::Unsolvable);
+                  .outcome,
+              Outcome::Unsolvable);
 }
 
 TEST(Convert, EffectsThatPddlReadsOtherwise) {
@@ -192,7 +192,7 @@ TEST(Show, TextDotAndSvgNameEveryAction) {
   const Plan plan = solved(m, Algorithm::BreadthFirst).plan;
   for (const std::string& text : {plan_text(m, plan), plan_dot(m, plan), plan_svg(m, plan)})
     for (const Plan::Node& n : plan.nodes)
-      EXPECT_NE(text.find(step_text(m, n.action)), std::string::npos);
+      EXPECT_NE(text.find(action_text(m, n.action)), std::string::npos);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ TEST_P(Stacked, ShortestPlanHas2nMinus1Moves) {
     for (const Algorithm a :
          {Algorithm::BreadthFirst, Algorithm::IterativeDeepening, Algorithm::AStar}) {
       const Solution s = solved(m, a);
-      ASSERT_EQ(s.status, Status::Solved);
+      ASSERT_EQ(s.outcome, Outcome::Solved);
       EXPECT_EQ(measure(m, s.plan).longest, static_cast<std::uint64_t>(2 * n - 1));
     }
   }
@@ -24,7 +24,7 @@ TEST(Scenario, StackedOf20IsSolvedOptimallyWithAnyNames) {
   for (const char* arguments : {"20", "20 5", "20 6"}) {
     const Model m = scenario("stacked", arguments);
     const Solution s = solved(m, Algorithm::AStar);
-    ASSERT_EQ(s.status, Status::Solved);
+    ASSERT_EQ(s.outcome, Outcome::Solved);
     EXPECT_EQ(measure(m, s.plan).longest, 39U);
   }
 }
@@ -33,7 +33,7 @@ TEST(Scenario, AStateOfStacked8TakesAtMost40Bytes) {
   const Model m = scenario("stacked", "8");
   SolveOptions options;
   const Solution s = solve(m, options);
-  ASSERT_EQ(s.status, Status::Solved);
+  ASSERT_EQ(s.outcome, Outcome::Solved);
   EXPECT_LE(s.statistics.state_bytes, 40 * s.statistics.states);
 }
 
@@ -41,7 +41,7 @@ TEST(Scenario, ForceSensingSharesSubPlans) {
   for (const int n : {1, 2, 3, 10, 50}) {
     const Model m = scenario("force-sensing", std::to_string(n));
     const Solution s = solved(m, Algorithm::DepthFirst);
-    ASSERT_EQ(s.status, Status::Solved);
+    ASSERT_EQ(s.outcome, Outcome::Solved);
     const PlanSize size = measure(m, s.plan);
     EXPECT_EQ(size.nodes, static_cast<std::uint64_t>(5 * n));
     if (n <= 10) {
@@ -54,7 +54,7 @@ TEST(Scenario, BartenderCoversEveryOutcome) {
   for (const int n : {1, 2, 4, 6}) {
     const Model m = scenario("bartender", std::to_string(n));
     const Solution s = solved(m, Algorithm::Greedy);
-    ASSERT_EQ(s.status, Status::Solved);
+    ASSERT_EQ(s.outcome, Outcome::Solved);
     EXPECT_EQ(measure(m, s.plan).leaves, std::uint64_t{1} << n);
   }
 }
@@ -83,7 +83,7 @@ TEST(Scenario, EveryScenarioIsSolvedByEverySearch) {
   for (const char* name :
        {"stacked", "force-sensing", "bartender", "circular-rearrange", "remove"}) {
     const Model m = scenario(name, "2");
-    for (const Algorithm a : kAll) EXPECT_EQ(solved(m, a).status, Status::Solved) << name;
+    for (const Algorithm a : kAll) EXPECT_EQ(solved(m, a).outcome, Outcome::Solved) << name;
   }
 }
 

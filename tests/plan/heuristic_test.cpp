@@ -104,13 +104,13 @@ TEST(Estimates, AreSafeAndAdmissibleInEveryReachableState) {
       std::int64_t cost;
     };
     std::vector<std::vector<Edge>> into;
-    std::vector<Step> steps;
+    std::vector<OperatorId> steps;
     store.insert(task.initial().data(), Knowledge::hash_of(task.initial().data(), words), 0, 0);
     into.resize(1);
     bool too_many = false;
     for (Index i = 0; i < store.size() && !too_many; ++i) {
       task.expand(store[i], steps);
-      for (const Step s : steps) {
+      for (const OperatorId s : steps) {
         scratch.assign(store[i]);
         if (!task.apply(s, scratch)) continue;
         const auto [n, fresh] = store.insert(scratch.words(), scratch.hash(), i, s);

@@ -14,7 +14,7 @@ void survive(const std::string& text, Language language) {
     options.timeout = 0.05;
     options.max_memory = 16 << 20;
     const Solution s = solve(m, options);
-    if (s.status == Status::Solved) {
+    if (s.outcome == Outcome::Solved) {
       const CheckResult r = check(m, s.plan);
       EXPECT_TRUE(r.valid) << r.violation << "\n" << text;
     }

@@ -73,7 +73,7 @@ TEST(Language, RefusesContradictoryInitialKnowledge) {
 bool holds(const std::string& init, const std::string& goal) {
   const Model m = model_of(kHead + "init: " + init + "\ngoal: " + goal + "\n");
   const Solution s = solve(m, {});
-  const bool now = s.status == Status::Solved && s.plan.root == kNone;
+  const bool now = s.outcome == Outcome::Solved && s.plan.root == kNone;
   Plan empty;
   EXPECT_EQ(check(m, empty).valid, now) << init << " / " << goal;
   return now;
@@ -115,7 +115,7 @@ TEST(Language, ExternsAreCalledInOrderAndOnce) {
       "goal: K(q(a))";
   const Model m = load({"t.kpl", text, Language::Kpl}, nullptr, bindings);
   const Solution s = solve(m, {});
-  ASSERT_EQ(s.status, Status::Solved);
+  ASSERT_EQ(s.outcome, Outcome::Solved);
   EXPECT_EQ(calls, 1);  // never for b, of which K(p(b)) fails; once for a
   EXPECT_TRUE(check(m, s.plan).valid);
 }

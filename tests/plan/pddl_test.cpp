@@ -8,8 +8,8 @@ Model pddl(const std::string& text) { return load({"t.pddl", text, Language::Pdd
 
 std::uint64_t optimum(const Model& m) {
   const Solution s = solved(m, Algorithm::AStar);
-  EXPECT_EQ(s.status, Status::Solved);
-  EXPECT_EQ(solved(m, Algorithm::Greedy).status, Status::Solved);
+  EXPECT_EQ(s.outcome, Outcome::Solved);
+  EXPECT_EQ(solved(m, Algorithm::Greedy).outcome, Outcome::Solved);
   return measure(m, s.plan).longest;
 }
 
@@ -84,7 +84,7 @@ TEST(Pddl, LogisticsWithObjectFluentsAndCosts) {
       "(= (total-cost) 0))"
       " (:goal (= (at box) shop)) (:metric minimize (total-cost)))");
   const Solution s = solved(m, Algorithm::AStar);
-  ASSERT_EQ(s.status, Status::Solved);
+  ASSERT_EQ(s.outcome, Outcome::Solved);
   const PlanSize size = measure(m, s.plan);
   EXPECT_EQ(size.longest, 10U);  // 6 loads and unloads, 3 drives, 1 flight
   EXPECT_EQ(size.cost, 6 + 3 * 2 + 10);
@@ -180,7 +180,7 @@ TEST(Pddl, ObserveAndOneof) {
       "(define (problem p) (:domain wumpus) (:objects a b c - door) (:init (oneof (safe a) (safe "
       "b))) (:goal (out)))");
   const Solution s = solved(m, Algorithm::BreadthFirst);
-  ASSERT_EQ(s.status, Status::Solved);
+  ASSERT_EQ(s.outcome, Outcome::Solved);
   EXPECT_EQ(measure(m, s.plan).leaves, 2U);
   EXPECT_EQ(measure(m, s.plan).longest, 2U);
 }

@@ -53,7 +53,7 @@ inline Solution solved(const Model& model, Algorithm algorithm) {
   options.algorithm = algorithm;
   options.timeout = 60;
   Solution s = solve(model, options);
-  if (s.status == Status::Solved) {
+  if (s.outcome == Outcome::Solved) {
     const CheckResult r = check(model, s.plan);
     EXPECT_TRUE(r.valid) << r.violation << "\n" << plan_text(model, s.plan);
   }

@@ -12,13 +12,13 @@ TEST(Search, UnsolvableIsToldFromLimit) {
       "predicates: p, q\ninit: K(!p) K(!q)\naction on preconds: K(!p) effects: add(Kf, p)\n"
       "action off preconds: K(p) effects: add(Kf, !p)\naction never preconds: false effects: "
       "add(Kf, q)\ngoal: K(q)");
-  for (const Algorithm a : kAll) EXPECT_EQ(solve(m, {a, 0, 0, {}}).status, Status::Unsolvable);
+  for (const Algorithm a : kAll) EXPECT_EQ(solve(m, {a, 0, 0, {}}).outcome, Outcome::Unsolvable);
 
   const Model large = scenario("stacked", "9");
   SolveOptions options;
   options.max_memory = 1 << 20;
   const Solution s = solve(large, options);
-  EXPECT_EQ(s.status, Status::Limit);
+  EXPECT_EQ(s.outcome, Outcome::Limit);
   EXPECT_NE(s.limit.find("memory"), std::string::npos);
 }
 
@@ -28,7 +28,7 @@ TEST(Search, SensingThatDoesNotHelpIsNoPlan) {
       "predicates: full, moved\ninit: K(!moved)\naction weigh preconds: !Kw(full) effects: add(Kw, "
       "full)\n"
       "action move preconds: K(!full) & K(!moved) effects: add(Kf, moved)\ngoal: K(moved)");
-  for (const Algorithm a : kAll) EXPECT_EQ(solve(m, {a, 0, 0, {}}).status, Status::Unsolvable);
+  for (const Algorithm a : kAll) EXPECT_EQ(solve(m, {a, 0, 0, {}}).outcome, Outcome::Unsolvable);
 }
 
 TEST(Search, ADeadEndOfOneBranchIsAvoided) {
@@ -42,7 +42,7 @@ TEST(Search, ADeadEndOfOneBranchIsAvoided) {
       "action pull preconds: K(!red) effects: add(Kf, open)\ngoal: K(open)");
   for (const Algorithm a : kAll) {
     const Solution s = solved(m, a);
-    ASSERT_EQ(s.status, Status::Solved);
+    ASSERT_EQ(s.outcome, Outcome::Solved);
     EXPECT_GE(s.statistics.dead_ends, 1U);
   }
 }
@@ -53,7 +53,7 @@ TEST(Search, RepeatingUntilLuckyIsNoPlan) {
       "predicates: heads, won\ninit: K(!won)\n"
       "action toss preconds: true effects: del(Kw, heads), add(Kw, heads)\n"
       "action win preconds: K(heads) effects: add(Kf, won)\ngoal: K(won)");
-  for (const Algorithm a : kAll) EXPECT_EQ(solve(m, {a, 0, 0, {}}).status, Status::Unsolvable);
+  for (const Algorithm a : kAll) EXPECT_EQ(solve(m, {a, 0, 0, {}}).outcome, Outcome::Unsolvable);
 }
 
 TEST(Search, BranchesOnEveryValueOfASensedFunction) {
@@ -64,7 +64,7 @@ TEST(Search, BranchesOnEveryValueOfASensedFunction) {
       "action go(?r : room) preconds: K(at = ?r) effects: add(Kf, found)\ngoal: K(found)");
   for (const Algorithm a : kAll) {
     const Solution s = solved(m, a);
-    ASSERT_EQ(s.status, Status::Solved);
+    ASSERT_EQ(s.outcome, Outcome::Solved);
     const PlanSize size = measure(m, s.plan);
     EXPECT_EQ(size.leaves, 3U);
     EXPECT_EQ(size.longest, 2U);
@@ -80,7 +80,7 @@ TEST(Search, RuledOutValuesNeedNoCase) {
       "action go(?r : room) preconds: K(at = ?r) & K(?r != cellar) effects: add(Kf, found)\ngoal: "
       "K(found)");
   const Solution s = solved(m, Algorithm::BreadthFirst);
-  ASSERT_EQ(s.status, Status::Solved);
+  ASSERT_EQ(s.outcome, Outcome::Solved);
   EXPECT_EQ(measure(m, s.plan).leaves, 2U);
 }
 
@@ -93,7 +93,7 @@ TEST(Search, ExclusiveOrSpreadsWhatIsSensed) {
       "action take(?x : box) preconds: K(key(?x)) effects: add(Kf, taken)\ngoal: K(taken)");
   for (const Algorithm a : kAll) {
     const Solution s = solved(m, a);
-    ASSERT_EQ(s.status, Status::Solved);
+    ASSERT_EQ(s.outcome, Outcome::Solved);
     EXPECT_EQ(measure(m, s.plan).leaves, 3U);
   }
 }
@@ -144,9 +144,9 @@ TEST(Search, AStarIsOptimalOnRandomTasks) {
       text[at + 6] = '1';
     const Model unit = model_of(text);
     const Solution reference = solved(unit, Algorithm::BreadthFirst);
-    for (const Algorithm a : kAll) EXPECT_EQ(solved(unit, a).status, reference.status) << text;
+    for (const Algorithm a : kAll) EXPECT_EQ(solved(unit, a).outcome, reference.outcome) << text;
     const Solution best = solved(unit, Algorithm::AStar);
-    if (reference.status != Status::Solved) continue;
+    if (reference.outcome != Outcome::Solved) continue;
     ++solvable;
     EXPECT_EQ(measure(unit, best.plan).longest, measure(unit, reference.plan).longest) << text;
     EXPECT_EQ(measure(unit, solved(unit, Algorithm::IterativeDeepening).plan).longest,
@@ -236,10 +236,11 @@ TEST(Search, AllAgreeOnRandomTasksWithSensing) {
     const Solution reference = solved(m, Algorithm::BreadthFirst);
     for (const Algorithm a : {Algorithm::DepthFirst, Algorithm::IterativeDeepening,
                               Algorithm::Greedy, Algorithm::AStar})
-      EXPECT_EQ(solved(m, a).status, reference.status) << "seed " << seed << "\n" << text;
-    EXPECT_NE(reference.status, Status::Limit);
-    unsolvable += reference.status == Status::Unsolvable ? 1 : 0;
-    if (reference.status == Status::Solved && measure(m, reference.plan).branches > 0) ++branching;
+      EXPECT_EQ(solved(m, a).outcome, reference.outcome) << "seed " << seed << "\n" << text;
+    EXPECT_NE(reference.outcome, Outcome::Limit);
+    unsolvable += reference.outcome == Outcome::Unsolvable ? 1 : 0;
+    if (reference.outcome == Outcome::Solved && measure(m, reference.plan).branches > 0)
+      ++branching;
   }
   EXPECT_GT(branching, 50);
   EXPECT_GT(unsolvable, 50);

@@ -7,10 +7,10 @@
 namespace kaboum::plan::test {
 namespace {
 
-void expect_all(const std::string& text, Status status) {
+void expect_all(const std::string& text, Outcome status) {
   const Model m = model_of(text);
   for (const Algorithm a : kAll)
-    EXPECT_EQ(solved(m, a).status, status) << text << "\nsearch " << static_cast<int>(a);
+    EXPECT_EQ(solved(m, a).outcome, status) << text << "\nsearch " << static_cast<int>(a);
 }
 
 Plan straight(const Model& m, std::initializer_list<const char*> names) {
@@ -37,7 +37,7 @@ TEST(Soundness, ABranchMayBeNeededBeforeAnyTestReadsIt) {
       "action finish1 preconds: K(q) & K(p) effects: add(Kf, done)\n"
       "action finish2 preconds: K(r) & K(!p) effects: add(Kf, done)\n"
       "goal: K(done)",
-      Status::Solved);
+      Outcome::Solved);
   // The same with the goal as the only test, and with a sensed value.
   expect_all(
       "types: v\nconstants: v a, b\nfunctions: f : v\npredicates: q, r, used\n"
@@ -45,7 +45,7 @@ TEST(Soundness, ABranchMayBeNeededBeforeAnyTestReadsIt) {
       "action left preconds: K(!used) effects: add(Kf, q), add(Kf, used)\n"
       "action right preconds: K(!used) effects: add(Kf, r), add(Kf, used)\n"
       "goal: (K(q) & K(f = a)) | (K(r) & K(f = b))",
-      Status::Solved);
+      Outcome::Solved);
 }
 
 TEST(Soundness, DeletingANegationLeavesWhatIsTrue) {
@@ -57,7 +57,7 @@ TEST(Soundness, DeletingANegationLeavesWhatIsTrue) {
       "add(Kf, p(?y))\n"
       "action tick preconds: K(p(a)) & K(p(b)) effects: add(Kf, t)\n"
       "goal: K(p(a)) & K(p(b)) & K(t)",
-      Status::Solved);
+      Outcome::Solved);
 }
 
 TEST(Soundness, AnInvariantOfOneKeySaysNothingOfAnother) {
@@ -67,7 +67,7 @@ TEST(Soundness, AnInvariantOfOneKeySaysNothingOfAnother) {
       "init: K(at(x, a)) K(at(x, b)) K(at(y, a)) K(!at(y, b))\n"
       "action clone preconds: K(at(x, a)) & K(at(x, b)) effects: add(Kf, at(y, b))\n"
       "goal: K(at(y, a)) & K(at(y, b))",
-      Status::Solved);
+      Outcome::Solved);
 }
 
 TEST(Soundness, AnUnknownTermInAnEffectTakesKnowledge) {
@@ -79,14 +79,14 @@ TEST(Soundness, AnUnknownTermInAnEffectTakesKnowledge) {
       "action ask preconds: true effects: add(Kv, cart)\n";
   const Model m = model_of(head + "goal: K(box = a) & K(!lit(b))");
   EXPECT_FALSE(check(m, straight(m, {"bring"})).valid);
-  expect_all(head + "goal: K(lit(a)) & K(box = a) & K(!lit(a))", Status::Unsolvable);
+  expect_all(head + "goal: K(lit(a)) & K(box = a) & K(!lit(a))", Outcome::Unsolvable);
   // After bring, box = a and !lit(b) are gone; asking first keeps one of them in each branch.
   const Model lost = model_of(head +
                               "action stop preconds: !K(box = a) & !K(!lit(a)) effects: "
                               "add(Kv, cart), add(Kv, box), add(Kw, lit(a))\n"
                               "goal: !Kw(lit(b)) & !Kw(lit(a))");
   EXPECT_TRUE(check(lost, straight(lost, {"bring"})).valid);
-  for (const Algorithm a : kAll) EXPECT_EQ(solved(lost, a).status, Status::Solved);
+  for (const Algorithm a : kAll) EXPECT_EQ(solved(lost, a).outcome, Outcome::Solved);
 }
 
 TEST(Soundness, TheCheckerKeepsWhatALaterExclusiveOrNeeds) {
@@ -100,7 +100,7 @@ TEST(Soundness, TheCheckerKeepsWhatALaterExclusiveOrNeeds) {
       "action rest preconds: true effects: add(Kf, x)\n"
       "action tell preconds: K(x) effects: add(Kx, f | g)\ngoal: !K(!g) & K(x)");
   EXPECT_FALSE(check(hidden, straight(hidden, {"rest", "tell"})).valid);
-  for (const Algorithm a : kAll) EXPECT_EQ(solved(m, a).status, Status::Solved);
+  for (const Algorithm a : kAll) EXPECT_EQ(solved(m, a).outcome, Outcome::Solved);
 }
 
 TEST(Soundness, AnObservationRulesOutWhatItContradicts) {
@@ -109,14 +109,14 @@ TEST(Soundness, AnObservationRulesOutWhatItContradicts) {
       "predicates: p, q, x\ninit: Kw(p) Kw(q) K(!x)\n"
       "action tell preconds: K(!x) effects: add(Kx, p | q), add(Kf, x)\n"
       "goal: K(x) & ((K(p) & K(!q)) | (K(!p) & K(q)))";
-  expect_all(text, Status::Solved);
+  expect_all(text, Outcome::Solved);
   const Model m = model_of(text);
   EXPECT_EQ(measure(m, solved(m, Algorithm::BreadthFirst).plan).leaves, 2U);
   // What contradicts certain knowledge cannot be observed: no step, so no plan.
   expect_all(
       "predicates: p, q, x\ninit: K(p) K(q) K(!x)\n"
       "action tell preconds: K(!x) effects: add(Kx, p | q), add(Kf, x)\ngoal: K(x)",
-      Status::Unsolvable);
+      Outcome::Unsolvable);
 }
 
 TEST(Soundness, GivingUpADisjunctionWaitsForWhatItTells) {
@@ -126,7 +126,7 @@ TEST(Soundness, GivingUpADisjunctionWaitsForWhatItTells) {
       "action look preconds: !Kw(c) effects: add(Kw, c)\n"
       "action drop preconds: Kw(c) effects: del(Kx, a | b), add(Kf, x)\n"
       "goal: K(x) & !K(a)",
-      Status::Unsolvable);
+      Outcome::Unsolvable);
 }
 
 TEST(Soundness, AClosedWorldDoesNotDecideADisjunction) {
@@ -134,8 +134,8 @@ TEST(Soundness, AClosedWorldDoesNotDecideADisjunction) {
   const std::string text =
       "types: v\nconstants: v a, b\npredicates: p(v), x\ninit: Kx(p(a) | p(b)) LCW(p(?v))\n"
       "action none preconds: false effects: add(Kf, x)\n";
-  expect_all(text + "goal: K(p(b)) | K(p(a))", Status::Unsolvable);
-  expect_all(text + "goal: !Kw(p(b)) & !Kw(p(a))", Status::Solved);
+  expect_all(text + "goal: K(p(b)) | K(p(a))", Outcome::Unsolvable);
+  expect_all(text + "goal: !Kw(p(b)) & !Kw(p(a))", Outcome::Solved);
 }
 
 TEST(Soundness, PddlAdditionsWin) {
@@ -153,7 +153,7 @@ TEST(Soundness, PddlAdditionsWin) {
              "(on a))))",
          Language::Pddl},
         nullptr);
-    EXPECT_EQ(solved(m, Algorithm::BreadthFirst).status, Status::Solved) << effects;
+    EXPECT_EQ(solved(m, Algorithm::BreadthFirst).outcome, Outcome::Solved) << effects;
   }
 }
 
@@ -168,7 +168,7 @@ TEST(Soundness, PddlConditionsThatAreUnknownTakeKnowledge) {
             "(full))))",
             Language::Pddl},
            nullptr);
-  for (const Algorithm a : kAll) EXPECT_EQ(solved(m, a).status, Status::Unsolvable);
+  for (const Algorithm a : kAll) EXPECT_EQ(solved(m, a).outcome, Outcome::Unsolvable);
 }
 
 TEST(Soundness, CostsAreNotNegative) {
@@ -201,7 +201,7 @@ TEST(Soundness, AVolatileFunctionIsCalledOnceForEachUse) {
                         Language::Kpl},
                        nullptr, bindings);
   const Solution s = solve(m, {});
-  EXPECT_EQ(s.status, Status::Solved);
+  EXPECT_EQ(s.outcome, Outcome::Solved);
   EXPECT_EQ(calls, 1);
   EXPECT_TRUE(check(m, s.plan).valid);
   EXPECT_EQ(calls, 2);
@@ -232,7 +232,7 @@ TEST(Soundness, AVolatileFunctionIsNotForetoldFromEarlierStates) {
         o.algorithm = a;
         return o;
       }());
-      EXPECT_EQ(s.status, Status::Solved);
+      EXPECT_EQ(s.outcome, Outcome::Solved);
     }
 }
 
@@ -250,12 +250,12 @@ TEST(Soundness, TimeAndMemoryLimitsHoldWhileGrounding) {
     o.algorithm = a;
     o.timeout = 0.3;
     const auto start = std::chrono::steady_clock::now();
-    EXPECT_EQ(solve(m, o).status, Status::Limit);
+    EXPECT_EQ(solve(m, o).outcome, Outcome::Limit);
     EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 3);
     o.timeout = 0;
     o.max_memory = 16U << 20U;
     const Solution s = solve(m, o);
-    EXPECT_EQ(s.status, Status::Limit);
+    EXPECT_EQ(s.outcome, Outcome::Limit);
     EXPECT_NE(s.limit.find("memory"), std::string::npos);
   }
 }

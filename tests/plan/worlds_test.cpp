@@ -45,7 +45,7 @@ void walk(std::uint32_t seed, bool disjunctions, Walk& total) {
   Knowledge state(layout);
   state.assign(task.initial().data());
   std::mt19937 random(seed * 7919 + 1);
-  std::vector<Step> steps;
+  std::vector<OperatorId> steps;
   std::string history;
   const auto fail = [&] { return "seed " + std::to_string(seed) + "\n" + text + history; };
 
@@ -107,7 +107,7 @@ void walk(std::uint32_t seed, bool disjunctions, Walk& total) {
     task.branch(random() % 2 ? Task::Branching::Anywhere : Task::Branching::OnNeed);
     task.expand(state.words(), steps);
     if (steps.empty()) break;
-    const Step step = steps[random() % steps.size()];
+    const OperatorId step = steps[random() % steps.size()];
     const std::vector<Word> before(state.words(), state.words() + layout.words());
     state.keep_log(true);
     const std::size_t mark = state.mark();
@@ -116,7 +116,7 @@ void walk(std::uint32_t seed, bool disjunctions, Walk& total) {
     std::vector<Belief> next;
     if (task.is_outcome(step)) {
       ++total.outcomes;
-      const Task::Outcome o = task.outcome(step);
+      const Task::SensingOutcome o = task.outcome(step);
       const Fluent& f = layout.fluents()[o.fluent];
       const std::size_t item = worlds.number(f.function, f.symbol, f.arguments);
       const Index value = f.function ? model.types[f.range].objects[o.value] : o.value;
@@ -126,7 +126,7 @@ void walk(std::uint32_t seed, bool disjunctions, Walk& total) {
     } else {
       const GroundAction& ground = task.action(step);
       const Action& a = model.actions[ground.schema];
-      history += step_text(model, {ground.schema, ground.arguments}) + "\n";
+      history += action_text(model, {ground.schema, ground.arguments}) + "\n";
       std::vector<Index> slots(std::max<Index>(a.slots, 1), 0);
       std::copy(ground.arguments.begin(), ground.arguments.end(), slots.begin());
       const auto reference = worlds.fired(a, ground.arguments, beliefs[0]);
@@ -196,10 +196,10 @@ TEST(Worlds, VerdictsAreThoseOfAnExhaustiveSearchOverBeliefs) {
     ++(*expected ? solvable : unsolvable);
     for (const Algorithm a : kAll) {
       const Solution s = solved(m, a);
-      EXPECT_EQ(s.status, *expected ? Status::Solved : Status::Unsolvable)
+      EXPECT_EQ(s.outcome, *expected ? Outcome::Solved : Outcome::Unsolvable)
           << "seed " << seed << ", search " << static_cast<int>(a) << "\n"
           << text;
-      if (s.status == Status::Solved && measure(m, s.plan).branches > 0) ++branching;
+      if (s.outcome == Outcome::Solved && measure(m, s.plan).branches > 0) ++branching;
     }
   }
   EXPECT_GT(solvable, 100);

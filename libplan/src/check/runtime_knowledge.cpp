@@ -1,3 +1,5 @@
+// Knowledge at run time as sets of literals; disjunctions of Kx by unit propagation. The databases
+// are those of [petrick2002pks].
 #include "check/runtime_knowledge.h"
 
 #include <tuple>
@@ -28,11 +30,11 @@ bool RuntimeKnowledge::rules_out(const Fact& term, Index value) const {
 bool RuntimeKnowledge::learn(const Fact& atom, bool truth) {
   const auto [it, fresh] = atoms_.emplace(atom, truth);
   if (!fresh) return it->second == truth;
-  return settle();
+  return propagate();
 }
 
 /// Exactly one of the undecided atoms of each entry holds; draw every conclusion.
-bool RuntimeKnowledge::settle() {
+bool RuntimeKnowledge::propagate() {
   for (bool again = true; again;) {
     again = false;
     for (auto it = exclusive_.begin(); it != exclusive_.end(); ++it) {
@@ -62,7 +64,7 @@ bool RuntimeKnowledge::settle() {
 
 bool RuntimeKnowledge::learn_exclusive(const std::set<Fact>& atoms) {
   exclusive_[atoms] = atoms;
-  return settle();
+  return propagate();
 }
 
 bool RuntimeKnowledge::learn_value(const Fact& term, Index value, const std::vector<Index>& range) {

@@ -41,7 +41,7 @@ class RuntimeKnowledge {
   void restrict_to(const std::set<Fact>& live);
 
  private:
-  bool settle();
+  bool propagate();
   void release(const Fact& atom);
 
   std::map<Fact, bool> atoms_;

@@ -1,3 +1,4 @@
+// Writes .kpl in one canonical form: what is printed reads as the same document.
 #include "language/kpl_printer.h"
 
 #include <set>
@@ -185,8 +186,9 @@ void check_name(const syntax::Name& n) {
     readable = false;
   }
   if (!readable)
-    n.place.fail("kpl cannot say the name '" + n.text +
-                 "': a name is a letter followed by letters, digits, '_' and '-', and no operator");
+    n.location.fail(
+        "kpl cannot say the name '" + n.text +
+        "': a name is a letter followed by letters, digits, '_' and '-', and no operator");
 }
 
 void check_names(const syntax::Document& d) {

@@ -1,3 +1,4 @@
+// Tokens of .kpl; signs of logic in UTF-8 are spelt as their ASCII forms.
 #include "language/lexer.h"
 
 #include <array>

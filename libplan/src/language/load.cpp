@@ -1,3 +1,4 @@
+// The ways into the library: texts of any language become a model, or a text of another language.
 #include <kaboum/plan/load.h>
 
 #include "language/kpl_parser.h"

@@ -1,3 +1,4 @@
+// Messages about a location in a text: file, line, column, and a caret below the line.
 #include "language/source.h"
 
 #include <algorithm>

@@ -8,7 +8,7 @@
 
 namespace kaboum::plan {
 
-/// A text with a name, and how to complain about a place in it.
+/// A text with a name, and how to complain about a location in it.
 struct Source {
   std::string name;
   std::string text;
@@ -23,8 +23,8 @@ struct Source {
   }
 };
 
-/// A place in a source: what every name and operator of the syntax tree carries.
-struct Place {
+/// A location in a source: what every name and operator of the syntax tree carries.
+struct SourceLocation {
   const Source* source = nullptr;
   std::size_t offset = 0;
 

@@ -13,7 +13,7 @@ namespace kaboum::plan::syntax {
 
 struct Name {
   std::string text;
-  Place place;
+  SourceLocation location;
 };
 
 /// A variable (?x), a name (a constant or a nullary function), or f(t, ...).
@@ -50,7 +50,7 @@ struct Formula {
     Extern        ///< terms[0] of kind Extern, as a condition
   };
   Kind kind = Kind::True;
-  Place place;
+  SourceLocation location;
   std::vector<Formula> children;
   std::vector<Term> terms;
   std::vector<TypedVariable> variables;
@@ -61,7 +61,7 @@ enum class Database { Kf, Kw, Kv, Kx, Lcw };
 struct Effect {
   enum class Kind { Add, Maybe, Delete, When, ForAll };
   Kind kind = Kind::Add;
-  Place place;
+  SourceLocation location;
   Database database = Database::Kf;
   std::vector<Formula> formulas;  ///< one; for Kx the alternatives; for When the condition
   std::vector<TypedVariable> variables;
@@ -93,7 +93,7 @@ struct Signature {
 struct Row {
   std::vector<Name> arguments;
   Name value;  ///< empty text: true
-  Place place;
+  SourceLocation location;
 };
 struct Table {
   Name external;
@@ -115,7 +115,7 @@ struct Document {
   std::vector<Formula> unknown;  ///< atoms that closing leaves open
   /// Of a PDDL domain: its conditional effects assume that everything is known.
   bool assumes_complete = false;
-  std::vector<std::shared_ptr<const Source>> sources;  ///< keep the places alive
+  std::vector<std::shared_ptr<const Source>> sources;  ///< keep the locations alive
 };
 
 /// `problem` appended to `domain`: constants, initial knowledge, goal, tables, and any declaration.

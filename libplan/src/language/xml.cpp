@@ -1,3 +1,4 @@
+// The older XML form: its elements hold pieces in the notation of .kpl.
 #include "language/xml.h"
 
 #include <tinyxml2.h>

@@ -1,3 +1,4 @@
+// Plans as graphs: equality, size, and the tree without sharing.
 #include <kaboum/geom/error.h>
 #include <kaboum/plan/plan.h>
 
@@ -62,7 +63,7 @@ std::string arguments_text(const Model& model, const std::string& name,
   return text + ")";
 }
 
-std::int64_t cost_of(const Model& model, const Plan::Step& step) {
+std::int64_t cost_of(const Model& model, const PlanAction& step) {
   const Action& a = model.actions[step.schema];
   if (a.cost_function == kNone) return a.cost;
   std::vector<Index> key;
@@ -90,7 +91,7 @@ bool Plan::operator==(const Plan& other) const {
          std::equal(nodes.begin(), nodes.end(), other.nodes.begin(), other.nodes.end(), same_node);
 }
 
-std::string step_text(const Model& model, const Plan::Step& step) {
+std::string action_text(const Model& model, const PlanAction& step) {
   return arguments_text(model, model.actions[step.schema].name, step.arguments);
 }
 

@@ -22,7 +22,7 @@ inline std::vector<PlanEdge> plan_edges(const Model& model, const Plan::Node& n)
 }
 
 inline std::string node_label(const Model& model, const Plan::Node& n) {
-  return n.acts ? step_text(model, n.action) : "branch";
+  return n.acts ? action_text(model, n.action) : "branch";
 }
 
 }  // namespace kaboum::plan

@@ -1,3 +1,4 @@
+// Plans as JSON, docs/planning/plans.md.
 #include <kaboum/geom/error.h>
 #include <kaboum/geom/json_damage.h>
 #include <kaboum/plan/plan.h>

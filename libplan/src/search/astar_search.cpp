@@ -1,5 +1,5 @@
 // A* with the landmark heuristic; states are reopened, so the plan is of least cost (without
-// sensing).
+// sensing). The estimate: docs/planning/search.md, "Landmark events".
 #include <algorithm>
 #include <queue>
 #include <tuple>
@@ -9,12 +9,46 @@
 #include "search/state_store.h"
 
 namespace kaboum::plan {
+namespace {
 
-Found a_star(const SearchInput& in) {
-  const Index n = in.task.layout().words();
-  Found found;
-  LandmarkHeuristic& heuristic = in.heuristics.landmark(in.task, in.limits);
+constexpr std::uint64_t kDeadEnd = ~std::uint64_t{0};
 
+class AStarSearch {
+ public:
+  explicit AStarSearch(const SearchInput& in)
+      : in_(in),
+        heuristic_(in.heuristics.landmark(in.task, in.limits)),
+        words_(in.task.layout().words()),
+        store_(words_),
+        scratch_(in.task.layout()) {}
+
+  Found run() {
+    // A target may hold in states that are no goal states of the task (a known sub-plan): the
+    // estimate only speaks of the goal, so it guides there but proves nothing. Without sensing both
+    // are the same.
+    store_.insert(in_.start.data(), Knowledge::hash_of(in_.start.data(), words_), kNone, 0);
+    const auto start = heuristic_.evaluate(in_.start.data());
+    if (in_.statistics.searches == 1)
+      in_.statistics.initial_estimate = start ? static_cast<std::int64_t>(*start) : -1;
+    if (!start) return finish(Outcome::Unsolvable);
+    info_[0].h = *start;
+    open_.push({*start, *start, order_++, 0, 0});
+    while (!open_.empty()) {
+      if (in_.limits.check(bytes())) return finish(Outcome::Limit);
+      const Open top = open_.top();
+      open_.pop();
+      if (top.g != info_[top.state].g) continue;  // a cheaper way was found since
+      if (in_.target.reached(store_[top.state])) {
+        found_.steps = store_.path(top.state);
+        in_.statistics.depth = std::max<std::uint64_t>(in_.statistics.depth, found_.steps.size());
+        return finish(Outcome::Solved);
+      }
+      expand(top);
+    }
+    return finish(Outcome::Unsolvable);
+  }
+
+ private:
   struct Open {
     std::uint64_t f, h, order;
     Index state;
@@ -23,74 +57,70 @@ Found a_star(const SearchInput& in) {
       return std::tuple(f, h, o.order) > std::tuple(o.f, o.h, order);
     }
   };
-  constexpr std::uint64_t kDead = ~std::uint64_t{0};
   struct Info {
-    std::uint64_t g = 0;
+    std::uint64_t g = 0;  ///< cost of the cheapest way so far
     std::uint64_t h = 0;
   };
-  StateStore store(n);
-  Knowledge scratch(in.task.layout());
-  std::vector<Info> info(1);
-  std::priority_queue<Open, std::vector<Open>, std::greater<>> open;
-  std::uint64_t order = 0;
-  std::size_t most_open = 0;
-  const auto bytes = [&] {
-    most_open = std::max(most_open, open.size());
-    return store.bytes() + info.capacity() * sizeof(Info) + most_open * sizeof(Open);
-  };
-  const auto finish = [&](Status status) {
-    in.statistics.states = std::max<std::uint64_t>(in.statistics.states, store.size());
-    in.statistics.state_bytes = std::max<std::uint64_t>(in.statistics.state_bytes, bytes());
-    found.status = status;
-    return found;
-  };
-  // A target may hold in states that are no goal states of the task (a known sub-plan): the
-  // estimate only speaks of the goal, so it guides there but proves nothing. Without sensing both
-  // are the same.
-  store.insert(in.start.data(), Knowledge::hash_of(in.start.data(), n), kNone, 0);
-  const auto start = heuristic.evaluate(in.start.data());
-  if (in.statistics.searches == 1)
-    in.statistics.initial_estimate = start ? static_cast<std::int64_t>(*start) : -1;
-  if (!start) return finish(Status::Unsolvable);
-  info[0].h = *start;
-  open.push({*start, *start, order++, 0, 0});
-  std::vector<Step> steps;
-  while (!open.empty()) {
-    if (in.limits.check(bytes())) return finish(Status::Limit);
-    const Open top = open.top();
-    open.pop();
-    if (top.g != info[top.state].g) continue;  // a cheaper way was found since
-    if (in.target.reached(store[top.state])) {
-      found.steps = store.path(top.state);
-      in.statistics.depth = std::max<std::uint64_t>(in.statistics.depth, found.steps.size());
-      return finish(Status::Solved);
-    }
-    in.task.expand(store[top.state], steps);
-    ++in.statistics.expanded;
-    for (const Step step : steps) {
-      if (in.task.is_outcome(step) && !in.target.allowed(store[top.state], step)) continue;
-      scratch.assign(store[top.state]);
-      if (!in.task.apply(step, scratch)) continue;
-      in.limits.work();
-      ++in.statistics.generated;
-      const auto cost = static_cast<std::uint64_t>(in.task.cost(step));
-      const auto [number, fresh] = store.insert(scratch.words(), scratch.hash(), top.state, step);
-      const std::uint64_t g = top.g + cost;
-      if (fresh) {
-        const auto h = heuristic.evaluate(scratch.words());
-        info.push_back({g, h ? *h : kDead});
-      } else {
-        if (g >= info[number].g) continue;
-        info[number].g = g;
-        store.link(number) = {top.state, step};
-      }
-      if (info[number].h == kDead) continue;
-      // Along a path the estimate may drop by no more than the step's cost.
-      const std::uint64_t h = std::max(info[number].h, top.h > cost ? top.h - cost : 0);
-      open.push({g + h, h, order++, number, g});
+
+  void expand(const Open& top) {
+    in_.task.expand(store_[top.state], steps_);
+    ++in_.statistics.expanded;
+    for (const OperatorId step : steps_) {
+      if (in_.task.is_outcome(step) && !in_.target.allowed(store_[top.state], step)) continue;
+      scratch_.assign(store_[top.state]);
+      if (!in_.task.apply(step, scratch_)) continue;
+      in_.limits.work();
+      ++in_.statistics.generated;
+      reach(top, step);
     }
   }
-  return finish(Status::Unsolvable);
-}
+
+  /// The state at hand, by `step` from `top`: opened if it is new, or reopened if this is cheaper.
+  void reach(const Open& top, OperatorId step) {
+    const auto cost = static_cast<std::uint64_t>(in_.task.cost(step));
+    const auto [number, fresh] = store_.insert(scratch_.words(), scratch_.hash(), top.state, step);
+    const std::uint64_t g = top.g + cost;
+    if (fresh) {
+      const auto h = heuristic_.evaluate(scratch_.words());
+      info_.push_back({g, h ? *h : kDeadEnd});
+    } else {
+      if (g >= info_[number].g) return;
+      info_[number].g = g;
+      store_.link(number) = {top.state, step};
+    }
+    if (info_[number].h == kDeadEnd) return;
+    // Along a path the estimate may drop by no more than the step's cost.
+    const std::uint64_t h = std::max(info_[number].h, top.h > cost ? top.h - cost : 0);
+    open_.push({g + h, h, order_++, number, g});
+  }
+
+  std::size_t bytes() {
+    most_open_ = std::max(most_open_, open_.size());
+    return store_.bytes() + info_.capacity() * sizeof(Info) + most_open_ * sizeof(Open);
+  }
+
+  Found finish(Outcome outcome) {
+    in_.statistics.states = std::max<std::uint64_t>(in_.statistics.states, store_.size());
+    in_.statistics.state_bytes = std::max<std::uint64_t>(in_.statistics.state_bytes, bytes());
+    found_.outcome = outcome;
+    return std::move(found_);
+  }
+
+  const SearchInput& in_;
+  LandmarkHeuristic& heuristic_;
+  Index words_;
+  StateStore store_;
+  Knowledge scratch_;
+  std::vector<Info> info_ = std::vector<Info>(1);  ///< by state
+  std::priority_queue<Open, std::vector<Open>, std::greater<>> open_;
+  std::uint64_t order_ = 0;
+  std::size_t most_open_ = 0;
+  std::vector<OperatorId> steps_;
+  Found found_;
+};
+
+}  // namespace
+
+Found a_star(const SearchInput& in) { return AStarSearch(in).run(); }
 
 }  // namespace kaboum::plan

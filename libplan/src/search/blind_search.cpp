@@ -17,7 +17,7 @@ void count_states(const StateStore& store, Statistics& s) {
 
 /// Successors of one state, made together so that the table's lines are fetched ahead.
 struct Successors {
-  std::vector<Step> steps;
+  std::vector<OperatorId> steps;
   std::vector<Word> words;
   std::vector<std::uint64_t> hashes;
 
@@ -27,7 +27,7 @@ struct Successors {
     words.clear();
     hashes.clear();
     std::size_t kept = 0;
-    for (const Step step : steps) {
+    for (const OperatorId step : steps) {
       if (in.task.is_outcome(step) && !in.target.allowed(state, step)) continue;
       scratch.assign(state);
       if (!in.task.apply(step, scratch)) continue;
@@ -51,7 +51,7 @@ Found breadth_first(const SearchInput& in) {
   store.insert(in.start.data(), Knowledge::hash_of(in.start.data(), n), kNone, 0);
   Found found;
   if (in.target.reached(in.start.data())) {
-    found.status = Status::Solved;
+    found.outcome = Outcome::Solved;
     return found;
   }
   Successors next;
@@ -74,13 +74,13 @@ Found breadth_first(const SearchInput& in) {
       if (!fresh || !in.target.reached(state)) continue;
       in.statistics.depth = std::max(in.statistics.depth, depth + 1);
       count_states(store, in.statistics);
-      found.status = Status::Solved;
+      found.outcome = Outcome::Solved;
       found.steps = store.path(number);
       return found;
     }
   }
   count_states(store, in.statistics);
-  found.status = Status::Unsolvable;
+  found.outcome = Outcome::Unsolvable;
   return found;
 }
 
@@ -91,7 +91,7 @@ Found depth_first(const SearchInput& in) {
   Found found;
   struct Frame {
     Index state;
-    std::vector<Step> steps;
+    std::vector<OperatorId> steps;
     std::size_t next;
   };
   std::vector<Frame> stack;
@@ -107,7 +107,7 @@ Found depth_first(const SearchInput& in) {
   };
   store.insert(in.start.data(), Knowledge::hash_of(in.start.data(), n), kNone, 0);
   if (in.target.reached(in.start.data())) {
-    found.status = Status::Solved;
+    found.outcome = Outcome::Solved;
     return found;
   }
   push(0);
@@ -121,7 +121,7 @@ Found depth_first(const SearchInput& in) {
       --top;
       continue;
     }
-    const Step step = f.steps[f.next++];
+    const OperatorId step = f.steps[f.next++];
     const Word* state = store[f.state];
     if (in.task.is_outcome(step) && !in.target.allowed(state, step)) continue;
     scratch.assign(state);
@@ -131,14 +131,14 @@ Found depth_first(const SearchInput& in) {
     if (!fresh) continue;
     if (in.target.reached(scratch.words())) {
       count_states(store, in.statistics);
-      found.status = Status::Solved;
+      found.outcome = Outcome::Solved;
       found.steps = store.path(number);
       return found;
     }
     push(number);
   }
   count_states(store, in.statistics);
-  found.status = Status::Unsolvable;
+  found.outcome = Outcome::Unsolvable;
   return found;
 }
 
@@ -153,11 +153,11 @@ Found iterative_deepening(const SearchInput& in) {
   Found found;
   store.insert(in.start.data(), Knowledge::hash_of(in.start.data(), n), 0, 0);
   if (in.target.reached(in.start.data())) {
-    found.status = Status::Solved;
+    found.outcome = Outcome::Solved;
     return found;
   }
-  std::vector<std::vector<Step>> steps;
-  std::vector<Step> path;
+  std::vector<std::vector<OperatorId>> steps;
+  std::vector<OperatorId> path;
   enum class Round { Solved, Limit, Failed };
   const auto descend = [&](const auto& self, Index left) -> Round {
     const std::size_t depth = path.size();
@@ -165,7 +165,7 @@ Found iterative_deepening(const SearchInput& in) {
     in.task.expand(state.words(), steps[depth]);
     ++in.statistics.expanded;
     for (std::size_t i = 0; i < steps[depth].size(); ++i) {
-      const Step step = steps[depth][i];
+      const OperatorId step = steps[depth][i];
       if (in.task.is_outcome(step) && !in.target.allowed(state.words(), step)) continue;
       const std::size_t mark = state.mark();
       if (in.task.apply(step, state)) {
@@ -195,13 +195,13 @@ Found iterative_deepening(const SearchInput& in) {
     const Round r = descend(descend, limit);
     count_states(store, in.statistics);
     if (r == Round::Solved) {
-      found.status = Status::Solved;
+      found.outcome = Outcome::Solved;
       found.steps = path;
       return found;
     }
     if (r == Round::Limit) return found;
     if (store.size() == before) {
-      found.status = Status::Unsolvable;
+      found.outcome = Outcome::Unsolvable;
       return found;
     }
   }

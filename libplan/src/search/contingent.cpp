@@ -1,3 +1,4 @@
+// Contingent planning by weak plans and their repair, docs/planning/search.md, "Branches".
 #include "search/contingent.h"
 
 #include <kaboum/geom/error.h>
@@ -33,7 +34,7 @@ Index ContingentPlanner::match(const Word* state) const {
 
 bool ContingentPlanner::reached(const Word* state) { return match(state) != kNone; }
 
-bool ContingentPlanner::allowed(const Word* state, Step outcome) {
+bool ContingentPlanner::allowed(const Word* state, OperatorId outcome) {
   if (forbidden_.empty()) return true;
   const auto found = forbidden_.find(State(state, state + task_.layout().words()));
   return found == forbidden_.end() || !found->second.contains(task_.outcome(outcome).fluent);
@@ -64,8 +65,8 @@ Index ContingentPlanner::add(Entry entry) {
 }
 
 /// The problem at this depth of the stack is no longer open: failures that ran into it are void.
-void ContingentPlanner::close(Index depth) {
-  const auto ran_into = [depth](const Blame& b) {
+void ContingentPlanner::close_problem(Index depth) {
+  const auto ran_into = [depth](const ConflictSet& b) {
     return std::find(b.begin(), b.end(), depth) != b.end();
   };
   std::erase_if(dead_, [&](const auto& d) { return ran_into(d.second); });
@@ -76,8 +77,8 @@ void ContingentPlanner::close(Index depth) {
 
 /// Enters `step`, after which `next` goes on, for the state `at`; of an outcome, plans for the
 /// others.
-Status ContingentPlanner::cover(const State& at, Step step, Index next, Index& entry,
-                                Blame& blame) {
+Outcome ContingentPlanner::cover(const State& at, OperatorId step, Index next, Index& entry,
+                                 ConflictSet& conflict) {
   if (!task_.is_outcome(step)) {
     entry = add({regression_.before(step, entries_[next].condition, at.data()),
                  step,
@@ -85,28 +86,28 @@ Status ContingentPlanner::cover(const State& at, Step step, Index next, Index& e
                  next,
                  {},
                  kGoal});
-    return Status::Solved;
+    return Outcome::Solved;
   }
   const Index fluent = task_.outcome(step).fluent;
-  std::vector<std::pair<Step, Index>> cases;
+  std::vector<std::pair<OperatorId, Index>> cases;
   for (const Index value : task_.outcomes(fluent, at.data())) {
-    const Step other = task_.outcome_step(fluent, value);
+    const OperatorId other = task_.outcome_id(fluent, value);
     Index then = next;
     if (other != step) {
       Knowledge k(task_.layout());
       k.assign(at.data());
       if (!task_.apply(other, k)) continue;  // cannot happen
-      const Status s = solve(State(k.words(), k.words() + task_.layout().words()), then, blame);
-      if (s != Status::Solved) return s;
+      const Outcome s = solve(State(k.words(), k.words() + task_.layout().words()), then, conflict);
+      if (s != Outcome::Solved) return s;
     }
     cases.emplace_back(other, then);
   }
   entry = branch(at, std::move(cases));
-  return Status::Solved;
+  return Outcome::Solved;
 }
 
 /// A branch, for the state `at` and all others of its regressed condition.
-Index ContingentPlanner::branch(const State& at, std::vector<std::pair<Step, Index>> cases) {
+Index ContingentPlanner::branch(const State& at, std::vector<std::pair<OperatorId, Index>> cases) {
   FormulaPool& pool = task_.pool();
   std::vector<Formula> conditions;
   conditions.reserve(cases.size());
@@ -117,7 +118,7 @@ Index ContingentPlanner::branch(const State& at, std::vector<std::pair<Step, Ind
   const Fluent& f = task_.layout().fluents()[fluent];
   if (f.function) {
     for (Index v = 0; v < task_.layout().range_size(f); ++v) {
-      const Step missing = task_.outcome_step(fluent, v);
+      const OperatorId missing = task_.outcome_id(fluent, v);
       if (std::none_of(cases.begin(), cases.end(),
                        [&](const auto& c) { return c.first == missing; }))
         conditions.push_back(pool.leaf(FormulaPool::Kind::ValueIsNot, fluent, v));
@@ -131,36 +132,36 @@ Index ContingentPlanner::branch(const State& at, std::vector<std::pair<Step, Ind
   return add(std::move(e));
 }
 
-Status ContingentPlanner::solve(const State& start, Index& entry, Blame& blame) {
+Outcome ContingentPlanner::solve(const State& start, Index& entry, ConflictSet& conflict) {
   entry = match(start.data());
   if (entry != kNone) {
     if (entry != kGoal) ++statistics_.reused;
-    return Status::Solved;
+    return Outcome::Solved;
   }
   if (const auto known = dead_.find(start); known != dead_.end()) {
-    blame = known->second;
-    return Status::Unsolvable;
+    conflict = known->second;
+    return Outcome::Unsolvable;
   }
   if (const auto open = open_problems_.find(start); open != open_problems_.end()) {
-    blame = {open->second};
-    return Status::Unsolvable;
+    conflict = {open->second};
+    return Outcome::Unsolvable;
   }
-  if (open_problems_.size() >= kMaximumOpen) return Status::Limit;
+  if (open_problems_.size() >= kMaximumOpen) return Outcome::Limit;
   const auto depth = static_cast<Index>(open_problems_.size());
   open_problems_.emplace(start, depth);
 
-  Status status = Status::Limit;
+  Outcome outcome = Outcome::Limit;
   while (true) {
     ++statistics_.searches;
     const Found found = search_({task_, start, *this, limits_, statistics_, heuristics_});
-    if (found.status != Status::Solved) {
-      status = found.status;
+    if (found.outcome != Outcome::Solved) {
+      outcome = found.outcome;
       break;
     }
     std::vector<State> states = {start};
     Knowledge k(task_.layout());
     k.assign(start.data());
-    for (const Step step : found.steps) {
+    for (const OperatorId step : found.steps) {
       ensure(task_.apply(step, k), "a found plan can be replayed");
       states.emplace_back(k.words(), k.words() + task_.layout().words());
     }
@@ -169,49 +170,49 @@ Status ContingentPlanner::solve(const State& start, Index& entry, Blame& blame) 
     if (next != kGoal) ++statistics_.reused;
     bool covered = true;
     for (std::size_t i = found.steps.size(); i-- > 0 && covered;) {
-      Blame why;
-      const Status s = cover(states[i], found.steps[i], next, entry, why);
-      if (s == Status::Limit) {
+      ConflictSet why;
+      const Outcome s = cover(states[i], found.steps[i], next, entry, why);
+      if (s == Outcome::Limit) {
         open_problems_.erase(start);
         return s;
       }
-      covered = s == Status::Solved;
+      covered = s == Outcome::Solved;
       if (covered) {
         ensure(task_.pool().holds(entries_[entry].condition, states[i].data()),
                "regression keeps its own state");
         next = entry;
       } else {
         forbidden_[states[i]][task_.outcome(found.steps[i]).fluent] = std::move(why);
-        if (decided_otherwise()) return Status::Limit;  // of this search; run() knows better
+        if (decided_otherwise()) return Outcome::Limit;  // of this search; run() knows better
       }
     }
     if (!covered) continue;
     entry = next;
-    status = Status::Solved;
+    outcome = Outcome::Solved;
     break;
   }
   open_problems_.erase(start);
-  if (status == Status::Unsolvable) {
+  if (outcome == Outcome::Unsolvable) {
     // It failed for good unless some branch was given up only because of a problem further up.
-    blame.clear();
+    conflict.clear();
     for (const auto& [state, fluents] : forbidden_)
-      for (const auto& [fluent, why] : fluents) merge(blame, why);
-    std::erase(blame, depth);
-    close(depth);
-    dead_[start] = blame;
-    if (blame.empty()) ++statistics_.dead_ends;
+      for (const auto& [fluent, why] : fluents) merge(conflict, why);
+    std::erase(conflict, depth);
+    close_problem(depth);
+    dead_[start] = conflict;
+    if (conflict.empty()) ++statistics_.dead_ends;
   } else {
-    close(depth);
+    close_problem(depth);
   }
-  return status;
+  return outcome;
 }
 
-Status ContingentPlanner::run() {
+Outcome ContingentPlanner::run() {
   task_.branch(Task::Branching::OnNeed);
-  Blame blame;
-  const Status status = solve(task_.initial(), root_, blame);
+  ConflictSet conflict;
+  const Outcome outcome = solve(task_.initial(), root_, conflict);
   if (verdict_) return *verdict_;
-  if (status != Status::Unsolvable || !task_.held_back()) return status;
+  if (outcome != Outcome::Unsolvable || !task_.pruned_branch()) return outcome;
   // Nothing is proved yet: branches that nothing needed were left out.
   return exhaust(~std::size_t{0});
 }
@@ -220,18 +221,18 @@ Status ContingentPlanner::run() {
 bool ContingentPlanner::decided_otherwise() {
   if (++failures_ < next_attempt_) return false;
   next_attempt_ *= 2;
-  const Status s = exhaust(1000 + 2 * statistics_.expanded);
-  if (s != Status::Limit) verdict_ = s;
+  const Outcome s = exhaust(1000 + 2 * statistics_.expanded);
+  if (s != Outcome::Limit) verdict_ = s;
   return verdict_.has_value();
 }
 
-Status ContingentPlanner::exhaust(std::size_t most_states) {
+Outcome ContingentPlanner::exhaust(std::size_t most_states) {
   task_.branch(Task::Branching::Anywhere);
   ++statistics_.searches;
   Exhaustive all({task_, task_.initial(), *this, limits_, statistics_, heuristics_});
-  const Status status = all.run(most_states);
+  const Outcome outcome = all.run(most_states);
   task_.branch(Task::Branching::OnNeed);
-  if (status != Status::Solved) return status;
+  if (outcome != Outcome::Solved) return outcome;
   std::vector<Index> entry;  // by decision
   for (const Exhaustive::Decision& d : all.plan()) {
     const Index known = match(d.state.data());
@@ -239,7 +240,7 @@ Status ContingentPlanner::exhaust(std::size_t most_states) {
       entry.push_back(known);
       continue;
     }
-    std::vector<std::pair<Step, Index>> cases = d.cases;
+    std::vector<std::pair<OperatorId, Index>> cases = d.cases;
     for (auto& [step, next] : cases) next = entry[next];
     const auto [step, next] = cases.front();
     entry.push_back(task_.is_outcome(step)
@@ -252,7 +253,7 @@ Status ContingentPlanner::exhaust(std::size_t most_states) {
                                kGoal}));
   }
   root_ = entry.back();
-  return status;
+  return outcome;
 }
 
 Plan ContingentPlanner::plan() const {

@@ -27,7 +27,7 @@ class ContingentPlanner final : private Target {
   ContingentPlanner(Task& task, SearchFunction search, Limits& limits, Statistics& statistics);
 
   /// Plans from the task's initial state. On success `plan()` is the result.
-  Status run();
+  Outcome run();
   [[nodiscard]] Plan plan() const;
 
  private:
@@ -35,10 +35,10 @@ class ContingentPlanner final : private Target {
 
   struct Entry {
     Formula condition = kTrue;
-    Step step = 0;  ///< an action; of a branch, its first outcome
+    OperatorId step = 0;  ///< an action; of a branch, its first outcome
     bool branch = false;
     Index next = kGoal;
-    std::vector<std::pair<Step, Index>> cases;  ///< of a branch
+    std::vector<std::pair<OperatorId, Index>> cases;  ///< of a branch
     Index same_as = kGoal;  ///< the first entry with the same sub-plan, itself if none
   };
 
@@ -49,20 +49,20 @@ class ContingentPlanner final : private Target {
     }
   };
   /// Why something failed: depths on the stack of open problems that it ran into. Empty: for good.
-  using Blame = std::vector<Index>;
+  using ConflictSet = std::vector<Index>;
 
   // Target
   bool reached(const Word* state) override;
-  bool allowed(const Word* state, Step outcome) override;
+  bool allowed(const Word* state, OperatorId outcome) override;
 
   [[nodiscard]] Index match(const Word* state) const;
-  Status solve(const State& start, Index& entry, Blame& blame);
-  Status exhaust(std::size_t most_states);
+  Outcome solve(const State& start, Index& entry, ConflictSet& conflict);
+  Outcome exhaust(std::size_t most_states);
   bool decided_otherwise();
-  Index branch(const State& at, std::vector<std::pair<Step, Index>> cases);
-  Status cover(const State& at, Step step, Index next, Index& entry, Blame& blame);
+  Index branch(const State& at, std::vector<std::pair<OperatorId, Index>> cases);
+  Outcome cover(const State& at, OperatorId step, Index next, Index& entry, ConflictSet& conflict);
   Index add(Entry entry);
-  void close(Index depth);
+  void close_problem(Index depth);
 
   Task& task_;
   SearchFunction search_;
@@ -72,14 +72,14 @@ class ContingentPlanner final : private Target {
   Regression regression_;
   std::vector<Entry> entries_;
   std::unordered_map<std::uint64_t, std::vector<Index>> entry_index_;
-  std::unordered_map<State, std::map<Index, Blame>, StateHash>
+  std::unordered_map<State, std::map<Index, ConflictSet>, StateHash>
       forbidden_;  ///< by state, then fluent
-  std::unordered_map<State, Blame, StateHash> dead_;
+  std::unordered_map<State, ConflictSet, StateHash> dead_;
   std::unordered_map<State, Index, StateHash> open_problems_;  ///< states being solved: depth
   Index root_ = kGoal;
   std::uint64_t failures_ = 0;       ///< branches that were forbidden
   std::uint64_t next_attempt_ = 50;  ///< failures at which to look at all states
-  std::optional<Status> verdict_;    ///< what that found
+  std::optional<Outcome> verdict_;   ///< what that found
 };
 
 }  // namespace kaboum::plan

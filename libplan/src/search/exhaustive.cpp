@@ -1,3 +1,5 @@
+// And-or search over all states, as a least fixed point that is computed backwards from the
+// targets.
 #include "search/exhaustive.h"
 
 #include <algorithm>
@@ -12,12 +14,12 @@ Exhaustive::Exhaustive(const SearchInput& in) : in_(in), store_(in.task.layout()
 /// Steps out of one state: an edge for each action and for each value that can be branched on.
 void Exhaustive::expand(Index state) {
   Task& task = in_.task;
-  std::vector<Step> steps;
+  std::vector<OperatorId> steps;
   Knowledge scratch(task.layout());
   task.expand(store_[state], steps);
   ++in_.statistics.expanded;
   Index fluent = kNone;  // of the branch at hand
-  for (const Step step : steps) {
+  for (const OperatorId step : steps) {
     const Index of = task.is_outcome(step) ? task.outcome(step).fluent : kNone;
     scratch.assign(store_[state]);
     if (!task.apply(step, scratch)) continue;
@@ -49,8 +51,8 @@ bool Exhaustive::explore(std::size_t most_states) {
   return true;
 }
 
-Status Exhaustive::run(std::size_t most_states) {
-  if (!explore(most_states)) return Status::Limit;
+Outcome Exhaustive::run(std::size_t most_states) {
+  if (!explore(most_states)) return Outcome::Limit;
   // Edges into each state, then back from the targets.
   std::vector<Index> begin(store_.size() + 1, 0);
   for (const Index t : targets_) ++begin[t + 1];
@@ -70,7 +72,7 @@ Status Exhaustive::run(std::size_t most_states) {
       decision_[e.source] = into[k];
       solved_.push_back(e.source);
     }
-  return has_plan_[0] ? Status::Solved : Status::Unsolvable;
+  return has_plan_[0] ? Outcome::Solved : Outcome::Unsolvable;
 }
 
 std::vector<Exhaustive::Decision> Exhaustive::plan() const {

@@ -16,12 +16,12 @@ class Exhaustive {
   explicit Exhaustive(const SearchInput& in);
 
   /// Looks at everything. Limit if the limits, or so many states, were reached first.
-  Status run(std::size_t most_states);
+  Outcome run(std::size_t most_states);
 
   /// What to do in a state of the plan: perform an action, or branch.
   struct Decision {
     std::vector<Word> state;
-    std::vector<std::pair<Step, Index>> cases;  ///< step, and the decision it leads to
+    std::vector<std::pair<OperatorId, Index>> cases;  ///< step, and the decision it leads to
   };
   /// The plan, each decision after those it leads to; a target has no cases; the start comes last.
   [[nodiscard]] std::vector<Decision> plan() const;
@@ -41,7 +41,7 @@ class Exhaustive {
   StateStore store_;
   std::vector<Edge> edges_;
   std::vector<Index> targets_;
-  std::vector<Step> steps_;
+  std::vector<OperatorId> steps_;
   std::vector<Index> solved_;    ///< states, in the order in which they were found to have a plan
   std::vector<Index> decision_;  ///< by state: its edge; kNone: a target, or no plan
   std::vector<char> has_plan_;

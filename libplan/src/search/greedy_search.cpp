@@ -1,9 +1,10 @@
 // Greedy best-first search with two estimates, each with a queue of all states and one of those
 // that preferred operators lead to; preferred queues are boosted on progress, and estimates
-// deferred to expansion (Helmert 2006, [helmert2006fd]). The relaxed plan guides where deletions do
+// deferred to expansion [helmert2006fd]. The relaxed plan guides where deletions do
 // little harm, the landmark events where they do.
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <queue>
 
 #include "search/landmarks.h"
@@ -23,6 +24,8 @@ struct Open {
   }
 };
 
+constexpr std::size_t kRelaxed = 0, kRelaxedPreferred = 1, kEvents = 2, kEventsPreferred = 3;
+
 /// Queues that take turns: the one that was served least, counting boosts.
 class Queues {
  public:
@@ -41,103 +44,143 @@ class Queues {
     queues_[next].pop();
     return state;
   }
-  void boost(std::size_t queue) { served_[queue] -= 1000; }
+  void boost(std::size_t queue) { served_[queue] -= kBoost; }
   [[nodiscard]] std::size_t bytes() const { return most_ * sizeof(Open); }
 
  private:
+  static constexpr std::int64_t kBoost = 1000;  // turns, on progress
+
   std::array<std::priority_queue<Open, std::vector<Open>, std::greater<>>, 4> queues_;
   std::array<std::int64_t, 4> served_{};
   std::size_t size_ = 0;
   std::size_t most_ = 0;
 };
 
-constexpr std::size_t kRelaxed = 0, kRelaxedPreferred = 1, kEvents = 2, kEventsPreferred = 3;
+class GreedySearch {
+ public:
+  explicit GreedySearch(const SearchInput& in)
+      : in_(in),
+        relaxed_(in.heuristics.relaxed(in.task, in.limits)),
+        landmarks_(in.heuristics.landmark(in.task, in.limits)),
+        words_(in.task.layout().words()),
+        store_(words_),
+        scratch_(in.task.layout()) {}
+
+  Found run() {
+    store_.insert(in_.start.data(), Knowledge::hash_of(in_.start.data(), words_), kNone, 0);
+    open_.push(kRelaxed, {0, order_++, 0});
+    while (!open_.empty()) {
+      const Index state = open_.pop();
+      if (state >= expanded_.size()) expanded_.resize(store_.size(), 0);
+      if (expanded_[state]) continue;
+      expanded_[state] = 1;
+      if (in_.limits.check(bytes())) return finish(Outcome::Limit);
+      const std::optional<Estimates> estimates = evaluate(state);
+      if (!estimates) continue;
+      note_progress(*estimates);
+      if (expand(state, *estimates)) return finish(Outcome::Solved);
+    }
+    return finish(Outcome::Unsolvable);
+  }
+
+ private:
+  struct Estimates {
+    std::uint64_t relaxed = 0;
+    std::uint64_t events = 0;
+  };
+
+  /// nullopt: a dead end. Both estimates are safe: what they call one is one.
+  std::optional<Estimates> evaluate(Index state) {
+    Estimates e;
+    e.relaxed = relaxed_.evaluate(store_[state]);
+    const bool dead = e.relaxed == RelaxedPlan::kDeadEnd;
+    if (state == 0 && in_.statistics.searches == 1)
+      in_.statistics.initial_estimate = dead ? -1 : static_cast<std::int64_t>(e.relaxed);
+    if (dead) return std::nullopt;
+    if (!use_events_) return e;
+    const auto events = landmarks_.evaluate(store_[state]);
+    if (!events) return std::nullopt;
+    e.events = *events;
+    // Not worth it where events are so many that their orders take longer than all the rest.
+    const std::size_t count = landmarks_.events();
+    use_events_ = count * count * (count / 64 + 1) < 200 * relaxed_.size() + 1'000'000;
+    return e;
+  }
+
+  void note_progress(const Estimates& e) {
+    if (e.relaxed < best_.relaxed) {
+      best_.relaxed = e.relaxed;
+      open_.boost(kRelaxedPreferred);
+    }
+    if (use_events_ && e.events < best_.events) {
+      best_.events = e.events;
+      open_.boost(kEventsPreferred);
+    }
+  }
+
+  /// @return whether a successor reaches the target.
+  bool expand(Index state, const Estimates& estimates) {
+    const std::vector<OperatorId> helpful = relaxed_.steps();
+    in_.task.expand(store_[state], steps_);
+    ++in_.statistics.expanded;
+    for (const OperatorId step : steps_) {
+      if (in_.task.is_outcome(step) && !in_.target.allowed(store_[state], step)) continue;
+      scratch_.assign(store_[state]);
+      if (!in_.task.apply(step, scratch_)) continue;
+      ++in_.statistics.generated;
+      const auto [number, fresh] = store_.insert(scratch_.words(), scratch_.hash(), state, step);
+      if (!fresh) continue;
+      if (in_.target.reached(scratch_.words())) {
+        found_.steps = store_.path(number);
+        in_.statistics.depth = std::max<std::uint64_t>(in_.statistics.depth, found_.steps.size());
+        return true;
+      }
+      push(number, estimates, std::binary_search(helpful.begin(), helpful.end(), step));
+    }
+    return false;
+  }
+
+  void push(Index state, const Estimates& e, bool preferred) {
+    open_.push(kRelaxed, {e.relaxed, order_, state});
+    if (preferred) open_.push(kRelaxedPreferred, {e.relaxed, order_, state});
+    if (use_events_) {
+      open_.push(kEvents, {e.events, order_, state});
+      if (preferred) open_.push(kEventsPreferred, {e.events, order_, state});
+    }
+    ++order_;
+  }
+
+  [[nodiscard]] std::size_t bytes() const {
+    return store_.bytes() + open_.bytes() + expanded_.capacity();
+  }
+
+  Found finish(Outcome outcome) {
+    in_.statistics.states = std::max<std::uint64_t>(in_.statistics.states, store_.size());
+    in_.statistics.state_bytes = std::max<std::uint64_t>(in_.statistics.state_bytes, bytes());
+    found_.outcome = outcome;
+    return std::move(found_);
+  }
+
+  const SearchInput& in_;
+  RelaxedPlan& relaxed_;
+  LandmarkHeuristic& landmarks_;
+  Index words_;
+  StateStore store_;
+  Knowledge scratch_;
+  Queues open_;
+  std::vector<char> expanded_;
+  std::uint64_t order_ = 0;
+  Estimates best_{RelaxedPlan::kDeadEnd, RelaxedPlan::kDeadEnd};
+  bool use_events_ = true;
+  std::vector<OperatorId> steps_;
+  Found found_;
+};
 
 }  // namespace
 
 Found greedy_best_first(const SearchInput& in) {
-  const Index n = in.task.layout().words();
-  Found found;
-  if (in.target.reached(in.start.data())) {
-    found.status = Status::Solved;
-    return found;
-  }
-  RelaxedPlan& relaxed = in.heuristics.relaxed(in.task, in.limits);
-  LandmarkHeuristic& landmarks = in.heuristics.landmark(in.task, in.limits);
-
-  StateStore store(n);
-  Knowledge scratch(in.task.layout());
-  store.insert(in.start.data(), Knowledge::hash_of(in.start.data(), n), kNone, 0);
-  Queues open;
-  std::vector<char> expanded;
-  std::uint64_t order = 0;
-  std::uint64_t best_relaxed = RelaxedPlan::kDeadEnd;
-  std::uint64_t best_events = RelaxedPlan::kDeadEnd;
-  bool use_events = true;
-  open.push(kRelaxed, {0, order++, 0});
-  std::vector<Step> steps;
-  const auto bytes = [&] { return store.bytes() + open.bytes() + expanded.capacity(); };
-  const auto finish = [&](Status status) {
-    in.statistics.states = std::max<std::uint64_t>(in.statistics.states, store.size());
-    in.statistics.state_bytes = std::max<std::uint64_t>(in.statistics.state_bytes, bytes());
-    found.status = status;
-    return found;
-  };
-  while (!open.empty()) {
-    const Index state = open.pop();
-    if (state >= expanded.size()) expanded.resize(store.size(), 0);
-    if (expanded[state]) continue;
-    expanded[state] = 1;
-    if (in.limits.check(bytes())) return finish(Status::Limit);
-    // Both estimates are safe: what they call a dead end is one.
-    const std::uint64_t h = relaxed.evaluate(store[state]);
-    if (state == 0 && in.statistics.searches == 1)
-      in.statistics.initial_estimate =
-          h == RelaxedPlan::kDeadEnd ? -1 : static_cast<std::int64_t>(h);
-    if (h == RelaxedPlan::kDeadEnd) continue;
-    std::uint64_t events = 0;
-    if (use_events) {
-      const auto estimate = landmarks.evaluate(store[state]);
-      if (!estimate) continue;
-      events = *estimate;
-      // Not worth it where events are so many that their orders take longer than all the rest.
-      const std::size_t count = landmarks.events();
-      use_events = count * count * (count / 64 + 1) < 200 * relaxed.size() + 1'000'000;
-    }
-    if (h < best_relaxed) {
-      best_relaxed = h;
-      open.boost(kRelaxedPreferred);
-    }
-    if (use_events && events < best_events) {
-      best_events = events;
-      open.boost(kEventsPreferred);
-    }
-    const std::vector<Step> helpful = relaxed.steps();
-    in.task.expand(store[state], steps);
-    ++in.statistics.expanded;
-    for (const Step step : steps) {
-      if (in.task.is_outcome(step) && !in.target.allowed(store[state], step)) continue;
-      scratch.assign(store[state]);
-      if (!in.task.apply(step, scratch)) continue;
-      ++in.statistics.generated;
-      const auto [number, fresh] = store.insert(scratch.words(), scratch.hash(), state, step);
-      if (!fresh) continue;
-      if (in.target.reached(scratch.words())) {
-        found.steps = store.path(number);
-        in.statistics.depth = std::max<std::uint64_t>(in.statistics.depth, found.steps.size());
-        return finish(Status::Solved);
-      }
-      const bool preferred = std::binary_search(helpful.begin(), helpful.end(), step);
-      open.push(kRelaxed, {h, order, number});
-      if (preferred) open.push(kRelaxedPreferred, {h, order, number});
-      if (use_events) {
-        open.push(kEvents, {events, order, number});
-        if (preferred) open.push(kEventsPreferred, {events, order, number});
-      }
-      ++order;
-    }
-  }
-  return finish(Status::Unsolvable);
+  if (in.target.reached(in.start.data())) return {Outcome::Solved, {}};
+  return GreedySearch(in).run();
 }
 
 }  // namespace kaboum::plan

@@ -1,3 +1,4 @@
+// Heuristics are made when a search first asks for them.
 #include "search/invariants.h"
 #include "search/landmarks.h"
 #include "search/relaxation.h"

@@ -1,3 +1,5 @@
+// Synthesis of mutual exclusion invariants [helmert2009concise]; proof of use:
+// docs/planning/search.md.
 #include "search/invariants.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Landmark events [karpas2009landmarks], [buechner2021cyclic]; claims and bounds by number as in
+// docs/planning/search.md, "Landmark events".
 #include "search/landmarks.h"
 
 #include <algorithm>
@@ -35,7 +37,7 @@ LandmarkHeuristic::LandmarkHeuristic(Task& task, const Relaxation& relaxation,
                                      const Invariants& invariants)
     : task_(task), relaxation_(relaxation), invariants_(invariants) {
   number_of_.assign(task.action_count(), kNone);
-  for (const Step a : relaxation.actions()) {
+  for (const OperatorId a : relaxation.actions()) {
     number_of_[a] = static_cast<Index>(costs_.size());
     costs_.push_back(task.cost(a));
   }

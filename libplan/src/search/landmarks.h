@@ -70,7 +70,7 @@ class LandmarkHeuristic {
   std::size_t words_ = 0;            ///< of a set of actions
   std::vector<std::int64_t> costs_;  ///< by action number
   std::vector<Index> number_of_;     ///< by step
-  std::map<Step, Index> number_of_outcome_;
+  std::map<OperatorId, Index> number_of_outcome_;
   std::vector<std::vector<Index>> achievers_;  ///< by fact
   std::vector<std::vector<FactId>> common_;    ///< by fact, once common_ready_
   std::vector<char> common_ready_;

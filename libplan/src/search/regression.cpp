@@ -1,3 +1,4 @@
+// Regression of a condition through one step, in the context of the state in which it was planned.
 #include "search/regression.h"
 
 #include <kaboum/geom/error.h>
@@ -129,7 +130,7 @@ Formula Regression::rewrite(Formula f) {
   return t == Truth::Yes ? kTrue : kFalse;
 }
 
-Formula Regression::before(Step step, Formula condition, const Word* before) {
+Formula Regression::before(OperatorId step, Formula condition, const Word* before) {
   FormulaPool& pool = task_.pool();
   before_ = before;
   touched_.assign(task_.layout().words(), 0);
@@ -139,7 +140,7 @@ Formula Regression::before(Step step, Formula condition, const Word* before) {
 
   if (task_.is_outcome(step)) {
     // The fluent must be sensed or known; learning it then gives this content whatever it was.
-    const Task::Outcome o = task_.outcome(step);
+    const Task::SensingOutcome o = task_.outcome(step);
     const bool function = task_.layout().fluents()[o.fluent].function;
     required_.push_back(pool.leaf(function ? Kind::ValueKnown : Kind::Whether, o.fluent));
     touch(o.fluent, true);
@@ -147,7 +148,7 @@ Formula Regression::before(Step step, Formula condition, const Word* before) {
     const GroundAction& a = task_.action(step);
     required_.push_back(a.precondition);
     std::vector<Formula> fired, idle;
-    for (const Conditional& c : a.effects) {
+    for (const ConditionalEffect& c : a.effects) {
       const bool happens = pool.holds(c.condition, before);
       // An effect that does not happen here must not happen, if it could touch what is asked for or
       // be an observation that contradicts what is known there.
@@ -170,7 +171,7 @@ Formula Regression::before(Step step, Formula condition, const Word* before) {
       for (const Change& d : c.deletions) touch_change(d);
       for (const Change& d : c.additions) touch_change(d);
       for (const Change& d : c.sensing) touch_change(d);
-      for (const Conditional::Write& w : c.writes) touch_field(w.mask, w.word);
+      for (const ConditionalEffect::MaskedWrite& w : c.writes) touch_field(w.mask, w.word);
       if (happens) {
         fired.push_back(c.condition);
       } else {

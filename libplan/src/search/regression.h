@@ -18,7 +18,7 @@ class Regression {
   explicit Regression(Task& task) : task_(task), after_(task.layout()) {}
 
   /// The condition before `step` such that the step is possible and `condition` holds after it.
-  Formula before(Step step, Formula condition, const Word* before);
+  Formula before(OperatorId step, Formula condition, const Word* before);
 
  private:
   void touch(Index fluent, bool plain);

@@ -1,3 +1,4 @@
+// The delete relaxation: reachable facts and operators, and their and-or graph.
 #include "search/relaxation.h"
 
 #include <algorithm>
@@ -18,7 +19,7 @@ Relaxation::Relaxation(Task& task, Limits& limits) : task_(task), limits_(limits
   nodes_.resize(facts_);
   reach();
   std::sort(actions_.begin(), actions_.end());
-  for (const Step a : actions_) add_action(a);
+  for (const OperatorId a : actions_) add_action(a);
   for (Index i = 0; i < task.layout().fluents().size(); ++i) {
     const Fluent& f = task.layout().fluents()[i];
     const FactId sensed =
@@ -26,7 +27,7 @@ Relaxation::Relaxation(Task& task, Limits& limits) : task_(task), limits_(limits
     if (!reached_[sensed]) continue;
     for (Index v = 0; v < (f.function ? task.layout().range_size(f) : 2); ++v) {
       Operator o;
-      o.step = task.outcome_step(i, v);
+      o.step = task.outcome_id(i, v);
       o.preconditions = {sensed};
       o.adds = {fact(
           i, f.function ? kFirstValue + v
@@ -39,7 +40,7 @@ Relaxation::Relaxation(Task& task, Limits& limits) : task_(task), limits_(limits
     const Fluent& f = task.layout().fluents()[i];
     if (f.groups.empty() && f.exclusions == kNone) continue;
     Operator o;
-    o.step = task.outcome_step(i, 0);
+    o.step = task.outcome_id(i, 0);
     const Word contents = f.function ? task.layout().range_size(f) + kFirstValue : 4;
     for (Word c = 1; c < contents; ++c)
       if (!f.function || c != kValueSensed) o.adds.push_back(fact(i, c));
@@ -169,8 +170,8 @@ bool Relaxation::ends(const Operator& op, FactId f) const {
   const Index fluent = fluent_of(f);
   const Word content = content_of(f);
   const auto is = [&](AtomKnowledge k) { return content == static_cast<Word>(k); };
-  const Conditional& c = task_.action(op.step).effects[op.conditional];
-  for (const auto* list : {&c.deletions, &c.plain, &c.additions})
+  const ConditionalEffect& c = task_.action(op.step).effects[op.conditional];
+  for (const auto* list : {&c.deletions, &c.direct, &c.additions})
     for (const Change& change : *list) {
       if (change.kind == K::AddGroup || change.kind == K::DeleteGroup || change.fluent != fluent)
         continue;
@@ -224,16 +225,16 @@ void Relaxation::reach() {
       task_.instances(
           s, [&](Formula f) { return possible(f, true); },
           [&](const std::vector<Index>& arguments) {
-            const Step step = task_.action_step(s, arguments);
+            const OperatorId step = task_.action_id(s, arguments);
             if (step >= reached_action_.size()) reached_action_.resize(step + 1, 0);
             if (!reached_action_[step]) {
               reached_action_[step] = 1;
               actions_.push_back(step);
               again = true;
             }
-            for (const Conditional& c : task_.action(step).effects) {
+            for (const ConditionalEffect& c : task_.action(step).effects) {
               if (!possible(c.condition, true)) continue;
-              for (const auto* list : {&c.deletions, &c.plain, &c.additions, &c.sensing})
+              for (const auto* list : {&c.deletions, &c.direct, &c.additions, &c.sensing})
                 for (const Change& change : *list)
                   for (const FactId x : added(change)) again |= mark(x);
             }
@@ -328,18 +329,18 @@ void Relaxation::add_operator(Operator o, std::vector<Index> conditions) {
   operators_.push_back(std::move(o));
 }
 
-void Relaxation::add_action(Step step) {
+void Relaxation::add_action(OperatorId step) {
   const GroundAction& a = task_.action(step);
   const Index precondition = node(a.precondition);
   const std::vector<FactId> needed = necessary_facts(a.precondition);
   for (Index i = 0; i < a.effects.size(); ++i) {
-    const Conditional& c = a.effects[i];
+    const ConditionalEffect& c = a.effects[i];
     if (!possible(c.condition, true)) continue;
     Operator o;
     o.step = step;
     o.cost = a.cost;
     o.conditional = i;
-    for (const auto* list : {&c.deletions, &c.plain, &c.additions, &c.sensing})
+    for (const auto* list : {&c.deletions, &c.direct, &c.additions, &c.sensing})
       for (const Change& change : *list)
         for (const FactId x : added(change)) o.adds.push_back(x);
     if (o.adds.empty()) continue;

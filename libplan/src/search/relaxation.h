@@ -20,7 +20,7 @@ class Relaxation {
 
   /// One effect of one action, or of an outcome of sensing.
   struct Operator {
-    Step step = 0;
+    OperatorId step = 0;
     std::int64_t cost = 0;
     std::vector<FactId> preconditions;  ///< facts that must hold (those that can be told as facts)
     std::vector<FactId> adds;
@@ -42,7 +42,7 @@ class Relaxation {
     return task_.layout().fluents()[fluent_of_[f]].get(state) == content_of(f);
   }
   [[nodiscard]] const std::vector<Operator>& operators() const { return operators_; }
-  [[nodiscard]] const std::vector<Step>& actions() const { return actions_; }
+  [[nodiscard]] const std::vector<OperatorId>& actions() const { return actions_; }
 
   /// Facts that a formula cannot hold without.
   [[nodiscard]] std::vector<FactId> necessary_facts(Formula f) const;
@@ -58,7 +58,7 @@ class Relaxation {
 
  private:
   void reach();
-  void add_action(Step step);
+  void add_action(OperatorId step);
   void add_operator(Operator o, std::vector<Index> conditions);
   [[nodiscard]] bool possible(Formula f, bool positive) const;
   [[nodiscard]] std::vector<FactId> contents(const FormulaPool::Node& leaf, bool positive,
@@ -73,7 +73,7 @@ class Relaxation {
   std::vector<Index> fluent_of_;
   std::vector<char> reached_;
   std::vector<char> reached_action_;
-  std::vector<Step> actions_;
+  std::vector<OperatorId> actions_;
   std::vector<Operator> operators_;
   std::vector<Node> nodes_;
   std::unordered_map<std::uint64_t, Index> node_index_;

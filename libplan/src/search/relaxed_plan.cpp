@@ -1,3 +1,4 @@
+// The relaxed plan [hoffmann2001ff] with additive costs, by a generalised Dijkstra search.
 #include "search/relaxed_plan.h"
 
 #include <algorithm>
@@ -98,7 +99,7 @@ std::uint64_t RelaxedPlan::evaluate(const Word* state) {
   std::sort(steps_.begin(), steps_.end());
   steps_.erase(std::unique(steps_.begin(), steps_.end()), steps_.end());
   std::uint64_t total = 0;
-  for (const Step s : steps_)
+  for (const OperatorId s : steps_)
     if (!task_.is_outcome(s))
       total += static_cast<std::uint64_t>(std::max<std::int64_t>(1, task_.cost(s)));
   return total;

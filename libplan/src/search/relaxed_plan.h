@@ -22,7 +22,7 @@ class RelaxedPlan {
   [[nodiscard]] std::size_t size() const { return parents_.size(); }
 
   /// Steps of the last relaxed plan, ascending: those applicable now are the preferred ones.
-  [[nodiscard]] const std::vector<Step>& steps() const { return steps_; }
+  [[nodiscard]] const std::vector<OperatorId>& steps() const { return steps_; }
 
  private:
   void settle(Index node, std::uint64_t cost, Index supporter);
@@ -35,7 +35,7 @@ class RelaxedPlan {
   std::vector<std::uint64_t> cost_;
   std::vector<Index> missing_;    ///< All nodes: children not yet reached
   std::vector<Index> supporter_;  ///< Fact: operator; Any: child
-  std::vector<Step> steps_;
+  std::vector<OperatorId> steps_;
   std::vector<std::pair<std::uint64_t, Index>> queue_;
 };
 

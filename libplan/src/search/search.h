@@ -21,12 +21,12 @@ class Target {
   virtual ~Target() = default;
   virtual bool reached(const Word* state) = 0;
   /// Whether branching on this outcome's fluent in this state is still worth trying.
-  virtual bool allowed(const Word* state, Step outcome) = 0;
+  virtual bool allowed(const Word* state, OperatorId outcome) = 0;
 };
 
 struct Found {
-  Status status = Status::Limit;
-  std::vector<Step> steps;
+  Outcome outcome = Outcome::Limit;
+  std::vector<OperatorId> steps;
 };
 
 /// Heuristics of a task, made when a search first needs them and kept for the next.

@@ -1,3 +1,4 @@
+// One call of the planner: the task is made, a planner run, limits become an outcome.
 #include <kaboum/geom/error.h>
 #include <kaboum/plan/solve.h>
 
@@ -39,17 +40,17 @@ Solution solve(const Model& model, const SolveOptions& options) {
     try {
       ContingentPlanner planner(task, search_function(options.algorithm), limits,
                                 solution.statistics);
-      solution.status = planner.run();
-      if (solution.status == Status::Solved) solution.plan = planner.plan();
-    } catch (const Stopped&) {
+      solution.outcome = planner.run();
+      if (solution.outcome == Outcome::Solved) solution.plan = planner.plan();
+    } catch (const LimitExceeded&) {
       count();
       throw;
     }
     count();
-  } catch (const Stopped&) {
-    solution.status = Status::Limit;
+  } catch (const LimitExceeded&) {
+    solution.outcome = Outcome::Limit;
   }
-  if (solution.status == Status::Limit)
+  if (solution.outcome == Outcome::Limit)
     solution.limit =
         limits.reason().empty() ? "depth limit of nested searches reached" : limits.reason();
   return solution;

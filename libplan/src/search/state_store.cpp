@@ -1,3 +1,4 @@
+// A hash table of states with open addressing.
 #include "search/state_store.h"
 
 #include "task/knowledge.h"

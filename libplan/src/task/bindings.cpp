@@ -1,3 +1,4 @@
+// Conjuncts and free variables of lifted queries.
 #include "task/bindings.h"
 
 #include <algorithm>

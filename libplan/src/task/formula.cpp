@@ -1,11 +1,10 @@
+// Hash-consing of ground formulas, their simplification, and calls of external functions.
 #include "task/formula.h"
 
 #include <kaboum/geom/error.h>
 
 #include <algorithm>
 #include <chrono>
-
-#include "task/bindings.h"
 
 namespace kaboum::plan {
 namespace {
@@ -169,222 +168,22 @@ bool FormulaPool::calls_volatile(Formula f) const {
   return std::any_of(begin(f), end(f), [&](Formula c) { return calls_volatile(c); });
 }
 
-Formula FormulaPool::ground(const Query& q, std::vector<Index>& slots) {
-  limits_.work();
-  const auto objects = [&] {
-    std::vector<Index> out;
-    for (const Argument& a : q.arguments) out.push_back(value_of(a, slots.data()));
-    return out;
-  };
-  switch (q.kind) {
-    case Query::Kind::True:
-      return kTrue;
-    case Query::Kind::False:
-      return kFalse;
-    case Query::Kind::And:
-    case Query::Kind::Or:
-    case Query::Kind::Xor: {
-      std::vector<Formula> children;
-      for (const Query& c : q.children) {
-        children.push_back(ground(c, slots));
-        if (q.kind == Query::Kind::And && children.back() == kFalse) return kFalse;
-        if (q.kind == Query::Kind::Or && children.back() == kTrue) return kTrue;
-      }
-      if (q.kind == Query::Kind::And) return all(children);
-      return q.kind == Query::Kind::Or ? any(children) : one(children);
-    }
-    case Query::Kind::Not:
-      return negate(ground(q.children[0], slots));
-    case Query::Kind::Exists:
-    case Query::Kind::ForAll: {
-      const bool exists = q.kind == Query::Kind::Exists;
-      std::vector<Formula> children;
-      for (const Index o : model_.types[q.type].objects) {
-        slots[q.symbol] = o;
-        children.push_back(ground(q.children[0], slots));
-        if (children.back() == (exists ? kTrue : kFalse)) return children.back();
-      }
-      return exists ? any(children) : all(children);
-    }
-    case Query::Kind::Known:
-    case Query::Kind::KnowWhether: {
-      const Layout::Place p = layout_.atom(q.symbol, objects().data());
-      if (!p.exists) return kFalse;
-      if (p.fluent == kNone) {
-        if (q.kind == Query::Kind::KnowWhether)
-          return p.atom != AtomKnowledge::Unknown ? kTrue : kFalse;
-        return p.atom == (q.negated ? AtomKnowledge::False : AtomKnowledge::True) ? kTrue : kFalse;
-      }
-      if (q.kind == Query::Kind::KnowWhether) return leaf(Kind::Whether, p.fluent);
-      return leaf(q.negated ? Kind::IsFalse : Kind::IsTrue, p.fluent);
-    }
-    case Query::Kind::KnownValue:
-    case Query::Kind::WhetherValue:
-    case Query::Kind::KnowValue: {
-      const Layout::Place p = layout_.term(q.symbol, objects().data());
-      if (!p.exists) return kFalse;
-      Index position = kNone;
-      Index value = kNone;
-      if (q.value) {
-        value = value_of(*q.value, slots.data());
-        position = layout_.position(model_.functions[q.symbol].range, value);
-      }
-      if (p.fluent == kNone) {
-        // A value outside the range is never the value.
-        if (p.value == kNone)
-          return q.value && position == kNone && (q.kind == Query::Kind::WhetherValue || q.negated)
-                     ? kTrue
-                     : kFalse;
-        if (q.kind != Query::Kind::KnownValue) return kTrue;
-        return (p.value == value) != q.negated ? kTrue : kFalse;
-      }
-      if (q.kind == Query::Kind::KnowValue) return leaf(Kind::ValueKnown, p.fluent);
-      if (position == kNone)
-        return q.kind == Query::Kind::WhetherValue || q.negated ? kTrue : kFalse;
-      if (q.kind == Query::Kind::WhetherValue) return leaf(Kind::ValueWhether, p.fluent, position);
-      return leaf(q.negated ? Kind::ValueIsNot : Kind::ValueIs, p.fluent, position);
-    }
-    case Query::Kind::Same:
-      return value_of(q.arguments[0], slots.data()) == value_of(q.arguments[1], slots.data())
-                 ? kTrue
-                 : kFalse;
-    case Query::Kind::External:
-      return external(q.symbol, objects(), q.value ? value_of(*q.value, slots.data()) : kNone);
-  }
-  throw Error(ErrorCode::Internal, "unexpected query");
-}
-
-Truth FormulaPool::evaluate(Formula f, const Word* state) const {
-  const Node& n = nodes_[f];
-  const auto yes = [](bool b) { return b ? Truth::Yes : Truth::No; };
-  switch (n.kind) {
-    case Kind::False:
-      return Truth::No;
-    case Kind::True:
-      return Truth::Yes;
-    case Kind::And:
-    case Kind::Or: {
-      const Truth decides = n.kind == Kind::And ? Truth::No : Truth::Yes;
-      Truth result = n.kind == Kind::And ? Truth::Yes : Truth::No;
-      for (const Formula *c = begin(f), *last = end(f); c != last; ++c) {
-        if (result == Truth::Open && nodes_[*c].calls) continue;
-        const Truth t = evaluate(*c, state);
-        if (t == decides) return t;
-        if (t == Truth::Open) result = t;
-      }
-      return result;
-    }
-    case Kind::Xor: {
-      int certain = 0;
-      bool open = false;
-      for (const Formula *c = begin(f), *last = end(f); c != last; ++c) {
-        const Truth t = evaluate(*c, state);
-        certain += t == Truth::Yes ? 1 : 0;
-        open |= t == Truth::Open;
-        if (certain > 1) return Truth::No;
-      }
-      return open ? Truth::Open : yes(certain == 1);
-    }
-    case Kind::Not: {
-      const Truth t = evaluate(*begin(f), state);
-      return t == Truth::Open ? t : yes(t == Truth::No);
-    }
-    case Kind::IsTrue:
-    case Kind::IsFalse: {
-      const auto k = static_cast<AtomKnowledge>(layout_.fluents()[n.a].get(state));
-      if (k == AtomKnowledge::Whether || tied(n.a, k, state)) return Truth::Open;
-      return yes(k == (n.kind == Kind::IsTrue ? AtomKnowledge::True : AtomKnowledge::False));
-    }
-    case Kind::Whether: {
-      const auto k = static_cast<AtomKnowledge>(layout_.fluents()[n.a].get(state));
-      return tied(n.a, k, state) ? Truth::Open : yes(k != AtomKnowledge::Unknown);
-    }
-    case Kind::ValueKnown:
-      return yes(layout_.fluents()[n.a].get(state) != kValueUnknown);
-    case Kind::ValueIs: {
-      const Fluent& fluent = layout_.fluents()[n.a];
-      const Word v = fluent.get(state);
-      if (v >= kFirstValue) return yes(v == kFirstValue + n.b);
-      if (v == kValueUnknown || excluded(fluent, state, n.b)) return Truth::No;
-      return Truth::Open;
-    }
-    case Kind::ValueIsNot: {
-      const Fluent& fluent = layout_.fluents()[n.a];
-      const Word v = fluent.get(state);
-      if (v >= kFirstValue) return yes(v != kFirstValue + n.b);
-      if (excluded(fluent, state, n.b)) return Truth::Yes;
-      return v == kValueSensed ? Truth::Open : Truth::No;
-    }
-    case Kind::ValueWhether: {
-      const Fluent& fluent = layout_.fluents()[n.a];
-      return yes(fluent.get(state) != kValueUnknown || excluded(fluent, state, n.b));
-    }
-    case Kind::Bits:
-      return yes((state[n.a] & masks_[n.b].first) == masks_[n.b].second);
-    case Kind::External: {
-      const std::optional<Index> result = call(n.a, state);
-      return yes(result && (n.b == kNone || *result == n.b));
-    }
-  }
-  return Truth::No;
-}
-
-void FormulaPool::open_fluents(Formula f, const Word* state, std::vector<Index>& out) const {
-  const Node& n = nodes_[f];
-  switch (n.kind) {
-    case Kind::And:
-    case Kind::Or:
-    case Kind::Xor:
-    case Kind::Not:
-      if (evaluate(f, state) != Truth::Open) return;
-      for (const Formula *c = begin(f), *last = end(f); c != last; ++c) {
-        if (nodes_[*c].calls && n.kind != Kind::Not) {
-          // Called only when all before it is decided: what is open before it comes first.
-          if (!out.empty()) continue;
-        }
-        open_fluents(*c, state, out);
-      }
-      return;
-    case Kind::IsTrue:
-    case Kind::IsFalse:
-    case Kind::Whether:
-    case Kind::ValueIs:
-    case Kind::ValueIsNot: {
-      if (evaluate(f, state) != Truth::Open) return;
-      const Fluent& fluent = layout_.fluents()[n.a];
-      const bool undecided =
-          !fluent.function && fluent.get(state) == static_cast<Word>(AtomKnowledge::Unknown);
-      const Index needed = undecided ? layout_.sensed_tie(n.a, state) : n.a;
-      if (std::find(out.begin(), out.end(), needed) == out.end()) out.push_back(needed);
-      return;
-    }
-    default:
-      return;
-  }
-}
-
-bool FormulaPool::as_bits(Formula f, Index& word, Word& mask, Word& value) const {
+std::optional<BitTest> FormulaPool::as_bits(Formula f) const {
   const Node& n = nodes_[f];
   switch (n.kind) {
     case Kind::IsTrue:
     case Kind::IsFalse:
     case Kind::ValueIs: {
       const Fluent& fluent = layout_.fluents()[n.a];
-      word = fluent.word;
-      mask = fluent.mask;
       const Word content = n.kind == Kind::IsTrue    ? static_cast<Word>(AtomKnowledge::True)
                            : n.kind == Kind::IsFalse ? static_cast<Word>(AtomKnowledge::False)
                                                      : kFirstValue + n.b;
-      value = content << fluent.shift;
-      return true;
+      return BitTest{fluent.word, fluent.mask, content << fluent.shift};
     }
     case Kind::Bits:
-      word = n.a;
-      mask = masks_[n.b].first;
-      value = masks_[n.b].second;
-      return true;
+      return BitTest{n.a, masks_[n.b].first, masks_[n.b].second};
     default:
-      return false;
+      return std::nullopt;
   }
 }
 

@@ -20,6 +20,14 @@ inline constexpr Formula kTrue = 1;
 /// Open: the query holds for some of them and fails for others.
 enum class Truth : std::uint8_t { No, Yes, Open };
 
+/// (state[word] & mask) == value: most conditions of actions are one. With mask 0 it is none.
+struct BitTest {
+  Index word = 0;
+  Word mask = 0;
+  Word value = 0;
+  [[nodiscard]] bool holds(const Word* state) const { return (state[word] & mask) == value; }
+};
+
 /// Hash-consed ground formulas over the fields of a layout.
 class FormulaPool {
  public:
@@ -77,8 +85,8 @@ class FormulaPool {
   [[nodiscard]] Word bits_value(const Node& n) const { return masks_[n.b].second; }
   [[nodiscard]] std::size_t size() const { return nodes_.size(); }
 
-  /// If `f` is "this field has this content": word, mask and content.
-  bool as_bits(Formula f, Index& word, Word& mask, Word& value) const;
+  /// If `f` is "this field has this content".
+  [[nodiscard]] std::optional<BitTest> as_bits(Formula f) const;
 
   /// Cached by its arguments; if volatile, also by the state.
   [[nodiscard]] std::optional<Index> call(Index call, const Word* state) const;
@@ -96,6 +104,10 @@ class FormulaPool {
 
   Formula add(Node node, std::vector<Formula> children);
   Formula join(Kind kind, const std::vector<Formula>& children);
+  Formula ground_connective(const Query& q, std::vector<Index>& slots);
+  Formula ground_quantifier(const Query& q, std::vector<Index>& slots);
+  Formula ground_atom(const Query& q, const std::vector<Index>& slots);
+  Formula ground_term(const Query& q, const std::vector<Index>& slots);
   /// Undecided now, but a sensed atom of the same exclusive-or entries may decide it.
   [[nodiscard]] bool tied(Index fluent, AtomKnowledge k, const Word* state) const {
     return k == AtomKnowledge::Unknown && !layout_.fluents()[fluent].groups.empty() &&

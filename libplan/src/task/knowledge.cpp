@@ -1,3 +1,5 @@
+// Updates of a knowledge state and their inference; the databases are those of [petrick2002pks], as
+// [gaschler2016] uses them. docs/planning/knowledge-states.md.
 #include "task/knowledge.h"
 
 #include <algorithm>
@@ -72,7 +74,7 @@ bool Knowledge::apply(const Change& c) {
         set(c.fluent, raw(AtomKnowledge::Whether));
         std::vector<Index> groups;
         for (const auto& [g, bit] : f.groups) groups.push_back(g);
-        return settle(std::move(groups));
+        return propagate(std::move(groups));
       }
       break;
     case K::Forget:
@@ -121,7 +123,7 @@ bool Knowledge::learn_atom(Index fluent, bool truth) {
   if (f.groups.empty()) return true;
   std::vector<Index> groups;
   for (const auto& [g, bit] : f.groups) groups.push_back(g);
-  return settle(std::move(groups));
+  return propagate(std::move(groups));
 }
 
 bool Knowledge::learn_value(Index fluent, Index value) {
@@ -162,11 +164,11 @@ bool Knowledge::learn_group(Index group) {
   const Group& g = layout_->groups()[group];
   const std::size_t n = g.members.size();
   write(g.word, n == 64 ? ~Word{0} : (Word{1} << n) - 1);
-  return settle({group});
+  return propagate({group});
 }
 
 /// Unit propagation through the given groups and those it reaches.
-bool Knowledge::settle(std::vector<Index> groups) {
+bool Knowledge::propagate(std::vector<Index> groups) {
   while (!groups.empty()) {
     const Group& g = layout_->groups()[groups.back()];
     groups.pop_back();

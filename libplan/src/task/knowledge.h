@@ -116,7 +116,7 @@ class Knowledge {
     for (Index i = 0; i < f.exclusion_words; ++i) write(f.exclusions + i, 0);
   }
   void drop_groups(const Fluent& f);
-  bool settle(std::vector<Index> groups);
+  bool propagate(std::vector<Index> groups);
 
   const Layout* layout_;
   std::vector<Word> words_;

@@ -3,16 +3,17 @@
 #include <kaboum/plan/model.h>
 
 #include <cstdint>
+#include <map>
 #include <vector>
 
+#include "task/atom_knowledge.h"
+#include "task/change_analysis.h"
+#include "task/numbering.h"
 #include "task/solve_limits.h"
 
 namespace kaboum::plan {
 
 using Word = std::uint64_t;
-
-/// Knowledge of one ground atom, as stored: two bits.
-enum class AtomKnowledge : std::uint8_t { Unknown = 0, True = 1, False = 2, Whether = 3 };
 
 /// Knowledge of one function term, as stored: an index. Larger values are kFirstValue + the
 /// position of the known value in the range type.
@@ -49,17 +50,19 @@ class Layout {
  public:
   Layout(const Model& model, Limits& limits);
 
-  struct Place {
+  struct Field {
     Index fluent = kNone;                         ///< kNone: constant
     AtomKnowledge atom = AtomKnowledge::Unknown;  ///< constant knowledge of an atom
     Index value = kNone;                          ///< constant value of a term; kNone: unknown
     bool exists = true;                           ///< false: an argument is not of its type
   };
-  [[nodiscard]] Place atom(Index predicate, const Index* arguments) const;
-  [[nodiscard]] Place term(Index function, const Index* arguments) const;
+  [[nodiscard]] Field atom(Index predicate, const Index* arguments) const;
+  [[nodiscard]] Field term(Index function, const Index* arguments) const;
 
   /// Position of an object among those of a type; kNone if it is not one of them.
-  [[nodiscard]] Index position(Index type, Index object) const { return positions_[type][object]; }
+  [[nodiscard]] Index position(Index type, Index object) const {
+    return numbering_.position(type, object);
+  }
 
   [[nodiscard]] const std::vector<Fluent>& fluents() const { return fluents_; }
   [[nodiscard]] const std::vector<Group>& groups() const { return groups_; }
@@ -76,19 +79,15 @@ class Layout {
   [[nodiscard]] bool sensing() const { return sensing_; }
 
  private:
-  struct Block {
-    std::size_t first = 0;
-    bool changes = false;
-    bool exclusions = false;
-  };
-  struct Builder;
+  struct BitAllocator;
 
-  [[nodiscard]] std::size_t number(const Symbol& symbol, const Block& block,
-                                   const Index* arguments) const;
+  void make_fluents(const std::vector<Symbol>& symbols, bool function,
+                    const std::vector<char>& changes, std::vector<Index>& fluent_of);
+  void make_groups(const std::vector<std::vector<ChangeAnalysis::Atom>>& entries);
+  void assign_words(const std::vector<char>& function_exclusions);
 
   const Model& model_;
-  std::vector<std::vector<Index>> positions_;
-  std::vector<Block> predicates_, functions_;
+  Numbering numbering_;
   std::vector<Index> atom_fluents_, term_fluents_;  ///< by number; kNone: constant
   std::vector<AtomKnowledge> atom_constants_;
   std::vector<Index> term_constants_;

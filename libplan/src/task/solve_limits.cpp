@@ -1,3 +1,4 @@
+// Time and memory, looked at every so often; progress is told from here as well.
 #include "task/solve_limits.h"
 
 #include <algorithm>

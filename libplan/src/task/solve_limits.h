@@ -8,8 +8,8 @@
 namespace kaboum::plan {
 
 /// Thrown out of grounding and analysis when a limit is reached; `solve` turns it into
-/// Status::Limit.
-struct Stopped {};
+/// Outcome::Limit.
+struct LimitExceeded {};
 
 /// Time and memory of one call of `solve`, checked every so often.
 class Limits {
@@ -25,10 +25,10 @@ class Limits {
   bool check(std::size_t bytes);
 
   /// For grounding and analysis: some work was done, and this much more memory is held until
-  /// `solve` ends. @throws Stopped
+  /// `solve` ends. @throws LimitExceeded
   void work(std::size_t more_bytes = 0) {
     held_ += more_bytes;
-    if (++work_ % 1024 == 0 && check(0)) throw Stopped();
+    if (++work_ % 1024 == 0 && check(0)) throw LimitExceeded();
   }
   [[nodiscard]] const std::string& reason() const { return reason_; }
 

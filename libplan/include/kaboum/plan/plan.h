@@ -7,14 +7,16 @@
 
 namespace kaboum::plan {
 
+/// A ground action of a plan.
+struct PlanAction {
+  Index schema = 0;  ///< of Model::actions
+  std::vector<Index> arguments;
+};
+
 /// A contingent plan: an acyclic graph whose equal sub-plans are shared (docs/planning/plans.md).
 /// Execution starts at `root`, performs the node's action, looks at what was sensed if the node
 /// branches, and goes on. kNone as a successor is the end: the goal holds.
 struct Plan {
-  struct Step {
-    Index schema = 0;
-    std::vector<Index> arguments;
-  };
   struct Branch {
     bool function = false;  ///< a term of Kv; else an atom of Kw
     Index symbol = 0;
@@ -28,7 +30,7 @@ struct Plan {
   struct Node {
     bool acts = false;
     bool branches = false;
-    Step action;
+    PlanAction action;
     Branch branch;
     Index next = kNone;  ///< when it does not branch
   };
@@ -66,7 +68,7 @@ std::string plan_dot(const Model& model, const Plan& plan);
 std::string plan_svg(const Model& model, const Plan& plan);
 
 /// "name(a, b)"; of a case "p(a)" or "!p(a)" or "f(a) = c".
-std::string step_text(const Model& model, const Plan::Step& step);
+std::string action_text(const Model& model, const PlanAction& step);
 std::string case_text(const Model& model, const Plan::Branch& branch, Index value);
 
 }  // namespace kaboum::plan

@@ -40,15 +40,15 @@ struct SolveOptions {
   std::function<void(const Statistics&)> progress;  ///< called now and then
 };
 
-enum class Status {
+enum class Outcome {
   Solved,
   Unsolvable,  ///< proved, by the inference rules of the knowledge state: all was tried
   Limit        ///< time, memory or size ran out first
 };
 
 struct Solution {
-  Status status = Status::Limit;
-  std::string limit;  ///< which, when status is Limit
+  Outcome outcome = Outcome::Limit;
+  std::string limit;  ///< which, when the outcome is Limit
   Plan plan;
   Statistics statistics;
 };

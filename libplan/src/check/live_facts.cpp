@@ -1,0 +1,88 @@
+// Liveness of facts, from the ends of the plan back to its root.
+#include "check/live_facts.h"
+
+#include <algorithm>
+
+namespace kaboum::plan {
+namespace {
+
+std::vector<Index> successors(const Plan::Node& node) {
+  std::vector<Index> next;
+  if (!node.branches) next.push_back(node.next);
+  for (const Plan::Branch::Case& c : node.branch.cases) next.push_back(c.next);
+  return next;
+}
+
+}  // namespace
+
+Fact branch_fact(const Plan::Branch& b) {
+  Fact f = {b.function ? Index{1} : Index{0}, b.symbol};
+  f.insert(f.end(), b.arguments.begin(), b.arguments.end());
+  return f;
+}
+
+std::vector<Index> bind(const Action& a, const PlanAction& action) {
+  std::vector<Index> slots(std::max<Index>(a.slots, 1), 0);
+  std::copy(action.arguments.begin(), action.arguments.end(), slots.begin());
+  return slots;
+}
+
+LiveFacts::LiveFacts(const Model& model, const Plan& plan, const QueryEvaluator& evaluator)
+    : model_(model), evaluator_(evaluator) {
+  std::vector<Index> slots(std::max<Index>(model.goal_slots, 1), 0);
+  evaluator.reads(model.goal, slots, goal_);
+  by_node_.resize(plan.nodes.size());
+  std::vector<char> done(plan.nodes.size(), 0);
+  // Acyclic: repeat over a stack until successors are done.
+  std::vector<Index> stack;
+  if (plan.root != kNone) stack.push_back(plan.root);
+  while (!stack.empty()) {
+    const Index n = stack.back();
+    const std::vector<Index> next = successors(plan.nodes[n]);
+    bool ready = true;
+    for (const Index m : next)
+      if (m != kNone && !done[m]) {
+        stack.push_back(m);
+        ready = false;
+      }
+    if (!ready) continue;
+    stack.pop_back();
+    if (done[n]) continue;
+    done[n] = 1;
+    read_node(plan.nodes[n], next, by_node_[n]);
+  }
+}
+
+void LiveFacts::read_node(const Plan::Node& node, const std::vector<Index>& successors,
+                          std::set<Fact>& live) const {
+  for (const Index m : successors) {
+    const std::set<Fact>& below = at(m);
+    live.insert(below.begin(), below.end());
+  }
+  if (node.branches) live.insert(branch_fact(node.branch));
+  if (node.acts) {
+    const Action& a = model_.actions[node.action.schema];
+    std::vector<Index> bound = bind(a, node.action);
+    evaluator_.reads(a.precondition, bound, live);
+    for (const Effect& e : a.effects) effect_reads(e, bound, live);
+  }
+}
+
+void LiveFacts::effect_reads(const Effect& e, std::vector<Index>& slots,
+                             std::set<Fact>& out) const {
+  if (e.kind == Effect::Kind::When) evaluator_.reads(e.condition, slots, out);
+  // A disjunction combines with what is known of its atoms by then.
+  if (e.kind == Effect::Kind::Update && e.update.database == Update::Database::Kx)
+    for (const Update::Literal& l : e.update.literals)
+      out.insert(fact(l.function, l.symbol, l.arguments, slots));
+  if (e.kind == Effect::Kind::ForAll) {
+    for (const Index o : model_.types[e.type].objects) {
+      slots.at(e.slot) = o;
+      for (const Effect& c : e.children) effect_reads(c, slots, out);
+    }
+    return;
+  }
+  for (const Effect& c : e.children) effect_reads(c, slots, out);
+}
+
+}  // namespace kaboum::plan

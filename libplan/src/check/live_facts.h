@@ -1,0 +1,40 @@
+#pragma once
+
+#include <kaboum/plan/plan.h>
+
+#include <set>
+#include <vector>
+
+#include "check/query_evaluator.h"
+
+namespace kaboum::plan {
+
+Fact branch_fact(const Plan::Branch& b);
+
+/// Slots of an action with its arguments in place.
+std::vector<Index> bind(const Action& a, const PlanAction& action);
+
+/// What each node of a plan, and all that may follow it, reads; knowledge of anything else can be
+/// dropped there.
+class LiveFacts {
+ public:
+  /// @pre the plan has no cycles.
+  LiveFacts(const Model& model, const Plan& plan, const QueryEvaluator& evaluator);
+
+  /// kNone: the end, where the goal is read.
+  [[nodiscard]] const std::set<Fact>& at(Index node) const {
+    return node == kNone ? goal_ : by_node_[node];
+  }
+
+ private:
+  void read_node(const Plan::Node& node, const std::vector<Index>& successors,
+                 std::set<Fact>& live) const;
+  void effect_reads(const Effect& e, std::vector<Index>& slots, std::set<Fact>& out) const;
+
+  const Model& model_;
+  const QueryEvaluator& evaluator_;
+  std::set<Fact> goal_;
+  std::vector<std::set<Fact>> by_node_;
+};
+
+}  // namespace kaboum::plan

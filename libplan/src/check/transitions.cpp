@@ -1,0 +1,256 @@
+// What actions and sensing make of run-time knowledge: docs/planning/knowledge-states.md,
+// "Updates", written a second time, on the lifted model.
+#include "check/transitions.h"
+
+#include <kaboum/geom/error.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace kaboum::plan {
+namespace {
+
+constexpr std::size_t kMaximumSplit = 1U << 16U;  // outcomes of one action
+
+}  // namespace
+
+const std::vector<Index>& Transitions::range(Index function) const {
+  return model_.types[model_.functions[function].range].objects;
+}
+
+/// The states that the sensing of one fact may lead to.
+void Transitions::sense(RuntimeKnowledge state, const Fact& f,
+                        std::vector<RuntimeKnowledge>& next) const {
+  if (f[0] == 1 ? state.value(f) != nullptr : state.knows_whether(f)) {
+    next.push_back(std::move(state));
+    return;
+  }
+  if (f[0] == 1) {
+    for (const Index v : range(f[1])) {
+      RuntimeKnowledge copy = state;
+      if (!state.rules_out(f, v) && copy.learn_value(f, v, range(f[1])))
+        next.push_back(std::move(copy));
+    }
+    return;
+  }
+  for (const bool truth : {true, false}) {
+    RuntimeKnowledge copy = state;
+    if (copy.learn(f, truth)) next.push_back(std::move(copy));
+  }
+}
+
+/// The states that the sensing of these facts may lead to.
+std::vector<RuntimeKnowledge> Transitions::split(RuntimeKnowledge k,
+                                                 const std::vector<Fact>& sensed) const {
+  std::vector<RuntimeKnowledge> all;
+  all.push_back(std::move(k));
+  for (const Fact& f : sensed) {
+    std::vector<RuntimeKnowledge> next;
+    for (RuntimeKnowledge& state : all) sense(std::move(state), f, next);
+    if (next.size() > kMaximumSplit)
+      throw Error(ErrorCode::LimitReached, "too many outcomes of one action to replay");
+    all = std::move(next);
+  }
+  return all;
+}
+
+std::vector<RuntimeKnowledge> Transitions::initial_states() const {
+  RuntimeKnowledge k;
+  std::vector<Fact> sensed;
+  std::set<Fact> stated;
+  const std::vector<Index> none;
+  for (const Update& u : model_.initial) {
+    const Update::Literal& l = u.literals[0];
+    const Fact f = fact(l.function, l.symbol, l.arguments, none);
+    bool ok = true;
+    switch (u.database) {
+      case Update::Database::Kf:
+        ok = learn_literal(k, f, l);
+        break;
+      case Update::Database::Kw:
+      case Update::Database::Kv:
+        sensed.push_back(f);
+        stated.insert(f);
+        break;
+      case Update::Database::Kx:
+        for (const Update::Literal& o : u.literals)
+          stated.insert(fact(o.function, o.symbol, o.arguments, none));
+        ok = learn_exclusive(k, u, none);
+        break;
+      case Update::Database::Lcw:
+        // Closed last: what is sensed or in a disjunction stays open.
+        if (!k.knows_whether(f) && !stated.contains(f)) ok = k.learn(f, false);
+        break;
+    }
+    if (!ok) throw Error(ErrorCode::InvalidInput, "the initial knowledge contradicts itself");
+  }
+  return split(std::move(k), sensed);
+}
+
+/// An initial entry of Kf. @return false if it contradicts what is known.
+bool Transitions::learn_literal(RuntimeKnowledge& k, const Fact& f,
+                                const Update::Literal& l) const {
+  if (!l.function) return k.learn(f, !l.negated);
+  return l.negated ? k.learn_not_value(f, l.value->index, range(l.symbol))
+                   : k.learn_value(f, l.value->index, range(l.symbol));
+}
+
+bool Transitions::learn_exclusive(RuntimeKnowledge& k, const Update& u,
+                                  const std::vector<Index>& slots) const {
+  if (!u.literals[0].function) {
+    std::set<Fact> atoms;
+    for (const Update::Literal& l : u.literals)
+      atoms.insert(fact(false, l.symbol, l.arguments, slots));
+    return k.learn_exclusive(atoms);
+  }
+  const Index symbol = u.literals[0].symbol;
+  const Fact f = fact(true, symbol, u.literals[0].arguments, slots);
+  std::set<Index> options;
+  for (const Update::Literal& l : u.literals) options.insert(object(*l.value, slots));
+  for (const Index v : range(symbol))
+    if (!options.contains(v) && !k.learn_not_value(f, v, range(symbol))) return false;
+  return true;
+}
+
+/// Updates whose conditions hold before the action.
+void Transitions::fire(const std::vector<Effect>& effects, std::vector<Index>& slots,
+                       const RuntimeKnowledge& k, std::vector<GroundUpdate>& out) const {
+  for (const Effect& e : effects) {
+    if (e.kind == Effect::Kind::Update) {
+      out.push_back({&e.update, slots});
+    } else if (e.kind == Effect::Kind::When) {
+      if (evaluator_.holds(e.condition, slots, k)) fire(e.children, slots, k, out);
+    } else {
+      for (const Index o : model_.types[e.type].objects) {
+        slots.at(e.slot) = o;
+        fire(e.children, slots, k, out);
+      }
+    }
+  }
+}
+
+bool Transitions::in_range(const Update::Literal& l, const std::vector<Index>& slots) const {
+  const Symbol& s = (l.function ? model_.functions : model_.predicates)[l.symbol];
+  for (std::size_t i = 0; i < l.arguments.size(); ++i)
+    if (!model_.is_a(object(l.arguments[i], slots), s.parameters[i])) return false;
+  return !l.value || model_.is_a(object(*l.value, slots), s.range);
+}
+
+void Transitions::delete_literal(RuntimeKnowledge& k, const Fact& f, const Update::Literal& l,
+                                 const std::vector<Index>& slots) const {
+  if (!l.function) {
+    if (!k.knows(f, l.negated)) k.forget(f);
+  } else if (l.negated) {
+    const Index* v = k.value(f);
+    if (v == nullptr || *v != object(*l.value, slots)) k.forget_value(f);
+  } else if (!k.rules_out(f, object(*l.value, slots))) {
+    k.forget_value(f);
+  }
+}
+
+void Transitions::delete_from(RuntimeKnowledge& k, const GroundUpdate& g) const {
+  const Update& u = *g.update;
+  const Update::Literal& l = u.literals[0];
+  const Fact f = fact(l.function, l.symbol, l.arguments, g.slots);
+  switch (u.database) {
+    case Update::Database::Kf:
+      delete_literal(k, f, l, g.slots);
+      return;
+    case Update::Database::Kw:
+      k.forget(f);
+      return;
+    case Update::Database::Kv:
+      k.forget_value(f);
+      return;
+    case Update::Database::Kx:
+      if (l.function) {
+        k.forget_value(f);
+      } else {
+        std::set<Fact> atoms;
+        for (const Update::Literal& o : u.literals)
+          atoms.insert(fact(false, o.symbol, o.arguments, g.slots));
+        k.drop_exclusive(atoms);
+      }
+      return;
+    case Update::Database::Lcw:
+      if (!k.knows(f, true)) k.forget(f);
+      return;
+  }
+}
+
+bool Transitions::add_literal(RuntimeKnowledge& k, const Fact& f, const Update::Literal& l,
+                              const std::vector<Index>& slots) const {
+  if (!l.function) {
+    k.become(f, !l.negated);
+    return true;
+  }
+  const Index v = object(*l.value, slots);
+  if (!l.negated) {
+    k.become_value(f, v);
+    return true;
+  }
+  if (const Index* known = k.value(f); known != nullptr && *known == v) k.forget_value(f);
+  return k.learn_not_value(f, v, range(l.symbol));
+}
+
+/// @return false if it is an observation that contradicts what is known.
+bool Transitions::add_to(RuntimeKnowledge& k, const GroundUpdate& g,
+                         std::vector<Fact>& sensed) const {
+  const Update& u = *g.update;
+  const Update::Literal& l = u.literals[0];
+  const Fact f = fact(l.function, l.symbol, l.arguments, g.slots);
+  switch (u.database) {
+    case Update::Database::Kf:
+      if (!u.maybe) return add_literal(k, f, l, g.slots);
+      may_become(k, f, l, g.slots);
+      return true;
+    case Update::Database::Kw:
+    case Update::Database::Kv:
+    case Update::Database::Lcw:
+      sensed.push_back(f);
+      return true;
+    case Update::Database::Kx:
+      if (l.function) {
+        const Index* known = k.value(f);
+        const bool kept = known == nullptr ||
+                          std::any_of(u.literals.begin(), u.literals.end(), [&](const auto& o) {
+                            return object(*o.value, g.slots) == *known;
+                          });
+        if (!kept) k.forget_value(f);
+      }
+      return learn_exclusive(k, u, g.slots);
+  }
+  return true;
+}
+
+/// The literal may have come true: it stays known if it was, and its negation does not.
+void Transitions::may_become(RuntimeKnowledge& k, const Fact& f, const Update::Literal& l,
+                             const std::vector<Index>& slots) const {
+  if (!l.function) {
+    if (!k.knows(f, !l.negated)) k.forget(f);
+    return;
+  }
+  const Index v = object(*l.value, slots);
+  const Index* known = k.value(f);
+  const bool holds = l.negated ? k.rules_out(f, v) : known != nullptr && *known == v;
+  if (!holds) k.forget_value(f);
+}
+
+std::vector<RuntimeKnowledge> Transitions::after(const Action& action, std::vector<Index>& slots,
+                                                 const RuntimeKnowledge& before) const {
+  std::vector<GroundUpdate> fired;
+  fire(action.effects, slots, before, fired);
+  std::erase_if(fired, [&](const GroundUpdate& g) {
+    return !std::all_of(g.update->literals.begin(), g.update->literals.end(),
+                        [&](const Update::Literal& l) { return in_range(l, g.slots); });
+  });
+  RuntimeKnowledge k = before;
+  std::vector<Fact> sensed;
+  for (const GroundUpdate& g : fired)
+    if (!g.update->add) delete_from(k, g);
+  for (const GroundUpdate& g : fired)
+    if (g.update->add && !add_to(k, g, sensed)) return {};
+  return split(std::move(k), sensed);
+}
+
+}  // namespace kaboum::plan

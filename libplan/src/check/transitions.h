@@ -1,0 +1,56 @@
+#pragma once
+
+#include <kaboum/plan/model.h>
+
+#include <vector>
+
+#include "check/query_evaluator.h"
+#include "check/runtime_knowledge.h"
+
+namespace kaboum::plan {
+
+/// The states of run-time knowledge that a model's initial entries and actions lead to.
+/// All functions throw Error{LimitReached} where sensing has too many outcomes.
+class Transitions {
+ public:
+  Transitions(const Model& model, const QueryEvaluator& evaluator)
+      : model_(model), evaluator_(evaluator) {}
+
+  /// @throws Error{InvalidInput} if the initial knowledge contradicts itself.
+  [[nodiscard]] std::vector<RuntimeKnowledge> initial_states() const;
+
+  /// One for each way that what the action senses may turn out; none if what it observes
+  /// contradicts what is known.
+  [[nodiscard]] std::vector<RuntimeKnowledge> after(const Action& action, std::vector<Index>& slots,
+                                                    const RuntimeKnowledge& before) const;
+
+ private:
+  struct GroundUpdate {
+    const Update* update;
+    std::vector<Index> slots;
+  };
+
+  [[nodiscard]] const std::vector<Index>& range(Index function) const;
+  void sense(RuntimeKnowledge state, const Fact& f, std::vector<RuntimeKnowledge>& next) const;
+  [[nodiscard]] std::vector<RuntimeKnowledge> split(RuntimeKnowledge k,
+                                                    const std::vector<Fact>& sensed) const;
+  void fire(const std::vector<Effect>& effects, std::vector<Index>& slots,
+            const RuntimeKnowledge& k, std::vector<GroundUpdate>& out) const;
+  [[nodiscard]] bool in_range(const Update::Literal& l, const std::vector<Index>& slots) const;
+
+  bool learn_literal(RuntimeKnowledge& k, const Fact& f, const Update::Literal& l) const;
+  bool learn_exclusive(RuntimeKnowledge& k, const Update& u, const std::vector<Index>& slots) const;
+  void delete_literal(RuntimeKnowledge& k, const Fact& f, const Update::Literal& l,
+                      const std::vector<Index>& slots) const;
+  void delete_from(RuntimeKnowledge& k, const GroundUpdate& g) const;
+  bool add_literal(RuntimeKnowledge& k, const Fact& f, const Update::Literal& l,
+                   const std::vector<Index>& slots) const;
+  bool add_to(RuntimeKnowledge& k, const GroundUpdate& g, std::vector<Fact>& sensed) const;
+  void may_become(RuntimeKnowledge& k, const Fact& f, const Update::Literal& l,
+                  const std::vector<Index>& slots) const;
+
+  const Model& model_;
+  const QueryEvaluator& evaluator_;
+};
+
+}  // namespace kaboum::plan

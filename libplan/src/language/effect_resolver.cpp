@@ -1,0 +1,162 @@
+// Effects: updates of the databases Kf, Kw, Kv, Kx and LCW, their conditions and quantifiers.
+#include "language/effect_resolver.h"
+
+namespace kaboum::plan {
+namespace {
+
+namespace sx = syntax;
+
+/// `children` for every object of the slot's type.
+Effect for_all(const std::pair<Index, Index>& slot, std::vector<Effect> children) {
+  Effect all;
+  all.kind = Effect::Kind::ForAll;
+  all.slot = slot.first;
+  all.type = slot.second;
+  all.children = std::move(children);
+  return all;
+}
+
+}  // namespace
+
+Update::Literal EffectResolver::literal(const sx::Formula& f, bool negated, Scope& scope,
+                                        std::vector<Unfolded>& unfolded) const {
+  using K = sx::Formula::Kind;
+  if (f.kind == K::Not) return literal(f.children.at(0), !negated, scope, unfolded);
+  Update::Literal l;
+  if (f.kind == K::Atom) {
+    const sx::Term& t = f.terms.at(0);
+    Query q = queries_.atom(t, scope, unfolded);
+    l.symbol = q.symbol;
+    l.arguments = std::move(q.arguments);
+    l.negated = negated;
+    return l;
+  }
+  if (f.kind != K::Equal && f.kind != K::NotEqual)
+    f.location.fail("a database holds atoms, equalities of a function, and their negations");
+  const bool swapped = !symbols().function_of(f.terms.at(0));
+  const sx::Term& left = f.terms.at(swapped ? 1 : 0);
+  const sx::Term& right = f.terms.at(swapped ? 0 : 1);
+  const Index* function = symbols().function_of(left);
+  if (function == nullptr) left.name.location.fail("unknown function '" + left.name.text + "'");
+  const Symbol& s = model().functions[*function];
+  if (s.numeric)
+    left.name.location.fail("'" + left.name.text +
+                            "' is a number; only the initial state gives its value");
+  l.function = true;
+  l.symbol = *function;
+  l.arguments = terms_.arguments(left, s, scope, unfolded);
+  l.value = terms_.argument(right, s.range, scope, unfolded);
+  l.negated = (f.kind == K::NotEqual) != negated;
+  return l;
+}
+
+Update EffectResolver::update(const sx::Effect& e, Scope& scope,
+                              std::vector<Unfolded>& unfolded) const {
+  Update u;
+  u.add = e.kind != sx::Effect::Kind::Delete;
+  u.maybe = e.kind == sx::Effect::Kind::Maybe;
+  u.database = static_cast<Update::Database>(e.database);
+  const sx::Formula& first = e.formulas.at(0);
+  switch (e.database) {
+    case sx::Database::Kf:
+    case sx::Database::Lcw:
+      u.literals.push_back(literal(first, false, scope, unfolded));
+      break;
+    case sx::Database::Kw:
+      u.literals.push_back(literal(first, false, scope, unfolded));
+      u.literals[0].negated = false;
+      if (u.literals[0].function)
+        first.location.fail("Kw holds atoms; the value of a function belongs to Kv");
+      break;
+    case sx::Database::Kv: {
+      if (first.kind != sx::Formula::Kind::Atom || !symbols().function_of(first.terms.at(0)))
+        first.location.fail("Kv holds a function term");
+      const sx::Term& t = first.terms.at(0);
+      Update::Literal l;
+      l.function = true;
+      l.symbol = *symbols().function_of(t);
+      if (model().functions[l.symbol].numeric)
+        t.name.location.fail("'" + t.name.text + "' is a number, never sensed");
+      l.arguments = terms_.arguments(t, model().functions[l.symbol], scope, unfolded);
+      u.literals.push_back(std::move(l));
+      break;
+    }
+    case sx::Database::Kx:
+      exclusive(e, u, scope, unfolded);
+      break;
+  }
+  return u;
+}
+
+void EffectResolver::exclusive(const sx::Effect& e, Update& u, Scope& scope,
+                               std::vector<Unfolded>& unfolded) const {
+  if (e.formulas.size() < 2) e.location.fail("Kx needs two or more alternatives: Kx, a | b");
+  if (e.formulas.size() > 64) e.location.fail("Kx takes at most 64 alternatives");
+  for (const sx::Formula& f : e.formulas) {
+    u.literals.push_back(literal(f, false, scope, unfolded));
+    const Update::Literal& l = u.literals.back();
+    if (l.negated) f.location.fail("an alternative of Kx is an atom or f(x) = c, not a negation");
+    if (l.function != u.literals[0].function)
+      f.location.fail(
+          "the alternatives of one Kx entry are all atoms or all values of one function");
+    if (l.function && l.symbol != u.literals[0].symbol)
+      f.location.fail("the alternatives of one Kx entry are values of one function term");
+    if (l.function)
+      for (std::size_t i = 0; i < l.arguments.size(); ++i)
+        if (l.arguments[i].variable != u.literals[0].arguments[i].variable ||
+            l.arguments[i].index != u.literals[0].arguments[i].index)
+          f.location.fail("the alternatives of one Kx entry are values of one function term");
+  }
+}
+
+Effect EffectResolver::update_effect(const sx::Effect& e, Scope& scope) const {
+  const std::size_t outer = scope.variables.size();
+  BoundSlots wildcards;
+  if (e.database == sx::Database::Lcw) {
+    if (e.formulas.at(0).kind != sx::Formula::Kind::Atom)
+      e.formulas[0].location.fail("LCW(...) holds an atom");
+    wildcards = queries_.bind_wildcards(e.formulas[0].terms.at(0), scope);
+  }
+  std::vector<Unfolded> unfolded;
+  Effect result;
+  result.update = update(e, scope, unfolded);
+  scope.variables.resize(outer);
+  for (const auto& slot : wildcards) {
+    std::vector<Effect> children;
+    children.push_back(std::move(result));
+    result = for_all(slot, std::move(children));
+  }
+  return wrap(std::move(unfolded), std::move(result));
+}
+
+Effect EffectResolver::effect(const sx::Effect& e, Scope& scope) const {
+  switch (e.kind) {
+    case sx::Effect::Kind::Add:
+    case sx::Effect::Kind::Maybe:
+    case sx::Effect::Kind::Delete:
+      return update_effect(e, scope);
+    case sx::Effect::Kind::When: {
+      Effect result;
+      result.kind = Effect::Kind::When;
+      result.condition = queries_.query(e.formulas.at(0), scope);
+      for (const sx::Effect& child : e.children) result.children.push_back(effect(child, scope));
+      return result;
+    }
+    case sx::Effect::Kind::ForAll: {
+      const std::size_t outer = scope.variables.size();
+      const BoundSlots slots = queries_.bind(e.variables, scope);
+      std::vector<Effect> children;
+      for (const sx::Effect& child : e.children) children.push_back(effect(child, scope));
+      scope.variables.resize(outer);
+      for (auto slot = slots.rbegin(); slot != slots.rend(); ++slot) {
+        Effect all = for_all(*slot, std::move(children));
+        children.clear();
+        children.push_back(std::move(all));
+      }
+      return std::move(children.at(0));
+    }
+  }
+  e.location.fail("unexpected effect");
+}
+
+}  // namespace kaboum::plan

@@ -1,0 +1,269 @@
+// Grammar of PDDL: a domain, a problem, or both; :observe, (unknown ...) and (oneof ...) for
+// incomplete knowledge.
+#include "language/pddl.h"
+
+#include <algorithm>
+#include <array>
+
+#include "language/pddl_effect.h"
+#include "language/pddl_formula.h"
+#include "language/s_expression.h"
+
+namespace kaboum::plan {
+namespace {
+
+using namespace pddl;  // this file's business are its readers
+using syntax::Effect;
+using syntax::Formula;
+using syntax::Name;
+using syntax::Term;
+using syntax::TypedVariable;
+using K = Formula::Kind;
+
+class PddlParser {
+ public:
+  explicit PddlParser(std::shared_ptr<const Source> source) : source_(std::move(source)) {}
+
+  syntax::Document read() {
+    document_.sources.push_back(source_);
+    const std::vector<SExpression> all = read_s_expressions(*source_);
+    if (all.empty()) source_->fail(0, "expected (define ...)");
+    for (const SExpression& e : all) define(e);
+    if (costs_)
+      for (syntax::Action& a : document_.actions)
+        if (a.cost.empty()) a.cost.push_back({Term::Kind::Name, {"0", a.name.location}, {}});
+    for (syntax::Action& a : document_.actions) a.effects = additions_last(a.effects);
+    document_.assumes_complete = !contingent_ && !document_.actions.empty();
+    if (document_.assumes_complete && !document_.unknown.empty())
+      document_.unknown[0].location.fail(
+          "incomplete knowledge needs the requirement ':contingent' in the domain");
+    for (syntax::Action& a : document_.actions)
+      a.effects = conditions_decided(a.effects, contingent_);
+    return std::move(document_);
+  }
+
+ private:
+  void define(const SExpression& e) {
+    if (!e.headed("define")) e.location.fail("expected (define ...)");
+    const SExpression& head = item(e, 1, "(domain NAME) or (problem NAME)");
+    const bool domain = head.headed("domain");
+    if (!domain && !head.headed("problem"))
+      head.location.fail("expected (domain NAME) or (problem NAME)");
+    const Name n = name(item(head, 1, "a name"), "a name");
+    if (domain || document_.name.text.empty()) document_.name = n;
+    for (std::size_t i = 2; i < e.items.size(); ++i) section(e.items[i]);
+    if (!domain) close_world(head.location);
+  }
+
+  void section(const SExpression& e) {
+    const std::string key = name(item(e, 0, "a section"), "a section").text;
+    if (key == ":requirements") {
+      for (std::size_t i = 1; i < e.items.size(); ++i) requirement(e.items[i]);
+    } else if (key == ":types") {
+      for (const TypedVariable& t : typed(e, 1, false)) document_.types.push_back({t.name, t.type});
+    } else if (key == ":constants" || key == ":objects") {
+      for (TypedVariable& c : typed(e, 1, false)) document_.constants.push_back(std::move(c));
+    } else if (key == ":predicates") {
+      for (std::size_t i = 1; i < e.items.size(); ++i)
+        document_.predicates.push_back(signature(e.items[i]));
+    } else if (key == ":functions") {
+      functions(e);
+    } else if (key == ":action") {
+      action(e);
+    } else if (key == ":init") {
+      for (std::size_t i = 1; i < e.items.size(); ++i) initial(e.items[i]);
+    } else if (key == ":goal") {
+      document_.goals.push_back(formula(item(e, 1, "a goal"), true));
+    } else if (key == ":metric") {
+      const SExpression& what = item(e, 2, "what to minimise");
+      if (!item(e, 1, "minimize").is("minimize") ||
+          !(what.is("total-cost") || what.headed("total-cost")))
+        e.location.fail("only the metric 'minimize (total-cost)' is supported");
+    } else if (key != ":domain") {
+      e.location.fail("unsupported section '" + key + "'");
+    }
+  }
+
+  void requirement(const SExpression& e) {
+    contingent_ |= e.is(":contingent");
+    static constexpr std::array kSupported = {":strips",
+                                              ":typing",
+                                              ":equality",
+                                              ":negative-preconditions",
+                                              ":disjunctive-preconditions",
+                                              ":existential-preconditions",
+                                              ":universal-preconditions",
+                                              ":quantified-preconditions",
+                                              ":conditional-effects",
+                                              ":adl",
+                                              ":object-fluents",
+                                              ":action-costs",
+                                              ":contingent"};
+    if (std::none_of(kSupported.begin(), kSupported.end(), [&](const char* s) { return e.is(s); }))
+      e.location.fail("unsupported requirement '" + e.word + "'");
+  }
+
+  static syntax::Signature signature(const SExpression& e) {
+    syntax::Signature s;
+    s.name = name(item(e, 0, "a name"), "a name");
+    for (const TypedVariable& v : typed(e, 1, true)) s.parameters.push_back(v.type);
+    return s;
+  }
+
+  void functions(const SExpression& e) {
+    std::size_t untyped = document_.functions.size();
+    for (std::size_t i = 1; i < e.items.size(); ++i) {
+      if (e.items[i].is("-")) {
+        const Name range = name(item(e, i + 1, "a type after '-'"), "a type");
+        for (; untyped < document_.functions.size(); ++untyped)
+          document_.functions[untyped].range = range;
+        ++i;
+        continue;
+      }
+      document_.functions.push_back(signature(e.items[i]));
+    }
+    // Without a type a function is a number.
+    for (; untyped < document_.functions.size(); ++untyped)
+      document_.functions[untyped].range = {"number", document_.functions[untyped].name.location};
+    std::erase_if(document_.functions,
+                  [](const syntax::Signature& s) { return s.name.text == "total-cost"; });
+  }
+
+  void action(const SExpression& e) {
+    syntax::Action a;
+    a.name = name(item(e, 1, "the action's name"), "the action's name");
+    a.precondition.location = e.location;
+    for (std::size_t i = 2; i < e.items.size(); i += 2) {
+      const std::string key = name(e.items[i], "a keyword").text;
+      const SExpression& value = item(e, i + 1, "what the keyword introduces");
+      if (key == ":parameters") {
+        a.parameters = typed(value, 0, true);
+      } else if (key == ":precondition") {
+        a.precondition = formula(value, true);
+      } else if (key == ":effect") {
+        effects(value, a.effects, a);
+      } else if (key == ":observe") {
+        observe(value, a.effects);
+        contingent_ = true;
+      } else {
+        e.items[i].location.fail("unsupported part of an action: '" + key + "'");
+      }
+    }
+    // Costs count only where some action has them; then the others are free.
+    costs_ |= !a.cost.empty();
+    document_.actions.push_back(std::move(a));
+  }
+
+  void observe(const SExpression& e, std::vector<Effect>& out) const {
+    if (e.headed("and")) {
+      for (std::size_t i = 1; i < e.items.size(); ++i) observe(e.items[i], out);
+      return;
+    }
+    Effect sense;
+    sense.location = e.location;
+    const bool object_fluent =
+        e.list && !e.items.empty() &&
+        std::any_of(document_.functions.begin(), document_.functions.end(),
+                    [&](const syntax::Signature& s) { return s.name.text == e.items[0].word; });
+    sense.database = object_fluent ? syntax::Database::Kv : syntax::Database::Kw;
+    sense.formulas.push_back(literal(e));
+    out.push_back(std::move(sense));
+  }
+
+  /// The cost of an action is one increase of (total-cost).
+  static void increase(const SExpression& e, bool conditional, syntax::Action& a) {
+    if (!item(e, 1, "(total-cost)").headed("total-cost"))
+      e.location.fail("only (total-cost) can be increased");
+    if (conditional || !a.cost.empty())
+      e.location.fail("the cost of an action is one unconditional increase");
+    a.cost.push_back(term(item(e, 2, "the cost")));
+  }
+
+  void effects(const SExpression& e, std::vector<Effect>& out, syntax::Action& a) const {
+    if (!e.list) e.location.fail("expected an effect in parentheses");
+    if (e.items.empty()) return;
+    if (e.headed("and")) {
+      for (std::size_t i = 1; i < e.items.size(); ++i) effects(e.items[i], out, a);
+      return;
+    }
+    if (e.headed("increase")) {
+      increase(e, &out != &a.effects, a);
+      return;
+    }
+    Effect made;
+    made.location = e.location;
+    if (e.headed("forall")) {
+      made.kind = Effect::Kind::ForAll;
+      made.variables = typed(item(e, 1, "variables"), 0, true);
+      effects(item(e, 2, "an effect"), made.children, a);
+    } else if (e.headed("when")) {
+      made.kind = Effect::Kind::When;
+      made.formulas.push_back(formula(item(e, 1, "a condition"), true));
+      made.formulas.push_back(formula(item(e, 1, "a condition"), false));  // for the unknown case
+      effects(item(e, 2, "an effect"), made.children, a);
+    } else if (e.headed("assign")) {
+      Formula f = make(K::Equal, e.location);
+      f.terms = {term(item(e, 1, "a function")), term(item(e, 2, "a value"))};
+      made.formulas.push_back(std::move(f));
+    } else if (e.headed("not")) {
+      made.formulas.push_back(make(K::Not, e.location, {literal(item(e, 1, "an atom"))}));
+    } else if (e.headed("decrease") || e.headed("scale-up") || e.headed("scale-down")) {
+      e.location.fail("unsupported effect '" + e.items[0].word + "'");
+    } else {
+      made.formulas.push_back(literal(e));
+    }
+    out.push_back(std::move(made));
+  }
+
+  void initial(const SExpression& e) {
+    if (e.headed("and")) {
+      for (std::size_t i = 1; i < e.items.size(); ++i) initial(e.items[i]);
+      return;
+    }
+    Effect entry;
+    entry.location = e.location;
+    if (e.headed("unknown")) {
+      unknown_.push_back(literal(item(e, 1, "an atom")));
+      return;
+    }
+    if (e.headed("oneof")) {
+      entry.database = syntax::Database::Kx;
+      for (std::size_t i = 1; i < e.items.size(); ++i) {
+        entry.formulas.push_back(literal(e.items[i]));
+        unknown_.push_back(entry.formulas.back());
+      }
+      document_.initial.push_back(std::move(entry));
+      return;
+    }
+    if (e.headed("or"))
+      e.location.fail(
+          "(or ...) is not supported in the initial state; (oneof ...) and (unknown ...) are");
+    if (e.headed("=") && item(e, 1, "a function").headed("total-cost")) return;
+    if (e.headed("not")) {
+      entry.formulas.push_back(make(K::Not, e.location, {literal(item(e, 1, "an atom"))}));
+    } else {
+      entry.formulas.push_back(literal(e));
+    }
+    document_.initial.push_back(std::move(entry));
+  }
+
+  /// Everything not stated is false, but for what is unknown.
+  void close_world(const SourceLocation& location) {
+    document_.closed.push_back({"all", location});
+    document_.unknown = std::move(unknown_);
+  }
+
+  std::shared_ptr<const Source> source_;
+  syntax::Document document_;
+  std::vector<Formula> unknown_;
+  bool costs_ = false;
+  bool contingent_ = false;
+};
+
+}  // namespace
+
+syntax::Document parse_pddl(std::shared_ptr<const Source> source) {
+  return PddlParser(std::move(source)).read();
+}
+
+}  // namespace kaboum::plan

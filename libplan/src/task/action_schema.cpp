@@ -1,0 +1,98 @@
+// An action before it is ground: which conjuncts can be tested after each parameter, and which
+// objects can stand for it.
+#include "task/action_schema.h"
+
+#include <algorithm>
+
+#include "task/bindings.h"
+
+namespace kaboum::plan {
+namespace {
+
+constexpr std::size_t kTabulated = 1U << 20U;  // entries of one table by arguments
+
+bool calls_external(const Query& q) {
+  return q.kind == Query::Kind::External ||
+         std::any_of(q.children.begin(), q.children.end(), calls_external);
+}
+
+}  // namespace
+
+ActionSchema::ActionSchema(const Action& action, const Model& model, const Layout& layout,
+                           FormulaPool& pool)
+    : action_(&action), model_(&model), layout_(&layout), pool_(&pool) {
+  levels_.resize(action.parameters.size());
+  make_candidates(sort_conjuncts());
+}
+
+/// Gives each conjunct the level after which it can be tested; those of one parameter are returned
+/// by parameter.
+std::vector<std::vector<const Query*>> ActionSchema::sort_conjuncts() {
+  std::vector<std::vector<const Query*>> singles(levels_.size());
+  std::size_t latest = 0;  // a conjunct that calls an external function comes after all before it
+  for (const Query* q : conjuncts(action_->precondition)) {
+    Check c;
+    c.query = q;
+    c.slots = free_slots(*q);
+    std::size_t depth = c.slots.empty() ? 0 : c.slots.back() + 1;
+    const bool external = calls_external(*q);
+    if (external) depth = std::max(depth, latest);
+    latest = std::max(latest, depth);
+    if (depth == 0) {
+      constant_.push_back(std::move(c));
+    } else if (c.slots.size() == 1 && !external) {
+      singles[depth - 1].push_back(q);
+    } else {
+      std::size_t entries = 1;
+      for (const Index slot : c.slots) {
+        entries *= model_->types[action_->parameters[slot].type].objects.size();
+        if (entries > kTabulated) break;
+      }
+      if (entries <= kTabulated) c.grounded.assign(entries, kNotGrounded);
+      levels_[depth - 1].checks.push_back(std::move(c));
+    }
+  }
+  return singles;
+}
+
+void ActionSchema::make_candidates(const std::vector<std::vector<const Query*>>& singles) {
+  std::vector<Index> slots(std::max<Index>(action_->slots, 1), 0);
+  std::size_t instances = 1;
+  for (std::size_t i = 0; i < levels_.size(); ++i) {
+    const std::vector<Index>& objects = model_->types[action_->parameters[i].type].objects;
+    for (const Index o : objects) {
+      Candidate c;
+      c.object = o;
+      slots[i] = o;
+      std::vector<Formula> all;
+      for (const Query* q : singles[i]) all.push_back(pool_->ground(*q, slots));
+      c.full = pool_->all(all);
+      if (c.full == kFalse) continue;
+      c.test = pool_->as_bits(c.full).value_or(BitTest{});
+      levels_[i].candidates.push_back(c);
+    }
+    if (instances <= kTabulated) instances *= objects.size();
+  }
+  if (instances <= kTabulated) ids_.assign(instances, kNoOperator);
+}
+
+Formula ActionSchema::ground(const Check& check, const Index* slots) {
+  std::vector<Index> copy(slots, slots + std::max<Index>(action_->slots, 1));
+  return pool_->ground(*check.query, copy);
+}
+
+OperatorId& ActionSchema::id(const std::vector<Index>& arguments) {
+  if (ids_.empty()) {
+    std::string key;
+    for (const Index o : arguments) key.append(reinterpret_cast<const char*>(&o), sizeof o);
+    return id_index_.emplace(key, kNoOperator).first->second;
+  }
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const Index type = action_->parameters[i].type;
+    n = n * model_->types[type].objects.size() + layout_->position(type, arguments[i]);
+  }
+  return ids_[n];
+}
+
+}  // namespace kaboum::plan

@@ -1,0 +1,117 @@
+// What a state says of a formula, and which sensed values leave it open.
+#include "task/formula.h"
+
+#include <algorithm>
+
+namespace kaboum::plan {
+
+Truth FormulaPool::evaluate(Formula f, const Word* state) const {
+  const Node& n = nodes_[f];
+  const auto yes = [](bool b) { return b ? Truth::Yes : Truth::No; };
+  switch (n.kind) {
+    case Kind::False:
+      return Truth::No;
+    case Kind::True:
+      return Truth::Yes;
+    case Kind::And:
+    case Kind::Or: {
+      const Truth decides = n.kind == Kind::And ? Truth::No : Truth::Yes;
+      Truth result = n.kind == Kind::And ? Truth::Yes : Truth::No;
+      for (const Formula *c = begin(f), *last = end(f); c != last; ++c) {
+        if (result == Truth::Open && nodes_[*c].calls) continue;
+        const Truth t = evaluate(*c, state);
+        if (t == decides) return t;
+        if (t == Truth::Open) result = t;
+      }
+      return result;
+    }
+    case Kind::Xor: {
+      int certain = 0;
+      bool open = false;
+      for (const Formula *c = begin(f), *last = end(f); c != last; ++c) {
+        const Truth t = evaluate(*c, state);
+        certain += t == Truth::Yes ? 1 : 0;
+        open |= t == Truth::Open;
+        if (certain > 1) return Truth::No;
+      }
+      return open ? Truth::Open : yes(certain == 1);
+    }
+    case Kind::Not: {
+      const Truth t = evaluate(*begin(f), state);
+      return t == Truth::Open ? t : yes(t == Truth::No);
+    }
+    case Kind::IsTrue:
+    case Kind::IsFalse: {
+      const auto k = static_cast<AtomKnowledge>(layout_.fluents()[n.a].get(state));
+      if (k == AtomKnowledge::Whether || tied(n.a, k, state)) return Truth::Open;
+      return yes(k == (n.kind == Kind::IsTrue ? AtomKnowledge::True : AtomKnowledge::False));
+    }
+    case Kind::Whether: {
+      const auto k = static_cast<AtomKnowledge>(layout_.fluents()[n.a].get(state));
+      return tied(n.a, k, state) ? Truth::Open : yes(k != AtomKnowledge::Unknown);
+    }
+    case Kind::ValueKnown:
+      return yes(layout_.fluents()[n.a].get(state) != kValueUnknown);
+    case Kind::ValueIs: {
+      const Fluent& fluent = layout_.fluents()[n.a];
+      const Word v = fluent.get(state);
+      if (v >= kFirstValue) return yes(v == kFirstValue + n.b);
+      if (v == kValueUnknown || excluded(fluent, state, n.b)) return Truth::No;
+      return Truth::Open;
+    }
+    case Kind::ValueIsNot: {
+      const Fluent& fluent = layout_.fluents()[n.a];
+      const Word v = fluent.get(state);
+      if (v >= kFirstValue) return yes(v != kFirstValue + n.b);
+      if (excluded(fluent, state, n.b)) return Truth::Yes;
+      return v == kValueSensed ? Truth::Open : Truth::No;
+    }
+    case Kind::ValueWhether: {
+      const Fluent& fluent = layout_.fluents()[n.a];
+      return yes(fluent.get(state) != kValueUnknown || excluded(fluent, state, n.b));
+    }
+    case Kind::Bits:
+      return yes((state[n.a] & masks_[n.b].first) == masks_[n.b].second);
+    case Kind::External: {
+      const std::optional<Index> result = call(n.a, state);
+      return yes(result && (n.b == kNone || *result == n.b));
+    }
+  }
+  return Truth::No;
+}
+
+void FormulaPool::open_fluents(Formula f, const Word* state, std::vector<Index>& out) const {
+  const Node& n = nodes_[f];
+  switch (n.kind) {
+    case Kind::And:
+    case Kind::Or:
+    case Kind::Xor:
+    case Kind::Not:
+      if (evaluate(f, state) != Truth::Open) return;
+      for (const Formula *c = begin(f), *last = end(f); c != last; ++c) {
+        if (nodes_[*c].calls && n.kind != Kind::Not) {
+          // Called only when all before it is decided: what is open before it comes first.
+          if (!out.empty()) continue;
+        }
+        open_fluents(*c, state, out);
+      }
+      return;
+    case Kind::IsTrue:
+    case Kind::IsFalse:
+    case Kind::Whether:
+    case Kind::ValueIs:
+    case Kind::ValueIsNot: {
+      if (evaluate(f, state) != Truth::Open) return;
+      const Fluent& fluent = layout_.fluents()[n.a];
+      const bool undecided =
+          !fluent.function && fluent.get(state) == static_cast<Word>(AtomKnowledge::Unknown);
+      const Index needed = undecided ? layout_.sensed_tie(n.a, state) : n.a;
+      if (std::find(out.begin(), out.end(), needed) == out.end()) out.push_back(needed);
+      return;
+    }
+    default:
+      return;
+  }
+}
+
+}  // namespace kaboum::plan

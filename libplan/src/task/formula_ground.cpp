@@ -1,0 +1,112 @@
+// Grounding of queries: variables get their objects, and constant knowledge is folded in.
+#include "task/formula.h"
+
+#include <kaboum/geom/error.h>
+
+#include "task/bindings.h"
+
+namespace kaboum::plan {
+namespace {
+
+Formula constant(bool truth) { return truth ? kTrue : kFalse; }
+
+std::vector<Index> objects(const Query& q, const std::vector<Index>& slots) {
+  std::vector<Index> out;
+  for (const Argument& a : q.arguments) out.push_back(value_of(a, slots.data()));
+  return out;
+}
+
+}  // namespace
+
+Formula FormulaPool::ground(const Query& q, std::vector<Index>& slots) {
+  limits_.work();
+  switch (q.kind) {
+    case Query::Kind::True:
+      return kTrue;
+    case Query::Kind::False:
+      return kFalse;
+    case Query::Kind::And:
+    case Query::Kind::Or:
+    case Query::Kind::Xor:
+      return ground_connective(q, slots);
+    case Query::Kind::Not:
+      return negate(ground(q.children[0], slots));
+    case Query::Kind::Exists:
+    case Query::Kind::ForAll:
+      return ground_quantifier(q, slots);
+    case Query::Kind::Known:
+    case Query::Kind::KnowWhether:
+      return ground_atom(q, slots);
+    case Query::Kind::KnownValue:
+    case Query::Kind::WhetherValue:
+    case Query::Kind::KnowValue:
+      return ground_term(q, slots);
+    case Query::Kind::Same:
+      return constant(value_of(q.arguments[0], slots.data()) ==
+                      value_of(q.arguments[1], slots.data()));
+    case Query::Kind::External:
+      return external(q.symbol, objects(q, slots),
+                      q.value ? value_of(*q.value, slots.data()) : kNone);
+  }
+  throw Error(ErrorCode::Internal, "unexpected query");
+}
+
+Formula FormulaPool::ground_connective(const Query& q, std::vector<Index>& slots) {
+  std::vector<Formula> children;
+  for (const Query& c : q.children) {
+    children.push_back(ground(c, slots));
+    if (q.kind == Query::Kind::And && children.back() == kFalse) return kFalse;
+    if (q.kind == Query::Kind::Or && children.back() == kTrue) return kTrue;
+  }
+  if (q.kind == Query::Kind::And) return all(children);
+  return q.kind == Query::Kind::Or ? any(children) : one(children);
+}
+
+Formula FormulaPool::ground_quantifier(const Query& q, std::vector<Index>& slots) {
+  const bool exists = q.kind == Query::Kind::Exists;
+  std::vector<Formula> children;
+  for (const Index o : model_.types[q.type].objects) {
+    slots[q.symbol] = o;
+    children.push_back(ground(q.children[0], slots));
+    if (children.back() == constant(exists)) return children.back();
+  }
+  return exists ? any(children) : all(children);
+}
+
+Formula FormulaPool::ground_atom(const Query& q, const std::vector<Index>& slots) {
+  const Layout::Field p = layout_.atom(q.symbol, objects(q, slots).data());
+  if (!p.exists) return kFalse;
+  if (p.fluent == kNone) {
+    if (q.kind == Query::Kind::KnowWhether)
+      return p.atom != AtomKnowledge::Unknown ? kTrue : kFalse;
+    return p.atom == (q.negated ? AtomKnowledge::False : AtomKnowledge::True) ? kTrue : kFalse;
+  }
+  if (q.kind == Query::Kind::KnowWhether) return leaf(Kind::Whether, p.fluent);
+  return leaf(q.negated ? Kind::IsFalse : Kind::IsTrue, p.fluent);
+}
+
+Formula FormulaPool::ground_term(const Query& q, const std::vector<Index>& slots) {
+  const Layout::Field p = layout_.term(q.symbol, objects(q, slots).data());
+  if (!p.exists) return kFalse;
+  Index position = kNone;
+  Index value = kNone;
+  if (q.value) {
+    value = value_of(*q.value, slots.data());
+    position = layout_.position(model_.functions[q.symbol].range, value);
+  }
+  if (p.fluent == kNone) {
+    // A value outside the range is never the value.
+    if (p.value == kNone)
+      return q.value && position == kNone && (q.kind == Query::Kind::WhetherValue || q.negated)
+                 ? kTrue
+                 : kFalse;
+    if (q.kind != Query::Kind::KnownValue) return kTrue;
+    return (p.value == value) != q.negated ? kTrue : kFalse;
+  }
+  if (q.kind == Query::Kind::KnowValue) return leaf(Kind::ValueKnown, p.fluent);
+  if (position == kNone) return q.kind == Query::Kind::WhetherValue || q.negated ? kTrue : kFalse;
+  if (q.kind == Query::Kind::WhetherValue) return leaf(Kind::ValueWhether, p.fluent, position);
+  return leaf(q.negated ? Kind::ValueIsNot : Kind::ValueIs, p.fluent, position);
+}
+
+}  // namespace kaboum::plan

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <kaboum/plan/model.h>
+
+#include <vector>
+
+#include "task/formula.h"
+#include "task/knowledge.h"
+
+namespace kaboum::plan {
+
+/// Effects that happen together: the condition, then deletions, then additions, then sensing.
+struct ConditionalEffect {
+  Formula condition = kTrue;
+  BitTest test;  ///< the condition as one, if its mask is not 0
+  std::vector<Change> deletions;
+  std::vector<Change> additions;
+  std::vector<Change> sensing;
+  /// Additions that are direct writes (no Kx groups or exclusions concerned), in their order.
+  struct MaskedWrite {
+    Index word;
+    Word mask;
+    Word bits;
+  };
+  std::vector<MaskedWrite> writes;
+  std::vector<Change> direct;  ///< what the writes are made of: for analysis
+};
+
+struct GroundAction {
+  Index schema = 0;
+  std::vector<Index> arguments;
+  std::int64_t cost = 1;
+  Formula precondition = kTrue;
+  std::vector<ConditionalEffect> effects;
+};
+
+}  // namespace kaboum::plan
