@@ -1,3 +1,4 @@
+// `bound-verify progressive`: replays a progressive file and says what was found.
 #include "verify_progressive.h"
 
 #include <kaboum/bmesh/progressive.h>
@@ -24,6 +25,65 @@ std::string claim(const bmesh::Progressive& p, const verify::ReplayResult& r) {
   return text;
 }
 
+/// What was asked, of which files, and what was found.
+struct ProgressiveCase {
+  const std::string &original, &file;
+  const bmesh::Progressive& progressive;
+  const verify::ReplayResult& result;
+};
+
+Json report_of(const ProgressiveCase& run) {
+  const verify::ReplayResult& r = run.result;
+  const bmesh::Progressive& p = run.progressive;
+  Json json{{"tool", "bound-verify"},
+            {"version", version()},
+            {"relation", "progressive"},
+            {"verdict", r.verified ? "verified" : "refuted"},
+            {"violation", r.violation},
+            {"original", {{"file", run.original}, {"sha256", p.log.input_sha256}}},
+            {"progressive", {{"file", run.file}, {"made_by", p.log.tool}}},
+            {"direction", p.log.direction == Direction::Outer ? "outer" : "inner"},
+            {"closed", r.closed},
+            {"steps", r.steps},
+            {"predicates", r.predicates},
+            {"against_solids", r.against_original},
+            {"dropped_triangles", r.dropped},
+            {"turned_triangles", r.turned},
+            {"filled_triangles", r.filled}};
+  for (std::size_t i = 0; i < r.levels; ++i)
+    json["levels"].push_back({{"wished", p.levels[i].wished},
+                              {"vertices", p.levels[i].vertices},
+                              {"steps", p.levels[i].steps}});
+  json["resources"] = {{"user_seconds", user_seconds()}, {"peak_megabytes", peak_megabytes()}};
+  return json;
+}
+
+/// What is said of a file that is verified.
+std::vector<std::string> lines_of(const ProgressiveCase& run) {
+  const verify::ReplayResult& r = run.result;
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < r.levels; ++i) {
+    const auto& level = run.progressive.levels[i];
+    lines.push_back("level " + std::to_string(level.wished) + ": " +
+                    std::to_string(level.vertices) + " vertices after " +
+                    std::to_string(level.steps) + " steps");
+  }
+  if (r.turned != 0)
+    lines.push_back(std::to_string(r.turned) +
+                    " triangles of the original are turned as the file says; whether they should "
+                    "be is not checked");
+  if (r.filled != 0)
+    lines.push_back("the original's holes are filled with " + std::to_string(r.filled) +
+                    " triangles that the file adds to its own; it is closed with them, fans on the "
+                    "rims of its holes");
+  if (r.dropped != 0)
+    lines.push_back(std::to_string(r.dropped) +
+                    " triangles of the original are dropped, harmlessly");
+  lines.push_back("verified: " + claim(run.progressive, r) + "; " + std::to_string(r.steps) +
+                  " steps, " + std::to_string(r.predicates) + " exact tests");
+  return lines;
+}
+
 }  // namespace
 
 int verify_progressive(const std::string& original, const std::string& original_format,
@@ -41,50 +101,14 @@ int verify_progressive(const std::string& original, const std::string& original_
                 progressive + ": direction 'any' claims nothing that could be verified");
   bytes = {};
   const verify::ReplayResult r = verify::replay_progressive(input.mesh, p);
-  if (!common.report.empty()) {
-    Json json{{"tool", "bound-verify"},
-              {"version", version()},
-              {"relation", "progressive"},
-              {"verdict", r.verified ? "verified" : "refuted"},
-              {"violation", r.violation},
-              {"original", {{"file", original}, {"sha256", p.log.input_sha256}}},
-              {"progressive", {{"file", progressive}, {"made_by", p.log.tool}}},
-              {"direction", p.log.direction == Direction::Outer ? "outer" : "inner"},
-              {"closed", r.closed},
-              {"steps", r.steps},
-              {"predicates", r.predicates},
-              {"against_solids", r.against_original},
-              {"dropped_triangles", r.dropped},
-              {"turned_triangles", r.turned},
-              {"filled_triangles", r.filled}};
-    for (std::size_t i = 0; i < r.levels; ++i)
-      json["levels"].push_back({{"wished", p.levels[i].wished},
-                                {"vertices", p.levels[i].vertices},
-                                {"steps", p.levels[i].steps}});
-    json["resources"] = {{"user_seconds", user_seconds()}, {"peak_megabytes", peak_megabytes()}};
-    write_json(common.report, json);
-  }
+  const ProgressiveCase run{original, progressive, p, r};
+  if (!common.report.empty()) write_json(common.report, report_of(run));
   std::ostream& out = common.report == "-" ? std::cerr : std::cout;
-  if (!r.verified) {
+  if (!r.verified)
     out << "refuted: " << r.violation << '\n';
-    return kNo;
-  }
-  if (common.quiet) return kDone;
-  for (std::size_t i = 0; i < r.levels; ++i)
-    out << "level " << p.levels[i].wished << ": " << p.levels[i].vertices << " vertices after "
-        << p.levels[i].steps << " steps\n";
-  if (r.turned != 0)
-    out << r.turned
-        << " triangles of the original are turned as the file says; whether they should be is not "
-           "checked\n";
-  if (r.filled != 0)
-    out << "the original's holes are filled with " << r.filled
-        << " triangles that the file adds to its own; it is closed with them, fans on the rims of "
-           "its holes\n";
-  if (r.dropped != 0) out << r.dropped << " triangles of the original are dropped, harmlessly\n";
-  out << "verified: " << claim(p, r) << "; " << r.steps << " steps, " << r.predicates
-      << " exact tests\n";
-  return kDone;
+  else if (!common.quiet)
+    for (const std::string& line : lines_of(run)) out << line << '\n';
+  return r.verified ? kDone : kNo;
 }
 
 }  // namespace kaboum::tools

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 #include <kaboum/verify/matching_shapes.h>
 
+#include <cmath>
+
 namespace kaboum::test {
 namespace {
 

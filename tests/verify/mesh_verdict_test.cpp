@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <kaboum/verify/cover.h>
 
+#include <cmath>
+
 #include "support/shapes.h"
 
 namespace {
