@@ -7,10 +7,10 @@
 namespace kaboum::plan::test {
 namespace {
 
-void expect_all(const std::string& text, Outcome status) {
+void expect_all(const std::string& text, Outcome outcome) {
   const Model m = model_of(text);
   for (const Algorithm a : kAll)
-    EXPECT_EQ(solved(m, a).outcome, status) << text << "\nsearch " << static_cast<int>(a);
+    EXPECT_EQ(solved(m, a).outcome, outcome) << text << "\nsearch " << static_cast<int>(a);
 }
 
 Plan straight(const Model& m, std::initializer_list<const char*> names) {

@@ -57,9 +57,11 @@ Formula FormulaParser::formula() {
   const TokenStream::Level level(in_);
   return joined(Formula::Kind::Or, "|", &FormulaParser::exclusive);
 }
+
 Formula FormulaParser::exclusive() {
   return joined(Formula::Kind::Xor, "xor", &FormulaParser::conjunction);
 }
+
 Formula FormulaParser::conjunction() {
   return joined(Formula::Kind::And, "&", &FormulaParser::unary);
 }

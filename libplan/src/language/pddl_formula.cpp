@@ -17,6 +17,7 @@ const SExpression& item(const SExpression& e, std::size_t i, const char* what) {
   if (!e.list || i >= e.items.size()) e.location.fail(std::string("expected ") + what);
   return e.items[i];
 }
+
 Name name(const SExpression& e, const char* what) {
   if (e.list || e.word.empty()) e.location.fail(std::string("expected ") + what);
   return {e.word, e.location};

@@ -141,6 +141,7 @@ const Index* SymbolTable::function_of(const sx::Term& t) const {
   const auto found = functions_.find(t.name.text);
   return found == functions_.end() ? nullptr : &found->second;
 }
+
 const Index* SymbolTable::predicate_of(const sx::Term& t) const {
   if (t.kind != sx::Term::Kind::Call && t.kind != sx::Term::Kind::Name) return nullptr;
   const auto found = predicates_.find(t.name.text);
@@ -152,6 +153,7 @@ void SymbolTable::check_type(const Name& name, Index found, Index wanted) const 
   name.location.fail("'" + name.text + "' is of type " + type_name(found) + ", expected " +
                      type_name(wanted));
 }
+
 bool SymbolTable::related(Index a, Index b) const { return is_subtype(a, b) || is_subtype(b, a); }
 
 }  // namespace kaboum::plan

@@ -56,6 +56,7 @@ Argument TermResolver::unfold(const sx::Term& t, Index wanted, Scope& scope,
       {slot, symbols_.is_subtype(wanted, range) ? wanted : range, std::move(condition)});
   return {true, slot};
 }
+
 std::vector<Argument> TermResolver::arguments(const sx::Term& t, const Symbol& s, Scope& scope,
                                               std::vector<Unfolded>& unfolded) const {
   if (t.arguments.size() != s.parameters.size())
