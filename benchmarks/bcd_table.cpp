@@ -14,9 +14,9 @@
 // solid and triangles (holes filled), in percent of the diagonal of the input's box; those of the
 // peer, whose bodies are replaced by their hulls, are measured in the same way. Every result's
 // cover is decided exactly. Ratios are to the peer; their geometric means come last.
+#include <kaboum/base/error.h>
 #include <kaboum/bcd/decompose.h>
 #include <kaboum/geom/convex_hull.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/geom/holes.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/verify/cover.h>

@@ -9,9 +9,9 @@
 //
 // Distances are in percent of the diagonal of the input's box. Maxima are certified upper bounds
 // (gap 1 %), means come from samples spread evenly over the area. Only closed meshes are measured.
+#include <kaboum/base/error.h>
 #include <kaboum/bmesh/decimate.h>
 #include <kaboum/geom/distance.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/geom/prepare.h>
 #include <kaboum/io/mesh_io.h>
 

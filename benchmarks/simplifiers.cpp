@@ -18,8 +18,8 @@
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/GarlandHeckbert_plane_policies.h>
 #include <CGAL/Surface_mesh_simplification/edge_collapse.h>
+#include <kaboum/base/error.h>
 #include <kaboum/bmesh/decimate.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/geom/prepare.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/measure/measure.h>

@@ -1,7 +1,7 @@
 // Writes the project's own CAD-like test part: see part.h.
 #include "part.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
 
 #include <CLI/CLI.hpp>

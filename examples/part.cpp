@@ -2,7 +2,7 @@
 
 #include "planar.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include "planar.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 
 #include <algorithm>
 #include <cmath>

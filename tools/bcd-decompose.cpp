@@ -1,5 +1,5 @@
+#include <kaboum/base/error.h>
 #include <kaboum/certify/set_cache.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/io/convex_io.h>
 
 #include <algorithm>
@@ -242,14 +242,6 @@ Json report_of(const tools::CertifiedFile& made) {
   return report;
 }
 
-/// What the report says about every run.
-void add_run(const Options& o, Json& report) {
-  report["tool"] = std::string("bcd-decompose ") + tools::version();
-  report["user_seconds"] = tools::user_seconds();
-  report["peak_megabytes"] = tools::peak_megabytes();
-  tools::write_json(o.common.report, report);
-}
-
 /// The exit code of a mesh's outcome.
 int code_of(const certify::SetCertificate& certificate) {
   if (certificate.stop == bcd::Stop::Done) return tools::kDone;
@@ -377,7 +369,7 @@ int decompose_robot(const Options& o) {
     report["links_without_shapes"] = result.bare.all();
     report["input"] = {{"file", o.input}};
     report["parameters"] = robot.parameters;
-    add_run(o, report);
+    tools::write_report(o.common, "bcd-decompose", report);
   }
   if (!o.depfile.empty()) {
     std::vector<std::string> inputs;
@@ -417,7 +409,7 @@ int decompose(const Options& o) {
     Json report = report_of(made);
     report["input"] = {{"file", o.input}, {"sha256", made.sha256}};
     report["parameters"] = set.provenance.parameters;
-    add_run(o, report);
+    tools::write_report(o.common, "bcd-decompose", report);
   }
   if (!o.depfile.empty()) {
     std::vector<std::string> inputs{o.input};

@@ -1,8 +1,8 @@
+#include <kaboum/base/error.h>
 #include <kaboum/bmesh/decimate.h>
 #include <kaboum/bmesh/progressive.h>
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/geom/distance.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/geom/float32.h>
 #include <kaboum/geom/prepare.h>
 #include <kaboum/geom/topology.h>
@@ -332,7 +332,8 @@ class Job {
     files.emplace_back(o_.progressive, [&] {
       io::write_file(o_.progressive, bmesh::serialise_progressive(progressive()));
     });
-    files.emplace_back(o_.common.report, [&] { tools::write_json(o_.common.report, report()); });
+    files.emplace_back(o_.common.report,
+                       [&] { tools::write_report(o_.common, "bmesh-decimate", report()); });
     files.emplace_back(o_.depfile, [&] {
       std::vector<std::string> targets = outputs_;
       if (!o_.progressive.empty()) targets.push_back(o_.progressive);
@@ -592,8 +593,6 @@ class Job {
 
   [[nodiscard]] Json report() const {
     Json r;
-    r["tool"] = "bmesh-decimate";
-    r["version"] = tools::version();
     r["input"] = {{"file", o_.input},
                   {"sha256", log_.input_sha256},
                   {"reader_delivers_float32", input_.single_precision},
@@ -637,8 +636,6 @@ class Job {
     }
     r["resources"] = {{"user_seconds_reading", seconds_read_},
                       {"user_seconds_decimating", seconds_decimated_ - seconds_read_},
-                      {"user_seconds", tools::user_seconds()},
-                      {"peak_megabytes", tools::peak_megabytes()},
                       {"threads", o_.common.threads}};
     return r;
   }

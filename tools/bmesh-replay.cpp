@@ -1,4 +1,4 @@
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/verify/replay.h>
 
@@ -50,17 +50,15 @@ int check(const Options& o) {
   const io::ReadResult result =
       io::read_mesh(o.result, tools::format_for(o.result, o.result_format, "--input-format"));
   const verify::ReplayResult r = verify::replay(input.mesh, log, result.mesh);
-  if (!o.common.report.empty())
-    tools::write_json(o.common.report, {{"tool", "bmesh-replay"},
-                                        {"version", tools::version()},
-                                        {"verified", r.verified},
-                                        {"violation", r.violation},
-                                        {"closed", r.closed},
-                                        {"steps", r.steps},
-                                        {"predicates", r.predicates},
-                                        {"dropped_triangles", r.dropped},
-                                        {"turned_triangles", r.turned},
-                                        {"filled_triangles", r.filled}});
+  tools::write_report(o.common, "bmesh-replay",
+                      {{"verified", r.verified},
+                       {"violation", r.violation},
+                       {"closed", r.closed},
+                       {"steps", r.steps},
+                       {"predicates", r.predicates},
+                       {"dropped_triangles", r.dropped},
+                       {"turned_triangles", r.turned},
+                       {"filled_triangles", r.filled}});
   if (!r.verified) {
     std::cout << "refuted: " << r.violation << '\n';
     return tools::kNo;

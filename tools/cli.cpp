@@ -1,6 +1,6 @@
 #include "cli.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 
 #include <sys/resource.h>
 #include <tbb/global_control.h>
@@ -281,6 +281,15 @@ void require_absent(const CLI::App& app, const std::string& option,
 void write_json(const std::string& path, const Json& json) {
   const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   io::write_file(path, text);
+}
+
+void write_report(const CommonOptions& options, const char* tool, const Json& body) {
+  if (options.report.empty()) return;
+  Json report{{"schema", 1}, {"tool", tool}, {"version", version()}};
+  report.update(body);
+  report["resources"]["user_seconds"] = user_seconds();
+  report["resources"]["peak_megabytes"] = peak_megabytes();
+  write_json(options.report, report);
 }
 
 void require_apart(const std::vector<std::pair<std::string, std::string>>& outputs,

@@ -1,8 +1,8 @@
 #pragma once
 
+#include <kaboum/base/error.h>
+#include <kaboum/base/length.h>
 #include <kaboum/geom/distance.h>
-#include <kaboum/geom/error.h>
-#include <kaboum/geom/length.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/io/mesh_io.h>
 
@@ -61,7 +61,7 @@ class ThreadLimit {
   std::unique_ptr<Impl> impl_;
 };
 
-using geom::Length;
+using kaboum::Length;
 
 /// "0.005", "+0.005" or "0.5%"; nullopt unless it is a positive finite number.
 std::optional<Length> parse_length(const std::string& text);
@@ -115,6 +115,10 @@ double user_seconds();
 double peak_megabytes();
 
 void write_json(const std::string& path, const Json& json);
+
+/// Writes the report asked for, if one is: `body` with what all reports have in common
+/// (docs/reports.md).
+void write_report(const CommonOptions& options, const char* tool, const Json& body);
 
 /// Refuses to write a file twice, over an input, or into a folder that does not exist or cannot be
 /// looked into; outputs are

@@ -1,7 +1,7 @@
 #include "extract_levels.h"
 
+#include <kaboum/base/error.h>
 #include <kaboum/bmesh/extract.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/geom/float32.h>
 #include <kaboum/io/mesh_io.h>
 
@@ -48,9 +48,7 @@ const char* name_of(bmesh::Direction direction) {
 
 Json report(const ExtractOptions& o, const bmesh::Progressive& p, const std::string& sha256,
             const std::vector<Taken>& all) {
-  Json r{{"tool", "bmesh-decimate"},
-         {"version", version()},
-         {"from",
+  Json r{{"from",
           {{"file", o.from},
            {"sha256", sha256},
            {"made_by", p.log.tool},
@@ -103,7 +101,7 @@ int extract_levels(const ExtractOptions& o) {
 
   std::vector<std::pair<std::string, std::function<void()>>> writes;
   writes.emplace_back(o.common.report,
-                      [&] { write_json(o.common.report, report(o, p, sha256, all)); });
+                      [&] { write_report(o.common, "bmesh-decimate", report(o, p, sha256, all)); });
   writes.emplace_back(o.depfile, [&] { write_depfile(o.depfile, files, {o.from}); });
   for (const Taken& t : all) writes.emplace_back(t.file, [&t] { io::write_file(t.file, t.bytes); });
   write_together(writes);

@@ -3,7 +3,7 @@
 
 #include "find_mesh.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
 #include <tinyxml2.h>
 

@@ -1,4 +1,4 @@
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/measure/compare.h>
 
@@ -200,10 +200,8 @@ int run(const Options& o) {
     json["resources"] = {{"seconds_reading", reading},
                          {"seconds_building", building},
                          {"seconds_measuring", measuring},
-                         {"user_seconds", tools::user_seconds()},
-                         {"peak_megabytes", tools::peak_megabytes()},
                          {"threads", o.common.threads}};
-    tools::write_json(o.common.report, json);
+    tools::write_report(o.common, "hausdorff-eval", json);
   }
   if (!o.common.quiet && o.csv != "-" && o.common.report != "-")
     io::write_file("-", report.table());

@@ -112,8 +112,6 @@ Json ComparisonReport::way(const OneWay& way) const {
 
 Json ComparisonReport::json() const {
   Json r;
-  r["tool"] = "hausdorff-eval";
-  r["version"] = version();
   r["a"] = side(Comparison::A);
   r["b"] = side(Comparison::B);
   r["measure"] = solid ? "solid to solid" : "surface to surface";

@@ -2,7 +2,7 @@
 
 #include "help.h"
 
-#include <kaboum/geom/similar_name.h>
+#include <kaboum/base/similar_name.h>
 
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -147,7 +147,7 @@ std::string explain_command(const CLI::App& app, int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string name = argv[i];
     if (name.starts_with('-') && name != "-") return {};
-    const std::string hint = geom::did_you_mean(name, known);
+    const std::string hint = kaboum::did_you_mean(name, known);
     return "unknown command '" + name + "'" + (hint.empty() ? "; commands: " + list : hint);
   }
   return "a command is to come first: " + list;
@@ -181,7 +181,7 @@ std::string explain_unknown(const CLI::App& app, int argc, char** argv) {
     if (!argument.starts_with("--")) continue;
     const std::string name(argument.substr(0, argument.find('=')));
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    const std::optional<std::string> similar = geom::similar_name(name, known);
+    const std::optional<std::string> similar = kaboum::similar_name(name, known);
     return "unknown option " + name + (similar ? "; did you mean " + *similar + "?" : "");
   }
   return {};

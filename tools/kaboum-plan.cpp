@@ -1,4 +1,4 @@
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/plan/check.h>
 #include <kaboum/plan/load.h>
@@ -132,9 +132,7 @@ int solve(const Options& o) {
   const char* status = solution.outcome == plan::Outcome::Solved       ? "solved"
                        : solution.outcome == plan::Outcome::Unsolvable ? "unsolvable"
                                                                        : "limit";
-  tools::Json report = {{"tool", "kaboum-plan"},
-                        {"version", tools::version()},
-                        {"command", "solve"},
+  tools::Json report = {{"command", "solve"},
                         {"domain", o.domain},
                         {"problem", o.problem},
                         {"search", o.search},
@@ -149,11 +147,8 @@ int solve(const Options& o) {
     const std::string text = plan::write_plan(model, o.tree ? plan::expand_tree(graph) : graph);
     io::write_file(o.output, text);
   }
-  report["timings"] = {{"search_user_s", solved - loaded},
-                       {"user_s", tools::user_seconds()},
-                       {"wall_s", wall},
-                       {"peak_mb", tools::peak_megabytes()}};
-  if (!o.common.report.empty()) tools::write_json(o.common.report, report);
+  report["resources"] = {{"user_seconds_searching", solved - loaded}, {"wall_seconds", wall}};
+  tools::write_report(o.common, "kaboum-plan", report);
   if (solution.outcome == plan::Outcome::Solved) {
     tools::log(o.common.quiet, "solved: " + std::to_string(size.nodes) + " nodes, " +
                                    std::to_string(size.leaves) + " leaves, longest path " +
@@ -179,15 +174,13 @@ int check(const Options& o) {
   const plan::Model model = plan::load(texts.domain, texts.second());
   const plan::Plan p = load_plan(model, o.plan);
   const plan::CheckResult r = plan::check(model, p);
-  if (!o.common.report.empty())
-    tools::write_json(o.common.report, {{"tool", "kaboum-plan"},
-                                        {"version", tools::version()},
-                                        {"command", "check"},
-                                        {"valid", r.valid},
-                                        {"violation", r.violation},
-                                        {"states_replayed", r.states},
-                                        {"ends_replayed", r.leaves},
-                                        {"plan", size_json(plan::measure(model, p))}});
+  tools::write_report(o.common, "kaboum-plan",
+                      {{"command", "check"},
+                       {"valid", r.valid},
+                       {"violation", r.violation},
+                       {"states_replayed", r.states},
+                       {"ends_replayed", r.leaves},
+                       {"plan", size_json(plan::measure(model, p))}});
   if (!r.valid) {
     std::cout << "invalid: " << r.violation << '\n';
     return tools::kNo;

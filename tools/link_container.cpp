@@ -3,8 +3,8 @@
 
 #include "link_container.h"
 
+#include <kaboum/base/error.h>
 #include <kaboum/geom/convex_hull.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/geom/float32.h>
 #include <kaboum/geom/predicates.h>
 

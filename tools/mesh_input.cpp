@@ -1,6 +1,6 @@
 #include "mesh_input.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/verify/cover.h>
 

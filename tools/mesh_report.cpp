@@ -122,8 +122,6 @@ Json report_of(const MeshCase& run) {
   const verify::Inclusion& in = run.verdict.inclusion;
   const bool swap = run.inner();
   Json json{
-      {"tool", "bound-verify"},
-      {"version", version()},
       {"relation", name_of_relation(run.asked.relation)},
       {"verdict", name_of(run.verdict.answer)},
       {"deciding_claims", run.asked.claims},
@@ -142,7 +140,6 @@ Json report_of(const MeshCase& run) {
   json["triangles_without_area"] = in.triangles_without_area;
   json["contacts"] = in.contacts;
   json["samples"] = in.samples;
-  json["resources"] = {{"user_seconds", user_seconds()}, {"peak_megabytes", peak_megabytes()}};
   return json;
 }
 

@@ -1,6 +1,6 @@
 #include "prepared_original.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 
 #include "verdict.h"
 

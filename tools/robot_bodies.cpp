@@ -1,6 +1,6 @@
 #include "robot_bodies.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 using robot::Geometry;
 
 /// The certified bodies of a mesh. Appends the files read to `files`.
-geom::ConvexSet decompose(const fs::path& mesh, const BodyOptions& options, geom::Length epsilon,
+geom::ConvexSet decompose(const fs::path& mesh, const BodyOptions& options, kaboum::Length epsilon,
                           Notes& notes, std::vector<std::string>& files) {
   const std::string file = mesh.string();
   const auto note = [&](const std::string& text) { notes.add(file, text); };
@@ -38,7 +38,7 @@ geom::ConvexSet decompose(const fs::path& mesh, const BodyOptions& options, geom
 
 }  // namespace
 
-geom::Length epsilon_of_mesh(geom::Length epsilon, double scale) {
+kaboum::Length epsilon_of_mesh(kaboum::Length epsilon, double scale) {
   if (!epsilon.percent) epsilon.value /= scale;
   return epsilon;
 }
@@ -95,7 +95,7 @@ LinkBodies bodies_of(const RobotFile& robot, const BodyOptions& options) {
       }
       const fs::path mesh = resolve_mesh(g.mesh, robot.path, options.packages);
       const double scale = g.size.cwiseAbs().maxCoeff();
-      const geom::Length epsilon = epsilon_of_mesh(options.epsilon, scale);
+      const kaboum::Length epsilon = epsilon_of_mesh(options.epsilon, scale);
       const std::pair key{mesh.string(), epsilon.value};
       auto it = decomposed.find(key);
       if (it == decomposed.end()) {

@@ -16,7 +16,7 @@ struct BodyOptions {
   bool visual = false;                ///< shapes for drawing instead of those for collisions
   std::vector<std::string> packages;  ///< folders that package:// URIs are looked up in
   /// Of the decomposition; lengths in the robot's unit.
-  geom::Length epsilon{1, true};
+  kaboum::Length epsilon{1, true};
   std::size_t max_vertices = 64;
   bcd::Effort effort = bcd::Effort::Normal;
   const certify::SetCache* cache = nullptr;  ///< null: none
@@ -46,6 +46,6 @@ void place_shape(const robot::Geometry& shape, const geom::ConvexSet* set, const
 
 /// A percentage as it is; a length in the robot's unit in that of a mesh whose coordinates are
 /// multiplied by `scale`.
-geom::Length epsilon_of_mesh(geom::Length epsilon, double scale);
+kaboum::Length epsilon_of_mesh(kaboum::Length epsilon, double scale);
 
 }  // namespace kaboum::tools

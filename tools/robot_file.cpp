@@ -1,7 +1,7 @@
 #include "robot_file.h"
 
-#include <kaboum/geom/error.h>
-#include <kaboum/geom/similar_name.h>
+#include <kaboum/base/error.h>
+#include <kaboum/base/similar_name.h>
 #include <kaboum/io/mesh_io.h>
 
 #include <algorithm>
@@ -62,7 +62,7 @@ void require_links(const RobotFile& robot, const std::vector<std::string>& links
   for (const robot::Link& link : robot.robot.links) known.push_back(link.name);
   for (const std::string& name : links) {
     if (robot.robot.find_link(name)) continue;
-    std::string hint = geom::did_you_mean(name, known);
+    std::string hint = kaboum::did_you_mean(name, known);
     if (hint.empty()) hint = "; it has " + names_of(known);
     std::string message = robot.path.string();
     message.append(": --links: there is no link '").append(name).append("'").append(hint);

@@ -1,7 +1,7 @@
 // Meshes of robots: prepared as asked, judged by the verifier's library, each group once.
 #include "robot_judge.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 
 #include <algorithm>
 #include <cmath>

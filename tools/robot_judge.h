@@ -58,7 +58,7 @@ class RobotJudge {
 
   const VerifyRobotOptions& o_;
   std::function<void(const std::string&)> show_;
-  std::optional<geom::Length> epsilon_;
+  std::optional<kaboum::Length> epsilon_;
   verify::InclusionOptions limits_;
   using Key = std::tuple<std::vector<const RobotMeshes::File*>,
                          std::vector<const RobotMeshes::File*>, double, double, double>;

@@ -1,6 +1,6 @@
 #include "robot_meshes.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
 
 #include <filesystem>

@@ -1,6 +1,6 @@
 #include "set_format.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 
 #include <map>
 

@@ -1,7 +1,7 @@
 // Meshes and sets to measure, told apart by what is in their files.
 #include "shape_file.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/verify/cover.h>
 

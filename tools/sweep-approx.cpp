@@ -294,8 +294,7 @@ int sweep_path(Options o) {
     Json of_link = Json::object();
     for (std::size_t l = 0; l < file.robot.links.size(); ++l)
       if (result.of_link[l] > 0) of_link[file.robot.links[l].name] = result.of_link[l];
-    const Json report = {{"tool", p.tool},
-                         {"robot", {{"file", o.robot}, {"sha256", file.sha256}}},
+    const Json report = {{"robot", {{"file", o.robot}, {"sha256", file.sha256}}},
                          {"path", {{"file", o.path}, {"waypoints", path.size()}}},
                          {"parameters", p.parameters},
                          {"certified", result.certified},
@@ -310,10 +309,8 @@ int sweep_path(Options o) {
                          {"rounding", result.rounding},
                          {"reach", result.reach},
                          {"bodies_epsilon", links.epsilon},
-                         {"sweep_user_seconds", seconds},
-                         {"user_seconds", tools::user_seconds()},
-                         {"peak_megabytes", tools::peak_megabytes()}};
-    tools::write_json(o.common.report, report);
+                         {"resources", {{"user_seconds_sweeping", seconds}}}};
+    tools::write_report(o.common, "sweep-approx", report);
   }
   if (!o.depfile.empty()) {
     std::vector<std::string> inputs{o.robot, o.path};

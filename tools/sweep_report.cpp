@@ -31,8 +31,6 @@ Json report_of(const SweepCase& run) {
   const verify::SweepClaims& claims = run.claims;
   const SweepShapes& shapes = run.shapes;
   Json json{
-      {"tool", "bound-verify"},
-      {"version", version()},
       {"relation", "sweep"},
       {"verdict", name_of(run.answer)},
       {"deciding_claims", o.claims},
@@ -62,7 +60,6 @@ Json report_of(const SweepCase& run) {
                    {"with_other_shapes_only", shapes.bare.other}};
   json["cells"] = claims.cells;
   json["samples"] = claims.samples;
-  json["resources"] = {{"user_seconds", user_seconds()}, {"peak_megabytes", peak_megabytes()}};
   return json;
 }
 

@@ -2,7 +2,7 @@
 
 #include "swept_urdf.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/io/convex_io.h>
 #include <tinyxml2.h>
 

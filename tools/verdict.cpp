@@ -80,7 +80,7 @@ verify::Claims claims_of(const std::string& name) {
                              : verify::Claims::All;
 }
 
-std::optional<geom::Length> epsilon_of(const std::string& text) {
+std::optional<kaboum::Length> epsilon_of(const std::string& text) {
   if (text.empty()) return std::nullopt;
   const auto length = parse_length(text);
   if (!length)

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <kaboum/geom/length.h>
+#include <kaboum/base/length.h>
 #include <kaboum/geom/mesh.h>
 #include <kaboum/verify/bracket.h>
 #include <kaboum/verify/claims.h>
@@ -40,6 +40,6 @@ verify::Claims claims_of(const std::string& name);
 
 /// What --epsilon says; nullopt if it is not given.
 /// @throws Error{InvalidArgument} on what is no length.
-std::optional<geom::Length> epsilon_of(const std::string& text);
+std::optional<kaboum::Length> epsilon_of(const std::string& text);
 
 }  // namespace kaboum::tools

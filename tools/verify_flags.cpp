@@ -1,7 +1,7 @@
 // bound-verify with a flag instead of a command.
 #include "verify_flags.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 
 namespace kaboum::tools {
 namespace {

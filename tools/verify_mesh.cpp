@@ -1,7 +1,7 @@
 // `bound-verify mesh` and `cover`: reads two files, has the claims decided, says what was found.
 #include "verify_mesh.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 
 #include <cmath>
 #include <iostream>
@@ -88,7 +88,7 @@ int verify_mesh(const VerifyMeshOptions& o, const CommonOptions& common) {
     if (const geom::Mesh mesh = verify::offending_triangles(question, run.verdict);
         !mesh.triangles.empty())
       write_witness(o.witness, mesh, "triangles that bound what refutes the claim");
-  if (!common.report.empty()) write_json(common.report, report_of(run));
+  if (!common.report.empty()) write_report(common, "bound-verify", report_of(run));
   say(lines_of_distances(run));
   if (answer != Answer::Verified && answer != Answer::Undecided && !o.prepare)
     if (const std::string change = change_by_preparing(run.original); !change.empty())

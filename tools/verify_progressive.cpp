@@ -1,8 +1,8 @@
 // `bound-verify progressive`: replays a progressive file and says what was found.
 #include "verify_progressive.h"
 
+#include <kaboum/base/error.h>
 #include <kaboum/bmesh/progressive.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/verify/replay.h>
 
@@ -35,9 +35,7 @@ struct ProgressiveCase {
 Json report_of(const ProgressiveCase& run) {
   const verify::ReplayResult& r = run.result;
   const bmesh::Progressive& p = run.progressive;
-  Json json{{"tool", "bound-verify"},
-            {"version", version()},
-            {"relation", "progressive"},
+  Json json{{"relation", "progressive"},
             {"verdict", r.verified ? "verified" : "refuted"},
             {"violation", r.violation},
             {"original", {{"file", run.original}, {"sha256", p.log.input_sha256}}},
@@ -54,7 +52,6 @@ Json report_of(const ProgressiveCase& run) {
     json["levels"].push_back({{"wished", p.levels[i].wished},
                               {"vertices", p.levels[i].vertices},
                               {"steps", p.levels[i].steps}});
-  json["resources"] = {{"user_seconds", user_seconds()}, {"peak_megabytes", peak_megabytes()}};
   return json;
 }
 
@@ -102,7 +99,7 @@ int verify_progressive(const std::string& original, const std::string& original_
   bytes = {};
   const verify::ReplayResult r = verify::replay_progressive(input.mesh, p);
   const ProgressiveCase run{original, progressive, p, r};
-  if (!common.report.empty()) write_json(common.report, report_of(run));
+  if (!common.report.empty()) write_report(common, "bound-verify", report_of(run));
   std::ostream& out = common.report == "-" ? std::cerr : std::cout;
   if (!r.verified)
     out << "refuted: " << r.violation << '\n';

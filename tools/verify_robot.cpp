@@ -1,7 +1,7 @@
 // `bound-verify robot`: goes through the links of two robots and says what holds what.
 #include "verify_robot.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/verify/motion_alike.h>
 
 #include <iostream>
@@ -49,7 +49,7 @@ class RobotVerifier {
     answer_ = motion.empty() ? Answer::Verified : Answer::Refuted;
     for (const robot::Link& link : original_.robot.links) check(link);
     if (judge_.measures()) look_for_strangers();
-    if (!common_.report.empty()) write_json(common_.report, report(motion));
+    if (!common_.report.empty()) write_report(common_, "bound-verify", report(motion));
     progress_.show("");
     add_note_on_records();
     for (const std::string& note : judge_.notes.lines()) log(common_.quiet, "note: " + note);
@@ -190,23 +190,19 @@ class RobotVerifier {
     const auto file = [](const std::string& path, const RobotFile& robot) {
       return Json{{"file", path}, {"sha256", robot.sha256}};
     };
-    return {
-        {"tool", "bound-verify"},
-        {"version", version()},
-        {"relation", "robot"},
-        {"verdict", name_of(answer_)},
-        {"deciding_claims", o_.claims},
-        {"geometry", o_.geometry},
-        {"prepared", o_.prepare},
-        {"dropped_sheet_triangles", judge_.dropped()},
-        {"original", file(o_.original, original_)},
-        {"result", file(o_.result, result_)},
-        {"joints", {{"answer", motion.empty() ? "verified" : "refuted"}, {"reason", motion}}},
-        {"links", links_},
-        {"links_without_shapes", bare_.all()},
-        {"links_with_other_shapes_only", bare_.other},
-        {"notes", judge_.notes.lines()},
-        {"resources", {{"user_seconds", user_seconds()}, {"peak_megabytes", peak_megabytes()}}}};
+    return {{"relation", "robot"},
+            {"verdict", name_of(answer_)},
+            {"deciding_claims", o_.claims},
+            {"geometry", o_.geometry},
+            {"prepared", o_.prepare},
+            {"dropped_sheet_triangles", judge_.dropped()},
+            {"original", file(o_.original, original_)},
+            {"result", file(o_.result, result_)},
+            {"joints", {{"answer", motion.empty() ? "verified" : "refuted"}, {"reason", motion}}},
+            {"links", links_},
+            {"links_without_shapes", bare_.all()},
+            {"links_with_other_shapes_only", bare_.other},
+            {"notes", judge_.notes.lines()}};
   }
 
   const VerifyRobotOptions& o_;

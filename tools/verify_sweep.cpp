@@ -1,7 +1,7 @@
 // `bound-verify sweep`: reads robot, path and set, has the claims decided, says what was found.
 #include "verify_sweep.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/verify/moving_robot.h>
 
 #include <algorithm>
@@ -65,7 +65,7 @@ int verify_sweep(const VerifySweepOptions& o, const CommonOptions& common) {
   Progress progress(common.quiet);
   decide(run, progress);
   progress.show("");
-  if (!common.report.empty()) write_json(common.report, report_of(run));
+  if (!common.report.empty()) write_report(common, "bound-verify", report_of(run));
   if (!o.witness.empty() && run.claims.refuting)
     write_witness(o.witness, {run.claims.refuting->triangle, {{0, 1, 2}}},
                   "a part of the robot that is outside the swept set");

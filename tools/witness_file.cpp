@@ -1,6 +1,6 @@
 #include "witness_file.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
 
 #include <filesystem>

@@ -1,6 +1,6 @@
 #include "written_mesh.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 
 #include <algorithm>
 #include <charconv>

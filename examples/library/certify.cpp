@@ -9,7 +9,7 @@
 int main() {
   using namespace kaboum;
   certify::SetRequest request;
-  request.epsilon = geom::Length{1, true};  // percent of the diagonal
+  request.epsilon = kaboum::Length{1, true};  // percent of the diagonal
   const auto made = certify::certify_set(box({0, 0, 0}, {3, 2, 1}), "", request);
   if (!made) return 1;
   std::cout << made->set.bodies.size() << " body, certified:\n"

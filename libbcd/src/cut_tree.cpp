@@ -1,4 +1,4 @@
-#include <kaboum/geom/parallel.h>
+#include <kaboum/base/parallel.h>
 #include <kaboum/geom/topology.h>
 #include <tbb/enumerable_thread_specific.h>
 
@@ -461,14 +461,14 @@ CutTree::Candidate CutTree::best_in_two(const Node& node, std::vector<Candidate>
                    [](const Candidate& a, const Candidate& b) { return a.score < b.score; });
   list.resize(std::min(list.size(), static_cast<std::size_t>(options_.look_ahead)));
   std::vector<double> deep(list.size());
-  geom::parallel_loop(std::size_t{0}, list.size(),
-                      [&](std::size_t i) { deep[i] = look_ahead(node, list[i].plane); });
+  parallel_loop(std::size_t{0}, list.size(),
+                [&](std::size_t i) { deep[i] = look_ahead(node, list[i].plane); });
   return list[static_cast<std::size_t>(std::min_element(deep.begin(), deep.end()) - deep.begin())];
 }
 
 void CutTree::evaluate(const Node& node, std::vector<Candidate>& list) const {
-  geom::parallel_loop(std::size_t{0}, list.size(),
-                      [&](std::size_t i) { list[i].score = score(node, list[i].plane); });
+  parallel_loop(std::size_t{0}, list.size(),
+                [&](std::size_t i) { list[i].score = score(node, list[i].plane); });
 }
 
 bool CutTree::cut(int leaf) {
@@ -625,8 +625,8 @@ std::optional<CutTree::Split> CutTree::find_split(const std::vector<int>& nodes,
       list.push_back({{n, low + (high - low) * i / (options_.offsets + 1)}});
   }
   const auto evaluate = [&](std::vector<Split>& splits) {
-    geom::parallel_loop(std::size_t{0}, splits.size(),
-                        [&](std::size_t i) { splits[i].worst = worst(splits[i].plane); });
+    parallel_loop(std::size_t{0}, splits.size(),
+                  [&](std::size_t i) { splits[i].worst = worst(splits[i].plane); });
   };
   const auto better = [](const Split& a, const Split& b) { return a.worst < b.worst; };
   evaluate(list);

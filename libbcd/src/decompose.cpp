@@ -1,9 +1,9 @@
+#include <kaboum/base/error.h>
+#include <kaboum/base/parallel.h>
 #include <kaboum/bcd/decompose.h>
 #include <kaboum/geom/convex_hull.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/geom/float32.h>
 #include <kaboum/geom/holes.h>
-#include <kaboum/geom/parallel.h>
 #include <kaboum/geom/width.h>
 
 #include <algorithm>
@@ -250,7 +250,7 @@ class Decomposer {
     };
     std::vector<Deal> deals;
     std::vector<Body> rests(pieces.size()), parts(pieces.size());
-    geom::parallel_loop(std::size_t{0}, pieces.size(), [&](std::size_t i) {
+    parallel_loop(std::size_t{0}, pieces.size(), [&](std::size_t i) {
       std::vector<int> rest = pieces;
       rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
       rests[i] = union_of(tree_, solid_, rest);
@@ -262,7 +262,7 @@ class Decomposer {
       for (std::size_t to = 0; to < bodies.size(); ++to)
         if (to != from && touch(parts[i], bodies[to], solid_)) deals.push_back({i, to});
     }
-    geom::parallel_loop(std::size_t{0}, deals.size(), [&](std::size_t i) {
+    parallel_loop(std::size_t{0}, deals.size(), [&](std::size_t i) {
       Deal& d = deals[i];
       d.worst = std::max(distance_of_union(bodies[d.to], parts[d.leaf], solid_, limit),
                          rests[d.leaf].appraisal.worst);
@@ -622,7 +622,7 @@ class Decomposer {
       return std::min_element(of, of + static_cast<std::ptrdiff_t>(count)) - worst.begin();
     };
     for (std::size_t piece = 0; piece < gifts.size(); ++piece) {
-      geom::parallel_loop(std::size_t{0}, count, [&](std::size_t to) { join(piece, to); });
+      parallel_loop(std::size_t{0}, count, [&](std::size_t to) { join(piece, to); });
       if (worst[best_of(piece)] > limit) return false;
     }
     std::vector<char> given(gifts.size(), 0), changed(count, 0);
@@ -637,7 +637,7 @@ class Decomposer {
       const std::size_t taken = best / count, to = best % count;
       takers[to] = union_of(takers[to], gifts[taken], solid_);
       given[taken] = changed[to] = 1;
-      geom::parallel_loop(std::size_t{0}, gifts.size(), [&](std::size_t piece) {
+      parallel_loop(std::size_t{0}, gifts.size(), [&](std::size_t piece) {
         if (given[piece] == 0) join(piece, to);
       });
     }
@@ -703,7 +703,7 @@ class Decomposer {
     for (const bool first : {true, false}) {
       std::vector<Mesh> hulls(open.size());
       std::vector<char> thickened(open.size(), 0);
-      geom::parallel_loop(std::size_t{0}, open.size(), [&](std::size_t i) {
+      parallel_loop(std::size_t{0}, open.size(), [&](std::size_t i) {
         const Body& body = out[open[i]].body;
         Simplified& shape = shapes[open[i]];
         if (first) {
@@ -764,7 +764,7 @@ class Decomposer {
     std::vector<std::vector<Vec3>*> place;
     place.reserve(open.size());
     for (const int leaf : open) place.push_back(&required_.at(leaf));
-    geom::parallel_loop(std::size_t{0}, open.size(), [&](std::size_t i) {
+    parallel_loop(std::size_t{0}, open.size(), [&](std::size_t i) {
       *place[i] = outer_points(tree_.nodes()[open[i]].piece, point_error_);
     });
   }
@@ -927,7 +927,7 @@ class Decomposer {
       ReachOptions reach = reach_options(open.size());
       reach.enough = std::max(epsilon, reach_of(bodies));
       std::vector<Mesh> hulls(open.size());
-      geom::parallel_loop(std::size_t{0}, open.size(), [&](std::size_t i) {
+      parallel_loop(std::size_t{0}, open.size(), [&](std::size_t i) {
         const Finished& f = bodies[open[i].body];
         const std::size_t most = (open[i].low + f.hull.vertices.size()) / 2;
         hulls[i] = rounded(f.body, simplify(f.body.hull, most, 0, solid_), most);

@@ -1,5 +1,5 @@
+#include <kaboum/base/error.h>
 #include <kaboum/bcd/fill.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/geom/float32.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 
-#include <kaboum/geom/parallel.h>
+#include <kaboum/base/parallel.h>
 
 #include <algorithm>
 #include <cmath>
@@ -133,7 +133,7 @@ std::vector<Body> merge(std::vector<Body> bodies, const Solid& solid, std::size_
         open.push_back(i);
       }
     }
-    geom::parallel_loop(std::size_t{0}, open.size(), [&](std::size_t i) {
+    parallel_loop(std::size_t{0}, open.size(), [&](std::size_t i) {
       Pair& p = fresh[open[i]];
       p.hull = judge(bodies[p.a], bodies[p.b], solid, epsilon);
     });

@@ -1,7 +1,7 @@
 #include "outward.h"
 
+#include <kaboum/base/error.h>
 #include <kaboum/geom/convex_hull.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/geom/float32.h>
 #include <kaboum/geom/predicates.h>
 

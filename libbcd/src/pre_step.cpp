@@ -1,8 +1,8 @@
 #include "pre_step.h"
 
+#include <kaboum/base/error.h>
 #include <kaboum/bmesh/decimate.h>
 #include <kaboum/geom/distance.h>
-#include <kaboum/geom/error.h>
 
 #include <vector>
 

@@ -1,6 +1,6 @@
 #include "reach.h"
 
-#include <kaboum/geom/parallel.h>
+#include <kaboum/base/parallel.h>
 #include <kaboum/geom/predicates.h>
 
 #include <algorithm>
@@ -340,13 +340,13 @@ std::vector<Reach> measure(const std::vector<Mesh>& bodies, const Solid& solid,
   measures.reserve(bodies.size());
   for (const Mesh& body : bodies) measures.emplace_back(body, solid, options);
   std::vector<double> sampled(bodies.size());
-  geom::parallel_loop(std::size_t{0}, bodies.size(),
-                      [&](std::size_t i) { sampled[i] = measures[i].sample(); });
+  parallel_loop(std::size_t{0}, bodies.size(),
+                [&](std::size_t i) { sampled[i] = measures[i].sample(); });
   // Only the largest matters: the others are told from it, not measured.
   for (const double s : sampled) floor = std::max(floor, std::min(0.7 * s, ceiling));
   std::vector<Reach> out(bodies.size());
-  geom::parallel_loop(std::size_t{0}, bodies.size(),
-                      [&](std::size_t i) { out[i] = measures[i].run(floor); });
+  parallel_loop(std::size_t{0}, bodies.size(),
+                [&](std::size_t i) { out[i] = measures[i].run(floor); });
   return out;
 }
 

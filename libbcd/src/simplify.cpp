@@ -1,7 +1,7 @@
 #include "simplify.h"
 
+#include <kaboum/base/error.h>
 #include <kaboum/geom/convex_hull.h>
-#include <kaboum/geom/error.h>
 
 #include <Eigen/Dense>
 #include <algorithm>

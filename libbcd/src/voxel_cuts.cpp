@@ -1,7 +1,7 @@
 #include "voxel_cuts.h"
 
+#include <kaboum/base/parallel.h>
 #include <kaboum/geom/convex_hull.h>
-#include <kaboum/geom/parallel.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,7 @@ VoxelCuts::VoxelCuts(const Solid& solid, std::size_t voxels)
   for (int k = 0; k < 3; ++k) size_[k] = static_cast<int>(std::ceil(size[k] / spacing_));
   filled_.resize(static_cast<std::size_t>(size_[0]) * static_cast<std::size_t>(size_[1]) *
                  static_cast<std::size_t>(size_[2]));
-  geom::parallel_loop(0, size_[2], [&](int z) {
+  parallel_loop(0, size_[2], [&](int z) {
     std::size_t at = static_cast<std::size_t>(z) * static_cast<std::size_t>(size_[0]) *
                      static_cast<std::size_t>(size_[1]);
     for (int y = 0; y < size_[1]; ++y)
@@ -101,9 +101,8 @@ std::optional<Plane> VoxelCuts::choose(const Cell& cell, const std::vector<Vec3>
   };
   std::vector<Candidate> list;
   const auto best = [&]() -> const Candidate* {
-    geom::parallel_loop(std::size_t{0}, list.size(), [&](std::size_t i) {
-      list[i].cost = cost(range, list[i].axis, list[i].at);
-    });
+    parallel_loop(std::size_t{0}, list.size(),
+                  [&](std::size_t i) { list[i].cost = cost(range, list[i].axis, list[i].at); });
     const auto at =
         std::min_element(list.begin(), list.end(),
                          [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });

@@ -2,10 +2,10 @@
 // [gaschler2016] A. Gaschler, Efficient Geometric Predicates for Integrated Task and Motion
 // Planning, §4.3, Algorithms 1 and 2. The certificate and the error bound:
 // docs/algorithms/bounding-mesh.md.
+#include <kaboum/base/error.h>
 #include <kaboum/bmesh/decimate.h>
 #include <kaboum/geom/convex_set.h>
 #include <kaboum/geom/distance.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/geom/float32.h>
 #include <kaboum/geom/topology.h>
 

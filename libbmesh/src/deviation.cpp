@@ -1,4 +1,4 @@
-#include <kaboum/geom/parallel.h>
+#include <kaboum/base/parallel.h>
 
 #include "deviation.h"
 
@@ -104,7 +104,7 @@ void Deviation::assign(std::span<const Vec3> position, const Connectivity& mesh)
   // Runs of samples, each with hints of its own: the result does not depend on the threads.
   constexpr std::size_t kRun = 1024;
   std::vector<std::uint32_t> nearest(point_.size());
-  geom::parallel_loop(std::size_t{0}, (point_.size() + kRun - 1) / kRun, [&](std::size_t run) {
+  parallel_loop(std::size_t{0}, (point_.size() + kRun - 1) / kRun, [&](std::size_t run) {
     std::uint32_t hint = 0;
     std::uint64_t steps = 0;
     const std::size_t end = std::min(point_.size(), (run + 1) * kRun);
@@ -218,7 +218,7 @@ void Deviation::refine(std::span<const Vec3> position, const Connectivity& mesh,
   const std::size_t n = mesh_.triangles.size();
   using Of = std::pair<std::size_t, Between::Found>;  // of a triangle
   std::vector<std::vector<Of>> found((n + kRun - 1) / kRun);
-  geom::parallel_loop(std::size_t{0}, found.size(), [&](std::size_t run) {
+  parallel_loop(std::size_t{0}, found.size(), [&](std::size_t run) {
     Between between(proximity, enough);
     const std::size_t end = std::min(n, (run + 1) * kRun);
     for (std::size_t i = run * kRun; i < end && between.steps() < kMostSteps; ++i) {

@@ -1,7 +1,7 @@
 // Meshes out of progressive files: their steps taken, not judged.
 
+#include <kaboum/base/error.h>
 #include <kaboum/bmesh/extract.h>
-#include <kaboum/geom/error.h>
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <kaboum/geom/parallel.h>
+#include <kaboum/base/parallel.h>
 
 #include <tbb/blocked_range.h>
 
@@ -16,10 +16,10 @@ void in_parallel(std::size_t n, Visit&& visit) {
     for (std::size_t i = 0; i < n; ++i) visit(i);
     return;
   }
-  geom::parallel_loop(tbb::blocked_range<std::size_t>(0, n, kGrain),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        for (std::size_t i = range.begin(); i != range.end(); ++i) visit(i);
-                      });
+  parallel_loop(tbb::blocked_range<std::size_t>(0, n, kGrain),
+                [&](const tbb::blocked_range<std::size_t>& range) {
+                  for (std::size_t i = range.begin(); i != range.end(); ++i) visit(i);
+                });
 }
 
 }  // namespace kaboum::bmesh

@@ -1,4 +1,4 @@
-#include <kaboum/geom/parallel.h>
+#include <kaboum/base/parallel.h>
 
 #include "optimise_in_parallel.h"
 
@@ -50,7 +50,7 @@ void ParallelOptimiser::run(std::size_t tasks, Task&& task) {
   }
   const bool recorded = options_.steps != nullptr;
   taken_.resize(std::max(taken_.size(), recorded ? tasks : 0));
-  geom::parallel_loop(
+  parallel_loop(
       tbb::blocked_range<std::size_t>(0, tasks, 1),
       [&](const tbb::blocked_range<std::size_t>& range) {
         Lane& lane = lanes_.local();

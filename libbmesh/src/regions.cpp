@@ -1,6 +1,6 @@
 #include "regions.h"
 
-#include <kaboum/geom/parallel.h>
+#include <kaboum/base/parallel.h>
 #include <kaboum/geom/spatial_order.h>
 
 #include <algorithm>
@@ -112,8 +112,8 @@ class Rounds {
 
   /// @param share  of a region's vertices that stay at least.
   void contract(double share) {
-    geom::parallel_loop(std::size_t{0}, regions_.size(),
-                        [&](std::size_t r) { contract(regions_[r], share); });
+    parallel_loop(std::size_t{0}, regions_.size(),
+                  [&](std::size_t r) { contract(regions_[r], share); });
   }
 
   /// Contracts within a region and writes what is left to where it was.

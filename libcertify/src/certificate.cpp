@@ -1,7 +1,7 @@
 // Certificates of convex sets as JSON.
 
+#include <kaboum/base/error.h>
 #include <kaboum/certify/convex_set.h>
-#include <kaboum/geom/error.h>
 
 #include <array>
 #include <nlohmann/json.hpp>

@@ -1,9 +1,9 @@
 // Sets of convex bodies that are decided to be what they should be on the bytes that are written:
 // search, serialise, read back, decide, and once more with other means where that fails.
 
+#include <kaboum/base/error.h>
 #include <kaboum/bcd/fill.h>
 #include <kaboum/certify/convex_set.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/geom/width.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/verify/cover.h>

@@ -52,9 +52,9 @@ const char* name_of(SetRequest::Direction direction) {
   return direction == SetRequest::Direction::Outer ? "outer" : "inner";
 }
 
-std::optional<geom::Length> SetRequest::wanted_epsilon() const {
+std::optional<Length> SetRequest::wanted_epsilon() const {
   if (epsilon || max_bodies || max_total_vertices) return epsilon;
-  return geom::Length{1, true};
+  return Length{1, true};
 }
 
 std::string SetRequest::parameters() const {

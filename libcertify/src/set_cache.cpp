@@ -1,7 +1,7 @@
 // Certified sets kept between runs.
 
+#include <kaboum/base/error.h>
 #include <kaboum/certify/set_cache.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/io/mesh_io.h>
 

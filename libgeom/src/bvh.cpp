@@ -1,5 +1,5 @@
+#include <kaboum/base/parallel.h>
 #include <kaboum/geom/bvh.h>
-#include <kaboum/geom/parallel.h>
 
 #include <algorithm>
 #include <utility>
@@ -53,7 +53,7 @@ struct Builder {
     const std::uint32_t left = self + 1, right = left + nodes_of(middle - begin).first;
     constexpr std::uint32_t kLarge = 4096;
     if (end - begin > kLarge) {
-      geom::parallel_calls([&] { build(left, begin, middle); }, [&] { build(right, middle, end); });
+      parallel_calls([&] { build(left, begin, middle); }, [&] { build(right, middle, end); });
     } else {
       build(left, begin, middle);
       build(right, middle, end);

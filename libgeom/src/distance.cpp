@@ -1,7 +1,7 @@
 // Closest point on a triangle: C. Ericson, Real-Time Collision Detection (2005), 5.1.5; the bounds
 // around it are derived in docs/algorithms/distances.md.
+#include <kaboum/base/error.h>
 #include <kaboum/geom/distance.h>
-#include <kaboum/geom/error.h>
 
 #include <algorithm>
 #include <cmath>

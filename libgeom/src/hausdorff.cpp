@@ -1,6 +1,6 @@
+#include <kaboum/base/error.h>
+#include <kaboum/base/parallel.h>
 #include <kaboum/geom/distance.h>
-#include <kaboum/geom/error.h>
-#include <kaboum/geom/parallel.h>
 
 #include <tbb/blocked_range.h>
 
@@ -151,11 +151,11 @@ class BranchAndBound {
     for (std::size_t depth = boxes.size(); depth-- > 0; size /= 8) {
       std::vector<Finding> findings(level.size());
       const double enough = limit();
-      geom::parallel_loop(tbb::blocked_range<std::size_t>(0, level.size(), 16),
-                          [&](const tbb::blocked_range<std::size_t>& range) {
-                            for (std::size_t i = range.begin(); i != range.end(); ++i)
-                              findings[i] = bound(level[i], enough);
-                          });
+      parallel_loop(tbb::blocked_range<std::size_t>(0, level.size(), 16),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t i = range.begin(); i != range.end(); ++i)
+                        findings[i] = bound(level[i], enough);
+                    });
       for (const Finding& f : findings) take(f);
       std::vector<Cluster> next;
       const std::uint32_t step = size / 8;
@@ -215,12 +215,11 @@ class BranchAndBound {
     };
     std::vector<Outcome> outcomes(clusters.size());
     const double enough = limit();
-    geom::parallel_loop(tbb::blocked_range<std::size_t>(0, clusters.size(), 16),
-                        [&](const tbb::blocked_range<std::size_t>& range) {
-                          for (std::size_t i = range.begin(); i != range.end(); ++i)
-                            outcomes[i].finding =
-                                bound_each(clusters[i], enough, outcomes[i].pieces);
-                        });
+    parallel_loop(tbb::blocked_range<std::size_t>(0, clusters.size(), 16),
+                  [&](const tbb::blocked_range<std::size_t>& range) {
+                    for (std::size_t i = range.begin(); i != range.end(); ++i)
+                      outcomes[i].finding = bound_each(clusters[i], enough, outcomes[i].pieces);
+                  });
     std::vector<Piece> open;
     for (const Outcome& o : outcomes) {
       take(o.finding);
@@ -332,11 +331,11 @@ class BranchAndBound {
   void evaluate(std::vector<Piece>& pieces) {
     std::vector<Finding> findings(pieces.size());
     const double enough = limit();
-    geom::parallel_loop(tbb::blocked_range<std::size_t>(0, pieces.size(), 64),
-                        [&](const tbb::blocked_range<std::size_t>& range) {
-                          for (std::size_t i = range.begin(); i != range.end(); ++i)
-                            findings[i] = bound(pieces[i], enough);
-                        });
+    parallel_loop(tbb::blocked_range<std::size_t>(0, pieces.size(), 64),
+                  [&](const tbb::blocked_range<std::size_t>& range) {
+                    for (std::size_t i = range.begin(); i != range.end(); ++i)
+                      findings[i] = bound(pieces[i], enough);
+                  });
     for (const Finding& f : findings) take(f);
     keep_unsettled(pieces);
   }

@@ -1,6 +1,6 @@
 // Fills holes: the boundary of the chain of triangles, reversed, is walked loop by loop, and each
 // loop is filled with a fan.
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/geom/holes.h>
 #include <kaboum/geom/topology.h>
 

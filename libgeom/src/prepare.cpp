@@ -1,9 +1,9 @@
 // Preparation: from the triangles of a file to a mesh whose solid is the one that is meant.
 // docs/algorithms/preparation.md.
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
+#include <kaboum/base/parallel.h>
 #include <kaboum/geom/holes.h>
 #include <kaboum/geom/hollows.h>
-#include <kaboum/geom/parallel.h>
 #include <kaboum/geom/prepare.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/geom/winding.h>
@@ -66,8 +66,8 @@ class Preparation {
     drop_copies();
     judge_pairs();
     number_by_first_use();
-    geom::parallel_calls([&] { find_border(); },
-                         [&] { components(edges_, mesh().triangles.size(), &out_.components); });
+    parallel_calls([&] { find_border(); },
+                   [&] { components(edges_, mesh().triangles.size(), &out_.components); });
     if (options_.keep_orientation && out_.closed && !(signed_volume(out_.mesh) > 0))
       out_.notes.push_back(
           "the signed volume is not positive: as oriented, the mesh bounds little or no "

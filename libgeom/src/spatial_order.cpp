@@ -1,4 +1,4 @@
-#include <kaboum/geom/parallel.h>
+#include <kaboum/base/parallel.h>
 #include <kaboum/geom/spatial_order.h>
 
 #include <tbb/blocked_range.h>
@@ -67,7 +67,7 @@ std::vector<std::uint32_t> spatial_order(std::span<const Vec3> points, double sh
   const double extent = points.empty() ? 0.0 : (box.max - box.min).maxCoeff();
   const double scale = extent > 0 ? 511.99 / extent : 0.0;  // the grid is twice as large
   std::vector<Item> items(points.size());
-  geom::parallel_loop(
+  parallel_loop(
       tbb::blocked_range<std::uint32_t>(0, static_cast<std::uint32_t>(items.size()), 16384),
       [&](const tbb::blocked_range<std::uint32_t>& range) {
         for (std::uint32_t i = range.begin(); i != range.end(); ++i)

@@ -1,5 +1,5 @@
 // Two shapes measured against each other, both ways: largest, smallest and mean distances.
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/measure/compare.h>
 #include <kaboum/measure/search.h>

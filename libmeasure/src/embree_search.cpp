@@ -1,7 +1,7 @@
 // Embree as a search structure that culls in float32 and never culls too much; the argument is in
 // docs/algorithms/distances.md, "Embree".
 #include <embree3/rtcore.h>
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/geom/spatial_order.h>
 #include <kaboum/measure/search.h>
 

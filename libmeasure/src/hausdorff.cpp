@@ -1,6 +1,6 @@
 // The Hausdorff distance of two meshes in one call.
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/measure/hausdorff.h>
 #include <kaboum/measure/search.h>
 

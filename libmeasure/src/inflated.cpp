@@ -1,8 +1,8 @@
 #include "inflated.h"
 
+#include <kaboum/base/error.h>
+#include <kaboum/base/parallel.h>
 #include <kaboum/geom/convex_hull.h>
-#include <kaboum/geom/error.h>
-#include <kaboum/geom/parallel.h>
 #include <kaboum/geom/topology.h>
 
 #include <algorithm>
@@ -88,7 +88,7 @@ Mesh inflated(const Mesh& hull, double margin, const Sphere& sphere) {
 Inflated inflate(const geom::ConvexSet& set, int level) {
   const Sphere sphere = icosphere(level);
   std::vector<Mesh> polytopes(set.bodies.size());
-  geom::parallel_loop(std::size_t{0}, polytopes.size(), [&](std::size_t i) {
+  parallel_loop(std::size_t{0}, polytopes.size(), [&](std::size_t i) {
     polytopes[i] = inflated(set.bodies[i].hull, set.margin, sphere);
   });
   Inflated out;

@@ -2,9 +2,9 @@
 // arithmetic, and what remains is kept where exactly one side has a winding number of at least 1.
 // The argument is in docs/algorithms/distances.md, "Solids".
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <kaboum/base/error.h>
+#include <kaboum/base/parallel.h>
 #include <kaboum/geom/bvh.h>
-#include <kaboum/geom/error.h>
-#include <kaboum/geom/parallel.h>
 #include <kaboum/geom/predicates.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/measure/surface.h>
@@ -296,7 +296,7 @@ class Arrangement {
   void find_meetings() {
     const auto n = static_cast<std::uint32_t>(mesh_.triangles.size());
     meets_.resize(n);
-    geom::parallel_loop(std::uint32_t{0}, n, [&](std::uint32_t t) {
+    parallel_loop(std::uint32_t{0}, n, [&](std::uint32_t t) {
       const Box3 box = box_of(corners(t));
       bvh_.traverse(
           [&](const Box3& b) { return overlap(box, b); },
@@ -360,7 +360,7 @@ class Arrangement {
     for (std::uint32_t t = 0; t < meets_.size(); ++t)
       if (!meets_[t].empty()) crossed.push_back(t);
     std::vector<Part> parts(crossed.size());
-    geom::parallel_loop(std::size_t{0}, crossed.size(), [&](std::size_t i) {
+    parallel_loop(std::size_t{0}, crossed.size(), [&](std::size_t i) {
       parts[i].cells = cells_of(crossed[i]);
       for (const Cell& cell : parts[i].cells)
         parts[i].labels.push_back(label_of(crossed[i], cell.polygon));

@@ -1,8 +1,8 @@
 // Smallest distance between two surfaces. The exact test whether two triangles meet is CGAL's
 // (Kernel, predicates only).
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <kaboum/base/error.h>
 #include <kaboum/geom/bvh.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/measure/measure.h>
 

@@ -1,5 +1,5 @@
-#include <kaboum/geom/error.h>
-#include <kaboum/geom/parallel.h>
+#include <kaboum/base/error.h>
+#include <kaboum/base/parallel.h>
 #include <kaboum/measure/measure.h>
 
 #include <algorithm>
@@ -62,7 +62,7 @@ Sampled sample_distances(const geom::Mesh& a, const geom::TriangleSearch& b, std
   constexpr std::uint64_t kBlock = 256;  // hints pass on within blocks, not the scheduler's ranges
   const std::uint64_t blocks = (strata + kBlock - 1) / kBlock;
   std::vector<Sums> sums(blocks);
-  geom::parallel_loop(std::uint64_t{0}, blocks, [&](std::uint64_t block) {
+  parallel_loop(std::uint64_t{0}, blocks, [&](std::uint64_t block) {
     std::uint32_t hint = geom::TriangleSearch::kNone;
     Sums& sum = sums[block];
     for (std::uint64_t s = block * kBlock; s < std::min(strata, (block + 1) * kBlock); ++s) {

@@ -1,6 +1,6 @@
 // Membership in a solid, exact, and conditions that whole pieces lie in it. The arguments are in
 // docs/algorithms/distances.md, "Solids".
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/geom/predicates.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/geom/winding.h>

@@ -1,7 +1,7 @@
 // sup over S(A) of the distance to S(B): the boundary of S(A) as a surface, then space. The
 // arguments are in docs/algorithms/distances.md, "Solids".
-#include <kaboum/geom/error.h>
-#include <kaboum/geom/parallel.h>
+#include <kaboum/base/error.h>
+#include <kaboum/base/parallel.h>
 #include <kaboum/measure/solid.h>
 
 #include <tbb/blocked_range.h>
@@ -217,13 +217,13 @@ class Volume {
   void evaluate(std::vector<Cell>& cells) {
     std::vector<Finding> findings(cells.size());
     const double enough = limit();
-    geom::parallel_loop(tbb::blocked_range<std::size_t>(0, cells.size(), 32),
-                        [&](const tbb::blocked_range<std::size_t>& range) {
-                          std::vector<std::uint32_t> near;
-                          HalfSpace half_space;
-                          for (std::size_t i = range.begin(); i != range.end(); ++i)
-                            findings[i] = look_at(cells[i], enough, near, half_space);
-                        });
+    parallel_loop(tbb::blocked_range<std::size_t>(0, cells.size(), 32),
+                  [&](const tbb::blocked_range<std::size_t>& range) {
+                    std::vector<std::uint32_t> near;
+                    HalfSpace half_space;
+                    for (std::size_t i = range.begin(); i != range.end(); ++i)
+                      findings[i] = look_at(cells[i], enough, near, half_space);
+                  });
     result_.cells += cells.size();
     for (const Finding& f : findings)
       if (f.lower > result_.max_lower) {

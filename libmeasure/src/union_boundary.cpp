@@ -1,6 +1,6 @@
 // Boundary of a union of convex polytopes, by exact clipping.
-#include <kaboum/geom/error.h>
-#include <kaboum/geom/parallel.h>
+#include <kaboum/base/error.h>
+#include <kaboum/base/parallel.h>
 #include <kaboum/geom/predicates.h>
 #include <kaboum/measure/surface.h>
 
@@ -77,9 +77,8 @@ class Clipper {
     for (std::size_t i = 0; i < bodies_.size(); ++i)
       for (std::size_t t = 0; t < bodies_[i].triangles.size(); ++t) facets.emplace_back(i, t);
     parts.resize(facets.size());
-    geom::parallel_loop(std::size_t{0}, facets.size(), [&](std::size_t f) {
-      parts[f] = uncovered(facets[f].first, facets[f].second);
-    });
+    parallel_loop(std::size_t{0}, facets.size(),
+                  [&](std::size_t f) { parts[f] = uncovered(facets[f].first, facets[f].second); });
     Boundary out;
     double largest = 0;
     for (std::size_t f = 0; f < facets.size(); ++f) {

@@ -1,6 +1,6 @@
-#include <kaboum/geom/error.h>
-#include <kaboum/geom/json_damage.h>
-#include <kaboum/geom/similar_name.h>
+#include <kaboum/base/error.h>
+#include <kaboum/base/json_damage.h>
+#include <kaboum/base/similar_name.h>
 #include <kaboum/robot/kinematics.h>
 #include <kaboum/robot/path.h>
 
@@ -159,7 +159,7 @@ NamedPath parse_path_json(std::string_view text, const std::string& name) {
   try {
     json = Json::parse(text, [](int depth, Json::parse_event_t, Json&) { return depth <= 8; });
   } catch (const Json::parse_error& e) {
-    fail(name, geom::describe_json_damage(text, e.byte) + "; mend the path there");
+    fail(name, describe_json_damage(text, e.byte) + "; mend the path there");
   } catch (const Json::exception&) {
     fail(name, "a number in it is out of range");
   }
@@ -215,7 +215,7 @@ Path arrange(const NamedPath& path, const Robot& robot, const std::string& name,
     for (const Variable& v : robot.variables) known.push_back(v.name);
     return "the robot has no joint '" + joint +
            "' that moves by itself (fixed and mimicking joints have no column)" +
-           geom::did_you_mean(joint, known);
+           did_you_mean(joint, known);
   };
   for (const auto& [joint, value] : fixed) {
     if (!has_variable(robot, joint)) throw Error(ErrorCode::InvalidArgument, none(joint));

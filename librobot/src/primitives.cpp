@@ -1,5 +1,5 @@
+#include <kaboum/base/error.h>
 #include <kaboum/geom/convex_hull.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/robot/robot.h>
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 // a geometry: it takes the first) and stricter in others (inertia and materials, which this reader
 // does not look at). tests/engines compares the two.
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/robot/robot.h>
 
 #include <Eigen/Geometry>

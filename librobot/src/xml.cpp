@@ -1,6 +1,6 @@
 #include "xml.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 
 #include <charconv>
 #include <cmath>

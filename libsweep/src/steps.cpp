@@ -1,4 +1,4 @@
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/sweep/steps.h>
 
 #include <algorithm>

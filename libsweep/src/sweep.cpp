@@ -1,7 +1,7 @@
+#include <kaboum/base/error.h>
+#include <kaboum/base/parallel.h>
 #include <kaboum/geom/convex_hull.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/geom/float32.h>
-#include <kaboum/geom/parallel.h>
 #include <kaboum/sweep/sweep.h>
 
 #include <tbb/enumerable_thread_specific.h>
@@ -147,7 +147,7 @@ SweepResult swept_volume(const Robot& robot, std::span<const LinkBody> bodies, c
   steps.merge = options.merge;
   steps.max_reach = options.max_reach;
   std::vector<Plan> plans(bodies.size());
-  geom::parallel_loop(std::size_t{0}, bodies.size(), [&](std::size_t i) {
+  parallel_loop(std::size_t{0}, bodies.size(), [&](std::size_t i) {
     // The ends of a balanced piece lie up to epsilon beyond the poses; explicit margins as well.
     plans[i].spacing = geom::float32_spacing(extent(robot, bodies[i], path) + 4 * options.epsilon);
     plans[i].rounding = std::numbers::sqrt3 / 2 * plans[i].spacing * kUp;
@@ -164,7 +164,7 @@ SweepResult swept_volume(const Robot& robot, std::span<const LinkBody> bodies, c
   }
   if (options.rule == StepRule::Uniform || options.rule == StepRule::Baginski)
     steps.shared = shared_bounds(robot, bodies, path);
-  geom::parallel_loop(std::size_t{0}, bodies.size(), [&](std::size_t i) {
+  parallel_loop(std::size_t{0}, bodies.size(), [&](std::size_t i) {
     StepOptions own = steps;
     own.deviation =
         own.shared.empty() ? for_motion - bodies[i].margin - plans[i].rounding : least_room;
@@ -177,7 +177,7 @@ SweepResult swept_volume(const Robot& robot, std::span<const LinkBody> bodies, c
     result.sources.insert(result.sources.end(), plans[i].pieces.size(), i);
   std::vector<Output> outputs(first.back());
   tbb::enumerable_thread_specific<geom::HullBuilder> builders;
-  geom::parallel_loop(std::size_t{0}, outputs.size(), [&](std::size_t k) {
+  parallel_loop(std::size_t{0}, outputs.size(), [&](std::size_t k) {
     const std::size_t i = result.sources[k];
     outputs[k] =
         make_hull(bodies[i], plans[i].pieces[k - first[i]], plans[i], options, builders.local());

@@ -1,7 +1,7 @@
 // How far what refutes a claim lies outside: branch and bound over parts of triangles, and for
 // solids the search of pockets with limits that grow.
 // docs/algorithms/exact-inclusion.md, "How far outside".
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/verify/bracket.h>
 
 #include <algorithm>

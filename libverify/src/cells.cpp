@@ -2,7 +2,7 @@
 // in which they meet it. Every cell but an uncut face touches such a piece, so that neither a
 // planar arrangement nor a sorting round points is needed.
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 
 #include <algorithm>
 #include <utility>

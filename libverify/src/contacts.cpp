@@ -1,6 +1,6 @@
 #include "contacts.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 
 #include <algorithm>
 #include <atomic>

@@ -1,5 +1,5 @@
 // Which depths of a solid a set of bodies inside it leaves out, and how far a union reaches.
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/verify/cover.h>
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 // them. Lines and corners are exact; only the corners that are handed out are rounded.
 #include "pieces.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 
 #include <algorithm>
 #include <optional>

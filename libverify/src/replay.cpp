@@ -1,6 +1,6 @@
 // The checker of decimation logs. It is kept apart from the decimation on purpose: nothing here may
 // use its predicates, its adjacency or its preparation.
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/verify/replay.h>
 
 #include <algorithm>

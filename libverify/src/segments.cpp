@@ -1,7 +1,7 @@
 // The lines in which other faces meet a face.
 #include "segments.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 
 #include <algorithm>
 #include <cmath>

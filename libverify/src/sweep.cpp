@@ -1,6 +1,6 @@
 // Whether a set of convex bodies holds what moves: docs/algorithms/swept-volumes.md, "Checked from
 // files alone".
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/verify/sweep.h>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // Winding numbers at spots: signed crossings of a line along the face's axis with the chain, every
 // sign exact, ties broken by an infinitesimal displacement within the face, then off the face.
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 
 #include <algorithm>
 

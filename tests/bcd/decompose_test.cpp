@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
+#include <kaboum/base/error.h>
 #include <kaboum/bcd/decompose.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/geom/holes.h>
 #include <kaboum/io/convex_io.h>
 #include <tbb/global_control.h>

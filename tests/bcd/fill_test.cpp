@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
+#include <kaboum/base/error.h>
 #include <kaboum/bcd/fill.h>
 #include <kaboum/geom/distance.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/verify/cover.h>
 
 #include <random>

@@ -1,9 +1,9 @@
 /// Clusters of triangles, and cuts by voxels: other ways to bodies for which the same is claimed.
 
 #include <gtest/gtest.h>
+#include <kaboum/base/error.h>
 #include <kaboum/bcd/decompose.h>
 #include <kaboum/bcd/fill.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/io/convex_io.h>
 #include <tbb/global_control.h>
 

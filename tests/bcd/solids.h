@@ -1,9 +1,9 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <kaboum/base/error.h>
 #include <kaboum/bcd/decompose.h>
 #include <kaboum/geom/convex_set.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/geom/float32.h>
 #include <kaboum/geom/mesh.h>
 #include <kaboum/geom/prepare.h>

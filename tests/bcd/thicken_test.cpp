@@ -1,9 +1,9 @@
 #include "thicken.h"
 
 #include <gtest/gtest.h>
+#include <kaboum/base/error.h>
 #include <kaboum/bcd/fill.h>
 #include <kaboum/geom/convex_hull.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/geom/width.h>
 
 #include <random>

@@ -1,5 +1,5 @@
+#include <kaboum/base/error.h>
 #include <kaboum/bmesh/log.h>
-#include <kaboum/geom/error.h>
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
+#include <kaboum/base/error.h>
 #include <kaboum/bmesh/decimate.h>
 #include <kaboum/bmesh/extract.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/geom/float32.h>
 #include <kaboum/verify/inclusion.h>
 

@@ -1,5 +1,5 @@
+#include <kaboum/base/error.h>
 #include <kaboum/bmesh/decimate.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/verify/replay.h>
 
 #include <gtest/gtest.h>

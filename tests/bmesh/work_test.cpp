@@ -1,8 +1,8 @@
 // Inputs that would take long: an end to them, the same on any number of threads, with a result
 // that encloses as ever.
 #include <gtest/gtest.h>
+#include <kaboum/base/error.h>
 #include <kaboum/geom/distance.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/verify/replay.h>
 #include <tbb/global_control.h>
 

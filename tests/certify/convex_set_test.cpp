@@ -2,8 +2,8 @@
 // out of the cache only for the request that it was made for.
 
 #include <gtest/gtest.h>
+#include <kaboum/base/error.h>
 #include <kaboum/certify/set_cache.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/verify/cover.h>
 
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 SetRequest fast(double percent) {
   SetRequest request;
-  request.epsilon = geom::Length{percent, true};
+  request.epsilon = kaboum::Length{percent, true};
   request.effort = bcd::Effort::Fast;
   request.source = "torus.off";
   return request;
@@ -90,10 +90,10 @@ TEST(SetCertificate, SurvivesJson) {
 
 TEST(SetRequest, OnePercentStandsForNoTarget) {
   SetRequest request;
-  EXPECT_EQ(request.wanted_epsilon(), (geom::Length{1, true}));
+  EXPECT_EQ(request.wanted_epsilon(), (kaboum::Length{1, true}));
   request.max_bodies = 3;
   EXPECT_FALSE(request.wanted_epsilon());
-  request.epsilon = geom::Length{0.1, false};
+  request.epsilon = kaboum::Length{0.1, false};
   EXPECT_EQ(request.parameters().substr(0, 13), "--epsilon 0.1");
 }
 

@@ -1,7 +1,7 @@
 // Any bytes given to parse_mesh either make a valid mesh or throw Error. The first byte selects the
 // format. FBX, which assimp reads, is left out: its own robustness is not ours to fuzz.
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
 
 #include <array>

@@ -2,7 +2,7 @@
 // written and read again; a short search ends, and its plan is valid. The first byte selects the
 // language.
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/plan/check.h>
 #include <kaboum/plan/load.h>
 #include <kaboum/plan/solve.h>

@@ -1,8 +1,8 @@
 // Any bytes given to parse_progressive either make a file whose levels are valid meshes, and which
 // the checker verifies or refutes, or throw Error.
 
+#include <kaboum/base/error.h>
 #include <kaboum/bmesh/extract.h>
-#include <kaboum/geom/error.h>
 
 #include <cstdint>
 #include <cstdlib>

@@ -1,5 +1,5 @@
+#include <kaboum/base/error.h>
 #include <kaboum/geom/convex_set.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/geom/prepare.h>
 
 #include <gtest/gtest.h>

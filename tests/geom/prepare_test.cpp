@@ -1,4 +1,4 @@
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/geom/prepare.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/geom/winding.h>

@@ -1,6 +1,6 @@
 // Shells that touch, share walls or lie in each other, in all combinations of orientation: what any
 // of them encloses is in the solid, unless it is a cavity.
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/geom/prepare.h>
 #include <kaboum/geom/winding.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/plan/check.h>
 #include <kaboum/plan/load.h>
 #include <kaboum/plan/solve.h>

@@ -7,8 +7,8 @@
 // cost distance, whose steps are replayed slowly.
 //
 // Exit status 0 if no violation was found, 1 otherwise.
+#include <kaboum/base/error.h>
 #include <kaboum/bmesh/decimate.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/geom/winding.h>
 #include <kaboum/io/mesh_io.h>

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
+#include <kaboum/base/error.h>
 #include <kaboum/geom/convex_hull.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/robot/kinematics.h>
 
 #include <numbers>

@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/robot/kinematics.h>
 
 #include <cmath>

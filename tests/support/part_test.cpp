@@ -3,7 +3,7 @@
 #include "planar.h"
 #include "support/oracle.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
+#include <kaboum/base/error.h>
 #include <kaboum/geom/convex_hull.h>
-#include <kaboum/geom/error.h>
 #include <tbb/global_control.h>
 
 #include "sampling.h"

@@ -1,5 +1,5 @@
 // verify_distance against known distances and dense samples.
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/verify/distance.h>
 
 #include <gtest/gtest.h>

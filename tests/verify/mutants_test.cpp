@@ -1,6 +1,6 @@
 // Bounding meshes are verified; spoilt ones are refuted exactly when they are wrong.
+#include <kaboum/base/error.h>
 #include <kaboum/bmesh/decimate.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/verify/inclusion.h>
 
 #include <gtest/gtest.h>

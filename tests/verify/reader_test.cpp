@@ -1,5 +1,5 @@
 // What is verified is what is in the files: the project's reader against a second, plain one.
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
 #include <unistd.h>
 

@@ -12,8 +12,8 @@
 // (pairs of no more triangles than --oracle; results in double precision).
 //
 // Exit status 0 if nothing disagrees and all solid claims of bounding meshes are verified.
+#include <kaboum/base/error.h>
 #include <kaboum/bmesh/decimate.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/verify/inclusion.h>
 

@@ -4,8 +4,8 @@
 #include "png_file.h"
 #include "render.h"
 
+#include <kaboum/base/error.h>
 #include <kaboum/geom/convex_set.h>
-#include <kaboum/geom/error.h>
 #include <kaboum/geom/mesh.h>
 #include <kaboum/io/convex_io.h>
 

@@ -1,6 +1,6 @@
 #include "png_file.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 
 #include <png.h>
 

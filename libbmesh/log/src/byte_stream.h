@@ -1,7 +1,7 @@
 #pragma once
 
+#include <kaboum/base/error.h>
 #include <kaboum/bmesh/log.h>
-#include <kaboum/geom/error.h>
 
 #include <algorithm>
 #include <bit>

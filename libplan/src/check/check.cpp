@@ -1,6 +1,6 @@
 // The validator: a plan is replayed breadth first, over pairs of a node and a state of knowledge.
 // It reads the lifted model; nothing of the planner is included here.
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/plan/check.h>
 
 #include <algorithm>

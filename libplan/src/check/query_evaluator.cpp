@@ -1,7 +1,7 @@
 // Queries evaluated on the lifted model, one object after another.
 #include "check/query_evaluator.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 // "Updates", written a second time, on the lifted model.
 #include "check/transitions.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 
 #include <algorithm>
 #include <utility>

@@ -1,5 +1,5 @@
 // Plans as graphs: equality, size, and the tree without sharing.
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/plan/plan.h>
 
 #include <algorithm>

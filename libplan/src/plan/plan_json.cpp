@@ -1,6 +1,6 @@
 // Plans as JSON, docs/planning/plans.md.
-#include <kaboum/geom/error.h>
-#include <kaboum/geom/json_damage.h>
+#include <kaboum/base/error.h>
+#include <kaboum/base/json_damage.h>
 #include <kaboum/plan/plan.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ class Reader {
     try {
       json = Json::parse(text);
     } catch (const Json::parse_error& e) {
-      fail(geom::describe_json_damage(text, e.byte) + "; write the plan again (kaboum-plan solve)");
+      fail(describe_json_damage(text, e.byte) + "; write the plan again (kaboum-plan solve)");
     } catch (const Json::exception&) {
       fail("a number in it is out of range; write the plan again (kaboum-plan solve)");
     }

@@ -1,5 +1,5 @@
 // A plan for people as indented text and as Graphviz DOT.
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/plan/plan.h>
 
 #include <algorithm>

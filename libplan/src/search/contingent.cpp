@@ -1,7 +1,7 @@
 // Contingent planning by weak plans and their repair, docs/planning/search.md, "Branches".
 #include "search/contingent.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 // Regression of a condition through one step, in the context of the state in which it was planned.
 #include "search/regression.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 
 #include <algorithm>
 #include <set>

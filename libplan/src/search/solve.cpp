@@ -1,5 +1,5 @@
 // One call of the planner: the task is made, a planner run, limits become an outcome.
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 #include <kaboum/plan/solve.h>
 
 #include "search/contingent.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 
 #include <cstring>
 #include <memory>

@@ -1,7 +1,7 @@
 // Which ground atoms and terms can change at all: only they take room in a state.
 #include "task/change_analysis.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 
 #include "task/bindings.h"
 

@@ -1,7 +1,7 @@
 // Grounding of effects: updates of the databases become changes of fluents, grouped by condition.
 #include "task/effect_grounder.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 
 #include <utility>
 

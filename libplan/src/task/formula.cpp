@@ -1,7 +1,7 @@
 // Hash-consing of ground formulas, their simplification, and calls of external functions.
 #include "task/formula.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 
 #include <algorithm>
 #include <chrono>

@@ -1,7 +1,7 @@
 // Grounding of queries: variables get their objects, and constant knowledge is folded in.
 #include "task/formula.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 
 #include "task/bindings.h"
 

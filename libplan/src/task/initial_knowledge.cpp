@@ -2,7 +2,7 @@
 // it.
 #include "task/initial_knowledge.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 
 #include <set>
 

@@ -1,7 +1,7 @@
 // Numbers of objects within their types, and of ground atoms and terms.
 #include "task/numbering.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 
 #include <string>
 

@@ -1,7 +1,7 @@
 // A planning task: ground actions as they are first reached, and what they make of a state.
 #include "task/task.h"
 
-#include <kaboum/geom/error.h>
+#include <kaboum/base/error.h>
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
 #pragma once
 
+#include <kaboum/base/length.h>
 #include <kaboum/bcd/decompose.h>
 #include <kaboum/geom/convex_set.h>
-#include <kaboum/geom/length.h>
 #include <kaboum/geom/prepare.h>
 
 #include <functional>
@@ -18,7 +18,7 @@ struct SetRequest {
   enum class Direction { Outer, Inner } direction = Direction::Outer;
   /// Farthest that a point of an outer set may be from the solid, or deepest that a point left out
   /// by an inner set may be. By default 1 % where no limit is given, else none.
-  std::optional<geom::Length> epsilon;
+  std::optional<Length> epsilon;
   std::optional<std::size_t> max_bodies, max_total_vertices;
   std::size_t max_vertices = 64;  ///< of one body
   bcd::Effort effort = bcd::Effort::Normal;
@@ -35,7 +35,7 @@ struct SetRequest {
   std::string unit = "m", frame;
 
   /// epsilon, or what stands for it.
-  [[nodiscard]] std::optional<geom::Length> wanted_epsilon() const;
+  [[nodiscard]] std::optional<Length> wanted_epsilon() const;
   /// The options that the bodies depend on, as bcd-decompose spells them: the container's record.
   [[nodiscard]] std::string parameters() const;
 };

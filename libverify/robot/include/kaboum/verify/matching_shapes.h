@@ -1,6 +1,6 @@
 #pragma once
 
-#include <kaboum/geom/length.h>
+#include <kaboum/base/length.h>
 #include <kaboum/robot/robot.h>
 #include <kaboum/verify/held_shape.h>
 
@@ -42,7 +42,7 @@ struct ScaledBound {
 /// @param epsilon   in the robot's unit, or of the largest diagonal of the meshes
 /// @param diagonal  the largest [length, as the meshes]
 /// @param scale     factors along the axes, above 0
-ScaledBound scaled_bound(const geom::Length& epsilon, double diagonal, const geom::Vec3& scale);
+ScaledBound scaled_bound(const Length& epsilon, double diagonal, const geom::Vec3& scale);
 
 /// Undecided where not all that holds is convex, or an uneven scale may bring near what is too far.
 Answer answer_of(const HeldDistance& distance, const ScaledBound& bound);

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace kaboum {
+
+/// Where a text stops being JSON, in words: "the JSON is cut short: it ends at line 3, column 7",
+/// or "not JSON at line 3, column 7, near '...'".
+/// @param byte  how many bytes a parser had read when it gave up.
+inline std::string describe_json_damage(std::string_view text, std::size_t byte) {
+  const std::string_view read = text.substr(0, byte);
+  const auto lines = std::count(read.begin(), read.end(), '\n');
+  const std::size_t start = read.rfind('\n');
+  const std::size_t column = read.size() - (start == std::string_view::npos ? 0 : start + 1);
+  const std::string place = "line " + std::to_string(lines + 1) + ", column " +
+                            std::to_string(std::max<std::size_t>(column, 1));
+  if (byte > text.size()) return "the JSON is cut short: it ends at " + place;
+  constexpr std::size_t kBefore = 10, kMost = 20;
+  std::string near;
+  const std::string_view line = text.substr(start == std::string_view::npos ? 0 : start + 1);
+  for (const char c : line.substr(column - std::min(column, kBefore), kMost)) {
+    if (c == '\n' || c == '\r') break;
+    near += c < ' ' || c > '~' ? '?' : c;  // of UTF-8, characters may be cut
+  }
+  return "not JSON at " + place + (near.empty() ? "" : ", near '" + near + "'");
+}
+
+}  // namespace kaboum

@@ -1,0 +1,368 @@
+#include <kaboum/base/error.h>
+#include <kaboum/base/json_damage.h>
+#include <kaboum/geom/topology.h>
+#include <kaboum/io/convex_io.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <system_error>
+
+#include "convex_formats.h"
+#include "output.h"
+#include "text.h"
+
+namespace kaboum::io {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kRecordFile = "convex-set.json";
+constexpr const char* kStem = "files";  // key of the stem of a folder's files in its record
+
+/// One body per component connected through edges.
+std::vector<geom::ConvexBody> split_components(const geom::Mesh& mesh) {
+  std::uint32_t count = 0;
+  const std::vector<std::uint32_t> component = geom::components(mesh, true, &count);
+  std::vector<geom::ConvexBody> bodies(count);
+  for (std::size_t i = 0; i < component.size(); ++i)
+    bodies[component[i]].hull.triangles.push_back(mesh.triangles[i]);
+  std::vector<std::uint32_t> number(mesh.vertices.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    bodies[i].name = default_name(i);
+    geom::Mesh& hull = bodies[i].hull;
+    std::vector<std::uint32_t> used;
+    for (const geom::Triangle& t : hull.triangles) used.insert(used.end(), t.begin(), t.end());
+    std::ranges::sort(used);
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    for (const std::uint32_t v : used) {
+      number[v] = static_cast<std::uint32_t>(hull.vertices.size());
+      hull.vertices.push_back(mesh.vertices[v]);
+    }
+    for (geom::Triangle& t : hull.triangles)
+      for (std::uint32_t& v : t) v = number[v];
+  }
+  return bodies;
+}
+
+bool natural_less(const std::string& a, const std::string& b) {
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  std::size_t i = 0, j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (digit(a[i]) && digit(b[j])) {
+      std::size_t k = i, l = j;
+      while (k < a.size() && digit(a[k])) ++k;
+      while (l < b.size() && digit(b[l])) ++l;
+      std::string_view m = std::string_view(a).substr(i, k - i);
+      std::string_view n = std::string_view(b).substr(j, l - j);
+      m.remove_prefix(std::min(m.find_first_not_of('0'), m.size()));
+      n.remove_prefix(std::min(n.find_first_not_of('0'), n.size()));
+      if (m.size() != n.size()) return m.size() < n.size();
+      if (m != n) return m < n;
+      i = k;
+      j = l;
+    } else {
+      if (a[i] != b[j]) return a[i] < b[j];
+      ++i;
+      ++j;
+    }
+  }
+  if (i < a.size() || j < b.size()) return j < b.size();
+  return a < b;
+}
+
+bool is_stl(const fs::path& path) {
+  return same_word(path.extension().string(), ".stl") && path.filename().string().front() != '.';
+}
+
+geom::ConvexSet read_directory(const fs::path& path, SetReadDetails& details) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (fs::directory_iterator at(path, error), end; !error && at != end; at.increment(error))
+    if (is_stl(at->path())) files.push_back(at->path());
+  const Source source{{}, path.native(), {}, true};
+  if (error) fail(source, "the folder cannot be read: " + error.message());
+  if (files.empty() && !fs::exists(path / kRecordFile, error))
+    fail(source, "the folder holds no STL file; a set is stored as one STL file per body");
+  std::ranges::sort(files, [](const fs::path& a, const fs::path& b) {
+    return natural_less(a.filename().string(), b.filename().string());
+  });
+  geom::ConvexSet set;
+  details.single_precision = true;
+  for (const fs::path& file : files) {
+    std::vector<char> bytes;
+    ReadResult read = read_mesh(file, Format::Stl, &bytes);
+    details.single_precision = details.single_precision && read.single_precision;
+    details.bytes.insert(details.bytes.end(), bytes.begin(), bytes.end());
+    for (const std::string& note : read.notes)
+      details.notes.push_back(file.filename().string() + ": " + note);
+    set.bodies.push_back({file.stem().string(), std::move(read.mesh)});
+  }
+  if (fs::exists(path / kRecordFile, error)) {
+    const std::vector<char> bytes = read_file(path / kRecordFile);
+    const std::string name = (path / kRecordFile).string();
+    const Source record_source{{bytes.data(), bytes.size()}, name, {}, true};
+    Json record;
+    try {
+      record = Json::parse(bytes.begin(), bytes.end());
+    } catch (const Json::parse_error& e) {
+      fail(record_source,
+           describe_json_damage({bytes.data(), bytes.size()}, e.byte) + "; write the set again");
+    } catch (const Json::exception&) {
+      fail(record_source, "a number in it is out of range; write the set again");
+    }
+    take_record(record, record_source, set);
+    details.has_record = true;
+  }
+  return set;
+}
+
+geom::ConvexSet parse(const Source& source, Format format, SetReadDetails& details) {
+  if (format == Format::Glb || format == Format::Gltf) return read_gltf_set(source, details);
+  if (format == Format::Obj) {
+    if (auto set = read_obj_set(source, details)) return *std::move(set);
+  }
+  const ReadResult read =
+      parse_mesh(source.bytes, format, std::string(source.name), source.directory);
+  details.single_precision = read.single_precision;
+  details.notes.insert(details.notes.end(), read.notes.begin(), read.notes.end());
+  geom::ConvexSet set;
+  set.bodies = split_components(read.mesh);
+  return set;
+}
+
+/// Without unused vertices and −0. @throws Error{InvalidArgument} when a body is not valid.
+geom::ConvexSet cleaned(const geom::ConvexSet& set) {
+  if (!(set.margin >= 0) || !std::isfinite(set.margin))
+    throw Error(ErrorCode::InvalidArgument, "the margin of a convex set is negative or not finite");
+  geom::ConvexSet clean{set.bodies, set.margin, set.provenance};
+  for (std::size_t i = 0; i < clean.bodies.size(); ++i) {
+    geom::ConvexBody& body = clean.bodies[i];
+    if (body.name.empty()) body.name = default_name(i);
+    const std::string name = "body " + std::to_string(i) + " of the set to be written ";
+    if (body.hull.triangles.empty())
+      throw Error(ErrorCode::InvalidArgument, name + "has no triangles");
+    for (const geom::Triangle& t : body.hull.triangles)
+      for (const std::uint32_t corner : t)
+        if (corner >= body.hull.vertices.size() || !body.hull.vertices[corner].allFinite())
+          throw Error(ErrorCode::InvalidArgument,
+                      name + "has an invalid index or a coordinate that is not finite");
+    body.hull = geom::weld(body.hull);
+    for (geom::Vec3& p : body.hull.vertices) p = p.array() + 0.0;  // −0 + 0 = +0
+  }
+  return clean;
+}
+
+void refuse_margin(const geom::ConvexSet& set, const char* format) {
+  if (set.margin > 0)
+    throw Error(ErrorCode::OutputFailed,
+                std::string(format) +
+                    " cannot state the set's margin, and without it the bodies are too small; "
+                    "write glb, or enlarge the bodies by the margin first");
+}
+
+/// The stem of the files that the folder's record speaks of; nullopt without a record.
+std::optional<std::string> stem_of(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::exists(folder / kRecordFile, error)) return std::nullopt;
+  std::optional<std::string> stem = "body";
+  try {
+    const std::vector<char> bytes = read_file(folder / kRecordFile);
+    const Json record = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
+    if (record.is_object() && record.contains(kStem) && record[kStem].is_string())
+      stem = record[kStem].get<std::string>();
+  } catch (const Error&) {
+    stem.reset();
+  }
+  return stem;
+}
+
+/// Whether a file of a folder has a name that write_directory gives.
+bool is_part_of_set(const fs::path& file, const std::string& files) {
+  if (file.filename() == kRecordFile) return true;
+  const std::string stem = file.stem().string(), start = files + "-";
+  return file.extension() == ".stl" && stem.size() >= start.size() + 4 && stem.starts_with(start) &&
+         stem.find_first_not_of("0123456789", start.size()) == std::string::npos;
+}
+
+/// The folder's path without a slash at the end.
+fs::path target_of(const fs::path& path) {
+  const fs::path target = path.lexically_normal();
+  return target.filename().empty() ? target.parent_path() : target;
+}
+
+[[noreturn]] void cannot_write(const fs::path& path, const std::string& why) {
+  throw Error(ErrorCode::OutputFailed, path.string() + ": cannot be written: " + why);
+}
+
+void write_directory(const fs::path& path, const geom::ConvexSet& set, const std::string& stem) {
+  const auto cannot = [&](const std::string& why) { cannot_write(path, why); };
+  refuse_margin(set, "STL");
+  const geom::ConvexSet clean = cleaned(set);
+  require_replaceable(path);
+  std::error_code error;
+  const fs::path target = target_of(path);
+  const bool exists = fs::exists(target, error);
+  const fs::path parent = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  const std::string suffix = std::to_string(::getpid()) + ".tmp";
+  const fs::path fresh = parent / (".kaboum-new-" + suffix),
+                 old = parent / (".kaboum-old-" + suffix);
+  fs::remove_all(fresh, error);
+  if (!fs::create_directory(fresh, error))
+    cannot("no folder can be created in '" + parent.string() + "': " + error.message());
+  try {
+    for (std::size_t i = 0; i < clean.bodies.size(); ++i)
+      write_file(fresh / (default_name(i, stem) + ".stl"),
+                 serialise_mesh(clean.bodies[i].hull, Format::Stl));
+    Json record = record_of(clean);
+    record[kStem] = stem;
+    write_file(fresh / kRecordFile,
+               record.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    if (exists) fs::rename(target, old);
+    fs::rename(fresh, target);
+  } catch (const std::system_error& e) {
+    if (exists && !fs::exists(target, error)) fs::rename(old, target, error);
+    fs::remove_all(fresh, error);
+    cannot(e.code().message());
+  } catch (...) {
+    fs::remove_all(fresh, error);
+    throw;
+  }
+  if (exists) fs::remove_all(old, error);
+}
+
+}  // namespace
+
+void require_replaceable(const fs::path& folder) {
+  std::error_code error;
+  const fs::path target = target_of(folder);
+  if (!fs::exists(target, error)) return;
+  if (!fs::is_directory(target, error)) cannot_write(folder, "it is a file; name a folder");
+  const std::optional<std::string> ours = stem_of(target);
+  fs::directory_iterator at(target, error);
+  for (const fs::directory_iterator end; !error && at != end; at.increment(error))
+    if (!ours || !is_part_of_set(at->path(), *ours))
+      cannot_write(folder, "the folder holds '" + at->path().filename().string() +
+                               "', which is no part of a convex set written here; name another "
+                               "folder");
+  if (error) cannot_write(folder, error.message());
+}
+
+std::string default_name(std::size_t index, std::string_view stem) {
+  const std::string digits = std::to_string(index);
+  std::string name(stem);
+  name += '-';
+  if (digits.size() < 4) name.append(4 - digits.size(), '0');
+  return name + digits;
+}
+
+Json record_of(const geom::ConvexSet& set) {
+  const geom::Provenance& p = set.provenance;
+  return {{"version", 1},
+          {"bodies", set.bodies.size()},
+          {"margin", set.margin},
+          {"unit", p.unit},
+          {"frame", p.frame},
+          {"direction", p.direction},
+          {"epsilon", p.epsilon >= 0 ? Json(p.epsilon) : Json(nullptr)},
+          {"covers_solid", p.covers_solid},
+          {"covers_surface", p.covers_surface},
+          {"source", p.source},
+          {"source_sha256", p.source_sha256},
+          {"tool", p.tool},
+          {"parameters", p.parameters}};
+}
+
+void take_record(const Json& record, const Source& source, geom::ConvexSet& set) {
+  try {
+    if (record.at("version") != 1)
+      fail(source, "the record is of a version that this program does not know; use a newer one");
+    geom::Provenance& p = set.provenance;
+    record.at("margin").get_to(set.margin);
+    record.at("unit").get_to(p.unit);
+    record.at("frame").get_to(p.frame);
+    record.at("direction").get_to(p.direction);
+    p.epsilon = record.at("epsilon").is_null() ? -1 : record.at("epsilon").get<double>();
+    record.at("covers_solid").get_to(p.covers_solid);
+    record.at("covers_surface").get_to(p.covers_surface);
+    record.at("source").get_to(p.source);
+    record.at("source_sha256").get_to(p.source_sha256);
+    record.at("tool").get_to(p.tool);
+    record.at("parameters").get_to(p.parameters);
+    if (record.at("bodies").get<std::size_t>() != set.bodies.size())
+      fail(source, "the record speaks of " +
+                       std::to_string(record.at("bodies").get<std::size_t>()) +
+                       " bodies, but there are " + std::to_string(set.bodies.size()) +
+                       "; the set is incomplete, write it again");
+  } catch (const Json::exception& e) {
+    fail(source, std::string("the record of the convex set is damaged: ") + e.what());
+  }
+  if (!(set.margin >= 0) || !std::isfinite(set.margin))
+    fail(source, "the record states a margin that is negative or not finite");
+}
+
+std::optional<SetFormat> set_format_from_path(const fs::path& path) {
+  std::error_code ignored;
+  const std::string extension = path.extension().string();
+  if (same_word(extension, ".glb")) return SetFormat::Glb;
+  if (same_word(extension, ".obj")) return SetFormat::Obj;
+  if (path != "-" && (extension.empty() || fs::is_directory(path, ignored)))
+    return SetFormat::Directory;
+  return std::nullopt;
+}
+
+geom::ConvexSet parse_convex_set(std::span<const char> bytes, Format format,
+                                 const std::string& name, SetReadDetails* details,
+                                 const fs::path& base_directory) {
+  SetReadDetails ignored;
+  const Source source{{bytes.data(), bytes.size()}, name, base_directory, true};
+  if (bytes.empty()) fail(source, "the file is empty; get it again");
+  return parse(source, format, details != nullptr ? *details : ignored);
+}
+
+geom::ConvexSet read_convex_set(const fs::path& path, std::optional<Format> format,
+                                SetReadDetails* details) {
+  SetReadDetails ignored;
+  SetReadDetails& out = details != nullptr ? *details : ignored;
+  std::error_code error;
+  if (path != "-" && fs::is_directory(path, error)) return read_directory(path, out);
+  const std::string name = path == "-" ? "standard input" : path.string();
+  if (!format && path != "-") format = format_from_name(path.extension().string());
+  if (!format)
+    throw Error(ErrorCode::InvalidInput,
+                name + ": the format is not known from the name; state it");
+  out.bytes = read_file(path);
+  fs::path directory;
+  if (path != "-") directory = path.has_parent_path() ? path.parent_path() : ".";
+  return parse_convex_set(out.bytes, *format, name, &out, directory);
+}
+
+std::vector<char> serialise_convex_set(const geom::ConvexSet& set, SetFormat format) {
+  switch (format) {
+    case SetFormat::Glb:
+      return write_glb_set(cleaned(set));
+    case SetFormat::Obj:
+      refuse_margin(set, "OBJ");
+      if (set.bodies.empty())
+        throw Error(ErrorCode::InvalidArgument, "OBJ cannot hold a set without bodies; write glb");
+      return write_obj_set(cleaned(set));
+    case SetFormat::Directory:
+      break;
+  }
+  throw Error(ErrorCode::InvalidArgument, "a folder of STL files has no bytes of its own");
+}
+
+void write_convex_set(const fs::path& path, const geom::ConvexSet& set,
+                      std::optional<SetFormat> format, const std::string& stem) {
+  if (!format) format = set_format_from_path(path);
+  if (!format)
+    throw Error(ErrorCode::InvalidArgument,
+                path.string() +
+                    ": convex sets are written as .glb, .obj, or a folder (a name without "
+                    "extension)");
+  if (*format == SetFormat::Directory) return write_directory(path, set, stem);
+  write_file(path, serialise_convex_set(set, *format));
+}
+
+}  // namespace kaboum::io

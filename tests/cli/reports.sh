@@ -1,0 +1,63 @@
+# Every program's report keeps to docs/report.schema.json.
+. "$(dirname "$0")/common.sh"
+SCHEMA=$(cd "$(dirname "$3")" && pwd)/$(basename "$3")
+mkdir reports
+box() {
+  printf 'OFF\n8 12 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n'
+  printf '3 0 2 1\n3 0 3 2\n3 4 5 6\n3 4 6 7\n3 0 1 5\n3 0 5 4\n3 1 2 6\n3 1 6 5\n3 2 3 7\n3 2 7 6\n3 3 0 4\n3 3 4 7\n'
+}
+box >box.off
+box | sed 's/^\([01] [01] [01]\)$/\1/; s/^1 /2 /' >wide.off
+cat >arm.urdf <<'END'
+<robot name="arm"><link name="base"><collision><geometry><mesh filename="box.off"/></geometry></collision></link>
+<link name="tool"/><joint name="j" type="revolute"><parent link="base"/><child link="tool"/><axis xyz="0 0 1"/>
+<limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>
+END
+printf 'j\n0\n1\n' >path.csv
+
+run() {
+  name=$1
+  shift
+  expect 0 '' "$@" --report "reports/$name.json"
+}
+run decimate "$BIN/bmesh-decimate" "$BRACKET" -o outer.ply --vertices 300 --log outer.log
+run levels "$BIN/bmesh-decimate" "$BRACKET" -o 'level-%n.ply' --vertices 300,200 --progressive outer.pm
+run from "$BIN/bmesh-decimate" --from outer.pm --vertices 250 -o from.ply
+run replay "$BIN/bmesh-replay" "$BRACKET" outer.log outer.ply
+run decompose "$BIN/bcd-decompose" "$BRACKET" -o set.glb --epsilon 5% --effort fast --no-cache
+run inner "$BIN/bcd-decompose" wide.off -o inner.glb --direction inner --epsilon 20% --no-cache
+run robot "$BIN/bcd-decompose" arm.urdf -o safe --effort fast --no-cache
+run sweep "$BIN/sweep-approx" arm.urdf path.csv -o swept.glb --epsilon 0.2 --no-cache
+run distance "$BIN/hausdorff-eval" box.off wide.off --samples 100
+run verify-outer "$BIN/bound-verify" --outer "$BRACKET" outer.ply
+run verify-cover "$BIN/bound-verify" --cover "$BRACKET" set.glb --epsilon 5%
+run verify-robot "$BIN/bound-verify" --robot arm.urdf safe/arm.urdf
+run verify-sweep "$BIN/bound-verify" --sweep arm.urdf path.csv swept.glb
+run verify-progressive "$BIN/bound-verify" --progressive "$BRACKET" outer.pm
+expect 1 '' "$BIN/bound-verify" --outer wide.off box.off --report reports/refuted.json
+cat >domain.pddl <<'END'
+(define (domain d) (:requirements :strips) (:predicates (done)) (:action act :parameters () :precondition () :effect (done)))
+END
+printf '(define (problem p) (:domain d) (:init) (:goal (done)))\n' >problem.pddl
+run solve "$BIN/kaboum-plan" solve domain.pddl problem.pddl -o plan.json
+run check "$BIN/kaboum-plan" check domain.pddl problem.pddl plan.json
+
+python3 - "$SCHEMA" reports/*.json <<'END' || fail "a report does not keep to the schema"
+import json, sys
+import jsonschema
+schema = json.load(open(sys.argv[1]))
+jsonschema.Draft202012Validator.check_schema(schema)
+validator = jsonschema.Draft202012Validator(schema)
+bad = 0
+for name in sys.argv[2:]:
+    report = json.load(open(name))
+    for error in validator.iter_errors(report):
+        bad += 1
+        print(f"{name}: {'/'.join(map(str, error.absolute_path))}: {error.message[:200]}")
+    for field in schema["required"]:  # the schema itself can fail
+        if not list(validator.iter_errors({k: v for k, v in report.items() if k != field})):
+            bad += 1
+            print(f"{name}: would pass without {field}")
+sys.exit(bad != 0)
+END
+finish
