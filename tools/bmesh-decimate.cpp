@@ -193,20 +193,37 @@ struct SurfaceSamples {
   std::size_t faces = 0, outside = 0;
 };
 
+/// Ends early when some were found, or where so many surfaces lie behind each other that it would
+/// take long.
 SurfaceSamples sample_surface(const geom::Mesh& mesh, double diagonal) {
+  constexpr std::size_t kMost = 20000, kRounds = 16, kEnough = 1000, kMostCrossings = 400'000;
   const geom::WindingNumber winding(mesh);
-  const std::size_t step = mesh.triangles.size() / 20000 + 1;
+  const std::size_t step = mesh.triangles.size() / kMost + 1;
   SurfaceSamples samples;
-  for (std::size_t t = 0; t < mesh.triangles.size(); t += step) {
-    const auto& tri = mesh.triangles[t];
+  std::size_t crossings = 0;
+  const auto look_at = [&](const geom::Triangle& tri) {
     const geom::Vec3 &a = mesh.vertices[tri[0]], &b = mesh.vertices[tri[1]],
                      &c = mesh.vertices[tri[2]];
     const geom::Vec3 n = (b - a).cross(c - a);
-    if (!(n.norm() > 0)) continue;
-    const auto w = winding((a + b + c) / 3.0 - n * (1e-9 * diagonal / n.norm()));
-    if (!w) continue;
+    if (!(n.norm() > 0)) return;
+    int w = 0;
+    bool touches = false;
+    winding.crossings((a + b + c) / 3.0 - n * (1e-9 * diagonal / n.norm()),
+                      [&](std::uint32_t, int sign) {
+                        ++crossings;
+                        w += sign;
+                        touches = touches || sign == 0;
+                      });
+    if (touches) return;
     ++samples.faces;
-    samples.outside += *w < 1;
+    samples.outside += w < 1;
+  };
+  for (std::size_t round = 0; round < kRounds; ++round) {
+    for (std::size_t t = round * step; t < mesh.triangles.size(); t += kRounds * step) {
+      if (crossings > kMostCrossings) return samples;
+      look_at(mesh.triangles[t]);
+    }
+    if (samples.outside > 0 && samples.faces >= kEnough) break;
   }
   return samples;
 }
@@ -285,6 +302,7 @@ class Job {
     std::optional<verify::Answer> nested;  // in the level before
     // Decided with --verify, and where faces of the input do not bound its solid.
     std::optional<verify::Claim> surface;
+    std::size_t left_out = 0;    // triangles that it leaves open, for the work allowed was done
     verify::Bracket sticks_out;  // if it is refuted
     bool at_filling = false;     // its triangle fills a hole
 
@@ -457,6 +475,7 @@ class Job {
       if (!counts_.empty()) text += ", " + std::to_string(counts_.back()) + " wished";
       progress.show(text);
     };
+    work_allowed_ = bmesh::work_allowed(prepared_, d);
     std::vector<bmesh::DecimateResult> results;
     if (counts_.size() > 1) {
       results = bmesh::decimate_series(prepared_, d, counts_);
@@ -525,17 +544,36 @@ class Job {
       if (!samples_) samples_ = sample_surface(prepared_.mesh, box_.diagonal());
       if (samples_->outside == 0) return;
       const geom::Mesh& result = level.result.mesh;
-      level.surface =
-          verify::verify_inclusion(outer ? prepared_.mesh : result, outer ? result : prepared_.mesh)
-              .surface;
+      verify::InclusionOptions options;
+      options.surface_only = true;
+      options.max_work = (1 - kDepthShare) * work_for_surface();
+      const verify::Inclusion found = verify::verify_inclusion(
+          outer ? prepared_.mesh : result, outer ? result : prepared_.mesh, options);
+      level.surface = found.surface;
+      level.left_out = found.left_out;
     }
-    if (level.surface->answer != verify::Answer::Refuted) return;
+    if (level.surface->answer != verify::Answer::Refuted || level.left_out > 0) return;
     const geom::Mesh &from = outer ? prepared_.mesh : level.result.mesh,
                      &to = outer ? level.result.mesh : prepared_.mesh;
-    level.sticks_out = verify::bracket_distance(from, level.surface->inner_triangles, to, true);
+    verify::BracketEffort effort;
+    effort.max_work = kDepthShare * work_for_surface();
+    level.sticks_out =
+        verify::bracket_distance(from, level.surface->inner_triangles, to, true, effort);
     std::uint32_t& triangle = level.sticks_out.triangle;
     level.at_filling = outer && triangle >= prepared_.source.size();
     if (outer && !level.at_filling) triangle = prepared_.source[triangle];
+  }
+
+  /// Of what is allowed for the surface of one result, for how far its triangles stick out.
+  static constexpr double kDepthShare = 0.3;
+
+  /// What decimation has left of the work allowed, within shares of it; for one result. [s]
+  [[nodiscard]] double work_for_surface() const {
+    constexpr double kLeast = 0.15, kMost = 0.25;
+    if (!std::isfinite(work_allowed_)) return work_allowed_;
+    const double left = work_allowed_ - levels_.back().result.work;
+    return std::clamp(left, kLeast * work_allowed_, kMost * work_allowed_) /
+           static_cast<double>(levels_.size());
   }
 
   /// Decides the claims anew from the bytes that will be written, by other means than those that
@@ -703,6 +741,7 @@ class Job {
     }
     if (level.surface) {
       c["surface"] = decided_surface(*level.surface);
+      if (level.left_out > 0) c["surface_triangles_left_out"] = level.left_out;
       if (level.surface->answer == verify::Answer::Refuted) {
         const verify::Bracket& out = level.sticks_out;
         c["surface_triangles_outside"] = level.surface->inner_triangles.size();
@@ -838,16 +877,36 @@ class Job {
     return code;
   }
 
+  [[nodiscard]] static std::string not_looked_at(const Level& level) {
+    return "whether " + std::to_string(level.left_out) +
+           (level.left_out == 1 ? " triangle sticks" : " triangles stick") +
+           " out was not decided, for the work allowed was done; allow more with --max-work";
+  }
+
   /// Which claim holds and which does not, where they differ.
   void warn_of_surface(const Level& level) const {
-    if (!level.surface || level.surface->answer != verify::Answer::Refuted) return;
+    if (!level.surface) return;
     const bool outer = o_.direction == bmesh::Direction::Outer;
+    if (level.surface->answer == verify::Answer::Undecided && !level.verified) {
+      tools::log(o_.common.quiet,
+                 std::string("warning: ") +
+                     (outer ? "the input's solid is enclosed; whether all of its triangles are"
+                            : "the result's solid is inside the input's; whether all of its "
+                              "triangles are") +
+                     " is left open: " + std::to_string(samples_->outside) + " of " +
+                     std::to_string(samples_->faces) +
+                     " triangles of the input looked at bound no solid, and " +
+                     not_looked_at(level));
+      return;
+    }
+    if (level.surface->answer != verify::Answer::Refuted) return;
     const std::size_t count = level.surface->inner_triangles.size();
     const std::string depth = tools::in_words(level.sticks_out);
     std::string text =
         outer ? "the input's solid is enclosed, but not all of its triangles"
               : "the result's solid is inside the input's, but not all of its triangles";
-    text += ": " + std::to_string(count) + (count == 1 ? " sticks out" : " stick out");
+    text += (level.left_out > 0 ? ": at least " : ": ") + std::to_string(count) +
+            (count == 1 ? " sticks out" : " stick out");
     if (!depth.empty()) text += ", by " + depth;
     if (level.sticks_out.lower > 0)
       text += ", farthest at " + tools::point(level.sticks_out.at) +
@@ -855,6 +914,7 @@ class Job {
                                 : ", triangle " + std::to_string(level.sticks_out.triangle) +
                                       (outer ? " of the input" : " of the result"));
     text += " (the input is folded or inside out there: such faces bound no solid)";
+    if (level.left_out > 0) text += "; " + not_looked_at(level);
     tools::log(o_.common.quiet, "warning: " + text);
   }
 
@@ -900,6 +960,7 @@ class Job {
   std::vector<std::string> notes_;
   bmesh::Effort effort_ = bmesh::Effort::Fast;  // that is made
   double seconds_read_ = 0, seconds_decimated_ = 0;
+  double work_allowed_ = 0;
 };
 
 /// Options that only some costs follow are not ignored silently with others.

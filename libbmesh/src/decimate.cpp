@@ -770,15 +770,6 @@ void check_options(const geom::Prepared& input, const DecimateOptions& options) 
     throw Error(ErrorCode::InvalidInput, "the input is not convex, so convexity cannot be kept");
 }
 
-/// [ns]
-double work_allowed(const geom::Prepared& input, const DecimateOptions& options) {
-  if (options.max_work) return 1e9 * *options.max_work;
-  if (options.effort == Effort::Best) return std::numeric_limits<double>::infinity();
-  constexpr double kTriangles = 10000, kLeast = 12, kEach = 2e-3;
-  const auto triangles = static_cast<double>(input.mesh.triangles.size());
-  return 1e9 * (kLeast + kEach * std::max(0.0, triangles - kTriangles));
-}
-
 /// Coplanar regions first, without any loss; then large meshes region by region; then the
 /// decimation proper, which knows nothing of the vertices that are gone by then.
 class Run {
@@ -975,6 +966,14 @@ DecimateResult decimate_twice(const geom::Prepared& input, const DecimateOptions
 
 }  // namespace
 
+double work_allowed(const geom::Prepared& input, const DecimateOptions& options) {
+  if (options.max_work) return *options.max_work;
+  if (options.effort == Effort::Best) return std::numeric_limits<double>::infinity();
+  constexpr double kTriangles = 10000, kLeast = 12, kEach = 2e-3;
+  const auto triangles = static_cast<double>(input.mesh.triangles.size());
+  return kLeast + kEach * std::max(0.0, triangles - kTriangles);
+}
+
 Effort effective_effort(const geom::Prepared& input, const DecimateOptions& options) {
   const bool can_optimise =
       !options.keep_convex && (input.closed || options.direction == Direction::Any);
@@ -986,9 +985,11 @@ DecimateResult decimate(const geom::Prepared& input, const DecimateOptions& opti
     throw Error(ErrorCode::InvalidArgument,
                 "decimation needs a number of vertices or an error bound");
   check_options(input, options);
-  Work work(work_allowed(input, options));
-  if (is_small(input, options)) return decimate_twice(input, options, work);
-  return Run(input, options, work).to(options.vertices);
+  Work work(1e9 * work_allowed(input, options));
+  DecimateResult result = is_small(input, options) ? decimate_twice(input, options, work)
+                                                   : Run(input, options, work).to(options.vertices);
+  result.work = 1e-9 * static_cast<double>(work.done());
+  return result;
 }
 
 std::vector<DecimateResult> decimate_series(const geom::Prepared& input,
@@ -998,7 +999,7 @@ std::vector<DecimateResult> decimate_series(const geom::Prepared& input,
       std::adjacent_find(vertices.begin(), vertices.end(), std::less_equal<>()) != vertices.end())
     throw Error(ErrorCode::InvalidArgument, "a series needs falling numbers of vertices");
   check_options(input, options);
-  Work work(work_allowed(input, options));
+  Work work(1e9 * work_allowed(input, options));
   Run run(input, options, work);
   std::vector<DecimateResult> levels;
   levels.reserve(vertices.size());  // what is nested in stays where it is
@@ -1009,6 +1010,7 @@ std::vector<DecimateResult> decimate_series(const geom::Prepared& input,
     }
     if (!levels.empty()) run.nest_in(levels.back().mesh);
     levels.push_back(run.to(target));
+    levels.back().work = 1e-9 * static_cast<double>(work.done());
   }
   return levels;
 }

@@ -247,7 +247,8 @@ namespace {
 
 /// About the nanoseconds that a box, a triangle, one that rounded arithmetic does not decide, and a
 /// winding number take.
-constexpr std::uint64_t kBox = 20, kTriangle = 200, kExact = 4000, kWinding = 1000;
+constexpr std::uint64_t kBox = 20, kTriangle = 200, kExact = 4000, kWinding = 1000,
+                        kCrossing = 1000;
 
 }  // namespace
 
@@ -295,7 +296,7 @@ bool OriginalSolid::contains(const Tetrahedron& tetrahedron, bool inside,
     if (met != nullptr) met->push_back(t);
     enough = met == nullptr || met->size() == kMostMet;
   });
-  count(work_, steps + (clear ? kWinding : 0));
+  count(work_, steps);
   if (!clear) return false;
   // One point of the interior speaks for all of it, for the surface does not meet it.
   const Vec3 middle =
@@ -306,8 +307,16 @@ bool OriginalSolid::contains(const Tetrahedron& tetrahedron, bool inside,
     const Sign own = geom::orient3d(a, b, c, tetrahedron[k]);
     if (own == Sign::Zero || geom::orient3d(a, b, c, middle) != own) return false;
   }
-  const auto w = winding_(middle);
-  return w && (inside ? *w >= 1 : *w <= 0);
+  int w = 0;
+  std::uint64_t crossed = 0;
+  bool touches = false;
+  winding_.crossings(middle, [&](std::uint32_t, int sign) {
+    ++crossed;
+    w += sign;
+    touches = touches || sign == 0;
+  });
+  count(work_, kWinding + kCrossing * crossed);
+  return !touches && (inside ? w >= 1 : w <= 0);
 }
 
 }  // namespace kaboum::bmesh

@@ -6,15 +6,39 @@
 
 namespace kaboum::verify {
 
+namespace {
+constexpr std::size_t kPair = 200;  // steps that looking at a pair of triangles takes
+}
+
+template <class Search>
+auto Arrangement::limited(const Search& search) const {
+  if (allowance_ == nullptr || !allowance_->limited()) return search(limits_);
+  std::atomic<std::size_t> pairs = 0;
+  ContactLimits limits = limits_;
+  limits.pairs = std::min<std::size_t>(limits.pairs, allowance_->left() / (4 * kPair));
+  limits.looked_at = &pairs;
+  try {
+    auto found = search(limits);
+    allowance_->add(kPair * pairs);
+    return found;
+  } catch (const Error&) {
+    allowance_->add(kPair * limits.pairs);  // how many more were looked at may vary
+    throw;
+  }
+}
+
 void Arrangement::need_mutual() {
   if (contacts_[kInside][kOutside]) return;
-  MutualContacts found = contacts_between(scene_, limits_);
+  MutualContacts found =
+      limited([&](const ContactLimits& limits) { return contacts_between(scene_, limits); });
   contacts_[kInside][kOutside] = std::move(found.of_inside);
   contacts_[kOutside][kInside] = std::move(found.of_outside);
 }
 
 void Arrangement::need_own(int chain) {
-  if (!contacts_[chain][chain]) contacts_[chain][chain] = contacts_within(scene_, chain, limits_);
+  if (contacts_[chain][chain]) return;
+  contacts_[chain][chain] =
+      limited([&](const ContactLimits& limits) { return contacts_within(scene_, chain, limits); });
 }
 
 namespace {

@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 
+#include "allowance.h"
 #include "contacts.h"
 #include "scene.h"
 
@@ -11,9 +12,13 @@ namespace kaboum::verify {
 /// The scene and the contacts that have been asked for so far.
 class Arrangement {
  public:
-  Arrangement(const Scene& scene, const ContactLimits& limits) : scene_(scene), limits_(limits) {}
+  /// @param allowance  counts the work where it is limited; then contacts are not sought with all
+  ///   that is left
+  Arrangement(const Scene& scene, const ContactLimits& limits, Allowance* allowance = nullptr)
+      : scene_(scene), limits_(limits), allowance_(allowance) {}
 
   /// Finds the contacts between the two chains, or of a chain with itself, if not known yet.
+  /// @throws Error{LimitReached}
   void need_mutual();
   void need_own(int chain);
 
@@ -39,8 +44,13 @@ class Arrangement {
   }
 
  private:
+  /// within(limits) in what is allowed.
+  template <class Search>
+  auto limited(const Search& search) const;
+
   const Scene& scene_;
   ContactLimits limits_;
+  Allowance* allowance_;
   std::array<std::array<std::optional<Contacts>, 2>, 2> contacts_;
 };
 

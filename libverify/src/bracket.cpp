@@ -8,6 +8,7 @@
 #include <cmath>
 #include <queue>
 
+#include "allowance.h"
 #include "nearest.h"
 #include "parallel.h"
 #include "pockets.h"
@@ -19,7 +20,8 @@ namespace {
 constexpr std::size_t kAtOnce = 128;  // parts between looks at what was found
 constexpr int kMaxCuts = 60;          // rounding_of_distances allows for 64
 constexpr int kHalvings = 60;
-constexpr int kLimits = 8;  // tried for a solid
+constexpr int kLimits = 8;              // tried for a solid
+constexpr double kSearchedShare = 0.6;  // of the work allowed, for finding what bounds a solid
 
 /// A part of a triangle, and a bound of its distances.
 struct Part {
@@ -38,9 +40,11 @@ struct Found {
 /// What distances to a mesh, or to its solid, are measured to: what lies in it for sure, for bounds
 /// from above, and all that has a part in it, for bounds from below.
 /// @throws Error{LimitReached}
-Pieces target_of(const Scene& scene, bool to_solid) {
+Pieces target_of(const Scene& scene, bool to_solid, double max_work) {
   if (!to_solid) return {{}, {}, scene.tree(kOutside), scene.tree(kOutside)};
-  return pieces_with(scene, kOutside, {},
+  InclusionOptions limits;
+  limits.max_work = kSearchedShare * max_work;
+  return pieces_with(scene, kOutside, limits,
                      [](int inner, int outer) { return inner >= 1 || outer >= 1; });
 }
 
@@ -59,6 +63,7 @@ class Farthest {
     Bracket best;
     const auto lower_first = [](const Part& a, const Part& b) { return a.upper < b.upper; };
     std::priority_queue<Part, std::vector<Part>, decltype(lower_first)> open(lower_first);
+    Allowance allowance((1 - kSearchedShare) * effort.max_work);
     double settled = 0;  // the largest bound of parts that are not cut further
     std::size_t seen = 0;
     const auto good = [&](double upper) {
@@ -67,9 +72,9 @@ class Farthest {
     // In blocks, since what the first ones reach makes much of the rest unnecessary.
     const auto look_at = [&](std::span<Part> some) {
       const double known = best.lower;
-      std::vector<Found> found(some.size());
-      verify::parallel_loop(std::size_t{0}, some.size(),
-                            [&](std::size_t i) { found[i] = look(some[i], known); });
+      std::vector<Found> found(some.size(),
+                               Found{0, std::numeric_limits<double>::infinity(), Vec3::Zero()});
+      allowance.loop(some.size(), [&](std::size_t i) { found[i] = look(some[i], known); });
       for (std::size_t i = 0; i < some.size(); ++i) {
         some[i].upper = std::min(some[i].upper, found[i].upper);
         if (found[i].lower <= best.lower) continue;
@@ -88,7 +93,7 @@ class Farthest {
     for (std::size_t i = 0; i < parts.size(); i += kAtOnce)
       look_at({parts.data() + i, std::min(kAtOnce, parts.size() - i)});
     std::vector<Part> next;
-    while (!open.empty() && !good(open.top().upper) && seen < effort.parts) {
+    while (!open.empty() && !good(open.top().upper) && seen < effort.parts && !allowance.spent()) {
       next.clear();
       for (std::size_t i = 0; i < kAtOnce && !open.empty() && !good(open.top().upper); ++i) {
         halve(open.top(), next);
@@ -237,10 +242,11 @@ Bracket outside_of(const Scene& scene, Bracket bracket) {
 }
 
 /// nullopt where no distance can be measured.
-std::optional<Pieces> measurable(const Scene& scene, bool to_solid) {
+std::optional<Pieces> measurable(const Scene& scene, bool to_solid,
+                                 double max_work = std::numeric_limits<double>::infinity()) {
   if (!scene.scaled() || scene.tree(kOutside).empty()) return std::nullopt;
   try {
-    return target_of(scene, to_solid);
+    return target_of(scene, to_solid, max_work);
   } catch (const Error& error) {
     if (error.code() != ErrorCode::LimitReached) throw;
     return std::nullopt;
@@ -254,7 +260,7 @@ Bracket bracket_distance(const geom::Mesh& from, std::span<const std::uint32_t> 
   geom::Mesh part{from.vertices, {}};
   for (const std::uint32_t t : triangles) part.triangles.push_back(from.triangles[t]);
   const Scene scene(part, to);
-  const std::optional<Pieces> target = measurable(scene, to_solid);
+  const std::optional<Pieces> target = measurable(scene, to_solid, effort.max_work);
   if (!target) return {};
   std::vector<std::uint32_t> faces;
   for (std::uint32_t f = scene.begin(kInside); f < scene.end(kInside); ++f) faces.push_back(f);

@@ -7,11 +7,15 @@
 #include <algorithm>
 #include <utility>
 
+#include "allowance.h"
 #include "segments.h"
 #include "spot.h"
 
 namespace kaboum::verify {
 namespace {
+
+// What things take, in about nanoseconds.
+constexpr std::uint64_t kMeeting = 2000, kTest = 10, kPiece = 3000;
 
 constexpr std::size_t kTestsPerPiece = 200;  // of segments against each other, within the limit
 
@@ -43,6 +47,7 @@ class Cutter {
     });
     std::size_t pieces = segments_.size(), tests = 0;
     for (std::size_t x = 0; x < order.size(); ++x) {
+      const std::size_t tests_before = tests;
       const Segment& s = segments_[order[x]];
       for (std::size_t y = x + 1; y < order.size(); ++y) {
         const Segment& t = segments_[order[y]];
@@ -52,6 +57,7 @@ class Cutter {
         meet(order[x], order[y]);
       }
       pieces += splits_[order[x]].size();
+      count_steps(kTest * (tests - tests_before) + kMeeting * splits_[order[x]].size());
       if (pieces > limit_) fail();
     }
   }
@@ -108,6 +114,7 @@ class Cutter {
     spot.face = index_;
     for (const Triple<Exact>* next : points) {
       if (turn(*last, *next) == Sign::Zero) continue;  // the same point twice
+      count_steps(kPiece);
       spot.exact = between(*last, *next);
       spot.approx = rounded(spot.exact);
       spot.line = s.line;

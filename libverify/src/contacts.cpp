@@ -191,6 +191,7 @@ class Counter {
 
  private:
   void add(std::size_t contacts, std::size_t pairs) {
+    if (limits_.looked_at != nullptr) *limits_.looked_at += pairs;
     if ((contacts_ += contacts) > limits_.contacts || (pairs_ += pairs) > limits_.pairs) {
       throw Error(ErrorCode::LimitReached, "more contacts between triangles than allowed");
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -53,7 +54,8 @@ class Contacts {
 /// When to give up.
 struct ContactLimits {
   std::size_t contacts;
-  std::size_t pairs;  ///< looked at
+  std::size_t pairs;                              ///< looked at
+  std::atomic<std::size_t>* looked_at = nullptr;  ///< receives their number, when not null
 };
 
 /// Contacts of X's faces with Y's, and of Y's with X's; X ≠ Y. Parallel; the result does not depend

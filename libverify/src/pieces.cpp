@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "parallel.h"
+#include "allowance.h"
 #include "pockets.h"
 #include "segments.h"
 #include "spot.h"
@@ -64,6 +64,8 @@ class Divider {
       const auto line = static_cast<std::uint32_t>(lines_.size());
       lines_.push_back({s.line, s.approx_line});
       const std::size_t count = polygons_.size();
+      constexpr std::uint64_t kPolygon = 50;  // about nanoseconds
+      count_steps(kPolygon * count);
       for (std::size_t i = 0; i < count; ++i) {
         if (!runs_through(s, polygons_[i])) continue;
         auto [above, below] = halves(polygons_[i], line);
@@ -196,17 +198,18 @@ Division divide(const Arrangement& arrangement, std::uint32_t face, const Good& 
 
 Pieces pieces_with(const Scene& scene, int chain, const InclusionOptions& options,
                    const std::function<bool(int inner, int outer)>& condition) {
-  Arrangement arrangement(scene, {options.max_contacts, options.max_pairs});
+  Allowance allowance(options.max_work);
+  Arrangement arrangement(scene, {options.max_contacts, options.max_pairs}, &allowance);
   arrangement.need_own(chain);
   std::atomic<std::size_t> samples = 0;
   const auto values = [&](Side side) {
     return whole_values(
         arrangement, chain, mask_of(chain), side,
-        [&](const Spot& spot) { return winding(scene, spot, side, chain); }, samples);
+        [&](const Spot& spot) { return winding(scene, spot, side, chain); }, samples, allowance);
   };
   const std::vector<int> inner = values(kInner), outer = values(kOuter);
   std::vector<Division> divisions(inner.size());
-  verify::parallel_loop(std::size_t{0}, inner.size(), [&](std::size_t i) {
+  allowance.loop(inner.size(), [&](std::size_t i) {
     const auto f = scene.begin(chain) + static_cast<std::uint32_t>(i);
     if (scene.face(f).axis < 0) {
       divisions[i].kind = Kind::No;

@@ -42,7 +42,8 @@ struct Pieces {
 
 /// The part of a chain's surface on which the winding numbers of the chain on the inner and the
 /// outer side satisfy a condition, as whole faces and parts of faces. Corners of parts are rounded
-/// by less than rounding_of_distances allows for.
+/// by less than rounding_of_distances allows for. What options.max_work leaves undone may be a
+/// part.
 /// @throws Error{LimitReached} beyond the limits on contacts
 Pieces pieces_with(const Scene& scene, int chain, const InclusionOptions& options,
                    const std::function<bool(int inner, int outer)>& condition);

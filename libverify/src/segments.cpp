@@ -22,6 +22,8 @@ class Collector {
   }
 
   void add(const Contacts::Cut& cut) {
+    constexpr std::uint64_t kSegment = 4000;  // about nanoseconds
+    count_steps(kSegment);
     if (cut.coplanar) {
       add_coplanar(cut.by);
     } else {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "allowance.h"
 #include "spot.h"
 
 namespace kaboum::verify {
@@ -66,14 +67,17 @@ class Line {
   [[nodiscard]] std::optional<int> crossings(int chain) const {
     int sum = 0;
     bool clear = true;
+    std::uint64_t boxes = 0, faces = 0;
     const int u = (axis_ + 1) % 3, v = (axis_ + 2) % 3;
     scene_.tree(chain).query(
         [&](const Bounds& box) {
+          ++boxes;
           return clear && box.high[axis_] >= box_.low[axis_] && box.low[u] <= box_.high[u] &&
                  box.high[u] >= box_.low[u] && box.low[v] <= box_.high[v] &&
                  box.high[v] >= box_.low[v];
         },
         [&](std::uint32_t g) {
+          ++faces;
           const std::optional<int> crossing = cross(g);
           if (crossing) {
             sum += *crossing;
@@ -81,11 +85,15 @@ class Line {
             clear = false;
           }
         });
+    count_steps(kBox * boxes + kFace * faces);
     if (!clear) return std::nullopt;
     return sum;
   }
 
  private:
+  // What looking at one takes, in about nanoseconds.
+  static constexpr std::uint64_t kBox = 4, kFace = 400;
+
   /// A box that certainly contains the spot.
   void bound() {
     const Triple<Approx>& w = spot_.approx;
@@ -238,8 +246,10 @@ std::optional<int> winding_at(const Scene& scene, int chain, const Vec3& p) {
   };
   int sum = 0;
   bool touches = false;
+  std::uint64_t boxes = 0;
   scene.tree(chain).query(
       [&](const Bounds& box) {
+        ++boxes;
         return p.x() >= box.low[0] && p.x() <= box.high[0] && p.y() >= box.low[1] &&
                p.y() <= box.high[1] && p.z() <= box.high[2];
       },
@@ -251,6 +261,8 @@ std::optional<int> winding_at(const Scene& scene, int chain, const Vec3& p) {
         if (s == 0 || side(b, c) != s || side(c, a) != s) return;
         if (to_int(height) == -s) sum += s;
       });
+  constexpr std::uint64_t kEach = 20;  // a face among them, now and then; in about nanoseconds
+  count_steps(kEach * boxes);
   if (touches) return std::nullopt;
   return sum;
 }

@@ -60,6 +60,9 @@ struct DecimateOptions {
   std::function<void(std::size_t vertices)> progress;
 };
 
+/// options.max_work, or the default for this mesh; infinite: no end. [s]
+double work_allowed(const geom::Prepared& input, const DecimateOptions& options);
+
 /// The effort that is made: options.effort, or Fast where more has no effect on this mesh.
 Effort effective_effort(const geom::Prepared& input, const DecimateOptions& options);
 
@@ -99,6 +102,7 @@ struct DecimateResult {
   /// nearby (never any with Precision::Double). The mesh is valid, but not representable in
   /// float32.
   std::size_t unrepresentable = 0;
+  double work = 0;           ///< done, of what max_work allows; of a series: until this result. [s]
   bool out_of_work = false;  ///< max_work ended a part of it: with more, it might be nearer
   std::size_t steps = 0;     ///< number of options.steps that lead to it, where they are recorded
 };

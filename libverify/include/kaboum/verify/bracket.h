@@ -19,6 +19,8 @@ struct Bracket {
 struct BracketEffort {
   std::size_t parts = 20'000;  ///< of triangles looked at besides these themselves; boxes of space
   double gap = 1e-3;           ///< ends when upper ≤ (1 + gap) lower
+  /// bracket_distance ends after so much work, too; as InclusionOptions::max_work.
+  double max_work = std::numeric_limits<double>::infinity();
 };
 
 /// Brackets the largest distance of the given triangles of `from` to `to` or, with `to_solid`, to

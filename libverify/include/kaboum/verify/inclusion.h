@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -55,6 +56,12 @@ struct InclusionOptions {
   /// From this many coplanar overlaps on, the cells between them are settled by the meshes' own
   /// winding numbers instead of being sampled; the answers are the same.
   std::size_t settle_from = 1000;
+  /// Decides the surface claim alone; the solid one is Undefined. Closed outer meshes only.
+  bool surface_only = false;
+  /// With surface_only: ends after so much work, counted in steps that take about so many seconds
+  /// of one core, so that the answer is the same on any machine. Triangles that few others cut are
+  /// looked at first; Inclusion::left_out counts those that were not.
+  double max_work = std::numeric_limits<double>::infinity();
   /// Called with what is being done, from one thread.
   std::function<void(const std::string&)> progress;
 };
@@ -73,6 +80,7 @@ struct Inclusion {
   std::size_t triangles_without_area = 0;  ///< in both meshes; they bound nothing
   std::size_t contacts = 0;                ///< pairs of triangles in which one cuts the other
   std::size_t samples = 0;                 ///< winding numbers computed
+  std::size_t left_out = 0;                ///< triangles of which max_work left the claim open
   bool limited = false;  ///< a limit ended the search; what is refuted may name too few triangles
 };
 
