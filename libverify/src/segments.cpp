@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "allowance.h"
+
 namespace kaboum::verify {
 namespace {
 
