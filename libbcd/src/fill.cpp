@@ -196,8 +196,11 @@ DecomposeResult fill(const geom::Prepared& input, const DecomposeOptions& option
   }
   const double diagonal = geom::bounding_box(input.mesh).diagonal();
   const geom::WindingNumber winding(input.mesh);
-  const Boundary boundary =
-      boundary_of(input.mesh, winding, options.epsilon ? 0.08 * *options.epsilon : 0.01 * diagonal);
+  const double size = options.epsilon ? 0.08 * *options.epsilon : 0.01 * diagonal;
+  // Allowances for rounding are asked for where bodies did not pass the exact check: there, samples
+  // may have missed a tip of the outside between triangles that cross.
+  const Boundary boundary = options.safety > 1 ? cautious_boundary_of(input.mesh, winding, size)
+                                               : boundary_of(input.mesh, winding, size);
   if (boundary.outside.empty()) throw Error(ErrorCode::InvalidInput, "the mesh has no solid");
   Depths depths(input.mesh, winding, boundary);
   const Tuning effort = tuning(options.effort);

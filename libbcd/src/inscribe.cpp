@@ -9,7 +9,9 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 namespace kaboum::bcd {
 namespace {
@@ -259,35 +261,52 @@ std::optional<Inscribed> body_of(std::vector<Vec3> points, std::size_t most, con
   return out;
 }
 
-/// Whether an edge of one of the triangles runs through the other.
-bool cross(const Mesh& mesh, const Triangle& s, const Triangle& t) {
-  const auto& v = mesh.vertices;
+/// Whether two triangles meet; with `open`, in more than corners and sides, as neighbours do. Those
+/// in one plane meet unless `open`.
+bool meet(const std::array<Vec3, 3>& s, const std::array<Vec3, 3>& t, bool open) {
   for (int turn = 0; turn < 2; ++turn) {
-    const Triangle &edges = turn == 0 ? s : t, &face = turn == 0 ? t : s;
-    for (int k = 0; k < 3; ++k) {
-      const Vec3 &p = v[edges[k]], &q = v[edges[(k + 1) % 3]];
-      const geom::Sign up = geom::orient3d(v[face[0]], v[face[1]], v[face[2]], p);
-      const geom::Sign down = geom::orient3d(v[face[0]], v[face[1]], v[face[2]], q);
-      if (up == down || up == geom::Sign::Zero || down == geom::Sign::Zero) continue;
-      const geom::Sign a = geom::orient3d(p, q, v[face[0]], v[face[1]]);
-      const geom::Sign b = geom::orient3d(p, q, v[face[1]], v[face[2]]);
-      const geom::Sign c = geom::orient3d(p, q, v[face[2]], v[face[0]]);
-      if (a == b && b == c) return true;
+    const auto &edges = turn == 0 ? s : t, &face = turn == 0 ? t : s;
+    std::array<int, 3> side{};
+    for (std::size_t k = 0; k < 3; ++k)
+      side[k] = static_cast<int>(geom::orient3d(face[0], face[1], face[2], edges[k]));
+    if (side == std::array<int, 3>{0, 0, 0}) return !open;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int up = side[k], down = side[(k + 1) % 3];
+      if (open ? up * down >= 0 : up * down > 0 || (up == 0 && down == 0)) continue;
+      const Vec3 &p = edges[k], &q = edges[(k + 1) % 3];
+      int least = 1, most = -1;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const int of = static_cast<int>(geom::orient3d(p, q, face[i], face[(i + 1) % 3]));
+        least = std::min(least, of);
+        most = std::max(most, of);
+      }
+      if (open ? least == most && least != 0 : least * most >= 0) return true;
     }
   }
   return false;
 }
 
-bool crosses_another(const Mesh& mesh, const geom::Bvh& bvh, const Triangle& t) {
+/// Whether a part of triangle `whole` meets other triangles: neighbours, and with `open` all, in
+/// more than corners and sides.
+bool meets_another(const Mesh& mesh, const geom::Bvh& bvh, const Triangle& whole,
+                   const std::array<Vec3, 3>& part, bool open) {
   Box3 box;
-  for (const std::uint32_t v : t) box.extend(mesh.vertices[v]);
+  for (const Vec3& p : part) box.extend(p);
   bool found = false;
   bvh.traverse(
       [&](const Box3& other) {
         return !found && (box.min.array() <= other.max.array()).all() &&
                (other.min.array() <= box.max.array()).all();
       },
-      [&](std::uint32_t i) { found = found || cross(mesh, t, mesh.triangles[i]); });
+      [&](std::uint32_t i) {
+        if (found) return;
+        const Triangle& t = mesh.triangles[i];
+        std::size_t shared = 0;
+        for (const std::uint32_t v : t) shared += std::count(whole.begin(), whole.end(), v);
+        if (shared == 3) return;  // itself
+        found = meet(part, {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]},
+                     open || shared != 0);
+      });
   return found;
 }
 
@@ -305,7 +324,9 @@ Boundary boundary_of(const Mesh& mesh, const geom::WindingNumber& winding, doubl
   };
   std::vector<Part> stack;
   for (const Triangle& whole : mesh.triangles) {
-    const bool split = crosses_another(mesh, bvh, whole);
+    const bool split = meets_another(
+        mesh, bvh, whole,
+        {mesh.vertices[whole[0]], mesh.vertices[whole[1]], mesh.vertices[whole[2]]}, true);
     stack.push_back({whole, 0});
     while (!stack.empty()) {
       const Part part = stack.back();
@@ -347,6 +368,68 @@ Boundary boundary_of(const Mesh& mesh, const geom::WindingNumber& winding, doubl
         continue;
       }
       if (open > 0 || !area) out.mesh.triangles.push_back(t);
+    }
+  }
+  return out;
+}
+
+Boundary cautious_boundary_of(const Mesh& mesh, const geom::WindingNumber& winding, double size) {
+  const double step = 1e-7 * geom::bounding_box(mesh).diagonal();
+  const geom::Bvh bvh(mesh);
+  Boundary out;
+  out.mesh.vertices = mesh.vertices;
+  struct Part {
+    Triangle t;
+    int depth;
+  };
+  std::vector<Part> stack;
+  for (const Triangle& whole : mesh.triangles) {
+    stack.push_back({whole, 0});
+    while (!stack.empty()) {
+      const Part part = stack.back();
+      stack.pop_back();
+      const auto& [t, depth] = part;
+      auto& vertices = out.mesh.vertices;
+      const std::array<Vec3, 3> v{vertices[t[0]], vertices[t[1]], vertices[t[2]]};
+      const bool met = meets_another(mesh, bvh, whole, v, false);
+      std::size_t k = 0;
+      for (std::size_t i = 1; i < 3; ++i)
+        if ((v[(i + 1) % 3] - v[i]).norm() > (v[(k + 1) % 3] - v[k]).norm()) k = i;
+      if (met && depth < 24 && (v[(k + 1) % 3] - v[k]).norm() > size) {
+        const auto middle = static_cast<std::uint32_t>(vertices.size());
+        vertices.push_back(0.5 * v[k] + 0.5 * v[(k + 1) % 3]);
+        Part first = part, second = part;
+        ++first.depth;
+        ++second.depth;
+        first.t[(k + 1) % 3] = middle;
+        second.t[k] = middle;
+        stack.push_back(second);
+        stack.push_back(first);
+        continue;
+      }
+      const Vec3 center = (v[0] + v[1] + v[2]) / 3;
+      const Vec3 n = (v[1] - v[0]).cross(v[2] - v[0]).normalized();
+      if (!(n.squaredNorm() > 0.5)) {
+        out.mesh.triangles.push_back(t);
+        continue;
+      }
+      // Where no other triangle meets the part, one place tells. Where one does, what is beyond it
+      // is missed by samples, and has a winding number lower by 1.
+      int least = std::numeric_limits<int>::max();
+      for (const Vec3& p : {center, Vec3(0.8 * v[0] + 0.2 * center),
+                            Vec3(0.8 * v[1] + 0.2 * center), Vec3(0.8 * v[2] + 0.2 * center)}) {
+        for (const double side : {step, -step}) {
+          const Vec3 z = p + side * n;
+          const auto w = winding(z);
+          least = std::min(least, w.value_or(0));
+          if (w && *w <= 0) {
+            out.outside.push_back(z);
+            break;
+          }
+        }
+        if (least <= 0) break;
+      }
+      if (least <= (met ? 1 : 0)) out.mesh.triangles.push_back(t);
     }
   }
   return out;

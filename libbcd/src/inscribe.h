@@ -13,16 +13,21 @@ namespace kaboum::bcd {
 
 using geom::Mesh;
 
-/// The triangles that have the complement of the solid {w ≥ 1} on a side, as far as samples tell.
+/// The triangles that have the complement of the solid {w ≥ 1} on a side.
 struct Boundary {
-  /// Triangles that cross others are cut into pieces no longer than `size`; what is inside the
-  /// solid is left out.
-  Mesh mesh;
+  Mesh mesh;  ///< these, or the parts of them that do
   /// Points beside the triangles that are outside the solid, exactly.
   std::vector<Vec3> outside;
 };
 
+/// As far as samples tell: triangles that cross others are cut into pieces no longer than `size`,
+/// and what samples find inside the solid is left out.
 Boundary boundary_of(const Mesh& mesh, const geom::WindingNumber& winding, double size);
+
+/// The same and more: triangles that meet others are cut; pieces that meet none are decided by
+/// samples, which cannot miss anything there, and those no longer than `size` are left out only
+/// where the solid is doubly round them.
+Boundary cautious_boundary_of(const Mesh& mesh, const geom::WindingNumber& winding, double size);
 
 /// A convex body with float32 vertices, exactly convex.
 struct Inscribed {
