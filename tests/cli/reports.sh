@@ -21,13 +21,13 @@ run() {
   expect 0 '' "$@" --report "reports/$name.json"
 }
 run decimate "$BIN/bmesh-decimate" "$BRACKET" -o outer.ply --vertices 300 --log outer.log
-run levels "$BIN/bmesh-decimate" "$BRACKET" -o 'level-%n.ply' --vertices 300,200 --progressive outer.pm
+run levels "$BIN/bmesh-decimate" "$BRACKET" -o 'level-{vertices}.ply' --vertices 300,200 --progressive outer.pm
 run from "$BIN/bmesh-decimate" --from outer.pm --vertices 250 -o from.ply
 run replay "$BIN/bmesh-replay" "$BRACKET" outer.log outer.ply
 run decompose "$BIN/bcd-decompose" "$BRACKET" -o set.glb --epsilon 5% --effort fast --no-cache
 run inner "$BIN/bcd-decompose" wide.off -o inner.glb --direction inner --epsilon 20% --no-cache
 run robot "$BIN/bcd-decompose" arm.urdf -o safe --effort fast --no-cache
-run sweep "$BIN/sweep-approx" arm.urdf path.csv -o swept.glb --epsilon 0.2 --no-cache
+run sweep "$BIN/sweep-approx" arm.urdf --path path.csv -o swept.glb --epsilon 0.2 --no-cache
 run distance "$BIN/hausdorff-eval" box.off wide.off --samples 100
 run verify-outer "$BIN/bound-verify" --outer "$BRACKET" outer.ply
 run verify-cover "$BIN/bound-verify" --cover "$BRACKET" set.glb --epsilon 5%
@@ -40,7 +40,7 @@ cat >domain.pddl <<'END'
 END
 printf '(define (problem p) (:domain d) (:init) (:goal (done)))\n' >problem.pddl
 run solve "$BIN/kaboum-plan" solve domain.pddl problem.pddl -o plan.json
-run check "$BIN/kaboum-plan" check domain.pddl problem.pddl plan.json
+run check "$BIN/kaboum-plan" check domain.pddl problem.pddl --plan plan.json
 
 python3 - "$SCHEMA" reports/*.json <<'END' || fail "a report does not keep to the schema"
 import json, sys
