@@ -197,10 +197,7 @@ DecomposeResult fill(const geom::Prepared& input, const DecomposeOptions& option
   const double diagonal = geom::bounding_box(input.mesh).diagonal();
   const geom::WindingNumber winding(input.mesh);
   const double size = options.epsilon ? 0.08 * *options.epsilon : 0.01 * diagonal;
-  // Allowances for rounding are asked for where bodies did not pass the exact check: there, samples
-  // may have missed a tip of the outside between triangles that cross.
-  const Boundary boundary = options.safety > 1 ? cautious_boundary_of(input.mesh, winding, size)
-                                               : boundary_of(input.mesh, winding, size);
+  const Boundary boundary = boundary_of(input.mesh, winding, size, options.doubtful);
   if (boundary.outside.empty()) throw Error(ErrorCode::InvalidInput, "the mesh has no solid");
   Depths depths(input.mesh, winding, boundary);
   const Tuning effort = tuning(options.effort);

@@ -310,129 +310,125 @@ bool meets_another(const Mesh& mesh, const geom::Bvh& bvh, const Triangle& whole
   return found;
 }
 
+/// Finds the parts of triangles, cut in halves, that bound the solid.
+class BoundaryFinder {
+ public:
+  BoundaryFinder(const Mesh& mesh, const geom::WindingNumber& winding, double size)
+      : mesh_(mesh), winding_(winding), size_(size), bvh_(mesh) {
+    const double diagonal = geom::bounding_box(mesh).diagonal();
+    step_ = 1e-7 * diagonal;
+    coarse_ = std::max(size, 0.05 * diagonal);
+    out_.mesh.vertices = mesh.vertices;
+  }
+
+  Boundary find(const std::vector<std::uint32_t>& doubtful) {
+    std::vector<char> doubted(mesh_.triangles.size(), 0);
+    for (const std::uint32_t t : doubtful) doubted[t] = 1;
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+      const Triangle& whole = mesh_.triangles[t];
+      const bool crossed =
+          doubted[t] == 0 && meets_another(mesh_, bvh_, whole, corners(whole), true);
+      stack_.push_back({whole, 0});
+      while (!stack_.empty()) {
+        const Part part = stack_.back();
+        stack_.pop_back();
+        if (doubted[t] != 0)
+          look_cautiously(whole, part);
+        else
+          look(part, crossed);
+      }
+    }
+    return std::move(out_);
+  }
+
+ private:
+  struct Part {
+    Triangle t;
+    int depth;
+  };
+  static constexpr int kMostCuts = 24;
+
+  [[nodiscard]] std::array<Vec3, 3> corners(const Triangle& t) const {
+    const auto& v = out_.mesh.vertices;
+    return {v[t[0]], v[t[1]], v[t[2]]};
+  }
+
+  /// Its two halves are looked at next. @return false if it is not longer than `limit`.
+  bool halve(const Part& part, double limit) {
+    const std::array<Vec3, 3> v = corners(part.t);
+    std::size_t k = 0;
+    for (std::size_t i = 1; i < 3; ++i)
+      if ((v[(i + 1) % 3] - v[i]).norm() > (v[(k + 1) % 3] - v[k]).norm()) k = i;
+    if (part.depth >= kMostCuts || !((v[(k + 1) % 3] - v[k]).norm() > limit)) return false;
+    const auto middle = static_cast<std::uint32_t>(out_.mesh.vertices.size());
+    out_.mesh.vertices.emplace_back(0.5 * v[k] + 0.5 * v[(k + 1) % 3]);
+    Part first{part.t, part.depth + 1}, second = first;
+    first.t[(k + 1) % 3] = middle;
+    second.t[k] = middle;
+    stack_.push_back(second);
+    stack_.push_back(first);
+    return true;
+  }
+
+  struct Samples {
+    int taken = 0, open = 0;
+    int least = std::numeric_limits<int>::max();  ///< winding number; 0 on a triangle
+  };
+
+  /// Looks beside places of the part, until the first that is open unless `all`. None if it has no
+  /// area.
+  Samples sample(const std::array<Vec3, 3>& v, bool all) {
+    Samples found;
+    const Vec3 n = (v[1] - v[0]).cross(v[2] - v[0]).normalized();
+    if (!(n.squaredNorm() > 0.5)) return found;
+    const Vec3 center = (v[0] + v[1] + v[2]) / 3;
+    for (const Vec3& p : {center, Vec3(0.8 * v[0] + 0.2 * center), Vec3(0.8 * v[1] + 0.2 * center),
+                          Vec3(0.8 * v[2] + 0.2 * center)}) {
+      if (found.open > 0 && !all) break;
+      ++found.taken;
+      for (const double side : {step_, -step_}) {
+        const Vec3 z = p + side * n;
+        const auto w = winding_(z);
+        found.least = std::min(found.least, w.value_or(0));
+        if (!w || *w > 0) continue;
+        out_.outside.push_back(z);
+        ++found.open;
+        break;
+      }
+    }
+    return found;
+  }
+
+  /// @param crossed  by others: what bounds the solid is told to `size_` then
+  void look(const Part& part, bool crossed) {
+    const Samples found = sample(corners(part.t), crossed);
+    const bool mixed = found.open > 0 && found.open < found.taken;
+    if (crossed && halve(part, mixed ? size_ : coarse_)) return;
+    if (found.open > 0 || found.taken == 0) out_.mesh.triangles.push_back(part.t);
+  }
+
+  /// A part that no other triangle meets is on one side of all of them: any place tells. Where one
+  /// does, a tip beyond it may be missed by all samples, with a winding number lower by 1.
+  void look_cautiously(const Triangle& whole, const Part& part) {
+    const bool met = meets_another(mesh_, bvh_, whole, corners(part.t), false);
+    if (met && halve(part, size_)) return;
+    const Samples found = sample(corners(part.t), false);
+    if (found.taken == 0 || found.least <= (met ? 1 : 0)) out_.mesh.triangles.push_back(part.t);
+  }
+
+  const Mesh& mesh_;
+  const geom::WindingNumber& winding_;
+  double size_, step_ = 0, coarse_ = 0;
+  geom::Bvh bvh_;
+  std::vector<Part> stack_;
+  Boundary out_;
+};
+
 }  // namespace
 
-Boundary boundary_of(const Mesh& mesh, const geom::WindingNumber& winding, double size) {
-  const double step = 1e-7 * geom::bounding_box(mesh).diagonal();
-  const double coarse = std::max(size, 0.05 * geom::bounding_box(mesh).diagonal());
-  const geom::Bvh bvh(mesh);
-  Boundary out;
-  out.mesh.vertices = mesh.vertices;
-  struct Part {
-    Triangle t;
-    int depth;
-  };
-  std::vector<Part> stack;
-  for (const Triangle& whole : mesh.triangles) {
-    const bool split = meets_another(
-        mesh, bvh, whole,
-        {mesh.vertices[whole[0]], mesh.vertices[whole[1]], mesh.vertices[whole[2]]}, true);
-    stack.push_back({whole, 0});
-    while (!stack.empty()) {
-      const Part part = stack.back();
-      stack.pop_back();
-      const auto& [t, depth] = part;
-      auto& vertices = out.mesh.vertices;
-      const Vec3 a = vertices[t[0]], b = vertices[t[1]], c = vertices[t[2]];
-      const std::array<double, 3> length{(b - a).norm(), (c - b).norm(), (a - c).norm()};
-      const auto k =
-          static_cast<std::size_t>(std::max_element(length.begin(), length.end()) - length.begin());
-      const Vec3 center = (a + b + c) / 3;
-      const Vec3 n = (b - a).cross(c - a).normalized();
-      const bool area = n.squaredNorm() > 0.5;
-      int samples = 0, open = 0;
-      for (const Vec3& p : {center, Vec3(0.8 * a + 0.2 * center), Vec3(0.8 * b + 0.2 * center),
-                            Vec3(0.8 * c + 0.2 * center)}) {
-        if (!area || (open > 0 && !split)) break;
-        ++samples;
-        for (const double side : {step, -step}) {
-          const Vec3 z = p + side * n;
-          const auto w = winding(z);
-          if (!w || *w > 0) continue;
-          out.outside.push_back(z);
-          ++open;
-          break;
-        }
-      }
-      const bool mixed = open > 0 && open < samples;
-      if (split && depth < 24 && length[k] > (mixed ? size : coarse)) {
-        const auto middle = static_cast<std::uint32_t>(vertices.size());
-        vertices.push_back(0.5 * vertices[t[k]] + 0.5 * vertices[t[(k + 1) % 3]]);
-        Part first = part, second = part;
-        ++first.depth;
-        ++second.depth;
-        first.t[(k + 1) % 3] = middle;
-        second.t[k] = middle;
-        stack.push_back(second);
-        stack.push_back(first);
-        continue;
-      }
-      if (open > 0 || !area) out.mesh.triangles.push_back(t);
-    }
-  }
-  return out;
-}
-
-Boundary cautious_boundary_of(const Mesh& mesh, const geom::WindingNumber& winding, double size) {
-  const double step = 1e-7 * geom::bounding_box(mesh).diagonal();
-  const geom::Bvh bvh(mesh);
-  Boundary out;
-  out.mesh.vertices = mesh.vertices;
-  struct Part {
-    Triangle t;
-    int depth;
-  };
-  std::vector<Part> stack;
-  for (const Triangle& whole : mesh.triangles) {
-    stack.push_back({whole, 0});
-    while (!stack.empty()) {
-      const Part part = stack.back();
-      stack.pop_back();
-      const auto& [t, depth] = part;
-      auto& vertices = out.mesh.vertices;
-      const std::array<Vec3, 3> v{vertices[t[0]], vertices[t[1]], vertices[t[2]]};
-      const bool met = meets_another(mesh, bvh, whole, v, false);
-      std::size_t k = 0;
-      for (std::size_t i = 1; i < 3; ++i)
-        if ((v[(i + 1) % 3] - v[i]).norm() > (v[(k + 1) % 3] - v[k]).norm()) k = i;
-      if (met && depth < 24 && (v[(k + 1) % 3] - v[k]).norm() > size) {
-        const auto middle = static_cast<std::uint32_t>(vertices.size());
-        vertices.push_back(0.5 * v[k] + 0.5 * v[(k + 1) % 3]);
-        Part first = part, second = part;
-        ++first.depth;
-        ++second.depth;
-        first.t[(k + 1) % 3] = middle;
-        second.t[k] = middle;
-        stack.push_back(second);
-        stack.push_back(first);
-        continue;
-      }
-      const Vec3 center = (v[0] + v[1] + v[2]) / 3;
-      const Vec3 n = (v[1] - v[0]).cross(v[2] - v[0]).normalized();
-      if (!(n.squaredNorm() > 0.5)) {
-        out.mesh.triangles.push_back(t);
-        continue;
-      }
-      // Where no other triangle meets the part, one place tells. Where one does, what is beyond it
-      // is missed by samples, and has a winding number lower by 1.
-      int least = std::numeric_limits<int>::max();
-      for (const Vec3& p : {center, Vec3(0.8 * v[0] + 0.2 * center),
-                            Vec3(0.8 * v[1] + 0.2 * center), Vec3(0.8 * v[2] + 0.2 * center)}) {
-        for (const double side : {step, -step}) {
-          const Vec3 z = p + side * n;
-          const auto w = winding(z);
-          least = std::min(least, w.value_or(0));
-          if (w && *w <= 0) {
-            out.outside.push_back(z);
-            break;
-          }
-        }
-        if (least <= 0) break;
-      }
-      if (least <= (met ? 1 : 0)) out.mesh.triangles.push_back(t);
-    }
-  }
-  return out;
+Boundary boundary_of(const Mesh& mesh, const geom::WindingNumber& winding, double size,
+                     const std::vector<std::uint32_t>& doubtful) {
+  return BoundaryFinder(mesh, winding, size).find(doubtful);
 }
 
 bool Inscribed::contains(const Vec3& p, double slack) const {

@@ -22,12 +22,10 @@ struct Boundary {
 
 /// As far as samples tell: triangles that cross others are cut into pieces no longer than `size`,
 /// and what samples find inside the solid is left out.
-Boundary boundary_of(const Mesh& mesh, const geom::WindingNumber& winding, double size);
-
-/// The same and more: triangles that meet others are cut; pieces that meet none are decided by
-/// samples, which cannot miss anything there, and those no longer than `size` are left out only
-/// where the solid is doubly round them.
-Boundary cautious_boundary_of(const Mesh& mesh, const geom::WindingNumber& winding, double size);
+/// @param doubtful  triangles where samples are known to miss something: of these, pieces that meet
+///   other triangles are left out only where the solid is doubly round them.
+Boundary boundary_of(const Mesh& mesh, const geom::WindingNumber& winding, double size,
+                     const std::vector<std::uint32_t>& doubtful);
 
 /// A convex body with float32 vertices, exactly convex.
 struct Inscribed {

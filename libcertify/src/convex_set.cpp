@@ -8,6 +8,7 @@
 #include <kaboum/io/convex_io.h>
 #include <kaboum/verify/cover.h>
 
+#include <algorithm>
 #include <array>
 
 #include "request.h"
@@ -17,6 +18,8 @@ namespace {
 
 /// Allowances for rounding, tried one after the other.
 constexpr std::array<double, 3> kSafety{1, 64, 4096};
+/// So often places that inner bodies must not reach are handed to another search.
+constexpr int kAvoided = 5;
 
 bcd::DecomposeOptions options_of(const SetRequest& r, double diagonal, const Hooks& hooks) {
   bcd::DecomposeOptions options;
@@ -37,12 +40,18 @@ bcd::DecomposeOptions options_of(const SetRequest& r, double diagonal, const Hoo
   return options;
 }
 
-/// Why a set does not do what it should, decided exactly; empty when it does.
-std::string objection(const SetRequest& r, const geom::Mesh& solid, const geom::ConvexSet& set) {
+/// Why a set does not do what it should, decided exactly.
+struct Objection {
+  std::string reason;  ///< empty when it does
+  /// Of the solid's mesh: what bounds parts of inner bodies that are outside.
+  std::vector<std::uint32_t> triangles;
+};
+
+Objection objection(const SetRequest& r, const geom::Mesh& solid, const geom::ConvexSet& set) {
   for (const geom::ConvexBody& body : set.bodies)
     if (r.min_thickness > 0 &&
         geom::least_width(body.hull, r.min_thickness).lower < r.min_thickness)
-      return "a body is thinner than --min-thickness";
+      return {"a body is thinner than --min-thickness", {}};
   const auto first_of = [](std::initializer_list<const verify::Claim*> claims) -> std::string {
     for (const verify::Claim* claim : claims)
       if (claim->answer != verify::Answer::Verified) return claim->reason;
@@ -50,11 +59,14 @@ std::string objection(const SetRequest& r, const geom::Mesh& solid, const geom::
   };
   if (r.direction == SetRequest::Direction::Outer) {
     const verify::Cover cover = verify::verify_cover(solid, set);
-    return first_of({&cover.convex, &cover.inclusion.solid, &cover.inclusion.surface});
+    return {first_of({&cover.convex, &cover.inclusion.solid, &cover.inclusion.surface}), {}};
   }
-  if (geom::find_not_convex(set)) return "a body is not convex";
+  if (geom::find_not_convex(set)) return {"a body is not convex", {}};
   const verify::Inclusion inside = verify::verify_inclusion(verify::sum_of(set), solid);
-  return first_of({&inside.solid, &inside.surface});
+  Objection out{first_of({&inside.solid, &inside.surface}), inside.solid.outer_triangles};
+  out.triangles.insert(out.triangles.end(), inside.surface.outer_triangles.begin(),
+                       inside.surface.outer_triangles.end());
+  return out;
 }
 
 SetCertificate certificate_of(const SetRequest& r, const geom::Prepared& prepared,
@@ -101,6 +113,7 @@ std::optional<CertifiedSet> certify_set(const geom::Mesh& mesh, const std::strin
   made.provenance.covers_surface = outer && prepared.dropped_sheets == 0;
   made.provenance.covers_solid = outer && prepared.holes == 0;
   std::string wrong;
+  int avoided = 0;
   for (auto safety = kSafety.begin(); safety != kSafety.end();) {
     options.safety = *safety;
     bcd::DecomposeResult result =
@@ -113,18 +126,28 @@ std::optional<CertifiedSet> certify_set(const geom::Mesh& mesh, const std::strin
     // What is written is what is verified.
     if (hooks.progress) hooks.progress("verifying");
     out.set = io::parse_convex_set(out.container, io::Format::Glb, "the result");
-    wrong = objection(request, prepared.mesh, out.set);
+    const Objection found = objection(request, prepared.mesh, out.set);
+    wrong = found.reason;
     if (wrong.empty()) {
       out.certificate =
           certificate_of(request, prepared, result, made.bodies.size(), diagonal, *safety);
       return out;
     }
     const bool simplified = result.statistics.pre_step_triangles > 0;
+    const std::size_t doubted = options.doubtful.size();
+    options.doubtful.insert(options.doubtful.end(), found.triangles.begin(), found.triangles.end());
+    std::sort(options.doubtful.begin(), options.doubtful.end());
+    options.doubtful.erase(std::unique(options.doubtful.begin(), options.doubtful.end()),
+                           options.doubtful.end());
+    const bool avoid = options.doubtful.size() > doubted && avoided < kAvoided;
     note("the bodies found do not pass the exact check (" + wrong + "); trying " +
          (simplified ? "without simplifying the input first"
+          : avoid    ? "to keep clear of the places found"
                      : "with larger allowances for rounding"));
     if (simplified) {
       options.pre_step = bcd::PreStep::Off;
+    } else if (avoid) {
+      ++avoided;
     } else {
       ++safety;
     }

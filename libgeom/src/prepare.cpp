@@ -362,7 +362,7 @@ class Preparation {
     filter(keep);
     was_open_.assign(out_.source.size(), 1);
     for (std::size_t t = 0; t < out_.source.size(); ++t)
-      if (out_.source[t] != kFilled) was_open_[t] = opened_[out_.source[t]];
+      if (out_.source[t] != kFilled) was_open_[t] = opened_[out_.source[t]] != 0 ? 1 : 0;
     const auto triangles =
         static_cast<std::size_t>(std::count(out_.source.begin(), out_.source.end(), kFilled));
     out_.notes.push_back(count_of(filled.holes, "hole is", "holes are") + " filled with " +

@@ -4,6 +4,7 @@
 #include <kaboum/geom/distance.h>
 #include <kaboum/verify/cover.h>
 
+#include <Eigen/Geometry>
 #include <random>
 
 #include "solids.h"
@@ -85,6 +86,37 @@ TEST(Fill, WallsBetweenOverlappingBodiesAreNoObstacle) {
   EXPECT_EQ(result.stop, Stop::Done);
   EXPECT_EQ(result.bodies.size(), 1U);
   expect_claims(mesh, result, 64);
+}
+
+// Boxes that cut each other: samples beside their triangles miss tips of the outside, which the
+// exact check finds. They are kept clear of then.
+TEST(Fill, KeepsClearOfWhatTheExactCheckFinds) {
+  struct Turned {
+    Vec3 half;
+    double about_z, about_x;
+  };
+  std::vector<Mesh> boxes;
+  for (const Turned& b :
+       {Turned{{1.65, 1.7, 1.12}, 0.78, 0.0}, Turned{{1.43, 1.1, 1.59}, 1.12, 2.31},
+        Turned{{0.76, 1.66, 1.54}, 1.24, 1.61}}) {
+    Mesh box = kaboum::test::box(2 * b.half, 1);
+    for (Vec3& v : box.vertices)
+      v = Eigen::AngleAxisd(b.about_x, Vec3::UnitX()) *
+          (Eigen::AngleAxisd(b.about_z, Vec3::UnitZ()) * Vec3(v - b.half));
+    boxes.push_back(std::move(box));
+  }
+  const geom::Prepared input = geom::prepare(kaboum::test::merged(boxes));
+  DecomposeOptions options = test::quick(input.mesh, 1.5, 64);
+  const auto check = [&](const DecomposeResult& result) {
+    return verify::verify_inclusion(verify::sum_of(test::set_of(result.bodies)), input.mesh).solid;
+  };
+  const verify::Claim refuted = check(fill(input, options));
+  ASSERT_EQ(refuted.answer, verify::Answer::Refuted);
+  options.doubtful = refuted.outer_triangles;
+  options.max_work = 3;
+  const DecomposeResult again = fill(input, options);
+  EXPECT_GT(again.bodies.size(), 3U);
+  EXPECT_EQ(check(again).answer, verify::Answer::Verified);
 }
 
 TEST(Fill, ObviousOnes) {

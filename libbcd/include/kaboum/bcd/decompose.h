@@ -63,6 +63,9 @@ struct DecomposeOptions {
   /// Multiplies what is allowed for rounding (the overlap of pieces, the error of computed points);
   /// larger where an exact check of the result fails.
   double safety = 1;
+  /// Of bodies inside: triangles of the input that bound what an exact check of the result found
+  /// outside the solid. Where they meet others, more is kept clear of.
+  std::vector<std::uint32_t> doubtful;
   /// Called now and then, from the calling thread; may throw to cancel.
   std::function<void(const Progress&)> progress;
 };
