@@ -89,7 +89,8 @@ std::optional<Uncovered::Crossing> Uncovered::crossing_planes(const Body& body, 
   }
   // The lowest ones first: what is above them in all of the box takes nothing from them.
   std::stable_sort(met.begin(), met.end(), [](const Met& a, const Met& b) { return a.at > b.at; });
-  for (const auto& [plane, at] : met) {
+  for (const Met& m : met) {
+    const Plane* const plane = m.plane;
     const auto alike = std::find_if(
         result.planes.begin(), result.planes.end(),
         [&](const Plane& p) { return (p.normal - plane->normal).squaredNorm() < kAlike * kAlike; });
