@@ -96,11 +96,11 @@ struct Finished {
 
 class Decomposer {
  public:
-  Decomposer(const Mesh& closed, const DecomposeOptions& options, std::uint64_t work)
+  Decomposer(const Mesh& closed, const DecomposeOptions& options, double work)
       : Decomposer(closed, options, work, tuning(options.effort, options.method)) {}
 
   /// @param work  allowed. [ns]
-  Decomposer(const Mesh& closed, const DecomposeOptions& options, std::uint64_t work, Tuning how)
+  Decomposer(const Mesh& closed, const DecomposeOptions& options, double work, Tuning how)
       : options_(options),
         tuning_(std::move(how)),
         solid_(closed, tuning_.grid, options.epsilon.value_or(0), false, work),
@@ -740,13 +740,12 @@ class Decomposer {
   /// more than what is kept for the end, but some.
   [[nodiscard]] ReachOptions reach_options(std::size_t bodies) const {
     constexpr double kPiece = 20'000;  // work
-    const double kept = (1 - kFinishing) * static_cast<double>(solid_.work().most());
+    const double kept = (1 - kFinishing) * solid_.work().most();
     const double fewest = std::clamp(
         kept / (kPiece * static_cast<double>(std::max<std::size_t>(1, bodies))), 100.0, 2000.0);
     ReachOptions out;
     out.absolute_gap = 1e-5 * solid_.diagonal();
-    const double left =
-        static_cast<double>(solid_.work().most()) - static_cast<double>(solid_.work().done());
+    const double left = solid_.work().most() - static_cast<double>(solid_.work().done());
     const double share = left / (kPiece * static_cast<double>(std::max<std::size_t>(1, bodies)));
     if (share < static_cast<double>(out.most))
       out.most = static_cast<std::size_t>(std::max(fewest, share));
@@ -1002,7 +1001,7 @@ class Allowance {
     constexpr double kMost = 1e18;
     all_ = left_ = static_cast<std::uint64_t>(std::min(kMost, 1e9 * seconds));
   }
-  [[nodiscard]] std::uint64_t left() const { return std::max(left_, all_ / 4); }
+  [[nodiscard]] double left() const { return static_cast<double>(std::max(left_, all_ / 4)); }
   [[nodiscard]] bool plenty() const { return left_ > all_ / 2; }
   void spend(std::uint64_t work) { left_ -= std::min(left_, work); }
 

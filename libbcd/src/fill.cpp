@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <queue>
+#include <string>
 
 #include "cell.h"
 #include "inscribe.h"
@@ -187,6 +188,12 @@ DecomposeResult fill(const geom::Prepared& input, const DecomposeOptions& option
     throw Error(ErrorCode::InvalidArgument, "max_total_vertices is not for bodies inside");
   if (options.pre_step == PreStep::On)
     throw Error(ErrorCode::InvalidArgument, "bodies inside the solid have no pre-step");
+  for (const std::uint32_t t : options.doubtful)
+    if (t >= input.mesh.triangles.size())
+      throw Error(ErrorCode::InvalidArgument, "doubtful triangle " + std::to_string(t) +
+                                                  " is none of the mesh's " +
+                                                  std::to_string(input.mesh.triangles.size()) +
+                                                  "; name triangles of the mesh given");
   if (!input.closed)
     throw Error(ErrorCode::InvalidInput, "the mesh is open: bodies inside it mean nothing");
   DecomposeResult result;

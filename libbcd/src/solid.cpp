@@ -36,7 +36,7 @@ double squared(const Vec3& p, const Vec3& a, const Vec3& ab, const Vec3& ac) {
 
 }  // namespace
 
-Solid::Solid(const Mesh& mesh, std::size_t nodes, double epsilon, bool probes, std::uint64_t work)
+Solid::Solid(const Mesh& mesh, std::size_t nodes, double epsilon, bool probes, double work)
     : mesh_(mesh),
       box_(geom::bounding_box(mesh)),
       diagonal_(box_.diagonal()),

@@ -1,15 +1,15 @@
 #pragma once
 
+#include <kaboum/base/work.h>
 #include <kaboum/geom/distance.h>
 #include <kaboum/geom/mesh.h>
 #include <kaboum/geom/winding.h>
 
 #include <atomic>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
-
-#include "work.h"
 
 namespace kaboum::bcd {
 
@@ -29,7 +29,14 @@ class Solid {
   /// @param probes  whether to look for probes at once.
   /// @param work  what is counted there is what the search may do. [ns]
   Solid(const Mesh& mesh, std::size_t nodes, double epsilon, bool probes = true,
-        std::uint64_t work = ~std::uint64_t{0});
+        double work = std::numeric_limits<double>::infinity());
+  /// Neither copied nor moved: winding_ refers to the hierarchy of surface_.
+  Solid(const Solid&) = delete;
+  Solid(Solid&&) = delete;
+  Solid& operator=(const Solid&) = delete;
+  Solid& operator=(Solid&&) = delete;
+  ~Solid() = default;
+
   /// Looks for probes all over the grid, unless that has been done.
   void find_probes();
 

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 #include <random>
+#include <string>
 
 #include "solids.h"
 #include "support/oracle.h"
@@ -164,6 +165,21 @@ TEST(Fill, FewBodiesAndOpenMeshes) {
   Mesh open = kaboum::test::box(Vec3(1, 1, 1), 1);
   open.triangles.pop_back();
   EXPECT_THROW(fill(geom::prepare(open), options), Error);
+}
+
+TEST(Fill, RefusesDoubtfulTrianglesThatTheMeshHasNot) {
+  const Mesh cube = kaboum::test::box({1, 1, 1}, 1);
+  DecomposeOptions options = test::quick(cube, 5);
+  options.doubtful = {0, 11};
+  EXPECT_FALSE(fill(geom::prepare(cube), options).bodies.empty());
+  options.doubtful.push_back(12);
+  try {
+    fill(geom::prepare(cube), options);
+    ADD_FAILURE() << "triangle 12 of 12 was accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::InvalidArgument);
+    EXPECT_NE(std::string(error.what()).find("doubtful triangle 12"), std::string::npos);
+  }
 }
 
 }  // namespace

@@ -22,8 +22,8 @@ namespace kaboum::bcd {
 /// spacing. The same for any number of threads.
 ///
 /// @pre input comes from geom::prepare; epsilon or max_bodies is given.
-/// @throws Error{InvalidArgument} on contradictory options; Error{InvalidInput} for open meshes,
-/// which have no inside.
+/// @throws Error{InvalidArgument} on contradictory options, and where `doubtful` names a triangle
+/// that the mesh does not have; Error{InvalidInput} for open meshes, which have no inside.
 DecomposeResult fill(const geom::Prepared& input, const DecomposeOptions& options);
 
 }  // namespace kaboum::bcd
