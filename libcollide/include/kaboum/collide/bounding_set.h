@@ -1,0 +1,120 @@
+#pragma once
+
+#include <kaboum/collide/proximity.h>
+#include <kaboum/geom/convex_set.h>
+
+#include <optional>
+#include <vector>
+
+namespace kaboum::collide {
+
+enum class Direction {
+  Outer,  ///< contains its solid
+  Inner,  ///< lies in its solid
+};
+
+/// A union of convex polytopes, each enlarged by a ball, that bounds a solid from one side; ready
+/// for queries.
+class BoundingSet {
+ public:
+  struct Body {
+    geom::Mesh hull;    ///< facets with outward normals, exactly convex
+    double margin = 0;  ///< ≥ 0 [length]
+  };
+
+  /// @param epsilon  an outer set's points are within it of the solid, margins included; what an
+  ///   inner one leaves out of the solid is not deeper. [length]
+  /// @throws Error{InvalidArgument} for a margin or epsilon that is negative or not finite;
+  ///   Error{InvalidInput} as Polytope.
+  BoundingSet(std::vector<Body> bodies, Direction direction, double epsilon);
+
+  /// A set as its container states it.
+  /// @throws Error{InvalidInput} when it states no direction or no epsilon, or a body is not
+  ///   exactly convex.
+  explicit BoundingSet(const geom::ConvexSet& set);
+
+  [[nodiscard]] std::size_t size() const { return bodies_.size(); }
+  [[nodiscard]] const Body& body(std::size_t i) const { return bodies_[i]; }
+  [[nodiscard]] const Polytope& polytope(std::size_t i) const { return polytopes_[i]; }
+  [[nodiscard]] Direction direction() const { return direction_; }
+  [[nodiscard]] double epsilon() const { return epsilon_; }
+
+ private:
+  std::vector<Body> bodies_;
+  std::vector<Polytope> polytopes_;
+  Direction direction_ = Direction::Outer;
+  double epsilon_ = 0;
+};
+
+/// A set at a place. Refers to the set.
+class PosedSet {
+ public:
+  /// @param error  how far a point may be from its exact image under the pose: of rotations that
+  ///   are rounded, of kinematics. [length]
+  /// @throws Error{InvalidArgument} when `linear` is no rotation (to 1e-9) or a number is not
+  ///   finite.
+  explicit PosedSet(const BoundingSet& set, const geom::Transform& pose = {}, double error = 0);
+
+  /// Moves it; cheaper than a new one.
+  void place(const geom::Transform& pose, double error = 0);
+
+  [[nodiscard]] const BoundingSet& set() const { return *set_; }
+  [[nodiscard]] const geom::Transform& pose() const { return pose_; }
+  [[nodiscard]] double error() const { return error_; }
+  [[nodiscard]] Posed body(std::size_t i) const { return {set_->polytope(i), pose_}; }
+  /// Boxes along the axes, margins and error included.
+  [[nodiscard]] const geom::Box3& box() const { return box_; }
+  [[nodiscard]] const geom::Box3& box(std::size_t i) const { return boxes_[i]; }
+
+ private:
+  const BoundingSet* set_;
+  geom::Transform pose_;
+  double error_ = 0;
+  std::vector<geom::Box3> boxes_;
+  geom::Box3 box_;
+};
+
+/// Axes that separated the bodies of two sets, from one query to the next. Belongs to who asks: one
+/// for every pair of sets and thread.
+class Memory {
+ public:
+  /// Of bodies i and j of sets of the sizes n and m; null where there are too many pairs.
+  Axis* axis(std::size_t i, std::size_t j, std::size_t n, std::size_t m);
+
+ private:
+  std::vector<Axis> axes_;
+};
+
+/// Two bodies, of the first and the second set.
+struct BodyPair {
+  std::size_t a = 0, b = 0;
+};
+
+/// Definition 1 of [gaschler2016], cases 1 to 3: whether two solids collide, by their outer sets:
+/// of objects, robots' links, or swept volumes. The first pair of bodies whose exact images,
+/// enlarged by margins, errors and `slack`, meet; nullopt when there is none.
+///
+/// Never nullopt when the solids meet, or come within `slack` of each other. Always nullopt when
+/// they are farther apart than both epsilons, errors and the slack. The same for any memory.
+/// @throws Error{InvalidArgument} for an inner set.
+std::optional<BodyPair> find_collision(const PosedSet& a, const PosedSet& b, double slack = 0,
+                                       Memory* memory = nullptr, Decided* decided = nullptr);
+
+/// Whether two solids certainly collide: a point is in both of their inner sets, however wrong the
+/// places are.
+/// @throws Error{InvalidArgument} for an outer set with an epsilon above 0.
+bool certainly_collide(const PosedSet& a, const PosedSet& b);
+
+/// A certified bracket of the distance between two sets, and the bodies and points it is between.
+struct Clearance {
+  /// Of the sets with their margins: `lower` also of the solids of outer sets. lower = 0: they may
+  /// meet. [length]
+  double lower = 0, upper = 0;
+  BodyPair bodies;
+  geom::Vec3 on_a = geom::Vec3::Zero(), on_b = geom::Vec3::Zero();  ///< margins not included
+};
+
+/// nullopt when a set has no bodies.
+std::optional<Clearance> clearance(const PosedSet& a, const PosedSet& b);
+
+}  // namespace kaboum::collide

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <kaboum/collide/bounding_set.h>
+
+#include <cstddef>
+
+namespace kaboum::collide {
+
+enum class Inclusion {
+  Included,     ///< certainly: the outer set is in the union of the inner one's bodies
+  NotIncluded,  ///< the outer set, with its margin and errors, is not: the solid is, if at all, by
+                ///< less than tolerance_of_inclusion
+  Undecided,    ///< out of work
+};
+
+/// Definition 1 of [gaschler2016], case 4: whether one solid contains another one, by an outer set
+/// of the one that is to be contained and an inner set of the other one. The union counts: a body
+/// may lie in several bodies of the inner set together. Exact: bodies are subtracted one after the
+/// other in rational arithmetic; margins of inner sets are not made use of.
+///
+/// @param most_pieces  that bodies are cut into before it is given up.
+/// @throws Error{InvalidArgument} unless the first set is an outer one and the second an inner one.
+Inclusion find_inclusion(const PosedSet& outer, const PosedSet& inner,
+                         std::size_t most_pieces = 10'000);
+
+/// What lies deeper in the solid of `inner` than this is said to be included. [length]
+double tolerance_of_inclusion(const PosedSet& outer, const PosedSet& inner);
+
+}  // namespace kaboum::collide

@@ -1,0 +1,286 @@
+// Predicates of sets: Definition 1, with epsilon, margin and errors of places, and inclusion in
+// unions.
+
+#include <gtest/gtest.h>
+#include <kaboum/base/error.h>
+#include <kaboum/collide/inclusion.h>
+
+#include <thread>
+
+#include "pairs.h"
+
+namespace kaboum::collide {
+namespace {
+
+using geom::Vec3;
+
+geom::Mesh box(const Vec3& low, const Vec3& high) {
+  std::vector<Vec3> points;
+  for (const double x : {low.x(), high.x()})
+    for (const double y : {low.y(), high.y()})
+      for (const double z : {low.z(), high.z()}) points.emplace_back(x, y, z);
+  return *geom::convex_hull(points);
+}
+
+BoundingSet set_of(const std::vector<geom::Mesh>& hulls, Direction direction, double epsilon = 0,
+                   double margin = 0) {
+  std::vector<BoundingSet::Body> bodies;
+  for (const geom::Mesh& hull : hulls) bodies.push_back({hull, margin});
+  return {bodies, direction, epsilon};
+}
+
+geom::Transform at(double x, double y = 0, double z = 0) {
+  return {Eigen::Matrix3d::Identity(), {x, y, z}};
+}
+
+const geom::Mesh kUnit = box({0, 0, 0}, {1, 1, 1});
+
+TEST(FindCollision, MarginsErrorsAndSlackCount) {
+  const BoundingSet plain = set_of({kUnit}, Direction::Outer),
+                    wide = set_of({kUnit}, Direction::Outer, 0.25, 0.25);
+  const auto collide = [](const BoundingSet& a, const BoundingSet& b, double x, double error,
+                          double slack) {
+    return find_collision(PosedSet(a), PosedSet(b, at(x), error), slack).has_value();
+  };
+  EXPECT_TRUE(collide(plain, plain, 1, 0, 0));
+  EXPECT_FALSE(collide(plain, plain, 1 + 1e-15, 0, 0));
+  EXPECT_TRUE(collide(wide, plain, 1.25, 0, 0));
+  EXPECT_FALSE(collide(wide, plain, 1.25 + 1e-15, 0, 0));
+  EXPECT_TRUE(collide(wide, wide, 1.5, 0, 0));
+  EXPECT_FALSE(collide(wide, wide, 1.5 + 1e-12, 0, 0));
+  EXPECT_TRUE(collide(plain, plain, 1.125, 0.125, 0));
+  EXPECT_FALSE(collide(plain, plain, 1.125 + 1e-12, 0.125, 0));
+  EXPECT_TRUE(collide(plain, plain, 1.125, 0, 0.125));
+  EXPECT_FALSE(collide(plain, plain, 1.125 + 1e-12, 0, 0.125));
+}
+
+TEST(FindCollision, IsTrueForAllCollisionsAndFalseBeyondEpsilon) {
+  // Outer sets of balls, the vertices of which are known to be at most epsilon outside.
+  std::mt19937_64 random(3);
+  int meet = 0, apart = 0, between = 0;
+  for (int i = 0; i < 600; ++i) {
+    const auto ball = [&](double radius, double epsilon) {
+      std::vector<Vec3> points;
+      // A cube's corners on the sphere of radius + epsilon, many turned cubes.
+      for (int k = 0; k < 40; ++k)
+        points.emplace_back((radius + epsilon) * test::random_point(random, 1).normalized());
+      return *geom::convex_hull(points);
+    };
+    const double epsilon = 0.4;
+    const BoundingSet a = set_of({ball(1, epsilon)}, Direction::Outer, epsilon),
+                      b = set_of({ball(1, epsilon)}, Direction::Outer, epsilon);
+    const Vec3 to = test::random_point(random, 2.2);
+    // Such a hull holds a ball of the radius only if its facets are far enough: measured.
+    double held = 10;
+    for (const BoundingSet* s : {&a, &b})
+      for (const auto& [p, q, r] : s->body(0).hull.triangles) {
+        const auto& v = s->body(0).hull.vertices;
+        held = std::min(held, (v[q] - v[p]).cross(v[r] - v[p]).normalized().dot(v[p]));
+      }
+    const bool found =
+        find_collision(PosedSet(a), PosedSet(b, {test::random_rotation(random), to})).has_value();
+    if (to.norm() < 2 * held - 1e-9) {
+      EXPECT_TRUE(found);
+      ++meet;
+    } else if (to.norm() > 2 * (1 + epsilon) + 1e-9) {
+      EXPECT_FALSE(found);
+      ++apart;
+    } else {
+      ++between;
+    }
+  }
+  EXPECT_GT(meet, 50);
+  EXPECT_GT(apart, 50);
+  EXPECT_GT(between, 10);
+}
+
+TEST(FindCollision, FindsWhatAllPairsOfBodiesFind) {
+  std::mt19937_64 random(4);
+  Memory memory;
+  int collisions = 0;
+  std::vector<geom::Mesh> left, right;
+  for (int k = 0; k < 6; ++k) left.push_back(test::random_body(random, 1));
+  for (int k = 0; k < 5; ++k) right.push_back(test::random_body(random, 1));
+  const BoundingSet a = set_of(left, Direction::Outer, 0.1), b = set_of(right, Direction::Outer);
+  for (int i = 0; i < 400; ++i) {
+    const geom::Transform pose = test::random_pose(random, 2.5);
+    bool expected = false;
+    for (const geom::Mesh& x : left)
+      for (const geom::Mesh& y : right)
+        expected = expected || test::meet(x.vertices, y.vertices, pose);
+    const PosedSet there(b, pose);
+    EXPECT_EQ(find_collision(PosedSet(a), there, 0, &memory).has_value(), expected) << i;
+    const auto c = clearance(PosedSet(a), there);
+    ASSERT_TRUE(c);
+    EXPECT_EQ(c->lower == 0, expected) << i;
+    EXPECT_LE(c->lower, c->upper);
+    if (!expected) {
+      EXPECT_NEAR((c->on_a - c->on_b).norm(), c->upper, 1e-12);
+      EXPECT_FALSE(find_collision(PosedSet(a), there, c->lower * (1 - 1e-12)));
+      EXPECT_TRUE(find_collision(PosedSet(a), there, c->upper * (1 + 1e-12)));
+    }
+    collisions += expected ? 1 : 0;
+  }
+  EXPECT_GT(collisions, 40);
+  EXPECT_LT(collisions, 360);
+}
+
+TEST(FindCollision, SweptAndOtherSetsAreReadAsTheirContainersSay) {
+  geom::ConvexSet set{{{"body", kUnit}}, 0.5, {}};
+  EXPECT_THROW(BoundingSet{set}, Error);
+  set.provenance.direction = "outer";
+  EXPECT_THROW(BoundingSet{set}, Error);
+  set.provenance.epsilon = 0.75;
+  const BoundingSet read(set);
+  EXPECT_EQ(read.epsilon(), 0.75);
+  EXPECT_EQ(read.body(0).margin, 0.5);
+  EXPECT_TRUE(find_collision(PosedSet(read), PosedSet(read, at(2))));
+  EXPECT_FALSE(find_collision(PosedSet(read), PosedSet(read, at(2.000001))));
+  set.provenance.direction = "inner";
+  const BoundingSet inner(set);
+  EXPECT_THROW(find_collision(PosedSet(inner), PosedSet(read)), Error);
+  set.bodies[0].hull.vertices[0] = {0.5, 0.5, 0.5};
+  EXPECT_THROW(BoundingSet{set}, Error);
+}
+
+TEST(FindCollision, RefusesPosesThatAreNoRotations) {
+  const BoundingSet set = set_of({kUnit}, Direction::Outer);
+  EXPECT_THROW(PosedSet(set, {2 * Eigen::Matrix3d::Identity(), Vec3::Zero()}), Error);
+  EXPECT_THROW(PosedSet(set, {-Eigen::Matrix3d::Identity(), Vec3::Zero()}), Error);
+  EXPECT_THROW(PosedSet(set, at(std::nan(""))), Error);
+  EXPECT_THROW(PosedSet(set, at(0), -1), Error);
+}
+
+TEST(CertainlyCollide, OnlyWhenInnerSetsMeetHoweverTheyArePlaced) {
+  const BoundingSet inner = set_of({kUnit}, Direction::Inner, 0.1),
+                    outer = set_of({kUnit}, Direction::Outer, 0.1);
+  EXPECT_TRUE(certainly_collide(PosedSet(inner), PosedSet(inner, at(1))));
+  EXPECT_FALSE(certainly_collide(PosedSet(inner), PosedSet(inner, at(1 + 1e-15))));
+  EXPECT_FALSE(certainly_collide(PosedSet(inner, {}, 0.01), PosedSet(inner, at(1))));
+  EXPECT_FALSE(certainly_collide(PosedSet(inner, {}, 0.01), PosedSet(inner, at(0.995))));
+  EXPECT_TRUE(certainly_collide(PosedSet(inner, {}, 0.01), PosedSet(inner, at(0.9))));
+  EXPECT_THROW(certainly_collide(PosedSet(inner), PosedSet(outer)), Error);
+}
+
+TEST(FindCollision, ManyThreadsMayAskOfTheSameSets) {
+  std::mt19937_64 random(5);
+  const BoundingSet a = set_of({kUnit, box({2, 0, 0}, {3, 1, 1})}, Direction::Outer),
+                    b = set_of({kUnit}, Direction::Outer);
+  const PosedSet here(a);
+  std::vector<geom::Transform> poses;
+  std::vector<char> expected;
+  for (int i = 0; i < 200; ++i) {
+    poses.push_back(test::random_pose(random, 3));
+    expected.push_back(find_collision(here, PosedSet(b, poses.back())) ? 1 : 0);
+  }
+  std::vector<std::thread> threads;
+  std::vector<int> wrong(4, 0);
+  for (int t = 0; t < 4; ++t)
+    threads.emplace_back([&, t] {
+      Memory memory;
+      PosedSet there(b);
+      for (std::size_t i = 0; i < poses.size(); ++i) {
+        there.place(poses[i]);
+        const bool found = find_collision(here, there, 0, &memory).has_value();
+        wrong[t] += found == (expected[i] != 0) ? 0 : 1;
+      }
+    });
+  for (std::thread& thread : threads) thread.join();
+  for (const int w : wrong) EXPECT_EQ(w, 0);
+}
+
+TEST(FindInclusion, TheUnionCountsNotTheVertices) {
+  // Two walls with a gap between them: all corners of a bar are inside, its middle is not.
+  const geom::Mesh bar = box({0.5, 0.25, 0.25}, {2.5, 0.75, 0.75});
+  const BoundingSet outer = set_of({bar}, Direction::Outer);
+  const auto included = [&](const std::vector<geom::Mesh>& bodies) {
+    return find_inclusion(PosedSet(outer), PosedSet(set_of(bodies, Direction::Inner)));
+  };
+  const geom::Mesh left = box({0, 0, 0}, {1, 1, 1}), right = box({2, 0, 0}, {3, 1, 1});
+  EXPECT_EQ(included({left, right}), Inclusion::NotIncluded);
+  EXPECT_EQ(included({left, right, box({1, 0, 0}, {2, 1, 1})}), Inclusion::Included);
+  EXPECT_EQ(included({left, right, box({1 + 1e-15, 0, 0}, {2, 1, 1})}), Inclusion::NotIncluded);
+  EXPECT_EQ(included({left, right, box({1, 0, 0}, {2, 1, 0.5})}), Inclusion::NotIncluded);
+  EXPECT_EQ(included({left, right, box({1, 0, 0}, {2, 1, 0.5}), box({1, 0, 0.5}, {2, 0.5, 1}),
+                      box({1, 0.5, 0.5}, {2, 1, 1})}),
+            Inclusion::Included);
+  EXPECT_EQ(included({}), Inclusion::NotIncluded);
+}
+
+TEST(FindInclusion, MarginsAndErrorsCount) {
+  const BoundingSet region = set_of({box({0, 0, 0}, {4, 4, 4})}, Direction::Inner, 0.1);
+  const auto included = [&](double margin, double x, double error, double other) {
+    const BoundingSet outer = set_of({kUnit}, Direction::Outer, 0.2, margin);
+    return find_inclusion(PosedSet(outer, at(x, 1, 1), error), PosedSet(region, at(0), other));
+  };
+  EXPECT_EQ(included(0, 3, 0, 0), Inclusion::Included);
+  EXPECT_EQ(included(0, 3 + 1e-15, 0, 0), Inclusion::NotIncluded);
+  EXPECT_EQ(included(0.125, 2.8, 0, 0), Inclusion::Included);
+  EXPECT_EQ(included(0.125, 2.9, 0, 0), Inclusion::NotIncluded);
+  EXPECT_EQ(included(0, 2.95, 0.04, 0), Inclusion::Included);
+  EXPECT_EQ(included(0, 2.95, 0.06, 0), Inclusion::NotIncluded);
+  EXPECT_EQ(included(0, 2.95, 0.03, 0.03), Inclusion::NotIncluded);
+  const BoundingSet outer = set_of({kUnit}, Direction::Outer, 0.2, 0.125);
+  EXPECT_GE(tolerance_of_inclusion(PosedSet(outer), PosedSet(region)), 0.3 + 0.125 * 1.73);
+  EXPECT_THROW(find_inclusion(PosedSet(region), PosedSet(outer)), Error);
+}
+
+TEST(FindInclusion, SaysOfTurnedUnionsWhatSamplesSay) {
+  std::mt19937_64 random(6);
+  int included = 0, outside = 0;
+  for (int i = 0; i < 60; ++i) {
+    std::vector<geom::Mesh> bodies;
+    for (int k = 0; k < 5; ++k) bodies.push_back(test::random_body(random, 0.25));
+    const geom::Transform pose = test::random_pose(random, 0.2);
+    const geom::Mesh small = [&] {
+      geom::Mesh mesh = test::random_body(random, 0.1);
+      for (Vec3& v : mesh.vertices) v *= 0.3;
+      return mesh;
+    }();
+    const BoundingSet outer = set_of({small}, Direction::Outer),
+                      inner = set_of(bodies, Direction::Inner);
+    const Inclusion found = find_inclusion(PosedSet(outer, pose), PosedSet(inner));
+    bool all = true;
+    for (int k = 0; k < 300; ++k) {
+      Vec3 sum = Vec3::Zero();
+      double shares = 0;
+      for (const Vec3& v : small.vertices) {
+        const double share = -std::log(std::uniform_real_distribution<double>(1e-9, 1)(random));
+        sum += share * v;
+        shares += share;
+      }
+      const Vec3 p = pose * Vec3(sum / shares);
+      bool held = false;
+      for (const geom::Mesh& body : bodies) {
+        bool below = true;
+        for (const auto& [x, y, z] : body.triangles)
+          below = below && geom::orient3d(body.vertices[x], body.vertices[y], body.vertices[z],
+                                          p) != geom::Sign::Positive;
+        held = held || below;
+      }
+      all = all && held;
+    }
+    ASSERT_NE(found, Inclusion::Undecided);
+    if (found == Inclusion::Included) {
+      EXPECT_TRUE(all) << i;
+    }
+    if (!all) {
+      EXPECT_EQ(found, Inclusion::NotIncluded) << i;
+    }
+    (found == Inclusion::Included ? included : outside) += 1;
+  }
+  EXPECT_GT(included, 3);
+  EXPECT_GT(outside, 10);
+}
+
+TEST(FindInclusion, GivesUpWhereWorkEnds) {
+  const BoundingSet outer = set_of({kUnit}, Direction::Outer);
+  std::vector<geom::Mesh> slabs;
+  for (int i = 0; i < 8; ++i) slabs.push_back(box({i / 8.0, -1, -1}, {(i + 1) / 8.0, 2, 2}));
+  const BoundingSet inner = set_of(slabs, Direction::Inner);
+  EXPECT_EQ(find_inclusion(PosedSet(outer), PosedSet(inner), 3), Inclusion::Undecided);
+  EXPECT_EQ(find_inclusion(PosedSet(outer), PosedSet(inner), 100), Inclusion::Included);
+}
+
+}  // namespace
+}  // namespace kaboum::collide
