@@ -1,0 +1,279 @@
+// Closed-form inverse kinematics of three families of arms.
+// Source: [gaschler2016] App. A.3, with the corrections and for the families that
+// docs/algorithms/inverse-kinematics.md derives. x1 … z4 are axes of the frames there.
+#include <kaboum/kinematics/closed_form.h>
+
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <cmath>
+#include <numbers>
+
+namespace kaboum::kinematics {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+/// Below this, directions and lengths (in parts of the arm's) say nothing about an angle.
+constexpr double kNothing = 1e-12;
+/// So little out of reach may be rounding (or the model's error): taken as the border, and whether
+/// that reaches the target is what the check of all solutions decides.
+constexpr double kBorder = 1e-6;
+
+double square(double x) { return x * x; }
+double length(double x, double y) { return std::sqrt(x * x + y * y); }
+
+double wrapped(double angle) {
+  while (angle > kPi) angle -= 2 * kPi;
+  while (angle <= -kPi) angle += 2 * kPi;
+  return angle;
+}
+
+/// A joint's value, and sine and cosine of the angle in the formulas that this value gives.
+struct Turn {
+  double q = 0, s = 0, c = 1;
+};
+
+/// One call of solve: a target in the closed form's own frames.
+class Solver {
+ public:
+  Solver(const ClosedForm& form, const Transform& target, const SolveOptions& options,
+         Solutions& out)
+      : f_(form), options_(options), out_(out) {
+    const Transform flange = form.base_inverse * target * form.tool_inverse;
+    n_ = flange.linear.col(0);
+    s_ = flange.linear.col(1);
+    z_ = flange.linear.col(2);
+    t_ = flange.translation;
+    reach_ = f_.reach;
+  }
+
+  void spherical_wrist() {
+    for_each_shoulder(1, [&] {
+      const double y = -t_.z();
+      for_each_elbow(along_ - f_.a1, y, f_.forearm, f_.bend, [&] { spherical_wrist_of_elbow(); });
+    });
+  }
+
+  void parallel_axes() {
+    for_each_shoulder(-1, [&] {
+      const Vec3 z1(turn_[0].s, -turn_[0].c, 0);
+      const double zn = z1.dot(n_), zs = z1.dot(s_), zz = z1.dot(z_), off = length(zn, zs);
+      const bool free = off < kNothing;
+      for (int branch = 0; branch < (free ? 1 : 2); ++branch) {
+        const double sigma = branch == 0 ? 1 : -1;
+        wrist_ = free ? kWrist : kRegular;
+        turn_[4] = turn(4, std::atan2(sigma * off, zz));
+        turn_[5] = free ? kept(5) : turn(5, std::atan2(-sigma * zs, sigma * zn));
+        const Vec3 z4 = -(turn_[5].s * n_ + turn_[5].c * s_);
+        forearm_of(turn_[0].c * z4.x() + turn_[0].s * z4.y(), -z4.z());
+      }
+    });
+  }
+
+  void five_axes() {
+    for_each_shoulder(-1, [&] {
+      const Vec3 z1(turn_[0].s, -turn_[0].c, 0);
+      turn_[4] = turn(4, std::atan2(z1.dot(n_), z1.dot(s_)));
+      forearm_of(turn_[0].c * z_.x() + turn_[0].s * z_.y(), -z_.z());
+    });
+  }
+
+ private:
+  /// The joint's value for an angle in the formulas.
+  [[nodiscard]] Turn turn(std::size_t joint, double angle) const {
+    return at(joint, value(joint, angle));
+  }
+  [[nodiscard]] double value(std::size_t joint, double angle) const {
+    return wrapped(f_.sign[joint] * (angle - f_.offset[joint]));
+  }
+  [[nodiscard]] Turn kept(std::size_t joint) const {
+    return at(joint, wrapped(options_.reference[joint]));
+  }
+  [[nodiscard]] Turn at(std::size_t joint, double q) const {
+    const double angle = f_.sign[joint] * q + f_.offset[joint];
+    return {q, std::sin(angle), std::cos(angle)};
+  }
+
+  /// Joint 1 turns the wrist's sideways place to `lateral`: side · (c0 ty − s0 tx) = lateral.
+  /// `along_` is what is left: c0 tx + s0 ty.
+  template <class Next>
+  void for_each_shoulder(double side, const Next& next) {
+    const double across = length(t_.x(), t_.y()), rest = square(across) - square(f_.lateral);
+    if (rest < -kBorder * square(reach_)) return;
+    const double r = rest > 0 ? std::sqrt(rest) : 0;
+    const bool on_axis = across < kNothing * reach_, single = r < kNothing * reach_;
+    const double d = side * f_.lateral;
+    shoulder_ = single ? kShoulder : kRegular;
+    // With five axes, the wrist on axis 1 leaves two turns: those that put axis 5 where it is to
+    // be.
+    const bool by_direction =
+        on_axis && f_.family == Family::FiveAxes && length(z_.x(), z_.y()) >= kNothing;
+    if (by_direction) shoulder_ = kRegular;
+    for (int branch = 0; branch < (single && !by_direction ? 1 : 2); ++branch) {
+      const double kappa = branch == 0 ? r : -r;
+      if (by_direction)
+        turn_[0] = turn(0, std::atan2(z_.y(), z_.x()) + (branch == 0 ? 0 : kPi));
+      else if (on_axis)
+        turn_[0] = kept(0);
+      else
+        turn_[0] = turn(0, std::atan2(kappa * t_.y() - d * t_.x(), kappa * t_.x() + d * t_.y()));
+      along_ = turn_[0].c * t_.x() + turn_[0].s * t_.y();
+      next();
+    }
+  }
+
+  /// Joints 2 and 3 of two links in a plane: a2 e^{iθ1} + second e^{i(θ1 + θ2 + bend)} = x + iy.
+  template <class Next>
+  void for_each_elbow(double x, double y, double second, double bend, const Next& next) {
+    const double v = x * x + y * y;
+    double cosine = (v - square(f_.a2) - square(second)) / (2 * f_.a2 * second);
+    if (!(std::abs(cosine) <= 1 + kBorder)) return;
+    cosine = std::min(1.0, std::max(-1.0, cosine));
+    const double sine = std::sqrt(1 - square(cosine)), inner = std::atan2(sine, cosine);
+    const double k1 = f_.a2 + second * cosine;
+    const bool folded = v < square(kNothing * reach_);
+    elbow_ = sine == 0 || folded ? kElbow : kRegular;
+    for (int branch = 0; branch < (sine == 0 ? 1 : 2); ++branch) {
+      const double epsilon = branch == 0 ? 1 : -1, k2 = epsilon * second * sine;
+      turn_[1] = folded ? kept(1) : turn(1, std::atan2(k1 * y - k2 * x, k1 * x + k2 * y));
+      turn_[2] = turn(2, epsilon * inner - bend);
+      c12_ = turn_[1].c * turn_[2].c - turn_[1].s * turn_[2].s;
+      s12_ = turn_[1].s * turn_[2].c + turn_[1].c * turn_[2].s;
+      next();
+    }
+  }
+
+  void spherical_wrist_of_elbow() {
+    const double s0 = turn_[0].s, c0 = turn_[0].c;
+    const double px = f_.a1 + f_.a2 * turn_[1].c + f_.a3 * c12_ - f_.d4 * s12_;
+    const double py = f_.a2 * turn_[1].s + f_.a3 * s12_ + f_.d4 * c12_;
+    const Vec3 wrist(c0 * px - s0 * f_.lateral, s0 * px + c0 * f_.lateral, -py);
+    const double position = (wrist - t_).norm();
+    // The target's axes in frame 3.
+    const Vec3 x3(c0 * c12_, s0 * c12_, -s12_), y3(s0, -c0, 0), z3(-c0 * s12_, -s0 * s12_, -c12_);
+    const Vec3 n(x3.dot(n_), y3.dot(n_), z3.dot(n_)), s(x3.dot(s_), y3.dot(s_), z3.dot(s_)),
+        z(x3.dot(z_), y3.dot(z_), z3.dot(z_));
+    const double off = length(z.x(), z.y());
+    const bool free = off < kNothing;
+    wrist_ = free ? kWrist : kRegular;
+    const double a3 = free ? 0 : std::atan2(z.y(), z.x()), a4 = std::atan2(off, -z.z());
+    turn_[3] = free ? kept(3) : turn(3, a3);
+    turn_[4] = turn(4, a4);
+    // z4 in the target's axes.
+    const double a5 = std::atan2(turn_[3].s * n.x() - turn_[3].c * n.y(),
+                                 turn_[3].s * s.x() - turn_[3].c * s.y());
+    turn_[5] = turn(5, a5);
+    const double rotation = spherical_rotation_error(n, s, z);
+    emit(position, rotation);
+    if (free) return;
+    // The wrist's other side: sines and cosines are the same up to signs and to the rounding of
+    // the angles (8 ulps of 2π, times √2 for the norm), which is added.
+    turn_[3] = {value(3, a3 + kPi), -turn_[3].s, -turn_[3].c};
+    turn_[4] = {value(4, -a4), -turn_[4].s, turn_[4].c};
+    turn_[5] = {value(5, a5 + kPi), -turn_[5].s, -turn_[5].c};
+    emit(position, rotation + 1e-14);
+  }
+
+  [[nodiscard]] double spherical_rotation_error(const Vec3& n, const Vec3& s, const Vec3& z) const {
+    const double s3 = turn_[3].s, c3 = turn_[3].c, s4 = turn_[4].s, c4 = turn_[4].c,
+                 s5 = turn_[5].s, c5 = turn_[5].c;
+    const Vec3 x5(c3 * c4, s3 * c4, s4), z4(s3, -c3, 0), z5(c3 * s4, s3 * s4, -c4);
+    return std::sqrt((c5 * x5 + s5 * z4 - n).squaredNorm() + (c5 * z4 - s5 * x5 - s).squaredNorm() +
+                     (z5 - z).squaredNorm());
+  }
+
+  /// Joints 2 to 4 of the families with parallel axes; their angles add up to that of (c, s).
+  void forearm_of(double s, double c) {
+    const double sum = std::atan2(s, c), x = along_ - f_.a1 - f_.a4 * c - f_.d5 * s,
+                 y = t_.z() - f_.a4 * s + f_.d5 * c;
+    for_each_elbow(x, y, f_.a3, 0, [&] {
+      const double first = f_.sign[1] * turn_[1].q + f_.offset[1],
+                   second = f_.sign[2] * turn_[2].q + f_.offset[2];
+      turn_[3] = turn(3, sum - first - second);
+      check_parallel_axes();
+    });
+  }
+
+  void check_parallel_axes() {
+    const double s0 = turn_[0].s, c0 = turn_[0].c, s4 = turn_[4].s, c4 = turn_[4].c;
+    const double c = c12_ * turn_[3].c - s12_ * turn_[3].s,
+                 s = s12_ * turn_[3].c + c12_ * turn_[3].s;
+    const double px = f_.a1 + f_.a2 * turn_[1].c + f_.a3 * c12_ + f_.a4 * c + f_.d5 * s;
+    const double py = f_.a2 * turn_[1].s + f_.a3 * s12_ + f_.a4 * s - f_.d5 * c;
+    const Vec3 end(c0 * px + s0 * f_.lateral, s0 * px - c0 * f_.lateral, py);
+    const Vec3 x4(c0 * c, s0 * c, s), y4(s0, -c0, 0), z4(c0 * s, s0 * s, -c);
+    const Vec3 x5 = c4 * x4 + s4 * y4;
+    double rotation = 0;
+    if (f_.family == Family::FiveAxes) {
+      rotation = (x5 - n_).squaredNorm() + (c4 * y4 - s4 * x4 - s_).squaredNorm() +
+                 (z4 - z_).squaredNorm();
+    } else {
+      const double s5 = turn_[5].s, c5 = turn_[5].c;
+      rotation = (c5 * x5 - s5 * z4 - n_).squaredNorm() + (-s5 * x5 - c5 * z4 - s_).squaredNorm() +
+                 (c4 * y4 - s4 * x4 - z_).squaredNorm();
+    }
+    emit((end - t_).norm(), std::sqrt(rotation));
+  }
+
+  /// Takes the present turns as a solution, unless it is too far off.
+  void emit(double position, double rotation) {
+    position += f_.lever * rotation;
+    const PoseError& model = f_.model_error;
+    if (position > options_.bound * reach_ + 4 * model.position ||
+        rotation > options_.bound + 4 * model.rotation)
+      return;
+    Solution& out = out_.add();
+    for (std::size_t i = 0; i < 6; ++i) out.q[i] = turn_[i].q;
+    out.position_error = position + model.position;
+    out.rotation_error = rotation + model.rotation;
+    out.singular = shoulder_ | elbow_ | wrist_;
+  }
+
+  const ClosedForm& f_;
+  const SolveOptions& options_;
+  Solutions& out_;
+  Vec3 n_, s_, z_, t_;  ///< the target: axes and origin of the last frame, in the first
+  double reach_ = 0, along_ = 0, c12_ = 1, s12_ = 0;
+  unsigned shoulder_ = kRegular, elbow_ = kRegular, wrist_ = kRegular;
+  std::array<Turn, 6> turn_;
+};
+
+/// Newton's method on the arm itself. Whether it came within the bound.
+bool improve(const ClosedForm& f, const Transform& target, const SolveOptions& options,
+             Solution& solution) {
+  const std::span<double> q(solution.q.data(), f.arm.axes.size());
+  for (int step = 0;; ++step) {
+    Transform pose;
+    const auto j = jacobian(f.arm, q, &pose);
+    const PoseError error = difference(pose, target);
+    solution.position_error = error.position;
+    solution.rotation_error = error.rotation;
+    if (error.position <= options.bound * f.reach && error.rotation <= options.bound) break;
+    if (step == 8) return false;
+    const Mat3 turn = target.linear * pose.linear.transpose();
+    Eigen::Matrix<double, 6, 1> gap;
+    gap << target.translation - pose.translation, (turn(2, 1) - turn(1, 2)) / 2,
+        (turn(0, 2) - turn(2, 0)) / 2, (turn(1, 0) - turn(0, 1)) / 2;
+    const Eigen::VectorXd change = j.colPivHouseholderQr().solve(gap);
+    if (!change.allFinite() || change.cwiseAbs().maxCoeff() > 0.5) return false;
+    for (std::size_t i = 0; i < q.size(); ++i) q[i] += change[static_cast<Eigen::Index>(i)];
+  }
+  for (double& value : q) value = wrapped(value);
+  return true;
+}
+
+}  // namespace
+
+Solutions solve(const ClosedForm& form, const Transform& target, const SolveOptions& options) {
+  Solutions found;
+  Solver solver(form, target, options, found);
+  if (form.family == Family::SphericalWrist) solver.spherical_wrist();
+  if (form.family == Family::ParallelAxes) solver.parallel_axes();
+  if (form.family == Family::FiveAxes) solver.five_axes();
+  const auto good = [&](const Solution& s) {
+    return s.position_error <= options.bound * form.reach && s.rotation_error <= options.bound;
+  };
+  found.keep_if([&](Solution& s) { return good(s) || improve(form, target, options, s); });
+  return found;
+}
+
+}  // namespace kaboum::kinematics
