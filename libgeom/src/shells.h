@@ -10,22 +10,6 @@
 
 namespace kaboum::geom {
 
-/// A mesh's triangles divided into chains, as fine as edges that balance allow.
-struct Chains {
-  std::vector<std::uint32_t> label;  ///< per triangle
-  std::vector<char> closed;          ///< per chain: every directed edge cancels within it
-  std::vector<char> joined;          ///< per chain: of several patches
-  std::vector<int> sign;             ///< per chain: exact sign of its volume; 0 where not closed
-  std::vector<double> volume;        ///< per chain, rounded [6 · length³]
-};
-
-/// Patches are joined through edges of two triangles. At other edges, patches that balance by
-/// themselves stay apart, and the rest is joined.
-/// @param uses   as edge_uses returns them.
-/// @param group  per triangle: triangles of different groups are never joined; empty: one group.
-Chains find_chains(const Mesh& mesh, std::span<const EdgeUse> uses,
-                   std::span<const std::uint32_t> group = {});
-
 /// What is inside out, and what cannot be told.
 struct Judgement {
   /// A place where a part is inside out in spite of the turns.
