@@ -241,14 +241,12 @@ class Arrangement {
 
  private:
   static void require_closed(const Mesh& mesh) {
-    const std::vector<geom::EdgeUse> uses = geom::edge_uses(mesh);
     std::size_t open = 0;
-    for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
+    geom::for_each_edge(geom::edge_uses(mesh), [&](std::span<const geom::EdgeUse> edge) {
       int balance = 0;
-      for (j = i; j < uses.size() && uses[j].lo == uses[i].lo && uses[j].hi == uses[i].hi; ++j)
-        balance += uses[j].forward ? 1 : -1;
+      for (const geom::EdgeUse& use : edge) balance += use.forward ? 1 : -1;
       open += balance != 0;
-    }
+    });
     if (open > 0)
       throw Error(ErrorCode::InvalidInput,
                   "no closed chain (" + std::to_string(open) +
@@ -316,15 +314,13 @@ class Arrangement {
   void keep_patches(Boundary& out) {
     const auto n = static_cast<std::uint32_t>(mesh_.triangles.size());
     std::vector<std::array<std::uint32_t, 3>> across(n, {kNone, kNone, kNone});
-    const std::vector<geom::EdgeUse> uses = geom::edge_uses(mesh_);
-    for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
-      for (j = i; j < uses.size() && uses[j].lo == uses[i].lo && uses[j].hi == uses[i].hi;) ++j;
-      if (j - i != 2 || uses[i].forward == uses[i + 1].forward) continue;
-      const std::uint32_t s = uses[i].triangle, t = uses[i + 1].triangle;
-      if (!meets_[s].empty() || !meets_[t].empty()) continue;
-      across[s][uses[i].corner] = t;
-      across[t][uses[i + 1].corner] = s;
-    }
+    geom::for_each_edge(geom::edge_uses(mesh_), [&](std::span<const geom::EdgeUse> edge) {
+      if (edge.size() != 2 || edge[0].forward == edge[1].forward) return;
+      const std::uint32_t s = edge[0].triangle, t = edge[1].triangle;
+      if (!meets_[s].empty() || !meets_[t].empty()) return;
+      across[s][edge[0].corner] = t;
+      across[t][edge[1].corner] = s;
+    });
     out.mesh.vertices = mesh_.vertices;
     std::vector<char> seen(n, 0);
     std::vector<std::uint32_t> stack, patch;

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace kaboum::measure {
 namespace {
@@ -62,6 +63,38 @@ bool separated(std::span<const Vec3> corners, const std::array<Vec3, 3>& t, doub
   return false;
 }
 
+/// Whether no point outside the solid is nearest to the edge: seen from outside, its triangles fold
+/// inwards.
+/// @param whole  per triangle: it is one of the mesh's, not a part with rounded corners.
+bool is_hidden(const Mesh& mesh, std::span<const char> whole, std::span<const geom::EdgeUse> edge) {
+  if (std::any_of(edge.begin(), edge.end(),
+                  [&](const geom::EdgeUse& use) { return whole[use.triangle] == 0; }))
+    return false;
+  const Vec3 &lo = mesh.vertices[edge[0].lo], &hi = mesh.vertices[edge[0].hi];
+  const auto across = [&](const geom::EdgeUse& e) -> const Vec3& {
+    return mesh.vertices[mesh.triangles[e.triangle][(e.corner + 2) % 3]];
+  };
+  const auto side = [&](const geom::EdgeUse& s, const geom::EdgeUse& t) {
+    return geom::orient3d(lo, hi, across(s), across(t));
+  };
+  if (edge.size() == 2 && edge[0].forward != edge[1].forward) {
+    // Seen from the one that runs lo → hi, counter-clockwise from outside: the other is above, or
+    // goes on in its plane.
+    const std::size_t s = edge[0].forward ? 0 : 1;
+    return side(edge[s], edge[1 - s]) != geom::Sign::Negative;
+  }
+  if (edge.size() <= 2) return false;
+  // Triangles on both sides of each one's plane: no direction is away from all of them.
+  return std::all_of(edge.begin(), edge.end(), [&](const geom::EdgeUse& s) {
+    bool above = false, below = false;
+    for (const geom::EdgeUse& t : edge) {
+      above = above || side(s, t) == geom::Sign::Positive;
+      below = below || side(s, t) == geom::Sign::Negative;
+    }
+    return above && below;
+  });
+}
+
 }  // namespace
 
 /// Whose points are asked for: one chain, or bodies.
@@ -114,42 +147,14 @@ void Solid::prepare() {
 
 void Solid::find_exposed() {
   const Mesh mesh = geom::weld(boundary_.mesh);
-  const std::vector<geom::EdgeUse> uses = geom::edge_uses(mesh);
   exposed_.assign(mesh.triangles.size(), 0);
   std::vector<char> corner_exposed(mesh.vertices.size(), 0);
-  const auto across = [&](const geom::EdgeUse& e) -> const Vec3& {
-    return mesh.vertices[mesh.triangles[e.triangle][(e.corner + 2) % 3]];
-  };
-  for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
-    for (j = i; j < uses.size() && uses[j].lo == uses[i].lo && uses[j].hi == uses[i].hi;) ++j;
-    const Vec3 &lo = mesh.vertices[uses[i].lo], &hi = mesh.vertices[uses[i].hi];
-    const auto side = [&](std::size_t s, std::size_t t) {
-      return geom::orient3d(lo, hi, across(uses[s]), across(uses[t]));
-    };
-    bool hidden = false, whole = true;  // the corners of parts are rounded
-    for (std::size_t s = i; s < j; ++s) whole = whole && boundary_.whole[uses[s].triangle] != 0;
-    if (whole && j - i == 2 && uses[i].forward != uses[i + 1].forward) {
-      // Seen from the one that runs lo → hi, counter-clockwise from outside: the other is above, or
-      // goes on in its plane.
-      const std::size_t s = uses[i].forward ? i : i + 1;
-      hidden = side(s, i + i + 1 - s) != geom::Sign::Negative;
-    } else if (whole && j - i > 2) {
-      // Triangles on both sides of each one's plane: no direction is away from all of them.
-      hidden = true;
-      for (std::size_t s = i; s < j; ++s) {
-        bool above = false, below = false;
-        for (std::size_t t = i; t < j; ++t) {
-          above = above || side(s, t) == geom::Sign::Positive;
-          below = below || side(s, t) == geom::Sign::Negative;
-        }
-        hidden = hidden && above && below;
-      }
-    }
-    if (hidden) continue;
-    corner_exposed[uses[i].lo] = corner_exposed[uses[i].hi] = 1;
-    for (std::size_t s = i; s < j; ++s)
-      exposed_[uses[s].triangle] |= static_cast<std::uint8_t>(1U << uses[s].corner);
-  }
+  geom::for_each_edge(geom::edge_uses(mesh), [&](std::span<const geom::EdgeUse> edge) {
+    if (is_hidden(mesh, boundary_.whole, edge)) return;
+    corner_exposed[edge[0].lo] = corner_exposed[edge[0].hi] = 1;
+    for (const geom::EdgeUse& use : edge)
+      exposed_[use.triangle] |= static_cast<std::uint8_t>(1U << use.corner);
+  });
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& v = mesh.triangles[t];
     for (int k = 0; k < 3; ++k)

@@ -41,7 +41,7 @@ struct Found {
 /// from above, and all that has a part in it, for bounds from below.
 /// @throws Error{LimitReached}
 Pieces target_of(const Scene& scene, bool to_solid, double max_work) {
-  if (!to_solid) return {{}, {}, scene.tree(kOutside), scene.tree(kOutside)};
+  if (!to_solid) return {{}, scene.tree(kOutside), scene.tree(kOutside)};
   InclusionOptions limits;
   limits.max_work = kSearchedShare * max_work;
   return pieces_with(scene, kOutside, limits,

@@ -242,7 +242,6 @@ Pieces pieces_with(const Scene& scene, int chain, const InclusionOptions& option
       surely.push_back(piece);
       perhaps.push_back(piece);
       result.parts.push_back(part);
-      result.face_of.push_back(f);
     }
   }
   const Triangles triangles(scene, result.parts);

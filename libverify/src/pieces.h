@@ -36,7 +36,6 @@ class Triangles {
 /// Trees of what lies in a part of a chain's surface for sure, and of what holds all of that part.
 struct Pieces {
   std::vector<Corners> parts;          ///< numbered as in Triangles
-  std::vector<std::uint32_t> face_of;  ///< per part: the face that it is of
   BoxTree surely, perhaps;
 };
 
