@@ -35,7 +35,7 @@ class Triangles {
 
 /// Trees of what lies in a part of a chain's surface for sure, and of what holds all of that part.
 struct Pieces {
-  std::vector<Corners> parts;          ///< numbered as in Triangles
+  std::vector<Corners> parts;  ///< numbered as in Triangles
   BoxTree surely, perhaps;
 };
 
