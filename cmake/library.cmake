@@ -1,7 +1,9 @@
-# kaboum_add_library(<name> SOURCES ... PUBLIC ... PRIVATE ...)
-# A static library with the alias and exported target kaboum::<name>; headers in include/.
+# kaboum_add_library(<name> SOURCES ... PUBLIC ... PRIVATE ... HEADERS_OF ...)
+# A static library with the alias and exported target kaboum::<name>, a component of the package; headers
+# in include/. HEADERS_OF are libraries of which only this one's sources include something: who uses the
+# installed library needs none of them.
 function(kaboum_add_library name)
-  cmake_parse_arguments(arg "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(arg "" "" "SOURCES;PUBLIC;PRIVATE;HEADERS_OF" ${ARGN})
   add_library(kaboum_${name} STATIC ${arg_SOURCES})
   add_library(kaboum::${name} ALIAS kaboum_${name})
   set_target_properties(kaboum_${name} PROPERTIES EXPORT_NAME ${name} CXX_EXTENSIONS OFF
@@ -10,12 +12,29 @@ function(kaboum_add_library name)
   target_include_directories(kaboum_${name} PUBLIC
     $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  list(TRANSFORM arg_HEADERS_OF REPLACE "(.+)" "$<BUILD_INTERFACE:\\1>")
   target_link_libraries(kaboum_${name}
     PUBLIC ${arg_PUBLIC}
-    PRIVATE $<BUILD_INTERFACE:kaboum_options> ${arg_PRIVATE})
-  install(TARGETS kaboum_${name} EXPORT kaboum-targets
+    PRIVATE $<BUILD_INTERFACE:kaboum_options> ${arg_HEADERS_OF} ${arg_PRIVATE})
+  install(TARGETS kaboum_${name} EXPORT kaboum-${name}
           ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  kaboum_add_component(${name} ${arg_PUBLIC} ${arg_PRIVATE})
+endfunction()
+
+# What the package configuration has to find before it can offer the component <name>, which links the
+# libraries in ARGN: written by cmake/package.cmake.
+function(kaboum_add_component name)
+  set(_components ${ARGN})
+  list(FILTER _components INCLUDE REGEX "^kaboum_")
+  list(TRANSFORM _components REPLACE "^kaboum_" "")
+  set(_packages ${ARGN})
+  list(FILTER _packages EXCLUDE REGEX "^kaboum_")
+  list(TRANSFORM _packages REPLACE "^PkgConfig::" "")
+  list(TRANSFORM _packages REPLACE "::.*" "")
+  set_property(GLOBAL APPEND PROPERTY KABOUM_COMPONENTS ${name})
+  set_property(GLOBAL APPEND_STRING PROPERTY KABOUM_COMPONENT_NEEDS
+    "set(kaboum_${name}_components \"${_components}\")\nset(kaboum_${name}_packages \"${_packages}\")\n")
 endfunction()
 
 # kaboum_add_tool(<name> SOURCES ... LIBRARIES ...): an installed executable.
