@@ -103,22 +103,4 @@ for f in whole.stl; do
   done
 done
 absent x.off
-
-# The corpus's dirty meshes: a result (0), a valid "no" (1), the best within the work allowed (7), or a
-# clear refusal (3); nothing else.
-if [ -n "${KABOUM_MESHES:-}" ]; then
-  for f in "$KABOUM_MESHES"/dirty-*; do
-    rm -f dirty.ply
-    # 60 s of processor time, so that other work on the machine does not matter.
-    (ulimit -t 60 && exec "$D" "$f" -o dirty.ply --ratio 0.1 --log dirty.log) >out.txt 2>err.txt
-    code=$?
-    case $code in
-      0 | 1 | 7) "$BIN/bmesh-replay" "$f" dirty.log dirty.ply >/dev/null || fail "replay of $f" ;;
-      3) grep -q "$(basename "$f")" err.txt || fail "message for $f: $(cat err.txt)"
-         absent dirty.ply ;;
-      *) fail "$f: exit $code: $(head -c 300 err.txt)" ;;
-    esac
-    rm -f dirty.log
-  done
-fi
 finish

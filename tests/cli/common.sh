@@ -12,17 +12,33 @@ fail() {
   FAILED=1
 }
 
-# expect CODE WORDS COMMAND...: the exit code, and words that the output must contain ('' for any).
+# run_tool CODE COMMAND...: what it prints into out.txt and err.txt, and its exit code. Who is misused or cannot
+# write has no result to print.
+run_tool() {
+  code=$1
+  shift
+  "$@" >out.txt 2>err.txt </dev/null
+  got=$?
+  [ "$got" = "$code" ] || fail "exit $got instead of $code: $*: $(head -c 300 err.txt)"
+  case $code in 2 | 4) [ ! -s out.txt ] || fail "prints to stdout, exit $code: $*: $(head -c 300 out.txt)" ;; esac
+}
+
+# expect CODE WORDS COMMAND...: the exit code, and words of the log, on stderr ('' for any).
 expect() {
   code=$1
   words=$2
   shift 2
-  "$@" >out.txt 2>err.txt </dev/null
-  got=$?
-  [ "$got" = "$code" ] || fail "exit $got instead of $code: $*: $(head -c 300 err.txt)"
-  if [ -n "$words" ] && ! cat out.txt err.txt | grep -q -- "$words"; then
-    fail "no '$words' in the output of: $*: $(head -c 300 err.txt)"
-  fi
+  run_tool "$code" "$@"
+  [ -z "$words" ] || grep -q -- "$words" err.txt || fail "no '$words' on stderr of: $*: $(head -c 300 err.txt)"
+}
+
+# shows CODE WORDS COMMAND...: the exit code, and words of the result, on stdout.
+shows() {
+  code=$1
+  words=$2
+  shift 2
+  run_tool "$code" "$@"
+  grep -q -- "$words" out.txt || fail "no '$words' on stdout of: $*: $(head -c 300 out.txt) $(head -c 300 err.txt)"
 }
 
 absent() {

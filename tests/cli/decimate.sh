@@ -1,7 +1,7 @@
 . "$(dirname "$0")/common.sh"
 D=$BIN/bmesh-decimate
 
-expect 0 'Simplifies' "$D" --help
+shows 0 'Simplifies' "$D" --help
 expect 0 '' "$D" --version
 expect 0 'certified' "$D" "$BRACKET" -o a.stl --ratio 0.2 --report a.json --log a.log --depfile a.d
 for key in '"sha256"' '"contractions"' '"exact_fallbacks"' '"max_upper"' '"peak_megabytes"' '"stop": "vertices"' \
@@ -162,10 +162,10 @@ expect 0 '1 hole is filled with 4 triangles, 1.7' "$D" open.obj -o filled.ply --
   --report filled.json --verify
 grep -q '"filled_triangles": 4' filled.json || fail 'no word of the filling in the report'
 grep -q 'its holes filled' filled.json || fail 'the claim does not say of which solid it is'
-expect 0 'its holes filled with 4 triangles that the log adds' "$BIN/bmesh-replay" open.obj filled.log filled.ply
-expect 0 'surface claim: verified' "$BIN/bound-verify" --outer open.obj filled.ply --prepare
+shows 0 'its holes filled with 4 triangles that the log adds' "$BIN/bmesh-replay" open.obj filled.log filled.ply
+shows 0 'surface claim: verified' "$BIN/bound-verify" --outer open.obj filled.ply --prepare
 expect 0 '' "$D" open.obj -o filled.ply --vertices 4 --progressive filled.pm
-expect 0 'filled with 4 triangles that the file adds' "$BIN/bound-verify" --progressive open.obj filled.pm
+shows 0 'filled with 4 triangles that the file adds' "$BIN/bound-verify" --progressive open.obj filled.pm
 expect 0 '' "$D" --from filled.pm --vertices 4 -o again.ply
 cmp -s filled.ply again.ply || fail 'a level of a mesh whose holes are filled is another one'
 for kind in LOG PROGRESSIVE; do printf 'KABOUM-BMESH-%s 2\n0123456789' $kind >"old.$kind"; done

@@ -2,10 +2,10 @@
 H=$BIN/hausdorff-eval
 D=$BIN/bmesh-decimate
 
-expect 0 'certified' "$H" --help
+shows 0 'certified' "$H" --help
 expect 0 '' "$H" --version
 "$D" "$BRACKET" -o b.ply --ratio 0.1 --quiet || fail "decimate"
-expect 0 'Hausdorff distance' "$H" "$BRACKET" b.ply --report r.json --csv c.csv --heatmap h.png
+shows 0 'Hausdorff distance' "$H" "$BRACKET" b.ply --report r.json --csv c.csv --heatmap h.png
 for key in '"a_to_b"' '"b_to_a"' '"min"' '"mean"' '"rms"' '"max_lower"' '"max_upper"' '"max_at"' \
   '"mean_standard_error"' '"hausdorff_lower"' '"hausdorff_upper"' '"bbox_diagonal"' '"queries"' \
   '"resources"' '"measure": "surface to surface"'; do
@@ -59,7 +59,7 @@ done
 cmp -s pipe.csv c.csv || fail "a pipe gives another result"
 expect 2 'input-format' "$H" - b.ply
 expect 2 'both' "$H" - -
-expect 0 '"tool"' "$H" t.off moved.off --report -
+shows 0 '"tool"' "$H" t.off moved.off --report -
 
 # A union of bodies: two boxes that overlap, as one OBJ; inner faces do not count.
 cube() { # name offset first-index
@@ -89,7 +89,7 @@ block() { # low high first-index inwards
 block 0 1 0 0 >full.obj
 { block 0 1 0 0; block 0.25 0.75 8 1; } >hollow.obj
 { block 0 1 0 0; block 0.25 0.75 8 0; } >folded.obj
-expect 0 'solid to solid' "$H" --solid full.obj hollow.obj --csv solid.csv --report solid.json --samples 1e3
+shows 0 'solid to solid' "$H" --solid full.obj hollow.obj --csv solid.csv --report solid.json --samples 1e3
 awk -F, 'NR==2 { bad = !($8 > 0.2499 && $8 <= 0.25 && $9 >= 0.25 && $9 < 0.2503) }
   NR==3 { bad = bad || $9 > 2e-9 } END { exit bad }' solid.csv || fail "cavity: $(cat solid.csv)"
 grep -q '"measure": "solid to solid"' solid.json || fail "the report does not say what was measured"

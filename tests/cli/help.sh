@@ -5,7 +5,7 @@
 narrow() {
   width=$1
   shift
-  expect 0 'Usage: ' env COLUMNS="$width" "$@" --help
+  shows 0 'Usage: ' env COLUMNS="$width" "$@" --help
   LC_ALL=C awk -v width="$width" 'length > width' out.txt >wide.txt
   [ ! -s wide.txt ] || fail "wider than $width columns: $*: $(cat wide.txt)"
 }

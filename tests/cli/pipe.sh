@@ -10,5 +10,5 @@ cmp -s file.off pipe.off || fail "a pipe gives another result than files"
 expect 2 'output-format' "$D" "$BRACKET" -o - --vertices 300
 expect 2 'input-format' "$D" - -o x.off --vertices 300
 expect 2 'cannot both' "$D" "$BRACKET" -o - --output-format off --vertices 300 --report -
-expect 0 '"tool"' "$D" "$BRACKET" -o y.off --vertices 300 --report -
+shows 0 '"tool"' "$D" "$BRACKET" -o y.off --vertices 300 --report -
 finish

@@ -7,11 +7,11 @@ for case in 'stacked 4 astar' 'stacked 4 bfs' 'force-sensing 5 dfs' 'bartender 3
   set -- $case
   "$DOMAINS/$1/make-problem" "$2" >problem.kpl || fail "make-problem $1"
   expect 0 'solved' "$P" solve "$DOMAINS/$1/domain.kpl" problem.kpl --search "$3" -o plan.json --report report.json
-  expect 0 'valid' "$P" check "$DOMAINS/$1/domain.kpl" problem.kpl --plan plan.json
+  shows 0 'valid' "$P" check "$DOMAINS/$1/domain.kpl" problem.kpl --plan plan.json
   expect 0 '' "$P" show "$DOMAINS/$1/domain.kpl" problem.kpl --plan plan.json
 done
-expect 0 'digraph' "$P" show "$DOMAINS/$1/domain.kpl" problem.kpl --plan plan.json --output-format dot
-expect 0 '<svg' "$P" show "$DOMAINS/$1/domain.kpl" problem.kpl --plan plan.json --output-format svg
+shows 0 'digraph' "$P" show "$DOMAINS/$1/domain.kpl" problem.kpl --plan plan.json --output-format dot
+shows 0 '<svg' "$P" show "$DOMAINS/$1/domain.kpl" problem.kpl --plan plan.json --output-format svg
 expect 0 '' "$P" show "$DOMAINS/$1/domain.kpl" problem.kpl --plan plan.json -o plan.svg
 expect 2 'plan.png: plans are drawn as' "$P" show "$DOMAINS/$1/domain.kpl" problem.kpl --plan plan.json -o plan.png
 [ ! -e plan.png ] || fail "text was written to plan.png"

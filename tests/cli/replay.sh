@@ -4,23 +4,23 @@ R=$BIN/bmesh-replay
 
 "$D" "$BRACKET" -o outer.stl --ratio 0.1 --cost planes --effort fast --log outer.log --quiet || fail "decimation"
 "$D" "$BRACKET" -o inner.ply --ratio 0.1 --cost planes --effort fast --log inner.log --quiet --direction inner || fail "decimation"
-expect 0 'solid of the result contains that of the original' "$R" "$BRACKET" outer.log outer.stl --report r.json
+shows 0 'solid of the result contains that of the original' "$R" "$BRACKET" outer.log outer.stl --report r.json
 grep -q '"verified": true' r.json || fail "report"
-expect 0 'solid of the original contains' "$R" "$BRACKET" inner.log inner.ply
-expect 1 'refuted' "$R" "$BRACKET" outer.log inner.ply
-expect 1 'refuted' "$R" "$BRACKET" inner.log outer.stl
+shows 0 'solid of the original contains' "$R" "$BRACKET" inner.log inner.ply
+shows 1 'refuted' "$R" "$BRACKET" outer.log inner.ply
+shows 1 'refuted' "$R" "$BRACKET" inner.log outer.stl
 # Steps against the original.
 "$D" "$BRACKET" -o tight.stl --ratio 0.1 --log tight.log --quiet || fail "decimation"
-expect 0 'contains that of the original' "$R" "$BRACKET" tight.log tight.stl
-expect 1 'refuted' "$R" "$BRACKET" tight.log outer.stl
+shows 0 'contains that of the original' "$R" "$BRACKET" tight.log tight.stl
+shows 1 'refuted' "$R" "$BRACKET" tight.log outer.stl
 
 # Progressive files: all levels at once.
 V=$BIN/bound-verify
 "$D" "$BRACKET" -o 'p-{vertices}.stl' --vertices 900,500 --progressive p.pm --quiet || fail "decimation"
-expect 0 'contains that of the level before' "$V" --progressive "$BRACKET" p.pm --report p.json
+shows 0 'contains that of the level before' "$V" --progressive "$BRACKET" p.pm --report p.json
 grep -q '"relation": "progressive"' p.json || fail "report"
 "$D" "$BRACKET" --direction inner --vertices 900,500 --effort fast --progressive i.pm --quiet || fail "decimation"
-expect 0 'contained in that of the level before' "$V" --progressive "$BRACKET" i.pm
+shows 0 'contained in that of the level before' "$V" --progressive "$BRACKET" i.pm
 expect 2 'joined with --epsilon' "$V" --progressive "$BRACKET" p.pm --epsilon 1%
 expect 3 'not a progressive file' "$V" --progressive "$BRACKET" outer.log
 # Damaged files are refused by all that read them; that what is wrong in an undamaged one is refuted,
@@ -51,7 +51,7 @@ expect 2 '' "$R" "$BRACKET" outer.log
 # Triangles turned by the log are named in the verdict.
 tetrahedron | sed 's/^3 \([0-9]\) \([0-9]\) \([0-9]\)/3 \1 \3 \2/' >inverted.off
 "$D" inverted.off -o upright.off --vertices 4 --log i.log --quiet || fail "inverted"
-expect 0 'is not checked' "$R" inverted.off i.log upright.off
+shows 0 'is not checked' "$R" inverted.off i.log upright.off
 
 # Mutants of positions. One flipped bit of an exponent in the last step is refuted or refused. A step
 # before it may go another way and leave a proof that still holds, but not every way.

@@ -35,7 +35,7 @@ for place in ros ros/stack ros/stack/arm-1.2 ros/stack/arm-1.2/ plain plain/arm;
 done
 expect 0 '' decompose_with AMENT_PREFIX_PATH="$WORK/nowhere:$WORK/prefix"
 expect 3 "(out), .*(else)" decompose_with ROS_PACKAGE_PATH=out AMENT_PREFIX_PATH=else
-expect 0 'verified' "$V" --robot $E out/r.urdf --package-path plain/arm
+shows 0 'verified' "$V" --robot $E out/r.urdf --package-path plain/arm
 (cd plain/arm && sed 's,t.off,../meshes/t.off,' ../../$E >r.urdf)
 expect 0 '' "$D" plain/arm/r.urdf -o out2 --epsilon 5% --effort fast --quiet
 sed 's/meshes/parts/' $E >else/deep/lost.urdf
@@ -80,18 +80,18 @@ grep -q "flat.urdf:11: link 'arm': a sphere of radius 0 is a point: it is not co
 grep -q "link 'seen' has no collision shape, only visual ones" err.txt || fail "no bare link: $(cat err.txt)"
 grep -q "'tool'" err.txt && fail "a link without any shape is named"
 grep -q 'cylinder length="0" radius="0.2"' flat/flat.urdf || fail "the disc is gone"
-expect 0 "link 'base': cylinder of length 0: verified" "$V" --robot flat.urdf flat/flat.urdf --report v.json
+shows 0 "link 'base': cylinder of length 0: verified" "$V" --robot flat.urdf flat/flat.urdf --report v.json
 grep -q "^verified: 2 of 4 links judged; not 'seen'" out.txt || fail "verdict: $(cat out.txt)"
 grep -q "link 'seen' has no collision shape, only visual ones: nothing of this is judged" err.txt || fail "$(cat err.txt)"
 grep -q "link 'tool' has no collision shape: nothing" err.txt || fail "$(cat err.txt)"
 tr -d ' \n' <v.json | grep -q '"links_without_shapes":\["tool","seen"\],"links_with_other_shapes_only":\["seen"\]' || fail "$(cat v.json)"
-expect 0 "2 of 4 links judged; not 'seen'" "$V" --robot flat.urdf flat/flat.urdf --epsilon 1%
+shows 0 "2 of 4 links judged; not 'seen'" "$V" --robot flat.urdf flat/flat.urdf --epsilon 1%
 printf '0\n1\n' >turn.csv
 expect 0 "cylinder of length 0" "$S" flat.urdf --path turn.csv --joint k=0 -o flat.glb
-expect 0 "^verified: 2 of 4 links judged; not 'seen'" "$V" --sweep flat.urdf turn.csv flat.glb --joint k=0 --report v.json
+shows 0 "^verified: 2 of 4 links judged; not 'seen'" "$V" --sweep flat.urdf turn.csv flat.glb --joint k=0 --report v.json
 grep -q "flat.urdf:11: .* a point" err.txt || fail "the point is not named: $(cat err.txt)"
 tr -d ' \n' <v.json | grep -q '"links":{"asked":4,"judged":2,"without_shapes":\["tool","seen"\]' || fail "$(cat v.json)"
-expect 0 "2 of 2 links judged" "$V" --sweep flat.urdf turn.csv flat.glb --joint k=0 --links base,arm
+shows 0 "2 of 2 links judged" "$V" --sweep flat.urdf turn.csv flat.glb --joint k=0 --links base,arm
 sed 's/length="0"/length="-1"/' flat.urdf >negative.urdf
 expect 3 "negative.urdf:5: link 'base': a cylinder whose size is negative" "$D" negative.urdf -o x
 sed 's/radius="0.2"/radius="wide"/' flat.urdf >word.urdf
@@ -130,8 +130,8 @@ expect 0 '' "$S" flat.urdf --path degrees.csv -o degrees.obj --degrees
 grep -q WARNING err.txt && fail "a warning about degrees that are given as such"
 for set in radians degrees; do grep -v '^#' $set.obj >$set.txt; done
 cmp -s radians.txt degrees.txt || fail "90 degrees are not a quarter turn"
-expect 0 '^verified' "$V" --sweep flat.urdf degrees.csv degrees.obj --degrees
-expect 1 '^refuted' "$V" --sweep flat.urdf degrees.csv degrees.obj
+shows 0 '^verified' "$V" --sweep flat.urdf degrees.csv degrees.obj --degrees
+shows 1 '^refuted' "$V" --sweep flat.urdf degrees.csv degrees.obj
 expect 3 "outside its limits, -2 to 2 (radians.*--degrees" "$S" flat.urdf --path degrees.csv -o x.glb
 
 expect 0 '' "$S" flat.urdf --path j.json -o c.obj --joint k=0.5
@@ -175,11 +175,11 @@ expect 2 "no link 'uper-arm'; did you mean 'upper-arm'?" "$V" --sweep named.urdf
 expect 2 "no link 'wheel'; it has 'base', 'upper-arm' and 'hand'" "$D" named.urdf -o x --links wheel
 # What sweep-approx writes as a URDF is read as a set.
 expect 0 '' "$S" flat.urdf --path plain.csv -o swept.urdf
-expect 0 '^verified' "$V" --sweep flat.urdf timed.csv swept.urdf
+shows 0 '^verified' "$V" --sweep flat.urdf timed.csv swept.urdf
 sed 's/<mesh /<mesh scale="1 1 1.5" /' swept.urdf >scaled.urdf
 expect 3 'moved or scaled' "$V" --sweep flat.urdf timed.csv scaled.urdf
 expect 3 'several links' "$V" --sweep flat.urdf timed.csv flat.urdf
 # Shapes for drawing.
 expect 0 "no visual shape, only collision ones" "$S" flat.urdf --path plain.csv -o seen.glb --visual
-expect 0 '1 of 4 links judged' "$V" --sweep flat.urdf plain.csv seen.glb --visual
+shows 0 '1 of 4 links judged' "$V" --sweep flat.urdf plain.csv seen.glb --visual
 finish

@@ -28,7 +28,7 @@ R=robots/urdf/r.urdf
 printf 'grip,shoulder,elbow\n0,0,0\n0.1,1,-1\n0,1.5,0\n' >path.csv
 printf '{"joints": ["shoulder", "elbow", "grip"], "waypoints": [[0, 0, 0], [1, -1, 0.1], [1.5, 0, 0]]}' >path.json
 
-expect 0 'Bounds the volume' "$S" --help
+shows 0 'Bounds the volume' "$S" --help
 expect 0 'margin' "$S" "$R" --path path.csv --epsilon 0.005 -o a.glb --report a.json --preview a.png --depfile a.d --implicit-margin
 grep -q '^WARNING: a.glb: its bodies alone do NOT contain the robot: add 0.00[0-9]* to every body' err.txt ||
   fail "nobody says that the margin is to be added"
@@ -151,13 +151,13 @@ absent x.glb
 
 # The whole motion decided from files alone; a set whose margin is cut, one that lacks a body, another path.
 V=$BIN/bound-verify
-expect 0 'surface claim: verified' "$V" --sweep "$R" path.csv a.glb --report v.json
+shows 0 'surface claim: verified' "$V" --sweep "$R" path.csv a.glb --report v.json
 for key in '"relation": "sweep"' '"verdict": "verified"' '"largest_found"' '"configuration"' '"cells"'; do
   grep -q "$key" v.json || fail "no $key in the report"
 done
-expect 0 'solid claim: verified' "$V" --sweep "$R" path.json b.glb
+shows 0 'solid claim: verified' "$V" --sweep "$R" path.json b.glb
 for set in uniform.obj adaptive.obj folder all c.glb d.glb e.glb; do
-  expect 0 '^verified: 4 of 4 links judged$' "$V" --sweep "$R" path.csv "$set"
+  shows 0 '^verified: 4 of 4 links judged$' "$V" --sweep "$R" path.csv "$set"
 done
 # Upright and leaning cylinders, whose hulls have corners in a line but for the last bits.
 cat >drum.urdf <<'END'
@@ -170,20 +170,20 @@ cat >drum.urdf <<'END'
 END
 printf '0\n1\n' >drum.csv
 expect 0 '' "$S" drum.urdf --path drum.csv -o drum.glb
-expect 0 '^verified: 2 of 2 links judged$' "$V" --sweep drum.urdf drum.csv drum.glb
+shows 0 '^verified: 2 of 2 links judged$' "$V" --sweep drum.urdf drum.csv drum.glb
 LC_ALL=C sed 's/"margin":0.0049/"margin":0.0029/' a.glb >thin.glb
 cmp -s a.glb thin.glb && fail "the margin was not cut"
-expect 1 'surface claim: refuted' "$V" --sweep "$R" path.csv thin.glb --witness w.obj --report thin.json
+shows 1 'surface claim: refuted' "$V" --sweep "$R" path.csv thin.glb --witness w.obj --report thin.json
 grep -q '^f ' w.obj || fail "no witness"
 grep -q '"place"' thin.json || fail "no place in the report"
 awk '/^o / { n++ } n != 3 || !/^f / { print }' adaptive.obj >lacking.obj
-expect 1 'refuted' "$V" --sweep "$R" path.csv lacking.obj
+shows 1 'refuted' "$V" --sweep "$R" path.csv lacking.obj
 sed 's/1.5/1.6/' path.csv >other.csv
-expect 1 'refuted' "$V" --sweep "$R" other.csv a.glb
-expect 1 'refuted' "$V" --sweep "$R" path.csv swept.obj
+shows 1 'refuted' "$V" --sweep "$R" other.csv a.glb
+shows 1 'refuted' "$V" --sweep "$R" path.csv swept.obj
 expect 0 '' "$V" --sweep "$R" path.csv swept.obj --links hand
-expect 7 'undecided' "$V" --sweep "$R" path.csv a.glb --gap 1
-expect 7 'undecided' "$V" --sweep "$R" path.csv a.glb --max-cells 1
+shows 7 'undecided' "$V" --sweep "$R" path.csv a.glb --gap 1
+shows 7 'undecided' "$V" --sweep "$R" path.csv a.glb --max-cells 1
 expect 3 'none.csv' "$V" --sweep "$R" none.csv a.glb
 expect 3 'cut.urdf' "$V" --sweep cut.urdf path.csv a.glb
 expect 3 'none.glb' "$V" --sweep "$R" path.csv none.glb
@@ -204,15 +204,15 @@ expect 3 'drop-sheets' "$S" $H --path path.csv -o x.glb
 expect 0 'NOT enclosed' "$S" $H --path path.csv -o sheeted.glb --drop-sheets
 expect 1 "sheeted.off: .*--prepare --drop-sheets judges that" "$V" --sweep $H path.csv sheeted.glb
 expect 3 'sheeted.off: .*sheets.*--drop-sheets' "$V" --sweep $H path.csv sheeted.glb --prepare
-expect 0 '^verified: 4 of 4 links judged; nothing is said of the 2 triangles of sheets dropped from robots/urdf/sheeted.off$' \
+shows 0 '^verified: 4 of 4 links judged; nothing is said of the 2 triangles of sheets dropped from robots/urdf/sheeted.off$' \
   "$V" --sweep $H path.csv sheeted.glb --prepare --drop-sheets --report v.json
 tr -d ' \n' <v.json | grep -q '"prepared":true,"dropped_sheet_triangles":{"robots/urdf/sheeted.off":2}' || fail "$(cat v.json)"
 grep -q 'meshes are not closed' out.txt && fail 'the filled hole is open'
 expect 0 'NOT enclosed' "$BIN/bcd-decompose" $H -o sheeted --drop-sheets --epsilon 1%
-expect 0 'judged; nothing is said of the 2 triangles of sheets dropped from robots/urdf/sheeted.off$' \
+shows 0 'judged; nothing is said of the 2 triangles of sheets dropped from robots/urdf/sheeted.off$' \
   "$V" --robot $H sheeted/sheeted.urdf --prepare --drop-sheets
 expect 0 'NOT enclosed' "$BIN/bcd-decompose" robots/urdf/sheeted.off -o cover.glb --drop-sheets --epsilon 1%
-expect 0 '^verified; nothing is said of the 2 triangles of sheets dropped from robots/urdf/sheeted.off$' \
+shows 0 '^verified; nothing is said of the 2 triangles of sheets dropped from robots/urdf/sheeted.off$' \
   "$V" --cover robots/urdf/sheeted.off cover.glb --prepare --drop-sheets
 "$V" --sweep "$R" path.csv a.glb --quiet >out.txt 2>err.txt || fail "quiet run"
 if [ -s out.txt ] || [ -s err.txt ]; then fail '--quiet is not quiet'; fi

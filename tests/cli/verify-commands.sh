@@ -109,16 +109,16 @@ refused --quiet mesh --outer one.off three.off
 
 # Files may be called like commands, but for the first.
 cp three.off cover
-expect 0 '^verified$' "$V" mesh --outer one.off cover --approximation-format off
-expect 0 '^verified$' "$V" --outer one.off cover --approximation-format off
-expect 1 '^refuted$' "$V" --outer ./cover one.off --input-format off
+shows 0 '^verified$' "$V" mesh --outer one.off cover --approximation-format off
+shows 0 '^verified$' "$V" --outer one.off cover --approximation-format off
+shows 1 '^refuted$' "$V" --outer ./cover one.off --input-format off
 
 # Each command's help: its own options and files.
-expect 0 'bound-verify sweep ROBOT PATH SWEPT' "$V" --help
+shows 0 'bound-verify sweep ROBOT PATH SWEPT' "$V" --help
 grep -q -- '--cover$' out.txt || fail "no flags in the help: $(cat out.txt)"
 for command in mesh cover robot sweep progressive; do
   for width in 80 100; do
-    expect 0 'Exit codes' env COLUMNS=$width "$V" $command --help
+    shows 0 'Exit codes' env COLUMNS=$width "$V" $command --help
     LC_ALL=C awk -v width=$width 'length > width' out.txt >wide.txt
     [ ! -s wide.txt ] || fail "wider than $width columns: $command: $(cat wide.txt)"
   done

@@ -15,23 +15,23 @@ cube -1 2 >three.off
 cube 0 1 11 >open.off
 
 # What the answers are, and that they reach the exit code.
-expect 0 'solid claim: verified' "$V" --outer one.off three.off
-expect 0 'surface claim: verified' "$V" --outer one.off three.off
-expect 1 'solid claim: refuted' "$V" --outer three.off one.off
-expect 0 '^verified$' "$V" --inner three.off one.off
-expect 1 '^refuted$' "$V" --inner one.off three.off
+shows 0 'solid claim: verified' "$V" --outer one.off three.off
+shows 0 'surface claim: verified' "$V" --outer one.off three.off
+shows 1 'solid claim: refuted' "$V" --outer three.off one.off
+shows 0 '^verified$' "$V" --inner three.off one.off
+shows 1 '^refuted$' "$V" --inner one.off three.off
 expect 0 '' "$V" --outer one.off one.off
 expect 0 '' "$V" --inner one.off one.off
-expect 1 'surface claim: refuted: 12 .*they stick out by at least 1.7320.* and at most 1.7320.*, triangle' "$V" --outer three.off one.off
-expect 1 'solid claim: refuted.*sticks out by at least 1.7.* and at most 1.7' "$V" --outer three.off one.off
+shows 1 'surface claim: refuted: 12 .*they stick out by at least 1.7320.* and at most 1.7320.*, triangle' "$V" --outer three.off one.off
+shows 1 'solid claim: refuted.*sticks out by at least 1.7.* and at most 1.7' "$V" --outer three.off one.off
 cube 0 0.9999999999 >less.off
-expect 1 'refuted' "$V" --outer one.off less.off
+shows 1 'refuted' "$V" --outer one.off less.off
 expect 0 '' "$V" --inner one.off less.off
 
 # Sheets: no solid, but a surface. --claims chooses what decides.
 printf 'OFF\n3 2 0\n5 0 0\n6 0 0\n5 1 0\n3 0 1 2\n3 0 2 1\n' >sheet.off
-expect 1 'surface claim: refuted' "$V" --outer sheet.off one.off
-expect 0 'surface claim: refuted' "$V" --outer sheet.off one.off --claims solid
+shows 1 'surface claim: refuted' "$V" --outer sheet.off one.off
+shows 0 'surface claim: refuted' "$V" --outer sheet.off one.off --claims solid
 expect 1 '' "$V" --outer sheet.off one.off --claims surface
 
 # A prism that crosses itself: a part of it is inside out, and its far edge 1.25 from the rest, the
@@ -43,19 +43,19 @@ done >>fold.off
 expect 0 'solid is enclosed, but not all of its triangles: 10 stick out, by at least 1.2' "$D" fold.off -o folded.off --vertices 8 \
   --report fold.json
 grep -q '"surface_triangles_outside": 10' fold.json || fail 'no number of triangles that stick out'
-expect 1 'solid claim: verified' "$V" --outer fold.off folded.off --prepare
+shows 1 'solid claim: verified' "$V" --outer fold.off folded.off --prepare
 grep -q 'surface claim: refuted: 10 .*stick out by at least 1.2' out.txt || fail "no depth: $(cat out.txt)"
 
 # Open meshes.
-expect 0 'surface claim: verified' "$V" --outer open.off three.off
+shows 0 'surface claim: verified' "$V" --outer open.off three.off
 expect 3 'not a closed mesh' "$V" --outer one.off open.off
 grep -q 'open.off' err.txt || fail 'the open file is not named'
 expect 3 'not a closed mesh' "$V" --outer open.off three.off --claims solid
-expect 0 'same border' "$V" --outer open.off open.off
+shows 0 'same border' "$V" --outer open.off open.off
 expect 3 '' "$V" --inner open.off one.off
-expect 1 'surface claim: refuted' "$V" --outer open.off less.off
+shows 1 'surface claim: refuted' "$V" --outer open.off less.off
 
-expect 0 'as far as an open mesh defines it' "$V" --outer open.off three.off
+shows 0 'as far as an open mesh defines it' "$V" --outer open.off three.off
 
 # What is said when something looks mistaken.
 expect 1 '' "$V" --outer three.off one.off
@@ -80,12 +80,12 @@ expect 2 'approximation-format' "$V" --outer one.off - <three.off
 expect 2 'prepare' "$V" --outer one.off three.off --drop-sheets
 cube 0 1 | awk 'NR == 2 { $0 = "11 14 0" } { print } NR == 10 { print "5 0 0\n6 0 0\n5 1 0" }
   END { print "3 8 9 10\n3 8 10 9" }' >sheeted.off
-expect 1 'surface claim: refuted' "$V" --outer sheeted.off three.off
+shows 1 'surface claim: refuted' "$V" --outer sheeted.off three.off
 expect 3 'drop-sheets' "$V" --outer sheeted.off three.off --prepare
-expect 0 'surface claim: verified' "$V" --outer sheeted.off three.off --prepare --drop-sheets
+shows 0 'surface claim: verified' "$V" --outer sheeted.off three.off --prepare --drop-sheets
 
 # A distance alone refuted: its triangle is the witness.
-expect 1 'refuted' "$V" --outer one.off three.off --epsilon 0.5 --witness far.obj
+shows 1 'refuted' "$V" --outer one.off three.off --epsilon 0.5 --witness far.obj
 [ "$(grep -c '^f' far.obj)" -ge 1 ] || fail 'no witness of a distance'
 
 # Where nothing can be written, nothing is computed and nothing is called verified.
@@ -107,17 +107,17 @@ expect 2 'ask with --cover' "$V" --outer one.off core
 expect 2 'ask with --cover' "$V" --outer one.off core.off --set
 
 # Inner sets: bodies inside, and what they leave out.
-expect 0 'convexity: verified' "$V" --inner one.off core
-expect 0 'depth: verified' "$V" --inner one.off core --epsilon 0.26
-expect 1 'depth: refuted' "$V" --inner one.off core --epsilon 0.24 --witness deep.obj
+shows 0 'convexity: verified' "$V" --inner one.off core
+shows 0 'depth: verified' "$V" --inner one.off core --epsilon 0.26
+shows 1 'depth: refuted' "$V" --inner one.off core --epsilon 0.24 --witness deep.obj
 [ "$(grep -c '^f' deep.obj)" -ge 1 ] || fail 'no witness of a depth'
-expect 0 'depth: verified' "$V" --inner one.off core.off --set --epsilon 0.26
+shows 0 'depth: verified' "$V" --inner one.off core.off --set --epsilon 0.26
 cube 0.3 0.7 >smaller.off
-expect 1 'solid claim: refuted' "$V" --inner smaller.off core
+shows 1 'solid claim: refuted' "$V" --inner smaller.off core
 
 # Limit.
 cube 0.5 1.5 >moved.off
-expect 7 'undecided' "$V" --outer one.off moved.off --max-contacts 1
+shows 7 'undecided' "$V" --outer one.off moved.off --max-contacts 1
 
 # Usage and bad input.
 expect 2 '' "$V"
@@ -137,7 +137,7 @@ head -c 60 one.off >cut.off
 expect 3 'cut.off' "$V" --outer one.off cut.off
 printf 'OFF\n3 1 0\n0 0 0\n1 0 0\nnan 1 0\n3 0 1 2\n' >nan.off
 expect 3 'finite' "$V" --outer nan.off three.off
-expect 0 'Exit codes' "$V" --help
+shows 0 'Exit codes' "$V" --help
 expect 0 '' "$V" --version
 
 # Witness: the offending triangles, only when refuted; in any format that is written.
@@ -153,8 +153,8 @@ expect 4 '' "$V" --outer one.off three.off --report no/such/folder/r.json
 absent no r4.json
 
 # Distances.
-expect 0 'nowhere more than' "$V" --outer one.off three.off --epsilon 1.74
-expect 1 'distance from approximation to original: refuted' "$V" --outer one.off three.off --epsilon 1.73
+shows 0 'nowhere more than' "$V" --outer one.off three.off --epsilon 1.74
+shows 1 'distance from approximation to original: refuted' "$V" --outer one.off three.off --epsilon 1.73
 expect 0 '' "$V" --outer one.off three.off --epsilon 101%
 expect 1 '' "$V" --outer one.off three.off --epsilon 99%
 
@@ -163,24 +163,24 @@ expect 1 '' "$V" --outer one.off three.off --epsilon 99%
   echo 'o right'; cube 0.5 2 | awk 'NF == 3 && NR > 2 { print "v", $1, $2, $3 } NF == 4 { print "f", $2 + 9, $3 + 9, $4 + 9 }'
 } >set.obj
 cube 0 2 >two.off
-expect 0 'convexity: verified: all 2 bodies are convex' "$V" --cover one.off set.obj
-expect 1 'solid claim: refuted' "$V" --cover two.off set.obj --report cover.json
+shows 0 'convexity: verified: all 2 bodies are convex' "$V" --cover one.off set.obj
+shows 1 'solid claim: refuted' "$V" --cover two.off set.obj --report cover.json
 grep -q '"bodies": 2' cover.json || fail 'no number of bodies in the report'
-expect 0 'distance from the union to the solid' "$V" --cover one.off set.obj --epsilon 1.74
+shows 0 'distance from the union to the solid' "$V" --cover one.off set.obj --epsilon 1.74
 expect 1 '' "$V" --cover one.off set.obj --epsilon 1.73
-expect 1 'convexity: refuted' "$V" --cover "$BRACKET" "$BRACKET"
-expect 1 'convexity: refuted' "$V" --cover open.off open.off
+shows 1 'convexity: refuted' "$V" --cover "$BRACKET" "$BRACKET"
+shows 1 'convexity: refuted' "$V" --cover open.off open.off
 
 # What bcd-decompose claims of an open mesh is about the mesh as prepared.
 cube 0 1 10 >gap.off
 "$BIN/bcd-decompose" gap.off -o gap.glb --epsilon 1% --no-cache --quiet || fail 'decompose gap'
 expect 1 'prepare judges that: 1 hole is filled with 4 triangles' "$V" --cover gap.off gap.glb --epsilon 1%
-expect 0 'distance from the union to the solid: verified' "$V" --cover gap.off gap.glb --epsilon 1% --prepare
+shows 0 'distance from the union to the solid: verified' "$V" --cover gap.off gap.glb --epsilon 1% --prepare
 grep -q '1 hole is filled with 4 triangles, 1.414 across' err.txt || fail 'no word of the filling'
 # So with one of mixed orientation.
 sed 's/^3 4 5 6$/3 4 6 5/' one.off >mixed.off
 expect 1 'prepare judges that: 3 edges with neighbours of opposite orientation' "$V" --outer mixed.off less.off
-expect 0 'solid claim: verified' "$V" --outer mixed.off three.off --prepare
+shows 0 'solid claim: verified' "$V" --outer mixed.off three.off --prepare
 
 # A part that is inside out is said even where everything is verified, and --prepare judges it.
 {
@@ -190,10 +190,10 @@ expect 0 'solid claim: verified' "$V" --outer mixed.off three.off --prepare
   cube 0 4 | sed -n 11,22p
   cube 6 7 | sed -n 11,22p | awk '{ print 3, $2 + 8, $4 + 8, $3 + 8 }'
 } >inverted.off
-expect 0 'solid claim: verified' "$V" --outer inverted.off inverted.off --claims solid --report inverted.json
+shows 0 'solid claim: verified' "$V" --outer inverted.off inverted.off --claims solid --report inverted.json
 grep -q 'warning: inverted.off: 1 part of it is inside out (the first at triangle 12' err.txt || fail 'no word of the part'
 grep -q '"inside_out_parts": 1' inverted.json || fail 'no word of the part in the report'
-expect 1 'solid claim: refuted' "$V" --outer inverted.off inverted.off --prepare
+shows 1 'solid claim: refuted' "$V" --outer inverted.off inverted.off --prepare
 
 # An inward box at a wall of the one round it: as well a notch. It is said, and cannot be prepared.
 {
@@ -205,7 +205,7 @@ expect 1 'solid claim: refuted' "$V" --outer inverted.off inverted.off --prepare
     { t[NR] = $2 + 8 " " $4 + 8 " " $3 + 8 }
     END { for (i = 1; i <= NR; ++i) if (i != 5 && i != 6) print 3, t[i]; print "3 8 13 9"; print "3 8 12 13" }'
 } >notch.off
-expect 0 'solid claim: verified' "$V" --outer notch.off notch.off --claims solid --report notch.json
+shows 0 'solid claim: verified' "$V" --outer notch.off notch.off --claims solid --report notch.json
 grep -q 'warning: notch.off: what its surfaces enclose near (3' err.txt || fail 'no word of the hollow'
 grep -q '"hollow_at"' notch.json || fail 'no word of the hollow in the report'
 expect 3 'bodies that share a wall' "$V" --outer notch.off notch.off --prepare
@@ -216,14 +216,14 @@ expect 3 'bodies that share a wall' "$BIN/bmesh-decimate" notch.off -o n.off --v
 expect 1 'prepare judges that: with --drop-sheets' "$V" --cover sheeted.off sheeted.glb --epsilon 1%
 [ "$(grep 'prepare judges' err.txt | tr ';' '\n' | sed 's/.*judges that: //' | sort | uniq -d | wc -l)" = 0 ] ||
   fail 'a note twice'
-expect 0 'distance from the union to the solid: verified' "$V" --cover sheeted.off sheeted.glb --epsilon 1% --prepare --drop-sheets
+shows 0 'distance from the union to the solid: verified' "$V" --cover sheeted.off sheeted.glb --epsilon 1% --prepare --drop-sheets
 
 # Lengths whose squares exceed all doubles.
 cube 0 1e300 >vast.off
 cube 0 1.001e300 >vaster.off
-expect 0 'verified: nowhere more than 1.73205e+298' "$V" --outer vast.off vaster.off --epsilon 1%
-expect 1 'refuted: a point is farther away' "$V" --outer vast.off vaster.off --epsilon 0.01%
-expect 1 'distance from the union to the solid: refuted' "$V" --cover vast.off vaster.off --epsilon 0.01%
+shows 0 'verified: nowhere more than 1.73205e+298' "$V" --outer vast.off vaster.off --epsilon 1%
+shows 1 'refuted: a point is farther away' "$V" --outer vast.off vaster.off --epsilon 0.01%
+shows 1 'distance from the union to the solid: refuted' "$V" --cover vast.off vaster.off --epsilon 0.01%
 cube -1.7e308 1.7e308 >beyond.off
 expect 3 'give --epsilon as a length' "$V" --outer beyond.off beyond.off --epsilon 1%
 

@@ -23,6 +23,7 @@
 #include <random>
 #include <sstream>
 
+#include "support/corpus.h"
 #include "support/families.h"
 #include "support/mesh_files.h"
 
@@ -188,11 +189,7 @@ int main(int argc, char** argv) try {
       settings.costs = {bmesh::Cost::Distance, bmesh::Cost::Planes, bmesh::Cost::PlanesAdapted,
                         bmesh::Cost::PlanesDiagonal, bmesh::Cost::Triangles};
     } else if (args[i] == "--corpus") {
-      const char* corpus = std::getenv("KABOUM_MESHES");
-      if (corpus == nullptr)
-        std::cout << "KABOUM_MESHES is not set: the project's own meshes only\n";
-      if (corpus != nullptr)
-        for (std::string& f : mesh_files(corpus)) files.push_back(std::move(f));
+      for (std::string& f : mesh_files(test::corpus())) files.push_back(std::move(f));
     } else if (args[i] == "--own") {
       for (std::string& f : mesh_files(value())) own.push_back(std::move(f));
     } else if (args[i] == "--samples") {

@@ -233,10 +233,9 @@ TEST(Urdf, SurvivesGarbage) {
   }
 }
 
-TEST(Rl, BothDescriptionsOfThePuma) {
+TEST(CorpusRl, BothDescriptionsOfThePuma) {
   const std::string kin = robot_file("puma560-vrml/unimation-puma560-rlkin.xml");
   const std::string mdl = robot_file("puma560-vrml/unimation-puma560-rlmdl.xml");
-  if (kin.empty()) GTEST_SKIP() << "needs KABOUM_MESHES";
   const Robot a = parse_rl(kin, "kin"), b = parse_rl(mdl, "mdl");
   ASSERT_EQ(a.variables.size(), 6U);
   EXPECT_NEAR(*a.variables[1].lower, -225 * std::numbers::pi / 180, 1e-15);

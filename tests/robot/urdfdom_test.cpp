@@ -6,11 +6,12 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include <Eigen/Geometry>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <random>
 #include <sstream>
+
+#include "support/corpus.h"
 
 namespace kaboum::robot {
 namespace {
@@ -191,11 +192,9 @@ TEST(Urdfdom, ReadsRandomRobotsAsWeDo) {
   EXPECT_EQ(read, 400);
 }
 
-TEST(Urdfdom, ReadsRealRobotsAsWeDo) {
-  const char* meshes = std::getenv("KABOUM_MESHES");
-  if (meshes == nullptr) GTEST_SKIP() << "needs KABOUM_MESHES";
+TEST(CorpusUrdfdom, ReadsRealRobotsAsWeDo) {
   int read = 0;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(meshes)) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(test::corpus())) {
     if (entry.path().extension() != ".urdf") continue;
     SCOPED_TRACE(entry.path());
     std::stringstream text;

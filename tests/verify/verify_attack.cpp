@@ -27,6 +27,7 @@
 #include "judge.h"
 #include "pairs.h"
 #include "support/arrangement_oracle.h"
+#include "support/corpus.h"
 #include "support/families.h"
 #include "support/mesh_files.h"
 
@@ -189,9 +190,7 @@ int main(int argc, char** argv) try {
     } else if (args[i] == "--families") {
       families = true;
     } else if (args[i] == "--corpus") {
-      const char* corpus = std::getenv("KABOUM_MESHES");
-      if (corpus == nullptr) throw std::runtime_error("KABOUM_MESHES is not set");
-      for (std::string& f : mesh_files(corpus)) files.push_back(std::move(f));
+      for (std::string& f : mesh_files(corpus())) files.push_back(std::move(f));
     } else if (args[i] == "--own") {
       for (std::string& f : mesh_files(value())) files.push_back(std::move(f));
     } else if (args[i] == "--largest") {
