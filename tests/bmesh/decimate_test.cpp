@@ -191,8 +191,8 @@ std::size_t poking_out(const geom::Mesh& inner, const geom::Mesh& outer) {
                                                           : found.surface.inner_triangles.size();
 }
 
-/// No fold: not only the solid of an inner result, every triangle of it is inside. Returns the number of
-/// contractions, 0 for meshes that have folds themselves.
+/// No fold: not only the solid of an inner result, every triangle of it is inside. Returns the
+/// number of contractions, 0 for meshes that have folds themselves.
 std::size_t expect_no_fold(const std::string& name, const geom::Mesh& mesh, const Method& m,
                            Precision precision) {
   const auto p = geom::prepare(mesh);
