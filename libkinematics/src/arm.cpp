@@ -13,8 +13,12 @@ std::uint32_t link_named(const robot::Robot& robot, std::string_view name) {
   if (const auto link = robot.find_link(name)) return *link;
   std::vector<std::string> known;
   for (const robot::Link& link : robot.links) known.push_back(link.name);
-  throw Error(ErrorCode::InvalidArgument, "there is no link '" + std::string(name) + "'" +
-                                              did_you_mean(std::string(name), known));
+  std::string hint = did_you_mean(name, known);
+  if (hint.empty()) {
+    for (const std::string& link : known) hint += (hint.empty() ? "; it has '" : "', '") + link;
+    hint += "'";
+  }
+  throw Error(ErrorCode::InvalidArgument, "there is no link '" + std::string(name) + "'" + hint);
 }
 
 /// The joints from `base` down to `tip`.

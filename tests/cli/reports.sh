@@ -35,6 +35,7 @@ run verify-robot "$BIN/bound-verify" --robot arm.urdf safe/arm.urdf
 run verify-sweep "$BIN/bound-verify" --sweep arm.urdf path.csv swept.glb
 run verify-progressive "$BIN/bound-verify" --progressive "$BRACKET" outer.pm
 expect 1 '' "$BIN/bound-verify" --outer wide.off box.off --report reports/refuted.json
+run ik "$BIN/kaboum-ik" arm.urdf --pose-of 0.5
 cat >domain.pddl <<'END'
 (define (domain d) (:requirements :strips) (:predicates (done)) (:action act :parameters () :precondition () :effect (done)))
 END

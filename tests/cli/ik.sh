@@ -1,0 +1,70 @@
+# shellcheck shell=sh disable=SC2154
+. "$(dirname "$0")/common.sh"
+I=$BIN/kaboum-ik
+joint() { # NAME PARENT CHILD XYZ AXIS LIMIT
+  echo "<link name=\"$3\"/><joint name=\"$1\" type=\"revolute\"><parent link=\"$2\"/><child link=\"$3\"/>
+<origin xyz=\"$4\"/><axis xyz=\"$5\"/><limit lower=\"-$6\" upper=\"$6\" effort=\"1\" velocity=\"1\"/></joint>"
+}
+{
+  echo '<robot name="arm"><link name="base"/>'
+  joint j1 base l1 '0 0 0.3' '0 0 1' 3
+  joint j2 l1 l2 '0.1 0 0.1' '0 1 0' 3
+  joint j3 l2 l3 '0 0 0.5' '0 1 0' 3
+  joint j4 l3 l4 '0 0 0.2' '0 0 1' 6.5
+  joint j5 l4 l5 '0 0 0.2' '0 1 0' 3
+  joint j6 l5 l6 '0 0 0.1' '0 0 1' 3
+  echo '</robot>'
+} >arm.urdf
+sed 's/0 0 0.2"/0.05 0.03 0.2"/' arm.urdf >offset.urdf
+
+# Every printed configuration reaches the pose: by the program's own --pose-of, solved again.
+expect 0 'spherical wrist, closed form: 4 solutions, 3 within' "$I" arm.urdf --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2
+[ "$(head -1 out.txt)" = j1,j2,j3,j4,j5,j6 ] || fail "no line of names: $(cat out.txt)"
+grep -q '^0.1,0.4,0.7,0.3,0.9,-0.2$' out.txt || fail "the configuration itself is not among them: $(cat out.txt)"
+cp out.txt first.csv
+sed 1d first.csv | while read -r q; do
+  expect 0 '' "$I" arm.urdf --pose-of "$q" --json
+  python3 - out.txt <<'END' || echo "FAILED: $q is elsewhere" >elsewhere
+import json, sys
+p = json.load(open(sys.argv[1]))["pose"]
+open("pose.txt", "a").write(" ".join(f"{x:.6f}" for x in p) + "\n")
+END
+done
+absent elsewhere
+[ "$(sort -u pose.txt | wc -l)" = 1 ] || fail "several poses: $(cat pose.txt)"
+# shellcheck disable=SC2046
+expect 0 'j1,j2' "$I" arm.urdf --pose $(head -1 pose.txt)
+expect 0 '5.7295' "$I" arm.urdf --pose-of 5.72957795131,20,40,17,50,-11 --degrees
+
+# Whole turns, limits, references.
+expect 0 'configurations within the limits, whole turns counted' "$I" arm.urdf --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2 --copies
+[ "$(wc -l <out.txt)" -gt "$(wc -l <first.csv)" ] || fail "--copies adds none"
+expect 0 '^0.1,0.4,0.7,-5.98' "$I" arm.urdf --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2 --reference 0,0,0,-6,0,0
+sed 's/"-3"/"2.9"/' arm.urdf >narrow.urdf
+expect 1 "outside the joints' limits only; see --ignore-limits" "$I" narrow.urdf --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2
+expect 0 '# outside the limits' "$I" narrow.urdf --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2 --ignore-limits
+expect 0 'singular: wrist' "$I" arm.urdf --pose-of 0.1,0.4,0.7,0.3,0,-0.2
+expect 1 'the pose is out of reach' "$I" arm.urdf --pose 5 0 0 0 0 0 1
+
+# Without a closed form.
+expect 0 'numeric, 100 starts' "$I" offset.urdf --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2 --json
+grep -q '"complete": false' out.txt || fail "said to be complete"
+cp out.txt one.json
+expect 0 '' "$I" offset.urdf --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2 --json
+cmp -s out.txt one.json || fail "twice the same, another answer"
+expect 7 'no proof' "$I" offset.urdf --pose 5 0 0 0 0 0 1 --starts 3
+expect 0 '' "$I" arm.urdf --numeric --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2
+
+# What is wrong, and what to do.
+expect 2 'Give --pose X Y Z QX QY QZ QW or --pose-of' "$I" arm.urdf
+expect 2 'excludes' "$I" arm.urdf --pose 0 0 0 0 0 0 1 --pose-of 0,0,0,0,0,0
+expect 2 "arm.urdf: there is no link 'l7'; it has 'base', 'l1'" "$I" arm.urdf --tip l7 --pose-of 0,0,0,0,0,0
+expect 2 'is not between' "$I" arm.urdf --base l5 --tip l2 --pose-of 0
+expect 2 "5 values for the 6 joints 'j1'" "$I" arm.urdf --pose-of 0,0,0,0,0
+expect 2 'expected numbers with commas' "$I" arm.urdf --pose-of 0,x,0,0,0,0
+expect 2 'quaternion QX QY QZ QW has the length 2' "$I" arm.urdf --pose 0 0 0 0 0 0 2
+expect 2 'finite' "$I" arm.urdf --pose nan 0 0 0 0 0 1
+expect 3 'missing.urdf' "$I" missing.urdf --pose-of 0
+expect 0 '' "$I" arm.urdf --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2 --report ik.json --quiet
+[ ! -s err.txt ] || fail "--quiet is not: $(cat err.txt)"
+finish
