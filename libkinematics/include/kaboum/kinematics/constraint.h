@@ -1,0 +1,74 @@
+#pragma once
+
+#include <kaboum/kinematics/arm.h>
+
+#include <cstdint>
+#include <variant>
+#include <vector>
+
+namespace kaboum::kinematics {
+
+/// Features of tools and objects, in their frames. Directions are of unit length.
+struct Point {
+  Vec3 position = Vec3::Zero();
+};
+struct Line {
+  Vec3 position = Vec3::Zero(), direction = Vec3::UnitZ();
+};
+struct Plane {
+  Vec3 position = Vec3::Zero(), normal = Vec3::UnitZ();
+};
+using Feature = std::variant<Point, Line, Plane>;
+
+/// What a feature is fixed to.
+struct FrameId {
+  enum class Kind : std::uint8_t { World, Tool, Object };
+  Kind kind = Kind::World;
+  std::size_t index = 0;  ///< of the robot or object
+  bool operator==(const FrameId&) const = default;
+};
+
+struct PlacedFeature {
+  FrameId frame;
+  Feature feature;
+};
+
+/// What two features may be to each other. Source: [gaschler2016] Table 5.1; Coincident(Line,
+/// Plane), Angle, and the Perpendicular relations of lines are added. Features of one relation may
+/// come in either order.
+enum class Relation {
+  Coincident,     ///< point and point, line, plane; line and line, plane; plane and plane
+  Parallel,       ///< lines, planes, line and plane; either direction
+  Perpendicular,  ///< lines, planes, line and plane
+  Distance,       ///< point and point, line, plane: `value`, above or equal 0 [length]
+  Angle,  ///< between the directions of lines or normals, 0 … π; or from a plane to a line
+          ///< towards the plane's normal, −π/2 … π/2: `value` [rad]
+};
+
+struct Constraint {
+  Relation relation = Relation::Coincident;
+  PlacedFeature first, second;
+  double value = 0;
+};
+
+/// A constraint's cost, which vanishes just where the constraint is met, and its derivatives.
+struct Cost {
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 4, 1>;
+  using Derivative = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor, 4, 6>;
+  Rows value;  ///< as many as degrees of freedom taken; lengths are in parts of `length`
+  /// By the twists of the frames of the first and second feature: velocity of the frame's origin,
+  /// angular velocity.
+  Derivative first, second;
+};
+
+/// @param first, second  poses of the features' frames.
+/// @param length  what a deviation by a length of this much weighs as one by a radian does.
+/// @pre the constraint is supported (require_valid).
+Cost cost(const Constraint& constraint, const Transform& first, const Transform& second,
+          double length);
+
+/// @throws Error{InvalidArgument} when there is no such relation of such features, a direction is
+///   not of unit length, or the value makes no sense.
+void require_valid(const Constraint& constraint);
+
+}  // namespace kaboum::kinematics

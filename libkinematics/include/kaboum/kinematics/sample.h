@@ -1,0 +1,95 @@
+#pragma once
+
+#include <kaboum/kinematics/constraint.h>
+
+#include <memory>
+#include <optional>
+
+namespace kaboum::kinematics {
+
+/// A robot whose configuration is sought.
+struct PlacedArm {
+  Arm arm;
+  Transform base;  ///< of its base in the world
+};
+
+/// An object whose pose is sought; its position is drawn from a box before it is projected.
+struct FreeObject {
+  Vec3 lower = Vec3::Constant(-1), upper = Vec3::Constant(1);  ///< in the world [length]
+};
+
+/// Constraints between features of the world, of robots' tools and of objects; all hold at once.
+struct ConstraintProblem {
+  std::vector<PlacedArm> robots;
+  std::vector<FreeObject> objects;
+  std::vector<Constraint> constraints;
+};
+
+/// Configurations of the robots and poses of the objects, in the problem's order.
+struct Placement {
+  std::vector<std::vector<double>> joints;
+  std::vector<Transform> objects;
+};
+
+/// The costs of all constraints, one below the other, and their derivative by all joints and then
+/// by the twists of all objects (velocity of the origin, angular velocity).
+struct Costs {
+  Eigen::VectorXd value;
+  Eigen::MatrixXd derivative;
+};
+/// @param length  as in `cost`.
+/// @throws Error{InvalidArgument} as require_valid.
+Costs evaluate(const ConstraintProblem& problem, const Placement& at, double length);
+
+/// Throws where a constraint is not valid or names what the problem does not have.
+/// @throws Error{InvalidArgument}
+void require_valid(const ConstraintProblem& problem);
+
+struct SampleOptions {
+  std::uint64_t seed = 1;
+  int draws = 100;      ///< at most so many random starts for a sample
+  int iterations = 60;  ///< of the projection, from one of them
+  double bound = 1e-9;  ///< no cost of a sample is larger [rad, or in parts of `length`]
+  double length = 0;    ///< as in `cost`; 0: the largest reach of the robots, or 1
+  bool limits = true;   ///< whether joints are to be within their limits
+  /// Where a robot has a closed form, its tool's pose is projected, and the joints are solved for;
+  /// false: joints are projected, as the thesis does.
+  bool closed_form = true;
+};
+
+struct Sample {
+  Placement at;
+  double error = 0;  ///< the largest cost, by forward kinematics
+  int draws = 0;     ///< that it took
+};
+
+/// Draws random samples that meet constraints: Alg. 3 of [gaschler2016] with damping, limits and
+/// retries, and with closed-form inverse kinematics where there is one. Every sample is checked by
+/// forward kinematics. The same problem and options give the same samples, to the bit.
+class ConstraintSampler {
+ public:
+  /// @throws Error{InvalidArgument} as require_valid(ConstraintProblem).
+  explicit ConstraintSampler(ConstraintProblem problem, const SampleOptions& options = {});
+  ~ConstraintSampler();
+  ConstraintSampler(ConstraintSampler&&) noexcept;
+  ConstraintSampler& operator=(ConstraintSampler&&) noexcept;
+
+  /// The next sample; nullopt when no draw led to one, which does not say that there is none.
+  std::optional<Sample> next();
+
+  /// What became of all draws so far.
+  struct Tally {
+    std::size_t draws = 0;
+    std::size_t projected =
+        0;                    ///< met the constraints, at least with tools where joints are unknown
+    std::size_t reached = 0;  ///< and with joints, whatever the limits
+    std::size_t samples = 0;  ///< and within the limits
+  };
+  [[nodiscard]] const Tally& tally() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace kaboum::kinematics

@@ -1,0 +1,266 @@
+// Costs of geometric constraints and their derivatives; docs/algorithms/constraint-sampling.md.
+#include <kaboum/base/error.h>
+#include <kaboum/kinematics/constraint.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace kaboum::kinematics {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// A feature in the world: a point, and the direction of a line or normal of a plane with two that
+/// are perpendicular to it and fixed to the same frame.
+struct Seen {
+  Vec3 origin, point, direction, side, other;  ///< origin: of the frame
+};
+
+/// Two directions perpendicular to d: a function of d alone, so that they turn with the frame.
+std::pair<Vec3, Vec3> perpendiculars(const Vec3& d) {
+  Eigen::Index least = 0;
+  d.cwiseAbs().minCoeff(&least);
+  const Vec3 a = d.cross(Vec3::Unit(least)).normalized();
+  return {a, d.cross(a)};
+}
+
+Seen see(const Feature& feature, const Transform& frame) {
+  Seen s;
+  s.origin = frame.translation;
+  const auto place = [&](const Vec3& position, const Vec3& direction) {
+    s.point = frame * position;
+    s.direction = frame.linear * direction;
+    const auto [side, other] = perpendiculars(direction);
+    s.side = frame.linear * side;
+    s.other = frame.linear * other;
+  };
+  if (const auto* point = std::get_if<Point>(&feature)) {
+    s.point = frame * point->position;
+  } else if (const auto* line = std::get_if<Line>(&feature)) {
+    place(line->position, line->direction);
+  } else {
+    const auto& plane = std::get<Plane>(feature);
+    place(plane.position, plane.normal);
+  }
+  return s;
+}
+
+/// Collects rows: values, and how they change with the twists of both frames.
+class Rows {
+ public:
+  Rows(const Seen& a, const Seen& b, double length)
+      : a_(a), b_(b), between_(a.point - b.point), length_(length) {}
+
+  /// u · (p₁ − p₂), u fixed to the first frame, to the second, or to neither.
+  void along(const Vec3& u, int frame) {
+    add(u.dot(between_) / length_);
+    add_point(u / length_);
+    if (frame == 1) first_.back().tail<3>() += u.cross(between_ / length_).transpose();
+    if (frame == 2) second_.back().tail<3>() += u.cross(between_ / length_).transpose();
+  }
+  /// u · v, u fixed to the first frame, v to the second.
+  void dot(const Vec3& u, const Vec3& v) {
+    add(u.dot(v));
+    const Vec3 c = u.cross(v);
+    first_.back().tail<3>() = c.transpose();
+    second_.back().tail<3>() = -c.transpose();
+  }
+  /// The angle between u and v, or what it lacks to a right one, less a value.
+  void angle(const Vec3& u, const Vec3& v, bool complement, double value) {
+    Vec3 c = u.cross(v);
+    const double sine = c.norm(), angle = std::atan2(sine, u.dot(v));
+    c = sine > 1e-12 ? Vec3(c / sine) : perpendiculars(u).first;  // aligned: any way out will do
+    const double sign = complement ? -1 : 1;
+    add((complement ? kPi / 2 - angle : angle) - value);
+    first_.back().tail<3>() = -sign * c.transpose();
+    second_.back().tail<3>() = sign * c.transpose();
+  }
+  /// Replaces all rows by their norm less a value [length]; where it is 0, any way out will do.
+  void norm(double value) {
+    double norm = 0;
+    for (const double v : value_) norm += v * v;
+    norm = std::sqrt(norm);
+    Eigen::Matrix<double, 1, 6> first = first_.at(0), second = second_.at(0);
+    if (norm > 1e-14) {
+      first.setZero();
+      second.setZero();
+      for (std::size_t i = 0; i < value_.size(); ++i) {
+        first += value_.at(i) / norm * first_.at(i);
+        second += value_.at(i) / norm * second_.at(i);
+      }
+    }
+    value_.clear();
+    first_.clear();
+    second_.clear();
+    add(norm - value / length_);
+    first_.back() = first;
+    second_.back() = second;
+  }
+
+  [[nodiscard]] Cost result() const {
+    Cost out;
+    const auto n = static_cast<Eigen::Index>(value_.size());
+    out.value.resize(n);
+    out.first.resize(n, 6);
+    out.second.resize(n, 6);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      out.value[i] = value_.at(i);
+      out.first.row(i) = first_.at(i);
+      out.second.row(i) = second_.at(i);
+    }
+    return out;
+  }
+
+ private:
+  /// At most four of something, without memory of its own.
+  template <class T>
+  class Four {
+   public:
+    void push_back(const T& x) { items_[size_++] = x; }
+    [[nodiscard]] T& back() { return items_[size_ - 1]; }
+    [[nodiscard]] const T& at(std::size_t i) const { return items_[i]; }
+    [[nodiscard]] std::size_t size() const { return size_; }
+    [[nodiscard]] const T* begin() const { return items_; }
+    [[nodiscard]] const T* end() const { return items_ + size_; }
+    void clear() { size_ = 0; }
+
+   private:
+    T items_[4];
+    std::size_t size_ = 0;
+  };
+
+  void add(double value) {
+    value_.push_back(value);
+    first_.push_back(Eigen::Matrix<double, 1, 6>::Zero());
+    second_.push_back(Eigen::Matrix<double, 1, 6>::Zero());
+  }
+  /// g · (velocity of p₁ − velocity of p₂).
+  void add_point(const Vec3& g) {
+    first_.back().head<3>() += g.transpose();
+    first_.back().tail<3>() += (a_.point - a_.origin).cross(g).transpose();
+    second_.back().head<3>() -= g.transpose();
+    second_.back().tail<3>() -= (b_.point - b_.origin).cross(g).transpose();
+  }
+
+  const Seen &a_, &b_;
+  Vec3 between_;
+  double length_;
+  Four<double> value_;
+  Four<Eigen::Matrix<double, 1, 6>> first_, second_;
+};
+
+/// Kinds of the two features as one number: point 0, line 1, plane 2.
+constexpr std::size_t kinds(std::size_t first, std::size_t second) { return 3 * first + second; }
+constexpr std::size_t kPointPoint = kinds(0, 0), kPointLine = kinds(0, 1),
+                      kPointPlane = kinds(0, 2), kLineLine = kinds(1, 1), kLinePlane = kinds(1, 2),
+                      kPlanePlane = kinds(2, 2);
+
+bool supported(Relation relation, std::size_t pair) {
+  const bool with_point = pair == kPointPoint || pair == kPointLine || pair == kPointPlane;
+  if (relation == Relation::Coincident) return true;
+  return relation == Relation::Distance ? with_point : !with_point;
+}
+
+void coincident(Rows& rows, const Seen& a, const Seen& b, std::size_t pair) {
+  switch (pair) {
+    case kPointPoint:
+      for (int i = 0; i < 3; ++i) rows.along(Vec3::Unit(i), 0);
+      return;
+    case kPointLine:
+      rows.along(b.side, 2);
+      rows.along(b.other, 2);
+      return;
+    case kPointPlane:
+      return rows.along(b.direction, 2);
+    case kLineLine:
+      rows.along(a.side, 1);
+      rows.along(a.other, 1);
+      rows.dot(a.side, b.direction);
+      return rows.dot(a.other, b.direction);
+    case kLinePlane:
+      rows.along(b.direction, 2);
+      return rows.dot(a.direction, b.direction);
+    default:
+      rows.along(b.direction, 2);
+      rows.dot(a.side, b.direction);
+      return rows.dot(a.other, b.direction);
+  }
+}
+
+/// @param aligned  the directions are to be the same or opposite; else at right angles.
+void directions(Rows& rows, const Seen& a, const Seen& b, bool aligned) {
+  if (!aligned) return rows.dot(a.direction, b.direction);
+  rows.dot(a.side, b.direction);
+  rows.dot(a.other, b.direction);
+}
+
+const char* name_of(const Feature& feature) {
+  return feature.index() == 0 ? "point" : feature.index() == 1 ? "line" : "plane";
+}
+
+bool is_unit(const Feature& feature) {
+  if (const auto* line = std::get_if<Line>(&feature))
+    return line->position.allFinite() && std::abs(line->direction.norm() - 1) < 1e-9;
+  if (const auto* plane = std::get_if<Plane>(&feature))
+    return plane->position.allFinite() && std::abs(plane->normal.norm() - 1) < 1e-9;
+  return std::get<Point>(feature).position.allFinite();
+}
+
+}  // namespace
+
+Cost cost(const Constraint& c, const Transform& first, const Transform& second, double length) {
+  const std::size_t i = c.first.feature.index(), k = c.second.feature.index();
+  if (i > k) {
+    Cost out = cost({c.relation, c.second, c.first, c.value}, second, first, length);
+    std::swap(out.first, out.second);
+    return out;
+  }
+  const Seen a = see(c.first.feature, first), b = see(c.second.feature, second);
+  const std::size_t pair = kinds(i, k);
+  Rows rows(a, b, length);
+  switch (c.relation) {
+    case Relation::Coincident:
+      coincident(rows, a, b, pair);
+      break;
+    case Relation::Distance:
+      coincident(rows, a, b, pair);
+      rows.norm(c.value);
+      break;
+    case Relation::Parallel:
+      directions(rows, a, b, pair != kLinePlane);
+      break;
+    case Relation::Perpendicular:
+      directions(rows, a, b, pair == kLinePlane);
+      break;
+    case Relation::Angle:
+      rows.angle(a.direction, b.direction, pair == kLinePlane, c.value);
+      break;
+  }
+  return rows.result();
+}
+
+void require_valid(const Constraint& c) {
+  const auto fail = [](const std::string& what) {
+    throw Error(ErrorCode::InvalidArgument, "constraint: " + what);
+  };
+  if (!is_unit(c.first.feature) || !is_unit(c.second.feature))
+    fail("a position is not finite or a direction not of unit length");
+  const std::size_t i = c.first.feature.index(), k = c.second.feature.index();
+  const std::size_t pair = kinds(std::min(i, k), std::max(i, k));
+  if (!supported(c.relation, pair)) {
+    const char* const names[] = {"coincident", "parallel", "perpendicular", "distance", "angle"};
+    fail(std::string(names[static_cast<int>(c.relation)]) + " of a " + name_of(c.first.feature) +
+         " and a " + name_of(c.second.feature) + " is not defined");
+  }
+  if (c.first.frame == c.second.frame) fail("both features are fixed to the same frame");
+  if (c.relation == Relation::Distance && !(c.value >= 0 && std::isfinite(c.value)))
+    fail("a distance is a finite number of at least 0");
+  const double low = pair == kLinePlane ? -kPi / 2 : 0, high = pair == kLinePlane ? kPi / 2 : kPi;
+  if (c.relation == Relation::Angle && !(c.value >= low && c.value <= high))
+    fail(pair == kLinePlane ? "the angle of a line and a plane is within -pi/2 and pi/2"
+                            : "an angle of directions is within 0 and pi");
+}
+
+}  // namespace kaboum::kinematics

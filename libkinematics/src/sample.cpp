@@ -1,0 +1,370 @@
+// Samples of configurations and poses that meet constraints: random starts, projected by damped
+// least squares, on the joints or, where the inverse kinematics has a closed form, on poses.
+// Source: [gaschler2016] Alg. 3; docs/algorithms/constraint-sampling.md.
+#include <kaboum/base/error.h>
+#include <kaboum/kinematics/closed_form.h>
+#include <kaboum/kinematics/copies.h>
+#include <kaboum/kinematics/sample.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "joint_limits.h"
+
+namespace kaboum::kinematics {
+namespace {
+
+using Kind = FrameId::Kind;
+using Twists = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
+/// How a frame's pose depends on the unknowns: a block of columns.
+struct Frame {
+  Transform pose;
+  Eigen::Index first = 0, count = 0;
+  bool rigid = true;  ///< six unknowns: the twist itself; else `twists`
+  Twists twists;      ///< of the frame's origin, by the unknowns of the block
+};
+
+/// Poses of everything, and the unknowns.
+struct Frames {
+  std::vector<Frame> tools, objects;
+  Eigen::Index unknowns = 0;
+
+  [[nodiscard]] const Frame* find(const FrameId& id) const {
+    if (id.kind == Kind::World) return nullptr;
+    return id.kind == Kind::Tool ? &tools[id.index] : &objects[id.index];
+  }
+};
+
+void add_columns(const Frame* frame, const Cost::Derivative& by_twist, Eigen::Index row,
+                 Eigen::MatrixXd& out) {
+  if (frame == nullptr || frame->count == 0) return;
+  auto block = out.block(row, frame->first, by_twist.rows(), frame->count);
+  if (frame->rigid)
+    block += by_twist;
+  else
+    block.noalias() += by_twist * frame->twists;
+}
+
+void assemble(const std::vector<Constraint>& constraints, const Frames& frames, double length,
+              Costs& out) {
+  const Transform world;
+  out.value.resize(static_cast<Eigen::Index>(4 * constraints.size()));
+  out.derivative.setZero(out.value.size(), frames.unknowns);
+  Eigen::Index row = 0;
+  for (const Constraint& c : constraints) {
+    const Frame *a = frames.find(c.first.frame), *b = frames.find(c.second.frame);
+    const Cost cost =
+        kinematics::cost(c, a != nullptr ? a->pose : world, b != nullptr ? b->pose : world, length);
+    out.value.segment(row, cost.value.size()) = cost.value;
+    add_columns(a, cost.first, row, out.derivative);
+    add_columns(b, cost.second, row, out.derivative);
+    row += cost.value.size();
+  }
+  out.value.conservativeResize(row);
+  out.derivative.conservativeResize(row, Eigen::NoChange);
+}
+
+/// Pose of the tool, and its derivative, in the world.
+void place_tool(const PlacedArm& robot, const std::vector<double>& q, Frame& frame) {
+  Transform pose;
+  frame.twists = jacobian(robot.arm, q, &pose);
+  frame.twists.topRows<3>() = robot.base.linear * frame.twists.topRows<3>();
+  frame.twists.bottomRows<3>() = robot.base.linear * frame.twists.bottomRows<3>();
+  frame.pose = robot.base * pose;
+}
+
+/// A pose after the twist: turned about its own origin, and moved.
+Transform moved(const Transform& pose, const Eigen::Ref<const Eigen::VectorXd>& twist) {
+  const Vec3 turn = twist.tail<3>();
+  const double angle = turn.norm();
+  Transform out{pose.linear, pose.translation + twist.head<3>()};
+  if (angle > 0) out.linear = robot::rotation_about(turn / angle, angle) * pose.linear;
+  return out;
+}
+
+/// A rotation nearly so, made one again (Gram–Schmidt).
+Mat3 orthonormal(const Mat3& m) {
+  Mat3 r;
+  r.col(0) = m.col(0).normalized();
+  r.col(1) = (m.col(1) - r.col(0) * r.col(0).dot(m.col(1))).normalized();
+  r.col(2) = r.col(0).cross(r.col(1));
+  return r;
+}
+
+Mat3 random_rotation(Random& random) {
+  // A uniform unit quaternion (Shoemake).
+  const double u = random.between(0, 1), a = random.between(0, 2 * std::numbers::pi),
+               b = random.between(0, 2 * std::numbers::pi);
+  return Eigen::Quaterniond(std::sqrt(u) * std::cos(b), std::sqrt(1 - u) * std::sin(a),
+                            std::sqrt(1 - u) * std::cos(a), std::sqrt(u) * std::sin(b))
+      .toRotationMatrix();
+}
+
+}  // namespace
+
+void require_valid(const ConstraintProblem& problem) {
+  for (std::size_t i = 0; i < problem.constraints.size(); ++i) {
+    const Constraint& c = problem.constraints[i];
+    try {
+      require_valid(c);
+      for (const FrameId& id : {c.first.frame, c.second.frame}) {
+        const std::size_t count = id.kind == Kind::World  ? 1
+                                  : id.kind == Kind::Tool ? problem.robots.size()
+                                                          : problem.objects.size();
+        if (id.index >= count)
+          throw Error(ErrorCode::InvalidArgument,
+                      "constraint: there is no " +
+                          std::string(id.kind == Kind::Tool ? "robot" : "object") + " number " +
+                          std::to_string(id.index));
+      }
+    } catch (const Error& error) {
+      throw Error(error.code(), std::string(error.what()) + " (constraint " + std::to_string(i) +
+                                    ", counted from 0)");
+    }
+  }
+}
+
+Costs evaluate(const ConstraintProblem& problem, const Placement& at, double length) {
+  require_valid(problem);
+  Frames frames;
+  const auto add = [&](Frame frame, std::size_t count) {
+    frame.first = frames.unknowns;
+    frame.count = static_cast<Eigen::Index>(count);
+    frames.unknowns += frame.count;
+    return frame;
+  };
+  for (std::size_t i = 0; i < problem.robots.size(); ++i) {
+    Frame frame = add({}, at.joints[i].size());
+    frame.rigid = false;
+    place_tool(problem.robots[i], at.joints[i], frame);
+    frames.tools.push_back(std::move(frame));
+  }
+  for (const Transform& pose : at.objects) {
+    Frame frame = add({}, 6);
+    frame.pose = pose;
+    frames.objects.push_back(std::move(frame));
+  }
+  Costs out;
+  assemble(problem.constraints, frames, length, out);
+  return out;
+}
+
+class ConstraintSampler::Impl {
+ public:
+  Impl(ConstraintProblem problem, const SampleOptions& options)
+      : problem_(std::move(problem)), options_(options), random_(options.seed) {
+    require_valid(problem_);
+    length_ = options.length;
+    for (const PlacedArm& robot : problem_.robots) {
+      if (!(options.length > 0)) length_ = std::max(length_, reach(robot.arm));
+      forms_.push_back(options.closed_form ? recognise(robot.arm) : std::nullopt);
+      // Five axes reach some poses only: those that the projection of poses gives are none.
+      if (forms_.back() && forms_.back()->family == Family::FiveAxes) forms_.back().reset();
+    }
+    if (!(length_ > 0)) length_ = 1;
+    for (std::size_t i = 0; i < problem_.robots.size(); ++i) {
+      Frame frame;
+      frame.rigid = forms_[i].has_value();
+      frame.count = frame.rigid ? 6 : static_cast<Eigen::Index>(problem_.robots[i].arm.axes.size());
+      add(frames_.tools, std::move(frame));
+    }
+    for (std::size_t i = 0; i < problem_.objects.size(); ++i) {
+      Frame frame;
+      frame.count = 6;
+      add(frames_.objects, std::move(frame));
+    }
+  }
+
+  std::optional<Sample> next() {
+    for (int draw = 1; draw <= options_.draws; ++draw) {
+      ++tally_.draws;
+      start();
+      if (!project()) continue;
+      ++tally_.projected;
+      Sample sample;
+      sample.draws = draw;
+      if (!finish(sample)) continue;
+      ++tally_.samples;
+      return sample;
+    }
+    return std::nullopt;
+  }
+
+  Tally tally_;
+
+ private:
+  void add(std::vector<Frame>& frames, Frame frame) {
+    frame.first = frames_.unknowns;
+    frames_.unknowns += frame.count;
+    frames.push_back(std::move(frame));
+  }
+
+  /// Random joints, and the poses that they give; random poses of objects.
+  void start() {
+    joints_.clear();
+    for (std::size_t i = 0; i < problem_.robots.size(); ++i) {
+      const PlacedArm& robot = problem_.robots[i];
+      std::vector<double> q;
+      for (const Axis& axis : robot.arm.axes) q.push_back(random_value(axis, length_, random_));
+      if (forms_[i])
+        frames_.tools[i].pose = robot.base * forward(robot.arm, q);
+      else
+        place_tool(robot, q, frames_.tools[i]);
+      joints_.push_back(std::move(q));
+    }
+    for (std::size_t i = 0; i < problem_.objects.size(); ++i) {
+      const FreeObject& object = problem_.objects[i];
+      Transform& pose = frames_.objects[i].pose;
+      for (int k = 0; k < 3; ++k)
+        pose.translation[k] = random_.between(object.lower[k], object.upper[k]);
+      pose.linear = random_rotation(random_);
+    }
+  }
+
+  /// All unknowns after a step.
+  void step(const Eigen::VectorXd& change) {
+    for (std::size_t i = 0; i < problem_.robots.size(); ++i) {
+      Frame& frame = frames_.tools[i];
+      const auto part = change.segment(frame.first, frame.count);
+      if (frame.rigid) {
+        frame.pose = moved(frame.pose, part);
+        continue;
+      }
+      const Arm& arm = problem_.robots[i].arm;
+      for (std::size_t k = 0; k < joints_[i].size(); ++k) {
+        double& q = joints_[i][k];
+        q += part[static_cast<Eigen::Index>(k)];
+        if (options_.limits) q = into_limits(arm.axes[k], q);
+      }
+      place_tool(problem_.robots[i], joints_[i], frame);
+    }
+    for (Frame& frame : frames_.objects)
+      frame.pose = moved(frame.pose, change.segment(frame.first, frame.count));
+  }
+
+  /// Joints on a limit that a step would take past it do not take part in it.
+  void freeze(Costs& costs) const {
+    if (!options_.limits) return;
+    for (std::size_t i = 0; i < problem_.robots.size(); ++i) {
+      const Frame& frame = frames_.tools[i];
+      if (frame.rigid) continue;
+      for (std::size_t k = 0; k < joints_[i].size(); ++k) {
+        const Axis& axis = problem_.robots[i].arm.axes[k];
+        auto column = costs.derivative.col(frame.first + static_cast<Eigen::Index>(k));
+        const double uphill = column.dot(costs.value);
+        if ((joints_[i][k] <= axis.lower && uphill > 0) ||
+            (joints_[i][k] >= axis.upper && uphill < 0))
+          column.setZero();
+      }
+    }
+  }
+
+  /// Levenberg–Marquardt with the smallest step that does it: −Jᵀ(JJᵀ + λ)⁻¹ f.
+  bool project() {
+    assemble(problem_.constraints, frames_, length_, costs_);
+    double damping = 1e-6;
+    for (int i = 0; i < options_.iterations; ++i) {
+      if (!(costs_.value.size() > 0)) return true;
+      if (costs_.value.cwiseAbs().maxCoeff() <= options_.bound / 100) break;
+      freeze(costs_);
+      normal_.noalias() = costs_.derivative * costs_.derivative.transpose();
+      normal_.diagonal().array() += damping;
+      change_.noalias() = -costs_.derivative.transpose() * normal_.ldlt().solve(costs_.value);
+      const double longest = change_.cwiseAbs().maxCoeff();
+      if (!std::isfinite(longest)) return false;
+      if (longest > 1) change_ /= longest;  // a radian, or a unit of length, at a time
+      before_.joints = joints_;
+      const Frames was = frames_;
+      const double cost = costs_.value.norm();
+      step(change_);
+      assemble(problem_.constraints, frames_, length_, costs_);
+      if (costs_.value.norm() < cost) {
+        damping = std::max(damping / 8, 1e-14);
+        continue;
+      }
+      if (damping > 1e3 || longest < 1e-13) return false;  // a local minimum
+      damping *= 32;
+      frames_ = was;
+      joints_ = before_.joints;
+      assemble(problem_.constraints, frames_, length_, costs_);
+    }
+    return costs_.value.cwiseAbs().maxCoeff() <= options_.bound / 10;
+  }
+
+  /// Joints for the tools that are where they should be, and the check of all.
+  bool finish(Sample& sample) {
+    bool within = true;
+    for (std::size_t i = 0; i < problem_.robots.size(); ++i) {
+      const PlacedArm& robot = problem_.robots[i];
+      if (forms_[i]) {
+        Transform pose = frames_.tools[i].pose;
+        pose.linear = orthonormal(pose.linear);
+        if (!choose(*forms_[i], inverse(robot.base) * pose, joints_[i], within)) return false;
+      } else if (options_.limits) {
+        within = within && within_limits(robot.arm, joints_[i]);
+      }
+    }
+    ++tally_.reached;
+    if (!within) return false;
+    sample.at.joints = joints_;
+    for (const Frame& frame : frames_.objects)
+      sample.at.objects.push_back({orthonormal(frame.pose.linear), frame.pose.translation});
+    sample.error = error_of(sample.at);
+    return sample.error <= options_.bound;
+  }
+
+  /// One of the solutions within the limits, each as likely as any other.
+  bool choose(const ClosedForm& form, const Transform& target, std::vector<double>& q,
+              bool& within) {
+    SolveOptions options;
+    for (std::size_t k = 0; k < q.size(); ++k) options.reference[k] = q[k];  // random values
+    const Solutions found = solve(form, target, options);
+    if (found.empty()) return false;
+    const std::size_t first = random_.index(found.size());
+    for (std::size_t n = 0; n < found.size(); ++n) {
+      const Solution& s = found[(first + n) % found.size()];
+      if (!options_.limits) return q.assign(s.q.begin(), s.q.begin() + q.size()), true;
+      // Of whole turns, those near the random start.
+      const std::vector<double> start = q;
+      if (auto near = nearest_copy(form.arm, {s.q.data(), q.size()}, start)) {
+        q = std::move(*near);
+        return true;
+      }
+    }
+    within = false;
+    return true;
+  }
+
+  [[nodiscard]] double error_of(const Placement& at) const {
+    double most = 0;
+    const Costs costs = evaluate(problem_, at, length_);
+    for (const double value : costs.value) most = std::max(most, std::abs(value));
+    return most;
+  }
+  ConstraintProblem problem_;
+  SampleOptions options_;
+  Random random_;
+  double length_ = 0;
+  std::vector<std::optional<ClosedForm>> forms_;
+  Frames frames_;
+  std::vector<std::vector<double>> joints_;
+  Placement before_;
+  Costs costs_;
+  Eigen::MatrixXd normal_;
+  Eigen::VectorXd change_;
+};
+
+ConstraintSampler::ConstraintSampler(ConstraintProblem problem, const SampleOptions& options)
+    : impl_(std::make_unique<Impl>(std::move(problem), options)) {}
+ConstraintSampler::~ConstraintSampler() = default;
+ConstraintSampler::ConstraintSampler(ConstraintSampler&&) noexcept = default;
+ConstraintSampler& ConstraintSampler::operator=(ConstraintSampler&&) noexcept = default;
+
+std::optional<Sample> ConstraintSampler::next() { return impl_->next(); }
+const ConstraintSampler::Tally& ConstraintSampler::tally() const { return impl_->tally_; }
+
+}  // namespace kaboum::kinematics
