@@ -30,7 +30,7 @@ auto Arrangement::limited(const Search& search) const {
 void Arrangement::need_mutual() {
   if (contacts_[kInside][kOutside]) return;
   MutualContacts found =
-      limited([&](const ContactLimits& limits) { return contacts_between(scene_, limits); });
+      limited([&](const ContactLimits& limits) { return contacts_between(meshes_, limits); });
   contacts_[kInside][kOutside] = std::move(found.of_inside);
   contacts_[kOutside][kInside] = std::move(found.of_outside);
 }
@@ -38,7 +38,7 @@ void Arrangement::need_mutual() {
 void Arrangement::need_own(int chain) {
   if (contacts_[chain][chain]) return;
   contacts_[chain][chain] =
-      limited([&](const ContactLimits& limits) { return contacts_within(scene_, chain, limits); });
+      limited([&](const ContactLimits& limits) { return contacts_within(meshes_, chain, limits); });
 }
 
 namespace {
@@ -46,10 +46,10 @@ namespace {
 /// The sector between two neighbours at their common edge, on the side that is walked on.
 class Sector {
  public:
-  Sector(const Scene& scene, std::uint32_t f, std::uint32_t other, std::uint32_t other_apex,
+  Sector(const MeshPair& meshes, std::uint32_t f, std::uint32_t other, std::uint32_t other_apex,
          Side side)
-      : scene_(scene), f_(f), other_(other), side_(side) {
-    const Sign turn = scene.side(f, scene.point(other_apex));
+      : meshes_(meshes), f_(f), other_(other), side_(side) {
+    const Sign turn = meshes.side(f, meshes.point(other_apex));
     turn_ = side * to_int(turn);
   }
 
@@ -58,14 +58,14 @@ class Sector {
 
   /// Whether the half-plane from the edge through p lies strictly within the sector.
   [[nodiscard]] bool holds(const Vec3& p) const {
-    const bool beyond_first = side_ * to_int(scene_.side(f_, p)) > 0;
+    const bool beyond_first = side_ * to_int(meshes_.side(f_, p)) > 0;
     if (turn_ == 0) return beyond_first;
-    const bool beyond_other = side_ * to_int(scene_.side(other_, p)) > 0;
+    const bool beyond_other = side_ * to_int(meshes_.side(other_, p)) > 0;
     return turn_ > 0 ? beyond_first && beyond_other : beyond_first || beyond_other;
   }
 
  private:
-  const Scene& scene_;
+  const MeshPair& meshes_;
   std::uint32_t f_, other_;
   Side side_;
   int turn_;
@@ -73,16 +73,16 @@ class Sector {
 
 /// Whether one can walk from f over its edge k to `other` without crossing the chains of `mask`.
 bool walkable(const Arrangement& arrangement, std::uint32_t f, int k, std::uint32_t other,
-              int other_edge, ChainMask mask, Side side) {
-  const Scene& scene = arrangement.scene();
-  const Face& face = scene.face(f);
+              int other_edge, OperandMask mask, Side side) {
+  const MeshPair& meshes = arrangement.meshes();
+  const Face& face = meshes.face(f);
   const std::uint32_t u = face.v[k], v = face.v[(k + 1) % 3];
 
   // What lies along the edge: triangles that have it as an edge, and those in contact with it.
   thread_local std::vector<std::uint32_t> touching;
   touching.clear();
-  for (const std::uint32_t g : scene.around_edge(u, v)) {
-    const Face& by = scene.face(g);
+  for (const std::uint32_t g : meshes.around_edge(u, v)) {
+    const Face& by = meshes.face(g);
     if (g == f || g == other || by.axis < 0 || (mask & mask_of(by.chain)) == 0) continue;
     if (by.place_of(u) >= 0 && by.place_of(v) >= 0) touching.push_back(g);
   }
@@ -99,18 +99,18 @@ bool walkable(const Arrangement& arrangement, std::uint32_t f, int k, std::uint3
   }
   if (touching.empty()) return true;
 
-  const std::uint32_t apex = scene.face(other).v[(other_edge + 2) % 3];
-  const Sector sector(scene, f, other, apex, side);
+  const std::uint32_t apex = meshes.face(other).v[(other_edge + 2) % 3];
+  const Sector sector(meshes, f, other, apex, side);
   if (sector.turn() == 0) {
     // Coplanar: beside each other is a flat sector, on each other none or all of the space.
-    const Vec3 &a = scene.point(u), &b = scene.point(v);
-    const Sign first = orient2d(face.axis, a, b, scene.corner(f, (k + 2) % 3));
-    const Sign second = orient2d(face.axis, a, b, scene.point(apex));
+    const Vec3 &a = meshes.point(u), &b = meshes.point(v);
+    const Sign first = orient2d(face.axis, a, b, meshes.corner(f, (k + 2) % 3));
+    const Sign second = orient2d(face.axis, a, b, meshes.point(apex));
     if (first == second) return false;
   }
   for (const std::uint32_t g : touching) {
-    for (const std::uint32_t w : scene.face(g).v) {
-      if (w != u && w != v && sector.holds(scene.point(w))) return false;
+    for (const std::uint32_t w : meshes.face(g).v) {
+      if (w != u && w != v && sector.holds(meshes.point(w))) return false;
     }
   }
   return true;
@@ -118,24 +118,24 @@ bool walkable(const Arrangement& arrangement, std::uint32_t f, int k, std::uint3
 
 }  // namespace
 
-std::vector<std::uint32_t> patches(const Arrangement& arrangement, int chain, ChainMask mask,
+std::vector<std::uint32_t> patches(const Arrangement& arrangement, int chain, OperandMask mask,
                                    Side side) {
-  const Scene& scene = arrangement.scene();
-  const std::uint32_t begin = scene.begin(chain), count = scene.count(chain);
+  const MeshPair& meshes = arrangement.meshes();
+  const std::uint32_t begin = meshes.begin(chain), count = meshes.count(chain);
 
   // Per face and edge: the neighbour that can be walked to, if its number is larger.
   constexpr std::uint32_t kNone = 0xFFFFFFFF;
   std::vector<std::array<std::uint32_t, 3>> next(count, {kNone, kNone, kNone});
   verify::parallel_loop(std::uint32_t{0}, count, [&](std::uint32_t i) {
     const std::uint32_t f = begin + i;
-    const Face& face = scene.face(f);
-    if (face.axis < 0 || !arrangement.whole(f, mask)) return;
+    const Face& face = meshes.face(f);
+    if (face.axis < 0 || !arrangement.uncut(f, mask)) return;
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t u = face.v[k], v = face.v[(k + 1) % 3];
       std::uint32_t other = kNone;
       int others = 0, other_edge = 0;
-      for (const std::uint32_t g : scene.around_edge(u, v)) {
-        const Face& by = scene.face(g);
+      for (const std::uint32_t g : meshes.around_edge(u, v)) {
+        const Face& by = meshes.face(g);
         if (g == f || by.chain != chain) continue;
         const int at = by.place_of(v);
         if (at < 0 || by.place_of(u) < 0) continue;
@@ -144,9 +144,9 @@ std::vector<std::uint32_t> patches(const Arrangement& arrangement, int chain, Ch
         other_edge = at;  // opposite direction: from v to u
       }
       if (others != 1 || other < f) continue;
-      const Face& neighbour = scene.face(other);
+      const Face& neighbour = meshes.face(other);
       if (neighbour.axis < 0 || neighbour.v[(other_edge + 1) % 3] != u) continue;
-      if (!arrangement.whole(other, mask)) continue;
+      if (!arrangement.uncut(other, mask)) continue;
       if (walkable(arrangement, f, k, other, other_edge, mask, side)) next[i][k] = other - begin;
     }
   });

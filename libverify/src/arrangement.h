@@ -5,17 +5,17 @@
 
 #include "allowance.h"
 #include "contacts.h"
-#include "scene.h"
+#include "mesh_pair.h"
 
 namespace kaboum::verify {
 
-/// The scene and the contacts that have been asked for so far.
+/// The meshes and the contacts that have been asked for so far.
 class Arrangement {
  public:
   /// @param allowance  counts the work where it is limited; then contacts are not sought with all
   ///   that is left
-  Arrangement(const Scene& scene, const ContactLimits& limits, Allowance* allowance = nullptr)
-      : scene_(scene), limits_(limits), allowance_(allowance) {}
+  Arrangement(const MeshPair& meshes, const ContactLimits& limits, Allowance* allowance = nullptr)
+      : meshes_(meshes), limits_(limits), allowance_(allowance) {}
 
   /// Finds the contacts between the two chains, or of a chain with itself, if not known yet.
   /// @throws Error{LimitReached}
@@ -31,14 +31,14 @@ class Arrangement {
     return count;
   }
 
-  [[nodiscard]] const Scene& scene() const { return scene_; }
+  [[nodiscard]] const MeshPair& meshes() const { return meshes_; }
   /// @pre they were asked for
   [[nodiscard]] const Contacts& contacts(int of, int with) const { return *contacts_[of][with]; }
   /// No chain of the mask cuts the face.
-  [[nodiscard]] bool whole(std::uint32_t face, ChainMask with) const {
-    const int of = scene_.face(face).chain;
+  [[nodiscard]] bool uncut(std::uint32_t face, OperandMask with) const {
+    const int of = meshes_.face(face).chain;
     for (int c = 0; c < 2; ++c) {
-      if ((with & mask_of(c)) != 0 && !contacts_[of][c]->whole(face)) return false;
+      if ((with & mask_of(c)) != 0 && !contacts_[of][c]->uncut(face)) return false;
     }
     return true;
   }
@@ -48,7 +48,7 @@ class Arrangement {
   template <class Search>
   auto limited(const Search& search) const;
 
-  const Scene& scene_;
+  const MeshPair& meshes_;
   ContactLimits limits_;
   Allowance* allowance_;
   std::array<std::array<std::optional<Contacts>, 2>, 2> contacts_;
@@ -63,7 +63,7 @@ inline constexpr Side kOuter = 1;
 /// its neighbour in the patch one can walk on the given side without crossing the chains of `mask`.
 /// @return per face of the chain (counted from its first) the lowest number, so counted, of its
 ///   patch; for faces that are cut, their own number.
-std::vector<std::uint32_t> patches(const Arrangement& arrangement, int chain, ChainMask mask,
+std::vector<std::uint32_t> patches(const Arrangement& arrangement, int chain, OperandMask mask,
                                    Side side);
 
 }  // namespace kaboum::verify

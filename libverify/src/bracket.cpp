@@ -9,10 +9,10 @@
 #include <queue>
 
 #include "allowance.h"
+#include "cell_sample.h"
 #include "nearest.h"
 #include "parallel.h"
-#include "pockets.h"
-#include "spot.h"
+#include "uncovered_region.h"
 
 namespace kaboum::verify {
 namespace {
@@ -40,24 +40,24 @@ struct Found {
 /// What distances to a mesh, or to its solid, are measured to: what lies in it for sure, for bounds
 /// from above, and all that has a part in it, for bounds from below.
 /// @throws Error{LimitReached}
-Pieces target_of(const Scene& scene, bool to_solid, double max_work) {
-  if (!to_solid) return {{}, scene.tree(kOutside), scene.tree(kOutside)};
+Pieces target_of(const MeshPair& meshes, bool to_solid, double max_work) {
+  if (!to_solid) return {{}, meshes.tree(kOutside), meshes.tree(kOutside)};
   InclusionOptions limits;
   limits.max_work = kSearchedShare * max_work;
-  return pieces_with(scene, kOutside, limits,
+  return pieces_with(meshes, kOutside, limits,
                      [](int inner, int outer) { return inner >= 1 || outer >= 1; });
 }
 
 class Farthest {
  public:
-  Farthest(const Scene& scene, const Pieces& target, bool to_solid)
-      : scene_(scene),
-        triangles_(scene, target.parts),
-        surface_(scene, kOutside),
+  Farthest(const MeshPair& meshes, const Pieces& target, bool to_solid)
+      : meshes_(meshes),
+        triangles_(meshes, target.parts),
+        surface_(meshes, kOutside),
         surely_(triangles_, target.surely),
         perhaps_(triangles_, target.perhaps),
         to_solid_(to_solid),
-        slack_(rounding_of_distances(scene.largest_coordinate())) {}
+        slack_(rounding_of_distances(meshes.largest_coordinate())) {}
 
   [[nodiscard]] Bracket search(std::vector<Part> parts, const BracketEffort& effort) const {
     Bracket best;
@@ -116,7 +116,7 @@ class Farthest {
     if (to_solid_) {  // a ball that misses the surface
       const double clear = surface_.nearest(centre).distance;
       if (clear > 2 * radius && surface_.lower_bound(centre, clear) - slack_ > radius &&
-          winding_at(scene_, kOutside, centre).value_or(0) >= 1)
+          winding_at(meshes_, kOutside, centre).value_or(0) >= 1)
         return {};
     }
     const NearestTriangle::Hit hit = surely_.nearest(centre);
@@ -149,18 +149,18 @@ class Farthest {
       box.high[k] = std::max({all[0][k], all[1][k], all[2][k]}) + 2 * slack_;
     }
     double height = std::numeric_limits<double>::infinity();
-    scene_.tree(kOutside).query([&](const Bounds& b) { return b.meets(box); },
-                                [&](std::uint32_t f) {
-                                  for (int k = 0; k < 3; ++k)
-                                    height =
-                                        std::min(height, normal.dot(triangles_.corner(f, k) - a));
-                                });
+    meshes_.tree(kOutside).query([&](const Bounds& b) { return b.meets(box); },
+                                 [&](std::uint32_t f) {
+                                   for (int k = 0; k < 3; ++k)
+                                     height =
+                                         std::min(height, normal.dot(triangles_.corner(f, k) - a));
+                                 });
     height -= 4 * slack_;
     std::array<double, 3> of;
     for (int k = 0; k < 3; ++k) of[k] = normal.dot(all[k] - a);
     const auto lowest =
         static_cast<std::size_t>(std::min_element(of.begin(), of.end()) - of.begin());
-    if (!(of[lowest] < height) || winding_at(scene_, kOutside, all[lowest]).value_or(0) < 1)
+    if (!(of[lowest] < height) || winding_at(meshes_, kOutside, all[lowest]).value_or(0) < 1)
       return all;
     std::vector<Vec3> left;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -189,7 +189,7 @@ class Farthest {
   void reach(const Vec3& p, double known, Found& found) const {
     const double distance = perhaps_.distance(p);
     if (distance <= std::max(known, found.lower) || !std::isfinite(distance)) return;
-    if (to_solid_ && winding_at(scene_, kOutside, p).value_or(0) >= 1) return;
+    if (to_solid_ && winding_at(meshes_, kOutside, p).value_or(0) >= 1) return;
     const double lower = perhaps_.lower_bound(p, distance) - slack_;
     if (lower <= found.lower) return;
     found.lower = lower;
@@ -212,41 +212,41 @@ class Farthest {
     into.push_back({{middle, b, c}, part.triangle, part.cuts + 1, part.upper});
   }
 
-  const Scene& scene_;
+  const MeshPair& meshes_;
   Triangles triangles_;
   NearestTriangle surface_, surely_, perhaps_;
   bool to_solid_;
   double slack_;
 };
 
-/// In the scene's unit.
-Bracket bracket_faces(const Scene& scene, const std::vector<std::uint32_t>& faces, bool to_solid,
-                      const Pieces& target, const BracketEffort& effort) {
+/// In the meshes' unit.
+Bracket bracket_faces(const MeshPair& meshes, const std::vector<std::uint32_t>& faces,
+                      bool to_solid, const Pieces& target, const BracketEffort& effort) {
   std::vector<Part> parts;
   parts.reserve(faces.size());
   for (const std::uint32_t f : faces)
-    parts.push_back({{scene.corner(f, 0), scene.corner(f, 1), scene.corner(f, 2)},
+    parts.push_back({{meshes.corner(f, 0), meshes.corner(f, 1), meshes.corner(f, 2)},
                      f,
                      0,
                      std::numeric_limits<double>::infinity()});
-  Bracket result = Farthest(scene, target, to_solid).search(std::move(parts), effort);
-  if (!faces.empty()) result.triangle = scene.face(result.triangle).source;
+  Bracket result = Farthest(meshes, target, to_solid).search(std::move(parts), effort);
+  if (!faces.empty()) result.triangle = meshes.face(result.triangle).source;
   return result;
 }
 
-Bracket outside_of(const Scene& scene, Bracket bracket) {
-  bracket.lower = scene.length_outside(bracket.lower);
-  bracket.upper = scene.length_outside(bracket.upper);
-  bracket.at = scene.point_outside(bracket.at);
+Bracket outside_of(const MeshPair& meshes, Bracket bracket) {
+  bracket.lower = meshes.length_outside(bracket.lower);
+  bracket.upper = meshes.length_outside(bracket.upper);
+  bracket.at = meshes.point_outside(bracket.at);
   return bracket;
 }
 
 /// nullopt where no distance can be measured.
-std::optional<Pieces> measurable(const Scene& scene, bool to_solid,
+std::optional<Pieces> measurable(const MeshPair& meshes, bool to_solid,
                                  double max_work = std::numeric_limits<double>::infinity()) {
-  if (!scene.scaled() || scene.tree(kOutside).empty()) return std::nullopt;
+  if (!meshes.scaled() || meshes.tree(kOutside).empty()) return std::nullopt;
   try {
-    return target_of(scene, to_solid, max_work);
+    return target_of(meshes, to_solid, max_work);
   } catch (const Error& error) {
     if (error.code() != ErrorCode::LimitReached) throw;
     return std::nullopt;
@@ -259,38 +259,38 @@ Bracket bracket_distance(const geom::Mesh& from, std::span<const std::uint32_t> 
                          const geom::Mesh& to, bool to_solid, const BracketEffort& effort) {
   geom::Mesh part{from.vertices, {}};
   for (const std::uint32_t t : triangles) part.triangles.push_back(from.triangles[t]);
-  const Scene scene(part, to);
-  const std::optional<Pieces> target = measurable(scene, to_solid, effort.max_work);
+  const MeshPair meshes(part, to);
+  const std::optional<Pieces> target = measurable(meshes, to_solid, effort.max_work);
   if (!target) return {};
   std::vector<std::uint32_t> faces;
-  for (std::uint32_t f = scene.begin(kInside); f < scene.end(kInside); ++f) faces.push_back(f);
-  Bracket result = outside_of(scene, bracket_faces(scene, faces, to_solid, *target, effort));
+  for (std::uint32_t f = meshes.begin(kInside); f < meshes.end(kInside); ++f) faces.push_back(f);
+  Bracket result = outside_of(meshes, bracket_faces(meshes, faces, to_solid, *target, effort));
   if (!triangles.empty()) result.triangle = triangles[result.triangle];
   return result;
 }
 
 Bracket bracket_solid(const geom::Mesh& inner, const geom::Mesh& outer, const Claim& solid,
                       const BracketEffort& effort) {
-  const Scene scene(inner, outer);
-  const std::optional<Pieces> target = measurable(scene, true);
+  const MeshPair meshes(inner, outer);
+  const std::optional<Pieces> target = measurable(meshes, true);
   if (!target || !solid.witness) return {};
-  const std::vector<std::uint32_t> offending = offending_faces(scene, solid);
+  const std::vector<std::uint32_t> offending = offending_faces(meshes, solid);
   std::vector<std::uint32_t> of_inner;
   for (const std::uint32_t f : offending)
-    if (scene.face(f).chain == kInside) of_inner.push_back(f);
-  const double slack = rounding_of_distances(scene.largest_coordinate());
-  const Triangles triangles(scene, target->parts);
+    if (meshes.face(f).chain == kInside) of_inner.push_back(f);
+  const double slack = rounding_of_distances(meshes.largest_coordinate());
+  const Triangles triangles(meshes, target->parts);
   const NearestTriangle perhaps(triangles, target->perhaps);
 
   // The boundary of Z lies on these and on the outer solid's.
-  Bracket result = bracket_faces(scene, of_inner, true, *target, effort);
+  Bracket result = bracket_faces(meshes, of_inner, true, *target, effort);
   const double on_boundary = result.upper, hoped = result.lower;
-  const Vec3 wanted = result.at, witness = solid.witness->point * scene.scale();
+  const Vec3 wanted = result.at, witness = solid.witness->point * meshes.scale();
   result.lower = 0;
   result.at = witness;
   const auto take = [&](const Vec3& p) {
-    if (winding_at(scene, kInside, p).value_or(0) < 1 ||
-        winding_at(scene, kOutside, p).value_or(1) >= 1)
+    if (winding_at(meshes, kInside, p).value_or(0) < 1 ||
+        winding_at(meshes, kOutside, p).value_or(1) >= 1)
       return;
     const double distance = perhaps.distance(p);
     if (!std::isfinite(distance)) return;
@@ -304,23 +304,23 @@ Bracket bracket_solid(const geom::Mesh& inner, const geom::Mesh& outer, const Cl
   for (int k = 1; k <= kHalvings && hoped > result.lower * (1 + effort.gap); ++k)
     take(wanted + std::ldexp(1.0, -k) * (witness - wanted));
   result.upper = std::numeric_limits<double>::infinity();
-  if (target->surely.empty()) return outside_of(scene, result);
+  if (target->surely.empty()) return outside_of(meshes, result);
 
   // Inside Z it may be farther still, at places that are no nearer to its boundary.
   double limit = std::max(on_boundary, result.lower);
   for (int i = 0; i < kLimits && std::isfinite(limit); ++i) {
     limit = limit * (1 + effort.gap) + 4 * slack;
-    const Claim within = search_pockets(
-        scene, offending, {triangles, target->surely, target->perhaps, limit, effort.parts, true});
+    const Claim within = search_uncovered(
+        meshes, offending, {triangles, target->surely, target->perhaps, limit, effort.parts, true});
     if (within.answer == Answer::Verified) {
       result.upper = limit;
       break;
     }
     const bool refuted = within.answer == Answer::Refuted;
-    if (refuted) take(within.witness->point * scene.scale());
+    if (refuted) take(within.witness->point * meshes.scale());
     limit = std::max((refuted ? 1 : 4) * limit, result.lower);
   }
-  return outside_of(scene, result);
+  return outside_of(meshes, result);
 }
 
 }  // namespace kaboum::verify

@@ -1,5 +1,5 @@
-// The cells that triangles cut a face into, by one spot on either side of every piece of the lines
-// in which they meet it. Every cell but an uncut face touches such a piece, so that neither a
+// The cells that triangles cut a face into, by one sample on either side of every piece of the
+// lines in which they meet it. Every cell but an uncut face touches such a piece, so that neither a
 // planar arrangement nor a sorting round points is needed.
 
 #include <kaboum/base/error.h>
@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "allowance.h"
+#include "cell_sample.h"
 #include "segments.h"
-#include "spot.h"
 
 namespace kaboum::verify {
 namespace {
@@ -24,7 +24,7 @@ class Cutter {
   Cutter(std::vector<Segment> segments, std::uint32_t face, std::size_t limit)
       : index_(face), limit_(limit), segments_(std::move(segments)) {}
 
-  void visit(const SpotVisitor& visitor) {
+  void visit(const SampleVisitor& visitor) {
     split();
     for (std::size_t i = 0; i < segments_.size(); ++i) {
       if (!sample(i, visitor)) return;
@@ -88,7 +88,7 @@ class Cutter {
   }
 
   /// Spots on both sides of every piece of segment i. @return false if the visitor has seen enough
-  [[nodiscard]] bool sample(std::size_t i, const SpotVisitor& visitor) const {
+  [[nodiscard]] bool sample(std::size_t i, const SampleVisitor& visitor) const {
     const Segment& s = segments_[i];
     int apex = 0;
     while (sign_of(s.line[apex]) == Sign::Zero) ++apex;
@@ -110,17 +110,17 @@ class Cutter {
     });
     points.push_back(&s.q);
     const Triple<Exact>* last = &s.p;
-    Spot spot;
-    spot.face = index_;
+    CellSample sample;
+    sample.face = index_;
     for (const Triple<Exact>* next : points) {
       if (turn(*last, *next) == Sign::Zero) continue;  // the same point twice
       count_steps(kPiece);
-      spot.exact = between(*last, *next);
-      spot.approx = rounded(spot.exact);
-      spot.line = s.line;
-      if (!visitor(spot)) return false;
-      spot.line = Triple<Exact>{-s.line[0], -s.line[1], -s.line[2]};
-      if (!visitor(spot)) return false;
+      sample.exact = between(*last, *next);
+      sample.approx = rounded(sample.exact);
+      sample.line = s.line;
+      if (!visitor(sample)) return false;
+      sample.line = Triple<Exact>{-s.line[0], -s.line[1], -s.line[2]};
+      if (!visitor(sample)) return false;
       last = next;
     }
     return true;
@@ -139,24 +139,24 @@ class Cutter {
 
 }  // namespace
 
-Spot middle_spot(std::uint32_t face) {
+CellSample middle_sample(std::uint32_t face) {
   const Approx one{1, 0};
   return {face, {Exact(1), Exact(1), Exact(1)}, {one, one, one}, {}};
 }
 
-Vec3 position(const Scene& scene, const Spot& spot) {
-  const Triple<Approx>& w = spot.approx;
+Vec3 position(const MeshPair& meshes, const CellSample& sample) {
+  const Triple<Approx>& w = sample.approx;
   const double total = w[0].value + w[1].value + w[2].value;
   Vec3 p = Vec3::Zero();
-  for (int k = 0; k < 3; ++k) p += w[k].value / total * scene.corner(spot.face, k);
+  for (int k = 0; k < 3; ++k) p += w[k].value / total * meshes.corner(sample.face, k);
   return p;
 }
 
-void visit_spots(const Arrangement& arrangement, std::uint32_t face, ChainMask mask,
-                 std::size_t limit, std::span<const std::uint32_t> settled,
-                 const SpotVisitor& visitor) {
-  if (arrangement.whole(face, mask)) {
-    visitor(middle_spot(face));
+void visit_samples(const Arrangement& arrangement, std::uint32_t face, OperandMask mask,
+                   std::size_t limit, std::span<const std::uint32_t> settled,
+                   const SampleVisitor& visitor) {
+  if (arrangement.uncut(face, mask)) {
+    visitor(middle_sample(face));
     return;
   }
   Cutter cutter(segments_of(arrangement, face, mask, limit, settled), face, limit);

@@ -23,11 +23,11 @@ struct Found {
 /// Classifies pairs of faces.
 class Classifier {
  public:
-  Classifier(const Scene& scene, Found& of_first, Found& of_second)
-      : scene_(scene), first_(of_first), second_(of_second) {}
+  Classifier(const MeshPair& meshes, Found& of_first, Found& of_second)
+      : meshes_(meshes), first_(of_first), second_(of_second) {}
 
   void operator()(std::uint32_t fi, std::uint32_t gi) {
-    const Face &f = scene_.face(fi), &g = scene_.face(gi);
+    const Face &f = meshes_.face(fi), &g = meshes_.face(gi);
     int common = 0;
     for (const std::uint32_t v : f.v) common += static_cast<int>(g.place_of(v) >= 0);
     if (common == 3) return;  // the same triangle: contains and is contained
@@ -35,22 +35,22 @@ class Classifier {
       // An edge in common, and nothing else unless they lie on each other.
       int k = 0;
       while (f.place_of(g.v[k]) >= 0) ++k;
-      if (scene_.side(fi, scene_.point(g.v[k])) == Sign::Zero) coplanar(fi, gi);
+      if (meshes_.side(fi, meshes_.point(g.v[k])) == Sign::Zero) coplanar(fi, gi);
       return;
     }
-    const Sides sf = sides_of(scene_, f, gi);
+    const Sides sf = sides_of(meshes_, f, gi);
     if (all(sf, Sign::Positive) || all(sf, Sign::Negative)) return;
     if (all(sf, Sign::Zero)) return coplanar(fi, gi);
     const Crossing cf = crossing(f, sf);
     if (!cf.exists) return;
-    const Crossing cg = crossing(g, sides_of(scene_, g, fi));
+    const Crossing cg = crossing(g, sides_of(meshes_, g, fi));
     if (!cg.exists) return;
 
     std::array<std::array<int, 2>, 2> order{};
     bool before = false, behind = false;
     for (int i = 0; i < 2; ++i) {
       for (int j = 0; j < 2; ++j) {
-        order[i][j] = to_int(order_of(scene_, cf.ends[i], cg.ends[j]));
+        order[i][j] = to_int(order_of(meshes_, cf.ends[i], cg.ends[j]));
         before |= order[i][j] < 0;
         behind |= order[i][j] > 0;
       }
@@ -80,7 +80,7 @@ class Classifier {
       for (int k = 0; k < 3; ++k) {
         Sign s = Sign::Zero;
         if (g.v[k] != a && g.v[k] != b) {
-          s = orient2d(axis, scene_.point(a), scene_.point(b), scene_.point(g.v[k]));
+          s = orient2d(axis, meshes_.point(a), meshes_.point(b), meshes_.point(g.v[k]));
         }
         result[e][k] = f_upward ? s : opposite(s);
       }
@@ -100,10 +100,10 @@ class Classifier {
   }
 
   void coplanar(std::uint32_t fi, std::uint32_t gi) {
-    const Face &f = scene_.face(fi), &g = scene_.face(gi);
+    const Face &f = meshes_.face(fi), &g = meshes_.face(gi);
     const int axis = f.axis;
-    const bool g_upward = orient2d(axis, scene_.point(g.v[0]), scene_.point(g.v[1]),
-                                   scene_.point(g.v[2])) == Sign::Positive;
+    const bool g_upward = orient2d(axis, meshes_.point(g.v[0]), meshes_.point(g.v[1]),
+                                   meshes_.point(g.v[2])) == Sign::Positive;
     const std::array<Sides, 3> g_in_f = edge_sides(f, g, axis, f.upward);
     const std::array<Sides, 3> f_in_g = edge_sides(g, f, axis, g_upward);
     if (separates(g_in_f) || separates(f_in_g)) {
@@ -126,7 +126,7 @@ class Classifier {
       found.cuts.push_back({fi, gi, true});
       return;
     }
-    const Face &f = scene_.face(fi), &g = scene_.face(gi);
+    const Face &f = meshes_.face(fi), &g = meshes_.face(gi);
     for (int e = 0; e < 3; ++e) {
       if (g.place_of(f.v[e]) >= 0 && g.place_of(f.v[(e + 1) % 3]) >= 0) continue;
       found.alongs.push_back({fi, gi, static_cast<std::uint8_t>(e), true});
@@ -135,12 +135,12 @@ class Classifier {
 
   /// Edge i of f and edge j of g lie on one line.
   void along(std::uint32_t fi, int i, std::uint32_t gi, int j) {
-    const Face &f = scene_.face(fi), &g = scene_.face(gi);
+    const Face &f = meshes_.face(fi), &g = meshes_.face(gi);
     std::uint32_t a = f.v[i], b = f.v[(i + 1) % 3], c = g.v[j], d = g.v[(j + 1) % 3];
     if ((a == c && b == d) || (a == d && b == c)) return;  // the same edge
     // Along a line, lexicographic order of points is the order on the line.
     const auto less = [&](std::uint32_t p, std::uint32_t q) {
-      const Vec3 &x = scene_.point(p), &y = scene_.point(q);
+      const Vec3 &x = meshes_.point(p), &y = meshes_.point(q);
       return std::lexicographical_compare(x.data(), x.data() + 3, y.data(), y.data() + 3);
     };
     if (less(b, a)) std::swap(a, b);
@@ -150,7 +150,7 @@ class Classifier {
     second_.alongs.push_back({gi, fi, static_cast<std::uint8_t>(j), !less(c, a) && !less(b, d)});
   }
 
-  const Scene& scene_;
+  const MeshPair& meshes_;
   Found& first_;
   Found& second_;
 };
@@ -222,11 +222,11 @@ Contacts::Contacts(std::uint32_t begin, std::uint32_t end, std::vector<Cut> cuts
   first_along_ = index(alongs_);
 }
 
-std::array<Sign, 3> sides_of(const Scene& scene, const Face& f, std::uint32_t g) {
+std::array<Sign, 3> sides_of(const MeshPair& meshes, const Face& f, std::uint32_t g) {
   std::array<Sign, 3> sides;
   for (int k = 0; k < 3; ++k) {
     sides[k] =
-        scene.face(g).place_of(f.v[k]) >= 0 ? Sign::Zero : scene.side(g, scene.point(f.v[k]));
+        meshes.face(g).place_of(f.v[k]) >= 0 ? Sign::Zero : meshes.side(g, meshes.point(f.v[k]));
   }
   return sides;
 }
@@ -257,19 +257,19 @@ Crossing crossing(const Face& f, const std::array<Sign, 3>& sides) {
   return result;
 }
 
-Sign order_of(const Scene& scene, const Crossing::End& p, const Crossing::End& q) {
+Sign order_of(const MeshPair& meshes, const Crossing::End& p, const Crossing::End& q) {
   if (p.from == q.from || p.from == q.to || p.to == q.from || p.to == q.to) return Sign::Zero;
-  return geom::orient3d(scene.point(p.from), scene.point(p.to), scene.point(q.from),
-                        scene.point(q.to));
+  return geom::orient3d(meshes.point(p.from), meshes.point(p.to), meshes.point(q.from),
+                        meshes.point(q.to));
 }
 
-MutualContacts contacts_between(const Scene& scene, const ContactLimits& limits) {
-  const BoxTree &inside = scene.tree(kInside), &outside = scene.tree(kOutside);
+MutualContacts contacts_between(const MeshPair& meshes, const ContactLimits& limits) {
+  const BoxTree &inside = meshes.tree(kInside), &outside = meshes.tree(kOutside);
   const std::vector<std::uint32_t> roots = subtrees(inside, kTasks);
   std::vector<Found> first(roots.size()), second(roots.size());
   Counter counter(limits);
   verify::parallel_loop(std::size_t{0}, roots.size(), [&](std::size_t i) {
-    Classifier classify(scene, first[i], second[i]);
+    Classifier classify(meshes, first[i], second[i]);
     Counter::Task task(counter);
     meeting_pairs(inside, roots[i], outside, [&](std::uint32_t f, std::uint32_t g) {
       classify(f, g);
@@ -282,19 +282,19 @@ MutualContacts contacts_between(const Scene& scene, const ContactLimits& limits)
     append(of_inside, std::move(first[i]));
     append(of_outside, std::move(second[i]));
   }
-  return {Contacts(scene.begin(kInside), scene.end(kInside), std::move(of_inside.cuts),
+  return {Contacts(meshes.begin(kInside), meshes.end(kInside), std::move(of_inside.cuts),
                    std::move(of_inside.alongs)),
-          Contacts(scene.begin(kOutside), scene.end(kOutside), std::move(of_outside.cuts),
+          Contacts(meshes.begin(kOutside), meshes.end(kOutside), std::move(of_outside.cuts),
                    std::move(of_outside.alongs))};
 }
 
-Contacts contacts_within(const Scene& scene, int chain, const ContactLimits& limits) {
-  const BoxTree& tree = scene.tree(chain);
+Contacts contacts_within(const MeshPair& meshes, int chain, const ContactLimits& limits) {
+  const BoxTree& tree = meshes.tree(chain);
   const std::vector<std::uint32_t> roots = subtrees(tree, kTasks);
   std::vector<Found> found(roots.size());
   Counter counter(limits);
   verify::parallel_loop(std::size_t{0}, roots.size(), [&](std::size_t i) {
-    Classifier classify(scene, found[i], found[i]);
+    Classifier classify(meshes, found[i], found[i]);
     Counter::Task task(counter);
     meeting_pairs(tree, roots[i], tree, [&](std::uint32_t f, std::uint32_t g) {
       if (f >= g) return;  // each pair once
@@ -305,7 +305,7 @@ Contacts contacts_within(const Scene& scene, int chain, const ContactLimits& lim
   });
   Found all_found;
   for (Found& part : found) append(all_found, std::move(part));
-  return {scene.begin(chain), scene.end(chain), std::move(all_found.cuts),
+  return {meshes.begin(chain), meshes.end(chain), std::move(all_found.cuts),
           std::move(all_found.alongs)};
 }
 

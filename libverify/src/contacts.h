@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "scene.h"
+#include "mesh_pair.h"
 
 namespace kaboum::verify {
 
@@ -34,7 +34,7 @@ class Contacts {
            std::vector<Along> alongs);
 
   /// C does not cut the face: it is one cell.
-  [[nodiscard]] bool whole(std::uint32_t face) const { return cuts(face).empty(); }
+  [[nodiscard]] bool uncut(std::uint32_t face) const { return cuts(face).empty(); }
   [[nodiscard]] std::span<const Cut> cuts(std::uint32_t face) const {
     return {cuts_.data() + first_cut_[face - begin_], cuts_.data() + first_cut_[face - begin_ + 1]};
   }
@@ -65,10 +65,10 @@ struct MutualContacts {
   Contacts of_inside;
   Contacts of_outside;
 };
-MutualContacts contacts_between(const Scene& scene, const ContactLimits& limits);
+MutualContacts contacts_between(const MeshPair& meshes, const ContactLimits& limits);
 
 /// Contacts of a chain's faces with each other.
-Contacts contacts_within(const Scene& scene, int chain, const ContactLimits& limits);
+Contacts contacts_within(const MeshPair& meshes, int chain, const ContactLimits& limits);
 
 /// The segment in which two faces that are not coplanar meet, as the ends of it in either face: the
 /// places where an edge crosses the other face's plane.
@@ -84,8 +84,8 @@ struct Crossing {
 /// Where face f meets the plane that its corners have the given sides of.
 Crossing crossing(const Face& f, const std::array<Sign, 3>& sides);
 /// Sides of f's corners with respect to g's plane; common vertices are on it.
-std::array<Sign, 3> sides_of(const Scene& scene, const Face& f, std::uint32_t g);
+std::array<Sign, 3> sides_of(const MeshPair& meshes, const Face& f, std::uint32_t g);
 /// Order of two ends along the common line of both planes: `p` of one face, `q` of the other.
-Sign order_of(const Scene& scene, const Crossing::End& p, const Crossing::End& q);
+Sign order_of(const MeshPair& meshes, const Crossing::End& p, const Crossing::End& q);
 
 }  // namespace kaboum::verify

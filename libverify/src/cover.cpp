@@ -7,21 +7,21 @@
 #include <optional>
 #include <sstream>
 
+#include "cell_sample.h"
 #include "margin.h"
+#include "mesh_pair.h"
 #include "nearest.h"
-#include "pockets.h"
-#include "scene.h"
-#include "spot.h"
+#include "uncovered_region.h"
 
 namespace kaboum::verify {
 namespace {
 
-/// A bound of the distance of a point of the scene to the outer chain, or to its solid.
-double distance_from_below(const Scene& scene, const Vec3& p, bool to_solid) {
-  if (to_solid && winding_at(scene, kOutside, p).value_or(1) >= 1) return 0;
-  const NearestTriangle nearest(scene, kOutside);
+/// A bound of the distance of a point of the meshes to the outer chain, or to its solid.
+double distance_from_below(const MeshPair& meshes, const Vec3& p, bool to_solid) {
+  if (to_solid && winding_at(meshes, kOutside, p).value_or(1) >= 1) return 0;
+  const NearestTriangle nearest(meshes, kOutside);
   return nearest.lower_bound(p, nearest.distance(p)) -
-         rounding_of_distances(scene.largest_coordinate());
+         rounding_of_distances(meshes.largest_coordinate());
 }
 
 /// The vertex that is highest above the plane of some face, rounded.
@@ -29,20 +29,20 @@ struct Highest {
   std::optional<std::uint32_t> face;
   double height = 0;
 
-  void take(const Scene& scene, std::uint32_t f, std::uint32_t vertex) {
-    const Vec3 normal =
-        (scene.corner(f, 1) - scene.corner(f, 0)).cross(scene.corner(f, 2) - scene.corner(f, 0));
+  void take(const MeshPair& meshes, std::uint32_t f, std::uint32_t vertex) {
+    const Vec3 normal = (meshes.corner(f, 1) - meshes.corner(f, 0))
+                            .cross(meshes.corner(f, 2) - meshes.corner(f, 0));
     const double above =
-        std::max(normal.normalized().dot(scene.point(vertex) - scene.corner(f, 0)), 0.0);
+        std::max(normal.normalized().dot(meshes.point(vertex) - meshes.corner(f, 0)), 0.0);
     if (face && above <= height) return;
     face = f;
     height = above;
   }
 
-  [[nodiscard]] std::string text(const Scene& scene) const {
+  [[nodiscard]] std::string text(const MeshPair& meshes) const {
     std::ostringstream line;
-    line << "a vertex is above the plane of triangle " << scene.face(*face).source << ", by about "
-         << std::setprecision(2) << scene.length_outside(height);
+    line << "a vertex is above the plane of triangle " << meshes.face(*face).source << ", by about "
+         << std::setprecision(2) << meshes.length_outside(height);
     return line.str();
   }
 };
@@ -50,25 +50,25 @@ struct Highest {
 /// Why a body is not convex; empty when it is.
 std::string fault_of(const geom::Mesh& body) {
   if (body.triangles.empty()) return "it has no triangles";
-  const Scene scene(geom::Mesh{}, body);
-  if (!scene.closed(kOutside)) return "it is not closed";
-  if (scene.tree(kOutside).empty()) return "it has no triangle with area";
-  std::vector<char> used(scene.vertex_count(), 0);
-  for (const Face& face : scene.faces()) {
+  const MeshPair meshes(geom::Mesh{}, body);
+  if (!meshes.closed(kOutside)) return "it is not closed";
+  if (meshes.tree(kOutside).empty()) return "it has no triangle with area";
+  std::vector<char> used(meshes.vertex_count(), 0);
+  for (const Face& face : meshes.faces()) {
     for (const std::uint32_t v : face.v) used[v] = 1;
   }
   bool deep = false;
   Highest highest;
-  for (std::uint32_t f = 0; f < scene.faces().size(); ++f) {
-    if (scene.face(f).axis < 0) continue;
+  for (std::uint32_t f = 0; f < meshes.faces().size(); ++f) {
+    if (meshes.face(f).axis < 0) continue;
     for (std::uint32_t v = 0; v < used.size(); ++v) {
       if (used[v] == 0) continue;
-      const Sign side = scene.side(f, scene.point(v));
-      if (side == Sign::Positive) highest.take(scene, f, v);
+      const Sign side = meshes.side(f, meshes.point(v));
+      if (side == Sign::Positive) highest.take(meshes, f, v);
       deep = deep || side == Sign::Negative;
     }
   }
-  if (highest.face) return highest.text(scene);
+  if (highest.face) return highest.text(meshes);
   return deep ? "" : "it has no volume";
 }
 
@@ -168,16 +168,17 @@ DistanceClaim verify_reach(const geom::ConvexSet& set, const geom::Mesh& origina
   if (claim.answer != Answer::Refuted || !(set.margin > 0)) return claim;
 
   // Pushed away from the original by the margin less what `at` errs by, it is a point of the union.
-  const Scene scene(sum, original);
+  const MeshPair meshes(sum, original);
   const double push = set.margin * (1 - 0x1p-40) -
-                      scene.length_outside(rounding_of_distances(scene.largest_coordinate()));
-  const Vec3 at = claim.at * scene.scale();
-  const std::uint32_t f = NearestTriangle(scene, kOutside).nearest(at).face;
-  const Vec3 near = closest_point(at, scene.corner(f, 0), scene.corner(f, 1), scene.corner(f, 2));
+                      meshes.length_outside(rounding_of_distances(meshes.largest_coordinate()));
+  const Vec3 at = claim.at * meshes.scale();
+  const std::uint32_t f = NearestTriangle(meshes, kOutside).nearest(at).face;
+  const Vec3 near =
+      closest_point(at, meshes.corner(f, 0), meshes.corner(f, 1), meshes.corner(f, 2));
   const Vec3 pushed = claim.at + std::max(push, 0.0) * (at - near).normalized();
-  const double reached = distance_from_below(scene, pushed * scene.scale(), to_solid);
-  if (reached > epsilon * scene.scale()) {
-    claim.largest = scene.length_outside(reached);
+  const double reached = distance_from_below(meshes, pushed * meshes.scale(), to_solid);
+  if (reached > epsilon * meshes.scale()) {
+    claim.largest = meshes.length_outside(reached);
     claim.at = pushed;
     return claim;
   }

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "nearest.h"
-#include "pockets.h"
+#include "uncovered_region.h"
 
 namespace kaboum::verify {
 
@@ -15,13 +15,13 @@ namespace {
 constexpr std::size_t kFewWork = kMostWork / 4;
 
 /// The triangles of both chains nearest to the witness.
-void name_nearest(const Scene& scene, Claim& claim) {
-  const Vec3 at = claim.witness->point * scene.scale();
+void name_nearest(const MeshPair& meshes, Claim& claim) {
+  const Vec3 at = claim.witness->point * meshes.scale();
   for (const int chain : {kInside, kOutside}) {
-    const std::uint32_t f = NearestTriangle(scene, chain).nearest(at).face;
+    const std::uint32_t f = NearestTriangle(meshes, chain).nearest(at).face;
     if (f != NearestTriangle::kNone)
       (chain == kInside ? claim.inner_triangles : claim.outer_triangles)
-          .push_back(scene.face(f).source);
+          .push_back(meshes.face(f).source);
   }
 }
 
@@ -30,32 +30,32 @@ void name_nearest(const Scene& scene, Claim& claim) {
 Claim verify_depth(const geom::Mesh& original, const geom::ConvexSet& set, double epsilon,
                    const InclusionOptions& options) {
   const geom::Mesh sum = sum_of(set);
-  const Scene scene(original, sum);
+  const MeshPair meshes(original, sum);
   Pieces bounding;
-  if (scene.scaled() && scene.closed(kInside) && scene.closed(kOutside)) {
+  if (meshes.scaled() && meshes.closed(kInside) && meshes.closed(kOutside)) {
     try {
-      bounding = pieces_with(scene, kInside, options,
+      bounding = pieces_with(meshes, kInside, options,
                              [](int inner, int outer) { return std::min(inner, outer) <= 0; });
     } catch (const Error& error) {
       if (error.code() != ErrorCode::LimitReached) throw;
     }
   }
-  const Uncovered bodies(scene, set);
+  const ComplementOfUnion bodies(meshes, set);
   const auto search = [&](const std::vector<std::uint32_t>& faces, std::size_t work) {
     Claim claim =
-        search_pockets(scene, faces,
-                       {Triangles(scene, bounding.parts), bounding.surely, bounding.perhaps,
-                        epsilon * scene.scale(), options.max_cells, false, true, &bodies, work});
+        search_uncovered(meshes, faces,
+                         {Triangles(meshes, bounding.parts), bounding.surely, bounding.perhaps,
+                          epsilon * meshes.scale(), options.max_cells, false, true, &bodies, work});
     if (claim.answer == Answer::Refuted)
       claim.reason = "a point that is deeper than that inside the original is in no body";
     return claim;
   };
   if (!bounding.surely.empty()) {
     std::vector<std::uint32_t> all;  // hold the boundary of Z, whatever it is
-    for (std::uint32_t f = 0; f < scene.faces().size(); ++f)
-      if (scene.face(f).axis >= 0) all.push_back(f);
+    for (std::uint32_t f = 0; f < meshes.faces().size(); ++f)
+      if (meshes.face(f).axis >= 0) all.push_back(f);
     Claim claim = search(all, kFewWork);
-    if (claim.answer == Answer::Refuted) name_nearest(scene, claim);
+    if (claim.answer == Answer::Refuted) name_nearest(meshes, claim);
     if (claim.answer != Answer::Undecided) return claim;
   }
 
@@ -68,7 +68,7 @@ Claim verify_depth(const geom::Mesh& original, const geom::ConvexSet& set, doubl
     claim.reason = "not all that is left out was found within the limits";
     return claim;
   }
-  if (!scene.scaled()) {
+  if (!meshes.scaled()) {
     claim.reason = "coordinates span too many orders of magnitude to measure distances";
     return claim;
   }
@@ -76,7 +76,7 @@ Claim verify_depth(const geom::Mesh& original, const geom::ConvexSet& set, doubl
     claim.reason = "no triangle of the original is known to bound its solid";
     return claim;
   }
-  claim = search(offending_faces(scene, without.solid), kMostWork - kFewWork);
+  claim = search(offending_faces(meshes, without.solid), kMostWork - kFewWork);
   if (claim.answer != Answer::Refuted) return claim;
   claim.inner_triangles = without.solid.inner_triangles;
   claim.outer_triangles = without.solid.outer_triangles;
@@ -89,14 +89,15 @@ Claim reach_inside(const geom::Mesh& sum, const geom::Mesh& original, const Incl
   if (claim.answer != Answer::Refuted) return claim;
   claim = {};
   claim.answer = Answer::Undecided;
-  const Scene scene(sum, original);
+  const MeshPair meshes(sum, original);
   if (inclusion.limited) {
     claim.reason = "not all that the bodies hold besides was found within the limits";
     return claim;
   }
-  const BoxTree& faces = scene.tree(kOutside);
-  return search_pockets(scene, offending_faces(scene, inclusion.solid),
-                        {scene, faces, faces, epsilon * scene.scale(), options.max_cells, true});
+  const BoxTree& faces = meshes.tree(kOutside);
+  return search_uncovered(
+      meshes, offending_faces(meshes, inclusion.solid),
+      {meshes, faces, faces, epsilon * meshes.scale(), options.max_cells, true});
 }
 
 }  // namespace kaboum::verify

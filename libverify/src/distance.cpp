@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "cell_sample.h"
 #include "nearest.h"
 #include "parallel.h"
-#include "spot.h"
 
 namespace kaboum::verify {
 namespace {
@@ -24,9 +24,9 @@ constexpr std::uint32_t kBlock = 8192;  // triangles between looks at the limits
 /// Distance claims about the pieces of one triangle.
 class Judge {
  public:
-  Judge(const Scene& scene, double epsilon, double slack, const DistanceClaimOptions& options)
-      : scene_(scene),
-        nearest_(scene, kOutside),
+  Judge(const MeshPair& meshes, double epsilon, double slack, const DistanceClaimOptions& options)
+      : meshes_(meshes),
+        nearest_(meshes, kOutside),
         epsilon_(epsilon),
         slack_(slack),
         options_(options) {}
@@ -58,7 +58,8 @@ class Judge {
  private:
   /// Bound of |p − triangle| from above.
   [[nodiscard]] double upper(const Vec3& p, std::uint32_t f) const {
-    const Vec3 q = closest_point(p, scene_.corner(f, 0), scene_.corner(f, 1), scene_.corner(f, 2));
+    const Vec3 q =
+        closest_point(p, meshes_.corner(f, 0), meshes_.corner(f, 1), meshes_.corner(f, 2));
     return (q - p).norm() + slack_;
   }
 
@@ -68,7 +69,7 @@ class Judge {
   }
 
   [[nodiscard]] bool inside(const Vec3& p) const {
-    const std::optional<int> w = winding_at(scene_, kOutside, p);
+    const std::optional<int> w = winding_at(meshes_, kOutside, p);
     return w && *w >= 1;
   }
 
@@ -94,7 +95,7 @@ class Judge {
       const double distance = lower(p);
       if (distance <= claim.largest) continue;
       if (options_.to_solid) {
-        const std::optional<int> w = winding_at(scene_, kOutside, p);
+        const std::optional<int> w = winding_at(meshes_, kOutside, p);
         if (!w || *w >= 1) continue;
       }
       claim.largest = distance;
@@ -112,8 +113,8 @@ class Judge {
   /// Cuts along a side of the nearest triangle's prism, so that surfaces in one plane fall apart
   /// into the parts that lie on one triangle each; across the longest edge where no side cuts.
   void split(const Piece& piece, std::uint32_t face, std::vector<Piece>& stack) const {
-    const Vec3 &a = scene_.corner(face, 0), &b = scene_.corner(face, 1),
-               &c = scene_.corner(face, 2);
+    const Vec3 &a = meshes_.corner(face, 0), &b = meshes_.corner(face, 1),
+               &c = meshes_.corner(face, 2);
     const Vec3 normal = (b - a).cross(c - a);
     for (const auto& [from, to] : {std::pair{a, b}, std::pair{b, c}, std::pair{c, a}}) {
       const Vec3 across = (to - from).cross(normal);
@@ -168,7 +169,7 @@ class Judge {
     stack.push_back({{middle, b, c}, piece.depth + 1});
   }
 
-  const Scene& scene_;
+  const MeshPair& meshes_;
   NearestTriangle nearest_;
   double epsilon_;
   double slack_;
@@ -179,16 +180,16 @@ class Judge {
 
 DistanceClaim verify_distance(const geom::Mesh& from, const geom::Mesh& to, double epsilon,
                               const DistanceClaimOptions& options) {
-  const Scene scene(from, to);
-  if (!scene.scaled()) {
+  const MeshPair meshes(from, to);
+  if (!meshes.scaled()) {
     throw Error(ErrorCode::InvalidInput,
                 "coordinates span too many orders of magnitude to measure distances");
   }
-  const double slack = rounding_of_distances(scene.largest_coordinate());
-  const Judge judge(scene, epsilon * scene.scale(), slack, options);
-  const std::uint32_t count = scene.count(kInside);
+  const double slack = rounding_of_distances(meshes.largest_coordinate());
+  const Judge judge(meshes, epsilon * meshes.scale(), slack, options);
+  const std::uint32_t count = meshes.count(kInside);
   DistanceClaim result;
-  if (scene.tree(kOutside).empty()) {
+  if (meshes.tree(kOutside).empty()) {
     result.reason = "no triangle of the mesh that is measured to has an area";
     return result;
   }
@@ -199,7 +200,7 @@ DistanceClaim verify_distance(const geom::Mesh& from, const geom::Mesh& to, doub
     claims.assign(size, {});
     verify::parallel_loop(std::uint32_t{0}, size, [&](std::uint32_t i) {
       const std::uint32_t f = first + i;
-      claims[i] = judge(scene.corner(f, 0), scene.corner(f, 1), scene.corner(f, 2));
+      claims[i] = judge(meshes.corner(f, 0), meshes.corner(f, 1), meshes.corner(f, 2));
     });
     for (std::uint32_t i = 0; i < size; ++i) {
       const DistanceClaim& claim = claims[i];
@@ -207,7 +208,7 @@ DistanceClaim verify_distance(const geom::Mesh& from, const geom::Mesh& to, doub
       if (claim.largest > result.largest) {
         result.largest = claim.largest;
         result.at = claim.at;
-        result.triangle = scene.face(first + i).source;
+        result.triangle = meshes.face(first + i).source;
       }
       if (claim.answer == Answer::Refuted ||
           (claim.answer == Answer::Undecided && result.answer == Answer::Verified)) {
@@ -222,8 +223,8 @@ DistanceClaim verify_distance(const geom::Mesh& from, const geom::Mesh& to, doub
       break;
     }
   }
-  result.largest = scene.length_outside(result.largest);
-  result.at = scene.point_outside(result.at);
+  result.largest = meshes.length_outside(result.largest);
+  result.at = meshes.point_outside(result.at);
   return result;
 }
 

@@ -1,5 +1,5 @@
 // Boxes without their parts that are beyond a surface, and so not in Z.
-// docs/algorithms/exact-inclusion.md, "Pockets".
+// docs/algorithms/exact-inclusion.md, "Uncovered regions".
 #include "free_parts.h"
 
 #include <algorithm>
@@ -18,11 +18,11 @@ constexpr std::size_t kMaxFaces = 200, kMaxParts = 300;
 constexpr std::size_t kThinWork = 32;  // what trying to cut a box takes, in parts
 
 /// Normals of the nearest face of each kind, both ways.
-std::vector<Vec3> directions(const PocketSearch& search, const Vec3& p, std::uint32_t face) {
+std::vector<Vec3> directions(const RegionSearch& search, const Vec3& p, std::uint32_t face) {
   std::vector<Vec3> out;
   const std::array<std::uint32_t, 3> faces{
-      NearestTriangle(search.scene, search.boundary).nearest(p).face, face,
-      NearestTriangle(search.scene, kInside).nearest(p).face};
+      NearestTriangle(search.meshes, search.boundary).nearest(p).face, face,
+      NearestTriangle(search.meshes, kInside).nearest(p).face};
   for (const std::uint32_t f : faces) {
     if (f == NearestTriangle::kNone) continue;
     const Vec3& a = search.limit.triangles.corner(f, 0);
@@ -55,7 +55,7 @@ std::vector<Vec3> clip(const std::vector<Vec3>& polygon, int axis, int side, dou
 }
 
 /// Corners of what faces have in the box, a little enlarged. False when they are too many.
-bool points_in(const PocketSearch& search, const Bounds& box, const BoxTree& tree,
+bool points_in(const RegionSearch& search, const Bounds& box, const BoxTree& tree,
                std::vector<Vec3>& points) {
   std::size_t count = 0;
   tree.query([&](const Bounds& b) { return count <= kMaxFaces && b.meets(box); },
@@ -76,7 +76,7 @@ bool points_in(const PocketSearch& search, const Bounds& box, const BoxTree& tre
 /// A height below which, along the normal, the box has none of the faces whose points these are,
 /// and is not in Z: the box's part there is convex, so that a point of it tells.
 /// @param kind  of the faces: 0, Z's boundary; 1, the outer chain's; 2, the inner one's
-std::optional<double> free_below(const PocketSearch& search, const Bounds& box, const Vec3& p,
+std::optional<double> free_below(const RegionSearch& search, const Bounds& box, const Vec3& p,
                                  const Vec3& normal, const std::vector<Vec3>& points,
                                  std::size_t kind) {
   double height = std::numeric_limits<double>::infinity();
@@ -89,9 +89,9 @@ std::optional<double> free_below(const PocketSearch& search, const Bounds& box, 
   // A point there, off the box's corner, where planes of round coordinates tend to meet.
   const double share = 0.4877 * std::min((height - below) / -below, 1.0);
   const Vec3 q = lowest + share * (p - lowest);
-  const bool out = kind == 0   ? search.in_pocket(q) == std::optional(false)
-                   : kind == 1 ? winding_at(search.scene, kOutside, q).value_or(0) >= 1
-                               : winding_at(search.scene, kInside, q).value_or(1) < 1;
+  const bool out = kind == 0   ? search.in_region(q) == std::optional(false)
+                   : kind == 1 ? winding_at(search.meshes, kOutside, q).value_or(0) >= 1
+                               : winding_at(search.meshes, kInside, q).value_or(1) < 1;
   if (!out) return std::nullopt;
   return std::min(height, 0x1p100) + normal.dot(p) - 2 * search.slack;
 }
@@ -107,14 +107,14 @@ void keep_above(const Part& part, const Plane& plane, std::vector<Part>& out) {
 
 }  // namespace
 
-bool near_without_free(const PocketSearch& search, const Bounds& box, const Vec3& p,
+bool near_without_free(const RegionSearch& search, const Bounds& box, const Vec3& p,
                        std::uint32_t face, std::size_t& work) {
   work += kThinWork;
   const std::vector<Vec3> normals = directions(search, p, face);
   std::vector<Part> parts, next;
   for (const Tetrahedron& t : tetrahedra(box)) parts.push_back({t, 0});
-  const std::array<const BoxTree*, 3> trees{&search.boundary, &search.scene.tree(kOutside),
-                                            &search.scene.tree(kInside)};
+  const std::array<const BoxTree*, 3> trees{&search.boundary, &search.meshes.tree(kOutside),
+                                            &search.meshes.tree(kInside)};
   std::array<std::vector<Vec3>, 3> points;
   bool thinner = false;
   for (std::size_t k = 0; k < trees.size(); ++k) {

@@ -7,9 +7,9 @@
 
 #include "allowance.h"
 #include "arrangement.h"
+#include "cell_sample.h"
 #include "parallel.h"
-#include "spot.h"
-#include "whole.h"
+#include "uncut_values.h"
 #include "witness.h"
 
 namespace kaboum::verify {
@@ -17,12 +17,12 @@ namespace {
 
 class Decision {
  public:
-  Decision(const Scene& scene, const InclusionOptions& options)
-      : scene_(scene),
+  Decision(const MeshPair& meshes, const InclusionOptions& options)
+      : meshes_(meshes),
         options_(options),
         allowance_(options.surface_only ? options.max_work
                                         : std::numeric_limits<double>::infinity()),
-        arrangement_(scene, {options.max_contacts, options.max_pairs}, &allowance_) {}
+        arrangement_(meshes, {options.max_contacts, options.max_pairs}, &allowance_) {}
 
   /// Closed chains: the solid claim and, for the inner chain's faces, the surface claim.
   void decide_closed() {
@@ -49,15 +49,15 @@ class Decision {
   void decide_surface_within_allowance() {
     say("pairs of triangles");
     std::vector<std::uint32_t> order;
-    for (std::uint32_t f = scene_.begin(kInside); f < scene_.end(kInside); ++f)
-      if (scene_.face(f).axis >= 0) order.push_back(f);
-    const auto at = [&](const Spot& spot, Side side) {
-      return winding(scene_, spot, side, kOutside);
+    for (std::uint32_t f = meshes_.begin(kInside); f < meshes_.end(kInside); ++f)
+      if (meshes_.face(f).axis >= 0) order.push_back(f);
+    const auto at = [&](const CellSample& sample, Side side) {
+      return winding(meshes_, sample, side, kOutside);
     };
-    std::vector<char> bad(scene_.count(kInside), 0);
-    const auto holds = [&](const Spot& spot) {
-      if (at(spot, kInner) >= 1 || at(spot, kOuter) >= 1) return true;
-      report(surface_, bad[spot.face], spot, kOuter);
+    std::vector<char> bad(meshes_.count(kInside), 0);
+    const auto holds = [&](const CellSample& sample) {
+      if (at(sample, kInner) >= 1 || at(sample, kOuter) >= 1) return true;
+      report(surface_, bad[sample.face], sample, kOuter);
       return false;
     };
     try {
@@ -65,14 +65,14 @@ class Decision {
     } catch (const Error& error) {
       if (error.code() != ErrorCode::LimitReached) throw;
       // What sticks out in the middle is known without them.
-      allowance_.loop(order.size(), [&](std::size_t i) { holds(middle_spot(order[i])); });
+      allowance_.loop(order.size(), [&](std::size_t i) { holds(middle_sample(order[i])); });
       left_out_ = order.size() - static_cast<std::size_t>(std::count(bad.begin(), bad.end(), 1));
       return;
     }
     const auto values = [&](Side side) {
-      return whole_values(
+      return uncut_values(
           arrangement_, kInside, mask_of(kOutside), side,
-          [&](const Spot& spot) { return at(spot, side); }, samples_, allowance_);
+          [&](const CellSample& sample) { return at(sample, side); }, samples_, allowance_);
     };
     say("triangles");
     const std::vector<int> inner = values(kInner), outer = values(kOuter);
@@ -90,7 +90,7 @@ class Decision {
       const std::uint32_t f = order[i];
       if ((inner[f] != kCut && inner[f] >= 1) || (outer[f] != kCut && outer[f] >= 1)) return;
       // Its middle is in, or beside, one of its cells: most that stick out need no cutting.
-      if (holds(middle_spot(f))) visit(f, mask_of(kOutside), settled(f), holds);
+      if (holds(middle_sample(f))) visit(f, mask_of(kOutside), settled(f), holds);
     });
     left_out_ = static_cast<std::size_t>(std::count(undone.begin(), undone.end(), 1));
   }
@@ -104,21 +104,23 @@ class Decision {
     for (const int chain : {kInside, kOutside}) {
       say("cells");
       const Side side = test_side(chain);
-      const auto value = [&](const Spot& spot) { return winding_difference(scene_, spot, side); };
+      const auto value = [&](const CellSample& sample) {
+        return winding_difference(meshes_, sample, side);
+      };
       const std::vector<int> values =
-          whole_values(arrangement_, chain, 3, side, value, samples_, allowance_);
-      const std::uint32_t begin = scene_.begin(chain);
+          uncut_values(arrangement_, chain, 3, side, value, samples_, allowance_);
+      const std::uint32_t begin = meshes_.begin(chain);
       std::vector<char> bad(values.size(), 0);
       verify::parallel_loop(std::size_t{0}, values.size(), [&](std::size_t i) {
         const auto f = begin + static_cast<std::uint32_t>(i);
-        if (scene_.face(f).axis < 0) return;
+        if (meshes_.face(f).axis < 0) return;
         if (values[i] != kCut) {
-          if (values[i] < 0) report(solid_, bad[i], middle_spot(f), side);
+          if (values[i] < 0) report(solid_, bad[i], middle_sample(f), side);
           return;
         }
-        visit(f, 3, {}, [&](const Spot& spot) {
-          if (value(spot) >= 0) return true;
-          report(solid_, bad[i], spot, side);
+        visit(f, 3, {}, [&](const CellSample& sample) {
+          if (value(sample) >= 0) return true;
+          report(solid_, bad[i], sample, side);
           return false;
         });
       });
@@ -143,12 +145,13 @@ class Decision {
     if (options_.progress) options_.progress(what);
   }
 
-  void visit(std::uint32_t f, ChainMask mask, std::span<const std::uint32_t> settled,
-             const SpotVisitor& visitor) {
-    visit_spots(arrangement_, f, mask, options_.max_pieces, settled, [&](const Spot& spot) {
-      ++samples_;
-      return visitor(spot);
-    });
+  void visit(std::uint32_t f, OperandMask mask, std::span<const std::uint32_t> settled,
+             const SampleVisitor& visitor) {
+    visit_samples(arrangement_, f, mask, options_.max_pieces, settled,
+                  [&](const CellSample& sample) {
+                    ++samples_;
+                    return visitor(sample);
+                  });
   }
 
   /// The side of a chain's faces on which an offending region can lie.
@@ -161,8 +164,10 @@ class Decision {
   /// Own winding numbers of a chain on one side of its faces.
   std::vector<int> own_values(int chain, Side side) {
     arrangement_.need_own(chain);
-    const auto own = [&](const Spot& spot) { return winding(scene_, spot, side, chain); };
-    return whole_values(arrangement_, chain, mask_of(chain), side, own, samples_, allowance_);
+    const auto own = [&](const CellSample& sample) {
+      return winding(meshes_, sample, side, chain);
+    };
+    return uncut_values(arrangement_, chain, mask_of(chain), side, own, samples_, allowance_);
   }
 
   /// Where faces of both chains lie in one plane, the own winding number of the other chain's face
@@ -171,7 +176,7 @@ class Decision {
   void prepare_settled(int chain) {
     settled_.clear();
     std::size_t coplanar = 0;
-    const std::uint32_t begin = scene_.begin(chain), end = scene_.end(chain);
+    const std::uint32_t begin = meshes_.begin(chain), end = meshes_.end(chain);
     const Contacts& contacts = arrangement_.contacts(chain, 1 - chain);
     for (std::uint32_t f = begin; f < end; ++f) {
       for (const Contacts::Cut& cut : contacts.cuts(f))
@@ -193,14 +198,14 @@ class Decision {
   [[nodiscard]] std::vector<std::uint32_t> settled(std::uint32_t f) const {
     std::vector<std::uint32_t> result;
     if (settled_.empty()) return result;
-    const Face& face = scene_.face(f);
+    const Face& face = meshes_.face(f);
     const int other = 1 - face.chain;
     for (const Contacts::Cut& cut : arrangement_.contacts(face.chain, other).cuts(f)) {
       if (!cut.coplanar) continue;
-      const bool upward = orient2d(face.axis, scene_.corner(cut.by, 0), scene_.corner(cut.by, 1),
-                                   scene_.corner(cut.by, 2)) == Sign::Positive;
+      const bool upward = orient2d(face.axis, meshes_.corner(cut.by, 0), meshes_.corner(cut.by, 1),
+                                   meshes_.corner(cut.by, 2)) == Sign::Positive;
       const std::uint8_t wanted = upward == face.upward ? 1 : 2;
-      if ((settled_[cut.by - scene_.begin(other)] & wanted) != 0) result.push_back(cut.by);
+      if ((settled_[cut.by - meshes_.begin(other)] & wanted) != 0) result.push_back(cut.by);
     }
     return result;
   }
@@ -209,21 +214,23 @@ class Decision {
   std::vector<std::uint32_t> first_level(int chain) {
     const int other = 1 - chain;
     const Side side = test_side(chain);
-    const auto value = [&](const Spot& spot) { return winding(scene_, spot, side, other); };
+    const auto value = [&](const CellSample& sample) {
+      return winding(meshes_, sample, side, other);
+    };
     other_values_ =
-        whole_values(arrangement_, chain, mask_of(other), side, value, samples_, allowance_);
+        uncut_values(arrangement_, chain, mask_of(other), side, value, samples_, allowance_);
     prepare_settled(chain);
-    const std::uint32_t begin = scene_.begin(chain);
+    const std::uint32_t begin = meshes_.begin(chain);
     std::vector<char> fails(other_values_.size(), 0);
     verify::parallel_loop(std::size_t{0}, fails.size(), [&](std::size_t i) {
       const auto f = begin + static_cast<std::uint32_t>(i);
-      if (scene_.face(f).axis < 0) return;
+      if (meshes_.face(f).axis < 0) return;
       if (other_values_[i] != kCut) {
         fails[i] = static_cast<char>(!passes(chain, other_values_[i]));
         return;
       }
-      visit(f, mask_of(other), settled(f), [&](const Spot& spot) {
-        fails[i] = static_cast<char>(!passes(chain, value(spot)));
+      visit(f, mask_of(other), settled(f), [&](const CellSample& sample) {
+        fails[i] = static_cast<char>(!passes(chain, value(sample)));
         return fails[i] == 0;
       });
     });
@@ -239,22 +246,24 @@ class Decision {
     const int other = 1 - chain;
     const Side side = test_side(chain);
     const std::vector<int> values = own_values(chain, side);
-    const auto own = [&](const Spot& spot) { return winding(scene_, spot, side, chain); };
-    const std::uint32_t begin = scene_.begin(chain);
-    std::vector<char> bad(scene_.count(chain), 0);
+    const auto own = [&](const CellSample& sample) {
+      return winding(meshes_, sample, side, chain);
+    };
+    const std::uint32_t begin = meshes_.begin(chain);
+    std::vector<char> bad(meshes_.count(chain), 0);
     verify::parallel_loop(std::size_t{0}, failing.size(), [&](std::size_t i) {
       const std::uint32_t f = failing[i];
       const int own_value = values[f - begin], other_value = other_values_[f - begin];
       // The own number is the same all over the face and harmless.
       if (own_value != kCut && !offends(chain, own_value)) return;
       if (own_value != kCut && other_value != kCut) {
-        return report(solid_, bad[f - begin], middle_spot(f), side);
+        return report(solid_, bad[f - begin], middle_sample(f), side);
       }
-      visit(f, 3, {}, [&](const Spot& spot) {
-        const int o = other_value != kCut ? other_value : winding(scene_, spot, side, other);
+      visit(f, 3, {}, [&](const CellSample& sample) {
+        const int o = other_value != kCut ? other_value : winding(meshes_, sample, side, other);
         if (passes(chain, o)) return true;
-        if (!offends(chain, own_value != kCut ? own_value : own(spot))) return true;
-        report(solid_, bad[f - begin], spot, side);
+        if (!offends(chain, own_value != kCut ? own_value : own(sample))) return true;
+        report(solid_, bad[f - begin], sample, side);
         return false;
       });
     });
@@ -264,22 +273,22 @@ class Decision {
   /// solid: their outer sides must be.
   void surface(const std::vector<std::uint32_t>& failing) {
     if (failing.empty()) return;
-    const auto at = [&](const Spot& spot, Side side) {
-      return winding(scene_, spot, side, kOutside);
+    const auto at = [&](const CellSample& sample, Side side) {
+      return winding(meshes_, sample, side, kOutside);
     };
-    const std::vector<int> outer_values = whole_values(
+    const std::vector<int> outer_values = uncut_values(
         arrangement_, kInside, mask_of(kOutside), kOuter,
-        [&](const Spot& spot) { return at(spot, kOuter); }, samples_, allowance_);
-    std::vector<char> bad(scene_.count(kInside), 0);
+        [&](const CellSample& sample) { return at(sample, kOuter); }, samples_, allowance_);
+    std::vector<char> bad(meshes_.count(kInside), 0);
     verify::parallel_loop(std::size_t{0}, failing.size(), [&](std::size_t i) {
       const std::uint32_t f = failing[i];
       if (outer_values[f] != kCut) {
-        if (outer_values[f] < 1) report(surface_, bad[f], middle_spot(f), kOuter);
+        if (outer_values[f] < 1) report(surface_, bad[f], middle_sample(f), kOuter);
         return;
       }
-      visit(f, mask_of(kOutside), {}, [&](const Spot& spot) {
-        if (at(spot, kInner) >= 1 || at(spot, kOuter) >= 1) return true;
-        report(surface_, bad[f], spot, kOuter);
+      visit(f, mask_of(kOutside), {}, [&](const CellSample& sample) {
+        if (at(sample, kInner) >= 1 || at(sample, kOuter) >= 1) return true;
+        report(surface_, bad[f], sample, kOuter);
         return false;
       });
     });
@@ -290,10 +299,10 @@ class Decision {
     std::vector<Offence> list;
   };
 
-  void report(Offences& offences, char& flag, const Spot& spot, Side side) {
+  void report(Offences& offences, char& flag, const CellSample& sample, Side side) {
     flag = 1;
     const std::lock_guard lock(offences.mutex);
-    offences.list.push_back({spot.face, side, position(scene_, spot)});
+    offences.list.push_back({sample.face, side, position(meshes_, sample)});
   }
 
   void conclude(Claim& claim, Offences& offences, bool on_surface, bool relative,
@@ -302,7 +311,7 @@ class Decision {
     std::sort(offences.list.begin(), offences.list.end(),
               [](const Offence& a, const Offence& b) { return a.face < b.face; });
     for (const Offence& offence : offences.list) {
-      const Face& face = scene_.face(offence.face);
+      const Face& face = meshes_.face(offence.face);
       (face.chain == kInside ? claim.inner_triangles : claim.outer_triangles)
           .push_back(face.source);
     }
@@ -310,10 +319,10 @@ class Decision {
     claim.answer = Answer::Refuted;
     claim.reason = reason;
     say("a witness");
-    claim.witness = find_witness(scene_, offences.list, on_surface, relative);
+    claim.witness = find_witness(meshes_, offences.list, on_surface, relative);
   }
 
-  const Scene& scene_;
+  const MeshPair& meshes_;
   const InclusionOptions& options_;
   Allowance allowance_;
   Arrangement arrangement_;
@@ -330,16 +339,16 @@ class Decision {
 
 Inclusion verify_inclusion(const geom::Mesh& inner, const geom::Mesh& outer,
                            const InclusionOptions& options) {
-  const Scene scene(inner, outer);
+  const MeshPair meshes(inner, outer);
   Inclusion result;
-  result.inner_open_edges = scene.unbalanced(mask_of(kInside), false);
-  result.outer_open_edges = scene.unbalanced(mask_of(kOutside), false);
+  result.inner_open_edges = meshes.unbalanced(mask_of(kInside), false);
+  result.outer_open_edges = meshes.unbalanced(mask_of(kOutside), false);
   result.inner_closed = result.inner_open_edges == 0;
   result.outer_closed = result.outer_open_edges == 0;
-  result.triangles_without_area = scene.without_area(kInside) + scene.without_area(kOutside) +
-                                  scene.repeated_corners(kInside) +
-                                  scene.repeated_corners(kOutside);
-  const bool same_border = scene.same_border();
+  result.triangles_without_area = meshes.without_area(kInside) + meshes.without_area(kOutside) +
+                                  meshes.repeated_corners(kInside) +
+                                  meshes.repeated_corners(kOutside);
+  const bool same_border = meshes.same_border();
 
   // Claims that have a meaning count as true until they are refuted.
   const auto undefined = [](Claim& claim, const char* why) {
@@ -360,7 +369,7 @@ Inclusion verify_inclusion(const geom::Mesh& inner, const geom::Mesh& outer,
     undefined(result.solid, "only the surface claim was asked for");
   }
 
-  Decision decision(scene, options);
+  Decision decision(meshes, options);
   try {
     if (options.surface_only) {
       if (result.outer_closed) decision.decide_surface_within_allowance();

@@ -1,5 +1,5 @@
 // Where no point of a ball can be a local maximum of the distance.
-// docs/algorithms/exact-inclusion.md, "Pockets".
+// docs/algorithms/exact-inclusion.md, "Uncovered regions".
 #include "local_maximum.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ constexpr int kMaxTilts = 8;
 /// A lower bound of u·(y − p) over the points y of a face within `range` of p: the least at its
 /// corners or, with y − p = αn + s, s ⊥ n, α ≥ h ≥ 0 for any unit vector n, that of αu·n + u·s,
 /// |s|² ≤ range² − α², which is least at α = h if u·n ≥ 0.
-double height_within(const PocketSearch& search, const Vec3& p, double range, const Vec3& u,
+double height_within(const RegionSearch& search, const Vec3& p, double range, const Vec3& u,
                      std::uint32_t f) {
   const std::array<Vec3, 3> v{search.limit.triangles.corner(f, 0) - p,
                               search.limit.triangles.corner(f, 1) - p,
@@ -36,7 +36,7 @@ double height_within(const PocketSearch& search, const Vec3& p, double range, co
 
 }  // namespace
 
-bool no_maximum(const PocketSearch& search, const Vec3& p, double radius, double distance) {
+bool no_maximum(const RegionSearch& search, const Vec3& p, double radius, double distance) {
   if (distance <= radius) return false;
   const double range = (distance + 2 * radius + 2 * search.slack) * (1 + 0x1p-40);
   std::vector<std::uint32_t> faces;

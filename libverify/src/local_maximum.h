@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pocket_search.h"
+#include "region_search.h"
 
 namespace kaboum::verify {
 
@@ -9,6 +9,6 @@ namespace kaboum::verify {
 /// 2·radius of its centre; all faces that reach there must be beyond a plane that has the ball
 /// behind it.
 /// @param distance  of the centre, from below
-bool no_maximum(const PocketSearch& search, const Vec3& p, double radius, double distance);
+bool no_maximum(const RegionSearch& search, const Vec3& p, double radius, double distance);
 
 }  // namespace kaboum::verify

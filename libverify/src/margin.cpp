@@ -2,18 +2,18 @@
 
 #include <kaboum/verify/distance.h>
 
-#include "pockets.h"
+#include "uncovered_region.h"
 
 namespace kaboum::verify {
 namespace {
 
-Claim solid_claim(const Scene& scene, const geom::ConvexSet& set, bool convex,
+Claim solid_claim(const MeshPair& meshes, const geom::ConvexSet& set, bool convex,
                   std::size_t max_cells, bool inside_only, const Claim& without) {
-  const BoxTree& faces = scene.tree(kOutside);
-  const Uncovered bodies(scene, set);
-  Claim claim = search_pockets(scene, offending_faces(scene, without),
-                               {scene, faces, faces, set.margin * scene.scale(), max_cells,
-                                inside_only, false, convex ? &bodies : nullptr});
+  const BoxTree& faces = meshes.tree(kOutside);
+  const ComplementOfUnion bodies(meshes, set);
+  Claim claim = search_uncovered(meshes, offending_faces(meshes, without),
+                                 {meshes, faces, faces, set.margin * meshes.scale(), max_cells,
+                                  inside_only, false, convex ? &bodies : nullptr});
   if (claim.answer == Answer::Refuted) {
     claim.reason = "a part of the inner solid is farther from the outer one than the margin";
   }
@@ -43,15 +43,15 @@ Claim surface_claim(const geom::Mesh& inner, const geom::Mesh& outer, double mar
 
 void allow_margin(const geom::Mesh& inner, const geom::Mesh& sum, const geom::ConvexSet& set,
                   bool convex, std::size_t max_cells, Inclusion& inclusion) {
-  const Scene scene(inner, sum);
-  if (scene.tree(kOutside).empty()) return;  // nothing to be near
+  const MeshPair meshes(inner, sum);
+  if (meshes.tree(kOutside).empty()) return;  // nothing to be near
   const auto decide = [&](Claim& claim, const auto& anew) {
     if (claim.answer != Answer::Refuted) return;
     Claim with;
     with.answer = Answer::Undecided;
     if (inclusion.limited) {
       with.reason = "not all that is left out was found within the limits";
-    } else if (!scene.scaled()) {
+    } else if (!meshes.scaled()) {
       with.reason = "coordinates span too many orders of magnitude to measure distances";
     } else {
       with = anew(claim);
@@ -68,7 +68,7 @@ void allow_margin(const geom::Mesh& inner, const geom::Mesh& sum, const geom::Co
   // The boundary of what is left out lies on the bodies and on triangles of the surface claim.
   const bool inside_only = inclusion.surface.answer == Answer::Verified;
   decide(inclusion.solid, [&](const Claim& c) {
-    return solid_claim(scene, set, convex, max_cells, inside_only, c);
+    return solid_claim(meshes, set, convex, max_cells, inside_only, c);
   });
 }
 

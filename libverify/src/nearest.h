@@ -1,7 +1,7 @@
 #pragma once
 
+#include "mesh_pair.h"
 #include "pieces.h"
-#include "scene.h"
 
 namespace kaboum::verify {
 
@@ -21,7 +21,8 @@ class NearestTriangle {
     std::uint32_t face = kNone;
     double distance;
   };
-  NearestTriangle(const Scene& scene, int chain) : NearestTriangle(scene, scene.tree(chain)) {}
+  NearestTriangle(const MeshPair& meshes, int chain)
+      : NearestTriangle(meshes, meshes.tree(chain)) {}
   /// Of some faces, or parts of faces, only.
   NearestTriangle(const Triangles& triangles, const BoxTree& tree)
       : triangles_(triangles), tree_(tree) {}

@@ -10,10 +10,10 @@
 #include <utility>
 
 #include "allowance.h"
-#include "pockets.h"
+#include "cell_sample.h"
 #include "segments.h"
-#include "spot.h"
-#include "whole.h"
+#include "uncovered_region.h"
+#include "uncut_values.h"
 
 namespace kaboum::verify {
 namespace {
@@ -136,7 +136,7 @@ class Divider {
 };
 
 /// A point inside a polygon.
-Spot inside(const Divider& divider, const Polygon& polygon, std::uint32_t face) {
+CellSample inside(const Divider& divider, const Polygon& polygon, std::uint32_t face) {
   const std::size_t n = polygon.edges.size();
   const auto exact = [&](std::size_t i) -> const Triple<Exact>& {
     return divider.corner(polygon.edges[i].corner).exact;
@@ -148,14 +148,14 @@ Spot inside(const Divider& divider, const Polygon& polygon, std::uint32_t face) 
 }
 
 /// nullopt where rounding takes too much.
-std::optional<Vec3> position_of(const Scene& scene, std::uint32_t face, const Weights& corner) {
+std::optional<Vec3> position_of(const MeshPair& meshes, std::uint32_t face, const Weights& corner) {
   const Approx total = total_of(corner.approx);
   if (!usable(total)) return std::nullopt;
   Vec3 p = Vec3::Zero();
   for (int k = 0; k < 3; ++k) {
     const Approx part = share(corner.approx[static_cast<std::size_t>(k)], total);
     if (!(part.error <= kRounding)) return std::nullopt;
-    p += part.value * scene.corner(face, k);
+    p += part.value * meshes.corner(face, k);
   }
   return p;
 }
@@ -170,9 +170,9 @@ struct Division {
 
 template <class Good>
 Division divide(const Arrangement& arrangement, std::uint32_t face, const Good& good) {
-  const Scene& scene = arrangement.scene();
+  const MeshPair& meshes = arrangement.meshes();
   Divider divider(
-      segments_of(arrangement, face, mask_of(scene.face(face).chain), kMostSegments, {}));
+      segments_of(arrangement, face, mask_of(meshes.face(face).chain), kMostSegments, {}));
   if (!divider.divide()) return {};
   std::vector<const Polygon*> chosen;
   for (const Polygon& polygon : divider.polygons())
@@ -184,7 +184,7 @@ Division divide(const Arrangement& arrangement, std::uint32_t face, const Good& 
   for (const Polygon* polygon : chosen) {
     std::vector<Vec3> points;
     for (const Polygon::Edge& e : polygon->edges) {
-      const std::optional<Vec3> p = position_of(scene, face, divider.corner(e.corner));
+      const std::optional<Vec3> p = position_of(meshes, face, divider.corner(e.corner));
       if (!p) return {};
       points.push_back(*p);
     }
@@ -196,30 +196,31 @@ Division divide(const Arrangement& arrangement, std::uint32_t face, const Good& 
 
 }  // namespace
 
-Pieces pieces_with(const Scene& scene, int chain, const InclusionOptions& options,
+Pieces pieces_with(const MeshPair& meshes, int chain, const InclusionOptions& options,
                    const std::function<bool(int inner, int outer)>& condition) {
   Allowance allowance(options.max_work);
-  Arrangement arrangement(scene, {options.max_contacts, options.max_pairs}, &allowance);
+  Arrangement arrangement(meshes, {options.max_contacts, options.max_pairs}, &allowance);
   arrangement.need_own(chain);
   std::atomic<std::size_t> samples = 0;
   const auto values = [&](Side side) {
-    return whole_values(
+    return uncut_values(
         arrangement, chain, mask_of(chain), side,
-        [&](const Spot& spot) { return winding(scene, spot, side, chain); }, samples, allowance);
+        [&](const CellSample& sample) { return winding(meshes, sample, side, chain); }, samples,
+        allowance);
   };
   const std::vector<int> inner = values(kInner), outer = values(kOuter);
   std::vector<Division> divisions(inner.size());
   allowance.loop(inner.size(), [&](std::size_t i) {
-    const auto f = scene.begin(chain) + static_cast<std::uint32_t>(i);
-    if (scene.face(f).axis < 0) {
+    const auto f = meshes.begin(chain) + static_cast<std::uint32_t>(i);
+    if (meshes.face(f).axis < 0) {
       divisions[i].kind = Kind::No;
     } else if (inner[i] != kCut && outer[i] != kCut) {
       divisions[i].kind = condition(inner[i], outer[i]) ? Kind::Yes : Kind::No;
     } else {
       try {
-        divisions[i] = divide(arrangement, f, [&](const Spot& spot) {
-          return condition(winding(scene, spot, kInner, chain),
-                           winding(scene, spot, kOuter, chain));
+        divisions[i] = divide(arrangement, f, [&](const CellSample& sample) {
+          return condition(winding(meshes, sample, kInner, chain),
+                           winding(meshes, sample, kOuter, chain));
         });
       } catch (const Error& error) {  // it may satisfy the condition, or not
         if (error.code() != ErrorCode::LimitReached) throw;
@@ -229,9 +230,9 @@ Pieces pieces_with(const Scene& scene, int chain, const InclusionOptions& option
 
   Pieces result;
   std::vector<std::uint32_t> surely, perhaps;
-  const auto first = static_cast<std::uint32_t>(scene.faces().size());
+  const auto first = static_cast<std::uint32_t>(meshes.faces().size());
   for (std::uint32_t i = 0; i < divisions.size(); ++i) {
-    const std::uint32_t f = scene.begin(chain) + i;
+    const std::uint32_t f = meshes.begin(chain) + i;
     if (divisions[i].kind == Kind::No) continue;
     if (divisions[i].parts.empty()) {
       if (divisions[i].kind == Kind::Yes) surely.push_back(f);
@@ -244,7 +245,7 @@ Pieces pieces_with(const Scene& scene, int chain, const InclusionOptions& option
       result.parts.push_back(part);
     }
   }
-  const Triangles triangles(scene, result.parts);
+  const Triangles triangles(meshes, result.parts);
   if (!surely.empty()) result.surely = tree_of(triangles, surely);
   if (!perhaps.empty()) result.perhaps = tree_of(triangles, perhaps);
   return result;

@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "scene.h"
+#include "mesh_pair.h"
 
 /// Parts of a chain's triangles on which the winding numbers beside them satisfy a condition.
 /// docs/algorithms/exact-inclusion.md, "Parts of triangles".
@@ -14,21 +14,21 @@ namespace kaboum::verify {
 
 using Corners = std::array<Vec3, 3>;
 
-/// The triangles that distances are measured to: a scene's faces and, numbered after them, parts of
+/// The triangles that distances are measured to: a pair's faces and, numbered after them, parts of
 /// faces. Refers to both.
 class Triangles {
  public:
-  Triangles(const Scene& scene) : scene_(&scene), faces_(scene.faces().size()) {}  // NOLINT
-  Triangles(const Scene& scene, const std::vector<Corners>& parts)
-      : scene_(&scene), faces_(scene.faces().size()), parts_(parts.data()) {}
+  Triangles(const MeshPair& meshes) : meshes_(&meshes), faces_(meshes.faces().size()) {}  // NOLINT
+  Triangles(const MeshPair& meshes, const std::vector<Corners>& parts)
+      : meshes_(&meshes), faces_(meshes.faces().size()), parts_(parts.data()) {}
 
   [[nodiscard]] const Vec3& corner(std::uint32_t t, int k) const {
-    return t < faces_ ? scene_->corner(t, k) : parts_[t - faces_][static_cast<std::size_t>(k)];
+    return t < faces_ ? meshes_->corner(t, k) : parts_[t - faces_][static_cast<std::size_t>(k)];
   }
-  [[nodiscard]] const BoxTree& tree(int chain) const { return scene_->tree(chain); }
+  [[nodiscard]] const BoxTree& tree(int chain) const { return meshes_->tree(chain); }
 
  private:
-  const Scene* scene_;
+  const MeshPair* meshes_;
   std::size_t faces_;
   const Corners* parts_ = nullptr;
 };
@@ -44,7 +44,7 @@ struct Pieces {
 /// by less than rounding_of_distances allows for. What options.max_work leaves undone may be a
 /// part.
 /// @throws Error{LimitReached} beyond the limits on contacts
-Pieces pieces_with(const Scene& scene, int chain, const InclusionOptions& options,
+Pieces pieces_with(const MeshPair& meshes, int chain, const InclusionOptions& options,
                    const std::function<bool(int inner, int outer)>& condition);
 
 }  // namespace kaboum::verify

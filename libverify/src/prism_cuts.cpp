@@ -1,5 +1,5 @@
 // Parts of boxes, cut along the prisms over the triangles that distances are measured to.
-// docs/algorithms/exact-inclusion.md, "Pockets".
+// docs/algorithms/exact-inclusion.md, "Uncovered regions".
 #include "prism_cuts.h"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ std::pair<double, double> range(const Part& part, const Plane& plane) {
 
 /// Whether the part is within the limit of one triangle, or its cuts along the sides of the prism
 /// over the nearest one are. @param prisms  that were cut along, in all; @param work  so far
-bool near_after_cuts(const PocketSearch& search, const Part& part, std::uint32_t face,
+bool near_after_cuts(const RegionSearch& search, const Part& part, std::uint32_t face,
                      std::size_t& prisms, std::size_t& work) {
   const NearestTriangle target(search.limit.triangles, search.limit.target);
   std::vector<Part> open{part}, pieces, next;
@@ -73,7 +73,7 @@ bool near_after_cuts(const PocketSearch& search, const Part& part, std::uint32_t
 
 }  // namespace
 
-bool near_after_cuts(const PocketSearch& search, const std::vector<Part>& parts, std::uint32_t face,
+bool near_after_cuts(const RegionSearch& search, const std::vector<Part>& parts, std::uint32_t face,
                      std::size_t& work) {
   double most = -1;
   Vec3 farthest = Vec3::Zero();

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "pocket_search.h"
+#include "region_search.h"
 #include "tetrahedra.h"
 
 namespace kaboum::verify {
@@ -12,7 +12,7 @@ namespace kaboum::verify {
 /// farthest from the face is not, cutting will not help.
 /// @param face  a triangle that may be near to all of them
 /// @param work  grows by the parts looked at
-bool near_after_cuts(const PocketSearch& search, const std::vector<Part>& parts, std::uint32_t face,
+bool near_after_cuts(const RegionSearch& search, const std::vector<Part>& parts, std::uint32_t face,
                      std::size_t& work);
 
 }  // namespace kaboum::verify

@@ -13,11 +13,11 @@ namespace {
 
 class Collector {
  public:
-  Collector(const Scene& scene, std::uint32_t face, std::size_t limit,
+  Collector(const MeshPair& meshes, std::uint32_t face, std::size_t limit,
             std::span<const std::uint32_t> settled)
-      : scene_(scene),
+      : meshes_(meshes),
         index_(face),
-        face_(scene_.face(face)),
+        face_(meshes_.face(face)),
         limit_(limit),
         settled_(settled.begin(), settled.end()) {
     std::sort(settled_.begin(), settled_.end());
@@ -42,7 +42,7 @@ class Collector {
   }
 
  private:
-  [[nodiscard]] const Vec3& corner(int k) const { return scene_.point(face_.v[k]); }
+  [[nodiscard]] const Vec3& corner(int k) const { return meshes_.point(face_.v[k]); }
 
   /// Doubled areas in f's projection, positive for an upward turn of f.
   [[nodiscard]] Exact area(const Vec3& a, const Vec3& b, const Vec3& c) const {
@@ -58,7 +58,7 @@ class Collector {
       unit[k] = area(corner(0), corner(1), corner(2));
       return unit;
     }
-    const Vec3& p = scene_.point(vertex);
+    const Vec3& p = meshes_.point(vertex);
     return {area(corner(1), corner(2), p), area(corner(2), corner(0), p),
             area(corner(0), corner(1), p)};
   }
@@ -67,26 +67,26 @@ class Collector {
     for (const std::uint32_t v : face_.v) {
       if (v == vertex) return {0};
     }
-    return orient3d_value<Exact>(corner(0), corner(1), corner(2), scene_.point(vertex));
+    return orient3d_value<Exact>(corner(0), corner(1), corner(2), meshes_.point(vertex));
   }
 
   /// The segment that is the intersection with a face in another plane.
   void add_crossing(std::uint32_t gi) {
-    const Face& g = scene_.face(gi);
+    const Face& g = meshes_.face(gi);
     Segment s;
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t v = face_.v[k];
       s.line[k] = v == g.v[0] || v == g.v[1] || v == g.v[2]
                       ? Exact(0)
-                      : orient3d_value<Exact>(scene_.point(g.v[0]), scene_.point(g.v[1]),
-                                              scene_.point(g.v[2]), corner(k));
+                      : orient3d_value<Exact>(meshes_.point(g.v[0]), meshes_.point(g.v[1]),
+                                              meshes_.point(g.v[2]), corner(k));
     }
-    const Crossing f_ends = crossing(face_, sides_of(scene_, face_, gi));
-    const Crossing g_ends = crossing(g, sides_of(scene_, g, index_));
+    const Crossing f_ends = crossing(face_, sides_of(meshes_, face_, gi));
+    const Crossing g_ends = crossing(g, sides_of(meshes_, g, index_));
     std::array<std::array<int, 2>, 2> order{};
     for (int i = 0; i < 2; ++i) {
       for (int j = 0; j < 2; ++j)
-        order[i][j] = to_int(order_of(scene_, f_ends.ends[i], g_ends.ends[j]));
+        order[i][j] = to_int(order_of(meshes_, f_ends.ends[i], g_ends.ends[j]));
     }
     // The ends of the overlap: f's ends within g, and g's ends strictly within f.
     int found = 0;
@@ -127,7 +127,7 @@ class Collector {
 
   /// The edges of a face in the same plane, as far as they run through the interior.
   void add_coplanar(std::uint32_t gi) {
-    const Face& g = scene_.face(gi);
+    const Face& g = meshes_.face(gi);
     for (int e = 0; e < 3; ++e) {
       const std::uint32_t a = std::min(g.v[e], g.v[(e + 1) % 3]),
                           b = std::max(g.v[e], g.v[(e + 1) % 3]);
@@ -136,7 +136,7 @@ class Collector {
       s.p = barycentric(a);
       s.q = barycentric(b);
       if (!clip(s.p, s.q)) continue;
-      const Vec3 &from = scene_.point(a), &to = scene_.point(b);
+      const Vec3 &from = meshes_.point(a), &to = meshes_.point(b);
       for (int k = 0; k < 3; ++k) {
         s.line[k] = face_.v[k] == a || face_.v[k] == b ? Exact(0) : area(from, to, corner(k));
       }
@@ -148,9 +148,9 @@ class Collector {
   [[nodiscard]] bool between_settled(std::uint32_t gi, std::uint32_t a, std::uint32_t b) const {
     if (settled_.empty()) return false;
     int count = 0;
-    for (const std::uint32_t h : scene_.around_edge(a, b)) {
-      const Face& face = scene_.face(h);
-      if (face.chain != scene_.face(gi).chain) continue;
+    for (const std::uint32_t h : meshes_.around_edge(a, b)) {
+      const Face& face = meshes_.face(h);
+      if (face.chain != meshes_.face(gi).chain) continue;
       if (face.place_of(a) < 0 || face.place_of(b) < 0) continue;
       if (!std::binary_search(settled_.begin(), settled_.end(), h)) return false;
       ++count;
@@ -190,7 +190,7 @@ class Collector {
     }
   }
 
-  const Scene& scene_;
+  const MeshPair& meshes_;
   std::uint32_t index_;
   const Face& face_;
   std::size_t limit_;
@@ -246,10 +246,11 @@ Approx share(const Approx& weight, const Approx& total) {
           (weight.error + 2 * total.error) / (0.5 * total.value) + 4 * kUnit};
 }
 
-std::vector<Segment> segments_of(const Arrangement& arrangement, std::uint32_t face, ChainMask mask,
-                                 std::size_t limit, std::span<const std::uint32_t> settled) {
-  Collector collector(arrangement.scene(), face, limit, settled);
-  const int chain = arrangement.scene().face(face).chain;
+std::vector<Segment> segments_of(const Arrangement& arrangement, std::uint32_t face,
+                                 OperandMask mask, std::size_t limit,
+                                 std::span<const std::uint32_t> settled) {
+  Collector collector(arrangement.meshes(), face, limit, settled);
+  const int chain = arrangement.meshes().face(face).chain;
   for (int c = 0; c < 2; ++c) {
     if ((mask & mask_of(c)) == 0) continue;
     for (const Contacts::Cut& cut : arrangement.contacts(chain, c).cuts(face)) collector.add(cut);

@@ -26,8 +26,9 @@ struct Segment {
 /// @param settled  edges between two of these coplanar faces are left out
 /// @pre the contacts of the mask's chains with the face's chain are known
 /// @throws Error{LimitReached} beyond `limit`
-std::vector<Segment> segments_of(const Arrangement& arrangement, std::uint32_t face, ChainMask mask,
-                                 std::size_t limit, std::span<const std::uint32_t> settled);
+std::vector<Segment> segments_of(const Arrangement& arrangement, std::uint32_t face,
+                                 OperandMask mask, std::size_t limit,
+                                 std::span<const std::uint32_t> settled);
 
 Triple<Approx> rounded(const Triple<Exact>& x);
 Triple<Exact> cross(const Triple<Exact>& a, const Triple<Exact>& b);

@@ -131,7 +131,7 @@ class Search {
     std::uint32_t body = 0;
     const Pose start = pose_at(0), finish = moves_ ? pose_at(1) : start;
     if (!bodies_.empty() && !outline.points.empty()) {
-      whole(0, 1, start, finish, outline, all_bodies(), 0, body, open);
+      as_one_cell(0, 1, start, finish, outline, all_bodies(), 0, body, open);
     } else {
       open.push_back({0, 1});
     }
@@ -155,9 +155,9 @@ class Search {
 
   /// The shape as one cell, halved in time only; where it is in one body at neither end, or the
   /// stretch is short, it is left to the cells.
-  void whole(double begin, double end, const Pose& start, const Pose& finish,
-             const Outline& outline, const std::vector<std::uint32_t>& candidates, int halvings,
-             std::uint32_t& body, std::vector<Stretch>& open) {
+  void as_one_cell(double begin, double end, const Pose& start, const Pose& finish,
+                   const Outline& outline, const std::vector<std::uint32_t>& candidates,
+                   int halvings, std::uint32_t& body, std::vector<Stretch>& open) {
     begin_ = begin;
     end_ = end;
     const std::size_t count = outline.points.size();
@@ -195,8 +195,8 @@ class Search {
     }
     const double middle = 0.5 * (begin + end);
     const Pose pose = pose_at(middle);
-    whole(begin, middle, start, pose, outline, near, halvings + 1, body, open);
-    whole(middle, end, pose, finish, outline, near, halvings + 1, body, open);
+    as_one_cell(begin, middle, start, pose, outline, near, halvings + 1, body, open);
+    as_one_cell(middle, end, pose, finish, outline, near, halvings + 1, body, open);
   }
 
   [[nodiscard]] Pose pose_at(double s) const {
@@ -404,9 +404,9 @@ void require_usable(std::span<const MovingShape> shapes, const Waypoints& path,
       if (!std::isfinite(x)) throw Error(ErrorCode::InvalidInput, "a waypoint is not finite");
   for (const MovingShape& shape : shapes) {
     geom::require_valid(shape.mesh);
-    for (const ChainStage& stage : shape.chain)
+    for (const KinematicStage& stage : shape.chain)
       for (const auto& waypoint : path)
-        if (stage.motion != ChainStage::Motion::None && stage.variable >= waypoint.size())
+        if (stage.motion != KinematicStage::Motion::None && stage.variable >= waypoint.size())
           throw Error(ErrorCode::InvalidArgument, "a waypoint has no value for every variable");
   }
 }

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "scene.h"
+#include "mesh_pair.h"
 
 namespace kaboum::verify {
 
@@ -110,7 +110,7 @@ geom::ConvexSet part_of(const geom::ConvexSet& set, const std::vector<std::uint3
 }  // namespace
 
 bool is_closed(const geom::Mesh& mesh) {
-  return !mesh.triangles.empty() && Scene(mesh, geom::Mesh{}).closed(kInside);
+  return !mesh.triangles.empty() && MeshPair(mesh, geom::Mesh{}).closed(kInside);
 }
 
 Claim verify_inside(const MovingShape& shape, const std::vector<std::vector<double>>& path,

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "box_tree.h"
-#include "scene.h"
+#include "mesh_pair.h"
 
 /// Parts of boxes, cut by planes in rounded arithmetic.
 namespace kaboum::verify {

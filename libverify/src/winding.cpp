@@ -1,18 +1,19 @@
-// Winding numbers at spots: signed crossings of a line along the face's axis with the chain, every
-// sign exact, ties broken by an infinitesimal displacement within the face, then off the face.
+// Winding numbers at samples: signed crossings of a line along the face's axis with the chain,
+// every sign exact, ties broken by an infinitesimal displacement within the face, then off the
+// face.
 
 #include <kaboum/base/error.h>
 
 #include <algorithm>
 
 #include "allowance.h"
-#include "spot.h"
+#include "cell_sample.h"
 
 namespace kaboum::verify {
 namespace {
 
 /// Directions within a face, in barycentric coordinates (their sum is zero). For every finite set
-/// of lines through a spot some of them lie on none; the list is long enough for what is met.
+/// of lines through a sample some of them lie on none; the list is long enough for what is met.
 std::array<int, 3> direction(int attempt) {
   static constexpr std::array<std::array<int, 2>, 24> kPairs{
       {{3, 1},   {1, -4},  {5, -2},   {2, 7},    {-7, 3},  {11, 5},  {4, -13},  {-9, 17},
@@ -34,24 +35,24 @@ Sign sign_of_sum(const Triple<Approx>& weight, const Triple<Exact>& exact_weight
   return sign_of(dot(exact_weight, Triple<Exact>{exact_value(0), exact_value(1), exact_value(2)}));
 }
 
-/// A spot with a direction chosen, ready for queries.
+/// A sample with a direction chosen, ready for queries.
 class Line {
  public:
-  Line(const Scene& scene, const Spot& spot, Side side)
-      : scene_(scene),
-        spot_(spot),
-        face_(scene.face(spot.face)),
+  Line(const MeshPair& meshes, const CellSample& sample, Side side)
+      : meshes_(meshes),
+        sample_(sample),
+        face_(meshes.face(sample.face)),
         axis_(face_.axis),
         above_((side == kOuter) == face_.upward) {
     bound();
   }
 
-  /// @return false when there is no such direction on the spot's side of its line.
+  /// @return false when there is no such direction on the sample's side of its line.
   bool choose(int attempt) {
     std::array<int, 3> u = direction(attempt);
-    if (spot_.line) {
+    if (sample_.line) {
       const Triple<Exact> exact{Exact(u[0]), Exact(u[1]), Exact(u[2])};
-      const Sign sign = sign_of(dot(*spot_.line, exact));
+      const Sign sign = sign_of(dot(*sample_.line, exact));
       if (sign == Sign::Zero) return false;
       if (sign == Sign::Negative) u = {-u[0], -u[1], -u[2]};
     }
@@ -62,14 +63,14 @@ class Line {
     return true;
   }
 
-  /// Signed crossings of the ray that goes up from the displaced spot; nullopt: choose another
+  /// Signed crossings of the ray that goes up from the displaced sample; nullopt: choose another
   /// direction.
   [[nodiscard]] std::optional<int> crossings(int chain) const {
     int sum = 0;
     bool clear = true;
     std::uint64_t boxes = 0, faces = 0;
     const int u = (axis_ + 1) % 3, v = (axis_ + 2) % 3;
-    scene_.tree(chain).query(
+    meshes_.tree(chain).query(
         [&](const Bounds& box) {
           ++boxes;
           return clear && box.high[axis_] >= box_.low[axis_] && box.low[u] <= box_.high[u] &&
@@ -94,9 +95,9 @@ class Line {
   // What looking at one takes, in about nanoseconds.
   static constexpr std::uint64_t kBox = 4, kFace = 400;
 
-  /// A box that certainly contains the spot.
+  /// A box that certainly contains the sample.
   void bound() {
-    const Triple<Approx>& w = spot_.approx;
+    const Triple<Approx>& w = sample_.approx;
     const Approx total = w[0] + w[1] + w[2];
     for (int k = 0; k < 3; ++k) {
       box_.low[k] = std::min({corner(0)[k], corner(1)[k], corner(2)[k]});
@@ -115,23 +116,23 @@ class Line {
     }
   }
 
-  [[nodiscard]] const Vec3& corner(int k) const { return scene_.point(face_.v[k]); }
+  [[nodiscard]] const Vec3& corner(int k) const { return meshes_.point(face_.v[k]); }
 
-  /// Sign of an affine function, given by its values at the face's corners, at the displaced spot;
-  /// Zero if it vanishes there and in the direction of displacement.
+  /// Sign of an affine function, given by its values at the face's corners, at the displaced
+  /// sample; Zero if it vanishes there and in the direction of displacement.
   template <class ApproxValue, class ExactValue>
   [[nodiscard]] Sign sign(const ApproxValue& value, const ExactValue& exact_value) const {
-    const Sign at_spot = sign_of_sum(spot_.approx, spot_.exact, value, exact_value);
+    const Sign at_spot = sign_of_sum(sample_.approx, sample_.exact, value, exact_value);
     if (at_spot != Sign::Zero) return at_spot;
     return sign_of_sum(direction_, exact_direction_, value, exact_value);
   }
 
   [[nodiscard]] std::optional<int> cross(std::uint32_t gi) const {
-    const Face& g = scene_.face(gi);
+    const Face& g = meshes_.face(gi);
     bool upward = g.upward;
     if (g.axis != axis_) {
       const Sign turn =
-          orient2d(axis_, scene_.point(g.v[0]), scene_.point(g.v[1]), scene_.point(g.v[2]));
+          orient2d(axis_, meshes_.point(g.v[0]), meshes_.point(g.v[1]), meshes_.point(g.v[2]));
       if (turn == Sign::Zero)
         return 0;  // upright: the line meets it nowhere, or is displaced off it
       upward = turn == Sign::Positive;
@@ -142,7 +143,7 @@ class Line {
       const std::uint32_t a = g.v[e], b = g.v[(e + 1) % 3];
       const auto value = [&]<class Number>(int i) {
         if (face_.v[i] == a || face_.v[i] == b) return integer<Number>(0);
-        return orient2d_value<Number>(axis_, scene_.point(a), scene_.point(b), corner(i));
+        return orient2d_value<Number>(axis_, meshes_.point(a), meshes_.point(b), corner(i));
       };
       const Sign s = sign([&](int i) { return value.template operator()<Approx>(i); },
                           [&](int i) { return value.template operator()<Exact>(i); });
@@ -157,19 +158,20 @@ class Line {
     const auto value = [&]<class Number>(int i) {
       const std::uint32_t v = face_.v[i];
       if (v == g.v[0] || v == g.v[1] || v == g.v[2]) return integer<Number>(0);
-      return orient3d_value<Number>(scene_.point(g.v[0]), scene_.point(g.v[1]),
-                                    scene_.point(g.v[2]), corner(i));
+      return orient3d_value<Number>(meshes_.point(g.v[0]), meshes_.point(g.v[1]),
+                                    meshes_.point(g.v[2]), corner(i));
     };
     const Sign s = sign([&](int i) { return value.template operator()<Approx>(i); },
                         [&](int i) { return value.template operator()<Exact>(i); });
     if (s == Sign::Zero) {
       for (int i = 0; i < 3; ++i) {
         const std::uint32_t v = face_.v[i];
-        if (v != g.v[0] && v != g.v[1] && v != g.v[2] && scene_.side(gi, corner(i)) != Sign::Zero) {
+        if (v != g.v[0] && v != g.v[1] && v != g.v[2] &&
+            meshes_.side(gi, corner(i)) != Sign::Zero) {
           return std::nullopt;  // the displacement runs along the line where the planes meet
         }
       }
-      // Coplanar: crossed if the spot is displaced downwards off the face.
+      // Coplanar: crossed if the sample is displaced downwards off the face.
       return above_ ? 0 : (upward ? 1 : -1);
     }
     // Below g: on the side away from an upward normal.
@@ -177,8 +179,8 @@ class Line {
     return s == below ? (upward ? 1 : -1) : 0;
   }
 
-  const Scene& scene_;
-  const Spot& spot_;
+  const MeshPair& meshes_;
+  const CellSample& sample_;
   const Face& face_;
   int axis_;
   bool above_;
@@ -188,8 +190,9 @@ class Line {
 };
 
 template <class Count>
-int with_some_direction(const Scene& scene, const Spot& spot, Side side, const Count& count) {
-  Line line(scene, spot, side);
+int with_some_direction(const MeshPair& meshes, const CellSample& sample, Side side,
+                        const Count& count) {
+  Line line(meshes, sample, side);
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     if (!line.choose(attempt)) continue;
     if (const std::optional<int> result = count(line)) return *result;
@@ -200,13 +203,13 @@ int with_some_direction(const Scene& scene, const Spot& spot, Side side, const C
 
 }  // namespace
 
-int winding(const Scene& scene, const Spot& spot, Side side, int chain) {
-  return with_some_direction(scene, spot, side,
+int winding(const MeshPair& meshes, const CellSample& sample, Side side, int chain) {
+  return with_some_direction(meshes, sample, side,
                              [&](const Line& line) { return line.crossings(chain); });
 }
 
-int winding_difference(const Scene& scene, const Spot& spot, Side side) {
-  return with_some_direction(scene, spot, side, [&](const Line& line) -> std::optional<int> {
+int winding_difference(const MeshPair& meshes, const CellSample& sample, Side side) {
+  return with_some_direction(meshes, sample, side, [&](const Line& line) -> std::optional<int> {
     const std::optional<int> inside = line.crossings(kInside);
     if (!inside) return std::nullopt;
     const std::optional<int> outside = line.crossings(kOutside);
@@ -235,7 +238,7 @@ bool holds(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
 
 }  // namespace
 
-std::optional<int> winding_at(const Scene& scene, int chain, const Vec3& p) {
+std::optional<int> winding_at(const MeshPair& meshes, int chain, const Vec3& p) {
   // A vertical ray from (x + ε, y + ε²): side of the displaced point with respect to a → b.
   const auto side = [&](const Vec3& a, const Vec3& b) {
     const Sign s = geom::orient2d(a.x(), a.y(), b.x(), b.y(), p.x(), p.y());
@@ -247,15 +250,15 @@ std::optional<int> winding_at(const Scene& scene, int chain, const Vec3& p) {
   int sum = 0;
   bool touches = false;
   std::uint64_t boxes = 0;
-  scene.tree(chain).query(
+  meshes.tree(chain).query(
       [&](const Bounds& box) {
         ++boxes;
         return p.x() >= box.low[0] && p.x() <= box.high[0] && p.y() >= box.low[1] &&
                p.y() <= box.high[1] && p.z() <= box.high[2];
       },
       [&](std::uint32_t f) {
-        const Vec3 &a = scene.corner(f, 0), &b = scene.corner(f, 1), &c = scene.corner(f, 2);
-        const Sign height = scene.side(f, p);
+        const Vec3 &a = meshes.corner(f, 0), &b = meshes.corner(f, 1), &c = meshes.corner(f, 2);
+        const Sign height = meshes.side(f, p);
         if (height == Sign::Zero && holds(a, b, c, p)) touches = true;
         const int s = side(a, b);
         if (s == 0 || side(b, c) != s || side(c, a) != s) return;

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <set>
 
+#include "cell_sample.h"
 #include "nearest.h"
 #include "parallel.h"
-#include "spot.h"
 
 namespace kaboum::verify {
 namespace {
@@ -23,32 +23,32 @@ struct Candidate {
   double depth;
 };
 
-bool contradicts(const Scene& scene, const Vec3& p, bool on_surface, bool relative) {
-  const std::optional<int> outer = winding_at(scene, kOutside, p);
+bool contradicts(const MeshPair& meshes, const Vec3& p, bool on_surface, bool relative) {
+  const std::optional<int> outer = winding_at(meshes, kOutside, p);
   if (!outer) return false;
   if (on_surface) return *outer <= 0;
-  const std::optional<int> inner = winding_at(scene, kInside, p);
+  const std::optional<int> inner = winding_at(meshes, kInside, p);
   if (!inner) return false;
   return relative ? *inner > *outer : *inner >= 1 && *outer <= 0;
 }
 
 }  // namespace
 
-Witness find_witness(const Scene& scene, const std::vector<Offence>& offences, bool on_surface,
+Witness find_witness(const MeshPair& meshes, const std::vector<Offence>& offences, bool on_surface,
                      bool relative) {
   std::vector<Candidate> candidates;
   const std::size_t step = (offences.size() + kFaces - 1) / kFaces;
   for (std::size_t i = 0; i < offences.size(); i += step) {
     const Offence& offence = offences[i];
-    const Vec3 &a = scene.corner(offence.face, 0), &b = scene.corner(offence.face, 1),
-               &c = scene.corner(offence.face, 2);
+    const Vec3 &a = meshes.corner(offence.face, 0), &b = meshes.corner(offence.face, 1),
+               &c = meshes.corner(offence.face, 2);
     Vec3 normal = (b - a).cross(c - a);
     const double length = normal.norm();
     if (!(length > 0)) normal = Vec3::UnitZ();
     if (length > 0) normal /= length;
     normal *= offence.side;
     candidates.push_back({offence.point, normal, false, 0});
-    const bool inner = scene.face(offence.face).chain == kInside;
+    const bool inner = meshes.face(offence.face).chain == kInside;
     const Vec3 middle = (a + b + c) / 3;
     candidates.push_back({middle, normal, false, 0});
     for (const Vec3* p : {&a, &b, &c}) {
@@ -57,10 +57,10 @@ Witness find_witness(const Scene& scene, const std::vector<Offence>& offences, b
       candidates.push_back({*p, (normal + inwards).normalized(), inner, 0});
     }
   }
-  const NearestTriangle nearest(scene, kOutside);
+  const NearestTriangle nearest(meshes, kOutside);
   verify::parallel_loop(std::size_t{0}, candidates.size(), [&](std::size_t i) {
     Candidate& candidate = candidates[i];
-    const std::optional<int> outer = winding_at(scene, kOutside, candidate.point);
+    const std::optional<int> outer = winding_at(meshes, kOutside, candidate.point);
     const bool enclosed = !relative && outer && *outer >= 1;
     candidate.depth = enclosed ? -1 : nearest.distance(candidate.point);
   });
@@ -70,14 +70,14 @@ Witness find_witness(const Scene& scene, const std::vector<Offence>& offences, b
 
   // The deepest of the first few that can be found, each as far along its direction as possible.
   geom::Box3 box;
-  for (std::uint32_t f = scene.begin(kInside); f < scene.end(kInside); ++f) {
-    for (int k = 0; k < 3; ++k) box.extend(scene.corner(f, k));
+  for (std::uint32_t f = meshes.begin(kInside); f < meshes.end(kInside); ++f) {
+    for (int k = 0; k < 3; ++k) box.extend(meshes.corner(f, k));
   }
   const double extent = box.diagonal();
   std::optional<Witness> best;
   int found = 0;
   const auto look_at = [&](const Vec3& p, bool exact) {
-    if (!p.allFinite() || !contradicts(scene, p, on_surface, relative)) return false;
+    if (!p.allFinite() || !contradicts(meshes, p, on_surface, relative)) return false;
     const double depth = nearest.distance(p);
     const bool better = !best || (exact != best->exact ? exact : depth > best->depth);
     if (better) best = Witness{p, depth, exact};
@@ -98,7 +98,7 @@ Witness find_witness(const Scene& scene, const std::vector<Offence>& offences, b
   if (!best) {
     best = Witness{offences.front().point, nearest.distance(offences.front().point), false};
   }
-  return {scene.point_outside(best->point), scene.length_outside(best->depth), best->exact};
+  return {meshes.point_outside(best->point), meshes.length_outside(best->depth), best->exact};
 }
 
 }  // namespace kaboum::verify

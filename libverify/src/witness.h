@@ -17,13 +17,13 @@ struct Offence {
 
 /// A point with double coordinates in an offending region, deep if possible.
 ///
-/// Corners and spots of the offending faces are tried in order of their distance from the outer
+/// Corners and samples of the offending faces are tried in order of their distance from the outer
 /// mesh, moved off the surfaces; the first whose exact winding numbers contradict the claim is
 /// taken.
 ///
 /// @param on_surface  the surface claim: the point need only be outside the outer solid
 /// @param relative    the relative claim: w_inner > w_outer
-Witness find_witness(const Scene& scene, const std::vector<Offence>& offences, bool on_surface,
+Witness find_witness(const MeshPair& meshes, const std::vector<Offence>& offences, bool on_surface,
                      bool relative);
 
 }  // namespace kaboum::verify

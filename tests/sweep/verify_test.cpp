@@ -18,18 +18,18 @@ namespace kaboum::test {
 namespace {
 
 using verify::Answer;
-using verify::ChainStage;
+using verify::KinematicStage;
 using verify::MovingShape;
 
-verify::LinkChain chain_to(const Robot& robot, std::uint32_t link) {
-  verify::LinkChain chain;
+verify::KinematicChain chain_to(const Robot& robot, std::uint32_t link) {
+  verify::KinematicChain chain;
   for (std::uint32_t l = link; l > 0; l = robot.joints[l - 1].parent) {
     const Joint& joint = robot.joints[l - 1];
-    ChainStage stage;
+    KinematicStage stage;
     stage.rotation = joint.origin.linear;
     stage.translation = joint.origin.translation;
-    if (joint.type == JointType::Revolute) stage.motion = ChainStage::Motion::Turn;
-    if (joint.type == JointType::Prismatic) stage.motion = ChainStage::Motion::Slide;
+    if (joint.type == JointType::Revolute) stage.motion = KinematicStage::Motion::Turn;
+    if (joint.type == JointType::Prismatic) stage.motion = KinematicStage::Motion::Slide;
     stage.axis = joint.axis;
     stage.variable = joint.variable;
     stage.multiplier = joint.multiplier;
@@ -228,8 +228,8 @@ TEST(VerifySweep, AHollowSetDoesNotHoldTheInside) {
   MovingShape cube;
   cube.name = "cube";
   cube.mesh = translated(box({2, 2, 2}, 1), {-1, -1, -1});
-  ChainStage slide;
-  slide.motion = ChainStage::Motion::Slide;
+  KinematicStage slide;
+  slide.motion = KinematicStage::Motion::Slide;
   cube.chain = {slide};
   const Path path{{-0.1}, {0.1}};
   const auto hollow = judge({cube}, path, set_of(slabs, 0.01));
@@ -320,7 +320,7 @@ TEST(VerifySweep, BoundsOfMotionHold) {
   for (const TestRobot& r : test_robots()) {
     const Path path = random_path(r.robot, random, 2, 2, false);
     for (const LinkBody& body : r.bodies) {
-      const verify::LinkChain chain = chain_to(r.robot, body.link);
+      const verify::KinematicChain chain = chain_to(r.robot, body.link);
       double radius = 0;
       for (const Vec3& p : body.points) radius = std::max(radius, p.norm());
       const auto bound = verify::bound_motion(chain, path[0], path[1], radius);

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "cell_sample.h"
 #include "nearest.h"
 #include "pairs.h"
-#include "pockets.h"
-#include "spot.h"
 #include "support/shapes.h"
+#include "uncovered_region.h"
 
 namespace {
 
@@ -21,42 +21,42 @@ using namespace kaboum;        // NOLINT: a test
 using namespace kaboum::test;  // NOLINT: a test
 using verify::BoxTree;
 using verify::kInside;
+using verify::MeshPair;
 using verify::Pieces;
-using verify::Scene;
 
 Mesh block(const Vec3& low, const Vec3& high) { return translated(box(high - low, 1), low); }
 
 bool bounds_the_solid(int inner, int outer) { return std::min(inner, outer) <= 0; }
 
-Pieces bounding(const Scene& scene, const verify::InclusionOptions& options = {}) {
-  return verify::pieces_with(scene, kInside, options, bounds_the_solid);
+Pieces bounding(const MeshPair& meshes, const verify::InclusionOptions& options = {}) {
+  return verify::pieces_with(meshes, kInside, options, bounds_the_solid);
 }
 
-double area_of(const Scene& scene, const Pieces& pieces, const BoxTree& tree) {
-  const verify::Triangles triangles(scene, pieces.parts);
+double area_of(const MeshPair& meshes, const Pieces& pieces, const BoxTree& tree) {
+  const verify::Triangles triangles(meshes, pieces.parts);
   double area = 0;
   tree.query([](const verify::Bounds&) { return true; },
              [&](std::uint32_t t) {
                const Vec3& a = triangles.corner(t, 0);
                area += (triangles.corner(t, 1) - a).cross(triangles.corner(t, 2) - a).norm() / 2;
              });
-  return area / (scene.scale() * scene.scale());
+  return area / (meshes.scale() * meshes.scale());
 }
 
 double area_of(const Mesh& mesh) {
-  const Scene scene(mesh, Mesh{});
-  const Pieces pieces = verify::pieces_with(scene, kInside, {}, [](int, int) { return true; });
-  return area_of(scene, pieces, pieces.surely);
+  const MeshPair meshes(mesh, Mesh{});
+  const Pieces pieces = verify::pieces_with(meshes, kInside, {}, [](int, int) { return true; });
+  return area_of(meshes, pieces, pieces.surely);
 }
 
 TEST(Pieces, OfBlocksThatCrossTouchAndAreFolded) {
   const Mesh unit = block({0, 0, 0}, {1, 1, 1});
   const auto area = [](const Mesh& mesh) {
-    const Scene scene(mesh, Mesh{});
-    const Pieces pieces = bounding(scene);
-    EXPECT_NEAR(area_of(scene, pieces, pieces.surely), area_of(scene, pieces, pieces.perhaps),
+    const MeshPair meshes(mesh, Mesh{});
+    const Pieces pieces = bounding(meshes);
+    EXPECT_NEAR(area_of(meshes, pieces, pieces.surely), area_of(meshes, pieces, pieces.perhaps),
                 1e-12);
-    return area_of(scene, pieces, pieces.surely);
+    return area_of(meshes, pieces, pieces.surely);
   };
   EXPECT_NEAR(area_of(unit), 6, 1e-12);
   EXPECT_NEAR(area(unit), 6, 1e-12);
@@ -92,28 +92,28 @@ TEST(Pieces, AgreeWithWindingNumbersBesideThem) {
       solids.push_back(i == 4 ? flipped(one) : one);
     }
     const Mesh mesh = merged(solids);
-    const Scene scene(mesh, Mesh{});
-    const Pieces pieces = bounding(scene);
+    const MeshPair meshes(mesh, Mesh{});
+    const Pieces pieces = bounding(meshes);
     parts += pieces.parts.size();
-    const verify::Triangles triangles(scene, pieces.parts);
+    const verify::Triangles triangles(meshes, pieces.parts);
     const verify::NearestTriangle surely(triangles, pieces.surely),
         perhaps(triangles, pieces.perhaps);
     for (int i = 0; i < 400; ++i) {
-      const auto f = static_cast<std::uint32_t>(random() % scene.faces().size());
+      const auto f = static_cast<std::uint32_t>(random() % meshes.faces().size());
       const double u = uniform(), v = (1 - u) * uniform();
-      const Vec3 &a = scene.corner(f, 0), &b = scene.corner(f, 1), &c = scene.corner(f, 2);
+      const Vec3 &a = meshes.corner(f, 0), &b = meshes.corner(f, 1), &c = meshes.corner(f, 2);
       const Vec3 p = (1 - u - v) * a + u * b + v * c;
       const Vec3 up = 1e-9 * (b - a).cross(c - a).normalized();
       // Near other triangles, or the border of this one, a step off it may lead elsewhere.
       bool alone = std::min({u, v, 1 - u - v}) > 1e-4;
-      for (std::uint32_t g = 0; g < scene.faces().size() && alone; ++g)
-        alone = g == f || (verify::closest_point(p, scene.corner(g, 0), scene.corner(g, 1),
-                                                 scene.corner(g, 2)) -
+      for (std::uint32_t g = 0; g < meshes.faces().size() && alone; ++g)
+        alone = g == f || (verify::closest_point(p, meshes.corner(g, 0), meshes.corner(g, 1),
+                                                 meshes.corner(g, 2)) -
                            p)
                                   .norm() > 1e-7;
       if (!alone) continue;
-      const auto inner = winding_at(scene, kInside, p - up),
-                 outer = winding_at(scene, kInside, p + up);
+      const auto inner = winding_at(meshes, kInside, p - up),
+                 outer = winding_at(meshes, kInside, p + up);
       ASSERT_TRUE(inner.has_value() && outer.has_value());
       const bool bounds = bounds_the_solid(*inner, *outer);
       ++(bounds ? on : off);
@@ -135,24 +135,24 @@ TEST(Pieces, OfTooManyAreNotKnown) {
     solids.push_back(block({-0.5, at, 0.5}, {1.5, at + width, 1.5}));
   }
   const Mesh mesh = merged(solids);
-  const Scene scene(mesh, Mesh{});
-  const Pieces pieces = bounding(scene);
-  const verify::Triangles triangles(scene, pieces.parts);
-  const Vec3 p = Vec3(0.25 / 36, 0.25 / 36, 1) * scene.scale();  // on it, off all walls
+  const MeshPair meshes(mesh, Mesh{});
+  const Pieces pieces = bounding(meshes);
+  const verify::Triangles triangles(meshes, pieces.parts);
+  const Vec3 p = Vec3(0.25 / 36, 0.25 / 36, 1) * meshes.scale();  // on it, off all walls
   EXPECT_GT(verify::NearestTriangle(triangles, pieces.surely).distance(p), 0);
   EXPECT_EQ(verify::NearestTriangle(triangles, pieces.perhaps).distance(p), 0);
 }
 
 // Where the deepest point of a cube is exactly as deep as the limit, no number of boxes tells.
-TEST(Pockets, EndWhenTheWorkIsDone) {
-  const Scene scene(block({0, 0, 0}, {1, 1, 1}), Mesh{});
-  const BoxTree& faces = scene.tree(kInside);
-  std::vector<std::uint32_t> all(scene.faces().size());
+TEST(UncoveredRegion, EndWhenTheWorkIsDone) {
+  const MeshPair meshes(block({0, 0, 0}, {1, 1, 1}), Mesh{});
+  const BoxTree& faces = meshes.tree(kInside);
+  std::vector<std::uint32_t> all(meshes.faces().size());
   std::iota(all.begin(), all.end(), 0U);
   const auto search = [&](double limit, std::size_t boxes, std::size_t work) {
-    return verify::search_pockets(
-        scene, all,
-        {scene, faces, faces, limit * scene.scale(), boxes, false, true, nullptr, work});
+    return verify::search_uncovered(
+        meshes, all,
+        {meshes, faces, faces, limit * meshes.scale(), boxes, false, true, nullptr, work});
   };
   const std::size_t many = 1'000'000'000;
   EXPECT_EQ(search(0.5, many, many).answer, verify::Answer::Undecided);

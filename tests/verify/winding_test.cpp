@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "spot.h"
+#include "cell_sample.h"
 #include "support/shapes.h"
 
 namespace {
@@ -35,14 +35,14 @@ TEST(WindingAt, OnlyPointsOfTheSurfaceHaveNone) {
       for (geom::Vec3& v : part.vertices) v = turned(geom::Vec3(v + b.min));
       mesh = merged({mesh, part});
     }
-    const verify::Scene scene(mesh, mesh);
+    const verify::MeshPair meshes(mesh, mesh);
     int none = 0;
     for (int x = -1; x <= 18; ++x)
       for (int y = -1; y <= 18; ++y)
         for (int z = -1; z <= 30; ++z) {
           const geom::Vec3 p = geom::Vec3(x, y, z) / 4;
           const std::optional<int> w =
-              verify::winding_at(scene, verify::kOutside, turned(p) * scene.scale());
+              verify::winding_at(meshes, verify::kOutside, turned(p) * meshes.scale());
           EXPECT_EQ(w, expected(p)) << axis << ": " << p.transpose();
           none += w ? 0 : 1;
         }

@@ -24,8 +24,8 @@ To kind_of(From shape) {
   return To::Sphere;
 }
 
-ChainStage stage_of(const robot::Transform& fixed) {
-  ChainStage stage;
+KinematicStage stage_of(const robot::Transform& fixed) {
+  KinematicStage stage;
   stage.rotation = fixed.linear;
   stage.translation = fixed.translation;
   return stage;
@@ -40,13 +40,13 @@ geom::Mesh scaled(geom::Mesh mesh, const geom::Vec3& scale) {
 
 }  // namespace
 
-LinkChain chain_to(const robot::Robot& robot, std::uint32_t link) {
-  LinkChain chain;
+KinematicChain chain_to(const robot::Robot& robot, std::uint32_t link) {
+  KinematicChain chain;
   for (std::uint32_t l = link; l > 0; l = robot.joints[l - 1].parent) {
     const robot::Joint& joint = robot.joints[l - 1];
-    ChainStage stage = stage_of(joint.origin);
+    KinematicStage stage = stage_of(joint.origin);
     if (joint.type != robot::JointType::Fixed) {
-      using Motion = ChainStage::Motion;
+      using Motion = KinematicStage::Motion;
       stage.motion = joint.type == robot::JointType::Revolute ? Motion::Turn : Motion::Slide;
       stage.axis = joint.axis;
       stage.variable = joint.variable;
@@ -80,7 +80,7 @@ bool same_poses(const robot::Robot& robot, const std::vector<MovingShape>& shape
   for (const auto& q : path) {
     const std::vector<robot::Transform> poses = robot::forward(robot, q);
     for (std::size_t i = 0; i < shapes.size(); ++i) {
-      LinkChain chain = shapes[i].chain;
+      KinematicChain chain = shapes[i].chain;
       chain.pop_back();
       const auto pose = pose_of(chain, q);
       const robot::Transform& other = poses[links[i]];

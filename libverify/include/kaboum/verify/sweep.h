@@ -8,7 +8,7 @@ namespace kaboum::verify {
 
 /// One factor of a link's pose: a fixed transform, then a turn about (a slide along) `axis` by
 /// multiplier · q[variable] + offset.
-struct ChainStage {
+struct KinematicStage {
   enum class Motion { None, Turn, Slide };
   Motion motion = Motion::None;
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< of the fixed transform
@@ -19,10 +19,10 @@ struct ChainStage {
 };
 
 /// The stages from the root to a shape, whose last fixed transform is the shape's place.
-using LinkChain = std::vector<ChainStage>;
+using KinematicChain = std::vector<KinematicStage>;
 
 /// Pose of what the chain carries, for values of the variables; by long double arithmetic.
-Eigen::Matrix<double, 3, 4> pose_of(const LinkChain& chain, std::span<const double> q);
+Eigen::Matrix<double, 3, 4> pose_of(const KinematicChain& chain, std::span<const double> q);
 
 /// Bounds, for q(s) = from + s (to − from), 0 ≤ s ≤ 1, of what the chain does to the points no
 /// farther than `radius` from the origin of its last frame. Rounded up.
@@ -32,7 +32,7 @@ struct MotionBound {
   double acceleration = 0;  ///< |d²x/ds²| [length]
   double rounding = 0;      ///< of a position computed in double, the chain's own included [length]
 };
-MotionBound bound_motion(const LinkChain& chain, std::span<const double> from,
+MotionBound bound_motion(const KinematicChain& chain, std::span<const double> from,
                          std::span<const double> to, double radius);
 
 /// What a robot is made of, as its file states it, before anything bounded it.
@@ -42,7 +42,7 @@ struct MovingShape {
   Kind kind = Kind::Mesh;
   geom::Mesh mesh;                       ///< in the last frame of the chain
   geom::Vec3 size = geom::Vec3::Ones();  ///< edges; radius and length along z; radius
-  LinkChain chain;
+  KinematicChain chain;
 };
 
 struct SweepOptions {

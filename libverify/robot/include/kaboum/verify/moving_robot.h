@@ -12,7 +12,7 @@
 namespace kaboum::verify {
 
 /// The joints from the root to a link, in this verifier's words.
-LinkChain chain_to(const robot::Robot& robot, std::uint32_t link);
+KinematicChain chain_to(const robot::Robot& robot, std::uint32_t link);
 
 /// A shape of a link, without name; nullopt: it is a point, and nothing is left to be held. A
 /// cylinder of radius 0, a line, has no curved side: it is a box.

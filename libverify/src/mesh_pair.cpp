@@ -1,4 +1,4 @@
-#include "scene.h"
+#include "mesh_pair.h"
 
 #include <kaboum/base/error.h>
 
@@ -63,7 +63,7 @@ Bounds bounds_of(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 }  // namespace
 
-Scene::Scene(const geom::Mesh& inside, const geom::Mesh& outside) {
+MeshPair::MeshPair(const geom::Mesh& inside, const geom::Mesh& outside) {
   const std::array<const geom::Mesh*, 2> meshes{&inside, &outside};
   for (const geom::Mesh* mesh : meshes) geom::require_valid(*mesh);
   if (inside.vertices.size() + outside.vertices.size() >= 0xFFFFFFFF ||
@@ -127,7 +127,7 @@ Scene::Scene(const geom::Mesh& inside, const geom::Mesh& outside) {
   verify::parallel_calls([&] { build_tree(kInside); }, [&] { build_tree(kOutside); });
 }
 
-void Scene::rescale() {
+void MeshPair::rescale() {
   double largest = 0;
   for (const Vec3& p : points_) {
     if (p.allFinite()) largest = std::max(largest, p.cwiseAbs().maxCoeff());
@@ -148,7 +148,7 @@ void Scene::rescale() {
   scaled_ = true;
 }
 
-std::size_t Scene::unbalanced(ChainMask chains, bool difference) const {
+std::size_t MeshPair::unbalanced(OperandMask chains, bool difference) const {
   std::size_t result = 0;
   std::vector<std::pair<std::uint32_t, int>> sums;  // per vertex: upper neighbour, flow
   for (std::uint32_t v = 0; v < points_.size(); ++v) {
@@ -173,7 +173,7 @@ std::size_t Scene::unbalanced(ChainMask chains, bool difference) const {
   return result;
 }
 
-double Scene::largest_coordinate() const {
+double MeshPair::largest_coordinate() const {
   double largest = 0;
   for (const Face& face : faces_) {
     for (const std::uint32_t v : face.v) {

@@ -1,4 +1,4 @@
-#include "uncovered.h"
+#include "complement_of_union.h"
 
 #include <algorithm>
 #include <array>
@@ -14,18 +14,19 @@ constexpr double kAlike = 0.1;  // between normals of planes that are taken for 
 
 }  // namespace
 
-Uncovered::Uncovered(const Scene& scene, const geom::ConvexSet& set) {
+ComplementOfUnion::ComplementOfUnion(const MeshPair& meshes, const geom::ConvexSet& set) {
   std::vector<Bounds> boxes;
   std::vector<std::uint32_t> items;
   for (const geom::ConvexBody& body : set.bodies) {
-    if (body.hull.triangles.empty() || !Scene(geom::Mesh{}, body.hull).closed(kOutside)) continue;
-    Body planes = body_of(body.hull, scene);
+    if (body.hull.triangles.empty() || !MeshPair(geom::Mesh{}, body.hull).closed(kOutside))
+      continue;
+    Body planes = body_of(body.hull, meshes);
     if (planes.planes.empty()) continue;
     const geom::Box3 box = geom::bounding_box(body.hull);
     Bounds bounds;
     for (int k = 0; k < 3; ++k) {
-      bounds.low[k] = box.min[k] * scene.scale();
-      bounds.high[k] = box.max[k] * scene.scale();
+      bounds.low[k] = box.min[k] * meshes.scale();
+      bounds.high[k] = box.max[k] * meshes.scale();
     }
     items.push_back(static_cast<std::uint32_t>(bodies_.size()));
     boxes.push_back(bounds);
@@ -36,13 +37,13 @@ Uncovered::Uncovered(const Scene& scene, const geom::ConvexSet& set) {
 
 // Normals from exact products: facets may be slivers, whose corners are in a line but for the last
 // bits of float32.
-Uncovered::Body Uncovered::body_of(const geom::Mesh& hull, const Scene& scene) {
-  const double largest = scene.largest_coordinate();
+ComplementOfUnion::Body ComplementOfUnion::body_of(const geom::Mesh& hull, const MeshPair& meshes) {
+  const double largest = meshes.largest_coordinate();
   const double slack = rounding_of_distances(largest);
   Body body;
   for (const geom::Triangle& t : hull.triangles) {
-    const Vec3 a = hull.vertices[t[0]] * scene.scale(), b = hull.vertices[t[1]] * scene.scale(),
-               c = hull.vertices[t[2]] * scene.scale();
+    const Vec3 a = hull.vertices[t[0]] * meshes.scale(), b = hull.vertices[t[1]] * meshes.scale(),
+               c = hull.vertices[t[2]] * meshes.scale();
     Triple<Exact> ab, ac;
     for (int k = 0; k < 3; ++k) {
       ab[k] = difference<Exact>(b[k], a[k]);
@@ -71,7 +72,8 @@ Uncovered::Body Uncovered::body_of(const geom::Mesh& hull, const Scene& scene) {
   return body;
 }
 
-std::optional<Uncovered::Crossing> Uncovered::crossing_planes(const Body& body, const Bounds& box) {
+std::optional<ComplementOfUnion::Crossing> ComplementOfUnion::crossing_planes(const Body& body,
+                                                                              const Bounds& box) {
   const Vec3 low(box.low.data()), high(box.high.data());
   const Vec3 middle = 0.5 * (low + high), half = 0.5 * (high - low);
   Crossing result;
@@ -106,8 +108,8 @@ std::optional<Uncovered::Crossing> Uncovered::crossing_planes(const Body& body, 
   return result;
 }
 
-bool Uncovered::subtract(const std::vector<Plane>& planes, const Part& part,
-                         std::vector<Part>& out) {
+bool ComplementOfUnion::subtract(const std::vector<Plane>& planes, const Part& part,
+                                 std::vector<Part>& out) {
   std::vector<const Plane*> crossing;
   for (const Plane& plane : planes) {
     int outside = 0;
@@ -140,7 +142,7 @@ bool Uncovered::subtract(const std::vector<Plane>& planes, const Part& part,
   return true;
 }
 
-bool Uncovered::one_holds(const Bounds& box) const {
+bool ComplementOfUnion::one_holds(const Bounds& box) const {
   const Vec3 low(box.low.data()), high(box.high.data());
   const Vec3 middle = 0.5 * (low + high), half = 0.5 * (high - low);
   bool held = false;
@@ -156,7 +158,7 @@ bool Uncovered::one_holds(const Bounds& box) const {
   return held;
 }
 
-bool Uncovered::parts(const Bounds& box, std::vector<Part>& out) const {
+bool ComplementOfUnion::parts(const Bounds& box, std::vector<Part>& out) const {
   out.clear();
   std::vector<Crossing> near;
   tree_.query([&](const Bounds& b) { return b.meets(box); },

@@ -25,17 +25,17 @@ Matrix turn(const Vector& a, Real angle) {
 
 }  // namespace
 
-Eigen::Matrix<double, 3, 4> pose_of(const LinkChain& chain, std::span<const double> q) {
+Eigen::Matrix<double, 3, 4> pose_of(const KinematicChain& chain, std::span<const double> q) {
   Matrix rotation = Matrix::Identity();
   Vector translation = Vector::Zero();
-  for (const ChainStage& stage : chain) {
+  for (const KinematicStage& stage : chain) {
     translation += rotation * stage.translation.cast<Real>();
     rotation = (rotation * stage.rotation.cast<Real>()).eval();
-    if (stage.motion == ChainStage::Motion::None) continue;
+    if (stage.motion == KinematicStage::Motion::None) continue;
     const Real value =
         static_cast<Real>(stage.multiplier) * q[stage.variable] + static_cast<Real>(stage.offset);
     const Vector axis = stage.axis.cast<Real>().normalized();
-    if (stage.motion == ChainStage::Motion::Turn) {
+    if (stage.motion == KinematicStage::Motion::Turn) {
       rotation = (rotation * turn(axis, value)).eval();
     } else {
       translation += value * (rotation * axis);
@@ -47,15 +47,15 @@ Eigen::Matrix<double, 3, 4> pose_of(const LinkChain& chain, std::span<const doub
   return pose;
 }
 
-MotionBound bound_motion(const LinkChain& chain, std::span<const double> from,
+MotionBound bound_motion(const KinematicChain& chain, std::span<const double> from,
                          std::span<const double> to, double radius) {
   MotionBound b;
   b.distance = radius;
   double angles = 0;
   // From the shape to the root; in a joint's moved frame the point has these bounds.
   for (std::size_t i = chain.size(); i-- > 0;) {
-    const ChainStage& stage = chain[i];
-    if (stage.motion != ChainStage::Motion::None) {
+    const KinematicStage& stage = chain[i];
+    if (stage.motion != KinematicStage::Motion::None) {
       const double rate =
           std::abs(stage.multiplier) * std::abs(to[stage.variable] - from[stage.variable]) * kUp;
       // Not of the sum: its rounding is relative to what it is a sum of.
@@ -63,7 +63,7 @@ MotionBound bound_motion(const LinkChain& chain, std::span<const double> from,
                                                                  std::abs(to[stage.variable])) +
                            std::abs(stage.offset)) *
                           kUp;
-      if (stage.motion == ChainStage::Motion::Turn) {
+      if (stage.motion == KinematicStage::Motion::Turn) {
         b.acceleration += rate * rate * b.distance + 2 * rate * b.speed;
         b.speed += rate * b.distance;
         angles += most;

@@ -1,6 +1,6 @@
-// Pockets: how far the part of one solid that is outside the other reaches, decided box by box.
-// docs/algorithms/exact-inclusion.md, "Pockets".
-#include "pockets.h"
+// Uncovered regions: how far the part of one solid that is outside the other reaches, decided box
+// by box. docs/algorithms/exact-inclusion.md, "Uncovered regions".
+#include "uncovered_region.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,8 @@
 #include "local_maximum.h"
 #include "nearest.h"
 #include "parallel.h"
-#include "pocket_search.h"
 #include "prism_cuts.h"
+#include "region_search.h"
 #include "tetrahedra.h"
 
 namespace kaboum::verify {
@@ -36,8 +36,8 @@ std::vector<Vec3> corners(const Bounds& box) {
 /// Halves boxes until each of them is decided.
 class BoxSearch {
  public:
-  BoxSearch(const Scene& scene, const std::vector<std::uint32_t>& offending, const Limit& limit)
-      : search_(scene, offending, limit) {}
+  BoxSearch(const MeshPair& meshes, const std::vector<std::uint32_t>& offending, const Limit& limit)
+      : search_(meshes, offending, limit) {}
 
   /// Verified, refuted with a witness, or undecided.
   [[nodiscard]] Claim within_limit() const {
@@ -63,8 +63,8 @@ class BoxSearch {
           [](const BoxResult& a, const BoxResult& b) { return a.beyond < b.beyond; });
       if (climb(*deepest) > 0) {
         claim.answer = Answer::Refuted;
-        claim.witness = Witness{search_.scene.point_outside(deepest->point),
-                                search_.scene.length_outside(deepest->beyond), true};
+        claim.witness = Witness{search_.meshes.point_outside(deepest->point),
+                                search_.meshes.length_outside(deepest->beyond), true};
         return claim;
       }
       open.clear();
@@ -111,18 +111,18 @@ class BoxSearch {
     if (!look.decided && search_.limit.to_outside) look.decided = near_outside(look.point, radius);
     if (look.decided) return look;
 
-    const std::optional<bool> in = search_.in_pocket(look.point);
+    const std::optional<bool> in = search_.in_region(look.point);
     if (in.has_value() && !*in) {
       // The box lies outside Z as its point does without a triangle of Z's boundary, or of the
       // chain that the point is on the wrong side of.
       const auto clear = [&](const BoxTree& tree) {
-        return NearestTriangle(search_.scene, tree).all_beyond(look.point, radius + search_.slack);
+        return NearestTriangle(search_.meshes, tree).all_beyond(look.point, radius + search_.slack);
       };
       look.decided = clear(search_.boundary) ||
-                     (winding_at(search_.scene, kOutside, look.point).value_or(0) >= 1 &&
-                      clear(search_.scene.tree(kOutside))) ||
-                     (winding_at(search_.scene, kInside, look.point).value_or(1) < 1 &&
-                      clear(search_.scene.tree(kInside)));
+                     (winding_at(search_.meshes, kOutside, look.point).value_or(0) >= 1 &&
+                      clear(search_.meshes.tree(kOutside))) ||
+                     (winding_at(search_.meshes, kInside, look.point).value_or(1) < 1 &&
+                      clear(search_.meshes.tree(kInside)));
     } else if (in.has_value()) {
       look.beyond = beyond(look.point);
     }
@@ -142,11 +142,11 @@ class BoxSearch {
   /// or a point beyond the face nearest to that.
   [[nodiscard]] bool near_outside(const Vec3& p, double radius) const {
     const auto outside = [&](const Vec3& x) {
-      return winding_at(search_.scene, kInside, x).value_or(1) < 1;
+      return winding_at(search_.meshes, kInside, x).value_or(1) < 1;
     };
     if (radius > search_.limit.distance) return false;
     if (outside(p)) return true;
-    const NearestTriangle::Hit hit = NearestTriangle(search_.scene, kInside).nearest(p);
+    const NearestTriangle::Hit hit = NearestTriangle(search_.meshes, kInside).nearest(p);
     const double left = search_.limit.distance - radius - hit.distance;
     if (!(left > 4 * search_.slack) || !(hit.distance > 0)) return false;
     const Vec3 way = (search_.closest(p, hit.face) - p) / hit.distance;
@@ -170,7 +170,7 @@ class BoxSearch {
       const Vec3 away = look.point - search_.closest(look.point, f);
       if (!(away.norm() > 0)) break;
       const Vec3 next = look.point + step * away.normalized();
-      const double reached = search_.in_pocket(next).value_or(false) ? beyond(next) : kNowhere;
+      const double reached = search_.in_region(next).value_or(false) ? beyond(next) : kNowhere;
       if (reached > look.beyond) {
         look.point = next;
         look.beyond = reached;
@@ -206,12 +206,12 @@ class BoxSearch {
     into.back().low[axis] = middle;
   }
 
-  PocketSearch search_;
+  RegionSearch search_;
 };
 
 }  // namespace
 
-bool PocketSearch::near(const std::vector<Vec3>& points, std::uint32_t f) const {
+bool RegionSearch::near(const std::vector<Vec3>& points, std::uint32_t f) const {
   return std::all_of(points.begin(), points.end(), [&](const Vec3& p) {
     const Vec3 q = closest_point(p, limit.triangles.corner(f, 0), limit.triangles.corner(f, 1),
                                  limit.triangles.corner(f, 2));
@@ -235,22 +235,22 @@ BoxTree tree_of(const Triangles& triangles, const std::vector<std::uint32_t>& ch
   return {std::move(boxes), chosen};
 }
 
-std::vector<std::uint32_t> offending_faces(const Scene& scene, const Claim& claim) {
+std::vector<std::uint32_t> offending_faces(const MeshPair& meshes, const Claim& claim) {
   // Faces are numbered without those of repeated corners; a claim names triangles of the meshes.
   std::vector<std::uint32_t> faces;
   for (const int chain : {kInside, kOutside}) {
     const std::vector<std::uint32_t>& named =
         chain == kInside ? claim.inner_triangles : claim.outer_triangles;
-    for (std::uint32_t f = scene.begin(chain); f < scene.end(chain); ++f) {
-      if (std::binary_search(named.begin(), named.end(), scene.face(f).source)) faces.push_back(f);
+    for (std::uint32_t f = meshes.begin(chain); f < meshes.end(chain); ++f) {
+      if (std::binary_search(named.begin(), named.end(), meshes.face(f).source)) faces.push_back(f);
     }
   }
   return faces;
 }
 
-Claim search_pockets(const Scene& scene, const std::vector<std::uint32_t>& offending,
-                     const Limit& limit) {
-  return BoxSearch(scene, offending, limit).within_limit();
+Claim search_uncovered(const MeshPair& meshes, const std::vector<std::uint32_t>& offending,
+                       const Limit& limit) {
+  return BoxSearch(meshes, offending, limit).within_limit();
 }
 
 }  // namespace kaboum::verify

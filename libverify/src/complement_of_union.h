@@ -6,17 +6,17 @@
 #include <optional>
 #include <vector>
 
-#include "scene.h"
+#include "mesh_pair.h"
 #include "tetrahedra.h"
 
 namespace kaboum::verify {
 
 /// What the bodies of a set leave of a box, by cutting it along their facets.
-/// docs/algorithms/exact-inclusion.md, "Pockets".
-class Uncovered {
+/// docs/algorithms/exact-inclusion.md, "Uncovered regions".
+class ComplementOfUnion {
  public:
-  /// @param scene  whose coordinates are the set's times scene.scale()
-  Uncovered(const Scene& scene, const geom::ConvexSet& set);
+  /// @param meshes  whose coordinates are the set's times meshes.scale()
+  ComplementOfUnion(const MeshPair& meshes, const geom::ConvexSet& set);
 
   /// Tetrahedra that hold every point of the box about which no body winds, or that is less than
   /// rounding_of_distances below a facet of each body that does (what was cut before may be off by
@@ -32,7 +32,7 @@ class Uncovered {
   struct Body {
     std::vector<Plane> planes;
   };
-  static Body body_of(const geom::Mesh& hull, const Scene& scene);
+  static Body body_of(const geom::Mesh& hull, const MeshPair& meshes);
   /// Planes that cross a box; those of about one direction are one, below all of them in the box.
   struct Crossing {
     std::vector<Plane> planes;

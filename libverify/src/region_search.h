@@ -4,26 +4,26 @@
 #include <optional>
 #include <vector>
 
+#include "cell_sample.h"
+#include "mesh_pair.h"
 #include "nearest.h"
-#include "pockets.h"
-#include "scene.h"
-#include "spot.h"
+#include "uncovered_region.h"
 
 namespace kaboum::verify {
 
-/// What all steps of a search for pockets share.
-struct PocketSearch {
-  PocketSearch(const Scene& s, const std::vector<std::uint32_t>& offending, const Limit& l)
-      : scene(s),
+/// What all steps of a search of uncovered regions share.
+struct RegionSearch {
+  RegionSearch(const MeshPair& s, const std::vector<std::uint32_t>& offending, const Limit& l)
+      : meshes(s),
         boundary(tree_of(s, offending)),
         limit(l),
         slack(rounding_of_distances(s.largest_coordinate())) {}
 
   /// Whether the point is in Z; nullopt when it may lie on a surface.
-  [[nodiscard]] std::optional<bool> in_pocket(const Vec3& p) const {
-    const std::optional<int> inner = winding_at(scene, kInside, p);
+  [[nodiscard]] std::optional<bool> in_region(const Vec3& p) const {
+    const std::optional<int> inner = winding_at(meshes, kInside, p);
     if (inner && *inner < 1) return false;
-    const std::optional<int> outer = winding_at(scene, kOutside, p);
+    const std::optional<int> outer = winding_at(meshes, kOutside, p);
     if (outer && *outer >= 1) return false;
     if (!inner || !outer) return std::nullopt;
     return true;
@@ -37,7 +37,7 @@ struct PocketSearch {
   /// Whether the points, and so their hull, are within the limit of one triangle.
   [[nodiscard]] bool near(const std::vector<Vec3>& points, std::uint32_t f) const;
 
-  const Scene& scene;
+  const MeshPair& meshes;
   BoxTree boundary;  ///< of Z
   const Limit& limit;
   double slack;  ///< what distances err by

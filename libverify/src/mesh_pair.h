@@ -13,11 +13,11 @@
 namespace kaboum::verify {
 
 /// One of the two chains that are compared.
-enum Chain : int { kInside = 0, kOutside = 1 };
+enum Operand : int { kInside = 0, kOutside = 1 };
 
 /// A set of chains.
-using ChainMask = unsigned;
-inline constexpr ChainMask mask_of(int chain) { return 1U << chain; }
+using OperandMask = unsigned;
+inline constexpr OperandMask mask_of(int chain) { return 1U << chain; }
 
 struct Face {
   std::array<std::uint32_t, 3> v;
@@ -42,9 +42,9 @@ struct Face {
 /// Coordinates are the meshes' times one power of two that brings the largest to about 1, so that
 /// products neither overflow nor underflow; if some coordinate would not survive that exactly, they
 /// stay as they are (scaled() is then false).
-class Scene {
+class MeshPair {
  public:
-  Scene(const geom::Mesh& inside, const geom::Mesh& outside);
+  MeshPair(const geom::Mesh& inside, const geom::Mesh& outside);
 
   [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }
   [[nodiscard]] const Face& face(std::uint32_t f) const { return faces_[f]; }
@@ -79,7 +79,7 @@ class Scene {
   /// Outside minus inside is a closed chain.
   [[nodiscard]] bool same_border() const { return unbalanced(3, true) == 0; }
   /// Number of edges that are not balanced.
-  [[nodiscard]] std::size_t unbalanced(ChainMask chains, bool difference) const;
+  [[nodiscard]] std::size_t unbalanced(OperandMask chains, bool difference) const;
 
   [[nodiscard]] std::size_t without_area(int chain) const { return without_area_[chain]; }
   [[nodiscard]] std::size_t repeated_corners(int chain) const { return repeated_[chain]; }

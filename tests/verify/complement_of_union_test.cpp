@@ -1,6 +1,6 @@
 // What bodies leave of a box: no point is lost that is outside all of them, or inside by less than
 // rounding, and little else is left.
-#include "uncovered.h"
+#include "complement_of_union.h"
 
 #include <gtest/gtest.h>
 #include <kaboum/geom/convex_hull.h>
@@ -55,9 +55,9 @@ class Bodies {
  public:
   explicit Bodies(const std::vector<std::vector<Vec3>>& clouds)
       : set_(hulls(clouds)),
-        scene_(Mesh{}, sum_of(set_)),
-        uncovered_(scene_, set_),
-        rounding_(scene_.length_outside(rounding_of_distances(scene_.largest_coordinate()))) {}
+        meshes_(Mesh{}, sum_of(set_)),
+        uncovered_(meshes_, set_),
+        rounding_(meshes_.length_outside(rounding_of_distances(meshes_.largest_coordinate()))) {}
 
   [[nodiscard]] const std::vector<geom::ConvexBody>& bodies() const { return set_.bodies; }
   /// What the parts that are left may be off by.
@@ -66,14 +66,14 @@ class Bodies {
   /// nullopt: no answer, so the whole box may be left.
   [[nodiscard]] std::optional<Parts> left_of(Bounds box) const {
     for (int k = 0; k < 3; ++k) {
-      box.low[k] *= scene_.scale();
-      box.high[k] *= scene_.scale();
+      box.low[k] *= meshes_.scale();
+      box.high[k] *= meshes_.scale();
     }
     std::vector<Part> parts;
     if (!uncovered_.parts(box, parts)) return std::nullopt;
     Parts out;
     for (Part& part : parts) {
-      for (Vec3& p : part.corners) p = scene_.point_outside(p);
+      for (Vec3& p : part.corners) p = meshes_.point_outside(p);
       out.push_back(part.corners);
     }
     return out;
@@ -103,8 +103,8 @@ class Bodies {
   }
 
   geom::ConvexSet set_;
-  Scene scene_;
-  Uncovered uncovered_;
+  MeshPair meshes_;
+  ComplementOfUnion uncovered_;
   double rounding_;
 };
 
@@ -146,7 +146,7 @@ std::vector<Vec3> block(const Vec3& low, const Vec3& high,
   return points;
 }
 
-TEST(Uncovered, TwoSidesOfAPlaneMakeTheBox) {
+TEST(ComplementOfUnion, TwoSidesOfAPlaneMakeTheBox) {
   Random random(1);
   const Bounds box = bounds({-0.5, -0.4, -0.3}, {0.5, 0.6, 0.7});
   for (int i = 0; i < 200; ++i) {
@@ -159,7 +159,7 @@ TEST(Uncovered, TwoSidesOfAPlaneMakeTheBox) {
   }
 }
 
-TEST(Uncovered, BlocksThatOverlapLeaveNothing) {
+TEST(ComplementOfUnion, BlocksThatOverlapLeaveNothing) {
   const Bounds box = bounds({0.3, 0.3, 0.3}, {0.7, 0.7, 0.7});
   const auto blocks = [](double overlap) {
     return Bodies({block({0, 0, 0}, {0.5, 1, 1}), block({0.5 - overlap, 0, 0}, {1, 1, 1})});
@@ -179,7 +179,7 @@ TEST(Uncovered, BlocksThatOverlapLeaveNothing) {
   }
 }
 
-TEST(Uncovered, FacetsOfAboutOneDirection) {
+TEST(ComplementOfUnion, FacetsOfAboutOneDirection) {
   for (const double slope : {0.04, 0.01, 1e-4}) {
     // A roof: z ≤ −slope · |x|.
     std::vector<Vec3> points = block({-9, -9, -9}, {9, 9, -9 * slope});
@@ -196,7 +196,7 @@ TEST(Uncovered, FacetsOfAboutOneDirection) {
   }
 }
 
-TEST(Uncovered, CornersOfABoxWithinRoundingOfAFacet) {
+TEST(ComplementOfUnion, CornersOfABoxWithinRoundingOfAFacet) {
   Random random(2);
   for (int i = 0; i < 100; ++i) {
     const Vec3 normal = Vec3(0.3, 0.3, 0.3) + 0.7 * Vec3(random.vector().cwiseAbs());
@@ -219,7 +219,7 @@ TEST(Uncovered, CornersOfABoxWithinRoundingOfAFacet) {
   }
 }
 
-TEST(Uncovered, NeedleFacetsDoNotCount) {
+TEST(ComplementOfUnion, NeedleFacetsDoNotCount) {
   // Edges of about one, heights of h: normals from rounded products would be off by up to 1e-16/h,
   // along the needle, and planes so wrong need not meet beyond the needle's tip.
   const Vec3 axis = Vec3(0.48, 0.6, 0.64), tip(0.1, 0.2, 0.15);
@@ -329,7 +329,7 @@ const std::array<Family, 5> kFamilies{{{"cuboids", [](Random& r) { return cuboid
                                        {"drums", drums},
                                        {"edged blocks", edged_blocks}}};
 
-TEST(Uncovered, SliversCount) {
+TEST(ComplementOfUnion, SliversCount) {
   Random random(4);
   std::size_t slivers = 0;
   for (int i = 0; i < 100; ++i) {
@@ -382,7 +382,7 @@ Vec3 point_of(const Bounds& box, const Bodies& bodies, Random& random) {
   return (p + (above - normal.dot(p - a)) * normal).cwiseMax(low).cwiseMin(high);
 }
 
-TEST(Uncovered, HoldsWhatIsOutside) {
+TEST(ComplementOfUnion, HoldsWhatIsOutside) {
   std::size_t boxes = 0, answers = 0, empty = 0, points = 0;
   for (const Family& family : kFamilies) {
     for (std::uint64_t seed = 0; seed < 120; ++seed) {
