@@ -1,3 +1,5 @@
+// Building a hierarchy of boxes: items are halved at the median of their centres, along the longest
+// axis.
 #include <kaboum/base/parallel.h>
 #include <kaboum/geom/bvh.h>
 

@@ -1,3 +1,5 @@
+// Cutting a planar convex polygon in two, in rounded arithmetic whose error is counted.
+// docs/algorithms/distances.md.
 #include <kaboum/geom/clip.h>
 
 namespace kaboum::geom {

@@ -1,3 +1,4 @@
+// Whether a mesh bounds a convex body, exactly.
 #include <kaboum/geom/convex_set.h>
 #include <kaboum/geom/predicates.h>
 #include <kaboum/geom/topology.h>

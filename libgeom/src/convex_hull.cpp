@@ -1,3 +1,4 @@
+// Quickhull (Barber, Dobkin, Huhdanpaa 1996) on exact orientation tests.
 #include <kaboum/base/error.h>
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/geom/predicates.h>

@@ -1,3 +1,5 @@
+// Rounding to float32 and back, out of line: compilers drop a conversion that they see both ways
+// of.
 #include <kaboum/geom/float32.h>
 
 #include <bit>

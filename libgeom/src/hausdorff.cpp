@@ -1,3 +1,5 @@
+// Largest distance of a surface from another one: branch and bound over boxes, triangles and their
+// parts. docs/algorithms/distances.md.
 #include <kaboum/base/error.h>
 #include <kaboum/base/parallel.h>
 #include <kaboum/geom/distance.h>

@@ -1,3 +1,4 @@
+// Boxes, volumes and validity of meshes.
 #include <kaboum/base/error.h>
 #include <kaboum/geom/mesh.h>
 

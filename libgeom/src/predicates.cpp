@@ -1,3 +1,4 @@
+// What the filters of the predicates leave open [shewchuk1997], decided in exact dyadic numbers.
 #include <kaboum/geom/predicates.h>
 
 #include <CGAL/Exact_rational.h>

@@ -1,3 +1,4 @@
+// Boxes of triangles that lie slantwise, cut until few of them are met in vain [ernst2007].
 #include "slanted.h"
 
 #include <algorithm>

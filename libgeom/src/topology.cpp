@@ -1,3 +1,4 @@
+// Edges, components and manifoldness of a mesh, and its welded form.
 #include <kaboum/base/parallel.h>
 #include <kaboum/geom/predicates.h>
 #include <kaboum/geom/topology.h>

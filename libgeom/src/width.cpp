@@ -1,3 +1,4 @@
+// Width of a convex hull: the least extent over directions across facets and pairs of edges.
 #include <CGAL/Exact_rational.h>
 #include <CGAL/Mpzf.h>
 #include <kaboum/geom/topology.h>

@@ -1,3 +1,5 @@
+// Winding number of a mesh at a point: signed crossings of a ray, with ties broken by symbolic
+// perturbation.
 #include <kaboum/geom/predicates.h>
 #include <kaboum/geom/winding.h>
 

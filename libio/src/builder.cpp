@@ -1,3 +1,5 @@
+// From the polygons of a file to triangles: vertices are merged, non-triangles triangulated, damage
+// counted or refused.
 #include "builder.h"
 
 #include <kaboum/base/error.h>

@@ -1,3 +1,4 @@
+// Sets of convex bodies in files and folders, one container for each of the formats.
 #include <kaboum/base/error.h>
 #include <kaboum/base/json_damage.h>
 #include <kaboum/geom/topology.h>

@@ -1,3 +1,4 @@
+// Meshes from files and to files: which format it is, by name and by content.
 #include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
 

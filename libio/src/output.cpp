@@ -1,3 +1,4 @@
+// A mesh as it will be written: used vertices only, in the numbers of the format.
 #include "output.h"
 
 #include <kaboum/base/error.h>

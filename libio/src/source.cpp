@@ -1,3 +1,4 @@
+// Places in a file, and quotations from it, for messages.
 #include "source.h"
 
 #include <kaboum/base/error.h>

@@ -1,3 +1,4 @@
+// Words and numbers of text formats.
 #include "text.h"
 
 #include <algorithm>

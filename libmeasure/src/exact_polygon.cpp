@@ -1,3 +1,5 @@
+// Planar convex polygons with rational corners, cut by planes. docs/algorithms/distances.md,
+// "Solids".
 #include "exact_polygon.h"
 
 namespace kaboum::measure::exact {

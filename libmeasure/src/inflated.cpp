@@ -1,3 +1,5 @@
+// Convex bodies enlarged by a margin, as polytopes within them. docs/algorithms/distances.md,
+// "Convex sets".
 #include "inflated.h"
 
 #include <kaboum/base/error.h>

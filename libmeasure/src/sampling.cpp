@@ -1,3 +1,5 @@
+// Mean and root mean square distances from samples, spread over the area and the same for any
+// number of threads.
 #include <kaboum/base/error.h>
 #include <kaboum/base/parallel.h>
 #include <kaboum/measure/measure.h>

@@ -1,3 +1,5 @@
+// How faces of two chains, or of one, lie in each other: which cut which, and patches of faces left
+// uncut. docs/algorithms/exact-inclusion.md.
 #include "arrangement.h"
 
 #include <numeric>

@@ -1,3 +1,4 @@
+// Building a binary tree of boxes: items are halved along the longest axis of their box.
 #include "box_tree.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// What convex bodies leave of a box: cuts along their facets, lowered by the rounding of the
+// normals. docs/algorithms/exact-inclusion.md, "Uncovered regions".
 #include "complement_of_union.h"
 
 #include <algorithm>

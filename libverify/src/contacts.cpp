@@ -1,3 +1,5 @@
+// Contacts of triangles, found by exact signs on the pairs whose boxes meet.
+// docs/algorithms/exact-inclusion.md, "Pairs".
 #include "contacts.h"
 
 #include <kaboum/base/error.h>

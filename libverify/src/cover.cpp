@@ -1,3 +1,5 @@
+// Claims about sets of convex bodies: convexity, cover, and the distance of the bodies from the
+// original. docs/algorithms/exact-inclusion.md.
 #include <kaboum/geom/topology.h>
 #include <kaboum/verify/cover.h>
 

@@ -1,3 +1,5 @@
+// Whether a surface lies within a distance of another surface, or of its solid: triangles are cut
+// until each part is decided. docs/algorithms/exact-inclusion.md, "Distance".
 #include <kaboum/base/error.h>
 #include <kaboum/verify/distance.h>
 

@@ -1,3 +1,5 @@
+// Exact inclusion of one solid, or surface, in another: winding numbers beside every cell of the
+// offending faces. docs/algorithms/exact-inclusion.md.
 #include <kaboum/base/error.h>
 #include <kaboum/verify/inclusion.h>
 

@@ -1,7 +1,11 @@
+// Poses of a link along a straight joint-space motion in long double, and bounds of its speed,
+// acceleration and rounding. docs/algorithms/swept-volumes.md.
 #include <kaboum/verify/sweep.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "rounding.h"
 
 namespace kaboum::verify {
 namespace {
@@ -10,10 +14,8 @@ using Real = long double;
 using Matrix = Eigen::Matrix<Real, 3, 3>;
 using Vector = Eigen::Matrix<Real, 3, 1>;
 
-constexpr double kUp = 1 + 0x1p-40;  // covers the rounding of a few hundred positive terms
-
-/// Turn by an angle about a unit vector: what lies along it stays, what lies across it turns.
-Matrix turn(const Vector& a, Real angle) {
+/// Rotation by an angle about a unit vector: what lies along it stays, what lies across it turns.
+Matrix rotation_about(const Vector& a, Real angle) {
   const Real c = std::cos(angle), s = std::sin(angle);
   Matrix r;
   for (int i = 0; i < 3; ++i) {
@@ -36,7 +38,7 @@ Eigen::Matrix<double, 3, 4> pose_of(const KinematicChain& chain, std::span<const
         static_cast<Real>(stage.multiplier) * q[stage.variable] + static_cast<Real>(stage.offset);
     const Vector axis = stage.axis.cast<Real>().normalized();
     if (stage.motion == KinematicStage::Motion::Turn) {
-      rotation = (rotation * turn(axis, value)).eval();
+      rotation = (rotation * rotation_about(axis, value)).eval();
     } else {
       translation += value * (rotation * axis);
     }

@@ -1,3 +1,5 @@
+// Enclosure by bodies enlarged by a margin: distances of the offending triangles and of the
+// uncovered region. docs/algorithms/exact-inclusion.md.
 #include "margin.h"
 
 #include <kaboum/verify/distance.h>

@@ -1,3 +1,5 @@
+// Two meshes with one set of vertices, scaled by a power of two.
+// docs/algorithms/exact-inclusion.md, "Arithmetic".
 #include "mesh_pair.h"
 
 #include <kaboum/base/error.h>

@@ -1,3 +1,5 @@
+// Nearest triangles of a chain, and lower bounds of their distance by separating planes.
+// docs/algorithms/exact-inclusion.md, "Distance".
 #include "nearest.h"
 
 #include "allowance.h"

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <optional>
 
+#include "rounding.h"
+
 /// Two number types for one set of formulas: rounded with a running error bound, and exact.
 /// docs/algorithms/exact-inclusion.md, "Arithmetic".
 namespace kaboum::verify {
@@ -25,10 +27,6 @@ struct Approx {
   double value = 0;
   double error = 0;
 };
-
-inline constexpr double kUnit = 0x1p-53;        // relative error of one rounding
-inline constexpr double kGrowth = 1 + 0x1p-50;  // more than the ≤ 6 roundings in an error term
-inline constexpr double kTiny = 0x1p-1070;      // more than what underflow takes from one operation
 
 inline Approx operator+(const Approx& a, const Approx& b) {
   const double value = a.value + b.value;

@@ -1,3 +1,5 @@
+// The original's solid as the checker of logs sees it: winding numbers and separated tetrahedra,
+// exactly. docs/algorithms/bounding-mesh.md.
 #include "replay_solid.h"
 
 #include <CGAL/Exact_rational.h>

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "parallel.h"
+#include "rounding.h"
 #include "swept_body.h"
 #include "swept_cell.h"
 #include "swept_inside.h"
@@ -26,8 +27,7 @@ using Pose = Eigen::Matrix<double, 3, 4>;
 using Waypoints = std::vector<std::vector<double>>;
 
 constexpr std::size_t kCellsPerTask = 32;
-constexpr int kWholeHalvings = 16;
-constexpr double kUp = 1 + 0x1p-40;
+constexpr int kMaxUncutHalvings = 16;
 
 Vec3 apply(const Pose& pose, const Vec3& p) { return pose.leftCols<3>() * p + pose.col(3); }
 
@@ -189,7 +189,7 @@ class Search {
     }
     std::uint32_t first = body, last = body;
     const bool held = holder(at_start, still, first, near) || holder(at_end, still, last, near);
-    if (!held || halvings == kWholeHalvings || !(length * bound_.speed > options_.gap)) {
+    if (!held || halvings == kMaxUncutHalvings || !(length * bound_.speed > options_.gap)) {
       open.push_back({begin, end});
       return;
     }

@@ -1,3 +1,5 @@
+// Distances of points from a convex body, with planes from exact products.
+// docs/algorithms/swept-volumes.md, "Planes". Closest points: [ericson2005], 5.1.5.
 #include "swept_body.h"
 
 #include <algorithm>

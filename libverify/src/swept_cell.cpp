@@ -1,16 +1,18 @@
+// Shapes as cells: meshes by triangle, spheres and cylinders by patches whose bulge is bounded.
+// docs/algorithms/swept-volumes.md.
 #include "swept_cell.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "rounding.h"
+
 namespace kaboum::verify {
 
 using geom::Vec3;
 
 namespace {
-
-constexpr double kUp = 1 + 0x1p-40;
 
 struct Corner {
   Vec3 point;

@@ -1,3 +1,5 @@
+// Whether the solid behind a swept surface is held by the bodies, too: decided at one
+// configuration. docs/algorithms/swept-volumes.md.
 #include "swept_inside.h"
 
 #include <algorithm>

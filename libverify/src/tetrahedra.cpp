@@ -1,3 +1,4 @@
+// Boxes as tetrahedra, and cuts of tetrahedra by planes, rounded.
 #include "tetrahedra.h"
 
 #include <algorithm>

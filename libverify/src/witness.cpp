@@ -1,3 +1,4 @@
+// A point in an offending region, for a refutation that can be looked at.
 #include "witness.h"
 
 #include <algorithm>
