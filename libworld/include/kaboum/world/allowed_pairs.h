@@ -1,0 +1,32 @@
+#pragma once
+
+#include <kaboum/world/world.h>
+
+namespace kaboum::world {
+
+/// Pairs of links that joints connect: one joint, or fixed ones besides.
+std::vector<AllowedPair> adjacent_links(const robot::Robot& robot);
+
+struct PairOptions {
+  std::size_t most_boxes = 20'000;  ///< of joint values that are looked at for one pair
+};
+
+/// What is known of a pair of links with shapes.
+struct LinkPair {
+  std::uint32_t a = 0, b = 0;  ///< a < b
+  /// nullopt: they meet somewhere, or no proof was found.
+  std::optional<AllowedPair::Reason> reason;
+  bool meets = false;  ///< their outer sets do in a configuration that was found
+};
+
+/// All pairs of a robot's links that have shapes: adjacent ones; those never in contact, which is
+/// proved for all values within the limits (for one turn of joints without limits) by halving
+/// boxes of joint values until the links are farther apart than they can move; those always in
+/// contact, connected by fixed joints only. Outer sets are looked at, without the allowed pairs of
+/// the robot itself.
+std::vector<LinkPair> examine_pairs(const RobotModel& robot, const PairOptions& options);
+
+/// SRDF with the pairs as <disable_collisions>.
+std::string to_srdf(const RobotModel& robot, const std::vector<AllowedPair>& pairs);
+
+}  // namespace kaboum::world

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <kaboum/sweep/motion.h>
+#include <kaboum/world/world.h>
+
+#include <map>
+#include <memory>
+#include <span>
+
+namespace kaboum::world {
+
+/// Two things whose bounding sets meet.
+struct Contact {
+  std::array<Item, 2> items;
+  collide::BodyPair bodies;  ///< of their outer sets
+  /// Whether the solids certainly collide: inner sets meet, or the outer ones are exact (ε = 0, no
+  /// margin) and do. Else they are at most `epsilon` apart.
+  bool certain = false;
+  double epsilon = 0;         ///< sum of both ε, errors of places included [length]
+  Vec3 place = Vec3::Zero();  ///< a point of it, rounded, in the world [length]
+};
+
+/// Memory of one thread: places of bodies, and what separated pairs last time. It changes how long
+/// answers take, not what they are.
+class Scratch {
+ public:
+  Scratch();
+  ~Scratch();
+  Scratch(Scratch&&) noexcept;
+  Scratch& operator=(Scratch&&) noexcept;
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+
+ private:
+  friend class Checker;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Collision of all that is in a world, by the bounded predicates of libcollide
+/// (docs/algorithms/bounded-predicates.md). Looked at are robots' links against objects, other
+/// robots and themselves, except allowed pairs and contacts, and carried objects like links. Pairs
+/// of objects that rest are looked at on request. Const throughout: threads may share it.
+class Checker {
+ public:
+  /// Refers to the world, which must not change.
+  explicit Checker(const World& world);
+
+  struct Options {
+    bool resting = false;  ///< pairs of objects that rest, too
+  };
+
+  /// The first pair in contact; nullopt: free, for certain.
+  /// @throws Error{InvalidArgument} for states that do not fit the world, values that are not
+  ///   finite, poses that are no rotations.
+  [[nodiscard]] std::optional<Contact> find_contact(const WorldState& state, Scratch& scratch,
+                                                    const Options& options) const;
+  [[nodiscard]] std::optional<Contact> find_contact(const WorldState& state,
+                                                    Scratch& scratch) const {
+    return find_contact(state, scratch, Options{});
+  }
+
+  /// All pairs in contact.
+  [[nodiscard]] std::vector<Contact> find_contacts(const WorldState& state, Scratch& scratch,
+                                                   const Options& options) const;
+
+  /// Certified bracket of the smallest distance of the pairs that are looked at, and that pair.
+  struct Nearest {
+    std::array<Item, 2> items;
+    collide::Clearance clearance;
+  };
+  [[nodiscard]] std::optional<Nearest> find_nearest(const WorldState& state, Scratch& scratch,
+                                                    const Options& options) const;
+
+  /// Where things are in a state.
+  struct Placed {
+    Item item;
+    collide::PosedSet place;
+  };
+  /// @throws as find_contact
+  [[nodiscard]] std::vector<Placed> places(const WorldState& state) const;
+
+  [[nodiscard]] const World& world() const { return *world_; }
+
+  /// The pairs that are looked at in states with these attachments, in their order.
+  [[nodiscard]] std::vector<std::array<Item, 2>> pairs(const WorldState& state,
+                                                       const Options& options) const;
+  /// Vertices of the hull of a robot's shape or an object, in its frame.
+  [[nodiscard]] const std::vector<Vec3>& hull_of(const Item& item) const { return hulls_.at(item); }
+
+ private:
+  void place(const WorldState& state, Scratch& scratch) const;
+  /// Calls pair(i, j) for the numbers of items of pairs that are looked at until it is true.
+  template <typename Pair>
+  void visit(const WorldState& state, const Options& options, const Pair& pair) const;
+
+  const World* world_;
+  std::vector<Item> items_;
+  std::map<Item, std::vector<Vec3>> hulls_;
+  std::map<Item, double> radius_;
+  /// By place in items_, row by row: whether a pair of items may touch.
+  std::vector<char> allowed_;
+  std::vector<std::vector<double>> error_;  ///< of robots' shapes, for values from low_ to high_
+  std::vector<std::vector<double>> low_, high_;
+};
+
+/// How a contact is to be understood, and where.
+Contact contact_of(const World& world, const Item& a, const Item& b, const collide::PosedSet& at_a,
+                   const collide::PosedSet& at_b, const collide::BodyPair& bodies);
+
+}  // namespace kaboum::world

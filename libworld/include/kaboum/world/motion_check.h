@@ -1,0 +1,45 @@
+#pragma once
+
+#include <kaboum/robot/path.h>
+#include <kaboum/world/checker.h>
+
+namespace kaboum::world {
+
+struct MotionOptions {
+  /// Time is halved where bodies are near each other until they move less than this; what is not
+  /// farther apart then counts as contact. > 0 [length]
+  double resolution = 1e-5;
+  std::size_t most_intervals = 1'000'000;
+};
+
+struct MotionAnswer {
+  enum class Outcome {
+    Free,       ///< at every instant of the path, for certain
+    Contact,    ///< outer sets meet, or come nearer than the resolution
+    Undecided,  ///< most_intervals reached
+  };
+  Outcome outcome = Outcome::Free;
+  /// Where the path stops being certainly free: a segment from waypoint i to i + 1, and the share
+  /// of it. With Contact, all before is free.
+  std::size_t segment = 0;
+  double share = 0;
+  std::optional<Contact> contact;  ///< the first that was found
+  /// When: in `segment`, the contact was found at this share. Not below `share`.
+  std::size_t contact_segment = 0;
+  double contact_share = 0;
+  bool meets = false;  ///< outer sets meet then; false: they are nearer than the resolution
+  std::size_t intervals = 0, queries = 0;
+};
+
+/// Whether a robot may move along a path of straight segments of joint values while all else stays:
+/// at every instant, not at samples. A stretch of time is free when its middle is, with all bodies
+/// enlarged by as much as they move in half of it: LinkMotion's bounds (docs/algorithms/
+/// swept-volumes.md); other stretches are halved. What the robot carries moves with it.
+///
+/// @param path  a value per variable at each waypoint; the state's own values are not looked at.
+/// @throws as Checker::find_contact; Error{InvalidArgument} for a path that is empty or does not
+///   fit, and a resolution that is not above 0.
+MotionAnswer check_motion(const Checker& checker, const WorldState& state, std::size_t robot,
+                          const robot::Path& path, const MotionOptions& options);
+
+}  // namespace kaboum::world

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <kaboum/world/world.h>
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kaboum::world {
+
+/// Gives the bytes of a file that a scene names, as it names it.
+/// @throws Error{InvalidInput} when it cannot be read.
+using FileReader = std::function<std::vector<char>(const std::string& file)>;
+
+struct SceneNotes {
+  std::vector<std::string> notes;  ///< things a user should know; one sentence each
+};
+
+/// A world of a scene file (docs/scene.md). Files are looked at by their hashes: one that is not
+/// what the scene was made with is refused, and so are inner sets where outer ones are needed, sets
+/// in another unit, of another link or another robot, links with shapes but without a set, names
+/// that are not known or there twice.
+///
+/// @param name  of the file, for messages.
+/// @throws Error{InvalidInput} naming the file, line and column, and what would help.
+World parse_scene(std::string_view text, const std::string& name, const FileReader& read,
+                  SceneNotes* notes = nullptr);
+
+/// What proofs about the robot's own pairs depend on: hash of its kinematics with its limits and
+/// of its shapes.
+std::string fingerprint_of(const RobotModel& robot);
+
+}  // namespace kaboum::world

@@ -1,0 +1,141 @@
+#pragma once
+
+#include <kaboum/collide/bounding_set.h>
+#include <kaboum/robot/robot.h>
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// What a planner asks geometry about: robots, objects and regions by their bounding sets, never by
+/// meshes. docs/scene.md.
+namespace kaboum::world {
+
+using collide::BoundingSet;
+using geom::Transform;
+using geom::Vec3;
+
+/// A frame fixed to a link, as of a tool.
+struct ToolFrame {
+  std::string name;
+  std::uint32_t link = 0;
+  Transform pose;  ///< from the frame to the link's
+};
+
+/// Which links may touch what a tool holds.
+struct Gripper {
+  std::string name;
+  std::size_t tool = 0;              ///< index of a tool frame
+  std::vector<std::uint32_t> links;  ///< fingers
+};
+
+/// The bounding sets of a link, in its frame.
+struct LinkShape {
+  std::uint32_t link = 0;
+  BoundingSet outer;
+  std::optional<BoundingSet> inner;
+};
+
+/// Two links of a robot whose contact is not looked for.
+struct AllowedPair {
+  enum class Reason {
+    Adjacent,  ///< a joint connects them, or fixed joints on the way
+    Never,     ///< proved: in no configuration within the limits
+    Always,    ///< connected by fixed joints only, and in contact
+    Stated,    ///< by the scene
+  };
+  std::uint32_t a = 0, b = 0;  ///< links, a < b
+  Reason reason = Reason::Stated;
+};
+const char* name_of(AllowedPair::Reason reason);
+
+struct RobotModel {
+  std::string name;
+  robot::Robot kinematics;  ///< limits are those of the scene where it states some
+  Transform base;           ///< from the robot's root to the world
+  std::vector<double> home;
+  std::vector<LinkShape> shapes;
+  std::vector<ToolFrame> tools;
+  std::vector<Gripper> grippers;
+  std::vector<AllowedPair> allowed;
+  std::string fingerprint;  ///< hash of what proofs about the robot alone depend on
+};
+
+/// A point, line or plane of an object by name, in its frame.
+struct Feature {
+  enum class Kind { Point, Line, Plane };
+  std::string name;
+  Kind kind = Kind::Point;
+  Vec3 point = Vec3::Zero();
+  Vec3 direction = Vec3::Zero();  ///< of unit length: along the line, or the plane's normal
+};
+
+/// How a tool holds an object.
+struct Grasp {
+  std::string name;
+  Transform pose;  ///< from the object's frame to the tool's
+};
+
+struct Object {
+  std::string name;
+  Transform pose;  ///< where it is at first: from its frame to the world
+  BoundingSet outer;
+  std::optional<BoundingSet> inner;
+  std::vector<Feature> features;
+  std::vector<Grasp> grasps;
+};
+
+/// A part of space that things may be asked to be in.
+struct Region {
+  std::string name;
+  Transform pose;
+  BoundingSet inner;
+};
+
+/// An object that moves with a link.
+struct Attachment {
+  std::size_t robot = 0;
+  std::uint32_t link = 0;
+  Transform pose;                       ///< from the object's frame to the link's
+  std::vector<std::uint32_t> touching;  ///< links that may touch it besides, ascending
+};
+
+/// Something that can collide: a shape of a robot, or an object (then `robot` is kObject).
+struct Item {
+  static constexpr std::size_t kObject = static_cast<std::size_t>(-1);
+  std::size_t robot = kObject;
+  std::size_t index = 0;  ///< of RobotModel::shapes, or of World::objects
+
+  friend auto operator<=>(const Item&, const Item&) = default;
+};
+
+/// What stays the same during planning.
+struct World {
+  std::string unit = "m";
+  std::vector<RobotModel> robots;
+  std::vector<Object> objects;
+  std::vector<Region> regions;
+  std::vector<std::array<Item, 2>> allowed;            ///< contacts that are none
+  std::vector<std::optional<Attachment>> attachments;  ///< at first; one for every object
+
+  /// "ROBOT/LINK" or "OBJECT".
+  [[nodiscard]] std::string name_of(const Item& item) const;
+  [[nodiscard]] std::optional<std::size_t> find_robot(const std::string& name) const;
+  [[nodiscard]] std::optional<std::size_t> find_object(const std::string& name) const;
+  [[nodiscard]] const BoundingSet& outer(const Item& item) const;
+  [[nodiscard]] const std::optional<BoundingSet>& inner(const Item& item) const;
+};
+
+/// What changes. Poses of objects that are attached are not looked at.
+struct WorldState {
+  std::vector<std::vector<double>> q;                  ///< for each robot a value per variable
+  std::vector<Transform> poses;                        ///< of the objects, to the world
+  std::vector<std::optional<Attachment>> attachments;  ///< one for every object
+};
+
+/// Robots at home, objects where the scene has them.
+WorldState initial_state(const World& world);
+
+}  // namespace kaboum::world

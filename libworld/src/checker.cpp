@@ -1,0 +1,276 @@
+// Which pairs of a world collide in a state.
+
+#include <kaboum/base/error.h>
+#include <kaboum/robot/kinematics.h>
+#include <kaboum/world/checker.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "placement.h"
+
+namespace kaboum::world {
+
+using collide::PosedSet;
+
+/// For the world that it was used for last.
+struct Scratch::Impl {
+  const World* world = nullptr;
+  std::vector<PosedSet> places;         ///< of all items
+  std::vector<collide::Memory> memory;  ///< of pairs of items, row by row
+};
+
+Scratch::Scratch() : impl_(std::make_unique<Impl>()) {}
+Scratch::~Scratch() = default;
+Scratch::Scratch(Scratch&&) noexcept = default;
+Scratch& Scratch::operator=(Scratch&&) noexcept = default;
+
+namespace {
+
+/// Values that errors of kinematics are bounded for beforehand.
+constexpr double kFarthest = 100;
+
+void require_fits(const World& world, const WorldState& state) {
+  bool fits = state.q.size() == world.robots.size() && state.poses.size() == world.objects.size() &&
+              state.attachments.size() == world.objects.size();
+  for (std::size_t r = 0; fits && r < world.robots.size(); ++r)
+    fits = state.q[r].size() == world.robots[r].kinematics.variables.size();
+  if (!fits) throw Error(ErrorCode::InvalidArgument, "a state of another world");
+  for (const auto& q : state.q)
+    for (const double value : q)
+      if (!std::isfinite(value))
+        throw Error(ErrorCode::InvalidArgument, "a joint value that is not finite");
+  for (const auto& a : state.attachments)
+    if (a && (a->robot >= world.robots.size() ||
+              a->link >= world.robots[a->robot].kinematics.links.size()))
+      throw Error(ErrorCode::InvalidArgument, "an attachment to a link that does not exist");
+}
+
+/// Whether the link holds the object, or may touch what is held.
+bool is_carried_by_link(const WorldState& state, const Item& object, const Item& shape,
+                        const World& world) {
+  const auto& attachment = state.attachments[object.index];
+  if (!attachment || shape.robot != attachment->robot) return false;
+  const std::uint32_t link = world.robots[shape.robot].shapes[shape.index].link;
+  return link == attachment->link ||
+         std::binary_search(attachment->touching.begin(), attachment->touching.end(), link);
+}
+
+/// Whether both move with one link.
+bool move_together(const WorldState& state, const Item& a, const Item& b) {
+  if (a.robot != Item::kObject || b.robot != Item::kObject) return false;
+  const auto &x = state.attachments[a.index], &y = state.attachments[b.index];
+  return x && y && x->robot == y->robot && x->link == y->link;
+}
+
+}  // namespace
+
+Contact contact_of(const World& world, const Item& a, const Item& b, const PosedSet& at_a,
+                   const PosedSet& at_b, const collide::BodyPair& bodies) {
+  Contact out{{a, b}, bodies};
+  const BoundingSet &outer_a = at_a.set(), &outer_b = at_b.set();
+  out.epsilon =
+      (outer_a.epsilon() + outer_b.epsilon() + at_a.error() + at_b.error()) * (1 + 0x1p-50);
+  const collide::Gap gap = gap_between(at_a.body(bodies.a), at_b.body(bodies.b));
+  out.place = 0.5 * (gap.on_a + gap.on_b);
+  const auto inner = [&](const Item& item, const PosedSet& at) -> std::optional<PosedSet> {
+    if (world.inner(item)) return PosedSet(*world.inner(item), at.pose(), at.error());
+    if (at.set().epsilon() == 0) return at;
+    return std::nullopt;
+  };
+  const auto inner_a = inner(a, at_a), inner_b = inner(b, at_b);
+  out.certain = inner_a && inner_b && certainly_collide(*inner_a, *inner_b);
+  return out;
+}
+
+Checker::Checker(const World& world) : world_(&world) {
+  for (std::size_t r = 0; r < world.robots.size(); ++r) {
+    const RobotModel& robot = world.robots[r];
+    const std::size_t n = robot.kinematics.variables.size();
+    std::vector<double> low(n), high(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      low[i] = robot.kinematics.variables[i].lower.value_or(-kFarthest);
+      high[i] = robot.kinematics.variables[i].upper.value_or(kFarthest);
+    }
+    error_.emplace_back();
+    for (std::size_t s = 0; s < robot.shapes.size(); ++s) {
+      const Item item{r, s};
+      items_.push_back(item);
+      hulls_[item] = detail::hull_points(robot.shapes[s].outer);
+      radius_[item] = detail::radius_of(robot.shapes[s].outer);
+      if (hulls_[item].empty()) hulls_[item].emplace_back(Vec3::Zero());
+      const sweep::LinkMotion motion(robot.kinematics, robot.shapes[s].link, low, high);
+      error_.back().push_back(
+          detail::placement_error(sweep::MotionBounds(motion, hulls_[item]), robot.base));
+    }
+    low_.push_back(std::move(low));
+    high_.push_back(std::move(high));
+  }
+  for (std::size_t o = 0; o < world.objects.size(); ++o) {
+    const Item item{Item::kObject, o};
+    items_.push_back(item);
+    hulls_[item] = detail::hull_points(world.objects[o].outer);
+    if (hulls_[item].empty()) hulls_[item].emplace_back(Vec3::Zero());
+    radius_[item] = detail::radius_of(world.objects[o].outer);
+  }
+  const std::size_t n = items_.size();
+  allowed_.assign(n * n, 0);
+  const auto allow = [&](std::size_t i, std::size_t j) {
+    allowed_[i * n + j] = allowed_[j * n + i] = 1;
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = i + 1; j < n; ++j) {
+      const Item &a = items_[i], &b = items_[j];
+      for (const auto& [x, y] : world.allowed)
+        if ((a == x && b == y) || (a == y && b == x)) allow(i, j);
+      if (a.robot == Item::kObject || a.robot != b.robot) continue;
+      const RobotModel& robot = world.robots[a.robot];
+      const auto [low, high] = std::minmax(robot.shapes[a.index].link, robot.shapes[b.index].link);
+      for (const AllowedPair& pair : robot.allowed)
+        if (pair.a == low && pair.b == high) allow(i, j);
+    }
+  }
+}
+
+void Checker::place(const WorldState& state, Scratch& scratch) const {
+  require_fits(*world_, state);
+  Scratch::Impl& s = *scratch.impl_;
+  if (s.world != world_) {
+    s.places.clear();
+    for (const Item& item : items_) s.places.emplace_back(world_->outer(item));
+    s.memory.assign(items_.size() * items_.size(), {});
+    s.world = world_;
+  }
+  std::vector<std::vector<Transform>> links;
+  std::size_t next = 0;
+  for (std::size_t r = 0; r < world_->robots.size(); ++r) {
+    const RobotModel& robot = world_->robots[r];
+    const std::vector<double>& q = state.q[r];
+    links.push_back(forward(robot.kinematics, q));
+    for (Transform& pose : links.back()) pose = robot.base * pose;
+    bool usual = true;
+    for (std::size_t i = 0; i < q.size(); ++i)
+      usual = usual && q[i] >= low_[r][i] && q[i] <= high_[r][i];
+    for (std::size_t i = 0; i < robot.shapes.size(); ++i, ++next) {
+      const std::uint32_t link = robot.shapes[i].link;
+      double error = error_[r][i];
+      if (!usual)
+        error = detail::placement_error(
+            sweep::MotionBounds(sweep::LinkMotion(robot.kinematics, link, q, q),
+                                hulls_.at(items_[next])),
+            robot.base);
+      s.places[next].place(links[r][link], error);
+    }
+  }
+  for (std::size_t o = 0; o < world_->objects.size(); ++o, ++next) {
+    const double radius = radius_.at(items_[next]);
+    const auto& attachment = state.attachments[o];
+    if (!attachment) {
+      s.places[next].place(state.poses[o], detail::rotation_error(state.poses[o], radius));
+      continue;
+    }
+    const RobotModel& robot = world_->robots[attachment->robot];
+    const std::vector<double>& q = state.q[attachment->robot];
+    std::vector<Vec3> points;
+    for (const Vec3& p : hulls_.at(items_[next])) points.emplace_back(attachment->pose * p);
+    const sweep::MotionBounds bounds(sweep::LinkMotion(robot.kinematics, attachment->link, q, q),
+                                     points);
+    s.places[next].place(links[attachment->robot][attachment->link] * attachment->pose,
+                         detail::placement_error(bounds, robot.base) +
+                             detail::rotation_error(attachment->pose, radius));
+  }
+}
+
+template <typename Pair>
+void Checker::visit(const WorldState& state, const Options& options, const Pair& pair) const {
+  const std::size_t n = items_.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Item& a = items_[i];
+    for (std::size_t j = i + 1; j < n; ++j) {
+      const Item& b = items_[j];
+      if (allowed_[i * n + j] != 0) continue;
+      if (b.robot == Item::kObject) {
+        if (a.robot == Item::kObject) {
+          if (!options.resting && !state.attachments[a.index] && !state.attachments[b.index])
+            continue;
+          if (move_together(state, a, b)) continue;
+        } else if (is_carried_by_link(state, b, a, *world_)) {
+          continue;
+        }
+      } else if (a.robot == b.robot && world_->robots[a.robot].shapes[a.index].link ==
+                                           world_->robots[b.robot].shapes[b.index].link) {
+        continue;
+      }
+      if (pair(i, j)) return;
+    }
+  }
+}
+
+std::vector<std::array<Item, 2>> Checker::pairs(const WorldState& state,
+                                                const Options& options) const {
+  std::vector<std::array<Item, 2>> out;
+  require_fits(*world_, state);
+  visit(state, options, [&](std::size_t i, std::size_t j) {
+    out.push_back({items_[i], items_[j]});
+    return false;
+  });
+  return out;
+}
+
+std::vector<Checker::Placed> Checker::places(const WorldState& state) const {
+  Scratch scratch;
+  place(state, scratch);
+  std::vector<Placed> out;
+  for (std::size_t i = 0; i < items_.size(); ++i)
+    out.push_back({items_[i], scratch.impl_->places[i]});
+  return out;
+}
+
+std::optional<Contact> Checker::find_contact(const WorldState& state, Scratch& scratch,
+                                             const Options& options) const {
+  place(state, scratch);
+  Scratch::Impl& s = *scratch.impl_;
+  std::optional<Contact> found;
+  visit(state, options, [&](std::size_t i, std::size_t j) {
+    const auto bodies =
+        find_collision(s.places[i], s.places[j], 0, &s.memory[i * items_.size() + j]);
+    if (bodies)
+      found = contact_of(*world_, items_[i], items_[j], s.places[i], s.places[j], *bodies);
+    return found.has_value();
+  });
+  return found;
+}
+
+std::vector<Contact> Checker::find_contacts(const WorldState& state, Scratch& scratch,
+                                            const Options& options) const {
+  place(state, scratch);
+  Scratch::Impl& s = *scratch.impl_;
+  std::vector<Contact> out;
+  visit(state, options, [&](std::size_t i, std::size_t j) {
+    if (const auto bodies =
+            find_collision(s.places[i], s.places[j], 0, &s.memory[i * items_.size() + j]))
+      out.push_back(contact_of(*world_, items_[i], items_[j], s.places[i], s.places[j], *bodies));
+    return false;
+  });
+  return out;
+}
+
+std::optional<Checker::Nearest> Checker::find_nearest(const WorldState& state, Scratch& scratch,
+                                                      const Options& options) const {
+  place(state, scratch);
+  Scratch::Impl& s = *scratch.impl_;
+  std::optional<Nearest> best;
+  double lower = 0;
+  visit(state, options, [&](std::size_t i, std::size_t j) {
+    const auto distance = clearance(s.places[i], s.places[j]);
+    if (!distance) return false;
+    lower = best ? std::min(lower, distance->lower) : distance->lower;
+    if (!best || distance->upper < best->clearance.upper)
+      best = {{items_[i], items_[j]}, *distance};
+    return false;
+  });
+  if (best) best->clearance.lower = lower;
+  return best;
+}
+
+}  // namespace kaboum::world

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace kaboum::world::detail {
+
+/// A JSON value that knows where it is in its text.
+struct Located {
+  enum class Kind { Null, Boolean, Number, String, Array, Object };
+  Kind kind = Kind::Null;
+  std::size_t at = 0;  ///< byte at which it begins
+  bool boolean = false;
+  double number = 0;
+  std::string text;
+  std::vector<Located> items;                            ///< of an array
+  std::vector<std::pair<std::string, Located>> members;  ///< of an object, in their order
+  std::vector<std::size_t> names_at;                     ///< where their names begin
+};
+
+const char* name_of(Located::Kind kind);
+
+/// @param name  of the file, for messages.
+/// @throws Error{InvalidInput} naming line and column: not JSON, a member twice.
+Located parse_located(std::string_view text, const std::string& name);
+
+/// "line 3, column 7".
+std::string place_of(std::string_view text, std::size_t at);
+
+}  // namespace kaboum::world::detail

@@ -1,0 +1,45 @@
+// Bounds of how far places are from where they are computed to be.
+
+#include "placement.h"
+
+#include <kaboum/geom/convex_hull.h>
+
+#include <algorithm>
+
+namespace kaboum::world::detail {
+
+// docs/scene.md, "Errors of places": for a matrix L there is a rotation R with |L − R| ≤ |LᵀL − I|
+// (Frobenius); 2^-46 is for the rounding of that, of a product, and of the angles or the quaternion
+// that it was computed from.
+double rotation_error(const Transform& pose, double radius) {
+  if (pose.linear.isIdentity(0)) return 0;
+  const double defect =
+      (pose.linear.transpose() * pose.linear - Eigen::Matrix3d::Identity()).norm();
+  return (defect + 0x1p-46) * (1 + 0x1p-40) * radius;
+}
+
+double radius_of(const BoundingSet& set) {
+  double most = 0;
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    for (const Vec3& p : set.body(i).hull.vertices)
+      most = std::max(most, p.norm() + set.body(i).margin);
+  }
+  return most * (1 + 0x1p-40);
+}
+
+std::vector<Vec3> hull_points(const BoundingSet& set) {
+  std::vector<Vec3> points;
+  for (std::size_t i = 0; i < set.size(); ++i)
+    points.insert(points.end(), set.body(i).hull.vertices.begin(), set.body(i).hull.vertices.end());
+  if (const auto hull = geom::convex_hull(points)) return hull->vertices;
+  return points;
+}
+
+double placement_error(const sweep::MotionBounds& bounds, const Transform& base) {
+  const double extent = bounds.extent();
+  return (bounds.error(0) + 0x1p-48 * (extent + base.translation.norm()) +
+          rotation_error(base, extent)) *
+         (1 + 0x1p-40);
+}
+
+}  // namespace kaboum::world::detail

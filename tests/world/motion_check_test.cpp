@@ -1,0 +1,122 @@
+// Motions that are said to be free, sampled; motions that are not, looked at where they are said to
+// meet something.
+
+#include <gtest/gtest.h>
+#include <kaboum/base/error.h>
+#include <kaboum/world/motion_check.h>
+
+#include <random>
+
+#include "worlds.h"
+
+namespace kaboum::world {
+namespace {
+
+using test::SceneFiles;
+using Outcome = MotionAnswer::Outcome;
+
+World arm_among_boxes(const SceneFiles& files) {
+  std::string text = "\"objects\": [";
+  const std::vector<std::string> positions{"[2, 1.2, 0]", "[-1.5, 0.9, 0.3]", "[0.5, -2.2, 0]",
+                                           "[9, 9, 9]"};
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    text += std::string(i == 0 ? "" : ",").append("{\"name\": \"o").append(std::to_string(i)) +
+            "\", \"pose\": {\"position\": " + positions[i] +
+            "}, \"outer\": " + files.ref("box.glb") + "}";
+  return files.world(files.scene(text + "]"));
+}
+
+std::vector<double> at(const robot::Path& path, std::size_t segment, double share) {
+  std::vector<double> q = path[segment];
+  for (std::size_t i = 0; i < q.size(); ++i) q[i] += share * (path[segment + 1][i] - q[i]);
+  return q;
+}
+
+TEST(CheckMotion, FreeAtEverySampleOrInContactWhereItSays) {
+  const SceneFiles files;
+  const World world = arm_among_boxes(files);
+  const Checker checker(world);
+  Scratch scratch;
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> turn(-3, 3), step(-0.7, 0.7);
+  int free = 0, contact = 0, later = 0;
+  std::size_t most = 0;
+  for (int i = 0; i < 150; ++i) {
+    WorldState state = initial_state(world);
+    if (i % 3 == 0) {
+      Attachment held;
+      held.link = 3;
+      held.pose.translation = {1.6, 0, 0};
+      state.attachments[3] = held;
+    }
+    robot::Path path(3, std::vector<double>(3));
+    for (double& q : path[0]) q = turn(random);
+    for (int k = 1; k < 3; ++k)
+      for (int j = 0; j < 3; ++j) path[k][j] = path[k - 1][j] + step(random);
+    const MotionAnswer answer = check_motion(checker, state, 0, path, {});
+    most = std::max(most, answer.intervals);
+    ASSERT_NE(answer.outcome, Outcome::Undecided);
+    const bool is_free = answer.outcome == Outcome::Free;
+    (is_free ? free : contact) += 1;
+    for (std::size_t segment = 0; segment < 2; ++segment) {
+      for (int k = 0; k <= 300; ++k) {
+        const double share = k / 300.0;
+        if (!is_free &&
+            (segment > answer.segment || (segment == answer.segment && share >= answer.share)))
+          continue;
+        state.q[0] = at(path, segment, share);
+        ASSERT_FALSE(checker.find_contact(state, scratch)) << i << " " << segment << " " << share;
+      }
+    }
+    if (is_free) continue;
+    ASSERT_TRUE(answer.contact);
+    later += answer.segment > 0 || answer.share > 0 ? 1 : 0;
+    state.q[0] = at(path, answer.contact_segment, answer.contact_share);
+    if (answer.meets) {
+      EXPECT_TRUE(checker.find_contact(state, scratch)) << i;
+    } else {
+      EXPECT_LE(checker.find_nearest(state, scratch, {})->clearance.upper, 1.01e-5) << i;
+    }
+  }
+  EXPECT_GT(free, 20);
+  EXPECT_GT(contact, 20);
+  EXPECT_GT(later, 10);
+  EXPECT_LT(most, 3000U);
+}
+
+TEST(CheckMotion, SeesWhatSamplesJumpOver) {
+  // A thin plate that the tip passes in a tiny part of the motion.
+  SceneFiles files;
+  files.put(
+      "plate.glb",
+      test::set_of({test::box_mesh({-0.125, -0x1p-13, -0.5}, {0.125, 0x1p-13, 0.5})}, "outer", 0));
+  const World world = files.world(files.scene(
+      "\"objects\": [{\"name\": \"plate\", \"pose\": {\"position\": [3.05, 0, 0]}, \"outer\": " +
+      files.ref("plate.glb") + "}]"));
+  const Checker checker(world);
+  const robot::Path path{{-0.5, 0, 0}, {0.7, 0, 0}};
+  const MotionAnswer answer = check_motion(checker, initial_state(world), 0, path, {});
+  EXPECT_EQ(answer.outcome, Outcome::Contact);
+  EXPECT_NEAR(answer.share, 0.4, 0.05);
+  ASSERT_TRUE(answer.contact);
+  EXPECT_EQ(world.name_of(answer.contact->items[1]), "plate");
+}
+
+TEST(CheckMotion, PathsOfOneWaypointAndOfNone) {
+  const SceneFiles files;
+  const World world = arm_among_boxes(files);
+  const Checker checker(world);
+  const WorldState state = initial_state(world);
+  EXPECT_EQ(check_motion(checker, state, 0, {{-0.2, 0, 0}}, {}).outcome, Outcome::Free);
+  EXPECT_EQ(check_motion(checker, state, 0, {{0.5, 0, 0}}, {}).outcome, Outcome::Contact);
+  EXPECT_THROW(check_motion(checker, state, 0, {}, {}), Error);
+  EXPECT_THROW(check_motion(checker, state, 1, {{0, 0, 0}}, {}), Error);
+  EXPECT_THROW(check_motion(checker, state, 0, {{0, 0}}, {}), Error);
+  EXPECT_THROW(check_motion(checker, state, 0, {{0, 0, 0}}, {.resolution = 0}), Error);
+  const MotionAnswer limited = check_motion(
+      checker, state, 0, {{-0.2, 0, 0}, {-0.6, 0.4, 0.2}, {0.5, 0, 0}}, {.most_intervals = 2});
+  EXPECT_EQ(limited.outcome, Outcome::Undecided);
+}
+
+}  // namespace
+}  // namespace kaboum::world

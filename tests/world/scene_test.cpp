@@ -1,0 +1,198 @@
+// Scene files: what is read, and what is refused with its place and a remedy.
+
+#include <gtest/gtest.h>
+#include <kaboum/base/error.h>
+#include <kaboum/io/mesh_io.h>
+#include <kaboum/world/allowed_pairs.h>
+
+#include "worlds.h"
+
+namespace kaboum::world {
+namespace {
+
+using test::SceneFiles;
+
+const std::string kBox = "\"objects\": [{\"name\": \"box\", \"outer\": ";
+
+void expect_refused(const SceneFiles& files, const std::string& text,
+                    const std::vector<std::string>& words) {
+  try {
+    (void)files.world(text);
+    FAIL() << "accepted: " << text;
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::InvalidInput) << error.what();
+    EXPECT_TRUE(std::string(error.what()).starts_with("scene.json: line ") ||
+                std::string(error.what()).starts_with("scene.json: the JSON") ||
+                std::string(error.what()).starts_with("scene.json: not JSON"))
+        << error.what();
+    for (const std::string& word : words)
+      EXPECT_NE(std::string(error.what()).find(word), std::string::npos)
+          << "no '" << word << "' in: " << error.what();
+  }
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  const auto at = text.find(what);
+  EXPECT_NE(at, std::string::npos) << what;
+  return text.replace(at, what.size(), by);
+}
+
+TEST(Scene, IsReadWithAllItsParts) {
+  const SceneFiles files;
+  const World world = files.world(files.scene(
+      R"("objects": [{"name": "box", "pose": {"position": [1, 2, 3], "rpy": [0, 0, 1.5]}, "outer": )" +
+          files.ref("box.glb") + R"(, "inner": )" + files.ref("inner.glb") +
+          R"(, "features": [{"name": "top", "plane": {"point": [0, 0, 0.5], "normal": [0, 0, 2]}},
+            {"name": "tip", "point": [1, 0, 0]}, {"name": "axis", "line": {"point": [0, 0, 0], "direction": [3, 4, 0]}}],
+            "grasps": [{"name": "side", "position": [0.25, 0, 0]}]}],
+      "regions": [{"name": "tray", "pose": {"quaternion": [0, 0, 0, 1]}, "inner": )" +
+          files.ref("tray.glb") + R"(}],
+      "allowed_contacts": [["arm/l3", "box"]],
+      "attachments": [{"object": "box", "robot": "arm", "gripper": "hand", "grasp": "side"}])",
+      R"("base": {"position": [0, 0, 0.5]}, "home": {"j2": 0.5}, "limits": {"j1": [-1, 1]},
+      "tools": [{"name": "flange", "link": "l3", "position": [1, 0, 0]}],
+      "grippers": [{"name": "hand", "tool": "flange", "links": ["l2"]}], "allowed_contacts": [["l1", "l3"]])"));
+  ASSERT_EQ(world.robots.size(), 1U);
+  const RobotModel& arm = world.robots[0];
+  EXPECT_EQ(arm.base.translation, Vec3(0, 0, 0.5));
+  EXPECT_EQ(arm.home, (std::vector<double>{0, 0.5, 0}));
+  EXPECT_EQ(arm.kinematics.variables[0].lower, -1);
+  EXPECT_EQ(arm.kinematics.variables[1].lower, -3);
+  EXPECT_EQ(arm.shapes.size(), 4U);
+  EXPECT_EQ(arm.shapes[1].outer.epsilon(), 0.03);
+  EXPECT_EQ(arm.allowed.size(), 4U);  // three that are adjacent
+  EXPECT_EQ(arm.allowed.back().reason, AllowedPair::Reason::Stated);
+  const Object& box = world.objects.at(0);
+  EXPECT_EQ(box.pose.translation, Vec3(1, 2, 3));
+  EXPECT_NEAR(box.pose.linear(1, 0), std::sin(1.5), 1e-15);
+  EXPECT_TRUE(box.inner);
+  EXPECT_EQ(box.features.at(0).direction, Vec3(0, 0, 1));
+  EXPECT_EQ(box.features.at(2).kind, Feature::Kind::Line);
+  EXPECT_NEAR(box.features.at(2).direction.x(), 0.6, 1e-15);
+  EXPECT_EQ(world.regions.at(0).inner.size(), 2U);
+  EXPECT_EQ(world.allowed.size(), 1U);
+  ASSERT_TRUE(world.attachments.at(0));
+  EXPECT_EQ(world.attachments[0]->link, *arm.kinematics.find_link("l3"));
+  EXPECT_EQ(world.attachments[0]->pose.translation, Vec3(1.25, 0, 0));
+  EXPECT_EQ(world.attachments[0]->touching.size(), 1U);
+  EXPECT_EQ(world.name_of({0, 2}), "arm/l2");
+}
+
+TEST(Scene, ErrorsNameLineAndColumn) {
+  const SceneFiles files;
+  const std::string good = files.scene(kBox + files.ref("box.glb") + "}]");
+  EXPECT_NO_THROW(files.world(good));
+  expect_refused(files, replaced(good, "\"unit\": \"m\"", "\"unit\": 7"),
+                 {"line 1, column 29", "a string is expected, not a number"});
+  expect_refused(files, replaced(good, "\"objects\"", "\"object\""),
+                 {"'object' is not known", "did you mean 'objects'", "column 3"});
+  expect_refused(files, replaced(good, "\"unit\": \"m\"", "\"unit\": \"m\", \"unit\": \"m\""),
+                 {"line 1, column 34", "'unit' is there twice"});
+  expect_refused(files, replaced(good, "\"name\": \"box\"", "\"name\": \"arm\""),
+                 {"the name 'arm' is there twice"});
+  expect_refused(files, good.substr(0, good.size() / 2), {"the JSON is cut short", "line"});
+  expect_refused(files, replaced(good, "\"link\": \"base\"", "\"link\": \"bas\""),
+                 {"no link 'bas'", "did you mean"});
+  expect_refused(files, replaced(good, "\"kaboum_scene\": 1", "\"kaboum_scene\": 2"),
+                 {"line 1, column 18", "version 1"});
+  expect_refused(files, replaced(good, "box.glb", "absent.glb"), {"absent.glb: cannot be read"});
+  expect_refused(files, replaced(good, "\"name\": \"box\"", "\"nam\\\"e\": \"box\""), {"nam\"e"});
+  expect_refused(files, "{}", {"line 1, column 1", "'kaboum_scene' is missing"});
+  expect_refused(files, "[1]", {"an object is expected, not an array"});
+  std::string deep(1000, '[');
+  expect_refused(files, deep, {"more than 64"});
+}
+
+TEST(Scene, WhatIsStaleOrOfTheWrongKindIsRefused) {
+  SceneFiles files;
+  const auto with = [&](const std::string& file) {
+    return files.scene(kBox + files.ref(file) + "}]");
+  };
+  const std::string good = with("box.glb");
+  // The file changes after the scene was made.
+  files.put("box.glb", test::set_of({test::box_mesh({-1, -1, -1}, {1, 1, 1})}, "outer", 0.01));
+  expect_refused(files, good, {"box.glb is not the file that this scene was made with", "make"});
+  expect_refused(files, with("inner.glb"), {"inner.glb is an inner set, but an outer one"});
+  expect_refused(
+      files,
+      files.scene("\"regions\": [{\"name\": \"r\", \"inner\": " + files.ref("box.glb") + "}]"),
+      {"box.glb is an outer set, but an inner one"});
+  geom::ConvexSet inches = test::set_of({test::box_mesh({0, 0, 0}, {1, 1, 1})}, "outer", 0.01);
+  inches.provenance.unit = "in";
+  files.put("inches.glb", inches);
+  expect_refused(files, with("inches.glb"), {"inches.glb is in in, the scene in m"});
+  files.put("no-epsilon.glb", test::set_of({test::box_mesh({0, 0, 0}, {1, 1, 1})}, "outer", -1));
+  expect_refused(files, with("no-epsilon.glb"), {"states no epsilon"});
+  files.put("unsaid.glb", test::set_of({test::box_mesh({0, 0, 0}, {1, 1, 1})}, "", 0.1));
+  expect_refused(files, with("unsaid.glb"), {"not said to be an outer or an inner set"});
+  expect_refused(files, with("arm.urdf"), {"no container"});
+  // Sets of other links and robots.
+  expect_refused(files, replaced(files.scene(), files.ref("l2.glb"), files.ref("l1.glb")),
+                 {"in the frame of 'l1', not of link 'l2'"});
+  geom::ConvexSet other = test::set_of({test::box_mesh({0, 0, 0}, {1, 1, 1})}, "outer", 0.01, "l2");
+  other.provenance.source = "arm.urdf";
+  other.provenance.source_sha256 = std::string(64, '0');
+  files.put("l2.glb", other);
+  expect_refused(files, files.scene(), {"made of another robot than arm.urdf"});
+}
+
+TEST(Scene, NoLinkIsForgotten) {
+  const SceneFiles files;
+  const std::string less = replaced(
+      files.scene(), ",\n      {\"link\": \"l3\", \"outer\": " + files.ref("l3.glb") + "}", "");
+  expect_refused(files, less, {"link 'l3' has shapes for collisions, but no set"});
+  const std::string said =
+      replaced(less, "\"links\": [", "\"links_without_set\": [\"l3\"], \"links\": [");
+  SceneNotes notes;
+  parse_scene(
+      said, "scene.json", [&](const std::string& f) { return files.read(f); }, &notes);
+  ASSERT_EQ(notes.notes.size(), 1U);
+  EXPECT_NE(notes.notes[0].find("'l3' has no set"), std::string::npos);
+}
+
+TEST(Scene, ProofsHoldForWhatTheyWereMadeFor) {
+  const SceneFiles files;
+  const World world = files.world(files.scene());
+  const auto proved = [&](const std::string& hash, const std::string& more = "") {
+    return files.scene("", more + "\"never_in_contact\": {\"proved_for\": \"" + hash +
+                               "\", \"pairs\": [[\"base\", \"l3\"]]}");
+  };
+  const std::string hash = world.robots[0].fingerprint;
+  EXPECT_EQ(files.world(proved(hash)).robots[0].allowed.back().reason, AllowedPair::Reason::Never);
+  expect_refused(files, proved(hash, "\"limits\": {\"j1\": [-1, 1]}, "),
+                 {"were proved for other limits or other sets"});
+}
+
+TEST(ExaminePairs, AdjacentNeverAndAlways) {
+  const SceneFiles files;
+  // j2 within ±1: the third link stays clear of the base (which the first link hangs on).
+  const World narrow = files.world(
+      files.scene("", "\"limits\": {\"j1\": [-3, 3], \"j2\": [-0.5, 0.5], \"j3\": [-0.5, 0.5]}"));
+  const auto reason = [](const World& world, const std::string& a, const std::string& b) {
+    const auto& robot = world.robots[0];
+    for (const LinkPair& pair : examine_pairs(robot, {}))
+      if (robot.kinematics.links[pair.a].name == a && robot.kinematics.links[pair.b].name == b)
+        return pair;
+    return LinkPair{};
+  };
+  EXPECT_EQ(reason(narrow, "base", "l1").reason, AllowedPair::Reason::Adjacent);
+  EXPECT_EQ(reason(narrow, "base", "l3").reason, AllowedPair::Reason::Never);
+  EXPECT_EQ(reason(narrow, "l1", "l3").reason, AllowedPair::Reason::Never);
+  const World wide = files.world(files.scene());
+  const LinkPair folded = reason(wide, "l1", "l3");
+  EXPECT_FALSE(folded.reason);
+  EXPECT_FALSE(reason(wide, "base", "l3").reason);
+  std::vector<AllowedPair> pairs;
+  for (const LinkPair& pair : examine_pairs(narrow.robots[0], {}))
+    if (pair.reason) pairs.push_back({pair.a, pair.b, *pair.reason});
+  const std::string srdf = to_srdf(narrow.robots[0], pairs);
+  EXPECT_NE(srdf.find(R"(<disable_collisions link1="base" link2="l3" reason="Never"/>)"),
+            std::string::npos);
+  // Without the work there is no proof.
+  for (const LinkPair& pair : examine_pairs(narrow.robots[0], {.most_boxes = 2})) {
+    EXPECT_NE(pair.reason, AllowedPair::Reason::Never);
+  }
+}
+
+}  // namespace
+}  // namespace kaboum::world
