@@ -130,7 +130,7 @@ class Table {
   }
 
   static double reach_of(const std::vector<geom::Mesh>& hulls, const geom::Mesh& closed) {
-    const bcd::Solid solid(closed, 100000, 0);
+    const bcd::SolidField solid(closed, 100000, 0);
     bcd::ReachOptions gap;
     gap.relative_gap = 0.005;
     double reach = 0;

@@ -1,3 +1,6 @@
+// Bounded cells that space is cut into, and cubes that cover a box. docs/algorithms/
+// convex-decomposition.md, "Cells".
+
 #include "cell.h"
 
 #include <Eigen/LU>

@@ -1,8 +1,11 @@
+// Clusters of neighbouring triangles, for comparison. Source: [mamou2009], HACD.
+
 #include "clusters.h"
 
 #include <kaboum/geom/topology.h>
 
 #include <algorithm>
+#include <map>
 #include <numbers>
 #include <queue>
 
@@ -29,7 +32,7 @@ struct Edge {
 
 class DualGraph {
  public:
-  DualGraph(const Solid& solid, double epsilon) : solid_(solid), epsilon_(epsilon) {
+  DualGraph(const SolidField& solid, double epsilon) : solid_(solid), epsilon_(epsilon) {
     const double concavity = std::min(epsilon, 0.01 * solid.diagonal());
     shape_ = concavity / 10;  // [mamou2009] § 3.3
     const Mesh& mesh = solid.mesh();
@@ -68,8 +71,8 @@ class DualGraph {
         continue;
       }
       join_hulls(e);
-      const double concavity =
-          std::max(e.concavity, appraise(points_, solid_, builder_, true, epsilon_).worst);
+      const double concavity = std::max(
+          e.concavity, estimate_concavity(points_, solid_, builder_, true, epsilon_).worst);
       if (concavity <= epsilon_)
         queue_.push({e.cost - e.concavity + concavity, e.a, e.b, true, concavity});
     }
@@ -108,7 +111,7 @@ class DualGraph {
     c.perimeter = clusters_[a].perimeter + clusters_[b].perimeter - 2 * clusters_[a].shared.at(b);
     c.concavity = e.concavity;
     join_hulls(e);
-    if (!appraise(points_, solid_, builder_, true, 0).flat) {
+    if (!estimate_concavity(points_, solid_, builder_, true, 0).flat) {
       for (const std::uint32_t v : builder_.vertices()) c.hull.push_back(points_[v]);
     } else {
       c.hull = points_;
@@ -128,7 +131,7 @@ class DualGraph {
     for (const auto& [n, length] : clusters_[self].shared) push(n, self);
   }
 
-  const Solid& solid_;
+  const SolidField& solid_;
   double epsilon_, shape_ = 0;
   std::vector<Cluster> clusters_;
   std::priority_queue<Edge> queue_;
@@ -137,7 +140,7 @@ class DualGraph {
 };
 
 /// The cluster with the largest area in the piece.
-std::uint32_t owner(const Piece& piece, const Solid& solid,
+std::uint32_t owner(const Piece& piece, const SolidField& solid,
                     const std::vector<std::uint32_t>& cluster) {
   std::map<std::uint32_t, double> area;
   for (std::size_t f = 0; f < piece.polygons(); ++f) {
@@ -155,14 +158,14 @@ std::uint32_t owner(const Piece& piece, const Solid& solid,
 
 }  // namespace
 
-std::vector<std::uint32_t> cluster_triangles(const Solid& solid, std::size_t target,
+std::vector<std::uint32_t> cluster_triangles(const SolidField& solid, std::size_t target,
                                              double epsilon) {
   DualGraph graph(solid, epsilon);
   graph.contract(target);
   return graph.labels();
 }
 
-std::vector<Body> bodies_of_clusters(const CutTree& tree, const Solid& solid,
+std::vector<Body> bodies_of_clusters(const CutTree& tree, const SolidField& solid,
                                      const std::vector<std::uint32_t>& cluster) {
   std::map<std::uint32_t, std::vector<int>> leaves;
   for (const int leaf : tree.leaves())

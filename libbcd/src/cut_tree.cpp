@@ -1,3 +1,6 @@
+// Pieces of a solid, cut by planes that are chosen by what they leave between hulls and solid.
+// docs/algorithms/convex-decomposition.md, "Search".
+
 #include <kaboum/base/parallel.h>
 #include <kaboum/geom/topology.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -8,8 +11,8 @@
 #include <numeric>
 #include <utility>
 
+#include "cut_tree.h"
 #include "principal_box.h"
-#include "search.h"
 #include "symmetry.h"
 
 namespace kaboum::bcd {
@@ -93,7 +96,7 @@ std::vector<Neck> necks(std::vector<ReflexEdge> edges, double diagonal) {
 
 }  // namespace
 
-CutTree::CutTree(const Solid& solid, const SearchOptions& options, double safety)
+CutTree::CutTree(const SolidField& solid, const SearchOptions& options, double safety)
     : solid_(solid), options_(options) {
   double magnitude = 0;
   for (const Vec3& p : solid.mesh().vertices)
@@ -183,8 +186,8 @@ CutTree::Node CutTree::node_of(Piece&& piece) const {
   Node node;
   geom::HullBuilder& builder = scratch().builder;
   const std::vector<Vec3> points = piece.hull_points();
-  node.appraisal = appraise(points, solid_, builder);
-  if (!node.appraisal.flat) {
+  node.concavity = estimate_concavity(points, solid_, builder);
+  if (!node.concavity.flat) {
     for (const std::uint32_t v : builder.vertices()) node.hull.push_back(points[v]);
   } else {
     node.hull = points;
@@ -200,21 +203,21 @@ void CutTree::add_leaf(Piece&& piece, int parent) {
   ++leaf_count_;
 }
 
-void CutTree::reappraise() {
+void CutTree::reestimate() {
   for (Node& n : nodes_)
-    if (!n.hull.empty()) n.appraisal = appraise(n.hull, solid_, scratch().builder);
+    if (!n.hull.empty()) n.concavity = estimate_concavity(n.hull, solid_, scratch().builder);
 }
 
-void CutTree::reappraise(const Solid::Probe& probe) {
-  const Vec3& at = probe.point;
-  const double near = probe.near();
+void CutTree::reestimate(const SolidField::Witness& witness) {
+  const Vec3& at = witness.point;
+  const double near = witness.near();
   for (Node& n : nodes_) {
     if (n.hull.empty()) continue;
     Box3 box;
     for (const Vec3& p : n.hull) box.extend(p);
     if ((at.array() < box.min.array() - near).any() || (at.array() > box.max.array() + near).any())
       continue;
-    n.appraisal = appraise(n.hull, solid_, scratch().builder);
+    n.concavity = estimate_concavity(n.hull, solid_, scratch().builder);
   }
 }
 
@@ -244,7 +247,7 @@ std::vector<int> CutTree::nodes_within(double distance, std::vector<int> nodes) 
   while (!nodes.empty()) {
     const int node = nodes.back();
     nodes.pop_back();
-    if (is_leaf(node) || nodes_[node].appraisal.worst <= distance) {
+    if (is_leaf(node) || nodes_[node].concavity.worst <= distance) {
       out.push_back(node);
     } else {
       append_children(node, nodes);
@@ -269,7 +272,7 @@ void CutTree::leaves_below(int node, std::vector<int>& out) const {
 double CutTree::worst() const {
   double worst = 0;
   for (const Node& n : nodes_)
-    if (n.lower < 0 && !n.stuck) worst = std::max(worst, n.appraisal.worst);
+    if (n.lower < 0 && !n.stuck) worst = std::max(worst, n.concavity.worst);
   return worst;
 }
 
@@ -330,16 +333,16 @@ double CutTree::score(const Node& node, const Plane& plane) const {
   // the thickness.
   Box3 box;
   for (const Vec3& p : node.hull) box.extend(p);
-  const bool plate = thinnest < 1e-6 * box.diagonal() || high - low < node.appraisal.worst;
+  const bool plate = thinnest < 1e-6 * box.diagonal() || high - low < node.concavity.worst;
   const double penalty = plate ? 1e6 : 1;
   Scratch& s = scratch();
   s.lower.clear();
   s.upper.clear();
   if (!part(node.piece, plane, s.lower, s.upper)) return std::numeric_limits<double>::infinity();
-  const double limit = node.appraisal.fourth;
-  const Appraisal lower = appraise(s.lower, solid_, s.builder, true);
+  const double limit = node.concavity.fourth;
+  const Concavity lower = estimate_concavity(s.lower, solid_, s.builder, true);
   if (lower.fourth > 2 * limit) return penalty * lower.fourth;
-  const Appraisal upper = appraise(s.upper, solid_, s.builder, true);
+  const Concavity upper = estimate_concavity(s.upper, solid_, s.builder, true);
   return penalty * (lower.fourth + upper.fourth) *
          preference(std::min(lower.volume, upper.volume), lower.volume + upper.volume);
 }
@@ -363,12 +366,12 @@ double CutTree::look_ahead(const Node& node, const Plane& plane) const {
   for (Piece& part : parts) {
     if (part.empty()) return std::numeric_limits<double>::infinity();
     const Node child = node_of(std::move(part));
-    double best = child.appraisal.fourth;
+    double best = child.concavity.fourth;
     if (child.piece.polygons() > 0)
       for (const Candidate& c : candidates(child)) best = std::min(best, score(child, c.plane));
     sum += best;
-    volume += child.appraisal.volume;
-    least = std::min(least, child.appraisal.volume);
+    volume += child.concavity.volume;
+    least = std::min(least, child.concavity.volume);
   }
   return sum * preference(least, volume);
 }
@@ -431,14 +434,14 @@ std::vector<CutTree::Candidate> CutTree::candidates(const Node& node) const {
     if (std::abs(0.5 * (low + high) - plane.d) < 0.01 * (high - low)) out.push_back({plane});
   }
   // Planes that separate, or run through, the pit below the worst point.
-  const Vec3& x = node.appraisal.at;
+  const Vec3& x = node.concavity.at;
   const double step = solid_.spacing();
   Vec3 g;
   for (int k = 0; k < 3; ++k)
     g[k] = solid_.field(x + step * Vec3::Unit(k)) - solid_.field(x - step * Vec3::Unit(k));
   if (g.norm() > 0.1 * step) {
     g.normalize();
-    const Vec3 y = x - node.appraisal.worst * g;
+    const Vec3 y = x - node.concavity.worst * g;
     out.push_back({{g, g.dot(y)}});
     const Vec3 u = g.unitOrthogonal(), w = g.cross(u);
     for (int k = 0; k < 4; ++k) {
@@ -556,13 +559,13 @@ void CutTree::cut(int leaf, const Plane& plane) {
   // time.
   const Node& whole = nodes_[leaf];
   if (whole.lower < 0 || whole.upper < 0) return;
-  constexpr int kMostIdle = 8;
-  const double far = 0.99 * whole.appraisal.worst;
-  const bool idle =
-      std::min(nodes_[whole.lower].appraisal.worst, nodes_[whole.upper].appraisal.worst) > far;
+  constexpr int kMostStaleCuts = 8;
+  const double far = 0.99 * whole.concavity.worst;
+  const bool stale =
+      std::min(nodes_[whole.lower].concavity.worst, nodes_[whole.upper].concavity.worst) > far;
   for (const int half : {whole.lower, whole.upper}) {
-    nodes_[half].idle = whole.idle + (idle ? 1 : 0);
-    nodes_[half].stuck = nodes_[half].idle >= kMostIdle;
+    nodes_[half].stale_cuts = whole.stale_cuts + (stale ? 1 : 0);
+    nodes_[half].stuck = nodes_[half].stale_cuts >= kMostStaleCuts;
   }
 }
 
@@ -613,9 +616,9 @@ std::optional<CutTree::Split> CutTree::find_split(const std::vector<int>& nodes,
     if (s.lower.empty() || s.upper.empty() || spans_beyond(s.lower, solid_, limit) ||
         spans_beyond(s.upper, solid_, limit))
       return std::numeric_limits<double>::infinity();
-    const double lower = appraise(s.lower, solid_, s.builder, true, limit).worst;
+    const double lower = estimate_concavity(s.lower, solid_, s.builder, true, limit).worst;
     if (lower >= limit) return std::numeric_limits<double>::infinity();
-    const double upper = appraise(s.upper, solid_, s.builder, true, limit).worst;
+    const double upper = estimate_concavity(s.upper, solid_, s.builder, true, limit).worst;
     return upper >= limit ? std::numeric_limits<double>::infinity() : std::max(lower, upper);
   };
   std::vector<Split> list;
@@ -672,9 +675,9 @@ bool CutTree::cut_worst() {
     for (int i = 0; i < static_cast<int>(nodes_.size()); ++i) {
       const Node& n = nodes_[i];
       if (n.lower >= 0 || n.upper >= 0 || n.stuck) continue;
-      if (worst < 0 || n.appraisal.worst > nodes_[worst].appraisal.worst) worst = i;
+      if (worst < 0 || n.concavity.worst > nodes_[worst].concavity.worst) worst = i;
     }
-    if (worst < 0 || nodes_[worst].appraisal.worst <= 0) return false;
+    if (worst < 0 || nodes_[worst].concavity.worst <= 0) return false;
     if (cut(worst)) return true;
   }
 }

@@ -1,3 +1,6 @@
+// Convex bodies inside a solid: one is grown round the deepest point that is in none yet, until no
+// point is deep. docs/algorithms/convex-decomposition.md, "From inside".
+
 #include <kaboum/base/error.h>
 #include <kaboum/bcd/fill.h>
 #include <kaboum/geom/float32.h>

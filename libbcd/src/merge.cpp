@@ -1,21 +1,24 @@
+// Hulls are merged, cheapest first. Source: [gaschler2016] §4.4; [mamou2009] joins clusters in the
+// same way.
+
+#include "merge.h"
 
 #include <kaboum/base/parallel.h>
 
-#include <algorithm>
 #include <cmath>
 #include <queue>
-
-#include "search.h"
 
 namespace kaboum::bcd {
 namespace {
 
 constexpr double kMergeWork = 0.8;  ///< share of the work allowed, after which merging ends
+/// Bodies that do not touch are only merged when there are no more: all pairs are looked at.
+constexpr std::size_t kAllPairs = 400;
 
 /// Two bodies and what their hull would be.
 struct Pair {
   std::uint32_t a, b;
-  PairMemo::Entry hull{};
+  UnionEstimate hull{};
   double cost = 0;
 };
 
@@ -25,164 +28,120 @@ bool later(const Pair& p, const Pair& q) {
   return p.a != q.a ? p.a > q.a : p.b > q.b;
 }
 
-geom::HullBuilder& hull_builder() {
-  static thread_local geom::HullBuilder builder;
-  return builder;
-}
-
-void join(const Body& a, const Body& b, std::vector<Vec3>& points) {
-  points.assign(a.hull.begin(), a.hull.end());
-  points.insert(points.end(), b.hull.begin(), b.hull.end());
-}
-
-/// Distance of some points between the bodies.
-double between(const Body& a, const Body& b, const Solid& solid) {
-  constexpr std::size_t kSamples = 12;
-  double worst = 0;
-  for (std::size_t i = 0; i < kSamples; ++i) {
-    const Vec3& p = a.hull[i * a.hull.size() / kSamples];
-    const Vec3& q = b.hull[(i * 5 % kSamples) * b.hull.size() / kSamples];
-    const Vec3 middle = 0.5 * (p + q);
-    worst = std::max(worst, solid.distance_above(worst, middle, solid.field(middle)));
+class Merger {
+ public:
+  Merger(std::vector<Body> bodies, const SolidField& solid, double epsilon, double volume_weight,
+         PairMemo& memo)
+      : bodies_(std::move(bodies)),
+        solid_(solid),
+        epsilon_(epsilon),
+        volume_weight_(volume_weight),
+        memo_(memo),
+        alive_(bodies_.size(), 1),
+        count_(bodies_.size()) {
+    id_.reserve(bodies_.size());
+    for (const Body& b : bodies_) id_.push_back(memo_.id_of(b.leaves));
   }
-  return worst;
-}
 
-/// Pairs farther than `limit` from the solid are not looked at any closer.
-PairMemo::Entry judge(const Body& a, const Body& b, const Solid& solid, double limit) {
-  solid.work().add(2000);
-  const double least = between(a, b, solid);
-  if (least > limit) return {least, 0, false};
-  static thread_local std::vector<Vec3> points;
-  join(a, b, points);
-  const Appraisal h = appraise(points, solid, hull_builder(), true, limit);
-  const double added = std::max(0.0, h.volume - a.appraisal.volume - b.appraisal.volume);
-  return {h.worst, std::cbrt(added), h.worst <= limit};
-}
-
-Body body_round(const std::vector<Vec3>& points, const Solid& solid, std::vector<int> leaves) {
-  Body body;
-  geom::HullBuilder& builder = hull_builder();
-  body.appraisal = appraise(points, solid, builder);
-  if (body.appraisal.flat) {
-    body.hull = points;
-  } else {
-    for (const std::uint32_t v : builder.vertices()) body.hull.push_back(points[v]);
+  void run(std::size_t target) {
+    propose_pairs([&](std::uint32_t a, std::uint32_t b) { return near(a, b); });
+    // Where any distance will do, the number is what is asked for.
+    const bool unlimited = !std::isfinite(epsilon_);
+    bool all_pairs = false;
+    while (count_ > target && (unlimited || !solid_.work().spent(kMergeWork))) {
+      if (queue_.empty()) {
+        // Parts that do not touch may still share a hull.
+        if (all_pairs || count_ > kAllPairs) break;
+        all_pairs = true;
+        propose_pairs([&](std::uint32_t a, std::uint32_t b) {
+          return alive_[a] != 0 && alive_[b] != 0 && !near(a, b);
+        });
+        if (queue_.empty()) break;
+      }
+      const Pair p = queue_.top();
+      queue_.pop();
+      if (alive_[p.a] == 0 || alive_[p.b] == 0) continue;
+      join(p);
+      const auto self = static_cast<std::uint32_t>(bodies_.size()) - 1;
+      for (std::uint32_t a = 0; a < self; ++a)
+        if (alive_[a] != 0 && (all_pairs || near(a, self))) fresh_.push_back({a, self});
+      estimate_fresh();
+    }
   }
-  for (const Vec3& p : body.hull) body.box.extend(p);
-  body.leaves = std::move(leaves);
-  return body;
-}
 
-}  // namespace
-
-Body body_of(const CutTree& tree, int leaf) {
-  const CutTree::Node& node = tree.nodes()[leaf];
-  Body body{node.hull, {leaf}, node.appraisal, {}};
-  for (const Vec3& p : body.hull) body.box.extend(p);
-  return body;
-}
-
-Body union_of(const CutTree& tree, const Solid& solid, const std::vector<int>& leaves) {
-  std::vector<Vec3> points;
-  for (const int leaf : leaves) {
-    const std::vector<Vec3>& hull = tree.nodes()[leaf].hull;
-    points.insert(points.end(), hull.begin(), hull.end());
+  std::vector<Body> result() {
+    std::vector<Body> out;
+    for (std::size_t i = 0; i < bodies_.size(); ++i)
+      if (alive_[i] != 0) out.push_back(std::move(bodies_[i]));
+    return out;
   }
-  return body_round(points, solid, leaves);
-}
 
-Body union_of(const Body& a, const Body& b, const Solid& solid) {
-  std::vector<Vec3> points;
-  join(a, b, points);
-  std::vector<int> leaves = a.leaves;
-  leaves.insert(leaves.end(), b.leaves.begin(), b.leaves.end());
-  std::sort(leaves.begin(), leaves.end());
-  return body_round(points, solid, std::move(leaves));
-}
+ private:
+  [[nodiscard]] bool near(std::uint32_t a, std::uint32_t b) const {
+    return touch(bodies_[a], bodies_[b], solid_);
+  }
 
-double distance_of_union(const Body& a, const Body& b, const Solid& solid, double limit) {
-  return judge(a, b, solid, limit).worst;
-}
+  template <class Wanted>
+  void propose_pairs(Wanted&& wanted) {
+    for (std::uint32_t a = 0; a < bodies_.size(); ++a)
+      for (std::uint32_t b = a + 1; b < bodies_.size(); ++b)
+        if (wanted(a, b)) fresh_.push_back({a, b});
+    estimate_fresh();
+  }
 
-bool touch(const Body& a, const Body& b, const Solid& solid) {
-  const double reach = 1e-3 * solid.diagonal();
-  return ((a.box.min.array() - reach <= b.box.max.array()) &&
-          (b.box.min.array() - reach <= a.box.max.array()))
-      .all();
-}
-
-std::vector<Body> merge(std::vector<Body> bodies, const Solid& solid, std::size_t target,
-                        double epsilon, double bulk, PairMemo& memo) {
-  std::vector<std::uint32_t> id;
-  id.reserve(bodies.size());
-  for (const Body& b : bodies) id.push_back(memo.id_of(b.leaves));
-  std::vector<char> alive(bodies.size(), 1);
-  std::size_t count = bodies.size();
-  const auto near = [&](const Body& a, const Body& b) { return touch(a, b, solid); };
-  std::priority_queue<Pair, std::vector<Pair>, decltype(&later)> queue(&later);
-  std::vector<Pair> fresh;
-  const auto judge_all = [&] {
+  /// Puts fresh pairs into the queue that are near enough to the solid.
+  void estimate_fresh() {
     std::vector<std::size_t> open;
-    for (std::size_t i = 0; i < fresh.size(); ++i) {
-      Pair& p = fresh[i];
-      const PairMemo::Entry* known = memo.find(id[p.a], id[p.b]);
-      if (known != nullptr && (known->whole || known->worst > epsilon)) {
+    for (std::size_t i = 0; i < fresh_.size(); ++i) {
+      Pair& p = fresh_[i];
+      const UnionEstimate* known = memo_.find(id_[p.a], id_[p.b]);
+      if (known != nullptr && (known->whole || known->worst > epsilon_)) {
         p.hull = *known;
       } else {
         open.push_back(i);
       }
     }
     parallel_loop(std::size_t{0}, open.size(), [&](std::size_t i) {
-      Pair& p = fresh[open[i]];
-      p.hull = judge(bodies[p.a], bodies[p.b], solid, epsilon);
+      Pair& p = fresh_[open[i]];
+      p.hull = estimate_union(bodies_[p.a], bodies_[p.b], solid_, epsilon_);
     });
-    for (const std::size_t i : open) memo.add(id[fresh[i].a], id[fresh[i].b], fresh[i].hull);
-    for (Pair& p : fresh) {
-      p.cost = p.hull.worst + bulk * p.hull.added;
-      if (p.hull.worst <= epsilon) queue.push(p);
+    for (const std::size_t i : open) memo_.add(id_[fresh_[i].a], id_[fresh_[i].b], fresh_[i].hull);
+    for (Pair& p : fresh_) {
+      p.cost = p.hull.worst + volume_weight_ * p.hull.added;
+      if (p.hull.worst <= epsilon_) queue_.push(p);
     }
-    fresh.clear();
-  };
-  for (std::uint32_t a = 0; a < bodies.size(); ++a)
-    for (std::uint32_t b = a + 1; b < bodies.size(); ++b)
-      if (near(bodies[a], bodies[b])) fresh.push_back({a, b});
-  judge_all();
-  // Where any distance will do, the number is what is wished.
-  const bool unlimited = !std::isfinite(epsilon);
-  bool all_pairs = false;
-  while (count > target && (unlimited || !solid.work().spent(kMergeWork))) {
-    if (queue.empty()) {
-      // Parts that do not touch may still share a hull.
-      if (all_pairs || count > 400) break;
-      all_pairs = true;
-      for (std::uint32_t a = 0; a < bodies.size(); ++a)
-        for (std::uint32_t b = a + 1; b < bodies.size(); ++b)
-          if (alive[a] != 0 && alive[b] != 0 && !near(bodies[a], bodies[b]))
-            fresh.push_back({a, b});
-      judge_all();
-      if (queue.empty()) break;
-    }
-    const Pair p = queue.top();
-    queue.pop();
-    if (alive[p.a] == 0 || alive[p.b] == 0) continue;
-    Body merged = union_of(bodies[p.a], bodies[p.b], solid);
-    alive[p.a] = alive[p.b] = 0;
-    bodies[p.a].hull = {};
-    bodies[p.b].hull = {};
-    --count;
-    const auto self = static_cast<std::uint32_t>(bodies.size());
-    id.push_back(memo.id_of(merged.leaves));
-    bodies.push_back(std::move(merged));
-    alive.push_back(1);
-    for (std::uint32_t a = 0; a < self; ++a)
-      if (alive[a] != 0 && (all_pairs || near(bodies[a], bodies[self]))) fresh.push_back({a, self});
-    judge_all();
+    fresh_.clear();
   }
-  std::vector<Body> out;
-  for (std::size_t i = 0; i < bodies.size(); ++i)
-    if (alive[i] != 0) out.push_back(std::move(bodies[i]));
-  return out;
+
+  void join(const Pair& p) {
+    Body merged = union_of(bodies_[p.a], bodies_[p.b], solid_);
+    alive_[p.a] = alive_[p.b] = 0;
+    bodies_[p.a].hull = {};
+    bodies_[p.b].hull = {};
+    --count_;
+    id_.push_back(memo_.id_of(merged.leaves));
+    bodies_.push_back(std::move(merged));
+    alive_.push_back(1);
+  }
+
+  std::vector<Body> bodies_;
+  const SolidField& solid_;
+  double epsilon_, volume_weight_;
+  PairMemo& memo_;
+  std::vector<std::uint32_t> id_;  // in the memo, per body
+  std::vector<char> alive_;
+  std::size_t count_;
+  std::vector<Pair> fresh_;
+  std::priority_queue<Pair, std::vector<Pair>, decltype(&later)> queue_{&later};
+};
+
+}  // namespace
+
+std::vector<Body> merge(std::vector<Body> bodies, const SolidField& solid, std::size_t target,
+                        double epsilon, double volume_weight, PairMemo& memo) {
+  Merger merger(std::move(bodies), solid, epsilon, volume_weight, memo);
+  merger.run(target);
+  return merger.result();
 }
 
 }  // namespace kaboum::bcd

@@ -1,3 +1,6 @@
+// float32 polytopes that contain given points: exact orientation tests decide.
+// docs/algorithms/convex-decomposition.md, "Rounding" and "Fewer vertices".
+
 #include "outward.h"
 
 #include <kaboum/base/error.h>

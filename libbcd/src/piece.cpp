@@ -1,3 +1,6 @@
+// What of a solid lies in a cell, and what a plane leaves of it on either side. The claim that
+// hulls of pieces cover the solid: docs/algorithms/convex-decomposition.md, "Cells".
+
 #include "piece.h"
 
 #include <algorithm>
@@ -51,7 +54,7 @@ class EdgeMap {
 
 /// Whether a corner is one of the solid's part in the cell, given a point a little inside the cell,
 /// so that surfaces through the corner itself do not count.
-bool corner_inside(const Solid& solid, const Vec3& p) {
+bool corner_inside(const SolidField& solid, const Vec3& p) {
   if (!(p.array() > solid.box().min.array()).all() || !(p.array() < solid.box().max.array()).all())
     return false;
   return solid.contains(p);
@@ -70,7 +73,7 @@ std::vector<Vec3> Piece::hull_points() const {
   return out;
 }
 
-Piece whole(const Solid& solid) {
+Piece whole(const SolidField& solid) {
   const Mesh& mesh = solid.mesh();
   Piece piece;
   piece.points = mesh.vertices;
@@ -88,7 +91,7 @@ Piece whole(const Solid& solid) {
   return piece;
 }
 
-void classify(const Piece& piece, const Plane& plane, const Solid& solid, double shift,
+void classify(const Piece& piece, const Plane& plane, const SolidField& solid, double shift,
               std::vector<double>& height, std::vector<Side>& side) {
   height.resize(piece.points.size());
   for (std::size_t i = 0; i < height.size(); ++i) height[i] = plane.height(piece.points[i]);
@@ -113,8 +116,9 @@ void classify(const Piece& piece, const Plane& plane, const Solid& solid, double
   }
 }
 
-Piece clip(const Piece& piece, const Plane& plane, bool lower, double shift, const Solid& solid,
-           const std::vector<double>& height, const std::vector<Side>& side) {
+Piece clip(const Piece& piece, const Plane& plane, bool lower, double shift,
+           const SolidField& solid, const std::vector<double>& height,
+           const std::vector<Side>& side) {
   Piece out;
   out.start.push_back(0);
   std::vector<std::uint32_t> number(piece.points.size(), kNone);

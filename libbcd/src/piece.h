@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "cell.h"
-#include "solid.h"
+#include "solid_field.h"
 
 namespace kaboum::bcd {
 
@@ -30,15 +30,16 @@ struct Piece {
 enum class Side : char { Lower, Upper, Both };
 
 /// The whole of the solid in one cell.
-Piece whole(const Solid& solid);
+Piece whole(const SolidField& solid);
 
 /// Heights of the points, and the side of every polygon. Polygons within `shift` of the plane go to
 /// the side that their solid is on.
-void classify(const Piece& piece, const Plane& plane, const Solid& solid, double shift,
+void classify(const Piece& piece, const Plane& plane, const SolidField& solid, double shift,
               std::vector<double>& height, std::vector<Side>& side);
 
 /// The part on one side; parts of both sides overlap by twice `shift`.
-Piece clip(const Piece& piece, const Plane& plane, bool lower, double shift, const Solid& solid,
-           const std::vector<double>& height, const std::vector<Side>& side);
+Piece clip(const Piece& piece, const Plane& plane, bool lower, double shift,
+           const SolidField& solid, const std::vector<double>& height,
+           const std::vector<Side>& side);
 
 }  // namespace kaboum::bcd

@@ -1,3 +1,5 @@
+// A coarser bounding mesh in place of a large input. Source: [gaschler2016] §4.4.2.
+
 #include "pre_step.h"
 
 #include <kaboum/base/error.h>

@@ -1,3 +1,5 @@
+// Boxes along the axes of the covariance of points.
+
 #include "principal_box.h"
 
 #include <Eigen/Eigenvalues>

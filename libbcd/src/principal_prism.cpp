@@ -1,3 +1,5 @@
+// Prisms round points, across the axis of least covariance.
+
 #include "principal_prism.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// A certified bracket of the largest distance from bodies to a solid, by branch and bound.
+// docs/algorithms/convex-decomposition.md, "Reach", has the bounds and their proofs.
+
 #include "reach.h"
 
 #include <kaboum/base/parallel.h>
@@ -16,7 +19,7 @@ namespace {
 
 class Measure {
  public:
-  Measure(const Mesh& body, const Solid& solid, const ReachOptions& options)
+  Measure(const Mesh& body, const SolidField& solid, const ReachOptions& options)
       : body_(body), solid_(solid), options_(options) {
     // Rounding of midpoints, far above what is possible.
     Box3 box = solid.box();
@@ -322,7 +325,7 @@ class Measure {
   static constexpr std::uint64_t kTriangle = 60;  ///< and for each triangle that is looked at
 
   const Mesh& body_;
-  const Solid& solid_;
+  const SolidField& solid_;
   const ReachOptions& options_;
   std::vector<std::uint32_t> near_;
   double floor_ = 0;
@@ -334,7 +337,7 @@ class Measure {
 
 }  // namespace
 
-std::vector<Reach> measure(const std::vector<Mesh>& bodies, const Solid& solid,
+std::vector<Reach> measure(const std::vector<Mesh>& bodies, const SolidField& solid,
                            const ReachOptions& options, double floor, double ceiling) {
   std::vector<Measure> measures;
   measures.reserve(bodies.size());

@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "solid.h"
+#include "solid_field.h"
 
 namespace kaboum::bcd {
 
@@ -29,7 +29,7 @@ struct ReachOptions {
 /// One bracket per body. Branch and bound over facets and, for pits and cavities that a body spans,
 /// over its inside. Distances below `floor`, and below 0.7 of the largest among all bodies or
 /// `ceiling` if that is less, are only told to be below it.
-std::vector<Reach> measure(const std::vector<Mesh>& bodies, const Solid& solid,
+std::vector<Reach> measure(const std::vector<Mesh>& bodies, const SolidField& solid,
                            const ReachOptions& options, double floor = 0,
                            double ceiling = std::numeric_limits<double>::infinity());
 

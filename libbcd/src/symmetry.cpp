@@ -1,3 +1,5 @@
+// Planes of symmetry of a solid, found by its principal axes and checked at samples.
+
 #include "symmetry.h"
 
 #include <Eigen/Eigenvalues>
@@ -83,7 +85,7 @@ void add_bisectors(const Mesh& mesh, const Vec3& center, double tolerance,
 
 }  // namespace
 
-std::vector<Plane> mirror_planes(const Solid& solid) {
+std::vector<Plane> mirror_planes(const SolidField& solid) {
   const Mesh& mesh = solid.mesh();
   const Moments moments = moments_of(mesh);
   if (!(moments.area > 0)) return {};

@@ -1,3 +1,6 @@
+// Bodies that are wide enough in every direction. docs/algorithms/convex-decomposition.md, "Least
+// thickness".
+
 #include "thicken.h"
 
 #include <kaboum/base/error.h>
@@ -12,7 +15,7 @@ namespace kaboum::bcd {
 namespace {
 
 /// A body round all points, rounded, and round the given one, which they contain but for rounding.
-Mesh round(std::vector<Vec3> points, const Mesh& body, std::size_t most, const Solid& solid) {
+Mesh round(std::vector<Vec3> points, const Mesh& body, std::size_t most, const SolidField& solid) {
   for (Vec3& p : points) p = geom::to_float32(p);
   const auto hull = geom::convex_hull(points);
   ensure(hull.has_value(), "a body that was thickened is flat");
@@ -32,7 +35,7 @@ std::vector<Vec3> cubes_round(const Mesh& body, double half) {
 
 }  // namespace
 
-Mesh thicken(Mesh body, double thickness, std::size_t most, const Solid& solid) {
+Mesh thicken(Mesh body, double thickness, std::size_t most, const SolidField& solid) {
   // Each sweep settles one direction: a plate needs one, a rod two, a point three.
   constexpr int kSweeps = 8;
   for (int sweep = 0; sweep <= kSweeps; ++sweep) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solid.h"
+#include "solid_field.h"
 
 namespace kaboum::bcd {
 
@@ -8,6 +8,6 @@ namespace kaboum::bcd {
 /// every direction: the body swept to both sides in the direction where it is narrowest, until it
 /// is. The body itself when it is wide enough.
 /// @param most  vertices, ≥ 8.
-Mesh thicken(Mesh body, double thickness, std::size_t most, const Solid& solid);
+Mesh thicken(Mesh body, double thickness, std::size_t most, const SolidField& solid);
 
 }  // namespace kaboum::bcd

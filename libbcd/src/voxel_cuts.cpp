@@ -1,3 +1,5 @@
+// Cuts chosen by volumes of voxels, for comparison. Source: [mamou2016], V-HACD.
+
 #include "voxel_cuts.h"
 
 #include <kaboum/base/parallel.h>
@@ -8,7 +10,7 @@
 
 namespace kaboum::bcd {
 
-VoxelCuts::VoxelCuts(const Solid& solid, std::size_t voxels)
+VoxelCuts::VoxelCuts(const SolidField& solid, std::size_t voxels)
     : origin_(solid.box().min), smallest_(1e-6 * solid.diagonal()) {
   const Vec3 size = (solid.box().max - solid.box().min).cwiseMax(0.02 * solid.diagonal());
   spacing_ = std::cbrt(size.prod() / static_cast<double>(voxels));

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cell.h"
-#include "solid.h"
+#include "solid_field.h"
 
 namespace kaboum::bcd {
 
@@ -15,7 +15,7 @@ namespace kaboum::bcd {
 class VoxelCuts {
  public:
   /// @param voxels  wished number, of the solid's box.
-  VoxelCuts(const Solid& solid, std::size_t voxels);
+  VoxelCuts(const SolidField& solid, std::size_t voxels);
 
   /// The plane across an axis, between voxels, for which the hulls of the voxels on either side
   /// have the least volume beyond the voxels' own, balanced ones preferred a little. Across the

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "search.h"
+#include "cut_tree.h"
 #include "solids.h"
 
 namespace kaboum::bcd {
@@ -23,7 +23,7 @@ class CutTreeTest : public ::testing::Test {
     }
   }
   const Mesh mesh_ = kaboum::test::torus(1, 0.35, 24, 12);
-  const Solid solid_{mesh_, 20000, 0};
+  const SolidField solid_{mesh_, 20000, 0};
   CutTree tree_{solid_, {}};
 };
 
@@ -36,9 +36,9 @@ TEST_F(CutTreeTest, NodesWithinADistanceAreTheCoarsest) {
     expect_whole(tree_, found);
     for (const int node : found) {
       inner += tree_.is_leaf(node) ? 0 : 1;
-      EXPECT_TRUE(tree_.is_leaf(node) || nodes[node].appraisal.worst <= distance);
+      EXPECT_TRUE(tree_.is_leaf(node) || nodes[node].concavity.worst <= distance);
       for (int above = nodes[node].parent; above >= 0; above = nodes[above].parent)
-        EXPECT_GT(nodes[above].appraisal.worst, distance);
+        EXPECT_GT(nodes[above].concavity.worst, distance);
     }
   }
   EXPECT_GT(inner, 0U);
@@ -70,7 +70,7 @@ TEST_F(CutTreeTest, SplitSortsNodesAndLeavesAlike) {
 }
 
 TEST_F(CutTreeTest, ThePlaneFoundIsThatOfTheLeaves) {
-  const double far = tree_.nodes()[0].appraisal.worst;
+  const double far = tree_.nodes()[0].concavity.worst;
   const auto coarse = tree_.find_split({0}, Vec3(1, 1, 0), 2 * far);
   const auto fine = tree_.find_split(tree_.leaves(), Vec3(1, 1, 0), 2 * far);
   ASSERT_TRUE(coarse && fine);

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "part.h"
-#include "solid.h"
+#include "solid_field.h"
 #include "solids.h"
 #include "support/families.h"
 #include "support/oracle.h"
@@ -182,7 +182,7 @@ TEST(Decompose, PreStepKeepsCoverAndEpsilon) {
     EXPECT_LE(result.reach_upper, *options.epsilon);
     test::expect_cover(closed, result, 64);
     // The distance is the one to the input: no point of the bodies is farther.
-    const Solid solid(closed, 2000, 0);
+    const SolidField solid(closed, 2000, 0);
     double farthest = 0;
     for (const geom::ConvexBody& body : result.bodies)
       for (const Vec3& p : body.hull.vertices)

@@ -84,7 +84,7 @@ TEST(Methods, NoneForBodiesInside) {
 
 TEST(VoxelCuts, TheLetterIsCutAtItsEdge) {
   const Mesh mesh = letter();
-  const Solid solid(mesh, 5000, 0);
+  const SolidField solid(mesh, 5000, 0);
   const VoxelCuts cuts(solid, 20000);
   const Cell cell = Cell::of({Vec3::Constant(-1), Vec3::Constant(4)});
   const auto plane = cuts.choose(cell, mesh.vertices);
@@ -104,7 +104,7 @@ TEST(Clusters, ConvexPartsBecomeOneEach) {
   const Mesh two = kaboum::test::merged(
       {kaboum::test::icosphere(2),
        kaboum::test::translated(kaboum::test::box(Vec3(1, 2, 3), 4), Vec3(5, 0, 0))});
-  const Solid solid(two, 20000, 0);
+  const SolidField solid(two, 20000, 0);
   for (const double epsilon : {0.05, std::numeric_limits<double>::infinity()}) {
     const std::vector<std::uint32_t> label = cluster_triangles(solid, 1, epsilon);
     const std::set<std::uint32_t> different(label.begin(), label.end());
@@ -117,7 +117,7 @@ TEST(Clusters, ConvexPartsBecomeOneEach) {
 /// Whatever the clusters are, every leaf goes to one body.
 TEST(Clusters, EveryLeafIsInABody) {
   const Mesh mesh = kaboum::test::icosphere(2);
-  const Solid solid(mesh, 20000, 0);
+  const SolidField solid(mesh, 20000, 0);
   CutTree tree(solid, {});
   while (tree.leaf_count() < 20 && tree.cut_worst()) {
   }

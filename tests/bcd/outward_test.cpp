@@ -85,7 +85,7 @@ TEST(Simplify, EnclosesUpToRoundingWithinTheCap) {
   for (const int n : {80, 300}) {
     for (std::uint32_t seed = 0; seed < 3; ++seed) {
       const geom::Mesh hull = kaboum::test::random_hull(n, kaboum::test::Cloud::Sphere, seed);
-      const Solid solid(hull, 20000, 0);
+      const SolidField solid(hull, 20000, 0);
       for (const std::size_t cap : {64U, 32U, 16U, 8U}) {
         const Simplified s = simplify(hull.vertices, cap, 0, solid);
         EXPECT_LE(s.vertices.size(), std::max<std::size_t>(cap, 8));

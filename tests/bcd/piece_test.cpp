@@ -10,7 +10,8 @@ namespace kaboum::bcd {
 namespace {
 
 /// The part of a piece on one side.
-Piece part(const Piece& piece, const Plane& plane, bool lower, const Solid& solid, double shift) {
+Piece part(const Piece& piece, const Plane& plane, bool lower, const SolidField& solid,
+           double shift) {
   std::vector<double> height;
   std::vector<Side> side;
   classify(piece, plane, solid, shift, height, side);
@@ -21,7 +22,7 @@ Piece part(const Piece& piece, const Plane& plane, bool lower, const Solid& soli
 /// contain their corners: it would span whatever is between them and its part of the solid.
 TEST(Piece, NothingOfTheSolidIsBeyondItsFaceHoweverThinTheCell) {
   const Mesh box = test::box({10, 10, 2}, 3);
-  const Solid solid(box, 1000, 0);
+  const SolidField solid(box, 1000, 0);
   const double top = solid.box().max.z(), shift = 0x1p-36 * 10;
   const Vec3 middle = solid.box().center();
   for (const double thickness : {1.0, 1e-3, 1e-6, 1e-8}) {
@@ -43,7 +44,7 @@ TEST(Piece, ThinCellsThroughWallsHaveTheirCorners) {
         if (wall < 32 * shift || thickness < 32 * shift) continue;
         SCOPED_TRACE(testing::Message() << wall << ' ' << thickness << ' ' << safety);
         const Mesh box = test::box({wall, 10, 10}, 3);
-        const Solid solid(box, 1000, 0);
+        const SolidField solid(box, 1000, 0);
         const Vec3 middle = solid.box().center();
         // Along the wall's middle, across it twice: one edge of the cell is in the wall.
         Piece piece = part(whole(solid), {Vec3::UnitX(), middle.x()}, false, solid, shift);

@@ -17,7 +17,7 @@ using kaboum::test::merged;
 using kaboum::test::translated;
 
 Reach reach_of(const Mesh& body, const Mesh& solid_mesh) {
-  const Solid solid(solid_mesh, 20000, 0);
+  const SolidField solid(solid_mesh, 20000, 0);
   return measure({body}, solid, {.absolute_gap = 1e-5 * solid.diagonal()})[0];
 }
 
@@ -70,7 +70,7 @@ TEST(Reach, WhereverCavitiesAre) {
 TEST(Reach, StopsWhereItIsKnownToBeTooFar) {
   const Mesh l = test::prism({{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}, 1);
   const Mesh hull = test::prism({{0, 0}, {3, 0}, {3, 1}, {1, 3}, {0, 3}}, 1);
-  const Solid solid(l, 20000, 0);
+  const SolidField solid(l, 20000, 0);
   const Reach far = measure({hull}, solid, {.enough = 0.5})[0];
   EXPECT_GT(far.lower, 0.5);
   EXPECT_LE(far.lower, 1.0 + 1e-9);
@@ -88,7 +88,7 @@ TEST(Reach, BodiesOnTheSolidCostLittle) {
   // Facets of several triangles each; were the bound that of cubes alone, millions would be needed.
   const Mesh grid = test::prism({{0, 0}, {2, 0}, {3, 1}, {3, 3}, {1, 3}, {0, 2}}, 1);
   for (const Mesh& mesh : {grid, kaboum::test::icosphere(1)}) {
-    const Solid solid(mesh, 20000, 0);
+    const SolidField solid(mesh, 20000, 0);
     ReachOptions options;
     options.absolute_gap = 1e-5;
     options.most = 3000;
@@ -108,7 +108,7 @@ TEST(Reach, BodiesOnTheSolidCostLittle) {
 TEST(Reach, EndsWithTheWork) {
   // Of a thousand needles, many are equally near to what is inside.
   const Mesh fan = kaboum::test::double_fan(1000);
-  const Solid solid(fan, 20000, 0);
+  const SolidField solid(fan, 20000, 0);
   Mesh body = kaboum::test::double_fan(16);
   for (Vec3& p : body.vertices) p *= 1.05;
   const Reach all = measure({body}, solid, {})[0];
@@ -124,7 +124,7 @@ TEST(Reach, EndsWithTheWork) {
 
 TEST(Reach, NoPointIsFarther) {
   const Mesh torus = kaboum::test::torus(1, 0.3, 24, 12);
-  const Solid solid(torus, 20000, 0);
+  const SolidField solid(torus, 20000, 0);
   std::mt19937 random(4);
   std::uniform_real_distribution<double> unit(0, 1);
   for (std::uint32_t seed = 0; seed < 6; ++seed) {

@@ -163,7 +163,9 @@ TEST(Shapes, FarFromTheOrigin) {
 }
 
 TEST(Shapes, Mirrors) {
-  const auto mirrors = [](const Mesh& mesh) { return mirror_planes(Solid(mesh, 1000, 0)).size(); };
+  const auto mirrors = [](const Mesh& mesh) {
+    return mirror_planes(SolidField(mesh, 1000, 0)).size();
+  };
   EXPECT_EQ(mirrors(kaboum::test::box({1, 2, 3}, 2)), 3U);
   EXPECT_EQ(mirrors(gear(9)), 10U);
   EXPECT_EQ(mirrors(gear(12)), 13U);

@@ -38,7 +38,7 @@ void expect_thick(const Mesh& hull, double thickness) {
 
 TEST(Thicken, PlatesRodsAndPointsOfAnyOrientation) {
   const Mesh ground = kaboum::test::icosphere(2);
-  const Solid solid(ground, 5000, 0);
+  const SolidField solid(ground, 5000, 0);
   std::mt19937 random(1);
   std::uniform_real_distribution<double> unit(-1, 1);
   for (const Vec3& size : {Vec3(1, 0.8, 0.01), Vec3(1, 0.01, 0.01), Vec3(0.01, 0.01, 0.01),

@@ -1,4 +1,4 @@
-#include "solid.h"
+#include "solid_field.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 namespace kaboum::bcd {
 namespace {
 
-TEST(Solid, FieldIsTheSignedDistanceAndGoesOnBeyondItsGrid) {
+TEST(SolidField, FieldIsTheSignedDistanceAndGoesOnBeyondItsGrid) {
   const Mesh torus = kaboum::test::torus(1, 0.3, 40, 16);
-  const Solid solid(torus, 60000, 0);
+  const SolidField solid(torus, 60000, 0);
   std::mt19937 random(5);
   std::uniform_real_distribution<double> unit(-1, 1);
   int inside = 0, beyond = 0;

@@ -4,12 +4,12 @@
 
 #include <span>
 
-#include "solid.h"
+#include "solid_field.h"
 
 namespace kaboum::bcd {
 
 /// How far a hull reaches from the solid, by samples of its facets: guides the search.
-struct Appraisal {
+struct Concavity {
   double fourth = 0;  ///< ∫ d⁴ over the facets, d the field
   double worst = 0;   ///< largest distance
   Vec3 at = Vec3::Zero();
@@ -18,15 +18,16 @@ struct Appraisal {
 };
 
 /// Builds the hull of the points (left in `builder`) and samples it. Stops once the distance
-/// exceeds `limit`; the rest is then of no use. With `shaken` points are moved by less than a
+/// exceeds `limit`; the rest is then of no use. With `perturbed` points are moved by less than a
 /// billionth of their extent first: points in one plane, which the builder would have to decide
 /// exactly, then cost no more than others. The builder's indices remain valid, unless the result is
 /// flat.
-Appraisal appraise(std::span<const Vec3> points, const Solid& solid, geom::HullBuilder& builder,
-                   bool shaken = false, double limit = std::numeric_limits<double>::infinity());
+Concavity estimate_concavity(std::span<const Vec3> points, const SolidField& solid,
+                             geom::HullBuilder& builder, bool perturbed = false,
+                             double limit = std::numeric_limits<double>::infinity());
 
 /// Whether a point between two extreme ones of the points (at least one) is farther from the solid
 /// than `limit`: then their hull is, and need not be built.
-bool spans_beyond(std::span<const Vec3> points, const Solid& solid, double limit);
+bool spans_beyond(std::span<const Vec3> points, const SolidField& solid, double limit);
 
 }  // namespace kaboum::bcd

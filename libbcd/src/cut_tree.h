@@ -2,12 +2,10 @@
 
 #include <functional>
 #include <limits>
-#include <map>
 #include <optional>
-#include <unordered_map>
 #include <vector>
 
-#include "appraise.h"
+#include "concavity.h"
 #include "piece.h"
 
 namespace kaboum::bcd {
@@ -34,22 +32,22 @@ class CutTree {
   struct Node {
     Piece piece;             ///< empty once cut
     std::vector<Vec3> hull;  ///< vertices of the hull
-    Appraisal appraisal;
+    Concavity concavity;
     int parent = -1, lower = -1, upper = -1;
     Plane plane;
     bool stuck = false;  ///< no plane makes it better
-    int idle = 0;        ///< cuts above it that brought neither half nearer
+    int stale_cuts = 0;  ///< cuts above it that brought neither half nearer
   };
 
   /// @param safety  multiplies the overlap of neighbouring pieces.
-  CutTree(const Solid& solid, const SearchOptions& options, double safety = 1);
+  CutTree(const SolidField& solid, const SearchOptions& options, double safety = 1);
 
   /// Cuts the leaf with the largest distance. @return false when no leaf can be cut.
   bool cut_worst();
-  /// Judges all nodes anew, by the probes that there are now.
-  void reappraise();
-  /// Judges the nodes round a probe that was added anew.
-  void reappraise(const Solid::Probe& probe);
+  /// Judges all nodes anew, by the witnesses that there are now.
+  void reestimate();
+  /// Judges the nodes round a witness that was added anew.
+  void reestimate(const SolidField::Witness& witness);
   /// Cuts this leaf. @return false when no plane cuts it.
   bool cut(int leaf);
 
@@ -123,7 +121,7 @@ class CutTree {
   /// The best by `look_ahead` among the few that are best by themselves.
   [[nodiscard]] Candidate best_in_two(const Node& node, std::vector<Candidate> list) const;
 
-  const Solid& solid_;
+  const SolidField& solid_;
   SearchOptions options_;
   double shift_;
   std::vector<Node> nodes_;
@@ -133,53 +131,5 @@ class CutTree {
   std::vector<ReflexPlane> reflex_;                    // distinct
   std::vector<std::vector<std::uint32_t>> reflex_of_;  // triangle → reflex_ entries
 };
-
-/// Bodies as unions of the tree's nodes, one hull round each.
-struct Body {
-  std::vector<Vec3> hull;   ///< vertices
-  std::vector<int> leaves;  ///< nodes of the tree; none is below another one
-  Appraisal appraisal;
-  Box3 box;
-};
-
-Body body_of(const CutTree& tree, int leaf);
-/// One body round all of them.
-Body union_of(const CutTree& tree, const Solid& solid, const std::vector<int>& leaves);
-Body union_of(const Body& a, const Body& b, const Solid& solid);
-/// Distance of the body round both; where that is beyond `limit`, something between them.
-double distance_of_union(const Body& a, const Body& b, const Solid& solid, double limit);
-/// Whether the bodies' boxes are near each other.
-bool touch(const Body& a, const Body& b, const Solid& solid);
-
-/// What hulls round two bodies were found to be like, remembered from one merge to the next.
-class PairMemo {
- public:
-  struct Entry {
-    double worst;  ///< distance
-    double added;  ///< side of a cube of the volume added
-    bool whole;    ///< else `worst` is a lower bound, and nothing more is known
-  };
-  std::uint32_t id_of(const std::vector<int>& leaves) {
-    return ids_.emplace(leaves, static_cast<std::uint32_t>(ids_.size())).first->second;
-  }
-  [[nodiscard]] const Entry* find(std::uint32_t a, std::uint32_t b) const {
-    const auto at = pairs_.find(key(a, b));
-    return at == pairs_.end() ? nullptr : &at->second;
-  }
-  void add(std::uint32_t a, std::uint32_t b, Entry entry) { pairs_[key(a, b)] = entry; }
-
- private:
-  static std::uint64_t key(std::uint32_t a, std::uint32_t b) {
-    return std::uint64_t{std::min(a, b)} << 32U | std::max(a, b);
-  }
-  std::map<std::vector<int>, std::uint32_t> ids_;
-  std::unordered_map<std::uint64_t, Entry> pairs_;
-};
-
-/// Merges neighbours, cheapest first, while the merged distance stays ≤ `epsilon` and there are
-/// more than `target` bodies. The cost is that distance, and `bulk` times the side of a cube of
-/// the volume added.
-std::vector<Body> merge(std::vector<Body> bodies, const Solid& solid, std::size_t target,
-                        double epsilon, double bulk, PairMemo& memo);
 
 }  // namespace kaboum::bcd

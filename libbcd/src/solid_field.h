@@ -20,25 +20,25 @@ using geom::Vec3;
 
 /// What a decomposition has to contain: the solid of a closed chain and its triangles. Distances to
 /// both, exact ones and quick ones.
-class Solid {
+class SolidField {
  public:
   /// @param mesh  a closed chain; kept by reference.
   /// @param nodes  wished number of nodes of the grid behind field(); with up to eight times as
   /// many it is no coarser than 0.7 · epsilon.
   /// @param epsilon  distances that matter; 0: all the same. [length]
-  /// @param probes  whether to look for probes at once.
+  /// @param witnesses  whether to look for witnesses at once.
   /// @param work  what is counted there is what the search may do. [ns]
-  Solid(const Mesh& mesh, std::size_t nodes, double epsilon, bool probes = true,
-        double work = std::numeric_limits<double>::infinity());
+  SolidField(const Mesh& mesh, std::size_t nodes, double epsilon, bool witnesses = true,
+             double work = std::numeric_limits<double>::infinity());
   /// Neither copied nor moved: winding_ refers to the hierarchy of surface_.
-  Solid(const Solid&) = delete;
-  Solid(Solid&&) = delete;
-  Solid& operator=(const Solid&) = delete;
-  Solid& operator=(Solid&&) = delete;
-  ~Solid() = default;
+  SolidField(const SolidField&) = delete;
+  SolidField(SolidField&&) = delete;
+  SolidField& operator=(const SolidField&) = delete;
+  SolidField& operator=(SolidField&&) = delete;
+  ~SolidField() = default;
 
-  /// Looks for probes all over the grid, unless that has been done.
-  void find_probes();
+  /// Looks for witnesses all over the grid, unless that has been done.
+  void find_witnesses();
 
   [[nodiscard]] const Mesh& mesh() const { return mesh_; }
   [[nodiscard]] const Box3& box() const { return box_; }
@@ -62,18 +62,18 @@ class Solid {
   [[nodiscard]] double distance_above(double least, const Vec3& p, double guess) const;
   /// Points outside the solid, far from it compared with their neighbours: where a hull that spans
   /// a pit or a cavity is farthest from the solid, although its facets may be near.
-  struct Probe {
+  struct Witness {
     Vec3 point;
     double distance;
     /// How far from it a hull is judged by it still: of one cut into thin slices, all are.
     [[nodiscard]] double near() const { return 0.1 * distance; }
   };
-  [[nodiscard]] const std::vector<Probe>& probes() const { return probes_; }
+  [[nodiscard]] const std::vector<Witness>& witnesses() const { return witnesses_; }
   /// Adds a point whose distance was measured, if it lies in the hull of these points and they are
   /// sampled to be nearer. @return whether it was added.
-  bool add_probe(const Probe& probe, std::span<const Vec3> hull);
-  /// What the square of a probe's distance from the next one is about. [length²]
-  [[nodiscard]] double probe_area() const { return probe_area_; }
+  bool add_witness(const Witness& witness, std::span<const Vec3> hull);
+  /// What the square of a witness's distance from the next one is about. [length²]
+  [[nodiscard]] double witness_area() const { return witness_area_; }
   [[nodiscard]] double spacing() const { return spacing_; }
   /// Of all that looks at this solid.
   [[nodiscard]] Work& work() const { return work_; }
@@ -93,14 +93,14 @@ class Solid {
     Vec3 a, ab, ac;
   };
   std::vector<Corner> corners_;  // of the triangles, in the order of surface_'s tree
-  double spacing_ = 0, probe_area_ = 0;
-  double shallow_ = 0;  // pits that are no deeper need no probe
-  int step_ = 1;        // of the grid, from one place looked at for a probe to the next
-  bool probed_ = false;
+  double spacing_ = 0, witness_area_ = 0;
+  double shallow_ = 0;  // pits that are no deeper need no witness
+  int step_ = 1;        // of the grid, from one place looked at for a witness to the next
+  bool witnesses_found_ = false;
   Vec3 origin_;
   std::array<int, 3> size_{};
   std::unique_ptr<std::atomic<float>[]> value_;
-  std::vector<Probe> probes_;
+  std::vector<Witness> witnesses_;
   mutable std::atomic<std::size_t> computed_{0};
   mutable Work work_;
 };

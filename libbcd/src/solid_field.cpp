@@ -1,4 +1,7 @@
-#include "solid.h"
+// Distances to a solid: exact ones by winding numbers and a hierarchy, quick ones from a grid that
+// is filled where it is asked. Point and triangle as in [ericson2005], §5.1.5.
+
+#include "solid_field.h"
 
 #include <kaboum/geom/convex_hull.h>
 
@@ -36,7 +39,8 @@ double squared(const Vec3& p, const Vec3& a, const Vec3& ab, const Vec3& ac) {
 
 }  // namespace
 
-Solid::Solid(const Mesh& mesh, std::size_t nodes, double epsilon, bool probes, double work)
+SolidField::SolidField(const Mesh& mesh, std::size_t nodes, double epsilon, bool witnesses,
+                       double work)
     : mesh_(mesh),
       box_(geom::bounding_box(mesh)),
       diagonal_(box_.diagonal()),
@@ -54,7 +58,7 @@ Solid::Solid(const Mesh& mesh, std::size_t nodes, double epsilon, bool probes, d
   const double coarse = std::cbrt(size.prod() / static_cast<double>(nodes));
   spacing_ = epsilon > 0 ? std::clamp(0.7 * epsilon, 0.5 * coarse, coarse) : coarse;
   step_ = std::max(1, static_cast<int>(2 * coarse / spacing_));
-  probe_area_ = step_ * spacing_ * step_ * spacing_;
+  witness_area_ = step_ * spacing_ * step_ * spacing_;
   shallow_ = std::max(0.3 * epsilon, 0.8 * spacing_);
   origin_ = box_.center() - 0.5 * size - Vec3::Constant(1.5 * spacing_);
   std::size_t total = 1;
@@ -64,11 +68,11 @@ Solid::Solid(const Mesh& mesh, std::size_t nodes, double epsilon, bool probes, d
   }
   value_ = std::make_unique<std::atomic<float>[]>(total);
   for (std::size_t i = 0; i < total; ++i) value_[i].store(kUnset, std::memory_order_relaxed);
-  if (probes) find_probes();
+  if (witnesses) find_witnesses();
 }
 
-void Solid::find_probes() {
-  if (std::exchange(probed_, true)) return;
+void SolidField::find_witnesses() {
+  if (std::exchange(witnesses_found_, true)) return;
   const int step = step_;
   geom::HullBuilder hull;
   if (!hull.build(mesh_.vertices)) return;
@@ -102,35 +106,35 @@ void Solid::find_probes() {
         const int ridges = (v >= node(x - step, y, z) && v >= node(x + step, y, z) ? 1 : 0) +
                            (v >= node(x, y - step, z) && v >= node(x, y + step, z) ? 1 : 0) +
                            (v >= node(x, y, z - step) && v >= node(x, y, z + step) ? 1 : 0);
-        if (ridges >= 2) probes_.push_back({p, v});
+        if (ridges >= 2) witnesses_.push_back({p, v});
       }
     }
   }
 }
 
-bool Solid::add_probe(const Probe& probe, std::span<const Vec3> hull) {
+bool SolidField::add_witness(const Witness& witness, std::span<const Vec3> hull) {
   geom::HullBuilder builder;
   if (!builder.build(hull)) return false;
   for (const Triangle& t : builder.triangles()) {
     const Vec3& a = hull[t[0]];
-    if ((hull[t[1]] - a).cross(hull[t[2]] - a).dot(probe.point - a) > 0) return false;
+    if ((hull[t[1]] - a).cross(hull[t[2]] - a).dot(witness.point - a) > 0) return false;
   }
-  probes_.push_back(probe);
+  witnesses_.push_back(witness);
   return true;
 }
 
-bool Solid::contains(const Vec3& p) const {
+bool SolidField::contains(const Vec3& p) const {
   const auto w = winding_(p);
   return !w || *w >= 1;
 }
 
-bool Solid::contains_round(const Vec3& p) const {
+bool SolidField::contains_round(const Vec3& p) const {
   const auto w = winding_(p);
   return w && *w >= 1;
 }
 
-bool Solid::triangles_near(const Box3& box, std::size_t most,
-                           std::vector<std::uint32_t>& out) const {
+bool SolidField::triangles_near(const Box3& box, std::size_t most,
+                                std::vector<std::uint32_t>& out) const {
   const auto meets = [&](const Box3& other) {
     return out.size() <= most && (other.min.array() <= box.max.array()).all() &&
            (box.min.array() <= other.max.array()).all();
@@ -143,7 +147,7 @@ bool Solid::triangles_near(const Box3& box, std::size_t most,
   return out.size() <= most;
 }
 
-double Solid::rough_distance(const Vec3& p, double limit) const {
+double SolidField::rough_distance(const Vec3& p, double limit) const {
   double best = limit * limit;
   const auto nodes = surface_.hierarchy().nodes();
   const auto to_box = [&](const Box3& box) {
@@ -170,14 +174,14 @@ double Solid::rough_distance(const Vec3& p, double limit) const {
   return std::sqrt(best);
 }
 
-double Solid::distance_above(double least, const Vec3& p, double guess) const {
+double SolidField::distance_above(double least, const Vec3& p, double guess) const {
   if (guess <= least) return guess;
   const double d = rough_distance(p, guess);
   // Far from the surface the field's sign is certain.
   return d > least && d < 2 * spacing_ && contains(p) ? 0 : d;
 }
 
-float Solid::node(int x, int y, int z) const {
+float SolidField::node(int x, int y, int z) const {
   const std::array<int, 3> at{x, y, z};
   const std::array<std::size_t, 3> step{
       1, static_cast<std::size_t>(size_[0]),
@@ -210,7 +214,7 @@ float Solid::node(int x, int y, int z) const {
   return value;
 }
 
-double Solid::field(const Vec3& p) const {
+double SolidField::field(const Vec3& p) const {
   std::array<int, 3> cell{};
   Vec3 f, beyond;  // beyond the grid, the way to it counts as well
   for (int k = 0; k < 3; ++k) {

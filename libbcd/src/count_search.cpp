@@ -1,0 +1,154 @@
+// A given number of bodies: the solid is cut into somewhat more pieces, these are merged in several
+// ways, and the best is improved. docs/algorithms/convex-decomposition.md, "Search".
+
+#include "count_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "clusters.h"
+
+namespace kaboum::bcd {
+
+bool add_witness(SearchState& state, const Finished& f) {
+  if (f.reach.lower <= kMisjudged * f.body.concavity.worst) return false;
+  return state.add_witness({f.reach.at, f.reach.lower}, f.body.hull);
+}
+
+/// At most this many bodies, the first attempts of all that come nearest to the solid; none when
+/// that is not below `limit`.
+std::vector<Body> CountSearch::best_merge(const std::vector<std::vector<Body>>& snapshots,
+                                          std::size_t target, double limit) {
+  std::vector<Body> best;
+  if (snapshots[0].size() <= target && worst_of(snapshots[0]) < limit) {
+    best = snapshots[0];
+    limit = worst_of(best);
+  }
+  for (const auto& snapshot : snapshots) {
+    for (const double weight : state_.tuning().volume_weights) {
+      if (!best.empty() && state_.spent(kImproving)) return best;
+      std::vector<Body> bodies = state_.merged(snapshot, target, limit, weight);
+      if (bodies.size() > target) continue;
+      const double worst = worst_of(bodies);
+      if (worst >= limit) continue;
+      limit = worst;
+      best = std::move(bodies);
+    }
+  }
+  return best;
+}
+
+/// The pieces that there are when there are several multiples of `target`.
+std::vector<std::vector<Body>> CountSearch::cut_for(std::size_t target) {
+  CutTree& tree = state_.tree();
+  const std::vector<double>& multiples = state_.tuning().multiples;
+  const auto pieces = [target](double multiple) {
+    return std::ceil(multiple * (static_cast<double>(target) + kFewBodies) - kFewBodies);
+  };
+  const double most = pieces(multiples.back());
+  std::vector<std::vector<Body>> snapshots;
+  for (const double multiple : multiples) {
+    const double count = pieces(multiple);
+    while (static_cast<double>(tree.leaf_count()) < count && !state_.spent(kCutting) &&
+           tree.cut_worst())
+      state_.report("cutting", 0.7 * static_cast<double>(tree.leaf_count()) / most);
+    snapshots.push_back(state_.leaf_bodies(static_cast<std::size_t>(count)));
+  }
+  return snapshots;
+}
+
+std::vector<Body> CountSearch::gather(std::size_t target, double epsilon) {
+  state_.begin_cutting();
+  const Method method = state_.options().method;
+  if (target == 1 && method == Method::Planes) return {body_of(state_.tree(), 0)};
+  const std::vector<std::vector<Body>> snapshots = cut_for(target);
+  state_.report("merging", 0.7);
+  if (method == Method::Clusters) return clustered(target, kUnbounded);
+  std::vector<Body> bodies = best_merge(snapshots, target, kRoughFactor * epsilon);
+  if (bodies.empty() && epsilon == kUnbounded)
+    bodies = state_.merged(state_.leaf_bodies(), target, kUnbounded);
+  local_.refine(bodies, target, epsilon == kUnbounded);
+  return bodies;
+}
+
+std::vector<Body> CountSearch::clustered(std::size_t target, double epsilon) {
+  const SolidField& solid = state_.solid();
+  std::vector<Body> bodies =
+      bodies_of_clusters(state_.tree(), solid, cluster_triangles(solid, target, epsilon));
+  // Clusters that do not touch.
+  if (epsilon == kUnbounded && bodies.size() > target)
+    bodies = state_.merged(std::move(bodies), target, kUnbounded);
+  return bodies;
+}
+
+std::vector<Finished> CountSearch::at_most(std::size_t target) {
+  std::vector<Body> bodies = gather(target);
+  const double free_cost = kFreeShare * state_.options().simplify * worst_of(bodies);
+  std::vector<Finished> finished;
+  // What measuring finds is refined once more.
+  for (int round = 0; round < state_.tuning().rounds; ++round) {
+    if (round > 0 && target > 1) local_.refine(bodies, target);
+    state_.report("simplifying", 0.75 + 0.02 * round);
+    std::vector<Finished> next = finisher_.finish(bodies, free_cost);
+    bool misjudged = false;
+    bodies.clear();
+    for (const Finished& f : next) {
+      add_witness(state_, f);
+      bodies.push_back(f.body);
+      Concavity& c = bodies.back().concavity;
+      if (f.reach.lower <= kMisjudged * c.worst) continue;
+      c.worst = f.reach.lower;
+      c.at = f.reach.at;
+      misjudged = true;
+    }
+    if (finished.empty() || reach_of(next) < reach_of(finished)) finished = std::move(next);
+    if (!misjudged || state_.spent(kImproving)) break;
+  }
+  const int rounds = target > 1 ? state_.tuning().refinements / kRefinementsPerRound : 0;
+  for (int round = 0; round < rounds; ++round) {
+    state_.report("refining", 0.8 + 0.2 * round / rounds);
+    if (state_.spent(kImproving) || !improve(finished, target, free_cost)) break;
+  }
+  return finished;
+}
+
+/// Splits the body with the largest certified distance, and merges others instead. @return false
+/// when that did not help.
+bool CountSearch::improve(std::vector<Finished>& finished, std::size_t target, double free_cost) {
+  std::size_t worst = 0;
+  for (std::size_t i = 1; i < finished.size(); ++i)
+    if (finished[i].reach.lower > finished[worst].reach.lower) worst = i;
+  const double limit = finished[worst].reach.upper;
+  const std::vector<Body> parts = local_.split_body(finished[worst].body, limit);
+  if (parts.size() < 2) return false;
+  std::vector<Body> bodies;
+  for (std::size_t i = 0; i < finished.size(); ++i)
+    if (i != worst) bodies.push_back(finished[i].body);
+  bodies.insert(bodies.end(), parts.begin(), parts.end());
+  bodies = state_.merged(std::move(bodies), target, kReplacedMerge * limit);
+  if (bodies.size() > target) return false;
+  // Bodies that stayed need not be finished again.
+  std::map<std::vector<int>, std::size_t> known;
+  for (std::size_t i = 0; i < finished.size(); ++i)
+    if (i != worst) known.emplace(finished[i].body.leaves, i);
+  std::vector<Body> fresh;
+  std::vector<std::size_t> kept;
+  for (Body& b : bodies) {
+    const auto at = known.find(b.leaves);
+    if (at != known.end()) {
+      kept.push_back(at->second);
+    } else {
+      fresh.push_back(std::move(b));
+    }
+  }
+  std::vector<Finished> changed = finisher_.finish(fresh, free_cost, limit);
+  for (const Finished& f : changed)
+    if (f.reach.upper >= kReplacedGain * limit) return false;
+  for (const std::size_t i : kept) changed.push_back(std::move(finished[i]));
+  finished = std::move(changed);
+  return true;
+}
+
+}  // namespace kaboum::bcd

@@ -1,0 +1,77 @@
+// One search for bodies: which of the parts it takes, and what is told of its result.
+
+#include "decomposer.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "body_removal.h"
+
+namespace kaboum::bcd {
+namespace {
+
+/// Appends the bodies to the result, and what is known of them all.
+void append(std::vector<Finished> bodies, DecomposeResult& result) {
+  for (Finished& f : bodies) {
+    result.reach_lower = std::max(result.reach_lower, f.reach.lower);
+    result.reach_upper = std::max(result.reach_upper, f.reach.upper);
+    result.statistics.vertices += f.hull.vertices.size();
+    result.statistics.largest = std::max(result.statistics.largest, f.hull.vertices.size());
+    result.statistics.thickened += f.thickened ? 1 : 0;
+    result.bodies.push_back({"", std::move(f.hull)});
+  }
+}
+
+}  // namespace
+
+Decomposer::Decomposer(const Mesh& closed, const DecomposeOptions& options, double work, Tuning how)
+    : state_(closed, options, work, std::move(how)) {}
+
+Decomposer::Decomposer(const Mesh& closed, const DecomposeOptions& options, double work)
+    : Decomposer(closed, options, work, tuning(options.effort, options.method)) {}
+
+/// So many bodies that no search brings them down to the limits.
+std::size_t Decomposer::hopeless() const {
+  const DecomposeOptions& options = state_.options();
+  const std::size_t by_vertices = options.max_total_vertices.value_or(kUnlimited) / kLeastVertices;
+  const std::size_t limit = std::min(options.max_bodies.value_or(kUnlimited), by_vertices);
+  return limit > kUnlimited / kHopeless ? kUnlimited : kHopeless * limit;
+}
+
+std::vector<Finished> Decomposer::within_epsilon() {
+  const double epsilon = *state_.options().epsilon;
+  std::vector<Finished> bodies = within_.within(epsilon, hopeless());
+  if (state_.tuning().reduce) {
+    within_.reduce(bodies, epsilon);
+    remove_bodies(state_, finisher_, bodies, epsilon);
+  }
+  if (state_.options().max_total_vertices) finisher_.simplify_hulls(bodies, epsilon);
+  return bodies;
+}
+
+Stop Decomposer::stop_within(const std::vector<Finished>& bodies) const {
+  if (!fits(bodies, state_.options())) return Stop::TooManyBodies;
+  if (!(reach_of(bodies) > *state_.options().epsilon)) return Stop::Done;
+  return state_.out_of_work() ? Stop::OutOfWork : Stop::Stuck;
+}
+
+DecomposeResult Decomposer::run() {
+  const DecomposeOptions& options = state_.options();
+  DecomposeResult result;
+  std::vector<Finished> bodies;
+  if (options.epsilon) {
+    bodies = within_epsilon();
+    result.stop = stop_within(bodies);
+    if (result.stop == Stop::TooManyBodies) return result;
+  } else {
+    bodies = options.max_total_vertices ? budget_.nearest_that_fit()
+                                        : count_.at_most(*options.max_bodies);
+    result.stop = fits(bodies, options) ? Stop::Done : Stop::TooManyBodies;
+  }
+  result.statistics.out_of_work = state_.out_of_work();
+  result.statistics.leaves = state_.tree().leaf_count();
+  append(std::move(bodies), result);
+  return result;
+}
+
+}  // namespace kaboum::bcd

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "count_search.h"
+#include "epsilon_search.h"
+#include "finish.h"
+#include "local_search.h"
+#include "search_state.h"
+#include "vertex_budget.h"
+
+namespace kaboum::bcd {
+
+/// One search for bodies round a solid, by what the options ask for.
+class Decomposer {
+ public:
+  /// Keeps references to the mesh and the options, which must outlive this object.
+  /// @param work  allowed. [ns]
+  Decomposer(const Mesh& closed, const DecomposeOptions& options, double work, Tuning how);
+  Decomposer(const Mesh& closed, const DecomposeOptions& options, double work);
+  Decomposer(const Decomposer&) = delete;
+  Decomposer& operator=(const Decomposer&) = delete;
+  ~Decomposer() = default;
+
+  /// Stop::TooManyBodies, and no bodies, where epsilon asks for more than the limits allow.
+  DecomposeResult run();
+
+  [[nodiscard]] std::uint64_t work_done() const { return state_.solid().work().done(); }
+
+ private:
+  [[nodiscard]] std::size_t hopeless() const;
+  std::vector<Finished> within_epsilon();
+  [[nodiscard]] Stop stop_within(const std::vector<Finished>& bodies) const;
+
+  SearchState state_;
+  LocalSearch local_{state_};
+  Finisher finisher_{state_};
+  CountSearch count_{state_, local_, finisher_};
+  EpsilonSearch within_{state_, local_, count_, finisher_};
+  VertexBudget budget_{state_, count_, within_, finisher_};
+};
+
+}  // namespace kaboum::bcd

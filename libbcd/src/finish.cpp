@@ -1,0 +1,203 @@
+// Bodies as they are written: what of them is simplified, rounded outwards, thickened and measured.
+// docs/algorithms/convex-decomposition.md, "Fewer vertices" and "Rounding".
+
+#include "finish.h"
+
+#include <kaboum/base/error.h>
+#include <kaboum/base/parallel.h>
+#include <kaboum/geom/convex_hull.h>
+#include <kaboum/geom/width.h>
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "outward.h"
+#include "thicken.h"
+
+namespace kaboum::bcd {
+
+double reach_of(const std::vector<Finished>& bodies) {
+  double reach = 0;
+  for (const Finished& f : bodies) reach = std::max(reach, f.reach.upper);
+  return reach;
+}
+
+bool are_within(const std::vector<Finished>& bodies, double epsilon) {
+  return !bodies.empty() && epsilon < kUnbounded && reach_of(bodies) <= epsilon;
+}
+
+std::size_t vertices_of(const std::vector<Finished>& bodies) {
+  std::size_t sum = 0;
+  for (const Finished& f : bodies) sum += f.hull.vertices.size();
+  return sum;
+}
+
+bool fits(const std::vector<Finished>& bodies, const DecomposeOptions& options) {
+  return !bodies.empty() && bodies.size() <= options.max_bodies.value_or(kUnlimited) &&
+         vertices_of(bodies) <= options.max_total_vertices.value_or(kUnlimited);
+}
+
+Finisher::Finisher(SearchState& state) : state_(state) {
+  double magnitude = 0;
+  for (const Vec3& p : state.solid().mesh().vertices)
+    magnitude = std::max(magnitude, p.cwiseAbs().maxCoeff());
+  point_error_ = kPointError * state.options().safety * magnitude;
+}
+
+std::vector<Finished> Finisher::finish(std::vector<Body>& bodies, double free_cost,
+                                       double decisive) {
+  std::vector<Finished> out(bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) out[i].body = std::move(bodies[i]);
+  find_required(out);
+  std::vector<std::size_t> open(bodies.size());
+  std::iota(open.begin(), open.end(), std::size_t{0});
+  std::vector<Simplified> shapes(bodies.size());
+  // Where simplification took too much, no vertex more than needed is left out.
+  for (const bool first : {true, false}) {
+    Round round = make_hulls(out, open, shapes, free_cost, first);
+    const std::vector<Reach> measured =
+        measure(round.hulls, state_.solid(), reach_options(open.size()), kMeasuredFloor * decisive,
+                decisive > 0 ? kMeasuredCeiling * decisive : kUnbounded);
+    std::vector<std::size_t> failed;
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      Finished& f = out[open[i]];
+      if (f.hull.vertices.empty() || measured[i].upper < f.reach.upper) {
+        f.hull = std::move(round.hulls[i]);
+        f.reach = measured[i];
+        f.thickened = round.thickened[i] != 0;
+      }
+      if (decisive > 0 && f.reach.upper > decisive &&
+          shapes[open[i]].needed.size() > shapes[open[i]].vertices.size())
+        failed.push_back(open[i]);
+    }
+    open = std::move(failed);
+    if (open.empty()) break;
+  }
+  return out;
+}
+
+/// @param first  whether shapes are simplified now; else those that have been are left as they were
+/// with the vertices allowed.
+Finisher::Round Finisher::make_hulls(const std::vector<Finished>& bodies,
+                                     const std::vector<std::size_t>& open,
+                                     std::vector<Simplified>& shapes, double free_cost,
+                                     bool first) const {
+  const DecomposeOptions& options = state_.options();
+  Round round{std::vector<Mesh>(open.size()), std::vector<char>(open.size(), 0)};
+  parallel_loop(std::size_t{0}, open.size(), [&](std::size_t i) {
+    const Body& body = bodies[open[i]].body;
+    Simplified& shape = shapes[open[i]];
+    if (first) {
+      if (!body.concavity.flat)
+        shape = simplify(body.hull, options.max_vertices, free_cost, state_.solid());
+      round.hulls[i] = rounded(body, shape, options.max_vertices);
+    } else {
+      round.hulls[i] = rounded(body, {shape.needed, 0, {}}, options.max_vertices);
+    }
+    if (options.min_thickness > 0) round.thickened[i] = thicken(round.hulls[i]) ? 1 : 0;
+  });
+  return round;
+}
+
+void Finisher::simplify_hulls(std::vector<Finished>& bodies, double epsilon) {
+  struct Open {
+    std::size_t body, low;
+  };
+  find_required(bodies);  // leaves may have been cut since the bodies were finished
+  std::vector<Open> open;
+  for (std::size_t i = 0; i < bodies.size(); ++i) open.push_back({i, kTooFewVertices});
+  for (;;) {
+    if (state_.spent(kFinishing)) return;
+    std::erase_if(open,
+                  [&](const Open& o) { return bodies[o.body].hull.vertices.size() <= o.low + 1; });
+    if (open.empty()) return;
+    ReachOptions reach = reach_options(open.size());
+    reach.enough = std::max(epsilon, reach_of(bodies));
+    std::vector<Mesh> hulls(open.size());
+    parallel_loop(std::size_t{0}, open.size(), [&](std::size_t i) {
+      const Finished& f = bodies[open[i].body];
+      const std::size_t most = (open[i].low + f.hull.vertices.size()) / 2;
+      hulls[i] = rounded(f.body, simplify(f.body.hull, most, 0, state_.solid()), most);
+    });
+    const std::vector<Reach> measured =
+        measure(hulls, state_.solid(), reach, kMeasuredFloor * epsilon, kMeasuredCeiling * epsilon);
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      Finished& f = bodies[open[i].body];
+      const std::size_t tried = (open[i].low + f.hull.vertices.size()) / 2;
+      if (hulls[i].vertices.size() <= tried &&
+          measured[i].upper <= std::max(epsilon, f.reach.upper)) {
+        f.hull = std::move(hulls[i]);
+        f.reach = measured[i];
+      } else {
+        open[i].low = tried;
+      }
+    }
+  }
+}
+
+/// How bodies are measured: in fewer parts each where the work left is little, and all together in
+/// no more than what is kept for the end allows, but some.
+ReachOptions Finisher::reach_options(std::size_t bodies) const {
+  const Work& work = state_.solid().work();
+  const double each =
+      static_cast<double>(kWorkPerPart) * static_cast<double>(std::max<std::size_t>(1, bodies));
+  const double kept = (1 - kFinishing) * work.most();
+  const double fewest = std::clamp(kept / each, kFewestParts, kEnoughParts);
+  ReachOptions out;
+  out.absolute_gap = kMeasuredGap * state_.solid().diagonal();
+  const double left = work.most() - static_cast<double>(work.done());
+  const double share = left / each;
+  if (share < static_cast<double>(out.most))
+    out.most = static_cast<std::size_t>(std::max(fewest, share));
+  // Parts that take longer than usual are fewer.
+  out.work = kWorkPerPart * out.most;
+  return out;
+}
+
+/// The points that a leaf's body has to contain, each leaf's once.
+void Finisher::find_required(const std::vector<Finished>& bodies) {
+  const CutTree& tree = state_.tree();
+  std::vector<int> open;
+  for (const Finished& f : bodies)
+    for (const int leaf : leaves_of(tree, f.body))
+      if (required_.try_emplace(leaf).second) open.push_back(leaf);
+  std::vector<std::vector<Vec3>*> place;
+  place.reserve(open.size());
+  for (const int leaf : open) place.push_back(&required_.at(leaf));
+  parallel_loop(std::size_t{0}, open.size(), [&](std::size_t i) {
+    *place[i] = outer_points(tree.nodes()[open[i]].piece, point_error_);
+  });
+}
+
+/// Makes a body as thick as asked for. @return whether it was not.
+bool Finisher::thicken(Mesh& hull) const {
+  const DecomposeOptions& options = state_.options();
+  if (geom::least_width(hull, options.min_thickness).lower >= options.min_thickness) return false;
+  hull = bcd::thicken(std::move(hull), options.min_thickness, options.max_vertices, state_.solid());
+  return true;
+}
+
+/// A body's simplified hull rounded outwards.
+Mesh Finisher::rounded(const Body& body, const Simplified& shape, std::size_t most) const {
+  std::vector<Vec3> required;
+  for (const int leaf : leaves_of(state_.tree(), body)) {
+    const auto& points = required_.at(leaf);
+    required.insert(required.end(), points.begin(), points.end());
+  }
+  ensure(!required.empty(), "a body that has to contain nothing");
+  geom::HullBuilder builder;
+  if (builder.build(required)) {
+    std::vector<Vec3> hull;
+    for (const std::uint32_t v : builder.vertices()) hull.push_back(required[v]);
+    required = std::move(hull);
+  }
+  if (!body.concavity.flat) {
+    if (auto hull = push_out(shape.vertices, required, most)) return *std::move(hull);
+    if (shape.needed.size() > shape.vertices.size())
+      if (auto hull = push_out(shape.needed, required, most)) return *std::move(hull);
+  }
+  return enclose(body.hull, required, most);
+}
+
+}  // namespace kaboum::bcd

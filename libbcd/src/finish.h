@@ -1,0 +1,59 @@
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "reach.h"
+#include "search_state.h"
+#include "simplify.h"
+
+namespace kaboum::bcd {
+
+/// A body as it is written: its hull with float32 coordinates, and the bracket of its distance.
+struct Finished {
+  Body body;
+  Mesh hull;
+  Reach reach;
+  bool thickened = false;
+};
+
+/// Largest upper bound of any of them; 0 for none. [length]
+double reach_of(const std::vector<Finished>& bodies);
+/// Whether there are bodies, and nothing more is asked for than `epsilon`.
+bool are_within(const std::vector<Finished>& bodies, double epsilon);
+std::size_t vertices_of(const std::vector<Finished>& bodies);
+/// Whether the limits of bodies and vertices hold.
+bool fits(const std::vector<Finished>& bodies, const DecomposeOptions& options);
+
+/// Turns unions of pieces into the bodies that are written: simplified, rounded outwards so that
+/// they contain what their pieces hold of the solid, thickened, and measured.
+class Finisher {
+ public:
+  explicit Finisher(SearchState& state);
+
+  /// Takes the bodies' hulls. @param decisive  where given, it is told of every body whether it
+  /// reaches farther; else only the largest reach is exact. [length]
+  std::vector<Finished> finish(std::vector<Body>& bodies, double free_cost, double decisive = 0);
+
+  /// As few vertices as epsilon allows each body, by bisection of their number.
+  void simplify_hulls(std::vector<Finished>& bodies, double epsilon);
+
+ private:
+  /// Of a round of finishing, by body that is still open.
+  struct Round {
+    std::vector<Mesh> hulls;
+    std::vector<char> thickened;
+  };
+  [[nodiscard]] ReachOptions reach_options(std::size_t bodies) const;
+  void find_required(const std::vector<Finished>& bodies);
+  bool thicken(Mesh& hull) const;
+  [[nodiscard]] Mesh rounded(const Body& body, const Simplified& shape, std::size_t most) const;
+  Round make_hulls(const std::vector<Finished>& bodies, const std::vector<std::size_t>& open,
+                   std::vector<Simplified>& shapes, double free_cost, bool first) const;
+
+  SearchState& state_;
+  double point_error_ = 0;                     // of computed points, per coordinate [length]
+  std::map<int, std::vector<Vec3>> required_;  // points that a leaf's body contains, by leaf
+};
+
+}  // namespace kaboum::bcd

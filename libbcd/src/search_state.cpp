@@ -1,0 +1,65 @@
+// What all parts of one search for bodies share.
+
+#include "search_state.h"
+
+#include <memory>
+#include <utility>
+
+#include "voxel_cuts.h"
+
+namespace kaboum::bcd {
+
+SearchState::SearchState(const Mesh& closed, const DecomposeOptions& options, double work,
+                         Tuning how)
+    : options_(options),
+      tuning_(std::move(how)),
+      solid_(closed, tuning_.grid, options.epsilon.value_or(0), false, work),
+      tree_(solid_, search_options(), options.safety) {}
+
+SearchOptions SearchState::search_options() const {
+  SearchOptions out = tuning_.search;
+  if (!options_.epsilon && options_.method == Method::Planes) out.halving_bonus = kHalvingBonus;
+  if (options_.method == Method::Voxels)
+    out.choose = [voxels = std::make_shared<VoxelCuts>(solid_, tuning_.grid)](
+                     const Cell& cell, const std::vector<Vec3>& hull) {
+      return voxels->choose(cell, hull);
+    };
+  return out;
+}
+
+bool SearchState::spent(double share) {
+  const bool out = solid_.work().spent(share);
+  out_of_work_ = out_of_work_ || out;
+  return out;
+}
+
+void SearchState::report(const char* stage, double fraction) const {
+  if (options_.progress) options_.progress({stage, fraction});
+}
+
+void SearchState::begin_cutting() {
+  if (std::exchange(begun_, true)) return;
+  report("looking for pits", 0);
+  solid_.find_witnesses();
+  tree_.reestimate();
+}
+
+bool SearchState::add_witness(const SolidField::Witness& witness, std::span<const Vec3> hull) {
+  if (!solid_.add_witness(witness, hull)) return false;
+  memo_ = {};
+  tree_.reestimate(witness);
+  return true;
+}
+
+std::vector<Body> SearchState::leaf_bodies(std::size_t count) const {
+  std::vector<Body> out;
+  for (const int leaf : tree_.leaves(count)) out.push_back(body_of(tree_, leaf));
+  return out;
+}
+
+std::vector<Body> SearchState::merged(std::vector<Body> bodies, std::size_t target, double epsilon,
+                                      double volume_weight) {
+  return merge(std::move(bodies), solid_, target, epsilon, volume_weight, memo_);
+}
+
+}  // namespace kaboum::bcd

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "merge.h"
+#include "solid_field.h"
+#include "tuning.h"
+
+namespace kaboum::bcd {
+
+/// What all parts of one search share: the solid, the tree of its cuts, which only grows, what is
+/// known of pairs of bodies, and the account of the work done.
+class SearchState {
+ public:
+  /// Keeps references to the mesh and the options, which must outlive this object.
+  /// @param work  allowed. [ns]
+  SearchState(const Mesh& closed, const DecomposeOptions& options, double work, Tuning how);
+
+  [[nodiscard]] const DecomposeOptions& options() const { return options_; }
+  [[nodiscard]] const Tuning& tuning() const { return tuning_; }
+  [[nodiscard]] const SolidField& solid() const { return solid_; }
+  [[nodiscard]] CutTree& tree() { return tree_; }
+  [[nodiscard]] const CutTree& tree() const { return tree_; }
+
+  /// Whether this share of the work allowed has been done; out_of_work() then says that it was.
+  bool spent(double share);
+  [[nodiscard]] bool out_of_work() const { return out_of_work_; }
+  /// @param fraction  estimate of the share of the work done, 0 to 1.
+  void report(const char* stage, double fraction) const;
+
+  /// Finds what only a search for cuts needs; to be called before any.
+  void begin_cutting();
+  /// From now on, bodies round this point are judged by its distance as well, if it lies in the
+  /// hull of these points. @return whether it does.
+  bool add_witness(const SolidField::Witness& witness, std::span<const Vec3> hull);
+
+  /// One body per leaf, as they were when there were this many.
+  [[nodiscard]] std::vector<Body> leaf_bodies(std::size_t count = kUnlimited) const;
+  /// bcd::merge, with what is known of pairs.
+  std::vector<Body> merged(std::vector<Body> bodies, std::size_t target, double epsilon,
+                           double volume_weight = kVolumeWeight);
+
+ private:
+  [[nodiscard]] SearchOptions search_options() const;
+
+  const DecomposeOptions& options_;
+  Tuning tuning_;
+  SolidField solid_;
+  CutTree tree_;
+  PairMemo memo_;
+  bool begun_ = false, out_of_work_ = false;
+};
+
+}  // namespace kaboum::bcd

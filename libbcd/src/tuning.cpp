@@ -1,0 +1,44 @@
+// What effort changes in the search for bodies round a solid.
+
+#include "tuning.h"
+
+namespace kaboum::bcd {
+
+Tuning tuning(Effort effort) {
+  switch (effort) {
+    case Effort::Fast:
+      return {.grid = 60000,
+              .search = {.offsets = 5, .reflex_planes = 6, .refinements = 1, .mirrors = false},
+              .multiples = {1.5},
+              .thresholds = {0.8},
+              .volume_weights = {kVolumeWeight},
+              .refinements = 12,
+              .rounds = 1};
+    case Effort::Normal:
+      return {200000, {}, {1, 1.25, 1.5, 2, 3}, {0.8}, {kVolumeWeight, 0.15, 0.02}, 60, 2, true};
+    case Effort::Best:
+      break;
+  }
+  return {1000000,
+          {.offsets = 11, .reflex_planes = 16, .refinements = 4, .look_ahead = 8},
+          {1, 1.25, 1.5, 2, 3, 4.5, 6},
+          {1, 0.85, 0.7, 0.5, 0.35},
+          {kVolumeWeight, 0.15, 0.02, 0.3, 0},
+          200,
+          4,
+          true};
+}
+
+Tuning tuning(Effort effort, Method method) {
+  Tuning out = tuning(effort);
+  if (method == Method::Planes) return out;
+  out.multiples = {out.multiples.back()};
+  out.thresholds = {out.thresholds.front()};
+  out.volume_weights = {1};
+  out.refinements = 0;
+  out.rounds = 1;
+  out.reduce = false;
+  return out;
+}
+
+}  // namespace kaboum::bcd
