@@ -30,7 +30,10 @@ bool are_adjacent(const robot::Robot& robot, std::uint32_t a, std::uint32_t b) {
   const auto hangs_on = [&](std::uint32_t child, std::uint32_t parent) {
     return child > 0 && body_of(robot, robot.joints[child - 1].parent) == parent;
   };
-  return hangs_on(x, y) || hangs_on(y, x);
+  const auto is_parent = [&](std::uint32_t child, std::uint32_t parent) {
+    return child > 0 && robot.joints[child - 1].parent == parent;
+  };
+  return hangs_on(x, y) || hangs_on(y, x) || is_parent(a, b) || is_parent(b, a);
 }
 
 /// Values of the joints between two links, halved until proved.
@@ -156,11 +159,14 @@ class Proof {
 
 }  // namespace
 
-std::vector<AllowedPair> adjacent_links(const robot::Robot& robot) {
+std::vector<AllowedPair> connected_links(const robot::Robot& robot) {
   std::vector<AllowedPair> out;
   for (std::uint32_t a = 0; a < robot.links.size(); ++a)
     for (std::uint32_t b = a + 1; b < robot.links.size(); ++b)
-      if (are_adjacent(robot, a, b)) out.push_back({a, b, Reason::Adjacent});
+      if (are_adjacent(robot, a, b))
+        out.push_back({a, b, Reason::Adjacent});
+      else if (body_of(robot, a) == body_of(robot, b))
+        out.push_back({a, b, Reason::Always});
   return out;
 }
 

@@ -293,7 +293,7 @@ class Parser {
       out.grippers.push_back(std::move(g));
     }
     out.fingerprint = fingerprint_of(out);
-    out.allowed = adjacent_links(out.kinematics);
+    out.allowed = connected_links(out.kinematics);
     for (const Located& pair : list(r, "allowed_contacts"))
       out.allowed.push_back(pair_of(out, pair, AllowedPair::Reason::Stated));
     add_proved(r, out);

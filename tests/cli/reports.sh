@@ -34,6 +34,14 @@ run verify-cover "$BIN/bound-verify" --cover "$BRACKET" set.glb --epsilon 5%
 run verify-robot "$BIN/bound-verify" --robot arm.urdf safe/arm.urdf
 run verify-sweep "$BIN/bound-verify" --sweep arm.urdf path.csv swept.glb
 run verify-progressive "$BIN/bound-verify" --progressive "$BRACKET" outer.pm
+run scene "$BIN/kaboum-scene" make cell.json --robot arm=arm.urdf --object box=wide.off --no-cache
+python3 -c 'import json
+cell = json.load(open("cell.json"))
+cell["objects"][0]["pose"] = {"position": [9, 0, 0]}
+json.dump(cell, open("cell.json", "w"))'
+run pairs "$BIN/kaboum-scene" pairs cell.json
+run state "$BIN/kaboum-check" cell.json --distance
+run motion "$BIN/kaboum-check" cell.json --path path.csv
 expect 1 '' "$BIN/bound-verify" --outer wide.off box.off --report reports/refuted.json
 run ik "$BIN/kaboum-ik" arm.urdf --pose-of 0.5
 cat >domain.pddl <<'END'

@@ -4,8 +4,9 @@
 
 namespace kaboum::world {
 
-/// Pairs of links that joints connect: one joint, or fixed ones besides.
-std::vector<AllowedPair> adjacent_links(const robot::Robot& robot);
+/// Pairs of links of which configurations say nothing: adjacent ones (one joint, perhaps with fixed
+/// ones besides), and others between which there are fixed joints only (Always).
+std::vector<AllowedPair> connected_links(const robot::Robot& robot);
 
 struct PairOptions {
   std::size_t most_boxes = 20'000;  ///< of joint values that are looked at for one pair

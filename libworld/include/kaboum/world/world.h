@@ -43,7 +43,7 @@ struct AllowedPair {
   enum class Reason {
     Adjacent,  ///< a joint connects them, or fixed joints on the way
     Never,     ///< proved: in no configuration within the limits
-    Always,    ///< connected by fixed joints only, and in contact
+    Always,    ///< connected by fixed joints only
     Stated,    ///< by the scene
   };
   std::uint32_t a = 0, b = 0;  ///< links, a < b

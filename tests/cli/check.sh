@@ -1,0 +1,77 @@
+# shellcheck shell=sh disable=SC2154
+# kaboum-scene and kaboum-check: scenes of files, free and other answers, what is refused.
+. "$(dirname "$0")/common.sh"
+cube() {
+  printf 'OFF\n8 12 0\n0 0 0\n%s 0 0\n%s 1 0\n0 1 0\n0 0 1\n%s 0 1\n%s 1 1\n0 1 1\n' "$1" "$1" "$1" "$1"
+  printf '3 0 2 1\n3 0 3 2\n3 4 5 6\n3 4 6 7\n3 0 1 5\n3 0 5 4\n3 1 2 6\n3 1 6 5\n3 2 3 7\n3 2 7 6\n3 3 0 4\n3 3 4 7\n'
+}
+mkdir meshes
+cube 1 >meshes/cube.off
+cube 3 >meshes/bar.off
+link() { echo "<link name=\"$1\"><collision><geometry><mesh filename=\"meshes/$2.off\"/></geometry></collision></link>"; }
+joint() {
+  echo "<joint name=\"$1\" type=\"revolute\"><parent link=\"$2\"/><child link=\"$3\"/><origin xyz=\"$4\"/>
+<axis xyz=\"0 0 1\"/><limit lower=\"-3\" upper=\"3\" effort=\"1\" velocity=\"1\"/></joint>"
+}
+echo "<robot name=\"arm\">$(link base cube)$(link upper bar)$(link tip cube)$(joint j1 base upper '0 0 2')$(joint j2 upper tip '5 0 0')</robot>" >arm.urdf
+expect 0 '5 sets' "$BIN/kaboum-scene" make cell.json --robot arm=arm.urdf --object box=meshes/cube.off --inner --no-cache
+[ -f cell/arm/upper.glb ] || fail "no set of the upper arm"
+# The box is put where the tip reaches it when the arm is turned by about a quarter.
+put() {
+  python3 - "$@" <<'END' || fail "scene $*"
+import json, sys
+cell = json.load(open("cell.json"))
+cell["objects"][0]["pose"] = {"position": [float(x) for x in sys.argv[2:5]]}
+json.dump(cell, open(sys.argv[1], "w"), indent=1)
+END
+}
+put free.json 20 0 2
+put near.json 0 5 2
+shows 0 '^free$' "$BIN/kaboum-check" free.json
+shows 0 'nearest: arm/base and arm/tip, sets 4.123' "$BIN/kaboum-check" free.json --distance
+shows 0 '^free$' "$BIN/kaboum-check" near.json --configuration 0,0
+# The tip's own set has no inner one: nothing is certain.
+shows 1 'arm/tip and box are within epsilon' "$BIN/kaboum-check" near.json --configuration 1.57,0
+printf 'j1,j2\n0,0\n1.57,0\n0.5,0\n' >some.csv
+shows 1 'configuration 2: arm/tip and box' "$BIN/kaboum-check" near.json --configurations some.csv
+grep -q 'configuration 3: free' out.txt || fail "the third configuration is free"
+printf 'j1,j2\n0,0\n3,0\n' >through.csv
+shows 1 'free until waypoint 1 + 0\.[34]' "$BIN/kaboum-check" near.json --path through.csv --report motion.json
+grep -q '"outcome": "contact"' motion.json || fail "no outcome in the report"
+printf 'j1,j2\n0,0\n-3,1\n' >away.csv
+shows 0 'free at every instant' "$BIN/kaboum-check" near.json --path away.csv
+shows 0 'free at every instant' "$BIN/kaboum-check" near.json --path away.csv --robot arm --resolution 0.001
+shows 7 'undecided' "$BIN/kaboum-check" near.json --path through.csv --max-intervals 1
+# Degrees, limits, names.
+shows 1 'within epsilon' "$BIN/kaboum-check" near.json --configuration 90,0 --degrees
+expect 3 'limits' "$BIN/kaboum-check" near.json --configuration 4,0
+shows 0 free "$BIN/kaboum-check" near.json --configuration=-3.5,0 --ignore-limits
+expect 2 "no robot 'arn'; did you mean 'arm'" "$BIN/kaboum-check" near.json --robot arn
+expect 2 'excludes' "$BIN/kaboum-check" near.json --path away.csv --configuration 0,0
+expect 2 'are for configurations' "$BIN/kaboum-check" near.json --path away.csv --resting
+# Files that are not what they were.
+cp cell/box.glb kept.glb
+cp cell/box-inner.glb cell/box.glb
+expect 3 'line [0-9]*, column [0-9]*: cell/box.glb is not the file' "$BIN/kaboum-check" near.json
+cp kept.glb cell/box.glb
+sed 's/box-inner.glb/box.glb/; s/"inner"/"innr"/' near.json >typo.json
+expect 3 "'innr' is not known here; did you mean 'inner'" "$BIN/kaboum-check" typo.json
+expect 3 'cut short' sh -c "head -c 200 near.json >cut.json; '$BIN/kaboum-check' cut.json"
+expect 3 'cannot be' "$BIN/kaboum-check" absent.json
+# Pairs of links.
+shows 0 'base upper: adjacent' "$BIN/kaboum-scene" pairs near.json --srdf arm.srdf
+grep -q 'link1="base" link2="tip" reason="Never"' arm.srdf || fail "base and tip never touch: $(cat arm.srdf)"
+sed -n 's/^for the scene: //p' out.txt >never.txt
+sed "s/\"name\": \"arm\",/\"name\": \"arm\", $(cat never.txt),/" near.json >proved.json
+shows 0 '^free$' "$BIN/kaboum-check" proved.json
+sed 's/"name": "arm",/"name": "arm", "limits": {"j2": [-1, 1]},/' proved.json >other.json
+expect 3 'proved for other limits or other sets' "$BIN/kaboum-check" other.json
+# Making scenes.
+expect 2 'NAME=FILE is expected' "$BIN/kaboum-scene" make bad.json --object meshes/cube.off
+expect 2 'is there twice' "$BIN/kaboum-scene" make bad.json --object a=meshes/cube.off --object a=meshes/bar.off
+expect 2 'nothing is asked for' "$BIN/kaboum-scene" make bad.json
+expect 3 'absent.stl' "$BIN/kaboum-scene" make bad.json --object a=absent.stl --no-cache
+absent bad.json bad
+"$BIN/kaboum-scene" make again.json --robot arm=arm.urdf --object box=meshes/cube.off --inner --no-cache --quiet --threads 1
+sed 's/again/cell/' again.json | cmp -s - cell.json || fail "another scene of the same files"
+finish

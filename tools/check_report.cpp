@@ -1,0 +1,75 @@
+// Contacts and motions in words and as JSON.
+
+#include "check_report.h"
+
+#include <array>
+#include <sstream>
+
+namespace kaboum::tools {
+namespace {
+
+Json to_json(const geom::Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); }
+
+const char* answer_of(const world::Contact& contact) {
+  return contact.certain ? "colliding" : "within epsilon";
+}
+
+}  // namespace
+
+std::string describe(const world::World& world, const world::Contact& contact) {
+  std::ostringstream out;
+  out.precision(4);
+  out << world.name_of(contact.items[0]) << " and " << world.name_of(contact.items[1]);
+  if (contact.certain)
+    out << " collide";
+  else
+    out << " are within epsilon: no farther apart than " << contact.epsilon;
+  out << ", at [" << contact.place.x() << ", " << contact.place.y() << ", " << contact.place.z()
+      << "]";
+  return out.str();
+}
+
+Json to_json(const world::World& world, const world::Contact& contact) {
+  return {{"answer", answer_of(contact)},
+          {"pair", {world.name_of(contact.items[0]), world.name_of(contact.items[1])}},
+          {"bodies", {contact.bodies.a, contact.bodies.b}},
+          {"epsilon", contact.epsilon},
+          {"place", to_json(contact.place)}};
+}
+
+std::string describe(const world::World& world, const world::MotionAnswer& answer) {
+  std::ostringstream out;
+  out.precision(6);
+  if (answer.outcome == world::MotionAnswer::Outcome::Free) return "free at every instant";
+  const auto place = [&](std::size_t segment, double share) {
+    out << "waypoint " << segment + 1 << " + " << share;
+  };
+  if (answer.outcome == world::MotionAnswer::Outcome::Undecided) {
+    out << "undecided: free until ";
+    place(answer.segment, answer.share);
+    return out.str();
+  }
+  out << "free until ";
+  place(answer.segment, answer.share);
+  out << "; at ";
+  place(answer.contact_segment, answer.contact_share);
+  out << ", " << (answer.meets ? "" : "nearly: ") << describe(world, *answer.contact);
+  return out.str();
+}
+
+Json to_json(const world::World& world, const world::MotionAnswer& answer) {
+  constexpr std::array<const char*, 3> kOutcomes{"free", "contact", "undecided"};
+  Json out = {{"outcome", kOutcomes.at(static_cast<std::size_t>(answer.outcome))},
+              {"intervals", answer.intervals},
+              {"queries", answer.queries}};
+  if (answer.outcome == world::MotionAnswer::Outcome::Free) return out;
+  out["free_until"] = {{"segment", answer.segment}, {"share", answer.share}};
+  if (!answer.contact) return out;
+  out["contact"] = to_json(world, *answer.contact);
+  out["contact"]["segment"] = answer.contact_segment;
+  out["contact"]["share"] = answer.contact_share;
+  out["contact"]["sets_meet"] = answer.meets;
+  return out;
+}
+
+}  // namespace kaboum::tools

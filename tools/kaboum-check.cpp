@@ -1,0 +1,199 @@
+#include <kaboum/base/error.h>
+#include <kaboum/base/similar_name.h>
+#include <kaboum/world/motion_check.h>
+
+#include <algorithm>
+#include <iostream>
+#include <sstream>
+
+#include "check_report.h"
+#include "cli.h"
+#include "robot_path.h"
+#include "scene_file.h"
+
+namespace {
+
+using namespace kaboum;  // the tool's own names are few
+
+struct Options {
+  std::string scene, robot, path, configuration, configurations, resolution = "1e-5";
+  std::vector<std::string> joints;
+  bool degrees = false, ignore_limits = false, resting = false, distance = false;
+  std::size_t most_intervals = 1'000'000;
+  tools::CommonOptions common;
+};
+
+void describe(CLI::App& app, Options& o) {
+  app.add_option("SCENE", o.scene, "Scene file (docs/scene.md)")->required();
+  app.add_option("--robot", o.robot, "Which robot moves [the only one]")->type_name("NAME");
+  auto* path = app.add_option("--path", o.path,
+                              "Decide a whole motion, at every instant: waypoints, CSV or JSON")
+                   ->type_name("FILE");
+  auto* one = app.add_option("--configuration", o.configuration,
+                             "Decide the robot at these joint values, separated by commas [home]")
+                  ->type_name("Q1,Q2,…")
+                  ->excludes(path);
+  app.add_option("--configurations", o.configurations,
+                 "Decide each line of a file of joint values, CSV or JSON")
+      ->type_name("FILE")
+      ->excludes(path)
+      ->excludes(one);
+  tools::add_joint_option(app, o.joints);
+  tools::add_degrees_option(app, o.degrees);
+  app.add_flag("--ignore-limits", o.ignore_limits, "Allow values outside the joints' limits");
+  app.add_flag("--resting", o.resting, "Look at pairs of objects that rest, too (not with --path)");
+  app.add_flag("--distance", o.distance, "Say how far apart the nearest pair is (not with --path)");
+  app.add_option("--resolution", o.resolution,
+                 "How much nearer than epsilon bodies may come in a motion before it counts as "
+                 "contact")
+      ->check([](const std::string& s) {
+        const auto length = tools::parse_length(s);
+        return length && !length->percent ? std::string() : "must be a positive number";
+      })
+      ->capture_default_str()
+      ->type_name("LENGTH");
+  app.add_option("--max-intervals", o.most_intervals,
+                 "Most stretches of time that are looked at; then the motion is undecided")
+      ->check(CLI::PositiveNumber.description(""))
+      ->capture_default_str()
+      ->type_name("N");
+  tools::add_common_options(app, o.common);
+  app.footer(
+      "Free is certain. Contacts are colliding where inner sets meet, which is certain, else "
+      "within epsilon: the solids are at most that far apart "
+      "(docs/algorithms/bounded-predicates.md).\n"
+      "Exit codes: 0 free; 1 not free; 2 usage; 3 bad input; 4 output failed; 6 internal error; "
+      "7 undecided (--max-intervals).");
+}
+
+std::size_t robot_named(const world::World& world, const std::string& name) {
+  std::vector<std::string> names;
+  for (const world::RobotModel& robot : world.robots) names.push_back(robot.name);
+  if (name.empty()) {
+    if (names.size() == 1) return 0;
+    throw Error(ErrorCode::InvalidArgument, names.empty()
+                                                ? "the scene has no robot"
+                                                : "the scene has several robots: give --robot");
+  }
+  if (const auto robot = world.find_robot(name)) return *robot;
+  throw Error(ErrorCode::InvalidArgument,
+              "--robot: the scene has no robot '" + name + "'" + did_you_mean(name, names));
+}
+
+/// "0,1.5,-2": a value per variable.
+robot::Path parse_configuration(const Options& o, const robot::Robot& robot) {
+  const robot::NamedPath named = robot::parse_path_csv(o.configuration, "--configuration");
+  robot::Path path =
+      robot::arrange(named, robot, "--configuration", false, tools::fixed_joints(o.joints));
+  if (o.degrees) path = robot::from_degrees(std::move(path), robot);
+  if (!o.ignore_limits) robot::require_within_limits(path, robot, "--configuration");
+  return path;
+}
+
+int check_path(const Options& o, const tools::SceneFile& scene, std::size_t robot,
+               const robot::Path& path, tools::Json& report) {
+  const world::Checker checker(scene.world);
+  world::MotionOptions options;
+  options.resolution = tools::parse_length(o.resolution)->value;
+  options.most_intervals = o.most_intervals;
+  const world::MotionAnswer answer =
+      check_motion(checker, initial_state(scene.world), robot, path, options);
+  report["waypoints"] = path.size();
+  report["resolution"] = options.resolution;
+  report["motion"] = tools::to_json(scene.world, answer);
+  std::cout << tools::describe(scene.world, answer) << '\n';
+  using Outcome = world::MotionAnswer::Outcome;
+  report["answer"] = answer.outcome == Outcome::Free        ? "free"
+                     : answer.outcome == Outcome::Undecided ? "undecided"
+                     : answer.contact->certain              ? "colliding"
+                                                            : "within epsilon";
+  return answer.outcome == Outcome::Free        ? tools::kDone
+         : answer.outcome == Outcome::Undecided ? tools::kLimit
+                                                : tools::kNo;
+}
+
+int check_states(const Options& o, const tools::SceneFile& scene, std::optional<std::size_t> robot,
+                 const robot::Path& values, tools::Json& report) {
+  const world::Checker checker(scene.world);
+  const world::Checker::Options options{.resting = o.resting};
+  world::Scratch scratch;
+  bool free = true, certain = false;
+  tools::Json states = tools::Json::array();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    world::WorldState state = initial_state(scene.world);
+    if (robot) state.q[*robot] = values[i];
+    const std::vector<world::Contact> contacts = checker.find_contacts(state, scratch, options);
+    tools::Json one = {{"free", contacts.empty()}, {"contacts", tools::Json::array()}};
+    const std::string before =
+        values.size() > 1 ? "configuration " + std::to_string(i + 1) + ": " : "";
+    if (contacts.empty()) std::cout << before << "free\n";
+    for (const world::Contact& contact : contacts) {
+      free = false;
+      certain = certain || contact.certain;
+      one["contacts"].push_back(tools::to_json(scene.world, contact));
+      std::cout << before << tools::describe(scene.world, contact) << '\n';
+    }
+    if (o.distance) {
+      if (const auto nearest = checker.find_nearest(state, scratch, options)) {
+        const auto& [items, clearance] = *nearest;
+        one["distance"] = {
+            {"lower", clearance.lower},
+            {"upper", clearance.upper},
+            {"pair", {scene.world.name_of(items[0]), scene.world.name_of(items[1])}}};
+        std::cout << before << "nearest: " << scene.world.name_of(items[0]) << " and "
+                  << scene.world.name_of(items[1]) << ", sets " << clearance.lower << " to "
+                  << clearance.upper << " apart\n";
+      }
+    }
+    states.push_back(std::move(one));
+  }
+  report["configurations"] = std::move(states);
+  report["answer"] = free ? "free" : certain ? "colliding" : "within epsilon";
+  return free ? tools::kDone : tools::kNo;
+}
+
+int check(const Options& o) {
+  tools::require_apart({{"--report", o.common.report}}, {o.scene, o.path, o.configurations});
+  if (!o.path.empty() && (o.resting || o.distance))
+    throw Error(ErrorCode::InvalidArgument, "--resting and --distance are for configurations");
+  const tools::SceneFile scene = tools::read_scene(o.scene);
+  std::vector<std::string> notes = scene.notes;
+  tools::Json report = {{"scene", {{"file", o.scene}, {"sha256", scene.sha256}}}};
+  std::optional<std::size_t> robot;
+  const bool moves = !o.path.empty() || !o.configuration.empty() || !o.configurations.empty();
+  if (moves || !o.robot.empty()) robot = robot_named(scene.world, o.robot);
+  robot::Path values;
+  if (robot) {
+    const world::RobotModel& model = scene.world.robots[*robot];
+    report["robot"] = model.name;
+    const std::string file = o.path.empty() ? o.configurations : o.path;
+    if (!file.empty())
+      values =
+          tools::read_path(file, model.kinematics,
+                           {!o.ignore_limits, o.degrees, tools::fixed_joints(o.joints)}, notes);
+    else if (!o.configuration.empty())
+      values = parse_configuration(o, model.kinematics);
+    else
+      values = {model.home};
+  } else {
+    values = {{}};
+  }
+  for (const std::string& note : notes) tools::log(o.common.quiet, note);
+  const int code = o.path.empty() ? check_states(o, scene, robot, values, report)
+                                  : check_path(o, scene, *robot, values, report);
+  if (!notes.empty()) report["notes"] = notes;
+  tools::write_report(o.common, "kaboum-check", report);
+  return code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "Decides whether robots are free of collisions, at configurations or all along "
+      "motions.",
+      "kaboum-check"};
+  Options options;
+  describe(app, options);
+  return tools::run(app, argc, argv, [&] { return check(options); });
+}

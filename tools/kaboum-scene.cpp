@@ -1,0 +1,187 @@
+#include <kaboum/base/error.h>
+#include <kaboum/io/mesh_io.h>
+#include <kaboum/world/allowed_pairs.h>
+
+#include <iostream>
+#include <map>
+
+#include "cli.h"
+#include "robot_bodies.h"
+#include "scene_file.h"
+#include "scene_maker.h"
+
+namespace {
+
+using namespace kaboum;  // the tool's own names are few
+
+struct Options {
+  std::string scene, robot, srdf, epsilon = "1%", effort = "normal", unit = "m", cache;
+  std::vector<std::string> robots, objects, regions, packages;
+  bool inner = false, no_cache = false, drop_sheets = false;
+  std::size_t most_boxes = 20'000;
+  tools::CommonOptions common;
+};
+
+const std::map<std::string, bcd::Effort> kEfforts{
+    {"fast", bcd::Effort::Fast}, {"normal", bcd::Effort::Normal}, {"best", bcd::Effort::Best}};
+
+CLI::App* describe_make(CLI::App& app, Options& o) {
+  CLI::App* make = app.add_subcommand(
+      "make", "Make a scene of URDFs and meshes, with the convex sets that it needs");
+  make->add_option("SCENE", o.scene, "Scene file to write (.json); sets go into a folder beside it")
+      ->required();
+  make->add_option("--robot", o.robots, "A robot; may be repeated")->type_name("NAME=URDF");
+  make->add_option("--object", o.objects, "An object; may be repeated")->type_name("NAME=MESH");
+  make->add_option("--region", o.regions, "A region: its inner set; may be repeated")
+      ->type_name("NAME=MESH");
+  make->add_flag("--inner", o.inner, "Inner sets of objects as well: contacts can be certain");
+  make->add_option("--epsilon", o.epsilon,
+                   "Largest distance of the sets from their meshes, a length or a percentage of "
+                   "each mesh's diagonal")
+      ->check([](const std::string& s) {
+        return tools::parse_length(s) ? std::string() : "must be a positive number or percentage";
+      })
+      ->capture_default_str()
+      ->type_name("LENGTH|P%");
+  make->add_option("--effort", o.effort, "Of the decomposition [normal]")
+      ->check(CLI::IsMember({"fast", "normal", "best"}).description(""))
+      ->type_name("fast|normal|best");
+  make->add_flag("--drop-sheets", o.drop_sheets,
+                 "Drop back-to-back faces without volume (they are then not covered)");
+  make->add_option("--unit", o.unit, "Unit of length: m, dm, cm, mm, um, km, in or ft")
+      ->check(tools::unit_name())
+      ->capture_default_str()
+      ->type_name("NAME");
+  make->add_option("--package-path", o.packages,
+                   "A package of package:// or a folder that holds it; may be repeated")
+      ->type_name("DIR");
+  make->add_option("--from-cache", o.cache,
+                   "Cache of decompositions, used and filled [as bcd-decompose]")
+      ->type_name("DIR");
+  make->add_flag("--no-cache", o.no_cache, "Decompose anew and store nothing");
+  tools::add_common_options(*make, o.common);
+  return make;
+}
+
+CLI::App* describe_pairs(CLI::App& app, Options& o) {
+  CLI::App* pairs = app.add_subcommand(
+      "pairs", "Find pairs of a robot's links that never touch, with proof, or always do");
+  pairs->add_option("SCENE", o.scene, "Scene file")->required();
+  pairs->add_option("--robot", o.robot, "Which robot [the only one]")->type_name("NAME");
+  pairs->add_option("--srdf", o.srdf, "Write the pairs as SRDF")->type_name("FILE");
+  pairs
+      ->add_option("--max-boxes", o.most_boxes,
+                   "Most boxes of joint values that are looked at for one pair")
+      ->check(CLI::PositiveNumber.description(""))
+      ->capture_default_str()
+      ->type_name("N");
+  tools::add_common_options(*pairs, o.common);
+  return pairs;
+}
+
+std::vector<tools::NamedFile> named_files(const std::vector<std::string>& texts,
+                                          const char* option) {
+  std::vector<tools::NamedFile> out;
+  for (const std::string& text : texts) out.push_back(tools::parse_named_file(text, option));
+  return out;
+}
+
+int make_scene(const Options& o) {
+  const tools::ThreadLimit threads(o.common.threads);
+  tools::SceneMaker maker;
+  maker.scene = o.scene;
+  maker.robots = named_files(o.robots, "--robot");
+  maker.objects = named_files(o.objects, "--object");
+  maker.regions = named_files(o.regions, "--region");
+  std::vector<std::string> inputs;
+  for (const auto* files : {&maker.robots, &maker.objects, &maker.regions})
+    for (const tools::NamedFile& file : *files) inputs.push_back(file.file);
+  if (inputs.empty())
+    throw Error(ErrorCode::InvalidArgument, "nothing is asked for: give --robot or --object");
+  tools::require_apart({{"SCENE", o.scene}, {"--report", o.common.report}}, inputs);
+  maker.inner = o.inner;
+  maker.unit = o.unit;
+  maker.bodies.epsilon = *tools::parse_length(o.epsilon);
+  maker.bodies.effort = kEfforts.at(o.effort);
+  maker.bodies.drop_sheets = o.drop_sheets;
+  maker.bodies.packages = o.packages;
+  const certify::SetCache cache(o.cache.empty() ? certify::SetCache::default_folder()
+                                                : std::filesystem::path(o.cache));
+  if (!o.no_cache) maker.bodies.cache = &cache;
+  tools::Progress progress(o.common.quiet);
+  maker.bodies.progress = [&](const std::string& stage) { progress.show(stage); };
+  const tools::MadeScene made = tools::make_scene(maker);
+  const std::vector<std::string>& lines = made.notes;
+  for (const std::string& line : lines) tools::log(o.common.quiet, line);
+  tools::log(o.common.quiet, o.scene + ": " + std::to_string(made.containers.size()) +
+                                 " sets, all at the origin: put things where they belong");
+  tools::Json report = {{"command", "make"},
+                        {"scene", o.scene},
+                        {"sets", made.containers.size()},
+                        {"inputs", made.inputs},
+                        {"notes", lines}};
+  tools::write_report(o.common, "kaboum-scene", report);
+  return tools::kDone;
+}
+
+int find_pairs(const Options& o) {
+  tools::require_apart({{"--srdf", o.srdf}, {"--report", o.common.report}}, {o.scene});
+  const tools::SceneFile scene = tools::read_scene(o.scene);
+  for (const std::string& note : scene.notes) tools::log(o.common.quiet, note);
+  const auto& robots = scene.world.robots;
+  if (robots.empty() || (o.robot.empty() && robots.size() > 1))
+    throw Error(ErrorCode::InvalidArgument,
+                robots.empty() ? "the scene has no robot" : "several robots: give --robot");
+  const auto index =
+      o.robot.empty() ? std::optional<std::size_t>(0) : scene.world.find_robot(o.robot);
+  if (!index)
+    throw Error(ErrorCode::InvalidArgument, "--robot: the scene has no robot '" + o.robot + "'");
+  const world::RobotModel& robot = robots[*index];
+  const auto name = [&](std::uint32_t link) { return robot.kinematics.links[link].name; };
+  std::vector<world::AllowedPair> allowed = world::connected_links(robot.kinematics);
+  tools::Json pairs = tools::Json::array(), never = tools::Json::array();
+  for (const world::LinkPair& pair : examine_pairs(robot, {.most_boxes = o.most_boxes})) {
+    const std::string reason = pair.reason ? name_of(*pair.reason) : "unproved";
+    pairs.push_back({{"links", {name(pair.a), name(pair.b)}},
+                     {"reason", reason},
+                     {"contact_found", pair.meets}});
+    std::cout << name(pair.a) << " " << name(pair.b) << ": "
+              << (pair.reason  ? reason
+                  : pair.meets ? "in contact somewhere"
+                               : reason)
+              << '\n';
+    if (!pair.reason || *pair.reason == world::AllowedPair::Reason::Adjacent) continue;
+    allowed.push_back({pair.a, pair.b, *pair.reason});
+    if (*pair.reason == world::AllowedPair::Reason::Never)
+      never.push_back({name(pair.a), name(pair.b)});
+  }
+  if (!o.srdf.empty()) {
+    const std::string text = to_srdf(robot, allowed);
+    io::write_file(o.srdf, {text.data(), text.size()});
+  }
+  const tools::Json proved = {{"proved_for", robot.fingerprint}, {"pairs", never}};
+  if (!never.empty()) std::cout << "for the scene: \"never_in_contact\": " << proved.dump() << '\n';
+  tools::write_report(o.common, "kaboum-scene",
+                      {{"command", "pairs"},
+                       {"scene", o.scene},
+                       {"robot", robot.name},
+                       {"pairs", pairs},
+                       {"never_in_contact", proved}});
+  return tools::kDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Makes scenes for kaboum-check and planners, and examines their robots.",
+               "kaboum-scene"};
+  Options options;
+  CLI::App* make = describe_make(app, options);
+  describe_pairs(app, options);
+  app.require_subcommand(1);
+  app.footer(
+      "Exit codes: 0 done; 2 usage; 3 bad input; 4 output failed; 5 not built; 6 internal error; "
+      "7 limit.");
+  return tools::run(app, argc, argv,
+                    [&] { return make->parsed() ? make_scene(options) : find_pairs(options); });
+}

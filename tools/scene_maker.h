@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "cli.h"
+#include "robot_bodies.h"
+
+/// Scenes from URDFs and meshes: their sets in containers, and the file that names them.
+namespace kaboum::tools {
+
+/// "NAME=FILE".
+struct NamedFile {
+  std::string name, file;
+};
+/// @throws Error{InvalidArgument} naming the option.
+NamedFile parse_named_file(const std::string& text, const char* option);
+
+struct SceneMaker {
+  std::filesystem::path scene;              ///< to be written
+  std::vector<NamedFile> robots;            ///< URDF
+  std::vector<NamedFile> objects, regions;  ///< meshes
+  bool inner = false;                       ///< inner sets of objects as well
+  BodyOptions bodies;                       ///< of everything
+  std::string unit = "m";
+};
+
+struct MadeScene {
+  std::string text;
+  std::vector<std::filesystem::path> containers;  ///< written
+  std::vector<std::string> inputs;
+  std::vector<std::string> notes;
+};
+
+/// Computes what the cache lacks, writes the containers into the folder with the scene's stem
+/// beside it, then the scene; everything is at the origin.
+/// @throws Error naming the file.
+MadeScene make_scene(const SceneMaker& maker);
+
+}  // namespace kaboum::tools
