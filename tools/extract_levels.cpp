@@ -1,13 +1,16 @@
+// Meshes out of a progressive file: bmesh-decimate --from.
+
 #include "extract_levels.h"
 
 #include <kaboum/base/error.h>
 #include <kaboum/bmesh/extract.h>
+#include <kaboum/certify/mesh_bytes.h>
 #include <kaboum/geom/float32.h>
 #include <kaboum/io/mesh_io.h>
 
 #include <algorithm>
 
-#include "written_mesh.h"
+#include "result_files.h"
 
 namespace kaboum::tools {
 namespace {
@@ -96,7 +99,7 @@ int extract_levels(const ExtractOptions& o) {
                      (levels.empty() ? "" : "; or take one of the levels " + levels));
       return kNo;
     }
-    t.bytes = serialise_checked(t.extracted.mesh, format, double_precision, p.log.tool);
+    t.bytes = certify::serialise_checked(t.extracted.mesh, format, double_precision, p.log.tool);
   }
 
   std::vector<std::pair<std::string, std::function<void()>>> writes;

@@ -1,20 +1,13 @@
 #pragma once
 
-#include <kaboum/geom/mesh.h>
-#include <kaboum/io/mesh_io.h>
-
 #include <functional>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-/// What bmesh-decimate needs to write one result or several.
+/// Files of one result or of a series.
 namespace kaboum::tools {
-
-/// The bytes of a mesh file, read back and compared: what is written is what was certified.
-std::vector<char> serialise_checked(const geom::Mesh& mesh, io::Format format,
-                                    bool double_precision, const std::string& comment);
 
 /// Calls the functions in order, each of which writes the file of its name (an empty name: none).
 /// If one throws, the files written before are taken back.

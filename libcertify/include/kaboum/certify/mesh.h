@@ -1,0 +1,126 @@
+#pragma once
+
+#include <kaboum/base/length.h>
+#include <kaboum/bmesh/decimate.h>
+#include <kaboum/certify/mesh_certificate.h>
+#include <kaboum/geom/prepare.h>
+#include <kaboum/io/mesh_io.h>
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kaboum::certify {
+
+/// What a bounding mesh is asked to be, and how it is written. At least one of vertices, ratio and
+/// epsilon is given; the first one reached stops.
+struct MeshRequest {
+  /// Numbers of result vertices.
+  enum class Numbers {
+    Auto,  ///< float32, or double where float32 is too coarse and the format can hold it
+    Float,
+    Double,
+  };
+
+  bmesh::Direction direction = bmesh::Direction::Outer;
+  /// Stop at this many vertices. Several, falling, are a series: each result encloses (Inner: is
+  /// enclosed by) the one before.
+  std::vector<std::size_t> vertices;
+  std::optional<double> ratio;    ///< stop at this share of the original's vertices, in (0, 1)
+  std::optional<Length> epsilon;  ///< keeps every point of either surface this near to the other
+  bmesh::Cost cost = bmesh::Cost::Distance;
+  bmesh::Effort effort = bmesh::Effort::Normal;
+  bool as_printed = false;         ///< as bmesh::DecimateOptions
+  bool keep_convex = false;        ///< convex in, convex out, exactly
+  std::optional<double> max_work;  ///< as bmesh::DecimateOptions [s]
+  double sharp_angle = 90;         ///< as bmesh::DecimateOptions [degrees]
+  Numbers numbers = Numbers::Auto;
+  io::Format format = io::Format::Ply;
+  std::string comment = "KABouM";  ///< in the file, where the format has comments
+
+  bool measure = true;  ///< brackets of distances, which epsilon and `decide` ask for anyway
+  /// Has libverify decide all claims from the bytes. Otherwise they rest on the exact tests of
+  /// every step.
+  bool decide = true;
+  bool record_steps = false;  ///< for a log or a progressive file
+
+  /// Whether double may stand in for float32.
+  [[nodiscard]] bool may_be_double() const {
+    return numbers == Numbers::Auto && io::holds_double(format);
+  }
+};
+
+/// Why float32 numbers do not do.
+struct Float32Shortage {
+  double spacing = 0;  ///< of float32 numbers at these coordinates [length]
+  double limit = 0;    ///< on that [length]
+  /// Vertices that have no certified float32 position; 0: the spacing is larger than the limit.
+  std::size_t vertices = 0;
+};
+
+/// What a request comes to for one mesh.
+struct MeshPlan {
+  double diagonal = 0;                ///< of the bounding box [length]
+  std::optional<double> epsilon;      ///< [length]
+  std::vector<std::size_t> vertices;  ///< wished, falling; none with epsilon alone
+  bmesh::Precision precision = bmesh::Precision::Float;
+  /// Then double takes its place, or nothing can be made: MeshRequest::may_be_double.
+  std::optional<Float32Shortage> shortage;
+  bmesh::Effort effort = bmesh::Effort::Fast;  ///< that is made
+  double work = 0;                             ///< allowed [s]
+};
+
+/// A mesh that was serialised, read back and compared, and what is certified of it.
+struct CertifiedMesh {
+  geom::Mesh mesh;  ///< triangle by triangle what the bytes hold
+  MeshCertificate certificate;
+  std::vector<char> bytes;
+};
+
+/// One result or a series.
+struct MeshSeries {
+  MeshPlan plan;
+  /// Empty where float32 would not do and double was not allowed. A number of vertices that is not
+  /// reached stands for all after it.
+  std::vector<CertifiedMesh> meshes;
+  std::optional<Float32Shortage> shortage;  ///< float32 does not do: as planned, or found later
+  std::vector<bmesh::Step> steps;           ///< with record_steps
+};
+
+/// How long work is watched. All may be empty; called from the calling thread.
+struct MeshHooks {
+  std::function<void(const std::string& stage)> progress;  ///< often; may throw to cancel
+  std::function<void()> found;  ///< once: candidates are found, certifying begins
+};
+
+/// geom::prepare, and refuses what would enclose nothing by itself: a flat sheet, closed by its own
+/// fill.
+/// @throws Error{InvalidInput}
+geom::Prepared prepare_mesh(const geom::Mesh& mesh,
+                            const geom::PrepareOptions& options = {.holes = geom::Holes::Fill});
+
+/// What certify_meshes would do.
+/// @throws Error{InvalidInput} when a percentage is no length; Error{InvalidArgument} on
+///   contradictory requests.
+MeshPlan plan_mesh(const geom::Prepared& original, const MeshRequest& request);
+
+/// Decimates, and certifies what comes of it: serialised, read back and compared; distances
+/// measured; claims decided by libverify from the bytes. Where float32 is too coarse, the numbers
+/// are double if that is allowed. docs/algorithms/bounding-mesh.md has the proofs.
+///
+/// @pre `original` comes from prepare_mesh or geom::prepare.
+/// @throws Error{InvalidInput} as prepare_mesh, plan_mesh and bmesh::decimate;
+///   Error{InvalidArgument} on contradictory requests; Error{Internal} when a claim is refuted, or
+///   the bytes do not hold the mesh.
+MeshSeries certify_meshes(const geom::Prepared& original, const MeshRequest& request,
+                          const MeshHooks& hooks = {});
+
+/// The same for one result; certificate.stop says why it has no fewer vertices.
+/// @return nullopt when float32 is too coarse, and double is not allowed.
+/// @throws as certify_meshes; Error{InvalidArgument} when several numbers of vertices are asked
+/// for.
+std::optional<CertifiedMesh> certify_mesh(const geom::Prepared& original,
+                                          const MeshRequest& request, const MeshHooks& hooks = {});
+
+}  // namespace kaboum::certify

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <kaboum/bmesh/decimate.h>
+#include <kaboum/geom/distance.h>
+#include <kaboum/verify/bracket.h>
+#include <kaboum/verify/inclusion.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kaboum::certify {
+
+/// What an answer rests on.
+enum class Basis {
+  Bytes,     ///< decided by libverify from the bytes
+  Meshes,    ///< decided by libverify from the meshes
+  Steps,     ///< every step passed exact tests: docs/algorithms/bounding-mesh.md has the theorem
+  Measured,  ///< a certified bracket of geom::directed_distance
+  Samples,   ///< some places were looked at: evidence, no certificate
+};
+
+const char* name_of(Basis basis);
+
+/// A statement about a bounding mesh.
+struct MeshClaim {
+  enum class Kind {
+    Solid,             ///< outer: its solid holds the original's; inner: the other way round
+    Winding,           ///< of open meshes: the winding number nowhere falls (inner: rises)
+    Surface,           ///< every triangle of the enclosed mesh lies in the other one's solid
+    Nested,            ///< as Solid, about the finer results of a series
+    OriginalToResult,  ///< no point of the original is farther from the result than the bound
+    ResultToOriginal,  ///< the other way round
+  };
+  Kind kind = Kind::Solid;
+  Basis basis = Basis::Steps;
+  verify::Answer answer = verify::Answer::Undefined;
+  std::string reason = {};              ///< of what is not verified
+  std::optional<double> distance = {};  ///< the bound, of the last two [length]
+};
+
+const char* name_of(MeshClaim::Kind kind);
+
+/// Faces of the original whose inner side is not in its solid, among some that were looked at: only
+/// the surface claim would protect them.
+struct SurfaceSamples {
+  std::size_t faces = 0, outside = 0;
+};
+
+/// The surface claim, decided: from the bytes, or from the meshes where faces of the original do
+/// not bound its solid (folds, inside-out parts); elsewhere it follows from the solid claim.
+struct DecidedSurface {
+  verify::Claim claim;
+  std::size_t left_out = 0;    ///< triangles that it leaves open, for the work allowed was done
+  verify::Bracket sticks_out;  ///< if it is refuted and leaves none open; triangle: of the input
+  bool at_filling = false;     ///< its triangle fills a hole: not one of the input
+};
+
+/// What libverify decided from the bytes.
+struct DecidedMesh {
+  verify::Inclusion inclusion;
+  std::optional<verify::Answer> nested;  ///< in, or round, the finer result before
+  double distance_bound = 0;             ///< of the two claims about distances [length]
+  verify::Answer original_to_result = verify::Answer::Undefined;
+  verify::Answer result_to_original = verify::Answer::Undefined;
+};
+
+/// Places at which a result is far from the original: without measuring, so no bound.
+struct Outliers {
+  double beyond_box = 0;  ///< how far it reaches beyond the original's bounding box [length]
+  double away = 0;        ///< largest distance of some vertices of the original from it [length]
+};
+
+/// What is certified of a bounding mesh, and what came of the search for it.
+struct MeshCertificate {
+  bmesh::Direction direction = bmesh::Direction::Outer;
+  bool keep_convex = false;
+  bool closed = true;     ///< the original, as prepared, has a solid; else nothing is enclosed
+  std::size_t finer = 0;  ///< results before it in its series
+  std::optional<std::size_t> wished;  ///< number of vertices
+  std::size_t vertices = 0;
+  bmesh::Stop stop = bmesh::Stop::Exhausted;
+  bmesh::DecimateStatistics statistics;
+  bool out_of_work = false;  ///< with more work it might be nearer
+  std::size_t steps = 0;     ///< number of those of the series that lead to it
+  bool double_precision = false;
+  std::optional<double> epsilon;  ///< kept [length]
+  /// Certified brackets of the largest distance, surface to surface.
+  std::optional<geom::DirectedDistance> original_to_result, result_to_original;
+  std::optional<DecidedMesh> decided;
+  std::optional<DecidedSurface> surface;
+  std::optional<SurfaceSamples>
+      samples;  ///< where the surface claim was not decided from the bytes
+  Outliers outliers;
+
+  /// Upper bound of the Hausdorff distance. [length] @pre it was measured
+  [[nodiscard]] double hausdorff_upper() const;
+
+  /// Whether there are as few vertices as wished, or epsilon allows no fewer.
+  [[nodiscard]] bool reached() const;
+
+  /// All that is claimed; nothing of Direction::Any.
+  [[nodiscard]] std::vector<MeshClaim> claims() const;
+};
+
+}  // namespace kaboum::certify

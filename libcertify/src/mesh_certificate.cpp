@@ -1,0 +1,118 @@
+// What is claimed of a bounding mesh, and what each claim rests on.
+
+#include <kaboum/certify/mesh_certificate.h>
+
+#include <algorithm>
+
+namespace kaboum::certify {
+namespace {
+
+using Kind = MeshClaim::Kind;
+using verify::Answer;
+
+MeshClaim surface_claim(const MeshCertificate& c) {
+  if (c.decided)
+    return {Kind::Surface, Basis::Bytes, c.surface->claim.answer, c.surface->claim.reason};
+  if (c.surface)
+    return {Kind::Surface, Basis::Meshes, c.surface->claim.answer, c.surface->claim.reason};
+  if (c.direction == bmesh::Direction::Inner && !c.keep_convex)
+    return {Kind::Surface, Basis::Steps, Answer::Undecided,
+            "it holds unless triangles of the original do not lie in its solid"};
+  return {Kind::Surface, Basis::Samples, Answer::Undecided,
+          "all of " + std::to_string(c.samples->faces) +
+              " triangles of the original looked at bound its solid"};
+}
+
+void add_distances(const MeshCertificate& c, std::vector<MeshClaim>& claims) {
+  if (c.decided) {
+    claims.push_back({Kind::OriginalToResult,
+                      Basis::Bytes,
+                      c.decided->original_to_result,
+                      {},
+                      c.decided->distance_bound});
+    claims.push_back({Kind::ResultToOriginal,
+                      Basis::Bytes,
+                      c.decided->result_to_original,
+                      {},
+                      c.decided->distance_bound});
+  } else if (c.original_to_result) {
+    claims.push_back({Kind::OriginalToResult,
+                      Basis::Measured,
+                      Answer::Verified,
+                      {},
+                      c.original_to_result->max_upper});
+    claims.push_back({Kind::ResultToOriginal,
+                      Basis::Measured,
+                      Answer::Verified,
+                      {},
+                      c.result_to_original->max_upper});
+  }
+}
+
+}  // namespace
+
+const char* name_of(Basis basis) {
+  switch (basis) {
+    case Basis::Bytes:
+      return "decided from the bytes";
+    case Basis::Meshes:
+      return "decided from the meshes";
+    case Basis::Steps:
+      return "by exact tests of every step";
+    case Basis::Measured:
+      return "measured";
+    case Basis::Samples:
+      break;
+  }
+  return "sampled";
+}
+
+const char* name_of(MeshClaim::Kind kind) {
+  switch (kind) {
+    case Kind::Solid:
+      return "solid";
+    case Kind::Winding:
+      return "winding number";
+    case Kind::Surface:
+      return "surface";
+    case Kind::Nested:
+      return "nested";
+    case Kind::OriginalToResult:
+      return "distance from original to result";
+    case Kind::ResultToOriginal:
+      break;
+  }
+  return "distance from result to original";
+}
+
+double MeshCertificate::hausdorff_upper() const {
+  return std::max(original_to_result->max_upper, result_to_original->max_upper);
+}
+
+bool MeshCertificate::reached() const {
+  return (stop != bmesh::Stop::Exhausted && stop != bmesh::Stop::OutOfWork) || !wished ||
+         vertices <= *wished;
+}
+
+std::vector<MeshClaim> MeshCertificate::claims() const {
+  std::vector<MeshClaim> all;
+  if (direction == bmesh::Direction::Any) return all;
+  const Kind kind = closed ? Kind::Solid : Kind::Winding;
+  if (decided) {
+    const verify::Claim& solid = decided->inclusion.solid;
+    all.push_back({kind, Basis::Bytes, solid.answer, solid.reason});
+  } else {
+    all.push_back({kind, Basis::Steps, Answer::Verified});
+  }
+  if (finer > 0) {
+    const bool by_bytes = decided && decided->nested;
+    all.push_back({Kind::Nested, by_bytes ? Basis::Bytes : Basis::Steps,
+                   by_bytes ? *decided->nested : Answer::Verified});
+  }
+  const bool keeps_hull = direction == bmesh::Direction::Inner && keep_convex;
+  if (closed && (surface || !keeps_hull)) all.push_back(surface_claim(*this));
+  add_distances(*this, all);
+  return all;
+}
+
+}  // namespace kaboum::certify

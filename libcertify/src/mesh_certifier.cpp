@@ -1,0 +1,162 @@
+// What makes a certificate of a candidate: its bytes, read back; distances; libverify's answers
+// about these bytes; and, where libverify is not asked about all, whether surfaces may stick out.
+
+#include "mesh_certifier.h"
+
+#include <kaboum/base/error.h>
+#include <kaboum/certify/mesh_bytes.h>
+#include <kaboum/verify/distance.h>
+
+#include <algorithm>
+
+#include "mesh_surface.h"
+
+namespace kaboum::certify {
+namespace {
+
+/// Distances not far above rounding may take any number: then the bracket is wider.
+constexpr std::size_t kMaxPieces = std::size_t{1} << 20;
+/// Room above the measured distance that keeps the claim decidable: of it, and of the diagonal.
+constexpr double kRoom = 1e-3, kLeastBound = 1e-6;
+/// Vertices of the original that are looked at for being far from the result.
+constexpr std::size_t kOutlierSamples = 1000;
+
+bool refuted(verify::Answer answer) { return answer == verify::Answer::Refuted; }
+
+/// The result once more, for the next number of vertices.
+CertifiedMesh repeated(const CertifiedMesh& from, std::size_t place, std::size_t wished) {
+  CertifiedMesh to = from;
+  to.certificate.finer = place;
+  to.certificate.wished = wished;
+  if (to.certificate.decided) to.certificate.decided->nested.reset();
+  return to;
+}
+
+}  // namespace
+
+std::vector<CertifiedMesh> MeshCertifier::certify(std::vector<bmesh::DecimateResult> candidates) {
+  const double work = candidates.empty()
+                          ? 0
+                          : work_for_surface(plan_.work, candidates.back().work, candidates.size());
+  std::vector<CertifiedMesh> all;
+  all.reserve(candidates.size());  // each looks at the one before
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    // A number of vertices that was not reached is also what the next one got to.
+    if (i > 0 && candidates[i].stop != bmesh::Stop::VertexTarget &&
+        all.back().certificate.stop != bmesh::Stop::VertexTarget) {
+      all.push_back(repeated(all.back(), i, plan_.vertices[i]));
+      continue;
+    }
+    const CertifiedMesh* before = all.empty() ? nullptr : &all.back();
+    CertifiedMesh made = begin(std::move(candidates[i]), i);
+    if (plan_.epsilon || request_.decide || request_.measure) measure(made);
+    if (request_.decide) decide(made, before);
+    look_at_surface(made, work);
+    made.certificate.outliers = outliers(made.mesh);
+    all.push_back(std::move(made));
+  }
+  return all;
+}
+
+CertifiedMesh MeshCertifier::begin(bmesh::DecimateResult candidate, std::size_t place) const {
+  CertifiedMesh made;
+  MeshCertificate& c = made.certificate;
+  c.direction = request_.direction;
+  c.keep_convex = request_.keep_convex;
+  c.closed = original_.closed;
+  c.finer = place;
+  if (!plan_.vertices.empty()) c.wished = plan_.vertices[place];
+  c.vertices = candidate.mesh.vertices.size();
+  c.stop = candidate.stop;
+  c.statistics = candidate.statistics;
+  c.out_of_work = candidate.out_of_work;
+  c.steps = candidate.steps;
+  c.double_precision =
+      plan_.precision == bmesh::Precision::Double || candidate.unrepresentable != 0;
+  c.epsilon = plan_.epsilon;
+  made.mesh = std::move(candidate.mesh);
+  made.bytes = serialise_checked(made.mesh, request_.format, c.double_precision, request_.comment);
+  return made;
+}
+
+void MeshCertifier::measure(CertifiedMesh& made) const {
+  const geom::DistanceQuery original(original_.mesh), result(made.mesh);
+  geom::DistanceOptions wished;
+  wished.max_pieces = kMaxPieces;
+  geom::DirectedDistance& forth = made.certificate.original_to_result.emplace(
+      geom::directed_distance(original_.mesh, result, wished));
+  geom::DirectedDistance& back = made.certificate.result_to_original.emplace(
+      geom::directed_distance(made.mesh, original, wished));
+  if (!plan_.epsilon) return;
+  ensure(std::max(forth.max_lower, back.max_lower) <= *plan_.epsilon,
+         "the measured distance exceeds the carried bound");
+  // The bound carried through the contractions holds as well; the measured one may lie above it by
+  // its gap.
+  for (geom::DirectedDistance* d : {&forth, &back})
+    d->max_upper = std::min(d->max_upper, *plan_.epsilon);
+}
+
+/// Decides the claims anew from the bytes that will be written, by other means than those that made
+/// them. A refuted certificate is our bug.
+void MeshCertifier::decide(CertifiedMesh& made, const CertifiedMesh* before) const {
+  const io::ReadResult back = io::parse_mesh(made.bytes, request_.format, "the result");
+  verify::InclusionOptions options;
+  options.progress = [&](const std::string& what) { show("verifying: " + what); };
+  const auto bounds = [&](const geom::Mesh& other) {
+    return verify::verify_inclusion(outer() ? other : back.mesh, outer() ? back.mesh : other,
+                                    options);
+  };
+  DecidedMesh decided;
+  decided.inclusion = bounds(original_.mesh);
+  if (before != nullptr)
+    decided.nested = bounds(io::parse_mesh(before->bytes, request_.format, "the level before").mesh)
+                         .solid.answer;
+  ensure(!refuted(decided.inclusion.solid.answer) && !(decided.nested && refuted(*decided.nested)),
+         "the verification refutes that the result is bounding; nothing is written");
+  show("verifying: distances");
+  // Epsilon, or the measured bound with room that keeps it decidable.
+  decided.distance_bound = plan_.epsilon
+                               ? *plan_.epsilon
+                               : std::max(made.certificate.hausdorff_upper() * (1 + kRoom),
+                                          kLeastBound * plan_.diagonal);
+  const auto within = [&](const geom::Mesh& from, const geom::Mesh& to) {
+    const verify::Answer answer = verify::verify_distance(from, to, decided.distance_bound).answer;
+    ensure(!refuted(answer), "the verification refutes the measured distance; nothing is written");
+    return answer;
+  };
+  decided.original_to_result = within(original_.mesh, back.mesh);
+  decided.result_to_original = within(back.mesh, original_.mesh);
+  made.certificate.decided = std::move(decided);
+}
+
+void MeshCertifier::look_at_surface(CertifiedMesh& made, double work) {
+  MeshCertificate& c = made.certificate;
+  if (!original_.closed || request_.direction == bmesh::Direction::Any) return;
+  if (c.decided) {
+    c.surface = DecidedSurface{c.decided->inclusion.surface, 0, {}, false};
+  } else {
+    if (!samples_) samples_ = sample_surface(original_.mesh);
+    c.samples = samples_;
+    if (samples_->outside == 0) return;
+    c.surface = decide_surface(original_, made.mesh, outer(), work);
+  }
+  if (refuted(c.surface->claim.answer) && c.surface->left_out == 0)
+    measure_sticking_out(original_, made.mesh, outer(), work, *c.surface);
+}
+
+/// Without epsilon nothing keeps vertices near the original: few of them mean spikes, or inwards
+/// that little is left. Some vertices of the original tell without measuring it all.
+Outliers MeshCertifier::outliers(const geom::Mesh& result) const {
+  Outliers found;
+  if (result.triangles.empty()) return found;
+  const geom::Box3 box = geom::bounding_box(original_.mesh), reached = geom::bounding_box(result);
+  found.beyond_box =
+      std::max((box.min - reached.min).maxCoeff(), (reached.max - box.max).maxCoeff());
+  const geom::DistanceQuery surface(result);
+  const std::vector<geom::Vec3>& vertices = original_.mesh.vertices;
+  for (std::size_t i = 0; i < vertices.size(); i += vertices.size() / kOutlierSamples + 1)
+    found.away = std::max(found.away, surface.nearest(vertices[i]).lower);
+  return found;
+}
+
+}  // namespace kaboum::certify

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <kaboum/certify/mesh.h>
+
+#include <optional>
+
+// From candidates to certified meshes. Internal to kaboum_certify.
+namespace kaboum::certify {
+
+/// @throws Error{InvalidInput} when the original would enclose nothing by itself.
+void require_extent(const geom::Prepared& original);
+
+/// Certifies candidates for one request, finest first. Whatever made them: with
+/// MeshRequest::decide no claim is made that libverify refutes.
+class MeshCertifier {
+ public:
+  /// All are referred to.
+  MeshCertifier(const geom::Prepared& original, const MeshRequest& request, const MeshPlan& plan,
+                const MeshHooks& hooks)
+      : original_(original), request_(request), plan_(plan), hooks_(hooks) {}
+
+  /// @param candidates  one for each wished number of vertices, or one
+  /// @throws Error{Internal} when a claim is refuted, or the bytes do not hold the mesh.
+  std::vector<CertifiedMesh> certify(std::vector<bmesh::DecimateResult> candidates);
+
+ private:
+  [[nodiscard]] CertifiedMesh begin(bmesh::DecimateResult candidate, std::size_t place) const;
+  void measure(CertifiedMesh& made) const;
+  void decide(CertifiedMesh& made, const CertifiedMesh* before) const;
+  void look_at_surface(CertifiedMesh& made, double work);
+  [[nodiscard]] Outliers outliers(const geom::Mesh& result) const;
+
+  void show(const std::string& stage) const {
+    if (hooks_.progress) hooks_.progress(stage);
+  }
+  [[nodiscard]] bool outer() const { return request_.direction == bmesh::Direction::Outer; }
+
+  const geom::Prepared& original_;
+  const MeshRequest& request_;
+  const MeshPlan& plan_;
+  const MeshHooks& hooks_;
+  std::optional<SurfaceSamples> samples_;
+};
+
+}  // namespace kaboum::certify

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <kaboum/bmesh/log.h>
+#include <kaboum/certify/mesh.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "decimation_options.h"
+
+/// What is said of bounding meshes, in words, as a report, and in files.
+namespace kaboum::tools {
+
+/// What was asked, of which file, and what was made.
+struct DecimationCase {
+  const DecimationOptions& asked;
+  certify::MeshRequest request = {};
+  std::vector<std::string> files = {};  ///< of each result; an empty name: none
+  io::ReadResult input = {};            ///< its mesh is dropped once it is prepared
+  geom::Prepared original = {};
+  std::vector<std::string> notes = {};  ///< of reading and preparing, and options without effect
+  bmesh::Log log = {};                  ///< without the steps, unless they are wished for
+  certify::MeshSeries series = {};
+  double seconds_read = 0, seconds_decimated = 0;  ///< of the process, when that was done
+
+  [[nodiscard]] bool outer() const { return request.direction == bmesh::Direction::Outer; }
+};
+
+/// Four digits.
+std::string formatted(double x);
+
+/// Says why float32 does not do: a note that double is written, or what to do instead.
+/// @return whether double is written
+bool say_shortage(const DecimationCase& run, const certify::Float32Shortage& shortage);
+
+/// Says what was made, what is claimed of it and what to beware of. @return the exit code
+int conclude(const DecimationCase& run);
+
+/// The report; but for the time it took the same for any number of threads.
+Json report_of(const DecimationCase& run);
+
+/// Refuses to write a file twice, or over the input.
+void require_separate_files(const DecimationOptions& asked, const std::vector<std::string>& files);
+
+/// Writes everything or nothing. The results come last, so that they are there only if everything
+/// that belongs to them is.
+void write_files(const DecimationCase& run);
+
+}  // namespace kaboum::tools

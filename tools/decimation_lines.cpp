@@ -1,0 +1,204 @@
+// What bmesh-decimate says of its results: a summary of each, claims that do not hold, places to
+// beware of.
+
+#include <iomanip>
+#include <sstream>
+
+#include "decimation_case.h"
+#include "verdict.h"
+
+namespace kaboum::tools {
+namespace {
+
+using certify::MeshCertificate;
+using verify::Answer;
+
+constexpr double kFar = 0.05;  ///< of the diagonal: worth a warning
+
+/// Says all about one result.
+class Lines {
+ public:
+  Lines(const DecimationCase& run, std::size_t place)
+      : run_(run),
+        made_(run.series.meshes[place].certificate),
+        file_(run.files[place].empty() ? run.asked.progressive : run.files[place]) {}
+
+  /// @return the exit code that this result gives
+  [[nodiscard]] int conclude() const {
+    say(summary());
+    warn_of_distance();
+    if (made_.surface) warn_of_surface(*made_.surface);
+    const int verification = made_.decided ? conclude_verification(*made_.decided) : kDone;
+    const bool claims_nothing = !made_.closed && made_.direction != bmesh::Direction::Any;
+    if (claims_nothing)
+      complain(std::string("the mesh is open, so it has no solid that the result could ") +
+               (run_.outer() ? "enclose" : "lie in") +
+               "; the result is written. Leave out --holes keep to have the holes filled, or give "
+               "--direction any if no enclosure is wished for");
+    if (made_.stop == bmesh::Stop::OutOfWork) {
+      complain("the work allowed has ended at " + std::to_string(made_.vertices) +
+               " vertices; the result so far is written. Allow more with --max-work, or give "
+               "--effort fast");
+      return claims_nothing || verification == kNo ? kNo : kLimit;
+    }
+    if (made_.out_of_work)
+      say("note: not as near as it might be: the work allowed has ended; allow more with "
+          "--max-work");
+    if (!made_.reached()) {
+      complain(std::to_string(*made_.wished) + " vertices cannot be reached with --cost " +
+               run_.asked.cost + ": no further contraction is possible at " +
+               std::to_string(made_.vertices) + "; the result so far is written");
+      return kNo;
+    }
+    return claims_nothing ? kNo : verification;
+  }
+
+ private:
+  void say(const std::string& text) const { log(run_.asked.common.quiet, text); }
+  /// An error, about the input.
+  void complain(const std::string& text) const {
+    log(false, "bmesh-decimate: " + run_.asked.input + ": " + text);
+  }
+
+  [[nodiscard]] std::string summary() const {
+    const double diagonal = run_.series.plan.diagonal;
+    std::string line = file_ + ": " + std::to_string(made_.statistics.vertices_in) + " → " +
+                       std::to_string(made_.vertices) + " vertices, " + run_.asked.direction;
+    if (made_.direction != bmesh::Direction::Any)
+      line += made_.closed ? ", certified" : ", NOTHING IS ENCLOSED: the mesh is open";
+    if (made_.original_to_result)
+      line += ", within " + formatted(made_.hausdorff_upper()) + " (" +
+              formatted(100 * made_.hausdorff_upper() / diagonal) + "%)";
+    if (made_.wished && made_.stop == bmesh::Stop::ErrorBound)
+      line += "; epsilon allows no fewer, " + std::to_string(*made_.wished) + " were wished";
+    return line;
+  }
+
+  void warn_of_distance() const {
+    const double diagonal = run_.series.plan.diagonal;
+    const auto warn = [&](const std::string& what, double length, const char* where) {
+      if (!(length > kFar * diagonal)) return;
+      say("warning: " + what + formatted(100 * length / diagonal) + "% of the diagonal " + where +
+          "; " +
+          (run_.series.plan.epsilon ? "use a smaller --epsilon"
+                                    : "use more vertices, or --epsilon to bound the distance"));
+    };
+    warn("the result reaches ", made_.outliers.beyond_box, "beyond the input's bounding box");
+    warn("the input has vertices ", made_.outliers.away, "away from the result");
+  }
+
+  [[nodiscard]] static std::string not_looked_at(const certify::DecidedSurface& surface) {
+    return "whether " + std::to_string(surface.left_out) +
+           (surface.left_out == 1 ? " triangle sticks" : " triangles stick") +
+           " out was not decided, for the work allowed was done; allow more with --max-work";
+  }
+
+  /// Which claim holds and which does not, where they differ.
+  void warn_of_surface(const certify::DecidedSurface& surface) const {
+    const bool outer = run_.outer();
+    if (surface.claim.answer == Answer::Undecided && made_.samples) {
+      say(std::string("warning: ") +
+          (outer ? "the input's solid is enclosed; whether all of its triangles are"
+                 : "the result's solid is inside the input's; whether all of its triangles are") +
+          " is left open: " + std::to_string(made_.samples->outside) + " of " +
+          std::to_string(made_.samples->faces) +
+          " triangles of the input looked at bound no solid, and " + not_looked_at(surface));
+      return;
+    }
+    if (surface.claim.answer != Answer::Refuted) return;
+    const std::size_t count = surface.claim.inner_triangles.size();
+    const verify::Bracket& out = surface.sticks_out;
+    const std::string depth = in_words(out);
+    std::string text =
+        outer ? "the input's solid is enclosed, but not all of its triangles"
+              : "the result's solid is inside the input's, but not all of its triangles";
+    text += (surface.left_out > 0 ? ": at least " : ": ") + std::to_string(count) +
+            (count == 1 ? " sticks out" : " stick out");
+    if (!depth.empty()) text += ", by " + depth;
+    if (out.lower > 0)
+      text += ", farthest at " + point(out.at) +
+              (surface.at_filling ? ", where a hole was filled"
+                                  : ", triangle " + std::to_string(out.triangle) +
+                                        (outer ? " of the input" : " of the result"));
+    text += " (the input is folded or inside out there: such faces bound no solid)";
+    if (surface.left_out > 0) text += "; " + not_looked_at(surface);
+    say("warning: " + text);
+  }
+
+  /// Says which claims are not verified. @return the exit code that they give
+  [[nodiscard]] int conclude_verification(const certify::DecidedMesh& decided) const {
+    int code = kDone;
+    const auto look = [&](const std::string& what, Answer answer, const std::string& detail) {
+      if (answer == Answer::Verified) return;
+      log(false, "bmesh-decimate: " + file_ + ": " + what + " is " + name_of(answer) +
+                     (detail.empty() ? "" : ": " + detail));
+      if (answer == Answer::Undecided && code == kDone) code = kLimit;
+      if (answer != Answer::Undecided) code = kNo;
+    };
+    look("the solid claim", decided.inclusion.solid.answer, decided.inclusion.solid.reason);
+    const verify::Claim& surface = decided.inclusion.surface;
+    if (surface.answer == Answer::Refuted) {
+      look("the surface claim", surface.answer,
+           std::to_string(surface.inner_triangles.size()) + " triangles stick out, by " +
+               in_words(made_.surface->sticks_out));
+    } else if (surface.answer != Answer::Undefined) {  // open meshes have none
+      look("the surface claim", surface.answer, surface.reason);
+    }
+    if (decided.nested) look("the nesting in the level before", *decided.nested, "");
+    look("a distance", decided.original_to_result, "");
+    look("a distance", decided.result_to_original, "");
+    if (code == kDone) say("verified from the written bytes");
+    return code;
+  }
+
+  const DecimationCase& run_;
+  const MeshCertificate& made_;
+  std::string file_;
+};
+
+}  // namespace
+
+std::string formatted(double x) {
+  std::ostringstream s;
+  s << std::setprecision(4) << x;
+  return s.str();
+}
+
+bool say_shortage(const DecimationCase& run, const certify::Float32Shortage& shortage) {
+  std::string why, remedy = "move the mesh towards the origin";
+  if (shortage.vertices == 0) {
+    why = "float32 numbers are " + formatted(shortage.spacing) +
+          " apart at these coordinates, more than " + formatted(shortage.limit) +
+          " (a millionth of the diagonal, or a hundredth of epsilon)";
+  } else {
+    why = std::to_string(shortage.vertices) + (shortage.vertices == 1 ? " vertex" : " vertices") +
+          " without a certified float32 position";
+    if (!run.original.closed) {
+      why +=
+          ": an open mesh's border stays where it is, and its coordinates are no float32 numbers";
+      remedy = "round the input's coordinates to float32 first, or close its holes";
+    }
+  }
+  if (run.request.may_be_double()) {
+    log(run.asked.common.quiet, "note: " + why + ": writing double");
+    return true;
+  }
+  log(false, "bmesh-decimate: " + run.asked.input + ": " + why +
+                 "; nothing is written. Write .ply, .obj, .off or (--output-format) stl-ascii, "
+                 "which hold doubles" +
+                 (run.asked.precision == "auto" ? "" : ", with --precision double") + "; or " +
+                 remedy);
+  return false;
+}
+
+int conclude(const DecimationCase& run) {
+  bool no = false, limit = false;
+  for (std::size_t i = 0; i < run.series.meshes.size(); ++i) {
+    const int code = Lines(run, i).conclude();
+    no = no || code == kNo;
+    limit = limit || code == kLimit;
+  }
+  return no ? kNo : limit ? kLimit : kDone;
+}
+
+}  // namespace kaboum::tools
