@@ -137,7 +137,7 @@ void MeshCertifier::look_at_surface(CertifiedMesh& made, double work) {
   } else {
     if (!samples_) samples_ = sample_surface(original_.mesh);
     c.samples = samples_;
-    if (samples_->outside == 0) return;
+    if (samples_->outside == 0 && !samples_->cut_short) return;
     c.surface = decide_surface(original_, made.mesh, outer(), work);
   }
   if (refuted(c.surface->claim.answer) && c.surface->left_out == 0)

@@ -46,7 +46,10 @@ SurfaceSamples sample_surface(const geom::Mesh& mesh) {
   };
   for (std::size_t round = 0; round < kRounds; ++round) {
     for (std::size_t t = round * step; t < mesh.triangles.size(); t += kRounds * step) {
-      if (crossings > kMostCrossings) return samples;
+      if (crossings > kMostCrossings) {
+        samples.cut_short = true;
+        return samples;
+      }
       look_at(mesh.triangles[t]);
     }
     if (samples.outside > 0 && samples.faces >= kEnough) break;

@@ -9,7 +9,7 @@
 namespace kaboum::certify {
 
 /// At most 20,000 faces are looked at. Ends early when some were found that do not bound the solid,
-/// or where so many surfaces lie behind each other that it would take long.
+/// or where so many surfaces lie behind each other that it would take long: cut short.
 SurfaceSamples sample_surface(const geom::Mesh& mesh);
 
 /// What is allowed to be done for the surface claim of one result. [s]

@@ -309,6 +309,30 @@ TEST(CertifyMesh, TrianglesThatBoundNoSolidAreFoundToStickOut) {
   }
 }
 
+TEST(CertifyMesh, SurfacesBehindEachOtherHideNoFold) {
+  // Four hundred boxes within each other, and a fold whose faces a sampling looks at last.
+  geom::Mesh mesh;
+  for (int i = 1; i <= 400; ++i)
+    mesh = test::merged({mesh, test::translated(test::box({2. * i, 2. * i, 2. * i}, 1),
+                                                {-1. * i, -1. * i, -1. * i})});
+  const geom::Mesh fold = test::translated(bow_tie(), {500, 0, 0});
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), fold.vertices.begin(), fold.vertices.end());
+  std::size_t at = 15;
+  for (const auto& [a, b, c] : fold.triangles) {
+    mesh.triangles.insert(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(at),
+                          {a + first, b + first, c + first});
+    at += 16;
+  }
+  MeshRequest request = fast(mesh.vertices.size());
+  request.decide = request.measure = false;
+  const auto made = certify_mesh(prepare_mesh(mesh), request);
+  ASSERT_TRUE(made);
+  EXPECT_TRUE(made->certificate.samples->cut_short);
+  EXPECT_EQ(made->certificate.samples->outside, 0U);
+  EXPECT_EQ(kinds(made->certificate, Basis::Meshes, Answer::Refuted), (std::set{Kind::Surface}));
+}
+
 TEST(CertifyMesh, RefusesWhatEnclosesNothing) {
   const geom::Mesh flat = test::grid(4, [](double, double) { return 0.0; });
   EXPECT_THROW(prepare_mesh(flat), Error);

@@ -45,6 +45,9 @@ const char* name_of(MeshClaim::Kind kind);
 /// the surface claim would protect them.
 struct SurfaceSamples {
   std::size_t faces = 0, outside = 0;
+  /// So many surfaces lie behind each other that looking ended early: what was not looked at may
+  /// be outside.
+  bool cut_short = false;
 };
 
 /// The surface claim, decided: from the bytes, or from the meshes where faces of the original do
