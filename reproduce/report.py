@@ -8,6 +8,7 @@ for, then, with the results there, to be written.
 import subprocess
 
 import plots
+import sampling
 import sets
 import sweeps
 import thesis
@@ -342,9 +343,10 @@ def resources_section(context, document):
 
 
 SECTIONS = [models_section, proposition_1_section, table_4_2_section, same_share_section, table_b_1_section,
-            figures_section, pictures_section, sets.section, sweeps.section, resources_section]
+            figures_section, pictures_section, sets.section, sweeps.section, sampling.section,
+            resources_section]
 QUICK_SECTIONS = [models_section, proposition_1_section, table_4_2_section, figures_section, pictures_section,
-                  sets.section, sweeps.section, resources_section]
+                  sets.section, sweeps.section, sampling.section, resources_section]
 
 
 def make(models, runner, folder, quick):

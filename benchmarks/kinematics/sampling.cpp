@@ -1,5 +1,5 @@
 // Constraint sampling in the two scenes of Fig. 5.4: how many draws end within the limits, in which
-// time, and how the samples are spread: sampling-benchmark [SAMPLES [FIGURE.svg]].
+// time, and how the samples are spread: sampling-benchmark [SAMPLES [FIGURE.svg [TABLE.csv]]].
 #include <kaboum/kinematics/sample.h>
 
 #include <algorithm>
@@ -82,11 +82,13 @@ Scene rim_of_cylinder() {
 
 using Histogram = std::array<std::size_t, kBins>;
 
-Histogram run(const Scene& scene, const char* method, const SampleOptions& options, int samples) {
+/// A line on stdout and one for the table.
+Histogram run(const Scene& scene, const char* method, const SampleOptions& options, int samples,
+              std::string& table) {
   ConstraintSampler sampler(scene.problem, options);
   const Arm& arm = scene.problem.robots[0].arm;
   Histogram bins{};
-  std::size_t got = 0, good = 0;
+  std::size_t good = 0;
   double worst = 0;
   const double start = seconds();
   std::vector<Sample> all;
@@ -94,7 +96,6 @@ Histogram run(const Scene& scene, const char* method, const SampleOptions& optio
     if (auto s = sampler.next()) all.push_back(std::move(*s));
   const double time = seconds() - start;
   for (const Sample& s : all) {
-    ++got;
     good += within_limits(arm, s.at.joints[0]);
     worst = std::max(worst, s.error);
     const double x = scene.where(kaboum::kinematics::forward(arm, s.at.joints[0]));
@@ -110,6 +111,10 @@ Histogram run(const Scene& scene, const char* method, const SampleOptions& optio
       100.0 * static_cast<double>(t.projected) / draws,
       100.0 * static_cast<double>(t.reached) / draws, 1e6 * time / samples, worst,
       std::count(bins.begin(), bins.end(), 0U));
+  char line[160];
+  std::snprintf(line, sizeof line, "%s,%s,%.2f,%.2f,%.1f\n", scene.name.c_str(), method,
+                100.0 * static_cast<double>(good) / samples, draws / samples, 1e6 * time / samples);
+  table += line;
   return bins;
 }
 
@@ -173,22 +178,24 @@ class Figure {
 int main(int argc, char** argv) {
   const int samples = argc > 1 ? std::atoi(argv[1]) : 20000;
   Figure figure;
+  std::string table = "scene,method,within_percent,draws,microseconds\n";
   for (const Scene& scene : {place_on_table(), rim_of_cylinder()}) {
     SampleOptions options;
     options.closed_form = false;
     options.limits = false;
     options.draws = 1;
-    run(scene, "Algorithm 3, one draw", options, samples);
+    run(scene, "Algorithm 3: one draw", options, samples, table);
     options.limits = true;
-    run(scene, "the same with limits, one draw", options, samples);
+    run(scene, "with limits: one draw", options, samples, table);
     options.draws = 100;
-    const Histogram projected = run(scene, "the same with limits, retries", options, samples);
+    const Histogram projected = run(scene, "with limits: up to 100 draws", options, samples, table);
     options.closed_form = true;
     options.draws = 1;
-    run(scene, "closed form, one draw", options, samples);
+    run(scene, "closed form: one draw", options, samples, table);
     options.draws = 100;
-    const Histogram closed = run(scene, "closed form, retries", options, samples);
+    const Histogram closed = run(scene, "closed form: up to 100 draws", options, samples, table);
     figure.add(scene, projected, closed);
   }
   if (argc > 2) figure.write(argv[2]);
+  if (argc > 3) std::ofstream(argv[3]) << table;
 }

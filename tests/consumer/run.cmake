@@ -29,6 +29,7 @@ endfunction()
 find_component("")
 find_component(plan Eigen3 CGAL embree assimp PkgConfig)
 find_component(collide embree assimp tinyxml2 PkgConfig)
+find_component(kinematics embree assimp PkgConfig)
 find_component(bcd embree assimp tinyxml2 PkgConfig)
 
 # A component that does not exist is an error, not a package that is found.

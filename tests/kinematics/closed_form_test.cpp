@@ -94,6 +94,52 @@ TEST(ClosedForm, AnAlignedWristKeepsTheReference) {
   EXPECT_TRUE(seen);
 }
 
+TEST(ClosedForm, AnAlignedAxisOfParallelAxesKeepsTheReference) {
+  std::mt19937_64 random(8);
+  int count = 0;
+  for (int trial = 0; trial < 50; ++trial) {
+    const DhArm dh = random_arm(Family::ParallelAxes, random);
+    const auto form = recognise(arm_of(dh));
+    ASSERT_TRUE(form);
+    std::vector<double> q = random_joints(random, 6, 3);
+    q[4] = form->sign[4] * (0 - form->offset[4]);  // axis 6 is parallel to axes 2 to 4
+    SolveOptions options;
+    options.reference = {0, 0, 0, 0, 0, 0.75};
+    const Transform target = reference_pose(dh, q);
+    bool seen = false;
+    for (const Solution& s : solve(*form, target, options)) {
+      EXPECT_LT(difference(reference_pose(dh, {s.q.begin(), s.q.end()}), target).position, 1e-9);
+      if ((s.singular & kWrist) == 0) continue;
+      seen = true;
+      EXPECT_NEAR(s.q[5], 0.75, 1e-15);
+    }
+    // The reference may be out of reach for the elbow; the configuration's own value is not.
+    options.reference[5] = q[5];
+    double nearest = 10;
+    for (const Solution& s : solve(*form, target, options))
+      nearest = std::min(nearest, turn_distance(s.q.data(), q));
+    EXPECT_LT(nearest, 1e-5);
+    count += seen;
+  }
+  EXPECT_GT(count, 20);
+}
+
+TEST(ClosedForm, FiveAxesAboveTheFirstAxisTakeTheDirection) {
+  // Without lengths to the side: the end is on axis 1 when the arm goes straight up and back.
+  DhArm dh;
+  const double quarter = std::numbers::pi / 2;
+  dh.rows = {
+      {0, .2, 0, quarter}, {0, 0, .19, 0}, {0, 0, .139, 0}, {0, 0, 0, quarter}, {0, 0, 0, 0}};
+  const auto form = recognise(arm_of(dh));
+  ASSERT_TRUE(form);
+  EXPECT_EQ(form->family, Family::FiveAxes);
+  const double lift = 1.1;  // the end of two links over the shoulder
+  const double fold = std::asin(.19 * std::cos(lift) / .139);
+  const std::vector<double> q{0.4, lift, quarter + fold - lift, 0.5, -0.3};
+  ASSERT_NEAR(reference_pose(dh, q).translation.head<2>().norm(), 0, 1e-12);
+  EXPECT_LT(check_solutions(dh, *form, q), 1e-6);
+}
+
 TEST(ClosedForm, AWristOnTheFirstAxisKeepsTheReference) {
   DhArm dh;  // a1 = 0, lateral = 0: straight up, the wrist is on axis 1
   const double quarter = std::numbers::pi / 2;

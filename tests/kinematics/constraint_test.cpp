@@ -185,8 +185,9 @@ ConstraintProblem two_robots() {
   seven.rows = {{0, .34, 0, -quarter}, {0, 0, 0, quarter}, {0, .4, 0, quarter}, {0, 0, 0, -quarter},
                 {0, .4, 0, -quarter},  {0, 0, 0, quarter}, {0, .126, 0, 0}};
   ConstraintProblem problem;
-  problem.robots = {{arm_of(rv_6sl(true)), {}},
-                    {arm_of(seven), {robot::rotation_from_rpy(0, 0, kPi), {0.9, 0.1, 0}}}};
+  problem.robots = {
+      {arm_of(rv_6sl(true)), {robot::rotation_from_rpy(0, 0, 0.3), {0.05, -0.1, 0.02}}},
+      {arm_of(seven), {robot::rotation_from_rpy(0, 0, kPi), {0.9, 0.1, 0}}}};
   for (PlacedArm& r : problem.robots)
     for (Axis& axis : r.arm.axes) {
       axis.lower = -2.8;
@@ -243,7 +244,8 @@ TEST(Sampling, SeveralRobotsAndObjectsAtOnce) {
     for (std::size_t r = 0; r < 2; ++r)
       EXPECT_TRUE(within_limits(problem.robots[r].arm, s->at.joints[r]));
     // In other words: where are the two hands on the rod, and where is the cup?
-    const Vec3 a = reference_pose(rv_6sl(true), s->at.joints[0]).translation;
+    const Vec3 a =
+        problem.robots[0].base * reference_pose(rv_6sl(true), s->at.joints[0]).translation;
     const Vec3 b =
         (problem.robots[1].base * kinematics::forward(problem.robots[1].arm, s->at.joints[1]))
             .translation;
