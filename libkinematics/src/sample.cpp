@@ -86,15 +86,6 @@ Transform moved(const Transform& pose, const Eigen::Ref<const Eigen::VectorXd>& 
   return out;
 }
 
-/// A rotation nearly so, made one again (Gram–Schmidt).
-Mat3 orthonormal(const Mat3& m) {
-  Mat3 r;
-  r.col(0) = m.col(0).normalized();
-  r.col(1) = (m.col(1) - r.col(0) * r.col(0).dot(m.col(1))).normalized();
-  r.col(2) = r.col(0).cross(r.col(1));
-  return r;
-}
-
 Mat3 random_rotation(Random& random) {
   // A uniform unit quaternion (Shoemake).
   const double u = random.between(0, 1), a = random.between(0, 2 * std::numbers::pi),
@@ -301,9 +292,8 @@ class ConstraintSampler::Impl {
     for (std::size_t i = 0; i < problem_.robots.size(); ++i) {
       const PlacedArm& robot = problem_.robots[i];
       if (forms_[i]) {
-        Transform pose = frames_.tools[i].pose;
-        pose.linear = orthonormal(pose.linear);
-        if (!choose(*forms_[i], inverse(robot.base) * pose, joints_[i], within)) return false;
+        const Transform target = inverse(robot.base) * frames_.tools[i].pose;
+        if (!choose(*forms_[i], target, joints_[i], within)) return false;
       } else if (options_.limits) {
         within = within && within_limits(robot.arm, joints_[i]);
       }
@@ -311,8 +301,7 @@ class ConstraintSampler::Impl {
     ++tally_.reached;
     if (!within) return false;
     sample.at.joints = joints_;
-    for (const Frame& frame : frames_.objects)
-      sample.at.objects.push_back({orthonormal(frame.pose.linear), frame.pose.translation});
+    for (const Frame& frame : frames_.objects) sample.at.objects.push_back(frame.pose);
     sample.error = error_of(sample.at);
     return sample.error <= options_.bound;
   }

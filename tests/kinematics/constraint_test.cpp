@@ -302,10 +302,46 @@ TEST(Sampling, AllOfTheConstraintIsCovered) {
 }
 
 TEST(Sampling, ManyDrawsEndWithinTheLimits) {
-  ConstraintSampler sampler(place_on_table(rv_6sl(true)));
-  for (int i = 0; i < 300; ++i) ASSERT_TRUE(sampler.next());
-  // Algorithm 3 without limits: a quarter.
-  EXPECT_GT(sampler.tally().samples * 100, sampler.tally().draws * 35);
+  for (const bool closed_form : {true, false}) {
+    SampleOptions options;
+    options.closed_form = closed_form;
+    ConstraintSampler sampler(place_on_table(rv_6sl(true)), options);
+    for (int i = 0; i < 300; ++i) ASSERT_TRUE(sampler.next());
+    // Algorithm 3 without limits: a quarter.
+    EXPECT_GT(sampler.tally().samples * 100, sampler.tally().draws * 35);
+  }
+}
+
+TEST(Sampling, AllConfigurationsOfAPoseAreDrawn) {
+  // The tool's point and axes are given, but for their directions: four poses.
+  const Transform pose = reference_pose(rv_6sl(true), {0.2, 0.3, 0.9, 0.4, 0.8, 0.1});
+  ConstraintProblem problem = place_on_table(rv_6sl(true));
+  const Vec3 p = pose.translation, x = pose.linear.col(0), z = pose.linear.col(2);
+  problem.constraints = {
+      {Relation::Coincident, {kTool, Point{}}, {kWorld, Point{p}}},
+      {Relation::Parallel, {kTool, Line{}}, {kWorld, Line{p, z}}},
+      {Relation::Parallel, {kTool, Line{{0, 0, 0}, {1, 0, 0}}}, {kWorld, Line{p, x}}}};
+  for (Axis& axis : problem.robots[0].arm.axes) {
+    axis.lower = -kPi;
+    axis.upper = kPi;
+  }
+  const auto form = recognise(problem.robots[0].arm);
+  ASSERT_TRUE(form);
+  std::size_t all = 0;
+  for (const double turn : {0.0, kPi})
+    for (const double flip : {0.0, kPi})
+      all += solve(*form, {pose.linear * robot::rotation_from_rpy(flip, 0, turn), p}).size();
+  ConstraintSampler sampler(problem);
+  std::vector<std::vector<double>> seen;
+  for (int i = 0; i < 600; ++i) {
+    const auto s = sampler.next();
+    ASSERT_TRUE(s);
+    bool known = false;
+    for (const auto& q : seen) known = known || turn_distance(q.data(), s->at.joints[0]) < 1e-6;
+    if (!known) seen.push_back(s->at.joints[0]);
+  }
+  EXPECT_EQ(seen.size(), all);
+  EXPECT_GE(all, 8U);
 }
 
 TEST(Sampling, TheSameSeedGivesTheSameBits) {
