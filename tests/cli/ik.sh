@@ -33,17 +33,17 @@ done
 absent elsewhere
 [ "$(sort -u pose.txt | wc -l)" = 1 ] || fail "several poses: $(cat pose.txt)"
 # shellcheck disable=SC2046
-expect 0 'j1,j2' "$I" arm.urdf --pose $(head -1 pose.txt)
-expect 0 '5.7295' "$I" arm.urdf --pose-of 5.72957795131,20,40,17,50,-11 --degrees
+shows 0 'j1,j2' "$I" arm.urdf --pose $(head -1 pose.txt)
+shows 0 '5.7295' "$I" arm.urdf --pose-of 5.72957795131,20,40,17,50,-11 --degrees
 
 # Whole turns, limits, references.
 expect 0 'configurations within the limits, whole turns counted' "$I" arm.urdf --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2 --copies
 [ "$(wc -l <out.txt)" -gt "$(wc -l <first.csv)" ] || fail "--copies adds none"
-expect 0 '^0.1,0.4,0.7,-5.98' "$I" arm.urdf --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2 --reference 0,0,0,-6,0,0
+shows 0 '^0.1,0.4,0.7,-5.98' "$I" arm.urdf --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2 --reference 0,0,0,-6,0,0
 sed 's/"-3"/"2.9"/' arm.urdf >narrow.urdf
 expect 1 "outside the joints' limits only; see --ignore-limits" "$I" narrow.urdf --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2
-expect 0 '# outside the limits' "$I" narrow.urdf --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2 --ignore-limits
-expect 0 'singular: wrist' "$I" arm.urdf --pose-of 0.1,0.4,0.7,0.3,0,-0.2
+shows 0 '# outside the limits' "$I" narrow.urdf --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2 --ignore-limits
+shows 0 'singular: wrist' "$I" arm.urdf --pose-of 0.1,0.4,0.7,0.3,0,-0.2
 expect 1 'the pose is out of reach' "$I" arm.urdf --pose 5 0 0 0 0 0 1
 
 # Without a closed form.
