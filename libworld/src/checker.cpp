@@ -15,8 +15,9 @@ using collide::PosedSet;
 
 /// For the world that it was used for last.
 struct Scratch::Impl {
-  const World* world = nullptr;
+  std::shared_ptr<const char> checker;  ///< whose items these are
   std::vector<PosedSet> places;         ///< of all items
+  std::vector<char> rests;              ///< of objects: their place is that of a pose, and holds
   std::vector<collide::Memory> memory;  ///< of pairs of items, row by row
 };
 
@@ -63,6 +64,19 @@ bool move_together(const WorldState& state, const Item& a, const Item& b) {
   return x && y && x->robot == y->robot && x->link == y->link;
 }
 
+/// Whether contact of two items is none, whatever is attached.
+bool may_touch(const World& world, const Item& a, const Item& b) {
+  for (const auto& [x, y] : world.allowed)
+    if ((a == x && b == y) || (a == y && b == x)) return true;
+  if (a.robot == Item::kObject || a.robot != b.robot) return false;
+  const RobotModel& robot = world.robots[a.robot];
+  const auto [low, high] = std::minmax(robot.shapes[a.index].link, robot.shapes[b.index].link);
+  if (low == high) return true;
+  for (const AllowedPair& pair : robot.allowed)
+    if (pair.a == low && pair.b == high) return true;
+  return false;
+}
+
 }  // namespace
 
 Contact contact_of(const World& world, const Item& a, const Item& b, const PosedSet& at_a,
@@ -97,7 +111,7 @@ Checker::Checker(const World& world) : world_(&world) {
       const Item item{r, s};
       items_.push_back(item);
       hulls_[item] = detail::hull_points(robot.shapes[s].outer);
-      radius_[item] = detail::radius_of(robot.shapes[s].outer);
+      radius_.push_back(detail::radius_of(robot.shapes[s].outer));
       if (hulls_[item].empty()) hulls_[item].emplace_back(Vec3::Zero());
       const sweep::LinkMotion motion(robot.kinematics, robot.shapes[s].link, low, high);
       error_.back().push_back(
@@ -111,35 +125,23 @@ Checker::Checker(const World& world) : world_(&world) {
     items_.push_back(item);
     hulls_[item] = detail::hull_points(world.objects[o].outer);
     if (hulls_[item].empty()) hulls_[item].emplace_back(Vec3::Zero());
-    radius_[item] = detail::radius_of(world.objects[o].outer);
+    radius_.push_back(detail::radius_of(world.objects[o].outer));
   }
-  const std::size_t n = items_.size();
-  allowed_.assign(n * n, 0);
-  const auto allow = [&](std::size_t i, std::size_t j) {
-    allowed_[i * n + j] = allowed_[j * n + i] = 1;
-  };
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = i + 1; j < n; ++j) {
-      const Item &a = items_[i], &b = items_[j];
-      for (const auto& [x, y] : world.allowed)
-        if ((a == x && b == y) || (a == y && b == x)) allow(i, j);
-      if (a.robot == Item::kObject || a.robot != b.robot) continue;
-      const RobotModel& robot = world.robots[a.robot];
-      const auto [low, high] = std::minmax(robot.shapes[a.index].link, robot.shapes[b.index].link);
-      for (const AllowedPair& pair : robot.allowed)
-        if (pair.a == low && pair.b == high) allow(i, j);
-    }
-  }
+  for (std::size_t i = 0; i < items_.size(); ++i)
+    for (std::size_t j = i + 1; j < items_.size(); ++j)
+      if (!may_touch(world, items_[i], items_[j]))
+        (items_[i].robot == Item::kObject ? object_pairs_ : robot_pairs_).push_back({i, j});
 }
 
 void Checker::place(const WorldState& state, Scratch& scratch) const {
   require_fits(*world_, state);
   Scratch::Impl& s = *scratch.impl_;
-  if (s.world != world_) {
+  if (s.checker != identity_) {
     s.places.clear();
     for (const Item& item : items_) s.places.emplace_back(world_->outer(item));
     s.memory.assign(items_.size() * items_.size(), {});
-    s.world = world_;
+    s.rests.assign(world_->objects.size(), 0);
+    s.checker = identity_;
   }
   std::vector<std::vector<Transform>> links;
   std::size_t next = 0;
@@ -163,12 +165,18 @@ void Checker::place(const WorldState& state, Scratch& scratch) const {
     }
   }
   for (std::size_t o = 0; o < world_->objects.size(); ++o, ++next) {
-    const double radius = radius_.at(items_[next]);
+    const double radius = radius_[next];
     const auto& attachment = state.attachments[o];
     if (!attachment) {
-      s.places[next].place(state.poses[o], detail::rotation_error(state.poses[o], radius));
+      // Most objects rest from one query to the next.
+      const Transform &pose = state.poses[o], &before = s.places[next].pose();
+      if (s.rests[o] != 0 && pose.linear == before.linear && pose.translation == before.translation)
+        continue;
+      s.places[next].place(pose, detail::rotation_error(pose, radius));
+      s.rests[o] = 1;
       continue;
     }
+    s.rests[o] = 0;
     const RobotModel& robot = world_->robots[attachment->robot];
     const std::vector<double>& q = state.q[attachment->robot];
     std::vector<Vec3> points;
@@ -183,26 +191,19 @@ void Checker::place(const WorldState& state, Scratch& scratch) const {
 
 template <typename Pair>
 void Checker::visit(const WorldState& state, const Options& options, const Pair& pair) const {
-  const std::size_t n = items_.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    const Item& a = items_[i];
-    for (std::size_t j = i + 1; j < n; ++j) {
-      const Item& b = items_[j];
-      if (allowed_[i * n + j] != 0) continue;
-      if (b.robot == Item::kObject) {
-        if (a.robot == Item::kObject) {
-          if (!options.resting && !state.attachments[a.index] && !state.attachments[b.index])
-            continue;
-          if (move_together(state, a, b)) continue;
-        } else if (is_carried_by_link(state, b, a, *world_)) {
-          continue;
-        }
-      } else if (a.robot == b.robot && world_->robots[a.robot].shapes[a.index].link ==
-                                           world_->robots[b.robot].shapes[b.index].link) {
-        continue;
-      }
-      if (pair(i, j)) return;
-    }
+  const bool carries = std::any_of(state.attachments.begin(), state.attachments.end(),
+                                   [](const auto& attachment) { return attachment.has_value(); });
+  for (const auto& [i, j] : robot_pairs_) {
+    if (carries && items_[j].robot == Item::kObject &&
+        is_carried_by_link(state, items_[j], items_[i], *world_))
+      continue;
+    if (pair(i, j)) return;
+  }
+  if (!carries && !options.resting) return;
+  for (const auto& [i, j] : object_pairs_) {
+    const bool rest = !state.attachments[items_[i].index] && !state.attachments[items_[j].index];
+    if ((rest && !options.resting) || move_together(state, items_[i], items_[j])) continue;
+    if (pair(i, j)) return;
   }
 }
 

@@ -177,6 +177,30 @@ TEST(Checker, ErrorsOfPlacesCount) {
   EXPECT_FALSE(checker.find_contact(state, scratch));
 }
 
+TEST(Checker, MemoryOfAnotherWorldIsNotUsed) {
+  const SceneFiles files;
+  const World near = files.world(files.scene(objects(files, {"[2, 0, 0]"}))),
+              far = files.world(files.scene(objects(files, {"[2, 9, 0]"})));
+  Scratch scratch;
+  std::optional<World> world;
+  for (int i = 0; i < 6; ++i) {
+    world = i % 2 == 0 ? near : far;  // at the same address
+    const Checker checker(*world);
+    EXPECT_EQ(checker.find_contact(initial_state(*world), scratch).has_value(), i % 2 == 0);
+  }
+  // Objects that are moved, carried, and put back.
+  const Checker checker(near);
+  WorldState state = initial_state(near);
+  EXPECT_TRUE(checker.find_contact(state, scratch));
+  state.poses[0].translation.y() = 9;
+  EXPECT_FALSE(checker.find_contact(state, scratch));
+  WorldState held = state;
+  held.attachments[0] = Attachment{0, 3, {Eigen::Matrix3d::Identity(), {1.6, 0, 0}}, {}};
+  EXPECT_FALSE(checker.find_contact(held, scratch));
+  EXPECT_FALSE(checker.find_contact(state, scratch));
+  EXPECT_TRUE(checker.find_contact(initial_state(near), scratch));
+}
+
 TEST(Checker, RefusesStatesOfOtherWorlds) {
   const SceneFiles files;
   const World world = files.world(files.scene());

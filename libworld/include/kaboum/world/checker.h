@@ -95,11 +95,12 @@ class Checker {
   void visit(const WorldState& state, const Options& options, const Pair& pair) const;
 
   const World* world_;
+  std::shared_ptr<const char> identity_ = std::make_shared<char>();  ///< of this and its copies
   std::vector<Item> items_;
   std::map<Item, std::vector<Vec3>> hulls_;
-  std::map<Item, double> radius_;
-  /// By place in items_, row by row: whether a pair of items may touch.
-  std::vector<char> allowed_;
+  std::vector<double> radius_;  ///< of items_
+  /// Places in items_ of pairs that may collide: with a robot's shape first, of two objects.
+  std::vector<std::array<std::size_t, 2>> robot_pairs_, object_pairs_;
   std::vector<std::vector<double>> error_;  ///< of robots' shapes, for values from low_ to high_
   std::vector<std::vector<double>> low_, high_;
 };
