@@ -1,7 +1,8 @@
-// Closest point on a triangle: C. Ericson, Real-Time Collision Detection (2005), 5.1.5; the bounds
+// Closest point on a triangle: [ericson2005], 5.1.5; the bounds
 // around it are derived in docs/algorithms/distances.md.
 #include <kaboum/base/error.h>
 #include <kaboum/geom/distance.h>
+#include <kaboum/geom/rounding.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,10 +10,6 @@
 
 namespace kaboum::geom {
 namespace {
-
-// Rounding errors are below kRounding (72 · 2^-53) times the largest |coordinate difference|, and
-// below kRounding relatively in norms and quotients.
-constexpr double kRounding = 8e-15;
 
 /// Weights (s, t) of a point a + s·(b−a) + t·(c−a) of the triangle that is closest to the origin,
 /// up to rounding; s, t ≥ 0 and s + t ≤ 1 up to 2^-52.
@@ -44,11 +41,11 @@ std::pair<double, double> closest_weights(const Vec3& a, const Vec3& b, const Ve
 /// point of it is nearer than its nearest corner along that direction.
 DistanceBounds bounds_from(const Vec3& q, const Vec3& direction, const Vec3& a, const Vec3& b,
                            const Vec3& c, double slack) {
-  const double upper = q.norm() * (1 + kRounding) + slack;
+  const double upper = q.norm() * (1 + kDistanceRounding) + slack;
   const double length = direction.norm();
   if (!(length > 0)) return {0, upper};
   const double support = std::min({direction.dot(a), direction.dot(b), direction.dot(c)}) / length;
-  return {std::max(0.0, support * (1 - kRounding) - slack), upper};
+  return {std::max(0.0, support * (1 - kDistanceRounding) - slack), upper};
 }
 
 /// Bounds for the triangle (a, b, c) given relative to the query point; wider ones where it is
@@ -56,15 +53,15 @@ DistanceBounds bounds_from(const Vec3& q, const Vec3& direction, const Vec3& a, 
 DistanceBounds bounds_at_origin(const Vec3& a, const Vec3& b, const Vec3& c,
                                 double enough = std::numeric_limits<double>::infinity()) {
   const double slack =
-      kRounding * a.cwiseAbs().cwiseMax(b.cwiseAbs()).cwiseMax(c.cwiseAbs()).maxCoeff();
+      kDistanceRounding * a.cwiseAbs().cwiseMax(b.cwiseAbs()).cwiseMax(c.cwiseAbs()).maxCoeff();
   const auto [s, t] = closest_weights(a, b, c);
   const Vec3 ab = b - a, ac = c - a;
   const Vec3 nearest = a + s * ab + t * ac;
   DistanceBounds best{0, 0};
   if (const double length = nearest.norm(); length > 0) {
-    best.upper = length * (1 + kRounding) + slack;
+    best.upper = length * (1 + kDistanceRounding) + slack;
     const double support = std::min({nearest.dot(a), nearest.dot(b), nearest.dot(c)}) / length;
-    best.lower = std::max(0.0, support * (1 - kRounding) - slack);
+    best.lower = std::max(0.0, support * (1 - kDistanceRounding) - slack);
   } else {
     best.upper = slack;
   }
@@ -104,7 +101,7 @@ inline double squared_distance(const Vec3& p, const Vec3& min, const Vec3& max) 
     const double d = std::max(std::max(min[k] - p[k], p[k] - max[k]), 0.0);
     sum += d * d;
   }
-  return sum * (1 - kRounding);
+  return sum * (1 - kDistanceRounding);
 }
 inline double squared_distance(const Vec3& p, const Box3& box) {
   return squared_distance(p, box.min, box.max);
@@ -125,7 +122,7 @@ bool box_beyond(const Vec3& p, const std::array<Vec3, 3>& t, double radius) {
     const double d = std::max(std::max(low, high), 0.0);
     sum += d * d;
   }
-  return sum * (1 - kRounding) > radius * radius;
+  return sum * (1 - kDistanceRounding) > radius * radius;
 }
 
 double point_triangle_upper(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -136,8 +133,8 @@ double point_triangle_upper(const Vec3& p, const Vec3& a, const Vec3& b, const V
   const auto [s, t] = closest_weights(x, y, z);
   const Vec3 nearest = x + s * u + t * v;
   const double slack =
-      kRounding * x.cwiseAbs().cwiseMax(y.cwiseAbs()).cwiseMax(z.cwiseAbs()).maxCoeff();
-  return nearest.norm() * (1 + kRounding) + slack;
+      kDistanceRounding * x.cwiseAbs().cwiseMax(y.cwiseAbs()).cwiseMax(z.cwiseAbs()).maxCoeff();
+  return nearest.norm() * (1 + kDistanceRounding) + slack;
 }
 
 Vec3 nearest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -191,7 +188,7 @@ TriangleSearch::Nearest DistanceQuery::nearest(const Vec3& p, std::uint32_t hint
     if (d.upper < best.upper) {
       best.upper = d.upper;
       best.triangle = triangle;
-      best_squared = d.upper * d.upper * (1 + kRounding);
+      best_squared = d.upper * d.upper * (1 + kDistanceRounding);
     }
   };
   if (hint != kNone) consider(position_[hint], hint);

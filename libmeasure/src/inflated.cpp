@@ -5,6 +5,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/base/parallel.h>
 #include <kaboum/geom/convex_hull.h>
+#include <kaboum/geom/rounding.h>
 #include <kaboum/geom/topology.h>
 
 #include <algorithm>
@@ -65,8 +66,9 @@ Mesh inflated(const Mesh& hull, double margin, const Sphere& sphere) {
   const geom::Box3 box = geom::bounding_box(body);
   // A vertex that is extreme in some direction is this near to being so in that of a point of the
   // sphere, too; the second part covers rounding.
-  const double near = box.diagonal() * std::sqrt(2 - 2 * sphere.inner) * (1 + 1e-9) +
-                      8e-15 * box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).maxCoeff();
+  const double near =
+      box.diagonal() * std::sqrt(2 - 2 * sphere.inner) * (1 + 1e-9) +
+      geom::kDistanceRounding * box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).maxCoeff();
   std::vector<Vec3> points;
   for (const Vec3& q : sphere.points) {
     double highest = -std::numeric_limits<double>::infinity();

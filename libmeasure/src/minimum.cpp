@@ -3,6 +3,7 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <kaboum/base/error.h>
 #include <kaboum/geom/bvh.h>
+#include <kaboum/geom/rounding.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/measure/measure.h>
 
@@ -19,8 +20,8 @@ using geom::Vec3;
 using Corners = std::array<Vec3, 3>;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-// As in libgeom/src/distance.cpp: docs/algorithms/distances.md.
-constexpr double kRounding = 1.6e-14;
+// A point and a triangle, twice over: docs/algorithms/distances.md, "Smallest distance".
+constexpr double kRounding = 2 * geom::kDistanceRounding;
 
 Kernel::Point_3 point(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 

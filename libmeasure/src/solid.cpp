@@ -2,6 +2,7 @@
 // docs/algorithms/distances.md, "Solids".
 #include <kaboum/base/error.h>
 #include <kaboum/geom/predicates.h>
+#include <kaboum/geom/rounding.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/geom/winding.h>
 #include <kaboum/measure/solid.h>
@@ -14,11 +15,9 @@ namespace kaboum::measure {
 namespace {
 
 using geom::Box3;
+using geom::kDistanceRounding;
 using geom::Mesh;
 using geom::Vec3;
-
-/// As in libgeom/src/distance.cpp.
-constexpr double kRounding = 8e-15;
 
 /// Whether a plane certainly separates the convex hull of the corners from the triangle, with more
 /// than `margin` between them; tried are the planes across the triangle's and the polygon's normal
@@ -34,7 +33,7 @@ bool separated(std::span<const Vec3> corners, const std::array<Vec3, 3>& t, doub
   }
   const std::array<Vec3, 3> q{Vec3::Zero(), t[1] - origin, t[2] - origin};
   for (const Vec3& x : q) magnitude = std::max(magnitude, x.cwiseAbs().maxCoeff());
-  const double least = margin + 2 * kRounding * magnitude;
+  const double least = margin + 2 * kDistanceRounding * magnitude;
   const auto separates = [&](const Vec3& direction) {
     const double length = direction.norm();
     if (!(length > 0)) return false;
@@ -46,7 +45,7 @@ bool separated(std::span<const Vec3> corners, const std::array<Vec3, 3>& t, doub
     }
     const double x = direction.dot(q[1]), y = direction.dot(q[2]);
     const double gap = std::max(low - std::max({0.0, x, y}), std::min({0.0, x, y}) - high);
-    return gap > least * length * (1 + kRounding);
+    return gap > least * length * (1 + kDistanceRounding);
   };
   const Vec3 normal = q[1].cross(q[2]);
   if (separates(normal)) return true;
@@ -183,7 +182,7 @@ double Solid::distance(const Vec3& p, double to_boundary) const {
 }
 
 bool Solid::covers_ball(const Vec3& center, double radius, double distance) const {
-  return distance > radius * (1 + kRounding) + boundary_.error &&
+  return distance > radius * (1 + kDistanceRounding) + boundary_.error &&
          contains(center, distance) == std::optional(true);
 }
 
@@ -196,12 +195,12 @@ bool Solid::covers(std::span<const Vec3> corners, double slack) const {
   }
   center /= static_cast<double>(corners.size());
   // Corners move towards the centre, by no more than the slack with all rounding.
-  const double rounding = 4 * kRounding * magnitude;
+  const double rounding = 4 * kDistanceRounding * magnitude;
   slack -= rounding;
   if (!(slack > 0)) return false;
   double radius = 0;
   for (const Vec3& p : corners) radius = std::max(radius, (p - center).norm());
-  const double shrink = radius > slack ? slack / radius * (1 - kRounding) : 1;
+  const double shrink = radius > slack ? slack / radius * (1 - kDistanceRounding) : 1;
   std::array<Vec3, 8> shrunk;
   Box3 box;
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -230,7 +229,7 @@ bool Solid::near(const Vec3& p, double radius, std::size_t most,
                  std::vector<std::uint32_t>& triangles) const {
   triangles.clear();
   bool few = true;
-  const double limit = radius * radius * (1 + kRounding);
+  const double limit = radius * radius * (1 + kDistanceRounding);
   bvh_.traverse(
       [&](const Box3& box) {
         return few && (box.min - p).cwiseMax(p - box.max).cwiseMax(0.0).squaredNorm() <= limit;

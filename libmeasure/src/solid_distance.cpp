@@ -2,6 +2,7 @@
 // arguments are in docs/algorithms/distances.md, "Solids".
 #include <kaboum/base/error.h>
 #include <kaboum/base/parallel.h>
+#include <kaboum/geom/rounding.h>
 #include <kaboum/measure/solid.h>
 
 #include <tbb/blocked_range.h>
@@ -15,15 +16,14 @@ namespace kaboum::measure {
 namespace {
 
 using geom::Box3;
+using geom::kDistanceRounding;
 using geom::TriangleSearch;
 using geom::Vec3;
 
 constexpr std::uint32_t kNone = TriangleSearch::kNone;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// As in libgeom/src/distance.cpp.
-constexpr double kRounding = 8e-15;
-/// As geom::ConvexPolygon::kCutError: what one cut moves a corner by, times the largest coordinate.
-constexpr double kCutError = 1e-15;
+/// What one cut moves a corner by, times the largest coordinate.
+constexpr double kCutError = geom::ConvexPolygon::kCutError;
 
 /// A tetrahedron of space.
 struct Cell {
@@ -290,11 +290,11 @@ class Volume {
     const Vec3 c = cell.center();
     double radius = 0;
     for (const Vec3& p : cell.corner) radius = std::max(radius, (p - c).norm());
-    radius = radius * (1 + kRounding) + moved;
+    radius = radius * (1 + kDistanceRounding) + moved;
     const auto at = to_b_.nearest(c, cell.nearest);
     cell.nearest = cell.at_worst = at.triangle;
     cell.far = radius < 0.5 * at.lower;
-    cell.upper = std::min(cell.upper, (at.upper + radius) * (1 + kRounding));
+    cell.upper = std::min(cell.upper, (at.upper + radius) * (1 + kDistanceRounding));
     const auto [worst, where] = worst_corner(cell, at.triangle);
     cell.worst = where;
     cell.upper = std::min(cell.upper, worst + moved);
@@ -322,7 +322,8 @@ class Volume {
   [[nodiscard]] bool outside_a(const Vec3& c, double radius) const {
     const double reach = radius + a_.margin() + a_.boundary().error;
     const auto at = to_a_.nearest(c);
-    return at.lower > reach * (1 + kRounding) && a_.contains(c, at.lower) == std::optional(false);
+    return at.lower > reach * (1 + kDistanceRounding) &&
+           a_.contains(c, at.lower) == std::optional(false);
   }
 
   /// Whether the ball certainly holds no point outside S(B) that is a local maximum of the distance
@@ -331,7 +332,7 @@ class Volume {
   bool has_no_maximum(Cell& cell, const Vec3& c, double radius, double distance, double enough,
                       std::vector<std::uint32_t>& near, HalfSpace& half_space) const {
     const double error = b_.boundary().error;
-    const double reach = (distance + 2 * radius + 2 * error) * (1 + kRounding);
+    const double reach = (distance + 2 * radius + 2 * error) * (1 + kDistanceRounding);
     cell.few = b_.near(c, reach, kMostNear, near);
     if (!cell.few) return false;
     cell.few = near.size() <= kFew;
@@ -343,8 +344,8 @@ class Volume {
       const Vec3 v = geom::nearest_point(c, corners[0], corners[1], corners[2]) - c;
       double scale = c.cwiseAbs().maxCoeff();
       for (const Vec3& p : corners) scale = std::max(scale, p.cwiseAbs().maxCoeff());
-      const double slack = 4 * kRounding * scale;
-      const double length = v.norm() * (1 + kRounding) + slack;
+      const double slack = 4 * kDistanceRounding * scale;
+      const double length = v.norm() * (1 + kDistanceRounding) + slack;
       const double turn = std::sqrt(std::max(0.0, length * length - d.lower * d.lower));
       const double least = radius + error + 2 * std::sqrt(error * (length + radius + error)) +
                            slack + turn + 1e-14 * length;
@@ -364,7 +365,7 @@ class Volume {
       if ((exposed >> k & 1U) != 0 &&
           geom::point_triangle_distance(c, p[k], p[(k + 1) % 3], p[(k + 1) % 3]).lower <= reach)
         return true;
-      if ((exposed >> (3 + k) & 1U) != 0 && (p[k] - c).norm() * (1 - kRounding) <= reach)
+      if ((exposed >> (3 + k) & 1U) != 0 && (p[k] - c).norm() * (1 - kDistanceRounding) <= reach)
         return true;
     }
     // Heights above the plane of the facet that t is a part of.
@@ -377,8 +378,8 @@ class Volume {
       highest = std::max(highest, n.dot(x - facet[0]) / length);
       size = std::max(size, (x - facet[0]).cwiseAbs().maxCoeff());
     }
-    const double slack =
-        cell.cuts * kCutError * magnitude_ + b_.boundary().error + size * 4 * kRounding / sine;
+    const double slack = cell.cuts * kCutError * magnitude_ + b_.boundary().error +
+                         size * 4 * kDistanceRounding / sine;
     return highest + slack >= enough;
   }
 

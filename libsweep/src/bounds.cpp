@@ -1,4 +1,5 @@
 #include <kaboum/base/error.h>
+#include <kaboum/geom/rounding.h>
 #include <kaboum/sweep/motion.h>
 
 #include <algorithm>
@@ -7,8 +8,7 @@
 namespace kaboum::sweep {
 namespace {
 
-/// Covers the rounding of a few hundred operations on positive numbers.
-constexpr double kUp = 1 + 0x1p-40;
+using geom::kUp;
 
 }  // namespace
 

@@ -1,4 +1,5 @@
 #include <kaboum/base/error.h>
+#include <kaboum/geom/rounding.h>
 #include <kaboum/sweep/steps.h>
 
 #include <algorithm>
@@ -9,7 +10,8 @@
 namespace kaboum::sweep {
 namespace {
 
-constexpr double kUp = 1 + 0x1p-40;
+using geom::kUp;
+
 constexpr std::size_t kMostPieces = 1'000'000;
 
 struct Segment {

@@ -2,6 +2,7 @@
 #include <kaboum/base/parallel.h>
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/geom/float32.h>
+#include <kaboum/geom/rounding.h>
 #include <kaboum/sweep/sweep.h>
 
 #include <tbb/enumerable_thread_specific.h>
@@ -15,7 +16,8 @@
 namespace kaboum::sweep {
 namespace {
 
-constexpr double kUp = 1 + 0x1p-40;
+using geom::kUp;
+
 /// Circumscribed radius of the icosahedron that stands for a unit ball, see enlarge.
 constexpr double kOvershoot = 1.2585;
 /// Share of epsilon that bodies with an explicit margin are enlarged by at least: where hardly

@@ -10,8 +10,8 @@ namespace kaboum {
 
 // TBB's loops, none of which is cut short because of what happens elsewhere. A loop of TBB's own
 // belongs to the group of tasks it is called from: where a sibling there throws, all loops within
-// end at once, without an exception, and leave undone what nobody knows of. What is called from a
-// task of somebody else's would then go on with half a hierarchy, and claim what nothing holds.
+// end at once, without an exception, and what they leave undone is unspecified. A task that called
+// such a loop would go on with half a hierarchy, and what it claims would be proved by nothing.
 // These end when all is done, or throw what one of their own tasks has thrown.
 
 /// Calls body(i) for all i from first to last, without last, or body(range) for parts of a range.
