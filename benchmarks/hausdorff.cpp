@@ -16,11 +16,12 @@
 #include <CGAL/Polygon_mesh_processing/distance.h>
 #include <CGAL/Surface_mesh.h>
 #include <kaboum/bmesh/decimate.h>
+#include <kaboum/distance/minimum.h>
+#include <kaboum/distance/sampling.h>
+#include <kaboum/distance/search.h>
 #include <kaboum/geom/distance.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/io/mesh_io.h>
-#include <kaboum/measure/measure.h>
-#include <kaboum/measure/search.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>
@@ -56,21 +57,21 @@ struct Answer {
   double lower[2]{}, upper[2]{};
 };
 
-Answer ours(const geom::Mesh& a, const geom::Mesh& b, measure::Backend backend) {
+Answer ours(const geom::Mesh& a, const geom::Mesh& b, distance::Backend backend) {
   Answer answer;
   const double start = user_seconds();
   geom::DistanceOptions options;
   options.relative_gap = 0;
   options.absolute_gap = kError;
-  const auto search_a = measure::make_search(a, backend),
-             search_b = measure::make_search(b, backend);
+  const auto search_a = distance::make_search(a, backend),
+             search_b = distance::make_search(b, backend);
   const double built = user_seconds();
   const auto there = geom::directed_distance(*search_a, *search_b, options);
   const double turned = user_seconds();
   const auto back = geom::directed_distance(*search_b, *search_a, options);
   answer.seconds = user_seconds() - start;
   std::printf("  %-9s build %.3f, there %.3f (%llu queries), back %.3f (%llu)\n",
-              backend == measure::Backend::Own ? "own" : "Embree", built - start, turned - built,
+              backend == distance::Backend::Own ? "own" : "Embree", built - start, turned - built,
               static_cast<unsigned long long>(there.queries), user_seconds() - turned,
               static_cast<unsigned long long>(back.queries));
   answer.lower[0] = there.max_lower;
@@ -101,8 +102,8 @@ void compare(const char* title, const geom::Mesh& a, const geom::Mesh& b, bool w
   geom::Box3 box = geom::bounding_box(a);
   box.extend(geom::bounding_box(b));
   std::printf("%s: %zu and %zu triangles\n", title, a.triangles.size(), b.triangles.size());
-  const Answer own = ours(a, b, measure::Backend::Own);
-  const Answer embree = ours(a, b, measure::Backend::Embree);
+  const Answer own = ours(a, b, distance::Backend::Own);
+  const Answer embree = ours(a, b, distance::Backend::Embree);
   for (int k = 0; k < 2; ++k)
     std::printf("  %s [%.6e, %.6e]\n", k == 0 ? "there" : "back ", embree.lower[k],
                 embree.upper[k]);
@@ -122,8 +123,8 @@ void compare(const char* title, const geom::Mesh& a, const geom::Mesh& b, bool w
 std::pair<double, double> sampled_maximum(const geom::Mesh& a, const geom::TriangleSearch& b,
                                           std::uint64_t samples) {
   double largest = 0;  // one thread
-  const measure::Sampled s =
-      measure::sample_distances(a, b, samples, 1, [&](const geom::Vec3&, double d) {
+  const distance::Sampled s =
+      distance::sample_distances(a, b, samples, 1, [&](const geom::Vec3&, double d) {
         largest = std::max(largest, d);
         return d;
       });
@@ -135,10 +136,10 @@ bool check(const char* title, const geom::Mesh& a, const geom::Mesh& b, std::uin
   geom::Box3 box = geom::bounding_box(a);
   box.extend(geom::bounding_box(b));
   const double error = kError * box.diagonal();
-  const Answer embree = ours(a, b, measure::Backend::Embree);
+  const Answer embree = ours(a, b, distance::Backend::Embree);
   const Answer reference = cgal(a, b, error);
-  const auto search_a = measure::make_search(a, measure::Backend::Embree),
-             search_b = measure::make_search(b, measure::Backend::Embree);
+  const auto search_a = distance::make_search(a, distance::Backend::Embree),
+             search_b = distance::make_search(b, distance::Backend::Embree);
   const auto there = sampled_maximum(a, *search_b, samples),
              back = sampled_maximum(b, *search_a, samples);
   bool good = true;

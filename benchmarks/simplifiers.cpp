@@ -20,9 +20,11 @@
 #include <CGAL/Surface_mesh_simplification/edge_collapse.h>
 #include <kaboum/base/error.h>
 #include <kaboum/bmesh/decimate.h>
+#include <kaboum/distance/minimum.h>
+#include <kaboum/distance/sampling.h>
+#include <kaboum/distance/search.h>
 #include <kaboum/geom/prepare.h>
 #include <kaboum/io/mesh_io.h>
-#include <kaboum/measure/measure.h>
 #include <meshoptimizer.h>
 #include <sys/wait.h>
 #include <tbb/global_control.h>
@@ -179,12 +181,12 @@ void measure_into(Json& row, const geom::Mesh& original, const geom::Mesh& resul
   const double percent = 100 / geom::bounding_box(original).diagonal();
   geom::DistanceOptions gap;
   gap.relative_gap = 1e-2;
-  const auto a = measure::make_search(original, measure::Backend::Embree),
-             b = measure::make_search(result, measure::Backend::Embree);
+  const auto a = distance::make_search(original, distance::Backend::Embree),
+             b = distance::make_search(result, distance::Backend::Embree);
   row["to_result_max"] = percent * geom::directed_distance(*a, *b, gap).max_upper;
   row["to_original_max"] = percent * geom::directed_distance(*b, *a, gap).max_upper;
-  row["to_result_mean"] = percent * measure::sample_distances(original, *b, 100000, 1).mean.value;
-  row["to_original_mean"] = percent * measure::sample_distances(result, *a, 100000, 1).mean.value;
+  row["to_result_mean"] = percent * distance::sample_distances(original, *b, 100000, 1).mean.value;
+  row["to_original_mean"] = percent * distance::sample_distances(result, *a, 100000, 1).mean.value;
 }
 
 Json run(const Input& input, const std::string& method, double ratio, bool distances) {

@@ -1,6 +1,6 @@
 #include <kaboum/base/error.h>
+#include <kaboum/distance/compare.h>
 #include <kaboum/io/mesh_io.h>
-#include <kaboum/measure/compare.h>
 
 #include <array>
 #include <chrono>
@@ -17,7 +17,7 @@
 namespace {
 
 using namespace kaboum;  // the tool's own names are few
-using measure::Comparison;
+using distance::Comparison;
 using tools::Json;
 
 struct Options {
@@ -113,19 +113,19 @@ void check_files(const Options& o) {
   require(extension == ".png" || extension == ".ply", "--heatmap: give a .png or .ply file");
 }
 
-measure::CompareOptions compare_options(const Options& o, tools::Progress& progress) {
-  measure::CompareOptions c;
+distance::CompareOptions compare_options(const Options& o, tools::Progress& progress) {
+  distance::CompareOptions c;
   c.solid = o.solid;
   c.relative_gap = o.gap;
   c.samples = o.samples;
   c.seed = o.common.seed;
-  c.backend = o.backend == "own" ? measure::Backend::Own : measure::Backend::Embree;
+  c.backend = o.backend == "own" ? distance::Backend::Own : distance::Backend::Embree;
   c.progress = [&progress](const std::string& stage) { progress.show(stage); };
   return c;
 }
 
 /// Bytes of the file asked for.
-std::vector<char> heatmap(const Options& o, const Comparison& c, const measure::Compared& result) {
+std::vector<char> heatmap(const Options& o, const Comparison& c, const distance::Compared& result) {
   const double part = c.diagonal() / 100;
   geom::Mesh a = picture::refined(c.surface(Comparison::A), part);
   const std::vector<double> to_b = c.distances(a, Comparison::B);
@@ -142,7 +142,7 @@ std::vector<char> heatmap(const Options& o, const Comparison& c, const measure::
 }
 
 /// The exit code, said where it is not 0.
-int conclude(const Options& o, double diagonal, const measure::Compared& result) {
+int conclude(const Options& o, double diagonal, const distance::Compared& result) {
   if (!o.at_most.empty()) {
     const double limit = tools::parse_length(o.at_most)->of(diagonal);
     if (result.upper() > limit) {
@@ -180,14 +180,14 @@ int run(const Options& o) {
   const double reading = since(start);
   const auto begin = now();
   const auto shape_of = [](tools::ShapeFile& file) {
-    measure::Shape shape = std::move(file.shape);
+    distance::Shape shape = std::move(file.shape);
     file.shape.name = shape.name;
     return shape;
   };
   const Comparison comparison(shape_of(files[0]), shape_of(files[1]), compare_options(o, progress));
   const double building = since(begin);
   const auto built = now();
-  const measure::Compared result = comparison.measure();
+  const distance::Compared result = comparison.measure();
   progress.show("colours");
   if (!o.heatmap.empty()) io::write_file(o.heatmap, heatmap(o, comparison, result));
   const double measuring = since(built);

@@ -7,9 +7,9 @@
 
 namespace kaboum::tools {
 
+using distance::Comparison;
+using distance::OneWay;
 using geom::Vec3;
-using measure::Comparison;
-using measure::OneWay;
 
 namespace {
 
@@ -40,7 +40,7 @@ std::string ComparisonReport::table() const {
   const auto interval = [&](double lower, double upper) {
     return "[" + formatted(lower) + ", " + formatted(upper) + "]";
   };
-  const auto estimate = [](const measure::Estimate& e) {
+  const auto estimate = [](const distance::Estimate& e) {
     return formatted(e.value) + " ± " + formatted(e.standard_error, 2);
   };
   const OneWay &to_b = result.a_to_b, &to_a = result.b_to_a;

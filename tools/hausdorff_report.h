@@ -1,6 +1,6 @@
 #pragma once
 
-#include <kaboum/measure/compare.h>
+#include <kaboum/distance/compare.h>
 
 #include <array>
 #include <string>
@@ -14,8 +14,8 @@ namespace kaboum::tools {
 
 struct ComparisonReport {
   const std::array<ShapeFile, 2>& files;  ///< without their shapes
-  const measure::Comparison& comparison;
-  const measure::Compared& result;
+  const distance::Comparison& comparison;
+  const distance::Compared& result;
   bool solid;
 
   [[nodiscard]] std::string table() const;
@@ -25,8 +25,8 @@ struct ComparisonReport {
 
  private:
   [[nodiscard]] double relative(double x) const;
-  [[nodiscard]] Json side(measure::Comparison::Side side) const;
-  [[nodiscard]] Json way(const measure::OneWay& way) const;
+  [[nodiscard]] Json side(distance::Comparison::Side side) const;
+  [[nodiscard]] Json way(const distance::OneWay& way) const;
 };
 
 /// Six digits.

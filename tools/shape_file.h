@@ -1,6 +1,6 @@
 #pragma once
 
-#include <kaboum/measure/compare.h>
+#include <kaboum/distance/compare.h>
 
 #include <string>
 #include <vector>
@@ -9,7 +9,7 @@ namespace kaboum::tools {
 
 /// A mesh or a set of bodies from a file.
 struct ShapeFile {
-  measure::Shape shape;
+  distance::Shape shape;
   bool is_set = false;
   std::size_t bodies = 0;  ///< of a set
   double margin = 0;       ///< of a set [length]

@@ -1,6 +1,6 @@
 // How far two surfaces are apart at most, certified.
 
-#include <kaboum/measure/hausdorff.h>
+#include <kaboum/distance/hausdorff.h>
 
 #include <iostream>
 
@@ -8,7 +8,7 @@
 
 int main() {
   const auto distance =
-      kaboum::measure::hausdorff(box({0, 0, 0}, {1, 1, 1}), box({0, 0, 0}, {1, 1, 1.5}));
+      kaboum::distance::hausdorff(box({0, 0, 0}, {1, 1, 1}), box({0, 0, 0}, {1, 1, 1.5}));
   std::cout << "the Hausdorff distance is between " << distance.lower() << " and "
             << distance.upper() << '\n';
   return distance.lower() <= 0.5 && distance.upper() >= 0.5 ? 0 : 1;
