@@ -1,0 +1,216 @@
+// Which plane a piece is cut by. docs/algorithms/convex-decomposition.md,
+// "Search".
+
+#include "cut_chooser.h"
+
+#include <kaboum/base/parallel.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "principal_box.h"
+#include "symmetry.h"
+
+namespace kaboum::bcd {
+namespace {
+
+/// Plates are thinner than this share of their diagonal, or than their
+/// distance; the score of cuts across them is multiplied, so that they come
+/// last.
+constexpr double kPlate = 1e-6, kPlatePenalty = 1e6;
+/// A half that is so many times as bad as the whole needs no look at the other
+/// one.
+constexpr double kHopelessScore = 2;
+/// Cuts into halves of a volume have a score lower by the first share; in full
+/// where the smaller one has one part of the second number.
+constexpr double kBalanced = 0.6, kFullyBalanced = 4;
+/// Normals that differ by less are the same when a cut is put into a face.
+/// [rad]
+constexpr double kSnapAngle = 0.01;
+/// Principal axes as near to a coordinate axis, by the cosine, are none of
+/// their own.
+constexpr double kOwnAxis = 0.99;
+/// A piece is itself symmetric where the solid's mirror is its middle, to this
+/// share of its width.
+constexpr double kOwnMirror = 0.01;
+/// The field's slope below which a pit has no direction.
+constexpr double kLeastSlope = 0.1;
+
+}  // namespace
+
+void CutChooser::prepare() {
+  if (std::exchange(prepared_, true) || options_.choose) return;
+  reflex_.find(solid_);
+  if (options_.mirrors) mirrors_ = mirror_planes(solid_);
+}
+
+double CutChooser::score(const CutNode& node, const Plane& plane) const {
+  const auto [low, high] = extent(node.hull, plane.n);
+  const double thinnest = std::min(plane.d - low, high - plane.d);
+  // Pieces as thin as their overlap are no smaller.
+  if (thinnest < kThinnest * shift_) return std::numeric_limits<double>::infinity();
+  // Plates are split into thinner ones only where nothing else helps: these
+  // reach as far but for the thickness.
+  Box3 box;
+  for (const Vec3& p : node.hull) box.extend(p);
+  const bool plate = thinnest < kPlate * box.diagonal() || high - low < node.concavity.worst;
+  const double penalty = plate ? kPlatePenalty : 1;
+  CutScratch& s = cut_scratch();
+  s.lower.clear();
+  s.upper.clear();
+  if (!append_sides(node.piece, plane, solid_, shift_, s.lower, s.upper))
+    return std::numeric_limits<double>::infinity();
+  const double limit = node.concavity.fourth;
+  const Concavity lower = estimate_concavity(s.lower, solid_, s.builder, true);
+  if (lower.fourth > kHopelessScore * limit) return penalty * lower.fourth;
+  const Concavity upper = estimate_concavity(s.upper, solid_, s.builder, true);
+  return penalty * (lower.fourth + upper.fourth) *
+         preference(std::min(lower.volume, upper.volume), lower.volume + upper.volume);
+}
+
+double CutChooser::preference(double smaller, double volume) const {
+  // Where no single cut helps, slicing off a little always seems to: cuts in
+  // the middle are preferred up to a factor, for they bring the next cuts
+  // nearer.
+  const double balance = volume > 0 ? smaller / volume : 0;
+  return 1 - kBalanced * std::min(1.0, kFullyBalanced * balance) -
+         2 * options_.halving_bonus * balance;
+}
+
+double CutChooser::look_ahead(const CutNode& node, const Plane& plane) const {
+  std::array<Piece, 2> parts;
+  {
+    CutScratch& s = cut_scratch();
+    classify(node.piece, plane, solid_, shift_, s.height, s.side);
+    for (const bool lower : {true, false})
+      parts[lower ? 0 : 1] = clip(node.piece, plane, lower, shift_, solid_, s.height, s.side);
+  }
+  double sum = 0, volume = 0, least = std::numeric_limits<double>::infinity();
+  for (Piece& part : parts) {
+    if (part.empty()) return std::numeric_limits<double>::infinity();
+    const CutNode child = make_node(std::move(part), solid_);
+    double best = child.concavity.fourth;
+    if (child.piece.polygons() > 0)
+      for (const Candidate& c : candidates(child)) best = std::min(best, score(child, c.plane));
+    sum += best;
+    volume += child.concavity.volume;
+    least = std::min(least, child.concavity.volume);
+  }
+  return sum * preference(least, volume);
+}
+
+Plane CutChooser::snapped(const CutNode& node, const Plane& plane) const {
+  Plane best = plane;
+  const auto [low, high] = extent(node.hull, plane.n);
+  double nearest = std::min(solid_.spacing(), 0.5 * (high - low) / (options_.offsets + 1));
+  for (const std::uint32_t r : reflex_.crossing(node)) {
+    const Plane& other = reflex_[r];
+    const double sign = other.n.dot(plane.n) < 0 ? -1 : 1;
+    if ((other.n - sign * plane.n).norm() > kSnapAngle) continue;
+    const auto [lowest, highest] = extent(node.hull, other.n);
+    if (std::min(other.d - lowest, highest - other.d) < kThinnest * shift_) continue;
+    double apart = 0;
+    for (const Vec3& p : node.hull)
+      apart = std::max(apart, std::abs(other.height(p) - sign * plane.height(p)));
+    if (apart >= nearest) continue;
+    nearest = apart;
+    best = other;
+  }
+  return best;
+}
+
+std::vector<CutChooser::Candidate> CutChooser::candidates(const CutNode& node) const {
+  std::vector<Candidate> out;
+  std::vector<Vec3> directions{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
+  if (const auto principal = principal_box(node.hull))
+    for (int k = 0; k < 3; ++k)
+      if (principal->axes.col(k).cwiseAbs().maxCoeff() < kOwnAxis)
+        directions.emplace_back(principal->axes.col(k));
+  for (const Vec3& n : directions) {
+    const auto [low, high] = extent(node.hull, n);
+    for (int i = 1; i <= options_.offsets; ++i)
+      out.push_back({{n, low + (high - low) * i / (options_.offsets + 1)}});
+  }
+  // A part that is itself symmetric may best be cut into mirror images.
+  for (const Plane& plane : mirrors_) {
+    const auto [low, high] = extent(node.hull, plane.n);
+    if (std::abs(0.5 * (low + high) - plane.d) < kOwnMirror * (high - low)) out.push_back({plane});
+  }
+  add_pit_planes(node, out);
+  if (options_.reflex_planes > 0) {
+    const std::vector<std::uint32_t> order = reflex_.crossing(node);
+    for (std::size_t i = 0;
+         i < order.size() && i < static_cast<std::size_t>(options_.reflex_planes); ++i)
+      out.push_back({reflex_[order[i]]});
+  }
+  return out;
+}
+
+/// Planes that separate, or run through, the pit below the worst point.
+void CutChooser::add_pit_planes(const CutNode& node, std::vector<Candidate>& out) const {
+  const Vec3& x = node.concavity.at;
+  const double step = solid_.spacing();
+  Vec3 g;
+  for (int k = 0; k < 3; ++k)
+    g[k] = solid_.field(x + step * Vec3::Unit(k)) - solid_.field(x - step * Vec3::Unit(k));
+  if (g.norm() > kLeastSlope * step) {
+    g.normalize();
+    const Vec3 y = x - node.concavity.worst * g;
+    out.push_back({{g, g.dot(y)}});
+    const Vec3 u = g.unitOrthogonal(), w = g.cross(u);
+    for (int k = 0; k < 4; ++k) {
+      const double angle = 0.25 * M_PI * k;
+      const Vec3 n = std::cos(angle) * u + std::sin(angle) * w;
+      out.push_back({{n, n.dot(y)}});
+    }
+  }
+}
+
+CutChooser::Candidate CutChooser::best_in_two(const CutNode& node,
+                                              std::vector<Candidate> list) const {
+  std::stable_sort(list.begin(), list.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.score < b.score; });
+  list.resize(std::min(list.size(), static_cast<std::size_t>(options_.look_ahead)));
+  std::vector<double> deep(list.size());
+  parallel_loop(std::size_t{0}, list.size(),
+                [&](std::size_t i) { deep[i] = look_ahead(node, list[i].plane); });
+  return list[static_cast<std::size_t>(std::min_element(deep.begin(), deep.end()) - deep.begin())];
+}
+
+void CutChooser::evaluate(const CutNode& node, std::vector<Candidate>& list) const {
+  parallel_loop(std::size_t{0}, list.size(),
+                [&](std::size_t i) { list[i].score = score(node, list[i].plane); });
+}
+
+std::optional<Plane> CutChooser::choose(const CutNode& node) const {
+  if (options_.choose) return options_.choose(node.piece.cell, node.hull);
+  std::vector<Candidate> list = candidates(node);
+  evaluate(node, list);
+  const auto best_of = [](const std::vector<Candidate>& l) {
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < l.size(); ++i)
+      if (l[i].score < l[best].score) best = i;
+    return l[best];
+  };
+  if (list.empty()) return std::nullopt;
+  Candidate best = best_of(list);
+  if (!std::isfinite(best.score)) return std::nullopt;
+  if (options_.look_ahead > 1) best = best_in_two(node, std::move(list));
+  const auto [low, high] = extent(node.hull, best.plane.n);
+  double step = 0.5 * (high - low) / (options_.offsets + 1);
+  for (int r = 0; r < options_.refinements; ++r, step *= 0.5) {
+    std::vector<Candidate> near;
+    for (const double s : {-step, step})
+      if (best.plane.d + s > low && best.plane.d + s < high)
+        near.push_back({{best.plane.n, best.plane.d + s}});
+    if (near.empty()) continue;
+    evaluate(node, near);
+    const Candidate c = best_of(near);
+    if (c.score < best.score) best = c;
+  }
+  return snapped(node, best.plane);
+}
+
+}  // namespace kaboum::bcd
