@@ -6,9 +6,9 @@
 #include <random>
 
 #include "bucket_queue.h"
-#include "original_solid.h"
+#include "closest_triangle.h"
 #include "placement.h"
-#include "proximity.h"
+#include "reference_solid.h"
 
 namespace {
 
@@ -87,7 +87,7 @@ BENCHMARK(queue);
 void nearest_triangle(benchmark::State& state) {
   const int n = static_cast<int>(state.range(0));
   const geom::Mesh mesh = terrain(n);
-  const Proximity proximity(mesh);
+  const ClosestTriangle proximity(mesh);
   const auto p = points(4096, n);
   std::size_t i = 0;
   for (auto _ : state) {

@@ -1,3 +1,5 @@
+// Contracting edges in the order of what they cost. Source: [gaschler2016] Alg. 2.
+
 #include "contraction.h"
 
 namespace kaboum::bmesh {
@@ -8,34 +10,33 @@ std::size_t room(std::size_t entries) { return entries + entries / 2 + 1024; }
 
 }  // namespace
 
-Contraction::Contraction(const Setting& setting, WorkingMesh mesh, std::vector<Quadric> quadric,
-                         OriginalSolid* solid, std::vector<Step>* steps, Judge* judge)
-    : setting_(setting),
+Contraction::Contraction(const Context& context, WorkingMesh mesh, std::vector<Quadric> quadric,
+                         ReferenceSolid* solid, std::vector<Step>* steps)
+    : context_(context),
       m_(std::move(mesh)),
       quadric_(std::move(quadric)),
       stamp_(m_.position.size(), 0),
       steps_(steps),
-      judge_(judge),
       vertices_(m_.position.size()),
-      evaluation_(setting, m_, solid, statistics_) {}
+      evaluator_(context, m_, solid, statistics_) {}
 
 void Contraction::push_edge(std::uint32_t a, std::uint32_t b) {
   if (m_.border[a] != 0 && m_.border[b] != 0) return;
   if (((m_.border[a] | m_.border[b]) & kLocked) != 0) return;
-  const double key = setting_.cost.expected_key(merged(a, b), m_.position[a], m_.position[b]);
+  const double key = context_.cost.expected_key(merged(a, b), m_.position[a], m_.position[b]);
   if (!(key > limit_)) queue_.push(key, {a, b, stamp_[a] + stamp_[b]});
 }
 
 void Contraction::push_all() {
   for (std::uint32_t v = 0; v < m_.position.size(); ++v) {
     if (!m_.mesh.used(v)) continue;
-    for (const std::uint32_t w : evaluation_.neighbours(v))
+    for (const std::uint32_t w : evaluator_.neighbours(v))
       if (w > v) push_edge(v, w);
   }
 }
 
-bool Contraction::pass(std::size_t target, double limit) {
-  using Validity = Evaluation::Validity;
+bool Contraction::pass(std::size_t target, double limit, CollapsePolicy* policy) {
+  using Validity = CollapseEvaluator::Validity;
   bool progress = false;
   queue_.clear();
   limit_ = limit;
@@ -43,23 +44,23 @@ bool Contraction::pass(std::size_t target, double limit) {
   push_all();
   std::size_t purge_at = room(queue_.size());
   BucketQueue::Entry e;
-  Evaluation::Candidate& candidate = evaluation_.candidate();
-  const auto goes_on = [&] { return judge_ == nullptr || judge_->goes_on(); };
+  CollapseEvaluator::Candidate& candidate = evaluator_.candidate();
+  const auto goes_on = [&] { return policy == nullptr || policy->goes_on(); };
   while (vertices_ > target && goes_on() && queue_.pop(e)) {
-    if (stale(e) || (judge_ != nullptr && !judge_->is_hopeful(e))) continue;
+    if (stale(e) || (policy != nullptr && !policy->is_hopeful(e))) continue;
     // Evaluated anew each time it is popped: what is applied holds for the planes of this moment.
     const Validity validity =
-        evaluate(e.a, e.b, judge_ != nullptr ? judge_->purpose() : Evaluation::Purpose::Due);
+        evaluate(e.a, e.b, policy != nullptr ? policy->purpose() : CollapseEvaluator::Purpose::Due);
     if (validity == Validity::Later) postpone(e);
-    if (validity == Validity::None && judge_ != nullptr) judge_->has_no_place(e);
+    if (validity == Validity::None && policy != nullptr) policy->has_no_place(e);
     if (validity != Validity::Valid) continue;
-    if (judge_ != nullptr && !judge_->assess(e)) continue;
+    if (policy != nullptr && !policy->assess(e)) continue;
     if (!queue_.due(candidate.cost)) {
       postpone(e);
       continue;
     }
-    if (judge_ != nullptr ? !judge_->admit(e) : !evaluation_.keeps_shape()) continue;
-    apply();
+    if (policy != nullptr ? !policy->admit(e) : !evaluator_.keeps_shape()) continue;
+    apply(policy);
     progress = true;
     if (queue_.size() > purge_at) {
       queue_.purge([&](const BucketQueue::Entry& x) { return stale(x); });
@@ -69,10 +70,10 @@ bool Contraction::pass(std::size_t target, double limit) {
   return progress;
 }
 
-void Contraction::apply() {
-  const Evaluation::Candidate& candidate = evaluation_.candidate();
+void Contraction::apply(CollapsePolicy* policy) {
+  const CollapseEvaluator::Candidate& candidate = evaluator_.candidate();
   const std::uint32_t a = candidate.a, b = candidate.b;
-  if (judge_ != nullptr) judge_->before();
+  if (policy != nullptr) policy->before();
   if (steps_ != nullptr) steps_->push_back({a, b, candidate.position});
   quadric_[a] = merged(a, b);
   m_.mesh.contract(a, b);
@@ -83,8 +84,8 @@ void Contraction::apply() {
   --vertices_;
   ++statistics_.contractions;
   m_.update_normals_around(a);
-  if (judge_ != nullptr) judge_->after();
-  for (const std::uint32_t w : evaluation_.neighbours(a)) push_edge(a, w);
+  if (policy != nullptr) policy->after();
+  for (const std::uint32_t w : evaluator_.neighbours(a)) push_edge(a, w);
 }
 
 void Contraction::contracted(std::uint32_t a, std::uint32_t b) {

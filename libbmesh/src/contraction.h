@@ -2,20 +2,20 @@
 
 #include <limits>
 
-#include "evaluation.h"
+#include "collapse_evaluator.h"
 
 namespace kaboum::bmesh {
 
-/// What is asked of contractions besides what the quadrics say. All calls are about the candidate
-/// at hand.
-class Judge {
+/// Which edges are contracted, and when, besides what the quadrics say. All calls are about the
+/// candidate at hand.
+class CollapsePolicy {
  public:
-  Judge() = default;
-  Judge(const Judge&) = delete;
-  Judge& operator=(const Judge&) = delete;
-  virtual ~Judge() = default;
+  CollapsePolicy() = default;
+  CollapsePolicy(const CollapsePolicy&) = delete;
+  CollapsePolicy& operator=(const CollapsePolicy&) = delete;
+  virtual ~CollapsePolicy() = default;
 
-  [[nodiscard]] virtual Evaluation::Purpose purpose() const = 0;
+  [[nodiscard]] virtual CollapseEvaluator::Purpose purpose() const = 0;
   /// Whether the edge is worth looking at: asked before it is the candidate.
   [[nodiscard]] virtual bool is_hopeful(const BucketQueue::Entry& e) = 0;
   /// To be told that there is no valid place for its vertex.
@@ -26,6 +26,7 @@ class Judge {
   virtual bool admit(BucketQueue::Entry& e) = 0;
   /// Whether further edges are looked at.
   [[nodiscard]] virtual bool goes_on() = 0;
+  /// To be told just before the candidate is applied, and just after.
   virtual void before() = 0;
   virtual void after() = 0;
 };
@@ -41,41 +42,41 @@ class Contraction {
   static constexpr char kLocked = 2;
 
   /// @param steps  receives the steps, when not null.
-  /// @param judge  may be null.
-  Contraction(const Setting& setting, WorkingMesh mesh, std::vector<Quadric> quadric,
-              OriginalSolid* solid, std::vector<Step>* steps, Judge* judge);
+  Contraction(const Context& context, WorkingMesh mesh, std::vector<Quadric> quadric,
+              ReferenceSolid* solid, std::vector<Step>* steps);
   Contraction(const Contraction&) = delete;
   Contraction& operator=(const Contraction&) = delete;
   ~Contraction() = default;
 
   /// Contracts until `target` vertices are left or the next costs more than `limit`.
+  /// @param policy  asked besides, if not null.
   /// @return whether the last pass over all edges contracted any.
-  bool pass(std::size_t target, double limit = kNoLimit);
+  bool pass(std::size_t target, double limit = kNoLimit, CollapsePolicy* policy = nullptr);
 
-  /// Applies the candidate. @pre it is valid and admitted
-  void apply();
+  /// Applies the candidate, and tells the policy, if not null. @pre it is valid and admitted
+  void apply(CollapsePolicy* policy = nullptr);
 
   /// To be called after somebody else has contracted the edge (a, b).
   void contracted(std::uint32_t a, std::uint32_t b);
 
   /// Keeps an entry for when its cost is due. @return false
   bool postpone(const BucketQueue::Entry& e) {
-    const double cost = evaluation_.candidate().cost;
+    const double cost = evaluator_.candidate().cost;
     if (!(cost > limit_)) queue_.push(cost, e);
     return false;
   }
 
   [[nodiscard]] Quadric merged(std::uint32_t a, std::uint32_t b) const {
-    return setting_.cost.merged(quadric_[a], quadric_[b], m_.position[a], m_.position[b]);
+    return context_.cost.merged(quadric_[a], quadric_[b], m_.position[a], m_.position[b]);
   }
-  [[nodiscard]] Evaluation::Validity evaluate(std::uint32_t a, std::uint32_t b,
-                                              Evaluation::Purpose purpose) {
-    return evaluation_.evaluate(a, b, merged(a, b), purpose, queue_);
+  [[nodiscard]] CollapseEvaluator::Validity evaluate(std::uint32_t a, std::uint32_t b,
+                                                     CollapseEvaluator::Purpose purpose) {
+    return evaluator_.evaluate(a, b, merged(a, b), purpose, queue_);
   }
 
   [[nodiscard]] WorkingMesh& mesh() { return m_; }
   [[nodiscard]] std::vector<Quadric>& quadrics() { return quadric_; }
-  [[nodiscard]] Evaluation& evaluation() { return evaluation_; }
+  [[nodiscard]] CollapseEvaluator& evaluator() { return evaluator_; }
   [[nodiscard]] const BucketQueue& queue() const { return queue_; }
   [[nodiscard]] std::size_t vertices() const { return vertices_; }
   [[nodiscard]] DecimateStatistics& statistics() { return statistics_; }
@@ -88,17 +89,16 @@ class Contraction {
     return stamp_[e.a] + stamp_[e.b] != e.stamps;
   }
 
-  const Setting& setting_;
+  const Context& context_;
   WorkingMesh m_;
   std::vector<Quadric> quadric_;
   std::vector<std::uint32_t> stamp_;  // of a vertex: raised when it is moved or vanishes
   std::vector<Step>* steps_;
-  Judge* judge_;
   BucketQueue queue_;
   double limit_ = kNoLimit;  // of what enters the queue
   std::size_t vertices_;
   DecimateStatistics statistics_;
-  Evaluation evaluation_;
+  CollapseEvaluator evaluator_;
 };
 
 }  // namespace kaboum::bmesh

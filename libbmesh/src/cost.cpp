@@ -1,3 +1,6 @@
+// What contractions cost: quadrics of planes as in [garland1997], with the weights of
+// [gaschler2016] §4.3 or of distances.
+
 #include "cost.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Vertices of coplanar regions are taken away without any loss. docs/algorithms/bounding-mesh.md,
+// "Coplanar regions".
+
 #include "flatten.h"
 
 #include <kaboum/geom/float32.h>
@@ -5,7 +8,7 @@
 #include <algorithm>
 
 #include "compact.h"
-#include "original_solid.h"
+#include "reference_solid.h"
 
 namespace kaboum::bmesh {
 namespace {

@@ -42,7 +42,7 @@ struct Frame {
 class FourTriangles {
  public:
   /// Triangles that are not put, or have hardly any area, are at distance 0.
-  void put(int lane, const std::array<Vec3, 3>& corner, const Frame& frame) {
+  void put(int worker, const std::array<Vec3, 3>& corner, const Frame& frame) {
     const Vec3 a = (corner[0] - frame.origin) * frame.scale,
                u = (corner[1] - corner[0]) * frame.scale, v = (corner[2] - corner[0]) * frame.scale;
     const Vec3 across = u.cross(v);
@@ -50,10 +50,10 @@ class FourTriangles {
     if (!(area > 1e-10 * u.squaredNorm() * v.squaredNorm())) return;
     const Vec3 normal = across / std::sqrt(area);
     const auto plane = [&](int k, const Vec3& n, const Vec3& through) {
-      x_[k][lane] = static_cast<float>(n.x());
-      y_[k][lane] = static_cast<float>(n.y());
-      z_[k][lane] = static_cast<float>(n.z());
-      offset_[k][lane] = static_cast<float>(n.dot(through));
+      x_[k][worker] = static_cast<float>(n.x());
+      y_[k][worker] = static_cast<float>(n.y());
+      z_[k][worker] = static_cast<float>(n.z());
+      offset_[k][worker] = static_cast<float>(n.dot(through));
     };
     plane(0, normal, a);
     plane(1, u.cross(normal).normalized(), a);

@@ -11,14 +11,14 @@ namespace kaboum::bmesh {
 using geom::Sign;
 using geom::Triangle;
 
-Loosener::Loosener(const Setting& setting, WorkingMesh& mesh, OriginalSolid* solid,
-                   Tolerance* tolerance, Deviation* deviation, std::vector<Step>* steps,
-                   DecimateStatistics& statistics)
-    : setting_(setting),
+Loosener::Loosener(const Context& context, WorkingMesh& mesh, ReferenceSolid* solid,
+                   ErrorBoundCertificate* certificate, SampledError* sampled,
+                   std::vector<Step>* steps, DecimateStatistics& statistics)
+    : context_(context),
       m_(mesh),
       solid_(solid),
-      tolerance_(tolerance),
-      deviation_(deviation),
+      certificate_(certificate),
+      sampled_(sampled),
       steps_(steps),
       statistics_(statistics) {}
 
@@ -35,7 +35,7 @@ void Loosener::find(std::uint32_t a, std::uint32_t b) {
   });
 }
 
-/// Whether a flip bends them the way that is wished, and turns neither over.
+/// Whether a flip bends them the way asked for, and turns neither over.
 bool Loosener::bends(Edge& e) const {
   if (e.c == e.d) return false;
   bool joined = false;
@@ -45,7 +45,7 @@ bool Loosener::bends(Edge& e) const {
   if (joined) return false;
   const Vec3 &pa = m_.position[e.a], &pb = m_.position[e.b], &pc = m_.position[e.c],
              &pd = m_.position[e.d];
-  const bool outer = setting_.options.direction == Direction::Outer;
+  const bool outer = context_.options.direction == Direction::Outer;
   if (geom::orient3d(pa, pb, pc, pd) != (outer ? Sign::Positive : Sign::Negative)) return false;
   e.volume = std::abs((pb - pa).cross(pc - pa).dot(pd - pa));
   const Vec3 mean = m_.normal[e.first] + m_.normal[e.second];
@@ -55,14 +55,14 @@ bool Loosener::bends(Edge& e) const {
 bool Loosener::admits(const Edge& e) {
   const Vec3 &pa = m_.position[e.a], &pb = m_.position[e.b], &pc = m_.position[e.c],
              &pd = m_.position[e.d];
-  if (setting_.options.direction == Direction::Inner && solid_ != nullptr &&
+  if (context_.options.direction == Direction::Inner && solid_ != nullptr &&
       !solid_->contains({pa, pb, pc, pd}, true)) {
     ++statistics_.rejected_original;
     return false;
   }
   removed_.assign({e.first, e.second});
   added_.assign({{e.first, {pd, pc, pa}}, {e.second, {pc, pd, pb}}});
-  if (tolerance_ != nullptr && !tolerance_->admits(removed_, added_)) {
+  if (certificate_ != nullptr && !certificate_->admits(removed_, added_)) {
     ++statistics_.rejected_distance;
     return false;
   }
@@ -70,8 +70,8 @@ bool Loosener::admits(const Edge& e) {
 }
 
 void Loosener::flip(const Edge& e) {
-  if (tolerance_ != nullptr) tolerance_->commit(removed_);
-  if (deviation_ != nullptr) deviation_->commit(removed_, added_);
+  if (certificate_ != nullptr) certificate_->commit(removed_);
+  if (sampled_ != nullptr) sampled_->commit(removed_, added_);
   m_.mesh.replace(e.first, {e.d, e.c, e.a});
   m_.mesh.replace(e.second, {e.c, e.d, e.b});
   m_.update_normal(e.first);

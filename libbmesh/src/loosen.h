@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "change.h"
-#include "deviation.h"
-#include "evaluation.h"
-#include "original_solid.h"
-#include "tolerance.h"
+#include "collapse_evaluator.h"
+#include "error_bound_certificate.h"
+#include "reference_solid.h"
+#include "sampled_error.h"
 #include "working_mesh.h"
 
 namespace kaboum::bmesh {
@@ -21,8 +21,9 @@ namespace kaboum::bmesh {
 class Loosener {
  public:
   /// All references must outlive this object; pointers may be null.
-  Loosener(const Setting& setting, WorkingMesh& mesh, OriginalSolid* solid, Tolerance* tolerance,
-           Deviation* deviation, std::vector<Step>* steps, DecimateStatistics& statistics);
+  Loosener(const Context& context, WorkingMesh& mesh, ReferenceSolid* solid,
+           ErrorBoundCertificate* certificate, SampledError* sampled, std::vector<Step>* steps,
+           DecimateStatistics& statistics);
 
   /// Flips the edge at v that changes the volume least, of those that exact tests, the error bound
   /// and the shape of the triangles admit. @return whether there was one.
@@ -40,11 +41,11 @@ class Loosener {
   bool admits(const Edge& e);
   void flip(const Edge& e);
 
-  const Setting& setting_;
+  const Context& context_;
   WorkingMesh& m_;
-  OriginalSolid* solid_;
-  Tolerance* tolerance_;
-  Deviation* deviation_;
+  ReferenceSolid* solid_;
+  ErrorBoundCertificate* certificate_;
+  SampledError* sampled_;
   std::vector<Step>* steps_;
   DecimateStatistics& statistics_;
   std::vector<Edge> edges_;

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "change.h"
+#include "closest_triangle.h"
 #include "four_triangles.h"
-#include "proximity.h"
 
 namespace kaboum::bmesh {
 

@@ -1,3 +1,6 @@
+// Vertices are moved towards the original and edges flipped, by steps that are certified against
+// it. docs/algorithms/bounding-mesh.md, "Steps against the original".
+
 #include "optimise.h"
 
 #include <kaboum/geom/float32.h>
@@ -27,21 +30,21 @@ Vec3 Optimiser::rounding(const Vec3& p) const {
   return {geom::float32_spacing(p.x()), geom::float32_spacing(p.y()), geom::float32_spacing(p.z())};
 }
 
-Optimiser::Optimiser(WorkingMesh& mesh, VertexNotes& notes, Deviation& deviation,
-                     OriginalSolid* solid, const geom::Mesh& original, Tolerance* tolerance,
-                     const DecimateOptions& options, DecimateStatistics& statistics,
-                     std::vector<Step>* steps)
+Optimiser::Optimiser(WorkingMesh& mesh, VertexNotes& notes, SampledError& sampled,
+                     ReferenceSolid* solid, const geom::Mesh& original,
+                     ErrorBoundCertificate* certificate, const DecimateOptions& options,
+                     DecimateStatistics& statistics, std::vector<Step>* steps)
     : m_(mesh),
       notes_(notes),
-      deviation_(deviation),
+      sampled_(sampled),
       solid_(solid),
       original_(original),
-      tolerance_(tolerance),
+      certificate_(certificate),
       options_(options),
       statistics_(statistics),
       steps_(steps),
       mark_(mesh.position.size() + mesh.mesh.size(), 0),
-      fan_(options.direction == Direction::Inner ? -1 : 1) {}
+      support_(options.direction == Direction::Inner ? -1 : 1) {}
 
 void Optimiser::disturb(std::uint32_t v) {
   notes_.disturb(v);
@@ -90,9 +93,10 @@ void Optimiser::place_star(const Vec3& apex) {
 }
 
 /// Exact: no tetrahedron between a triangle that goes and `to` cuts into the original. Where one
-/// does, the parts cut off become constraints in fan_, whose triangle i belongs to removed[i] if
-/// `own`.
-bool Optimiser::spares(std::span<const std::uint32_t> removed, bool own, const Vec3& to) {
+/// does, the parts cut off become constraints in support_, whose triangle i belongs to removed[i]
+/// if `own`.
+bool Optimiser::does_not_cut_original(std::span<const std::uint32_t> removed, bool own,
+                                      const Vec3& to) {
   bool all = true;
   for (std::size_t i = 0; i < removed.size(); ++i) {
     met_.clear();
@@ -103,31 +107,31 @@ bool Optimiser::spares(std::span<const std::uint32_t> removed, bool own, const V
                                           to};
     for (const std::uint32_t t : met_) {
       const geom::Triangle& tri = original_.triangles[t];
-      fan_.keep(
-          own ? i : Fan::kNearest, tetrahedron,
+      support_.keep(
+          own ? i : SupportPlanes::kNearest, tetrahedron,
           {original_.vertices[tri[0]], original_.vertices[tri[1]], original_.vertices[tri[2]]});
     }
   }
   return all;
 }
 
-std::optional<Vec3> Optimiser::settle(std::span<const std::uint32_t> removed,
-                                      std::span<const NewTriangle> added, const Quadric& quadric,
-                                      const Vec3& origin) {
+std::optional<Vec3> Optimiser::place_against_original(std::span<const std::uint32_t> removed,
+                                                      std::span<const NewTriangle> added,
+                                                      const Quadric& quadric, const Vec3& origin) {
   apex_ = added.front().corner[0];
   added_.assign(added.begin(), added.end());
-  fan_.assign(added_);
+  support_.assign(added_);
   if (options_.direction != Direction::Any)
-    deviation_.for_each_assignment(removed, added_,
-                                   [&](std::size_t i, const Vec3& o) { fan_.keep(i, o); });
+    sampled_.for_each_assignment(removed, added_,
+                                 [&](std::size_t i, const Vec3& o) { support_.keep(i, o); });
   objective_ = quadric;
   const Vec3 linear = quadric.half_gradient(apex_ - origin);
   objective_.bx = linear.x(), objective_.by = linear.y(), objective_.bz = linear.z();
-  return resettle();
+  return next_place();
 }
 
-std::optional<Vec3> Optimiser::resettle() {
-  fan_.half_spaces(rounding(apex_), planes_);
+std::optional<Vec3> Optimiser::next_place() {
+  support_.half_spaces(rounding(apex_), planes_);
   const auto step = minimise(objective_, {objective_.bx, objective_.by, objective_.bz}, planes_,
                              kRegularisationDistance);
   if (!step) return std::nullopt;
@@ -137,8 +141,8 @@ std::optional<Vec3> Optimiser::resettle() {
   return to;
 }
 
-bool Optimiser::settled(std::span<const std::uint32_t> removed, const Vec3& to) {
-  const bool spared = spares(removed, false, to);
+bool Optimiser::is_certified(std::span<const std::uint32_t> removed, const Vec3& to) {
+  const bool spared = does_not_cut_original(removed, false, to);
   if (!spared) ++statistics_.rejected_original;
   return spared;
 }
@@ -150,7 +154,7 @@ void Optimiser::linearise(const Vec3& apex, double scale, double penalty) {
   Vec3 b = Vec3::Zero();
   const double sign = options_.direction == Direction::Inner ? -1 : 1;
   const auto add = [&](const Vec3& n, double lambda, double residual, double weight) {
-    double w = weight * (deviation_.power() == 4 ? residual * residual / scale + 1e-4 : 1);
+    double w = weight * (sampled_.power() == 4 ? residual * residual / scale + 1e-4 : 1);
     if (sign * residual < 0) w *= penalty;
     const Vec3 g = lambda * n;
     objective_.xx += w * g.x() * g.x(), objective_.xy += w * g.x() * g.y();
@@ -165,13 +169,13 @@ void Optimiser::linearise(const Vec3& apex, double scale, double penalty) {
     const double height = across.dot(apex - p);
     if (!(height > 0)) continue;
     // A point o of the original is n·(apex − o) below the triangle, at barycentric weight λ.
-    deviation_.for_each_sample(r.triangle, [&](const Vec3& o, double weight) {
+    sampled_.for_each_sample(r.triangle, [&](const Vec3& o, double weight) {
       const double lambda = std::clamp(across.dot(o - p) / height, 0.0, 1.0);
       add(n, lambda, n.dot(apex - o), weight);
     });
   }
-  for (const Deviation::Point& p : points_) {
-    const auto c = deviation_.original().corners(p.nearest);
+  for (const SampledError::Point& p : points_) {
+    const auto c = sampled_.original().corners(p.nearest);
     const Vec3 offset = p.position - closest_point(p.position, c[0], c[1], c[2]);
     double d = offset.norm();
     if (offset.dot((c[1] - c[0]).cross(c[2] - c[0])) < 0) d = -d;
@@ -219,7 +223,7 @@ bool Optimiser::stays_flat(const Vec3& to) {
 
 /// Carries out the move of v that removed_ and added_ describe.
 void Optimiser::move(std::uint32_t v, const Vec3& to) {
-  deviation_.commit(removed_, added_);
+  sampled_.commit(removed_, added_);
   m_.position[v] = to;
   m_.update_normals_around(v);
   if (steps_ != nullptr) steps_->push_back({v, v, to});
@@ -233,18 +237,18 @@ bool Optimiser::pull_back(std::uint32_t v, bool alone) {
   place_star(from);
   std::uint32_t& hint = notes_.hint[v];
   const auto before =
-      deviation_.energy(removed_, added_, points_, hint, std::numeric_limits<double>::infinity());
+      sampled_.energy(removed_, added_, points_, hint, std::numeric_limits<double>::infinity());
   if (!(before.squared > 0)) return false;
   linearise(from, before.squared);
-  fan_.assign(added_);
+  support_.assign(added_);
   if (options_.direction != Direction::Any)
     for (std::size_t i = 0; i < ring_.size(); ++i)
-      deviation_.for_each_sample(ring_[i].triangle,
-                                 [&](const Vec3& o, double) { fan_.keep(i, o); });
+      sampled_.for_each_sample(ring_[i].triangle,
+                               [&](const Vec3& o, double) { support_.keep(i, o); });
   const double goal = (1 - kGain) * before.sum;
   Vec3 refused = from;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    fan_.half_spaces(rounding(from), planes_);
+    support_.half_spaces(rounding(from), planes_);
     const auto step = minimise(objective_, {objective_.bx, objective_.by, objective_.bz}, planes_,
                                kRegularisationDistance);
     if (!step) return false;
@@ -252,27 +256,27 @@ bool Optimiser::pull_back(std::uint32_t v, bool alone) {
     if (options_.precision == Precision::Float) to = geom::to_float32(to);
     if (to == from || !to.allFinite()) return false;
     place_star(to);
-    const auto after = deviation_.energy(removed_, added_, points_, hint, goal);
+    const auto after = sampled_.energy(removed_, added_, points_, hint, goal);
     if (folds(to) || !(after.sum < goal)) {
       // Linearised too boldly, perhaps.
       to = from + 0.5 * kDamping * *step;
       if (options_.precision == Precision::Float) to = geom::to_float32(to);
       if (to == from || folds(to)) return false;
       place_star(to);
-      if (!(deviation_.energy(removed_, added_, points_, hint, goal).sum < goal)) return false;
+      if (!(sampled_.energy(removed_, added_, points_, hint, goal).sum < goal)) return false;
     }
     if (to == refused || !stays_flat(to)) return false;
-    if (!spares(removed_, true, to)) {
+    if (!does_not_cut_original(removed_, true, to)) {
       ++statistics_.rejected_original;
       refused = to;
       continue;
     }
-    if (alone && tolerance_ != nullptr) {
-      if (!tolerance_->admits(removed_, added_)) {
+    if (alone && certificate_ != nullptr) {
+      if (!certificate_->admits(removed_, added_)) {
         ++statistics_.rejected_distance;
         return false;
       }
-      tolerance_->commit(removed_);
+      certificate_->commit(removed_);
     }
     move(v, to);
     disturb(v);
@@ -322,7 +326,7 @@ bool Optimiser::flip(std::uint32_t a, std::uint32_t b) {
     points_.push_back({0.5 * (p + q), (a1 + a2) / 3});
     points_.push_back({(p + q + r) / 3.0, a1 / 2});
     points_.push_back({(q + p + s) / 3.0, a2 / 2});
-    return deviation_.energy(removed_, added_, points_, notes_.hint[a], limit);
+    return sampled_.energy(removed_, added_, points_, notes_.hint[a], limit);
   };
   removed_.assign({first, second});
   const auto before = measure(pa, pb, pc, pd, std::numeric_limits<double>::infinity());
@@ -334,14 +338,14 @@ bool Optimiser::flip(std::uint32_t a, std::uint32_t b) {
     ++statistics_.rejected_original;
     return false;
   }
-  if (tolerance_ != nullptr) {
-    if (!tolerance_->admits(removed_, added_)) {
+  if (certificate_ != nullptr) {
+    if (!certificate_->admits(removed_, added_)) {
       ++statistics_.rejected_distance;
       return false;
     }
-    tolerance_->commit(removed_);
+    certificate_->commit(removed_);
   }
-  deviation_.commit(removed_, added_);
+  sampled_.commit(removed_, added_);
   m_.mesh.replace(first, {d, c, a});
   m_.mesh.replace(second, {c, d, b});
   m_.update_normal(first);

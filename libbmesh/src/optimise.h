@@ -4,11 +4,11 @@
 
 #include <atomic>
 
-#include "deviation.h"
-#include "fan.h"
-#include "original_solid.h"
+#include "error_bound_certificate.h"
 #include "placement.h"
-#include "tolerance.h"
+#include "reference_solid.h"
+#include "sampled_error.h"
+#include "support_planes.h"
 #include "working_mesh.h"
 
 namespace kaboum::bmesh {
@@ -37,7 +37,7 @@ struct VertexNotes {
 /// steps are certified: docs/algorithms/bounding-mesh.md, "Steps against the original".
 ///
 /// Every step keeps: the exact certificate against the original's solid (unless direction is Any),
-/// the carried error bound, border vertices, and float32 coordinates where they are wished for.
+/// the carried error bound, border vertices, and float32 coordinates where they are asked for.
 ///
 /// Several optimisers of one mesh, with the same notes and no error bound, may pull back and
 /// collapse at once where none moves a vertex that another one moves, or a neighbour of such a
@@ -45,10 +45,11 @@ struct VertexNotes {
 class Optimiser {
  public:
   /// All references must outlive this object. `solid` may be null for Direction::Any only,
-  /// `tolerance` when there is no error bound, `steps` when nobody asks for them.
-  Optimiser(WorkingMesh& mesh, VertexNotes& notes, Deviation& deviation, OriginalSolid* solid,
-            const geom::Mesh& original, Tolerance* tolerance, const DecimateOptions& options,
-            DecimateStatistics& statistics, std::vector<Step>* steps);
+  /// `certificate` when there is no error bound, `steps` when nobody asks for them.
+  Optimiser(WorkingMesh& mesh, VertexNotes& notes, SampledError& sampled, ReferenceSolid* solid,
+            const geom::Mesh& original, ErrorBoundCertificate* certificate,
+            const DecimateOptions& options, DecimateStatistics& statistics,
+            std::vector<Step>* steps);
 
   /// Whether new triangles are measured at more points.
   void set_dense(bool dense) { dense_ = dense; }
@@ -60,15 +61,15 @@ class Optimiser {
   /// corners are where it is now, a place that only the original bounds, not the present mesh.
   ///
   /// @param quadric  to be minimised, relative to `origin`.
-  /// @return the place, where float32 is wished for rounded; nullopt when there is none.
-  std::optional<Vec3> settle(std::span<const std::uint32_t> removed,
-                             std::span<const NewTriangle> added, const Quadric& quadric,
-                             const Vec3& origin);
+  /// @return the place, where float32 is asked for rounded; nullopt when there is none.
+  std::optional<Vec3> place_against_original(std::span<const std::uint32_t> removed,
+                                             std::span<const NewTriangle> added,
+                                             const Quadric& quadric, const Vec3& origin);
 
-  /// Whether the place that `settle` has returned is certified. What would be cut off the original
-  /// is remembered otherwise, and `resettle` seeks another place.
-  bool settled(std::span<const std::uint32_t> removed, const Vec3& to);
-  std::optional<Vec3> resettle();
+  /// Whether the place that `place_against_original` has returned is certified. What would be cut
+  /// off the original is remembered otherwise, and `next_place` seeks another place.
+  bool is_certified(std::span<const std::uint32_t> removed, const Vec3& to);
+  std::optional<Vec3> next_place();
 
   /// Flips the edge (a, b) if that is better. @return whether it was flipped.
   bool flip(std::uint32_t a, std::uint32_t b);
@@ -80,11 +81,11 @@ class Optimiser {
   /// within `limit` then. [length]
   /// @return 0 if that was done, else the deviation that it would take, roughly; infinite where no
   ///   place can be certified.
-  double collapse(std::uint32_t a, std::uint32_t b, double limit);
+  double collapse_with_neighbours(std::uint32_t a, std::uint32_t b, double limit);
 
   /// Moves v to a representable place near by that the original bounds, though the present mesh may
   /// not. @return whether it has moved.
-  bool round(std::uint32_t v);
+  bool snap_to_float(std::uint32_t v);
 
  private:
   struct Ring {  // one triangle of the star: (v, p, q)
@@ -104,19 +105,19 @@ class Optimiser {
   struct Trail {
     Vec3 position;
     double distance;
-    std::uint32_t nearest = Deviation::kNone;
+    std::uint32_t nearest = SampledError::kNone;
   };
 
   void neighbours(std::uint32_t v, std::vector<std::uint32_t>& out);
-  void take(std::span<const std::uint32_t> vertices);
-  void go_back();
-  void attract(std::size_t i, double scale, double penalty, double share, bool hand_over);
-  void follow(Deviation::Point& point, Trail& trail, double close, std::uint32_t& hint);
+  void take_snapshot(std::span<const std::uint32_t> vertices);
+  void rollback();
+  void relax_vertex(std::size_t i, double scale, double penalty, double share, bool hand_over);
+  void follow(SampledError::Point& point, Trail& trail, double close, std::uint32_t& hint);
   double star_largest(std::uint32_t v, double limit);
   double region_largest(double limit);
-  std::optional<Vec3> seek(std::uint32_t a, std::uint32_t b, const Vec3& wish);
-  double imagine(std::uint32_t a, std::uint32_t b, double limit);
-  bool joins(std::uint32_t a, std::uint32_t b);
+  std::optional<Vec3> find_position(std::uint32_t a, std::uint32_t b, const Vec3& wish);
+  double trial_collapse(std::uint32_t a, std::uint32_t b, double limit);
+  bool satisfies_link_condition(std::uint32_t a, std::uint32_t b);
   bool gather_edge(std::uint32_t a, std::uint32_t b, const Vec3& to);
   void contract(std::uint32_t a, std::uint32_t b, const Vec3& to);
   void move(std::uint32_t v, const Vec3& to);
@@ -125,9 +126,9 @@ class Optimiser {
   [[nodiscard]] Vec3 rounding(const Vec3& p) const;
   bool gather(std::uint32_t v);
   void place_star(const Vec3& apex);
-  bool spares(std::span<const std::uint32_t> removed, bool own, const Vec3& to);
+  bool does_not_cut_original(std::span<const std::uint32_t> removed, bool own, const Vec3& to);
   void linearise(const Vec3& apex, double scale, double penalty = 1);
-  bool approach(std::uint32_t v, const Vec3& target, bool alone);
+  bool move_towards(std::uint32_t v, const Vec3& target, bool alone);
   [[nodiscard]] bool folds(const Vec3& to) const;
   [[nodiscard]] bool stays_flat(const Vec3& to);
   [[nodiscard]] bool certified(std::uint32_t t, const Vec3& to,
@@ -135,10 +136,10 @@ class Optimiser {
 
   WorkingMesh& m_;
   VertexNotes& notes_;
-  Deviation& deviation_;
-  OriginalSolid* solid_;
+  SampledError& sampled_;
+  ReferenceSolid* solid_;
   const geom::Mesh& original_;
-  Tolerance* tolerance_;
+  ErrorBoundCertificate* certificate_;
   const DecimateOptions& options_;
   DecimateStatistics& statistics_;
   std::vector<Step>* steps_;
@@ -156,13 +157,13 @@ class Optimiser {
   std::vector<Ring> ring_;
   std::vector<std::uint32_t> removed_;
   std::vector<NewTriangle> added_;
-  std::vector<Deviation::Point> points_;
-  Fan fan_;
+  std::vector<SampledError::Point> points_;
+  SupportPlanes support_;
   std::vector<HalfSpace> planes_;
   std::vector<std::uint32_t> met_;
   std::vector<Vec3> flat_;
   Quadric objective_;         // of the displacement
-  Vec3 apex_ = Vec3::Zero();  // of fan_, when it settles a contraction
+  Vec3 apex_ = Vec3::Zero();  // of support_, when it settles a contraction
 };
 
 }  // namespace kaboum::bmesh

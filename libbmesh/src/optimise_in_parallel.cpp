@@ -1,3 +1,5 @@
+// Optimisation by several threads, in batches of steps that commute.
+
 #include <kaboum/base/parallel.h>
 
 #include "optimise_in_parallel.h"
@@ -14,29 +16,30 @@ constexpr std::size_t kMoves = 64;
 
 }  // namespace
 
-ParallelOptimiser::Lane::Lane(ParallelOptimiser& of)
-    : optimiser(of.m_, of.notes_, of.deviation_, of.solid_, of.original_, nullptr, of.options_,
+ParallelOptimiser::Worker::Worker(ParallelOptimiser& of)
+    : optimiser(of.m_, of.notes_, of.sampled_, of.solid_, of.original_, nullptr, of.options_,
                 statistics, of.options_.steps != nullptr ? &steps : nullptr) {
   optimiser.set_dense(of.dense_);
 }
 
-ParallelOptimiser::ParallelOptimiser(WorkingMesh& mesh, Deviation& deviation, OriginalSolid* solid,
-                                     const geom::Mesh& original, Tolerance* tolerance,
+ParallelOptimiser::ParallelOptimiser(WorkingMesh& mesh, SampledError& sampled,
+                                     ReferenceSolid* solid, const geom::Mesh& original,
+                                     ErrorBoundCertificate* certificate,
                                      const DecimateOptions& options, DecimateStatistics& statistics,
                                      bool dense, Work* work)
     : m_(mesh),
       notes_(mesh.position.size()),
-      deviation_(deviation),
+      sampled_(sampled),
       solid_(solid),
       original_(original),
-      tolerance_(tolerance),
+      certificate_(certificate),
       options_(options),
       statistics_(statistics),
       dense_(dense),
       work_(work),
-      single_(mesh, notes_, deviation, solid, original, tolerance, options, statistics,
+      single_(mesh, notes_, sampled, solid, original, certificate, options, statistics,
               options.steps),
-      lanes_([this] { return Lane(*this); }),
+      workers_([this] { return Worker(*this); }),
       mark_(mesh.position.size(), 0) {
   single_.set_dense(dense);
 }
@@ -53,17 +56,17 @@ void ParallelOptimiser::run(std::size_t tasks, Task&& task) {
   parallel_loop(
       tbb::blocked_range<std::size_t>(0, tasks, 1),
       [&](const tbb::blocked_range<std::size_t>& range) {
-        Lane& lane = lanes_.local();
+        Worker& worker = workers_.local();
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
-          lane.steps.clear();
-          task(lane.optimiser, i);
-          if (recorded) taken_[i].assign(lane.steps.begin(), lane.steps.end());
+          worker.steps.clear();
+          task(worker.optimiser, i);
+          if (recorded) taken_[i].assign(worker.steps.begin(), worker.steps.end());
         }
       },
       tbb::simple_partitioner());
-  for (Lane& lane : lanes_) {
-    add(statistics_, lane.statistics);
-    lane.statistics = {};
+  for (Worker& worker : workers_) {
+    add(statistics_, worker.statistics);
+    worker.statistics = {};
   }
   if (!recorded) return;
   for (std::size_t i = 0; i < tasks; ++i)
@@ -100,10 +103,10 @@ bool ParallelOptimiser::claim(Edge edge) {
   return true;
 }
 
-std::span<const double> ParallelOptimiser::collapse(double limit) {
+std::span<const double> ParallelOptimiser::collapse_with_neighbours(double limit) {
   outcome_.resize(batch_.size());
   run(batch_.size(), [&](Optimiser& optimiser, std::size_t i) {
-    outcome_[i] = optimiser.collapse(batch_[i].a, batch_[i].b, limit);
+    outcome_[i] = optimiser.collapse_with_neighbours(batch_[i].a, batch_[i].b, limit);
   });
   begin_batch();
   return outcome_;

@@ -24,8 +24,8 @@ class ParallelOptimiser {
 
   /// As of Optimiser. Rounds end early when so much work is done that no vertex is to be moved any
   /// more; `work` may be null.
-  ParallelOptimiser(WorkingMesh& mesh, Deviation& deviation, OriginalSolid* solid,
-                    const geom::Mesh& original, Tolerance* tolerance,
+  ParallelOptimiser(WorkingMesh& mesh, SampledError& sampled, ReferenceSolid* solid,
+                    const geom::Mesh& original, ErrorBoundCertificate* certificate,
                     const DecimateOptions& options, DecimateStatistics& statistics, bool dense,
                     Work* work = nullptr);
   ParallelOptimiser(const ParallelOptimiser&) = delete;
@@ -55,22 +55,22 @@ class ParallelOptimiser {
 
   /// Whether steps are taken several at a time: an error bound is carried over all of the mesh, and
   /// needs one after the other.
-  [[nodiscard]] bool in_batches() const { return tolerance_ == nullptr; }
+  [[nodiscard]] bool in_batches() const { return certificate_ == nullptr; }
 
   /// Adds the edge to the batch at hand, if its contraction commutes with the others of the batch.
   bool claim(Edge edge);
 
   /// Contracts the batch's edges together with moves, as Optimiser::collapse does, and begins
   /// another batch. @return what that returns for each, in the order of the claims.
-  std::span<const double> collapse(double limit);
+  std::span<const double> collapse_with_neighbours(double limit);
 
  private:
   /// An optimiser for one thread.
-  struct Lane {
-    explicit Lane(ParallelOptimiser& of);
-    Lane(const Lane&) = delete;
-    Lane& operator=(const Lane&) = delete;
-    ~Lane() = default;
+  struct Worker {
+    explicit Worker(ParallelOptimiser& of);
+    Worker(const Worker&) = delete;
+    Worker& operator=(const Worker&) = delete;
+    ~Worker() = default;
     DecimateStatistics statistics;
     std::vector<Step> steps;
     Optimiser optimiser;
@@ -86,16 +86,16 @@ class ParallelOptimiser {
 
   WorkingMesh& m_;
   VertexNotes notes_;
-  Deviation& deviation_;
-  OriginalSolid* solid_;
+  SampledError& sampled_;
+  ReferenceSolid* solid_;
   const geom::Mesh& original_;
-  Tolerance* tolerance_;
+  ErrorBoundCertificate* certificate_;
   const DecimateOptions& options_;
   DecimateStatistics& statistics_;
   bool dense_;
   Work* work_;
   Optimiser single_;
-  tbb::enumerable_thread_specific<Lane> lanes_;
+  tbb::enumerable_thread_specific<Worker> workers_;
 
   std::vector<Edge> batch_;
   std::vector<double> outcome_;           // of the batch

@@ -1,3 +1,5 @@
+// Minimising a quadric over half-spaces. Source: [gaschler2016] Eq. 4.8, Alg. 1.
+
 #include "placement.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Sums of squared distances to planes. Source: [garland1997].
+
 #include "quadric.h"
 
 #include <Eigen/Eigenvalues>

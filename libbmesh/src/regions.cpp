@@ -1,3 +1,5 @@
+// Large meshes are contracted region by region, so that threads do not meet and caches suffice.
+
 #include "regions.h"
 
 #include <kaboum/base/parallel.h>
@@ -25,23 +27,23 @@ constexpr std::size_t kSamples = 8192;
 
 class Rounds {
  public:
-  Rounds(const Setting& setting, Reduction& mesh, OriginalSolid* solid, std::vector<Step>* steps,
+  Rounds(const Context& context, PartialMesh& mesh, ReferenceSolid* solid, std::vector<Step>* steps,
          DecimateStatistics& statistics)
-      : setting_(setting), m_(mesh), solid_(solid), steps_(steps), statistics_(statistics) {}
+      : context_(context), m_(mesh), solid_(solid), steps_(steps), statistics_(statistics) {}
 
   void run(std::size_t target) {
-    const double wished = static_cast<double>(target);
+    const double requested = static_cast<double>(target);
     for (int round = 0;; ++round) {
-      if (setting_.work != nullptr && setting_.work->spent(kNoneContracts)) break;
+      if (context_.work != nullptr && context_.work->spent(kNoneContracts)) break;
       const std::size_t before = m_.position.size();
       const auto n = static_cast<double>(before);
-      if (before < 2 * kRegion || n < kEnd * wished) break;
-      const double least = kLeast * wished / n;
+      if (before < 2 * kRegion || n < kEnd * requested) break;
+      const double least = kLeast * requested / n;
       limit_ = limit(kShare * (1 - least));
       cut(round);
       contract(least);
       join();
-      if (setting_.options.progress) setting_.options.progress(m_.position.size());
+      if (context_.options.progress) context_.options.progress(m_.position.size());
       if (100 * m_.position.size() > 97 * before) break;
     }
     if (!order_.empty()) restore_order();
@@ -64,8 +66,8 @@ class Rounds {
       const Triangle& t = m_.triangles[i / 3];
       const std::uint32_t a = t[i % 3], b = t[(i + 1) % 3];
       const Vec3 &pa = m_.position[a], &pb = m_.position[b];
-      const double key = setting_.cost.expected_key(
-          setting_.cost.merged(m_.quadric[a], m_.quadric[b], pa, pb), pa, pb);
+      const double key = context_.cost.expected_key(
+          context_.cost.merged(m_.quadric[a], m_.quadric[b], pa, pb), pa, pb);
       if (std::isfinite(key)) keys.push_back(key);
     }
     if (keys.empty()) return 0;
@@ -132,8 +134,8 @@ class Rounds {
     for (std::size_t t = 0; t < triangles.size(); ++t)
       for (int k = 0; k < 3; ++k) triangles[t][k] = number_[m_.triangles[triangle[t]][k]] - r.first;
     Contraction contraction(
-        setting_, WorkingMesh(std::move(position), std::move(border), std::move(triangles)),
-        std::move(quadric), solid_, steps_ != nullptr ? &r.steps : nullptr, nullptr);
+        context_, WorkingMesh(std::move(position), std::move(border), std::move(triangles)),
+        std::move(quadric), solid_, steps_ != nullptr ? &r.steps : nullptr);
     contraction.pass(static_cast<std::size_t>(share * n), limit_);
     r.statistics = contraction.statistics();
     for (Step& s : r.steps) {
@@ -198,9 +200,9 @@ class Rounds {
     values = std::move(kept);
   }
 
-  const Setting& setting_;
-  Reduction& m_;
-  OriginalSolid* solid_;
+  const Context& context_;
+  PartialMesh& m_;
+  ReferenceSolid* solid_;
   std::vector<Step>* steps_;
   DecimateStatistics& statistics_;
   double limit_ = 0;
@@ -212,8 +214,8 @@ class Rounds {
 
 }  // namespace
 
-Reduction::Reduction(const geom::Mesh& mesh, std::vector<char> may_not_move,
-                     std::vector<Quadric> quadrics)
+PartialMesh::PartialMesh(const geom::Mesh& mesh, std::vector<char> may_not_move,
+                         std::vector<Quadric> quadrics)
     : position(mesh.vertices),
       border(std::move(may_not_move)),
       quadric(std::move(quadrics)),
@@ -224,10 +226,10 @@ Reduction::Reduction(const geom::Mesh& mesh, std::vector<char> may_not_move,
   std::iota(triangle.begin(), triangle.end(), 0U);
 }
 
-void contract_in_regions(const Setting& setting, Reduction& mesh, std::size_t target,
-                         OriginalSolid* solid, std::vector<Step>* steps,
+void contract_in_regions(const Context& context, PartialMesh& mesh, std::size_t target,
+                         ReferenceSolid* solid, std::vector<Step>* steps,
                          DecimateStatistics& statistics) {
-  Rounds(setting, mesh, solid, steps, statistics).run(target);
+  Rounds(context, mesh, solid, steps, statistics).run(target);
 }
 
 }  // namespace kaboum::bmesh

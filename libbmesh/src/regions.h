@@ -23,8 +23,9 @@ inline void add(DecimateStatistics& sum, const DecimateStatistics& s) {
 }
 
 /// A mesh between the input and the result.
-struct Reduction {
-  Reduction(const geom::Mesh& mesh, std::vector<char> may_not_move, std::vector<Quadric> quadrics);
+struct PartialMesh {
+  PartialMesh(const geom::Mesh& mesh, std::vector<char> may_not_move,
+              std::vector<Quadric> quadrics);
 
   std::vector<Vec3> position;
   std::vector<char> border;
@@ -47,8 +48,8 @@ struct Reduction {
 ///
 /// @param solid  may be null. @param steps  receives the steps, in the input's numbers, when not
 /// null.
-void contract_in_regions(const Setting& setting, Reduction& mesh, std::size_t target,
-                         OriginalSolid* solid, std::vector<Step>* steps,
+void contract_in_regions(const Context& context, PartialMesh& mesh, std::size_t target,
+                         ReferenceSolid* solid, std::vector<Step>* steps,
                          DecimateStatistics& statistics);
 
 }  // namespace kaboum::bmesh

@@ -8,7 +8,7 @@
 
 namespace kaboum::verify {
 
-/// The checker's own view of the original's solid; shares nothing with OriginalSolid, which the
+/// The checker's own view of the original's solid; shares nothing with ReferenceSolid, which the
 /// optimisation uses.
 class ReplaySolid {
  public:

@@ -396,9 +396,9 @@ TEST(Decimate, EffortIsFastWhereMoreHasNoEffect) {
   o.effort = Effort::Normal;
   EXPECT_EQ(effective_effort(closed, o), Effort::Normal);
   EXPECT_EQ(effective_effort(open, o), Effort::Fast);
-  const auto wished = decimate(open, o);
+  const auto requested = decimate(open, o);
   o.effort = Effort::Fast;
-  EXPECT_EQ(wished.mesh.vertices, decimate(open, o).mesh.vertices);
+  EXPECT_EQ(requested.mesh.vertices, decimate(open, o).mesh.vertices);
   o.effort = Effort::Best;
   o.direction = Direction::Any;
   EXPECT_EQ(effective_effort(open, o), Effort::Best);
@@ -423,8 +423,8 @@ TEST(Decimate, SmallMeshesAreDecimatedWithinARisingBound) {
     EXPECT_EQ(r.mesh.vertices, decimate(p, o).mesh.vertices);
     const auto checked = replay(input, log, r.mesh);
     EXPECT_TRUE(checked.verified) << checked.violation;
-    const std::size_t wished = *std::exchange(o.vertices, std::nullopt);
-    const auto once = decimate_series(p, o, std::vector{wished});
+    const std::size_t requested = *std::exchange(o.vertices, std::nullopt);
+    const auto once = decimate_series(p, o, std::vector{requested});
     EXPECT_LT(hausdorff(p.mesh, r.mesh), 0.95 * hausdorff(p.mesh, once.front().mesh));
   }
 }

@@ -123,8 +123,8 @@ TEST(ParallelOptimiser, EdgesOfABatchAreApart) {
   const auto p = geom::prepare(test::icosphere(2));
   const geom::Mesh& sphere = p.mesh;
   WorkingMesh mesh(p);
-  Deviation deviation(sphere);
-  OriginalSolid solid(sphere);
+  SampledError deviation(sphere);
+  ReferenceSolid solid(sphere);
   DecimateOptions options;
   DecimateStatistics statistics;
   deviation.assign(mesh.position, mesh.mesh);

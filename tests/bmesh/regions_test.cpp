@@ -68,14 +68,14 @@ struct Reduced {
   explicit Reduced(const geom::Mesh& mesh, std::size_t target, Direction direction)
       : input(geom::prepare(mesh)), before(input.mesh, input.border, {}), after(before) {
     options.direction = direction;
-    const Setting setting(input, options);
-    before.quadric = setting.cost.initial(input.mesh);
+    const Context context(input, options);
+    before.quadric = context.cost.initial(input.mesh);
     after = before;
-    contract_in_regions(setting, after, target, nullptr, &steps, statistics);
+    contract_in_regions(context, after, target, nullptr, &steps, statistics);
   }
   DecimateOptions options;
   geom::Prepared input;
-  Reduction before, after;
+  PartialMesh before, after;
   std::vector<Step> steps;
   DecimateStatistics statistics;
 };
@@ -120,7 +120,7 @@ TEST(Regions, LeaveAMeshInOrder) {
   for (const geom::Mesh& mesh : {closed_mesh(), crossing_mesh(), open_mesh()}) {
     const std::size_t target = 1000;
     const Reduced r(mesh, target, Direction::Outer);
-    const Reduction& m = r.after;
+    const PartialMesh& m = r.after;
     EXPECT_LT(10 * m.position.size(), 6 * r.before.position.size());
     EXPECT_GE(m.position.size(), target);
     EXPECT_EQ(r.before.position.size() - m.position.size(), r.steps.size());

@@ -45,10 +45,10 @@ inline double squared_distance(const Vec3& p, const std::array<Vec3, 3>& t) {
 }
 
 /// Fast, uncertified distances to a fixed set of triangles.
-class Proximity {
+class ClosestTriangle {
  public:
   /// Keeps a reference to the mesh, which must outlive this object. @pre it has triangles.
-  explicit Proximity(const geom::Mesh& mesh);
+  explicit ClosestTriangle(const geom::Mesh& mesh);
 
   /// Squared distance of p from the set, or of any triangle that is within √enough.
   ///

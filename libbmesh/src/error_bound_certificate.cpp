@@ -1,4 +1,7 @@
-#include "tolerance.h"
+// A carried certificate that a mesh and its original stay near each other.
+// docs/algorithms/bounding-mesh.md, "The error bound".
+
+#include "error_bound_certificate.h"
 
 #include <algorithm>
 #include <limits>
@@ -18,7 +21,7 @@ constexpr int kMaxCells = 4000;
 
 }  // namespace
 
-Tolerance::Tolerance(const geom::Mesh& original, double epsilon, Work* work)
+ErrorBoundCertificate::ErrorBoundCertificate(const geom::Mesh& original, double epsilon, Work* work)
     : near_(original),
       magnitude_(geom::bounding_box(original)
                      .min.cwiseAbs()
@@ -38,14 +41,14 @@ Tolerance::Tolerance(const geom::Mesh& original, double epsilon, Work* work)
   }
 }
 
-void Tolerance::raise(double epsilon) {
+void ErrorBoundCertificate::raise(double epsilon) {
   epsilon_ = epsilon - (magnitude_ + epsilon) * kMaxTotalCuts * geom::PrismCut::kCuts *
                            geom::ConvexPolygon::kCutError;
 }
 
 /// Whether every point of the triangle is within ε of the original. Where it is looked for is a
 /// guess in rounded arithmetic; what accepts are upper bounds of the corners' distances.
-bool Tolerance::is_near(const std::array<Vec3, 3>& triangle) {
+bool ErrorBoundCertificate::is_near(const std::array<Vec3, 3>& triangle) {
   struct Entry {
     geom::ConvexPolygon polygon;
     int depth;
@@ -72,7 +75,7 @@ bool Tolerance::is_near(const std::array<Vec3, 3>& triangle) {
   return true;
 }
 
-std::uint32_t Tolerance::allocate() {
+std::uint32_t ErrorBoundCertificate::allocate() {
   if (free_ == kNone) {
     pieces_.emplace_back();
     return static_cast<std::uint32_t>(pieces_.size() - 1);
@@ -82,21 +85,23 @@ std::uint32_t Tolerance::allocate() {
   return p;
 }
 
-bool Tolerance::carries(const NewTriangle& triangle, const geom::ConvexPolygon& piece) const {
+bool ErrorBoundCertificate::carries(const NewTriangle& triangle,
+                                    const geom::ConvexPolygon& piece) const {
   const auto& [a, b, c] = triangle.corner;
   for (int i = 0; i < piece.size; ++i)
     if (!(geom::point_triangle_upper(piece.corner[i], a, b, c) <= epsilon_)) return false;
   return true;
 }
 
-void Tolerance::put(const geom::ConvexPolygon& piece, std::uint32_t cuts, std::uint32_t carrier) {
+void ErrorBoundCertificate::put(const geom::ConvexPolygon& piece, std::uint32_t cuts,
+                                std::uint32_t carrier) {
   for (int i = 2; i < piece.size; ++i)
     placed_.push_back({{piece.corner[0], piece.corner[i - 1], piece.corner[i]}, cuts, carrier});
 }
 
-bool Tolerance::place(const geom::ConvexPolygon& piece, std::uint32_t cuts,
-                      std::span<const NewTriangle> added, const NearestOf& nearest_of,
-                      int cuts_left) {
+bool ErrorBoundCertificate::place(const geom::ConvexPolygon& piece, std::uint32_t cuts,
+                                  std::span<const NewTriangle> added, const NearestOf& nearest_of,
+                                  int cuts_left) {
   const auto is_carried_by = [&](std::size_t k) {
     if (!carries(added[k], piece)) return false;
     last_carrier_ = k;
@@ -134,7 +139,8 @@ bool Tolerance::place(const geom::ConvexPolygon& piece, std::uint32_t cuts,
   return true;
 }
 
-bool Tolerance::admits(std::span<const std::uint32_t> removed, std::span<const NewTriangle> added) {
+bool ErrorBoundCertificate::admits(std::span<const std::uint32_t> removed,
+                                   std::span<const NewTriangle> added) {
   placed_.clear();
   last_carrier_ = 0;
   pieces_left_ = kMaxPieces;
@@ -157,7 +163,7 @@ bool Tolerance::admits(std::span<const std::uint32_t> removed, std::span<const N
   return admitted;
 }
 
-void Tolerance::commit(std::span<const std::uint32_t> removed) {
+void ErrorBoundCertificate::commit(std::span<const std::uint32_t> removed) {
   for (const std::uint32_t t : removed) {
     std::uint32_t p = head_[t];
     head_[t] = kNone;

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "change.h"
+#include "closest_triangle.h"
 #include "connectivity.h"
 #include "nearest_of.h"
-#include "proximity.h"
 #include "work.h"
 
 namespace kaboum::bmesh {
@@ -19,7 +19,7 @@ namespace kaboum::bmesh {
 /// current triangle nearest to them, so that a change has to look at the samples of the triangles
 /// it removes only. Samples of the current mesh are measured against the original through a
 /// hierarchy.
-class Deviation {
+class SampledError {
  public:
   static constexpr std::uint32_t kNone = ~0U;
 
@@ -42,8 +42,8 @@ class Deviation {
   ///   them.
   /// @param most  so many samples, about, are added for that.
   /// @param work  counts what is done, if not null.
-  explicit Deviation(const geom::Mesh& original, int power = 4, double spacing = 0,
-                     double most = 6000, Work* work = nullptr);
+  explicit SampledError(const geom::Mesh& original, int power = 4, double spacing = 0,
+                        double most = 6000, Work* work = nullptr);
   [[nodiscard]] int power() const { return power_; }
   [[nodiscard]] std::size_t samples() const { return point_.size(); }
 
@@ -106,7 +106,7 @@ class Deviation {
     count(work_, found * nearest.steps());
   }
 
-  [[nodiscard]] const Proximity& original() const { return original_; }
+  [[nodiscard]] const ClosestTriangle& original() const { return original_; }
 
  private:
   /// Where triangle t stays among the new ones; the first, if it vanishes.
@@ -122,7 +122,7 @@ class Deviation {
   }
 
   const geom::Mesh& mesh_;
-  Proximity original_;
+  ClosestTriangle original_;
   int power_;
   Work* work_;
   double unit_;  // 1 / diagonal²

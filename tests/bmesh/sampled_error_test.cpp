@@ -1,4 +1,4 @@
-#include "deviation.h"
+#include "sampled_error.h"
 
 #include <gtest/gtest.h>
 
@@ -12,18 +12,18 @@
 
 namespace {
 
+using kaboum::bmesh::ClosestTriangle;
 using kaboum::bmesh::Connectivity;
-using kaboum::bmesh::Deviation;
 using kaboum::bmesh::NearestOf;
 using kaboum::bmesh::NewTriangle;
-using kaboum::bmesh::Proximity;
+using kaboum::bmesh::SampledError;
 using kaboum::geom::Vec3;
 
 // The original between its vertices is seen, each place once.
-TEST(Deviation, RefinesWherePlacesAreFarOnce) {
+TEST(SampledError, RefinesWherePlacesAreFarOnce) {
   const auto sphere = kaboum::test::icosphere(3);
   Connectivity mesh(sphere.vertices.size(), sphere.triangles);
-  Deviation deviation(sphere);
+  SampledError deviation(sphere);
   deviation.assign(sphere.vertices, mesh);
   const std::size_t before = deviation.samples();
   deviation.refine(sphere.vertices, mesh, 1e-8);
@@ -39,9 +39,9 @@ TEST(Deviation, RefinesWherePlacesAreFarOnce) {
 }
 
 // Long narrow triangles were given dozens of samples each, which made all that looks at them slow.
-TEST(Deviation, NarrowTrianglesHaveFewSamples) {
+TEST(SampledError, NarrowTrianglesHaveFewSamples) {
   const auto rod = kaboum::test::cylinder(200, 1, 1, 0);
-  const Deviation plain(rod), dense(rod, 4, 0.01);
+  const SampledError plain(rod), dense(rod, 4, 0.01);
   EXPECT_LT(dense.samples(), plain.samples() + 6 * rod.triangles.size() + 6000);
 }
 
@@ -60,7 +60,7 @@ std::vector<NewTriangle> scattered(int count, double size, std::mt19937& random)
 }
 
 // What is passed over in single precision is never nearer by more than its rounding, at any scale.
-TEST(Deviation, TheNearestTriangleIsFound) {
+TEST(SampledError, TheNearestTriangleIsFound) {
   std::mt19937 random(7);
   for (const double size : {1.0, 1e-70, 1e-30, 1e30, 1e70}) {
     const std::vector<NewTriangle> triangles = scattered(43, size, random);
@@ -71,7 +71,7 @@ TEST(Deviation, TheNearestTriangleIsFound) {
       mesh.triangles.push_back({n, n + 1, n + 2});
     }
     const NearestOf nearest(triangles);
-    const Proximity proximity(mesh);
+    const ClosestTriangle proximity(mesh);
     std::uniform_real_distribution<double> at(-1.5 * size, 1.5 * size);
     std::size_t which = 0;
     std::uint32_t hint = 0;

@@ -13,11 +13,11 @@ namespace kaboum::bmesh {
 /// The cone of triangles (apex, p, q) over a star's boundary, and for each of them what the
 /// original allows: of the planes through (p, q) and points that must stay behind it, the one
 /// turned farthest outwards. Linear in the apex, for the minimisation; nothing here is certified.
-class Fan {
+class SupportPlanes {
  public:
   /// @param sign  1 when the original's points must not be on the outer side, -1 when not on the
   ///   inner one.
-  explicit Fan(double sign) : sign_(sign) {}
+  explicit SupportPlanes(double sign) : sign_(sign) {}
 
   /// Begins anew with triangles whose first corners are the apex.
   void assign(std::span<const NewTriangle> triangles);

@@ -8,18 +8,18 @@
 #include "bucket_queue.h"
 #include "change.h"
 #include "cost.h"
-#include "original_solid.h"
 #include "placement.h"
+#include "reference_solid.h"
 #include "work.h"
 #include "working_mesh.h"
 
 namespace kaboum::bmesh {
 
 /// What all contractions of a run have in common.
-struct Setting {
+struct Context {
   /// Keeps a reference to the options, which must outlive this object.
   /// @param counter  of what is done, for as long; may be null.
-  Setting(const geom::Prepared& input, const DecimateOptions& wished, Work* counter = nullptr);
+  Context(const geom::Prepared& input, const DecimateOptions& requested, Work* counter = nullptr);
 
   const DecimateOptions& options;
   CostModel cost;
@@ -33,13 +33,13 @@ struct Setting {
   Work* work;
 
  private:
-  Setting(const geom::Box3& box, bool is_closed, const DecimateOptions& wished, Work* counter);
+  Context(const geom::Box3& box, bool is_closed, const DecimateOptions& requested, Work* counter);
 };
 
 /// What contracting an edge would do, and whether it may be done: the place of the new vertex, the
 /// exact tests that the certificate rests on, and the tests that serve quality only.
 /// Source: [gaschler2016] Alg. 1.
-class Evaluation {
+class CollapseEvaluator {
  public:
   struct StarTriangle {
     std::uint32_t index;
@@ -54,7 +54,7 @@ class Evaluation {
     double cost = 0;
     Vec3 enclosing = Vec3::Zero();  // the place that the present mesh bounds
     bool encloses = false;          // there is one
-    bool settled = false;           // the position is one that the original bounds
+    bool against_original = false;  // the position is one that the original bounds
   };
 
   enum class Validity {
@@ -63,27 +63,27 @@ class Evaluation {
     Valid,
   };
   enum class Purpose {
-    Any,      // all tests are made
-    Due,      // only of what is due
-    Settled,  // positions that the present mesh does not bound will do to begin with
+    Any,              // all tests are made
+    Due,              // only of what is due
+    AgainstOriginal,  // positions that the present mesh does not bound will do to begin with
   };
 
-  /// References must outlive this object, as the setting must. `solid` may be null: then inner
+  /// References must outlive this object, as the context must. `solid` may be null: then inner
   /// surfaces are not kept from folding.
-  Evaluation(const Setting& setting, const WorkingMesh& mesh, OriginalSolid* solid,
-             DecimateStatistics& statistics);
+  CollapseEvaluator(const Context& context, const WorkingMesh& mesh, ReferenceSolid* solid,
+                    DecimateStatistics& statistics);
 
   /// Fills the candidate with the cheapest valid position for the edge (a, b), with quadric q.
   Validity evaluate(std::uint32_t a, std::uint32_t b, const Quadric& q, Purpose purpose,
                     const BucketQueue& queue);
 
   /// Finds a place for v alone, near where it is, that keeps `care` times as far from the planes as
-  /// rounding asks for, and makes all tests; that of folds, which no certificate rests on, if
-  /// wished.
+  /// rounding asks for, and makes all tests; unless
+  /// `may_fold`, that of folds, which no certificate rests on.
   bool evaluate_move(std::uint32_t v, double care, bool may_fold = false);
 
   /// Moves the candidate to another place, if no triangle folds there.
-  bool settle_at(const Vec3& place, const Quadric& q);
+  bool place_against_original(const Vec3& place, const Quadric& q);
 
   /// The dearer tests, made only of candidates that are about to be applied: no fold on the inner
   /// side, convexity where it is to be kept. Exact.
@@ -114,10 +114,10 @@ class Evaluation {
   [[nodiscard]] bool stays_convex();
   void find_cost(const Quadric& q);
 
-  const Setting& setting_;
+  const Context& context_;
   const DecimateOptions& options_;
   const WorkingMesh& m_;
-  OriginalSolid* solid_;
+  ReferenceSolid* solid_;
   DecimateStatistics& statistics_;
 
   Candidate candidate_;

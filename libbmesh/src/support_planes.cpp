@@ -1,15 +1,17 @@
-#include "fan.h"
+// Planes of a star of triangles that the original must stay beyond.
+
+#include "support_planes.h"
 
 #include <kaboum/geom/clip.h>
 
 #include <cmath>
 #include <limits>
 
-#include "proximity.h"
+#include "closest_triangle.h"
 
 namespace kaboum::bmesh {
 
-void Fan::assign(std::span<const NewTriangle> triangles) {
+void SupportPlanes::assign(std::span<const NewTriangle> triangles) {
   facets_.clear();
   if (triangles.empty()) return;
   apex_ = triangles.front().corner[0];
@@ -23,7 +25,7 @@ void Fan::assign(std::span<const NewTriangle> triangles) {
   }
 }
 
-void Fan::keep(std::size_t i, const Vec3& point) {
+void SupportPlanes::keep(std::size_t i, const Vec3& point) {
   Facet& f = facets_[i];
   const double x = f.across.dot(point - f.p);
   if (!(x > 1e-3 * f.across.dot(apex_ - f.p))) return;
@@ -33,8 +35,8 @@ void Fan::keep(std::size_t i, const Vec3& point) {
   f.through = point;
 }
 
-void Fan::keep(std::size_t i, const std::array<Vec3, 4>& tetrahedron,
-               const std::array<Vec3, 3>& triangle) {
+void SupportPlanes::keep(std::size_t i, const std::array<Vec3, 4>& tetrahedron,
+                         const std::array<Vec3, 3>& triangle) {
   geom::ConvexPolygon part(triangle[0], triangle[1], triangle[2]);
   for (std::size_t k = 0; k < 4; ++k) {
     // The face across from corner k, with its normal pointing inwards.
@@ -60,7 +62,7 @@ void Fan::keep(std::size_t i, const std::array<Vec3, 4>& tetrahedron,
   }
 }
 
-void Fan::half_spaces(const Vec3& spread, std::vector<HalfSpace>& out) const {
+void SupportPlanes::half_spaces(const Vec3& spread, std::vector<HalfSpace>& out) const {
   out.clear();
   for (const Facet& f : facets_) {
     if (!std::isfinite(f.slope)) continue;

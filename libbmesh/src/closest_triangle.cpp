@@ -1,7 +1,7 @@
 // The tree of boxes that exact queries use is binary and in double precision. Here four boxes at a
 // time are compared, and four triangles, in single precision, which decides nothing but where to
 // look.
-#include "proximity.h"
+#include "closest_triangle.h"
 
 #include <algorithm>
 #include <limits>
@@ -14,7 +14,7 @@ constexpr std::uint32_t kLeaf = 1U << 31;
 
 }  // namespace
 
-Proximity::Proximity(const geom::Mesh& mesh)
+ClosestTriangle::ClosestTriangle(const geom::Mesh& mesh)
     : mesh_(mesh), bvh_(std::make_shared<const geom::Bvh>(mesh)) {
   triangles_.reserve(mesh.triangles.size());
   for (const std::uint32_t i : bvh_->order()) triangles_.push_back(mesh.triangles[i]);
@@ -23,7 +23,7 @@ Proximity::Proximity(const geom::Mesh& mesh)
 }
 
 /// Makes a node of the tree's node: of up to four nodes below it, or a leaf. @return its place
-std::uint32_t Proximity::add(std::uint32_t index) {
+std::uint32_t ClosestTriangle::add(std::uint32_t index) {
   const auto nodes = bvh_->nodes();
   if (nodes[index].leaf()) {
     const geom::Bvh::Node& from = nodes[index];
@@ -58,8 +58,8 @@ std::uint32_t Proximity::add(std::uint32_t index) {
   return place;
 }
 
-double Proximity::squared(const Vec3& p, std::uint32_t& hint, double enough,
-                          std::uint64_t* steps) const {
+double ClosestTriangle::squared(const Vec3& p, std::uint32_t& hint, double enough,
+                                std::uint64_t* steps) const {
   if (hint >= triangles_.size()) hint = 0;
   double best = squared_distance(p, corners(hint));
   float reach = frame_.reach(best);

@@ -1,6 +1,9 @@
+// How far a changing mesh is from its original, at samples of both. Guides the search, never a
+// claim.
+
 #include <kaboum/base/parallel.h>
 
-#include "deviation.h"
+#include "sampled_error.h"
 
 #include <algorithm>
 #include <limits>
@@ -9,7 +12,8 @@
 
 namespace kaboum::bmesh {
 
-Deviation::Deviation(const geom::Mesh& original, int power, double spacing, double most, Work* work)
+SampledError::SampledError(const geom::Mesh& original, int power, double spacing, double most,
+                           Work* work)
     : mesh_(original),
       original_(original),
       power_(power),
@@ -22,7 +26,7 @@ Deviation::Deviation(const geom::Mesh& original, int power, double spacing, doub
   next_.assign(point_.size(), kNone);
 }
 
-void Deviation::add_samples(double spacing, double most) {
+void SampledError::add_samples(double spacing, double most) {
   const geom::Mesh& original = mesh_;
   // Triangles much larger than the average get inner samples: their corners say little of them.
   const double total = geom::area(original);
@@ -94,13 +98,13 @@ struct Present {
 
 }  // namespace
 
-void Deviation::assign(std::span<const Vec3> position, const Connectivity& mesh) {
+void SampledError::assign(std::span<const Vec3> position, const Connectivity& mesh) {
   const Present present(position, mesh);
   const geom::Mesh& current = present.mesh;
   const std::vector<std::uint32_t>& index = present.index;
   std::fill(head_.begin(), head_.end(), kNone);
   if (current.empty()) return;
-  const Proximity proximity(current);
+  const ClosestTriangle proximity(current);
   // Runs of samples, each with hints of its own: the result does not depend on the threads.
   constexpr std::size_t kRun = 1024;
   std::vector<std::uint32_t> nearest(point_.size());
@@ -132,7 +136,7 @@ class Between {
     std::uint32_t nearest;
   };
 
-  Between(const Proximity& present, double enough) : present_(present), enough_(enough) {}
+  Between(const ClosestTriangle& present, double enough) : present_(present), enough_(enough) {}
   /// Taken until now. [ns]
   [[nodiscard]] std::uint64_t steps() const { return steps_; }
 
@@ -194,7 +198,7 @@ class Between {
     return middle;
   }
 
-  const Proximity& present_;
+  const ClosestTriangle& present_;
   double enough_;
   std::uint64_t steps_ = 0;
   std::vector<Piece> pieces_;
@@ -202,10 +206,10 @@ class Between {
 
 }  // namespace
 
-void Deviation::refine(std::span<const Vec3> position, const Connectivity& mesh, double enough) {
+void SampledError::refine(std::span<const Vec3> position, const Connectivity& mesh, double enough) {
   const Present present(position, mesh);
   if (present.mesh.empty()) return;
-  const Proximity proximity(present.mesh);
+  const ClosestTriangle proximity(present.mesh);
   std::vector<std::uint32_t> place(mesh.size());  // of a triangle
   for (std::uint32_t i = 0; i < present.index.size(); ++i)
     place[present.index[proximity.triangle(i)]] = i;
@@ -246,8 +250,8 @@ void Deviation::refine(std::span<const Vec3> position, const Connectivity& mesh,
     for (const auto& [i, at] : run) add(i, at);
 }
 
-std::size_t Deviation::place_of(std::uint32_t t, std::span<const NewTriangle> added,
-                                std::size_t& from) {
+std::size_t SampledError::place_of(std::uint32_t t, std::span<const NewTriangle> added,
+                                   std::size_t& from) {
   for (std::size_t i = 0; i < added.size(); ++i) {
     const std::size_t k = from + i < added.size() ? from + i : from + i - added.size();
     if (added[k].index != t) continue;
@@ -257,9 +261,9 @@ std::size_t Deviation::place_of(std::uint32_t t, std::span<const NewTriangle> ad
   return 0;
 }
 
-double Deviation::largest(std::span<const std::uint32_t> removed,
-                          std::span<const NewTriangle> added, std::span<const Point> points,
-                          std::uint32_t& hint, double limit) const {
+double SampledError::largest(std::span<const std::uint32_t> removed,
+                             std::span<const NewTriangle> added, std::span<const Point> points,
+                             std::uint32_t& hint, double limit) const {
   double worst = 0;
   std::uint64_t steps = 0;
   for (const Point& p : points) {
@@ -282,9 +286,10 @@ double Deviation::largest(std::span<const std::uint32_t> removed,
   return worst;
 }
 
-Deviation::Energy Deviation::energy(std::span<const std::uint32_t> removed,
-                                    std::span<const NewTriangle> added, std::span<Point> points,
-                                    std::uint32_t& hint, double limit) const {
+SampledError::Energy SampledError::energy(std::span<const std::uint32_t> removed,
+                                          std::span<const NewTriangle> added,
+                                          std::span<Point> points, std::uint32_t& hint,
+                                          double limit) const {
   Energy e;
   const auto add = [&](double squared, double weight) {
     // In units of the diagonal, lest the powers overflow.
@@ -311,7 +316,8 @@ Deviation::Energy Deviation::energy(std::span<const std::uint32_t> removed,
   return e;
 }
 
-void Deviation::commit(std::span<const std::uint32_t> removed, std::span<const NewTriangle> added) {
+void SampledError::commit(std::span<const std::uint32_t> removed,
+                          std::span<const NewTriangle> added) {
   if (added.empty()) return;
   std::uint32_t all = kNone;
   for (const std::uint32_t t : removed) {
@@ -340,16 +346,16 @@ void Deviation::commit(std::span<const std::uint32_t> removed, std::span<const N
   count(work_, moved * nearest.steps());
 }
 
-void Deviation::save(std::span<const std::uint32_t> triangles,
-                     std::vector<std::uint32_t>& out) const {
+void SampledError::save(std::span<const std::uint32_t> triangles,
+                        std::vector<std::uint32_t>& out) const {
   for (const std::uint32_t t : triangles) {
     for (std::uint32_t s = head_[t]; s != kNone; s = next_[s]) out.push_back(s);
     out.push_back(kNone);
   }
 }
 
-void Deviation::restore(std::span<const std::uint32_t> triangles,
-                        std::span<const std::uint32_t> saved) {
+void SampledError::restore(std::span<const std::uint32_t> triangles,
+                           std::span<const std::uint32_t> saved) {
   std::size_t i = 0;
   for (const std::uint32_t t : triangles) {
     std::uint32_t* link = &head_[t];

@@ -37,14 +37,14 @@ bool opposed(std::span<const Vec3> normals);
 
 /// Exact questions about the solid of the original: the certificate of steps that give back what
 /// earlier steps have added.
-class OriginalSolid {
+class ReferenceSolid {
  public:
   /// Keeps a reference to `original`, which must outlive this object and be a closed chain.
   /// @param hierarchy  over it, where there is one already.
   /// @param work  counts what is done, if not null.
-  explicit OriginalSolid(const geom::Mesh& original,
-                         std::shared_ptr<const geom::Bvh> hierarchy = nullptr,
-                         Work* work = nullptr);
+  explicit ReferenceSolid(const geom::Mesh& original,
+                          std::shared_ptr<const geom::Bvh> hierarchy = nullptr,
+                          Work* work = nullptr);
 
   /// Whether the tetrahedron's open interior meets no triangle of the original and its winding
   /// number there is at most 0 (`inside` false) or at least 1 (`inside` true). False also when the

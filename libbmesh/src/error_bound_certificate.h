@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "change.h"
+#include "closest_triangle.h"
 #include "nearest_of.h"
-#include "proximity.h"
 #include "work.h"
 
 namespace kaboum::bmesh {
@@ -24,14 +24,14 @@ using geom::Vec3;
 /// a current triangle within ε of its corners. A change is admitted only if all pieces carried by
 /// the triangles it removes, cut further where need be, find a new carrier.
 /// docs/algorithms/bounding-mesh.md, "The error bound".
-class Tolerance {
+class ErrorBoundCertificate {
  public:
   using NewTriangle = bmesh::NewTriangle;
 
   /// @param original  carried initially triangle by triangle: triangle i of the current mesh is
   ///   triangle i of the original. It must outlive this object.
   /// @param work  counts what is done, if not null.
-  Tolerance(const geom::Mesh& original, double epsilon, Work* work = nullptr);
+  ErrorBoundCertificate(const geom::Mesh& original, double epsilon, Work* work = nullptr);
 
   /// Lets ε be larger from now on.
   void raise(double epsilon);
@@ -67,7 +67,7 @@ class Tolerance {
 
   [[nodiscard]] bool is_near(const std::array<Vec3, 3>& triangle);
 
-  Proximity near_;
+  ClosestTriangle near_;
   double magnitude_;  // of the original's coordinates
   double epsilon_;
   std::vector<Piece> pieces_;

@@ -1,4 +1,4 @@
-#include "original_solid.h"
+#include "reference_solid.h"
 
 #include <CGAL/Exact_rational.h>
 #include <CGAL/Simple_cartesian.h>
@@ -56,7 +56,7 @@ bool has_volume(const Tetrahedron& t) {
 }
 
 // Coordinates of few values make touching, coplanar and degenerate cases the rule.
-TEST(OriginalSolid, MeetsInteriorAsClippingSays) {
+TEST(ReferenceSolid, MeetsInteriorAsClippingSays) {
   std::mt19937_64 random(61);
   int met = 0, missed = 0;
   for (int i = 0; i < 6000; ++i) {
@@ -77,7 +77,7 @@ TEST(OriginalSolid, MeetsInteriorAsClippingSays) {
 }
 
 // Products of such coordinates vanish: what rounded arithmetic says of them must not count.
-TEST(OriginalSolid, TinyTrianglesInACornerAreNotBeyondIt) {
+TEST(ReferenceSolid, TinyTrianglesInACornerAreNotBeyondIt) {
   const double u = 5e-324;
   const Vec3 a(-u, u, -2 * u), b(-2 * u, 0, u), c(-u, -2 * u, 0);
   const Tetrahedron tetrahedron{Vec3(0, 0, 0),
@@ -89,13 +89,13 @@ TEST(OriginalSolid, TinyTrianglesInACornerAreNotBeyondIt) {
   mesh.vertices = {a, b, c, Vec3(-1, -1, -1)};
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}};
   std::vector<std::uint32_t> met;
-  EXPECT_FALSE(OriginalSolid(mesh).contains(tetrahedron, false, &met));
+  EXPECT_FALSE(ReferenceSolid(mesh).contains(tetrahedron, false, &met));
   EXPECT_NE(std::find(met.begin(), met.end(), 0U), met.end());
 }
 
 // Against the slow oracle, and the checker's own implementation: tetrahedra that are accepted lie
 // outside (inside) at every point tried, and both implementations agree.
-TEST(OriginalSolid, AcceptsOnlyWhatLiesOutside) {
+TEST(ReferenceSolid, AcceptsOnlyWhatLiesOutside) {
   std::mt19937_64 random(62);
   std::uniform_real_distribution<double> unit(0, 1);
   std::size_t accepted = 0, refused = 0, differ = 0;
@@ -107,7 +107,7 @@ TEST(OriginalSolid, AcceptsOnlyWhatLiesOutside) {
     } catch (const Error&) {
       continue;
     }
-    OriginalSolid solid(p.mesh);
+    ReferenceSolid solid(p.mesh);
     std::vector<verify::ReplaySolid::Point> points;
     for (const Vec3& v : p.mesh.vertices) points.emplace_back(v.x(), v.y(), v.z());
     verify::ReplaySolid checker(points, p.mesh.triangles);

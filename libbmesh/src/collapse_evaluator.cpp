@@ -1,4 +1,7 @@
-#include "evaluation.h"
+// The place of the vertex that replaces an edge, and the exact tests that it has to pass. Source:
+// [gaschler2016] Alg. 1; docs/algorithms/bounding-mesh.md has the theorem that they serve.
+
+#include "collapse_evaluator.h"
 
 #include <kaboum/geom/float32.h>
 
@@ -6,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-#include "proximity.h"
+#include "closest_triangle.h"
 
 namespace kaboum::bmesh {
 namespace {
@@ -39,36 +42,37 @@ geom::Box3 box_of(const std::vector<Vec3>& points) {
 
 }  // namespace
 
-Setting::Setting(const geom::Prepared& input, const DecimateOptions& wished, Work* counter)
-    : Setting(box_of(input.mesh.vertices), input.closed, wished, counter) {}
+Context::Context(const geom::Prepared& input, const DecimateOptions& requested, Work* counter)
+    : Context(box_of(input.mesh.vertices), input.closed, requested, counter) {}
 
-Setting::Setting(const geom::Box3& box, bool is_closed, const DecimateOptions& wished,
+Context::Context(const geom::Box3& box, bool is_closed, const DecimateOptions& requested,
                  Work* counter)
-    : options(wished),
-      cost(wished, box),
-      sign(wished.direction == Direction::Inner ? -1 : 1),
-      constrained(wished.direction != Direction::Any),
+    : options(requested),
+      cost(requested, box),
+      sign(requested.direction == Direction::Inner ? -1 : 1),
+      constrained(requested.direction != Direction::Any),
       closed(is_closed),
       diagonal(box.diagonal()),
       reach(0.5 * (box.max - box.min) + Vec3::Constant(box.diagonal())),
       work(counter) {}
 
-Evaluation::Evaluation(const Setting& setting, const WorkingMesh& mesh, OriginalSolid* solid,
-                       DecimateStatistics& statistics)
-    : setting_(setting),
-      options_(setting.options),
+CollapseEvaluator::CollapseEvaluator(const Context& context, const WorkingMesh& mesh,
+                                     ReferenceSolid* solid, DecimateStatistics& statistics)
+    : context_(context),
+      options_(context.options),
       m_(mesh),
       solid_(solid),
       statistics_(statistics),
       mark_(mesh.position.size(), 0) {}
 
-Evaluation::Validity Evaluation::evaluate(std::uint32_t a, std::uint32_t b, const Quadric& q,
-                                          Purpose purpose, const BucketQueue& queue) {
+CollapseEvaluator::Validity CollapseEvaluator::evaluate(std::uint32_t a, std::uint32_t b,
+                                                        const Quadric& q, Purpose purpose,
+                                                        const BucketQueue& queue) {
   candidate_.a = a;
   candidate_.b = b;
-  candidate_.settled = false;
+  candidate_.against_original = false;
   gather(a, b);
-  count(setting_.work, kCandidate + kStarTriangle * star_.size());
+  count(context_.work, kCandidate + kStarTriangle * star_.size());
   const bool free = m_.border[a] == 0 && m_.border[b] == 0;
   bool found = false;
   if (free) {
@@ -92,7 +96,7 @@ Evaluation::Validity Evaluation::evaluate(std::uint32_t a, std::uint32_t b, cons
     // end points themselves serve in flat places, where every plane of the star is the same one.
     const bool placed = found && (encloses() || (place(q, 16) && encloses()));
     if (!placed && !at_end_point()) {
-      if (purpose == Purpose::Settled) {
+      if (purpose == Purpose::AgainstOriginal) {
         candidate_.encloses = false;
         candidate_.position = m_.position[a] + 0.5 * (m_.position[b] - m_.position[a]);
         return Validity::Valid;
@@ -102,12 +106,13 @@ Evaluation::Validity Evaluation::evaluate(std::uint32_t a, std::uint32_t b, cons
   }
   candidate_.enclosing = candidate_.position;
   candidate_.encloses = !folds();
-  if (!candidate_.encloses && purpose != Purpose::Settled) return none(statistics_.rejected_fold);
+  if (!candidate_.encloses && purpose != Purpose::AgainstOriginal)
+    return none(statistics_.rejected_fold);
   find_cost(q);
   return Validity::Valid;
 }
 
-bool Evaluation::evaluate_move(std::uint32_t v, double care, bool may_fold) {
+bool CollapseEvaluator::evaluate_move(std::uint32_t v, double care, bool may_fold) {
   candidate_.a = candidate_.b = v;
   star_.clear();
   m_.mesh.for_each_triangle(v, [&](std::uint32_t t, std::uint32_t k) {
@@ -115,23 +120,23 @@ bool Evaluation::evaluate_move(std::uint32_t v, double care, bool may_fold) {
   });
   rim_.clear();
   if (options_.keep_convex) gather_rim();
-  const Quadric nearest = point_quadric(m_.position[v] - setting_.cost.origin());
+  const Quadric nearest = point_quadric(m_.position[v] - context_.cost.origin());
   return place(nearest, care) && encloses() && (may_fold || !folds()) && keeps_shape();
 }
 
-bool Evaluation::settle_at(const Vec3& place, const Quadric& q) {
+bool CollapseEvaluator::place_against_original(const Vec3& place, const Quadric& q) {
   const Vec3 before = candidate_.position;
   candidate_.position = place;
   if (out_of_reach() || folds()) {
     candidate_.position = before;
     return false;
   }
-  candidate_.settled = true;
+  candidate_.against_original = true;
   find_cost(q);
   return true;
 }
 
-bool Evaluation::keeps_shape() {
+bool CollapseEvaluator::keeps_shape() {
   if (options_.keep_convex && !stays_convex()) {
     ++statistics_.rejected_predicate;
     return false;
@@ -141,8 +146,8 @@ bool Evaluation::keeps_shape() {
   return false;
 }
 
-void Evaluation::describe(std::vector<std::uint32_t>& removed,
-                          std::vector<NewTriangle>& added) const {
+void CollapseEvaluator::describe(std::vector<std::uint32_t>& removed,
+                                 std::vector<NewTriangle>& added) const {
   removed.clear();
   added.clear();
   for (const StarTriangle& s : star_) {
@@ -155,7 +160,7 @@ void Evaluation::describe(std::vector<std::uint32_t>& removed,
   }
 }
 
-const std::vector<std::uint32_t>& Evaluation::neighbours(std::uint32_t v) {
+const std::vector<std::uint32_t>& CollapseEvaluator::neighbours(std::uint32_t v) {
   neighbours_.clear();
   const std::uint32_t seen = ++mark_value_;
   // Off borders every neighbour is the next corner of some triangle.
@@ -171,9 +176,9 @@ const std::vector<std::uint32_t>& Evaluation::neighbours(std::uint32_t v) {
   return neighbours_;
 }
 
-void Evaluation::find_cost(const Quadric& q) {
+void CollapseEvaluator::find_cost(const Quadric& q) {
   candidate_.cost =
-      setting_.cost.key(q, candidate_.position,
+      context_.cost.key(q, candidate_.position,
                         (m_.position[candidate_.b] - m_.position[candidate_.a]).squaredNorm());
   if (options_.cost != Cost::Distance) return;
   // Beyond a knife's edge a vertex is near all planes, and far from the triangles.
@@ -190,7 +195,7 @@ void Evaluation::find_cost(const Quadric& q) {
   candidate_.cost = std::max(candidate_.cost, kFar * std::sqrt(squared));
 }
 
-void Evaluation::gather(std::uint32_t a, std::uint32_t b) {
+void CollapseEvaluator::gather(std::uint32_t a, std::uint32_t b) {
   star_.clear();
   m_.mesh.for_each_triangle(a, [&](std::uint32_t t, std::uint32_t k) {
     const Triangle& tri = m_.mesh[t];
@@ -204,7 +209,7 @@ void Evaluation::gather(std::uint32_t a, std::uint32_t b) {
 
 /// The link condition: the neighbours common to a and b are the corners opposite their edge, and
 /// no two triangles would come to coincide.
-bool Evaluation::keeps_topology() {
+bool CollapseEvaluator::keeps_topology() {
   const std::uint32_t apex = ++mark_value_;
   std::uint32_t apexes = 0;
   for (const StarTriangle& s : star_) {
@@ -244,7 +249,7 @@ bool Evaluation::keeps_topology() {
 }
 
 /// Tries to contract to an end point of the edge, where it is.
-bool Evaluation::at_end_point() {
+bool CollapseEvaluator::at_end_point() {
   for (const std::uint32_t v : {candidate_.a, candidate_.b}) {
     candidate_.position = m_.position[v];
     if (options_.precision == Precision::Float && !geom::is_float32(candidate_.position)) continue;
@@ -255,7 +260,7 @@ bool Evaluation::at_end_point() {
 
 /// Whether a rounded vertex can lie exactly on the triangle's plane: it is axis-aligned, at a
 /// representable coordinate.
-bool Evaluation::can_lie_on(std::uint32_t t) const {
+bool CollapseEvaluator::can_lie_on(std::uint32_t t) const {
   const int k = axis(m_.normal[t]);
   return k >= 0 && (options_.precision == Precision::Double ||
                     geom::is_float32(m_.position[m_.mesh[t][0]][k]));
@@ -263,7 +268,7 @@ bool Evaluation::can_lie_on(std::uint32_t t) const {
 
 /// How far the new vertex is from where its star was seen from: half the edge, or half the longest
 /// edge around a vertex that moves alone.
-double Evaluation::reach() const {
+double CollapseEvaluator::reach() const {
   const Vec3& a = m_.position[candidate_.a];
   if (candidate_.a != candidate_.b) return 0.5 * (m_.position[candidate_.b] - a).lpNorm<1>();
   double longest = 0;
@@ -274,7 +279,7 @@ double Evaluation::reach() const {
 }
 
 /// Minimises the quadric over the half-spaces of the star and rounds the result.
-bool Evaluation::place(const Quadric& q, double care) {
+bool CollapseEvaluator::place(const Quadric& q, double care) {
   ++statistics_.placements;
   const Vec3 &pa = m_.position[candidate_.a], &pb = m_.position[candidate_.b];
   const Vec3 half = 0.5 * (pb - pa);
@@ -285,8 +290,8 @@ bool Evaluation::place(const Quadric& q, double care) {
                     spacing(middle.z(), options_.precision));
   const double extent = reach(), own_error = 1e-13 * extent;
   planes_.clear();
-  if (setting_.constrained) {
-    const double sign = setting_.sign;
+  if (context_.constrained) {
+    const double sign = context_.sign;
     for (const StarTriangle& s : star_) {
       const Vec3& n = m_.normal[s.index];
       const double margin =
@@ -302,8 +307,8 @@ bool Evaluation::place(const Quadric& q, double care) {
       planes_.push_back({-n, margin + n.dot(middle - m_.position[m_.mesh[t][0]])});
     }
   }
-  const auto y = minimise(q, q.half_gradient(middle - setting_.cost.origin()), planes_,
-                          setting_.cost.regularisation());
+  const auto y = minimise(q, q.half_gradient(middle - context_.cost.origin()), planes_,
+                          context_.cost.regularisation());
   if (!y) return false;
   candidate_.position = middle + *y;
   if (options_.precision == Precision::Float) {
@@ -316,14 +321,14 @@ bool Evaluation::place(const Quadric& q, double care) {
   return !out_of_reach();
 }
 
-bool Evaluation::out_of_reach() const {
-  return !((candidate_.position - setting_.cost.origin()).cwiseAbs().array() <=
-           setting_.reach.array())
+bool CollapseEvaluator::out_of_reach() const {
+  return !((candidate_.position - context_.cost.origin()).cwiseAbs().array() <=
+           context_.reach.array())
               .all();
 }
 
 /// Puts the position exactly on axis-aligned planes that it is on but for rounding.
-void Evaluation::snap_to_axis_planes(double distance) {
+void CollapseEvaluator::snap_to_axis_planes(double distance) {
   for (const StarTriangle& s : star_) {
     const int k = axis(m_.normal[s.index]);
     if (k < 0) continue;
@@ -332,7 +337,7 @@ void Evaluation::snap_to_axis_planes(double distance) {
   }
 }
 
-Sign Evaluation::side(std::uint32_t t) {
+Sign CollapseEvaluator::side(std::uint32_t t) {
   ++statistics_.predicates;
   const Triangle& tri = m_.mesh[t];
   return geom::orient3d(m_.position[tri[0]], m_.position[tri[1]], m_.position[tri[2]],
@@ -341,8 +346,8 @@ Sign Evaluation::side(std::uint32_t t) {
 
 /// The exact test that the certificate rests on: the new vertex is on the right side of, or on,
 /// the plane of every triangle of the star.
-bool Evaluation::encloses() {
-  if (!setting_.constrained) return true;
+bool CollapseEvaluator::encloses() {
+  if (!context_.constrained) return true;
   const Sign wrong = options_.direction == Direction::Inner ? Sign::Positive : Sign::Negative;
   for (const StarTriangle& s : star_)
     if (side(s.index) == wrong) return false;
@@ -352,7 +357,7 @@ bool Evaluation::encloses() {
 }
 
 /// Whether a remaining triangle would collapse or turn by more than about 80 degrees.
-bool Evaluation::folds() const {
+bool CollapseEvaluator::folds() const {
   for (const StarTriangle& s : star_) {
     if (s.vanishes) continue;
     const Vec3& before = m_.normal[s.index];
@@ -369,7 +374,7 @@ bool Evaluation::folds() const {
 
 /// Exact: all that an inner step takes away is inside the original, so that no new triangle
 /// leaves it: no fold. docs/algorithms/bounding-mesh.md, "Inner surfaces".
-bool Evaluation::stays_inside() {
+bool CollapseEvaluator::stays_inside() {
   if (options_.direction != Direction::Inner || solid_ == nullptr) return true;
   flat_.clear();
   for (const StarTriangle& s : star_) {
@@ -389,7 +394,7 @@ bool Evaluation::stays_inside() {
 }
 
 /// Collects the triangles across the star's boundary: the new vertex must stay on or below them.
-void Evaluation::gather_rim() {
+void CollapseEvaluator::gather_rim() {
   rim_.clear();
   if (options_.direction == Direction::Inner) return;
   for (const StarTriangle& s : star_) {
@@ -405,7 +410,7 @@ void Evaluation::gather_rim() {
 /// Exact: no vertex would be above a new triangle. The other triangles keep all vertices below
 /// them: outwards the new vertex was tested against those across the star's boundary (beyond them
 /// none is visible from it), inwards it lies in the old, convex body.
-bool Evaluation::stays_convex() {
+bool CollapseEvaluator::stays_convex() {
   const bool inner = options_.direction == Direction::Inner;
   bool solid = !inner;  // inwards the body might be flattened
   for (const StarTriangle& s : star_) {

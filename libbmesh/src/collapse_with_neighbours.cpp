@@ -55,7 +55,7 @@ void Optimiser::neighbours(std::uint32_t v, std::vector<std::uint32_t>& out) {
   });
 }
 
-void Optimiser::take(std::span<const std::uint32_t> vertices) {
+void Optimiser::take_snapshot(std::span<const std::uint32_t> vertices) {
   Snapshot& s = snapshot_;
   s.triangles.clear(), s.corners.clear(), s.positions.clear(), s.samples.clear();
   s.vertices.assign(vertices.begin(), vertices.end());
@@ -70,24 +70,24 @@ void Optimiser::take(std::span<const std::uint32_t> vertices) {
       s.corners.push_back(m_.mesh[t]);
     });
   }
-  deviation_.save(s.triangles, s.samples);
+  sampled_.save(s.triangles, s.samples);
   s.steps = steps_ != nullptr ? steps_->size() : 0;
   s.pull_backs = statistics_.pull_backs;
 }
 
-void Optimiser::go_back() {
+void Optimiser::rollback() {
   const Snapshot& s = snapshot_;
   for (std::size_t i = 0; i < s.vertices.size(); ++i) m_.position[s.vertices[i]] = s.positions[i];
   for (std::size_t i = 0; i < s.triangles.size(); ++i)
     m_.mesh.restore(s.triangles[i], s.corners[i]);
   for (const std::uint32_t t : s.triangles) m_.update_normal(t);
-  deviation_.restore(s.triangles, s.samples);
+  sampled_.restore(s.triangles, s.samples);
   if (steps_ != nullptr) steps_->resize(s.steps);
   statistics_.pull_backs = s.pull_backs;
 }
 
 /// The link condition, for an edge of two triangles between inner vertices.
-bool Optimiser::joins(std::uint32_t a, std::uint32_t b) {
+bool Optimiser::satisfies_link_condition(std::uint32_t a, std::uint32_t b) {
   if (m_.border[a] != 0 || m_.border[b] != 0) return false;
   around_.clear();
   ++mark_value_;
@@ -138,7 +138,7 @@ bool Optimiser::gather_edge(std::uint32_t a, std::uint32_t b, const Vec3& to) {
 
 /// Carries out what gather_edge has described.
 void Optimiser::contract(std::uint32_t a, std::uint32_t b, const Vec3& to) {
-  deviation_.commit(removed_, added_);
+  sampled_.commit(removed_, added_);
   m_.mesh.contract(a, b);
   m_.position[a] = to;
   m_.update_normals_around(a);
@@ -146,22 +146,24 @@ void Optimiser::contract(std::uint32_t a, std::uint32_t b, const Vec3& to) {
 
 /// Finds where the original is nearest to a point, or where it is nearly as near, or close: in most
 /// rounds that is where it was near in an earlier one.
-void Optimiser::follow(Deviation::Point& point, Trail& trail, double close, std::uint32_t& hint) {
-  if (trail.nearest != Deviation::kNone) {
-    const auto c = deviation_.original().corners(trail.nearest);
+void Optimiser::follow(SampledError::Point& point, Trail& trail, double close,
+                       std::uint32_t& hint) {
+  if (trail.nearest != SampledError::kNone) {
+    const auto c = sampled_.original().corners(trail.nearest);
     const double least = trail.distance - (point.position - trail.position).norm();
     const double enough = std::max(kAlmost * least, close);
     point.nearest = trail.nearest;
     if (squared_distance(point.position, c) <= enough * enough) return;
   }
-  trail.distance = std::sqrt(deviation_.locate(point, hint));
+  trail.distance = std::sqrt(sampled_.locate(point, hint));
   trail.position = point.position;
   trail.nearest = point.nearest;
 }
 
 /// Moves v, the i-th of around_, to where it deviates least, deviations on the wrong side weighted
 /// by `penalty`; without any certificate.
-void Optimiser::attract(std::size_t i, double scale, double penalty, double share, bool hand_over) {
+void Optimiser::relax_vertex(std::size_t i, double scale, double penalty, double share,
+                             bool hand_over) {
   const std::uint32_t v = around_[i];
   if (!gather(v)) return;
   const Vec3 from = m_.position[v];
@@ -179,7 +181,7 @@ void Optimiser::attract(std::size_t i, double scale, double penalty, double shar
   if (folds(to)) return;
   if (hand_over) {
     place_star(to);
-    deviation_.commit(removed_, added_);
+    sampled_.commit(removed_, added_);
   }
   m_.position[v] = to;
   m_.update_normals_around(v);
@@ -189,7 +191,7 @@ void Optimiser::attract(std::size_t i, double scale, double penalty, double shar
 double Optimiser::star_largest(std::uint32_t v, double limit) {
   if (!gather(v)) return kNoLimit;
   place_star(m_.position[v]);
-  return std::sqrt(deviation_.largest(removed_, added_, points_, notes_.hint[v], limit * limit));
+  return std::sqrt(sampled_.largest(removed_, added_, points_, notes_.hint[v], limit * limit));
 }
 
 /// The same for the triangles of the snapshot as they are now; leaves them in added_.
@@ -216,13 +218,13 @@ double Optimiser::region_largest(double limit) {
   for (const std::uint32_t v : snapshot_.vertices)
     if (m_.mesh.used(v)) points_.push_back({m_.position[v], 0});
   std::uint32_t& hint = notes_.hint[snapshot_.vertices.front()];
-  return std::sqrt(deviation_.largest(alive_, added_, points_, hint, limit * limit));
+  return std::sqrt(sampled_.largest(alive_, added_, points_, hint, limit * limit));
 }
 
 /// Tries the contraction without a certificate: fills target_ with where the vertices of around_
 /// should go. The mesh is as before afterwards. @return the deviation then, or something above the
 /// limit; infinite where no place can be certified.
-double Optimiser::imagine(std::uint32_t a, std::uint32_t b, double limit) {
+double Optimiser::trial_collapse(std::uint32_t a, std::uint32_t b, double limit) {
   const Vec3 pa = m_.position[a], pb = m_.position[b], middle = 0.5 * (pa + pb);
   const auto start = [&] {
     for (const Vec3& p : {middle, pa, pb}) {
@@ -237,7 +239,7 @@ double Optimiser::imagine(std::uint32_t a, std::uint32_t b, double limit) {
   const Hopes& least = options_.epsilon ? kThorough : kQuick;
   trails_.resize(std::max(trails_.size(), around_.size()));
   for (std::size_t i = 0; i < around_.size(); ++i) trails_[i].clear();
-  for (int i = 0; i < 3; ++i) attract(0, scale, 1, 1, true);
+  for (int i = 0; i < 3; ++i) relax_vertex(0, scale, 1, 1, true);
   double deviation = 0;
   const auto hopes = [&](double share) {  // finds the limit that it would take
     deviation = star_largest(a, share * limit) / share;
@@ -246,19 +248,20 @@ double Optimiser::imagine(std::uint32_t a, std::uint32_t b, double limit) {
   bool hopeful = hopes(least.before);
   for (int i = 1; i <= kRounds && hopeful; ++i) {
     const double penalty = std::pow(kPenalty, static_cast<double>(i) / kRounds);
-    for (std::size_t k = 0; k < around_.size(); ++k) attract(k, scale, penalty, 0.5, i % 2 == 0);
+    for (std::size_t k = 0; k < around_.size(); ++k)
+      relax_vertex(k, scale, penalty, 0.5, i % 2 == 0);
     if (i == kLookAfter) hopeful = hopes(least.meanwhile);
   }
   if (hopeful) deviation = region_largest(least.finally * limit) / least.finally;
   target_.clear();
   for (const std::uint32_t v : around_) target_.push_back(m_.position[v]);
-  go_back();
+  rollback();
   return deviation;
 }
 
 /// A certified place near the wish for the contracted vertex; removed_ and added_ describe the
 /// contraction to it.
-std::optional<Vec3> Optimiser::seek(std::uint32_t a, std::uint32_t b, const Vec3& wish) {
+std::optional<Vec3> Optimiser::find_position(std::uint32_t a, std::uint32_t b, const Vec3& wish) {
   if (!gather_edge(a, b, wish)) return std::nullopt;
   const std::vector<std::uint32_t> removed = removed_;
   const std::vector<NewTriangle> added = added_;
@@ -266,13 +269,13 @@ std::optional<Vec3> Optimiser::seek(std::uint32_t a, std::uint32_t b, const Vec3
   near.xx = near.yy = near.zz = 1;
   near.bx = -wish.x(), near.by = -wish.y(), near.bz = -wish.z();
   const auto holds = [&](const Vec3& p) {
-    return gather_edge(a, b, p) && stays_flat(p) && settled(removed, p);
+    return gather_edge(a, b, p) && stays_flat(p) && is_certified(removed, p);
   };
-  auto place = settle(removed, added, near, Vec3::Zero());
+  auto place = place_against_original(removed, added, near, Vec3::Zero());
   for (int i = 0; i < kPlaces && place; ++i) {
     if (holds(*place)) return place;
     const Vec3 refused = *place;
-    place = resettle();
+    place = next_place();
     if (place == refused) break;
   }
   if (options_.direction == Direction::Any) return std::nullopt;
@@ -294,20 +297,20 @@ std::optional<Vec3> Optimiser::seek(std::uint32_t a, std::uint32_t b, const Vec3
 
 /// Moves v as near to the target as the original allows, by a certified step; not if that leads
 /// away from it. @param alone  the error bound is kept by this step itself
-bool Optimiser::approach(std::uint32_t v, const Vec3& target, bool alone) {
+bool Optimiser::move_towards(std::uint32_t v, const Vec3& target, bool alone) {
   if (!gather(v)) return false;
   const Vec3 from = m_.position[v], wish = from - target;
   place_star(from);
-  fan_.assign(added_);
+  support_.assign(added_);
   if (options_.direction != Direction::Any)
     for (std::size_t i = 0; i < ring_.size(); ++i)
-      deviation_.for_each_sample(ring_[i].triangle,
-                                 [&](const Vec3& o, double) { fan_.keep(i, o); });
+      sampled_.for_each_sample(ring_[i].triangle,
+                               [&](const Vec3& o, double) { support_.keep(i, o); });
   objective_ = {};
   objective_.xx = objective_.yy = objective_.zz = 1;
   Vec3 refused = from;
   for (int i = 0; i < kPlaces; ++i) {
-    fan_.half_spaces(rounding(from), planes_);
+    support_.half_spaces(rounding(from), planes_);
     const auto step = minimise(objective_, wish, planes_, kRegularisationDistance);
     if (!step) return false;
     Vec3 to = from + *step;
@@ -316,14 +319,14 @@ bool Optimiser::approach(std::uint32_t v, const Vec3& target, bool alone) {
     if (target != from && (to - target).squaredNorm() >= wish.squaredNorm()) return false;
     place_star(to);
     if (!stays_flat(to)) return false;
-    if (!spares(removed_, true, to)) {
+    if (!does_not_cut_original(removed_, true, to)) {
       ++statistics_.rejected_original;
       refused = to;
       continue;
     }
-    if (alone && tolerance_ != nullptr) {
-      if (!tolerance_->admits(removed_, added_)) return false;
-      tolerance_->commit(removed_);
+    if (alone && certificate_ != nullptr) {
+      if (!certificate_->admits(removed_, added_)) return false;
+      certificate_->commit(removed_);
     }
     move(v, to);
     return true;
@@ -331,10 +334,10 @@ bool Optimiser::approach(std::uint32_t v, const Vec3& target, bool alone) {
   return false;
 }
 
-bool Optimiser::round(std::uint32_t v) { return approach(v, m_.position[v], true); }
+bool Optimiser::snap_to_float(std::uint32_t v) { return move_towards(v, m_.position[v], true); }
 
-double Optimiser::collapse(std::uint32_t a, std::uint32_t b, double limit) {
-  if (!joins(a, b)) return kNoLimit;
+double Optimiser::collapse_with_neighbours(std::uint32_t a, std::uint32_t b, double limit) {
+  if (!satisfies_link_condition(a, b)) return kNoLimit;
   // The vertices that may move, and b.
   around_.assign({a, b});
   ++mark_value_;
@@ -342,18 +345,18 @@ double Optimiser::collapse(std::uint32_t a, std::uint32_t b, double limit) {
   neighbours(a, around_);
   neighbours(b, around_);
   // Where no place is certified now, hardly any will be when the vertices around have moved.
-  if (!seek(a, b, 0.5 * (m_.position[a] + m_.position[b]))) return kNoLimit;
-  take(around_);
+  if (!find_position(a, b, 0.5 * (m_.position[a] + m_.position[b]))) return kNoLimit;
+  take_snapshot(around_);
   std::erase(around_, b);
-  double deviation = imagine(a, b, limit);
+  double deviation = trial_collapse(a, b, limit);
   if (deviation > limit) return deviation;
 
   const auto give_up = [&](std::uint64_t& counter) {
     ++counter;
-    go_back();
+    rollback();
   };
-  for (std::size_t i = 1; i < around_.size(); ++i) approach(around_[i], target_[i], false);
-  const auto place = seek(a, b, target_[0]);
+  for (std::size_t i = 1; i < around_.size(); ++i) move_towards(around_[i], target_[i], false);
+  const auto place = find_position(a, b, target_[0]);
   if (!place) {
     give_up(statistics_.rejected_original);
     return kNoLimit;
@@ -361,7 +364,7 @@ double Optimiser::collapse(std::uint32_t a, std::uint32_t b, double limit) {
   contract(a, b, *place);
   if (steps_ != nullptr) steps_->push_back({a, b, *place});
   for (int k = 0; k < kSweeps; ++k)
-    for (std::size_t i = 0; i < around_.size(); ++i) approach(around_[i], target_[i], false);
+    for (std::size_t i = 0; i < around_.size(); ++i) move_towards(around_[i], target_[i], false);
   deviation = region_largest(kNearLimit * limit);
   if (deviation > limit && deviation <= kNearLimit * limit) {
     for (int k = 0; k < kPulls; ++k) {
@@ -375,12 +378,12 @@ double Optimiser::collapse(std::uint32_t a, std::uint32_t b, double limit) {
     give_up(statistics_.rejected_distance);
     return deviation;
   }
-  if (tolerance_ != nullptr) {
-    if (!tolerance_->admits(snapshot_.triangles, added_)) {
+  if (certificate_ != nullptr) {
+    if (!certificate_->admits(snapshot_.triangles, added_)) {
       give_up(statistics_.rejected_distance);
       return limit;
     }
-    tolerance_->commit(snapshot_.triangles);
+    certificate_->commit(snapshot_.triangles);
   }
   ++statistics_.contractions;
   for (const std::uint32_t v : around_) disturb(v);

@@ -1,4 +1,7 @@
-#include "original_solid.h"
+// Whether a tetrahedron, or what a step takes away, lies in the solid of the original: exact.
+// docs/algorithms/bounding-mesh.md.
+
+#include "reference_solid.h"
 
 #include <algorithm>
 #include <cmath>
@@ -252,15 +255,15 @@ constexpr std::uint64_t kBox = 20, kTriangle = 200, kExact = 4000, kWinding = 10
 
 }  // namespace
 
-OriginalSolid::OriginalSolid(const geom::Mesh& original, std::shared_ptr<const geom::Bvh> hierarchy,
-                             Work* work)
+ReferenceSolid::ReferenceSolid(const geom::Mesh& original,
+                               std::shared_ptr<const geom::Bvh> hierarchy, Work* work)
     : original_(original),
       bvh_(hierarchy ? std::move(hierarchy) : std::make_shared<const geom::Bvh>(original)),
       winding_(original, bvh_),
       work_(work) {}
 
-bool OriginalSolid::contains(const Tetrahedron& tetrahedron, bool inside,
-                             std::vector<std::uint32_t>* met) const {
+bool ReferenceSolid::contains(const Tetrahedron& tetrahedron, bool inside,
+                              std::vector<std::uint32_t>* met) const {
   geom::Box3 box;
   for (const Vec3& p : tetrahedron) box.extend(p);
   bool clear = true, enough = false;

@@ -1,10 +1,10 @@
-#include "tolerance.h"
+#include "error_bound_certificate.h"
 
 #include <gtest/gtest.h>
 
 namespace {
 
-using kaboum::bmesh::Tolerance;
+using kaboum::bmesh::ErrorBoundCertificate;
 using kaboum::geom::Mesh;
 using kaboum::geom::Vec3;
 
@@ -12,7 +12,7 @@ using kaboum::geom::Vec3;
 const Mesh kSquare{{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, {0, 0, 0}},
                    {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}}};
 
-std::vector<Tolerance::NewTriangle> raised(double z) {
+std::vector<ErrorBoundCertificate::NewTriangle> raised(double z) {
   const auto& v = kSquare.vertices;
   const Vec3 top(0, 0, z);
   return {{0, {v[0], v[1], top}},
@@ -21,15 +21,15 @@ std::vector<Tolerance::NewTriangle> raised(double z) {
           {3, {v[3], v[0], top}}};
 }
 
-TEST(Tolerance, AdmitsUpToEpsilonAndNoFurther) {
+TEST(ErrorBoundCertificate, AdmitsUpToEpsilonAndNoFurther) {
   const std::vector<std::uint32_t> removed{0, 1, 2, 3};
-  EXPECT_TRUE(Tolerance(kSquare, 0.1).admits(removed, raised(0.0999)));
-  EXPECT_FALSE(Tolerance(kSquare, 0.1).admits(removed, raised(0.1001)));
+  EXPECT_TRUE(ErrorBoundCertificate(kSquare, 0.1).admits(removed, raised(0.0999)));
+  EXPECT_FALSE(ErrorBoundCertificate(kSquare, 0.1).admits(removed, raised(0.1001)));
 }
 
 // Each small step is within ε of the one before; the original is what counts.
-TEST(Tolerance, DoesNotDrift) {
-  Tolerance tolerance(kSquare, 0.1);
+TEST(ErrorBoundCertificate, DoesNotDrift) {
+  ErrorBoundCertificate tolerance(kSquare, 0.1);
   const std::vector<std::uint32_t> removed{0, 1, 2, 3};
   for (const double z : {0.05, 0.09}) {
     ASSERT_TRUE(tolerance.admits(removed, raised(z)));
@@ -40,25 +40,26 @@ TEST(Tolerance, DoesNotDrift) {
 }
 
 // The new surface is near the old one everywhere, but leaves most of the old one bare.
-TEST(Tolerance, AlsoWatchesTheOriginal) {
-  Tolerance tolerance(kSquare, 0.1);
+TEST(ErrorBoundCertificate, AlsoWatchesTheOriginal) {
+  ErrorBoundCertificate tolerance(kSquare, 0.1);
   const std::vector<std::uint32_t> removed{0, 1, 2, 3};
-  const std::vector<Tolerance::NewTriangle> corner{
+  const std::vector<ErrorBoundCertificate::NewTriangle> corner{
       {0, {Vec3(-1, -1, 0), Vec3(-0.8, -1, 0), Vec3(-1, -0.8, 0)}}};
   EXPECT_FALSE(tolerance.admits(removed, corner));
   EXPECT_FALSE(tolerance.admits(removed, {}));
 }
 
 // Two big triangles instead of four: pieces must be split between them.
-TEST(Tolerance, SplitsPiecesBetweenCarriers) {
-  Tolerance tolerance(kSquare, 0.01);
+TEST(ErrorBoundCertificate, SplitsPiecesBetweenCarriers) {
+  ErrorBoundCertificate tolerance(kSquare, 0.01);
   const auto& v = kSquare.vertices;
   const std::vector<std::uint32_t> removed{0, 1, 2, 3};
-  const std::vector<Tolerance::NewTriangle> halves{{0, {v[0], v[1], v[2]}},
-                                                   {1, {v[0], v[2], v[3]}}};
+  const std::vector<ErrorBoundCertificate::NewTriangle> halves{{0, {v[0], v[1], v[2]}},
+                                                               {1, {v[0], v[2], v[3]}}};
   ASSERT_TRUE(tolerance.admits(removed, halves));
   tolerance.commit(removed);
-  const std::vector<Tolerance::NewTriangle> other{{0, {v[0], v[1], v[3]}}, {1, {v[1], v[2], v[3]}}};
+  const std::vector<ErrorBoundCertificate::NewTriangle> other{{0, {v[0], v[1], v[3]}},
+                                                              {1, {v[1], v[2], v[3]}}};
   const std::vector<std::uint32_t> two{0, 1};
   EXPECT_TRUE(tolerance.admits(two, other));
 }

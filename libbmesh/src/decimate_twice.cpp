@@ -1,0 +1,118 @@
+// Small meshes are decimated twice: the distance that the first result has bounds the second.
+// docs/algorithms/bounding-mesh.md.
+
+#include "decimate_twice.h"
+
+#include <kaboum/geom/distance.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "decimation_run.h"
+#include "schedule.h"
+
+namespace kaboum::bmesh {
+namespace {
+
+using geom::Mesh;
+
+/// Distances that are compared are known to this share.
+constexpr double kCompareGap = 0.02;
+
+/// Certified upper bound of the Hausdorff distance.
+double largest_distance(const Mesh& a, const Mesh& b) {
+  geom::DistanceOptions gap;
+  gap.relative_gap = kCompareGap;
+  return std::max(geom::directed_distance(a, geom::DistanceQuery(b), gap).max_upper,
+                  geom::directed_distance(b, geom::DistanceQuery(a), gap).max_upper);
+}
+
+/// Runs to the same number, and their steps.
+class Twice {
+ public:
+  Twice(const geom::Prepared& input, const DecimateOptions& options, Work& work)
+      : input_(input), options_(options), work_(work) {}
+
+  DecimateResult run() {
+    sketch_ = attempt(std::nullopt, true);
+    if (work_.spent(kNoneBegins)) return settle_for_sketch();
+    if (sketch_.result.stop == Stop::VertexTarget && sketch_.reached > 0) {
+      const RisingBound bound{
+          (options_.effort == Effort::Best ? kBoundFromBest : kBoundFrom) * sketch_.reached,
+          largest_distance(sketch_.result.mesh, input_.mesh)};
+      if (bound.from < bound.to) {
+        Attempt nearer = attempt(bound, false);
+        if (nearer.result.stop == Stop::VertexTarget &&
+            nearer.result.unrepresentable <= sketch_.result.unrepresentable)
+          return chosen(std::move(nearer));
+        if (work_.spent(kNoneMoves)) return settle_for_sketch();
+      }
+    }
+    // Made again with moves. Where the number can hardly be reached, the first may still be nearer.
+    Attempt again = attempt(std::nullopt, false);
+    if (!is_better(sketch_.result, again.result)) return chosen(std::move(again));
+    sketch_.result.out_of_work = again.result.out_of_work;
+    if (sketch_.result.stop != Stop::VertexTarget && again.result.stop == Stop::OutOfWork)
+      sketch_.result.stop = Stop::OutOfWork;
+    return chosen(std::move(sketch_));
+  }
+
+ private:
+  struct Attempt {
+    DecimateResult result;
+    std::vector<Step> steps;
+    double reached = 0;  // without contractions that move the vertices around
+  };
+
+  Attempt attempt(const std::optional<RisingBound>& bound, bool sketch) {
+    Attempt out;
+    DecimateOptions recorded = options_;
+    recorded.steps = options_.steps != nullptr ? &out.steps : nullptr;
+    DecimationRun run(input_, recorded, work_, bound, sketch);
+    out.result = run.to(options_.vertices);
+    out.reached = run.reached_alone();
+    return out;
+  }
+
+  /// Fewer vertices, or as many that are nearer to the input.
+  [[nodiscard]] bool is_better(const DecimateResult& a, const DecimateResult& b) const {
+    const std::size_t n = a.mesh.vertices.size(), m = b.mesh.vertices.size();
+    if (n != m) return n < m;
+    return a.unrepresentable <= b.unrepresentable &&
+           largest_distance(a.mesh, input_.mesh) < largest_distance(b.mesh, input_.mesh);
+  }
+
+  DecimateResult settle_for_sketch() {
+    sketch_.result.out_of_work = true;
+    return chosen(std::move(sketch_));
+  }
+
+  DecimateResult chosen(Attempt attempt) const {
+    if (options_.steps != nullptr) {
+      options_.steps->insert(options_.steps->end(), attempt.steps.begin(), attempt.steps.end());
+      attempt.result.steps = options_.steps->size();
+    }
+    return std::move(attempt.result);
+  }
+
+  const geom::Prepared& input_;
+  const DecimateOptions& options_;
+  Work& work_;
+  Attempt sketch_;
+};
+
+}  // namespace
+
+bool is_small(const geom::Prepared& input, const DecimateOptions& options) {
+  return options.vertices && !options.epsilon && options.cost == Cost::Distance &&
+         effective_effort(input, options) != Effort::Fast &&
+         input.mesh.vertices.size() <= kBoundVertices &&
+         kBoundShare * *options.vertices <= input.mesh.vertices.size();
+}
+
+DecimateResult decimate_twice(const geom::Prepared& input, const DecimateOptions& options,
+                              Work& work) {
+  return Twice(input, options, work).run();
+}
+
+}  // namespace kaboum::bmesh
