@@ -1,11 +1,12 @@
-// After Deits and Tedrake, "Computing large convex regions of obstacle-free space through
-// semidefinite programming" (2015): separating planes in the order of distance, then an ellipsoid,
-// in turn. The ellipsoid here is that of the body's covariance, which needs no optimisation.
+// After Deits and Tedrake, "Computing large convex regions of obstacle-free
+// space through semidefinite programming" (2015): separating planes in the
+// order of distance, then an ellipsoid, in turn. The ellipsoid here is that of
+// the body's covariance, which needs no optimisation.
 #include "inscribe.h"
 
 #include <kaboum/geom/convex_hull.h>
+#include <kaboum/geom/distance.h>
 #include <kaboum/geom/float32.h>
-#include <kaboum/geom/predicates.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -110,7 +111,8 @@ std::optional<Cell> keep_out(const Mesh& boundary, const Box3& box, const Ellips
       farthest = std::max(farthest, (e.to_ball * (p - e.center)).norm());
     if (nearest.distance > farthest) break;
     if (!(nearest.distance > 0)) return std::nullopt;
-    // The plane that touches the ellipsoid, or a triangle's own: whichever leaves more.
+    // The plane that touches the ellipsoid, or a triangle's own: whichever
+    // leaves more.
     Plane best;
     best.n = (e.to_ball.transpose() * nearest.at).normalized();
     best.d = best.n.dot(back * nearest.at + e.center);
@@ -139,8 +141,9 @@ std::optional<Cell> keep_out(const Mesh& boundary, const Box3& box, const Ellips
   return cell;
 }
 
-/// The hull of `most` of the points: the extreme ones, then always the one farthest beyond the
-/// facet nearest to the seed, until the ball round it is inside; then the one farthest outside.
+/// The hull of `most` of the points: the extreme ones, then always the one
+/// farthest beyond the facet nearest to the seed, until the ball round it is
+/// inside; then the one farthest outside.
 std::vector<Vec3> subset(std::vector<Vec3> points, std::size_t most, const Vec3& seed,
                          double ball) {
   if (points.size() <= most) return points;
@@ -195,8 +198,9 @@ std::vector<Vec3> subset(std::vector<Vec3> points, std::size_t most, const Vec3&
   return out;
 }
 
-/// Corners of a large box that contains the seed and lies in the body, its axes those of the body's
-/// covariance: faces move outwards in turn, half as far as they can and at last all the way.
+/// Corners of a large box that contains the seed and lies in the body, its axes
+/// those of the body's covariance: faces move outwards in turn, half as far as
+/// they can and at last all the way.
 std::vector<Vec3> box_within(const Inscribed& body, const Ellipsoid& e, const Vec3& seed) {
   constexpr int kRounds = 12;
   const Eigen::Matrix3d axes =
@@ -245,8 +249,8 @@ std::optional<Inscribed> hull_of(std::vector<Vec3> points) {
   return out;
 }
 
-/// A body round the seed with at most `most` of the hull's vertices, or a box in it if that is
-/// larger.
+/// A body round the seed with at most `most` of the hull's vertices, or a box
+/// in it if that is larger.
 std::optional<Inscribed> body_of(std::vector<Vec3> points, std::size_t most, const Vec3& seed,
                                  double ball, double core) {
   std::optional<Inscribed> whole = hull_of(std::move(points));
@@ -261,175 +265,7 @@ std::optional<Inscribed> body_of(std::vector<Vec3> points, std::size_t most, con
   return out;
 }
 
-/// Whether two triangles meet; with `open`, in more than corners and sides, as neighbours do. Those
-/// in one plane meet unless `open`.
-bool meet(const std::array<Vec3, 3>& s, const std::array<Vec3, 3>& t, bool open) {
-  for (int turn = 0; turn < 2; ++turn) {
-    const auto &edges = turn == 0 ? s : t, &face = turn == 0 ? t : s;
-    std::array<int, 3> side{};
-    for (std::size_t k = 0; k < 3; ++k)
-      side[k] = static_cast<int>(geom::orient3d(face[0], face[1], face[2], edges[k]));
-    if (side == std::array<int, 3>{0, 0, 0}) return !open;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const int up = side[k], down = side[(k + 1) % 3];
-      if (open ? up * down >= 0 : up * down > 0 || (up == 0 && down == 0)) continue;
-      const Vec3 &p = edges[k], &q = edges[(k + 1) % 3];
-      int least = 1, most = -1;
-      for (std::size_t i = 0; i < 3; ++i) {
-        const int of = static_cast<int>(geom::orient3d(p, q, face[i], face[(i + 1) % 3]));
-        least = std::min(least, of);
-        most = std::max(most, of);
-      }
-      if (open ? least == most && least != 0 : least * most >= 0) return true;
-    }
-  }
-  return false;
-}
-
-/// Whether a part of triangle `whole` meets other triangles: neighbours, and with `open` all, in
-/// more than corners and sides.
-bool meets_another(const Mesh& mesh, const geom::Bvh& bvh, const Triangle& whole,
-                   const std::array<Vec3, 3>& part, bool open) {
-  Box3 box;
-  for (const Vec3& p : part) box.extend(p);
-  bool found = false;
-  bvh.traverse(
-      [&](const Box3& other) {
-        return !found && (box.min.array() <= other.max.array()).all() &&
-               (other.min.array() <= box.max.array()).all();
-      },
-      [&](std::uint32_t i) {
-        if (found) return;
-        const Triangle& t = mesh.triangles[i];
-        std::size_t shared = 0;
-        for (const std::uint32_t v : t) shared += std::count(whole.begin(), whole.end(), v);
-        if (shared == 3) return;  // itself
-        found = meet(part, {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]},
-                     open || shared != 0);
-      });
-  return found;
-}
-
-/// Finds the parts of triangles, cut in halves, that bound the solid.
-class BoundaryFinder {
- public:
-  BoundaryFinder(const Mesh& mesh, const geom::WindingNumber& winding, double size)
-      : mesh_(mesh), winding_(winding), size_(size), bvh_(mesh) {
-    const double diagonal = geom::bounding_box(mesh).diagonal();
-    step_ = 1e-7 * diagonal;
-    coarse_ = std::max(size, 0.05 * diagonal);
-    out_.mesh.vertices = mesh.vertices;
-  }
-
-  Boundary find(const std::vector<std::uint32_t>& doubtful) {
-    std::vector<char> doubted(mesh_.triangles.size(), 0);
-    for (const std::uint32_t t : doubtful) doubted[t] = 1;
-    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
-      const Triangle& whole = mesh_.triangles[t];
-      const bool crossed =
-          doubted[t] == 0 && meets_another(mesh_, bvh_, whole, corners(whole), true);
-      stack_.push_back({whole, 0});
-      while (!stack_.empty()) {
-        const Part part = stack_.back();
-        stack_.pop_back();
-        if (doubted[t] != 0)
-          look_cautiously(whole, part);
-        else
-          look(part, crossed);
-      }
-    }
-    return std::move(out_);
-  }
-
- private:
-  struct Part {
-    Triangle t;
-    int depth;
-  };
-  static constexpr int kMostCuts = 24;
-
-  [[nodiscard]] std::array<Vec3, 3> corners(const Triangle& t) const {
-    const auto& v = out_.mesh.vertices;
-    return {v[t[0]], v[t[1]], v[t[2]]};
-  }
-
-  /// Its two halves are looked at next. @return false if it is not longer than `limit`.
-  bool halve(const Part& part, double limit) {
-    const std::array<Vec3, 3> v = corners(part.t);
-    std::size_t k = 0;
-    for (std::size_t i = 1; i < 3; ++i)
-      if ((v[(i + 1) % 3] - v[i]).norm() > (v[(k + 1) % 3] - v[k]).norm()) k = i;
-    if (part.depth >= kMostCuts || !((v[(k + 1) % 3] - v[k]).norm() > limit)) return false;
-    const auto middle = static_cast<std::uint32_t>(out_.mesh.vertices.size());
-    out_.mesh.vertices.emplace_back(0.5 * v[k] + 0.5 * v[(k + 1) % 3]);
-    Part first{part.t, part.depth + 1}, second = first;
-    first.t[(k + 1) % 3] = middle;
-    second.t[k] = middle;
-    stack_.push_back(second);
-    stack_.push_back(first);
-    return true;
-  }
-
-  struct Samples {
-    int taken = 0, open = 0;
-    int least = std::numeric_limits<int>::max();  ///< winding number; 0 on a triangle
-  };
-
-  /// Looks beside places of the part, until the first that is open unless `all`. None if it has no
-  /// area.
-  Samples sample(const std::array<Vec3, 3>& v, bool all) {
-    Samples found;
-    const Vec3 n = (v[1] - v[0]).cross(v[2] - v[0]).normalized();
-    if (!(n.squaredNorm() > 0.5)) return found;
-    const Vec3 center = (v[0] + v[1] + v[2]) / 3;
-    for (const Vec3& p : {center, Vec3(0.8 * v[0] + 0.2 * center), Vec3(0.8 * v[1] + 0.2 * center),
-                          Vec3(0.8 * v[2] + 0.2 * center)}) {
-      if (found.open > 0 && !all) break;
-      ++found.taken;
-      for (const double side : {step_, -step_}) {
-        const Vec3 z = p + side * n;
-        const auto w = winding_(z);
-        found.least = std::min(found.least, w.value_or(0));
-        if (!w || *w > 0) continue;
-        out_.outside.push_back(z);
-        ++found.open;
-        break;
-      }
-    }
-    return found;
-  }
-
-  /// @param crossed  by others: what bounds the solid is told to `size_` then
-  void look(const Part& part, bool crossed) {
-    const Samples found = sample(corners(part.t), crossed);
-    const bool mixed = found.open > 0 && found.open < found.taken;
-    if (crossed && halve(part, mixed ? size_ : coarse_)) return;
-    if (found.open > 0 || found.taken == 0) out_.mesh.triangles.push_back(part.t);
-  }
-
-  /// A part that no other triangle meets is on one side of all of them: any place tells. Where one
-  /// does, a tip beyond it may be missed by all samples, with a winding number lower by 1.
-  void look_cautiously(const Triangle& whole, const Part& part) {
-    const bool met = meets_another(mesh_, bvh_, whole, corners(part.t), false);
-    if (met && halve(part, size_)) return;
-    const Samples found = sample(corners(part.t), false);
-    if (found.taken == 0 || found.least <= (met ? 1 : 0)) out_.mesh.triangles.push_back(part.t);
-  }
-
-  const Mesh& mesh_;
-  const geom::WindingNumber& winding_;
-  double size_, step_ = 0, coarse_ = 0;
-  geom::Bvh bvh_;
-  std::vector<Part> stack_;
-  Boundary out_;
-};
-
 }  // namespace
-
-Boundary boundary_of(const Mesh& mesh, const geom::WindingNumber& winding, double size,
-                     const std::vector<std::uint32_t>& doubtful) {
-  return BoundaryFinder(mesh, winding, size).find(doubtful);
-}
 
 bool Inscribed::contains(const Vec3& p, double slack) const {
   for (const Plane& plane : planes)
@@ -444,7 +280,8 @@ std::optional<Inscribed> inscribe(const Mesh& boundary, const Vec3& seed, double
       geom::float32_spacing(std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff()));
   const double margin = 2 * ulp * safety;
   if (!(depth > 4 * margin)) return std::nullopt;
-  // Searching goes on elsewhere once a body holds the seed and what is next to it.
+  // Searching goes on elsewhere once a body holds the seed and what is next to
+  // it.
   const double core = std::max(margin, 0.25 * depth);
   std::optional<Inscribed> best;
   Ellipsoid e{seed, Eigen::Matrix3d::Identity()};

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <kaboum/geom/distance.h>
 #include <kaboum/geom/mesh.h>
-#include <kaboum/geom/winding.h>
 
 #include <optional>
 #include <vector>
@@ -12,20 +10,6 @@
 namespace kaboum::bcd {
 
 using geom::Mesh;
-
-/// The triangles that have the complement of the solid {w ≥ 1} on a side.
-struct Boundary {
-  Mesh mesh;  ///< these, or the parts of them that do
-  /// Points beside the triangles that are outside the solid, exactly.
-  std::vector<Vec3> outside;
-};
-
-/// As far as samples tell: triangles that cross others are cut into pieces no longer than `size`,
-/// and what samples find inside the solid is left out.
-/// @param doubtful  triangles where samples are known to miss something: of these, pieces that meet
-///   other triangles are left out only where the solid is doubly round them.
-Boundary boundary_of(const Mesh& mesh, const geom::WindingNumber& winding, double size,
-                     const std::vector<std::uint32_t>& doubtful);
 
 /// A convex body with float32 vertices, exactly convex.
 struct Inscribed {
@@ -37,12 +21,12 @@ struct Inscribed {
   [[nodiscard]] bool contains(const Vec3& p, double slack) const;
 };
 
-/// A large convex body that contains `seed` and whose inside no triangle meets, up to rounding,
-/// with at most `most` vertices.
+/// A large convex body that contains `seed` and whose inside no triangle meets,
+/// up to rounding, with at most `most` vertices.
 /// @param depth  no triangle is nearer to the seed.
 /// @param rounds  fits of the ellipsoid.
-/// @param safety  multiplies the distance kept from triangles for rounding's sake, two float32
-/// steps.
+/// @param safety  multiplies the distance kept from triangles for rounding's
+/// sake, two float32 steps.
 /// @return nullopt when the depth is below what float32 can hold.
 std::optional<Inscribed> inscribe(const Mesh& boundary, const Vec3& seed, double depth,
                                   std::size_t most, int rounds, double safety = 1);
