@@ -276,7 +276,7 @@ TEST(Progressive, MutantsAreRefusedRefutedOrHarmless) {
         std::vector<geom::Mesh> levels;
         levels.reserve(p.levels.size());
         for (const auto& level : p.levels) {
-          levels.push_back(extract(p, level.requested, "mutant").mesh);
+          levels.push_back(extract(p, level.wished, "mutant").mesh);
           EXPECT_TRUE(d == Direction::Outer ? encloses(levels.back(), *finer)
                                             : encloses(*finer, levels.back()))
               << "byte " << at;
