@@ -60,6 +60,7 @@ void require_meaning(const CLI::App& app, const VerifyOptions& o) {
     if (o.claims == "solid")
       throw Error(ErrorCode::InvalidArgument,
                   "--claims solid: with --sweep it follows from the surface claim; use all");
+    require_absent(app, "--sweep", {"--input-format", "--max-contacts"});
     return;
   }
   if (o.robot) {
