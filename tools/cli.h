@@ -1,21 +1,20 @@
 #pragma once
 
 #include <kaboum/base/error.h>
-#include <kaboum/base/length.h>
-#include <kaboum/geom/distance.h>
-#include <kaboum/geom/topology.h>
-#include <kaboum/io/mesh_io.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <functional>
-#include <nlohmann/json.hpp>
-#include <optional>
+#include <memory>
 #include <string>
+#include <vector>
 
-/// What the command-line tools share: exit codes, common options, progress, reports.
+#include "arguments.h"
+#include "files.h"
+#include "report.h"
+
+/// What the command-line tools share: exit codes, common options, progress.
 namespace kaboum::tools {
-
-using Json = nlohmann::ordered_json;
 
 /// Exit codes; docs/exit-codes.md.
 enum ExitCode {
@@ -61,20 +60,6 @@ class ThreadLimit {
   std::unique_ptr<Impl> impl_;
 };
 
-using kaboum::Length;
-
-/// "0.005", "+0.005" or "0.5%"; nullopt unless it is a positive finite number.
-std::optional<Length> parse_length(const std::string& text);
-
-/// Refuses what is not a number from `low` to `high`, and says so.
-CLI::Validator number_from(double low, double high);
-
-/// Refuses names of pictures that are not .png: what is written is.
-CLI::Validator png_name();
-
-/// Units of length that a container may name.
-CLI::Validator unit_name();
-
 /// One line on stderr that is rewritten, if stderr is a terminal and not `quiet`; else nothing.
 class Progress {
  public:
@@ -99,37 +84,5 @@ auto naming(const std::string& file, const Work& work) {
     throw Error(error.code(), (file == "-" ? "standard input" : file) + ": " + error.what());
   }
 }
-
-/// Whether there is a folder of that name; false where that cannot be told.
-bool is_folder(const std::filesystem::path& path);
-
-/// Format named by --input-format/--output-format, else by the file name's extension.
-/// @throws Error{InvalidArgument} when unknown.
-io::Format format_for(const std::string& path, const std::string& name, const char* option);
-
-Json to_json(const geom::TopologyReport& topology);
-Json to_json(const geom::DirectedDistance& distance, double diagonal);
-
-/// Seconds of user CPU time and peak memory of this process so far.
-double user_seconds();
-double peak_megabytes();
-
-void write_json(const std::string& path, const Json& json);
-
-/// Writes the report asked for, if one is: `body` with what all reports have in common
-/// (docs/reports.md).
-void write_report(const CommonOptions& options, const char* tool, const Json& body);
-
-/// Refuses to write a file twice, over an input, or into a folder that does not exist or cannot be
-/// looked into; outputs are
-/// (option, file), empty files are none.
-/// @throws Error{InvalidArgument}, Error{OutputFailed}
-void require_apart(const std::vector<std::pair<std::string, std::string>>& outputs,
-                   const std::vector<std::string>& inputs);
-
-/// A Makefile rule saying that the targets (empty names are none) depend on `inputs`, each listed
-/// once.
-void write_depfile(const std::string& path, const std::vector<std::string>& targets,
-                   const std::vector<std::string>& inputs);
 
 }  // namespace kaboum::tools

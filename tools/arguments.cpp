@@ -1,0 +1,64 @@
+// Numbers, lengths and names as options state them.
+
+#include "arguments.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+#include <string_view>
+
+namespace kaboum::tools {
+namespace {
+
+/// As std::from_chars, after a plus sign that may come first.
+std::from_chars_result parse_number(std::string_view text, double& value) {
+  const char *begin = text.data(), *end = begin + text.size();
+  if (text.starts_with('+') && !text.starts_with("+-")) ++begin;
+  return std::from_chars(begin, end, value);
+}
+
+}  // namespace
+
+std::optional<Length> parse_length(const std::string& text) {
+  Length length;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = parse_number(text, length.value);
+  if (error != std::errc() || !std::isfinite(length.value) || !(length.value > 0))
+    return std::nullopt;
+  length.percent = stop != end && *stop == '%';
+  if (stop + (length.percent ? 1 : 0) != end) return std::nullopt;
+  return length;
+}
+
+CLI::Validator number_from(double low, double high) {
+  std::ostringstream text;
+  text << "must be a number from " << low << " to " << high << ", without a unit";
+  return {[=, why = text.str()](std::string& s) {
+            double x = 0;
+            const auto [end, error] = parse_number(s, x);
+            const bool whole = error == std::errc() && end == s.data() + s.size();
+            return whole && x >= low && x <= high ? std::string() : why + ", not " + s;
+          },
+          ""};
+}
+
+CLI::Validator png_name() {
+  return {[](std::string& s) {
+            std::string extension = std::filesystem::path(s).extension().string();
+            std::transform(extension.begin(), extension.end(), extension.begin(),
+                           [](unsigned char c) { return std::tolower(c); });
+            return s == "-" || extension == ".png"
+                       ? std::string()
+                       : "a PNG is written: give a name that ends with .png, not " + s;
+          },
+          ""};
+}
+
+CLI::Validator unit_name() {
+  return CLI::IsMember({"m", "dm", "cm", "mm", "um", "km", "in", "ft"}).description("");
+}
+
+}  // namespace kaboum::tools

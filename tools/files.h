@@ -1,0 +1,32 @@
+#pragma once
+
+#include <kaboum/io/mesh_io.h>
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// Files that a command line names: their formats, and whether they can be written.
+namespace kaboum::tools {
+
+/// Whether there is a folder of that name; false where that cannot be told.
+bool is_folder(const std::filesystem::path& path);
+
+/// Format named by --input-format/--output-format, else by the file name's extension.
+/// @throws Error{InvalidArgument} when unknown.
+io::Format format_for(const std::string& path, const std::string& name, const char* option);
+
+/// Refuses to write a file twice, over an input, or into a folder that does not exist or cannot be
+/// looked into; outputs are
+/// (option, file), empty files are none.
+/// @throws Error{InvalidArgument}, Error{OutputFailed}
+void require_apart(const std::vector<std::pair<std::string, std::string>>& outputs,
+                   const std::vector<std::string>& inputs);
+
+/// A Makefile rule saying that the targets (empty names are none) depend on `inputs`, each listed
+/// once.
+void write_depfile(const std::string& path, const std::vector<std::string>& targets,
+                   const std::vector<std::string>& inputs);
+
+}  // namespace kaboum::tools

@@ -1,0 +1,160 @@
+// kaboum-plan solve, check, show and convert.
+
+#include "plan_commands.h"
+
+#include <kaboum/base/error.h>
+#include <kaboum/io/mesh_io.h>
+#include <kaboum/plan/check.h>
+#include <kaboum/plan/plan.h>
+#include <kaboum/plan/solve.h>
+
+#include <chrono>
+#include <filesystem>
+#include <iostream>
+#include <map>
+
+#include "plan_input.h"
+
+namespace kaboum::tools {
+namespace {
+
+const std::map<std::string, plan::Algorithm> kAlgorithms = {
+    {"dfs", plan::Algorithm::DepthFirst},
+    {"bfs", plan::Algorithm::BreadthFirst},
+    {"ids", plan::Algorithm::IterativeDeepening},
+    {"greedy", plan::Algorithm::Greedy},
+    {"astar", plan::Algorithm::AStar}};
+
+Json statistics_json(const plan::Statistics& s) {
+  Json j = {
+      {"states_expanded", s.expanded},
+      {"states_generated", s.generated},
+      {"states_kept", s.states},
+      {"search_bytes", s.state_bytes},
+      {"bytes_per_state",
+       s.states == 0 ? 0.0 : static_cast<double>(s.state_bytes) / static_cast<double>(s.states)},
+      {"ground_actions", s.ground_actions},
+      {"external_calls", s.external_calls},
+      {"external_s", s.external_seconds},
+      {"searches", s.searches},
+      {"dead_ends", s.dead_ends},
+      {"subplans_reused", s.reused},
+      {"depth", s.depth}};
+  if (s.initial_estimate >= 0) j["initial_estimate"] = s.initial_estimate;
+  return j;
+}
+
+Json size_json(const plan::PlanSize& s) {
+  return {{"nodes", s.nodes},   {"branches", s.branches},    {"actions_in_tree", s.tree_actions},
+          {"leaves", s.leaves}, {"longest_path", s.longest}, {"cost", s.cost}};
+}
+
+/// @throws Error{InvalidArgument} for an extension that names none of them.
+std::string drawing_format(const PlanOptions& o) {
+  if (!o.output_format.empty()) return o.output_format;
+  const std::string extension = std::filesystem::path(o.output).extension().string();
+  if (extension == ".svg") return "svg";
+  if (extension == ".dot" || extension == ".gv") return "dot";
+  if (extension.empty() || extension == ".txt") return "text";
+  throw Error(ErrorCode::InvalidArgument,
+              o.output +
+                  ": plans are drawn as .svg, .dot, .gv or .txt; give such a name, or "
+                  "--output-format");
+}
+
+}  // namespace
+
+int solve(const PlanOptions& o) {
+  const auto start = std::chrono::steady_clock::now();
+  const PlanTexts texts = read_texts(o);
+  const plan::Model model = plan::load(texts.domain, texts.second());
+  plan::SolveOptions options;
+  options.algorithm = kAlgorithms.at(o.search);
+  options.timeout = o.timeout;
+  options.max_memory = parse_memory(o.max_memory);
+  Progress progress(o.common.quiet);
+  options.progress = [&](const plan::Statistics& s) {
+    progress.show(std::to_string(s.expanded) + " states expanded, depth " +
+                  std::to_string(s.depth) + ", " + std::to_string(s.state_bytes >> 20U) + " MiB");
+  };
+  const double loaded = user_seconds();
+  const plan::Solution solution = plan::solve(model, options);
+  const double solved = user_seconds();
+  const double wall =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const char* status = solution.outcome == plan::Outcome::Solved       ? "solved"
+                       : solution.outcome == plan::Outcome::Unsolvable ? "unsolvable"
+                                                                       : "limit";
+  Json report = {{"command", "solve"},
+                 {"domain", o.domain},
+                 {"problem", o.problem},
+                 {"search", o.search},
+                 {"status", status},
+                 {"limit", solution.limit},
+                 {"statistics", statistics_json(solution.statistics)}};
+  plan::PlanSize size;
+  if (solution.outcome == plan::Outcome::Solved) {
+    size = plan::measure(model, solution.plan);
+    report["plan"] = size_json(size);
+    const plan::Plan& graph = solution.plan;
+    const std::string text = plan::write_plan(model, o.tree ? plan::expand_tree(graph) : graph);
+    io::write_file(o.output, text);
+  }
+  report["resources"] = {{"user_seconds_searching", solved - loaded}, {"wall_seconds", wall}};
+  write_report(o.common, "kaboum-plan", report);
+  if (solution.outcome == plan::Outcome::Solved) {
+    log(o.common.quiet, "solved: " + std::to_string(size.nodes) + " nodes, " +
+                            std::to_string(size.leaves) + " leaves, longest path " +
+                            std::to_string(size.longest) + " actions");
+    return kDone;
+  }
+  std::cerr << "kaboum-plan: "
+            << (solution.outcome == plan::Outcome::Unsolvable
+                    ? "unsolvable: every possibility was tried"
+                    : "no plan found: " + solution.limit)
+            << '\n';
+  return solution.outcome == plan::Outcome::Unsolvable ? kNo : kLimit;
+}
+
+int check(const PlanOptions& o) {
+  const PlanTexts texts = read_texts(o);
+  const plan::Model model = plan::load(texts.domain, texts.second());
+  const plan::Plan p = read_plan_file(model, o.plan);
+  const plan::CheckResult r = plan::check(model, p);
+  write_report(o.common, "kaboum-plan",
+               {{"command", "check"},
+                {"valid", r.valid},
+                {"violation", r.violation},
+                {"states_replayed", r.states},
+                {"ends_replayed", r.leaves},
+                {"plan", size_json(plan::measure(model, p))}});
+  if (!r.valid) {
+    std::cout << "invalid: " << r.violation << '\n';
+    return kNo;
+  }
+  if (!o.common.quiet)
+    std::cout << "valid: every end meets the goal; " << r.states << " states replayed, " << r.leaves
+              << (r.leaves == 1 ? " distinct end\n" : " distinct ends\n");
+  return kDone;
+}
+
+int show(const PlanOptions& o) {
+  const std::string format = drawing_format(o);
+  const PlanTexts texts = read_texts(o);
+  const plan::Model model = plan::load(texts.domain, texts.second());
+  plan::Plan p = read_plan_file(model, o.plan);
+  if (o.tree) p = plan::expand_tree(p);
+  io::write_file(o.output, format == "dot"   ? plan::plan_dot(model, p)
+                           : format == "svg" ? plan::plan_svg(model, p)
+                                             : plan::plan_text(model, p));
+  return kDone;
+}
+
+int convert(const PlanOptions& o) {
+  const PlanTexts texts = read_texts(o);
+  const plan::Language to = language_of(o.output, o.output_format, "--output-format");
+  io::write_file(o.output, plan::convert(texts.domain, texts.second(), to));
+  return kDone;
+}
+
+}  // namespace kaboum::tools

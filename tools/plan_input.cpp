@@ -1,0 +1,68 @@
+// Files and sizes that kaboum-plan is given.
+
+#include "plan_input.h"
+
+#include <kaboum/base/error.h>
+#include <kaboum/io/mesh_io.h>
+#include <kaboum/plan/plan.h>
+
+#include <map>
+
+namespace kaboum::tools {
+namespace {
+
+const std::map<std::string, plan::Language> kLanguages = {
+    {"kpl", plan::Language::Kpl}, {"pddl", plan::Language::Pddl}, {"xml", plan::Language::Xml}};
+
+plan::Text read(const std::string& file, const std::string& format, const char* option) {
+  const std::vector<char> bytes = io::read_file(file);
+  return {file == "-" ? "stdin" : file, std::string(bytes.begin(), bytes.end()),
+          language_of(file, format, option)};
+}
+
+}  // namespace
+
+plan::Language language_of(const std::string& file, const std::string& name, const char* option) {
+  if (const auto known = kLanguages.find(name); known != kLanguages.end()) return known->second;
+  if (const auto guessed = plan::language_from_name(file)) return *guessed;
+  throw Error(ErrorCode::InvalidArgument, file + ": cannot tell the language from the name; give " +
+                                              option + " kpl, pddl or xml");
+}
+
+PlanTexts read_texts(const PlanOptions& o) {
+  PlanTexts t{read(o.domain, o.input_format, "--input-format"), {}};
+  if (!o.problem.empty())
+    t.problem = read(o.problem, o.problem_format.empty() ? o.input_format : o.problem_format,
+                     "--problem-format");
+  return t;
+}
+
+plan::Plan read_plan_file(const plan::Model& model, const std::string& file) {
+  const std::vector<char> bytes = io::read_file(file);
+  return plan::read_plan(model, std::string(bytes.begin(), bytes.end()),
+                         file == "-" ? "stdin" : file);
+}
+
+std::size_t parse_memory(const std::string& text) {
+  if (text.empty()) return 0;
+  std::size_t used = 0;
+  double value = 0;
+  try {
+    value = std::stod(text, &used);
+  } catch (const std::exception&) {
+    used = 0;
+  }
+  double unit = 1;
+  if (used > 0 && used + 1 == text.size()) {
+    const std::string units = "kKMG";
+    const std::size_t at = units.find(text[used]);
+    unit = at == std::string::npos ? 0 : at <= 1 ? 1024.0 : at == 2 ? 1048576.0 : 1073741824.0;
+    ++used;
+  }
+  const double bytes = value * unit;
+  if (used != text.size() || !(bytes >= 1) || bytes > 1e15)
+    throw Error(ErrorCode::InvalidArgument, "--max-memory: expected a size such as 500M or 2G");
+  return static_cast<std::size_t>(bytes);
+}
+
+}  // namespace kaboum::tools

@@ -1,0 +1,99 @@
+// The options of kaboum-plan, by command.
+
+#include "plan_options.h"
+
+namespace kaboum::tools {
+namespace {
+
+void add_inputs(CLI::App& app, PlanOptions& o) {
+  app.add_option("DOMAIN", o.domain, "Domain file (.kpl, .pddl, .xml), or - for stdin")
+      ->required()
+      ->type_name("FILE");
+  app.add_option("--input-format", o.input_format,
+                 "Language of DOMAIN (and PROBLEM) [by extension]")
+      ->check(CLI::IsMember({"kpl", "pddl", "xml"}))
+      ->type_name("NAME");
+  app.add_option("--problem-format", o.problem_format, "Language of PROBLEM [by extension]")
+      ->check(CLI::IsMember({"kpl", "pddl", "xml"}))
+      ->type_name("NAME");
+}
+
+void add_problem(CLI::App& app, PlanOptions& o) {
+  app.add_option("PROBLEM", o.problem, "Problem file, if the domain file does not hold it")
+      ->type_name("FILE");
+}
+
+}  // namespace
+
+CLI::App* add_solve_command(CLI::App& app, PlanOptions& o) {
+  CLI::App* s = app.add_subcommand("solve", "Find a plan");
+  add_inputs(*s, o);
+  add_problem(*s, o);
+  s->add_option(
+       "--search", o.search,
+       "greedy: a plan, soon; astar: least cost; bfs, ids: fewest steps; dfs: any plan. With "
+       "sensing, the last three minimise parts, not the whole")
+      ->check(CLI::IsMember({"dfs", "bfs", "ids", "greedy", "astar"}))
+      ->capture_default_str()
+      ->type_name("NAME");
+  s->add_option("-o,--output", o.output, "The plan (JSON); - is stdout")
+      ->capture_default_str()
+      ->type_name("FILE");
+  s->add_flag("--tree", o.tree, "Write the plan as a tree, without shared sub-plans");
+  s->add_option("--timeout", o.timeout, "Give up after this many seconds [never]")
+      ->check([](const std::string& text) {
+        double seconds = 0;
+        const bool good = CLI::detail::lexical_cast(text, seconds) && seconds > 0;
+        return good ? std::string() : "expected a number of seconds above 0, not " + text;
+      })
+      ->type_name("S");
+  s->add_option("--max-memory", o.max_memory,
+                "Give up when grounding and search hold this much, e.g. 500M or 2G [no limit]")
+      ->type_name("SIZE");
+  add_common_options(*s, o.common);
+  return s;
+}
+
+CLI::App* add_check_command(CLI::App& app, PlanOptions& o) {
+  CLI::App* c =
+      app.add_subcommand("check", "Replay every branch of a plan, independently of the planner");
+  add_inputs(*c, o);
+  add_problem(*c, o);
+  c->add_option("--plan", o.plan, "The plan to check, or -")->required()->type_name("FILE");
+  add_common_options(*c, o.common);
+  return c;
+}
+
+CLI::App* add_show_command(CLI::App& app, PlanOptions& o) {
+  CLI::App* w = app.add_subcommand("show", "Print or draw a plan");
+  add_inputs(*w, o);
+  add_problem(*w, o);
+  w->add_option("--plan", o.plan, "The plan to show, or -")->required()->type_name("FILE");
+  w->add_option("-o,--output", o.output, "Where to; - is stdout")
+      ->capture_default_str()
+      ->type_name("FILE");
+  w->add_option("--output-format", o.output_format,
+                "text, dot or svg [by extension: .dot, .gv, .svg, .txt; text without one]")
+      ->check(CLI::IsMember({"text", "dot", "svg"}))
+      ->type_name("NAME");
+  w->add_flag("--tree", o.tree, "Expand shared sub-plans");
+  add_common_options(*w, o.common);
+  return w;
+}
+
+CLI::App* add_convert_command(CLI::App& app, PlanOptions& o) {
+  CLI::App* v =
+      app.add_subcommand("convert", "Translate a domain (and problem) between kpl, PDDL and XML");
+  add_inputs(*v, o);
+  add_problem(*v, o);
+  v->add_option("-o,--output", o.output, "Where to; - is stdout")
+      ->capture_default_str()
+      ->type_name("FILE");
+  v->add_option("--output-format", o.output_format, "kpl, pddl or xml [by extension]")
+      ->check(CLI::IsMember({"kpl", "pddl", "xml"}))
+      ->type_name("NAME");
+  add_common_options(*v, o.common);
+  return v;
+}
+
+}  // namespace kaboum::tools
