@@ -1,3 +1,4 @@
+#include <kaboum/certify/link_bodies.h>
 #include <kaboum/sweep/sweep.h>
 #include <tbb/global_control.h>
 
@@ -9,11 +10,9 @@
 #include <string>
 
 #include "cli.h"
-#include "robot_bodies.h"
 
 /// Times bounding swept volumes of a robot whose bodies are in memory, and counts bodies by rule.
 /// Arguments: the robot's file, the epsilon of its bodies (3%), the most vertices of each (64).
-/// bcd-decompose must be on PATH.
 namespace {
 
 using namespace kaboum;
@@ -41,12 +40,12 @@ Times seconds_of(const robot::Robot& robot, const std::vector<robot::LinkBody>& 
 }
 
 int measure(const char* file, const char* epsilon, int most_vertices) {
-  const tools::RobotFile robot = tools::read_robot(file);
-  tools::BodyOptions body_options;
-  body_options.epsilon = tools::parse_length(epsilon).value();
-  body_options.max_vertices = static_cast<std::size_t>(most_vertices);
-  body_options.effort = bcd::Effort::Fast;
-  const tools::LinkBodies links = tools::bodies_of(robot, body_options);
+  const robot::RobotFile robot = robot::read_robot(file);
+  certify::RobotRequest request;
+  request.set.epsilon = tools::parse_length(epsilon);
+  request.set.max_vertices = static_cast<std::size_t>(most_vertices);
+  request.set.effort = bcd::Effort::Fast;
+  const certify::CertifiedBodies links = certify::certify_bodies(robot, request);
   std::size_t points = 0;
   for (const robot::LinkBody& body : links.bodies) points += body.points.size();
   std::printf("%s: %zu bodies with %zu vertices\n", file, links.bodies.size(), points);

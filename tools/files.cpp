@@ -8,7 +8,7 @@
 #include <cctype>
 #include <set>
 
-#include "xml_kind.h"
+#include "xml_route.h"
 
 namespace kaboum::tools {
 namespace {
@@ -32,15 +32,15 @@ std::string route(const std::string& path) {
   };
   if (!is({".xacro", ".urdf", ".srdf", ".sdf", ".world", ".mjcf", ".xml", ".rlkin", ".rlmdl"}))
     return {};
-  XmlKind kind = XmlKind::None;
+  io::XmlKind kind = io::XmlKind::None;
   try {
     const std::vector<char> bytes = io::read_file(path);
-    kind = xml_kind({bytes.data(), bytes.size()});
+    kind = io::xml_kind({bytes.data(), bytes.size()});
   } catch (const Error& error) {
     return error.what();
   }
-  if (extension == ".xacro") kind = XmlKind::Xacro;
-  if (kind != XmlKind::None) return route_to_mesh(kind, path);
+  if (extension == ".xacro") kind = io::XmlKind::Xacro;
+  if (kind != io::XmlKind::None) return route_to_mesh(kind, path);
   return "neither a mesh nor well-formed XML";
 }
 

@@ -1,5 +1,6 @@
 #include <kaboum/base/error.h>
 #include <kaboum/base/similar_name.h>
+#include <kaboum/robot/path_file.h>
 #include <kaboum/world/motion_check.h>
 
 #include <algorithm>
@@ -8,7 +9,7 @@
 
 #include "check_report.h"
 #include "cli.h"
-#include "robot_path.h"
+#include "motion_options.h"
 #include "scene_file.h"
 
 namespace {
@@ -169,7 +170,7 @@ int check(const Options& o) {
     const std::string file = o.path.empty() ? o.configurations : o.path;
     if (!file.empty())
       values =
-          tools::read_path(file, model.kinematics,
+          robot::read_path(file, model.kinematics,
                            {!o.ignore_limits, o.degrees, tools::fixed_joints(o.joints)}, notes);
     else if (!o.configuration.empty())
       values = parse_configuration(o, model.kinematics);

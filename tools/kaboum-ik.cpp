@@ -2,6 +2,7 @@
 #include <kaboum/kinematics/closed_form.h>
 #include <kaboum/kinematics/copies.h>
 #include <kaboum/kinematics/numeric.h>
+#include <kaboum/robot/robot_file.h>
 
 #include <Eigen/Geometry>
 #include <charconv>
@@ -11,7 +12,6 @@
 #include <numbers>
 
 #include "cli.h"
-#include "robot_file.h"
 
 namespace {
 
@@ -62,7 +62,7 @@ std::vector<double> parse_joints(const std::string& text, const char* option, co
   }
   if (q.size() != answer.joints.size())
     usage(std::string(option) + ": " + std::to_string(q.size()) + " values for the " +
-          std::to_string(answer.joints.size()) + " joints " + tools::names_of(answer.joints));
+          std::to_string(answer.joints.size()) + " joints " + robot::names_of(answer.joints));
   for (std::size_t i = 0; i < q.size(); ++i)
     if (degrees && answer.arm.axes[i].turns) q[i] *= kDegree;
   return q;
@@ -87,7 +87,7 @@ std::string only_tip(const robot::Robot& robot) {
     if (last) tips.push_back(robot.links[link].name);
   }
   if (tips.size() != 1)
-    usage("--tip: name the link to be placed; the robot ends in " + tools::names_of(tips));
+    usage("--tip: name the link to be placed; the robot ends in " + robot::names_of(tips));
   return tips.front();
 }
 
@@ -202,7 +202,7 @@ void print(const Answer& answer, const Options& o) {
 }
 
 int run(const Options& o) {
-  const tools::RobotFile robot = tools::read_robot(o.robot);
+  const robot::RobotFile robot = robot::read_robot(o.robot);
   const Answer answer = tools::naming(o.robot, [&] { return find(o, robot.robot); });
   tools::Json report = json_of(answer, o);
   if (o.json) {

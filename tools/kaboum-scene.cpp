@@ -6,7 +6,6 @@
 #include <map>
 
 #include "cli.h"
-#include "robot_bodies.h"
 #include "scene_file.h"
 #include "scene_maker.h"
 
@@ -100,16 +99,16 @@ int make_scene(const Options& o) {
     throw Error(ErrorCode::InvalidArgument, "nothing is asked for: give --robot or --object");
   tools::require_apart({{"SCENE", o.scene}, {"--report", o.common.report}}, inputs);
   maker.inner = o.inner;
-  maker.unit = o.unit;
-  maker.bodies.epsilon = *tools::parse_length(o.epsilon);
-  maker.bodies.effort = kEfforts.at(o.effort);
-  maker.bodies.drop_sheets = o.drop_sheets;
-  maker.bodies.packages = o.packages;
+  maker.sets.epsilon = tools::parse_length(o.epsilon);
+  maker.sets.effort = kEfforts.at(o.effort);
+  maker.sets.preparation.drop_sheets = o.drop_sheets;
+  maker.sets.unit = o.unit;
+  maker.packages = o.packages;
   const certify::SetCache cache(o.cache.empty() ? certify::SetCache::default_folder()
                                                 : std::filesystem::path(o.cache));
-  if (!o.no_cache) maker.bodies.cache = &cache;
+  if (!o.no_cache) maker.cache = &cache;
   tools::Progress progress(o.common.quiet);
-  maker.bodies.progress = [&](const std::string& stage) { progress.show(stage); };
+  maker.progress = [&](const std::string& stage) { progress.show(stage); };
   const tools::MadeScene made = tools::make_scene(maker);
   const std::vector<std::string>& lines = made.notes;
   for (const std::string& line : lines) tools::log(o.common.quiet, line);

@@ -4,7 +4,6 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
-#include <kaboum/plan/plan.h>
 
 #include <map>
 

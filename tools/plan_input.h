@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/plan/load.h>
+#include <kaboum/plan/plan.h>
 
 #include <cstddef>
 #include <optional>

@@ -2,22 +2,21 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
+#include <kaboum/robot/mesh_files.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
-
-#include "find_mesh.h"
 
 namespace kaboum::tools {
 
 namespace fs = std::filesystem;
 using robot::Geometry;
 
-const RobotMeshes::File& RobotMeshes::file_of(const Geometry& g, const RobotFile& robot) {
+const RobotMeshes::File& RobotMeshes::file_of(const Geometry& g, const robot::RobotFile& robot) {
   const auto [at, fresh] = named_.try_emplace({robot.path.string(), g.mesh});
   if (!fresh) return *at->second;
-  const File& file = read(find_only_mesh(g.mesh, robot.path, packages_).string());
+  const File& file = read(robot::find_only_mesh(g.mesh, robot.path, packages_).string());
   at->second = &file;
   return file;
 }
@@ -32,13 +31,14 @@ const RobotMeshes::File& RobotMeshes::read(const std::string& path) {
       .first->second;
 }
 
-std::string RobotMeshes::record_of_other_kind(const RobotFile& original, bool visual) const {
+std::string RobotMeshes::record_of_other_kind(const robot::RobotFile& original, bool visual) const {
   const auto hashes_of = [&](bool drawn) {
     std::set<std::string> out;
     for (const robot::Link& link : original.robot.links)
       for (const Geometry& g : drawn ? link.visual : link.collision) try {
           if (g.shape == Geometry::Shape::Mesh)
-            out.insert(io::sha256(io::read_file(resolve_mesh(g.mesh, original.path, packages_))));
+            out.insert(
+                io::sha256(io::read_file(robot::resolve_mesh(g.mesh, original.path, packages_))));
         } catch (const Error&) {  // NOLINT(bugprone-empty-catch): a note is not worth an error
         }
     return out;

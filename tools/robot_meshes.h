@@ -1,13 +1,12 @@
 #pragma once
 
 #include <kaboum/geom/mesh.h>
+#include <kaboum/robot/robot_file.h>
 
 #include <map>
 #include <string>
 #include <utility>
 #include <vector>
-
-#include "robot_file.h"
 
 namespace kaboum::tools {
 
@@ -24,11 +23,12 @@ class RobotMeshes {
   explicit RobotMeshes(std::vector<std::string> packages) : packages_(std::move(packages)) {}
 
   /// The file of a mesh, where there is only one that may be meant. @throws Error naming it.
-  const File& file_of(const robot::Geometry& mesh, const RobotFile& robot);
+  const File& file_of(const robot::Geometry& mesh, const robot::RobotFile& robot);
 
   /// A record beside one of the files read that names a mesh which the original has among its
   /// shapes of the other kind only; empty: there is none. @param visual  the kind that is judged.
-  [[nodiscard]] std::string record_of_other_kind(const RobotFile& original, bool visual) const;
+  [[nodiscard]] std::string record_of_other_kind(const robot::RobotFile& original,
+                                                 bool visual) const;
 
  private:
   const File& read(const std::string& path);

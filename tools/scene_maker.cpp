@@ -3,15 +3,13 @@
 #include "scene_maker.h"
 
 #include <kaboum/base/error.h>
-#include <kaboum/io/convex_io.h>
 
 #include <algorithm>
 #include <set>
 
-#include "certified_file.h"
+#include "cli.h"
 #include "file_names.h"
-#include "link_container.h"
-#include "notes.h"
+#include "robot_bodies.h"
 
 namespace kaboum::tools {
 namespace {
@@ -40,8 +38,8 @@ class Maker {
                          {"pose", {{"position", {0, 0, 0}}}},
                          {"inner", mesh(region, certify::SetRequest::Direction::Inner, "-inner")}});
     const Json scene = {
-        {"kaboum_scene", 1},           {"unit", o_.unit},    {"robots", robots},
-        {"objects", objects},          {"regions", regions}, {"allowed_contacts", Json::array()},
+        {"kaboum_scene", 1},           {"unit", o_.sets.unit}, {"robots", robots},
+        {"objects", objects},          {"regions", regions},   {"allowed_contacts", Json::array()},
         {"attachments", Json::array()}};
     out_.text = scene.dump(2) + "\n";
     for (const auto& [path, bytes] : files_) {
@@ -74,33 +72,32 @@ class Maker {
   }
 
   Json robot(const NamedFile& named) {
-    const RobotFile file = read_robot(named.file);
+    const robot::RobotFile file = robot::read_robot(named.file);
     out_.inputs.push_back(named.file);
-    const LinkBodies made = bodies_of(file, o_.bodies);
-    out_.inputs.insert(out_.inputs.end(), made.files.begin(), made.files.end());
-    out_.notes.insert(out_.notes.end(), made.notes.begin(), made.notes.end());
+    certify::RobotRequest request{o_.sets, {{}, false, o_.packages}, {}, {}};
+    request.tool = std::string("kaboum-scene ") + version();
+    require_formats(robot::link_meshes(file, request.shapes), "");
+    Notes notes;
+    certify::RobotHooks hooks = hooks_of(notes, o_.progress);
+    hooks.made = [&](const certify::CertifiedLinkMesh& mesh) {
+      if (!mesh.made.found.set.certificate.reached())
+        notes.add(mesh.mesh.file.string(),
+                  "the decomposition does not reach " + mesh.epsilon->text());
+    };
+    const certify::CertifiedRobot made = certify::certify_robot(file, request, o_.cache, hooks);
+    for (std::string& input : strings(made.bodies.files)) out_.inputs.push_back(std::move(input));
+    for (std::string& note : robot::notes_on_flat_shapes(file, false))
+      out_.notes.push_back(std::move(note));
+    for (std::string& line : notes.lines()) out_.notes.push_back(std::move(line));
     Json links = Json::array();
     FileNames names;
-    for (std::uint32_t l = 0; l < file.robot.links.size(); ++l) {
-      std::vector<robot::LinkBody> bodies;
-      for (const robot::LinkBody& body : made.bodies)
-        if (body.link == l) bodies.push_back(body);
-      if (bodies.empty()) continue;
-      auto [set, beyond] = link_container(bodies);
-      const std::string& name = file.robot.links[l].name;
-      geom::Provenance& p = set.provenance;
-      p.source = file.path.filename().string();
-      p.source_sha256 = file.sha256;
-      p.tool = std::string("kaboum-scene ") + version();
-      p.parameters = "--epsilon " + o_.bodies.epsilon.text();
-      p.unit = o_.unit;
-      p.frame = name;
-      p.direction = "outer";
-      p.epsilon = (made.epsilon + beyond) * (1 + 0x1p-50);
+    for (const certify::CertifiedLink& link : made.links) {
+      if (link.set.bodies.empty()) continue;  // points only
+      const std::string& name = file.robot.links[link.link].name;
       links.push_back(
           {{"link", name},
            {"outer", keep(folder_ / plain_file_name(named.name) / (names.unique(name) + ".glb"),
-                          io::serialise_convex_set(set, io::SetFormat::Glb))}});
+                          link.container)}});
     }
     return {{"name", named.name},
             {"urdf", {{"file", seen_from_scene(named.file)}, {"sha256", file.sha256}}},
@@ -112,21 +109,17 @@ class Maker {
   Json mesh(const NamedFile& named, certify::SetRequest::Direction direction,
             const std::string& suffix) {
     Notes notes;
-    certify::SetRequest request;
+    certify::SetRequest request = o_.sets;
     request.direction = direction;
-    request.epsilon = o_.bodies.epsilon;
-    request.effort = o_.bodies.effort;
-    request.unit = o_.unit;
-    request.preparation.drop_sheets = o_.bodies.drop_sheets;
     const auto note = [&](const std::string& text) { notes.add(named.file, text); };
-    const auto made =
-        certify_file(named.file, "", request, o_.bodies.cache, {o_.bodies.progress, note});
-    if (!made) throw Error(ErrorCode::InvalidInput, too_coarse(named.file));
+    const certify::CertifiedFile made =
+        certify::certify_file(named.file, format_for(named.file, "", "--input-format"), request,
+                              o_.cache, {o_.progress, note});
     for (std::string& line : notes.lines()) out_.notes.push_back(std::move(line));
     out_.inputs.push_back(named.file);
-    out_.inputs.insert(out_.inputs.end(), made->other_files.begin(), made->other_files.end());
+    out_.inputs.insert(out_.inputs.end(), made.other_files.begin(), made.other_files.end());
     return keep(folder_ / (plain_file_name(named.name) + suffix + ".glb"),
-                made->found.set.container);
+                made.found.set.container);
   }
 
   const SceneMaker& o_;

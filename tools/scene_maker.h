@@ -1,11 +1,11 @@
 #pragma once
 
+#include <kaboum/certify/robot.h>
+
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
-
-#include "cli.h"
-#include "robot_bodies.h"
 
 /// Scenes from URDFs and meshes: their sets in containers, and the file that names them.
 namespace kaboum::tools {
@@ -18,12 +18,14 @@ struct NamedFile {
 NamedFile parse_named_file(const std::string& text, const char* option);
 
 struct SceneMaker {
-  std::filesystem::path scene;              ///< to be written
-  std::vector<NamedFile> robots;            ///< URDF
-  std::vector<NamedFile> objects, regions;  ///< meshes
-  bool inner = false;                       ///< inner sets of objects as well
-  BodyOptions bodies;                       ///< of everything
-  std::string unit = "m";
+  std::filesystem::path scene;               ///< to be written
+  std::vector<NamedFile> robots;             ///< URDF
+  std::vector<NamedFile> objects, regions;   ///< meshes
+  bool inner = false;                        ///< inner sets of objects as well
+  certify::SetRequest sets;                  ///< of everything; direction apart
+  std::vector<std::string> packages;         ///< folders that package:// URIs are looked up in
+  const certify::SetCache* cache = nullptr;  ///< null: none
+  std::function<void(const std::string&)> progress;
 };
 
 struct MadeScene {

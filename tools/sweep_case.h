@@ -14,7 +14,7 @@ namespace kaboum::tools {
 /// What was asked, of which files, and what was found.
 struct SweepCase {
   const VerifySweepOptions& asked;
-  RobotFile robot;
+  robot::RobotFile robot;
   robot::Path path;
   SweepShapes shapes;
   SweptInput swept;

@@ -2,12 +2,12 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/io/convex_io.h>
+#include <kaboum/robot/mesh_files.h>
 #include <kaboum/verify/moving_robot.h>
 
 #include <algorithm>
 #include <sstream>
 
-#include "find_mesh.h"
 #include "prepared_original.h"
 
 namespace kaboum::tools {
@@ -36,7 +36,7 @@ std::vector<std::string> listed(const std::string& text) {
 }
 
 /// The shapes of one link.
-void add_link(const RobotFile& file, std::uint32_t index, const VerifySweepOptions& o,
+void add_link(const robot::RobotFile& file, std::uint32_t index, const VerifySweepOptions& o,
               SweepShapes& out) {
   const robot::Link& link = file.robot.links[index];
   ++out.asked;
@@ -45,7 +45,7 @@ void add_link(const RobotFile& file, std::uint32_t index, const VerifySweepOptio
   for (const Geometry& g : o.geometry == "visual" ? link.visual : link.collision) {
     geom::Mesh mesh;
     if (g.shape == Geometry::Shape::Mesh) {
-      out.files.push_back(find_only_mesh(g.mesh, file.path, o.packages).string());
+      out.files.push_back(robot::find_only_mesh(g.mesh, file.path, o.packages).string());
       mesh = read_link_mesh(out.files.back(), o, out);
     }
     const std::string name = link.name + "/" + std::to_string(count++);
@@ -62,7 +62,7 @@ void add_link(const RobotFile& file, std::uint32_t index, const VerifySweepOptio
 /// link's frame and unit.
 geom::ConvexSet read_swept_urdf(const std::string& path, const VerifySweepOptions& o,
                                 io::SetReadDetails& details) {
-  const RobotFile file = read_robot(path);
+  const robot::RobotFile file = robot::read_robot(path);
   const auto refuse = [&](const std::string& why) {
     throw Error(ErrorCode::InvalidInput, path + ": " + why +
                                              "; a swept volume as sweep-approx writes it is the "
@@ -76,7 +76,7 @@ geom::ConvexSet read_swept_urdf(const std::string& path, const VerifySweepOption
     if (g.shape != Geometry::Shape::Mesh) refuse("it has a " + describe(g));
     if (!g.origin.linear.isIdentity(0) || !g.origin.translation.isZero(0) || !g.size.isOnes(0))
       refuse("a mesh is moved or scaled");
-    const std::filesystem::path mesh = find_only_mesh(g.mesh, file.path, o.packages);
+    const std::filesystem::path mesh = robot::find_only_mesh(g.mesh, file.path, o.packages);
     std::vector<char> bytes;
     set.bodies.push_back({mesh.filename().string(), io::read_mesh(mesh, {}, &bytes).mesh});
     details.bytes.insert(details.bytes.end(), bytes.begin(), bytes.end());
@@ -87,14 +87,14 @@ geom::ConvexSet read_swept_urdf(const std::string& path, const VerifySweepOption
 
 }  // namespace
 
-SweepShapes read_shapes(const RobotFile& file, const VerifySweepOptions& o) {
+SweepShapes read_shapes(const robot::RobotFile& file, const VerifySweepOptions& o) {
   const std::vector<std::string> wanted = listed(o.links);
-  require_links(file, wanted);
+  robot::require_links(file, wanted);
   const bool visual = o.geometry == "visual";
   SweepShapes out;
-  out.bare = bare_links(file.robot, visual, wanted);
-  out.notes = notes_on_flat_shapes(file, visual, wanted);
-  for (const std::string& note : notes_on(out.bare, visual, ": nothing of this is judged"))
+  out.bare = robot::bare_links(file.robot, visual, wanted);
+  out.notes = robot::notes_on_flat_shapes(file, visual, wanted);
+  for (const std::string& note : robot::notes_on(out.bare, visual, ": nothing of this is judged"))
     out.notes.push_back(o.files[0] + ": " + note);
   for (std::uint32_t l = 0; l < file.robot.links.size(); ++l)
     if (wanted.empty() ||

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/geom/convex_set.h>
+#include <kaboum/robot/robot_file.h>
 #include <kaboum/verify/sweep.h>
 
 #include <cstdint>
@@ -8,7 +9,6 @@
 #include <vector>
 
 #include "notes.h"
-#include "robot_file.h"
 #include "verdict.h"
 #include "verify_sweep.h"
 
@@ -23,12 +23,12 @@ struct SweepShapes {
   std::vector<std::string> notes;
   Notes mesh_notes;
   DroppedSheets dropped;
-  BareLinks bare;
+  robot::BareLinks bare;
   std::size_t judged = 0, asked = 0;  ///< links
 };
 
 /// @throws Error naming the file; when no link has a shape.
-SweepShapes read_shapes(const RobotFile& file, const VerifySweepOptions& options);
+SweepShapes read_shapes(const robot::RobotFile& file, const VerifySweepOptions& options);
 
 /// What to try where the meshes as they are were not found within the set; empty if nothing.
 std::string preparing_hint(const SweepShapes& shapes);

@@ -54,7 +54,7 @@ std::vector<std::string> lines_of(const SweepCase& run) {
                     " meshes are not closed: their surfaces alone are judged");
   const SweepShapes& shapes = run.shapes;
   lines.push_back(std::string(name_of(run.answer)) + ": " +
-                  links_judged(shapes.judged, shapes.asked, shapes.bare) +
+                  robot::links_judged(shapes.judged, shapes.asked, shapes.bare) +
                   except_sheets(shapes.dropped));
   return lines;
 }

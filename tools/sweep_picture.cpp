@@ -33,7 +33,7 @@ struct Scene {
 
 std::vector<char> picture_of_sweep(const robot::Robot& robot,
                                    std::span<const robot::LinkBody> bodies, const robot::Path& path,
-                                   const sweep::SweepResult& result) {
+                                   const certify::CertifiedSweep& result) {
   constexpr std::array<Colour, 8> kLinks{{{0.55F, 0.57F, 0.60F},
                                           {0.86F, 0.45F, 0.40F},
                                           {0.93F, 0.68F, 0.36F},

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <kaboum/geom/convex_set.h>
-#include <kaboum/sweep/sweep.h>
+#include <kaboum/certify/sweep.h>
 
 #include <span>
 #include <vector>
@@ -12,6 +11,6 @@ namespace kaboum::tools {
 /// they sweep, one colour per link.
 std::vector<char> picture_of_sweep(const robot::Robot& robot,
                                    std::span<const robot::LinkBody> bodies, const robot::Path& path,
-                                   const sweep::SweepResult& result);
+                                   const certify::CertifiedSweep& result);
 
 }  // namespace kaboum::tools

@@ -1,7 +1,7 @@
 // The options of bound-verify, each defined once.
 #include "verify_options.h"
 
-#include "robot_path.h"
+#include "motion_options.h"
 
 namespace kaboum::tools {
 

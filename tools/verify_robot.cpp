@@ -2,11 +2,11 @@
 #include "verify_robot.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/robot/robot_file.h>
 #include <kaboum/verify/motion_alike.h>
 
 #include <iostream>
 
-#include "robot_file.h"
 #include "robot_judge.h"
 
 namespace kaboum::tools {
@@ -35,8 +35,8 @@ class RobotVerifier {
   RobotVerifier(const VerifyRobotOptions& options, const CommonOptions& common)
       : o_(options),
         common_(common),
-        original_(read_robot(o_.original)),
-        result_(read_robot(o_.result)),
+        original_(robot::read_robot(o_.original)),
+        result_(robot::read_robot(o_.result)),
         meshes_(o_.packages),
         progress_(common.quiet),
         judge_(o_, [this](const std::string& what) { show(what); }) {}
@@ -56,7 +56,7 @@ class RobotVerifier {
     const std::string open =
         judge_.open() && answer_ == Answer::Verified ? ", as far as open meshes define it" : "";
     say(name_of(answer_) + open + ": " +
-        links_judged(links_.size(), original_.robot.links.size(), bare_) +
+        robot::links_judged(links_.size(), original_.robot.links.size(), bare_) +
         except_sheets(judge_.dropped()));
     return exit_code(answer_);
   }
@@ -79,11 +79,11 @@ class RobotVerifier {
 
   /// What is drawn, but does not collide, is easily overlooked.
   void find_bare_links() {
-    bare_ = bare_links(original_.robot, visual());
+    bare_ = robot::bare_links(original_.robot, visual());
     if (visual()) bare_.other.clear();  // their shapes for collisions are judged
-    for (const std::string& note : notes_on(bare_, visual(), ": nothing of this is judged"))
+    for (const std::string& note : robot::notes_on(bare_, visual(), ": nothing of this is judged"))
       log(common_.quiet, "note: " + o_.original + ": " + note);
-    for (const std::string& note : notes_on_flat_shapes(original_, visual()))
+    for (const std::string& note : robot::notes_on_flat_shapes(original_, visual()))
       log(common_.quiet, "note: " + note);
   }
 
@@ -113,7 +113,7 @@ class RobotVerifier {
   void read_meshes() {
     std::size_t shapes = 0;
     std::vector<std::string> inputs{o_.original, o_.result};
-    const auto read_all = [&](const std::vector<Geometry>& of, const RobotFile& robot) {
+    const auto read_all = [&](const std::vector<Geometry>& of, const robot::RobotFile& robot) {
       for (const Geometry& g : of)
         if (g.shape == Geometry::Shape::Mesh) inputs.push_back(meshes_.file_of(g, robot).path);
     };
@@ -187,7 +187,7 @@ class RobotVerifier {
   }
 
   [[nodiscard]] Json report(const std::string& motion) const {
-    const auto file = [](const std::string& path, const RobotFile& robot) {
+    const auto file = [](const std::string& path, const robot::RobotFile& robot) {
       return Json{{"file", path}, {"sha256", robot.sha256}};
     };
     return {{"relation", "robot"},
@@ -207,12 +207,12 @@ class RobotVerifier {
 
   const VerifyRobotOptions& o_;
   const CommonOptions& common_;
-  RobotFile original_, result_;
+  robot::RobotFile original_, result_;
   RobotMeshes meshes_;
   Progress progress_;
   RobotJudge judge_;
   Answer answer_ = Answer::Verified;
-  BareLinks bare_;
+  robot::BareLinks bare_;
   std::size_t at_ = 0;  // number of the link
   Json links_ = Json::array();
 };

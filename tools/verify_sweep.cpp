@@ -2,12 +2,13 @@
 #include "verify_sweep.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/robot/path_file.h>
 #include <kaboum/verify/moving_robot.h>
 
 #include <algorithm>
 #include <iostream>
 
-#include "robot_path.h"
+#include "motion_options.h"
 #include "sweep_case.h"
 #include "verdict.h"
 #include "witness_file.h"
@@ -19,11 +20,11 @@ using verify::Answer;
 
 /// Reads everything, and says what is to be known of it.
 SweepCase read(const VerifySweepOptions& o, const CommonOptions& common) {
-  SweepCase run{o, read_robot(o.files[0]), {}, {}, {}, 0, {}};
+  SweepCase run{o, robot::read_robot(o.files[0]), {}, {}, {}, 0, {}};
   // Limits are no matter of the set.
   std::vector<std::string> notes;
-  run.path =
-      read_path(o.files[1], run.robot.robot, {false, o.degrees, fixed_joints(o.joints)}, notes);
+  run.path = robot::read_path(o.files[1], run.robot.robot,
+                              {false, o.degrees, fixed_joints(o.joints)}, notes);
   run.shapes = read_shapes(run.robot, o);
   require_apart({{"--report", common.report}, {"--witness", o.witness}}, run.shapes.files);
   ensure(verify::same_poses(run.robot.robot, run.shapes.shapes, run.shapes.links, run.path),
@@ -36,16 +37,9 @@ SweepCase read(const VerifySweepOptions& o, const CommonOptions& common) {
   return run;
 }
 
-/// What is small beside the set.
-double default_gap(const geom::ConvexSet& set) {
-  geom::Box3 box;
-  for (const geom::ConvexBody& b : set.bodies) box.extend(geom::bounding_box(b.hull));
-  return std::max({1e-6 * set.margin, box.empty() ? 0 : 1e-9 * box.diagonal(), 1e-12});
-}
-
 void decide(SweepCase& run, Progress& progress) {
   const VerifySweepOptions& o = run.asked;
-  run.gap = o.gap.empty() ? default_gap(run.swept.set) : parse_length(o.gap)->value;
+  run.gap = o.gap.empty() ? verify::default_gap(run.swept.set) : parse_length(o.gap)->value;
   verify::SweepOptions options;
   options.gap = run.gap;
   options.max_cells = o.max_cells;

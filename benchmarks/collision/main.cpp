@@ -1,4 +1,5 @@
 #include <kaboum/base/error.h>
+#include <kaboum/certify/link_bodies.h>
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/robot/kinematics.h>
@@ -11,7 +12,6 @@
 #include "cli.h"
 #include "engine.h"
 #include "queries.h"
-#include "robot_bodies.h"
 #include "timing.h"
 
 /// What convex sets buy in collision checking (the thesis's Fig. 4.9): the queries of RRT-Connect
@@ -48,7 +48,7 @@ struct Shapes {
   Model triangles, hulls, sets;
 };
 
-Shapes load(const tools::RobotFile& file, const std::string& epsilon, double scale) {
+Shapes load(const robot::RobotFile& file, const std::string& epsilon, double scale) {
   Shapes out;
   out.triangles = {"triangle meshes", false, 0, {}, make_scene(scale)};
   out.hulls = {"hulls of links", true, 0, {}, make_scene(scale)};
@@ -57,16 +57,16 @@ Shapes load(const tools::RobotFile& file, const std::string& epsilon, double sca
     geom::Mesh all;
     for (const robot::Geometry& g : file.robot.links[l].collision) {
       if (g.shape != robot::Geometry::Shape::Mesh) continue;
-      geom::Mesh mesh = io::read_mesh(tools::resolve_mesh(g.mesh, file.path, {})).mesh;
+      geom::Mesh mesh = io::read_mesh(robot::resolve_mesh(g.mesh, file.path, {})).mesh;
       for (geom::Vec3& v : mesh.vertices) v = g.origin * v.cwiseProduct(g.size);
       if (const auto hull = geom::convex_hull(mesh.vertices)) out.hulls.robot.push_back({l, *hull});
       out.triangles.robot.push_back({l, std::move(mesh)});
     }
   }
-  tools::BodyOptions options;
-  options.epsilon = tools::parse_length(epsilon).value();
-  options.effort = bcd::Effort::Fast;
-  for (const robot::LinkBody& body : tools::bodies_of(file, options).bodies)
+  certify::RobotRequest request;
+  request.set.epsilon = tools::parse_length(epsilon);
+  request.set.effort = bcd::Effort::Fast;
+  for (const robot::LinkBody& body : certify::certify_bodies(file, request).bodies)
     if (body.link > 0)
       if (const auto hull = geom::convex_hull(body.points))
         out.sets.robot.push_back({body.link, *hull});
@@ -99,7 +99,7 @@ Configuration reach_through(const robot::Robot& robot, Engine& engine, double si
 
 int measure(const char* robot_path, std::size_t wanted, const char* csv, const char* epsilon,
             double scale) {
-  const tools::RobotFile file = tools::read_robot(robot_path);
+  const robot::RobotFile file = robot::read_robot(robot_path);
   const Shapes shapes = load(file, epsilon, scale);
   for (const Model* model : {&shapes.triangles, &shapes.hulls, &shapes.sets}) {
     std::size_t vertices = 0;

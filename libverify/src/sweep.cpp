@@ -522,6 +522,12 @@ void solid_claim(std::span<const MovingShape> shapes, const Waypoints& path,
 
 }  // namespace
 
+double default_gap(const geom::ConvexSet& set) {
+  geom::Box3 box;
+  for (const geom::ConvexBody& b : set.bodies) box.extend(geom::bounding_box(b.hull));
+  return std::max({1e-6 * set.margin, box.empty() ? 0 : 1e-9 * box.diagonal(), 1e-12});
+}
+
 SweepClaims verify_sweep(std::span<const MovingShape> shapes, const Waypoints& path,
                          const geom::ConvexSet& set, const SweepOptions& options) {
   require_usable(shapes, path, options);

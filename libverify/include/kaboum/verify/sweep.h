@@ -54,6 +54,9 @@ struct SweepOptions {
   std::function<void(const std::string&)> progress;  ///< called from one thread
 };
 
+/// A gap that is small beside the set. [length]
+double default_gap(const geom::ConvexSet& set);
+
 /// A place of the motion.
 struct SweepPlace {
   std::size_t shape = 0, segment = 0;  ///< segment i leads from waypoint i to i + 1

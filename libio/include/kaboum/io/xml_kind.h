@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace kaboum::tools {
+namespace kaboum::io {
 
 /// What an XML document describes, told by its root element and that one's children.
 enum class XmlKind {
@@ -19,10 +19,7 @@ enum class XmlKind {
 };
 XmlKind xml_kind(std::string_view text);
 
-/// What to do with a document of this kind where a mesh is to come; empty for None.
-std::string route_to_mesh(XmlKind kind, const std::string& path);
+/// "SDF (Gazebo), which is not read"; empty for kinds that are read.
+std::string describe(XmlKind kind);
 
-/// What to do with it where a robot is to come; empty for robots, and for None.
-std::string route_to_robot(XmlKind kind);
-
-}  // namespace kaboum::tools
+}  // namespace kaboum::io

@@ -1,18 +1,16 @@
-#include "robot_file.h"
+#include <kaboum/robot/robot_file.h>
 
 #include <kaboum/base/error.h>
 #include <kaboum/base/similar_name.h>
 #include <kaboum/io/mesh_io.h>
+#include <kaboum/io/xml_kind.h>
 
 #include <algorithm>
 
-#include "xml_kind.h"
-
-namespace kaboum::tools {
+namespace kaboum::robot {
 namespace {
 
 namespace fs = std::filesystem;
-using robot::Geometry;
 
 bool is_file(const fs::path& path) {
   std::error_code error;
@@ -20,7 +18,7 @@ bool is_file(const fs::path& path) {
 }
 
 /// Meshes of the Robotics Library's links are named by the scene; here by the links' names.
-void find_meshes(robot::Robot& robot, const fs::path& folder) {
+void find_meshes(Robot& robot, const fs::path& folder) {
   for (robot::Link& link : robot.links) {
     std::vector<std::string> names{link.name};
     if (link.name.starts_with("body")) names.push_back("link" + link.name.substr(4));
@@ -37,6 +35,30 @@ void find_meshes(robot::Robot& robot, const fs::path& folder) {
   }
 }
 
+/// What to do with a document of this kind where a robot is to come; empty for robots, and for
+/// None.
+std::string route_to_robot(io::XmlKind kind) {
+  const std::string urdf = "; give the robot as URDF, or as rlkin or rlmdl (Robotics Library)";
+  switch (kind) {
+    case io::XmlKind::Srdf:
+      return describe(kind) + "; give the URDF that it belongs to";
+    case io::XmlKind::Sdf:
+      return describe(kind) + urdf;
+    case io::XmlKind::Mjcf:
+      return describe(kind) + urdf;
+    case io::XmlKind::RlScene:
+      return describe(kind) + "; give the rlkin or rlmdl that moves it";
+    case io::XmlKind::Other:
+      return describe(kind) + urdf;
+    case io::XmlKind::Urdf:
+    case io::XmlKind::Xacro:  // its parser names the line
+    case io::XmlKind::RlRobot:
+    case io::XmlKind::None:
+      break;
+  }
+  return {};
+}
+
 }  // namespace
 
 RobotFile read_robot(const std::string& path) {
@@ -45,10 +67,10 @@ RobotFile read_robot(const std::string& path) {
   const std::vector<char> bytes = io::read_file(path);
   out.sha256 = io::sha256(bytes);
   const std::string_view text(bytes.data(), bytes.size());
-  const XmlKind kind = xml_kind(text);
+  const io::XmlKind kind = io::xml_kind(text);
   if (const std::string route = route_to_robot(kind); !route.empty())
     throw Error(ErrorCode::InvalidInput, path + ": " + route);
-  if (kind == XmlKind::RlRobot) {
+  if (kind == io::XmlKind::RlRobot) {
     out.robot = robot::parse_rl(text, path);
     find_meshes(out.robot, out.path.parent_path());
   } else {
@@ -88,8 +110,7 @@ std::vector<std::string> BareLinks::all() const {
   return out;
 }
 
-BareLinks bare_links(const robot::Robot& robot, bool visual,
-                     const std::vector<std::string>& links) {
+BareLinks bare_links(const Robot& robot, bool visual, const std::vector<std::string>& links) {
   BareLinks out;
   for (const robot::Link& link : robot.links) {
     if (!links.empty() && std::find(links.begin(), links.end(), link.name) == links.end()) continue;
@@ -138,4 +159,4 @@ std::vector<std::string> notes_on_flat_shapes(const RobotFile& robot, bool visua
   return out;
 }
 
-}  // namespace kaboum::tools
+}  // namespace kaboum::robot

@@ -1,18 +1,19 @@
 // Bodies in the frame of their link, where scale and pose are rounded, as float32 polytopes that
 // contain them and what rounding may have moved them by.
 
-#include "link_container.h"
+#include "link_polytopes.h"
 
 #include <kaboum/base/error.h>
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/geom/float32.h>
 #include <kaboum/geom/predicates.h>
+#include <kaboum/verify/holding.h>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-namespace kaboum::tools {
+namespace kaboum::certify {
 namespace {
 
 using geom::Vec3;
@@ -73,8 +74,8 @@ geom::Mesh rounded_outwards(const std::vector<Vec3>& corners, double spacing) {
 
 }  // namespace
 
-LinkContainer link_container(const std::vector<robot::LinkBody>& bodies) {
-  LinkContainer out;
+LinkPolytopes link_polytopes(const std::vector<robot::LinkBody>& bodies, double allowance) {
+  LinkPolytopes out;
   for (const robot::LinkBody& body : bodies) {
     std::vector<Vec3> points;
     geom::Box3 box;
@@ -91,10 +92,9 @@ LinkContainer link_container(const std::vector<robot::LinkBody>& bodies) {
       for (const Vec3& p : held) largest = std::max(largest, p.cwiseAbs().maxCoeff());
       const double spacing = geom::float32_spacing(largest);
       // To the cubes' corners, and twice the rounding of a vertex.
-      const double distance = 2 * (body.margin + moved + 2 * spacing);
+      const double distance = 2 * allowance * (body.margin + moved + 2 * spacing);
       if (hull) hull = scaled(*hull, distance, 1e-4 * box.diagonal());
-      if (!hull || !contains(*hull, held)) hull = rounded_outwards(held, spacing);
-      ensure(contains(*hull, held), "a polytope does not contain its body");
+      if (!hull || !contains(*hull, held)) hull = rounded_outwards(held, allowance * spacing);
       double reach = 0;  // of the polytope from the points of the body
       for (const Vec3& v : hull->vertices) {
         double nearest = std::numeric_limits<double>::infinity();
@@ -109,4 +109,13 @@ LinkContainer link_container(const std::vector<robot::LinkBody>& bodies) {
   return out;
 }
 
-}  // namespace kaboum::tools
+std::string objection(const geom::ConvexSet& set, const std::vector<robot::LinkBody>& bodies) {
+  if (set.margin != 0) return "a margin is stated";
+  std::vector<verify::RoundedHull> held;
+  held.reserve(bodies.size());
+  for (const robot::LinkBody& body : bodies) held.push_back({body.points, body.margin});
+  const verify::Claim claim = verify::verify_holding(set, held);
+  return claim.answer == verify::Answer::Verified ? "" : claim.reason;
+}
+
+}  // namespace kaboum::certify

@@ -7,11 +7,11 @@
 #include <vector>
 
 /// Robots as files: reading them, and what is to be said of their links.
-namespace kaboum::tools {
+namespace kaboum::robot {
 
 /// A robot as read from its file.
 struct RobotFile {
-  robot::Robot robot;
+  Robot robot;
   std::filesystem::path path;
   std::string sha256;
 };
@@ -32,8 +32,7 @@ struct BareLinks {
 };
 /// @param visual  the kind: shapes for drawing, else those for collisions
 /// @param links   only these; empty: all
-BareLinks bare_links(const robot::Robot& robot, bool visual,
-                     const std::vector<std::string>& links = {});
+BareLinks bare_links(const Robot& robot, bool visual, const std::vector<std::string>& links = {});
 
 /// One line for each kind of bare links; `consequence` ends it.
 std::vector<std::string> notes_on(const BareLinks& bare, bool visual,
@@ -49,4 +48,4 @@ std::vector<std::string> notes_on_flat_shapes(const RobotFile& robot, bool visua
 /// 'a', 'b' and 2 more.
 std::string names_of(const std::vector<std::string>& names);
 
-}  // namespace kaboum::tools
+}  // namespace kaboum::robot

@@ -1,7 +1,7 @@
 // Packages as ROS 1 (rospack: crawls $ROS_PACKAGE_PATH), ROS 2 (ament: PREFIX/share/NAME) and
 // people without either (the folder beside the robot's file) find them.
 
-#include "find_mesh.h"
+#include <kaboum/robot/mesh_files.h>
 
 #include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-namespace kaboum::tools {
+namespace kaboum::robot {
 namespace {
 
 namespace fs = std::filesystem;
@@ -199,4 +199,4 @@ fs::path find_only_mesh(const std::string& reference, const fs::path& robot,
   return places.front();
 }
 
-}  // namespace kaboum::tools
+}  // namespace kaboum::robot

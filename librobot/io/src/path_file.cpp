@@ -1,16 +1,17 @@
-#include "robot_path.h"
+// Paths as files: what could be read in two ways is refused.
+
+#include <kaboum/robot/path_file.h>
 
 #include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <sstream>
 #include <string_view>
 
-namespace kaboum::tools {
+namespace kaboum::robot {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
@@ -22,7 +23,7 @@ std::string_view trimmed(std::string_view text) {
 }
 
 /// Whether every field of a line is the name of a joint.
-bool all_names(std::string_view line, const robot::Robot& robot) {
+bool all_names(std::string_view line, const Robot& robot) {
   const std::string_view separators =
       line.find_first_of(",;") == std::string_view::npos ? kBlanks : ",;";
   for (line = trimmed(line); !line.empty();) {
@@ -52,7 +53,7 @@ bool in_word(std::string_view text, std::size_t at) {
 
 /// The joints that a text names, in the order in which it first does; other words, units and
 /// brackets are passed over. Of names that begin alike the longest counts.
-std::vector<std::size_t> joints_in(std::string_view text, const robot::Robot& robot) {
+std::vector<std::size_t> joints_in(std::string_view text, const Robot& robot) {
   std::vector<std::size_t> result;
   for (std::size_t at = 0; at < text.size();) {
     std::size_t longest = 0, joint = 0;
@@ -73,8 +74,8 @@ std::vector<std::size_t> joints_in(std::string_view text, const robot::Robot& ro
 }
 
 /// @param path  as parsed: whether a first line named the joints
-void require_one_reading(std::string_view text, const robot::NamedPath& path,
-                         const robot::Robot& robot, const std::string& name) {
+void require_one_reading(std::string_view text, const NamedPath& path, const Robot& robot,
+                         const std::string& name) {
   if (!path.joints.empty()) return;
   const auto refuse = [&](std::size_t line, const std::string& what) {
     throw Error(ErrorCode::InvalidInput, name + ": line " + std::to_string(line) + ": " + what);
@@ -100,21 +101,21 @@ void require_one_reading(std::string_view text, const robot::NamedPath& path,
 
 }  // namespace
 
-robot::Path read_path(const std::string& file, const robot::Robot& robot,
-                      const PathOptions& options, std::vector<std::string>& notes) {
+Path read_path(const std::string& file, const Robot& robot, const PathOptions& options,
+               std::vector<std::string>& notes) {
   const std::vector<char> bytes = io::read_file(file);
   std::string_view text(bytes.data(), bytes.size());
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   const std::size_t start = text.find_first_not_of(" \t\r\n");
   const std::string name = file == "-" ? "standard input" : file;
   const bool json = start != std::string_view::npos && (text[start] == '{' || text[start] == '[');
-  const robot::NamedPath path =
+  const NamedPath path =
       json ? robot::parse_path_json(text, name) : robot::parse_path_csv(text, name);
   if (!json) require_one_reading(text, path, robot, name);
   for (const std::size_t column : robot::time_columns(path, robot))
     notes.push_back(name + ": the column '" + path.joints[column] +
                     "' is passed over: what is swept does not depend on times");
-  robot::Path result = robot::arrange(path, robot, name, false, options.fixed);
+  Path result = robot::arrange(path, robot, name, false, options.fixed);
   if (options.degrees) result = robot::from_degrees(std::move(result), robot);
   if (options.check_limits) robot::require_within_limits(result, robot, name);
   if (const auto found = robot::find_likely_degrees(result, robot)) {
@@ -132,40 +133,7 @@ robot::Path read_path(const std::string& file, const robot::Robot& robot,
   return result;
 }
 
-CLI::Option* add_degrees_option(CLI::App& app, bool& degrees) {
-  return app.add_flag("--degrees", degrees,
-                      "Angles of the path and of --joint are in degrees, not radians");
-}
-
-CLI::Option* add_joint_option(CLI::App& app, std::vector<std::string>& values) {
-  return app
-      .add_option(
-          "--joint", values,
-          "Value of a joint that does not move and has no column in the path, in radians or "
-          "metres, as in finger=0.04; may be repeated")
-      ->type_name("NAME=X");
-}
-
-robot::FixedJoints fixed_joints(const std::vector<std::string>& values) {
-  robot::FixedJoints out;
-  for (const std::string& text : values) {
-    const std::size_t sign = text.rfind('=');
-    double value = 0;
-    const char* end = text.data() + text.size();
-    const char* begin = sign == std::string::npos ? end : text.data() + sign + 1;
-    if (begin != end && *begin == '+') ++begin;
-    const auto [stop, error] = std::from_chars(begin, end, value);
-    if (begin == end || error != std::errc() || stop != end || !std::isfinite(value) || sign == 0)
-      throw Error(ErrorCode::InvalidArgument,
-                  "--joint: write NAME=NUMBER, as in finger=0.04, not " + text);
-    if (!out.emplace(text.substr(0, sign), value).second)
-      throw Error(ErrorCode::InvalidArgument,
-                  "--joint: '" + text.substr(0, sign) + "' is given twice");
-  }
-  return out;
-}
-
-std::string largest_move(const robot::Path& path, const robot::Robot& robot) {
+std::string largest_move(const Path& path, const Robot& robot) {
   double largest = 0;
   std::ostringstream text;
   for (std::size_t w = 1; w < path.size(); ++w)
@@ -179,4 +147,4 @@ std::string largest_move(const robot::Path& path, const robot::Robot& robot) {
   return text.str();
 }
 
-}  // namespace kaboum::tools
+}  // namespace kaboum::robot

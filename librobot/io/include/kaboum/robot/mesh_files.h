@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace kaboum::tools {
+namespace kaboum::robot {
 
 /// The files that a URDF's mesh reference may stand for, at least one: a path, absolute or relative
 /// to the robot's file, also as file://, or `package://NAME/rest`.
@@ -31,4 +31,4 @@ std::filesystem::path find_only_mesh(const std::string& reference,
                                      const std::filesystem::path& robot,
                                      const std::vector<std::string>& packages);
 
-}  // namespace kaboum::tools
+}  // namespace kaboum::robot

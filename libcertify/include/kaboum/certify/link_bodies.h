@@ -1,0 +1,61 @@
+#pragma once
+
+#include <kaboum/certify/mesh_file.h>
+#include <kaboum/robot/link_body.h>
+#include <kaboum/robot/link_meshes.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace kaboum::certify {
+
+/// What the sets of a robot's links are asked to be.
+struct RobotRequest {
+  SetRequest set;  ///< of each mesh; lengths in the robot's unit. Direction: outer
+  robot::ShapeChoice shapes;
+  std::optional<io::Format> format;  ///< of the meshes; by default by extension
+  std::string tool;  ///< that the containers name; by default bcd-decompose, with its version
+
+  /// As bcd-decompose spells it: the containers' record.
+  [[nodiscard]] std::string parameters() const;
+};
+
+/// A mesh of a robot, in its own frame and unit.
+struct CertifiedLinkMesh {
+  robot::LinkMesh mesh;
+  std::optional<Length> epsilon;  ///< asked for, in its unit
+  CertifiedFile made;
+};
+
+/// How long work is watched; all may be empty. Called from the calling thread.
+struct RobotHooks {
+  std::function<void(const std::string& stage)> progress;  ///< often; may throw to cancel
+  std::function<void(const std::string& file, const std::string& text)> note;
+  std::function<void(const CertifiedLinkMesh& mesh)> made;  ///< when a mesh has its set
+};
+
+/// Convex bodies of a robot's links.
+struct CertifiedBodies {
+  robot::ShapeChoice choice;  ///< the shapes that they stand for
+  std::vector<CertifiedLinkMesh> meshes;
+  std::vector<robot::LinkShape> shapes;  ///< `mesh` is an index in `meshes`
+  std::vector<robot::LinkBody> bodies;   ///< of the shapes, in their order
+  double distance = 0;  ///< bound of how far a body reaches beyond its shape [length]
+  std::vector<std::filesystem::path>
+      files;  ///< meshes and what they refer to; some are there twice
+};
+
+/// Convex bodies that hold the shapes of a robot's links: of meshes certified sets, from the cache
+/// where possible, placed in the link; boxes, cylinders and spheres as bounding polytopes; nothing
+/// for points.
+/// @param cache  null: none.
+/// @throws Error naming the link or the file; when no link has a shape; TooCoarse.
+CertifiedBodies certify_bodies(const robot::RobotFile& robot, const RobotRequest& request,
+                               const SetCache* cache = nullptr, const RobotHooks& hooks = {});
+
+/// Bound of how far the bodies of one shape reach beyond it. [length]
+double distance_of(const robot::RobotFile& robot, const CertifiedBodies& bodies,
+                   const robot::LinkShape& shape);
+
+}  // namespace kaboum::certify

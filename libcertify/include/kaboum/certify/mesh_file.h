@@ -1,0 +1,37 @@
+#pragma once
+
+#include <kaboum/base/error.h>
+#include <kaboum/certify/set_cache.h>
+#include <kaboum/io/mesh_io.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kaboum::certify {
+
+/// A mesh file's certified set.
+struct CertifiedFile {
+  std::string sha256;                    ///< of the file
+  std::vector<std::string> read_notes;   ///< what its reader noted; noted already
+  std::vector<std::string> other_files;  ///< read besides it
+  FoundSet found;
+};
+
+/// float32 cannot hold bodies as near to this file's mesh as asked for (certify_set).
+class TooCoarse : public Error {
+ public:
+  explicit TooCoarse(const std::string& file);
+};
+
+/// Reads the file and finds or certifies its set.
+/// @param format   by default by extension.
+/// @param request  its source becomes the file's name.
+/// @param cache    null: none.
+/// @throws Error naming the file, as find_or_certify; TooCoarse.
+CertifiedFile certify_file(const std::filesystem::path& file, std::optional<io::Format> format,
+                           SetRequest request, const SetCache* cache = nullptr,
+                           const Hooks& hooks = {});
+
+}  // namespace kaboum::certify

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <kaboum/certify/link_bodies.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace kaboum::certify {
+
+/// The set of a link, in its frame: serialised, read back, and decided exactly by libverify to hold
+/// the link's bodies, each of which holds what it stands for (CertifiedBodies).
+struct CertifiedLink {
+  std::uint32_t link = 0;
+  std::size_t shapes = 0;
+  double distance = 0;  ///< of the bodies beyond their shapes; the set's own: its epsilon [length]
+  geom::ConvexSet set;  ///< as read back; no margin; its provenance has the claims
+  std::vector<char> container;  ///< GLB
+};
+
+struct CertifiedRobot {
+  CertifiedBodies bodies;
+  std::vector<CertifiedLink> links;  ///< those that were asked for and have shapes
+};
+
+/// Certified sets for all links of a robot: certify_bodies, then a container for each link. Where
+/// scale and pose are rounded, the container's polytopes hold the balls that rounding may have
+/// moved points in; where libverify does not find it so, larger ones are tried.
+/// @throws as certify_bodies; Error{Internal} when no polytopes pass the exact check.
+CertifiedRobot certify_robot(const robot::RobotFile& robot, const RobotRequest& request,
+                             const SetCache* cache = nullptr, const RobotHooks& hooks = {});
+
+}  // namespace kaboum::certify

@@ -1,0 +1,117 @@
+// The shapes of a robot's links as certified convex bodies in the links' frames.
+
+#include <kaboum/base/error.h>
+#include <kaboum/certify/link_bodies.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace kaboum::certify {
+namespace {
+
+using robot::Geometry;
+
+/// A percentage as it is; a length in the robot's unit in that of a mesh whose coordinates are
+/// multiplied by `scale`.
+Length in_unit_of_mesh(Length epsilon, double scale) {
+  if (!epsilon.percent) epsilon.value /= scale;
+  return epsilon;
+}
+
+SetRequest request_for(const RobotRequest& request, const geom::Vec3& scale) {
+  SetRequest out = request.set;
+  if (out.epsilon) out.epsilon = in_unit_of_mesh(*out.epsilon, scale.maxCoeff());
+  // A little more than rounding takes away.
+  if (out.min_thickness > 0) out.min_thickness = out.min_thickness / scale.minCoeff() * (1 + 1e-12);
+  return out;
+}
+
+CertifiedLinkMesh certify_link_mesh(const robot::LinkMesh& mesh, const RobotRequest& request,
+                                    const SetCache* cache, const RobotHooks& hooks) {
+  const SetRequest asked = request_for(request, mesh.scale);
+  Hooks of_mesh{hooks.progress, {}};
+  if (hooks.note)
+    of_mesh.note = [&](const std::string& text) { hooks.note(mesh.file.string(), text); };
+  return {mesh, asked.wanted_epsilon(),
+          certify_file(mesh.file, request.format, asked, cache, of_mesh)};
+}
+
+/// Appends the bodies of one shape in the frame of its link, points within the bodies' margins:
+/// those of `set` for a mesh, else a bounding polytope; none for a point.
+/// @param set  of the mesh in its own frame and unit; unused for other shapes.
+void place_shape(const Geometry& g, const geom::ConvexSet* set, const std::string& link,
+                 std::uint32_t index, std::vector<robot::LinkBody>& bodies) {
+  const auto name = [&] {
+    const auto same = [&](const robot::LinkBody& b) { return b.link == index; };
+    return link + "/" + std::to_string(std::count_if(bodies.begin(), bodies.end(), same));
+  };
+  // The points' own rounding where shape and link lie far from one another's origin.
+  const auto rounding = [&](double size) { return 0x1p-46 * (size + g.origin.translation.norm()); };
+  if (robot::is_point(g)) return;
+  if (g.shape != Geometry::Shape::Mesh) {
+    bodies.push_back({name(), index, robot::bounding_points(g), rounding(2 * g.size.norm())});
+    return;
+  }
+  int exponent = 0;
+  const bool exact = g.origin.linear.isIdentity(0) && g.origin.translation.isZero(0) &&
+                     std::all_of(g.size.begin(), g.size.end(), [&](double s) {
+                       return std::abs(std::frexp(s, &exponent)) == 0.5;
+                     });
+  for (const geom::ConvexBody& body : set->bodies) {
+    robot::LinkBody b{name(), index, {}, g.size.cwiseAbs().maxCoeff() * set->margin};
+    double size = 0;
+    for (const geom::Vec3& p : body.hull.vertices) {
+      const geom::Vec3 scaled = p.cwiseProduct(g.size);
+      size = std::max(size, scaled.norm());
+      b.points.emplace_back(exact ? scaled : g.origin * scaled);
+    }
+    if (!exact) b.margin += rounding(size);
+    bodies.push_back(std::move(b));
+  }
+}
+
+}  // namespace
+
+std::string RobotRequest::parameters() const {
+  return set.parameters() + (shapes.visual ? " --geometry visual" : "");
+}
+
+double distance_of(const robot::RobotFile& robot, const CertifiedBodies& bodies,
+                   const robot::LinkShape& shape) {
+  const Geometry& g = bodies.choice.shapes_of(robot.robot.links[shape.link])[shape.index];
+  if (!shape.mesh) return robot::bounding_excess(g);
+  const geom::ConvexSet& set = bodies.meshes[*shape.mesh].made.found.set.set;
+  return g.size.cwiseAbs().maxCoeff() * std::max(set.provenance.epsilon, 0.0);
+}
+
+CertifiedBodies certify_bodies(const robot::RobotFile& robot, const RobotRequest& request,
+                               const SetCache* cache, const RobotHooks& hooks) {
+  if (request.set.direction != SetRequest::Direction::Outer)
+    throw Error(ErrorCode::InvalidArgument, "a robot's links are held by outer sets only");
+  robot::LinkMeshes found = robot::link_meshes(robot, request.shapes);
+  CertifiedBodies out;
+  out.choice = request.shapes;
+  for (const robot::LinkMesh& mesh : found.meshes) {
+    out.meshes.push_back(certify_link_mesh(mesh, request, cache, hooks));
+    const CertifiedFile& made = out.meshes.back().made;
+    out.files.push_back(mesh.file);
+    out.files.insert(out.files.end(), made.other_files.begin(), made.other_files.end());
+    if (hooks.made) hooks.made(out.meshes.back());
+  }
+  out.files.insert(out.files.end(), found.files.begin(), found.files.end());
+  out.shapes = std::move(found.shapes);
+  for (const robot::LinkShape& shape : out.shapes) {
+    const robot::Link& link = robot.robot.links[shape.link];
+    place_shape(request.shapes.shapes_of(link)[shape.index],
+                shape.mesh ? &out.meshes[*shape.mesh].made.found.set.set : nullptr, link.name,
+                shape.link, out.bodies);
+    out.distance = std::max(out.distance, distance_of(robot, out, shape));
+  }
+  if (out.bodies.empty())
+    throw Error(ErrorCode::InvalidInput,
+                robot.path.string() + ": no link has a shape" +
+                    (request.shapes.visual ? std::string() : "; try --geometry visual"));
+  return out;
+}
+
+}  // namespace kaboum::certify

@@ -1,0 +1,33 @@
+// Mesh files: read, then certified; errors name them.
+
+#include <kaboum/certify/mesh_file.h>
+
+namespace kaboum::certify {
+
+TooCoarse::TooCoarse(const std::string& file)
+    : Error(ErrorCode::InvalidInput,
+            file +
+                ": float32 is too coarse so far from the origin (or for this epsilon); move the "
+                "mesh to the origin") {}
+
+CertifiedFile certify_file(const std::filesystem::path& file, std::optional<io::Format> format,
+                           SetRequest request, const SetCache* cache, const Hooks& hooks) {
+  std::vector<char> bytes;
+  io::ReadResult read = io::read_mesh(file, format, &bytes);
+  if (hooks.note)
+    for (const std::string& text : read.notes) hooks.note(text);
+  request.source = file.filename().string();
+  const std::string sha256 = io::sha256(bytes);
+  auto found = [&] {
+    try {
+      return find_or_certify(read.mesh, sha256, request, cache, hooks);
+    } catch (const Error& error) {
+      throw Error(error.code(),
+                  (file == "-" ? "standard input" : file.string()) + ": " + error.what());
+    }
+  }();
+  if (!found) throw TooCoarse(file.string());
+  return {sha256, std::move(read.notes), std::move(read.other_files), std::move(*found)};
+}
+
+}  // namespace kaboum::certify

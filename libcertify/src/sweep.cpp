@@ -1,0 +1,75 @@
+// Swept sets: searched for, serialised, read back, decided. There is no other search to try: where
+// the decision refutes what the steps' proof says, one of the two is wrong.
+
+#include <kaboum/base/error.h>
+#include <kaboum/certify/sweep.h>
+#include <kaboum/io/convex_io.h>
+#include <kaboum/verify/cover.h>
+
+#include "swept_motion.h"
+
+namespace kaboum::certify {
+namespace {
+
+SweepCertificate certificate_of(const sweep::SweepResult& made, const CertifiedBodies& bodies,
+                                const geom::ConvexSet& set) {
+  SweepCertificate c;
+  c.motion = made.certified ? MotionClaim::Proved : MotionClaim::None;
+  c.bodies = set.bodies.size();
+  for (const geom::ConvexBody& body : set.bodies) c.vertices += body.hull.vertices.size();
+  c.margin = set.margin;
+  c.deviation = made.deviation;
+  c.left_out = made.left_out;
+  c.rounding = made.rounding;
+  c.reach = made.reach;
+  c.bodies_distance = bodies.distance;
+  c.of_link = made.of_link;
+  return c;
+}
+
+void decide(CertifiedSweep& out, const robot::RobotFile& robot, const CertifiedBodies& bodies,
+            const robot::Path& path, const SweepRequest& request) {
+  const verify::Claim convex = verify::verify_convexity(out.set).convex;
+  ensure(convex.answer == verify::Answer::Verified, "a body of the swept volume is not convex");
+  if (!request.decide_motion || out.certificate.motion == MotionClaim::None) return;
+  const verify::Claim held = decide_motion(robot, bodies, path, out.set, request.max_cells);
+  if (held.answer == verify::Answer::Refuted)
+    throw Error(ErrorCode::Internal, "the swept volume does not pass the exact check (" +
+                                         held.reason + "); nothing is written");
+  if (held.answer == verify::Answer::Verified)
+    out.certificate.motion = MotionClaim::Decided;
+  else
+    out.certificate.undecided = held.reason;
+}
+
+}  // namespace
+
+std::optional<CertifiedSweep> certify_sweep(const robot::RobotFile& robot,
+                                            const CertifiedBodies& bodies, const robot::Path& path,
+                                            const SweepRequest& request) {
+  sweep::SweepResult made = sweep::swept_volume(robot.robot, bodies.bodies, path, request.search);
+  if (made.stop == sweep::SweepStop::TooCoarse) return std::nullopt;
+  geom::Provenance& p = made.set.provenance;
+  p.source = robot.path.filename().string();
+  p.source_sha256 = robot.sha256;
+  p.tool = "sweep-approx " KABOUM_VERSION;
+  p.parameters = request.parameters;
+  p.unit = request.unit;
+  p.frame = robot.robot.links[0].name;
+  if (made.certified) {
+    p.direction = "outer";
+    p.epsilon = (made.reach + bodies.distance) * (1 + 1e-15);
+  }
+  CertifiedSweep out;
+  out.container = io::serialise_convex_set(made.set, io::SetFormat::Glb);
+  // What is written is what is decided.
+  out.set = io::parse_convex_set(out.container, io::Format::Glb, "the result");
+  ensure(out.set.margin == made.set.margin, "the margin does not survive writing");
+  ensure(out.set.bodies.size() == made.set.bodies.size(), "a body does not survive writing");
+  out.certificate = certificate_of(made, bodies, out.set);
+  out.sources = std::move(made.sources);
+  decide(out, robot, bodies, path, request);
+  return out;
+}
+
+}  // namespace kaboum::certify

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <kaboum/robot/robot_file.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kaboum::robot {
+
+/// Which shapes of a robot's links are meant.
+struct ShapeChoice {
+  std::vector<std::string> links;     ///< only these; empty: all that have a shape
+  bool visual = false;                ///< shapes for drawing instead of those for collisions
+  std::vector<std::string> packages;  ///< folders that package:// URIs are looked up in
+
+  [[nodiscard]] bool has(const Link& link) const;
+  [[nodiscard]] const std::vector<Geometry>& shapes_of(const Link& link) const {
+    return visual ? link.visual : link.collision;
+  }
+};
+
+/// A mesh at one scale.
+struct LinkMesh {
+  std::filesystem::path file;   ///< as it was found first
+  std::filesystem::path place;  ///< where links in its name lead to
+  Vec3 scale = Vec3::Ones();    ///< from the mesh's unit to the robot's, positive
+};
+
+/// One of the shapes that are meant.
+struct LinkShape {
+  std::uint32_t link = 0;
+  std::size_t index = 0;            ///< among the link's shapes of the kind
+  std::optional<std::size_t> mesh;  ///< index in LinkMeshes::meshes; none: a box, cylinder, sphere
+};
+
+struct LinkMeshes {
+  std::vector<LinkMesh> meshes;  ///< each file once for every scale, mirrored or not
+  std::vector<LinkShape> shapes;
+  std::vector<std::filesystem::path> files;  ///< under all their names
+};
+
+/// The shapes of a robot's links, in their order, and the files of their meshes, which must exist.
+/// @throws Error{InvalidArgument} naming a link that the robot does not have; Error{InvalidInput}
+///   as find_mesh.
+LinkMeshes link_meshes(const RobotFile& robot, const ShapeChoice& choice);
+
+}  // namespace kaboum::robot

@@ -1,0 +1,228 @@
+// Certified robots and sweeps in process: what is returned is what is in the containers, holds by
+// the verifier, has the bytes of the tools; and wrong results are refused.
+
+#include <gtest/gtest.h>
+#include <kaboum/base/error.h>
+#include <kaboum/certify/robot.h>
+#include <kaboum/certify/sweep.h>
+#include <kaboum/io/convex_io.h>
+#include <kaboum/verify/cover.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+
+#include "link_polytopes.h"
+#include "support/shapes.h"
+#include "swept_motion.h"
+
+namespace kaboum::certify {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kArm = R"(<robot name="arm">
+  <link name="base"><collision><geometry><box size="0.3 0.2 0.1"/></geometry></collision></link>
+  <link name="fore arm">
+    <collision><origin xyz="0.7 0.1 -0.3" rpy="0.3 0.1 -1.2"/>
+      <geometry><mesh filename="part.off" scale="0.3 -0.3 0.2"/></geometry></collision>
+    <collision><geometry><mesh filename="part.off" scale="0.3 0.3 0.2"/></geometry></collision>
+  </link>
+  <link name="tip"/>
+  <joint name="elbow" type="continuous"><parent link="base"/><child link="fore arm"/>
+    <origin xyz="0 0.1 0.2" rpy="0.2 0 0"/><axis xyz="0 0.6 0.8"/></joint>
+  <joint name="end" type="fixed"><parent link="fore arm"/><child link="tip"/></joint>
+</robot>)";
+
+class RobotTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "kaboum-robot-XXXXXX").string();
+    ASSERT_NE(mkdtemp(name.data()), nullptr);
+    folder_ = name;
+    write(part());
+    std::ofstream(folder_ / "arm.urdf") << kArm;
+    std::ofstream(folder_ / "quarter.csv") << "elbow\n0\n0.8\n1.5\n";
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  void write(const geom::Mesh& mesh) const {
+    io::write_file(folder_ / "part.off", io::serialise_mesh(mesh, *io::format_from_name("off")));
+  }
+  static geom::Mesh part() { return test::torus(1, 0.3, 16, 8); }
+  robot::RobotFile arm() const { return robot::read_robot((folder_ / "arm.urdf").string()); }
+  static RobotRequest fast() {
+    RobotRequest request;
+    request.set.epsilon = Length{5, true};
+    request.set.effort = bcd::Effort::Fast;
+    return request;
+  }
+  static SweepRequest coarse() {
+    SweepRequest request;
+    request.search.epsilon = 0.05;
+    return request;
+  }
+  const robot::Path quarter_{{0}, {0.8}, {1.5}};
+
+  /// Runs a tool in the folder.
+  int run(const std::string& command) const {
+    return std::system(("cd '" + folder_.string() + "' && " KABOUM_BIN "/" + command).c_str());
+  }
+  std::vector<char> bytes(const std::string& file) const { return io::read_file(folder_ / file); }
+
+  fs::path folder_;
+};
+
+TEST_F(RobotTest, LinksAreHeldInTheirFrames) {
+  const robot::RobotFile file = arm();
+  std::size_t meshes = 0;
+  RobotHooks hooks;
+  hooks.made = [&](const CertifiedLinkMesh& mesh) {
+    ++meshes;
+    EXPECT_EQ(mesh.mesh.file, folder_ / "part.off");
+  };
+  const CertifiedRobot made = certify_robot(file, fast(), nullptr, hooks);
+  EXPECT_EQ(meshes, 1U);  // mirrored is the same
+  ASSERT_EQ(made.links.size(), 2U);
+  EXPECT_EQ(made.links[0].distance, 0);
+  const CertifiedLink& link = made.links[1];
+  EXPECT_EQ(link.shapes, 2U);
+  EXPECT_TRUE(link.set.provenance.covers_solid);
+  EXPECT_TRUE(link.set.provenance.covers_surface);
+  EXPECT_EQ(link.set.provenance.frame, "fore arm");
+  EXPECT_GE(link.set.provenance.epsilon, link.distance);
+  const geom::ConvexSet back = io::parse_convex_set(link.container, io::Format::Glb, "it");
+  ASSERT_EQ(back.bodies.size(), link.set.bodies.size());
+  for (const robot::Geometry& g : file.robot.links[1].collision) {
+    geom::Mesh posed = part();
+    for (geom::Vec3& v : posed.vertices) v = g.origin * v.cwiseProduct(g.size);
+    if (g.size.prod() < 0)
+      for (geom::Triangle& t : posed.triangles) std::swap(t[1], t[2]);
+    const verify::Cover cover = verify::verify_cover(posed, back);
+    EXPECT_EQ(cover.inclusion.solid.answer, verify::Answer::Verified);
+    EXPECT_EQ(cover.inclusion.surface.answer, verify::Answer::Verified);
+  }
+}
+
+TEST_F(RobotTest, HasTheBytesOfTheTools) {
+  const CertifiedRobot made = certify_robot(arm(), fast());
+  ASSERT_EQ(run("bcd-decompose arm.urdf -o out --epsilon 5% --effort fast --no-cache --quiet"), 0);
+  EXPECT_EQ(made.links[0].container, bytes("out/links/base.glb"));
+  EXPECT_EQ(made.links[1].container, bytes("out/links/fore_arm.glb"));
+  SweepRequest request = coarse();
+  request.search.explicit_margin = true;
+  request.parameters =
+      "--epsilon 0.05 --bound balanced --body-epsilon 5% --max-vertices-per-body 64 --effort fast "
+      "--geometry collision";
+  const auto swept = certify_sweep(arm(), made.bodies, quarter_, request);
+  ASSERT_TRUE(swept);
+  ASSERT_EQ(run("sweep-approx arm.urdf --path quarter.csv -o swept.glb --epsilon 0.05 "
+                "--body-epsilon 5% --effort fast --no-cache --quiet"),
+            0);
+  EXPECT_EQ(swept->container, bytes("swept.glb"));
+}
+
+TEST_F(RobotTest, PolytopesThatDoNotHoldTheBodiesAreRefused) {
+  const CertifiedRobot made = certify_robot(arm(), fast());
+  std::vector<robot::LinkBody> bodies;
+  for (const robot::LinkBody& body : made.bodies.bodies)
+    if (body.link == 1) bodies.push_back(body);
+  const geom::ConvexSet& good = made.links[1].set;
+  EXPECT_EQ(objection(good, bodies), "");
+  geom::ConvexSet bad = good;
+  bad.bodies.pop_back();
+  EXPECT_NE(objection(bad, bodies), "");
+  bad = good;
+  bad.margin = 0.1;  // whoever reads the file may pass it over
+  EXPECT_NE(objection(bad, bodies), "");
+  bad = good;
+  std::swap(bad.bodies.front(), bad.bodies.back());
+  EXPECT_NE(objection(bad, bodies), "");
+  for (std::size_t i = 0; i < good.bodies.size(); ++i) {
+    // Each vertex of the bodies is within the margin of rounding of a facet's plane.
+    bad = good;
+    geom::Vec3 middle = geom::Vec3::Zero();
+    for (const geom::Vec3& v : good.bodies[i].hull.vertices) middle += v;
+    middle /= static_cast<double>(good.bodies[i].hull.vertices.size());
+    for (geom::Vec3& v : bad.bodies[i].hull.vertices) v = middle + (1 - 1e-4) * (v - middle);
+    EXPECT_NE(objection(bad, bodies), "") << i;
+  }
+}
+
+TEST_F(RobotTest, SweptSetsAreDecidedOnTheBytes) {
+  const robot::RobotFile file = arm();
+  const CertifiedBodies bodies = certify_bodies(file, fast());
+  const auto made = certify_sweep(file, bodies, quarter_, coarse());
+  ASSERT_TRUE(made);
+  EXPECT_EQ(made->certificate.motion, MotionClaim::Decided) << made->certificate.undecided;
+  EXPECT_EQ(made->certificate.margin, made->set.margin);
+  EXPECT_GT(made->certificate.margin, 0);
+  EXPECT_EQ(made->sources.size(), made->set.bodies.size());
+  const auto decided = [&](const geom::ConvexSet& set) {
+    return decide_motion(file, bodies, quarter_, set, 20000).answer;
+  };
+  EXPECT_EQ(decided(made->set), verify::Answer::Verified);
+  geom::ConvexSet bad = made->set;
+  bad.margin = 0;  // the steps' hulls alone
+  EXPECT_EQ(decided(bad), verify::Answer::Refuted);
+  bad = made->set;
+  bad.bodies.pop_back();
+  EXPECT_EQ(decided(bad), verify::Answer::Refuted);
+  bad = made->set;
+  for (geom::ConvexBody& body : bad.bodies)
+    for (geom::Vec3& v : body.hull.vertices) v.z() += 2 * made->set.margin;
+  EXPECT_EQ(decided(bad), verify::Answer::Refuted);
+}
+
+TEST_F(RobotTest, ClaimsOfMotionAreNoMoreThanWhatIsKnown) {
+  const robot::RobotFile file = arm();
+  const CertifiedBodies bodies = certify_bodies(file, fast());
+  SweepRequest request = coarse();
+  request.decide_motion = false;
+  const auto proved = certify_sweep(file, bodies, quarter_, request);
+  ASSERT_TRUE(proved);
+  EXPECT_EQ(proved->certificate.motion, MotionClaim::Proved);
+  request = coarse();
+  request.max_cells = 1;
+  const auto open = certify_sweep(file, bodies, quarter_, request);
+  ASSERT_TRUE(open);
+  EXPECT_EQ(open->certificate.motion, MotionClaim::Proved);
+  EXPECT_NE(open->certificate.undecided, "");
+  EXPECT_EQ(open->container, proved->container);
+  request = coarse();
+  request.search.rule = sweep::StepRule::Baginski;
+  const auto unproved = certify_sweep(file, bodies, quarter_, request);
+  ASSERT_TRUE(unproved);
+  EXPECT_EQ(unproved->certificate.motion, MotionClaim::None);
+  EXPECT_EQ(unproved->set.provenance.direction, "");
+  request.search.epsilon = 1e-9;
+  request.search.rule = sweep::StepRule::Balanced;
+  EXPECT_FALSE(certify_sweep(file, bodies, quarter_, request));
+}
+
+TEST_F(RobotTest, SaysWhichFileIsAtFault) {
+  const auto error_of = [&](const RobotRequest& request) -> std::string {
+    try {
+      certify_bodies(arm(), request);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return {};
+  };
+  RobotRequest request = fast();
+  request.set.direction = SetRequest::Direction::Inner;
+  EXPECT_NE(error_of(request).find("outer"), std::string::npos);
+  request = fast();
+  request.shapes.links = {"nobody"};
+  EXPECT_NE(error_of(request).find("nobody"), std::string::npos);
+  request.shapes.links = {"tip"};
+  EXPECT_NE(error_of(request).find("no link has a shape"), std::string::npos);
+  write(test::translated(part(), {1e9, 0, 0}));
+  EXPECT_THROW(certify_bodies(arm(), fast()), TooCoarse);
+  EXPECT_NE(error_of(fast()).find("part.off: float32"), std::string::npos);
+  fs::remove(folder_ / "part.off");
+  EXPECT_NE(error_of(fast()).find("part.off"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace kaboum::certify

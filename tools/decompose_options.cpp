@@ -1,0 +1,236 @@
+// The options of bcd-decompose by group, and what they ask for.
+
+#include "decompose_options.h"
+
+#include <kaboum/base/error.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <map>
+
+#include "set_format.h"
+
+namespace kaboum::tools {
+namespace {
+
+const std::map<std::string, bcd::Effort> kEfforts{
+    {"fast", bcd::Effort::Fast}, {"normal", bcd::Effort::Normal}, {"best", bcd::Effort::Best}};
+
+const std::map<std::string, bcd::Method> kMethods{{"planes", bcd::Method::Planes},
+                                                  {"clusters", bcd::Method::Clusters},
+                                                  {"voxels", bcd::Method::Voxels}};
+
+const std::map<std::string, bcd::PreStep> kPreSteps{
+    {"auto", bcd::PreStep::Auto}, {"on", bcd::PreStep::On}, {"off", bcd::PreStep::Off}};
+
+void add_input(CLI::App& app, DecomposeOptions& o) {
+  app.add_option("INPUT", o.input,
+                 "Mesh to decompose (- for stdin), or a robot (.urdf), every link of it")
+      ->required()
+      ->type_name("FILE");
+  app.add_option("-o,--output", o.output,
+                 "Where the bodies go: a .glb container, an .obj with one object per body, or a "
+                 "folder with one STL per body (- for stdout); for robots a folder, which gets a "
+                 "URDF, the bodies that it refers to, and a container per link")
+      ->required()
+      ->type_name("PATH");
+}
+
+void add_limits(CLI::App& app, DecomposeOptions& o) {
+  app.add_option("--epsilon", o.epsilon,
+                 "Fewest bodies with no point farther than this from the solid: a length in the "
+                 "mesh's unit, or a percentage of the bounding box's diagonal, as in 0.5% [1% "
+                 "unless --max-bodies or --max-total-vertices is given]")
+      ->check([](const std::string& s) {
+        return parse_length(s) ? std::string()
+                               : "must be a positive number, or a percentage such as 0.5%, "
+                                 "without blanks or units";
+      })
+      ->type_name("LENGTH|P%");
+  app.add_option("--max-bodies", o.max_bodies,
+                 "Look for the smallest distance with at most this many bodies (1 to 100000; of a "
+                 "robot, for each of its meshes)")
+      ->check(CLI::Range(1, 100000).description(""))
+      ->type_name("N");
+  app.add_option("--max-vertices-per-body", o.max_vertices,
+                 "Most vertices of a body (8 to 100000); physics engines take 64 or 255")
+      ->check(CLI::Range(8, 100000).description(""))
+      ->capture_default_str()
+      ->type_name("N");
+  app.add_option("--simplify", o.simplify,
+                 "Share of epsilon that leaving out vertices may take (0 to 1): with 0.25, bodies "
+                 "have up to half as many vertices more and collide falsely less often; not with "
+                 "--max-total-vertices [0.5]")
+      ->check(number_from(0, 1))
+      ->type_name("SHARE");
+  app.add_option("--min-thickness", o.min_thickness,
+                 "Thicken bodies that are less wide than this in some direction, for engines that "
+                 "shrink hulls; counts towards epsilon [0]")
+      ->check(number_from(0, 1e30))
+      ->type_name("LENGTH");
+  app.add_option("--max-total-vertices", o.max_total,
+                 "Smallest distance with at most this many vertices of all bodies together (8 to "
+                 "10000000; of a robot, for each of its meshes), and at most --max-bodies where "
+                 "that is given; searches longer")
+      ->check(CLI::Range(8, 10000000).description(""))
+      ->type_name("N");
+}
+
+void add_search(CLI::App& app, DecomposeOptions& o) {
+  app.add_option("--direction", o.direction,
+                 "outer: bodies that cover the solid; inner: bodies inside it, which leave out no "
+                 "point deeper than epsilon (not of robots) [outer]")
+      ->check(CLI::IsMember({"outer", "inner"}).description(""))
+      ->type_name("outer|inner");
+  app.add_option("--effort", o.effort, "How long to search [normal]")
+      ->check(CLI::IsMember({"fast", "normal", "best"}).description(""))
+      ->type_name("fast|normal|best");
+  app.add_option("--max-work", o.max_work,
+                 "End the search after so much work, counted in steps that take about so many "
+                 "seconds of one core, so that the result is the same on any machine; what was "
+                 "found is then checked and written [20, and 1 per 1000 triangles beyond 10000; no "
+                 "limit with --effort best]")
+      ->check(number_from(0.001, 1e9))
+      ->type_name("SECONDS");
+  app.add_option("--method", o.method,
+                 "How to find bodies; the claims are the same. clusters (of triangles, as HACD "
+                 "does) and voxels (cuts across the axes, as V-HACD does) are there to be compared "
+                 "with [planes]")
+      ->check(CLI::IsMember({"planes", "clusters", "voxels"}).description(""))
+      ->type_name("planes|clusters|voxels");
+  app.add_option("--pre-step", o.pre_step,
+                 "Simplify the input first to a mesh round it, within a tenth of epsilon (0.1% "
+                 "where none is given); distances remain those to the input; auto: above 20000 "
+                 "triangles, if a quarter of the vertices suffices [auto]")
+      ->check(CLI::IsMember({"auto", "on", "off"}).description(""))
+      ->type_name("auto|on|off");
+}
+
+void add_output(CLI::App& app, DecomposeOptions& o) {
+  app.add_option("--unit", o.unit,
+                 "Unit of length, noted in the container: m, dm, cm, mm, um, km, in or ft")
+      ->check(unit_name())
+      ->capture_default_str()
+      ->type_name("NAME");
+  app.add_option("--frame", o.frame, "Coordinate frame, noted in the container")->type_name("NAME");
+  app.add_option("--preview", o.preview, "Write a picture of the bodies (PNG)")
+      ->check(png_name())
+      ->type_name("FILE");
+  app.add_option("--explode", o.explode,
+                 "How far apart the picture's second panel draws the bodies; 0: no second panel")
+      ->check(number_from(0, 10))
+      ->capture_default_str()
+      ->needs("--preview")
+      ->type_name("X");
+  app.add_flag("--no-cache", o.no_cache,
+               "Neither use nor store results of earlier runs ($KABOUM_CACHE, else "
+               "$XDG_CACHE_HOME/kaboum, else ~/.cache/kaboum)");
+}
+
+void add_preparation(CLI::App& app, DecomposeOptions& o) {
+  app.add_flag("--drop-sheets", o.prepare.drop_sheets,
+               "Drop back-to-back faces without volume (they are then not covered)");
+  add_holes_options(app, o.holes, false);
+  app.add_flag("--keep-orientation", o.prepare.keep_orientation,
+               "Never turn inconsistent triangles or inside-out components");
+}
+
+void add_robot(CLI::App& app, DecomposeOptions& o) {
+  app.add_option("--geometry", o.geometry, "Which shapes of a robot [collision]")
+      ->check(CLI::IsMember({"collision", "visual"}).description(""))
+      ->type_name("collision|visual");
+  app.add_flag_callback(
+      "--visual", [&o] { o.geometry = "visual"; }, "The same as --geometry visual");
+  app.add_option("--links", o.links,
+                 "Only these links of a robot, separated by commas; the others stay as they are "
+                 "[all]")
+      ->delimiter(',')
+      ->type_name("A,B");
+  app.add_option("--package-path", o.packages,
+                 "A package of a robot's package:// or a folder that holds it, besides "
+                 "$ROS_PACKAGE_PATH, $AMENT_PREFIX_PATH and the folders above the robot's file "
+                 "(repeatable)")
+      ->type_name("DIR");
+  app.add_option(
+         "--mesh-prefix", o.prefix,
+         "Put before the bodies' file names in a robot's new URDF, as in package://arm, with "
+         "a slash between; RViz and MoveIt need it [names relative to the URDF]")
+      ->type_name("URI");
+}
+
+/// Options that a plain mesh has no use for are mistakes.
+void require_options_of_meshes(const CLI::App& app, const DecomposeOptions& o) {
+  for (const char* option :
+       {"--geometry", "--visual", "--links", "--package-path", "--mesh-prefix"})
+    if (app.get_option(option)->count() != 0)
+      throw Error(ErrorCode::InvalidArgument, std::string(option) + " is for robots (.urdf); " +
+                                                  o.input + " is taken for a mesh");
+}
+
+}  // namespace
+
+void describe(CLI::App& app, DecomposeOptions& o) {
+  add_input(app, o);
+  add_limits(app, o);
+  add_search(app, o);
+  add_output(app, o);
+  add_preparation(app, o);
+  add_robot(app, o);
+  app.add_option("--depfile", o.depfile, "Write a Makefile dependency rule")->type_name("FILE");
+  app.add_option("--input-format", o.input_format, "Format of INPUT [by extension]")
+      ->type_name("NAME");
+  add_set_format_option(app, o.output_format);
+  add_common_options(app, o.common);
+  app.footer(
+      "The union of the bodies contains the solid of INPUT and every one of its triangles; this "
+      "is decided exactly on the bytes that are written. An open INPUT is closed by filling its "
+      "holes first. With --direction inner, every body lies inside the solid instead.\n"
+      "Exit codes: 0 done; 1 epsilon is not reached, or not within the limits or with "
+      "--min-thickness (the best result is written); 2 usage; 3 bad input; 4 output failed; 5 "
+      "not built; 6 internal error; 7 limit (epsilon is not reached with --max-work: the best "
+      "result is written).");
+}
+
+void require_meaning(const CLI::App& app, const DecomposeOptions& o) {
+  if (!is_robot(o.input)) require_options_of_meshes(app, o);
+  if (o.max_total > 0 && o.direction != "outer")
+    throw Error(ErrorCode::InvalidArgument, "--max-total-vertices needs --direction outer");
+  if (o.pre_step == "on" && o.direction != "outer")
+    throw Error(ErrorCode::InvalidArgument, "--pre-step on needs --direction outer");
+  if (o.simplify && o.direction != "outer")
+    throw Error(ErrorCode::InvalidArgument, "--simplify needs --direction outer");
+  if (o.simplify && o.max_total > 0)
+    throw Error(ErrorCode::InvalidArgument,
+                "--simplify means nothing with --max-total-vertices, which leaves out as many "
+                "vertices as the distance allows");
+}
+
+bool is_robot(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return extension == ".urdf";
+}
+
+certify::SetRequest request_of(const DecomposeOptions& o) {
+  certify::SetRequest r;
+  if (o.direction != "outer") r.direction = certify::SetRequest::Direction::Inner;
+  if (!o.epsilon.empty()) r.epsilon = parse_length(o.epsilon);
+  if (o.max_bodies > 0) r.max_bodies = o.max_bodies;
+  if (o.max_total > 0) r.max_total_vertices = o.max_total;
+  r.max_vertices = o.max_vertices;
+  r.effort = kEfforts.at(o.effort);
+  r.method = kMethods.at(o.method);
+  r.pre_step = kPreSteps.at(o.pre_step);
+  r.simplify = o.simplify;
+  r.max_work = o.max_work;
+  r.min_thickness = o.min_thickness;
+  r.preparation = o.prepare;
+  r.preparation.holes = o.holes.value();
+  r.unit = o.unit;
+  r.frame = o.frame;
+  return r;
+}
+
+}  // namespace kaboum::tools

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <kaboum/certify/convex_set.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli.h"
+#include "holes_option.h"
+
+/// The command line of bcd-decompose.
+namespace kaboum::tools {
+
+struct DecomposeOptions {
+  std::string input, output, input_format, output_format, epsilon, direction = "outer";
+  std::string effort = "normal", method = "planes", pre_step = "auto";
+  std::string unit = "m", frame, preview, depfile, geometry = "collision", prefix;
+  std::vector<std::string> packages, links;
+  std::size_t max_bodies = 0, max_vertices = 64, max_total = 0;  ///< 0: not given
+  double explode = 0.5, min_thickness = 0;
+  std::optional<double> simplify, max_work;
+  bool no_cache = false;
+  geom::PrepareOptions prepare;
+  HolesOption holes;
+  CommonOptions common;
+};
+
+void describe(CLI::App& app, DecomposeOptions& options);
+
+/// Refuses options that mean nothing for the input, or beside others.
+/// @throws Error{InvalidArgument}
+void require_meaning(const CLI::App& app, const DecomposeOptions& options);
+
+/// Whether the name is that of a robot.
+bool is_robot(const std::string& path);
+
+/// What the options ask for.
+certify::SetRequest request_of(const DecomposeOptions& options);
+
+}  // namespace kaboum::tools

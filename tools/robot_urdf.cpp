@@ -1,0 +1,128 @@
+// URDFs with other shapes: the document is edited, so that what is not known of it stays.
+
+#include "robot_urdf.h"
+
+#include <kaboum/base/error.h>
+#include <kaboum/io/mesh_io.h>
+
+#include <functional>
+#include <string_view>
+
+#include "urdf_output.h"
+
+namespace kaboum::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using tinyxml2::XMLElement;
+
+std::vector<XMLElement*> children(XMLElement* element, const char* tag) {
+  std::vector<XMLElement*> out;
+  for (XMLElement* e = element->FirstChildElement(tag); e != nullptr;
+       e = e->NextSiblingElement(tag))
+    out.push_back(e);
+  return out;
+}
+
+const char* tag_of(bool visual) { return visual ? "visual" : "collision"; }
+
+}  // namespace
+
+RobotUrdf::RobotUrdf(const robot::RobotFile& robot, fs::path folder)
+    : file_(robot.path.string()),
+      from_(fs::absolute(robot.path).parent_path()),
+      folder_(std::move(folder)) {
+  const std::vector<char> bytes = io::read_file(robot.path);
+  if (document_.Parse(bytes.data(), bytes.size()) != tinyxml2::XML_SUCCESS ||
+      document_.RootElement() == nullptr || std::string(document_.RootElement()->Name()) != "robot")
+    throw Error(ErrorCode::InvalidInput, file_ + ": not a URDF");
+}
+
+std::vector<std::string> RobotUrdf::mesh_stems() const {
+  std::vector<std::string> out;
+  const std::function<void(const XMLElement*)> visit = [&](const XMLElement* element) {
+    for (const XMLElement* e = element->FirstChildElement(); e != nullptr;
+         e = e->NextSiblingElement()) {
+      visit(e);
+      const char* name = e->Attribute("filename");
+      if (name != nullptr && std::string_view(e->Name()) == "mesh")
+        out.push_back(fs::path(name).stem().string());
+    }
+  };
+  visit(document_.RootElement());
+  return out;
+}
+
+XMLElement* RobotUrdf::element_of(const std::string& link) {
+  for (XMLElement* e : children(document_.RootElement(), "link"))
+    if (const char* name = e->Attribute("name"); name != nullptr && link == name) return e;
+  throw Error(ErrorCode::Internal, file_ + ": link '" + link + "' is lost");
+}
+
+void RobotUrdf::require_shapes(const std::string& link, bool visual, std::size_t shapes) {
+  const char* tag = tag_of(visual);
+  if (children(element_of(link), tag).size() != shapes)
+    throw Error(ErrorCode::InvalidInput,
+                file_ + ": link '" + link + "' has <" + tag + "> elements that cannot be read");
+}
+
+/// A <collision> with the pose and geometry of a <collision> or <visual>.
+XMLElement* RobotUrdf::collision(const XMLElement* original, const std::string& link,
+                                 std::size_t number) {
+  XMLElement* copy = document_.NewElement("collision");
+  copy->SetAttribute("name", (link + "_" + std::to_string(number)).c_str());
+  for (const char* part : {"origin", "geometry"})
+    if (const XMLElement* e = original->FirstChildElement(part))
+      copy->InsertEndChild(e->DeepClone(&document_));
+  return copy;
+}
+
+void RobotUrdf::replace(const std::string& link, bool visual,
+                        const std::vector<ShapeInUrdf>& shapes) {
+  XMLElement* element = element_of(link);
+  const std::vector<XMLElement*> originals = children(element, tag_of(visual));
+  const std::vector<XMLElement*> old = children(element, "collision");
+  tinyxml2::XMLNode* last = element->LastChild();
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    if (!shapes[i].meshes) {
+      last = element->InsertAfterChild(last, collision(originals[i], link, shapes[i].first));
+      continue;
+    }
+    for (std::size_t b = 0; b < shapes[i].meshes->size(); ++b) {
+      XMLElement* copy = collision(originals[i], link, shapes[i].first + b);
+      XMLElement* mesh = copy->FirstChildElement("geometry")->FirstChildElement("mesh");
+      mesh->SetAttribute("filename", (*shapes[i].meshes)[b].c_str());
+      last = element->InsertAfterChild(last, copy);
+    }
+  }
+  for (XMLElement* e : old) element->DeleteChild(e);
+}
+
+void RobotUrdf::keep(const std::string& link) {
+  for (XMLElement* e : children(element_of(link), "collision")) move_references(e);
+}
+
+/// Names relative to the robot's folder become relative to the new one.
+void RobotUrdf::move_references(XMLElement* element) {
+  for (XMLElement* e = element->FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
+    const std::string tag = e->Name();
+    const char* name = e->Attribute("filename");
+    if (tag != "collision") move_references(e);
+    if (name == nullptr || (tag != "mesh" && tag != "texture")) continue;
+    const std::string reference = name;
+    if (reference.find("://") != std::string::npos || fs::path(reference).is_absolute()) continue;
+    std::error_code error;
+    const fs::path moved = fs::relative(from_ / reference, fs::absolute(folder_), error);
+    if (!error) e->SetAttribute("filename", moved.generic_string().c_str());
+  }
+}
+
+std::string RobotUrdf::text() {
+  move_references(document_.RootElement());
+  let_mujoco_find_meshes(*document_.RootElement());
+  tinyxml2::XMLPrinter printer;
+  document_.Print(&printer);
+  return printer.CStr();
+}
+
+}  // namespace kaboum::tools

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <kaboum/robot/robot_file.h>
+#include <tinyxml2.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kaboum::tools {
+
+/// What stands for a shape of a link in a new URDF.
+struct ShapeInUrdf {
+  /// Names of the bodies' files; none: the shape itself, a box, cylinder or sphere.
+  std::optional<std::vector<std::string>> meshes;
+  std::size_t first = 0;  ///< number in the names of its <collision> elements, and on
+};
+
+/// A copy of a robot's URDF in which bodies stand for the links' shapes. Everything else stays;
+/// names of files relative to the robot's become relative to the new folder.
+class RobotUrdf {
+ public:
+  /// @param folder  that the copy will be in
+  /// @throws Error{InvalidInput} when the file is no URDF.
+  RobotUrdf(const robot::RobotFile& robot, std::filesystem::path folder);
+
+  /// Stems of the names of all meshes.
+  [[nodiscard]] std::vector<std::string> mesh_stems() const;
+
+  /// @throws Error{InvalidInput} when a link has another number of shapes here.
+  void require_shapes(const std::string& link, bool visual, std::size_t shapes);
+
+  /// Makes the <collision> elements of a link the bodies, each with the pose and scale of the shape
+  /// that it stands for, so that the inclusion holds without rounding.
+  /// @param visual  whether they stand for the shapes for drawing
+  void replace(const std::string& link, bool visual, const std::vector<ShapeInUrdf>& shapes);
+  /// Keeps the <collision> elements of a link.
+  void keep(const std::string& link);
+
+  /// The copy's text, the last thing to be asked for.
+  std::string text();
+
+ private:
+  using Element = tinyxml2::XMLElement;
+  Element* element_of(const std::string& link);
+  Element* collision(const Element* original, const std::string& link, std::size_t number);
+  void move_references(Element* element);
+
+  std::string file_;
+  std::filesystem::path from_, folder_;
+  tinyxml2::XMLDocument document_;
+};
+
+}  // namespace kaboum::tools

@@ -1,0 +1,36 @@
+// What to do with XML where a mesh is to come.
+
+#include "xml_route.h"
+
+namespace kaboum::tools {
+
+std::string route_to_mesh(io::XmlKind kind, const std::string& path) {
+  const std::string meshes = "; give the meshes that it names, or the robot as URDF";
+  switch (kind) {
+    case io::XmlKind::Urdf:
+      return "a robot (URDF), not a mesh: bcd-decompose " + path +
+             " -o FOLDER decomposes all its links (the name has to end with .urdf); other tools "
+             "take its meshes one by one";
+    case io::XmlKind::Xacro:
+      return "xacro is not read; run: xacro " + path + " > robot.urdf";
+    case io::XmlKind::Srdf:
+      return describe(kind) + "; give the URDF that it belongs to";
+    case io::XmlKind::Sdf:
+      return describe(kind) + meshes;
+    case io::XmlKind::Mjcf:
+      return describe(kind) + meshes;
+    case io::XmlKind::RlRobot:
+      return "a robot of the Robotics Library (rlkin or rlmdl), not a mesh: sweep-approx and "
+             "bound-verify --sweep take it; other tools take its meshes one by one, the files "
+             "beside it that are named like its links (link0.wrl)";
+    case io::XmlKind::RlScene:
+      return describe(kind) + "; give the mesh that it names by href";
+    case io::XmlKind::Other:
+      return describe(kind) + "; meshes in XML are .dae, .x3d and .3mf";
+    case io::XmlKind::None:
+      break;
+  }
+  return {};
+}
+
+}  // namespace kaboum::tools
