@@ -81,6 +81,7 @@ CLI::App* describe_pairs(CLI::App& app, Options& o) {
 std::vector<tools::NamedFile> named_files(const std::vector<std::string>& texts,
                                           const char* option) {
   std::vector<tools::NamedFile> out;
+  out.reserve(texts.size());
   for (const std::string& text : texts) out.push_back(tools::parse_named_file(text, option));
   return out;
 }

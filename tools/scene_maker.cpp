@@ -66,7 +66,7 @@ class Maker {
   }
 
   Json keep(const fs::path& path, std::vector<char> bytes) {
-    const Json out = {{"file", seen_from_scene(path)}, {"sha256", io::sha256(bytes)}};
+    Json out = {{"file", seen_from_scene(path)}, {"sha256", io::sha256(bytes)}};
     files_.emplace_back(path, std::move(bytes));
     return out;
   }

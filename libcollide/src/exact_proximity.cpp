@@ -173,6 +173,7 @@ bool are_within_exactly(const Posed& a, const Posed& b, double reach, const Simp
     return Corner{minus(pose_b.place(b.body().point(j)), pose_a.place(a.body().point(i))), i, j};
   };
   std::vector<Corner> corners;
+  corners.reserve(5);
   for (int i = 0; i < start.size; ++i)
     corners.push_back(corner(start.vertex[i].a, start.vertex[i].b));
   if (corners.empty()) corners.push_back(corner(0, 0));

@@ -29,7 +29,7 @@ Vec3 scaled(const Vec3& d) { return d / d.cwiseAbs().maxCoeff(); }
 
 Vec3 first_direction(const Posed& a, const Posed& b, const Axis* axis) {
   if (axis != nullptr && axis->allFinite() && !axis->isZero(0)) {
-    const Vec3 d = scaled(*axis);
+    Vec3 d = scaled(*axis);
     if (d.allFinite()) return d;
   }
   const Vec3 d = scaled(b.center() - a.center());

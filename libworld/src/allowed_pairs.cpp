@@ -190,6 +190,7 @@ std::vector<LinkPair> examine_pairs(const RobotModel& robot, const PairOptions& 
     }
   }
   std::vector<LinkPair> out;
+  out.reserve(found.size());
   for (const auto& [links, pair] : found) out.push_back(pair);
   return out;
 }

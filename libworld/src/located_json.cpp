@@ -78,11 +78,11 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
   bool key(string_t& value) override {
     Located& object = open_.back();
     const std::size_t at = start_of_string();
-    for (const auto& member : object.members)
-      if (member.first == value)
+    for (const std::string& name : object.names)
+      if (name == value)
         throw Error(ErrorCode::InvalidInput,
                     name_ + ": " + place_of(text_, at) + ": '" + value + "' is there twice");
-    object.members.emplace_back(value, Located{});
+    object.names.push_back(value);
     object.names_at.push_back(at);
     return true;
   }
@@ -156,7 +156,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     } else if (open_.back().kind == Located::Kind::Array) {
       open_.back().items.push_back(std::move(value));
     } else {
-      open_.back().members.back().second = std::move(value);
+      open_.back().values.push_back(std::move(value));
     }
     return true;
   }

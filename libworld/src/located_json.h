@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace kaboum::world::detail {
@@ -16,9 +15,10 @@ struct Located {
   bool boolean = false;
   double number = 0;
   std::string text;
-  std::vector<Located> items;                            ///< of an array
-  std::vector<std::pair<std::string, Located>> members;  ///< of an object, in their order
-  std::vector<std::size_t> names_at;                     ///< where their names begin
+  std::vector<Located> items;         ///< of an array
+  std::vector<std::string> names;     ///< of an object's members, in their order
+  std::vector<Located> values;        ///< of these
+  std::vector<std::size_t> names_at;  ///< where their names begin
 };
 
 const char* name_of(Located::Kind kind);

@@ -54,8 +54,8 @@ class Parser {
   void known(const Located& object, const std::vector<std::string>& names) const {
     if (object.kind != Kind::Object)
       fail(object, std::string("an object is expected, not ") + detail::name_of(object.kind));
-    for (std::size_t i = 0; i < object.members.size(); ++i) {
-      const std::string& name = object.members[i].first;
+    for (std::size_t i = 0; i < object.names.size(); ++i) {
+      const std::string& name = object.names[i];
       if (std::find(names.begin(), names.end(), name) != names.end()) continue;
       throw Error(ErrorCode::InvalidInput,
                   name_ + ": " + detail::place_of(text_, object.names_at[i]) + ": '" + name +
@@ -64,8 +64,8 @@ class Parser {
   }
 
   static const Located* find(const Located& object, const char* name) {
-    for (const auto& [key, value] : object.members)
-      if (key == name) return &value;
+    for (std::size_t i = 0; i < object.names.size(); ++i)
+      if (object.names[i] == name) return &object.values[i];
     return nullptr;
   }
   const Located& need(const Located& object, const char* name) const {
@@ -235,8 +235,9 @@ class Parser {
 
   void read_limits(const Located& value, robot::Robot& robot) const {
     if (value.kind != Kind::Object) fail(value, "an object of joints is expected");
-    for (const auto& [name, range] : value.members) {
-      robot::Variable& variable = robot.variables[variable_of(robot, name, range)];
+    for (std::size_t i = 0; i < value.names.size(); ++i) {
+      const Located& range = value.values[i];
+      robot::Variable& variable = robot.variables[variable_of(robot, value.names[i], range)];
       const std::vector<double> ends = numbers(range, 2);
       if (!(ends[0] <= ends[1])) fail(range, "the lower limit is above the upper one");
       variable.lower = ends[0];
@@ -253,7 +254,8 @@ class Parser {
         out.push_back(std::clamp(0.0, v.lower.value_or(-1e300), v.upper.value_or(1e300)));
       if (value != nullptr) {
         if (value->kind != Kind::Object) fail(*value, "an array or an object is expected");
-        for (const auto& [name, q] : value->members) out[variable_of(robot, name, q)] = number(q);
+        for (std::size_t i = 0; i < value->names.size(); ++i)
+          out[variable_of(robot, value->names[i], value->values[i])] = number(value->values[i]);
       }
     }
     for (std::size_t i = 0; i < out.size(); ++i) {

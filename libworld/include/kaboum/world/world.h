@@ -108,7 +108,10 @@ struct Item {
   std::size_t robot = kObject;
   std::size_t index = 0;  ///< of RobotModel::shapes, or of World::objects
 
-  friend auto operator<=>(const Item&, const Item&) = default;
+  friend bool operator==(const Item&, const Item&) = default;
+  friend bool operator<(const Item& x, const Item& y) {
+    return x.robot != y.robot ? x.robot < y.robot : x.index < y.index;
+  }
 };
 
 /// What stays the same during planning.
