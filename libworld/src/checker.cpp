@@ -64,17 +64,24 @@ bool move_together(const WorldState& state, const Item& a, const Item& b) {
   return x && y && x->robot == y->robot && x->link == y->link;
 }
 
-/// Whether contact of two items is none, whatever is attached.
-bool may_touch(const World& world, const Item& a, const Item& b) {
+/// Where two items need not be looked at, whatever is attached.
+enum class Exempt { Nowhere, WithinLimits, Everywhere };
+
+Exempt is_exempt(const World& world, const Item& a, const Item& b) {
   for (const auto& [x, y] : world.allowed)
-    if ((a == x && b == y) || (a == y && b == x)) return true;
-  if (a.robot == Item::kObject || a.robot != b.robot) return false;
+    if ((a == x && b == y) || (a == y && b == x)) return Exempt::Everywhere;
+  if (a.robot == Item::kObject || a.robot != b.robot) return Exempt::Nowhere;
   const RobotModel& robot = world.robots[a.robot];
   const auto [low, high] = std::minmax(robot.shapes[a.index].link, robot.shapes[b.index].link);
-  if (low == high) return true;
-  for (const AllowedPair& pair : robot.allowed)
-    if (pair.a == low && pair.b == high) return true;
-  return false;
+  if (low == high) return Exempt::Everywhere;
+  Exempt out = Exempt::Nowhere;
+  for (const AllowedPair& pair : robot.allowed) {
+    if (pair.a != low || pair.b != high) continue;
+    // The proof of the others is for values within the limits.
+    if (pair.reason != AllowedPair::Reason::Never) return Exempt::Everywhere;
+    out = Exempt::WithinLimits;
+  }
+  return out;
 }
 
 }  // namespace
@@ -127,10 +134,22 @@ Checker::Checker(const World& world) : world_(&world) {
     if (hulls_[item].empty()) hulls_[item].emplace_back(Vec3::Zero());
     radius_.push_back(detail::radius_of(world.objects[o].outer));
   }
-  for (std::size_t i = 0; i < items_.size(); ++i)
-    for (std::size_t j = i + 1; j < items_.size(); ++j)
-      if (!may_touch(world, items_[i], items_[j]))
-        (items_[i].robot == Item::kObject ? object_pairs_ : robot_pairs_).push_back({i, j});
+  for (std::size_t i = 0; i < items_.size(); ++i) {
+    for (std::size_t j = i + 1; j < items_.size(); ++j) {
+      const Exempt exempt = is_exempt(world, items_[i], items_[j]);
+      if (exempt == Exempt::WithinLimits) pairs_within_limits_.push_back({i, j});
+      if (exempt != Exempt::Nowhere) continue;
+      (items_[i].robot == Item::kObject ? object_pairs_ : robot_pairs_).push_back({i, j});
+    }
+  }
+}
+
+bool Checker::is_within_limits(std::size_t robot, const std::vector<double>& q) const {
+  const auto& variables = world_->robots[robot].kinematics.variables;
+  for (std::size_t i = 0; i < variables.size(); ++i)
+    if (q[i] < variables[i].lower.value_or(q[i]) || q[i] > variables[i].upper.value_or(q[i]))
+      return false;
+  return true;
 }
 
 void Checker::place(const WorldState& state, Scratch& scratch) const {
@@ -198,6 +217,10 @@ void Checker::visit(const WorldState& state, const Options& options, const Pair&
         is_carried_by_link(state, items_[j], items_[i], *world_))
       continue;
     if (pair(i, j)) return;
+  }
+  for (const auto& [i, j] : pairs_within_limits_) {
+    const std::size_t robot = items_[i].robot;
+    if (!is_within_limits(robot, state.q[robot]) && pair(i, j)) return;
   }
   if (!carries && !options.resting) return;
   for (const auto& [i, j] : object_pairs_) {

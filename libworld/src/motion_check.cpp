@@ -99,6 +99,9 @@ class Motion {
     WorldState start = state;
     start.q[robot_] = path_.front();
     const std::vector<Checker::Placed> placed = checker_.places(start);
+    // A path that leaves the limits makes pairs count that are proved apart within them.
+    for (const std::vector<double>& q : path_)
+      if (!checker_.is_within_limits(robot_, q)) start.q[robot_] = q;
     for (const auto& [a, b] : checker_.pairs(start, {})) {
       const bool first = moves(a, state), second = moves(b, state);
       if (!first && !second) continue;

@@ -4,6 +4,8 @@
 #include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/world/allowed_pairs.h>
+#include <kaboum/world/checker.h>
+#include <kaboum/world/motion_check.h>
 
 #include "worlds.h"
 
@@ -192,6 +194,32 @@ TEST(ExaminePairs, AdjacentNeverAndAlways) {
   for (const LinkPair& pair : examine_pairs(narrow.robots[0], {.most_boxes = 2})) {
     EXPECT_NE(pair.reason, AllowedPair::Reason::Never);
   }
+}
+
+// Never in contact is proved for values within the limits, and means nothing beyond them.
+TEST(ExaminePairs, ProofsEndAtTheLimits) {
+  const SceneFiles files;
+  const std::string limits =
+      "\"limits\": {\"j1\": [-3, 3], \"j2\": [-0.5, 0.5], \"j3\": [-0.5, 0.5]}";
+  const std::string hash = files.world(files.scene("", limits)).robots[0].fingerprint;
+  const World world = files.world(
+      files.scene("", limits + ", \"never_in_contact\": {\"proved_for\": \"" + hash +
+                          R"(", "pairs": [["base", "l2"], ["base", "l3"], ["l1", "l3"]]})"));
+  const Checker checker(world);
+  Scratch scratch;
+  WorldState state = initial_state(world);
+  state.q[0] = {0, 0.5, 0.5};
+  EXPECT_FALSE(checker.find_contact(state, scratch));
+  state.q[0] = {0, 2.2, 2.2};  // folded back onto the first link
+  std::vector<std::string> touching;
+  for (const Contact& contact : checker.find_contacts(state, scratch, {}))
+    touching.push_back(world.name_of(contact.items[0]) + " " + world.name_of(contact.items[1]));
+  EXPECT_EQ(touching, (std::vector<std::string>{"arm/base arm/l3", "arm/l1 arm/l3"}));
+  const auto outcome = [&](const std::vector<double>& to) {
+    return check_motion(checker, state, 0, {{0, 0, 0}, {0, 0.5, 0.5}, to}, {}).outcome;
+  };
+  EXPECT_EQ(outcome({0, -0.5, 0}), MotionAnswer::Outcome::Free);
+  EXPECT_EQ(outcome({0, 2.2, 2.2}), MotionAnswer::Outcome::Contact);
 }
 
 }  // namespace

@@ -85,6 +85,9 @@ class Checker {
   /// The pairs that are looked at in states with these attachments, in their order.
   [[nodiscard]] std::vector<std::array<Item, 2>> pairs(const WorldState& state,
                                                        const Options& options) const;
+  /// Whether a value for each variable of a robot is within its limits: pairs of links proved never
+  /// to touch are not looked at there, and are elsewhere.
+  [[nodiscard]] bool is_within_limits(std::size_t robot, const std::vector<double>& q) const;
   /// Vertices of the hull of a robot's shape or an object, in its frame.
   [[nodiscard]] const std::vector<Vec3>& hull_of(const Item& item) const { return hulls_.at(item); }
 
@@ -101,6 +104,8 @@ class Checker {
   std::vector<double> radius_;  ///< of items_
   /// Places in items_ of pairs that may collide: with a robot's shape first, of two objects.
   std::vector<std::array<std::size_t, 2>> robot_pairs_, object_pairs_;
+  /// Those of one robot that may collide beyond its limits only.
+  std::vector<std::array<std::size_t, 2>> pairs_within_limits_;
   std::vector<std::vector<double>> error_;  ///< of robots' shapes, for values from low_ to high_
   std::vector<std::vector<double>> low_, high_;
 };
