@@ -1,24 +1,23 @@
 // kaboum-ik: the configurations with which a robot's chain reaches a pose.
 #include <kaboum/kinematics/closed_form.h>
 #include <kaboum/kinematics/copies.h>
-#include <kaboum/kinematics/numeric.h>
 #include <kaboum/robot/robot_file.h>
 
 #include <Eigen/Geometry>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <iostream>
-#include <numbers>
 
 #include "cli.h"
+#include "ik_answer.h"
 
 namespace {
 
 using namespace kaboum;  // the tool's own names are few
 namespace ik = kinematics;
 
-constexpr double kDegree = std::numbers::pi / 180;
+using tools::kDegree;
+using Answer = tools::IkAnswer;
 
 struct Options {
   std::string robot, base, tip, pose_of, reference;
@@ -26,22 +25,6 @@ struct Options {
   bool json = false, degrees = false, numeric = false, ignore_limits = false, copies = false;
   int starts = 100;
   tools::CommonOptions common;
-};
-
-/// What is printed.
-struct Answer {
-  struct Row {
-    std::vector<double> q;
-    ik::PoseError error;
-    unsigned singular = ik::kRegular;
-    bool within = true;
-  };
-  ik::Arm arm;
-  std::vector<std::string> joints;
-  ik::Transform target;
-  std::optional<ik::ClosedForm> form;
-  std::size_t found = 0;  ///< whatever the limits
-  std::vector<Row> rows;
 };
 
 [[noreturn]] void usage(const std::string& what) { throw Error(ErrorCode::InvalidArgument, what); }
@@ -142,73 +125,14 @@ Answer find(const Options& o, const robot::Robot& robot) {
   return answer;
 }
 
-double shown(const Answer& answer, const Options& o, std::size_t joint, double q) {
-  return o.degrees && answer.arm.axes[joint].turns ? q / kDegree : q;
-}
-
-std::vector<std::string> singular_names(unsigned singular) {
-  std::vector<std::string> names;
-  if ((singular & ik::kShoulder) != 0) names.emplace_back("shoulder");
-  if ((singular & ik::kElbow) != 0) names.emplace_back("elbow");
-  if ((singular & ik::kWrist) != 0) names.emplace_back("wrist");
-  return names;
-}
-
-tools::Json json_of(const Answer& answer, const Options& o) {
-  const Eigen::Quaterniond turn(answer.target.linear);
-  const ik::Vec3& p = answer.target.translation;
-  tools::Json j = {{"method", answer.form ? "closed form" : "numeric"},
-                   {"complete", answer.form.has_value()},
-                   {"joints", answer.joints},
-                   {"angles", o.degrees ? "degrees" : "radians"},
-                   {"pose", {p.x(), p.y(), p.z(), turn.x(), turn.y(), turn.z(), turn.w()}}};
-  if (answer.form) {
-    j["family"] = ik::name_of(answer.form->family);
-    j["model_error"] = {{"position", answer.form->model_error.position},
-                        {"rotation", answer.form->model_error.rotation}};
-  }
-  j["found"] = answer.found;
-  j["solutions"] = tools::Json::array();
-  for (const Answer::Row& row : answer.rows) {
-    tools::Json q = tools::Json::array();
-    for (std::size_t i = 0; i < row.q.size(); ++i) q.push_back(shown(answer, o, i, row.q[i]));
-    j["solutions"].push_back({{"q", q},
-                              {"within_limits", row.within},
-                              {"singular", singular_names(row.singular)},
-                              {"position_error", row.error.position},
-                              {"rotation_error", row.error.rotation}});
-  }
-  return j;
-}
-
-void print(const Answer& answer, const Options& o) {
-  std::string head;
-  for (const std::string& joint : answer.joints) {
-    if (!head.empty()) head += ',';
-    head += joint;
-  }
-  std::cout << head << '\n';
-  for (const Answer::Row& row : answer.rows) {
-    std::string line;
-    for (std::size_t i = 0; i < row.q.size(); ++i) {
-      char text[32];
-      std::snprintf(text, sizeof text, "%s%.12g", i == 0 ? "" : ",", shown(answer, o, i, row.q[i]));
-      line += text;
-    }
-    for (const std::string& name : singular_names(row.singular)) line += "  # singular: " + name;
-    if (!row.within) line += "  # outside the limits";
-    std::cout << line << '\n';
-  }
-}
-
 int run(const Options& o) {
   const robot::RobotFile robot = robot::read_robot(o.robot);
   const Answer answer = tools::naming(o.robot, [&] { return find(o, robot.robot); });
-  tools::Json report = json_of(answer, o);
+  tools::Json report = tools::answer_json(answer, o.degrees);
   if (o.json) {
     std::cout << report.dump(2) << '\n';
   } else if (!answer.rows.empty()) {
-    print(answer, o);
+    tools::print_answer(answer, o.degrees);
   }
   report["robot"] = {{"file", o.robot}, {"sha256", robot.sha256}};
   tools::write_report(o.common, "kaboum-ik", report);

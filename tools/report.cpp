@@ -46,18 +46,14 @@ double peak_megabytes() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-void write_json(const std::string& path, const Json& json) {
-  const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-  io::write_file(path, text);
-}
-
 void write_report(const CommonOptions& options, const char* tool, const Json& body) {
   if (options.report.empty()) return;
   Json report{{"schema", 1}, {"tool", tool}, {"version", version()}};
   report.update(body);
   report["resources"]["user_seconds"] = user_seconds();
   report["resources"]["peak_megabytes"] = peak_megabytes();
-  write_json(options.report, report);
+  io::write_file(options.report,
+                 report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace kaboum::tools

@@ -19,8 +19,6 @@ Json to_json(const geom::DirectedDistance& distance, double diagonal);
 double user_seconds();
 double peak_megabytes();
 
-void write_json(const std::string& path, const Json& json);
-
 /// Writes the report asked for, if one is: `body` with what all reports have in common
 /// (docs/reports.md).
 void write_report(const CommonOptions& options, const char* tool, const Json& body);

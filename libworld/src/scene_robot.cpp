@@ -1,0 +1,168 @@
+// Robots of scenes: every link with shapes has a set of its own, of this robot.
+
+#include "scene_robot.h"
+
+#include <kaboum/base/error.h>
+#include <kaboum/base/similar_name.h>
+#include <kaboum/world/allowed_pairs.h>
+
+#include <algorithm>
+#include <set>
+
+namespace kaboum::world::detail {
+
+using Kind = Located::Kind;
+
+std::uint32_t SceneRobot::link_of(const robot::Robot& robot, const Located& value) const {
+  const std::string& name = string(value);
+  if (const auto link = robot.find_link(name)) return *link;
+  std::vector<std::string> names;
+  for (const robot::Link& link : robot.links) names.push_back(link.name);
+  fail(value, "the robot has no link '" + name + "'" + did_you_mean(name, names));
+}
+
+std::size_t SceneRobot::variable_of(const robot::Robot& robot, const std::string& name,
+                                    const Located& at) const {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < robot.variables.size(); ++i) {
+    if (robot.variables[i].name == name) return i;
+    names.push_back(robot.variables[i].name);
+  }
+  fail(at, "no joint '" + name + "' of the robot moves by itself" + did_you_mean(name, names));
+}
+
+void SceneRobot::read_limits(const Located& value, robot::Robot& robot) const {
+  if (value.kind != Kind::Object) fail(value, "an object of joints is expected");
+  for (std::size_t i = 0; i < value.names.size(); ++i) {
+    const Located& range = value.values[i];
+    robot::Variable& variable = robot.variables[variable_of(robot, value.names[i], range)];
+    const std::vector<double> ends = numbers(range, 2);
+    if (!(ends[0] <= ends[1])) fail(range, "the lower limit is above the upper one");
+    variable.lower = ends[0];
+    variable.upper = ends[1];
+  }
+}
+
+std::vector<double> SceneRobot::read_home(const Located* value, const Located& at,
+                                          const robot::Robot& robot) const {
+  std::vector<double> out;
+  if (value != nullptr && value->kind == Kind::Array) {
+    out = numbers(*value, robot.variables.size());
+  } else {
+    for (const robot::Variable& v : robot.variables)
+      out.push_back(std::clamp(0.0, v.lower.value_or(-1e300), v.upper.value_or(1e300)));
+    if (value != nullptr) {
+      if (value->kind != Kind::Object) fail(*value, "an array or an object is expected");
+      for (std::size_t i = 0; i < value->names.size(); ++i)
+        out[variable_of(robot, value->names[i], value->values[i])] = number(value->values[i]);
+    }
+  }
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const robot::Variable& v = robot.variables[i];
+    if ((v.lower && out[i] < *v.lower) || (v.upper && out[i] > *v.upper))
+      fail(value == nullptr ? at : *value, "home is outside the limits of joint '" + v.name + "'");
+  }
+  return out;
+}
+
+RobotModel SceneRobot::read(const Located& r, const std::string& name) {
+  known(r, {"name", "urdf", "base", "home", "limits", "links", "links_without_set", "tools",
+            "grippers", "allowed_contacts", "never_in_contact"});
+  RobotModel out;
+  out.name = name;
+  const File urdf = file(need(r, "urdf"));
+  try {
+    out.kinematics = robot::parse_urdf({urdf.bytes.data(), urdf.bytes.size()}, urdf.name);
+  } catch (const Error& error) {
+    fail(need(r, "urdf"), error.what());
+  }
+  out.base = pose_member(r, "base");
+  if (const Located* limits = find(r, "limits")) read_limits(*limits, out.kinematics);
+  out.home = read_home(find(r, "home"), r, out.kinematics);
+  add_shapes(r, urdf, out);
+  for (const Located& tool : list(r, "tools")) {
+    known(tool, {"name", "link", "position", "rpy", "quaternion"});
+    out.tools.push_back(
+        {string(need(tool, "name")), link_of(out.kinematics, need(tool, "link")), pose(tool)});
+  }
+  for (const Located& gripper : list(r, "grippers")) {
+    known(gripper, {"name", "tool", "links"});
+    Gripper g{string(need(gripper, "name")), tool_of(out, need(gripper, "tool")), {}};
+    for (const Located& link : list(gripper, "links"))
+      g.links.push_back(link_of(out.kinematics, link));
+    out.grippers.push_back(std::move(g));
+  }
+  out.fingerprint = fingerprint_of(out);
+  out.allowed = connected_links(out.kinematics);
+  for (const Located& pair : list(r, "allowed_contacts"))
+    out.allowed.push_back(pair_of(out, pair, AllowedPair::Reason::Stated));
+  add_proved(r, out);
+  return out;
+}
+
+void SceneRobot::add_shapes(const Located& r, const File& urdf, RobotModel& out) {
+  std::set<std::uint32_t> has;
+  for (const Located& l : list(r, "links")) {
+    known(l, {"link", "outer", "inner"});
+    const std::uint32_t link = link_of(out.kinematics, need(l, "link"));
+    const std::string& name = out.kinematics.links[link].name;
+    if (!has.insert(link).second) fail(l, "link '" + name + "' is there twice");
+    const Loaded loaded = container(need(l, "outer"), "outer");
+    const geom::Provenance& p = loaded.set.provenance;
+    if (!p.frame.empty() && p.frame != name)
+      fail(need(l, "outer"),
+           loaded.file.name + " is in the frame of '" + p.frame + "', not of link '" + name + "'");
+    if (p.source.ends_with(".urdf") && p.source_sha256 != urdf.sha256)
+      fail(need(l, "outer"), loaded.file.name + " was made of another robot than " + urdf.name +
+                                 " is now: make it anew");
+    out.shapes.push_back({link, set(loaded, need(l, "outer")), optional_inner(l)});
+  }
+  std::set<std::uint32_t> without;
+  for (const Located& l : list(r, "links_without_set")) without.insert(link_of(out.kinematics, l));
+  for (std::uint32_t l = 0; l < out.kinematics.links.size(); ++l) {
+    const robot::Link& link = out.kinematics.links[l];
+    if (link.collision.empty() || has.contains(l)) continue;
+    if (!without.contains(l))
+      fail(r, "link '" + link.name +
+                  "' has shapes for collisions, but no set: give it one in 'links', or name it in "
+                  "'links_without_set', and nothing will be checked of it");
+    notes.push_back(file_name() + ": robot '" + out.name + "': link '" + link.name +
+                    "' has no set: nothing is checked of it");
+  }
+}
+
+AllowedPair SceneRobot::pair_of(const RobotModel& robot, const Located& value,
+                                AllowedPair::Reason reason) const {
+  if (array(value).size() != 2) fail(value, "two links are expected");
+  std::uint32_t a = link_of(robot.kinematics, value.items[0]),
+                b = link_of(robot.kinematics, value.items[1]);
+  if (a == b) fail(value, "a link and itself");
+  if (a > b) std::swap(a, b);
+  return {a, b, reason};
+}
+
+void SceneRobot::add_proved(const Located& r, RobotModel& robot) const {
+  const Located* proved = find(r, "never_in_contact");
+  if (proved == nullptr) return;
+  known(*proved, {"proved_for", "pairs"});
+  const Located& stated = need(*proved, "proved_for");
+  if (string(stated) != robot.fingerprint)
+    fail(stated,
+         "these pairs were proved for other limits or other sets; prove them anew "
+         "(kaboum-scene pairs), whose hash is " +
+             robot.fingerprint);
+  for (const Located& pair : list(*proved, "pairs"))
+    robot.allowed.push_back(pair_of(robot, pair, AllowedPair::Reason::Never));
+}
+
+std::size_t SceneRobot::tool_of(const RobotModel& robot, const Located& value) const {
+  const std::string& name = string(value);
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < robot.tools.size(); ++i) {
+    if (robot.tools[i].name == name) return i;
+    names.push_back(robot.tools[i].name);
+  }
+  fail(value, "the robot has no tool '" + name + "'" + did_you_mean(name, names));
+}
+
+}  // namespace kaboum::world::detail

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "scene_sets.h"
+
+namespace kaboum::world::detail {
+
+/// A robot of a scene: its URDF, what the scene says of it, and the sets of its links.
+class SceneRobot : public SceneSets {
+ public:
+  using SceneSets::SceneSets;
+
+  /// @throws Error{InvalidInput}; says in `notes` what is not looked at.
+  RobotModel read(const Located& r, const std::string& name);
+
+  std::uint32_t link_of(const robot::Robot& robot, const Located& value) const;
+  std::size_t tool_of(const RobotModel& robot, const Located& value) const;
+
+  std::vector<std::string> notes;  ///< for who uses the scene
+
+ private:
+  std::size_t variable_of(const robot::Robot& robot, const std::string& name,
+                          const Located& at) const;
+
+  void read_limits(const Located& value, robot::Robot& robot) const;
+  std::vector<double> read_home(const Located* value, const Located& at,
+                                const robot::Robot& robot) const;
+
+  void add_shapes(const Located& r, const File& urdf, RobotModel& out);
+
+  AllowedPair pair_of(const RobotModel& robot, const Located& value,
+                      AllowedPair::Reason reason) const;
+
+  void add_proved(const Located& r, RobotModel& robot) const;
+};
+
+}  // namespace kaboum::world::detail
