@@ -22,11 +22,16 @@ std::vector<std::string> singular_names(unsigned singular) {
 
 }  // namespace
 
+bool is_complete(const IkAnswer& answer) {
+  return answer.form && answer.form->model_error.position < kExact &&
+         answer.form->model_error.rotation < kExact;
+}
+
 Json answer_json(const IkAnswer& answer, bool degrees) {
   const Eigen::Quaterniond turn(answer.target.linear);
   const kinematics::Vec3& p = answer.target.translation;
   Json j = {{"method", answer.form ? "closed form" : "numeric"},
-            {"complete", answer.form.has_value()},
+            {"complete", is_complete(answer)},
             {"joints", answer.joints},
             {"angles", degrees ? "degrees" : "radians"},
             {"pose", {p.x(), p.y(), p.z(), turn.x(), turn.y(), turn.z(), turn.w()}}};

@@ -30,6 +30,13 @@ struct IkAnswer {
   std::vector<Row> rows;
 };
 
+/// Of the closed form's model: with less, no branch is missed at the borders of what is within
+/// reach.
+inline constexpr double kExact = 1e-8;
+
+/// Whether these are all configurations: there is a closed form, and the arm is the one that it is
+/// of.
+bool is_complete(const IkAnswer& answer);
 /// For reports and --json; angles in degrees or radians.
 Json answer_json(const IkAnswer& answer, bool degrees);
 /// A line of joint values for each configuration.

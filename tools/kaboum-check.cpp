@@ -55,7 +55,7 @@ void describe(CLI::App& app, Options& o) {
       ->type_name("LENGTH");
   app.add_option("--max-intervals", o.most_intervals,
                  "Most stretches of time that are looked at; then the motion is undecided")
-      ->check(CLI::PositiveNumber.description(""))
+      ->check(tools::number_from(1, 1e9))
       ->capture_default_str()
       ->type_name("N");
   tools::add_common_options(app, o.common);
@@ -196,5 +196,11 @@ int main(int argc, char** argv) {
       "kaboum-check"};
   Options options;
   describe(app, options);
-  return tools::run(app, argc, argv, [&] { return check(options); });
+  return tools::run(app, argc, argv, [&] {
+    // As from a variable of the shell that is not set: what was meant is not known.
+    for (const char* name : {"--path", "--configuration", "--configurations", "--robot"})
+      if (app.count(name) > 0 && app.get_option(name)->as<std::string>().empty())
+        throw Error(ErrorCode::InvalidArgument, std::string(name) + ": the value is empty");
+    return check(options);
+  });
 }

@@ -150,6 +150,12 @@ int run(const Options& o) {
               << 10 * o.starts << '\n';
     return tools::kLimit;
   }
+  if (!is_complete(answer)) {
+    std::cerr
+        << "kaboum-ik: none found, which is no proof that there is none: the arm is only nearly of "
+           "this family; try --numeric\n";
+    return tools::kLimit;
+  }
   std::cerr << "kaboum-ik: "
             << (answer.found == 0 ? "the pose is out of reach"
                                   : "the pose is reached outside the joints' limits only; see "

@@ -16,7 +16,7 @@ using namespace kaboum;  // the tool's own names are few
 struct Options {
   std::string scene, robot, srdf, epsilon = "1%", effort = "normal", unit = "m", cache;
   std::vector<std::string> robots, objects, regions, packages;
-  bool inner = false, no_cache = false, drop_sheets = false;
+  bool inner = false, no_cache = false, drop_sheets = false, force = false;
   std::size_t most_boxes = 20'000;
   tools::CommonOptions common;
 };
@@ -47,7 +47,8 @@ CLI::App* describe_make(CLI::App& app, Options& o) {
       ->type_name("fast|normal|best");
   make->add_flag("--drop-sheets", o.drop_sheets,
                  "Drop back-to-back faces without volume (they are then not covered)");
-  make->add_option("--unit", o.unit, "Unit of length: m, dm, cm, mm, um, km, in or ft")
+  make->add_option("--unit", o.unit,
+                   "Unit of length of all meshes: m, dm, cm, mm, um, km, in or ft; with robots m")
       ->check(tools::unit_name())
       ->capture_default_str()
       ->type_name("NAME");
@@ -57,6 +58,7 @@ CLI::App* describe_make(CLI::App& app, Options& o) {
   make->add_option("--from-cache", o.cache,
                    "Cache of decompositions, used and filled [as bcd-decompose]")
       ->type_name("DIR");
+  make->add_flag("--force", o.force, "Replace a scene that exists, with all that was edited in it");
   make->add_flag("--no-cache", o.no_cache, "Decompose anew and store nothing");
   tools::add_common_options(*make, o.common);
   return make;
@@ -71,7 +73,7 @@ CLI::App* describe_pairs(CLI::App& app, Options& o) {
   pairs
       ->add_option("--max-boxes", o.most_boxes,
                    "Most boxes of joint values that are looked at for one pair")
-      ->check(CLI::PositiveNumber.description(""))
+      ->check(tools::number_from(1, 1e9))
       ->capture_default_str()
       ->type_name("N");
   tools::add_common_options(*pairs, o.common);
@@ -98,6 +100,17 @@ int make_scene(const Options& o) {
     for (const tools::NamedFile& file : *files) inputs.push_back(file.file);
   if (inputs.empty())
     throw Error(ErrorCode::InvalidArgument, "nothing is asked for: give --robot or --object");
+  if (!o.scene.ends_with(".json"))
+    throw Error(ErrorCode::InvalidArgument, o.scene + ": a scene's name ends in .json");
+  if (!o.force && std::filesystem::exists(o.scene))
+    throw Error(ErrorCode::InvalidArgument,
+                o.scene + " exists; --force replaces it, with all that was edited in it");
+  // Lengths in URDFs are metres; an arm that is a thousand times too small is free of everything.
+  if (!o.robots.empty() && o.unit != "m")
+    throw Error(ErrorCode::InvalidArgument,
+                "--unit " + o.unit +
+                    ": URDFs are in m, and so are scenes with robots; scale the "
+                    "meshes of objects to m");
   tools::require_apart({{"SCENE", o.scene}, {"--report", o.common.report}}, inputs);
   maker.inner = o.inner;
   maker.sets.epsilon = tools::parse_length(o.epsilon);
@@ -113,6 +126,7 @@ int make_scene(const Options& o) {
   const tools::MadeScene made = tools::make_scene(maker);
   const std::vector<std::string>& lines = made.notes;
   for (const std::string& line : lines) tools::log(o.common.quiet, line);
+  for (const std::string& size : made.sizes) tools::log(o.common.quiet, size);
   tools::log(o.common.quiet, o.scene + ": " + std::to_string(made.containers.size()) +
                                  " sets, all at the origin: put things where they belong");
   tools::Json report = {{"command", "make"},
@@ -140,6 +154,7 @@ int find_pairs(const Options& o) {
   const auto name = [&](std::uint32_t link) { return robot.kinematics.links[link].name; };
   std::vector<world::AllowedPair> allowed = world::connected_links(robot.kinematics);
   tools::Json pairs = tools::Json::array(), never = tools::Json::array();
+  std::vector<world::AllowedPair> proofs;
   for (const world::LinkPair& pair : examine_pairs(robot, {.most_boxes = o.most_boxes})) {
     const std::string reason = pair.reason ? name_of(*pair.reason) : "unproved";
     pairs.push_back({{"links", {name(pair.a), name(pair.b)}},
@@ -152,15 +167,17 @@ int find_pairs(const Options& o) {
               << '\n';
     if (!pair.reason || *pair.reason == world::AllowedPair::Reason::Adjacent) continue;
     allowed.push_back({pair.a, pair.b, *pair.reason});
-    if (*pair.reason == world::AllowedPair::Reason::Never)
-      never.push_back({name(pair.a), name(pair.b)});
+    if (*pair.reason != world::AllowedPair::Reason::Never) continue;
+    never.push_back({name(pair.a), name(pair.b)});
+    proofs.push_back(allowed.back());
   }
   if (!o.srdf.empty()) {
     const std::string text = to_srdf(robot, allowed);
     io::write_file(o.srdf, {text.data(), text.size()});
   }
-  const tools::Json proved = {{"proved_for", robot.fingerprint}, {"pairs", never}};
-  if (!never.empty()) std::cout << "for the scene: \"never_in_contact\": " << proved.dump() << '\n';
+  const tools::Json proved = {{"proved_for", proof_hash(robot, proofs)}, {"pairs", never}};
+  if (!never.empty())
+    std::cout << "for the robot in the scene: \"never_in_contact\": " << proved.dump() << '\n';
   tools::write_report(o.common, "kaboum-scene",
                       {{"command", "pairs"},
                        {"scene", o.scene},

@@ -5,6 +5,7 @@
 #include <kaboum/base/error.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <set>
 
 #include "cli.h"
@@ -106,6 +107,20 @@ class Maker {
             {"tools", Json::array()}};
   }
 
+  /// The box of the sets, each in its own frame.
+  void say_size(const std::string& name, const std::vector<const geom::ConvexSet*>& sets) {
+    geom::Box3 box;
+    for (const geom::ConvexSet* set : sets)
+      for (const geom::ConvexBody& body : set->bodies)
+        for (const geom::Vec3& p : body.hull.vertices) box.extend(p);
+    const geom::Vec3 size = box.max - box.min;
+    char text[96];
+    std::snprintf(text, sizeof text, "%.3g x %.3g x %.3g %s", size.x(), size.y(), size.z(),
+                  o_.sets.unit.c_str());
+    const std::string line = name + ": " + text;
+    if (out_.sizes.empty() || out_.sizes.back() != line) out_.sizes.push_back(line);
+  }
+
   Json mesh(const NamedFile& named, certify::SetRequest::Direction direction,
             const std::string& suffix) {
     Notes notes;
@@ -118,6 +133,7 @@ class Maker {
     for (std::string& line : notes.lines()) out_.notes.push_back(std::move(line));
     out_.inputs.push_back(named.file);
     out_.inputs.insert(out_.inputs.end(), made.other_files.begin(), made.other_files.end());
+    say_size(named.name, {&made.found.set.set});
     return keep(folder_ / (plain_file_name(named.name) + suffix + ".glb"),
                 made.found.set.container);
   }

@@ -33,6 +33,7 @@ struct MadeScene {
   std::vector<std::filesystem::path> containers;  ///< written
   std::vector<std::string> inputs;
   std::vector<std::string> notes;
+  std::vector<std::string> sizes;  ///< how large each thing is, to see that its unit is right
 };
 
 /// Computes what the cache lacks, writes the containers into the folder with the scene's stem

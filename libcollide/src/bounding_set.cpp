@@ -157,6 +157,7 @@ std::optional<BodyPair> find_collision(const PosedSet& a, const PosedSet& b, dou
                                        Memory* memory, Decided* decided) {
   if (a.set().direction() != Direction::Outer || b.set().direction() != Direction::Outer)
     throw Error(ErrorCode::InvalidArgument, "a collision is looked for with outer sets");
+  require_length(slack, "a slack");
   std::optional<BodyPair> found;
   any_pair_of_boxes(a, b, slack, [&](std::size_t i, std::size_t j) {
     Axis* axis = memory == nullptr ? nullptr : memory->axis(i, j, a.set().size(), b.set().size());

@@ -25,15 +25,34 @@ std::uint32_t body_of(const robot::Robot& robot, std::uint32_t link) {
   return link;
 }
 
+/// A link itself if it has shapes or moves against its parent; else the nearest such one on the way
+/// to the root: flanges and frames between a joint and what it carries.
+std::uint32_t carrier_of(const robot::Robot& robot, std::uint32_t link) {
+  while (link > 0 && robot.links[link].collision.empty() &&
+         robot.joints[link - 1].type == robot::JointType::Fixed)
+    link = robot.joints[link - 1].parent;
+  return link;
+}
+
+/// The child, but for frames without shapes that are fixed between it and the joint that it hangs
+/// on.
+std::uint32_t joint_of(const robot::Robot& robot, std::uint32_t link) {
+  while (link > 0 && robot.joints[link - 1].type == robot::JointType::Fixed &&
+         robot.joints[link - 1].parent > 0 &&
+         robot.links[robot.joints[link - 1].parent].collision.empty())
+    link = robot.joints[link - 1].parent;
+  return link;
+}
+
+/// Whether one joint connects both, with nothing that has shapes between them. What is fixed to the
+/// one elsewhere (a camera, a wall beside a rail) is not meant: it may well be touched.
 bool are_adjacent(const robot::Robot& robot, std::uint32_t a, std::uint32_t b) {
-  const std::uint32_t x = body_of(robot, a), y = body_of(robot, b);
   const auto hangs_on = [&](std::uint32_t child, std::uint32_t parent) {
-    return child > 0 && body_of(robot, robot.joints[child - 1].parent) == parent;
+    if (child > 0 && robot.joints[child - 1].parent == parent) return true;
+    const std::uint32_t joint = joint_of(robot, child);
+    return joint > 0 && carrier_of(robot, robot.joints[joint - 1].parent) == parent;
   };
-  const auto is_parent = [&](std::uint32_t child, std::uint32_t parent) {
-    return child > 0 && robot.joints[child - 1].parent == parent;
-  };
-  return hangs_on(x, y) || hangs_on(y, x) || is_parent(a, b) || is_parent(b, a);
+  return hangs_on(a, b) || hangs_on(b, a);
 }
 
 /// Values of the joints between two links, halved until proved.

@@ -3,6 +3,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/robot/kinematics.h>
 #include <kaboum/world/checker.h>
+#include <kaboum/world/scene.h>
 
 #include <algorithm>
 #include <cmath>
@@ -57,17 +58,11 @@ bool is_carried_by_link(const WorldState& state, const Item& object, const Item&
          std::binary_search(attachment->touching.begin(), attachment->touching.end(), link);
 }
 
-/// Whether both move with one link.
-bool move_together(const WorldState& state, const Item& a, const Item& b) {
-  if (a.robot != Item::kObject || b.robot != Item::kObject) return false;
-  const auto &x = state.attachments[a.index], &y = state.attachments[b.index];
-  return x && y && x->robot == y->robot && x->link == y->link;
-}
-
 /// Where two items need not be looked at, whatever is attached.
 enum class Exempt { Nowhere, WithinLimits, Everywhere };
 
-Exempt is_exempt(const World& world, const Item& a, const Item& b) {
+/// `proofs_hold`: of robot a, what was proved was for the robot as it is.
+Exempt is_exempt(const World& world, const Item& a, const Item& b, bool proofs_hold) {
   for (const auto& [x, y] : world.allowed)
     if ((a == x && b == y) || (a == y && b == x)) return Exempt::Everywhere;
   if (a.robot == Item::kObject || a.robot != b.robot) return Exempt::Nowhere;
@@ -79,7 +74,7 @@ Exempt is_exempt(const World& world, const Item& a, const Item& b) {
     if (pair.a != low || pair.b != high) continue;
     // The proof of the others is for values within the limits.
     if (pair.reason != AllowedPair::Reason::Never) return Exempt::Everywhere;
-    out = Exempt::WithinLimits;
+    if (proofs_hold) out = Exempt::WithinLimits;
   }
   return out;
 }
@@ -134,9 +129,13 @@ Checker::Checker(const World& world) : world_(&world) {
     if (hulls_[item].empty()) hulls_[item].emplace_back(Vec3::Zero());
     radius_.push_back(detail::radius_of(world.objects[o].outer));
   }
+  std::vector<char> proofs_hold;
+  for (const RobotModel& robot : world.robots)
+    proofs_hold.push_back(robot.fingerprint == fingerprint_of(robot) ? 1 : 0);
   for (std::size_t i = 0; i < items_.size(); ++i) {
+    const bool proved = items_[i].robot != Item::kObject && proofs_hold[items_[i].robot] != 0;
     for (std::size_t j = i + 1; j < items_.size(); ++j) {
-      const Exempt exempt = is_exempt(world, items_[i], items_[j]);
+      const Exempt exempt = is_exempt(world, items_[i], items_[j], proved);
       if (exempt == Exempt::WithinLimits) pairs_within_limits_.push_back({i, j});
       if (exempt != Exempt::Nowhere) continue;
       (items_[i].robot == Item::kObject ? object_pairs_ : robot_pairs_).push_back({i, j});
@@ -191,6 +190,7 @@ void Checker::place(const WorldState& state, Scratch& scratch) const {
       const Transform &pose = state.poses[o], &before = s.places[next].pose();
       if (s.rests[o] != 0 && pose.linear == before.linear && pose.translation == before.translation)
         continue;
+      s.rests[o] = 0;  // also if placing throws
       s.places[next].place(pose, detail::rotation_error(pose, radius));
       s.rests[o] = 1;
       continue;
@@ -204,7 +204,7 @@ void Checker::place(const WorldState& state, Scratch& scratch) const {
                                      points);
     s.places[next].place(links[attachment->robot][attachment->link] * attachment->pose,
                          detail::placement_error(bounds, robot.base) +
-                             detail::rotation_error(attachment->pose, radius));
+                             detail::attachment_error(attachment->pose, radius));
   }
 }
 
@@ -225,7 +225,7 @@ void Checker::visit(const WorldState& state, const Options& options, const Pair&
   if (!carries && !options.resting) return;
   for (const auto& [i, j] : object_pairs_) {
     const bool rest = !state.attachments[items_[i].index] && !state.attachments[items_[j].index];
-    if ((rest && !options.resting) || move_together(state, items_[i], items_[j])) continue;
+    if (rest && !options.resting) continue;
     if (pair(i, j)) return;
   }
 }

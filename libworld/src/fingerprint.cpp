@@ -1,10 +1,11 @@
-// What proofs about a robot's own pairs of links depend on, as one hash.
+// What proofs about a robot's own pairs of links depend on, and what they prove, as hashes.
 
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/world/scene.h>
 
 #include <cmath>
 #include <cstdio>
+#include <set>
 
 namespace kaboum::world {
 namespace {
@@ -47,6 +48,15 @@ std::string fingerprint_of(const RobotModel& robot) {
       text += "\n";
     }
   }
+  return io::sha256(text);
+}
+
+std::string proof_hash(const RobotModel& robot, const std::vector<AllowedPair>& pairs) {
+  std::set<std::pair<std::uint32_t, std::uint32_t>> links;
+  for (const AllowedPair& pair : pairs) links.emplace(pair.a, pair.b);
+  std::string text = robot.fingerprint + "\n";
+  for (const auto& [a, b] : links)
+    text += robot.kinematics.links[a].name + "\n" + robot.kinematics.links[b].name + "\n";
   return io::sha256(text);
 }
 

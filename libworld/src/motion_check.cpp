@@ -77,7 +77,7 @@ class Motion {
       mover.link = attachment.link;
       mover.on_link = attachment.pose;
       mover.grasp_error =
-          detail::rotation_error(attachment.pose, detail::radius_of(world_.outer(item)));
+          detail::attachment_error(attachment.pose, detail::radius_of(world_.outer(item)));
       for (Vec3& p : mover.points) p = attachment.pose * p;
     } else {
       mover.link = model_.shapes[item.index].link;
@@ -276,6 +276,8 @@ MotionAnswer check_motion(const Checker& checker, const WorldState& state, std::
                           const robot::Path& path, const MotionOptions& options) {
   if (robot >= checker.world().robots.size())
     throw Error(ErrorCode::InvalidArgument, "no such robot");
+  if (state.q.size() != checker.world().robots.size())
+    throw Error(ErrorCode::InvalidArgument, "a state of another world");
   if (!(options.resolution > 0))
     throw Error(ErrorCode::InvalidArgument, "a resolution must be above 0");
   if (path.empty()) throw Error(ErrorCode::InvalidArgument, "a path without waypoints");

@@ -18,6 +18,11 @@ double rotation_error(const Transform& pose, double radius) {
   return (defect + 0x1p-46) * (1 + 0x1p-40) * radius;
 }
 
+double attachment_error(const Transform& pose, double radius) {
+  return (rotation_error(pose, radius) + 0x1p-47 * (pose.translation.norm() + radius)) *
+         (1 + 0x1p-40);
+}
+
 double radius_of(const BoundingSet& set) {
   double most = 0;
   for (std::size_t i = 0; i < set.size(); ++i) {

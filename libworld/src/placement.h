@@ -11,6 +11,10 @@ namespace kaboum::world::detail {
 /// How far the nearest exact rotation may take points within `radius` from where the matrix does.
 double rotation_error(const Transform& pose, double radius);
 
+/// The same for what is held with a pose in a link's frame, and the rounding of the product of
+/// both.
+double attachment_error(const Transform& pose, double radius);
+
 /// Largest distance of a point of the set from its frame's origin, rounded up, margins included.
 double radius_of(const BoundingSet& set);
 

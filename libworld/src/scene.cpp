@@ -18,7 +18,15 @@ class Parser : detail::SceneRobot {
  public:
   Parser(const Located& root, const detail::SceneValues& values, const FileReader& read)
       : SceneRobot(values, read, values.string(values.need(root, "unit"))) {
-    world_.unit = string(need(root, "unit"));
+    const Located& unit = need(root, "unit");
+    world_.unit = string(unit);
+    const std::vector<std::string> units{"m", "dm", "cm", "mm", "um", "km", "in", "ft"};
+    if (std::find(units.begin(), units.end(), world_.unit) == units.end())
+      fail(unit,
+           "'" + world_.unit + "' is no unit of length: one of m, dm, cm, mm, um, km, in, ft");
+    // An arm that is a thousand times too small would be free of everything.
+    if (!list(root, "robots").empty() && world_.unit != "m")
+      fail(unit, "lengths in URDFs are in m, so a scene with robots is, too");
     for (const Located& r : list(root, "robots")) {
       const std::string name = new_name(r);
       world_.robots.push_back(SceneRobot::read(r, name));

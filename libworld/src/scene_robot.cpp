@@ -109,7 +109,7 @@ void SceneRobot::add_shapes(const Located& r, const File& urdf, RobotModel& out)
     if (!has.insert(link).second) fail(l, "link '" + name + "' is there twice");
     const Loaded loaded = container(need(l, "outer"), "outer");
     const geom::Provenance& p = loaded.set.provenance;
-    if (!p.frame.empty() && p.frame != name)
+    if (p.frame != name)
       fail(need(l, "outer"),
            loaded.file.name + " is in the frame of '" + p.frame + "', not of link '" + name + "'");
     if (p.source.ends_with(".urdf") && p.source_sha256 != urdf.sha256)
@@ -145,14 +145,15 @@ void SceneRobot::add_proved(const Located& r, RobotModel& robot) const {
   const Located* proved = find(r, "never_in_contact");
   if (proved == nullptr) return;
   known(*proved, {"proved_for", "pairs"});
-  const Located& stated = need(*proved, "proved_for");
-  if (string(stated) != robot.fingerprint)
-    fail(stated,
-         "these pairs were proved for other limits or other sets; prove them anew "
-         "(kaboum-scene pairs), whose hash is " +
-             robot.fingerprint);
+  std::vector<AllowedPair> pairs;
   for (const Located& pair : list(*proved, "pairs"))
-    robot.allowed.push_back(pair_of(robot, pair, AllowedPair::Reason::Never));
+    pairs.push_back(pair_of(robot, pair, AllowedPair::Reason::Never));
+  const Located& stated = need(*proved, "proved_for");
+  if (string(stated) != proof_hash(robot, pairs))
+    fail(stated,
+         "these pairs were proved for other limits or other sets, or are not the pairs that were "
+         "proved; prove them anew (kaboum-scene pairs)");
+  robot.allowed.insert(robot.allowed.end(), pairs.begin(), pairs.end());
 }
 
 std::size_t SceneRobot::tool_of(const RobotModel& robot, const Located& value) const {

@@ -15,8 +15,6 @@ class SceneRobot : public SceneSets {
   std::uint32_t link_of(const robot::Robot& robot, const Located& value) const;
   std::size_t tool_of(const RobotModel& robot, const Located& value) const;
 
-  std::vector<std::string> notes;  ///< for who uses the scene
-
  private:
   std::size_t variable_of(const robot::Robot& robot, const std::string& name,
                           const Located& at) const;

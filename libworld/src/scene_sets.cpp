@@ -24,7 +24,7 @@ SceneSets::File SceneSets::file(const Located& value) const {
   return out;
 }
 
-SceneSets::Loaded SceneSets::container(const Located& value, const char* direction) const {
+SceneSets::Loaded SceneSets::container(const Located& value, const char* direction) {
   Loaded out;
   out.file = file(value);
   const Located& at = need(value, "file");
@@ -44,6 +44,7 @@ SceneSets::Loaded SceneSets::container(const Located& value, const char* directi
                                       : "an " + p.direction + " set") +
                  ", but an " + direction + " one is needed here");
   if (p.unit != unit_) fail(at, out.file.name + " is in " + p.unit + ", the scene in " + unit_);
+  if (out.set.provenance.direction == "outer") note_sheets(out);
   return out;
 }
 
@@ -55,12 +56,19 @@ BoundingSet SceneSets::set(const Loaded& loaded, const Located& value) const {
   }
 }
 
-BoundingSet SceneSets::set(const Located& object, const char* member, const char* direction) const {
+BoundingSet SceneSets::set(const Located& object, const char* member, const char* direction) {
   const Located& value = need(object, member);
   return set(container(value, direction), value);
 }
 
-std::optional<BoundingSet> SceneSets::optional_inner(const Located& object) const {
+void SceneSets::note_sheets(const Loaded& loaded) {
+  if (loaded.set.provenance.covers_surface) return;
+  notes.push_back(file_name() + ": " + loaded.file.name +
+                  " covers the solid only: sheets without volume were dropped or stick out, and "
+                  "nothing is checked of them");
+}
+
+std::optional<BoundingSet> SceneSets::optional_inner(const Located& object) {
   if (find(object, "inner") == nullptr) return std::nullopt;
   return set(object, "inner", "inner");
 }

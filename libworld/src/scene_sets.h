@@ -28,13 +28,18 @@ class SceneSets : public SceneValues {
     File file;
   };
   /// A container whose direction is the one needed, in the unit of the scene.
-  Loaded container(const Located& value, const char* direction) const;
+  Loaded container(const Located& value, const char* direction);
   BoundingSet set(const Loaded& loaded, const Located& value) const;
-  BoundingSet set(const Located& object, const char* member, const char* direction) const;
+  BoundingSet set(const Located& object, const char* member, const char* direction);
   /// Of the member "inner", if there is one.
-  std::optional<BoundingSet> optional_inner(const Located& object) const;
+  std::optional<BoundingSet> optional_inner(const Located& object);
+
+  std::vector<std::string> notes;  ///< for who uses the scene
 
  private:
+  /// Says that a set does not cover all that its mesh has.
+  void note_sheets(const Loaded& loaded);
+
   const FileReader& read_;
   std::string unit_;
 };

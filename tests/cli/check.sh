@@ -61,7 +61,7 @@ expect 3 'cannot be' "$BIN/kaboum-check" absent.json
 # Pairs of links.
 shows 0 'base upper: adjacent' "$BIN/kaboum-scene" pairs near.json --srdf arm.srdf
 grep -q 'link1="base" link2="tip" reason="Never"' arm.srdf || fail "base and tip never touch: $(cat arm.srdf)"
-sed -n 's/^for the scene: //p' out.txt >never.txt
+sed -n 's/^for the robot in the scene: //p' out.txt >never.txt
 sed "s/\"name\": \"arm\",/\"name\": \"arm\", $(cat never.txt),/" near.json >proved.json
 shows 0 '^free$' "$BIN/kaboum-check" proved.json
 sed 's/"name": "arm",/"name": "arm", "limits": {"j2": [-1, 1]},/' proved.json >other.json
@@ -69,6 +69,12 @@ expect 3 'proved for other limits or other sets' "$BIN/kaboum-check" other.json
 # Making scenes.
 expect 2 'NAME=FILE is expected' "$BIN/kaboum-scene" make bad.json --object meshes/cube.off
 expect 2 'is there twice' "$BIN/kaboum-scene" make bad.json --object a=meshes/cube.off --object a=meshes/bar.off
+for option in --path --configuration --configurations; do expect 2 'is empty' "$BIN/kaboum-check" near.json $option ''; done
+sed 's/"unit": "m"/"unit": "mm"/' near.json >mm.json
+expect 3 'URDFs are in m' "$BIN/kaboum-check" mm.json
+expect 2 'cell.json exists; --force' "$BIN/kaboum-scene" make cell.json --object box=meshes/cube.off
+expect 2 'ends in .json' "$BIN/kaboum-scene" make cell --object box=meshes/cube.off
+expect 2 'URDFs are in m' "$BIN/kaboum-scene" make bad.json --unit mm --robot arm=arm.urdf --object box=meshes/cube.off
 expect 2 'nothing is asked for' "$BIN/kaboum-scene" make bad.json
 expect 3 'absent.stl' "$BIN/kaboum-scene" make bad.json --object a=absent.stl --no-cache
 absent bad.json bad

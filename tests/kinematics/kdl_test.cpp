@@ -108,8 +108,7 @@ TEST(Chains, SolutionsReachThePoseByKdl) {
   check_chain(robot, "base", "l6", Family::SphericalWrist);
 }
 
-TEST(Chains, RobotsOfMakers) {
-  if (robot_file("ur5-description/urdf/ur5-robot.urdf").empty()) GTEST_SKIP() << "no meshes";
+TEST(CorpusChains, RobotsOfMakers) {
   check_chain(parse_urdf(robot_file("ur5-description/urdf/ur5-robot.urdf"), "ur5"), "world",
               "tool0", Family::ParallelAxes);
   check_chain(parse_urdf(robot_file("kuka-kr120-support/urdf/kr120r2500pro.urdf"), "kr120"),

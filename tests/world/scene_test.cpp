@@ -159,10 +159,16 @@ TEST(Scene, ProofsHoldForWhatTheyWereMadeFor) {
     return files.scene("", more + "\"never_in_contact\": {\"proved_for\": \"" + hash +
                                "\", \"pairs\": [[\"base\", \"l3\"]]}");
   };
-  const std::string hash = world.robots[0].fingerprint;
+  const RobotModel& robot = world.robots[0];
+  const auto base = *robot.kinematics.find_link("base"), l3 = *robot.kinematics.find_link("l3");
+  const std::string hash = proof_hash(robot, {{base, l3, AllowedPair::Reason::Never}});
   EXPECT_EQ(files.world(proved(hash)).robots[0].allowed.back().reason, AllowedPair::Reason::Never);
   expect_refused(files, proved(hash, "\"limits\": {\"j1\": [-1, 1]}, "),
                  {"were proved for other limits or other sets"});
+  // Nor is a pair added by hand that was not proved.
+  const std::string more =
+      replaced(proved(hash), R"([["base", "l3"]])", R"([["base", "l3"], ["l1", "l3"]])");
+  expect_refused(files, more, {"not the pairs that were proved"});
 }
 
 TEST(ExaminePairs, AdjacentNeverAndAlways) {
@@ -196,12 +202,40 @@ TEST(ExaminePairs, AdjacentNeverAndAlways) {
   }
 }
 
+// A carriage on a rail and a wall beside it, both fixed to the cell: they may meet.
+TEST(ExaminePairs, WhatIsFixedElsewhereIsNotAdjacent) {
+  const robot::Robot cell = robot::parse_urdf(R"(<robot name="cell"><link name="cell"/>
+    <link name="rail"><collision><geometry><box size="1 1 1"/></geometry></collision></link>
+    <link name="wall"><collision><geometry><box size="1 1 1"/></geometry></collision></link>
+    <link name="plate"/>
+    <link name="carriage"><collision><geometry><box size="1 1 1"/></geometry></collision></link>
+    <joint name="a" type="fixed"><parent link="cell"/><child link="rail"/></joint>
+    <joint name="b" type="fixed"><parent link="cell"/><child link="wall"/></joint>
+    <joint name="c" type="continuous"><parent link="rail"/><child link="plate"/><axis xyz="0 0 1"/></joint>
+    <joint name="d" type="fixed"><parent link="plate"/><child link="carriage"/></joint></robot>)",
+                                              "cell.urdf");
+  const auto has = [&](const char* a, const char* b) {
+    const std::uint32_t x = *cell.find_link(a), y = *cell.find_link(b);
+    for (const AllowedPair& pair : connected_links(cell))
+      if (pair.a == std::min(x, y) && pair.b == std::max(x, y)) return true;
+    return false;
+  };
+  EXPECT_TRUE(has("rail", "carriage"));  // by way of a plate without shapes
+  EXPECT_TRUE(has("rail", "wall"));      // fixed joints only
+  EXPECT_FALSE(has("wall", "carriage"));
+}
+
 // Never in contact is proved for values within the limits, and means nothing beyond them.
 TEST(ExaminePairs, ProofsEndAtTheLimits) {
   const SceneFiles files;
   const std::string limits =
       "\"limits\": {\"j1\": [-3, 3], \"j2\": [-0.5, 0.5], \"j3\": [-0.5, 0.5]}";
-  const std::string hash = files.world(files.scene("", limits)).robots[0].fingerprint;
+  const RobotModel robot = files.world(files.scene("", limits)).robots[0];
+  const auto link = [&](const char* name) { return *robot.kinematics.find_link(name); };
+  const auto never = AllowedPair::Reason::Never;
+  const std::string hash = proof_hash(robot, {{link("base"), link("l2"), never},
+                                              {link("base"), link("l3"), never},
+                                              {link("l1"), link("l3"), never}});
   const World world = files.world(
       files.scene("", limits + ", \"never_in_contact\": {\"proved_for\": \"" + hash +
                           R"(", "pairs": [["base", "l2"], ["base", "l3"], ["l1", "l3"]]})"));

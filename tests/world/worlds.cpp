@@ -47,6 +47,7 @@ geom::ConvexSet set_of(const std::vector<geom::Mesh>& hulls, const std::string& 
   for (const geom::Mesh& hull : hulls) out.bodies.push_back({"body", hull});
   out.provenance.direction = direction;
   out.provenance.epsilon = epsilon;
+  out.provenance.covers_solid = out.provenance.covers_surface = direction == "outer";
   out.provenance.frame = frame;
   return out;
 }

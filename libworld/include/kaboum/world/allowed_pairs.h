@@ -4,8 +4,9 @@
 
 namespace kaboum::world {
 
-/// Pairs of links of which configurations say nothing: adjacent ones (one joint, perhaps with fixed
-/// ones besides), and others between which there are fixed joints only (Always).
+/// Pairs of links of which configurations say nothing: adjacent ones (one joint, but for frames
+/// without shapes that are fixed between), and others between which there are fixed joints only
+/// (Always).
 std::vector<AllowedPair> connected_links(const robot::Robot& robot);
 
 struct PairOptions {

@@ -31,4 +31,8 @@ World parse_scene(std::string_view text, const std::string& name, const FileRead
 /// of its shapes.
 std::string fingerprint_of(const RobotModel& robot);
 
+/// What a scene states beside pairs of links that were proved apart (`proved_for`): hash of the
+/// robot's fingerprint and of these pairs, so that no pair can be added by hand.
+std::string proof_hash(const RobotModel& robot, const std::vector<AllowedPair>& pairs);
+
 }  // namespace kaboum::world
