@@ -52,8 +52,7 @@ void write_report(const CommonOptions& options, const char* tool, const Json& bo
   report.update(body);
   report["resources"]["user_seconds"] = user_seconds();
   report["resources"]["peak_megabytes"] = peak_megabytes();
-  io::write_file(options.report,
-                 report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  io::write_file(options.report, report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace kaboum::tools
