@@ -2,6 +2,8 @@
 
 #include "arguments.h"
 
+#include <kaboum/base/length_unit.h>
+
 #include <algorithm>
 #include <cctype>
 #include <charconv>
@@ -58,7 +60,8 @@ CLI::Validator png_name() {
 }
 
 CLI::Validator unit_name() {
-  return CLI::IsMember({"m", "dm", "cm", "mm", "um", "km", "in", "ft"}).description("");
+  return CLI::IsMember(std::vector<std::string>(kLengthUnits.begin(), kLengthUnits.end()))
+      .description("");
 }
 
 }  // namespace kaboum::tools

@@ -250,30 +250,34 @@ std::vector<Checker::Placed> Checker::places(const WorldState& state) const {
   return out;
 }
 
-std::optional<Contact> Checker::find_contact(const WorldState& state, Scratch& scratch,
-                                             const Options& options) const {
+template <typename Found>
+void Checker::visit_contacts(const WorldState& state, Scratch& scratch, const Options& options,
+                             const Found& found) const {
   place(state, scratch);
   Scratch::Impl& s = *scratch.impl_;
-  std::optional<Contact> found;
   visit(state, options, [&](std::size_t i, std::size_t j) {
     const auto bodies =
         find_collision(s.places[i], s.places[j], 0, &s.memory[i * items_.size() + j]);
-    if (bodies)
-      found = contact_of(*world_, items_[i], items_[j], s.places[i], s.places[j], *bodies);
-    return found.has_value();
+    return bodies &&
+           found(contact_of(*world_, items_[i], items_[j], s.places[i], s.places[j], *bodies));
   });
-  return found;
+}
+
+std::optional<Contact> Checker::find_contact(const WorldState& state, Scratch& scratch,
+                                             const Options& options) const {
+  std::optional<Contact> out;
+  visit_contacts(state, scratch, options, [&](Contact contact) {
+    out = std::move(contact);
+    return true;
+  });
+  return out;
 }
 
 std::vector<Contact> Checker::find_contacts(const WorldState& state, Scratch& scratch,
                                             const Options& options) const {
-  place(state, scratch);
-  Scratch::Impl& s = *scratch.impl_;
   std::vector<Contact> out;
-  visit(state, options, [&](std::size_t i, std::size_t j) {
-    if (const auto bodies =
-            find_collision(s.places[i], s.places[j], 0, &s.memory[i * items_.size() + j]))
-      out.push_back(contact_of(*world_, items_[i], items_[j], s.places[i], s.places[j], *bodies));
+  visit_contacts(state, scratch, options, [&](Contact contact) {
+    out.push_back(std::move(contact));
     return false;
   });
   return out;

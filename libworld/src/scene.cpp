@@ -1,6 +1,7 @@
 // Scene files: what they say, checked against the files they name.
 
 #include <kaboum/base/error.h>
+#include <kaboum/base/length_unit.h>
 #include <kaboum/base/similar_name.h>
 #include <kaboum/world/scene.h>
 
@@ -20,8 +21,7 @@ class Parser : detail::SceneRobot {
       : SceneRobot(values, read, values.string(values.need(root, "unit"))) {
     const Located& unit = need(root, "unit");
     world_.unit = string(unit);
-    const std::vector<std::string> units{"m", "dm", "cm", "mm", "um", "km", "in", "ft"};
-    if (std::find(units.begin(), units.end(), world_.unit) == units.end())
+    if (std::find(kLengthUnits.begin(), kLengthUnits.end(), world_.unit) == kLengthUnits.end())
       fail(unit,
            "'" + world_.unit + "' is no unit of length: one of m, dm, cm, mm, um, km, in, ft");
     // An arm that is a thousand times too small would be free of everything.

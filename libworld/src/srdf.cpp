@@ -1,32 +1,10 @@
 // Allowed pairs of links as SRDF, which MoveIt reads.
 
+#include <kaboum/base/xml_text.h>
 #include <kaboum/world/allowed_pairs.h>
 
 namespace kaboum::world {
 namespace {
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
 
 /// As MoveIt's assistant calls them.
 const char* reason_in_srdf(AllowedPair::Reason reason) {
@@ -46,10 +24,10 @@ const char* reason_in_srdf(AllowedPair::Reason reason) {
 
 std::string to_srdf(const RobotModel& robot, const std::vector<AllowedPair>& pairs) {
   std::string out =
-      "<?xml version=\"1.0\"?>\n<robot name=\"" + escaped(robot.kinematics.name) + "\">\n";
+      "<?xml version=\"1.0\"?>\n<robot name=\"" + escape_xml(robot.kinematics.name) + "\">\n";
   for (const AllowedPair& pair : pairs)
-    out += "  <disable_collisions link1=\"" + escaped(robot.kinematics.links[pair.a].name) +
-           "\" link2=\"" + escaped(robot.kinematics.links[pair.b].name) + "\" reason=\"" +
+    out += "  <disable_collisions link1=\"" + escape_xml(robot.kinematics.links[pair.a].name) +
+           "\" link2=\"" + escape_xml(robot.kinematics.links[pair.b].name) + "\" reason=\"" +
            reason_in_srdf(pair.reason) + "\"/>\n";
   return out + "</robot>\n";
 }

@@ -36,6 +36,13 @@ absent elsewhere
 shows 0 'j1,j2' "$I" arm.urdf --pose $(head -1 pose.txt)
 shows 0 '5.7295' "$I" arm.urdf --pose-of 5.72957795131,20,40,17,50,-11 --degrees
 
+# An arm that is only near its family is solved, but what is found need not be all.
+grep -q '"complete": true' out.txt || expect 0 '' "$I" arm.urdf --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2 --json
+grep -q '"complete": true' out.txt || fail "an exact arm is complete: $(head -c 300 out.txt)"
+sed '0,/0 1 0"/s//0 1 0.00001"/' arm.urdf >near.urdf
+expect 0 '' "$I" near.urdf --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2 --json
+grep -q '"complete": false' out.txt || fail "an arm near its family is not complete: $(head -c 300 out.txt)"
+
 # Whole turns, limits, references.
 expect 0 'configurations within the limits, whole turns counted' "$I" arm.urdf --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2 --copies
 [ "$(wc -l <out.txt)" -gt "$(wc -l <first.csv)" ] || fail "--copies adds none"

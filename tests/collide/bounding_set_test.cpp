@@ -5,6 +5,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/collide/inclusion.h>
 
+#include <limits>
 #include <thread>
 
 #include "pairs.h"
@@ -160,6 +161,12 @@ TEST(CertainlyCollide, OnlyWhenInnerSetsMeetHoweverTheyArePlaced) {
   EXPECT_FALSE(certainly_collide(PosedSet(inner, {}, 0.01), PosedSet(inner, at(0.995))));
   EXPECT_TRUE(certainly_collide(PosedSet(inner, {}, 0.01), PosedSet(inner, at(0.9))));
   EXPECT_THROW(certainly_collide(PosedSet(inner), PosedSet(outer)), Error);
+}
+
+TEST(FindCollision, SlackIsALength) {
+  const BoundingSet a = set_of({kUnit}, Direction::Outer);
+  for (const double slack : {-1e-9, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_THROW(find_collision(PosedSet(a), PosedSet(a), slack), Error);
 }
 
 TEST(FindCollision, ManyThreadsMayAskOfTheSameSets) {

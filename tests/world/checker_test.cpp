@@ -127,6 +127,28 @@ TEST(Checker, CarriedObjectsMoveWithTheRobot) {
   }
 }
 
+// What one link holds does not move together by itself: it may have been put into each other.
+TEST(Checker, ThingsThatOneLinkHoldsAreLookedAt) {
+  const SceneFiles files;
+  const World world = files.world(files.scene(objects(files, {"[9, 9, 9]", "[-9, 9, 9]"})));
+  const Checker checker(world);
+  Scratch scratch;
+  WorldState state = initial_state(world);
+  const auto meet = [&](double apart) {
+    for (int i = 0; i < 2; ++i) {
+      Attachment held;
+      held.link = *world.robots[0].kinematics.find_link("l3");
+      held.pose.translation = {1.6, i * apart, 0};
+      state.attachments[i] = held;
+    }
+    for (const Contact& c : checker.find_contacts(state, scratch, {}))
+      if (world.name_of(c.items[0]) == "o0" && world.name_of(c.items[1]) == "o1") return true;
+    return false;
+  };
+  EXPECT_TRUE(meet(0.9));
+  EXPECT_FALSE(meet(1.1));
+}
+
 TEST(Checker, TwoRobotsWithBases) {
   SceneFiles files;
   std::string text = files.scene();

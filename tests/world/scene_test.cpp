@@ -152,6 +152,34 @@ TEST(Scene, NoLinkIsForgotten) {
   EXPECT_NE(notes.notes[0].find("'l3' has no set"), std::string::npos);
 }
 
+// A set that names no link may be of anything.
+TEST(Scene, SetsOfLinksNameTheirLink) {
+  const SceneFiles files;
+  expect_refused(files, replaced(files.scene(), files.ref("l3.glb"), files.ref("box.glb")),
+                 {"box.glb is in the frame of ''", "not of link 'l3'"});
+}
+
+TEST(Scene, UnitsAreThoseOfTheUrdf) {
+  const SceneFiles files;
+  expect_refused(files, replaced(files.scene(), R"("unit": "m")", R"("unit": "mm")"),
+                 {"URDFs are in m"});
+  expect_refused(files, replaced(files.scene(), R"("unit": "m")", R"("unit": "parsec")"),
+                 {"'parsec' is no unit of length"});
+}
+
+TEST(Scene, SheetsThatAreNotCoveredAreSaid) {
+  SceneFiles files;
+  geom::ConvexSet set = test::set_of({test::box_mesh({0, 0, 0}, {1, 1, 1})}, "outer", 0.01);
+  set.provenance.covers_surface = false;
+  files.put("sheet.glb", set);
+  SceneNotes notes;
+  parse_scene(
+      files.scene(R"("objects": [{"name": "o", "outer": )" + files.ref("sheet.glb") + "}]"),
+      "scene.json", [&](const std::string& f) { return files.read(f); }, &notes);
+  ASSERT_EQ(notes.notes.size(), 1U);
+  EXPECT_NE(notes.notes[0].find("sheet.glb covers the solid only"), std::string::npos);
+}
+
 TEST(Scene, ProofsHoldForWhatTheyWereMadeFor) {
   const SceneFiles files;
   const World world = files.world(files.scene());

@@ -1,6 +1,7 @@
 // A plan as a picture: steps in rows from the start down, every outcome of a branch with its own
 // edge and label, every run's end a goal of its own.
 
+#include <kaboum/base/xml_text.h>
 #include <kaboum/plan/plan.h>
 
 #include <algorithm>
@@ -17,29 +18,6 @@ namespace {
 constexpr double kStepHeight = 28, kLabelHeight = 18, kGap = 16, kBorder = 20;
 constexpr double kLetter = 7.9, kLabelLetter = 6.8;  ///< widths at the two sizes of type
 constexpr Index kLongestEdge = 20;  ///< in rows; further down, a reference is drawn instead
-
-std::string escape_xml(const std::string& s) {
-  std::string out;
-  for (const char c : s) {
-    switch (c) {
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '&':
-        out += "&amp;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
 
 /// The steps that a run can reach, each after all that lead to it, and in which row each stands:
 /// its longest way from the root.

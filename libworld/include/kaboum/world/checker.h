@@ -97,6 +97,11 @@ class Checker {
   template <typename Pair>
   void visit(const WorldState& state, const Options& options, const Pair& pair) const;
 
+  /// Calls found(contact) for the pairs in contact until it is true.
+  template <typename Found>
+  void visit_contacts(const WorldState& state, Scratch& scratch, const Options& options,
+                      const Found& found) const;
+
   const World* world_;
   std::shared_ptr<const char> identity_ = std::make_shared<char>();  ///< of this and its copies
   std::vector<Item> items_;
