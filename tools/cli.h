@@ -26,6 +26,7 @@ enum ExitCode {
   kNotBuilt = 5,
   kInternal = 6,
   kLimit = 7,
+  kNotInferred = 8,
 };
 
 const char* version();

@@ -12,8 +12,8 @@ int main(int argc, char** argv) {
   tools::add_convert_command(app, o);
   app.footer(
       "Exit codes: 0 done; 1 unsolvable, or the plan is invalid; 2 usage; 3 bad input; 4 output "
-      "failed; "
-      "6 internal error; 7 time, memory or size limit reached.");
+      "failed; 6 internal error; 7 time, memory or size limit reached; 8 no plan with what the "
+      "knowledge state can infer, which is no proof.");
   return tools::run(app, argc, argv, [&] {
     if (solve->parsed()) return tools::solve(o);
     if (check->parsed()) return tools::check(o);

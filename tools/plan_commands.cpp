@@ -49,6 +49,31 @@ Json size_json(const plan::PlanSize& s) {
           {"leaves", s.leaves}, {"longest_path", s.longest}, {"cost", s.cost}};
 }
 
+/// What the report calls an outcome, what is said of it where there is no plan, and its exit code.
+struct Verdict {
+  const char* status;
+  std::string sentence;
+  int code;
+};
+
+Verdict verdict(const plan::Solution& s) {
+  switch (s.outcome) {
+    case plan::Outcome::Solved:
+      return {"solved", "", kDone};
+    case plan::Outcome::Unsolvable:
+      return {"unsolvable", "unsolvable: every possibility was tried", kNo};
+    case plan::Outcome::NotInferred:
+      return {"not inferred",
+              "no plan with what the knowledge state can infer; it is not proved that there is "
+              "none: " +
+                  s.lost,
+              kNotInferred};
+    case plan::Outcome::Limit:
+      break;
+  }
+  return {"limit", "no plan found: " + s.limit, kLimit};
+}
+
 /// @throws Error{InvalidArgument} for an extension that names none of them.
 std::string drawing_format(const PlanOptions& o) {
   if (!o.output_format.empty()) return o.output_format;
@@ -82,16 +107,11 @@ int solve(const PlanOptions& o) {
   const double solved = user_seconds();
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const char* status = solution.outcome == plan::Outcome::Solved       ? "solved"
-                       : solution.outcome == plan::Outcome::Unsolvable ? "unsolvable"
-                                                                       : "limit";
-  Json report = {{"command", "solve"},
-                 {"domain", o.domain},
-                 {"problem", o.problem},
-                 {"search", o.search},
-                 {"status", status},
-                 {"limit", solution.limit},
-                 {"statistics", statistics_json(solution.statistics)}};
+  const Verdict said = verdict(solution);
+  Json report = {{"command", "solve"},    {"domain", o.domain},
+                 {"problem", o.problem},  {"search", o.search},
+                 {"status", said.status}, {"limit", solution.limit},
+                 {"lost", solution.lost}, {"statistics", statistics_json(solution.statistics)}};
   plan::PlanSize size;
   if (solution.outcome == plan::Outcome::Solved) {
     size = plan::measure(model, solution.plan);
@@ -108,12 +128,8 @@ int solve(const PlanOptions& o) {
                             std::to_string(size.longest) + " actions");
     return kDone;
   }
-  std::cerr << "kaboum-plan: "
-            << (solution.outcome == plan::Outcome::Unsolvable
-                    ? "unsolvable: every possibility was tried"
-                    : "no plan found: " + solution.limit)
-            << '\n';
-  return solution.outcome == plan::Outcome::Unsolvable ? kNo : kLimit;
+  std::cerr << "kaboum-plan: " << said.sentence << '\n';
+  return said.code;
 }
 
 int check(const PlanOptions& o) {

@@ -28,6 +28,12 @@ sed 's/isHighest(o4)/isNonsense(o4)/' problem.kpl >broken.kpl
 expect 3 'broken.kpl:' "$P" solve "$DOMAINS/stacked/domain.kpl" broken.kpl
 expect 3 '' "$P" solve missing.kpl
 expect 2 '' "$P" solve "$DOMAINS/stacked/domain.kpl" problem.kpl --search sideways
+# No plan: proved, or only not inferred.
+printf 'predicates: p, q\ninit: K(p), K(!q)\naction go preconds: K(q) effects: add(Kf, !p)\ngoal: K(q)\n' >no.kpl
+expect 1 'unsolvable: every possibility was tried' "$P" solve no.kpl
+printf 'predicates: p, q\ninit: K(!q)\naction go effects: K(p) => add(Kf, q), K(!p) => add(Kf, q)\ngoal: K(q)\n' >weak.kpl
+expect 8 'not proved that there is none: an effect whose condition' "$P" solve weak.kpl -o weak.json
+absent weak.json
 expect 2 '' "$P"
 "$DOMAINS/stacked/make-problem" 9 >nine.kpl
 expect 7 '' "$P" solve "$DOMAINS/stacked/domain.kpl" nine.kpl --search bfs --max-memory 1M -o none.json

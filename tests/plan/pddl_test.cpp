@@ -185,6 +185,17 @@ TEST(Pddl, ObserveAndOneof) {
   EXPECT_EQ(measure(m, s.plan).longest, 2U);
 }
 
+TEST(Pddl, AVariableBeginsAWordOfItsOwn) {
+  const Model m = pddl(
+      "(define (domain d) (:requirements :strips :typing) (:types aircraft city)"
+      " (:predicates (at?a - aircraft?c - city))"
+      " (:action fly :parameters (?a - aircraft?b?c - city) :precondition (and (at?a?b))"
+      " :effect (and (at?a?c) (not (at?a?b)))))"
+      "(define (problem p) (:domain d) (:objects plane - aircraft x y - city) (:init (at plane x))"
+      " (:goal (at plane y)))");
+  EXPECT_EQ(optimum(m), 1U);
+}
+
 TEST(Pddl, NamesWhatIsNotSupported) {
   const std::string head = "(define (domain d) (:requirements ";
   EXPECT_NE(complaint(head + ":durative-actions))", Language::Pddl)

@@ -180,6 +180,7 @@ TEST(Worlds, VerdictsAreThoseOfAnExhaustiveSearchOverBeliefs) {
   int solvable = 0;
   int unsolvable = 0;
   int branching = 0;
+  int not_inferred = 0;
   for (std::uint32_t seed = 0; seed < 1000 && !HasFailure(); ++seed) {
     const std::string text = Generator(seed + 100'000, false).model(4, 0);
     const Model m = model_of(text);
@@ -196,7 +197,11 @@ TEST(Worlds, VerdictsAreThoseOfAnExhaustiveSearchOverBeliefs) {
     ++(*expected ? solvable : unsolvable);
     for (const Algorithm a : kAll) {
       const Solution s = solved(m, a);
-      EXPECT_EQ(s.outcome, *expected ? Outcome::Solved : Outcome::Unsolvable)
+      // Where the states lose knowledge the search does not prove anything, though it is right
+      // here.
+      const bool weak = !*expected && s.outcome == Outcome::NotInferred;
+      not_inferred += weak ? 1 : 0;
+      EXPECT_TRUE(s.outcome == (*expected ? Outcome::Solved : Outcome::Unsolvable) || weak)
           << "seed " << seed << ", search " << static_cast<int>(a) << "\n"
           << text;
       if (s.outcome == Outcome::Solved && measure(m, s.plan).branches > 0) ++branching;
@@ -205,6 +210,7 @@ TEST(Worlds, VerdictsAreThoseOfAnExhaustiveSearchOverBeliefs) {
   EXPECT_GT(solvable, 100);
   EXPECT_GT(unsolvable, 100);
   EXPECT_GT(branching, 40);
+  EXPECT_LT(not_inferred, 5 * unsolvable);
 }
 
 }  // namespace

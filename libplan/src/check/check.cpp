@@ -89,7 +89,6 @@ class Checker {
 
   void replay(std::size_t v) {
     const Visit at = visits_[v];
-    evaluator_.forget_calls();  // within one state, each is called once
     if (at.node == kNone) {
       end(v);
       return;

@@ -102,8 +102,4 @@ std::optional<Index> QueryEvaluator::call(Index external, std::vector<Index> arg
   return it->second;
 }
 
-void QueryEvaluator::forget_calls() {
-  std::erase_if(calls_, [&](const auto& c) { return model_.externals[c.first.first].is_volatile; });
-}
-
 }  // namespace kaboum::plan

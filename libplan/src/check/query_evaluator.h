@@ -29,9 +29,6 @@ class QueryEvaluator {
   bool holds(const Query& q, std::vector<Index>& slots, const RuntimeKnowledge& k) const;
   void reads(const Query& q, std::vector<Index>& slots, std::set<Fact>& out) const;
 
-  /// Another state: volatile functions are called again.
-  void forget_calls();
-
  private:
   bool holds_of_value(const Query& q, const std::vector<Index>& slots,
                       const RuntimeKnowledge& k) const;

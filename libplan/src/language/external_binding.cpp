@@ -77,6 +77,12 @@ std::vector<ExternalFunction> bind_externals(const syntax::Document& document,
     const Symbol& g = model.externals[i];
     const auto host = bindings.find(g.name);
     if (host != bindings.end()) {
+      if (g.parameters.empty())
+        document.externals[i].name.location.fail(
+            "external function '" + g.name +
+            "' has no arguments and cannot see the state: it would be a constant, or tell what "
+            "earlier calls left behind; write a constant, or return the value from the function "
+            "that finds it");
       functions.push_back(host_function(host->second, g, symbols));
     } else if (tables[i]) {
       functions.push_back(table_function(std::move(*tables[i])));

@@ -134,10 +134,13 @@ class DocumentParser {
 
   syntax::Signature external() {
     syntax::Signature s = signature(true);
-    if (in_.is("volatile")) {
-      in_.skip();
-      s.is_volatile = true;
-    }
+    if (in_.is("volatile"))
+      in_.location().fail(
+          "'volatile' functions depend on calls made before, and the search makes calls in an "
+          "order "
+          "of its own: let '" +
+          s.name.text +
+          "' depend on its arguments and the state alone (docs/planning/language.md)");
     return s;
   }
 

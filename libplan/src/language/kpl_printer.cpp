@@ -231,8 +231,7 @@ std::string print_kpl(const syntax::Document& d) {
     return signature(s) + (s.range.text.empty() ? "" : " : " + s.range.text) + ";";
   });
   section("externals:", d.externals, [](const syntax::Signature& s) {
-    return signature(s) + (s.range.text.empty() ? "" : " : " + s.range.text) +
-           (s.is_volatile ? " volatile" : "") + ";";
+    return signature(s) + (s.range.text.empty() ? "" : " : " + s.range.text) + ";";
   });
   for (const syntax::Table& t : d.tables) {
     out += "table " + t.external.text + ":\n";

@@ -37,7 +37,8 @@ class SExpressionReader {
     const std::string& t = source_.text;
     if (t[at_] == ')') source_.fail(at_, "')' without '('");
     if (t[at_] != '(') {
-      while (at_ < t.size() &&
+      // A variable begins a word of its own: "(aircraft?a)".
+      while (at_ < t.size() && !(t[at_] == '?' && !e.word.empty()) &&
              std::string_view("() \t\r\n;").find(t[at_]) == std::string_view::npos) {
         const char c = t[at_++];
         e.word += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;

@@ -99,7 +99,6 @@ void SymbolTable::declare_symbols(const sx::Document& document) {
   for (const sx::Signature& s : document.externals) {
     unique(externals_, s.name, static_cast<Index>(model_.externals.size()), "external function");
     Symbol g = symbol(s);
-    g.is_volatile = s.is_volatile;
     if (!s.range.text.empty()) g.range = type(s.range);
     model_.externals.push_back(g);
   }

@@ -86,7 +86,6 @@ struct Signature {
   Name name;
   std::vector<Name> parameters;  ///< type names, empty text: any object
   Name range;                    ///< functions: type of the value; empty text: any object
-  bool is_volatile = false;      ///< externals: results must not be cached
 };
 
 /// One row of the table that binds an external function in a file: arguments, and the value.

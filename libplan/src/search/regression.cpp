@@ -189,10 +189,6 @@ Formula Regression::before(OperatorId step, Formula condition, const Word* befor
     conjuncts.assign(pool.begin(condition), pool.end(condition));
   std::vector<Formula> result;
   for (const Formula c : conjuncts) {
-    if (pool.calls_volatile(c)) {  // it holds in the very state that the step leads to from here
-      for (Index i = 0; i < task_.layout().words(); ++i) require_word(i);
-      continue;
-    }
     open_ = false;
     const Formula r = rewrite(c);
     ensure(r != kFalse || open_, "regression keeps the planned state");

@@ -4,6 +4,7 @@
 
 #include "search/contingent.h"
 #include "search/search.h"
+#include "task/exactness.h"
 #include "task/task.h"
 
 namespace kaboum::plan {
@@ -42,6 +43,7 @@ Solution solve(const Model& model, const SolveOptions& options) {
                                 solution.statistics);
       solution.outcome = planner.run();
       if (solution.outcome == Outcome::Solved) solution.plan = planner.plan();
+      if (solution.outcome != Outcome::Limit) task.pool().confirm_calls();
     } catch (const LimitExceeded&) {
       count();
       throw;
@@ -49,6 +51,10 @@ Solution solve(const Model& model, const SolveOptions& options) {
     count();
   } catch (const LimitExceeded&) {
     solution.outcome = Outcome::Limit;
+  }
+  if (solution.outcome == Outcome::Unsolvable) {
+    solution.lost = lost_knowledge(model);
+    if (!solution.lost.empty()) solution.outcome = Outcome::NotInferred;
   }
   if (solution.outcome == Outcome::Limit)
     solution.limit =

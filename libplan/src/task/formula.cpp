@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <chrono>
 
+#include "task/ground_text.h"
+
 namespace kaboum::plan {
 namespace {
 
 constexpr std::size_t kMaximumNodes = 50'000'000;
+constexpr std::size_t kConfirmed = 8;  // calls of each external function that are made again
 
 std::uint64_t mix(std::uint64_t h, std::uint64_t v) {
   h ^= v + 0x9e3779b97f4a7c15ULL + (h << 6U) + (h >> 2U);
@@ -136,36 +139,39 @@ Formula FormulaPool::external(Index external, std::vector<Index> arguments, Inde
   return add({Kind::External, true, it->second, expected}, {});
 }
 
-std::optional<Index> FormulaPool::call(Index call, const Word* state) const {
-  const Call& c = calls_[call];
-  if (cached_[call] == Cached::Yes) return results_[call];
-  const auto run = [&] {
-    ++external_calls_;
-    const auto start = std::chrono::steady_clock::now();
-    const std::optional<Index> result = model_.external_functions[c.external](c.arguments);
-    external_seconds_ +=
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    return result;
-  };
-  if (model_.externals[c.external].is_volatile) {
-    const auto [it, fresh] =
-        volatile_.try_emplace({call, std::vector<Word>(state, state + layout_.words())});
-    if (fresh) {
-      limits_.work(sizeof(Word) * layout_.words() + 64);
-      it->second = run();
-    }
-    return it->second;
+std::optional<Index> FormulaPool::run(const Call& c) const {
+  ++external_calls_;
+  const auto start = std::chrono::steady_clock::now();
+  const std::optional<Index> result = model_.external_functions[c.external](c.arguments);
+  external_seconds_ +=
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+std::optional<Index> FormulaPool::call(Index call) const {
+  if (cached_[call] != Cached::Yes) {
+    results_[call] = run(calls_[call]);
+    cached_[call] = Cached::Yes;
   }
-  results_[call] = run();
-  cached_[call] = Cached::Yes;
   return results_[call];
 }
 
-bool FormulaPool::calls_volatile(Formula f) const {
-  const Node& n = nodes_[f];
-  if (!n.calls) return false;
-  if (n.kind == Kind::External) return model_.externals[calls_[n.a].external].is_volatile;
-  return std::any_of(begin(f), end(f), [&](Formula c) { return calls_volatile(c); });
+/// In another order than at first, and twice, so that each follows calls that it did not follow.
+void FormulaPool::confirm_calls() const {
+  std::vector<std::size_t> count(model_.externals.size(), 0);
+  std::vector<Index> chosen;
+  for (Index i = 0; i < calls_.size(); ++i)
+    if (cached_[i] == Cached::Yes && count[calls_[i].external]++ < kConfirmed) chosen.push_back(i);
+  for (int round = 0; round < 2; ++round)
+    for (auto i = chosen.rbegin(); i != chosen.rend(); ++i) {
+      if (run(calls_[*i]) == results_[*i]) continue;
+      const Call& c = calls_[*i];
+      throw Error(ErrorCode::InvalidInput,
+                  "external function '" +
+                      ground_text(model_, model_.externals[c.external].name, c.arguments) +
+                      "' returned another value when it was called again: it may depend on its "
+                      "arguments only, not on calls made before");
+    }
 }
 
 std::optional<BitTest> FormulaPool::as_bits(Formula f) const {

@@ -88,10 +88,10 @@ class FormulaPool {
   /// If `f` is "this field has this content".
   [[nodiscard]] std::optional<BitTest> as_bits(Formula f) const;
 
-  /// Cached by its arguments; if volatile, also by the state.
-  [[nodiscard]] std::optional<Index> call(Index call, const Word* state) const;
-  /// Whether a volatile function is in it: then its truth in one state says nothing of others.
-  [[nodiscard]] bool calls_volatile(Formula f) const;
+  /// Cached by its arguments.
+  [[nodiscard]] std::optional<Index> call(Index call) const;
+  /// Makes some calls again. @throws Error{InvalidInput} if one returns another value.
+  void confirm_calls() const;
   [[nodiscard]] std::uint64_t external_calls() const { return external_calls_; }
   [[nodiscard]] double external_seconds() const { return external_seconds_; }
 
@@ -102,6 +102,7 @@ class FormulaPool {
   };
   enum class Cached : std::uint8_t { No, Yes };
 
+  [[nodiscard]] std::optional<Index> run(const Call& c) const;
   Formula add(Node node, std::vector<Formula> children);
   Formula join(Kind kind, const std::vector<Formula>& children);
   Formula ground_connective(const Query& q, std::vector<Index>& slots);
@@ -129,7 +130,6 @@ class FormulaPool {
   std::map<std::pair<Index, std::vector<Index>>, Index> call_index_;
   mutable std::vector<Cached> cached_;
   mutable std::vector<std::optional<Index>> results_;
-  mutable std::map<std::pair<Index, std::vector<Word>>, std::optional<Index>> volatile_;
   mutable std::uint64_t external_calls_ = 0;
   mutable double external_seconds_ = 0;
 };

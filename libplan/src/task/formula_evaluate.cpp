@@ -73,7 +73,7 @@ Truth FormulaPool::evaluate(Formula f, const Word* state) const {
     case Kind::Bits:
       return yes((state[n.a] & masks_[n.b].first) == masks_[n.b].second);
     case Kind::External: {
-      const std::optional<Index> result = call(n.a, state);
+      const std::optional<Index> result = call(n.a);
       return yes(result && (n.b == kNone || *result == n.b));
     }
   }

@@ -33,7 +33,6 @@ struct Symbol {
   std::vector<Index> parameters;  ///< types
   Index range = kNone;            ///< type of the value; kNone: a truth value
   bool numeric = false;           ///< a function whose constant values are integers (costs)
-  bool is_volatile = false;       ///< an external that is called again in every state
 };
 
 /// An object, or the slot of a variable.

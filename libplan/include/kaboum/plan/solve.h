@@ -42,13 +42,15 @@ struct SolveOptions {
 
 enum class Outcome {
   Solved,
-  Unsolvable,  ///< proved, by the inference rules of the knowledge state: all was tried
-  Limit        ///< time, memory or size ran out first
+  Unsolvable,   ///< proved: all was tried, and the knowledge states lose nothing
+  NotInferred,  ///< all was tried, but the knowledge states know less than could be concluded
+  Limit         ///< time, memory or size ran out first
 };
 
 struct Solution {
   Outcome outcome = Outcome::Limit;
   std::string limit;  ///< which, when the outcome is Limit
+  std::string lost;   ///< what the knowledge states do not keep, when the outcome is NotInferred
   Plan plan;
   Statistics statistics;
 };

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <kaboum/plan/model.h>
+
+#include <string>
+
+namespace kaboum::plan {
+
+/// Where the databases know less than could be concluded: the first such construct of the model, as
+/// "the entries of Kx (...)"; empty if they lose nothing, so that a search without a plan is a
+/// proof. Errs on the side of naming one.
+std::string lost_knowledge(const Model& model);
+
+}  // namespace kaboum::plan
