@@ -41,16 +41,21 @@ std::string describe(const world::World& world, const world::MotionAnswer& answe
   std::ostringstream out;
   out.precision(6);
   if (answer.outcome == world::MotionAnswer::Outcome::Free) return "free at every instant";
+  // Waypoints are counted from 1, as in all that is said of paths.
   const auto place = [&](std::size_t segment, double share) {
-    out << "waypoint " << segment + 1 << " + " << share;
+    out << "waypoint " << segment + 1;
+    if (share > 0) out << " + " << share << " of the way to the next";
   };
-  if (answer.outcome == world::MotionAnswer::Outcome::Undecided) {
-    out << "undecided: free until ";
+  const bool undecided = answer.outcome == world::MotionAnswer::Outcome::Undecided;
+  out << (undecided ? "undecided: " : "");
+  if (answer.segment == 0 && answer.share == 0) {
+    out << (undecided ? "nothing is known from the first waypoint on"
+                      : "not free from the first waypoint on");
+  } else {
+    out << "free until ";
     place(answer.segment, answer.share);
-    return out.str();
   }
-  out << "free until ";
-  place(answer.segment, answer.share);
+  if (!answer.contact) return out.str();
   out << "; at ";
   place(answer.contact_segment, answer.contact_share);
   out << ", " << (answer.meets ? "" : "nearly: ") << describe(world, *answer.contact);
@@ -63,10 +68,10 @@ Json to_json(const world::World& world, const world::MotionAnswer& answer) {
               {"intervals", answer.intervals},
               {"queries", answer.queries}};
   if (answer.outcome == world::MotionAnswer::Outcome::Free) return out;
-  out["free_until"] = {{"segment", answer.segment}, {"share", answer.share}};
+  out["free_until"] = {{"waypoint", answer.segment + 1}, {"share", answer.share}};
   if (!answer.contact) return out;
   out["contact"] = to_json(world, *answer.contact);
-  out["contact"]["segment"] = answer.contact_segment;
+  out["contact"]["waypoint"] = answer.contact_segment + 1;
   out["contact"]["share"] = answer.contact_share;
   out["contact"]["sets_meet"] = answer.meets;
   return out;

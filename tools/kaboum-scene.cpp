@@ -2,6 +2,7 @@
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/world/allowed_pairs.h>
 
+#include <chrono>
 #include <iostream>
 #include <map>
 
@@ -16,8 +17,9 @@ using namespace kaboum;  // the tool's own names are few
 struct Options {
   std::string scene, robot, srdf, epsilon = "1%", effort = "normal", unit = "m", cache;
   std::vector<std::string> robots, objects, regions, packages;
-  bool inner = false, no_cache = false, drop_sheets = false, force = false;
+  bool inner = false, visual = false, no_cache = false, drop_sheets = false, force = false;
   std::size_t most_boxes = 20'000;
+  double timeout = 0;
   tools::CommonOptions common;
 };
 
@@ -34,6 +36,8 @@ CLI::App* describe_make(CLI::App& app, Options& o) {
   make->add_option("--region", o.regions, "A region: its inner set; may be repeated")
       ->type_name("NAME=MESH");
   make->add_flag("--inner", o.inner, "Inner sets of objects as well: contacts can be certain");
+  make->add_flag("--visual", o.visual,
+                 "Of robots, the shapes for drawing instead of those for collisions");
   make->add_option("--epsilon", o.epsilon,
                    "Largest distance of the sets from their meshes, a length or a percentage of "
                    "each mesh's diagonal")
@@ -76,6 +80,9 @@ CLI::App* describe_pairs(CLI::App& app, Options& o) {
       ->check(tools::number_from(1, 1e9))
       ->capture_default_str()
       ->type_name("N");
+  pairs->add_option("--timeout", o.timeout, "After so long, what is left stays unproved [none]")
+      ->check(CLI::Range(0.001, 1e9).description(""))
+      ->type_name("SECONDS");
   tools::add_common_options(*pairs, o.common);
   return pairs;
 }
@@ -113,6 +120,7 @@ int make_scene(const Options& o) {
                     "meshes of objects to m");
   tools::require_apart({{"SCENE", o.scene}, {"--report", o.common.report}}, inputs);
   maker.inner = o.inner;
+  maker.visual = o.visual;
   maker.sets.epsilon = tools::parse_length(o.epsilon);
   maker.sets.effort = kEfforts.at(o.effort);
   maker.sets.preparation.drop_sheets = o.drop_sheets;
@@ -150,21 +158,32 @@ int find_pairs(const Options& o) {
       o.robot.empty() ? std::optional<std::size_t>(0) : scene.world.find_robot(o.robot);
   if (!index)
     throw Error(ErrorCode::InvalidArgument, "--robot: the scene has no robot '" + o.robot + "'");
+  const auto say = [&](const std::string& line) {
+    if (!o.common.quiet) std::cout << line << '\n';
+  };
   const world::RobotModel& robot = robots[*index];
   const auto name = [&](std::uint32_t link) { return robot.kinematics.links[link].name; };
-  std::vector<world::AllowedPair> allowed = world::connected_links(robot.kinematics);
+  std::vector<world::AllowedPair> allowed = world::connected_links(robot);
   tools::Json pairs = tools::Json::array(), never = tools::Json::array();
   std::vector<world::AllowedPair> proofs;
-  for (const world::LinkPair& pair : examine_pairs(robot, {.most_boxes = o.most_boxes})) {
+  world::PairOptions options;
+  options.most_boxes = o.most_boxes;
+  const auto begin = std::chrono::steady_clock::now();
+  if (o.timeout > 0)
+    options.stop = [&] {
+      return std::chrono::steady_clock::now() - begin > std::chrono::duration<double>(o.timeout);
+    };
+  for (const world::LinkPair& pair : examine_pairs(robot, options)) {
     const std::string reason = pair.reason ? name_of(*pair.reason) : "unproved";
     pairs.push_back({{"links", {name(pair.a), name(pair.b)}},
                      {"reason", reason},
-                     {"contact_found", pair.meets}});
-    std::cout << name(pair.a) << " " << name(pair.b) << ": "
-              << (pair.reason  ? reason
-                  : pair.meets ? "in contact somewhere"
-                               : reason)
-              << '\n';
+                     {"contact_found", pair.meets},
+                     {"contact_always", pair.meets_always}});
+    say(name(pair.a) + " " + name(pair.b) + ": " +
+        (pair.reason         ? reason
+         : pair.meets_always ? "in contact everywhere, though they move against each other"
+         : pair.meets        ? "in contact somewhere"
+                             : reason));
     if (!pair.reason || *pair.reason == world::AllowedPair::Reason::Adjacent) continue;
     allowed.push_back({pair.a, pair.b, *pair.reason});
     if (*pair.reason != world::AllowedPair::Reason::Never) continue;
@@ -176,8 +195,7 @@ int find_pairs(const Options& o) {
     io::write_file(o.srdf, {text.data(), text.size()});
   }
   const tools::Json proved = {{"proved_for", proof_hash(robot, proofs)}, {"pairs", never}};
-  if (!never.empty())
-    std::cout << "for the robot in the scene: \"never_in_contact\": " << proved.dump() << '\n';
+  if (!never.empty()) say("for the robot in the scene: \"never_in_contact\": " + proved.dump());
   tools::write_report(o.common, "kaboum-scene",
                       {{"command", "pairs"},
                        {"scene", o.scene},

@@ -3,6 +3,7 @@
 #include "scene_maker.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/io/mesh_io.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -66,16 +67,28 @@ class Maker {
     return fs::relative(fs::absolute(file), fs::absolute(base_)).generic_string();
   }
 
-  Json keep(const fs::path& path, std::vector<char> bytes) {
-    Json out = {{"file", seen_from_scene(path)}, {"sha256", io::sha256(bytes)}};
+  Json keep(const fs::path& path, std::vector<char> bytes, const Json& made_from) {
+    Json out = {
+        {"file", seen_from_scene(path)}, {"sha256", io::sha256(bytes)}, {"made_from", made_from}};
     files_.emplace_back(path, std::move(bytes));
     return out;
+  }
+
+  /// A mesh and what it refers to, as they are compared when the scene is read.
+  void add_sources(Json& sources, const fs::path& file, const certify::CertifiedFile& made) {
+    const auto add = [&](const fs::path& source, const std::string& sha256) {
+      Json one = {{"file", seen_from_scene(source)}, {"sha256", sha256}};
+      if (std::find(sources.begin(), sources.end(), one) == sources.end())
+        sources.push_back(std::move(one));
+    };
+    add(file, made.sha256);
+    for (const std::string& other : made.other_files) add(other, io::sha256(io::read_file(other)));
   }
 
   Json robot(const NamedFile& named) {
     const robot::RobotFile file = robot::read_robot(named.file);
     out_.inputs.push_back(named.file);
-    certify::RobotRequest request{o_.sets, {{}, false, o_.packages}, {}, {}};
+    certify::RobotRequest request{o_.sets, {{}, o_.visual, o_.packages}, {}, {}};
     request.tool = std::string("kaboum-scene ") + version();
     require_formats(robot::link_meshes(file, request.shapes), "");
     Notes notes;
@@ -87,24 +100,43 @@ class Maker {
     };
     const certify::CertifiedRobot made = certify::certify_robot(file, request, o_.cache, hooks);
     for (std::string& input : strings(made.bodies.files)) out_.inputs.push_back(std::move(input));
-    for (std::string& note : robot::notes_on_flat_shapes(file, false))
+    for (std::string& note : robot::notes_on_flat_shapes(file, o_.visual))
       out_.notes.push_back(std::move(note));
     for (std::string& line : notes.lines()) out_.notes.push_back(std::move(line));
     Json links = Json::array();
     FileNames names;
+    const std::string folder = names_.unique(named.name);
     for (const certify::CertifiedLink& link : made.links) {
       if (link.set.bodies.empty()) continue;  // points only
       const std::string& name = file.robot.links[link.link].name;
-      links.push_back(
-          {{"link", name},
-           {"outer", keep(folder_ / plain_file_name(named.name) / (names.unique(name) + ".glb"),
-                          link.container)}});
+      Json sources = Json::array();
+      for (const robot::LinkShape& shape : made.bodies.shapes) {
+        if (shape.link != link.link || !shape.mesh) continue;
+        const certify::CertifiedLinkMesh& mesh = made.bodies.meshes[*shape.mesh];
+        add_sources(sources, mesh.mesh.file, mesh.made);
+      }
+      links.push_back({{"link", name},
+                       {"outer", keep(folder_ / folder / (names.unique(name) + ".glb"),
+                                      link.container, sources)}});
     }
-    return {{"name", named.name},
-            {"urdf", {{"file", seen_from_scene(named.file)}, {"sha256", file.sha256}}},
-            {"base", {{"position", {0, 0, 0}}, {"rpy", {0, 0, 0}}}},
-            {"links", links},
-            {"tools", Json::array()}};
+    Json out = {{"name", named.name},
+                {"urdf", {{"file", seen_from_scene(named.file)}, {"sha256", file.sha256}}},
+                {"base", {{"position", {0, 0, 0}}, {"rpy", {0, 0, 0}}}},
+                {"links", links},
+                {"tools", Json::array()}};
+    if (o_.visual) out["shapes"] = "visual";
+    return out;
+  }
+
+  /// What a file holds is what its set says it holds: a scale that is wrong by a thousand is free
+  /// of everything.
+  void require_unit(const std::string& file) const {
+    const std::string unit = io::read_mesh(file).unit;
+    if (unit.empty() || unit == o_.sets.unit) return;
+    throw Error(ErrorCode::InvalidInput, file + ": its vertices are in " + unit +
+                                             " as read (docs/formats.md), the scene is in " +
+                                             o_.sets.unit + ": export it in " + o_.sets.unit +
+                                             (o_.robots.empty() ? ", or give --unit" : ""));
   }
 
   /// The box of the sets, each in its own frame.
@@ -123,6 +155,7 @@ class Maker {
 
   Json mesh(const NamedFile& named, certify::SetRequest::Direction direction,
             const std::string& suffix) {
+    require_unit(named.file);
     Notes notes;
     certify::SetRequest request = o_.sets;
     request.direction = direction;
@@ -134,12 +167,15 @@ class Maker {
     out_.inputs.push_back(named.file);
     out_.inputs.insert(out_.inputs.end(), made.other_files.begin(), made.other_files.end());
     say_size(named.name, {&made.found.set.set});
-    return keep(folder_ / (plain_file_name(named.name) + suffix + ".glb"),
-                made.found.set.container);
+    Json sources = Json::array();
+    add_sources(sources, named.file, made);
+    return keep(folder_ / (names_.unique(named.name + suffix) + ".glb"), made.found.set.container,
+                sources);
   }
 
   const SceneMaker& o_;
   fs::path folder_, base_;
+  FileNames names_;  ///< in the folder of the sets
   std::vector<std::pair<fs::path, std::vector<char>>> files_;
   MadeScene out_;
 };
@@ -160,7 +196,7 @@ MadeScene make_scene(const SceneMaker& maker) {
   for (const auto* files : {&maker.robots, &maker.objects, &maker.regions})
     for (const NamedFile& file : *files)
       if (!names.insert(file.name).second)
-        throw Error(ErrorCode::InvalidArgument, "the name '" + file.name + "' is there twice");
+        throw Error(ErrorCode::InvalidArgument, "the name '" + file.name + "' is used twice");
   return Maker(maker).run();
 }
 

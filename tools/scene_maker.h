@@ -22,6 +22,7 @@ struct SceneMaker {
   std::vector<NamedFile> robots;             ///< URDF
   std::vector<NamedFile> objects, regions;   ///< meshes
   bool inner = false;                        ///< inner sets of objects as well
+  bool visual = false;                       ///< of robots, shapes for drawing
   certify::SetRequest sets;                  ///< of everything; direction apart
   std::vector<std::string> packages;         ///< folders that package:// URIs are looked up in
   const certify::SetCache* cache = nullptr;  ///< null: none

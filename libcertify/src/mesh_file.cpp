@@ -17,6 +17,12 @@ CertifiedFile certify_file(const std::filesystem::path& file, std::optional<io::
   if (hooks.note)
     for (const std::string& text : read.notes) hooks.note(text);
   request.source = file.filename().string();
+  if (!read.unit.empty() && read.unit != request.unit) {
+    if (hooks.note && !request.unit.empty())
+      hooks.note("Its vertices are in " + read.unit + " as read, and so is its set, not in " +
+                 request.unit + ".");
+    request.unit = read.unit;
+  }
   const std::string sha256 = io::sha256(bytes);
   auto found = [&] {
     try {

@@ -150,9 +150,12 @@ ReadResult read_here(const Source& source) {
   builder.note("The importer (assimp) delivers 32-bit floats; those are taken as the input.");
   SceneReader(source, *scene, builder).read();
   double unit = 0;
-  if (scene->mMetaData != nullptr && scene->mMetaData->Get("UnitScaleFactor", unit) && unit != 1)
-    builder.note("The file's unit is " + std::to_string(unit) +
-                 " centimetres; coordinates were not scaled.");
+  if (scene->mMetaData != nullptr && scene->mMetaData->Get("UnitScaleFactor", unit)) {
+    builder.set_unit(unit * 0.01);
+    if (unit != 1)
+      builder.note("The file's unit is " + std::to_string(unit) +
+                   " centimetres; coordinates were not scaled.");
+  }
   return builder.finish(Format::Fbx, true);
 }
 

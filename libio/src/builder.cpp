@@ -5,7 +5,10 @@
 #include <kaboum/base/error.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cmath>
+#include <sstream>
 
 #include "polygon.h"
 
@@ -96,12 +99,33 @@ std::uint32_t MeshBuilder::corner(std::int64_t index, std::int64_t first, const 
   return static_cast<std::uint32_t>(index - first);
 }
 
+void MeshBuilder::set_unit(double metres) {
+  constexpr std::array<std::pair<double, const char*>, 8> kNames{{{1, "m"},
+                                                                  {1e-1, "dm"},
+                                                                  {1e-2, "cm"},
+                                                                  {1e-3, "mm"},
+                                                                  {1e-6, "um"},
+                                                                  {1e3, "km"},
+                                                                  {0.0254, "in"},
+                                                                  {0.3048, "ft"}}};
+  for (const auto& [length, name] : kNames)
+    // Products of decimal fractions are rounded; no two of these are near each other.
+    if (std::abs(metres - length) <= 1e-12 * length) {
+      unit_ = name;
+      return;
+    }
+  std::ostringstream text;
+  text << metres << " m";
+  unit_ = text.str();
+}
+
 ReadResult MeshBuilder::finish(Format format, bool single_precision) {
   ReadResult result;
   result.format = format;
   result.single_precision = single_precision;
   result.file_vertices = welded_ ? stored_points_ : points_.size();
   result.notes = std::move(notes_);
+  result.unit = unit_;
   if (tiny_faces_ > 0)
     result.notes.push_back(counted(tiny_faces_, "face with fewer than three corners was",
                                    "faces with fewer than three corners were") +

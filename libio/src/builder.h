@@ -55,6 +55,9 @@ class MeshBuilder {
   /// An index into the points from the file's `index` (counted from `first`), range-checked.
   std::uint32_t corner(std::int64_t index, std::int64_t first, const char* where) const;
 
+  /// Unit of length of the points, which becomes the result's: by its name, or as "0.005 m".
+  void set_unit(double metres);
+
   void note(std::string text) { notes_.push_back(std::move(text)); }
   [[nodiscard]] bool has_faces() const { return !triangles_.empty() || !polygons_.empty(); }
   [[nodiscard]] std::size_t point_count() const { return points_.size(); }
@@ -82,6 +85,7 @@ class MeshBuilder {
   bool welded_ = false;
   std::size_t tiny_faces_ = 0;
   std::vector<std::string> notes_;
+  std::string unit_;
 };
 
 }  // namespace kaboum::io

@@ -92,6 +92,7 @@ class Sender {
     for (const std::string& note : r.notes) text(note);
     value(r.other_files.size());
     for (const std::string& file : r.other_files) text(file);
+    text(r.unit);
     value(r.mesh.vertices.size());
     bytes(r.mesh.vertices.data(), r.mesh.vertices.size() * sizeof(geom::Vec3));
     value(r.mesh.triangles.size());
@@ -128,6 +129,7 @@ class Receiver {
       *n = value<std::size_t>();
     for (auto n = value<std::size_t>(); n > 0 && ok_; --n) r.notes.push_back(text());
     for (auto n = value<std::size_t>(); n > 0 && ok_; --n) r.other_files.push_back(text());
+    r.unit = text();
     array(r.mesh.vertices);
     array(r.mesh.triangles);
     for (const geom::Vec3& p : r.mesh.vertices) ok_ = ok_ && p.allFinite();

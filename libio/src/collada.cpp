@@ -63,6 +63,7 @@ class ColladaReader {
       }
     });
     read_asset(root);
+    builder_.set_unit(1);  // what was scaled
     xml_.index(metres_);
     if (scene == nullptr)
       xml_.fail(root, "no <scene> says what is shown; export the file with its scene");

@@ -320,10 +320,15 @@ ReadResult read_gltf(const Source& source, Format format) {
   const GltfFacts facts =
       read_gltf_scene(file, [&](const std::string&) -> MeshBuilder& { return builder; });
   refuse_margin(file);
+  builder.set_unit(1);
   note_gltf_facts(facts, file);
   for (std::string& note : file.take_notes()) builder.note(std::move(note));
   ReadResult result = builder.finish(format, facts.floats);
   result.other_files = file.other_files();
+  // A set says itself what it is in.
+  if (const JsonItem::Json* const record = gltf_set_record(file);
+      record != nullptr && record->contains("unit") && (*record)["unit"].is_string())
+    result.unit = (*record)["unit"].get<std::string>();
   return result;
 }
 

@@ -270,9 +270,11 @@ class SceneReader {
 void add_notes(const Scene& scene) {
   MeshBuilder& builder = scene.builder;
   scene.copier.add_notes();
-  if (scene.metres != 1)
+  if (scene.metres != 1) {
+    builder.set_unit(scene.metres);
     builder.note("The file's unit is " + std::to_string(scene.metres) +
                  " metres; coordinates were not scaled.");
+  }
   if (!scene.inlined.empty())
     builder.note(counted(scene.inlined.size(), "other file was", "other files were") +
                  " read through Inline (first: " + scene.inlined.front().string() + ").");

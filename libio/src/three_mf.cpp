@@ -33,8 +33,13 @@ constexpr std::string_view kMaterial =
     "http://schemas.microsoft.com/3dmanufacturing/material/2015/02";
 constexpr std::string_view kTriangleSets =
     "http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07";
-constexpr std::array<std::string_view, 6> kUnits = {"micron", "millimeter", "centimeter",
-                                                    "inch",   "foot",       "meter"};
+/// In metres.
+constexpr std::array<std::pair<std::string_view, double>, 6> kUnits = {{{"micron", 1e-6},
+                                                                        {"millimeter", 1e-3},
+                                                                        {"centimeter", 1e-2},
+                                                                        {"inch", 0.0254},
+                                                                        {"foot", 0.3048},
+                                                                        {"meter", 1}}};
 
 /// A namespace without what those of all extensions begin with.
 std::string_view short_name(std::string_view space) {
@@ -123,8 +128,10 @@ class ThreeMfReader {
   void read_unit(const Part& part) {
     const XMLElement& model = part.xml.root();
     const std::string_view unit = attribute(model, "unit").value_or("millimeter");
-    if (std::ranges::find(kUnits, unit) == kUnits.end())
-      part.xml.fail(model, "unknown unit " + in_quotes(unit));
+    const auto* const known =
+        std::ranges::find(kUnits, unit, &std::pair<std::string_view, double>::first);
+    if (known == kUnits.end()) part.xml.fail(model, "unknown unit " + in_quotes(unit));
+    builder_.set_unit(known->second);
     if (unit_.empty()) unit_ = unit;
     if (unit != unit_)
       part.xml.fail(model, "the unit " + in_quotes(unit) + " is not that of the package, " +

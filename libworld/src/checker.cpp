@@ -31,6 +31,8 @@ namespace {
 
 /// Values that errors of kinematics are bounded for beforehand.
 constexpr double kFarthest = 100;
+/// Values beyond that are refused: rounding of doubles would not be small against any robot.
+constexpr double kLargest = 1e9;
 
 void require_fits(const World& world, const WorldState& state) {
   bool fits = state.q.size() == world.robots.size() && state.poses.size() == world.objects.size() &&
@@ -40,8 +42,11 @@ void require_fits(const World& world, const WorldState& state) {
   if (!fits) throw Error(ErrorCode::InvalidArgument, "a state of another world");
   for (const auto& q : state.q)
     for (const double value : q)
-      if (!std::isfinite(value))
-        throw Error(ErrorCode::InvalidArgument, "a joint value that is not finite");
+      if (!(std::abs(value) <= kLargest))
+        throw Error(ErrorCode::InvalidArgument, "a joint value that is not from -1e9 to 1e9");
+  for (const Transform& pose : state.poses)
+    if (!(pose.translation.cwiseAbs().maxCoeff() <= kLargest))
+      throw Error(ErrorCode::InvalidArgument, "a position that is not from -1e9 to 1e9");
   for (const auto& a : state.attachments)
     if (a && (a->robot >= world.robots.size() ||
               a->link >= world.robots[a->robot].kinematics.links.size()))
@@ -105,8 +110,9 @@ Checker::Checker(const World& world) : world_(&world) {
     const std::size_t n = robot.kinematics.variables.size();
     std::vector<double> low(n), high(n);
     for (std::size_t i = 0; i < n; ++i) {
-      low[i] = robot.kinematics.variables[i].lower.value_or(-kFarthest);
-      high[i] = robot.kinematics.variables[i].upper.value_or(kFarthest);
+      const robot::Variable& variable = robot.kinematics.variables[i];
+      low[i] = std::max(variable.lower.value_or(-kFarthest), -kFarthest);
+      high[i] = std::max(std::min(variable.upper.value_or(kFarthest), kFarthest), low[i]);
     }
     error_.emplace_back();
     for (std::size_t s = 0; s < robot.shapes.size(); ++s) {

@@ -81,7 +81,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     for (const std::string& name : object.names)
       if (name == value)
         throw Error(ErrorCode::InvalidInput,
-                    name_ + ": " + place_of(text_, at) + ": '" + value + "' is there twice");
+                    name_ + ": " + place_of(text_, at) + ": '" + value + "' is used twice");
     object.names.push_back(value);
     object.names_at.push_back(at);
     return true;

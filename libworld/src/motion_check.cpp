@@ -55,6 +55,8 @@ class Motion {
       for (std::size_t k = 0; k < all.size(); ++k) all[k] = k;
       if (!is_free(0, 1, all)) break;
     }
+    // What was merely near at some middle may be found free in its parts.
+    if (answer_.outcome != Outcome::Contact && !answer_.meets) answer_.contact.reset();
     return answer_;
   }
 
@@ -216,6 +218,8 @@ class Motion {
     const double middle = 0.5 * begin + 0.5 * end;
     const double half = std::max(middle - begin, end - middle) * kUp;
     place_movers(middle, pairs);
+    // The last stretch: doubles hold no instant between its ends.
+    const bool last = !(begin < middle && middle < end);
     std::vector<std::size_t> near;
     double farthest = 0;
     bool contact = false;
@@ -226,12 +230,12 @@ class Motion {
       near.push_back(k);
       farthest = std::max(farthest, slack);
       const auto meeting = slack > 0 ? ask(k, 0) : bodies;
-      if (contact || (!meeting && farthest > options_.resolution)) continue;
+      if (contact || (!meeting && !last && farthest > options_.resolution)) continue;
       contact = meeting.has_value();
       note(k, meeting ? *meeting : *bodies, middle, contact);
     }
     if (near.empty()) return true;
-    if (farthest <= options_.resolution || !(begin < middle && middle < end)) {
+    if (farthest <= options_.resolution || last) {
       answer_.outcome = Outcome::Contact;
       answer_.segment = segment_;
       answer_.share = begin;
@@ -284,8 +288,9 @@ MotionAnswer check_motion(const Checker& checker, const WorldState& state, std::
   for (const std::vector<double>& q : path) {
     if (q.size() != checker.world().robots[robot].kinematics.variables.size())
       throw Error(ErrorCode::InvalidArgument, "a waypoint of another robot");
-    if (!std::all_of(q.begin(), q.end(), [](double x) { return std::isfinite(x); }))
-      throw Error(ErrorCode::InvalidArgument, "a waypoint with a value that is not finite");
+    if (!std::all_of(q.begin(), q.end(), [](double x) { return std::abs(x) <= 1e9; }))
+      throw Error(ErrorCode::InvalidArgument,
+                  "a waypoint with a value that is not from -1e9 to 1e9");
   }
   return Motion(checker, state, robot, path, options).run();
 }

@@ -36,6 +36,7 @@ class Parser : detail::SceneRobot {
     for (const Located& c : list(root, "allowed_contacts")) add_contact(c);
     world_.attachments.resize(world_.objects.size());
     for (const Located& a : list(root, "attachments")) attach(a);
+    note_unknown_sources();
   }
 
   World take() { return std::move(world_); }
@@ -47,7 +48,7 @@ class Parser : detail::SceneRobot {
     const Located& value = need(object, "name");
     const std::string& name = string(value);
     if (name.find('/') != std::string::npos) fail(value, "a name with '/'");
-    if (!names_.insert(name).second) fail(value, "the name '" + name + "' is there twice");
+    if (!names_.insert(name).second) fail(value, "the name '" + name + "' is used twice");
     return name;
   }
 
@@ -117,7 +118,7 @@ class Parser : detail::SceneRobot {
     if (array(c).size() != 2) fail(c, "two names are expected");
     for (const Item& a : items_of(c.items[0]))
       for (const Item& b : items_of(c.items[1])) {
-        if (a == b) fail(c, "a thing and itself");
+        if (a == b) fail(c, "both names mean '" + world_.name_of(a) + "'");
         world_.allowed.push_back({a, b});
       }
   }
@@ -143,7 +144,7 @@ class Parser : detail::SceneRobot {
       if (found == grasps.end()) fail(*grasp, "the object has no grasp '" + grasp->text + "'");
       if (find(a, "position") != nullptr || find(a, "rpy") != nullptr ||
           find(a, "quaternion") != nullptr)
-        fail(*grasp, "a grasp and a pose are one too many");
+        fail(*grasp, "give either a grasp or a pose, not both");
       out.pose = found->pose;
     }
     const Located *link = find(a, "link"), *tool = find(a, "tool"), *gripper = find(a, "gripper");

@@ -66,8 +66,8 @@ std::vector<double> SceneRobot::read_home(const Located* value, const Located& a
 }
 
 RobotModel SceneRobot::read(const Located& r, const std::string& name) {
-  known(r, {"name", "urdf", "base", "home", "limits", "links", "links_without_set", "tools",
-            "grippers", "allowed_contacts", "never_in_contact"});
+  known(r, {"name", "urdf", "shapes", "base", "home", "limits", "links", "links_without_set",
+            "tools", "grippers", "allowed_contacts", "never_in_contact"});
   RobotModel out;
   out.name = name;
   const File urdf = file(need(r, "urdf"));
@@ -76,10 +76,15 @@ RobotModel SceneRobot::read(const Located& r, const std::string& name) {
   } catch (const Error& error) {
     fail(need(r, "urdf"), error.what());
   }
+  const bool visual = is_of_visual_shapes(r);
+  note_bare_links(out, visual);
+  // From here on, shapes are those that the sets stand for.
+  if (visual)
+    for (robot::Link& link : out.kinematics.links) link.collision = link.visual;
   out.base = pose_member(r, "base");
   if (const Located* limits = find(r, "limits")) read_limits(*limits, out.kinematics);
   out.home = read_home(find(r, "home"), r, out.kinematics);
-  add_shapes(r, urdf, out);
+  add_shapes(r, urdf, visual, out);
   for (const Located& tool : list(r, "tools")) {
     known(tool, {"name", "link", "position", "rpy", "quaternion"});
     out.tools.push_back(
@@ -93,28 +98,65 @@ RobotModel SceneRobot::read(const Located& r, const std::string& name) {
     out.grippers.push_back(std::move(g));
   }
   out.fingerprint = fingerprint_of(out);
-  out.allowed = connected_links(out.kinematics);
+  out.allowed = connected_links(out);
   for (const Located& pair : list(r, "allowed_contacts"))
     out.allowed.push_back(pair_of(out, pair, AllowedPair::Reason::Stated));
   add_proved(r, out);
   return out;
 }
 
-void SceneRobot::add_shapes(const Located& r, const File& urdf, RobotModel& out) {
+bool SceneRobot::is_of_visual_shapes(const Located& r) const {
+  const Located* shapes = find(r, "shapes");
+  if (shapes == nullptr || string(*shapes) == "collision") return false;
+  if (shapes->text != "visual") fail(*shapes, "'collision' or 'visual' is expected");
+  return true;
+}
+
+void SceneRobot::note_bare_links(const RobotModel& robot, bool visual) {
+  std::vector<std::string> bare;
+  for (const robot::Link& link : robot.kinematics.links)
+    if ((visual ? link.visual : link.collision).empty() &&
+        !(visual ? link.collision : link.visual).empty())
+      bare.push_back(link.name);
+  if (bare.empty()) return;
+  std::string names;
+  for (const std::string& name : bare) names += (names.empty() ? "'" : ", '") + name + "'";
+  notes.push_back(file_name() + ": robot '" + robot.name + "': " + names +
+                  (bare.size() == 1 ? " has" : " have") + " shapes for " +
+                  (visual ? "collisions" : "drawing") +
+                  " only: nothing is checked of them unless 'links' gives a set");
+}
+
+void SceneRobot::require_shapes(const Loaded& loaded, const Located& value, bool visual) const {
+  const geom::Provenance& p = loaded.set.provenance;
+  const bool of_visual =
+      (" " + p.parameters + " ").find(" --geometry visual ") != std::string::npos;
+  if (of_visual && !visual)
+    fail(
+        need(value, "file"),
+        loaded.file.name +
+            " was made of the shapes for drawing (visual), not of those for collisions; if that is "
+            "meant, state \"shapes\": \"visual\" in the robot");
+  if (visual && !of_visual && !p.parameters.empty())
+    fail(need(value, "file"), loaded.file.name +
+                                  " was made of the shapes for collisions, but the robot states "
+                                  "\"shapes\": \"visual\"");
+}
+
+void SceneRobot::add_shapes(const Located& r, const File& urdf, bool visual, RobotModel& out) {
   std::set<std::uint32_t> has;
   for (const Located& l : list(r, "links")) {
     known(l, {"link", "outer", "inner"});
     const std::uint32_t link = link_of(out.kinematics, need(l, "link"));
     const std::string& name = out.kinematics.links[link].name;
-    if (!has.insert(link).second) fail(l, "link '" + name + "' is there twice");
+    if (!has.insert(link).second) fail(l, "link '" + name + "' has two entries");
     const Loaded loaded = container(need(l, "outer"), "outer");
     const geom::Provenance& p = loaded.set.provenance;
     if (p.frame != name)
       fail(need(l, "outer"),
            loaded.file.name + " is in the frame of '" + p.frame + "', not of link '" + name + "'");
-    if (p.source.ends_with(".urdf") && p.source_sha256 != urdf.sha256)
-      fail(need(l, "outer"), loaded.file.name + " was made of another robot than " + urdf.name +
-                                 " is now: make it anew");
+    require_source(loaded, need(l, "outer"), urdf.sha256);
+    require_shapes(loaded, need(l, "outer"), visual);
     out.shapes.push_back({link, set(loaded, need(l, "outer")), optional_inner(l)});
   }
   std::set<std::uint32_t> without;
@@ -123,8 +165,8 @@ void SceneRobot::add_shapes(const Located& r, const File& urdf, RobotModel& out)
     const robot::Link& link = out.kinematics.links[l];
     if (link.collision.empty() || has.contains(l)) continue;
     if (!without.contains(l))
-      fail(r, "link '" + link.name +
-                  "' has shapes for collisions, but no set: give it one in 'links', or name it in "
+      fail(r, "link '" + link.name + "' has shapes" + (visual ? "" : " for collisions") +
+                  ", but no set: give it one in 'links', or name it in "
                   "'links_without_set', and nothing will be checked of it");
     notes.push_back(file_name() + ": robot '" + out.name + "': link '" + link.name +
                     "' has no set: nothing is checked of it");
@@ -136,7 +178,7 @@ AllowedPair SceneRobot::pair_of(const RobotModel& robot, const Located& value,
   if (array(value).size() != 2) fail(value, "two links are expected");
   std::uint32_t a = link_of(robot.kinematics, value.items[0]),
                 b = link_of(robot.kinematics, value.items[1]);
-  if (a == b) fail(value, "a link and itself");
+  if (a == b) fail(value, "both names mean one link");
   if (a > b) std::swap(a, b);
   return {a, b, reason};
 }

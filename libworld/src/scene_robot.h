@@ -23,7 +23,10 @@ class SceneRobot : public SceneSets {
   std::vector<double> read_home(const Located* value, const Located& at,
                                 const robot::Robot& robot) const;
 
-  void add_shapes(const Located& r, const File& urdf, RobotModel& out);
+  bool is_of_visual_shapes(const Located& r) const;
+  void note_bare_links(const RobotModel& robot, bool visual);
+  void require_shapes(const Loaded& loaded, const Located& value, bool visual) const;
+  void add_shapes(const Located& r, const File& urdf, bool visual, RobotModel& out);
 
   AllowedPair pair_of(const RobotModel& robot, const Located& value,
                       AllowedPair::Reason reason) const;

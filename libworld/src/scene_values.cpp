@@ -14,6 +14,11 @@ namespace kaboum::world::detail {
 
 using Kind = Located::Kind;
 
+namespace {
+/// Beyond that, rounding of doubles is not small against any robot.
+constexpr double kFarthest = 1e9;
+}  // namespace
+
 void SceneValues::fail(const Located& at, const std::string& what) const {
   throw Error(ErrorCode::InvalidInput, name_ + ": " + place_of(text_, at.at) + ": " + what);
 }
@@ -76,12 +81,15 @@ std::vector<double> SceneValues::numbers(const Located& value, std::size_t count
 
 Vec3 SceneValues::vector(const Located& value) const {
   const std::vector<double> v = numbers(value, 3);
+  for (std::size_t i = 0; i < 3; ++i)
+    if (!(std::abs(v[i]) <= kFarthest))
+      fail(value.items[i], "a number from -1e9 to 1e9 is expected");
   return {v[0], v[1], v[2]};
 }
 
 Vec3 SceneValues::unit_vector(const Located& value) const {
   const Vec3 v = vector(value);
-  if (!(v.norm() > 1e-100) || !(v.norm() < 1e100)) fail(value, "a direction of length 0");
+  if (!(v.norm() > 1e-100)) fail(value, "a direction of length 0");
   return v.normalized();
 }
 
@@ -90,7 +98,7 @@ Transform SceneValues::pose(const Located& object) const {
   if (const Located* position = find(object, "position")) out.translation = vector(*position);
   const Located *rpy = find(object, "rpy"), *quaternion = find(object, "quaternion");
   if (rpy != nullptr && quaternion != nullptr)
-    fail(*quaternion, "'rpy' and 'quaternion' are one too many: leave one out");
+    fail(*quaternion, "give either 'rpy' or 'quaternion', not both");
   if (rpy != nullptr) {
     const Vec3 angles = vector(*rpy);
     if (!angles.isZero(0))

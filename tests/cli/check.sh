@@ -25,6 +25,7 @@ cell["objects"][0]["pose"] = {"position": [float(x) for x in sys.argv[2:5]]}
 json.dump(cell, open(sys.argv[1], "w"), indent=1)
 END
 }
+grep -q '"made_from"' cell.json || fail "no word of what sets were made from"
 put free.json 20 0 2
 put near.json 0 5 2
 shows 0 '^free$' "$BIN/kaboum-check" free.json
@@ -38,6 +39,17 @@ grep -q 'configuration 3: free' out.txt || fail "the third configuration is free
 printf 'j1,j2\n0,0\n3,0\n' >through.csv
 shows 1 'free until waypoint 1 + 0\.[34]' "$BIN/kaboum-check" near.json --path through.csv --report motion.json
 grep -q '"outcome": "contact"' motion.json || fail "no outcome in the report"
+# Waypoints are counted from 1 everywhere.
+[ "$(grep -c '"waypoint": 1' motion.json)" = 2 ] || fail "waypoints in the report: $(cat motion.json)"
+printf 'j1,j2\n1.57,0\n3,0\n' >inside.csv
+shows 1 'not free from the first waypoint on; at waypoint 1' "$BIN/kaboum-check" near.json --path inside.csv
+for how in '--path through.csv' '--configuration 1.57,0' '--configuration 1.57,0 --distance'; do
+  # shellcheck disable=SC2086
+  run_tool 1 "$BIN/kaboum-check" near.json $how --quiet
+  [ ! -s out.txt ] || fail "prints with --quiet: $how: $(cat out.txt)"
+done
+expect 2 '2 values are expected, one for each of j1,j2, not 1' "$BIN/kaboum-check" near.json --configuration 0
+expect 2 'not 3' "$BIN/kaboum-check" near.json --configuration 0,0,0
 printf 'j1,j2\n0,0\n-3,1\n' >away.csv
 shows 0 'free at every instant' "$BIN/kaboum-check" near.json --path away.csv
 shows 0 'free at every instant' "$BIN/kaboum-check" near.json --path away.csv --robot arm --resolution 0.001
@@ -48,12 +60,39 @@ expect 3 'limits' "$BIN/kaboum-check" near.json --configuration 4,0
 shows 0 free "$BIN/kaboum-check" near.json --configuration=-3.5,0 --ignore-limits
 expect 2 "no robot 'arn'; did you mean 'arm'" "$BIN/kaboum-check" near.json --robot arn
 expect 2 'excludes' "$BIN/kaboum-check" near.json --path away.csv --configuration 0,0
+# Pictures.
+expect 1 '' "$BIN/kaboum-check" near.json --configuration 1.57,0 --preview near.png
+expect 1 '' "$BIN/kaboum-check" near.json --path through.csv --preview motion.png
+for f in near.png motion.png; do head -c 4 $f | grep -q PNG || fail "$f is no picture"; done
+expect 2 'would overwrite\|same file\|input' "$BIN/kaboum-check" near.json --preview near.json
+# Things in regions.
+cube 1 | awk 'NR > 2 && NR <= 10 { print $1 * 9 - 4, $2 * 9 - 4, $3 * 9 - 4; next } { print }' >meshes/room.off
+expect 0 '' "$BIN/kaboum-scene" make room.json --robot arm=arm.urdf --object box=meshes/cube.off --region room=meshes/room.off --no-cache
+python3 -c '
+import json, sys
+room = json.load(open("room.json"))
+room["objects"][0]["pose"] = {"position": [-3, -3, -3]}
+json.dump(room, sys.stdout)' >in.json
+shows 0 'box in room: inside' "$BIN/kaboum-check" in.json --inside box=room --report in-report.json
+grep -q '"answer": "inside"' in-report.json || fail "no inclusion in the report"
+shows 1 'arm in room: not certainly inside' "$BIN/kaboum-check" in.json --inside arm=room
+shows 0 'arm/base in room: inside' "$BIN/kaboum-check" in.json --inside arm/base=room --inside box=room
+expect 2 "no region 'rom'; did you mean 'room'" "$BIN/kaboum-check" in.json --inside box=rom
+expect 2 "'bx'; did you mean 'box'" "$BIN/kaboum-check" in.json --inside bx=room
 expect 2 'are for configurations' "$BIN/kaboum-check" near.json --path away.csv --resting
 # Files that are not what they were.
 cp cell/box.glb kept.glb
 cp cell/box-inner.glb cell/box.glb
 expect 3 'line [0-9]*, column [0-9]*: cell/box.glb is not the file' "$BIN/kaboum-check" near.json
 cp kept.glb cell/box.glb
+# Nor what they were made from.
+cp meshes/cube.off kept.off
+cube 2 >meshes/cube.off
+expect 3 'meshes/cube.off has changed since cell/.*.glb was made from it' "$BIN/kaboum-check" near.json
+mv kept.off meshes/cube.off
+mkdir elsewhere
+cp near.json elsewhere/near.json
+expect 3 'arm.urdf: cannot be .*moved or copied with all files that it names' "$BIN/kaboum-check" elsewhere/near.json
 sed 's/box-inner.glb/box.glb/; s/"inner"/"innr"/' near.json >typo.json
 expect 3 "'innr' is not known here; did you mean 'inner'" "$BIN/kaboum-check" typo.json
 expect 3 'cut short' sh -c "head -c 200 near.json >cut.json; '$BIN/kaboum-check' cut.json"
@@ -68,13 +107,24 @@ sed 's/"name": "arm",/"name": "arm", "limits": {"j2": [-1, 1]},/' proved.json >o
 expect 3 'proved for other limits or other sets' "$BIN/kaboum-check" other.json
 # Making scenes.
 expect 2 'NAME=FILE is expected' "$BIN/kaboum-scene" make bad.json --object meshes/cube.off
-expect 2 'is there twice' "$BIN/kaboum-scene" make bad.json --object a=meshes/cube.off --object a=meshes/bar.off
+expect 2 'is used twice' "$BIN/kaboum-scene" make bad.json --object a=meshes/cube.off --object a=meshes/bar.off
 for option in --path --configuration --configurations; do expect 2 'is empty' "$BIN/kaboum-check" near.json $option ''; done
 sed 's/"unit": "m"/"unit": "mm"/' near.json >mm.json
 expect 3 'URDFs are in m' "$BIN/kaboum-check" mm.json
 expect 2 'cell.json exists; --force' "$BIN/kaboum-scene" make cell.json --object box=meshes/cube.off
 expect 2 'ends in .json' "$BIN/kaboum-scene" make cell --object box=meshes/cube.off
 expect 2 'URDFs are in m' "$BIN/kaboum-scene" make bad.json --unit mm --robot arm=arm.urdf --object box=meshes/cube.off
+# Files that state their unit, and others: a set is in the unit that it says.
+printf '<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset><unit meter="0.001"/></asset>
+<library_geometries><geometry id="g"><mesh><source id="p"><float_array id="a" count="12">0 0 0 1 0 0 0 1 0 0 0 1</float_array><technique_common>
+<accessor source="#a" count="4" stride="3"><param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices><triangles count="4"><input semantic="VERTEX" source="#v" offset="0"/>
+<p>0 2 1 0 1 3 1 2 3 2 0 3</p></triangles></mesh></geometry></library_geometries><library_visual_scenes><visual_scene id="s"><node>
+<instance_geometry url="#g"/></node></visual_scene></library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>' >cup.dae
+expect 3 'cup.dae: its vertices are in m as read' "$BIN/kaboum-scene" make cup.json --object cup=cup.dae --unit mm --no-cache
+absent cup.json cup
+expect 0 '' "$BIN/kaboum-scene" make cup.json --object cup=cup.dae --no-cache
+expect 0 'in m as read, and so is its set, not in mm' "$BIN/bcd-decompose" cup.dae -o cup.glb --unit mm --no-cache
 expect 2 'nothing is asked for' "$BIN/kaboum-scene" make bad.json
 expect 3 'absent.stl' "$BIN/kaboum-scene" make bad.json --object a=absent.stl --no-cache
 absent bad.json bad

@@ -177,6 +177,7 @@ TEST(Collada, UnitsAndAxes) {
     const ReadResult r = read(d);
     EXPECT_EQ(soup(r.mesh)[1], Vec3(3, 0, 0));
     EXPECT_TRUE(has_note(r, "'0.5' metres"));
+    EXPECT_EQ(r.unit, "m");
     EXPECT_EQ(has_note(r, "up axis"), axis != std::string("Z_UP"));
   }
   Document metre;

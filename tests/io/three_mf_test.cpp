@@ -41,7 +41,10 @@ TEST(ThreeMf, MeshInDoublePrecision) {
   EXPECT_FALSE(r.single_precision);
   EXPECT_EQ(r.mesh.vertices[3].z(), 0.1);
   EXPECT_TRUE(has_note(r, "millimeter"));
-  EXPECT_TRUE(has_note(read(three_mf(replaced(kOne, "<model", "<model unit=\"inch\""))), "inch"));
+  EXPECT_EQ(r.unit, "mm");
+  const ReadResult inches = read(three_mf(replaced(kOne, "<model", "<model unit=\"inch\"")));
+  EXPECT_TRUE(has_note(inches, "inch"));
+  EXPECT_EQ(inches.unit, "in");
 }
 
 TEST(ThreeMf, TransformsAreOfRowVectors) {

@@ -195,6 +195,9 @@ TEST(X3d, Units) {
       parse(unit("category='length' name='mm' conversionFactor='0.001'"), Format::X3d);
   EXPECT_EQ(soup(r.mesh), kExpected);
   EXPECT_TRUE(has_note(r, "0.001"));
+  EXPECT_EQ(r.unit, "mm");
+  EXPECT_EQ(parse(unit("category='length' name='x' conversionFactor='0.5'"), Format::X3d).unit,
+            "0.5 m");
   EXPECT_NO_THROW(parse(unit("category='mass' name='g' conversionFactor='0.001'"), Format::X3d));
   expect_error(unit("category='angle' name='degree' conversionFactor='0.01745'"), Format::X3d,
                {"radians"});

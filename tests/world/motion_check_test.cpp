@@ -102,6 +102,45 @@ TEST(CheckMotion, SeesWhatSamplesJumpOver) {
   EXPECT_EQ(world.name_of(answer.contact->items[1]), "plate");
 }
 
+// Where bodies pass each other so closely that doubles hold no instant to tell by, the contact is
+// still named.
+TEST(CheckMotion, ContactIsNamedHoweverNarrow) {
+  SceneFiles files;
+  const std::string urdf = R"(<robot name="arm"><link name="base"/><link name="l1"><collision>
+    <geometry><box size="1 1 1"/></geometry></collision></link><joint name="j" type="prismatic">
+    <parent link="base"/><child link="l1"/><axis xyz="1 0 0"/>
+    <limit lower="-9" upper="9" effort="1" velocity="1"/></joint></robot>)";
+  files.files["slide.urdf"] = {urdf.begin(), urdf.end()};
+  files.put("slide.glb",
+            test::set_of({test::box_mesh({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5})}, "outer", 0, "l1"));
+  World world = files.world(
+      R"({"kaboum_scene": 1, "unit": "m", "robots": [{"name": "arm", "urdf": )" +
+      files.ref("slide.urdf") + R"(, "links": [{"link": "l1", "outer": )" + files.ref("slide.glb") +
+      R"(}]}], "objects": [{"name": "box", "outer": )" + files.ref("box.glb") + "}]}");
+  const Checker checker(world);
+  const auto at = [&](double y) {
+    WorldState state = initial_state(world);
+    state.poses[0].translation.y() = y;
+    return check_motion(checker, state, 0, {{-8}, {8}},
+                        {.resolution = 1e-300, .most_intervals = 2000});
+  };
+  double touching = 1, apart = 1.0625;
+  ASSERT_EQ(at(touching).outcome, Outcome::Contact);
+  ASSERT_NE(at(apart).outcome, Outcome::Contact);
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (touching + apart);
+    (at(middle).outcome == Outcome::Contact ? touching : apart) = middle;
+  }
+  int nearly = 0;
+  for (int i = 0; i < 20; ++i, touching = std::nextafter(touching, 0)) {
+    const MotionAnswer answer = at(touching);
+    ASSERT_EQ(answer.outcome, Outcome::Contact) << i;
+    ASSERT_TRUE(answer.contact) << i;
+    nearly += answer.meets ? 0 : 1;
+  }
+  EXPECT_GT(nearly, 0);
+}
+
 TEST(CheckMotion, PathsOfOneWaypointAndOfNone) {
   const SceneFiles files;
   const World world = arm_among_boxes(files);

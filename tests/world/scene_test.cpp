@@ -89,9 +89,9 @@ TEST(Scene, ErrorsNameLineAndColumn) {
   expect_refused(files, replaced(good, "\"objects\"", "\"object\""),
                  {"'object' is not known", "did you mean 'objects'", "column 3"});
   expect_refused(files, replaced(good, "\"unit\": \"m\"", "\"unit\": \"m\", \"unit\": \"m\""),
-                 {"line 1, column 34", "'unit' is there twice"});
+                 {"line 1, column 34", "'unit' is used twice"});
   expect_refused(files, replaced(good, "\"name\": \"box\"", "\"name\": \"arm\""),
-                 {"the name 'arm' is there twice"});
+                 {"the name 'arm' is used twice"});
   expect_refused(files, good.substr(0, good.size() / 2), {"the JSON is cut short", "line"});
   expect_refused(files, replaced(good, "\"link\": \"base\"", "\"link\": \"bas\""),
                  {"no link 'bas'", "did you mean"});
@@ -135,7 +135,103 @@ TEST(Scene, WhatIsStaleOrOfTheWrongKindIsRefused) {
   other.provenance.source = "arm.urdf";
   other.provenance.source_sha256 = std::string(64, '0');
   files.put("l2.glb", other);
-  expect_refused(files, files.scene(), {"made of another robot than arm.urdf"});
+  expect_refused(files, files.scene(),
+                 {"l2.glb was made from another file 'arm.urdf' than the robot"});
+}
+
+// The mesh of a set changes, or goes away, after the set was made from it.
+TEST(Scene, SetsAreMadeFromWhatIsThere) {
+  SceneFiles files;
+  const auto put = [&](const std::string& name, const std::string& text) {
+    files.files[name] = {text.begin(), text.end()};
+  };
+  put("cup.stl", "a cup");
+  put("other.stl", "a pot");
+  geom::ConvexSet cup = test::set_of({test::box_mesh({0, 0, 0}, {1, 1, 1})}, "outer", 0.01);
+  cup.provenance.source = "cup.stl";
+  cup.provenance.source_sha256 = files.hash("cup.stl");
+  files.put("cup.glb", cup);
+  const auto made_from = [&](const std::string& sources) {
+    std::string ref = files.ref("cup.glb");
+    ref.insert(ref.size() - 1, sources);
+    return files.scene(kBox + ref + "}]");
+  };
+  const std::string good = made_from(R"(, "made_from": [)" + files.ref("cup.stl") + "]");
+  SceneNotes notes;
+  const auto read = [&](const std::string& f) { return files.read(f); };
+  parse_scene(good, "scene.json", read, &notes);
+  EXPECT_TRUE(notes.notes.empty());
+  expect_refused(files, made_from(R"(, "made_from": [)" + files.ref("other.stl") + "]"),
+                 {"cup.glb was made from another file 'cup.stl' than those in 'made_from'"});
+  parse_scene(made_from(""), "scene.json", read, &notes);
+  ASSERT_EQ(notes.notes.size(), 1U);
+  EXPECT_NE(notes.notes[0].find("cup.glb does not say in 'made_from'"), std::string::npos);
+  put("cup.stl", "a larger cup");
+  expect_refused(files, good, {"cup.stl has changed since cup.glb was made from it: make"});
+  files.files.erase("cup.stl");
+  expect_refused(files, good,
+                 {"cup.stl: cannot be read", "cup.glb was made from it: bring it back"});
+}
+
+// Robots' files may have any name.
+TEST(Scene, SetsOfLinksAreOfTheRobotAsItIs) {
+  SceneFiles files;
+  files.files["arm.xml"] = files.files["arm.urdf"];
+  geom::ConvexSet set = test::set_of({test::box_mesh({0, 0, 0}, {1, 1, 1})}, "outer", 0.01, "l2");
+  set.provenance.source = "arm.xml";
+  set.provenance.source_sha256 = files.hash("arm.xml");
+  files.put("l2.glb", set);
+  const auto scene = [&] {
+    return replaced(files.scene(), files.ref("arm.urdf"), files.ref("arm.xml"));
+  };
+  EXPECT_NO_THROW(files.world(scene()));
+  files.files["arm.xml"].push_back('\n');
+  expect_refused(files, scene(), {"l2.glb was made from another file 'arm.xml' than the robot"});
+}
+
+TEST(Scene, SetsOfShapesForDrawingAreNoneForCollisions) {
+  SceneFiles files;
+  geom::ConvexSet set = test::set_of({test::box_mesh({0, 0, 0}, {1, 1, 1})}, "outer", 0.01, "l2");
+  set.provenance.parameters = "--epsilon 1% --geometry visual";
+  files.put("l2.glb", set);
+  expect_refused(files, files.scene(),
+                 {"l2.glb was made of the shapes for drawing", R"("shapes": "visual")"});
+  // The links have no shapes for drawing; the sets that are given count.
+  SceneNotes notes;
+  const std::string visual = files.scene("", R"("shapes": "visual")");
+  parse_scene(
+      visual, "scene.json", [&](const std::string& f) { return files.read(f); }, &notes);
+  ASSERT_EQ(notes.notes.size(), 1U);
+  EXPECT_NE(notes.notes[0].find("'base', 'l1', 'l2', 'l3' have shapes for collisions only"),
+            std::string::npos);
+  set.provenance.parameters = "--epsilon 1%";
+  files.put("l2.glb", set);
+  expect_refused(files, files.scene("", R"("shapes": "visual")"), {"made of the shapes for coll"});
+  expect_refused(files, files.scene("", R"("shapes": "both")"), {"'collision' or 'visual'"});
+}
+
+// Nothing is free of everything.
+TEST(Scene, EmptySetsAreRefused) {
+  SceneFiles files;
+  files.put("none.glb", test::set_of({}, "outer", 0.01));
+  expect_refused(files, files.scene(kBox + files.ref("none.glb") + "}]"), {"none.glb"});
+}
+
+TEST(Scene, PlacesAreWithinReason) {
+  const SceneFiles files;
+  const auto at = [&](const std::string& pose) {
+    return files.scene(kBox + files.ref("box.glb") + R"(, "pose": {"position": )" + pose + "}}]");
+  };
+  EXPECT_NO_THROW(files.world(at("[1e6, 0, 0]")));
+  expect_refused(files, at("[0, 1e300, 0]"), {"from -1e9 to 1e9"});
+  // Limits that say nothing are no reason for errors.
+  const World world = files.world(files.scene("", R"("limits": {"j1": [-1e300, 1e300]})"));
+  const Checker checker(world);
+  Scratch scratch;
+  WorldState state = initial_state(world);
+  EXPECT_FALSE(checker.find_contact(state, scratch));
+  state.q[0][0] = 1e300;
+  EXPECT_THROW((void)checker.find_contact(state, scratch), Error);
 }
 
 TEST(Scene, NoLinkIsForgotten) {
@@ -230,6 +326,44 @@ TEST(ExaminePairs, AdjacentNeverAndAlways) {
   }
 }
 
+// Contacts are looked for before anything is proved, however little work is allowed.
+TEST(ExaminePairs, ContactsAreFoundBySamples) {
+  const SceneFiles files;
+  const RobotModel robot = files.world(files.scene()).robots[0];
+  const auto of = [&](const std::string& a, const std::string& b, const PairOptions& options) {
+    for (const LinkPair& pair : examine_pairs(robot, options))
+      if (robot.kinematics.links[pair.a].name == a && robot.kinematics.links[pair.b].name == b)
+        return pair;
+    return LinkPair{};
+  };
+  EXPECT_TRUE(of("l1", "l3", {.most_boxes = 1}).meets);
+  EXPECT_FALSE(of("l1", "l3", {.most_boxes = 1, .samples = 1}).meets);
+  EXPECT_FALSE(of("l1", "l3", {.stop = [] { return true; }}).meets);
+}
+
+// What turns inside of another link always touches it: proved, and yet looked at.
+TEST(ExaminePairs, AlwaysInContactThoughMoving) {
+  RobotModel robot;
+  robot.kinematics = robot::parse_urdf(R"(<robot name="r"><link name="a"/><link name="b"/>
+    <link name="c"/><joint name="x" type="revolute"><parent link="a"/><child link="b"/>
+    <axis xyz="0 0 1"/><limit lower="-3" upper="3" effort="1" velocity="1"/></joint>
+    <joint name="y" type="revolute"><parent link="b"/><child link="c"/><axis xyz="0 0 1"/>
+    <limit lower="-3" upper="3" effort="1" velocity="1"/></joint></robot>)",
+                                       "r.urdf");
+  const auto box = [](double size) {
+    return BoundingSet(
+        test::set_of({test::box_mesh({-size, -size, -1}, {size, size, 1})}, "outer", 0.01));
+  };
+  robot.shapes = {{0, box(1), {}}, {1, box(0.5), {}}, {2, box(0.5), {}}};
+  for (const LinkPair& pair : examine_pairs(robot, {})) {
+    if (pair.a != 0 || pair.b != 2) continue;
+    EXPECT_TRUE(pair.meets_always);
+    EXPECT_FALSE(pair.reason);
+    return;
+  }
+  FAIL();
+}
+
 // A carriage on a rail and a wall beside it, both fixed to the cell: they may meet.
 TEST(ExaminePairs, WhatIsFixedElsewhereIsNotAdjacent) {
   const robot::Robot cell = robot::parse_urdf(R"(<robot name="cell"><link name="cell"/>
@@ -251,6 +385,21 @@ TEST(ExaminePairs, WhatIsFixedElsewhereIsNotAdjacent) {
   EXPECT_TRUE(has("rail", "carriage"));  // by way of a plate without shapes
   EXPECT_TRUE(has("rail", "wall"));      // fixed joints only
   EXPECT_FALSE(has("wall", "carriage"));
+}
+
+// A link without shapes whose set the scene gives is something between two others.
+TEST(ExaminePairs, LinksWithSetsAreNotLookedThrough) {
+  RobotModel robot;
+  robot.kinematics = robot::parse_urdf(R"(<robot name="r">
+    <link name="a"><collision><geometry><box size="1 1 1"/></geometry></collision></link><link name="b"/>
+    <link name="c"><collision><geometry><box size="1 1 1"/></geometry></collision></link>
+    <joint name="x" type="continuous"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint>
+    <joint name="y" type="fixed"><parent link="b"/><child link="c"/></joint></robot>)",
+                                       "r.urdf");
+  EXPECT_EQ(connected_links(robot).size(), 3U);
+  robot.shapes.push_back(
+      {1, BoundingSet(test::set_of({test::box_mesh({0, 0, 0}, {1, 1, 1})}, "outer", 0)), {}});
+  EXPECT_EQ(connected_links(robot).size(), 2U);
 }
 
 // Never in contact is proved for values within the limits, and means nothing beyond them.

@@ -25,7 +25,9 @@ class TooCoarse : public Error {
   explicit TooCoarse(const std::string& file);
 };
 
-/// Reads the file and finds or certifies its set.
+/// Reads the file and finds or certifies its set, which says the unit that the vertices are in as
+/// read, whatever the request says, where the file or its format states one: in a note where that
+/// is another one.
 /// @param format   by default by extension.
 /// @param request  its source becomes the file's name.
 /// @param cache    null: none.

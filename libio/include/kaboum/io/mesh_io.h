@@ -55,6 +55,9 @@ struct ReadResult {
   std::vector<std::string> notes;       ///< things a user should know; one sentence each
   /// Files read besides this one, each once: VRML's and X3D's Inline, glTF's buffers.
   std::vector<std::string> other_files = {};
+  /// Unit of length of the vertices where the file states it (3MF, FBX, X3D) or its format has one
+  /// (COLLADA, glTF: m): one of kLengthUnits, or a length ("0.005 m"). Empty: nothing says it.
+  std::string unit = {};
 };
 
 /// Parses a file held in memory.

@@ -23,7 +23,7 @@ struct MotionAnswer {
   /// of it. With Contact, all before is free.
   std::size_t segment = 0;
   double share = 0;
-  std::optional<Contact> contact;  ///< the first that was found
+  std::optional<Contact> contact;  ///< the first that was found; there is one with Contact
   /// When: in `segment`, the contact was found at this share. Not below `share`.
   std::size_t contact_segment = 0;
   double contact_share = 0;
