@@ -78,7 +78,7 @@ grep -q '"answer": "inside"' in-report.json || fail "no inclusion in the report"
 shows 1 'arm in room: not certainly inside' "$BIN/kaboum-check" in.json --inside arm=room
 shows 0 'arm/base in room: inside' "$BIN/kaboum-check" in.json --inside arm/base=room --inside box=room
 expect 2 "no region 'rom'; did you mean 'room'" "$BIN/kaboum-check" in.json --inside box=rom
-expect 2 "'bx'; did you mean 'box'" "$BIN/kaboum-check" in.json --inside bx=room
+expect 2 "no object, link or robot 'bx'" "$BIN/kaboum-check" in.json --inside bx=room
 expect 2 'are for configurations' "$BIN/kaboum-check" near.json --path away.csv --resting
 # Files that are not what they were.
 cp cell/box.glb kept.glb
