@@ -1,8 +1,7 @@
 #pragma once
 
+#include <kaboum/base/random.h>
 #include <kaboum/kinematics/arm.h>
-
-#include "random_numbers.h"
 
 namespace kaboum::kinematics {
 

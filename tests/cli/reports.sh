@@ -42,6 +42,7 @@ json.dump(cell, open("cell.json", "w"))'
 run pairs "$BIN/kaboum-scene" pairs cell.json
 run state "$BIN/kaboum-check" cell.json --distance
 run motion "$BIN/kaboum-check" cell.json --path path.csv
+run move "$BIN/kaboum-move" cell.json --from 0 --to 1 -o moved.csv --trajectory samples.csv
 expect 1 '' "$BIN/bound-verify" --outer wide.off box.off --report reports/refuted.json
 run ik "$BIN/kaboum-ik" arm.urdf --pose-of 0.5
 cat >domain.pddl <<'END'

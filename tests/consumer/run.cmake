@@ -30,6 +30,7 @@ find_component("")
 find_component(plan Eigen3 CGAL embree assimp PkgConfig)
 find_component(collide embree assimp tinyxml2 PkgConfig)
 find_component(kinematics embree assimp PkgConfig)
+find_component(motion embree)
 find_component(bcd embree assimp tinyxml2 PkgConfig)
 
 # A component that does not exist is an error, not a package that is found.

@@ -1,8 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
-namespace kaboum::kinematics {
+namespace kaboum {
 
 /// Numbers that are the same on every platform, which those of <random>'s distributions are not
 /// (SplitMix64).
@@ -27,4 +28,4 @@ class Random {
   std::uint64_t state_;
 };
 
-}  // namespace kaboum::kinematics
+}  // namespace kaboum

@@ -1,0 +1,180 @@
+// Configurations of a robot as a search sees them, and the count of what it does.
+
+#include "search_space.h"
+
+#include <kaboum/base/error.h>
+#include <kaboum/robot/path.h>
+#include <kaboum/sweep/motion.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace kaboum::motion {
+namespace {
+
+using Outcome = PathAnswer::Outcome;
+
+// Steps in about seconds of one core; only their ratio matters to what is found.
+constexpr double kConfiguration = 4e-6, kMotion = 20e-6, kInterval = 5e-6, kNode = 10e-9;
+
+constexpr std::size_t kMostBlockers = 5;
+
+/// A variable that moves the robot little is not to be free of cost.
+constexpr double kLeastWeight = 0.1;
+
+}  // namespace
+
+void require_fits(const world::Checker& checker, const world::WorldState& state, std::size_t robot,
+                  const Values& q) {
+  const std::vector<world::RobotModel>& robots = checker.world().robots;
+  if (robot >= robots.size()) throw Error(ErrorCode::InvalidArgument, "no such robot");
+  if (state.q.size() != robots.size() ||
+      state.attachments.size() != checker.world().objects.size() ||
+      state.poses.size() != checker.world().objects.size())
+    throw Error(ErrorCode::InvalidArgument, "a state of another world");
+  if (q.size() != robots[robot].kinematics.variables.size())
+    throw Error(ErrorCode::InvalidArgument, "a configuration of another robot");
+  if (!std::all_of(q.begin(), q.end(), [](double x) { return std::isfinite(x); }))
+    throw Error(ErrorCode::InvalidArgument, "a configuration with a value that is not finite");
+}
+
+Values between(const Values& a, const Values& b, double share) {
+  Values out = a;
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] += share * (b[i] - a[i]);
+  return out;
+}
+
+SearchSpace::SearchSpace(const world::Checker& checker, world::WorldState state, std::size_t robot,
+                         const PathOptions& options)
+    : checker_(checker), state_(std::move(state)), robot_(robot), options_(options) {
+  const world::RobotModel& model = checker.world().robots[robot];
+  const std::size_t count = model.kinematics.variables.size();
+  weight_.assign(count, 0);
+  const auto weigh = [&](std::uint32_t link, const std::vector<geom::Vec3>& points) {
+    for (std::size_t i = 0; i < count; ++i) {
+      Values to = model.home;
+      to[i] += 1;
+      const sweep::LinkMotion motion(model.kinematics, link, model.home, to);
+      if (motion.moves())
+        weight_[i] = std::max(weight_[i], sweep::MotionBounds(motion, points).derivative(1));
+    }
+  };
+  for (std::size_t i = 0; i < model.shapes.size(); ++i)
+    weigh(model.shapes[i].link, checker.hull_of({robot, i}));
+  for (std::size_t o = 0; o < state_.attachments.size(); ++o) {
+    const auto& attachment = state_.attachments[o];
+    if (!attachment || attachment->robot != robot) continue;
+    std::vector<geom::Vec3> points = checker.hull_of({world::Item::kObject, o});
+    for (geom::Vec3& p : points) p = attachment->pose * p;
+    weigh(attachment->link, points);
+  }
+  double most = 0;
+  for (const double w : weight_) most = std::max(most, w);
+  if (!(most > 0)) most = 1;
+  for (double& w : weight_) w = std::max(w, kLeastWeight * most);
+  range_ = most;
+  spacing_ = 0.05 * most;
+}
+
+void SearchSpace::draw_around(const Values& start, std::span<const Values> goals) {
+  const robot::Robot& robot = kinematics();
+  lower_ = upper_ = near_lower_ = near_upper_ = start;
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    const robot::Variable& v = robot.variables[i];
+    double low = start[i], high = start[i];
+    for (const Values& goal : goals) {
+      low = std::min(low, goal[i]);
+      high = std::max(high, goal[i]);
+    }
+    // Joints that move along and have no limits go as far again as they have to, and a bit.
+    const bool turns = robot::is_angle(robot, v);
+    const double more = turns ? std::numbers::pi : high - low + 1;
+    lower_[i] = v.lower.value_or(low - more);
+    upper_[i] = v.upper.value_or(high + more);
+    near_lower_[i] = turns ? std::max(lower_[i], low - more) : lower_[i];
+    near_upper_[i] = turns ? std::min(upper_[i], high + more) : upper_[i];
+  }
+}
+
+Values SearchSpace::sample(Random& random) {
+  const bool anywhere = random.index(8) == 0;
+  const Values &low = anywhere ? lower_ : near_lower_, &high = anywhere ? upper_ : near_upper_;
+  Values q(low.size());
+  for (std::size_t i = 0; i < q.size(); ++i) q[i] = random.between(low[i], high[i]);
+  ++spent_.samples;
+  return q;
+}
+
+double SearchSpace::distance(const Values& a, const Values& b) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double d = weight_[i] * (b[i] - a[i]);
+    sum += d * d;
+  }
+  return std::sqrt(sum);
+}
+
+std::optional<world::Contact> SearchSpace::find_contact(const Values& q) {
+  ++spent_.configurations;
+  spent_.work += kConfiguration;
+  state_.q[robot_] = q;
+  std::optional<world::Contact> contact = checker_.find_contact(state_, scratch_);
+  note(contact);
+  return contact;
+}
+
+bool SearchSpace::looks_free(const Values& from, const Values& to) {
+  if (find_contact(to)) return false;
+  const auto parts = static_cast<std::size_t>(std::ceil(distance(from, to) / spacing_));
+  // Far apart first: halves, then quarters between them, and so on.
+  std::size_t most = 1;
+  while (most < parts) most *= 2;
+  for (std::size_t step = most; step > 1; step /= 2)
+    for (std::size_t at = step / 2; at < most; at += step)
+      if (find_contact(between(from, to, static_cast<double>(at) / static_cast<double>(most))))
+        return false;
+  return true;
+}
+
+world::MotionAnswer SearchSpace::check(const robot::Path& path) {
+  world::MotionAnswer answer = check_motion(checker_, state_, robot_, path, options_.check);
+  const std::size_t segments = std::min(answer.segment + 1, path.size());
+  spent_.motions += segments;
+  spent_.intervals += answer.intervals;
+  spent_.work +=
+      kMotion * static_cast<double>(segments) + kInterval * static_cast<double>(answer.intervals);
+  note(answer.contact);
+  return answer;
+}
+
+std::optional<Outcome> SearchSpace::ended() const {
+  if (work_ended()) return Outcome::WorkEnded;
+  if (spent_.nodes >= options_.most_nodes) return Outcome::NodesEnded;
+  const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start_;
+  if (time.count() >= options_.most_seconds) return Outcome::TimeEnded;
+  return std::nullopt;
+}
+
+void SearchSpace::count_nodes(std::size_t looked_at) {
+  spent_.work += kNode * static_cast<double>(looked_at);
+}
+
+void SearchSpace::note(const std::optional<world::Contact>& contact) {
+  if (contact) ++met_[contact->items];
+}
+
+std::vector<Blocker> SearchSpace::blockers() const {
+  std::vector<Blocker> out;
+  for (const auto& [items, times] : met_) out.push_back({items, times});
+  std::stable_sort(out.begin(), out.end(),
+                   [](const Blocker& a, const Blocker& b) { return a.times > b.times; });
+  if (out.size() > kMostBlockers) out.resize(kMostBlockers);
+  return out;
+}
+
+const robot::Robot& SearchSpace::kinematics() const {
+  return checker_.world().robots[robot_].kinematics;
+}
+
+}  // namespace kaboum::motion

@@ -1,0 +1,93 @@
+# shellcheck shell=sh disable=SC2154
+# kaboum-move: paths round what is in the way, their execution, reasons where there is none.
+. "$(dirname "$0")/common.sh"
+bar() {
+  printf 'OFF\n8 12 0\n0 -0.1 -0.1\n%s -0.1 -0.1\n%s 0.1 -0.1\n0 0.1 -0.1\n0 -0.1 0.1\n%s -0.1 0.1\n%s 0.1 0.1\n0 0.1 0.1\n' "$1" "$1" "$1" "$1"
+  printf '3 0 2 1\n3 0 3 2\n3 4 5 6\n3 4 6 7\n3 0 1 5\n3 0 5 4\n3 1 2 6\n3 1 6 5\n3 2 3 7\n3 2 7 6\n3 3 0 4\n3 3 4 7\n'
+}
+bar 1 >bar.off
+link() { echo "<link name=\"$1\"><collision><geometry><mesh filename=\"bar.off\"/></geometry></collision></link>"; }
+joint() {
+  echo "<joint name=\"$1\" type=\"revolute\"><parent link=\"$2\"/><child link=\"$3\"/><origin xyz=\"$4\"/>
+<axis xyz=\"0 0 1\"/><limit lower=\"-3\" upper=\"3\" effort=\"1\" velocity=\"$5\"/></joint>"
+}
+echo "<robot name=\"arm\"><link name=\"base\"/>$(link upper)$(link tip)$(joint j1 base upper '0 0 0' 2)$(joint j2 upper tip '1 0 0' 0)</robot>" >arm.urdf
+expect 0 '' "$BIN/kaboum-scene" make cell.json --robot arm=arm.urdf --object box=bar.off --no-cache
+# The box is where the stretched arm passes, out of the upper arm's reach.
+python3 - <<'END' || fail "scene"
+import json
+cell = json.load(open("cell.json"))
+cell["objects"][0]["pose"] = {"position": [1.5, 0, 0]}
+json.dump(cell, open("cell.json", "w"))
+END
+M=$BIN/kaboum-move
+expect 1 '' "$BIN/kaboum-check" cell.json --configuration=0,0
+expect 0 'free at every instant' "$M" cell.json --from=-0.8,0 --to 0.8,0 -o path.csv --trajectory samples.csv --report move.json
+head -1 path.csv | grep -qx 'j1,j2' || fail "no names of joints: $(head -1 path.csv)"
+grep -q '"straight": false' move.json || fail "a straight line through the box"
+grep -q '"arm/tip"' move.json || fail "nobody is named that was in the way"
+[ "$(wc -l <path.csv)" -ge 4 ] || fail "too few waypoints: $(cat path.csv)"
+# Both are read by others, and are free.
+shows 0 'free at every instant' "$BIN/kaboum-check" cell.json --path path.csv
+shows 0 'free at every instant' "$BIN/kaboum-check" cell.json --path samples.csv --resolution 1e-8 --max-intervals 100000000
+python3 - <<'END' || fail "samples"
+import csv, json
+rows = list(csv.reader(open("samples.csv")))
+path = list(csv.reader(open("path.csv")))
+assert rows[0] == ["time_from_start", "j1", "j2"], rows[0]
+values = [[float(x) for x in row] for row in rows[1:]]
+assert [row[1:] for row in (rows[1], rows[-1])] == [path[1], path[-1]]
+for a, b in zip(values, values[1:]):
+    step = b[0] - a[0]
+    assert abs(step - 0.001) < 1e-9, step
+    assert abs(b[1] - a[1]) <= step + 1e-9 and abs(b[2] - a[2]) <= step + 1e-9, (a, b)
+report = json.load(open("move.json"))
+assert report["trajectory"]["samples"] == len(values)
+assert report["outcome"] == "found" and len(report["waypoints"]) == len(path) - 1
+END
+# The same seed gives the same bytes on any number of threads; another one another path.
+for n in 1 2 5; do
+  expect 0 '' "$M" cell.json --from=-0.8,0 --to 0.8,0 -o "p$n.csv" --threads $n --seed 7 --report "r$n.json"
+  sed -e '/"resources"/,/}/d' -e "s/p$n\.//" "r$n.json" >"s$n.json"
+done
+for n in 2 5; do
+  cmp -s p1.csv p$n.csv || fail "path differs on $n threads"
+  cmp -s s1.json s$n.json || fail "report differs on $n threads"
+done
+expect 0 '' "$M" cell.json --from=-0.8,0 --to 0.8,0 -o p8.csv --seed 8
+! cmp -s p1.csv p8.csv || fail "the seed changes nothing"
+expect 0 '' "$M" cell.json --from=-0.8,0 --to 0.8,0 -o p.csv --timeout 60 --seed 7
+cmp -s p1.csv p.csv || fail "a limit of time changes the path"
+# Straight; from home; from where another path ends; to the nearest of several; in degrees.
+expect 0 'straight' "$M" cell.json --from=0.5,0 --to 1,1 -o p.csv
+shows 0 '^j1,j2$' "$M" cell.json --start p.csv --to 0.5,0
+[ "$(sed -n 2p out.txt)" = 1,1 ] || fail "it does not begin where the other path ends: $(cat out.txt)"
+expect 0 'to goal 2' "$M" cell.json --from=0.5,0 --to 3,0 --to 0.7,0 -o p.csv
+printf 'j1,j2\n3,0\n0.8,0\n' >goals.csv
+expect 0 'to goal 2' "$M" cell.json --from=0.5,0 --goals goals.csv -o p.csv
+expect 0 'straight' "$M" cell.json --from=30,0 --to 60,0 --degrees -o p.csv
+sed -n 3p p.csv | grep -q '^1.047' || fail "paths are in radians"
+# Limits of speed.
+expect 0 '' "$M" cell.json --from=0.5,0 --to 1,1 -o p.csv --trajectory slow.csv --rate 100 --max-velocity 0.1 --max-acceleration j2=0.5
+[ "$(wc -l <slow.csv)" -gt 1800 ] || fail "too fast: $(wc -l <slow.csv)"
+# Reasons.
+expect 1 'the start is not free: arm/tip and box' "$M" cell.json --from=0,0 --to 1,1 -o none.csv --report none.json
+grep -q '"outcome": "start in contact"' none.json || fail "no outcome in the report"
+expect 1 'the goal is not free: arm/tip and box' "$M" cell.json --from=0.5,0 --to 0,0 -o none.csv
+expect 1 'no goal is free' "$M" cell.json --from=0.5,0 --to 0,0 --to 0.01,0 -o none.csv
+expect 7 'does not say that there is none.*--max-work.*arm/tip and box' "$M" cell.json --from=-0.8,0 --to 0.8,0 -o none.csv --max-work 1e-6
+expect 7 'max-nodes' "$M" cell.json --from=-0.8,0 --to 0.8,0 -o none.csv --max-nodes 1
+# Misuse.
+expect 3 'limits' "$M" cell.json --from=4,0 --to 1,1 -o none.csv
+expect 2 'where to' "$M" cell.json -o none.csv
+expect 2 'is empty' "$M" cell.json --to '' -o none.csv
+expect 2 'excludes' "$M" cell.json --to 1,1 --from 0,0 --start p.csv
+expect 2 "no robot 'arn'; did you mean 'arm'" "$M" cell.json --robot arn --to 1,1
+expect 2 "no joint 'j3'" "$M" cell.json --from=0.5,0 --to 1,1 -o none.csv --trajectory none2.csv --max-velocity j3=1
+expect 2 'above 0' "$M" cell.json --from=0.5,0 --to 1,1 -o none.csv --trajectory none2.csv --max-velocity 0
+expect 2 'trajectory' "$M" cell.json --from=0.5,0 --to 1,1 -o none.csv --rate 5
+expect 2 '' "$M" cell.json --to 1,1 -o cell.json
+expect 4 '' "$M" cell.json --from=0.5,0 --to 1,1 -o nowhere/p.csv
+expect 7 'samples' "$M" cell.json --from=0.5,0 --to 1,1 -o none.csv --trajectory none2.csv --max-velocity 1e-6
+absent none.csv none2.csv
+finish

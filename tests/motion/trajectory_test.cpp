@@ -1,0 +1,152 @@
+// Paths in time: on the path, within the limits, twice continuously differentiable.
+
+#include <gtest/gtest.h>
+#include <kaboum/base/error.h>
+#include <kaboum/motion/trajectory.h>
+
+#include <cmath>
+#include <random>
+
+namespace kaboum::motion {
+namespace {
+
+using Values = std::vector<double>;
+
+struct Case {
+  robot::Path path;
+  SpeedLimits limits;
+  double rate = 1000;
+};
+
+Case random_case(std::uint32_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> value(-3, 3), limit(0.1, 8);
+  Case out;
+  const std::size_t joints = 1 + random() % 6, waypoints = 1 + random() % 5;
+  for (std::size_t i = 0; i < waypoints; ++i) {
+    Values q;
+    for (std::size_t j = 0; j < joints; ++j)
+      q.push_back(random() % 5 == 0 && i > 0 ? out.path[i - 1][j] : value(random));
+    out.path.push_back(q);
+  }
+  for (std::size_t j = 0; j < joints; ++j) {
+    out.limits.velocity.push_back(limit(random));
+    out.limits.acceleration.push_back(limit(random));
+  }
+  out.rate = random() % 2 == 0 ? 1000 : 62.5;
+  return out;
+}
+
+/// How far q is from the segment from a to b, in the largest coordinate.
+double distance_to(const Values& q, const Values& a, const Values& b) {
+  double along = 0, length = 0;
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    along += (q[i] - a[i]) * (b[i] - a[i]);
+    length += (b[i] - a[i]) * (b[i] - a[i]);
+  }
+  const double share = length > 0 ? std::clamp(along / length, 0.0, 1.0) : 0;
+  double far = 0;
+  for (std::size_t i = 0; i < q.size(); ++i)
+    far = std::max(far, std::abs(q[i] - a[i] - share * (b[i] - a[i])));
+  return far;
+}
+
+TEST(Trajectory, StaysOnThePathInOrderWithinTheLimits) {
+  for (std::uint32_t seed = 0; seed < 200; ++seed) {
+    const Case c = random_case(seed);
+    const Trajectory t(c.path, c.limits, c.rate);
+    std::size_t segment = 0;
+    EXPECT_EQ(t.sample(0), c.path.front());
+    EXPECT_EQ(t.sample(t.samples() - 1), c.path.back());
+    double fastest = 0;
+    for (std::size_t k = 0; k < t.samples(); ++k) {
+      const Instant now = t.at(static_cast<double>(k) / c.rate);
+      const Values q = t.sample(k);
+      for (std::size_t j = 0; j < q.size(); ++j) {
+        EXPECT_NEAR(now.q[j], q[j], 1e-9);
+        EXPECT_LE(std::abs(now.velocity[j]), c.limits.velocity[j] * (1 + 1e-12));
+        EXPECT_LE(std::abs(now.acceleration[j]), c.limits.acceleration[j] * (1 + 1e-12));
+        fastest = std::max({fastest, std::abs(now.velocity[j]) / c.limits.velocity[j],
+                            std::abs(now.acceleration[j]) / c.limits.acceleration[j]});
+      }
+      // Waypoints are passed in their order; straight lines between samples stay on one segment.
+      while (segment + 2 < c.path.size() &&
+             distance_to(q, c.path[segment], c.path[segment + 1]) > 1e-12)
+        ++segment;
+      if (c.path.size() > 1) {
+        ASSERT_LE(distance_to(q, c.path[segment], c.path[segment + 1]), 1e-12) << seed << " " << k;
+      }
+    }
+    if (c.rate == 1000 && t.samples() > 500) {
+      EXPECT_GT(fastest, 0.95) << "needlessly slow";
+    }
+  }
+}
+
+TEST(Trajectory, WaypointsAreSamples) {
+  for (std::uint32_t seed = 0; seed < 100; ++seed) {
+    const Case c = random_case(seed);
+    const Trajectory t(c.path, c.limits, c.rate);
+    std::size_t next = 0;
+    for (std::size_t k = 0; k < t.samples() && next < c.path.size(); ++k)
+      while (next < c.path.size() && t.sample(k) == c.path[next]) ++next;
+    EXPECT_EQ(next, c.path.size()) << seed;
+  }
+}
+
+TEST(Trajectory, DerivativesAreThoseOfTheValuesAndContinuous) {
+  for (std::uint32_t seed = 0; seed < 50; ++seed) {
+    const Case c = random_case(seed);
+    const Trajectory t(c.path, c.limits, c.rate);
+    const double h = 1e-5;
+    // The jerk is at most 60 |Δ| / T³; T² ≥ 5.77 |Δ| / a and T ≥ 1.875 |Δ| / v give a bound.
+    for (double time = 2 * h; time + 2 * h < t.duration(); time += 0.0137) {
+      const Instant before = t.at(time - h), now = t.at(time), after = t.at(time + h);
+      for (std::size_t j = 0; j < now.q.size(); ++j) {
+        EXPECT_NEAR((after.q[j] - before.q[j]) / (2 * h), now.velocity[j], 1e-5);
+        EXPECT_NEAR((after.velocity[j] - before.velocity[j]) / (2 * h), now.acceleration[j], 2e-2);
+      }
+    }
+    // At waypoints all is at rest, from both sides.
+    for (std::size_t k = 0; k < t.samples(); ++k) {
+      if (std::find(c.path.begin(), c.path.end(), t.sample(k)) == c.path.end()) continue;
+      const double at = static_cast<double>(k) / c.rate;
+      for (const double time : {std::max(0.0, at - 1e-9), std::min(t.duration(), at + 1e-9)})
+        for (std::size_t j = 0; j < c.path[0].size(); ++j) {
+          EXPECT_NEAR(t.at(time).velocity[j], 0, 1e-6);
+          EXPECT_NEAR(t.at(time).acceleration[j], 0, 1e-3);
+        }
+    }
+  }
+}
+
+TEST(Trajectory, IsReadBackAsItIs) {
+  robot::Robot robot;
+  robot.variables = {{"a", {}, {}}, {"b", {}, {}}};
+  const Trajectory t({{0.1, 1.0 / 3}, {2, -0.7}, {2, 5}}, {{1, 2}, {3, 4}}, 125);
+  const robot::NamedPath samples = robot::parse_path_csv(to_csv(t, robot), "t.csv");
+  EXPECT_EQ(samples.joints, (std::vector<std::string>{"time_from_start", "a", "b"}));
+  ASSERT_EQ(samples.waypoints.size(), t.samples());
+  for (std::size_t k = 0; k < t.samples(); ++k) {
+    EXPECT_EQ(samples.waypoints[k][0], static_cast<double>(k) / 125);
+    EXPECT_EQ(Values(samples.waypoints[k].begin() + 1, samples.waypoints[k].end()), t.sample(k));
+  }
+  const robot::NamedPath path = robot::parse_path_csv(to_csv(t.path(), robot), "p.csv");
+  EXPECT_EQ(path.waypoints, t.path());
+}
+
+TEST(Trajectory, WhatIsWrongIsRefused) {
+  const SpeedLimits one{{1}, {1}};
+  EXPECT_THROW(Trajectory({}, one, 1000), Error);
+  EXPECT_THROW(Trajectory({{0}, {1, 2}}, one, 1000), Error);
+  EXPECT_THROW(Trajectory({{0}, {std::nan("")}}, one, 1000), Error);
+  EXPECT_THROW(Trajectory({{0}}, {{0}, {1}}, 1000), Error);
+  EXPECT_THROW(Trajectory({{0}}, {{1}, {}}, 1000), Error);
+  EXPECT_THROW(Trajectory({{0}}, one, 0), Error);
+  EXPECT_THROW(Trajectory({{0}, {1e9}}, one, 1000), Error);
+  EXPECT_EQ(Trajectory({{0}}, one, 1000).samples(), 1U);
+  EXPECT_EQ(Trajectory({{0}, {0}}, one, 1000).samples(), 1U);
+}
+
+}  // namespace
+}  // namespace kaboum::motion

@@ -1,0 +1,227 @@
+// kaboum-move: paths of a robot of a scene that are certified free at every instant, and their
+// execution.
+#include <kaboum/base/error.h>
+#include <kaboum/base/similar_name.h>
+#include <kaboum/motion/find_path.h>
+#include <kaboum/motion/trajectory.h>
+#include <kaboum/robot/path_file.h>
+
+#include <iostream>
+
+#include "check_report.h"
+#include "cli.h"
+#include "motion_options.h"
+#include "move_options.h"
+#include "scene_file.h"
+
+namespace {
+
+using namespace kaboum;  // the tool's own names are few
+using motion::PathAnswer;
+using Outcome = PathAnswer::Outcome;
+using tools::MoveOptions;
+
+[[noreturn]] void usage(const std::string& what) { throw Error(ErrorCode::InvalidArgument, what); }
+
+std::size_t robot_named(const world::World& world, const std::string& name) {
+  std::vector<std::string> names;
+  for (const world::RobotModel& robot : world.robots) names.push_back(robot.name);
+  if (name.empty()) {
+    if (names.size() == 1) return 0;
+    usage(names.empty() ? "the scene has no robot" : "the scene has several robots: give --robot");
+  }
+  if (const auto robot = world.find_robot(name)) return *robot;
+  usage("--robot: the scene has no robot '" + name + "'" + did_you_mean(name, names));
+}
+
+/// What is asked for.
+struct Request {
+  tools::SceneFile scene;
+  std::size_t robot = 0;
+  std::vector<double> start;
+  robot::Path goals;
+  std::vector<std::string> notes;
+
+  [[nodiscard]] const world::RobotModel& model() const { return scene.world.robots[robot]; }
+  [[nodiscard]] const robot::Robot& kinematics() const { return model().kinematics; }
+};
+
+/// "0,1.5,-2": a value per variable.
+std::vector<double> configuration(const std::string& text, const char* option, const MoveOptions& o,
+                                  const robot::Robot& robot) {
+  robot::Path path = robot::arrange(robot::parse_path_csv(text, option), robot, option, false,
+                                    tools::fixed_joints(o.joints));
+  if (path.size() != 1) usage(std::string(option) + ": one configuration is expected");
+  if (o.degrees) path = robot::from_degrees(std::move(path), robot);
+  robot::require_within_limits(path, robot, option);
+  return path.front();
+}
+
+Request read_request(const MoveOptions& o) {
+  Request r;
+  r.scene = tools::read_scene(o.scene);
+  r.notes = r.scene.notes;
+  r.robot = robot_named(r.scene.world, o.robot);
+  const robot::Robot& robot = r.kinematics();
+  const auto read = [&](const std::string& file) {
+    return robot::read_path(file, robot, {true, o.degrees, tools::fixed_joints(o.joints)}, r.notes);
+  };
+  r.start = !o.start.empty()  ? read(o.start).back()
+            : !o.from.empty() ? configuration(o.from, "--from", o, robot)
+                              : r.model().home;
+  for (const std::string& text : o.to) r.goals.push_back(configuration(text, "--to", o, robot));
+  if (!o.goals.empty())
+    for (std::vector<double>& goal : read(o.goals)) r.goals.push_back(std::move(goal));
+  if (r.goals.empty()) usage("where to? Give --to Q1,Q2,… or --goals FILE");
+  return r;
+}
+
+tools::Json blockers_json(const world::World& world, const PathAnswer& answer) {
+  tools::Json out = tools::Json::array();
+  for (const motion::Blocker& b : answer.blockers)
+    out.push_back(
+        {{"pair", {world.name_of(b.items[0]), world.name_of(b.items[1])}}, {"times", b.times}});
+  return out;
+}
+
+tools::Json answer_json(const Request& r, const PathAnswer& answer, const MoveOptions& o) {
+  const motion::Spent& s = answer.spent;
+  tools::Json out = {{"scene", {{"file", o.scene}, {"sha256", r.scene.sha256}}},
+                     {"robot", r.model().name},
+                     {"outcome", name_of(answer.outcome)},
+                     {"seed", o.common.seed},
+                     {"start", r.start},
+                     {"goals", r.goals.size()},
+                     {"spent",
+                      {{"work", s.work},
+                       {"configurations", s.configurations},
+                       {"motions", s.motions},
+                       {"intervals", s.intervals},
+                       {"samples", s.samples},
+                       {"nodes", s.nodes}}},
+                     {"blockers", blockers_json(r.scene.world, answer)}};
+  if (answer.outcome == Outcome::Found) {
+    out["goal"] = answer.goal + 1;
+    out["straight"] = answer.straight;
+    out["waypoints"] = answer.path;
+  }
+  if (answer.contact) out["contact"] = tools::to_json(r.scene.world, *answer.contact);
+  return out;
+}
+
+/// Why there is no path.
+std::string reason(const Request& r, const PathAnswer& answer) {
+  const world::World& world = r.scene.world;
+  if (answer.outcome == Outcome::StartInContact)
+    return "the start is not free: " + tools::describe(world, *answer.contact);
+  if (answer.outcome == Outcome::GoalInContact)
+    return std::string(r.goals.size() > 1 ? "no goal is free: " : "the goal is not free: ") +
+           tools::describe(world, *answer.contact);
+  std::string out = "no path found, which does not say that there is none: the search ended by ";
+  out += answer.outcome == Outcome::WorkEnded    ? "--max-work"
+         : answer.outcome == Outcome::NodesEnded ? "--max-nodes"
+                                                 : "--timeout";
+  if (!answer.blockers.empty()) {
+    const motion::Blocker& b = answer.blockers.front();
+    out += "; most often in the way: " + world.name_of(b.items[0]) + " and " +
+           world.name_of(b.items[1]);
+  }
+  return out;
+}
+
+/// What was written, read as any program would.
+robot::Path read_back(const std::string& text, const robot::Robot& robot) {
+  return robot::arrange(robot::parse_path_csv(text, "the output"), robot, "the output");
+}
+
+struct Execution {
+  std::string csv;
+  tools::Json report;
+};
+
+/// The samples as they are written are certified anew, with straight lines between them.
+Execution execute(const Request& r, const PathAnswer& answer, const MoveOptions& o,
+                  const world::Checker& checker) {
+  const motion::Trajectory trajectory(answer.path, tools::speed_limits(o, r.kinematics()), o.rate);
+  Execution out{to_csv(trajectory, r.kinematics()), {}};
+  world::MotionOptions options;
+  // Finer than for the path: what that has decided is not to be refused for a rounding.
+  options.resolution = 1e-3 * tools::parse_length(o.resolution)->value;
+  options.most_intervals = std::numeric_limits<std::size_t>::max();
+  const world::MotionAnswer motion = check_motion(checker, initial_state(r.scene.world), r.robot,
+                                                  read_back(out.csv, r.kinematics()), options);
+  if (motion.outcome != world::MotionAnswer::Outcome::Free)
+    throw Error(ErrorCode::LimitReached,
+                "the samples pass too near to be certified: give a smaller --resolution (" +
+                    tools::describe(r.scene.world, motion) + ")");
+  out.report = {{"file", o.trajectory},
+                {"rate", o.rate},
+                {"samples", trajectory.samples()},
+                {"seconds", trajectory.duration()}};
+  return out;
+}
+
+motion::PathOptions path_options(const MoveOptions& o) {
+  motion::PathOptions out;
+  out.seed = o.common.seed;
+  out.most_work = o.max_work;
+  out.most_nodes = o.max_nodes;
+  if (o.timeout > 0) out.most_seconds = o.timeout;
+  out.shortcuts = o.shortcuts;
+  out.check.resolution = tools::parse_length(o.resolution)->value;
+  return out;
+}
+
+int move(const MoveOptions& o) {
+  tools::require_apart(
+      {{"--output", o.output}, {"--trajectory", o.trajectory}, {"--report", o.common.report}},
+      {o.scene, o.start, o.goals});
+  const Request r = read_request(o);
+  for (const std::string& note : r.notes) tools::log(o.common.quiet, note);
+  const world::Checker checker(r.scene.world);
+  const PathAnswer answer =
+      find_path(checker, initial_state(r.scene.world), r.robot, r.start, r.goals, path_options(o));
+  tools::Json report = answer_json(r, answer, o);
+  if (!r.notes.empty()) report["notes"] = r.notes;
+  if (answer.outcome != Outcome::Found) {
+    std::cerr << "kaboum-move: " << reason(r, answer) << '\n';
+    tools::write_report(o.common, "kaboum-move", report);
+    return answer.contact ? tools::kNo : tools::kLimit;
+  }
+  const std::string csv = motion::to_csv(answer.path, r.kinematics());
+  ensure(read_back(csv, r.kinematics()) == answer.path, "a path is written as another one");
+  std::optional<Execution> execution;
+  if (!o.trajectory.empty()) {
+    execution = execute(r, answer, o, checker);
+    report["trajectory"] = execution->report;
+  }
+  report["output"] = o.output;
+  io::write_file(o.output, csv);
+  if (execution) io::write_file(o.trajectory, execution->csv);
+  tools::log(o.common.quiet,
+             std::to_string(answer.path.size()) + " waypoints" +
+                 (answer.straight ? ", straight" : "") + ", free at every instant" +
+                 (r.goals.size() > 1 ? "; to goal " + std::to_string(answer.goal + 1) : ""));
+  tools::write_report(o.common, "kaboum-move", report);
+  return tools::kDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "Finds a path for a robot of a scene, certified free of contacts at every instant, and "
+      "writes it as waypoints, or as samples over time.",
+      "kaboum-move"};
+  MoveOptions options;
+  tools::describe(app, options);
+  return tools::run(app, argc, argv, [&] {
+    // As from a variable of the shell that is not set: what was meant is not known.
+    for (const char* name :
+         {"--robot", "--from", "--start", "--to", "--goals", "--output", "--trajectory"})
+      if (app.count(name) > 0)
+        for (const std::string& value : app.get_option(name)->results())
+          if (value.empty()) usage(std::string(name) + ": the value is empty");
+    return move(options);
+  });
+}

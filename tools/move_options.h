@@ -1,0 +1,26 @@
+#pragma once
+
+#include <kaboum/motion/trajectory.h>
+
+#include "cli.h"
+
+namespace kaboum::tools {
+
+/// The command line of kaboum-move.
+struct MoveOptions {
+  std::string scene, robot, from, start, goals, output = "-", trajectory, resolution = "1e-5";
+  std::vector<std::string> to, joints, velocities, accelerations;
+  bool degrees = false;
+  double max_work = 10, timeout = 0, rate = 1000;
+  std::size_t max_nodes = 100'000;
+  int shortcuts = 60;
+  CommonOptions common;
+};
+
+void describe(CLI::App& app, MoveOptions& o);
+
+/// Of --max-velocity and --max-acceleration.
+/// @throws Error{InvalidArgument} for values that are not above 0 and joints that are not known.
+motion::SpeedLimits speed_limits(const MoveOptions& o, const robot::Robot& robot);
+
+}  // namespace kaboum::tools
