@@ -32,6 +32,14 @@ std::optional<std::string> contact_on(const robot::Path& path, const test::Exact
   return std::nullopt;
 }
 
+Values random_free(const world::Checker& checker, std::mt19937_64& random) {
+  world::WorldState state = initial_state(checker.world());
+  world::Scratch scratch;
+  do state.q[0] = test::random_values(checker.world().robots[0].kinematics, random);
+  while (checker.find_contact(state, scratch));
+  return state.q[0];
+}
+
 TEST(FindPath, PathsOfRandomScenesAreFreeOfTheExactMeshesAt1kHz) {
   int straight = 0, round = 0, none = 0;
   for (std::uint32_t seed = 1; seed <= 8; ++seed) {
@@ -39,8 +47,7 @@ TEST(FindPath, PathsOfRandomScenesAreFreeOfTheExactMeshesAt1kHz) {
     const world::Checker checker(scene.world);
     std::mt19937_64 random(seed);
     for (int query = 0; query < 3; ++query) {
-      const Values start = test::random_values(scene.exact.robot, random),
-                   goal = test::random_values(scene.exact.robot, random);
+      const Values start = random_free(checker, random), goal = random_free(checker, random);
       PathOptions options;
       options.most_work = 0.2;
       options.seed = static_cast<std::uint64_t>(query) + 1;
@@ -57,10 +64,9 @@ TEST(FindPath, PathsOfRandomScenesAreFreeOfTheExactMeshesAt1kHz) {
       EXPECT_FALSE(contact) << "seed " << seed << ", query " << query << ": " << *contact;
     }
   }
-  std::cerr << straight << " " << round << " " << none << "\n";
   EXPECT_GT(straight, 1);
-  EXPECT_GT(round, 7);
-  EXPECT_GT(none, 2);
+  EXPECT_GT(round, 6);
+  EXPECT_GT(none, 0);
 }
 
 /// The arm of three links; a plate a quarter of a millimetre thick in the way of its tip.
