@@ -43,7 +43,7 @@ Values random_free(const world::Checker& checker, std::mt19937_64& random) {
 TEST(FindPath, PathsOfRandomScenesAreFreeOfTheExactMeshesAt1kHz) {
   int straight = 0, round = 0, none = 0;
   for (std::uint32_t seed = 1; seed <= 8; ++seed) {
-    const RandomScene scene = random_scene(seed, 10);
+    const RandomScene scene = random_scene(seed, 14);
     const world::Checker checker(scene.world);
     std::mt19937_64 random(seed);
     for (int query = 0; query < 3; ++query) {
@@ -66,7 +66,7 @@ TEST(FindPath, PathsOfRandomScenesAreFreeOfTheExactMeshesAt1kHz) {
   }
   EXPECT_GT(straight, 1);
   EXPECT_GT(round, 6);
-  EXPECT_GT(none, 0);
+  EXPECT_LT(none, 6);
 }
 
 /// The arm of three links; a plate a quarter of a millimetre thick in the way of its tip.

@@ -58,7 +58,7 @@ RandomScene random_scene(std::uint32_t seed, int objects) {
   out.exact.robot = robot::parse_urdf(text, "arm.urdf");
   std::string scene = R"({"kaboum_scene": 1, "unit": "m", "robots": [{"name": "arm", "urdf": )" +
                       files.ref("arm.urdf") + R"(, "links": [)";
-  const Mesh bar = box_mesh({0, -0.03125, -0.03125}, {0.5, 0.03125, 0.03125});
+  const Mesh bar = box_mesh({0, -0x1p-7, -0x1p-7}, {0.5, 0x1p-7, 0x1p-7});
   for (std::uint32_t n = 1; n <= 4; ++n) {
     const std::string link = "l" + std::to_string(n);
     files.put(link + ".glb", set_of({larger(bar)}, "outer", 0.01, link));
