@@ -201,7 +201,7 @@ int main(int argc, char** argv) try {
   for (const Query& query : queries) {
     const double begin = cpu_seconds();
     const motion::PathAnswer answer =
-        find_path(checker, initial_state(world), 0, query.start, {{query.goal}}, {});
+        motion::find_path(checker, initial_state(world), 0, query.start, {{query.goal}}, {});
     const double took = cpu_seconds() - begin;
     work += answer.spent.work;
     seconds += took;
