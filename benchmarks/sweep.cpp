@@ -47,8 +47,8 @@ int measure(const char* file, const char* epsilon, int most_vertices) {
   request.set.effort = bcd::Effort::Fast;
   const certify::CertifiedBodies links = certify::certify_bodies(robot, request);
   std::size_t points = 0;
-  for (const robot::LinkBody& body : links.bodies) points += body.points.size();
-  std::printf("%s: %zu bodies with %zu vertices\n", file, links.bodies.size(), points);
+  for (const robot::LinkBody& body : links.artefact()) points += body.points.size();
+  std::printf("%s: %zu bodies with %zu vertices\n", file, links.artefact().size(), points);
   const std::size_t joints = robot.robot.variables.size();
   const robot::Path path{std::vector<double>(joints, 0), std::vector<double>(joints, 1)};
   sweep::SweepOptions options;
@@ -56,7 +56,7 @@ int measure(const char* file, const char* epsilon, int most_vertices) {
   sweep::SweepResult result;
   for (const std::size_t threads : {1, 2}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    const Times times = seconds_of(robot.robot, links.bodies, path, options, result);
+    const Times times = seconds_of(robot.robot, links.artefact(), path, options, result);
     std::printf(
         "all joints 1 rad, epsilon 5 mm, %zu threads: %.2f ms, %.2f ms of processors; %zu "
         "bodies, reach %.4f\n",
@@ -82,7 +82,8 @@ int measure(const char* file, const char* epsilon, int most_vertices) {
             motion % 2 == 0 && random() % 2 == 0 ? random_path[0][i] : value(random);
       }
       bodies += static_cast<double>(
-          sweep::swept_volume(robot.robot, links.bodies, random_path, options).set.bodies.size());
+          sweep::swept_volume(robot.robot, links.artefact(), random_path, options)
+              .set.bodies.size());
     }
     if (uniform == 0) uniform = bodies;
     std::printf("60 random motions, %s: %.1f bodies each, %.2f times fewer than uniform\n", name,

@@ -24,7 +24,8 @@ int decompose_mesh(const DecomposeOptions& o) {
   const io::SetFormat format = set_format_for(o.output, o.output_format);
   if (format == io::SetFormat::Directory) io::require_replaceable(o.output);
   const certify::CertifiedFile made = certify_mesh(o);
-  const auto& [set, certificate, container] = made.found.set;
+  const geom::ConvexSet& set = made.found.set.artefact();
+  const certify::SetCertificate& certificate = made.found.set.certificate();
   log(o.common.quiet, summary(certificate) + (made.found.cached ? " (from the cache)" : ""));
   const std::string why = shortfall(certificate);
   if (!why.empty()) log(o.common.quiet, why);
@@ -41,7 +42,7 @@ int decompose_mesh(const DecomposeOptions& o) {
     write_depfile(o.depfile, {o.output}, inputs);
   }
   if (format == io::SetFormat::Glb) {
-    io::write_file(o.output, container);
+    io::write_file(o.output, made.found.set.bytes());
   } else {
     io::write_convex_set(o.output, set, format);
   }

@@ -12,7 +12,7 @@ bmesh::Progressive progressive(const DecimationCase& run) {
   bmesh::Progressive p{
       run.log, run.series.plan.precision == bmesh::Precision::Double, run.original.mesh, {}};
   for (const certify::CertifiedMesh& made : run.series.meshes) {
-    const certify::MeshCertificate& c = made.certificate;
+    const certify::MeshCertificate& c = made.certificate();
     p.levels.push_back({c.wished.value_or(c.vertices), c.vertices, c.steps});
   }
   return p;
@@ -49,7 +49,7 @@ void write_files(const DecimationCase& run) {
   files.emplace_back(o.depfile, [&] { write_rule(run); });
   for (std::size_t i = 0; i < run.series.meshes.size(); ++i)
     files.emplace_back(run.files[i],
-                       [&run, i] { io::write_file(run.files[i], run.series.meshes[i].bytes); });
+                       [&run, i] { io::write_file(run.files[i], run.series.meshes[i].bytes()); });
   write_together(files);
 }
 

@@ -20,7 +20,7 @@ class Lines {
  public:
   Lines(const DecimationCase& run, std::size_t place)
       : run_(run),
-        made_(run.series.meshes[place].certificate),
+        made_(run.series.meshes[place].certificate()),
         file_(run.files[place].empty() ? run.asked.progressive : run.files[place]) {}
 
   /// @return the exit code that this result gives

@@ -128,14 +128,8 @@ void add_surface(Json& json, const MeshCertificate& c, bool outer) {
 
 Json claims_of(const DecimationCase& run, const MeshCertificate& c) {
   if (c.direction == bmesh::Direction::Any) return {{"solid", "none"}, {"surface", "none"}};
-  const geom::Prepared& p = run.original;
   const bool outer = run.outer();
-  std::string input = p.turned_triangles + p.dropped_copies + p.dropped_sheets == 0
-                          ? "as in the file"
-                          : "as prepared: with triangles turned or dropped as listed under "
-                            "preparation";
-  if (p.holes != 0) input += "; its holes filled: the solid is the one so closed";
-  Json json{{"input", input}};
+  Json json{{"of", in_words(c.subject)}};
   json["solid"] = c.closed ? (outer ? "certified: the result's solid contains the input's"
                                     : "certified: the input's solid contains the result's")
                            : "open mesh: certified only that the generalised winding number "
@@ -169,7 +163,7 @@ Json steps_of(const bmesh::DecimateStatistics& s) {
 /// What the report says of one result.
 Json result_of(const DecimationCase& run, std::size_t place) {
   const certify::CertifiedMesh& made = run.series.meshes[place];
-  const MeshCertificate& c = made.certificate;
+  const MeshCertificate& c = made.certificate();
   const std::string& file = run.files[place];
   const double diagonal = run.series.plan.diagonal;
   Json r;
@@ -177,7 +171,7 @@ Json result_of(const DecimationCase& run, std::size_t place) {
   r["out_of_work"] = c.out_of_work;
   r["output"] = {{"file", file.empty() ? Json() : Json(file)},
                  {"precision", c.double_precision ? "double" : "float"}};
-  r["output"].update(to_json(geom::analyse(made.mesh)));
+  r["output"].update(to_json(geom::analyse(made.artefact())));
   r["claims"] = claims_of(run, c);
   if (c.decided) r["verification"] = verification_of(*c.decided);
   r["certificate"] = steps_of(c.statistics);
@@ -202,7 +196,7 @@ Json report_of(const DecimationCase& run) {
     r.update(result_of(run, 0));
   } else {
     for (std::size_t i = 0; i < run.series.meshes.size(); ++i) {
-      const MeshCertificate& c = run.series.meshes[i].certificate;
+      const MeshCertificate& c = run.series.meshes[i].certificate();
       Json& entry = r["levels"].emplace_back();
       entry["vertices"] = *c.wished;
       entry["reached"] = c.stop == bmesh::Stop::VertexTarget;

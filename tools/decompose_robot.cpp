@@ -57,7 +57,7 @@ void certify_links(Run& run) {
   hooks.made = [&](const certify::CertifiedLinkMesh& mesh) {
     progress.show("");
     const std::string file = mesh.mesh.file.string();
-    const certify::SetCertificate& certificate = mesh.made.found.set.certificate;
+    const certify::SetCertificate& certificate = mesh.made.found.set.certificate();
     log(run.o.common.quiet,
         file + ": " + summary(certificate) + (mesh.made.found.cached ? " (from the cache)" : ""));
     const std::string why = shortfall(certificate);
@@ -72,7 +72,7 @@ void certify_links(Run& run) {
 
 /// The URDF with the bodies that are written.
 std::string urdf_of(const Run& run, const RobotFolder& folder, RobotUrdf& urdf) {
-  const certify::CertifiedBodies& bodies = run.made.bodies;
+  const certify::BodiesCertificate& bodies = run.made.bodies.certificate();
   const std::string prefix = with_slash(run.o.prefix);
   std::vector<std::vector<ShapeInUrdf>> of_link(run.robot.robot.links.size());
   std::vector<std::size_t> count(of_link.size());
@@ -87,7 +87,8 @@ std::string urdf_of(const Run& run, const RobotFolder& folder, RobotUrdf& urdf) 
     }
     const std::string& name = folder.bodies_of(s);
     out.meshes.emplace();
-    for (std::size_t b = 0; b < bodies.meshes[*shape.mesh].made.found.set.set.bodies.size(); ++b)
+    for (std::size_t b = 0; b < bodies.meshes[*shape.mesh].made.found.set.artefact().bodies.size();
+         ++b)
       out.meshes->push_back(std::string(prefix).append("bodies/").append(name).append("/").append(
                                 io::default_name(b, name)) +
                             ".stl");
@@ -107,16 +108,17 @@ Json links_report(const Run& run, const std::vector<std::string>& files) {
   Json out = Json::array();
   for (std::size_t i = 0; i < run.made.links.size(); ++i) {
     const certify::CertifiedLink& link = run.made.links[i];
-    Json report = {{"link", run.robot.robot.links[link.link].name}, {"shapes", link.shapes}};
-    for (const robot::LinkShape& shape : run.made.bodies.shapes) {
-      if (shape.link != link.link || !shape.mesh) continue;
-      const certify::CertifiedLinkMesh& mesh = run.made.bodies.meshes[*shape.mesh];
+    Json report = {{"link", run.robot.robot.links[link.certificate().link].name},
+                   {"shapes", link.certificate().shapes}};
+    for (const robot::LinkShape& shape : run.made.bodies.certificate().shapes) {
+      if (shape.link != link.certificate().link || !shape.mesh) continue;
+      const certify::CertifiedLinkMesh& mesh = run.made.bodies.certificate().meshes[*shape.mesh];
       report["meshes"].push_back(
           {{"file", mesh.mesh.file.string()}, {"result", report_of(mesh.made)}});
     }
     report["file"] = files[i];
-    report["bodies"] = link.set.bodies.size();
-    report["reach_upper"] = link.distance;
+    report["bodies"] = link.artefact().bodies.size();
+    report["reach_upper"] = link.certificate().distance;
     out.push_back(std::move(report));
   }
   return out;
@@ -128,8 +130,8 @@ geom::ConvexSet at_rest(const Run& run) {
       robot::forward(run.robot.robot, std::vector<double>(run.robot.robot.variables.size(), 0.0));
   geom::ConvexSet out;
   for (const certify::CertifiedLink& link : run.made.links)
-    for (geom::ConvexBody body : link.set.bodies) {
-      for (geom::Vec3& v : body.hull.vertices) v = poses[link.link] * v;
+    for (geom::ConvexBody body : link.artefact().bodies) {
+      for (geom::Vec3& v : body.hull.vertices) v = poses[link.certificate().link] * v;
       out.bodies.push_back(std::move(body));
     }
   return out;
@@ -143,11 +145,11 @@ std::string counted(std::size_t n, const char* one, const char* many) {
 void say(const Run& run, const RobotFolder& folder, const robot::BareLinks& bare,
          const std::vector<std::string>& stale) {
   const bool quiet = run.o.common.quiet;
-  const std::size_t bodies = run.made.bodies.bodies.size();
+  const std::size_t bodies = run.made.bodies.artefact().size();
   const std::string urdf = folder.urdf().string();
   log(quiet, urdf + ": " + counted(bodies, "body", "bodies") + " of " +
                  counted(run.made.links.size(), "link", "links") + ", from " +
-                 counted(run.made.bodies.meshes.size(), "mesh", "meshes"));
+                 counted(run.made.bodies.certificate().meshes.size(), "mesh", "meshes"));
   log(quiet, how_meshes_are_found(urdf, "bodies", with_slash(run.o.prefix)));
   for (const std::string& text : run.notes.lines()) log(quiet, text);
   const bool visual = run.request.shapes.visual;
@@ -169,14 +171,15 @@ Json robot_report(const Run& run, const RobotFolder& folder, const robot::BareLi
                   const std::vector<std::string>& stale, const std::vector<std::string>& files) {
   std::size_t bodies = 0, vertices = 0;
   for (const certify::CertifiedLink& link : run.made.links) {
-    bodies += link.set.bodies.size();
-    for (const geom::ConvexBody& body : link.set.bodies) vertices += body.hull.vertices.size();
+    bodies += link.artefact().bodies.size();
+    for (const geom::ConvexBody& body : link.artefact().bodies)
+      vertices += body.hull.vertices.size();
   }
   return {{"urdf", folder.urdf().string()},
           {"stale", stale},
           {"bodies", bodies},
           {"vertices", vertices},
-          {"meshes", run.made.bodies.meshes.size()},
+          {"meshes", run.made.bodies.certificate().meshes.size()},
           {"links", links_report(run, files)},
           {"stop", run.code == kDone ? "done" : "epsilon not reached"},
           {"links_without_shapes", bare.all()},
@@ -208,7 +211,8 @@ int decompose_robot(const DecomposeOptions& o) {
     write_report(o.common, "bcd-decompose", robot_report(run, folder, bare, stale, files));
   if (!o.depfile.empty()) {
     std::vector<std::string> inputs{o.input};
-    for (std::string& file : strings(run.made.bodies.files)) inputs.push_back(std::move(file));
+    for (std::string& file : strings(run.made.bodies.certificate().files))
+      inputs.push_back(std::move(file));
     write_depfile(o.depfile, {folder.urdf().string()}, inputs);
   }
   return run.code;

@@ -45,18 +45,19 @@ std::string shortfall(const certify::SetCertificate& c) {
 }
 
 std::string summary(const certify::SetCertificate& c) {
+  const bool outer = c.direction == certify::SetRequest::Direction::Outer;
   return std::to_string(c.bodies) + (c.bodies == 1 ? " body, " : " bodies, ") +
          std::to_string(c.vertices) +
-         (c.direction == certify::SetRequest::Direction::Outer
-              ? " vertices; cover verified exactly; no point farther from the solid than "
-              : " vertices; inside verified exactly; no point left out deeper than ") +
+         (outer ? " vertices; cover verified exactly" : " vertices; inside verified exactly") +
+         (outer && c.subject.dropped_sheets > 0 ? " without the sheets dropped" : "") +
+         (outer ? "; no point farther from the solid than " : "; no point left out deeper than ") +
          percent(c.distance_upper, c.diagonal);
 }
 
 Json report_of(const certify::CertifiedFile& made) {
-  Json report = Json::parse(made.found.set.certificate.to_json());
+  Json report = Json::parse(certify::to_json(made.found.set));
   Json notes = made.read_notes;
-  for (const std::string& text : made.found.set.certificate.notes) notes.push_back(text);
+  for (const std::string& text : made.found.set.certificate().notes) notes.push_back(text);
   report["notes"] = std::move(notes);
   report["cached"] = made.found.cached;
   return report;

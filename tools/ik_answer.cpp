@@ -2,14 +2,36 @@
 #include "ik_answer.h"
 
 #include <Eigen/Geometry>
-#include <cstdio>
+#include <array>
+#include <charconv>
+#include <cmath>
 #include <iostream>
+#include <limits>
 
 namespace kaboum::tools {
 namespace {
 
+/// So rounded that what is read back is within the limits that q is within.
+double in_degrees(double q, const kinematics::Axis& axis) {
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  double degrees = q / kDegree;
+  while (q >= axis.lower && degrees * kDegree < axis.lower)
+    degrees = std::nextafter(degrees, kInfinite);
+  while (q <= axis.upper && degrees * kDegree > axis.upper)
+    degrees = std::nextafter(degrees, -kInfinite);
+  return degrees;
+}
+
 double shown(const IkAnswer& answer, bool degrees, std::size_t joint, double q) {
-  return degrees && answer.arm.axes[joint].turns ? q / kDegree : q;
+  const kinematics::Axis& axis = answer.arm.axes[joint];
+  return degrees && axis.turns ? in_degrees(q, axis) : q;
+}
+
+/// The shortest text that reads back as the same number.
+std::string text_of(double value) {
+  std::array<char, 32> text{};
+  const std::to_chars_result end = std::to_chars(text.data(), text.data() + text.size(), value);
+  return {text.data(), end.ptr};
 }
 
 std::vector<std::string> singular_names(unsigned singular) {
@@ -64,10 +86,8 @@ void print_answer(const IkAnswer& answer, bool degrees) {
   for (const IkAnswer::Row& row : answer.rows) {
     std::string line;
     for (std::size_t i = 0; i < row.q.size(); ++i) {
-      char text[32];
-      std::snprintf(text, sizeof text, "%s%.12g", i == 0 ? "" : ",",
-                    shown(answer, degrees, i, row.q[i]));
-      line += text;
+      if (i > 0) line += ',';
+      line += text_of(shown(answer, degrees, i, row.q[i]));
     }
     for (const std::string& name : singular_names(row.singular)) line += "  # singular: " + name;
     if (!row.within) line += "  # outside the limits";

@@ -78,12 +78,13 @@ std::vector<std::string> RobotFolder::write(const certify::CertifiedRobot& made,
   create(folder_ / "bodies");
   create(folder_ / "links");
   for (const Stored& s : stored_)
-    io::write_convex_set(folder_ / "bodies" / s.name, made.bodies.meshes[s.mesh].made.found.set.set,
+    io::write_convex_set(folder_ / "bodies" / s.name,
+                         made.bodies.certificate().meshes[s.mesh].made.found.set.artefact(),
                          io::SetFormat::Directory, s.name);
   FileNames names;
   for (const certify::CertifiedLink& link : made.links) {
-    links_.push_back("links/" + names.unique(robot_.links[link.link].name) + ".glb");
-    io::write_file(folder_ / links_.back(), link.container);
+    links_.push_back("links/" + names.unique(robot_.links[link.certificate().link].name) + ".glb");
+    io::write_file(folder_ / links_.back(), link.bytes());
   }
   io::write_file(urdf_, urdf);
   return links_;

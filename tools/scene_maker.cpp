@@ -94,12 +94,13 @@ class Maker {
     Notes notes;
     certify::RobotHooks hooks = hooks_of(notes, o_.progress);
     hooks.made = [&](const certify::CertifiedLinkMesh& mesh) {
-      if (!mesh.made.found.set.certificate.reached())
+      if (!mesh.made.found.set.certificate().reached())
         notes.add(mesh.mesh.file.string(),
                   "the decomposition does not reach " + mesh.epsilon->text());
     };
     const certify::CertifiedRobot made = certify::certify_robot(file, request, o_.cache, hooks);
-    for (std::string& input : strings(made.bodies.files)) out_.inputs.push_back(std::move(input));
+    for (std::string& input : strings(made.bodies.certificate().files))
+      out_.inputs.push_back(std::move(input));
     for (std::string& note : robot::notes_on_flat_shapes(file, o_.visual))
       out_.notes.push_back(std::move(note));
     for (std::string& line : notes.lines()) out_.notes.push_back(std::move(line));
@@ -107,17 +108,18 @@ class Maker {
     FileNames names;
     const std::string folder = names_.unique(named.name);
     for (const certify::CertifiedLink& link : made.links) {
-      if (link.set.bodies.empty()) continue;  // points only
-      const std::string& name = file.robot.links[link.link].name;
+      if (link.artefact().bodies.empty()) continue;  // points only
+      const std::uint32_t number = link.certificate().link;
+      const std::string& name = file.robot.links[number].name;
       Json sources = Json::array();
-      for (const robot::LinkShape& shape : made.bodies.shapes) {
-        if (shape.link != link.link || !shape.mesh) continue;
-        const certify::CertifiedLinkMesh& mesh = made.bodies.meshes[*shape.mesh];
+      for (const robot::LinkShape& shape : made.bodies.certificate().shapes) {
+        if (shape.link != number || !shape.mesh) continue;
+        const certify::CertifiedLinkMesh& mesh = made.bodies.certificate().meshes[*shape.mesh];
         add_sources(sources, mesh.mesh.file, mesh.made);
       }
       links.push_back({{"link", name},
                        {"outer", keep(folder_ / folder / (names.unique(name) + ".glb"),
-                                      link.container, sources)}});
+                                      link.bytes(), sources)}});
     }
     Json out = {{"name", named.name},
                 {"urdf", {{"file", seen_from_scene(named.file)}, {"sha256", file.sha256}}},
@@ -166,10 +168,10 @@ class Maker {
     for (std::string& line : notes.lines()) out_.notes.push_back(std::move(line));
     out_.inputs.push_back(named.file);
     out_.inputs.insert(out_.inputs.end(), made.other_files.begin(), made.other_files.end());
-    say_size(named.name, {&made.found.set.set});
+    say_size(named.name, {&made.found.set.artefact()});
     Json sources = Json::array();
     add_sources(sources, named.file, made);
-    return keep(folder_ / (names_.unique(named.name + suffix) + ".glb"), made.found.set.container,
+    return keep(folder_ / (names_.unique(named.name + suffix) + ".glb"), made.found.set.bytes(),
                 sources);
   }
 

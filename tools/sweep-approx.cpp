@@ -37,7 +37,7 @@ certify::CertifiedBodies make_bodies(const SweepApproxOptions& o, const robot::R
     certify::RobotHooks hooks =
         hooks_of(notes, [&](const std::string& stage) { progress.show(stage); });
     hooks.made = [&](const certify::CertifiedLinkMesh& mesh) {
-      if (!mesh.made.found.set.certificate.reached())
+      if (!mesh.made.found.set.certificate().reached())
         notes.add(mesh.mesh.file.string(),
                   "the decomposition does not reach " + mesh.epsilon->text());
     };
@@ -81,26 +81,26 @@ std::string summary(const certify::SweepCertificate& c, std::size_t bodies) {
 void write_set(const Run& run, io::SetFormat format) {
   const SweepApproxOptions& o = run.o;
   if (format == io::SetFormat::Glb) {
-    io::write_file(o.output, run.swept.container);
+    io::write_file(o.output, run.swept.bytes());
   } else if (o.urdf()) {
     const std::string prefix = with_slash(o.prefix);
-    write_swept_urdf(o.output, run.swept.set, prefix);
+    write_swept_urdf(o.output, run.swept.artefact(), prefix);
     log(o.common.quiet,
         how_meshes_are_found(o.output, std::filesystem::path(o.output).stem().string(), prefix));
   } else {
-    io::write_convex_set(o.output, run.swept.set, format);
+    io::write_convex_set(o.output, run.swept.artefact(), format);
   }
-  if (run.swept.set.margin > 0) {
+  if (run.swept.artefact().margin > 0) {
     std::ostringstream warning;
     warning.precision(17);
     warning << "WARNING: " << o.output << ": its bodies alone do NOT contain the robot: add "
-            << run.swept.set.margin << " to every body (collision margin, padding)";
+            << run.swept.artefact().margin << " to every body (collision margin, padding)";
     log(false, warning.str());
   }
 }
 
 Json report_of(const Run& run) {
-  const certify::SweepCertificate& c = run.swept.certificate;
+  const certify::SweepCertificate& c = run.swept.certificate();
   Json of_link = Json::object();
   for (std::size_t l = 0; l < run.robot.robot.links.size(); ++l)
     if (c.of_link[l] > 0) of_link[run.robot.robot.links[l].name] = c.of_link[l];
@@ -111,7 +111,7 @@ Json report_of(const Run& run) {
           {"bodies", c.bodies},
           {"vertices", c.vertices},
           {"bodies_of_links", of_link},
-          {"bodies_at_rest", run.bodies.bodies.size()},
+          {"bodies_at_rest", run.bodies.artefact().size()},
           {"links_without_shapes", run.bare.all()},
           {"margin", c.margin},
           {"deviation", c.deviation},
@@ -147,15 +147,16 @@ int sweep_path(const SweepApproxOptions& o) {
                    "larger one. Nothing is written");
     return kNo;
   }
-  log(o.common.quiet, summary(run.swept.certificate, run.bodies.bodies.size()));
+  log(o.common.quiet, summary(run.swept.certificate(), run.bodies.artefact().size()));
   write_set(run, format);
   if (!o.preview.empty())
     io::write_file(o.preview,
-                   picture_of_sweep(run.robot.robot, run.bodies.bodies, run.path, run.swept));
+                   picture_of_sweep(run.robot.robot, run.bodies.artefact(), run.path, run.swept));
   if (!o.common.report.empty()) write_report(o.common, "sweep-approx", report_of(run));
   if (!o.depfile.empty()) {
     std::vector<std::string> inputs{o.robot, o.path};
-    for (std::string& file : strings(run.bodies.files)) inputs.push_back(std::move(file));
+    for (std::string& file : strings(run.bodies.certificate().files))
+      inputs.push_back(std::move(file));
     write_depfile(o.depfile, {o.output}, inputs);
   }
   return kDone;

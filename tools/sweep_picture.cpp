@@ -52,8 +52,9 @@ std::vector<char> picture_of_sweep(const robot::Robot& robot,
         ends.add(*hull, last ? Colour{0.93F, 0.60F, 0.30F} : Colour{0.45F, 0.58F, 0.80F});
     }
   }
-  for (std::size_t i = 0; i < result.set.bodies.size(); ++i)
-    swept.add(result.set.bodies[i].hull, kLinks[bodies[result.sources[i]].link % kLinks.size()]);
+  for (std::size_t i = 0; i < result.artefact().bodies.size(); ++i)
+    swept.add(result.artefact().bodies[i].hull,
+              kLinks[bodies[result.certificate().sources[i]].link % kLinks.size()]);
   geom::Box3 box = geom::bounding_box(swept.mesh);
   box.extend(geom::bounding_box(ends.mesh));
   const picture::Camera camera(box, {}, kPanel, kPanel);

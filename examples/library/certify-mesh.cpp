@@ -13,11 +13,11 @@ int main() {
   const auto made = certify::certify_mesh(certify::prepare_mesh(sphere(24, 11)), request);
   if (!made) return 1;  // float32 numbers would be too coarse
   std::cout << made->mesh.vertices.size() << " vertices, " << made->bytes.size() << " bytes\n";
-  for (const certify::MeshClaim& claim : made->certificate.claims()) {
+  for (const certify::MeshClaim& claim : certify::claims(*made)) {
     std::cout << name_of(claim.kind) << ": " << name_of(claim.answer) << ", "
               << name_of(claim.basis);
     if (claim.distance) std::cout << ", at most " << *claim.distance;
     std::cout << '\n';
   }
-  return made->certificate.reached() ? 0 : 1;
+  return made->certificate().reached() ? 0 : 1;
 }

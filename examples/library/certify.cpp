@@ -12,7 +12,7 @@ int main() {
   request.epsilon = kaboum::Length{1, true};  // percent of the diagonal
   const auto made = certify::certify_set(box({0, 0, 0}, {3, 2, 1}), "", request);
   if (!made) return 1;
-  std::cout << made->set.bodies.size() << " body, certified:\n"
-            << made->certificate.to_json() << '\n';
-  return made->certificate.reached() ? 0 : 1;
+  std::cout << made->artefact().bodies.size() << " body, certified:\n"
+            << certify::to_json(*made) << '\n';
+  return made->certificate().reached() ? 0 : 1;
 }

@@ -16,8 +16,9 @@ int main(int argc, char** argv) {
   request.set.epsilon = kaboum::Length{2, true};  // percent of each mesh's diagonal
   const certify::CertifiedRobot links = certify::certify_robot(arm, request);
   for (const certify::CertifiedLink& link : links.links)
-    std::cout << arm.robot.links[link.link].name << ": " << link.set.bodies.size()
-              << " bodies hold it, no farther from it than " << link.set.provenance.epsilon << '\n';
+    std::cout << arm.robot.links[link.certificate().link].name << ": "
+              << link.artefact().bodies.size() << " bodies hold it, no farther from it than "
+              << link.artefact().provenance.epsilon << '\n';
 
   std::vector<std::string> notes;
   const robot::Path path =
@@ -26,8 +27,9 @@ int main(int argc, char** argv) {
   motion.search.epsilon = 0.02;  // [m]
   const auto swept = certify::certify_sweep(arm, links.bodies, path, motion);
   if (!swept) return 1;  // float32 is too coarse
-  const bool decided = swept->certificate.motion == certify::MotionClaim::Decided;
-  std::cout << swept->set.bodies.size() << " bodies and a margin of " << swept->set.margin
+  const bool decided = swept->certificate().motion == certify::MotionClaim::Decided;
+  std::cout << swept->artefact().bodies.size() << " bodies and a margin of "
+            << swept->artefact().margin
             << " hold all of them along the path: " << (decided ? "decided" : "proved") << '\n';
   return decided ? 0 : 1;
 }

@@ -1,4 +1,5 @@
-// Certificates of convex sets as JSON.
+// Certificates of convex sets as JSON: the record in the cache, and the report, which has the
+// claims.
 
 #include <kaboum/base/error.h>
 #include <kaboum/certify/convex_set.h>
@@ -7,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "request.h"
+#include "set_record.h"
 
 namespace kaboum::certify {
 namespace {
@@ -23,41 +25,62 @@ constexpr std::array<StopName, 5> kStops{{{bcd::Stop::Done, "done"},
                                           {bcd::Stop::Stuck, "stuck"},
                                           {bcd::Stop::OutOfWork, "out of work"}}};
 
-}  // namespace
-
-std::string SetCertificate::to_json() const {
+Json record_of(const SetCertificate& c) {
   Json j;
   for (const StopName& s : kStops)
-    if (s.stop == stop) j["stop"] = s.name;
-  j["direction"] = name_of(direction);
-  j["method"] = name_of(method);
-  j["bodies"] = bodies;
-  j["vertices"] = vertices;
-  j["largest_body_vertices"] = largest_body_vertices;
-  j["reach"] = {{"lower", distance_lower},
-                {"upper", distance_upper},
-                {"upper_percent", diagonal > 0 ? 100 * distance_upper / diagonal : 0.0}};
-  j["closed"] = holes == 0;
-  j["holes"] = holes;
-  j["largest_hole"] = largest_hole;
-  j["filled_triangles"] = filled_triangles;
-  j["pieces"] = pieces;
-  j["pre_step_triangles"] = pre_step_triangles;
-  j["out_of_work"] = out_of_work;
-  j["safety"] = safety;
-  j["diagonal"] = diagonal;
-  j["notes"] = notes;
-  if (min_thickness > 0) j["min_thickness"] = {{"wished", min_thickness}, {"thickened", thickened}};
-  if (direction == SetRequest::Direction::Outer) {
-    j["cover"] = {{"surface", "verified"},
-                  {"solid", holes == 0 ? "verified" : "of the closed mesh"}};
-  } else {
-    j["inside"] = holes == 0 ? "verified" : "verified, of the closed mesh";
-  }
+    if (s.stop == c.stop) j["stop"] = s.name;
+  j["direction"] = name_of(c.direction);
+  j["method"] = name_of(c.method);
+  j["bodies"] = c.bodies;
+  j["vertices"] = c.vertices;
+  j["largest_body_vertices"] = c.largest_body_vertices;
+  j["reach"] = {{"lower", c.distance_lower},
+                {"upper", c.distance_upper},
+                {"upper_percent", c.diagonal > 0 ? 100 * c.distance_upper / c.diagonal : 0.0}};
+  j["closed"] = c.subject.holes == 0;
+  j["holes"] = c.subject.holes;
+  j["largest_hole"] = c.largest_hole;
+  j["turned_triangles"] = c.subject.turned_triangles;
+  j["dropped_copies"] = c.subject.dropped_copies;
+  j["dropped_sheets"] = c.subject.dropped_sheets;
+  j["filled_triangles"] = c.filled_triangles;
+  j["pieces"] = c.pieces;
+  j["pre_step_triangles"] = c.pre_step_triangles;
+  j["out_of_work"] = c.out_of_work;
+  j["safety"] = c.safety;
+  j["diagonal"] = c.diagonal;
+  j["notes"] = c.notes;
+  if (c.min_thickness > 0)
+    j["min_thickness"] = {{"wished", c.min_thickness}, {"thickened", c.thickened}};
+  return j;
+}
+
+std::string text_of(const Json& j) {
   return j.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-SetCertificate SetCertificate::from_json(std::string_view text) {
+}  // namespace
+
+std::string to_json(const CertifiedSet& set) {
+  const SetCertificate& c = set.certificate();
+  Json j = record_of(c);
+  if (c.direction == SetRequest::Direction::Outer) {
+    j["cover"] = {
+        {"of", in_words(c.subject)},
+        {"surface", c.subject.dropped_sheets == 0 ? "verified" : "verified, without the sheets"},
+        {"solid", c.subject.holes == 0 ? "verified" : "verified, of the closed mesh"}};
+  } else {
+    j["inside_of"] = in_words(c.subject);
+    j["inside"] = c.subject.holes == 0 ? "verified" : "verified, of the closed mesh";
+  }
+  return text_of(j);
+}
+
+std::string write_record(const SetCertificate& certificate) {
+  return text_of(record_of(certificate));
+}
+
+SetCertificate read_record(std::string_view text) {
   try {
     const Json j = Json::parse(text);
     SetCertificate c;
@@ -79,7 +102,10 @@ SetCertificate SetCertificate::from_json(std::string_view text) {
     j.at("largest_body_vertices").get_to(c.largest_body_vertices);
     j.at("reach").at("lower").get_to(c.distance_lower);
     j.at("reach").at("upper").get_to(c.distance_upper);
-    j.at("holes").get_to(c.holes);
+    j.at("holes").get_to(c.subject.holes);
+    j.at("turned_triangles").get_to(c.subject.turned_triangles);
+    j.at("dropped_copies").get_to(c.subject.dropped_copies);
+    j.at("dropped_sheets").get_to(c.subject.dropped_sheets);
     j.at("largest_hole").get_to(c.largest_hole);
     j.at("filled_triangles").get_to(c.filled_triangles);
     j.at("pieces").get_to(c.pieces);

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 
+#include "issuer.h"
 #include "request.h"
 
 namespace kaboum::certify {
@@ -82,7 +83,7 @@ SetCertificate certificate_of(const SetRequest& r, const geom::Prepared& prepare
   c.distance_lower = result.reach_lower;
   c.distance_upper = result.reach_upper;
   c.diagonal = diagonal;
-  c.holes = prepared.holes;
+  c.subject = subject_of(prepared);
   c.largest_hole = prepared.largest_hole;
   c.filled_triangles = s.filled_triangles;
   c.pieces = s.leaves;
@@ -121,18 +122,17 @@ std::optional<CertifiedSet> certify_set(const geom::Mesh& mesh, const std::strin
     if (result.stop == bcd::Stop::TooCoarse) return std::nullopt;
     made.bodies = std::move(result.bodies);
     made.provenance.epsilon = result.reach_upper;
-    CertifiedSet out;
-    out.container = io::serialise_convex_set(made, io::SetFormat::Glb);
+    std::vector<char> container = io::serialise_convex_set(made, io::SetFormat::Glb);
     // What is written is what is verified.
     if (hooks.progress) hooks.progress("verifying");
-    out.set = io::parse_convex_set(out.container, io::Format::Glb, "the result");
-    const Objection found = objection(request, prepared.mesh, out.set);
+    geom::ConvexSet set = io::parse_convex_set(container, io::Format::Glb, "the result");
+    const Objection found = objection(request, prepared.mesh, set);
     wrong = found.reason;
-    if (wrong.empty()) {
-      out.certificate =
-          certificate_of(request, prepared, result, made.bodies.size(), diagonal, *safety);
-      return out;
-    }
+    if (wrong.empty())
+      return Issuer::issue(
+          std::move(set),
+          certificate_of(request, prepared, result, made.bodies.size(), diagonal, *safety),
+          std::move(container));
     const bool simplified = result.statistics.pre_step_triangles > 0;
     const std::size_t doubted = options.doubtful.size();
     options.doubtful.insert(options.doubtful.end(), found.triangles.begin(), found.triangles.end());

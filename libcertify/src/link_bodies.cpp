@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "issuer.h"
+
 namespace kaboum::certify {
 namespace {
 
@@ -76,11 +78,11 @@ std::string RobotRequest::parameters() const {
   return set.parameters() + (shapes.visual ? " --geometry visual" : "");
 }
 
-double distance_of(const robot::RobotFile& robot, const CertifiedBodies& bodies,
+double distance_of(const robot::RobotFile& robot, const BodiesCertificate& bodies,
                    const robot::LinkShape& shape) {
   const Geometry& g = bodies.choice.shapes_of(robot.robot.links[shape.link])[shape.index];
   if (!shape.mesh) return robot::bounding_excess(g);
-  const geom::ConvexSet& set = bodies.meshes[*shape.mesh].made.found.set.set;
+  const geom::ConvexSet& set = bodies.meshes[*shape.mesh].made.found.set.artefact();
   return g.size.cwiseAbs().maxCoeff() * std::max(set.provenance.epsilon, 0.0);
 }
 
@@ -89,7 +91,8 @@ CertifiedBodies certify_bodies(const robot::RobotFile& robot, const RobotRequest
   if (request.set.direction != SetRequest::Direction::Outer)
     throw Error(ErrorCode::InvalidArgument, "a robot's links are held by outer sets only");
   robot::LinkMeshes found = robot::link_meshes(robot, request.shapes);
-  CertifiedBodies out;
+  BodiesCertificate out;
+  std::vector<robot::LinkBody> bodies;
   out.choice = request.shapes;
   for (const robot::LinkMesh& mesh : found.meshes) {
     out.meshes.push_back(certify_link_mesh(mesh, request, cache, hooks));
@@ -103,15 +106,15 @@ CertifiedBodies certify_bodies(const robot::RobotFile& robot, const RobotRequest
   for (const robot::LinkShape& shape : out.shapes) {
     const robot::Link& link = robot.robot.links[shape.link];
     place_shape(request.shapes.shapes_of(link)[shape.index],
-                shape.mesh ? &out.meshes[*shape.mesh].made.found.set.set : nullptr, link.name,
-                shape.link, out.bodies);
+                shape.mesh ? &out.meshes[*shape.mesh].made.found.set.artefact() : nullptr,
+                link.name, shape.link, bodies);
     out.distance = std::max(out.distance, distance_of(robot, out, shape));
   }
-  if (out.bodies.empty())
+  if (bodies.empty())
     throw Error(ErrorCode::InvalidInput,
                 robot.path.string() + ": no link has a shape" +
                     (request.shapes.visual ? std::string() : "; try --geometry visual"));
-  return out;
+  return Issuer::issue(std::move(bodies), std::move(out), {});
 }
 
 }  // namespace kaboum::certify

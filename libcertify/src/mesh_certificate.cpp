@@ -1,6 +1,6 @@
 // What is claimed of a bounding mesh, and what each claim rests on.
 
-#include <kaboum/certify/mesh_certificate.h>
+#include <kaboum/certify/mesh.h>
 
 #include <algorithm>
 
@@ -94,24 +94,25 @@ bool MeshCertificate::reached() const {
          vertices <= *wished;
 }
 
-std::vector<MeshClaim> MeshCertificate::claims() const {
+std::vector<MeshClaim> claims(const CertifiedMesh& mesh) {
+  const MeshCertificate& c = mesh.certificate();
   std::vector<MeshClaim> all;
-  if (direction == bmesh::Direction::Any) return all;
-  const Kind kind = closed ? Kind::Solid : Kind::Winding;
-  if (decided) {
-    const verify::Claim& solid = decided->inclusion.solid;
+  if (c.direction == bmesh::Direction::Any) return all;
+  const Kind kind = c.closed ? Kind::Solid : Kind::Winding;
+  if (c.decided) {
+    const verify::Claim& solid = c.decided->inclusion.solid;
     all.push_back({kind, Basis::Bytes, solid.answer, solid.reason});
   } else {
     all.push_back({kind, Basis::Steps, Answer::Verified});
   }
-  if (finer > 0) {
-    const bool by_bytes = decided && decided->nested;
+  if (c.finer > 0) {
+    const bool by_bytes = c.decided && c.decided->nested;
     all.push_back({Kind::Nested, by_bytes ? Basis::Bytes : Basis::Steps,
-                   by_bytes ? *decided->nested : Answer::Verified});
+                   by_bytes ? *c.decided->nested : Answer::Verified});
   }
-  const bool keeps_hull = direction == bmesh::Direction::Inner && keep_convex;
-  if (closed && (surface || !keeps_hull)) all.push_back(surface_claim(*this));
-  add_distances(*this, all);
+  const bool keeps_hull = c.direction == bmesh::Direction::Inner && c.keep_convex;
+  if (c.closed && (c.surface || !keeps_hull)) all.push_back(surface_claim(c));
+  add_distances(c, all);
   return all;
 }
 

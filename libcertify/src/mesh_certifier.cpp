@@ -9,6 +9,7 @@
 
 #include <algorithm>
 
+#include "issuer.h"
 #include "mesh_surface.h"
 
 namespace kaboum::certify {
@@ -23,22 +24,13 @@ constexpr std::size_t kOutlierSamples = 1000;
 
 bool refuted(verify::Answer answer) { return answer == verify::Answer::Refuted; }
 
-/// The result once more, for the next number of vertices.
-CertifiedMesh repeated(const CertifiedMesh& from, std::size_t place, std::size_t wished) {
-  CertifiedMesh to = from;
-  to.certificate.finer = place;
-  to.certificate.wished = wished;
-  if (to.certificate.decided) to.certificate.decided->nested.reset();
-  return to;
-}
-
 }  // namespace
 
 std::vector<CertifiedMesh> MeshCertifier::certify(std::vector<bmesh::DecimateResult> candidates) {
   const double work = candidates.empty()
                           ? 0
                           : work_for_surface(plan_.work, candidates.back().work, candidates.size());
-  std::vector<CertifiedMesh> all;
+  std::vector<Candidate> all;
   all.reserve(candidates.size());  // each looks at the one before
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     // A number of vertices that was not reached is also what the next one got to.
@@ -47,23 +39,40 @@ std::vector<CertifiedMesh> MeshCertifier::certify(std::vector<bmesh::DecimateRes
       all.push_back(repeated(all.back(), i, plan_.vertices[i]));
       continue;
     }
-    const CertifiedMesh* before = all.empty() ? nullptr : &all.back();
-    CertifiedMesh made = begin(std::move(candidates[i]), i);
+    const Candidate* before = all.empty() ? nullptr : &all.back();
+    Candidate made = begin(std::move(candidates[i]), i);
     if (plan_.epsilon || request_.decide || request_.measure) measure(made);
     if (request_.decide) decide(made, before);
     look_at_surface(made, work);
     made.certificate.outliers = outliers(made.mesh);
     all.push_back(std::move(made));
   }
-  return all;
+  std::vector<CertifiedMesh> certified;
+  certified.reserve(all.size());
+  for (Candidate& c : all)
+    certified.push_back(
+        Issuer::issue(std::move(c.mesh), std::move(c.certificate), std::move(c.bytes)));
+  return certified;
 }
 
-CertifiedMesh MeshCertifier::begin(bmesh::DecimateResult candidate, std::size_t place) const {
-  CertifiedMesh made;
+/// The result once more, for the next number of vertices.
+MeshCertifier::Candidate MeshCertifier::repeated(const Candidate& from, std::size_t place,
+                                                 std::size_t wished) {
+  Candidate to = from;
+  to.certificate.finer = place;
+  to.certificate.wished = wished;
+  if (to.certificate.decided) to.certificate.decided->nested.reset();
+  return to;
+}
+
+MeshCertifier::Candidate MeshCertifier::begin(bmesh::DecimateResult candidate,
+                                              std::size_t place) const {
+  Candidate made;
   MeshCertificate& c = made.certificate;
   c.direction = request_.direction;
   c.keep_convex = request_.keep_convex;
   c.closed = original_.closed;
+  c.subject = subject_of(original_);
   c.finer = place;
   if (!plan_.vertices.empty()) c.wished = plan_.vertices[place];
   c.vertices = candidate.mesh.vertices.size();
@@ -79,7 +88,7 @@ CertifiedMesh MeshCertifier::begin(bmesh::DecimateResult candidate, std::size_t 
   return made;
 }
 
-void MeshCertifier::measure(CertifiedMesh& made) const {
+void MeshCertifier::measure(Candidate& made) const {
   const geom::DistanceQuery original(original_.mesh), result(made.mesh);
   geom::DistanceOptions wished;
   wished.max_pieces = kMaxPieces;
@@ -98,7 +107,7 @@ void MeshCertifier::measure(CertifiedMesh& made) const {
 
 /// Decides the claims anew from the bytes that will be written, by other means than those that made
 /// them. A refuted certificate is our bug.
-void MeshCertifier::decide(CertifiedMesh& made, const CertifiedMesh* before) const {
+void MeshCertifier::decide(Candidate& made, const Candidate* before) const {
   const io::ReadResult back = io::parse_mesh(made.bytes, request_.format, "the result");
   verify::InclusionOptions options;
   options.progress = [&](const std::string& what) { show("verifying: " + what); };
@@ -129,7 +138,7 @@ void MeshCertifier::decide(CertifiedMesh& made, const CertifiedMesh* before) con
   made.certificate.decided = std::move(decided);
 }
 
-void MeshCertifier::look_at_surface(CertifiedMesh& made, double work) {
+void MeshCertifier::look_at_surface(Candidate& made, double work) {
   MeshCertificate& c = made.certificate;
   if (!original_.closed || request_.direction == bmesh::Direction::Any) return;
   if (c.decided) {

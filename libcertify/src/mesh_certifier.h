@@ -3,6 +3,7 @@
 #include <kaboum/certify/mesh.h>
 
 #include <optional>
+#include <vector>
 
 // From candidates to certified meshes. Internal to kaboum_certify.
 namespace kaboum::certify {
@@ -24,10 +25,18 @@ class MeshCertifier {
   std::vector<CertifiedMesh> certify(std::vector<bmesh::DecimateResult> candidates);
 
  private:
-  [[nodiscard]] CertifiedMesh begin(bmesh::DecimateResult candidate, std::size_t place) const;
-  void measure(CertifiedMesh& made) const;
-  void decide(CertifiedMesh& made, const CertifiedMesh* before) const;
-  void look_at_surface(CertifiedMesh& made, double work);
+  /// One result while its certificate is made.
+  struct Candidate {
+    geom::Mesh mesh;
+    MeshCertificate certificate;
+    std::vector<char> bytes;
+  };
+  [[nodiscard]] static Candidate repeated(const Candidate& from, std::size_t place,
+                                          std::size_t wished);
+  [[nodiscard]] Candidate begin(bmesh::DecimateResult candidate, std::size_t place) const;
+  void measure(Candidate& made) const;
+  void decide(Candidate& made, const Candidate* before) const;
+  void look_at_surface(Candidate& made, double work);
   [[nodiscard]] Outliers outliers(const geom::Mesh& result) const;
 
   void show(const std::string& stage) const {

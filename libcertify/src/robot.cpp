@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 
+#include "issuer.h"
 #include "link_polytopes.h"
 
 namespace kaboum::certify {
@@ -30,49 +31,54 @@ geom::Provenance origin_of(const robot::RobotFile& robot, const RobotRequest& re
   return p;
 }
 
-/// @param out  gets set and container; the set has its claims, apart from the distance.
-void certify_link(const std::vector<robot::LinkBody>& bodies, CertifiedLink& out) {
-  const geom::Provenance claims = out.set.provenance;
+/// @param claims  of the set, its distance apart.
+CertifiedLink certify_link(const std::vector<robot::LinkBody>& bodies,
+                           const LinkCertificate& certificate, const geom::Provenance& claims) {
   std::string wrong;
   for (const double allowance : kAllowance) {
     auto [made, beyond] = link_polytopes(bodies, allowance);
     made.provenance = claims;
-    made.provenance.epsilon = out.distance + beyond;
-    out.container = io::serialise_convex_set(made, io::SetFormat::Glb);
+    made.provenance.epsilon = certificate.distance + beyond;
+    std::vector<char> container = io::serialise_convex_set(made, io::SetFormat::Glb);
     // What is written is what is decided.
-    out.set = io::parse_convex_set(out.container, io::Format::Glb, "the result");
-    wrong = objection(out.set, bodies);
-    if (wrong.empty()) return;
+    geom::ConvexSet set = io::parse_convex_set(container, io::Format::Glb, "the result");
+    wrong = objection(set, bodies);
+    if (wrong.empty()) return Issuer::issue(std::move(set), certificate, std::move(container));
   }
   throw Error(ErrorCode::Internal, "link '" + claims.frame +
                                        "': no polytopes were found that pass the exact check (" +
                                        wrong + "); nothing is written");
 }
 
+/// A link that has shapes, and what its set is to claim.
+struct Wanted {
+  LinkCertificate certificate;
+  geom::Provenance claims;
+};
+
 }  // namespace
 
 CertifiedRobot certify_robot(const robot::RobotFile& robot, const RobotRequest& request,
                              const SetCache* cache, const RobotHooks& hooks) {
   CertifiedRobot out{certify_bodies(robot, request, cache, hooks), {}};
-  for (const robot::LinkShape& shape : out.bodies.shapes) {
-    if (out.links.empty() || out.links.back().link != shape.link) {
-      out.links.emplace_back().link = shape.link;
-      out.links.back().set.provenance = origin_of(robot, request, shape.link);
-    }
-    CertifiedLink& link = out.links.back();
+  const BodiesCertificate& made = out.bodies.certificate();
+  std::vector<Wanted> links;
+  for (const robot::LinkShape& shape : made.shapes) {
+    if (links.empty() || links.back().certificate.link != shape.link)
+      links.push_back({{shape.link, 0, 0}, origin_of(robot, request, shape.link)});
+    auto& [link, p] = links.back();
     ++link.shapes;
-    link.distance = std::max(link.distance, distance_of(robot, out.bodies, shape));
+    link.distance = std::max(link.distance, distance_of(robot, made, shape));
     if (!shape.mesh) continue;
-    const geom::Provenance& claims = out.bodies.meshes[*shape.mesh].made.found.set.set.provenance;
-    geom::Provenance& p = link.set.provenance;
+    const geom::Provenance& claims = made.meshes[*shape.mesh].made.found.set.artefact().provenance;
     p.covers_solid = p.covers_solid && claims.covers_solid;
     p.covers_surface = p.covers_surface && claims.covers_surface;
   }
-  for (CertifiedLink& link : out.links) {
+  for (const auto& [link, claims] : links) {
     std::vector<robot::LinkBody> bodies;
-    for (const robot::LinkBody& body : out.bodies.bodies)
+    for (const robot::LinkBody& body : out.bodies.artefact())
       if (body.link == link.link) bodies.push_back(body);
-    certify_link(bodies, link);
+    out.links.push_back(certify_link(bodies, link, claims));
   }
   return out;
 }

@@ -9,7 +9,9 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "issuer.h"
 #include "request.h"
+#include "set_record.h"
 
 namespace kaboum::certify {
 namespace {
@@ -24,7 +26,7 @@ constexpr const char* kContainer = "coloured";
 
 // An entry is the name of this format, the hash of what follows, the hash of the key, the
 // certificate in one line, and the container; the first four end with a line feed.
-constexpr std::string_view kFormat = "KABOUM-SET 2\n";
+constexpr std::string_view kFormat = "KABOUM-SET 3\n";
 constexpr std::size_t kHash = 64;
 
 /// Hash of the triangles as read. Their bytes say more than a file's, which may refer to others,
@@ -57,18 +59,17 @@ CertifiedSet read_entry(std::string_view rest, const SetCache::Key& key) {
   if (take_hash() != key.hash) fail("the result of another input or of other options");
   const std::size_t end = rest.find('\n');
   if (end == std::string_view::npos) fail("damaged");
-  CertifiedSet out;
-  out.certificate = SetCertificate::from_json(rest.substr(0, end));
-  out.container.assign(rest.begin() + static_cast<std::ptrdiff_t>(end) + 1, rest.end());
-  out.set = io::parse_convex_set(out.container, io::Format::Glb, "the container");
+  SetCertificate certificate = read_record(rest.substr(0, end));
+  std::vector<char> container(rest.begin() + static_cast<std::ptrdiff_t>(end) + 1, rest.end());
+  geom::ConvexSet set = io::parse_convex_set(container, io::Format::Glb, "the container");
+  const bool outer = certificate.direction == SetRequest::Direction::Outer;
   geom::Provenance expected = key.origin;
-  expected.epsilon = out.set.provenance.epsilon;
-  expected.covers_solid = out.set.provenance.covers_solid;
-  expected.covers_surface = out.set.provenance.covers_surface;
-  if (out.set.provenance != expected || out.certificate.bodies != out.set.bodies.size() ||
-      out.set.margin != 0)
+  expected.epsilon = set.provenance.epsilon;
+  expected.covers_solid = outer && certificate.subject.holes == 0;
+  expected.covers_surface = outer && certificate.subject.dropped_sheets == 0;
+  if (set.provenance != expected || certificate.bodies != set.bodies.size() || set.margin != 0)
     fail("its container is that of another input or of other options");
-  return out;
+  return Issuer::issue(std::move(set), std::move(certificate), std::move(container));
 }
 
 }  // namespace
@@ -114,8 +115,8 @@ std::optional<CertifiedSet> SetCache::find(const Key& key, std::string& flaw) co
 
 void SetCache::store(const Key& key, const CertifiedSet& set) const {
   if (folder_.empty()) return;
-  std::string rest = key.hash + "\n" + set.certificate.to_json() + "\n";
-  rest.append(set.container.begin(), set.container.end());
+  std::string rest = key.hash + "\n" + write_record(set.certificate()) + "\n";
+  rest.append(set.bytes().begin(), set.bytes().end());
   const std::string bytes = std::string(kFormat) + io::sha256(rest) + "\n" + rest;
   std::error_code error;
   fs::create_directories(folder_, error);
@@ -136,7 +137,7 @@ std::optional<FoundSet> find_or_certify(const geom::Mesh& mesh, const std::strin
     if (hooks.note && !flaw.empty()) hooks.note("the cache's entry " + flaw + "; it is made again");
     if (found) {
       if (hooks.note)
-        for (const std::string& text : found->certificate.notes) hooks.note(text);
+        for (const std::string& text : found->certificate().notes) hooks.note(text);
       return FoundSet{std::move(*found), true};
     }
   }

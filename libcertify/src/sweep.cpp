@@ -6,6 +6,7 @@
 #include <kaboum/io/convex_io.h>
 #include <kaboum/verify/cover.h>
 
+#include "issuer.h"
 #include "swept_motion.h"
 
 namespace kaboum::certify {
@@ -22,24 +23,26 @@ SweepCertificate certificate_of(const sweep::SweepResult& made, const CertifiedB
   c.left_out = made.left_out;
   c.rounding = made.rounding;
   c.reach = made.reach;
-  c.bodies_distance = bodies.distance;
+  c.bodies_distance = bodies.certificate().distance;
   c.of_link = made.of_link;
+  c.sources = made.sources;
   return c;
 }
 
-void decide(CertifiedSweep& out, const robot::RobotFile& robot, const CertifiedBodies& bodies,
-            const robot::Path& path, const SweepRequest& request) {
-  const verify::Claim convex = verify::verify_convexity(out.set).convex;
+void decide(const geom::ConvexSet& set, SweepCertificate& certificate,
+            const robot::RobotFile& robot, const CertifiedBodies& bodies, const robot::Path& path,
+            const SweepRequest& request) {
+  const verify::Claim convex = verify::verify_convexity(set).convex;
   ensure(convex.answer == verify::Answer::Verified, "a body of the swept volume is not convex");
-  if (!request.decide_motion || out.certificate.motion == MotionClaim::None) return;
-  const verify::Claim held = decide_motion(robot, bodies, path, out.set, request.max_cells);
+  if (!request.decide_motion || certificate.motion == MotionClaim::None) return;
+  const verify::Claim held = decide_motion(robot, bodies, path, set, request.max_cells);
   if (held.answer == verify::Answer::Refuted)
     throw Error(ErrorCode::Internal, "the swept volume does not pass the exact check (" +
                                          held.reason + "); nothing is written");
   if (held.answer == verify::Answer::Verified)
-    out.certificate.motion = MotionClaim::Decided;
+    certificate.motion = MotionClaim::Decided;
   else
-    out.certificate.undecided = held.reason;
+    certificate.undecided = held.reason;
 }
 
 }  // namespace
@@ -47,7 +50,8 @@ void decide(CertifiedSweep& out, const robot::RobotFile& robot, const CertifiedB
 std::optional<CertifiedSweep> certify_sweep(const robot::RobotFile& robot,
                                             const CertifiedBodies& bodies, const robot::Path& path,
                                             const SweepRequest& request) {
-  sweep::SweepResult made = sweep::swept_volume(robot.robot, bodies.bodies, path, request.search);
+  sweep::SweepResult made =
+      sweep::swept_volume(robot.robot, bodies.artefact(), path, request.search);
   if (made.stop == sweep::SweepStop::TooCoarse) return std::nullopt;
   geom::Provenance& p = made.set.provenance;
   p.source = robot.path.filename().string();
@@ -58,18 +62,16 @@ std::optional<CertifiedSweep> certify_sweep(const robot::RobotFile& robot,
   p.frame = robot.robot.links[0].name;
   if (made.certified) {
     p.direction = "outer";
-    p.epsilon = (made.reach + bodies.distance) * (1 + 1e-15);
+    p.epsilon = (made.reach + bodies.certificate().distance) * (1 + 1e-15);
   }
-  CertifiedSweep out;
-  out.container = io::serialise_convex_set(made.set, io::SetFormat::Glb);
+  std::vector<char> container = io::serialise_convex_set(made.set, io::SetFormat::Glb);
   // What is written is what is decided.
-  out.set = io::parse_convex_set(out.container, io::Format::Glb, "the result");
-  ensure(out.set.margin == made.set.margin, "the margin does not survive writing");
-  ensure(out.set.bodies.size() == made.set.bodies.size(), "a body does not survive writing");
-  out.certificate = certificate_of(made, bodies, out.set);
-  out.sources = std::move(made.sources);
-  decide(out, robot, bodies, path, request);
-  return out;
+  geom::ConvexSet set = io::parse_convex_set(container, io::Format::Glb, "the result");
+  ensure(set.margin == made.set.margin, "the margin does not survive writing");
+  ensure(set.bodies.size() == made.set.bodies.size(), "a body does not survive writing");
+  SweepCertificate certificate = certificate_of(made, bodies, set);
+  decide(set, certificate, robot, bodies, path, request);
+  return Issuer::issue(std::move(set), std::move(certificate), std::move(container));
 }
 
 }  // namespace kaboum::certify

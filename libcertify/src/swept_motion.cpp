@@ -15,9 +15,10 @@ std::vector<verify::MovingShape> moving_shapes(const robot::RobotFile& robot,
                                                const robot::Path& path) {
   std::vector<verify::MovingShape> out;
   std::vector<std::uint32_t> links;
-  for (const robot::LinkShape& shape : bodies.shapes) {
+  const BodiesCertificate& made = bodies.certificate();
+  for (const robot::LinkShape& shape : made.shapes) {
     const robot::Link& link = robot.robot.links[shape.link];
-    const robot::Geometry& g = bodies.choice.shapes_of(link)[shape.index];
+    const robot::Geometry& g = made.choice.shapes_of(link)[shape.index];
     const auto add = [&](geom::Mesh mesh) {
       auto moving = verify::moving_shape(robot.robot, shape.link, g, std::move(mesh));
       if (!moving) return;  // a point
@@ -29,7 +30,7 @@ std::vector<verify::MovingShape> moving_shapes(const robot::RobotFile& robot,
       add({});
       continue;
     }
-    for (const geom::ConvexBody& body : bodies.meshes[*shape.mesh].made.found.set.set.bodies)
+    for (const geom::ConvexBody& body : made.meshes[*shape.mesh].made.found.set.artefact().bodies)
       add(body.hull);
   }
   ensure(verify::same_poses(robot.robot, out, links, path),

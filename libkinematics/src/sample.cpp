@@ -144,6 +144,16 @@ Costs evaluate(const ConstraintProblem& problem, const Placement& at, double len
   return out;
 }
 
+double Costs::largest() const {
+  double most = 0;
+  for (const double v : value)
+    if (!(std::abs(v) <= most)) {
+      if (std::isnan(v)) return v;
+      most = std::abs(v);
+    }
+  return most;
+}
+
 class ConstraintSampler::Impl {
  public:
   Impl(ConstraintProblem problem, const SampleOptions& options)
@@ -260,7 +270,7 @@ class ConstraintSampler::Impl {
     double damping = 1e-6;
     for (int i = 0; i < options_.iterations; ++i) {
       if (!(costs_.value.size() > 0)) return true;
-      if (costs_.value.cwiseAbs().maxCoeff() <= options_.bound / 100) break;
+      if (costs_.largest() <= options_.bound / 100) break;
       freeze(costs_);
       normal_.noalias() = costs_.derivative * costs_.derivative.transpose();
       normal_.diagonal().array() += damping;
@@ -283,7 +293,7 @@ class ConstraintSampler::Impl {
       joints_ = before_.joints;
       assemble(problem_.constraints, frames_, length_, costs_);
     }
-    return costs_.value.cwiseAbs().maxCoeff() <= options_.bound / 10;
+    return costs_.largest() <= options_.bound / 10;
   }
 
   /// Joints for the tools that are where they should be, and the check of all.
@@ -329,10 +339,7 @@ class ConstraintSampler::Impl {
   }
 
   [[nodiscard]] double error_of(const Placement& at) const {
-    double most = 0;
-    const Costs costs = evaluate(problem_, at, length_);
-    for (const double value : costs.value) most = std::max(most, std::abs(value));
-    return most;
+    return evaluate(problem_, at, length_).largest();
   }
   ConstraintProblem problem_;
   SampleOptions options_;

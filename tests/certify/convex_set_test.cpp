@@ -3,13 +3,20 @@
 
 #include <gtest/gtest.h>
 #include <kaboum/base/error.h>
+#include <kaboum/certify/mesh.h>
+#include <kaboum/certify/robot.h>
 #include <kaboum/certify/set_cache.h>
+#include <kaboum/certify/sweep.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/verify/cover.h>
 
 #include <cstdlib>
 #include <fstream>
+#include <string_view>
+#include <type_traits>
+#include <utility>
 
+#include "set_record.h"
 #include "support/shapes.h"
 
 namespace kaboum::certify {
@@ -40,14 +47,14 @@ TEST(CertifySet, IsWhatItsContainerHolds) {
   const auto made = certify_set(torus(), "abc", fast(5));
   ASSERT_TRUE(made);
   const geom::ConvexSet back =
-      io::parse_convex_set(made->container, io::Format::Glb, "the container");
-  EXPECT_TRUE(same_bodies(made->set, back));
+      io::parse_convex_set(made->bytes(), io::Format::Glb, "the container");
+  EXPECT_TRUE(same_bodies(made->artefact(), back));
   EXPECT_EQ(back.provenance.source_sha256, "abc");
   EXPECT_EQ(back.provenance.parameters, "--epsilon 5% --max-vertices-per-body 64 --effort fast");
-  EXPECT_EQ(back.provenance.epsilon, made->certificate.distance_upper);
-  EXPECT_EQ(made->certificate.stop, bcd::Stop::Done);
-  EXPECT_LE(made->certificate.distance_upper, 0.05 * made->certificate.diagonal);
-  const verify::Cover cover = verify::verify_cover(torus(), made->set);
+  EXPECT_EQ(back.provenance.epsilon, made->certificate().distance_upper);
+  EXPECT_EQ(made->certificate().stop, bcd::Stop::Done);
+  EXPECT_LE(made->certificate().distance_upper, 0.05 * made->certificate().diagonal);
+  const verify::Cover cover = verify::verify_cover(torus(), made->artefact());
   EXPECT_EQ(cover.inclusion.solid.answer, verify::Answer::Verified);
   EXPECT_EQ(cover.inclusion.surface.answer, verify::Answer::Verified);
 }
@@ -57,7 +64,8 @@ TEST(CertifySet, InnerSetsLieInside) {
   request.direction = SetRequest::Direction::Inner;
   const auto made = certify_set(torus(), "", request);
   ASSERT_TRUE(made);
-  const verify::Inclusion inside = verify::verify_inclusion(verify::sum_of(made->set), torus());
+  const verify::Inclusion inside =
+      verify::verify_inclusion(verify::sum_of(made->artefact()), torus());
   EXPECT_EQ(inside.solid.answer, verify::Answer::Verified);
 }
 
@@ -72,20 +80,107 @@ TEST(CertifySet, ProgressMayCancel) {
   EXPECT_THROW(certify_set(torus(), "", fast(1), hooks), Cancelled);
 }
 
-TEST(SetCertificate, SurvivesJson) {
-  auto made = certify_set(test::without(torus(), [](const geom::Vec3& p) { return p.x() > 1.2; }),
-                          "", fast(5));
+TEST(SetCertificate, SurvivesItsRecord) {
+  const auto made = certify_set(
+      test::without(torus(), [](const geom::Vec3& p) { return p.x() > 1.2; }), "", fast(5));
   ASSERT_TRUE(made);
-  SetCertificate& c = made->certificate;
-  EXPECT_GT(c.holes, 0U);
+  SetCertificate c = made->certificate();
+  EXPECT_GT(c.subject.holes, 0U);
   EXPECT_FALSE(c.notes.empty());
   c.min_thickness = 0.25;
   c.thickened = 3;
   c.stop = bcd::Stop::Stuck;
-  EXPECT_EQ(SetCertificate::from_json(c.to_json()).to_json(), c.to_json());
+  c.subject.turned_triangles = 4;
+  c.subject.dropped_copies = 5;
+  c.subject.dropped_sheets = 6;
+  EXPECT_EQ(write_record(read_record(write_record(c))), write_record(c));
+  EXPECT_EQ(read_record(write_record(c)).subject, c.subject);
   EXPECT_FALSE(c.reached());
   for (const char* bad : {"", "{}", "[]", "{\"stop\": \"whenever\"}", "{\"stop\": 3}"})
-    EXPECT_THROW(SetCertificate::from_json(bad), Error) << bad;
+    EXPECT_THROW(read_record(bad), Error) << bad;
+}
+
+/// What a report says with this key; "" without it.
+std::string said(const CertifiedSet& set, const std::string& key) {
+  const std::string text = to_json(set), start = '"' + key + "\":\"";
+  const std::size_t at = text.find(start);
+  if (at == std::string::npos) return {};
+  const std::size_t begin = at + start.size();
+  return text.substr(begin, text.find('"', begin) - begin);
+}
+
+/// A torus, and beside it a square seen from both sides: four triangles without volume.
+geom::Mesh with_sheet() {
+  geom::Mesh sheet;
+  sheet.vertices = {{3, 0, 0}, {4, 0, 0}, {4, 1, 0}, {3, 1, 0}};
+  sheet.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 2, 1}, {0, 3, 2}};
+  return test::merged({torus(), sheet});
+}
+
+TEST(CertifySet, ClaimsSayWhatTheyAreAbout) {
+  SetRequest request = fast(5);
+  const auto whole = certify_set(torus(), "", request);
+  ASSERT_TRUE(whole);
+  EXPECT_EQ(said(*whole, "of"), "the input");
+  EXPECT_EQ(said(*whole, "surface"), "verified");
+  EXPECT_EQ(said(*whole, "solid"), "verified");
+  request.preparation.drop_sheets = true;
+  const auto made = certify_set(with_sheet(), "", request);
+  ASSERT_TRUE(made);
+  EXPECT_EQ(said(*made, "of"),
+            "the input: without 4 triangles of sheets, of which nothing is claimed");
+  EXPECT_EQ(said(*made, "surface"), "verified, without the sheets");
+  EXPECT_EQ(said(*made, "solid"), "verified");
+  EXPECT_EQ(made->certificate().subject.dropped_sheets, 4U);
+  EXPECT_FALSE(made->artefact().provenance.covers_surface);
+  const auto open = certify_set(
+      test::without(torus(), [](const geom::Vec3& p) { return p.x() > 1.2; }), "", fast(5));
+  ASSERT_TRUE(open);
+  EXPECT_EQ(said(*open, "of"), "the input: with 1 hole filled, its solid the one so closed");
+  EXPECT_EQ(said(*open, "solid"), "verified, of the closed mesh");
+}
+
+// Nobody but the library makes or changes a value that claims something.
+template <class T>
+constexpr bool kSealed =
+    !std::is_aggregate_v<T> &&
+    !std::is_constructible_v<T, decltype(std::declval<T>().artefact()),
+                             decltype(std::declval<T>().certificate()), std::vector<char>> &&
+    !std::is_constructible_v<T, decltype(std::declval<T>().artefact())> &&
+    std::is_const_v<std::remove_reference_t<decltype(std::declval<T&>().artefact())>> &&
+    std::is_const_v<std::remove_reference_t<decltype(std::declval<T&>().certificate())>> &&
+    std::is_const_v<std::remove_reference_t<decltype(std::declval<T&>().bytes())>>;
+static_assert(kSealed<CertifiedSet> && kSealed<CertifiedMesh> && kSealed<CertifiedLink> &&
+              kSealed<CertifiedBodies> && kSealed<CertifiedSweep>);
+
+template <class Work>
+bool is_internal_error(const Work& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    return error.code() == ErrorCode::Internal;
+  }
+  return false;
+}
+
+TEST(Certified, WhatIsMadeByDefaultClaimsNothing) {
+  EXPECT_FALSE(CertifiedSet());
+  EXPECT_TRUE(is_internal_error([] { (void)to_json(CertifiedSet()); }));
+  EXPECT_TRUE(is_internal_error([] { (void)claims(CertifiedMesh()); }));
+  EXPECT_TRUE(is_internal_error([] { (void)CertifiedMesh().bytes(); }));
+  EXPECT_TRUE(is_internal_error([] { (void)CertifiedSweep().certificate(); }));
+  EXPECT_TRUE(is_internal_error([] {
+    (void)certify_sweep(robot::RobotFile(), CertifiedBodies(), {{0}, {1}}, SweepRequest());
+  }));
+}
+
+TEST(Certified, WhatWasMovedFromClaimsNothing) {
+  auto made = certify_set(torus(), "", fast(5));
+  ASSERT_TRUE(made);
+  const CertifiedSet taken = std::move(*made);
+  EXPECT_TRUE(taken);
+  EXPECT_FALSE(*made);  // NOLINT(bugprone-use-after-move)
+  EXPECT_TRUE(is_internal_error([&] { (void)to_json(*made); }));
 }
 
 TEST(SetRequest, OnePercentStandsForNoTarget) {
@@ -121,8 +216,8 @@ TEST_F(SetCacheTest, HasTheSameBytesForTheSameRequestOnly) {
   const auto again = find_or_certify(torus(), "abc", fast(5), &cache);
   ASSERT_TRUE(again);
   EXPECT_TRUE(again->cached);
-  EXPECT_EQ(again->set.container, first->set.container);
-  EXPECT_EQ(again->set.certificate.to_json(), first->set.certificate.to_json());
+  EXPECT_EQ(again->set.bytes(), first->set.bytes());
+  EXPECT_EQ(to_json(again->set), to_json(first->set));
   std::string flaw;
   EXPECT_FALSE(cache.find(SetCache::key_of(torus(), "abc", fast(4)), flaw));
   EXPECT_FALSE(cache.find(SetCache::key_of(torus(), "abd", fast(5)), flaw));
@@ -159,7 +254,27 @@ TEST_F(SetCacheTest, DamagedEntriesAreMadeAgain) {
   EXPECT_FALSE(again->cached);
   ASSERT_EQ(notes.size(), 1U);
   EXPECT_NE(notes[0].find("it is made again"), std::string::npos);
-  EXPECT_EQ(again->set.container, made->set.container);
+  EXPECT_EQ(again->set.bytes(), made->set.bytes());
+}
+
+TEST_F(SetCacheTest, EntriesThatClaimMoreThanTheirContainersAreMadeAgain) {
+  const SetCache cache(folder_);
+  SetRequest request = fast(5);
+  request.preparation.drop_sheets = true;
+  const auto made = find_or_certify(with_sheet(), "abc", request, &cache);
+  ASSERT_TRUE(made);
+  ASSERT_EQ(entries().size(), 1U);
+  std::ifstream in(entries()[0], std::ios::binary);
+  std::string whole{std::istreambuf_iterator<char>(in), {}};
+  const std::string count = "\"dropped_sheets\":4";
+  ASSERT_NE(whole.find(count), std::string::npos);
+  whole.replace(whole.find(count), count.size(), "\"dropped_sheets\":0");
+  const std::size_t hash = whole.find('\n') + 1, rest = whole.find('\n', hash) + 1;
+  whole.replace(hash, rest - hash - 1, io::sha256(std::string_view(whole).substr(rest)));
+  std::ofstream(entries()[0], std::ios::binary) << whole;
+  std::string flaw;
+  EXPECT_FALSE(cache.find(SetCache::key_of(with_sheet(), "abc", request), flaw));
+  EXPECT_NE(flaw.find("another input"), std::string::npos) << flaw;
 }
 
 }  // namespace

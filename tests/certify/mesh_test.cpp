@@ -58,9 +58,9 @@ std::vector<geom::Vec3> corners(const geom::Mesh& mesh) {
   return all;
 }
 
-std::set<Kind> kinds(const MeshCertificate& c, Basis basis, Answer answer) {
+std::set<Kind> kinds(const CertifiedMesh& made, Basis basis, Answer answer) {
   std::set<Kind> found;
-  for (const MeshClaim& claim : c.claims())
+  for (const MeshClaim& claim : claims(made))
     if (claim.basis == basis && claim.answer == answer) found.insert(claim.kind);
   return found;
 }
@@ -84,15 +84,15 @@ TEST(CertifyMesh, IsWhatItsBytesHold) {
       request.format = format;
       const auto made = certify_mesh(original, request);
       ASSERT_TRUE(made);
-      const geom::Mesh back = io::parse_mesh(made->bytes, format, "the bytes").mesh;
-      EXPECT_EQ(corners(back), corners(made->mesh));
-      const MeshCertificate& c = made->certificate;
+      const geom::Mesh back = io::parse_mesh(made->bytes(), format, "the bytes").mesh;
+      EXPECT_EQ(corners(back), corners(made->artefact()));
+      const MeshCertificate& c = made->certificate();
       EXPECT_EQ(c.vertices, 100U);
       EXPECT_TRUE(c.reached());
       EXPECT_TRUE(direction == Direction::Outer ? holds(back, original.mesh)
                                                 : holds(original.mesh, back));
       EXPECT_EQ(
-          kinds(c, Basis::Bytes, Answer::Verified),
+          kinds(*made, Basis::Bytes, Answer::Verified),
           (std::set{Kind::Solid, Kind::Surface, Kind::OriginalToResult, Kind::ResultToOriginal}));
       EXPECT_GT(c.original_to_result->max_lower, 0);
       EXPECT_LE(c.original_to_result->max_lower, c.original_to_result->max_upper);
@@ -108,10 +108,10 @@ TEST(CertifyMesh, KeepsEpsilonAsAShareOfTheDiagonal) {
   const auto made = certify_mesh(original, request);
   ASSERT_TRUE(made);
   const double epsilon = 0.02 * geom::bounding_box(original.mesh).diagonal();
-  EXPECT_EQ(made->certificate.epsilon, epsilon);
-  EXPECT_LE(made->certificate.hausdorff_upper(), epsilon);
-  EXPECT_EQ(made->certificate.stop, bmesh::Stop::ErrorBound);
-  EXPECT_EQ(made->certificate.decided->distance_bound, epsilon);
+  EXPECT_EQ(made->certificate().epsilon, epsilon);
+  EXPECT_LE(made->certificate().hausdorff_upper(), epsilon);
+  EXPECT_EQ(made->certificate().stop, bmesh::Stop::ErrorBound);
+  EXPECT_EQ(made->certificate().decided->distance_bound, epsilon);
 }
 
 TEST(CertifyMeshes, SeriesAreNested) {
@@ -121,14 +121,15 @@ TEST(CertifyMeshes, SeriesAreNested) {
   const MeshSeries series = certify_meshes(prepare_mesh(torus()), request);
   ASSERT_EQ(series.meshes.size(), 3U);
   EXPECT_FALSE(series.steps.empty());
-  EXPECT_LE(series.meshes.back().certificate.steps, series.steps.size());
+  EXPECT_LE(series.meshes.back().certificate().steps, series.steps.size());
   for (std::size_t i = 0; i < 3; ++i) {
-    const MeshCertificate& c = series.meshes[i].certificate;
+    const MeshCertificate& c = series.meshes[i].certificate();
     EXPECT_EQ(c.wished, request.vertices[i]);
     EXPECT_EQ(c.finer, i);
-    EXPECT_EQ(kinds(c, Basis::Bytes, Answer::Verified).contains(Kind::Nested), i > 0);
+    EXPECT_EQ(kinds(series.meshes[i], Basis::Bytes, Answer::Verified).contains(Kind::Nested),
+              i > 0);
     if (i > 0) {
-      EXPECT_TRUE(holds(series.meshes[i].mesh, series.meshes[i - 1].mesh));
+      EXPECT_TRUE(holds(series.meshes[i].artefact(), series.meshes[i - 1].artefact()));
     }
   }
 }
@@ -142,11 +143,11 @@ TEST(CertifyMeshes, WhatIsNotReachedStandsForAllAfterIt) {
       certify_meshes(prepare_mesh(test::merged({one, test::translated(one, {5, 0, 0})})), request);
   ASSERT_EQ(series.meshes.size(), 3U);
   for (const CertifiedMesh& made : series.meshes) {
-    EXPECT_FALSE(made.certificate.reached());
-    EXPECT_EQ(made.certificate.stop, bmesh::Stop::Exhausted);
-    EXPECT_EQ(made.bytes, series.meshes.front().bytes);
+    EXPECT_FALSE(made.certificate().reached());
+    EXPECT_EQ(made.certificate().stop, bmesh::Stop::Exhausted);
+    EXPECT_EQ(made.bytes(), series.meshes.front().bytes());
   }
-  EXPECT_EQ(series.meshes.back().certificate.wished, 5U);
+  EXPECT_EQ(series.meshes.back().certificate().wished, 5U);
 }
 
 TEST(CertifyMesh, GivesTheBytesOfTheProgram) {
@@ -168,7 +169,7 @@ TEST(CertifyMesh, GivesTheBytesOfTheProgram) {
       request.decide = request.measure = decide;
       const auto made = certify_mesh(prepare_mesh(io::read_mesh(in).mesh), request);
       ASSERT_TRUE(made);
-      EXPECT_EQ(made->bytes, io::read_file(out)) << inner << decide;
+      EXPECT_EQ(made->bytes(), io::read_file(out)) << inner << decide;
     }
   }
   fs::remove_all(folder);
@@ -203,7 +204,7 @@ TEST(MeshCertifier, MakesNoClaimOfWhatDoesNotEnclose) {
     const geom::Mesh right = tube(outer ? 1.05 : 0.95);
     const auto made = certify(right);
     ASSERT_EQ(made.size(), 1U);
-    EXPECT_EQ(kinds(made[0].certificate, Basis::Bytes, Answer::Verified).count(Kind::Solid), 1U);
+    EXPECT_EQ(kinds(made[0], Basis::Bytes, Answer::Verified).count(Kind::Solid), 1U);
     const std::string refused = "refutes that the result is bounding";
     geom::Mesh dented = right;  // at one vertex, outermost
     dented.vertices[96] *= outer ? 0.9 : 1.1;
@@ -218,7 +219,7 @@ TEST(MeshCertifier, MakesNoClaimOfSeriesThatAreNotNested) {
   request.vertices = {100, 50};
   const geom::Prepared original = prepare_mesh(torus());
   const geom::Mesh near = test::torus(1, 0.32, 24, 12), far = test::torus(1, 0.34, 24, 12);
-  EXPECT_EQ(certify_as_made(original, request, {near, far})[1].certificate.decided->nested,
+  EXPECT_EQ(certify_as_made(original, request, {near, far})[1].certificate().decided->nested,
             Answer::Verified);
   EXPECT_NE(internal_error([&] { certify_as_made(original, request, {far, near}); }), "");
 }
@@ -234,12 +235,26 @@ TEST(MeshCertifier, MakesNoClaimOfWhatIsBeyondEpsilon) {
             std::string::npos);
 }
 
+TEST(CertifyMesh, CertificatesSayWhatTheyAreAbout) {
+  geom::Mesh sheet;
+  sheet.vertices = {{3, 0, 0}, {4, 0, 0}, {4, 1, 0}};
+  sheet.triangles = {{0, 1, 2}, {0, 2, 1}};
+  const auto about = [](const geom::Mesh& mesh) {
+    const auto made = certify_mesh(
+        prepare_mesh(mesh, {.drop_sheets = true, .holes = geom::Holes::Fill}), fast(100));
+    return made ? in_words(made->certificate().subject) : "";
+  };
+  EXPECT_EQ(about(torus()), "the input");
+  EXPECT_EQ(about(test::merged({torus(), sheet})),
+            "the input: without 2 triangles of sheets, of which nothing is claimed");
+}
+
 TEST(CertifyMesh, WhatFloat32CannotHoldIsDoubleOrNotMade) {
   const geom::Prepared far = prepare_mesh(test::translated(torus(), {1e9, 0, 0}));
   MeshRequest request = fast(100);
   const MeshSeries made = certify_meshes(far, request);
   ASSERT_EQ(made.meshes.size(), 1U);
-  EXPECT_TRUE(made.meshes[0].certificate.double_precision);
+  EXPECT_TRUE(made.meshes[0].certificate().double_precision);
   ASSERT_TRUE(made.shortage);
   EXPECT_EQ(made.shortage->spacing, 64);  // of float32 numbers about 1e9
   EXPECT_LT(made.shortage->limit, 1e-5);
@@ -259,7 +274,7 @@ TEST(CertifyMesh, VerticesWithoutAPlaceAreCounted) {
   ASSERT_TRUE(made.shortage);
   EXPECT_GT(made.shortage->vertices, 0U);
   ASSERT_EQ(made.meshes.size(), 1U);
-  EXPECT_TRUE(made.meshes[0].certificate.double_precision);
+  EXPECT_TRUE(made.meshes[0].certificate().double_precision);
   request.format = io::Format::Stl;
   EXPECT_TRUE(certify_meshes(open, request).meshes.empty());
 }
@@ -270,9 +285,9 @@ TEST(CertifyMesh, OpenMeshesEncloseNothing) {
   ASSERT_FALSE(open.closed);
   const auto made = certify_mesh(open, fast(150));
   ASSERT_TRUE(made);
-  EXPECT_FALSE(made->certificate.closed);
-  EXPECT_FALSE(made->certificate.surface);
-  EXPECT_EQ(kinds(made->certificate, Basis::Bytes, Answer::Verified),
+  EXPECT_FALSE(made->certificate().closed);
+  EXPECT_FALSE(made->certificate().surface);
+  EXPECT_EQ(kinds(*made, Basis::Bytes, Answer::Verified),
             (std::set{Kind::Winding, Kind::OriginalToResult, Kind::ResultToOriginal}));
 }
 
@@ -281,17 +296,16 @@ TEST(CertifyMesh, WithoutDecidingClaimsSayWhatTheyRestOn) {
   request.decide = false;
   const auto outer = certify_mesh(prepare_mesh(torus()), request);
   ASSERT_TRUE(outer);
-  EXPECT_EQ(kinds(outer->certificate, Basis::Steps, Answer::Verified), (std::set{Kind::Solid}));
-  EXPECT_EQ(kinds(outer->certificate, Basis::Samples, Answer::Undecided),
-            (std::set{Kind::Surface}));
-  EXPECT_EQ(outer->certificate.samples->outside, 0U);
-  EXPECT_GT(outer->certificate.samples->faces, 500U);
-  EXPECT_EQ(kinds(outer->certificate, Basis::Measured, Answer::Verified),
+  EXPECT_EQ(kinds(*outer, Basis::Steps, Answer::Verified), (std::set{Kind::Solid}));
+  EXPECT_EQ(kinds(*outer, Basis::Samples, Answer::Undecided), (std::set{Kind::Surface}));
+  EXPECT_EQ(outer->certificate().samples->outside, 0U);
+  EXPECT_GT(outer->certificate().samples->faces, 500U);
+  EXPECT_EQ(kinds(*outer, Basis::Measured, Answer::Verified),
             (std::set{Kind::OriginalToResult, Kind::ResultToOriginal}));
   request.measure = false;
-  EXPECT_FALSE(certify_mesh(prepare_mesh(torus()), request)->certificate.original_to_result);
+  EXPECT_FALSE(certify_mesh(prepare_mesh(torus()), request)->certificate().original_to_result);
   request.direction = Direction::Any;
-  EXPECT_TRUE(certify_mesh(prepare_mesh(torus()), request)->certificate.claims().empty());
+  EXPECT_TRUE(claims(*certify_mesh(prepare_mesh(torus()), request)).empty());
 }
 
 TEST(CertifyMesh, TrianglesThatBoundNoSolidAreFoundToStickOut) {
@@ -302,10 +316,10 @@ TEST(CertifyMesh, TrianglesThatBoundNoSolidAreFoundToStickOut) {
     request.decide = decide;
     const auto made = certify_mesh(original, request);
     ASSERT_TRUE(made);
-    EXPECT_EQ(kinds(made->certificate, decide ? Basis::Bytes : Basis::Meshes, Answer::Refuted),
+    EXPECT_EQ(kinds(*made, decide ? Basis::Bytes : Basis::Meshes, Answer::Refuted),
               (std::set{Kind::Surface}));
-    EXPECT_GT(made->certificate.surface->sticks_out.lower, 0.1);
-    EXPECT_LT(made->certificate.surface->sticks_out.triangle, original.mesh.triangles.size());
+    EXPECT_GT(made->certificate().surface->sticks_out.lower, 0.1);
+    EXPECT_LT(made->certificate().surface->sticks_out.triangle, original.mesh.triangles.size());
   }
 }
 
@@ -328,9 +342,9 @@ TEST(CertifyMesh, SurfacesBehindEachOtherHideNoFold) {
   request.decide = request.measure = false;
   const auto made = certify_mesh(prepare_mesh(mesh), request);
   ASSERT_TRUE(made);
-  EXPECT_TRUE(made->certificate.samples->cut_short);
-  EXPECT_EQ(made->certificate.samples->outside, 0U);
-  EXPECT_EQ(kinds(made->certificate, Basis::Meshes, Answer::Refuted), (std::set{Kind::Surface}));
+  EXPECT_TRUE(made->certificate().samples->cut_short);
+  EXPECT_EQ(made->certificate().samples->outside, 0U);
+  EXPECT_EQ(kinds(*made, Basis::Meshes, Answer::Refuted), (std::set{Kind::Surface}));
 }
 
 TEST(CertifyMesh, RefusesWhatEnclosesNothing) {

@@ -84,15 +84,15 @@ TEST_F(RobotTest, LinksAreHeldInTheirFrames) {
   const CertifiedRobot made = certify_robot(file, fast(), nullptr, hooks);
   EXPECT_EQ(meshes, 1U);  // mirrored is the same
   ASSERT_EQ(made.links.size(), 2U);
-  EXPECT_EQ(made.links[0].distance, 0);
+  EXPECT_EQ(made.links[0].certificate().distance, 0);
   const CertifiedLink& link = made.links[1];
-  EXPECT_EQ(link.shapes, 2U);
-  EXPECT_TRUE(link.set.provenance.covers_solid);
-  EXPECT_TRUE(link.set.provenance.covers_surface);
-  EXPECT_EQ(link.set.provenance.frame, "fore arm");
-  EXPECT_GE(link.set.provenance.epsilon, link.distance);
-  const geom::ConvexSet back = io::parse_convex_set(link.container, io::Format::Glb, "it");
-  ASSERT_EQ(back.bodies.size(), link.set.bodies.size());
+  EXPECT_EQ(link.certificate().shapes, 2U);
+  EXPECT_TRUE(link.artefact().provenance.covers_solid);
+  EXPECT_TRUE(link.artefact().provenance.covers_surface);
+  EXPECT_EQ(link.artefact().provenance.frame, "fore arm");
+  EXPECT_GE(link.artefact().provenance.epsilon, link.certificate().distance);
+  const geom::ConvexSet back = io::parse_convex_set(link.bytes(), io::Format::Glb, "it");
+  ASSERT_EQ(back.bodies.size(), link.artefact().bodies.size());
   for (const robot::Geometry& g : file.robot.links[1].collision) {
     geom::Mesh posed = part();
     for (geom::Vec3& v : posed.vertices) v = g.origin * v.cwiseProduct(g.size);
@@ -107,8 +107,8 @@ TEST_F(RobotTest, LinksAreHeldInTheirFrames) {
 TEST_F(RobotTest, HasTheBytesOfTheTools) {
   const CertifiedRobot made = certify_robot(arm(), fast());
   ASSERT_EQ(run("bcd-decompose arm.urdf -o out --epsilon 5% --effort fast --no-cache --quiet"), 0);
-  EXPECT_EQ(made.links[0].container, bytes("out/links/base.glb"));
-  EXPECT_EQ(made.links[1].container, bytes("out/links/fore_arm.glb"));
+  EXPECT_EQ(made.links[0].bytes(), bytes("out/links/base.glb"));
+  EXPECT_EQ(made.links[1].bytes(), bytes("out/links/fore_arm.glb"));
   SweepRequest request = coarse();
   request.search.explicit_margin = true;
   request.parameters =
@@ -119,15 +119,15 @@ TEST_F(RobotTest, HasTheBytesOfTheTools) {
   ASSERT_EQ(run("sweep-approx arm.urdf --path quarter.csv -o swept.glb --epsilon 0.05 "
                 "--body-epsilon 5% --effort fast --no-cache --quiet"),
             0);
-  EXPECT_EQ(swept->container, bytes("swept.glb"));
+  EXPECT_EQ(swept->bytes(), bytes("swept.glb"));
 }
 
 TEST_F(RobotTest, PolytopesThatDoNotHoldTheBodiesAreRefused) {
   const CertifiedRobot made = certify_robot(arm(), fast());
   std::vector<robot::LinkBody> bodies;
-  for (const robot::LinkBody& body : made.bodies.bodies)
+  for (const robot::LinkBody& body : made.bodies.artefact())
     if (body.link == 1) bodies.push_back(body);
-  const geom::ConvexSet& good = made.links[1].set;
+  const geom::ConvexSet& good = made.links[1].artefact();
   EXPECT_EQ(objection(good, bodies), "");
   geom::ConvexSet bad = good;
   bad.bodies.pop_back();
@@ -154,23 +154,23 @@ TEST_F(RobotTest, SweptSetsAreDecidedOnTheBytes) {
   const CertifiedBodies bodies = certify_bodies(file, fast());
   const auto made = certify_sweep(file, bodies, quarter_, coarse());
   ASSERT_TRUE(made);
-  EXPECT_EQ(made->certificate.motion, MotionClaim::Decided) << made->certificate.undecided;
-  EXPECT_EQ(made->certificate.margin, made->set.margin);
-  EXPECT_GT(made->certificate.margin, 0);
-  EXPECT_EQ(made->sources.size(), made->set.bodies.size());
+  EXPECT_EQ(made->certificate().motion, MotionClaim::Decided) << made->certificate().undecided;
+  EXPECT_EQ(made->certificate().margin, made->artefact().margin);
+  EXPECT_GT(made->certificate().margin, 0);
+  EXPECT_EQ(made->certificate().sources.size(), made->artefact().bodies.size());
   const auto decided = [&](const geom::ConvexSet& set) {
     return decide_motion(file, bodies, quarter_, set, 20000).answer;
   };
-  EXPECT_EQ(decided(made->set), verify::Answer::Verified);
-  geom::ConvexSet bad = made->set;
+  EXPECT_EQ(decided(made->artefact()), verify::Answer::Verified);
+  geom::ConvexSet bad = made->artefact();
   bad.margin = 0;  // the steps' hulls alone
   EXPECT_EQ(decided(bad), verify::Answer::Refuted);
-  bad = made->set;
+  bad = made->artefact();
   bad.bodies.pop_back();
   EXPECT_EQ(decided(bad), verify::Answer::Refuted);
-  bad = made->set;
+  bad = made->artefact();
   for (geom::ConvexBody& body : bad.bodies)
-    for (geom::Vec3& v : body.hull.vertices) v.z() += 2 * made->set.margin;
+    for (geom::Vec3& v : body.hull.vertices) v.z() += 2 * made->artefact().margin;
   EXPECT_EQ(decided(bad), verify::Answer::Refuted);
 }
 
@@ -181,13 +181,13 @@ TEST_F(RobotTest, ClaimsOfMotionAreNoMoreThanWhatIsKnown) {
   request.decide_motion = false;
   const auto proved = certify_sweep(file, bodies, quarter_, request);
   ASSERT_TRUE(proved);
-  EXPECT_EQ(proved->certificate.motion, MotionClaim::Proved);
+  EXPECT_EQ(proved->certificate().motion, MotionClaim::Proved);
   request = coarse();
   request.search.rule = sweep::StepRule::Baginski;
   const auto unproved = certify_sweep(file, bodies, quarter_, request);
   ASSERT_TRUE(unproved);
-  EXPECT_EQ(unproved->certificate.motion, MotionClaim::None);
-  EXPECT_EQ(unproved->set.provenance.direction, "");
+  EXPECT_EQ(unproved->certificate().motion, MotionClaim::None);
+  EXPECT_EQ(unproved->artefact().provenance.direction, "");
   request.search.epsilon = 1e-9;
   request.search.rule = sweep::StepRule::Balanced;
   EXPECT_FALSE(certify_sweep(file, bodies, quarter_, request));

@@ -20,7 +20,14 @@ sed 's/0 0 0.2"/0.05 0.03 0.2"/' arm.urdf >offset.urdf
 # Every printed configuration reaches the pose: by the program's own --pose-of, solved again.
 expect 0 'spherical wrist, closed form: 4 solutions, 3 within' "$I" arm.urdf --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2
 [ "$(head -1 out.txt)" = j1,j2,j3,j4,j5,j6 ] || fail "no line of names: $(cat out.txt)"
-grep -q '^0.1,0.4,0.7,0.3,0.9,-0.2$' out.txt || fail "the configuration itself is not among them: $(cat out.txt)"
+cat >near.py <<'END'
+# FILE Q: whether a line of the file has these values but for rounding
+import sys
+wanted = [float(x) for x in sys.argv[2].split(",")]
+rows = [[float(x) for x in line.split("#")[0].split(",")] for line in open(sys.argv[1]).readlines()[1:]]
+sys.exit(not any(max(abs(a - b) for a, b in zip(row, wanted)) < 1e-12 for row in rows))
+END
+python3 near.py out.txt 0.1,0.4,0.7,0.3,0.9,-0.2 || fail "the configuration itself is not among them: $(cat out.txt)"
 cp out.txt first.csv
 sed 1d first.csv | while read -r q; do
   expect 0 '' "$I" arm.urdf --pose-of "$q" --json
@@ -46,12 +53,29 @@ grep -q '"complete": false' out.txt || fail "an arm near its family is not compl
 # Whole turns, limits, references.
 expect 0 'configurations within the limits, whole turns counted' "$I" arm.urdf --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2 --copies
 [ "$(wc -l <out.txt)" -gt "$(wc -l <first.csv)" ] || fail "--copies adds none"
-shows 0 '^0.1,0.4,0.7,-5.98' "$I" arm.urdf --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2 --reference 0,0,0,-6,0,0
+expect 0 '' "$I" arm.urdf --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2 --reference 0,0,0,-6,0,0
+python3 near.py out.txt 0.1,0.4,0.7,-5.983185307179586,0.9,-0.2 || fail "not the turn near the reference: $(cat out.txt)"
 sed 's/"-3"/"2.9"/' arm.urdf >narrow.urdf
 expect 1 "outside the joints' limits only; see --ignore-limits" "$I" narrow.urdf --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2
 shows 0 '# outside the limits' "$I" narrow.urdf --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2 --ignore-limits
 shows 0 'singular: wrist' "$I" arm.urdf --pose-of 0.1,0.4,0.7,0.3,0,-0.2
 expect 1 'the pose is out of reach' "$I" arm.urdf --pose 5 0 0 0 0 0 1
+
+# A value on a limit is printed as one within it, in radians and in degrees.
+cat >within.py <<'END'
+import math, sys
+lower, unit = float(sys.argv[2]), math.pi / 180 if sys.argv[3] == "degrees" else 1
+values = [float(line.split(",")[2]) * unit for line in open(sys.argv[1]).readlines()[1:]]
+sys.exit(not any(abs(x - lower) < 1e-9 for x in values) or min(values) < lower)
+END
+for limit in 0.70000000000049 0.7000000000017 0.71000000000033; do
+  sed "/name=\"l3\"/,/limit/s/lower=\"-3\"/lower=\"$limit\"/" arm.urdf >edge.urdf
+  expect 0 '' "$I" edge.urdf --pose-of 0.1,0.4,$limit,0.3,0.9,-0.2
+  python3 within.py out.txt $limit radians || fail "outside the limit $limit: $(cat out.txt)"
+  q=$(python3 -c "import math; print(','.join(repr(math.degrees(x)) for x in (0.1, 0.4, $limit, 0.3, 0.9, -0.2)))")
+  expect 0 '' "$I" edge.urdf --pose-of "$q" --degrees
+  python3 within.py out.txt $limit degrees || fail "outside the limit $limit in degrees: $(cat out.txt)"
+done
 
 # Without a closed form.
 expect 0 'numeric, 100 starts' "$I" offset.urdf --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2 --json

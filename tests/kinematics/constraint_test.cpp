@@ -3,6 +3,7 @@
 #include <kaboum/kinematics/sample.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <set>
 
@@ -342,6 +343,28 @@ TEST(Sampling, AllConfigurationsOfAPoseAreDrawn) {
   }
   EXPECT_EQ(seen.size(), all);
   EXPECT_GE(all, 8U);
+}
+
+TEST(Sampling, CostsThatAreNoNumbersAreNotDropped) {
+  ConstraintProblem problem;
+  problem.objects.resize(2);
+  const auto coincide = [](std::size_t object) {
+    return Constraint{Relation::Coincident,
+                      {{FrameId::Kind::Object, object}, Point{}},
+                      {{FrameId::Kind::World, 0}, Point{}}};
+  };
+  problem.constraints = {coincide(0), coincide(1)};
+  Placement at;
+  at.objects.resize(2);
+  EXPECT_EQ(evaluate(problem, at, 1).largest(), 0);
+  at.objects[0].translation.y() = -2;
+  EXPECT_EQ(evaluate(problem, at, 1).largest(), 2);
+  for (const std::size_t i : {0U, 1U}) {  // before a larger cost and after it
+    Placement bad = at;
+    bad.objects[i].translation.x() = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_TRUE(std::isnan(evaluate(problem, bad, 1).largest())) << i;
+  }
+  EXPECT_EQ(Costs().largest(), 0);
 }
 
 TEST(Sampling, TheSameSeedGivesTheSameBits) {

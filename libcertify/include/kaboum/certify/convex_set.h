@@ -2,6 +2,8 @@
 
 #include <kaboum/base/length.h>
 #include <kaboum/bcd/decompose.h>
+#include <kaboum/certify/certified.h>
+#include <kaboum/certify/subject.h>
 #include <kaboum/geom/convex_set.h>
 #include <kaboum/geom/prepare.h>
 
@@ -40,7 +42,7 @@ struct SetRequest {
   [[nodiscard]] std::string parameters() const;
 };
 
-/// What is certified of a set, and what came of the search for it.
+/// What was found out about a set. A claim only as part of a CertifiedSet.
 struct SetCertificate {
   SetRequest::Direction direction = SetRequest::Direction::Outer;
   bcd::Stop stop = bcd::Stop::Done;
@@ -48,9 +50,8 @@ struct SetCertificate {
   /// Certified bracket of the largest distance from a point of the set to the solid (outer), or of
   /// the depth of what is left out (inner). [length]
   double distance_lower = 0, distance_upper = 0;
-  double diagonal = 0;  ///< of the prepared input's bounding box [length]
-  /// The solid is that of the input with its holes filled, where it has some.
-  std::size_t holes = 0;
+  double diagonal = 0;      ///< of the prepared input's bounding box [length]
+  Subject subject;          ///< what is covered, or encloses
   double largest_hole = 0;  ///< longest diagonal of a hole's box [length]
   std::size_t filled_triangles = 0, pieces = 0, pre_step_triangles = 0, thickened = 0;
   double min_thickness = 0;        ///< asked for [length]
@@ -61,19 +62,14 @@ struct SetCertificate {
 
   /// Whether epsilon, if asked for, is reached, within all limits.
   [[nodiscard]] bool reached() const { return stop == bcd::Stop::Done; }
-
-  /// As in reports of bcd-decompose and the cache: a JSON object.
-  [[nodiscard]] std::string to_json() const;
-  /// @throws Error{InvalidInput} when the text is none of to_json.
-  static SetCertificate from_json(std::string_view text);
 };
 
 /// A set that was serialised, read back, and decided exactly by libverify to be what it should be.
-struct CertifiedSet {
-  geom::ConvexSet set;  ///< as read back from the container
-  SetCertificate certificate;
-  std::vector<char> container;  ///< GLB
-};
+/// Its bytes are a GLB container.
+using CertifiedSet = Certified<geom::ConvexSet, SetCertificate>;
+
+/// As in reports of bcd-decompose, with the claims and what they are about: a JSON object.
+std::string to_json(const CertifiedSet& set);
 
 /// How long work is watched. Both may be empty; called from the calling thread.
 struct Hooks {

@@ -35,16 +35,18 @@ struct RobotHooks {
   std::function<void(const CertifiedLinkMesh& mesh)> made;  ///< when a mesh has its set
 };
 
-/// Convex bodies of a robot's links.
-struct CertifiedBodies {
+/// What bodies of a robot's links stand for.
+struct BodiesCertificate {
   robot::ShapeChoice choice;  ///< the shapes that they stand for
   std::vector<CertifiedLinkMesh> meshes;
   std::vector<robot::LinkShape> shapes;  ///< `mesh` is an index in `meshes`
-  std::vector<robot::LinkBody> bodies;   ///< of the shapes, in their order
   double distance = 0;  ///< bound of how far a body reaches beyond its shape [length]
   std::vector<std::filesystem::path>
       files;  ///< meshes and what they refer to; some are there twice
 };
+
+/// Convex bodies of a robot's links: those of the shapes, in their order. They are not written.
+using CertifiedBodies = Certified<std::vector<robot::LinkBody>, BodiesCertificate>;
 
 /// Convex bodies that hold the shapes of a robot's links: of meshes certified sets, from the cache
 /// where possible, placed in the link; boxes, cylinders and spheres as bounding polytopes; nothing
@@ -55,7 +57,7 @@ CertifiedBodies certify_bodies(const robot::RobotFile& robot, const RobotRequest
                                const SetCache* cache = nullptr, const RobotHooks& hooks = {});
 
 /// Bound of how far the bodies of one shape reach beyond it. [length]
-double distance_of(const robot::RobotFile& robot, const CertifiedBodies& bodies,
+double distance_of(const robot::RobotFile& robot, const BodiesCertificate& bodies,
                    const robot::LinkShape& shape);
 
 }  // namespace kaboum::certify

@@ -2,6 +2,7 @@
 
 #include <kaboum/base/length.h>
 #include <kaboum/bmesh/decimate.h>
+#include <kaboum/certify/certified.h>
 #include <kaboum/certify/mesh_certificate.h>
 #include <kaboum/geom/prepare.h>
 #include <kaboum/io/mesh_io.h>
@@ -71,12 +72,12 @@ struct MeshPlan {
   double work = 0;                             ///< allowed [s]
 };
 
-/// A mesh that was serialised, read back and compared, and what is certified of it.
-struct CertifiedMesh {
-  geom::Mesh mesh;  ///< triangle by triangle what the bytes hold
-  MeshCertificate certificate;
-  std::vector<char> bytes;
-};
+/// A mesh that was serialised, read back and compared, and what is certified of it. The bytes hold
+/// it triangle by triangle.
+using CertifiedMesh = Certified<geom::Mesh, MeshCertificate>;
+
+/// All that is claimed; nothing of Direction::Any.
+std::vector<MeshClaim> claims(const CertifiedMesh& mesh);
 
 /// One result or a series.
 struct MeshSeries {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/bmesh/decimate.h>
+#include <kaboum/certify/subject.h>
 #include <kaboum/geom/distance.h>
 #include <kaboum/verify/bracket.h>
 #include <kaboum/verify/inclusion.h>
@@ -74,11 +75,12 @@ struct Outliers {
   double away = 0;        ///< largest distance of some vertices of the original from it [length]
 };
 
-/// What is certified of a bounding mesh, and what came of the search for it.
+/// What was found out about a bounding mesh. Claims are made of a CertifiedMesh only.
 struct MeshCertificate {
   bmesh::Direction direction = bmesh::Direction::Outer;
   bool keep_convex = false;
   bool closed = true;     ///< the original, as prepared, has a solid; else nothing is enclosed
+  Subject subject;        ///< what is enclosed, or encloses
   std::size_t finer = 0;  ///< results before it in its series
   std::optional<std::size_t> wished;  ///< number of vertices
   std::size_t vertices = 0;
@@ -101,9 +103,6 @@ struct MeshCertificate {
 
   /// Whether there are as few vertices as wished, or epsilon allows no fewer.
   [[nodiscard]] bool reached() const;
-
-  /// All that is claimed; nothing of Direction::Any.
-  [[nodiscard]] std::vector<MeshClaim> claims() const;
 };
 
 }  // namespace kaboum::certify

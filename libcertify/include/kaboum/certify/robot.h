@@ -7,15 +7,17 @@
 
 namespace kaboum::certify {
 
-/// The set of a link, in its frame: serialised, read back, and decided exactly by libverify to hold
-/// the link's bodies, each of which holds what it stands for (CertifiedBodies).
-struct CertifiedLink {
+/// What was found out about the set of a link.
+struct LinkCertificate {
   std::uint32_t link = 0;
   std::size_t shapes = 0;
   double distance = 0;  ///< of the bodies beyond their shapes; the set's own: its epsilon [length]
-  geom::ConvexSet set;  ///< as read back; no margin; its provenance has the claims
-  std::vector<char> container;  ///< GLB
 };
+
+/// The set of a link, in its frame: serialised, read back, and decided exactly by libverify to hold
+/// the link's bodies, each of which holds what it stands for (CertifiedBodies). It has no margin;
+/// its provenance has the claims; its bytes are a GLB container.
+using CertifiedLink = Certified<geom::ConvexSet, LinkCertificate>;
 
 struct CertifiedRobot {
   CertifiedBodies bodies;

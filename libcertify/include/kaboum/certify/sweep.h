@@ -30,6 +30,7 @@ enum class MotionClaim {
   Decided,  ///< by libverify as well, on the bytes in the container
 };
 
+/// What was found out about a swept set. A claim only as part of a CertifiedSweep.
 struct SweepCertificate {
   MotionClaim motion = MotionClaim::None;
   std::string undecided;  ///< why it is not decided where that was asked for; one clause
@@ -40,16 +41,12 @@ struct SweepCertificate {
   /// Of the robot's bodies from its shapes; `reach` is from what these bodies sweep. [length]
   double bodies_distance = 0;
   std::vector<std::size_t> of_link;
+  std::vector<std::size_t> sources;  ///< the robot's body that each body of the set sweeps
 };
 
 /// A set that was serialised, read back, and decided exactly by libverify to consist of convex
-/// bodies; its certificate says what is known of the motion.
-struct CertifiedSweep {
-  geom::ConvexSet set;  ///< as read back from the container
-  SweepCertificate certificate;
-  std::vector<char> container;       ///< GLB
-  std::vector<std::size_t> sources;  ///< the robot's body that each body of the set sweeps
-};
+/// bodies; its certificate says what is known of the motion. Its bytes are a GLB container.
+using CertifiedSweep = Certified<geom::ConvexSet, SweepCertificate>;
 
 /// Convex bodies that, enlarged by the set's margin, hold the robot's bodies at every configuration
 /// of the path: sweep::swept_volume, serialised, read back, decided.

@@ -36,6 +36,9 @@ struct Placement {
 struct Costs {
   Eigen::VectorXd value;
   Eigen::MatrixXd derivative;
+
+  /// The largest magnitude; 0 without costs; NaN when one of them is.
+  [[nodiscard]] double largest() const;
 };
 /// @param length  as in `cost`.
 /// @throws Error{InvalidArgument} as require_valid.

@@ -1,0 +1,39 @@
+// What claims are about, counted and in words.
+
+#include <kaboum/certify/subject.h>
+
+#include <vector>
+
+namespace kaboum::certify {
+namespace {
+
+std::string counted(std::size_t n, const char* one, const char* many) {
+  return std::to_string(n) + ' ' + (n == 1 ? one : many);
+}
+
+}  // namespace
+
+Subject subject_of(const geom::Prepared& prepared) {
+  return {prepared.turned_triangles, prepared.dropped_copies, prepared.dropped_sheets,
+          prepared.holes};
+}
+
+std::string in_words(const Subject& s) {
+  std::vector<std::string> changes;
+  if (s.turned_triangles > 0)
+    changes.push_back("with " + counted(s.turned_triangles, "triangle", "triangles") + " turned");
+  if (s.dropped_copies > 0)
+    changes.push_back("without " + counted(s.dropped_copies, "triangle", "triangles") +
+                      " of copies");
+  if (s.dropped_sheets > 0)
+    changes.push_back("without " + counted(s.dropped_sheets, "triangle", "triangles") +
+                      " of sheets, of which nothing is claimed");
+  if (s.holes > 0)
+    changes.push_back("with " + counted(s.holes, "hole", "holes") +
+                      " filled, its solid the one so closed");
+  std::string text = "the input";
+  for (std::size_t i = 0; i < changes.size(); ++i) text += (i == 0 ? ": " : "; ") + changes[i];
+  return text;
+}
+
+}  // namespace kaboum::certify
