@@ -12,7 +12,8 @@ int main() {
   request.vertices = {60};
   const auto made = certify::certify_mesh(certify::prepare_mesh(sphere(24, 11)), request);
   if (!made) return 1;  // float32 numbers would be too coarse
-  std::cout << made->mesh.vertices.size() << " vertices, " << made->bytes.size() << " bytes\n";
+  std::cout << made->artefact().vertices.size() << " vertices, " << made->bytes().size()
+            << " bytes\n";
   for (const certify::MeshClaim& claim : certify::claims(*made)) {
     std::cout << name_of(claim.kind) << ": " << name_of(claim.answer) << ", "
               << name_of(claim.basis);

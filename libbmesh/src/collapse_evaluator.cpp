@@ -1,5 +1,6 @@
-// The place of the vertex that replaces an edge, and the exact tests that it has to pass. Source:
-// [gaschler2016] Alg. 1; docs/algorithms/bounding-mesh.md has the theorem that they serve.
+// The place of the vertex that replaces an edge, and the exact tests that it
+// has to pass. Source: [gaschler2016] Alg. 1; docs/algorithms/bounding-mesh.md
+// has the theorem that they serve.
 
 #include "collapse_evaluator.h"
 
@@ -63,7 +64,7 @@ CollapseEvaluator::CollapseEvaluator(const Context& context, const WorkingMesh& 
       m_(mesh),
       solid_(solid),
       statistics_(statistics),
-      mark_(mesh.position.size(), 0) {}
+      star_(mesh) {}
 
 CollapseEvaluator::Validity CollapseEvaluator::evaluate(std::uint32_t a, std::uint32_t b,
                                                         const Quadric& q, Purpose purpose,
@@ -71,12 +72,12 @@ CollapseEvaluator::Validity CollapseEvaluator::evaluate(std::uint32_t a, std::ui
   candidate_.a = a;
   candidate_.b = b;
   candidate_.against_original = false;
-  gather(a, b);
-  count(context_.work, kCandidate + kStarTriangle * star_.size());
+  star_.gather(a, b);
+  count(context_.work, kCandidate + kStarTriangle * star_.triangles.size());
   const bool free = m_.border[a] == 0 && m_.border[b] == 0;
   bool found = false;
   if (free) {
-    if (options_.keep_convex) gather_rim();
+    if (has_rim()) star_.gather_rim();
     found = place(q, 1);
     if (found && purpose == Purpose::Due) {
       find_cost(q);
@@ -87,13 +88,14 @@ CollapseEvaluator::Validity CollapseEvaluator::evaluate(std::uint32_t a, std::ui
     ++counter;
     return Validity::None;
   };
-  if (!keeps_topology()) return none(statistics_.rejected_topology);
+  if (!star_.keeps_topology(a, b)) return none(statistics_.rejected_topology);
   if (!free) {
     candidate_.position = m_.border[a] != 0 ? m_.position[a] : m_.position[b];
     if (!encloses()) return none(statistics_.rejected_predicate);
   } else {
-    // The second attempt keeps farther from the planes, for positions that rounding spoils; the
-    // end points themselves serve in flat places, where every plane of the star is the same one.
+    // The second attempt keeps farther from the planes, for positions that
+    // rounding spoils; the end points themselves serve in flat places, where
+    // every plane of the star is the same one.
     const bool placed = found && (encloses() || (place(q, 16) && encloses()));
     if (!placed && !at_end_point()) {
       if (purpose == Purpose::AgainstOriginal) {
@@ -114,12 +116,8 @@ CollapseEvaluator::Validity CollapseEvaluator::evaluate(std::uint32_t a, std::ui
 
 bool CollapseEvaluator::evaluate_move(std::uint32_t v, double care, bool may_fold) {
   candidate_.a = candidate_.b = v;
-  star_.clear();
-  m_.mesh.for_each_triangle(v, [&](std::uint32_t t, std::uint32_t k) {
-    star_.push_back({t, k, false, false});
-  });
-  rim_.clear();
-  if (options_.keep_convex) gather_rim();
+  star_.gather(v);
+  if (has_rim()) star_.gather_rim();
   const Quadric nearest = point_quadric(m_.position[v] - context_.cost.origin());
   return place(nearest, care) && encloses() && (may_fold || !folds()) && keeps_shape();
 }
@@ -146,106 +144,24 @@ bool CollapseEvaluator::keeps_shape() {
   return false;
 }
 
-void CollapseEvaluator::describe(std::vector<std::uint32_t>& removed,
-                                 std::vector<NewTriangle>& added) const {
-  removed.clear();
-  added.clear();
-  for (const StarTriangle& s : star_) {
-    removed.push_back(s.index);
-    if (s.vanishes) continue;
-    const Triangle& t = m_.mesh[s.index];
-    added.push_back({s.index,
-                     {candidate_.position, m_.position[t[(s.corner + 1) % 3]],
-                      m_.position[t[(s.corner + 2) % 3]]}});
-  }
-}
-
-const std::vector<std::uint32_t>& CollapseEvaluator::neighbours(std::uint32_t v) {
-  neighbours_.clear();
-  const std::uint32_t seen = ++mark_value_;
-  // Off borders every neighbour is the next corner of some triangle.
-  const std::uint32_t corners = m_.border[v] == 0 ? 1 : 2;
-  m_.mesh.for_each_triangle(v, [&](std::uint32_t t, std::uint32_t k) {
-    for (std::uint32_t j = 1; j <= corners; ++j) {
-      const std::uint32_t w = m_.mesh[t][(k + j) % 3];
-      if (mark_[w] == seen) continue;
-      mark_[w] = seen;
-      neighbours_.push_back(w);
-    }
-  });
-  return neighbours_;
-}
-
 void CollapseEvaluator::find_cost(const Quadric& q) {
   candidate_.cost =
       context_.cost.key(q, candidate_.position,
                         (m_.position[candidate_.b] - m_.position[candidate_.a]).squaredNorm());
   if (options_.cost != Cost::Distance) return;
-  // Beyond a knife's edge a vertex is near all planes, and far from the triangles.
+  // Beyond a knife's edge a vertex is near all planes, and far from the
+  // triangles.
   constexpr double kFar = 0.125;
   const Vec3 &p = candidate_.position, &a = m_.position[candidate_.a],
              &b = m_.position[candidate_.b];
   double squared = squared_distance(p, {a, b, b});
   const double enough = candidate_.cost * candidate_.cost / (kFar * kFar);
-  for (std::size_t i = 0; i < star_.size() && squared > enough; ++i) {
-    const Triangle& t = m_.mesh[star_[i].index];
+  for (std::size_t i = 0; i < star_.triangles.size() && squared > enough; ++i) {
+    const Triangle& t = m_.mesh[star_.triangles[i].index];
     squared = std::min(
         squared, squared_distance(p, {m_.position[t[0]], m_.position[t[1]], m_.position[t[2]]}));
   }
   candidate_.cost = std::max(candidate_.cost, kFar * std::sqrt(squared));
-}
-
-void CollapseEvaluator::gather(std::uint32_t a, std::uint32_t b) {
-  star_.clear();
-  m_.mesh.for_each_triangle(a, [&](std::uint32_t t, std::uint32_t k) {
-    const Triangle& tri = m_.mesh[t];
-    star_.push_back({t, k, false, tri[(k + 1) % 3] == b || tri[(k + 2) % 3] == b});
-  });
-  m_.mesh.for_each_triangle(b, [&](std::uint32_t t, std::uint32_t k) {
-    const Triangle& tri = m_.mesh[t];
-    if (tri[(k + 1) % 3] != a && tri[(k + 2) % 3] != a) star_.push_back({t, k, true, false});
-  });
-}
-
-/// The link condition: the neighbours common to a and b are the corners opposite their edge, and
-/// no two triangles would come to coincide.
-bool CollapseEvaluator::keeps_topology() {
-  const std::uint32_t apex = ++mark_value_;
-  std::uint32_t apexes = 0;
-  for (const StarTriangle& s : star_) {
-    if (!s.vanishes) continue;
-    for (const std::uint32_t v : m_.mesh[s.index]) {
-      if (v == candidate_.a || v == candidate_.b || mark_[v] == apex) continue;
-      mark_[v] = apex;
-      ++apexes;
-    }
-  }
-  if (apexes == 0) return false;
-  const auto is_apex = [&](std::uint32_t v) { return mark_[v] == apex; };
-  // Triangles between two apexes on both sides would fold onto each other.
-  bool between[2] = {false, false};
-  for (const StarTriangle& s : star_) {
-    if (s.vanishes) continue;
-    const Triangle& t = m_.mesh[s.index];
-    if (is_apex(t[(s.corner + 1) % 3]) && is_apex(t[(s.corner + 2) % 3])) between[s.at_b] = true;
-  }
-  if (between[0] && between[1]) return false;
-  // Neighbours of a that are no apexes must not be neighbours of b.
-  const std::uint32_t neighbour = ++mark_value_;
-  bool common = false;
-  for (const StarTriangle& s : star_) {
-    if (s.vanishes) continue;
-    const Triangle& t = m_.mesh[s.index];
-    for (std::uint32_t j = 1; j < 3; ++j) {
-      const std::uint32_t v = t[(s.corner + j) % 3];
-      if (is_apex(v)) continue;
-      if (!s.at_b)
-        mark_[v] = neighbour;
-      else
-        common = common || mark_[v] == neighbour;
-    }
-  }
-  return !common;
 }
 
 /// Tries to contract to an end point of the edge, where it is.
@@ -258,33 +174,35 @@ bool CollapseEvaluator::at_end_point() {
   return false;
 }
 
-/// Whether a rounded vertex can lie exactly on the triangle's plane: it is axis-aligned, at a
-/// representable coordinate.
+/// Whether a rounded vertex can lie exactly on the triangle's plane: it is
+/// axis-aligned, at a representable coordinate.
 bool CollapseEvaluator::can_lie_on(std::uint32_t t) const {
   const int k = axis(m_.normal[t]);
   return k >= 0 && (options_.precision == Precision::Double ||
                     geom::is_float32(m_.position[m_.mesh[t][0]][k]));
 }
 
-/// How far the new vertex is from where its star was seen from: half the edge, or half the longest
-/// edge around a vertex that moves alone.
+/// How far the new vertex is from where its star was seen from: half the edge,
+/// or half the longest edge around a vertex that moves alone.
 double CollapseEvaluator::reach() const {
   const Vec3& a = m_.position[candidate_.a];
   if (candidate_.a != candidate_.b) return 0.5 * (m_.position[candidate_.b] - a).lpNorm<1>();
   double longest = 0;
-  for (const StarTriangle& s : star_)
+  for (const StarTriangle& s : star_.triangles)
     for (const std::uint32_t v : m_.mesh[s.index])
       longest = std::max(longest, (m_.position[v] - a).lpNorm<1>());
   return 0.5 * longest;
 }
 
-/// Minimises the quadric over the half-spaces of the star and rounds the result.
+/// Minimises the quadric over the half-spaces of the star and rounds the
+/// result.
 bool CollapseEvaluator::place(const Quadric& q, double care) {
   ++statistics_.placements;
   const Vec3 &pa = m_.position[candidate_.a], &pb = m_.position[candidate_.b];
   const Vec3 half = 0.5 * (pb - pa);
   const Vec3 middle = pa + half;
-  // A rounded coordinate is off by half a spacing; what else is off is the minimiser's own error.
+  // A rounded coordinate is off by half a spacing; what else is off is the
+  // minimiser's own error.
   const Vec3 spread(spacing(middle.x(), options_.precision),
                     spacing(middle.y(), options_.precision),
                     spacing(middle.z(), options_.precision));
@@ -292,7 +210,7 @@ bool CollapseEvaluator::place(const Quadric& q, double care) {
   planes_.clear();
   if (context_.constrained) {
     const double sign = context_.sign;
-    for (const StarTriangle& s : star_) {
+    for (const StarTriangle& s : star_.triangles) {
       const Vec3& n = m_.normal[s.index];
       const double margin =
           can_lie_on(s.index) ? 0 : care * (0.51 * n.cwiseAbs().dot(spread) + own_error);
@@ -300,7 +218,7 @@ bool CollapseEvaluator::place(const Quadric& q, double care) {
       const double height = s.vanishes ? 0 : s.at_b ? -n.dot(half) : n.dot(half);
       planes_.push_back({sign * n, margin - sign * height});
     }
-    for (const std::uint32_t t : rim_) {
+    for (const std::uint32_t t : star_.rim) {
       const Vec3& n = m_.normal[t];
       const double margin =
           can_lie_on(t) ? 0 : care * (0.51 * n.cwiseAbs().dot(spread) + own_error);
@@ -312,7 +230,8 @@ bool CollapseEvaluator::place(const Quadric& q, double care) {
   if (!y) return false;
   candidate_.position = middle + *y;
   if (options_.precision == Precision::Float) {
-    // Numbers near 0 are finer than the minimiser; what keeps away from other planes stays so.
+    // Numbers near 0 are finer than the minimiser; what keeps away from other
+    // planes stays so.
     snap_to_axis_planes(0.01 * own_error);
     candidate_.position = geom::to_float32(candidate_.position);
   } else {
@@ -327,9 +246,10 @@ bool CollapseEvaluator::out_of_reach() const {
               .all();
 }
 
-/// Puts the position exactly on axis-aligned planes that it is on but for rounding.
+/// Puts the position exactly on axis-aligned planes that it is on but for
+/// rounding.
 void CollapseEvaluator::snap_to_axis_planes(double distance) {
-  for (const StarTriangle& s : star_) {
+  for (const StarTriangle& s : star_.triangles) {
     const int k = axis(m_.normal[s.index]);
     if (k < 0) continue;
     const double c = m_.position[m_.mesh[s.index][0]][k];
@@ -344,21 +264,22 @@ Sign CollapseEvaluator::side(std::uint32_t t) {
                         candidate_.position, &statistics_.exact_fallbacks);
 }
 
-/// The exact test that the certificate rests on: the new vertex is on the right side of, or on,
-/// the plane of every triangle of the star.
+/// The exact test that the certificate rests on: the new vertex is on the right
+/// side of, or on, the plane of every triangle of the star.
 bool CollapseEvaluator::encloses() {
   if (!context_.constrained) return true;
   const Sign wrong = options_.direction == Direction::Inner ? Sign::Positive : Sign::Negative;
-  for (const StarTriangle& s : star_)
+  for (const StarTriangle& s : star_.triangles)
     if (side(s.index) == wrong) return false;
-  for (const std::uint32_t t : rim_)
+  for (const std::uint32_t t : star_.rim)
     if (side(t) == Sign::Positive) return false;
   return true;
 }
 
-/// Whether a remaining triangle would collapse or turn by more than about 80 degrees.
+/// Whether a remaining triangle would collapse or turn by more than about 80
+/// degrees.
 bool CollapseEvaluator::folds() const {
-  for (const StarTriangle& s : star_) {
+  for (const StarTriangle& s : star_.triangles) {
     if (s.vanishes) continue;
     const Vec3& before = m_.normal[s.index];
     if (before.x() == 0 && before.y() == 0 && before.z() == 0) continue;
@@ -372,12 +293,13 @@ bool CollapseEvaluator::folds() const {
   return false;
 }
 
-/// Exact: all that an inner step takes away is inside the original, so that no new triangle
-/// leaves it: no fold. docs/algorithms/bounding-mesh.md, "Inner surfaces".
+/// Exact: all that an inner step takes away is inside the original, so that no
+/// new triangle leaves it: no fold. docs/algorithms/bounding-mesh.md, "Inner
+/// surfaces".
 bool CollapseEvaluator::stays_inside() {
   if (options_.direction != Direction::Inner || solid_ == nullptr) return true;
   flat_.clear();
-  for (const StarTriangle& s : star_) {
+  for (const StarTriangle& s : star_.triangles) {
     const Triangle& t = m_.mesh[s.index];
     const std::array<Vec3, 3> old{m_.position[t[0]], m_.position[t[1]], m_.position[t[2]]};
     if (side(s.index) != Sign::Zero) {
@@ -393,27 +315,14 @@ bool CollapseEvaluator::stays_inside() {
   return !opposed(flat_);
 }
 
-/// Collects the triangles across the star's boundary: the new vertex must stay on or below them.
-void CollapseEvaluator::gather_rim() {
-  rim_.clear();
-  if (options_.direction == Direction::Inner) return;
-  for (const StarTriangle& s : star_) {
-    if (s.vanishes) continue;
-    const Triangle& t = m_.mesh[s.index];
-    const std::uint32_t p = t[(s.corner + 1) % 3], q = t[(s.corner + 2) % 3];
-    m_.mesh.for_each_triangle(q, [&](std::uint32_t u, std::uint32_t k) {
-      if (m_.mesh[u][(k + 1) % 3] == p) rim_.push_back(u);
-    });
-  }
-}
-
-/// Exact: no vertex would be above a new triangle. The other triangles keep all vertices below
-/// them: outwards the new vertex was tested against those across the star's boundary (beyond them
-/// none is visible from it), inwards it lies in the old, convex body.
+/// Exact: no vertex would be above a new triangle. The other triangles keep all
+/// vertices below them: outwards the new vertex was tested against those across
+/// the star's boundary (beyond them none is visible from it), inwards it lies
+/// in the old, convex body.
 bool CollapseEvaluator::stays_convex() {
   const bool inner = options_.direction == Direction::Inner;
   bool solid = !inner;  // inwards the body might be flattened
-  for (const StarTriangle& s : star_) {
+  for (const StarTriangle& s : star_.triangles) {
     if (s.vanishes) continue;
     const Triangle& t = m_.mesh[s.index];
     const Vec3 &p = m_.position[t[(s.corner + 1) % 3]], &q = m_.position[t[(s.corner + 2) % 3]];
@@ -430,7 +339,7 @@ bool CollapseEvaluator::stays_convex() {
         if (m_.mesh.used(v) && !below(v)) return false;
       continue;
     }
-    for (const std::uint32_t r : rim_)
+    for (const std::uint32_t r : star_.rim)
       for (const std::uint32_t v : m_.mesh[r])
         if (!below(v)) return false;
   }

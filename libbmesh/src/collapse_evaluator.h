@@ -8,6 +8,7 @@
 #include "bucket_queue.h"
 #include "change.h"
 #include "cost.h"
+#include "edge_star.h"
 #include "placement.h"
 #include "reference_solid.h"
 #include "work.h"
@@ -27,8 +28,8 @@ struct Context {
   bool constrained;
   bool closed;
   double diagonal;
-  /// No vertex goes farther from the origin, whatever it costs: half the box, and its diagonal more
-  /// on every side.
+  /// No vertex goes farther from the origin, whatever it costs: half the box,
+  /// and its diagonal more on every side.
   Vec3 reach;
   Work* work;
 
@@ -36,18 +37,11 @@ struct Context {
   Context(const geom::Box3& box, bool is_closed, const DecimateOptions& requested, Work* counter);
 };
 
-/// What contracting an edge would do, and whether it may be done: the place of the new vertex, the
-/// exact tests that the certificate rests on, and the tests that serve quality only.
-/// Source: [gaschler2016] Alg. 1.
+/// What contracting an edge would do, and whether it may be done: the place of
+/// the new vertex, the exact tests that the certificate rests on, and the tests
+/// that serve quality only. Source: [gaschler2016] Alg. 1.
 class CollapseEvaluator {
  public:
-  struct StarTriangle {
-    std::uint32_t index;
-    std::uint32_t corner;  // of the moved vertex
-    bool at_b;             // touches b and not a
-    bool vanishes;         // touches both
-  };
-
   struct Candidate {
     std::uint32_t a = 0, b = 0;
     Vec3 position = Vec3::Zero();
@@ -65,42 +59,51 @@ class CollapseEvaluator {
   enum class Purpose {
     Any,              // all tests are made
     Due,              // only of what is due
-    AgainstOriginal,  // positions that the present mesh does not bound will do to begin with
+    AgainstOriginal,  // positions that the present mesh does not bound will do
+                      // to begin with
   };
 
-  /// References must outlive this object, as the context must. `solid` may be null: then inner
-  /// surfaces are not kept from folding.
+  /// References must outlive this object, as the context must. `solid` may be
+  /// null: then inner surfaces are not kept from folding.
   CollapseEvaluator(const Context& context, const WorkingMesh& mesh, ReferenceSolid* solid,
                     DecimateStatistics& statistics);
 
-  /// Fills the candidate with the cheapest valid position for the edge (a, b), with quadric q.
+  /// Fills the candidate with the cheapest valid position for the edge (a, b),
+  /// with quadric q.
   Validity evaluate(std::uint32_t a, std::uint32_t b, const Quadric& q, Purpose purpose,
                     const BucketQueue& queue);
 
-  /// Finds a place for v alone, near where it is, that keeps `care` times as far from the planes as
-  /// rounding asks for, and makes all tests; unless
+  /// Finds a place for v alone, near where it is, that keeps `care` times as
+  /// far from the planes as rounding asks for, and makes all tests; unless
   /// `may_fold`, that of folds, which no certificate rests on.
   bool evaluate_move(std::uint32_t v, double care, bool may_fold = false);
 
   /// Moves the candidate to another place, if no triangle folds there.
   bool place_against_original(const Vec3& place, const Quadric& q);
 
-  /// The dearer tests, made only of candidates that are about to be applied: no fold on the inner
-  /// side, convexity where it is to be kept. Exact.
+  /// The dearer tests, made only of candidates that are about to be applied: no
+  /// fold on the inner side, convexity where it is to be kept. Exact.
   [[nodiscard]] bool keeps_shape();
 
   /// The triangles that the candidate takes away and puts in their place.
-  void describe(std::vector<std::uint32_t>& removed, std::vector<NewTriangle>& added) const;
+  void describe(std::vector<std::uint32_t>& removed, std::vector<NewTriangle>& added) const {
+    star_.describe(candidate_.position, removed, added);
+  }
 
   [[nodiscard]] Candidate& candidate() { return candidate_; }
 
-  /// The vertices that share a triangle with v; valid until the next call of anything.
-  const std::vector<std::uint32_t>& neighbours(std::uint32_t v);
+  /// The vertices that share a triangle with v; valid until the next call of
+  /// anything.
+  const std::vector<std::uint32_t>& neighbours(std::uint32_t v) { return star_.neighbours(v); }
 
  private:
-  void gather(std::uint32_t a, std::uint32_t b);
-  void gather_rim();
-  [[nodiscard]] bool keeps_topology();
+  using StarTriangle = EdgeStar::StarTriangle;
+
+  /// Whether the new vertex must stay on or below the triangles across the
+  /// star's boundary.
+  [[nodiscard]] bool has_rim() const {
+    return options_.keep_convex && options_.direction != Direction::Inner;
+  }
   [[nodiscard]] double reach() const;
   [[nodiscard]] bool place(const Quadric& q, double care);
   void snap_to_axis_planes(double distance);
@@ -121,12 +124,9 @@ class CollapseEvaluator {
   DecimateStatistics& statistics_;
 
   Candidate candidate_;
-  std::vector<StarTriangle> star_;
-  std::vector<std::uint32_t> rim_;
+  EdgeStar star_;
   std::vector<HalfSpace> planes_;
   std::vector<Vec3> flat_;  // normals of triangles in whose plane the new vertex is
-  std::vector<std::uint32_t> mark_, neighbours_;
-  std::uint32_t mark_value_ = 0;
 };
 
 }  // namespace kaboum::bmesh

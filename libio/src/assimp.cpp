@@ -82,9 +82,9 @@ Placement placement_of(const aiMatrix4x4& m) {
 }
 
 /// Copies the scene's meshes, once per node that refers to them, into the builder.
-class SceneReader {
+class AssimpReader {
  public:
-  SceneReader(const Source& source, const aiScene& scene, MeshBuilder& builder)
+  AssimpReader(const Source& source, const aiScene& scene, MeshBuilder& builder)
       : source_(source), scene_(scene), copier_(builder) {}
 
   void read() {
@@ -148,7 +148,7 @@ ReadResult read_here(const Source& source) {
                      "; check its format");
   MeshBuilder builder(source);
   builder.note("The importer (assimp) delivers 32-bit floats; those are taken as the input.");
-  SceneReader(source, *scene, builder).read();
+  AssimpReader(source, *scene, builder).read();
   double unit = 0;
   if (scene->mMetaData != nullptr && scene->mMetaData->Get("UnitScaleFactor", unit)) {
     builder.set_unit(unit * 0.01);

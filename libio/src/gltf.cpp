@@ -30,9 +30,9 @@ Eigen::Matrix3d rotation(const JsonItem& item, const double* q) {
   return Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized().toRotationMatrix();
 }
 
-class SceneReader {
+class GltfReader {
  public:
-  SceneReader(GltfFile& file, const std::function<MeshBuilder&(const std::string&)>& builder_for)
+  GltfReader(GltfFile& file, const std::function<MeshBuilder&(const std::string&)>& builder_for)
       : file_(file), builder_for_(builder_for) {}
 
   GltfFacts read() {
@@ -297,7 +297,7 @@ void refuse_margin(const GltfFile& file) {
 
 GltfFacts read_gltf_scene(GltfFile& file,
                           const std::function<MeshBuilder&(const std::string&)>& builder_for) {
-  return SceneReader(file, builder_for).read();
+  return GltfReader(file, builder_for).read();
 }
 
 void note_gltf_facts(const GltfFacts& facts, GltfFile& file) {

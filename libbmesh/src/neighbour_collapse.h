@@ -1,0 +1,66 @@
+#pragma once
+
+#include <kaboum/bmesh/decimate.h>
+
+#include <optional>
+#include <vector>
+
+#include "error_bound_certificate.h"
+#include "region_snapshot.h"
+#include "star_step.h"
+
+namespace kaboum::bmesh {
+
+class Optimiser;
+struct VertexNotes;
+
+/// Contractions that move the vertices around with them.
+class NeighbourCollapse {
+ public:
+  /// Works on what the optimiser works on, which must outlive this object and
+  /// not move.
+  explicit NeighbourCollapse(Optimiser& optimiser);
+
+  /// Optimiser::collapse_with_neighbours.
+  double collapse(std::uint32_t a, std::uint32_t b, double limit);
+
+ private:
+  /// Where a point was when the original was last sought from it, how far, and
+  /// where.
+  struct Trail {
+    Vec3 position;
+    double distance;
+    std::uint32_t nearest = SampledError::kNone;
+  };
+
+  void neighbours(std::uint32_t v, std::vector<std::uint32_t>& out);
+  void relax_vertex(std::size_t i, double scale, double penalty, double share, bool hand_over);
+  void follow(SampledError::Point& point, Trail& trail, double close, std::uint32_t& hint);
+  double star_largest(std::uint32_t v, double limit);
+  double region_largest(double limit);
+  std::optional<Vec3> find_position(std::uint32_t a, std::uint32_t b, const Vec3& wish);
+  double trial_collapse(std::uint32_t a, std::uint32_t b, double limit);
+  bool satisfies_link_condition(std::uint32_t a, std::uint32_t b);
+  bool gather_edge(std::uint32_t a, std::uint32_t b, const Vec3& to);
+  void contract(std::uint32_t a, std::uint32_t b, const Vec3& to);
+
+  Optimiser& optimiser_;
+  WorkingMesh& m_;
+  VertexNotes& notes_;
+  SampledError& sampled_;
+  ErrorBoundCertificate* certificate_;
+  const DecimateOptions& options_;
+  DecimateStatistics& statistics_;
+  std::vector<Step>* steps_;
+  StarStep& step_;
+  RegionSnapshot before_;
+
+  std::vector<std::uint32_t> mark_;  // of vertices
+  std::uint32_t mark_value_ = 0;
+  std::vector<std::uint32_t> around_;       // vertices that move with a contraction, it first
+  std::vector<Vec3> target_;                // of these
+  std::vector<std::vector<Trail>> trails_;  // of the points at which their stars are measured
+  std::vector<std::uint32_t> alive_;
+};
+
+}  // namespace kaboum::bmesh
