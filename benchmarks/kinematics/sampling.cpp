@@ -106,11 +106,12 @@ Histogram run(const Scene& scene, const char* method, const SampleOptions& optio
   const auto draws = static_cast<double>(t.draws);
   std::printf(
       "%-18s %-30s %6.2f %% of calls within limits, %6.2f draws per call; of draws %5.1f %% "
-      "projected, %5.1f %% reached; %7.1f us per call, worst cost %.1e, empty bins %ld\n",
+      "projected, %5.1f %% reached; %7.1f us per call, worst cost %.1e, empty bins %ld, %.1f poses "
+      "solved per call\n",
       scene.name.c_str(), method, 100.0 * static_cast<double>(good) / samples, draws / samples,
       100.0 * static_cast<double>(t.projected) / draws,
       100.0 * static_cast<double>(t.reached) / draws, 1e6 * time / samples, worst,
-      std::count(bins.begin(), bins.end(), 0U));
+      std::count(bins.begin(), bins.end(), 0U), static_cast<double>(t.solved) / samples);
   char line[160];
   std::snprintf(line, sizeof line, "%s,%s,%.2f,%.2f,%.1f\n", scene.name.c_str(), method,
                 100.0 * static_cast<double>(good) / samples, draws / samples, 1e6 * time / samples);

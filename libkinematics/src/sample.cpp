@@ -12,6 +12,7 @@
 #include <numbers>
 #include <string>
 
+#include "free_motions.h"
 #include "joint_limits.h"
 
 namespace kaboum::kinematics {
@@ -154,6 +155,25 @@ double Costs::largest() const {
   return most;
 }
 
+namespace {
+
+/// Placements at which motions are tried, and starts for them at most.
+constexpr int kProbes = 3, kProbeStarts = 12;
+
+/// The last frame's origin of a closed form, which its first joints place.
+ReachBall ball_of(const PlacedArm& robot, const ClosedForm& form) {
+  ReachBall ball;
+  ball.point = form.tool_inverse.translation;
+  ball.centre = robot.base * inverse(form.base_inverse).translation;
+  const double links = form.family == Family::SphericalWrist
+                           ? form.forearm
+                           : std::abs(form.a3) + std::abs(form.a4) + std::abs(form.d5);
+  ball.radius = std::hypot(std::abs(form.a1) + form.a2 + links, form.lateral);
+  return ball;
+}
+
+}  // namespace
+
 class ConstraintSampler::Impl {
  public:
   Impl(ConstraintProblem problem, const SampleOptions& options)
@@ -178,6 +198,7 @@ class ConstraintSampler::Impl {
       frame.count = 6;
       add(frames_.objects, std::move(frame));
     }
+    find_motions();
   }
 
   std::optional<Sample> next() {
@@ -202,6 +223,38 @@ class ConstraintSampler::Impl {
     frame.first = frames_.unknowns;
     frames_.unknowns += frame.count;
     frames.push_back(std::move(frame));
+  }
+
+  [[nodiscard]] Transform pose_of(const FrameId& id) const {
+    const Frame* frame = frames_.find(id);
+    return frame != nullptr ? frame->pose : Transform();
+  }
+
+  /// Which motions of tools the constraints leave free.
+  void find_motions() {
+    motions_.resize(forms_.size());
+    if (options_.motions == 0) return;
+    for (std::size_t i = 0; i < forms_.size(); ++i)
+      if (forms_[i]) {
+        motions_[i] = FreeMotions(problem_.constraints, {Kind::Tool, i}, length_);
+        balls_.push_back(ball_of(problem_.robots[i], *forms_[i]));
+      } else {
+        balls_.emplace_back();
+      }
+    const Random unused = random_;  // samples do not depend on what is drawn here
+    int probes = 0;
+    const auto pose = [&](const FrameId& id) { return pose_of(id); };
+    for (int k = 0; k < kProbeStarts && probes < kProbes; ++k) {
+      start();
+      if (!project()) continue;
+      ++probes;
+      for (FreeMotions& motions : motions_) motions.keep_free(pose, options_.bound, random_);
+    }
+    for (FreeMotions& motions : motions_) {
+      if (probes < kProbes) motions = {};
+      motions.keep_independent(pose);
+    }
+    random_ = unused;
   }
 
   /// Random joints, and the poses that they give; random poses of objects.
@@ -298,44 +351,60 @@ class ConstraintSampler::Impl {
 
   /// Joints for the tools that are where they should be, and the check of all.
   bool finish(Sample& sample) {
-    bool within = true;
+    Found worst = Found::Within;
     for (std::size_t i = 0; i < problem_.robots.size(); ++i) {
       const PlacedArm& robot = problem_.robots[i];
-      if (forms_[i]) {
-        const Transform target = inverse(robot.base) * frames_.tools[i].pose;
-        if (!choose(*forms_[i], target, joints_[i], within)) return false;
-      } else if (options_.limits) {
-        within = within && within_limits(robot.arm, joints_[i]);
-      }
+      if (forms_[i])
+        worst = std::min(worst, choose_moving(i));
+      else if (options_.limits && !within_limits(robot.arm, joints_[i]))
+        worst = std::min(worst, Found::Outside);
+      if (worst == Found::None) return false;
     }
     ++tally_.reached;
-    if (!within) return false;
+    if (worst != Found::Within) return false;
     sample.at.joints = joints_;
     for (const Frame& frame : frames_.objects) sample.at.objects.push_back(frame.pose);
     sample.error = error_of(sample.at);
     return sample.error <= options_.bound;
   }
 
+  enum class Found { None, Outside, Within };  ///< joints: none, none within the limits, some
+
+  /// Joints for the tool's pose, else for poses to which the constraints let it move.
+  Found choose_moving(std::size_t i) {
+    Transform& pose = frames_.tools[i].pose;
+    const auto place = [&](const FrameId& id) { return pose_of(id); };
+    Found best = choose(i);
+    const int motions = motions_[i].empty() ? 0 : options_.motions;
+    for (int k = 0; k < motions && best != Found::Within; ++k) {
+      pose = motions_[i].moved(pose, place, balls_[i], random_);
+      best = std::max(best, choose(i));
+    }
+    return best;
+  }
+
   /// One of the solutions within the limits, each as likely as any other.
-  bool choose(const ClosedForm& form, const Transform& target, std::vector<double>& q,
-              bool& within) {
+  Found choose(std::size_t i) {
+    ++tally_.solved;
+    const ClosedForm& form = *forms_[i];
+    std::vector<double>& q = joints_[i];
     SolveOptions options;
     for (std::size_t k = 0; k < q.size(); ++k) options.reference[k] = q[k];  // random values
-    const Solutions found = solve(form, target, options);
-    if (found.empty()) return false;
+    const Solutions found =
+        solve(form, inverse(problem_.robots[i].base) * frames_.tools[i].pose, options);
+    if (found.empty()) return Found::None;
     const std::size_t first = random_.index(found.size());
     for (std::size_t n = 0; n < found.size(); ++n) {
       const Solution& s = found[(first + n) % found.size()];
-      if (!options_.limits) return q.assign(s.q.begin(), s.q.begin() + q.size()), true;
+      if (!options_.limits) return q.assign(s.q.begin(), s.q.begin() + q.size()), Found::Within;
       // Of whole turns, those near the random start.
       const std::vector<double> start = q;
       if (auto near = nearest_copy(form.arm, {s.q.data(), q.size()}, start)) {
         q = std::move(*near);
-        return true;
+        return Found::Within;
       }
     }
-    within = false;
-    return true;
+    return Found::Outside;
   }
 
   [[nodiscard]] double error_of(const Placement& at) const {
@@ -346,6 +415,8 @@ class ConstraintSampler::Impl {
   Random random_;
   double length_ = 0;
   std::vector<std::optional<ClosedForm>> forms_;
+  std::vector<FreeMotions> motions_;  ///< of the robots that have closed forms
+  std::vector<ReachBall> balls_;
   Frames frames_;
   std::vector<std::vector<double>> joints_;
   Placement before_;

@@ -313,6 +313,60 @@ TEST(Sampling, ManyDrawsEndWithinTheLimits) {
   }
 }
 
+/// The tool's z along a cylinder's axis, its centre on the rim, its x in the plane of the top.
+ConstraintProblem rim_of_cylinder(const DhArm& dh) {
+  ConstraintProblem problem = place_on_table(dh);
+  const Vec3 centre(0.5, 0, 0.2);
+  problem.constraints = {
+      {Relation::Parallel, {kTool, Line{}}, {kWorld, Line{centre, {0, 0, 1}}}},
+      {Relation::Distance, {kTool, Point{}}, {kWorld, Line{centre, {0, 0, 1}}}, 0.05},
+      {Relation::Coincident,
+       {kTool, Line{{0, 0, 0}, {1, 0, 0}}},
+       {kWorld, Plane{centre, {0, 0, 1}}}}};
+  return problem;
+}
+
+TEST(Sampling, OneDrawIsEnoughWhereTheConstraintsLeaveMotionsFree) {
+  for (const ConstraintProblem& problem :
+       {place_on_table(rv_6sl(true)), rim_of_cylinder(rv_6sl(true))}) {
+    SampleOptions options;
+    options.draws = 1;
+    const auto share = [&] {
+      ConstraintSampler sampler(problem, options);
+      int samples = 0;
+      for (int i = 0; i < 1000; ++i) {
+        const auto s = sampler.next();
+        if (!s) continue;
+        ++samples;
+        EXPECT_TRUE(within_limits(problem.robots[0].arm, s->at.joints[0]));
+        EXPECT_LE(evaluate(problem, s->at, 1).largest(), 1e-8);
+      }
+      return samples;
+    };
+    EXPECT_EQ(share(), 1000);
+    options.motions = 0;
+    EXPECT_LT(share(), 800);
+  }
+}
+
+TEST(Sampling, MotionsAreFreeOnlyWhereAllConstraintsLeaveThem) {
+  // A given direction of the tool's x leaves no turn about its z, a given height no slide upwards.
+  ConstraintProblem problem = place_on_table(rv_6sl(true));
+  problem.constraints.push_back({Relation::Parallel,
+                                 {kTool, Line{{0, 0, 0}, {1, 0, 0}}},
+                                 {kWorld, Line{{0, 0, 0}, {0, 1, 0}}}});
+  ConstraintSampler sampler(problem);
+  for (int i = 0; i < 300; ++i) {
+    const auto s = sampler.next();
+    ASSERT_TRUE(s);
+    const Transform tool = reference_pose(rv_6sl(true), s->at.joints[0]);
+    EXPECT_NEAR(std::abs(tool.translation.z()), 0.1, 1e-8);
+    EXPECT_NEAR(std::abs(tool.linear(1, 0)), 1, 1e-8);
+    EXPECT_NEAR(std::abs(tool.linear(2, 2)), 1, 1e-8);
+  }
+  EXPECT_GE(sampler.tally().samples * 100, sampler.tally().draws * 90);
+}
+
 TEST(Sampling, AllConfigurationsOfAPoseAreDrawn) {
   // The tool's point and axes are given, but for their directions: four poses.
   const Transform pose = reference_pose(rv_6sl(true), {0.2, 0.3, 0.9, 0.4, 0.8, 0.1});

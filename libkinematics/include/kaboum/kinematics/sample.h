@@ -58,6 +58,9 @@ struct SampleOptions {
   /// Where a robot has a closed form, its tool's pose is projected, and the joints are solved for;
   /// false: joints are projected, as the thesis does.
   bool closed_form = true;
+  /// A pose without joints is moved at most so often by what the constraints leave free, until it
+  /// has some; 0: the draw has failed then.
+  int motions = 64;
 };
 
 struct Sample {
@@ -87,6 +90,7 @@ class ConstraintSampler {
         0;                    ///< met the constraints, at least with tools where joints are unknown
     std::size_t reached = 0;  ///< and with joints, whatever the limits
     std::size_t samples = 0;  ///< and within the limits
+    std::size_t solved = 0;   ///< poses that closed forms were asked for
   };
   [[nodiscard]] const Tally& tally() const;
 
