@@ -105,7 +105,7 @@ Histogram run(const Scene& scene, const char* method, const SampleOptions& optio
   const auto& t = sampler.tally();
   const auto draws = static_cast<double>(t.draws);
   std::printf(
-      "%-18s %-30s %6.2f %% of calls within limits, %6.2f draws per call; of draws %5.1f %% "
+      "%-18s %-40s %6.2f %% of calls within limits, %6.2f draws per call; of draws %5.1f %% "
       "projected, %5.1f %% reached; %7.1f us per call, worst cost %.1e, empty bins %ld, %.1f poses "
       "solved per call\n",
       scene.name.c_str(), method, 100.0 * static_cast<double>(good) / samples, draws / samples,
@@ -192,6 +192,9 @@ int main(int argc, char** argv) {
     const Histogram projected = run(scene, "with limits: up to 100 draws", options, samples, table);
     options.closed_form = true;
     options.draws = 1;
+    options.motions = 0;
+    run(scene, "closed form without free motions: one draw", options, samples, table);
+    options.motions = SampleOptions().motions;
     run(scene, "closed form: one draw", options, samples, table);
     options.draws = 100;
     const Histogram closed = run(scene, "closed form: up to 100 draws", options, samples, table);
