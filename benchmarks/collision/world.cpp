@@ -2,6 +2,8 @@
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/robot/kinematics.h>
+#include <kaboum/robot/mesh_files.h>
+#include <kaboum/robot/robot_file.h>
 #include <kaboum/world/motion_check.h>
 #include <kaboum/world/scene.h>
 
@@ -13,8 +15,6 @@
 #include <random>
 
 #include "engine.h"
-#include "find_mesh.h"
-#include "robot_file.h"
 #include "scene_file.h"
 #include "timing.h"
 
@@ -80,13 +80,13 @@ struct Models {
   Model triangles{"triangles", false, 0, {}, {}}, sets{"bounding sets", true, 0, {}, {}};
 };
 
-Models models_of(const world::World& world, const tools::RobotFile& file,
+Models models_of(const world::World& world, const robot::RobotFile& file,
                  const geom::Mesh& object) {
   Models out;
   for (std::uint32_t l = 0; l < file.robot.links.size(); ++l)
     for (const robot::Geometry& g : file.robot.links[l].collision) {
       if (g.shape != robot::Geometry::Shape::Mesh) continue;
-      geom::Mesh mesh = io::read_mesh(tools::resolve_mesh(g.mesh, file.path, {})).mesh;
+      geom::Mesh mesh = io::read_mesh(robot::resolve_mesh(g.mesh, file.path, {})).mesh;
       for (geom::Vec3& v : mesh.vertices) v = g.origin * v.cwiseProduct(g.size);
       out.triangles.robot.push_back({l, std::move(mesh)});
     }
@@ -199,7 +199,7 @@ int main(int argc, char** argv) {
   const std::size_t segments = argc > 5 ? std::strtoull(argv[5], nullptr, 10) : 500;
   tools::SceneFile scene = tools::read_scene(argv[1]);
   world::World& world = scene.world;
-  const tools::RobotFile file = tools::read_robot(argv[2]);
+  const robot::RobotFile file = robot::read_robot(argv[2]);
   const geom::Mesh object = io::read_mesh(argv[3]).mesh;
   world::RobotModel& robot = world.robots.at(0);
   // Engines look at the robot against the objects only; so does libworld here.

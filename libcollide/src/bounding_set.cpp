@@ -39,12 +39,19 @@ double sum_up(std::initializer_list<double> lengths) {
 }
 
 double reach_of(const PosedSet& a, std::size_t i, const PosedSet& b, std::size_t j, double slack) {
-  return sum_up({a.set().body(i).margin, a.error(), b.set().body(j).margin, b.error(), slack});
+  return sum_up({a.margin_above(i), a.error(), b.margin_above(j), b.error(), slack});
 }
 
 /// Both margins, not above the exact sum.
 double margins(const PosedSet& a, std::size_t i, const PosedSet& b, std::size_t j) {
-  return (a.set().body(i).margin + b.set().body(j).margin) / kUp;
+  return (a.margin_below(i) + b.margin_below(j)) / kUp;
+}
+
+/// Bounds |LᵀL − I|: 0 for matrices that only swap axes and turn them round. An entry of nine errs
+/// by less than 5 · 2^-52.
+double bound_of_defect(const Eigen::Matrix3d& l, const Eigen::Matrix3d& defect) {
+  if (((l.array() == 0) || (l.array() == 1) || (l.array() == -1)).all()) return 0;
+  return defect.norm() + 0x1p-47;
 }
 
 /// A polytope that is more than `by` inside the hull all round; nullopt where the hull is too thin.
@@ -133,15 +140,16 @@ PosedSet::PosedSet(const BoundingSet& set, const geom::Transform& pose, double e
 }
 
 void PosedSet::place(const geom::Transform& pose, double error) {
-  const double defect =
-      (pose.linear.transpose() * pose.linear - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (!(defect < 1e-9) || !(pose.linear.determinant() > 0))
+  const Eigen::Matrix3d defect =
+      pose.linear.transpose() * pose.linear - Eigen::Matrix3d::Identity();
+  if (!(defect.cwiseAbs().maxCoeff() < 1e-9) || !(pose.linear.determinant() > 0))
     throw Error(ErrorCode::InvalidArgument, "a pose whose matrix is no rotation");
   pose_ = pose;
   error_ = require_length(error, "an error of its place");
+  defect_ = bound_of_defect(pose.linear, defect);
   box_ = {};
   for (std::size_t i = 0; i < boxes_.size(); ++i) {
-    boxes_[i] = body(i).box(sum_up({set_->body(i).margin, error}));
+    boxes_[i] = body(i).box(sum_up({margin_above(i), error}));
     box_.extend(boxes_[i]);
   }
 }
@@ -206,9 +214,9 @@ std::optional<Clearance> clearance(const PosedSet& a, const PosedSet& b) {
     if (least > out.upper) break;
     const Gap gap = gap_between(a.body(pair.a), b.body(pair.b));
     const double reach = reach_of(a, pair.a, b, pair.b, 0);
-    const double margins = a.set().body(pair.a).margin + b.set().body(pair.b).margin;
     out.lower = std::min(out.lower, std::max((gap.lower - reach) / kUp, 0.0));
-    const double upper = std::max((gap.upper + a.error() + b.error()) * kUp - margins / kUp, 0.0);
+    const double upper =
+        std::max((gap.upper + a.error() + b.error()) * kUp - margins(a, pair.a, b, pair.b), 0.0);
     if (upper >= out.upper) continue;
     out.upper = upper;
     out.bodies = pair;

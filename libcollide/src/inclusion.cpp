@@ -193,7 +193,8 @@ class Subtraction {
   std::size_t left_;
 };
 
-/// How far a cube round a ball reaches, and what `linear` may be off from a rotation.
+/// More than what a pose's matrix shrinks lengths by, and rounding: where LᵀL is off from I by less
+/// than 1e-9 in its entries, no length is shrunk or stretched by more than 1.6e-9 of it.
 constexpr double kCube = 1.0001;
 
 /// The hull of cubes round the points, which hold balls of the radius.
@@ -223,7 +224,8 @@ double tolerance_of_inclusion(const PosedSet& outer, const PosedSet& inner) {
   }
   const double enlarged_by = margin + outer.error() + inner.error();
   return outer.set().epsilon() + inner.set().epsilon() + outer.error() + inner.error() +
-         (enlarged_by == 0 ? 0 : std::numbers::sqrt3 * kCube * (enlarged_by + 0x1p-49 * size));
+         (enlarged_by == 0 ? 0
+                           : std::numbers::sqrt3 * kCube * kCube * (enlarged_by + 0x1p-49 * size));
 }
 
 Inclusion find_inclusion(const PosedSet& outer, const PosedSet& inner, std::size_t most_pieces) {
@@ -235,11 +237,11 @@ Inclusion find_inclusion(const PosedSet& outer, const PosedSet& inner, std::size
     const double errors = outer.error() + inner.error();
     const double radius = (outer.set().body(i).margin + errors) * (errors > 0 ? 1 + 0x1p-50 : 1);
     const geom::Mesh hull = enlarged(outer.set().body(i).hull, radius);
+    const geom::Box3 box = Posed(Polytope(hull.vertices), outer.pose()).box();
     std::vector<std::vector<Plane>> bodies;
     for (std::size_t j = 0; j < inner.set().size(); ++j) {
-      // Boxes of the outer one hold its margin and errors.
-      if (((outer.box(i).min - inner.box(j).max).array() > 0).any() ||
-          ((inner.box(j).min - outer.box(i).max).array() > 0).any())
+      if (((box.min - inner.box(j).max).array() > 0).any() ||
+          ((inner.box(j).min - box.max).array() > 0).any())
         continue;
       const geom::Mesh& body = inner.set().body(j).hull;
       bodies.push_back(planes_of(body, corners_of(body, inner.pose())));

@@ -152,6 +152,36 @@ TEST(FindCollision, RefusesPosesThatAreNoRotations) {
   EXPECT_THROW(PosedSet(set, at(0), -1), Error);
 }
 
+/// As far from a rotation as is taken: by less than 1e-9 in LᵀL.
+geom::Transform scaled_at(double scale, double x) {
+  return {scale * Eigen::Matrix3d::Identity(), {x, 0, 0}};
+}
+
+TEST(FindCollision, WhatAMatrixStretchesMarginsByCounts) {
+  const BoundingSet plain = set_of({kUnit}, Direction::Outer),
+                    wide = set_of({box({0, -1, -1}, {1, 1, 1})}, Direction::Outer, 64, 64);
+  const double scale = 1 + 4.9e-10, reach = 64 * scale;
+  // The image of the wide one's margin reaches from x down to x - reach.
+  EXPECT_TRUE(find_collision(PosedSet(plain), PosedSet(wide, scaled_at(scale, 1 + reach - 1e-9))));
+  EXPECT_TRUE(find_collision(PosedSet(wide, scaled_at(scale, 1 + reach - 1e-9)), PosedSet(plain)));
+  EXPECT_FALSE(find_collision(PosedSet(plain), PosedSet(wide, scaled_at(scale, 1 + reach + 1e-6))));
+  EXPECT_LE(clearance(PosedSet(plain), PosedSet(wide, scaled_at(scale, 1 + reach - 1e-9)))->lower,
+            0);
+  EXPECT_LE(PosedSet(wide, scaled_at(scale, 0)).box().min.x(), -reach);
+}
+
+TEST(CertainlyCollide, OnlyWithWhatAMatrixLeavesOfMargins) {
+  const BoundingSet plain = set_of({kUnit}, Direction::Inner),
+                    wide = set_of({box({0, -1, -1}, {1, 1, 1})}, Direction::Inner, 0, 64);
+  const double scale = 1 - 4.9e-10, reach = 64 * scale;
+  EXPECT_FALSE(
+      certainly_collide(PosedSet(plain), PosedSet(wide, scaled_at(scale, 1 + reach + 1e-9))));
+  EXPECT_TRUE(
+      certainly_collide(PosedSet(plain), PosedSet(wide, scaled_at(scale, 1 + reach - 1e-6))));
+  EXPECT_GE(clearance(PosedSet(plain), PosedSet(wide, scaled_at(scale, 1 + reach + 1e-9)))->upper,
+            0.9e-9);
+}
+
 TEST(CertainlyCollide, OnlyWhenInnerSetsMeetHoweverTheyArePlaced) {
   const BoundingSet inner = set_of({kUnit}, Direction::Inner, 0.1),
                     outer = set_of({kUnit}, Direction::Outer, 0.1);
@@ -230,6 +260,32 @@ TEST(FindInclusion, MarginsAndErrorsCount) {
   const BoundingSet outer = set_of({kUnit}, Direction::Outer, 0.2, 0.125);
   EXPECT_GE(tolerance_of_inclusion(PosedSet(outer), PosedSet(region)), 0.3 + 0.125 * 1.73);
   EXPECT_THROW(find_inclusion(PosedSet(region), PosedSet(outer)), Error);
+}
+
+TEST(FindInclusion, AMatrixThatShrinksLeavesMarginsAndErrorsWhole) {
+  const BoundingSet outer = set_of({box({-1, -1, -1}, {1, 1, 1})}, Direction::Outer, 64, 64);
+  const double scale = 1 - 4.9e-10;
+  for (const double error : {0.0, 64.0}) {
+    const double reach = scale * 65 + error;
+    const auto included = [&](double half) {
+      const BoundingSet region =
+          set_of({box(Vec3::Constant(-half), Vec3::Constant(half))}, Direction::Inner);
+      return find_inclusion(PosedSet(outer, scaled_at(scale, 0), error), PosedSet(region));
+    };
+    EXPECT_EQ(included(reach * (1 - 1e-12)), Inclusion::NotIncluded);
+    EXPECT_EQ(included(reach * (1 + 2e-4)), Inclusion::Included);
+  }
+}
+
+TEST(FindInclusion, BodiesThatOnlyEnlargedCornersReachAreNotLeftOut) {
+  const BoundingSet outer =
+      set_of({box(Vec3::Constant(-0.5), Vec3::Constant(0.5))}, Direction::Outer, 0.5, 0.5);
+  const geom::Transform turned{Eigen::AngleAxisd(EIGEN_PI / 4, Vec3::UnitZ()).toRotationMatrix(),
+                               Vec3::Zero()};
+  const BoundingSet region =
+      set_of({box({-3, -3, -3}, {1.25, 3, 3}), box({1.25, -3, -3}, {3, 3, 3})}, Direction::Inner);
+  ASSERT_LT(tolerance_of_inclusion(PosedSet(outer), PosedSet(region)), 3 - std::sqrt(0.5));
+  EXPECT_EQ(find_inclusion(PosedSet(outer, turned), PosedSet(region)), Inclusion::Included);
 }
 
 TEST(FindInclusion, SaysOfTurnedUnionsWhatSamplesSay) {

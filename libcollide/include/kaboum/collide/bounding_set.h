@@ -49,8 +49,8 @@ class BoundingSet {
 /// A set at a place. Refers to the set.
 class PosedSet {
  public:
-  /// @param error  how far a point may be from its exact image under the pose: of rotations that
-  ///   are rounded, of kinematics. [length]
+  /// @param error  how far a point of the body may be from its exact image under the pose: of
+  ///   rotations that are rounded, of kinematics. [length]
   /// @throws Error{InvalidArgument} when `linear` is no rotation (to 1e-9) or a number is not
   ///   finite.
   explicit PosedSet(const BoundingSet& set, const geom::Transform& pose = {}, double error = 0);
@@ -61,6 +61,14 @@ class PosedSet {
   [[nodiscard]] const BoundingSet& set() const { return *set_; }
   [[nodiscard]] const geom::Transform& pose() const { return pose_; }
   [[nodiscard]] double error() const { return error_; }
+  /// Radii of balls that hold the image of a body's margin, and that it holds: `linear` may stretch
+  /// it. [length]
+  [[nodiscard]] double margin_above(std::size_t i) const {
+    return set_->body(i).margin * (1 + defect_);
+  }
+  [[nodiscard]] double margin_below(std::size_t i) const {
+    return set_->body(i).margin * (1 - defect_);
+  }
   [[nodiscard]] Posed body(std::size_t i) const { return {set_->polytope(i), pose_}; }
   /// Boxes along the axes, margins and error included.
   [[nodiscard]] const geom::Box3& box() const { return box_; }
@@ -70,6 +78,7 @@ class PosedSet {
   const BoundingSet* set_;
   geom::Transform pose_;
   double error_ = 0;
+  double defect_ = 0;  ///< of `linear` from a rotation, more than twice what it stretches by
   std::vector<geom::Box3> boxes_;
   geom::Box3 box_;
 };
