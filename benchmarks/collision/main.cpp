@@ -3,6 +3,7 @@
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/robot/kinematics.h>
+#include <kaboum/robot/mesh_files.h>
 
 #include <algorithm>
 #include <cmath>
