@@ -2,6 +2,7 @@
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/io/mesh_io.h>
+#include <kaboum/robot/kinematics.h>
 
 #include <algorithm>
 #include <array>
@@ -52,15 +53,15 @@ geom::Vec3 random_direction(std::mt19937_64& random) {
 
 /// Poses of the second copy: turned at random, moved along a random direction to the last contact
 /// (by bisection), then between 1 % of the diagonal nearer and 2 % farther.
-std::vector<robot::Transform> near_contact(const geom::Mesh& mesh, Engine& engine,
-                                           std::size_t count) {
+std::vector<geom::Transform> near_contact(const geom::Mesh& mesh, Engine& engine,
+                                          std::size_t count) {
   const geom::Box3 box = geom::bounding_box(mesh);
   const geom::Vec3 center = 0.5 * (box.min + box.max);
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> unit(0, 1);
-  std::vector<robot::Transform> poses;
+  std::vector<geom::Transform> poses;
   while (poses.size() < count) {
-    robot::Transform pose;
+    geom::Transform pose;
     pose.linear =
         robot::rotation_about(random_direction(random), 2 * std::numbers::pi * unit(random));
     const geom::Vec3 direction = random_direction(random);
@@ -266,7 +267,7 @@ class Benchmark {
 
   const Options& options_;
   std::string name_;
-  std::vector<robot::Transform> poses_;
+  std::vector<geom::Transform> poses_;
   std::vector<char> truth_;
   Statistics reference_{};
   std::optional<std::size_t> peer_alarms_;
