@@ -96,6 +96,7 @@ int solve(const PlanOptions& o) {
   plan::SolveOptions options;
   options.algorithm = kAlgorithms.at(o.search);
   options.timeout = o.timeout;
+  options.seed = o.common.seed;
   options.max_memory = parse_memory(o.max_memory);
   Progress progress(o.common.quiet);
   options.progress = [&](const plan::Statistics& s) {

@@ -23,7 +23,7 @@ class Checker {
       : model_(model),
         plan_(plan),
         limit_(limit),
-        evaluator_(model),
+        evaluator_(model, plan),
         live_(model, plan, evaluator_),
         transitions_(model, evaluator_) {}
 
@@ -67,7 +67,7 @@ class Checker {
   }
 
   void visit(Index node, RuntimeKnowledge k, std::size_t parent, std::string label) {
-    k.restrict_to(live_.at(node));
+    if (!live_.at(node).all) k.restrict_to(live_.at(node).facts);
     const auto [it, fresh] = seen_.emplace(node, std::move(k));
     if (!fresh) return;
     if (++result_.states > limit_)
@@ -104,6 +104,7 @@ class Checker {
         violate(v, "the precondition of " + label + " does not hold");
         return;
       }
+      if (!same_calls(v, node, evaluator_.calls(a.precondition, slots, *at.state))) return;
       after = transitions_.after(a, slots, *at.state);
       // What is observed rules a run out; but some run must get through, or it is no plan.
       if (after.empty()) {
@@ -121,6 +122,28 @@ class Checker {
       }
       follow(v, node.branch, std::move(k), label);
     }
+  }
+
+  /// Whether external functions return what the plan says, paths and the like included.
+  bool same_calls(std::size_t v, const Plan::Node& node, const std::vector<Plan::Call>& calls) {
+    if (node.calls == calls) return true;
+    const std::string action = action_text(model_, node.action);
+    if (node.calls.size() != calls.size()) {
+      violate(v, "the plan does not say what the calls of " + action + " return");
+      return false;
+    }
+    for (std::size_t i = 0; i < calls.size(); ++i) {
+      if (node.calls[i] == calls[i]) continue;
+      const std::string name = model_.externals[calls[i].external].name;
+      violate(v, "for " + action + " the external function '" + name + "' returns " +
+                     (node.calls[i].value == calls[i].value &&
+                              node.calls[i].arguments == calls[i].arguments
+                          ? "another payload than the plan says"
+                          : "'" + calls[i].value + "', not '" + node.calls[i].value +
+                                "' as the plan says"));
+      return false;
+    }
+    return false;
   }
 
   void follow(std::size_t v, const Plan::Branch& branch, RuntimeKnowledge k,

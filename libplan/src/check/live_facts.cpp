@@ -30,7 +30,7 @@ std::vector<Index> bind(const Action& a, const PlanAction& action) {
 LiveFacts::LiveFacts(const Model& model, const Plan& plan, const QueryEvaluator& evaluator)
     : model_(model), evaluator_(evaluator) {
   std::vector<Index> slots(std::max<Index>(model.goal_slots, 1), 0);
-  evaluator.reads(model.goal, slots, goal_);
+  goal_.all = !evaluator.reads(model.goal, slots, goal_.facts);
   by_node_.resize(plan.nodes.size());
   std::vector<char> done(plan.nodes.size(), 0);
   // Acyclic: repeat over a stack until successors are done.
@@ -54,27 +54,30 @@ LiveFacts::LiveFacts(const Model& model, const Plan& plan, const QueryEvaluator&
 }
 
 void LiveFacts::read_node(const Plan::Node& node, const std::vector<Index>& successors,
-                          std::set<Fact>& live) const {
+                          Reads& live) const {
   for (const Index m : successors) {
-    const std::set<Fact>& below = at(m);
-    live.insert(below.begin(), below.end());
+    const Reads& below = at(m);
+    live.facts.insert(below.facts.begin(), below.facts.end());
+    live.all |= below.all;
   }
-  if (node.branches) live.insert(branch_fact(node.branch));
+  if (node.branches) live.facts.insert(branch_fact(node.branch));
   if (node.acts) {
     const Action& a = model_.actions[node.action.schema];
     std::vector<Index> bound = bind(a, node.action);
-    evaluator_.reads(a.precondition, bound, live);
+    live.all |= !evaluator_.reads(a.precondition, bound, live.facts);
     for (const Effect& e : a.effects) effect_reads(e, bound, live);
   }
 }
 
-void LiveFacts::effect_reads(const Effect& e, std::vector<Index>& slots,
-                             std::set<Fact>& out) const {
-  if (e.kind == Effect::Kind::When) evaluator_.reads(e.condition, slots, out);
+void LiveFacts::effect_reads(const Effect& e, std::vector<Index>& slots, Reads& out) const {
+  if (e.kind == Effect::Kind::When) out.all |= !evaluator_.reads(e.condition, slots, out.facts);
+  if (e.kind == Effect::Kind::Update)
+    if (const auto& value = e.update.literals[0].value; value && value->term)
+      out.facts.insert(fact(true, value->term->function, value->term->arguments, slots));
   // A disjunction combines with what is known of its atoms by then.
   if (e.kind == Effect::Kind::Update && e.update.database == Update::Database::Kx)
     for (const Update::Literal& l : e.update.literals)
-      out.insert(fact(l.function, l.symbol, l.arguments, slots));
+      out.facts.insert(fact(l.function, l.symbol, l.arguments, slots));
   if (e.kind == Effect::Kind::ForAll) {
     for (const Index o : model_.types[e.type].objects) {
       slots.at(e.slot) = o;

@@ -21,20 +21,21 @@ class LiveFacts {
   /// @pre the plan has no cycles.
   LiveFacts(const Model& model, const Plan& plan, const QueryEvaluator& evaluator);
 
+  struct Reads {
+    std::set<Fact> facts;
+    bool all = false;  ///< an external function may read anything
+  };
   /// kNone: the end, where the goal is read.
-  [[nodiscard]] const std::set<Fact>& at(Index node) const {
-    return node == kNone ? goal_ : by_node_[node];
-  }
+  [[nodiscard]] const Reads& at(Index node) const { return node == kNone ? goal_ : by_node_[node]; }
 
  private:
-  void read_node(const Plan::Node& node, const std::vector<Index>& successors,
-                 std::set<Fact>& live) const;
-  void effect_reads(const Effect& e, std::vector<Index>& slots, std::set<Fact>& out) const;
+  void read_node(const Plan::Node& node, const std::vector<Index>& successors, Reads& live) const;
+  void effect_reads(const Effect& e, std::vector<Index>& slots, Reads& out) const;
 
   const Model& model_;
   const QueryEvaluator& evaluator_;
-  std::set<Fact> goal_;
-  std::vector<std::set<Fact>> by_node_;
+  Reads goal_;
+  std::vector<Reads> by_node_;
 };
 
 }  // namespace kaboum::plan

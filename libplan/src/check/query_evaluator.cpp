@@ -4,6 +4,7 @@
 #include <kaboum/base/error.h>
 
 #include <algorithm>
+#include <exception>
 
 namespace kaboum::plan {
 
@@ -14,32 +15,86 @@ Fact fact(bool function, Index symbol, const std::vector<Argument>& arguments,
   return f;
 }
 
-bool QueryEvaluator::holds(const Query& q, std::vector<Index>& slots,
-                           const RuntimeKnowledge& k) const {
+namespace {
+
+/// What a state of knowledge answers to an external function.
+class KnowledgeReader final : public StateReader {
+ public:
+  explicit KnowledgeReader(const RuntimeKnowledge& k) : k_(k) {}
+  std::optional<Index> value(Index function, std::span<const Index> arguments) override {
+    const Index* v = k_.value(fact(1, function, arguments));
+    return v == nullptr ? std::nullopt : std::optional<Index>(*v);
+  }
+  std::optional<bool> truth(Index predicate, std::span<const Index> arguments) override {
+    const Fact f = fact(0, predicate, arguments);
+    if (!k_.knows_whether(f)) return std::nullopt;
+    return k_.knows(f, true);
+  }
+
+ private:
+  static Fact fact(Index kind, Index symbol, std::span<const Index> arguments) {
+    Fact f = {kind, symbol};
+    f.insert(f.end(), arguments.begin(), arguments.end());
+    return f;
+  }
+  const RuntimeKnowledge& k_;
+};
+
+}  // namespace
+
+QueryEvaluator::QueryEvaluator(const Model& model, const Plan& plan)
+    : model_(model),
+      seed_(plan.seed),
+      attempts_(std::max(plan.attempts, 1U)),
+      handles_(static_cast<Index>(model.objects.size())) {}
+
+std::optional<bool> QueryEvaluator::truth(const Query& q, std::vector<Index>& slots,
+                                          const RuntimeKnowledge& k) const {
   switch (q.kind) {
     case Query::Kind::True:
       return true;
     case Query::Kind::False:
       return false;
     case Query::Kind::And:
-      return std::all_of(q.children.begin(), q.children.end(),
-                         [&](const Query& c) { return holds(c, slots, k); });
-    case Query::Kind::Or:
-      return std::any_of(q.children.begin(), q.children.end(),
-                         [&](const Query& c) { return holds(c, slots, k); });
-    case Query::Kind::Xor:
-      return std::count_if(q.children.begin(), q.children.end(),
-                           [&](const Query& c) { return holds(c, slots, k); }) == 1;
-    case Query::Kind::Not:
-      return !holds(q.children[0], slots, k);
+    case Query::Kind::Or: {
+      const bool decides = q.kind == Query::Kind::Or;
+      std::optional<bool> result = !decides;
+      for (const Query& c : q.children) {
+        const std::optional<bool> t = truth(c, slots, k);
+        if (t == decides) return decides;
+        if (!t) result = std::nullopt;
+        if (!t && !decides) return std::nullopt;  // what comes later is not asked
+      }
+      return result;
+    }
+    case Query::Kind::Xor: {
+      int certain = 0;
+      bool unresolved = false;
+      for (const Query& c : q.children) {
+        const std::optional<bool> t = truth(c, slots, k);
+        certain += t == true ? 1 : 0;
+        unresolved |= !t;
+      }
+      if (certain < 2 && unresolved) return std::nullopt;
+      return certain == 1;
+    }
+    case Query::Kind::Not: {
+      const std::optional<bool> t = truth(q.children[0], slots, k);
+      if (!t) return t;
+      return !*t;
+    }
     case Query::Kind::Exists:
-    case Query::Kind::ForAll:
+    case Query::Kind::ForAll: {
+      const bool decides = q.kind == Query::Kind::Exists;
+      std::optional<bool> result = !decides;
       for (const Index o : model_.types[q.type].objects) {
         slots.at(q.symbol) = o;
-        if (holds(q.children[0], slots, k) == (q.kind == Query::Kind::Exists))
-          return q.kind == Query::Kind::Exists;
+        const std::optional<bool> t = truth(q.children[0], slots, k);
+        if (t == decides) return decides;
+        if (!t) result = std::nullopt;
       }
-      return q.kind == Query::Kind::ForAll;
+      return result;
+    }
     case Query::Kind::Known:
       return k.knows(fact(false, q.symbol, q.arguments, slots), !q.negated);
     case Query::Kind::KnowWhether:
@@ -51,14 +106,26 @@ bool QueryEvaluator::holds(const Query& q, std::vector<Index>& slots,
       return k.value(fact(true, q.symbol, q.arguments, slots)) != nullptr;
     case Query::Kind::Same:
       return object(q.arguments[0], slots) == object(q.arguments[1], slots);
-    case Query::Kind::External: {
-      std::vector<Index> arguments;
-      for (const Argument& a : q.arguments) arguments.push_back(object(a, slots));
-      const auto result = call(q.symbol, std::move(arguments));
-      return result && (!q.value || *result == object(*q.value, slots));
+    case Query::Kind::External:
+    case Query::Kind::Let: {
+      const ExternalResult result = call(q, slots, k);
+      if (result.kind == Answer::Kind::NotFound) return std::nullopt;
+      if (result.kind == Answer::Kind::Impossible) return false;
+      if (q.kind == Query::Kind::Let) {
+        slots.at(q.value->index) = result.value;
+        return true;
+      }
+      return !q.value || result.value == object(*q.value, slots);
     }
   }
   throw Error(ErrorCode::Internal, "unexpected query");
+}
+
+std::optional<Index> QueryEvaluator::value(const Argument& a, const std::vector<Index>& slots,
+                                           const RuntimeKnowledge& k) const {
+  if (!a.term) return object(a, slots);
+  const Index* v = k.value(fact(true, a.term->function, a.term->arguments, slots));
+  return v == nullptr ? std::nullopt : std::optional<Index>(*v);
 }
 
 /// K(f = c), K(f != c) or Kw(f = c).
@@ -73,33 +140,84 @@ bool QueryEvaluator::holds_of_value(const Query& q, const std::vector<Index>& sl
   return q.negated ? differs : value != nullptr && *value == wanted;
 }
 
-void QueryEvaluator::reads(const Query& q, std::vector<Index>& slots, std::set<Fact>& out) const {
+bool QueryEvaluator::reads(const Query& q, std::vector<Index>& slots, std::set<Fact>& out) const {
   switch (q.kind) {
     case Query::Kind::Known:
     case Query::Kind::KnowWhether:
       out.insert(fact(false, q.symbol, q.arguments, slots));
-      return;
+      return true;
     case Query::Kind::KnownValue:
     case Query::Kind::WhetherValue:
     case Query::Kind::KnowValue:
       out.insert(fact(true, q.symbol, q.arguments, slots));
-      return;
-    case Query::Kind::Exists:
-    case Query::Kind::ForAll:
-      for (const Index o : model_.types[q.type].objects) {
-        slots.at(q.symbol) = o;
-        reads(q.children[0], slots, out);
-      }
-      return;
+      return true;
+    case Query::Kind::External:
+    case Query::Kind::Let:
+      for (const Argument& a : q.arguments)
+        if (a.term) out.insert(fact(true, a.term->function, a.term->arguments, slots));
+      return !model_.external_functions[q.symbol].reads_state;
     default:
-      for (const Query& c : q.children) reads(c, slots, out);
+      break;
   }
+  bool listed = true;
+  if (q.kind == Query::Kind::Exists || q.kind == Query::Kind::ForAll) {
+    for (const Index o : model_.types[q.type].objects) {
+      slots.at(q.symbol) = o;
+      listed &= reads(q.children[0], slots, out);
+    }
+    return listed;
+  }
+  for (const Query& c : q.children) listed &= reads(c, slots, out);
+  return listed;
 }
 
-std::optional<Index> QueryEvaluator::call(Index external, std::vector<Index> arguments) const {
-  const auto [it, fresh] = calls_.try_emplace({external, std::move(arguments)});
-  if (fresh) it->second = model_.external_functions[external](it->first.second);
+std::vector<Plan::Call> QueryEvaluator::calls(const Query& q, std::vector<Index>& slots,
+                                              const RuntimeKnowledge& k) const {
+  std::vector<Plan::Call> all;
+  if (q.kind == Query::Kind::And)
+    for (const Query& c : q.children)
+      for (Plan::Call& made : calls(c, slots, k)) all.push_back(std::move(made));
+  if (q.kind != Query::Kind::Let) return all;
+  std::vector<Index> arguments;
+  ExternalResult result = call(q, slots, k, &arguments);
+  Plan::Call made{q.symbol, {}, name(result.value), std::move(result.payload)};
+  for (const Index a : arguments) made.arguments.push_back(name(a));
+  all.push_back(std::move(made));
+  return all;
+}
+
+/// Where an argument is not known there is no value.
+ExternalResult QueryEvaluator::call(const Query& q, const std::vector<Index>& slots,
+                                    const RuntimeKnowledge& k,
+                                    std::vector<Index>* arguments) const {
+  std::vector<Index> objects;
+  for (const Argument& a : q.arguments) {
+    const std::optional<Index> v = value(a, slots, k);
+    if (!v) return {};
+    objects.push_back(*v);
+  }
+  if (arguments != nullptr) *arguments = objects;
+  if (model_.external_functions[q.symbol].reads_state) return ask(q.symbol, objects, k);
+  const auto [it, fresh] = calls_.try_emplace({q.symbol, objects});
+  if (fresh) it->second = ask(q.symbol, objects, k);
   return it->second;
+}
+
+ExternalResult QueryEvaluator::ask(Index external, const std::vector<Index>& arguments,
+                                   const RuntimeKnowledge& k) const {
+  ExternalResult result;
+  for (unsigned attempt = 0; attempt < attempts_; ++attempt) {
+    KnowledgeReader reader(k);
+    ExternalContext context{reader, handles_, seed_, attempt};
+    try {
+      result = model_.external_functions[external].call(arguments, context);
+    } catch (const std::exception& e) {
+      throw Error(ErrorCode::InvalidInput, "external function '" + model_.externals[external].name +
+                                               "' failed: " + e.what());
+    }
+    if (result.kind != Answer::Kind::NotFound) break;
+  }
+  return result;
 }
 
 }  // namespace kaboum::plan

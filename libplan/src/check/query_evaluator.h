@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/plan/model.h>
+#include <kaboum/plan/plan.h>
 
 #include <map>
 #include <optional>
@@ -16,26 +17,52 @@ namespace kaboum::plan {
 Fact fact(bool function, Index symbol, const std::vector<Argument>& arguments,
           const std::vector<Index>& slots);
 
-/// The object that an argument stands for.
+/// The object that an argument, no term, stands for.
 inline Index object(const Argument& a, const std::vector<Index>& slots) {
   return a.variable ? slots.at(a.index) : a.index;
 }
 
-/// Evaluates queries of the lifted model, or lists what they read.
+/// Evaluates queries of the lifted model, or lists what they read. `let` gives its slot a value.
 class QueryEvaluator {
  public:
-  explicit QueryEvaluator(const Model& model) : model_(model) {}
+  /// @param plan  says the seed, and how often calls that find nothing are made again.
+  QueryEvaluator(const Model& model, const Plan& plan);
 
-  bool holds(const Query& q, std::vector<Index>& slots, const RuntimeKnowledge& k) const;
-  void reads(const Query& q, std::vector<Index>& slots, std::set<Fact>& out) const;
+  /// nullopt: it rests on an external function that finds nothing.
+  std::optional<bool> truth(const Query& q, std::vector<Index>& slots,
+                            const RuntimeKnowledge& k) const;
+  bool holds(const Query& q, std::vector<Index>& slots, const RuntimeKnowledge& k) const {
+    return truth(q, slots, k).value_or(false);
+  }
+
+  /// Adds what the query reads. @return false if it may read anything.
+  bool reads(const Query& q, std::vector<Index>& slots, std::set<Fact>& out) const;
+
+  /// The object or handle that an argument stands for; nullopt: a term whose value is not known.
+  std::optional<Index> value(const Argument& a, const std::vector<Index>& slots,
+                             const RuntimeKnowledge& k) const;
+
+  /// What the `let`s of a precondition, among its conjuncts, say in this state.
+  std::vector<Plan::Call> calls(const Query& precondition, std::vector<Index>& slots,
+                                const RuntimeKnowledge& k) const;
+
+  /// The name of an object, or the word of a handle.
+  [[nodiscard]] std::string name(Index object) const { return model_.name_of(object, handles_); }
 
  private:
   bool holds_of_value(const Query& q, const std::vector<Index>& slots,
                       const RuntimeKnowledge& k) const;
-  std::optional<Index> call(Index external, std::vector<Index> arguments) const;
+  ExternalResult call(const Query& q, const std::vector<Index>& slots, const RuntimeKnowledge& k,
+                      std::vector<Index>* arguments = nullptr) const;
+  ExternalResult ask(Index external, const std::vector<Index>& arguments,
+                     const RuntimeKnowledge& k) const;
 
   const Model& model_;
-  mutable std::map<std::pair<Index, std::vector<Index>>, std::optional<Index>> calls_;
+  std::uint64_t seed_;
+  unsigned attempts_;
+  mutable HandleTable handles_;
+  /// Of functions that do not read the state.
+  mutable std::map<std::pair<Index, std::vector<Index>>, ExternalResult> calls_;
 };
 
 }  // namespace kaboum::plan

@@ -91,6 +91,12 @@ std::vector<RuntimeKnowledge> Transitions::initial_states() const {
 bool Transitions::learn_literal(RuntimeKnowledge& k, const Fact& f,
                                 const Update::Literal& l) const {
   if (!l.function) return k.learn(f, !l.negated);
+  if (is_handle(l)) {
+    const Index* known = k.value(f);
+    if (known != nullptr) return *known == l.value->index;
+    k.become_value(f, l.value->index);
+    return true;
+  }
   return l.negated ? k.learn_not_value(f, l.value->index, range(l.symbol))
                    : k.learn_value(f, l.value->index, range(l.symbol));
 }
@@ -119,7 +125,11 @@ void Transitions::fire(const std::vector<Effect>& effects, std::vector<Index>& s
     if (e.kind == Effect::Kind::Update) {
       out.push_back({&e.update, slots});
     } else if (e.kind == Effect::Kind::When) {
-      if (evaluator_.holds(e.condition, slots, k)) fire(e.children, slots, k, out);
+      const std::optional<bool> happens = evaluator_.truth(e.condition, slots, k);
+      if (!happens)
+        throw Error(ErrorCode::LimitReached,
+                    "an effect's condition rests on an external function that finds nothing");
+      if (*happens) fire(e.children, slots, k, out);
     } else {
       for (const Index o : model_.types[e.type].objects) {
         slots.at(e.slot) = o;
@@ -133,7 +143,7 @@ bool Transitions::in_range(const Update::Literal& l, const std::vector<Index>& s
   const Symbol& s = (l.function ? model_.functions : model_.predicates)[l.symbol];
   for (std::size_t i = 0; i < l.arguments.size(); ++i)
     if (!model_.is_a(object(l.arguments[i], slots), s.parameters[i])) return false;
-  return !l.value || model_.is_a(object(*l.value, slots), s.range);
+  return !l.value || is_handle(l) || model_.is_a(object(*l.value, slots), s.range);
 }
 
 void Transitions::delete_literal(RuntimeKnowledge& k, const Fact& f, const Update::Literal& l,
@@ -194,11 +204,19 @@ bool Transitions::add_literal(RuntimeKnowledge& k, const Fact& f, const Update::
 }
 
 /// @return false if it is an observation that contradicts what is known.
-bool Transitions::add_to(RuntimeKnowledge& k, const GroundUpdate& g,
+bool Transitions::add_to(RuntimeKnowledge& k, const GroundUpdate& g, const RuntimeKnowledge& before,
                          std::vector<Fact>& sensed) const {
   const Update& u = *g.update;
   const Update::Literal& l = u.literals[0];
   const Fact f = fact(l.function, l.symbol, l.arguments, g.slots);
+  if (l.value && is_handle(l)) {
+    if (const auto v = evaluator_.value(*l.value, g.slots, before)) {
+      k.become_value(f, *v);
+    } else {
+      k.forget_value(f);
+    }
+    return true;
+  }
   switch (u.database) {
     case Update::Database::Kf:
       if (!u.maybe) return add_literal(k, f, l, g.slots);
@@ -249,7 +267,7 @@ std::vector<RuntimeKnowledge> Transitions::after(const Action& action, std::vect
   for (const GroundUpdate& g : fired)
     if (!g.update->add) delete_from(k, g);
   for (const GroundUpdate& g : fired)
-    if (g.update->add && !add_to(k, g, sensed)) return {};
+    if (g.update->add && !add_to(k, g, before, sensed)) return {};
   return split(std::move(k), sensed);
 }
 

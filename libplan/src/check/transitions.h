@@ -36,6 +36,9 @@ class Transitions {
                                                     const std::vector<Fact>& sensed) const;
   void fire(const std::vector<Effect>& effects, std::vector<Index>& slots,
             const RuntimeKnowledge& k, std::vector<GroundUpdate>& out) const;
+  [[nodiscard]] bool is_handle(const Update::Literal& l) const {
+    return l.function && model_.types[model_.functions[l.symbol].range].handle;
+  }
   [[nodiscard]] bool in_range(const Update::Literal& l, const std::vector<Index>& slots) const;
 
   bool learn_literal(RuntimeKnowledge& k, const Fact& f, const Update::Literal& l) const;
@@ -45,7 +48,8 @@ class Transitions {
   void delete_from(RuntimeKnowledge& k, const GroundUpdate& g) const;
   bool add_literal(RuntimeKnowledge& k, const Fact& f, const Update::Literal& l,
                    const std::vector<Index>& slots) const;
-  bool add_to(RuntimeKnowledge& k, const GroundUpdate& g, std::vector<Fact>& sensed) const;
+  bool add_to(RuntimeKnowledge& k, const GroundUpdate& g, const RuntimeKnowledge& before,
+              std::vector<Fact>& sensed) const;
   void may_become(RuntimeKnowledge& k, const Fact& f, const Update::Literal& l,
                   const std::vector<Index>& slots) const;
 

@@ -47,6 +47,8 @@ Update::Literal EffectResolver::literal(const sx::Formula& f, bool negated, Scop
   l.arguments = terms_.arguments(left, s, scope, unfolded);
   l.value = terms_.argument(right, s.range, scope, unfolded);
   l.negated = (f.kind == K::NotEqual) != negated;
+  if (l.negated && symbols().is_handle(s.range))
+    left.name.location.fail("of a handle only the value itself is kept, not what it is not");
   return l;
 }
 
@@ -57,10 +59,16 @@ Update EffectResolver::update(const sx::Effect& e, Scope& scope,
   u.maybe = e.kind == sx::Effect::Kind::Maybe;
   u.database = static_cast<Update::Database>(e.database);
   const sx::Formula& first = e.formulas.at(0);
+  const auto refuse_handle = [&] {
+    const Update::Literal& l = u.literals[0];
+    if ((!u.add || u.maybe) && l.function && symbols().is_handle(model().functions[l.symbol].range))
+      first.location.fail("a handle is given up whatever it is: del(Kv, ...)");
+  };
   switch (e.database) {
     case sx::Database::Kf:
     case sx::Database::Lcw:
       u.literals.push_back(literal(first, false, scope, unfolded));
+      refuse_handle();
       break;
     case sx::Database::Kw:
       u.literals.push_back(literal(first, false, scope, unfolded));
@@ -77,6 +85,8 @@ Update EffectResolver::update(const sx::Effect& e, Scope& scope,
       l.symbol = *symbols().function_of(t);
       if (model().functions[l.symbol].numeric)
         t.name.location.fail("'" + t.name.text + "' is a number, never sensed");
+      if (u.add && symbols().is_handle(model().functions[l.symbol].range))
+        t.name.location.fail("'" + t.name.text + "' is a handle, never sensed");
       l.arguments = terms_.arguments(t, model().functions[l.symbol], scope, unfolded);
       u.literals.push_back(std::move(l));
       break;
@@ -95,6 +105,8 @@ void EffectResolver::exclusive(const sx::Effect& e, Update& u, Scope& scope,
   for (const sx::Formula& f : e.formulas) {
     u.literals.push_back(literal(f, false, scope, unfolded));
     const Update::Literal& l = u.literals.back();
+    if (l.function && symbols().is_handle(model().functions[l.symbol].range))
+      f.location.fail("alternatives of Kx are never handles");
     if (l.negated) f.location.fail("an alternative of Kx is an atom or f(x) = c, not a negation");
     if (l.function != u.literals[0].function)
       f.location.fail(

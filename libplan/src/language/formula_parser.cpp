@@ -80,6 +80,7 @@ Formula FormulaParser::unary() {
   }
   if (in_.is("(", 1))
     if (auto query = operator_with_parenthesis(f)) return std::move(*query);
+  if (in_.is("let") && in_.peek(1).kind == Token::Kind::Variable) return let(std::move(f));
   if (in_.accept("true")) {
     f.kind = Formula::Kind::True;
     return f;
@@ -110,6 +111,20 @@ std::optional<Formula> FormulaParser::operator_with_parenthesis(Formula f) {
     return comparison(f, Formula::Kind::Extern);
   }
   return std::nullopt;
+}
+
+Formula FormulaParser::let(Formula f) {
+  f.kind = Formula::Kind::Let;
+  in_.skip();
+  TypedVariable v;
+  v.name = {in_.peek().text, in_.location()};
+  in_.skip();
+  f.variables.push_back(std::move(v));
+  in_.expect("=", "after the variable of 'let'");
+  f.terms.push_back(term());
+  if (f.terms[0].kind != Term::Kind::Extern)
+    f.terms[0].name.location.fail("'let ?y = ...' names what extern(...) returns");
+  return f;
 }
 
 void FormulaParser::fail_query() const {

@@ -32,6 +32,7 @@ class FormulaParser {
   syntax::Formula conjunction();
   syntax::Formula unary();
   std::optional<syntax::Formula> operator_with_parenthesis(syntax::Formula f);
+  syntax::Formula let(syntax::Formula f);
   syntax::Formula modal(syntax::Formula f, syntax::Formula::Kind kind);
   syntax::Formula quantified(syntax::Formula f, syntax::Formula::Kind kind);
   syntax::Formula comparison(syntax::Formula f, syntax::Formula::Kind alone);

@@ -84,6 +84,7 @@ void InitialState::expand(const Effect& e, std::vector<Index>& values,
   for (Update::Literal& l : u.literals) {
     for (Argument& a : l.arguments)
       if (a.variable) a = {false, values[a.index]};
+    if (l.value && l.value->term) location.fail("an initial entry's value is a constant");
     if (l.value && l.value->variable) l.value = Argument{false, values[l.value->index]};
   }
   out.push_back(std::move(u));

@@ -100,6 +100,10 @@ class DocumentParser {
   void types() {
     syntax::Type type{in_.name("a type"), {}};
     if (in_.accept(":")) type.parent = in_.name("the type's parent");
+    if (in_.accept("handle")) {
+      if (!type.parent.text.empty()) type.name.location.fail("a handle type has no parent");
+      type.handle = true;
+    }
     document_.types.push_back(type);
   }
 

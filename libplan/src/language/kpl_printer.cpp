@@ -159,6 +159,8 @@ std::string print_formula(const Formula& formula) {
     case K::Atom:
     case K::Extern:
       return print_term(f.terms.at(0));
+    case K::Let:
+      return "let ?" + f.variables.at(0).name.text + " = " + print_term(f.terms.at(0));
     case K::Equal:
       return print_term(f.terms.at(0)) + " = " + print_term(f.terms.at(1));
     case K::NotEqual:
@@ -215,7 +217,8 @@ std::string print_kpl(const syntax::Document& d) {
     out += "\n";
   };
   section("types:", d.types, [](const syntax::Type& t) {
-    return t.name.text + (t.parent.text.empty() ? "" : " : " + t.parent.text) + ";";
+    return t.name.text + (t.parent.text.empty() ? "" : " : " + t.parent.text) +
+           (t.handle ? " handle" : "") + ";";
   });
   // A type goes on until the next; so constants without one begin a section of their own.
   const std::string* type = nullptr;

@@ -81,6 +81,8 @@ class PddlPrinter {
         ")\n (:requirements :typing :adl :object-fluents :action-costs :contingent)\n";
     out += " (:types";
     for (const syntax::Type& t : d.types)
+      if (t.handle) refuse("a handle type");
+    for (const syntax::Type& t : d.types)
       if (t.name.text != "number" && (t.name.text != "object" || rename_object_))
         out += " " + type(t.name) + " - " + (t.parent.text.empty() ? "object" : t.parent.text);
     out += ")\n (:constants";
@@ -187,7 +189,7 @@ class PddlPrinter {
       case K::Xor:
         refuse("an exclusive or");
       default:
-        refuse("a query of Kw, Kv, LCW or extern");
+        refuse("a query of Kw, Kv, LCW or extern, or 'let'");
     }
   }
   /// What an addition to Kf says; one to Kw or Kv goes to `observed`.

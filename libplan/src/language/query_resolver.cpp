@@ -40,10 +40,48 @@ Query QueryResolver::query(const sx::Formula& f, Scope& scope) const {
     case K::Equal:
     case K::NotEqual:
       return equality(f, f.kind == K::NotEqual, scope);
+    case K::Let:
+      f.location.fail("'let' stands among the conjuncts of an action's precondition");
     case K::Atom:
       f.location.fail("a query needs its operator: K(...), Kw(...) or Kv(...)");
   }
   f.location.fail("unexpected formula");
+}
+
+Query QueryResolver::precondition(const sx::Formula& f, Scope& scope) const {
+  if (f.kind == sx::Formula::Kind::Let) return let(f, scope);
+  if (f.kind != sx::Formula::Kind::And) return query(f, scope);
+  Query q;
+  q.kind = Query::Kind::And;
+  for (const sx::Formula& child : f.children) q.children.push_back(precondition(child, scope));
+  return q;
+}
+
+/// The variable is in scope from here on, in the effects too.
+Query QueryResolver::let(const sx::Formula& f, Scope& scope) const {
+  const sx::Term& call = f.terms.at(0);
+  const sx::Name& name = f.variables.at(0).name;
+  Query q;
+  q.kind = Query::Kind::Let;
+  q.symbol = symbols().external(call.name);
+  const Symbol& g = model().externals[q.symbol];
+  if (!symbols().is_handle(g.range))
+    call.name.location.fail(
+        g.range == kNone
+            ? "'" + g.name + "' is a truth value: write extern(...) without 'let'"
+            : "the values of '" + g.name + "' are enumerated: write a parameter ?" + name.text +
+                  " and K(?" + name.text + " = extern(...)) instead of 'let'");
+  if (scope.find(name.text) != nullptr)
+    name.location.fail("'?" + name.text + "' is declared already");
+  std::vector<Unfolded> unfolded;
+  q.arguments = terms_.arguments(call, g, scope, unfolded);
+  if (!unfolded.empty())
+    call.name.location.fail(
+        "the arguments of a call named by 'let' are constants, variables and "
+        "terms of handle types");
+  q.value = Argument{true, scope.fresh()};
+  scope.variables.push_back({name.text, q.value->index, g.range});
+  return q;
 }
 
 BoundSlots QueryResolver::bind(const std::vector<sx::TypedVariable>& variables,
@@ -51,7 +89,7 @@ BoundSlots QueryResolver::bind(const std::vector<sx::TypedVariable>& variables,
   BoundSlots slots;
   for (const sx::TypedVariable& v : variables) {
     const Index slot = scope.fresh();
-    slots.emplace_back(slot, symbols().type(v.type));
+    slots.emplace_back(slot, symbols().enumerated_type(v.type));
     scope.variables.push_back({v.name.text, slot, slots.back().second});
   }
   return slots;
@@ -140,6 +178,10 @@ Query QueryResolver::equality(const sx::Formula& f, bool negated, Scope& scope) 
   Query q;
   if (terms_.is_plain(*left) && terms_.is_plain(*right)) {
     q.kind = Query::Kind::Same;
+    for (const sx::Term* t : {left, right})
+      if (const Scope::Variable* v = scope.find(t->name.text);
+          t->kind == sx::Term::Kind::Variable && v != nullptr && symbols().is_handle(v->type))
+        t->name.location.fail("values of a handle type are compared by an external function");
     q.arguments = {terms_.argument(*left, 0, scope, unfolded),
                    terms_.argument(*right, 0, scope, unfolded)};
     return negated ? negation(std::move(q)) : q;
@@ -181,6 +223,7 @@ Query QueryResolver::external_equality(const sx::Term& call, const sx::Term& oth
   q.symbol = g;
   q.arguments = terms_.arguments(call, model().externals[g], scope, unfolded);
   q.value = terms_.argument(other, range, scope, unfolded, TermResolver::Typing::Related);
+  require_plain(other, *q.value, range);
   if (negated) q = negation(std::move(q));
   return wrap(std::move(unfolded), std::move(q));
 }
@@ -200,7 +243,16 @@ Query QueryResolver::function_equality(const sx::Term& left, const sx::Term& rig
   q.arguments = terms_.arguments(left, model().functions[*function], scope, unfolded);
   q.value = terms_.argument(right, model().functions[*function].range, scope, unfolded,
                             TermResolver::Typing::Related);
+  require_plain(right, *q.value, model().functions[*function].range);
   return wrap(std::move(unfolded), std::move(q));
+}
+
+/// Handles are compared with constants only.
+void QueryResolver::require_plain(const sx::Term& t, const Argument& a, Index type) const {
+  if (symbols().is_handle(type) && (a.variable || a.term))
+    t.name.location.fail(
+        "values of a handle type are compared by an external function, or with a "
+        "constant");
 }
 
 Query QueryResolver::know_whether(const sx::Formula& f, Scope& scope) const {

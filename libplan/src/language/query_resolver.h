@@ -19,6 +19,8 @@ class QueryResolver {
   explicit QueryResolver(const TermResolver& terms) : terms_(terms) {}
 
   Query query(const syntax::Formula& f, Scope& scope) const;
+  /// The same, and `let` among the conjuncts.
+  Query precondition(const syntax::Formula& f, Scope& scope) const;
 
   /// K(p(arguments)).
   Query atom(const syntax::Term& t, Scope& scope, std::vector<Unfolded>& unfolded) const;
@@ -29,6 +31,8 @@ class QueryResolver {
   BoundSlots bind_wildcards(const syntax::Term& t, Scope& scope) const;
 
  private:
+  Query let(const syntax::Formula& f, Scope& scope) const;
+  void require_plain(const syntax::Term& t, const Argument& a, Index type) const;
   Query quantified(const syntax::Formula& f, Query::Kind kind, Scope& scope) const;
   Query known(const syntax::Formula& f, bool negated, Scope& scope) const;
   Query external_condition(const syntax::Term& t, Scope& scope) const;

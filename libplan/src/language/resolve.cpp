@@ -39,11 +39,11 @@ class Resolver {
     for (const sx::TypedVariable& p : a.parameters) {
       if (scope.find(p.name.text) != nullptr)
         p.name.location.fail("parameter '?" + p.name.text + "' is declared twice");
-      const Index t = symbols_.type(p.type);
+      const Index t = symbols_.enumerated_type(p.type);
       scope.variables.push_back({p.name.text, scope.fresh(), t});
       action.parameters.push_back({p.name.text, t});
     }
-    action.precondition = queries_.query(a.precondition, scope);
+    action.precondition = queries_.precondition(a.precondition, scope);
     for (const sx::Effect& e : a.effects) action.effects.push_back(effects_.effect(e, scope));
     if (!a.cost.empty()) resolve_cost(a.cost.at(0), terms_, scope, action);
     action.slots = scope.slots;

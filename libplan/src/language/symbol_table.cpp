@@ -33,7 +33,7 @@ void SymbolTable::declare_types(const sx::Document& document) {
       std::any_of(document.types.begin(), document.types.end(), is_object) &&
       std::none_of(document.types.begin(), document.types.end(),
                    [](const sx::Type& t) { return t.parent.text == "object"; });
-  model_.types.push_back({object_is_a_type ? "any type" : "object", kNone, {}});
+  model_.types.push_back({object_is_a_type ? "any type" : "object", kNone, {}, false});
   types_.emplace(model_.types[0].name, 0);
   for (const sx::Type& t : document.types) {
     if (t.name.text == "number" || (t.name.text == "object" && !object_is_a_type)) {
@@ -43,10 +43,15 @@ void SymbolTable::declare_types(const sx::Document& document) {
     }
     if (model_.types.size() >= kMaximumTypes) t.name.location.fail("too many types");
     unique(types_, t.name, static_cast<Index>(model_.types.size()), "type");
-    model_.types.push_back({t.name.text, 0, {}});
+    // Handles are no objects: they are below no other type.
+    model_.types.push_back({t.name.text, t.handle ? kNone : 0, {}, t.handle});
   }
   for (const sx::Type& t : document.types)
-    if (!t.parent.text.empty()) model_.types[types_.at(t.name.text)].parent = type(t.parent);
+    if (!t.parent.text.empty()) {
+      if (model_.types[type(t.parent)].handle)
+        t.name.location.fail("'" + t.parent.text + "' is a handle type: it has no subtypes");
+      model_.types[types_.at(t.name.text)].parent = type(t.parent);
+    }
   for (const sx::Type& t : document.types) {
     const auto found = types_.find(t.name.text);
     Index up = found == types_.end() ? kNone : found->second;
@@ -74,31 +79,41 @@ void SymbolTable::declare_constants(const sx::Document& document) {
   }
 }
 
-Symbol SymbolTable::symbol(const sx::Signature& s) const {
+Index SymbolTable::enumerated_type(const Name& name) const {
+  const Index t = type(name);
+  if (model_.types[t].handle)
+    name.location.fail("'" + name.text +
+                       "' is a handle type, whose values are not enumerated: it can be the type of "
+                       "a function's value and of what external functions take and return");
+  return t;
+}
+
+Symbol SymbolTable::symbol(const sx::Signature& s, bool external) const {
   if (s.parameters.size() > kMaximumArity) s.name.location.fail("more than 12 arguments");
   Symbol result;
   result.name = s.name.text;
-  for (const Name& p : s.parameters) result.parameters.push_back(type(p));
+  for (const Name& p : s.parameters)
+    result.parameters.push_back(external ? type(p) : enumerated_type(p));
   return result;
 }
 
 void SymbolTable::declare_symbols(const sx::Document& document) {
   for (const sx::Signature& s : document.predicates) {
     unique(predicates_, s.name, static_cast<Index>(model_.predicates.size()), "predicate");
-    model_.predicates.push_back(symbol(s));
+    model_.predicates.push_back(symbol(s, false));
   }
   for (const sx::Signature& s : document.functions) {
     unique(functions_, s.name, static_cast<Index>(model_.functions.size()), "function");
     if (predicates_.contains(s.name.text))
       s.name.location.fail("'" + s.name.text + "' is a predicate already");
-    Symbol f = symbol(s);
+    Symbol f = symbol(s, false);
     f.numeric = s.range.text == "number";
     f.range = f.numeric ? kNone : type(s.range);
     model_.functions.push_back(f);
   }
   for (const sx::Signature& s : document.externals) {
     unique(externals_, s.name, static_cast<Index>(model_.externals.size()), "external function");
-    Symbol g = symbol(s);
+    Symbol g = symbol(s, true);
     if (!s.range.text.empty()) g.range = type(s.range);
     model_.externals.push_back(g);
   }

@@ -26,7 +26,8 @@ class SymbolTable {
   [[nodiscard]] const NameTable& constants() const { return objects_; }
 
   // By name. @throws Error{InvalidInput} if it is unknown, or a constant of another type.
-  [[nodiscard]] Index type(const syntax::Name& name) const;  ///< empty text: any object
+  [[nodiscard]] Index type(const syntax::Name& name) const;             ///< empty text: any object
+  [[nodiscard]] Index enumerated_type(const syntax::Name& name) const;  ///< no handle type
   [[nodiscard]] Index object(const syntax::Name& name, Index wanted_type) const;
   [[nodiscard]] Index predicate(const syntax::Name& name) const;
   [[nodiscard]] Index external(const syntax::Name& name) const;
@@ -41,6 +42,9 @@ class SymbolTable {
     return predicates_.contains(name);
   }
 
+  [[nodiscard]] bool is_handle(Index type) const {
+    return type != kNone && model_.types[type].handle;
+  }
   /// Whether `a` is `b` or a type below it.
   [[nodiscard]] bool is_subtype(Index a, Index b) const;
   /// Whether one of them is a subtype of the other.
@@ -55,7 +59,7 @@ class SymbolTable {
   void declare_types(const syntax::Document& document);
   void declare_constants(const syntax::Document& document);
   void declare_symbols(const syntax::Document& document);
-  [[nodiscard]] Symbol symbol(const syntax::Signature& s) const;
+  [[nodiscard]] Symbol symbol(const syntax::Signature& s, bool external) const;
   [[nodiscard]] const std::string& type_name(Index t) const { return model_.types[t].name; }
 
   Model& model_;

@@ -47,7 +47,8 @@ struct Formula {
     Atom,         ///< terms[0]; only inside K, Kw, LCW, add and del
     Equal,        ///< terms[0] = terms[1]
     NotEqual,     ///< terms[0] != terms[1]
-    Extern        ///< terms[0] of kind Extern, as a condition
+    Extern,       ///< terms[0] of kind Extern, as a condition
+    Let           ///< variables[0] names the value of terms[0], of kind Extern
   };
   Kind kind = Kind::True;
   SourceLocation location;
@@ -79,6 +80,7 @@ struct Action {
 struct Type {
   Name name;
   Name parent;  ///< empty text: a root
+  bool handle = false;
 };
 
 /// A predicate, a function or an external function.

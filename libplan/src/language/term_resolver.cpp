@@ -22,7 +22,25 @@ Argument TermResolver::argument(const sx::Term& t, Index wanted, Scope& scope,
       t.name.location.fail("'" + t.name.text + "' is a predicate, not a value");
     return {false, symbols_.object(t.name, wanted)};
   }
-  return unfold(t, wanted, scope, unfolded);
+  return symbols_.is_handle(wanted) ? handle_term(t, wanted, scope)
+                                    : unfold(t, wanted, scope, unfolded);
+}
+
+/// Not unfolded: the term is evaluated in the state.
+Argument TermResolver::handle_term(const sx::Term& t, Index wanted, Scope& scope) const {
+  if (t.kind == sx::Term::Kind::Extern)
+    t.name.location.fail("a call that returns a handle is given a name first: let ?y = extern(" +
+                         t.name.text + "...) in the precondition");
+  const Index* f = symbols_.function_of(t);
+  if (f == nullptr) t.name.location.fail("unknown function '" + t.name.text + "'");
+  const Symbol& s = model().functions[*f];
+  if (s.numeric) t.name.location.fail("'" + t.name.text + "' is a number, not a handle");
+  symbols_.check_type(t.name, s.range, wanted);
+  std::vector<Unfolded> inner;
+  FunctionTerm term{*f, arguments(t, s, scope, inner)};
+  if (!inner.empty())
+    t.name.location.fail("the arguments of a handle's term are constants and variables");
+  return {false, 0, std::make_shared<const FunctionTerm>(std::move(term))};
 }
 
 Argument TermResolver::unfold(const sx::Term& t, Index wanted, Scope& scope,

@@ -33,6 +33,7 @@ class TermResolver {
   [[nodiscard]] const SymbolTable& symbols() const { return symbols_; }
 
  private:
+  Argument handle_term(const syntax::Term& t, Index wanted, Scope& scope) const;
   Argument unfold(const syntax::Term& t, Index wanted, Scope& scope,
                   std::vector<Unfolded>& unfolded) const;
   [[nodiscard]] const Model& model() const { return symbols_.model(); }

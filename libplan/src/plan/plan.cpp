@@ -82,8 +82,8 @@ bool Plan::operator==(const Plan& other) const {
     };
     return a.acts == b.acts && a.branches == b.branches && a.next == b.next &&
            a.action.schema == b.action.schema && a.action.arguments == b.action.arguments &&
-           a.branch.function == b.branch.function && a.branch.symbol == b.branch.symbol &&
-           a.branch.arguments == b.branch.arguments &&
+           a.calls == b.calls && a.branch.function == b.branch.function &&
+           a.branch.symbol == b.branch.symbol && a.branch.arguments == b.branch.arguments &&
            std::equal(a.branch.cases.begin(), a.branch.cases.end(), b.branch.cases.begin(),
                       b.branch.cases.end(), same_case);
   };

@@ -11,6 +11,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr std::uint64_t kMaximumAttempts = 1000;
+
 Json names(const Model& model, const std::vector<Index>& objects) {
   Json list = Json::array();
   for (const Index o : objects) list.push_back(model.objects[o].name);
@@ -35,9 +37,19 @@ class Reader {
     if (!json.is_object() || json.value("format", Json()) != Json("kaboum-plan"))
       fail("not a kaboum-plan file");
     if (json.value("version", Json()) != Json(1)) fail("unknown version of the format");
+    Plan plan;
+    if (json.contains("attempts")) {
+      const Json& seed = member(json, "seed");
+      const Json& attempts = member(json, "attempts");
+      if (!seed.is_number_unsigned() || !attempts.is_number_unsigned() ||
+          attempts.get<std::uint64_t>() > kMaximumAttempts)
+        fail("'seed' and 'attempts' are whole numbers, the latter at most " +
+             std::to_string(kMaximumAttempts));
+      plan.seed = seed.get<std::uint64_t>();
+      plan.attempts = attempts.get<unsigned>();
+    }
     const Json& nodes = member(json, "nodes");
     if (!nodes.is_array()) fail("'nodes' is not a list");
-    Plan plan;
     for (const Json& n : nodes) {
       where_ = "node " + std::to_string(plan.nodes.size());
       plan.nodes.push_back(node(n));
@@ -116,6 +128,7 @@ class Reader {
         types.push_back(p.type);
       n.action.arguments = objects(member(json, "arguments"), types);
     }
+    if (json.contains("calls")) n.calls = calls(json["calls"]);
     if (json.contains("branch")) {
       n.branches = true;
       n.branch = branch(json["branch"]);
@@ -125,6 +138,25 @@ class Reader {
     }
     if (!n.acts && !n.branches) fail("has neither 'action' nor 'branch'");
     return n;
+  }
+
+  [[nodiscard]] std::vector<Plan::Call> calls(const Json& json) const {
+    if (!json.is_array()) fail("'calls' is not a list");
+    std::vector<Plan::Call> result;
+    for (const Json& c : json) {
+      Plan::Call made;
+      made.external = symbol(model_.externals, text(c, "external"), "external function");
+      const Json& arguments = member(c, "arguments");
+      if (!arguments.is_array()) fail("'arguments' is not a list");
+      for (const Json& a : arguments) {
+        if (!a.is_string()) fail("an argument of a call is not a text");
+        made.arguments.push_back(a.get<std::string>());
+      }
+      made.value = text(c, "value");
+      if (c.contains("payload")) made.payload = text(c, "payload");
+      result.push_back(std::move(made));
+    }
+    return result;
   }
 
   [[nodiscard]] Plan::Branch branch(const Json& json) const {
@@ -168,6 +200,13 @@ std::string write_plan(const Model& model, const Plan& plan) {
       j["action"] = model.actions[n.action.schema].name;
       j["arguments"] = names(model, n.action.arguments);
     }
+    for (const Plan::Call& c : n.calls) {
+      Json call = {{"external", model.externals[c.external].name},
+                   {"arguments", c.arguments},
+                   {"value", c.value}};
+      if (!c.payload.empty()) call["payload"] = c.payload;
+      j["calls"].push_back(std::move(call));
+    }
     if (n.branches) {
       Json cases = Json::array();
       for (const Plan::Branch::Case& c : n.branch.cases)
@@ -184,11 +223,13 @@ std::string write_plan(const Model& model, const Plan& plan) {
     }
     nodes.push_back(std::move(j));
   }
-  const Json json = {{"format", "kaboum-plan"},
-                     {"version", 1},
-                     {"domain", model.name},
-                     {"root", link(plan.root)},
-                     {"nodes", std::move(nodes)}};
+  Json json = {{"format", "kaboum-plan"}, {"version", 1}, {"domain", model.name}};
+  if (plan.attempts > 0) {
+    json["seed"] = plan.seed;
+    json["attempts"] = plan.attempts;
+  }
+  json["root"] = link(plan.root);
+  json["nodes"] = std::move(nodes);
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -23,7 +23,9 @@ void merge(std::vector<Index>& into, const std::vector<Index>& from) {
 ContingentPlanner::ContingentPlanner(Task& task, SearchFunction search, Limits& limits,
                                      Statistics& statistics)
     : task_(task), search_(search), limits_(limits), statistics_(statistics), regression_(task) {
-  entries_.push_back({task.goal(), 0, false, kGoal, {}, kGoal});
+  Entry goal;
+  goal.condition = task.goal();
+  entries_.push_back(std::move(goal));
 }
 
 Index ContingentPlanner::match(const Word* state) const {
@@ -49,7 +51,7 @@ Index ContingentPlanner::add(Entry entry) {
   for (const auto& [step, next] : entry.cases) h += word_hash(step, same(next));
   for (const Index i : entry_index_[h]) {
     const Entry& e = entries_[i];
-    const bool equal = e.branch == entry.branch && e.step == entry.step &&
+    const bool equal = e.branch == entry.branch && e.step == entry.step && e.calls == entry.calls &&
                        same(e.next) == same(entry.next) &&
                        std::equal(e.cases.begin(), e.cases.end(), entry.cases.begin(),
                                   entry.cases.end(), [&](const auto& a, const auto& b) {
@@ -62,6 +64,22 @@ Index ContingentPlanner::add(Entry entry) {
   entry_index_[h].push_back(index);
   entries_.push_back(std::move(entry));
   return index;
+}
+
+/// Enters an action for the state `at`, and all others of its regressed condition.
+Index ContingentPlanner::act(const State& at, OperatorId step, Index next) {
+  Entry e;
+  e.condition = regression_.before(step, entries_[next].condition, at.data());
+  e.step = step;
+  e.next = next;
+  ExternalCalls& calls = task_.pool().calls();
+  for (const Index call : task_.action(step).lets) {
+    const ExternalCalls::Reply reply = calls.evaluate(call, at.data());
+    e.calls.push_back({calls.external(call), calls.argument_names(call, at.data()),
+                       task_.model().name_of(reply.value, calls.handles()),
+                       calls.payload(reply.leaf)});
+  }
+  return add(std::move(e));
 }
 
 /// The problem at this depth of the stack is no longer open: failures that ran into it are void.
@@ -80,12 +98,7 @@ void ContingentPlanner::close_problem(Index depth) {
 Outcome ContingentPlanner::cover(const State& at, OperatorId step, Index next, Index& entry,
                                  ConflictSet& conflict) {
   if (!task_.is_outcome(step)) {
-    entry = add({regression_.before(step, entries_[next].condition, at.data()),
-                 step,
-                 false,
-                 next,
-                 {},
-                 kGoal});
+    entry = act(at, step, next);
     return Outcome::Solved;
   }
   const Index fluent = task_.outcome(step).fluent;
@@ -243,14 +256,8 @@ Outcome ContingentPlanner::exhaust(std::size_t most_states) {
     std::vector<std::pair<OperatorId, Index>> cases = d.cases;
     for (auto& [step, next] : cases) next = entry[next];
     const auto [step, next] = cases.front();
-    entry.push_back(task_.is_outcome(step)
-                        ? branch(d.state, std::move(cases))
-                        : add({regression_.before(step, entries_[next].condition, d.state.data()),
-                               step,
-                               false,
-                               next,
-                               {},
-                               kGoal}));
+    entry.push_back(task_.is_outcome(step) ? branch(d.state, std::move(cases))
+                                           : act(d.state, step, next));
   }
   root_ = entry.back();
   return outcome;
@@ -281,6 +288,7 @@ Plan ContingentPlanner::plan() const {
       const GroundAction& a = task_.action(e->step);
       made.acts = true;
       made.action = {a.schema, a.arguments};
+      made.calls = e->calls;
       if (entries_[e->next].branch) {
         e = &entries_[e->next];
       } else {

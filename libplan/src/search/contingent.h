@@ -39,6 +39,7 @@ class ContingentPlanner final : private Target {
     bool branch = false;
     Index next = kGoal;
     std::vector<std::pair<OperatorId, Index>> cases;  ///< of a branch
+    std::vector<Plan::Call> calls;                    ///< of an action
     Index same_as = kGoal;  ///< the first entry with the same sub-plan, itself if none
   };
 
@@ -61,6 +62,7 @@ class ContingentPlanner final : private Target {
   bool decided_otherwise();
   Index branch(const State& at, std::vector<std::pair<OperatorId, Index>> cases);
   Outcome cover(const State& at, OperatorId step, Index next, Index& entry, ConflictSet& conflict);
+  Index act(const State& at, OperatorId step, Index next);
   Index add(Entry entry);
   void close_problem(Index depth);
 

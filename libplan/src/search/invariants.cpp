@@ -18,7 +18,7 @@ constexpr std::size_t kMaximumParts = 4;
 
 Index Invariants::key_of(const Part& p, FactId f) const {
   const Fluent& fluent = task_.layout().fluents()[relaxation_.fluent_of(f)];
-  if (fluent.function != p.function || fluent.symbol != p.symbol) return kNone;
+  if (fluent.function != p.function || fluent.symbol != p.symbol || fluent.handle) return kNone;
   const Word content = relaxation_.content_of(f);
   if (p.function ? content < kFirstValue : content != static_cast<Word>(AtomKnowledge::True))
     return kNone;

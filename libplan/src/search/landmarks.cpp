@@ -56,7 +56,7 @@ LandmarkHeuristic::LandmarkHeuristic(Task& task, const Relaxation& relaxation,
   // Facts that disjunctive knowledge can bring about without a step are no events.
   const auto opaque = [&](FactId f) {
     const Fluent& fluent = task.layout().fluents()[relaxation.fluent_of(f)];
-    return !fluent.groups.empty() || fluent.exclusions != kNone;
+    return !fluent.groups.empty() || fluent.exclusions != kNone || fluent.handle;
   };
   opaque_.resize(relaxation.facts());
   for (FactId f = 0; f < relaxation.facts(); ++f) opaque_[f] = opaque(f) ? 1 : 0;

@@ -38,6 +38,19 @@ bool Regression::overlaps(Formula f) const {
   return leaf_touched(pool, task_.layout(), f, touched_);
 }
 
+/// Whether the formula reads this fluent's field.
+bool Regression::reads_field(Formula f, const Fluent& fluent) const {
+  std::vector<Word> field(touched_.size(), 0);
+  field[fluent.word] = fluent.mask;
+  const FormulaPool& pool = task_.pool();
+  const auto reads = [&](const auto& self, Formula g) -> bool {
+    if (is_connective(pool.node(g).kind))
+      return std::any_of(pool.begin(g), pool.end(g), [&](Formula c) { return self(self, c); });
+    return leaf_touched(pool, task_.layout(), g, field);
+  };
+  return reads(reads, f);
+}
+
 void Regression::require_as_before(const Fluent& fluent) {
   FormulaPool& pool = task_.pool();
   required_.push_back(pool.bits(fluent.word, fluent.mask, before_[fluent.word] & fluent.mask));
@@ -130,6 +143,53 @@ Formula Regression::rewrite(Formula f) {
   return t == Truth::Yes ? kTrue : kFalse;
 }
 
+void Regression::require_footprint(Index call, const Word* state, std::vector<Formula>& out) {
+  std::vector<Index> fluents;
+  task_.pool().calls().footprint(call, state, fluents);
+  for (const Index i : fluents) {
+    const Fluent& f = task_.layout().fluents()[i];
+    out.push_back(task_.pool().bits(f.word, f.mask, state[f.word] & f.mask));
+  }
+}
+
+/// A formula that holds in `state` and, wherever it holds, `f` has the same truth as there; calls
+/// that read the state are replaced by what they read.
+/// @pre `f` is Yes or No in `state`.
+Formula Regression::freeze(Formula f, const Word* state) {
+  FormulaPool& pool = task_.pool();
+  const bool truth = pool.holds(f, state);
+  if (!pool.depends_on_calls(f)) return truth ? f : pool.negate(f);
+  const FormulaPool::Node n = pool.node(f);
+  const std::vector<Formula> children = is_connective(n.kind)
+                                            ? std::vector<Formula>(pool.begin(f), pool.end(f))
+                                            : std::vector<Formula>{};
+  std::vector<Formula> kept;
+  switch (n.kind) {
+    case Kind::External:
+      require_footprint(n.a, state, kept);
+      return pool.all(kept);
+    case Kind::Not:
+      return freeze(children[0], state);
+    case Kind::And:
+    case Kind::Or:
+      if (truth == (n.kind == Kind::Or)) {  // one child decides: the first in the order of calls
+        for (const Formula c : children) {
+          const Truth t = pool.evaluate(c, state);
+          if (t == (truth ? Truth::Yes : Truth::No)) return freeze(c, state);
+        }
+        break;
+      }
+      [[fallthrough]];
+    default:  // Xor: all children; or two that hold, so that others may be undecided
+      for (const Formula c : children) {
+        const Truth t = pool.evaluate(c, state);
+        if (t == Truth::Yes || t == Truth::No) kept.push_back(freeze(c, state));
+      }
+      return pool.all(kept);
+  }
+  throw Error(ErrorCode::Internal, "a formula is decided by none of its parts");
+}
+
 Formula Regression::before(OperatorId step, Formula condition, const Word* before) {
   FormulaPool& pool = task_.pool();
   before_ = before;
@@ -137,6 +197,7 @@ Formula Regression::before(OperatorId step, Formula condition, const Word* befor
   required_.clear();
   after_.assign(before);
   ensure(task_.apply(step, after_), "a planned step is possible");
+  if (pool.depends_on_calls(condition)) condition = freeze(condition, after_.words());
 
   if (task_.is_outcome(step)) {
     // The fluent must be sensed or known; learning it then gives this content whatever it was.
@@ -146,7 +207,7 @@ Formula Regression::before(OperatorId step, Formula condition, const Word* befor
     touch(o.fluent, true);
   } else {
     const GroundAction& a = task_.action(step);
-    required_.push_back(a.precondition);
+    required_.push_back(freeze(a.precondition, before));
     std::vector<Formula> fired, idle;
     for (const ConditionalEffect& c : a.effects) {
       const bool happens = pool.holds(c.condition, before);
@@ -172,10 +233,20 @@ Formula Regression::before(OperatorId step, Formula condition, const Word* befor
       for (const Change& d : c.additions) touch_change(d);
       for (const Change& d : c.sensing) touch_change(d);
       for (const ConditionalEffect::MaskedWrite& w : c.writes) touch_field(w.mask, w.word);
+      for (const ConditionalEffect::Transfer& t : c.transfers) {
+        const Fluent& f = task_.layout().fluents()[t.fluent];
+        touch_field(f.mask, f.word);
+        if (happens && !reads_field(condition, f)) continue;  // whatever value it takes over
+        if (is_call(t.operand)) {
+          require_footprint(t.operand & ~kCallOperand, before, required_);
+        } else {
+          require_as_before(task_.layout().fluents()[t.operand & ~kTermOperand]);
+        }
+      }
       if (happens) {
-        fired.push_back(c.condition);
+        fired.push_back(freeze(c.condition, before));
       } else {
-        if (observes || overlaps(condition)) idle.push_back(pool.negate(c.condition));
+        if (observes || overlaps(condition)) idle.push_back(freeze(c.condition, before));
         touched_ = kept;
         required_.resize(requirements);
       }

@@ -25,6 +25,9 @@ class Regression {
   void touch_field(Word mask, Index word) { touched_[word] |= mask; }
   Formula rewrite(Formula f);
   [[nodiscard]] bool overlaps(Formula f) const;
+  [[nodiscard]] bool reads_field(Formula f, const Fluent& fluent) const;
+  void require_footprint(Index call, const Word* state, std::vector<Formula>& out);
+  Formula freeze(Formula f, const Word* state);
   void require_as_before(const Fluent& fluent);
   void require_word(Index word);
   void require_read(Formula f);

@@ -11,7 +11,10 @@ Relaxation::Relaxation(Task& task, Limits& limits) : task_(task), limits_(limits
   for (Index i = 0; i < task.layout().fluents().size(); ++i) {
     const Fluent& f = task.layout().fluents()[i];
     first_fact_.push_back(static_cast<FactId>(facts_));
-    const std::size_t contents = f.function ? task.layout().range_size(f) + kFirstValue : 4;
+    const std::size_t contents = f.handle     ? task.model().objects.size() + kFirstValue + 1
+                                 : f.function ? task.layout().range_size(f) + kFirstValue
+                                              : 4;
+    contents_.push_back(contents);
     fluent_of_.insert(fluent_of_.end(), contents, i);
     facts_ += contents;
   }
@@ -61,7 +64,7 @@ std::vector<FactId> Relaxation::contents(const FormulaPool::Node& n, bool positi
   const Fluent& f = task_.layout().fluents()[n.a];
   always = false;
   std::vector<FactId> result;
-  const std::size_t count = f.function ? task_.layout().range_size(f) + kFirstValue : 4;
+  const Word count = contents_[n.a];
   for (Word c = 0; c < count; ++c) {
     bool holds = false;
     bool open = false;
@@ -164,6 +167,17 @@ std::vector<FactId> Relaxation::added(const Change& c) const {
   return {};
 }
 
+std::vector<FactId> Relaxation::added(const ConditionalEffect& c) const {
+  std::vector<FactId> all;
+  for (const auto* list : {&c.deletions, &c.direct, &c.additions, &c.sensing})
+    for (const Change& change : *list)
+      for (const FactId x : added(change)) all.push_back(x);
+  for (const ConditionalEffect::Transfer& t : c.transfers)  // any value, or none
+    for (Word content = 0; content < contents_[t.fluent]; ++content)
+      if (content != kValueSensed) all.push_back(fact(t.fluent, content));
+  return all;
+}
+
 bool Relaxation::ends(const Operator& op, FactId f) const {
   if (task_.is_outcome(op.step)) return false;  // learning changes nothing
   using K = Change::Kind;
@@ -234,9 +248,7 @@ void Relaxation::reach() {
             }
             for (const ConditionalEffect& c : task_.action(step).effects) {
               if (!possible(c.condition, true)) continue;
-              for (const auto* list : {&c.deletions, &c.direct, &c.additions, &c.sensing})
-                for (const Change& change : *list)
-                  for (const FactId x : added(change)) again |= mark(x);
+              for (const FactId x : added(c)) again |= mark(x);
             }
           });
     }
@@ -340,9 +352,7 @@ void Relaxation::add_action(OperatorId step) {
     o.step = step;
     o.cost = a.cost;
     o.conditional = i;
-    for (const auto* list : {&c.deletions, &c.direct, &c.additions, &c.sensing})
-      for (const Change& change : *list)
-        for (const FactId x : added(change)) o.adds.push_back(x);
+    o.adds = added(c);
     if (o.adds.empty()) continue;
     const std::vector<FactId> condition = necessary_facts(c.condition);
     std::set_union(needed.begin(), needed.end(), condition.begin(), condition.end(),

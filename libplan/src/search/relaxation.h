@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <unordered_map>
 #include <vector>
@@ -33,13 +34,15 @@ class Relaxation {
   [[nodiscard]] bool ends(const Operator& op, FactId f) const;
 
   [[nodiscard]] FactId fact(Index fluent, Word content) const {
-    return first_fact_[fluent] + static_cast<FactId>(content);
+    return first_fact_[fluent] + static_cast<FactId>(std::min(content, contents_[fluent] - 1));
   }
+  /// Number of contents told apart; of a handle, the last stands for all that come into being.
+  [[nodiscard]] Word contents(Index fluent) const { return contents_[fluent]; }
   [[nodiscard]] std::size_t facts() const { return facts_; }
   [[nodiscard]] Index fluent_of(FactId f) const { return fluent_of_[f]; }
   [[nodiscard]] Word content_of(FactId f) const { return f - first_fact_[fluent_of_[f]]; }
   [[nodiscard]] bool holds(FactId f, const Word* state) const {
-    return task_.layout().fluents()[fluent_of_[f]].get(state) == content_of(f);
+    return fact(fluent_of_[f], task_.layout().fluents()[fluent_of_[f]].get(state)) == f;
   }
   [[nodiscard]] const std::vector<Operator>& operators() const { return operators_; }
   [[nodiscard]] const std::vector<OperatorId>& actions() const { return actions_; }
@@ -64,12 +67,14 @@ class Relaxation {
   [[nodiscard]] std::vector<FactId> contents(const FormulaPool::Node& leaf, bool positive,
                                              bool& always) const;
   std::vector<FactId> added(const Change& change) const;
+  std::vector<FactId> added(const ConditionalEffect& effect) const;
   bool mark(FactId f);
 
   Task& task_;
   Limits& limits_;
   std::size_t facts_ = 0;
   std::vector<FactId> first_fact_;
+  std::vector<Word> contents_;
   std::vector<Index> fluent_of_;
   std::vector<char> reached_;
   std::vector<char> reached_action_;

@@ -2,6 +2,8 @@
 #include <kaboum/base/error.h>
 #include <kaboum/plan/solve.h>
 
+#include <algorithm>
+
 #include "search/contingent.h"
 #include "search/search.h"
 #include "task/exactness.h"
@@ -26,6 +28,35 @@ ContingentPlanner::SearchFunction search_function(Algorithm a) {
   throw Error(ErrorCode::InvalidArgument, "unknown search algorithm");
 }
 
+/// Searches, and again with more samples while that fails and some call found nothing.
+void search(Task& task, const SolveOptions& options, Limits& limits, Solution& solution) {
+  ExternalCalls& calls = task.pool().calls();
+  calls.seed(options.seed);
+  while (true) {
+    ContingentPlanner planner(task, search_function(options.algorithm), limits,
+                              solution.statistics);
+    solution.outcome = planner.run();
+    if (solution.outcome == Outcome::Solved) {
+      solution.plan = planner.plan();
+      const auto& functions = task.model().external_functions;
+      if (std::any_of(functions.begin(), functions.end(),
+                      [](const auto& f) { return f.reads_state; })) {
+        solution.plan.seed = options.seed;
+        solution.plan.attempts = calls.attempts();
+      }
+    }
+    if (solution.outcome != Outcome::Unsolvable || calls.missed().empty()) break;
+    if (calls.attempts() >= options.attempts) {
+      solution.outcome = Outcome::Limit;
+      solution.limit = "an external function found nothing in " + std::to_string(calls.attempts()) +
+                       (calls.attempts() == 1 ? " attempt, " : " attempts, ") + calls.missed();
+      return;
+    }
+    calls.try_again();
+  }
+  if (solution.outcome != Outcome::Limit) calls.confirm();
+}
+
 }  // namespace
 
 Solution solve(const Model& model, const SolveOptions& options) {
@@ -35,15 +66,12 @@ Solution solve(const Model& model, const SolveOptions& options) {
     Task task(model, limits);
     const auto count = [&] {
       solution.statistics.ground_actions = task.action_count();
-      solution.statistics.external_calls = task.pool().external_calls();
-      solution.statistics.external_seconds = task.pool().external_seconds();
+      solution.statistics.external_calls = task.pool().calls().calls_made();
+      solution.statistics.external_bytes = task.pool().calls().bytes();
+      solution.statistics.external_seconds = task.pool().calls().seconds();
     };
     try {
-      ContingentPlanner planner(task, search_function(options.algorithm), limits,
-                                solution.statistics);
-      solution.outcome = planner.run();
-      if (solution.outcome == Outcome::Solved) solution.plan = planner.plan();
-      if (solution.outcome != Outcome::Limit) task.pool().confirm_calls();
+      search(task, options, limits, solution);
     } catch (const LimitExceeded&) {
       count();
       throw;
@@ -56,7 +84,7 @@ Solution solve(const Model& model, const SolveOptions& options) {
     solution.lost = lost_knowledge(model);
     if (!solution.lost.empty()) solution.outcome = Outcome::NotInferred;
   }
-  if (solution.outcome == Outcome::Limit)
+  if (solution.outcome == Outcome::Limit && solution.limit.empty())
     solution.limit =
         limits.reason().empty() ? "depth limit of nested searches reached" : limits.reason();
   return solution;

@@ -3,6 +3,7 @@
 #include "task/action_schema.h"
 
 #include <algorithm>
+#include <map>
 
 #include "task/bindings.h"
 
@@ -12,7 +13,7 @@ namespace {
 constexpr std::size_t kTabulated = 1U << 20U;  // entries of one table by arguments
 
 bool calls_external(const Query& q) {
-  return q.kind == Query::Kind::External ||
+  return q.kind == Query::Kind::External || q.kind == Query::Kind::Let ||
          std::any_of(q.children.begin(), q.children.end(), calls_external);
 }
 
@@ -29,11 +30,25 @@ ActionSchema::ActionSchema(const Action& action, const Model& model, const Layou
 /// by parameter.
 std::vector<std::vector<const Query*>> ActionSchema::sort_conjuncts() {
   std::vector<std::vector<const Query*>> singles(levels_.size());
+  std::map<Index, Check> named;  // by the slot of a 'let': the conjunct that names it
   std::size_t latest = 0;  // a conjunct that calls an external function comes after all before it
   for (const Query* q : conjuncts(action_->precondition)) {
     Check c;
     c.query = q;
-    c.slots = free_slots(*q);
+    for (const Index slot : free_slots(*q)) {
+      const auto let = named.find(slot);
+      if (let == named.end()) {
+        c.slots.push_back(slot);
+        continue;
+      }
+      const Check& by = let->second;
+      c.slots.insert(c.slots.end(), by.slots.begin(), by.slots.end());
+      c.lets.insert(c.lets.end(), by.lets.begin(), by.lets.end());
+      c.lets.push_back(by.query);
+    }
+    std::sort(c.slots.begin(), c.slots.end());
+    c.slots.erase(std::unique(c.slots.begin(), c.slots.end()), c.slots.end());
+    if (q->kind == Query::Kind::Let) named.emplace(q->value->index, c);
     std::size_t depth = c.slots.empty() ? 0 : c.slots.back() + 1;
     const bool external = calls_external(*q);
     if (external) depth = std::max(depth, latest);
@@ -78,6 +93,7 @@ void ActionSchema::make_candidates(const std::vector<std::vector<const Query*>>&
 
 Formula ActionSchema::ground(const Check& check, const Index* slots) {
   std::vector<Index> copy(slots, slots + std::max<Index>(action_->slots, 1));
+  for (const Query* let : check.lets) pool_->ground(*let, copy);
   return pool_->ground(*check.query, copy);
 }
 

@@ -21,8 +21,9 @@ class ActionSchema {
   /// A conjunct of the precondition, tested when its last parameter has been chosen.
   struct Check {
     const Query* query = nullptr;
-    std::vector<Index> slots;
-    std::vector<Formula> grounded;  ///< by the slots' values; empty: too many to tabulate
+    std::vector<Index> slots;        ///< parameters that it depends on
+    std::vector<const Query*> lets;  ///< that name what it reads, to be ground before it
+    std::vector<Formula> grounded;   ///< by the slots' values; empty: too many to tabulate
   };
   struct Candidate {
     Index object = 0;

@@ -10,9 +10,12 @@ namespace {
 void collect(const Query& q, std::set<Index>& free, std::set<Index>& bound) {
   const auto use = [&](const Argument& a) {
     if (a.variable && !bound.contains(a.index)) free.insert(a.index);
+    if (a.term)
+      for (const Argument& x : a.term->arguments)
+        if (x.variable && !bound.contains(x.index)) free.insert(x.index);
   };
   for (const Argument& a : q.arguments) use(a);
-  if (q.value) use(*q.value);
+  if (q.value && q.kind != Query::Kind::Let) use(*q.value);
   const bool quantifier = q.kind == Query::Kind::Exists || q.kind == Query::Kind::ForAll;
   if (quantifier) bound.insert(q.symbol);
   for (const Query& child : q.children) collect(child, free, bound);

@@ -63,7 +63,7 @@ Layout::Field EffectGrounder::field(const Update::Literal& l,
 }
 
 Index EffectGrounder::position(const Update::Literal& l, const std::vector<Index>& slots) const {
-  return layout_.position(model_.functions[l.symbol].range, value_of(*l.value, slots.data()));
+  return layout_.position(model_.functions[l.symbol].range, pool_.operand(*l.value, slots));
 }
 
 void EffectGrounder::add_update(const Update& u, const std::vector<Index>& slots,
@@ -72,6 +72,17 @@ void EffectGrounder::add_update(const Update& u, const std::vector<Index>& slots
   const Layout::Field at = field(l, slots);
   if (!at.exists) return;  // an argument outside its type: no such atom
   ensure(at.fluent != kNone, "an effect changes what was taken for constant");
+  if (l.value && l.function && layout_.fluents()[at.fluent].handle) {
+    const Index o = pool_.operand(*l.value, slots);
+    if (is_call(o) || is_term(o)) {
+      out.transfers.push_back({at.fluent, o});
+      return;
+    }
+    if (o == kNone) {  // a term that is never known
+      out.deletions.push_back({Change::Kind::Forget, at.fluent, 0, {}});
+      return;
+    }
+  }
   if (l.value && position(l, slots) == kNone) return;
   Change c = change_of(u, slots, at.fluent);
   using K = Change::Kind;

@@ -75,7 +75,7 @@ class Exactness {
     for (const Effect& e : effects) {
       if (e.kind == Effect::Kind::When && !may_hold(e.condition)) continue;
       fresh |= forget(e.children);
-      if (e.kind != Effect::Kind::Update || (e.update.add && !loses(e.update))) continue;
+      if (e.kind != Effect::Kind::Update || (e.update.add && !may_lose(e.update))) continue;
       for (const Update::Literal& l : e.update.literals) {
         char& u = (l.function ? unknown_terms_ : unknown_atoms_)[l.symbol];
         fresh |= u == 0;
@@ -87,7 +87,9 @@ class Exactness {
 
   /// Additions after which a fluent may be unknown: those that only may happen, and observations of
   /// a term, which may contradict its value.
-  static bool loses(const Update& u) {
+  [[nodiscard]] bool may_lose(const Update& u) const {
+    const auto& value = u.literals[0].value;
+    if (value && value->term && unknown_terms_[value->term->function] != 0) return true;
     return u.maybe || u.database == Update::Database::Kx ||
            (u.database == Update::Database::Kf && u.literals[0].function && u.literals[0].negated);
   }

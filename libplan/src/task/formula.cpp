@@ -4,15 +4,11 @@
 #include <kaboum/base/error.h>
 
 #include <algorithm>
-#include <chrono>
-
-#include "task/ground_text.h"
 
 namespace kaboum::plan {
 namespace {
 
 constexpr std::size_t kMaximumNodes = 50'000'000;
-constexpr std::size_t kConfirmed = 8;  // calls of each external function that are made again
 
 std::uint64_t mix(std::uint64_t h, std::uint64_t v) {
   h ^= v + 0x9e3779b97f4a7c15ULL + (h << 6U) + (h >> 2U);
@@ -22,7 +18,7 @@ std::uint64_t mix(std::uint64_t h, std::uint64_t v) {
 }  // namespace
 
 FormulaPool::FormulaPool(const Model& model, const Layout& layout, Limits& limits)
-    : model_(model), layout_(layout), limits_(limits) {
+    : model_(model), layout_(layout), limits_(limits), calls_(model, layout, limits) {
   nodes_.push_back({Kind::False, false, 0, 0});
   nodes_.push_back({Kind::True, false, 0, 0});
 }
@@ -128,50 +124,15 @@ Formula FormulaPool::bits(Index word, Word mask, Word value) {
   return add({Kind::Bits, false, word, it->second}, {});
 }
 
-Formula FormulaPool::external(Index external, std::vector<Index> arguments, Index expected) {
-  const auto [it, fresh] =
-      call_index_.emplace(std::pair(external, arguments), static_cast<Index>(calls_.size()));
-  if (fresh) {
-    calls_.push_back({external, std::move(arguments)});
-    cached_.push_back(Cached::No);
-    results_.emplace_back();
-  }
-  return add({Kind::External, true, it->second, expected}, {});
+Formula FormulaPool::external(Index call, Index expected) {
+  return add({Kind::External, true, call, expected}, {});
 }
 
-std::optional<Index> FormulaPool::run(const Call& c) const {
-  ++external_calls_;
-  const auto start = std::chrono::steady_clock::now();
-  const std::optional<Index> result = model_.external_functions[c.external](c.arguments);
-  external_seconds_ +=
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return result;
-}
-
-std::optional<Index> FormulaPool::call(Index call) const {
-  if (cached_[call] != Cached::Yes) {
-    results_[call] = run(calls_[call]);
-    cached_[call] = Cached::Yes;
-  }
-  return results_[call];
-}
-
-/// In another order than at first, and twice, so that each follows calls that it did not follow.
-void FormulaPool::confirm_calls() const {
-  std::vector<std::size_t> count(model_.externals.size(), 0);
-  std::vector<Index> chosen;
-  for (Index i = 0; i < calls_.size(); ++i)
-    if (cached_[i] == Cached::Yes && count[calls_[i].external]++ < kConfirmed) chosen.push_back(i);
-  for (int round = 0; round < 2; ++round)
-    for (auto i = chosen.rbegin(); i != chosen.rend(); ++i) {
-      if (run(calls_[*i]) == results_[*i]) continue;
-      const Call& c = calls_[*i];
-      throw Error(ErrorCode::InvalidInput,
-                  "external function '" +
-                      ground_text(model_, model_.externals[c.external].name, c.arguments) +
-                      "' returned another value when it was called again: it may depend on its "
-                      "arguments only, not on calls made before");
-    }
+bool FormulaPool::depends_on_calls(Formula f) const {
+  const Node& n = nodes_[f];
+  if (!n.calls) return false;
+  if (n.kind == Kind::External) return calls_.depends_on_state(n.a);
+  return std::any_of(begin(f), end(f), [&](Formula c) { return depends_on_calls(c); });
 }
 
 std::optional<BitTest> FormulaPool::as_bits(Formula f) const {

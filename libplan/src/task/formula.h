@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "task/external_calls.h"
 #include "task/layout.h"
 #include "task/solve_limits.h"
 
@@ -18,7 +19,8 @@ inline constexpr Formula kTrue = 1;
 
 /// What a plan-time state says of a query: it stands for every way its sensed values may turn out.
 /// Open: the query holds for some of them and fails for others.
-enum class Truth : std::uint8_t { No, Yes, Open };
+/// Unresolved: an external function that it calls found nothing so far.
+enum class Truth : std::uint8_t { No, Yes, Open, Unresolved };
 
 /// (state[word] & mask) == value: most conditions of actions are one. With mask 0 it is none.
 struct BitTest {
@@ -63,7 +65,7 @@ class FormulaPool {
   Formula any(const std::vector<Formula>& children);  ///< disjunction
   Formula one(const std::vector<Formula>& children);  ///< exclusive or: exactly one
   Formula bits(Index word, Word mask, Word value);
-  Formula external(Index external, std::vector<Index> arguments, Index expected);
+  Formula external(Index call, Index expected);
 
   /// The query for these slots. Constant knowledge is folded in.
   Formula ground(const Query& query, std::vector<Index>& slots);
@@ -88,21 +90,15 @@ class FormulaPool {
   /// If `f` is "this field has this content".
   [[nodiscard]] std::optional<BitTest> as_bits(Formula f) const;
 
-  /// Cached by its arguments.
-  [[nodiscard]] std::optional<Index> call(Index call) const;
-  /// Makes some calls again. @throws Error{InvalidInput} if one returns another value.
-  void confirm_calls() const;
-  [[nodiscard]] std::uint64_t external_calls() const { return external_calls_; }
-  [[nodiscard]] double external_seconds() const { return external_seconds_; }
+  [[nodiscard]] ExternalCalls& calls() const { return calls_; }
+  /// Whether a call is in it whose answer can differ between states.
+  [[nodiscard]] bool depends_on_calls(Formula f) const;
+  /// The call that a query `let ?y = extern(...)` makes, for these slots; kNone: it has no value.
+  Index call_of(const Query& q, const std::vector<Index>& slots);
+  /// What an argument stands for: an object, or an operand (external_calls.h); kNone: nothing.
+  [[nodiscard]] Index operand(const Argument& a, const std::vector<Index>& slots) const;
 
  private:
-  struct Call {
-    Index external = 0;
-    std::vector<Index> arguments;
-  };
-  enum class Cached : std::uint8_t { No, Yes };
-
-  [[nodiscard]] std::optional<Index> run(const Call& c) const;
   Formula add(Node node, std::vector<Formula> children);
   Formula join(Kind kind, const std::vector<Formula>& children);
   Formula ground_connective(const Query& q, std::vector<Index>& slots);
@@ -126,12 +122,7 @@ class FormulaPool {
   std::vector<std::pair<Word, Word>> masks_;
   std::unordered_multimap<std::uint64_t, Formula> index_;
   std::map<std::pair<Word, Word>, Index> mask_index_;
-  std::vector<Call> calls_;
-  std::map<std::pair<Index, std::vector<Index>>, Index> call_index_;
-  mutable std::vector<Cached> cached_;
-  mutable std::vector<std::optional<Index>> results_;
-  mutable std::uint64_t external_calls_ = 0;
-  mutable double external_seconds_ = 0;
+  mutable ExternalCalls calls_;
 };
 
 }  // namespace kaboum::plan

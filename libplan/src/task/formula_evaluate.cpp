@@ -15,30 +15,38 @@ Truth FormulaPool::evaluate(Formula f, const Word* state) const {
       return Truth::Yes;
     case Kind::And:
     case Kind::Or: {
-      const Truth decides = n.kind == Kind::And ? Truth::No : Truth::Yes;
-      Truth result = n.kind == Kind::And ? Truth::Yes : Truth::No;
+      // From what decides least to what decides most; And: Yes, Open, Unresolved, No.
+      const bool all = n.kind == Kind::And;
+      const Truth decides = all ? Truth::No : Truth::Yes;
+      Truth result = all ? Truth::Yes : Truth::No;
       for (const Formula *c = begin(f), *last = end(f); c != last; ++c) {
-        if (result == Truth::Open && nodes_[*c].calls) continue;
+        if ((result == Truth::Open || (all && result == Truth::Unresolved)) && nodes_[*c].calls)
+          continue;
         const Truth t = evaluate(*c, state);
         if (t == decides) return t;
-        if (t == Truth::Open) result = t;
+        if (t == (all ? Truth::Unresolved : Truth::Open) ||
+            (t != result && result == (all ? Truth::Yes : Truth::No)))
+          result = t;
       }
       return result;
     }
     case Kind::Xor: {
       int certain = 0;
       bool open = false;
+      bool unresolved = false;
       for (const Formula *c = begin(f), *last = end(f); c != last; ++c) {
         const Truth t = evaluate(*c, state);
         certain += t == Truth::Yes ? 1 : 0;
         open |= t == Truth::Open;
+        unresolved |= t == Truth::Unresolved;
         if (certain > 1) return Truth::No;
       }
+      if (unresolved) return Truth::Unresolved;
       return open ? Truth::Open : yes(certain == 1);
     }
     case Kind::Not: {
       const Truth t = evaluate(*begin(f), state);
-      return t == Truth::Open ? t : yes(t == Truth::No);
+      return t == Truth::Open || t == Truth::Unresolved ? t : yes(t == Truth::No);
     }
     case Kind::IsTrue:
     case Kind::IsFalse: {
@@ -73,8 +81,11 @@ Truth FormulaPool::evaluate(Formula f, const Word* state) const {
     case Kind::Bits:
       return yes((state[n.a] & masks_[n.b].first) == masks_[n.b].second);
     case Kind::External: {
-      const std::optional<Index> result = call(n.a);
-      return yes(result && (n.b == kNone || *result == n.b));
+      const ExternalCalls::Reply reply = calls_.evaluate(n.a, state);
+      using R = ExternalCalls::Reply::Kind;
+      if (reply.kind == R::Open) return Truth::Open;
+      if (reply.kind == R::NotFound) return Truth::Unresolved;
+      return yes(reply.kind == R::Value && (n.b == kNone || reply.value == n.b));
     }
   }
   return Truth::No;
@@ -107,6 +118,13 @@ void FormulaPool::open_fluents(Formula f, const Word* state, std::vector<Index>&
           !fluent.function && fluent.get(state) == static_cast<Word>(AtomKnowledge::Unknown);
       const Index needed = undecided ? layout_.sensed_tie(n.a, state) : n.a;
       if (std::find(out.begin(), out.end(), needed) == out.end()) out.push_back(needed);
+      return;
+    }
+    case Kind::External: {
+      const ExternalCalls::Reply reply = calls_.evaluate(n.a, state);
+      if (reply.kind == ExternalCalls::Reply::Kind::Open &&
+          std::find(out.begin(), out.end(), reply.fluent) == out.end())
+        out.push_back(reply.fluent);
       return;
     }
     default:

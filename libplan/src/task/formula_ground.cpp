@@ -45,10 +45,35 @@ Formula FormulaPool::ground(const Query& q, std::vector<Index>& slots) {
       return constant(value_of(q.arguments[0], slots.data()) ==
                       value_of(q.arguments[1], slots.data()));
     case Query::Kind::External:
-      return external(q.symbol, objects(q, slots),
-                      q.value ? value_of(*q.value, slots.data()) : kNone);
+    case Query::Kind::Let: {
+      const Index call = call_of(q, slots);
+      if (q.kind == Query::Kind::Let)
+        slots[q.value->index] = call == kNone ? 0 : call | kCallOperand;
+      if (call == kNone) return kFalse;
+      return external(call, q.kind == Query::Kind::External && q.value
+                                ? value_of(*q.value, slots.data())
+                                : kNone);
+    }
   }
   throw Error(ErrorCode::Internal, "unexpected query");
+}
+
+Index FormulaPool::operand(const Argument& a, const std::vector<Index>& slots) const {
+  if (!a.term) return value_of(a, slots.data());
+  std::vector<Index> arguments;
+  for (const Argument& x : a.term->arguments) arguments.push_back(value_of(x, slots.data()));
+  const Layout::Field at = layout_.term(a.term->function, arguments.data());
+  if (!at.exists) return kNone;
+  return at.fluent == kNone ? at.value : at.fluent | kTermOperand;
+}
+
+Index FormulaPool::call_of(const Query& q, const std::vector<Index>& slots) {
+  std::vector<Index> operands;
+  for (const Argument& a : q.arguments) {
+    operands.push_back(operand(a, slots));
+    if (operands.back() == kNone) return kNone;  // never known
+  }
+  return calls_.call(q.symbol, std::move(operands));
 }
 
 Formula FormulaPool::ground_connective(const Query& q, std::vector<Index>& slots) {

@@ -24,6 +24,12 @@ struct ConditionalEffect {
   };
   std::vector<MaskedWrite> writes;
   std::vector<Change> direct;  ///< what the writes are made of: for analysis
+  /// A handle's term takes the value that a term or call has before the action; after the writes.
+  struct Transfer {
+    Index fluent;
+    Index operand;
+  };
+  std::vector<Transfer> transfers;
 };
 
 struct GroundAction {
@@ -32,6 +38,8 @@ struct GroundAction {
   std::int64_t cost = 1;
   Formula precondition = kTrue;
   std::vector<ConditionalEffect> effects;
+  std::vector<Index> lets;       ///< calls whose values the precondition gives names to
+  bool conditions_call = false;  ///< a condition of an effect calls an external function
 };
 
 }  // namespace kaboum::plan

@@ -39,6 +39,7 @@ void Layout::make_fluents(const std::vector<Symbol>& symbols, bool function,
         f.symbol = s;
         f.arguments = arguments;
         f.range = function ? symbols[s].range : kNone;
+        f.handle = function && model_.types[f.range].handle;
         fluent_of[n] = static_cast<Index>(fluents_.size());
         fluents_.push_back(std::move(f));
         return;
@@ -93,7 +94,9 @@ void Layout::assign_words(const std::vector<char>& function_exclusions) {
   BitAllocator allocator{words_, {}};
   for (Fluent& f : fluents_) {
     const unsigned bits =
-        f.function ? static_cast<unsigned>(std::bit_width(range_size(f) + kFirstValue - 1)) : 2;
+        f.handle     ? kHandleBits
+        : f.function ? static_cast<unsigned>(std::bit_width(range_size(f) + kFirstValue - 1))
+                     : 2;
     const BitAllocator::Bits at = allocator.take(bits);
     f.word = at.word;
     f.shift = at.shift;

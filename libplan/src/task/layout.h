@@ -20,6 +20,7 @@ using Word = std::uint64_t;
 inline constexpr Word kValueUnknown = 0;
 inline constexpr Word kValueSensed = 1;  ///< in Kv
 inline constexpr Word kFirstValue = 2;
+inline constexpr unsigned kHandleBits = 32;  ///< of a term whose value is a handle
 
 /// A ground atom or function term that actions, sensing or disjunctive knowledge can change: a
 /// field of the state. Fields never straddle words.
@@ -31,6 +32,7 @@ struct Fluent {
   unsigned shift = 0;
   Word mask = 0;             ///< in place
   Index range = kNone;       ///< of a function
+  bool handle = false;       ///< its values are handles
   Index exclusions = kNone;  ///< first word of the bit set of excluded values, if one is kept
   Index exclusion_words = 0;
   std::vector<std::pair<Index, Index>> groups;  ///< Kx groups it is in, and its bit there
@@ -59,9 +61,16 @@ class Layout {
   [[nodiscard]] Field atom(Index predicate, const Index* arguments) const;
   [[nodiscard]] Field term(Index function, const Index* arguments) const;
 
-  /// Position of an object among those of a type; kNone if it is not one of them.
+  /// Position of an object among those of a type; kNone if it is not one of them. Handles are
+  /// their own positions.
   [[nodiscard]] Index position(Index type, Index object) const {
-    return numbering_.position(type, object);
+    const Index p = numbering_.position(type, object);
+    return p != kNone && model_.types[type].handle ? object : p;
+  }
+  /// The object, or handle, at this position in the range of a function's fluent.
+  [[nodiscard]] Index object(Index fluent, Index position) const {
+    const Type& range = model_.types[fluents_[fluent].range];
+    return range.handle ? position : range.objects[position];
   }
 
   [[nodiscard]] const std::vector<Fluent>& fluents() const { return fluents_; }

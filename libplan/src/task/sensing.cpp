@@ -36,6 +36,11 @@ struct ReadSymbols {
 
   explicit ReadSymbols(const Model& model)
       : predicates(model.predicates.size(), 0), functions(model.functions.size(), 0) {
+    for (const ExternalFunction& f : model.external_functions)
+      if (f.reads_state) {  // it may read anything
+        predicates.assign(predicates.size(), 1);
+        functions.assign(functions.size(), 1);
+      }
     add(model.goal);
     for (const Action& a : model.actions) {
       add(a.precondition);

@@ -37,7 +37,7 @@ class Task::Expansion {
       return true;  // not called before the rest is decided
     const Truth t = task_.pool_.evaluate(f, state_);
     if (t == Truth::Open && open_count_ < open_.size()) open_[open_count_++] = f;
-    return t != Truth::No;
+    return t == Truth::Yes || t == Truth::Open;
   }
 
   bool test(const ActionSchema::Candidate& c) {
@@ -83,6 +83,8 @@ class Task::Expansion {
     const OperatorId step = task_.action_id(number_, arguments_);
     if constexpr (Sensing) {
       if (!decided(*task_.actions_[step])) return;
+    } else {
+      if (task_.actions_[step]->conditions_call && !resolved(*task_.actions_[step])) return;
     }
     steps_.push_back(step);
   }
@@ -96,6 +98,7 @@ class Task::Expansion {
         task_.pool_.open_fluents(c.condition, state_, task_.needs_);
         all = false;
       }
+      if (t == Truth::Unresolved) return false;
       if (t != Truth::Yes) continue;
       for (const auto* list : {&c.deletions, &c.additions})
         for (const Change& change : *list) {
@@ -106,6 +109,14 @@ class Task::Expansion {
         }
     }
     return all;
+  }
+
+  /// Whether it is known, so far as external functions go, which effects happen.
+  bool resolved(const GroundAction& action) {
+    return std::none_of(action.effects.begin(), action.effects.end(),
+                        [&](const ConditionalEffect& c) {
+                          return task_.pool_.evaluate(c.condition, state_) == Truth::Unresolved;
+                        });
   }
 
   Task& task_;

@@ -42,7 +42,12 @@ OperatorId Task::action_id(Index schema, const std::vector<Index>& arguments) {
   std::copy(arguments.begin(), arguments.end(), slots.begin());
   ground->precondition = pool_.ground(a.precondition, slots);
   ground->cost = cost_of(a, slots);
+  for (const Query* q : conjuncts(a.precondition))
+    if (q->kind == Query::Kind::Let && is_call(slots[q->value->index]))
+      ground->lets.push_back(slots[q->value->index] & ~kCallOperand);
   grounder_.ground(slots, *ground);
+  for (const ConditionalEffect& c : ground->effects)
+    ground->conditions_call |= pool_.node(c.condition).calls;
   limits_.work(sizeof(GroundAction) + ground->effects.size() * sizeof(ConditionalEffect));
   known = static_cast<OperatorId>(actions_.size());
   actions_.push_back(std::move(ground));
@@ -78,6 +83,18 @@ std::vector<Index> Task::outcomes(Index fluent, const Word* state) const {
   return k.possible_values(fluent, layout_.range_size(f));
 }
 
+/// @return false: a call has no value.
+bool Task::take(const ConditionalEffect::Transfer& t, const Word* state) {
+  if (!is_call(t.operand)) {
+    taken_.emplace_back(t.fluent, layout_.fluents()[t.operand & ~kTermOperand].get(state));
+    return true;
+  }
+  const ExternalCalls::Reply reply = pool_.calls().evaluate(t.operand & ~kCallOperand, state);
+  if (reply.kind != ExternalCalls::Reply::Kind::Value) return false;
+  taken_.emplace_back(t.fluent, kFirstValue + reply.value);
+  return true;
+}
+
 bool Task::apply(OperatorId step, Knowledge& state) {
   if (is_outcome(step)) {
     const SensingOutcome o = outcomes_[step & ~kOutcome];
@@ -85,7 +102,9 @@ bool Task::apply(OperatorId step, Knowledge& state) {
                                                 : state.learn_atom(o.fluent, o.value != 0);
   }
   const GroundAction& a = *actions_[step];
-  // All conditions look at the state before the action; then come deletions, additions, sensing.
+  taken_.clear();
+  // All conditions, and terms and calls, look at the state before the action; then come deletions,
+  // additions, sensing.
   std::array<const ConditionalEffect*, 16> few;
   std::vector<const ConditionalEffect*> many;
   std::size_t count = 0;
@@ -99,6 +118,8 @@ bool Task::apply(OperatorId step, Knowledge& state) {
       }
     }
     deletions |= !c.deletions.empty();
+    for (const ConditionalEffect::Transfer& t : c.transfers)
+      if (!take(t, state.words())) return false;
     if (count < few.size()) {
       few[count] = &c;
     } else {
@@ -117,6 +138,10 @@ bool Task::apply(OperatorId step, Knowledge& state) {
       state.write(w.word, w.mask, w.bits);
     for (const Change& c : fired[i]->additions)
       if (!state.apply(c)) return false;
+  }
+  for (const auto& [fluent, content] : taken_) {
+    const Fluent& f = layout_.fluents()[fluent];
+    state.write(f.word, f.mask, content << f.shift);
   }
   // What is sensed is the world after the action.
   for (std::size_t i = 0; i < count; ++i)

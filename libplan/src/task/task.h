@@ -80,6 +80,7 @@ class Task {
   template <bool Sensing>
   class Expansion;
 
+  bool take(const ConditionalEffect::Transfer& t, const Word* state);
   [[nodiscard]] std::int64_t cost_of(const Action& a, const std::vector<Index>& slots) const;
   template <bool Sensing>
   void expand_actions(const Word* state, std::vector<OperatorId>& steps);
@@ -97,6 +98,7 @@ class Task {
   std::map<std::pair<Index, Index>, OperatorId> outcome_index_;
   std::vector<Index> slots_;
   std::vector<Index> needs_;
+  std::vector<std::pair<Index, Word>> taken_;  ///< contents that transfers take over
   std::vector<Index> sensible_;  ///< fluents whose sensed value some query reads, or Kx ties to one
   Branching branching_ = Branching::OnNeed;
   bool pruned_branch_ = false;  ///< a branch was possible that nothing needed

@@ -1,18 +1,13 @@
 #pragma once
 
+#include <kaboum/plan/externals.h>
 #include <kaboum/plan/model.h>
 
-#include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 
 namespace kaboum::plan {
-
-/// Host functions by the name that `externals:` declares. They receive and return names of objects;
-/// an empty string is "false" or "no value".
-using ExternalBindings =
-    std::map<std::string, std::function<std::string(std::span<const std::string> arguments)>,
-             std::less<>>;
 
 enum class Language { Kpl, Pddl, Xml };
 

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <kaboum/plan/externals.h>
+#include <kaboum/plan/handles.h>
+
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -20,6 +24,7 @@ struct Type {
   std::string name;
   Index parent = kNone;
   std::vector<Index> objects;  ///< of the type and its subtypes, ascending
+  bool handle = false;         ///< further values come into being during a search
 };
 
 struct Object {
@@ -35,10 +40,19 @@ struct Symbol {
   bool numeric = false;           ///< a function whose constant values are integers (costs)
 };
 
-/// An object, or the slot of a variable.
+struct FunctionTerm;
+
+/// An object, the slot of a variable, or (of a handle type only) the value that a term has in the
+/// state.
 struct Argument {
   bool variable = false;
   Index index = 0;
+  std::shared_ptr<const FunctionTerm> term = {};
+};
+
+struct FunctionTerm {
+  Index function = 0;
+  std::vector<Argument> arguments;  ///< objects and variables
 };
 
 /// A knowledge-level query with free variables.
@@ -58,7 +72,8 @@ struct Query {
     WhetherValue,  ///< Kw(f(arguments) = value)
     KnowValue,     ///< Kv(f(arguments))
     Same,          ///< arguments[0] and arguments[1] are the same object
-    External       ///< extern(g(arguments)), or extern(g(arguments)) = value if it has one
+    External,      ///< extern(g(arguments)), or extern(g(arguments)) = value if it has one
+    Let            ///< extern(g(arguments)) has a value, and slot `value` stands for it from now on
   };
   Kind kind = Kind::True;
   Index symbol = 0;
@@ -110,8 +125,33 @@ struct Action {
   std::vector<Argument> cost_arguments;
 };
 
-/// The value of an external function: for truth values nullopt is false; else an object or none.
-using ExternalFunction = std::function<std::optional<Index>(std::span<const Index> arguments)>;
+/// What an external function may ask of the state.
+class StateReader {
+ public:
+  virtual ~StateReader() = default;
+  virtual std::optional<Index> value(Index function, std::span<const Index> arguments) = 0;
+  virtual std::optional<bool> truth(Index predicate, std::span<const Index> arguments) = 0;
+};
+
+/// What goes with the arguments of one call.
+struct ExternalContext {
+  StateReader& state;
+  HandleTable& handles;
+  std::uint64_t seed = 0;  ///< of the run
+  unsigned attempt = 0;
+};
+
+struct ExternalResult {
+  Answer::Kind kind = Answer::Kind::Impossible;
+  Index value = 0;  ///< an object, or a handle; of a truth value 0
+  std::string payload;
+  std::string reason;
+};
+
+struct ExternalFunction {
+  std::function<ExternalResult(std::span<const Index> arguments, ExternalContext& context)> call;
+  bool reads_state = false;  ///< it may read more than its arguments
+};
 
 struct Model {
   std::string name;
@@ -129,6 +169,10 @@ struct Model {
   std::vector<std::map<std::vector<Index>, std::int64_t>> numbers;
 
   [[nodiscard]] bool is_a(Index object, Index type) const;
+  /// The name of an object, or the word of a handle.
+  [[nodiscard]] std::string name_of(Index object, const HandleTable& handles) const {
+    return object < objects.size() ? objects[object].name : std::string(handles.word(object));
+  }
 };
 
 }  // namespace kaboum::plan

@@ -27,15 +27,26 @@ struct Plan {
     };
     std::vector<Case> cases;
   };
+  /// What an external function that the action's precondition names by `let` returned.
+  struct Call {
+    Index external = 0;
+    std::vector<std::string> arguments;
+    std::string value;
+    std::string payload;
+    [[nodiscard]] bool operator==(const Call&) const = default;
+  };
   struct Node {
     bool acts = false;
     bool branches = false;
     PlanAction action;
+    std::vector<Call> calls;  ///< one for each `let`, in their order
     Branch branch;
     Index next = kNone;  ///< when it does not branch
   };
   std::vector<Node> nodes;
   Index root = kNone;
+  std::uint64_t seed = 0;  ///< of its calls
+  unsigned attempts = 0;   ///< the most that one of them took; 0: no function reads the state
 
   [[nodiscard]] bool operator==(const Plan& other) const;
 };

@@ -25,6 +25,7 @@ struct Statistics {
   std::uint64_t state_bytes = 0;       ///< their storage: contents, links and index
   std::uint64_t ground_actions = 0;    ///< instances that came into being
   std::uint64_t external_calls = 0;    ///< calls of external functions, cached ones not counted
+  std::uint64_t external_bytes = 0;    ///< of handles, and of what was called where
   double external_seconds = 0;         ///< spent in them: the thesis's time of geometric search
   std::uint64_t searches = 0;          ///< searches for one unbranched part
   std::uint64_t dead_ends = 0;         ///< states proved to have no plan
@@ -38,6 +39,10 @@ struct SolveOptions {
   double timeout = 0;                               ///< seconds; 0: none
   std::size_t max_memory = 0;                       ///< bytes of grounding and search; 0: none
   std::function<void(const Statistics&)> progress;  ///< called now and then
+  std::uint64_t seed = 1;                           ///< of external functions that choose at random
+  /// How often a call that finds nothing is made, with more samples each time, before the search
+  /// gives up: all calls once, then all that found nothing once more, and so on.
+  unsigned attempts = 8;
 };
 
 enum class Outcome {

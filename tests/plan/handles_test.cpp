@@ -1,0 +1,539 @@
+// Handles and external functions that see the state: what is called and how often, what merges,
+// what is an error; and verdicts against an exhaustive search that shares nothing with the planner.
+#include <cstdlib>
+#include <functional>
+#include <random>
+#include <set>
+#include <stdexcept>
+
+#include "plan_test.h"
+
+namespace kaboum::plan::test {
+namespace {
+
+Model bound(const std::string& text, const ExternalBindings& bindings) {
+  return load({"t.kpl", text, Language::Kpl}, nullptr, bindings);
+}
+
+Solution with(const Model& m, Algorithm a) {
+  SolveOptions o;
+  o.algorithm = a;
+  return solve(m, o);
+}
+
+std::string error_of(const std::string& text, const ExternalBindings& bindings) {
+  try {
+    const Model m = bound(text, bindings);
+    solve(m, {});
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "no error";
+}
+
+void expect_says(const std::string& text, const std::string& part) {
+  EXPECT_NE(text.find(part), std::string::npos) << text;
+}
+
+/// FORCE SENSING with geometry, docs/planning/language.md. `from` is where a grasp starts.
+std::string force_sensing(int n, const std::string& from) {
+  std::string text = "types: object, conf handle, pose handle\nconstants: conf home; object ";
+  for (int i = 1; i <= n; ++i) text += (i > 1 ? ", o" : "o") + std::to_string(i);
+  text += "; pose ";
+  for (int i = 1; i <= n; ++i) text += (i > 1 ? ", p" : "p") + std::to_string(i);
+  text +=
+      "\npredicates: emptyGripper, isGrasped(object), isRemoved(object), isSpillable(object)\n"
+      "functions: robot : conf; pose(object) : pose\n"
+      "externals: reach(object, conf, pose) : conf; upright(object, conf) : conf;"
+      " fast(object, conf) : conf; held(object, conf) : pose\n"
+      "action senseWeight(?o : object) preconds: K(isGrasped(?o)) & !Kw(isSpillable(?o))"
+      " effects: add(Kw, isSpillable(?o))\n";
+  for (const std::string way : {"upright", "fast"})
+    text += "action " + way + "(?o : object) preconds: K(isGrasped(?o)) & K(" +
+            (way == "fast" ? "!" : "") +
+            "isSpillable(?o)) & K(!isRemoved(?o))"
+            " & let ?q = extern(" +
+            way +
+            "(?o, robot)) & let ?p = extern(held(?o, ?q))"
+            " effects: add(Kf, isRemoved(?o)), add(Kf, robot = ?q), add(Kf, pose(?o) = ?p)\n";
+  text +=
+      "action grasp(?o : object) preconds: K(emptyGripper) & K(!isRemoved(?o))"
+      " & let ?q = extern(reach(?o, " +
+      from +
+      ", pose(?o)))"
+      " effects: add(Kf, isGrasped(?o)), add(Kf, !emptyGripper), add(Kf, robot = ?q)\n"
+      "action ungrasp(?o : object) preconds: K(isGrasped(?o)) & K(isRemoved(?o))"
+      " effects: add(Kf, !isGrasped(?o)), add(Kf, emptyGripper)\n"
+      "init: K(emptyGripper), K(robot = home)";
+  for (int i = 1; i <= n; ++i) {
+    const std::string o = "o" + std::to_string(i);
+    text += ", K(!isGrasped(" + o + ")), K(!isRemoved(" + o + ")), K(pose(" + o + ") = p" +
+            std::to_string(i) + ")";
+  }
+  return text + "\ngoal: forallK(?o : object) K(isRemoved(?o)) & K(emptyGripper)";
+}
+
+/// Each returns a word that tells where it comes from, and a path.
+ExternalBindings geometry(int& calls) {
+  ExternalBindings all;
+  for (const std::string name : {"reach", "upright", "fast", "held"})
+    all[name] = [name, &calls](const Question& q) {
+      ++calls;
+      std::size_t h = std::hash<std::string>{}(name);
+      for (const std::string& a : q.arguments) h = h * 31 + std::hash<std::string>{}(a);
+      return Answer::found(name + "#" + std::to_string(h % 1000003), "path of " + q.arguments[0]);
+    };
+  return all;
+}
+
+TEST(Handles, BranchesMergeWhereLaterStepsDoNotReadWhatDiffers) {
+  for (const Algorithm a : {Algorithm::DepthFirst, Algorithm::BreadthFirst, Algorithm::Greedy,
+                            Algorithm::IterativeDeepening}) {
+    int calls = 0;
+    const Model m = bound(force_sensing(5, "home"), geometry(calls));
+    const Solution s = with(m, a);
+    ASSERT_EQ(s.outcome, Outcome::Solved);
+    EXPECT_LE(s.plan.nodes.size(), 25U) << static_cast<int>(a);
+    const CheckResult r = check(m, s.plan);
+    EXPECT_TRUE(r.valid) << r.violation;
+    // What the calls returned is in the plan, and is read back.
+    const std::string text = write_plan(m, s.plan);
+    EXPECT_EQ(read_plan(m, text, "p.json"), s.plan);
+    EXPECT_EQ(write_plan(m, read_plan(m, text, "p.json")), text);
+    expect_says(text, "\"payload\": \"path of o1\"");
+    Plan other = s.plan;
+    for (Plan::Node& n : other.nodes)
+      if (!n.calls.empty()) n.calls[0].payload = "another path";
+    expect_says(check(m, other).violation, "returns another payload than the plan says");
+    other.nodes = s.plan.nodes;
+    for (Plan::Node& n : other.nodes) n.calls.clear();
+    expect_says(check(m, other).violation, "the plan does not say what the calls of");
+    for (Plan::Node& n : other.nodes) n.calls.resize(9);
+    EXPECT_FALSE(check(m, other).valid);
+  }
+}
+
+TEST(Handles, BranchesStayApartWhereLaterStepsReadWhatDiffers) {
+  // Each grasp starts where the robot is, which the branches have left differently.
+  int calls = 0;
+  const Model m = bound(force_sensing(3, "robot"), geometry(calls));
+  for (const Algorithm a : {Algorithm::DepthFirst, Algorithm::Greedy}) {
+    const Solution s = with(m, a);
+    ASSERT_EQ(s.outcome, Outcome::Solved);
+    EXPECT_GT(s.plan.nodes.size(), 20U);
+    const CheckResult r = check(m, s.plan);
+    EXPECT_TRUE(r.valid) << r.violation;
+  }
+}
+
+const std::string kWalk =
+    "types: conf handle\nconstants: conf start\nfunctions: at : conf\npredicates: warm, cold, "
+    "done\n"
+    "init: K(at = start), K(!warm), K(!done)\n";
+
+TEST(Handles, ACallIsMadeOnceForWhatItReads) {
+  // The function reads `warm`, never `cold`, which the planner may change at will.
+  std::multiset<std::string> asked;
+  ExternalBindings b;
+  b["next"] = [&](const Question& q) {
+    const bool warm = q.state.truth("warm", {}).value_or(false);
+    asked.insert(q.arguments[0] + (warm ? "+" : "-"));
+    return q.arguments[0] == "start" && !warm ? Answer::impossible("too cold")
+                                              : Answer::found("c" + q.arguments[0].substr(0, 6));
+  };
+  b["isEnd"] = [&](std::span<const std::string> a) {
+    return std::string(a[0] == "cccstar" ? "yes" : "");
+  };
+  const std::string text =
+      kWalk +
+      "externals: next(conf) : conf; isEnd(conf)\n"
+      "action heat effects: add(Kf, warm)\n"
+      "action flip preconds: K(cold) effects: add(Kf, !cold)\n"
+      "action flop preconds: !K(cold) effects: add(Kf, cold)\n"
+      "action go preconds: let ?y = extern(next(at)) effects: add(Kf, at = ?y)\n"
+      "goal: extern(isEnd(at))";
+  const Model m = bound(text, b);
+  for (const Algorithm a : kAll) {
+    asked.clear();
+    const Solution s = with(m, a);
+    ASSERT_EQ(s.outcome, Outcome::Solved) << static_cast<int>(a);
+    EXPECT_LE(asked.count("start-"), 3U) << "once, and twice to confirm it";
+    EXPECT_TRUE(check(m, s.plan).valid) << check(m, s.plan).violation;
+  }
+}
+
+TEST(Handles, WhatIsNotFoundIsTriedAgainWithTheSameSeeds) {
+  std::vector<std::pair<unsigned, std::uint64_t>> tried;
+  ExternalBindings b;
+  b["sample"] = [&](const Question& q) {
+    tried.emplace_back(q.attempt, q.seed);
+    if (q.attempt < 3) return Answer::not_found("blocked by o3");
+    return Answer::found("c" + std::to_string(q.seed % 1000), "4 attempts");
+  };
+  const std::string text = kWalk +
+                           "externals: sample(conf) : conf\n"
+                           "action go preconds: let ?y = extern(sample(at))"
+                           " effects: add(Kf, at = ?y), add(Kf, done)\ngoal: K(done)";
+  const Model m = bound(text, b);
+  std::string plan;
+  for (const Algorithm a : kAll) {
+    const Solution s = with(m, a);
+    ASSERT_EQ(s.outcome, Outcome::Solved);
+    const CheckResult r = check(m, s.plan);
+    EXPECT_TRUE(r.valid) << r.violation;
+    const std::string written = write_plan(m, s.plan);
+    EXPECT_TRUE(plan.empty() || plan == written) << written;
+    plan = written;
+  }
+  const std::set<std::pair<unsigned, std::uint64_t>> distinct(tried.begin(), tried.end());
+  EXPECT_EQ(distinct.size(), 4U) << "a seed for each attempt, the same in every search";
+  SolveOptions o;
+  o.seed = 7;
+  EXPECT_NE(write_plan(m, solve(m, o).plan), plan);
+  o.attempts = 3;
+  const Solution none = solve(m, o);
+  EXPECT_EQ(none.outcome, Outcome::Limit);
+  expect_says(none.limit, "found nothing in 3 attempts, sample(start): blocked by o3");
+  // Neither the function nor its negation holds while nothing is found.
+  b["free"] = [](const Question&) { return Answer::not_found("later"); };
+  const Model negated = bound(kWalk +
+                                  "externals: free(conf)\naction go preconds: !extern(free(at))"
+                                  " effects: add(Kf, done)\ngoal: K(done)",
+                              b);
+  for (const Algorithm a : kAll) EXPECT_EQ(with(negated, a).outcome, Outcome::Limit);
+}
+
+TEST(Handles, ASensedValueIsDecidedBeforeAFunctionReadsIt) {
+  ExternalBindings b;
+  b["route"] = [](const Question& q) {
+    const auto left = q.state.truth("left", {});
+    if (!left) return Answer::impossible("which way is not known");
+    return Answer::found(*left ? "west" : "east");
+  };
+  const Model m = bound(kWalk +
+                            "predicates: left\ninit: Kw(left)\nexternals: route(conf) : conf\n"
+                            "action go preconds: let ?y = extern(route(at))"
+                            " effects: add(Kf, at = ?y), add(Kf, done)\ngoal: K(done)",
+                        b);
+  for (const Algorithm a : kAll) {
+    const Solution s = with(m, a);
+    ASSERT_EQ(s.outcome, Outcome::Solved);
+    EXPECT_EQ(measure(m, s.plan).leaves, 2U);
+    EXPECT_TRUE(check(m, s.plan).valid) << check(m, s.plan).violation;
+  }
+}
+
+TEST(Handles, BrokenHostsAreErrorsThatNameFunctionAndState) {
+  const std::string text = kWalk +
+                           "externals: g(conf) : conf\naction go preconds: let ?y = extern(g(at))"
+                           " effects: add(Kf, at = ?y), add(Kf, done)\ngoal: K(done)";
+  ExternalBindings b;
+  b["g"] = [](const Question& q) -> Answer {
+    q.state.truth("warm", {});
+    throw std::runtime_error("no such robot");
+  };
+  expect_says(error_of(text, b), "'g(start)' failed: no such robot, in a state where at = start");
+  expect_says(error_of(text, b), "at = start");
+  b["g"] = [](const Question& q) {
+    q.state.value("nowhere", {});
+    return Answer{};
+  };
+  expect_says(error_of(text, b), "'g(start)': it reads 'nowhere', but the model has no function");
+  b["g"] = [](const Question&) { return Answer::found(""); };
+  expect_says(error_of(text, b), "it returned '', no constant of its type (conf)");
+  int n = 0;
+  b["g"] = [&n](const Question&) { return Answer::found("c" + std::to_string(n++)); };
+  expect_says(error_of(text, b), "'g(start)' returned another value when it was called again");
+  // Endless calls end with the limit.
+  b["g"] = [&n](const Question&) { return Answer::found("c" + std::to_string(n++)); };
+  const Model endless = bound(kWalk +
+                                  "externals: g(conf) : conf\naction go preconds: let ?y = "
+                                  "extern(g(at)) effects: add(Kf, at = ?y)\ngoal: K(done)\n"
+                                  "action no preconds: K(warm) effects: add(Kf, done)\n"
+                                  "action heat preconds: K(done) effects: add(Kf, warm)",
+                              b);
+  SolveOptions o;
+  o.max_memory = 4U << 20U;
+  EXPECT_EQ(solve(endless, o).outcome, Outcome::Limit);
+}
+
+TEST(Handles, WhatHandlesAreNotForIsRefused) {
+  const std::string head =
+      "types: v, conf handle\nconstants: v a; conf c\nfunctions: at : conf; to : conf; f : v\n"
+      "predicates: p\nexternals: g(conf) : conf; h(conf); k(v) : v\n"
+      "table g: (c) = c\ntable h: (c)\ntable k: (a) = a\ninit: K(at = c)\ngoal: K(p)\n";
+  const auto says = [&](const std::string& text, const std::string& part) {
+    expect_says(complaint(head + text), part);
+  };
+  says("action x(?q : conf) preconds: true effects: add(Kf, p)", "'conf' is a handle type");
+  says("predicates: r(conf)", "'conf' is a handle type");
+  says("action x preconds: existsK(?q : conf) K(p) effects: add(Kf, p)", "is a handle type");
+  says("action x preconds: K(at = to) effects: add(Kf, p)", "compared by an external function");
+  says("action x preconds: let ?y = extern(g(at)) & K(?y = ?y) effects: add(Kf, p)",
+       "compared by an external function");
+  says("action x preconds: K(p) | let ?y = extern(g(at)) effects: add(Kf, p)",
+       "'let' stands among the conjuncts");
+  says("action x preconds: let ?y = extern(k(a)) effects: add(Kf, p)", "are enumerated");
+  says("action x preconds: let ?y = extern(h(at)) effects: add(Kf, p)", "is a truth value");
+  says("action x preconds: extern(h(extern(g(at)))) effects: add(Kf, p)", "is given a name first");
+  says("action x preconds: true effects: add(Kv, at)", "is a handle, never sensed");
+  says("action x preconds: true effects: del(Kf, at = c)", "del(Kv, ...)");
+  says("action x preconds: true effects: add(Kf, at = ?y)", "unknown variable '?y'");
+  says("types: sub : conf", "it has no subtypes");
+  expect_says(complaint("types: v\nconstants: v a\nfunctions: f : v\npredicates: p\ngoal: K(p)\n"
+                        "action x preconds: true effects: add(Kf, f = zzz)"),
+              "unknown constant 'zzz'");
+  // Written and read back, and copied from term to term.
+  const std::string text = head +
+                           "action x preconds: let ?y = extern(g(at)) & extern(h(?y))"
+                           " effects: add(Kf, to = ?y)\n"
+                           "action y preconds: Kv(to) effects: add(Kf, at = to), add(Kf, p)";
+  const Text t{"t.kpl", text, Language::Kpl};
+  const std::string again = convert(t, nullptr, Language::Kpl);
+  for (const std::string& source : {text, again})
+    for (const Algorithm a : kAll)
+      EXPECT_EQ(measure(model_of(source), solved(model_of(source), a).plan).longest, 2U);
+  EXPECT_THROW(convert(t, nullptr, Language::Pddl), Error);
+}
+
+TEST(Handles, AHundredThousandInOneSearch) {
+  // Ten ways out of each configuration, none of them the goal until some 10^5 have been seen.
+  ExternalBindings b;
+  b["next"] = [](std::span<const std::string> a) { return a[1] + a[0]; };
+  b["isEnd"] = [](std::span<const std::string> a) {
+    return std::string(a[0] == "s00000" ? "yes" : "");
+  };
+  const Model m = bound(
+      "types: d, conf handle\nconstants: d 9, 8, 7, 6, 5, 4, 3, 2, 1, 0; conf s\n"
+      "functions: at : conf\ninit: K(at = s)\n"
+      "externals: next(d, conf) : conf; isEnd(conf)\n"
+      "action go(?d : d) preconds: let ?y = extern(next(?d, at))"
+      " effects: add(Kf, at = ?y)\ngoal: extern(isEnd(at))",
+      b);
+  SolveOptions o;
+  o.algorithm = Algorithm::BreadthFirst;
+  const Solution s = solve(m, o);
+  ASSERT_EQ(s.outcome, Outcome::Solved);
+  EXPECT_EQ(s.statistics.states, 111111U);
+  EXPECT_LE(s.statistics.external_bytes + s.statistics.state_bytes, 111111U * 160);
+  RecordProperty("bytes", static_cast<int>(s.statistics.external_bytes / 111111));
+}
+
+/// A task over handles s and t (four words each), atoms p and q and the sensed atom r. Its external
+/// functions answer by a hash of what they are asked and what they read.
+class RandomTask {
+ public:
+  static constexpr unsigned kAttempts = 3;
+
+  explicit RandomTask(std::uint32_t seed) : random_(seed), seed_(seed) {
+    for (int i = 0; i < 4; ++i) actions_.push_back(random_action());
+    goal_atom_ = pick(3);
+    goal_call_ = pick(2) != 0;
+  }
+
+  struct State {
+    int s = 0, t = 0;
+    bool p = false, q = false, r = false;
+    auto operator<=>(const State&) const = default;
+  };
+  struct Random {
+    int from, to;        ///< 0: s, 1: t
+    int need;            ///< 0: none, 1: p, 2: !p, 3: q, 4: r, 5: !r
+    int test;            ///< 0: none, 1: ok(from), 2: !ok(from)
+    bool moves, copies;  ///< to = next(from); to = from
+    int effect;          ///< 0: none, 1: p, 2: !p, 3: q, 4: ok => q, 5: ok => !p
+  };
+
+  std::string text() const {
+    const auto name = [](int x) { return x == 0 ? "s" : "t"; };
+    std::string out =
+        "types: conf handle\nconstants: conf w0, w1, w2, w3\nfunctions: s : conf; t : conf\n"
+        "predicates: p, q, r\ninit: K(s = w0), K(t = w0), K(!p), K(!q), Kw(r)\nexternals: ";
+    for (std::size_t i = 0; i < actions_.size(); ++i)
+      out += "next" + std::to_string(i) + "(conf) : conf; ok" + std::to_string(i) + "(conf); ";
+    out += "end(conf)\n";
+    for (std::size_t i = 0; i < actions_.size(); ++i) {
+      const Random& a = actions_[i];
+      const std::string n = std::to_string(i);
+      const std::string ok = "extern(ok" + n + "(" + name(a.from) + "))";
+      static const char* const kNeeds[] = {"true", "K(p)", "K(!p)", "K(q)", "K(r)", "K(!r)"};
+      out += "action a" + n + " preconds: " + kNeeds[a.need];
+      if (a.test != 0) out += std::string(" & ") + (a.test == 2 ? "!" : "") + ok;
+      if (a.moves) out += " & let ?y = extern(next" + n + "(" + name(a.from) + "))";
+      out += " effects: ";
+      if (a.moves) out += std::string("add(Kf, ") + name(a.to) + " = ?y) ";
+      if (a.copies) out += std::string("add(Kf, ") + name(a.to) + " = " + name(a.from) + ") ";
+      static const char* const kEffects[] = {"", "add(Kf, p)", "add(Kf, !p)", "add(Kf, q)"};
+      out += a.effect < 4    ? kEffects[a.effect]
+             : a.effect == 4 ? ok + " => add(Kf, q)"
+                             : ok + " => add(Kf, !p)";
+      out += "\n";
+    }
+    static const char* const kGoals[] = {"K(p)", "K(q)", "K(p) & K(q)"};
+    return out + "goal: " + kGoals[goal_atom_] + (goal_call_ ? " & extern(end(s))" : "") + "\n";
+  }
+
+  ExternalBindings bindings() const {
+    ExternalBindings all;
+    for (std::size_t i = 0; i < actions_.size(); ++i)
+      for (const std::string f : {"next", "ok"}) {
+        const std::string name = f + std::to_string(i);
+        all[name] = [this, name](const Question& q) { return answer(name, q); };
+      }
+    all["end"] = [this](const Question& q) { return answer("end", q); };
+    return all;
+  }
+
+  /// By looking at all states. @return whether there is a plan; `missed`: something was not found.
+  bool has_plan(bool r, bool& missed) const {
+    std::set<State> seen = {State{0, 0, false, false, r}};
+    std::vector<State> todo(seen.begin(), seen.end());
+    while (!todo.empty()) {
+      const State at = todo.back();
+      todo.pop_back();
+      const bool atoms = goal_atom_ == 0 ? at.p : goal_atom_ == 1 ? at.q : at.p && at.q;
+      if (atoms && (!goal_call_ || asked("end", at.s, at, missed).kind == Answer::Kind::Value))
+        return true;
+      for (std::size_t i = 0; i < actions_.size(); ++i) {
+        State next;
+        if (step(i, at, next, missed) && seen.insert(next).second) todo.push_back(next);
+      }
+    }
+    return false;
+  }
+
+ private:
+  int pick(int n) { return static_cast<int>(random_() % static_cast<std::uint32_t>(n)); }
+  Random random_action() {
+    Random a{};
+    a.from = pick(2);
+    a.to = pick(2);
+    a.need = pick(6);
+    a.test = pick(3);
+    a.moves = pick(3) != 0;
+    a.copies = !a.moves && a.from != a.to && pick(2) != 0;
+    a.effect = pick(6);
+    return a;
+  }
+
+  std::uint32_t hash(const std::string& text) const {
+    std::uint32_t h = seed_ * 2654435761U + 17;
+    for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 16777619U;
+    h ^= h >> 15U;
+    return h * 2246822519U >> 8U;
+  }
+
+  /// Which parts of the state are read depends on what was read before.
+  Answer answer(const std::string& name, const Question& q) const {
+    std::string read = name + q.arguments[0];
+    if (hash(name + "t") % 2 == 0) read += q.state.value("t", {}).value_or("?");
+    if (hash(read) % 3 == 0) read += *q.state.truth("p", {}) ? "p" : "-";
+    if (hash(read) % 4 == 0) read += *q.state.truth("r", {}) ? "r" : "-";
+    const std::uint32_t h = hash(read + "!");
+    const unsigned found_at = h % 8 == 0 ? 1 + h / 8 % 3 : 0;  // 3: never
+    if (q.attempt < found_at) return Answer::not_found("attempt " + std::to_string(q.attempt));
+    if (h / 64 % 3 == 0) return Answer::impossible("no");
+    return Answer::found("w" + std::to_string(h / 256 % 4), read);
+  }
+
+  class View final : public StateView {
+   public:
+    explicit View(const State& s) : s_(s) {}
+    std::optional<std::string> value(const std::string& f,
+                                     const std::vector<std::string>&) override {
+      return "w" + std::to_string(f == "s" ? s_.s : s_.t);
+    }
+    std::optional<bool> truth(const std::string& p, const std::vector<std::string>&) override {
+      return p == "p" ? s_.p : p == "q" ? s_.q : s_.r;
+    }
+
+   private:
+    State s_;
+  };
+
+  Answer asked(const std::string& name, int argument, const State& at, bool& missed) const {
+    View view(at);
+    const std::vector<std::string> arguments = {"w" + std::to_string(argument)};
+    Answer a;
+    for (unsigned attempt = 0; attempt < kAttempts; ++attempt) {
+      a = answer(name, {arguments, view, 0, attempt});
+      if (a.kind != Answer::Kind::NotFound) return a;
+    }
+    missed = true;
+    return a;
+  }
+
+  bool step(std::size_t i, const State& at, State& next, bool& missed) const {
+    const Random& a = actions_[i];
+    const std::string n = std::to_string(i);
+    const int from = a.from == 0 ? at.s : at.t;
+    const bool needs[] = {true, at.p, !at.p, at.q, at.r, !at.r};
+    if (!needs[a.need]) return false;
+    if (a.test != 0) {
+      const Answer ok = asked("ok" + n, from, at, missed);
+      if (ok.kind != (a.test == 1 ? Answer::Kind::Value : Answer::Kind::Impossible)) return false;
+    }
+    next = at;
+    int& to = a.to == 0 ? next.s : next.t;
+    if (a.moves) {
+      const Answer y = asked("next" + n, from, at, missed);
+      if (y.kind != Answer::Kind::Value) return false;
+      to = y.value[1] - '0';
+    }
+    if (a.copies) to = from;
+    if (a.effect == 1) next.p = true;
+    if (a.effect == 2) next.p = false;
+    if (a.effect == 3) next.q = true;
+    if (a.effect >= 4) {
+      const Answer ok = asked("ok" + n, from, at, missed);
+      if (ok.kind == Answer::Kind::NotFound) return false;
+      if (ok.kind == Answer::Kind::Value) (a.effect == 4 ? next.q : next.p) = a.effect == 4;
+    }
+    return true;
+  }
+
+  std::mt19937 random_;
+  std::uint32_t seed_;
+  std::vector<Random> actions_;
+  int goal_atom_ = 0;
+  bool goal_call_ = false;
+};
+
+TEST(Handles, VerdictsAreThoseOfAnExhaustiveSearch) {
+  // A thousand by hand: KABOUM_PLAN_TASKS=1000.
+  const char* const wanted = std::getenv("KABOUM_PLAN_TASKS");
+  const std::uint32_t tasks =
+      wanted == nullptr ? 150 : static_cast<std::uint32_t>(std::atoi(wanted));
+  std::array<int, 3> count{};
+  for (std::uint32_t seed = 0; seed < tasks && !HasFailure(); ++seed) {
+    const RandomTask task(seed);
+    bool missed = false;
+    const bool left = task.has_plan(true, missed);
+    const bool right = task.has_plan(false, missed);
+    const Model m = bound(task.text(), task.bindings());
+    for (const Algorithm a : kAll) {
+      SolveOptions o;
+      o.algorithm = a;
+      o.attempts = RandomTask::kAttempts;
+      const Solution s = solve(m, o);
+      const std::string where = "seed " + std::to_string(seed) + ", search " +
+                                std::to_string(static_cast<int>(a)) + "\n" + task.text();
+      if (left && right) {
+        ASSERT_EQ(s.outcome, Outcome::Solved) << where;
+        const CheckResult r = check(m, s.plan);
+        EXPECT_TRUE(r.valid) << r.violation << "\n" << where << plan_text(m, s.plan);
+        ++count[0];
+      } else if (missed) {
+        EXPECT_TRUE(s.outcome == Outcome::Limit || s.outcome == Outcome::Unsolvable) << where;
+        ++count[1];
+      } else {
+        EXPECT_EQ(s.outcome, Outcome::Unsolvable) << where;
+        ++count[2];
+      }
+    }
+  }
+  for (const int n : count) EXPECT_GT(n, static_cast<int>(tasks) / 10);
+}
+
+}  // namespace
+}  // namespace kaboum::plan::test
