@@ -264,7 +264,14 @@ Index ExternalCalls::insert(Index call, const Path& path, const std::vector<Inde
     leaves_[at & ~kLeaf] = leaf;
     return at & ~kLeaf;
   }
+  // Answers that say the same are one, unless they may be replaced.
+  Index& last = calls_[call].last;
+  if (leaf.kind != Answer::Kind::NotFound && last != kNone && leaves_[last] == leaf) {
+    link(content, last | kLeaf);
+    return last;
+  }
   const auto made = static_cast<Index>(leaves_.size());
+  last = made;
   if (made >= kLeaf) throw Error(ErrorCode::LimitReached, "too many calls of external functions");
   leaves_.push_back(leaf);
   link(content, made | kLeaf);
@@ -338,7 +345,7 @@ Index* ExternalCalls::edge(Index node, Index content) {
 }
 
 void ExternalCalls::add_edge(Index node, Index content, Index child) {
-  if (++edge_count_ * 4 > edges_.size() * 3) {
+  if (++edge_count_ * 8 > edges_.size() * 7) {
     std::vector<Edge> old(edges_.size() * 2);
     old.swap(edges_);
     for (const Edge& e : old)

@@ -84,13 +84,15 @@ class ExternalCalls {
     Index external = 0;
     std::vector<Index> operands;
     Index root = kNone;  ///< node, or leaf with kLeaf
+    Index last = kNone;  ///< the leaf that it was given last
     bool depends = false;
   };
   struct Leaf {
     Index value = 0;
-    Index text = kNone;  ///< payload or reason
-    std::uint16_t attempts = 0;
+    Index text = kNone;          ///< payload or reason
+    std::uint16_t attempts = 0;  ///< made so far
     Answer::Kind kind = Answer::Kind::Impossible;
+    [[nodiscard]] bool operator==(const Leaf&) const = default;
   };
   struct Edge {
     Index node = kNone;

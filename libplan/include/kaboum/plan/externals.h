@@ -38,7 +38,7 @@ struct Question {
 };
 
 struct Answer {
-  enum class Kind {
+  enum class Kind : std::uint8_t {
     Value,      ///< of a truth value: true
     NotFound,   ///< nothing yet; a later attempt may find something
     Impossible  ///< there is no value; of a truth value: false
