@@ -99,8 +99,8 @@ collide::Model triangles_of(const world::World& world, const robot::RobotFile& f
   const robot::LinkMeshes meshes = link_meshes(file, {});
   for (const robot::LinkShape& shape : meshes.shapes) {
     const robot::Geometry& g = file.robot.links[shape.link].collision[shape.index];
-    geom::Mesh mesh = shape.mesh ? io::read_mesh(meshes.meshes[*shape.mesh].file).mesh
-                                 : throw Error(ErrorCode::InvalidInput, "a shape without a mesh");
+    if (!shape.mesh) continue;
+    geom::Mesh mesh = io::read_mesh(meshes.meshes[*shape.mesh].file).mesh;
     for (geom::Vec3& v : mesh.vertices) v = g.origin * v.cwiseProduct(g.size);
     out.robot.push_back({shape.link, std::move(mesh)});
   }
