@@ -9,6 +9,7 @@
 #include "cli.h"
 #include "scene_file.h"
 #include "scene_maker.h"
+#include "scene_update.h"
 
 namespace {
 
@@ -25,6 +26,18 @@ struct Options {
 
 const std::map<std::string, bcd::Effort> kEfforts{
     {"fast", bcd::Effort::Fast}, {"normal", bcd::Effort::Normal}, {"best", bcd::Effort::Best}};
+
+void add_sources_of_sets(CLI::App& command, Options& o) {
+  command
+      .add_option("--package-path", o.packages,
+                  "A package of package:// or a folder that holds it; may be repeated")
+      ->type_name("DIR");
+  command
+      .add_option("--from-cache", o.cache,
+                  "Cache of decompositions, used and filled [as bcd-decompose]")
+      ->type_name("DIR");
+  command.add_flag("--no-cache", o.no_cache, "Decompose anew and store nothing");
+}
 
 CLI::App* describe_make(CLI::App& app, Options& o) {
   CLI::App* make = app.add_subcommand(
@@ -56,16 +69,19 @@ CLI::App* describe_make(CLI::App& app, Options& o) {
       ->check(tools::unit_name())
       ->capture_default_str()
       ->type_name("NAME");
-  make->add_option("--package-path", o.packages,
-                   "A package of package:// or a folder that holds it; may be repeated")
-      ->type_name("DIR");
-  make->add_option("--from-cache", o.cache,
-                   "Cache of decompositions, used and filled [as bcd-decompose]")
-      ->type_name("DIR");
+  add_sources_of_sets(*make, o);
   make->add_flag("--force", o.force, "Replace a scene that exists, with all that was edited in it");
-  make->add_flag("--no-cache", o.no_cache, "Decompose anew and store nothing");
   tools::add_common_options(*make, o.common);
   return make;
+}
+
+CLI::App* describe_update(CLI::App& app, Options& o) {
+  CLI::App* update = app.add_subcommand(
+      "update", "Make those sets of a scene anew that are out of date, as they were made before");
+  update->add_option("SCENE", o.scene, "Scene file; all but its sets stays as it is")->required();
+  add_sources_of_sets(*update, o);
+  tools::add_common_options(*update, o.common);
+  return update;
 }
 
 CLI::App* describe_pairs(CLI::App& app, Options& o) {
@@ -95,6 +111,19 @@ std::vector<tools::NamedFile> named_files(const std::vector<std::string>& texts,
   return out;
 }
 
+void say_made(const Options& o, const tools::MadeScene& made, const std::string& what,
+              const char* command) {
+  for (const std::string& line : made.notes) tools::log(o.common.quiet, line);
+  for (const std::string& size : made.sizes) tools::log(o.common.quiet, size);
+  tools::log(o.common.quiet, what);
+  tools::write_report(o.common, "kaboum-scene",
+                      {{"command", command},
+                       {"scene", o.scene},
+                       {"sets", made.containers.size()},
+                       {"inputs", made.inputs},
+                       {"notes", made.notes}});
+}
+
 int make_scene(const Options& o) {
   const tools::ThreadLimit threads(o.common.threads);
   tools::SceneMaker maker;
@@ -120,29 +149,40 @@ int make_scene(const Options& o) {
                     "meshes of objects to m");
   tools::require_apart({{"SCENE", o.scene}, {"--report", o.common.report}}, inputs);
   maker.inner = o.inner;
-  maker.visual = o.visual;
-  maker.sets.epsilon = tools::parse_length(o.epsilon);
-  maker.sets.effort = kEfforts.at(o.effort);
-  maker.sets.preparation.drop_sheets = o.drop_sheets;
-  maker.sets.unit = o.unit;
-  maker.packages = o.packages;
+  maker.options.visual = o.visual;
+  maker.options.sets.epsilon = tools::parse_length(o.epsilon);
+  maker.options.sets.effort = kEfforts.at(o.effort);
+  maker.options.sets.preparation.drop_sheets = o.drop_sheets;
+  maker.options.sets.unit = o.unit;
+  maker.options.packages = o.packages;
   const certify::SetCache cache(o.cache.empty() ? certify::SetCache::default_folder()
                                                 : std::filesystem::path(o.cache));
-  if (!o.no_cache) maker.cache = &cache;
+  if (!o.no_cache) maker.options.cache = &cache;
   tools::Progress progress(o.common.quiet);
-  maker.progress = [&](const std::string& stage) { progress.show(stage); };
+  maker.options.progress = [&](const std::string& stage) { progress.show(stage); };
   const tools::MadeScene made = tools::make_scene(maker);
-  const std::vector<std::string>& lines = made.notes;
-  for (const std::string& line : lines) tools::log(o.common.quiet, line);
-  for (const std::string& size : made.sizes) tools::log(o.common.quiet, size);
-  tools::log(o.common.quiet, o.scene + ": " + std::to_string(made.containers.size()) +
-                                 " sets, all at the origin: put things where they belong");
-  tools::Json report = {{"command", "make"},
-                        {"scene", o.scene},
-                        {"sets", made.containers.size()},
-                        {"inputs", made.inputs},
-                        {"notes", lines}};
-  tools::write_report(o.common, "kaboum-scene", report);
+  say_made(o, made,
+           o.scene + ": " + std::to_string(made.containers.size()) +
+               " sets, all at the origin: put things where they belong",
+           "make");
+  return tools::kDone;
+}
+
+int update_scene(const Options& o) {
+  const tools::ThreadLimit threads(o.common.threads);
+  tools::require_apart({{"--report", o.common.report}}, {o.scene});
+  const certify::SetCache cache(o.cache.empty() ? certify::SetCache::default_folder()
+                                                : std::filesystem::path(o.cache));
+  tools::Progress progress(o.common.quiet);
+  const tools::MadeScene made =
+      tools::update_scene({o.scene, o.packages, o.no_cache ? nullptr : &cache,
+                           [&](const std::string& stage) { progress.show(stage); }});
+  say_made(
+      o, made,
+      o.scene + ": " +
+          (made.containers.empty() ? std::string("nothing is out of date")
+                                   : std::to_string(made.containers.size()) + " sets made anew"),
+      "update");
   return tools::kDone;
 }
 
@@ -212,11 +252,14 @@ int main(int argc, char** argv) {
                "kaboum-scene"};
   Options options;
   CLI::App* make = describe_make(app, options);
+  CLI::App* update = describe_update(app, options);
   describe_pairs(app, options);
   app.require_subcommand(1);
   app.footer(
       "Exit codes: 0 done; 2 usage; 3 bad input; 4 output failed; 5 not built; 6 internal error; "
       "7 limit.");
-  return tools::run(app, argc, argv,
-                    [&] { return make->parsed() ? make_scene(options) : find_pairs(options); });
+  return tools::run(app, argc, argv, [&] {
+    if (make->parsed()) return make_scene(options);
+    return update->parsed() ? update_scene(options) : find_pairs(options);
+  });
 }

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <kaboum/certify/robot.h>
-
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
+
+#include "scene_set_maker.h"
 
 /// Scenes from URDFs and meshes: their sets in containers, and the file that names them.
 namespace kaboum::tools {
@@ -18,22 +17,16 @@ struct NamedFile {
 NamedFile parse_named_file(const std::string& text, const char* option);
 
 struct SceneMaker {
-  std::filesystem::path scene;               ///< to be written
-  std::vector<NamedFile> robots;             ///< URDF
-  std::vector<NamedFile> objects, regions;   ///< meshes
-  bool inner = false;                        ///< inner sets of objects as well
-  bool visual = false;                       ///< of robots, shapes for drawing
-  certify::SetRequest sets;                  ///< of everything; direction apart
-  std::vector<std::string> packages;         ///< folders that package:// URIs are looked up in
-  const certify::SetCache* cache = nullptr;  ///< null: none
-  std::function<void(const std::string&)> progress;
+  std::filesystem::path scene;              ///< to be written
+  std::vector<NamedFile> robots;            ///< URDF
+  std::vector<NamedFile> objects, regions;  ///< meshes
+  bool inner = false;                       ///< inner sets of objects as well
+  SceneSetOptions options;                  ///< of everything
 };
 
 struct MadeScene {
-  std::string text;
   std::vector<std::filesystem::path> containers;  ///< written
-  std::vector<std::string> inputs;
-  std::vector<std::string> notes;
+  std::vector<std::string> inputs, notes;
   std::vector<std::string> sizes;  ///< how large each thing is, to see that its unit is right
 };
 

@@ -1,11 +1,10 @@
 #pragma once
 
+#include <kaboum/base/random.h>
 #include <kaboum/kinematics/constraint.h>
 
 #include <functional>
 #include <vector>
-
-#include "random_numbers.h"
 
 // What constraints leave free of a tool's pose. Internal to kaboum_kinematics.
 namespace kaboum::kinematics {

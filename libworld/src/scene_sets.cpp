@@ -27,7 +27,7 @@ SceneSets::File SceneSets::file(const Located& value, const std::vector<std::str
   const Located& stated = need(value, "sha256");
   if (string(stated) != out.sha256)
     fail(stated, out.name + " is not the file that this scene was made with: its SHA-256 is " +
-                     out.sha256 + "; make the scene anew, or put that hash here");
+                     out.sha256 + "; kaboum-scene update makes what is out of date anew");
   return out;
 }
 
@@ -46,7 +46,8 @@ std::vector<std::string> SceneSets::sources(const Located& list, const std::stri
                         "nobody will notice when it changes");
       }
     if (string(stated) != known_hash->second)
-      fail(stated, name + " has changed since " + set + " was made from it: make the set anew");
+      fail(stated, name + " has changed since " + set +
+                       " was made from it; kaboum-scene update makes it anew");
     out.push_back(known_hash->second);
   }
   return out;
@@ -111,7 +112,7 @@ void SceneSets::require_source(const Loaded& loaded, const Located& value,
        loaded.file.name + " was made from another file '" + p.source + "' than " +
            (robot.empty() ? "those in 'made_from'"
                           : "the robot as it is now, or those in 'made_from'") +
-           ": make it anew");
+           "; kaboum-scene update makes it anew");
 }
 
 void SceneSets::note_unknown_sources() {

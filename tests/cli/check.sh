@@ -89,7 +89,22 @@ cp kept.glb cell/box.glb
 cp meshes/cube.off kept.off
 cube 2 >meshes/cube.off
 expect 3 'meshes/cube.off has changed since cell/.*.glb was made from it' "$BIN/kaboum-check" near.json
+cp near.json old.json
+python3 - <<'END'
+import json
+old = json.load(open("old.json"))
+old["robots"][0]["home"] = {"j1": 0.5}
+old["robots"][0]["never_in_contact"] = {"proved_for": "", "pairs": []}
+json.dump(old, open("old.json", "w"))
+END
+expect 0 'never_in_contact.*is taken out' "$BIN/kaboum-scene" update old.json --no-cache
+grep -q '"j1": 0.5' old.json || fail "the update loses what was edited"
+shows 0 '^free$' "$BIN/kaboum-check" old.json
+expect 0 'nothing is out of date' "$BIN/kaboum-scene" update old.json --no-cache
+# Back to what they were: so are all sets, byte by byte.
 mv kept.off meshes/cube.off
+expect 0 'sets made anew' "$BIN/kaboum-scene" update old.json --no-cache
+shows 0 '^free$' "$BIN/kaboum-check" near.json
 mkdir elsewhere
 cp near.json elsewhere/near.json
 expect 3 'arm.urdf: cannot be .*moved or copied with all files that it names' "$BIN/kaboum-check" elsewhere/near.json

@@ -1,0 +1,158 @@
+// Sets of scenes: certified, kept with what they were made from, written once.
+
+#include "scene_set_maker.h"
+
+#include <kaboum/base/error.h>
+#include <kaboum/io/mesh_io.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "cli.h"
+#include "file_names.h"
+#include "robot_bodies.h"
+
+namespace kaboum::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+void create(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error)
+    throw Error(ErrorCode::OutputFailed,
+                folder.string() + ": cannot be created: " + error.message());
+}
+
+/// What a file holds is what its set says it holds: a scale that is wrong by a thousand is free of
+/// everything.
+void require_unit(const std::string& file, const std::string& needed) {
+  const std::string unit = io::read_mesh(file).unit;
+  if (unit.empty() || unit == needed) return;
+  throw Error(ErrorCode::InvalidInput, file + ": its vertices are in " + unit +
+                                           " as read (docs/formats.md), the scene is in " + needed +
+                                           ": export it in " + needed +
+                                           ", or make a scene of this unit (--unit)");
+}
+
+}  // namespace
+
+std::string SceneSetMaker::seen_from_scene(const fs::path& file) const {
+  return fs::relative(fs::absolute(file), fs::absolute(scene_).parent_path()).generic_string();
+}
+
+Json SceneSetMaker::keep(const fs::path& path, std::vector<char> bytes, const Json& made_from) {
+  Json out = {
+      {"file", seen_from_scene(path)}, {"sha256", io::sha256(bytes)}, {"made_from", made_from}};
+  files_.emplace_back(path, std::move(bytes));
+  return out;
+}
+
+/// A mesh and what it refers to, as they are compared when the scene is read.
+void SceneSetMaker::add_sources(Json& sources, const fs::path& file,
+                                const certify::CertifiedFile& made) const {
+  const auto add = [&](const fs::path& source, const std::string& sha256) {
+    Json one = {{"file", seen_from_scene(source)}, {"sha256", sha256}};
+    if (std::find(sources.begin(), sources.end(), one) == sources.end())
+      sources.push_back(std::move(one));
+  };
+  add(file, made.sha256);
+  for (const std::string& other : made.other_files) add(other, io::sha256(io::read_file(other)));
+}
+
+Json SceneSetMaker::robot(const std::string& name, const std::string& path, const fs::path& folder,
+                          const SceneSetOptions& options) {
+  const robot::RobotFile file = robot::read_robot(path);
+  inputs.insert(path);
+  certify::RobotRequest request{options.sets, {{}, options.visual, options.packages}, {}, {}};
+  request.tool = std::string("kaboum-scene ") + version();
+  require_formats(robot::link_meshes(file, request.shapes), "");
+  Notes of_meshes;
+  certify::RobotHooks hooks = hooks_of(of_meshes, options.progress);
+  hooks.made = [&](const certify::CertifiedLinkMesh& mesh) {
+    if (!mesh.made.found.set.certificate().reached())
+      of_meshes.add(mesh.mesh.file.string(),
+                    "the decomposition does not reach " + mesh.epsilon->text());
+  };
+  const certify::CertifiedRobot made = certify::certify_robot(file, request, options.cache, hooks);
+  const certify::BodiesCertificate& bodies = made.bodies.certificate();
+  for (std::string& input : strings(bodies.files)) inputs.insert(std::move(input));
+  for (std::string& note : robot::notes_on_flat_shapes(file, options.visual))
+    notes.push_back(std::move(note));
+  for (std::string& line : of_meshes.lines()) notes.push_back(std::move(line));
+  Json links = Json::array(), without = Json::array();
+  FileNames names;
+  for (const certify::CertifiedLink& link : made.links) {
+    const std::uint32_t number = link.certificate().link;
+    const std::string& link_name = file.robot.links[number].name;
+    if (link.artefact().bodies.empty()) {  // points only
+      without.push_back(link_name);
+      continue;
+    }
+    Json sources = Json::array();
+    for (const robot::LinkShape& shape : bodies.shapes) {
+      if (shape.link != number || !shape.mesh) continue;
+      const certify::CertifiedLinkMesh& mesh = bodies.meshes[*shape.mesh];
+      add_sources(sources, mesh.mesh.file, mesh.made);
+    }
+    links.push_back(
+        {{"link", link_name},
+         {"outer", keep(folder / (names.unique(link_name) + ".glb"), link.bytes(), sources)}});
+  }
+  Json out = {{"name", name},
+              {"urdf", {{"file", seen_from_scene(path)}, {"sha256", file.sha256}}},
+              {"base", {{"position", {0, 0, 0}}, {"rpy", {0, 0, 0}}}},
+              {"links", links},
+              {"tools", Json::array()}};
+  if (options.visual) out["shapes"] = "visual";
+  if (!without.empty()) out["links_without_set"] = std::move(without);
+  return out;
+}
+
+/// The box of a set in its own frame.
+void SceneSetMaker::say_size(const std::string& name, const geom::ConvexSet& set,
+                             const std::string& unit) {
+  geom::Box3 box;
+  for (const geom::ConvexBody& body : set.bodies)
+    for (const geom::Vec3& p : body.hull.vertices) box.extend(p);
+  const geom::Vec3 size = box.max - box.min;
+  char text[96];
+  std::snprintf(text, sizeof text, "%.3g x %.3g x %.3g %s", size.x(), size.y(), size.z(),
+                unit.c_str());
+  const std::string line = name + ": " + text;
+  if (sizes.empty() || sizes.back() != line) sizes.push_back(line);
+}
+
+Json SceneSetMaker::mesh(const std::string& name, const std::string& file,
+                         certify::SetRequest::Direction direction, const fs::path& container,
+                         const SceneSetOptions& options) {
+  require_unit(file, options.sets.unit);
+  Notes of_mesh;
+  certify::SetRequest request = options.sets;
+  request.direction = direction;
+  const auto note = [&](const std::string& text) { of_mesh.add(file, text); };
+  const certify::CertifiedFile made =
+      certify::certify_file(file, format_for(file, "", "--input-format"), request, options.cache,
+                            {options.progress, note});
+  for (std::string& line : of_mesh.lines()) notes.push_back(std::move(line));
+  inputs.insert(file);
+  inputs.insert(made.other_files.begin(), made.other_files.end());
+  say_size(name, made.found.set.artefact(), options.sets.unit);
+  Json sources = Json::array();
+  add_sources(sources, file, made);
+  return keep(container, made.found.set.bytes(), sources);
+}
+
+std::vector<fs::path> SceneSetMaker::write(const std::string& text) {
+  std::vector<fs::path> out;
+  for (const auto& [path, bytes] : files_) {
+    create(path.parent_path());
+    io::write_file(path, bytes);
+    out.push_back(path);
+  }
+  io::write_file(scene_, {text.data(), text.size()});
+  return out;
+}
+
+}  // namespace kaboum::tools

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <kaboum/certify/robot.h>
+
+#include <filesystem>
+#include <functional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "report.h"
+
+/// Certified sets as scenes name them: their files, hashes, and what they were made from.
+namespace kaboum::tools {
+
+/// How a scene's sets are made.
+struct SceneSetOptions {
+  certify::SetRequest sets;                  ///< of everything; direction apart
+  bool visual = false;                       ///< of robots, shapes for drawing
+  std::vector<std::string> packages;         ///< folders that package:// URIs are looked up in
+  const certify::SetCache* cache = nullptr;  ///< null: none
+  std::function<void(const std::string&)> progress;
+};
+
+/// Makes sets and keeps their containers until all are to be written.
+class SceneSetMaker {
+ public:
+  /// @param scene  files are named as seen from its folder
+  explicit SceneSetMaker(std::filesystem::path scene) : scene_(std::move(scene)) {}
+
+  /// A robot of a scene with its links' sets, at the origin. @param folder  of the containers
+  Json robot(const std::string& name, const std::string& file, const std::filesystem::path& folder,
+             const SceneSetOptions& options);
+
+  /// A mesh's set: {"file", "sha256", "made_from"}. @param container  to be written
+  Json mesh(const std::string& name, const std::string& file,
+            certify::SetRequest::Direction direction, const std::filesystem::path& container,
+            const SceneSetOptions& options);
+
+  /// Writes the containers, then the scene, each whole or not at all. @return the containers
+  std::vector<std::filesystem::path> write(const std::string& text);
+
+  std::set<std::string> inputs;
+  std::vector<std::string> notes;
+  std::vector<std::string> sizes;  ///< how large each thing is, to see that its unit is right
+
+ private:
+  [[nodiscard]] std::string seen_from_scene(const std::filesystem::path& file) const;
+  Json keep(const std::filesystem::path& path, std::vector<char> bytes, const Json& made_from);
+  void add_sources(Json& sources, const std::filesystem::path& file,
+                   const certify::CertifiedFile& made) const;
+  void say_size(const std::string& name, const geom::ConvexSet& set, const std::string& unit);
+
+  std::filesystem::path scene_;
+  std::vector<std::pair<std::filesystem::path, std::vector<char>>> files_;
+};
+
+}  // namespace kaboum::tools

@@ -1,0 +1,183 @@
+// Scenes brought up to date: what has changed is looked for by hashes and made anew.
+
+#include "scene_update.h"
+
+#include <kaboum/base/error.h>
+#include <kaboum/io/convex_io.h>
+
+#include <sstream>
+
+#include "arguments.h"
+
+namespace kaboum::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using Direction = certify::SetRequest::Direction;
+
+class Update {
+ public:
+  explicit Update(const SceneUpdate& update) : o_(update), sets_(update.scene) {
+    const std::vector<char> bytes = io::read_file(o_.scene);
+    try {
+      scene_ = Json::parse(bytes.begin(), bytes.end());
+      unit_ = scene_.at("unit").get<std::string>();
+    } catch (const Json::exception& error) {
+      fail(std::string("no scene: ") + error.what());
+    }
+  }
+
+  MadeScene run() try {
+    for (Json& robot : list("robots")) bring_up_to_date(robot);
+    for (Json& object : list("objects")) {
+      set(object, "outer", Direction::Outer);
+      if (object.contains("inner")) set(object, "inner", Direction::Inner);
+    }
+    for (Json& region : list("regions")) set(region, "inner", Direction::Inner);
+    MadeScene out;
+    if (made_) out.containers = sets_.write(scene_.dump(2) + "\n");
+    out.inputs.assign(sets_.inputs.begin(), sets_.inputs.end());
+    out.notes = std::move(sets_.notes);
+    out.sizes = std::move(sets_.sizes);
+    return out;
+  } catch (const Json::exception& error) {
+    fail(std::string(error.what()) + "; kaboum-check says where it is wrong");
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(ErrorCode::InvalidInput, o_.scene.string() + ": " + what);
+  }
+
+  Json& list(const char* name) {
+    if (!scene_.contains(name)) scene_[name] = Json::array();
+    return scene_[name];
+  }
+
+  [[nodiscard]] fs::path path_of(const Json& file) const {
+    return o_.scene.parent_path() / file.at("file").get<std::string>();
+  }
+
+  [[nodiscard]] bool is_current(const Json& file) const {
+    try {
+      return io::sha256(io::read_file(path_of(file))) == file.at("sha256").get<std::string>();
+    } catch (const Error&) {
+      return false;
+    }
+  }
+
+  [[nodiscard]] bool is_current_set(const Json& set) const {
+    if (!is_current(set)) return false;
+    if (set.contains("made_from"))
+      for (const Json& source : set.at("made_from"))
+        if (!is_current(source)) return false;
+    return true;
+  }
+
+  /// How a set was made, by the record in its container.
+  [[nodiscard]] SceneSetOptions options_of(const Json& set) const {
+    const fs::path path = path_of(set);
+    std::string parameters;
+    try {
+      parameters = io::read_convex_set(path).provenance.parameters;
+    } catch (const Error& error) {
+      fail(std::string(error.what()) +
+           "; so it is not known how it was made: make the scene anew (kaboum-scene make)");
+    }
+    SceneSetOptions out;
+    out.packages = o_.packages;
+    out.cache = o_.cache;
+    out.progress = o_.progress;
+    out.sets.unit = unit_;
+    std::istringstream words(parameters);
+    std::string option, value;
+    while (words >> option) {
+      bool known = true;
+      if (option == "--drop-sheets") {
+        out.sets.preparation.drop_sheets = true;
+        continue;
+      }
+      known = static_cast<bool>(words >> value);
+      if (option == "--epsilon") {
+        out.sets.epsilon = parse_length(value);
+        known = known && out.sets.epsilon.has_value();
+      } else if (option == "--effort") {
+        known = known && (value == "fast" || value == "normal" || value == "best");
+        out.sets.effort = value == "fast"   ? bcd::Effort::Fast
+                          : value == "best" ? bcd::Effort::Best
+                                            : bcd::Effort::Normal;
+      } else if (option == "--max-vertices-per-body") {
+        known = known && value == std::to_string(out.sets.max_vertices);
+      } else if (option == "--geometry") {
+        out.visual = value == "visual";
+      } else if (option != "--direction") {
+        known = false;
+      }
+      if (!known)
+        fail(path.string() + " is out of date and was made with '" + option +
+             "', which this command does not know: make it anew with bcd-decompose " + parameters +
+             ", and put its SHA-256 into the scene");
+    }
+    if (parameters.empty())
+      fail(path.string() + " is out of date, and does not say how it was made: make it anew");
+    return out;
+  }
+
+  void set(Json& thing, const char* member, Direction direction) {
+    Json& set = thing.at(member);
+    if (is_current_set(set)) return;
+    if (!set.contains("made_from") || set.at("made_from").empty())
+      fail(path_of(set).string() +
+           " is out of date, and 'made_from' does not say which mesh it is made from");
+    const std::string mesh = path_of(set.at("made_from").front()).string();
+    set = sets_.mesh(thing.at("name").get<std::string>(), mesh, direction, path_of(set),
+                     options_of(set));
+    made_ = true;
+  }
+
+  void bring_up_to_date(Json& robot) {
+    bool current = is_current(robot.at("urdf"));
+    Json& links = robot.at("links");
+    for (const Json& link : links) {
+      current = current && is_current_set(link.at("outer"));
+      if (link.contains("inner") && !is_current_set(link.at("inner")))
+        fail("the inner set of link '" + link.at("link").get<std::string>() +
+             "' is out of date: make it anew with bcd-decompose --direction inner");
+    }
+    if (current) return;
+    if (links.empty()) fail("robot '" + robot.at("name").get<std::string>() + "' has no links");
+    // Sets that cannot be read do not say how they were made; the others do.
+    const Json* known = &links.front().at("outer");
+    for (const Json& link : links)
+      if (is_current(link.at("outer"))) known = &link.at("outer");
+    SceneSetOptions options = options_of(*known);
+    options.visual = robot.contains("shapes") && robot.at("shapes") == "visual";
+    const Json made =
+        sets_.robot(robot.at("name").get<std::string>(), path_of(robot.at("urdf")).string(),
+                    path_of(*known).parent_path(), options);
+    Json fresh = made.at("links");
+    for (Json& link : fresh)
+      for (const Json& old : links)
+        if (old.at("link") == link.at("link") && old.contains("inner"))
+          link["inner"] = old.at("inner");
+    links = std::move(fresh);
+    robot["urdf"] = made.at("urdf");
+    if (robot.erase("never_in_contact") > 0)
+      sets_.notes.push_back(o_.scene.string() + ": robot '" + robot.at("name").get<std::string>() +
+                            "': 'never_in_contact' was proved of the sets before and is taken "
+                            "out; prove it anew (kaboum-scene pairs)");
+    made_ = true;
+  }
+
+  const SceneUpdate& o_;
+  SceneSetMaker sets_;
+  Json scene_;
+  std::string unit_;
+  bool made_ = false;
+};
+
+}  // namespace
+
+MadeScene update_scene(const SceneUpdate& update) { return Update(update).run(); }
+
+}  // namespace kaboum::tools

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "scene_maker.h"
+
+namespace kaboum::tools {
+
+struct SceneUpdate {
+  std::filesystem::path scene;
+  std::vector<std::string> packages;
+  const certify::SetCache* cache = nullptr;  ///< null: none
+  std::function<void(const std::string&)> progress;
+};
+
+/// Makes those sets of a scene anew that are out of date: containers, URDFs or meshes that they
+/// were made from have changed or are gone. With the options that their records state; all links of
+/// a robot together. Proofs of pairs of links that this ends are taken out, in a note. Everything
+/// else in the scene stays; nothing is written when nothing is out of date.
+/// @throws Error naming the file, and what cannot be made anew because it is not known how.
+MadeScene update_scene(const SceneUpdate& update);
+
+}  // namespace kaboum::tools
