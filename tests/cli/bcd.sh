@@ -37,7 +37,7 @@ expect 0 'from the cache' env KABOUM_CACHE=swapped "$D" "$BRACKET" -o e.glb --ep
 cat other/*.set >forged.set
 key=${mine%.set}
 { echo "$key"; tail -n +4 forged.set; } >rest
-{ echo 'KABOUM-SET 2'; sha256sum rest | cut -d ' ' -f 1; cat rest; } >"swapped/$mine"
+{ echo 'KABOUM-SET 3'; sha256sum rest | cut -d ' ' -f 1; cat rest; } >"swapped/$mine"
 expect 0 'container is that of another input' env KABOUM_CACHE=swapped "$D" "$BRACKET" -o e.glb --epsilon 3% --effort fast
 cmp -s a.glb e.glb || fail "a container of another mesh was used"
 head -c 300 "swapped/$mine" >short && cp short "swapped/$mine"
