@@ -181,7 +181,8 @@ collide::Inclusion decide_inside(const Options& o, const world::Checker& checker
     const std::string answer = whole == Inclusion::Included      ? "inside"
                                : whole == Inclusion::NotIncluded ? "not certainly inside"
                                                                  : "undecided";
-    say(o, before + one.name + " in " + one.region_name + ": " + answer);
+    std::string line = before + one.name;
+    say(o, line.append(" in ").append(one.region_name).append(": ").append(answer));
     report["inside"].push_back(
         {{"what", one.name}, {"region", one.region_name}, {"answer", answer}});
     if (all != Inclusion::NotIncluded && whole != Inclusion::Included) all = whole;

@@ -114,9 +114,12 @@ class Update {
         known = false;
       }
       if (!known)
-        fail(path.string() + " is out of date and was made with '" + option +
-             "', which this command does not know: make it anew with bcd-decompose " + parameters +
-             ", and put its SHA-256 into the scene");
+        fail(path.string()
+                 .append(" is out of date and was made with '")
+                 .append(option)
+                 .append("', which this command does not know: make it anew with bcd-decompose ")
+                 .append(parameters)
+                 .append(", and put its SHA-256 into the scene"));
     }
     if (parameters.empty())
       fail(path.string() + " is out of date, and does not say how it was made: make it anew");

@@ -46,8 +46,10 @@ std::vector<std::string> SceneSets::sources(const Located& list, const std::stri
                         "nobody will notice when it changes");
       }
     if (string(stated) != known_hash->second)
-      fail(stated, name + " has changed since " + set +
-                       " was made from it; kaboum-scene update makes it anew");
+      fail(stated, std::string(name)
+                       .append(" has changed since ")
+                       .append(set)
+                       .append(" was made from it; kaboum-scene update makes it anew"));
     out.push_back(known_hash->second);
   }
   return out;
