@@ -190,6 +190,20 @@ Formula Regression::freeze(Formula f, const Word* state) {
   throw Error(ErrorCode::Internal, "a formula is decided by none of its parts");
 }
 
+/// A handle's term that takes over a value: what that rests on matters if the condition reads it.
+void Regression::touch_transfer(const ConditionalEffect::Transfer& t, bool happens,
+                                Formula condition) {
+  const auto& fluents = task_.layout().fluents();
+  const Fluent& f = fluents[t.fluent];
+  touch_field(f.mask, f.word);
+  if (happens && !reads_field(condition, f)) return;
+  if (is_call(t.operand)) {
+    require_footprint(t.operand & ~kCallOperand, before_, required_);
+  } else {
+    require_as_before(fluents[t.operand & ~kTermOperand]);
+  }
+}
+
 Formula Regression::before(OperatorId step, Formula condition, const Word* before) {
   FormulaPool& pool = task_.pool();
   before_ = before;
@@ -233,16 +247,8 @@ Formula Regression::before(OperatorId step, Formula condition, const Word* befor
       for (const Change& d : c.additions) touch_change(d);
       for (const Change& d : c.sensing) touch_change(d);
       for (const ConditionalEffect::MaskedWrite& w : c.writes) touch_field(w.mask, w.word);
-      for (const ConditionalEffect::Transfer& t : c.transfers) {
-        const Fluent& f = task_.layout().fluents()[t.fluent];
-        touch_field(f.mask, f.word);
-        if (happens && !reads_field(condition, f)) continue;  // whatever value it takes over
-        if (is_call(t.operand)) {
-          require_footprint(t.operand & ~kCallOperand, before, required_);
-        } else {
-          require_as_before(task_.layout().fluents()[t.operand & ~kTermOperand]);
-        }
-      }
+      for (const ConditionalEffect::Transfer& t : c.transfers)
+        touch_transfer(t, happens, condition);
       if (happens) {
         fired.push_back(freeze(c.condition, before));
       } else {

@@ -22,6 +22,7 @@ class Regression {
 
  private:
   void touch(Index fluent, bool plain);
+  void touch_transfer(const ConditionalEffect::Transfer& t, bool happens, Formula condition);
   void touch_field(Word mask, Index word) { touched_[word] |= mask; }
   Formula rewrite(Formula f);
   [[nodiscard]] bool overlaps(Formula f) const;

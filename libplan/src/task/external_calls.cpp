@@ -372,6 +372,7 @@ std::vector<std::string> ExternalCalls::argument_names(Index call, const Word* s
   Reply why;
   arguments(Call(calls_[call]), state, objects, path, why);
   std::vector<std::string> names;
+  names.reserve(objects.size());
   for (const Index o : objects) names.push_back(model_.name_of(o, handles_));
   return names;
 }
@@ -405,16 +406,15 @@ std::string ExternalCalls::state_text(const Path& path) const {
     for (const Index o : f.arguments) name += (name.empty() ? "" : ", ") + model_.objects[o].name;
     name = f.arguments.empty() ? s.name : s.name + "(" + name + ")";
     text += text.empty() ? ", in a state where " : ", ";
-    if (f.function) {
-      text += content < kFirstValue
-                  ? name + " is not known"
-                  : name + " = " +
-                        model_.name_of(layout_.object(item, content - kFirstValue), handles_);
+    const auto k = static_cast<AtomKnowledge>(content);
+    if (f.function ? content < kFirstValue
+                   : k != AtomKnowledge::True && k != AtomKnowledge::False) {
+      text.append(name).append(" is not known");
+    } else if (f.function) {
+      text.append(name).append(" = ").append(
+          model_.name_of(layout_.object(item, content - kFirstValue), handles_));
     } else {
-      const auto k = static_cast<AtomKnowledge>(content);
-      text += k == AtomKnowledge::True    ? name
-              : k == AtomKnowledge::False ? "!" + name
-                                          : name + " is not known";
+      text.append(k == AtomKnowledge::True ? "" : "!").append(name);
     }
   }
   return text;

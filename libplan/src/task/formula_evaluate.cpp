@@ -4,6 +4,43 @@
 #include <algorithm>
 
 namespace kaboum::plan {
+namespace {
+
+/// A conjunction or disjunction.
+Truth joined(const FormulaPool& pool, Formula f, const Word* state) {
+  // From what decides least to what decides most; And: Yes, Open, Unresolved, No.
+  const bool all = pool.node(f).kind == FormulaPool::Kind::And;
+  const Truth decides = all ? Truth::No : Truth::Yes;
+  Truth result = all ? Truth::Yes : Truth::No;
+  for (const Formula *c = pool.begin(f), *last = pool.end(f); c != last; ++c) {
+    if ((result == Truth::Open || (all && result == Truth::Unresolved)) && pool.node(*c).calls)
+      continue;
+    const Truth t = pool.evaluate(*c, state);
+    if (t == decides) return t;
+    if (t == (all ? Truth::Unresolved : Truth::Open) ||
+        (t != result && result == (all ? Truth::Yes : Truth::No)))
+      result = t;
+  }
+  return result;
+}
+
+/// Exactly one of the children.
+Truth exclusive(const FormulaPool& pool, Formula f, const Word* state) {
+  int certain = 0;
+  bool open = false;
+  bool unresolved = false;
+  for (const Formula *c = pool.begin(f), *last = pool.end(f); c != last; ++c) {
+    const Truth t = pool.evaluate(*c, state);
+    certain += t == Truth::Yes ? 1 : 0;
+    open |= t == Truth::Open;
+    unresolved |= t == Truth::Unresolved;
+    if (certain > 1) return Truth::No;
+  }
+  if (unresolved) return Truth::Unresolved;
+  return open ? Truth::Open : certain == 1 ? Truth::Yes : Truth::No;
+}
+
+}  // namespace
 
 Truth FormulaPool::evaluate(Formula f, const Word* state) const {
   const Node& n = nodes_[f];
@@ -14,36 +51,10 @@ Truth FormulaPool::evaluate(Formula f, const Word* state) const {
     case Kind::True:
       return Truth::Yes;
     case Kind::And:
-    case Kind::Or: {
-      // From what decides least to what decides most; And: Yes, Open, Unresolved, No.
-      const bool all = n.kind == Kind::And;
-      const Truth decides = all ? Truth::No : Truth::Yes;
-      Truth result = all ? Truth::Yes : Truth::No;
-      for (const Formula *c = begin(f), *last = end(f); c != last; ++c) {
-        if ((result == Truth::Open || (all && result == Truth::Unresolved)) && nodes_[*c].calls)
-          continue;
-        const Truth t = evaluate(*c, state);
-        if (t == decides) return t;
-        if (t == (all ? Truth::Unresolved : Truth::Open) ||
-            (t != result && result == (all ? Truth::Yes : Truth::No)))
-          result = t;
-      }
-      return result;
-    }
-    case Kind::Xor: {
-      int certain = 0;
-      bool open = false;
-      bool unresolved = false;
-      for (const Formula *c = begin(f), *last = end(f); c != last; ++c) {
-        const Truth t = evaluate(*c, state);
-        certain += t == Truth::Yes ? 1 : 0;
-        open |= t == Truth::Open;
-        unresolved |= t == Truth::Unresolved;
-        if (certain > 1) return Truth::No;
-      }
-      if (unresolved) return Truth::Unresolved;
-      return open ? Truth::Open : yes(certain == 1);
-    }
+    case Kind::Or:
+      return joined(*this, f, state);
+    case Kind::Xor:
+      return exclusive(*this, f, state);
     case Kind::Not: {
       const Truth t = evaluate(*begin(f), state);
       return t == Truth::Open || t == Truth::Unresolved ? t : yes(t == Truth::No);
