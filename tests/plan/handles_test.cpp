@@ -334,7 +334,9 @@ class RandomTask {
   struct State {
     int s = 0, t = 0;
     bool p = false, q = false, r = false;
-    auto operator<=>(const State&) const = default;
+    bool operator<(const State& o) const {
+      return std::tie(s, t, p, q, r) < std::tie(o.s, o.t, o.p, o.q, o.r);
+    }
   };
   struct Random {
     int from, to;        ///< 0: s, 1: t

@@ -158,6 +158,7 @@ class Worlds {
       case Query::Kind::Same:
         return of(q.arguments[0], slots) == of(q.arguments[1], slots);
       case Query::Kind::External:
+      case Query::Kind::Let:
         break;
     }
     throw std::logic_error("the oracle has no externals");

@@ -403,8 +403,10 @@ std::string ExternalCalls::state_text(const Path& path) const {
     const Fluent& f = layout_.fluents()[item];
     const Symbol& s = (f.function ? model_.functions : model_.predicates)[f.symbol];
     std::string name;
-    for (const Index o : f.arguments) name += (name.empty() ? "" : ", ") + model_.objects[o].name;
-    name = f.arguments.empty() ? s.name : s.name + "(" + name + ")";
+    for (const Index o : f.arguments)
+      name.append(name.empty() ? "" : ", ").append(model_.objects[o].name);
+    if (!f.arguments.empty()) name.insert(0, "(").append(")");
+    name.insert(0, s.name);
     text += text.empty() ? ", in a state where " : ", ";
     const auto k = static_cast<AtomKnowledge>(content);
     if (f.function ? content < kFirstValue
