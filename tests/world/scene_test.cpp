@@ -113,7 +113,8 @@ TEST(Scene, WhatIsStaleOrOfTheWrongKindIsRefused) {
   const std::string good = with("box.glb");
   // The file changes after the scene was made.
   files.put("box.glb", test::set_of({test::box_mesh({-1, -1, -1}, {1, 1, 1})}, "outer", 0.01));
-  expect_refused(files, good, {"box.glb is not the file that this scene was made with", "kaboum-scene update"});
+  expect_refused(files, good,
+                 {"box.glb is not the file that this scene was made with", "kaboum-scene update"});
   expect_refused(files, with("inner.glb"), {"inner.glb is an inner set, but an outer one"});
   expect_refused(
       files,
@@ -167,7 +168,8 @@ TEST(Scene, SetsAreMadeFromWhatIsThere) {
   ASSERT_EQ(notes.notes.size(), 1U);
   EXPECT_NE(notes.notes[0].find("cup.glb does not say in 'made_from'"), std::string::npos);
   put("cup.stl", "a larger cup");
-  expect_refused(files, good, {"cup.stl has changed since cup.glb was made from it; kaboum-scene update"});
+  expect_refused(files, good,
+                 {"cup.stl has changed since cup.glb was made from it; kaboum-scene update"});
   files.files.erase("cup.stl");
   expect_refused(files, good,
                  {"cup.stl: cannot be read", "cup.glb was made from it: bring it back"});
