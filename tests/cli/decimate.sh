@@ -161,7 +161,7 @@ expect 0 '' "$D" open.obj -o open.ply --vertices 4 --holes keep --direction any
 expect 0 '1 hole is filled with 4 triangles, 1.7' "$D" open.obj -o filled.ply --vertices 4 --log filled.log \
   --report filled.json --verify
 grep -q '"filled_triangles": 4' filled.json || fail 'no word of the filling in the report'
-grep -q 'its holes filled' filled.json || fail 'the claim does not say of which solid it is'
+grep -q 'with 1 hole filled, its solid the one so closed' filled.json || fail 'the claim does not say of which solid it is'
 shows 0 'its holes filled with 4 triangles that the log adds' "$BIN/bmesh-replay" open.obj filled.log filled.ply
 shows 0 'surface claim: verified' "$BIN/bound-verify" --outer open.obj filled.ply --prepare
 expect 0 '' "$D" open.obj -o filled.ply --vertices 4 --progressive filled.pm

@@ -135,12 +135,19 @@ class Checker {
     for (std::size_t i = 0; i < calls.size(); ++i) {
       if (node.calls[i] == calls[i]) continue;
       const std::string name = model_.externals[calls[i].external].name;
-      violate(v, "for " + action + " the external function '" + name + "' returns " +
-                     (node.calls[i].value == calls[i].value &&
-                              node.calls[i].arguments == calls[i].arguments
-                          ? "another payload than the plan says"
-                          : "'" + calls[i].value + "', not '" + node.calls[i].value +
-                                "' as the plan says"));
+      const bool same_value =
+          node.calls[i].value == calls[i].value && node.calls[i].arguments == calls[i].arguments;
+      std::string text = "for " + action + " the external function '";
+      text.append(name).append("' returns ");
+      if (same_value)
+        text.append("another payload than the plan says");
+      else
+        text.append("'")
+            .append(calls[i].value)
+            .append("', not '")
+            .append(node.calls[i].value)
+            .append("' as the plan says");
+      violate(v, text);
       return false;
     }
     return false;
