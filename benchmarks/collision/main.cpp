@@ -67,7 +67,8 @@ Shapes load(const robot::RobotFile& file, const std::string& epsilon, double sca
   certify::RobotRequest request;
   request.set.epsilon = tools::parse_length(epsilon);
   request.set.effort = bcd::Effort::Fast;
-  for (const robot::LinkBody& body : certify::certify_bodies(file, request).bodies)
+  const certify::CertifiedBodies bodies = certify::certify_bodies(file, request);
+  for (const robot::LinkBody& body : bodies.artefact())
     if (body.link > 0)
       if (const auto hull = geom::convex_hull(body.points))
         out.sets.robot.push_back({body.link, *hull});
