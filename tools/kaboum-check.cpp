@@ -120,6 +120,20 @@ void say(const Options& o, const std::string& line) {
   if (!o.common.quiet) std::cout << line << '\n';
 }
 
+/// A robot is inside with all that it has and carries: what has shapes but no set cannot be told.
+void require_whole(const world::RobotModel& robot) {
+  for (std::uint32_t l = 0; l < robot.kinematics.links.size(); ++l) {
+    const robot::Link& link = robot.kinematics.links[l];
+    if (link.collision.empty() && link.visual.empty()) continue;
+    if (std::none_of(robot.shapes.begin(), robot.shapes.end(),
+                     [&](const world::LinkShape& shape) { return shape.link == l; }))
+      throw Error(ErrorCode::InvalidInput,
+                  "--inside: of robot '" + robot.name + "' link '" + link.name +
+                      "' has shapes but no set, so it is not known whether it is inside: name "
+                      "the links that are to be inside one by one");
+  }
+}
+
 std::vector<world::Item> items_named(const world::World& world, const std::string& name) {
   if (const auto object = world.find_object(name)) return {{world::Item::kObject, *object}};
   std::vector<world::Item> out;
@@ -127,6 +141,12 @@ std::vector<world::Item> items_named(const world::World& world, const std::strin
   for (const world::Object& object : world.objects) names.push_back(object.name);
   for (std::size_t r = 0; r < world.robots.size(); ++r) {
     names.push_back(world.robots[r].name);
+    if (name == world.robots[r].name) {
+      require_whole(world.robots[r]);
+      for (std::size_t i = 0; i < world.objects.size(); ++i)
+        if (world.attachments[i] && world.attachments[i]->robot == r)
+          out.push_back({world::Item::kObject, i});
+    }
     for (std::size_t s = 0; s < world.robots[r].shapes.size(); ++s) {
       names.push_back(world.name_of({r, s}));
       if (name == world.robots[r].name || name == names.back()) out.push_back({r, s});

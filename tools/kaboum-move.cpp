@@ -49,8 +49,7 @@ struct Request {
 /// "0,1.5,-2": a value per variable.
 std::vector<double> configuration(const std::string& text, const char* option, const MoveOptions& o,
                                   const robot::Robot& robot) {
-  robot::Path path = robot::arrange(robot::parse_path_csv(text, option), robot, option, false,
-                                    tools::fixed_joints(o.joints));
+  robot::Path path = robot::arrange(robot::parse_path_csv(text, option), robot, option, false, {});
   if (path.size() != 1) usage(std::string(option) + ": one configuration is expected");
   if (o.degrees) path = robot::from_degrees(std::move(path), robot);
   robot::require_within_limits(path, robot, option);
@@ -64,7 +63,7 @@ Request read_request(const MoveOptions& o) {
   r.robot = robot_named(r.scene.world, o.robot);
   const robot::Robot& robot = r.kinematics();
   const auto read = [&](const std::string& file) {
-    return robot::read_path(file, robot, {true, o.degrees, tools::fixed_joints(o.joints)}, r.notes);
+    return robot::read_path(file, robot, {true, o.degrees, {}}, r.notes);
   };
   r.start = !o.start.empty()  ? read(o.start).back()
             : !o.from.empty() ? configuration(o.from, "--from", o, robot)

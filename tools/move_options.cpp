@@ -119,7 +119,6 @@ void describe(CLI::App& app, MoveOptions& o) {
   app.add_option("-o,--output", o.output, "The path's waypoints, CSV; - is stdout")
       ->capture_default_str()
       ->type_name("FILE");
-  add_joint_option(app, o.joints);
   add_degrees_option(app, o.degrees);
   describe_search(app, o);
   describe_execution(app, o);

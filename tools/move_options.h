@@ -9,7 +9,7 @@ namespace kaboum::tools {
 /// The command line of kaboum-move.
 struct MoveOptions {
   std::string scene, robot, from, start, goals, output = "-", trajectory, resolution = "1e-5";
-  std::vector<std::string> to, joints, velocities, accelerations;
+  std::vector<std::string> to, velocities, accelerations;
   bool degrees = false;
   double max_work = 10, timeout = 0, rate = 1000;
   std::size_t max_nodes = 100'000;

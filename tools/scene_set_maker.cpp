@@ -18,6 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 void create(const fs::path& folder) {
+  if (folder.empty()) return;  // the present one
   std::error_code error;
   fs::create_directories(folder, error);
   if (error)

@@ -5,6 +5,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/io/convex_io.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include "arguments.h"
@@ -74,16 +75,43 @@ class Update {
     return true;
   }
 
-  /// How a set was made, by the record in its container.
-  [[nodiscard]] SceneSetOptions options_of(const Json& set) const {
-    const fs::path path = path_of(set);
-    std::string parameters;
+  [[nodiscard]] geom::Provenance record_of(const Json& set) const {
     try {
-      parameters = io::read_convex_set(path).provenance.parameters;
+      return io::read_convex_set(path_of(set)).provenance;
     } catch (const Error& error) {
       fail(std::string(error.what()) +
            "; so it is not known how it was made: make the scene anew (kaboum-scene make)");
     }
+  }
+
+  /// What this command makes anew for a link: a set that somebody else made, of another shape or by
+  /// other options, is not thrown away or replaced by one that holds less.
+  void require_ours(const Json& robot, const Json& link, const Json& fresh,
+                    const std::string& parameters, const std::string& urdf_sha256) const {
+    const std::string name = link.at("link").get<std::string>();
+    const auto refuse = [&](const std::string& why) {
+      fail("robot '" + robot.at("name").get<std::string>() + "', link '" + name + "': its set " +
+           why + "; make the sets of this robot anew by hand (kaboum-scene make, bcd-decompose)");
+    };
+    if (std::none_of(fresh.begin(), fresh.end(),
+                     [&](const Json& f) { return f.at("link") == link.at("link"); }))
+      refuse("was not made from the robot file's shapes and would be lost");
+    const Json& outer = link.at("outer");
+    if (!outer.contains("made_from")) refuse("does not say what it was made from");
+    if (!fs::exists(path_of(outer))) return;
+    const geom::Provenance record = record_of(outer);
+    if (record.source_sha256 != urdf_sha256)
+      refuse("was made from something else than the robot file of the scene");
+    if (record.parameters != parameters)
+      refuse("was made with other options (" + record.parameters + ") than the others");
+    if (link.contains("inner") && !link.at("inner").contains("made_from"))
+      refuse("would change beside an inner set that does not say what it was made from");
+  }
+
+  /// How a set was made, by the record in its container.
+  [[nodiscard]] SceneSetOptions options_of(const Json& set) const {
+    const fs::path path = path_of(set);
+    const std::string parameters = record_of(set).parameters;
     SceneSetOptions out;
     out.packages = o_.packages;
     out.cache = o_.cache;
@@ -126,14 +154,25 @@ class Update {
     return out;
   }
 
+  /// The mesh that a set was made from: by its own record that of all in 'made_from' with this
+  /// hash.
+  [[nodiscard]] std::string mesh_of(const Json& set) const {
+    const std::string& sha256 = record_of(set).source_sha256;
+    for (const Json& source : set.at("made_from"))
+      if (!sha256.empty() && source.at("sha256").get<std::string>() == sha256)
+        return path_of(source).string();
+    fail(path_of(set).string() +
+         " is out of date, and what it says it was made from is not in 'made_from': make it anew "
+         "with bcd-decompose, and put its SHA-256 into the scene");
+  }
+
   void set(Json& thing, const char* member, Direction direction) {
     Json& set = thing.at(member);
     if (is_current_set(set)) return;
     if (!set.contains("made_from") || set.at("made_from").empty())
       fail(path_of(set).string() +
            " is out of date, and 'made_from' does not say which mesh it is made from");
-    const std::string mesh = path_of(set.at("made_from").front()).string();
-    set = sets_.mesh(thing.at("name").get<std::string>(), mesh, direction, path_of(set),
+    set = sets_.mesh(thing.at("name").get<std::string>(), mesh_of(set), direction, path_of(set),
                      options_of(set));
     made_ = true;
   }
@@ -159,6 +198,9 @@ class Update {
         sets_.robot(robot.at("name").get<std::string>(), path_of(robot.at("urdf")).string(),
                     path_of(*known).parent_path(), options);
     Json fresh = made.at("links");
+    const std::string parameters = record_of(*known).parameters;
+    for (const Json& link : links)
+      require_ours(robot, link, fresh, parameters, robot.at("urdf").at("sha256"));
     for (Json& link : fresh)
       for (const Json& old : links)
         if (old.at("link") == link.at("link") && old.contains("inner"))

@@ -77,6 +77,10 @@ shows 0 'box in room: inside' "$BIN/kaboum-check" in.json --inside box=room --re
 grep -q '"answer": "inside"' in-report.json || fail "no inclusion in the report"
 shows 1 'arm in room: not certainly inside' "$BIN/kaboum-check" in.json --inside arm=room
 shows 0 'arm/base in room: inside' "$BIN/kaboum-check" in.json --inside arm/base=room --inside box=room
+sed 's/"name": "arm",/"name": "arm", "links_without_set": ["tip"],/' in.json >partly.json
+python3 -c 'import json; s = json.load(open("partly.json")); r = s["robots"][0]
+r["links"] = [l for l in r["links"] if l["link"] != "tip"]; json.dump(s, open("partly.json", "w"))'
+expect 3 "link 'tip' has shapes but no set, so it is not known whether it is inside" "$BIN/kaboum-check" partly.json --inside arm=room
 expect 2 "no region 'rom'; did you mean 'room'" "$BIN/kaboum-check" in.json --inside box=rom
 expect 2 "no object, link or robot 'bx'" "$BIN/kaboum-check" in.json --inside bx=room
 expect 2 'are for configurations' "$BIN/kaboum-check" near.json --path away.csv --resting
@@ -105,6 +109,38 @@ expect 0 'nothing is out of date' "$BIN/kaboum-scene" update old.json --no-cache
 mv kept.off meshes/cube.off
 expect 0 'sets made anew' "$BIN/kaboum-scene" update old.json --no-cache
 shows 0 '^free$' "$BIN/kaboum-check" near.json
+# Sets that others made of a link are not thrown away, nor replaced by ones that hold less.
+cp arm.urdf arm-kept.urdf
+for change in by-hand of-another-file with-other-options inner; do
+  python3 - "$BIN" $change <<'END' || fail "$change"
+import json, subprocess, sys
+change = sys.argv[2]
+scene = json.load(open("near.json"))
+links = scene["robots"][0]["links"]
+tip = next(l for l in links if l["link"] == "tip")
+urdf = open("arm-kept.urdf").read()
+if change == "by-hand":  # the shape that the set was made from is gone
+    urdf = urdf.replace('<link name="tip"><collision>', '<link name="tip"><visual>')
+    at = urdf.index("</collision>", urdf.index('<link name="tip">'))
+    urdf = urdf[:at] + "</visual>" + urdf[at + len("</collision>"):]
+elif change == "of-another-file":
+    tip["outer"].pop("made_from")
+elif change == "with-other-options":
+    subprocess.run([sys.argv[1] + "/kaboum-scene", "make", "other.json", "--robot", "arm=arm.urdf", "--epsilon", "7%",
+                    "--no-cache", "--quiet"], check=True)
+    other = json.load(open("other.json"))["robots"][0]["links"]
+    links[links.index(tip)] = next(l for l in other if l["link"] == "tip")
+else:
+    tip["inner"] = dict(tip["outer"])
+    tip["inner"].pop("made_from")
+json.dump(scene, open("theirs.json", "w"))
+open("arm.urdf", "w").write(urdf + "<!-- changed -->\n")
+END
+  cp theirs.json before.json
+  expect 3 "robot 'arm', link '.*': its set .*; make the sets of this robot anew by hand" "$BIN/kaboum-scene" update theirs.json --no-cache
+  cmp -s theirs.json before.json || fail "$change: the scene was changed"
+done
+cp arm-kept.urdf arm.urdf
 mkdir elsewhere
 cp near.json elsewhere/near.json
 expect 3 'arm.urdf: cannot be .*moved or copied with all files that it names' "$BIN/kaboum-check" elsewhere/near.json

@@ -203,6 +203,56 @@ TEST(Handles, WhatIsNotFoundIsTriedAgainWithTheSameSeeds) {
   for (const Algorithm a : kAll) EXPECT_EQ(with(negated, a).outcome, Outcome::Limit);
 }
 
+TEST(Handles, OfWhatIsNotKnownACallSaysNothing) {
+  const std::string head =
+      "types: conf handle, pose handle\nconstants: conf home, q1; pose p1, p2\n"
+      "predicates: done, a\nfunctions: at : conf; pos : pose\n"
+      "externals: ik(conf) : conf; freeAt(conf, pose); collides(pose)\n"
+      "table ik: (home) = q1\ntable freeAt: (q1, p1)\ntable collides: (p1)\n"
+      "init: K(at = home), K(!done)\ngoal: K(done)\n";
+  const auto plans = [](const std::string& text, Outcome outcome, std::size_t nodes) {
+    const Model m = bound(text, {});
+    for (const Algorithm a : {Algorithm::BreadthFirst, Algorithm::AStar}) {
+      const Solution s = with(m, a);
+      ASSERT_EQ(s.outcome, outcome) << text;
+      if (outcome != Outcome::Solved) continue;
+      EXPECT_EQ(measure(m, s.plan).nodes, nodes) << text;
+      EXPECT_TRUE(check(m, s.plan).valid) << check(m, s.plan).violation;
+    }
+  };
+  const std::string look = "action look preconds: !K(done) effects: add(Kf, pos = p";
+  const auto go = [](const std::string& q) {
+    return "action go preconds: " + q + " effects: add(Kf, done)\n";
+  };
+  // An earlier call's value is no answer of the later one.
+  const std::string both = go("let ?q = extern(ik(at)) & extern(freeAt(?q, pos))");
+  plans(head + both, Outcome::Unsolvable, 0);
+  plans(head + look + "1)\n" + both, Outcome::Solved, 2);
+  // Nor does it say that something is not so.
+  for (const std::string q :
+       {"!extern(collides(pos))", "!(extern(collides(pos)) | K(done))",
+        "!(!K(done) & extern(collides(pos)))", "!!(!extern(collides(pos)))"}) {
+    plans(head + go(q), Outcome::Unsolvable, 0);
+    plans(head + look + "1)\n" + go(q), Outcome::Unsolvable, 0);
+    plans(head + look + "2)\n" + go(q), Outcome::Solved, 2);
+  }
+  plans(head + go("!(K(done) & extern(collides(pos)))"), Outcome::Solved, 1);
+}
+
+TEST(Handles, WhatACallMayReadOfTheUnknownIsLost) {
+  ExternalBindings b;
+  for (const bool is : {true, false})
+    b[is ? "ifTrue" : "ifFalse"] = [is](const Question& q) {
+      return Answer::holds(q.state.truth("a", {}) == is);
+    };
+  const Model m = bound(
+      "predicates: done, a\nexternals: ifTrue, ifFalse\ninit: K(!done)\ngoal: K(done)\n"
+      "action one preconds: !K(done) effects: extern(ifTrue()) => add(Kf, done)\n"
+      "action two preconds: !K(done) effects: extern(ifFalse()) => add(Kf, done)\n",
+      b);
+  EXPECT_EQ(with(m, Algorithm::BreadthFirst).outcome, Outcome::NotInferred);
+}
+
 TEST(Handles, ASensedValueIsDecidedBeforeAFunctionReadsIt) {
   ExternalBindings b;
   b["route"] = [](const Question& q) {

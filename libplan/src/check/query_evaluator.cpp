@@ -76,12 +76,15 @@ std::optional<bool> QueryEvaluator::truth(const Query& q, std::vector<Index>& sl
         unresolved |= !t;
       }
       if (certain < 2 && unresolved) return std::nullopt;
-      return certain == 1;
+      return certain == 1 &&
+             std::none_of(q.children.begin(), q.children.end(), [&](const Query& c) {
+               return truth(c, slots, k) == false && may_hold(c, slots, k);
+             });
     }
     case Query::Kind::Not: {
       const std::optional<bool> t = truth(q.children[0], slots, k);
       if (!t) return t;
-      return !*t;
+      return !*t && !may_hold(q.children[0], slots, k);
     }
     case Query::Kind::Exists:
     case Query::Kind::ForAll: {
@@ -119,6 +122,38 @@ std::optional<bool> QueryEvaluator::truth(const Query& q, std::vector<Index>& sl
     }
   }
   throw Error(ErrorCode::Internal, "unexpected query");
+}
+
+bool QueryEvaluator::may_hold(const Query& q, std::vector<Index>& slots,
+                              const RuntimeKnowledge& k) const {
+  const auto child = [&](const Query& c) { return may_hold(c, slots, k); };
+  switch (q.kind) {
+    case Query::Kind::And:
+      return std::all_of(q.children.begin(), q.children.end(), child);
+    case Query::Kind::Or:
+      return std::any_of(q.children.begin(), q.children.end(), child);
+    case Query::Kind::Not:
+      return truth(q.children[0], slots, k) != true;
+    case Query::Kind::Xor:
+      return truth(q, slots, k) == true ||
+             std::any_of(q.children.begin(), q.children.end(),
+                         [&](const Query& c) { return truth(c, slots, k) == false && child(c); });
+    case Query::Kind::Exists:
+    case Query::Kind::ForAll: {
+      const bool any = q.kind == Query::Kind::Exists;
+      for (const Index o : model_.types[q.type].objects) {
+        slots.at(q.symbol) = o;
+        if (child(q.children[0]) == any) return any;
+      }
+      return !any;
+    }
+    case Query::Kind::External:
+      return truth(q, slots, k) == true ||
+             std::any_of(q.arguments.begin(), q.arguments.end(),
+                         [&](const Argument& a) { return !value(a, slots, k); });
+    default:
+      return truth(q, slots, k) == true;
+  }
 }
 
 std::optional<Index> QueryEvaluator::value(const Argument& a, const std::vector<Index>& slots,

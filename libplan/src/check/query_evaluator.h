@@ -28,6 +28,9 @@ class QueryEvaluator {
   /// @param plan  says the seed, and how often calls that find nothing are made again.
   QueryEvaluator(const Model& model, const Plan& plan);
 
+  /// `!q` holds neither where `q` does nor where it may: where the argument of a call is unknown.
+  [[nodiscard]] bool may_hold(const Query& q, std::vector<Index>& slots,
+                              const RuntimeKnowledge& k) const;
   /// nullopt: it rests on an external function that finds nothing.
   std::optional<bool> truth(const Query& q, std::vector<Index>& slots,
                             const RuntimeKnowledge& k) const;

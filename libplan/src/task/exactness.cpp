@@ -111,8 +111,22 @@ class Exactness {
   [[nodiscard]] bool reads_unknown(const Query& q) const {
     if (q.kind == Query::Kind::Known) return unknown_atoms_[q.symbol] != 0;
     if (q.kind == Query::Kind::KnownValue) return unknown_terms_[q.symbol] != 0;
+    if (q.kind == Query::Kind::External || q.kind == Query::Kind::Let) return calls_unknown(q);
     return std::any_of(q.children.begin(), q.children.end(),
                        [&](const Query& c) { return reads_unknown(c); });
+  }
+
+  /// A call may hang on what is unknown: by its arguments, or by what it reads of the state.
+  [[nodiscard]] bool calls_unknown(const Query& q) const {
+    const auto some = [](const std::vector<char>& unknown) {
+      return std::any_of(unknown.begin(), unknown.end(), [](char u) { return u != 0; });
+    };
+    if (model_.external_functions[q.symbol].reads_state &&
+        (some(unknown_atoms_) || some(unknown_terms_)))
+      return true;
+    return std::any_of(q.arguments.begin(), q.arguments.end(), [&](const Argument& a) {
+      return a.term && unknown_terms_[a.term->function] != 0;
+    });
   }
 
   [[nodiscard]] std::string lost_by(const std::vector<Effect>& effects) const {

@@ -129,7 +129,11 @@ bool ExternalCalls::arguments(const Call& c, const Word* state, std::vector<Inde
     if (is_call(o)) {
       objects.push_back(read);
     } else {
-      if (read < kFirstValue) return false;  // not known: `why` is None
+      if (read < kFirstValue) {
+        why = {};  // of an earlier operand, which may have had a value
+        why.unknown_argument = true;
+        return false;
+      }
       objects.push_back(layout_.object(item, read - kFirstValue));
     }
   }

@@ -41,9 +41,10 @@ class ExternalCalls {
       Open       ///< it depends on a sensed value
     };
     Kind kind = Kind::None;
-    Index value = 0;     ///< an object or handle; of a truth value 0
-    Index fluent = 0;    ///< of Open: the sensed one
-    Index leaf = kNone;  ///< of Value and NotFound
+    Index value = 0;                ///< an object or handle; of a truth value 0
+    Index fluent = 0;               ///< of Open: the sensed one
+    Index leaf = kNone;             ///< of Value and NotFound
+    bool unknown_argument = false;  ///< of None: it was not called, for want of a known argument
   };
   /// @throws Error{InvalidInput} naming function and state if the function fails or contradicts
   ///         itself; LimitExceeded.

@@ -76,6 +76,9 @@ class FormulaPool {
   [[nodiscard]] bool holds(Formula f, const Word* state) const {
     return evaluate(f, state) == Truth::Yes;
   }
+  /// Whether `f` holds, or would if calls whose arguments are not known said so: then its negation
+  /// does not hold.
+  [[nodiscard]] bool may_hold(Formula f, const Word* state) const;
 
   /// Fluents whose sensed value leaves `f` open in `state`.
   void open_fluents(Formula f, const Word* state, std::vector<Index>& out) const;
@@ -123,6 +126,7 @@ class FormulaPool {
   std::unordered_multimap<std::uint64_t, Formula> index_;
   std::map<std::pair<Word, Word>, Index> mask_index_;
   mutable ExternalCalls calls_;
+  bool negated_ = false;  ///< ground() is within an odd number of negations
 };
 
 }  // namespace kaboum::plan

@@ -37,7 +37,11 @@ Truth exclusive(const FormulaPool& pool, Formula f, const Word* state) {
     if (certain > 1) return Truth::No;
   }
   if (unresolved) return Truth::Unresolved;
-  return open ? Truth::Open : certain == 1 ? Truth::Yes : Truth::No;
+  if (open) return Truth::Open;
+  const auto another = [&](Formula c) {
+    return pool.node(c).calls && !pool.holds(c, state) && pool.may_hold(c, state);
+  };
+  return certain == 1 && std::none_of(pool.begin(f), pool.end(f), another) ? Truth::Yes : Truth::No;
 }
 
 }  // namespace
@@ -57,7 +61,8 @@ Truth FormulaPool::evaluate(Formula f, const Word* state) const {
       return exclusive(*this, f, state);
     case Kind::Not: {
       const Truth t = evaluate(*begin(f), state);
-      return t == Truth::Open || t == Truth::Unresolved ? t : yes(t == Truth::No);
+      if (t == Truth::Open || t == Truth::Unresolved) return t;
+      return yes(t == Truth::No && !(n.calls && may_hold(*begin(f), state)));
     }
     case Kind::IsTrue:
     case Kind::IsFalse: {
@@ -100,6 +105,27 @@ Truth FormulaPool::evaluate(Formula f, const Word* state) const {
     }
   }
   return Truth::No;
+}
+
+bool FormulaPool::may_hold(Formula f, const Word* state) const {
+  const Node& n = nodes_[f];
+  const auto child = [&](Formula c) { return may_hold(c, state); };
+  if (!n.calls) return holds(f, state);
+  switch (n.kind) {
+    case Kind::And:
+      return std::all_of(begin(f), end(f), child);
+    case Kind::Or:
+      return std::any_of(begin(f), end(f), child);
+    case Kind::Not:
+      return !holds(*begin(f), state);
+    case Kind::Xor:
+      return holds(f, state) ||
+             std::any_of(begin(f), end(f), [&](Formula c) { return child(c) && !holds(c, state); });
+    case Kind::External:
+      return calls_.evaluate(n.a, state).unknown_argument || holds(f, state);
+    default:
+      return holds(f, state);
+  }
 }
 
 void FormulaPool::open_fluents(Formula f, const Word* state, std::vector<Index>& out) const {

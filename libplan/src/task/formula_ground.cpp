@@ -29,8 +29,12 @@ Formula FormulaPool::ground(const Query& q, std::vector<Index>& slots) {
     case Query::Kind::Or:
     case Query::Kind::Xor:
       return ground_connective(q, slots);
-    case Query::Kind::Not:
-      return negate(ground(q.children[0], slots));
+    case Query::Kind::Not: {
+      negated_ = !negated_;
+      const Formula child = ground(q.children[0], slots);
+      negated_ = !negated_;
+      return negate(child);
+    }
     case Query::Kind::Exists:
     case Query::Kind::ForAll:
       return ground_quantifier(q, slots);
@@ -49,7 +53,8 @@ Formula FormulaPool::ground(const Query& q, std::vector<Index>& slots) {
       const Index call = call_of(q, slots);
       if (q.kind == Query::Kind::Let)
         slots[q.value->index] = call == kNone ? 0 : call | kCallOperand;
-      if (call == kNone) return kFalse;
+      // Of what is never known a call says nothing, nor does its negation.
+      if (call == kNone) return negated_ && q.kind == Query::Kind::External ? kTrue : kFalse;
       return external(call, q.kind == Query::Kind::External && q.value
                                 ? value_of(*q.value, slots.data())
                                 : kNone);
