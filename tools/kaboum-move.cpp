@@ -133,6 +133,9 @@ robot::Path read_back(const std::string& text, const robot::Robot& robot) {
   return robot::arrange(robot::parse_path_csv(text, "the output"), robot, "the output");
 }
 
+/// Of a file of samples: more would take minutes to certify and gigabytes to write.
+constexpr std::size_t kMostSamples = 5'000'000;
+
 struct Execution {
   std::string csv;
   tools::Json report;
@@ -142,6 +145,11 @@ struct Execution {
 Execution execute(const Request& r, const PathAnswer& answer, const MoveOptions& o,
                   const world::Checker& checker) {
   const motion::Trajectory trajectory(answer.path, tools::speed_limits(o, r.kinematics()), o.rate);
+  if (trajectory.samples() > kMostSamples)
+    throw Error(ErrorCode::LimitReached,
+                "--trajectory: " + std::to_string(trajectory.samples()) + " samples in " +
+                    std::to_string(trajectory.duration()) + " s, more than " +
+                    std::to_string(kMostSamples) + ": give a lower --rate or higher limits");
   Execution out{to_csv(trajectory, r.kinematics()), {}};
   world::MotionOptions options;
   // Finer than for the path: what that has decided is not to be refused for a rounding.
@@ -172,10 +180,12 @@ motion::PathOptions path_options(const MoveOptions& o) {
 }
 
 int move(const MoveOptions& o) {
+  const Request r = read_request(o);
+  std::vector<std::string> inputs = r.scene.inputs;
+  inputs.insert(inputs.end(), {o.start, o.goals});
   tools::require_apart(
       {{"--output", o.output}, {"--trajectory", o.trajectory}, {"--report", o.common.report}},
-      {o.scene, o.start, o.goals});
-  const Request r = read_request(o);
+      inputs);
   for (const std::string& note : r.notes) tools::log(o.common.quiet, note);
   const world::Checker checker(r.scene.world);
   const PathAnswer answer =

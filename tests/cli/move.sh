@@ -87,7 +87,15 @@ expect 2 "no joint 'j3'" "$M" cell.json --from=0.5,0 --to 1,1 -o none.csv --traj
 expect 2 'above 0' "$M" cell.json --from=0.5,0 --to 1,1 -o none.csv --trajectory none2.csv --max-velocity 0
 expect 2 'trajectory' "$M" cell.json --from=0.5,0 --to 1,1 -o none.csv --rate 5
 expect 2 '' "$M" cell.json --to 1,1 -o cell.json
+# Nor is any file that the scene names written over.
+for file in arm.urdf $(find . -name '*.glb' | head -1); do
+  cp "$file" kept.bin
+  expect 2 'overwrite' "$M" cell.json --from=0.5,0 --to 1,1 -o "$file"
+  expect 2 'overwrite' "$M" cell.json --from=0.5,0 --to 1,1 -o none.csv --report "$file"
+  cmp -s "$file" kept.bin || fail "$file is written over"
+done
 expect 4 '' "$M" cell.json --from=0.5,0 --to 1,1 -o nowhere/p.csv
 expect 7 'samples' "$M" cell.json --from=0.5,0 --to 1,1 -o none.csv --trajectory none2.csv --max-velocity 1e-6
+expect 7 'more than 5000000' "$M" cell.json --from=0.5,0 --to 1,1 -o none.csv --trajectory none2.csv --max-velocity 1e-4
 absent none.csv none2.csv
 finish
