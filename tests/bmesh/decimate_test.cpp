@@ -506,6 +506,7 @@ TEST(Decimate, DoesNotDependOnTheScale) {
 // Other factors and far offsets round the input differently, and a greedy choice may then fall
 // another way: no violation, and the same distance on the average over the families.
 TEST(Decimate, IsAsGoodAtAnyScaleAndFarFromTheOrigin) {
+  if (largest() < 1500) GTEST_SKIP() << "so few families have no average";
   for (const double factor : {1e-6, 1e6, 1.0}) {
     double log_ratios = 0;
     int cases = 0;
