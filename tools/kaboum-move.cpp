@@ -144,7 +144,8 @@ struct Execution {
 /// The samples as they are written are certified anew, with straight lines between them.
 Execution execute(const Request& r, const PathAnswer& answer, const MoveOptions& o,
                   const world::Checker& checker) {
-  const motion::Trajectory trajectory(answer.path, tools::speed_limits(o, r.kinematics()), o.rate);
+  const motion::SpeedLimits limits = tools::speed_limits(o, r.kinematics());
+  const motion::Trajectory trajectory(answer.path, limits, o.rate);
   if (trajectory.samples() > kMostSamples)
     throw Error(ErrorCode::LimitReached,
                 "--trajectory: " + std::to_string(trajectory.samples()) + " samples in " +
@@ -164,6 +165,8 @@ Execution execute(const Request& r, const PathAnswer& answer, const MoveOptions&
   out.report = {{"file", o.trajectory},
                 {"rate", o.rate},
                 {"samples", trajectory.samples()},
+                {"max_velocity", limits.velocity},
+                {"max_acceleration", limits.acceleration},
                 {"seconds", trajectory.duration()}};
   return out;
 }

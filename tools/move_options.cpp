@@ -13,6 +13,7 @@
 namespace kaboum::tools {
 namespace {
 
+/// Where the robot's file states nothing. [rad/s or m/s; per s]
 constexpr double kVelocity = 1, kAcceleration = 5;
 
 void describe_search(CLI::App& app, MoveOptions& o) {
@@ -59,7 +60,7 @@ void describe_execution(CLI::App& app, MoveOptions& o) {
       ->type_name("HZ");
   app.add_option("--max-velocity", o.velocities,
                  "Of all joints, or one as in elbow=0.5; radians or metres per second; may be "
-                 "repeated [1]")
+                 "repeated. Never above what the URDF states [that; 1 where it states none]")
       ->needs(trajectory)
       ->type_name("X|NAME=X");
   app.add_option("--max-acceleration", o.accelerations,
@@ -68,33 +69,50 @@ void describe_execution(CLI::App& app, MoveOptions& o) {
       ->type_name("X|NAME=X");
 }
 
-/// "2" for all, "elbow=2" for one; the later counts.
-std::vector<double> per_joint(const std::vector<std::string>& texts, const char* option,
-                              double usual, const robot::Robot& robot) {
+/// "2" for all, "elbow=2" for one.
+struct JointValue {
+  std::optional<std::size_t> variable;
+  double value = 0;
+};
+
+JointValue parse_joint_value(const std::string& text, const char* option,
+                             const robot::Robot& robot) {
+  const std::size_t sign = text.rfind('=');
+  const char *begin = text.data() + (sign == std::string::npos ? 0 : sign + 1),
+             *end = text.data() + text.size();
+  JointValue out;
+  const auto [stop, error] = std::from_chars(begin, end, out.value);
+  if (error != std::errc() || stop != end || !(out.value > 0) || !std::isfinite(out.value))
+    throw Error(ErrorCode::InvalidArgument, std::string(option) +
+                                                ": write NUMBER or NAME=NUMBER, above 0, as in "
+                                                "elbow=0.5, not '" +
+                                                text + "'");
+  if (sign == std::string::npos) return out;
+  const std::string name = text.substr(0, sign);
   std::vector<std::string> names;
   for (const robot::Variable& v : robot.variables) names.push_back(v.name);
-  std::vector<double> out(names.size(), usual);
+  const auto at = std::find(names.begin(), names.end(), name);
+  if (at == names.end())
+    throw Error(ErrorCode::InvalidArgument, std::string(option) + ": the robot has no joint '" +
+                                                name + "'" + did_you_mean(name, names));
+  out.variable = static_cast<std::size_t>(at - names.begin());
+  return out;
+}
+
+using Limits = std::vector<std::optional<double>>;
+
+/// What the robot allows, or `usual`; lower as the texts have it, of which the later counts.
+std::vector<double> per_joint(const std::vector<std::string>& texts, const char* option,
+                              double usual, const Limits& limits, const robot::Robot& robot) {
+  std::vector<double> out;
+  for (const auto& limit : limits) out.push_back(limit.value_or(usual));
   for (const std::string& text : texts) {
-    const std::size_t sign = text.rfind('=');
-    const char *begin = text.data() + (sign == std::string::npos ? 0 : sign + 1),
-               *end = text.data() + text.size();
-    double value = 0;
-    const auto [stop, error] = std::from_chars(begin, end, value);
-    if (error != std::errc() || stop != end || !(value > 0) || !std::isfinite(value))
-      throw Error(ErrorCode::InvalidArgument, std::string(option) +
-                                                  ": write NUMBER or NAME=NUMBER, above 0, as in "
-                                                  "elbow=0.5, not '" +
-                                                  text + "'");
-    if (sign == std::string::npos) {
-      out.assign(names.size(), value);
-      continue;
-    }
-    const std::string name = text.substr(0, sign);
-    const auto at = std::find(names.begin(), names.end(), name);
-    if (at == names.end())
-      throw Error(ErrorCode::InvalidArgument, std::string(option) + ": the robot has no joint '" +
-                                                  name + "'" + did_you_mean(name, names));
-    out[static_cast<std::size_t>(at - names.begin())] = value;
+    const auto [variable, value] = parse_joint_value(text, option, robot);
+    if (variable && value > limits[*variable].value_or(value))
+      throw Error(ErrorCode::InvalidArgument,
+                  std::string(option) + ": '" + text + "' is above what the robot's file allows");
+    for (std::size_t i = 0; i < out.size(); ++i)
+      if (!variable || i == *variable) out[i] = std::min(value, limits[i].value_or(value));
   }
   return out;
 }
@@ -132,8 +150,11 @@ void describe(CLI::App& app, MoveOptions& o) {
 }
 
 motion::SpeedLimits speed_limits(const MoveOptions& o, const robot::Robot& robot) {
-  return {per_joint(o.velocities, "--max-velocity", kVelocity, robot),
-          per_joint(o.accelerations, "--max-acceleration", kAcceleration, robot)};
+  Limits velocity;
+  for (const robot::Variable& v : robot.variables) velocity.push_back(v.velocity);
+  return {per_joint(o.velocities, "--max-velocity", kVelocity, velocity, robot),
+          per_joint(o.accelerations, "--max-acceleration", kAcceleration, Limits(velocity.size()),
+                    robot)};
 }
 
 }  // namespace kaboum::tools

@@ -19,8 +19,9 @@ struct MoveOptions {
 
 void describe(CLI::App& app, MoveOptions& o);
 
-/// Of --max-velocity and --max-acceleration.
-/// @throws Error{InvalidArgument} for values that are not above 0 and joints that are not known.
+/// Of --max-velocity and --max-acceleration; never above the velocities of the robot's file.
+/// @throws Error{InvalidArgument} for values that are not above 0, joints that are not known, and
+///   one joint's velocity above the file's.
 motion::SpeedLimits speed_limits(const MoveOptions& o, const robot::Robot& robot);
 
 }  // namespace kaboum::tools

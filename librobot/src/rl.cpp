@@ -128,6 +128,9 @@ class Reader {
     edge.variable.name = edge.motion.name;
     if (e.FirstChildElement("min") != nullptr) edge.variable.lower = number(&e, "min", 0) * unit;
     if (e.FirstChildElement("max") != nullptr) edge.variable.upper = number(&e, "max", 0) * unit;
+    // As in URDFs, 0 is written where nothing is known.
+    const double speed = number(&e, "speed", 0) * unit;
+    if (speed > 0) edge.variable.velocity = speed;
   }
 
   Robot connect() {

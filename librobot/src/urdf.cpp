@@ -223,6 +223,9 @@ class Elements {
         out.variable.lower = lower;
         out.variable.upper = upper;
       }
+      // 0 is written where nothing is known.
+      const double velocity = file_.number(*limit, "velocity", 0);
+      if (velocity > 0) out.variable.velocity = velocity;
     } else if (type != "continuous") {
       fail("a " + type + " joint needs <limit lower=... upper=.../>");
     }
@@ -340,6 +343,11 @@ class Assembly {
       const JointEntry& other = *order_[it->second];
       if (!other.mimicry) {
         joint.variable = robot_.joints[it->second].variable;
+        if (const auto own = order_[index]->variable.velocity; own && joint.multiplier != 0) {
+          std::optional<double>& most = robot_.variables[joint.variable].velocity;
+          const double here = *own / std::abs(joint.multiplier);
+          most = most ? std::min(*most, here) : here;
+        }
         return;
       }
       m = &*other.mimicry;

@@ -38,13 +38,17 @@ TEST(Urdf, JointsOfAllKinds) {
       joint("j1", "revolute", "a", "b",
             "<origin xyz='1 2 3' rpy='0 0 1.5707963267948966'/>"
             "<limit lower='-1' upper='2' effort='1' velocity='1'/>") +
-      joint("j2", "prismatic", "b", "c", "<limit lower='0' upper='1' effort='1' velocity='1'/>") +
-      joint("j3", "continuous", "c", "d", "<mimic joint='j1' multiplier='-2' offset='0.5'/>") +
+      joint("j2", "prismatic", "b", "c", "<limit lower='0' upper='1' effort='1' velocity='0'/>") +
+      joint("j3", "continuous", "c", "d",
+            "<limit effort='1' velocity='1.5'/>"
+            "<mimic joint='j1' multiplier='-2' offset='0.5'/>") +
       joint("j4", "fixed", "d", "e", "<origin xyz='0 0 1'/>")));
   ASSERT_EQ(robot.links.size(), 5U);
   ASSERT_EQ(robot.variables.size(), 2U);
   EXPECT_EQ(robot.variables[0].name, "j1");
   EXPECT_EQ(robot.variables[0].lower, -1);
+  EXPECT_EQ(robot.variables[0].velocity, 0.75) << "j3 turns twice as fast";
+  EXPECT_EQ(robot.variables[1].velocity, std::nullopt) << "0 says nothing";
   EXPECT_EQ(robot.joints[2].variable, 0U);
   EXPECT_EQ(robot.joints[2].multiplier, -2);
   EXPECT_EQ(robot.joints[0].axis, Vec3(0, 0, 1));
@@ -239,6 +243,8 @@ TEST(CorpusRl, BothDescriptionsOfThePuma) {
   const Robot a = parse_rl(kin, "kin"), b = parse_rl(mdl, "mdl");
   ASSERT_EQ(a.variables.size(), 6U);
   EXPECT_NEAR(*a.variables[1].lower, -225 * std::numbers::pi / 180, 1e-15);
+  EXPECT_EQ(a.variables[0].velocity, std::nullopt);
+  EXPECT_NEAR(b.variables[0].velocity.value_or(0), 320 * std::numbers::pi / 180, 1e-14);
   std::mt19937_64 random(6);
   for (int trial = 0; trial < 100; ++trial) {
     const std::vector<double> q = random_path(a, random, 1, 3, false).front();

@@ -75,6 +75,10 @@ void expect_joint(const Robot& ours, const Joint& joint, const Link& link,
     EXPECT_EQ(*variable.lower, leader.limits->lower);
     EXPECT_EQ(*variable.upper, leader.limits->upper);
   }
+  if (leader.limits && leader.limits->velocity > 0) {
+    ASSERT_TRUE(variable.velocity.has_value());
+    EXPECT_LE(*variable.velocity, leader.limits->velocity) << "mimicking joints may lower it";
+  }
 }
 
 /// @return whether both read it; that one does and the other does not is a failure.
