@@ -217,7 +217,7 @@ TEST(Urdf, BadFilesAreRefused) {
   for (int i = 0; i < 400; ++i) closed += "<x>";
   for (int i = 0; i < 400; ++i) closed += "</x>";
   has(closed + "</robot>", "DEPTH");
-  has(std::string("<robot>\0</robot>", 17), "text");
+  has(std::string("<robot>\0</robot>", 16), "text");
 }
 
 TEST(Urdf, SurvivesGarbage) {
