@@ -48,12 +48,11 @@ struct Joint {
   double multiplier = 1, offset = 0;
 };
 
-/// A degree of freedom, and its limits [rad or length]. The velocity is the least that the joints it
-/// moves allow.
+/// A degree of freedom, and its limits [rad or length].
 struct Variable {
   std::string name;  ///< of the joint
   std::optional<double> lower, upper;
-  std::optional<double> velocity = {};  ///< above 0 [rad/s or length/s]
+  std::optional<double> velocity = {};  ///< that all joints it moves allow, > 0 [rad/s, length/s]
 };
 
 /// A tree of links. Link 0 is the root; joints[i] moves links[i + 1], whose parent comes before it.
