@@ -229,9 +229,9 @@ TEST(Handles, OfWhatIsNotKnownACallSaysNothing) {
   plans(head + both, Outcome::Unsolvable, 0);
   plans(head + look + "1)\n" + both, Outcome::Solved, 2);
   // Nor does it say that something is not so.
-  for (const std::string q :
-       {"!extern(collides(pos))", "!(extern(collides(pos)) | K(done))",
-        "!(!K(done) & extern(collides(pos)))", "!!(!extern(collides(pos)))"}) {
+  for (const std::string q : {"!extern(collides(pos))", "!(extern(collides(pos)) | K(done))",
+                              "!(!K(done) & extern(collides(pos)))", "!!(!extern(collides(pos)))",
+                              "!K(done) xor extern(collides(pos))"}) {
     plans(head + go(q), Outcome::Unsolvable, 0);
     plans(head + look + "1)\n" + go(q), Outcome::Unsolvable, 0);
     plans(head + look + "2)\n" + go(q), Outcome::Solved, 2);

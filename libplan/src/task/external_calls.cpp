@@ -85,8 +85,10 @@ Index ExternalCalls::call(Index external, std::vector<Index> operands) {
   Call c;
   c.external = external;
   c.depends = model_.external_functions[external].reads_state;
-  for (const Index o : operands)
+  for (const Index o : operands) {
     c.depends |= is_term(o) || (is_call(o) && calls_[o & ~kCallOperand].depends);
+    c.never_known |= o == kNone || (is_call(o) && calls_[o & ~kCallOperand].never_known);
+  }
   c.operands = std::move(operands);
   calls_.push_back(std::move(c));
   return it->second;
@@ -116,6 +118,11 @@ bool ExternalCalls::content(Index item, const Word* state, Index& content, Reply
 
 bool ExternalCalls::arguments(const Call& c, const Word* state, std::vector<Index>& objects,
                               Path& path, Reply& why) {
+  if (c.never_known) {
+    why = {};
+    why.unknown_argument = true;
+    return false;
+  }
   for (const Index o : c.operands) {
     if (!is_call(o) && !is_term(o)) {
       objects.push_back(o);

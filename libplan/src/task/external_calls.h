@@ -14,11 +14,14 @@
 namespace kaboum::plan {
 
 /// An argument of an external function, once ground: an object; or, evaluated in each state, the
-/// value of a fluent or of another call. Objects and handles have numbers below these bits.
+/// value of a fluent or of another call; or kNone: the value of a term that is never known. Objects
+/// and handles have numbers below these bits.
 inline constexpr Index kTermOperand = Index{1} << 30U;  ///< or'ed with a fluent
 inline constexpr Index kCallOperand = Index{1} << 31U;  ///< or'ed with a call
-inline bool is_call(Index operand) { return (operand & kCallOperand) != 0; }
-inline bool is_term(Index operand) { return !is_call(operand) && (operand & kTermOperand) != 0; }
+inline bool is_call(Index operand) { return operand != kNone && (operand & kCallOperand) != 0; }
+inline bool is_term(Index operand) {
+  return (operand & kCallOperand) == 0 && (operand & kTermOperand) != 0;
+}
 
 /// Calls of external functions, each made once for each footprint: what it reads of a state.
 ///
@@ -54,6 +57,8 @@ class ExternalCalls {
   void footprint(Index call, const Word* state, std::vector<Index>& fluents);
   /// Whether the answer can differ between states.
   [[nodiscard]] bool depends_on_state(Index call) const { return calls_[call].depends; }
+  /// Whether it is never made, for want of an argument that is ever known.
+  [[nodiscard]] bool is_never_known(Index call) const { return calls_[call].never_known; }
   [[nodiscard]] Index external(Index call) const { return calls_[call].external; }
 
   [[nodiscard]] const HandleTable& handles() const { return handles_; }
@@ -87,6 +92,7 @@ class ExternalCalls {
     Index root = kNone;  ///< node, or leaf with kLeaf
     Index last = kNone;  ///< the leaf that it was given last
     bool depends = false;
+    bool never_known = false;
   };
   struct Leaf {
     Index value = 0;

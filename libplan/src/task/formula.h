@@ -126,7 +126,7 @@ class FormulaPool {
   std::unordered_multimap<std::uint64_t, Formula> index_;
   std::map<std::pair<Word, Word>, Index> mask_index_;
   mutable ExternalCalls calls_;
-  bool negated_ = false;  ///< ground() is within an odd number of negations
+  bool monotone_ = true;  ///< ground() is within no negation and no exclusive or
 };
 
 }  // namespace kaboum::plan

@@ -3,6 +3,8 @@
 
 #include <kaboum/base/error.h>
 
+#include <utility>
+
 #include "task/bindings.h"
 
 namespace kaboum::plan {
@@ -27,13 +29,14 @@ Formula FormulaPool::ground(const Query& q, std::vector<Index>& slots) {
       return kFalse;
     case Query::Kind::And:
     case Query::Kind::Or:
-    case Query::Kind::Xor:
       return ground_connective(q, slots);
+    case Query::Kind::Xor:
     case Query::Kind::Not: {
-      negated_ = !negated_;
-      const Formula child = ground(q.children[0], slots);
-      negated_ = !negated_;
-      return negate(child);
+      const bool outer = std::exchange(monotone_, false);
+      const Formula made = q.kind == Query::Kind::Not ? negate(ground(q.children[0], slots))
+                                                      : ground_connective(q, slots);
+      monotone_ = outer;
+      return made;
     }
     case Query::Kind::Exists:
     case Query::Kind::ForAll:
@@ -51,10 +54,9 @@ Formula FormulaPool::ground(const Query& q, std::vector<Index>& slots) {
     case Query::Kind::External:
     case Query::Kind::Let: {
       const Index call = call_of(q, slots);
-      if (q.kind == Query::Kind::Let)
-        slots[q.value->index] = call == kNone ? 0 : call | kCallOperand;
-      // Of what is never known a call says nothing, nor does its negation.
-      if (call == kNone) return negated_ && q.kind == Query::Kind::External ? kTrue : kFalse;
+      if (q.kind == Query::Kind::Let) slots[q.value->index] = call | kCallOperand;
+      // It never holds; but a negation is not to hold either.
+      if (monotone_ && calls_.is_never_known(call)) return kFalse;
       return external(call, q.kind == Query::Kind::External && q.value
                                 ? value_of(*q.value, slots.data())
                                 : kNone);
@@ -74,10 +76,7 @@ Index FormulaPool::operand(const Argument& a, const std::vector<Index>& slots) c
 
 Index FormulaPool::call_of(const Query& q, const std::vector<Index>& slots) {
   std::vector<Index> operands;
-  for (const Argument& a : q.arguments) {
-    operands.push_back(operand(a, slots));
-    if (operands.back() == kNone) return kNone;  // never known
-  }
+  for (const Argument& a : q.arguments) operands.push_back(operand(a, slots));
   return calls_.call(q.symbol, std::move(operands));
 }
 
