@@ -391,7 +391,7 @@ class RandomTask {
   struct Random {
     int from, to;        ///< 0: s, 1: t
     int need;            ///< 0: none, 1: p, 2: !p, 3: q, 4: r, 5: !r
-    int test;            ///< 0: none, 1: ok(from), 2: !ok(from)
+    int test;            ///< 0: none, 1: ok(from), 2: !ok(from), 3: ok(from) xor p
     bool moves, copies;  ///< to = next(from); to = from
     int effect;          ///< 0: none, 1: p, 2: !p, 3: q, 4: ok => q, 5: ok => !p
   };
@@ -410,7 +410,8 @@ class RandomTask {
       const std::string ok = "extern(ok" + n + "(" + name(a.from) + "))";
       static const char* const kNeeds[] = {"true", "K(p)", "K(!p)", "K(q)", "K(r)", "K(!r)"};
       out += "action a" + n + " preconds: " + kNeeds[a.need];
-      if (a.test != 0) out += std::string(" & ") + (a.test == 2 ? "!" : "") + ok;
+      if (a.test == 3) out += " & (" + ok + " xor K(p))";
+      if (a.test == 1 || a.test == 2) out += (a.test == 2 ? " & !" : " & ") + ok;
       if (a.moves) out += " & let ?y = extern(next" + n + "(" + name(a.from) + "))";
       out += " effects: ";
       if (a.moves) out += std::string("add(Kf, ") + name(a.to) + " = ?y) ";
@@ -462,7 +463,7 @@ class RandomTask {
     a.from = pick(2);
     a.to = pick(2);
     a.need = pick(6);
-    a.test = pick(3);
+    a.test = pick(4);
     a.moves = pick(3) != 0;
     a.copies = !a.moves && a.from != a.to && pick(2) != 0;
     a.effect = pick(6);
@@ -524,7 +525,9 @@ class RandomTask {
     if (!needs[a.need]) return false;
     if (a.test != 0) {
       const Answer ok = asked("ok" + n, from, at, missed);
-      if (ok.kind != (a.test == 1 ? Answer::Kind::Value : Answer::Kind::Impossible)) return false;
+      if (ok.kind == Answer::Kind::NotFound) return false;
+      const bool wanted = a.test == 3 ? !at.p : a.test == 1;
+      if ((ok.kind == Answer::Kind::Value) != wanted) return false;
     }
     next = at;
     int& to = a.to == 0 ? next.s : next.t;
