@@ -2,19 +2,18 @@
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/robot/kinematics.h>
-#include <kaboum/robot/mesh_files.h>
 #include <kaboum/robot/robot_file.h>
 #include <kaboum/world/motion_check.h>
 #include <kaboum/world/scene.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <random>
 
 #include "engine.h"
+#include "random_cell.h"
 #include "scene_file.h"
 #include "timing.h"
 
@@ -28,19 +27,6 @@ using namespace kaboum;
 using collide::Engine;
 using collide::Model;
 
-std::vector<double> random_values(const robot::Robot& robot, std::mt19937_64& random) {
-  std::vector<double> q;
-  for (const robot::Variable& v : robot.variables)
-    q.push_back(std::uniform_real_distribution<double>(std::max(v.lower.value_or(-3), -3.0),
-                                                       std::min(v.upper.value_or(3), 3.0))(random));
-  return q;
-}
-
-geom::Mesh placed(geom::Mesh mesh, const geom::Transform& pose) {
-  for (geom::Vec3& v : mesh.vertices) v = pose * v;
-  return mesh;
-}
-
 void print(const char* name, const collide::Statistics& s, double against = 0) {
   std::printf("%-46s mean %9.2f us, median %9.2f, 99 %% %9.2f, most %9.2f", name, s.mean, s.median,
               s.p99, s.most);
@@ -52,7 +38,7 @@ std::vector<world::WorldState> random_states(const world::Checker& checker, std:
                                              std::mt19937_64& random) {
   std::vector<world::WorldState> out(count, initial_state(checker.world()));
   for (world::WorldState& s : out)
-    s.q[0] = random_values(checker.world().robots[0].kinematics, random);
+    s.q[0] = collide::random_values(checker.world().robots[0].kinematics, random);
   return out;
 }
 
@@ -83,20 +69,13 @@ struct Models {
 Models models_of(const world::World& world, const robot::RobotFile& file,
                  const geom::Mesh& object) {
   Models out;
-  for (std::uint32_t l = 0; l < file.robot.links.size(); ++l)
-    for (const robot::Geometry& g : file.robot.links[l].collision) {
-      if (g.shape != robot::Geometry::Shape::Mesh) continue;
-      geom::Mesh mesh = io::read_mesh(robot::resolve_mesh(g.mesh, file.path, {})).mesh;
-      for (geom::Vec3& v : mesh.vertices) v = g.origin * v.cwiseProduct(g.size);
-      out.triangles.robot.push_back({l, std::move(mesh)});
-    }
+  out.triangles = collide::triangles_of(world, file, object);
   for (const world::LinkShape& shape : world.robots[0].shapes)
     for (std::size_t i = 0; i < shape.outer.size(); ++i)
       out.sets.robot.push_back({shape.link, shape.outer.body(i).hull});
   for (const world::Object& o : world.objects) {
-    out.triangles.scene.push_back(placed(object, o.pose));
     for (std::size_t i = 0; i < o.outer.size(); ++i)
-      out.sets.scene.push_back(placed(o.outer.body(i).hull, o.pose));
+      out.sets.scene.push_back(collide::placed(o.outer.body(i).hull, o.pose));
   }
   std::printf("%zu bodies of the robot, %zu objects with %zu bodies (mesh of %zu triangles)\n",
               out.sets.robot.size(), world.objects.size(), out.sets.scene.size(),
@@ -208,19 +187,7 @@ int main(int argc, char** argv) {
     for (std::uint32_t b = a + 1; b < robot.kinematics.links.size(); ++b)
       robot.allowed.push_back({a, b, world::AllowedPair::Reason::Stated});
   std::mt19937_64 random(7);
-  // Objects in the arm's reach, off its base.
-  std::uniform_real_distribution<double> from(-1, 1);
-  double reach = 0;
-  for (const robot::Joint& joint : robot.kinematics.joints)
-    reach += joint.origin.translation.norm();
-  for (world::Object& o : world.objects) {
-    geom::Vec3 at;
-    do {
-      at = reach * geom::Vec3(from(random), from(random), from(random));
-    } while (at.head<2>().norm() < 0.3 * reach || at.norm() > 1.1 * reach);
-    const geom::Vec3 axis = geom::Vec3(from(random), from(random), from(random)).normalized();
-    o.pose = {robot::rotation_about(axis, 3 * from(random)), at};
-  }
+  collide::scatter_objects(world, random);
   const world::Checker checker(world);
   const std::vector<world::WorldState> anywhere = random_states(checker, count, random),
                                        near = states_near_contact(checker, count, random);

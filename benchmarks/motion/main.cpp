@@ -3,7 +3,6 @@
 #include <kaboum/motion/find_path.h>
 #include <kaboum/motion/trajectory.h>
 #include <kaboum/robot/kinematics.h>
-#include <kaboum/robot/link_meshes.h>
 #include <ompl/base/spaces/RealVectorStateSpace.h>
 #include <ompl/geometric/SimpleSetup.h>
 #include <ompl/geometric/planners/rrt/RRTConnect.h>
@@ -11,18 +10,18 @@
 #include <ompl/util/RandomNumbers.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
 #include <random>
 
+#include "collision/random_cell.h"
 #include "engine.h"
 #include "scene_file.h"
 
 /// Paths for a robot of a scene among random objects: find_path, and RRT-Connect of OMPL with
 /// configurations by the same predicates at its usual resolution, in one run; all by CPU time.
-/// motion-benchmark SCENE URDF MESH [QUERIES [OBJECTS]]: the scene's first robot is that of the
+/// motion-benchmark SCENE URDF MESH [QUERIES]: the scene's first robot is that of the
 /// URDF; its objects have the mesh, and are put somewhere by chance.
 namespace {
 
@@ -55,14 +54,6 @@ struct Query {
   Values start, goal;
 };
 
-Values random_values(const robot::Robot& robot, std::mt19937_64& random) {
-  Values q;
-  for (const robot::Variable& v : robot.variables)
-    q.push_back(std::uniform_real_distribution<double>(std::max(v.lower.value_or(-3), -3.0),
-                                                       std::min(v.upper.value_or(3), 3.0))(random));
-  return q;
-}
-
 /// Ends that are free.
 std::vector<Query> random_queries(const world::Checker& checker, std::size_t count,
                                   std::mt19937_64& random) {
@@ -72,7 +63,7 @@ std::vector<Query> random_queries(const world::Checker& checker, std::size_t cou
   std::size_t tries = 0;
   for (Query& query : out)
     for (Values* end : {&query.start, &query.goal}) do {
-        *end = state.q[0] = random_values(checker.world().robots[0].kinematics, random);
+        *end = state.q[0] = collide::random_values(checker.world().robots[0].kinematics, random);
         if (++tries > 100'000) throw Error(ErrorCode::LimitReached, "nearly nothing is free");
       } while (checker.find_contact(state, scratch));
   std::printf("%.0f %% of random configurations are free\n",
@@ -89,25 +80,6 @@ std::size_t contacts_on(const robot::Path& path, const robot::Robot& robot,
   for (std::size_t k = 0; k < trajectory.samples(); ++k) {
     engine.place(forward(robot, trajectory.sample(k)));
     out += engine.collide() ? 1 : 0;
-  }
-  return out;
-}
-
-collide::Model triangles_of(const world::World& world, const robot::RobotFile& file,
-                            const geom::Mesh& object) {
-  collide::Model out{"triangles", false, 0, {}, {}};
-  const robot::LinkMeshes meshes = link_meshes(file, {});
-  for (const robot::LinkShape& shape : meshes.shapes) {
-    const robot::Geometry& g = file.robot.links[shape.link].collision[shape.index];
-    if (!shape.mesh) continue;
-    geom::Mesh mesh = io::read_mesh(meshes.meshes[*shape.mesh].file).mesh;
-    for (geom::Vec3& v : mesh.vertices) v = g.origin * v.cwiseProduct(g.size);
-    out.robot.push_back({shape.link, std::move(mesh)});
-  }
-  for (const world::Object& o : world.objects) {
-    geom::Mesh mesh = object;
-    for (geom::Vec3& v : mesh.vertices) v = o.pose * v;
-    out.scene.push_back(std::move(mesh));
   }
   return out;
 }
@@ -179,23 +151,12 @@ int main(int argc, char** argv) try {
   const geom::Mesh object = io::read_mesh(argv[3]).mesh;
   const robot::Robot& robot = world.robots.at(0).kinematics;
   std::mt19937_64 random(7);
-  // Objects in the arm's reach, off its base.
-  std::uniform_real_distribution<double> from(-1, 1);
-  double reach = 0;
-  for (const robot::Joint& joint : robot.joints) reach += joint.origin.translation.norm();
-  for (world::Object& o : world.objects) {
-    geom::Vec3 at;
-    do {
-      at = reach * geom::Vec3(from(random), from(random), from(random));
-    } while (at.head<2>().norm() < 0.3 * reach || at.norm() > 1.1 * reach);
-    const geom::Vec3 axis = geom::Vec3(from(random), from(random), from(random)).normalized();
-    o.pose = {robot::rotation_about(axis, 3 * from(random)), at};
-  }
+  collide::scatter_objects(world, random);
   const world::Checker checker(world);
   const std::vector<Query> queries = random_queries(checker, count, random);
   std::vector<double> times, round;
   std::size_t straight = 0, contacts = 0, samples = 0;
-  const auto engine = collide::make_fcl(triangles_of(world, file, object));
+  const auto engine = collide::make_fcl(collide::triangles_of(world, file, object));
   motion::Spent spent;
   double work = 0, seconds = 0;
   for (const Query& query : queries) {
