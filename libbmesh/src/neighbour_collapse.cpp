@@ -53,16 +53,11 @@ bool turns(const Vec3& before, const Vec3& after) {
 
 }  // namespace
 
-NeighbourCollapse::NeighbourCollapse(Optimiser& optimiser)
-    : optimiser_(optimiser),
-      m_(optimiser.m_),
-      notes_(optimiser.notes_),
-      sampled_(optimiser.sampled_),
-      certificate_(optimiser.certificate_),
-      options_(optimiser.options_),
-      statistics_(optimiser.statistics_),
-      steps_(optimiser.steps_),
-      step_(optimiser.step_),
+NeighbourCollapse::NeighbourCollapse(const OptimiserContext& context, Optimiser& optimiser,
+                                     StarStep& step)
+    : OptimiserContext(context),
+      optimiser_(optimiser),
+      step_(step),
       before_(m_, sampled_, statistics_, steps_),
       mark_(m_.position.size(), 0) {}
 

@@ -5,28 +5,25 @@
 #include <optional>
 #include <vector>
 
-#include "error_bound_certificate.h"
+#include "optimiser_context.h"
 #include "region_snapshot.h"
 #include "star_step.h"
 
 namespace kaboum::bmesh {
 
 class Optimiser;
-struct VertexNotes;
 
 /// Contractions that move the vertices around with them.
-class NeighbourCollapse {
+class NeighbourCollapse : private OptimiserContext {
  public:
-  /// Works on what the optimiser works on, which must outlive this object and
-  /// not move.
-  explicit NeighbourCollapse(Optimiser& optimiser);
+  /// Both must outlive this object and not move.
+  NeighbourCollapse(const OptimiserContext& context, Optimiser& optimiser, StarStep& step);
 
   /// Optimiser::collapse_with_neighbours.
   double collapse(std::uint32_t a, std::uint32_t b, double limit);
 
  private:
-  /// Where a point was when the original was last sought from it, how far, and
-  /// where.
+  /// Where a point was when the original was last sought from it, how far, and where.
   struct Trail {
     Vec3 position;
     double distance;
@@ -45,13 +42,6 @@ class NeighbourCollapse {
   void contract(std::uint32_t a, std::uint32_t b, const Vec3& to);
 
   Optimiser& optimiser_;
-  WorkingMesh& m_;
-  VertexNotes& notes_;
-  SampledError& sampled_;
-  ErrorBoundCertificate* certificate_;
-  const DecimateOptions& options_;
-  DecimateStatistics& statistics_;
-  std::vector<Step>* steps_;
   StarStep& step_;
   RegionSnapshot before_;
 

@@ -23,19 +23,11 @@ constexpr int kAttempts = 5;
 
 }  // namespace
 
-Optimiser::Optimiser(WorkingMesh& mesh, VertexNotes& notes, SampledError& sampled,
-                     ReferenceSolid* solid, const geom::Mesh& original,
-                     ErrorBoundCertificate* certificate, const DecimateOptions& options,
-                     DecimateStatistics& statistics, std::vector<Step>* steps)
-    : m_(mesh),
-      notes_(notes),
-      sampled_(sampled),
-      certificate_(certificate),
-      options_(options),
-      statistics_(statistics),
-      steps_(steps),
-      step_(mesh, sampled, solid, original, options, statistics, steps),
-      collapse_(*this) {}
+Optimiser::Optimiser(const OptimiserContext& context, ReferenceSolid* solid,
+                     const geom::Mesh& original)
+    : OptimiserContext(context),
+      step_(m_, sampled_, solid, original, options_, statistics_, steps_),
+      collapse_(*this, *this, step_) {}
 
 void Optimiser::disturb(std::uint32_t v) {
   notes_.disturb(v);

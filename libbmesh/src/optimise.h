@@ -2,10 +2,9 @@
 
 #include <kaboum/bmesh/decimate.h>
 
-#include <atomic>
-
 #include "error_bound_certificate.h"
 #include "neighbour_collapse.h"
+#include "optimiser_context.h"
 #include "placement.h"
 #include "reference_solid.h"
 #include "sampled_error.h"
@@ -13,25 +12,6 @@
 #include "working_mesh.h"
 
 namespace kaboum::bmesh {
-
-/// What the optimisers of one mesh know of its vertices.
-struct VertexNotes {
-  explicit VertexNotes(std::size_t vertices)
-      : hint(vertices, 0), version(vertices, 0), movable(vertices, 1), flippable(vertices, 1) {}
-
-  /// The star of v has changed. Safe to call from several threads.
-  void disturb(std::uint32_t v) {
-    std::atomic_ref(movable[v]).store(1, std::memory_order_relaxed);
-    std::atomic_ref(flippable[v]).store(1, std::memory_order_relaxed);
-    std::atomic_ref(version[v]).fetch_add(1, std::memory_order_relaxed);
-  }
-
-  std::vector<std::uint32_t> hint;     // where the original is near
-  std::vector<std::uint32_t> version;  // raised when its star changes
-  // Its star has changed since it was last tried in vain to move it, and since
-  // the last round of flips.
-  std::vector<char> movable, flippable;
-};
 
 /// Gives back what decimation has added beyond need: moves vertices towards the
 /// original and flips edges, so that the deviation falls. Source:
@@ -45,15 +25,11 @@ struct VertexNotes {
 /// Several optimisers of one mesh, with the same notes and no error bound, may
 /// pull back and collapse at once where none moves a vertex that another one
 /// moves, or a neighbour of such a vertex.
-class Optimiser {
+class Optimiser : private OptimiserContext {
  public:
-  /// All references must outlive this object. `solid` may be null for
-  /// Direction::Any only, `certificate` when there is no error bound, `steps`
-  /// when nobody asks for them.
-  Optimiser(WorkingMesh& mesh, VertexNotes& notes, SampledError& sampled, ReferenceSolid* solid,
-            const geom::Mesh& original, ErrorBoundCertificate* certificate,
-            const DecimateOptions& options, DecimateStatistics& statistics,
-            std::vector<Step>* steps);
+  /// What the references are to must outlive this object. `solid` may be null for Direction::Any
+  /// only.
+  Optimiser(const OptimiserContext& context, ReferenceSolid* solid, const geom::Mesh& original);
   Optimiser(const Optimiser&) = delete;
   Optimiser& operator=(const Optimiser&) = delete;
   ~Optimiser() = default;
@@ -106,14 +82,6 @@ class Optimiser {
   friend class NeighbourCollapse;
 
   bool move_towards(std::uint32_t v, const Vec3& target, bool alone);
-
-  WorkingMesh& m_;
-  VertexNotes& notes_;
-  SampledError& sampled_;
-  ErrorBoundCertificate* certificate_;
-  const DecimateOptions& options_;
-  DecimateStatistics& statistics_;
-  std::vector<Step>* steps_;
 
   StarStep step_;
   NeighbourCollapse collapse_;

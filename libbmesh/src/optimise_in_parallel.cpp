@@ -17,8 +17,9 @@ constexpr std::size_t kMoves = 64;
 }  // namespace
 
 ParallelOptimiser::Worker::Worker(ParallelOptimiser& of)
-    : optimiser(of.m_, of.notes_, of.sampled_, of.solid_, of.original_, nullptr, of.options_,
-                statistics, of.options_.steps != nullptr ? &steps : nullptr) {
+    : optimiser({of.m_, of.notes_, of.sampled_, nullptr, of.options_, statistics,
+                 of.options_.steps != nullptr ? &steps : nullptr},
+                of.solid_, of.original_) {
   optimiser.set_dense(of.dense_);
 }
 
@@ -37,8 +38,8 @@ ParallelOptimiser::ParallelOptimiser(WorkingMesh& mesh, SampledError& sampled,
       statistics_(statistics),
       dense_(dense),
       work_(work),
-      single_(mesh, notes_, sampled, solid, original, certificate, options, statistics,
-              options.steps),
+      single_({mesh, notes_, sampled, certificate, options, statistics, options.steps}, solid,
+              original),
       workers_([this] { return Worker(*this); }),
       mark_(mesh.position.size(), 0) {
   single_.set_dense(dense);
