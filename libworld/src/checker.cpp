@@ -44,8 +44,8 @@ void require_fits(const World& world, const WorldState& state) {
     for (const double value : q)
       if (!(std::abs(value) <= kLargest))
         throw Error(ErrorCode::InvalidArgument, "a joint value that is not from -1e9 to 1e9");
-  for (const Transform& pose : state.poses)
-    if (!(pose.translation.cwiseAbs().maxCoeff() <= kLargest))
+  for (std::size_t o = 0; o < state.poses.size(); ++o)
+    if (!state.attachments[o] && !(state.poses[o].translation.cwiseAbs().maxCoeff() <= kLargest))
       throw Error(ErrorCode::InvalidArgument, "a position that is not from -1e9 to 1e9");
   for (const auto& a : state.attachments)
     if (a && (a->robot >= world.robots.size() ||

@@ -144,9 +144,9 @@ TEST(CertifySet, ClaimsSayWhatTheyAreAbout) {
 template <class T>
 constexpr bool kSealed =
     !std::is_aggregate_v<T> &&
-    !std::is_constructible_v<T, decltype(std::declval<T>().artefact()),
-                             decltype(std::declval<T>().certificate()), std::vector<char>> &&
-    !std::is_constructible_v<T, decltype(std::declval<T>().artefact())> &&
+    !std::is_constructible_v<T, decltype(std::declval<T&>().artefact()),
+                             decltype(std::declval<T&>().certificate()), std::vector<char>> &&
+    !std::is_constructible_v<T, decltype(std::declval<T&>().artefact())> &&
     std::is_const_v<std::remove_reference_t<decltype(std::declval<T&>().artefact())>> &&
     std::is_const_v<std::remove_reference_t<decltype(std::declval<T&>().certificate())>> &&
     std::is_const_v<std::remove_reference_t<decltype(std::declval<T&>().bytes())>>;
@@ -167,12 +167,22 @@ TEST(Certified, WhatIsMadeByDefaultClaimsNothing) {
   EXPECT_FALSE(CertifiedSet());
   EXPECT_TRUE(is_internal_error([] { (void)to_json(CertifiedSet()); }));
   EXPECT_TRUE(is_internal_error([] { (void)claims(CertifiedMesh()); }));
-  EXPECT_TRUE(is_internal_error([] { (void)CertifiedMesh().bytes(); }));
-  EXPECT_TRUE(is_internal_error([] { (void)CertifiedSweep().certificate(); }));
+  EXPECT_TRUE(is_internal_error([none = CertifiedMesh()] { (void)none.bytes(); }));
+  EXPECT_TRUE(is_internal_error([none = CertifiedSweep()] { (void)none.certificate(); }));
   EXPECT_TRUE(is_internal_error([] {
     (void)certify_sweep(robot::RobotFile(), CertifiedBodies(), {{0}, {1}}, SweepRequest());
   }));
 }
+
+/// `for (auto& body : certify_set(…)->artefact().bodies)` would loop over what is gone.
+template <class Made>
+constexpr bool kLendsParts = requires(Made made) {
+  static_cast<Made&&>(made).artefact();
+}
+|| requires(Made made) { static_cast<Made&&>(made).bytes(); }
+|| requires(Made made) { static_cast<Made&&>(made).certificate(); };
+static_assert(!kLendsParts<CertifiedSet> && !kLendsParts<const CertifiedMesh>);
+static_assert(kLendsParts<CertifiedSet&>);
 
 TEST(Certified, WhatWasMovedFromClaimsNothing) {
   auto made = certify_set(torus(), "", fast(5));

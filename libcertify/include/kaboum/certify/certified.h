@@ -22,10 +22,14 @@ class Certified {
 
   /// As read back from the bytes, where there are some.
   /// @throws Error{Internal}, as all below, of a value made by default or moved from.
-  [[nodiscard]] const Artefact& artefact() const { return value().artefact; }
-  [[nodiscard]] const Certificate& certificate() const { return value().certificate; }
+  [[nodiscard]] const Artefact& artefact() const& { return value().artefact; }
+  [[nodiscard]] const Certificate& certificate() const& { return value().certificate; }
   /// What is to be written; empty where nothing is.
-  [[nodiscard]] const std::vector<char>& bytes() const { return value().bytes; }
+  [[nodiscard]] const std::vector<char>& bytes() const& { return value().bytes; }
+  // Parts of a temporary would be gone before they are used.
+  const Artefact& artefact() const&& = delete;
+  const Certificate& certificate() const&& = delete;
+  const std::vector<char>& bytes() const&& = delete;
 
  private:
   friend class Issuer;
