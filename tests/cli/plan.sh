@@ -54,4 +54,14 @@ expect 2 "unknown command 'sovle'; did you mean 'solve'?" "$BIN/kaboum-plan" sov
 expect 2 "unknown command 'x.kpl'; commands: solve, check, show, convert" "$BIN/kaboum-plan" x.kpl
 expect 2 'a command is to come first: solve, check' "$BIN/kaboum-plan"
 expect 2 'unknown option --tre; did you mean --tree?' "$BIN/kaboum-plan" solve x.kpl --tre
+# The example of docs/planning/language.md, as it stands there.
+LANGUAGE=$MESHES/../docs/planning/language.md
+block() { awk -v n="$1" '/^### /{on = /to be run/} on && /^```/{i++; next} on && i == 2 * n - 1' "$LANGUAGE"; }
+block 1 >shelf.kpl
+block 2 >told.txt
+[ -s told.txt ] || fail "no example in $LANGUAGE"
+expect 0 'solved' "$P" solve shelf.kpl -o plan.json
+shows 0 'valid' "$P" check shelf.kpl --plan plan.json
+expect 0 '' "$P" show shelf.kpl --plan plan.json -o shown.txt
+cmp -s told.txt shown.txt || fail "another plan than docs/planning/language.md has: $(cat shown.txt)"
 finish

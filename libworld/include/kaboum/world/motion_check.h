@@ -36,6 +36,9 @@ struct MotionAnswer {
 /// enlarged by as much as they move in half of it: LinkMotion's bounds (docs/algorithms/
 /// swept-volumes.md); other stretches are halved. What the robot carries moves with it.
 ///
+/// Looked at are pairs with a link of this robot or with what it carries. Others may touch, as
+/// another robot and an object, without being seen: Checker::find_contacts tells that of a state.
+///
 /// @param path  a value per variable at each waypoint; the state's own values are not looked at.
 /// @throws as Checker::find_contact; Error{InvalidArgument} for a path that is empty or does not
 ///   fit, and a resolution that is not above 0.
