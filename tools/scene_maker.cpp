@@ -27,6 +27,12 @@ MadeScene make_scene(const SceneMaker& maker) {
     for (const NamedFile& file : *files)
       if (!names.insert(file.name).second)
         throw Error(ErrorCode::InvalidArgument, "the name '" + file.name + "' is used twice");
+  // What is not there is noticed before anything is computed, which takes long.
+  for (const auto* files : {&maker.robots, &maker.objects, &maker.regions})
+    for (const NamedFile& file : *files)
+      if (!fs::exists(file.file))
+        throw Error(ErrorCode::InvalidInput,
+                    file.file + ": there is no such file (" + file.name + ")");
   // Everything is computed before anything is written.
   using Direction = certify::SetRequest::Direction;
   const fs::path folder = fs::path(maker.scene).replace_extension();
@@ -42,16 +48,25 @@ MadeScene make_scene(const SceneMaker& maker) {
   for (const NamedFile& o : maker.objects) {
     Json out = {{"name", o.name}, {"pose", origin}};
     out["outer"] = sets.mesh(o.name, o.file, Direction::Outer, container(o.name), maker.options);
-    if (maker.inner)
-      out["inner"] =
+    if (maker.inner) {
+      Json inner =
           sets.mesh(o.name, o.file, Direction::Inner, container(o.name + "-inner"), maker.options);
+      if (inner.is_null())
+        sets.notes.push_back(o.name + ": no body lies within " + o.file +
+                             " at this --epsilon; it has no inner set");
+      else
+        out["inner"] = std::move(inner);
+    }
     objects.push_back(std::move(out));
   }
-  for (const NamedFile& r : maker.regions)
-    regions.push_back({{"name", r.name},
-                       {"pose", origin},
-                       {"inner", sets.mesh(r.name, r.file, Direction::Inner,
-                                           container(r.name + "-inner"), maker.options)}});
+  for (const NamedFile& r : maker.regions) {
+    Json inner =
+        sets.mesh(r.name, r.file, Direction::Inner, container(r.name + "-inner"), maker.options);
+    if (inner.is_null())
+      throw Error(ErrorCode::InvalidInput, "region '" + r.name + "': no body lies within " +
+                                               r.file + " at this --epsilon: give a smaller one");
+    regions.push_back({{"name", r.name}, {"pose", origin}, {"inner", std::move(inner)}});
+  }
   const Json scene = {{"kaboum_scene", 1},
                       {"unit", maker.options.sets.unit},
                       {"robots", robots},

@@ -139,6 +139,7 @@ Json SceneSetMaker::mesh(const std::string& name, const std::string& file,
   for (std::string& line : of_mesh.lines()) notes.push_back(std::move(line));
   inputs.insert(file);
   inputs.insert(made.other_files.begin(), made.other_files.end());
+  if (made.found.set.artefact().bodies.empty()) return nullptr;
   say_size(name, made.found.set.artefact(), options.sets.unit);
   Json sources = Json::array();
   add_sources(sources, file, made);

@@ -33,7 +33,8 @@ class SceneSetMaker {
   Json robot(const std::string& name, const std::string& file, const std::filesystem::path& folder,
              const SceneSetOptions& options);
 
-  /// A mesh's set: {"file", "sha256", "made_from"}. @param container  to be written
+  /// A mesh's set: {"file", "sha256", "made_from"}; null where no body lies within the mesh at this
+  /// epsilon. @param container  to be written
   Json mesh(const std::string& name, const std::string& file,
             certify::SetRequest::Direction direction, const std::filesystem::path& container,
             const SceneSetOptions& options);

@@ -172,8 +172,12 @@ class Update {
     if (!set.contains("made_from") || set.at("made_from").empty())
       fail(path_of(set).string() +
            " is out of date, and 'made_from' does not say which mesh it is made from");
-    set = sets_.mesh(thing.at("name").get<std::string>(), mesh_of(set), direction, path_of(set),
-                     options_of(set));
+    Json made = sets_.mesh(thing.at("name").get<std::string>(), mesh_of(set), direction,
+                           path_of(set), options_of(set));
+    if (made.is_null())
+      fail("no body lies within " + mesh_of(set) + " any more at the epsilon of " +
+           path_of(set).string() + ": make that anew with a smaller one, or take it out");
+    set = std::move(made);
     made_ = true;
   }
 
