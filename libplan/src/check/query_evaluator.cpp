@@ -68,24 +68,16 @@ std::optional<bool> QueryEvaluator::truth(const Query& q, std::vector<Index>& sl
       return result;
     }
     case Query::Kind::Xor: {
-      int certain = 0;
-      bool unresolved = false;
+      std::optional<bool> result = false;
       for (const Query& c : q.children) {
-        const std::optional<bool> t = truth(c, slots, k);
-        certain += t == true ? 1 : 0;
-        unresolved |= !t;
+        const std::optional<bool> alone = only(q, c, slots, k);
+        if (alone == true) return true;
+        if (!alone) result = std::nullopt;
       }
-      if (certain < 2 && unresolved) return std::nullopt;
-      return certain == 1 &&
-             std::none_of(q.children.begin(), q.children.end(), [&](const Query& c) {
-               return truth(c, slots, k) == false && may_hold(c, slots, k);
-             });
+      return result;
     }
-    case Query::Kind::Not: {
-      const std::optional<bool> t = truth(q.children[0], slots, k);
-      if (!t) return t;
-      return !*t && !may_hold(q.children[0], slots, k);
-    }
+    case Query::Kind::Not:
+      return denied(q.children[0], slots, k);
     case Query::Kind::Exists:
     case Query::Kind::ForAll: {
       const bool decides = q.kind == Query::Kind::Exists;
@@ -124,36 +116,63 @@ std::optional<bool> QueryEvaluator::truth(const Query& q, std::vector<Index>& sl
   throw Error(ErrorCode::Internal, "unexpected query");
 }
 
-bool QueryEvaluator::may_hold(const Query& q, std::vector<Index>& slots,
-                              const RuntimeKnowledge& k) const {
-  const auto child = [&](const Query& c) { return may_hold(c, slots, k); };
+std::optional<bool> QueryEvaluator::denied(const Query& q, std::vector<Index>& slots,
+                                           const RuntimeKnowledge& k) const {
+  // false: not all of them, true: one of them; nullopt where that is not found.
+  const auto of = [&](bool one, const auto& parts, const auto& denies) {
+    std::optional<bool> result = !one;
+    for (const auto& part : parts) {
+      const std::optional<bool> t = denies(part);
+      if (t == one) return std::optional<bool>(one);
+      if (!t) result = std::nullopt;
+    }
+    return result;
+  };
+  const auto child = [&](const Query& c) { return denied(c, slots, k); };
   switch (q.kind) {
     case Query::Kind::And:
-      return std::all_of(q.children.begin(), q.children.end(), child);
+      return of(true, q.children, child);
     case Query::Kind::Or:
-      return std::any_of(q.children.begin(), q.children.end(), child);
+      return of(false, q.children, child);
     case Query::Kind::Not:
-      return truth(q.children[0], slots, k) != true;
-    case Query::Kind::Xor:
-      return truth(q, slots, k) == true ||
-             std::any_of(q.children.begin(), q.children.end(),
-                         [&](const Query& c) { return truth(c, slots, k) == false && child(c); });
+      return truth(q.children[0], slots, k);
+    case Query::Kind::Xor:  // none is the only one
+      return of(false, q.children, [&](const Query& c) -> std::optional<bool> {
+        const std::optional<bool> t = denied(c, slots, k);
+        if (t == true) return t;
+        const auto another = [&](const Query& other) -> std::optional<bool> {
+          return &other == &c ? std::optional<bool>(false) : truth(other, slots, k);
+        };
+        const std::optional<bool> more = of(true, q.children, another);
+        return more == true ? more : t && more ? std::optional<bool>(false) : std::nullopt;
+      });
     case Query::Kind::Exists:
-    case Query::Kind::ForAll: {
-      const bool any = q.kind == Query::Kind::Exists;
-      for (const Index o : model_.types[q.type].objects) {
+    case Query::Kind::ForAll:
+      return of(q.kind == Query::Kind::ForAll, model_.types[q.type].objects, [&](Index o) {
         slots.at(q.symbol) = o;
-        if (child(q.children[0]) == any) return any;
-      }
-      return !any;
+        return child(q.children[0]);
+      });
+    case Query::Kind::External: {
+      for (const Argument& a : q.arguments)
+        if (!value(a, slots, k)) return false;  // it says nothing
+      const std::optional<bool> t = truth(q, slots, k);
+      return t ? std::optional<bool>(!*t) : t;
     }
-    case Query::Kind::External:
-      return truth(q, slots, k) == true ||
-             std::any_of(q.arguments.begin(), q.arguments.end(),
-                         [&](const Argument& a) { return !value(a, slots, k); });
     default:
-      return truth(q, slots, k) == true;
+      return truth(q, slots, k) == false;
   }
+}
+
+std::optional<bool> QueryEvaluator::only(const Query& q, const Query& one,
+                                         std::vector<Index>& slots,
+                                         const RuntimeKnowledge& k) const {
+  std::optional<bool> result = true;
+  for (const Query& c : q.children) {
+    const std::optional<bool> t = &c == &one ? truth(c, slots, k) : denied(c, slots, k);
+    if (t == false) return false;
+    if (!t) result = std::nullopt;
+  }
+  return result;
 }
 
 std::optional<Index> QueryEvaluator::value(const Argument& a, const std::vector<Index>& slots,

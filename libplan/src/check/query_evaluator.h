@@ -28,12 +28,12 @@ class QueryEvaluator {
   /// @param plan  says the seed, and how often calls that find nothing are made again.
   QueryEvaluator(const Model& model, const Plan& plan);
 
-  /// `!q` holds neither where `q` does nor where it may: where the argument of a call is unknown.
-  [[nodiscard]] bool may_hold(const Query& q, std::vector<Index>& slots,
-                              const RuntimeKnowledge& k) const;
   /// nullopt: it rests on an external function that finds nothing.
   std::optional<bool> truth(const Query& q, std::vector<Index>& slots,
                             const RuntimeKnowledge& k) const;
+  /// Whether `!q` holds. A call with an argument that is not known neither holds nor is denied.
+  std::optional<bool> denied(const Query& q, std::vector<Index>& slots,
+                             const RuntimeKnowledge& k) const;
   bool holds(const Query& q, std::vector<Index>& slots, const RuntimeKnowledge& k) const {
     return truth(q, slots, k).value_or(false);
   }
@@ -53,6 +53,9 @@ class QueryEvaluator {
   [[nodiscard]] std::string name(Index object) const { return model_.name_of(object, handles_); }
 
  private:
+  /// Whether `one` holds and the other children of `q` are denied.
+  std::optional<bool> only(const Query& q, const Query& one, std::vector<Index>& slots,
+                           const RuntimeKnowledge& k) const;
   bool holds_of_value(const Query& q, const std::vector<Index>& slots,
                       const RuntimeKnowledge& k) const;
   ExternalResult call(const Query& q, const std::vector<Index>& slots, const RuntimeKnowledge& k,

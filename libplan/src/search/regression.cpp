@@ -158,8 +158,8 @@ void Regression::require_footprint(Index call, const Word* state, std::vector<Fo
 Formula Regression::freeze(Formula f, const Word* state) {
   FormulaPool& pool = task_.pool();
   const bool truth = pool.holds(f, state);
-  if (!pool.depends_on_calls(f)) return truth ? f : pool.negate(f);
   const FormulaPool::Node n = pool.node(f);
+  if (!n.calls) return truth ? f : pool.negate(f);
   const std::vector<Formula> children = is_connective(n.kind)
                                             ? std::vector<Formula>(pool.begin(f), pool.end(f))
                                             : std::vector<Formula>{};

@@ -61,8 +61,12 @@ Formula FormulaPool::leaf(Kind kind, Index fluent, Index value) {
 Formula FormulaPool::negate(Formula f) {
   if (f == kFalse) return kTrue;
   if (f == kTrue) return kFalse;
-  if (nodes_[f].kind == Kind::Not) return *begin(f);
-  return add({Kind::Not, false, 0, 0}, {f});
+  const Kind kind = nodes_[f].kind;
+  if (kind == Kind::Not) return *begin(f);
+  if (!nodes_[f].calls || kind == Kind::External) return add({Kind::Not, false, 0, 0}, {f});
+  std::vector<Formula> children(begin(f), end(f));
+  for (Formula& c : children) c = negate(c);
+  return kind == Kind::And ? any(children) : all(children);
 }
 
 Formula FormulaPool::join(Kind kind, const std::vector<Formula>& children) {
@@ -113,7 +117,16 @@ Formula FormulaPool::one(const std::vector<Formula>& children) {
   }
   if (kept.empty()) return kFalse;
   if (kept.size() == 1) return kept[0];
-  return add({Kind::Xor, false, 0, 0}, std::move(kept));
+  if (std::none_of(kept.begin(), kept.end(), [&](Formula c) { return nodes_[c].calls; }))
+    return add({Kind::Xor, false, 0, 0}, std::move(kept));
+  std::vector<Formula> only;  // each, and none of the others
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    std::vector<Formula> parts;
+    for (std::size_t j = 0; j < kept.size(); ++j)
+      parts.push_back(j == i ? kept[j] : negate(kept[j]));
+    only.push_back(all(parts));
+  }
+  return any(only);
 }
 
 Formula FormulaPool::bits(Index word, Word mask, Word value) {

@@ -60,6 +60,8 @@ class FormulaPool {
   FormulaPool(const Model& model, const Layout& layout, Limits& limits);
 
   Formula leaf(Kind kind, Index fluent, Index value = 0);
+  /// What makes calls is negated down to the calls: a formula that is not Yes may say nothing,
+  /// where an argument is not known.
   Formula negate(Formula f);
   Formula all(const std::vector<Formula>& children);  ///< conjunction, in order; flattened
   Formula any(const std::vector<Formula>& children);  ///< disjunction
@@ -76,10 +78,6 @@ class FormulaPool {
   [[nodiscard]] bool holds(Formula f, const Word* state) const {
     return evaluate(f, state) == Truth::Yes;
   }
-  /// Whether `f` holds, or would if calls whose arguments are not known said so: then its negation
-  /// does not hold.
-  [[nodiscard]] bool may_hold(Formula f, const Word* state) const;
-
   /// Fluents whose sensed value leaves `f` open in `state`.
   void open_fluents(Formula f, const Word* state, std::vector<Index>& out) const;
 
@@ -102,6 +100,8 @@ class FormulaPool {
   [[nodiscard]] Index operand(const Argument& a, const std::vector<Index>& slots) const;
 
  private:
+  /// Whether the External `f` is not called in `state`, for want of a known argument.
+  [[nodiscard]] bool lacks_argument(Formula f, const Word* state) const;
   Formula add(Node node, std::vector<Formula> children);
   Formula join(Kind kind, const std::vector<Formula>& children);
   Formula ground_connective(const Query& q, std::vector<Index>& slots);

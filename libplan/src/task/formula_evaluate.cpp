@@ -24,24 +24,18 @@ Truth joined(const FormulaPool& pool, Formula f, const Word* state) {
   return result;
 }
 
-/// Exactly one of the children.
+/// Exactly one of the children, which make no calls.
 Truth exclusive(const FormulaPool& pool, Formula f, const Word* state) {
   int certain = 0;
   bool open = false;
-  bool unresolved = false;
   for (const Formula *c = pool.begin(f), *last = pool.end(f); c != last; ++c) {
     const Truth t = pool.evaluate(*c, state);
     certain += t == Truth::Yes ? 1 : 0;
     open |= t == Truth::Open;
-    unresolved |= t == Truth::Unresolved;
     if (certain > 1) return Truth::No;
   }
-  if (unresolved) return Truth::Unresolved;
   if (open) return Truth::Open;
-  const auto another = [&](Formula c) {
-    return pool.node(c).calls && !pool.holds(c, state) && pool.may_hold(c, state);
-  };
-  return certain == 1 && std::none_of(pool.begin(f), pool.end(f), another) ? Truth::Yes : Truth::No;
+  return certain == 1 ? Truth::Yes : Truth::No;
 }
 
 }  // namespace
@@ -62,7 +56,7 @@ Truth FormulaPool::evaluate(Formula f, const Word* state) const {
     case Kind::Not: {
       const Truth t = evaluate(*begin(f), state);
       if (t == Truth::Open || t == Truth::Unresolved) return t;
-      return yes(t == Truth::No && !(n.calls && may_hold(*begin(f), state)));
+      return yes(t == Truth::No && !(n.calls && lacks_argument(*begin(f), state)));
     }
     case Kind::IsTrue:
     case Kind::IsFalse: {
@@ -107,25 +101,8 @@ Truth FormulaPool::evaluate(Formula f, const Word* state) const {
   return Truth::No;
 }
 
-bool FormulaPool::may_hold(Formula f, const Word* state) const {
-  const Node& n = nodes_[f];
-  const auto child = [&](Formula c) { return may_hold(c, state); };
-  if (!n.calls) return holds(f, state);
-  switch (n.kind) {
-    case Kind::And:
-      return std::all_of(begin(f), end(f), child);
-    case Kind::Or:
-      return std::any_of(begin(f), end(f), child);
-    case Kind::Not:
-      return !holds(*begin(f), state);
-    case Kind::Xor:
-      return holds(f, state) ||
-             std::any_of(begin(f), end(f), [&](Formula c) { return child(c) && !holds(c, state); });
-    case Kind::External:
-      return calls_.evaluate(n.a, state).unknown_argument || holds(f, state);
-    default:
-      return holds(f, state);
-  }
+bool FormulaPool::lacks_argument(Formula f, const Word* state) const {
+  return calls_.evaluate(nodes_[f].a, state).unknown_argument;
 }
 
 void FormulaPool::open_fluents(Formula f, const Word* state, std::vector<Index>& out) const {
