@@ -16,7 +16,7 @@ class Optimiser;
 /// Contractions that move the vertices around with them.
 class NeighbourCollapse : private OptimiserContext {
  public:
-  /// Both must outlive this object and not move.
+  /// What the context refers to, the optimiser and the step must outlive this object and not move.
   NeighbourCollapse(const OptimiserContext& context, Optimiser& optimiser, StarStep& step);
 
   /// Optimiser::collapse_with_neighbours.

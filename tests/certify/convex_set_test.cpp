@@ -174,7 +174,7 @@ TEST(Certified, WhatIsMadeByDefaultClaimsNothing) {
   }));
 }
 
-/// `for (auto& body : certify_set(…)->artefact().bodies)` would loop over what is gone.
+/// `for (auto& body : (*certify_set(…)).artefact().bodies)` would loop over what is gone.
 template <class Made>
 constexpr bool kLendsParts = requires(Made made) {
   static_cast<Made&&>(made).artefact();

@@ -26,7 +26,8 @@ class Certified {
   [[nodiscard]] const Certificate& certificate() const& { return value().certificate; }
   /// What is to be written; empty where nothing is.
   [[nodiscard]] const std::vector<char>& bytes() const& { return value().bytes; }
-  // Parts of a temporary would be gone before they are used.
+  // Parts of a temporary would be gone before they are used. Through `->` of a temporary optional
+  // they still would: keep what certify_set and its like return.
   const Artefact& artefact() const&& = delete;
   const Certificate& certificate() const&& = delete;
   const std::vector<char>& bytes() const&& = delete;
