@@ -91,8 +91,7 @@ std::string drawing_format(const PlanOptions& o) {
 
 int solve(const PlanOptions& o) {
   const auto start = std::chrono::steady_clock::now();
-  const PlanTexts texts = read_texts(o);
-  const plan::Model model = plan::load(texts.domain, texts.second());
+  const plan::Model model = load_model(o);
   plan::SolveOptions options;
   options.algorithm = kAlgorithms.at(o.search);
   options.timeout = o.timeout;
@@ -109,10 +108,15 @@ int solve(const PlanOptions& o) {
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const Verdict said = verdict(solution);
-  Json report = {{"command", "solve"},    {"domain", o.domain},
-                 {"problem", o.problem},  {"search", o.search},
-                 {"status", said.status}, {"limit", solution.limit},
-                 {"lost", solution.lost}, {"statistics", statistics_json(solution.statistics)}};
+  Json report = {{"command", "solve"},
+                 {"domain", o.domain},
+                 {"problem", o.problem},
+                 {"search", o.search},
+                 {"status", said.status},
+                 {"limit", solution.limit},
+                 {"lost", solution.lost},
+                 {"scene", o.scene},
+                 {"statistics", statistics_json(solution.statistics)}};
   plan::PlanSize size;
   if (solution.outcome == plan::Outcome::Solved) {
     size = plan::measure(model, solution.plan);
@@ -134,8 +138,7 @@ int solve(const PlanOptions& o) {
 }
 
 int check(const PlanOptions& o) {
-  const PlanTexts texts = read_texts(o);
-  const plan::Model model = plan::load(texts.domain, texts.second());
+  const plan::Model model = load_model(o);
   const plan::Plan p = read_plan_file(model, o.plan);
   const plan::CheckResult r = plan::check(model, p);
   write_report(o.common, "kaboum-plan",
@@ -157,8 +160,7 @@ int check(const PlanOptions& o) {
 
 int show(const PlanOptions& o) {
   const std::string format = drawing_format(o);
-  const PlanTexts texts = read_texts(o);
-  const plan::Model model = plan::load(texts.domain, texts.second());
+  const plan::Model model = load_model(o);
   plan::Plan p = read_plan_file(model, o.plan);
   if (o.tree) p = plan::expand_tree(p);
   io::write_file(o.output, format == "dot"   ? plan::plan_dot(model, p)

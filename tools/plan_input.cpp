@@ -4,8 +4,11 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
+#include <kaboum/manipulation/externals.h>
 
 #include <map>
+
+#include "scene_file.h"
 
 namespace kaboum::tools {
 namespace {
@@ -34,6 +37,17 @@ PlanTexts read_texts(const PlanOptions& o) {
     t.problem = read(o.problem, o.problem_format.empty() ? o.input_format : o.problem_format,
                      "--problem-format");
   return t;
+}
+
+plan::Model load_model(const PlanOptions& o) {
+  const PlanTexts texts = read_texts(o);
+  plan::ExternalBindings bindings;
+  if (!o.scene.empty()) {
+    SceneFile scene = read_scene(o.scene);
+    for (const std::string& note : scene.notes) log(o.common.quiet, note);
+    bindings = manipulation::bind_externals(std::move(scene.world), {});
+  }
+  return plan::load(texts.domain, texts.second(), bindings);
 }
 
 plan::Plan read_plan_file(const plan::Model& model, const std::string& file) {

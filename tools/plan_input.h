@@ -21,6 +21,10 @@ struct PlanTexts {
 /// @throws Error on files that cannot be read, or are of no known language.
 PlanTexts read_texts(const PlanOptions& options);
 
+/// The model of the texts; external functions of a scene are bound where one is given.
+/// @throws Error as plan::load and read_scene.
+plan::Model load_model(const PlanOptions& options);
+
 /// The language that `name` says, else that of the file's name.
 /// @throws Error{InvalidArgument} naming the option when there is none.
 plan::Language language_of(const std::string& file, const std::string& name, const char* option);

@@ -23,12 +23,20 @@ void add_problem(CLI::App& app, PlanOptions& o) {
       ->type_name("FILE");
 }
 
+void add_scene(CLI::App& app, PlanOptions& o) {
+  app.add_option("--scene", o.scene,
+                 "Scene (JSON) whose geometry answers the external functions reach, grasp, place, "
+                 "release, move, inside and collides [externals are tables]")
+      ->type_name("FILE");
+}
+
 }  // namespace
 
 CLI::App* add_solve_command(CLI::App& app, PlanOptions& o) {
   CLI::App* s = app.add_subcommand("solve", "Find a plan");
   add_inputs(*s, o);
   add_problem(*s, o);
+  add_scene(*s, o);
   s->add_option(
        "--search", o.search,
        "greedy: a plan, soon; astar: least cost; bfs, ids: fewest steps; dfs: any plan. With "
@@ -59,6 +67,7 @@ CLI::App* add_check_command(CLI::App& app, PlanOptions& o) {
       app.add_subcommand("check", "Replay every branch of a plan, independently of the planner");
   add_inputs(*c, o);
   add_problem(*c, o);
+  add_scene(*c, o);
   c->add_option("--plan", o.plan, "The plan to check, or -")->required()->type_name("FILE");
   add_common_options(*c, o.common);
   return c;
@@ -68,6 +77,7 @@ CLI::App* add_show_command(CLI::App& app, PlanOptions& o) {
   CLI::App* w = app.add_subcommand("show", "Print or draw a plan");
   add_inputs(*w, o);
   add_problem(*w, o);
+  add_scene(*w, o);
   w->add_option("--plan", o.plan, "The plan to show, or -")->required()->type_name("FILE");
   w->add_option("-o,--output", o.output, "Where to; - is stdout")
       ->capture_default_str()

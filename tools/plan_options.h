@@ -8,8 +8,8 @@
 namespace kaboum::tools {
 
 struct PlanOptions {
-  std::string domain, problem, plan, output = "-", input_format, problem_format, output_format,
-                                     search = "greedy";
+  std::string domain, problem, scene, plan, output = "-", input_format, problem_format,
+                                            output_format, search = "greedy";
   bool tree = false;
   double timeout = 0;      ///< 0: none [s]
   std::string max_memory;  ///< "500M"; empty: no limit

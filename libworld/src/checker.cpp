@@ -36,7 +36,8 @@ constexpr double kLargest = 1e9;
 
 void require_fits(const World& world, const WorldState& state) {
   bool fits = state.q.size() == world.robots.size() && state.poses.size() == world.objects.size() &&
-              state.attachments.size() == world.objects.size();
+              state.attachments.size() == world.objects.size() &&
+              (state.absent.empty() || state.absent.size() == world.objects.size());
   for (std::size_t r = 0; fits && r < world.robots.size(); ++r)
     fits = state.q[r].size() == world.robots[r].kinematics.variables.size();
   if (!fits) throw Error(ErrorCode::InvalidArgument, "a state of another world");
@@ -218,7 +219,12 @@ template <typename Pair>
 void Checker::visit(const WorldState& state, const Options& options, const Pair& pair) const {
   const bool carries = std::any_of(state.attachments.begin(), state.attachments.end(),
                                    [](const auto& attachment) { return attachment.has_value(); });
+  const auto is_absent = [&](std::size_t i) {
+    return !state.absent.empty() && items_[i].robot == Item::kObject &&
+           state.absent[items_[i].index];
+  };
   for (const auto& [i, j] : robot_pairs_) {
+    if (is_absent(j)) continue;
     if (carries && items_[j].robot == Item::kObject &&
         is_carried_by_link(state, items_[j], items_[i], *world_))
       continue;
@@ -230,6 +236,7 @@ void Checker::visit(const WorldState& state, const Options& options, const Pair&
   }
   if (!carries && !options.resting) return;
   for (const auto& [i, j] : object_pairs_) {
+    if (is_absent(i) || is_absent(j)) continue;
     const bool rest = !state.attachments[items_[i].index] && !state.attachments[items_[j].index];
     if (rest && !options.resting) continue;
     if (pair(i, j)) return;

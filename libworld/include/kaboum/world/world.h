@@ -136,6 +136,8 @@ struct WorldState {
   std::vector<std::vector<double>> q;                  ///< for each robot a value per variable
   std::vector<Transform> poses;                        ///< of the objects, to the world
   std::vector<std::optional<Attachment>> attachments;  ///< one for every object
+  /// For every object whether it has left the world: nothing is checked of it. Empty: none has.
+  std::vector<bool> absent = {};
 };
 
 /// Robots at home, objects where the scene has them.

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "geometric_state.h"
+
+namespace kaboum::manipulation {
+
+/// What the external functions do, by their names (externals.h). Arguments are as many as declared
+/// there. @throws Error{InvalidInput} for names and words that the scene does not know.
+plan::Answer reach(Geometry& geometry, const plan::Question& question);
+plan::Answer grasp(Geometry& geometry, const plan::Question& question);
+plan::Answer place(Geometry& geometry, const plan::Question& question);
+plan::Answer release(Geometry& geometry, const plan::Question& question);
+plan::Answer move(Geometry& geometry, const plan::Question& question);
+plan::Answer is_inside(Geometry& geometry, const plan::Question& question);
+plan::Answer collides(Geometry& geometry, const plan::Question& question);
+
+}  // namespace kaboum::manipulation

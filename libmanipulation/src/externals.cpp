@@ -1,0 +1,34 @@
+// The external functions by their names.
+#include <kaboum/base/error.h>
+#include <kaboum/manipulation/externals.h>
+
+#include "actions.h"
+
+namespace kaboum::manipulation {
+
+plan::ExternalBindings bind_externals(world::World world, const ExternalOptions& options) {
+  if (!(options.clearance > 0))
+    throw Error(ErrorCode::InvalidArgument, "the clearance is not above 0");
+  const auto geometry = std::make_shared<Geometry>(std::move(world), options);
+  struct Entry {
+    const char* name;
+    std::size_t arguments;
+    plan::Answer (*function)(Geometry&, const plan::Question&);
+  };
+  constexpr Entry kEntries[] = {{"reach", 2, reach},      {"grasp", 3, grasp},
+                                {"place", 3, place},      {"release", 3, release},
+                                {"move", 2, move},        {"inside", 2, is_inside},
+                                {"collides", 2, collides}};
+  plan::ExternalBindings out;
+  for (const Entry& entry : kEntries)
+    out[entry.name] = [geometry, entry](const plan::Question& question) {
+      if (question.arguments.size() != entry.arguments)
+        throw Error(ErrorCode::InvalidInput, std::string(entry.name) + " takes " +
+                                                 std::to_string(entry.arguments) +
+                                                 " arguments in the library of the scene");
+      return entry.function(*geometry, question);
+    };
+  return out;
+}
+
+}  // namespace kaboum::manipulation
