@@ -9,6 +9,7 @@ namespace kaboum::manipulation {
 plan::Answer reach(Geometry& geometry, const plan::Question& question);
 plan::Answer grasp(Geometry& geometry, const plan::Question& question);
 plan::Answer place(Geometry& geometry, const plan::Question& question);
+plan::Answer transfer(Geometry& geometry, const plan::Question& question);
 plan::Answer release(Geometry& geometry, const plan::Question& question);
 plan::Answer move(Geometry& geometry, const plan::Question& question);
 plan::Answer is_inside(Geometry& geometry, const plan::Question& question);

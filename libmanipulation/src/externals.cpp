@@ -16,9 +16,9 @@ plan::ExternalBindings bind_externals(world::World world, const ExternalOptions&
     plan::Answer (*function)(Geometry&, const plan::Question&);
   };
   constexpr Entry kEntries[] = {{"reach", 2, reach},      {"grasp", 3, grasp},
-                                {"place", 3, place},      {"release", 3, release},
-                                {"move", 2, move},        {"inside", 2, is_inside},
-                                {"collides", 2, collides}};
+                                {"place", 3, place},      {"transfer", 4, transfer},
+                                {"release", 3, release},  {"move", 2, move},
+                                {"inside", 2, is_inside}, {"collides", 2, collides}};
   plan::ExternalBindings out;
   for (const Entry& entry : kEntries)
     out[entry.name] = [geometry, entry](const plan::Question& question) {

@@ -10,17 +10,20 @@
 namespace kaboum::manipulation {
 namespace {
 
-/// Decimals of words: a nanometre, and as many radians.
+/// Decimals of configurations: a nanometre, and as many radians.
 constexpr int kDecimals = 9;
+/// Of poses. Fewer, so that an object that was put to the same place in two ways, by configurations
+/// that inverse kinematics knows within 1e-9, is in the same state nearly always.
+constexpr int kPoseDecimals = 7;
 /// Numbers below have 15 digits, which a double keeps.
 constexpr double kLargest = 1e6;
 
-void append(std::string& out, double value) {
+void append(std::string& out, double value, int decimals) {
   if (!(std::abs(value) < kLargest))
     throw Error(ErrorCode::LimitReached, "a number of 1e6 or more for a word of the planner");
   char buffer[32];
   auto end =
-      std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::fixed, kDecimals).ptr;
+      std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::fixed, decimals).ptr;
   while (end[-1] == '0') --end;
   if (end[-1] == '.') --end;
   const std::string_view digits(buffer, static_cast<std::size_t>(end - buffer));
@@ -47,10 +50,10 @@ bool read_numbers(std::string_view text, std::vector<double>& out) {
 }
 
 void append_pose(std::string& out, const world::Transform& pose) {
-  for (int i = 0; i < 3; ++i) append(out, pose.translation[i]);
+  for (int i = 0; i < 3; ++i) append(out, pose.translation[i], kPoseDecimals);
   Eigen::Quaterniond q(pose.linear);
   if (q.w() < 0) q.coeffs() = -q.coeffs();
-  for (const double part : {q.x(), q.y(), q.z(), q.w()}) append(out, part);
+  for (const double part : {q.x(), q.y(), q.z(), q.w()}) append(out, part, kPoseDecimals);
 }
 
 world::Transform pose_of(std::string_view numbers, std::string_view word) {
@@ -80,7 +83,7 @@ std::vector<std::uint32_t> touching(const world::RobotModel& robot, std::uint32_
 
 std::string word_of(const std::vector<double>& q) {
   std::string out = "q";
-  for (const double value : q) append(out, value);
+  for (const double value : q) append(out, value, kDecimals);
   return out;
 }
 

@@ -30,7 +30,7 @@ struct ObjectPlace {
   std::optional<world::Attachment> attachment;  ///< `touching` is that of the link's grippers
 };
 
-/// "at x y z qx qy qz qw", rounded to multiples of 1e-9.
+/// "at x y z qx qy qz qw", rounded to multiples of 1e-7.
 /// @throws Error{LimitReached} as above.
 std::string word_of(const world::Transform& pose);
 /// "on ROBOT/LINK x y z qx qy qz qw".
