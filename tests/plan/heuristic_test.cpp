@@ -126,7 +126,7 @@ TEST(Estimates, AreSafeAndAdmissibleInEveryReachableState) {
     std::vector<std::int64_t> exact(store.size(), kFar);
     std::multimap<std::int64_t, Index> queue;
     for (Index i = 0; i < store.size(); ++i)
-      if (task.pool().holds(task.goal(), store[i])) {
+      if (task.evaluator().holds(task.goal(), store[i])) {
         exact[i] = 0;
         queue.emplace(0, i);
       }

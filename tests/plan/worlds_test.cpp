@@ -53,7 +53,7 @@ void walk(std::uint32_t seed, bool disjunctions, Walk& total) {
     ASSERT_FALSE(beliefs.empty() || beliefs[0].empty()) << fail();
     // Every query of every action and the goal.
     const auto compare = [&](const Query& q, std::vector<Index> slots) {
-      const Truth t = task.pool().evaluate(task.pool().ground(q, slots), state.words());
+      const Truth t = task.evaluator().evaluate(task.queries().ground(q, slots), state.words());
       std::size_t holding = 0;
       for (const Belief& b : beliefs) holding += worlds.holds(q, slots, b) ? 1 : 0;
       if (disjunctions) {

@@ -30,7 +30,7 @@ ContingentPlanner::ContingentPlanner(Task& task, SearchFunction search, Limits& 
 
 Index ContingentPlanner::match(const Word* state) const {
   for (Index i = 0; i < entries_.size(); ++i)
-    if (task_.pool().holds(entries_[i].condition, state)) return i;
+    if (task_.evaluator().holds(entries_[i].condition, state)) return i;
   return kNone;
 }
 
@@ -72,7 +72,7 @@ Index ContingentPlanner::act(const State& at, OperatorId step, Index next) {
   e.condition = regression_.before(step, entries_[next].condition, at.data());
   e.step = step;
   e.next = next;
-  ExternalCalls& calls = task_.pool().calls();
+  ExternalCalls& calls = task_.calls();
   for (const Index call : task_.action(step).lets) {
     const ExternalCalls::Reply reply = calls.evaluate(call, at.data());
     e.calls.push_back({calls.external(call), calls.argument_names(call, at.data()),
@@ -191,7 +191,7 @@ Outcome ContingentPlanner::solve(const State& start, Index& entry, ConflictSet& 
       }
       covered = s == Outcome::Solved;
       if (covered) {
-        ensure(task_.pool().holds(entries_[entry].condition, states[i].data()),
+        ensure(task_.evaluator().holds(entries_[entry].condition, states[i].data()),
                "regression keeps its own state");
         next = entry;
       } else {

@@ -135,7 +135,7 @@ Formula Regression::rewrite(Formula f) {
     if (((after_.words()[n.a] ^ value) & set) != 0) return kFalse;
     return pool.bits(n.a, mask & ~set, value & ~set);
   }
-  const Truth t = pool.evaluate(f, after_.words());
+  const Truth t = task_.evaluator().evaluate(f, after_.words());
   if (t == Truth::Open) {
     open_ = true;
     return f;
@@ -145,7 +145,7 @@ Formula Regression::rewrite(Formula f) {
 
 void Regression::require_footprint(Index call, const Word* state, std::vector<Formula>& out) {
   std::vector<Index> fluents;
-  task_.pool().calls().footprint(call, state, fluents);
+  task_.calls().footprint(call, state, fluents);
   for (const Index i : fluents) {
     const Fluent& f = task_.layout().fluents()[i];
     out.push_back(task_.pool().bits(f.word, f.mask, state[f.word] & f.mask));
@@ -157,7 +157,7 @@ void Regression::require_footprint(Index call, const Word* state, std::vector<Fo
 /// @pre `f` is Yes or No in `state`.
 Formula Regression::freeze(Formula f, const Word* state) {
   FormulaPool& pool = task_.pool();
-  const bool truth = pool.holds(f, state);
+  const bool truth = task_.evaluator().holds(f, state);
   const FormulaPool::Node n = pool.node(f);
   if (!n.calls) return truth ? f : pool.negate(f);
   const std::vector<Formula> children = is_connective(n.kind)
@@ -174,7 +174,7 @@ Formula Regression::freeze(Formula f, const Word* state) {
     case Kind::Or:
       if (truth == (n.kind == Kind::Or)) {  // one child decides: the first in the order of calls
         for (const Formula c : children) {
-          const Truth t = pool.evaluate(c, state);
+          const Truth t = task_.evaluator().evaluate(c, state);
           if (t == (truth ? Truth::Yes : Truth::No)) return freeze(c, state);
         }
         break;
@@ -182,7 +182,7 @@ Formula Regression::freeze(Formula f, const Word* state) {
       [[fallthrough]];
     default:  // Xor: all children; or two that hold, so that others may be undecided
       for (const Formula c : children) {
-        const Truth t = pool.evaluate(c, state);
+        const Truth t = task_.evaluator().evaluate(c, state);
         if (t == Truth::Yes || t == Truth::No) kept.push_back(freeze(c, state));
       }
       return pool.all(kept);
@@ -211,7 +211,7 @@ Formula Regression::before(OperatorId step, Formula condition, const Word* befor
   required_.clear();
   after_.assign(before);
   ensure(task_.apply(step, after_), "a planned step is possible");
-  if (pool.depends_on_calls(condition)) condition = freeze(condition, after_.words());
+  if (task_.evaluator().depends_on_calls(condition)) condition = freeze(condition, after_.words());
 
   if (task_.is_outcome(step)) {
     // The fluent must be sensed or known; learning it then gives this content whatever it was.
@@ -224,7 +224,7 @@ Formula Regression::before(OperatorId step, Formula condition, const Word* befor
     required_.push_back(freeze(a.precondition, before));
     std::vector<Formula> fired, idle;
     for (const ConditionalEffect& c : a.effects) {
-      const bool happens = pool.holds(c.condition, before);
+      const bool happens = task_.evaluator().holds(c.condition, before);
       // An effect that does not happen here must not happen, if it could touch what is asked for or
       // be an observation that contradicts what is known there.
       bool observes = false;

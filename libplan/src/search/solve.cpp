@@ -30,7 +30,7 @@ ContingentPlanner::SearchFunction search_function(Algorithm a) {
 
 /// Searches, and again with more samples while that fails and some call found nothing.
 void search(Task& task, const SolveOptions& options, Limits& limits, Solution& solution) {
-  ExternalCalls& calls = task.pool().calls();
+  ExternalCalls& calls = task.calls();
   calls.seed(options.seed);
   while (true) {
     ContingentPlanner planner(task, search_function(options.algorithm), limits,
@@ -66,9 +66,9 @@ Solution solve(const Model& model, const SolveOptions& options) {
     Task task(model, limits);
     const auto count = [&] {
       solution.statistics.ground_actions = task.action_count();
-      solution.statistics.external_calls = task.pool().calls().calls_made();
-      solution.statistics.external_bytes = task.pool().calls().bytes();
-      solution.statistics.external_seconds = task.pool().calls().seconds();
+      solution.statistics.external_calls = task.calls().calls_made();
+      solution.statistics.external_bytes = task.calls().bytes();
+      solution.statistics.external_seconds = task.calls().seconds();
     };
     try {
       search(task, options, limits, solution);

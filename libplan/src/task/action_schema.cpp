@@ -20,8 +20,8 @@ bool calls_external(const Query& q) {
 }  // namespace
 
 ActionSchema::ActionSchema(const Action& action, const Model& model, const Layout& layout,
-                           FormulaPool& pool)
-    : action_(&action), model_(&model), layout_(&layout), pool_(&pool) {
+                           FormulaPool& pool, QueryGrounder& queries)
+    : action_(&action), model_(&model), layout_(&layout), pool_(&pool), queries_(&queries) {
   levels_.resize(action.parameters.size());
   make_candidates(sort_conjuncts());
 }
@@ -80,7 +80,7 @@ void ActionSchema::make_candidates(const std::vector<std::vector<const Query*>>&
       c.object = o;
       slots[i] = o;
       std::vector<Formula> all;
-      for (const Query* q : singles[i]) all.push_back(pool_->ground(*q, slots));
+      for (const Query* q : singles[i]) all.push_back(queries_->ground(*q, slots));
       c.full = pool_->all(all);
       if (c.full == kFalse) continue;
       c.test = pool_->as_bits(c.full).value_or(BitTest{});
@@ -93,8 +93,8 @@ void ActionSchema::make_candidates(const std::vector<std::vector<const Query*>>&
 
 Formula ActionSchema::ground(const Check& check, const Index* slots) {
   std::vector<Index> copy(slots, slots + std::max<Index>(action_->slots, 1));
-  for (const Query* let : check.lets) pool_->ground(*let, copy);
-  return pool_->ground(*check.query, copy);
+  for (const Query* let : check.lets) queries_->ground(*let, copy);
+  return queries_->ground(*check.query, copy);
 }
 
 OperatorId& ActionSchema::id(const std::vector<Index>& arguments) {

@@ -8,6 +8,7 @@
 
 #include "task/formula.h"
 #include "task/layout.h"
+#include "task/query_grounder.h"
 
 namespace kaboum::plan {
 
@@ -36,7 +37,8 @@ class ActionSchema {
   };
 
   /// @pre all arguments outlive the schema. @throws LimitExceeded
-  ActionSchema(const Action& action, const Model& model, const Layout& layout, FormulaPool& pool);
+  ActionSchema(const Action& action, const Model& model, const Layout& layout, FormulaPool& pool,
+               QueryGrounder& queries);
 
   [[nodiscard]] std::vector<Check>& constant() { return constant_; }  ///< without parameters
   [[nodiscard]] std::vector<Level>& levels() { return levels_; }      ///< by parameter
@@ -68,6 +70,7 @@ class ActionSchema {
   const Model* model_;
   const Layout* layout_;
   FormulaPool* pool_;
+  QueryGrounder* queries_;
   std::vector<Check> constant_;
   std::vector<Level> levels_;
   std::vector<OperatorId> ids_;  ///< by the arguments' numbers; empty: use id_index_

@@ -40,7 +40,7 @@ void EffectGrounder::ground(const std::vector<Effect>& effects, Formula conditio
       }
       case Effect::Kind::When: {
         limits_.work();
-        const Formula f = pool_.all({condition, pool_.ground(e.condition, slots)});
+        const Formula f = pool_.all({condition, queries_.ground(e.condition, slots)});
         if (f != kFalse) ground(e.children, f, slots, action);
         break;
       }
@@ -63,7 +63,7 @@ Layout::Field EffectGrounder::field(const Update::Literal& l,
 }
 
 Index EffectGrounder::position(const Update::Literal& l, const std::vector<Index>& slots) const {
-  return layout_.position(model_.functions[l.symbol].range, pool_.operand(*l.value, slots));
+  return layout_.position(model_.functions[l.symbol].range, queries_.operand(*l.value, slots));
 }
 
 void EffectGrounder::add_update(const Update& u, const std::vector<Index>& slots,
@@ -73,7 +73,7 @@ void EffectGrounder::add_update(const Update& u, const std::vector<Index>& slots
   if (!at.exists) return;  // an argument outside its type: no such atom
   ensure(at.fluent != kNone, "an effect changes what was taken for constant");
   if (l.value && l.function && layout_.fluents()[at.fluent].handle) {
-    const Index o = pool_.operand(*l.value, slots);
+    const Index o = queries_.operand(*l.value, slots);
     if (is_call(o) || is_term(o)) {
       out.transfers.push_back({at.fluent, o});
       return;

@@ -7,6 +7,7 @@
 #include "task/formula.h"
 #include "task/ground_action.h"
 #include "task/layout.h"
+#include "task/query_grounder.h"
 #include "task/solve_limits.h"
 
 namespace kaboum::plan {
@@ -14,8 +15,9 @@ namespace kaboum::plan {
 /// Makes the effects of ground actions.
 class EffectGrounder {
  public:
-  EffectGrounder(const Model& model, const Layout& layout, FormulaPool& pool, Limits& limits)
-      : model_(model), layout_(layout), pool_(pool), limits_(limits) {}
+  EffectGrounder(const Model& model, const Layout& layout, FormulaPool& pool,
+                 QueryGrounder& queries, Limits& limits)
+      : model_(model), layout_(layout), pool_(pool), queries_(queries), limits_(limits) {}
 
   /// Appends the effects of the action's schema to `action`, for these slots.
   /// @throws Error{LimitReached} if they are too many; LimitExceeded.
@@ -38,6 +40,7 @@ class EffectGrounder {
   const Model& model_;
   const Layout& layout_;
   FormulaPool& pool_;
+  QueryGrounder& queries_;
   Limits& limits_;
   std::size_t updates_ = 0;  ///< of the action at hand
 };

@@ -1,4 +1,4 @@
-// Hash-consing of ground formulas, their simplification, and calls of external functions.
+// Hash-consing of ground formulas, and their simplification.
 #include "task/formula.h"
 
 #include <kaboum/base/error.h>
@@ -17,8 +17,7 @@ std::uint64_t mix(std::uint64_t h, std::uint64_t v) {
 
 }  // namespace
 
-FormulaPool::FormulaPool(const Model& model, const Layout& layout, Limits& limits)
-    : model_(model), layout_(layout), limits_(limits), calls_(model, layout, limits) {
+FormulaPool::FormulaPool(const Layout& layout, Limits& limits) : layout_(layout), limits_(limits) {
   nodes_.push_back({Kind::False, false, 0, 0});
   nodes_.push_back({Kind::True, false, 0, 0});
 }
@@ -139,13 +138,6 @@ Formula FormulaPool::bits(Index word, Word mask, Word value) {
 
 Formula FormulaPool::external(Index call, Index expected) {
   return add({Kind::External, true, call, expected}, {});
-}
-
-bool FormulaPool::depends_on_calls(Formula f) const {
-  const Node& n = nodes_[f];
-  if (!n.calls) return false;
-  if (n.kind == Kind::External) return calls_.depends_on_state(n.a);
-  return std::any_of(begin(f), end(f), [&](Formula c) { return depends_on_calls(c); });
 }
 
 std::optional<BitTest> FormulaPool::as_bits(Formula f) const {

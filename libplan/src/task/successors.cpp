@@ -32,10 +32,10 @@ class Task::Expansion {
   bool test(Formula f) {
     if (f == kTrue) return true;
     if (f == kFalse) return false;
-    if constexpr (!Sensing) return task_.pool_.holds(f, state_);
+    if constexpr (!Sensing) return task_.evaluator_.holds(f, state_);
     if (open_count_ > 0 && task_.pool_.node(f).calls)
       return true;  // not called before the rest is decided
-    const Truth t = task_.pool_.evaluate(f, state_);
+    const Truth t = task_.evaluator_.evaluate(f, state_);
     if (t == Truth::Open && open_count_ < open_.size()) open_[open_count_++] = f;
     return t == Truth::Yes || t == Truth::Open;
   }
@@ -76,7 +76,7 @@ class Task::Expansion {
     if constexpr (Sensing) {
       if (open_count_ > 0) {
         for (std::size_t i = 0; i < open_count_; ++i)
-          task_.pool_.open_fluents(open_[i], state_, task_.needs_);
+          task_.evaluator_.open_fluents(open_[i], state_, task_.needs_);
         return;
       }
     }
@@ -93,9 +93,10 @@ class Task::Expansion {
   bool decided(const GroundAction& action) {
     bool all = true;
     for (const ConditionalEffect& c : action.effects) {
-      const Truth t = c.condition == kTrue ? Truth::Yes : task_.pool_.evaluate(c.condition, state_);
+      const Truth t =
+          c.condition == kTrue ? Truth::Yes : task_.evaluator_.evaluate(c.condition, state_);
       if (t == Truth::Open) {
-        task_.pool_.open_fluents(c.condition, state_, task_.needs_);
+        task_.evaluator_.open_fluents(c.condition, state_, task_.needs_);
         all = false;
       }
       if (t == Truth::Unresolved) return false;
@@ -113,10 +114,10 @@ class Task::Expansion {
 
   /// Whether it is known, so far as external functions go, which effects happen.
   bool resolved(const GroundAction& action) {
-    return std::none_of(action.effects.begin(), action.effects.end(),
-                        [&](const ConditionalEffect& c) {
-                          return task_.pool_.evaluate(c.condition, state_) == Truth::Unresolved;
-                        });
+    return std::none_of(
+        action.effects.begin(), action.effects.end(), [&](const ConditionalEffect& c) {
+          return task_.evaluator_.evaluate(c.condition, state_) == Truth::Unresolved;
+        });
   }
 
   Task& task_;
@@ -144,7 +145,8 @@ void Task::expand(const Word* state, std::vector<OperatorId>& steps) {
   }
   needs_.clear();
   expand_actions<true>(state, steps);
-  if (pool_.evaluate(goal_, state) == Truth::Open) pool_.open_fluents(goal_, state, needs_);
+  if (evaluator_.evaluate(goal_, state) == Truth::Open)
+    evaluator_.open_fluents(goal_, state, needs_);
   std::sort(needs_.begin(), needs_.end());
   needs_.erase(std::unique(needs_.begin(), needs_.end()), needs_.end());
   for (const Index fluent : needs_)

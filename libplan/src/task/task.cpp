@@ -17,14 +17,17 @@ Task::Task(const Model& model, Limits& limits)
     : model_(model),
       limits_(limits),
       layout_(model, limits),
-      pool_(model, layout_, limits),
-      grounder_(model, layout_, pool_, limits) {
+      calls_(model, layout_, limits),
+      pool_(layout_, limits),
+      evaluator_(pool_, layout_, calls_),
+      queries_(model, layout_, limits, pool_, calls_),
+      grounder_(model, layout_, pool_, queries_, limits) {
   Index slots = std::max<Index>(model.goal_slots, 1);
   for (const Action& a : model.actions) slots = std::max(slots, a.slots);
   slots_.assign(slots, 0);
   schemas_.reserve(model.actions.size());
-  for (const Action& a : model.actions) schemas_.emplace_back(a, model, layout_, pool_);
-  goal_ = pool_.ground(model.goal, slots_);
+  for (const Action& a : model.actions) schemas_.emplace_back(a, model, layout_, pool_, queries_);
+  goal_ = queries_.ground(model.goal, slots_);
   initial_ = initial_knowledge(model, layout_);
   if (layout_.sensing()) sensible_ = sensible_fluents(model, layout_);
 }
@@ -40,7 +43,7 @@ OperatorId Task::action_id(Index schema, const std::vector<Index>& arguments) {
   ground->arguments = arguments;
   std::vector<Index> slots(std::max<Index>(a.slots, 1), 0);
   std::copy(arguments.begin(), arguments.end(), slots.begin());
-  ground->precondition = pool_.ground(a.precondition, slots);
+  ground->precondition = queries_.ground(a.precondition, slots);
   ground->cost = cost_of(a, slots);
   for (const Query* q : conjuncts(a.precondition))
     if (q->kind == Query::Kind::Let && is_call(slots[q->value->index]))
@@ -89,7 +92,7 @@ bool Task::take(const ConditionalEffect::Transfer& t, const Word* state) {
     taken_.emplace_back(t.fluent, layout_.fluents()[t.operand & ~kTermOperand].get(state));
     return true;
   }
-  const ExternalCalls::Reply reply = pool_.calls().evaluate(t.operand & ~kCallOperand, state);
+  const ExternalCalls::Reply reply = calls_.evaluate(t.operand & ~kCallOperand, state);
   if (reply.kind != ExternalCalls::Reply::Kind::Value) return false;
   taken_.emplace_back(t.fluent, kFirstValue + reply.value);
   return true;
@@ -113,7 +116,7 @@ bool Task::apply(OperatorId step, Knowledge& state) {
     if (c.condition != kTrue) {
       if (c.test.mask != 0) {
         if (!c.test.holds(state.words())) continue;
-      } else if (!pool_.holds(c.condition, state.words())) {
+      } else if (!evaluator_.holds(c.condition, state.words())) {
         continue;
       }
     }

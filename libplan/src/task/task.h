@@ -8,10 +8,11 @@
 
 #include "task/action_schema.h"
 #include "task/effect_grounder.h"
-#include "task/formula.h"
+#include "task/formula_evaluator.h"
 #include "task/ground_action.h"
 #include "task/knowledge.h"
 #include "task/layout.h"
+#include "task/query_grounder.h"
 #include "task/solve_limits.h"
 
 namespace kaboum::plan {
@@ -28,6 +29,9 @@ class Task {
   [[nodiscard]] const Layout& layout() const { return layout_; }
   [[nodiscard]] FormulaPool& pool() { return pool_; }
   [[nodiscard]] const FormulaPool& pool() const { return pool_; }
+  [[nodiscard]] const FormulaEvaluator& evaluator() const { return evaluator_; }
+  [[nodiscard]] QueryGrounder& queries() { return queries_; }
+  [[nodiscard]] ExternalCalls& calls() { return calls_; }
   [[nodiscard]] const std::vector<Word>& initial() const { return initial_; }
   [[nodiscard]] Formula goal() const { return goal_; }
 
@@ -88,7 +92,10 @@ class Task {
   const Model& model_;
   Limits& limits_;
   Layout layout_;
+  ExternalCalls calls_;
   FormulaPool pool_;
+  FormulaEvaluator evaluator_;
+  QueryGrounder queries_;
   std::vector<Word> initial_;
   Formula goal_ = kTrue;
   EffectGrounder grounder_;

@@ -1,5 +1,5 @@
 // Grounding of queries: variables get their objects, and constant knowledge is folded in.
-#include "task/formula.h"
+#include "task/query_grounder.h"
 
 #include <kaboum/base/error.h>
 
@@ -8,6 +8,9 @@
 #include "task/bindings.h"
 
 namespace kaboum::plan {
+
+using Kind = FormulaPool::Kind;
+
 namespace {
 
 Formula constant(bool truth) { return truth ? kTrue : kFalse; }
@@ -20,7 +23,7 @@ std::vector<Index> objects(const Query& q, const std::vector<Index>& slots) {
 
 }  // namespace
 
-Formula FormulaPool::ground(const Query& q, std::vector<Index>& slots) {
+Formula QueryGrounder::ground(const Query& q, std::vector<Index>& slots) {
   limits_.work();
   switch (q.kind) {
     case Query::Kind::True:
@@ -33,7 +36,7 @@ Formula FormulaPool::ground(const Query& q, std::vector<Index>& slots) {
     case Query::Kind::Xor:
     case Query::Kind::Not: {
       const bool outer = std::exchange(monotone_, false);
-      const Formula made = q.kind == Query::Kind::Not ? negate(ground(q.children[0], slots))
+      const Formula made = q.kind == Query::Kind::Not ? pool_.negate(ground(q.children[0], slots))
                                                       : ground_connective(q, slots);
       monotone_ = outer;
       return made;
@@ -57,15 +60,15 @@ Formula FormulaPool::ground(const Query& q, std::vector<Index>& slots) {
       if (q.kind == Query::Kind::Let) slots[q.value->index] = call | kCallOperand;
       // It never holds; but a negation is not to hold either.
       if (monotone_ && calls_.is_never_known(call)) return kFalse;
-      return external(call, q.kind == Query::Kind::External && q.value
-                                ? value_of(*q.value, slots.data())
-                                : kNone);
+      return pool_.external(call, q.kind == Query::Kind::External && q.value
+                                      ? value_of(*q.value, slots.data())
+                                      : kNone);
     }
   }
   throw Error(ErrorCode::Internal, "unexpected query");
 }
 
-Index FormulaPool::operand(const Argument& a, const std::vector<Index>& slots) const {
+Index QueryGrounder::operand(const Argument& a, const std::vector<Index>& slots) const {
   if (!a.term) return value_of(a, slots.data());
   std::vector<Index> arguments;
   for (const Argument& x : a.term->arguments) arguments.push_back(value_of(x, slots.data()));
@@ -74,24 +77,24 @@ Index FormulaPool::operand(const Argument& a, const std::vector<Index>& slots) c
   return at.fluent == kNone ? at.value : at.fluent | kTermOperand;
 }
 
-Index FormulaPool::call_of(const Query& q, const std::vector<Index>& slots) {
+Index QueryGrounder::call_of(const Query& q, const std::vector<Index>& slots) {
   std::vector<Index> operands;
   for (const Argument& a : q.arguments) operands.push_back(operand(a, slots));
   return calls_.call(q.symbol, std::move(operands));
 }
 
-Formula FormulaPool::ground_connective(const Query& q, std::vector<Index>& slots) {
+Formula QueryGrounder::ground_connective(const Query& q, std::vector<Index>& slots) {
   std::vector<Formula> children;
   for (const Query& c : q.children) {
     children.push_back(ground(c, slots));
     if (q.kind == Query::Kind::And && children.back() == kFalse) return kFalse;
     if (q.kind == Query::Kind::Or && children.back() == kTrue) return kTrue;
   }
-  if (q.kind == Query::Kind::And) return all(children);
-  return q.kind == Query::Kind::Or ? any(children) : one(children);
+  if (q.kind == Query::Kind::And) return pool_.all(children);
+  return q.kind == Query::Kind::Or ? pool_.any(children) : pool_.one(children);
 }
 
-Formula FormulaPool::ground_quantifier(const Query& q, std::vector<Index>& slots) {
+Formula QueryGrounder::ground_quantifier(const Query& q, std::vector<Index>& slots) {
   const bool exists = q.kind == Query::Kind::Exists;
   std::vector<Formula> children;
   for (const Index o : model_.types[q.type].objects) {
@@ -99,10 +102,10 @@ Formula FormulaPool::ground_quantifier(const Query& q, std::vector<Index>& slots
     children.push_back(ground(q.children[0], slots));
     if (children.back() == constant(exists)) return children.back();
   }
-  return exists ? any(children) : all(children);
+  return exists ? pool_.any(children) : pool_.all(children);
 }
 
-Formula FormulaPool::ground_atom(const Query& q, const std::vector<Index>& slots) {
+Formula QueryGrounder::ground_atom(const Query& q, const std::vector<Index>& slots) {
   const Layout::Field p = layout_.atom(q.symbol, objects(q, slots).data());
   if (!p.exists) return kFalse;
   if (p.fluent == kNone) {
@@ -110,11 +113,11 @@ Formula FormulaPool::ground_atom(const Query& q, const std::vector<Index>& slots
       return p.atom != AtomKnowledge::Unknown ? kTrue : kFalse;
     return p.atom == (q.negated ? AtomKnowledge::False : AtomKnowledge::True) ? kTrue : kFalse;
   }
-  if (q.kind == Query::Kind::KnowWhether) return leaf(Kind::Whether, p.fluent);
-  return leaf(q.negated ? Kind::IsFalse : Kind::IsTrue, p.fluent);
+  if (q.kind == Query::Kind::KnowWhether) return pool_.leaf(Kind::Whether, p.fluent);
+  return pool_.leaf(q.negated ? Kind::IsFalse : Kind::IsTrue, p.fluent);
 }
 
-Formula FormulaPool::ground_term(const Query& q, const std::vector<Index>& slots) {
+Formula QueryGrounder::ground_term(const Query& q, const std::vector<Index>& slots) {
   const Layout::Field p = layout_.term(q.symbol, objects(q, slots).data());
   if (!p.exists) return kFalse;
   Index position = kNone;
@@ -132,10 +135,11 @@ Formula FormulaPool::ground_term(const Query& q, const std::vector<Index>& slots
     if (q.kind != Query::Kind::KnownValue) return kTrue;
     return (p.value == value) != q.negated ? kTrue : kFalse;
   }
-  if (q.kind == Query::Kind::KnowValue) return leaf(Kind::ValueKnown, p.fluent);
+  if (q.kind == Query::Kind::KnowValue) return pool_.leaf(Kind::ValueKnown, p.fluent);
   if (position == kNone) return q.kind == Query::Kind::WhetherValue || q.negated ? kTrue : kFalse;
-  if (q.kind == Query::Kind::WhetherValue) return leaf(Kind::ValueWhether, p.fluent, position);
-  return leaf(q.negated ? Kind::ValueIsNot : Kind::ValueIs, p.fluent, position);
+  if (q.kind == Query::Kind::WhetherValue)
+    return pool_.leaf(Kind::ValueWhether, p.fluent, position);
+  return pool_.leaf(q.negated ? Kind::ValueIsNot : Kind::ValueIs, p.fluent, position);
 }
 
 }  // namespace kaboum::plan

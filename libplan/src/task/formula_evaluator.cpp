@@ -1,21 +1,24 @@
 // What a state says of a formula, and which sensed values leave it open.
-#include "task/formula.h"
+#include "task/formula_evaluator.h"
 
 #include <algorithm>
 
 namespace kaboum::plan {
+
+using Kind = FormulaPool::Kind;
+
 namespace {
 
 /// A conjunction or disjunction.
-Truth joined(const FormulaPool& pool, Formula f, const Word* state) {
+Truth joined(const FormulaEvaluator& in, const FormulaPool& pool, Formula f, const Word* state) {
   // From what decides least to what decides most; And: Yes, Open, Unresolved, No.
-  const bool all = pool.node(f).kind == FormulaPool::Kind::And;
+  const bool all = pool.node(f).kind == Kind::And;
   const Truth decides = all ? Truth::No : Truth::Yes;
   Truth result = all ? Truth::Yes : Truth::No;
   for (const Formula *c = pool.begin(f), *last = pool.end(f); c != last; ++c) {
     if ((result == Truth::Open || (all && result == Truth::Unresolved)) && pool.node(*c).calls)
       continue;
-    const Truth t = pool.evaluate(*c, state);
+    const Truth t = in.evaluate(*c, state);
     if (t == decides) return t;
     if (t == (all ? Truth::Unresolved : Truth::Open) ||
         (t != result && result == (all ? Truth::Yes : Truth::No)))
@@ -25,11 +28,11 @@ Truth joined(const FormulaPool& pool, Formula f, const Word* state) {
 }
 
 /// Exactly one of the children, which make no calls.
-Truth exclusive(const FormulaPool& pool, Formula f, const Word* state) {
+Truth exclusive(const FormulaEvaluator& in, const FormulaPool& pool, Formula f, const Word* state) {
   int certain = 0;
   bool open = false;
   for (const Formula *c = pool.begin(f), *last = pool.end(f); c != last; ++c) {
-    const Truth t = pool.evaluate(*c, state);
+    const Truth t = in.evaluate(*c, state);
     certain += t == Truth::Yes ? 1 : 0;
     open |= t == Truth::Open;
     if (certain > 1) return Truth::No;
@@ -40,8 +43,8 @@ Truth exclusive(const FormulaPool& pool, Formula f, const Word* state) {
 
 }  // namespace
 
-Truth FormulaPool::evaluate(Formula f, const Word* state) const {
-  const Node& n = nodes_[f];
+Truth FormulaEvaluator::evaluate(Formula f, const Word* state) const {
+  const FormulaPool::Node& n = pool_.node(f);
   const auto yes = [](bool b) { return b ? Truth::Yes : Truth::No; };
   switch (n.kind) {
     case Kind::False:
@@ -50,13 +53,13 @@ Truth FormulaPool::evaluate(Formula f, const Word* state) const {
       return Truth::Yes;
     case Kind::And:
     case Kind::Or:
-      return joined(*this, f, state);
+      return joined(*this, pool_, f, state);
     case Kind::Xor:
-      return exclusive(*this, f, state);
+      return exclusive(*this, pool_, f, state);
     case Kind::Not: {
-      const Truth t = evaluate(*begin(f), state);
+      const Truth t = evaluate(*pool_.begin(f), state);
       if (t == Truth::Open || t == Truth::Unresolved) return t;
-      return yes(t == Truth::No && !(n.calls && lacks_argument(*begin(f), state)));
+      return yes(t == Truth::No && !(n.calls && lacks_argument(*pool_.begin(f), state)));
     }
     case Kind::IsTrue:
     case Kind::IsFalse: {
@@ -89,7 +92,7 @@ Truth FormulaPool::evaluate(Formula f, const Word* state) const {
       return yes(fluent.get(state) != kValueUnknown || excluded(fluent, state, n.b));
     }
     case Kind::Bits:
-      return yes((state[n.a] & masks_[n.b].first) == masks_[n.b].second);
+      return yes((state[n.a] & pool_.bits_mask(n)) == pool_.bits_value(n));
     case Kind::External: {
       const ExternalCalls::Reply reply = calls_.evaluate(n.a, state);
       using R = ExternalCalls::Reply::Kind;
@@ -101,20 +104,20 @@ Truth FormulaPool::evaluate(Formula f, const Word* state) const {
   return Truth::No;
 }
 
-bool FormulaPool::lacks_argument(Formula f, const Word* state) const {
-  return calls_.evaluate(nodes_[f].a, state).unknown_argument;
+bool FormulaEvaluator::lacks_argument(Formula f, const Word* state) const {
+  return calls_.evaluate(pool_.node(f).a, state).unknown_argument;
 }
 
-void FormulaPool::open_fluents(Formula f, const Word* state, std::vector<Index>& out) const {
-  const Node& n = nodes_[f];
+void FormulaEvaluator::open_fluents(Formula f, const Word* state, std::vector<Index>& out) const {
+  const FormulaPool::Node& n = pool_.node(f);
   switch (n.kind) {
     case Kind::And:
     case Kind::Or:
     case Kind::Xor:
     case Kind::Not:
       if (evaluate(f, state) != Truth::Open) return;
-      for (const Formula *c = begin(f), *last = end(f); c != last; ++c) {
-        if (nodes_[*c].calls && n.kind != Kind::Not) {
+      for (const Formula *c = pool_.begin(f), *last = pool_.end(f); c != last; ++c) {
+        if (pool_.node(*c).calls && n.kind != Kind::Not) {
           // Called only when all before it is decided: what is open before it comes first.
           if (!out.empty()) continue;
         }
@@ -144,6 +147,13 @@ void FormulaPool::open_fluents(Formula f, const Word* state, std::vector<Index>&
     default:
       return;
   }
+}
+
+bool FormulaEvaluator::depends_on_calls(Formula f) const {
+  const FormulaPool::Node& n = pool_.node(f);
+  if (!n.calls) return false;
+  if (n.kind == Kind::External) return calls_.depends_on_state(n.a);
+  return std::any_of(pool_.begin(f), pool_.end(f), [&](Formula c) { return depends_on_calls(c); });
 }
 
 }  // namespace kaboum::plan
