@@ -3,7 +3,6 @@
 #include "search/landmarks.h"
 
 #include <algorithm>
-#include <bit>
 #include <map>
 #include <set>
 
@@ -23,12 +22,6 @@ std::vector<FactId> united(const std::vector<FactId>& a, const std::vector<FactI
   std::vector<FactId> r;
   std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(r));
   return r;
-}
-
-bool disjoint(const std::vector<std::uint64_t>& a, const std::vector<std::uint64_t>& b) {
-  for (std::size_t i = 0; i < a.size(); ++i)
-    if ((a[i] & b[i]) != 0) return false;
-  return true;
 }
 
 }  // namespace
@@ -141,7 +134,7 @@ LandmarkHeuristic::FactInfo& LandmarkHeuristic::info(FactId f) {
 Index LandmarkHeuristic::first_event(std::vector<FactId> facts, const Word* state) {
   const auto [it, fresh] = first_.emplace(facts, static_cast<Index>(events_.size()));
   if (!fresh) return it->second;
-  Event e;
+  LandmarkEvent e;
   e.facts = std::move(facts);
   e.actions.assign(words_, 0);
   bool first = true;
@@ -193,7 +186,7 @@ Index LandmarkHeuristic::last_event(Index goal) {
   if (last_[goal] != kNone) return last_[goal];
   last_[goal] = static_cast<Index>(events_.size());
   const FactInfo& i = info(goals_[goal]);
-  Event e;
+  LandmarkEvent e;
   e.last = true;
   e.facts = {goals_[goal]};
   e.actions.assign(words_, 0);
@@ -213,7 +206,7 @@ void LandmarkHeuristic::order(Index before, Index after, bool strict) {
 /// Draws the conclusions of one event. @return false if there are too many events to go on.
 bool LandmarkHeuristic::relate(Index event, const Word* state) {
   if (events_.size() > kMaximumEvents) return false;
-  const Event e = events_[event];
+  const LandmarkEvent e = events_[event];
   for (const FactId p : e.conditions) {
     if (opaque_[p]) continue;
     if (!relaxation_.holds(p, state)) order(first_event({p}, state), event, true);
@@ -236,78 +229,6 @@ bool LandmarkHeuristic::relate(Index event, const Word* state) {
   return true;
 }
 
-std::uint64_t LandmarkHeuristic::bound(bool& contradiction) {
-  const std::size_t n = events_.size();
-  const std::size_t words = (n + 63) / 64;
-  // Transitive closure of "not after", then "before" through any strict order.
-  std::vector<Bits> not_after(n, Bits(words, 0)), before(n, Bits(words, 0));
-  const auto set = [](Bits& b, std::size_t i) { b[i / 64] |= std::uint64_t{1} << (i % 64); };
-  const auto get = [](const Bits& b, std::size_t i) { return ((b[i / 64] >> (i % 64)) & 1U) != 0; };
-  for (std::size_t i = 0; i < n; ++i) set(not_after[i], i);
-  for (const Order& o : orders_) set(not_after[o.before], o.after);
-  for (std::size_t k = 0; k < n; ++k)
-    for (std::size_t i = 0; i < n; ++i)
-      if (get(not_after[i], k))
-        for (std::size_t w = 0; w < words; ++w) not_after[i][w] |= not_after[k][w];
-  for (const Order& o : orders_) {
-    if (!o.strict) continue;
-    for (std::size_t i = 0; i < n; ++i)
-      if (get(not_after[i], o.before))
-        for (std::size_t w = 0; w < words; ++w) before[i][w] |= not_after[o.after][w];
-  }
-  contradiction = false;
-  for (std::size_t i = 0; i < n; ++i) contradiction |= get(before[i], i);
-  if (contradiction) return 0;
-
-  struct Size {
-    std::size_t event;
-    int actions;
-    std::uint64_t cost;
-  };
-  std::vector<Size> sizes;
-  std::vector<std::uint32_t> uses(costs_.size(), 0);
-  const auto each_action = [&](const Event& e, const auto& visit) {
-    for (std::size_t w = 0; w < words_; ++w)
-      for (std::uint64_t left = e.actions[w]; left != 0; left &= left - 1)
-        visit(w * 64 + static_cast<std::size_t>(std::countr_zero(left)));
-  };
-  for (std::size_t i = 0; i < n; ++i) {
-    Size s{i, 0, ~std::uint64_t{0}};
-    each_action(events_[i], [&](std::size_t a) {
-      ++s.actions;
-      ++uses[a];
-      s.cost = std::min(s.cost, static_cast<std::uint64_t>(costs_[a]));
-    });
-    sizes.push_back(s);
-  }
-  // Uniform cost partitioning: an action's cost is shared by the events it could be.
-  constexpr std::uint64_t kUnit = 720720;  // divisible by 1 ... 16
-  std::uint64_t shared = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    std::uint64_t least = ~std::uint64_t{0};
-    each_action(events_[i], [&](std::size_t a) {
-      least = std::min(least, static_cast<std::uint64_t>(costs_[a]) * kUnit / uses[a]);
-    });
-    if (sizes[i].actions > 0) shared += least;
-  }
-  // Events that pairwise cannot be the same occurrence, greedily: those of few actions first.
-  std::stable_sort(sizes.begin(), sizes.end(), [](const Size& a, const Size& b) {
-    return std::pair(a.cost == 0, a.actions) < std::pair(b.cost == 0, b.actions);
-  });
-  std::vector<std::size_t> chosen;
-  std::uint64_t distinct = 0;
-  for (const Size& s : sizes) {
-    const bool fits = std::all_of(chosen.begin(), chosen.end(), [&](std::size_t c) {
-      return get(before[c], s.event) || get(before[s.event], c) ||
-             disjoint(events_[c].actions, events_[s.event].actions);
-    });
-    if (!fits) continue;
-    chosen.push_back(s.event);
-    distinct += s.cost;
-  }
-  return std::max(distinct, (shared + kUnit - 1) / kUnit);
-}
-
 std::optional<std::uint64_t> LandmarkHeuristic::evaluate(const Word* state) {
   events_.clear();
   first_.clear();
@@ -319,10 +240,7 @@ std::optional<std::uint64_t> LandmarkHeuristic::evaluate(const Word* state) {
   for (Index i = 0; i < events_.size() && !dead_; ++i)
     if (!relate(i, state)) break;
   if (dead_) return std::nullopt;
-  bool contradiction = false;
-  const std::uint64_t h = bound(contradiction);
-  if (contradiction) return std::nullopt;
-  return h;
+  return event_bound(events_, orders_, costs_);
 }
 
 }  // namespace kaboum::plan

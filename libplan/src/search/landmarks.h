@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "search/event_bound.h"
 #include "search/invariants.h"
 #include "search/relaxation.h"
 
@@ -32,12 +33,10 @@ class LandmarkHeuristic {
   [[nodiscard]] std::size_t events() const { return events_.size(); }
 
  private:
-  using Bits = std::vector<std::uint64_t>;
-
   /// Achievers of a fact that can only be its first achievers while all of `guards` hold.
   struct Bucket {
     std::vector<FactId> guards;
-    Bits actions;
+    ActionSet actions;
     std::vector<FactId> conditions;  ///< common to all
     std::vector<std::vector<FactId>>
         options;  ///< every achiever has a condition among each of these
@@ -48,21 +47,12 @@ class LandmarkHeuristic {
     std::vector<FactId> conditions;  ///< common to all achievers
     std::vector<Index> excludes;     ///< goals that exclude this fact
   };
-  struct Event {
-    bool last = false;  ///< last achievement of a goal; else first of `facts`
-    std::vector<FactId> facts;
-    Bits actions;
-    std::vector<FactId> conditions;
-    std::vector<std::vector<FactId>> options;
-  };
-
   FactInfo& info(FactId f);
   std::vector<FactId> common_conditions(FactId f);
   Index first_event(std::vector<FactId> facts, const Word* state);
   Index last_event(Index goal);
   void order(Index before, Index after, bool strict);
   bool relate(Index event, const Word* state);
-  [[nodiscard]] std::uint64_t bound(bool& contradiction);
 
   Task& task_;
   const Relaxation& relaxation_;
@@ -80,14 +70,10 @@ class LandmarkHeuristic {
   std::vector<std::vector<Index>> goals_in_group_;
 
   // of the state at hand
-  std::vector<Event> events_;
+  std::vector<LandmarkEvent> events_;
   std::map<std::vector<FactId>, Index> first_;
   std::vector<Index> last_;
-  struct Order {
-    Index before, after;
-    bool strict;
-  };
-  std::vector<Order> orders_;
+  std::vector<EventOrder> orders_;
   bool dead_ = false;
 };
 
