@@ -143,7 +143,7 @@ TEST(Estimates, AreSafeAndAdmissibleInEveryReachableState) {
     Heuristics heuristics;
     LandmarkHeuristic& landmarks = heuristics.landmark(task, limits);
     RelaxedPlan& relaxed = heuristics.relaxed(task, limits);
-    const Relaxation& facts = *heuristics.relaxation;
+    const FactTable& facts = heuristics.relaxation->facts();
     for (Index i = 0; i < store.size() && !HasFailure(); ++i) {
       ++states;
       const auto h = landmarks.evaluate(store[i]);
@@ -166,8 +166,8 @@ TEST(Estimates, AreSafeAndAdmissibleInEveryReachableState) {
           EXPECT_FALSE(heuristics.invariants->exclusive(now[k], now[l])) << "seed " << seed << "\n"
                                                                          << text;
     }
-    for (FactId x = 0; x < facts.facts(); ++x)
-      for (FactId y = x + 1; y < facts.facts(); ++y)
+    for (FactId x = 0; x < facts.size(); ++x)
+      for (FactId y = x + 1; y < facts.size(); ++y)
         exclusive_pairs +=
             facts.fluent_of(x) != facts.fluent_of(y) && heuristics.invariants->exclusive(x, y) ? 1
                                                                                                : 0;

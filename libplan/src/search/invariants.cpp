@@ -17,9 +17,9 @@ constexpr std::size_t kMaximumParts = 4;
 }  // namespace
 
 Index Invariants::key_of(const Part& p, FactId f) const {
-  const Fluent& fluent = task_.layout().fluents()[relaxation_.fluent_of(f)];
+  const Fluent& fluent = task_.layout().fluents()[relaxation_.facts().fluent_of(f)];
   if (fluent.function != p.function || fluent.symbol != p.symbol || fluent.handle) return kNone;
-  const Word content = relaxation_.content_of(f);
+  const Word content = relaxation_.facts().content_of(f);
   if (p.function ? content < kFirstValue : content != static_cast<Word>(AtomKnowledge::True))
     return kNone;
   if (p.key == kNone) return static_cast<Index>(task_.model().objects.size());
@@ -52,7 +52,8 @@ bool Invariants::can_fire(const Candidate& c, const std::vector<FactId>& conditi
   std::vector<Index> keys;
   for (std::size_t i = 0; i < conditions.size(); ++i) {
     if (i > 0 && conditions[i] != conditions[i - 1] &&
-        relaxation_.fluent_of(conditions[i]) == relaxation_.fluent_of(conditions[i - 1]))
+        relaxation_.facts().fluent_of(conditions[i]) ==
+            relaxation_.facts().fluent_of(conditions[i - 1]))
       return false;
     if (i > 0 && conditions[i] == conditions[i - 1]) continue;
     const Index k = key_of(c, conditions[i]);
@@ -67,8 +68,8 @@ bool Invariants::balanced(const Candidate& c, Failure& failure) {
   std::fill(heavy_.begin(), heavy_.end(), 0);
   std::vector<char> some(heavy_.size(), 0);
   for (Index i = 0; i < task_.layout().fluents().size(); ++i) {
-    const Index k =
-        key_of(c, relaxation_.fact(i, task_.layout().fluents()[i].get(task_.initial().data())));
+    const Index k = key_of(
+        c, relaxation_.facts().fact(i, task_.layout().fluents()[i].get(task_.initial().data())));
     if (k == kNone) continue;
     heavy_[k] |= some[k];
     some[k] = 1;
@@ -123,7 +124,7 @@ bool Invariants::balanced(const Candidate& c, Failure& failure) {
 Invariants::Invariants(const Task& task, const Relaxation& relaxation, Limits& limits)
     : task_(task), relaxation_(relaxation), limits_(limits) {
   const auto& operators = relaxation.operators();
-  groups_of_.resize(relaxation.facts());
+  groups_of_.resize(relaxation.facts().size());
   heavy_.assign(task.model().objects.size() + 1, 0);
   unconditional_.assign(operators.size(), 0);
   action_of_.resize(operators.size());
@@ -158,7 +159,7 @@ Invariants::Invariants(const Task& task, const Relaxation& relaxation, Limits& l
     if (balanced(c, failure)) {
       // One group for each key that starts with at most one of its facts.
       std::map<Index, std::vector<FactId>> members;
-      for (FactId f = 0; f < relaxation.facts(); ++f) {
+      for (FactId f = 0; f < relaxation.facts().size(); ++f) {
         const Index k = key_of(c, f);
         if (k == kNone) continue;
         members[k].push_back(f);
@@ -190,7 +191,7 @@ Invariants::Invariants(const Task& task, const Relaxation& relaxation, Limits& l
 
 bool Invariants::exclusive(FactId a, FactId b) const {
   if (a == b) return false;
-  if (relaxation_.fluent_of(a) == relaxation_.fluent_of(b)) return true;
+  if (relaxation_.facts().fluent_of(a) == relaxation_.facts().fluent_of(b)) return true;
   const auto& x = groups_of_[a];
   const auto& y = groups_of_[b];
   for (std::size_t i = 0, j = 0; i < x.size() && j < y.size();) {

@@ -39,20 +39,20 @@ LandmarkHeuristic::LandmarkHeuristic(Task& task, const Relaxation& relaxation,
     if (task.is_outcome(o.step) && number_of_outcome_.try_emplace(o.step, costs_.size()).second)
       costs_.push_back(0);
   words_ = (costs_.size() + 63) / 64;
-  achievers_.resize(relaxation.facts());
-  common_.resize(relaxation.facts());
-  common_ready_.assign(relaxation.facts(), 0);
-  infos_.resize(relaxation.facts());
+  achievers_.resize(relaxation.facts().size());
+  common_.resize(relaxation.facts().size());
+  common_ready_.assign(relaxation.facts().size(), 0);
+  infos_.resize(relaxation.facts().size());
   const auto& operators = relaxation.operators();
   for (Index o = 0; o < operators.size(); ++o)
     for (const FactId f : operators[o].adds) achievers_[f].push_back(o);
   // Facts that disjunctive knowledge can bring about without a step are no events.
   const auto opaque = [&](FactId f) {
-    const Fluent& fluent = task.layout().fluents()[relaxation.fluent_of(f)];
+    const Fluent& fluent = task.layout().fluents()[relaxation.facts().fluent_of(f)];
     return !fluent.groups.empty() || fluent.exclusions != kNone || fluent.handle;
   };
-  opaque_.resize(relaxation.facts());
-  for (FactId f = 0; f < relaxation.facts(); ++f) opaque_[f] = opaque(f) ? 1 : 0;
+  opaque_.resize(relaxation.facts().size());
+  for (FactId f = 0; f < relaxation.facts().size(); ++f) opaque_[f] = opaque(f) ? 1 : 0;
   for (const FactId f : relaxation.necessary_facts(task.goal()))
     if (!opaque_[f]) goals_.push_back(f);
   goals_in_group_.resize(invariants.groups());
@@ -105,7 +105,7 @@ LandmarkHeuristic::FactInfo& LandmarkHeuristic::info(FactId f) {
       b.conditions = first ? op.preconditions : intersection(b.conditions, op.preconditions);
       std::map<std::pair<bool, Index>, std::vector<FactId>> mine;
       for (const FactId c : op.preconditions) {
-        const Fluent& fluent = task_.layout().fluents()[relaxation_.fluent_of(c)];
+        const Fluent& fluent = task_.layout().fluents()[relaxation_.facts().fluent_of(c)];
         if (!opaque_[c]) mine[{fluent.function, fluent.symbol}].push_back(c);
       }
       if (first) {
@@ -125,7 +125,8 @@ LandmarkHeuristic::FactInfo& LandmarkHeuristic::info(FactId f) {
   for (const Index group : invariants_.groups_of(f))
     for (const Index g : goals_in_group_[group]) excludes.insert(g);
   for (Index g = 0; g < goals_.size(); ++g)
-    if (relaxation_.fluent_of(goals_[g]) == relaxation_.fluent_of(f)) excludes.insert(g);
+    if (relaxation_.facts().fluent_of(goals_[g]) == relaxation_.facts().fluent_of(f))
+      excludes.insert(g);
   for (const Index g : excludes)
     if (goals_[g] != f) info.excludes.push_back(g);
   return info;
@@ -142,7 +143,7 @@ Index LandmarkHeuristic::first_event(std::vector<FactId> facts, const Word* stat
   for (const FactId f : e.facts)
     for (const Bucket& b : info(f).buckets) {
       if (!std::all_of(b.guards.begin(), b.guards.end(),
-                       [&](FactId g) { return relaxation_.holds(g, state); }))
+                       [&](FactId g) { return relaxation_.facts().holds(g, state); }))
         continue;
       for (std::size_t i = 0; i < words_; ++i) e.actions[i] |= b.actions[i];
       e.conditions = first ? b.conditions : intersection(e.conditions, b.conditions);
@@ -157,15 +158,15 @@ Index LandmarkHeuristic::first_event(std::vector<FactId> facts, const Word* stat
     // Options of several buckets: unite those of the same symbol.
     std::vector<std::vector<FactId>> merged;
     for (const auto& option : e.options) {
-      const Fluent& symbol = task_.layout().fluents()[relaxation_.fluent_of(option[0])];
+      const Fluent& symbol = task_.layout().fluents()[relaxation_.facts().fluent_of(option[0])];
       std::vector<FactId> all = option;
       bool everywhere = true;
       for (const Bucket& b : info(e.facts[0]).buckets) {
         if (!std::all_of(b.guards.begin(), b.guards.end(),
-                         [&](FactId g) { return relaxation_.holds(g, state); }))
+                         [&](FactId g) { return relaxation_.facts().holds(g, state); }))
           continue;
         const auto same = std::find_if(b.options.begin(), b.options.end(), [&](const auto& o) {
-          const Fluent& f = task_.layout().fluents()[relaxation_.fluent_of(o[0])];
+          const Fluent& f = task_.layout().fluents()[relaxation_.facts().fluent_of(o[0])];
           return f.function == symbol.function && f.symbol == symbol.symbol;
         });
         everywhere = everywhere && same != b.options.end();
@@ -209,13 +210,13 @@ bool LandmarkHeuristic::relate(Index event, const Word* state) {
   const LandmarkEvent e = events_[event];
   for (const FactId p : e.conditions) {
     if (opaque_[p]) continue;
-    if (!relaxation_.holds(p, state)) order(first_event({p}, state), event, true);
+    if (!relaxation_.facts().holds(p, state)) order(first_event({p}, state), event, true);
     // p holds just before the event: goals that exclude it are achieved (again) with it or later.
     for (const Index g : info(p).excludes) order(event, last_event(g), false);
   }
   for (const auto& option : e.options) {
     if (std::any_of(option.begin(), option.end(),
-                    [&](FactId f) { return relaxation_.holds(f, state); }))
+                    [&](FactId f) { return relaxation_.facts().holds(f, state); }))
       continue;
     order(first_event(option, state), event, true);
   }
@@ -236,7 +237,7 @@ std::optional<std::uint64_t> LandmarkHeuristic::evaluate(const Word* state) {
   last_.assign(goals_.size(), kNone);
   dead_ = false;
   for (Index g = 0; g < goals_.size(); ++g)
-    if (!relaxation_.holds(goals_[g], state)) last_event(g);
+    if (!relaxation_.facts().holds(goals_[g], state)) last_event(g);
   for (Index i = 0; i < events_.size() && !dead_; ++i)
     if (!relate(i, state)) break;
   if (dead_) return std::nullopt;

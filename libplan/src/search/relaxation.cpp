@@ -7,32 +7,23 @@ namespace kaboum::plan {
 
 using Kind = FormulaPool::Kind;
 
-Relaxation::Relaxation(Task& task, Limits& limits) : task_(task), limits_(limits) {
-  for (Index i = 0; i < task.layout().fluents().size(); ++i) {
-    const Fluent& f = task.layout().fluents()[i];
-    first_fact_.push_back(static_cast<FactId>(facts_));
-    const std::size_t contents = f.handle     ? task.model().objects.size() + kFirstValue + 1
-                                 : f.function ? task.layout().range_size(f) + kFirstValue
-                                              : 4;
-    contents_.push_back(contents);
-    fluent_of_.insert(fluent_of_.end(), contents, i);
-    facts_ += contents;
-  }
-  reached_.assign(facts_, 0);
-  nodes_.resize(facts_);
+Relaxation::Relaxation(Task& task, Limits& limits)
+    : task_(task), limits_(limits), facts_(task.model(), task.layout()) {
+  reached_.assign(facts_.size(), 0);
+  nodes_.resize(facts_.size());
   reach();
   std::sort(actions_.begin(), actions_.end());
   for (const OperatorId a : actions_) add_action(a);
   for (Index i = 0; i < task.layout().fluents().size(); ++i) {
     const Fluent& f = task.layout().fluents()[i];
     const FactId sensed =
-        fact(i, f.function ? kValueSensed : static_cast<Word>(AtomKnowledge::Whether));
+        facts_.fact(i, f.function ? kValueSensed : static_cast<Word>(AtomKnowledge::Whether));
     if (!reached_[sensed]) continue;
     for (Index v = 0; v < (f.function ? task.layout().range_size(f) : 2); ++v) {
       Operator o;
       o.step = task.outcome_id(i, v);
       o.preconditions = {sensed};
-      o.adds = {fact(
+      o.adds = {facts_.fact(
           i, f.function ? kFirstValue + v
                         : static_cast<Word>(v == 1 ? AtomKnowledge::True : AtomKnowledge::False))};
       add_operator(std::move(o), {sensed});
@@ -46,7 +37,7 @@ Relaxation::Relaxation(Task& task, Limits& limits) : task_(task), limits_(limits
     o.step = task.outcome_id(i, 0);
     const Word contents = f.function ? task.layout().range_size(f) + kFirstValue : 4;
     for (Word c = 1; c < contents; ++c)
-      if (!f.function || c != kValueSensed) o.adds.push_back(fact(i, c));
+      if (!f.function || c != kValueSensed) o.adds.push_back(facts_.fact(i, c));
     add_operator(std::move(o), {});
   }
   node(task.goal());
@@ -56,50 +47,6 @@ bool Relaxation::mark(FactId f) {
   if (reached_[f]) return false;
   reached_[f] = 1;
   return true;
-}
-
-/// Contents of a leaf's fluent for which the leaf holds (or, if not positive, fails).
-std::vector<FactId> Relaxation::contents(const FormulaPool::Node& n, bool positive,
-                                         bool& always) const {
-  const Fluent& f = task_.layout().fluents()[n.a];
-  always = false;
-  std::vector<FactId> result;
-  const Word count = contents_[n.a];
-  for (Word c = 0; c < count; ++c) {
-    bool holds = false;
-    bool open = false;
-    switch (n.kind) {
-      case Kind::IsTrue:
-        holds = c == static_cast<Word>(AtomKnowledge::True);
-        open = c == static_cast<Word>(AtomKnowledge::Whether);
-        break;
-      case Kind::IsFalse:
-        holds = c == static_cast<Word>(AtomKnowledge::False);
-        open = c == static_cast<Word>(AtomKnowledge::Whether);
-        break;
-      case Kind::Whether:
-      case Kind::ValueKnown:
-        holds = c != 0;
-        break;
-      case Kind::ValueIs:
-        holds = c == kFirstValue + n.b;
-        open = c == kValueSensed;
-        break;
-      case Kind::ValueIsNot:
-        holds = c >= kFirstValue && c != kFirstValue + n.b;
-        open = c == kValueSensed;
-        break;
-      case Kind::ValueWhether:
-        holds = c != kValueUnknown;
-        break;
-      default:
-        break;
-    }
-    if (!open && holds == positive) result.push_back(fact(n.a, c));
-  }
-  // Exclusions and exclusive-or groups may decide without the content: optimistic then.
-  always = f.exclusions != kNone || (!f.groups.empty() && !positive);
-  return result;
 }
 
 bool Relaxation::possible(Formula f, bool positive) const {
@@ -125,113 +72,23 @@ bool Relaxation::possible(Formula f, bool positive) const {
                          [&](Formula c) { return possible(c, positive); });
     default: {
       bool always = false;
-      const std::vector<FactId> any = contents(n, positive, always);
+      const std::vector<FactId> any = facts_.leaf_contents(n, positive, always);
       return always ||
              std::any_of(any.begin(), any.end(), [&](FactId x) { return reached_[x] != 0; });
     }
   }
 }
 
-std::vector<FactId> Relaxation::added(const Change& c) const {
-  using K = Change::Kind;
-  const auto atom = [&](AtomKnowledge k) { return fact(c.fluent, static_cast<Word>(k)); };
-  switch (c.kind) {
-    case K::AddTrue:
-      return {atom(AtomKnowledge::True)};
-    case K::AddFalse:
-      return {atom(AtomKnowledge::False)};
-    case K::DeleteTrue:
-    case K::DeleteFalse:
-    case K::DeleteClosed:
-    case K::Forget:
-    case K::DeleteValue:
-    case K::DeleteExclude:
-    case K::Exclude:
-      return {fact(c.fluent, 0)};
-    case K::AddWhether:
-    case K::AddClosed:
-      return {atom(AtomKnowledge::Whether)};
-    case K::AddValue:
-      return {fact(c.fluent, kFirstValue + c.value)};
-    case K::AddSensed:
-      return {fact(c.fluent, kValueSensed)};
-    case K::AddOptions: {
-      std::vector<FactId> all;
-      for (const Index o : c.options) all.push_back(fact(c.fluent, kFirstValue + o));
-      return all;
-    }
-    case K::AddGroup:
-    case K::DeleteGroup:
-      return {};
-  }
-  return {};
-}
-
-std::vector<FactId> Relaxation::added(const ConditionalEffect& c) const {
-  std::vector<FactId> all;
-  for (const auto* list : {&c.deletions, &c.direct, &c.additions, &c.sensing})
-    for (const Change& change : *list)
-      for (const FactId x : added(change)) all.push_back(x);
-  for (const ConditionalEffect::Transfer& t : c.transfers)  // any value, or none
-    for (Word content = 0; content < contents_[t.fluent]; ++content)
-      if (content != kValueSensed) all.push_back(fact(t.fluent, content));
-  return all;
-}
-
-bool Relaxation::ends(const Operator& op, FactId f) const {
-  if (task_.is_outcome(op.step)) return false;  // learning changes nothing
-  using K = Change::Kind;
-  const Index fluent = fluent_of(f);
-  const Word content = content_of(f);
-  const auto is = [&](AtomKnowledge k) { return content == static_cast<Word>(k); };
-  const ConditionalEffect& c = task_.action(op.step).effects[op.conditional];
-  for (const auto* list : {&c.deletions, &c.direct, &c.additions})
-    for (const Change& change : *list) {
-      if (change.kind == K::AddGroup || change.kind == K::DeleteGroup || change.fluent != fluent)
-        continue;
-      switch (change.kind) {
-        case K::AddTrue:
-          if (!is(AtomKnowledge::True)) return true;
-          break;
-        case K::AddFalse:
-          if (!is(AtomKnowledge::False)) return true;
-          break;
-        case K::DeleteTrue:
-          if (is(AtomKnowledge::True)) return true;
-          break;
-        case K::DeleteFalse:
-        case K::DeleteClosed:
-          if (is(AtomKnowledge::False)) return true;
-          break;
-        case K::Forget:
-          if (content != 0) return true;
-          break;
-        case K::AddValue:
-          if (content != kFirstValue + change.value) return true;
-          break;
-        case K::DeleteValue:
-          if (content == kFirstValue + change.value) return true;
-          break;
-        case K::DeleteExclude:
-          if (content >= kFirstValue && content != kFirstValue + change.value) return true;
-          break;
-        default:
-          break;  // observations: certain of nothing
-      }
-    }
-  return false;
-}
-
 void Relaxation::reach() {
   const Layout& layout = task_.layout();
   for (Index i = 0; i < layout.fluents().size(); ++i) {
     const Fluent& f = layout.fluents()[i];
-    mark(fact(i, f.get(task_.initial().data())));
+    mark(facts_.fact(i, f.get(task_.initial().data())));
     // What Kx or exclusions may reveal is taken for reachable.
     if (!f.groups.empty())
-      for (Word c = 0; c < 4; ++c) mark(fact(i, c));
+      for (Word c = 0; c < 4; ++c) mark(facts_.fact(i, c));
     if (f.exclusions != kNone)
-      for (Word c = 0; c < layout.range_size(f) + kFirstValue; ++c) mark(fact(i, c));
+      for (Word c = 0; c < layout.range_size(f) + kFirstValue; ++c) mark(facts_.fact(i, c));
   }
   for (bool again = true; again;) {
     again = false;
@@ -248,16 +105,16 @@ void Relaxation::reach() {
             }
             for (const ConditionalEffect& c : task_.action(step).effects) {
               if (!possible(c.condition, true)) continue;
-              for (const FactId x : added(c)) again |= mark(x);
+              for (const FactId x : facts_.added(c)) again |= mark(x);
             }
           });
     }
     for (Index i = 0; i < layout.fluents().size(); ++i) {
       const Fluent& f = layout.fluents()[i];
       const Word sensed = f.function ? kValueSensed : static_cast<Word>(AtomKnowledge::Whether);
-      if (!reached_[fact(i, sensed)]) continue;
+      if (!reached_[facts_.fact(i, sensed)]) continue;
       const Word count = f.function ? layout.range_size(f) + kFirstValue : 3;
-      for (Word c = f.function ? kFirstValue : 1; c < count; ++c) again |= mark(fact(i, c));
+      for (Word c = f.function ? kFirstValue : 1; c < count; ++c) again |= mark(facts_.fact(i, c));
     }
   }
 }
@@ -296,7 +153,7 @@ Index Relaxation::node(Formula f, bool positive) {
       break;
     default: {
       bool always = false;
-      std::vector<FactId> any = contents(n, positive, always);
+      std::vector<FactId> any = facts_.leaf_contents(n, positive, always);
       made.kind = Node::Kind::Any;
       if (always) made.kind = Node::Kind::All;
       if (!always) {
@@ -325,7 +182,7 @@ std::vector<FactId> Relaxation::necessary_facts(Formula f) const {
       for (const FactId x : necessary_facts(*c)) result.push_back(x);
   } else if (n.kind == Kind::IsTrue || n.kind == Kind::IsFalse || n.kind == Kind::ValueIs) {
     bool always = false;
-    const std::vector<FactId> any = contents(n, true, always);
+    const std::vector<FactId> any = facts_.leaf_contents(n, true, always);
     if (!always && any.size() == 1) result = any;
   }
   std::sort(result.begin(), result.end());
@@ -352,7 +209,7 @@ void Relaxation::add_action(OperatorId step) {
     o.step = step;
     o.cost = a.cost;
     o.conditional = i;
-    o.adds = added(c);
+    o.adds = facts_.added(c);
     if (o.adds.empty()) continue;
     const std::vector<FactId> condition = necessary_facts(c.condition);
     std::set_union(needed.begin(), needed.end(), condition.begin(), condition.end(),

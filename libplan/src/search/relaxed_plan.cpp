@@ -46,7 +46,7 @@ std::uint64_t RelaxedPlan::evaluate(const Word* state) {
       settle(n, 0, kNone);
   }
   for (Index i = 0; i < fluents.size(); ++i)
-    settle(relaxation_.fact(i, fluents[i].get(state)), 0, kNone);
+    settle(relaxation_.facts().fact(i, fluents[i].get(state)), 0, kNone);
   while (!queue_.empty()) {
     std::pop_heap(queue_.begin(), queue_.end(), std::greater<>());
     const auto [cost, node] = queue_.back();
