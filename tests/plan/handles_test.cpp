@@ -21,16 +21,6 @@ Solution with(const Model& m, Algorithm a) {
   return solve(m, o);
 }
 
-std::string error_of(const std::string& text, const ExternalBindings& bindings) {
-  try {
-    const Model m = bound(text, bindings);
-    solve(m, {});
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "no error";
-}
-
 void expect_says(const std::string& text, const std::string& part) {
   EXPECT_NE(text.find(part), std::string::npos) << text;
 }
@@ -282,18 +272,18 @@ TEST(Handles, BrokenHostsAreErrorsThatNameFunctionAndState) {
     q.state.truth("warm", {});
     throw std::runtime_error("no such robot");
   };
-  expect_says(error_of(text, b), "'g(start)' failed: no such robot, in a state where at = start");
-  expect_says(error_of(text, b), "at = start");
+  expect_says(complaint(text, b), "'g(start)' failed: no such robot, in a state where at = start");
+  expect_says(complaint(text, b), "at = start");
   b["g"] = [](const Question& q) {
     q.state.value("nowhere", {});
     return Answer{};
   };
-  expect_says(error_of(text, b), "'g(start)': it reads 'nowhere', but the model has no function");
+  expect_says(complaint(text, b), "'g(start)': it reads 'nowhere', but the model has no function");
   b["g"] = [](const Question&) { return Answer::found(""); };
-  expect_says(error_of(text, b), "it returned '', no constant of its type (conf)");
+  expect_says(complaint(text, b), "it returned '', no constant of its type (conf)");
   int n = 0;
   b["g"] = [&n](const Question&) { return Answer::found("c" + std::to_string(n++)); };
-  expect_says(error_of(text, b), "'g(start)' returned another value when it was called again");
+  expect_says(complaint(text, b), "'g(start)' returned another value when it was called again");
   // Endless calls end with the limit.
   b["g"] = [&n](const Question&) { return Answer::found("c" + std::to_string(n++)); };
   const Model endless = bound(kWalk +

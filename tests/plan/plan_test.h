@@ -79,4 +79,15 @@ inline std::string complaint(const std::string& text, Language language = Langua
   return "no error";
 }
 
+/// The message of the error that loading with these externals, or solving, raises.
+inline std::string complaint(const std::string& kpl, const ExternalBindings& bindings) {
+  try {
+    solve(load({"t.kpl", kpl, Language::Kpl}, nullptr, bindings), {});
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::InvalidInput);
+    return e.what();
+  }
+  return "no error";
+}
+
 }  // namespace kaboum::plan::test

@@ -187,17 +187,6 @@ TEST(Soundness, CostsAreNotNegative) {
   }
 }
 
-/// Loads and solves; the message of the error, if there is one.
-std::string complaint_of(const std::string& text, const ExternalBindings& bindings) {
-  try {
-    solve(load({"t.kpl", text, Language::Kpl}, nullptr, bindings), {});
-  } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ErrorCode::InvalidInput);
-    return e.what();
-  }
-  return "no error";
-}
-
 TEST(Soundness, AHiddenStateIsRefused) {
   // A check finds a new state and hides it; an effect takes over what the last check left behind.
   std::string hidden;
@@ -212,15 +201,15 @@ TEST(Soundness, AHiddenStateIsRefused) {
     return "action go(?o : v) preconds: extern(check(?o)) effects: add(Kf, s = extern(" + current +
            "))";
   };
-  EXPECT_NE(complaint_of(text + "externals: check(v); current : v\n" + go("current"), bindings)
+  EXPECT_NE(complaint(text + "externals: check(v); current : v\n" + go("current"), bindings)
                 .find("t.kpl:7:22: error: external function 'current' has no arguments"),
             std::string::npos);
   EXPECT_NE(
-      complaint_of(text + "externals: check(v); current : v volatile\n" + go("current"), bindings)
+      complaint(text + "externals: check(v); current : v volatile\n" + go("current"), bindings)
           .find("'volatile' functions depend on calls made before"),
       std::string::npos);
   EXPECT_NE(
-      complaint_of(text + "externals: check(v); currentOf(v) : v\n" + go("currentOf(b)"), bindings)
+      complaint(text + "externals: check(v); currentOf(v) : v\n" + go("currentOf(b)"), bindings)
           .find("external function 'currentOf(b)' returned another value"),
       std::string::npos);
 }
