@@ -8,26 +8,14 @@
 #include <utility>
 #include <vector>
 
+#include "task/answer_tree.h"
 #include "task/layout.h"
 #include "task/solve_limits.h"
 
 namespace kaboum::plan {
 
-/// An argument of an external function, once ground: an object; or, evaluated in each state, the
-/// value of a fluent or of another call; or kNone: the value of a term that is never known. Objects
-/// and handles have numbers below these bits.
-inline constexpr Index kTermOperand = Index{1} << 30U;  ///< or'ed with a fluent
-inline constexpr Index kCallOperand = Index{1} << 31U;  ///< or'ed with a call
-inline bool is_call(Index operand) { return operand != kNone && (operand & kCallOperand) != 0; }
-inline bool is_term(Index operand) {
-  return (operand & kCallOperand) == 0 && (operand & kTermOperand) != 0;
-}
-
-/// Calls of external functions, each made once for each footprint: what it reads of a state.
-///
-/// A function that is asked again about a state that agrees on what it read must read the same, so
-/// the answers to a call are the leaves of a tree: each inner node is what is read next (a fluent,
-/// or an argument's value), each edge a content. All edges are in one flat table.
+/// Calls of external functions, each made once for each footprint: what it reads of a state. Those
+/// that found nothing are made again when it is their turn.
 class ExternalCalls {
  public:
   /// @pre all arguments outlive the calls.
@@ -62,7 +50,7 @@ class ExternalCalls {
   [[nodiscard]] Index external(Index call) const { return calls_[call].external; }
 
   [[nodiscard]] const HandleTable& handles() const { return handles_; }
-  [[nodiscard]] const std::string& payload(Index leaf) const;
+  [[nodiscard]] const std::string& payload(Index leaf) const { return answers_.payload(leaf); }
   /// The arguments of a call in a state, as names.
   std::vector<std::string> argument_names(Index call, const Word* state);
 
@@ -80,59 +68,38 @@ class ExternalCalls {
 
   [[nodiscard]] std::uint64_t calls_made() const { return made_; }
   [[nodiscard]] double seconds() const { return seconds_; }
-  [[nodiscard]] std::size_t bytes() const;
+  [[nodiscard]] std::size_t bytes() const { return handles_.bytes() + answers_.bytes(); }
   void seed(std::uint64_t seed) { seed_ = seed; }
 
  private:
-  class Reading;
-
   struct Call {
     Index external = 0;
     std::vector<Index> operands;
-    Index root = kNone;  ///< node, or leaf with kLeaf
-    Index last = kNone;  ///< the leaf that it was given last
+    AnswerTree::Root answers;
     bool depends = false;
     bool never_known = false;
   };
-  struct Leaf {
-    Index value = 0;
-    Index text = kNone;          ///< payload or reason
-    std::uint16_t attempts = 0;  ///< made so far
-    Answer::Kind kind = Answer::Kind::Impossible;
-    [[nodiscard]] bool operator==(const Leaf&) const = default;
-  };
-  struct Edge {
-    Index node = kNone;
-    Index content = 0;
-    Index child = 0;
-  };
-  /// What was read, in order: fluents and their contents, or calls and their values.
-  using Path = std::vector<std::pair<Index, Index>>;
   /// An answer that `confirm` can ask for again.
   struct Sample {
     Index call;
     std::vector<Index> arguments;
-    Path path;
+    Footprint path;
     Index leaf;
   };
-  static constexpr Index kLeaf = Index{1} << 31U;
 
   /// Content of a fluent or value of a call; false: `reply` says why there is none.
   bool content(Index item, const Word* state, Index& content, Reply& reply);
   /// Objects for the operands; what is read for them goes to `path`.
-  bool arguments(const Call& c, const Word* state, std::vector<Index>& objects, Path& path,
+  bool arguments(const Call& c, const Word* state, std::vector<Index>& objects, Footprint& path,
                  Reply& reply);
   Reply make(Index call, const Word* state, unsigned first_attempt);
-  ExternalResult run(const Call& c, const std::vector<Index>& objects, Reading& reading,
+  ExternalResult run(const Call& c, const std::vector<Index>& objects, StateReader& reader,
                      unsigned attempt);
-  Index insert(Index call, const Path& path, const std::vector<Index>& arguments, Leaf leaf);
-  Index* edge(Index node, Index content);
-  void add_edge(Index node, Index content, Index child);
-  [[nodiscard]] std::size_t slot(Index node, Index content) const;
-  Reply reply(Index leaf) const;
-  Index text(std::string text);
-  [[nodiscard]] std::string call_text(const Call& c, const std::vector<Index>& objects) const;
-  [[nodiscard]] std::string state_text(const Path& path) const;
+  Index keep(Index call, const Footprint& path, const std::vector<Index>& arguments,
+             const AnswerTree::Leaf& leaf);
+  [[nodiscard]] Reply reply(Index leaf) const;
+  static Reply open(Index fluent) { return {Reply::Kind::Open, 0, fluent}; }
+  [[nodiscard]] std::string text(const Call& c, const std::vector<Index>& objects) const;
 
   const Model& model_;
   const Layout& layout_;
@@ -140,11 +107,7 @@ class ExternalCalls {
   HandleTable handles_;
   std::vector<Call> calls_;
   std::map<std::pair<Index, std::vector<Index>>, Index> call_index_;
-  std::vector<Index> nodes_;  ///< what each reads
-  std::vector<Edge> edges_;   ///< open addressing
-  std::size_t edge_count_ = 0;
-  std::vector<Leaf> leaves_;
-  std::vector<std::string> texts_;
+  AnswerTree answers_;
   std::vector<Sample> samples_;
   std::vector<std::uint8_t> sampled_;  ///< by external
   std::uint64_t seed_ = 0;

@@ -22,7 +22,7 @@ class QueryGrounder {
 
   /// The query for these slots; `let` gives its slot the call's number.
   Formula ground(const Query& query, std::vector<Index>& slots);
-  /// What an argument stands for: an object, or an operand (external_calls.h); kNone: nothing.
+  /// What an argument stands for: an object, or an operand (answer_tree.h); kNone: nothing.
   [[nodiscard]] Index operand(const Argument& a, const std::vector<Index>& slots) const;
 
  private:
