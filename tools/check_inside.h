@@ -1,0 +1,34 @@
+#pragma once
+
+#include <kaboum/collide/inclusion.h>
+#include <kaboum/world/checker.h>
+#include <kaboum/world/regions.h>
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "report.h"
+
+/// kaboum-check --inside: whether objects, links and robots lie in regions.
+namespace kaboum::tools {
+
+/// What is to lie in which region.
+struct Inside {
+  std::string name, region_name;
+  std::vector<world::Item> items;
+  std::size_t region = 0;
+};
+
+/// What texts NAME=REGION ask for. Throws InvalidArgument where the scene has no such name,
+/// InvalidInput where of a robot it cannot be told.
+std::vector<Inside> parse_inside(const world::World& world, const std::vector<std::string>& texts);
+
+/// Whether all that is asked for is inside; each answer is said and reported. `before` begins each
+/// line.
+collide::Inclusion decide_inside(const world::Checker& checker, const world::WorldState& state,
+                                 const std::vector<Inside>& wanted, const std::string& before,
+                                 const std::function<void(const std::string&)>& say, Json& report);
+
+}  // namespace kaboum::tools
