@@ -1,0 +1,59 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "cells.h"
+#include "quadric.h"
+#include "surface.h"
+
+namespace kaboum::wrap {
+
+/// Where the surface is wished, and where it may go.
+struct Room {
+  const Lattice& lattice;
+  const BitGrid& open;  ///< cells outside, and those that the input meets; not the sealed ones
+  double offset;        ///< the surface should be nowhere farther from the input [length]
+
+  /// The distance that is aimed at: half the room on either side.
+  [[nodiscard]] double aim() const { return 0.5 * offset; }
+  /// Farther away the surface stays as it is: it closes a gap.
+  [[nodiscard]] double far() const { return 1.75 * lattice.side; }
+  [[nodiscard]] bool allows(const Vec3& p) const;
+};
+
+struct Plane {
+  Vec3 normal = Vec3::Zero(), point = Vec3::Zero();
+  double area = 0;  ///< of the triangle that it stands for
+};
+
+/// Brings a surface nearer to the input, step by step. Proposals are rounded; the surface decides.
+class Fit {
+ public:
+  Fit(Surface& surface, const Obstacle& obstacle, const Room& room)
+      : surface_(surface), obstacle_(obstacle), room_(room), hint_(surface.vertex_count(), 0) {}
+
+  /// Each vertex goes towards the nearest point of the input, as far as it may.
+  void approach();
+  /// Each vertex goes to where the tangent planes of the input's offset near it meet: onto the
+  /// edges of planes.
+  void settle();
+  /// Splits edges whose middle is too far from the input, and brings the new vertices near.
+  /// @return how many
+  std::size_t refine();
+
+  /// The offset's tangent plane near the middle of a triangle, or the triangle's own where the
+  /// input is far.
+  [[nodiscard]] Plane plane_of(std::uint32_t triangle) const;
+
+ private:
+  void approach(std::uint32_t v);
+  void settle(std::uint32_t v, const std::vector<Plane>& planes);
+
+  Surface& surface_;
+  const Obstacle& obstacle_;
+  const Room& room_;
+  std::vector<std::uint32_t> hint_;  ///< per vertex: a triangle of the input that was near
+};
+
+}  // namespace kaboum::wrap

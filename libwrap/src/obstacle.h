@@ -1,0 +1,55 @@
+#pragma once
+
+#include <kaboum/geom/bvh.h>
+#include <kaboum/geom/distance.h>
+#include <kaboum/geom/mesh.h>
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace kaboum::wrap {
+
+using geom::Vec3;
+using Tetrahedron = std::array<Vec3, 4>;
+
+/// The nearest point of the input, rounded.
+struct Foot {
+  Vec3 point;
+  double distance;  ///< at least that from the point asked about; more by rounding only [length]
+  std::uint32_t triangle;
+};
+
+/// The input's triangles, which the wrap must not pass.
+class Obstacle {
+ public:
+  /// @pre the mesh has triangles, all finite
+  explicit Obstacle(const geom::Mesh& mesh);
+
+  /// Whether certainly no triangle meets any of the tetrahedra: closed, of either orientation,
+  /// perhaps flat, with one last corner. May say no where it is hard to tell.
+  [[nodiscard]] bool clear(std::span<const Tetrahedron> tetrahedra) const;
+
+  [[nodiscard]] Foot foot(const Vec3& p, std::uint32_t hint) const {
+    const auto near = query_.nearest(p, hint);
+    const auto& [a, b, c] = query_.corners(near.triangle);
+    return {geom::nearest_point(p, a, b, c), near.upper, near.triangle};
+  }
+  /// Whether some triangle is certainly within the radius; starts at `hint`, and changes it to one.
+  [[nodiscard]] bool within(const Vec3& p, double radius, std::uint32_t& hint) const {
+    const std::uint32_t found = query_.within(p, radius, hint);
+    if (found == geom::TriangleSearch::kNone) return false;
+    hint = found;
+    return true;
+  }
+
+ private:
+  /// Whether the plane of the triangle has all the points certainly on one side.
+  [[nodiscard]] bool beside(std::uint32_t triangle, const geom::Box3& box,
+                            std::span<const Tetrahedron> tetrahedra) const;
+
+  geom::DistanceQuery query_;
+  std::vector<Vec3> normal_;  ///< of each triangle, of any length, rounded
+};
+
+}  // namespace kaboum::wrap

@@ -1,0 +1,191 @@
+// Every triangle of any soup is inside its wrap: judged by libverify, and by exact winding numbers
+// of an oracle that shares no code with either. Gaps narrower than asked for are closed.
+#include <gtest/gtest.h>
+#include <kaboum/base/error.h>
+#include <kaboum/base/random.h>
+#include <kaboum/geom/distance.h>
+#include <kaboum/geom/float32.h>
+#include <kaboum/verify/inclusion.h>
+#include <kaboum/wrap/wrap.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "support/families.h"
+#include "support/oracle.h"
+#include "support/shapes.h"
+
+namespace kaboum::wrap {
+namespace {
+
+using geom::Mesh;
+using geom::Vec3;
+
+Mesh random_soup(std::uint64_t seed, int count, double size) {
+  Random random(seed);
+  Mesh mesh;
+  for (int i = 0; i < count; ++i) {
+    const auto point = [&](double s) {
+      const double x = random.between(-s, s), y = random.between(-s, s), z = random.between(-s, s);
+      return Vec3(x, y, z);
+    };
+    const Vec3 at = point(1);
+    for (int k = 0; k < 3; ++k) mesh.vertices.emplace_back(at + point(size));
+    const auto n = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.triangles.push_back({n - 3, n - 2, n - 1});
+  }
+  return mesh;
+}
+
+constexpr int kRings = 48;
+
+/// A sphere of which a cap of so many rings is missing.
+Mesh sphere_with_hole(int rings) {
+  const double height = std::cos((rings + 0.1) * std::numbers::pi / kRings);
+  return test::without(test::uv_sphere(48, kRings), [&](const Vec3& p) { return p.z() > height; });
+}
+
+Wrap wrapped(const Mesh& mesh, double offset, double seal) {
+  const double diagonal = geom::bounding_box(mesh).diagonal();
+  WrapOptions options;
+  options.offset = offset * diagonal;
+  options.seal = seal * diagonal;
+  return wrap(mesh, options);
+}
+
+void expect_inside(const Mesh& mesh, const Mesh& wrap, const std::string& name) {
+  ASSERT_TRUE(test::closed_chain(wrap)) << name;
+  EXPECT_EQ(test::share_beyond_float(wrap), 0) << name;
+  verify::InclusionOptions options;
+  options.surface_only = true;
+  EXPECT_EQ(verify::verify_inclusion(mesh, wrap, options).surface.answer, verify::Answer::Verified)
+      << name;
+  Random random(5);
+  for (int i = 0; i < 12; ++i) {
+    const geom::Triangle& t = mesh.triangles[random.index(mesh.triangles.size())];
+    const std::optional<int> w = test::winding_number_slow(wrap, mesh.vertices[t[i % 3]]);
+    ASSERT_TRUE(w) << name << ": a corner lies on the wrap";
+    EXPECT_GE(*w, 1) << name;
+  }
+}
+
+TEST(Wrap, HoldsAllFamilies) {
+  for (const auto& families : {test::closed_families(), test::open_families()}) {
+    for (const test::Family& family : families) {
+      if (geom::bounding_box(family.mesh).diagonal() == 0) continue;
+      const double far = geom::bounding_box(family.mesh).max.cwiseAbs().maxCoeff() /
+                         geom::bounding_box(family.mesh).diagonal();
+      if (far > 1e3) continue;  // float32 is too coarse there
+      expect_inside(family.mesh, wrapped(family.mesh, 0.01, 0.08).mesh, family.name);
+    }
+  }
+}
+
+TEST(Wrap, HoldsSoups) {
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    const Mesh soup = random_soup(seed, 60, seed % 2 == 0 ? 0.5 : 0.03);
+    expect_inside(soup, wrapped(soup, 0.003, 0.05).mesh, "soup " + std::to_string(seed));
+  }
+  expect_inside(test::moebius_strip(40, 4), wrapped(test::moebius_strip(40, 4), 0.01, 0.05).mesh,
+                "moebius");
+  Mesh sheet = test::grid(6, [](double x, double y) { return 0.3 * x * y; });
+  expect_inside(sheet, wrapped(sheet, 0.01, 0.05).mesh, "sheet");
+  expect_inside(test::merged({sheet, test::flipped(sheet)}),
+                wrapped(test::merged({sheet, test::flipped(sheet)}), 0.01, 0.05).mesh,
+                "doubly faced");
+  Mesh one;
+  one.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  one.triangles = {{0, 1, 2}};
+  expect_inside(one, wrapped(one, 0.01, 0.1).mesh, "one triangle");
+}
+
+/// A triangle so thin, and a cluster so small, that no point of a lattice is near.
+TEST(Wrap, HoldsWhatIsSmallerThanACell) {
+  Mesh tiny;
+  tiny.vertices = {{0, 0, 0},      {1e-4, 0, 0},    {0, 1e-5, 0},    {1, 1, 1},      {1, 1, 1},
+                   {1, 1, 1.0001}, {0.3, 0.9, 0.1}, {0.3, 0.9, 0.1}, {0.3, 0.9, 0.1}};
+  tiny.triangles = {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}};
+  const Wrap result = wrapped(tiny, 0.005, 0.1);
+  ASSERT_TRUE(test::closed_chain(result.mesh));
+  for (const Vec3& p : tiny.vertices) {
+    const std::optional<int> w = test::winding_number_slow(result.mesh, p);
+    ASSERT_TRUE(w);
+    EXPECT_GE(*w, 1);
+  }
+}
+
+TEST(Wrap, ClosesNarrowGapsAndLeavesWideOnesOpen) {
+  const double diagonal = 2 * std::numbers::sqrt3;
+  for (const int rings : {3, 5}) {
+    const double width = 2 * std::sin(rings * std::numbers::pi / kRings);
+    const Mesh shell = sphere_with_hole(rings);
+    const Mesh closed = wrapped(shell, 0.005, 1.2 * width / diagonal).mesh;
+    const Mesh open = wrapped(shell, 0.005, width / 3.5 / diagonal).mesh;
+    EXPECT_EQ(test::winding_number_slow(closed, Vec3::Zero()), 1) << width;
+    EXPECT_EQ(test::winding_number_slow(open, Vec3::Zero()), 0) << width;
+    expect_inside(shell, closed, "closed");
+    expect_inside(shell, open, "open");
+  }
+}
+
+TEST(Wrap, IsNearWhereNothingIsSealed) {
+  const Mesh sphere = test::icosphere(4);
+  const double diagonal = geom::bounding_box(sphere).diagonal();
+  const Wrap result = wrapped(sphere, 0.01, 0.1);
+  const geom::DistanceQuery query(sphere);
+  EXPECT_LT(geom::directed_distance(result.mesh, query).max_upper, 0.015 * diagonal);
+  EXPECT_LT(result.mesh.triangles.size(), result.first_triangles / 4);
+}
+
+TEST(Wrap, IsTheSameForAnyNumberOfThreads) {
+  const Mesh soup = random_soup(2, 200, 0.2);
+  Mesh first;
+  for (const std::size_t threads : {1, 4}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const Mesh mesh = wrapped(soup, 0.004, 0.04).mesh;
+    if (first.empty()) first = mesh;
+    EXPECT_EQ(mesh.vertices, first.vertices);
+    EXPECT_EQ(mesh.triangles, first.triangles);
+  }
+}
+
+/// What the judges are for: a wrap of which one vertex is pushed through the input is refuted.
+TEST(Wrap, ADamagedWrapIsRefuted) {
+  const Mesh sphere = test::icosphere(3);
+  Mesh mesh = wrapped(sphere, 0.01, 0.1).mesh;
+  mesh.vertices[mesh.triangles[0][0]] *= 0.8;
+  verify::InclusionOptions options;
+  options.surface_only = true;
+  EXPECT_EQ(verify::verify_inclusion(sphere, mesh, options).surface.answer,
+            verify::Answer::Refuted);
+}
+
+TEST(Wrap, RefusesWhatCannotBe) {
+  const auto code = [](const Mesh& mesh, const WrapOptions& options) {
+    try {
+      wrap(mesh, options);
+    } catch (const Error& e) {
+      return e.code();
+    }
+    return ErrorCode::Internal;
+  };
+  WrapOptions options;
+  options.offset = 0.01;
+  options.seal = 0.1;
+  EXPECT_EQ(code({}, options), ErrorCode::InvalidInput);
+  Mesh cube = test::box({1, 1, 1}, 1);
+  EXPECT_EQ(code(test::translated(cube, {1e9, 0, 0}), options), ErrorCode::InvalidInput);
+  options.max_cells = 100;
+  EXPECT_EQ(code(cube, options), ErrorCode::LimitReached);
+  options.seal = 0;
+  EXPECT_EQ(code(cube, options), ErrorCode::InvalidArgument);
+  options.seal = std::nan("");
+  EXPECT_EQ(code(cube, options), ErrorCode::InvalidArgument);
+  cube.vertices[0].x() = std::nan("");
+  options.seal = 0.1;
+  EXPECT_EQ(code(cube, options), ErrorCode::InvalidInput);
+}
+
+}  // namespace
+}  // namespace kaboum::wrap
