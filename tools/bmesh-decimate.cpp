@@ -38,6 +38,27 @@ tools::DecimationCase case_of(const tools::DecimationOptions& o) {
   return run;
 }
 
+/// Puts a wrap in the input's place. What it takes of epsilon is not there for decimation.
+void wrap(tools::DecimationCase& run) {
+  constexpr double kShare = 0.6;  // of epsilon, for the wrap
+  const tools::DecimationOptions& o = run.asked;
+  std::optional<double> epsilon;
+  if (run.request.epsilon)
+    epsilon = run.request.epsilon->of(geom::bounding_box(run.input.mesh).diagonal());
+  certify::WrapRequest request =
+      o.preparation.request(epsilon ? std::optional(kShare * *epsilon) : std::nullopt);
+  request.float32 = o.precision != "double";
+  tools::Progress progress(o.common.quiet);
+  request.progress = [&](const std::string& stage) { progress.show(stage); };
+  const certify::CertifiedWrap made =
+      tools::naming(o.input, [&] { return certify::certify_wrap(run.input.mesh, request); });
+  progress.show("");
+  run.wrap = made.certificate();
+  run.input.mesh = made.artefact();
+  note(run, tools::sentence_of(*run.wrap));
+  if (epsilon) run.request.epsilon = Length{*epsilon - run.wrap->farthest_upper};
+}
+
 /// Reads and prepares the input.
 void read(tools::DecimationCase& run) {
   const tools::DecimationOptions& o = run.asked;
@@ -46,9 +67,11 @@ void read(tools::DecimationCase& run) {
   run.input = io::read_mesh(o.input, run.input.format, hash ? &bytes : nullptr);
   if (hash) run.log.input_sha256 = io::sha256(bytes);
   for (const std::string& text : run.input.notes) note(run, text);
+  if (o.preparation.wraps()) wrap(run);
   const std::size_t triangles = run.input.mesh.triangles.size();
   geom::PrepareOptions options = o.prepare;
   options.holes = o.holes.value();
+  o.preparation.apply(options);
   run.original =
       tools::naming(o.input, [&] { return certify::prepare_mesh(run.input.mesh, options); });
   if (o.records()) {
@@ -129,6 +152,10 @@ int main(int argc, char** argv) {
     const tools::ThreadLimit limit(options.common.threads);
     if (!options.from.empty()) return extract(app, options);
     require_cost_follows(app, options.cost);
+    require_meaning(app, options.preparation);
+    if (options.preparation.name != "auto")
+      tools::require_absent(app, "--prepare " + options.preparation.name,
+                            {"--holes", "--require-closed"});
     options.effort_given = app.count("--effort") > 0;
     return decimate(options);
   });

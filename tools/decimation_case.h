@@ -16,8 +16,9 @@ namespace kaboum::tools {
 struct DecimationCase {
   const DecimationOptions& asked;
   certify::MeshRequest request = {};
-  std::vector<std::string> files = {};  ///< of each result; an empty name: none
-  io::ReadResult input = {};            ///< its mesh is dropped once it is prepared
+  std::vector<std::string> files = {};                ///< of each result; an empty name: none
+  io::ReadResult input = {};                          ///< its mesh is dropped once it is prepared
+  std::optional<certify::WrapCertificate> wrap = {};  ///< whose mesh is the original
   geom::Prepared original = {};
   std::vector<std::string> notes = {};  ///< of reading and preparing, and options without effect
   bmesh::Log log = {};                  ///< without the steps, unless they are wished for

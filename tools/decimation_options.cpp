@@ -129,6 +129,7 @@ void describe_files(CLI::App& app, DecimationOptions& o) {
   app.add_flag("--drop-sheets", o.prepare.drop_sheets,
                "Drop back-to-back faces without volume (they are then not enclosed)");
   add_holes_options(app, o.holes, true);
+  add_preparation_options(app, o.preparation);
   app.add_flag("--keep-orientation", o.prepare.keep_orientation,
                "Never turn inconsistent triangles or inside-out components");
   app.add_flag("--verify", o.verify,
@@ -177,6 +178,11 @@ void require_sound(const DecimationOptions& o, const std::vector<std::size_t>& c
   require(counts.size() < 2 || o.log.empty(),
           "--log speaks of one result; --progressive holds the steps of a series");
   require(o.progressive.empty() || o.log.empty(), "--progressive contains what --log writes");
+  require(!o.preparation.wraps() || o.direction == "outer",
+          "--prepare wrap: what lies in a wrap need not lie in the input; only --direction outer");
+  require(!o.preparation.wraps() || !o.records(),
+          "--log and --progressive start from the input; write the wrap with mesh-prepare first, "
+          "and simplify that");
 }
 
 void require_sound_formats(const DecimationOptions& o, std::optional<io::Format> format) {

@@ -8,6 +8,7 @@
 
 #include "cli.h"
 #include "holes_option.h"
+#include "preparation_option.h"
 
 namespace kaboum::tools {
 
@@ -22,6 +23,7 @@ struct DecimationOptions {
   bool effort_given = false, as_printed = false, keep_convex = false, verify = false;
   geom::PrepareOptions prepare;
   HolesOption holes;
+  PreparationOption preparation;
   CommonOptions common;
 
   /// Whether the steps are wished for.

@@ -37,7 +37,9 @@ Json input_of(const DecimationCase& run) {
 
 Json preparation_of(const DecimationCase& run) {
   const geom::Prepared& p = run.original;
-  return {{"collapsed_triangles", run.input.collapsed_triangles + p.collapsed_triangles},
+  return {{"prepare", run.asked.preparation.name},
+          {"wrap", run.wrap ? to_json(*run.wrap) : Json()},
+          {"collapsed_triangles", run.input.collapsed_triangles + p.collapsed_triangles},
           {"dropped_copies", p.dropped_copies},
           {"cancelled_walls", p.cancelled_walls},
           {"dropped_sheets", p.dropped_sheets},

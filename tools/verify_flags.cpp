@@ -75,8 +75,8 @@ void require_meaning(const CLI::App& app, const VerifyOptions& o) {
   require_absent(app, relation, {"--geometry", "--visual", "--package-path"});
   if (o.progressive)
     require_absent(app, "--progressive",
-                   {"--claims", "--epsilon", "--prepare", "--drop-sheets", "--set", "--witness",
-                    "--approximation-format", "--max-contacts"});
+                   {"--claims", "--epsilon", "--prepare", "--raw", "--drop-sheets", "--set",
+                    "--witness", "--approximation-format", "--max-contacts"});
 }
 
 }  // namespace kaboum::tools

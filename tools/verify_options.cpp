@@ -32,6 +32,12 @@ void add_preparation(CLI::App& app, VerifyOptions& o, const std::string& what) {
                "and bcd-decompose do with this option; nothing is then said about them, and the "
                "verdict names them")
       ->needs("--prepare");
+  app.add_flag_callback(
+         "--raw", [&o] { o.claims = "surface"; },
+         "Judge the triangles of the file as they are, open, one-sided or in pieces: whether each "
+         "of them lies in the result's solid; the same as --claims surface without --prepare")
+      ->excludes("--prepare")
+      ->excludes("--claims");
 }
 
 void add_witness(CLI::App& app, VerifyOptions& o) {

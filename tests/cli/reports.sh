@@ -24,6 +24,8 @@ run decimate "$BIN/bmesh-decimate" "$BRACKET" -o outer.ply --vertices 300 --log 
 run levels "$BIN/bmesh-decimate" "$BRACKET" -o 'level-{vertices}.ply' --vertices 300,200 --progressive outer.pm
 run from "$BIN/bmesh-decimate" --from outer.pm --vertices 250 -o from.ply
 run replay "$BIN/bmesh-replay" "$BRACKET" outer.log outer.ply
+run prepare "$BIN/mesh-prepare" "$BRACKET" -o prepared.obj --verify
+run wrap "$BIN/mesh-prepare" box.off -o wrapped.stl --prepare wrap --seal 10%
 run decompose "$BIN/bcd-decompose" "$BRACKET" -o set.glb --epsilon 5% --effort fast --no-cache
 run inner "$BIN/bcd-decompose" wide.off -o inner.glb --direction inner --epsilon 20% --no-cache
 run robot "$BIN/bcd-decompose" arm.urdf -o safe --effort fast --no-cache

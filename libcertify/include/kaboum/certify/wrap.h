@@ -1,0 +1,51 @@
+#pragma once
+
+#include <kaboum/base/length.h>
+#include <kaboum/certify/certified.h>
+#include <kaboum/geom/mesh.h>
+
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace kaboum::certify {
+
+struct WrapRequest {
+  /// How far the wrap may be from the input where it can get near it [a quarter of `farthest`, else
+  /// 0.1 %]; percentages are of the diagonal.
+  std::optional<Length> offset;
+  /// Hollows behind gaps narrower than this are filled [found, so that `farthest` is kept; else
+  /// 1 %].
+  std::optional<Length> seal;
+  /// No point of the wrap may be farther from the input. [length]
+  std::optional<double> farthest;
+  bool float32 = true;  ///< numbers of the wrap; else doubles
+  std::function<void(const std::string& stage)> progress;
+};
+
+struct WrapCertificate {
+  double offset = 0, seal = 0;  ///< as wrapped [length]
+  double diagonal = 0;          ///< of the input's box [length]
+  /// Certified bracket of the largest distance of the wrap's points from the input's triangles, and
+  /// a point that is so far away. [length]
+  double farthest_lower = 0, farthest_upper = 0;
+  geom::Vec3 at = geom::Vec3::Zero();
+  std::size_t input_triangles = 0;
+};
+
+/// A closed mesh whose solid holds every triangle of the input: decided by libverify.
+using CertifiedWrap = Certified<geom::Mesh, WrapCertificate>;
+
+/// Wraps any triangles (wrap::wrap), measures how far the wrap reaches, and has libverify decide
+/// that every triangle lies inside, exactly. docs/algorithms/wrapping.md
+///
+/// Its bytes are empty: who writes it serialises it (serialise_checked).
+///
+/// @throws Error{InvalidInput} when there is nothing to wrap, coordinates are too large, or the
+/// wrap
+///   reaches farther than it may; Error{InvalidArgument} on lengths that are not positive;
+///   Error{LimitReached} when the lattice or deciding takes too much; Error{Internal} when
+///   libverify refutes it.
+CertifiedWrap certify_wrap(const geom::Mesh& input, const WrapRequest& request);
+
+}  // namespace kaboum::certify

@@ -1,0 +1,91 @@
+// Wraps: made, measured, and decided by libverify.
+#include <kaboum/certify/wrap.h>
+#include <kaboum/geom/distance.h>
+#include <kaboum/verify/inclusion.h>
+#include <kaboum/wrap/wrap.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "issuer.h"
+
+namespace kaboum::certify {
+namespace {
+
+constexpr Length kOffset{0.1, true}, kSeal{1, true};
+constexpr double kOffsetShare = 0.25;  ///< of the farthest that is allowed
+constexpr int kTries = 4;              ///< of gaps to seal, each half of the one before
+
+std::string number(double x) {
+  std::array<char, 32> text{};
+  const auto end =
+      std::to_chars(text.data(), text.data() + text.size(), x, std::chars_format::general, 4).ptr;
+  return {text.data(), end};
+}
+
+void measure(const geom::Mesh& wrap, const geom::DistanceQuery& input, WrapCertificate& made) {
+  geom::DistanceOptions wished;
+  wished.relative_gap = 0.01;
+  const geom::DirectedDistance far = geom::directed_distance(wrap, input, wished);
+  made.farthest_lower = far.max_lower;
+  made.farthest_upper = far.max_upper;
+  made.at = far.at;
+}
+
+/// @throws Error{LimitReached}, Error{Internal}
+void decide(const geom::Mesh& input, const geom::Mesh& wrap, const WrapRequest& request) {
+  verify::InclusionOptions options;
+  options.surface_only = true;
+  options.progress = request.progress;
+  const verify::Inclusion found = verify::verify_inclusion(input, wrap, options);
+  ensure(found.outer_closed, "the wrap is not closed");
+  if (found.surface.answer == verify::Answer::Undecided)
+    throw Error(ErrorCode::LimitReached,
+                "whether the wrap holds every triangle is not decided: " + found.surface.reason);
+  ensure(found.surface.answer == verify::Answer::Verified,
+         "the verification refutes that the wrap holds every triangle");
+}
+
+}  // namespace
+
+CertifiedWrap certify_wrap(const geom::Mesh& input, const WrapRequest& request) {
+  if (input.triangles.empty())
+    throw Error(ErrorCode::InvalidInput, "there are no triangles to wrap");
+  geom::require_valid(input);
+  WrapCertificate made;
+  made.input_triangles = input.triangles.size();
+  made.diagonal = geom::bounding_box(input).diagonal();
+  if (!(made.diagonal > 0))
+    throw Error(ErrorCode::InvalidInput,
+                "all triangles lie in one point; there is nothing to wrap");
+  made.offset = request.offset     ? request.offset->of(made.diagonal)
+                : request.farthest ? kOffsetShare * *request.farthest
+                                   : kOffset.of(made.diagonal);
+  made.seal = request.seal       ? request.seal->of(made.diagonal)
+              : request.farthest ? *request.farthest
+                                 : kSeal.of(made.diagonal);
+  const geom::DistanceQuery query(input);
+  wrap::WrapOptions options;
+  options.offset = made.offset;
+  options.float32 = request.float32;
+  options.progress = request.progress;
+  geom::Mesh mesh;
+  for (int tried = 1;; ++tried) {
+    options.seal = made.seal;
+    mesh = wrap::wrap(input, options).mesh;
+    if (request.progress) request.progress("measuring the wrap");
+    measure(mesh, query, made);
+    if (!request.farthest || made.farthest_upper <= *request.farthest) break;
+    if (request.seal || tried == kTries)
+      throw Error(ErrorCode::InvalidInput,
+                  "the wrap reaches " + number(made.farthest_upper) +
+                      " beyond the triangles, which is more than the " + number(*request.farthest) +
+                      " that epsilon leaves; seal smaller gaps, or allow a larger epsilon");
+    made.seal /= 2;
+  }
+  if (request.progress) request.progress("verifying the wrap");
+  decide(input, mesh, request);
+  return Issuer::issue(std::move(mesh), made, std::vector<char>());
+}
+
+}  // namespace kaboum::certify

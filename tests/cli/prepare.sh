@@ -1,0 +1,51 @@
+# mesh-prepare and --prepare: what is repaired, wrapped and refused; bound-verify --raw judges the file's triangles.
+. "$(dirname "$0")/common.sh"
+P=$BIN/mesh-prepare
+V=$BIN/bound-verify
+
+tetrahedron >closed.off
+tetrahedron | sed '$d' | sed 's/^4 4 0/4 3 0/' >open.off
+tetrahedron | sed 's/^3 0 2 1$/3 0 1 2/' >mixed.off
+printf 'OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 2 1\n' >sheet.off
+# Triangles that share nothing.
+printf 'OFF\n6 2 0\n0 0 0\n1 0 0\n0 1 0\n0.2 0.2 -1\n0.2 0.3 1\n0.4 0.2 1\n3 0 1 2\n3 3 4 5\n' >crossing.off
+
+expect 0 'changed: nothing' "$P" closed.off -o p.off
+expect 0 'changed: .*triangles turned' "$P" mixed.off -o p.off --verify --report r.json
+grep -q '"every_triangle_inside": "verified"' r.json || fail "no answer in $(cat r.json)"
+expect 0 '1 holes filled' "$P" open.off -o p.off --report r.json
+python3 - <<'END' || fail "place and size of the hole: $(cat r.json)"
+import json
+hole = [r for r in json.load(open("r.json"))["repairs"] if r["kind"].startswith("hole")][0]
+assert abs(hole["size"] - 2 ** 0.5) < 1e-6 and hole["place"] == [0, 0.5, 0.5], hole
+END
+shows 0 'verified' "$V" --outer open.off p.off --raw
+expect 3 'prepare wrap' "$P" open.off -o none.off --prepare strict
+expect 3 'prepare wrap' "$P" sheet.off -o none.off
+expect 3 '' "$P" crossing.off -o none.off --prepare strict
+expect 1 '' "$P" open.off -o kept.off --prepare off
+expect 2 'prepare auto' "$P" open.off -o none.off --seal 1%
+expect 2 '' "$P" open.off -o none.off --prepare wrap --seal 0
+expect 2 '' "$P" open.off -o none.off --prepare other
+
+for f in closed open sheet crossing; do
+  expect 0 'each lies inside, exactly' "$P" $f.off -o w.stl --prepare wrap --seal 4%
+  shows 0 'verified' "$V" --outer $f.off w.stl --raw
+  expect 0 '' "$BIN/bmesh-decimate" $f.off -o d.stl --prepare wrap --epsilon 5% --effort fast
+  shows 0 'verified' "$V" --outer $f.off d.stl --raw
+done
+# The other way round it must be refuted; so must a result that is too small.
+"$V" --outer w.stl crossing.off --raw >/dev/null 2>&1 && fail "two triangles hold their wrap"
+expect 0 '' "$P" closed.off -o w.off --prepare wrap --seal 4%
+sed 's/^1 0 0$/1.5 0 0/' closed.off >larger.off
+expect 1 '' "$V" --outer larger.off w.off --raw
+# The same bytes on any number of threads.
+"$P" crossing.off -o w1.stl --prepare wrap --threads 1 --quiet
+"$P" crossing.off -o w2.stl --prepare wrap --threads 4 --quiet
+cmp w1.stl w2.stl || fail "wraps differ"
+expect 3 "epsilon" "$P" crossing.off -o none.off --prepare wrap --seal 60% --offset 0.1% --epsilon 0.2%
+expect 2 'direction outer' "$BIN/bmesh-decimate" closed.off -o none.off --prepare wrap --epsilon 5% --direction inner
+expect 2 'mesh-prepare first' "$BIN/bmesh-decimate" closed.off -o none.off --prepare wrap --epsilon 5% --log l.log
+expect 2 '' "$V" --outer closed.off w.stl --raw --prepare
+absent none.off
+finish

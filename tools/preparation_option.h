@@ -1,0 +1,36 @@
+#pragma once
+
+#include <kaboum/certify/wrap.h>
+#include <kaboum/geom/prepare.h>
+
+#include <optional>
+#include <string>
+
+#include "cli.h"
+
+namespace kaboum::tools {
+
+/// How the triangles of a file are given a solid, as options say it.
+struct PreparationOption {
+  std::string name = "auto", offset, seal;
+
+  [[nodiscard]] bool wraps() const { return name == "wrap"; }
+  /// Sets what `strict` and `off` mean.
+  void apply(geom::PrepareOptions& options) const;
+  /// @param farthest  that the wrap may be from the input [length]
+  [[nodiscard]] certify::WrapRequest request(std::optional<double> farthest) const;
+};
+
+/// Adds --prepare, --offset and --seal.
+void add_preparation_options(CLI::App& app, PreparationOption& option);
+
+/// Refuses --offset and --seal without --prepare wrap, and what means nothing beside --prepare.
+/// @throws Error{InvalidArgument}
+void require_meaning(const CLI::App& app, const PreparationOption& option);
+
+/// What a wrap is, in one sentence.
+std::string sentence_of(const certify::WrapCertificate& wrap);
+
+Json to_json(const certify::WrapCertificate& wrap);
+
+}  // namespace kaboum::tools
