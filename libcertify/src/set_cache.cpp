@@ -1,12 +1,11 @@
 // Certified sets kept between runs.
 
 #include <kaboum/base/error.h>
+#include <kaboum/certify/cache_folder.h>
 #include <kaboum/certify/set_cache.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/io/mesh_io.h>
 
-#include <algorithm>
-#include <cstdlib>
 #include <string_view>
 
 #include "issuer.h"
@@ -24,10 +23,8 @@ constexpr const char* kAlgorithm = "planes 25";
 /// The same of containers' bytes.
 constexpr const char* kContainer = "coloured";
 
-// An entry is the name of this format, the hash of what follows, the hash of the key, the
-// certificate in one line, and the container; the first four end with a line feed.
-constexpr std::string_view kFormat = "KABOUM-SET 3\n";
-constexpr std::size_t kHash = 64;
+// An entry's content is the certificate in one line, and the container.
+constexpr std::string_view kFormat = "KABOUM-SET 3";
 
 /// Hash of the triangles as read. Their bytes say more than a file's, which may refer to others,
 /// and than a reader's version.
@@ -47,16 +44,6 @@ std::string hash_of(const geom::Mesh& mesh) {
 /// @throws Error saying why the entry is not that of the key.
 CertifiedSet read_entry(std::string_view rest, const SetCache::Key& key) {
   const auto fail = [](const char* why) -> void { throw Error(ErrorCode::InvalidInput, why); };
-  const auto take_hash = [&] {
-    const std::string_view hash = rest.substr(0, kHash);
-    rest.remove_prefix(std::min(kHash + 1, rest.size()));
-    return hash;
-  };
-  if (!rest.starts_with(kFormat)) fail("damaged, or of another version");
-  rest.remove_prefix(kFormat.size());
-  const std::string_view stated = take_hash();
-  if (io::sha256(rest) != stated) fail("damaged");
-  if (take_hash() != key.hash) fail("the result of another input or of other options");
   const std::size_t end = rest.find('\n');
   if (end == std::string_view::npos) fail("damaged");
   SetCertificate certificate = read_record(rest.substr(0, end));
@@ -74,16 +61,7 @@ CertifiedSet read_entry(std::string_view rest, const SetCache::Key& key) {
 
 }  // namespace
 
-fs::path SetCache::default_folder() {
-  const auto variable = [](const char* name) -> fs::path {
-    const char* value = std::getenv(name);
-    return value != nullptr ? value : "";
-  };
-  if (fs::path p = variable("KABOUM_CACHE"); !p.empty()) return p;
-  if (const fs::path p = variable("XDG_CACHE_HOME"); p.is_absolute()) return p / "kaboum";
-  if (const fs::path p = variable("HOME"); !p.empty()) return p / ".cache" / "kaboum";
-  return {};
-}
+fs::path SetCache::default_folder() { return CacheFolder::default_folder(); }
 
 SetCache::Key SetCache::key_of(const geom::Mesh& mesh, const std::string& sha256,
                                const SetRequest& r) {
@@ -94,36 +72,20 @@ SetCache::Key SetCache::key_of(const geom::Mesh& mesh, const std::string& sha256
 }
 
 std::optional<CertifiedSet> SetCache::find(const Key& key, std::string& flaw) const {
-  flaw.clear();
-  if (folder_.empty()) return std::nullopt;
-  const fs::path path = folder_ / (key.hash + ".set");
-  std::error_code error;
-  if (!fs::is_regular_file(path, error)) return std::nullopt;
-  std::vector<char> bytes;
+  const auto content = CacheFolder(folder_).find(kFormat, key.hash, flaw);
+  if (!content) return std::nullopt;
   try {
-    bytes = io::read_file(path);
-  } catch (const Error&) {
-    return std::nullopt;
-  }
-  try {
-    return read_entry({bytes.data(), bytes.size()}, key);
+    return read_entry(*content, key);
   } catch (const Error& why) {
-    flaw = path.string() + ": " + why.what();
+    flaw = (folder_ / key.hash).string() + ": " + why.what();
     return std::nullopt;
   }
 }
 
 void SetCache::store(const Key& key, const CertifiedSet& set) const {
-  if (folder_.empty()) return;
-  std::string rest = key.hash + "\n" + write_record(set.certificate()) + "\n";
-  rest.append(set.bytes().begin(), set.bytes().end());
-  const std::string bytes = std::string(kFormat) + io::sha256(rest) + "\n" + rest;
-  std::error_code error;
-  fs::create_directories(folder_, error);
-  try {
-    io::write_file(folder_ / (key.hash + ".set"), bytes);
-  } catch (const Error&) {  // NOLINT(bugprone-empty-catch): a cache is a convenience
-  }
+  std::string content = write_record(set.certificate()) + "\n";
+  content.append(set.bytes().begin(), set.bytes().end());
+  CacheFolder(folder_).store(kFormat, key.hash, content);
 }
 
 std::optional<FoundSet> find_or_certify(const geom::Mesh& mesh, const std::string& sha256,
