@@ -1,0 +1,96 @@
+# shellcheck shell=sh disable=SC2154
+# kaboum-batch: all that can be done is done, whatever fails; ended by kill -9, it goes on where it was.
+HERE=$(cd "$(dirname "$0")" && pwd)
+. "$HERE/common.sh"
+B=$BIN/kaboum-batch
+KABOUM_CACHE=$WORK/cache
+export KABOUM_CACHE
+mkdir -p in/sub
+for i in 1 2 3 4 5 6 7 8; do tetrahedron | sed "s/^1 0 0/1.$i 0 0/" >"in/t$i.off"; done
+tetrahedron >"in/sub/a b & c.off"
+tetrahedron >in/t1.obj                   # not an OBJ
+printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n' >in/cut.off
+tetrahedron | sed 's/^1 0 0/nan 0 0/' >in/nan.off
+echo text >in/readme.md
+
+expect 1 '9 done, 3 failed' "$B" in -o out --rule 'sub/*: bcd-decompose --epsilon 2%' --command bmesh-decimate --epsilon 1%
+[ -s "out/results/sub/a b & c.glb" ] || fail "no result of the rule"
+[ -s out/results/t1.off-result.ply ] || fail "no result of t1.off, whose name another input has"
+[ "$(find out/results -type f | wc -l)" = 9 ] || fail "results: $(find out/results -type f)"
+[ -s "out/pictures/results/t2.ply.png" ] || fail "no picture"
+grep -q 'a b &amp; c.off' out/summary.html || fail "no row in the page"
+grep -q 'src="pictures/results/sub/a%20b%20%26%20c.glb.png"' out/summary.html || fail "no picture in the page"
+[ "$(wc -l <out/summary.csv)" = 13 ] || fail "rows: $(wc -l <out/summary.csv)"
+grep -q '^cut.off,.*failed,3,' out/summary.csv || fail "cut.off: $(grep ^cut out/summary.csv)"
+grep -q '"verdict": "certified"' out/summary.json || fail "no verdict"
+python3 -c '
+import json
+rows = json.load(open("out/summary.json"))["rows"]
+done = [r for r in rows if r["state"] == "done"]
+assert len(done) == 9 and all(r["distance"] is not None and r["vertices_after"] == 4 for r in done), done
+assert all(r["reason"] for r in rows if r["state"] != "done")' || fail "figures of the summary"
+"$BIN/bmesh-decimate" in/t3.off -o alone.ply --epsilon 1% --quiet
+cmp -s alone.ply out/results/t3.ply || fail "another result than alone"
+
+# Nothing is done twice; what changed is, what failed with --retry, and what was removed.
+lines() { wc -l <out/.kaboum-batch/journal.jsonl; }
+again() { "$B" in -o out --rule 'sub/*: bcd-decompose --epsilon 2%' --quiet "$@" --command bmesh-decimate --epsilon 1%; }
+before=$(lines)
+again
+[ "$(lines)" = "$before" ] || fail "something is done again"
+touch in/t2.off
+rm out/results/t4.ply
+again
+[ "$(lines)" = $((before + 2)) ] || fail "done again: $(($(lines) - before)), not 2"
+again --retry
+[ "$(lines)" = $((before + 5)) ] || fail "with --retry: $(($(lines) - before)), not 5"
+
+# A second batch in the same folder, limits, programs that are not there, lists.
+cat >slow <<'END'
+#!/bin/sh
+sleep "${3:-30}"
+cp "$1" "$2"
+END
+chmod +x slow
+printf 'in/t1.off\n# comment\n\nin/t2.off\nin/absent.off\n' >list.txt
+expect 1 '3 timeout' "$B" list.txt -o late --no-pictures --timeout 0.3 --command ./slow '{input}' '{output}'
+expect 1 '3 failed' "$B" list.txt -o none --no-pictures --command no-such-program
+grep -q 'no-such-program: cannot be run' none/summary.csv || fail "no reason"
+expect 1 '2 done, 1 failed' "$B" list.txt -o listed --no-pictures --jobs 3
+"$B" list.txt -o busy --no-pictures --quiet --command ./slow '{input}' '{output}' 5 &
+first=$!
+while [ ! -s busy/.kaboum-batch/journal.jsonl ] && [ ! -d busy/.kaboum-batch/scratch/1 ]; do sleep 0.05; done
+expect 4 'another batch' "$B" list.txt -o busy
+kill -INT "$first"
+wait "$first"
+[ $? = 7 ] || fail "Ctrl-C: exit code"
+[ -s busy/summary.html ] || fail "no summary after Ctrl-C"
+pgrep -f "$WORK/busy" >/dev/null && fail "a program still runs"
+
+# Ended with kill -9 at several moments: no program outlives it, no result is half, nothing done is done again.
+mkdir many
+i=0
+while [ $i -lt 40 ]; do
+  tetrahedron | sed "s/^1 0 0/1.$i 0 0/" >"many/m$i.off"
+  i=$((i + 1))
+done
+for moment in 0.2 0.35; do
+  "$B" many -o kept --no-pictures --quiet &
+  batch=$!
+  sleep "$moment"
+  kill -9 "$batch"
+  wait "$batch" 2>/dev/null
+done
+sleep 0.1
+pgrep -f "$WORK/kept" >/dev/null && fail "a program outlives its batch"
+expect 0 '40 done; [0-9]* of them earlier' "$B" many -o kept --no-pictures
+[ "$(cut -d'"' -f4 kept/.kaboum-batch/journal.jsonl | sort | uniq -d | wc -l)" = 0 ] || fail "done twice"
+[ "$(find kept/results -name '*.ply' | wc -l)" = 40 ] || fail "not 40 results"
+[ -z "$(find kept -name '*.tmp')" ] || fail "left behind: $(find kept -name '*.tmp')"
+absent kept/.kaboum-batch/scratch
+"$B" many -o fresh --no-pictures --quiet || fail "fresh"
+for f in fresh/results/*; do cmp -s "$f" "kept/results/${f##*/}" || fail "$f differs"; done
+
+run_tool 3 "$B" in/sub/absent -o x --rule 'y: z'
+expect 2 'PATTERN: PROGRAM' "$B" in -o x --rule bad
+finish

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "process.h"
+#include "record.h"
+
+namespace kaboum::batch {
+
+// Names in a job's scratch folder, and of the folder that holds these.
+inline constexpr const char* kState = ".kaboum-batch";
+inline constexpr const char* kScratch = ".kaboum-batch/scratch";
+inline constexpr const char* kMessages = "messages.txt";
+inline constexpr const char* kReport = "report.json";
+inline constexpr const char* kPicture = "picture.png";
+
+/// Where the program writes its result, which is moved when it is whole.
+fs::path result_in(const fs::path& scratch, const Job& job);
+
+/// What is run. `{input}`, `{output}`, `{report}` and `{name}` stand for files; a command without
+/// `{input}` gets what KABouM's programs take: INPUT -o OUTPUT --report REPORT --threads 1.
+std::vector<std::string> command_of(const Job& job, const fs::path& folder,
+                                    const fs::path& scratch);
+
+/// The options, in one line.
+std::string parameters_of(const Job& job);
+
+/// "done", "no", "failed", "timeout" or "memory". @param late  ended at the time limit
+std::string state_of(const Ended& ended, bool late, const std::string& last_words);
+std::string reason_of(const Ended& ended, bool late, const std::string& last_words);
+
+/// Adds what the program's report says, where there is one.
+void add_report_in(const fs::path& scratch, Record& record);
+
+}  // namespace kaboum::batch

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+/// kaboum-batch: one program for many files.
+namespace kaboum::batch {
+
+namespace fs = std::filesystem;
+
+/// Files whose names match the pattern are given to a command.
+struct Rule {
+  std::string pattern;               ///< as fnmatch(3); `*` also matches slashes
+  std::vector<std::string> command;  ///< program and options
+};
+
+/// "PATTERN: PROGRAM OPTIONS"; words as in a shell, with ' and ".
+/// @throws Error{InvalidArgument}
+Rule parse_rule(const std::string& text);
+/// A rule for each line; `#` begins a comment. @throws Error naming file and line
+std::vector<Rule> read_rules(const std::string& file);
+
+/// A file, and what is made of it.
+struct Job {
+  std::string name;  ///< what the input is called below its folder
+  fs::path input;
+  std::string output;                ///< below the folder of results
+  std::vector<std::string> command;  ///< of its rule
+  std::uintmax_t bytes = 0;          ///< of the input
+  std::int64_t modified = 0;         ///< [ns]
+
+  /// Whether the result is a folder, as robots are.
+  [[nodiscard]] bool makes_folder() const { return fs::path(output).extension().empty(); }
+  /// Changes whenever the result may.
+  [[nodiscard]] std::string key() const;
+};
+
+struct JobOptions {
+  std::vector<std::string> inputs;  ///< folders, lists and files
+  std::vector<Rule> rules;          ///< the first that matches counts
+  std::string extension;            ///< of results; empty: by program
+};
+
+/// A job for each input that matches a rule, in the order of their names. Of folders all that is in
+/// them and can be read, a robot's meshes as well; of lists (.txt) a file for each line, relative
+/// to the list.
+/// @throws Error{InvalidInput} when a list or folder cannot be read, or nothing matches.
+std::vector<Job> find_jobs(const JobOptions& options);
+
+}  // namespace kaboum::batch

@@ -1,0 +1,228 @@
+// The pool: starts programs, collects them, moves results to their places.
+
+#include "pool.h"
+
+#include <fcntl.h>
+#include <kaboum/base/error.h>
+#include <kaboum/io/mesh_io.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <iostream>
+
+#include "command.h"
+
+namespace kaboum::batch {
+namespace {
+
+constexpr std::uintmax_t kLeastMemory = std::uintmax_t{48} << 20U;  // of any program [bytes]
+constexpr double kFirstGuess = 60;  // memory for each byte of an input, before one was seen
+
+/// Waits for the end of a child, a wish to stop, or a tenth of a second.
+/// @return the signal, or -1
+int wait_for_signal() {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int s : {SIGCHLD, SIGINT, SIGTERM}) sigaddset(&set, s);
+  const timespec most{0, 100'000'000};
+  return sigtimedwait(&set, nullptr, &most);
+}
+
+void block_signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int s : {SIGCHLD, SIGINT, SIGTERM}) sigaddset(&set, s);
+  sigprocmask(SIG_BLOCK, &set, nullptr);
+}
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+std::uintmax_t size_of(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_directory(path, error)) {
+    const std::uintmax_t size = fs::file_size(path, error);
+    return error ? 0 : size;
+  }
+  std::uintmax_t sum = 0;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(path, error))
+    if (entry.is_regular_file(error)) sum += entry.file_size(error);
+  return sum;
+}
+
+void move(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  fs::create_directories(to.parent_path(), error);
+  fs::rename(from, to, error);
+  if (error) throw Error(ErrorCode::OutputFailed, to.string() + ": " + error.message());
+}
+
+}  // namespace
+
+Pool::Pool(PoolOptions options, Journal& journal)
+    : o_(std::move(options)), journal_(journal), begin_(Clock::now()) {
+  block_signals();
+  std::error_code error;
+  fs::remove_all(o_.folder / kScratch, error);
+  fs::create_directories(o_.folder / kScratch, error);
+  if (error)
+    throw Error(ErrorCode::OutputFailed, (o_.folder / kScratch).string() + ": " + error.message());
+}
+
+Pool::~Pool() {
+  for (const auto& [id, run] : running_) kill(id, SIGKILL);
+  while (!running_.empty() && next_ended().id == 0) wait_for_signal();
+  std::error_code error;
+  fs::remove_all(o_.folder / kScratch, error);
+  if (!o_.quiet && isatty(STDERR_FILENO) == 1) std::cerr << "\r\033[K";
+}
+
+bool Pool::run(std::vector<const Job*> waiting) {
+  all_ = waiting.size();
+  // The largest last would run alone in the end.
+  std::stable_sort(waiting.begin(), waiting.end(),
+                   [](const Job* a, const Job* b) { return a->bytes > b->bytes; });
+  while (!waiting.empty() || !running_.empty()) {
+    start_what_fits(waiting);
+    show(waiting.size());
+    const int signal = wait_for_signal();
+    if (signal == SIGINT || signal == SIGTERM) return false;
+    for (Ended ended = next_ended(); ended.id != 0; ended = next_ended()) end(ended);
+    end_late_ones();
+  }
+  return true;
+}
+
+void Pool::start_what_fits(std::vector<const Job*>& waiting) {
+  for (auto next = waiting.begin(); next != waiting.end() && running_.size() < o_.jobs;) {
+    const std::uintmax_t memory = expected_memory(**next);
+    if (o_.memory > 0 && !running_.empty() && used_ + memory > o_.memory) {
+      ++next;  // a smaller one may fit
+      continue;
+    }
+    begin(**next, memory);
+    next = waiting.erase(next);
+  }
+}
+
+void Pool::begin(const Job& job, std::uintmax_t memory) {
+  Running run;
+  run.job = &job;
+  run.scratch = o_.folder / kScratch / std::to_string(++number_);
+  run.begin = Clock::now();
+  run.memory = memory;
+  std::error_code error;
+  fs::create_directories(run.scratch, error);
+  used_ += memory;
+  const pid_t id =
+      start(command_of(job, o_.folder, run.scratch), run.scratch / kMessages, o_.most_memory);
+  running_.emplace(id, std::move(run));
+}
+
+void Pool::end(const Ended& ended) {
+  const auto at = running_.find(ended.id);
+  if (at == running_.end()) return;
+  Running run = std::move(at->second);
+  running_.erase(at);
+  program_seconds_ += ended.cpu_seconds;
+  if (run.drawing) {
+    Record record = std::move(*run.drawing);
+    const fs::path picture = run.scratch / kPicture;
+    if (ended.exit_code == 0 && size_of(picture) > 0) {
+      record.picture = "pictures/" + run.job->output + ".png";
+      move(picture, o_.folder / record.picture);
+    }
+    add(record);
+  } else {
+    conclude(run, ended);
+    if (run.drawing) return;
+  }
+  used_ -= run.memory;
+  std::error_code error;
+  fs::remove_all(run.scratch, error);
+}
+
+void Pool::conclude(Running& run, const Ended& ended) {
+  const Job& job = *run.job;
+  learn(job, ended);
+  Record r;
+  r.name = job.name;
+  r.key = job.key();
+  r.output = job.output;
+  const std::string words = ended.exit_code == 0 ? "" : last_line(run.scratch / kMessages);
+  r.state = state_of(ended, run.ended_by_us, words);
+  r.exit_code = ended.exit_code;
+  r.input_bytes = job.bytes;
+  r.wall_seconds = seconds_since(run.begin);
+  r.cpu_seconds = ended.cpu_seconds;
+  r.peak_megabytes = ended.peak_megabytes;
+  r.parameters = parameters_of(job);
+  if (!r.done()) r.reason = reason_of(ended, run.ended_by_us, words);
+  const fs::path made = job.makes_folder() ? o_.folder / job.output : result_in(run.scratch, job);
+  if (r.state == "done" || r.state == "no") {
+    std::error_code error;
+    if (fs::exists(made, error) && !job.makes_folder()) move(made, o_.folder / job.output);
+    r.output_bytes = size_of(o_.folder / job.output);
+    add_report_in(run.scratch, r);
+  }
+  if (!(o_.pictures && r.has_result() && draw(run, r))) add(r);
+}
+
+/// @return whether a program draws it now
+bool Pool::draw(Running& run, Record& record) {
+  const fs::path picture = run.scratch / kPicture;
+  if (run.job->makes_folder()) return false;
+  const pid_t id = start({find_program("mesh-picture"), (o_.folder / record.output).string(), "-o",
+                          picture.string(), "--width", "320", "--height", "220"},
+                         run.scratch / kMessages, o_.most_memory);
+  run.drawing = std::move(record);
+  run.begin = Clock::now();
+  running_.emplace(id, run);
+  return true;
+}
+
+void Pool::add(const Record& record) {
+  journal_.add(record);
+  ++done_;
+  if (!record.done()) ++short_;
+}
+
+void Pool::end_late_ones() {
+  if (o_.timeout <= 0) return;
+  for (auto& [id, run] : running_) {
+    if (run.ended_by_us || seconds_since(run.begin) < o_.timeout) continue;
+    run.ended_by_us = true;
+    kill(id, SIGKILL);
+  }
+}
+
+std::uintmax_t Pool::expected_memory(const Job& job) const {
+  const auto known = bytes_per_byte_.find(job.command.front());
+  const double factor = known == bytes_per_byte_.end() ? kFirstGuess : known->second;
+  return kLeastMemory + static_cast<std::uintmax_t>(factor * static_cast<double>(job.bytes));
+}
+
+/// The most that was seen is expected of the next ones. Small files say little.
+void Pool::learn(const Job& job, const Ended& ended) {
+  const double peak = ended.peak_megabytes * 1048576 - static_cast<double>(kLeastMemory);
+  if (job.bytes < 100'000 || peak <= 0) return;
+  double& factor = bytes_per_byte_[job.command.front()];
+  factor = std::max(factor, 1.2 * peak / static_cast<double>(job.bytes));
+}
+
+void Pool::show(std::size_t waiting) const {
+  if (o_.quiet || isatty(STDERR_FILENO) != 1) return;
+  std::string text = std::to_string(done_) + " of " + std::to_string(all_) + " done, " +
+                     std::to_string(short_) + " with a reason";
+  if (done_ > 0 && waiting > 0) {
+    const double left =
+        seconds_since(begin_) / static_cast<double>(done_) * static_cast<double>(all_ - done_);
+    text += ", about " + std::to_string(static_cast<long>(left)) + " s left";
+  }
+  if (!running_.empty()) text += ": " + running_.begin()->second.job->name;
+  std::cerr << '\r' << text.substr(0, 120) << "\033[K" << std::flush;
+}
+
+}  // namespace kaboum::batch

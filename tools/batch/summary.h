@@ -1,0 +1,26 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "record.h"
+
+/// What a batch comes to: one row for each file, in the order of their names.
+namespace kaboum::batch {
+
+struct Summary {
+  std::span<const Record> records;
+  std::size_t done_before = 0;  ///< by earlier runs
+
+  [[nodiscard]] std::size_t count(const char* state) const;
+  /// "1980 done, 20 failed".
+  [[nodiscard]] std::string words() const;
+  [[nodiscard]] Json json() const;
+};
+
+std::string csv_of(const Summary& summary);
+/// A page by itself, but for pictures and results that it links to; columns are sorted by a click.
+std::string html_of(const Summary& summary, const std::string& title);
+
+}  // namespace kaboum::batch

@@ -1,0 +1,186 @@
+// One program for many files, in parallel, resumable.
+
+#include <kaboum/base/error.h>
+#include <kaboum/io/mesh_io.h>
+
+#include <algorithm>
+#include <fstream>
+#include <thread>
+
+#include "batch/command.h"
+#include "batch/pool.h"
+#include "batch/summary.h"
+#include "cli.h"
+#include "memory_size.h"
+
+namespace {
+
+using namespace kaboum;  // the tool's own names are few
+namespace fs = std::filesystem;
+
+struct Options {
+  std::vector<std::string> inputs, rules, command;
+  std::string output, rules_file, extension, memory, most_memory;
+  std::size_t jobs = 0;
+  double timeout = 0;
+  bool retry = false, no_pictures = false;
+  tools::CommonOptions common;
+};
+
+void describe(CLI::App& app, Options& o) {
+  app.add_option("INPUT", o.inputs,
+                 "Folders (all meshes and robots in them), lists of files (.txt, a line each), or "
+                 "files")
+      ->required()
+      ->type_name("DIR|LIST|FILE");
+  app.add_option("-o,--output", o.output,
+                 "Folder of results, summaries (summary.html, .csv, .json) and the journal that a "
+                 "batch is resumed by")
+      ->required()
+      ->type_name("DIR");
+  app.add_option("--command", o.command,
+                 "Program and options for files that no rule matches; the last option: all that "
+                 "follows belongs to it [bmesh-decimate --epsilon 1%]")
+      ->type_name("PROGRAM OPTIONS...");
+  app.add_option("--rule", o.rules,
+                 "PATTERN: PROGRAM OPTIONS, as in '*.urdf: bcd-decompose --epsilon 1%'; the first "
+                 "one that matches counts; repeatable. {input}, {output} and {report} stand for "
+                 "files, for programs that are not KABouM's")
+      ->allow_extra_args(false)
+      ->type_name("RULE");
+  app.add_option("--rules", o.rules_file, "File of rules, a line each, after those of --rule")
+      ->type_name("FILE");
+  app.add_option("--extension", o.extension,
+                 "Of results [.glb of bcd-decompose, .ply of others; robots become folders]")
+      ->type_name("EXT");
+  app.add_option("--jobs", o.jobs, "Files at a time; 0: one per core")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str()
+      ->type_name("N");
+  app.add_option("--memory", o.memory,
+                 "Of all programs at a time, e.g. 8G: fewer run where they are expected to need "
+                 "more, as earlier ones did [80% of what is free]")
+      ->type_name("SIZE");
+  app.add_option("--max-memory", o.most_memory, "Address space of one program, e.g. 4G [no limit]")
+      ->type_name("SIZE");
+  app.add_option("--timeout", o.timeout, "End a program after so many seconds; 0: never")
+      ->check(tools::number_from(0, 1e9))
+      ->capture_default_str()
+      ->type_name("S");
+  app.add_flag("--retry", o.retry, "Also do again what was not done for a reason");
+  app.add_flag("--no-pictures", o.no_pictures, "Draw no results for the summary");
+  app.add_option("--report", o.common.report, "Write a JSON report to this file (- for stdout)")
+      ->type_name("FILE");
+  app.add_flag("--quiet", o.common.quiet, "Print errors only");
+  app.footer(
+      "A batch that was ended, however, goes on where it was when it is called again; files that "
+      "have changed, or whose options have, are done anew.\n"
+      "Exit codes: 0 all done; 1 some are not, for reasons in the summary; 2 usage; 3 bad input; 4 "
+      "output failed; 6 internal error; 7 ended by a signal.");
+}
+
+std::vector<batch::Rule> rules_of(const Options& o) {
+  std::vector<batch::Rule> rules;
+  for (const std::string& text : o.rules) rules.push_back(batch::parse_rule(text));
+  if (!o.rules_file.empty()) {
+    const std::vector<batch::Rule> more = batch::read_rules(o.rules_file);
+    rules.insert(rules.end(), more.begin(), more.end());
+  }
+  if (!o.command.empty())
+    rules.push_back({"*", o.command});
+  else if (rules.empty())
+    rules.push_back({"*", {"bmesh-decimate", "--epsilon", "1%"}});
+  return rules;
+}
+
+/// Four fifths of what is free; 0, which is no limit, where that is not known.
+std::uintmax_t free_memory() {
+  std::ifstream file("/proc/meminfo");
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with("MemAvailable:"))
+      return std::stoull(line.substr(line.find(':') + 1)) * 1024 / 5 * 4;
+  return 0;
+}
+
+/// Whether a job's result is there, and of the same input and options.
+bool is_done(const batch::Job& job, const batch::Journal& journal, const Options& o) {
+  const batch::Record* record = journal.find(job.name);
+  if (record == nullptr || record->key != job.key()) return false;
+  if (o.retry && !record->done()) return false;
+  std::error_code error;
+  if (!record->has_result()) return true;
+  const fs::path result = fs::path(o.output) / record->output;
+  return job.makes_folder() ? fs::is_directory(result, error)
+                            : fs::file_size(result, error) == record->output_bytes;
+}
+
+std::vector<batch::Record> records_of(const std::vector<batch::Job>& jobs,
+                                      const batch::Journal& journal) {
+  std::vector<batch::Record> records;
+  for (const batch::Job& job : jobs)
+    if (const batch::Record* record = journal.find(job.name)) records.push_back(*record);
+  return records;
+}
+
+void write_summary(const Options& o, const batch::Summary& summary, double wall_seconds) {
+  const fs::path folder(o.output);
+  const auto write = [&](const char* name, const std::string& text) {
+    io::write_file(folder / name, text);
+  };
+  write("summary.html", batch::html_of(summary, "Batch " + folder.filename().string()));
+  write("summary.csv", batch::csv_of(summary));
+  write("summary.json",
+        summary.json().dump(1, ' ', false, batch::Json::error_handler_t::replace) + "\n");
+  batch::Json report = summary.json();
+  report["resources"] = {{"wall_seconds", wall_seconds}};
+  tools::write_report(o.common, "kaboum-batch", report);
+  tools::log(o.common.quiet, summary.words() + "; " + (folder / "summary.html").string());
+}
+
+int run(const Options& o) {
+  const auto begin = batch::Clock::now();
+  const std::vector<batch::Job> jobs = batch::find_jobs({o.inputs, rules_of(o), o.extension});
+  const fs::path folder(o.output);
+  fs::create_directories(folder / batch::kState);
+  batch::Journal journal(folder / batch::kState / "journal.jsonl");
+  batch::PoolOptions options{
+      .folder = folder,
+      .jobs = o.jobs,
+      .memory = o.memory.empty() ? free_memory() : tools::parse_memory(o.memory, "--memory"),
+      .most_memory = tools::parse_memory(o.most_memory, "--max-memory"),
+      .timeout = o.timeout,
+      .pictures = !o.no_pictures,
+      .quiet = o.common.quiet};
+  if (options.jobs == 0) options.jobs = std::max(1U, std::thread::hardware_concurrency());
+  std::vector<const batch::Job*> waiting;
+  for (const batch::Job& job : jobs)
+    if (!is_done(job, journal, o)) waiting.push_back(&job);
+  const std::size_t before = jobs.size() - waiting.size();
+  bool whole = true;
+  {
+    batch::Pool pool(options, journal);
+    whole = pool.run(std::move(waiting));
+  }
+  const std::vector<batch::Record> records = records_of(jobs, journal);
+  const batch::Summary summary{records, before};
+  write_summary(o, summary, std::chrono::duration<double>(batch::Clock::now() - begin).count());
+  if (!whole) return tools::kLimit;
+  return summary.count("done") == jobs.size() ? tools::kDone : tools::kNo;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Runs a program on many files, in parallel; goes on where it was ended.",
+               "kaboum-batch");
+  Options options;
+  describe(app, options);
+  // What follows --command is another program's, whose options look like ours.
+  const auto end = std::find(argv, argv + argc, std::string_view("--command"));
+  if (end != argv + argc) options.command.assign(end + 1, argv + argc);
+  return tools::run(app, static_cast<int>(end - argv), argv, [&] {
+    if (end != argv + argc && options.command.empty())
+      throw Error(ErrorCode::InvalidArgument, "--command: give a program and its options");
+    return run(options);
+  });
+}
