@@ -1,0 +1,435 @@
+from os import PathLike
+from typing import Any, Callable, Literal, Mapping, Protocol, Sequence, Union, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__version__: str
+__all__: list[str]
+
+class _HasFaces(Protocol):
+    @property
+    def vertices(self) -> Any: ...
+    @property
+    def faces(self) -> Any: ...
+
+_Path = Union[str, PathLike[str]]
+_Mesh = Union[_HasFaces, _Path, tuple[ArrayLike, ArrayLike]]
+_Length = Union[float, str]
+_Progress = Callable[[str], object]
+_Bracket = tuple[float, float]
+_Answer = Literal["verified", "refuted", "undecided", "undefined"]
+_Claims = Literal["all", "solid", "surface"]
+_Geometry = Literal["collision", "visual"]
+_Effort = Literal["fast", "normal", "best"]
+
+class Error(Exception):
+    code: str
+    exit_code: int
+
+class Mesh:
+    def __init__(self, vertices: ArrayLike, faces: ArrayLike) -> None: ...
+    @property
+    def vertices(self) -> NDArray[np.float64]: ...
+    @property
+    def faces(self) -> NDArray[np.uint32]: ...
+    @property
+    def source(self) -> str: ...
+    @property
+    def sha256(self) -> str: ...
+    @property
+    def unit(self) -> str: ...
+    @property
+    def notes(self) -> list[str]: ...
+    @property
+    def volume(self) -> float: ...
+    @property
+    def diagonal(self) -> float: ...
+
+class Prepared:
+    @property
+    def vertices(self) -> NDArray[np.float64]: ...
+    @property
+    def faces(self) -> NDArray[np.uint32]: ...
+    @property
+    def source(self) -> NDArray[np.uint32]: ...
+    @property
+    def closed(self) -> bool: ...
+    @property
+    def components(self) -> int: ...
+    @property
+    def holes(self) -> int: ...
+    @property
+    def largest_hole(self) -> float: ...
+    @property
+    def dropped_copies(self) -> int: ...
+    @property
+    def dropped_sheets(self) -> int: ...
+    @property
+    def turned_triangles(self) -> int: ...
+    @property
+    def notes(self) -> list[str]: ...
+
+class BoundingMesh:
+    @property
+    def vertices(self) -> NDArray[np.float64]: ...
+    @property
+    def faces(self) -> NDArray[np.uint32]: ...
+    @property
+    def direction(self) -> str: ...
+    @property
+    def stop(self) -> str: ...
+    @property
+    def reached(self) -> bool: ...
+    @property
+    def closed(self) -> bool: ...
+    @property
+    def out_of_work(self) -> bool: ...
+    @property
+    def epsilon(self) -> float | None: ...
+    @property
+    def distances(self) -> dict[str, _Bracket] | None: ...
+    @property
+    def claims(self) -> list[dict[str, Any]]: ...
+    @property
+    def notes(self) -> list[str]: ...
+    @property
+    def bytes(self) -> bytes: ...
+    def write(self, path: _Path) -> None: ...
+
+class ConvexSet:
+    def __init__(self, bodies: list[Any], *, margin: float = 0.0) -> None: ...
+    @property
+    def bodies(self) -> list[Mesh]: ...
+    @property
+    def margin(self) -> float: ...
+    @property
+    def record(self) -> dict[str, Any]: ...
+    def write(self, path: _Path) -> None: ...
+    def __len__(self) -> int: ...
+
+class CertifiedSet:
+    @property
+    def bodies(self) -> list[Mesh]: ...
+    @property
+    def margin(self) -> float: ...
+    @property
+    def record(self) -> dict[str, Any]: ...
+    @property
+    def report(self) -> dict[str, Any]: ...
+    @property
+    def reached(self) -> bool: ...
+    @property
+    def distance(self) -> _Bracket: ...
+    @property
+    def cached(self) -> bool: ...
+    @property
+    def notes(self) -> list[str]: ...
+    @property
+    def bytes(self) -> bytes: ...
+    def write(self, path: _Path) -> None: ...
+    def __len__(self) -> int: ...
+
+class SweptSet:
+    @property
+    def set(self) -> ConvexSet: ...
+    @property
+    def bodies(self) -> list[Mesh]: ...
+    @property
+    def margin(self) -> float: ...
+    @property
+    def claim(self) -> str: ...
+    @property
+    def reach(self) -> float: ...
+    @property
+    def bodies_distance(self) -> float: ...
+    @property
+    def notes(self) -> list[str]: ...
+    @property
+    def bytes(self) -> bytes: ...
+    def write(self, path: _Path) -> None: ...
+    def __len__(self) -> int: ...
+
+class Distances:
+    @property
+    def lower(self) -> float: ...
+    @property
+    def upper(self) -> float: ...
+    @property
+    def minimum(self) -> _Bracket: ...
+    @property
+    def a_to_b(self) -> dict[str, Any]: ...
+    @property
+    def b_to_a(self) -> dict[str, Any]: ...
+    @property
+    def diagonal(self) -> float: ...
+
+class Verdict:
+    @property
+    def answer(self) -> _Answer: ...
+    @property
+    def claims(self) -> dict[str, Any]: ...
+    @property
+    def notes(self) -> list[str]: ...
+    def __bool__(self) -> bool: ...
+
+class Robot:
+    @property
+    def name(self) -> str: ...
+    @property
+    def path(self) -> str: ...
+    @property
+    def sha256(self) -> str: ...
+    @property
+    def links(self) -> list[str]: ...
+    @property
+    def joints(self) -> list[dict[str, str]]: ...
+    @property
+    def variables(self) -> list[str]: ...
+    @property
+    def limits(self) -> list[tuple[float | None, float | None]]: ...
+
+class CertifiedRobot:
+    @property
+    def links(self) -> dict[str, ConvexSet]: ...
+    @property
+    def distance(self) -> float: ...
+
+class Solution:
+    @property
+    def outcome(self) -> Literal["solved", "unsolvable", "not inferred", "limit"]: ...
+    @property
+    def limit(self) -> str: ...
+    @property
+    def lost(self) -> str: ...
+    @property
+    def plan(self) -> dict[str, Any] | None: ...
+    @property
+    def text(self) -> str: ...
+    @property
+    def statistics(self) -> dict[str, Any]: ...
+    @property
+    def notes(self) -> list[str]: ...
+    def __bool__(self) -> bool: ...
+
+_Set = Union[ConvexSet, CertifiedSet, SweptSet, _Path, list[Any]]
+_Robot = Union[Robot, _Path]
+
+def read(path: _Path, *, format: str | None = None) -> Mesh: ...
+def write(
+    mesh: _Mesh,
+    path: _Path,
+    *,
+    format: str | None = None,
+    precision: Literal["auto", "float", "double"] = "auto",
+) -> None: ...
+def read_set(path: _Path, *, format: str | None = None) -> ConvexSet: ...
+def read_robot(path: _Path) -> Robot: ...
+def prepare(
+    mesh: _Mesh,
+    *,
+    drop_sheets: bool = False,
+    holes: Literal["fill", "keep", "refuse"] = "fill",
+    keep_orientation: bool = False,
+) -> Prepared: ...
+@overload
+def decimate(
+    mesh: _Mesh,
+    *,
+    vertices: int | None = None,
+    ratio: float | None = None,
+    epsilon: _Length | None = None,
+    direction: Literal["outer", "inner", "any"] = "outer",
+    cost: Literal["distance", "mean", "planes", "planes-adapted", "planes-diagonal", "triangles"] = "distance",
+    effort: _Effort = "normal",
+    max_work: float | None = None,
+    as_printed: bool = False,
+    precision: Literal["auto", "float", "double"] = "auto",
+    sharp_angle: float = 90.0,
+    keep_convex: bool = False,
+    drop_sheets: bool = False,
+    holes: Literal["fill", "keep", "refuse"] = "fill",
+    keep_orientation: bool = False,
+    verify: bool = False,
+    measure: bool = False,
+    output_format: str = "ply",
+    threads: int = 0,
+    progress: _Progress | None = None,
+) -> BoundingMesh: ...
+@overload
+def decimate(
+    mesh: _Mesh,
+    *,
+    vertices: Sequence[int],
+    ratio: float | None = None,
+    epsilon: _Length | None = None,
+    direction: Literal["outer", "inner", "any"] = "outer",
+    cost: Literal["distance", "mean", "planes", "planes-adapted", "planes-diagonal", "triangles"] = "distance",
+    effort: _Effort = "normal",
+    max_work: float | None = None,
+    as_printed: bool = False,
+    precision: Literal["auto", "float", "double"] = "auto",
+    sharp_angle: float = 90.0,
+    keep_convex: bool = False,
+    drop_sheets: bool = False,
+    holes: Literal["fill", "keep", "refuse"] = "fill",
+    keep_orientation: bool = False,
+    verify: bool = False,
+    measure: bool = False,
+    output_format: str = "ply",
+    threads: int = 0,
+    progress: _Progress | None = None,
+) -> list[BoundingMesh]: ...
+def decompose(
+    mesh: _Mesh,
+    *,
+    epsilon: _Length | None = None,
+    max_bodies: int | None = None,
+    max_total_vertices: int | None = None,
+    max_vertices_per_body: int = 64,
+    simplify: float | None = None,
+    min_thickness: float = 0.0,
+    direction: Literal["outer", "inner"] = "outer",
+    effort: _Effort = "normal",
+    max_work: float | None = None,
+    method: Literal["planes", "clusters", "voxels"] = "planes",
+    pre_step: Literal["auto", "on", "off"] = "auto",
+    unit: str = "m",
+    frame: str = "",
+    drop_sheets: bool = False,
+    holes: Literal["fill", "refuse"] = "fill",
+    keep_orientation: bool = False,
+    no_cache: bool = False,
+    threads: int = 0,
+    progress: _Progress | None = None,
+) -> CertifiedSet: ...
+def sweep(
+    robot: _Robot,
+    path: _Path | ArrayLike,
+    *,
+    epsilon: float = 0.005,
+    bound: Literal["baginski", "uniform", "subset", "second-order", "adaptive", "balanced"] = "balanced",
+    max_reach: float | None = None,
+    simplify: float = 0.0,
+    implicit_margin: bool = False,
+    no_merge: bool = False,
+    ignore_limits: bool = False,
+    joint: Mapping[str, float] = {},
+    degrees: bool = False,
+    links: Sequence[str] | None = None,
+    geometry: _Geometry = "collision",
+    package_path: _Path | Sequence[_Path] = (),
+    body_epsilon: _Length | None = None,
+    max_vertices_per_body: int = 64,
+    effort: _Effort = "normal",
+    drop_sheets: bool = False,
+    no_cache: bool = False,
+    unit: str = "m",
+    verify: bool = False,
+    threads: int = 0,
+    progress: _Progress | None = None,
+) -> SweptSet: ...
+def hausdorff(
+    a: _Mesh | _Set,
+    b: _Mesh | _Set,
+    *,
+    solid: bool = False,
+    gap: float = 0.001,
+    samples: int = 100000,
+    seed: int = 1,
+    backend: Literal["embree", "own"] = "embree",
+    threads: int = 0,
+    progress: _Progress | None = None,
+) -> Distances: ...
+def verify_mesh(
+    original: _Mesh,
+    approximation: _Mesh | ConvexSet | CertifiedSet,
+    *,
+    relation: Literal["outer", "inner"] = "outer",
+    claims: _Claims = "all",
+    epsilon: _Length | None = None,
+    prepare: bool = False,
+    drop_sheets: bool = False,
+    max_contacts: int = 100000000,
+    threads: int = 0,
+    progress: _Progress | None = None,
+) -> Verdict: ...
+def verify_cover(
+    original: _Mesh,
+    set: _Set,
+    *,
+    claims: _Claims = "all",
+    epsilon: _Length | None = None,
+    prepare: bool = False,
+    drop_sheets: bool = False,
+    max_contacts: int = 100000000,
+    threads: int = 0,
+    progress: _Progress | None = None,
+) -> Verdict: ...
+def verify_sweep(
+    robot: _Robot,
+    path: _Path | ArrayLike,
+    swept: _Set,
+    *,
+    claims: Literal["all", "surface"] = "all",
+    joint: Mapping[str, float] = {},
+    degrees: bool = False,
+    links: Sequence[str] | None = None,
+    geometry: _Geometry = "collision",
+    package_path: _Path | Sequence[_Path] = (),
+    prepare: bool = False,
+    drop_sheets: bool = False,
+    gap: float | None = None,
+    max_cells: int = 20000,
+    threads: int = 0,
+    progress: _Progress | None = None,
+) -> Verdict: ...
+def verify_robot(
+    original: _Robot,
+    result: _Robot,
+    *,
+    claims: _Claims = "all",
+    epsilon: _Length | None = None,
+    geometry: _Geometry = "collision",
+    package_path: _Path | Sequence[_Path] = (),
+    prepare: bool = False,
+    drop_sheets: bool = False,
+    max_contacts: int = 100000000,
+    threads: int = 0,
+    progress: _Progress | None = None,
+) -> Verdict: ...
+def certify_robot(
+    robot: _Robot,
+    *,
+    epsilon: _Length | None = None,
+    max_bodies: int | None = None,
+    max_vertices_per_body: int = 64,
+    effort: _Effort = "normal",
+    links: Sequence[str] | None = None,
+    geometry: _Geometry = "collision",
+    package_path: _Path | Sequence[_Path] = (),
+    unit: str = "m",
+    drop_sheets: bool = False,
+    no_cache: bool = False,
+    threads: int = 0,
+    progress: _Progress | None = None,
+) -> CertifiedRobot: ...
+def solve(
+    domain: _Path,
+    problem: _Path | None = None,
+    *,
+    scene: _Path | None = None,
+    search: Literal["dfs", "bfs", "ids", "greedy", "astar"] = "greedy",
+    timeout: float | None = None,
+    max_memory: int | None = None,
+    seed: int = 1,
+    threads: int = 0,
+    progress: _Progress | None = None,
+) -> Solution: ...
+def check_plan(
+    domain: _Path,
+    problem: _Path | None,
+    plan: Solution | dict[str, Any] | _Path,
+    *,
+    scene: _Path | None = None,
+) -> tuple[bool, str]: ...

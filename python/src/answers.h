@@ -1,0 +1,26 @@
+#pragma once
+
+#include <kaboum/verify/claims.h>
+#include <kaboum/verify/inclusion.h>
+
+#include "arguments.h"
+
+/// What the verifier answered.
+namespace kaboum::python {
+
+inline constexpr std::array<std::pair<const char*, verify::Claims>, 3> kClaims{
+    {{"all", verify::Claims::All},
+     {"solid", verify::Claims::Solid},
+     {"surface", verify::Claims::Surface}}};
+
+/// An answer to all that was asked, and what it is made of.
+struct Verdict {
+  verify::Answer answer = verify::Answer::Undefined;
+  py::dict claims;
+  std::vector<std::string> notes;
+};
+
+/// 'answer', 'reason', 'witness' (a point) and 'depth'.
+py::dict dict_of(const verify::Claim& claim);
+
+}  // namespace kaboum::python

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <kaboum/base/error.h>
+#include <kaboum/base/length.h>
+#include <kaboum/geom/prepare.h>
+#include <kaboum/io/mesh_io.h>
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "bindings.h"
+
+/// Values of keyword arguments, which have the tools' names and meanings.
+namespace kaboum::python {
+
+/// A number, or a text as the tools take it ('1%', '0.002'); None: nullopt.
+/// @throws Error{InvalidArgument} naming the argument.
+std::optional<Length> length_of(const py::object& value, const char* argument);
+/// The same of a length that is no percentage.
+std::optional<double> plain_length_of(const py::object& value, const char* argument);
+
+/// @throws Error{InvalidArgument} naming the names that there are.
+[[noreturn]] void refuse_name(const char* argument, const std::string& name,
+                              const std::vector<std::string>& known);
+
+/// What a name stands for.
+template <class Value, std::size_t N>
+Value value_of(const std::array<std::pair<const char*, Value>, N>& names, const std::string& name,
+               const char* argument) {
+  std::vector<std::string> known;
+  for (const auto& [text, value] : names) {
+    if (name == text) return value;
+    known.emplace_back(text);
+  }
+  refuse_name(argument, name, known);
+}
+
+/// 'fill', 'keep' or 'refuse'.
+geom::Holes holes_of(const std::string& name, bool may_keep);
+
+/// Of a name ('stl', 'ply-ascii'), or else of a file name's extension; None and no extension:
+/// nullopt.
+std::optional<io::Format> format_of(const std::optional<std::string>& name, const char* argument);
+
+/// A str or os.PathLike as a path; nullopt: it is neither.
+std::optional<std::string> path_of(const py::object& value);
+
+}  // namespace kaboum::python

@@ -1,0 +1,129 @@
+// Distances: kaboum.hausdorff, as hausdorff-eval.
+
+#include <kaboum/distance/compare.h>
+
+#include "arguments.h"
+#include "convex_set.h"
+#include "mesh.h"
+#include "running.h"
+
+namespace kaboum::python {
+namespace {
+
+constexpr std::array<std::pair<const char*, distance::Backend>, 2> kBackends{
+    {{"embree", distance::Backend::Embree}, {"own", distance::Backend::Own}}};
+
+struct Distances {
+  distance::Compared found;
+  double diagonal = 0;
+};
+
+py::dict one_way(const distance::OneWay& way) {
+  py::dict out;
+  out["max"] = py::make_tuple(way.max.max_lower, way.max.max_upper);
+  out["at"] = array_of(way.max.at);
+  out["nearest"] = array_of(way.nearest);
+  out["mean"] = way.sampled.mean.value;
+  out["mean_error"] = way.sampled.mean.standard_error;
+  out["rms"] = way.sampled.rms.value;
+  out["rms_error"] = way.sampled.rms.standard_error;
+  out["within_gap"] = way.max.within_gap;
+  return out;
+}
+
+/// A set where there is one; else a mesh.
+distance::Shape shape_of(const py::object& value, const char* name) {
+  distance::Shape out{name, {}, {}};
+  const bool set = py::isinstance<SetValue>(value) || py::isinstance<CertifiedSetValue>(value) ||
+                   (py::isinstance<py::list>(value) && py::len(value) != 2);
+  if (set)
+    out.set = *set_of(value);
+  else
+    out.mesh = *mesh_of(value, name).mesh;
+  return out;
+}
+
+Distances hausdorff(const py::object& a, const py::object& b, bool solid, double gap,
+                    std::uint64_t samples, std::uint64_t seed, const std::string& backend,
+                    int threads, const py::object& progress) {
+  distance::CompareOptions options;
+  options.solid = solid;
+  if (!(gap >= 1e-9 && gap <= 1))
+    throw Error(ErrorCode::InvalidArgument, "gap must be from 1e-9 to 1");
+  options.relative_gap = gap;
+  options.samples = samples;
+  options.seed = seed;
+  options.backend = value_of(kBackends, backend, "backend");
+  distance::Shape first = shape_of(a, "a"), second = shape_of(b, "b");
+  Watch watch(progress);
+  options.progress = watch.hook();
+  return run(threads, [&] {
+    const distance::Comparison comparison(std::move(first), std::move(second), options);
+    return Distances{comparison.measure(), comparison.diagonal()};
+  });
+}
+
+void bind_class(py::module_& module) {
+  py::class_<Distances>(module, "Distances",
+                        R"(Distances between two shapes; brackets are certified. [length])")
+      .def_property_readonly(
+          "lower", [](const Distances& d) { return d.found.lower(); },
+          "The Hausdorff distance is at least this.")
+      .def_property_readonly(
+          "upper", [](const Distances& d) { return d.found.upper(); },
+          "The Hausdorff distance is at most this.")
+      .def_property_readonly(
+          "minimum",
+          [](const Distances& d) { return py::make_tuple(d.found.min.lower, d.found.min.upper); },
+          "Bracket of the smallest distance.")
+      .def_property_readonly(
+          "a_to_b", [](const Distances& d) { return one_way(d.found.a_to_b); },
+          "A dict: 'max' (a bracket), reached at 'at', whose nearest point is "
+          "'nearest'; 'mean' and 'rms' with standard errors 'mean_error' and "
+          "'rms_error', which are estimates; 'within_gap'.")
+      .def_property_readonly(
+          "b_to_a", [](const Distances& d) { return one_way(d.found.b_to_a); },
+          "The same the other way.")
+      .def_readonly("diagonal", &Distances::diagonal, "Of the bounding box of both.")
+      .def("__repr__", [](const Distances& d) {
+        return "<kaboum.Distances: Hausdorff distance in [" +
+               py::repr(py::float_(d.found.lower())).cast<std::string>() + ", " +
+               py::repr(py::float_(d.found.upper())).cast<std::string>() + "]>";
+      });
+}
+
+}  // namespace
+
+void bind_distances(py::module_& module) {
+  bind_class(module);
+  module.def("hausdorff", &hausdorff, py::arg("a"), py::arg("b"), py::kw_only(),
+             py::arg("solid") = false, py::arg("gap") = 1e-3, py::arg("samples") = 100000,
+             py::arg("seed") = 1, py::arg("backend") = "embree", py::arg("threads") = 0,
+             py::arg("progress") = py::none(),
+             R"(Distances between two surfaces, or two solids, both ways, as hausdorff-eval.
+
+Parameters
+----------
+a, b : mesh, or ConvexSet, whose union's boundary counts
+solid : bool
+    Solid to solid: 0 inside the other one. Both must be closed, or sets.
+gap : float
+    Wished relative width of the certified intervals, 1e-9 to 1.
+samples : int
+    Points for mean and rms, each way.
+seed : int
+    Of these points.
+backend : str
+    Search structure: 'embree' or 'own'.
+threads : int
+    0: one per core. The result is the same for any number.
+progress : callable, optional
+    Called with what is being done; what it raises ends the work, as Ctrl-C does.
+
+Raises
+------
+Error
+    'invalid_input': no triangles, numbers that are not finite, no solid.)");
+}
+
+}  // namespace kaboum::python

@@ -1,0 +1,88 @@
+// Preparation: the solid that a mesh stands for.
+
+#include <kaboum/certify/mesh.h>
+
+#include "arguments.h"
+#include "mesh.h"
+#include "running.h"
+
+namespace kaboum::python {
+namespace {
+
+PreparedValue prepare(const py::object& mesh, bool drop_sheets, const std::string& holes,
+                      bool keep_orientation) {
+  const MeshValue value = mesh_of(mesh, "mesh");
+  const geom::PrepareOptions options{.drop_sheets = drop_sheets,
+                                     .holes = holes_of(holes, true),
+                                     .keep_orientation = keep_orientation};
+  return run(0, [&] {
+    return PreparedValue{
+        std::make_shared<geom::Prepared>(certify::prepare_mesh(*value.mesh, options))};
+  });
+}
+
+template <class Member>
+auto number(Member geom::Prepared::*member) {
+  return [member](const PreparedValue& p) { return (*p.prepared).*member; };
+}
+
+}  // namespace
+
+void bind_preparation(py::module_& module) {
+  py::class_<PreparedValue>(module, "Prepared",
+                            R"(A mesh whose solid is defined, and how it came from the input.
+
+What is certified of results is certified with respect to it. It may be given wherever a mesh is
+expected; `decimate` does not prepare it again.)")
+      .def_property_readonly(
+          "vertices", [](const PreparedValue& p) { return vertices_of(p.mesh()); },
+          "n x 3 float64, a view that cannot be written. [length]")
+      .def_property_readonly(
+          "faces", [](const PreparedValue& p) { return faces_of(p.mesh()); },
+          "m x 3 uint32, a view that cannot be written.")
+      .def_property_readonly(
+          "source",
+          [](const PreparedValue& p) {
+            return view_of(p.prepared->source.data(),
+                           {static_cast<py::ssize_t>(p.prepared->source.size())}, p.prepared);
+          },
+          "Of each face that does not fill a hole, its index in the input.")
+      .def_property_readonly("closed", number(&geom::Prepared::closed),
+                             "Whether it has a solid; else nothing is enclosed.")
+      .def_property_readonly("components", number(&geom::Prepared::components),
+                             "Number of parts connected by shared edges.")
+      .def_property_readonly("holes", number(&geom::Prepared::holes), "Number of holes filled.")
+      .def_property_readonly("largest_hole", number(&geom::Prepared::largest_hole),
+                             "Diagonal of the largest hole's box. [length]")
+      .def_property_readonly("dropped_copies", number(&geom::Prepared::dropped_copies),
+                             "Number of identical triangles dropped.")
+      .def_property_readonly("dropped_sheets", number(&geom::Prepared::dropped_sheets),
+                             "Number of triangles without volume dropped, on request.")
+      .def_property_readonly("turned_triangles", number(&geom::Prepared::turned_triangles),
+                             "Number of triangles whose orientation was reversed.")
+      .def_property_readonly("notes", number(&geom::Prepared::notes),
+                             "What was changed, one sentence each.");
+  module.def("prepare", &prepare, py::arg("mesh"), py::kw_only(), py::arg("drop_sheets") = false,
+             py::arg("holes") = "fill", py::arg("keep_orientation") = false,
+             R"(Gives a mesh a solid, as all tools do first (docs/algorithms/preparation.md).
+
+Equal vertices are merged, inconsistent triangles turned to agree, walls and copies dropped, holes
+filled, and shells that are inside out turned.
+
+Parameters
+----------
+mesh : mesh
+drop_sheets : bool
+    Drop back-to-back faces without volume; they are then not enclosed.
+holes : str
+    'fill', 'keep' (the mesh stays open and encloses nothing) or 'refuse'.
+keep_orientation : bool
+    Never turn a triangle.
+
+Raises
+------
+Error
+    'invalid_input' when no solid can be given.)");
+}
+
+}  // namespace kaboum::python

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <kaboum/certify/robot.h>
+#include <kaboum/robot/robot_file.h>
+
+#include <memory>
+
+#include "arguments.h"
+
+/// Robots that Python holds.
+namespace kaboum::python {
+
+struct RobotValue {
+  std::shared_ptr<const robot::RobotFile> file;
+};
+
+/// A Robot, or the name of its file. @throws as robot::read_robot
+RobotValue robot_of(const py::object& value, const char* argument);
+
+/// Names, or None for all.
+std::vector<std::string> links_of(const py::object& links);
+/// Folders: one, several or none.
+std::vector<std::string> packages_of(const py::object& packages);
+/// 'collision' or 'visual'. @return whether it is the latter
+bool is_visual(const std::string& geometry);
+
+}  // namespace kaboum::python

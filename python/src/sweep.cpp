@@ -1,0 +1,332 @@
+// Swept volumes: kaboum.sweep, as sweep-approx, and verify_sweep, as `bound-verify sweep`.
+
+#include <kaboum/certify/sweep.h>
+#include <kaboum/robot/mesh_files.h>
+#include <kaboum/robot/path_file.h>
+#include <kaboum/verify/moving_robot.h>
+
+#include <algorithm>
+
+#include "answers.h"
+#include "convex_set.h"
+#include "mesh.h"
+#include "robot.h"
+#include "running.h"
+#include "set_options.h"
+
+namespace kaboum::python {
+namespace {
+
+using sweep::StepRule;
+constexpr std::array<std::pair<const char*, StepRule>, 6> kRules{
+    {{"baginski", StepRule::Baginski},
+     {"uniform", StepRule::Uniform},
+     {"subset", StepRule::Subset},
+     {"second-order", StepRule::SecondOrder},
+     {"adaptive", StepRule::Adaptive},
+     {"balanced", StepRule::Balanced}}};
+
+/// A file's path, or an array of waypoints x variables.
+robot::Path path_from(const py::object& value, const robot::Robot& robot,
+                      const robot::PathOptions& options, std::vector<std::string>& notes) {
+  if (const auto file = path_of(value)) return robot::read_path(*file, robot, options, notes);
+  const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(value);
+  if (!array) PyErr_Clear();
+  const std::size_t variables = robot.variables.size();
+  if (!array || array.ndim() != 2 || static_cast<std::size_t>(array.shape(1)) != variables ||
+      array.shape(0) == 0)
+    throw Error(ErrorCode::InvalidArgument,
+                "path must be the name of a file, or an array of waypoints x " +
+                    std::to_string(variables) + " numbers, one for each of robot.variables");
+  if (!options.fixed.empty())
+    throw Error(ErrorCode::InvalidArgument, "joint is for paths in files, which may lack columns");
+  robot::Path path;
+  const double* q = array.data();
+  for (py::ssize_t i = 0; i < array.shape(0); ++i, q += variables)
+    path.emplace_back(q, q + variables);
+  if (options.degrees) path = robot::from_degrees(std::move(path), robot);
+  if (options.check_limits) robot::require_within_limits(path, robot, "path");
+  return path;
+}
+
+struct SweptSet {
+  certify::CertifiedSweep made;
+  std::vector<std::string> notes;
+
+  [[nodiscard]] std::shared_ptr<const geom::ConvexSet> set() const {
+    auto kept = std::make_shared<certify::CertifiedSweep>(made);
+    return {kept, &kept->artefact()};
+  }
+};
+
+const char* claim_of(const certify::SweepCertificate& c) {
+  return c.motion == certify::MotionClaim::Decided  ? "decided"
+         : c.motion == certify::MotionClaim::Proved ? "proved"
+                                                    : "none";
+}
+
+void bind_class(py::module_& module) {
+  py::class_<SweptSet>(
+      module, "SweptSet",
+      R"(Convex bodies that, enlarged by `margin`, hold a robot at every instant of a path.)")
+      .def_property_readonly(
+          "set", [](const SweptSet& s) { return SetValue{s.set()}; },
+          "The ConvexSet, with its margin.")
+      .def_property_readonly(
+          "bodies", [](const SweptSet& s) { return bodies_of(s.set()); },
+          "A list of `Mesh`; nothing is copied.")
+      .def_property_readonly(
+          "margin", [](const SweptSet& s) { return s.made.artefact().margin; },
+          "By which the bodies have to be enlarged. [length]")
+      .def_property_readonly(
+          "claim", [](const SweptSet& s) { return claim_of(s.made.certificate()); },
+          "'decided', exactly and from the bodies; 'proved', by the steps; "
+          "'none', of bound 'baginski'.")
+      .def_property_readonly(
+          "reach", [](const SweptSet& s) { return s.made.certificate().reach; },
+          "No point of the set is farther from what the robot's bodies sweep. "
+          "[length]")
+      .def_property_readonly(
+          "bodies_distance", [](const SweptSet& s) { return s.made.certificate().bodies_distance; },
+          "Nor are the robot's bodies farther from its shapes. [length]")
+      .def_readonly("notes", &SweptSet::notes, "What a user should know of the input.")
+      .def_property_readonly(
+          "bytes",
+          [](const SweptSet& s) { return py::bytes(s.made.bytes().data(), s.made.bytes().size()); },
+          "The certified container (.glb).")
+      .def(
+          "write",
+          [](const SweptSet& s, const py::object& path) {
+            write_set(s.made.artefact(), s.made.bytes(), path);
+          },
+          py::arg("path"), "As CertifiedSet.write.")
+      .def("__len__", [](const SweptSet& s) { return s.made.artefact().bodies.size(); })
+      .def("__repr__", [](const SweptSet& s) {
+        return "<kaboum.SweptSet of " + std::to_string(s.made.artefact().bodies.size()) +
+               " bodies>";
+      });
+}
+
+SweptSet sweep_path(const py::object& robot, const py::object& path, const py::object& epsilon,
+                    const std::string& bound, const py::object& max_reach, double simplify,
+                    bool implicit_margin, bool no_merge, bool ignore_limits,
+                    const robot::FixedJoints& joint, bool degrees, const py::object& links,
+                    const std::string& geometry, const py::object& package_path,
+                    const py::object& body_epsilon, std::size_t max_vertices_per_body,
+                    const std::string& effort, bool drop_sheets, bool no_cache,
+                    const std::string& unit, bool verify, int threads, const py::object& progress) {
+  const RobotValue value = robot_of(robot, "robot");
+  SweptSet out;
+  const robot::Path waypoints =
+      path_from(path, value.file->robot, {!ignore_limits, degrees, joint}, out.notes);
+  certify::SweepRequest r;
+  const auto wished = plain_length_of(epsilon, "epsilon");
+  if (!wished) throw Error(ErrorCode::InvalidArgument, "epsilon must be a length");
+  r.search.epsilon = *wished;
+  r.search.rule = value_of(kRules, bound, "bound");
+  r.search.max_reach = plain_length_of(max_reach, "max_reach");
+  r.search.simplify = simplify;
+  r.search.explicit_margin = !implicit_margin;
+  r.search.merge = !no_merge;
+  r.decide_motion = verify;
+  r.unit = unit;
+  r.parameters = "--epsilon " + Length{*wished}.text() + " --bound " + bound;
+  certify::RobotRequest bodies;
+  bodies.shapes = {links_of(links), is_visual(geometry), packages_of(package_path)};
+  bodies.set.epsilon =
+      body_epsilon.is_none() ? Length{*wished} : *length_of(body_epsilon, "body_epsilon");
+  bodies.set.max_vertices = max_vertices_per_body;
+  bodies.set.effort = value_of(kSetEfforts, effort, "effort");
+  bodies.set.preparation.drop_sheets = drop_sheets;
+  Watch watch(progress);
+  return run(threads, [&] {
+    const certify::SetCache cache(certify::SetCache::default_folder());
+    certify::RobotHooks hooks;
+    hooks.progress = watch.hook();
+    hooks.note = [&](const std::string& file, const std::string& text) {
+      out.notes.push_back(file + ": " + text);
+    };
+    const certify::CertifiedBodies made =
+        certify::certify_bodies(*value.file, bodies, no_cache ? nullptr : &cache, hooks);
+    auto swept = certify::certify_sweep(*value.file, made, waypoints, r);
+    if (!swept) throw certify::TooCoarse(value.file->path.string());
+    out.made = std::move(*swept);
+    return out;
+  });
+}
+
+/// The shapes of the links that are judged.
+struct Shapes {
+  std::vector<verify::MovingShape> shapes;
+  std::vector<std::uint32_t> links;
+};
+
+Shapes shapes_of(const robot::RobotFile& robot, const robot::ShapeChoice& choice, bool prepare,
+                 bool drop_sheets) {
+  robot::require_links(robot, choice.links);
+  Shapes out;
+  for (std::uint32_t l = 0; l < robot.robot.links.size(); ++l) {
+    const robot::Link& link = robot.robot.links[l];
+    if (!choice.links.empty() &&
+        std::find(choice.links.begin(), choice.links.end(), link.name) == choice.links.end())
+      continue;
+    std::size_t count = 0;
+    for (const robot::Geometry& g : choice.shapes_of(link)) {
+      geom::Mesh mesh;
+      if (g.shape == robot::Geometry::Shape::Mesh) {
+        mesh = io::read_mesh(robot::find_only_mesh(g.mesh, robot.path, choice.packages)).mesh;
+        if (prepare)
+          mesh = geom::prepare(mesh, {.drop_sheets = drop_sheets, .holes = geom::Holes::Fill}).mesh;
+      }
+      auto shape = verify::moving_shape(robot.robot, l, g, std::move(mesh));
+      if (!shape) continue;
+      shape->name = link.name + "/" + std::to_string(count++);
+      out.shapes.push_back(std::move(*shape));
+      out.links.push_back(l);
+    }
+  }
+  if (out.shapes.empty())
+    throw Error(ErrorCode::InvalidInput, robot.path.string() + ": no link has a shape");
+  return out;
+}
+
+Verdict verify_sweep(const py::object& robot, const py::object& path, const py::object& swept,
+                     const std::string& claims, const robot::FixedJoints& joint, bool degrees,
+                     const py::object& links, const std::string& geometry,
+                     const py::object& package_path, bool prepare, bool drop_sheets,
+                     const py::object& gap, std::size_t max_cells, int threads,
+                     const py::object& progress) {
+  const RobotValue value = robot_of(robot, "robot");
+  Verdict out;
+  const robot::Path waypoints =
+      path_from(path, value.file->robot, {false, degrees, joint}, out.notes);
+  const auto set = py::isinstance<SweptSet>(swept) ? swept.cast<SweptSet>().set() : set_of(swept);
+  if (!set)
+    throw Error(ErrorCode::InvalidArgument, "swept must be a SweptSet or ConvexSet, or its file");
+  const verify::Claims deciding = value_of(kClaims, claims, "claims");
+  if (deciding == verify::Claims::Solid)
+    throw Error(ErrorCode::InvalidArgument,
+                "claims 'solid': it follows from the surface claim; use 'all'");
+  const robot::ShapeChoice choice{links_of(links), is_visual(geometry), packages_of(package_path)};
+  const auto finest = plain_length_of(gap, "gap");
+  Watch watch(progress);
+  const verify::SweepClaims found = run(threads, [&] {
+    const Shapes shapes = shapes_of(*value.file, choice, prepare, drop_sheets);
+    ensure(verify::same_poses(value.file->robot, shapes.shapes, shapes.links, waypoints),
+           "two ways to compute a link's pose disagree");
+    verify::SweepOptions options;
+    options.gap = finest.value_or(verify::default_gap(*set));
+    options.max_cells = max_cells;
+    options.solids = deciding != verify::Claims::Surface;
+    options.progress = watch.hook();
+    return verify::verify_sweep(shapes.shapes, waypoints, *set, options);
+  });
+  out.answer = verify::answer_of(found, deciding);
+  out.claims["convex"] = dict_of(found.convex);
+  out.claims["surface"] = dict_of(found.surface);
+  if (deciding == verify::Claims::All) out.claims["solid"] = dict_of(found.solid);
+  return out;
+}
+
+constexpr const char* kSweepDoc =
+    R"(Bounds the volume that a robot sweeps along a path by convex bodies.
+
+Options and defaults are those of sweep-approx (docs/algorithms/swept-volumes.md). Ctrl-C is looked
+at while the links' bodies are made, not during the sweep.
+
+Parameters
+----------
+robot : Robot or path
+path : path or array
+    A file (.csv, .json), or waypoints x robot.variables, joined linearly. [rad or length]
+epsilon : float
+    Largest margin round the bodies. [length]
+bound : str
+    How steps are chosen: 'baginski' (not proved), 'uniform', 'subset', 'second-order', 'adaptive'
+    or 'balanced'.
+max_reach : float, optional
+    Largest distance of a hull from what it bounds. [length]
+simplify : float
+    Share of epsilon, 0 to 0.9, by which vertices may be left out.
+implicit_margin : bool
+    Do not enlarge the bodies by the margin, but state it.
+no_merge : bool
+    One body at least between two waypoints.
+ignore_limits : bool
+    Allow waypoints outside the joints' limits.
+joint : dict
+    Values of joints that the path's file has no column for.
+degrees : bool
+    Angles of the path and of joint are in degrees.
+links, geometry, package_path
+    As for `certify_robot`.
+body_epsilon : float or str, optional
+    Of the links' bodies; by default epsilon.
+max_vertices_per_body, effort, drop_sheets, no_cache, unit
+    Of the links' bodies, as for `decompose`.
+verify : bool
+    Have the verifier decide the motion from the bodies as well, which takes longer.
+threads, progress
+    As for `decimate`.
+
+Raises
+------
+Error
+    'invalid_input' naming joint, waypoint or file; 'invalid_argument' when no step is short
+    enough.)";
+
+constexpr const char* kVerifyDoc =
+    R"(Decides whether a set holds a robot at every instant of a path, as `bound-verify sweep`.
+
+Parameters
+----------
+robot : Robot or path
+path : path or array
+    As for `sweep`.
+swept : SweptSet, ConvexSet, name of a file or folder, or list of meshes
+claims : str
+    'all' or 'surface'.
+joint, degrees, links, geometry, package_path
+    As for `sweep`.
+prepare, drop_sheets : bool
+    Judge the links' meshes as `prepare` gives them.
+gap : float, optional
+    Parts that move and measure less are not divided further. [length]
+max_cells : int
+    Give up, 'undecided', beyond so many parts of a triangle per segment.
+threads, progress
+    As for `decimate`.
+
+Raises
+------
+Error
+    As `sweep`.)";
+
+}  // namespace
+
+void bind_sweeps(py::module_& module) {
+  bind_class(module);
+  module.def("sweep", &sweep_path, py::arg("robot"), py::arg("path"), py::kw_only(),
+             py::arg("epsilon") = 0.005, py::arg("bound") = "balanced",
+             py::arg("max_reach") = py::none(), py::arg("simplify") = 0.0,
+             py::arg("implicit_margin") = false, py::arg("no_merge") = false,
+             py::arg("ignore_limits") = false, py::arg("joint") = py::dict(),
+             py::arg("degrees") = false, py::arg("links") = py::none(),
+             py::arg("geometry") = "collision", py::arg("package_path") = py::tuple(),
+             py::arg("body_epsilon") = py::none(), py::arg("max_vertices_per_body") = 64,
+             py::arg("effort") = "normal", py::arg("drop_sheets") = false,
+             py::arg("no_cache") = false, py::arg("unit") = "m", py::arg("verify") = false,
+             py::arg("threads") = 0, py::arg("progress") = py::none(), kSweepDoc);
+}
+
+void bind_sweep_verification(py::module_& module) {
+  module.def("verify_sweep", &verify_sweep, py::arg("robot"), py::arg("path"), py::arg("swept"),
+             py::kw_only(), py::arg("claims") = "all", py::arg("joint") = py::dict(),
+             py::arg("degrees") = false, py::arg("links") = py::none(),
+             py::arg("geometry") = "collision", py::arg("package_path") = py::tuple(),
+             py::arg("prepare") = false, py::arg("drop_sheets") = false,
+             py::arg("gap") = py::none(), py::arg("max_cells") = verify::SweepOptions{}.max_cells,
+             py::arg("threads") = 0, py::arg("progress") = py::none(), kVerifyDoc);
+}
+
+}  // namespace kaboum::python

@@ -1,0 +1,211 @@
+// Claims about meshes and sets: kaboum.verify_mesh and verify_cover, as bound-verify.
+
+#include <kaboum/verify/cover.h>
+#include <kaboum/verify/mesh_verdict.h>
+
+#include <cmath>
+
+#include "answers.h"
+#include "convex_set.h"
+#include "mesh.h"
+#include "running.h"
+
+namespace kaboum::python {
+namespace {
+
+/// The original as it is, or as the tools prepare it.
+std::shared_ptr<const geom::Mesh> judged(const MeshValue& original, bool prepare, bool drop_sheets,
+                                         std::vector<std::string>& notes) {
+  notes = original.notes;
+  if (!prepare) return original.mesh;
+  auto prepared = std::make_shared<geom::Prepared>(
+      geom::prepare(*original.mesh, {.drop_sheets = drop_sheets, .holes = geom::Holes::Fill}));
+  notes.insert(notes.end(), prepared->notes.begin(), prepared->notes.end());
+  return {prepared, &prepared->mesh};
+}
+
+struct Asked {
+  verify::Relation relation = verify::Relation::Outer;
+  verify::Claims claims = verify::Claims::All;
+  std::optional<Length> epsilon;
+  bool prepare = false, drop_sheets = false;
+  std::size_t max_contacts = 0;
+  int threads = 0;
+};
+
+py::dict claims_of(const verify::MeshVerdict& found) {
+  py::dict out;
+  if (found.convex) out["convex"] = dict_of(*found.convex);
+  out["solid"] = dict_of(found.inclusion.solid);
+  out["surface"] = dict_of(found.inclusion.surface);
+  for (const verify::DistanceVerdict& d : found.distances) {
+    py::dict distance;
+    distance["answer"] = verify::name_of(d.claim.answer);
+    distance["reason"] = d.claim.reason;
+    distance["bracket"] = py::make_tuple(d.bracket.lower, d.bracket.upper);
+    out[verify::name_of(d.between)] = distance;
+  }
+  if (found.depth) out["depth"] = dict_of(*found.depth);
+  return out;
+}
+
+Verdict decide(const MeshValue& original, const geom::Mesh& approximation,
+               const geom::ConvexSet* set, const Asked& asked, const py::object& progress) {
+  Watch watch(progress);
+  Verdict out;
+  const verify::MeshVerdict found = run(asked.threads, [&] {
+    const auto mesh = judged(original, asked.prepare, asked.drop_sheets, out.notes);
+    const double margin = set != nullptr ? set->margin : 0;
+    if (asked.relation == verify::Relation::Inner && margin > 0)
+      throw Error(ErrorCode::InvalidInput,
+                  "the set's margin enlarges the bodies; an inner set must have none");
+    std::optional<double> bound;
+    if (asked.epsilon) {
+      bound = asked.epsilon->of(geom::bounding_box(*mesh).diagonal());
+      if (!std::isfinite(*bound) || !(*bound > margin))
+        throw Error(ErrorCode::InvalidArgument,
+                    "epsilon must be larger than the set's margin, and finite");
+    }
+    return verify::decide({*mesh, approximation, set, asked.relation, asked.claims, bound,
+                           asked.max_contacts, watch.hook()});
+  });
+  out.answer = found.answer;
+  out.claims = claims_of(found);
+  return out;
+}
+
+Verdict verify_mesh(const py::object& original, const py::object& approximation,
+                    const std::string& relation, const std::string& claims,
+                    const py::object& epsilon, bool prepare, bool drop_sheets,
+                    std::size_t max_contacts, int threads, const py::object& progress) {
+  static constexpr std::array<std::pair<const char*, verify::Relation>, 2> kRelations{
+      {{"outer", verify::Relation::Outer}, {"inner", verify::Relation::Inner}}};
+  const Asked asked{value_of(kRelations, relation, "relation"),
+                    value_of(kClaims, claims, "claims"),
+                    length_of(epsilon, "epsilon"),
+                    prepare,
+                    drop_sheets,
+                    max_contacts,
+                    threads};
+  const MeshValue first = mesh_of(original, "original");
+  const bool is_set =
+      py::isinstance<SetValue>(approximation) || py::isinstance<CertifiedSetValue>(approximation);
+  if (!is_set) {
+    const MeshValue second = mesh_of(approximation, "approximation");
+    return decide(first, *second.mesh, nullptr, asked, progress);
+  }
+  if (asked.relation == verify::Relation::Outer)
+    throw Error(ErrorCode::InvalidArgument,
+                "approximation is a set of convex bodies: ask verify_cover whether it covers");
+  const auto set = set_of(approximation);
+  return decide(first, verify::sum_of(*set), set.get(), asked, progress);
+}
+
+Verdict verify_cover(const py::object& original, const py::object& set, const std::string& claims,
+                     const py::object& epsilon, bool prepare, bool drop_sheets,
+                     std::size_t max_contacts, int threads, const py::object& progress) {
+  const Asked asked{verify::Relation::Cover,
+                    value_of(kClaims, claims, "claims"),
+                    length_of(epsilon, "epsilon"),
+                    prepare,
+                    drop_sheets,
+                    max_contacts,
+                    threads};
+  const auto bodies = set_of(set);
+  if (!bodies)
+    throw Error(ErrorCode::InvalidArgument,
+                "set: a set is a ConvexSet, the name of a file or folder, or a list of meshes");
+  return decide(mesh_of(original, "original"), verify::sum_of(*bodies), bodies.get(), asked,
+                progress);
+}
+
+void bind_class(py::module_& module) {
+  py::class_<Verdict>(module, "Verdict",
+                      R"(What was decided, exactly. True if and only if it is 'verified'.)")
+      .def_property_readonly(
+          "answer", [](const Verdict& v) { return verify::name_of(v.answer); },
+          "'verified', 'refuted', 'undecided' (within limits) or 'undefined' "
+          "(the claims mean nothing for these shapes).")
+      .def_readonly("claims", &Verdict::claims,
+                    "By its name, each claim: a dict with 'answer', 'reason' and, where it is "
+                    "refuted, 'witness' (a point) and 'depth'.")
+      .def_readonly("notes", &Verdict::notes, "What a user should know of the input.")
+      .def("__bool__", [](const Verdict& v) { return v.answer == verify::Answer::Verified; })
+      .def("__repr__", [](const Verdict& v) {
+        return std::string("<kaboum.Verdict: ") + verify::name_of(v.answer) + ">";
+      });
+}
+
+constexpr const char* kMeshDoc =
+    R"(Decides exactly whether one mesh encloses the other, as `bound-verify mesh`.
+
+It shares nothing with what makes such meshes (docs/algorithms/exact-inclusion.md).
+
+Parameters
+----------
+original, approximation : mesh
+    With relation 'inner', the approximation may be a ConvexSet.
+relation : str
+    'outer': the approximation encloses the original; 'inner': the other way round.
+claims : str
+    Those that decide: 'all', 'solid' or 'surface'.
+epsilon : float or str, optional
+    Also decide that no point of either is farther than this from the other: a length, or a
+    percentage of the original's diagonal.
+prepare, drop_sheets : bool
+    Judge the original as `prepare` gives it.
+max_contacts : int
+    Give up, 'undecided', beyond this many pairs of triangles that touch.
+threads, progress
+    As for `decimate`.
+
+Raises
+------
+Error
+    'invalid_input' on numbers that are not finite.)";
+
+constexpr const char* kCoverDoc =
+    R"(Decides exactly whether bodies are convex and cover a mesh, as `bound-verify cover`.
+
+Parameters
+----------
+original : mesh
+set : ConvexSet, name of a file or folder, or list of meshes
+epsilon : float or str, optional
+    Also decide that no point of the union is farther than this from the solid.
+claims, prepare, drop_sheets, max_contacts, threads, progress
+    As for `verify_mesh`.
+
+Raises
+------
+Error
+    As `verify_mesh`.)";
+
+}  // namespace
+
+py::dict dict_of(const verify::Claim& claim) {
+  py::dict out;
+  out["answer"] = verify::name_of(claim.answer);
+  out["reason"] = claim.reason;
+  if (claim.witness) {
+    out["witness"] = array_of(claim.witness->point);
+    out["depth"] = claim.witness->depth;
+  }
+  return out;
+}
+
+void bind_verification(py::module_& module) {
+  const std::size_t contacts = verify::InclusionOptions{}.max_contacts;
+  bind_class(module);
+  module.def("verify_mesh", &verify_mesh, py::arg("original"), py::arg("approximation"),
+             py::kw_only(), py::arg("relation") = "outer", py::arg("claims") = "all",
+             py::arg("epsilon") = py::none(), py::arg("prepare") = false,
+             py::arg("drop_sheets") = false, py::arg("max_contacts") = contacts,
+             py::arg("threads") = 0, py::arg("progress") = py::none(), kMeshDoc);
+  module.def("verify_cover", &verify_cover, py::arg("original"), py::arg("set"), py::kw_only(),
+             py::arg("claims") = "all", py::arg("epsilon") = py::none(), py::arg("prepare") = false,
+             py::arg("drop_sheets") = false, py::arg("max_contacts") = contacts,
+             py::arg("threads") = 0, py::arg("progress") = py::none(), kCoverDoc);
+}
+
+}  // namespace kaboum::python

@@ -1,0 +1,113 @@
+"""Meshes in and out: arrays, objects that look like meshes, files, errors."""
+
+import types
+
+import numpy as np
+import pytest
+
+import kaboum
+from conftest import signed_volume
+
+
+def test_arrays_are_views_that_cannot_be_written(box):
+    mesh = kaboum.Mesh(*box)
+    first, second = mesh.vertices, mesh.vertices
+    assert first.dtype == np.float64 and mesh.faces.dtype == np.uint32
+    assert first.ctypes.data == second.ctypes.data and not first.flags.owndata
+    with pytest.raises(ValueError):
+        first[0, 0] = 5
+    del mesh
+    np.testing.assert_array_equal(first, box[0])  # the array keeps what it looks into
+
+
+@pytest.mark.parametrize("vertices", [np.float32, np.float64, list])
+@pytest.mark.parametrize("faces", [np.int32, np.int64, np.uint32, np.uint64, np.int8, list])
+def test_dtypes(box, vertices, faces):
+    convert = lambda a, t: a.tolist() if t is list else a.astype(t)
+    mesh = kaboum.Mesh(convert(box[0], vertices), convert(box[1], faces))
+    np.testing.assert_array_equal(mesh.vertices, box[0])
+    np.testing.assert_array_equal(mesh.faces, box[1])
+
+
+def test_layouts(box):
+    wide = np.zeros((8, 6))
+    wide[:, ::2] = box[0]
+    assert signed_volume(kaboum.Mesh(wide[:, ::2], np.asfortranarray(box[1])).vertices, box[1]) == 1
+
+
+def test_what_looks_like_a_mesh_is_one(box):
+    like = types.SimpleNamespace(vertices=box[0], faces=box[1])
+    for mesh in (like, box, list(box), kaboum.Mesh(*box), kaboum.prepare(box)):
+        assert kaboum.hausdorff(mesh, box, samples=2).upper < 1e-12
+
+
+@pytest.mark.parametrize("faces, code", [
+    (np.array([[0, 1, 8]]), "invalid_input"),
+    (np.array([[0, 1, -1]]), "invalid_input"),
+    (np.array([[0, 1, 2**63]], np.uint64), "invalid_input"),
+    (np.array([[0.0, 1, 2]]), "invalid_argument"),
+    (np.array([[0, 1, 2, 3]]), "invalid_argument"),
+    (np.array([0, 1, 2]), "invalid_argument"),
+    ("abc", "invalid_argument"),
+    (None, "invalid_argument"),
+])
+def test_faces_that_are_none(box, faces, code):
+    with pytest.raises(kaboum.Error) as error:
+        kaboum.Mesh(box[0], faces)
+    assert error.value.code == code
+
+
+def test_vertices_that_are_none(box):
+    for vertices in (box[0][:, :2], box[0].ravel(), "abc", [[None] * 3], object()):
+        with pytest.raises(kaboum.Error):
+            kaboum.Mesh(vertices, box[1])
+    with pytest.raises(kaboum.Error) as error:
+        broken = box[0].copy()
+        broken[3, 1] = np.nan
+        kaboum.prepare((broken, box[1]))
+    assert error.value.code == "invalid_input"
+
+
+def test_not_a_mesh():
+    with pytest.raises(kaboum.Error, match="int"):
+        kaboum.prepare(5)
+
+
+@pytest.mark.parametrize("name", ["m.ply", "m.obj", "m.off", "m.stl"])
+def test_files_keep_coordinates(ring, tmp_path, name):
+    vertices = ring[0].astype(np.float32).astype(float) if name == "m.stl" else ring[0]
+    kaboum.write((vertices, ring[1]), tmp_path / name)
+    back = kaboum.read(tmp_path / name)
+    assert back.source.endswith(name) and len(back.sha256) == 64
+    np.testing.assert_array_equal(back.vertices[back.faces], vertices[ring[1]])
+
+
+def test_stl_cannot_hold_doubles(ring, tmp_path):
+    with pytest.raises(kaboum.Error) as error:
+        kaboum.write(ring, tmp_path / "m.stl")
+    assert error.value.code == "output_failed" and error.value.exit_code == 4
+    assert not (tmp_path / "m.stl").exists()
+
+
+def test_errors_name_file_and_remedy(tmp_path):
+    broken = tmp_path / "broken.obj"
+    broken.write_text("v 0 0 0\nf 1 2 3\n")
+    with pytest.raises(kaboum.Error, match="broken.obj") as error:
+        kaboum.read(broken)
+    assert error.value.code == "invalid_input"
+    with pytest.raises(kaboum.Error, match="format"):
+        kaboum.read(broken, format="bja")
+    with pytest.raises(kaboum.Error):
+        kaboum.read(tmp_path / "absent.ply")
+
+
+def test_prepare_says_what_it_did(box):
+    open_box = (box[0], box[1][:-2])
+    prepared = kaboum.prepare(open_box)
+    assert prepared.closed and prepared.holes == 1 and prepared.notes
+    assert not kaboum.prepare(open_box, holes="keep").closed
+    with pytest.raises(kaboum.Error):
+        kaboum.prepare(open_box, holes="refuse")
+    inside_out = kaboum.prepare((box[0], box[1][:, ::-1]))
+    assert signed_volume(inside_out.vertices, inside_out.faces) == pytest.approx(1)
+    assert inside_out.turned_triangles == 12

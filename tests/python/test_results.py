@@ -1,0 +1,178 @@
+"""Decimation, decomposition, distances: what the tools do, and the same bytes."""
+
+import os
+import signal
+import subprocess
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import kaboum
+from conftest import cube, signed_volume, torus
+
+BIN = os.environ["KABOUM_BIN"]
+
+
+def test_outer_and_inner(ring):
+    volume = signed_volume(*ring)
+    outer = kaboum.decimate(ring, epsilon="2%", verify=True)
+    inner = kaboum.decimate(ring, epsilon="2%", direction="inner")
+    assert len(inner.vertices) < len(ring[0]) > len(outer.vertices)
+    assert signed_volume(inner.vertices, inner.faces) < volume < signed_volume(outer.vertices, outer.faces)
+    assert outer.reached and outer.closed and outer.stop == "epsilon"
+    assert {c["answer"] for c in outer.claims} == {"verified"}
+    assert outer.distances["hausdorff"][1] <= outer.epsilon
+    assert kaboum.verify_mesh(ring, outer, epsilon=outer.epsilon)
+    assert kaboum.verify_mesh(ring, inner, relation="inner")
+    refuted = kaboum.verify_mesh(ring, inner)
+    assert not refuted and refuted.answer == "refuted" and refuted.claims["solid"]["depth"] > 0
+
+
+def test_series_is_nested(ring):
+    fine, coarse = kaboum.decimate(ring, vertices=[300, 100])
+    assert len(fine.vertices) == 300 and len(coarse.vertices) == 100
+    assert kaboum.verify_mesh(fine, coarse)
+
+
+def test_same_bytes_as_the_tool(bracket, tmp_path):
+    result = tmp_path / "b.ply"
+    subprocess.run([f"{BIN}/bmesh-decimate", bracket, "-o", result, "--vertices", "300"], check=True,
+                   capture_output=True)
+    made = kaboum.decimate(bracket, vertices=300)
+    assert made.bytes == result.read_bytes()
+    assert kaboum.decimate(kaboum.prepare(bracket), vertices=300, threads=1).bytes == made.bytes
+    made.write(tmp_path / "again.ply")
+    assert (tmp_path / "again.ply").read_bytes() == made.bytes
+    made.write(tmp_path / "again.stl")
+    assert kaboum.hausdorff(tmp_path / "again.stl", made, samples=2).upper < 1e-12
+
+
+def test_same_container_as_the_tool(bracket, tmp_path):
+    result = tmp_path / "b.glb"
+    subprocess.run([f"{BIN}/bcd-decompose", bracket, "-o", result, "--epsilon", "5%", "--effort", "fast", "--no-cache"], check=True,
+                   capture_output=True)
+    made = kaboum.decompose(bracket, epsilon="5%", effort="fast")
+    assert made.bytes == result.read_bytes() and not made.cached
+    again = kaboum.decompose(bracket, epsilon="5%", effort="fast")
+    assert again.cached and again.bytes == made.bytes
+    assert made.report["bodies"] == len(made) == len(made.bodies)
+    assert kaboum.verify_cover(bracket, made, epsilon=made.distance[1])
+    assert kaboum.verify_cover(bracket, result)
+    without_one = kaboum.ConvexSet(made.bodies[1:])
+    assert kaboum.verify_cover(bracket, without_one).answer == "refuted"
+
+
+def test_inner_set(ring):
+    inner = kaboum.decompose(ring, direction="inner", epsilon="6%")
+    assert kaboum.verify_mesh(ring, inner, relation="inner")
+    assert inner.record["direction"] == "inner"
+
+
+def test_bodies_are_views(ring):
+    bodies = kaboum.decompose(ring, epsilon="5%").bodies
+    copies = [b.vertices.copy() for b in bodies]
+    views = [b.vertices for b in bodies]
+    del bodies
+    for view, copy in zip(views, copies):
+        np.testing.assert_array_equal(view, copy)
+
+
+def test_sets_survive_files(ring, tmp_path):
+    made = kaboum.decompose(ring, epsilon="5%")
+    made.write(tmp_path / "set.obj")
+    made.write(tmp_path / "folder")
+    for path in (tmp_path / "set.obj", tmp_path / "folder"):
+        back = kaboum.read_set(path)
+        assert len(back) == len(made)
+        assert kaboum.verify_cover(ring, back)
+
+
+def test_distances_of_cubes():
+    found = kaboum.hausdorff(cube(1.0), cube(2.0), samples=1000)
+    assert found.lower <= np.sqrt(3) <= found.upper < 1.74
+    assert found.minimum == (0, 0)
+    assert found.a_to_b["max"][1] == pytest.approx(1, rel=1e-2)
+    within = kaboum.hausdorff(cube(1.0), cube(2.0), solid=True, samples=2)
+    assert within.a_to_b["max"] == (0, 0)
+
+
+@pytest.mark.parametrize("options", [
+    {}, {"epsilon": 0}, {"epsilon": -1}, {"epsilon": "5"+"%%"}, {"epsilon": True}, {"epsilon": float("nan")},
+    {"vertices": 100, "direction": "outside"}, {"ratio": 2.0}, {"vertices": 100, "threads": -1},
+    {"vertices": 100, "progress": 5}, {"vertices": 100, "output_format": "x3d"}, {"vertices": [100, 200]},
+])
+def test_options_that_contradict(ring, options):
+    with pytest.raises(kaboum.Error) as error:
+        kaboum.decimate(ring, **options)
+    assert error.value.code == "invalid_argument"
+
+
+def test_unknown_names_are_explained(ring):
+    with pytest.raises(kaboum.Error, match="did you mean 'outer'"):
+        kaboum.decimate(ring, vertices=100, direction="outr")
+    with pytest.raises(TypeError):
+        kaboum.decimate(ring, vertexes=100)
+
+
+def test_progress_is_told_and_may_cancel():
+    ring = torus(96, 48)
+    stages = []
+    kaboum.decimate(ring, vertices=100, progress=stages.append)
+    assert stages and all(isinstance(s, str) for s in stages)
+
+    class Enough(Exception):
+        pass
+
+    def stop(_):
+        raise Enough
+
+    for call in (lambda: kaboum.decimate(ring, vertices=100, progress=stop),
+                 lambda: kaboum.decompose(ring, epsilon="1%", progress=stop, no_cache=True),
+                 lambda: kaboum.hausdorff(ring, cube(), progress=stop),
+                 lambda: kaboum.verify_mesh(ring, ring, progress=stop)):
+        with pytest.raises(Enough):
+            call()
+
+
+def test_interrupt_ends_the_work():
+    big = torus(400, 200)
+    timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        kaboum.decimate(big, vertices=100, effort="best")
+    timer.join()
+
+
+def test_other_threads_run_meanwhile():
+    counted = [0]
+    done = threading.Event()
+
+    def count():
+        while not done.is_set():
+            counted[0] += 1
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    before = counted[0]
+    kaboum.decimate(torus(96, 48), vertices=100)
+    during = counted[0] - before
+    done.set()
+    thread.join()
+    assert during > 5
+
+
+def test_calls_of_several_threads(ring):
+    results = [None] * 4
+
+    def work(i):
+        results[i] = kaboum.decimate(ring, vertices=100, effort="fast").bytes
+
+    threads = [threading.Thread(target=work, args=(i,)) for i in range(4)]
+    for t in threads:
+        t.start()
+    for t in threads:
+        t.join()
+    assert results[0] and len(set(results)) == 1

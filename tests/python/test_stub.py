@@ -1,0 +1,68 @@
+"""The typed stub says what the module has: names, parameters, kinds, defaults, properties."""
+
+import ast
+import inspect
+import pathlib
+import re
+
+import pytest
+
+import kaboum
+
+STUB = pathlib.Path(kaboum.__file__).with_name("__init__.pyi")
+TREE = ast.parse(STUB.read_text())
+FUNCTIONS = [n for n in TREE.body if isinstance(n, ast.FunctionDef)]
+CLASSES = {n.name: n for n in TREE.body if isinstance(n, ast.ClassDef) and not n.name.startswith("_")}
+
+
+def parameters(node):
+    """Name, kind and default of each, without self."""
+    a = node.args
+    positional = a.posonlyargs + a.args
+    defaults = [None] * (len(positional) - len(a.defaults)) + a.defaults
+    out = [(p.arg, "positional", d) for p, d in zip(positional, defaults)]
+    out += [(p.arg, "keyword", d) for p, d in zip(a.kwonlyargs, a.kw_defaults)]
+    return [(n, k, None if d is None else ast.literal_eval(d)) for n, k, d in out if n != "self"]
+
+
+def of_docstring(function):
+    """The signature that pybind11 writes into a docstring's first line."""
+    line = function.__doc__.splitlines()[0]
+    line = re.sub(r"<[^<>]*>", "None", line)  # a default without a literal would not parse
+    return parameters(ast.parse(f"def {line}: ...").body[0])
+
+
+def test_all_names_are_there():
+    assert set(kaboum.__all__) == {f.name for f in FUNCTIONS} | set(CLASSES)
+    assert sorted(kaboum.__all__) == kaboum.__all__
+    assert all(getattr(kaboum, name).__doc__ for name in kaboum.__all__)
+
+
+@pytest.mark.parametrize("node", FUNCTIONS, ids=lambda n: n.name)
+def test_function(node):
+    there = of_docstring(getattr(kaboum, node.name))
+    stated = parameters(node)
+    overloaded = any(getattr(d, "id", "") == "overload" for d in node.decorator_list)
+    assert [p[:2] for p in stated] == [p[:2] for p in there]
+    for (name, _, a), (_, _, b) in zip(stated, there):
+        assert a == b or (overloaded and name == "vertices"), name
+
+
+@pytest.mark.parametrize("name", CLASSES)
+def test_class(name):
+    there = getattr(kaboum, name)
+    stated = {n.name: n for n in CLASSES[name].body if isinstance(n, ast.FunctionDef)}
+    fields = {n.target.id for n in CLASSES[name].body if isinstance(n, ast.AnnAssign)}
+    special = {"__init__", "__len__", "__bool__"}
+    has = {k for k, v in vars(there).items() if not k.startswith("_") or k in special}
+    if issubclass(there, Exception):
+        has -= special
+    elif there.__init__.__doc__ is None or "(self: " not in there.__init__.__doc__:
+        has -= {"__init__"}  # made by functions only
+    assert has == set(stated) | fields
+    for member, node in stated.items():
+        value = inspect.getattr_static(there, member)
+        is_property = any(getattr(d, "id", "") == "property" for d in node.decorator_list)
+        assert isinstance(value, property) == is_property, member
+        if not is_property and member not in ("__len__", "__bool__"):
+            assert parameters(node) == [p for p in of_docstring(getattr(there, member)) if p[0] != "self"]
