@@ -16,5 +16,7 @@ foreach(_component IN LISTS _components)
           FILE kaboum-${_component}.cmake)
 endforeach()
 
-install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT doc)
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT doc)
+install(DIRECTORY examples/pipeline examples/python DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT doc
+        USE_SOURCE_PERMISSIONS)

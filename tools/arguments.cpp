@@ -3,11 +3,11 @@
 #include "arguments.h"
 
 #include <kaboum/base/length_unit.h>
+#include <kaboum/base/parse_length.h>
 
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <cmath>
 #include <filesystem>
 #include <sstream>
 #include <string_view>
@@ -24,16 +24,7 @@ std::from_chars_result parse_number(std::string_view text, double& value) {
 
 }  // namespace
 
-std::optional<Length> parse_length(const std::string& text) {
-  Length length;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = parse_number(text, length.value);
-  if (error != std::errc() || !std::isfinite(length.value) || !(length.value > 0))
-    return std::nullopt;
-  length.percent = stop != end && *stop == '%';
-  if (stop + (length.percent ? 1 : 0) != end) return std::nullopt;
-  return length;
-}
+std::optional<Length> parse_length(const std::string& text) { return kaboum::parse_length(text); }
 
 CLI::Validator number_from(double low, double high) {
   std::ostringstream text;

@@ -51,6 +51,10 @@ cat >domain.pddl <<'END'
 (define (domain d) (:requirements :strips) (:predicates (done)) (:action act :parameters () :precondition () :effect (done)))
 END
 printf '(define (problem p) (:domain d) (:init) (:goal (done)))\n' >problem.pddl
+mkdir some
+cp box.off wide.off some
+run batch "$BIN/kaboum-batch" some -o batch --no-pictures
+for command in list verify prune; do run "cache-$command" "$BIN/kaboum-cache" "$command" --folder absent; done
 run solve "$BIN/kaboum-plan" solve domain.pddl problem.pddl -o plan.json
 run check "$BIN/kaboum-plan" check domain.pddl problem.pddl --plan plan.json
 
