@@ -145,7 +145,9 @@ struct Execution {
 Execution execute(const Request& r, const PathAnswer& answer, const MoveOptions& o,
                   const world::Checker& checker) {
   const motion::SpeedLimits limits = tools::speed_limits(o, r.kinematics());
-  const motion::Trajectory trajectory(answer.path, limits, o.rate);
+  const motion::Trajectory trajectory(
+      answer.path, limits, o.rate,
+      o.time_optimal ? motion::Profile::Trapezoid : motion::Profile::Quintic);
   if (trajectory.samples() > kMostSamples)
     throw Error(ErrorCode::LimitReached,
                 "--trajectory: " + std::to_string(trajectory.samples()) + " samples in " +

@@ -53,6 +53,10 @@ void describe_execution(CLI::App& app, MoveOptions& o) {
                      "Write samples over time: from rest to rest along each segment, by quintic "
                      "polynomials, within the limits below; CSV")
           ->type_name("FILE");
+  app.add_flag("--time-optimal", o.time_optimal,
+               "As fast as the limits allow along each segment (trapezoids of velocity; "
+               "accelerations jump), instead of quintic polynomials")
+      ->needs(trajectory);
   app.add_option("--rate", o.rate, "Samples per second")
       ->check(number_from(1e-3, 1e6))
       ->needs(trajectory)

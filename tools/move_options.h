@@ -10,7 +10,7 @@ namespace kaboum::tools {
 struct MoveOptions {
   std::string scene, robot, from, start, goals, output = "-", trajectory, resolution = "1e-5";
   std::vector<std::string> to, velocities, accelerations;
-  bool degrees = false;
+  bool degrees = false, time_optimal = false;
   double max_work = 10, timeout = 0, rate = 1000;
   std::size_t max_nodes = 100'000;
   int shortcuts = 60;

@@ -49,6 +49,12 @@ Json size_json(const plan::PlanSize& s) {
           {"leaves", s.leaves}, {"longest_path", s.longest}, {"cost", s.cost}};
 }
 
+Json geometry_json(const manipulation::GeometryCounters& c) {
+  return {{"ik_calls", c.ik_calls}, {"ik_s", c.ik_seconds},
+          {"paths", c.paths},       {"predicate_calls", c.predicate_calls},
+          {"positive", c.positive}, {"path_s", c.path_seconds}};
+}
+
 /// What the report calls an outcome, what is said of it where there is no plan, and its exit code.
 struct Verdict {
   const char* status;
@@ -91,7 +97,8 @@ std::string drawing_format(const PlanOptions& o) {
 
 int solve(const PlanOptions& o) {
   const auto start = std::chrono::steady_clock::now();
-  const plan::Model model = load_model(o);
+  ExternalWatch watch;
+  const plan::Model model = load_model(o, &watch);
   plan::SolveOptions options;
   options.algorithm = kAlgorithms.at(o.search);
   options.timeout = o.timeout;
@@ -117,6 +124,15 @@ int solve(const PlanOptions& o) {
                  {"lost", solution.lost},
                  {"scene", o.scene},
                  {"statistics", statistics_json(solution.statistics)}};
+  if (watch.cache) watch.cache->save();
+  if (!o.scene.empty()) {
+    report["geometry"] = geometry_json(*o.counters);
+    report["geometry"]["answers_reused"] = watch.cache ? watch.cache->reused() : 0;
+  }
+  if (o.explain) {
+    report["explanation"] = watch.explanation.json();
+    std::cerr << watch.explanation.text();
+  }
   plan::PlanSize size;
   if (solution.outcome == plan::Outcome::Solved) {
     size = plan::measure(model, solution.plan);

@@ -1,12 +1,15 @@
 #pragma once
 
+#include <kaboum/manipulation/answer_cache.h>
 #include <kaboum/plan/load.h>
 #include <kaboum/plan/plan.h>
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 
+#include "plan_explain.h"
 #include "plan_options.h"
 
 /// What kaboum-plan reads.
@@ -21,9 +24,17 @@ struct PlanTexts {
 /// @throws Error on files that cannot be read, or are of no known language.
 PlanTexts read_texts(const PlanOptions& options);
 
-/// The model of the texts; external functions of a scene are bound where one is given.
-/// @throws Error as plan::load and read_scene.
-plan::Model load_model(const PlanOptions& options);
+/// What is noted of external functions during a search.
+struct ExternalWatch {
+  Explanation explanation;
+  std::unique_ptr<manipulation::AnswerCache> cache;  ///< of a scene's functions; may be none
+};
+
+/// The model of the texts; external functions of a scene, of programs and of shared libraries are
+/// bound where some are given.
+/// @param watch  filled, if it is given; answers are taken from the cache then.
+/// @throws Error as plan::load, read_scene, start_process and load_plugin.
+plan::Model load_model(const PlanOptions& options, ExternalWatch* watch = nullptr);
 
 /// The language that `name` says, else that of the file's name.
 /// @throws Error{InvalidArgument} naming the option when there is none.

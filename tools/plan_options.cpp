@@ -3,7 +3,6 @@
 #include "plan_options.h"
 
 namespace kaboum::tools {
-namespace {
 
 void add_inputs(CLI::App& app, PlanOptions& o) {
   app.add_option("DOMAIN", o.domain, "Domain file (.kpl, .pddl, .xml), or - for stdin")
@@ -23,14 +22,23 @@ void add_problem(CLI::App& app, PlanOptions& o) {
       ->type_name("FILE");
 }
 
-void add_scene(CLI::App& app, PlanOptions& o) {
-  app.add_option("--scene", o.scene,
-                 "Scene (JSON) whose geometry answers the external functions reach, grasp, place, "
-                 "release, move, inside and collides [externals are tables]")
+CLI::Option* add_scene(CLI::App& app, PlanOptions& o) {
+  app.add_option("--process", o.processes,
+                 "A command whose program answers external functions by JSON lines "
+                 "(docs/planning/externals.md); may be repeated")
+      ->type_name("COMMAND");
+  app.add_option("--process-timeout", o.process_timeout, "Longest time for one of its answers")
+      ->check(number_from(1e-3, 1e6))
+      ->capture_default_str()
+      ->type_name("S");
+  app.add_option("--plugin", o.plugins, "A shared library with external functions; may be repeated")
+      ->type_name("FILE");
+  return app
+      .add_option("--scene", o.scene,
+                  "Scene (JSON) whose geometry answers the external functions reach, grasp, place, "
+                  "release, move, inside and collides [externals are tables]")
       ->type_name("FILE");
 }
-
-}  // namespace
 
 CLI::App* add_solve_command(CLI::App& app, PlanOptions& o) {
   CLI::App* s = app.add_subcommand("solve", "Find a plan");
@@ -48,6 +56,10 @@ CLI::App* add_solve_command(CLI::App& app, PlanOptions& o) {
       ->capture_default_str()
       ->type_name("FILE");
   s->add_flag("--tree", o.tree, "Write the plan as a tree, without shared sub-plans");
+  s->add_flag("--explain", o.explain,
+              "Say which calls of external functions returned no value, how often, and why");
+  s->add_flag("--no-cache", o.no_cache,
+              "Ask a scene's functions anew, and keep nothing for the next run ($KABOUM_CACHE)");
   s->add_option("--timeout", o.timeout, "Give up after this many seconds [never]")
       ->check([](const std::string& text) {
         double seconds = 0;

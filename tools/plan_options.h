@@ -1,6 +1,9 @@
 #pragma once
 
+#include <kaboum/manipulation/externals.h>
+
 #include <string>
+#include <vector>
 
 #include "cli.h"
 
@@ -10,11 +13,24 @@ namespace kaboum::tools {
 struct PlanOptions {
   std::string domain, problem, scene, plan, output = "-", input_format, problem_format,
                                             output_format, search = "greedy";
-  bool tree = false;
-  double timeout = 0;      ///< 0: none [s]
-  std::string max_memory;  ///< "500M"; empty: no limit
+  bool tree = false, time_optimal = false, explain = false, no_cache = false;
+  double timeout = 0;                           ///< 0: none [s]
+  std::string max_memory;                       ///< "500M"; empty: no limit
+  std::string outcomes = "all", trajectories;   ///< of run
+  double rate = 1000, acceleration = 5;         ///< of run [1/s; rad/s², length/s²]
+  std::vector<std::string> packages;            ///< of run
+  std::vector<std::string> processes, plugins;  ///< with external functions of a user's own
+  double process_timeout = 10;                  ///< [s]
+  std::shared_ptr<manipulation::GeometryCounters> counters =
+      std::make_shared<manipulation::GeometryCounters>();  ///< of the scene's functions
   CommonOptions common;
 };
+
+/// Options that several commands have.
+void add_inputs(CLI::App& app, PlanOptions& options);
+void add_problem(CLI::App& app, PlanOptions& options);
+/// --scene, and other sources of external functions.
+CLI::Option* add_scene(CLI::App& app, PlanOptions& options);
 
 /// Add a command each.
 CLI::App* add_solve_command(CLI::App& app, PlanOptions& options);

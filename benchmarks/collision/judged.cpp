@@ -1,5 +1,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
+#include <kaboum/judge/placement.h>
+#include <kaboum/judge/solid.h>
 #include <kaboum/robot/mesh_files.h>
 #include <kaboum/robot/robot_file.h>
 #include <kaboum/world/motion_check.h>
@@ -14,7 +16,6 @@
 #include <optional>
 #include <random>
 
-#include "exact_judge.h"
 #include "scene_file.h"
 
 /// Bounded predicates judged by exact meshes: configurations, half of them near contact, and

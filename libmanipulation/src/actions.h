@@ -10,9 +10,17 @@ plan::Answer reach(Geometry& geometry, const plan::Question& question);
 plan::Answer grasp(Geometry& geometry, const plan::Question& question);
 plan::Answer place(Geometry& geometry, const plan::Question& question);
 plan::Answer transfer(Geometry& geometry, const plan::Question& question);
+plan::Answer fetch(Geometry& geometry, const plan::Question& question);
+plan::Answer put(Geometry& geometry, const plan::Question& question);
+plan::Answer put_upright(Geometry& geometry, const plan::Question& question);
+plan::Answer lift(Geometry& geometry, const plan::Question& question);
+plan::Answer join(Geometry& geometry, const plan::Question& question);
+plan::Answer hand_over(Geometry& geometry, const plan::Question& question);
+plan::Answer wander(Geometry& geometry, const plan::Question& question);
 plan::Answer release(Geometry& geometry, const plan::Question& question);
 plan::Answer move(Geometry& geometry, const plan::Question& question);
 plan::Answer is_inside(Geometry& geometry, const plan::Question& question);
 plan::Answer collides(Geometry& geometry, const plan::Question& question);
+plan::Answer swept_collides(Geometry& geometry, const plan::Question& question);
 
 }  // namespace kaboum::manipulation

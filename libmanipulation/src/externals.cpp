@@ -7,18 +7,30 @@
 namespace kaboum::manipulation {
 
 plan::ExternalBindings bind_externals(world::World world, const ExternalOptions& options) {
-  if (!(options.clearance > 0))
-    throw Error(ErrorCode::InvalidArgument, "the clearance is not above 0");
+  if (!(options.clearance > 0) || !(options.lift > 0) || !(options.upright > 0))
+    throw Error(ErrorCode::InvalidArgument, "clearance, lift and upright are to be above 0");
   const auto geometry = std::make_shared<Geometry>(std::move(world), options);
   struct Entry {
     const char* name;
     std::size_t arguments;
     plan::Answer (*function)(Geometry&, const plan::Question&);
   };
-  constexpr Entry kEntries[] = {{"reach", 2, reach},      {"grasp", 3, grasp},
-                                {"place", 3, place},      {"transfer", 4, transfer},
-                                {"release", 3, release},  {"move", 2, move},
-                                {"inside", 2, is_inside}, {"collides", 2, collides}};
+  constexpr Entry kEntries[] = {{"reach", 2, reach},
+                                {"grasp", 3, grasp},
+                                {"place", 3, place},
+                                {"transfer", 4, transfer},
+                                {"fetch", 3, fetch},
+                                {"put", 4, put},
+                                {"putUpright", 4, put_upright},
+                                {"lift", 2, lift},
+                                {"join", 4, join},
+                                {"handOver", 3, hand_over},
+                                {"wander", 1, wander},
+                                {"release", 3, release},
+                                {"move", 2, move},
+                                {"inside", 2, is_inside},
+                                {"collides", 2, collides},
+                                {"sweptCollides", 3, swept_collides}};
   plan::ExternalBindings out;
   for (const Entry& entry : kEntries)
     out[entry.name] = [geometry, entry](const plan::Question& question) {

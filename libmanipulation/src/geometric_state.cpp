@@ -44,30 +44,67 @@ std::size_t object_named(const Geometry& geometry, const std::string& name) {
   return find_named(geometry.world.objects, name, "object");
 }
 
-GeometricState read_state(Geometry& geometry, plan::StateView& view) {
-  const world::World& world = geometry.world;
-  GeometricState out{initial_state(world), ""};
-  out.state.absent.assign(world.objects.size(), false);
-  for (std::size_t r = 0; r < world.robots.size(); ++r) {
-    const auto word = value(geometry, view, "conf", world.robots[r].name, kHome);
-    if (!word) {
-      out.unknown = "the configuration of " + world.robots[r].name + " is not known";
-      return out;
-    }
-    out.state.q[r] = configuration_of(*word, world.robots[r]);
+GeometricState::GeometricState(Geometry& geometry, plan::StateView& view)
+    : geometry_(geometry),
+      view_(view),
+      state_(initial_state(geometry.world)),
+      mounted_(geometry.world.objects.size()),
+      robots_read_(geometry.world.robots.size(), false),
+      objects_read_(geometry.world.objects.size(), false) {
+  state_.absent.assign(objects_read_.size(), true);
+}
+
+bool GeometricState::read_robot(std::size_t robot) {
+  if (robots_read_[robot]) return true;
+  const world::RobotModel& model = geometry_.world.robots[robot];
+  const auto word = value(geometry_, view_, "conf", model.name, kHome);
+  if (!word) {
+    unknown_ = "the configuration of " + model.name + " is not known";
+    return false;
   }
-  for (std::size_t o = 0; o < world.objects.size(); ++o) {
-    const auto word = value(geometry, view, "pose", world.objects[o].name, kStart);
-    if (!word) {
-      out.unknown = "the pose of " + world.objects[o].name + " is not known";
-      return out;
-    }
-    const ObjectPlace place = place_of(*word, world, o);
-    out.state.absent[o] = place.absent;
-    if (!place.absent && !place.attachment) out.state.poses[o] = place.pose;
-    out.state.attachments[o] = place.attachment;
+  state_.q[robot] = configuration_of(*word, model);
+  robots_read_[robot] = true;
+  return true;
+}
+
+bool GeometricState::read_object(std::size_t object) { return read_place(object, 0); }
+
+bool GeometricState::read_place(std::size_t object, std::size_t depth) {
+  if (objects_read_[object]) return true;
+  const world::World& world = geometry_.world;
+  if (depth > world.objects.size())
+    throw Error(ErrorCode::InvalidInput, "objects are mounted on each other in a circle; one is " +
+                                             world.objects[object].name);
+  const auto word = value(geometry_, view_, "pose", world.objects[object].name, kStart);
+  if (!word) {
+    unknown_ = "the pose of " + world.objects[object].name + " is not known";
+    return false;
   }
-  return out;
+  ObjectPlace place = place_of(*word, world, object);
+  if (const auto below = place.mounted_on) {
+    mounted_[object] = below;
+    if (!read_place(*below, depth + 1)) return false;
+    place.absent = state_.absent[*below];
+    place.attachment = state_.attachments[*below];
+    if (place.attachment)
+      place.attachment->pose = place.attachment->pose * place.pose;
+    else
+      place.pose = state_.poses[*below] * place.pose;
+  }
+  if (place.attachment && !read_robot(place.attachment->robot)) return false;
+  state_.absent[object] = place.absent;
+  if (!place.absent && !place.attachment) state_.poses[object] = place.pose;
+  state_.attachments[object] = place.absent ? std::nullopt : place.attachment;
+  objects_read_[object] = true;
+  return true;
+}
+
+bool GeometricState::read_all() {
+  for (std::size_t r = 0; r < robots_read_.size(); ++r)
+    if (!read_robot(r)) return false;
+  for (std::size_t o = 0; o < objects_read_.size(); ++o)
+    if (!read_object(o)) return false;
+  return true;
 }
 
 }  // namespace kaboum::manipulation

@@ -24,13 +24,35 @@ struct Geometry {
 std::size_t robot_named(const Geometry& geometry, const std::string& name);
 std::size_t object_named(const Geometry& geometry, const std::string& name);
 
-/// The state of the world as the planner knows it, or why it is not known.
-struct GeometricState {
-  world::WorldState state;
-  std::string unknown;  ///< a sentence, when something is not known
-};
+/// The state of the world as the planner knows it, as far as it was read: what is read is in the
+/// footprint of the call. Things that were not read are as in the scene, objects absent.
+class GeometricState {
+ public:
+  GeometricState(Geometry& geometry, plan::StateView& view);
 
-/// Reads the configurations of all robots and the poses of all objects: all are in the footprint.
-GeometricState read_state(Geometry& geometry, plan::StateView& view);
+  /// Reads the configuration of a robot. @return false: it is not known.
+  bool read_robot(std::size_t robot);
+  /// Reads where an object is, and what it is mounted on; of what holds it the configuration too.
+  bool read_object(std::size_t object);
+  bool read_all();
+  /// A configuration that the call states: the state's is not read.
+  void set_robot(std::size_t robot, std::vector<double> q) { state_.q[robot] = std::move(q); }
+
+  [[nodiscard]] const world::WorldState& world() const { return state_; }
+  /// What each object is mounted on, as far as it was read.
+  [[nodiscard]] const std::vector<std::optional<std::size_t>>& mounted() const { return mounted_; }
+  /// A sentence, when something is not known.
+  [[nodiscard]] const std::string& unknown() const { return unknown_; }
+
+ private:
+  bool read_place(std::size_t object, std::size_t depth);
+
+  Geometry& geometry_;
+  plan::StateView& view_;
+  world::WorldState state_;
+  std::vector<std::optional<std::size_t>> mounted_;
+  std::vector<bool> robots_read_, objects_read_;
+  std::string unknown_;
+};
 
 }  // namespace kaboum::manipulation

@@ -111,6 +111,12 @@ std::string word_of(const world::World& world, const world::Attachment& attachme
   return out;
 }
 
+std::string word_of(const world::World& world, std::size_t object, const world::Transform& pose) {
+  std::string out = "in " + world.objects[object].name;
+  append_pose(out, pose);
+  return out;
+}
+
 ObjectPlace place_of(std::string_view word, const world::World& world, std::size_t object) {
   ObjectPlace out;
   if (word == kAway) {
@@ -132,8 +138,16 @@ ObjectPlace place_of(std::string_view word, const world::World& world, std::size
       }
     }
     if (!out.attachment) unknown(word, "pose on a link of the scene's robots");
+  } else if (word.starts_with("in ")) {
+    for (std::size_t o = 0; o < world.objects.size() && !out.mounted_on; ++o) {
+      const std::string name = "in " + world.objects[o].name + " ";
+      if (o == object || !word.starts_with(name)) continue;
+      out.mounted_on = o;
+      out.pose = pose_of(word.substr(name.size() - 1), word);
+    }
+    if (!out.mounted_on) unknown(word, "pose in another object of the scene");
   } else {
-    unknown(word, "pose: expected 'start', 'away', 'at …' or 'on ROBOT/LINK …'");
+    unknown(word, "pose: expected 'start', 'away', 'at …', 'on ROBOT/LINK …' or 'in OBJECT …'");
   }
   return out;
 }

@@ -1,4 +1,4 @@
-// Paths in time: polynomials of degree 5 from rest to rest.
+// Paths in time: from rest to rest, by polynomials of degree 5 or trapezoids of velocity.
 
 #include <kaboum/base/error.h>
 #include <kaboum/motion/trajectory.h>
@@ -17,9 +17,24 @@ constexpr double kMostSecond = 5.773502691896258;  // 10/√3, at 1/2 ± √3/6
 constexpr double kUp = 1 + 0x1p-30;                // more than all roundings here
 constexpr double kMostSamples = 1e8;
 
-double share_at(double u) { return u * u * u * (10 + u * (6 * u - 15)); }
-double first_at(double u) { return 30 * u * u * (1 - u) * (1 - u); }
-double second_at(double u) { return 60 * u * (1 - u) * (1 - 2 * u); }
+/// The share of a segment at a share of its time, and its derivatives.
+struct Share {
+  double value = 0, first = 0, second = 0;
+};
+
+Share quintic(double u) {
+  return {u * u * u * (10 + u * (6 * u - 15)), 30 * u * u * (1 - u) * (1 - u),
+          60 * u * (1 - u) * (1 - 2 * u)};
+}
+
+/// Speeds up for the part `ramp` of the time, at most a half, and slows down as long.
+Share trapezoid(double u, double ramp) {
+  const double top = 1 / (1 - ramp), slope = top / ramp;
+  if (u < ramp) return {0.5 * slope * u * u, slope * u, slope};
+  if (u <= 1 - ramp) return {top * (u - 0.5 * ramp), top, 0};
+  const double left = 1 - u;
+  return {1 - 0.5 * slope * left * left, slope * left, -slope};
+}
 
 void require_positive(const std::vector<double>& values, std::size_t count, const char* what) {
   if (values.size() != count || !std::all_of(values.begin(), values.end(),
@@ -53,8 +68,8 @@ std::string names(const robot::Robot& robot) {
 
 }  // namespace
 
-Trajectory::Trajectory(robot::Path path, const SpeedLimits& limits, double rate)
-    : path_(std::move(path)), rate_(rate) {
+Trajectory::Trajectory(robot::Path path, const SpeedLimits& limits, double rate, Profile profile)
+    : path_(std::move(path)), rate_(rate), profile_(profile) {
   if (path_.empty()) throw Error(ErrorCode::InvalidArgument, "a path without waypoints");
   for (const std::vector<double>& q : path_)
     if (q.size() != path_.front().size() ||
@@ -66,11 +81,20 @@ Trajectory::Trajectory(robot::Path path, const SpeedLimits& limits, double rate)
   require_positive(limits.acceleration, path_.front().size(), "acceleration");
   first_.push_back(0);
   for (std::size_t i = 0; i + 1 < path_.size(); ++i) {
-    double time = 0;
+    double time = 0, slowest = 0, laziest = 0;
     for (std::size_t j = 0; j < path_[i].size(); ++j) {
       const double change = std::abs(path_[i + 1][j] - path_[i][j]);
-      time = std::max({time, kMostFirst * change / limits.velocity[j],
-                       std::sqrt(kMostSecond * change / limits.acceleration[j])});
+      slowest = std::max(slowest, change / limits.velocity[j]);
+      laziest = std::max(laziest, change / limits.acceleration[j]);
+    }
+    if (profile == Profile::Quintic) {
+      time = std::max(kMostFirst * slowest, std::sqrt(kMostSecond * laziest));
+      ramp_.push_back(0.5);
+    } else {
+      // To the speed 1 / slowest in laziest / slowest, if the way is long enough for that.
+      const bool reaches = slowest * slowest > laziest;
+      time = reaches ? slowest + laziest / slowest : 2 * std::sqrt(laziest);
+      ramp_.push_back(reaches ? std::min(0.5, laziest / slowest / time) : 0.5);
     }
     const double steps = std::ceil(time * kUp * rate);
     if (!(static_cast<double>(first_.back()) + steps < kMostSamples))
@@ -96,11 +120,12 @@ Instant Trajectory::at(double time) const {
   const auto steps = static_cast<double>(first_[i + 1] - first_[i]);
   const double u = std::clamp((step - static_cast<double>(first_[i])) / steps, 0.0, 1.0);
   const double length = steps / rate_;
+  const Share share = profile_ == Profile::Quintic ? quintic(u) : trapezoid(u, ramp_[i]);
   for (std::size_t j = 0; j < count; ++j) {
     const double change = path_[i + 1][j] - path_[i][j];
-    out.q[j] = path_[i][j] + share_at(u) * change;
-    out.velocity[j] = first_at(u) * change / length;
-    out.acceleration[j] = second_at(u) * change / (length * length);
+    out.q[j] = path_[i][j] + share.value * change;
+    out.velocity[j] = share.first * change / length;
+    out.acceleration[j] = share.second * change / (length * length);
   }
   return out;
 }
@@ -111,8 +136,9 @@ std::vector<double> Trajectory::sample(std::size_t k) const {
   const std::size_t i = segment_of(static_cast<double>(k));
   const double u =
       static_cast<double>(k - first_[i]) / static_cast<double>(first_[i + 1] - first_[i]);
+  const double share = (profile_ == Profile::Quintic ? quintic(u) : trapezoid(u, ramp_[i])).value;
   std::vector<double> q = path_[i];
-  for (std::size_t j = 0; j < q.size(); ++j) q[j] += share_at(u) * (path_[i + 1][j] - q[j]);
+  for (std::size_t j = 0; j < q.size(); ++j) q[j] += share * (path_[i + 1][j] - q[j]);
   return q;
 }
 

@@ -3,6 +3,7 @@
 HERE=$(cd "$(dirname "$0")" && pwd)
 . "$HERE/common.sh"
 G=$HERE/../../examples/geometry
+S=$HERE/../../examples/scenarios
 P=$BIN/kaboum-plan
 KABOUM_SCENE=$BIN/kaboum-scene
 export KABOUM_SCENE
@@ -10,7 +11,7 @@ for task in 'stacked 3' 'remove 5'; do
   # shellcheck disable=SC2086
   set -- $task
   "$G/make-cell" "$1" "$2" "$1" >make.txt 2>&1 || fail "make-cell $task: $(tail -1 make.txt)"
-  set -- "$1" "$G/$1.kpl" "$1/problem.kpl" --scene "$1/cell.json"
+  set -- "$1" "$S/$1/domain.kpl" "$1/problem.kpl" --scene "$1/cell.json"
   name=$1
   shift
   for threads in 1 2; do
@@ -18,6 +19,7 @@ for task in 'stacked 3' 'remove 5'; do
   done
   cmp -s "$name/plan1.json" "$name/plan2.json" || fail "$name: another plan on two threads"
   shows 0 valid "$P" check "$@" --plan "$name/plan1.json"
+  shows 0 '^good: 1 branch, .* 0 collisions, 0 limit violations, 0 jumps' "$P" run "$@" --plan "$name/plan1.json" --rate 250
   python3 "$HERE/execute_boxes.py" "$name" "$name/plan1.json" >said.txt 2>&1 || fail "$name: $(tail -1 said.txt)"
   grep -q 'actions, [0-9]* samples' said.txt || fail "$name: $(cat said.txt)"
 done
@@ -33,11 +35,16 @@ END
 mkdir blocked && cp remove/*.off remove/*.urdf blocked && cp remove/blocked.json blocked/cell.json
 ! python3 "$HERE/execute_boxes.py" blocked remove/plan1.json >said.txt 2>&1 || fail "a collision was not seen"
 grep -q hits said.txt || fail "not for a collision: $(cat said.txt)"
+shows 1 '^not good' "$P" run "$S/remove/domain.kpl" remove/problem.kpl --scene remove/blocked.json --plan remove/plan1.json --rate 100
+expect 2 'expected all, seed:N' "$P" run "$S/remove/domain.kpl" remove/problem.kpl --scene remove/cell.json --plan remove/plan1.json --outcomes seed:x
+expect 0 '' "$P" run "$S/remove/domain.kpl" remove/problem.kpl --scene remove/cell.json --plan remove/plan1.json --rate 50 \
+  --outcomes seed:2 --trajectories csv --report run.json
+[ "$(find csv -name '*.csv' | wc -l)" = "$(python3 -c 'import json; print(json.load(open("run.json"))["motions"])')" ] || fail "not a file for each motion"
 # A plan for another scene does not hold in this one; nor does one whose path or value was changed.
-shows 1 invalid "$P" check "$G/remove.kpl" remove/problem.kpl --scene remove/blocked.json --plan remove/plan1.json
+shows 1 invalid "$P" check "$S/remove/domain.kpl" remove/problem.kpl --scene remove/blocked.json --plan remove/plan1.json
 sed 's/\(\\"path\\":\[\[[^]]*\],\[\)[-0-9.]*/\10.123/' remove/plan1.json >changed.json
 cmp -s changed.json remove/plan1.json && fail "nothing was changed"
-shows 1 invalid "$P" check "$G/remove.kpl" remove/problem.kpl --scene remove/cell.json --plan changed.json
+shows 1 invalid "$P" check "$S/remove/domain.kpl" remove/problem.kpl --scene remove/cell.json --plan changed.json
 # Out of reach is proved by the closed form: no plan.
 python3 - <<'END' || fail "far block"
 import json
@@ -45,13 +52,13 @@ cell = json.load(open("remove/cell.json"))
 cell["objects"][1]["pose"]["position"] = [3, 0, 0.1]
 json.dump(cell, open("remove/far.json", "w"))
 END
-expect 1 unsolvable "$P" solve "$G/remove.kpl" remove/problem.kpl --scene remove/far.json -o far.json
+expect 1 unsolvable "$P" solve "$S/remove/domain.kpl" remove/problem.kpl --scene remove/far.json -o far.json
 # Messages name the function and what is missing.
-expect 3 'has no grasps' "$P" solve "$G/remove.kpl" remove/problem.kpl --scene remove/bare.json -o none.json
-sed 's/robot arm/robot leg/; s/(arm/(leg/g' "$G/remove.kpl" >leg.kpl
+expect 3 'has no grasps' "$P" solve "$S/remove/domain.kpl" remove/problem.kpl --scene remove/bare.json -o none.json
+sed 's/robot arm/robot leg/; s/(arm/(leg/g' "$S/remove/domain.kpl" >leg.kpl
 sed 's/(arm)/(leg)/' remove/problem.kpl >leg-problem.kpl
 expect 3 "no robot 'leg'" "$P" solve leg.kpl leg-problem.kpl --scene remove/cell.json -o none.json
-sed 's/move(robot, conf) : conf/move(robot) : conf/; s/move(arm, home)/move(arm)/' "$G/remove.kpl" >arity.kpl
+sed 's/move(robot, conf) : conf/move(robot) : conf/; s/move(arm, home)/move(arm)/' "$S/remove/domain.kpl" >arity.kpl
 expect 3 'takes 2 arguments' "$P" solve arity.kpl remove/problem.kpl --scene remove/cell.json -o none.json
 [ ! -e none.json ] || fail "a plan was written"
 finish

@@ -5,6 +5,7 @@
 #include <kaboum/motion/trajectory.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 namespace kaboum::motion {
@@ -116,6 +117,50 @@ TEST(Trajectory, DerivativesAreThoseOfTheValuesAndContinuous) {
           EXPECT_NEAR(t.at(time).velocity[j], 0, 1e-6);
           EXPECT_NEAR(t.at(time).acceleration[j], 0, 1e-3);
         }
+    }
+  }
+}
+
+TEST(Trajectory, TrapezoidsAreTheFastest) {
+  for (std::uint32_t seed = 0; seed < 60; ++seed) {
+    const Case c = random_case(seed);
+    const Trajectory t(c.path, c.limits, c.rate, Profile::Trapezoid),
+        quintic(c.path, c.limits, c.rate);
+    EXPECT_LE(t.samples(), quintic.samples());
+    // The least time of each segment by itself: at full acceleration until half the way, or until
+    // some joint is as fast as it may be.
+    double least = 0;
+    for (std::size_t i = 0; i + 1 < c.path.size(); ++i) {
+      double fastest = std::numeric_limits<double>::infinity(), most = fastest;
+      for (std::size_t j = 0; j < c.path[i].size(); ++j) {
+        const double change = std::abs(c.path[i + 1][j] - c.path[i][j]);
+        if (change == 0) continue;
+        fastest = std::min(fastest, c.limits.velocity[j] / change);
+        most = std::min(most, c.limits.acceleration[j] / change);
+      }
+      if (std::isinf(most)) continue;
+      const double reached = std::min(fastest, std::sqrt(most));
+      least += reached / most + 1 / reached;
+    }
+    EXPECT_GE(t.duration(), least * (1 - 1e-12));
+    EXPECT_LE(t.duration(), least * (1 + 1e-8) + static_cast<double>(c.path.size()) / c.rate);
+    Values before = t.sample(0), previous = before;
+    for (std::size_t k = 0; k < t.samples(); ++k) {
+      const Instant now = t.at(static_cast<double>(k) / c.rate);
+      const Values q = t.sample(k);
+      for (std::size_t j = 0; j < q.size(); ++j) {
+        EXPECT_NEAR(now.q[j], q[j], 1e-9);
+        EXPECT_LE(std::abs(now.velocity[j]), c.limits.velocity[j] * (1 + 1e-9));
+        EXPECT_LE(std::abs(now.acceleration[j]), c.limits.acceleration[j] * (1 + 1e-9));
+        // Differences of samples tell the same, and that velocities do not jump.
+        EXPECT_LE(std::abs(q[j] - before[j]) * c.rate, c.limits.velocity[j] * (1 + 1e-6));
+        if (k > 1) {
+          EXPECT_LE(std::abs(q[j] - 2 * before[j] + previous[j]) * c.rate * c.rate,
+                    c.limits.acceleration[j] * (1 + 1e-6) + 1e-6);
+        }
+      }
+      previous = before;
+      before = q;
     }
   }
 }

@@ -240,6 +240,15 @@ std::vector<Plan::Call> QueryEvaluator::calls(const Query& q, std::vector<Index>
   return all;
 }
 
+Index QueryEvaluator::named(Index type, const std::string& name) const {
+  for (const Index o : model_.types[type].objects)
+    if (model_.objects[o].name == name) return o;
+  if (!model_.types[type].handle || name.empty())
+    throw Error(ErrorCode::InvalidInput,
+                "'" + name + "' is no constant of type " + model_.types[type].name);
+  return handles_.intern(type, name);
+}
+
 /// Where an argument is not known there is no value.
 ExternalResult QueryEvaluator::call(const Query& q, const std::vector<Index>& slots,
                                     const RuntimeKnowledge& k,

@@ -49,6 +49,9 @@ class QueryEvaluator {
   std::vector<Plan::Call> calls(const Query& precondition, std::vector<Index>& slots,
                                 const RuntimeKnowledge& k) const;
 
+  /// The object, or the handle, of a type and name.
+  /// @throws Error{InvalidInput} where there is none.
+  [[nodiscard]] Index named(Index type, const std::string& name) const;
   /// The name of an object, or the word of a handle.
   [[nodiscard]] std::string name(Index object) const { return model_.name_of(object, handles_); }
 

@@ -7,11 +7,23 @@
 
 namespace kaboum::manipulation {
 
+/// What the external functions have done, as in Tables 6.2, 6.4 and 6.7 of [gaschler2016].
+struct GeometryCounters {
+  std::uint64_t ik_calls = 0;         ///< poses that configurations were looked for
+  std::uint64_t predicate_calls = 0;  ///< configurations and motions that were looked at
+  std::uint64_t positive = 0;         ///< motions of these that were not free
+  std::uint64_t paths = 0;            ///< that were looked for
+  double ik_seconds = 0, path_seconds = 0;
+};
+
 struct ExternalOptions {
   /// Of each call; its seed is the question's, and the work doubles with each attempt.
-  motion::PathOptions path = {.most_work = 0.1};
+  motion::PathOptions path = {.most_work = 0.02};
   /// Things are put down from so far above, sums of ε apart. > 0 [length]
   double clearance = 1e-3;
+  double lift = 0.1;  ///< how far things are lifted to be weighed. > 0 [length]
+  std::shared_ptr<GeometryCounters> counters = {};  ///< counted in, if there are some
+  double upright = 0.26;  ///< most that what is kept upright leans, at any instant. > 0 [rad]
 };
 
 /// The external functions that domains may declare (docs/planning/geometry.md), bound to a world.
@@ -22,6 +34,17 @@ struct ExternalOptions {
 ///     reach(robot, object) : conf           to where a grasp of the object is
 ///     grasp(robot, object, conf) : pose     of the object, in the hand of a robot there
 ///     place(robot, object, support) : conf  to where the held object stands on another one
+///     fetch(robot, object, conf) : pose     reaches and grasps, and goes to a configuration
+///     put(robot, object, support, conf) : pose
+///                                           places, lets go and goes to a configuration
+///     putUpright(robot, object, support, conf) : pose
+///                                           the same, upright until it stands
+///     lift(robot, object) : conf            straight up with what is held, upright
+///     join(robot, object, onto, conf) : pose
+///                                           mounts a held object on another one, lets go,
+///                                           withdraws and goes to a configuration
+///     handOver(robot, object, robot) : pose in the hand of the second robot; both are home then
+///     wander(robot) : conf                  to some configuration
 ///     release(robot, object, conf) : pose   of the object that is let go there
 ///     transfer(robot, object, support, conf) : pose
 ///                                           all that: reaches, grasps, puts the object on another
@@ -29,6 +52,7 @@ struct ExternalOptions {
 ///     move(robot, conf) : conf              to a configuration, with what is held
 ///     inside(object, region)                whether the object is in the region, for certain
 ///     collides(object, object)              whether the outer sets of two objects meet
+///     sweptCollides(robot, conf, object)    whether a straight motion is not certainly free of it
 plan::ExternalBindings bind_externals(world::World world, const ExternalOptions& options);
 
 }  // namespace kaboum::manipulation

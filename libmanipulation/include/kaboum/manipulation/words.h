@@ -28,6 +28,7 @@ struct ObjectPlace {
   bool absent = false;
   world::Transform pose;                        ///< to the world; of attached objects, not used
   std::optional<world::Attachment> attachment;  ///< `touching` is that of the link's grippers
+  std::optional<std::size_t> mounted_on;        ///< an object; `pose` is to that one's frame
 };
 
 /// "at x y z qx qy qz qw", rounded to multiples of 1e-7.
@@ -35,6 +36,9 @@ struct ObjectPlace {
 std::string word_of(const world::Transform& pose);
 /// "on ROBOT/LINK x y z qx qy qz qw".
 std::string word_of(const world::World& world, const world::Attachment& attachment);
+
+/// "in OBJECT x y z qx qy qz qw": mounted on another object, with which it moves.
+std::string word_of(const world::World& world, std::size_t object, const world::Transform& pose);
 
 /// `kStart`, `kAway`, or what `word_of` gave.
 /// @throws Error{InvalidInput} for other words.

@@ -18,10 +18,15 @@ struct Instant {
   std::vector<double> q, velocity, acceleration;
 };
 
-/// A path in time: from rest to rest along each straight segment by a polynomial of degree 5, as
-/// fast as the limits allow. Twice continuously differentiable; its points are those of the path,
-/// in their order: what is free at every instant of the path is free at every instant of this
-/// (docs/algorithms/motion-planning.md#execution).
+/// How the share of a segment that is done grows.
+enum class Profile {
+  Quintic,   ///< a polynomial of degree 5: twice continuously differentiable
+  Trapezoid  ///< of velocity: the fastest that keeps the limits; its accelerations jump
+};
+
+/// A path in time: from rest to rest along each straight segment, as fast as limits and profile
+/// allow. Its points are those of the path, in their order: what is free at every instant of the
+/// path is free at every instant of this (docs/algorithms/motion-planning.md#execution).
 class Trajectory {
  public:
   /// @param rate  of the controller: waypoints are reached at whole multiples of 1 / rate, so that
@@ -29,7 +34,8 @@ class Trajectory {
   /// @throws Error{InvalidArgument} for an empty path, waypoints that are not finite or differ in
   ///   their number of values, limits and rates that are not above 0; Error{LimitReached} when it
   ///   would take more than 1e8 samples.
-  Trajectory(robot::Path path, const SpeedLimits& limits, double rate);
+  Trajectory(robot::Path path, const SpeedLimits& limits, double rate,
+             Profile profile = Profile::Quintic);
 
   /// How many samples there are, both ends included: sample k is at k / rate.
   [[nodiscard]] std::size_t samples() const { return first_.back() + 1; }
@@ -48,7 +54,10 @@ class Trajectory {
 
   robot::Path path_;
   double rate_;
+  Profile profile_;
   std::vector<std::size_t> first_;  ///< sample at each waypoint
+  /// Of each segment, with a trapezoid: the part of its time for which it accelerates.
+  std::vector<double> ramp_;
 };
 
 /// Samples as a CSV that `robot::parse_path_csv` reads: a column time_from_start [s], one for each

@@ -1,11 +1,10 @@
 #pragma once
 
+#include <kaboum/geom/mesh.h>
 #include <kaboum/geom/transform.h>
-#include <kaboum/robot/robot.h>
 
 #include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 /// What exact meshes say of collisions: to judge predicates by, none of whose code is in it. Own
@@ -53,12 +52,5 @@ class Solid {
   double size_ = 0;
   bool closed_ = false;
 };
-
-/// Links of a robot on its base, in long double, rounded once.
-std::vector<geom::Transform> places(const robot::Robot& robot, const geom::Transform& base,
-                                    std::span<const double> q);
-
-/// One pose after another, as places().
-geom::Transform product(const geom::Transform& a, const geom::Transform& b);
 
 }  // namespace kaboum::judge

@@ -1,11 +1,11 @@
-// The judge of benchmarks/collision against rational numbers, before it judges others.
-
-#include "exact_judge.h"
+// The judge against rational numbers, before it judges others.
 
 #include <gtest/gtest.h>
+#include <kaboum/judge/placement.h>
+#include <kaboum/judge/solid.h>
 #include <kaboum/robot/kinematics.h>
 
-#include "pairs.h"
+#include "collide/pairs.h"
 #include "support/rational_contact.h"
 
 namespace kaboum::judge {

@@ -1,0 +1,156 @@
+"""Meshes and robots of the scenarios, made from numbers: solids of revolution, boxes, arms with six axes and a
+spherical wrist, arms with five axes on a mobile base, inner and outer grippers. Lengths are metres."""
+import math
+
+SEGMENTS = 32  # of a solid of revolution
+
+
+class Mesh:
+    """Closed triangle mesh, normals outwards."""
+
+    def __init__(self):
+        self.vertices, self.triangles = [], []
+
+    def add(self, other, shift=(0, 0, 0)):
+        first = len(self.vertices)
+        self.vertices += [tuple(a + b for a, b in zip(v, shift)) for v in other.vertices]
+        self.triangles += [tuple(first + i for i in t) for t in other.triangles]
+        return self
+
+    def off(self):
+        return (f"OFF\n{len(self.vertices)} {len(self.triangles)} 0\n" + "".join("%.9g %.9g %.9g\n" % v for v in self.vertices) +
+                "".join("3 %d %d %d\n" % t for t in self.triangles))
+
+
+def box(size, center=(0, 0, 0)):
+    mesh = Mesh()
+    x, y, z = (s / 2 for s in size)
+    corners = [(sx * x, sy * y, sz * z) for sz in (-1, 1) for sx, sy in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    mesh.vertices = [tuple(a + b for a, b in zip(c, center)) for c in corners]
+    mesh.triangles = [(0, 2, 1), (0, 3, 2), (4, 5, 6), (4, 6, 7), (0, 1, 5), (0, 5, 4), (1, 2, 6), (1, 6, 5), (2, 3, 7), (2, 7, 6),
+                      (3, 0, 4), (3, 4, 7)]
+    return mesh
+
+
+def revolve(profile, closed=False, segments=SEGMENTS):
+    """A profile of (radius, height), from below to above on the outside; `closed`: a loop, as of a tube. Open profiles begin and
+    end on the axis."""
+    mesh, rings = Mesh(), []
+    for r, z in profile:
+        if r == 0:
+            rings.append([len(mesh.vertices)] * segments)
+            mesh.vertices.append((0.0, 0.0, z))
+            continue
+        rings.append(list(range(len(mesh.vertices), len(mesh.vertices) + segments)))
+        mesh.vertices += [(r * math.cos(2 * math.pi * k / segments), r * math.sin(2 * math.pi * k / segments), z) for k in range(segments)]
+    pairs = list(zip(rings, rings[1:])) + ([(rings[-1], rings[0])] if closed else [])
+    for low, high in pairs:
+        for k in range(segments):
+            n = (k + 1) % segments
+            if low[k] != low[n]:
+                mesh.triangles.append((low[k], low[n], high[n]))
+            if high[k] != high[n]:
+                mesh.triangles.append((low[k], high[n], high[k]))
+    return mesh
+
+
+def rounded(low, high, radius, top=None, rings=10):
+    """A bar along z with round ends, perhaps tapered to the radius `top`."""
+    top = radius if top is None else top
+    profile = [(0.0, low)]
+    for k in range(1, rings + 1):
+        a = math.pi / 2 * k / rings
+        profile.append((radius * math.sin(a), low + 0.5 * radius * (1 - math.cos(a))))
+    for k in range(rings, 0, -1):
+        a = math.pi / 2 * k / rings
+        profile.append((top * math.sin(a), high - 0.5 * top * (1 - math.cos(a))))
+    return revolve(profile + [(0.0, high)])
+
+
+def bottle(height=0.16, radius=0.03, neck=0.012):
+    """Standing on z = 0; the neck's top at z = height."""
+    shoulder = 0.6 * height
+    profile = [(0, 0), (radius - 0.003, 0), (radius, 0.003), (radius, shoulder)]
+    for k in range(1, 8):  # the shoulder
+        a = math.pi / 2 * k / 8
+        profile.append((neck + (radius - neck) * math.cos(a), shoulder + 0.2 * height * math.sin(a)))
+    profile += [(neck, 0.8 * height), (neck, height), (0, height)]
+    return revolve(profile)
+
+
+def tube(profile_outside, profile_inside):
+    """Both from below to above."""
+    return revolve(profile_outside + profile_inside[::-1], closed=True)
+
+
+# ---- robots -------------------------------------------------------------------------------------------------------------------
+
+
+def boxes_urdf(boxes):
+    return "".join(f'<collision><origin xyz="{c[0]} {c[1]} {c[2]}"/><geometry><box size="{s[0]} {s[1]} {s[2]}"/></geometry></collision>'
+                   for s, c in boxes)
+
+
+def mesh_urdf(file):
+    return f'<collision><geometry><mesh filename="{file}"/></geometry></collision>'
+
+
+def gripper(kind):
+    """Boxes of a hand along z of the last link, beyond 0.05, and where the tool is."""
+    if kind == "suction":
+        return [((0.03, 0.03, 0.07), (0, 0, 0.09))], 0.125
+    if kind == "neck":  # two fingers round the neck of a bottle
+        return ([((0.07, 0.03, 0.02), (0, 0, 0.07))] +
+                [((0.008, 0.02, 0.06), (s * 0.020, 0, 0.11)) for s in (-1, 1)]), 0.135
+    if kind == "outer":  # two long fingers round a part 50 mm wide
+        return ([((0.09, 0.03, 0.02), (0, 0, 0.07))] +
+                [((0.008, 0.02, 0.09), (s * 0.033, 0, 0.125)) for s in (-1, 1)]), 0.165
+    if kind == "inner":  # a pin that spreads inside of a ring
+        return [((0.05, 0.05, 0.02), (0, 0, 0.07)), ((0.011, 0.011, 0.05), (0, 0, 0.105))], 0.125
+    raise ValueError(kind)
+
+
+def arm6(prefix, hand, reach=1.0):
+    """Six axes, spherical wrist. @return URDF, meshes by file, the tool's place along z of the link `hand`."""
+    r = reach
+    meshes = {
+        "base": rounded(0, 0.2, 0.08),
+        "shoulder": rounded(-0.14, -0.02, 0.06),
+        "upper_arm": rounded(0, 0.5 * r, 0.045, 0.035),
+        "elbow": rounded(0, 0.2 * r, 0.035, 0.03),
+        "forearm": rounded(0.02, 0.22 * r, 0.03, 0.025),
+        "wrist": rounded(0.0, 0.05, 0.022),
+    }
+    boxes, tool = gripper(hand)
+    links = {name: mesh_urdf(f"{prefix}-{name}.off") for name in meshes}
+    links["hand"] = boxes_urdf(boxes)
+    joints = [("j1", "base", "shoulder", 0.35, (0, 0, 1), 2.9), ("j2", "shoulder", "upper_arm", 0, (0, 1, 0), 2.2),
+              ("j3", "upper_arm", "elbow", 0.5 * r, (0, 1, 0), 2.7), ("j4", "elbow", "forearm", 0.2 * r, (0, 0, 1), 3.1),
+              ("j5", "forearm", "wrist", 0.25 * r, (0, 1, 0), 2.3), ("j6", "wrist", "hand", 0, (0, 0, 1), 3.1)]
+    return urdf(prefix, links, joints), {f"{prefix}-{n}.off": m for n, m in meshes.items()}, tool
+
+
+def arm5(prefix, hand):
+    """Five axes on a mobile base that is parked: turning, three parallel ones, and the hand's."""
+    meshes = {
+        "base": rounded(0, 0.22, 0.16),
+        "shoulder": rounded(-0.09, -0.01, 0.06),
+        "upper_arm": rounded(0, 0.4, 0.04, 0.035),
+        "forearm": rounded(0.01, 0.35, 0.032, 0.028),
+        "wrist": rounded(0.0, 0.05, 0.022),
+    }
+    boxes, tool = gripper(hand)
+    links = {name: mesh_urdf(f"{prefix}-{name}.off") for name in meshes}
+    links["hand"] = boxes_urdf(boxes)
+    joints = [("j1", "base", "shoulder", 0.33, (0, 0, 1), 2.9), ("j2", "shoulder", "upper_arm", 0, (0, 1, 0), 2.2),
+              ("j3", "upper_arm", "forearm", 0.4, (0, 1, 0), 2.7), ("j4", "forearm", "wrist", 0.36, (0, 1, 0), 2.3),
+              ("j5", "wrist", "hand", 0, (0, 0, 1), 3.1)]
+    return urdf(prefix, links, joints), {f"{prefix}-{n}.off": m for n, m in meshes.items()}, tool
+
+
+def urdf(name, links, joints):
+    text = f'<robot name="{name}">' + "".join(f'<link name="{n}">{shape}</link>' for n, shape in links.items())
+    for joint, parent, child, z, axis, limit in joints:
+        text += (f'<joint name="{joint}" type="revolute"><parent link="{parent}"/><child link="{child}"/><origin xyz="0 0 {z}"/>'
+                 f'<axis xyz="{axis[0]} {axis[1]} {axis[2]}"/><limit lower="-{limit}" upper="{limit}" velocity="2" effort="1"/></joint>')
+    return text + "</robot>\n"

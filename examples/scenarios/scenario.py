@@ -1,0 +1,153 @@
+"""What all scenarios do: make the scene, plan, check, execute every branch among the exact meshes, draw.
+
+Each has NAME/run [N] [--seed S] [--out DIR]; the last line that is printed is one JSON object.
+"""
+import argparse
+import json
+import math
+import os
+import pathlib
+import resource
+import subprocess
+import sys
+import time
+
+HERE = pathlib.Path(__file__).resolve().parent
+DOWN = 3.141592653589793  # a tool that points down
+
+
+def tool(name):
+    """A program: in $KABOUM_BIN, in the build folder of the checkout, or on PATH."""
+    for folder in (os.environ.get("KABOUM_BIN"), HERE.parent.parent / "build/release/bin"):
+        if folder and (pathlib.Path(folder) / name).exists():
+            return str(pathlib.Path(folder).resolve() / name)
+    return name
+
+
+class Cell:
+    """A scene as it grows; `make` writes it."""
+
+    def __init__(self, epsilon="0.002"):
+        self.robots, self.objects, self.meshes, self.shapes = {}, {}, {}, {}
+        self.epsilon = epsilon
+        self.allowed = []
+
+    def robot(self, name, made, home, base=(0, 0, 0), yaw=0.0, tool_name="hand"):
+        urdf, meshes, along = made
+        self.meshes.update({file: mesh.off() for file, mesh in meshes.items()})
+        self.meshes[f"{name}.urdf"] = urdf
+        self.robots[name] = {"base": {"position": list(base), "rpy": [0, 0, yaw]}, "home": home,
+                             "tools": [{"name": tool_name, "link": "hand", "position": [0, 0, along]}]}
+
+    def object(self, name, shape, mesh, position, features=(), grasps=(), rpy=(0, 0, 0)):
+        """`shape` is the mesh's file; things of one shape share it."""
+        self.meshes[f"{shape}.off"] = mesh.off()
+        self.shapes[name] = f"{shape}.off"
+        self.objects[name] = {"pose": {"position": list(position), "rpy": list(rpy)}, "features": list(features), "grasps": list(grasps)}
+
+    def make(self, folder):
+        folder.mkdir(parents=True, exist_ok=True)
+        for file, text in self.meshes.items():
+            (folder / file).write_text(text)
+        command = [tool("kaboum-scene"), "make", "cell.json", "--force", "--quiet", "--epsilon", self.epsilon, "--effort", "fast"]
+        for name in self.robots:
+            command += ["--robot", f"{name}={name}.urdf"]
+        for name, file in self.shapes.items():
+            command += ["--object", f"{name}={file}"]
+        subprocess.run(command, check=True, cwd=folder)
+        cell = json.loads((folder / "cell.json").read_text())
+        for robot in cell["robots"]:
+            robot.update(self.robots[robot["name"]])
+        for thing in cell["objects"]:
+            thing.update(self.objects[thing["name"]])
+        cell["allowed_contacts"] = self.allowed
+        (folder / "cell.json").write_text(json.dumps(cell, indent=2) + "\n")
+
+
+def point(name, x, y, z):
+    return {"name": name, "point": [x, y, z]}
+
+
+def plane(name, at, normal):
+    return {"name": name, "plane": {"point": list(at), "normal": list(normal)}}
+
+
+def from_above(name, z, turns=4):
+    """Grasps by a tool that points down at height z of the object, turned about the vertical."""
+    return [{"name": f"{name}{k}", "position": [0, 0, z], "rpy": [DOWN, 0, 2 * DOWN * k / turns]} for k in range(turns)]
+
+
+def problem(constants, facts, goal=""):
+    text = "".join(f"constants: {kind} {', '.join(names)}\n" for kind, names in constants if names)
+    text += "init:\n  " + ",\n  ".join(facts) + "\n"
+    return text + (f"goal:\n  {goal}\n" if goal else "")
+
+
+def options(name, n, least, most):
+    parser = argparse.ArgumentParser(description=f"Plans, checks, executes and draws the scenario {name}.")
+    parser.add_argument("n", nargs="?", type=int, default=n, help=f"size, {least} to {most} [{n}]")
+    parser.add_argument("--seed", type=int, default=1, help="of the planner [1]")
+    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path(f"scenario-{name}"), help="folder of all results [scenario-%s]" % name)
+    parser.add_argument("--search", default="greedy", choices=["dfs", "bfs", "ids", "greedy", "astar"], help="of the planner [greedy]")
+    parser.add_argument("--timeout", type=float, default=300, help="of planning, in seconds [300]")
+    parser.add_argument("--scene-only", action="store_true", help="make scene and problem, and stop")
+    o = parser.parse_args()
+    if not least <= o.n <= most:
+        parser.error(f"N is from {least} to {most}")
+    return o
+
+
+def run(name, o, cell, problem_text):
+    """All that comes after scene and problem."""
+    out = o.out.resolve()
+    cell.make(out)
+    (out / "problem.kpl").write_text(problem_text)
+    if o.scene_only:
+        return 0
+    domain, task, scene = str(HERE / name / "domain.kpl"), str(out / "problem.kpl"), str(out / "cell.json")
+    plan, files = str(out / "plan.json"), [domain, task, "--scene", scene]
+    result = {"scenario": name, "n": o.n, "seed": o.seed, "solved": False, "actions": 0, "nodes": 0, "leaves": 0, "plan_s": 0.0,
+              "predicate_calls": 0, "ik_calls": 0, "executed_branches": 0, "samples": 0, "collisions": 0, "limit_violations": 0}
+
+    def call(command, *arguments):
+        report = out / f"{command}.json"
+        report.unlink(missing_ok=True)
+        done = subprocess.run([tool("kaboum-plan"), command, *files, *arguments, "--report", str(report), "--quiet"], check=False)
+        return done.returncode, json.loads(report.read_text()) if report.exists() else {}
+
+    status, solved = call("solve", "-o", plan, "--seed", str(o.seed), "--search", o.search, "--timeout", str(o.timeout))
+    result["plan_s"] = round(solved.get("resources", {}).get("user_seconds_searching", 0.0), 4)
+    result["predicate_calls"] = solved.get("geometry", {}).get("predicate_calls", 0)
+    result["ik_calls"] = solved.get("geometry", {}).get("ik_calls", 0)
+    result["external_calls"] = solved.get("statistics", {}).get("external_calls", 0)
+    if status == 0:
+        size = solved["plan"]
+        result.update(solved=True, actions=size["longest_path"], nodes=size["nodes"], leaves=size["leaves"])
+        checked, _ = call("check", "--plan", plan)
+        result["checked"] = checked == 0
+        executed, report = call("run", "--plan", plan, "--outcomes", "all")
+        result.update(executed_branches=report.get("branches", 0), samples=report.get("samples", 0),
+                      collisions=report.get("collisions", 0), limit_violations=report.get("limit_violations", 0),
+                      jumps=report.get("jumps", 0))
+        subprocess.run([tool("kaboum-plan"), "show", *files, "--plan", plan, "-o", str(out / "plan.svg")], check=True)
+        status = max(checked, executed)
+    print(json.dumps(result))
+    return status
+
+
+def grasp(name, z, y, at):
+    """By a tool whose axes z and y point along these directions of the object, at a point of it."""
+    x = [y[1] * z[2] - y[2] * z[1], y[2] * z[0] - y[0] * z[2], y[0] * z[1] - y[1] * z[0]]
+    rows = [x, list(y), list(z)]  # from the object to the tool
+    position = [-sum(r[k] * at[k] for k in range(3)) for r in rows]
+    roll, yaw = math.atan2(rows[2][1], rows[2][2]), math.atan2(rows[1][0], rows[0][0])
+    return {"name": name, "position": position, "rpy": [roll, math.asin(max(-1.0, min(1.0, -rows[2][0]))), yaw]}
+
+
+def ring_grasps(tool_name, where, z, up, turns=8):
+    """By a tool that points along the axis of a ring, from above (up = -1) or below (1)."""
+    out = []
+    for k in range(turns):
+        a = 2 * math.pi * k / turns
+        out.append(grasp(f"{tool_name}/{where}{k}", (0, 0, up), (math.cos(a), math.sin(a), 0), (0, 0, z)))
+    return out

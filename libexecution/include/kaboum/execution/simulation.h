@@ -1,0 +1,80 @@
+#pragma once
+
+#include <kaboum/judge/cell.h>
+#include <kaboum/motion/trajectory.h>
+#include <kaboum/plan/replay.h>
+#include <kaboum/world/world.h>
+
+#include <functional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace kaboum::execution {
+
+struct SimulationOptions {
+  double rate = 1000;         ///< of samples [1/s]
+  double acceleration = 5;    ///< limit of each joint [rad/s², length/s²]
+  double usual_velocity = 1;  ///< of joints whose URDF states none [rad/s, length/s]
+  motion::Profile profile = motion::Profile::Quintic;
+};
+
+/// What was looked at, and what was wrong.
+struct SimulationReport {
+  std::uint64_t steps = 0;    ///< nodes carried out, each once for every geometric state
+  std::uint64_t motions = 0;  ///< paths of these
+  std::uint64_t samples = 0;
+  std::uint64_t collisions = 0;        ///< samples at which meshes meet
+  std::uint64_t limit_violations = 0;  ///< samples beyond a joint's limits, velocity, acceleration
+  std::uint64_t jumps = 0;  ///< things that are not where the plan says, or held without a grasp
+  double seconds = 0;       ///< of motion
+  double most_velocity = 0, most_acceleration = 0;  ///< as shares of the limits
+  std::vector<std::string> problems;                ///< the first twenty, in words
+
+  [[nodiscard]] bool good() const { return collisions + limit_violations + jumps == 0; }
+};
+
+/// A motion as it is sampled: for files of a controller.
+using MotionSink =
+    std::function<void(const plan::RunStep& step, std::size_t robot, const motion::Trajectory&)>;
+
+struct MotionPart;  // a motion of a payload
+
+/// Carries out the nodes of plans: robots follow the paths that payloads state, by polynomials of
+/// degree 5, objects are carried by what holds them, and the exact meshes are looked at in every
+/// sample. Contacts, limits (by differences of samples) and whether things end where the plan says
+/// they do are counted; nothing of the bounding sets or of what made the plan is asked.
+class Simulation {
+ public:
+  /// All arguments outlive it.
+  /// @throws Error{InvalidArgument} for options that are not above 0.
+  Simulation(const world::World& world, const judge::Cell& cell, const plan::Model& model,
+             const plan::Plan& plan, SimulationOptions options, MotionSink sink = {});
+
+  /// One node in one state. Those that were carried out in the same geometric state are skipped.
+  void carry_out(const plan::RunStep& step);
+
+  [[nodiscard]] const SimulationReport& report() const { return report_; }
+
+ private:
+  void follow(const MotionPart& part, judge::CellState& state, const plan::RunStep& step);
+  void hold(const MotionPart& part, judge::CellState& state);
+  void look(const motion::Trajectory& trajectory, std::size_t robot, judge::CellState& state);
+  void count_limits(std::size_t robot, const std::vector<double>& before,
+                    const std::vector<double>& now, const std::vector<double>* after);
+  void compare(const judge::CellState& state, const judge::CellState& expected);
+  void say(const std::string& problem);
+
+  const world::World& world_;
+  const judge::Cell& cell_;
+  const plan::Model& model_;
+  const plan::Plan& plan_;
+  SimulationOptions options_;
+  MotionSink sink_;
+  std::set<std::string> done_;                       ///< nodes with geometric states
+  std::string where_;                                ///< for messages
+  std::vector<std::optional<std::size_t>> mounted_;  ///< what each object is on, in a node
+  SimulationReport report_;
+};
+
+}  // namespace kaboum::execution

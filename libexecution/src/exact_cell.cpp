@@ -1,0 +1,92 @@
+// The meshes behind a scene's sets.
+
+#include <kaboum/base/error.h>
+#include <kaboum/execution/exact_cell.h>
+#include <kaboum/geom/convex_hull.h>
+#include <kaboum/io/mesh_io.h>
+#include <kaboum/robot/mesh_files.h>
+#include <kaboum/robot/robot_file.h>
+
+#include <nlohmann/json.hpp>
+
+namespace kaboum::execution {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+void append(geom::Mesh& all, const geom::Mesh& mesh, const robot::Geometry& g) {
+  const auto first = static_cast<std::uint32_t>(all.vertices.size());
+  for (const geom::Vec3& v : mesh.vertices)
+    all.vertices.emplace_back(g.origin * v.cwiseProduct(g.size));
+  const bool mirrored = g.size.prod() < 0;
+  for (const geom::Triangle& t : mesh.triangles)
+    all.triangles.push_back(mirrored ? geom::Triangle{first + t[0], first + t[2], first + t[1]}
+                                     : geom::Triangle{first + t[0], first + t[1], first + t[2]});
+}
+
+geom::Mesh link_mesh(const std::vector<robot::Geometry>& shapes, const robot::RobotFile& file,
+                     const std::vector<std::string>& packages) {
+  geom::Mesh all;
+  for (const robot::Geometry& g : shapes) {
+    if (g.shape == robot::Geometry::Shape::Mesh) {
+      append(all, io::read_mesh(robot::resolve_mesh(g.mesh, file.path, packages)).mesh, g);
+    } else if (!robot::is_point(g)) {
+      append(all, *geom::convex_hull(robot::bounding_points(g)), robot::Geometry{});
+    }
+  }
+  return all;
+}
+
+void add_robot(judge::Cell& cell, const world::RobotModel& robot, std::size_t number,
+               const robot::RobotFile& file, bool visual,
+               const std::vector<std::string>& packages) {
+  for (const world::LinkShape& shape : robot.shapes) {
+    const robot::Link& link = file.robot.links.at(shape.link);
+    cell.add_link(number, shape.link,
+                  link_mesh(visual ? link.visual : link.collision, file, packages));
+  }
+  for (const world::AllowedPair& pair : robot.allowed)
+    if (pair.reason == world::AllowedPair::Reason::Stated)
+      cell.allow(robot.name + "/" + robot.kinematics.links[pair.a].name,
+                 robot.name + "/" + robot.kinematics.links[pair.b].name);
+}
+
+}  // namespace
+
+judge::Cell exact_cell(const world::World& world, const fs::path& scene,
+                       const std::vector<std::string>& packages, Notes& notes) {
+  const std::vector<char> bytes = io::read_file(scene.string());
+  const json description = json::parse(bytes.begin(), bytes.end());
+  const fs::path folder = scene.parent_path();
+  judge::Cell cell;
+  for (const world::RobotModel& robot : world.robots)
+    cell.add_robot(robot.name, robot.kinematics, robot.base);
+  for (std::size_t r = 0; r < world.robots.size(); ++r) {
+    const json& stated = description.at("robots").at(r);
+    const robot::RobotFile file =
+        robot::read_robot((folder / stated.at("urdf").at("file").get<std::string>()).string());
+    add_robot(cell, world.robots[r], r, file, stated.value("shapes", "collision") == "visual",
+              packages);
+  }
+  for (std::size_t o = 0; o < world.objects.size(); ++o) {
+    const json& outer = description.at("objects").at(o).at("outer");
+    if (!outer.contains("made_from") || outer["made_from"].empty())
+      throw Error(ErrorCode::InvalidInput,
+                  scene.string() + ": object '" + world.objects[o].name +
+                      "' does not say in 'made_from' which mesh its set was made from: there is no "
+                      "exact mesh to judge by");
+    cell.add_object(
+        world.objects[o].name,
+        io::read_mesh((folder / outer["made_from"][0].at("file").get<std::string>()).string())
+            .mesh);
+  }
+  for (const auto& pair : world.allowed) cell.allow(world.name_of(pair[0]), world.name_of(pair[1]));
+  if (cell.open() > 0)
+    notes.push_back(std::to_string(cell.open()) +
+                    " of the exact meshes are not closed: what lies wholly inside of them is not "
+                    "seen to touch them");
+  return cell;
+}
+
+}  // namespace kaboum::execution

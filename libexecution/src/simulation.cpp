@@ -1,0 +1,255 @@
+// A plan's motions, sample by sample, among exact meshes.
+
+#include <kaboum/base/error.h>
+#include <kaboum/execution/simulation.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "simulation_state.h"
+
+namespace kaboum::execution {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kMostProblems = 20;
+/// Between what is mounted and its seat, beside both ε. [length]
+constexpr double kMostGap = 2e-3;
+/// Of differences of samples, as shares of a limit: what rounding of doubles may add at 1 kHz.
+constexpr double kRounding = 1e-6;
+
+std::vector<std::uint32_t> touching(const world::RobotModel& robot, std::uint32_t link) {
+  std::vector<std::uint32_t> out;
+  for (const world::Gripper& gripper : robot.grippers)
+    if (robot.tools[gripper.tool].link == link)
+      out.insert(out.end(), gripper.links.begin(), gripper.links.end());
+  return out;
+}
+
+}  // namespace
+
+/// Who moves, by which links it holds what, and where it goes.
+struct MotionPart {
+  std::size_t robot = 0;
+  std::map<std::size_t, std::uint32_t> holds;  ///< objects, by what link
+  robot::Path path;
+};
+
+namespace {
+
+/// The motions of a payload; empty: it is of another kind.
+std::vector<MotionPart> parts_of(const std::string& payload, const world::World& world) {
+  std::vector<MotionPart> out;
+  const json list = json::parse(payload, nullptr, false);
+  if (!list.is_array()) return out;
+  for (const json& motion : list) {
+    if (!motion.is_object() || !motion.contains("path") || !motion.contains("robot")) return {};
+    MotionPart part;
+    const auto robot = world.find_robot(motion["robot"].get<std::string>());
+    if (!robot)
+      throw Error(ErrorCode::InvalidInput, "a path of the plan is for robot '" +
+                                               motion["robot"].get<std::string>() +
+                                               "', which the scene does not have");
+    part.robot = *robot;
+    part.path = motion["path"].get<robot::Path>();
+    const robot::Robot& kinematics = world.robots[*robot].kinematics;
+    for (const robot::Path::value_type& q : part.path)
+      if (q.size() != kinematics.variables.size())
+        throw Error(ErrorCode::InvalidInput, "a path of the plan does not fit its robot");
+    const json holds = motion.value("holds", json::object());
+    for (const auto& [name, link] : holds.items()) {
+      const auto object = world.find_object(name);
+      const auto number = kinematics.find_link(link.get<std::string>());
+      if (!object || !number)
+        throw Error(ErrorCode::InvalidInput,
+                    "a path of the plan holds '" + name + "', which the scene does not have");
+      part.holds[*object] = *number;
+    }
+    out.push_back(std::move(part));
+  }
+  return out;
+}
+
+}  // namespace
+
+Simulation::Simulation(const world::World& world, const judge::Cell& cell, const plan::Model& model,
+                       const plan::Plan& plan, SimulationOptions options, MotionSink sink)
+    : world_(world),
+      cell_(cell),
+      model_(model),
+      plan_(plan),
+      options_(options),
+      sink_(std::move(sink)) {
+  if (!(options.rate > 0) || !(options.acceleration > 0) || !(options.usual_velocity > 0))
+    throw Error(ErrorCode::InvalidArgument, "rates and limits must be above 0");
+}
+
+void Simulation::say(const std::string& problem) {
+  if (report_.problems.size() < kMostProblems) report_.problems.push_back(where_ + ": " + problem);
+}
+
+void Simulation::carry_out(const plan::RunStep& step) {
+  const plan::Plan::Node& node = plan_.nodes[step.node];
+  const auto before = state_of(world_, model_, step.before);
+  const auto after = state_of(world_, model_, step.after);
+  if (!before || !after)
+    throw Error(ErrorCode::InvalidInput,
+                "a configuration or pose is not known when the plan is carried out: it cannot be "
+                "simulated");
+  if (!done_.insert(std::to_string(step.node) + "\n" + before->words + after->words).second) return;
+  where_ = node.acts ? action_text(model_, node.action) : "a branch";
+  ++report_.steps;
+  judge::CellState state = before->state;
+  mounted_ = before->mounted;
+  if (report_.steps == 1) {
+    if (const auto meeting = cell_.find_meeting(state)) {
+      ++report_.collisions;
+      say(meeting->names[0] + " and " + meeting->names[1] + " meet at the start");
+    }
+  }
+  for (const plan::Plan::Call& call : node.calls)
+    for (const MotionPart& part : parts_of(call.payload, world_)) follow(part, state, step);
+  mounted_ = after->mounted;
+  compare(state, after->state);
+}
+
+/// Takes and lets go what is held from here on.
+void Simulation::hold(const MotionPart& part, judge::CellState& state) {
+  for (std::size_t o = 0; o < state.objects.size(); ++o) {
+    judge::CellState::Place& place = state.objects[o];
+    const auto wanted = part.holds.find(o);
+    const bool held = place.hold && place.hold->robot == part.robot;
+    if (held && (wanted == part.holds.end() || wanted->second != place.hold->link)) {
+      place.pose = cell_.pose_of(state, o);
+      place.hold.reset();
+      if (const auto meeting = cell_.find_meeting_of(state, o)) {
+        ++report_.collisions;
+        say(meeting->names[0] + " and " + meeting->names[1] + " meet when one is let go");
+      }
+    } else if (held) {
+      continue;
+    }
+    if (wanted == part.holds.end()) continue;
+    const geom::Transform link = cell_.pose_of(state, part.robot, wanted->second);
+    const geom::Transform pose = cell_.pose_of(state, o);
+    const auto below = mounted_[o];
+    const bool carried = below && part.holds.contains(*below);
+    if (place.away ||
+        (!carried && !is_at_grasp(world_, part.robot, wanted->second, link, o, pose))) {
+      ++report_.jumps;
+      say(world_.objects[o].name + " is held without a grasp");
+    }
+    place.hold = {part.robot, wanted->second, inverse(link) * pose,
+                  touching(world_.robots[part.robot], wanted->second)};
+  }
+}
+
+void Simulation::follow(const MotionPart& part, judge::CellState& state,
+                        const plan::RunStep& step) {
+  if (part.path.empty() || part.path.front() != state.q[part.robot]) {
+    ++report_.jumps;
+    say("a path of " + world_.robots[part.robot].name + " does not begin where it is");
+    if (part.path.empty()) return;
+  }
+  hold(part, state);
+  const std::size_t count = part.path.front().size();
+  motion::SpeedLimits limits;
+  for (const robot::Variable& v : world_.robots[part.robot].kinematics.variables)
+    limits.velocity.push_back(v.velocity.value_or(options_.usual_velocity));
+  limits.acceleration.assign(count, options_.acceleration);
+  const motion::Trajectory trajectory(part.path, limits, options_.rate, options_.profile);
+  ++report_.motions;
+  report_.seconds += trajectory.duration();
+  look(trajectory, part.robot, state);
+  state.q[part.robot] = part.path.back();
+  if (sink_) sink_(step, part.robot, trajectory);
+}
+
+void Simulation::look(const motion::Trajectory& trajectory, std::size_t robot,
+                      judge::CellState& state) {
+  std::vector<double> before = trajectory.sample(0), now = before;
+  for (std::size_t k = 0; k < trajectory.samples(); ++k) {
+    std::vector<double> after = trajectory.sample(std::min(k + 1, trajectory.samples() - 1));
+    count_limits(robot, before, now, &after);
+    state.q[robot] = now;
+    ++report_.samples;
+    if (const auto meeting = cell_.find_meeting(state, robot)) {
+      if (report_.collisions++ == 0 || k == 0 || report_.problems.size() < 3)
+        say(meeting->names[0] + " and " + meeting->names[1] + " meet at " +
+            std::to_string(static_cast<double>(k) / trajectory.rate()) + " s");
+    }
+    before = std::move(now);
+    now = std::move(after);
+  }
+}
+
+/// Positions, and first and second differences of samples: by the mean value theorem they are at
+/// most the largest velocity and acceleration in between.
+void Simulation::count_limits(std::size_t robot, const std::vector<double>& before,
+                              const std::vector<double>& now, const std::vector<double>* after) {
+  const robot::Robot& kinematics = world_.robots[robot].kinematics;
+  bool beyond = false;
+  for (std::size_t j = 0; j < now.size(); ++j) {
+    const robot::Variable& v = kinematics.variables[j];
+    beyond |= now[j] < v.lower.value_or(now[j]) || now[j] > v.upper.value_or(now[j]);
+    const double velocity =
+        std::abs(now[j] - before[j]) * options_.rate / v.velocity.value_or(options_.usual_velocity);
+    const double acceleration = std::abs((*after)[j] - 2 * now[j] + before[j]) * options_.rate *
+                                options_.rate / options_.acceleration;
+    report_.most_velocity = std::max(report_.most_velocity, velocity);
+    report_.most_acceleration = std::max(report_.most_acceleration, acceleration);
+    beyond |= velocity > 1 + kRounding || acceleration > 1 + kRounding;
+  }
+  if (!beyond) return;
+  if (report_.limit_violations++ == 0)
+    say(world_.robots[robot].name + " is beyond a limit of a joint");
+}
+
+/// Whether everything is where the plan says it is after a node.
+void Simulation::compare(const judge::CellState& state, const judge::CellState& expected) {
+  const auto wrong = [&](const std::string& what) {
+    ++report_.jumps;
+    say(what);
+  };
+  for (std::size_t r = 0; r < state.q.size(); ++r)
+    if (state.q[r] != expected.q[r])
+      wrong(world_.robots[r].name + " is not where the plan says it is");
+  for (std::size_t o = 0; o < state.objects.size(); ++o) {
+    const judge::CellState::Place &is = state.objects[o], &stated = expected.objects[o];
+    const std::string& name = world_.objects[o].name;
+    if (stated.away) continue;  // somebody took it away
+    if (is.away) {
+      wrong(name + " comes back from nowhere");
+      continue;
+    }
+    if (!same(cell_.pose_of(state, o), cell_.pose_of(expected, o))) {
+      wrong(name + " is not where the plan says it is");
+      continue;
+    }
+    const auto held_as = [](const judge::CellState::Place& p) {
+      return p.hold ? std::pair(p.hold->robot, p.hold->link) : std::pair(judge::Cell::kNone, 0U);
+    };
+    if (const auto below = mounted_[o]; below && !is.away && !expected.objects[*below].away) {
+      const double gap =
+          kMostGap + world_.objects[o].outer.epsilon() + world_.objects[*below].outer.epsilon();
+      if (!is_on_seat(world_, o, cell_.pose_of(expected, o), *below,
+                      cell_.pose_of(expected, *below), gap))
+        wrong(name + " is not on the seat of what it is mounted on");
+    }
+    if (held_as(is) == held_as(stated)) continue;
+    if (stated.hold && !mounted_[o] &&
+        !is_at_grasp(world_, stated.hold->robot, stated.hold->link,
+                     cell_.pose_of(expected, stated.hold->robot, stated.hold->link), o,
+                     cell_.pose_of(expected, o)))
+      wrong(name + " is held without a grasp");
+    if (const auto meeting = cell_.find_meeting_of(expected, o)) {
+      ++report_.collisions;
+      say(meeting->names[0] + " and " + meeting->names[1] + " meet when one is taken or let go");
+    }
+  }
+}
+
+}  // namespace kaboum::execution

@@ -1,0 +1,114 @@
+// Geometric states of a plan as a simulation has them.
+
+#include "simulation_state.h"
+
+#include <kaboum/base/error.h>
+#include <kaboum/judge/placement.h>
+#include <kaboum/manipulation/words.h>
+
+#include <algorithm>
+#include <functional>
+
+namespace kaboum::execution {
+namespace {
+
+/// Ten times what words of poses are rounded to. [length, 1]
+constexpr double kSame = 1e-6;
+
+/// The value of FUNCTION(NAME); `otherwise` where the domain does not have the term.
+std::optional<std::string> word(const plan::Model& model, const plan::KnownState& known,
+                                const char* function, const std::string& name,
+                                std::string_view otherwise) {
+  const auto has = [&](const auto& list, const std::string& wanted) {
+    return std::ranges::any_of(list, [&](const auto& x) { return x.name == wanted; });
+  };
+  if (!has(model.functions, function) || !has(model.objects, name)) return std::string(otherwise);
+  const auto symbol = std::ranges::find(model.functions, function, &plan::Symbol::name);
+  const auto object = std::ranges::find(model.objects, name, &plan::Object::name);
+  if (symbol->parameters.size() != 1 ||
+      !model.is_a(static_cast<plan::Index>(object - model.objects.begin()), symbol->parameters[0]))
+    return std::string(otherwise);
+  return known.value(function, {name});
+}
+
+}  // namespace
+
+std::optional<StatedState> state_of(const world::World& world, const plan::Model& model,
+                                    const plan::KnownState& known) {
+  StatedState out;
+  for (const world::RobotModel& robot : world.robots) {
+    const auto conf = word(model, known, "conf", robot.name, manipulation::kHome);
+    if (!conf) return std::nullopt;
+    out.state.q.push_back(manipulation::configuration_of(*conf, robot));
+    out.words += *conf + "\n";
+  }
+  std::vector<geom::Transform> relative(world.objects.size());
+  out.mounted.resize(world.objects.size());
+  for (std::size_t o = 0; o < world.objects.size(); ++o) {
+    const auto pose = word(model, known, "pose", world.objects[o].name, manipulation::kStart);
+    if (!pose) return std::nullopt;
+    const manipulation::ObjectPlace place = manipulation::place_of(*pose, world, o);
+    judge::CellState::Place put{place.pose, std::nullopt, place.absent};
+    if (const auto& a = place.attachment) put.hold = {a->robot, a->link, a->pose, a->touching};
+    out.mounted[o] = place.mounted_on;
+    relative[o] = place.pose;
+    out.state.objects.push_back(std::move(put));
+    out.words += *pose + "\n";
+  }
+  // What is mounted is where the object below it is, and moves with it.
+  std::vector<char> resolved(world.objects.size(), 0);
+  const std::function<void(std::size_t, std::size_t)> resolve = [&](std::size_t o,
+                                                                    std::size_t depth) {
+    const auto below = out.mounted[o];
+    if (!below || resolved[o] != 0) return;
+    if (depth > world.objects.size())
+      throw Error(ErrorCode::InvalidInput, "objects are mounted on each other in a circle");
+    resolve(*below, depth + 1);
+    judge::CellState::Place place = out.state.objects[*below];
+    geom::Transform& pose = place.hold ? place.hold->pose : place.pose;
+    pose = judge::product(pose, relative[o]);
+    out.state.objects[o] = std::move(place);
+    resolved[o] = 1;
+  };
+  for (std::size_t o = 0; o < world.objects.size(); ++o) resolve(o, 0);
+  return out;
+}
+
+geom::Transform inverse(const geom::Transform& pose) {
+  return {pose.linear.transpose(), -(pose.linear.transpose() * pose.translation)};
+}
+
+bool same(const geom::Transform& a, const geom::Transform& b) {
+  return (a.translation - b.translation).norm() <= kSame &&
+         (a.linear - b.linear).cwiseAbs().maxCoeff() <= kSame;
+}
+
+bool is_at_grasp(const world::World& world, std::size_t robot, std::uint32_t link,
+                 const geom::Transform& link_pose, std::size_t object,
+                 const geom::Transform& object_pose) {
+  for (const world::ToolFrame& tool : world.robots[robot].tools)
+    for (const world::Grasp& grasp : world.objects[object].grasps)
+      if (tool.link == link &&
+          same(judge::product(judge::product(link_pose, tool.pose), grasp.pose), object_pose))
+        return true;
+  return false;
+}
+
+bool is_on_seat(const world::World& world, std::size_t object, const geom::Transform& object_pose,
+                std::size_t onto, const geom::Transform& onto_pose, double gap) {
+  const auto plane = [](const world::Object& o, const char* name) -> const world::Feature* {
+    for (const world::Feature& f : o.features)
+      if (f.name == name && f.kind == world::Feature::Kind::Plane) return &f;
+    return nullptr;
+  };
+  const world::Feature *mount = plane(world.objects[object], "mount"),
+                       *special = plane(world.objects[onto],
+                                        ("seat/" + world.objects[object].name).c_str()),
+                       *seat = special != nullptr ? special : plane(world.objects[onto], "seat");
+  if (mount == nullptr || seat == nullptr) return false;
+  const geom::Vec3 normal = onto_pose.linear * seat->direction;
+  return (object_pose * mount->point - onto_pose * seat->point).norm() <= gap + kSame &&
+         (object_pose.linear * mount->direction + normal).norm() <= kSame;
+}
+
+}  // namespace kaboum::execution

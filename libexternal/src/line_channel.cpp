@@ -1,0 +1,145 @@
+// A child process with a socket as its standard input and output.
+
+#include "line_channel.h"
+
+#include <fcntl.h>
+#include <kaboum/base/error.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+
+namespace kaboum::external {
+namespace {
+
+constexpr std::size_t kLongestLine = std::size_t{1} << 24U;  // [bytes]
+constexpr int kPatience = 200;  ///< for a program whose input has ended to end by itself [ms]
+
+/// Takes what passes while it lives from `seconds`.
+class Clock {
+ public:
+  explicit Clock(double& seconds) : seconds_(seconds), before_(seconds) {}
+  ~Clock() { update(); }
+  Clock(const Clock&) = delete;
+  Clock& operator=(const Clock&) = delete;
+  /// Milliseconds that are left; 0: none.
+  int left() {
+    update();
+    return seconds_ > 0 ? static_cast<int>(std::min(seconds_, 1e6) * 1e3) + 1 : 0;
+  }
+
+ private:
+  void update() {
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start_;
+    seconds_ = before_ - passed.count();
+  }
+  double& seconds_;
+  double before_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+bool wait_for(int socket, short event, Clock& clock) {
+  for (;;) {
+    const int left = clock.left();
+    if (left == 0) return false;
+    pollfd p{socket, event, 0};
+    const int ready = poll(&p, 1, left);
+    if (ready > 0) return true;
+    if (ready < 0 && errno != EINTR) return false;
+  }
+}
+
+}  // namespace
+
+LineChannel::LineChannel(const std::string& command) {
+  int ends[2];
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
+    throw Error(ErrorCode::InvalidInput,
+                "'" + command + "' cannot be started: " + std::strerror(errno));
+  process_ = fork();
+  if (process_ == 0) {
+    setpgid(0, 0);  // so that all it starts can be ended
+    dup2(ends[1], STDIN_FILENO);
+    dup2(ends[1], STDOUT_FILENO);
+    execl("/bin/sh", "sh", "-c", command.c_str(), static_cast<char*>(nullptr));
+    _exit(127);
+  }
+  close(ends[1]);
+  socket_ = ends[0];
+  if (process_ < 0) {
+    close(socket_);
+    throw Error(ErrorCode::InvalidInput,
+                "'" + command + "' cannot be started: " + std::strerror(errno));
+  }
+  setpgid(process_, process_);  // whoever comes first
+}
+
+LineChannel::~LineChannel() { end(); }
+
+LineChannel::Got LineChannel::read_line(std::string& line, double& seconds) {
+  Clock clock(seconds);
+  std::size_t looked_at = 0;
+  for (;;) {
+    const std::size_t at = buffer_.find('\n', looked_at);
+    if (at != std::string::npos) {
+      line = buffer_.substr(0, at);
+      buffer_.erase(0, at + 1);
+      return Got::Line;
+    }
+    looked_at = buffer_.size();
+    if (looked_at > kLongestLine) return Got::TooLong;
+    if (!wait_for(socket_, POLLIN, clock)) return Got::Late;
+    char part[65536];
+    const ssize_t got = recv(socket_, part, sizeof part, 0);
+    if (got > 0) {
+      buffer_.append(part, static_cast<std::size_t>(got));
+    } else if (got == 0 || errno != EINTR) {
+      return Got::End;
+    }
+  }
+}
+
+bool LineChannel::write_line(std::string line, double& seconds) {
+  Clock clock(seconds);
+  line += '\n';
+  std::size_t sent = 0;
+  while (sent < line.size()) {
+    if (!wait_for(socket_, POLLOUT, clock)) return false;
+    const ssize_t part =
+        send(socket_, line.data() + sent, line.size() - sent, MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (part > 0) {
+      sent += static_cast<std::size_t>(part);
+    } else if (errno != EINTR && errno != EAGAIN) {
+      return false;
+    }
+  }
+  return true;
+}
+
+std::string LineChannel::end() {
+  if (process_ < 0) return "it has ended";
+  shutdown(socket_, SHUT_WR);
+  int status = 0;
+  pid_t ended = 0;
+  for (int waited = 0; ended == 0 && waited < kPatience; waited += 5) {
+    ended = waitpid(process_, &status, WNOHANG);
+    if (ended == 0) usleep(5000);
+  }
+  const bool by_itself = ended == process_;
+  kill(-process_, SIGKILL);  // what it started as well
+  if (!by_itself) waitpid(process_, &status, 0);
+  close(socket_);
+  process_ = socket_ = -1;
+  if (!by_itself) return "it was ended";
+  if (WIFSIGNALED(status)) return "it ended by signal " + std::to_string(WTERMSIG(status));
+  const int code = WEXITSTATUS(status);
+  return "it ended with exit code " + std::to_string(code) +  // the shell's word for a signal
+         (code > 128 ? " (signal " + std::to_string(code - 128) + ")" : "");
+}
+
+}  // namespace kaboum::external

@@ -1,0 +1,190 @@
+// Answers of external functions between runs.
+#include <kaboum/base/error.h>
+#include <kaboum/io/mesh_io.h>
+#include <kaboum/manipulation/answer_cache.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+namespace kaboum::manipulation {
+namespace {
+
+using nlohmann::json;
+using plan::Answer;
+using plan::Question;
+
+/// Beyond that nothing more is kept. [bytes]
+constexpr std::size_t kMost = std::size_t{1} << 26U;
+
+/// One thing that was read, and what it was.
+struct Read {
+  bool truth = false;
+  std::string name;
+  std::vector<std::string> arguments;
+  std::optional<std::string> value;  ///< of an atom "true" or "false"
+
+  [[nodiscard]] bool same_place(const Read& other) const {
+    return truth == other.truth && name == other.name && arguments == other.arguments;
+  }
+};
+
+struct Entry {
+  std::vector<Read> reads;
+  Answer answer;
+};
+
+/// Notes what a function reads for the first time.
+class Notes final : public plan::StateView {
+ public:
+  explicit Notes(plan::StateView& view) : view_(view) {}
+
+  std::optional<std::string> value(const std::string& function,
+                                   const std::vector<std::string>& arguments) override {
+    const auto known = view_.value(function, arguments);
+    note({false, function, arguments, known});
+    return known;
+  }
+  std::optional<bool> truth(const std::string& predicate,
+                            const std::vector<std::string>& arguments) override {
+    const auto known = view_.truth(predicate, arguments);
+    note({true, predicate, arguments,
+          known ? std::optional<std::string>(*known ? "true" : "false") : std::nullopt});
+    return known;
+  }
+  std::vector<Read> reads;
+
+ private:
+  void note(Read read) {
+    for (const Read& r : reads)
+      if (r.same_place(read)) return;
+    reads.push_back(std::move(read));
+  }
+  plan::StateView& view_;
+};
+
+std::optional<std::string> read_again(const Read& read, plan::StateView& view) {
+  if (!read.truth) return view.value(read.name, read.arguments);
+  const auto known = view.truth(read.name, read.arguments);
+  return known ? std::optional<std::string>(*known ? "true" : "false") : std::nullopt;
+}
+
+std::string place_of_question(const std::string& function, const Question& question) {
+  std::string out =
+      function + '\n' + std::to_string(question.seed) + '\n' + std::to_string(question.attempt);
+  for (const std::string& argument : question.arguments) out += '\n' + argument;
+  return out;
+}
+
+json to_json(const std::string& place, const Entry& entry) {
+  json reads = json::array();
+  for (const Read& r : entry.reads)
+    reads.push_back({r.truth, r.name, r.arguments, r.value ? json(*r.value) : json()});
+  return {{"q", place},
+          {"reads", reads},
+          {"kind", static_cast<int>(entry.answer.kind)},
+          {"value", entry.answer.value},
+          {"payload", entry.answer.payload},
+          {"reason", entry.answer.reason}};
+}
+
+Entry entry_of(const json& j) {
+  Entry out;
+  for (const json& r : j.at("reads"))
+    out.reads.push_back(
+        {r.at(0).get<bool>(), r.at(1).get<std::string>(), r.at(2).get<std::vector<std::string>>(),
+         r.at(3).is_null() ? std::nullopt : std::optional(r.at(3).get<std::string>())});
+  const int kind = j.at("kind").get<int>();
+  if (kind < 0 || kind > 2) throw Error(ErrorCode::InvalidInput, "no kind of answer");
+  out.answer = {static_cast<Answer::Kind>(kind), j.at("value").get<std::string>(),
+                j.at("payload").get<std::string>(), j.at("reason").get<std::string>()};
+  return out;
+}
+
+}  // namespace
+
+struct AnswerCache::Kept {
+  std::filesystem::path file;
+  std::string key;
+  std::map<std::string, std::vector<Entry>> entries;
+  std::size_t bytes = 0, reused = 0, fresh = 0;
+
+  void load() {
+    try {
+      if (!std::filesystem::exists(file)) return;
+      const std::vector<char> text = io::read_file(file.string());
+      const json j = json::parse(text.begin(), text.end());
+      if (j.at("key") != key) return;
+      for (const json& e : j.at("answers")) {
+        entries[e.at("q").get<std::string>()].push_back(entry_of(e));
+        bytes += e.at("payload").get_ref<const std::string&>().size() + 200;
+      }
+    } catch (const std::exception&) {
+      entries.clear();  // damaged: as none
+    }
+  }
+
+  Answer ask(const std::string& name, const plan::ExternalBinding& function,
+             const Question& question) {
+    std::vector<Entry>& all = entries[place_of_question(name, question)];
+    std::vector<const Entry*> fitting;
+    for (const Entry& e : all) fitting.push_back(&e);
+    // A function that reads the same reads the same thing next, so all that fit agree on it.
+    for (std::size_t k = 0; !fitting.empty(); ++k) {
+      if (fitting.front()->reads.size() == k) {
+        ++reused;
+        return fitting.front()->answer;
+      }
+      const Read& next = fitting.front()->reads[k];
+      const auto now = read_again(next, question.state);
+      std::erase_if(fitting, [&](const Entry* e) {
+        return e->reads.size() <= k || !e->reads[k].same_place(next) || e->reads[k].value != now;
+      });
+    }
+    Notes notes(question.state);
+    Entry made;
+    made.answer = function({question.arguments, notes, question.seed, question.attempt});
+    made.reads = std::move(notes.reads);
+    Answer answer = made.answer;
+    const std::size_t size = answer.payload.size() + 200 + 100 * made.reads.size();
+    if (bytes + size > kMost) return answer;
+    bytes += size;
+    ++fresh;
+    all.push_back(std::move(made));
+    return answer;
+  }
+};
+
+AnswerCache::AnswerCache(std::filesystem::path file, std::string key)
+    : kept_(std::make_unique<Kept>()) {
+  kept_->file = std::move(file);
+  kept_->key = std::move(key);
+  kept_->load();
+}
+
+AnswerCache::~AnswerCache() = default;
+
+plan::ExternalBindings AnswerCache::wrap(const plan::ExternalBindings& bindings) {
+  plan::ExternalBindings out;
+  for (const auto& [name, function] : bindings)
+    out[name] = [kept = kept_.get(), name = name, function = function](const Question& question) {
+      return kept->ask(name, function, question);
+    };
+  return out;
+}
+
+void AnswerCache::save() const {
+  if (kept_->fresh == 0) return;
+  json answers = json::array();
+  for (const auto& [place, entries] : kept_->entries)
+    for (const Entry& e : entries) answers.push_back(to_json(place, e));
+  const std::string text = json{{"key", kept_->key}, {"answers", answers}}.dump(
+      -1, ' ', false, json::error_handler_t::replace);
+  std::error_code error;
+  std::filesystem::create_directories(kept_->file.parent_path(), error);
+  io::write_file(kept_->file, {text.data(), text.size()});
+}
+
+std::size_t AnswerCache::reused() const { return kept_->reused; }
+
+}  // namespace kaboum::manipulation

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <kaboum/plan/model.h>
+#include <kaboum/plan/plan.h>
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace kaboum::plan {
+
+/// What is known in a state of a run, by names.
+class KnownState {
+ public:
+  virtual ~KnownState() = default;
+  /// The known value of a function's term, an object's name or a handle's word; nullopt: not known,
+  /// or the model has no such term.
+  [[nodiscard]] virtual std::optional<std::string> value(
+      const std::string& function, const std::vector<std::string>& arguments) const = 0;
+};
+
+/// A node of a plan as it is carried out in one state.
+struct RunStep {
+  Index node = 0;
+  const KnownState& before;
+  /// With what was sensed.
+  const KnownState& after;
+  Index next = kNone;         ///< a node; kNone: the end
+  std::string outcome;        ///< "isSpillable(o1)", "!isSpillable(o1)"; empty: no branch
+  std::uint64_t actions = 0;  ///< before this node on the way here
+};
+
+struct RunOptions {
+  enum class Outcomes {
+    All,     ///< every way that sensing may turn out
+    Random,  ///< one run
+    Given    ///< one run; sensed values as `given` has them, at random where it has none
+  };
+  Outcomes outcomes = Outcomes::All;
+  std::uint64_t seed = 1;
+  /// By atom or term, "isSpillable(o1)": "true", "false", or the value's name.
+  std::map<std::string, std::string> given = {};
+  std::uint64_t most_states = 1'000'000;
+};
+
+struct RunSummary {
+  std::uint64_t states = 0;    ///< pairs of a node and a state of knowledge that were carried out
+  std::uint64_t ends = 0;      ///< distinct of those at an end of the plan
+  std::uint64_t branches = 0;  ///< ways through the plan, each outcome by itself; at most 10^18
+};
+
+/// Carries out a plan as far as what is known goes: calls `step` for every node in every state that
+/// it is reached in, depth first. External functions are not called: what they returned is what the
+/// plan says (`check` decides whether that is so, and whether preconditions hold).
+///
+/// @throws Error{InvalidInput} for graphs with cycles, plans that do not say what their calls
+///   returned, and given outcomes that no case of the plan is for; Error{LimitReached} beyond
+///   `most_states`; what `step` throws.
+RunSummary run(const Model& model, const Plan& plan, const RunOptions& options,
+               const std::function<void(const RunStep&)>& step);
+
+}  // namespace kaboum::plan

@@ -1,0 +1,214 @@
+// A plan carried out: states of run-time knowledge, all or one of each node's outcomes.
+#include <kaboum/base/error.h>
+#include <kaboum/base/random.h>
+#include <kaboum/plan/replay.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "check/live_facts.h"
+#include "check/query_evaluator.h"
+#include "check/runtime_knowledge.h"
+#include "check/transitions.h"
+
+namespace kaboum::plan {
+namespace {
+
+constexpr std::uint64_t kMostBranches = 1'000'000'000'000'000'000ULL;
+
+class NamedKnowledge final : public KnownState {
+ public:
+  NamedKnowledge(const Model& model, const QueryEvaluator& evaluator, const RuntimeKnowledge& k)
+      : model_(model), evaluator_(evaluator), k_(k) {}
+
+  std::optional<std::string> value(const std::string& function,
+                                   const std::vector<std::string>& arguments) const override {
+    const auto symbol = std::ranges::find(model_.functions, function, &Symbol::name);
+    if (symbol == model_.functions.end()) return std::nullopt;
+    Fact f = {1, static_cast<Index>(symbol - model_.functions.begin())};
+    for (const std::string& a : arguments) {
+      const auto object = std::ranges::find(model_.objects, a, &Object::name);
+      if (object == model_.objects.end()) return std::nullopt;
+      f.push_back(static_cast<Index>(object - model_.objects.begin()));
+    }
+    const Index* v = k_.value(f);
+    return v == nullptr ? std::nullopt : std::optional(evaluator_.name(*v));
+  }
+
+ private:
+  const Model& model_;
+  const QueryEvaluator& evaluator_;
+  const RuntimeKnowledge& k_;
+};
+
+class Run {
+ public:
+  Run(const Model& model, const Plan& plan, const RunOptions& options,
+      const std::function<void(const RunStep&)>& step)
+      : model_(model),
+        plan_(plan),
+        options_(options),
+        step_(step),
+        evaluator_(model, plan),
+        transitions_(model, evaluator_),
+        random_(options.seed) {}
+
+  RunSummary run() {
+    const std::vector<RuntimeKnowledge> first = transitions_.initial_states();
+    if (options_.outcomes == RunOptions::Outcomes::All) {
+      for (const RuntimeKnowledge& k : first) add(carry_out(plan_.root, k, 0));
+    } else {
+      carry_out(plan_.root, choose(first, nullptr), 0);
+      summary_.branches = 1;
+    }
+    return summary_;
+  }
+
+ private:
+  void add(std::uint64_t branches) {
+    summary_.branches = std::min(kMostBranches, summary_.branches + branches);
+  }
+
+  /// What happens from a node on. @return ways through the plan.
+  std::uint64_t carry_out(Index node, const RuntimeKnowledge& k, std::uint64_t actions) {
+    const auto [it, fresh] = seen_.try_emplace({node, k}, 0);
+    if (!fresh) return it->second;
+    if (node == kNone) {
+      ++summary_.ends;
+      return it->second = 1;
+    }
+    if (++summary_.states > options_.most_states)
+      throw Error(ErrorCode::LimitReached, "the plan is carried out in more than " +
+                                               std::to_string(options_.most_states) +
+                                               " states: choose outcomes by a seed or a file");
+    const Plan::Node& n = plan_.nodes[node];
+    std::vector<RuntimeKnowledge> after{k};
+    if (n.acts) {
+      std::vector<Index> slots = bind(model_.actions[n.action.schema], n.action);
+      std::size_t used = 0;
+      bind_calls(model_.actions[n.action.schema].precondition, n, slots, used);
+      if (used != n.calls.size()) missing(n);
+      after = transitions_.after(model_.actions[n.action.schema], slots, k);
+    }
+    if (options_.outcomes != RunOptions::Outcomes::All && !after.empty())
+      after = {choose(after, &n)};
+    std::uint64_t ways = 0;
+    std::set<std::string> outcomes;
+    for (const RuntimeKnowledge& then : after) {
+      const auto [next, outcome] =
+          n.branches ? follow(n.branch, then) : std::pair(n.next, std::string());
+      const NamedKnowledge before_names(model_, evaluator_, k),
+          after_names(model_, evaluator_, then);
+      step_({node, before_names, after_names, next, outcome, actions});
+      ways = std::min(kMostBranches, ways + carry_out(next, then, actions + (n.acts ? 1 : 0)));
+    }
+    return seen_[{node, k}] = ways;
+  }
+
+  [[noreturn]] void missing(const Plan::Node& n) const {
+    throw Error(ErrorCode::InvalidInput, "the plan does not say what the calls of " +
+                                             action_text(model_, n.action) + " return");
+  }
+
+  /// Gives the slots of `let` what the plan says that the calls returned.
+  void bind_calls(const Query& q, const Plan::Node& n, std::vector<Index>& slots,
+                  std::size_t& used) const {
+    if (q.kind == Query::Kind::And)
+      for (const Query& c : q.children) bind_calls(c, n, slots, used);
+    if (q.kind != Query::Kind::Let) return;
+    if (used >= n.calls.size() || n.calls[used].external != q.symbol) missing(n);
+    slots.at(q.value->index) =
+        evaluator_.named(model_.externals[q.symbol].range, n.calls[used].value);
+    ++used;
+  }
+
+  /// Where a branch goes, and what that says.
+  std::pair<Index, std::string> follow(const Plan::Branch& b, const RuntimeKnowledge& k) const {
+    const Fact f = branch_fact(b);
+    const Index* known = b.function ? k.value(f) : nullptr;
+    if (b.function ? known == nullptr : !k.knows_whether(f))
+      throw Error(ErrorCode::InvalidInput, "the plan branches on what is not known: " +
+                                               case_text(model_, b, b.cases.front().value));
+    const Index value = b.function ? *known : k.knows(f, true) ? 1 : 0;
+    for (const Plan::Branch::Case& c : b.cases)
+      if (c.value == value) return {c.next, case_text(model_, b, value)};
+    throw Error(ErrorCode::InvalidInput, "the plan has no case for " + case_text(model_, b, value));
+  }
+
+  /// One of several outcomes, as options have it.
+  RuntimeKnowledge choose(const std::vector<RuntimeKnowledge>& all, const Plan::Node* node) {
+    std::vector<std::size_t> fitting;
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (fits(all[i])) fitting.push_back(i);
+    if (fitting.empty())
+      throw Error(ErrorCode::InvalidInput,
+                  "the outcomes that were given contradict what is known" +
+                      (node != nullptr && node->acts ? " after " + action_text(model_, node->action)
+                                                     : std::string(" at the start")));
+    return all[fitting[random_.index(fitting.size())]];
+  }
+
+  /// Whether what is known is as given.
+  bool fits(const RuntimeKnowledge& k) const {
+    return std::ranges::all_of(options_.given, [&](const auto& entry) {
+      const auto [f, function] = fact_of(entry.first);
+      if (function) {
+        const Index* v = k.value(f);
+        return v == nullptr || evaluator_.name(*v) == entry.second;
+      }
+      return !k.knows_whether(f) || k.knows(f, entry.second == "true");
+    });
+  }
+
+  /// "p(a, b)" as a fact, and whether it is a function's term.
+  std::pair<Fact, bool> fact_of(const std::string& text) const {
+    const auto fail = [&]() -> std::pair<Fact, bool> {
+      throw Error(ErrorCode::InvalidInput,
+                  "the model has no atom or term '" + text + "', which an outcome is given for");
+    };
+    const std::string name = text.substr(0, text.find('('));
+    const auto predicate = std::ranges::find(model_.predicates, name, &Symbol::name);
+    const auto function = std::ranges::find(model_.functions, name, &Symbol::name);
+    const bool is_function = predicate == model_.predicates.end();
+    if (is_function && function == model_.functions.end()) return fail();
+    const Symbol& symbol = is_function ? *function : *predicate;
+    Fact f = {is_function ? Index{1} : Index{0},
+              static_cast<Index>(is_function ? function - model_.functions.begin()
+                                             : predicate - model_.predicates.begin())};
+    std::string argument;
+    for (const char c : text.substr(std::min(name.size(), text.size()))) {
+      if (c == '(' || c == ' ') continue;
+      if (c != ',' && c != ')') {
+        argument += c;
+        continue;
+      }
+      const auto object = std::ranges::find(model_.objects, argument, &Object::name);
+      if (object == model_.objects.end()) return fail();
+      f.push_back(static_cast<Index>(object - model_.objects.begin()));
+      argument.clear();
+    }
+    if (f.size() != 2 + symbol.parameters.size()) return fail();
+    return {f, is_function};
+  }
+
+  const Model& model_;
+  const Plan& plan_;
+  const RunOptions& options_;
+  const std::function<void(const RunStep&)>& step_;
+  QueryEvaluator evaluator_;
+  Transitions transitions_;
+  Random random_;
+  std::map<std::pair<Index, RuntimeKnowledge>, std::uint64_t> seen_;
+  RunSummary summary_;
+};
+
+}  // namespace
+
+RunSummary run(const Model& model, const Plan& plan, const RunOptions& options,
+               const std::function<void(const RunStep&)>& step) {
+  measure(model, plan);  // refuses cycles
+  return Run(model, plan, options, step).run();
+}
+
+}  // namespace kaboum::plan

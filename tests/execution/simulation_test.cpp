@@ -1,0 +1,157 @@
+// Plans carried out among exact meshes: what is wrong with a plan is counted.
+
+#include <gtest/gtest.h>
+#include <kaboum/base/error.h>
+#include <kaboum/execution/simulation.h>
+#include <kaboum/manipulation/words.h>
+#include <kaboum/plan/load.h>
+
+namespace kaboum::execution {
+namespace {
+
+geom::Mesh box(const geom::Vec3& size) {
+  geom::Mesh out;
+  for (const double x : {-0.5, 0.5})
+    for (const double y : {-0.5, 0.5})
+      for (const double z : {-0.5, 0.5})
+        out.vertices.emplace_back(geom::Vec3(x, y, z).cwiseProduct(size));
+  out.triangles = {{0, 1, 3}, {0, 3, 2}, {4, 6, 7}, {4, 7, 5}, {0, 4, 5}, {0, 5, 1},
+                   {2, 3, 7}, {2, 7, 6}, {0, 2, 6}, {0, 6, 4}, {1, 5, 7}, {1, 7, 3}};
+  return out;
+}
+
+/// A slider along x with a hand; a block at its grasp when it is at 1, a wall behind 2.
+struct Case {
+  world::World world;
+  judge::Cell cell;
+
+  Case() {
+    world::RobotModel robot;
+    robot.name = "arm";
+    robot.kinematics = robot::parse_urdf(
+        R"(<robot name="arm"><link name="rail"/><link name="hand"><collision><geometry>
+        <box size="0.1 0.1 0.1"/></geometry></collision></link>
+        <joint name="x" type="prismatic"><parent link="rail"/><child link="hand"/><axis xyz="1 0 0"/>
+        <limit lower="-1" upper="3" effort="1" velocity="0.5"/></joint></robot>)",
+        "test");
+    robot.home = {0};
+    robot.tools = {{"tip", 1, {Eigen::Matrix3d::Identity(), {0.06, 0, 0}}}};
+    world.robots.push_back(robot);
+    const auto object = [](const char* name, double x) {
+      return world::Object{name,
+                           {Eigen::Matrix3d::Identity(), {x, 0, 0}},
+                           {{}, collide::Direction::Outer, 0},
+                           {},
+                           {},
+                           {}};
+    };
+    world.objects = {object("block", 1.12), object("wall", 2.6)};
+    world.objects[0].grasps = {{"back", {Eigen::Matrix3d::Identity(), {0.06, 0, 0}}}};
+    world.attachments.resize(2);
+    cell.add_robot("arm", world.robots[0].kinematics, {});
+    cell.add_link(0, 1, box({0.1, 0.1, 0.1}));
+    cell.add_object("block", box({0.1, 0.1, 0.1}));
+    cell.add_object("wall", box({0.1, 1, 1}));
+  }
+};
+
+const char* const kDomain = R"(
+types: object, robot, conf handle, pose handle
+constants: robot arm; object block; conf home; pose start, away
+predicates: isHeavy(object), isHeld(object), isDone
+functions: conf(robot) : conf; pose(object) : pose
+externals: reach(robot, object) : conf; grasp(robot, object, conf) : pose; carry(robot, object) : pose
+action pick(?o : object)
+  preconds: let ?q = extern(reach(arm, ?o)) & let ?p = extern(grasp(arm, ?o, ?q))
+  effects: add(Kf, isHeld(?o)), add(Kf, conf(arm) = ?q), add(Kf, pose(?o) = ?p)
+action weigh(?o : object)
+  preconds: K(isHeld(?o))
+  effects: add(Kw, isHeavy(?o))
+action drop(?o : object)
+  preconds: K(isHeld(?o)) & K(!isHeavy(?o))
+  effects: add(Kf, isDone), add(Kf, pose(?o) = away)
+action keep(?o : object)
+  preconds: K(isHeld(?o)) & K(isHeavy(?o))
+  effects: add(Kf, isDone)
+init: K(conf(arm) = home), K(pose(block) = start)
+goal: K(isDone)
+)";
+
+/// A host that says what it is told to.
+plan::ExternalBindings host() {
+  const auto nothing = [](const plan::Question&) { return plan::Answer::not_found(""); };
+  return {{"reach", nothing}, {"grasp", nothing}, {"carry", nothing}};
+}
+
+plan::Plan plan_to(const plan::Model& model, double stop, const std::string& grasp) {
+  const std::string q = manipulation::word_of(std::vector<double>{stop});
+  const std::string number = q.substr(2);
+  return read_plan(model,
+                   R"({"format": "kaboum-plan", "version": 1, "root": 0, "nodes": [
+    {"action": "pick", "arguments": ["block"], "calls": [
+      {"external": "reach", "arguments": ["arm", "block"], "value": ")" +
+                       q + R"(", "payload": "[{\"robot\":\"arm\",\"path\":[[0.0],[)" + number +
+                       R"(]]}]"},
+      {"external": "grasp", "arguments": ["arm", "block", ")" +
+                       q + R"("], "value": ")" + grasp +
+                       R"("}], "next": 1},
+    {"action": "weigh", "arguments": ["block"], "branch": {"predicate": "isHeavy", "arguments": ["block"],
+      "cases": [{"value": true, "next": 2}, {"value": false, "next": 3}]}},
+    {"action": "keep", "arguments": ["block"], "next": "goal"},
+    {"action": "drop", "arguments": ["block"], "next": "goal"}]})",
+                   "test");
+}
+
+struct Outcome {
+  SimulationReport report;
+  plan::RunSummary summary;
+};
+
+Outcome carry_out(Case& c, double stop, const std::string& grasp,
+                  const plan::RunOptions& options = {}) {
+  const plan::Model model = plan::load({"test", kDomain}, nullptr, host());
+  const plan::Plan plan = plan_to(model, stop, grasp);
+  Simulation simulation(c.world, c.cell, model, plan, {});
+  Outcome out;
+  out.summary =
+      run(model, plan, options, [&](const plan::RunStep& step) { simulation.carry_out(step); });
+  out.report = simulation.report();
+  return out;
+}
+
+TEST(Simulation, CarriesOutEveryBranch) {
+  Case c;
+  const Outcome all = carry_out(c, 1, "on arm/hand 0.12 0 0 0 0 0 1");
+  EXPECT_TRUE(all.report.good()) << all.report.problems.front();
+  EXPECT_EQ(all.summary.branches, 2U);
+  EXPECT_EQ(all.report.motions, 1U);
+  EXPECT_EQ(all.report.steps, 4U);
+  // 15/8 of 1 m at 0.5 m/s, at 1 kHz, and one for rounding.
+  EXPECT_EQ(all.report.samples, 3752U);
+  EXPECT_NEAR(all.report.most_velocity, 1, 1e-3);
+  EXPECT_LE(all.report.most_velocity, 1 + 1e-9);
+  plan::RunOptions one;
+  one.outcomes = plan::RunOptions::Outcomes::Given;
+  one.given = {{"isHeavy(block)", "true"}};
+  EXPECT_EQ(carry_out(c, 1, "on arm/hand 0.12 0 0 0 0 0 1", one).report.steps, 3U);
+  one.given = {{"isHeavy(nothing)", "true"}};
+  EXPECT_THROW(carry_out(c, 1, "on arm/hand 0.12 0 0 0 0 0 1", one), Error);
+}
+
+TEST(Simulation, CountsWhatIsWrong) {
+  Case c;
+  // Through the block: samples in contact, and the hand is at no grasp then.
+  const Outcome through = carry_out(c, 1.05, "on arm/hand 0.07 0 0 0 0 0 1");
+  EXPECT_GT(through.report.collisions, 0U);
+  EXPECT_GT(through.report.jumps, 0U);
+  // The block is said to be elsewhere in the hand than it is.
+  EXPECT_GT(carry_out(c, 1, "on arm/hand 0.13 0 0 0 0 0 1").report.jumps, 0U);
+  // Too far away for a grasp.
+  EXPECT_GT(carry_out(c, 0.9, "on arm/hand 0.22 0 0 0 0 0 1").report.jumps, 0U);
+  // Beyond the limit of the joint.
+  c.world.objects[0].pose.translation = {-1.38, 0, 0};
+  EXPECT_GT(carry_out(c, -1.5, "on arm/hand 0.12 0 0 0 0 0 1").report.limit_violations, 0U);
+}
+
+}  // namespace
+}  // namespace kaboum::execution
