@@ -74,14 +74,19 @@ while [ $i -lt 40 ]; do
   tetrahedron | sed "s/^1 0 0/1.$i 0 0/" >"many/m$i.off"
   i=$((i + 1))
 done
-for moment in 0.2 0.35; do
+for files in 8 20; do
   "$B" many -o kept --no-pictures --quiet &
   batch=$!
-  sleep "$moment"
+  journal=kept/.kaboum-batch/journal.jsonl
+  while [ ! -f $journal ] || [ "$(wc -l <$journal)" -lt $files ]; do sleep 0.02; done
   kill -9 "$batch"
   wait "$batch" 2>/dev/null
 done
-sleep 0.1
+tries=0
+while pgrep -f "$WORK/kept" >/dev/null && [ $tries -lt 50 ]; do
+  sleep 0.1
+  tries=$((tries + 1))
+done
 pgrep -f "$WORK/kept" >/dev/null && fail "a program outlives its batch"
 expect 0 '40 done; [0-9]* of them earlier' "$B" many -o kept --no-pictures
 [ "$(cut -d'"' -f4 kept/.kaboum-batch/journal.jsonl | sort | uniq -d | wc -l)" = 0 ] || fail "done twice"
