@@ -139,7 +139,8 @@ void write_summary(const Options& o, const batch::Summary& summary, double wall_
 
 int run(const Options& o) {
   const auto begin = batch::Clock::now();
-  const std::vector<batch::Job> jobs = batch::find_jobs({o.inputs, rules_of(o), o.extension});
+  const std::vector<batch::Job> jobs =
+      batch::find_jobs({o.inputs, rules_of(o), o.extension, o.output});
   const fs::path folder(o.output);
   fs::create_directories(folder / batch::kState);
   batch::Journal journal(folder / batch::kState / "journal.jsonl");

@@ -96,6 +96,9 @@ absent kept/.kaboum-batch/scratch
 "$B" many -o fresh --no-pictures --quiet || fail "fresh"
 for f in fresh/results/*; do cmp -s "$f" "kept/results/${f##*/}" || fail "$f differs"; done
 
+# Results within the folder of inputs are no inputs the next time.
+expect 0 '8 done' "$B" in -o in/results --no-pictures --rule 't[1-8].off: bmesh-decimate --epsilon 1%'
+expect 0 '8 done; 8 of them earlier' "$B" in -o in/results --no-pictures --rule 't[1-8].off: bmesh-decimate --epsilon 1%' --rule 'results/*: false'
 run_tool 3 "$B" in/sub/absent -o x --rule 'y: z'
 expect 2 'PATTERN: PROGRAM' "$B" in -o x --rule bad
 finish

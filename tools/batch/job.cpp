@@ -65,13 +65,17 @@ bool is_input(const fs::path& path) {
   return extension == ".urdf" || io::format_from_name(extension).has_value();
 }
 
-void add_folder(const fs::path& folder, std::vector<Found>& found) {
+void add_folder(const fs::path& folder, const fs::path& results, std::vector<Found>& found) {
   std::error_code error;
   fs::recursive_directory_iterator it(folder, fs::directory_options::skip_permission_denied, error);
   if (error) throw Error(ErrorCode::InvalidInput, folder.string() + ": " + error.message());
-  for (const fs::directory_entry& entry : it)
-    if (entry.is_regular_file(error) && is_input(entry.path()))
-      found.push_back({entry.path().lexically_relative(folder).generic_string(), entry.path()});
+  for (; it != fs::recursive_directory_iterator(); it.increment(error)) {
+    const fs::path& path = it->path();
+    if (it->is_directory(error) && fs::equivalent(path, results, error))
+      it.disable_recursion_pending();
+    else if (it->is_regular_file(error) && is_input(path))
+      found.push_back({path.lexically_relative(folder).generic_string(), path});
+  }
 }
 
 /// Paths are called as they are written, without what leads above the list.
@@ -89,13 +93,13 @@ void add_list(const fs::path& list, std::vector<Found>& found) {
   }
 }
 
-std::vector<Found> find_inputs(const std::vector<std::string>& inputs) {
+std::vector<Found> find_inputs(const JobOptions& options) {
   std::vector<Found> found;
-  for (const std::string& text : inputs) {
+  for (const std::string& text : options.inputs) {
     const fs::path input(text);
     std::error_code error;
     if (fs::is_directory(input, error))
-      add_folder(input, found);
+      add_folder(input, options.results, found);
     else if (input.extension() == ".txt")
       add_list(input, found);
     else
@@ -171,7 +175,7 @@ std::string Job::key() const {
 
 std::vector<Job> find_jobs(const JobOptions& options) {
   std::vector<Job> jobs;
-  for (const Found& found : find_inputs(options.inputs)) {
+  for (const Found& found : find_inputs(options)) {
     const auto rule = std::find_if(options.rules.begin(), options.rules.end(), [&](const Rule& r) {
       return fnmatch(r.pattern.c_str(), found.name.c_str(), 0) == 0;
     });

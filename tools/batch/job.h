@@ -41,6 +41,7 @@ struct JobOptions {
   std::vector<std::string> inputs;  ///< folders, lists and files
   std::vector<Rule> rules;          ///< the first that matches counts
   std::string extension;            ///< of results; empty: by program
+  fs::path results;                 ///< folder of the batch, whose files are no inputs
 };
 
 /// A job for each input that matches a rule, in the order of their names. Of folders all that is in
