@@ -65,7 +65,7 @@ def test_scene(tmp_path):
     geometry = SOURCE / "examples" / "geometry"
     subprocess.run([sys.executable, geometry / "make-cell", "stacked", "3", tmp_path / "cell"], check=True,
                    env={**os.environ, "KABOUM_SCENE": os.environ["KABOUM_BIN"] + "/kaboum-scene"}, capture_output=True)
-    files = geometry / "stacked.kpl", tmp_path / "cell" / "problem.kpl"
+    files = SOURCE / "examples" / "scenarios" / "stacked" / "domain.kpl", tmp_path / "cell" / "problem.kpl"
     scene = tmp_path / "cell" / "cell.json"
     solution = kaboum.solve(*files, scene=scene, seed=3)
     assert solution and solution.statistics["external_calls"] > 0
