@@ -124,7 +124,7 @@ int solve(const PlanOptions& o) {
                  {"lost", solution.lost},
                  {"scene", o.scene},
                  {"statistics", statistics_json(solution.statistics)}};
-  if (watch.cache) watch.cache->save();
+  watch.save();
   if (!o.scene.empty()) {
     report["geometry"] = geometry_json(*o.counters);
     report["geometry"]["answers_reused"] = watch.cache ? watch.cache->reused() : 0;

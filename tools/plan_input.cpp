@@ -3,13 +3,12 @@
 #include "plan_input.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/certify/cache_folder.h>
 #include <kaboum/external/plugin.h>
 #include <kaboum/external/process.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/manipulation/externals.h>
 
-#include <cstdlib>
-#include <filesystem>
 #include <map>
 
 #include "memory_size.h"
@@ -52,27 +51,17 @@ manipulation::ExternalOptions external_options(const PlanOptions& o) {
   return out;
 }
 
-/// $KABOUM_CACHE, else the user's folder of caches; empty: there is none.
-std::filesystem::path cache_folder() {
-  const auto variable = [](const char* name) -> std::filesystem::path {
-    const char* value = std::getenv(name);
-    return value != nullptr ? value : "";
-  };
-  if (auto p = variable("KABOUM_CACHE"); !p.empty()) return p;
-  if (const auto p = variable("XDG_CACHE_HOME"); p.is_absolute()) return p / "kaboum";
-  if (const auto p = variable("HOME"); !p.empty()) return p / ".cache" / "kaboum";
-  return {};
-}
+constexpr const char* kAnswers = "KABOUM-ANSWERS 1";
 
-/// One file for scene, domain and problem: all that answers depend on beside the questions.
-std::unique_ptr<manipulation::AnswerCache> open_cache(const SceneFile& scene,
-                                                      const PlanTexts& texts) {
-  const std::filesystem::path folder = cache_folder();
-  if (folder.empty()) return nullptr;
+/// One entry for scene, domain and problem: all that answers depend on beside the questions.
+void open_cache(ExternalWatch& watch, const SceneFile& scene, const PlanTexts& texts) {
   std::string all = scene.sha256 + '\n' + texts.domain.text + '\n' + version() + '\n';
   if (texts.problem) all += texts.problem->text;
-  const std::string key = io::sha256({all.data(), all.size()});
-  return std::make_unique<manipulation::AnswerCache>(folder / "answers" / (key + ".json"), key);
+  watch.key = io::sha256({all.data(), all.size()});
+  std::string flaw;
+  const certify::CacheFolder folder(certify::CacheFolder::default_folder());
+  watch.cache = std::make_unique<manipulation::AnswerCache>(
+      folder.find(kAnswers, watch.key, flaw).value_or(""));
 }
 
 }  // namespace
@@ -84,7 +73,7 @@ plan::Model load_model(const PlanOptions& o, ExternalWatch* watch) {
     SceneFile scene = read_scene(o.scene);
     for (const std::string& note : scene.notes) log(o.common.quiet, note);
     bindings = manipulation::bind_externals(std::move(scene.world), external_options(o));
-    if (watch != nullptr && !o.no_cache) watch->cache = open_cache(scene, texts);
+    if (watch != nullptr && !o.no_cache) open_cache(*watch, scene, texts);
     if (watch != nullptr && watch->cache) bindings = watch->cache->wrap(bindings);
   }
   for (const std::string& file : o.plugins)
@@ -93,6 +82,12 @@ plan::Model load_model(const PlanOptions& o, ExternalWatch* watch) {
     external::merge(bindings, external::start_process(command, {o.process_timeout}), command);
   if (watch != nullptr) bindings = watch->explanation.watch(bindings);
   return plan::load(texts.domain, texts.second(), bindings);
+}
+
+void ExternalWatch::save() const {
+  if (!cache) return;
+  if (const std::string content = cache->content(); !content.empty())
+    certify::CacheFolder(certify::CacheFolder::default_folder()).store(kAnswers, key, content);
 }
 
 plan::Plan read_plan_file(const plan::Model& model, const std::string& file) {

@@ -28,6 +28,10 @@ PlanTexts read_texts(const PlanOptions& options);
 struct ExternalWatch {
   Explanation explanation;
   std::unique_ptr<manipulation::AnswerCache> cache;  ///< of a scene's functions; may be none
+  std::string key;                                   ///< where it is kept
+
+  /// Keeps what came to the cache for the next run.
+  void save() const;
 };
 
 /// The model of the texts; external functions of a scene, of programs and of shared libraries are

@@ -1,6 +1,5 @@
 // Answers of external functions between runs.
 #include <kaboum/base/error.h>
-#include <kaboum/io/mesh_io.h>
 #include <kaboum/manipulation/answer_cache.h>
 
 #include <map>
@@ -104,18 +103,14 @@ Entry entry_of(const json& j) {
 }  // namespace
 
 struct AnswerCache::Kept {
-  std::filesystem::path file;
-  std::string key;
   std::map<std::string, std::vector<Entry>> entries;
   std::size_t bytes = 0, reused = 0, fresh = 0;
 
-  void load() {
+  void load(const std::string& content) {
+    if (content.empty()) return;
     try {
-      if (!std::filesystem::exists(file)) return;
-      const std::vector<char> text = io::read_file(file.string());
-      const json j = json::parse(text.begin(), text.end());
-      if (j.at("key") != key) return;
-      for (const json& e : j.at("answers")) {
+      const json all = json::parse(content);
+      for (const json& e : all.at("answers")) {
         entries[e.at("q").get<std::string>()].push_back(entry_of(e));
         bytes += e.at("payload").get_ref<const std::string&>().size() + 200;
       }
@@ -155,11 +150,8 @@ struct AnswerCache::Kept {
   }
 };
 
-AnswerCache::AnswerCache(std::filesystem::path file, std::string key)
-    : kept_(std::make_unique<Kept>()) {
-  kept_->file = std::move(file);
-  kept_->key = std::move(key);
-  kept_->load();
+AnswerCache::AnswerCache(const std::string& content) : kept_(std::make_unique<Kept>()) {
+  kept_->load(content);
 }
 
 AnswerCache::~AnswerCache() = default;
@@ -173,16 +165,12 @@ plan::ExternalBindings AnswerCache::wrap(const plan::ExternalBindings& bindings)
   return out;
 }
 
-void AnswerCache::save() const {
-  if (kept_->fresh == 0) return;
+std::string AnswerCache::content() const {
+  if (kept_->fresh == 0) return "";
   json answers = json::array();
   for (const auto& [place, entries] : kept_->entries)
     for (const Entry& e : entries) answers.push_back(to_json(place, e));
-  const std::string text = json{{"key", kept_->key}, {"answers", answers}}.dump(
-      -1, ' ', false, json::error_handler_t::replace);
-  std::error_code error;
-  std::filesystem::create_directories(kept_->file.parent_path(), error);
-  io::write_file(kept_->file, {text.data(), text.size()});
+  return json{{"answers", answers}}.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 std::size_t AnswerCache::reused() const { return kept_->reused; }

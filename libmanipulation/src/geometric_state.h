@@ -3,6 +3,7 @@
 #include <kaboum/manipulation/externals.h>
 #include <kaboum/world/checker.h>
 
+#include <map>
 #include <set>
 
 namespace kaboum::manipulation {
@@ -18,6 +19,9 @@ struct Geometry {
   const ExternalOptions options;
   const world::Checker checker;
   std::set<std::string> fixed;  ///< terms that the domain does not have
+  /// Paths in a world without what the domain moves, by all that they depend on: nothing that was
+  /// asked before has a say in them.
+  mutable std::map<std::string, robot::Path> usual_paths;
 };
 
 /// @throws Error{InvalidInput} for names that the scene does not have.

@@ -6,6 +6,7 @@
 #include <kaboum/manipulation/words.h>
 #include <kaboum/robot/kinematics.h>
 
+#include <algorithm>
 #include <chrono>
 #include <numbers>
 
@@ -129,6 +130,57 @@ void Sequence::record(std::size_t robot, const robot::Path& path) {
   state_.q[robot] = path.back();
 }
 
+motion::PathAnswer Sequence::look_for_path(const world::WorldState& state, std::size_t robot,
+                                           const Goals& goals,
+                                           const motion::PathOptions& options) const {
+  const Stopwatch watch;
+  motion::PathAnswer answer =
+      find_path(geometry_.checker, state, robot, state.q[robot], goals.configurations, options);
+  if (GeometryCounters* counters = geometry_.options.counters.get()) {
+    ++counters->paths;
+    counters->predicate_calls += answer.spent.configurations + answer.spent.motions;
+    for (const motion::Blocker& blocker : answer.blockers) counters->positive += blocker.times;
+    counters->path_seconds += watch.seconds();
+  }
+  return answer;
+}
+
+/// The path there would be if nothing that the domain moves were there, but what this robot holds;
+/// empty: none was found. It is the same whenever it is asked for.
+const robot::Path& Sequence::usual_path(std::size_t robot, const Goals& goals,
+                                        const motion::PathOptions& options) const {
+  std::string key;
+  const auto add = [&](const void* data, std::size_t size) {
+    key.append(static_cast<const char*>(data), size);
+  };
+  add(&robot, sizeof robot);
+  for (const auto& q : state_.q) add(q.data(), q.size() * sizeof(double));
+  for (const auto& q : goals.configurations) add(q.data(), q.size() * sizeof(double));
+  add(&options.seed, sizeof options.seed);
+  add(&options.most_work, sizeof options.most_work);
+  world::WorldState bare = state_;
+  for (std::size_t o = 0; o < bare.absent.size(); ++o) {
+    if (const auto held = held_by(robot, o); held && !bare.absent[o]) {
+      add(&o, sizeof o);
+      add(&held->link, sizeof held->link);
+      add(held->pose.linear.data(), 9 * sizeof(double));
+      add(held->pose.translation.data(), 3 * sizeof(double));
+    } else if (!geometry_.fixed.contains("pose(" + geometry_.world.objects[o].name + ")")) {
+      bare.absent[o] = true;
+      bare.attachments[o].reset();
+    }
+  }
+  constexpr std::size_t kMost = 20'000;  // paths that are kept
+  if (geometry_.usual_paths.size() >= kMost) geometry_.usual_paths.clear();
+  const auto [found, fresh] = geometry_.usual_paths.try_emplace(std::move(key));
+  if (fresh) {
+    motion::PathAnswer answer = look_for_path(bare, robot, goals, options);
+    if (answer.outcome == motion::PathAnswer::Outcome::Found)
+      found->second = std::move(answer.path);
+  }
+  return found->second;
+}
+
 bool Sequence::go(std::size_t robot, const std::vector<double>& q) {
   Goals goals;
   goals.configurations = {q};
@@ -139,18 +191,23 @@ bool Sequence::go(std::size_t robot, const Goals& goals) {
   const auto none = [&](bool all, const std::string& reason) {
     return fail(all ? Answer::Kind::Impossible : Answer::Kind::NotFound, reason);
   };
-  const Stopwatch watch;
   motion::PathOptions options = geometry_.options.path;
   options.seed = question_.seed;
   for (unsigned i = 0; i < question_.attempt; ++i) options.most_work *= kMoreWork;
-  const motion::PathAnswer answer =
-      find_path(geometry_.checker, state_, robot, state_.q[robot], goals.configurations, options);
-  if (GeometryCounters* counters = geometry_.options.counters.get()) {
-    ++counters->paths;
-    counters->predicate_calls += answer.spent.configurations + answer.spent.motions;
-    for (const motion::Blocker& blocker : answer.blockers) counters->positive += blocker.times;
-    counters->path_seconds += watch.seconds();
-  }
+  const bool some_end_is_free =
+      std::ranges::any_of(goals.configurations, [&](const std::vector<double>& q) {
+        world::WorldState there = state_;
+        there.q[robot] = q;
+        return is_free(there);
+      });
+  // What does for most states is tried first: deciding a path is much cheaper than finding one.
+  if (some_end_is_free)
+    if (const robot::Path& usual = usual_path(robot, goals, options);
+        !usual.empty() && is_free(robot, usual)) {
+      record(robot, usual);
+      return true;
+    }
+  const motion::PathAnswer answer = look_for_path(state_, robot, goals, options);
   using Outcome = motion::PathAnswer::Outcome;
   switch (answer.outcome) {
     case Outcome::Found:

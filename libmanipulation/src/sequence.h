@@ -82,6 +82,11 @@ class Sequence {
   /// Moves an object, and what is mounted on it, to the hand or to rest.
   void carry(std::size_t object, const std::optional<world::Attachment>& held,
              const world::Transform& pose);
+  [[nodiscard]] motion::PathAnswer look_for_path(const world::WorldState& state, std::size_t robot,
+                                                 const Goals& goals,
+                                                 const motion::PathOptions& options) const;
+  [[nodiscard]] const robot::Path& usual_path(std::size_t robot, const Goals& goals,
+                                              const motion::PathOptions& options) const;
   void add_goals(Goals& goals, std::size_t robot, std::uint32_t link,
                  const world::Transform& target) const;
   void record(std::size_t robot, const robot::Path& path);

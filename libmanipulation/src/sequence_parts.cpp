@@ -23,7 +23,9 @@ constexpr double kStep = 0.01, kUprightStep = 0.02;
 constexpr std::array<double, 6> kHeights{0.03, 0.08, 0.15, 0.25, 0.35, 0.5};
 /// Places at which a thing may be handed over, and configurations to wander to, that are tried;
 /// more with each attempt.
-constexpr int kMeetings = 400, kWanderings = 100;
+constexpr int kMeetings = 60, kWanderings = 100;
+/// Ways to take a thing at such a place that are enough.
+constexpr std::size_t kEnough = 4;
 
 /// "seat/pipe" where there is one, else "seat".
 std::string for_part(const world::Object& below, const std::string& name,
@@ -248,6 +250,7 @@ bool Sequence::meet(std::size_t from, std::size_t object, std::size_t to,
     world::WorldState both = then;
     both.q[to] = goal;
     if (is_free(both)) goals.configurations.push_back(goal);
+    if (goals.configurations.size() == kEnough) break;
   }
   state_ = before.state_;
   goals.all = false;

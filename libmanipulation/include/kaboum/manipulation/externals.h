@@ -18,7 +18,7 @@ struct GeometryCounters {
 
 struct ExternalOptions {
   /// Of each call; its seed is the question's, and the work doubles with each attempt.
-  motion::PathOptions path = {.most_work = 0.02};
+  motion::PathOptions path = {.most_work = 0.02, .shortcuts = 20};
   /// Things are put down from so far above, sums of ε apart. > 0 [length]
   double clearance = 1e-3;
   double lift = 0.1;  ///< how far things are lifted to be weighed. > 0 [length]
