@@ -8,6 +8,12 @@
 #include <cmath>
 
 namespace kaboum::bcd {
+namespace {
+
+/// Of the way to the middle that a corner moves inwards where its faces are too much alike.
+constexpr double kInward = 0x1p-30;
+
+}  // namespace
 
 Cell Cell::of(const Box3& box) {
   Cell cell;
@@ -66,7 +72,7 @@ std::vector<Vec3> Cell::inward(double depth) const {
           best << at[i].transpose(), at[j].transpose(), at[k].transpose();
         }
     out.push_back(corners[v] + (volume > kAlike ? Vec3(best.inverse() * Vec3::Constant(depth))
-                                                : Vec3(0x1p-30 * (middle - corners[v]))));
+                                                : Vec3(kInward * (middle - corners[v]))));
   }
   return out;
 }

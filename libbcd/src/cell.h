@@ -35,6 +35,10 @@ struct Cube {
   Vec3 center;
   double half;
 };
+/// Of a cube with half side 1, half the diagonal: √3, rounded up. Bounds of what a cube holds rest
+/// on it.
+inline constexpr double kHalfDiagonal = 0x1.bb67ae8584cabp+0;
+
 /// Equal cubes that cover a box, none larger than its shortest side or, for flat ones, a sixteenth
 /// of the longest.
 std::vector<Cube> cubes_over(const Box3& box);

@@ -46,8 +46,11 @@ double size_of(std::span<const Vec3> points) {
 
 }  // namespace
 
+/// Costs that do not matter: of what may be spent, within shares of the body's size.
+constexpr double kNegligible = 0.02, kLeastNegligible = 1e-5, kMostNegligible = 2e-4;
+
 double negligible(double free_cost, double size) {
-  return std::clamp(0.02 * free_cost, 1e-5 * size, 2e-4 * size);
+  return std::clamp(kNegligible * free_cost, kLeastNegligible * size, kMostNegligible * size);
 }
 
 Contractor::Contractor(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,

@@ -15,8 +15,6 @@ namespace {
 constexpr double kEnough = 0.8;
 /// The centre of a cube this small, as a share of its depth, is a seed.
 constexpr double kSeedCube = 0.04;
-/// Half the diagonal of a cube of half side 1: √3, rounded.
-constexpr double kHalfDiagonal = 1.7320508075688774;
 /// Rounding, as a share of the largest coordinate and the diagonal.
 constexpr double kSlack = 1e-12;
 

@@ -19,6 +19,34 @@ namespace {
 
 using geom::Triangle;
 
+// Lengths and shares that steer the growing of a body. That it lies inside is decided exactly on
+// what is written; only kMarginSpacings serves that.
+
+/// Planes keep this many float32 spacings from triangles (times `safety`): each coordinate of a
+/// corner is rounded by half a spacing, a plane's height by less than √3 of that, and cuts by less.
+constexpr double kMarginSpacings = 2;
+/// Bodies whose seed is not deeper than so many margins are not worth it.
+constexpr double kLeastDepth = 4;
+/// Shortest axis of an ellipsoid, as a share of the variance of the longest.
+constexpr double kFlattest = 1e-4;
+/// A triangle's corner may be this share of the box's diagonal below a plane that keeps it out.
+constexpr double kTouch = 1e-9;
+/// Twice the area of triangles that have no plane, in squares of kTouch.
+constexpr double kNoArea = 1e-12;
+/// Triangles whose own planes are tried, of those as near as the nearest but for a share.
+constexpr std::size_t kNearest = 8;
+constexpr double kAsNear = 1e-6;
+/// What a triangle's own plane leaves of the seed's depth at least, and by what share it has to
+/// leave more than the plane that touches the ellipsoid.
+constexpr double kKeptDepth = 0.5, kMoreVolume = 1e-9;
+/// Searching goes on elsewhere once a body holds the seed and what is within this share of its
+/// depth.
+constexpr double kCore = 0.25;
+/// What is kept of the ball round the seed where vertices are left out, as a share of its depth.
+constexpr double kSeedDepth = 0.8;
+/// Another ellipsoid is tried while bodies grow by this factor.
+constexpr double kBetter = 1.01;
+
 double volume_of(const Cell& cell) {
   double volume = 0;
   const Vec3 center = cell.center();
@@ -55,7 +83,7 @@ std::optional<Ellipsoid> ellipsoid_of(const Mesh& hull) {
   const Vec3 mean = first / volume;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(
       Eigen::Matrix3d(second / volume - mean * mean.transpose()));
-  const Vec3 variance = eigen.eigenvalues().cwiseMax(1e-4 * eigen.eigenvalues().maxCoeff());
+  const Vec3 variance = eigen.eigenvalues().cwiseMax(kFlattest * eigen.eigenvalues().maxCoeff());
   if (!(variance.minCoeff() > 0) || !eigen.eigenvectors().allFinite()) return std::nullopt;
   const double scale = std::pow(variance.prod(), 1.0 / 6);
   Ellipsoid out;
@@ -88,7 +116,7 @@ std::optional<Cell> keep_out(const Mesh& boundary, const Box3& box, const Ellips
     return a.distance != b.distance ? a.distance < b.distance : a.triangle < b.triangle;
   });
   Cell cell = Cell::of(box);
-  const double touch = 1e-9 * box.diagonal();
+  const double touch = kTouch * box.diagonal();
   const auto beyond = [&](const Plane& plane, std::uint32_t i) {
     for (const std::uint32_t v : boundary.triangles[i])
       if (plane.height(boundary.vertices[v]) < -touch) return false;
@@ -99,7 +127,7 @@ std::optional<Cell> keep_out(const Mesh& boundary, const Box3& box, const Ellips
     const Vec3& a = boundary.vertices[t[0]];
     const Vec3 n = (boundary.vertices[t[1]] - a).cross(boundary.vertices[t[2]] - a);
     const double length = n.norm();
-    if (!(length > 1e-12 * touch * touch)) return false;
+    if (!(length > kNoArea * touch * touch)) return false;
     plane = {n / length, n.dot(a) / length};
     if (plane.height(seed) > 0) plane = {-plane.n, -plane.d};
     return true;
@@ -118,16 +146,16 @@ std::optional<Cell> keep_out(const Mesh& boundary, const Box3& box, const Ellips
     best.d = best.n.dot(back * nearest.at + e.center);
     Cell left = clip(cell, {best.n, best.d - margin}, true, 0);
     double volume = left.corners.empty() ? 0 : volume_of(left);
-    for (std::size_t k = 0; k < rest.size() && k < 8; ++k) {
-      if (rest[k].distance > nearest.distance * (1 + 1e-6)) break;
+    for (std::size_t k = 0; k < rest.size() && k < kNearest; ++k) {
+      if (rest[k].distance > nearest.distance * (1 + kAsNear)) break;
       Plane plane;
       if (!plane_of(rest[k].triangle, plane)) continue;
-      if (plane.height(seed) > -0.5 * depth || plane.height(e.center) > -margin ||
+      if (plane.height(seed) > -kKeptDepth * depth || plane.height(e.center) > -margin ||
           !beyond(plane, nearest.triangle))
         continue;
       Cell other = clip(cell, {plane.n, plane.d - margin}, true, 0);
       const double v = other.corners.empty() ? 0 : volume_of(other);
-      if (v <= volume * (1 + 1e-9)) continue;
+      if (v <= volume * (1 + kMoreVolume)) continue;
       volume = v;
       best = plane;
       left = std::move(other);
@@ -278,19 +306,17 @@ std::optional<Inscribed> inscribe(const Mesh& boundary, const Vec3& seed, double
   Box3 box = geom::bounding_box(boundary);
   const double ulp =
       geom::float32_spacing(std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff()));
-  const double margin = 2 * ulp * safety;
-  if (!(depth > 4 * margin)) return std::nullopt;
-  // Searching goes on elsewhere once a body holds the seed and what is next to
-  // it.
-  const double core = std::max(margin, 0.25 * depth);
+  const double margin = kMarginSpacings * ulp * safety;
+  if (!(depth > kLeastDepth * margin)) return std::nullopt;
+  const double core = std::max(margin, kCore * depth);
   std::optional<Inscribed> best;
   Ellipsoid e{seed, Eigen::Matrix3d::Identity()};
   for (int round = 0; round <= rounds; ++round) {
     const std::optional<Cell> cell = keep_out(boundary, box, e, seed, depth, margin);
     if (!cell) break;
-    std::optional<Inscribed> body = body_of(cell->corners, most, seed, 0.8 * depth, core);
+    std::optional<Inscribed> body = body_of(cell->corners, most, seed, kSeedDepth * depth, core);
     if (!body || !body->contains(seed, core)) break;
-    const bool better = !best || body->volume > 1.01 * best->volume;
+    const bool better = !best || body->volume > kBetter * best->volume;
     if (better) best = std::move(body);
     if (!better) break;
     const std::optional<Ellipsoid> next = ellipsoid_of(best->hull);
@@ -300,7 +326,7 @@ std::optional<Inscribed> inscribe(const Mesh& boundary, const Vec3& seed, double
   if (!best) {
     std::vector<Vec3> cube;
     cube.reserve(8);
-    const double half = (depth - margin) / 1.7320508075688774;
+    const double half = (depth - margin) / kHalfDiagonal;
     for (int i = 0; i < 8; ++i)
       cube.emplace_back(
           seed + half * Vec3((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1));

@@ -11,8 +11,19 @@
 
 namespace kaboum::bcd {
 
+namespace {
+
+/// Largest spacing of float32 numbers that bodies are made with, as shares: rounding outwards takes
+/// some spacings of each body, which epsilon has to leave room for.
+constexpr double kSpacingOfEpsilon = 0.01, kSpacingWithEpsilon = 1e-4, kSpacingOfDiagonal = 1e-6;
+/// Default of max_work, and what each triangle adds beyond so many. [s]
+constexpr double kBaseWork = 20, kWorkPerTriangle = 1e-3, kManyTriangles = 1e4;
+
+}  // namespace
+
 double default_work(std::size_t triangles) {
-  return 20 + 1e-3 * std::max(0.0, static_cast<double>(triangles) - 1e4);
+  return kBaseWork +
+         kWorkPerTriangle * std::max(0.0, static_cast<double>(triangles) - kManyTriangles);
 }
 
 double work_allowed(const DecomposeOptions& options, std::size_t triangles) {
@@ -50,10 +61,10 @@ bool too_coarse(const geom::Mesh& mesh, const DecomposeOptions& options) {
   for (const geom::Vec3& p : mesh.vertices)
     magnitude = std::max(magnitude, p.cwiseAbs().maxCoeff());
   const double spacing = geom::float32_spacing(magnitude);
-  // Rounding outwards takes some spacings.
-  return spacing > (options.epsilon ? std::min(1e-4 * geom::bounding_box(mesh).diagonal(),
-                                               0.01 * *options.epsilon)
-                                    : 1e-6 * geom::bounding_box(mesh).diagonal());
+  const double diagonal = geom::bounding_box(mesh).diagonal();
+  return spacing > (options.epsilon ? std::min(kSpacingWithEpsilon * diagonal,
+                                               kSpacingOfEpsilon * *options.epsilon)
+                                    : kSpacingOfDiagonal * diagonal);
 }
 
 }  // namespace kaboum::bcd

@@ -17,6 +17,23 @@
 namespace kaboum::bcd {
 namespace {
 
+// What is tried; exact orientation tests decide what is good.
+
+/// Steps of the search for a direction that all normals point along, the length below
+/// which there is none, and the squared one below which a step leads nowhere.
+constexpr int kDirectionSteps = 60;
+constexpr double kNoDirection = 1e-6, kNoWay = 1e-12;
+/// Margins of a prism round the points, doubled from the first on. [float32 spacings]
+constexpr double kFirstMargin = 2, kLastMargin = 1e4;
+/// How far a vertex is pushed first, by how much again at least, and how far beyond what a facet
+/// lacks. [float32 spacings; factors]
+constexpr double kFirstPush = 1.5, kPushAgain = 1.6, kBeyondLack = 1.1;
+/// Vertices that need a longer push make a worse body than a prism. [float32 spacings; share of the
+/// diagonal]
+constexpr double kPushSpacings = 64, kPushShare = 2e-3;
+/// Near the largest float32 number.
+constexpr double kLargestFloat = 1e38;
+
 double float_below(double x) {
   const double f = geom::to_float32(x);
   return f <= x ? f
@@ -58,16 +75,16 @@ Direction middle_of(const std::vector<Vec3>& normals) {
   Vec3 w = Vec3::Zero();
   for (const Vec3& n : normals) w += n / static_cast<double>(normals.size());
   Direction best{w, -1};
-  for (int step = 0; step < 60; ++step) {
+  for (int step = 0; step < kDirectionSteps; ++step) {
     const Vec3* least = normals.data();
     for (const Vec3& n : normals)
       if (n.dot(w) < least->dot(w)) least = &n;
     const double length = w.norm();
-    if (!(length > 1e-6)) break;
+    if (!(length > kNoDirection)) break;
     if (least->dot(w) / length > best.margin) best = {w / length, least->dot(w) / length};
     const Vec3 d = *least - w;
     const double square = d.squaredNorm();
-    if (!(square > 1e-12)) break;
+    if (!(square > kNoWay)) break;
     w += std::clamp(-w.dot(d) / square, 0.0, 1.0) * d;
   }
   return best;
@@ -114,7 +131,7 @@ std::optional<geom::Mesh> prism_round(std::span<const Vec3> points, double ulp, 
   const std::optional<PrincipalPrism> prism = PrincipalPrism::round(points, most);
   if (!prism) return std::nullopt;
   geom::HullBuilder builder;
-  for (double margin = 2 * ulp; margin < 1e4 * ulp; margin *= 2) {
+  for (double margin = kFirstMargin * ulp; margin < kLastMargin * ulp; margin *= 2) {
     std::vector<Vec3> corners = prism->corners(margin);
     for (Vec3& p : corners) p = geom::to_float32(p);
     if (!builder.build(corners)) continue;
@@ -132,7 +149,7 @@ std::optional<geom::Mesh> prism_round(std::span<const Vec3> points, double ulp, 
 double spacing_at(std::span<const Vec3> points) {
   double magnitude = 0;
   for (const Vec3& p : points) magnitude = std::max(magnitude, p.cwiseAbs().maxCoeff());
-  if (!(magnitude < 1e38))
+  if (!(magnitude < kLargestFloat))
     throw Error(ErrorCode::LimitReached, "coordinates beyond float32; scale the mesh");
   return geom::float32_spacing(magnitude);
 }
@@ -160,7 +177,7 @@ std::optional<geom::Mesh> push_out(std::span<const Vec3> shape, std::span<const 
   // What is pushed farther fares better in a prism.
   Box3 extent;
   for (const Vec3& p : required) extent.extend(p);
-  const double longest_push = std::max(64 * ulp, 2e-3 * extent.diagonal());
+  const double longest_push = std::max(kPushSpacings * ulp, kPushShare * extent.diagonal());
   geom::HullBuilder builder;
   const std::vector<Vec3> corners = distinct(shape, sorted, 4 * ulp);
   if (builder.build(corners)) {
@@ -190,7 +207,7 @@ std::optional<geom::Mesh> push_out(std::span<const Vec3> shape, std::span<const 
           vertex.push_back(v);
         }
         if (!std::binary_search(sorted.begin(), sorted.end(), hull.vertices[v], Less()))
-          push[v] = 1.5 * ulp;
+          push[v] = kFirstPush * ulp;
       }
       std::vector<Vec3> moved(start.size());
       for (int round = 0; round < 40; ++round) {
@@ -212,8 +229,8 @@ std::optional<geom::Mesh> push_out(std::span<const Vec3> shape, std::span<const 
           lack = m.norm() > 0 ? lack / m.norm() : 0;
           for (const std::uint32_t i : t) {
             const double now = push[vertex[i]];
-            farther[vertex[i]] =
-                std::max({farther[vertex[i]], 1.5 * ulp, 1.6 * now, now + 1.1 * lack});
+            farther[vertex[i]] = std::max(
+                {farther[vertex[i]], kFirstPush * ulp, kPushAgain * now, now + kBeyondLack * lack});
           }
         }
         push = std::move(farther);

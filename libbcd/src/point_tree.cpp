@@ -8,6 +8,8 @@ namespace kaboum::bcd {
 namespace {
 
 constexpr std::uint32_t kLeaf = 8;  // points
+/// Boxes are wider by this share of the coordinates: their middles and halves are rounded.
+constexpr double kBoxRounding = 0x1p-50;
 
 /// Halves the points by their order along the longest side of their box, and each half again.
 void sort_halves(std::span<geom::Vec3> points) {
@@ -49,9 +51,8 @@ geom::Box3 PointTree::add(std::uint32_t first, std::uint32_t last) {
       box.extend(half.max);
     }
   }
-  // A little wider, for rounding.
   const geom::Vec3 center = box.center();
-  const double slack = 0x1p-50 * (box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs())).maxCoeff();
+  const double slack = kBoxRounding * (box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs())).maxCoeff();
   const geom::Vec3 half = 0.5 * (box.max - box.min) + geom::Vec3::Constant(slack);
   nodes_[self] = {center, half, first, last, static_cast<std::uint32_t>(nodes_.size())};
   return box;

@@ -13,6 +13,12 @@ namespace {
 
 /// Smaller meshes are decomposed about as fast as they are simplified.
 constexpr std::size_t kLarge = 20000;
+/// What the bounding mesh may take of epsilon, or of the diagonal where there is none.
+constexpr double kShare = 0.1, kShareOfDiagonal = 0.001;
+/// Its distance is known to this share.
+constexpr double kGap = 0.1;
+/// Levels to choose from, and vertices below which a level is not halved.
+constexpr std::size_t kMostLevels = 6, kFewVertices = 1000;
 
 /// Bounding meshes with a share of the vertices, a half of that, …; the last one perhaps not quite.
 std::vector<bmesh::DecimateResult> coarser(const geom::Mesh& closed, std::size_t vertices,
@@ -27,7 +33,8 @@ std::vector<bmesh::DecimateResult> coarser(const geom::Mesh& closed, std::size_t
   if (options.progress)
     how.progress = [&](std::size_t) { options.progress({"simplifying the input", 0}); };
   std::vector<std::size_t> counts{vertices};
-  while (counts.size() < 6 && counts.back() >= 1000) counts.push_back(counts.back() / 2);
+  while (counts.size() < kMostLevels && counts.back() >= kFewVertices)
+    counts.push_back(counts.back() / 2);
   return bmesh::decimate_series(input, how, counts);
 }
 
@@ -37,8 +44,8 @@ std::optional<Simpler> pre_step(const geom::Mesh& closed, const DecomposeOptions
   if (options.pre_step == PreStep::Off ||
       (options.pre_step == PreStep::Auto && closed.triangles.size() <= kLarge))
     return std::nullopt;
-  const double epsilon =
-      options.epsilon ? 0.1 * *options.epsilon : 0.001 * geom::bounding_box(closed).diagonal();
+  const double epsilon = options.epsilon ? kShare * *options.epsilon
+                                         : kShareOfDiagonal * geom::bounding_box(closed).diagonal();
   // With half the vertices, decomposition takes as long, but has less of epsilon.
   const std::size_t most = closed.vertices.size() / (options.pre_step == PreStep::On ? 2 : 4);
   std::vector<bmesh::DecimateResult> levels;
@@ -51,7 +58,7 @@ std::optional<Simpler> pre_step(const geom::Mesh& closed, const DecomposeOptions
   }
   const geom::DistanceQuery original(closed);
   geom::DistanceOptions gap;
-  gap.relative_gap = 0.1;
+  gap.relative_gap = kGap;
   for (; !levels.empty(); levels.pop_back()) {
     geom::Mesh& mesh = levels.back().mesh;
     if (mesh.vertices.size() > most) continue;  // not reached

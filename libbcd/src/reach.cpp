@@ -4,12 +4,11 @@
 #include "reach.h"
 
 #include <kaboum/base/parallel.h>
-#include <kaboum/geom/predicates.h>
+#include <kaboum/geom/convex_polytope.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 #include <tuple>
 
 #include "cell.h"
@@ -163,32 +162,11 @@ class Measure {
            });
   }
 
-  /// A plane, and by how much rounding may have moved it where bodies and solid are.
-  struct KnownPlane {
-    Plane plane;
-    double slack;
-  };
-  /// The plane through three points, counter-clockwise seen from above; none where rounding leaves
-  /// its normal open. Slivers' are computed more precisely.
-  [[nodiscard]] std::optional<KnownPlane> plane_through(const Vec3& a, const Vec3& b,
-                                                        const Vec3& c) const {
-    auto [n, error] = normal_of<double>(a, b, c);
-    if (!(error < 1e-10 * n.norm())) std::tie(n, error) = normal_of<long double>(a, b, c);
-    const double length = n.norm();
-    if (!(error < 1e-4 * length)) return std::nullopt;
-    return KnownPlane{{n / length, n.dot(a) / length}, slack_ + 3 * error / length * scale_};
+  /// By how much rounding may have moved a plane where bodies and solid are. [length]
+  [[nodiscard]] double slack_of(const geom::FacetPlane& plane) const {
+    return slack_ + plane.error * scale_;
   }
-  /// (b − a) × (c − a), computed in a type, and by how much rounding may falsify it.
-  template <class Number>
-  static std::pair<Vec3, double> normal_of(const Vec3& a, const Vec3& b, const Vec3& c) {
-    using Vector = Eigen::Matrix<Number, 3, 1>;
-    const Vector u = b.cast<Number>() - a.cast<Number>(), w = c.cast<Number>() - a.cast<Number>();
-    const Vec3 x = u.cwiseAbs().template cast<double>(), y = w.cwiseAbs().template cast<double>();
-    const Vec3 terms(x.y() * y.z() + x.z() * y.y(), x.z() * y.x() + x.x() * y.z(),
-                     x.x() * y.y() + x.y() * y.x());
-    return {u.cross(w).template cast<double>(),
-            4 * static_cast<double>(std::numeric_limits<Number>::epsilon()) * terms.norm()};
-  }
+  static Plane cut_along(const geom::FacetPlane& plane) { return {plane.normal, plane.offset}; }
 
   /// The distance to one triangle is convex: largest at a corner.
   [[nodiscard]] double farthest(const Cell& part, std::uint32_t triangle) const {
@@ -221,8 +199,8 @@ class Measure {
     for (const std::uint32_t t : near_) {
       Cell shadow = part;
       const auto keep_beyond = [&](const Vec3& p, const Vec3& q, const Vec3& r) {
-        if (const auto known = plane_through(p, q, r))
-          shadow = clip(shadow, known->plane, false, known->slack);
+        if (const auto plane = geom::facet_plane(p, q, r))
+          shadow = clip(shadow, cut_along(*plane), false, slack_of(*plane));
       };
       const auto& [a, b, c] = solid_.surface().corners(t);
       const Vec3 ab = b - a, ac = c - a, n = ab.cross(ac);
@@ -244,36 +222,25 @@ class Measure {
     return {(i & 1) != 0 ? half : -half, (i & 2) != 0 ? half : -half, (i & 4) != 0 ? half : -half};
   }
 
-  /// Whether the body holds the point; exact.
-  [[nodiscard]] bool within(const Vec3& p) const {
-    return std::all_of(body_.triangles.begin(), body_.triangles.end(), [&](const Triangle& t) {
-      const auto& v = body_.vertices;
-      return geom::orient3d(v[t[0]], v[t[1]], v[t[2]], p) != geom::Sign::Positive;
-    });
-  }
-
   void inside() {
     Box3 box;
     for (const Vec3& p : body_.vertices) box.extend(p);
-    std::vector<KnownPlane> planes, crossing;
-    for (const Triangle& t : body_.triangles) {
-      const auto& v = body_.vertices;
-      // A facet whose plane is not known keeps nothing out, which is safe.
-      if (const auto known = plane_through(v[t[0]], v[t[1]], v[t[2]])) planes.push_back(*known);
-    }
+    // A facet whose plane is not known keeps nothing out, which is safe.
+    const geom::ConvexPolytope polytope(body_);
+    std::vector<const geom::FacetPlane*> crossing;
     std::vector<Cube> first;
     for (const bcd::Cube& cube : cubes_over(box))
       first.push_back(
           {cube.center, cube.half, geom::DistanceQuery::kNone, 0, Side::Unknown, Side::Unknown});
     const auto bound = [&](Cube& cube) {
       crossing.clear();
-      for (const KnownPlane& k : planes) {
-        const double h = k.plane.height(cube.center);
-        const double extent = cube.half * k.plane.n.cwiseAbs().sum();
-        if (h - extent > k.slack) return false;
-        if (h + extent > -k.slack) crossing.push_back(k);
+      for (const geom::FacetPlane& plane : polytope.planes()) {
+        const double h = plane.height(cube.center), slack = slack_of(plane);
+        const double extent = cube.half * plane.normal.cwiseAbs().sum();
+        if (h - extent > slack) return false;
+        if (h + extent > -slack) crossing.push_back(&plane);
       }
-      const double radius = cube.half * 1.7320508075688774;
+      const double radius = cube.half * kHalfDiagonal;
       const auto at = nearest(cube.center, cube.hint);
       cube.hint = at.triangle;
       cube.upper = at.upper + radius;
@@ -283,7 +250,7 @@ class Measure {
         if (cube.side == Side::Inside) {
           if (at.lower >= radius * (1 + 1e-12)) return false;
           cube.upper = std::min(cube.upper, radius - at.lower);
-        } else if (at.lower > result_.lower && within(cube.center)) {
+        } else if (at.lower > result_.lower && polytope.contains(cube.center)) {
           raise(at.lower, cube.center);
         }
       }
@@ -301,7 +268,8 @@ class Measure {
       if (cube.upper > limit() && !crossing.empty() && crossing.size() <= 12) {
         const Vec3 h = Vec3::Constant(cube.half);
         Cell part = Cell::of({cube.center - h, cube.center + h});
-        for (const KnownPlane& k : crossing) part = clip(part, k.plane, true, k.slack);
+        for (const geom::FacetPlane* plane : crossing)
+          part = clip(part, cut_along(*plane), true, slack_of(*plane));
         cube.upper = std::min(cube.upper, farthest(part, at.triangle));
         if (cube.side == Side::Inside) {
           double far = 0;

@@ -25,6 +25,11 @@ double spacing(double x, Precision precision) {
   return std::nextafter(a, std::numeric_limits<double>::infinity()) - a;
 }
 
+/// What the minimiser may be wrong by, as a share of the step: some hundred roundings.
+constexpr double kPlacementError = 1e-13;
+/// Coordinates this near to a plane across an axis are put on it: with float32, of the minimiser's
+/// error, as what is rounded to float32 comes to lie on it anyway; with double, of the step.
+constexpr double kSnapFloat = 0.01, kSnapDouble = 1e-9;
 /// About the nanoseconds that a candidate takes, and each triangle of its star.
 constexpr std::uint64_t kCandidate = 500, kStarTriangle = 100;
 
@@ -184,7 +189,7 @@ bool CollapseEvaluator::can_lie_on(std::uint32_t t) const {
 
 /// How far the new vertex is from where its star was seen from: half the edge,
 /// or half the longest edge around a vertex that moves alone.
-double CollapseEvaluator::reach() const {
+double CollapseEvaluator::step_bound() const {
   const Vec3& a = m_.position[candidate_.a];
   if (candidate_.a != candidate_.b) return 0.5 * (m_.position[candidate_.b] - a).lpNorm<1>();
   double longest = 0;
@@ -206,14 +211,14 @@ bool CollapseEvaluator::place(const Quadric& q, double care) {
   const Vec3 spread(spacing(middle.x(), options_.precision),
                     spacing(middle.y(), options_.precision),
                     spacing(middle.z(), options_.precision));
-  const double extent = reach(), own_error = 1e-13 * extent;
+  const double extent = step_bound(), own_error = kPlacementError * extent;
   planes_.clear();
   if (context_.constrained) {
     const double sign = context_.sign;
     for (const StarTriangle& s : star_.triangles) {
       const Vec3& n = m_.normal[s.index];
       const double margin =
-          can_lie_on(s.index) ? 0 : care * (0.51 * n.cwiseAbs().dot(spread) + own_error);
+          can_lie_on(s.index) ? 0 : care * (kHalfSpacing * n.cwiseAbs().dot(spread) + own_error);
       // Height of the middle over the plane, which passes through a or b.
       const double height = s.vanishes ? 0 : s.at_b ? -n.dot(half) : n.dot(half);
       planes_.push_back({sign * n, margin - sign * height});
@@ -221,7 +226,7 @@ bool CollapseEvaluator::place(const Quadric& q, double care) {
     for (const std::uint32_t t : star_.rim) {
       const Vec3& n = m_.normal[t];
       const double margin =
-          can_lie_on(t) ? 0 : care * (0.51 * n.cwiseAbs().dot(spread) + own_error);
+          can_lie_on(t) ? 0 : care * (kHalfSpacing * n.cwiseAbs().dot(spread) + own_error);
       planes_.push_back({-n, margin + n.dot(middle - m_.position[m_.mesh[t][0]])});
     }
   }
@@ -232,10 +237,10 @@ bool CollapseEvaluator::place(const Quadric& q, double care) {
   if (options_.precision == Precision::Float) {
     // Numbers near 0 are finer than the minimiser; what keeps away from other
     // planes stays so.
-    snap_to_axis_planes(0.01 * own_error);
+    snap_to_axis_planes(kSnapFloat * own_error);
     candidate_.position = geom::to_float32(candidate_.position);
   } else {
-    snap_to_axis_planes(1e-9 * extent);
+    snap_to_axis_planes(kSnapDouble * extent);
   }
   return !out_of_reach();
 }
@@ -287,8 +292,7 @@ bool CollapseEvaluator::folds() const {
     const Vec3& p = m_.position[t[(s.corner + 1) % 3]];
     const Vec3 n =
         (p - candidate_.position).cross(m_.position[t[(s.corner + 2) % 3]] - candidate_.position);
-    const double along = n.dot(before);
-    if (!(along > 0) || along * along < 0.03 * n.squaredNorm()) return true;
+    if (bmesh::folds(before, n)) return true;
   }
   return false;
 }

@@ -9,6 +9,7 @@
 #include "change.h"
 #include "cost.h"
 #include "edge_star.h"
+#include "fold.h"
 #include "placement.h"
 #include "reference_solid.h"
 #include "work.h"
@@ -104,7 +105,7 @@ class CollapseEvaluator {
   [[nodiscard]] bool has_rim() const {
     return options_.keep_convex && options_.direction != Direction::Inner;
   }
-  [[nodiscard]] double reach() const;
+  [[nodiscard]] double step_bound() const;
   [[nodiscard]] bool place(const Quadric& q, double care);
   void snap_to_axis_planes(double distance);
   [[nodiscard]] bool at_end_point();

@@ -40,6 +40,11 @@ class Incidence {
   std::vector<std::uint32_t> start_, corner_;
 };
 
+/// Room for rounding when pairs of normals are ruled out by their angles with a third.
+constexpr double kAngleRounding = 1e-9;
+/// Unit normals whose sum is shorter are opposite: the mean has no direction.
+constexpr double kOpposite = 1e-6;
+
 /// Quadrics of the planes around each vertex.
 class InitialQuadrics {
  public:
@@ -48,7 +53,7 @@ class InitialQuadrics {
         origin_(origin),
         by_area_(by_area),
         limit_(std::cos(sharp_angle * std::numbers::pi / 180)),
-        half_limit_(std::cos(sharp_angle * std::numbers::pi / 360) + 1e-9),
+        half_limit_(std::cos(sharp_angle * std::numbers::pi / 360) + kAngleRounding),
         at_(mesh),
         plane_(mesh.triangles.size()) {
     in_parallel(plane_.size(), [&](std::size_t t) {
@@ -94,7 +99,7 @@ class InitialQuadrics {
         if (corner_of(d, 2) != w || n.dot(plane_[d / 3].normal) >= limit_) continue;
         const Vec3 both = n + plane_[d / 3].normal;
         const Vec3 across =
-            both.norm() > 1e-6 ? both : Vec3((mesh_.vertices[w] - mesh_.vertices[v]).cross(n));
+            both.norm() > kOpposite ? both : Vec3((mesh_.vertices[w] - mesh_.vertices[v]).cross(n));
         if (across.norm() > 0) sum += plane_quadric(p, across.normalized());
       }
     }
@@ -169,9 +174,12 @@ double CostModel::to_key(const Quadric& q, double value) const {
 
 namespace {
 
+/// Square of the share of an edge's length that its contraction costs.
+constexpr double kLengthCost = 1e-8;
+
 /// Prefers short edges where the quadric is indifferent, as in planes: 10^-4 of the length.
 double length_cost(const Quadric& q, double squared_length) {
-  return 1e-8 * q.trace() * squared_length;
+  return kLengthCost * q.trace() * squared_length;
 }
 
 }  // namespace

@@ -34,6 +34,9 @@ struct Frame {
   }
 };
 
+/// Squared sine below which a triangle is a sliver: single precision has no normal for it.
+constexpr double kSliver = 1e-10;
+
 /// Lower bounds of the distances of four triangles from a point, found at once and in single
 /// precision: for costs, never for certificates.
 ///
@@ -47,7 +50,7 @@ class FourTriangles {
                u = (corner[1] - corner[0]) * frame.scale, v = (corner[2] - corner[0]) * frame.scale;
     const Vec3 across = u.cross(v);
     const double area = across.squaredNorm();
-    if (!(area > 1e-10 * u.squaredNorm() * v.squaredNorm())) return;
+    if (!(area > kSliver * u.squaredNorm() * v.squaredNorm())) return;
     const Vec3 normal = across / std::sqrt(area);
     const auto plane = [&](int k, const Vec3& n, const Vec3& through) {
       x_[k][worker] = static_cast<float>(n.x());

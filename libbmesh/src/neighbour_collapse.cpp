@@ -38,6 +38,9 @@ constexpr Hopes kThorough{2, 1.1, 1};
 /// those that failed.
 constexpr Hopes kQuick{1.2, 0.88, 0.95};
 constexpr int kLookAfter = 4;
+/// Of the way to the best place that a vertex goes in a trial: all of it would overshoot, as its
+/// neighbours move too.
+constexpr double kRelaxed = 0.5;
 /// The place that the original was near to before will do where it is that
 /// near: as a share of what the nearest may have, or of the limit.
 constexpr double kAlmost = 1.1, kClose = 0.15;
@@ -45,11 +48,8 @@ constexpr int kSweeps = 2;           ///< of certified moves towards what the tr
 constexpr int kPulls = 2;            ///< and of pulling back after them, if that is near the limit:
 constexpr double kNearLimit = 1.15;  ///< within so many times of it
 constexpr int kPlaces = 5;           ///< tried for the contracted vertex
-
-bool turns(const Vec3& before, const Vec3& after) {
-  const double along = after.dot(before);
-  return !(along > 0) || along * along < 0.03 * after.squaredNorm();
-}
+/// A step that would fold a triangle is tried again with this share of it.
+constexpr double kShortened = 0.3;
 
 }  // namespace
 
@@ -117,7 +117,7 @@ bool NeighbourCollapse::gather_edge(std::uint32_t a, std::uint32_t b, const Vec3
     step_.removed.push_back(t);
     if (vanishes) return;
     step_.added.push_back({t, {to, m_.position[p], m_.position[q]}});
-    good = good && !turns(m_.normal[t], (m_.position[p] - to).cross(m_.position[q] - to));
+    good = good && !folds(m_.normal[t], (m_.position[p] - to).cross(m_.position[q] - to));
   };
   m_.mesh.for_each_triangle(a, [&](std::uint32_t t, std::uint32_t k) { visit(t, k, b, false); });
   m_.mesh.for_each_triangle(b, [&](std::uint32_t t, std::uint32_t k) { visit(t, k, a, true); });
@@ -166,7 +166,7 @@ void NeighbourCollapse::relax_vertex(std::size_t i, double scale, double penalty
                kRegularisationDistance);
   if (!step || !step->allFinite()) return;
   Vec3 to = from + share * *step;
-  if (step_.folds(to)) to = from + 0.3 * share * *step;
+  if (step_.folds(to)) to = from + kShortened * share * *step;
   if (step_.folds(to)) return;
   if (hand_over) {
     step_.place_star(to);
@@ -242,7 +242,7 @@ double NeighbourCollapse::trial_collapse(std::uint32_t a, std::uint32_t b, doubl
   for (int i = 1; i <= kRounds && hopeful; ++i) {
     const double penalty = std::pow(kPenalty, static_cast<double>(i) / kRounds);
     for (std::size_t k = 0; k < around_.size(); ++k)
-      relax_vertex(k, scale, penalty, 0.5, i % 2 == 0);
+      relax_vertex(k, scale, penalty, kRelaxed, i % 2 == 0);
     if (i == kLookAfter) hopeful = hopes(least.meanwhile);
   }
   if (hopeful) deviation = region_largest(least.finally * limit) / least.finally;
@@ -280,7 +280,7 @@ std::optional<Vec3> NeighbourCollapse::find_position(std::uint32_t a, std::uint3
   for (const std::uint32_t t : removed) {
     const Vec3 n = sign * m_.normal[t];
     step_.planes.push_back(
-        {n, 0.51 * n.cwiseAbs().dot(spread) + n.dot(m_.position[m_.mesh[t][0]] - wish)});
+        {n, kHalfSpacing * n.cwiseAbs().dot(spread) + n.dot(m_.position[m_.mesh[t][0]] - wish)});
   }
   const auto step = minimise(step_.objective, Vec3::Zero(), step_.planes, kRegularisationDistance);
   if (!step) return std::nullopt;

@@ -154,8 +154,7 @@ bool Optimiser::flip(std::uint32_t a, std::uint32_t b) {
   // Neither new triangle may turn over.
   const Vec3 mean = m_.normal[first] + m_.normal[second];
   for (const Vec3& n : {Vec3((pd - pa).cross(pc - pa)), Vec3((pb - pd).cross(pc - pd))}) {
-    const double along = n.dot(mean);
-    if (!(along > 0) || along * along < 0.03 * n.squaredNorm() * mean.squaredNorm()) return false;
+    if (folds(mean, n, mean.squaredNorm())) return false;
   }
   const auto measure = [&](const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s,
                            double limit) {

@@ -9,6 +9,14 @@
 namespace kaboum::bmesh {
 namespace {
 
+/// Squared sine below which two planes count as parallel, and volume of three unit normals below
+/// which they count as flat: their common points are lost in rounding, and other planes bound the
+/// place.
+constexpr double kParallel = 1e-20, kFlat = 1e-12;
+/// Multipliers may be negative by this share: what a place that is not quite the best costs is less
+/// than what rounding does.
+constexpr double kMultiplierSlack = 1e-12;
+
 /// Cholesky factor of the regularised, trace-scaled quadratic part, with the reciprocals of its
 /// diagonal: every half-space is transformed by it.
 struct Cholesky {
@@ -161,7 +169,7 @@ class ClosestPoint {
     const Plane &p = plane(i), &q = plane(j);
     const double r = p.u.dot(q.u);
     const double det = 1 - r * r;
-    if (det < 1e-20) return std::nullopt;
+    if (det < kParallel) return std::nullopt;
     const double a = (p.c - r * q.c) / det, b = (q.c - r * p.c) / det;
     if (a < 0 || b < 0) return std::nullopt;
     return Vec3(a * p.u + b * q.u);
@@ -171,10 +179,10 @@ class ClosestPoint {
     const Plane &p = plane(i), &q = plane(j), &r = plane(k);
     const Vec3 qr = q.u.cross(r.u), rp = r.u.cross(p.u), pq = p.u.cross(q.u);
     const double det = p.u.dot(qr);
-    if (std::abs(det) < 1e-12) return std::nullopt;
+    if (std::abs(det) < kFlat) return std::nullopt;
     const Vec3 z = (p.c * qr + q.c * rp + r.c * pq) / det;
     // z = λp + μq + νr  ⇒  λ = z·(q×r)/det and so on.
-    const double slack = -1e-12 * z.lpNorm<1>();
+    const double slack = -kMultiplierSlack * z.lpNorm<1>();
     if (z.dot(qr) / det < slack || z.dot(rp) / det < slack || z.dot(pq) / det < slack)
       return std::nullopt;
     return z;

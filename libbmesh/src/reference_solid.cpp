@@ -12,6 +12,12 @@ namespace {
 
 using geom::Sign;
 
+/// A part of an edge that is certainly cut off, as a share of it, far above what rounding makes of
+/// none: a quick test before the exact one.
+constexpr double kCertainPart = 1e-6;
+/// Cosine of normals that look against each other: such stars are thin, and costly to test.
+constexpr double kOpposedCosine = -0.9;
+
 /// The seven corners: 0 to 3 of the tetrahedron, 4 to 6 of the triangle.
 class Separation {
  public:
@@ -170,7 +176,7 @@ class Faces {
       }
     }
     for (int e = 0; e < 4; ++e)
-      if (to[e] - from[e] > 1e-6) return true;
+      if (to[e] - from[e] > kCertainPart) return true;
     return false;
   }
 
@@ -242,7 +248,7 @@ bool same_orientation(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b
 bool opposed(std::span<const Vec3> normals) {
   for (std::size_t i = 0; i < normals.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
-      if (normals[i].dot(normals[j]) < -0.9) return true;
+      if (normals[i].dot(normals[j]) < kOpposedCosine) return true;
   return false;
 }
 

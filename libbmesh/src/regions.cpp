@@ -22,6 +22,9 @@ constexpr std::size_t kRegion = 4096;
 constexpr double kEnd = 1.4, kLeast = 1.1;
 /// The limit of a round is the cost up to which this share of the edges cost, less near the end.
 constexpr double kShare = 0.75;
+/// Of the grid, how much farther it lies in each round: multiples of the golden section repeat
+/// late.
+constexpr double kGoldenShare = 0.3819660112501051;
 /// Edges looked at to find the limit of a round.
 constexpr std::size_t kSamples = 8192;
 
@@ -80,8 +83,7 @@ class Rounds {
   /// Gives every vertex and triangle a region.
   void cut(int round) {
     // The curve's grid lies elsewhere in each round, and with it the seams.
-    const double golden = 0.3819660112501051;
-    order_ = geom::spatial_order(m_.position, std::fmod(round * golden, 1.0));
+    order_ = geom::spatial_order(m_.position, std::fmod(round * kGoldenShare, 1.0));
     const std::size_t n = order_.size();
     const std::size_t count = (n + kRegion - 1) / kRegion, size = (n + count - 1) / count;
     number_.resize(n);

@@ -11,6 +11,10 @@
 
 namespace kaboum::bmesh {
 
+/// Samples that are near weigh at least so much against the farthest: without any weight, vertices
+/// would drift where all is near.
+constexpr double kLeastWeight = 1e-4;
+
 double area(const std::array<Vec3, 3>& t) { return 0.5 * (t[1] - t[0]).cross(t[2] - t[0]).norm(); }
 
 StarStep::StarStep(WorkingMesh& mesh, SampledError& sampled, ReferenceSolid* solid,
@@ -142,7 +146,7 @@ void StarStep::linearise(const Vec3& apex, double scale, double penalty) {
   Vec3 b = Vec3::Zero();
   const double sign = options_.direction == Direction::Inner ? -1 : 1;
   const auto add = [&](const Vec3& n, double lambda, double residual, double weight) {
-    double w = weight * (sampled_.power() == 4 ? residual * residual / scale + 1e-4 : 1);
+    double w = weight * (sampled_.power() == 4 ? residual * residual / scale + kLeastWeight : 1);
     if (sign * residual < 0) w *= penalty;
     const Vec3 g = lambda * n;
     objective.xx += w * g.x() * g.x(), objective.xy += w * g.x() * g.y();
@@ -176,8 +180,7 @@ void StarStep::linearise(const Vec3& apex, double scale, double penalty) {
 bool StarStep::folds(const Vec3& to) const {
   return std::any_of(ring.begin(), ring.end(), [&](const Ring& r) {
     const Vec3 n = (m_.position[r.p] - to).cross(m_.position[r.q] - to);
-    const double along = n.dot(m_.normal[r.triangle]);
-    return !(along > 0) || along * along < 0.03 * n.squaredNorm();
+    return bmesh::folds(m_.normal[r.triangle], n);
   });
 }
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "fold.h"
 #include "placement.h"
 #include "reference_solid.h"
 #include "sampled_error.h"

@@ -8,8 +8,13 @@
 #include <limits>
 
 #include "closest_triangle.h"
+#include "fold.h"
 
 namespace kaboum::bmesh {
+
+/// Points nearer than this to a facet's outer edge, as a share of the facet's height, make no plane
+/// through it: its slope would be all rounding.
+constexpr double kAcross = 1e-3;
 
 void SupportPlanes::assign(std::span<const NewTriangle> triangles) {
   facets_.clear();
@@ -28,7 +33,7 @@ void SupportPlanes::assign(std::span<const NewTriangle> triangles) {
 void SupportPlanes::keep(std::size_t i, const Vec3& point) {
   Facet& f = facets_[i];
   const double x = f.across.dot(point - f.p);
-  if (!(x > 1e-3 * f.across.dot(apex_ - f.p))) return;
+  if (!(x > kAcross * f.across.dot(apex_ - f.p))) return;
   const double slope = sign_ * f.normal.dot(point - f.p) / x;
   if (!(slope > f.slope)) return;
   f.slope = slope;
@@ -70,7 +75,7 @@ void SupportPlanes::half_spaces(const Vec3& spread, std::vector<HalfSpace>& out)
     const double length = normal.norm();
     if (!(length > 0)) continue;
     normal /= length;
-    const double margin = 0.51 * normal.cwiseAbs().dot(spread);
+    const double margin = kHalfSpacing * normal.cwiseAbs().dot(spread);
     out.push_back({normal, margin + normal.dot(f.p - apex_)});
   }
 }

@@ -5,8 +5,8 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/geom/convex_hull.h>
+#include <kaboum/geom/convex_polytope.h>
 #include <kaboum/geom/float32.h>
-#include <kaboum/geom/predicates.h>
 #include <kaboum/verify/holding.h>
 
 #include <algorithm>
@@ -35,12 +35,9 @@ std::vector<Vec3> cubes(const std::vector<Vec3>& points, double radius) {
 }
 
 bool contains(const geom::Mesh& hull, const std::vector<Vec3>& points) {
-  for (const geom::Triangle& t : hull.triangles)
-    for (const Vec3& p : points)
-      if (geom::orient3d(hull.vertices[t[0]], hull.vertices[t[1]], hull.vertices[t[2]], p) ==
-          geom::Sign::Positive)
-        return false;
-  return true;
+  const geom::ConvexPolytope polytope(hull);
+  return std::all_of(points.begin(), points.end(),
+                     [&](const Vec3& p) { return polytope.contains(p); });
 }
 
 /// The float32 hull scaled about its middle c, so that the planes move outwards by `distance`, all
