@@ -61,7 +61,7 @@ std::string names(const robot::Robot& robot) {
   std::string out;
   for (const robot::Variable& v : robot.variables) {
     if (!out.empty()) out += ',';
-    out += v.name;
+    out += robot::csv_field(v.name);
   }
   return out + '\n';
 }

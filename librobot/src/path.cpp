@@ -21,26 +21,73 @@ using Json = nlohmann::json;
   throw Error(ErrorCode::InvalidInput, name + ": " + what);
 }
 
-/// Without quotation marks round it.
-std::string_view unquoted(std::string_view field) {
-  const bool quoted = field.size() >= 2 && field.front() == '"' && field.back() == '"';
-  return quoted ? field.substr(1, field.size() - 2) : field;
+constexpr std::string_view kBlanks = " \t\r";
+
+struct Field {
+  std::string text;
+  bool quoted = false;  ///< a name, whatever it looks like
+};
+
+/// Where a field ends that begins with a quotation mark: past the closing one; two of them stand
+/// for one. npos: there is none.
+std::size_t end_of_quoted(std::string_view line) {
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    if (line[i] != '"') continue;
+    if (i + 1 == line.size() || line[i + 1] != '"') return i + 1;
+    ++i;
+  }
+  return std::string_view::npos;
+}
+
+std::string unquoted(std::string_view field) {
+  std::string out;
+  for (std::size_t i = 1; i + 1 < field.size(); ++i) {
+    out += field[i];
+    if (field[i] == '"') ++i;
+  }
+  return out;
+}
+
+/// Without what follows a '#' outside quotation marks.
+std::string_view without_comment(std::string_view line) {
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"') quoted = !quoted;
+    if (line[i] == '#' && !quoted) return line.substr(0, i);
+  }
+  return quoted ? line.substr(0, line.find('#')) : line;
+}
+
+/// Whether fields are separated by commas or semicolons.
+bool has_separators(std::string_view line) {
+  bool quoted = false;
+  for (const char c : line) {
+    if (c == '"') quoted = !quoted;
+    if (!quoted && (c == ',' || c == ';')) return true;
+  }
+  return quoted && line.find_first_of(",;") != std::string_view::npos;
 }
 
 /// Fields between commas or semicolons, without the blanks and quotation marks round them, the last
 /// one perhaps ended by a separator; else words between blanks.
-std::vector<std::string> split(std::string_view line) {
-  constexpr std::string_view kBlanks = " \t\r";
-  const bool commas = line.find_first_of(",;") != std::string_view::npos;
-  std::vector<std::string> out;
+std::vector<Field> split(std::string_view line) {
+  const bool commas = has_separators(line);
+  const std::string_view ends = commas ? ",;" : kBlanks;
+  std::vector<Field> out;
   while (true) {
-    const std::size_t end = std::min(line.find_first_of(commas ? ",;" : kBlanks), line.size());
+    line.remove_prefix(std::min(line.find_first_not_of(kBlanks), line.size()));
+    std::size_t from = 0;
+    if (line.starts_with('"')) {
+      const std::size_t closed = end_of_quoted(line);
+      if (closed != std::string_view::npos) from = closed;
+    }
+    const std::size_t end = std::min(line.find_first_of(ends, from), line.size());
     std::string_view field = line.substr(0, end);
-    field.remove_prefix(std::min(field.find_first_not_of(kBlanks), field.size()));
     field = field.substr(0, field.find_last_not_of(kBlanks) + 1);
-    const bool last = end == line.size();
+    const bool last = end == line.size(), quoted = from > 0 && field.size() == from;
     if (last && commas && field.empty() && !out.empty()) return out;
-    if (commas || !field.empty()) out.emplace_back(unquoted(field));
+    if (commas || !field.empty())
+      out.push_back({quoted ? unquoted(field) : std::string(field), quoted});
     if (last) return out;
     line.remove_prefix(end + 1);
   }
@@ -122,27 +169,29 @@ NamedPath parse_path_csv(std::string_view text, const std::string& name) {
     std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
     ++line_number;
-    line = line.substr(0, line.find('#'));
-    const std::vector<std::string> fields = split(line);
+    const std::vector<Field> fields = split(without_comment(line));
     if (fields.empty()) continue;
     const std::string place = "line " + std::to_string(line_number);
     std::vector<double> values;
     std::string bad;
-    for (const std::string& field : fields) {
-      if (const auto value = number(field)) {
+    const bool names =
+        first && std::any_of(fields.begin(), fields.end(), [](const Field& f) { return f.quoted; });
+    for (const Field& field : fields) {
+      const auto value = names && field.quoted ? std::nullopt : number(field.text);
+      if (value)
         values.push_back(*value);
-      } else {
-        bad = field;
-      }
+      else
+        bad = field.text;
     }
     if (values.size() < fields.size()) {
       if (!first) fail(name, place + ": '" + bad.substr(0, 40) + "' is not a number");
       if (!values.empty())
         fail(name, place + ": names of joints and numbers in one line ('" + bad.substr(0, 40) +
                        "' is not a number)");
-      if (std::find(fields.begin(), fields.end(), "") != fields.end())
-        fail(name, place + ": a joint without a name");
-      path.joints = fields;
+      for (const Field& field : fields) {
+        if (field.text.empty()) fail(name, place + ": a joint without a name");
+        path.joints.push_back(field.text);
+      }
     } else {
       append(path, std::move(values), name, place);
       path.lines.push_back(line_number);
@@ -193,6 +242,14 @@ NamedPath parse_path_json(std::string_view text, const std::string& name) {
   return path;
 }
 
+std::string csv_field(const std::string& joint) {
+  const bool plain = !number(joint) && joint.find_first_of(",;#\" \t\r\n") == std::string::npos;
+  if (plain) return joint;
+  std::string out = "\"";
+  for (const char c : joint) out += c == '"' ? std::string(2, c) : std::string(1, c);
+  return out + '"';
+}
+
 std::vector<std::size_t> time_columns(const NamedPath& path, const Robot& robot) {
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < path.joints.size(); ++i) {
@@ -229,6 +286,15 @@ Path arrange(const NamedPath& path, const Robot& robot, const std::string& name,
   std::vector<std::size_t> column(count, kNone);
   if (path.joints.empty()) {
     const std::size_t moving = count - fixed.size();
+    // Joints may have numbers for names; taken for a waypoint, they would move the robot.
+    const std::vector<double>& head = path.waypoints.front();
+    bool are_names = head.size() == count && count > 0;
+    for (std::size_t i = 0; are_names && i < count; ++i)
+      are_names = number(robot.variables[i].name) == head[i];
+    if (are_names)
+      fail(name,
+           "the first line may be the names of the joints or a waypoint: put quotation marks round "
+           "the names, or add a line of names if it is a waypoint");
     if (path.waypoints.front().size() != moving)
       fail(name, std::to_string(path.waypoints.front().size()) + " columns for a robot with " +
                      std::to_string(moving) + (fixed.empty() ? "" : " other") +

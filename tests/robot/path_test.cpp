@@ -109,5 +109,23 @@ TEST(Path, ColumnsFollowTheRobot) {
   EXPECT_EQ(arrange({{}, {{2, 0}}}, robot, "p", false), (Path{{2, 0}}));
 }
 
+TEST(Path, NamesInQuotationMarksMayBeNumbersAndHoldSeparators) {
+  const NamedPath path = parse_path_csv("\"1\", \"a,b\",\"say \"\"x\"\" # 1\"\n1,2,3 # end\n", "p");
+  ASSERT_EQ(path.joints, (std::vector<std::string>{"1", "a,b", "say \"x\" # 1"}));
+  ASSERT_EQ(path.waypoints, (Path{{1, 2, 3}}));
+  for (const std::string& name : path.joints) {
+    const NamedPath read = parse_path_csv(csv_field(name) + ",other\n0,1\n", "p");
+    EXPECT_EQ(read.joints, (std::vector<std::string>{name, "other"}));
+  }
+  EXPECT_EQ(csv_field("elbow_joint"), "elbow_joint");
+  // Names that are numbers, without the marks: taken for a waypoint, they would move the robot.
+  Robot robot;
+  robot.variables = {{"1", {}, {}}, {"2", {}, {}}};
+  EXPECT_THROW(arrange(parse_path_csv("1,2\n0.5,0.5\n", "p"), robot, "p"), Error);
+  EXPECT_EQ(arrange(parse_path_csv("\"1\",\"2\"\n0.5,0.25\n", "p"), robot, "p"),
+            (Path{{0.5, 0.25}}));
+  EXPECT_EQ(arrange(parse_path_csv("\"2\",\"1\"\n1,2\n", "p"), robot, "p"), (Path{{2, 1}}));
+}
+
 }  // namespace
 }  // namespace kaboum::test

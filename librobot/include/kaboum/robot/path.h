@@ -22,10 +22,15 @@ struct NamedPath {
 };
 
 /// Comma-, semicolon- or blank-separated numbers, one waypoint per line; a first line that is not
-/// all numbers names the joints, perhaps in quotation marks; a separator may end lines; `#` begins
+/// all numbers names the joints, perhaps in quotation marks (what is within them on the first line
+/// is a name, also a number, and may have separators in it); a separator may end lines; `#` begins
 /// a comment.
 /// @throws Error{InvalidInput} naming the line.
 NamedPath parse_path_csv(std::string_view text, const std::string& name);
+
+/// A joint's name as it is written on the first line: in quotation marks where it would be read as
+/// something else.
+std::string csv_field(const std::string& joint);
 
 /// {"joints": ["a", …], "waypoints": [[0, …], …]}, "joints" optional; or the waypoints alone.
 /// @throws Error{InvalidInput}.
