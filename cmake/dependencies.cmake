@@ -9,6 +9,7 @@ find_package(nlohmann_json 3.11 REQUIRED CONFIG)
 find_package(CLI11 2.1 REQUIRED CONFIG)
 find_package(PNG REQUIRED)
 find_package(tinyxml2 REQUIRED CONFIG)
+find_package(yaml-cpp 0.7 CONFIG QUIET)  # without it, scenes are JSON only
 # Not by its own configuration: Debian's names programs that are in other packages.
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(libzip REQUIRED IMPORTED_TARGET libzip)

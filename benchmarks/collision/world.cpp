@@ -92,8 +92,7 @@ std::size_t compare(const char* title, const world::Checker& checker,
   std::vector<char> ours(count), exact(count), fcl(count), trees(count);
   world::Scratch scratch;
   const auto own = collide::times_of(
-      count, [&](std::size_t i) { ours[i] = checker.find_contact(states[i], scratch) ? 1 : 0; },
-      times);
+      count, [&](std::size_t i) { ours[i] = checker.is_free(states[i], scratch) ? 0 : 1; }, times);
   print("libworld", own);
   const auto run = [&](const char* name, std::unique_ptr<Engine> engine,
                        std::vector<char>& answers) {
@@ -110,6 +109,11 @@ std::size_t compare(const char* title, const world::Checker& checker,
   run("FCL, exact meshes", collide::make_fcl(models.triangles), exact);
   run("FCL, bounding sets", collide::make_fcl(models.sets), fcl);
   run("trees of boxes, FCL with libccd, bounding sets", collide::make_fcl_tree(models.sets), trees);
+  std::vector<char> others(count);
+  run("Bullet, exact meshes", collide::make_bullet(models.triangles), others);
+  run("Bullet, bounding sets", collide::make_bullet(models.sets), others);
+  run("ODE, exact meshes", collide::make_ode(models.triangles), others);
+  run("ODE, bounding sets", collide::make_ode(models.sets), others);
   std::size_t missed = 0, more = 0, contacts = 0, other = 0;
   for (std::size_t i = 0; i < count; ++i) {
     contacts += exact[i] != 0 ? 1 : 0;

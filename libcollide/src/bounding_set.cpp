@@ -15,6 +15,7 @@ using geom::Box3;
 using geom::Vec3;
 
 constexpr double kUp = 1 + 0x1p-50;
+constexpr double kFarthest = 1e60;  ///< as Posed takes it
 
 bool overlap(const Box3& a, const Box3& b) {
   return a.min.x() <= b.max.x() && b.min.x() <= a.max.x() && a.min.y() <= b.max.y() &&
@@ -78,19 +79,29 @@ std::optional<Polytope> shrunk(const geom::Mesh& hull, double by) {
   return Polytope(points);
 }
 
-/// Calls visit(i, j) for pairs whose boxes meet until it is true.
-template <typename Visit>
-bool any_pair_of_boxes(const PosedSet& a, const PosedSet& b, double slack, const Visit& visit) {
-  const std::size_t n = a.set().size(), m = b.set().size();
-  const Box3 all = enlarged(b.box(), slack);
-  if (n == 0 || m == 0 || !overlap(a.box(), all)) return false;
-  for (std::size_t i = 0; i < n; ++i) {
-    if (!overlap(a.box(i), all)) continue;
-    const Box3 own = enlarged(a.box(i), slack);
-    for (std::size_t j = 0; j < m; ++j)
-      if (overlap(own, b.box(j)) && visit(i, j)) return true;
+/// A ball round the points that is at most a hundredth larger than the smallest
+/// one: M. Bădoiu, K. L. Clarkson, Smaller core-sets for balls, 2003.
+BoundingSet::Ball ball_of(const std::vector<BoundingSet::Body>& bodies, const Box3& box) {
+  BoundingSet::Ball out;
+  out.radius = std::numeric_limits<double>::infinity();
+  if (box.empty()) return {};
+  Vec3 center = box.center();
+  for (int step = 1; step <= 100; ++step) {
+    double most = 0;
+    Vec3 farthest = center;
+    for (const BoundingSet::Body& body : bodies) {
+      for (const Vec3& p : body.hull.vertices) {
+        const double reach = (p - center).norm() + body.margin;
+        if (reach <= most) continue;
+        most = reach;
+        farthest = p;
+      }
+    }
+    if (most < out.radius) out = {center, most};
+    center += (farthest - center) / (step + 1);
   }
-  return false;
+  out.radius *= kUp;
+  return out;
 }
 
 double require_length(double x, const char* what) {
@@ -127,15 +138,26 @@ BoundingSet::BoundingSet(std::vector<Body> bodies, Direction direction, double e
       epsilon_(require_length(epsilon, "an epsilon")) {
   for (const Body& body : bodies_) {
     require_length(body.margin, "a margin");
-    polytopes_.emplace_back(body.hull.vertices);
+    const Box3& box = polytopes_.emplace_back(body.hull.vertices).box();
+    const Vec3 middle = box.center(), half = 0.5 * box.max - 0.5 * box.min;
+    margins_.push_back(body.margin);
+    for (int k = 0; k < 3; ++k) {
+      middle_[k].push_back(middle[k]);
+      half_[k].push_back(half[k]);
+      magnitude_[k].push_back(polytopes_.back().magnitude()[k]);
+    }
+    const Vec3 reach = Vec3::Constant(body.margin * kUp) +
+                       0x1p-50 * box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs());
+    box_.extend(Box3{box.min - reach, box.max + reach});
   }
+  ball_ = ball_of(bodies_, box_);
 }
 
 BoundingSet::BoundingSet(const geom::ConvexSet& set)
     : BoundingSet(bodies_of(set), direction_of(set), set.provenance.epsilon) {}
 
 PosedSet::PosedSet(const BoundingSet& set, const geom::Transform& pose, double error)
-    : set_(&set), boxes_(set.size()) {
+    : set_(&set), boxes_(6 * set.size()) {
   place(pose, error);
 }
 
@@ -144,15 +166,61 @@ void PosedSet::place(const geom::Transform& pose, double error) {
       pose.linear.transpose() * pose.linear - Eigen::Matrix3d::Identity();
   if (!(defect.cwiseAbs().maxCoeff() < 1e-9) || !(pose.linear.determinant() > 0))
     throw Error(ErrorCode::InvalidArgument, "a pose whose matrix is no rotation");
+  if (!pose.translation.allFinite() || !(pose.translation.cwiseAbs().maxCoeff() <= kFarthest))
+    throw Error(ErrorCode::InvalidArgument, "a pose with numbers beyond 1e60");
   pose_ = pose;
   error_ = require_length(error, "an error of its place");
   defect_ = bound_of_defect(pose.linear, defect);
   box_ = {};
-  for (std::size_t i = 0; i < boxes_.size(); ++i) {
-    boxes_[i] = body(i).box(sum_up({margin_above(i), error}));
-    box_.extend(boxes_[i]);
+  const std::size_t n = set_->size();
+  for (std::size_t k = 0; k < 3 && n > 0; ++k) {
+    // Posed::box, for all bodies at once.
+    const double x = pose.linear(k, 0), y = pose.linear(k, 1), z = pose.linear(k, 2),
+                 t = pose.translation[k];
+    const auto &middle = set_->middle_, &half = set_->half_, &magnitude = set_->magnitude_;
+    double *low = boxes_.data() + k * n, *high = low + 3 * n;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double at = x * middle[0][i] + y * middle[1][i] + z * middle[2][i] + t;
+      const double wide =
+          std::abs(x) * half[0][i] + std::abs(y) * half[1][i] + std::abs(z) * half[2][i];
+      const double large = std::abs(x) * magnitude[0][i] + std::abs(y) * magnitude[1][i] +
+                           std::abs(z) * magnitude[2][i] + std::abs(t);
+      // Margin and error, rounded up.
+      const double reach = (set_->margins_[i] * (1 + defect_) + error) * kUp;
+      const double most = (wide + reach) * (1 + 0x1p-48) + 0x1p-48 * large + 0x1p-900;
+      low[i] = at - most;
+      high[i] = at + most;
+    }
+    box_.min[k] = *std::min_element(low, low + n);
+    box_.max[k] = *std::max_element(high, high + n);
   }
 }
+
+/// Pairs of bodies whose boxes meet.
+struct BoxPairs {
+  const PosedSet &a, &b;
+  double slack;
+
+  /// Calls visit(i, j) for them until it is true.
+  template <typename Visit>
+  [[nodiscard]] bool any(const Visit& visit) const {
+    const std::size_t n = a.set().size(), m = b.set().size();
+    const Box3 all = enlarged(b.box(), slack);
+    if (n == 0 || m == 0 || !overlap(a.box(), all)) return false;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!overlap(a.box(i), all)) continue;
+      const Box3 own = enlarged(a.box(i), slack);
+      for (std::size_t j = 0; j < m; ++j)
+        if (meets(own, j) && visit(i, j)) return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] bool meets(const Box3& own, std::size_t j) const {
+    return own.min[0] <= b.high(0)[j] && b.low(0)[j] <= own.max[0] && own.min[1] <= b.high(1)[j] &&
+           b.low(1)[j] <= own.max[1] && own.min[2] <= b.high(2)[j] && b.low(2)[j] <= own.max[2];
+  }
+};
 
 Axis* Memory::axis(std::size_t i, std::size_t j, std::size_t n, std::size_t m) {
   constexpr std::size_t kMost = 1 << 16;
@@ -167,12 +235,12 @@ std::optional<BodyPair> find_collision(const PosedSet& a, const PosedSet& b, dou
     throw Error(ErrorCode::InvalidArgument, "a collision is looked for with outer sets");
   require_length(slack, "a slack");
   std::optional<BodyPair> found;
-  any_pair_of_boxes(a, b, slack, [&](std::size_t i, std::size_t j) {
+  static_cast<void>(BoxPairs{a, b, slack}.any([&](std::size_t i, std::size_t j) {
     Axis* axis = memory == nullptr ? nullptr : memory->axis(i, j, a.set().size(), b.set().size());
     if (are_within(a.body(i), b.body(j), reach_of(a, i, b, j, slack), axis, decided))
       found = {i, j};
     return found.has_value();
-  });
+  }));
   return found;
 }
 
@@ -181,7 +249,7 @@ bool certainly_collide(const PosedSet& a, const PosedSet& b) {
     if (s->set().direction() == Direction::Outer && s->set().epsilon() > 0)
       throw Error(ErrorCode::InvalidArgument, "a certain collision is looked for with inner sets");
   const double errors = sum_up({a.error(), b.error()});
-  return any_pair_of_boxes(a, b, 0, [&](std::size_t i, std::size_t j) {
+  return BoxPairs{a, b, 0}.any([&](std::size_t i, std::size_t j) {
     if (errors == 0) return are_within(a.body(i), b.body(j), margins(a, i, b, j));
     const auto smaller = shrunk(a.set().body(i).hull, errors);
     return smaller && are_within(Posed(*smaller, a.pose()), b.body(j), margins(a, i, b, j));

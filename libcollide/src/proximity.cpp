@@ -27,13 +27,14 @@ constexpr double kSmallest = 1e-80;
 
 Vec3 scaled(const Vec3& d) { return d / d.cwiseAbs().maxCoeff(); }
 
-Vec3 first_direction(const Posed& a, const Posed& b, const Axis* axis) {
-  if (axis != nullptr && axis->allFinite() && !axis->isZero(0)) {
-    Vec3 d = scaled(*axis);
-    if (d.allFinite()) return d;
-  }
+/// From one body to the other.
+Vec3 direction_between(const Posed& a, const Posed& b) {
   const Vec3 d = scaled(b.center() - a.center());
   return d.allFinite() ? d : Vec3::UnitX();
+}
+
+bool is_axis(const Axis* axis) {
+  return axis != nullptr && axis->allFinite() && !axis->isZero(0) && scaled(*axis).allFinite();
 }
 
 /// Whether the four corners' hull certainly has the origin inside.
@@ -61,7 +62,7 @@ class Search {
         magnitude_(a.magnitude() + b.magnitude()),
         error_(kUnit * magnitude_.maxCoeff()),
         error_norm_(kUnit * magnitude_.lpNorm<1>()),
-        direction_(first_direction(a, b, axis)) {}
+        direction_(is_axis(axis) ? scaled(*axis) : direction_between(a, b)) {}
 
   /// Looks along the direction: sets what no difference is nearer than. [length]
   void look() {
@@ -70,6 +71,28 @@ class Search {
     const double sum = direction_.cwiseAbs().dot(magnitude_);
     gap_ = (-q_.value - p_.value) - kUnit * sum;
     if (!(sum > kSmallest)) gap_ = -std::numeric_limits<double>::infinity();
+  }
+  void look(bool rough) {
+    if (rough)
+      look_roughly();
+    else
+      look();
+  }
+  void aim(const Vec3& direction) { direction_ = direction; }
+  /// The same in floats, with what they may be wrong by.
+  void look_roughly() {
+    double error_a = 0, error_b = 0;
+    p_ = a_.rough_support(direction_, error_a);
+    q_ = b_.rough_support(-direction_, error_b);
+    const double sum = direction_.cwiseAbs().dot(magnitude_);
+    gap_ = (-q_.value - p_.value) - (error_a + error_b) - kUnit * sum;
+    if (!(sum > kSmallest)) gap_ = -std::numeric_limits<double>::infinity();
+  }
+  /// Forgets the corners, keeps the direction.
+  void restart() {
+    simplex_.size = 0;
+    square_ = std::numeric_limits<double>::infinity();
+    nearest_ = Vec3::Constant(square_);
   }
   [[nodiscard]] bool is_beyond(double reach) const {
     return gap_ > 0 && gap_ > reach * direction_.norm() * kUp;
@@ -130,19 +153,37 @@ bool are_within(const Posed& a, const Posed& b, double reach, Axis* axis, Decide
   if (!(reach >= 0) || !std::isfinite(reach))
     throw Error(ErrorCode::InvalidArgument, "a reach must be a number from 0 on");
   Search search(a, b, axis);
-  for (int steps = 0; steps < kMostSteps; ++steps) {
-    search.look();
+  // Floats first: they find directions and corners as well, and most pairs are far from touching.
+  bool rough = a.is_rough() && b.is_rough();
+  // A direction that does not separate any more is a worse start than any, and what moved that far
+  // will again: none is remembered this time.
+  if (is_axis(axis)) {
+    search.look(rough);
     if (search.is_beyond(reach)) {
-      if (axis != nullptr) *axis = search.direction();
-      if (decided != nullptr) ++(steps == 0 ? decided->at_once : decided->rounded);
+      if (decided != nullptr) ++decided->at_once;
       return false;
     }
-    const bool nearer = search.step();
-    if (search.meet() || search.upper() <= reach) {
-      if (decided != nullptr) ++decided->rounded;
-      return true;
+    *axis = Axis::Zero();
+    axis = nullptr;
+    search.aim(direction_between(a, b));
+  }
+  for (;; rough = false) {
+    for (int steps = 0; steps < kMostSteps; ++steps) {
+      search.look(rough);
+      if (search.is_beyond(reach)) {
+        if (axis != nullptr) *axis = search.direction();
+        if (decided != nullptr) ++decided->rounded;
+        return false;
+      }
+      const bool nearer = search.step();
+      if (search.meet() || search.upper() <= reach) {
+        if (decided != nullptr) ++decided->rounded;
+        return true;
+      }
+      if (!nearer) break;
     }
-    if (!nearer) break;
+    if (!rough) break;
+    search.restart();
   }
   if (decided != nullptr) ++decided->exactly;
   return detail::are_within_exactly(a, b, reach, search.simplex());

@@ -8,51 +8,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "link_poses.h"
 #include "placement.h"
+#include "state_places.h"
 
 namespace kaboum::world {
 
 using collide::PosedSet;
 
-/// For the world that it was used for last.
-struct Scratch::Impl {
-  std::shared_ptr<const char> checker;  ///< whose items these are
-  std::vector<PosedSet> places;         ///< of all items
-  std::vector<char> rests;              ///< of objects: their place is that of a pose, and holds
-  std::vector<collide::Memory> memory;  ///< of pairs of items, row by row
-};
-
-Scratch::Scratch() : impl_(std::make_unique<Impl>()) {}
-Scratch::~Scratch() = default;
-Scratch::Scratch(Scratch&&) noexcept = default;
-Scratch& Scratch::operator=(Scratch&&) noexcept = default;
-
 namespace {
 
 /// Values that errors of kinematics are bounded for beforehand.
 constexpr double kFarthest = 100;
-/// Values beyond that are refused: rounding of doubles would not be small against any robot.
-constexpr double kLargest = 1e9;
-
-void require_fits(const World& world, const WorldState& state) {
-  bool fits = state.q.size() == world.robots.size() && state.poses.size() == world.objects.size() &&
-              state.attachments.size() == world.objects.size() &&
-              (state.absent.empty() || state.absent.size() == world.objects.size());
-  for (std::size_t r = 0; fits && r < world.robots.size(); ++r)
-    fits = state.q[r].size() == world.robots[r].kinematics.variables.size();
-  if (!fits) throw Error(ErrorCode::InvalidArgument, "a state of another world");
-  for (const auto& q : state.q)
-    for (const double value : q)
-      if (!(std::abs(value) <= kLargest))
-        throw Error(ErrorCode::InvalidArgument, "a joint value that is not from -1e9 to 1e9");
-  for (std::size_t o = 0; o < state.poses.size(); ++o)
-    if (!state.attachments[o] && !(state.poses[o].translation.cwiseAbs().maxCoeff() <= kLargest))
-      throw Error(ErrorCode::InvalidArgument, "a position that is not from -1e9 to 1e9");
-  for (const auto& a : state.attachments)
-    if (a && (a->robot >= world.robots.size() ||
-              a->link >= world.robots[a->robot].kinematics.links.size()))
-      throw Error(ErrorCode::InvalidArgument, "an attachment to a link that does not exist");
-}
+constexpr auto kNeverApart = [](std::size_t) -> const std::int32_t* { return nullptr; };
 
 /// Whether the link holds the object, or may touch what is held.
 bool is_carried_by_link(const WorldState& state, const Item& object, const Item& shape,
@@ -128,6 +96,8 @@ Checker::Checker(const World& world) : world_(&world) {
     }
     low_.push_back(std::move(low));
     high_.push_back(std::move(high));
+    kinematics_.push_back(std::make_shared<detail::LinkPoses>(robot.kinematics, robot.base));
+    defects_.push_back(detail::defect_of(robot, *kinematics_.back()));
   }
   for (std::size_t o = 0; o < world.objects.size(); ++o) {
     const Item item{Item::kObject, o};
@@ -143,9 +113,9 @@ Checker::Checker(const World& world) : world_(&world) {
     const bool proved = items_[i].robot != Item::kObject && proofs_hold[items_[i].robot] != 0;
     for (std::size_t j = i + 1; j < items_.size(); ++j) {
       const Exempt exempt = is_exempt(world, items_[i], items_[j], proved);
-      if (exempt == Exempt::WithinLimits) pairs_within_limits_.push_back({i, j});
+      if (exempt == Exempt::WithinLimits) add(rows_within_limits_, i, j);
       if (exempt != Exempt::Nowhere) continue;
-      (items_[i].robot == Item::kObject ? object_pairs_ : robot_pairs_).push_back({i, j});
+      add(items_[i].robot == Item::kObject ? object_rows_ : robot_rows_, i, j);
     }
   }
 }
@@ -158,122 +128,91 @@ bool Checker::is_within_limits(std::size_t robot, const std::vector<double>& q) 
   return true;
 }
 
-void Checker::place(const WorldState& state, Scratch& scratch) const {
-  require_fits(*world_, state);
-  Scratch::Impl& s = *scratch.impl_;
-  if (s.checker != identity_) {
-    s.places.clear();
-    for (const Item& item : items_) s.places.emplace_back(world_->outer(item));
-    s.memory.assign(items_.size() * items_.size(), {});
-    s.rests.assign(world_->objects.size(), 0);
-    s.checker = identity_;
-  }
-  std::vector<std::vector<Transform>> links;
-  std::size_t next = 0;
-  for (std::size_t r = 0; r < world_->robots.size(); ++r) {
-    const RobotModel& robot = world_->robots[r];
-    const std::vector<double>& q = state.q[r];
-    links.push_back(forward(robot.kinematics, q));
-    for (Transform& pose : links.back()) pose = robot.base * pose;
-    bool usual = true;
-    for (std::size_t i = 0; i < q.size(); ++i)
-      usual = usual && q[i] >= low_[r][i] && q[i] <= high_[r][i];
-    for (std::size_t i = 0; i < robot.shapes.size(); ++i, ++next) {
-      const std::uint32_t link = robot.shapes[i].link;
-      double error = error_[r][i];
-      if (!usual)
-        error = detail::placement_error(
-            sweep::MotionBounds(sweep::LinkMotion(robot.kinematics, link, q, q),
-                                hulls_.at(items_[next])),
-            robot.base);
-      s.places[next].place(links[r][link], error);
-    }
-  }
-  for (std::size_t o = 0; o < world_->objects.size(); ++o, ++next) {
-    const double radius = radius_[next];
-    const auto& attachment = state.attachments[o];
-    if (!attachment) {
-      // Most objects rest from one query to the next.
-      const Transform &pose = state.poses[o], &before = s.places[next].pose();
-      if (s.rests[o] != 0 && pose.linear == before.linear && pose.translation == before.translation)
-        continue;
-      s.rests[o] = 0;  // also if placing throws
-      s.places[next].place(pose, detail::rotation_error(pose, radius));
-      s.rests[o] = 1;
-      continue;
-    }
-    s.rests[o] = 0;
-    const RobotModel& robot = world_->robots[attachment->robot];
-    const std::vector<double>& q = state.q[attachment->robot];
-    std::vector<Vec3> points;
-    for (const Vec3& p : hulls_.at(items_[next])) points.emplace_back(attachment->pose * p);
-    const sweep::MotionBounds bounds(sweep::LinkMotion(robot.kinematics, attachment->link, q, q),
-                                     points);
-    s.places[next].place(links[attachment->robot][attachment->link] * attachment->pose,
-                         detail::placement_error(bounds, robot.base) +
-                             detail::attachment_error(attachment->pose, radius));
-  }
+void Checker::add(std::vector<Row>& rows, std::size_t i, std::size_t j) {
+  if (rows.empty() || rows.back().item != i) rows.push_back({i, {}});
+  rows.back().others.push_back(j);
 }
 
-template <typename Pair>
-void Checker::visit(const WorldState& state, const Options& options, const Pair& pair) const {
+template <typename Skip, typename Look, typename Pair>
+bool Checker::visit_rows(const std::vector<Row>& rows, const Skip& skip, const Look& look,
+                         const Pair& pair) {
+  for (const Row& row : rows) {
+    const std::int32_t* apart = look(row.item);
+    for (const std::size_t j : row.others) {
+      if (apart != nullptr && apart[j] != 0) continue;
+      if (!skip(row.item, j) && pair(row.item, j)) return true;
+    }
+  }
+  return false;
+}
+
+template <typename Look, typename Pair>
+void Checker::visit(const WorldState& state, const Options& options, const Look& look,
+                    const Pair& pair) const {
   const bool carries = std::any_of(state.attachments.begin(), state.attachments.end(),
                                    [](const auto& attachment) { return attachment.has_value(); });
   const auto is_absent = [&](std::size_t i) {
     return !state.absent.empty() && items_[i].robot == Item::kObject &&
            state.absent[items_[i].index];
   };
-  for (const auto& [i, j] : robot_pairs_) {
-    if (is_absent(j)) continue;
-    if (carries && items_[j].robot == Item::kObject &&
-        is_carried_by_link(state, items_[j], items_[i], *world_))
-      continue;
-    if (pair(i, j)) return;
-  }
-  for (const auto& [i, j] : pairs_within_limits_) {
-    const std::size_t robot = items_[i].robot;
-    if (!is_within_limits(robot, state.q[robot]) && pair(i, j)) return;
-  }
+  const auto skip = [&](std::size_t i, std::size_t j) {
+    return is_absent(j) || (carries && items_[j].robot == Item::kObject &&
+                            is_carried_by_link(state, items_[j], items_[i], *world_));
+  };
+  if (visit_rows(robot_rows_, skip, look, pair)) return;
+  const auto skip_within_limits = [&](std::size_t i, std::size_t /*j*/) {
+    return is_within_limits(items_[i].robot, state.q[items_[i].robot]);
+  };
+  if (visit_rows(rows_within_limits_, skip_within_limits, look, pair)) return;
   if (!carries && !options.resting) return;
-  for (const auto& [i, j] : object_pairs_) {
-    if (is_absent(i) || is_absent(j)) continue;
+  const auto skip_objects = [&](std::size_t i, std::size_t j) {
     const bool rest = !state.attachments[items_[i].index] && !state.attachments[items_[j].index];
-    if (rest && !options.resting) continue;
-    if (pair(i, j)) return;
-  }
+    return is_absent(i) || is_absent(j) || (rest && !options.resting);
+  };
+  visit_rows(object_rows_, skip_objects, look, pair);
 }
 
 std::vector<std::array<Item, 2>> Checker::pairs(const WorldState& state,
                                                 const Options& options) const {
   std::vector<std::array<Item, 2>> out;
-  require_fits(*world_, state);
-  visit(state, options, [&](std::size_t i, std::size_t j) {
+  detail::require_fits(*world_, state);
+  visit(state, options, kNeverApart, [&](std::size_t i, std::size_t j) {
     out.push_back({items_[i], items_[j]});
     return false;
   });
   return out;
 }
 
-std::vector<Checker::Placed> Checker::places(const WorldState& state) const {
-  Scratch scratch;
+template <typename Found>
+void Checker::visit_meeting(const WorldState& state, Scratch& scratch, const Options& options,
+                            const Found& found) const {
   place(state, scratch);
-  std::vector<Placed> out;
-  for (std::size_t i = 0; i < items_.size(); ++i)
-    out.push_back({items_[i], scratch.impl_->places[i]});
-  return out;
+  Scratch::Impl& s = *scratch.impl_;
+  const auto look = [&](std::size_t i) -> const std::int32_t* {
+    s.look_from(i);
+    return s.apart.data();
+  };
+  visit(state, options, look, [&](std::size_t i, std::size_t j) {
+    if (s.is_beside_box(i, j) || s.is_beside_box(j, i)) return false;
+    const auto bodies = find_collision(s.set(i), s.set(j), 0, &s.memory[i * items_.size() + j]);
+    return bodies && found(i, j, *bodies);
+  });
 }
 
 template <typename Found>
 void Checker::visit_contacts(const WorldState& state, Scratch& scratch, const Options& options,
                              const Found& found) const {
-  place(state, scratch);
   Scratch::Impl& s = *scratch.impl_;
-  visit(state, options, [&](std::size_t i, std::size_t j) {
-    const auto bodies =
-        find_collision(s.places[i], s.places[j], 0, &s.memory[i * items_.size() + j]);
-    return bodies &&
-           found(contact_of(*world_, items_[i], items_[j], s.places[i], s.places[j], *bodies));
-  });
+  visit_meeting(
+      state, scratch, options, [&](std::size_t i, std::size_t j, const collide::BodyPair& bodies) {
+        return found(contact_of(*world_, items_[i], items_[j], s.set(i), s.set(j), bodies));
+      });
+}
+
+bool Checker::is_free(const WorldState& state, Scratch& scratch, const Options& options) const {
+  bool meet = false;
+  visit_meeting(state, scratch, options, [&](auto&&...) { return meet = true; });
+  return !meet;
 }
 
 std::optional<Contact> Checker::find_contact(const WorldState& state, Scratch& scratch,
@@ -302,8 +241,8 @@ std::optional<Checker::Nearest> Checker::find_nearest(const WorldState& state, S
   Scratch::Impl& s = *scratch.impl_;
   std::optional<Nearest> best;
   double lower = 0;
-  visit(state, options, [&](std::size_t i, std::size_t j) {
-    const auto distance = clearance(s.places[i], s.places[j]);
+  visit(state, options, kNeverApart, [&](std::size_t i, std::size_t j) {
+    const auto distance = clearance(s.set(i), s.set(j));
     if (!distance) return false;
     lower = best ? std::min(lower, distance->lower) : distance->lower;
     if (!best || distance->upper < best->clearance.upper)

@@ -7,7 +7,7 @@
 
 namespace kaboum::world::detail {
 
-/// A JSON value that knows where it is in its text.
+/// A value of JSON or YAML that knows where it is in its text.
 struct Located {
   enum class Kind { Null, Boolean, Number, String, Array, Object };
   Kind kind = Kind::Null;
@@ -26,6 +26,16 @@ const char* name_of(Located::Kind kind);
 /// @param name  of the file, for messages.
 /// @throws Error{InvalidInput} naming line and column: not JSON, a member twice.
 Located parse_located(std::string_view text, const std::string& name);
+
+/// The same of YAML: the core schema of its version 1.2, without anchors, tags and what version 1.1
+/// reads otherwise.
+/// @throws Error{InvalidInput} also for these; Error{NotBuilt} without yaml-cpp.
+Located parse_located_yaml(std::string_view text, const std::string& name);
+
+/// By the ending of the file's name: .yaml and .yml, else JSON.
+inline bool is_yaml(std::string_view name) {
+  return name.ends_with(".yaml") || name.ends_with(".yml");
+}
 
 /// "line 3, column 7".
 std::string place_of(std::string_view text, std::size_t at);

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "placement.h"
+#include "mover.h"
 
 namespace kaboum::world {
 namespace {
@@ -18,14 +18,7 @@ using Outcome = MotionAnswer::Outcome;
 
 constexpr double kUp = 1 + 0x1p-40;
 
-/// Something that the path moves.
-struct Mover {
-  Item item;
-  std::uint32_t link = 0;
-  Transform on_link;  ///< identity for shapes of links
-  std::vector<Vec3> points;
-  double grasp_error = 0;
-};
+using detail::Mover;
 
 struct Pair {
   std::size_t mover = 0;             ///< number of a Mover
@@ -61,30 +54,10 @@ class Motion {
   }
 
  private:
-  bool moves(const Item& item, const WorldState& state) const {
-    if (item.robot == robot_) return true;
-    if (item.robot != Item::kObject) return false;
-    const auto& attachment = state.attachments[item.index];
-    return attachment && attachment->robot == robot_;
-  }
-
   std::size_t mover_of(const Item& item, const WorldState& state) {
     for (std::size_t i = 0; i < movers_.size(); ++i)
       if (movers_[i].item == item) return i;
-    Mover mover;
-    mover.item = item;
-    mover.points = checker_.hull_of(item);
-    if (item.robot == Item::kObject) {
-      const Attachment& attachment = *state.attachments[item.index];
-      mover.link = attachment.link;
-      mover.on_link = attachment.pose;
-      mover.grasp_error =
-          detail::attachment_error(attachment.pose, detail::radius_of(world_.outer(item)));
-      for (Vec3& p : mover.points) p = attachment.pose * p;
-    } else {
-      mover.link = model_.shapes[item.index].link;
-    }
-    movers_.push_back(std::move(mover));
+    movers_.push_back(detail::mover_of(checker_, state, item));
     places_.emplace_back(world_.outer(item));
     return movers_.size() - 1;
   }
@@ -105,7 +78,8 @@ class Motion {
     for (const std::vector<double>& q : path_)
       if (!checker_.is_within_limits(robot_, q)) start.q[robot_] = q;
     for (const auto& [a, b] : checker_.pairs(start, {})) {
-      const bool first = moves(a, state), second = moves(b, state);
+      const bool first = detail::is_moved_by(robot_, a, state),
+                 second = detail::is_moved_by(robot_, b, state);
       if (!first && !second) continue;
       Pair pair;
       pair.mover = mover_of(first ? a : b, state);
@@ -169,10 +143,7 @@ class Motion {
       motions_.emplace_back(model_.kinematics, m.link, from, to);
       const sweep::MotionBounds bounds(motions_.back(), m.points);
       speed.push_back(motions_.back().moves() ? bounds.derivative(1) : 0);
-      // The rounding of the instant itself moves a point by less than 2^-52 of the speed.
-      errors_.push_back(
-          (detail::placement_error(bounds, model_.base) + m.grasp_error + 0x1p-50 * speed.back()) *
-          kUp);
+      errors_.push_back(detail::error_of_motion(m, bounds, speed.back(), model_.base));
     }
     for (Pair& pair : pairs_) {
       pair.speed = speed[pair.mover];
@@ -276,8 +247,8 @@ class Motion {
 
 }  // namespace
 
-MotionAnswer check_motion(const Checker& checker, const WorldState& state, std::size_t robot,
-                          const robot::Path& path, const MotionOptions& options) {
+void detail::require_motion(const Checker& checker, const WorldState& state, std::size_t robot,
+                            const robot::Path& path, const MotionOptions& options) {
   if (robot >= checker.world().robots.size())
     throw Error(ErrorCode::InvalidArgument, "no such robot");
   if (state.q.size() != checker.world().robots.size())
@@ -292,6 +263,11 @@ MotionAnswer check_motion(const Checker& checker, const WorldState& state, std::
       throw Error(ErrorCode::InvalidArgument,
                   "a waypoint with a value that is not from -1e9 to 1e9");
   }
+}
+
+MotionAnswer check_motion(const Checker& checker, const WorldState& state, std::size_t robot,
+                          const robot::Path& path, const MotionOptions& options) {
+  detail::require_motion(checker, state, robot, path, options);
   return Motion(checker, state, robot, path, options).run();
 }
 

@@ -47,4 +47,9 @@ double placement_error(const sweep::MotionBounds& bounds, const Transform& base)
          (1 + 0x1p-40);
 }
 
+collide::PosedSet place_of(const Region& region) {
+  return collide::PosedSet(region.inner, region.pose,
+                           rotation_error(region.pose, radius_of(region.inner)));
+}
+
 }  // namespace kaboum::world::detail

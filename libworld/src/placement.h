@@ -25,4 +25,7 @@ std::vector<Vec3> hull_points(const BoundingSet& set);
 /// these bounds, of the base's pose and of their product. [length]
 double placement_error(const sweep::MotionBounds& bounds, const Transform& base);
 
+/// A region's inner set where it is. Refers to the region.
+collide::PosedSet place_of(const Region& region);
+
 }  // namespace kaboum::world::detail

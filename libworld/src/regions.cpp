@@ -11,9 +11,7 @@ collide::Inclusion find_inclusion(const Checker& checker, const WorldState& stat
                                   std::size_t region, std::size_t most_pieces) {
   const World& world = checker.world();
   if (region >= world.regions.size()) throw Error(ErrorCode::InvalidArgument, "no such region");
-  const Region& of = world.regions[region];
-  const collide::PosedSet where(of.inner, of.pose,
-                                detail::rotation_error(of.pose, detail::radius_of(of.inner)));
+  const collide::PosedSet where = detail::place_of(world.regions[region]);
   for (const Checker::Placed& placed : checker.places(state))
     if (placed.item == item) return find_inclusion(placed.place, where, most_pieces);
   throw Error(ErrorCode::InvalidArgument, "no such item");

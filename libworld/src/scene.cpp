@@ -181,7 +181,8 @@ class Parser : detail::SceneRobot {
 World parse_scene(std::string_view text, const std::string& name, const FileReader& read,
                   SceneNotes* notes) {
   const detail::SceneValues values(text, name);
-  const Located root = detail::parse_located(text, name);
+  const Located root = detail::is_yaml(name) ? detail::parse_located_yaml(text, name)
+                                             : detail::parse_located(text, name);
   values.known(root, {"kaboum_scene", "unit", "robots", "objects", "regions", "allowed_contacts",
                       "attachments"});
   const Located& version = values.need(root, "kaboum_scene");

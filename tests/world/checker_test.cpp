@@ -5,7 +5,9 @@
 #include <kaboum/robot/kinematics.h>
 #include <kaboum/world/checker.h>
 
+#include <map>
 #include <random>
+#include <set>
 #include <thread>
 
 #include "support/rational_contact.h"
@@ -74,6 +76,88 @@ TEST(Checker, FindsTheContactsThatAllPairsInRationalNumbersFind) {
   }
   EXPECT_GT(contacts, 20);
   EXPECT_LT(contacts, states - 20);
+}
+
+/// The pairs in contact by the places of all items, without what leaves out pairs beforehand.
+std::set<std::string> contacts_of_all_pairs(const Checker& checker, const WorldState& state) {
+  std::map<Item, collide::PosedSet> at;
+  for (const Checker::Placed& placed : checker.places(state)) at.emplace(placed.item, placed.place);
+  std::set<std::string> out;
+  for (const auto& [a, b] : checker.pairs(state, {}))
+    if (find_collision(at.at(a), at.at(b)))
+      out.insert(checker.world().name_of(a) + " " + checker.world().name_of(b));
+  return out;
+}
+
+TEST(Checker, BallsAndBoxesLeaveOutNoContact) {
+  const SceneFiles files;
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> from(-1, 1);
+  std::size_t contacts = 0, free = 0, looks = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    std::vector<std::string> positions(1 + random() % 9, "[0, 0, 0]");
+    World world = files.world(
+        files.scene(objects(files, positions), "\"base\": {\"position\": [0, 0, 0.5]}"));
+    const double far = trial % 3 == 0 ? 0 : trial % 3 == 1 ? 10 : 1e5;
+    const Vec3 center = far * Vec3(from(random), from(random), from(random));
+    const auto turn = [&] {
+      return robot::rotation_about(Vec3(from(random), from(random), from(random)).normalized(),
+                                   3 * from(random));
+    };
+    world.robots[0].base = {turn(), center};
+    for (Object& o : world.objects)
+      o.pose = {turn(), center + 3.5 * Vec3(from(random), from(random), from(random))};
+    world.robots[0].kinematics.joints[1].multiplier = 0.5;  // as of a mimic joint
+    world.robots[0].kinematics.joints[1].offset = 0.25;
+    if (trial % 4 == 0) world.robots[0].kinematics.joints[2].type = robot::JointType::Prismatic;
+    const Checker checker(world);
+    Scratch scratch;
+    for (int i = 0; i < 40; ++i) {
+      WorldState state = initial_state(world);
+      state.q[0] = random_values(random, 3);
+      if (i % 10 == 9) state.q[0][0] += 500;  // beyond what errors are bounded for beforehand
+      if (i % 5 == 4) {
+        state.attachments[0] = Attachment{};
+        state.attachments[0]->link = 3;
+        state.attachments[0]->pose = {turn(), {1.2, 0, 0}};
+      }
+      std::set<std::string> found;
+      for (const Contact& c : checker.find_contacts(state, scratch, {}))
+        found.insert(world.name_of(c.items[0]) + " " + world.name_of(c.items[1]));
+      EXPECT_EQ(found, contacts_of_all_pairs(checker, state)) << trial << ' ' << i;
+      EXPECT_EQ(checker.is_free(state, scratch), found.empty());
+      EXPECT_EQ(checker.find_contact(state, scratch).has_value(), !found.empty());
+      contacts += found.size();
+      free += found.empty() ? 1 : 0;
+      ++looks;
+    }
+  }
+  EXPECT_GT(contacts, looks / 5);
+  EXPECT_GT(free, looks / 10);
+}
+
+TEST(Checker, PlacesAreThoseOfKinematicsFarFromTheOriginAndFixedBesides) {
+  const SceneFiles files;
+  World world = files.world(files.scene());
+  RobotModel& arm = world.robots[0];
+  arm.base = {robot::rotation_about(Vec3(1, 2, 3).normalized(), 1), {30, -40, 50}};
+  arm.kinematics.joints[1].axis = Vec3(0.6, 0, 0.8);
+  arm.kinematics.joints[2].type = robot::JointType::Fixed;
+  arm.kinematics.joints[2].origin.linear = robot::rotation_from_rpy(0.1, 0.2, 0.3);
+  const Checker checker(world);
+  std::mt19937_64 random(4);
+  for (int i = 0; i < 50; ++i) {
+    WorldState state = initial_state(world);
+    state.q[0] = random_values(random, 3);
+    const auto links = robot::forward(arm.kinematics, state.q[0]);
+    for (const Checker::Placed& placed : checker.places(state)) {
+      const std::uint32_t link = arm.shapes[placed.item.index].link;
+      const Transform expected = arm.base * links[link];
+      for (const Vec3& p : checker.hull_of(placed.item))
+        EXPECT_LT((placed.place.pose() * p - expected * p).norm(), placed.place.error());
+      EXPECT_LT(placed.place.error(), 1e-10);
+    }
+  }
 }
 
 TEST(Checker, SaysWhatIsCertain) {

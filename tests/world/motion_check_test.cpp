@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 #include <kaboum/base/error.h>
 #include <kaboum/world/motion_check.h>
+#include <kaboum/world/regions.h>
 
+#include <cmath>
 #include <random>
 
 #include "worlds.h"
@@ -155,6 +157,45 @@ TEST(CheckMotion, PathsOfOneWaypointAndOfNone) {
   const MotionAnswer limited = check_motion(
       checker, state, 0, {{-0.2, 0, 0}, {-0.6, 0.4, 0.2}, {0.5, 0, 0}}, {.most_intervals = 2});
   EXPECT_EQ(limited.outcome, Outcome::Undecided);
+}
+
+TEST(MotionInclusion, IsThatOfEveryInstant) {
+  const SceneFiles files;
+  // The region x from -2 to 2, y and z from -1 to 1, about the last link's way.
+  const World world = files.world(files.scene(
+      "\"objects\": [{\"name\": \"box\", \"outer\": " + files.ref("box.glb") +
+      "}], \"regions\": [{\"name\": \"tray\", \"pose\": {\"position\": [0, 0, 0]}, \"inner\": " +
+      files.ref("tray.glb") + "}]"));
+  const Checker checker(world);
+  const WorldState state = initial_state(world);
+  MotionOptions options;
+  options.resolution = 1e-3;
+  const auto inside = [&](const robot::Path& path, const Item& item) {
+    return find_inclusion(checker, state, 0, path, item, 0, options);
+  };
+  using collide::Inclusion;
+  const Item l1{0, 1}, l2{0, 2};
+  // Link 1 reaches to 1 from the origin: to y = 1 within its half-width it sticks out.
+  EXPECT_EQ(inside({{0, 0, 0}, {1.2, 0, 0}}, l1).answer, Inclusion::Included);
+  const auto out = inside({{0, 0, 0}, {1.2, 0, 0}, {1.57, 0, 0}, {0, 0, 0}}, l1);
+  EXPECT_EQ(out.answer, Inclusion::NotIncluded);
+  EXPECT_EQ(out.segment, 1U);
+  // Until its corner (1, 0.0625) comes to y = 1, but for the resolution and the cube round it.
+  const double angle = 1.2 + out.share * (1.57 - 1.2);
+  const double y = std::sin(angle) + 0.0625 * std::cos(angle);
+  EXPECT_LE(y, 1);
+  EXPECT_NEAR(y, 1, 3e-3);
+  // Both ends are inside, the middle is not: samples of the ends would not tell.
+  EXPECT_EQ(inside({{1.2, 0, 0}, {1.9, 0, 0}}, l1).answer, Inclusion::NotIncluded);
+  EXPECT_EQ(inside({{1.2, 0, 0}}, l1).answer, Inclusion::Included);
+  EXPECT_EQ(inside({{1.9, 0, 0}}, l1).answer, Inclusion::Included);
+  // Link 2 folded back stays in a disk of radius 1.
+  EXPECT_EQ(inside({{0.1, 2.9, 0}, {0.4, 2.9, 0}}, l2).answer, Inclusion::Included);
+  // What rests is looked at where it is.
+  EXPECT_EQ(inside({{0, 0, 0}, {1, 0, 0}}, {Item::kObject, 0}).answer, Inclusion::Included);
+  EXPECT_THROW(inside({{0, 0, 0}}, {0, 9}), Error);
+  options.most_intervals = 2;
+  EXPECT_EQ(inside({{-1.2, 0, 0}, {1.2, 0, 0}}, l1).answer, Inclusion::Undecided);
 }
 
 }  // namespace

@@ -435,5 +435,72 @@ TEST(ExaminePairs, ProofsEndAtTheLimits) {
   EXPECT_EQ(outcome({0, 2.2, 2.2}), MotionAnswer::Outcome::Contact);
 }
 
+/// A scene in YAML with these lines at its end.
+std::string yaml_scene(const SceneFiles& files, const std::string& rest) {
+  std::string out =
+      "# A cell\nkaboum_scene: 1\nunit: m\nrobots:\n  - name: arm\n    urdf: {file: arm.urdf, "
+      "sha256: " +
+      files.hash("arm.urdf") +
+      "}\n    base: {position: [0, 0, +0.5], rpy: [0, 0, 1.5e-1]}\n    links:\n";
+  for (const std::string link : {"base", "l1", "l2", "l3"})
+    out += "      - link: " + link + "\n        outer: {file: " + link +
+           ".glb, sha256: " + files.hash(link + ".glb") + "}\n";
+  return out + rest;
+}
+
+World parse_yaml(const SceneFiles& files, const std::string& text) {
+  return parse_scene(text, "scene.yaml", [&](const std::string& file) { return files.read(file); });
+}
+
+TEST(YamlScene, SaysWhatTheSameJsonSays) {
+  const SceneFiles files;
+  const World world = parse_yaml(
+      files, yaml_scene(files, "objects:\n  - name: no\n    outer: {file: box.glb, sha256: '" +
+                                   files.hash("box.glb") + "'}\n"));
+  EXPECT_EQ(world.robots.at(0).base.translation.z(), 0.5);
+  EXPECT_EQ(world.robots.at(0).shapes.size(), 4U);
+  EXPECT_EQ(world.objects.at(0).name, "no");
+  // JSON is YAML.
+  const std::string json =
+      files.scene("\"objects\": [{\"name\": \"o\", \"outer\": " + files.ref("box.glb") + "}]");
+  EXPECT_EQ(parse_yaml(files, json).objects.at(0).name, "o");
+  const std::string back = scene_as_json(yaml_scene(files, ""), "scene.yaml");
+  EXPECT_EQ(files.world(back).robots.at(0).base.linear, world.robots.at(0).base.linear);
+  EXPECT_EQ(scene_as_json(json, "scene.json"), json);
+}
+
+TEST(YamlScene, MessagesNameLineAndColumn) {
+  const SceneFiles files;
+  const auto message = [&](const std::string& rest) -> std::string {
+    try {
+      parse_yaml(files, yaml_scene(files, rest));
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::InvalidInput);
+      return error.what();
+    }
+    return "no error";
+  };
+  const auto has = [&](const std::string& rest, const std::string& part) {
+    EXPECT_NE(message(rest).find(part), std::string::npos) << rest << ": " << message(rest);
+  };
+  // Sixteen lines come before.
+  has("object: []\n", "line 17, column 1");
+  has("objects:\n  - name: o\n    pose: {position: [0, zero, 0]}\n", "line 19, column 26");
+  has("objects:\n  - name: o\n    pose: {position: [0, 010, 0]}\n", "begins with 0");
+  has("objects:\n  - name: o\n    pose: {position: [0, .inf, 0]}\n", "line 19");
+  has("objects:\n  - name: o\n    pose: {position: [0, 1e999, 0]}\n", "line 19");
+  has("objects:\n  - &x {name: o}\n", "anchors");
+  has("objects:\n  - *x\n", "line 18");
+  has("objects:\n  - !thing {name: o}\n", "tag");
+  has("unit: mm\n", "'unit' is used twice");
+  has("objects: [\n", "not YAML");
+  has("---\nunit: m\n", "second document");
+  has("? [a]\n: 1\n", "name of a member");
+  has("objects: " + std::string(100, '[') + std::string(100, ']') + "\n", "more than 64");
+  EXPECT_THROW(parse_yaml(files, ""), Error);
+  EXPECT_THROW(parse_yaml(files, "# nothing\n"), Error);
+  EXPECT_THROW(parse_yaml(files, "- 1\n"), Error);
+}
+
 }  // namespace
 }  // namespace kaboum::world

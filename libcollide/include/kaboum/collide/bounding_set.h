@@ -3,6 +3,7 @@
 #include <kaboum/collide/proximity.h>
 #include <kaboum/geom/convex_set.h>
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -36,12 +37,29 @@ class BoundingSet {
   [[nodiscard]] std::size_t size() const { return bodies_.size(); }
   [[nodiscard]] const Body& body(std::size_t i) const { return bodies_[i]; }
   [[nodiscard]] const Polytope& polytope(std::size_t i) const { return polytopes_[i]; }
+  /// A ball that holds all bodies with their margins, in the set's frame; rounded up. Radius 0
+  /// where there are none. [length]
+  struct Ball {
+    geom::Vec3 center = geom::Vec3::Zero();
+    double radius = 0;
+  };
+  [[nodiscard]] const Ball& ball() const { return ball_; }
+  /// Box along the axes of the set's frame that holds all bodies with their margins.
+  [[nodiscard]] const geom::Box3& box() const { return box_; }
   [[nodiscard]] Direction direction() const { return direction_; }
   [[nodiscard]] double epsilon() const { return epsilon_; }
 
  private:
+  friend class PosedSet;
+
   std::vector<Body> bodies_;
   std::vector<Polytope> polytopes_;
+  /// Of the bodies' boxes, axis by axis, for the processor's sake: middle, half the size, and the
+  /// largest |coordinate|.
+  std::array<std::vector<double>, 3> middle_, half_, magnitude_;
+  std::vector<double> margins_;
+  Ball ball_;
+  geom::Box3 box_;
   Direction direction_ = Direction::Outer;
   double epsilon_ = 0;
 };
@@ -69,17 +87,26 @@ class PosedSet {
   [[nodiscard]] double margin_below(std::size_t i) const {
     return set_->body(i).margin * (1 - defect_);
   }
-  [[nodiscard]] Posed body(std::size_t i) const { return {set_->polytope(i), pose_}; }
+  [[nodiscard]] Posed body(std::size_t i) const {
+    return {set_->polytope(i), pose_, Posed::Checked{}};
+  }
   /// Boxes along the axes, margins and error included.
   [[nodiscard]] const geom::Box3& box() const { return box_; }
-  [[nodiscard]] const geom::Box3& box(std::size_t i) const { return boxes_[i]; }
+  [[nodiscard]] geom::Box3 box(std::size_t i) const {
+    return {{low(0)[i], low(1)[i], low(2)[i]}, {high(0)[i], high(1)[i], high(2)[i]}};
+  }
 
  private:
   const BoundingSet* set_;
   geom::Transform pose_;
   double error_ = 0;
   double defect_ = 0;  ///< of `linear` from a rotation, more than twice what it stretches by
-  std::vector<geom::Box3> boxes_;
+  friend struct BoxPairs;
+  [[nodiscard]] const double* low(std::size_t axis) const {
+    return boxes_.data() + axis * set_->size();
+  }
+  [[nodiscard]] const double* high(std::size_t axis) const { return low(3 + axis); }
+  std::vector<double> boxes_;  ///< lower ends of the bodies' boxes, axis by axis, then upper ends
   geom::Box3 box_;
 };
 

@@ -31,6 +31,13 @@ class Polytope {
     return best;
   }
 
+  /// The same in floats, four at a time: the value is off from the largest product by at most
+  /// 2^-20 |d| · magnitude() + 1e-30, and the point's own product by twice as much.
+  /// @pre has_floats(), |d| <= 16
+  [[nodiscard]] Support rough_support(const geom::Vec3& d) const;
+  /// Whether floats hold the coordinates: they are neither too large nor too small for them.
+  [[nodiscard]] bool has_floats() const { return !floats_.empty(); }
+
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(x_.size()); }
   [[nodiscard]] geom::Vec3 point(std::uint32_t i) const { return {x_[i], y_[i], z_[i]}; }
   /// Mean of the points, rounded.
@@ -41,6 +48,8 @@ class Polytope {
 
  private:
   std::vector<double> x_, y_, z_;
+  /// Four x, four y, four z, and so on; the last point is repeated.
+  std::vector<float> floats_;
   geom::Vec3 center_ = geom::Vec3::Zero(), magnitude_ = geom::Vec3::Zero();
   geom::Box3 box_;
 };
@@ -52,6 +61,14 @@ class Posed {
   /// @throws Error{InvalidArgument} for a pose with numbers that are not finite, or beyond 1e30
   ///   (matrix) or 1e60 (vector).
   Posed(const Polytope& body, const geom::Transform& pose);
+  struct Checked {};
+  /// Of a pose that was looked at before.
+  /// @pre no number of it is beyond what the other constructor takes; it is a rotation up to 1e-8.
+  Posed(const Polytope& body, const geom::Transform& pose, Checked /*unused*/)
+      : body_(&body),
+        pose_(&pose),
+        magnitude_(pose.linear.cwiseAbs() * body.magnitude() + pose.translation.cwiseAbs()),
+        is_small_(true) {}
 
   [[nodiscard]] const Polytope& body() const { return *body_; }
   [[nodiscard]] const geom::Transform& pose() const { return *pose_; }
@@ -66,6 +83,17 @@ class Posed {
     s.value += d.dot(pose_->translation);
     return s;
   }
+  /// Whether rough_support may be asked.
+  [[nodiscard]] bool is_rough() const { return is_small_ && body_->has_floats(); }
+  /// Farthest along d in floats, and in `error` how far the value may be from the largest one.
+  /// @pre is_rough(), |d| <= 2
+  [[nodiscard]] Polytope::Support rough_support(const geom::Vec3& d, double& error) const {
+    const geom::Vec3 local = pose_->linear.transpose() * d;
+    Polytope::Support s = body_->rough_support(local);
+    s.value += d.dot(pose_->translation);
+    error = 0x1p-19 * local.cwiseAbs().dot(body_->magnitude()) + 1e-29;
+    return s;
+  }
   /// Box along the axes that holds the exact image, and `reach` round it.
   [[nodiscard]] geom::Box3 box(double reach = 0) const;
 
@@ -73,6 +101,7 @@ class Posed {
   const Polytope* body_;
   const geom::Transform* pose_;
   geom::Vec3 magnitude_;
+  bool is_small_ = false;  ///< no entry of the matrix is above 2
 };
 
 }  // namespace kaboum::collide

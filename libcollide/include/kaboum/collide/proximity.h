@@ -26,7 +26,7 @@ struct Decided {
 /// distance 0. With reach = a + b: whether they meet when one is enlarged by a ball of radius a,
 /// the other one by a ball of radius b.
 /// @param reach    ≥ 0 and finite. [length]
-/// @param axis     where to look first; becomes the direction that was found. May be null.
+/// @param axis     where to look first; becomes a direction that separates, or zero. May be null.
 /// @param decided  counts; may be null.
 /// @throws Error{InvalidArgument} for a reach that is negative or not finite.
 bool are_within(const Posed& a, const Posed& b, double reach, Axis* axis = nullptr,

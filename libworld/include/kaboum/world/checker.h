@@ -9,6 +9,10 @@
 
 namespace kaboum::world {
 
+namespace detail {
+class LinkPoses;
+}
+
 /// Two things whose bounding sets meet.
 struct Contact {
   std::array<Item, 2> items;
@@ -60,6 +64,14 @@ class Checker {
     return find_contact(state, scratch, Options{});
   }
 
+  /// Whether find_contact finds nothing; what is in contact is not looked into.
+  /// @throws as find_contact
+  [[nodiscard]] bool is_free(const WorldState& state, Scratch& scratch,
+                             const Options& options) const;
+  [[nodiscard]] bool is_free(const WorldState& state, Scratch& scratch) const {
+    return is_free(state, scratch, Options{});
+  }
+
   /// All pairs in contact.
   [[nodiscard]] std::vector<Contact> find_contacts(const WorldState& state, Scratch& scratch,
                                                    const Options& options) const;
@@ -93,10 +105,40 @@ class Checker {
 
  private:
   void place(const WorldState& state, Scratch& scratch) const;
-  /// Calls pair(i, j) for the numbers of items of pairs that are looked at until it is true.
-  template <typename Pair>
-  void visit(const WorldState& state, const Options& options, const Pair& pair) const;
+  void start(Scratch::Impl& s) const;
+  /// @param next  number of the robot's first item. @return one past its last one.
+  std::size_t place_robot(const WorldState& state, std::size_t robot, std::size_t next,
+                          Scratch::Impl& s) const;
+  void place_object(const WorldState& state, std::size_t object, std::size_t item,
+                    Scratch::Impl& s) const;
+  [[nodiscard]] Transform pose_of(std::size_t robot, std::uint32_t link,
+                                  const Scratch::Impl& s) const;
+  double error_of_held(const WorldState& state, std::size_t object, std::size_t item,
+                       Scratch::Impl& s) const;
+  /// Whether error_ holds for these values of a robot's variables.
+  [[nodiscard]] bool is_usual(std::size_t robot, const std::vector<double>& q) const;
 
+  /// Items that an item before them may collide with, ascending.
+  struct Row {
+    std::size_t item = 0;
+    std::vector<std::size_t> others;
+  };
+  static void add(std::vector<Row>& rows, std::size_t i, std::size_t j);
+
+  /// Calls pair(i, j) for the numbers of items of pairs that are looked at until it is true; not
+  /// for those with apart[j] other than 0, apart = look(i).
+  template <typename Look, typename Pair>
+  void visit(const WorldState& state, const Options& options, const Look& look,
+             const Pair& pair) const;
+  /// Of some rows. @return whether it was true. `skip(i, j)`: pairs that are not looked at.
+  template <typename Skip, typename Look, typename Pair>
+  static bool visit_rows(const std::vector<Row>& rows, const Skip& skip, const Look& look,
+                         const Pair& pair);
+
+  /// Calls found(i, j, bodies) for the pairs in contact until it is true.
+  template <typename Found>
+  void visit_meeting(const WorldState& state, Scratch& scratch, const Options& options,
+                     const Found& found) const;
   /// Calls found(contact) for the pairs in contact until it is true.
   template <typename Found>
   void visit_contacts(const WorldState& state, Scratch& scratch, const Options& options,
@@ -108,11 +150,13 @@ class Checker {
   std::map<Item, std::vector<Vec3>> hulls_;
   std::vector<double> radius_;  ///< of items_
   /// Places in items_ of pairs that may collide: with a robot's shape first, of two objects.
-  std::vector<std::array<std::size_t, 2>> robot_pairs_, object_pairs_;
+  std::vector<Row> robot_rows_, object_rows_;
   /// Those of one robot that may collide beyond its limits only.
-  std::vector<std::array<std::size_t, 2>> pairs_within_limits_;
+  std::vector<Row> rows_within_limits_;
   std::vector<std::vector<double>> error_;  ///< of robots' shapes, for values from low_ to high_
   std::vector<std::vector<double>> low_, high_;
+  std::vector<std::shared_ptr<const detail::LinkPoses>> kinematics_;  ///< of the robots
+  std::vector<double> defects_;  ///< of their links' matrices, see defect_of
 };
 
 /// How a contact is to be understood, and where.

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <kaboum/collide/inclusion.h>
-#include <kaboum/world/checker.h>
+#include <kaboum/world/motion_check.h>
 
 namespace kaboum::world {
 
@@ -14,5 +14,23 @@ namespace kaboum::world {
 ///   the world.
 collide::Inclusion find_inclusion(const Checker& checker, const WorldState& state, const Item& item,
                                   std::size_t region, std::size_t most_pieces = 10'000);
+
+struct MotionInclusion {
+  collide::Inclusion answer = collide::Inclusion::Included;  ///< at every instant
+  /// Where it stops being certain: a segment from waypoint i to i + 1, and the share of it; all
+  /// before is inside.
+  std::size_t segment = 0;
+  double share = 0;
+  double found = 0;  ///< the share of the segment that was looked at when it did
+  std::size_t intervals = 0;
+};
+
+/// Whether an item stays in a region while a robot moves along a path, at every instant: a stretch
+/// of time is inside when the item is at its middle, enlarged by as much as it moves in half of it
+/// (docs/scene.md); others are halved until it moves less than options.resolution.
+/// @throws as check_motion and the one above.
+MotionInclusion find_inclusion(const Checker& checker, const WorldState& state, std::size_t robot,
+                               const robot::Path& path, const Item& item, std::size_t region,
+                               const MotionOptions& options, std::size_t most_pieces = 10'000);
 
 }  // namespace kaboum::world

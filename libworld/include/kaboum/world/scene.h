@@ -17,15 +17,20 @@ struct SceneNotes {
   std::vector<std::string> notes;  ///< things a user should know; one sentence each
 };
 
-/// A world of a scene file (docs/scene.md). Files are looked at by their hashes: one that is not
-/// what the scene was made with is refused, and so are inner sets where outer ones are needed, sets
-/// in another unit, of another link or another robot, links with shapes but without a set, names
-/// that are not known or used twice.
+/// A world of a scene file (docs/scene.md): YAML where its name ends in .yaml or .yml, else JSON.
+/// Files are looked at by their hashes: one that is not what the scene was made with is refused,
+/// and so are inner sets where outer ones are needed, sets in another unit, of another link or
+/// another robot, links with shapes but without a set, names that are not known or used twice.
 ///
 /// @param name  of the file, for messages.
-/// @throws Error{InvalidInput} naming the file, line and column, and what would help.
+/// @throws Error{InvalidInput} naming the file, line and column, and what would help;
+///   Error{NotBuilt} for YAML in a build without yaml-cpp.
 World parse_scene(std::string_view text, const std::string& name, const FileReader& read,
                   SceneNotes* notes = nullptr);
+
+/// A scene file as JSON: what it is, or what its YAML says (without comments).
+/// @throws Error{InvalidInput}, Error{NotBuilt} as parse_scene.
+std::string scene_as_json(std::string_view text, const std::string& name);
 
 /// What proofs about the robot's own pairs depend on: hash of its kinematics with its limits and
 /// of its shapes.

@@ -1,0 +1,181 @@
+// Where the things of a world are in a state.
+
+#include <kaboum/base/error.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "link_poses.h"
+#include "placement.h"
+#include "state_places.h"
+
+namespace kaboum::world {
+
+using collide::PosedSet;
+
+Scratch::Scratch() : impl_(std::make_unique<Impl>()) {}
+Scratch::~Scratch() = default;
+Scratch::Scratch(Scratch&&) noexcept = default;
+Scratch& Scratch::operator=(Scratch&&) noexcept = default;
+
+namespace {
+
+/// Values beyond that are refused: rounding of doubles would not be small against any robot.
+constexpr double kLargest = 1e9;
+/// Of the matrices of links that may be looked at as balls and boxes first.
+constexpr double kSmallDefect = 1e-9;
+
+void require_joint_values(const World& world, const WorldState& state) {
+  bool fits = state.q.size() == world.robots.size() && state.poses.size() == world.objects.size() &&
+              state.attachments.size() == world.objects.size() &&
+              (state.absent.empty() || state.absent.size() == world.objects.size());
+  for (std::size_t r = 0; fits && r < world.robots.size(); ++r)
+    fits = state.q[r].size() == world.robots[r].kinematics.variables.size();
+  if (!fits) throw Error(ErrorCode::InvalidArgument, "a state of another world");
+  for (const auto& q : state.q)
+    for (const double value : q)
+      if (!(std::abs(value) <= kLargest))
+        throw Error(ErrorCode::InvalidArgument, "a joint value that is not from -1e9 to 1e9");
+}
+
+void require_poses(const World& world, const WorldState& state) {
+  for (std::size_t o = 0; o < state.poses.size(); ++o)
+    if (!state.attachments[o] && !(state.poses[o].translation.cwiseAbs().maxCoeff() <= kLargest))
+      throw Error(ErrorCode::InvalidArgument, "a position that is not from -1e9 to 1e9");
+  for (const auto& a : state.attachments)
+    if (a && (a->robot >= world.robots.size() ||
+              a->link >= world.robots[a->robot].kinematics.links.size()))
+      throw Error(ErrorCode::InvalidArgument, "an attachment to a link that does not exist");
+}
+
+bool are_same(const std::vector<Transform>& a, const std::vector<Transform>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Transform)) == 0;
+}
+
+bool is_any_attached(const WorldState& state) {
+  return std::any_of(state.attachments.begin(), state.attachments.end(),
+                     [](const auto& attachment) { return attachment.has_value(); });
+}
+
+}  // namespace
+
+void detail::require_fits(const World& world, const WorldState& state) {
+  require_joint_values(world, state);
+  require_poses(world, state);
+}
+
+double detail::defect_of(const RobotModel& robot, const LinkPoses& kinematics) {
+  const Eigen::Matrix3d& l = robot.base.linear;
+  if (!(l.determinant() > 0)) return HUGE_VAL;
+  return kinematics.defect() + 2 * (l.transpose() * l - Eigen::Matrix3d::Identity()).norm();
+}
+
+void Checker::place(const WorldState& state, Scratch& scratch) const {
+  require_joint_values(*world_, state);
+  Scratch::Impl& s = *scratch.impl_;
+  if (s.checker != identity_) start(s);
+  std::size_t next = 0;
+  for (std::size_t r = 0; r < world_->robots.size(); ++r) next = place_robot(state, r, next, s);
+  const bool carries = is_any_attached(state);
+  if (!carries && are_same(state.poses, s.resting)) return;
+  s.resting.clear();  // also if placing throws
+  require_poses(*world_, state);
+  for (std::size_t o = 0; o < world_->objects.size(); ++o) place_object(state, o, next + o, s);
+  if (!carries) s.resting = state.poses;
+}
+
+void Checker::start(Scratch::Impl& s) const {
+  s = {};
+  const std::size_t n = items_.size();
+  for (const Item& item : items_) s.sets.emplace_back(world_->outer(item));
+  s.placed.assign(n, 0);
+  s.poses.resize(n);
+  s.errors.assign(n, 0);
+  const std::size_t fours = (n + 3) / 4 * 4;
+  for (std::vector<float>* of_items : {&s.x, &s.y, &s.z, &s.radius}) of_items->assign(fours, 0);
+  s.apart.assign(fours, 0);
+  s.memory.assign(n * n, {});
+  s.links.resize(world_->robots.size());
+  s.held.assign(world_->objects.size(), std::nullopt);
+  s.checker = identity_;
+}
+
+std::size_t Checker::place_robot(const WorldState& state, std::size_t r, std::size_t next,
+                                 Scratch::Impl& s) const {
+  const RobotModel& robot = world_->robots[r];
+  const std::vector<double>& q = state.q[r];
+  kinematics_[r]->compute(q, s.links[r]);
+  const bool usual = is_usual(r, q);
+  for (std::size_t i = 0; i < robot.shapes.size(); ++i, ++next) {
+    const std::uint32_t link = robot.shapes[i].link;
+    double error = error_[r][i];
+    if (!usual)
+      error = detail::placement_error(
+          sweep::MotionBounds(sweep::LinkMotion(robot.kinematics, link, q, q),
+                              hulls_.at(items_[next])),
+          robot.base);
+    s.put(next, pose_of(r, link, s), error);
+    if (!(defects_[r] <= kSmallDefect)) s.set(next);  // throws, or its ball is no matter
+  }
+  return next;
+}
+
+void Checker::place_object(const WorldState& state, std::size_t o, std::size_t item,
+                           Scratch::Impl& s) const {
+  const auto& attachment = state.attachments[o];
+  if (!attachment) {
+    const Transform& pose = state.poses[o];
+    s.put(item, pose, detail::rotation_error(pose, radius_[item]));
+    s.set(item);
+    return;
+  }
+  s.put(item, pose_of(attachment->robot, attachment->link, s) * attachment->pose,
+        error_of_held(state, o, item, s));
+  s.set(item);
+}
+
+Transform Checker::pose_of(std::size_t robot, std::uint32_t link, const Scratch::Impl& s) const {
+  return kinematics_[robot]->pose(link, s.links[robot]);
+}
+
+double Checker::error_of_held(const WorldState& state, std::size_t o, std::size_t item,
+                              Scratch::Impl& s) const {
+  const Attachment& attachment = *state.attachments[o];
+  const RobotModel& robot = world_->robots[attachment.robot];
+  const std::vector<double>& q = state.q[attachment.robot];
+  auto& held = s.held[o];
+  const bool usual = is_usual(attachment.robot, q);
+  const auto is_as_before = [&] {
+    return held && held->robot == attachment.robot && held->link == attachment.link &&
+           held->pose.linear == attachment.pose.linear &&
+           held->pose.translation == attachment.pose.translation;
+  };
+  if (usual && is_as_before()) return held->error;
+  std::vector<Vec3> points;
+  for (const Vec3& p : hulls_.at(items_[item])) points.emplace_back(attachment.pose * p);
+  const sweep::LinkMotion motion =
+      usual ? sweep::LinkMotion(robot.kinematics, attachment.link, low_[attachment.robot],
+                                high_[attachment.robot])
+            : sweep::LinkMotion(robot.kinematics, attachment.link, q, q);
+  const double error = detail::placement_error(sweep::MotionBounds(motion, points), robot.base) +
+                       detail::attachment_error(attachment.pose, radius_[item]);
+  if (usual) held = {attachment.robot, attachment.link, attachment.pose, error};
+  return error;
+}
+
+bool Checker::is_usual(std::size_t robot, const std::vector<double>& q) const {
+  for (std::size_t i = 0; i < q.size(); ++i)
+    if (!(q[i] >= low_[robot][i] && q[i] <= high_[robot][i])) return false;
+  return true;
+}
+
+std::vector<Checker::Placed> Checker::places(const WorldState& state) const {
+  Scratch scratch;
+  place(state, scratch);
+  std::vector<Placed> out;
+  for (std::size_t i = 0; i < items_.size(); ++i) out.push_back({items_[i], scratch.impl_->set(i)});
+  return out;
+}
+
+}  // namespace kaboum::world
