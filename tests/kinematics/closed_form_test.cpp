@@ -193,6 +193,43 @@ TEST(ClosedForm, PosesOutOfReachHaveNone) {
   EXPECT_TRUE(solve(*form, target).empty());
 }
 
+TEST(ClosedForm, FiveAxesReachOtherPosesWithAnotherHeading) {
+  std::mt19937_64 random(12);
+  int unreached = 0, most = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    const DhArm dh = random_arm(Family::FiveAxes, random);
+    const auto form = recognise(arm_of(dh));
+    ASSERT_TRUE(form);
+    const std::vector<double> q = random_joints(random, 5, std::numbers::pi);
+    const Transform reached = reference_pose(dh, q);
+    // Axis 1 in the base's frame, from the arm itself.
+    const Vec3 up = arm_of(dh).axes[0].direction;
+    const double heading = random_joints(random, 1, 3)[0];
+    const Transform target{robot::rotation_about(up, heading) * reached.linear,
+                           reached.translation};
+    unreached += solve(*form, target).empty() ? 1 : 0;
+    int solutions = 0;
+    double nearest = 100;
+    for (const Transform& pose : with_other_headings(*form, target)) {
+      EXPECT_LT((pose.translation - target.translation).norm(), 1e-12 * form->reach);
+      // Only turned about axis 1's direction.
+      EXPECT_LT((pose.linear * target.linear.transpose() * up - up).norm(), 1e-12);
+      for (const Solution& s : solve(*form, pose)) {
+        const std::vector<double> found(s.q.begin(), s.q.begin() + 5);
+        const PoseError error = difference(reference_pose(dh, found), pose);
+        EXPECT_LT(error.position + error.rotation, 1e-9);
+        nearest = std::min(nearest, turn_distance(found.data(), q));
+        ++solutions;
+      }
+    }
+    EXPECT_LT(nearest, 1e-5) << trial;
+    most = std::max(most, solutions);
+  }
+  EXPECT_GT(unreached, 270);
+  EXPECT_GT(most, 3);
+  EXPECT_TRUE(with_other_headings(*recognise(arm_of(rv_6sl(true))), Transform{}).empty());
+}
+
 TEST(ClosedForm, FiveAxesRefuseOtherDirections) {
   std::mt19937_64 random(4);
   const DhArm dh = random_arm(Family::FiveAxes, random);

@@ -95,6 +95,13 @@ struct SolveOptions {
 /// @param target  of the tool in the base's frame; a rotation up to rounding.
 Solutions solve(const ClosedForm& form, const Transform& target, const SolveOptions& options = {});
 
+/// Five axes reach poses only whose last axis lies in a plane through axis 1, or beside it. The
+/// poses of that kind that differ from a target by a turn about axis 1's direction through the
+/// tool's origin: its position, pitch and roll (App. A.3 of [gaschler2016]), its heading apart. At
+/// most four, each reached if joints 2 to 4 reach far enough; the target itself where its last axis
+/// is along axis 1, or its origin on it. Empty for other families.
+std::vector<Transform> with_other_headings(const ClosedForm& form, const Transform& target);
+
 const char* name_of(Family family);
 
 }  // namespace kaboum::kinematics
