@@ -55,6 +55,7 @@ int verify_sweep(const VerifyOptions& o) {
   sweep.set_format = o.approximation_format;
   sweep.packages = o.packages;
   sweep.joints = o.joints;
+  sweep.base_pose = o.base_pose;
   sweep.prepare = o.prepare;
   sweep.drop_sheets = o.drop_sheets;
   sweep.degrees = o.degrees;

@@ -4,6 +4,8 @@
 #include <kaboum/base/similar_name.h>
 
 #include <algorithm>
+#include <sstream>
+#include <utility>
 
 namespace kaboum::tools {
 
@@ -46,6 +48,19 @@ std::vector<world::Item> items_named(const world::World& world, const std::strin
                                               name + "'" + did_you_mean(name, names));
 }
 
+const char* answer_of(collide::Inclusion answer) {
+  using collide::Inclusion;
+  return answer == Inclusion::Included      ? "inside"
+         : answer == Inclusion::NotIncluded ? "not certainly inside"
+                                            : "undecided";
+}
+
+/// Of several: not inside, else undecided, else inside.
+void combine(collide::Inclusion& all, collide::Inclusion one) {
+  using collide::Inclusion;
+  if (all != Inclusion::NotIncluded && one != Inclusion::Included) all = one;
+}
+
 }  // namespace
 
 std::vector<Inside> parse_inside(const world::World& world, const std::vector<std::string>& texts) {
@@ -77,18 +92,49 @@ collide::Inclusion decide_inside(const world::Checker& checker, const world::Wor
   Inclusion all = Inclusion::Included;
   for (const Inside& one : wanted) {
     Inclusion whole = Inclusion::Included;
-    for (const world::Item& item : one.items) {
-      const Inclusion found = find_inclusion(checker, state, item, one.region);
-      if (whole != Inclusion::NotIncluded && found != Inclusion::Included) whole = found;
-    }
-    const std::string answer = whole == Inclusion::Included      ? "inside"
-                               : whole == Inclusion::NotIncluded ? "not certainly inside"
-                                                                 : "undecided";
+    for (const world::Item& item : one.items)
+      combine(whole, find_inclusion(checker, state, item, one.region));
     std::string line = before + one.name;
-    say(line.append(" in ").append(one.region_name).append(": ").append(answer));
+    say(line.append(" in ").append(one.region_name).append(": ").append(answer_of(whole)));
     report["inside"].push_back(
-        {{"what", one.name}, {"region", one.region_name}, {"answer", answer}});
-    if (all != Inclusion::NotIncluded && whole != Inclusion::Included) all = whole;
+        {{"what", one.name}, {"region", one.region_name}, {"answer", answer_of(whole)}});
+    combine(all, whole);
+  }
+  return all;
+}
+
+collide::Inclusion decide_inside(const world::Checker& checker, const world::WorldState& state,
+                                 std::size_t robot, const robot::Path& path,
+                                 const world::MotionOptions& options,
+                                 const std::vector<Inside>& wanted,
+                                 const std::function<void(const std::string&)>& say, Json& report) {
+  using collide::Inclusion;
+  Inclusion all = Inclusion::Included;
+  for (const Inside& one : wanted) {
+    Inclusion whole = Inclusion::Included;
+    world::MotionInclusion first;
+    for (const world::Item& item : one.items) {
+      const world::MotionInclusion found =
+          find_inclusion(checker, state, robot, path, item, one.region, options);
+      combine(whole, found.answer);
+      const bool earlier =
+          std::pair(found.segment, found.share) < std::pair(first.segment, first.share);
+      if (found.answer != Inclusion::Included && (first.answer == Inclusion::Included || earlier))
+        first = found;
+    }
+    std::ostringstream line;
+    line << one.name << " in " << one.region_name << ": " << answer_of(whole);
+    Json entry = {{"what", one.name}, {"region", one.region_name}, {"answer", answer_of(whole)}};
+    if (whole == Inclusion::Included) {
+      line << " at every instant";
+    } else {
+      line << " from waypoint " << first.segment + 1 << " + " << first.share
+           << " of the way to the next on";
+      entry["inside_until"] = {{"waypoint", first.segment + 1}, {"share", first.share}};
+    }
+    say(line.str());
+    report["inside"].push_back(std::move(entry));
+    combine(all, whole);
   }
   return all;
 }

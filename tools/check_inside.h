@@ -31,4 +31,11 @@ collide::Inclusion decide_inside(const world::Checker& checker, const world::Wor
                                  const std::vector<Inside>& wanted, const std::string& before,
                                  const std::function<void(const std::string&)>& say, Json& report);
 
+/// The same all along a motion of a robot, at every instant.
+collide::Inclusion decide_inside(const world::Checker& checker, const world::WorldState& state,
+                                 std::size_t robot, const robot::Path& path,
+                                 const world::MotionOptions& options,
+                                 const std::vector<Inside>& wanted,
+                                 const std::function<void(const std::string&)>& say, Json& report);
+
 }  // namespace kaboum::tools

@@ -24,15 +24,17 @@ void describe(CLI::App& app, CheckOptions& o) {
   app.add_flag("--ignore-limits", o.ignore_limits, "Allow values outside the joints' limits");
   app.add_flag("--resting", o.resting, "Look at pairs of objects that rest, too (not with --path)");
   app.add_flag("--distance", o.distance, "Say how far apart the nearest pair is (not with --path)");
-  app.add_option("--inside", o.inside,
-                 "Decide as well whether an object, ROBOT/LINK or ROBOT lies in a region (not with "
-                 "--path); may be repeated")
+  app.add_option(
+         "--inside", o.inside,
+         "Decide as well whether an object, ROBOT/LINK or ROBOT lies in a region, with --path "
+         "at every instant; may be repeated")
       ->type_name("NAME=REGION");
   app.add_option(
          "--preview", o.preview,
          "Write a picture (PNG): what is in contact is orange, the bodies that meet red; of "
          "a motion the instant of its contact, or its end; of several configurations the "
          "first that is not free")
+      ->check(png_name())
       ->type_name("FILE");
   app.add_option("--resolution", o.resolution,
                  "How much nearer than epsilon bodies may come in a motion before it counts as "

@@ -1,6 +1,8 @@
 // What kaboum-ik prints and reports.
 #include "ik_answer.h"
 
+#include <kaboum/robot/path.h>
+
 #include <Eigen/Geometry>
 #include <array>
 #include <charconv>
@@ -42,6 +44,12 @@ std::vector<std::string> singular_names(unsigned singular) {
   return names;
 }
 
+Json pose_json(const kinematics::Transform& pose) {
+  const Eigen::Quaterniond turn(pose.linear);
+  const kinematics::Vec3& p = pose.translation;
+  return {p.x(), p.y(), p.z(), turn.x(), turn.y(), turn.z(), turn.w()};
+}
+
 }  // namespace
 
 bool is_complete(const IkAnswer& answer) {
@@ -50,13 +58,11 @@ bool is_complete(const IkAnswer& answer) {
 }
 
 Json answer_json(const IkAnswer& answer, bool degrees) {
-  const Eigen::Quaterniond turn(answer.target.linear);
-  const kinematics::Vec3& p = answer.target.translation;
   Json j = {{"method", answer.form ? "closed form" : "numeric"},
             {"complete", is_complete(answer)},
             {"joints", answer.joints},
             {"angles", degrees ? "degrees" : "radians"},
-            {"pose", {p.x(), p.y(), p.z(), turn.x(), turn.y(), turn.z(), turn.w()}}};
+            {"pose", pose_json(answer.target)}};
   if (answer.form) {
     j["family"] = kinematics::name_of(answer.form->family);
     j["model_error"] = {{"position", answer.form->model_error.position},
@@ -68,6 +74,7 @@ Json answer_json(const IkAnswer& answer, bool degrees) {
     Json q = Json::array();
     for (std::size_t i = 0; i < row.q.size(); ++i) q.push_back(shown(answer, degrees, i, row.q[i]));
     j["solutions"].push_back({{"q", q},
+                              {"pose", pose_json(row.pose)},
                               {"within_limits", row.within},
                               {"singular", singular_names(row.singular)},
                               {"position_error", row.error.position},
@@ -80,7 +87,7 @@ void print_answer(const IkAnswer& answer, bool degrees) {
   std::string head;
   for (const std::string& joint : answer.joints) {
     if (!head.empty()) head += ',';
-    head += joint;
+    head += robot::csv_field(joint);
   }
   std::cout << head << '\n';
   for (const IkAnswer::Row& row : answer.rows) {

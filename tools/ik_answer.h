@@ -21,6 +21,7 @@ struct IkAnswer {
     kinematics::PoseError error;
     unsigned singular = kinematics::kRegular;
     bool within = true;
+    kinematics::Transform pose;  ///< that was to be reached
   };
   kinematics::Arm arm;
   std::vector<std::string> joints;

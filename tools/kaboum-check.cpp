@@ -1,5 +1,4 @@
 #include <kaboum/base/error.h>
-#include <kaboum/base/similar_name.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/robot/path_file.h>
 #include <kaboum/world/motion_check.h>
@@ -18,22 +17,8 @@ namespace {
 
 using namespace kaboum;  // the tool's own names are few
 
-std::size_t robot_named(const world::World& world, const std::string& name) {
-  std::vector<std::string> names;
-  for (const world::RobotModel& robot : world.robots) names.push_back(robot.name);
-  if (name.empty()) {
-    if (names.size() == 1) return 0;
-    throw Error(ErrorCode::InvalidArgument, names.empty()
-                                                ? "the scene has no robot"
-                                                : "the scene has several robots: give --robot");
-  }
-  if (const auto robot = world.find_robot(name)) return *robot;
-  throw Error(ErrorCode::InvalidArgument,
-              "--robot: the scene has no robot '" + name + "'" + did_you_mean(name, names));
-}
-
 /// "0,1.5,-2": a value per variable.
-robot::Path parse_configuration(const tools::CheckOptions& o, const robot::Robot& robot) {
+robot::Path parse_configuration(const tools::CheckOptions& o, const robot::Robot& robot) try {
   const robot::NamedPath named = robot::parse_path_csv(o.configuration, "--configuration");
   const std::size_t given = named.waypoints.front().size() + o.joints.size(),
                     needed = robot.variables.size();
@@ -50,6 +35,8 @@ robot::Path parse_configuration(const tools::CheckOptions& o, const robot::Robot
   if (o.degrees) path = robot::from_degrees(std::move(path), robot);
   if (!o.ignore_limits) robot::require_within_limits(path, robot, "--configuration");
   return path;
+} catch (const Error& error) {  // the command line's fault, no file's
+  throw Error(ErrorCode::InvalidArgument, error.what());
 }
 
 /// The result: with --quiet, exit code and report have it.
@@ -60,6 +47,7 @@ void say(const tools::CheckOptions& o, const std::string& line) {
 int check_path(const tools::CheckOptions& o, const tools::SceneFile& scene, std::size_t robot,
                const robot::Path& path, tools::Json& report) {
   const world::Checker checker(scene.world);
+  const std::vector<tools::Inside> wanted = tools::parse_inside(scene.world, o.inside);
   world::MotionOptions options;
   options.resolution = tools::parse_length(o.resolution)->value;
   options.most_intervals = o.most_intervals;
@@ -82,14 +70,18 @@ int check_path(const tools::CheckOptions& o, const tools::SceneFile& scene, std:
     }
     io::write_file(o.preview, tools::picture_of(checker, state, contacts));
   }
+  const collide::Inclusion inside = tools::decide_inside(
+      checker, initial_state(scene.world), robot, path, options, wanted,
+      [&](const std::string& line) { say(o, line); }, report);
   using Outcome = world::MotionAnswer::Outcome;
   report["answer"] = answer.outcome == Outcome::Free                             ? "free"
                      : answer.outcome == Outcome::Undecided                      ? "undecided"
                      : answer.contact && answer.contact->certain && answer.meets ? "colliding"
                                                                                  : "within epsilon";
-  return answer.outcome == Outcome::Free        ? tools::kDone
-         : answer.outcome == Outcome::Undecided ? tools::kLimit
-                                                : tools::kNo;
+  using collide::Inclusion;
+  if (answer.outcome == Outcome::Contact || inside == Inclusion::NotIncluded) return tools::kNo;
+  return answer.outcome == Outcome::Undecided || inside == Inclusion::Undecided ? tools::kLimit
+                                                                                : tools::kDone;
 }
 
 int check_states(const tools::CheckOptions& o, const tools::SceneFile& scene,
@@ -146,9 +138,8 @@ int check_states(const tools::CheckOptions& o, const tools::SceneFile& scene,
 }
 
 int check(const tools::CheckOptions& o) {
-  if (!o.path.empty() && (o.resting || o.distance || !o.inside.empty()))
-    throw Error(ErrorCode::InvalidArgument,
-                "--resting, --distance and --inside are for configurations");
+  if (!o.path.empty() && (o.resting || o.distance))
+    throw Error(ErrorCode::InvalidArgument, "--resting and --distance are for configurations");
   const tools::SceneFile scene = tools::read_scene(o.scene);
   std::vector<std::string> inputs = scene.inputs;
   inputs.insert(inputs.end(), {o.path, o.configurations});
@@ -157,7 +148,7 @@ int check(const tools::CheckOptions& o) {
   tools::Json report = {{"scene", {{"file", o.scene}, {"sha256", scene.sha256}}}};
   std::optional<std::size_t> robot;
   const bool moves = !o.path.empty() || !o.configuration.empty() || !o.configurations.empty();
-  if (moves || !o.robot.empty()) robot = robot_named(scene.world, o.robot);
+  if (moves || !o.robot.empty()) robot = tools::robot_named(scene.world, o.robot);
   robot::Path values;
   if (robot) {
     const world::RobotModel& model = scene.world.robots[*robot];

@@ -22,7 +22,8 @@ using Answer = tools::IkAnswer;
 struct Options {
   std::string robot, base, tip, pose_of, reference;
   std::vector<double> pose;
-  bool json = false, degrees = false, numeric = false, ignore_limits = false, copies = false;
+  bool json = false, degrees = false, numeric = false, ignore_limits = false, copies = false,
+       free_heading = false;
   int starts = 100;
   tools::CommonOptions common;
 };
@@ -107,12 +108,18 @@ Answer find(const Options& o, const robot::Robot& robot) {
       o.reference.empty() ? std::vector<double>(answer.joints.size(), 0.0)
                           : parse_joints(o.reference, "--reference", answer, o.degrees);
   if (!o.numeric) answer.form = ik::recognise(answer.arm);
+  if (o.free_heading && (!answer.form || answer.form->family != ik::Family::FiveAxes))
+    usage("--free-heading is for arms with five axes and a closed form; this one is not");
   if (answer.form) {
     ik::SolveOptions options;
     std::copy(reference.begin(), reference.end(), options.reference.begin());
-    for (const ik::Solution& s : ik::solve(*answer.form, answer.target, options))
-      add_row(answer, o, {s.q.begin(), s.q.begin() + static_cast<long>(answer.joints.size())},
-              reference, {{}, {s.position_error, s.rotation_error}, s.singular});
+    const std::vector<ik::Transform> targets =
+        o.free_heading ? ik::with_other_headings(*answer.form, answer.target)
+                       : std::vector<ik::Transform>{answer.target};
+    for (const ik::Transform& target : targets)
+      for (const ik::Solution& s : ik::solve(*answer.form, target, options))
+        add_row(answer, o, {s.q.begin(), s.q.begin() + static_cast<long>(answer.joints.size())},
+                reference, {{}, {s.position_error, s.rotation_error}, s.singular, true, target});
     return answer;
   }
   ik::NumericOptions options;
@@ -121,8 +128,16 @@ Answer find(const Options& o, const robot::Robot& robot) {
   options.limits = !o.ignore_limits;
   if (!o.reference.empty()) options.first = reference;
   for (const ik::NumericSolution& s : ik::solve_numeric_all(answer.arm, answer.target, options))
-    add_row(answer, o, s.q, reference, {{}, s.error});
+    add_row(answer, o, s.q, reference, {{}, s.error, ik::kRegular, true, answer.target});
   return answer;
+}
+
+std::string unreached(const Answer& answer, bool free_heading) {
+  const bool five = answer.form && answer.form->family == ik::Family::FiveAxes;
+  return five && !free_heading
+             ? "the pose is out of reach; five axes reach most poses with another "
+               "heading only, see --free-heading"
+             : "the pose is out of reach";
 }
 
 int run(const Options& o) {
@@ -157,7 +172,7 @@ int run(const Options& o) {
     return tools::kLimit;
   }
   std::cerr << "kaboum-ik: "
-            << (answer.found == 0 ? "the pose is out of reach"
+            << (answer.found == 0 ? unreached(answer, o.free_heading)
                                   : "the pose is reached outside the joints' limits only; see "
                                     "--ignore-limits")
             << '\n';
@@ -200,6 +215,10 @@ int main(int argc, char** argv) {
       "--copies", o.copies,
       "Print all that differ by whole turns within the limits, at most 4096 of a solution");
   app.add_flag("--ignore-limits", o.ignore_limits, "Print solutions outside the limits as well");
+  app.add_flag(
+      "--free-heading", o.free_heading,
+      "Of five axes: keep the pose's position, pitch and roll, and turn its heading (about "
+      "axis 1) so that it can be reached");
   app.add_flag("--degrees", o.degrees, "Angles are in degrees, those read and printed [radians]");
   app.add_flag("--numeric", o.numeric, "Search numerically although there is a closed form");
   app.add_option("--starts", o.starts, "Random configurations that numeric search begins at")

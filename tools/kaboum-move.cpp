@@ -1,9 +1,8 @@
-// kaboum-move: paths of a robot of a scene that are certified free at every instant, and their
-// execution.
+// kaboum-move: paths of a robot of a scene, certified free at every instant, and their execution.
 #include <kaboum/base/error.h>
-#include <kaboum/base/similar_name.h>
 #include <kaboum/motion/find_path.h>
 #include <kaboum/motion/trajectory.h>
+#include <kaboum/robot/kinematics.h>
 #include <kaboum/robot/path_file.h>
 
 #include <iostream>
@@ -23,23 +22,13 @@ using tools::MoveOptions;
 
 [[noreturn]] void usage(const std::string& what) { throw Error(ErrorCode::InvalidArgument, what); }
 
-std::size_t robot_named(const world::World& world, const std::string& name) {
-  std::vector<std::string> names;
-  for (const world::RobotModel& robot : world.robots) names.push_back(robot.name);
-  if (name.empty()) {
-    if (names.size() == 1) return 0;
-    usage(names.empty() ? "the scene has no robot" : "the scene has several robots: give --robot");
-  }
-  if (const auto robot = world.find_robot(name)) return *robot;
-  usage("--robot: the scene has no robot '" + name + "'" + did_you_mean(name, names));
-}
-
 /// What is asked for.
 struct Request {
   tools::SceneFile scene;
   std::size_t robot = 0;
   std::vector<double> start;
   robot::Path goals;
+  std::vector<std::size_t> numbers;  ///< of the goals, as they were given, from 1
   std::vector<std::string> notes;
 
   [[nodiscard]] const world::RobotModel& model() const { return scene.world.robots[robot]; }
@@ -49,28 +38,50 @@ struct Request {
 /// "0,1.5,-2": a value per variable.
 std::vector<double> configuration(const std::string& text, const char* option, const MoveOptions& o,
                                   const robot::Robot& robot) {
-  robot::Path path = robot::arrange(robot::parse_path_csv(text, option), robot, option, false, {});
-  if (path.size() != 1) usage(std::string(option) + ": one configuration is expected");
-  if (o.degrees) path = robot::from_degrees(std::move(path), robot);
-  robot::require_within_limits(path, robot, option);
-  return path.front();
+  try {
+    robot::Path path = arrange(robot::parse_path_csv(text, option), robot, option, false, {});
+    if (path.size() != 1) usage(std::string(option) + ": one configuration is expected");
+    if (o.degrees) path = robot::from_degrees(std::move(path), robot);
+    robot::require_within_limits(path, robot, option);
+    return path.front();
+  } catch (const Error& error) {
+    usage(error.what());  // the command line's fault, no file's
+  }
+}
+
+/// The goals of a file. Those beyond the joints' limits are left out with a note: others may do.
+void add_goals(Request& r, robot::Path goals, const std::string& file) {
+  const std::size_t given = r.goals.size();
+  for (std::size_t i = 0; i < goals.size(); ++i) {
+    if (const auto bad = find_out_of_limits(r.kinematics(), goals[i])) {
+      r.notes.push_back(file + ": goal " + std::to_string(i + 1) + " is left out: joint '" +
+                        r.kinematics().variables[*bad].name + "' is outside its limits");
+    } else {
+      r.goals.push_back(std::move(goals[i]));
+      r.numbers.push_back(given + i + 1);
+    }
+  }
+  if (r.goals.empty())
+    throw Error(ErrorCode::InvalidInput, file + ": all goals are outside the joints' limits");
 }
 
 Request read_request(const MoveOptions& o) {
   Request r;
   r.scene = tools::read_scene(o.scene);
   r.notes = r.scene.notes;
-  r.robot = robot_named(r.scene.world, o.robot);
+  r.robot = tools::robot_named(r.scene.world, o.robot);
   const robot::Robot& robot = r.kinematics();
-  const auto read = [&](const std::string& file) {
-    return robot::read_path(file, robot, {true, o.degrees, {}}, r.notes);
+  const auto read = [&](const std::string& file, bool limits) {
+    return robot::read_path(file, robot, {limits, o.degrees, {}}, r.notes);
   };
-  r.start = !o.start.empty()  ? read(o.start).back()
+  r.start = !o.start.empty()  ? read(o.start, true).back()
             : !o.from.empty() ? configuration(o.from, "--from", o, robot)
                               : r.model().home;
-  for (const std::string& text : o.to) r.goals.push_back(configuration(text, "--to", o, robot));
-  if (!o.goals.empty())
-    for (std::vector<double>& goal : read(o.goals)) r.goals.push_back(std::move(goal));
+  for (const std::string& text : o.to) {
+    r.goals.push_back(configuration(text, "--to", o, robot));
+    r.numbers.push_back(r.goals.size());
+  }
+  if (!o.goals.empty()) add_goals(r, read(o.goals, false), o.goals);
   if (r.goals.empty()) usage("where to? Give --to Q1,Q2,… or --goals FILE");
   return r;
 }
@@ -100,7 +111,7 @@ tools::Json answer_json(const Request& r, const PathAnswer& answer, const MoveOp
                        {"nodes", s.nodes}}},
                      {"blockers", blockers_json(r.scene.world, answer)}};
   if (answer.outcome == Outcome::Found) {
-    out["goal"] = answer.goal + 1;
+    out["goal"] = r.numbers[answer.goal];
     out["straight"] = answer.straight;
     out["waypoints"] = answer.path;
   }
@@ -215,7 +226,7 @@ int move(const MoveOptions& o) {
   tools::log(o.common.quiet,
              std::to_string(answer.path.size()) + " waypoints" +
                  (answer.straight ? ", straight" : "") + ", free at every instant" +
-                 (r.goals.size() > 1 ? "; to goal " + std::to_string(answer.goal + 1) : ""));
+                 (r.goals.size() > 1 ? "; to goal " + std::to_string(r.numbers[answer.goal]) : ""));
   tools::write_report(o.common, "kaboum-move", report);
   return tools::kDone;
 }

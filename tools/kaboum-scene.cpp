@@ -47,8 +47,9 @@ int make_scene(const tools::SceneOptions& o) {
     for (const tools::NamedFile& file : *files) inputs.push_back(file.file);
   if (inputs.empty())
     throw Error(ErrorCode::InvalidArgument, "nothing is asked for: give --robot or --object");
-  if (!o.scene.ends_with(".json"))
-    throw Error(ErrorCode::InvalidArgument, o.scene + ": a scene's name ends in .json");
+  if (!o.scene.ends_with(".json") && !o.scene.ends_with(".yaml") && !o.scene.ends_with(".yml"))
+    throw Error(ErrorCode::InvalidArgument,
+                o.scene + ": a scene's name ends in .json, .yaml or .yml");
   if (!o.force && std::filesystem::exists(o.scene))
     throw Error(ErrorCode::InvalidArgument,
                 o.scene + " exists; --force replaces it, with all that was edited in it");

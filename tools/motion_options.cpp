@@ -14,6 +14,15 @@ CLI::Option* add_degrees_option(CLI::App& app, bool& degrees) {
                       "Angles of the path and of --joint are in degrees, not radians");
 }
 
+CLI::Option* add_base_option(CLI::App& app, std::string& value) {
+  return app
+      .add_option("--base-pose", value,
+                  "Where the robot's root stands in the world, in the robot's unit of length and "
+                  "radians: X,Y,Z or X,Y,Z,ROLL,PITCH,YAW or X,Y,Z,QX,QY,QZ,QW or X,Y,Z and a "
+                  "matrix, row by row [the origin]")
+      ->type_name("POSE");
+}
+
 CLI::Option* add_joint_option(CLI::App& app, std::vector<std::string>& values) {
   return app
       .add_option(

@@ -12,6 +12,8 @@ namespace kaboum::tools {
 CLI::Option* add_joint_option(CLI::App& app, std::vector<std::string>& values);
 /// Adds the flag --degrees.
 CLI::Option* add_degrees_option(CLI::App& app, bool& degrees);
+/// Adds the option --base-pose.
+CLI::Option* add_base_option(CLI::App& app, std::string& value);
 /// @throws Error{InvalidArgument} on what is not NAME=VALUE, and on joints given twice.
 robot::FixedJoints fixed_joints(const std::vector<std::string>& values);
 

@@ -141,7 +141,8 @@ void describe(CLI::App& app, MoveOptions& o) {
   app.add_option("-o,--output", o.output, "The path's waypoints, CSV; - is stdout")
       ->capture_default_str()
       ->type_name("FILE");
-  add_degrees_option(app, o.degrees);
+  add_degrees_option(app, o.degrees)
+      ->description("Angles that are read are in degrees; what is written is in radians");
   describe_search(app, o);
   describe_execution(app, o);
   add_common_options(app, o.common);

@@ -19,4 +19,8 @@ struct SceneFile {
 /// @throws Error{InvalidInput}, see world::parse_scene.
 SceneFile read_scene(const std::string& path);
 
+/// The robot that --robot names; without a name the only one.
+/// @throws Error{InvalidArgument} when there is none, or there are several without a name.
+std::size_t robot_named(const world::World& world, const std::string& name);
+
 }  // namespace kaboum::tools

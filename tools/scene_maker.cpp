@@ -75,7 +75,7 @@ MadeScene make_scene(const SceneMaker& maker) {
                       {"allowed_contacts", Json::array()},
                       {"attachments", Json::array()}};
   MadeScene out;
-  out.containers = sets.write(scene.dump(2) + "\n");
+  out.containers = sets.write(scene);
   out.inputs.assign(sets.inputs.begin(), sets.inputs.end());
   out.notes = std::move(sets.notes);
   out.sizes = std::move(sets.sizes);

@@ -21,7 +21,8 @@ void add_sources_of_sets(CLI::App& command, SceneOptions& o) {
 CLI::App* describe_make(CLI::App& app, SceneOptions& o) {
   CLI::App* make = app.add_subcommand(
       "make", "Make a scene of URDFs and meshes, with the convex sets that it needs");
-  make->add_option("SCENE", o.scene, "Scene file to write (.json); sets go into a folder beside it")
+  make->add_option("SCENE", o.scene,
+                   "Scene file to write (.json or .yaml); sets go into a folder beside it")
       ->required();
   make->add_option("--robot", o.robots, "A robot; may be repeated")->type_name("NAME=URDF");
   make->add_option("--object", o.objects, "An object; may be repeated")->type_name("NAME=MESH");
@@ -57,7 +58,10 @@ CLI::App* describe_make(CLI::App& app, SceneOptions& o) {
 CLI::App* describe_update(CLI::App& app, SceneOptions& o) {
   CLI::App* update = app.add_subcommand(
       "update", "Make those sets of a scene anew that are out of date, as they were made before");
-  update->add_option("SCENE", o.scene, "Scene file; all but its sets stays as it is")->required();
+  update
+      ->add_option("SCENE", o.scene,
+                   "Scene file; all but its sets (and of YAML, comments) stays as it is")
+      ->required();
   add_sources_of_sets(*update, o);
   add_common_options(*update, o.common);
   return update;

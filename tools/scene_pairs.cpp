@@ -15,18 +15,10 @@ int find_pairs(const SceneOptions& o) {
   require_apart({{"--srdf", o.srdf}, {"--report", o.common.report}}, {o.scene});
   const SceneFile scene = read_scene(o.scene);
   for (const std::string& note : scene.notes) log(o.common.quiet, note);
-  const auto& robots = scene.world.robots;
-  if (robots.empty() || (o.robot.empty() && robots.size() > 1))
-    throw Error(ErrorCode::InvalidArgument,
-                robots.empty() ? "the scene has no robot" : "several robots: give --robot");
-  const auto index =
-      o.robot.empty() ? std::optional<std::size_t>(0) : scene.world.find_robot(o.robot);
-  if (!index)
-    throw Error(ErrorCode::InvalidArgument, "--robot: the scene has no robot '" + o.robot + "'");
   const auto say = [&](const std::string& line) {
     if (!o.common.quiet) std::cout << line << '\n';
   };
-  const world::RobotModel& robot = robots[*index];
+  const world::RobotModel& robot = scene.world.robots[robot_named(scene.world, o.robot)];
   const auto name = [&](std::uint32_t link) { return robot.kinematics.links[link].name; };
   std::vector<world::AllowedPair> allowed = world::connected_links(robot);
   Json pairs = Json::array(), never = Json::array();

@@ -4,13 +4,16 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
+#include <kaboum/world/scene.h>
 
 #include <algorithm>
 #include <cstdio>
+#include <sstream>
 
 #include "cli.h"
 #include "file_names.h"
 #include "robot_bodies.h"
+#include "yaml.h"
 
 namespace kaboum::tools {
 namespace {
@@ -39,6 +42,36 @@ void require_unit(const std::string& file, const std::string& needed) {
 
 }  // namespace
 
+std::optional<std::string> apply_parameters(const std::string& parameters,
+                                            SceneSetOptions& options) {
+  std::istringstream words(parameters);
+  std::string option, value;
+  while (words >> option) {
+    if (option == "--drop-sheets") {
+      options.sets.preparation.drop_sheets = true;
+      continue;
+    }
+    bool known = static_cast<bool>(words >> value);
+    if (option == "--epsilon") {
+      options.sets.epsilon = parse_length(value);
+      known = known && options.sets.epsilon.has_value();
+    } else if (option == "--effort") {
+      known = known && (value == "fast" || value == "normal" || value == "best");
+      options.sets.effort = value == "fast"   ? bcd::Effort::Fast
+                            : value == "best" ? bcd::Effort::Best
+                                              : bcd::Effort::Normal;
+    } else if (option == "--max-vertices-per-body") {
+      known = known && value == std::to_string(options.sets.max_vertices);
+    } else if (option == "--geometry") {
+      options.visual = value == "visual";
+    } else if (option != "--direction") {
+      known = false;
+    }
+    if (!known) return option;
+  }
+  return std::nullopt;
+}
+
 std::string SceneSetMaker::seen_from_scene(const fs::path& file) const {
   return fs::relative(fs::absolute(file), fs::absolute(scene_).parent_path()).generic_string();
 }
@@ -66,7 +99,8 @@ Json SceneSetMaker::robot(const std::string& name, const std::string& path, cons
                           const SceneSetOptions& options) {
   const robot::RobotFile file = robot::read_robot(path);
   inputs.insert(path);
-  certify::RobotRequest request{options.sets, {{}, options.visual, options.packages}, {}, {}};
+  certify::RobotRequest request{
+      options.sets, {options.links, options.visual, options.packages}, {}, {}};
   request.tool = std::string("kaboum-scene ") + version();
   require_formats(robot::link_meshes(file, request.shapes), "");
   Notes of_meshes;
@@ -146,7 +180,16 @@ Json SceneSetMaker::mesh(const std::string& name, const std::string& file,
   return keep(container, made.found.set.bytes(), sources);
 }
 
-std::vector<fs::path> SceneSetMaker::write(const std::string& text) {
+std::vector<fs::path> SceneSetMaker::write(const Json& scene) {
+  const bool yaml = scene_.extension() != ".json";
+  const std::string text = yaml ? to_yaml(scene) : scene.dump(2) + "\n";
+  const fs::path folder = scene_.parent_path();
+  static_cast<void>(world::parse_scene(
+      scene.dump(2), scene_.string() + " (as JSON)", [&](const std::string& file) {
+        for (const auto& [path, bytes] : files_)
+          if (path.lexically_normal() == (folder / file).lexically_normal()) return bytes;
+        return io::read_file(folder / file);
+      }));
   std::vector<fs::path> out;
   for (const auto& [path, bytes] : files_) {
     create(path.parent_path());

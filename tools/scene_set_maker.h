@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -18,10 +19,15 @@ namespace kaboum::tools {
 struct SceneSetOptions {
   certify::SetRequest sets;                  ///< of everything; direction apart
   bool visual = false;                       ///< of robots, shapes for drawing
+  std::vector<std::string> links = {};       ///< of robots, only these; empty: all
   std::vector<std::string> packages;         ///< folders that package:// URIs are looked up in
   const certify::SetCache* cache = nullptr;  ///< null: none
   std::function<void(const std::string&)> progress;
 };
+
+/// The options that a set's record states (bcd-decompose's). @return one that is not known.
+std::optional<std::string> apply_parameters(const std::string& parameters,
+                                            SceneSetOptions& options);
 
 /// Makes sets and keeps their containers until all are to be written.
 class SceneSetMaker {
@@ -39,8 +45,10 @@ class SceneSetMaker {
             certify::SetRequest::Direction direction, const std::filesystem::path& container,
             const SceneSetOptions& options);
 
-  /// Writes the containers, then the scene, each whole or not at all. @return the containers
-  std::vector<std::filesystem::path> write(const std::string& text);
+  /// Writes the containers, then the scene, each whole or not at all, if it can be read then.
+  /// @return the containers
+  /// @throws Error{InvalidInput} where reading refuses it; nothing is written then.
+  std::vector<std::filesystem::path> write(const Json& scene);
 
   std::set<std::string> inputs;
   std::vector<std::string> notes;

@@ -4,11 +4,9 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/io/convex_io.h>
+#include <kaboum/world/scene.h>
 
 #include <algorithm>
-#include <sstream>
-
-#include "arguments.h"
 
 namespace kaboum::tools {
 namespace {
@@ -21,7 +19,7 @@ class Update {
   explicit Update(const SceneUpdate& update) : o_(update), sets_(update.scene) {
     const std::vector<char> bytes = io::read_file(o_.scene);
     try {
-      scene_ = Json::parse(bytes.begin(), bytes.end());
+      scene_ = Json::parse(world::scene_as_json({bytes.data(), bytes.size()}, o_.scene.string()));
       unit_ = scene_.at("unit").get<std::string>();
     } catch (const Json::exception& error) {
       fail(std::string("no scene: ") + error.what());
@@ -36,7 +34,7 @@ class Update {
     }
     for (Json& region : list("regions")) set(region, "inner", Direction::Inner);
     MadeScene out;
-    if (made_) out.containers = sets_.write(scene_.dump(2) + "\n");
+    if (made_) out.containers = sets_.write(scene_);
     out.inputs.assign(sets_.inputs.begin(), sets_.inputs.end());
     out.notes = std::move(sets_.notes);
     out.sizes = std::move(sets_.sizes);
@@ -67,12 +65,18 @@ class Update {
     }
   }
 
-  [[nodiscard]] bool is_current_set(const Json& set) const {
+  /// @param made_of  hash of what else its record may name as its source: the robot's file
+  [[nodiscard]] bool is_current_set(const Json& set, const std::string& made_of = {}) const {
     if (!is_current(set)) return false;
-    if (set.contains("made_from"))
-      for (const Json& source : set.at("made_from"))
-        if (!is_current(source)) return false;
-    return true;
+    if (!set.contains("made_from")) return true;
+    // A hash that was put there by hand does not make a set one of the file as it is now.
+    const std::string source_sha256 = record_of(set).source_sha256;
+    bool known = source_sha256.empty() || source_sha256 == made_of;
+    for (const Json& source : set.at("made_from")) {
+      if (!is_current(source)) return false;
+      known = known || source.at("sha256").get<std::string>() == source_sha256;
+    }
+    return known;
   }
 
   [[nodiscard]] geom::Provenance record_of(const Json& set) const {
@@ -117,38 +121,13 @@ class Update {
     out.cache = o_.cache;
     out.progress = o_.progress;
     out.sets.unit = unit_;
-    std::istringstream words(parameters);
-    std::string option, value;
-    while (words >> option) {
-      bool known = true;
-      if (option == "--drop-sheets") {
-        out.sets.preparation.drop_sheets = true;
-        continue;
-      }
-      known = static_cast<bool>(words >> value);
-      if (option == "--epsilon") {
-        out.sets.epsilon = parse_length(value);
-        known = known && out.sets.epsilon.has_value();
-      } else if (option == "--effort") {
-        known = known && (value == "fast" || value == "normal" || value == "best");
-        out.sets.effort = value == "fast"   ? bcd::Effort::Fast
-                          : value == "best" ? bcd::Effort::Best
-                                            : bcd::Effort::Normal;
-      } else if (option == "--max-vertices-per-body") {
-        known = known && value == std::to_string(out.sets.max_vertices);
-      } else if (option == "--geometry") {
-        out.visual = value == "visual";
-      } else if (option != "--direction") {
-        known = false;
-      }
-      if (!known)
-        fail(path.string()
-                 .append(" is out of date and was made with '")
-                 .append(option)
-                 .append("', which this command does not know: make it anew with bcd-decompose ")
-                 .append(parameters)
-                 .append(", and put its SHA-256 into the scene"));
-    }
+    if (const auto unknown = apply_parameters(parameters, out))
+      fail(path.string()
+               .append(" is out of date and was made with '")
+               .append(*unknown)
+               .append("', which this command does not know: make it anew with bcd-decompose ")
+               .append(parameters)
+               .append(", and put its SHA-256 into the scene"));
     if (parameters.empty())
       fail(path.string() + " is out of date, and does not say how it was made: make it anew");
     return out;
@@ -157,13 +136,11 @@ class Update {
   /// The mesh that a set was made from: by its own record that of all in 'made_from' with this
   /// hash.
   [[nodiscard]] std::string mesh_of(const Json& set) const {
-    const std::string& sha256 = record_of(set).source_sha256;
+    const std::string sha256 = record_of(set).source_sha256;
     for (const Json& source : set.at("made_from"))
       if (!sha256.empty() && source.at("sha256").get<std::string>() == sha256)
         return path_of(source).string();
-    fail(path_of(set).string() +
-         " is out of date, and what it says it was made from is not in 'made_from': make it anew "
-         "with bcd-decompose, and put its SHA-256 into the scene");
+    return path_of(set.at("made_from").front()).string();  // the mesh itself comes first
   }
 
   void set(Json& thing, const char* member, Direction direction) {
@@ -181,16 +158,26 @@ class Update {
     made_ = true;
   }
 
-  void bring_up_to_date(Json& robot) {
-    bool current = is_current(robot.at("urdf"));
-    Json& links = robot.at("links");
-    for (const Json& link : links) {
-      current = current && is_current_set(link.at("outer"));
-      if (link.contains("inner") && !is_current_set(link.at("inner")))
+  /// Names of the links whose sets are out of date; all where the robot's file has changed.
+  [[nodiscard]] std::vector<std::string> stale_links(const Json& robot) const {
+    const bool moved = !is_current(robot.at("urdf"));
+    const std::string urdf_sha256 = robot.at("urdf").at("sha256");
+    std::vector<std::string> out;
+    for (const Json& link : robot.at("links")) {
+      if (moved || !is_current_set(link.at("outer"), urdf_sha256))
+        out.push_back(link.at("link").get<std::string>());
+      if (link.contains("inner") && !is_current_set(link.at("inner"), urdf_sha256))
         fail("the inner set of link '" + link.at("link").get<std::string>() +
              "' is out of date: make it anew with bcd-decompose --direction inner");
     }
-    if (current) return;
+    return out;
+  }
+
+  void bring_up_to_date(Json& robot) {
+    Json& links = robot.at("links");
+    const bool moved = !is_current(robot.at("urdf"));
+    const std::vector<std::string> stale = stale_links(robot);
+    if (stale.empty() && !moved) return;
     if (links.empty()) fail("robot '" + robot.at("name").get<std::string>() + "' has no links");
     // Sets that cannot be read do not say how they were made; the others do.
     const Json* known = &links.front().at("outer");
@@ -198,24 +185,42 @@ class Update {
       if (is_current(link.at("outer"))) known = &link.at("outer");
     SceneSetOptions options = options_of(*known);
     options.visual = robot.contains("shapes") && robot.at("shapes") == "visual";
+    if (!moved) options.links = stale;
     const Json made =
         sets_.robot(robot.at("name").get<std::string>(), path_of(robot.at("urdf")).string(),
                     path_of(*known).parent_path(), options);
-    Json fresh = made.at("links");
-    const std::string parameters = record_of(*known).parameters;
-    for (const Json& link : links)
-      require_ours(robot, link, fresh, parameters, robot.at("urdf").at("sha256"));
-    for (Json& link : fresh)
-      for (const Json& old : links)
-        if (old.at("link") == link.at("link") && old.contains("inner"))
-          link["inner"] = old.at("inner");
-    links = std::move(fresh);
+    replace_links(robot, made, record_of(*known).parameters,
+                  moved ? std::vector<std::string>{} : stale);
     robot["urdf"] = made.at("urdf");
     if (robot.erase("never_in_contact") > 0)
       sets_.notes.push_back(o_.scene.string() + ": robot '" + robot.at("name").get<std::string>() +
                             "': 'never_in_contact' was proved of the sets before and is taken "
                             "out; prove it anew (kaboum-scene pairs)");
     made_ = true;
+  }
+
+  /// @param only  the links that were made anew; empty: all
+  void replace_links(Json& robot, const Json& made, const std::string& parameters,
+                     const std::vector<std::string>& only) const {
+    Json& links = robot.at("links");
+    Json fresh = made.at("links");
+    const auto is_fresh = [&](const Json& link) {
+      return only.empty() || std::find(only.begin(), only.end(), link.at("link")) != only.end();
+    };
+    for (const Json& link : links)
+      if (is_fresh(link))
+        require_ours(robot, link, fresh, parameters, robot.at("urdf").at("sha256"));
+    for (Json& link : fresh)
+      for (const Json& old : links)
+        if (old.at("link") == link.at("link") && old.contains("inner"))
+          link["inner"] = old.at("inner");
+    if (only.empty()) {
+      links = std::move(fresh);
+      return;
+    }
+    for (Json& link : links)
+      for (const Json& one : fresh)
+        if (one.at("link") == link.at("link")) link = one;
   }
 
   const SceneUpdate& o_;

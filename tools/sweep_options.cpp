@@ -33,9 +33,18 @@ std::string check_length(const std::string& text) {
 }
 
 void add_files(CLI::App& app, SweepApproxOptions& o) {
-  app.add_option("ROBOT", o.robot, "Robot: URDF, or the Robotics Library's rlkin or rlmdl XML")
-      ->required()
-      ->type_name("FILE");
+  auto* robot =
+      app.add_option("ROBOT", o.robot, "Robot: URDF, or the Robotics Library's rlkin or rlmdl XML")
+          ->type_name("FILE");
+  auto* scene = app.add_option("--scene", o.scene,
+                               "Instead of ROBOT, a robot of a scene where it stands there, with "
+                               "the limits that the scene states (docs/scene.md)")
+                    ->excludes(robot)
+                    ->type_name("FILE");
+  app.add_option("--robot", o.robot_name, "Which robot of the scene [the only one]")
+      ->needs(scene)
+      ->type_name("NAME");
+  add_base_option(app, o.base_pose)->excludes(scene);
   app.add_option(
          "--path", o.path,
          "Waypoints in joint space, joined linearly: .csv, one line each, the joints named "
@@ -149,7 +158,7 @@ std::vector<std::string> split(const std::string& list) {
   return out;
 }
 
-std::string parameters(const SweepApproxOptions& o) {
+std::string parameters(const SweepApproxOptions& o, const std::string& base) {
   std::ostringstream out;
   out << "--epsilon " << o.epsilon << " --bound " << o.bound << " --body-epsilon "
       << (o.body_epsilon.empty() ? o.epsilon : o.body_epsilon) << " --max-vertices-per-body "
@@ -159,6 +168,7 @@ std::string parameters(const SweepApproxOptions& o) {
   if (!o.links.empty()) out << " --links " << o.links;
   for (const std::string& joint : o.joints) out << " --joint " << joint;
   if (o.degrees) out << " --degrees";
+  if (!base.empty()) out << " --base-pose " << base;
   if (o.drop_sheets) out << " --drop-sheets";
   if (o.implicit_margin) out << " --implicit-margin";
   if (o.no_merge) out << " --no-merge";
@@ -197,7 +207,7 @@ certify::RobotRequest bodies_request(const SweepApproxOptions& o) {
   return r;
 }
 
-certify::SweepRequest sweep_request(const SweepApproxOptions& o) {
+certify::SweepRequest sweep_request(const SweepApproxOptions& o, const std::string& base) {
   certify::SweepRequest r;
   r.search.epsilon = parse_length(o.epsilon)->value;
   r.search.rule = kRules.at(o.bound);
@@ -206,7 +216,7 @@ certify::SweepRequest sweep_request(const SweepApproxOptions& o) {
   r.search.explicit_margin = !o.implicit_margin;
   if (!o.reach.empty()) r.search.max_reach = parse_length(o.reach)->value;
   r.decide_motion = false;  // bound-verify sweep does, from the files alone
-  r.parameters = parameters(o);
+  r.parameters = parameters(o, base);
   r.unit = o.unit;
   return r;
 }

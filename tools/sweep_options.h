@@ -12,7 +12,8 @@
 namespace kaboum::tools {
 
 struct SweepApproxOptions {
-  std::string robot, path, output, output_format, epsilon = "0.005", bound = "balanced", reach;
+  std::string robot, scene, robot_name, base_pose, path, output, output_format,
+      epsilon = "0.005", bound = "balanced", reach;
   std::string links, geometry = "collision", unit = "m", preview, depfile, prefix;
   std::vector<std::string> joints, packages;
   double simplify = 0;
@@ -31,7 +32,8 @@ void describe(CLI::App& app, SweepApproxOptions& options);
 /// The bodies of links that are asked for.
 certify::RobotRequest bodies_request(const SweepApproxOptions& options);
 /// The swept set that is asked for, with the options as its record.
-certify::SweepRequest sweep_request(const SweepApproxOptions& options);
+/// @param base  where the robot stands, as --base-pose; empty: at the origin
+certify::SweepRequest sweep_request(const SweepApproxOptions& options, const std::string& base);
 
 /// The format of the result.
 /// @throws Error{InvalidArgument} when there is none, or another option does not go with it.

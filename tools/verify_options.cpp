@@ -107,7 +107,7 @@ std::vector<CLI::Option*> add_motion(CLI::App& app, VerifyOptions& o) {
           ->capture_default_str()
           ->type_name("N");
   CLI::Option* joint = add_joint_option(app, o.joints);
-  return {joint, add_degrees_option(app, o.degrees), gap, cells};
+  return {joint, add_degrees_option(app, o.degrees), gap, cells, add_base_option(app, o.base_pose)};
 }
 
 }  // namespace kaboum::tools

@@ -24,7 +24,7 @@ struct VerifyOptions {
   std::size_t max_contacts = VerifyMeshOptions{}.max_contacts;
   std::string geometry = "collision";  ///< of robots and sweeps
   std::vector<std::string> packages;   ///< of robots and sweeps
-  std::string links, gap;              ///< of sweeps, as all below
+  std::string links, gap, base_pose;   ///< of sweeps, as all below
   std::vector<std::string> joints;
   bool degrees = false;
   std::size_t max_cells = VerifySweepOptions{}.max_cells;

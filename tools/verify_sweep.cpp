@@ -2,6 +2,7 @@
 #include "verify_sweep.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/robot/base_pose.h>
 #include <kaboum/robot/path_file.h>
 #include <kaboum/verify/moving_robot.h>
 
@@ -21,6 +22,11 @@ using verify::Answer;
 /// Reads everything, and says what is to be known of it.
 SweepCase read(const VerifySweepOptions& o, const CommonOptions& common) {
   SweepCase run{o, robot::read_robot(o.files[0]), {}, {}, {}, 0, {}};
+  if (!o.base_pose.empty())
+    naming(o.files[0], [&] {
+      run.robot.robot =
+          robot::placed(run.robot.robot, robot::parse_base_pose(o.base_pose, "--base-pose"));
+    });
   // Limits are no matter of the set.
   std::vector<std::string> notes;
   run.path = robot::read_path(o.files[1], run.robot.robot,

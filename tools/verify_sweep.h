@@ -12,6 +12,7 @@ struct VerifySweepOptions {
   std::vector<std::string> files;  ///< robot, path, swept set
   std::string links, geometry = "collision", gap, claims = "all", witness, set_format;
   std::vector<std::string> packages, joints;  ///< joints: of --joint
+  std::string base_pose;                      ///< as --base-pose; empty: the origin
   bool prepare = false, drop_sheets = false;  ///< the links' meshes, as bcd-decompose does
   bool degrees = false;                       ///< angles of the path and of --joint
   std::size_t max_cells = 20000;

@@ -56,7 +56,7 @@ shows 0 'free at every instant' "$BIN/kaboum-check" near.json --path away.csv --
 shows 7 'undecided' "$BIN/kaboum-check" near.json --path through.csv --max-intervals 1
 # Degrees, limits, names.
 shows 1 'within epsilon' "$BIN/kaboum-check" near.json --configuration 90,0 --degrees
-expect 3 'limits' "$BIN/kaboum-check" near.json --configuration 4,0
+expect 2 'limits' "$BIN/kaboum-check" near.json --configuration 4,0
 shows 0 free "$BIN/kaboum-check" near.json --configuration=-3.5,0 --ignore-limits
 expect 2 "no robot 'arn'; did you mean 'arm'" "$BIN/kaboum-check" near.json --robot arn
 expect 2 'excludes' "$BIN/kaboum-check" near.json --path away.csv --configuration 0,0
@@ -64,7 +64,9 @@ expect 2 'excludes' "$BIN/kaboum-check" near.json --path away.csv --configuratio
 expect 1 '' "$BIN/kaboum-check" near.json --configuration 1.57,0 --preview near.png
 expect 1 '' "$BIN/kaboum-check" near.json --path through.csv --preview motion.png
 for f in near.png motion.png; do head -c 4 $f | grep -q PNG || fail "$f is no picture"; done
-expect 2 'would overwrite\|same file\|input' "$BIN/kaboum-check" near.json --preview near.json
+expect 2 'a PNG is written' "$BIN/kaboum-check" near.json --preview near.jpg
+absent near.jpg
+expect 2 'would overwrite\|same file\|input' "$BIN/kaboum-check" near.json --report near.json
 # Things in regions.
 cube 1 | awk 'NR > 2 && NR <= 10 { print $1 * 9 - 4, $2 * 9 - 4, $3 * 9 - 4; next } { print }' >meshes/room.off
 expect 0 '' "$BIN/kaboum-scene" make room.json --robot arm=arm.urdf --object box=meshes/cube.off --region room=meshes/room.off --no-cache
@@ -77,6 +79,16 @@ shows 0 'box in room: inside' "$BIN/kaboum-check" in.json --inside box=room --re
 grep -q '"answer": "inside"' in-report.json || fail "no inclusion in the report"
 shows 1 'arm in room: not certainly inside' "$BIN/kaboum-check" in.json --inside arm=room
 shows 0 'arm/base in room: inside' "$BIN/kaboum-check" in.json --inside arm/base=room --inside box=room
+# At every instant of a motion: the arm reaches out of the room.
+shows 0 'arm/base in room: inside at every instant' "$BIN/kaboum-check" in.json --path away.csv --inside arm/base=room --inside box=room
+shows 1 'arm/tip in room: not certainly inside from waypoint 1 + ' "$BIN/kaboum-check" in.json --path away.csv --inside arm/tip=room --resolution 0.01 --report in-report.json
+grep -q '"inside_until"' in-report.json || fail "no place where it leaves in the report"
+# The same scene as YAML.
+expect 0 '' "$BIN/kaboum-scene" make cell.yaml --robot arm=arm.urdf --object box=meshes/cube.off --inner --no-cache
+grep -q '^robots:' cell.yaml || fail "no YAML: $(head -5 cell.yaml)"
+shows 1 'arm/base and box are within epsilon' "$BIN/kaboum-check" cell.yaml --configuration 0,0
+expect 3 'bad.yaml: line 1, column 1: ' sh -c "{ echo 'thing: 1'; cat cell.yaml; } >bad.yaml; '$BIN/kaboum-check' bad.yaml"
+expect 3 'bad.yaml: line [0-9]*, column [0-9]*: not YAML' sh -c "{ cat cell.yaml; echo '  ]'; } >bad.yaml; '$BIN/kaboum-check' bad.yaml"
 sed 's/"name": "arm",/"name": "arm", "links_without_set": ["tip"],/' in.json >partly.json
 python3 -c 'import json; s = json.load(open("partly.json")); r = s["robots"][0]
 r["links"] = [l for l in r["links"] if l["link"] != "tip"]; json.dump(s, open("partly.json", "w"))'
@@ -105,6 +117,26 @@ expect 0 'never_in_contact.*is taken out' "$BIN/kaboum-scene" update old.json --
 grep -q '"j1": 0.5' old.json || fail "the update loses what was edited"
 shows 0 '^free$' "$BIN/kaboum-check" old.json
 expect 0 'nothing is out of date' "$BIN/kaboum-scene" update old.json --no-cache
+# A hash that was put there by hand does not make a set one of the mesh as it is.
+python3 - <<'END'
+import hashlib, json
+hand = json.load(open("near.json"))
+digest = hashlib.sha256(open("meshes/cube.off", "rb").read()).hexdigest()
+for thing in [hand["objects"][0]["outer"], hand["objects"][0]["inner"]] + [l["outer"] for l in hand["robots"][0]["links"]]:
+    for source in thing["made_from"]:
+        if source["file"] == "meshes/cube.off":
+            source["sha256"] = digest
+json.dump(hand, open("hand.json", "w"))
+END
+expect 0 'sets made anew' "$BIN/kaboum-scene" update hand.json --no-cache
+shows 0 '^free$' "$BIN/kaboum-check" hand.json
+# Only what is out of date is made anew: the bar's set is a file that nobody wrote to.
+cp cell/arm/upper.glb upper.glb
+touch -d '2001-01-01' cell/arm/upper.glb
+cube 1.5 >meshes/cube.off
+expect 0 '4 sets made anew' "$BIN/kaboum-scene" update hand.json --no-cache
+cmp -s cell/arm/upper.glb upper.glb || fail "the bar's set has changed"
+[ "$(date -r cell/arm/upper.glb +%Y)" = 2001 ] || fail "the bar's set was written"
 # Back to what they were: so are all sets, byte by byte.
 mv kept.off meshes/cube.off
 expect 0 'sets made anew' "$BIN/kaboum-scene" update old.json --no-cache

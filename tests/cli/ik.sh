@@ -86,6 +86,32 @@ cmp -s out.txt one.json || fail "twice the same, another answer"
 expect 7 'no proof' "$I" offset.urdf --pose 5 0 0 0 0 0 1 --starts 3
 expect 0 '' "$I" arm.urdf --numeric --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2
 
+# Five axes: most poses are reached with another heading only.
+{
+  echo '<robot name="five"><link name="base"/>'
+  joint j1 base l1 '0 0 0.2' '0 0 1' 3
+  joint j2 l1 l2 '0 0 0' '0 1 0' 3
+  joint j3 l2 l3 '0 0 0.19' '0 1 0' 3
+  joint j4 l3 l4 '0 0 0.139' '0 1 0' 3
+  joint j5 l4 l5 '0 0 0.3' '0 0 1' 3
+  echo '</robot>'
+} >five.urdf
+expect 0 'five axes, closed form' "$I" five.urdf --pose-of 0.3,0.5,0.6,0.4,0.2
+expect 1 'with another heading only, see --free-heading' "$I" five.urdf --pose 0.4 0.1 0.3 0.5 0.5 0.5 0.5
+expect 0 'closed form' "$I" five.urdf --pose 0.4 0.1 0.3 0.5 0.5 0.5 0.5 --free-heading --json
+python3 - <<'END' || fail "headings: $(head -c 400 out.txt)"
+import json, subprocess, sys
+out = json.load(open("out.txt"))
+assert out["solutions"]
+for s in out["solutions"]:
+    assert all(abs(a - b) < 1e-9 for a, b in zip(s["pose"], [0.4, 0.1, 0.3])), s
+assert any(abs(a - b) > 0.01 for a, b in zip(out["solutions"][0]["pose"][3:], out["pose"][3:]))
+END
+expect 2 'for arms with five axes' "$I" arm.urdf --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2 --free-heading
+# Names of joints that would be read as something else are in quotation marks.
+sed 's/name="j1"/name="1"/; s/name="j2"/name="a,b"/' five.urdf >names.urdf
+shows 0 '^"1","a,b",j3' "$I" names.urdf --pose-of 0.3,0.5,0.6,0.4,0.2
+
 # What is wrong, and what to do.
 expect 2 'Give --pose X Y Z QX QY QZ QW or --pose-of' "$I" arm.urdf
 expect 2 'excludes' "$I" arm.urdf --pose 0 0 0 0 0 0 1 --pose-of 0,0,0,0,0,0

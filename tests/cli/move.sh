@@ -89,7 +89,7 @@ expect 1 'no goal is free' "$M" cell.json --from=0.5,0 --to 0,0 --to 0.01,0 -o n
 expect 7 'does not say that there is none.*--max-work.*arm/tip and box' "$M" cell.json --from=-0.8,0 --to 0.8,0 -o none.csv --max-work 1e-6
 expect 7 'max-nodes' "$M" cell.json --from=-0.8,0 --to 0.8,0 -o none.csv --max-nodes 1
 # Misuse.
-expect 3 'limits' "$M" cell.json --from=4,0 --to 1,1 -o none.csv
+expect 2 'limits' "$M" cell.json --from=4,0 --to 1,1 -o none.csv
 expect 2 'where to' "$M" cell.json -o none.csv
 expect 2 'is empty' "$M" cell.json --to '' -o none.csv
 expect 2 'excludes' "$M" cell.json --to 1,1 --from 0,0 --start p.csv

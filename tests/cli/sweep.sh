@@ -231,4 +231,30 @@ echo '<robot name="w"><link name="l"><visual><geometry><mesh filename="whole.wrl
 printf '[[]]' >rest.json
 expect 0 '' "$S" robots/w.urdf --path rest.json -o w.glb --visual --depfile w.d
 [ "$(cat w.d)" = 'w.glb: robots/w.urdf rest.json robots/whole.wrl robots/part.wrl' ] || fail "dependency file: $(cat w.d)"
+# Where the robot stands.
+base=0.5,-1,2,0.1,0.2,0.3
+expect 0 'bound-verify sweep needs --base-pose' "$S" $R --path path.csv -o stands.glb --base-pose $base --epsilon 0.01
+written=$(sed -n 's/.*--base-pose //p' err.txt)
+expect 0 '' "$BIN/bound-verify" sweep $R path.csv stands.glb --base-pose "$written" --prepare
+expect 0 '' "$BIN/bound-verify" sweep $R path.csv stands.glb --base-pose $base --prepare
+run_tool 1 "$BIN/bound-verify" sweep $R path.csv stands.glb --prepare
+run_tool 1 "$BIN/bound-verify" sweep $R path.csv stands.glb --base-pose 0.5,-1,2.1,0.1,0.2,0.3 --prepare
+expect 2 '5 numbers; a pose is' "$S" $R --path path.csv -o none.glb --base-pose 1,2,3,4,5
+expect 2 'no rotation' "$S" $R --path path.csv -o none.glb --base-pose 0,0,0,1,0,0,0,1,0,0,0,2
+expect 2 'which robot' "$S" --path path.csv -o none.glb
+# As it stands in a scene, with the scene's limits.
+expect 0 '' "$BIN/kaboum-scene" make cell.json --robot r=$R --epsilon 0.01
+python3 - <<'END'
+import json
+cell = json.load(open("cell.json"))
+cell["robots"][0]["base"] = {"position": [0.5, -1, 2], "rpy": [0.1, 0.2, 0.3]}
+json.dump(cell, open("cell.json", "w"))
+cell["robots"][0]["limits"] = {"shoulder": [-1, 1]}
+json.dump(cell, open("narrow.json", "w"))
+END
+expect 0 '' "$S" --scene cell.json --robot r --path path.csv -o scene.glb --epsilon 0.01
+cmp -s scene.glb stands.glb || run_tool 0 "$BIN/bound-verify" sweep $R path.csv scene.glb --base-pose $base --prepare
+expect 3 'outside its limits' "$S" --scene narrow.json --path path.csv -o none.glb
+expect 2 "no robot 'q'" "$S" --scene cell.json --robot q --path path.csv -o none.glb
+absent none.glb
 finish
