@@ -1,3 +1,5 @@
+// The program bcd-decompose: options, certify::certify_set or certify_robot, files.
+
 #include <kaboum/io/convex_io.h>
 
 #include "decompose_options.h"

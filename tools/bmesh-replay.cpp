@@ -1,3 +1,5 @@
+// The program bmesh-replay: derives a result from its log and says whether it is the one at hand.
+
 #include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/verify/replay.h>

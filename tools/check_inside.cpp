@@ -1,3 +1,5 @@
+// The option --inside of kaboum-check: whether items lie in regions.
+
 #include "check_inside.h"
 
 #include <kaboum/base/error.h>

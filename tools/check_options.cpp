@@ -1,3 +1,5 @@
+// The command line of kaboum-check.
+
 #include "check_options.h"
 
 #include "motion_options.h"

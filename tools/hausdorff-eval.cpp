@@ -1,3 +1,5 @@
+// The program hausdorff-eval: options, distance::Comparison, lines, report and pictures.
+
 #include <kaboum/base/error.h>
 #include <kaboum/distance/compare.h>
 #include <kaboum/io/mesh_io.h>

@@ -1,3 +1,5 @@
+// What hausdorff-eval says of distances, as lines and as JSON.
+
 #include "hausdorff_report.h"
 
 #include <kaboum/geom/topology.h>

@@ -1,3 +1,5 @@
+// The options that say what becomes of open meshes: --holes and --require-closed.
+
 #include "holes_option.h"
 
 #include <vector>

@@ -1,3 +1,6 @@
+// The program kaboum-check: whether a robot of a scene is free, at configurations or during a
+// motion.
+
 #include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/robot/path_file.h>

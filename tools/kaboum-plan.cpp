@@ -1,3 +1,5 @@
+// The program kaboum-plan: its subcommands.
+
 #include "plan_commands.h"
 #include "plan_run.h"
 

@@ -1,3 +1,6 @@
+// The program kaboum-scene: makes scenes, brings them up to date, and finds pairs that never
+// touch.
+
 #include <kaboum/base/error.h>
 
 #include <map>

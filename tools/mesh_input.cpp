@@ -1,3 +1,5 @@
+// What bound-verify reads: an original, prepared on request, and a mesh or a set to judge.
+
 #include "mesh_input.h"
 
 #include <kaboum/base/error.h>

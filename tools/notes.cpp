@@ -1,3 +1,5 @@
+// Notes about files, each said once.
+
 #include "notes.h"
 
 #include <algorithm>

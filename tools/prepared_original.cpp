@@ -1,3 +1,5 @@
+// A mesh as the programs that simplify prepare it, and what of it is inside out otherwise.
+
 #include "prepared_original.h"
 
 #include <kaboum/base/error.h>

@@ -1,3 +1,5 @@
+// The meshes that two robots refer to, each read once.
+
 #include "robot_meshes.h"
 
 #include <kaboum/base/error.h>

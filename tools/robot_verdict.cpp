@@ -1,3 +1,5 @@
+// What bound-verify says of a shape of a robot: answers of libverify as words and JSON.
+
 #include "robot_verdict.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// The command line of kaboum-scene.
+
 #include "scene_options.h"
 
 namespace kaboum::tools {

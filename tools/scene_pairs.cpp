@@ -1,3 +1,5 @@
+// kaboum-scene pairs: pairs of links that never touch, or always do.
+
 #include "scene_pairs.h"
 
 #include <kaboum/base/error.h>

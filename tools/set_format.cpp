@@ -1,3 +1,5 @@
+// The format of a set of bodies: by option, or by the name of the output.
+
 #include "set_format.h"
 
 #include <kaboum/base/error.h>

@@ -1,3 +1,5 @@
+// A set of bodies drawn, each in a colour of its own.
+
 #include "set_picture.h"
 
 #include <cmath>

@@ -1,3 +1,5 @@
+// The program sweep-approx: options, certify::certify_robot and certify_sweep, files.
+
 #include <kaboum/base/error.h>
 #include <kaboum/robot/base_pose.h>
 #include <kaboum/robot/path_file.h>

@@ -1,3 +1,6 @@
+// What bound-verify sweep reads: robot, path, set, and the meshes of links as they are or
+// prepared.
+
 #include "sweep_input.h"
 
 #include <kaboum/base/error.h>

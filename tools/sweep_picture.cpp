@@ -1,3 +1,5 @@
+// A robot along its path, and the set that bounds what it sweeps, drawn.
+
 #include "sweep_picture.h"
 
 #include <kaboum/geom/convex_hull.h>

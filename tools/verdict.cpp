@@ -1,3 +1,5 @@
+// Words that verdicts have in common: rounded numbers, points, claims.
+
 #include "verdict.h"
 
 #include <cmath>

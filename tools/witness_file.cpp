@@ -1,3 +1,5 @@
+// Triangles that witness a refuted claim, as a mesh file.
+
 #include "witness_file.h"
 
 #include <kaboum/base/error.h>

@@ -1,3 +1,5 @@
+// FCL behind the interface of engines, to compare with.
+
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/broadphase/default_broadphase_callbacks.h>
 #include <fcl/geometry/bvh/BVH_model.h>

@@ -1,3 +1,5 @@
+// ODE behind the interface of engines, to compare with.
+
 #include <ode/ode.h>
 
 #include <array>

@@ -1,3 +1,5 @@
+// Our trees of bodies with another library's test of two bodies, to compare with.
+
 #include <ccd/ccd.h>
 #include <fcl/geometry/shape/convex.h>
 #include <fcl/narrowphase/detail/gjk_solver_indep.h>

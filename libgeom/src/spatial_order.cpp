@@ -1,3 +1,6 @@
+// Points and triangles in their order along a space-filling curve, so that neighbours in memory
+// are near each other in space.
+
 #include <kaboum/base/parallel.h>
 #include <kaboum/geom/spatial_order.h>
 

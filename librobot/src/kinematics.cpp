@@ -1,3 +1,5 @@
+// Poses of links, their Jacobian, and Denavit–Hartenberg rows.
+
 #include <kaboum/base/error.h>
 #include <kaboum/robot/kinematics.h>
 

@@ -1,3 +1,5 @@
+// Paths of joint values from text, and what their columns mean.
+
 #include <kaboum/base/error.h>
 #include <kaboum/base/json_damage.h>
 #include <kaboum/base/similar_name.h>

@@ -1,3 +1,5 @@
+// Boxes, cylinders and spheres as points whose hull contains them.
+
 #include <kaboum/base/error.h>
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/robot/robot.h>

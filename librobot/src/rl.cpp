@@ -1,3 +1,5 @@
+// Robots from files of the Robotics Library.
+
 #include <kaboum/base/error.h>
 #include <kaboum/robot/robot.h>
 

@@ -1,3 +1,5 @@
+// What a robot has to be: joints and shapes whose numbers mean something.
+
 #include <kaboum/base/error.h>
 #include <kaboum/robot/robot.h>
 

@@ -1,3 +1,5 @@
+// One reader of XML for robots, by tinyxml2: errors name file and line.
+
 #include "xml.h"
 
 #include <kaboum/base/error.h>

@@ -1,3 +1,6 @@
+// Bounds of the derivatives of a point of a link along a straight path in joint space.
+// docs/algorithms/swept-volumes.md has the proofs. Source: [gaschler2016] Eq. 4.19, 4.20.
+
 #include <kaboum/base/error.h>
 #include <kaboum/geom/rounding.h>
 #include <kaboum/sweep/motion.h>

@@ -1,3 +1,6 @@
+// Where a link is along a stretch of a path, with the derivatives, and what rounding may do to
+// them. docs/algorithms/swept-volumes.md.
+
 #include <kaboum/base/error.h>
 #include <kaboum/sweep/motion.h>
 

@@ -1,3 +1,6 @@
+// Explicit margins: hulls of the corners of cubes that hold the balls of a margin.
+// docs/algorithms/swept-volumes.md, "Explicit margin".
+
 #include <kaboum/sweep/sweep.h>
 
 #include <array>

@@ -1,3 +1,7 @@
+// How long the steps along a path may be, so that no point of a body leaves the hull of its two
+// poses by more than the bound. Source: [gaschler2016] Eq. 4.20, 4.22; docs/algorithms/swept-
+// volumes.md has the proofs and says what differs.
+
 #include <kaboum/base/error.h>
 #include <kaboum/geom/rounding.h>
 #include <kaboum/sweep/steps.h>

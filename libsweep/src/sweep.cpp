@@ -1,3 +1,6 @@
+// Swept volumes: steps for each body, a hull for each step, one margin for all. Source:
+// [gaschler2016] Eq. 4.22; docs/algorithms/swept-volumes.md.
+
 #include <kaboum/base/error.h>
 #include <kaboum/base/parallel.h>
 #include <kaboum/geom/convex_hull.h>

@@ -1,3 +1,6 @@
+// Leaves vertices of a hull out while those that stay are near enough to them.
+// docs/algorithms/swept-volumes.md.
+
 #include "thin_out.h"
 
 #include <kaboum/geom/distance.h>

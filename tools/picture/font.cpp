@@ -1,3 +1,5 @@
+// A bitmap font.
+
 #include "font.h"
 
 #include <algorithm>

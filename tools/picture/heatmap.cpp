@@ -1,3 +1,5 @@
+// Surfaces coloured by their distances, from where the largest one is seen.
+
 #include "heatmap.h"
 
 #include "font.h"

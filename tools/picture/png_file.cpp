@@ -1,3 +1,5 @@
+// Images as PNG bytes, by libpng.
+
 #include "png_file.h"
 
 #include <kaboum/base/error.h>

@@ -1,3 +1,5 @@
+// Meshes drawn in software.
+
 #include "render.h"
 
 #include <Eigen/Geometry>

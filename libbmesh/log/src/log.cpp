@@ -1,3 +1,5 @@
+// The log of a decimation as bytes: what preparation did, then the steps. docs/formats.md.
+
 #include <kaboum/bmesh/log.h>
 
 #include <algorithm>

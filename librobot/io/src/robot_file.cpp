@@ -1,3 +1,5 @@
+// Robots from files, with the meshes that they refer to found.
+
 #include <kaboum/robot/robot_file.h>
 
 #include <kaboum/base/error.h>
