@@ -3,6 +3,7 @@
 #include <kaboum/certify/mesh.h>
 #include <kaboum/certify/mesh_bytes.h>
 #include <kaboum/geom/float32.h>
+#include <kaboum/io/cad.h>
 #include <kaboum/verify/inclusion.h>
 
 #include "preparation_option.h"
@@ -12,7 +13,7 @@ namespace kaboum::tools {
 namespace {
 
 struct PrepareToolOptions {
-  std::string input, output, input_format, output_format, epsilon, depfile;
+  std::string input, output, input_format, output_format, epsilon, depfile, unit;
   bool drop_sheets = false, verify = false;
   PreparationOption preparation;
   CommonOptions common;
@@ -22,6 +23,7 @@ struct PrepareToolOptions {
 struct PrepareCase {
   const PrepareToolOptions& asked;
   io::ReadResult input = {};
+  double deviation = 0;  ///< of a CAD file's exact faces from the triangles [length]
   std::string sha256 = {};
   geom::Mesh mesh = {};  ///< that is written
   std::vector<std::string> notes = {};
@@ -89,6 +91,7 @@ void wrap(PrepareCase& run, bool doubles) {
   if (!o.epsilon.empty())
     farthest = parse_length(o.epsilon)->of(geom::bounding_box(run.input.mesh).diagonal());
   certify::WrapRequest request = o.preparation.request(farthest);
+  request.clearance = run.deviation;
   request.float32 = !doubles || all_float32(run.input.mesh);
   certify::CertifiedWrap made;
   {
@@ -108,6 +111,32 @@ void wrap(PrepareCase& run, bool doubles) {
   run.mesh = made.artefact();
 }
 
+/// Reads the triangles, or makes them of a CAD file.
+void read(PrepareCase& run) {
+  const PrepareToolOptions& o = run.asked;
+  std::vector<char> bytes;
+  if (o.input_format.empty() && io::is_cad_file(o.input)) {
+    io::CadMesh cad = io::read_cad(o.input, &bytes);
+    run.input.file_vertices = cad.mesh.vertices.size();
+    run.input.mesh = std::move(cad.mesh);
+    run.input.collapsed_triangles = cad.collapsed_triangles;
+    run.input.notes = std::move(cad.notes);
+    run.input.unit = "mm";
+    run.deviation = cad.deviation;
+    run.report["deviation"] = cad.deviation;
+  } else {
+    run.input =
+        io::read_mesh(o.input, format_for(o.input, o.input_format, "--input-format"), &bytes);
+  }
+  if (!o.unit.empty() && !run.input.unit.empty() && o.unit != run.input.unit)
+    throw Error(ErrorCode::InvalidInput, o.input + ": its vertices are in " + run.input.unit +
+                                             ", not in " + o.unit +
+                                             "; leave --unit out, or convert the file");
+  if (run.input.unit.empty()) run.input.unit = o.unit;
+  run.sha256 = io::sha256(bytes);
+  for (const std::string& text : run.input.notes) note(run, text);
+}
+
 int prepare_file(const CLI::App& app, const PrepareToolOptions& o) {
   require_meaning(app, o.preparation);
   if (!o.preparation.wraps()) require_absent(app, "--prepare " + o.preparation.name, {"--epsilon"});
@@ -117,10 +146,7 @@ int prepare_file(const CLI::App& app, const PrepareToolOptions& o) {
   const io::Format format = format_for(o.output, o.output_format, "--output-format");
   const ThreadLimit threads(o.common.threads);
   PrepareCase run{.asked = o};
-  std::vector<char> bytes;
-  run.input = io::read_mesh(o.input, format_for(o.input, o.input_format, "--input-format"), &bytes);
-  run.sha256 = io::sha256(bytes);
-  for (const std::string& text : run.input.notes) note(run, text);
+  read(run);
   const bool doubles = io::holds_double(format);
   if (o.preparation.wraps()) {
     wrap(run, doubles);
@@ -166,6 +192,11 @@ void describe(CLI::App& app, PrepareToolOptions& o) {
   app.add_flag("--verify", o.verify,
                "Decide exactly whether every triangle of the file lies in the solid (a wrap's "
                "always do, decided in any case)");
+  app.add_option("--unit", o.unit,
+                 "Unit of length of files that state none, for the report; nothing is converted, "
+                 "and a file that states another one is refused")
+      ->check(unit_name())
+      ->type_name("NAME");
   app.add_option("--depfile", o.depfile, "Write a Makefile dependency rule")->type_name("FILE");
   app.add_option("--input-format", o.input_format, "Format of INPUT [by extension]")
       ->type_name("NAME");

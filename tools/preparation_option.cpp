@@ -69,7 +69,10 @@ std::string sentence_of(const certify::WrapCertificate& wrap) {
   return "The solid is that of a wrap round all " + std::to_string(wrap.input_triangles) +
          " triangles: each lies inside, exactly; no point of it is farther from them than " +
          digits(wrap.farthest_upper) + " (" + digits(100 * wrap.farthest_upper / wrap.diagonal) +
-         "% of the diagonal); gaps narrower than " + digits(wrap.seal) + " are closed.";
+         "% of the diagonal); gaps narrower than " + digits(wrap.seal) + " are closed." +
+         (wrap.clearance > 0 ? " All within " + digits(wrap.clearance) +
+                                   " of a triangle is inside, too: the exact faces."
+                             : std::string());
 }
 
 Json to_json(const certify::WrapCertificate& wrap) {
@@ -79,6 +82,7 @@ Json to_json(const certify::WrapCertificate& wrap) {
           {"farthest_upper", wrap.farthest_upper},
           {"at", {wrap.at.x(), wrap.at.y(), wrap.at.z()}},
           {"every_triangle_inside", "verified"},
+          {"clearance", wrap.clearance},
           {"input_triangles", wrap.input_triangles}};
 }
 

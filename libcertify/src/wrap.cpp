@@ -64,10 +64,24 @@ CertifiedWrap certify_wrap(const geom::Mesh& input, const WrapRequest& request) 
   made.seal = request.seal       ? request.seal->of(made.diagonal)
               : request.farthest ? *request.farthest
                                  : kSeal.of(made.diagonal);
+  made.clearance = request.clearance;
+  if (made.offset < 3 * made.clearance) {
+    if (request.offset)
+      throw Error(ErrorCode::InvalidArgument,
+                  "the exact surface is within " + number(made.clearance) +
+                      " of the triangles; give an offset of at least three times that");
+    made.offset = 3 * made.clearance;
+    if (request.farthest && made.offset > *request.farthest)
+      throw Error(ErrorCode::InvalidInput,
+                  "the exact surface is within " + number(made.clearance) +
+                      " of the triangles, which asks for a wrap of an offset of " +
+                      number(made.offset) + ", more than epsilon leaves; allow a larger epsilon");
+  }
   const geom::DistanceQuery query(input);
   wrap::WrapOptions options;
   options.offset = made.offset;
   options.float32 = request.float32;
+  options.clearance = made.clearance;
   options.progress = request.progress;
   geom::Mesh mesh;
   for (int tried = 1;; ++tried) {

@@ -13,11 +13,12 @@ using Corners = std::array<Vec3, 3>;
 
 /// Whether a plane certainly separates the triangle from the tetrahedron: those along a face of
 /// one of them, or along an edge of each, are all that need be tried.
-bool apart(const Corners& t, const Tetrahedron& tetrahedron) {
+bool apart(const Corners& t, const Tetrahedron& tetrahedron, double clearance) {
   const Vec3 origin = tetrahedron[3];
   Corners a;
   Tetrahedron b;
   Separator separator;
+  separator.clearance = clearance;
   for (int i = 0; i < 3; ++i) separator.look_at(a[i] = t[i] - origin);
   for (int i = 0; i < 4; ++i) separator.look_at(b[i] = tetrahedron[i] - origin);
   const auto along = [&](const Vec3& n) { return separator.apart(n, a, b); };
@@ -41,7 +42,7 @@ inline bool overlap(const geom::Box3& a, const geom::Box3& b) {
 
 }  // namespace
 
-Obstacle::Obstacle(const geom::Mesh& mesh) : query_(mesh) {
+Obstacle::Obstacle(const geom::Mesh& mesh, double clearance) : query_(mesh), clearance_(clearance) {
   normal_.reserve(mesh.triangles.size());
   for (const geom::Triangle& t : mesh.triangles) {
     const Vec3& a = mesh.vertices[t[0]];
@@ -55,6 +56,7 @@ bool Obstacle::beside(std::uint32_t triangle, const geom::Box3& box,
   const Corners& corners = query_.corners(triangle);
   const Vec3& origin = corners[0];
   Separator separator;
+  separator.clearance = clearance_;
   for (const Vec3& p : corners) separator.look_at(p - origin);
   separator.look_at(box.min - origin);
   separator.look_at(box.max - origin);
@@ -81,6 +83,11 @@ bool Obstacle::clear(std::span<const Tetrahedron> tetrahedra) const {
   boxes.assign(tetrahedra.size(), {});
   for (std::size_t i = 0; i < tetrahedra.size(); ++i) {
     for (const Vec3& p : tetrahedra[i]) boxes[i].extend(p);
+    if (clearance_ > 0) {
+      const Vec3 wide = Vec3::Constant(2 * clearance_);  // twice: no matter how it is rounded
+      boxes[i].extend(Vec3(boxes[i].min - wide));
+      boxes[i].extend(Vec3(boxes[i].max + wide));
+    }
     all.extend(boxes[i]);
   }
   bool clear = true;
@@ -92,7 +99,8 @@ bool Obstacle::clear(std::span<const Tetrahedron> tetrahedra) const {
                                 for (const Vec3& p : corners) box.extend(p);
                                 if (!overlap(box, all) || beside(triangle, all, tetrahedra)) return;
                                 for (std::size_t i = 0; clear && i < tetrahedra.size(); ++i)
-                                  clear = !overlap(box, boxes[i]) || apart(corners, tetrahedra[i]);
+                                  clear = !overlap(box, boxes[i]) ||
+                                          apart(corners, tetrahedra[i], clearance_);
                               });
   return clear;
 }

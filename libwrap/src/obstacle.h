@@ -24,7 +24,8 @@ struct Foot {
 class Obstacle {
  public:
   /// @pre the mesh has triangles, all finite
-  explicit Obstacle(const geom::Mesh& mesh);
+  /// @param clearance  that tetrahedra have to keep [length]
+  explicit Obstacle(const geom::Mesh& mesh, double clearance = 0);
 
   /// Whether certainly no triangle meets any of the tetrahedra: closed, of either orientation,
   /// perhaps flat, with one last corner. May say no where it is hard to tell.
@@ -49,6 +50,7 @@ class Obstacle {
                             std::span<const Tetrahedron> tetrahedra) const;
 
   geom::DistanceQuery query_;
+  double clearance_;
   std::vector<Vec3> normal_;  ///< of each triangle, of any length, rounded
 };
 

@@ -19,12 +19,15 @@ using geom::Vec3;
 /// 2^-1000: the margin below is ten times that.
 struct Separator {
   static constexpr double kError = 1e-14, kTiny = 1e-290;
+  static constexpr double kUp = 1 + 1e-12;  ///< covers the rounding of a norm and a product
 
   Vec3 most = Vec3::Zero();
+  double clearance = 0;  ///< that "apart" has to leave; ≥ 0
 
   void look_at(const Vec3& x) { most = most.cwiseMax(x.cwiseAbs()); }
   [[nodiscard]] double margin(const Vec3& n) const {
-    return kError * n.cwiseAbs().dot(most) + kTiny;
+    return kError * n.cwiseAbs().dot(most) + kTiny +
+           (clearance > 0 ? clearance * kUp * n.norm() : 0);
   }
 
   /// Whether the plane of normal n has the one convex hull on one side and the other on the other.

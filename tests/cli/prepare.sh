@@ -39,6 +39,11 @@ done
 expect 0 '' "$P" closed.off -o w.off --prepare wrap --seal 4%
 sed 's/^1 0 0$/1.5 0 0/' closed.off >larger.off
 expect 1 '' "$V" --outer larger.off w.off --raw
+# Units are recorded, and not mixed.
+expect 0 '' "$P" closed.off -o p.off --unit mm --report r.json
+grep -q '"unit": "mm"' r.json || fail "no unit in $(cat r.json)"
+tetrahedron_gltf
+expect 3 'are in m, not in mm' "$P" t.gltf -o none.off --unit mm
 # The same bytes on any number of threads.
 "$P" crossing.off -o w1.stl --prepare wrap --threads 1 --quiet
 "$P" crossing.off -o w2.stl --prepare wrap --threads 4 --quiet

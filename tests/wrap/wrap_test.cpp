@@ -138,6 +138,31 @@ TEST(Wrap, IsNearWhereNothingIsSealed) {
   EXPECT_LT(result.mesh.triangles.size(), result.first_triangles / 4);
 }
 
+/// All within the clearance of a triangle is inside: the nearest points of the wrap are no nearer.
+TEST(Wrap, KeepsAClearance) {
+  for (const Mesh& mesh : {test::icosphere(2), random_soup(4, 20, 0.4)}) {
+    const double diagonal = geom::bounding_box(mesh).diagonal();
+    WrapOptions options;
+    options.offset = 0.02 * diagonal;
+    options.seal = 0.1 * diagonal;
+    options.clearance = 0.006 * diagonal;
+    const Mesh around = wrap(mesh, options).mesh;
+    expect_inside(mesh, around, "with clearance");
+    const geom::DistanceQuery query(mesh), back(around);
+    for (const Vec3& v : around.vertices) EXPECT_GT(query.nearest(v).upper, options.clearance);
+    Random random(1);
+    for (int i = 0; i < 400; ++i) {
+      const geom::Triangle& t = mesh.triangles[random.index(mesh.triangles.size())];
+      const double a = random.between(0, 0.5), b = random.between(0, 0.5);
+      const Vec3 p =
+          (1 - a - b) * mesh.vertices[t[0]] + a * mesh.vertices[t[1]] + b * mesh.vertices[t[2]];
+      EXPECT_GT(back.nearest(p).upper, options.clearance);
+    }
+    options.clearance = 0.01 * diagonal;
+    EXPECT_THROW(wrap(mesh, options), Error);
+  }
+}
+
 TEST(Wrap, IsTheSameForAnyNumberOfThreads) {
   const Mesh soup = random_soup(2, 200, 0.2);
   Mesh first;

@@ -19,6 +19,9 @@ struct WrapRequest {
   std::optional<Length> seal;
   /// No point of the wrap may be farther from the input. [length]
   std::optional<double> farthest;
+  /// The surface that is meant is within this of the triangles (io::ReadResult::deviation), and is to
+  /// be inside as well. [length]
+  double clearance = 0;
   bool float32 = true;  ///< numbers of the wrap; else doubles
   std::function<void(const std::string& stage)> progress;
 };
@@ -30,6 +33,7 @@ struct WrapCertificate {
   /// a point that is so far away. [length]
   double farthest_lower = 0, farthest_upper = 0;
   geom::Vec3 at = geom::Vec3::Zero();
+  double clearance = 0;  ///< no point of the wrap is nearer to the input, by the proof [length]
   std::size_t input_triangles = 0;
 };
 

@@ -1,0 +1,30 @@
+# shellcheck shell=sh disable=SC2154
+# STEP and IGES: parts that OpenCASCADE made itself. Wraps hold the exact faces, by samples of them; tessellated parts are
+# closed, and their deviation is stated; what is damaged is refused.
+. "$(dirname "$0")/../cli/common.sh"
+PARTS=$3
+mkdir parts
+"$PARTS" make parts >/dev/null || fail "the parts cannot be made"
+[ "$(find parts -name '*.step' | wc -l)" = 11 ] || fail "parts are missing"
+for part in parts/*.step; do
+  name=$(basename "$part" .step)
+  expect 0 'in millimetres' "$BIN/mesh-prepare" "$part" -o "$name.ply" --report r.json
+  grep -q 'hole' err.txt && fail "$name is open: $(cat err.txt)"
+  expect 0 'the exact faces' "$BIN/mesh-prepare" "$part" -o "$name-wrap.ply" --prepare wrap --epsilon 2%
+  # Two percent of a diagonal of 64 mm at most (99 mm for the assembly), and the samples are not dense.
+  "$PARTS" check "$part" "$name-wrap.ply" 100000 3 >out.txt || fail "$name: $(cat out.txt)"
+done
+# The tessellation alone does not hold the exact faces: the check can fail.
+"$PARTS" check parts/sphere.step sphere.ply 1000 3 >/dev/null && fail "the sphere's triangles hold the sphere"
+expect 0 '50 solids' "$BIN/mesh-prepare" parts/assembly.step -o a.ply
+for f in flange box; do expect 0 'in millimetres' "$BIN/mesh-prepare" parts/$f.iges -o i.ply; done
+expect 0 '' "$BIN/bcd-decompose" flange-wrap.ply -o flange.glb --epsilon 3% --effort fast --no-cache
+expect 3 'mesh-prepare parts/box.step -o' "$BIN/bcd-decompose" parts/box.step -o none.glb --no-cache
+head -c 2000 parts/vase.step >cut.step
+expect 3 'cut.step' "$BIN/mesh-prepare" cut.step -o none.ply
+printf 'ISO-10303-21;\n' >head.step
+expect 3 'head.step' "$BIN/mesh-prepare" head.step -o none.ply
+cp parts/box.step box.iges
+expect 3 'box.iges' "$BIN/mesh-prepare" box.iges -o none.ply
+absent none.ply
+finish
