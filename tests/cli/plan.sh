@@ -34,6 +34,20 @@ expect 1 'unsolvable: every possibility was tried' "$P" solve no.kpl
 printf 'predicates: p, q\ninit: K(!q)\naction go effects: K(p) => add(Kf, q), K(!p) => add(Kf, q)\ngoal: K(q)\n' >weak.kpl
 expect 8 'not proved that there is none: an effect whose condition' "$P" solve weak.kpl -o weak.json
 absent weak.json
+# Possible worlds: effects that hang on what is not known, and their proof that there is no plan.
+cat >stain.pddl <<'END'
+(define (domain stain) (:constants a b c - illness)
+ (:predicates (ill ?i - illness) (stained ?i - illness) (cured))
+ (:action stain :effect (forall (?i - illness) (when (ill ?i) (stained ?i))))
+ (:action inspect :parameters (?i - illness) :observe (stained ?i))
+ (:action medicate :parameters (?i - illness) :precondition (ill ?i) :effect (cured)))
+(define (problem p) (:domain stain) (:init (oneof (ill a) (ill b) (ill c))) (:goal (cured)))
+END
+expect 0 'solved' "$P" solve stain.pddl -o stain.json
+shows 0 'valid' "$P" check stain.pddl --plan stain.json
+sed 's/:observe (stained ?i)/:observe (cured)/' stain.pddl >blind.pddl
+expect 1 'unsolvable: every possibility was tried' "$P" solve blind.pddl
+shows 0 'whenever K(ill(?i))' "$P" convert stain.pddl --output-format kpl
 expect 2 '' "$P"
 "$DOMAINS/stacked/make-problem" 9 >nine.kpl
 expect 7 '' "$P" solve "$DOMAINS/stacked/domain.kpl" nine.kpl --search bfs --max-memory 1M -o none.json

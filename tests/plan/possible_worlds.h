@@ -90,6 +90,13 @@ class Worlds {
           for (const Update::Literal& o : u.literals) stated.insert(item(o, none));
           std::erase_if(all, [&](const World& w) { return !one_of(u, none, w); });
           break;
+        case Update::Database::Or:
+          for (const Update::Literal& o : u.literals) stated.insert(item(o, none));
+          std::erase_if(all, [&](const World& w) {
+            return std::none_of(u.literals.begin(), u.literals.end(),
+                                [&](const Update::Literal& o) { return true_in(o, none, w); });
+          });
+          break;
         case Update::Database::Lcw:
           if (!stated.contains(i)) std::erase_if(all, [&](const World& w) { return w[i] != 0; });
           break;
@@ -168,7 +175,10 @@ class Worlds {
     const Update* update;
     std::vector<Index> slots;
     std::vector<std::size_t> ground;  ///< items and values of its literals
-    bool operator==(const Happening& o) const { return update == o.update && ground == o.ground; }
+    std::set<World> where;            ///< the worlds, as they were, in which it happens
+    bool operator==(const Happening& o) const {
+      return update == o.update && ground == o.ground;
+    }
   };
   /// Updates of an action in a belief: conditions look at what is known before.
   [[nodiscard]] std::vector<Happening> fired(const Action& a, const std::vector<Index>& arguments,
@@ -176,22 +186,30 @@ class Worlds {
     std::vector<Happening> out;
     std::vector<Index> slots(std::max<Index>(a.slots, 1), 0);
     std::copy(arguments.begin(), arguments.end(), slots.begin());
-    fire(a.effects, slots, b, out);
+    fire(a.effects, slots, b, b, out);
     return out;
   }
 
   /// What the updates make of a belief: several, if something is sensed; none, if an observation
   /// contradicts it.
-  [[nodiscard]] std::vector<Belief> apply(Belief b, const std::vector<Happening>& updates) const {
+  [[nodiscard]] std::vector<Belief> apply(const Belief& b,
+                                          const std::vector<Happening>& updates) const {
     std::vector<std::size_t> sensed;
+    Paired pairs;
+    for (const World& w : b) pairs.insert({w, w});
     for (const bool add : {false, true})
       for (const Happening& h : updates)
-        if (h.update->add == add) update(b, h, sensed);
-    if (b.empty()) return {};
-    return split({std::move(b)}, sensed);
+        if (h.update->add == add) update(pairs, h, sensed);
+    Belief after;
+    for (const auto& [before, now] : pairs) after.insert(now);
+    if (after.empty()) return {};
+    return split({std::move(after)}, sensed);
   }
 
  private:
+  /// Worlds before an action, and what has become of them.
+  using Paired = std::set<std::pair<World, World>>;
+
   static Index of(const Argument& a, const std::vector<Index>& slots) {
     return a.variable ? slots.at(a.index) : a.index;
   }
@@ -225,8 +243,9 @@ class Worlds {
     }
     return all;
   }
+  /// `where`: the worlds that meet all conditions of the world so far.
   void fire(const std::vector<Effect>& effects, std::vector<Index>& slots, const Belief& b,
-            std::vector<Happening>& out) const {
+            const Belief& where, std::vector<Happening>& out) const {
     for (const Effect& e : effects) {
       if (e.kind == Effect::Kind::Update) {
         std::vector<std::size_t> ground;
@@ -234,55 +253,67 @@ class Worlds {
           ground.push_back(item(l, slots));
           if (l.value) ground.push_back(of(*l.value, slots));
         }
-        out.push_back({&e.update, slots, std::move(ground)});
+        out.push_back({&e.update, slots, std::move(ground), where});
+      } else if (e.kind == Effect::Kind::When && e.of_world) {
+        Belief there;
+        for (const World& w : where)
+          if (holds(e.condition, slots, {w})) there.insert(w);
+        fire(e.children, slots, b, there, out);
       } else if (e.kind == Effect::Kind::When) {
-        if (holds(e.condition, slots, b)) fire(e.children, slots, b, out);
+        if (holds(e.condition, slots, b)) fire(e.children, slots, b, where, out);
       } else {
         for (const Index o : model_.types[e.type].objects) {
           slots.at(e.slot) = o;
-          fire(e.children, slots, b, out);
+          fire(e.children, slots, b, where, out);
         }
       }
     }
   }
 
-  /// In each world of which `which` is true the item may have any value afterwards.
+  /// In each world that `which` picks the item may have any value afterwards.
   template <class Which>
-  void free(Belief& b, std::size_t i, const Which& which) const {
-    Belief next = b;
-    for (World w : b) {
-      if (!which(w)) continue;
+  void free(Paired& b, const Happening& h, std::size_t i, const Which& which) const {
+    Paired next = b;
+    for (auto [before, now] : b) {
+      if (!h.where.contains(before) || !which(now)) continue;
       for (const Index v : values(i)) {
-        w[i] = v;
-        next.insert(w);
+        now[i] = v;
+        next.insert({before, now});
       }
     }
     b = std::move(next);
   }
 
-  void update(Belief& b, const Happening& h, std::vector<std::size_t>& sensed) const {
+  void update(Paired& b, const Happening& h, std::vector<std::size_t>& sensed) const {
     const Update& u = *h.update;
     const Update::Literal& l = u.literals[0];
     const std::size_t i = item(l, h.slots);
     const auto true_here = [&](const World& w) { return true_in(l, h.slots, w); };
     const auto false_here = [&](const World& w) { return !true_in(l, h.slots, w); };
     const auto any = [](const World&) { return true; };
+    const auto none = [&](const auto& test) {
+      return std::none_of(b.begin(), b.end(), [&](const auto& p) { return test(p.second); });
+    };
+    const auto leave_out = [&](const auto& test) {
+      std::erase_if(b, [&](const auto& p) { return h.where.contains(p.first) && test(p.second); });
+    };
     switch (u.database) {
       case Update::Database::Kf:
         if (u.maybe) {
-          free(b, i, false_here);
+          free(b, h, i, false_here);
         } else if (!u.add) {
-          free(b, i, true_here);
+          free(b, h, i, true_here);
         } else if (!l.function || !l.negated) {
-          Belief next;
-          for (World w : b) {
-            w[i] = l.function ? of(*l.value, h.slots) : (l.negated ? 0 : 1);
-            next.insert(std::move(w));
+          Paired next;
+          for (auto [before, now] : b) {
+            if (h.where.contains(before))
+              now[i] = l.function ? of(*l.value, h.slots) : (l.negated ? 0 : 1);
+            next.insert({before, std::move(now)});
           }
           b = std::move(next);
         } else {
-          if (std::none_of(b.begin(), b.end(), true_here)) free(b, i, any);
-          std::erase_if(b, false_here);
+          if (none(true_here)) free(b, h, i, any);
+          leave_out(false_here);
         }
         return;
       case Update::Database::Kw:
@@ -290,30 +321,31 @@ class Worlds {
         if (u.add) {
           sensed.push_back(i);
         } else {
-          free(b, i, any);
+          free(b, h, i, any);
         }
         return;
       case Update::Database::Lcw:
         if (u.add) {
           sensed.push_back(i);
         } else {
-          free(b, i, false_here);
+          free(b, h, i, false_here);
         }
         return;
       case Update::Database::Kx: {
         const auto possible = [&](const World& w) { return one_of(u, h.slots, w); };
         if (!u.add) {
-          if (l.function) free(b, i, any);
+          if (l.function) free(b, h, i, any);
           return;
         }
         // A value known to be none of the options has changed.
-        if (l.function && std::none_of(b.begin(), b.end(), possible) &&
-            std::all_of(b.begin(), b.end(),
-                        [&](const World& w) { return w[i] == (*b.begin())[i]; }))
-          free(b, i, any);
-        std::erase_if(b, [&](const World& w) { return !possible(w); });
+        if (l.function && none(possible) &&
+            none([&](const World& w) { return w[i] != b.begin()->second[i]; }))
+          free(b, h, i, any);
+        leave_out([&](const World& w) { return !possible(w); });
         return;
       }
+      case Update::Database::Or:
+        throw std::logic_error("an initial entry as an effect");
     }
   }
 

@@ -127,7 +127,7 @@ TEST(Soundness, GivingUpADisjunctionWaitsForWhatItTells) {
       "action look preconds: !Kw(c) effects: add(Kw, c)\n"
       "action drop preconds: Kw(c) effects: del(Kx, a | b), add(Kf, x)\n"
       "goal: K(x) & !K(a)",
-      Outcome::NotInferred);
+      Outcome::Unsolvable);
 }
 
 TEST(Soundness, AClosedWorldDoesNotDecideADisjunction) {
@@ -135,7 +135,7 @@ TEST(Soundness, AClosedWorldDoesNotDecideADisjunction) {
   const std::string text =
       "types: v\nconstants: v a, b\npredicates: p(v), x\ninit: Kx(p(a) | p(b)) LCW(p(?v))\n"
       "action none preconds: false effects: add(Kf, x)\n";
-  expect_all(text + "goal: K(p(b)) | K(p(a))", Outcome::NotInferred);
+  expect_all(text + "goal: K(p(b)) | K(p(a))", Outcome::Unsolvable);
   expect_all(text + "goal: !Kw(p(b)) & !Kw(p(a))", Outcome::Solved);
 }
 
@@ -169,7 +169,7 @@ TEST(Soundness, PddlConditionsThatAreUnknownTakeKnowledge) {
             "(full))))",
             Language::Pddl},
            nullptr);
-  for (const Algorithm a : kAll) EXPECT_EQ(solved(m, a).outcome, Outcome::NotInferred);
+  for (const Algorithm a : kAll) EXPECT_EQ(solved(m, a).outcome, Outcome::Unsolvable);
 }
 
 TEST(Soundness, CostsAreNotNegative) {
@@ -234,10 +234,10 @@ TEST(Soundness, UnsolvableIsSaidOnlyWhereNothingIsLost) {
                            "goal: K(q)"),
             Outcome::Unsolvable);
   EXPECT_EQ(outcome(head + ", K(p)\naction go preconds: true effects: maybe(Kf, q)\ngoal: K(q)"),
-            Outcome::NotInferred);
+            Outcome::Unsolvable);
   EXPECT_EQ(outcome("predicates: a, b, c\ninit: Kx(a | b | c), Kx(a | b)\n"
                     "action no preconds: false effects: add(Kf, a)\ngoal: K(!c)"),
-            Outcome::NotInferred);
+            Outcome::Solved);
   EXPECT_EQ(outcome(head +
                     ", K(p)\naction go preconds: true effects: add(Kf, a)\n"
                     "action undo preconds: true effects: del(Kf, p)\n" +

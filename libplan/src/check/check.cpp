@@ -13,6 +13,9 @@
 #include "check/query_evaluator.h"
 #include "check/runtime_knowledge.h"
 #include "check/transitions.h"
+#include "check/world_replay.h"
+#include "task/exactness.h"
+#include "task/knowledge_view.h"
 
 namespace kaboum::plan {
 namespace {
@@ -199,7 +202,16 @@ class Checker {
 
 CheckResult check(const Model& model, const Plan& plan, std::uint64_t limit) {
   measure(model, plan);  // refuses cycles
-  return Checker(model, plan, limit).run();
+  const std::optional<Model> view = knowledge_view(model);
+  const Model& known = view ? *view : model;
+  CheckResult by_databases = Checker(known, plan, limit).run();
+  // What they refute may follow all the same, where they keep less than that.
+  if (by_databases.valid || (!view && lost_knowledge(known).empty())) return by_databases;
+  if (!WorldReplay::takes(model)) return by_databases;
+  if (const auto by_worlds = WorldReplay(model, plan, limit).run()) return *by_worlds;
+  throw Error(ErrorCode::LimitReached,
+              "the databases of knowledge do not confirm the plan (" + by_databases.violation +
+                  "), and there are too many possible worlds to replay it on them");
 }
 
 }  // namespace kaboum::plan

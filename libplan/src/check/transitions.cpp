@@ -81,6 +81,8 @@ std::vector<RuntimeKnowledge> Transitions::initial_states() const {
         // Closed last: what is sensed or in a disjunction stays open.
         if (!k.knows_whether(f) && !stated.contains(f)) ok = k.learn(f, false);
         break;
+      case Update::Database::Or:
+        break;  // not in a model's knowledge view
     }
     if (!ok) throw Error(ErrorCode::InvalidInput, "the initial knowledge contradicts itself");
   }
@@ -185,6 +187,8 @@ void Transitions::delete_from(RuntimeKnowledge& k, const GroundUpdate& g) const 
     case Update::Database::Lcw:
       if (!k.knows(f, true)) k.forget(f);
       return;
+    case Update::Database::Or:
+      return;
   }
 }
 
@@ -237,6 +241,8 @@ bool Transitions::add_to(RuntimeKnowledge& k, const GroundUpdate& g, const Runti
         if (!kept) k.forget_value(f);
       }
       return learn_exclusive(k, u, g.slots);
+    case Update::Database::Or:
+      break;
   }
   return true;
 }

@@ -29,6 +29,7 @@ Effect EffectParser::effect() {
     return e;
   }
   e.kind = Effect::Kind::When;
+  e.of_world = in_.accept("whenever");
   e.formulas.push_back(formulas_.formula());
   in_.expect("=>", "between an effect's condition and its updates");
   e.children = body();
@@ -64,6 +65,7 @@ std::optional<syntax::Database> EffectParser::database() {
   if (in_.accept("Kv")) return syntax::Database::Kv;
   if (in_.accept("Kx")) return syntax::Database::Kx;
   if (in_.accept("LCW")) return syntax::Database::Lcw;
+  if (in_.accept("Or")) return syntax::Database::Or;
   return std::nullopt;
 }
 
@@ -83,6 +85,8 @@ Effect EffectParser::update() {
   if (e.kind == Effect::Kind::Maybe && e.database != syntax::Database::Kf)
     e.location.fail("maybe(...) is about the world: its database is Kf");
   in_.expect(",", "after the database");
+  if (e.database == syntax::Database::Or)
+    e.location.fail("Or(...) is an initial entry; it is no database");
   e.formulas = contents(e.database);
   in_.expect(")", "to close the update");
   return e;
@@ -92,7 +96,7 @@ Effect EffectParser::update() {
 std::vector<Formula> EffectParser::contents(syntax::Database database) {
   std::vector<Formula> result;
   result.push_back(formulas_.literal());
-  if (database == syntax::Database::Kx)
+  if (database == syntax::Database::Kx || database == syntax::Database::Or)
     while (in_.accept("|") || in_.accept("xor") || in_.accept(","))
       result.push_back(formulas_.literal());
   return result;
@@ -106,7 +110,7 @@ std::vector<Effect> EffectParser::initial() {
     if (in_.is("add") && in_.is("(", 1)) {
       e = update();
     } else if (in_.is("(", 1) && (in_.is("K") || in_.is("Kf") || in_.is("Kw") || in_.is("Kv") ||
-                                  in_.is("Kx") || in_.is("LCW"))) {
+                                  in_.is("Kx") || in_.is("LCW") || in_.is("Or"))) {
       if (in_.accept("K")) {
         e.database = syntax::Database::Kf;
       } else {

@@ -1,6 +1,8 @@
 // Effects: updates of the databases Kf, Kw, Kv, Kx and LCW, their conditions and quantifiers.
 #include "language/effect_resolver.h"
 
+#include "language/unfolding.h"
+
 namespace kaboum::plan {
 namespace {
 
@@ -14,6 +16,47 @@ Effect for_all(const std::pair<Index, Index>& slot, std::vector<Effect> children
   all.type = slot.second;
   all.children = std::move(children);
   return all;
+}
+
+/// A query as one of the world, where all is known: K(p) stands for p, !K(p) for !p. The result, or
+/// its negation if not `positive`, has literals below its connectives.
+Query of_world(const Query& q, bool positive, const SourceLocation& location) {
+  using K = Query::Kind;
+  Query out = q;
+  switch (q.kind) {
+    case K::True:
+    case K::KnowWhether:
+    case K::WhetherValue:
+    case K::KnowValue:
+      out = {};
+      out.kind = positive ? K::True : K::False;
+      return out;
+    case K::False:
+      out.kind = positive ? K::False : K::True;
+      return out;
+    case K::And:
+    case K::Or:
+      out.kind = (q.kind == K::And) == positive ? K::And : K::Or;
+      break;
+    case K::Exists:
+    case K::ForAll:
+      out.kind = (q.kind == K::Exists) == positive ? K::Exists : K::ForAll;
+      break;
+    case K::Not:
+      return of_world(q.children[0], !positive, location);
+    case K::Known:
+    case K::KnownValue:
+      out.negated = q.negated != !positive;
+      return out;
+    case K::Same:
+      return positive ? out : negation(std::move(out));
+    case K::Xor:
+    case K::External:
+    case K::Let:
+      location.fail("a condition of the world has neither 'xor' nor external functions");
+  }
+  for (Query& c : out.children) c = of_world(c, positive, location);
+  return out;
 }
 
 }  // namespace
@@ -94,6 +137,13 @@ Update EffectResolver::update(const sx::Effect& e, Scope& scope,
     case sx::Database::Kx:
       exclusive(e, u, scope, unfolded);
       break;
+    case sx::Database::Or:
+      for (const sx::Formula& f : e.formulas) {
+        u.literals.push_back(literal(f, false, scope, unfolded));
+        if (u.literals.back().function)
+          f.location.fail("an alternative of Or is an atom or its negation");
+      }
+      break;
   }
   return u;
 }
@@ -101,7 +151,6 @@ Update EffectResolver::update(const sx::Effect& e, Scope& scope,
 void EffectResolver::exclusive(const sx::Effect& e, Update& u, Scope& scope,
                                std::vector<Unfolded>& unfolded) const {
   if (e.formulas.size() < 2) e.location.fail("Kx needs two or more alternatives: Kx, a | b");
-  if (e.formulas.size() > 64) e.location.fail("Kx takes at most 64 alternatives");
   for (const sx::Formula& f : e.formulas) {
     u.literals.push_back(literal(f, false, scope, unfolded));
     const Update::Literal& l = u.literals.back();
@@ -151,6 +200,12 @@ Effect EffectResolver::effect(const sx::Effect& e, Scope& scope) const {
       Effect result;
       result.kind = Effect::Kind::When;
       result.condition = queries_.query(e.formulas.at(0), scope);
+      if (e.of_world) {
+        const Query said = std::move(result.condition);
+        result.of_world = true;
+        result.condition = of_world(said, true, e.location);
+        result.denial = of_world(said, false, e.location);
+      }
       for (const sx::Effect& child : e.children) result.children.push_back(effect(child, scope));
       return result;
     }

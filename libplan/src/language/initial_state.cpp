@@ -34,6 +34,13 @@ void InitialState::declare(const sx::Document& document) {
 }
 
 void InitialState::declare_unknown(const sx::Document& document) {
+  for (const Update& u : model_.initial)
+    if (u.database == Update::Database::Or)
+      for (const Update::Literal& l : u.literals) {
+        std::vector<Index> key = {l.symbol};
+        for (const Argument& a : l.arguments) key.push_back(a.index);
+        unknown_.insert(std::move(key));
+      }
   for (const sx::Formula& f : document.unknown) {
     Scope none;
     std::vector<Unfolded> unfolded;

@@ -69,6 +69,8 @@ const char* name(syntax::Database d) {
       return "Kx";
     case syntax::Database::Lcw:
       return "LCW";
+    case syntax::Database::Or:
+      return "Or";
   }
   return "Kf";
 }
@@ -93,8 +95,10 @@ std::string effect(const Effect& e, const std::string& indent) {
     case Effect::Kind::When: {
       // An effect that begins with "forallK" quantifies the condition and what follows alike.
       const std::string condition = print_formula(e.formulas.at(0));
-      return (condition.starts_with("forallK") ? "(" + condition + ")" : condition) + " => {\n" +
-             effects(e.children, indent + "  ") + "\n" + indent + "}";
+      return (e.of_world                         ? "whenever " + condition
+              : condition.starts_with("forallK") ? "(" + condition + ")"
+                                                 : condition) +
+             " => {\n" + effects(e.children, indent + "  ") + "\n" + indent + "}";
     }
     case Effect::Kind::ForAll:
       return "forall" + variables(e.variables) + " {\n" + effects(e.children, indent + "  ") +
@@ -177,8 +181,8 @@ namespace {
 void check_name(const syntax::Name& n) {
   if (n.text.empty()) return;
   static const std::set<std::string, std::less<>> kReserved = {
-      "K",      "Kf",     "Kw",     "Kv",  "Kx",   "LCW",   "add",     "del",    "maybe",
-      "forall", "exists", "extern", "xor", "true", "false", "forallK", "existsK"};
+      "K",      "Kf",     "Kw",  "Kv",   "Kx",    "LCW",     "add",     "del", "maybe",   "forall",
+      "exists", "extern", "xor", "true", "false", "forallK", "existsK", "Or",  "whenever"};
   bool readable = false;
   try {
     const std::vector<Token> tokens = tokenize({"", n.text});
@@ -255,6 +259,11 @@ std::string print_kpl(const syntax::Document& d) {
     if (e.database == syntax::Database::Kf && e.formulas.size() == 1 &&
         e.formulas[0].kind == K::Equal)
       return print_formula(e.formulas[0]) + ";";
+    if (e.database == syntax::Database::Or) {
+      std::string text;
+      for (const Formula& f : e.formulas) text += (text.empty() ? "" : " | ") + print_formula(f);
+      return "Or(" + text + ");";
+    }
     return update(e) + ";";
   });
   section("closed:", d.closed, [](const syntax::Name& n) { return n.text + ";"; });

@@ -23,23 +23,6 @@ std::vector<Effect> part(const std::vector<Effect>& list, bool deletions) {
   return out;
 }
 
-/// The effects as such that may happen.
-std::vector<Effect> possibly(std::vector<Effect> effects) {
-  std::vector<Effect> all;
-  for (Effect& e : effects) {
-    if (e.kind == Effect::Kind::When || e.kind == Effect::Kind::ForAll) {
-      e.children = possibly(std::move(e.children));
-      if (e.children.empty()) continue;
-    } else if (e.database != syntax::Database::Kf) {
-      continue;
-    } else {
-      e.kind = Effect::Kind::Maybe;
-    }
-    all.push_back(std::move(e));
-  }
-  return all;
-}
-
 }  // namespace
 
 std::vector<Effect> pddl::additions_last(const std::vector<Effect>& effects) {
@@ -48,27 +31,11 @@ std::vector<Effect> pddl::additions_last(const std::vector<Effect>& effects) {
   return all;
 }
 
-std::vector<Effect> pddl::conditions_decided(const std::vector<Effect>& effects, bool incomplete) {
-  std::vector<Effect> all;
-  for (const Effect& e : effects) {
-    Effect known = e;
-    known.children = conditions_decided(e.children, incomplete);
-    if (e.kind != Effect::Kind::When) {
-      all.push_back(std::move(known));
-      continue;
-    }
-    Effect unknown = known;
-    known.formulas.resize(1);
-    all.push_back(std::move(known));
-    if (!incomplete) continue;
-    unknown.children = possibly(std::move(unknown.children));
-    if (unknown.children.empty()) continue;
-    unknown.formulas = {make(Formula::Kind::And, e.location,
-                             {make(Formula::Kind::Not, e.location, {e.formulas.at(0)}),
-                              make(Formula::Kind::Not, e.location, {e.formulas.at(1)})})};
-    all.push_back(std::move(unknown));
+void pddl::decide_in_world(std::vector<Effect>& effects) {
+  for (Effect& e : effects) {
+    decide_in_world(e.children);
+    e.of_world = e.kind == Effect::Kind::When;
   }
-  return all;
 }
 
 }  // namespace kaboum::plan

@@ -11,11 +11,9 @@ namespace pddl {
 /// PDDL: what one action both adds and deletes holds afterwards. Here the later update wins.
 std::vector<syntax::Effect> additions_last(const std::vector<syntax::Effect>& effects);
 
-/// A conditional effect happens or not in the world, known or not: with incomplete knowledge, it
-/// may happen where its condition is not known to fail. So far a When has two formulas: that its
-/// condition is known to hold, and that it is known to fail.
-std::vector<syntax::Effect> conditions_decided(const std::vector<syntax::Effect>& effects,
-                                               bool incomplete);
+/// A conditional effect happens or not in the world, known or not: with incomplete knowledge its
+/// condition is one of the world.
+void decide_in_world(std::vector<syntax::Effect>& effects);
 
 }  // namespace pddl
 

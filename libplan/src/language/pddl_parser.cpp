@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 
 #include "language/pddl_effect.h"
 #include "language/pddl_formula.h"
@@ -29,6 +30,7 @@ class PddlParser {
     const std::vector<SExpression> all = read_s_expressions(*source_);
     if (all.empty()) source_->fail(0, "expected (define ...)");
     for (const SExpression& e : all) define(e);
+    declare_used_types();
     if (costs_)
       for (syntax::Action& a : document_.actions)
         if (a.cost.empty()) a.cost.push_back({Term::Kind::Name, {"0", a.name.location}, {}});
@@ -37,8 +39,8 @@ class PddlParser {
     if (document_.assumes_complete && !document_.unknown.empty())
       document_.unknown[0].location.fail(
           "incomplete knowledge needs the requirement ':contingent' in the domain");
-    for (syntax::Action& a : document_.actions)
-      a.effects = conditions_decided(a.effects, contingent_);
+    if (contingent_)
+      for (syntax::Action& a : document_.actions) decide_in_world(a.effects);
     return std::move(document_);
   }
 
@@ -60,6 +62,7 @@ class PddlParser {
     if (key == ":requirements") {
       for (std::size_t i = 1; i < e.items.size(); ++i) requirement(e.items[i]);
     } else if (key == ":types") {
+      typed_ = true;
       for (const TypedVariable& t : typed(e, 1, false)) document_.types.push_back({t.name, t.type});
     } else if (key == ":constants" || key == ":objects") {
       for (TypedVariable& c : typed(e, 1, false)) document_.constants.push_back(std::move(c));
@@ -79,7 +82,7 @@ class PddlParser {
       if (!item(e, 1, "minimize").is("minimize") ||
           !(what.is("total-cost") || what.headed("total-cost")))
         e.location.fail("only the metric 'minimize (total-cost)' is supported");
-    } else if (key != ":domain") {
+    } else if (key != ":domain" && key != ":hidden") {  // the latter is for simulators of the world
       e.location.fail("unsupported section '" + key + "'");
     }
   }
@@ -199,7 +202,6 @@ class PddlParser {
     } else if (e.headed("when")) {
       made.kind = Effect::Kind::When;
       made.formulas.push_back(formula(item(e, 1, "a condition"), true));
-      made.formulas.push_back(formula(item(e, 1, "a condition"), false));  // for the unknown case
       effects(item(e, 2, "an effect"), made.children, a);
     } else if (e.headed("assign")) {
       Formula f = make(K::Equal, e.location);
@@ -228,16 +230,21 @@ class PddlParser {
     }
     if (e.headed("oneof")) {
       entry.database = syntax::Database::Kx;
-      for (std::size_t i = 1; i < e.items.size(); ++i) {
-        entry.formulas.push_back(literal(e.items[i]));
-        unknown_.push_back(entry.formulas.back());
-      }
+      alternatives(e, entry);
+      const bool atoms = std::none_of(entry.formulas.begin(), entry.formulas.end(),
+                                      [](const Formula& f) { return f.kind == K::Not; });
+      if (atoms && entry.formulas.size() != 1)
+        document_.initial.push_back(std::move(entry));
+      else
+        clauses_of_oneof(entry);
+      return;
+    }
+    if (e.headed("or")) {
+      entry.database = syntax::Database::Or;
+      alternatives(e, entry);
       document_.initial.push_back(std::move(entry));
       return;
     }
-    if (e.headed("or"))
-      e.location.fail(
-          "(or ...) is not supported in the initial state; (oneof ...) and (unknown ...) are");
     if (e.headed("=") && item(e, 1, "a function").headed("total-cost")) return;
     if (e.headed("not")) {
       entry.formulas.push_back(make(K::Not, e.location, {literal(item(e, 1, "an atom"))}));
@@ -245,6 +252,51 @@ class PddlParser {
       entry.formulas.push_back(literal(e));
     }
     document_.initial.push_back(std::move(entry));
+  }
+
+  /// The literals of (oneof ...) and (or ...); their atoms are open.
+  void alternatives(const SExpression& e, Effect& entry) {
+    for (std::size_t i = 1; i < e.items.size(); ++i) {
+      const SExpression& l = e.items[i];
+      const bool negated = l.headed("not");
+      if (l.headed("and") || l.headed("or") || l.headed("oneof"))
+        l.location.fail("'" + l.items[0].word + "' inside (" + e.items[0].word +
+                        " ...) is not supported in the initial state");
+      Formula atom = literal(negated ? item(l, 1, "an atom") : l);
+      if (atom.kind == K::Atom) unknown_.push_back(atom);
+      entry.formulas.push_back(negated ? make(K::Not, l.location, {std::move(atom)})
+                                       : std::move(atom));
+    }
+    if (entry.formulas.empty()) e.location.fail("expected a literal");
+  }
+
+  /// Exactly one of several literals: one holds, and no two do.
+  void clauses_of_oneof(const Effect& entry) {
+    Effect clause = entry;
+    clause.database = syntax::Database::Or;
+    document_.initial.push_back(clause);
+    const auto denied = [](const Formula& f) {
+      return f.kind == K::Not ? f.children.at(0) : make(K::Not, f.location, {f});
+    };
+    for (std::size_t i = 0; i < entry.formulas.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        clause.formulas = {denied(entry.formulas[i]), denied(entry.formulas[j])};
+        document_.initial.push_back(clause);
+      }
+  }
+
+  /// Where a domain has no (:types ...), those that its constants and parameters name are meant.
+  void declare_used_types() {
+    if (typed_ || document_.actions.empty()) return;
+    std::set<std::string> known = {"", "object", "number"};
+    const auto use = [&](const Name& type) {
+      if (known.insert(type.text).second) document_.types.push_back({type, {}});
+    };
+    for (const TypedVariable& c : document_.constants) use(c.type);
+    for (const syntax::Signature& s : document_.predicates)
+      for (const Name& p : s.parameters) use(p);
+    for (const syntax::Action& a : document_.actions)
+      for (const TypedVariable& p : a.parameters) use(p.type);
   }
 
   /// Everything not stated is false, but for what is unknown.
@@ -257,6 +309,7 @@ class PddlParser {
   syntax::Document document_;
   std::vector<Formula> unknown_;
   bool costs_ = false;
+  bool typed_ = false;  ///< it has (:types ...)
   bool contingent_ = false;
 };
 

@@ -62,9 +62,10 @@ class PddlPrinter {
     rename_object_ = std::any_of(d.types.begin(), d.types.end(), is_object) && d.types.size() > 1 &&
                      std::none_of(d.types.begin(), d.types.end(),
                                   [](const syntax::Type& t) { return t.parent.text == "object"; });
-    incomplete_ = !d.unknown.empty() ||
-                  std::any_of(d.initial.begin(), d.initial.end(),
-                              [](const Effect& e) { return e.database == syntax::Database::Kx; });
+    incomplete_ =
+        !d.unknown.empty() || std::any_of(d.initial.begin(), d.initial.end(), [](const Effect& e) {
+          return e.database == syntax::Database::Kx || e.database == syntax::Database::Or;
+        });
     check_names(d);
     if (!d.externals.empty()) refuse("external function '" + d.externals[0].name.text + "'");
     const bool costs = std::any_of(d.actions.begin(), d.actions.end(),
@@ -220,10 +221,10 @@ class PddlPrinter {
           refuse("loss of knowledge, del(...) or maybe(...)");
         case Effect::Kind::When: {
           std::string inner;
-          if (incomplete_)
+          if (incomplete_ && !e.of_world)
             refuse(
                 "a conditional effect where knowledge is incomplete: that of PDDL may happen while "
-                "its condition is not known");
+                "its condition is not known ('whenever')");
           out += " (when " + condition(e.formulas.at(0)) + " " + effects(e.children, inner) + ")";
           if (!inner.empty()) refuse("a conditional observation");
           break;
@@ -259,6 +260,11 @@ class PddlPrinter {
         return literal(e.formulas.at(0));
       case syntax::Database::Kx: {
         std::string out = "(oneof";
+        for (const Formula& f : e.formulas) out += " " + literal(f);
+        return out + ")";
+      }
+      case syntax::Database::Or: {
+        std::string out = "(or";
         for (const Formula& f : e.formulas) out += " " + literal(f);
         return out + ")";
       }

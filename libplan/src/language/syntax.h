@@ -57,14 +57,15 @@ struct Formula {
   std::vector<TypedVariable> variables;
 };
 
-enum class Database { Kf, Kw, Kv, Kx, Lcw };
+enum class Database { Kf, Kw, Kv, Kx, Lcw, Or };
 
 struct Effect {
   enum class Kind { Add, Maybe, Delete, When, ForAll };
   Kind kind = Kind::Add;
   SourceLocation location;
   Database database = Database::Kf;
-  std::vector<Formula> formulas;  ///< one; for Kx the alternatives; for When the condition
+  std::vector<Formula> formulas;  ///< one; for Kx and Or the alternatives; for When the condition
+  bool of_world = false;  ///< of When: the condition is one of the world, known or not
   std::vector<TypedVariable> variables;
   std::vector<Effect> children;
 };

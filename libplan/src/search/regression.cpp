@@ -69,8 +69,11 @@ void Regression::touch(Index fluent, bool plain) {
     const bool depends = !plain || !f.groups.empty();
     if (depends) require_as_before(f);
     for (const auto& [g, bit] : f.groups) {
-      touched_[layout.groups()[g].word] = ~Word{0};
-      require_word(layout.groups()[g].word);
+      const Group& group = layout.groups()[g];
+      for (Index w = 0; w < group.words(); ++w) {
+        touched_[group.word + w] = ~Word{0};
+        require_word(group.word + w);
+      }
     }
   }
 }
@@ -105,7 +108,10 @@ void Regression::require_read(Formula f) {
     for (const Index fluent : tied_to(pool.node(f).a)) {
       const Fluent& read = task_.layout().fluents()[fluent];
       require_as_before(read);
-      for (const auto& [g, bit] : read.groups) require_word(task_.layout().groups()[g].word);
+      for (const auto& [g, bit] : read.groups) {
+        const Group& group = task_.layout().groups()[g];
+        for (Index w = 0; w < group.words(); ++w) require_word(group.word + w);
+      }
     }
   }
 }
@@ -236,7 +242,8 @@ Formula Regression::before(OperatorId step, Formula condition, const Word* befor
             change.kind == K::AddGroup || change.kind == K::Exclude || change.kind == K::AddOptions;
         if (change.kind == K::AddGroup || change.kind == K::DeleteGroup) {
           for (const Index m : task_.layout().groups()[change.fluent].members) touch(m, false);
-          touched_[task_.layout().groups()[change.fluent].word] = ~Word{0};
+          const Group& group = task_.layout().groups()[change.fluent];
+          for (Index w = 0; w < group.words(); ++w) touched_[group.word + w] = ~Word{0};
         } else {
           touch(change.fluent, change.kind == K::AddTrue || change.kind == K::AddFalse ||
                                    change.kind == K::AddValue || change.kind == K::Forget);

@@ -1,4 +1,5 @@
-// One call of the planner: the task is made, a planner run, limits become an outcome.
+// One call of the planner: the task is made, a planner run, limits become an outcome. Sets of
+// possible worlds are kept where databases of knowledge would lose something.
 #include <kaboum/base/error.h>
 #include <kaboum/plan/solve.h>
 
@@ -7,10 +8,15 @@
 #include "search/contingent.h"
 #include "search/search.h"
 #include "task/exactness.h"
+#include "task/knowledge_view.h"
 #include "task/task.h"
+#include "worlds/belief_search.h"
+#include "worlds/world_grounder.h"
 
 namespace kaboum::plan {
 namespace {
+
+constexpr std::size_t kMostWorlds = 1U << 18U;  // of one component
 
 ContingentPlanner::SearchFunction search_function(Algorithm a) {
   switch (a) {
@@ -57,32 +63,85 @@ void search(Task& task, const SolveOptions& options, Limits& limits, Solution& s
   if (solution.outcome != Outcome::Limit) calls.confirm();
 }
 
+/// Whether it is known at the start that one of several atoms holds, and not which.
+bool has_disjunctions(const Model& model) {
+  return std::any_of(model.initial.begin(), model.initial.end(), [](const Update& u) {
+    return u.database == Update::Database::Kx && !u.literals[0].function;
+  });
+}
+
+/// With sets of possible worlds. @return false if the model, or what is unknown in it, is not of a
+/// size and kind that they are kept of; nothing is decided then.
+bool search_worlds(const Model& model, const SolveOptions& options, Limits& limits,
+                   Solution& solution) {
+  const auto task = worlds::ground_worlds(model, limits);
+  if (!task) return false;
+  worlds::BeliefSpace space(*task);
+  const auto start = space.start(kMostWorlds, limits);
+  if (!start) return false;
+  solution.statistics.ground_actions = task->operators.size();
+  const bool guided =
+      options.algorithm == Algorithm::Greedy || options.algorithm == Algorithm::AStar;
+  worlds::BeliefSearch search(space, model, guided, limits, solution.statistics);
+  try {
+    solution.outcome = search.run(*start);
+  } catch (const worlds::TooManyWorlds&) {
+    return false;
+  }
+  if (solution.outcome == Outcome::Solved) solution.plan = search.plan();
+  if (solution.outcome == Outcome::Unsolvable) {
+    solution.lost = lost_in_worlds(model);
+    if (!solution.lost.empty()) solution.outcome = Outcome::NotInferred;
+  }
+  return true;
+}
+
+/// With knowledge states.
+void search_knowledge(const Model& model, const SolveOptions& options, const std::string& lost,
+                      Limits& limits, Solution& solution) {
+  Task task(model, limits);
+  const auto count = [&] {
+    solution.statistics.ground_actions = task.action_count();
+    solution.statistics.external_calls = task.calls().calls_made();
+    solution.statistics.external_bytes = task.calls().bytes();
+    solution.statistics.external_seconds = task.calls().seconds();
+  };
+  try {
+    search(task, options, limits, solution);
+  } catch (const LimitExceeded&) {
+    count();
+    throw;
+  }
+  count();
+  if (solution.outcome != Outcome::Unsolvable || lost.empty()) return;
+  solution.lost = lost;
+  solution.outcome = Outcome::NotInferred;
+}
+
 }  // namespace
 
 Solution solve(const Model& model, const SolveOptions& options) {
   Solution solution;
   Limits limits(options, solution.statistics);
   try {
-    Task task(model, limits);
-    const auto count = [&] {
-      solution.statistics.ground_actions = task.action_count();
-      solution.statistics.external_calls = task.calls().calls_made();
-      solution.statistics.external_bytes = task.calls().bytes();
-      solution.statistics.external_seconds = task.calls().seconds();
-    };
-    try {
-      search(task, options, limits, solution);
-    } catch (const LimitExceeded&) {
-      count();
-      throw;
-    }
-    count();
+    const std::optional<Model> view = knowledge_view(model);
+    const Model& known = view ? *view : model;
+    const std::string lost = view ? "conditions of the world (whenever, Or) are kept as far as "
+                                    "they are known"
+                                  : lost_knowledge(known);
+    // Sets of worlds know no least cost or fewest steps: they come first where the databases would
+    // mostly fail, else only after them.
+    const bool worlds_first = view || (options.algorithm == Algorithm::Greedy &&
+                                       has_disjunctions(model) && lost_in_worlds(model).empty());
+    if (!worlds_first || !search_worlds(model, options, limits, solution))
+      search_knowledge(known, options, lost, limits, solution);
+    Solution again;
+    again.statistics = solution.statistics;
+    if (!worlds_first && solution.outcome == Outcome::NotInferred &&
+        search_worlds(model, options, limits, again))
+      solution = std::move(again);
   } catch (const LimitExceeded&) {
     solution.outcome = Outcome::Limit;
-  }
-  if (solution.outcome == Outcome::Unsolvable) {
-    solution.lost = lost_knowledge(model);
-    if (!solution.lost.empty()) solution.outcome = Outcome::NotInferred;
   }
   if (solution.outcome == Outcome::Limit && solution.limit.empty())
     solution.limit =

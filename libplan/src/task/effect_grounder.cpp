@@ -128,6 +128,8 @@ Change EffectGrounder::change_of(const Update& u, const std::vector<Index>& slot
       break;
     case Update::Database::Kx:
       return exclusive_change(u, slots, fluent);
+    case Update::Database::Or:
+      break;  // of initial entries only
   }
   return c;
 }

@@ -12,8 +12,9 @@ namespace {
 
 class Exactness {
  public:
-  explicit Exactness(const Model& model)
+  Exactness(const Model& model, bool worlds)
       : model_(model),
+        worlds_(worlds),
         unknown_atoms_(model.predicates.size(), 0),
         unknown_terms_(model.functions.size(), 0) {
     initially_unknown();
@@ -25,7 +26,7 @@ class Exactness {
 
   std::string lost() const {
     for (const Update& u : model_.initial)
-      if (is_disjunction(u)) return kDisjunctions;
+      if (is_disjunction(u) && !worlds_) return kDisjunctions;
     for (const Action& a : model_.actions) {
       std::string found = lost_by(a.effects);
       if (!found.empty()) return found + " (action '" + a.name + "')";
@@ -74,8 +75,24 @@ class Exactness {
     bool fresh = false;
     for (const Effect& e : effects) {
       if (e.kind == Effect::Kind::When && !may_hold(e.condition)) continue;
+      if (e.of_world && reads_unknown(e.condition)) fresh |= forget_targets(e.children);
       fresh |= forget(e.children);
       if (e.kind != Effect::Kind::Update || (e.update.add && !may_lose(e.update))) continue;
+      for (const Update::Literal& l : e.update.literals) {
+        char& u = (l.function ? unknown_terms_ : unknown_atoms_)[l.symbol];
+        fresh |= u == 0;
+        u = 1;
+      }
+    }
+    return fresh;
+  }
+
+  /// Of a condition of the world that is not known: all that hangs on it may be unknown then.
+  bool forget_targets(const std::vector<Effect>& effects) {
+    bool fresh = false;
+    for (const Effect& e : effects) {
+      fresh |= forget_targets(e.children);
+      if (e.kind != Effect::Kind::Update) continue;
       for (const Update::Literal& l : e.update.literals) {
         char& u = (l.function ? unknown_terms_ : unknown_atoms_)[l.symbol];
         fresh |= u == 0;
@@ -133,11 +150,11 @@ class Exactness {
     for (const Effect& e : effects) {
       if (e.kind == Effect::Kind::When) {
         if (!may_hold(e.condition)) continue;
-        if (reads_unknown(e.condition))
+        if (!e.of_world && reads_unknown(e.condition))
           return "an effect whose condition is not known either way leaves no trace of the tie "
                  "between the two";
       }
-      if (e.kind == Effect::Kind::Update) {
+      if (e.kind == Effect::Kind::Update && !worlds_) {
         if (is_disjunction(e.update)) return kDisjunctions;
         if (e.update.maybe) return "what 'maybe' happens together is not remembered";
       }
@@ -148,11 +165,13 @@ class Exactness {
   }
 
   const Model& model_;
+  bool worlds_;
   std::vector<char> unknown_atoms_, unknown_terms_;  ///< by symbol: an instance may be unknown
 };
 
 }  // namespace
 
-std::string lost_knowledge(const Model& model) { return Exactness(model).lost(); }
+std::string lost_knowledge(const Model& model) { return Exactness(model, false).lost(); }
+std::string lost_in_worlds(const Model& model) { return Exactness(model, true).lost(); }
 
 }  // namespace kaboum::plan

@@ -11,4 +11,7 @@ namespace kaboum::plan {
 /// proof. Errs on the side of naming one.
 std::string lost_knowledge(const Model& model);
 
+/// The same of sets of possible worlds: only effects that hang on what is known, not on the world.
+std::string lost_in_worlds(const Model& model);
+
 }  // namespace kaboum::plan

@@ -54,6 +54,8 @@ class Learner {
         // What Kw or Kx speaks of is stated, if not decided.
         return p.fluent == kNone || knowledge_.atom(p.fluent) != AtomKnowledge::Unknown ||
                stated_.contains(p.fluent) || knowledge_.learn_atom(p.fluent, false);
+      case Update::Database::Or:
+        break;  // not in a model's knowledge view
     }
     return true;
   }

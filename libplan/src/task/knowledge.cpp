@@ -26,11 +26,15 @@ std::vector<Index> Knowledge::possible_values(Index fluent, std::size_t range_si
   return result;
 }
 
+void Knowledge::clear(const Group& group) {
+  for (Index w = 0; w < group.words(); ++w) write(group.word + w, 0);
+}
+
 /// An undecided member changed, or may have: which of the others holds is no longer tied to it.
 void Knowledge::drop_groups(const Fluent& f) {
   for (const auto& [g, bit] : f.groups) {
-    const Index word = layout_->groups()[g].word;
-    if ((words_[word] >> bit) & 1U) write(word, 0);
+    const Group& group = layout_->groups()[g];
+    if (group.contains(words_.data(), bit)) clear(group);
   }
 }
 
@@ -38,7 +42,7 @@ bool Knowledge::apply(const Change& c) {
   using K = Change::Kind;
   if (c.kind == K::AddGroup) return learn_group(c.fluent);
   if (c.kind == K::DeleteGroup) {
-    write(layout_->groups()[c.fluent].word, 0);
+    clear(layout_->groups()[c.fluent]);
     return true;
   }
   const Fluent& f = layout_->fluents()[c.fluent];
@@ -162,8 +166,9 @@ bool Knowledge::learn_options(Index fluent, const std::vector<Index>& options) {
 
 bool Knowledge::learn_group(Index group) {
   const Group& g = layout_->groups()[group];
-  const std::size_t n = g.members.size();
-  write(g.word, n == 64 ? ~Word{0} : (Word{1} << n) - 1);
+  std::size_t left = g.members.size();
+  for (Index w = 0; w < g.words(); ++w, left -= std::min<std::size_t>(left, 64))
+    write(g.word + w, left >= 64 ? ~Word{0} : (Word{1} << left) - 1);
   return propagate({group});
 }
 
@@ -172,45 +177,44 @@ bool Knowledge::propagate(std::vector<Index> groups) {
   while (!groups.empty()) {
     const Group& g = layout_->groups()[groups.back()];
     groups.pop_back();
-    Word members = words_[g.word];
-    if (members == 0) continue;
-    const auto decide = [&](Index fluent, AtomKnowledge k) {
-      set(fluent, raw(k));
-      for (const auto& [other, bit] : layout_->fluents()[fluent].groups) groups.push_back(other);
-    };
-    Index holds = kNone;
-    for (Word left = members; left != 0; left &= left - 1) {
-      const auto i = static_cast<Index>(std::countr_zero(left));
-      const AtomKnowledge k = atom(g.members[i]);
-      if (k == AtomKnowledge::False) members &= ~(Word{1} << i);
-      if (k == AtomKnowledge::True) {
-        if (holds != kNone) return false;
-        holds = i;
-      }
-    }
-    if (members == 0) return false;
-    if (holds == kNone && std::popcount(members) == 1) {
-      holds = static_cast<Index>(std::countr_zero(members));
-      decide(g.members[holds], AtomKnowledge::True);
-    }
-    if (holds != kNone) {
-      for (Word left = members & ~(Word{1} << holds); left != 0; left &= left - 1)
-        decide(g.members[static_cast<std::size_t>(std::countr_zero(left))], AtomKnowledge::False);
-      members = 0;
-    }
-    write(g.word, members);
-    // All but one will be known at run time: so will be the last.
-    Index unknown = kNone;
-    int count = 0;
-    for (Word left = members; left != 0; left &= left - 1) {
-      const Index m = g.members[static_cast<std::size_t>(std::countr_zero(left))];
-      if (atom(m) == AtomKnowledge::Unknown) {
-        unknown = m;
-        ++count;
-      }
-    }
-    if (count == 1) decide(unknown, AtomKnowledge::Whether);
+    if (!propagate(g, groups)) return false;
   }
+  return true;
+}
+
+/// Draws the conclusions of one group. `next` gets those that its decisions touch.
+bool Knowledge::propagate(const Group& g, std::vector<Index>& next) {
+  std::vector<Index> open;  // members
+  Index holding = 0;
+  for (Index i = 0; i < g.members.size(); ++i) {
+    if (!g.contains(words_.data(), i)) continue;
+    const AtomKnowledge k = atom(g.members[i]);
+    if (k == AtomKnowledge::True) ++holding;
+    if (k == AtomKnowledge::Unknown || k == AtomKnowledge::Whether) open.push_back(i);
+  }
+  bool empty = true;
+  for (Index w = 0; w < g.words(); ++w) empty &= words_[g.word + w] == 0;
+  if (empty) return true;
+  if (holding > 1 || (holding == 0 && open.empty())) return false;
+  const auto decide = [&](Index member, AtomKnowledge k) {
+    set(g.members[member], raw(k));
+    for (const auto& [other, bit] : layout_->fluents()[g.members[member]].groups)
+      next.push_back(other);
+  };
+  if (holding == 1 || open.size() == 1) {
+    for (const Index i : open) decide(i, holding == 1 ? AtomKnowledge::False : AtomKnowledge::True);
+    clear(g);
+    return true;
+  }
+  for (Index w = 0; w < g.words(); ++w) {
+    Word members = 0;
+    for (const Index i : open)
+      if (i / 64 == w) members |= Word{1} << (i % 64);
+    write(g.word + w, members);
+  }
+  // All but one will be known at run time: so will be the last.
+  std::erase_if(open, [&](Index i) { return atom(g.members[i]) != AtomKnowledge::Unknown; });
+  if (open.size() == 1) decide(open[0], AtomKnowledge::Whether);
   return true;
 }
 

@@ -116,7 +116,9 @@ class Knowledge {
     for (Index i = 0; i < f.exclusion_words; ++i) write(f.exclusions + i, 0);
   }
   void drop_groups(const Fluent& f);
+  void clear(const Group& group);
   bool propagate(std::vector<Index> groups);
+  bool propagate(const Group& g, std::vector<Index>& next);
 
   const Layout* layout_;
   std::vector<Word> words_;

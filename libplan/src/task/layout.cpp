@@ -109,7 +109,8 @@ void Layout::assign_words(const std::vector<char>& function_exclusions) {
     words_ += f.exclusion_words;
   }
   for (std::size_t g = 0; g < groups_.size(); ++g) {
-    groups_[g].word = words_++;
+    groups_[g].word = words_;
+    words_ += groups_[g].words();
     for (std::size_t i = 0; i < groups_[g].members.size(); ++i)
       fluents_[groups_[g].members[i]].groups.emplace_back(static_cast<Index>(g),
                                                           static_cast<Index>(i));
@@ -149,10 +150,10 @@ Index Layout::sensed_tie(Index fluent, const Word* state) const {
     todo.pop_back();
     for (const auto& [g, bit] : f.groups) {
       const Group& group = groups_[g];
-      if (((state[group.word] >> bit) & 1U) == 0) continue;
+      if (!group.contains(state, bit)) continue;
       for (std::size_t i = 0; i < group.members.size(); ++i) {
         const Index m = group.members[i];
-        if (((state[group.word] >> i) & 1U) == 0 ||
+        if (!group.contains(state, static_cast<Index>(i)) ||
             std::find(seen.begin(), seen.end(), m) != seen.end())
           continue;
         if (fluents_[m].get(state) == static_cast<Word>(AtomKnowledge::Whether)) return m;

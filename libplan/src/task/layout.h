@@ -43,7 +43,12 @@ struct Fluent {
 /// An exclusive-or entry of Kx: exactly one of the members whose bit is set holds.
 struct Group {
   std::vector<Index> members;  ///< fluents
-  Index word = 0;
+  Index word = 0;              ///< the first of its words, 64 members each
+
+  [[nodiscard]] Index words() const { return static_cast<Index>((members.size() + 63) / 64); }
+  [[nodiscard]] bool contains(const Word* state, Index member) const {
+    return ((state[word + member / 64] >> (member % 64)) & 1U) != 0;
+  }
 };
 
 /// Where each piece of knowledge is in a state. Atoms and terms that nothing can change have no

@@ -18,10 +18,10 @@ struct CheckResult {
 /// Replays a plan for every way the sensing may turn out: each precondition must hold, each branch
 /// be on something known by then and have a case for its value, and each end meet the goal.
 ///
-/// Shares nothing with the planner but the loaded model: knowledge is kept as sets of literals as
-/// it will be at run time (a sensed value splits the replay at once), and queries are evaluated on
-/// the lifted model. Knowledge that nothing further down reads is dropped, so shared sub-plans are
-/// replayed once for all that reach them alike.
+/// Shares the loaded model with the planner, and what is said of it: knowledge is kept as sets of
+/// literals at run time (a sensed value splits the replay at once), and as sets of possible worlds
+/// where these know too little; queries are evaluated on the lifted model. What nothing further
+/// down reads is dropped, so shared sub-plans are replayed once for all that reach them alike.
 ///
 /// @throws Error{InvalidInput} if the graph has a cycle; Error{LimitReached} beyond `limit` pairs.
 CheckResult check(const Model& model, const Plan& plan, std::uint64_t limit = 2'000'000);

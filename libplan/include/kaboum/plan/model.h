@@ -86,7 +86,14 @@ struct Query {
 
 /// One change of one database.
 struct Update {
-  enum class Database { Kf, Kw, Kv, Kx, Lcw };
+  enum class Database {
+    Kf,
+    Kw,
+    Kv,
+    Kx,
+    Lcw,
+    Or  ///< initial entries only: at least one of the literals holds
+  };
   struct Literal {
     bool function = false;
     bool negated = false;
@@ -97,7 +104,7 @@ struct Update {
   bool add = true;
   bool maybe = false;  ///< of an addition to Kf: it may happen, and takes what it would make false
   Database database = Database::Kf;
-  std::vector<Literal> literals;  ///< one; for Kx the alternatives
+  std::vector<Literal> literals;  ///< one; for Kx and Or the alternatives
 };
 
 struct Effect {
@@ -105,6 +112,10 @@ struct Effect {
   Kind kind = Kind::Update;
   Update update;
   Query condition;
+  /// Of a condition: it is one of the world, K(p) standing for p, and decides in each possible
+  /// world what happens there, known or not. `denial` is then its negation.
+  bool of_world = false;
+  Query denial;
   Index slot = 0;
   Index type = 0;
   std::vector<Effect> children;
