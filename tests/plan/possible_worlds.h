@@ -176,9 +176,7 @@ class Worlds {
     std::vector<Index> slots;
     std::vector<std::size_t> ground;  ///< items and values of its literals
     std::set<World> where;            ///< the worlds, as they were, in which it happens
-    bool operator==(const Happening& o) const {
-      return update == o.update && ground == o.ground;
-    }
+    bool operator==(const Happening& o) const { return update == o.update && ground == o.ground; }
   };
   /// Updates of an action in a belief: conditions look at what is known before.
   [[nodiscard]] std::vector<Happening> fired(const Action& a, const std::vector<Index>& arguments,

@@ -65,7 +65,7 @@ struct Effect {
   SourceLocation location;
   Database database = Database::Kf;
   std::vector<Formula> formulas;  ///< one; for Kx and Or the alternatives; for When the condition
-  bool of_world = false;  ///< of When: the condition is one of the world, known or not
+  bool of_world = false;          ///< of When: the condition is one of the world, known or not
   std::vector<TypedVariable> variables;
   std::vector<Effect> children;
 };

@@ -14,8 +14,8 @@ struct WrapOptions {
   /// Hollows that no ball of this diameter can reach from outside without touching the input are
   /// filled; > 0. Also the scale of the search: time and memory grow with its inverse. [length]
   double seal = 0;
-  /// No point of the wrap is nearer to the input than this, so that all that is so near to a triangle
-  /// is inside as well; ≥ 0, and below a third of the offset. [length]
+  /// No point of the wrap is nearer to the input than this, so that all that is so near to a
+  /// triangle is inside as well; ≥ 0, and below a third of the offset. [length]
   double clearance = 0;
   /// The wrap's coordinates are float32 numbers; else any doubles.
   bool float32 = true;
@@ -45,7 +45,8 @@ struct Wrap {
 ///
 /// @throws Error{InvalidInput} when the input has no triangles, numbers that are not finite, or
 ///   coordinates too large for lattice and precision; Error{InvalidArgument} on lengths that are
-///   not positive, or a clearance too large for the offset; Error{LimitReached} when the lattice would have more than max_cells.
+///   not positive, or a clearance too large for the offset; Error{LimitReached} when the lattice
+///   would have more than max_cells.
 Wrap wrap(const geom::Mesh& input, const WrapOptions& options);
 
 }  // namespace kaboum::wrap
