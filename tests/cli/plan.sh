@@ -65,7 +65,7 @@ sed '3s/: *[^,]*/: 1e999/' four.json >big.json
 expect 3 'big.json: a number in it is out of range' "$P" check "$DOMAINS/stacked/domain.kpl" problem.kpl --plan big.json
 # Commands that are misspelt, or lacking.
 expect 2 "unknown command 'sovle'; did you mean 'solve'?" "$BIN/kaboum-plan" sovle x.kpl
-expect 2 "unknown command 'x.kpl'; commands: solve, check, show, convert" "$BIN/kaboum-plan" x.kpl
+expect 2 "unknown command 'x.kpl'; commands: solve, check, show, run, convert" "$BIN/kaboum-plan" x.kpl
 expect 2 'a command is to come first: solve, check' "$BIN/kaboum-plan"
 expect 2 'unknown option --tre; did you mean --tree?' "$BIN/kaboum-plan" solve x.kpl --tre
 # The example of docs/planning/language.md, as it stands there.
