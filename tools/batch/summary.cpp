@@ -2,6 +2,8 @@
 
 #include "summary.h"
 
+#include <kaboum/base/xml_text.h>
+
 #include <algorithm>
 #include <array>
 #include <sstream>
@@ -32,27 +34,6 @@ constexpr std::array<Column, 15> kColumns{{{"file", "name", false},
                                            {"MB", "peak_megabytes", true},
                                            {"reason", "reason", false},
                                            {"options", "parameters", false}}};
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  return out;
-}
 
 /// Of a file, as a relative link.
 std::string link_to(const std::string& path) {
@@ -130,7 +111,7 @@ void add_row(std::string& page, const Record& record, bool pictures) {
   }
   for (const Column& column : kColumns) {
     const std::string key = column.key;
-    std::string text = escaped(text_of(json[key])), kind = column.number ? "n" : "";
+    std::string text = escape_xml(text_of(json[key])), kind = column.number ? "n" : "";
     if (key == "state") kind.append("s ").append(text);
     if (key == "name" && record.has_result())
       text.insert(0, "<a href=\"" + link_to(record.output) + "\">").append("</a>");
@@ -187,9 +168,9 @@ std::string html_of(const Summary& summary, const std::string& title) {
   const bool pictures = std::any_of(summary.records.begin(), summary.records.end(),
                                     [](const Record& r) { return !r.picture.empty(); });
   std::string page = "<!DOCTYPE html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>" +
-                     escaped(title) + "</title>\n" + kHead + "<h1>" + escaped(title) +
+                     escape_xml(title) + "</title>\n" + kHead + "<h1>" + escape_xml(title) +
                      "</h1>\n<p>" + std::to_string(summary.records.size()) +
-                     " files: " + escaped(summary.words()) +
+                     " files: " + escape_xml(summary.words()) +
                      ". Lengths are in the units of the files; a click "
                      "on a title sorts.</p>\n<table><thead><tr>";
   if (pictures) page += "<th></th>";

@@ -48,7 +48,7 @@ bool BeliefSpace::holds_of_variable(const Condition& c, const Word* belief) cons
     return (all == c.value) == (c.kind == Kind::Is);
   }
   if (c.kind == Kind::Is || c.kind == Kind::Decided) return false;
-  if (!v.function) return c.kind == Kind::Whether ? false : false;
+  if (!v.function) return false;
   return std::none_of(sets.members(set).begin(), sets.members(set).end(),
                       [&](Index w) { return v.get(sets.contents(w)) == c.value; });
 }
