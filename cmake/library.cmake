@@ -1,13 +1,16 @@
-# kaboum_add_library(<name> SOURCES ... PUBLIC ... PRIVATE ... HEADERS_OF ...)
+# kaboum_add_library(<name> SOURCES ... PUBLIC ... PRIVATE ... HEADERS_OF ... ALONE ...)
 # A static library with the alias and exported target kaboum::<name>, a component of the package; headers
 # in include/. HEADERS_OF are libraries of which only this one's sources include something: who uses the
-# installed library needs none of them.
+# installed library needs none of them. ALONE are sources that use names others give to something else: they
+# are never compiled together with others (KABOUM_UNITY).
 function(kaboum_add_library name)
-  cmake_parse_arguments(arg "" "" "SOURCES;PUBLIC;PRIVATE;HEADERS_OF" ${ARGN})
+  cmake_parse_arguments(arg "" "" "SOURCES;PUBLIC;PRIVATE;HEADERS_OF;ALONE" ${ARGN})
   add_library(kaboum_${name} STATIC ${arg_SOURCES})
   add_library(kaboum::${name} ALIAS kaboum_${name})
   set_target_properties(kaboum_${name} PROPERTIES EXPORT_NAME ${name} CXX_EXTENSIONS OFF
-                        POSITION_INDEPENDENT_CODE ON)
+                        POSITION_INDEPENDENT_CODE ON
+                        UNITY_BUILD ${KABOUM_UNITY} UNITY_BUILD_BATCH_SIZE 8)
+  set_source_files_properties(${arg_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   target_compile_features(kaboum_${name} PUBLIC cxx_std_20)
   target_include_directories(kaboum_${name} PUBLIC
     $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>

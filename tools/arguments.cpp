@@ -5,6 +5,7 @@
 #include <kaboum/base/length_unit.h>
 #include <kaboum/base/parse_length.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <charconv>

@@ -2,9 +2,12 @@
 
 #include <kaboum/base/length.h>
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
+
+namespace CLI {
+class Validator;
+}  // namespace CLI
 
 /// Values of options: numbers, lengths, names.
 namespace kaboum::tools {

@@ -2,6 +2,8 @@
 
 #include <kaboum/io/convex_io.h>
 
+#include <CLI/CLI.hpp>
+
 #include "decompose_options.h"
 #include "decompose_robot.h"
 #include "decompose_words.h"

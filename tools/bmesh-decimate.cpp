@@ -3,6 +3,8 @@
 #include <kaboum/base/error.h>
 #include <kaboum/bmesh/log.h>
 
+#include <CLI/CLI.hpp>
+
 #include "decimation_case.h"
 #include "extract_levels.h"
 #include "result_files.h"

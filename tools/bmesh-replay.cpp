@@ -4,6 +4,7 @@
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/verify/replay.h>
 
+#include <CLI/CLI.hpp>
 #include <iostream>
 
 #include "cli.h"

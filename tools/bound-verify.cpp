@@ -1,5 +1,7 @@
 // Decides from files alone whether what was made of a mesh, a robot or a motion keeps its promise.
 #include "verify_commands.h"
+
+#include <CLI/CLI.hpp>
 #include "verify_flags.h"
 #include "verify_mesh.h"
 #include "verify_progressive.h"

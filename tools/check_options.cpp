@@ -2,6 +2,8 @@
 
 #include "check_options.h"
 
+#include <CLI/CLI.hpp>
+
 #include "motion_options.h"
 
 namespace kaboum::tools {

@@ -1,11 +1,14 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstddef>
 #include <string>
 #include <vector>
 
 #include "cli.h"
+
+namespace CLI {
+class App;
+}  // namespace CLI
 
 /// What kaboum-check is asked for.
 namespace kaboum::tools {

@@ -2,7 +2,6 @@
 
 #include <kaboum/base/error.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -12,6 +11,10 @@
 #include "arguments.h"
 #include "files.h"
 #include "report.h"
+
+namespace CLI {
+class App;
+}  // namespace CLI
 
 /// What the command-line tools share: exit codes, common options, progress.
 namespace kaboum::tools {

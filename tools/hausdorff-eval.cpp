@@ -4,6 +4,7 @@
 #include <kaboum/distance/compare.h>
 #include <kaboum/io/mesh_io.h>
 
+#include <CLI/CLI.hpp>
 #include <array>
 #include <chrono>
 #include <cmath>

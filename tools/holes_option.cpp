@@ -2,6 +2,7 @@
 
 #include "holes_option.h"
 
+#include <CLI/CLI.hpp>
 #include <vector>
 
 namespace kaboum::tools {

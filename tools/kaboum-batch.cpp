@@ -3,6 +3,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <fstream>
 #include <thread>

@@ -3,6 +3,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/certify/cache_folder.h>
 #include <tbb/parallel_for.h>
+#include <CLI/CLI.hpp>
 
 #include <chrono>
 #include <iostream>

@@ -6,6 +6,7 @@
 #include <kaboum/robot/path_file.h>
 #include <kaboum/world/motion_check.h>
 
+#include <CLI/CLI.hpp>
 #include <iostream>
 #include <sstream>
 

@@ -3,6 +3,7 @@
 #include <kaboum/kinematics/copies.h>
 #include <kaboum/robot/robot_file.h>
 
+#include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
 #include <charconv>
 #include <cmath>

@@ -5,6 +5,7 @@
 #include <kaboum/robot/kinematics.h>
 #include <kaboum/robot/path_file.h>
 
+#include <CLI/CLI.hpp>
 #include <iostream>
 
 #include "check_report.h"

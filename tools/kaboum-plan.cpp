@@ -1,6 +1,8 @@
 // The program kaboum-plan: its subcommands.
 
 #include "plan_commands.h"
+
+#include <CLI/CLI.hpp>
 #include "plan_run.h"
 
 int main(int argc, char** argv) {

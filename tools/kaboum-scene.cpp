@@ -3,6 +3,7 @@
 
 #include <kaboum/base/error.h>
 
+#include <CLI/CLI.hpp>
 #include <map>
 
 #include "scene_maker.h"

@@ -6,6 +6,8 @@
 #include <kaboum/io/cad.h>
 #include <kaboum/verify/inclusion.h>
 
+#include <CLI/CLI.hpp>
+
 #include "preparation_option.h"
 #include "repairs.h"
 

@@ -2,9 +2,13 @@
 
 #include <kaboum/robot/path.h>
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
 
 namespace kaboum::tools {
 

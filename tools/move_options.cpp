@@ -4,6 +4,7 @@
 
 #include <kaboum/base/similar_name.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 #include <cmath>

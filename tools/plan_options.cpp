@@ -2,6 +2,8 @@
 
 #include "plan_options.h"
 
+#include <CLI/CLI.hpp>
+
 namespace kaboum::tools {
 
 void add_inputs(CLI::App& app, PlanOptions& o) {

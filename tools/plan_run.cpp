@@ -7,6 +7,7 @@
 #include <kaboum/execution/simulation.h>
 #include <kaboum/io/mesh_io.h>
 
+#include <CLI/CLI.hpp>
 #include <charconv>
 #include <filesystem>
 #include <iostream>

@@ -2,6 +2,8 @@
 
 #include "scene_options.h"
 
+#include <CLI/CLI.hpp>
+
 namespace kaboum::tools {
 
 namespace {

@@ -2,8 +2,11 @@
 
 #include <kaboum/io/convex_io.h>
 
-#include <CLI/CLI.hpp>
 #include <string>
+
+namespace CLI {
+class App;
+}  // namespace CLI
 
 namespace kaboum::tools {
 

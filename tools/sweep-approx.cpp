@@ -4,6 +4,7 @@
 #include <kaboum/robot/base_pose.h>
 #include <kaboum/robot/path_file.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <sstream>
 

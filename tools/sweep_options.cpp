@@ -4,6 +4,7 @@
 
 #include <kaboum/base/error.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <map>
 #include <sstream>

@@ -1,6 +1,7 @@
 // bound-verify mesh, cover, robot, sweep and progressive.
 #include "verify_commands.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <string_view>

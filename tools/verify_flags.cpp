@@ -3,6 +3,8 @@
 
 #include <kaboum/base/error.h>
 
+#include <CLI/CLI.hpp>
+
 namespace kaboum::tools {
 namespace {
 

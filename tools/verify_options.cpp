@@ -1,6 +1,8 @@
 // The options of bound-verify, each defined once.
 #include "verify_options.h"
 
+#include <CLI/CLI.hpp>
+
 #include "motion_options.h"
 
 namespace kaboum::tools {

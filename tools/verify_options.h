@@ -1,12 +1,16 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
 #include "cli.h"
 #include "verify_mesh.h"
 #include "verify_sweep.h"
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
 
 /// The command line of bound-verify, which has two spellings: commands (`bound-verify cover A S`,
 /// verify_commands.h) and flags (`bound-verify --cover A S`, verify_flags.h). Both fill the same

@@ -10,14 +10,14 @@ namespace {
 
 constexpr std::uint32_t kLeaf = 6;  // facets
 /// Rounding of a height, as a share of the coordinates: 16 units in the last place.
-constexpr double kSlack = 0x1p-48;
+constexpr double kCornerSlack = 0x1p-48;
 
 }  // namespace
 
 FacetTree::FacetTree(std::vector<Facet> facets, const geom::Vec3& center, double size)
     : facets_(std::move(facets)),
       center_(center),
-      slack_(kSlack * (size + center.cwiseAbs().maxCoeff())) {
+      slack_(kCornerSlack * (size + center.cwiseAbs().maxCoeff())) {
   if (!facets_.empty()) add(0, static_cast<std::uint32_t>(facets_.size()));
 }
 

@@ -26,7 +26,7 @@ using geom::Triangle;
 /// corner is rounded by half a spacing, a plane's height by less than √3 of that, and cuts by less.
 constexpr double kMarginSpacings = 2;
 /// Bodies whose seed is not deeper than so many margins are not worth it.
-constexpr double kLeastDepth = 4;
+constexpr double kLeastMargins = 4;
 /// Shortest axis of an ellipsoid, as a share of the variance of the longest.
 constexpr double kFlattest = 1e-4;
 /// A triangle's corner may be this share of the box's diagonal below a plane that keeps it out.
@@ -307,7 +307,7 @@ std::optional<Inscribed> inscribe(const Mesh& boundary, const Vec3& seed, double
   const double ulp =
       geom::float32_spacing(std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff()));
   const double margin = kMarginSpacings * ulp * safety;
-  if (!(depth > kLeastDepth * margin)) return std::nullopt;
+  if (!(depth > kLeastMargins * margin)) return std::nullopt;
   const double core = std::max(margin, kCore * depth);
   std::optional<Inscribed> best;
   Ellipsoid e{seed, Eigen::Matrix3d::Identity()};

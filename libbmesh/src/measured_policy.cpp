@@ -24,7 +24,7 @@ constexpr double kDenselyTo = 1.2;
 /// farther than the original is from the new triangles there.
 constexpr double kSpike = 0.05, kSpikeRatio = 3;
 /// Places tried for one vertex that the original bounds.
-constexpr int kPlaces = 5;
+constexpr int kMeasuredPlaces = 5;
 /// Progress is told once for so many contractions.
 constexpr std::size_t kProgress = 1024;
 /// The star of an edge was measured before, but not as it is.
@@ -239,7 +239,7 @@ bool MeasuredPolicy::certify(BucketQueue::Entry& e) {
   CollapseEvaluator::Candidate& c = candidate();
   Optimiser& optimiser = state_.optimiser->single();
   bool moved = false;
-  for (int i = 0; i < kPlaces; ++i) {
+  for (int i = 0; i < kMeasuredPlaces; ++i) {
     if (optimiser.is_certified(removed_, c.position)) return !moved || measure(e);
     const auto place = optimiser.next_place();
     if (!place || *place == c.position || !evaluator().place_against_original(*place, merged()))

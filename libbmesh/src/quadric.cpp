@@ -17,12 +17,12 @@ Eigen::Matrix3d matrix(const Quadric& q) {
 
 /// Principal frame of a quadric: axes in the columns of R, and the minimiser of least distance to
 /// `near` (singular directions are left where `near` is).
-struct Frame {
+struct PrincipalFrame {
   Eigen::Matrix3d axes;
   Vec3 minimiser;
 };
 
-Frame principal_frame(const Quadric& q, const Vec3& near) {
+PrincipalFrame principal_frame(const Quadric& q, const Vec3& near) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(matrix(q));
   const Vec3 gradient = eigen.eigenvectors().transpose() * q.half_gradient(near);
   const double cutoff = 1e-9 * std::max(eigen.eigenvalues().maxCoeff(), 0.0);
@@ -60,7 +60,7 @@ Quadric add_adapted(const Quadric& a, const Quadric& b) {
 }
 
 Quadric add_diagonal(const Quadric& a, const Quadric& b, double length, bool as_printed) {
-  const Frame frame = principal_frame(a + b, anchor(a, b));
+  const PrincipalFrame frame = principal_frame(a + b, anchor(a, b));
   Vec3 diagonal = Vec3::Zero();
   double constant = 0;
   for (const Quadric* q : {&a, &b}) {

@@ -14,7 +14,7 @@ namespace {
 using geom::Box3;
 using geom::Vec3;
 
-constexpr double kUp = 1 + 0x1p-50;
+constexpr double kSumUp = 1 + 0x1p-50;
 constexpr double kFarthest = 1e60;  ///< as Posed takes it
 
 bool overlap(const Box3& a, const Box3& b) {
@@ -36,7 +36,7 @@ double sum_up(std::initializer_list<double> lengths) {
     sum += x;
     parts += x > 0 ? 1 : 0;
   }
-  return parts > 1 ? sum * kUp : sum;
+  return parts > 1 ? sum * kSumUp : sum;
 }
 
 double reach_of(const PosedSet& a, std::size_t i, const PosedSet& b, std::size_t j, double slack) {
@@ -45,7 +45,7 @@ double reach_of(const PosedSet& a, std::size_t i, const PosedSet& b, std::size_t
 
 /// Both margins, not above the exact sum.
 double margins(const PosedSet& a, std::size_t i, const PosedSet& b, std::size_t j) {
-  return (a.margin_below(i) + b.margin_below(j)) / kUp;
+  return (a.margin_below(i) + b.margin_below(j)) / kSumUp;
 }
 
 /// Bounds |LᵀL − I|: 0 for matrices that only swap axes and turn them round. An entry of nine errs
@@ -100,7 +100,7 @@ BoundingSet::Ball ball_of(const std::vector<BoundingSet::Body>& bodies, const Bo
     if (most < out.radius) out = {center, most};
     center += (farthest - center) / (step + 1);
   }
-  out.radius *= kUp;
+  out.radius *= kSumUp;
   return out;
 }
 
@@ -146,7 +146,7 @@ BoundingSet::BoundingSet(std::vector<Body> bodies, Direction direction, double e
       half_[k].push_back(half[k]);
       magnitude_[k].push_back(polytopes_.back().magnitude()[k]);
     }
-    const Vec3 reach = Vec3::Constant(body.margin * kUp) +
+    const Vec3 reach = Vec3::Constant(body.margin * kSumUp) +
                        0x1p-50 * box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs());
     box_.extend(Box3{box.min - reach, box.max + reach});
   }
@@ -186,7 +186,7 @@ void PosedSet::place(const geom::Transform& pose, double error) {
       const double large = std::abs(x) * magnitude[0][i] + std::abs(y) * magnitude[1][i] +
                            std::abs(z) * magnitude[2][i] + std::abs(t);
       // Margin and error, rounded up.
-      const double reach = (set_->margins_[i] * (1 + defect_) + error) * kUp;
+      const double reach = (set_->margins_[i] * (1 + defect_) + error) * kSumUp;
       const double most = (wide + reach) * (1 + 0x1p-48) + 0x1p-48 * large + 0x1p-900;
       low[i] = at - most;
       high[i] = at + most;
@@ -270,7 +270,7 @@ std::optional<Clearance> clearance(const PosedSet& a, const PosedSet& b) {
       // The boxes hold the margins; rounding of the difference is relative to what it is of.
       const double scale = a.box(i).min.cwiseAbs().sum() + a.box(i).max.cwiseAbs().sum() +
                            b.box(j).min.cwiseAbs().sum() + b.box(j).max.cwiseAbs().sum();
-      candidates.push_back({apart.norm() / kUp - 0x1p-48 * scale, {i, j}});
+      candidates.push_back({apart.norm() / kSumUp - 0x1p-48 * scale, {i, j}});
     }
   }
   if (candidates.empty()) return std::nullopt;
@@ -282,9 +282,9 @@ std::optional<Clearance> clearance(const PosedSet& a, const PosedSet& b) {
     if (least > out.upper) break;
     const Gap gap = gap_between(a.body(pair.a), b.body(pair.b));
     const double reach = reach_of(a, pair.a, b, pair.b, 0);
-    out.lower = std::min(out.lower, std::max((gap.lower - reach) / kUp, 0.0));
+    out.lower = std::min(out.lower, std::max((gap.lower - reach) / kSumUp, 0.0));
     const double upper =
-        std::max((gap.upper + a.error() + b.error()) * kUp - margins(a, pair.a, b, pair.b), 0.0);
+        std::max((gap.upper + a.error() + b.error()) * kSumUp - margins(a, pair.a, b, pair.b), 0.0);
     if (upper >= out.upper) continue;
     out.upper = upper;
     out.bodies = pair;

@@ -20,10 +20,10 @@ using geom::Vec3;
 using Corners = std::array<Vec3, 3>;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-// A point and a triangle, twice over: docs/algorithms/distances.md, "Smallest distance".
+// A exact_point and a triangle, twice over: docs/algorithms/distances.md, "Smallest distance".
 constexpr double kRounding = 2 * geom::kDistanceRounding;
 
-Kernel::Point_3 point(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
+Kernel::Point_3 exact_point(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
 /// The side of a triangle without area that holds all of it: its corners lie on a line, of which
 /// the order of coordinates is the order of points.
@@ -32,15 +32,15 @@ Kernel::Segment_3 longest_side(const Corners& t) {
     return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
   };
   const auto [first, last] = std::minmax_element(t.begin(), t.end(), before);
-  return {point(*first), point(*last)};
+  return {exact_point(*first), exact_point(*last)};
 }
 
-/// Whether the closed triangles have a point in common; exact, whatever their shapes.
+/// Whether the closed triangles have a exact_point in common; exact, whatever their shapes.
 bool meet(const Corners& s, const Corners& t) {
   const bool flat_s = geom::is_degenerate(s[0], s[1], s[2]);
   const bool flat_t = geom::is_degenerate(t[0], t[1], t[2]);
   const auto triangle = [](const Corners& c) {
-    return Kernel::Triangle_3(point(c[0]), point(c[1]), point(c[2]));
+    return Kernel::Triangle_3(exact_point(c[0]), exact_point(c[1]), exact_point(c[2]));
   };
   if (!flat_s && !flat_t) return CGAL::do_intersect(triangle(s), triangle(t));
   const auto meets_segment = [&](const Corners& whole, const Kernel::Segment_3& segment) {
@@ -79,7 +79,7 @@ std::pair<double, double> nearest_on_segments(const Vec3& p, const Vec3& d, cons
   return {s, t};
 }
 
-/// Weights of the point of a triangle nearest to p; any weights ≥ 0 with sum ≤ 1 are sound.
+/// Weights of the exact_point of a triangle nearest to p; any weights ≥ 0 with sum ≤ 1 are sound.
 std::array<double, 2> nearest_in_plane(const Vec3& p, const Corners& t) {
   const Vec3 u = t[1] - t[0], v = t[2] - t[0], w = p - t[0];
   const Vec3 n = u.cross(v);
@@ -88,7 +88,7 @@ std::array<double, 2> nearest_in_plane(const Vec3& p, const Corners& t) {
   return {n.dot(w.cross(v)) / square, n.dot(u.cross(w)) / square};
 }
 
-/// Bracket of the distance of two triangles, both given relative to a point near them.
+/// Bracket of the distance of two triangles, both given relative to a exact_point near them.
 ///
 /// The distance is attained between a corner and a face or between two edges. Each candidate pair
 /// of points gives an upper bound; the plane across it separates the triangles by what their

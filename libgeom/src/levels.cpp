@@ -17,7 +17,7 @@
 namespace kaboum::geom {
 namespace {
 
-constexpr std::uint32_t kNone = ~0U;
+constexpr std::uint32_t kNoChain = ~0U;
 
 class LevelSplitter {
  public:
@@ -31,7 +31,7 @@ class LevelSplitter {
     const std::size_t n = mesh_.triangles.size(), count = chains_.closed.size();
     std::vector<std::vector<std::uint32_t>> regions_of(count), triangles_of(count);
     for (std::uint32_t t = 0; t < n; ++t)
-      if (stack_[t] != kNone) triangles_of[chains_.label[t]].push_back(t);
+      if (stack_[t] != kNoChain) triangles_of[chains_.label[t]].push_back(t);
     for (std::uint32_t r = 0; r < regions_.size(); ++r)
       regions_of[chains_.label[regions_[r].triangles[0]]].push_back(r);
     std::vector<std::int8_t> weight(n, 0);
@@ -49,9 +49,9 @@ class LevelSplitter {
     std::map<std::pair<std::uint32_t, int>, std::uint32_t> ids;
     std::vector<std::uint32_t> group(n);
     for (std::uint32_t t = 0; t < n; ++t) {
-      const std::uint32_t r = stack_[t] == kNone ? kNone : region_[t];
+      const std::uint32_t r = stack_[t] == kNoChain ? kNoChain : region_[t];
       const int level =
-          r == kNone ? 1 : regions_[r].lowest.value_or(1) + static_cast<int>(copy_[t]);
+          r == kNoChain ? 1 : regions_[r].lowest.value_or(1) + static_cast<int>(copy_[t]);
       group[t] = ids.try_emplace({chains_.label[t], level}, static_cast<std::uint32_t>(ids.size()))
                      .first->second;
     }
@@ -71,7 +71,7 @@ class LevelSplitter {
     std::uint32_t copies = 1;
     std::optional<int> lowest;  // level of the first copy
     double largest = -1;        // area
-    std::uint32_t largest_triangle = kNone;
+    std::uint32_t largest_triangle = kNoChain;
   };
 
   [[nodiscard]] double area(std::uint32_t t) const {
@@ -90,7 +90,7 @@ class LevelSplitter {
       keyed.push_back({c, key[0], key[1], key[2], t});
     }
     std::sort(keyed.begin(), keyed.end());
-    stack_.assign(n, kNone);
+    stack_.assign(n, kNoChain);
     copy_.assign(n, 0);
     std::vector<std::uint32_t> copies(n, 0);  // per first triangle of a stack
     for (std::size_t i = 0; i < keyed.size();) {
@@ -107,23 +107,24 @@ class LevelSplitter {
     UnionFind sets(n);
     for_each_run(uses_, chains_.label, [&](std::span<const EdgeUse> run) {
       const std::uint32_t first = stack_[run[0].triangle];
-      if (first == kNone) return;
-      std::uint32_t second = kNone;
+      if (first == kNoChain) return;
+      std::uint32_t second = kNoChain;
       bool opposite = false;
       for (const EdgeUse& u : run) {
         const std::uint32_t s = stack_[u.triangle];
         if (s == first || s == second) continue;
-        if (second != kNone) return;
+        if (second != kNoChain) return;
         second = s;
         opposite = u.forward != run[0].forward;
       }
-      if (second != kNone && opposite && copies[first] == copies[second]) sets.join(first, second);
+      if (second != kNoChain && opposite && copies[first] == copies[second])
+        sets.join(first, second);
     });
-    region_.assign(n, kNone);
+    region_.assign(n, kNoChain);
     for (std::uint32_t t = 0; t < n; ++t) {
-      if (stack_[t] == kNone) continue;
+      if (stack_[t] == kNoChain) continue;
       const std::uint32_t root = sets.find(stack_[t]);
-      if (region_[root] == kNone) {
+      if (region_[root] == kNoChain) {
         region_[root] = static_cast<std::uint32_t>(regions_.size());
         regions_.emplace_back().copies = copies[stack_[t]];
       }
@@ -213,7 +214,7 @@ class LevelSplitter {
       for (const Probe& p : probes) {
         std::set<int> free;
         for (int k = p.front + 1; k <= p.back; ++k) free.insert(k);
-        std::uint32_t unknown = kNone;
+        std::uint32_t unknown = kNoChain;
         std::size_t unknowns = 0;
         for (const auto& [i, same] : p.regions) {
           const Region& r = regions_[i];
@@ -223,7 +224,7 @@ class LevelSplitter {
             continue;
           }
           ++unknowns;
-          if (unknown == kNone || r.largest > regions_[unknown].largest) unknown = i;
+          if (unknown == kNoChain || r.largest > regions_[unknown].largest) unknown = i;
         }
         if (unknowns == 0 || free.empty()) continue;
         open = true;
@@ -247,7 +248,7 @@ class LevelSplitter {
     chains_ = find_chains(mesh_, uses_, group);
     // A piece may be of one patch and wind both ways: it is looked at like its chain.
     for (std::uint32_t t = 0; t < group.size(); ++t)
-      if (stack_[t] != kNone) chains_.joined[chains_.label[t]] = 1;
+      if (stack_[t] != kNoChain) chains_.joined[chains_.label[t]] = 1;
   }
 
   /// The probes near which a chain, taken alone, winds less than 0 times.

@@ -213,7 +213,7 @@ void read(XSControl_Reader& reader, const char* path, CadShape& result) {
     return;
   }
   const double diagonal = std::sqrt(box.SquareExtent());
-  BRepMesh_IncrementalMesh(shape, kChord * diagonal, false, kAngle, false);
+  const BRepMesh_IncrementalMesh meshing(shape, kChord * diagonal, false, kAngle, false);
   Collector collector(shape, kChord * diagonal, result);
   for (TopExp_Explorer at(shape, TopAbs_SOLID); at.More(); at.Next())
     result.solids.push_back(name_of(reader, at.Current()));

@@ -15,6 +15,7 @@
 #include "bytes.h"
 #include "convex_formats.h"
 #include "formats.h"
+#include "glb_chunks.h"
 #include "gltf.h"
 #include "output.h"
 
@@ -23,9 +24,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::uint32_t kMagic = 0x46546C67;      // "glTF"
-constexpr std::uint32_t kJsonChunk = 0x4E4F534A;  // "JSON"
-constexpr std::uint32_t kBinaryChunk = 0x004E4942;
 constexpr int kInt = 5125, kFloat = 5126;
 constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
 constexpr int kTriangles = 4;
@@ -154,7 +152,7 @@ std::vector<char> write_glb_set(const geom::ConvexSet& set) {
     throw Error(ErrorCode::OutputFailed, "GLB files end at 4 GiB, this set needs more; write obj");
   Output out;
   out.reserve(total);
-  for (const std::uint32_t word : {kMagic, 2U, static_cast<std::uint32_t>(total),
+  for (const std::uint32_t word : {kGlbMagic, 2U, static_cast<std::uint32_t>(total),
                                    static_cast<std::uint32_t>(text.size()), kJsonChunk})
     out.little(word);
   out.text(text);

@@ -7,6 +7,7 @@
 
 #include "bytes.h"
 #include "formats.h"
+#include "glb_chunks.h"
 #include "output.h"
 
 namespace kaboum::io {
@@ -14,9 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::uint32_t kMagic = 0x46546C67;      // "glTF"
-constexpr std::uint32_t kJsonChunk = 0x4E4F534A;  // "JSON"
-constexpr std::uint32_t kBinaryChunk = 0x004E4942;
 constexpr int kFloat = 5126, kUnsignedInt = 5125;
 constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
 constexpr int kTriangles = 4;
@@ -67,7 +65,7 @@ std::vector<char> write_glb(const geom::Mesh& mesh, const WriteOptions& options)
                 "GLB files end at 4 GiB, this mesh needs more; write ply instead");
   Output out;
   out.reserve(total);
-  for (const std::uint32_t word : {kMagic, 2U, static_cast<std::uint32_t>(total),
+  for (const std::uint32_t word : {kGlbMagic, 2U, static_cast<std::uint32_t>(total),
                                    static_cast<std::uint32_t>(json.size()), kJsonChunk})
     out.little(word);
   out.text(json);

@@ -12,14 +12,13 @@
 #include <set>
 
 #include "bytes.h"
+#include "glb_chunks.h"
 
 namespace kaboum::io {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint32_t kJsonChunk = 0x4E4F534A;  // "JSON"
-constexpr std::uint32_t kBinaryChunk = 0x004E4942;
 constexpr std::size_t kGlbHeader = 12, kChunkHeader = 8;
 constexpr int kMaxJsonDepth = 256;
 constexpr std::uint64_t kMaxInteger = std::uint64_t{1} << 53U;

@@ -6,17 +6,11 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <cmath>
-#include <numbers>
+
+#include "tolerances.h"
 
 namespace kaboum::kinematics {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
-/// Below this, directions and lengths (in parts of the arm's) say nothing about an angle.
-constexpr double kNothing = 1e-12;
-/// So little out of reach may be rounding (or the model's error): taken as the border, and whether
-/// that reaches the target is what the check of all solutions decides.
-constexpr double kBorder = 1e-6;
 
 double square(double x) { return x * x; }
 double length(double x, double y) { return std::sqrt(x * x + y * y); }

@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
+
+#include "tolerances.h"
 
 namespace kaboum::kinematics {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 /// A feature in the world: a point, and the direction of a line or normal of a plane with two that
 /// are perpendicular to it and fixed to the same frame.

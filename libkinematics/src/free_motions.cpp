@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
+
+#include "tolerances.h"
 
 namespace kaboum::kinematics {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 /// A twist whose part that is independent of others is this short depends on them, but for
 /// rounding; twists are 1 or longer, with lengths in parts of the problem's.
 constexpr double kIndependent = 1e-6;

@@ -5,15 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "tolerances.h"
 
 namespace kaboum::kinematics {
 namespace {
 
-/// Below this, directions and lengths (in parts of the arm's) say nothing about an angle.
-constexpr double kNothing = 1e-12;
-/// So little out of reach may be rounding: taken as the border; `solve` checks what comes of it.
-constexpr double kBorder = 1e-6;
 /// So near, two turns are the same: the arm is stretched sideways as far as it goes.
 constexpr double kSame = 1e-9;
 

@@ -7,10 +7,10 @@
 namespace kaboum::motion {
 namespace {
 
-using Outcome = world::MotionAnswer::Outcome;
+using Certain = world::MotionAnswer::Outcome;
 
 bool can_join(SearchSpace& space, const Values& a, const Values& b) {
-  return space.looks_free(a, b) && space.check({a, b}).outcome == Outcome::Free;
+  return space.looks_free(a, b) && space.check({a, b}).outcome == Certain::Free;
 }
 
 /// Leaves waypoints out: from each, the farthest that a straight line leads to is next.

@@ -10,7 +10,7 @@
 namespace kaboum::robot {
 namespace {
 
-constexpr std::string_view kBlanks = " \t\r\n";
+constexpr std::string_view kXmlBlanks = " \t\r\n";
 
 /// For messages: without what would fill a screen.
 std::string quoted(const std::string& text) {
@@ -36,9 +36,9 @@ void parse_xml(tinyxml2::XMLDocument& document, std::string_view text, const std
 }
 
 std::optional<double> finite_number(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(kBlanks);
+  const std::size_t first = text.find_first_not_of(kXmlBlanks);
   if (first == std::string_view::npos) return std::nullopt;
-  text = text.substr(first, text.find_last_not_of(kBlanks) + 1 - first);
+  text = text.substr(first, text.find_last_not_of(kXmlBlanks) + 1 - first);
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
   double value = 0;
   const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -82,9 +82,9 @@ geom::Vec3 XmlFile::vector(const tinyxml2::XMLElement& element, const char* key)
   geom::Vec3 out;
   int count = 0;
   for (std::size_t end = 0;;) {
-    const std::size_t begin = value.find_first_not_of(kBlanks, end);
+    const std::size_t begin = value.find_first_not_of(kXmlBlanks, end);
     if (begin == std::string::npos) break;
-    end = std::min(value.find_first_of(kBlanks, begin), value.size());
+    end = std::min(value.find_first_of(kXmlBlanks, begin), value.size());
     const auto x = finite_number(std::string_view(value).substr(begin, end - begin));
     if (!x || count == 3) count = 4;
     if (count == 4) break;

@@ -17,7 +17,7 @@ using Sides = std::array<Sign, 3>;
 bool all(const Sides& s, Sign sign) { return s[0] == sign && s[1] == sign && s[2] == sign; }
 
 /// What one task finds; X is the chain of the first face of a pair.
-struct Found {
+struct FoundContacts {
   std::vector<Contacts::Cut> cuts;
   std::vector<Contacts::Along> alongs;
 };
@@ -25,7 +25,7 @@ struct Found {
 /// Classifies pairs of faces.
 class Classifier {
  public:
-  Classifier(const MeshPair& meshes, Found& of_first, Found& of_second)
+  Classifier(const MeshPair& meshes, FoundContacts& of_first, FoundContacts& of_second)
       : meshes_(meshes), first_(of_first), second_(of_second) {}
 
   void operator()(std::uint32_t fi, std::uint32_t gi) {
@@ -123,7 +123,7 @@ class Classifier {
   }
 
   /// f and g overlap in an area, all of f if `whole`.
-  void covered(Found& found, std::uint32_t fi, std::uint32_t gi, bool whole) const {
+  void covered(FoundContacts& found, std::uint32_t fi, std::uint32_t gi, bool whole) const {
     if (!whole) {
       found.cuts.push_back({fi, gi, true});
       return;
@@ -153,13 +153,13 @@ class Classifier {
   }
 
   const MeshPair& meshes_;
-  Found& first_;
-  Found& second_;
+  FoundContacts& first_;
+  FoundContacts& second_;
 };
 
 constexpr std::size_t kTasks = 256;
 
-void append(Found& all, Found&& part) {
+void append(FoundContacts& all, FoundContacts&& part) {
   all.cuts.insert(all.cuts.end(), part.cuts.begin(), part.cuts.end());
   all.alongs.insert(all.alongs.end(), part.alongs.begin(), part.alongs.end());
   part = {};
@@ -174,11 +174,11 @@ class Counter {
   class Task {
    public:
     explicit Task(Counter& counter) : counter_(counter) {}
-    void looked_at(const Found& a, const Found& b) {
+    void looked_at(const FoundContacts& a, const FoundContacts& b) {
       if (++pairs_ < kSharedEvery) return;
       share(a, b);
     }
-    void share(const Found& a, const Found& b) {
+    void share(const FoundContacts& a, const FoundContacts& b) {
       const std::size_t now = a.cuts.size() + a.alongs.size() + b.cuts.size() + b.alongs.size();
       counter_.add(now - contacts_, pairs_);
       contacts_ = now;
@@ -268,7 +268,7 @@ Sign order_of(const MeshPair& meshes, const Crossing::End& p, const Crossing::En
 MutualContacts contacts_between(const MeshPair& meshes, const ContactLimits& limits) {
   const BoxTree &inside = meshes.tree(kInside), &outside = meshes.tree(kOutside);
   const std::vector<std::uint32_t> roots = subtrees(inside, kTasks);
-  std::vector<Found> first(roots.size()), second(roots.size());
+  std::vector<FoundContacts> first(roots.size()), second(roots.size());
   Counter counter(limits);
   verify::parallel_loop(std::size_t{0}, roots.size(), [&](std::size_t i) {
     Classifier classify(meshes, first[i], second[i]);
@@ -279,7 +279,7 @@ MutualContacts contacts_between(const MeshPair& meshes, const ContactLimits& lim
     });
     task.share(first[i], second[i]);
   });
-  Found of_inside, of_outside;
+  FoundContacts of_inside, of_outside;
   for (std::size_t i = 0; i < roots.size(); ++i) {
     append(of_inside, std::move(first[i]));
     append(of_outside, std::move(second[i]));
@@ -293,7 +293,7 @@ MutualContacts contacts_between(const MeshPair& meshes, const ContactLimits& lim
 Contacts contacts_within(const MeshPair& meshes, int chain, const ContactLimits& limits) {
   const BoxTree& tree = meshes.tree(chain);
   const std::vector<std::uint32_t> roots = subtrees(tree, kTasks);
-  std::vector<Found> found(roots.size());
+  std::vector<FoundContacts> found(roots.size());
   Counter counter(limits);
   verify::parallel_loop(std::size_t{0}, roots.size(), [&](std::size_t i) {
     Classifier classify(meshes, found[i], found[i]);
@@ -305,8 +305,8 @@ Contacts contacts_within(const MeshPair& meshes, int chain, const ContactLimits&
     });
     task.share(found[i], {});
   });
-  Found all_found;
-  for (Found& part : found) append(all_found, std::move(part));
+  FoundContacts all_found;
+  for (FoundContacts& part : found) append(all_found, std::move(part));
   return {meshes.begin(chain), meshes.end(chain), std::move(all_found.cuts),
           std::move(all_found.alongs)};
 }

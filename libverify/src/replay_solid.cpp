@@ -11,7 +11,7 @@
 namespace kaboum::verify {
 
 namespace {
-using Exact = CGAL::Simple_cartesian<CGAL::Exact_rational>;
+using ExactKernel = CGAL::Simple_cartesian<CGAL::Exact_rational>;
 constexpr std::size_t kLeaf = 8;
 }  // namespace
 
@@ -157,10 +157,10 @@ bool ReplaySolid::contains(const std::array<Point, 4>& tetrahedron, bool inside)
   }
   int w = 0;
   if (!hit) {
-    std::array<Exact::FT, 3> sum{0, 0, 0};
+    std::array<ExactKernel::FT, 3> sum{0, 0, 0};
     for (const Point& corner : tetrahedron)
       for (int k = 0; k < 3; ++k) sum[k] += corner[k];
-    if (!winding(Exact::Point_3(sum[0] / 4, sum[1] / 4, sum[2] / 4), box, w)) return false;
+    if (!winding(ExactKernel::Point_3(sum[0] / 4, sum[1] / 4, sum[2] / 4), box, w)) return false;
   } else if (!winding(p, box, w)) {
     return false;
   }

@@ -48,9 +48,9 @@ bool is_octal_to_some(const std::string& text) {
 }
 
 /// Takes the parser's events.
-class Builder : public YAML::EventHandler {
+class YamlBuilder : public YAML::EventHandler {
  public:
-  Builder(std::string_view text, const std::string& name) : text_(text), name_(name) {
+  YamlBuilder(std::string_view text, const std::string& name) : text_(text), name_(name) {
     starts_.push_back(0);
     for (std::size_t i = 0; i < text.size(); ++i)
       if (text[i] == '\n') starts_.push_back(i + 1);
@@ -163,7 +163,7 @@ class Builder : public YAML::EventHandler {
 }  // namespace
 
 Located parse_located_yaml(std::string_view text, const std::string& name) {
-  Builder builder(text, name);
+  YamlBuilder builder(text, name);
   std::istringstream stream{std::string(text)};
   try {
     YAML::Parser parser(stream);

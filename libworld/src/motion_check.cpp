@@ -16,8 +16,6 @@ namespace {
 using collide::PosedSet;
 using Outcome = MotionAnswer::Outcome;
 
-constexpr double kUp = 1 + 0x1p-40;
-
 using detail::Mover;
 
 struct Pair {

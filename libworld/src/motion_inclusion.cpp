@@ -15,8 +15,6 @@ namespace {
 using collide::Inclusion;
 using collide::PosedSet;
 
-constexpr double kUp = 1 + 0x1p-40;
-
 class MovingInclusion {
  public:
   MovingInclusion(const Checker& checker, const WorldState& state, const Item& item,

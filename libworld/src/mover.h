@@ -6,6 +6,13 @@
 
 #include "placement.h"
 
+namespace kaboum::world {
+
+/// Bounds the rounding of the few sums and products that say how far a mover gets.
+inline constexpr double kUp = 1 + 0x1p-40;
+
+}  // namespace kaboum::world
+
 namespace kaboum::world::detail {
 
 /// Something that a robot's motion moves: a shape of it, or an object that it carries.

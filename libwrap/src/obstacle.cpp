@@ -14,7 +14,7 @@ using Corners = std::array<Vec3, 3>;
 /// Whether a plane certainly separates the triangle from the tetrahedron: those along a face of
 /// one of them, or along an edge of each, are all that need be tried.
 bool apart(const Corners& t, const Tetrahedron& tetrahedron, double clearance) {
-  const Vec3 origin = tetrahedron[3];
+  const Vec3& origin = tetrahedron[3];
   Corners a;
   Tetrahedron b;
   Separator separator;

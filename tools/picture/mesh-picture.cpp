@@ -9,6 +9,7 @@
 #include <kaboum/geom/mesh.h>
 #include <kaboum/io/convex_io.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 #include <sstream>

@@ -10,7 +10,7 @@
 namespace kaboum::bmesh {
 namespace {
 
-constexpr std::string_view kMagic = "KABOUM-BMESH-LOG 4\n";
+constexpr std::string_view kLogMagic = "KABOUM-BMESH-LOG 4\n";
 // A kind, then: Contract two vertices and a position, Flip four vertices.
 constexpr std::size_t kContractSize = 1 + 2 * 4 + 3 * 8;
 constexpr std::size_t kFlipSize = 1 + 4 * 4;
@@ -88,7 +88,7 @@ Log read_log(Reader& r) {
 
 std::vector<char> serialise_log(const Log& log) {
   Writer w;
-  w.out.assign(kMagic.begin(), kMagic.end());
+  w.out.assign(kLogMagic.begin(), kLogMagic.end());
   write_log(w, log);
   return std::move(w.out);
 }
@@ -96,7 +96,7 @@ std::vector<char> serialise_log(const Log& log) {
 Log parse_log(std::span<const char> bytes, const std::string& name) {
   Reader r(bytes, name);
   r.refuse_earlier("KABOUM-BMESH-LOG ", {"1", "2", "3"}, "a log");
-  r.magic(kMagic, "a log of bmesh-decimate");
+  r.magic(kLogMagic, "a log of bmesh-decimate");
   Log log = read_log(r);
   r.end();
   return log;

@@ -10,13 +10,13 @@
 namespace kaboum::bmesh {
 namespace {
 
-constexpr std::string_view kMagic = "KABOUM-BMESH-PROGRESSIVE 4\n";
+constexpr std::string_view kProgressiveMagic = "KABOUM-BMESH-PROGRESSIVE 4\n";
 
 }  // namespace
 
 std::vector<char> serialise_progressive(const Progressive& p) {
   Writer w;
-  w.out.assign(kMagic.begin(), kMagic.end());
+  w.out.assign(kProgressiveMagic.begin(), kProgressiveMagic.end());
   w.out.reserve(w.out.size() + 24 * p.base.vertices.size() + 12 * p.base.triangles.size() +
                 64 * p.levels.size() + 33 * p.log.steps.size() + 4096);
   write_log(w, p.log);
@@ -34,7 +34,7 @@ std::vector<char> serialise_progressive(const Progressive& p) {
 Progressive parse_progressive(std::span<const char> bytes, const std::string& name) {
   Reader r(bytes, name);
   r.refuse_earlier("KABOUM-BMESH-PROGRESSIVE ", {"1", "2", "3"}, "a progressive file");
-  r.magic(kMagic, "a progressive file of bmesh-decimate");
+  r.magic(kProgressiveMagic, "a progressive file of bmesh-decimate");
   r.checksum();
   Progressive p;
   p.log = read_log(r);

@@ -2,10 +2,10 @@
 
 #include <kaboum/plan/model.h>
 
-#include <compare>
 #include <map>
 #include <optional>
 #include <set>
+#include <tuple>
 #include <vector>
 
 #include "check/runtime_knowledge.h"
@@ -58,7 +58,10 @@ class WorldRules {
   };
   struct Changing {
     World origin, now;
-    auto operator<=>(const Changing&) const = default;
+    bool operator==(const Changing&) const = default;
+    bool operator<(const Changing& o) const {
+      return std::tie(origin, now) < std::tie(o.origin, o.now);
+    }
   };
 
   [[nodiscard]] std::vector<Index> range(const Fact& f) const;

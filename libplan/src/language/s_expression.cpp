@@ -4,8 +4,6 @@
 namespace kaboum::plan {
 namespace {
 
-constexpr int kMaximumNesting = 200;  // recursion stays far from the stack's end
-
 class SExpressionReader {
  public:
   explicit SExpressionReader(const Source& source) : source_(source) {}

@@ -8,6 +8,9 @@
 
 namespace kaboum::plan {
 
+/// Nesting of parentheses that readers take: recursion stays far from the stack's end.
+inline constexpr int kMaximumNesting = 200;
+
 /// A text with a name, and how to complain about a location in it.
 struct Source {
   std::string name;

@@ -5,11 +5,6 @@
 #include <array>
 
 namespace kaboum::plan {
-namespace {
-
-constexpr int kMaximumNesting = 200;  // recursion stays far from the stack's end
-
-}  // namespace
 
 TokenStream::Level::Level(TokenStream& in) : in_(in) {
   if (++in_.depth_ > kMaximumNesting) in_.location().fail("nested too deeply");

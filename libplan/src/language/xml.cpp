@@ -14,9 +14,9 @@ namespace {
 
 using tinyxml2::XMLElement;
 
-class Reader {
+class XmlReader {
  public:
-  explicit Reader(std::shared_ptr<const Source> source) : source_(std::move(source)) {}
+  explicit XmlReader(std::shared_ptr<const Source> source) : source_(std::move(source)) {}
 
   syntax::Document read() {
     document_.sources.push_back(source_);
@@ -180,7 +180,7 @@ class Reader {
 }  // namespace
 
 syntax::Document parse_xml(std::shared_ptr<const Source> source) {
-  return Reader(std::move(source)).read();
+  return XmlReader(std::move(source)).read();
 }
 
 std::string print_xml(const syntax::Document& d) {

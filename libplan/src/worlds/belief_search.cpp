@@ -30,9 +30,10 @@ BeliefSearch::BeliefSearch(BeliefSpace& space, const Model& model, bool guided, 
       store_(static_cast<Index>(std::max<std::size_t>(space.words(), 1))) {}
 
 void BeliefSearch::check_limits() {
-  const std::size_t bytes = store_.bytes() + space_.bytes() + estimate_.bytes() + policy_.bytes() +
-                            nodes_.size() * (sizeof(Node) + 40) + edges_.size() * sizeof(Edge) +
-                            outcomes_.size() * (sizeof(Index) + sizeof(sensed_[0]) + 16);
+  const std::size_t bytes =
+      store_.bytes() + space_.bytes() + estimate_.bytes() + policy_.bytes() +
+      nodes_.size() * (sizeof(Node) + 40) + edges_.size() * sizeof(Edge) +
+      outcomes_.size() * (sizeof(Index) + sizeof(decltype(sensed_)::value_type) + 16);
   statistics_.states = nodes_.size();
   statistics_.state_bytes = bytes;
   if (limits_.check(bytes)) throw LimitExceeded();

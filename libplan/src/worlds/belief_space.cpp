@@ -220,6 +220,7 @@ std::vector<Outcome> BeliefSpace::apply(const Operator& o, const Word* belief) {
     for (const Step* s : happening)
       if (touches(s) && !change(*s, belief, worlds, sets)) return {};
     std::vector<Index> made;
+    made.reserve(worlds.size());
     for (const Changing& w : worlds) made.push_back(sets.world(w.now.data()));
     whole.belief[task_.common_words + c] = sets.set(made);
   }
@@ -236,6 +237,7 @@ std::vector<Index> BeliefSpace::apply_in(const Operator& o, const Word* belief, 
         holds(s.known, belief))
       change(s, belief, worlds, sets);
   std::vector<Index> made;
+  made.reserve(worlds.size());
   for (const Changing& w : worlds) made.push_back(sets.world(w.now.data()));
   return made;
 }

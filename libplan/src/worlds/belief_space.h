@@ -1,7 +1,7 @@
 #pragma once
 
-#include <compare>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "worlds/world_sets.h"
@@ -51,7 +51,10 @@ class BeliefSpace {
   struct Changing {
     Index origin;  ///< the world before
     std::vector<Word> now;
-    auto operator<=>(const Changing&) const = default;
+    bool operator==(const Changing&) const = default;
+    bool operator<(const Changing& o) const {
+      return std::tie(origin, now) < std::tie(o.origin, o.now);
+    }
   };
   static constexpr std::size_t kMostWorlds = 1U << 20U;
 

@@ -10,15 +10,12 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "is_file.h"
+
 namespace kaboum::robot {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool is_file(const fs::path& path) {
-  std::error_code error;
-  return fs::is_regular_file(path, error);
-}
 
 bool is_folder(const fs::path& path) {
   std::error_code error;

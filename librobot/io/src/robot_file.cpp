@@ -9,15 +9,12 @@
 
 #include <algorithm>
 
+#include "is_file.h"
+
 namespace kaboum::robot {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool is_file(const fs::path& path) {
-  std::error_code error;
-  return fs::is_regular_file(path, error);
-}
 
 /// Meshes of the Robotics Library's links are named by the scene; here by the links' names.
 void find_meshes(Robot& robot, const fs::path& folder) {
