@@ -15,9 +15,9 @@
 // peer, whose bodies are replaced by their hulls, are measured in the same way. Every result's
 // cover is decided exactly. Ratios are to the peer; their geometric means come last.
 #include <kaboum/base/error.h>
-#include <kaboum/bcd/decompose.h>
+#include <kaboum/bcd/cover.h>
 #include <kaboum/geom/convex_hull.h>
-#include <kaboum/geom/holes.h>
+#include <kaboum/geom/prepare.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/verify/cover.h>
 
@@ -30,7 +30,7 @@
 #include <sstream>
 
 #include "common.h"
-#include "reach.h"
+#include "excess.h"
 
 namespace {
 
@@ -50,7 +50,7 @@ std::vector<std::string> words(const std::string& list) {
 /// What another program made of the model.
 struct Peer {
   std::size_t bodies = 0, vertices = 0, largest = 0;
-  double reach = 0;
+  double excess = 0;
 };
 
 class Table {
@@ -66,30 +66,30 @@ class Table {
     geom::PrepareOptions how;
     how.drop_sheets = true;
     const geom::Prepared input = geom::prepare(io::read_mesh(file).mesh, how);
-    const geom::Mesh closed = input.closed ? input.mesh : geom::fill_holes(input.mesh).mesh;
+    const geom::Mesh closed = geom::close_holes(input.solid).mesh();
     const std::filesystem::path path(file);
     const std::string name = path.stem().string();
     std::optional<Peer> peer;
     const std::filesystem::path beside = path.parent_path() / (name + "." + peer_suffix + ".obj");
     if (std::filesystem::exists(beside)) peer = measured(beside, closed);
-    const double diagonal = geom::bounding_box(input.mesh).diagonal();
+    const double diagonal = geom::bounding_box(input.solid.mesh()).diagonal();
     if (peer)
       print({{"model", name},
              {"task", peer_suffix},
              {"bodies", peer->bodies},
              {"vertices", peer->vertices},
              {"largest", peer->largest},
-             {"reach_percent", 100 * peer->reach / diagonal}});
+             {"reach_percent", 100 * peer->excess / diagonal}});
     for (const std::string& task : tasks) {
       if (task != "epsilon" && !peer) continue;
       for (const std::string& effort : efforts) {
-        bcd::DecomposeOptions o;
+        bcd::CoverOptions o;
         o.effort = kEfforts.at(effort);
         o.max_vertices = task == "vertices" ? 32 : most;
         if (task == "distance") {
           o.max_bodies = peer->bodies;
         } else {
-          o.epsilon = task == "epsilon" ? 0.01 * epsilon_percent * diagonal : peer->reach;
+          o.epsilon = task == "epsilon" ? 0.01 * epsilon_percent * diagonal : peer->excess;
         }
         row(name, input, closed, o, task, effort, peer);
       }
@@ -129,13 +129,13 @@ class Table {
     rows.push_back(row);
   }
 
-  static double reach_of(const std::vector<geom::Mesh>& hulls, const geom::Mesh& closed) {
+  static double excess_of(const std::vector<geom::Mesh>& hulls, const geom::Mesh& closed) {
     const bcd::SolidField solid(closed, 100000, 0);
-    bcd::ReachOptions gap;
+    bcd::ExcessOptions gap;
     gap.relative_gap = 0.005;
-    double reach = 0;
-    for (const bcd::Reach& r : bcd::measure(hulls, solid, gap)) reach = std::max(reach, r.upper);
-    return reach;
+    double excess = 0;
+    for (const bcd::Excess& r : bcd::measure(hulls, solid, gap)) excess = std::max(excess, r.upper);
+    return excess;
   }
 
   static Peer measured(const std::filesystem::path& file, const geom::Mesh& closed) {
@@ -149,21 +149,21 @@ class Table {
       hulls.push_back(*std::move(hull));
     }
     peer.bodies = hulls.size();
-    peer.reach = reach_of(hulls, closed);
+    peer.excess = excess_of(hulls, closed);
     return peer;
   }
 
   void row(const std::string& name, const geom::Prepared& input, const geom::Mesh& closed,
-           const bcd::DecomposeOptions& o, const std::string& task, const std::string& effort,
+           const bcd::CoverOptions& o, const std::string& task, const std::string& effort,
            const std::optional<Peer>& peer) {
     const double start = user_seconds();
-    bcd::DecomposeResult result = bcd::decompose(input, o);
+    bcd::CoverCandidate result = bcd::find_cover(input.solid, o);
     const double seconds = user_seconds() - start;
     const char* stop = result.stop == bcd::Stop::Done            ? "done"
                        : result.stop == bcd::Stop::TooManyBodies ? "max-bodies"
                        : result.stop == bcd::Stop::TooCoarse     ? "too coarse"
                                                                  : "stuck";
-    const double diagonal = geom::bounding_box(input.mesh).diagonal();
+    const double diagonal = geom::bounding_box(input.solid.mesh()).diagonal();
     geom::ConvexSet set;
     set.bodies = std::move(result.bodies);
     const verify::Cover cover = verify::verify_cover(closed, set);
@@ -176,7 +176,7 @@ class Table {
                                {"bodies", set.bodies.size()},
                                {"vertices", result.statistics.vertices},
                                {"largest", result.statistics.largest},
-                               {"reach_percent", 100 * result.reach_upper / diagonal},
+                               {"reach_percent", 100 * result.excess_upper / diagonal},
                                {"stop", stop},
                                {"user_seconds", seconds},
                                {"verify_seconds", user_seconds() - start - seconds},
@@ -185,7 +185,7 @@ class Table {
       const auto ratio_of = [](std::size_t a, std::size_t b) {
         return static_cast<double>(a) / static_cast<double>(b);
       };
-      const double ratio = task == "distance" ? result.reach_upper / peer->reach
+      const double ratio = task == "distance" ? result.excess_upper / peer->excess
                            : task == "bodies"
                                ? ratio_of(set.bodies.size(), peer->bodies)
                                : ratio_of(result.statistics.vertices, peer->vertices);

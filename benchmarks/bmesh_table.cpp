@@ -98,11 +98,11 @@ class Table {
     how.drop_sheets = true;
     const geom::Prepared p = geom::prepare(io::read_mesh(file).mesh, how);
     const std::string name = std::filesystem::path(file).stem().string();
-    if (!p.closed) {
+    if (!p.solid.closed()) {
       std::cerr << name << ": open, left out\n";
       return;
     }
-    const geom::DistanceQuery original(p.mesh);
+    const geom::DistanceQuery original(p.solid.mesh());
     for (const Target& target : targets)
       for (const std::string& method : methods) row(name, p, original, method, target);
   }
@@ -122,7 +122,7 @@ class Table {
 
   static Timed timed(const geom::Prepared& p, const bmesh::DecimateOptions& o) {
     const double start = user_seconds();
-    Timed t{bmesh::decimate(p, o), 0};
+    Timed t{bmesh::decimate(p.solid, o), 0};
     t.seconds = user_seconds() - start;
     return t;
   }
@@ -140,14 +140,14 @@ class Table {
   /// as far as distances grow while vertices are taken away.
   static Timed fewest(const geom::Prepared& p, const geom::DistanceQuery& original,
                       bmesh::DecimateOptions o, double epsilon) {
-    std::size_t good = p.mesh.vertices.size(), bad = 3;
-    Timed best{{p.mesh, bmesh::Stop::VertexTarget, {}, 0, 0}, 0};
+    std::size_t good = p.solid.mesh().vertices.size(), bad = 3;
+    Timed best{{p.solid.mesh(), bmesh::Stop::VertexTarget, {}, 0, 0}, 0};
     while (good - bad > 1 && 200 * (good - bad) > good) {
       o.vertices =
           static_cast<std::size_t>(std::sqrt(static_cast<double>(good) * static_cast<double>(bad)));
       *o.vertices = std::clamp(*o.vertices, bad + 1, good - 1);
       Timed t = timed(p, o);
-      if (within(t.result.mesh, p.mesh, original, epsilon)) {
+      if (within(t.result.mesh, p.solid.mesh(), original, epsilon)) {
         good = *o.vertices;
         best = std::move(t);
       } else {
@@ -159,7 +159,7 @@ class Table {
 
   void row(const std::string& name, const geom::Prepared& p, const geom::DistanceQuery& original,
            const std::string& method, const Target& target) {
-    const double diagonal = geom::bounding_box(p.mesh).diagonal();
+    const double diagonal = geom::bounding_box(p.solid.mesh()).diagonal();
     bmesh::DecimateOptions o;
     o.cost = kMethods.at(method).cost;
     o.effort = kMethods.at(method).effort;
@@ -167,7 +167,7 @@ class Table {
     if (target.ratio > 0)
       o.vertices = std::max<std::size_t>(
           4, static_cast<std::size_t>(
-                 std::ceil(target.ratio * static_cast<double>(p.mesh.vertices.size()))));
+                 std::ceil(target.ratio * static_cast<double>(p.solid.mesh().vertices.size()))));
     const double epsilon = 0.01 * target.epsilon * diagonal;
     if (epsilon > 0 && !alone) o.epsilon = epsilon;
     const auto [r, seconds] = epsilon > 0 && alone ? fewest(p, original, o, epsilon) : timed(p, o);
@@ -175,21 +175,21 @@ class Table {
     geom::DistanceOptions gap;
     gap.relative_gap = 1e-2;
     const double scale = 100 / diagonal;
-    const double there = geom::directed_distance(p.mesh, result, gap).max_upper * scale;
+    const double there = geom::directed_distance(p.solid.mesh(), result, gap).max_upper * scale;
     const double back = geom::directed_distance(r.mesh, original, gap).max_upper * scale;
-    const double there_mean = mean_distance(p.mesh, result, 1e5) * scale;
+    const double there_mean = mean_distance(p.solid.mesh(), result, 1e5) * scale;
     const double back_mean = mean_distance(r.mesh, original, 1e5) * scale;
     const char* stop = r.stop == bmesh::Stop::VertexTarget ? "vertices"
                        : r.stop == bmesh::Stop::ErrorBound ? "epsilon"
                                                            : "exhausted";
     const double speed = static_cast<double>(r.statistics.contractions) / seconds;
-    std::cout << name << ',' << p.mesh.vertices.size() << ',' << method << ',' << target.ratio
-              << ',' << target.epsilon << ',' << r.mesh.vertices.size() << ',' << stop << ','
-              << seconds << ',' << speed << ',' << there << ',' << back << ',' << there_mean << ','
-              << back_mean << ',' << r.statistics.pull_backs << ',' << r.statistics.flips << ','
-              << r.statistics.rejected_original << std::endl;
+    std::cout << name << ',' << p.solid.mesh().vertices.size() << ',' << method << ','
+              << target.ratio << ',' << target.epsilon << ',' << r.mesh.vertices.size() << ','
+              << stop << ',' << seconds << ',' << speed << ',' << there << ',' << back << ','
+              << there_mean << ',' << back_mean << ',' << r.statistics.pull_backs << ','
+              << r.statistics.flips << ',' << r.statistics.rejected_original << std::endl;
     rows.push_back({{"model", name},
-                    {"vertices_in", p.mesh.vertices.size()},
+                    {"vertices_in", p.solid.mesh().vertices.size()},
                     {"method", method},
                     {"ratio", target.ratio},
                     {"epsilon_percent", target.epsilon},

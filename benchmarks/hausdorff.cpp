@@ -169,19 +169,19 @@ int check_pairs(const std::vector<std::string>& files, std::uint64_t samples) {
   int pairs = 0, failures = 0;
   for (const std::string& file : files) {
     const geom::Prepared prepared = geom::prepare(io::read_mesh(file).mesh);
-    std::size_t vertices = geom::analyse(prepared.mesh).vertices;
+    std::size_t vertices = geom::analyse(prepared.solid.mesh()).vertices;
     for (const bmesh::Direction direction : {bmesh::Direction::Outer, bmesh::Direction::Inner})
       for (const int percent : {50, 20, 5}) {
         bmesh::DecimateOptions options;
         options.direction = direction;
         options.precision = bmesh::Precision::Double;
         options.vertices = std::max<std::size_t>(4, vertices * percent / 100);
-        const geom::Mesh other = bmesh::decimate(prepared, options).mesh;
+        const geom::Mesh other = bmesh::decimate(prepared.solid, options).mesh;
         const std::string title = file.substr(file.rfind('/') + 1) +
                                   (direction == bmesh::Direction::Outer ? " outer " : " inner ") +
                                   std::to_string(percent) + "%";
         ++pairs;
-        if (!check(title.c_str(), prepared.mesh, other, samples)) ++failures;
+        if (!check(title.c_str(), prepared.solid.mesh(), other, samples)) ++failures;
       }
   }
   std::printf("%d pairs, %d failures, %llu samples each way\n", pairs, failures,

@@ -92,7 +92,8 @@ Result by_kaboum(const std::string& method, const geom::Prepared& input, std::si
   o.vertices = target;
   Result result;
   const double start = user_seconds();
-  result.mesh = bmesh::decimate(input, o).mesh;
+  o.effort = bmesh::possible_effort(input.solid, o);
+  result.mesh = bmesh::decimate(input.solid, o).mesh;
   result.seconds = user_seconds() - start;
   return result;
 }
@@ -197,19 +198,19 @@ Json run(const Input& input, const std::string& method, double ratio, bool dista
   if (input.subdivided) mesh = benchmark::subdivided(mesh);
   const geom::Prepared p = geom::prepare(mesh, how);
   mesh = {};
-  const std::size_t in = p.mesh.vertices.size();
+  const std::size_t in = p.solid.mesh().vertices.size();
   const auto target = std::max<std::size_t>(
       4, static_cast<std::size_t>(std::ceil(ratio * static_cast<double>(in))));
   const double before = user_seconds(), megabytes = peak_megabytes();
-  const Result result = method == "cgal"      ? by_cgal(p.mesh, target)
-                        : method == "meshopt" ? by_meshopt(p.mesh, target)
+  const Result result = method == "cgal"      ? by_cgal(p.solid.mesh(), target)
+                        : method == "meshopt" ? by_meshopt(p.solid.mesh(), target)
                                               : by_kaboum(method, p, target);
   const double all = user_seconds() - before;
   Json row{{"model", std::filesystem::path(input.file).stem().string() +
                          (input.subdivided ? "-subdivided" : "")},
-           {"closed", p.closed},
+           {"closed", p.solid.closed()},
            {"vertices_in", in},
-           {"triangles_in", p.mesh.triangles.size()},
+           {"triangles_in", p.solid.mesh().triangles.size()},
            {"method", method},
            {"ratio", ratio},
            {"vertices", result.mesh.vertices.size()},
@@ -220,7 +221,7 @@ Json run(const Input& input, const std::string& method, double ratio, bool dista
             static_cast<double>(in - result.mesh.vertices.size()) / result.seconds},
            {"peak_megabytes", peak_megabytes()},
            {"peak_megabytes_read", megabytes}};
-  if (distances) measure_into(row, p.mesh, result.mesh);
+  if (distances) measure_into(row, p.solid.mesh(), result.mesh);
   return row;
 }
 

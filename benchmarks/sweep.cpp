@@ -60,7 +60,8 @@ int measure(const char* file, const char* epsilon, int most_vertices) {
     std::printf(
         "all joints 1 rad, epsilon 5 mm, %zu threads: %.2f ms, %.2f ms of processors; %zu "
         "bodies, reach %.4f\n",
-        threads, 1000 * times.wall, 1000 * times.processor, result.set.bodies.size(), result.reach);
+        threads, 1000 * times.wall, 1000 * times.processor, result.set.bodies.size(),
+        result.excess);
   }
   const std::pair<const char*, sweep::StepRule> rules[] = {
       {"uniform", sweep::StepRule::Uniform},

@@ -50,13 +50,13 @@ class Table {
 Mesh read(const char* name) {
   const char* corpus = std::getenv("KABOUM_MESHES");
   if (corpus == nullptr) throw std::runtime_error("KABOUM_MESHES is not set");
-  return geom::prepare(io::read_mesh(std::string(corpus) + "/" + name).mesh).mesh;
+  return geom::prepare(io::read_mesh(std::string(corpus) + "/" + name).mesh).solid.mesh();
 }
 
 Mesh outer_mesh(const Mesh& mesh, double ratio) {
   bmesh::DecimateOptions options;
   options.vertices = static_cast<std::size_t>(ratio * static_cast<double>(mesh.vertices.size()));
-  return bmesh::decimate(geom::prepare(mesh), options).mesh;
+  return bmesh::decimate(geom::prepare(mesh).solid, options).mesh;
 }
 
 }  // namespace

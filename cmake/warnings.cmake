@@ -16,6 +16,11 @@ if(KABOUM_SANITIZE)
   target_compile_options(kaboum_options INTERFACE
     -fsanitize=${KABOUM_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(kaboum_options INTERFACE -fsanitize=${KABOUM_SANITIZE})
+  # ThreadSanitizer does not see what orders tasks inside TBB's binary, and would report races that are
+  # none: the project's own loops (libbase, libverify) run by std::thread instead.
+  if(KABOUM_SANITIZE MATCHES "thread")
+    target_compile_definitions(kaboum_options INTERFACE KABOUM_STD_THREADS)
+  endif()
 endif()
 if(KABOUM_COVERAGE)
   target_compile_options(kaboum_options INTERFACE --coverage)

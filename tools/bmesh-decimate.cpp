@@ -79,11 +79,11 @@ void read(tools::DecimationCase& run) {
   if (o.records()) {
     run.log.direction = run.request.direction;
     run.log.tool = run.request.comment;
-    bmesh::record_preparation(run.original, triangles, run.log);
+    bmesh::record_preparation(run.original.report, triangles, run.log);
   }
   run.input.mesh = {};
-  for (const std::string& text : run.original.notes) note(run, text);
-  if (!run.original.closed) note(run, "its border stays where it is, as --holes keep asks");
+  for (const std::string& text : run.original.report.notes) note(run, text);
+  if (!run.original.solid.closed()) note(run, "its border stays where it is, as --holes keep asks");
 }
 
 /// @return whether there are numbers that results can be made of

@@ -21,8 +21,8 @@ struct Options {
 /// The original as the log interprets it: turns are taken from the log, not judged.
 std::string original(const verify::ReplayResult& r) {
   std::string text = "the original";
-  if (r.turned != 0)
-    text += ", with " + std::to_string(r.turned) +
+  if (r.reversed != 0)
+    text += ", with " + std::to_string(r.reversed) +
             " triangles turned as the log says (whether they should be is not checked)";
   if (r.filled != 0)
     text += ", its holes filled with " + std::to_string(r.filled) +
@@ -60,7 +60,7 @@ int check(const Options& o) {
                        {"steps", r.steps},
                        {"predicates", r.predicates},
                        {"dropped_triangles", r.dropped},
-                       {"turned_triangles", r.turned},
+                       {"turned_triangles", r.reversed},
                        {"filled_triangles", r.filled}});
   if (!r.verified) {
     std::cout << "refuted: " << r.violation << '\n';

@@ -21,7 +21,7 @@ struct DecimationCase {
   std::optional<certify::WrapCertificate> wrap = {};  ///< whose mesh is the original
   geom::Prepared original = {};
   std::vector<std::string> notes = {};  ///< of reading and preparing, and options without effect
-  bmesh::Log log = {};                  ///< without the steps, unless they are wished for
+  bmesh::Log log = {};                  ///< without the steps, unless they are asked for
   certify::MeshSeries series = {};
   double seconds_read = 0, seconds_decimated = 0;  ///< of the process, when that was done
 

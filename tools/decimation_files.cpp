@@ -9,11 +9,13 @@ namespace kaboum::tools {
 namespace {
 
 bmesh::Progressive progressive(const DecimationCase& run) {
-  bmesh::Progressive p{
-      run.log, run.series.plan.precision == bmesh::Precision::Double, run.original.mesh, {}};
+  bmesh::Progressive p{run.log,
+                       run.series.plan.precision == bmesh::Precision::Double,
+                       run.original.solid.mesh(),
+                       {}};
   for (const certify::CertifiedMesh& made : run.series.meshes) {
     const certify::MeshCertificate& c = made.certificate();
-    p.levels.push_back({c.wished.value_or(c.vertices), c.vertices, c.steps});
+    p.levels.push_back({c.requested.value_or(c.vertices), c.vertices, c.steps});
   }
   return p;
 }

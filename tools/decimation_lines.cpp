@@ -45,7 +45,7 @@ class Lines {
       say("note: not as near as it might be: the work allowed has ended; allow more with "
           "--max-work");
     if (!made_.reached()) {
-      complain(std::to_string(*made_.wished) + " vertices cannot be reached with --cost " +
+      complain(std::to_string(*made_.requested) + " vertices cannot be reached with --cost " +
                run_.asked.cost + ": no further contraction is possible at " +
                std::to_string(made_.vertices) + "; the result so far is written");
       return kNo;
@@ -69,8 +69,8 @@ class Lines {
     if (made_.original_to_result)
       line += ", within " + formatted(made_.hausdorff_upper()) + " (" +
               formatted(100 * made_.hausdorff_upper() / diagonal) + "%)";
-    if (made_.wished && made_.stop == bmesh::Stop::ErrorBound)
-      line += "; epsilon allows no fewer, " + std::to_string(*made_.wished) + " were wished";
+    if (made_.requested && made_.stop == bmesh::Stop::ErrorBound)
+      line += "; epsilon allows no fewer, " + std::to_string(*made_.requested) + " were wished";
     return line;
   }
 
@@ -173,7 +173,7 @@ bool say_shortage(const DecimationCase& run, const certify::Float32Shortage& sho
   } else {
     why = std::to_string(shortage.vertices) + (shortage.vertices == 1 ? " vertex" : " vertices") +
           " without a certified float32 position";
-    if (!run.original.closed) {
+    if (!run.original.solid.closed()) {
       why +=
           ": an open mesh's border stays where it is, and its coordinates are no float32 numbers";
       remedy = "round the input's coordinates to float32 first, or close its holes";

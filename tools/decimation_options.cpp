@@ -119,9 +119,8 @@ void describe_search(CLI::App& app, DecimationOptions& o) {
       ->type_name("auto|float|double");
   app.add_option("--sharp-angle", o.sharp_angle,
                  "Edges whose normals differ by more degrees than this resist growing spikes; 180: "
-                 "none (only with --cost planes, planes-adapted and planes-diagonal)")
+                 "none (only with --cost planes, planes-adapted and planes-diagonal) [90]")
       ->check(number_from(0, 180))
-      ->capture_default_str()
       ->type_name("DEG");
   app.add_flag("--keep-convex", o.keep_convex, "Convex in, convex out, exactly");
 }

@@ -19,14 +19,14 @@ struct DecimationOptions {
   std::string vertices, epsilon, progressive, from, log, depfile;
   double ratio = 0;  ///< 0: none
   std::optional<double> max_work;
-  double sharp_angle = 90;
+  std::optional<double> sharp_angle;
   bool effort_given = false, as_printed = false, keep_convex = false, verify = false;
   geom::PrepareOptions prepare;
   HolesOption holes;
   PreparationOption preparation;
   CommonOptions common;
 
-  /// Whether the steps are wished for.
+  /// Whether the steps are asked for.
   [[nodiscard]] bool records() const { return !log.empty() || !progressive.empty(); }
 };
 

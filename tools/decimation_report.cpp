@@ -31,22 +31,22 @@ Json input_of(const DecimationCase& run) {
             {"file_vertices", run.input.file_vertices},
             {"file_triangles", run.input.file_triangles},
             {"split_polygons", run.input.split_polygons}};
-  json.update(to_json(geom::analyse(run.original.mesh)));
+  json.update(to_json(geom::analyse(run.original.solid.mesh())));
   return json;
 }
 
 Json preparation_of(const DecimationCase& run) {
-  const geom::Prepared& p = run.original;
+  const geom::PreparationReport& p = run.original.report;
   return {{"prepare", run.asked.preparation.name},
           {"wrap", run.wrap ? to_json(*run.wrap) : Json()},
           {"collapsed_triangles", run.input.collapsed_triangles + p.collapsed_triangles},
           {"dropped_copies", p.dropped_copies},
           {"cancelled_walls", p.cancelled_walls},
           {"dropped_sheets", p.dropped_sheets},
-          {"turned_components", p.turned_components},
-          {"turned_triangles", p.turned_triangles},
+          {"turned_components", p.reversed_components},
+          {"turned_triangles", p.reversed_triangles},
           {"holes", p.holes},
-          {"filled_triangles", p.filled_triangles},
+          {"filled_triangles", run.original.solid.filled_triangles()},
           {"largest_hole", p.largest_hole},
           {"notes", run.notes}};
 }
@@ -63,7 +63,7 @@ Json options_of(const DecimationCase& run) {
                        : plan.vertices.size() == 1 ? Json(plan.vertices.front())
                                                    : Json(plan.vertices)},
           {"epsilon", plan.epsilon ? Json(*plan.epsilon) : Json()},
-          {"sharp_angle", o.sharp_angle},
+          {"sharp_angle", o.sharp_angle.value_or(bmesh::kSharpAngle)},
           {"keep_convex", o.keep_convex},
           {"max_work", o.max_work ? Json(*o.max_work) : Json()}};
 }
@@ -200,7 +200,7 @@ Json report_of(const DecimationCase& run) {
     for (std::size_t i = 0; i < run.series.meshes.size(); ++i) {
       const MeshCertificate& c = run.series.meshes[i].certificate();
       Json& entry = r["levels"].emplace_back();
-      entry["vertices"] = *c.wished;
+      entry["vertices"] = *c.requested;
       entry["reached"] = c.stop == bmesh::Stop::VertexTarget;
       entry.update(result_of(run, i));
     }

@@ -16,7 +16,7 @@ namespace kaboum::tools {
 namespace {
 
 struct Taken {
-  std::size_t wished;
+  std::size_t requested;
   std::string file;
   bmesh::Extracted extracted;
   std::vector<char> bytes;
@@ -32,8 +32,8 @@ std::string float32_levels(const bmesh::Progressive& p, const std::string& name)
   std::string text;
   if (p.double_precision) return text;
   for (const bmesh::Progressive::Level& level : p.levels)
-    if (is_float32(bmesh::extract(p, level.wished, name).mesh))
-      text += (text.empty() ? "" : ", ") + std::to_string(level.wished);
+    if (is_float32(bmesh::extract(p, level.requested, name).mesh))
+      text += (text.empty() ? "" : ", ") + std::to_string(level.requested);
   return text;
 }
 
@@ -58,7 +58,7 @@ Json report(const ExtractOptions& o, const bmesh::Progressive& p, const std::str
            {"input_sha256", p.log.input_sha256},
            {"direction", name_of(p.log.direction)}}}};
   for (const Taken& t : all) {
-    Json entry{{"vertices", t.wished},
+    Json entry{{"vertices", t.requested},
                {"reached", t.extracted.reached},
                {"is_level", t.extracted.level},
                {"steps", t.extracted.steps},
@@ -93,7 +93,7 @@ int extract_levels(const ExtractOptions& o) {
     const bool double_precision = p.double_precision || !is_float32(t.extracted.mesh);
     if (double_precision && !io::holds_double(format)) {
       const std::string levels = float32_levels(p, o.from);
-      log(false, "bmesh-decimate: " + o.from + ": the mesh of " + std::to_string(t.wished) +
+      log(false, "bmesh-decimate: " + o.from + ": the mesh of " + std::to_string(t.requested) +
                      " vertices has coordinates that are no float32 numbers; nothing is written. "
                      "Write .ply, .obj, .off or (--output-format) stl-ascii, which hold doubles" +
                      (levels.empty() ? "" : "; or take one of the levels " + levels));
@@ -117,7 +117,7 @@ int extract_levels(const ExtractOptions& o) {
                             (t.extracted.level ? ", a level" : ", between levels") + " of " +
                             o.from);
     if (t.extracted.reached) continue;
-    log(false, "bmesh-decimate: " + o.from + ": " + std::to_string(t.wished) +
+    log(false, "bmesh-decimate: " + o.from + ": " + std::to_string(t.requested) +
                    " vertices cannot be reached: its steps end at " + std::to_string(vertices) +
                    "; that mesh is written");
     code = kNo;

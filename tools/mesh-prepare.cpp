@@ -77,13 +77,13 @@ void prepare(PrepareCase& run) {
                                     "; --prepare wrap encloses whatever triangles there are");
     }
   });
-  for (const std::string& text : prepared.notes) note(run, text);
+  for (const std::string& text : prepared.report.notes) note(run, text);
   const std::vector<Repair> repairs = repairs_of(run.input, prepared);
   log(o.common.quiet, "changed: " + in_words(repairs));
   run.report["repairs"] = to_json(repairs);
-  run.report["closed"] = prepared.closed;
-  run.mesh = prepared.mesh;
-  if (!prepared.closed) run.code = kNo;
+  run.report["closed"] = prepared.solid.closed();
+  run.mesh = prepared.solid.mesh();
+  if (!prepared.solid.closed()) run.code = kNo;
   if (o.verify) verify_raw(run);
 }
 

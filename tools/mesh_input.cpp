@@ -61,11 +61,12 @@ ApproximationInput read_approximation(const VerifyMeshOptions& o) {
 
 void prepare(MeshInput& original, bool drop_sheets) {
   geom::Prepared prepared = prepare_original(original.mesh, drop_sheets, true);
-  original.mesh = std::move(prepared.mesh);
-  original.notes.insert(original.notes.end(), prepared.notes.begin(), prepared.notes.end());
-  original.filled_triangles = prepared.filled_triangles;
-  original.dropped_sheets = prepared.dropped_sheets;
-  original.source = std::move(prepared.source);
+  geom::PreparationReport& report = prepared.report;
+  original.mesh = prepared.solid.mesh();
+  original.notes.insert(original.notes.end(), report.notes.begin(), report.notes.end());
+  original.filled_triangles = prepared.solid.filled_triangles();
+  original.dropped_sheets = report.dropped_sheets;
+  original.source = std::move(report.source);
 }
 
 std::string change_by_preparing(const MeshInput& original) {

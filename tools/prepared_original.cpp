@@ -19,13 +19,13 @@ std::optional<InsideOut> find_inside_out(const geom::Mesh& mesh) {
   try {
     const geom::Prepared prepared = prepare_original(mesh, true, false);
     InsideOut out;
-    if (prepared.inside_out.empty()) {
-      if (!prepared.hollow) return {};
-      out.hollow = prepared.hollow;
+    if (prepared.report.inside_out.empty()) {
+      if (!prepared.report.hollow) return {};
+      out.hollow = prepared.report.hollow;
       return out;
     }
-    out.parts = prepared.turned_components;
-    out.triangle = prepared.inside_out.front();
+    out.parts = prepared.report.reversed_components;
+    out.triangle = prepared.report.inside_out.front();
     for (const std::uint32_t v : mesh.triangles[out.triangle]) out.at += mesh.vertices[v] / 3;
     return out;
   } catch (const Error& error) {

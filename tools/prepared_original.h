@@ -17,7 +17,7 @@ struct InsideOut {
   std::size_t parts = 0;               ///< that preparing turns; 0: none
   std::uint32_t triangle = 0;          ///< of the first
   geom::Vec3 at = geom::Vec3::Zero();  ///< its middle
-  std::optional<geom::Vec3> hollow;    ///< where no part is turned: geom::Prepared::hollow
+  std::optional<geom::Vec3> hollow;    ///< where no part is turned: geom::PreparationReport::hollow
   std::string refusal;  ///< why nothing is known of it: it cannot be prepared; or empty
 };
 

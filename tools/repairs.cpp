@@ -17,7 +17,7 @@ geom::Box3 box_of(const geom::Mesh& mesh, const geom::Triangle& t) {
 /// Where input triangles went that the prepared mesh has not.
 geom::Box3 box_of_dropped(const geom::Mesh& input, const geom::Prepared& prepared) {
   std::vector<char> left(input.triangles.size(), 0);
-  for (const std::uint32_t t : prepared.source) left[t] = 1;
+  for (const std::uint32_t t : prepared.report.source) left[t] = 1;
   geom::Box3 box;
   for (std::size_t t = 0; t < left.size(); ++t)
     if (left[t] == 0) box.extend(box_of(input, input.triangles[t]));
@@ -33,18 +33,19 @@ std::vector<Repair> repairs_of(const io::ReadResult& input, const geom::Prepared
     add(repairs, "vertices merged", input.file_vertices - mesh.vertices.size());
   add(repairs, "polygons split", input.split_polygons);
   add(repairs, "triangles with repeated corners dropped",
-      input.collapsed_triangles + prepared.collapsed_triangles);
+      input.collapsed_triangles + prepared.report.collapsed_triangles);
   geom::Box3 turned;
-  for (std::size_t t = 0; t < prepared.source.size(); ++t)
-    if (prepared.turned[t] != 0) turned.extend(box_of(prepared.mesh, prepared.mesh.triangles[t]));
-  add(repairs, "triangles turned", prepared.turned_triangles, turned);
-  for (const std::uint32_t t : prepared.inside_out)
+  for (std::size_t t = 0; t < prepared.report.source.size(); ++t)
+    if (prepared.report.reversed[t] != 0)
+      turned.extend(box_of(prepared.solid.mesh(), prepared.solid.mesh().triangles[t]));
+  add(repairs, "triangles turned", prepared.report.reversed_triangles, turned);
+  for (const std::uint32_t t : prepared.report.inside_out)
     add(repairs, "component inside out, turned", 1, box_of(mesh, mesh.triangles[t]));
   const geom::Box3 dropped = box_of_dropped(mesh, prepared);
-  add(repairs, "copies of triangles dropped", prepared.dropped_copies, dropped);
-  add(repairs, "triangles of walls dropped", prepared.cancelled_walls, dropped);
-  add(repairs, "triangles of sheets dropped", prepared.dropped_sheets, dropped);
-  for (const std::vector<std::uint32_t>& rim : prepared.rims) {
+  add(repairs, "copies of triangles dropped", prepared.report.dropped_copies, dropped);
+  add(repairs, "triangles of walls dropped", prepared.report.cancelled_walls, dropped);
+  add(repairs, "triangles of sheets dropped", prepared.report.dropped_sheets, dropped);
+  for (const std::vector<std::uint32_t>& rim : prepared.report.rims) {
     geom::Box3 box;
     for (const std::uint32_t corner : rim)
       box.extend(mesh.vertices[mesh.triangles[corner / 3][corner % 3]]);

@@ -17,7 +17,7 @@ namespace {
 
 bool changes_by_preparing(const geom::Mesh& mesh) {
   try {
-    return !prepare_original(mesh, false, true).notes.empty();
+    return !prepare_original(mesh, false, true).report.notes.empty();
   } catch (const Error&) {
     return false;
   }
@@ -63,11 +63,11 @@ geom::Mesh RobotJudge::judged_mesh(const File& file) {
     if (const auto found = find_inside_out(file.mesh)) note(file.path, {text_of(*found)});
     return file.mesh;
   }
-  geom::Prepared prepared =
+  const geom::Prepared prepared =
       naming(file.path, [&] { return prepare_original(file.mesh, o_.drop_sheets, true); });
-  note(file.path, prepared.notes);
-  if (prepared.dropped_sheets > 0) dropped_[file.path] = prepared.dropped_sheets;
-  return std::move(prepared.mesh);
+  note(file.path, prepared.report.notes);
+  if (prepared.report.dropped_sheets > 0) dropped_[file.path] = prepared.report.dropped_sheets;
+  return prepared.solid.mesh();
 }
 
 Finding RobotJudge::hold(const File& file, const geom::Mesh& mesh, const verify::Holders& holders) {

@@ -75,7 +75,7 @@ std::string summary(const certify::SweepCertificate& c, std::size_t bodies) {
   std::ostringstream message;
   message.precision(3);
   message << c.bodies << (c.bodies == 1 ? " body" : " bodies") << " for " << bodies
-          << " of the robot; margin " << c.margin << "; no point farther than " << c.reach
+          << " of the robot; margin " << c.margin << "; no point farther than " << c.excess
           << " from what the robot's bodies sweep, these within " << c.bodies_distance
           << " of its shapes";
   if (c.motion == certify::MotionClaim::None)
@@ -122,7 +122,7 @@ Json report_of(const Run& run) {
           {"deviation", c.deviation},
           {"left_out", c.left_out},
           {"rounding", c.rounding},
-          {"reach", c.reach},
+          {"reach", c.excess},
           {"bodies_epsilon", c.bodies_distance},
           {"resources", {{"user_seconds_sweeping", run.seconds}}}};
 }

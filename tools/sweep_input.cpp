@@ -23,11 +23,11 @@ geom::Mesh read_link_mesh(const std::string& path, const VerifySweepOptions& o, 
   io::ReadResult read = io::read_mesh(path);
   for (const std::string& note : read.notes) out.mesh_notes.add(path, note);
   if (!o.prepare) return std::move(read.mesh);
-  geom::Prepared prepared =
+  const geom::Prepared prepared =
       naming(path, [&] { return prepare_original(read.mesh, o.drop_sheets, true); });
-  for (const std::string& note : prepared.notes) out.mesh_notes.add(path, note);
-  if (prepared.dropped_sheets > 0) out.dropped[path] = prepared.dropped_sheets;
-  return std::move(prepared.mesh);
+  for (const std::string& note : prepared.report.notes) out.mesh_notes.add(path, note);
+  if (prepared.report.dropped_sheets > 0) out.dropped[path] = prepared.report.dropped_sheets;
+  return prepared.solid.mesh();
 }
 
 std::vector<std::string> listed(const std::string& text) {
@@ -124,7 +124,7 @@ std::string preparing_hint(const SweepShapes& shapes) {
       }
     };
     if (const auto plain = prepared(false)) {
-      if (changed.empty() && !plain->notes.empty()) changed = path;
+      if (changed.empty() && !plain->report.notes.empty()) changed = path;
     } else if (prepared(true)) {
       return path +
              ": sweep-approx takes it with --drop-sheets only, and as prepared; --prepare "

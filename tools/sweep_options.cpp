@@ -215,7 +215,7 @@ certify::SweepRequest sweep_request(const SweepApproxOptions& o, const std::stri
   r.search.merge = !o.no_merge;
   r.search.simplify = o.simplify;
   r.search.explicit_margin = !o.implicit_margin;
-  if (!o.reach.empty()) r.search.max_reach = parse_length(o.reach)->value;
+  if (!o.reach.empty()) r.search.max_excess = parse_length(o.reach)->value;
   r.decide_motion = false;  // bound-verify sweep does, from the files alone
   r.parameters = parameters(o, base);
   r.unit = o.unit;

@@ -46,10 +46,10 @@ Json report_of(const ProgressiveCase& run) {
             {"predicates", r.predicates},
             {"against_solids", r.against_original},
             {"dropped_triangles", r.dropped},
-            {"turned_triangles", r.turned},
+            {"turned_triangles", r.reversed},
             {"filled_triangles", r.filled}};
   for (std::size_t i = 0; i < r.levels; ++i)
-    json["levels"].push_back({{"wished", p.levels[i].wished},
+    json["levels"].push_back({{"wished", p.levels[i].requested},
                               {"vertices", p.levels[i].vertices},
                               {"steps", p.levels[i].steps}});
   return json;
@@ -61,12 +61,12 @@ std::vector<std::string> lines_of(const ProgressiveCase& run) {
   std::vector<std::string> lines;
   for (std::size_t i = 0; i < r.levels; ++i) {
     const auto& level = run.progressive.levels[i];
-    lines.push_back("level " + std::to_string(level.wished) + ": " +
+    lines.push_back("level " + std::to_string(level.requested) + ": " +
                     std::to_string(level.vertices) + " vertices after " +
                     std::to_string(level.steps) + " steps");
   }
-  if (r.turned != 0)
-    lines.push_back(std::to_string(r.turned) +
+  if (r.reversed != 0)
+    lines.push_back(std::to_string(r.reversed) +
                     " triangles of the original are turned as the file says; whether they should "
                     "be is not checked");
   if (r.filled != 0)

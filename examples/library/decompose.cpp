@@ -1,6 +1,7 @@
 // Convex bodies that cover a solid, decided exactly by the verifier.
 
-#include <kaboum/bcd/decompose.h>
+#include <kaboum/bcd/cover.h>
+#include <kaboum/geom/prepare.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/verify/cover.h>
 
@@ -17,14 +18,14 @@ int main() {
   angle.vertices.insert(angle.vertices.end(), upright.vertices.begin(), upright.vertices.end());
 
   const geom::Prepared input = geom::prepare(angle);
-  bcd::DecomposeOptions options;
+  bcd::CoverOptions options;
   options.epsilon = 0.01;
-  const bcd::DecomposeResult result = bcd::decompose(input, options);
+  const bcd::CoverCandidate result = bcd::find_cover(input.solid, options);
 
   geom::ConvexSet set;
   set.bodies = result.bodies;
-  const verify::Cover cover = verify::verify_cover(input.mesh, set);
-  std::cout << set.bodies.size() << " bodies, nowhere farther than " << result.reach_upper
+  const verify::Cover cover = verify::verify_cover(input.solid.mesh(), set);
+  std::cout << set.bodies.size() << " bodies, nowhere farther than " << result.excess_upper
             << "; the solid is covered: " << verify::name_of(cover.inclusion.solid.answer) << '\n';
   return cover.inclusion.solid.answer == verify::Answer::Verified ? 0 : 1;
 }

@@ -28,8 +28,8 @@ class Distribution {
   /// @return whether all pieces are given; the recipients have grown then.
   bool run() {
     for (std::size_t piece = 0; piece < pieces_.size(); ++piece) {
-      parallel_loop(std::size_t{0}, recipients_.size(),
-                    [&](std::size_t to) { estimate(piece, to); });
+      parallel_for(std::size_t{0}, recipients_.size(),
+                   [&](std::size_t to) { estimate(piece, to); });
       if (worst_[best_of(piece)] > limit_) return false;
     }
     for (std::size_t left = pieces_.size(); left > 0; --left) {
@@ -38,7 +38,7 @@ class Distribution {
       const std::size_t piece = *best / recipients_.size(), to = *best % recipients_.size();
       recipients_[to] = union_of(recipients_[to], pieces_[piece], solid_);
       given_[piece] = changed_[to] = 1;
-      parallel_loop(std::size_t{0}, pieces_.size(), [&](std::size_t other) {
+      parallel_for(std::size_t{0}, pieces_.size(), [&](std::size_t other) {
         if (given_[other] == 0) estimate(other, to);
       });
     }

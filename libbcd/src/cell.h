@@ -38,6 +38,8 @@ struct Cube {
 /// Of a cube with half side 1, half the diagonal: √3, rounded up. Bounds of what a cube holds rest
 /// on it.
 inline constexpr double kHalfDiagonal = 0x1.bb67ae8584cabp+0;
+/// A factor that covers the rounding of a length or a radius, and of a product with it.
+inline constexpr double kLengthUp = 1 + 1e-12;
 
 /// Equal cubes that cover a box, none larger than its shortest side or, for flat ones, a sixteenth
 /// of the longest.

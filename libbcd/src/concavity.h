@@ -8,7 +8,7 @@
 
 namespace kaboum::bcd {
 
-/// How far a hull reaches from the solid, by samples of its facets: guides the search.
+/// How far a hull goes from the solid, by samples of its facets: guides the search.
 struct Concavity {
   double fourth = 0;  ///< ∫ d⁴ over the facets, d the field
   double worst = 0;   ///< largest distance

@@ -13,8 +13,8 @@
 namespace kaboum::bcd {
 
 bool add_witness(SearchState& state, const Finished& f) {
-  if (f.reach.lower <= kMisjudged * f.body.concavity.worst) return false;
-  return state.add_witness({f.reach.at, f.reach.lower}, f.body.hull);
+  if (f.excess.lower <= kMisjudged * f.body.concavity.worst) return false;
+  return state.add_witness({f.excess.at, f.excess.lower}, f.body.hull);
 }
 
 /// At most this many bodies, the first attempts of all that come nearest to the solid; none when
@@ -98,12 +98,13 @@ std::vector<Finished> CountSearch::at_most(std::size_t target) {
       add_witness(state_, f);
       bodies.push_back(f.body);
       Concavity& c = bodies.back().concavity;
-      if (f.reach.lower <= kMisjudged * c.worst) continue;
-      c.worst = f.reach.lower;
-      c.at = f.reach.at;
+      if (f.excess.lower <= kMisjudged * c.worst) continue;
+      c.worst = f.excess.lower;
+      c.at = f.excess.at;
       misjudged = true;
     }
-    if (finished.empty() || reach_of(next) < reach_of(finished)) finished = std::move(next);
+    if (finished.empty() || largest_excess(next) < largest_excess(finished))
+      finished = std::move(next);
     if (!misjudged || state_.spent(kImproving)) break;
   }
   const int rounds = target > 1 ? state_.tuning().refinements / kRefinementsPerRound : 0;
@@ -119,8 +120,8 @@ std::vector<Finished> CountSearch::at_most(std::size_t target) {
 bool CountSearch::improve(std::vector<Finished>& finished, std::size_t target, double free_cost) {
   std::size_t worst = 0;
   for (std::size_t i = 1; i < finished.size(); ++i)
-    if (finished[i].reach.lower > finished[worst].reach.lower) worst = i;
-  const double limit = finished[worst].reach.upper;
+    if (finished[i].excess.lower > finished[worst].excess.lower) worst = i;
+  const double limit = finished[worst].excess.upper;
   const std::vector<Body> parts = local_.split_body(finished[worst].body, limit);
   if (parts.size() < 2) return false;
   std::vector<Body> bodies;
@@ -145,7 +146,7 @@ bool CountSearch::improve(std::vector<Finished>& finished, std::size_t target, d
   }
   std::vector<Finished> changed = finisher_.finish(fresh, free_cost, limit);
   for (const Finished& f : changed)
-    if (f.reach.upper >= kReplacedGain * limit) return false;
+    if (f.excess.upper >= kReplacedGain * limit) return false;
   for (const std::size_t i : kept) changed.push_back(std::move(finished[i]));
   finished = std::move(changed);
   return true;

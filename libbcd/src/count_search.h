@@ -33,7 +33,7 @@ class CountSearch {
   Finisher& finisher_;
 };
 
-/// Where a body reaches farther than samples told, that place is looked at from now on. @return
+/// Where a body goes farther than samples told, that place is looked at from now on. @return
 /// whether it was one of the body before simplification.
 bool add_witness(SearchState& state, const Finished& f);
 

@@ -174,14 +174,14 @@ CutChooser::Candidate CutChooser::best_in_two(const CutNode& node,
                    [](const Candidate& a, const Candidate& b) { return a.score < b.score; });
   list.resize(std::min(list.size(), static_cast<std::size_t>(options_.look_ahead)));
   std::vector<double> deep(list.size());
-  parallel_loop(std::size_t{0}, list.size(),
-                [&](std::size_t i) { deep[i] = look_ahead(node, list[i].plane); });
+  parallel_for(std::size_t{0}, list.size(),
+               [&](std::size_t i) { deep[i] = look_ahead(node, list[i].plane); });
   return list[static_cast<std::size_t>(std::min_element(deep.begin(), deep.end()) - deep.begin())];
 }
 
 void CutChooser::evaluate(const CutNode& node, std::vector<Candidate>& list) const {
-  parallel_loop(std::size_t{0}, list.size(),
-                [&](std::size_t i) { list[i].score = score(node, list[i].plane); });
+  parallel_for(std::size_t{0}, list.size(),
+               [&](std::size_t i) { list[i].score = score(node, list[i].plane); });
 }
 
 std::optional<Plane> CutChooser::choose(const CutNode& node) const {

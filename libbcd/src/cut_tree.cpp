@@ -243,7 +243,7 @@ std::optional<CutTree::Split> CutTree::find_split(const std::vector<int>& nodes,
       list.push_back({{n, low + (high - low) * i / (options.offsets + 1)}});
   }
   const auto evaluate = [&](std::vector<Split>& splits) {
-    parallel_loop(std::size_t{0}, splits.size(), [&](std::size_t i) {
+    parallel_for(std::size_t{0}, splits.size(), [&](std::size_t i) {
       splits[i].worst = worst_half(nodes, splits[i].plane, limit);
     });
   };

@@ -11,10 +11,10 @@ namespace kaboum::bcd {
 namespace {
 
 /// Appends the bodies to the result, and what is known of them all.
-void append(std::vector<Finished> bodies, DecomposeResult& result) {
+void append(std::vector<Finished> bodies, CoverCandidate& result) {
   for (Finished& f : bodies) {
-    result.reach_lower = std::max(result.reach_lower, f.reach.lower);
-    result.reach_upper = std::max(result.reach_upper, f.reach.upper);
+    result.excess_lower = std::max(result.excess_lower, f.excess.lower);
+    result.excess_upper = std::max(result.excess_upper, f.excess.upper);
     result.statistics.vertices += f.hull.vertices.size();
     result.statistics.largest = std::max(result.statistics.largest, f.hull.vertices.size());
     result.statistics.thickened += f.thickened ? 1 : 0;
@@ -24,15 +24,15 @@ void append(std::vector<Finished> bodies, DecomposeResult& result) {
 
 }  // namespace
 
-Decomposer::Decomposer(const Mesh& closed, const DecomposeOptions& options, double work, Tuning how)
+Decomposer::Decomposer(const Mesh& closed, const CoverOptions& options, double work, Tuning how)
     : state_(closed, options, work, std::move(how)) {}
 
-Decomposer::Decomposer(const Mesh& closed, const DecomposeOptions& options, double work)
+Decomposer::Decomposer(const Mesh& closed, const CoverOptions& options, double work)
     : Decomposer(closed, options, work, tuning(options.effort, options.method)) {}
 
 /// So many bodies that no search brings them down to the limits.
 std::size_t Decomposer::hopeless() const {
-  const DecomposeOptions& options = state_.options();
+  const CoverOptions& options = state_.options();
   const std::size_t by_vertices = options.max_total_vertices.value_or(kUnlimited) / kLeastVertices;
   const std::size_t limit = std::min(options.max_bodies.value_or(kUnlimited), by_vertices);
   return limit > kUnlimited / kHopeless ? kUnlimited : kHopeless * limit;
@@ -51,13 +51,13 @@ std::vector<Finished> Decomposer::within_epsilon() {
 
 Stop Decomposer::stop_within(const std::vector<Finished>& bodies) const {
   if (!fits(bodies, state_.options())) return Stop::TooManyBodies;
-  if (!(reach_of(bodies) > *state_.options().epsilon)) return Stop::Done;
+  if (!(largest_excess(bodies) > *state_.options().epsilon)) return Stop::Done;
   return state_.out_of_work() ? Stop::OutOfWork : Stop::Stuck;
 }
 
-DecomposeResult Decomposer::run() {
-  const DecomposeOptions& options = state_.options();
-  DecomposeResult result;
+CoverCandidate Decomposer::run() {
+  const CoverOptions& options = state_.options();
+  CoverCandidate result;
   std::vector<Finished> bodies;
   if (options.epsilon) {
     bodies = within_epsilon();

@@ -14,14 +14,14 @@ class Decomposer {
  public:
   /// Keeps references to the mesh and the options, which must outlive this object.
   /// @param work  allowed. [ns]
-  Decomposer(const Mesh& closed, const DecomposeOptions& options, double work, Tuning how);
-  Decomposer(const Mesh& closed, const DecomposeOptions& options, double work);
+  Decomposer(const Mesh& closed, const CoverOptions& options, double work, Tuning how);
+  Decomposer(const Mesh& closed, const CoverOptions& options, double work);
   Decomposer(const Decomposer&) = delete;
   Decomposer& operator=(const Decomposer&) = delete;
   ~Decomposer() = default;
 
   /// Stop::TooManyBodies, and no bodies, where epsilon asks for more than the limits allow.
-  DecomposeResult run();
+  CoverCandidate run();
 
   [[nodiscard]] std::uint64_t work_done() const { return state_.solid().work().done(); }
 

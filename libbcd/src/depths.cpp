@@ -5,6 +5,7 @@
 #include "depths.h"
 
 #include <algorithm>
+#include <array>
 
 #include "cell.h"
 
@@ -15,6 +16,9 @@ namespace {
 constexpr double kEnough = 0.8;
 /// The centre of a cube this small, as a share of its depth, is a seed.
 constexpr double kSeedCube = 0.04;
+/// How far beyond the nearest triangle points are tried that are outside, as a share of the
+/// diagonal; proposals only, their winding number decides.
+constexpr std::array<double, 3> kBeyond{1e-7, 1e-9, 1e-5};
 /// Rounding, as a share of the largest coordinate and the diagonal.
 constexpr double kSlack = 1e-12;
 
@@ -94,12 +98,13 @@ double Depths::outside_near(const Vec3& p, std::uint32_t triangle) const {
   const Vec3 y = geom::nearest_point(p, a, b, c);
   const Vec3 normal = (b - a).cross(c - a).normalized();
   const Vec3 ray = (y - p).normalized();
-  for (const double step : {1e-7 * diagonal_, 1e-9 * diagonal_, 1e-5 * diagonal_}) {
+  for (const double share : kBeyond) {
+    const double step = share * diagonal_;
     for (const Vec3& direction : {ray, normal, Vec3(-normal)}) {
       if (!direction.allFinite()) continue;
       const Vec3 z = y + step * direction;
       const auto w = winding_(z);
-      if (w && *w <= 0) return (z - p).norm() * (1 + 1e-12) + slack_;
+      if (w && *w <= 0) return (z - p).norm() * kLengthUp + slack_;
     }
   }
   return outside_.nearest(p).upper;

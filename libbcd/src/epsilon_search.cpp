@@ -13,7 +13,7 @@ namespace kaboum::bcd {
 
 /// The hull of everything, if that is within epsilon: no search finds fewer bodies.
 std::vector<Finished> EpsilonSearch::hull_within(double epsilon) {
-  const DecomposeOptions& options = state_.options();
+  const CoverOptions& options = state_.options();
   std::vector<Body> whole{body_of(state_.tree(), 0)};
   if (options.method != Method::Planes || whole[0].concavity.worst > epsilon) return {};
   std::vector<Finished> out =
@@ -82,7 +82,7 @@ std::vector<Finished> EpsilonSearch::finish_until_within(std::vector<Body> bodie
     std::vector<Body> misjudged;  // leaves of bodies that were thought to be nearer
     for (Finished& f : tried) {
       // Parts of what was too thin are no thicker.
-      if (f.reach.upper <= epsilon || (f.thickened && f.body.concavity.worst <= aim) ||
+      if (f.excess.upper <= epsilon || (f.thickened && f.body.concavity.worst <= aim) ||
           state_.spent(kFinishing)) {
         out.push_back(std::move(f));
         continue;

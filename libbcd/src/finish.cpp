@@ -17,14 +17,14 @@
 
 namespace kaboum::bcd {
 
-double reach_of(const std::vector<Finished>& bodies) {
-  double reach = 0;
-  for (const Finished& f : bodies) reach = std::max(reach, f.reach.upper);
-  return reach;
+double largest_excess(const std::vector<Finished>& bodies) {
+  double out = 0;
+  for (const Finished& f : bodies) out = std::max(out, f.excess.upper);
+  return out;
 }
 
 bool are_within(const std::vector<Finished>& bodies, double epsilon) {
-  return !bodies.empty() && epsilon < kUnbounded && reach_of(bodies) <= epsilon;
+  return !bodies.empty() && epsilon < kUnbounded && largest_excess(bodies) <= epsilon;
 }
 
 std::size_t vertices_of(const std::vector<Finished>& bodies) {
@@ -33,7 +33,7 @@ std::size_t vertices_of(const std::vector<Finished>& bodies) {
   return sum;
 }
 
-bool fits(const std::vector<Finished>& bodies, const DecomposeOptions& options) {
+bool fits(const std::vector<Finished>& bodies, const CoverOptions& options) {
   return !bodies.empty() && bodies.size() <= options.max_bodies.value_or(kUnlimited) &&
          vertices_of(bodies) <= options.max_total_vertices.value_or(kUnlimited);
 }
@@ -56,18 +56,18 @@ std::vector<Finished> Finisher::finish(std::vector<Body>& bodies, double free_co
   // Where simplification took too much, no vertex more than needed is left out.
   for (const bool first : {true, false}) {
     Round round = make_hulls(out, open, shapes, free_cost, first);
-    const std::vector<Reach> measured =
-        measure(round.hulls, state_.solid(), reach_options(open.size()), kMeasuredFloor * decisive,
+    const std::vector<Excess> measured =
+        measure(round.hulls, state_.solid(), excess_options(open.size()), kMeasuredFloor * decisive,
                 decisive > 0 ? kMeasuredCeiling * decisive : kUnbounded);
     std::vector<std::size_t> failed;
     for (std::size_t i = 0; i < open.size(); ++i) {
       Finished& f = out[open[i]];
-      if (f.hull.vertices.empty() || measured[i].upper < f.reach.upper) {
+      if (f.hull.vertices.empty() || measured[i].upper < f.excess.upper) {
         f.hull = std::move(round.hulls[i]);
-        f.reach = measured[i];
+        f.excess = measured[i];
         f.thickened = round.thickened[i] != 0;
       }
-      if (decisive > 0 && f.reach.upper > decisive &&
+      if (decisive > 0 && f.excess.upper > decisive &&
           shapes[open[i]].needed.size() > shapes[open[i]].vertices.size())
         failed.push_back(open[i]);
     }
@@ -83,9 +83,9 @@ Finisher::Round Finisher::make_hulls(const std::vector<Finished>& bodies,
                                      const std::vector<std::size_t>& open,
                                      std::vector<Simplified>& shapes, double free_cost,
                                      bool first) const {
-  const DecomposeOptions& options = state_.options();
+  const CoverOptions& options = state_.options();
   Round round{std::vector<Mesh>(open.size()), std::vector<char>(open.size(), 0)};
-  parallel_loop(std::size_t{0}, open.size(), [&](std::size_t i) {
+  parallel_for(std::size_t{0}, open.size(), [&](std::size_t i) {
     const Body& body = bodies[open[i]].body;
     Simplified& shape = shapes[open[i]];
     if (first) {
@@ -112,23 +112,23 @@ void Finisher::simplify_hulls(std::vector<Finished>& bodies, double epsilon) {
     std::erase_if(open,
                   [&](const Open& o) { return bodies[o.body].hull.vertices.size() <= o.low + 1; });
     if (open.empty()) return;
-    ReachOptions reach = reach_options(open.size());
-    reach.enough = std::max(epsilon, reach_of(bodies));
+    ExcessOptions how = excess_options(open.size());
+    how.cutoff = std::max(epsilon, largest_excess(bodies));
     std::vector<Mesh> hulls(open.size());
-    parallel_loop(std::size_t{0}, open.size(), [&](std::size_t i) {
+    parallel_for(std::size_t{0}, open.size(), [&](std::size_t i) {
       const Finished& f = bodies[open[i].body];
       const std::size_t most = (open[i].low + f.hull.vertices.size()) / 2;
       hulls[i] = rounded(f.body, simplify(f.body.hull, most, 0, state_.solid()), most);
     });
-    const std::vector<Reach> measured =
-        measure(hulls, state_.solid(), reach, kMeasuredFloor * epsilon, kMeasuredCeiling * epsilon);
+    const std::vector<Excess> measured =
+        measure(hulls, state_.solid(), how, kMeasuredFloor * epsilon, kMeasuredCeiling * epsilon);
     for (std::size_t i = 0; i < open.size(); ++i) {
       Finished& f = bodies[open[i].body];
       const std::size_t tried = (open[i].low + f.hull.vertices.size()) / 2;
       if (hulls[i].vertices.size() <= tried &&
-          measured[i].upper <= std::max(epsilon, f.reach.upper)) {
+          measured[i].upper <= std::max(epsilon, f.excess.upper)) {
         f.hull = std::move(hulls[i]);
-        f.reach = measured[i];
+        f.excess = measured[i];
       } else {
         open[i].low = tried;
       }
@@ -138,20 +138,20 @@ void Finisher::simplify_hulls(std::vector<Finished>& bodies, double epsilon) {
 
 /// How bodies are measured: in fewer parts each where the work left is little, and all together in
 /// no more than what is kept for the end allows, but some.
-ReachOptions Finisher::reach_options(std::size_t bodies) const {
+ExcessOptions Finisher::excess_options(std::size_t bodies) const {
   const Work& work = state_.solid().work();
   const double each =
       static_cast<double>(kWorkPerPart) * static_cast<double>(std::max<std::size_t>(1, bodies));
   const double kept = (1 - kFinishing) * work.most();
   const double fewest = std::clamp(kept / each, kFewestParts, kEnoughParts);
-  ReachOptions out;
+  ExcessOptions out;
   out.absolute_gap = kMeasuredGap * state_.solid().diagonal();
   const double left = work.most() - static_cast<double>(work.done());
   const double share = left / each;
-  if (share < static_cast<double>(out.most))
-    out.most = static_cast<std::size_t>(std::max(fewest, share));
+  if (share < static_cast<double>(out.max_parts))
+    out.max_parts = static_cast<std::size_t>(std::max(fewest, share));
   // Parts that take longer than usual are fewer.
-  out.work = kWorkPerPart * out.most;
+  out.work = kWorkPerPart * out.max_parts;
   return out;
 }
 
@@ -165,14 +165,14 @@ void Finisher::find_required(const std::vector<Finished>& bodies) {
   std::vector<std::vector<Vec3>*> place;
   place.reserve(open.size());
   for (const int leaf : open) place.push_back(&required_.at(leaf));
-  parallel_loop(std::size_t{0}, open.size(), [&](std::size_t i) {
+  parallel_for(std::size_t{0}, open.size(), [&](std::size_t i) {
     *place[i] = outer_points(tree.nodes()[open[i]].piece, point_error_);
   });
 }
 
 /// Makes a body as thick as asked for. @return whether it was not.
 bool Finisher::thicken(Mesh& hull) const {
-  const DecomposeOptions& options = state_.options();
+  const CoverOptions& options = state_.options();
   if (geom::least_width(hull, options.min_thickness).lower >= options.min_thickness) return false;
   hull = bcd::thicken(std::move(hull), options.min_thickness, options.max_vertices, state_.solid());
   return true;

@@ -3,7 +3,7 @@
 #include <map>
 #include <vector>
 
-#include "reach.h"
+#include "excess.h"
 #include "search_state.h"
 #include "simplify.h"
 
@@ -13,17 +13,17 @@ namespace kaboum::bcd {
 struct Finished {
   Body body;
   Mesh hull;
-  Reach reach;
+  Excess excess;
   bool thickened = false;
 };
 
 /// Largest upper bound of any of them; 0 for none. [length]
-double reach_of(const std::vector<Finished>& bodies);
+double largest_excess(const std::vector<Finished>& bodies);
 /// Whether there are bodies, and nothing more is asked for than `epsilon`.
 bool are_within(const std::vector<Finished>& bodies, double epsilon);
 std::size_t vertices_of(const std::vector<Finished>& bodies);
 /// Whether the limits of bodies and vertices hold.
-bool fits(const std::vector<Finished>& bodies, const DecomposeOptions& options);
+bool fits(const std::vector<Finished>& bodies, const CoverOptions& options);
 
 /// Turns unions of pieces into the bodies that are written: simplified, rounded outwards so that
 /// they contain what their pieces hold of the solid, thickened, and measured.
@@ -32,7 +32,7 @@ class Finisher {
   explicit Finisher(SearchState& state);
 
   /// Takes the bodies' hulls. @param decisive  where given, it is told of every body whether it
-  /// reaches farther; else only the largest reach is exact. [length]
+  /// goes farther; else only the largest excess is exact. [length]
   std::vector<Finished> finish(std::vector<Body>& bodies, double free_cost, double decisive = 0);
 
   /// As few vertices as epsilon allows each body, by bisection of their number.
@@ -44,7 +44,7 @@ class Finisher {
     std::vector<Mesh> hulls;
     std::vector<char> thickened;
   };
-  [[nodiscard]] ReachOptions reach_options(std::size_t bodies) const;
+  [[nodiscard]] ExcessOptions excess_options(std::size_t bodies) const;
   void find_required(const std::vector<Finished>& bodies);
   bool thicken(Mesh& hull) const;
   [[nodiscard]] Mesh rounded(const Body& body, const Simplified& shape, std::size_t most) const;

@@ -233,7 +233,7 @@ std::vector<Vec3> box_within(const Inscribed& body, const Ellipsoid& e, const Ve
   constexpr int kRounds = 12;
   const Eigen::Matrix3d axes =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(e.to_ball).eigenvectors();
-  std::array<Vec3, 2> reach{Vec3::Zero(), Vec3::Zero()};  // from the seed, along −axes and axes
+  std::array<Vec3, 2> extent{Vec3::Zero(), Vec3::Zero()};  // from the seed, along −axes and axes
   const auto room = [&](int side, int k) {
     double least = std::numeric_limits<double>::infinity();
     for (const Plane& plane : body.planes) {
@@ -242,18 +242,20 @@ std::vector<Vec3> box_within(const Inscribed& body, const Ellipsoid& e, const Ve
       if (along <= 0) continue;
       double height = plane.height(seed);
       for (int i = 0; i < 3; ++i)
-        height += slope[i] > 0 ? slope[i] * reach[1][i] : -slope[i] * reach[0][i];
+        height += slope[i] > 0 ? slope[i] * extent[1][i] : -slope[i] * extent[0][i];
       least = std::min(least, -height / along);
     }
     return std::max(0.0, least);
   };
   for (int round = 1; round <= kRounds; ++round)
     for (int k = 0; k < 3; ++k)
-      for (const int side : {0, 1}) reach[side][k] += (round < kRounds ? 0.5 : 1.0) * room(side, k);
+      for (const int side : {0, 1})
+        extent[side][k] += (round < kRounds ? 0.5 : 1.0) * room(side, k);
   std::vector<Vec3> corners;
   for (int i = 0; i < 8; ++i) {
     Vec3 p = seed;
-    for (int k = 0; k < 3; ++k) p += ((i >> k & 1) != 0 ? reach[1][k] : -reach[0][k]) * axes.col(k);
+    for (int k = 0; k < 3; ++k)
+      p += ((i >> k & 1) != 0 ? extent[1][k] : -extent[0][k]) * axes.col(k);
     corners.push_back(p);
   }
   return corners;

@@ -23,7 +23,7 @@ bool LocalSearch::move_piece(std::vector<Body>& bodies, std::size_t from) const 
   };
   std::vector<Move> moves;
   std::vector<Body> rests(pieces.size()), parts(pieces.size());
-  parallel_loop(std::size_t{0}, pieces.size(), [&](std::size_t i) {
+  parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t i) {
     std::vector<int> rest = pieces;
     rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
     rests[i] = union_of(tree, solid, rest);
@@ -35,7 +35,7 @@ bool LocalSearch::move_piece(std::vector<Body>& bodies, std::size_t from) const 
     for (std::size_t to = 0; to < bodies.size(); ++to)
       if (to != from && touch(parts[i], bodies[to], solid)) moves.push_back({i, to});
   }
-  parallel_loop(std::size_t{0}, moves.size(), [&](std::size_t i) {
+  parallel_for(std::size_t{0}, moves.size(), [&](std::size_t i) {
     Move& m = moves[i];
     m.worst = std::max(estimate_union(bodies[m.to], parts[m.piece], solid, limit).worst,
                        rests[m.piece].concavity.worst);

@@ -101,7 +101,7 @@ class Merger {
         open.push_back(i);
       }
     }
-    parallel_loop(std::size_t{0}, open.size(), [&](std::size_t i) {
+    parallel_for(std::size_t{0}, open.size(), [&](std::size_t i) {
       Pair& p = fresh_[open[i]];
       p.hull = estimate_union(bodies_[p.a], bodies_[p.b], solid_, epsilon_);
     });

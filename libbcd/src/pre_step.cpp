@@ -21,11 +21,8 @@ constexpr double kGap = 0.1;
 constexpr std::size_t kMostLevels = 6, kFewVertices = 1000;
 
 /// Bounding meshes with a share of the vertices, a half of that, …; the last one perhaps not quite.
-std::vector<bmesh::DecimateResult> coarser(const geom::Mesh& closed, std::size_t vertices,
-                                           const DecomposeOptions& options) {
-  geom::Prepared input;
-  input.mesh = closed;
-  input.border.assign(closed.vertices.size(), 0);
+std::vector<bmesh::DecimateResult> coarser(const geom::SolidMesh& closed, std::size_t vertices,
+                                           const CoverOptions& options) {
   bmesh::DecimateOptions how;
   how.cost = bmesh::Cost::Distance;
   how.effort = bmesh::Effort::Fast;
@@ -35,12 +32,13 @@ std::vector<bmesh::DecimateResult> coarser(const geom::Mesh& closed, std::size_t
   std::vector<std::size_t> counts{vertices};
   while (counts.size() < kMostLevels && counts.back() >= kFewVertices)
     counts.push_back(counts.back() / 2);
-  return bmesh::decimate_series(input, how, counts);
+  return bmesh::decimate_series(closed, how, counts);
 }
 
 }  // namespace
 
-std::optional<Simpler> pre_step(const geom::Mesh& closed, const DecomposeOptions& options) {
+std::optional<Simpler> pre_step(const geom::SolidMesh& input, const CoverOptions& options) {
+  const geom::Mesh& closed = input.mesh();
   if (options.pre_step == PreStep::Off ||
       (options.pre_step == PreStep::Auto && closed.triangles.size() <= kLarge))
     return std::nullopt;
@@ -50,7 +48,7 @@ std::optional<Simpler> pre_step(const geom::Mesh& closed, const DecomposeOptions
   const std::size_t most = closed.vertices.size() / (options.pre_step == PreStep::On ? 2 : 4);
   std::vector<bmesh::DecimateResult> levels;
   try {
-    levels = coarser(closed, most, options);
+    levels = coarser(input, most, options);
   } catch (const Error& error) {
     // What decimation refuses, decomposition need not.
     if (error.code() != ErrorCode::InvalidInput) throw;

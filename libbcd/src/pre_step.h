@@ -1,6 +1,6 @@
 #pragma once
 
-#include <kaboum/bcd/decompose.h>
+#include <kaboum/bcd/cover.h>
 
 #include <optional>
 
@@ -15,6 +15,6 @@ struct Simpler {
 
 /// A bounding mesh within a tenth of epsilon (0.1 % of the diagonal, where only numbers are
 /// limited), if the options ask for it and it is worth while. Source: [gaschler2016] §4.4.2.
-std::optional<Simpler> pre_step(const geom::Mesh& closed, const DecomposeOptions& options);
+std::optional<Simpler> pre_step(const geom::SolidMesh& closed, const CoverOptions& options);
 
 }  // namespace kaboum::bcd

@@ -9,8 +9,7 @@
 
 namespace kaboum::bcd {
 
-SearchState::SearchState(const Mesh& closed, const DecomposeOptions& options, double work,
-                         Tuning how)
+SearchState::SearchState(const Mesh& closed, const CoverOptions& options, double work, Tuning how)
     : options_(options),
       tuning_(std::move(how)),
       solid_(closed, tuning_.grid, options.epsilon.value_or(0), false, work),

@@ -15,9 +15,9 @@ class SearchState {
  public:
   /// Keeps references to the mesh and the options, which must outlive this object.
   /// @param work  allowed. [ns]
-  SearchState(const Mesh& closed, const DecomposeOptions& options, double work, Tuning how);
+  SearchState(const Mesh& closed, const CoverOptions& options, double work, Tuning how);
 
-  [[nodiscard]] const DecomposeOptions& options() const { return options_; }
+  [[nodiscard]] const CoverOptions& options() const { return options_; }
   [[nodiscard]] const Tuning& tuning() const { return tuning_; }
   [[nodiscard]] const SolidField& solid() const { return solid_; }
   [[nodiscard]] CutTree& tree() { return tree_; }
@@ -44,7 +44,7 @@ class SearchState {
  private:
   [[nodiscard]] SearchOptions search_options() const;
 
-  const DecomposeOptions& options_;
+  const CoverOptions& options_;
   Tuning tuning_;
   SolidField solid_;
   CutTree tree_;

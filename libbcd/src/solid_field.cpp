@@ -1,8 +1,9 @@
 // Distances to a solid: exact ones by winding numbers and a hierarchy, quick ones from a grid that
-// is filled where it is asked. Point and triangle as in [ericson2005], §5.1.5.
+// is filled where it is asked.
 
 #include "solid_field.h"
 
+#include <kaboum/geom/closest_point.h>
 #include <kaboum/geom/convex_hull.h>
 
 #include <algorithm>
@@ -13,29 +14,6 @@ namespace kaboum::bcd {
 namespace {
 
 constexpr float kUnset = std::numeric_limits<float>::infinity();
-
-/// Squared distance of p to the triangle (a, a + ab, a + ac), rounded.
-double squared(const Vec3& p, const Vec3& a, const Vec3& ab, const Vec3& ac) {
-  const Vec3 ap = p - a;
-  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
-  if (d1 <= 0 && d2 <= 0) return ap.squaredNorm();
-  const double bb = ab.squaredNorm(), bc = ab.dot(ac), cc = ac.squaredNorm();
-  const double d3 = d1 - bb, d4 = d2 - bc;
-  if (d3 >= 0 && d4 <= d3) return (ap - ab).squaredNorm();
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return (ap - (d1 / (d1 - d3)) * ab).squaredNorm();
-  const double d5 = d1 - bc, d6 = d2 - cc;
-  if (d6 >= 0 && d5 <= d6) return (ap - ac).squaredNorm();
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return (ap - (d2 / (d2 - d6)) * ac).squaredNorm();
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 >= d3 && d5 >= d6) {
-    const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-    return (ap - ab - w * (ac - ab)).squaredNorm();
-  }
-  const double sum = va + vb + vc;
-  return (ap - (vb / sum) * ab - (vc / sum) * ac).squaredNorm();
-}
 
 }  // namespace
 
@@ -162,7 +140,8 @@ double SolidField::rough_distance(const Vec3& p, double limit) const {
     const geom::Bvh::Node& node = nodes[index];
     if (node.leaf()) {
       for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-        best = std::min(best, squared(p, corners_[i].a, corners_[i].ab, corners_[i].ac));
+        best = std::min(best,
+                        geom::squared_distance(p, corners_[i].a, corners_[i].ab, corners_[i].ac));
       continue;
     }
     std::pair<double, std::uint32_t> near{to_box(nodes[index + 1].box), index + 1};

@@ -23,7 +23,7 @@ using geom::Vec3;
 class SolidField {
  public:
   /// @param mesh  a closed chain; kept by reference.
-  /// @param nodes  wished number of nodes of the grid behind field(); with up to eight times as
+  /// @param nodes  number asked for, of nodes of the grid behind field(); with up to eight times as
   /// many it is no coarser than 0.7 · epsilon.
   /// @param epsilon  distances that matter; 0: all the same. [length]
   /// @param witnesses  whether to look for witnesses at once.

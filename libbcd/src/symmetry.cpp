@@ -45,7 +45,7 @@ Moments moments_of(const Mesh& mesh) {
   return out;
 }
 
-/// Centroids of triangles, about as many as wished, the larger triangles' rather.
+/// Centroids of triangles, about as many as asked for, the larger triangles' rather.
 std::vector<Vec3> samples_of(const Mesh& mesh, double area) {
   std::vector<Vec3> out;
   double sum = 0;

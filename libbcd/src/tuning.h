@@ -1,12 +1,12 @@
 #pragma once
 
 // Constants that steer the search for bodies round a solid. No claim rests on any of them: whatever
-// the search finds is measured (reach.h) and decided exactly before it is written. Lengths are in
+// the search finds is measured (excess.h) and decided exactly before it is written. Lengths are in
 // the units of the input, work is in nanoseconds of one core (kaboum/base/work.h), shares are plain
 // numbers. Where a comment names a test, it watches over what the constant is for; all were
 // compared by numbers of bodies and time with benchmarks/bcd_table.
 
-#include <kaboum/bcd/decompose.h>
+#include <kaboum/bcd/cover.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -39,7 +39,7 @@ constexpr double kAimedShare = 0.93;
 /// Measuring ends where the bracket is narrower than this share of the solid's diagonal.
 constexpr double kMeasuredGap = 1e-5;
 /// Distances below the first share of epsilon need no measuring; where the largest is beyond the
-/// second, those below 0.7 of it need none (reach.h).
+/// second, those below 0.7 of it need none (excess.h).
 constexpr double kMeasuredFloor = 0.5, kMeasuredCeiling = 0.7;
 /// A body is farther than samples told if a certified distance exceeds theirs by this factor.
 constexpr double kMisjudged = 1.02;
@@ -87,7 +87,7 @@ constexpr double kHalvedBelow = 0.5;
 
 // A given number of bodies (count_search.h).
 
-/// Share of the worst body's distance that simplification may add, with DecomposeOptions::simplify.
+/// Share of the worst body's distance that simplification may add, with CoverOptions::simplify.
 constexpr double kFreeShare = 0.5;
 /// Rounds of replacing the worst finished body, for each so many of Tuning::refinements.
 constexpr int kRefinementsPerRound = 3;

@@ -12,7 +12,7 @@
 namespace kaboum::bcd {
 
 std::vector<Finished> VertexBudget::nearest_that_fit() {
-  const DecomposeOptions& options = state_.options();
+  const CoverOptions& options = state_.options();
   const std::size_t total = *options.max_total_vertices;
   const std::size_t most = std::min(options.max_bodies.value_or(kUnlimited),
                                     std::max<std::size_t>(1, total / kVerticesPerBody));
@@ -21,9 +21,9 @@ std::vector<Finished> VertexBudget::nearest_that_fit() {
   return best;
 }
 
-/// Fewer bodies reach farther, but leave more vertices to each.
+/// Fewer bodies go farther, but leave more vertices to each.
 std::vector<Finished> VertexBudget::by_number(std::size_t most, std::size_t total) {
-  const DecomposeOptions& options = state_.options();
+  const CoverOptions& options = state_.options();
   std::vector<Finished> best;
   std::size_t last = 0;
   for (double share = 1; share > kLeastBudgetShare; share *= kBudgetShare) {
@@ -32,10 +32,10 @@ std::vector<Finished> VertexBudget::by_number(std::size_t most, std::size_t tota
     if (!best.empty() && state_.spent(kImproving)) break;
     last = count;
     std::vector<Finished> tried = count_.at_most(count);
-    if (!best.empty() && fits(best, options) && reach_of(tried) > reach_of(best)) break;
+    if (!best.empty() && fits(best, options) && largest_excess(tried) > largest_excess(best)) break;
     simplify_to(tried, total);
     if (best.empty() ||
-        (fits(tried, options) ? !fits(best, options) || reach_of(tried) < reach_of(best)
+        (fits(tried, options) ? !fits(best, options) || largest_excess(tried) < largest_excess(best)
                               : vertices_of(tried) < vertices_of(best)))
       best = std::move(tried);
   }
@@ -44,11 +44,11 @@ std::vector<Finished> VertexBudget::by_number(std::size_t most, std::size_t tota
 
 /// Bodies too far are split, and fewer looked for.
 void VertexBudget::by_distance(std::vector<Finished>& best, std::size_t most, std::size_t total) {
-  const DecomposeOptions& options = state_.options();
+  const CoverOptions& options = state_.options();
   int tries = kBudgetTries;
   for (double step = kBudgetStep; step > kLeastBudgetStep && tries > 0 && !state_.spent(kImproving);
        --tries) {
-    const double epsilon = (1 - step) * reach_of(best);
+    const double epsilon = (1 - step) * largest_excess(best);
     if (!(epsilon > kLeastBudgetDistance * state_.solid().diagonal())) break;
     std::vector<Finished> tried = within_.within(epsilon);
     for (const std::size_t enough : {most, std::size_t{1}}) {
@@ -62,7 +62,7 @@ void VertexBudget::by_distance(std::vector<Finished>& best, std::size_t most, st
           static_cast<double>(vertices_of(tried)) < kNearBudget * static_cast<double>(total);
       if (fits(tried, options) || tried.size() > most || (looked && !near)) break;
     }
-    if (fits(tried, options) && reach_of(tried) < reach_of(best)) {
+    if (fits(tried, options) && largest_excess(tried) < largest_excess(best)) {
       best = std::move(tried);
     } else {
       step *= 0.5;
@@ -79,7 +79,7 @@ void VertexBudget::simplify_to(std::vector<Finished>& bodies, std::size_t total)
     return out;
   };
   const double diagonal = state_.solid().diagonal();
-  double low = std::max(reach_of(bodies), kLeastThinned * diagonal), high = low;
+  double low = std::max(largest_excess(bodies), kLeastThinned * diagonal), high = low;
   std::vector<Finished> best = simplified(high);
   while (vertices_of(best) > total && high < diagonal) {
     low = high;

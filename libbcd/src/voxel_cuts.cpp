@@ -17,7 +17,7 @@ VoxelCuts::VoxelCuts(const SolidField& solid, std::size_t voxels)
   for (int k = 0; k < 3; ++k) size_[k] = static_cast<int>(std::ceil(size[k] / spacing_));
   filled_.resize(static_cast<std::size_t>(size_[0]) * static_cast<std::size_t>(size_[1]) *
                  static_cast<std::size_t>(size_[2]));
-  parallel_loop(0, size_[2], [&](int z) {
+  parallel_for(0, size_[2], [&](int z) {
     std::size_t at = static_cast<std::size_t>(z) * static_cast<std::size_t>(size_[0]) *
                      static_cast<std::size_t>(size_[1]);
     for (int y = 0; y < size_[1]; ++y)
@@ -103,8 +103,8 @@ std::optional<Plane> VoxelCuts::choose(const Cell& cell, const std::vector<Vec3>
   };
   std::vector<Candidate> list;
   const auto best = [&]() -> const Candidate* {
-    parallel_loop(std::size_t{0}, list.size(),
-                  [&](std::size_t i) { list[i].cost = cost(range, list[i].axis, list[i].at); });
+    parallel_for(std::size_t{0}, list.size(),
+                 [&](std::size_t i) { list[i].cost = cost(range, list[i].axis, list[i].at); });
     const auto at =
         std::min_element(list.begin(), list.end(),
                          [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });

@@ -14,7 +14,7 @@ namespace kaboum::bcd {
 /// exact, as for any other plane.
 class VoxelCuts {
  public:
-  /// @param voxels  wished number, of the solid's box.
+  /// @param voxels  number asked for, of the solid's box.
   VoxelCuts(const SolidField& solid, std::size_t voxels);
 
   /// The plane across an axis, between voxels, for which the hulls of the voxels on either side

@@ -62,7 +62,7 @@ double ClosestTriangle::squared(const Vec3& p, std::uint32_t& hint, double enoug
                                 std::uint64_t* steps) const {
   if (hint >= triangles_.size()) hint = 0;
   double best = squared_distance(p, corners(hint));
-  float reach = frame_.reach(best);
+  float cutoff = frame_.cutoff(best);
   const Eigen::Vector3f x = frame_(p);
   struct Entry {
     float squared;
@@ -75,17 +75,17 @@ double ClosestTriangle::squared(const Vec3& p, std::uint32_t& hint, double enoug
   std::uint64_t visited = 1;
   while (size > 0 && best > enough) {
     const Entry entry = stack[--size];
-    if (!(entry.squared < reach)) continue;
+    if (!(entry.squared < cutoff)) continue;
     ++visited;
     if ((entry.node & kLeaf) != 0) {
       const Leaf& leaf = leaves_[entry.node & ~kLeaf];
       leaf.triangles.at_least(x, bound);
       for (std::uint32_t i = 0; i < leaf.count; ++i) {
-        if (i < 4 && !(bound[i] < reach)) continue;
+        if (i < 4 && !(bound[i] < cutoff)) continue;
         const double d = squared_distance(p, corners(leaf.first + i));
         if (d >= best) continue;
         best = d;
-        reach = frame_.reach(best);
+        cutoff = frame_.cutoff(best);
         hint = leaf.first + i;
       }
       continue;
@@ -100,7 +100,7 @@ double ClosestTriangle::squared(const Vec3& p, std::uint32_t& hint, double enoug
     // The nearest comes last.
     const std::size_t first = size;
     for (int i = 0; i < 4; ++i) {
-      if (!(bound[i] < reach)) continue;
+      if (!(bound[i] < cutoff)) continue;
       std::size_t at = size++;
       for (; at > first && stack[at - 1].squared < bound[i]; --at) stack[at] = stack[at - 1];
       stack[at] = {bound[i], node.child[i]};

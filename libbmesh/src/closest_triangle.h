@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/geom/bvh.h>
+#include <kaboum/geom/closest_point.h>
 #include <kaboum/geom/mesh.h>
 
 #include <array>
@@ -13,31 +14,7 @@
 
 namespace kaboum::bmesh {
 
-/// Point of the triangle (a, b, c) closest to p, in rounded arithmetic: for costs, never for
-/// certificates. Source: C. Ericson, Real-Time Collision Detection (2005), 5.1.5.
-inline Vec3 closest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 ab = b - a, ac = c - a, ap = p - a;
-  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
-  if (d1 <= 0 && d2 <= 0) return a;
-  const Vec3 bp = p - b;
-  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
-  if (d3 >= 0 && d4 <= d3) return b;
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + (d1 > d3 ? d1 / (d1 - d3) : 0) * ab;
-  const Vec3 cp = p - c;
-  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
-  if (d6 >= 0 && d5 <= d6) return c;
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + (d2 > d6 ? d2 / (d2 - d6) : 0) * ac;
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 >= d3 && d5 >= d6) {
-    const double sum = (d4 - d3) + (d5 - d6);
-    return b + (sum > 0 ? (d4 - d3) / sum : 0) * (c - b);
-  }
-  const double sum = va + vb + vc;
-  if (!(sum > 0)) return a;
-  return a + (vb / sum) * ab + (vc / sum) * ac;
-}
+using geom::closest_point;
 
 /// The square of its distance.
 inline double squared_distance(const Vec3& p, const std::array<Vec3, 3>& t) {

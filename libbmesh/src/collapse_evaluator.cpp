@@ -48,8 +48,9 @@ geom::Box3 box_of(const std::vector<Vec3>& points) {
 
 }  // namespace
 
-Context::Context(const geom::Prepared& input, const DecimateOptions& requested, Work* counter)
-    : Context(box_of(input.mesh.vertices), input.closed, requested, counter) {}
+Context::Context(const geom::Mesh& input, bool is_closed, const DecimateOptions& requested,
+                 Work* counter)
+    : Context(box_of(input.vertices), is_closed, requested, counter) {}
 
 Context::Context(const geom::Box3& box, bool is_closed, const DecimateOptions& requested,
                  Work* counter)
@@ -59,7 +60,7 @@ Context::Context(const geom::Box3& box, bool is_closed, const DecimateOptions& r
       constrained(requested.direction != Direction::Any),
       closed(is_closed),
       diagonal(box.diagonal()),
-      reach(0.5 * (box.max - box.min) + Vec3::Constant(box.diagonal())),
+      clamp_box(0.5 * (box.max - box.min) + Vec3::Constant(box.diagonal())),
       work(counter) {}
 
 CollapseEvaluator::CollapseEvaluator(const Context& context, const WorkingMesh& mesh,
@@ -130,7 +131,7 @@ bool CollapseEvaluator::evaluate_move(std::uint32_t v, double care, bool may_fol
 bool CollapseEvaluator::place_against_original(const Vec3& place, const Quadric& q) {
   const Vec3 before = candidate_.position;
   candidate_.position = place;
-  if (out_of_reach() || folds()) {
+  if (is_too_far_out() || folds()) {
     candidate_.position = before;
     return false;
   }
@@ -242,12 +243,12 @@ bool CollapseEvaluator::place(const Quadric& q, double care) {
   } else {
     snap_to_axis_planes(kSnapDouble * extent);
   }
-  return !out_of_reach();
+  return !is_too_far_out();
 }
 
-bool CollapseEvaluator::out_of_reach() const {
+bool CollapseEvaluator::is_too_far_out() const {
   return !((candidate_.position - context_.cost.origin()).cwiseAbs().array() <=
-           context_.reach.array())
+           context_.clamp_box.array())
               .all();
 }
 

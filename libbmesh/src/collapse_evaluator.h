@@ -19,9 +19,10 @@ namespace kaboum::bmesh {
 
 /// What all contractions of a run have in common.
 struct Context {
-  /// Keeps a reference to the options, which must outlive this object.
+  /// Keeps a reference to the options, which must outlive this object, and none to the mesh.
   /// @param counter  of what is done, for as long; may be null.
-  Context(const geom::Prepared& input, const DecimateOptions& requested, Work* counter = nullptr);
+  Context(const geom::Mesh& input, bool is_closed, const DecimateOptions& requested,
+          Work* counter = nullptr);
 
   const DecimateOptions& options;
   CostModel cost;
@@ -31,7 +32,7 @@ struct Context {
   double diagonal;
   /// No vertex goes farther from the origin, whatever it costs: half the box,
   /// and its diagonal more on every side.
-  Vec3 reach;
+  Vec3 clamp_box;
   Work* work;
 
  private:
@@ -113,7 +114,7 @@ class CollapseEvaluator {
   [[nodiscard]] geom::Sign side(std::uint32_t t);
   [[nodiscard]] bool encloses();
   [[nodiscard]] bool folds() const;
-  [[nodiscard]] bool out_of_reach() const;
+  [[nodiscard]] bool is_too_far_out() const;
   [[nodiscard]] bool stays_inside();
   [[nodiscard]] bool stays_convex();
   void find_cost(const Quadric& q);

@@ -9,7 +9,7 @@
 #include <numeric>
 #include <span>
 
-#include "in_parallel.h"
+#include <kaboum/base/parallel.h>
 #include "placement.h"
 
 namespace kaboum::bmesh {
@@ -56,7 +56,7 @@ class InitialQuadrics {
         half_limit_(std::cos(sharp_angle * std::numbers::pi / 360) + kAngleRounding),
         at_(mesh),
         plane_(mesh.triangles.size()) {
-    in_parallel(plane_.size(), [&](std::size_t t) {
+    parallel_for_light(plane_.size(), [&](std::size_t t) {
       const Triangle& tri = mesh.triangles[t];
       const Vec3& a = mesh.vertices[tri[0]];
       const Vec3 n = (mesh.vertices[tri[1]] - a).cross(mesh.vertices[tri[2]] - a);
@@ -145,11 +145,12 @@ CostModel::CostModel(const DecimateOptions& options, const geom::Box3& box)
       origin_(box.center()) {}
 
 std::vector<Quadric> CostModel::initial(const geom::Mesh& mesh) const {
-  const InitialQuadrics around(mesh, origin_, by_area(), options_.sharp_angle);
+  const InitialQuadrics around(mesh, origin_, by_area(),
+                               options_.sharp_angle.value_or(kSharpAngle));
   const bool centres = options_.cost == Cost::Triangles;
-  const bool sharp = !centres && !by_area() && options_.sharp_angle < 180;
+  const bool sharp = !centres && !by_area() && options_.sharp_angle.value_or(kSharpAngle) < 180;
   std::vector<Quadric> quadric(mesh.vertices.size());
-  in_parallel(quadric.size(), [&](std::size_t i) {
+  parallel_for_light(quadric.size(), [&](std::size_t i) {
     const auto v = static_cast<std::uint32_t>(i);
     quadric[v] = centres ? around.centres(v) : around.planes(v);
     if (sharp) around.add_sharp_edges(v, quadric[v]);

@@ -27,48 +27,45 @@ double largest_distance(const Mesh& a, const Mesh& b) {
                   geom::directed_distance(b, geom::DistanceQuery(a), gap).max_upper);
 }
 
-/// Runs to the same number, and their steps.
+/// Runs to the same number of vertices.
 class Twice {
  public:
-  Twice(const geom::Prepared& input, const DecimateOptions& options, Work& work)
+  Twice(const geom::SolidMesh& input, const DecimateOptions& options, Work& work)
       : input_(input), options_(options), work_(work) {}
 
   DecimateResult run() {
     sketch_ = attempt(std::nullopt, true);
-    if (work_.spent(kNoneBegins)) return settle_for_sketch();
+    if (work_.spent(kNoneBegins)) return fall_back_on_sketch();
     if (sketch_.result.stop == Stop::VertexTarget && sketch_.reached > 0) {
       const RisingBound bound{
           (options_.effort == Effort::Best ? kBoundFromBest : kBoundFrom) * sketch_.reached,
-          largest_distance(sketch_.result.mesh, input_.mesh)};
+          largest_distance(sketch_.result.mesh, input_.mesh())};
       if (bound.from < bound.to) {
         Attempt nearer = attempt(bound, false);
         if (nearer.result.stop == Stop::VertexTarget &&
             nearer.result.unrepresentable <= sketch_.result.unrepresentable)
-          return chosen(std::move(nearer));
-        if (work_.spent(kNoneMoves)) return settle_for_sketch();
+          return std::move(nearer.result);
+        if (work_.spent(kNoneMoves)) return fall_back_on_sketch();
       }
     }
     // Made again with moves. Where the number can hardly be reached, the first may still be nearer.
     Attempt again = attempt(std::nullopt, false);
-    if (!is_better(sketch_.result, again.result)) return chosen(std::move(again));
+    if (!is_better(sketch_.result, again.result)) return std::move(again.result);
     sketch_.result.out_of_work = again.result.out_of_work;
     if (sketch_.result.stop != Stop::VertexTarget && again.result.stop == Stop::OutOfWork)
       sketch_.result.stop = Stop::OutOfWork;
-    return chosen(std::move(sketch_));
+    return std::move(sketch_.result);
   }
 
  private:
   struct Attempt {
     DecimateResult result;
-    std::vector<Step> steps;
     double reached = 0;  // without contractions that move the vertices around
   };
 
   Attempt attempt(const std::optional<RisingBound>& bound, bool sketch) {
     Attempt out;
-    DecimateOptions recorded = options_;
-    recorded.steps = options_.steps != nullptr ? &out.steps : nullptr;
-    DecimationRun run(input_, recorded, work_, bound, sketch);
+    DecimationRun run(input_, options_, work_, bound, sketch);
     out.result = run.to(options_.vertices);
     out.reached = run.reached_alone();
     return out;
@@ -79,23 +76,15 @@ class Twice {
     const std::size_t n = a.mesh.vertices.size(), m = b.mesh.vertices.size();
     if (n != m) return n < m;
     return a.unrepresentable <= b.unrepresentable &&
-           largest_distance(a.mesh, input_.mesh) < largest_distance(b.mesh, input_.mesh);
+           largest_distance(a.mesh, input_.mesh()) < largest_distance(b.mesh, input_.mesh());
   }
 
-  DecimateResult settle_for_sketch() {
+  DecimateResult fall_back_on_sketch() {
     sketch_.result.out_of_work = true;
-    return chosen(std::move(sketch_));
+    return std::move(sketch_.result);
   }
 
-  DecimateResult chosen(Attempt attempt) const {
-    if (options_.steps != nullptr) {
-      options_.steps->insert(options_.steps->end(), attempt.steps.begin(), attempt.steps.end());
-      attempt.result.steps = options_.steps->size();
-    }
-    return std::move(attempt.result);
-  }
-
-  const geom::Prepared& input_;
+  const geom::SolidMesh& input_;
   const DecimateOptions& options_;
   Work& work_;
   Attempt sketch_;
@@ -103,14 +92,13 @@ class Twice {
 
 }  // namespace
 
-bool is_small(const geom::Prepared& input, const DecimateOptions& options) {
+bool is_small(const geom::SolidMesh& input, const DecimateOptions& options) {
   return options.vertices && !options.epsilon && options.cost == Cost::Distance &&
-         effective_effort(input, options) != Effort::Fast &&
-         input.mesh.vertices.size() <= kBoundVertices &&
-         kBoundShare * *options.vertices <= input.mesh.vertices.size();
+         options.effort != Effort::Fast && input.mesh().vertices.size() <= kBoundVertices &&
+         kBoundShare * *options.vertices <= input.mesh().vertices.size();
 }
 
-DecimateResult decimate_twice(const geom::Prepared& input, const DecimateOptions& options,
+DecimateResult decimate_twice(const geom::SolidMesh& input, const DecimateOptions& options,
                               Work& work) {
   return Twice(input, options, work).run();
 }

@@ -14,7 +14,7 @@ namespace kaboum::bmesh {
 class DecimationRun {
  public:
   /// References must outlive this object. @param rising, sketch  as of Decimator
-  DecimationRun(const geom::Prepared& input, const DecimateOptions& options, Work& work,
+  DecimationRun(const geom::SolidMesh& input, const DecimateOptions& options, Work& work,
                 std::optional<RisingBound> rising = std::nullopt, bool sketch = false);
 
   /// Runs on from where the last call has stopped.
@@ -29,17 +29,19 @@ class DecimationRun {
   void start(std::optional<std::size_t> target);
   void flatten();
   void append_steps();
-  DecimateResult finished(DecimateResult result) const;
+  [[nodiscard]] std::vector<Step>* recorded(std::vector<Step>& steps) const;
+  DecimateResult finished(DecimateResult result);
 
-  const geom::Prepared& input_;
+  const geom::SolidMesh& input_;
   DecimateOptions options_;
   Work& work_;
   std::optional<RisingBound> rising_;
   bool sketch_;
-  DecimateOptions inner_options_;
+  std::vector<Step> steps_;        // since the last result, numbered as the input
   std::vector<Step> inner_steps_;  // numbered as below
   std::optional<Flattener> flattener_;
-  geom::Prepared flat_;                // what it has left, when it has done anything
+  geom::Mesh flat_;                    // what it has left, when it has done anything
+  std::vector<char> flat_border_;      // of its vertices
   std::vector<std::uint32_t> source_;  // of its vertices: the input's
   std::vector<std::uint32_t> number_;  // the same of the vertices at hand; empty: the same numbers
   DecimateStatistics before_;          // of what the decimator knows nothing of

@@ -44,7 +44,8 @@ void DecimationState::start_optimising() {
     reference.emplace(*bound, bound == &original ? sampled->original().hierarchy() : nullptr,
                       context.work);
   optimiser.emplace(mesh(), *sampled, context.constrained ? solid() : nullptr, *bound,
-                    certificate(), options, contraction.statistics(), in_clusters, context.work);
+                    certificate(), options, contraction.statistics(), steps, in_clusters,
+                    context.work);
 }
 
 }  // namespace kaboum::bmesh

@@ -47,7 +47,7 @@ class ErrorBoundCertificate {
   static constexpr int kMaxCuts = 9;       ///< of one piece in one change
   static constexpr int kMaxPieces = 2000;  ///< tried in one change
 
-  struct Piece {
+  struct PolygonPart {
     std::array<Vec3, 3> corner;
     std::uint32_t cuts;  ///< that led to it, since the beginning
     std::uint32_t next;
@@ -70,7 +70,7 @@ class ErrorBoundCertificate {
   ClosestTriangle near_;
   double magnitude_;  // of the original's coordinates
   double epsilon_;
-  std::vector<Piece> pieces_;
+  std::vector<PolygonPart> pieces_;
   std::vector<std::uint32_t> head_;  // per current triangle
   std::uint32_t free_ = kNone;
   std::vector<Placed> placed_;   // of the change under consideration

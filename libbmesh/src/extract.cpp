@@ -111,7 +111,7 @@ class Player {
 Extracted extract(const Progressive& p, std::size_t vertices, const std::string& name) {
   Player player(p, name);
   for (const Progressive::Level& level : p.levels) {
-    if (level.wished != vertices) continue;
+    if (level.requested != vertices) continue;
     player.play_to(level.steps);
     if (player.vertices() != level.vertices)
       player.fail("the level of " + std::to_string(vertices) + " vertices has " +

@@ -42,10 +42,10 @@ bool keeps_orientation(const std::array<Vec3, 3>& before, const std::array<Vec3,
 
 }  // namespace
 
-std::vector<std::uint32_t> flat_vertices(const geom::Prepared& input) {
-  const geom::Mesh& mesh = input.mesh;
+std::vector<std::uint32_t> flat_vertices(const geom::SolidMesh& input) {
+  const geom::Mesh& mesh = input.mesh();
   std::vector<Vec3> normal(mesh.triangles.size());
-  in_parallel(normal.size(), [&](std::size_t t) {
+  parallel_for_light(normal.size(), [&](std::size_t t) {
     const geom::Triangle& tri = mesh.triangles[t];
     const Vec3& a = mesh.vertices[tri[0]];
     const Vec3 n = (mesh.vertices[tri[1]] - a).cross(mesh.vertices[tri[2]] - a);
@@ -74,17 +74,17 @@ std::vector<std::uint32_t> flat_vertices(const geom::Prepared& input) {
   }
   std::vector<std::uint32_t> flat;
   for (std::uint32_t v = 0; v < planes.size(); ++v)
-    if (planes[v].first < kRuledOut && input.border[v] == 0) flat.push_back(v);
+    if (planes[v].first < kRuledOut && input.border()[v] == 0) flat.push_back(v);
   return flat;
 }
 
-Flattener::Flattener(const geom::Prepared& input, std::vector<std::uint32_t> flat,
+Flattener::Flattener(const geom::SolidMesh& input, std::vector<std::uint32_t> flat,
                      std::vector<Step>* steps)
     : m_(input),
       steps_(steps),
-      vertices_(input.mesh.vertices.size()),
+      vertices_(input.mesh().vertices.size()),
       todo_(std::move(flat)),
-      waits_(input.mesh.vertices.size(), 0) {
+      waits_(input.mesh().vertices.size(), 0) {
   for (const std::uint32_t v : todo_) waits_[v] = 1;
 }
 

@@ -12,7 +12,7 @@
 namespace kaboum::bmesh {
 
 /// The vertices of which rounded normals do not rule out that all around lies in one plane or two.
-std::vector<std::uint32_t> flat_vertices(const geom::Prepared& input);
+std::vector<std::uint32_t> flat_vertices(const geom::SolidMesh& input);
 
 /// Takes away the vertices that a mesh does not need to be the set of points that it is: those
 /// around which all lies, exactly, in one plane, or in two that meet along a straight edge through
@@ -22,7 +22,8 @@ class Flattener {
  public:
   /// @param flat   what `flat_vertices` has found.
   /// @param steps  receives the steps, when not null.
-  Flattener(const geom::Prepared& input, std::vector<std::uint32_t> flat, std::vector<Step>* steps);
+  Flattener(const geom::SolidMesh& input, std::vector<std::uint32_t> flat,
+            std::vector<Step>* steps);
 
   /// Goes on until there are no more than `target` vertices, or none can go.
   void run(std::size_t target);

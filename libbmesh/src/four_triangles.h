@@ -27,7 +27,7 @@ struct Frame {
     return ((p - origin) * scale).cast<float>();
   }
   /// A square that the rounded bounds of what is at this squared distance do not exceed.
-  [[nodiscard]] float reach(double squared) const {
+  [[nodiscard]] float cutoff(double squared) const {
     constexpr double kRounding = 1e-6;
     const double length = std::sqrt(squared) * scale + kRounding;
     return static_cast<float>(length * length);

@@ -31,7 +31,7 @@ class NearestOf {
     if (triangles_.empty()) return std::numeric_limits<double>::infinity();
     const std::size_t first = which;
     double best = squared_distance(p, triangles_[first].corner);
-    float reach = frame_.reach(best);
+    float cutoff = frame_.cutoff(best);
     const Eigen::Vector3f x = frame_(p);
     std::array<float, 4> bound;
     std::size_t f = first / 4;
@@ -40,11 +40,11 @@ class NearestOf {
       fours_[f].at_least(x, bound);
       const std::size_t end = std::min(triangles_.size(), 4 * f + 4);
       for (std::size_t k = 4 * f; k < end; ++k) {
-        if (!(bound[k % 4] < reach) || k == first) continue;
+        if (!(bound[k % 4] < cutoff) || k == first) continue;
         const double d = squared_distance(p, triangles_[k].corner);
         if (d >= best) continue;
         best = d;
-        reach = frame_.reach(best);
+        cutoff = frame_.cutoff(best);
         which = k;
       }
     }
@@ -54,14 +54,14 @@ class NearestOf {
   /// Sets keep[i] to whether triangle i may be within √enough of p: those that are, are kept, but
   /// for rounding. Those that keep[i] rules out already are not looked at.
   void within(const Vec3& p, double enough, std::span<char> keep) const {
-    const float reach = frame_.reach(enough);
+    const float cutoff = frame_.cutoff(enough);
     const Eigen::Vector3f x = frame_(p);
     std::array<float, 4> bound;
     for (std::size_t f = 0; f < fours_.size(); ++f) {
       fours_[f].at_least(x, bound);
       const std::size_t end = std::min(triangles_.size(), 4 * f + 4);
       for (std::size_t k = 4 * f; k < end; ++k)
-        keep[k] = static_cast<char>(keep[k] & static_cast<char>(bound[k % 4] <= reach));
+        keep[k] = static_cast<char>(keep[k] & static_cast<char>(bound[k % 4] <= cutoff));
     }
   }
 

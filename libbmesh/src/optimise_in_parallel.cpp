@@ -18,7 +18,7 @@ constexpr std::size_t kMoves = 64;
 
 ParallelOptimiser::Worker::Worker(ParallelOptimiser& of)
     : optimiser({of.m_, of.notes_, of.sampled_, nullptr, of.options_, statistics,
-                 of.options_.steps != nullptr ? &steps : nullptr},
+                 of.steps_ != nullptr ? &steps : nullptr},
                 of.solid_, of.original_) {
   optimiser.set_dense(of.dense_);
 }
@@ -27,7 +27,7 @@ ParallelOptimiser::ParallelOptimiser(WorkingMesh& mesh, SampledError& sampled,
                                      ReferenceSolid* solid, const geom::Mesh& original,
                                      ErrorBoundCertificate* certificate,
                                      const DecimateOptions& options, DecimateStatistics& statistics,
-                                     bool dense, Work* work)
+                                     std::vector<Step>* steps, bool dense, Work* work)
     : m_(mesh),
       notes_(mesh.position.size()),
       sampled_(sampled),
@@ -36,10 +36,10 @@ ParallelOptimiser::ParallelOptimiser(WorkingMesh& mesh, SampledError& sampled,
       certificate_(certificate),
       options_(options),
       statistics_(statistics),
+      steps_(steps),
       dense_(dense),
       work_(work),
-      single_({mesh, notes_, sampled, certificate, options, statistics, options.steps}, solid,
-              original),
+      single_({mesh, notes_, sampled, certificate, options, statistics, steps}, solid, original),
       workers_([this] { return Worker(*this); }),
       mark_(mesh.position.size(), 0) {
   single_.set_dense(dense);
@@ -52,26 +52,22 @@ void ParallelOptimiser::run(std::size_t tasks, Task&& task) {
     for (std::size_t i = 0; i < tasks; ++i) task(single_, i);
     return;
   }
-  const bool recorded = options_.steps != nullptr;
+  const bool recorded = steps_ != nullptr;
   taken_.resize(std::max(taken_.size(), recorded ? tasks : 0));
-  parallel_loop(
-      tbb::blocked_range<std::size_t>(0, tasks, 1),
-      [&](const tbb::blocked_range<std::size_t>& range) {
-        Worker& worker = workers_.local();
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
-          worker.steps.clear();
-          task(worker.optimiser, i);
-          if (recorded) taken_[i].assign(worker.steps.begin(), worker.steps.end());
-        }
-      },
-      tbb::simple_partitioner());
+  const auto each = [&](std::size_t i) {
+    Worker& worker = workers_.local();
+    worker.steps.clear();
+    task(worker.optimiser, i);
+    if (recorded) taken_[i].assign(worker.steps.begin(), worker.steps.end());
+  };
+  parallel_for(std::size_t{0}, tasks, each, {.alone = true});
   for (Worker& worker : workers_) {
     add(statistics_, worker.statistics);
     worker.statistics = {};
   }
   if (!recorded) return;
   for (std::size_t i = 0; i < tasks; ++i)
-    options_.steps->insert(options_.steps->end(), taken_[i].begin(), taken_[i].end());
+    steps_->insert(steps_->end(), taken_[i].begin(), taken_[i].end());
 }
 
 void ParallelOptimiser::begin_batch() {

@@ -22,12 +22,12 @@ class ParallelOptimiser {
     std::uint32_t a, b;
   };
 
-  /// As of Optimiser. Rounds end early when so much work is done that no vertex is to be moved any
-  /// more; `work` may be null.
+  /// As of Optimiser; `steps` may be null. Rounds end early when so much work is done that no
+  /// vertex is to be moved any more; `work` may be null.
   ParallelOptimiser(WorkingMesh& mesh, SampledError& sampled, ReferenceSolid* solid,
                     const geom::Mesh& original, ErrorBoundCertificate* certificate,
-                    const DecimateOptions& options, DecimateStatistics& statistics, bool dense,
-                    Work* work = nullptr);
+                    const DecimateOptions& options, DecimateStatistics& statistics,
+                    std::vector<Step>* steps, bool dense, Work* work = nullptr);
   ParallelOptimiser(const ParallelOptimiser&) = delete;
   ParallelOptimiser& operator=(const ParallelOptimiser&) = delete;
   ~ParallelOptimiser() = default;
@@ -92,6 +92,7 @@ class ParallelOptimiser {
   ErrorBoundCertificate* certificate_;
   const DecimateOptions& options_;
   DecimateStatistics& statistics_;
+  std::vector<Step>* steps_;
   bool dense_;
   Work* work_;
   Optimiser single_;

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "in_parallel.h"
+#include <kaboum/base/parallel.h>
 
 namespace kaboum::bmesh {
 namespace {
@@ -87,10 +87,11 @@ class Rounds {
     const std::size_t n = order_.size();
     const std::size_t count = (n + kRegion - 1) / kRegion, size = (n + count - 1) / count;
     number_.resize(n);
-    in_parallel(n, [&](std::size_t i) { number_[order_[i]] = static_cast<std::uint32_t>(i); });
+    parallel_for_light(n,
+                       [&](std::size_t i) { number_[order_[i]] = static_cast<std::uint32_t>(i); });
 
     std::vector<std::uint32_t> start(count + 2, 0), region(m_.triangles.size());
-    in_parallel(region.size(), [&](std::size_t t) {
+    parallel_for_light(region.size(), [&](std::size_t t) {
       const Triangle& tri = m_.triangles[t];
       const std::size_t r = number_[tri[0]] / size;
       const bool seam = number_[tri[1]] / size != r || number_[tri[2]] / size != r;
@@ -116,8 +117,8 @@ class Rounds {
 
   /// @param share  of a region's vertices that stay at least.
   void contract(double share) {
-    parallel_loop(std::size_t{0}, regions_.size(),
-                  [&](std::size_t r) { contract(regions_[r], share); });
+    parallel_for(std::size_t{0}, regions_.size(),
+                 [&](std::size_t r) { contract(regions_[r], share); });
   }
 
   /// Contracts within a region and writes what is left to where it was.
@@ -181,7 +182,7 @@ class Rounds {
     for (std::uint32_t i = 0; i < vertices.size(); ++i) number_[vertices[i]] = i;
     keep(m_.triangle, triangles);
     keep(m_.triangles, triangles);
-    in_parallel(m_.triangles.size(), [&](std::size_t t) {
+    parallel_for_light(m_.triangles.size(), [&](std::size_t t) {
       for (std::uint32_t& v : m_.triangles[t]) v = number_[v];
     });
   }
@@ -198,7 +199,7 @@ class Rounds {
   template <class T>
   static void keep(std::vector<T>& values, const std::vector<std::uint32_t>& which) {
     std::vector<T> kept(which.size());
-    in_parallel(kept.size(), [&](std::size_t i) { kept[i] = values[which[i]]; });
+    parallel_for_light(kept.size(), [&](std::size_t i) { kept[i] = values[which[i]]; });
     values = std::move(kept);
   }
 

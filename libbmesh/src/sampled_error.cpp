@@ -108,7 +108,7 @@ void SampledError::assign(std::span<const Vec3> position, const Connectivity& me
   // Runs of samples, each with hints of its own: the result does not depend on the threads.
   constexpr std::size_t kRun = 1024;
   std::vector<std::uint32_t> nearest(point_.size());
-  parallel_loop(std::size_t{0}, (point_.size() + kRun - 1) / kRun, [&](std::size_t run) {
+  parallel_for(std::size_t{0}, (point_.size() + kRun - 1) / kRun, [&](std::size_t run) {
     std::uint32_t hint = 0;
     std::uint64_t steps = 0;
     const std::size_t end = std::min(point_.size(), (run + 1) * kRun);
@@ -147,7 +147,7 @@ class Between {
     std::optional<Found> farthest;
     pieces_.assign(1, {corner, nearest, 0});
     while (!pieces_.empty()) {
-      const Piece p = pieces_.back();
+      const SubTriangle p = pieces_.back();
       pieces_.pop_back();
       if (p.halvings == kMostHalvings || covered(p)) continue;
       const Found middle = halve(p);
@@ -159,14 +159,14 @@ class Between {
  private:
   static constexpr int kMostHalvings = 6;
 
-  struct Piece {
+  struct SubTriangle {
     std::array<Vec3, 3> corner;
     std::array<std::uint32_t, 3> nearest;
     int halvings;
   };
 
   /// The distance to one triangle is convex, so that of the corners bounds that of the piece.
-  [[nodiscard]] bool covered(const Piece& p) const {
+  [[nodiscard]] bool covered(const SubTriangle& p) const {
     for (int k = 0; k < 3; ++k) {
       if (k > 0 && p.nearest[k] == p.nearest[k - 1]) continue;
       const std::array<Vec3, 3> t = present_.corners(p.nearest[k]);
@@ -178,7 +178,7 @@ class Between {
   }
 
   /// Halves the longest side. @return its middle
-  Found halve(const Piece& p) {
+  Found halve(const SubTriangle& p) {
     int across = 0;
     double longest = 0;
     for (int k = 0; k < 3; ++k) {
@@ -189,7 +189,7 @@ class Between {
     Found middle{0, 0.5 * (p.corner[first] + p.corner[second]), p.nearest[first]};
     middle.squared = present_.squared(middle.point, middle.nearest, 0, &steps_);
     for (const int k : {first, second}) {
-      Piece half = p;
+      SubTriangle half = p;
       half.corner[k] = middle.point;
       half.nearest[k] = middle.nearest;
       ++half.halvings;
@@ -201,7 +201,7 @@ class Between {
   const ClosestTriangle& present_;
   double enough_;
   std::uint64_t steps_ = 0;
-  std::vector<Piece> pieces_;
+  std::vector<SubTriangle> pieces_;
 };
 
 }  // namespace
@@ -222,7 +222,7 @@ void SampledError::refine(std::span<const Vec3> position, const Connectivity& me
   const std::size_t n = mesh_.triangles.size();
   using Of = std::pair<std::size_t, Between::Found>;  // of a triangle
   std::vector<std::vector<Of>> found((n + kRun - 1) / kRun);
-  parallel_loop(std::size_t{0}, found.size(), [&](std::size_t run) {
+  parallel_for(std::size_t{0}, found.size(), [&](std::size_t run) {
     Between between(proximity, enough);
     const std::size_t end = std::min(n, (run + 1) * kRun);
     for (std::size_t i = run * kRun; i < end && between.steps() < kMostSteps; ++i) {
@@ -292,7 +292,7 @@ SampledError::Energy SampledError::energy(std::span<const std::uint32_t> removed
                                           double limit) const {
   Energy e;
   const auto add = [&](double squared, double weight) {
-    // In units of the diagonal, lest the powers overflow.
+    // In units of the diagonal: otherwise the powers would overflow.
     e.sum += (weight * unit_) * (squared * unit_) * (power_ == 4 ? squared * unit_ : 1);
     e.squared = std::max(e.squared, squared);
     return e.sum <= limit;

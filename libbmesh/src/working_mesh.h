@@ -1,19 +1,19 @@
 #pragma once
 
-#include <kaboum/geom/prepare.h>
+#include <kaboum/geom/solid_mesh.h>
 
 #include <vector>
 
+#include <kaboum/base/parallel.h>
 #include "connectivity.h"
-#include "in_parallel.h"
 #include "quadric.h"
 
 namespace kaboum::bmesh {
 
 /// The mesh that decimation and optimisation work on.
 struct WorkingMesh {
-  explicit WorkingMesh(const geom::Prepared& input)
-      : WorkingMesh(input.mesh.vertices, input.border, input.mesh.triangles) {}
+  explicit WorkingMesh(const geom::SolidMesh& input)
+      : WorkingMesh(input.mesh().vertices, input.border(), input.mesh().triangles) {}
 
   WorkingMesh(std::vector<Vec3> vertices, std::vector<char> may_not_move,
               std::vector<geom::Triangle> triangles)
@@ -21,7 +21,8 @@ struct WorkingMesh {
         border(std::move(may_not_move)),
         mesh(position.size(), std::move(triangles)),
         normal(mesh.size()) {
-    in_parallel(mesh.size(), [&](std::size_t t) { update_normal(static_cast<std::uint32_t>(t)); });
+    parallel_for_light(mesh.size(),
+                       [&](std::size_t t) { update_normal(static_cast<std::uint32_t>(t)); });
   }
 
   void update_normal(std::uint32_t t) {

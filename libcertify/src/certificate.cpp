@@ -40,7 +40,7 @@ Json record_of(const SetCertificate& c) {
   j["closed"] = c.subject.holes == 0;
   j["holes"] = c.subject.holes;
   j["largest_hole"] = c.largest_hole;
-  j["turned_triangles"] = c.subject.turned_triangles;
+  j["turned_triangles"] = c.subject.reversed_triangles;
   j["dropped_copies"] = c.subject.dropped_copies;
   j["dropped_sheets"] = c.subject.dropped_sheets;
   j["filled_triangles"] = c.filled_triangles;
@@ -103,7 +103,7 @@ SetCertificate read_record(std::string_view text) {
     j.at("reach").at("lower").get_to(c.distance_lower);
     j.at("reach").at("upper").get_to(c.distance_upper);
     j.at("holes").get_to(c.subject.holes);
-    j.at("turned_triangles").get_to(c.subject.turned_triangles);
+    j.at("turned_triangles").get_to(c.subject.reversed_triangles);
     j.at("dropped_copies").get_to(c.subject.dropped_copies);
     j.at("dropped_sheets").get_to(c.subject.dropped_sheets);
     j.at("largest_hole").get_to(c.largest_hole);

@@ -2,7 +2,7 @@
 // search, serialise, read back, decide, and once more with other means where that fails.
 
 #include <kaboum/base/error.h>
-#include <kaboum/bcd/fill.h>
+#include <kaboum/bcd/inner.h>
 #include <kaboum/certify/convex_set.h>
 #include <kaboum/geom/width.h>
 #include <kaboum/io/convex_io.h>
@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "issuer.h"
 #include "request.h"
@@ -22,18 +23,14 @@ constexpr std::array<double, 3> kSafety{1, 64, 4096};
 /// So often places that inner bodies must not reach are handed to another search.
 constexpr int kAvoided = 5;
 
-bcd::DecomposeOptions options_of(const SetRequest& r, double diagonal, const Hooks& hooks) {
-  bcd::DecomposeOptions options;
+/// What both searches are asked for.
+bcd::SetOptions search_of(const SetRequest& r, double diagonal, const Hooks& hooks) {
+  bcd::SetOptions options;
   if (const auto epsilon = r.wanted_epsilon()) options.epsilon = epsilon->of(diagonal);
   options.max_bodies = r.max_bodies;
-  options.max_total_vertices = r.max_total_vertices;
   options.max_vertices = r.max_vertices;
   options.effort = r.effort;
-  options.method = r.method;
-  options.min_thickness = r.min_thickness;
-  if (r.simplify) options.simplify = *r.simplify;
   options.max_work = r.max_work;
-  options.pre_step = r.pre_step;
   if (hooks.progress)
     options.progress = [&](const bcd::Progress& p) {
       hooks.progress(p.stage + " " + std::to_string(static_cast<int>(100 * p.fraction)) + " %");
@@ -41,14 +38,39 @@ bcd::DecomposeOptions options_of(const SetRequest& r, double diagonal, const Hoo
   return options;
 }
 
+bcd::CoverOptions cover_of(const SetRequest& r, double diagonal, const Hooks& hooks) {
+  bcd::CoverOptions options;
+  static_cast<bcd::SetOptions&>(options) = search_of(r, diagonal, hooks);
+  options.max_total_vertices = r.max_total_vertices;
+  options.method = r.method;
+  options.min_thickness = r.min_thickness;
+  if (r.simplify) options.simplify = *r.simplify;
+  options.pre_step = r.pre_step;
+  return options;
+}
+
+/// @throws Error{InvalidArgument} on what only bodies that cover can be asked
+bcd::InnerOptions inner_of(const SetRequest& r, double diagonal, const Hooks& hooks) {
+  const auto refuse = [](bool condition, const char* what) {
+    if (condition)
+      throw Error(ErrorCode::InvalidArgument, std::string("bodies inside the solid ") + what);
+  };
+  refuse(r.method != bcd::Method::Planes, "have no choice of methods");
+  refuse(r.min_thickness > 0, "cannot be thickened");
+  refuse(r.max_total_vertices.has_value(), "have no limit on all vertices together");
+  refuse(r.pre_step == bcd::PreStep::On, "have no pre-step");
+  refuse(r.simplify.has_value(), "are not simplified");
+  return {search_of(r, diagonal, hooks), {}};
+}
+
 /// Why a set does not do what it should, decided exactly.
-struct Objection {
+struct Refutation {
   std::string reason;  ///< empty when it does
   /// Of the solid's mesh: what bounds parts of inner bodies that are outside.
   std::vector<std::uint32_t> triangles;
 };
 
-Objection objection(const SetRequest& r, const geom::Mesh& solid, const geom::ConvexSet& set) {
+Refutation refutation_of(const SetRequest& r, const geom::Mesh& solid, const geom::ConvexSet& set) {
   for (const geom::ConvexBody& body : set.bodies)
     if (r.min_thickness > 0 &&
         geom::least_width(body.hull, r.min_thickness).lower < r.min_thickness)
@@ -64,27 +86,103 @@ Objection objection(const SetRequest& r, const geom::Mesh& solid, const geom::Co
   }
   if (geom::find_not_convex(set)) return {"a body is not convex", {}};
   const verify::Inclusion inside = verify::verify_inclusion(verify::sum_of(set), solid);
-  Objection out{first_of({&inside.solid, &inside.surface}), inside.solid.outer_triangles};
+  Refutation out{first_of({&inside.solid, &inside.surface}), inside.solid.outer_triangles};
   out.triangles.insert(out.triangles.end(), inside.surface.outer_triangles.begin(),
                        inside.surface.outer_triangles.end());
   return out;
 }
 
+/// What a search has found, of either direction.
+struct Candidate {
+  std::vector<geom::ConvexBody> bodies;
+  bcd::Stop stop = bcd::Stop::Done;
+  double lower = 0, upper = 0;  ///< of the distance that the certificate states [length]
+  bcd::CoverStatistics statistics;
+};
+
+/// Searches; again where what was found does not pass the exact check, each time with other means.
+class Search {
+ public:
+  /// The solid is referred to.
+  Search(const geom::SolidMesh& solid, const SetRequest& request, double diagonal,
+         const Hooks& hooks)
+      : solid_(solid) {
+    if (request.direction == SetRequest::Direction::Outer)
+      cover_ = cover_of(request, diagonal, hooks);
+    else
+      inner_ = inner_of(request, diagonal, hooks);
+  }
+
+  Candidate run() {
+    if (cover_) {
+      bcd::CoverCandidate found = bcd::find_cover(solid_, *cover_);
+      simplified_ = found.statistics.pre_step_triangles > 0;
+      return {std::move(found.bodies), found.stop, found.excess_lower, found.excess_upper,
+              found.statistics};
+    }
+    bcd::InnerCandidate found = bcd::find_inner(solid_, *inner_);
+    bcd::CoverStatistics s;
+    s.leaves = found.bodies.size();
+    s.vertices = found.vertices;
+    s.largest = found.largest;
+    s.out_of_work = found.out_of_work;
+    return {std::move(found.bodies), found.stop, found.uncovered_depth_lower,
+            found.uncovered_depth_upper, s};
+  }
+
+  /// Allowance for rounding of the last run.
+  [[nodiscard]] double safety() const { return kSafety[tried_]; }
+
+  /// Chooses other means after a refutation. @return which, in words; empty: there are none left.
+  std::string other_means(const Refutation& found) {
+    if (simplified_) {
+      cover_->pre_step = bcd::PreStep::Off;
+      return "without simplifying the input first";
+    }
+    const bool has_new = inner_ && avoid(found.triangles);
+    if (has_new && avoided_ < kAvoided) {
+      ++avoided_;
+      return "to keep clear of the places found";
+    }
+    ++tried_;
+    if (tried_ < kSafety.size()) (cover_ ? cover_->safety : inner_->safety) = kSafety[tried_];
+    return "with larger allowances for rounding";
+  }
+  [[nodiscard]] bool is_exhausted() const { return tried_ >= kSafety.size(); }
+
+ private:
+  /// @return whether some of the triangles are new
+  bool avoid(const std::vector<std::uint32_t>& triangles) {
+    std::vector<std::uint32_t>& doubtful = inner_->doubtful;
+    const std::size_t known = doubtful.size();
+    doubtful.insert(doubtful.end(), triangles.begin(), triangles.end());
+    std::sort(doubtful.begin(), doubtful.end());
+    doubtful.erase(std::unique(doubtful.begin(), doubtful.end()), doubtful.end());
+    return doubtful.size() > known;
+  }
+
+  const geom::SolidMesh& solid_;
+  std::optional<bcd::CoverOptions> cover_;
+  std::optional<bcd::InnerOptions> inner_;
+  std::size_t tried_ = 0;  // allowances for rounding
+  int avoided_ = 0;
+  bool simplified_ = false;
+};
+
 SetCertificate certificate_of(const SetRequest& r, const geom::Prepared& prepared,
-                              const bcd::DecomposeResult& result, std::size_t bodies,
-                              double diagonal, double safety) {
-  const bcd::DecomposeStatistics& s = result.statistics;
+                              const Candidate& found, double diagonal, double safety) {
+  const bcd::CoverStatistics& s = found.statistics;
   SetCertificate c;
   c.direction = r.direction;
-  c.stop = result.stop;
-  c.bodies = bodies;
+  c.stop = found.stop;
+  c.bodies = found.bodies.size();
   c.vertices = s.vertices;
   c.largest_body_vertices = s.largest;
-  c.distance_lower = result.reach_lower;
-  c.distance_upper = result.reach_upper;
+  c.distance_lower = found.lower;
+  c.distance_upper = found.upper;
   c.diagonal = diagonal;
-  c.subject = subject_of(prepared);
-  c.largest_hole = prepared.largest_hole;
+  c.subject = subject_of(prepared.report);
+  c.largest_hole = prepared.report.largest_hole;
   c.filled_triangles = s.filled_triangles;
   c.pieces = s.leaves;
   c.pre_step_triangles = s.pre_step_triangles;
@@ -92,7 +190,7 @@ SetCertificate certificate_of(const SetRequest& r, const geom::Prepared& prepare
   c.min_thickness = r.min_thickness;
   c.safety = safety;
   c.out_of_work = s.out_of_work;
-  c.notes = prepared.notes;
+  c.notes = prepared.report.notes;
   c.method = r.method;
   return c;
 }
@@ -106,51 +204,33 @@ std::optional<CertifiedSet> certify_set(const geom::Mesh& mesh, const std::strin
   };
   const bool outer = request.direction == SetRequest::Direction::Outer;
   const geom::Prepared prepared = geom::prepare(mesh, request.preparation);
-  const double diagonal = geom::bounding_box(prepared.mesh).diagonal();
-  for (const std::string& text : prepared.notes) note(text);
-  bcd::DecomposeOptions options = options_of(request, diagonal, hooks);
+  const geom::Mesh& solid = prepared.solid.mesh();
+  const double diagonal = geom::bounding_box(solid).diagonal();
+  for (const std::string& text : prepared.report.notes) note(text);
+  Search search(prepared.solid, request, diagonal, hooks);
   geom::ConvexSet made;
   made.provenance = origin_of(request, sha256);
-  made.provenance.covers_surface = outer && prepared.dropped_sheets == 0;
-  made.provenance.covers_solid = outer && prepared.holes == 0;
+  made.provenance.covers_surface = outer && prepared.report.dropped_sheets == 0;
+  made.provenance.covers_solid = outer && prepared.report.holes == 0;
   std::string wrong;
-  int avoided = 0;
-  for (auto safety = kSafety.begin(); safety != kSafety.end();) {
-    options.safety = *safety;
-    bcd::DecomposeResult result =
-        outer ? bcd::decompose(prepared, options) : bcd::fill(prepared, options);
-    if (result.stop == bcd::Stop::TooCoarse) return std::nullopt;
-    made.bodies = std::move(result.bodies);
-    made.provenance.epsilon = result.reach_upper;
+  while (!search.is_exhausted()) {
+    const double safety = search.safety();
+    const Candidate candidate = search.run();
+    if (candidate.stop == bcd::Stop::TooCoarse) return std::nullopt;
+    made.bodies = candidate.bodies;
+    made.provenance.epsilon = candidate.upper;
     std::vector<char> container = io::serialise_convex_set(made, io::SetFormat::Glb);
     // What is written is what is verified.
     if (hooks.progress) hooks.progress("verifying");
     geom::ConvexSet set = io::parse_convex_set(container, io::Format::Glb, "the result");
-    const Objection found = objection(request, prepared.mesh, set);
+    const Refutation found = refutation_of(request, solid, set);
     wrong = found.reason;
     if (wrong.empty())
-      return Issuer::issue(
-          std::move(set),
-          certificate_of(request, prepared, result, made.bodies.size(), diagonal, *safety),
-          std::move(container));
-    const bool simplified = result.statistics.pre_step_triangles > 0;
-    const std::size_t doubted = options.doubtful.size();
-    options.doubtful.insert(options.doubtful.end(), found.triangles.begin(), found.triangles.end());
-    std::sort(options.doubtful.begin(), options.doubtful.end());
-    options.doubtful.erase(std::unique(options.doubtful.begin(), options.doubtful.end()),
-                           options.doubtful.end());
-    const bool avoid = options.doubtful.size() > doubted && avoided < kAvoided;
+      return Issuer::issue(std::move(set),
+                           certificate_of(request, prepared, candidate, diagonal, safety),
+                           std::move(container));
     note("the bodies found do not pass the exact check (" + wrong + "); trying " +
-         (simplified ? "without simplifying the input first"
-          : avoid    ? "to keep clear of the places found"
-                     : "with larger allowances for rounding"));
-    if (simplified) {
-      options.pre_step = bcd::PreStep::Off;
-    } else if (avoid) {
-      ++avoided;
-    } else {
-      ++safety;
-    }
+         search.other_means(found));
   }
   throw Error(ErrorCode::Internal,
               "no bodies were found that pass the exact check (" + wrong + "); nothing is written");

@@ -92,13 +92,13 @@ LinkPolytopes link_polytopes(const std::vector<robot::LinkBody>& bodies, double 
       const double distance = 2 * allowance * (body.margin + moved + 2 * spacing);
       if (hull) hull = scaled(*hull, distance, 1e-4 * box.diagonal());
       if (!hull || !contains(*hull, held)) hull = rounded_outwards(held, allowance * spacing);
-      double reach = 0;  // of the polytope from the points of the body
+      double excess = 0;  // of the polytope from the points of the body
       for (const Vec3& v : hull->vertices) {
         double nearest = std::numeric_limits<double>::infinity();
         for (const Vec3& p : body.points) nearest = std::min(nearest, (v - p).norm());
-        reach = std::max(reach, nearest);
+        excess = std::max(excess, nearest);
       }
-      out.beyond = std::max(out.beyond, (reach + body.margin) * (1 + 0x1p-40));
+      out.beyond = std::max(out.beyond, (excess + body.margin) * (1 + 0x1p-40));
     }
     ensure(hull.has_value(), "a body of a link is flat");
     out.set.bodies.push_back({body.name, *std::move(hull)});

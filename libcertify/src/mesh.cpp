@@ -14,21 +14,21 @@ namespace {
 /// Candidates: nothing is claimed of them yet.
 std::vector<bmesh::DecimateResult> decimate(const geom::Prepared& original,
                                             const MeshRequest& request, const MeshPlan& plan,
-                                            const MeshHooks& hooks,
-                                            std::vector<bmesh::Step>& steps) {
+                                            const MeshHooks& hooks) {
   bmesh::DecimateOptions options = options_of(request, plan);
-  if (request.record_steps) options.steps = &steps;
+  options.record_steps = request.record_steps;
   if (hooks.progress)
-    options.progress = [&, start = original.mesh.vertices.size()](std::size_t vertices) {
+    options.progress = [&, start = original.solid.mesh().vertices.size()](std::size_t vertices) {
       std::string text =
           std::to_string(vertices) + " of " + std::to_string(start) + " vertices left";
       if (!plan.vertices.empty()) text += ", " + std::to_string(plan.vertices.back()) + " wished";
       hooks.progress(text);
     };
-  if (plan.vertices.size() > 1) return bmesh::decimate_series(original, options, plan.vertices);
+  if (plan.vertices.size() > 1)
+    return bmesh::decimate_series(original.solid, options, plan.vertices);
   if (!plan.vertices.empty()) options.vertices = plan.vertices.front();
   std::vector<bmesh::DecimateResult> one;
-  one.push_back(bmesh::decimate(original, options));
+  one.push_back(bmesh::decimate(original.solid, options));
   return one;
 }
 
@@ -41,8 +41,9 @@ MeshSeries certify_meshes(const geom::Prepared& original, const MeshRequest& req
   series.plan = plan_mesh(original, request);
   series.shortage = series.plan.shortage;
   if (series.shortage && !request.may_be_double()) return series;
-  std::vector<bmesh::DecimateResult> candidates =
-      decimate(original, request, series.plan, hooks, series.steps);
+  std::vector<bmesh::DecimateResult> candidates = decimate(original, request, series.plan, hooks);
+  for (const bmesh::DecimateResult& candidate : candidates)
+    series.steps.insert(series.steps.end(), candidate.steps.begin(), candidate.steps.end());
   if (hooks.found) hooks.found();
   std::size_t without_place = 0;
   for (const bmesh::DecimateResult& candidate : candidates)

@@ -90,8 +90,8 @@ double MeshCertificate::hausdorff_upper() const {
 }
 
 bool MeshCertificate::reached() const {
-  return (stop != bmesh::Stop::Exhausted && stop != bmesh::Stop::OutOfWork) || !wished ||
-         vertices <= *wished;
+  return (stop != bmesh::Stop::Exhausted && stop != bmesh::Stop::OutOfWork) || !requested ||
+         vertices <= *requested;
 }
 
 std::vector<MeshClaim> claims(const CertifiedMesh& mesh) {

@@ -57,29 +57,29 @@ std::vector<CertifiedMesh> MeshCertifier::certify(std::vector<bmesh::DecimateRes
 
 /// The result once more, for the next number of vertices.
 MeshCertifier::Candidate MeshCertifier::repeated(const Candidate& from, std::size_t place,
-                                                 std::size_t wished) {
+                                                 std::size_t requested) {
   Candidate to = from;
   to.certificate.finer = place;
-  to.certificate.wished = wished;
+  to.certificate.requested = requested;
   if (to.certificate.decided) to.certificate.decided->nested.reset();
   return to;
 }
 
-MeshCertifier::Candidate MeshCertifier::begin(bmesh::DecimateResult candidate,
-                                              std::size_t place) const {
+MeshCertifier::Candidate MeshCertifier::begin(bmesh::DecimateResult candidate, std::size_t place) {
   Candidate made;
   MeshCertificate& c = made.certificate;
   c.direction = request_.direction;
   c.keep_convex = request_.keep_convex;
-  c.closed = original_.closed;
-  c.subject = subject_of(original_);
+  c.closed = original_.solid.closed();
+  c.subject = subject_of(original_.report);
   c.finer = place;
-  if (!plan_.vertices.empty()) c.wished = plan_.vertices[place];
+  if (!plan_.vertices.empty()) c.requested = plan_.vertices[place];
   c.vertices = candidate.mesh.vertices.size();
   c.stop = candidate.stop;
   c.statistics = candidate.statistics;
   c.out_of_work = candidate.out_of_work;
-  c.steps = candidate.steps;
+  steps_ += candidate.steps.size();
+  c.steps = steps_;
   c.double_precision =
       plan_.precision == bmesh::Precision::Double || candidate.unrepresentable != 0;
   c.epsilon = plan_.epsilon;
@@ -89,13 +89,13 @@ MeshCertifier::Candidate MeshCertifier::begin(bmesh::DecimateResult candidate,
 }
 
 void MeshCertifier::measure(Candidate& made) const {
-  const geom::DistanceQuery original(original_.mesh), result(made.mesh);
-  geom::DistanceOptions wished;
-  wished.max_pieces = kMaxPieces;
+  const geom::DistanceQuery original(original_.solid.mesh()), result(made.mesh);
+  geom::DistanceOptions gap;
+  gap.max_pieces = kMaxPieces;
   geom::DirectedDistance& forth = made.certificate.original_to_result.emplace(
-      geom::directed_distance(original_.mesh, result, wished));
+      geom::directed_distance(original_.solid.mesh(), result, gap));
   geom::DirectedDistance& back = made.certificate.result_to_original.emplace(
-      geom::directed_distance(made.mesh, original, wished));
+      geom::directed_distance(made.mesh, original, gap));
   if (!plan_.epsilon) return;
   ensure(std::max(forth.max_lower, back.max_lower) <= *plan_.epsilon,
          "the measured distance exceeds the carried bound");
@@ -116,7 +116,7 @@ void MeshCertifier::decide(Candidate& made, const Candidate* before) const {
                                     options);
   };
   DecidedMesh decided;
-  decided.inclusion = bounds(original_.mesh);
+  decided.inclusion = bounds(original_.solid.mesh());
   if (before != nullptr)
     decided.nested = bounds(io::parse_mesh(before->bytes, request_.format, "the level before").mesh)
                          .solid.answer;
@@ -133,18 +133,18 @@ void MeshCertifier::decide(Candidate& made, const Candidate* before) const {
     ensure(!refuted(answer), "the verification refutes the measured distance; nothing is written");
     return answer;
   };
-  decided.original_to_result = within(original_.mesh, back.mesh);
-  decided.result_to_original = within(back.mesh, original_.mesh);
+  decided.original_to_result = within(original_.solid.mesh(), back.mesh);
+  decided.result_to_original = within(back.mesh, original_.solid.mesh());
   made.certificate.decided = std::move(decided);
 }
 
 void MeshCertifier::look_at_surface(Candidate& made, double work) {
   MeshCertificate& c = made.certificate;
-  if (!original_.closed || request_.direction == bmesh::Direction::Any) return;
+  if (!original_.solid.closed() || request_.direction == bmesh::Direction::Any) return;
   if (c.decided) {
     c.surface = DecidedSurface{c.decided->inclusion.surface, 0, {}, false};
   } else {
-    if (!samples_) samples_ = sample_surface(original_.mesh);
+    if (!samples_) samples_ = sample_surface(original_.solid.mesh());
     c.samples = samples_;
     if (samples_->outside == 0 && !samples_->cut_short) return;
     c.surface = decide_surface(original_, made.mesh, outer(), work);
@@ -158,11 +158,12 @@ void MeshCertifier::look_at_surface(Candidate& made, double work) {
 Outliers MeshCertifier::outliers(const geom::Mesh& result) const {
   Outliers found;
   if (result.triangles.empty()) return found;
-  const geom::Box3 box = geom::bounding_box(original_.mesh), reached = geom::bounding_box(result);
+  const geom::Box3 box = geom::bounding_box(original_.solid.mesh()),
+                   reached = geom::bounding_box(result);
   found.beyond_box =
       std::max((box.min - reached.min).maxCoeff(), (reached.max - box.max).maxCoeff());
   const geom::DistanceQuery surface(result);
-  const std::vector<geom::Vec3>& vertices = original_.mesh.vertices;
+  const std::vector<geom::Vec3>& vertices = original_.solid.mesh().vertices;
   for (std::size_t i = 0; i < vertices.size(); i += vertices.size() / kOutlierSamples + 1)
     found.away = std::max(found.away, surface.nearest(vertices[i]).lower);
   return found;

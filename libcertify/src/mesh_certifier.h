@@ -20,7 +20,7 @@ class MeshCertifier {
                 const MeshHooks& hooks)
       : original_(original), request_(request), plan_(plan), hooks_(hooks) {}
 
-  /// @param candidates  one for each wished number of vertices, or one
+  /// @param candidates  one for each number of vertices asked for, or one
   /// @throws Error{Internal} when a claim is refuted, or the bytes do not hold the mesh.
   std::vector<CertifiedMesh> certify(std::vector<bmesh::DecimateResult> candidates);
 
@@ -32,8 +32,8 @@ class MeshCertifier {
     std::vector<char> bytes;
   };
   [[nodiscard]] static Candidate repeated(const Candidate& from, std::size_t place,
-                                          std::size_t wished);
-  [[nodiscard]] Candidate begin(bmesh::DecimateResult candidate, std::size_t place) const;
+                                          std::size_t requested);
+  [[nodiscard]] Candidate begin(bmesh::DecimateResult candidate, std::size_t place);
   void measure(Candidate& made) const;
   void decide(Candidate& made, const Candidate* before) const;
   void look_at_surface(Candidate& made, double work);
@@ -49,6 +49,7 @@ class MeshCertifier {
   const MeshPlan& plan_;
   const MeshHooks& hooks_;
   std::optional<SurfaceSamples> samples_;
+  std::size_t steps_ = 0;  // of the candidates begun
 };
 
 }  // namespace kaboum::certify

@@ -32,6 +32,11 @@ void require_sound(const MeshRequest& r) {
           "direction 'any' claims nothing that could be decided");
   require(r.numbers != MeshRequest::Numbers::Double || io::holds_double(r.format),
           "the format holds float32 only, and double is asked for");
+  require(!r.as_printed || r.cost == bmesh::Cost::PlanesDiagonal,
+          "as_printed is for the cost PlanesDiagonal only");
+  require(!r.sharp_angle || r.cost == bmesh::Cost::Planes || r.cost == bmesh::Cost::PlanesAdapted ||
+              r.cost == bmesh::Cost::PlanesDiagonal,
+          "sharp_angle is for the costs of planes only");
 }
 
 std::optional<Float32Shortage> too_coarse(const geom::Box3& box, const MeshPlan& plan) {
@@ -48,7 +53,7 @@ std::optional<Float32Shortage> too_coarse(const geom::Box3& box, const MeshPlan&
 
 // Closed by its own fill, a flat sheet would be certified to lie in a solid that is nothing.
 void require_extent(const geom::Prepared& original) {
-  if (original.filled_triangles > 0 && !geom::convex_hull(original.mesh.vertices))
+  if (original.solid.filled_triangles() > 0 && !geom::convex_hull(original.solid.mesh().vertices))
     throw Error(ErrorCode::InvalidInput,
                 "all triangles lie in one plane and enclose nothing; give the sheet a thickness, "
                 "or have bcd-decompose cover it");
@@ -65,7 +70,7 @@ bmesh::DecimateOptions options_of(const MeshRequest& request, const MeshPlan& pl
   d.direction = request.direction;
   d.cost = request.cost;
   d.keep_convex = request.keep_convex;
-  d.effort = request.effort;
+  d.effort = plan.effort;
   d.as_printed = request.as_printed;
   d.precision = plan.precision;
   d.sharp_angle = request.sharp_angle;
@@ -76,7 +81,7 @@ bmesh::DecimateOptions options_of(const MeshRequest& request, const MeshPlan& pl
 
 MeshPlan plan_mesh(const geom::Prepared& original, const MeshRequest& request) {
   require_sound(request);
-  const geom::Box3 box = geom::bounding_box(original.mesh);
+  const geom::Box3 box = geom::bounding_box(original.solid.mesh());
   MeshPlan plan;
   plan.diagonal = box.diagonal();
   if (request.epsilon) {
@@ -87,7 +92,7 @@ MeshPlan plan_mesh(const geom::Prepared& original, const MeshRequest& request) {
   plan.vertices = request.vertices;
   if (request.ratio) {
     const auto n = static_cast<std::size_t>(
-        std::ceil(*request.ratio * static_cast<double>(original.mesh.vertices.size())));
+        std::ceil(*request.ratio * static_cast<double>(original.solid.mesh().vertices.size())));
     plan.vertices = {
         std::max({n, plan.vertices.empty() ? 0 : plan.vertices.front(), kLeastVertices})};
   }
@@ -97,9 +102,9 @@ MeshPlan plan_mesh(const geom::Prepared& original, const MeshRequest& request) {
     plan.shortage = too_coarse(box, plan);
     if (plan.shortage && request.may_be_double()) plan.precision = bmesh::Precision::Double;
   }
-  const bmesh::DecimateOptions options = options_of(request, plan);
-  plan.effort = bmesh::effective_effort(original, options);
-  plan.work = bmesh::work_allowed(original, options);
+  plan.effort = request.effort;
+  plan.effort = bmesh::possible_effort(original.solid, options_of(request, plan));
+  plan.work = bmesh::work_allowed(original.solid, options_of(request, plan));
   return plan;
 }
 

@@ -69,21 +69,22 @@ DecidedSurface decide_surface(const geom::Prepared& original, const geom::Mesh& 
   verify::InclusionOptions options;
   options.surface_only = true;
   options.max_work = (1 - kDepthShare) * work;
-  const verify::Inclusion found = verify::verify_inclusion(outer ? original.mesh : result,
-                                                           outer ? result : original.mesh, options);
+  const verify::Inclusion found = verify::verify_inclusion(
+      outer ? original.solid.mesh() : result, outer ? result : original.solid.mesh(), options);
   return {found.surface, found.left_out, {}, false};
 }
 
 void measure_sticking_out(const geom::Prepared& original, const geom::Mesh& result, bool outer,
                           double work, DecidedSurface& surface) {
-  const geom::Mesh &from = outer ? original.mesh : result, &to = outer ? result : original.mesh;
+  const geom::Mesh &from = outer ? original.solid.mesh() : result,
+                   &to = outer ? result : original.solid.mesh();
   verify::BracketEffort effort;
   effort.max_work = kDepthShare * work;
   surface.sticks_out =
       verify::bracket_distance(from, surface.claim.inner_triangles, to, true, effort);
   std::uint32_t& triangle = surface.sticks_out.triangle;
-  surface.at_filling = outer && triangle >= original.source.size();
-  if (outer && !surface.at_filling) triangle = original.source[triangle];
+  surface.at_filling = outer && triangle >= original.report.source.size();
+  if (outer && !surface.at_filling) triangle = original.report.source[triangle];
 }
 
 }  // namespace kaboum::certify

@@ -13,15 +13,14 @@ std::string counted(std::size_t n, const char* one, const char* many) {
 
 }  // namespace
 
-Subject subject_of(const geom::Prepared& prepared) {
-  return {prepared.turned_triangles, prepared.dropped_copies, prepared.dropped_sheets,
-          prepared.holes};
+Subject subject_of(const geom::PreparationReport& report) {
+  return {report.reversed_triangles, report.dropped_copies, report.dropped_sheets, report.holes};
 }
 
 std::string in_words(const Subject& s) {
   std::vector<std::string> changes;
-  if (s.turned_triangles > 0)
-    changes.push_back("with " + counted(s.turned_triangles, "triangle", "triangles") + " turned");
+  if (s.reversed_triangles > 0)
+    changes.push_back("with " + counted(s.reversed_triangles, "triangle", "triangles") + " turned");
   if (s.dropped_copies > 0)
     changes.push_back("without " + counted(s.dropped_copies, "triangle", "triangles") +
                       " of copies");

@@ -22,7 +22,7 @@ SweepCertificate certificate_of(const sweep::SweepResult& made, const CertifiedB
   c.deviation = made.deviation;
   c.left_out = made.left_out;
   c.rounding = made.rounding;
-  c.reach = made.reach;
+  c.excess = made.excess;
   c.bodies_distance = bodies.certificate().distance;
   c.of_link = made.of_link;
   c.sources = made.sources;
@@ -52,7 +52,7 @@ std::optional<CertifiedSweep> certify_sweep(const robot::RobotFile& robot,
                                             const SweepRequest& request) {
   sweep::SweepResult made =
       sweep::swept_volume(robot.robot, bodies.artefact(), path, request.search);
-  if (made.stop == sweep::SweepStop::TooCoarse) return std::nullopt;
+  if (made.stop == sweep::Stop::TooCoarse) return std::nullopt;
   geom::Provenance& p = made.set.provenance;
   p.source = robot.path.filename().string();
   p.source_sha256 = robot.sha256;
@@ -62,7 +62,7 @@ std::optional<CertifiedSweep> certify_sweep(const robot::RobotFile& robot,
   p.frame = robot.robot.links[0].name;
   if (made.certified) {
     p.direction = "outer";
-    p.epsilon = (made.reach + bodies.certificate().distance) * (1 + 1e-15);
+    p.epsilon = (made.excess + bodies.certificate().distance) * (1 + 1e-15);
   }
   std::vector<char> container = io::serialise_convex_set(made.set, io::SetFormat::Glb);
   // What is written is what is decided.

@@ -92,7 +92,7 @@ Mesh inflated(const Mesh& hull, double margin, const Sphere& sphere) {
 Inflated inflate(const geom::ConvexSet& set, int level) {
   const Sphere sphere = icosphere(level);
   std::vector<Mesh> polytopes(set.bodies.size());
-  parallel_loop(std::size_t{0}, polytopes.size(), [&](std::size_t i) {
+  parallel_for(std::size_t{0}, polytopes.size(), [&](std::size_t i) {
     polytopes[i] = inflated(set.bodies[i].hull, set.margin, sphere);
   });
   Inflated out;

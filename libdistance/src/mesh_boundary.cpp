@@ -294,7 +294,7 @@ class Arrangement {
   void find_meetings() {
     const auto n = static_cast<std::uint32_t>(mesh_.triangles.size());
     meets_.resize(n);
-    parallel_loop(std::uint32_t{0}, n, [&](std::uint32_t t) {
+    parallel_for(std::uint32_t{0}, n, [&](std::uint32_t t) {
       const Box3 box = box_of(corners(t));
       bvh_.traverse(
           [&](const Box3& b) { return overlap(box, b); },
@@ -356,7 +356,7 @@ class Arrangement {
     for (std::uint32_t t = 0; t < meets_.size(); ++t)
       if (!meets_[t].empty()) crossed.push_back(t);
     std::vector<Part> parts(crossed.size());
-    parallel_loop(std::size_t{0}, crossed.size(), [&](std::size_t i) {
+    parallel_for(std::size_t{0}, crossed.size(), [&](std::size_t i) {
       parts[i].cells = cells_of(crossed[i]);
       for (const Cell& cell : parts[i].cells)
         parts[i].labels.push_back(label_of(crossed[i], cell.polygon));

@@ -64,7 +64,7 @@ Sampled sample_distances(const geom::Mesh& a, const geom::TriangleSearch& b, std
   constexpr std::uint64_t kBlock = 256;  // hints pass on within blocks, not the scheduler's ranges
   const std::uint64_t blocks = (strata + kBlock - 1) / kBlock;
   std::vector<Sums> sums(blocks);
-  parallel_loop(std::uint64_t{0}, blocks, [&](std::uint64_t block) {
+  parallel_for(std::uint64_t{0}, blocks, [&](std::uint64_t block) {
     std::uint32_t hint = geom::TriangleSearch::kNone;
     Sums& sum = sums[block];
     for (std::uint64_t s = block * kBlock; s < std::min(strata, (block + 1) * kBlock); ++s) {
@@ -90,7 +90,7 @@ Sampled sample_distances(const geom::Mesh& a, const geom::TriangleSearch& b, std
         if (of) d = of(p, d);
         sum.width = std::max(sum.width, nearest.upper - nearest.lower);
       }
-      // Scaled, lest squares leave the range of double.
+      // Scaled, so that squares stay in the range of double.
       const double x = scale * distance[0], y = scale * distance[1];
       sum.distance += x + y;
       sum.square += x * x + y * y;

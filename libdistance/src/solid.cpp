@@ -2,6 +2,7 @@
 // docs/algorithms/distances.md, "Solids".
 #include <kaboum/base/error.h>
 #include <kaboum/distance/solid.h>
+#include <kaboum/geom/convex_polytope.h>
 #include <kaboum/geom/predicates.h>
 #include <kaboum/geom/rounding.h>
 #include <kaboum/geom/topology.h>
@@ -98,21 +99,9 @@ bool is_hidden(const Mesh& mesh, std::span<const char> whole, std::span<const ge
 
 /// Whose points are asked for: one chain, or bodies.
 struct Solid::Members {
-  struct Body {
-    std::vector<std::array<Vec3, 3>> facets;
-    Box3 box;
-
-    [[nodiscard]] bool contains(const Vec3& p) const {
-      if (!((box.min.array() <= p.array()).all() && (p.array() <= box.max.array()).all()))
-        return false;
-      return std::none_of(facets.begin(), facets.end(), [&](const std::array<Vec3, 3>& f) {
-        return geom::orient3d(f[0], f[1], f[2], p) == geom::Sign::Positive;
-      });
-    }
-  };
   Mesh mesh;
   std::optional<geom::WindingNumber> winding;
-  std::vector<Body> bodies;
+  std::vector<geom::ConvexPolytope> bodies;
 };
 
 Solid::Solid(const Mesh& mesh)
@@ -125,13 +114,7 @@ Solid::Solid(const Mesh& mesh)
 Solid::Solid(const geom::ConvexSet& set)
     : members_(std::make_unique<Members>()), set_(set), boundary_(union_boundary(set)) {
   if (set.bodies.empty()) throw Error(ErrorCode::InvalidInput, "the empty set has no distance");
-  for (const geom::ConvexBody& body : set.bodies) {
-    Members::Body& own = members_->bodies.emplace_back();
-    for (const auto& [i, j, k] : body.hull.triangles) {
-      own.facets.push_back({body.hull.vertices[i], body.hull.vertices[j], body.hull.vertices[k]});
-      for (const Vec3& p : own.facets.back()) own.box.extend(p);
-    }
-  }
+  for (const geom::ConvexBody& body : set.bodies) members_->bodies.emplace_back(body.hull);
   prepare();
 }
 
@@ -173,7 +156,7 @@ std::optional<bool> Solid::contains(const Vec3& p, double free) const {
     return w ? std::optional(*w >= 1) : std::nullopt;
   }
   return std::any_of(members_->bodies.begin(), members_->bodies.end(),
-                     [&](const Members::Body& body) { return body.contains(p); });
+                     [&](const geom::ConvexPolytope& body) { return body.contains(p); });
 }
 
 double Solid::distance(const Vec3& p, double to_boundary) const {

@@ -5,8 +5,6 @@
 #include <kaboum/distance/solid.h>
 #include <kaboum/geom/rounding.h>
 
-#include <tbb/blocked_range.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -44,7 +42,7 @@ struct Cell {
 struct Finding {
   double lower = 0;
   Vec3 at = Vec3::Zero();
-  double upper = 0;   ///< if settled
+  double upper = 0;   ///< if decided
   bool open = false;  ///< needs to be cut
 };
 
@@ -90,12 +88,12 @@ void cut_along(const Cell& cell, std::array<double, 4> height, double on, std::v
 /// @return false if the plane leaves the cell whole.
 bool cut_by_plane(const Cell& cell, const Vec3& p, const Vec3& n, std::vector<Cell>& out) {
   std::array<double, 4> height{};
-  double reach = 0;
+  double highest = 0;
   for (int i = 0; i < 4; ++i) {
     height[i] = n.dot(cell.corner[i] - p);
-    reach = std::max(reach, std::abs(height[i]));
+    highest = std::max(highest, std::abs(height[i]));
   }
-  const double on = 1e-6 * reach;  // no splinters
+  const double on = 1e-6 * highest;  // no splinters
   if (!(*std::min_element(height.begin(), height.end()) < -on) ||
       !(*std::max_element(height.begin(), height.end()) > on))
     return false;
@@ -178,7 +176,7 @@ class Volume {
       evaluate(open);
       if (open.empty()) break;
       if (round > kMaxRounds || open.size() > kMaxOpen || result_.cells > kMaxCells) {
-        for (const Cell& c : open) settled_ = std::max(settled_, c.upper);
+        for (const Cell& c : open) decided_ = std::max(decided_, c.upper);
         break;
       }
       std::vector<Cell> next;
@@ -186,7 +184,7 @@ class Volume {
       for (const Cell& c : open) cut(c, round, next);
       open = std::move(next);
     }
-    return settled_;
+    return decided_;
   }
 
  private:
@@ -217,13 +215,12 @@ class Volume {
   void evaluate(std::vector<Cell>& cells) {
     std::vector<Finding> findings(cells.size());
     const double enough = limit();
-    parallel_loop(tbb::blocked_range<std::size_t>(0, cells.size(), 32),
-                  [&](const tbb::blocked_range<std::size_t>& range) {
-                    std::vector<std::uint32_t> near;
-                    HalfSpace half_space;
-                    for (std::size_t i = range.begin(); i != range.end(); ++i)
-                      findings[i] = look_at(cells[i], enough, near, half_space);
-                  });
+    parallel_ranges(cells.size(), {.grain = 32}, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::uint32_t> near;
+      HalfSpace half_space;
+      for (std::size_t i = begin; i != end; ++i)
+        findings[i] = look_at(cells[i], enough, near, half_space);
+    });
     result_.cells += cells.size();
     for (const Finding& f : findings)
       if (f.lower > result_.max_lower) {
@@ -237,7 +234,7 @@ class Volume {
       if (findings[i].open && cells[i].upper > now)
         cells[kept++] = cells[i];
       else
-        settled_ = std::max(settled_, findings[i].open ? cells[i].upper : findings[i].upper);
+        decided_ = std::max(decided_, findings[i].open ? cells[i].upper : findings[i].upper);
     }
     cells.resize(kept);
   }
@@ -277,15 +274,15 @@ class Volume {
                   HalfSpace& half_space) const {
     Finding finding;
     const double moved = cell.cuts * kCutError * magnitude_;
-    const auto settled = [&](double upper) {
+    const auto decided = [&](double upper) {
       finding.upper = upper;
       return finding;
     };
-    // What was near the cell that this one was cut from may settle it.
+    // What was near the cell that this one was cut from may decide it.
     for (const std::uint32_t t : {cell.nearest, cell.at_worst})
       if (t != kNone) {
         cell.upper = std::min(cell.upper, worst_corner(cell, t).first + moved);
-        if (cell.upper <= enough) return settled(cell.upper);
+        if (cell.upper <= enough) return decided(cell.upper);
       }
     const Vec3 c = cell.center();
     double radius = 0;
@@ -298,11 +295,11 @@ class Volume {
     const auto [worst, where] = worst_corner(cell, at.triangle);
     cell.worst = where;
     cell.upper = std::min(cell.upper, worst + moved);
-    if (cell.upper <= enough) return settled(cell.upper);
-    if (b_.covers_ball(c, radius, at.lower)) return settled(0);
-    if (outside_a(c, radius)) return settled(0);
+    if (cell.upper <= enough) return decided(cell.upper);
+    if (b_.covers_ball(c, radius, at.lower)) return decided(0);
+    if (outside_a(c, radius)) return decided(0);
     // Lower maxima than that there may be.
-    if (has_no_maximum(cell, c, radius, at.upper, enough, near, half_space)) return settled(enough);
+    if (has_no_maximum(cell, c, radius, at.upper, enough, near, half_space)) return decided(enough);
     consider(finding, c, at.lower);
     if (cell.far) {
       const Vec3& corner = cell.corner[where];
@@ -313,16 +310,16 @@ class Volume {
         cell.upper = std::min(cell.upper, worst_corner(cell, at_corner.triangle).first + moved);
       }
     }
-    if (cell.upper <= enough) return settled(cell.upper);
+    if (cell.upper <= enough) return decided(cell.upper);
     finding.open = true;
     return finding;
   }
 
   /// Whether the ball holds no point of S(A).
   [[nodiscard]] bool outside_a(const Vec3& c, double radius) const {
-    const double reach = radius + a_.margin() + a_.boundary().error;
+    const double cutoff = radius + a_.margin() + a_.boundary().error;
     const auto at = to_a_.nearest(c);
-    return at.lower > reach * (1 + kDistanceRounding) &&
+    return at.lower > cutoff * (1 + kDistanceRounding) &&
            a_.contains(c, at.lower) == std::optional(false);
   }
 
@@ -332,15 +329,15 @@ class Volume {
   bool has_no_maximum(Cell& cell, const Vec3& c, double radius, double distance, double enough,
                       std::vector<std::uint32_t>& near, HalfSpace& half_space) const {
     const double error = b_.boundary().error;
-    const double reach = (distance + 2 * radius + 2 * error) * (1 + kDistanceRounding);
-    cell.few = b_.near(c, reach, kMostNear, near);
+    const double cutoff = (distance + 2 * radius + 2 * error) * (1 + kDistanceRounding);
+    cell.few = b_.near(c, cutoff, kMostNear, near);
     if (!cell.few) return false;
     cell.few = near.size() <= kFew;
     half_space.demands.clear();
     for (const std::uint32_t t : near) {
       const auto& corners = to_b_.corners(t);
       const auto d = to_b_.to_triangle(c, t);
-      if (d.lower > reach || !can_be_nearest(cell, c, t, reach, enough)) continue;
+      if (d.lower > cutoff || !can_be_nearest(cell, c, t, cutoff, enough)) continue;
       const Vec3 v = geom::nearest_point(c, corners[0], corners[1], corners[2]) - c;
       double scale = c.cwiseAbs().maxCoeff();
       for (const Vec3& p : corners) scale = std::max(scale, p.cwiseAbs().maxCoeff());
@@ -356,16 +353,16 @@ class Volume {
 
   /// Whether triangle t may hold the nearest point to a point of the cell that is outside S(B) and
   /// more than `enough` away from it: the point is above t, by more than that, or t's exposed sides
-  /// or corners are within reach.
-  [[nodiscard]] bool can_be_nearest(const Cell& cell, const Vec3& c, std::uint32_t t, double reach,
+  /// or corners are within cutoff.
+  [[nodiscard]] bool can_be_nearest(const Cell& cell, const Vec3& c, std::uint32_t t, double cutoff,
                                     double enough) const {
     const auto& p = to_b_.corners(t);
     const unsigned exposed = b_.exposed(t);
     for (int k = 0; k < 3; ++k) {
       if ((exposed >> k & 1U) != 0 &&
-          geom::point_triangle_distance(c, p[k], p[(k + 1) % 3], p[(k + 1) % 3]).lower <= reach)
+          geom::point_triangle_distance(c, p[k], p[(k + 1) % 3], p[(k + 1) % 3]).lower <= cutoff)
         return true;
-      if ((exposed >> (3 + k) & 1U) != 0 && (p[k] - c).norm() * (1 - kDistanceRounding) <= reach)
+      if ((exposed >> (3 + k) & 1U) != 0 && (p[k] - c).norm() * (1 - kDistanceRounding) <= cutoff)
         return true;
     }
     // Heights above the plane of the facet that t is a part of.
@@ -439,7 +436,7 @@ class Volume {
   Box3 box_;
   double magnitude_ = 0;
   double diagonal_ = 0;
-  double settled_ = 0;
+  double decided_ = 0;
 };
 
 /// Levels of subdivision of the ball that stands for a margin.
@@ -483,7 +480,7 @@ SolidDistance solid_distance(const Solid& a, const Solid& b, const TriangleSearc
                              const TriangleSearch& boundary_b,
                              const geom::DistanceOptions& options) {
   SolidDistance result;
-  // A little finer than wished: the boundaries that are measured stand for the true ones.
+  // A little finer than allowed: the boundaries that are measured stand for the true ones.
   geom::DistanceOptions finer = options;
   finer.relative_gap *= 0.99;
   finer.absolute_gap *= 0.99;

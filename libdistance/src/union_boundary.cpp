@@ -77,8 +77,8 @@ class Clipper {
     for (std::size_t i = 0; i < bodies_.size(); ++i)
       for (std::size_t t = 0; t < bodies_[i].triangles.size(); ++t) facets.emplace_back(i, t);
     parts.resize(facets.size());
-    parallel_loop(std::size_t{0}, facets.size(),
-                  [&](std::size_t f) { parts[f] = uncovered(facets[f].first, facets[f].second); });
+    parallel_for(std::size_t{0}, facets.size(),
+                 [&](std::size_t f) { parts[f] = uncovered(facets[f].first, facets[f].second); });
     Boundary out;
     double largest = 0;
     for (std::size_t f = 0; f < facets.size(); ++f) {

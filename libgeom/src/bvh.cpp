@@ -55,7 +55,7 @@ struct Builder {
     const std::uint32_t left = self + 1, right = left + nodes_of(middle - begin).first;
     constexpr std::uint32_t kLarge = 4096;
     if (end - begin > kLarge) {
-      parallel_calls([&] { build(left, begin, middle); }, [&] { build(right, middle, end); });
+      parallel_invoke([&] { build(left, begin, middle); }, [&] { build(right, middle, end); });
     } else {
       build(left, begin, middle);
       build(right, middle, end);

@@ -7,13 +7,13 @@ namespace kaboum::geom {
 bool cut(const ConvexPolygon& polygon, const Vec3& p, const Vec3& n, ConvexPolygon& below,
          ConvexPolygon& above) {
   std::array<double, ConvexPolygon::kCapacity> height{};
-  double reach = 0;
+  double highest = 0;
   for (int i = 0; i < polygon.size; ++i) {
     height[i] = n.dot(polygon.corner[i] - p);
-    reach = std::max(reach, std::abs(height[i]));
+    highest = std::max(highest, std::abs(height[i]));
   }
   // Corners within rounding of the plane count as on it, lest cuts leave splinters.
-  const double on = 1e-9 * reach;
+  const double on = 1e-9 * highest;
   bool any_below = false, any_above = false;
   for (int i = 0; i < polygon.size; ++i) {
     any_below = any_below || height[i] < -on;

@@ -1,5 +1,5 @@
 // Convex polytopes by vertices, facets and planes. What rounding may do to a plane:
-// docs/algorithms/convex-decomposition.md, "Reach".
+// docs/algorithms/convex-decomposition.md, "Excess".
 #include <kaboum/geom/convex_polytope.h>
 #include <kaboum/geom/predicates.h>
 

@@ -4,8 +4,6 @@
 #include <kaboum/base/parallel.h>
 #include <kaboum/geom/distance.h>
 
-#include <tbb/blocked_range.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -29,7 +27,7 @@ struct Cluster {
 };
 
 /// A part of one of A's triangles whose largest distance to B may still matter.
-struct Piece {
+struct TrianglePart {
   ConvexPolygon polygon;
   double upper = kInfinity;
   std::uint32_t nearest = kNone;   ///< to the centroid
@@ -41,7 +39,7 @@ struct Finding {
   double lower = 0;     // some point of A, next to `at`, is at least this far from B
   double measured = 0;  // the largest lower bound at any point, which rounding may have moved off A
   Vec3 at = Vec3::Zero();
-  double settled = 0;  // upper bound of the parts that need no further work
+  double decided = 0;  // upper bound of the parts that need no further work
   std::uint64_t queries = 0;
 
   /// Takes note of a distance at a point that is at most `moved` away from a point of A.
@@ -66,20 +64,20 @@ class BranchAndBound {
   }
 
   DirectedDistance run() {
-    std::vector<Piece> open = bound_clusters();
+    std::vector<TrianglePart> open = bound_clusters();
     for (int round = 1; !open.empty(); ++round) {
-      keep_unsettled(open);  // the lower bound may have risen
+      keep_undecided(open);  // the lower bound may have risen
       if (round > kMaxRounds || open.size() > options_.max_pieces) {
         // What is known of the rest is a bound all the same.
-        for (const Piece& p : open) settled_ = std::max(settled_, p.upper + moved_);
+        for (const TrianglePart& p : open) decided_ = std::max(decided_, p.upper + moved_);
         break;
       }
       open = cut_all(open, round);
       moved_ = round * PrismCut::kCuts * ConvexPolygon::kCutError * magnitude_;
       evaluate(open);
     }
-    result_.max_upper = std::max(settled_, result_.max_lower);
-    result_.within_gap = result_.max_upper <= wished() * (1 + 1e-15);
+    result_.max_upper = std::max(decided_, result_.max_lower);
+    result_.within_gap = result_.max_upper <= allowed() * (1 + 1e-15);
     return result_;
   }
 
@@ -90,15 +88,17 @@ class BranchAndBound {
   static constexpr std::uint32_t kSmallestCluster = 8;
 
   /// The largest upper bound that meets the wish.
-  [[nodiscard]] double wished() const { return options_.wished(result_.max_lower, diagonal_); }
+  [[nodiscard]] double allowed() const { return options_.wished(result_.max_lower, diagonal_); }
 
   /// The upper bound at which a piece needs no further work: the wish, less what cuts have moved
   /// the piece by. Where rounding is wider than the wish, a gap of its size must do: upper bounds
   /// may stay as much above the truth, and distances measured as much below.
-  [[nodiscard]] double limit() const { return std::max(wished() - moved_, measured_ + 3 * moved_); }
+  [[nodiscard]] double limit() const {
+    return std::max(allowed() - moved_, measured_ + 3 * moved_);
+  }
 
   void take(const Finding& f) {
-    settled_ = std::max(settled_, f.settled);
+    decided_ = std::max(decided_, f.decided);
     result_.queries += f.queries;
     measured_ = std::max(measured_, f.measured);
     if (f.lower <= result_.max_lower) return;
@@ -139,8 +139,8 @@ class BranchAndBound {
     return all;
   }
 
-  /// Settles whole clusters of triangles where it can, level by level; returns the triangles left.
-  std::vector<Piece> bound_clusters() {
+  /// Decides whole clusters of triangles where it can, level by level; returns the triangles left.
+  std::vector<TrianglePart> bound_clusters() {
     const auto n = static_cast<std::uint32_t>(a_.size());
     const auto& boxes = boxes_;
     std::vector<Cluster> level;
@@ -153,16 +153,13 @@ class BranchAndBound {
     for (std::size_t depth = boxes.size(); depth-- > 0; size /= 8) {
       std::vector<Finding> findings(level.size());
       const double enough = limit();
-      parallel_loop(tbb::blocked_range<std::size_t>(0, level.size(), 16),
-                    [&](const tbb::blocked_range<std::size_t>& range) {
-                      for (std::size_t i = range.begin(); i != range.end(); ++i)
-                        findings[i] = bound(level[i], enough);
-                    });
+      parallel_for(std::size_t{0}, level.size(),
+                   [&](std::size_t i) { findings[i] = bound(level[i], enough); }, {.grain = 16});
       for (const Finding& f : findings) take(f);
       std::vector<Cluster> next;
       const std::uint32_t step = size / 8;
       for (const Cluster& cluster : level) {
-        if (settle(cluster.upper)) continue;
+        if (decide(cluster.upper)) continue;
         if (depth == 0) {
           next.push_back(cluster);
           continue;
@@ -208,21 +205,21 @@ class BranchAndBound {
     return true;
   }
 
-  /// The triangles of clusters that cannot be settled as wholes, as pieces; many are settled by the
+  /// The triangles of clusters that cannot be decided as wholes, as pieces; many are decided by the
   /// triangle of B that is next to the cluster.
-  std::vector<Piece> bound_triangles(const std::vector<Cluster>& clusters) {
+  std::vector<TrianglePart> bound_triangles(const std::vector<Cluster>& clusters) {
     struct Outcome {
       Finding finding;
-      std::vector<Piece> pieces;
+      std::vector<TrianglePart> pieces;
     };
     std::vector<Outcome> outcomes(clusters.size());
     const double enough = limit();
-    parallel_loop(tbb::blocked_range<std::size_t>(0, clusters.size(), 16),
-                  [&](const tbb::blocked_range<std::size_t>& range) {
-                    for (std::size_t i = range.begin(); i != range.end(); ++i)
-                      outcomes[i].finding = bound_each(clusters[i], enough, outcomes[i].pieces);
-                  });
-    std::vector<Piece> open;
+    parallel_for(std::size_t{0}, clusters.size(),
+                 [&](std::size_t i) {
+                   outcomes[i].finding = bound_each(clusters[i], enough, outcomes[i].pieces);
+                 },
+                 {.grain = 16});
+    std::vector<TrianglePart> open;
     for (const Outcome& o : outcomes) {
       take(o.finding);
       open.insert(open.end(), o.pieces.begin(), o.pieces.end());
@@ -230,12 +227,13 @@ class BranchAndBound {
     return open;
   }
 
-  Finding bound_each(const Cluster& cluster, double enough, std::vector<Piece>& pieces) const {
+  Finding bound_each(const Cluster& cluster, double enough,
+                     std::vector<TrianglePart>& pieces) const {
     Finding finding;
     std::uint32_t hint = kNone;
     for (std::uint32_t i = cluster.first; i < cluster.first + cluster.count; ++i) {
       const auto& [a, b, c] = a_[i];
-      Piece piece{{a, b, c}, kInfinity, cluster.hint, hint};
+      TrianglePart piece{{a, b, c}, kInfinity, cluster.hint, hint};
       const Finding own = bound(piece, enough);
       finding.queries += own.queries;
       finding.measured = std::max(finding.measured, own.measured);
@@ -245,7 +243,7 @@ class BranchAndBound {
       }
       if (own.queries > 0) hint = piece.nearest;
       if (piece.upper <= enough)
-        finding.settled = std::max(finding.settled, piece.upper);
+        finding.decided = std::max(finding.decided, piece.upper);
       else
         pieces.push_back(piece);
     }
@@ -279,7 +277,7 @@ class BranchAndBound {
   }
 
   /// Lowers piece.upper until it is `enough` or nothing more is known.
-  Finding bound(Piece& piece, double enough) const {
+  Finding bound(TrianglePart& piece, double enough) const {
     Finding finding;
     // What was near the piece that this one was cut from may settle it without a query.
     for (const std::uint32_t t : {piece.nearest, piece.at_worst}) {
@@ -300,7 +298,7 @@ class BranchAndBound {
     const auto [worst, where] = worst_corner(piece.polygon, at_center.triangle);
     piece.upper = std::min(piece.upper, worst);
     if (piece.upper <= enough) return finding;
-    if (inside_ != nullptr && settle_inside(piece, center, radius, at_center.lower, enough))
+    if (inside_ != nullptr && decide_inside(piece, center, radius, at_center.lower, enough))
       return finding;
     if (much_larger(piece, enough)) return finding;  // it will be halved, whatever its corners say
     // The corner that is far from this triangle may be near another one.
@@ -315,7 +313,7 @@ class BranchAndBound {
   }
 
   /// Whether the piece lies in the solid, or so close to it that nothing is left to do.
-  bool settle_inside(Piece& piece, const Vec3& center, double radius, double distance,
+  bool decide_inside(TrianglePart& piece, const Vec3& center, double radius, double distance,
                      double enough) const {
     if (inside_->covers_ball(center, radius, distance)) {
       piece.upper = 0;
@@ -329,33 +327,30 @@ class BranchAndBound {
     return true;
   }
 
-  /// Bounds all pieces and keeps those that are not settled.
-  void evaluate(std::vector<Piece>& pieces) {
+  /// Bounds all pieces and keeps those that are not decided.
+  void evaluate(std::vector<TrianglePart>& pieces) {
     std::vector<Finding> findings(pieces.size());
     const double enough = limit();
-    parallel_loop(tbb::blocked_range<std::size_t>(0, pieces.size(), 64),
-                  [&](const tbb::blocked_range<std::size_t>& range) {
-                    for (std::size_t i = range.begin(); i != range.end(); ++i)
-                      findings[i] = bound(pieces[i], enough);
-                  });
+    parallel_for(std::size_t{0}, pieces.size(),
+                 [&](std::size_t i) { findings[i] = bound(pieces[i], enough); }, {.grain = 64});
     for (const Finding& f : findings) take(f);
-    keep_unsettled(pieces);
+    keep_undecided(pieces);
   }
 
   /// Whether an upper bound is good enough; then it counts.
-  bool settle(double upper) {
+  bool decide(double upper) {
     if (upper > limit()) return false;
-    settled_ = std::max(settled_, upper + moved_);
+    decided_ = std::max(decided_, upper + moved_);
     return true;
   }
 
-  void keep_unsettled(std::vector<Piece>& pieces) {
-    std::erase_if(pieces, [&](const Piece& p) { return settle(p.upper); });
+  void keep_undecided(std::vector<TrianglePart>& pieces) {
+    std::erase_if(pieces, [&](const TrianglePart& p) { return decide(p.upper); });
   }
 
   /// Cuts where the planes of the two triangles that matter are equally far: on a ridge of the
   /// distance, which halving would only approach.
-  bool cut_by_bisector(const Piece& piece, PrismCut& out) const {
+  bool cut_by_bisector(const TrianglePart& piece, PrismCut& out) const {
     if (piece.at_worst == piece.nearest) return false;
     const auto plane = bisector(b_.corners(piece.nearest), b_.corners(piece.at_worst),
                                 piece.polygon.centroid(), 1e-20);
@@ -366,11 +361,11 @@ class BranchAndBound {
 
   /// Whether the piece is so much larger than the triangle next to it that cutting along that
   /// one's prism would only break splinters off.
-  [[nodiscard]] bool much_larger(const Piece& piece, double enough) const {
+  [[nodiscard]] bool much_larger(const TrianglePart& piece, double enough) const {
     const auto& [a, b, c] = b_.corners(piece.nearest);
     const double size =
         std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
-    if (size > kReach * enough * enough) return false;
+    if (size > kNearby * enough * enough) return false;
     if (size <= enough * enough) return true;
     double own = 0;
     for (int i = 0; i < piece.polygon.size; ++i)
@@ -379,13 +374,13 @@ class BranchAndBound {
                          .squaredNorm());
     return own > kMuchLarger * size;
   }
-  static constexpr double kMuchLarger = 9, kReach = 16;  // squared
+  static constexpr double kMuchLarger = 9, kNearby = 16;  // squared
 
-  std::vector<Piece> cut_all(const std::vector<Piece>& pieces, int round) const {
-    std::vector<Piece> out;
+  std::vector<TrianglePart> cut_all(const std::vector<TrianglePart>& pieces, int round) const {
+    std::vector<TrianglePart> out;
     out.reserve(3 * pieces.size());
     const double enough = limit();
-    for (const Piece& p : pieces) {
+    for (const TrianglePart& p : pieces) {
       PrismCut cuts;
       if (much_larger(p, enough)) {
         halve(p.polygon, cuts.piece[0], cuts.piece[1]);
@@ -408,7 +403,7 @@ class BranchAndBound {
   double diagonal_ = 0;
   double moved_ = 0;     // how far cuts have moved corners of the pieces from A
   double measured_ = 0;  // largest lower bound of a distance at points that may be that far from A
-  double settled_ = 0;   // largest upper bound among the pieces that need no further cut
+  double decided_ = 0;   // largest upper bound among the pieces that need no further cut
   std::vector<std::vector<Box3>> boxes_;  // of clusters, smallest first
   DirectedDistance result_;
 };

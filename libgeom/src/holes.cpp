@@ -2,9 +2,14 @@
 // loop is filled with a fan.
 #include <kaboum/base/error.h>
 #include <kaboum/geom/holes.h>
+#include <kaboum/geom/solid_mesh.h>
 #include <kaboum/geom/topology.h>
 
+#include <algorithm>
 #include <map>
+#include <utility>
+
+#include "solid_mesh_maker.h"
 
 namespace kaboum::geom {
 namespace {
@@ -32,6 +37,14 @@ void fill(const std::vector<std::uint32_t>& loop, FilledHoles& out) {
   mesh.vertices.push_back(sum);
   for (std::size_t k = 0; k < loop.size(); ++k)
     mesh.triangles.push_back({loop[k], loop[(k + 1) % loop.size()], center});
+}
+
+bool has_equal_vertices(const Mesh& mesh) {
+  std::vector<Vec3> sorted = mesh.vertices;
+  std::sort(sorted.begin(), sorted.end(), [](const Vec3& a, const Vec3& b) {
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+  });
+  return std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
 }
 
 }  // namespace
@@ -80,6 +93,21 @@ FilledHoles fill_holes(const Mesh& mesh) {
     }
   }
   return out;
+}
+
+SolidMesh close_holes(const SolidMesh& open) {
+  if (open.closed()) return open;
+  Mesh mesh = fill_holes(open.mesh()).mesh;
+  if (has_equal_vertices(mesh)) {  // the middle of a hole may lie on a vertex
+    mesh = weld(mesh);
+    std::erase_if(mesh.triangles,
+                  [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
+    mesh = weld(mesh);
+  }
+  const std::size_t filled =
+      open.filled_triangles() + mesh.triangles.size() - open.mesh().triangles.size();
+  std::vector<char> border(mesh.vertices.size(), 0);
+  return SolidMeshMaker::make(std::move(mesh), std::move(border), true, filled);
 }
 
 }  // namespace kaboum::geom

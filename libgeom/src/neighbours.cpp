@@ -59,10 +59,10 @@ Agreement agree_with_neighbours(const Mesh& mesh, std::span<const EdgeUse> edges
       }
     }
     const std::int8_t against = balance < 0 ? 1 : -1;
-    const std::size_t before = out.turn.size();
+    const std::size_t before = out.reverse.size();
     for (const std::uint32_t t : patch)
-      if (sense[t] == against) out.turn.push_back(t);
-    if (out.turn.size() != before)
+      if (sense[t] == against) out.reverse.push_back(t);
+    if (out.reverse.size() != before)
       out.affected.insert(out.affected.end(), patch.begin(), patch.end());
   }
   return out;

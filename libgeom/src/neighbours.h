@@ -25,7 +25,7 @@ inline std::uint32_t opposite_corner(const Mesh& mesh, const EdgeUse& use) {
 /// What makes a mesh's patches consistent.
 struct Agreement {
   std::size_t inconsistent = 0;         ///< edges with two triangles that run the same way
-  std::vector<std::uint32_t> turn;      ///< triangles to be turned
+  std::vector<std::uint32_t> reverse;   ///< triangles to be turned
   std::vector<std::uint32_t> affected;  ///< all triangles of patches with such triangles
 };
 

@@ -22,6 +22,7 @@
 #include "prepare_words.h"
 #include "rims.h"
 #include "shells.h"
+#include "solid_mesh_maker.h"
 
 namespace kaboum::geom {
 namespace {
@@ -47,54 +48,54 @@ class Preparation {
   Preparation(const Mesh& input, const PrepareOptions& options) : options_(options) {
     require_valid(input);
     require_moderate(input);
-    out_.mesh = weld(input);
+    mesh_ = weld(input);
     input_triangles_ = static_cast<std::uint32_t>(input.triangles.size());
-    const std::size_t n = out_.mesh.triangles.size();
-    out_.source.resize(n);
-    std::iota(out_.source.begin(), out_.source.end(), 0U);
-    out_.turned.assign(n, 0);
+    const std::size_t n = mesh_.triangles.size();
+    report_.source.resize(n);
+    std::iota(report_.source.begin(), report_.source.end(), 0U);
+    report_.reversed.assign(n, 0);
     agreed_.assign(n, 0);
     opened_.assign(n, 0);
   }
 
   Prepared run() {
     drop_collapsed();
-    if (out_.mesh.empty())
+    if (mesh_.empty())
       throw Error(ErrorCode::InvalidInput, "the mesh has no triangle with three different corners");
-    edges_ = edge_uses(out_.mesh);
+    edges_ = edge_uses(mesh_);
     if (!options_.keep_orientation) agree();
     cancel_pairs();
     if (options_.holes == Holes::Fill) fill();
-    turn_shells();
+    reverse_shells();
     drop_copies();
     sort_out_pairs();
     number_by_first_use();
-    parallel_calls([&] { find_border(); },
-                   [&] { part_ = components(edges_, mesh().triangles.size(), &out_.components); });
-    if (options_.keep_orientation && out_.closed && !(signed_volume(out_.mesh) > 0))
-      out_.notes.push_back(
+    parallel_invoke(
+        [&] { find_border(); },
+        [&] { part_ = components(edges_, mesh_.triangles.size(), &report_.components); });
+    if (options_.keep_orientation && closed_ && !(signed_volume(mesh_) > 0))
+      report_.notes.push_back(
           "the signed volume is not positive: as oriented, the mesh bounds little or no "
           "solid, and what is certified of its solid says nothing of its surface");
     count_filled();
     find_hollows();
     find_inverted();
-    out_.turned_triangles =
-        static_cast<std::size_t>(std::count(out_.turned.begin(), out_.turned.end(), 1));
-    return std::move(out_);
+    report_.reversed_triangles =
+        static_cast<std::size_t>(std::count(report_.reversed.begin(), report_.reversed.end(), 1));
+    return {SolidMeshMaker::make(std::move(mesh_), std::move(border_), closed_, filled_triangles_),
+            std::move(report_)};
   }
 
  private:
-  Mesh& mesh() { return out_.mesh; }
-
   void find_edges() {
     coincident_.reset();
     std::vector<EdgeUse>().swap(edges_);  // first, for they are large
-    edges_ = edge_uses(mesh());
+    edges_ = edge_uses(mesh_);
   }
 
-  void turn(std::uint32_t t) {
-    std::swap(mesh().triangles[t][1], mesh().triangles[t][2]);
-    out_.turned[t] ^= 1;
+  void reverse(std::uint32_t t) {
+    std::swap(mesh_.triangles[t][1], mesh_.triangles[t][2]);
+    report_.reversed[t] ^= 1;
   }
 
   /// Keeps the triangles with keep[t] != 0, and the vertices they use.
@@ -102,50 +103,50 @@ class Preparation {
     std::size_t n = 0;
     for (std::size_t t = 0; t < keep.size(); ++t) {
       if (keep[t] == 0) {
-        if (out_.turned[t] != 0 && out_.source[t] != kFilled)
-          out_.turned_and_dropped.push_back(out_.source[t]);
+        if (report_.reversed[t] != 0 && report_.source[t] != kFilled)
+          report_.reversed_and_dropped.push_back(report_.source[t]);
         continue;
       }
-      mesh().triangles[n] = mesh().triangles[t];
-      out_.source[n] = out_.source[t];
-      out_.turned[n] = out_.turned[t];
+      mesh_.triangles[n] = mesh_.triangles[t];
+      report_.source[n] = report_.source[t];
+      report_.reversed[n] = report_.reversed[t];
       ++n;
     }
-    mesh().triangles.resize(n);
-    out_.source.resize(n);
-    out_.turned.resize(n);
-    mesh() = weld(mesh());
+    mesh_.triangles.resize(n);
+    report_.source.resize(n);
+    report_.reversed.resize(n);
+    mesh_ = weld(mesh_);
     find_edges();
   }
 
   void drop_collapsed() {
-    std::vector<char> keep(mesh().triangles.size(), 1);
+    std::vector<char> keep(mesh_.triangles.size(), 1);
     for (std::size_t t = 0; t < keep.size(); ++t) {
-      const Triangle& tri = mesh().triangles[t];
+      const Triangle& tri = mesh_.triangles[t];
       if (tri[0] == tri[1] || tri[1] == tri[2] || tri[2] == tri[0]) {
         keep[t] = 0;
-        ++out_.collapsed_triangles;
+        ++report_.collapsed_triangles;
       }
     }
-    if (out_.collapsed_triangles == 0) return;
+    if (report_.collapsed_triangles == 0) return;
     filter(keep);
-    out_.notes.push_back(count_of(out_.collapsed_triangles, "triangle", "triangles") +
-                         " with repeated corners dropped");
+    report_.notes.push_back(count_of(report_.collapsed_triangles, "triangle", "triangles") +
+                            " with repeated corners dropped");
   }
 
   void agree() {
-    const Agreement agreement = agree_with_neighbours(mesh(), edges_, out_.source);
+    const Agreement agreement = agree_with_neighbours(mesh_, edges_, report_.source);
     if (agreement.inconsistent == 0) return;
-    for (const std::uint32_t t : agreement.turn) turn(t);
-    for (const std::uint32_t t : agreement.affected) agreed_[out_.source[t]] = 1;
+    for (const std::uint32_t t : agreement.reverse) reverse(t);
+    for (const std::uint32_t t : agreement.affected) agreed_[report_.source[t]] = 1;
     find_edges();
-    out_.notes.push_back(count_of(agreement.inconsistent, "edge", "edges") +
-                         " with neighbours of opposite orientation: triangles turned to agree");
+    report_.notes.push_back(count_of(agreement.inconsistent, "edge", "edges") +
+                            " with neighbours of opposite orientation: triangles turned to agree");
   }
 
   /// Found once for each state of the mesh.
   const Coincident& coincident() {
-    if (!coincident_) coincident_ = find_coincident(mesh(), edges_, out_.source);
+    if (!coincident_) coincident_ = find_coincident(mesh_, edges_, report_.source);
     return *coincident_;
   }
 
@@ -153,17 +154,17 @@ class Preparation {
   void cancel_pairs() {
     const std::vector<std::uint32_t> pairs = coincident().pairs;
     if (pairs.empty()) return;
-    std::vector<char> keep(mesh().triangles.size(), 1);
+    std::vector<char> keep(mesh_.triangles.size(), 1);
     for (const std::uint32_t t : pairs) {
-      const Triangle& tri = mesh().triangles[t];
+      const Triangle& tri = mesh_.triangles[t];
       keep[t] = 0;
       cancelled_.push_back(
-          {out_.source[t],
-           {mesh().vertices[tri[0]], mesh().vertices[tri[1]], mesh().vertices[tri[2]]}});
+          {report_.source[t],
+           {mesh_.vertices[tri[0]], mesh_.vertices[tri[1]], mesh_.vertices[tri[2]]}});
     }
     filter(keep);
-    if (mesh().empty() && !options_.drop_sheets) refuse_sheets(cancelled_);
-    if (mesh().empty())
+    if (mesh_.empty() && !options_.drop_sheets) refuse_sheets(cancelled_);
+    if (mesh_.empty())
       throw Error(ErrorCode::InvalidInput,
                   "nothing is left once opposite coincident faces cancel; the input has no volume");
   }
@@ -171,66 +172,68 @@ class Preparation {
   /// Walls between touching bodies go, sheets only on request.
   void sort_out_pairs() {
     if (cancelled_.empty()) return;
-    const std::vector<Cancelled> sheets = find_sheets(mesh(), cancelled_);
+    const std::vector<Cancelled> sheets = find_sheets(mesh_, cancelled_);
     if (!sheets.empty() && !options_.drop_sheets) refuse_sheets(sheets);
-    out_.dropped_sheets = sheets.size();
-    out_.cancelled_walls = cancelled_.size() - sheets.size();
+    report_.dropped_sheets = sheets.size();
+    report_.cancelled_walls = cancelled_.size() - sheets.size();
     if (!sheets.empty())
-      out_.notes.push_back(count_of(sheets.size(), "triangle", "triangles") +
-                           " of sheets without volume dropped on request: they are NOT enclosed");
-    if (out_.cancelled_walls != 0)
-      out_.notes.push_back(count_of(out_.cancelled_walls, "triangle", "triangles") +
-                           " of walls between touching bodies cancelled");
+      report_.notes.push_back(
+          count_of(sheets.size(), "triangle", "triangles") +
+          " of sheets without volume dropped on request: they are NOT enclosed");
+    if (report_.cancelled_walls != 0)
+      report_.notes.push_back(count_of(report_.cancelled_walls, "triangle", "triangles") +
+                              " of walls between touching bodies cancelled");
   }
 
   void fill() {
-    FilledHoles filled = fill_holes(mesh());
+    FilledHoles filled = fill_holes(mesh_);
     if (filled.holes == 0) return;
-    if (const auto found = judge_rims(edges_, out_.source, agreed_))
-      out_.notes.push_back(
+    if (const auto found = judge_rims(edges_, report_.source, agreed_))
+      report_.notes.push_back(
           "WARNING: a hole's rim runs along a wall, where three triangles or more "
           "meet (at input triangle " +
           std::to_string(*found) +
           "): which side of the wall is filled depends on its orientation");
-    const Chains chains = find_chains(mesh(), edges_);
-    for (std::size_t t = 0; t < out_.source.size(); ++t)
-      if (chains.closed[chains.label[t]] == 0) opened_[out_.source[t]] = 1;
-    out_.holes = filled.holes;
-    out_.rims = name_rims(filled.rims, mesh(), out_.source, out_.turned);
-    out_.largest_hole = filled.largest;
-    mesh() = std::move(filled.mesh);
-    out_.source.resize(mesh().triangles.size(), kFilled);
-    out_.turned.resize(mesh().triangles.size(), 0);
-    std::vector<char> keep(mesh().triangles.size(), 1);
-    mesh() = weld(mesh());  // a middle may lie on a vertex
+    const Chains chains = find_chains(mesh_, edges_);
+    for (std::size_t t = 0; t < report_.source.size(); ++t)
+      if (chains.closed[chains.label[t]] == 0) opened_[report_.source[t]] = 1;
+    report_.holes = filled.holes;
+    report_.rims = name_rims(filled.rims, mesh_, report_.source, report_.reversed);
+    report_.largest_hole = filled.largest;
+    mesh_ = std::move(filled.mesh);
+    report_.source.resize(mesh_.triangles.size(), kFilled);
+    report_.reversed.resize(mesh_.triangles.size(), 0);
+    std::vector<char> keep(mesh_.triangles.size(), 1);
+    mesh_ = weld(mesh_);  // a middle may lie on a vertex
     for (std::size_t t = 0; t < keep.size(); ++t) {
-      const Triangle& tri = mesh().triangles[t];
+      const Triangle& tri = mesh_.triangles[t];
       keep[t] = tri[0] != tri[1] && tri[1] != tri[2] && tri[2] != tri[0] ? 1 : 0;
     }
     filter(keep);
-    was_open_.assign(out_.source.size(), 1);
-    for (std::size_t t = 0; t < out_.source.size(); ++t)
-      if (out_.source[t] != kFilled) was_open_[t] = opened_[out_.source[t]] != 0 ? 1 : 0;
+    was_open_.assign(report_.source.size(), 1);
+    for (std::size_t t = 0; t < report_.source.size(); ++t)
+      if (report_.source[t] != kFilled) was_open_[t] = opened_[report_.source[t]] != 0 ? 1 : 0;
     const auto triangles =
-        static_cast<std::size_t>(std::count(out_.source.begin(), out_.source.end(), kFilled));
-    out_.notes.push_back(count_of(filled.holes, "hole is", "holes are") + " filled with " +
-                         count_of(triangles, "triangle", "triangles") +
-                         (filled.holes == 1 ? ", " : ", the largest ") + text_of(filled.largest) +
-                         " across near " + text_of(filled.largest_at) +
-                         ": what is said of the solid is about the one so closed");
+        static_cast<std::size_t>(std::count(report_.source.begin(), report_.source.end(), kFilled));
+    report_.notes.push_back(count_of(filled.holes, "hole is", "holes are") + " filled with " +
+                            count_of(triangles, "triangle", "triangles") +
+                            (filled.holes == 1 ? ", " : ", the largest ") +
+                            text_of(filled.largest) + " across near " + text_of(filled.largest_at) +
+                            ": what is said of the solid is about the one so closed");
   }
 
   /// Sources are of the input alone.
   void count_filled() {
-    const auto first = std::find(out_.source.begin(), out_.source.end(), kFilled);
-    out_.filled_triangles = static_cast<std::size_t>(out_.source.end() - first);
-    if (out_.filled_triangles == 0) return;
-    std::vector<char> used(mesh().vertices.size(), 0);
-    for (std::size_t t = 0; t + out_.filled_triangles < out_.source.size(); ++t)
-      for (const std::uint32_t v : mesh().triangles[t]) used[v] = 1;
-    out_.filled_vertices = static_cast<std::size_t>(std::count(used.begin(), used.end(), 0));
-    std::fill(out_.turned.begin() + (first - out_.source.begin()), out_.turned.end(), 0);
-    out_.source.erase(first, out_.source.end());
+    const auto first = std::find(report_.source.begin(), report_.source.end(), kFilled);
+    filled_triangles_ = static_cast<std::size_t>(report_.source.end() - first);
+    if (filled_triangles_ == 0) return;
+    std::vector<char> used(mesh_.vertices.size(), 0);
+    for (std::size_t t = 0; t + filled_triangles_ < report_.source.size(); ++t)
+      for (const std::uint32_t v : mesh_.triangles[t]) used[v] = 1;
+    report_.filled_vertices = static_cast<std::size_t>(std::count(used.begin(), used.end(), 0));
+    std::fill(report_.reversed.begin() + (first - report_.source.begin()), report_.reversed.end(),
+              0);
+    report_.source.erase(first, report_.source.end());
   }
 
   /// Drops copies that are closed by themselves. A copy lowers the winding number inside; that
@@ -239,68 +242,68 @@ class Preparation {
   void drop_copies() {
     const std::vector<std::uint32_t> copies = coincident().copies;
     if (copies.empty()) return;
-    const Chains chains = find_chains(mesh(), edges_);
+    const Chains chains = find_chains(mesh_, edges_);
     if (std::find(chains.sign.begin(), chains.sign.end(), -1) != chains.sign.end()) return;
-    const std::vector<std::uint32_t> closed = closed_copies(mesh(), copies);
-    out_.dropped_copies = closed.size();
+    const std::vector<std::uint32_t> closed = closed_copies(mesh_, copies);
+    report_.dropped_copies = closed.size();
     if (closed.empty()) return;
-    std::vector<char> keep(mesh().triangles.size(), 1);
+    std::vector<char> keep(mesh_.triangles.size(), 1);
     for (const std::uint32_t t : closed) keep[t] = 0;
     filter(keep);
-    out_.notes.push_back(count_of(out_.dropped_copies, "triangle", "triangles") +
-                         " of identically oriented copies dropped");
+    report_.notes.push_back(count_of(report_.dropped_copies, "triangle", "triangles") +
+                            " of identically oriented copies dropped");
   }
 
   /// Turns the shells that are inside out.
-  void turn_shells() {
-    const Judgement judged = judge_shells(mesh(), edges_, was_open_);
+  void reverse_shells() {
+    const Judgement judged = judge_shells(mesh_, edges_, was_open_);
     if (options_.keep_orientation) {
       if (!judged.inside_out.empty())
-        out_.notes.push_back(count_of(judged.inside_out.size(), "component is", "components are") +
-                             " inside out, the first at input triangle " +
-                             source_text(judged.inside_out[0]) +
-                             ", and kept so: what it encloses counts as outside");
+        report_.notes.push_back(
+            count_of(judged.inside_out.size(), "component is", "components are") +
+            " inside out, the first at input triangle " + source_text(judged.inside_out[0]) +
+            ", and kept so: what it encloses counts as outside");
       return;
     }
     if (judged.left && judged.left->at_wall)
       refuse_wall("at input triangle " + source_text(judged.left->triangle) + " near " +
                   text_of(judged.left->at));
     if (judged.left) {
-      out_.notes.push_back("the surface crosses itself, and what it encloses near " +
-                           text_of(judged.left->at) +
-                           " is inside out: that part counts as outside");
-      out_.hollow = judged.left->at;
+      report_.notes.push_back("the surface crosses itself, and what it encloses near " +
+                              text_of(judged.left->at) +
+                              " is inside out: that part counts as outside");
+      report_.hollow = judged.left->at;
     }
     if (judged.inside_out.empty()) return;
-    out_.turned_components = judged.inside_out.size();
-    out_.turned_cavities = judged.cavities_turned;
+    report_.reversed_components = judged.inside_out.size();
+    report_.reversed_cavities = judged.cavities_reversed;
     for (const std::uint32_t t : judged.inside_out)
-      if (out_.source[t] != kFilled) out_.inside_out.push_back(out_.source[t]);
+      if (report_.source[t] != kFilled) report_.inside_out.push_back(report_.source[t]);
     const auto first_fill = static_cast<std::uint32_t>(
-        std::find(out_.source.begin(), out_.source.end(), kFilled) - out_.source.begin());
-    for (std::uint32_t t = 0; t < judged.turn.size(); ++t) {
-      if (judged.turn[t] == 0) continue;
-      turn(t);
-      if (out_.holes != 0)
-        out_.turned_after_filling.push_back(t < first_fill ? out_.source[t]
-                                                           : input_triangles_ + t - first_fill);
+        std::find(report_.source.begin(), report_.source.end(), kFilled) - report_.source.begin());
+    for (std::uint32_t t = 0; t < judged.reverse.size(); ++t) {
+      if (judged.reverse[t] == 0) continue;
+      reverse(t);
+      if (report_.holes != 0)
+        report_.reversed_after_filling.push_back(
+            t < first_fill ? report_.source[t] : input_triangles_ + t - first_fill);
     }
     find_edges();
     cancel_pairs();  // walls that are opposite now
-    out_.notes.push_back(
-        count_of(out_.turned_components, "component was", "components were") +
+    report_.notes.push_back(
+        count_of(report_.reversed_components, "component was", "components were") +
         " inside out and turned" +
-        (out_.turned_cavities == 0
+        (report_.reversed_cavities == 0
              ? ""
-             : ", with " + count_of(out_.turned_cavities, "cavity", "cavities") + " inside"));
+             : ", with " + count_of(report_.reversed_cavities, "cavity", "cavities") + " inside"));
   }
 
   /// Looks at the walls that have cancelled as well: they tell that parts met there.
   void find_hollows() {
     bool branched = !cancelled_.empty();
     for_each_edge(edges_, [&](std::span<const EdgeUse> e) { branched = branched || e.size() > 2; });
-    if (!out_.closed || !branched) return;
-    Mesh walls = mesh();
+    if (!closed_ || !branched) return;
+    Mesh walls = mesh_;
     for (const Cancelled& c : cancelled_) {
       const auto n = static_cast<std::uint32_t>(walls.vertices.size());
       walls.vertices.insert(walls.vertices.end(), c.corners.begin(), c.corners.end());
@@ -311,10 +314,10 @@ class Preparation {
     if (!hollow) return;
     if (hollow->at_wall && !options_.keep_orientation && !options_.drop_sheets)
       refuse_wall(where(*hollow));
-    if (out_.hollow) return;
-    out_.hollow = hollow->at;
-    out_.notes.push_back("parts that share edges enclose a hollow " + where(*hollow) +
-                         ", which need not be a cavity: that part counts as outside");
+    if (report_.hollow) return;
+    report_.hollow = hollow->at;
+    report_.notes.push_back("parts that share edges enclose a hollow " + where(*hollow) +
+                            ", which need not be a cavity: that part counts as outside");
   }
 
   /// Parts that were open, or that were turned to agree, are judged by themselves: their holes'
@@ -322,39 +325,39 @@ class Preparation {
   /// point, the guess joined bodies against each other; where the point is inside another body,
   /// that would be hollow. Then the whole, where a surface crosses itself.
   void find_inverted() {
-    if (!out_.closed || options_.keep_orientation) return;
-    const Guesses guesses = find_guesses(edges_, part_, out_.source, agreed_, opened_);
+    if (!closed_ || options_.keep_orientation) return;
+    const Guesses guesses = find_guesses(edges_, part_, report_.source, agreed_, opened_);
     if (guesses.ambiguous)
-      out_.notes.push_back(
+      report_.notes.push_back(
           "WARNING: the part with input triangle " + std::to_string(*guesses.ambiguous) +
           " was open, and its triangles were turned to agree: which solid it bounds is a guess");
-    const WindingNumber winding(mesh());
+    const WindingNumber winding(mesh_);
     if (const auto found =
-            geom::find_inverted(mesh(), winding, some_of(guesses.agreed, part_), part_))
+            geom::find_inverted(mesh_, winding, some_of(guesses.agreed, part_), part_))
       throw Error(ErrorCode::InvalidInput,
                   "triangles were turned to agree with their neighbours, and what they enclose is "
                   "inside out now, " +
                       where(*found) +
                       ": bodies that share an edge cannot be told apart; give each body a mesh of "
                       "its own, or orient all normals outwards");
-    if (out_.hollow) return;
+    if (report_.hollow) return;
     std::optional<Hollow> found =
-        geom::find_inverted(mesh(), winding, some_of(guesses.triangles, part_), part_);
+        geom::find_inverted(mesh_, winding, some_of(guesses.triangles, part_), part_);
     if (!found) {
       std::vector<std::uint32_t> all(part_.size());
       std::iota(all.begin(), all.end(), 0U);
-      found = geom::find_inverted(mesh(), winding, some_of(all, {}));
+      found = geom::find_inverted(mesh_, winding, some_of(all, {}));
     }
     if (!found) return;
-    out_.hollow = found->at;
-    out_.notes.push_back("WARNING: the surface crosses itself, and what it encloses " +
-                         where(*found) +
-                         " is inside out: that part counts as outside, and is NOT enclosed");
+    report_.hollow = found->at;
+    report_.notes.push_back("WARNING: the surface crosses itself, and what it encloses " +
+                            where(*found) +
+                            " is inside out: that part counts as outside, and is NOT enclosed");
   }
 
   [[nodiscard]] std::string where(const Hollow& found) const {
-    return (found.triangle < out_.source.size()
-                ? "at input triangle " + std::to_string(out_.source[found.triangle]) + " "
+    return (found.triangle < report_.source.size()
+                ? "at input triangle " + std::to_string(report_.source[found.triangle]) + " "
                 : "") +
            "near " + text_of(found.at);
   }
@@ -369,44 +372,49 @@ class Preparation {
   }
 
   [[nodiscard]] std::string source_text(std::uint32_t t) const {
-    return out_.source[t] == kFilled ? "(of a filled hole)" : std::to_string(out_.source[t]);
+    return report_.source[t] == kFilled ? "(of a filled hole)" : std::to_string(report_.source[t]);
   }
 
   /// Vertices in the order in which the triangles left use them in the input, before any was
   /// turned.
   void number_by_first_use() {
-    if (std::find(out_.turned.begin(), out_.turned.end(), 1) == out_.turned.end()) return;
-    const auto turn_all = [&] {
-      for (std::size_t t = 0; t < out_.turned.size(); ++t)
-        if (out_.turned[t] != 0) std::swap(mesh().triangles[t][1], mesh().triangles[t][2]);
+    if (std::find(report_.reversed.begin(), report_.reversed.end(), 1) == report_.reversed.end())
+      return;
+    const auto reverse_all = [&] {
+      for (std::size_t t = 0; t < report_.reversed.size(); ++t)
+        if (report_.reversed[t] != 0) std::swap(mesh_.triangles[t][1], mesh_.triangles[t][2]);
     };
-    turn_all();
-    mesh() = weld(mesh());
-    turn_all();
+    reverse_all();
+    mesh_ = weld(mesh_);
+    reverse_all();
     find_edges();
   }
 
   void find_border() {
-    out_.border.assign(mesh().vertices.size(), 0);
+    border_.assign(mesh_.vertices.size(), 0);
     std::size_t open = 0;
     for_each_edge(edges_, [&](std::span<const EdgeUse> e) {
       if (is_balanced(e)) return;
-      out_.border[e[0].lo] = out_.border[e[0].hi] = 1;
+      border_[e[0].lo] = border_[e[0].hi] = 1;
       ++open;
     });
-    out_.closed = open == 0;
-    if (out_.closed) return;
+    closed_ = open == 0;
+    if (closed_) return;
     if (options_.holes == Holes::Refuse)
       throw Error(ErrorCode::InvalidInput,
                   "the mesh is open at " + count_of(open, "edge", "edges") +
                       " and bounds no solid; close it, or have its holes filled (--holes fill)");
     ensure(options_.holes == Holes::Keep, "a mesh whose holes are filled is still open");
-    out_.notes.push_back("the mesh is open at " + count_of(open, "edge", "edges") +
-                         " and bounds no solid");
+    report_.notes.push_back("the mesh is open at " + count_of(open, "edge", "edges") +
+                            " and bounds no solid");
   }
 
   PrepareOptions options_;
-  Prepared out_;
+  Mesh mesh_;
+  std::vector<char> border_;  // per vertex, in the end
+  bool closed_ = true;
+  std::size_t filled_triangles_ = 0;
+  PreparationReport report_;
   std::uint32_t input_triangles_ = 0;
   std::vector<Cancelled> cancelled_;
   std::vector<char> agreed_, opened_;  // per input triangle: its part was turned to agree, was open

@@ -32,11 +32,11 @@ std::optional<std::uint32_t> judge_rims(std::span<const EdgeUse> edges,
 
 std::vector<std::vector<std::uint32_t>> name_rims(
     const std::vector<std::vector<std::uint32_t>>& rims, const Mesh& mesh,
-    std::span<const std::uint32_t> source, std::span<const char> turned) {
+    std::span<const std::uint32_t> source, std::span<const char> reversed) {
   std::vector<std::uint32_t> corner(mesh.vertices.size(), ~0U);
   for (std::size_t t = mesh.triangles.size(); t-- > 0;)
     for (std::uint32_t k = 0; k < 3; ++k) {
-      const std::uint32_t in_input = turned[t] != 0 && k != 0 ? 3 - k : k;
+      const std::uint32_t in_input = reversed[t] != 0 && k != 0 ? 3 - k : k;
       corner[mesh.triangles[t][k]] = 3 * source[t] + in_input;
     }
   std::vector<std::vector<std::uint32_t>> named = rims;

@@ -25,6 +25,6 @@ std::optional<std::uint32_t> judge_rims(std::span<const EdgeUse> edges,
 /// @param source, turned  per triangle: the input's, and whether it was turned.
 std::vector<std::vector<std::uint32_t>> name_rims(
     const std::vector<std::vector<std::uint32_t>>& rims, const Mesh& mesh,
-    std::span<const std::uint32_t> source, std::span<const char> turned);
+    std::span<const std::uint32_t> source, std::span<const char> reversed);
 
 }  // namespace kaboum::geom

@@ -28,7 +28,7 @@ class ShellJudge {
         shells_{mesh, find_chains(mesh, uses, was_open)} {}
 
   Judgement run() {
-    out_.turn.assign(mesh_.triangles.size(), 0);
+    out_.reverse.assign(mesh_.triangles.size(), 0);
     const auto doubtful = [&](std::uint32_t c) {
       return shells_.chains.closed[c] != 0 &&
              (shells_.chains.joined[c] != 0 || shells_.chains.sign[c] < 0);
@@ -150,14 +150,14 @@ class ShellJudge {
       }
       const std::vector<std::uint32_t> nest = nest_of(c);
       out_.inside_out.push_back(shells_.members[c][0]);
-      out_.cavities_turned += nest.size() - 1;
+      out_.cavities_reversed += nest.size() - 1;
       for (const std::uint32_t d : nest) {
         sense_[d] = -sense_[d];
         sign_[d] = -sign_[d];
       }
     }
     for (std::uint32_t t = 0; t < shells_.chains.label.size(); ++t)
-      out_.turn[t] = sense_[shells_.chains.label[t]] < 0 ? 1 : 0;
+      out_.reverse[t] = sense_[shells_.chains.label[t]] < 0 ? 1 : 0;
     for (const Probe& p : doubts_) {
       // Both signs: whichever way the chain is turned, a part is inside out.
       const std::uint32_t c = shells_.chains.label[p.triangle];

@@ -19,9 +19,9 @@ struct Judgement {
     bool at_wall;  ///< of bodies that share a wall and could not be told apart
   };
 
-  std::vector<char> turn;                 ///< per triangle: to be turned
+  std::vector<char> reverse;              ///< per triangle: to be turned
   std::vector<std::uint32_t> inside_out;  ///< a triangle of each shell turned for its own sake
-  std::size_t cavities_turned = 0;        ///< shells turned along with those
+  std::size_t cavities_reversed = 0;      ///< shells turned along with those
   std::size_t cavities = 0;               ///< shells that stay oriented inwards
   std::optional<Place> left;              ///< the first place that stays inside out
 };

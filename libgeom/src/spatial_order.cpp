@@ -4,8 +4,6 @@
 #include <kaboum/base/parallel.h>
 #include <kaboum/geom/spatial_order.h>
 
-#include <tbb/blocked_range.h>
-
 #include <algorithm>
 #include <array>
 
@@ -70,12 +68,10 @@ std::vector<std::uint32_t> spatial_order(std::span<const Vec3> points, double sh
   const double extent = points.empty() ? 0.0 : (box.max - box.min).maxCoeff();
   const double scale = extent > 0 ? 511.99 / extent : 0.0;  // the grid is twice as large
   std::vector<Item> items(points.size());
-  parallel_loop(
-      tbb::blocked_range<std::uint32_t>(0, static_cast<std::uint32_t>(items.size()), 16384),
-      [&](const tbb::blocked_range<std::uint32_t>& range) {
-        for (std::uint32_t i = range.begin(); i != range.end(); ++i)
-          items[i] = {key_of(((points[i] - box.min).array() + shift * extent).matrix() * scale), i};
-      });
+  parallel_for_light(items.size(), [&](std::size_t i) {
+    items[i] = {key_of(((points[i] - box.min).array() + shift * extent).matrix() * scale),
+                static_cast<std::uint32_t>(i)};
+  });
   return sorted(std::move(items));
 }
 

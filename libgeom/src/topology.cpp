@@ -3,8 +3,6 @@
 #include <kaboum/geom/predicates.h>
 #include <kaboum/geom/topology.h>
 
-#include <tbb/blocked_range.h>
-
 #include <algorithm>
 #include <bit>
 #include <numeric>
@@ -71,14 +69,13 @@ std::vector<EdgeUse> edge_uses(const Mesh& mesh) {
   std::vector<EdgeUse> uses(start.back());
   std::vector<std::uint32_t> next(start.begin(), start.end() - 1);
   each_side([&](const EdgeUse& e) { uses[next[e.lo]++] = e; });
-  parallel_loop(tbb::blocked_range<std::size_t>(0, mesh.vertices.size(), 4096),
-                [&](const tbb::blocked_range<std::size_t>& range) {
-                  for (std::size_t v = range.begin(); v != range.end(); ++v)
-                    std::sort(uses.begin() + start[v], uses.begin() + start[v + 1],
-                              [](const EdgeUse& a, const EdgeUse& b) {
-                                return a.hi < b.hi || (a.hi == b.hi && a.triangle < b.triangle);
-                              });
-                });
+  const auto sort_at = [&](std::size_t v) {
+    std::sort(uses.begin() + start[v], uses.begin() + start[v + 1],
+              [](const EdgeUse& a, const EdgeUse& b) {
+                return a.hi < b.hi || (a.hi == b.hi && a.triangle < b.triangle);
+              });
+  };
+  parallel_for(std::size_t{0}, mesh.vertices.size(), sort_at, {.grain = 4096});
   return uses;
 }
 

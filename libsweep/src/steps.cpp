@@ -29,7 +29,7 @@ Transform combine(const Transform& a, double factor, const Transform& b) {
 
 /// A candidate, and roughly the coefficients of its deviation in the stretch's length h.
 struct Candidate {
-  Piece piece;
+  PathInterval piece;
   std::array<double, 5> power{};  // of h², h³, …, h⁶
   double rounding = 0;
 };
@@ -69,7 +69,7 @@ class Chooser {
     }
   }
 
-  std::vector<Piece> run() {
+  std::vector<PathInterval> run() {
     const bool adaptive =
         options_.rule == StepRule::Adaptive || options_.rule == StepRule::Balanced;
     for (std::size_t i = 0; i < segments_.size();) {
@@ -84,12 +84,12 @@ class Chooser {
   }
 
  private:
-  [[nodiscard]] bool allowed(const Piece& piece) const {
+  [[nodiscard]] bool allowed(const PathInterval& piece) const {
     return piece.deviation <= options_.deviation &&
-           (!options_.max_reach || reach(piece, points_) <= *options_.max_reach);
+           (!options_.max_excess || excess(piece, points_) <= *options_.max_excess);
   }
 
-  void add(const Piece& piece) {
+  void add(const PathInterval& piece) {
     if (pieces_.size() >= kMostPieces)
       throw Error(ErrorCode::LimitReached,
                   "a body needs more than 1000000 steps; allow a larger epsilon");
@@ -130,7 +130,7 @@ class Chooser {
     if (!(room > 0) || count > static_cast<double>(kMostPieces))
       throw Error(ErrorCode::LimitReached,
                   "a body needs more than 1000000 steps; allow a larger epsilon");
-    if (options_.max_reach)
+    if (options_.max_excess)
       throw Error(ErrorCode::InvalidArgument,
                   "a largest reach needs the step rule adaptive or balanced");
     // Breakpoints are rounded: a step may be longer by 2^-52 than 1 / count.
@@ -191,7 +191,7 @@ class Chooser {
   Candidate candidate(std::size_t i, double begin, double end, bool chord) const {
     const Segment& s = segments_[i];
     Candidate c;
-    Piece& piece = c.piece;
+    PathInterval& piece = c.piece;
     piece = {i, i, begin, end, {}, {}, 0};
     if (!s.motion.moves()) {
       piece.start = piece.finish = s.motion.at(0);
@@ -241,8 +241,8 @@ class Chooser {
       } else {
         if (best) return *best;
         refused = h;
-        if (c.piece.deviation <= options_.deviation)  // the reach is too large
-          next = h * *options_.max_reach / reach(c.piece, points_);
+        if (c.piece.deviation <= options_.deviation)  // the excess is too large
+          next = h * *options_.max_excess / excess(c.piece, points_);
         h = std::min(next, 0.97 * h);
         if (!(h > 1e-9)) throw NoStepError();
       }
@@ -262,20 +262,20 @@ class Chooser {
         begin = c.piece.end;
         continue;
       }
-      const Piece piece = options_.merge ? extend(c.piece) : c.piece;
+      const PathInterval piece = options_.merge ? extend(c.piece) : c.piece;
       add(piece);
       return piece.last_segment + 1;
     }
   }
 
   /// A piece that ends at a waypoint, made longer by whole segments while that is allowed.
-  Piece extend(const Piece& first) {
-    Piece best = first;
+  PathInterval extend(const PathInterval& first) {
+    PathInterval best = first;
     std::size_t good = first.last_segment, step = 1;
     // Doubling, then halving.
     while (good + 1 < segments_.size()) {
       const std::size_t last = std::min(good + step, segments_.size() - 1);
-      const Piece longer = across(first.first_segment, first.begin, last);
+      const PathInterval longer = across(first.first_segment, first.begin, last);
       if (allowed(longer)) {
         best = longer;
         good = last;
@@ -289,8 +289,9 @@ class Chooser {
   }
 
   /// One hull for everything from within a segment to the end of a later one.
-  Piece across(std::size_t i, double begin, std::size_t last) {
-    Piece piece{i, last, begin, 1, segments_[i].motion.at(begin), segments_[last].motion.at(1), 0};
+  PathInterval across(std::size_t i, double begin, std::size_t last) {
+    PathInterval piece{
+        i, last, begin, 1, segments_[i].motion.at(begin), segments_[last].motion.at(1), 0};
     const double rounding = 2 * segments_[i].bounds.error(0) + 2 * segments_[last].bounds.error(0);
     double before = 0;  // deviation of the waypoint at the segment's start
     for (std::size_t k = i; k <= last; ++k) {
@@ -307,7 +308,7 @@ class Chooser {
   }
 
   /// Largest distance of the body at a pose from one place between the piece's ends.
-  double waypoint_deviation(const Piece& piece, const Transform& pose) const {
+  double waypoint_deviation(const PathInterval& piece, const Transform& pose) const {
     double along = 0, length = 0;
     for (const Vec3& p : points_) {
       const Vec3 a = piece.start * p, way = piece.finish * p - a;
@@ -334,20 +335,20 @@ class Chooser {
   const StepOptions& options_;
   std::vector<Segment> segments_;
   std::vector<double> whole_;
-  std::vector<Piece> pieces_;
+  std::vector<PathInterval> pieces_;
   double guess_ = 1;
 };
 
 }  // namespace
 
-std::vector<Piece> choose_steps(const Robot& robot, std::uint32_t link,
-                                std::span<const Vec3> points, const Path& path,
-                                const StepOptions& options) {
+std::vector<PathInterval> choose_steps(const Robot& robot, std::uint32_t link,
+                                       std::span<const Vec3> points, const Path& path,
+                                       const StepOptions& options) {
   ensure(!path.empty() && !points.empty(), "steps of an empty path or body");
   return Chooser(robot, link, points, path, options).run();
 }
 
-double reach(const Piece& piece, std::span<const Vec3> points) {
+double excess(const PathInterval& piece, std::span<const Vec3> points) {
   const Mat3 change = piece.finish.linear - piece.start.linear;
   std::vector<Vec3> images;
   images.reserve(points.size());

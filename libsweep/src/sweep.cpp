@@ -14,7 +14,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "thin_out.h"
+#include "simplify_hull.h"
 
 namespace kaboum::sweep {
 namespace {
@@ -29,14 +29,14 @@ constexpr double kLeastOverlap = 0.125;
 
 /// What is known of a body before its hulls are built.
 struct Plan {
-  std::vector<Piece> pieces;
+  std::vector<PathInterval> pieces;
   double spacing = 0;   // of float32 at the body's reach
   double rounding = 0;  // most that a vertex is moved by rounding
 };
 
 struct Output {
   geom::Mesh hull;
-  double deviation = 0, left_out = 0, rounding = 0, reach = 0;
+  double deviation = 0, left_out = 0, rounding = 0, excess = 0;
 };
 
 /// Largest distance of the body from the root's origin along the path.
@@ -92,7 +92,7 @@ double build(geom::HullBuilder& builder, std::vector<Vec3>& points) {
   return 2 * step;
 }
 
-Output make_hull(const LinkBody& body, const Piece& piece, const Plan& plan,
+Output make_hull(const LinkBody& body, const PathInterval& piece, const Plan& plan,
                  const SweepOptions& options, geom::HullBuilder& builder) {
   const double left_out = options.simplify * options.epsilon;
   std::vector<Vec3> points;
@@ -101,20 +101,20 @@ Output make_hull(const LinkBody& body, const Piece& piece, const Plan& plan,
   for (const Vec3& p : body.points) points.emplace_back(piece.finish * p);
   Output out;
   out.deviation = (piece.deviation + body.margin) * kUp;
-  out.reach = reach(piece, body.points);
+  out.excess = excess(piece, body.points);
   if (!options.explicit_margin) out.rounding = round_points(points);
   if ((options.explicit_margin || left_out > 0) && builder.build(points)) {
     points = builder.mesh().vertices;
-    out.left_out = thin_out(points, left_out, builder);
+    out.left_out = simplify_hull(points, left_out, builder);
   }
   if (options.explicit_margin) {
     const double radius = std::max((out.deviation + out.left_out + plan.rounding) * kUp,
                                    kLeastOverlap * options.epsilon);
     points = enlarge(points, radius);
-    out.reach += kOvershoot * radius;
+    out.excess += kOvershoot * radius;
     out.rounding = round_points(points);
   }
-  out.reach += out.rounding + build(builder, points);
+  out.excess += out.rounding + build(builder, points);
   out.hull = builder.mesh();
   return out;
 }
@@ -150,9 +150,9 @@ SweepResult swept_volume(const Robot& robot, std::span<const LinkBody> bodies, c
   StepOptions steps;
   steps.rule = options.rule;
   steps.merge = options.merge;
-  steps.max_reach = options.max_reach;
+  steps.max_excess = options.max_excess;
   std::vector<Plan> plans(bodies.size());
-  parallel_loop(std::size_t{0}, bodies.size(), [&](std::size_t i) {
+  parallel_for(std::size_t{0}, bodies.size(), [&](std::size_t i) {
     // The ends of a balanced piece lie up to epsilon beyond the poses; explicit margins as well.
     plans[i].spacing = geom::float32_spacing(extent(robot, bodies[i], path) + 4 * options.epsilon);
     plans[i].rounding = std::numbers::sqrt3 / 2 * plans[i].spacing * kUp;
@@ -162,14 +162,14 @@ SweepResult swept_volume(const Robot& robot, std::span<const LinkBody> bodies, c
   double least_room = for_motion;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (plans[i].spacing > options.epsilon / 100) {
-      result.stop = SweepStop::TooCoarse;
+      result.stop = Stop::TooCoarse;
       return result;
     }
     least_room = std::min(least_room, for_motion - bodies[i].margin - plans[i].rounding);
   }
   if (options.rule == StepRule::Uniform || options.rule == StepRule::Baginski)
     steps.shared = shared_bounds(robot, bodies, path);
-  parallel_loop(std::size_t{0}, bodies.size(), [&](std::size_t i) {
+  parallel_for(std::size_t{0}, bodies.size(), [&](std::size_t i) {
     StepOptions own = steps;
     own.deviation =
         own.shared.empty() ? for_motion - bodies[i].margin - plans[i].rounding : least_room;
@@ -182,7 +182,7 @@ SweepResult swept_volume(const Robot& robot, std::span<const LinkBody> bodies, c
     result.sources.insert(result.sources.end(), plans[i].pieces.size(), i);
   std::vector<Output> outputs(first.back());
   tbb::enumerable_thread_specific<geom::HullBuilder> builders;
-  parallel_loop(std::size_t{0}, outputs.size(), [&](std::size_t k) {
+  parallel_for(std::size_t{0}, outputs.size(), [&](std::size_t k) {
     const std::size_t i = result.sources[k];
     outputs[k] =
         make_hull(bodies[i], plans[i].pieces[k - first[i]], plans[i], options, builders.local());
@@ -197,7 +197,7 @@ SweepResult swept_volume(const Robot& robot, std::span<const LinkBody> bodies, c
     result.rounding = std::max(result.rounding, out.rounding);
     result.left_out = std::max(result.left_out, out.left_out);
     margin = std::max(margin, (out.deviation + out.left_out + out.rounding) * kUp);
-    far = std::max(far, out.reach);
+    far = std::max(far, out.excess);
     result.set.bodies.push_back(
         {bodies[i].name + " " + std::to_string(k - first[i]), std::move(out.hull)});
     result.pieces.push_back(plans[i].pieces[k - first[i]]);
@@ -206,7 +206,7 @@ SweepResult swept_volume(const Robot& robot, std::span<const LinkBody> bodies, c
     ensure(margin <= options.epsilon || !result.certified, "the margin exceeds epsilon");
     result.set.margin = margin;
   }
-  result.reach = (far + result.set.margin) * kUp;
+  result.excess = (far + result.set.margin) * kUp;
   return result;
 }
 

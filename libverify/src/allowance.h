@@ -55,14 +55,14 @@ class Allowance {
   template <class Body>
   std::vector<char> loop(std::size_t count, const Body& body) {
     if (!limited_) {
-      verify::parallel_loop(std::size_t{0}, count, body);
+      verify::parallel_for(std::size_t{0}, count, body);
       return {};
     }
     std::vector<char> undone(count, 1);
     for (std::size_t begin = 0; begin < count && !spent(); begin += kBlock) {
       const std::uint64_t share = std::max<std::uint64_t>(left() / kShares, 1);
       std::atomic<std::uint64_t> steps = 0;
-      verify::parallel_loop(begin, std::min(count, begin + kBlock), [&](std::size_t i) {
+      verify::parallel_for(begin, std::min(count, begin + kBlock), [&](std::size_t i) {
         Steps& mine = Steps::of_this_thread();
         const Steps before = mine;
         mine.most = mine.done + share;

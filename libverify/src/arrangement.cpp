@@ -128,7 +128,7 @@ std::vector<std::uint32_t> patches(const Arrangement& arrangement, int chain, Op
   // Per face and edge: the neighbour that can be walked to, if its number is larger.
   constexpr std::uint32_t kNone = 0xFFFFFFFF;
   std::vector<std::array<std::uint32_t, 3>> next(count, {kNone, kNone, kNone});
-  verify::parallel_loop(std::uint32_t{0}, count, [&](std::uint32_t i) {
+  verify::parallel_for(std::uint32_t{0}, count, [&](std::uint32_t i) {
     const std::uint32_t f = begin + i;
     const Face& face = meshes.face(f);
     if (face.axis < 0 || !arrangement.uncut(f, mask)) return;

@@ -64,7 +64,7 @@ class Farthest {
     const auto lower_first = [](const Part& a, const Part& b) { return a.upper < b.upper; };
     std::priority_queue<Part, std::vector<Part>, decltype(lower_first)> open(lower_first);
     Allowance allowance((1 - kSearchedShare) * effort.max_work);
-    double settled = 0;  // the largest bound of parts that are not cut further
+    double decided = 0;  // the largest bound of parts that are not cut further
     std::size_t seen = 0;
     const auto good = [&](double upper) {
       return upper <= best.lower * (1 + effort.gap) + 4 * slack_;
@@ -84,7 +84,7 @@ class Farthest {
       }
       for (const Part& part : some) {
         if (good(part.upper) || part.cuts >= kMaxCuts) {
-          settled = std::max(settled, part.upper);
+          decided = std::max(decided, part.upper);
         } else {
           open.push(part);
         }
@@ -102,7 +102,7 @@ class Farthest {
       seen += next.size();
       look_at(next);
     }
-    best.upper = std::max({best.lower, settled, open.empty() ? 0 : open.top().upper});
+    best.upper = std::max({best.lower, decided, open.empty() ? 0 : open.top().upper});
     return best;
   }
 
@@ -126,11 +126,11 @@ class Farthest {
       found.upper = std::min(found.upper, to_one(outside, hit.face));
       if (outside.empty()) return {};
     }
-    reach(centre, known, found);
+    look_round(centre, known, found);
     for (const Vec3& p : part.corner) {
       const NearestTriangle::Hit own = surely_.nearest(p);
       if (own.face != hit.face) found.upper = std::min(found.upper, to_one(part.corner, own.face));
-      if (own.distance > std::max(known, found.lower)) reach(p, known, found);
+      if (own.distance > std::max(known, found.lower)) look_round(p, known, found);
     }
     return found;
   }
@@ -186,7 +186,7 @@ class Farthest {
   }
 
   /// A point on the surface that is in the solid is on a face that has a part in it.
-  void reach(const Vec3& p, double known, Found& found) const {
+  void look_round(const Vec3& p, double known, Found& found) const {
     const double distance = perhaps_.distance(p);
     if (distance <= std::max(known, found.lower) || !std::isfinite(distance)) return;
     if (to_solid_ && winding_at(meshes_, kOutside, p).value_or(0) >= 1) return;

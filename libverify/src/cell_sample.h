@@ -32,13 +32,13 @@ using SampleVisitor = std::function<bool(const CellSample&)>;
 /// Visits one sample at least in each cell that the chains of `mask` cut the face into.
 ///
 /// @param limit    of the number of pieces of lines on the face
-/// @param settled  cells that lie on one of these coplanar faces, each of them left whole by its
+/// @param decided  cells that lie on one of these coplanar faces, each of them left whole by its
 /// own
 ///   chain, may be left out: perhaps all
 /// @pre the contacts of the mask's chains with the face's chain are known.
 /// @throws Error{LimitReached} beyond `limit`.
 void visit_samples(const Arrangement& arrangement, std::uint32_t face, OperandMask mask,
-                   std::size_t limit, std::span<const std::uint32_t> settled,
+                   std::size_t limit, std::span<const std::uint32_t> decided,
                    const SampleVisitor& visitor);
 
 /// Winding number of a chain on one side of the face at the sample; exact.

@@ -153,13 +153,13 @@ Vec3 position(const MeshPair& meshes, const CellSample& sample) {
 }
 
 void visit_samples(const Arrangement& arrangement, std::uint32_t face, OperandMask mask,
-                   std::size_t limit, std::span<const std::uint32_t> settled,
+                   std::size_t limit, std::span<const std::uint32_t> decided,
                    const SampleVisitor& visitor) {
   if (arrangement.uncut(face, mask)) {
     visitor(middle_sample(face));
     return;
   }
-  Cutter cutter(segments_of(arrangement, face, mask, limit, settled), face, limit);
+  Cutter cutter(segments_of(arrangement, face, mask, limit, decided), face, limit);
   cutter.visit(visitor);
 }
 

@@ -86,10 +86,10 @@ std::optional<ComplementOfUnion::Crossing> ComplementOfUnion::crossing_planes(co
   std::vector<Met> met;
   for (const Plane& plane : body.planes) {
     const double at = plane.normal.dot(middle) - plane.height;
-    const double reach = plane.normal.cwiseAbs().dot(half);
+    const double extent = plane.normal.cwiseAbs().dot(half);
     result.depth = std::min(result.depth, -at);
-    if (at >= reach) return std::nullopt;
-    if (at > -reach) met.push_back({&plane, at});
+    if (at >= extent) return std::nullopt;
+    if (at > -extent) met.push_back({&plane, at});
   }
   // The lowest ones first: what is above them in all of the box takes nothing from them.
   std::stable_sort(met.begin(), met.end(), [](const Met& a, const Met& b) { return a.at > b.at; });

@@ -8,6 +8,7 @@
 #include <atomic>
 
 #include "parallel.h"
+#include "parallel_sort.h"
 
 namespace kaboum::verify {
 namespace {
@@ -270,7 +271,7 @@ MutualContacts contacts_between(const MeshPair& meshes, const ContactLimits& lim
   const std::vector<std::uint32_t> roots = subtrees(inside, kTasks);
   std::vector<FoundContacts> first(roots.size()), second(roots.size());
   Counter counter(limits);
-  verify::parallel_loop(std::size_t{0}, roots.size(), [&](std::size_t i) {
+  verify::parallel_for(std::size_t{0}, roots.size(), [&](std::size_t i) {
     Classifier classify(meshes, first[i], second[i]);
     Counter::Task task(counter);
     meeting_pairs(inside, roots[i], outside, [&](std::uint32_t f, std::uint32_t g) {
@@ -295,7 +296,7 @@ Contacts contacts_within(const MeshPair& meshes, int chain, const ContactLimits&
   const std::vector<std::uint32_t> roots = subtrees(tree, kTasks);
   std::vector<FoundContacts> found(roots.size());
   Counter counter(limits);
-  verify::parallel_loop(std::size_t{0}, roots.size(), [&](std::size_t i) {
+  verify::parallel_for(std::size_t{0}, roots.size(), [&](std::size_t i) {
     Classifier classify(meshes, found[i], found[i]);
     Counter::Task task(counter);
     meeting_pairs(tree, roots[i], tree, [&](std::uint32_t f, std::uint32_t g) {

@@ -140,8 +140,8 @@ Cover verify_cover(const geom::Mesh& original, const geom::ConvexSet& set,
   return cover;
 }
 
-DistanceClaim verify_reach(const geom::ConvexSet& set, const geom::Mesh& original, double epsilon,
-                           bool to_solid, const InclusionOptions& limits) {
+DistanceClaim verify_excess(const geom::ConvexSet& set, const geom::Mesh& original, double epsilon,
+                            bool to_solid, const InclusionOptions& limits) {
   DistanceClaimOptions options;
   options.to_solid = to_solid;
   const geom::Mesh sum = sum_of(set);
@@ -157,7 +157,7 @@ DistanceClaim verify_reach(const geom::ConvexSet& set, const geom::Mesh& origina
   }
   if (to_solid && claim.answer == Answer::Verified) {
     // Cavities that the bodies fill are farther away inside the bodies than on their surfaces.
-    const Claim inside = reach_inside(sum, original, inclusion, epsilon - set.margin, limits);
+    const Claim inside = excess_inside(sum, original, inclusion, epsilon - set.margin, limits);
     if (inside.answer == Answer::Verified) return claim;
     claim.answer = inside.answer;
     claim.reason = inside.reason;

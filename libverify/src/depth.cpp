@@ -83,8 +83,8 @@ Claim verify_depth(const geom::Mesh& original, const geom::ConvexSet& set, doubl
   return claim;
 }
 
-Claim reach_inside(const geom::Mesh& sum, const geom::Mesh& original, const Inclusion& inclusion,
-                   double epsilon, const InclusionOptions& options) {
+Claim excess_inside(const geom::Mesh& sum, const geom::Mesh& original, const Inclusion& inclusion,
+                    double epsilon, const InclusionOptions& options) {
   Claim claim = inclusion.solid;
   if (claim.answer != Answer::Refuted) return claim;
   claim = {};

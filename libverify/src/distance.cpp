@@ -15,7 +15,7 @@ namespace kaboum::verify {
 namespace {
 
 /// A part of a triangle.
-struct Piece {
+struct TrianglePart {
   std::array<Vec3, 3> corner;
   int depth;
 };
@@ -36,9 +36,9 @@ class Judge {
   DistanceClaim operator()(const Vec3& a, const Vec3& b, const Vec3& c) const {
     DistanceClaim claim;
     claim.answer = Answer::Verified;
-    std::vector<Piece> stack{{{a, b, c}, 0}};
+    std::vector<TrianglePart> stack{{{a, b, c}, 0}};
     while (!stack.empty()) {
-      const Piece piece = stack.back();
+      const TrianglePart piece = stack.back();
       stack.pop_back();
       if (++claim.pieces > options_.max_pieces_of_one || piece.depth > kMaxDepth) {
         claim.answer = Answer::Undecided;
@@ -77,7 +77,7 @@ class Judge {
 
   /// Whether all of the piece is certainly within the bound. Records distances found on the way.
   /// @param face  the triangle nearest to its centre
-  bool passes(const Piece& piece, std::uint32_t& face, DistanceClaim& claim) const {
+  bool passes(const TrianglePart& piece, std::uint32_t& face, DistanceClaim& claim) const {
     const Vec3 centre = (piece.corner[0] + piece.corner[1] + piece.corner[2]) / 3;
     double radius = 0;
     for (const Vec3& p : piece.corner) radius = std::max(radius, (p - centre).norm());
@@ -106,7 +106,7 @@ class Judge {
     return false;
   }
 
-  [[nodiscard]] bool near(const Piece& piece, std::uint32_t face) const {
+  [[nodiscard]] bool near(const TrianglePart& piece, std::uint32_t face) const {
     return face != NearestTriangle::kNone &&
            std::all_of(piece.corner.begin(), piece.corner.end(),
                        [&](const Vec3& p) { return upper(p, face) <= epsilon_; });
@@ -114,7 +114,8 @@ class Judge {
 
   /// Cuts along a side of the nearest triangle's prism, so that surfaces in one plane fall apart
   /// into the parts that lie on one triangle each; across the longest edge where no side cuts.
-  void split(const Piece& piece, std::uint32_t face, std::vector<Piece>& stack) const {
+  void split(const TrianglePart& piece, std::uint32_t face,
+             std::vector<TrianglePart>& stack) const {
     const Vec3 &a = meshes_.corner(face, 0), &b = meshes_.corner(face, 1),
                &c = meshes_.corner(face, 2);
     const Vec3 normal = (b - a).cross(c - a);
@@ -127,8 +128,8 @@ class Judge {
   }
 
   /// Cuts by the plane through `on`; @return false when no corner is clearly on either side.
-  bool cut(const Piece& piece, const Vec3& on, const Vec3& normal,
-           std::vector<Piece>& stack) const {
+  bool cut(const TrianglePart& piece, const Vec3& on, const Vec3& normal,
+           std::vector<TrianglePart>& stack) const {
     std::array<double, 3> height;
     for (int k = 0; k < 3; ++k) height[k] = normal.dot(piece.corner[k] - on);
     const double clear = 4 * slack_;
@@ -154,7 +155,7 @@ class Judge {
     return true;
   }
 
-  static void halve(const Piece& piece, std::vector<Piece>& stack) {
+  static void halve(const TrianglePart& piece, std::vector<TrianglePart>& stack) {
     int longest = 0;
     double length = -1;
     for (int k = 0; k < 3; ++k) {
@@ -200,7 +201,7 @@ DistanceClaim verify_distance(const geom::Mesh& from, const geom::Mesh& to, doub
   for (std::uint32_t first = 0; first < count; first += kBlock) {
     const std::uint32_t size = std::min(kBlock, count - first);
     claims.assign(size, {});
-    verify::parallel_loop(std::uint32_t{0}, size, [&](std::uint32_t i) {
+    verify::parallel_for(std::uint32_t{0}, size, [&](std::uint32_t i) {
       const std::uint32_t f = first + i;
       claims[i] = judge(meshes.corner(f, 0), meshes.corner(f, 1), meshes.corner(f, 2));
     });

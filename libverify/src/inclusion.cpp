@@ -82,7 +82,7 @@ class Decision {
       prepare_settled(kInside);
     } catch (const Error& error) {
       if (error.code() != ErrorCode::LimitReached) throw;
-      settled_.clear();
+      decided_.clear();
     }
     const Contacts& contacts = arrangement_.contacts(kInside, kOutside);
     std::stable_sort(order.begin(), order.end(), [&](std::uint32_t f, std::uint32_t g) {
@@ -92,7 +92,7 @@ class Decision {
       const std::uint32_t f = order[i];
       if ((inner[f] != kCut && inner[f] >= 1) || (outer[f] != kCut && outer[f] >= 1)) return;
       // Its middle is in, or beside, one of its cells: most that stick out need no cutting.
-      if (holds(middle_sample(f))) visit(f, mask_of(kOutside), settled(f), holds);
+      if (holds(middle_sample(f))) visit(f, mask_of(kOutside), decided(f), holds);
     });
     left_out_ = static_cast<std::size_t>(std::count(undone.begin(), undone.end(), 1));
   }
@@ -113,7 +113,7 @@ class Decision {
           uncut_values(arrangement_, chain, 3, side, value, samples_, allowance_);
       const std::uint32_t begin = meshes_.begin(chain);
       std::vector<char> bad(values.size(), 0);
-      verify::parallel_loop(std::size_t{0}, values.size(), [&](std::size_t i) {
+      verify::parallel_for(std::size_t{0}, values.size(), [&](std::size_t i) {
         const auto f = begin + static_cast<std::uint32_t>(i);
         if (meshes_.face(f).axis < 0) return;
         if (values[i] != kCut) {
@@ -147,9 +147,9 @@ class Decision {
     if (options_.progress) options_.progress(what);
   }
 
-  void visit(std::uint32_t f, OperandMask mask, std::span<const std::uint32_t> settled,
+  void visit(std::uint32_t f, OperandMask mask, std::span<const std::uint32_t> decided,
              const SampleVisitor& visitor) {
-    visit_samples(arrangement_, f, mask, options_.max_pieces, settled,
+    visit_samples(arrangement_, f, mask, options_.max_pieces, decided,
                   [&](const CellSample& sample) {
                     ++samples_;
                     return visitor(sample);
@@ -173,10 +173,10 @@ class Decision {
   }
 
   /// Where faces of both chains lie in one plane, the own winding number of the other chain's face
-  /// settles the cell that it covers, which saves cutting along its edges. Worth while only where
+  /// decides the cell that it covers, which saves cutting along its edges. Worth while only where
   /// there is much of that.
   void prepare_settled(int chain) {
-    settled_.clear();
+    decided_.clear();
     std::size_t coplanar = 0;
     const std::uint32_t begin = meshes_.begin(chain), end = meshes_.end(chain);
     const Contacts& contacts = arrangement_.contacts(chain, 1 - chain);
@@ -188,18 +188,18 @@ class Decision {
     const int other = 1 - chain;
     const Side side = test_side(chain);
     const std::vector<int> same = own_values(other, side), reversed = own_values(other, -side);
-    settled_.resize(same.size());
+    decided_.resize(same.size());
     for (std::size_t i = 0; i < same.size(); ++i) {
-      settled_[i] =
+      decided_[i] =
           static_cast<std::uint8_t>((same[i] != kCut && passes(chain, same[i]) ? 1 : 0) |
                                     (reversed[i] != kCut && passes(chain, reversed[i]) ? 2 : 0));
     }
   }
 
-  /// Coplanar faces that settle the cells of f that they cover.
-  [[nodiscard]] std::vector<std::uint32_t> settled(std::uint32_t f) const {
+  /// Coplanar faces that decide the cells of f that they cover.
+  [[nodiscard]] std::vector<std::uint32_t> decided(std::uint32_t f) const {
     std::vector<std::uint32_t> result;
-    if (settled_.empty()) return result;
+    if (decided_.empty()) return result;
     const Face& face = meshes_.face(f);
     const int other = 1 - face.chain;
     for (const Contacts::Cut& cut : arrangement_.contacts(face.chain, other).cuts(f)) {
@@ -207,12 +207,12 @@ class Decision {
       const bool upward = orient2d(face.axis, meshes_.corner(cut.by, 0), meshes_.corner(cut.by, 1),
                                    meshes_.corner(cut.by, 2)) == Sign::Positive;
       const std::uint8_t wanted = upward == face.upward ? 1 : 2;
-      if ((settled_[cut.by - meshes_.begin(other)] & wanted) != 0) result.push_back(cut.by);
+      if ((decided_[cut.by - meshes_.begin(other)] & wanted) != 0) result.push_back(cut.by);
     }
     return result;
   }
 
-  /// Faces with a cell that the other chain's winding number does not settle.
+  /// Faces with a cell that the other chain's winding number does not decide.
   std::vector<std::uint32_t> first_level(int chain) {
     const int other = 1 - chain;
     const Side side = test_side(chain);
@@ -224,14 +224,14 @@ class Decision {
     prepare_settled(chain);
     const std::uint32_t begin = meshes_.begin(chain);
     std::vector<char> fails(other_values_.size(), 0);
-    verify::parallel_loop(std::size_t{0}, fails.size(), [&](std::size_t i) {
+    verify::parallel_for(std::size_t{0}, fails.size(), [&](std::size_t i) {
       const auto f = begin + static_cast<std::uint32_t>(i);
       if (meshes_.face(f).axis < 0) return;
       if (other_values_[i] != kCut) {
         fails[i] = static_cast<char>(!passes(chain, other_values_[i]));
         return;
       }
-      visit(f, mask_of(other), settled(f), [&](const CellSample& sample) {
+      visit(f, mask_of(other), decided(f), [&](const CellSample& sample) {
         fails[i] = static_cast<char>(!passes(chain, value(sample)));
         return fails[i] == 0;
       });
@@ -253,7 +253,7 @@ class Decision {
     };
     const std::uint32_t begin = meshes_.begin(chain);
     std::vector<char> bad(meshes_.count(chain), 0);
-    verify::parallel_loop(std::size_t{0}, failing.size(), [&](std::size_t i) {
+    verify::parallel_for(std::size_t{0}, failing.size(), [&](std::size_t i) {
       const std::uint32_t f = failing[i];
       const int own_value = values[f - begin], other_value = other_values_[f - begin];
       // The own number is the same all over the face and harmless.
@@ -282,7 +282,7 @@ class Decision {
         arrangement_, kInside, mask_of(kOutside), kOuter,
         [&](const CellSample& sample) { return at(sample, kOuter); }, samples_, allowance_);
     std::vector<char> bad(meshes_.count(kInside), 0);
-    verify::parallel_loop(std::size_t{0}, failing.size(), [&](std::size_t i) {
+    verify::parallel_for(std::size_t{0}, failing.size(), [&](std::size_t i) {
       const std::uint32_t f = failing[i];
       if (outer_values[f] != kCut) {
         if (outer_values[f] < 1) report(surface_, bad[f], middle_sample(f), kOuter);
@@ -330,9 +330,9 @@ class Decision {
   Arrangement arrangement_;
   std::size_t left_out_ = 0;
   std::vector<int> other_values_;
-  /// Per face of the other chain: bit 0, its own chain settles the side that the faces in question
+  /// Per face of the other chain: bit 0, its own chain decides the side that the faces in question
   /// are tested on, if it is oriented like them; bit 1, if it is oriented the other way.
-  std::vector<std::uint8_t> settled_;
+  std::vector<std::uint8_t> decided_;
   std::atomic<std::size_t> samples_ = 0;
   Offences solid_, surface_;
 };

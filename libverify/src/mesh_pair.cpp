@@ -97,7 +97,7 @@ MeshPair::MeshPair(const geom::Mesh& inside, const geom::Mesh& outside) {
     offset += static_cast<std::uint32_t>(mesh.vertices.size());
     if (chain == kInside) split_ = static_cast<std::uint32_t>(faces_.size());
   }
-  verify::parallel_loop(std::size_t{0}, faces_.size(), [&](std::size_t f) {
+  verify::parallel_for(std::size_t{0}, faces_.size(), [&](std::size_t f) {
     Face& face = faces_[f];
     find_axis(face, points_[face.v[0]], points_[face.v[1]], points_[face.v[2]]);
   });
@@ -126,7 +126,7 @@ MeshPair::MeshPair(const geom::Mesh& inside, const geom::Mesh& outside) {
     }
     tree_[chain] = BoxTree(std::move(boxes), std::move(items));
   };
-  verify::parallel_calls([&] { build_tree(kInside); }, [&] { build_tree(kOutside); });
+  verify::parallel_invoke([&] { build_tree(kInside); }, [&] { build_tree(kOutside); });
 }
 
 void MeshPair::rescale() {

@@ -47,9 +47,9 @@ DistanceVerdict decide_distance(Between between, const geom::Mesh& from, const g
   return out;
 }
 
-DistanceVerdict decide_reach(const MeshQuestion& q, bool to_solid) {
+DistanceVerdict decide_excess(const MeshQuestion& q, bool to_solid) {
   DistanceVerdict out{to_solid ? Between::UnionToSolid : Between::FacetsToSurface,
-                      verify_reach(*q.set, q.original, *q.bound, to_solid),
+                      verify_excess(*q.set, q.original, *q.bound, to_solid),
                       {}};
   out.bracket = bracket_of(out.claim);
   if (out.claim.answer == Answer::Verified) return out;
@@ -65,7 +65,7 @@ DistanceVerdict decide_reach(const MeshQuestion& q, bool to_solid) {
 void decide_distances(const MeshQuestion& q, const InclusionOptions& options, MeshVerdict& out) {
   if (q.relation == Relation::Cover) {
     options.progress("distance");
-    out.distances.push_back(decide_reach(q, out.inclusion.inner_closed));
+    out.distances.push_back(decide_excess(q, out.inclusion.inner_closed));
   } else if (q.set != nullptr) {
     options.progress("depth");
     out.depth = verify_depth(q.original, *q.set, *q.bound, options);

@@ -1,35 +1,29 @@
 #pragma once
 
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/parallel_invoke.h>
-#include <oneapi/tbb/parallel_sort.h>
-#include <oneapi/tbb/task_group.h>
-
-#include <utility>
+#include <cstddef>
+#include <functional>
 
 namespace kaboum::verify {
 
-// TBB's loops, in groups of their own: a loop of TBB's is left undone without a word where another
-// task of the caller's group throws, and an answer given then would rest on nothing. Nothing is
-// shared with the libraries that are checked, this neither.
+// Loops by several threads that end when all is done, or throw. A copy of what the libraries that
+// are checked have (kaboum/base/parallel.h), of which nothing is shared.
 
-template <class... Arguments>
-void parallel_loop(Arguments&&... arguments) {
-  oneapi::tbb::task_group_context alone(oneapi::tbb::task_group_context::isolated);
-  oneapi::tbb::parallel_for(std::forward<Arguments>(arguments)..., alone);
+/// Calls body(begin, end) for parts of 0 … n, without n, that together are all of it.
+void parallel_ranges(std::size_t n,
+                     const std::function<void(std::size_t begin, std::size_t end)>& body);
+
+/// Calls body(i) for all i from first to last, without last.
+template <class Index, class Body>
+void parallel_for(Index first, Index last, Body&& body) {
+  if (!(first < last)) return;
+  const auto calls = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i != end; ++i)
+      body(static_cast<Index>(first + static_cast<Index>(i)));
+  };
+  parallel_ranges(static_cast<std::size_t>(last - first), std::cref(calls));
 }
 
-template <class... Functions>
-void parallel_calls(Functions&&... functions) {
-  oneapi::tbb::task_group_context alone(oneapi::tbb::task_group_context::isolated);
-  oneapi::tbb::parallel_invoke(std::forward<Functions>(functions)..., alone);
-}
-
-template <class Iterator, class Compare>
-void sort_in_parallel(Iterator begin, Iterator end, const Compare& compare) {
-  oneapi::tbb::task_group_context alone(oneapi::tbb::task_group_context::isolated);
-  oneapi::tbb::task_group group(alone);
-  group.run_and_wait([&] { oneapi::tbb::parallel_sort(begin, end, compare); });
-}
+/// Calls both.
+void parallel_invoke(const std::function<void()>& first, const std::function<void()>& second);
 
 }  // namespace kaboum::verify

@@ -71,7 +71,7 @@ class Replay {
  private:
   bool start() {
     report_.dropped = log_.dropped.size();
-    report_.turned = log_.turned.size();
+    report_.reversed = log_.reversed.size();
     if (!interpret()) return false;
     find_border();
     if (report_.filled != 0 && !report_.closed)
@@ -170,7 +170,7 @@ class Replay {
       }
     }
     const std::vector<std::vector<std::uint32_t>> rims = rims_of_log();
-    for (const std::uint32_t t : log_.turned) {
+    for (const std::uint32_t t : log_.reversed) {
       require_triangle(t);
       turn(input_[t]);
     }
@@ -186,7 +186,7 @@ class Replay {
     for (std::size_t i = 0; i < fill.size(); ++i) {
       Corners c;
       for (int k = 0; k < 3; ++k) c[k] = numbered(fill[i][k], number);
-      if (std::ranges::binary_search(log_.turned_after_filling, first_fill + i)) turn(c);
+      if (std::ranges::binary_search(log_.reversed_after_filling, first_fill + i)) turn(c);
       triangles_.push_back(c);
     }
     around_.resize(points_.size());
@@ -210,11 +210,11 @@ class Replay {
   /// these turned closed chains; what fills the holes follows from the rims.
   /// @param fill  the triangles, before the last turns; they refer to all_points_.
   bool fill_holes(const std::vector<std::vector<std::uint32_t>>& rims, std::vector<Corners>& fill) {
-    if (rims.empty() && log_.turned_after_filling.empty()) return true;
+    if (rims.empty() && log_.reversed_after_filling.empty()) return true;
     std::vector<Corners> before = input_;
-    if (!std::ranges::is_sorted(log_.turned_after_filling, std::ranges::less_equal{}))
+    if (!std::ranges::is_sorted(log_.reversed_after_filling, std::ranges::less_equal{}))
       throw Error(ErrorCode::InvalidInput, "the log's turned triangles are not ascending");
-    for (const std::uint32_t t : log_.turned_after_filling)
+    for (const std::uint32_t t : log_.reversed_after_filling)
       if (t < before.size()) turn(before[t]);
     std::erase_if(before, repeated);
     if (const std::string wrong = find_wrong_rim(before, rims); !wrong.empty())
@@ -223,10 +223,10 @@ class Replay {
     report_.filled = fill.size();
 
     EdgeBalance balance;
-    for (const std::uint32_t t : log_.turned_after_filling) {
+    for (const std::uint32_t t : log_.reversed_after_filling) {
       if (t >= input_.size() + fill.size())
         return violated("a triangle turned after filling holes is not there");
-      add_edges(t < input_.size() ? input_[t] : turned(fill[t - input_.size()]), balance);
+      add_edges(t < input_.size() ? input_[t] : reversed(fill[t - input_.size()]), balance);
     }
     for (const auto& [edge, surplus] : balance)
       if (surplus != 0)
@@ -234,7 +234,7 @@ class Replay {
     return true;
   }
 
-  static Corners turned(Corners c) {
+  static Corners reversed(Corners c) {
     turn(c);
     return c;
   }
@@ -329,9 +329,9 @@ class Replay {
       if (v >= points_.size())
         throw Error(ErrorCode::InvalidInput,
                     at_step(i) + " of the log refers to a vertex that is not there");
-    const auto find = [&](const Corners& wished) {
+    const auto find = [&](const Corners& requested) {
       for (const std::uint32_t t : around_[s.kept])
-        if (rotated(triangles_[t]) == rotated(wished)) return t;
+        if (rotated(triangles_[t]) == rotated(requested)) return t;
       return ~0U;
     };
     const std::uint32_t first = find({s.kept, s.gone, s.left}),

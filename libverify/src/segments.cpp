@@ -14,13 +14,13 @@ namespace {
 class Collector {
  public:
   Collector(const MeshPair& meshes, std::uint32_t face, std::size_t limit,
-            std::span<const std::uint32_t> settled)
+            std::span<const std::uint32_t> decided)
       : meshes_(meshes),
         index_(face),
         face_(meshes_.face(face)),
         limit_(limit),
-        settled_(settled.begin(), settled.end()) {
-    std::sort(settled_.begin(), settled_.end());
+        decided_(decided.begin(), decided.end()) {
+    std::sort(decided_.begin(), decided_.end());
   }
 
   void add(const Contacts::Cut& cut) {
@@ -144,15 +144,15 @@ class Collector {
     }
   }
 
-  /// Whether the only faces of g's chain along its edge are settled ones.
+  /// Whether the only faces of g's chain along its edge are decided ones.
   [[nodiscard]] bool between_settled(std::uint32_t gi, std::uint32_t a, std::uint32_t b) const {
-    if (settled_.empty()) return false;
+    if (decided_.empty()) return false;
     int count = 0;
     for (const std::uint32_t h : meshes_.around_edge(a, b)) {
       const Face& face = meshes_.face(h);
       if (face.chain != meshes_.face(gi).chain) continue;
       if (face.place_of(a) < 0 || face.place_of(b) < 0) continue;
-      if (!std::binary_search(settled_.begin(), settled_.end(), h)) return false;
+      if (!std::binary_search(decided_.begin(), decided_.end(), h)) return false;
       ++count;
     }
     return count == 2;
@@ -195,7 +195,7 @@ class Collector {
   const Face& face_;
   std::size_t limit_;
   std::vector<Segment> segments_;
-  std::vector<std::uint32_t> settled_;
+  std::vector<std::uint32_t> decided_;
   std::set<std::pair<std::uint32_t, std::uint32_t>> edges_;
 };
 
@@ -248,8 +248,8 @@ Approx share(const Approx& weight, const Approx& total) {
 
 std::vector<Segment> segments_of(const Arrangement& arrangement, std::uint32_t face,
                                  OperandMask mask, std::size_t limit,
-                                 std::span<const std::uint32_t> settled) {
-  Collector collector(arrangement.meshes(), face, limit, settled);
+                                 std::span<const std::uint32_t> decided) {
+  Collector collector(arrangement.meshes(), face, limit, decided);
   const int chain = arrangement.meshes().face(face).chain;
   for (int c = 0; c < 2; ++c) {
     if ((mask & mask_of(c)) == 0) continue;

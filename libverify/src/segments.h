@@ -23,12 +23,12 @@ struct Segment {
 /// The segments in which the chains of a mask cut a face.
 ///
 /// @param limit    of their number
-/// @param settled  edges between two of these coplanar faces are left out
+/// @param decided  edges between two of these coplanar faces are left out
 /// @pre the contacts of the mask's chains with the face's chain are known
 /// @throws Error{LimitReached} beyond `limit`
 std::vector<Segment> segments_of(const Arrangement& arrangement, std::uint32_t face,
                                  OperandMask mask, std::size_t limit,
-                                 std::span<const std::uint32_t> settled);
+                                 std::span<const std::uint32_t> decided);
 
 Triple<Approx> rounded(const Triple<Exact>& x);
 Triple<Exact> cross(const Triple<Exact>& a, const Triple<Exact>& b);

@@ -312,11 +312,12 @@ class Search {
   }
 
   /// Whether one body holds all places; `body` is tried first, and becomes it.
-  bool holder(std::span<const Vec3> places, double reach, std::uint32_t& body,
+  bool holder(std::span<const Vec3> places, double distance, std::uint32_t& body,
               const std::vector<std::uint32_t>& near) const {
     const auto holds = [&](std::uint32_t i) {
       return std::all_of(places.begin(), places.end(), [&](const Vec3& p) {
-        return bodies_[i].distance_to_box(p) <= std::max(reach, 0.0) && bodies_[i].holds(p, reach);
+        return bodies_[i].distance_to_box(p) <= std::max(distance, 0.0) &&
+               bodies_[i].holds(p, distance);
       });
     };
     if (bodies_.empty()) return false;
@@ -425,7 +426,7 @@ void surface_claim(std::span<const MovingShape> shapes, const Waypoints& path,
     const Outline outline = outline_of(shapes[i]);
     std::vector<std::vector<Stretch>> open(segments);
     std::vector<Task> wholes(segments);
-    verify::parallel_loop(std::size_t{0}, segments, [&](std::size_t segment) {
+    verify::parallel_for(std::size_t{0}, segments, [&](std::size_t segment) {
       wholes[segment].shape = i;
       wholes[segment].segment = segment;
       open[segment] =
@@ -450,7 +451,7 @@ void surface_claim(std::span<const MovingShape> shapes, const Waypoints& path,
     }
     // Tasks after the first one that refutes need not be done: all before it are.
     std::atomic<std::size_t> first_refuting = tasks.size();
-    verify::parallel_loop(std::size_t{0}, tasks.size(), [&](std::size_t t) {
+    verify::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t t) {
       if (t > first_refuting) return;
       Task& task = tasks[t];
       Search search(task, shapes[i], path, bodies, margin, options);

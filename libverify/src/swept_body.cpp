@@ -86,17 +86,17 @@ double SweptBody::rounding(const Vec3& p) const {
   return 0x1p-46 * std::max(size_, p.cwiseAbs().maxCoeff());
 }
 
-bool SweptBody::holds(const Vec3& p, double reach) const {
+bool SweptBody::holds(const Vec3& p, double distance) const {
   const double size = std::max(size_, p.cwiseAbs().maxCoeff());
-  const double deep = std::min(reach, 0.0);
+  const double deep = std::min(distance, 0.0);
   bool inside = true;
   for (const Facet& f : facets_) {
     const double height = f.normal.dot(p) - f.offset, slack = f.slack * size;
-    if (height - slack > reach) return false;
+    if (height - slack > distance) return false;
     inside = inside && height + slack <= deep;
   }
   if (inside) return true;
-  return reach > 0 && distance_from_above(p) <= reach;
+  return distance > 0 && distance_from_above(p) <= distance;
 }
 
 Vec3 SweptBody::nearest(const Vec3& p) const {

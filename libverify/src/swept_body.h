@@ -13,9 +13,9 @@ class SweptBody {
   /// @pre exactly convex, outward normals (verify_convexity)
   explicit SweptBody(const geom::Mesh& hull);
 
-  /// Whether the point is certainly within `reach` of the body; with a negative reach, whether it
-  /// is certainly that deep inside. Points near the limit may get "no".
-  [[nodiscard]] bool holds(const geom::Vec3& p, double reach) const;
+  /// Whether the point is certainly within `distance` of the body; with a negative distance,
+  /// whether it is certainly that deep inside. Points near the limit may get "no".
+  [[nodiscard]] bool holds(const geom::Vec3& p, double distance) const;
   /// Not less than the distance of the point from the body.
   [[nodiscard]] double distance_from_above(const geom::Vec3& p) const;
   /// Not more than it.

@@ -56,8 +56,8 @@ class BoxSearch {
         return claim;
       }
       looks.assign(cells.size(), {});
-      verify::parallel_loop(std::size_t{0}, cells.size(),
-                            [&](std::size_t i) { looks[i] = look_at(cells[i]); });
+      verify::parallel_for(std::size_t{0}, cells.size(),
+                           [&](std::size_t i) { looks[i] = look_at(cells[i]); });
       const auto deepest = std::max_element(
           looks.begin(), looks.end(),
           [](const BoxResult& a, const BoxResult& b) { return a.beyond < b.beyond; });

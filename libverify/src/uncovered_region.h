@@ -51,7 +51,7 @@ Claim search_uncovered(const MeshPair& meshes, const std::vector<std::uint32_t>&
 /// original's solid or triangles, given that the bodies' triangles are.
 /// @param inclusion  of the sum in the original
 /// @pre both are closed chains whose coordinates can be scaled
-Claim reach_inside(const geom::Mesh& sum, const geom::Mesh& original, const Inclusion& inclusion,
-                   double epsilon, const InclusionOptions& options);
+Claim excess_inside(const geom::Mesh& sum, const geom::Mesh& original, const Inclusion& inclusion,
+                    double epsilon, const InclusionOptions& options);
 
 }  // namespace kaboum::verify

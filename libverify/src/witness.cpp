@@ -59,7 +59,7 @@ Witness find_witness(const MeshPair& meshes, const std::vector<Offence>& offence
     }
   }
   const NearestTriangle nearest(meshes, kOutside);
-  verify::parallel_loop(std::size_t{0}, candidates.size(), [&](std::size_t i) {
+  verify::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t i) {
     Candidate& candidate = candidates[i];
     const std::optional<int> outer = winding_at(meshes, kOutside, candidate.point);
     const bool enclosed = !relative && outer && *outer >= 1;

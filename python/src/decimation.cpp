@@ -194,7 +194,7 @@ std::vector<BoundingMesh> decimated(const py::object& mesh, const geom::PrepareO
   return run(threads, [&] {
     if (!original)
       original = std::make_shared<geom::Prepared>(certify::prepare_mesh(*value.mesh, prepare));
-    notes.insert(notes.end(), original->notes.begin(), original->notes.end());
+    notes.insert(notes.end(), original->report.notes.begin(), original->report.notes.end());
     const certify::MeshSeries series =
         certify::certify_meshes(*original, request, {.progress = watch.hook(), .found = {}});
     if (series.meshes.empty()) throw certify::TooCoarse(name);
@@ -226,7 +226,7 @@ py::object decimate(const py::object& mesh, const py::object& vertices,
   r.max_work = max_work;
   r.as_printed = as_printed;
   r.numbers = value_of(kNumbers, precision, "precision");
-  r.sharp_angle = sharp_angle;
+  if (cost.starts_with("planes") || sharp_angle != bmesh::kSharpAngle) r.sharp_angle = sharp_angle;
   r.keep_convex = keep_convex;
   r.decide = verify;
   r.measure = measure;

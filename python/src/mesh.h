@@ -25,7 +25,7 @@ struct PreparedValue {
   std::shared_ptr<const geom::Prepared> prepared;
 
   [[nodiscard]] std::shared_ptr<const geom::Mesh> mesh() const {
-    return {prepared, &prepared->mesh};
+    return {prepared, &prepared->solid.mesh()};
   }
 };
 

@@ -22,8 +22,8 @@ PreparedValue prepare(const py::object& mesh, bool drop_sheets, const std::strin
 }
 
 template <class Member>
-auto number(Member geom::Prepared::*member) {
-  return [member](const PreparedValue& p) { return (*p.prepared).*member; };
+auto number(Member geom::PreparationReport::*member) {
+  return [member](const PreparedValue& p) { return p.prepared->report.*member; };
 }
 
 }  // namespace
@@ -43,24 +43,28 @@ expected; `decimate` does not prepare it again.)")
       .def_property_readonly(
           "source",
           [](const PreparedValue& p) {
-            return view_of(p.prepared->source.data(),
-                           {static_cast<py::ssize_t>(p.prepared->source.size())}, p.prepared);
+            return view_of(p.prepared->report.source.data(),
+                           {static_cast<py::ssize_t>(p.prepared->report.source.size())},
+                           p.prepared);
           },
           "Of each face that does not fill a hole, its index in the input.")
-      .def_property_readonly("closed", number(&geom::Prepared::closed),
-                             "Whether it has a solid; else nothing is enclosed.")
-      .def_property_readonly("components", number(&geom::Prepared::components),
+      .def_property_readonly(
+          "closed", [](const PreparedValue& p) { return p.prepared->solid.closed(); },
+          "Whether it has a solid; else nothing is enclosed.")
+      .def_property_readonly("components", number(&geom::PreparationReport::components),
                              "Number of parts connected by shared edges.")
-      .def_property_readonly("holes", number(&geom::Prepared::holes), "Number of holes filled.")
-      .def_property_readonly("largest_hole", number(&geom::Prepared::largest_hole),
+      .def_property_readonly("holes", number(&geom::PreparationReport::holes),
+                             "Number of holes filled.")
+      .def_property_readonly("largest_hole", number(&geom::PreparationReport::largest_hole),
                              "Diagonal of the largest hole's box. [length]")
-      .def_property_readonly("dropped_copies", number(&geom::Prepared::dropped_copies),
+      .def_property_readonly("dropped_copies", number(&geom::PreparationReport::dropped_copies),
                              "Number of identical triangles dropped.")
-      .def_property_readonly("dropped_sheets", number(&geom::Prepared::dropped_sheets),
+      .def_property_readonly("dropped_sheets", number(&geom::PreparationReport::dropped_sheets),
                              "Number of triangles without volume dropped, on request.")
-      .def_property_readonly("turned_triangles", number(&geom::Prepared::turned_triangles),
+      .def_property_readonly("turned_triangles",
+                             number(&geom::PreparationReport::reversed_triangles),
                              "Number of triangles whose orientation was reversed.")
-      .def_property_readonly("notes", number(&geom::Prepared::notes),
+      .def_property_readonly("notes", number(&geom::PreparationReport::notes),
                              "What was changed, one sentence each.");
   module.def("prepare", &prepare, py::arg("mesh"), py::kw_only(), py::arg("drop_sheets") = false,
              py::arg("holes") = "fill", py::arg("keep_orientation") = false,

@@ -131,7 +131,7 @@ class RobotVerifier {
     geom::Mesh mesh = read(g, original_);
     if (!asked_.prepare) return mesh;
     return geom::prepare(mesh, {.drop_sheets = asked_.drop_sheets, .holes = geom::Holes::Fill})
-        .mesh;
+        .solid.mesh();
   }
 
   /// Shapes of the result that stand for none of the original's: their distance is not judged.

@@ -83,7 +83,7 @@ void bind_class(py::module_& module) {
           "'decided', exactly and from the bodies; 'proved', by the steps; "
           "'none', of bound 'baginski'.")
       .def_property_readonly(
-          "reach", [](const SweptSet& s) { return s.made.certificate().reach; },
+          "reach", [](const SweptSet& s) { return s.made.certificate().excess; },
           "No point of the set is farther from what the robot's bodies sweep. "
           "[length]")
       .def_property_readonly(
@@ -124,7 +124,7 @@ SweptSet sweep_path(const py::object& robot, const py::object& path, const py::o
   if (!wished) throw Error(ErrorCode::InvalidArgument, "epsilon must be a length");
   r.search.epsilon = *wished;
   r.search.rule = value_of(kRules, bound, "bound");
-  r.search.max_reach = plain_length_of(max_reach, "max_reach");
+  r.search.max_excess = plain_length_of(max_reach, "max_reach");
   r.search.simplify = simplify;
   r.search.explicit_margin = !implicit_margin;
   r.search.merge = !no_merge;
@@ -176,7 +176,8 @@ Shapes shapes_of(const robot::RobotFile& robot, const robot::ShapeChoice& choice
       if (g.shape == robot::Geometry::Shape::Mesh) {
         mesh = io::read_mesh(robot::find_only_mesh(g.mesh, robot.path, choice.packages)).mesh;
         if (prepare)
-          mesh = geom::prepare(mesh, {.drop_sheets = drop_sheets, .holes = geom::Holes::Fill}).mesh;
+          mesh = geom::prepare(mesh, {.drop_sheets = drop_sheets, .holes = geom::Holes::Fill})
+                     .solid.mesh();
       }
       auto shape = verify::moving_shape(robot.robot, l, g, std::move(mesh));
       if (!shape) continue;

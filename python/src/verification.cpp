@@ -20,8 +20,8 @@ std::shared_ptr<const geom::Mesh> judged(const MeshValue& original, bool prepare
   if (!prepare) return original.mesh;
   auto prepared = std::make_shared<geom::Prepared>(
       geom::prepare(*original.mesh, {.drop_sheets = drop_sheets, .holes = geom::Holes::Fill}));
-  notes.insert(notes.end(), prepared->notes.begin(), prepared->notes.end());
-  return {prepared, &prepared->mesh};
+  notes.insert(notes.end(), prepared->report.notes.begin(), prepared->report.notes.end());
+  return {prepared, &prepared->solid.mesh()};
 }
 
 struct Asked {

@@ -2,7 +2,7 @@
 /// exact arrangement, which shares nothing with the library or the checker.
 
 #include <gtest/gtest.h>
-#include <kaboum/bcd/decompose.h>
+#include <kaboum/bcd/cover.h>
 #include <kaboum/geom/convex_hull.h>
 
 #include <random>
@@ -169,15 +169,15 @@ TEST(Csg, UnionsAreDecomposedIntoAboutTheirParts) {
     SCOPED_TRACE(trial);
     const Known known = trial % 2 == 0 ? union_of_boxes(random, 3) : union_of_prisms(random, 3);
     const geom::Prepared input = geom::prepare(known.mesh);
-    const DecomposeResult result = decompose(input, test::quick(known.mesh, 1));
+    const CoverCandidate result = find_cover(input.solid, test::quick(known.mesh, 1));
     EXPECT_EQ(result.stop, Stop::Done);
-    test::expect_bodies(result, 64);
-    EXPECT_TRUE(agreed_cover(input.mesh, result.bodies));
+    test::expect_bodies(result.bodies, 64);
+    EXPECT_TRUE(agreed_cover(input.solid.mesh(), result.bodies));
     EXPECT_GE(expect_points_covered(known.mesh, result.bodies, random, 300), 20);
     parts += known.parts.size();
     found += result.bodies.size();
     ++mutants;
-    if (!agreed_cover(input.mesh, without(result.bodies, 0))) ++refuted;
+    if (!agreed_cover(input.solid.mesh(), without(result.bodies, 0))) ++refuted;
   }
   EXPECT_LE(found, 2 * parts);
   EXPECT_EQ(refuted, mutants);

@@ -29,7 +29,7 @@ class LocalSearchTest : public ::testing::Test {
   }
 
   const Mesh mesh_ = kaboum::test::torus(1, 0.35, 24, 12);
-  const DecomposeOptions options_ = test::quick(mesh_, 5);
+  const CoverOptions options_ = test::quick(mesh_, 5);
   SearchState state_{mesh_, options_, 1e12, tuning(Effort::Fast)};
   LocalSearch local_{state_};
 };

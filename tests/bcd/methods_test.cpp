@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <kaboum/base/error.h>
-#include <kaboum/bcd/decompose.h>
-#include <kaboum/bcd/fill.h>
+#include <kaboum/bcd/cover.h>
 #include <kaboum/io/convex_io.h>
 #include <tbb/global_control.h>
 
@@ -16,8 +15,8 @@
 namespace kaboum::bcd {
 namespace {
 
-DecomposeOptions with(Method method, const Mesh& mesh, double epsilon_percent) {
-  DecomposeOptions options = test::quick(mesh, epsilon_percent);
+CoverOptions with(Method method, const Mesh& mesh, double epsilon_percent) {
+  CoverOptions options = test::quick(mesh, epsilon_percent);
   options.method = method;
   return options;
 }
@@ -28,11 +27,11 @@ TEST(Methods, CoverWithinEpsilonOrSaySo) {
   int done = 0, seen = 0;
   test::for_each_solid(300, [&](const auto&, const geom::Prepared& prepared) {
     const Method method = seen++ % 2 == 0 ? Method::Clusters : Method::Voxels;
-    const DecomposeOptions options = with(method, prepared.mesh, 6);
-    const DecomposeResult result = decompose(prepared, options);
+    const CoverOptions options = with(method, prepared.solid.mesh(), 6);
+    const CoverCandidate result = find_cover(prepared.solid, options);
     if (result.stop == Stop::TooCoarse) return;
-    test::expect_cover(prepared.mesh, result, 64);
-    EXPECT_EQ(result.stop == Stop::Done, result.reach_upper <= *options.epsilon);
+    test::expect_cover(prepared.solid.mesh(), result, 64);
+    EXPECT_EQ(result.stop == Stop::Done, result.excess_upper <= *options.epsilon);
     done += result.stop == Stop::Done ? 1 : 0;
   });
   EXPECT_GE(seen, 8);
@@ -43,24 +42,24 @@ TEST(Methods, AtMostSoManyBodies) {
   const Mesh torus = kaboum::test::torus(1, 0.3, 40, 16);
   const geom::Prepared input = geom::prepare(torus);
   for (const Method method : {Method::Clusters, Method::Voxels}) {
-    DecomposeOptions options;
+    CoverOptions options;
     options.effort = Effort::Fast;
     options.method = method;
     options.max_bodies = 8;
-    const DecomposeResult result = decompose(input, options);
+    const CoverCandidate result = find_cover(input.solid, options);
     EXPECT_LE(result.bodies.size(), 8U);
     EXPECT_GE(result.bodies.size(), 3U);
-    EXPECT_LE(result.reach_upper, 0.2 * geom::bounding_box(torus).diagonal());
-    test::expect_cover(input.mesh, result, 64);
+    EXPECT_LE(result.excess_upper, 0.2 * geom::bounding_box(torus).diagonal());
+    test::expect_cover(input.solid.mesh(), result, 64);
   }
 }
 
 TEST(Methods, ALetterInTwo) {
   const geom::Prepared input = geom::prepare(letter());
   for (const Method method : {Method::Clusters, Method::Voxels}) {
-    const DecomposeResult result = decompose(input, with(method, input.mesh, 3));
+    const CoverCandidate result = find_cover(input.solid, with(method, input.solid.mesh(), 3));
     EXPECT_EQ(result.bodies.size(), 2U);
-    test::expect_cover(input.mesh, result, 64);
+    test::expect_cover(input.solid.mesh(), result, 64);
   }
 }
 
@@ -70,16 +69,11 @@ TEST(Methods, SameBytesForAnyNumberOfThreads) {
     std::vector<std::vector<char>> bytes;
     for (const std::size_t threads : {1U, 3U}) {
       const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-      const DecomposeResult result = decompose(geom::prepare(mesh), with(method, mesh, 4));
+      const CoverCandidate result = find_cover(geom::prepare(mesh).solid, with(method, mesh, 4));
       bytes.push_back(io::serialise_convex_set(test::set_of(result.bodies), io::SetFormat::Glb));
     }
     EXPECT_EQ(bytes[0], bytes[1]);
   }
-}
-
-TEST(Methods, NoneForBodiesInside) {
-  const geom::Prepared input = geom::prepare(letter());
-  EXPECT_THROW(fill(input, with(Method::Voxels, input.mesh, 3)), Error);
 }
 
 TEST(VoxelCuts, TheLetterIsCutAtItsEdge) {

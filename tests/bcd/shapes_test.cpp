@@ -1,7 +1,7 @@
 /// Shapes that a person would take apart in one way, and that the search has to take apart so, too.
 
 #include <gtest/gtest.h>
-#include <kaboum/bcd/decompose.h>
+#include <kaboum/bcd/cover.h>
 
 #include <algorithm>
 #include <numeric>
@@ -75,16 +75,16 @@ Mesh thin_ring(int sides) {
 void expect_obvious(const Case& c) {
   SCOPED_TRACE(c.name);
   const geom::Prepared input = geom::prepare(c.mesh);
-  ASSERT_TRUE(input.closed);
-  DecomposeOptions options = test::quick(c.mesh, c.percent);
+  ASSERT_TRUE(input.solid.closed());
+  CoverOptions options = test::quick(c.mesh, c.percent);
   options.effort = c.effort;
-  const DecomposeResult result = decompose(input, options);
+  const CoverCandidate result = find_cover(input.solid, options);
   const double diagonal = geom::bounding_box(c.mesh).diagonal();
   EXPECT_EQ(result.stop, Stop::Done);
   EXPECT_LE(result.bodies.size(), c.bodies);  // epsilon may save one
-  EXPECT_LE(result.reach_lower, c.within * diagonal);
-  EXPECT_LE(result.reach_upper, 0.01 * c.percent * diagonal);
-  test::expect_cover(input.mesh, result, 64);
+  EXPECT_LE(result.excess_lower, c.within * diagonal);
+  EXPECT_LE(result.excess_upper, 0.01 * c.percent * diagonal);
+  test::expect_cover(input.solid.mesh(), result, 64);
 }
 
 TEST(Shapes, Letters) {
@@ -144,22 +144,22 @@ TEST(Shapes, FinelyTriangulatedCone) {
   }
   cone.vertices.emplace_back(0, 0, 1.5);
   cone.vertices.emplace_back(0, 0, 0);
-  const DecomposeOptions options = test::quick(cone, 1);
-  const DecomposeResult result = decompose(geom::prepare(cone), options);
+  const CoverOptions options = test::quick(cone, 1);
+  const CoverCandidate result = find_cover(geom::prepare(cone).solid, options);
   EXPECT_EQ(result.bodies.size(), 1U);
   EXPECT_LE(result.statistics.vertices, 64U);
-  EXPECT_LE(result.reach_upper, *options.epsilon);
+  EXPECT_LE(result.excess_upper, *options.epsilon);
 }
 
 /// Float32 steps that are a hundredth of epsilon leave enough to round to.
 TEST(Shapes, FarFromTheOrigin) {
   const Mesh cube = kaboum::test::translated(kaboum::test::box(Vec3(1, 1, 1), 1), Vec3(500, 0, 0));
-  const DecomposeOptions options = test::quick(cube, 5);
-  const DecomposeResult result = decompose(geom::prepare(cube), options);
+  const CoverOptions options = test::quick(cube, 5);
+  const CoverCandidate result = find_cover(geom::prepare(cube).solid, options);
   EXPECT_EQ(result.stop, Stop::Done);
   EXPECT_EQ(result.bodies.size(), 1U);
-  DecomposeOptions finer = test::quick(cube, 0.05);
-  EXPECT_EQ(decompose(geom::prepare(cube), finer).stop, Stop::TooCoarse);
+  CoverOptions finer = test::quick(cube, 0.05);
+  EXPECT_EQ(find_cover(geom::prepare(cube).solid, finer).stop, Stop::TooCoarse);
 }
 
 TEST(Shapes, Mirrors) {

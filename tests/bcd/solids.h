@@ -2,7 +2,8 @@
 
 #include <gtest/gtest.h>
 #include <kaboum/base/error.h>
-#include <kaboum/bcd/decompose.h>
+#include <kaboum/bcd/cover.h>
+#include <kaboum/bcd/inner.h>
 #include <kaboum/geom/convex_set.h>
 #include <kaboum/geom/float32.h>
 #include <kaboum/geom/mesh.h>
@@ -25,13 +26,17 @@
 namespace kaboum::bcd::test {
 
 /// Little effort, epsilon in percent of the diagonal.
-inline DecomposeOptions quick(const geom::Mesh& mesh, double epsilon_percent,
-                              std::size_t max_vertices = 64) {
-  DecomposeOptions options;
+template <class Options = CoverOptions>
+Options quick(const geom::Mesh& mesh, double epsilon_percent, std::size_t max_vertices = 64) {
+  Options options;
   options.epsilon = 0.01 * epsilon_percent * geom::bounding_box(mesh).diagonal();
   options.max_vertices = max_vertices;
   options.effort = Effort::Fast;
   return options;
+}
+inline InnerOptions quick_inner(const geom::Mesh& mesh, double epsilon_percent,
+                                std::size_t max_vertices = 64) {
+  return quick<InnerOptions>(mesh, epsilon_percent, max_vertices);
 }
 
 /// Calls visit(family, prepared) with every family of closed solids of at most `largest` triangles.
@@ -74,19 +79,19 @@ inline verify::Answer cover_of(const geom::Mesh& mesh, const geom::ConvexSet& se
 }
 
 /// What is claimed of every body: exactly convex, float32, not too many vertices.
-inline void expect_bodies(const DecomposeResult& result, std::size_t max_vertices) {
-  EXPECT_FALSE(geom::find_not_convex(set_of(result.bodies)).has_value());
-  EXPECT_LE(result.reach_lower, result.reach_upper);
-  for (const geom::ConvexBody& body : result.bodies) {
+inline void expect_bodies(const std::vector<geom::ConvexBody>& bodies, std::size_t max_vertices) {
+  EXPECT_FALSE(geom::find_not_convex(set_of(bodies)).has_value());
+  for (const geom::ConvexBody& body : bodies) {
     EXPECT_LE(body.hull.vertices.size(), max_vertices);
     for (const geom::Vec3& p : body.hull.vertices) EXPECT_TRUE(geom::is_float32(p));
   }
 }
 
 /// All that is claimed of bodies that cover.
-inline void expect_cover(const geom::Mesh& mesh, const DecomposeResult& result,
+inline void expect_cover(const geom::Mesh& mesh, const CoverCandidate& result,
                          std::size_t max_vertices) {
-  expect_bodies(result, max_vertices);
+  expect_bodies(result.bodies, max_vertices);
+  EXPECT_LE(result.excess_lower, result.excess_upper);
   EXPECT_EQ(cover_of(mesh, set_of(result.bodies)), verify::Answer::Verified);
 }
 

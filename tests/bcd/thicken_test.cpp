@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <kaboum/base/error.h>
-#include <kaboum/bcd/fill.h>
+#include <kaboum/bcd/cover.h>
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/geom/width.h>
 
@@ -76,29 +76,28 @@ TEST(Thicken, DecompositionsKeepTheirClaims) {
   const Mesh angle = test::prism({{0, 0}, {3, 0}, {3, 0.1}, {0.1, 0.1}, {0.1, 3}, {0, 3}}, 2);
   const geom::Prepared input = geom::prepare(angle);
   for (const double thickness : {0.05, 0.15, 0.5}) {
-    DecomposeOptions options = test::quick(angle, 1);
+    CoverOptions options = test::quick(angle, 1);
     options.min_thickness = thickness;
-    const DecomposeResult result = decompose(input, options);
-    test::expect_cover(input.mesh, result, 64);
+    const CoverCandidate result = find_cover(input.solid, options);
+    test::expect_cover(input.solid.mesh(), result, 64);
     for (const geom::ConvexBody& body : result.bodies) expect_thick(body.hull, thickness);
     EXPECT_EQ(result.statistics.thickened, thickness > 0.1 ? result.bodies.size() : 0U);
     EXPECT_EQ(result.stop, thickness > 0.2 ? Stop::Stuck : Stop::Done);
-    EXPECT_EQ(result.stop == Stop::Done, result.reach_upper <= *options.epsilon);
+    EXPECT_EQ(result.stop == Stop::Done, result.excess_upper <= *options.epsilon);
     EXPECT_LE(result.bodies.size(), 2U);
   }
 }
 
 TEST(Thicken, SheetsAndOptions) {
   const geom::Prepared input = geom::prepare(kaboum::test::box(Vec3(1, 1, 1e-3), 1));
-  DecomposeOptions options = test::quick(input.mesh, 10);
+  CoverOptions options = test::quick(input.solid.mesh(), 10);
   options.min_thickness = 0.1;
-  const DecomposeResult result = decompose(input, options);
+  const CoverCandidate result = find_cover(input.solid, options);
   ASSERT_EQ(result.bodies.size(), 1U);
   expect_thick(result.bodies[0].hull, 0.1);
   EXPECT_LE(result.bodies[0].hull.vertices.size(), 16U);
-  EXPECT_THROW(fill(input, options), Error);
   options.min_thickness = -1;
-  EXPECT_THROW(decompose(input, options), Error);
+  EXPECT_THROW(find_cover(input.solid, options), Error);
 }
 
 }  // namespace

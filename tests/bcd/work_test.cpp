@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <kaboum/bcd/fill.h>
+#include <kaboum/bcd/inner.h>
 #include <kaboum/geom/holes.h>
 #include <kaboum/io/convex_io.h>
 #include <tbb/global_control.h>
@@ -76,11 +76,11 @@ Mesh link() {
 TEST(Work, NearlyConvexSolidsAreOneBodyAtOnce) {
   // So little work that no cut is tried.
   for (const Effort effort : {Effort::Fast, Effort::Normal}) {
-    const Mesh mesh = geom::prepare(link()).mesh;
-    DecomposeOptions options = test::quick(mesh, 2);
+    const Mesh mesh = geom::prepare(link()).solid.mesh();
+    CoverOptions options = test::quick(mesh, 2);
     options.effort = effort;
     options.max_work = 0.5;
-    const DecomposeResult result = decompose(geom::prepare(mesh), options);
+    const CoverCandidate result = find_cover(geom::prepare(mesh).solid, options);
     EXPECT_EQ(result.stop, Stop::Done);
     EXPECT_EQ(result.bodies.size(), 1U);
     EXPECT_EQ(result.statistics.leaves, 1U);
@@ -91,10 +91,10 @@ TEST(Work, NearlyConvexSolidsAreOneBodyAtOnce) {
 
 TEST(Work, FansOfThousandsAreOneBody) {
   // A cone, and its base as another fan.
-  const Mesh cone = geom::prepare(revolved({{0, 0}, {1, 0}, {0, 1}}, 2500)).mesh;
-  DecomposeOptions options = test::quick(cone, 1);
+  const Mesh cone = geom::prepare(revolved({{0, 0}, {1, 0}, {0, 1}}, 2500)).solid.mesh();
+  CoverOptions options = test::quick(cone, 1);
   options.max_work = 5;
-  const DecomposeResult result = decompose(geom::prepare(cone), options);
+  const CoverCandidate result = find_cover(geom::prepare(cone).solid, options);
   EXPECT_EQ(result.stop, Stop::Done);
   EXPECT_EQ(result.bodies.size(), 1U);
   test::expect_cover(cone, result, 64);
@@ -102,9 +102,9 @@ TEST(Work, FansOfThousandsAreOneBody) {
 
 TEST(Work, TheBestFoundIsGivenAndMeasuredWhenTheWorkIsDone) {
   const geom::Prepared input = geom::prepare(soup(40));
-  const Mesh mesh = geom::fill_holes(input.mesh).mesh;
+  const Mesh mesh = geom::fill_holes(input.solid.mesh()).mesh;
   for (const bool limited : {false, true}) {
-    DecomposeOptions options = test::quick(mesh, 0.7);
+    CoverOptions options = test::quick(mesh, 0.7);
     options.effort = Effort::Normal;
     options.max_work = 0.3;
     if (limited) {
@@ -114,13 +114,13 @@ TEST(Work, TheBestFoundIsGivenAndMeasuredWhenTheWorkIsDone) {
     std::vector<std::vector<char>> bytes;
     for (const std::size_t threads : {1U, 2U}) {
       const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-      const DecomposeResult result = decompose(input, options);
+      const CoverCandidate result = find_cover(input.solid, options);
       EXPECT_TRUE(result.statistics.out_of_work);
       EXPECT_EQ(result.stop, limited ? Stop::Done : Stop::OutOfWork);
       if (limited) {
         EXPECT_LE(result.bodies.size(), 60U);
       } else {
-        EXPECT_GT(result.reach_upper, *options.epsilon);
+        EXPECT_GT(result.excess_upper, *options.epsilon);
       }
       test::expect_cover(mesh, result, 64);
       bytes.push_back(io::serialise_convex_set(test::set_of(result.bodies), io::SetFormat::Glb));
@@ -130,22 +130,22 @@ TEST(Work, TheBestFoundIsGivenAndMeasuredWhenTheWorkIsDone) {
 }
 
 TEST(Work, BodiesInsideEndToo) {
-  const Mesh mesh = geom::prepare(kaboum::test::torus_knot(2, 3, 0.2, 60, 8)).mesh;
-  DecomposeOptions options = test::quick(mesh, 0.05);
+  const Mesh mesh = geom::prepare(kaboum::test::torus_knot(2, 3, 0.2, 60, 8)).solid.mesh();
+  InnerOptions options = test::quick_inner(mesh, 0.05);
   options.max_work = 0.1;
-  const DecomposeResult result = fill(geom::prepare(mesh), options);
+  const InnerCandidate result = find_inner(geom::prepare(mesh).solid, options);
   EXPECT_EQ(result.stop, Stop::OutOfWork);
-  EXPECT_TRUE(result.statistics.out_of_work);
-  EXPECT_GT(result.reach_upper, *options.epsilon);
-  EXPECT_LT(result.reach_lower, result.reach_upper);
-  test::expect_bodies(result, 64);
+  EXPECT_TRUE(result.out_of_work);
+  EXPECT_GT(result.uncovered_depth_upper, *options.epsilon);
+  EXPECT_LT(result.uncovered_depth_lower, result.uncovered_depth_upper);
+  test::expect_bodies(result.bodies, 64);
 }
 
 TEST(Work, NothingIsNoWork) {
-  const Mesh mesh = geom::prepare(link()).mesh;
-  DecomposeOptions options = test::quick(mesh, 1);
+  const Mesh mesh = geom::prepare(link()).solid.mesh();
+  CoverOptions options = test::quick(mesh, 1);
   options.max_work = 0;
-  EXPECT_THROW(decompose(geom::prepare(mesh), options), Error);
+  EXPECT_THROW(find_cover(geom::prepare(mesh).solid, options), Error);
   EXPECT_EQ(default_work(100), default_work(10000));
   EXPECT_GT(default_work(20000), default_work(10000));
 }

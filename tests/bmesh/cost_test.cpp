@@ -51,13 +51,13 @@ TEST(Cost, MeanAndDistanceTradeTheMaximumForTheMean) {
         DecimateOptions o;
         o.direction = d;
         o.effort = effort;
-        o.vertices = p.mesh.vertices.size() * 7 / 20;
+        o.vertices = p.solid.mesh().vertices.size() * 7 / 20;
         for (const auto& [cost, sum] :
              {std::pair{Cost::Mean, &mean}, {Cost::Distance, &distance}}) {
           o.cost = cost;
-          const DecimateResult r = decimate(p, o);
+          const DecimateResult r = decimate(p.solid, o);
           EXPECT_EQ(r.stop, Stop::VertexTarget);
-          const Distances m = measure(p.mesh, r.mesh);
+          const Distances m = measure(p.solid.mesh(), r.mesh);
           sum->largest += m.largest;
           sum->mean += m.mean;
         }

@@ -98,18 +98,18 @@ DecimateOptions with(const Method& method, DecimateOptions o) {
 
 TEST(Decimate, NeedsATarget) {
   const auto p = geom::prepare(solids().front().mesh);
-  EXPECT_THROW(decimate(p, {}), Error);
+  EXPECT_THROW(decimate(p.solid, {}), Error);
   DecimateOptions negative;
   negative.epsilon = -1;
-  EXPECT_THROW(decimate(p, negative), Error);
+  EXPECT_THROW(decimate(p.solid, negative), Error);
 }
 
 TEST(Decimate, ReachesTheWishedNumberOrSaysSo) {
   for (const auto& f : solids()) {
     const auto p = geom::prepare(f.mesh);
-    const std::size_t n = p.mesh.vertices.size() / 2;
+    const std::size_t n = p.solid.mesh().vertices.size() / 2;
     for (const Method& m : methods(f)) {
-      const auto r = decimate(p, with(m, to_vertices(n)));
+      const auto r = decimate(p.solid, with(m, to_vertices(n)));
       if (r.stop == Stop::VertexTarget) {
         EXPECT_EQ(r.mesh.vertices.size(), n) << f.name;
       } else {
@@ -127,13 +127,15 @@ TEST(Decimate, ReachesTheWishedNumberOrSaysSo) {
 TEST(Decimate, VolumeOnlyGrowsOutwardsAndShrinksInwards) {
   for (const auto& f : solids()) {
     const auto p = geom::prepare(f.mesh);
-    const double v = geom::signed_volume(p.mesh);
-    const std::size_t n = p.mesh.vertices.size() / 4 + 4;
+    const double v = geom::signed_volume(p.solid.mesh());
+    const std::size_t n = p.solid.mesh().vertices.size() / 4 + 4;
     for (const Method& m : methods(f)) {
-      EXPECT_GE(geom::signed_volume(decimate(p, with(m, to_vertices(n))).mesh), v * (1 - 1e-12))
+      EXPECT_GE(geom::signed_volume(decimate(p.solid, with(m, to_vertices(n))).mesh),
+                v * (1 - 1e-12))
           << f.name;
-      EXPECT_LE(geom::signed_volume(decimate(p, with(m, to_vertices(n, Direction::Inner))).mesh),
-                v * (1 + 1e-12))
+      EXPECT_LE(
+          geom::signed_volume(decimate(p.solid, with(m, to_vertices(n, Direction::Inner))).mesh),
+          v * (1 + 1e-12))
           << f.name;
     }
   }
@@ -143,8 +145,8 @@ TEST(Decimate, GivesTheSameResultTwice) {
   for (const auto& f : solids()) {
     const auto p = geom::prepare(f.mesh);
     for (const Method& m : methods(f)) {
-      const DecimateOptions o = with(m, to_vertices(2 * p.mesh.vertices.size() / 5));
-      const auto a = decimate(p, o), b = decimate(p, o);
+      const DecimateOptions o = with(m, to_vertices(2 * p.solid.mesh().vertices.size() / 5));
+      const auto a = decimate(p.solid, o), b = decimate(p.solid, o);
       ASSERT_EQ(a.mesh.triangles, b.mesh.triangles) << f.name;
       for (std::size_t i = 0; i < a.mesh.vertices.size(); ++i)
         ASSERT_EQ(a.mesh.vertices[i], b.mesh.vertices[i]);
@@ -156,9 +158,9 @@ TEST(Decimate, WritesFloatsWhenAsked) {
   for (const auto& f : solids()) {
     const auto p = geom::prepare(f.mesh);
     for (const Method& m : methods(f)) {
-      DecimateOptions o = with(m, to_vertices(p.mesh.vertices.size() / 3 + 4));
+      DecimateOptions o = with(m, to_vertices(p.solid.mesh().vertices.size() / 3 + 4));
       o.precision = Precision::Float;
-      const auto r = decimate(p, o);
+      const auto r = decimate(p.solid, o);
       std::size_t not_float = 0;
       for (const auto& v : r.mesh.vertices) not_float += !geom::is_float32(v);
       EXPECT_EQ(not_float, r.unrepresentable) << f.name;
@@ -171,14 +173,15 @@ TEST(Decimate, WritesFloatsWhenAsked) {
 TEST(Decimate, KeepsBordersInPlace) {
   for (const auto& f : test::open_families()) {
     const auto p = geom::prepare(f.mesh);
-    ASSERT_FALSE(p.closed) << f.name;
-    const auto r = decimate(p, to_vertices(4));
+    ASSERT_FALSE(p.solid.closed()) << f.name;
+    const auto r = decimate(p.solid, to_vertices(4));
     std::vector<geom::Vec3> after = r.mesh.vertices;
-    for (std::size_t v = 0; v < p.mesh.vertices.size(); ++v) {
-      if (p.border[v] == 0) continue;
-      EXPECT_NE(std::find(after.begin(), after.end(), p.mesh.vertices[v]), after.end()) << f.name;
+    for (std::size_t v = 0; v < p.solid.mesh().vertices.size(); ++v) {
+      if (p.solid.border()[v] == 0) continue;
+      EXPECT_NE(std::find(after.begin(), after.end(), p.solid.mesh().vertices[v]), after.end())
+          << f.name;
     }
-    EXPECT_LT(r.mesh.vertices.size(), p.mesh.vertices.size()) << f.name;
+    EXPECT_LT(r.mesh.vertices.size(), p.solid.mesh().vertices.size()) << f.name;
   }
 }
 
@@ -196,11 +199,12 @@ std::size_t poking_out(const geom::Mesh& inner, const geom::Mesh& outer) {
 std::size_t expect_no_fold(const std::string& name, const geom::Mesh& mesh, const Method& m,
                            Precision precision) {
   const auto p = geom::prepare(mesh);
-  if (poking_out(p.mesh, p.mesh) > 0) return 0;
-  DecimateOptions o = with(m, to_vertices(p.mesh.vertices.size() / 6 + 4, Direction::Inner));
+  if (poking_out(p.solid.mesh(), p.solid.mesh()) > 0) return 0;
+  DecimateOptions o =
+      with(m, to_vertices(p.solid.mesh().vertices.size() / 6 + 4, Direction::Inner));
   o.precision = precision;
-  const auto r = decimate(p, o);
-  EXPECT_EQ(poking_out(r.mesh, p.mesh), 0U) << name;
+  const auto r = decimate(p.solid, o);
+  EXPECT_EQ(poking_out(r.mesh, p.solid.mesh()), 0U) << name;
   return r.statistics.contractions;
 }
 
@@ -234,11 +238,11 @@ TEST(Decimate, EveryCostIsCertified) {
     for (const Cost cost : {Cost::Distance, Cost::Planes, Cost::PlanesAdapted, Cost::PlanesDiagonal,
                             Cost::Triangles}) {
       for (const Direction direction : {Direction::Outer, Direction::Inner}) {
-        DecimateOptions o = to_vertices(p.mesh.vertices.size() / 5 + 4, direction);
+        DecimateOptions o = to_vertices(p.solid.mesh().vertices.size() / 5 + 4, direction);
         o.cost = cost;
         if (cost == Cost::Distance) {
           o.effort = Effort::Normal;
-          if (is_slender(f)) o.vertices = p.mesh.vertices.size() / 2;
+          if (is_slender(f)) o.vertices = p.solid.mesh().vertices.size() / 2;
         }
         const test::Recorded r = test::record(f.mesh, o);
         const auto checked = replay(f.mesh, r.log, r.result.mesh);
@@ -253,15 +257,15 @@ TEST(Decimate, EveryCostIsCertified) {
 TEST(Decimate, EpsilonHoldsBothWays) {
   for (const auto& f : solids()) {
     const auto p = geom::prepare(f.mesh);
-    const double diagonal = geom::bounding_box(p.mesh).diagonal();
+    const double diagonal = geom::bounding_box(p.solid.mesh()).diagonal();
     for (const Method& m : methods(f))
       for (const double percent : {0.1, 2.0}) {
         DecimateOptions o = with(m, {});
         o.precision = Precision::Double;
         o.epsilon = 0.01 * percent * diagonal;
-        const auto r = decimate(p, o);
-        const auto there = geom::directed_distance(p.mesh, geom::DistanceQuery(r.mesh));
-        const auto back = geom::directed_distance(r.mesh, geom::DistanceQuery(p.mesh));
+        const auto r = decimate(p.solid, o);
+        const auto there = geom::directed_distance(p.solid.mesh(), geom::DistanceQuery(r.mesh));
+        const auto back = geom::directed_distance(r.mesh, geom::DistanceQuery(p.solid.mesh()));
         EXPECT_LE(there.max_lower, *o.epsilon) << f.name;
         EXPECT_LE(back.max_lower, *o.epsilon) << f.name;
       }
@@ -272,10 +276,10 @@ TEST(Decimate, EpsilonLeavesRoomForContractions) {
   const auto sphere = solids().front();
   const auto p = geom::prepare(sphere.mesh);
   DecimateOptions o;
-  o.epsilon = 0.02 * geom::bounding_box(p.mesh).diagonal();
-  const auto r = decimate(p, o);
+  o.epsilon = 0.02 * geom::bounding_box(p.solid.mesh()).diagonal();
+  const auto r = decimate(p.solid, o);
   EXPECT_EQ(r.stop, Stop::ErrorBound);
-  EXPECT_LT(r.mesh.vertices.size(), p.mesh.vertices.size() * 3 / 4) << sphere.name;
+  EXPECT_LT(r.mesh.vertices.size(), p.solid.mesh().vertices.size() * 3 / 4) << sphere.name;
 }
 
 // Contractions that move the vertices around with them: far fewer vertices than without, and every
@@ -286,12 +290,12 @@ TEST(Decimate, EpsilonLeavesRoomForContractions) {
 TEST(Decimate, MovingTheVerticesAroundSavesVertices) {
   const geom::Mesh sphere = test::icosphere(3);
   const auto p = geom::prepare(sphere);
-  const double epsilon = 0.02 * geom::bounding_box(p.mesh).diagonal();
+  const double epsilon = 0.02 * geom::bounding_box(p.solid.mesh()).diagonal();
   for (const Direction direction : {Direction::Outer, Direction::Inner}) {
     DecimateOptions o;
     o.direction = direction;
     o.epsilon = epsilon;
-    const std::size_t alone = decimate(p, o).mesh.vertices.size();
+    const std::size_t alone = decimate(p.solid, o).mesh.vertices.size();
     o.cost = Cost::Distance;
     o.effort = Effort::Normal;
     const auto [input, log, r] = test::record(sphere, o);
@@ -299,8 +303,8 @@ TEST(Decimate, MovingTheVerticesAroundSavesVertices) {
     EXPECT_LT(5 * r.mesh.vertices.size(), 4 * alone);
     const auto checked = replay(input, log, r.mesh);
     EXPECT_TRUE(checked.verified) << checked.violation;
-    const auto there = geom::directed_distance(p.mesh, geom::DistanceQuery(r.mesh));
-    const auto back = geom::directed_distance(r.mesh, geom::DistanceQuery(p.mesh));
+    const auto there = geom::directed_distance(p.solid.mesh(), geom::DistanceQuery(r.mesh));
+    const auto back = geom::directed_distance(r.mesh, geom::DistanceQuery(p.solid.mesh()));
     EXPECT_LE(std::max(there.max_lower, back.max_lower), epsilon);
   }
 }
@@ -388,22 +392,42 @@ TEST(Decimate, VerticesWithoutRoomGetIt) {
   EXPECT_EQ(verify::verify_inclusion(r.mesh, input).solid.answer, verify::Answer::Verified);
 }
 
-TEST(Decimate, EffortIsFastWhereMoreHasNoEffect) {
+TEST(Decimate, EffortThatHasNoEffectIsRefused) {
   const auto open = geom::prepare(test::open_families().front().mesh);
   const auto closed = geom::prepare(solids().front().mesh);
-  DecimateOptions o = to_vertices(open.mesh.vertices.size() / 2);
+  DecimateOptions o = to_vertices(open.solid.mesh().vertices.size() / 2);
   o.cost = Cost::Distance;
   o.effort = Effort::Normal;
-  EXPECT_EQ(effective_effort(closed, o), Effort::Normal);
-  EXPECT_EQ(effective_effort(open, o), Effort::Fast);
-  const auto requested = decimate(open, o);
+  EXPECT_EQ(possible_effort(closed.solid, o), Effort::Normal);
+  EXPECT_EQ(possible_effort(open.solid, o), Effort::Fast);
+  EXPECT_THROW(decimate(open.solid, o), Error);
   o.effort = Effort::Fast;
-  EXPECT_EQ(requested.mesh.vertices, decimate(open, o).mesh.vertices);
+  EXPECT_LT(decimate(open.solid, o).mesh.vertices.size(), open.solid.mesh().vertices.size());
   o.effort = Effort::Best;
   o.direction = Direction::Any;
-  EXPECT_EQ(effective_effort(open, o), Effort::Best);
+  EXPECT_EQ(possible_effort(open.solid, o), Effort::Best);
   o.keep_convex = true;
-  EXPECT_EQ(effective_effort(closed, o), Effort::Fast);
+  EXPECT_EQ(possible_effort(closed.solid, o), Effort::Fast);
+}
+
+TEST(Decimate, OptionsThatACostDoesNotUseAreRefused) {
+  const auto p = geom::prepare(solids().front().mesh);
+  for (const Cost cost : {Cost::Distance, Cost::Mean, Cost::Planes, Cost::PlanesAdapted,
+                          Cost::PlanesDiagonal, Cost::Triangles}) {
+    DecimateOptions o = to_vertices(p.solid.mesh().vertices.size() / 2);
+    o.cost = cost;
+    o.as_printed = true;
+    if (cost == Cost::PlanesDiagonal)
+      EXPECT_NO_THROW(decimate(p.solid, o));
+    else
+      EXPECT_THROW(decimate(p.solid, o), Error);
+    o.as_printed = false;
+    o.sharp_angle = 90;
+    if (cost == Cost::Planes || cost == Cost::PlanesAdapted || cost == Cost::PlanesDiagonal)
+      EXPECT_NO_THROW(decimate(p.solid, o));
+    else
+      EXPECT_THROW(decimate(p.solid, o), Error);
+  }
 }
 
 // Small meshes are decimated again, within less than the distance that the first time, as levels of
@@ -412,31 +436,32 @@ TEST(Decimate, SmallMeshesAreDecimatedWithinARisingBound) {
   const geom::Mesh sphere = test::scaled(test::icosphere(2), {1, 2, 0.5});
   const auto p = geom::prepare(sphere);
   for (const Direction direction : {Direction::Outer, Direction::Inner}) {
-    DecimateOptions o = to_vertices(p.mesh.vertices.size() / 5, direction);
+    DecimateOptions o = to_vertices(p.solid.mesh().vertices.size() / 5, direction);
     o.precision = Precision::Float;
     o.cost = Cost::Distance;
     o.effort = Effort::Normal;
     const auto [input, log, r] = test::record(sphere, o);
     EXPECT_EQ(r.stop, Stop::VertexTarget);
     EXPECT_EQ(r.mesh.vertices.size(), *o.vertices);
-    EXPECT_EQ(r.steps, log.steps.size());  // none of the first time
-    EXPECT_EQ(r.mesh.vertices, decimate(p, o).mesh.vertices);
+    EXPECT_EQ(r.steps.size(), log.steps.size());  // none of the first time
+    EXPECT_EQ(r.mesh.vertices, decimate(p.solid, o).mesh.vertices);
     const auto checked = replay(input, log, r.mesh);
     EXPECT_TRUE(checked.verified) << checked.violation;
     const std::size_t requested = *std::exchange(o.vertices, std::nullopt);
-    const auto once = decimate_series(p, o, std::vector{requested});
-    EXPECT_LT(hausdorff(p.mesh, r.mesh), 0.95 * hausdorff(p.mesh, once.front().mesh));
+    const auto once = decimate_series(p.solid, o, std::vector{requested});
+    EXPECT_LT(hausdorff(p.solid.mesh(), r.mesh),
+              0.95 * hausdorff(p.solid.mesh(), once.front().mesh));
   }
 }
 
 // Hardly any contraction: nothing has been reached that joint ones could go by.
 TEST(Decimate, FewContractionsStayNear) {
   const auto p = geom::prepare(test::icosphere(5));
-  DecimateOptions o = to_vertices(p.mesh.vertices.size() * 9 / 10);
-  const double fast = hausdorff(p.mesh, decimate(p, o).mesh);
+  DecimateOptions o = to_vertices(p.solid.mesh().vertices.size() * 9 / 10);
+  const double fast = hausdorff(p.solid.mesh(), decimate(p.solid, o).mesh);
   o.cost = Cost::Distance;
   o.effort = Effort::Normal;
-  EXPECT_LE(hausdorff(p.mesh, decimate(p, o).mesh), 1.2 * fast);
+  EXPECT_LE(hausdorff(p.solid.mesh(), decimate(p.solid, o).mesh), 1.2 * fast);
 }
 
 TEST(Decimate, KeepsConvexity) {
@@ -448,24 +473,24 @@ TEST(Decimate, KeepsConvexity) {
     for (const Direction direction : {Direction::Outer, Direction::Inner}) {
       for (const Precision precision : {Precision::Double, Precision::Float}) {
         DecimateOptions o =
-            to_vertices(std::max<std::size_t>(8, p.mesh.vertices.size() / 4), direction);
+            to_vertices(std::max<std::size_t>(8, p.solid.mesh().vertices.size() / 4), direction);
         o.keep_convex = true;
         o.precision = precision;
-        const auto r = decimate(p, o);
+        const auto r = decimate(p.solid, o);
         EXPECT_TRUE(geom::is_convex(r.mesh)) << f.name;
         if (direction == Direction::Outer && precision == Precision::Double &&
             f.name != "sliver-cylinder") {
-          EXPECT_LT(r.mesh.vertices.size(), p.mesh.vertices.size()) << f.name;
+          EXPECT_LT(r.mesh.vertices.size(), p.solid.mesh().vertices.size()) << f.name;
         }
       }
     }
   }
   EXPECT_GE(tried, 3);
   for (const auto& f : solids()) {
-    if (geom::is_convex(geom::prepare(f.mesh).mesh)) continue;
+    if (geom::is_convex(geom::prepare(f.mesh).solid.mesh())) continue;
     DecimateOptions o = to_vertices(8);
     o.keep_convex = true;
-    EXPECT_THROW(decimate(geom::prepare(f.mesh), o), Error) << f.name;
+    EXPECT_THROW(decimate(geom::prepare(f.mesh).solid, o), Error) << f.name;
   }
 }
 
@@ -476,9 +501,9 @@ TEST(Decimate, TrianglesCostAloneLosesConvexity) {
   for (const auto& f : solids()) {
     if (!f.convex) continue;
     const auto p = geom::prepare(f.mesh);
-    DecimateOptions o = to_vertices(p.mesh.vertices.size() * 2 / 3);
+    DecimateOptions o = to_vertices(p.solid.mesh().vertices.size() * 2 / 3);
     o.cost = Cost::Triangles;
-    lost += !geom::is_convex(geom::weld(decimate(p, o).mesh));
+    lost += !geom::is_convex(geom::weld(decimate(p.solid, o).mesh));
   }
   EXPECT_GT(lost, 0);
 }
@@ -489,12 +514,12 @@ TEST(Decimate, DoesNotDependOnTheScale) {
     if (f.mesh.triangles.size() > 400) continue;
     const auto p = geom::prepare(f.mesh);
     for (const Method& m : methods(f)) {
-      const DecimateOptions o = with(m, to_vertices(p.mesh.vertices.size() / 5 + 4));
-      const auto r = decimate(p, o);
+      const DecimateOptions o = with(m, to_vertices(p.solid.mesh().vertices.size() / 5 + 4));
+      const auto r = decimate(p.solid, o);
       for (const int exponent : {-20, 20}) {
         geom::Mesh scaled = f.mesh;
         for (auto& v : scaled.vertices) v *= std::ldexp(1.0, exponent);
-        const auto s = decimate(geom::prepare(scaled), o);
+        const auto s = decimate(geom::prepare(scaled).solid, o);
         ASSERT_EQ(s.mesh.triangles, r.mesh.triangles) << f.name;
         for (std::size_t i = 0; i < r.mesh.vertices.size(); ++i)
           ASSERT_EQ(s.mesh.vertices[i], r.mesh.vertices[i] * std::ldexp(1.0, exponent)) << f.name;
@@ -515,17 +540,19 @@ TEST(Decimate, IsAsGoodAtAnyScaleAndFarFromTheOrigin) {
       if (f.name.starts_with("t-junctions")) continue;
       if (f.mesh.triangles.size() > 1500 || f.mesh.triangles.size() < 200) continue;
       const auto p = geom::prepare(f.mesh);
-      const double diagonal = geom::bounding_box(p.mesh).diagonal();
+      const double diagonal = geom::bounding_box(p.solid.mesh()).diagonal();
       geom::Mesh moved = f.mesh;
       for (auto& v : moved.vertices)
         v = factor == 1 ? geom::Vec3(v + 1e4 * diagonal * geom::Vec3(1, -0.7, 0.3))
                         : geom::Vec3(factor * v);
       const auto q = geom::prepare(moved);
-      const DecimateOptions to_quarter = to_vertices(p.mesh.vertices.size() / 4 + 4);
-      const double reference = hausdorff(p.mesh, decimate(p, to_quarter).mesh) / diagonal;
+      const DecimateOptions to_quarter = to_vertices(p.solid.mesh().vertices.size() / 4 + 4);
+      const double reference =
+          hausdorff(p.solid.mesh(), decimate(p.solid, to_quarter).mesh) / diagonal;
       const auto [input, log, r] = test::record(moved, to_quarter);
       EXPECT_TRUE(replay(input, log, r.mesh).verified) << f.name << " " << factor;
-      const double there = hausdorff(q.mesh, r.mesh) / geom::bounding_box(q.mesh).diagonal();
+      const double there =
+          hausdorff(q.solid.mesh(), r.mesh) / geom::bounding_box(q.solid.mesh()).diagonal();
       EXPECT_LE(there, 2 * reference + 1e-7) << f.name << " " << factor;
       log_ratios += std::log((there + 1e-7) / (reference + 1e-7));
       ++cases;
@@ -544,8 +571,8 @@ TEST(Decimate, ProgressMayCancel) {
   struct Cancelled {};
   o.progress = [](std::size_t) { throw Cancelled{}; };
   const auto p = geom::prepare(big.mesh);
-  ASSERT_GT(p.mesh.vertices.size(), 1100U) << "the largest family gives no progress";
-  EXPECT_THROW(decimate(p, o), Cancelled);
+  ASSERT_GT(p.solid.mesh().vertices.size(), 1100U) << "the largest family gives no progress";
+  EXPECT_THROW(decimate(p.solid, o), Cancelled);
 }
 
 }  // namespace

@@ -17,9 +17,9 @@ Log sample() {
   log.input_sha256 = std::string(64, 'a');
   log.tool = "test 1";
   log.dropped = {3, 9};
-  log.turned = {1};
+  log.reversed = {1};
   log.rims = {{0, 1, 5}, {1, 2, 5, 7}};
-  log.turned_after_filling = {1, 12};
+  log.reversed_after_filling = {1, 12};
   log.steps = {{1, 2, {0.1, -0.0, 1e300}}, {4, 4, {1, 2, 3}}};
   return log;
 }
@@ -31,9 +31,9 @@ TEST(Log, SurvivesARoundTrip) {
   EXPECT_EQ(back.input_sha256, log.input_sha256);
   EXPECT_EQ(back.tool, log.tool);
   EXPECT_EQ(back.dropped, log.dropped);
-  EXPECT_EQ(back.turned, log.turned);
+  EXPECT_EQ(back.reversed, log.reversed);
   EXPECT_EQ(back.rims, log.rims);
-  EXPECT_EQ(back.turned_after_filling, log.turned_after_filling);
+  EXPECT_EQ(back.reversed_after_filling, log.reversed_after_filling);
   ASSERT_EQ(back.steps.size(), 2U);
   EXPECT_EQ(back.steps[0].gone, 2U);
   EXPECT_EQ(back.steps[0].position, log.steps[0].position);

@@ -63,7 +63,7 @@ std::vector<DecimateResult> series(Direction direction, std::size_t threads, boo
   o.cost = Cost::Distance;
   o.effort = Effort::Best;
   o.precision = Precision::Float;
-  return decimate_series(p, o, std::vector<std::size_t>{600, 300, 150});
+  return decimate_series(p.solid, o, std::vector<std::size_t>{600, 300, 150});
 }
 
 TEST(ParallelOptimiser, GivesTheSameSeriesForAnyNumberOfThreads) {
@@ -121,8 +121,8 @@ std::set<std::uint32_t> moved(const geom::Mesh& mesh, std::uint32_t a, std::uint
 // Two edges share a batch just when no triangle has a vertex that either moves.
 TEST(ParallelOptimiser, EdgesOfABatchAreApart) {
   const auto p = geom::prepare(test::icosphere(2));
-  const geom::Mesh& sphere = p.mesh;
-  WorkingMesh mesh(p);
+  const geom::Mesh& sphere = p.solid.mesh();
+  WorkingMesh mesh(p.solid);
   SampledError deviation(sphere);
   ReferenceSolid solid(sphere);
   DecimateOptions options;
@@ -142,7 +142,7 @@ TEST(ParallelOptimiser, EdgesOfABatchAreApart) {
             return in(moved_first) && in(moved_second);
           });
       ParallelOptimiser optimiser(mesh, deviation, &solid, sphere, nullptr, options, statistics,
-                                  false);
+                                  nullptr, false);
       ASSERT_TRUE(optimiser.claim({first[0], first[1]}));
       ASSERT_EQ(optimiser.claim({second[1], second[2]}), !meet);
       ++(meet ? together : apart);

@@ -16,7 +16,7 @@ inline bmesh::Log log_of_preparation(const geom::Mesh& input, const geom::Prepar
                                      bmesh::Direction direction) {
   bmesh::Log log;
   log.direction = direction;
-  bmesh::record_preparation(prepared, input.triangles.size(), log);
+  bmesh::record_preparation(prepared.report, input.triangles.size(), log);
   return log;
 }
 
@@ -32,9 +32,10 @@ inline Recorded record(const geom::Mesh& mesh, bmesh::DecimateOptions options, d
   Recorded r{mesh, log_of_preparation(mesh, p, options.direction), {}};
   if (share > 0)
     options.vertices =
-        static_cast<std::size_t>(share * static_cast<double>(p.mesh.vertices.size()));
-  options.steps = &r.log.steps;
-  r.result = bmesh::decimate(p, options);
+        static_cast<std::size_t>(share * static_cast<double>(p.solid.mesh().vertices.size()));
+  options.record_steps = true;
+  r.result = bmesh::decimate(p.solid, options);
+  r.log.steps = r.result.steps;
   return r;
 }
 

@@ -107,18 +107,18 @@ TEST(ReferenceSolid, AcceptsOnlyWhatLiesOutside) {
     } catch (const Error&) {
       continue;
     }
-    ReferenceSolid solid(p.mesh);
+    ReferenceSolid solid(p.solid.mesh());
     std::vector<verify::ReplaySolid::Point> points;
-    for (const Vec3& v : p.mesh.vertices) points.emplace_back(v.x(), v.y(), v.z());
-    verify::ReplaySolid checker(points, p.mesh.triangles);
-    const geom::WindingNumber winding(p.mesh);
-    const geom::Box3 box = geom::bounding_box(p.mesh);
+    for (const Vec3& v : p.solid.mesh().vertices) points.emplace_back(v.x(), v.y(), v.z());
+    verify::ReplaySolid checker(points, p.solid.mesh().triangles);
+    const geom::WindingNumber winding(p.solid.mesh());
+    const geom::Box3 box = geom::bounding_box(p.solid.mesh());
     for (int i = 0; i < 60; ++i) {
       // Corners at vertices of the mesh and near them.
       Tetrahedron t;
-      const auto& tri = p.mesh.triangles[random() % p.mesh.triangles.size()];
+      const auto& tri = p.solid.mesh().triangles[random() % p.solid.mesh().triangles.size()];
       for (std::size_t k = 0; k < 4; ++k) {
-        t[k] = p.mesh.vertices[tri[k % 3]];
+        t[k] = p.solid.mesh().vertices[tri[k % 3]];
         if (k == 3 || i % 3 == 0)
           t[k] += std::pow(10.0, -1 - static_cast<double>(i % 4)) * box.diagonal() *
                   (Vec3(unit(random), unit(random), unit(random)) - Vec3::Constant(0.5));

@@ -66,15 +66,15 @@ TEST(Regions, StepsAcrossTheSurfaceAreRefuted) {
 /// The stage alone.
 struct Reduced {
   explicit Reduced(const geom::Mesh& mesh, std::size_t target, Direction direction)
-      : input(geom::prepare(mesh)), before(input.mesh, input.border, {}), after(before) {
+      : input(geom::prepare(mesh).solid), before(input.mesh(), input.border(), {}), after(before) {
     options.direction = direction;
-    const Context context(input, options);
-    before.quadric = context.cost.initial(input.mesh);
+    const Context context(input.mesh(), input.closed(), options);
+    before.quadric = context.cost.initial(input.mesh());
     after = before;
     contract_in_regions(context, after, target, nullptr, &steps, statistics);
   }
   DecimateOptions options;
-  geom::Prepared input;
+  geom::SolidMesh input;
   PartialMesh before, after;
   std::vector<Step> steps;
   DecimateStatistics statistics;
@@ -132,15 +132,15 @@ TEST(Regions, LeaveAMeshInOrder) {
     // Nothing stays locked, borders stay where they are, numbers are of different input vertices.
     for (const char b : m.border) EXPECT_LE(b, 1);
     EXPECT_EQ(border_places(m.position, m.border),
-              border_places(r.input.mesh.vertices, r.input.border));
+              border_places(r.input.mesh().vertices, r.input.border()));
     EXPECT_EQ(std::set<std::uint32_t>(m.vertex.begin(), m.vertex.end()).size(), m.vertex.size());
     EXPECT_TRUE(std::is_sorted(m.triangle.begin(), m.triangle.end(), std::less_equal<>()));
     geom::Mesh left{m.position, m.triangles};
     geom::require_valid(left);
-    EXPECT_EQ(geom::analyse(left).closed(), r.input.closed);
+    EXPECT_EQ(geom::analyse(left).closed(), r.input.closed());
     EXPECT_EQ(geom::analyse(left).nonmanifold_edges, 0U);
     // The steps lead to just this mesh.
-    Log log = test::log_of_preparation(mesh, r.input, Direction::Outer);
+    Log log = test::log_of_preparation(mesh, geom::prepare(mesh), Direction::Outer);
     log.steps = r.steps;
     const auto checked = replay(mesh, log, left);
     EXPECT_TRUE(checked.verified) << checked.violation;

@@ -199,11 +199,11 @@ TEST(Replay, RefutesMovesOfTheBorder) {
     EXPECT_TRUE(checked.verified) << f.name << ": " << checked.violation;
     EXPECT_FALSE(checked.closed);
     const auto p = geom::prepare(f.mesh);
-    for (std::uint32_t v = 0; v < p.border.size(); ++v) {
-      if (p.border[v] == 0) continue;
+    for (std::uint32_t v = 0; v < p.solid.border().size(); ++v) {
+      if (p.solid.border()[v] == 0) continue;
       Log mutant = r.log;
       mutant.steps.insert(mutant.steps.begin(),
-                          {v, v, p.mesh.vertices[v] + geom::Vec3(0, 0, 1e-9)});
+                          {v, v, p.solid.mesh().vertices[v] + geom::Vec3(0, 0, 1e-9)});
       EXPECT_FALSE(replay(r.input, mutant, r.result.mesh).verified) << f.name;
       break;
     }
@@ -221,18 +221,20 @@ TEST(Replay, FillsHoles) {
     } catch (const Error&) {
       continue;  // one-sided
     }
-    if (p.filled_triangles == 0) continue;
+    if (p.solid.filled_triangles() == 0) continue;
     Log log = test::log_of_preparation(f.mesh, p, Direction::Outer);
-    EXPECT_EQ(log.rims.size(), p.holes);
+    EXPECT_EQ(log.rims.size(), p.report.holes);
     DecimateOptions options;
-    options.vertices = std::max<std::size_t>(p.mesh.vertices.size() / 2, 4);
-    options.steps = &log.steps;
-    const geom::Mesh result = decimate(p, options).mesh;
+    options.vertices = std::max<std::size_t>(p.solid.mesh().vertices.size() / 2, 4);
+    options.record_steps = true;
+    const DecimateResult decimated = decimate(p.solid, options);
+    log.steps = decimated.steps;
+    const geom::Mesh& result = decimated.mesh;
     const Log read = parse_log(serialise_log(log), "the log");
     const auto checked = replay(f.mesh, read, result);
     EXPECT_TRUE(checked.verified) << f.name << ": " << checked.violation;
     EXPECT_TRUE(checked.closed) << f.name;
-    EXPECT_EQ(checked.filled, p.filled_triangles);
+    EXPECT_EQ(checked.filled, p.solid.filled_triangles());
     Log mutant = log;
     mutant.rims.pop_back();
     EXPECT_FALSE(replay(f.mesh, mutant, result).verified) << f.name;
@@ -269,15 +271,16 @@ TEST(Replay, RefusesFillsThatAreNoFans) {
   ASSERT_EQ(log.rims.size(), 1U);
   const std::vector<std::uint32_t> rim = log.rims[0];
   ASSERT_EQ(rim.size(), 4U);
-  ASSERT_TRUE(replay(input, log, p.mesh).verified) << replay(input, log, p.mesh).violation;
+  ASSERT_TRUE(replay(input, log, p.solid.mesh()).verified)
+      << replay(input, log, p.solid.mesh()).violation;
   const auto refused = [&](const Log& l, const char* why) {
-    const auto checked = replay(input, l, p.mesh);
+    const auto checked = replay(input, l, p.solid.mesh());
     EXPECT_FALSE(checked.verified) << why;
     EXPECT_NE(checked.violation.find(why), std::string::npos) << checked.violation;
   };
 
   for (const double z : {-5.0, std::nextafter(1.0, 0.0)}) {  // the tip follows from the rim
-    geom::Mesh other = p.mesh;
+    geom::Mesh other = p.solid.mesh();
     other.vertices.back().z() = z;
     const auto checked = replay(input, log, other);
     EXPECT_FALSE(checked.verified);
@@ -308,19 +311,19 @@ TEST(Replay, RefusesFillsThatAreNoFans) {
 
   // Later turns are of closed chains: the fan alone is none, nor is what leaves a part out.
   mutant = log;
-  mutant.turned_after_filling = {10, 11, 12, 13};
+  mutant.reversed_after_filling = {10, 11, 12, 13};
   refused(mutant, "no closed chain");
   mutant = log;
-  for (std::uint32_t t = 0; t < 13; ++t) mutant.turned_after_filling.push_back(t);
+  for (std::uint32_t t = 0; t < 13; ++t) mutant.reversed_after_filling.push_back(t);
   refused(mutant, "is no hole");
   mutant = log;  // as if the input had been inside out when it was filled
-  for (std::uint32_t t = 0; t < 14; ++t) mutant.turned_after_filling.push_back(t);
+  for (std::uint32_t t = 0; t < 14; ++t) mutant.reversed_after_filling.push_back(t);
   refused(mutant, "is no hole");
   mutant = log;
-  mutant.turned_after_filling = {14};
+  mutant.reversed_after_filling = {14};
   refused(mutant, "is not there");
-  mutant.turned_after_filling = {3, 3};
-  EXPECT_THROW(replay(input, mutant, p.mesh), Error);
+  mutant.reversed_after_filling = {3, 3};
+  EXPECT_THROW(replay(input, mutant, p.solid.mesh()), Error);
 }
 
 /// Three tetrahedra round the edge that they share, apart elsewhere. Each has faces missing, as the
@@ -367,17 +370,17 @@ TEST(Replay, FillsHolesOfShellsTurnedLater) {
         continue;  // what was meant cannot be told
       }
       const Log log = test::log_of_preparation(input, p, Direction::Outer);
-      const auto checked = replay(input, log, p.mesh);
+      const auto checked = replay(input, log, p.solid.mesh());
       EXPECT_TRUE(checked.verified) << missing << ' ' << turned << ": " << checked.violation;
-      EXPECT_EQ(checked.filled, p.filled_triangles);
-      if (log.turned_after_filling.empty()) continue;
+      EXPECT_EQ(checked.filled, p.solid.filled_triangles());
+      if (log.reversed_after_filling.empty()) continue;
       Log mutant = log;
-      mutant.turned_after_filling.pop_back();
-      EXPECT_FALSE(replay(input, mutant, p.mesh).verified) << missing << ' ' << turned;
-      if (log.turned_after_filling.back() < input.triangles.size()) continue;  // a closed shell
+      mutant.reversed_after_filling.pop_back();
+      EXPECT_FALSE(replay(input, mutant, p.solid.mesh()).verified) << missing << ' ' << turned;
+      if (log.reversed_after_filling.back() < input.triangles.size()) continue;  // a closed shell
       ++fans_turned;
-      mutant.turned_after_filling.clear();
-      EXPECT_FALSE(replay(input, mutant, p.mesh).verified) << missing << ' ' << turned;
+      mutant.reversed_after_filling.clear();
+      EXPECT_FALSE(replay(input, mutant, p.solid.mesh()).verified) << missing << ' ' << turned;
     }
   EXPECT_GT(fans_turned, 100U);
 }
@@ -388,7 +391,7 @@ TEST(Replay, RefusesNonsense) {
   mutant.steps[0].gone = 1U << 30;
   EXPECT_THROW(replay(r.input, mutant, r.result.mesh), Error);
   mutant = r.log;
-  mutant.turned.push_back(1U << 30);
+  mutant.reversed.push_back(1U << 30);
   EXPECT_THROW(replay(r.input, mutant, r.result.mesh), Error);
   mutant = r.log;
   mutant.steps[0].position.x() = std::nan("");

@@ -118,7 +118,7 @@ TEST(Work, SheetsOfTwoTrianglesStay) {
   fill.holes = geom::Holes::Fill;
   DecimateOptions options = as_the_tool_does();
   options.vertices = 4;
-  const DecimateResult result = decimate(geom::prepare(sheets, fill), options);
+  const DecimateResult result = decimate(geom::prepare(sheets, fill).solid, options);
   EXPECT_EQ(result.mesh.triangles.size(), 6U);
 }
 

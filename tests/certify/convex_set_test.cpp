@@ -90,7 +90,7 @@ TEST(SetCertificate, SurvivesItsRecord) {
   c.min_thickness = 0.25;
   c.thickened = 3;
   c.stop = bcd::Stop::Stuck;
-  c.subject.turned_triangles = 4;
+  c.subject.reversed_triangles = 4;
   c.subject.dropped_copies = 5;
   c.subject.dropped_sheets = 6;
   EXPECT_EQ(write_record(read_record(write_record(c))), write_record(c));

@@ -89,8 +89,8 @@ TEST(CertifyMesh, IsWhatItsBytesHold) {
       const MeshCertificate& c = made->certificate();
       EXPECT_EQ(c.vertices, 100U);
       EXPECT_TRUE(c.reached());
-      EXPECT_TRUE(direction == Direction::Outer ? holds(back, original.mesh)
-                                                : holds(original.mesh, back));
+      EXPECT_TRUE(direction == Direction::Outer ? holds(back, original.solid.mesh())
+                                                : holds(original.solid.mesh(), back));
       EXPECT_EQ(
           kinds(*made, Basis::Bytes, Answer::Verified),
           (std::set{Kind::Solid, Kind::Surface, Kind::OriginalToResult, Kind::ResultToOriginal}));
@@ -107,7 +107,7 @@ TEST(CertifyMesh, KeepsEpsilonAsAShareOfTheDiagonal) {
   const geom::Prepared original = prepare_mesh(torus());
   const auto made = certify_mesh(original, request);
   ASSERT_TRUE(made);
-  const double epsilon = 0.02 * geom::bounding_box(original.mesh).diagonal();
+  const double epsilon = 0.02 * geom::bounding_box(original.solid.mesh()).diagonal();
   EXPECT_EQ(made->certificate().epsilon, epsilon);
   EXPECT_LE(made->certificate().hausdorff_upper(), epsilon);
   EXPECT_EQ(made->certificate().stop, bmesh::Stop::ErrorBound);
@@ -124,7 +124,7 @@ TEST(CertifyMeshes, SeriesAreNested) {
   EXPECT_LE(series.meshes.back().certificate().steps, series.steps.size());
   for (std::size_t i = 0; i < 3; ++i) {
     const MeshCertificate& c = series.meshes[i].certificate();
-    EXPECT_EQ(c.wished, request.vertices[i]);
+    EXPECT_EQ(c.requested, request.vertices[i]);
     EXPECT_EQ(c.finer, i);
     EXPECT_EQ(kinds(series.meshes[i], Basis::Bytes, Answer::Verified).contains(Kind::Nested),
               i > 0);
@@ -147,7 +147,7 @@ TEST(CertifyMeshes, WhatIsNotReachedStandsForAllAfterIt) {
     EXPECT_EQ(made.certificate().stop, bmesh::Stop::Exhausted);
     EXPECT_EQ(made.bytes(), series.meshes.front().bytes());
   }
-  EXPECT_EQ(series.meshes.back().certificate().wished, 5U);
+  EXPECT_EQ(series.meshes.back().certificate().requested, 5U);
 }
 
 TEST(CertifyMesh, GivesTheBytesOfTheProgram) {
@@ -310,7 +310,7 @@ TEST(CertifyMesh, WithoutDecidingClaimsSayWhatTheyRestOn) {
 
 TEST(CertifyMesh, TrianglesThatBoundNoSolidAreFoundToStickOut) {
   const geom::Prepared original = prepare_mesh(bow_tie());
-  ASSERT_EQ(original.turned_triangles, 0U);
+  ASSERT_EQ(original.report.reversed_triangles, 0U);
   for (const bool decide : {false, true}) {
     MeshRequest request = fast(8);
     request.decide = decide;
@@ -319,7 +319,8 @@ TEST(CertifyMesh, TrianglesThatBoundNoSolidAreFoundToStickOut) {
     EXPECT_EQ(kinds(*made, decide ? Basis::Bytes : Basis::Meshes, Answer::Refuted),
               (std::set{Kind::Surface}));
     EXPECT_GT(made->certificate().surface->sticks_out.lower, 0.1);
-    EXPECT_LT(made->certificate().surface->sticks_out.triangle, original.mesh.triangles.size());
+    EXPECT_LT(made->certificate().surface->sticks_out.triangle,
+              original.solid.mesh().triangles.size());
   }
 }
 

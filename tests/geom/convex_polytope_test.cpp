@@ -1,6 +1,8 @@
-// Polytopes by their planes, against exact or slow answers.
+// Polytopes by their planes, and points of triangles, against exact or slow answers.
+#include <kaboum/geom/closest_point.h>
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/geom/convex_polytope.h>
+#include <kaboum/geom/distance.h>
 #include <kaboum/geom/predicates.h>
 
 #include <gtest/gtest.h>
@@ -72,6 +74,18 @@ TEST(ConvexPolytope, ContainsWhatTheOracleSays) {
     EXPECT_GT(inside, 5);
     for (const Vec3& v : hull.vertices)
       EXPECT_TRUE(polytope.contains(v));  // its boundary is its own
+  }
+}
+
+TEST(ClosestPoint, LiesWithinTheCertifiedBracket) {
+  Draw draw;
+  for (int round = 0; round < 5000; ++round) {
+    const Vec3 a = draw.point(), b = draw.point(), c = draw.point(), p = 2 * draw.point();
+    const DistanceBounds d = point_triangle_distance(p, a, b, c);
+    const double rounded = (p - closest_point(p, a, b, c)).norm();
+    EXPECT_GE(rounded, d.lower - 1e-12);
+    EXPECT_LE(rounded, d.upper + 1e-9);
+    EXPECT_NEAR(std::sqrt(squared_distance(p, a, b - a, c - a)), rounded, 1e-9);
   }
 }
 

@@ -33,7 +33,7 @@ void add_cube(Mesh& mesh, Vec3 lo, Vec3 hi, bool inward = false) {
 }
 
 int winding_at(const Prepared& p, const Vec3& x) {
-  return kaboum::geom::WindingNumber(p.mesh)(x).value();
+  return kaboum::geom::WindingNumber(p.solid.mesh())(x).value();
 }
 
 ErrorCode refusal(const Mesh& mesh, const PrepareOptions& options = {}) {
@@ -51,10 +51,10 @@ TEST(Prepare, LeavesAGoodMeshAlone) {
   Mesh cube;
   add_cube(cube, {0, 0, 0}, {1, 1, 1});
   const Prepared p = prepare(cube);
-  EXPECT_TRUE(p.closed);
-  EXPECT_EQ(p.mesh.triangles.size(), 12U);
-  EXPECT_TRUE(p.notes.empty());
-  EXPECT_EQ(p.components, 1U);
+  EXPECT_TRUE(p.solid.closed());
+  EXPECT_EQ(p.solid.mesh().triangles.size(), 12U);
+  EXPECT_TRUE(p.report.notes.empty());
+  EXPECT_EQ(p.report.components, 1U);
 }
 
 TEST(Prepare, TurnsAnInsideOutComponent) {
@@ -62,8 +62,8 @@ TEST(Prepare, TurnsAnInsideOutComponent) {
   add_cube(mesh, {0, 0, 0}, {1, 1, 1}, true);
   add_cube(mesh, {2, 0, 0}, {3, 1, 1});
   const Prepared p = prepare(mesh);
-  EXPECT_EQ(p.turned_components, 1U);
-  EXPECT_EQ(p.turned_triangles, 12U);
+  EXPECT_EQ(p.report.reversed_components, 1U);
+  EXPECT_EQ(p.report.reversed_triangles, 12U);
   EXPECT_EQ(winding_at(p, {0.5, 0.5, 0.5}), 1);
   EXPECT_EQ(winding_at(p, {2.5, 0.5, 0.5}), 1);
   PrepareOptions keep;
@@ -78,7 +78,7 @@ TEST(Prepare, KeepsCavitiesAndBodiesInBodies) {
   add_cube(mesh, {2, 2, 2}, {3, 3, 3});                    // a body in the cavity
   add_cube(mesh, {0.25, 0.25, 0.25}, {0.75, 0.75, 0.75});  // a body in the wall
   const Prepared p = prepare(mesh);
-  EXPECT_EQ(p.turned_triangles, 0U);
+  EXPECT_EQ(p.report.reversed_triangles, 0U);
   EXPECT_EQ(winding_at(p, {5, 5, 5.5}), 0);
   EXPECT_EQ(winding_at(p, {2.5, 2.5, 2.25}), 1);
   EXPECT_EQ(winding_at(p, {0.5, 0.5, 0.375}), 2);
@@ -99,7 +99,7 @@ TEST(Prepare, TurnsAnInsideOutBodyInACavity) {
   add_cube(mesh, {1, 1, 1}, {8, 8, 8}, true);
   add_cube(mesh, {2, 2, 2}, {3, 3, 3}, true);
   const Prepared p = prepare(mesh);
-  EXPECT_EQ(p.turned_components, 1U);
+  EXPECT_EQ(p.report.reversed_components, 1U);
   EXPECT_EQ(winding_at(p, {2.5, 2.5, 2.25}), 1);
 }
 
@@ -109,7 +109,7 @@ TEST(Prepare, TurnsOnlyWhatIsInsideOut) {
   add_cube(mesh, {0, 0, 0}, {10, 10, 10});
   add_cube(mesh, {-1, -1, -1}, {1, 1, 1}, true);
   const Prepared p = prepare(mesh);
-  EXPECT_EQ(p.turned_triangles, 12U);
+  EXPECT_EQ(p.report.reversed_triangles, 12U);
   EXPECT_EQ(winding_at(p, {5, 5, 5.5}), 1);
   EXPECT_EQ(winding_at(p, {-0.5, -0.5, -0.25}), 1);
   EXPECT_EQ(winding_at(p, {0.5, 0.5, 0.25}), 2);
@@ -132,7 +132,7 @@ TEST(Prepare, KeepsCopiesBesideCavities) {
   add_cube(mesh, {0, 0, 0}, {9, 9, 9});
   add_cube(mesh, {1, 1, 1}, {8, 8, 8}, true);  // 2 − 1 = 1: still solid
   const Prepared p = prepare(mesh);
-  EXPECT_EQ(p.dropped_copies, 0U);
+  EXPECT_EQ(p.report.dropped_copies, 0U);
   EXPECT_EQ(winding_at(p, {5, 5, 5.5}), 1);
 }
 
@@ -149,8 +149,8 @@ TEST(Prepare, AgreesMixedOrientation) {
   add_cube(mesh, {0, 0, 0}, {1, 1, 1});
   for (std::size_t t = 0; t < 12; t += 5) std::swap(mesh.triangles[t][0], mesh.triangles[t][1]);
   const Prepared p = prepare(mesh);
-  EXPECT_TRUE(p.closed);
-  EXPECT_EQ(p.turned_triangles, 3U);
+  EXPECT_TRUE(p.solid.closed());
+  EXPECT_EQ(p.report.reversed_triangles, 3U);
   EXPECT_EQ(winding_at(p, {0.5, 0.5, 0.5}), 1);
 }
 
@@ -158,8 +158,8 @@ TEST(Prepare, DropsCopiesAndCancelsWalls) {
   Mesh twice;
   add_cube(twice, {0, 0, 0}, {1, 1, 1});
   add_cube(twice, {0, 0, 0}, {1, 1, 1});
-  EXPECT_EQ(prepare(twice).dropped_copies, 12U);
-  EXPECT_EQ(prepare(twice).mesh.triangles.size(), 12U);
+  EXPECT_EQ(prepare(twice).report.dropped_copies, 12U);
+  EXPECT_EQ(prepare(twice).solid.mesh().triangles.size(), 12U);
 
   Mesh stacked;  // two cubes with a common face, triangulated alike
   add_cube(stacked, {0, 0, 0}, {1, 1, 1});
@@ -178,8 +178,8 @@ TEST(Prepare, DropsCopiesAndCancelsWalls) {
                                                            {7, 11, 9}})
     stacked.triangles.push_back(t);
   const Prepared p = prepare(stacked);
-  EXPECT_TRUE(p.closed);
-  EXPECT_EQ(p.cancelled_walls, 4U);
+  EXPECT_TRUE(p.solid.closed());
+  EXPECT_EQ(p.report.cancelled_walls, 4U);
   EXPECT_EQ(winding_at(p, {1, 0.5, 0.25}), 1) << "the wall is gone";
 }
 
@@ -216,11 +216,11 @@ TEST(Prepare, KeepsTheBorderOfOpenMeshes) {
   add_cube(open, {0, 0, 0}, {1, 1, 1});
   open.triangles.erase(open.triangles.begin(), open.triangles.begin() + 2);  // no bottom
   const Prepared p = prepare(open);
-  EXPECT_FALSE(p.closed);
+  EXPECT_FALSE(p.solid.closed());
   int border = 0;
-  for (std::size_t v = 0; v < p.mesh.vertices.size(); ++v) {
-    border += p.border[v];
-    EXPECT_EQ(p.border[v] != 0, p.mesh.vertices[v].z() == 0);
+  for (std::size_t v = 0; v < p.solid.mesh().vertices.size(); ++v) {
+    border += p.solid.border()[v];
+    EXPECT_EQ(p.solid.border()[v] != 0, p.solid.mesh().vertices[v].z() == 0);
   }
   EXPECT_EQ(border, 4);
   PrepareOptions strict;
@@ -237,8 +237,8 @@ TEST(Prepare, DropsSheetsOnRequestOnly) {
   EXPECT_EQ(refusal(mesh), ErrorCode::InvalidInput);
   PrepareOptions drop;
   drop.drop_sheets = true;
-  EXPECT_EQ(prepare(mesh, drop).dropped_sheets, 2U);
-  EXPECT_EQ(prepare(mesh, drop).mesh.triangles.size(), 12U);
+  EXPECT_EQ(prepare(mesh, drop).report.dropped_sheets, 2U);
+  EXPECT_EQ(prepare(mesh, drop).solid.mesh().triangles.size(), 12U);
 }
 
 }  // namespace

@@ -115,9 +115,10 @@ void expect_solid(const std::string& name, const std::vector<Box>& boxes,
       ADD_FAILURE() << name << ": " << e.what();
       return;
     }
-    ASSERT_TRUE(p.closed) << name;
+    ASSERT_TRUE(p.solid.closed()) << name;
     for (const Vec3& x : points(boxes)) {
-      const auto w = kaboum::test::winding_number_slow(p.mesh, angle == 0 ? x : turned(x, angle));
+      const auto w =
+          kaboum::test::winding_number_slow(p.solid.mesh(), angle == 0 ? x : turned(x, angle));
       ASSERT_TRUE(w.has_value()) << name;
       EXPECT_EQ(*w >= 1, meant(x))
           << name << ", angle " << angle << " at " << x.transpose() << ": " << *w;
@@ -257,15 +258,16 @@ TEST(Shells, OpenPartsAreFilledFirst) {
       PrepareOptions fill;
       fill.holes = Holes::Fill;
       const Prepared p = prepare(mesh, fill);
-      ASSERT_TRUE(p.closed);
-      EXPECT_EQ(p.holes, 1U);
-      EXPECT_EQ(p.filled_triangles, 8U);
-      EXPECT_EQ(p.filled_vertices, beside ? 0U : 1U) << "the middle of the other box's wall";
-      EXPECT_NEAR(p.largest_hole, std::sqrt(8), 1e-9);
-      EXPECT_EQ(p.source.size() + p.filled_triangles, p.mesh.triangles.size());
-      EXPECT_EQ(p.turned_components, inward ? 1U : 0U);
+      ASSERT_TRUE(p.solid.closed());
+      EXPECT_EQ(p.report.holes, 1U);
+      EXPECT_EQ(p.solid.filled_triangles(), 8U);
+      EXPECT_EQ(p.report.filled_vertices, beside ? 0U : 1U) << "the middle of the other box's wall";
+      EXPECT_NEAR(p.report.largest_hole, std::sqrt(8), 1e-9);
+      EXPECT_EQ(p.report.source.size() + p.solid.filled_triangles(),
+                p.solid.mesh().triangles.size());
+      EXPECT_EQ(p.report.reversed_components, inward ? 1U : 0U);
       for (const Vec3& x : points({box, closed})) {
-        EXPECT_EQ(*kaboum::test::winding_number_slow(p.mesh, x) >= 1,
+        EXPECT_EQ(*kaboum::test::winding_number_slow(p.solid.mesh(), x) >= 1,
                   box.holds(x) || (beside && closed.holds(x)));
       }
     }
@@ -282,14 +284,14 @@ TEST(Shells, FilledPartsAreNoCavities) {
     PrepareOptions fill;
     fill.holes = Holes::Fill;
     const Prepared p = prepare(kaboum::test::merged({mesh_of(outer, kUnits), open}), fill);
-    ASSERT_TRUE(p.closed);
+    ASSERT_TRUE(p.solid.closed());
     for (const Vec3& x : points({outer}))
-      EXPECT_EQ(*kaboum::test::winding_number_slow(p.mesh, x) >= 1, outer.holds(x));
+      EXPECT_EQ(*kaboum::test::winding_number_slow(p.solid.mesh(), x) >= 1, outer.holds(x));
   }
 }
 
 bool notes_hollow(const Prepared& p) {
-  return std::any_of(p.notes.begin(), p.notes.end(), [](const std::string& note) {
+  return std::any_of(p.report.notes.begin(), p.report.notes.end(), [](const std::string& note) {
     return note.find("counts as outside") != std::string::npos;
   });
 }
@@ -341,9 +343,10 @@ TEST(Shells, AHoleAtASharedWallIsRefusedOrSaid) {
   fill.holes = Holes::Fill;
   EXPECT_THROW(prepare(rooms(true), fill), kaboum::Error);
   const Prepared p = prepare(rooms(false), fill);
-  EXPECT_TRUE(std::any_of(p.notes.begin(), p.notes.end(), [](const std::string& note) {
-    return note.find("rim runs along a wall") != std::string::npos;
-  }));
+  EXPECT_TRUE(
+      std::any_of(p.report.notes.begin(), p.report.notes.end(), [](const std::string& note) {
+        return note.find("rim runs along a wall") != std::string::npos;
+      }));
 }
 
 // A closed surface that crosses itself, most of it oriented outwards: two boxes as one, joined
@@ -361,7 +364,7 @@ TEST(Shells, ALobeInsideOutIsNoted) {
   }
   mesh.triangles.insert(mesh.triangles.end(), {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}});
   const Prepared p = prepare(mesh);
-  EXPECT_TRUE(p.closed);
+  EXPECT_TRUE(p.solid.closed());
   EXPECT_TRUE(notes_hollow(p));
 }
 
@@ -394,7 +397,7 @@ TEST(Shells, WhatStaysInsideOutIsSaid) {
       continue;
     }
     for (const Vec3& x : points(boxes)) {
-      const auto w = kaboum::test::winding_number_slow(p.mesh, x);
+      const auto w = kaboum::test::winding_number_slow(p.solid.mesh(), x);
       ASSERT_TRUE(w.has_value());
       EXPECT_TRUE(*w >= 0 || notes_hollow(p)) << *w << " at " << x.transpose();
     }
@@ -427,7 +430,7 @@ Answer answer(const std::vector<Box>& boxes, const Mesh& mesh) {
   } catch (const kaboum::Error&) {
     return Answer::Refused;
   }
-  const kaboum::geom::WindingNumber winding(p.mesh);
+  const kaboum::geom::WindingNumber winding(p.solid.mesh());
   for (const Vec3& x : points(boxes)) {
     const int w = winding(x).value();
     if (w >= 0 && (w >= 1 || !meant(boxes, x))) continue;

@@ -103,11 +103,12 @@ class Check {
       ++refused_;
       return;
     }
-    if (!p.closed || p.mesh.vertices.size() > largest) return;
+    if (!p.solid.closed() || p.solid.mesh().vertices.size() > largest) return;
     ++meshes_;
     for (const bmesh::Cost cost : s_.costs) {
       // Steps against the original are replayed slowly.
-      if (cost == bmesh::Cost::Distance && p.mesh.vertices.size() > s_.largest_measured) continue;
+      if (cost == bmesh::Cost::Distance && p.solid.mesh().vertices.size() > s_.largest_measured)
+        continue;
       for (const Direction d : {Direction::Outer, Direction::Inner})
         for (const double ratio : s_.ratios) run(name, input, p, d, ratio, cost);
     }
@@ -134,26 +135,27 @@ class Check {
            double ratio, bmesh::Cost cost) {
     bmesh::Log log;
     log.direction = d;
-    bmesh::record_preparation(p, input.triangles.size(), log);
+    bmesh::record_preparation(p.report, input.triangles.size(), log);
     bmesh::DecimateOptions o;
     o.direction = d;
     o.cost = cost;
     if (cost == bmesh::Cost::Distance) o.effort = bmesh::Effort::Normal;
     o.vertices = std::max<std::size_t>(
-        4, static_cast<std::size_t>(ratio * static_cast<double>(p.mesh.vertices.size())));
-    o.steps = &log.steps;
-    const auto r = bmesh::decimate(p, o);
+        4, static_cast<std::size_t>(ratio * static_cast<double>(p.solid.mesh().vertices.size())));
+    o.record_steps = true;
+    const auto r = bmesh::decimate(p.solid, o);
+    log.steps = r.steps;
     const auto checked = verify::replay(input, log, r.mesh);
-    const auto points = sample_points(p.mesh, r.mesh, s_.samples);
+    const auto points = sample_points(p.solid.mesh(), r.mesh, s_.samples);
     std::size_t solid = 0;
-    std::size_t bad = d == Direction::Outer ? violations(p.mesh, r.mesh, points, &solid)
-                                            : violations(r.mesh, p.mesh, points, &solid);
+    std::size_t bad = d == Direction::Outer ? violations(p.solid.mesh(), r.mesh, points, &solid)
+                                            : violations(r.mesh, p.solid.mesh(), points, &solid);
     // Preparation may not have taken anything from the input's own solid, where it has one; nor
     // added to it, unless it turned something.
     if (const Mesh raw = geom::weld(input); geom::analyse(raw).closed()) {
       std::size_t ignored = 0;
       if (d == Direction::Outer) bad += violations(raw, r.mesh, points, &ignored);
-      if (d == Direction::Inner && p.turned_triangles == 0)
+      if (d == Direction::Inner && p.report.reversed_triangles == 0)
         bad += violations(r.mesh, raw, points, &ignored);
     }
     ++runs_;

@@ -29,7 +29,7 @@ Missed sample_points(const TestRobot& robot, const Path& path, const SweepResult
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < result.pieces.size(); ++i) {
       if (result.sources[i] != b) continue;
-      const Piece& piece = result.pieces[i];
+      const PathInterval& piece = result.pieces[i];
       const geom::Mesh& hull = result.set.bodies[i].hull;
       if (anywhere) {
         nearest = std::min(nearest, distance_to(hull, p));

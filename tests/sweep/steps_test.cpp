@@ -34,7 +34,7 @@ TEST(Steps, PiecesCoverThePathInOrder) {
         const auto pieces = choose_steps(r.robot, body.link, body.points, path, options);
         std::size_t segment = 0;
         double at = 0;
-        for (const Piece& p : pieces) {
+        for (const PathInterval& p : pieces) {
           EXPECT_EQ(p.first_segment, segment);
           EXPECT_EQ(p.begin, at);
           EXPECT_LE(p.deviation, 0.01);
@@ -61,7 +61,7 @@ TEST(Steps, PointsStayWithinTheDeviationOfTheirSegment) {
       const SweepResult result = swept_volume(r.robot, r.bodies, path, options);
       for (int k = 0; k < 600; ++k) {
         const std::size_t i = random() % result.pieces.size();
-        const Piece& piece = result.pieces[i];
+        const PathInterval& piece = result.pieces[i];
         if (piece.first_segment != piece.last_segment) continue;
         const double u = static_cast<double>(k % 21) / 20;
         const double s = piece.begin + u * (piece.end - piece.begin);
@@ -179,11 +179,11 @@ TEST(Steps, LargestReachIsKept) {
   options.deviation = 0.005;
   const auto& body = r.bodies[1];
   const auto far = choose_steps(r.robot, body.link, body.points, path, options);
-  options.max_reach = 0.008;
+  options.max_excess = 0.008;
   const auto near = choose_steps(r.robot, body.link, body.points, path, options);
   EXPECT_GT(near.size(), far.size());
-  for (const Piece& p : near) EXPECT_LE(reach(p, body.points), 0.008);
-  options.max_reach = 1e-14;
+  for (const PathInterval& p : near) EXPECT_LE(excess(p, body.points), 0.008);
+  options.max_excess = 1e-14;
   EXPECT_THROW(choose_steps(r.robot, body.link, body.points, path, options), Error);
 }
 

@@ -89,7 +89,7 @@ TEST(Sweep, ExplicitMarginContainsTheSum) {
       }
     }
     EXPECT_EQ(sample_points(r, path, result, random, 3000, true).missed, 0U);
-    EXPECT_LE(result.reach, implicit.reach + 0.01);
+    EXPECT_LE(result.excess, implicit.reach + 0.01);
   }
 }
 
@@ -171,8 +171,8 @@ TEST(Sweep, ReachHoldsForPointsOfTheSet) {
     }
     most = std::max(most, nearest);
   }
-  EXPECT_LE(most, result.reach);
-  EXPECT_GT(result.reach, result.set.margin);
+  EXPECT_LE(most, result.excess);
+  EXPECT_GT(result.excess, result.set.margin);
 }
 
 TEST(Sweep, SameOnAnyNumberOfThreads) {
@@ -220,10 +220,10 @@ TEST(Sweep, RefusesWhatItCannotDo) {
     options.simplify = share;
     EXPECT_THROW(swept_volume(r.robot, r.bodies, path, options), Error);
   }
-  EXPECT_EQ(make(r, path, 1e-6).stop, SweepStop::TooCoarse);
+  EXPECT_EQ(make(r, path, 1e-6).stop, Stop::TooCoarse);
   r.robot.joints[0].origin.translation.x() = 1e6;
   const SweepResult far = make(r, path, 0.005);
-  EXPECT_EQ(far.stop, SweepStop::TooCoarse);
+  EXPECT_EQ(far.stop, Stop::TooCoarse);
   EXPECT_TRUE(far.set.bodies.empty());
   r.bodies[0].points.clear();
   EXPECT_THROW(make(r, path, 0.005), Error);

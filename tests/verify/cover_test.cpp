@@ -598,20 +598,20 @@ TEST(Cover, ReachInsideCavitiesThatTheBodiesFill) {
   const Mesh cube = block(Vec3::Zero(), Vec3::Constant(10));
   const Mesh hollow = merged({cube, flipped(block(Vec3::Constant(3), Vec3::Constant(7)))});
   const ConvexSet set = set_of({cube});
-  EXPECT_EQ(verify::verify_reach(set, hollow, 2.01, true).answer, Answer::Verified);
-  const auto beyond = verify::verify_reach(set, hollow, 1.99, true);
+  EXPECT_EQ(verify::verify_excess(set, hollow, 2.01, true).answer, Answer::Verified);
+  const auto beyond = verify::verify_excess(set, hollow, 1.99, true);
   EXPECT_EQ(beyond.answer, Answer::Refuted);
   EXPECT_GT(beyond.largest, 1.99);
   EXPECT_LE(beyond.largest, 2);
-  EXPECT_EQ(verify::verify_reach(set, hollow, 0.1, true).answer, Answer::Refuted);
+  EXPECT_EQ(verify::verify_excess(set, hollow, 0.1, true).answer, Answer::Refuted);
   std::vector<std::array<int, 3>> cells;
   for (int i = 0; i < 27; ++i) {
     if (i != 13 && i != 22) cells.push_back({i % 3, i / 3 % 3, i / 9});
   }
   const Mesh bottle = block_chain(cells);
   const ConvexSet all = set_of({block(Vec3::Zero(), Vec3::Constant(3))});
-  EXPECT_EQ(verify::verify_reach(all, bottle, 0.6, true).answer, Answer::Verified);
-  EXPECT_EQ(verify::verify_reach(all, bottle, 0.45, true).answer, Answer::Refuted);
+  EXPECT_EQ(verify::verify_excess(all, bottle, 0.6, true).answer, Answer::Verified);
+  EXPECT_EQ(verify::verify_excess(all, bottle, 0.45, true).answer, Answer::Refuted);
 }
 
 // Walls about which nothing winds, and sheets, are to be covered like all triangles: so what covers
@@ -624,16 +624,16 @@ TEST(Cover, ReachFromTrianglesThatBoundNoSolid) {
   const Mesh plate = block({5, 0, 0}, {6, 1, 0.25});
   const Mesh turned = merged({unit, flipped(plate)});
   const ConvexSet set = set_of({grown({0, 0, 0}, {1, 1, 1}), grown({5, 0, 0}, {6, 1, 0.25})});
-  EXPECT_EQ(verify::verify_reach(set, turned, 0.18, true).answer, Answer::Verified);
-  EXPECT_EQ(verify::verify_reach(set, turned, 0.17, true).answer, Answer::Refuted);
+  EXPECT_EQ(verify::verify_excess(set, turned, 0.18, true).answer, Answer::Verified);
+  EXPECT_EQ(verify::verify_excess(set, turned, 0.17, true).answer, Answer::Refuted);
   const ConvexSet cube = set_of({grown({0, 0, 0}, {1, 1, 1})});
-  EXPECT_EQ(verify::verify_reach(cube, flipped(unit), 0.51, true).answer, Answer::Verified);
-  EXPECT_EQ(verify::verify_reach(cube, flipped(unit), 0.49, true).answer, Answer::Refuted);
+  EXPECT_EQ(verify::verify_excess(cube, flipped(unit), 0.51, true).answer, Answer::Verified);
+  EXPECT_EQ(verify::verify_excess(cube, flipped(unit), 0.49, true).answer, Answer::Refuted);
 
   Mesh half = plate;
   half.triangles.resize(2);
   const Mesh sheet = merged({half, flipped(half)});
-  EXPECT_EQ(verify::verify_reach(set_of({grown({5, 0, 0}, {6, 1, 0})}), sheet, 1.42, true).answer,
+  EXPECT_EQ(verify::verify_excess(set_of({grown({5, 0, 0}, {6, 1, 0})}), sheet, 1.42, true).answer,
             Answer::Verified);
 }
 
@@ -650,10 +650,10 @@ TEST(Cover, ReachAlongASlantedSeam) {
                    prism({{0, 0, 0}, {0, 2, 0}, {end, 2, 0}, {1, 1, 0}})});
   };
   for (const double epsilon : {1e-2, 1e-6, 1e-12})
-    EXPECT_EQ(verify::verify_reach(cut(1), letter, epsilon, true).answer, Answer::Verified);
+    EXPECT_EQ(verify::verify_excess(cut(1), letter, epsilon, true).answer, Answer::Verified);
   // A wedge that sticks out by 1/8 at its end.
-  EXPECT_EQ(verify::verify_reach(cut(1.125), letter, 0.126, true).answer, Answer::Verified);
-  const auto beyond = verify::verify_reach(cut(1.125), letter, 0.124, true);
+  EXPECT_EQ(verify::verify_excess(cut(1.125), letter, 0.126, true).answer, Answer::Verified);
+  const auto beyond = verify::verify_excess(cut(1.125), letter, 0.124, true);
   EXPECT_EQ(beyond.answer, Answer::Refuted);
   EXPECT_GT(beyond.largest, 0.124);
   const Mesh sum = verify::sum_of(cut(1.125));
@@ -666,20 +666,20 @@ TEST(Cover, ReachWithAMargin) {
   const Mesh unit = block({0, 0, 0}, {1, 1, 1});
   ConvexSet set = set_of({block({0, 0, 0}, {1.25, 1, 1})});
   set.margin = 0.125;
-  EXPECT_EQ(verify::verify_reach(set, unit, 0.376, true).answer, Answer::Verified);
-  const auto beyond = verify::verify_reach(set, unit, 0.374, true);
+  EXPECT_EQ(verify::verify_excess(set, unit, 0.376, true).answer, Answer::Verified);
+  const auto beyond = verify::verify_excess(set, unit, 0.374, true);
   EXPECT_EQ(beyond.answer, Answer::Refuted);
   EXPECT_GT(beyond.largest, 0.374);
   EXPECT_LE(beyond.largest, 0.375);
-  EXPECT_EQ(verify::verify_reach(set, unit, 0.2, true).answer, Answer::Refuted);
+  EXPECT_EQ(verify::verify_excess(set, unit, 0.2, true).answer, Answer::Refuted);
   // Between two blocks: the margin leads from one to the other.
   const Mesh two = merged({unit, block({1.25, 0, 0}, {2, 1, 1})});
   const auto between =
-      verify::verify_reach(set_of({block({0, 0, 0}, {1.125, 1, 1})}), two, 0.2, true);
+      verify::verify_excess(set_of({block({0, 0, 0}, {1.125, 1, 1})}), two, 0.2, true);
   EXPECT_EQ(between.answer, Answer::Verified);
   set = set_of({block({0, 0, 0}, {1.125, 1, 1})});
   set.margin = 0.125;
-  EXPECT_EQ(verify::verify_reach(set, two, 0.2, true).answer, Answer::Undecided);
+  EXPECT_EQ(verify::verify_excess(set, two, 0.2, true).answer, Answer::Undecided);
 }
 
 TEST(Cover, RandomBoxesOverRandomCubes) {

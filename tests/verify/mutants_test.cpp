@@ -23,10 +23,10 @@ MeshPair bounding_pair(const std::string& name, const Mesh& mesh, Direction dire
   options.direction = direction;
   options.precision = precision;
   options.vertices = static_cast<std::size_t>(
-      std::max(4.0, ratio * static_cast<double>(prepared.mesh.vertices.size())));
-  Mesh result = bmesh::decimate(prepared, options).mesh;
-  return direction == Direction::Outer ? MeshPair{name + " outer", prepared.mesh, result}
-                                       : MeshPair{name + " inner", result, prepared.mesh};
+      std::max(4.0, ratio * static_cast<double>(prepared.solid.mesh().vertices.size())));
+  Mesh result = bmesh::decimate(prepared.solid, options).mesh;
+  return direction == Direction::Outer ? MeshPair{name + " outer", prepared.solid.mesh(), result}
+                                       : MeshPair{name + " inner", result, prepared.solid.mesh()};
 }
 
 TEST(Mutants, WrongOnesAreRefutedAndRightOnesVerified) {

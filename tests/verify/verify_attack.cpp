@@ -83,7 +83,7 @@ class Attack {
       std::cout << title << ": refused: " << e.what() << '\n';
       return;
     }
-    if (p.mesh.triangles.size() > s_.largest) return;
+    if (p.solid.mesh().triangles.size() > s_.largest) return;
     for (const Direction d : {Direction::Outer, Direction::Inner}) {
       for (const double ratio : s_.ratios) bounding(title, p, d, ratio);
     }
@@ -111,22 +111,23 @@ class Attack {
     o.direction = d;
     if (s_.mutants != 0) o.precision = bmesh::Precision::Double;
     o.vertices = std::max<std::size_t>(
-        4, static_cast<std::size_t>(ratio * static_cast<double>(p.mesh.vertices.size())));
-    const Mesh result = bmesh::decimate(p, o).mesh;
+        4, static_cast<std::size_t>(ratio * static_cast<double>(p.solid.mesh().vertices.size())));
+    const Mesh result = bmesh::decimate(p.solid, o).mesh;
     const bool out = d == Direction::Outer;
-    const Mesh &inner = out ? p.mesh : result, &outer = out ? result : p.mesh;
+    const Mesh &inner = out ? p.solid.mesh() : result, &outer = out ? result : p.solid.mesh();
     const double start = seconds();
     const verify::Inclusion claim = verify::verify_inclusion(inner, outer);
-    std::cout << title << (out ? " outer " : " inner ") << ratio << ": " << p.mesh.triangles.size()
-              << " -> " << result.triangles.size() << (p.closed ? "" : ", open") << ": solid "
-              << text(claim.solid) << "; surface " << text(claim.surface) << "; "
-              << std::setprecision(3) << seconds() - start << " s";
+    std::cout << title << (out ? " outer " : " inner ") << ratio << ": "
+              << p.solid.mesh().triangles.size() << " -> " << result.triangles.size()
+              << (p.solid.closed() ? "" : ", open") << ": solid " << text(claim.solid)
+              << "; surface " << text(claim.surface) << "; " << std::setprecision(3)
+              << seconds() - start << " s";
     ++solid_[index(claim.solid.answer)];
     ++surface_[index(claim.surface.answer)];
     bool good = claim.solid.answer == Answer::Verified;
     if (inner.triangles.size() + outer.triangles.size() <= s_.oracle) {
       const ArrangementVerdict truth = arrangement_verdict(inner, outer);
-      const std::optional<bool> solid = p.closed ? truth.solid : truth.difference;
+      const std::optional<bool> solid = p.solid.closed() ? truth.solid : truth.difference;
       const bool agree = agrees(claim.solid, solid) && agrees(claim.surface, truth.surface);
       std::cout << "; the oracle " << (agree ? "agrees" : "DISAGREES") << " (" << truth.cells
                 << " cells)";

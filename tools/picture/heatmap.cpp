@@ -57,9 +57,9 @@ Sight sight_of(const geom::Vec3& point, const geom::Mesh& mesh, const geom::Box3
 
 /// A ring round (x, y), white within dark so that it is seen on every colour.
 void draw_ring(Image& image, int x, int y, int radius, int thickness, bool dashed) {
-  const int reach = radius + 2 * thickness;
-  for (int i = -reach; i <= reach; ++i) {
-    for (int j = -reach; j <= reach; ++j) {
+  const int extent = radius + 2 * thickness;
+  for (int i = -extent; i <= extent; ++i) {
+    for (int j = -extent; j <= extent; ++j) {
       if (x + i < 0 || y + j < 0 || x + i >= image.width || y + j >= image.height) continue;
       const double off = std::hypot(i, j) - radius;
       if (std::abs(off) > thickness) continue;

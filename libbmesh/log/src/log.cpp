@@ -17,32 +17,33 @@ constexpr std::size_t kFlipSize = 1 + 4 * 4;
 
 }  // namespace
 
-void record_preparation(const geom::Prepared& prepared, std::size_t input_triangles, Log& log) {
+void record_preparation(const geom::PreparationReport& report, std::size_t input_triangles,
+                        Log& log) {
   std::vector<char> kept(input_triangles, 0);
-  for (std::size_t t = 0; t < prepared.source.size(); ++t) {
-    kept[prepared.source[t]] = 1;
-    if (prepared.turned[t] != 0) log.turned.push_back(prepared.source[t]);
+  for (std::size_t t = 0; t < report.source.size(); ++t) {
+    kept[report.source[t]] = 1;
+    if (report.reversed[t] != 0) log.reversed.push_back(report.source[t]);
   }
-  log.turned.insert(log.turned.end(), prepared.turned_and_dropped.begin(),
-                    prepared.turned_and_dropped.end());
-  std::sort(log.turned.begin(), log.turned.end());
+  log.reversed.insert(log.reversed.end(), report.reversed_and_dropped.begin(),
+                      report.reversed_and_dropped.end());
+  std::sort(log.reversed.begin(), log.reversed.end());
   for (std::uint32_t t = 0; t < input_triangles; ++t)
     if (kept[t] == 0) log.dropped.push_back(t);
-  log.rims = prepared.rims;
-  log.turned_after_filling = prepared.turned_after_filling;
+  log.rims = report.rims;
+  log.reversed_after_filling = report.reversed_after_filling;
 }
 
 void write_log(Writer& w, const Log& log) {
   w.out.reserve(w.out.size() + 256 + kContractSize * log.steps.size() +
-                4 * (log.dropped.size() + log.turned.size() + log.turned_after_filling.size()));
+                4 * (log.dropped.size() + log.reversed.size() + log.reversed_after_filling.size()));
   w.number(static_cast<std::uint32_t>(log.direction));
   w.text(log.input_sha256);
   w.text(log.tool);
   w.indices(log.dropped);
-  w.indices(log.turned);
+  w.indices(log.reversed);
   w.number(static_cast<std::uint64_t>(log.rims.size()));
   for (const auto& rim : log.rims) w.indices(rim);
-  w.indices(log.turned_after_filling);
+  w.indices(log.reversed_after_filling);
   w.number(static_cast<std::uint64_t>(log.steps.size()));
   for (const Step& s : log.steps) {
     w.number(static_cast<std::uint8_t>(s.kind));
@@ -65,10 +66,10 @@ Log read_log(Reader& r) {
   log.input_sha256 = r.text();
   log.tool = r.text();
   log.dropped = r.indices();
-  log.turned = r.indices();
+  log.reversed = r.indices();
   log.rims.resize(r.count(sizeof(std::uint64_t)));
   for (auto& rim : log.rims) rim = r.indices();
-  log.turned_after_filling = r.indices();
+  log.reversed_after_filling = r.indices();
   log.steps.resize(r.count(kFlipSize));
   for (Step& s : log.steps) {
     const auto kind = r.number<std::uint8_t>();

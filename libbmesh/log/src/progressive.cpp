@@ -25,7 +25,7 @@ std::vector<char> serialise_progressive(const Progressive& p) {
   w.triangles(p.base.triangles);
   w.number(static_cast<std::uint64_t>(p.levels.size()));
   for (const Progressive::Level& level : p.levels)
-    for (const std::size_t n : {level.wished, level.vertices, level.steps})
+    for (const std::size_t n : {level.requested, level.vertices, level.steps})
       w.number(static_cast<std::uint64_t>(n));
   w.checksum();
   return std::move(w.out);
@@ -49,11 +49,12 @@ Progressive parse_progressive(std::span<const char> bytes, const std::string& na
   p.levels.resize(r.count(24));
   const Progressive::Level* before = nullptr;
   for (Progressive::Level& level : p.levels) {
-    level.wished = r.number<std::uint64_t>();
+    level.requested = r.number<std::uint64_t>();
     level.vertices = r.number<std::uint64_t>();
     level.steps = r.number<std::uint64_t>();
     if (level.steps > p.log.steps.size() ||
-        (before != nullptr && (level.wished >= before->wished || level.steps < before->steps)))
+        (before != nullptr &&
+         (level.requested >= before->requested || level.steps < before->steps)))
       r.fail("has levels out of order");
     before = &level;
   }

@@ -79,7 +79,7 @@ HeldDistance Holders::distance(const std::vector<geom::Mesh>& meshes, double bou
     all.bodies.push_back({"", mesh});
     out.to_solid = out.to_solid && closed(mesh);
   }
-  out.claim = verify_reach(set_, sum_of(all), bound, out.to_solid, limits);
+  out.claim = verify_excess(set_, sum_of(all), bound, out.to_solid, limits);
   return out;
 }
 

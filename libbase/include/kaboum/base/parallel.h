@@ -1,32 +1,43 @@
 #pragma once
 
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_invoke.h>
-#include <tbb/task_group.h>
-
+#include <cstddef>
+#include <functional>
 #include <utility>
 
 namespace kaboum {
 
-// TBB's loops, none of which is cut short because of what happens elsewhere. A loop of TBB's own
-// belongs to the group of tasks it is called from: where a sibling there throws, all loops within
-// end at once, without an exception, and what they leave undone is unspecified. A task that called
-// such a loop would go on with half a hierarchy, and what it claims would be proved by nothing.
-// These end when all is done, or throw what one of their own tasks has thrown.
+// Loops by several threads, as many as tbb::global_control allows. Each ends when all is done, or
+// throws what one of its calls has thrown, the first to be caught; calls that have not begun by
+// then are left out. docs/architecture.md, "Parallel loops", says why TBB's own are not called.
 
-/// Calls body(i) for all i from first to last, without last, or body(range) for parts of a range.
-/// The arguments are those of tbb::parallel_for, without a context.
-template <class... Arguments>
-void parallel_loop(Arguments&&... arguments) {
-  tbb::task_group_context alone(tbb::task_group_context::isolated);
-  tbb::parallel_for(std::forward<Arguments>(arguments)..., alone);
+/// How the indices of a loop are handed out.
+struct LoopParts {
+  std::size_t grain = 1;  ///< no part of several threads' is smaller, but for the last ones
+  bool alone = false;     ///< every index by itself: for calls that take long, or unequally long
+};
+
+/// Calls body(begin, end) for parts of 0 … n, without n, that together are all of it.
+void parallel_ranges(std::size_t n, LoopParts parts,
+                     const std::function<void(std::size_t begin, std::size_t end)>& body);
+
+/// Calls body(i) for all i from first to last, without last.
+template <class Index, class Body>
+void parallel_for(Index first, Index last, Body&& body, LoopParts parts = {}) {
+  if (!(first < last)) return;
+  const auto calls = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i != end; ++i)
+      body(static_cast<Index>(first + static_cast<Index>(i)));
+  };
+  parallel_ranges(static_cast<std::size_t>(last - first), parts, std::cref(calls));
 }
 
-/// Calls all of them.
-template <class... Functions>
-void parallel_calls(Functions&&... functions) {
-  tbb::task_group_context alone(tbb::task_group_context::isolated);
-  tbb::parallel_invoke(std::forward<Functions>(functions)..., alone);
+/// The same for little work each: in parts of at least 16384.
+template <class Body>
+void parallel_for_light(std::size_t n, Body&& body) {
+  parallel_for(std::size_t{0}, n, std::forward<Body>(body), {.grain = 16384});
 }
+
+/// Calls both.
+void parallel_invoke(const std::function<void()>& first, const std::function<void()>& second);
 
 }  // namespace kaboum

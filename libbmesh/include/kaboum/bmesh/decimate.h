@@ -1,7 +1,7 @@
 #pragma once
 
 #include <kaboum/bmesh/log.h>
-#include <kaboum/geom/prepare.h>
+#include <kaboum/geom/solid_mesh.h>
 
 #include <cstddef>
 #include <functional>
@@ -22,7 +22,7 @@ enum class Cost {
 };
 
 /// How much is done for tightness besides contracting. Anything but Fast needs a closed mesh (or
-/// Direction::Any) and excludes keep_convex; it is Fast otherwise: see `effective_effort`.
+/// Direction::Any) and excludes keep_convex: see `possible_effort`.
 enum class Effort {
   Fast,  ///< nothing
   /// Vertices are pulled back towards the original and edges flipped, in some rounds; with
@@ -30,6 +30,9 @@ enum class Effort {
   Normal,
   Best,  ///< the same in more rounds; with Cost::Distance more edges are contracted in this way
 };
+
+/// Default of DecimateOptions::sharp_angle. [degrees]
+inline constexpr double kSharpAngle = 90;
 
 /// Numbers that result vertices are made of.
 enum class Precision { Float, Double };
@@ -40,7 +43,7 @@ struct DecimateOptions {
   Direction direction = Direction::Outer;
   Cost cost = Cost::Planes;
   Effort effort = Effort::Fast;
-  bool as_printed = false;  ///< PlanesDiagonal: with the thesis's formulas that are known wrong
+  bool as_printed = false;  ///< PlanesDiagonal only: the thesis's formulas that are known wrong
   Precision precision = Precision::Float;
   std::optional<std::size_t> vertices;  ///< stop at this many vertices
   std::optional<double> epsilon;        ///< keep both one-sided distances within this. [length] > 0
@@ -53,22 +56,22 @@ struct DecimateOptions {
   std::optional<double> max_work;
   /// Edges whose faces' normals differ by more than this also cost the distance to the plane
   /// through them across their mean normal ([gaschler2016] §4.3.5), against spikes off knife edges.
-  /// Costs Planes, PlanesAdapted and PlanesDiagonal only. [degrees]
-  double sharp_angle = 90;
-  std::vector<Step>* steps = nullptr;  ///< receives the steps, when not null
+  /// Costs Planes, PlanesAdapted and PlanesDiagonal only; by default `kSharpAngle`. [degrees]
+  std::optional<double> sharp_angle;
+  bool record_steps = false;  ///< for a log: DecimateResult::steps
   /// Called now and then with the current number of vertices; may throw to cancel.
   std::function<void(std::size_t vertices)> progress;
 };
 
 /// options.max_work, or the default for this mesh; infinite: no end. [s]
-double work_allowed(const geom::Prepared& input, const DecimateOptions& options);
+double work_allowed(const geom::SolidMesh& input, const DecimateOptions& options);
 
-/// The effort that is made: options.effort, or Fast where more has no effect on this mesh.
-Effort effective_effort(const geom::Prepared& input, const DecimateOptions& options);
+/// options.effort, or Fast where more cannot be made for this mesh and `decimate` refuses it.
+Effort possible_effort(const geom::SolidMesh& input, const DecimateOptions& options);
 
 /// Why decimation ended.
 enum class Stop {
-  VertexTarget,  ///< the wished number of vertices is reached
+  VertexTarget,  ///< the number of vertices asked for is reached
   ErrorBound,    ///< no contraction is left; epsilon alone forbids at least one that is otherwise
                  ///< valid
   Exhausted,     ///< no contraction is left at all
@@ -98,13 +101,15 @@ struct DecimateResult {
   geom::Mesh mesh;
   Stop stop = Stop::Exhausted;
   DecimateStatistics statistics;
-  /// Vertices that precision Float was wished for but that have no certified float32 position
+  /// Vertices that precision Float was asked for but that have no certified float32 position
   /// nearby (never any with Precision::Double). The mesh is valid, but not representable in
   /// float32.
   std::size_t unrepresentable = 0;
   double work = 0;           ///< done, of what max_work allows; of a series: until this result. [s]
   bool out_of_work = false;  ///< max_work ended a part of it: with more, it might be nearer
-  std::size_t steps = 0;     ///< number of options.steps that lead to it, where they are recorded
+  /// With record_steps: those that lead to it from the input, or from the result before in a
+  /// series.
+  std::vector<Step> steps;
 };
 
 /// Single-sided decimation by edge contraction. Source: [gaschler2016] Alg. 1, Alg. 2.
@@ -117,10 +122,11 @@ struct DecimateResult {
 /// every contraction also keeps a certificate that no point of either surface is farther than
 /// epsilon from the other one.
 ///
-/// @pre options.vertices or options.epsilon is given; `input` comes from geom::prepare.
-/// @throws Error{InvalidArgument} on contradictory options; Error{InvalidInput} when keep_convex is
-///   wished for input that is not convex.
-DecimateResult decimate(const geom::Prepared& input, const DecimateOptions& options);
+/// @pre options.vertices or options.epsilon is given.
+/// @throws Error{InvalidArgument} on contradictory options, and on those that would have no effect:
+///   as_printed or sharp_angle with a cost that does not use them, an effort that cannot be made;
+///   Error{InvalidInput} when keep_convex is asked for input that is not convex.
+DecimateResult decimate(const geom::SolidMesh& input, const DecimateOptions& options);
 
 /// The same for several numbers of vertices in one pass. The results are nested: each encloses
 /// (Inner: is enclosed by) the one before, of closed meshes their solids, as both do the original;
@@ -129,7 +135,7 @@ DecimateResult decimate(const geom::Prepared& input, const DecimateOptions& opti
 ///
 /// @param vertices  falling; options.vertices must not be given.
 /// @throws as `decimate` does; Error{InvalidArgument} when `vertices` is empty or does not fall.
-std::vector<DecimateResult> decimate_series(const geom::Prepared& input,
+std::vector<DecimateResult> decimate_series(const geom::SolidMesh& input,
                                             const DecimateOptions& options,
                                             std::span<const std::size_t> vertices);
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <kaboum/base/length.h>
-#include <kaboum/bcd/decompose.h>
+#include <kaboum/bcd/cover.h>
 #include <kaboum/certify/certified.h>
 #include <kaboum/certify/subject.h>
 #include <kaboum/geom/convex_set.h>
@@ -21,14 +21,18 @@ struct SetRequest {
   /// Farthest that a point of an outer set may be from the solid, or deepest that a point left out
   /// by an inner set may be. By default 1 % where no limit is given, else none.
   std::optional<Length> epsilon;
-  std::optional<std::size_t> max_bodies, max_total_vertices;
+  std::optional<std::size_t> max_bodies;
   std::size_t max_vertices = 64;  ///< of one body
   bcd::Effort effort = bcd::Effort::Normal;
+  std::optional<double> max_work;  ///< nominal seconds, see bcd::SetOptions
+
+  // Of outer sets; inner ones refuse them.
+  std::optional<std::size_t> max_total_vertices;
   bcd::Method method = bcd::Method::Planes;
   bcd::PreStep pre_step = bcd::PreStep::Auto;
   std::optional<double> simplify;  ///< share of epsilon for leaving out vertices
-  std::optional<double> max_work;  ///< nominal seconds, see bcd::DecomposeOptions
   double min_thickness = 0;        ///< [length]
+
   /// Holes are filled or refused; kept ones are filled as well.
   geom::PrepareOptions preparation{.holes = geom::Holes::Fill};
 

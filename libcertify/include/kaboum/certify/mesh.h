@@ -31,11 +31,11 @@ struct MeshRequest {
   std::optional<double> ratio;    ///< stop at this share of the original's vertices, in (0, 1)
   std::optional<Length> epsilon;  ///< keeps every point of either surface this near to the other
   bmesh::Cost cost = bmesh::Cost::Distance;
-  bmesh::Effort effort = bmesh::Effort::Normal;
-  bool as_printed = false;         ///< as bmesh::DecimateOptions
-  bool keep_convex = false;        ///< convex in, convex out, exactly
-  std::optional<double> max_work;  ///< as bmesh::DecimateOptions [s]
-  double sharp_angle = 90;         ///< as bmesh::DecimateOptions [degrees]
+  bmesh::Effort effort = bmesh::Effort::Normal;  ///< as far as possible: MeshPlan::effort
+  bool as_printed = false;                       ///< as bmesh::DecimateOptions
+  bool keep_convex = false;                      ///< convex in, convex out, exactly
+  std::optional<double> max_work;                ///< as bmesh::DecimateOptions [s]
+  std::optional<double> sharp_angle;             ///< as bmesh::DecimateOptions [degrees]
   Numbers numbers = Numbers::Auto;
   io::Format format = io::Format::Ply;
   std::string comment = "KABouM";  ///< in the file, where the format has comments
@@ -64,11 +64,11 @@ struct Float32Shortage {
 struct MeshPlan {
   double diagonal = 0;                ///< of the bounding box [length]
   std::optional<double> epsilon;      ///< [length]
-  std::vector<std::size_t> vertices;  ///< wished, falling; none with epsilon alone
+  std::vector<std::size_t> vertices;  ///< asked for, falling; none with epsilon alone
   bmesh::Precision precision = bmesh::Precision::Float;
   /// Then double takes its place, or nothing can be made: MeshRequest::may_be_double.
   std::optional<Float32Shortage> shortage;
-  bmesh::Effort effort = bmesh::Effort::Fast;  ///< that is made
+  bmesh::Effort effort = bmesh::Effort::Fast;  ///< that is made: bmesh::possible_effort
   double work = 0;                             ///< allowed [s]
 };
 
@@ -110,7 +110,6 @@ MeshPlan plan_mesh(const geom::Prepared& original, const MeshRequest& request);
 /// measured; claims decided by libverify from the bytes. Where float32 is too coarse, the numbers
 /// are double if that is allowed. docs/algorithms/bounding-mesh.md has the proofs.
 ///
-/// @pre `original` comes from prepare_mesh or geom::prepare.
 /// @throws Error{InvalidInput} as prepare_mesh, plan_mesh and bmesh::decimate;
 ///   Error{InvalidArgument} on contradictory requests; Error{Internal} when a claim is refuted, or
 ///   the bytes do not hold the mesh.

@@ -82,7 +82,7 @@ struct MeshCertificate {
   bool closed = true;     ///< the original, as prepared, has a solid; else nothing is enclosed
   Subject subject;        ///< what is enclosed, or encloses
   std::size_t finer = 0;  ///< results before it in its series
-  std::optional<std::size_t> wished;  ///< number of vertices
+  std::optional<std::size_t> requested;  ///< number of vertices
   std::size_t vertices = 0;
   bmesh::Stop stop = bmesh::Stop::Exhausted;
   bmesh::DecimateStatistics statistics;
@@ -101,7 +101,7 @@ struct MeshCertificate {
   /// Upper bound of the Hausdorff distance. [length] @pre it was measured
   [[nodiscard]] double hausdorff_upper() const;
 
-  /// Whether there are as few vertices as wished, or epsilon allows no fewer.
+  /// Whether there are as few vertices as requested, or epsilon allows no fewer.
   [[nodiscard]] bool reached() const;
 };
 

@@ -37,8 +37,8 @@ struct SweepCertificate {
   std::size_t bodies = 0, vertices = 0;
   double margin = 0;     ///< of the set: it holds the robot with this margin only [length]
   double deviation = 0;  ///< see sweep::SweepResult, as all below
-  double left_out = 0, rounding = 0, reach = 0;
-  /// Of the robot's bodies from its shapes; `reach` is from what these bodies sweep. [length]
+  double left_out = 0, rounding = 0, excess = 0;
+  /// Of the robot's bodies from its shapes; `excess` is from what these bodies sweep. [length]
   double bodies_distance = 0;
   std::vector<std::size_t> of_link;
   std::vector<std::size_t> sources;  ///< the robot's body that each body of the set sweeps

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <kaboum/geom/mesh.h>
+#include <kaboum/geom/solid_mesh.h>
 
 #include <cstdint>
 #include <optional>
@@ -22,41 +22,43 @@ struct PrepareOptions {
   bool keep_orientation = false;  ///< never turn a triangle
 };
 
-/// A mesh whose solid is defined, and how it came from the input.
-struct Prepared {
-  /// Welded, without unused vertices; vertices in the order of their first use by the triangles
-  /// left, as the input orients these.
-  Mesh mesh;
-  /// Per triangle: its index in the input. Triangles that fill holes come last, and are not in it:
-  /// their vertices that no other triangle uses are the mesh's last ones.
+/// How a prepared mesh came from the input: nothing that a claim about it rests on.
+struct PreparationReport {
+  /// Per triangle of the prepared mesh: its index in the input. Triangles that fill holes are the
+  /// mesh's last ones, and not in it: vertices that only those use are the last ones as well.
   std::vector<std::uint32_t> source;
-  std::vector<char> turned;                       ///< per triangle: orientation reversed
-  std::vector<std::uint32_t> turned_and_dropped;  ///< input triangles: turned first, dropped later
-  std::vector<char> border;      ///< per vertex: lies on an unbalanced edge and must not move
-  bool closed = true;            ///< the triangles form a closed chain
-  std::uint32_t components = 0;  ///< connected by shared edges
+  std::vector<char> reversed;  ///< per such triangle: orientation reversed
+  std::vector<std::uint32_t>
+      reversed_and_dropped;             ///< input triangles: turned first, dropped later
+  std::uint32_t components = 0;         ///< connected by shared edges
   std::size_t collapsed_triangles = 0;  ///< dropped: repeated corners
   std::size_t dropped_copies = 0;       ///< dropped: identically oriented copies
   std::size_t cancelled_walls = 0;      ///< dropped: triangles in opposite pairs inside the solid
-  std::size_t dropped_sheets = 0;     ///< dropped: triangles in opposite pairs outside, on request
-  std::size_t turned_components = 0;  ///< shells that were inside out, turned as a whole
+  std::size_t dropped_sheets = 0;  ///< dropped: triangles in opposite pairs outside, on request
+  std::size_t reversed_components = 0;    ///< shells that were inside out, turned as a whole
   std::vector<std::uint32_t> inside_out;  ///< an input triangle of each of those
-  std::size_t turned_cavities = 0;        ///< shells turned along with those that they lie in
-  std::size_t turned_triangles = 0;       ///< against their neighbours or in a turned component
+  std::size_t reversed_cavities = 0;      ///< shells turned along with those that they lie in
+  std::size_t reversed_triangles = 0;     ///< against their neighbours or in a turned component
   std::size_t holes = 0;                  ///< filled
   /// Of each of those, the vertices in the order of fill_holes: vertex k of input triangle t is
   /// 3 t + k.
   std::vector<std::vector<std::uint32_t>> rims;
   /// Triangles that were turned after holes had been filled, ascending: input triangles, and
   /// numbered on from those the ones that fill holes.
-  std::vector<std::uint32_t> turned_after_filling;
-  std::size_t filled_triangles = 0;  ///< that fill them: the last ones of the mesh
-  std::size_t filled_vertices = 0;   ///< that only those use: the last ones of the mesh
-  double largest_hole = 0;           ///< diagonal of its box [length]
+  std::vector<std::uint32_t> reversed_after_filling;
+  std::size_t filled_vertices = 0;  ///< that only triangles that fill holes use
+  double largest_hole = 0;          ///< diagonal of its box [length]
   /// A place that surfaces enclose and that counts as outside, although it need not be a cavity:
   /// the first found, and noted.
   std::optional<Vec3> hollow;
-  std::vector<std::string> notes;
+  std::vector<std::string> notes;  ///< the same in words, for who made the file
+};
+
+/// A mesh whose solid is defined, and how it came from the input.
+struct Prepared {
+  /// Vertices in the order of their first use by the triangles left, as the input orients these.
+  SolidMesh solid;
+  PreparationReport report;
 };
 
 /// Gives the input a solid, or says why it has none. docs/algorithms/preparation.md states which
@@ -64,7 +66,7 @@ struct Prepared {
 ///
 /// In this order: equal vertices are merged and triangles with repeated corners dropped;
 /// inconsistent neighbours are turned to agree; opposite coincident faces cancel; holes are filled,
-/// if wished; shells that are inside out are turned, each by itself also where shells share walls;
+/// on request; shells that are inside out are turned, each by itself also where shells share walls;
 /// identically oriented copies are dropped where what is dropped is itself a closed chain and
 /// nothing is oriented inwards.
 ///

@@ -23,7 +23,7 @@ enum class StepRule {
 
 /// A stretch of the path, and the hull that stands for it: every point p of the body is, during the
 /// stretch, within `deviation` of the segment from start · p to finish · p.
-struct Piece {
+struct PathInterval {
   std::size_t first_segment, last_segment;  ///< segment i leads from waypoint i to i + 1
   double begin, end;                        ///< where in these, 0 to 1
   Transform start, finish;
@@ -39,7 +39,7 @@ struct SharedBounds {
 struct StepOptions {
   StepRule rule = StepRule::Balanced;
   double deviation = 0;              ///< largest allowed, > 0 [length]
-  std::optional<double> max_reach;   ///< largest reach() allowed of a piece [length]
+  std::optional<double> max_excess;  ///< largest excess() allowed of a piece [length]
   bool merge = true;                 ///< pieces may span waypoints (Adaptive and Balanced)
   std::vector<SharedBounds> shared;  ///< per segment; Uniform and Baginski only
 };
@@ -56,14 +56,14 @@ class NoStepError : public Error {
 /// @param points  whose hull is the body, in the link's frame; not empty.
 /// @pre path has at least one waypoint. With one, the result is one piece that does not move.
 /// @throws Error{LimitReached} when that takes more than 10^6 pieces; Error{InvalidArgument} for
-///   Baginski with prismatic joints, and for max_reach with rules but Adaptive and Balanced;
-///   NoStepError when the deviation or max_reach cannot be met.
-std::vector<Piece> choose_steps(const Robot& robot, std::uint32_t link,
-                                std::span<const Vec3> points, const Path& path,
-                                const StepOptions& options);
+///   Baginski with prismatic joints, and for max_excess with rules but Adaptive and Balanced;
+///   NoStepError when the deviation or max_excess cannot be met.
+std::vector<PathInterval> choose_steps(const Robot& robot, std::uint32_t link,
+                                       std::span<const Vec3> points, const Path& path,
+                                       const StepOptions& options);
 
 /// How far the hull of the body's images at both ends of a piece may reach from what the body
 /// sweeps in it: deviation + ¼ of the largest |(finish − start)(p − p')|, rounded up. [length]
-double reach(const Piece& piece, std::span<const Vec3> points);
+double excess(const PathInterval& piece, std::span<const Vec3> points);
 
 }  // namespace kaboum::sweep

@@ -15,27 +15,27 @@ struct SweepOptions {
   double simplify = 0;
   StepRule rule = StepRule::Balanced;
   bool merge = true;
-  std::optional<double> max_reach;  ///< see StepOptions
+  std::optional<double> max_excess;  ///< see StepOptions
   /// Polytopes that contain the sum with the ball of radius `margin`, which then is 0.
   bool explicit_margin = false;
 };
 
-enum class SweepStop {
+enum class Stop {
   Done,
   TooCoarse,  ///< float32's spacing at the robot's reach exceeds epsilon/100: nothing was made
 };
 
 struct SweepResult {
   geom::ConvexSet set;  ///< provenance is left to the caller
-  SweepStop stop = SweepStop::Done;
+  Stop stop = Stop::Done;
   bool certified = true;             ///< false for StepRule::Baginski
   double deviation = 0;              ///< largest of a piece, the bodies' margins included [length]
   double left_out = 0;               ///< largest distance of a vertex left out [length]
   double rounding = 0;               ///< largest move of a vertex to float32 [length]
-  double reach = 0;                  ///< bound of the distance from a point of the set to the
+  double excess = 0;                 ///< bound of the distance from a point of the set to the
                                      ///< swept volume of the bodies [length]
   std::vector<std::size_t> of_link;  ///< bodies made, per link of the robot
-  std::vector<Piece> pieces;         ///< of every body in the set
+  std::vector<PathInterval> pieces;  ///< of every body in the set
   std::vector<std::size_t> sources;  ///< index of the LinkBody that each body of the set sweeps
 };
 

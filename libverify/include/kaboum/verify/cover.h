@@ -46,8 +46,8 @@ Cover verify_cover(const geom::Mesh& original, const geom::ConvexSet& set,
 ///
 /// @pre epsilon > set.margin; with `to_solid` the original is a closed chain
 /// @throws as verify_distance
-DistanceClaim verify_reach(const geom::ConvexSet& set, const geom::Mesh& original, double epsilon,
-                           bool to_solid, const InclusionOptions& limits = {});
+DistanceClaim verify_excess(const geom::ConvexSet& set, const geom::Mesh& original, double epsilon,
+                            bool to_solid, const InclusionOptions& limits = {});
 
 /// Decides whether every point of the original's solid that is deeper than `epsilon` inside it
 /// (farther from its boundary) is in a body: what an inner set promises besides lying within the

@@ -18,7 +18,7 @@ struct ReplayResult {
   std::uint64_t predicates = 0;        ///< exact orientation tests
   std::uint64_t against_original = 0;  ///< tetrahedra tested against the original's solid
   std::size_t dropped = 0;             ///< input triangles that the log leaves out
-  std::size_t turned = 0;              ///< input triangles that the log turns
+  std::size_t reversed = 0;            ///< input triangles that the log turns
   std::size_t filled = 0;              ///< triangles that the log adds to fill holes
 };
 

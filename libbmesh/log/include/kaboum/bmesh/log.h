@@ -42,22 +42,23 @@ struct Step {
 /// Everything needed to derive a result from its input again. Layout of the file: docs/formats.md.
 struct Log {
   Direction direction = Direction::Outer;
-  std::string input_sha256;            ///< of the input file's bytes
-  std::string tool;                    ///< program and version
-  std::vector<std::uint32_t> dropped;  ///< input triangles left out, ascending
-  std::vector<std::uint32_t> turned;   ///< input triangles with reversed orientation, ascending
+  std::string input_sha256;             ///< of the input file's bytes
+  std::string tool;                     ///< program and version
+  std::vector<std::uint32_t> dropped;   ///< input triangles left out, ascending
+  std::vector<std::uint32_t> reversed;  ///< input triangles with reversed orientation, ascending
   /// The holes that were filled: vertices round each, as the fill runs; corner k of input triangle
   /// t is 3 t + k. Three are a triangle, more a fan from their mean, {rim[i], rim[i + 1], mean}.
   std::vector<std::vector<std::uint32_t>> rims;
   /// Triangles turned after that, ascending: of the input, where `turned` counts those turns as
   /// well, and numbered on from these the ones that fill holes (without repeated corners).
-  std::vector<std::uint32_t> turned_after_filling;
+  std::vector<std::uint32_t> reversed_after_filling;
   std::vector<Step> steps;
 };
 
 /// The triangles that preparation dropped, turned and added. `input_triangles` is the number before
 /// it.
-void record_preparation(const geom::Prepared& prepared, std::size_t input_triangles, Log& log);
+void record_preparation(const geom::PreparationReport& report, std::size_t input_triangles,
+                        Log& log);
 
 std::vector<char> serialise_log(const Log& log);
 

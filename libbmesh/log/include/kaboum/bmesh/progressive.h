@@ -14,15 +14,15 @@ namespace kaboum::bmesh {
 /// the levels are among them. Layout of the file: docs/formats.md.
 struct Progressive {
   struct Level {
-    std::size_t wished = 0;    ///< number of vertices asked for
-    std::size_t vertices = 0;  ///< number of vertices there
-    std::size_t steps = 0;     ///< how many lead to it
+    std::size_t requested = 0;  ///< number of vertices asked for
+    std::size_t vertices = 0;   ///< number of vertices there
+    std::size_t steps = 0;      ///< how many lead to it
   };
 
   Log log;                        ///< of all levels: of the input file, as `bmesh-replay` reads it
-  bool double_precision = false;  ///< results were wished for in double
+  bool double_precision = false;  ///< results were asked for in double
   geom::Mesh base;                ///< as prepared
-  std::vector<Level> levels;      ///< finest first: `wished` falls, `steps` never does
+  std::vector<Level> levels;      ///< finest first: `requested` falls, `steps` never does
 };
 
 std::vector<char> serialise_progressive(const Progressive& progressive);

@@ -1,7 +1,7 @@
 // Leaves vertices of a hull out while those that stay are near enough to them.
 // docs/algorithms/swept-volumes.md.
 
-#include "thin_out.h"
+#include "simplify_hull.h"
 
 #include <kaboum/geom/distance.h>
 
@@ -9,8 +9,8 @@
 
 namespace kaboum::sweep {
 
-double thin_out(std::vector<Vec3>& vertices, double most, geom::HullBuilder& builder) {
-  if (!(most > 0) || vertices.size() <= 4) return 0;
+double simplify_hull(std::vector<Vec3>& vertices, double allowed, geom::HullBuilder& builder) {
+  if (!(allowed > 0) || vertices.size() <= 4) return 0;
   std::vector<char> stays(vertices.size(), 0);
   for (int axis = 0; axis < 3; ++axis) {
     const auto less = [axis](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; };
@@ -39,7 +39,7 @@ double thin_out(std::vector<Vec3>& vertices, double most, geom::HullBuilder& bui
       farthest = nearest;
       next = i;
     }
-    if (farthest <= most) {
+    if (farthest <= allowed) {
       vertices = std::move(chosen);
       return farthest;
     }

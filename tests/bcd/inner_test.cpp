@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 #include <kaboum/base/error.h>
-#include <kaboum/bcd/fill.h>
+#include <kaboum/bcd/inner.h>
 #include <kaboum/geom/distance.h>
 #include <kaboum/verify/cover.h>
 
@@ -19,21 +19,23 @@ using geom::Mesh;
 using geom::Vec3;
 using test::prism;
 
-DecomposeResult run(const Mesh& mesh, double epsilon_percent, std::size_t max_vertices = 64) {
-  return fill(geom::prepare(mesh), test::quick(mesh, epsilon_percent, max_vertices));
+InnerCandidate run(const Mesh& mesh, double epsilon_percent, std::size_t max_vertices = 64) {
+  return find_inner(geom::prepare(mesh).solid,
+                    test::quick_inner(mesh, epsilon_percent, max_vertices));
 }
 
 verify::Answer inside(const Mesh& mesh, const std::vector<geom::ConvexBody>& bodies) {
   return verify::verify_inclusion(verify::sum_of(test::set_of(bodies)), mesh).solid.answer;
 }
 
-void expect_claims(const Mesh& mesh, const DecomposeResult& result, std::size_t max_vertices) {
-  test::expect_bodies(result, max_vertices);
+void expect_claims(const Mesh& mesh, const InnerCandidate& result, std::size_t max_vertices) {
+  test::expect_bodies(result.bodies, max_vertices);
+  EXPECT_LE(result.uncovered_depth_lower, result.uncovered_depth_upper);
   EXPECT_EQ(inside(mesh, result.bodies), verify::Answer::Verified);
 }
 
 /// Random points of the solid that are deeper than the bound, by the slow oracle: all in a body.
-void expect_no_deep_point_left(const Mesh& mesh, const DecomposeResult& result, int count) {
+void expect_no_deep_point_left(const Mesh& mesh, const InnerCandidate& result, int count) {
   const geom::Box3 box = geom::bounding_box(mesh);
   const geom::DistanceQuery surface(mesh);
   std::mt19937 random(7);
@@ -42,7 +44,7 @@ void expect_no_deep_point_left(const Mesh& mesh, const DecomposeResult& result, 
   for (int i = 0; i < count; ++i) {
     const Vec3 p =
         box.min + (box.max - box.min).cwiseProduct(Vec3(unit(random), unit(random), unit(random)));
-    if (surface.nearest(p).lower <= result.reach_upper) continue;
+    if (surface.nearest(p).lower <= result.uncovered_depth_upper) continue;
     const auto w = kaboum::test::winding_number_slow(mesh, p);
     if (!w || *w < 1) continue;
     ++deep;
@@ -51,15 +53,15 @@ void expect_no_deep_point_left(const Mesh& mesh, const DecomposeResult& result, 
   EXPECT_GT(deep, 5);
 }
 
-TEST(Fill, LiesInEveryFamily) {
+TEST(Inner, LiesInEveryFamily) {
   int seen = 0, done = 0;
   test::for_each_solid(400, [&](const kaboum::test::Family& f, const geom::Prepared& prepared) {
     // A body beside its copy, rotated: every triangle crosses others; minutes.
     if (f.name == "component-twice-rotated") return;
     const std::size_t most = seen % 2 == 0 ? 64 : 32;
-    const DecomposeResult result = run(prepared.mesh, 3, most);
+    const InnerCandidate result = run(prepared.solid.mesh(), 3, most);
     if (result.stop == Stop::TooCoarse) return;
-    expect_claims(prepared.mesh, result, most);
+    expect_claims(prepared.solid.mesh(), result, most);
     done += result.stop == Stop::Done ? 1 : 0;
     ++seen;
   });
@@ -67,23 +69,23 @@ TEST(Fill, LiesInEveryFamily) {
   EXPECT_GE(done, seen - 2);  // surfaces that cross themselves everywhere
 }
 
-TEST(Fill, NoDeepPointIsLeft) {
+TEST(Inner, NoDeepPointIsLeft) {
   for (const double percent : {3.0}) {
-    const Mesh knot = geom::prepare(kaboum::test::torus_knot(2, 3, 0.3, 40, 8)).mesh;
-    const DecomposeResult result = run(knot, percent);
-    EXPECT_LE(result.reach_upper, 0.01 * percent * geom::bounding_box(knot).diagonal());
+    const Mesh knot = geom::prepare(kaboum::test::torus_knot(2, 3, 0.3, 40, 8)).solid.mesh();
+    const InnerCandidate result = run(knot, percent);
+    EXPECT_LE(result.uncovered_depth_upper, 0.01 * percent * geom::bounding_box(knot).diagonal());
     expect_claims(knot, result, 64);
     expect_no_deep_point_left(knot, result, 1000);
   }
 }
 
-TEST(Fill, WallsBetweenOverlappingBodiesAreNoObstacle) {
+TEST(Inner, WallsBetweenOverlappingBodiesAreNoObstacle) {
   // Two boxes that share a part: the surfaces inside the union count for nothing.
   using kaboum::test::box;
   const Mesh two = kaboum::test::merged(
       {box(Vec3(4, 1, 1), 1), kaboum::test::translated(box(Vec3(4, 1, 1), 1), Vec3(3, 0, 0))});
-  const Mesh mesh = geom::prepare(two).mesh;
-  const DecomposeResult result = run(mesh, 1);
+  const Mesh mesh = geom::prepare(two).solid.mesh();
+  const InnerCandidate result = run(mesh, 1);
   EXPECT_EQ(result.stop, Stop::Done);
   EXPECT_EQ(result.bodies.size(), 1U);
   expect_claims(mesh, result, 64);
@@ -91,7 +93,7 @@ TEST(Fill, WallsBetweenOverlappingBodiesAreNoObstacle) {
 
 // Boxes that cut each other: samples beside their triangles miss tips of the outside, which the
 // exact check finds. They are kept clear of then.
-TEST(Fill, KeepsClearOfWhatTheExactCheckFinds) {
+TEST(Inner, KeepsClearOfWhatTheExactCheckFinds) {
   struct Turned {
     Vec3 half;
     double about_z, about_x;
@@ -107,31 +109,33 @@ TEST(Fill, KeepsClearOfWhatTheExactCheckFinds) {
     boxes.push_back(std::move(box));
   }
   const geom::Prepared input = geom::prepare(kaboum::test::merged(boxes));
-  DecomposeOptions options = test::quick(input.mesh, 1.5, 64);
-  const auto check = [&](const DecomposeResult& result) {
-    return verify::verify_inclusion(verify::sum_of(test::set_of(result.bodies)), input.mesh).solid;
+  InnerOptions options = test::quick_inner(input.solid.mesh(), 1.5, 64);
+  const auto check = [&](const InnerCandidate& result) {
+    return verify::verify_inclusion(verify::sum_of(test::set_of(result.bodies)), input.solid.mesh())
+        .solid;
   };
-  const verify::Claim refuted = check(fill(input, options));
+  const verify::Claim refuted = check(find_inner(input.solid, options));
   ASSERT_EQ(refuted.answer, verify::Answer::Refuted);
   options.doubtful = refuted.outer_triangles;
   options.max_work = 3;
-  const DecomposeResult again = fill(input, options);
+  const InnerCandidate again = find_inner(input.solid, options);
   EXPECT_GT(again.bodies.size(), 3U);
   EXPECT_EQ(check(again).answer, verify::Answer::Verified);
 }
 
-TEST(Fill, ObviousOnes) {
+TEST(Inner, ObviousOnes) {
   const Mesh l = prism({{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}, 1);
-  const DecomposeResult result = run(l, 0.5);
+  const InnerCandidate result = run(l, 0.5);
   EXPECT_EQ(result.bodies.size(), 2U);
-  expect_claims(geom::prepare(l).mesh, result, 64);
+  expect_claims(geom::prepare(l).solid.mesh(), result, 64);
   const Mesh one = kaboum::test::box(Vec3(1, 2, 3), 1);
   EXPECT_EQ(run(one, 0.1).bodies.size(), 1U);
 }
 
-TEST(Fill, MutantsAreRefuted) {
-  const Mesh l = geom::prepare(prism({{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}, 1)).mesh;
-  const DecomposeResult result = run(l, 0.5);
+TEST(Inner, MutantsAreRefuted) {
+  const Mesh l =
+      geom::prepare(prism({{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}, 1)).solid.mesh();
+  const InnerCandidate result = run(l, 0.5);
   for (std::size_t i = 0; i < result.bodies.size(); ++i) {
     std::vector<geom::ConvexBody> mutant = result.bodies;  // grown by a hundred thousandth
     const Vec3 center = geom::bounding_box(mutant[i].hull).center();
@@ -140,41 +144,41 @@ TEST(Fill, MutantsAreRefuted) {
   }
 }
 
-TEST(Fill, EightVerticesPerBodyGetOnInsideRoundWalls) {
+TEST(Inner, EightVerticesPerBodyGetOnInsideRoundWalls) {
   // A body that holds little more than its seed leaves the next search the same place.
-  const Mesh torus = geom::prepare(kaboum::test::torus(1, 0.3, 40, 16)).mesh;
-  const DecomposeResult result = run(torus, 2, 8);
+  const Mesh torus = geom::prepare(kaboum::test::torus(1, 0.3, 40, 16)).solid.mesh();
+  const InnerCandidate result = run(torus, 2, 8);
   expect_claims(torus, result, 8);
   EXPECT_EQ(result.stop, Stop::Done);
   EXPECT_LE(result.bodies.size(), 400U);
 }
 
-TEST(Fill, FewBodiesAndOpenMeshes) {
+TEST(Inner, FewBodiesAndOpenMeshes) {
   const Mesh torus = kaboum::test::torus(1, 0.3, 40, 16);
-  DecomposeOptions options;
+  InnerOptions options;
   options.effort = Effort::Fast;
   double last = 1e9;
   for (const std::size_t n : {1U, 4U, 12U}) {
     options.max_bodies = n;
-    const DecomposeResult result = fill(geom::prepare(torus), options);
+    const InnerCandidate result = find_inner(geom::prepare(torus).solid, options);
     EXPECT_LE(result.bodies.size(), n);
-    EXPECT_LE(result.reach_upper, last);
-    EXPECT_LE(result.reach_upper, 1.02 * result.reach_lower + 1e-6);
-    last = result.reach_upper;
+    EXPECT_LE(result.uncovered_depth_upper, last);
+    EXPECT_LE(result.uncovered_depth_upper, 1.02 * result.uncovered_depth_lower + 1e-6);
+    last = result.uncovered_depth_upper;
   }
   Mesh open = kaboum::test::box(Vec3(1, 1, 1), 1);
   open.triangles.pop_back();
-  EXPECT_THROW(fill(geom::prepare(open), options), Error);
+  EXPECT_THROW(find_inner(geom::prepare(open).solid, options), Error);
 }
 
-TEST(Fill, RefusesDoubtfulTrianglesThatTheMeshHasNot) {
+TEST(Inner, RefusesDoubtfulTrianglesThatTheMeshHasNot) {
   const Mesh cube = kaboum::test::box({1, 1, 1}, 1);
-  DecomposeOptions options = test::quick(cube, 5);
+  InnerOptions options = test::quick_inner(cube, 5);
   options.doubtful = {0, 11};
-  EXPECT_FALSE(fill(geom::prepare(cube), options).bodies.empty());
+  EXPECT_FALSE(find_inner(geom::prepare(cube).solid, options).bodies.empty());
   options.doubtful.push_back(12);
   try {
-    fill(geom::prepare(cube), options);
+    find_inner(geom::prepare(cube).solid, options);
     ADD_FAILURE() << "triangle 12 of 12 was accepted";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::InvalidArgument);

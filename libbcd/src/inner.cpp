@@ -3,7 +3,7 @@
 // "From inside".
 
 #include <kaboum/base/error.h>
-#include <kaboum/bcd/fill.h>
+#include <kaboum/bcd/inner.h>
 
 #include <algorithm>
 #include <cmath>
@@ -49,47 +49,41 @@ InnerTuning tuning_inside(Effort effort) {
   return {12, 10'000'000};
 }
 
-/// @throws Error{InvalidArgument}, Error{InvalidInput} as fill does
-void require_inside(const geom::Prepared& input, const DecomposeOptions& options) {
+/// @throws Error{InvalidArgument}, Error{InvalidInput} as find_inner does
+void require_inside(const geom::SolidMesh& input, const InnerOptions& options) {
+  if (!options.epsilon && !options.max_bodies)
+    throw Error(ErrorCode::InvalidArgument, "neither epsilon nor max_bodies is given");
   require_sound(options);
-  if (options.method != Method::Planes)
-    throw Error(ErrorCode::InvalidArgument, "bodies inside the solid have no choice of methods");
-  if (options.min_thickness > 0)
-    throw Error(ErrorCode::InvalidArgument, "bodies inside the solid cannot be thickened");
-  if (options.max_total_vertices)
-    throw Error(ErrorCode::InvalidArgument, "max_total_vertices is not for bodies inside");
-  if (options.pre_step == PreStep::On)
-    throw Error(ErrorCode::InvalidArgument, "bodies inside the solid have no pre-step");
+  const std::size_t triangles = input.mesh().triangles.size();
   for (const std::uint32_t t : options.doubtful)
-    if (t >= input.mesh.triangles.size())
-      throw Error(ErrorCode::InvalidArgument, "doubtful triangle " + std::to_string(t) +
-                                                  " is none of the mesh's " +
-                                                  std::to_string(input.mesh.triangles.size()) +
-                                                  "; name triangles of the mesh given");
-  if (!input.closed)
+    if (t >= triangles)
+      throw Error(ErrorCode::InvalidArgument,
+                  "doubtful triangle " + std::to_string(t) + " is none of the mesh's " +
+                      std::to_string(triangles) + "; name triangles of the mesh given");
+  if (!input.closed())
     throw Error(ErrorCode::InvalidInput, "the mesh is open: bodies inside it mean nothing");
 }
 
 /// Grows bodies one after the other.
 class InnerSearch {
  public:
-  InnerSearch(const geom::Prepared& input, const DecomposeOptions& options)
+  InnerSearch(const geom::Mesh& input, const InnerOptions& options)
       : input_(input),
         options_(options),
-        diagonal_(geom::bounding_box(input.mesh).diagonal()),
-        winding_(input.mesh),
+        diagonal_(geom::bounding_box(input).diagonal()),
+        winding_(input),
         boundary_(boundary_of(
-            input.mesh, winding_,
+            input, winding_,
             options.epsilon ? kSizeOfEpsilon * *options.epsilon : kSizeOfDiagonal * diagonal_,
             options.doubtful)) {
     if (boundary_.outside.empty()) throw Error(ErrorCode::InvalidInput, "the mesh has no solid");
   }
 
-  DecomposeResult run() {
+  InnerCandidate run() {
     const InnerTuning effort = tuning_inside(options_.effort);
-    Depths depths(input_.mesh, winding_, boundary_);
+    Depths depths(input_, winding_, boundary_);
     Depths::Deepest deepest;
-    const double allowed = work_allowed(options_, input_.mesh.triangles.size());
+    const double allowed = work_allowed(options_, input_.triangles.size());
     const double per_body =
         kTriangle * effort.rounds * static_cast<double>(boundary_.mesh.triangles.size());
     double begin = 0, work = 0;
@@ -127,26 +121,25 @@ class InnerSearch {
     options_.progress({"filling", std::clamp(share, 0.0, 1.0)});
   }
 
-  DecomposeResult result(const Depths::Deepest& deepest) {
-    DecomposeResult out;
-    out.statistics.out_of_work = out_of_work_;
-    out.reach_lower = deepest.lower;
-    out.reach_upper = deepest.upper;
+  InnerCandidate result(const Depths::Deepest& deepest) {
+    InnerCandidate out;
+    out.out_of_work = out_of_work_;
+    out.uncovered_depth_lower = deepest.lower;
+    out.uncovered_depth_upper = deepest.upper;
     if (options_.epsilon && deepest.upper > *options_.epsilon)
       out.stop = bodies_.size() >= most_ ? Stop::TooManyBodies
                  : out_of_work_          ? Stop::OutOfWork
                                          : Stop::Stuck;
-    out.statistics.leaves = bodies_.size();
     for (Inscribed& body : bodies_) {
-      out.statistics.vertices += body.hull.vertices.size();
-      out.statistics.largest = std::max(out.statistics.largest, body.hull.vertices.size());
+      out.vertices += body.hull.vertices.size();
+      out.largest = std::max(out.largest, body.hull.vertices.size());
       out.bodies.push_back({"", std::move(body.hull)});
     }
     return out;
   }
 
-  const geom::Prepared& input_;
-  const DecomposeOptions& options_;
+  const geom::Mesh& input_;
+  const InnerOptions& options_;
   double diagonal_;
   double enough_ = options_.epsilon.value_or(0);
   std::size_t most_ = options_.max_bodies.value_or(kMostBodies);
@@ -158,14 +151,14 @@ class InnerSearch {
 
 }  // namespace
 
-DecomposeResult fill(const geom::Prepared& input, const DecomposeOptions& options) {
+InnerCandidate find_inner(const geom::SolidMesh& input, const InnerOptions& options) {
   require_inside(input, options);
-  if (too_coarse(input.mesh, options)) {
-    DecomposeResult coarse;
+  if (too_coarse(input.mesh(), options)) {
+    InnerCandidate coarse;
     coarse.stop = Stop::TooCoarse;
     return coarse;
   }
-  return InnerSearch(input, options).run();
+  return InnerSearch(input.mesh(), options).run();
 }
 
 }  // namespace kaboum::bcd

@@ -1,12 +1,13 @@
 #pragma once
 
 #include <kaboum/geom/convex_set.h>
-#include <kaboum/geom/prepare.h>
+#include <kaboum/geom/solid_mesh.h>
 
 #include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace kaboum::bcd {
 
@@ -34,26 +35,16 @@ struct Progress {
   double fraction;  ///< estimate of the share of the work done, 0 to 1
 };
 
-struct DecomposeOptions {
-  /// Largest distance allowed from a point of the bodies to the solid and its triangles. [length]
+/// What either search is asked for.
+struct SetOptions {
+  /// Outwards: largest distance allowed from a point of the bodies to the solid and its triangles.
+  /// Inwards: largest depth allowed of what is in no body. [length]
   std::optional<double> epsilon;
-  /// Most bodies wished for. With epsilon: fewest bodies within it, and if these are too many, the
-  /// best that this many allow.
+  /// Most bodies. With epsilon: fewest bodies within it, and if these are too many, the best that
+  /// this many allow.
   std::optional<std::size_t> max_bodies;
   std::size_t max_vertices = 64;  ///< per body, ≥ 8
-  /// Most vertices wished for, of all bodies together, ≥ 8; otherwise like max_bodies, and together
-  /// with it: the smallest distance with which both hold. Only outwards (decompose).
-  std::optional<std::size_t> max_total_vertices;
   Effort effort = Effort::Normal;
-  Method method = Method::Planes;
-  /// Bodies are at least this wide in every direction, for engines that shrink hulls; thinner ones
-  /// are thickened, which counts towards epsilon. Not for bodies inside. [length]
-  double min_thickness = 0;
-  /// Share of a body's distance, 0 to 1, that leaving out vertices may take; with less, bodies have
-  /// more vertices and are nearer to the solid on the whole, not at most. Only outwards
-  /// (decompose).
-  double simplify = 0.5;
-  PreStep pre_step = PreStep::Auto;  ///< only outwards (decompose)
   /// Most work of the search: steps are counted, each as long as it takes on one core of a machine
   /// of 2020, so the result is the same on any machine, however fast or busy. Then the search ends
   /// with the best found, measured like any other. What comes before and after (a pre-step, the
@@ -63,14 +54,25 @@ struct DecomposeOptions {
   /// Multiplies what is allowed for rounding (the overlap of pieces, the error of computed points);
   /// larger where an exact check of the result fails.
   double safety = 1;
-  /// Of bodies inside: triangles of the input that bound what an exact check of the result found
-  /// outside the solid. Where they meet others, more is kept clear of.
-  std::vector<std::uint32_t> doubtful;
   /// Called now and then, from the calling thread; may throw to cancel.
   std::function<void(const Progress&)> progress;
 };
 
-/// Why decomposition ended.
+struct CoverOptions : SetOptions {
+  /// Most vertices of all bodies together, ≥ 8; otherwise like max_bodies, and together with it:
+  /// the smallest distance with which both hold. Not with min_thickness.
+  std::optional<std::size_t> max_total_vertices;
+  Method method = Method::Planes;
+  /// Bodies are at least this wide in every direction, for engines that shrink hulls; thinner ones
+  /// are thickened, which counts towards epsilon. [length]
+  double min_thickness = 0;
+  /// Share of a body's distance, 0 to 1, that leaving out vertices may take; with less, bodies have
+  /// more vertices and are nearer to the solid on the whole, not at most.
+  double simplify = 0.5;
+  PreStep pre_step = PreStep::Auto;
+};
+
+/// Why a search ended.
 enum class Stop {
   Done,           ///< epsilon, if given, is reached, and so are the limits given
   TooManyBodies,  ///< epsilon is not reached with max_bodies or max_total_vertices, or these are
@@ -80,7 +82,7 @@ enum class Stop {
   OutOfWork,      ///< epsilon is not reached with max_work
 };
 
-struct DecomposeStatistics {
+struct CoverStatistics {
   std::size_t leaves = 0;              ///< pieces that the input was cut into
   std::size_t filled_triangles = 0;    ///< that closed an open input
   std::size_t pre_step_triangles = 0;  ///< of the bounding mesh that was decomposed; 0: none
@@ -93,30 +95,32 @@ struct DecomposeStatistics {
 /// 20 s, and 1 s per thousand triangles beyond ten thousand. [s]
 double default_work(std::size_t triangles);
 
-struct DecomposeResult {
+/// What find_cover has found. No claim that it covers: certify::certify_set decides that.
+struct CoverCandidate {
   std::vector<geom::ConvexBody> bodies;
   Stop stop = Stop::Done;
   /// Certified bracket of the largest distance from a point of the bodies to the input's solid and
   /// triangles. [length]
-  double reach_lower = 0, reach_upper = 0;
-  DecomposeStatistics statistics;
+  double excess_lower = 0, excess_upper = 0;
+  CoverStatistics statistics;
 };
 
-/// Convex bodies whose union contains the input's solid and every triangle of it.
+/// Searches for convex bodies whose union contains the input's solid and every triangle of it.
 ///
 /// The solid is cut by planes into cells; what of it lies in a cell is contained in the hull of the
 /// clipped triangles and of the cell's corners that lie in the solid; hulls are merged while the
 /// distance to the solid allows, their vertices reduced by contractions that only enlarge them, and
 /// rounded outwards to float32. Source: [gaschler2016] §4.4; docs/algorithms/convex-
-/// decomposition.md has the covering argument.
+/// decomposition.md has the covering argument, and which of its steps are left to an exact check of
+/// what is written (verify::verify_cover).
 ///
 /// An open input is closed first by fans over its holes; the solid is then that of the closed mesh.
 ///
 /// Bodies are exactly convex, with float32 coordinates; the same for any number of threads.
 ///
-/// @pre input comes from geom::prepare; epsilon, max_bodies or max_total_vertices is given.
+/// @pre epsilon, max_bodies or max_total_vertices is given.
 /// @throws Error{InvalidArgument} on contradictory options, Error{InvalidInput} when the mesh is
 /// closed and all in one plane.
-DecomposeResult decompose(const geom::Prepared& input, const DecomposeOptions& options);
+CoverCandidate find_cover(const geom::SolidMesh& input, const CoverOptions& options);
 
 }  // namespace kaboum::bcd

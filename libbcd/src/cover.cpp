@@ -2,9 +2,8 @@
 // docs/algorithms/convex-decomposition.md.
 
 #include <kaboum/base/error.h>
-#include <kaboum/bcd/decompose.h>
+#include <kaboum/bcd/cover.h>
 #include <kaboum/geom/convex_hull.h>
-#include <kaboum/geom/holes.h>
 
 #include <algorithm>
 #include <utility>
@@ -17,16 +16,16 @@ namespace kaboum::bcd {
 namespace {
 
 /// The distance that counts is the one to the mesh that was not simplified.
-void measure_anew(DecomposeResult& result, const Mesh& closed) {
+void measure_anew(CoverCandidate& result, const Mesh& closed) {
   const SolidField solid(closed, kMeasuringGrid, 0);
   std::vector<Mesh> hulls;
   for (const geom::ConvexBody& body : result.bodies) hulls.push_back(body.hull);
-  ReachOptions options;
+  ExcessOptions options;
   options.absolute_gap = kMeasuredGap * solid.diagonal();
-  result.reach_lower = result.reach_upper = 0;
-  for (const Reach& r : measure(hulls, solid, options)) {
-    result.reach_lower = std::max(result.reach_lower, r.lower);
-    result.reach_upper = std::max(result.reach_upper, r.upper);
+  result.excess_lower = result.excess_upper = 0;
+  for (const Excess& r : measure(hulls, solid, options)) {
+    result.excess_lower = std::max(result.excess_lower, r.lower);
+    result.excess_upper = std::max(result.excess_upper, r.upper);
   }
 }
 
@@ -49,37 +48,37 @@ class Allowance {
 
 /// Where epsilon asks for more than the limits allow: the nearest that keep to these, as if no
 /// epsilon had been given.
-DecomposeResult search(const Mesh& closed, const DecomposeOptions& options, Allowance& allowance) {
+CoverCandidate search(const Mesh& closed, const CoverOptions& options, Allowance& allowance) {
   Decomposer first(closed, options, allowance.left());
-  DecomposeResult result = first.run();
+  CoverCandidate result = first.run();
   allowance.spend(first.work_done());
   if (!options.epsilon || result.stop != Stop::TooManyBodies) return result;
-  DecomposeOptions limited = options;
+  CoverOptions limited = options;
   limited.epsilon.reset();
   Decomposer second(closed, limited, allowance.left());
   result = second.run();
   allowance.spend(second.work_done());
-  if (result.reach_upper > *options.epsilon) result.stop = Stop::TooManyBodies;
+  if (result.excess_upper > *options.epsilon) result.stop = Stop::TooManyBodies;
   return result;
 }
 
 /// Few faces leave few cuts, and much hangs on the first: quick searches, with the planes of
 /// symmetry and without them, sometimes find fewer bodies than the thorough one.
-DecomposeResult with_quick_searches(const Mesh& closed, const DecomposeOptions& options,
-                                    Allowance& allowance) {
-  DecomposeResult best = search(closed, options, allowance);
+CoverCandidate with_quick_searches(const Mesh& closed, const CoverOptions& options,
+                                   Allowance& allowance) {
+  CoverCandidate best = search(closed, options, allowance);
   if (!options.epsilon || options.max_total_vertices || options.method != Method::Planes ||
       options.effort == Effort::Fast || closed.triangles.size() > kQuickTriangles ||
       (best.stop == Stop::Done && best.bodies.size() <= 2))
-    return best;                      // one body has been tried
-  DecomposeOptions silent = options;  // the progress has been told
+    return best;                  // one body has been tried
+  CoverOptions silent = options;  // the progress has been told
   silent.progress = nullptr;
   for (const bool mirrors : {false, true}) {
     if (!allowance.plenty()) break;
     Tuning quick = tuning(Effort::Fast);
     quick.search.mirrors = mirrors;
     Decomposer decomposer(closed, silent, allowance.left(), quick);
-    DecomposeResult other = decomposer.run();
+    CoverCandidate other = decomposer.run();
     allowance.spend(decomposer.work_done());
     if (other.stop == Stop::Done &&
         (best.stop != Stop::Done || other.bodies.size() < best.bodies.size()))
@@ -88,16 +87,17 @@ DecomposeResult with_quick_searches(const Mesh& closed, const DecomposeOptions& 
   return best;
 }
 
-DecomposeResult decompose_closed(const Mesh& closed, const DecomposeOptions& options) {
+CoverCandidate cover_closed(const geom::SolidMesh& input, const CoverOptions& options) {
+  const Mesh& closed = input.mesh();
   Allowance allowance(work_allowed(options, closed.triangles.size()));
-  if (const std::optional<Simpler> simpler = pre_step(closed, options)) {
-    DecomposeOptions rest = options;
+  if (const std::optional<Simpler> simpler = pre_step(input, options)) {
+    CoverOptions rest = options;
     if (rest.epsilon) *rest.epsilon -= simpler->distance;
-    DecomposeResult result = search(simpler->mesh, rest, allowance);
+    CoverCandidate result = search(simpler->mesh, rest, allowance);
     measure_anew(result, closed);
     result.statistics.pre_step_triangles = simpler->mesh.triangles.size();
     // What a limit does not allow within the rest of epsilon, it may allow within all of it.
-    if (!options.epsilon || (result.stop == Stop::Done && result.reach_upper <= *options.epsilon))
+    if (!options.epsilon || (result.stop == Stop::Done && result.excess_upper <= *options.epsilon))
       return result;
   }
   return with_quick_searches(closed, options, allowance);
@@ -105,21 +105,20 @@ DecomposeResult decompose_closed(const Mesh& closed, const DecomposeOptions& opt
 
 }  // namespace
 
-DecomposeResult decompose(const geom::Prepared& input, const DecomposeOptions& options) {
+CoverCandidate find_cover(const geom::SolidMesh& input, const CoverOptions& options) {
   require_sound(options);
-  if (too_coarse(input.mesh, options)) {
-    DecomposeResult coarse;
+  if (too_coarse(input.mesh(), options)) {
+    CoverCandidate coarse;
     coarse.stop = Stop::TooCoarse;
     return coarse;
   }
-  if (input.closed && input.filled_triangles == 0 &&
-      !geom::HullBuilder().build(input.mesh.vertices))
+  if (input.closed() && input.filled_triangles() == 0 &&
+      !geom::HullBuilder().build(input.mesh().vertices))
     throw Error(ErrorCode::InvalidInput,
                 "the mesh is closed and lies in one plane, so it bounds no solid");
-  const Mesh closed = input.closed ? input.mesh : geom::fill_holes(input.mesh).mesh;
-  DecomposeResult result = decompose_closed(closed, options);
-  result.statistics.filled_triangles =
-      input.filled_triangles + closed.triangles.size() - input.mesh.triangles.size();
+  const geom::SolidMesh closed = geom::close_holes(input);
+  CoverCandidate result = cover_closed(closed, options);
+  result.statistics.filled_triangles = closed.filled_triangles();
   return result;
 }
 

@@ -1,4 +1,4 @@
-#include "reach.h"
+#include "excess.h"
 
 #include <gtest/gtest.h>
 
@@ -16,16 +16,16 @@ using kaboum::test::flipped;
 using kaboum::test::merged;
 using kaboum::test::translated;
 
-Reach reach_of(const Mesh& body, const Mesh& solid_mesh) {
+Excess excess_of(const Mesh& body, const Mesh& solid_mesh) {
   const SolidField solid(solid_mesh, 20000, 0);
   return measure({body}, solid, {.absolute_gap = 1e-5 * solid.diagonal()})[0];
 }
 
-TEST(Reach, HullOfAnL) {
+TEST(Excess, HullOfAnL) {
   // The hull's facet from (3,1) to (1,3) is farthest from the corner (1,1): √2.
   const Mesh l = test::prism({{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}, 1);
   const Mesh hull = test::prism({{0, 0}, {3, 0}, {3, 1}, {1, 3}, {0, 3}}, 1);
-  const Reach r = reach_of(hull, l);
+  const Excess r = excess_of(hull, l);
   EXPECT_LE(r.lower, std::sqrt(2.0) / 2 * 2);
   EXPECT_GE(r.upper, 1.0);
   // d(x) = distance to the two inner walls: the point (2,2) is at distance 1.
@@ -34,19 +34,19 @@ TEST(Reach, HullOfAnL) {
   EXPECT_LE(r.upper, 1.03);
 }
 
-TEST(Reach, CavitiesCount) {
+TEST(Excess, CavitiesCount) {
   // A box with a cubic cavity of side 1: its centre is half a unit from the solid, though every
   // facet of the hull lies on it.
   const Mesh cavity = flipped(translated(box(Vec3(1, 1, 1), 1), Vec3(1, 1, 1)));
   const Mesh solid = merged({box(Vec3(3, 3, 3), 1), cavity});
-  const Reach r = reach_of(box(Vec3(3, 3, 3), 1), solid);
+  const Excess r = excess_of(box(Vec3(3, 3, 3), 1), solid);
   EXPECT_LE(r.lower, 0.5 + 1e-9);
   EXPECT_GE(r.lower, 0.48);
   EXPECT_GE(r.upper, 0.5);
   EXPECT_LE(r.upper, 0.52);
 }
 
-TEST(Reach, WhereverCavitiesAre) {
+TEST(Excess, WhereverCavitiesAre) {
   // Farthest is the middle of the widest one; cubes meet them in every way.
   std::mt19937 random(2);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -60,43 +60,44 @@ TEST(Reach, WhereverCavitiesAre) {
       solid = merged({solid, flipped(translated(box(size, 1), at))});
       expected = std::max(expected, 0.5 * size.minCoeff());
     }
-    const Reach r = reach_of(block, solid);
+    const Excess r = excess_of(block, solid);
     EXPECT_GE(r.upper, expected);
     EXPECT_LE(r.lower, expected + 1e-9);
     EXPECT_LE(r.upper, 1.03 * expected);
   }
 }
 
-TEST(Reach, StopsWhereItIsKnownToBeTooFar) {
+TEST(Excess, StopsWhereItIsKnownToBeTooFar) {
   const Mesh l = test::prism({{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}, 1);
   const Mesh hull = test::prism({{0, 0}, {3, 0}, {3, 1}, {1, 3}, {0, 3}}, 1);
   const SolidField solid(l, 20000, 0);
-  const Reach far = measure({hull}, solid, {.enough = 0.5})[0];
+  const Excess far = measure({hull}, solid, {.cutoff = 0.5})[0];
   EXPECT_GT(far.lower, 0.5);
   EXPECT_LE(far.lower, 1.0 + 1e-9);
   EXPECT_EQ(far.upper, std::numeric_limits<double>::infinity());
-  EXPECT_LE(measure({hull}, solid, {.enough = 1.1})[0].upper, 1.03);
+  EXPECT_LE(measure({hull}, solid, {.cutoff = 1.1})[0].upper, 1.03);
 }
 
-TEST(Reach, InsideIsZero) {
-  const Reach r = reach_of(translated(box(Vec3(1, 1, 1), 1), Vec3(1, 1, 1)), box(Vec3(3, 3, 3), 1));
+TEST(Excess, InsideIsZero) {
+  const Excess r =
+      excess_of(translated(box(Vec3(1, 1, 1), 1), Vec3(1, 1, 1)), box(Vec3(3, 3, 3), 1));
   EXPECT_EQ(r.lower, 0);
   EXPECT_LE(r.upper, 1e-3);
 }
 
-TEST(Reach, BodiesOnTheSolidCostLittle) {
+TEST(Excess, BodiesOnTheSolidCostLittle) {
   // Facets of several triangles each; were the bound that of cubes alone, millions would be needed.
   const Mesh grid = test::prism({{0, 0}, {2, 0}, {3, 1}, {3, 3}, {1, 3}, {0, 2}}, 1);
   for (const Mesh& mesh : {grid, kaboum::test::icosphere(1)}) {
     const SolidField solid(mesh, 20000, 0);
-    ReachOptions options;
+    ExcessOptions options;
     options.absolute_gap = 1e-5;
-    options.most = 3000;
+    options.max_parts = 3000;
     EXPECT_LE(measure({mesh}, solid, options)[0].upper, 1e-5);
     // The distance to a convex solid is convex: largest at a vertex.
     Mesh larger = mesh;
     for (Vec3& p : larger.vertices) p *= 1.01;
-    const Reach r = measure({larger}, solid, {})[0];
+    const Excess r = measure({larger}, solid, {})[0];
     double farthest = 0;
     for (const Vec3& p : larger.vertices)
       if (!solid.contains(p)) farthest = std::max(farthest, solid.surface().nearest(p).lower);
@@ -105,15 +106,15 @@ TEST(Reach, BodiesOnTheSolidCostLittle) {
   }
 }
 
-TEST(Reach, EndsWithTheWork) {
+TEST(Excess, EndsWithTheWork) {
   // Of a thousand needles, many are equally near to what is inside.
   const Mesh fan = kaboum::test::double_fan(1000);
   const SolidField solid(fan, 20000, 0);
   Mesh body = kaboum::test::double_fan(16);
   for (Vec3& p : body.vertices) p *= 1.05;
-  const Reach all = measure({body}, solid, {})[0];
+  const Excess all = measure({body}, solid, {})[0];
   const std::uint64_t before = solid.work().done();
-  const Reach some = measure({body}, solid, {.work = 2'000'000})[0];
+  const Excess some = measure({body}, solid, {.work = 2'000'000})[0];
   const std::uint64_t done = solid.work().done() - before;
   EXPECT_GT(before, 2 * done);
   EXPECT_LT(done, 4'000'000U);
@@ -122,7 +123,7 @@ TEST(Reach, EndsWithTheWork) {
   EXPECT_LT(some.upper, 1.5);
 }
 
-TEST(Reach, NoPointIsFarther) {
+TEST(Excess, NoPointIsFarther) {
   const Mesh torus = kaboum::test::torus(1, 0.3, 24, 12);
   const SolidField solid(torus, 20000, 0);
   std::mt19937 random(4);
@@ -130,7 +131,7 @@ TEST(Reach, NoPointIsFarther) {
   for (std::uint32_t seed = 0; seed < 6; ++seed) {
     Mesh body = kaboum::test::random_hull(12, kaboum::test::Cloud::Ball, seed);
     for (Vec3& p : body.vertices) p = p.cwiseProduct(Vec3(1.3, 1.3, 0.4));
-    const Reach r = measure({body}, solid, {})[0];
+    const Excess r = measure({body}, solid, {})[0];
     EXPECT_LE(r.lower, r.upper);
     EXPECT_LE(r.upper, 1.05 * r.lower + 1e-3);
     for (int i = 0; i < 4000; ++i) {

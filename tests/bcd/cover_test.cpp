@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 #include <kaboum/base/error.h>
-#include <kaboum/bcd/decompose.h>
+#include <kaboum/bcd/cover.h>
 #include <kaboum/geom/holes.h>
 #include <kaboum/io/convex_io.h>
 #include <tbb/global_control.h>
@@ -24,20 +24,20 @@ using test::expect_cover;
 using test::prism;
 using test::set_of;
 
-DecomposeResult run(const Mesh& mesh, double epsilon_percent, std::size_t max_vertices = 64) {
-  return decompose(geom::prepare(mesh), test::quick(mesh, epsilon_percent, max_vertices));
+CoverCandidate run(const Mesh& mesh, double epsilon_percent, std::size_t max_vertices = 64) {
+  return find_cover(geom::prepare(mesh).solid, test::quick(mesh, epsilon_percent, max_vertices));
 }
 
-TEST(Decompose, CoversEveryFamily) {
+TEST(Cover, CoversEveryFamily) {
   int seen = 0;
   test::for_each_solid(1500, [&](const kaboum::test::Family& f, const geom::Prepared& prepared) {
     const std::size_t most = seen % 2 == 0 ? 64 : 24;
-    const DecomposeResult result = run(prepared.mesh, 4, most);
+    const CoverCandidate result = run(prepared.solid.mesh(), 4, most);
     if (result.stop == Stop::TooCoarse) {
       EXPECT_TRUE(result.bodies.empty());
       return;
     }
-    expect_cover(prepared.mesh, result, most);
+    expect_cover(prepared.solid.mesh(), result, most);
     if (f.convex && f.mesh.vertices.size() <= most) {
       EXPECT_EQ(result.bodies.size(), 1U);
     }
@@ -46,7 +46,7 @@ TEST(Decompose, CoversEveryFamily) {
   EXPECT_GE(seen, 10);
 }
 
-TEST(Decompose, CoversOpenMeshesAndTheirFilledHoles) {
+TEST(Cover, CoversOpenMeshesAndTheirFilledHoles) {
   int seen = 0;
   for (const auto& f : kaboum::test::open_families()) {
     if (f.mesh.triangles.size() > 1500) continue;
@@ -57,17 +57,17 @@ TEST(Decompose, CoversOpenMeshesAndTheirFilledHoles) {
     } catch (const Error&) {
       continue;
     }
-    const DecomposeResult result = run(prepared.mesh, 5);
+    const CoverCandidate result = run(prepared.solid.mesh(), 5);
     if (result.stop == Stop::TooCoarse) continue;
-    expect_cover(geom::fill_holes(prepared.mesh).mesh, result, 64);
+    expect_cover(geom::fill_holes(prepared.solid.mesh()).mesh, result, 64);
     ++seen;
   }
   EXPECT_GE(seen, 2);
 }
 
-TEST(Decompose, PointsOfTheSolidAreInABody) {
-  const Mesh knot = geom::prepare(kaboum::test::torus_knot(2, 3, 0.2, 40, 6)).mesh;
-  const DecomposeResult result = run(knot, 3);
+TEST(Cover, PointsOfTheSolidAreInABody) {
+  const Mesh knot = geom::prepare(kaboum::test::torus_knot(2, 3, 0.2, 40, 6)).solid.mesh();
+  const CoverCandidate result = run(knot, 3);
   std::mt19937 random(1);
   std::uniform_real_distribution<double> unit(-1.5, 1.5);
   int inside = 0;
@@ -81,9 +81,9 @@ TEST(Decompose, PointsOfTheSolidAreInABody) {
   EXPECT_GT(inside, 10);
 }
 
-TEST(Decompose, MutantsAreRefuted) {
+TEST(Cover, MutantsAreRefuted) {
   const Mesh mesh = prism({{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}, 1);
-  const DecomposeResult result = run(mesh, 1);
+  const CoverCandidate result = run(mesh, 1);
   const geom::ConvexSet good = set_of(result.bodies);
   ASSERT_EQ(cover_of(mesh, good), verify::Answer::Verified);
   ASSERT_EQ(good.bodies.size(), 2U);
@@ -98,10 +98,10 @@ TEST(Decompose, MutantsAreRefuted) {
   }
 }
 
-TEST(Decompose, InteriorCornersOfCellsAreCovered) {
+TEST(Cover, InteriorCornersOfCellsAreCovered) {
   // A ball is cut into many cells only when told so: few vertices per body at a small epsilon.
   const Mesh ball = kaboum::test::icosphere(2);
-  const DecomposeResult result = run(ball, 3, 16);
+  const CoverCandidate result = run(ball, 3, 16);
   expect_cover(ball, result, 16);
   EXPECT_GE(result.bodies.size(), 8U);
   std::mt19937 random(3);
@@ -112,7 +112,7 @@ TEST(Decompose, InteriorCornersOfCellsAreCovered) {
   }
 }
 
-TEST(Decompose, ThinRingsDistanceFallsWithTheSquareOfTheNumberOfBodies) {
+TEST(Cover, ThinRingsDistanceFallsWithTheSquareOfTheNumberOfBodies) {
   // [gaschler2016] Fig. 4.8: n equal arcs of radius r are r (1 − cos π/n) from their hulls.
   Mesh ring;
   constexpr std::uint32_t n = 256;
@@ -131,9 +131,9 @@ TEST(Decompose, ThinRingsDistanceFallsWithTheSquareOfTheNumberOfBodies) {
   const geom::Prepared input = geom::prepare(ring);
   double xy = 0, xx = 0;  // of logarithms, about n = 16
   for (const std::size_t bodies : {8U, 16U, 32U}) {
-    DecomposeOptions options;
+    CoverOptions options;
     options.max_bodies = bodies;
-    const double reach = decompose(input, options).reach_upper;
+    const double reach = find_cover(input.solid, options).excess_upper;
     EXPECT_LE(reach, 1.3 * inner * (1 - std::cos(M_PI / static_cast<double>(bodies))));
     const double x = std::log(static_cast<double>(bodies) / 16);
     xy += x * std::log(reach);
@@ -142,7 +142,7 @@ TEST(Decompose, ThinRingsDistanceFallsWithTheSquareOfTheNumberOfBodies) {
   EXPECT_NEAR(xy / xx, -2, 0.1);
 }
 
-TEST(Decompose, WallsThinnerThanTheGridAndFlatParts) {
+TEST(Cover, WallsThinnerThanTheGridAndFlatParts) {
   // Where the interpolated distance is wrong by more than epsilon the search must still end.
   constexpr double t = 0.004;
   const Mesh angle = prism({{0, 0}, {3, 0}, {3, t}, {t, t}, {t, 3}, {0, 3}}, 2);
@@ -152,15 +152,15 @@ TEST(Decompose, WallsThinnerThanTheGridAndFlatParts) {
   });
   flat.vertices.resize(6);
   for (const Mesh& mesh : {angle, flat}) {  // the flat one's hole is filled across the notch
-    const DecomposeResult result = run(mesh, 0.5);
+    const CoverCandidate result = run(mesh, 0.5);
     EXPECT_EQ(result.stop, Stop::Done);
     EXPECT_LE(result.bodies.size(), 4U);
     EXPECT_LE(result.statistics.leaves, 20U);
-    expect_cover(geom::fill_holes(geom::prepare(mesh).mesh).mesh, result, 64);
+    expect_cover(geom::fill_holes(geom::prepare(mesh).solid.mesh()).mesh, result, 64);
   }
 }
 
-TEST(Decompose, PreStepKeepsCoverAndEpsilon) {
+TEST(Cover, PreStepKeepsCoverAndEpsilon) {
   // A ball with a cavity, which simplification may narrow; an open one; a fold that is inside out.
   Mesh hollow = kaboum::test::merged(
       {kaboum::test::icosphere(3),
@@ -171,15 +171,15 @@ TEST(Decompose, PreStepKeepsCoverAndEpsilon) {
   Mesh open = kaboum::test::torus(1, 0.3, 40, 24);
   open.triangles.resize(open.triangles.size() - 40);
   for (const Mesh& mesh : {hollow, open}) {
-    DecomposeOptions options = test::quick(mesh, 8);
+    CoverOptions options = test::quick(mesh, 8);
     options.pre_step = PreStep::On;
     const geom::Prepared input = geom::prepare(mesh);
-    const Mesh closed = geom::fill_holes(input.mesh).mesh;
-    const DecomposeResult result = decompose(input, options);
+    const Mesh closed = geom::fill_holes(input.solid.mesh()).mesh;
+    const CoverCandidate result = find_cover(input.solid, options);
     EXPECT_EQ(result.stop, Stop::Done);
     EXPECT_GT(result.statistics.pre_step_triangles, 0U);
     EXPECT_LT(2 * result.statistics.pre_step_triangles, closed.triangles.size());
-    EXPECT_LE(result.reach_upper, *options.epsilon);
+    EXPECT_LE(result.excess_upper, *options.epsilon);
     test::expect_cover(closed, result, 64);
     // The distance is the one to the input: no point of the bodies is farther.
     const SolidField solid(closed, 2000, 0);
@@ -187,14 +187,14 @@ TEST(Decompose, PreStepKeepsCoverAndEpsilon) {
     for (const geom::ConvexBody& body : result.bodies)
       for (const Vec3& p : body.hull.vertices)
         if (!solid.contains(p)) farthest = std::max(farthest, solid.surface().nearest(p).lower);
-    EXPECT_LE(farthest, result.reach_upper);
+    EXPECT_LE(farthest, result.excess_upper);
     EXPECT_GT(farthest, 0);
     options.pre_step = PreStep::Off;
-    EXPECT_EQ(decompose(input, options).statistics.pre_step_triangles, 0U);
+    EXPECT_EQ(find_cover(input.solid, options).statistics.pre_step_triangles, 0U);
   }
 }
 
-TEST(Decompose, SameBytesForAnyNumberOfThreads) {
+TEST(Cover, SameBytesForAnyNumberOfThreads) {
   const Mesh mesh = kaboum::test::torus(1, 0.3, 40, 16);
   std::vector<std::vector<char>> bytes;
   for (const std::size_t threads : {1U, 2U, 5U}) {
@@ -205,31 +205,31 @@ TEST(Decompose, SameBytesForAnyNumberOfThreads) {
   EXPECT_EQ(bytes[0], bytes[2]);
 }
 
-TEST(Decompose, BodiesForADistanceAndDistanceForBodies) {
+TEST(Cover, BodiesForADistanceAndDistanceForBodies) {
   const Mesh mesh = kaboum::test::torus(1, 0.3, 40, 16);
   const double diagonal = geom::bounding_box(mesh).diagonal();
   std::size_t last = 1000;
   for (const double percent : {4.0, 12.0}) {
-    const DecomposeResult result = run(mesh, percent);
+    const CoverCandidate result = run(mesh, percent);
     EXPECT_EQ(result.stop, Stop::Done);
-    EXPECT_LE(result.reach_upper, 0.01 * percent * diagonal);
+    EXPECT_LE(result.excess_upper, 0.01 * percent * diagonal);
     EXPECT_LE(result.bodies.size(), last);
     last = result.bodies.size();
   }
-  DecomposeOptions options;
+  CoverOptions options;
   options.effort = Effort::Fast;
   options.max_bodies = 6;
-  EXPECT_LE(decompose(geom::prepare(mesh), options).bodies.size(), 6U);
+  EXPECT_LE(find_cover(geom::prepare(mesh).solid, options).bodies.size(), 6U);
 }
 
-TEST(Decompose, LessSimplifiedBodiesAreNearerOnTheWhole) {
-  const Mesh torus = geom::prepare(kaboum::test::torus(1, 0.3, 60, 24)).mesh;
+TEST(Cover, LessSimplifiedBodiesAreNearerOnTheWhole) {
+  const Mesh torus = geom::prepare(kaboum::test::torus(1, 0.3, 60, 24)).solid.mesh();
   double last_volume = 1e9;
   std::size_t last_vertices = 0;
   for (const double share : {0.5, 0.25, 0.05}) {
-    DecomposeOptions options = test::quick(torus, 3, 64);
+    CoverOptions options = test::quick(torus, 3, 64);
     options.simplify = share;
-    const DecomposeResult result = decompose(geom::prepare(torus), options);
+    const CoverCandidate result = find_cover(geom::prepare(torus).solid, options);
     expect_cover(torus, result, 64);
     double volume = 0;
     for (const geom::ConvexBody& body : result.bodies) volume += geom::signed_volume(body.hull);
@@ -240,11 +240,11 @@ TEST(Decompose, LessSimplifiedBodiesAreNearerOnTheWhole) {
   }
 }
 
-TEST(Decompose, FewVerticesPerBodyReachEpsilonWithMoreBodies) {
-  const Mesh torus = geom::prepare(kaboum::test::torus(1, 0.3, 40, 16)).mesh;
+TEST(Cover, FewVerticesPerBodyReachEpsilonWithMoreBodies) {
+  const Mesh torus = geom::prepare(kaboum::test::torus(1, 0.3, 40, 16)).solid.mesh();
   std::size_t last = 1000;
   for (const std::size_t most : {8U, 12U, 24U}) {
-    const DecomposeResult result = run(torus, 2, most);
+    const CoverCandidate result = run(torus, 2, most);
     expect_cover(torus, result, most);
     EXPECT_EQ(result.stop, Stop::Done);
     EXPECT_LT(result.bodies.size(), last);
@@ -252,12 +252,12 @@ TEST(Decompose, FewVerticesPerBodyReachEpsilonWithMoreBodies) {
   }
 }
 
-TEST(Decompose, LimitOfAllVerticesTogether) {
+TEST(Cover, LimitOfAllVerticesTogether) {
   const Mesh mesh = kaboum::test::torus(1, 0.3, 12, 6);
-  DecomposeOptions options;
+  CoverOptions options;
   options.max_bodies = 6;
   options.max_total_vertices = 60;
-  const DecomposeResult result = decompose(geom::prepare(mesh), options);
+  const CoverCandidate result = find_cover(geom::prepare(mesh).solid, options);
   EXPECT_EQ(result.stop, Stop::Done);
   EXPECT_LE(result.bodies.size(), 6U);
   EXPECT_LE(result.statistics.vertices, 60U);
@@ -265,80 +265,77 @@ TEST(Decompose, LimitOfAllVerticesTogether) {
   // The same share for each body reaches farther.
   options.max_total_vertices.reset();
   options.max_vertices = 10;
-  EXPECT_LT(result.reach_upper, decompose(geom::prepare(mesh), options).reach_upper);
+  EXPECT_LT(result.excess_upper, find_cover(geom::prepare(mesh).solid, options).excess_upper);
   // Within an epsilon that they do not allow, the best is given.
   const Mesh beam = prism({{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}, 1);
   options = test::quick(beam, 1);
   options.max_total_vertices = 12;
-  const DecomposeResult few = decompose(geom::prepare(beam), options);
+  const CoverCandidate few = find_cover(geom::prepare(beam).solid, options);
   EXPECT_EQ(few.stop, Stop::TooManyBodies);
   EXPECT_LE(few.statistics.vertices, 12U);
   options.max_total_vertices = 16;
-  EXPECT_EQ(decompose(geom::prepare(beam), options).stop, Stop::Done);
+  EXPECT_EQ(find_cover(geom::prepare(beam).solid, options).stop, Stop::Done);
 }
 
 // What epsilon's search makes of the pieces must not make the limit's worse.
-TEST(Decompose, EpsilonThatTheLimitReachesIsReached) {
+TEST(Cover, EpsilonThatTheLimitReachesIsReached) {
   const geom::Prepared solid = geom::prepare(kaboum::examples::make_bracket(16));
   for (const Effort effort : {Effort::Fast, Effort::Normal}) {
     for (const std::size_t most : {2, 3, 6}) {
-      DecomposeOptions options;
+      CoverOptions options;
       options.effort = effort;
       options.max_bodies = most;
-      const DecomposeResult alone = decompose(solid, options);
-      options.epsilon = 1.001 * alone.reach_upper;
-      const DecomposeResult both = decompose(solid, options);
+      const CoverCandidate alone = find_cover(solid.solid, options);
+      options.epsilon = 1.001 * alone.excess_upper;
+      const CoverCandidate both = find_cover(solid.solid, options);
       EXPECT_EQ(both.stop, Stop::Done) << most;
-      EXPECT_LE(both.reach_upper, *options.epsilon) << most;
-      options.epsilon = 0.3 * alone.reach_upper;
-      EXPECT_LE(decompose(solid, options).reach_upper, alone.reach_upper) << most;
+      EXPECT_LE(both.excess_upper, *options.epsilon) << most;
+      options.epsilon = 0.3 * alone.excess_upper;
+      EXPECT_LE(find_cover(solid.solid, options).excess_upper, alone.excess_upper) << most;
     }
   }
 }
 
-TEST(Decompose, LimitsWithinEpsilonCountAsReached) {
+TEST(Cover, LimitsWithinEpsilonCountAsReached) {
   // 40 × 24 × 2 triangles: the pre-step takes some of epsilon, and what limits then do not allow
   // they may allow without it.
   const Mesh mesh = kaboum::test::torus(1, 0.3, 40, 24);
   const geom::Prepared input = geom::prepare(mesh);
-  DecomposeOptions options = test::quick(mesh, 8);
-  const std::size_t free = decompose(input, options).bodies.size();
+  CoverOptions options = test::quick(mesh, 8);
+  const std::size_t free = find_cover(input.solid, options).bodies.size();
   for (const PreStep pre_step : {PreStep::Off, PreStep::On}) {
     options.pre_step = pre_step;
     options.max_bodies = free;
-    const DecomposeResult held = decompose(input, options);
+    const CoverCandidate held = find_cover(input.solid, options);
     EXPECT_EQ(held.stop, Stop::Done);
     EXPECT_LE(held.bodies.size(), free);
-    EXPECT_LE(held.reach_upper, *options.epsilon);
+    EXPECT_LE(held.excess_upper, *options.epsilon);
     options.max_bodies = 2;
-    const DecomposeResult few = decompose(input, options);
+    const CoverCandidate few = find_cover(input.solid, options);
     EXPECT_EQ(few.stop, Stop::TooManyBodies);
     EXPECT_LE(few.bodies.size(), 2U);
-    EXPECT_GT(few.reach_upper, *options.epsilon);
+    EXPECT_GT(few.excess_upper, *options.epsilon);
   }
 }
 
-TEST(Decompose, ClosedMeshesInOnePlaneAreRefused) {
+TEST(Cover, ClosedMeshesInOnePlaneAreRefused) {
   Mesh flat = kaboum::test::torus(1, 0.3, 12, 8);
   for (Vec3& p : flat.vertices) p.z() = 0;
-  geom::Prepared input;
-  input.mesh = flat;
-  input.closed = true;
-  EXPECT_THROW(decompose(input, test::quick(flat, 2)), Error);
+  EXPECT_THROW(find_cover(geom::prepare(flat).solid, test::quick(flat, 2)), Error);
 }
 
-TEST(Decompose, ContradictoryOptions) {
+TEST(Cover, ContradictoryOptions) {
   const geom::Prepared input = geom::prepare(kaboum::test::box(Vec3(1, 1, 1), 1));
-  EXPECT_THROW(decompose(input, {}), Error);
-  DecomposeOptions options;
+  EXPECT_THROW(find_cover(input.solid, {}), Error);
+  CoverOptions options;
   options.epsilon = -1;
-  EXPECT_THROW(decompose(input, options), Error);
+  EXPECT_THROW(find_cover(input.solid, options), Error);
   options.epsilon = 1;
   options.max_vertices = 7;
-  EXPECT_THROW(decompose(input, options), Error);
+  EXPECT_THROW(find_cover(input.solid, options), Error);
   options.max_vertices = 8;
   options.max_total_vertices = 7;
-  EXPECT_THROW(decompose(input, options), Error);
+  EXPECT_THROW(find_cover(input.solid, options), Error);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // A certified bracket of the largest distance from bodies to a solid, by branch and bound.
-// docs/algorithms/convex-decomposition.md, "Reach", has the bounds and their proofs.
+// docs/algorithms/convex-decomposition.md, "Excess", has the bounds and their proofs.
 
-#include "reach.h"
+#include "excess.h"
 
 #include <kaboum/base/parallel.h>
 #include <kaboum/geom/convex_polytope.h>
@@ -11,20 +11,36 @@
 #include <cmath>
 #include <tuple>
 
+#include "best_first.h"
 #include "cell.h"
 
 namespace kaboum::bcd {
 namespace {
 
+/// Rounding of midpoints and planes, as a share of the largest coordinate and the diagonal: far
+/// above what a few halvings of doubles can lose.
+constexpr double kSlack = 1e-13;
+/// Splits of facets, before the inside is looked at: most bodies are farthest on a facet, and a
+/// thousand tell where.
+constexpr std::size_t kFacetParts = 1000;
+/// Planes that a cube is cut by: more cost more than eight smaller cubes.
+constexpr std::size_t kMostCrossing = 12;
+/// Triangles near a part whose shadows are looked at: beyond, the part is split.
+constexpr std::size_t kMostNear = 24;
+/// Bodies whose samples are below this share of the largest's are not measured (excess.h).
+constexpr double kWorthMeasuring = 0.7;
+/// Work of bounding a part, and for each triangle that is looked at. [ns]
+constexpr std::uint64_t kLook = 800, kTriangle = 60;
+
 class Measure {
  public:
-  Measure(const Mesh& body, const SolidField& solid, const ReachOptions& options)
+  Measure(const Mesh& body, const SolidField& solid, const ExcessOptions& options)
       : body_(body), solid_(solid), options_(options) {
     // Rounding of midpoints, far above what is possible.
     Box3 box = solid.box();
     for (const Vec3& p : body.vertices) box.extend(p);
     scale_ = box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).maxCoeff() + box.diagonal();
-    slack_ = 1e-13 * scale_;
+    slack_ = kSlack * scale_;
   }
 
   /// A first lower bound, from the facets' centres.
@@ -37,21 +53,21 @@ class Measure {
     return result_.lower;
   }
 
-  Reach run(double floor) {
+  Excess run(double floor) {
     floor_ = floor;
     // Facets are part of the inside; most bodies are farthest there, which helps.
     facets();
-    settled_ = 0;
-    if (result_.lower <= options_.enough) inside();
-    if (result_.lower > options_.enough) settle(kUnbounded);
-    result_.upper = std::max({result_.lower, settled_, 0.0});
+    decided_ = 0;
+    if (result_.lower <= options_.cutoff) inside();
+    if (result_.lower > options_.cutoff) decide(kUnbounded);
+    result_.upper = std::max({result_.lower, decided_, 0.0});
     if (result_.upper > 0) result_.upper += slack_;
     solid_.work().add(work_);
     return result_;
   }
 
  private:
-  struct Piece {
+  struct SubTriangle {
     std::array<Vec3, 3> corner;
     std::uint32_t hint;
     double upper = 0;
@@ -70,40 +86,30 @@ class Measure {
     return std::max({floor_, result_.lower * (1 + options_.relative_gap),
                      result_.lower + options_.absolute_gap});
   }
-  void settle(double upper) { settled_ = std::max(settled_, upper); }
+  /// Some points are at most this far.
+  void decide(double upper) { decided_ = std::max(decided_, upper); }
   void raise(double lower, const Vec3& at) {
     if (lower <= result_.lower) return;
     result_.lower = lower;
     result_.at = at;
   }
 
-  /// Branch and bound, the part with the largest bound first. `bound` gives a part's, or nothing
-  /// where it need not be looked at; `split` calls what it is given with each half.
+  /// @param max_parts  that are split; beyond, the largest bound is what is known
   template <class Part, class Bound, class Split>
-  void search(std::vector<Part> first, std::size_t most, Bound&& bound, Split&& split) {
-    std::vector<Part> open;
-    const auto lower = [](const Part& p, const Part& q) { return p.upper < q.upper; };
-    const auto visit = [&](Part&& part) {
-      if (!bound(part)) return;
-      if (part.upper <= limit()) {
-        settle(part.upper);
-        return;
-      }
-      open.push_back(std::move(part));
-      std::push_heap(open.begin(), open.end(), lower);
+  void search(std::vector<Part> first, std::size_t max_parts, Bound&& bound, Split&& split) {
+    std::size_t parts = 0;
+    const auto decided = [&](const Part& part) {
+      if (part.upper > limit()) return false;
+      decide(part.upper);
+      return true;
     };
-    for (Part& part : first) visit(std::move(part));
-    for (std::size_t work = 0; !open.empty(); ++work) {
-      std::pop_heap(open.begin(), open.end(), lower);
-      const Part part = std::move(open.back());
-      open.pop_back();
-      if (part.upper <= limit() || work >= most || work_ > options_.work ||
-          result_.lower > options_.enough) {
-        settle(part.upper);  // no other is larger
-        return;
-      }
-      split(part, visit);
-    }
+    const auto enough = [&](const Part& part) {
+      const bool ends = part.upper <= limit() || parts++ >= max_parts || work_ > options_.work ||
+                        result_.lower > options_.cutoff;
+      if (ends) decide(part.upper);  // no other is larger
+      return ends;
+    };
+    best_first(std::move(first), bound, decided, enough, split);
   }
 
   /// The triangle nearest to a part's centre; counted.
@@ -114,11 +120,11 @@ class Measure {
   }
 
   void facets() {
-    std::vector<Piece> first;
+    std::vector<SubTriangle> first;
     for (const Triangle& t : body_.triangles)
       first.push_back({{body_.vertices[t[0]], body_.vertices[t[1]], body_.vertices[t[2]]},
                        geom::DistanceQuery::kNone});
-    const auto bound = [&](Piece& p) {
+    const auto bound = [&](SubTriangle& p) {
       const auto& [a, b, c] = p.corner;
       const Vec3 center = (a + b + c) / 3;
       const double radius = std::sqrt(std::max(
@@ -134,7 +140,7 @@ class Measure {
       }
       if (p.upper > limit()) {
         if (solid_.contains(center)) {
-          if (at.lower >= radius * (1 + 1e-12)) return false;
+          if (at.lower >= radius * kLengthUp) return false;
           p.upper = std::min(p.upper, radius - at.lower);
         } else {
           raise(at.lower, center);
@@ -142,8 +148,8 @@ class Measure {
       }
       return true;
     };
-    search(std::move(first), std::min<std::size_t>(options_.most, 1000), bound,
-           [](Piece p, const auto& visit) {
+    search(std::move(first), std::min(options_.max_parts, kFacetParts), bound,
+           [](SubTriangle p, const auto& visit) {
              int k = 0;
              double longest = -1;
              for (int i = 0; i < 3; ++i) {
@@ -154,7 +160,7 @@ class Measure {
                }
              }
              const Vec3 middle = 0.5 * p.corner[k] + 0.5 * p.corner[(k + 1) % 3];
-             Piece q = p;
+             SubTriangle q = p;
              p.corner[(k + 1) % 3] = middle;
              q.corner[k] = middle;
              visit(std::move(p));
@@ -178,7 +184,7 @@ class Measure {
 
   /// The same for the points outside the solid alone, where a point of the part is inside and few
   /// triangles meet it: each such point is in the shadow of one of them, seen from there
-  /// (docs/algorithms/convex-decomposition.md, "Reach").
+  /// (docs/algorithms/convex-decomposition.md, "Excess").
   double farthest_outside(const Cell& part) {
     if (part.corners.empty()) return kUnbounded;
     // A little off the middle, where planes along the axes often are.
@@ -248,14 +254,14 @@ class Measure {
         if (cube.side == Side::Unknown)
           cube.side = solid_.contains(cube.center) ? Side::Inside : Side::Outside;
         if (cube.side == Side::Inside) {
-          if (at.lower >= radius * (1 + 1e-12)) return false;
+          if (at.lower >= radius * kLengthUp) return false;
           cube.upper = std::min(cube.upper, radius - at.lower);
         } else if (at.lower > result_.lower && polytope.contains(cube.center)) {
           raise(at.lower, cube.center);
         }
       }
       // Where no triangle is between here and there.
-      cube.inherited = at.lower > 0.5 * radius * (1 + 1e-12) ? cube.side : Side::Unknown;
+      cube.inherited = at.lower > 0.5 * radius * kLengthUp ? cube.side : Side::Unknown;
       if (cube.upper > limit() && crossing.empty()) {
         double corners = 0;
         for (int i = 0; i < 8; ++i)
@@ -265,7 +271,7 @@ class Measure {
                                     .upper);
         cube.upper = std::min(cube.upper, corners);
       }
-      if (cube.upper > limit() && !crossing.empty() && crossing.size() <= 12) {
+      if (cube.upper > limit() && !crossing.empty() && crossing.size() <= kMostCrossing) {
         const Vec3 h = Vec3::Constant(cube.half);
         Cell part = Cell::of({cube.center - h, cube.center + h});
         for (const geom::FacetPlane* plane : crossing)
@@ -280,7 +286,7 @@ class Measure {
       }
       return true;
     };
-    search(std::move(first), options_.most, bound, [](const Cube& cube, const auto& visit) {
+    search(std::move(first), options_.max_parts, bound, [](const Cube& cube, const auto& visit) {
       const double h = 0.5 * cube.half;
       for (int i = 0; i < 8; ++i)
         visit(Cube{cube.center + corner_of(i, h), h, cube.hint, 0, cube.inherited});
@@ -288,36 +294,33 @@ class Measure {
   }
 
   static constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-  static constexpr std::size_t kMostNear = 24;
-  static constexpr std::uint64_t kLook = 800;     ///< work of bounding a part
-  static constexpr std::uint64_t kTriangle = 60;  ///< and for each triangle that is looked at
 
   const Mesh& body_;
   const SolidField& solid_;
-  const ReachOptions& options_;
+  const ExcessOptions& options_;
   std::vector<std::uint32_t> near_;
   double floor_ = 0;
   double scale_ = 0, slack_ = 0;
-  double settled_ = 0;
+  double decided_ = 0;
   std::uint64_t work_ = 0;
-  Reach result_;
+  Excess result_;
 };
 
 }  // namespace
 
-std::vector<Reach> measure(const std::vector<Mesh>& bodies, const SolidField& solid,
-                           const ReachOptions& options, double floor, double ceiling) {
+std::vector<Excess> measure(const std::vector<Mesh>& bodies, const SolidField& solid,
+                            const ExcessOptions& options, double floor, double ceiling) {
   std::vector<Measure> measures;
   measures.reserve(bodies.size());
   for (const Mesh& body : bodies) measures.emplace_back(body, solid, options);
   std::vector<double> sampled(bodies.size());
-  parallel_loop(std::size_t{0}, bodies.size(),
-                [&](std::size_t i) { sampled[i] = measures[i].sample(); });
+  parallel_for(std::size_t{0}, bodies.size(),
+               [&](std::size_t i) { sampled[i] = measures[i].sample(); });
   // Only the largest matters: the others are told from it, not measured.
-  for (const double s : sampled) floor = std::max(floor, std::min(0.7 * s, ceiling));
-  std::vector<Reach> out(bodies.size());
-  parallel_loop(std::size_t{0}, bodies.size(),
-                [&](std::size_t i) { out[i] = measures[i].run(floor); });
+  for (const double s : sampled) floor = std::max(floor, std::min(kWorthMeasuring * s, ceiling));
+  std::vector<Excess> out(bodies.size());
+  parallel_for(std::size_t{0}, bodies.size(),
+               [&](std::size_t i) { out[i] = measures[i].run(floor); });
   return out;
 }
 

@@ -9,28 +9,28 @@
 namespace kaboum::bcd {
 
 /// Certified bracket of the largest distance of a body's points to the solid and its triangles.
-struct Reach {
+struct Excess {
   double lower = 0, upper = 0;
   Vec3 at = Vec3::Zero();  ///< a point of the body with distance ≥ lower
 };
 
-struct ReachOptions {
+struct ExcessOptions {
   double relative_gap = 0.02;
   double absolute_gap = 0;  ///< [length]
   /// A distance known to be larger is of no interest: measuring stops, with no upper bound.
   /// [length]
-  double enough = std::numeric_limits<double>::infinity();
-  /// Pieces per body; beyond, the bracket is wider than the gaps.
-  std::size_t most = 400000;
-  /// The same for the work of a body's pieces, where many triangles are equally near. [ns]
+  double cutoff = std::numeric_limits<double>::infinity();
+  /// Parts per body that are split; beyond, the bracket is wider than the gaps.
+  std::size_t max_parts = 400000;
+  /// The same for the work of a body's parts, where many triangles are equally near. [ns]
   std::uint64_t work = ~std::uint64_t{0};
 };
 
 /// One bracket per body. Branch and bound over facets and, for pits and cavities that a body spans,
 /// over its inside. Distances below `floor`, and below 0.7 of the largest among all bodies or
 /// `ceiling` if that is less, are only told to be below it.
-std::vector<Reach> measure(const std::vector<Mesh>& bodies, const SolidField& solid,
-                           const ReachOptions& options, double floor = 0,
-                           double ceiling = std::numeric_limits<double>::infinity());
+std::vector<Excess> measure(const std::vector<Mesh>& bodies, const SolidField& solid,
+                            const ExcessOptions& options, double floor = 0,
+                            double ceiling = std::numeric_limits<double>::infinity());
 
 }  // namespace kaboum::bcd
