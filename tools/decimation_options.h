@@ -10,6 +10,10 @@
 #include "holes_option.h"
 #include "preparation_option.h"
 
+namespace CLI {
+class App;
+}  // namespace CLI
+
 namespace kaboum::tools {
 
 /// What bmesh-decimate is asked for, as it is given.

@@ -9,6 +9,10 @@
 #include "cli.h"
 #include "holes_option.h"
 
+namespace CLI {
+class App;
+}  // namespace CLI
+
 /// The command line of bcd-decompose.
 namespace kaboum::tools {
 

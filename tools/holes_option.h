@@ -6,6 +6,10 @@
 
 #include "cli.h"
 
+namespace CLI {
+class App;
+}  // namespace CLI
+
 namespace kaboum::tools {
 
 /// What is to become of holes, as options say it.

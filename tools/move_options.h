@@ -4,6 +4,10 @@
 
 #include "cli.h"
 
+namespace CLI {
+class App;
+}  // namespace CLI
+
 namespace kaboum::tools {
 
 /// The command line of kaboum-move.

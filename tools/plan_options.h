@@ -7,6 +7,11 @@
 
 #include "cli.h"
 
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
 /// The command line of kaboum-plan: a command for each thing that it does.
 namespace kaboum::tools {
 

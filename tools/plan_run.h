@@ -2,6 +2,10 @@
 
 #include "plan_options.h"
 
+namespace CLI {
+class App;
+}  // namespace CLI
+
 /// kaboum-plan run: a plan carried out in simulation, judged by exact meshes.
 namespace kaboum::tools {
 

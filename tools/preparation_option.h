@@ -8,6 +8,10 @@
 
 #include "cli.h"
 
+namespace CLI {
+class App;
+}  // namespace CLI
+
 namespace kaboum::tools {
 
 /// How the triangles of a file are given a solid, as options say it.

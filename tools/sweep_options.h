@@ -8,6 +8,10 @@
 
 #include "cli.h"
 
+namespace CLI {
+class App;
+}  // namespace CLI
+
 /// The command line of sweep-approx.
 namespace kaboum::tools {
 

@@ -4,6 +4,10 @@
 
 #include "verify_options.h"
 
+namespace CLI {
+class App;
+}  // namespace CLI
+
 namespace kaboum::tools {
 
 /// Whether bound-verify has a command of that name.

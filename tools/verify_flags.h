@@ -2,6 +2,10 @@
 
 #include "verify_options.h"
 
+namespace CLI {
+class App;
+}  // namespace CLI
+
 namespace kaboum::tools {
 
 /// The flags that choose a relation, and all options, which the help lists only: the commands

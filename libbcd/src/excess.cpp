@@ -19,7 +19,7 @@ namespace {
 
 /// Rounding of midpoints and planes, as a share of the largest coordinate and the diagonal: far
 /// above what a few halvings of doubles can lose.
-constexpr double kSlack = 1e-13;
+constexpr double kDistanceSlack = 1e-13;
 /// Splits of facets, before the inside is looked at: most bodies are farthest on a facet, and a
 /// thousand tell where.
 constexpr std::size_t kFacetParts = 1000;
@@ -40,7 +40,7 @@ class Measure {
     Box3 box = solid.box();
     for (const Vec3& p : body.vertices) box.extend(p);
     scale_ = box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).maxCoeff() + box.diagonal();
-    slack_ = kSlack * scale_;
+    slack_ = kDistanceSlack * scale_;
   }
 
   /// A first lower bound, from the facets' centres.

@@ -14,6 +14,16 @@ namespace kaboum::bcd {
 namespace {
 
 constexpr float kUnset = std::numeric_limits<float>::infinity();
+/// Spacing of the grid, as a share of epsilon: two nodes in a body's allowance. Finer than half of
+/// what the number of nodes gives costs eight times the nodes, filled only where they are asked.
+constexpr double kSpacingOfEpsilon = 0.7, kFinest = 0.5;
+/// Pits that are not deeper than the larger of these (shares of epsilon and of the spacing) need
+/// no witness.
+constexpr double kShallowEpsilon = 0.3, kShallowSpacing = 0.8;
+/// A neighbour's value has the rounding of a float, and this covers it.
+constexpr double kNeighbourUp = 1.001;
+/// Above the distance of any two points that are read, and its square is finite.
+constexpr double kFarthest = 1e100;
 
 }  // namespace
 
@@ -32,12 +42,13 @@ SolidField::SolidField(const Mesh& mesh, std::size_t nodes, double epsilon, bool
     const Vec3& a = mesh.vertices[v[0]];
     corners_.push_back({a, mesh.vertices[v[1]] - a, mesh.vertices[v[2]] - a});
   }
-  const Vec3 size = (box_.max - box_.min).cwiseMax(0.02 * diagonal_);
+  const Vec3 size = (box_.max - box_.min).cwiseMax(kFlattestGrid * diagonal_);
   const double coarse = std::cbrt(size.prod() / static_cast<double>(nodes));
-  spacing_ = epsilon > 0 ? std::clamp(0.7 * epsilon, 0.5 * coarse, coarse) : coarse;
+  spacing_ =
+      epsilon > 0 ? std::clamp(kSpacingOfEpsilon * epsilon, kFinest * coarse, coarse) : coarse;
   step_ = std::max(1, static_cast<int>(2 * coarse / spacing_));
   witness_area_ = step_ * spacing_ * step_ * spacing_;
-  shallow_ = std::max(0.3 * epsilon, 0.8 * spacing_);
+  shallow_ = std::max(kShallowEpsilon * epsilon, kShallowSpacing * spacing_);
   origin_ = box_.center() - 0.5 * size - Vec3::Constant(1.5 * spacing_);
   std::size_t total = 1;
   for (int k = 0; k < 3; ++k) {
@@ -180,12 +191,12 @@ float SolidField::node(int x, int y, int z) const {
       const float v =
           value_[s < 0 ? index - step[k] : index + step[k]].load(std::memory_order_relaxed);
       if (v == kUnset) continue;
-      limit = std::min(limit, 1.001 * (std::abs(v) + spacing_));
-      if (std::abs(v) > 1.001 * spacing_) side = v < 0 ? -1 : 1;
+      limit = std::min(limit, kNeighbourUp * (std::abs(v) + spacing_));
+      if (std::abs(v) > kNeighbourUp * spacing_) side = v < 0 ? -1 : 1;
     }
   }
   // The bound from a neighbour must not show in the value: it is never attained.
-  const double distance = rough_distance(p, std::min(limit, 1e100));
+  const double distance = rough_distance(p, std::min(limit, kFarthest));
   if (side == 0) side = contains(p) ? -1 : 1;
   const auto value = static_cast<float>(side * distance);
   value_[index].store(value, std::memory_order_relaxed);

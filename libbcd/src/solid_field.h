@@ -18,6 +18,9 @@ using geom::Mesh;
 using geom::Triangle;
 using geom::Vec3;
 
+/// A grid is this wide at least, as a share of the diagonal: flat solids have an inside, too.
+inline constexpr double kFlattestGrid = 0.02;
+
 /// What a decomposition has to contain: the solid of a closed chain and its triangles. Distances to
 /// both, exact ones and quick ones.
 class SolidField {

@@ -9,10 +9,16 @@
 #include <cmath>
 
 namespace kaboum::bcd {
+namespace {
+
+/// Bodies no longer than this share of the diagonal are not cut.
+constexpr double kThinnest = 1e-6;
+
+}  // namespace
 
 VoxelCuts::VoxelCuts(const SolidField& solid, std::size_t voxels)
-    : origin_(solid.box().min), smallest_(1e-6 * solid.diagonal()) {
-  const Vec3 size = (solid.box().max - solid.box().min).cwiseMax(0.02 * solid.diagonal());
+    : origin_(solid.box().min), smallest_(kThinnest * solid.diagonal()) {
+  const Vec3 size = (solid.box().max - solid.box().min).cwiseMax(kFlattestGrid * solid.diagonal());
   spacing_ = std::cbrt(size.prod() / static_cast<double>(voxels));
   for (int k = 0; k < 3; ++k) size_[k] = static_cast<int>(std::ceil(size[k] / spacing_));
   filled_.resize(static_cast<std::size_t>(size_[0]) * static_cast<std::size_t>(size_[1]) *

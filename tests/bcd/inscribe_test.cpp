@@ -58,7 +58,7 @@ TEST(Depths, TheDeepestPointOfABoxIsItsMiddle) {
   const geom::WindingNumber winding(mesh);
   const Boundary boundary = boundary_of(mesh, winding, 0.1, {});
   Depths depths(mesh, winding, boundary);
-  const Depths::Deepest found = depths.search({}, 0.01, 0.02, false, 100000);
+  const Depths::Deepest found = depths.search({}, 0, 0.02, false, 100000);
   EXPECT_LE(found.lower, 1 + 1e-6);
   EXPECT_GE(found.upper, 1);
   EXPECT_GE(found.lower, 0.97);

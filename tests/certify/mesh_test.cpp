@@ -282,7 +282,7 @@ TEST(CertifyMesh, VerticesWithoutAPlaceAreCounted) {
 TEST(CertifyMesh, OpenMeshesEncloseNothing) {
   const geom::Prepared open =
       geom::prepare(test::without(torus(), [](const geom::Vec3& p) { return p.x() > 1.2; }));
-  ASSERT_FALSE(open.closed);
+  ASSERT_FALSE(open.solid.closed());
   const auto made = certify_mesh(open, fast(150));
   ASSERT_TRUE(made);
   EXPECT_FALSE(made->certificate().closed);
