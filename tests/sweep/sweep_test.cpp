@@ -89,7 +89,7 @@ TEST(Sweep, ExplicitMarginContainsTheSum) {
       }
     }
     EXPECT_EQ(sample_points(r, path, result, random, 3000, true).missed, 0U);
-    EXPECT_LE(result.excess, implicit.reach + 0.01);
+    EXPECT_LE(result.excess, implicit.excess + 0.01);
   }
 }
 
@@ -185,7 +185,7 @@ TEST(Sweep, SameOnAnyNumberOfThreads) {
   };
   const SweepResult a = with(1), b = with(4);
   EXPECT_EQ(a.set.margin, b.set.margin);
-  EXPECT_EQ(a.reach, b.reach);
+  EXPECT_EQ(a.excess, b.excess);
   ASSERT_EQ(a.set.bodies.size(), b.set.bodies.size());
   for (std::size_t i = 0; i < a.set.bodies.size(); ++i) {
     EXPECT_EQ(a.set.bodies[i].hull.vertices, b.set.bodies[i].hull.vertices);
