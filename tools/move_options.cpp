@@ -143,13 +143,14 @@ void describe(CLI::App& app, MoveOptions& o) {
       ->capture_default_str()
       ->type_name("FILE");
   add_degrees_option(app, o.degrees)
-      ->description("Angles that are read are in degrees; what is written is in radians");
+      ->description("Angles are in degrees, those read and those in -o and --trajectory [radians]");
   describe_search(app, o);
   describe_execution(app, o);
   add_common_options(app, o.common);
   app.footer(
       "Objects, other robots and what is carried are as the scene has them. Paths are in radians "
-      "and metres. A path that is written is certified; that none was found says nothing "
+      "(--degrees: degrees) and metres. A path that is written is certified; that none was found "
+      "says nothing "
       "(docs/algorithms/motion-planning.md).\n"
       "Exit codes: 0 done; 1 the start, or every goal, is not free; 2 usage; 3 bad input; 4 output "
       "failed; 6 internal error; 7 no path found (--max-work, --max-nodes, --timeout).");

@@ -142,19 +142,25 @@ std::vector<double> Trajectory::sample(std::size_t k) const {
   return q;
 }
 
-std::string to_csv(const Trajectory& trajectory, const robot::Robot& robot) {
+std::string to_csv(const Trajectory& trajectory, const robot::Robot& robot, AngleUnit unit) {
+  robot::Path path;
+  path.reserve(trajectory.samples());
+  for (std::size_t k = 0; k < trajectory.samples(); ++k) path.push_back(trajectory.sample(k));
+  if (unit == AngleUnit::Degrees) path = robot::to_degrees(std::move(path), robot);
   std::string out = "time_from_start," + names(robot);
-  for (std::size_t k = 0; k < trajectory.samples(); ++k) {
+  for (std::size_t k = 0; k < path.size(); ++k) {
     append(out, static_cast<double>(k) / trajectory.rate());
     out += ',';
-    append_values(out, trajectory.sample(k));
+    append_values(out, path[k]);
   }
   return out;
 }
 
-std::string to_csv(const robot::Path& path, const robot::Robot& robot) {
+std::string to_csv(const robot::Path& path, const robot::Robot& robot, AngleUnit unit) {
   std::string out = names(robot);
-  for (const std::vector<double>& q : path) append_values(out, q);
+  for (const std::vector<double>& q :
+       unit == AngleUnit::Degrees ? robot::to_degrees(path, robot) : path)
+    append_values(out, q);
   return out;
 }
 

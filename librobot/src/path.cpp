@@ -10,6 +10,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <sstream>
@@ -354,6 +355,36 @@ Path from_degrees(Path path, const Robot& robot) {
   for (std::size_t i = 0; i < robot.variables.size(); ++i)
     if (is_angle(robot, robot.variables[i]))
       for (std::vector<double>& q : path) q[i] *= std::numbers::pi / 180;
+  return path;
+}
+
+Path to_degrees(Path path, const Robot& robot) {
+  constexpr double kDegree = std::numbers::pi / 180,
+                   kInfinite = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < robot.variables.size(); ++i) {
+    const Variable& variable = robot.variables[i];
+    if (!is_angle(robot, variable)) continue;
+    const double lower = variable.lower.value_or(-kInfinite),
+                 upper = variable.upper.value_or(kInfinite);
+    for (std::vector<double>& q : path) {
+      const double radians = q[i];
+      const double quotient = radians / kDegree;
+      // What reads back as it was, if one of these does, the plainest first.
+      double degrees = quotient;
+      for (const double x :
+           {std::round(quotient * 1e10) / 1e10, quotient, std::nextafter(quotient, kInfinite),
+            std::nextafter(quotient, -kInfinite)})
+        if (x * kDegree == radians) {
+          degrees = x;
+          break;
+        }
+      while (radians >= lower && degrees * kDegree < lower)
+        degrees = std::nextafter(degrees, kInfinite);
+      while (radians <= upper && degrees * kDegree > upper)
+        degrees = std::nextafter(degrees, -kInfinite);
+      q[i] = degrees;
+    }
+  }
   return path;
 }
 

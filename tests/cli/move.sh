@@ -68,7 +68,24 @@ expect 0 'to goal 2' "$M" cell.json --from=0.5,0 --to 3,0 --to 0.7,0 -o p.csv
 printf 'j1,j2\n3,0\n0.8,0\n' >goals.csv
 expect 0 'to goal 2' "$M" cell.json --from=0.5,0 --goals goals.csv -o p.csv
 expect 0 'straight' "$M" cell.json --from=30,0 --to 60,0 --degrees -o p.csv
-sed -n 3p p.csv | grep -q '^1.047' || fail "paths are in radians"
+sed -n 3p p.csv | grep -qx '60,0' || fail "degrees are written as degrees: $(cat p.csv)"
+shows 0 'free at every instant' "$BIN/kaboum-check" cell.json --path p.csv --degrees
+# Round the box, up to a limit that is no double in degrees: what is read back is within it, and free.
+expect 0 'free at every instant' "$M" cell.json --from=-45.8366236104659,0 --to 171.8873385392,0 --degrees -o d.csv --trajectory ds.csv --rate 100 --report d.json
+shows 0 'free at every instant' "$BIN/kaboum-check" cell.json --path d.csv --degrees
+shows 0 'free at every instant' "$BIN/kaboum-check" cell.json --path ds.csv --degrees --resolution 1e-8 --max-intervals 100000000
+python3 - <<'END' || fail "degrees"
+import csv, json, math
+report = json.load(open("d.json"))
+assert report["output_angles"] == "degrees"
+rows = [[float(x) for x in row] for row in list(csv.reader(open("d.csv")))[1:]]
+assert rows[0][0] == -45.8366236104659 and abs(rows[-1][0] - 171.8873385392) < 1e-9, rows
+assert len(rows) == len(report["waypoints"])
+for row, q in zip(rows, report["waypoints"]):
+    assert [x * (math.pi / 180) for x in row] == q, (row, q)
+samples = [[float(x) for x in row] for row in list(csv.reader(open("ds.csv")))[1:]]
+assert max(abs(x) for row in samples for x in row[1:]) > 90
+END
 # Limits of speed.
 expect 0 '' "$M" cell.json --from=0.5,0 --to 1,1 -o p.csv --trajectory slow.csv --rate 100 --max-velocity 0.1 --max-acceleration j2=0.5
 [ "$(wc -l <slow.csv)" -gt 1800 ] || fail "too fast: $(wc -l <slow.csv)"

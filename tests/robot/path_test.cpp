@@ -2,6 +2,9 @@
 #include <kaboum/base/error.h>
 #include <kaboum/robot/path.h>
 
+#include <cmath>
+#include <random>
+
 #include "robots.h"
 
 namespace kaboum::test {
@@ -125,6 +128,32 @@ TEST(Path, NamesInQuotationMarksMayBeNumbersAndHoldSeparators) {
   EXPECT_EQ(arrange(parse_path_csv("\"1\",\"2\"\n0.5,0.25\n", "p"), robot, "p"),
             (Path{{0.5, 0.25}}));
   EXPECT_EQ(arrange(parse_path_csv("\"2\",\"1\"\n1,2\n", "p"), robot, "p"), (Path{{2, 1}}));
+}
+
+// Degrees read back as the radians that they were made of, or next to them, and within the limits.
+TEST(Degrees, ThereAndBack) {
+  const Robot robot = parse_urdf(R"(<robot name="r"><link name="a"/><link name="b"/><link name="c"/>
+    <joint name="turn" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/>
+      <limit lower="-2.9" upper="3" effort="1" velocity="1"/></joint>
+    <joint name="slide" type="prismatic"><parent link="b"/><child link="c"/><axis xyz="0 0 1"/>
+      <limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>)",
+                                 "r.urdf");
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> from(-2.9, 3);
+  Path path{{-2.9, -1}, {3, 1}, {0, 0}, {std::nextafter(3.0, 0), 0.5}};
+  for (int i = 0; i < 2000; ++i) path.push_back({from(random), 0.25});
+  const Path there = to_degrees(path, robot), back = from_degrees(there, robot);
+  std::size_t same = 0;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    EXPECT_EQ(there[i][1], path[i][1]);
+    EXPECT_NEAR(back[i][0], path[i][0], 2e-15 * std::abs(path[i][0]));
+    EXPECT_TRUE(back[i][0] >= -2.9 && back[i][0] <= 3);
+    same += back[i] == path[i] ? 1 : 0;
+  }
+  EXPECT_GT(same, path.size() / 2);
+  // Plain numbers stay plain.
+  const Path plain{{60, 0}, {-123.4, 0}, {0.001, 0}};
+  EXPECT_EQ(to_degrees(from_degrees(plain, robot), robot), plain);
 }
 
 }  // namespace

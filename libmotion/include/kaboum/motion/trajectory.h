@@ -60,10 +60,15 @@ class Trajectory {
   std::vector<double> ramp_;
 };
 
+enum class AngleUnit { Radians, Degrees };
+
 /// Samples as a CSV that `robot::parse_path_csv` reads: a column time_from_start [s], one for each
-/// variable; numbers as short as they can be and read back the same.
-std::string to_csv(const Trajectory& trajectory, const robot::Robot& robot);
+/// variable; numbers as short as they can be and read back the same. Degrees are those of
+/// robot::to_degrees.
+std::string to_csv(const Trajectory& trajectory, const robot::Robot& robot,
+                   AngleUnit unit = AngleUnit::Radians);
 /// Waypoints alike, without times.
-std::string to_csv(const robot::Path& path, const robot::Robot& robot);
+std::string to_csv(const robot::Path& path, const robot::Robot& robot,
+                   AngleUnit unit = AngleUnit::Radians);
 
 }  // namespace kaboum::motion

@@ -62,6 +62,10 @@ bool is_angle(const Robot& robot, const Variable& variable);
 /// The path with its angles, given in degrees, in radians: times pi / 180, as rounded doubles.
 Path from_degrees(Path path, const Robot& robot);
 
+/// The path with its angles in degrees: times 180 / pi, rounded so that from_degrees keeps values
+/// that are within the robot's limits within them. It may give others than these by a rounding.
+Path to_degrees(Path path, const Robot& robot);
+
 /// A value that is hardly meant in radians.
 struct LikelyDegrees {
   std::size_t waypoint = 0, variable = 0;
