@@ -63,8 +63,11 @@ int make_scene(const tools::SceneOptions& o) {
                 "--unit " + o.unit +
                     ": URDFs are in m, and so are scenes with robots; scale the "
                     "meshes of objects to m");
+  if (o.inner_links && o.robots.empty())
+    throw Error(ErrorCode::InvalidArgument, "--inner-links: no robot is asked for (--robot)");
   tools::require_apart({{"SCENE", o.scene}, {"--report", o.common.report}}, inputs);
   maker.inner = o.inner;
+  if (o.inner_links) maker.options.inner_links.emplace();  // all
   maker.options.visual = o.visual;
   maker.options.sets.epsilon = tools::parse_length(o.epsilon);
   maker.options.sets.effort = kEfforts.at(o.effort);

@@ -33,6 +33,8 @@ CLI::App* describe_make(CLI::App& app, SceneOptions& o) {
   make->add_option("--region", o.regions, "A region: its inner set; may be repeated")
       ->type_name("NAME=MESH");
   make->add_flag("--inner", o.inner, "Inner sets of objects as well: contacts can be certain");
+  make->add_flag("--inner-links", o.inner_links,
+                 "Inner sets of robots' links as well: so can contacts with them");
   make->add_flag("--visual", o.visual,
                  "Of robots, the shapes for drawing instead of those for collisions");
   make->add_option("--epsilon", o.epsilon,

@@ -3,6 +3,7 @@
 #include "scene_set_maker.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/certify/inner_links.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/world/scene.h>
 
@@ -11,7 +12,6 @@
 #include <sstream>
 
 #include "cli.h"
-#include "file_names.h"
 #include "robot_bodies.h"
 #include "yaml.h"
 
@@ -125,16 +125,11 @@ Json SceneSetMaker::robot(const std::string& name, const std::string& path, cons
       without.push_back(link_name);
       continue;
     }
-    Json sources = Json::array();
-    for (const robot::LinkShape& shape : bodies.shapes) {
-      if (shape.link != number || !shape.mesh) continue;
-      const certify::CertifiedLinkMesh& mesh = bodies.meshes[*shape.mesh];
-      add_sources(sources, mesh.mesh.file, mesh.made);
-    }
-    links.push_back(
-        {{"link", link_name},
-         {"outer", keep(folder / (names.unique(link_name) + ".glb"), link.bytes(), sources)}});
+    links.push_back({{"link", link_name},
+                     {"outer", keep(folder / (names.unique(link_name) + ".glb"), link.bytes(),
+                                    sources_of(number, bodies.shapes, bodies.meshes))}});
   }
+  if (options.inner_links) add_inner_links(links, file, request, folder, names, options);
   Json out = {{"name", name},
               {"urdf", {{"file", seen_from_scene(path)}, {"sha256", file.sha256}}},
               {"base", {{"position", {0, 0, 0}}, {"rpy", {0, 0, 0}}}},
@@ -143,6 +138,42 @@ Json SceneSetMaker::robot(const std::string& name, const std::string& path, cons
   if (options.visual) out["shapes"] = "visual";
   if (!without.empty()) out["links_without_set"] = std::move(without);
   return out;
+}
+
+Json SceneSetMaker::sources_of(std::uint32_t link, const std::vector<robot::LinkShape>& shapes,
+                               const std::vector<certify::CertifiedLinkMesh>& meshes) const {
+  Json out = Json::array();
+  for (const robot::LinkShape& shape : shapes)
+    if (shape.link == link && shape.mesh)
+      add_sources(out, meshes[*shape.mesh].mesh.file, meshes[*shape.mesh].made);
+  return out;
+}
+
+void SceneSetMaker::add_inner_links(Json& links, const robot::RobotFile& file,
+                                    certify::RobotRequest request, const fs::path& folder,
+                                    FileNames& names, const SceneSetOptions& options) {
+  request.shapes.links.clear();
+  for (const Json& entry : links) {
+    const std::string name = entry.at("link");
+    if (options.inner_links->empty() ||
+        std::ranges::find(*options.inner_links, name) != options.inner_links->end())
+      request.shapes.links.push_back(name);
+  }
+  if (request.shapes.links.empty()) return;
+  Notes of_meshes;  // said of the outer sets
+  const certify::InnerLinks made = certify::certify_inner_links(
+      file, request, options.cache, hooks_of(of_meshes, options.progress));
+  for (const certify::CertifiedInnerLink& link : made.links) {
+    const std::uint32_t number = link.certificate().link;
+    const std::string& name = file.robot.links[number].name;
+    for (Json& entry : links)
+      if (entry.at("link") == name)
+        entry["inner"] = keep(folder / (names.unique(name + "-inner") + ".glb"), link.bytes(),
+                              sources_of(number, made.shapes, made.meshes));
+  }
+  for (const auto& [number, why] : made.without)
+    notes.push_back(file.path.string() + ": link '" + file.robot.links[number].name +
+                    "' has no inner set, its contacts are never certain: " + why);
 }
 
 /// The box of a set in its own frame.

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "file_names.h"
 #include "report.h"
 
 /// Certified sets as scenes name them: their files, hashes, and what they were made from.
@@ -17,9 +18,11 @@ namespace kaboum::tools {
 
 /// How a scene's sets are made.
 struct SceneSetOptions {
-  certify::SetRequest sets;                  ///< of everything; direction apart
-  bool visual = false;                       ///< of robots, shapes for drawing
-  std::vector<std::string> links = {};       ///< of robots, only these; empty: all
+  certify::SetRequest sets;             ///< of everything; direction apart
+  bool visual = false;                  ///< of robots, shapes for drawing
+  std::vector<std::string> links = {};  ///< of robots, only these; empty: all
+  /// Of robots, links that get an inner set as well; empty: all; by default none.
+  std::optional<std::vector<std::string>> inner_links = {};
   std::vector<std::string> packages;         ///< folders that package:// URIs are looked up in
   const certify::SetCache* cache = nullptr;  ///< null: none
   std::function<void(const std::string&)> progress;
@@ -56,6 +59,12 @@ class SceneSetMaker {
 
  private:
   [[nodiscard]] std::string seen_from_scene(const std::filesystem::path& file) const;
+  /// Puts inner sets into entries of links. @param names  of the files that are taken
+  void add_inner_links(Json& links, const robot::RobotFile& file, certify::RobotRequest request,
+                       const std::filesystem::path& folder, FileNames& names,
+                       const SceneSetOptions& options);
+  Json sources_of(std::uint32_t link, const std::vector<robot::LinkShape>& shapes,
+                  const std::vector<certify::CertifiedLinkMesh>& meshes) const;
   Json keep(const std::filesystem::path& path, std::vector<char> bytes, const Json& made_from);
   void add_sources(Json& sources, const std::filesystem::path& file,
                    const certify::CertifiedFile& made) const;

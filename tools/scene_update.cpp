@@ -108,8 +108,20 @@ class Update {
       refuse("was made from something else than the robot file of the scene");
     if (record.parameters != parameters)
       refuse("was made with other options (" + record.parameters + ") than the others");
-    if (link.contains("inner") && !link.at("inner").contains("made_from"))
+    if (!link.contains("inner")) return;
+    if (!link.at("inner").contains("made_from"))
       refuse("would change beside an inner set that does not say what it was made from");
+    if (std::none_of(fresh.begin(), fresh.end(), [&](const Json& f) {
+          return f.at("link") == link.at("link") && f.contains("inner");
+        }))
+      refuse("would lose its inner one: nothing lies within the shapes any more");
+    if (!fs::exists(path_of(link.at("inner")))) return;
+    std::string inner = record_of(link.at("inner")).parameters;
+    constexpr std::string_view kDirection = " --direction inner";
+    if (const auto at = inner.find(kDirection); at != std::string::npos)
+      inner.erase(at, kDirection.size());
+    if (inner != parameters)
+      refuse("and its inner one were made with different options (" + inner + ")");
   }
 
   /// How a set was made, by the record in its container.
@@ -164,11 +176,9 @@ class Update {
     const std::string urdf_sha256 = robot.at("urdf").at("sha256");
     std::vector<std::string> out;
     for (const Json& link : robot.at("links")) {
-      if (moved || !is_current_set(link.at("outer"), urdf_sha256))
+      if (moved || !is_current_set(link.at("outer"), urdf_sha256) ||
+          (link.contains("inner") && !is_current_set(link.at("inner"), urdf_sha256)))
         out.push_back(link.at("link").get<std::string>());
-      if (link.contains("inner") && !is_current_set(link.at("inner"), urdf_sha256))
-        fail("the inner set of link '" + link.at("link").get<std::string>() +
-             "' is out of date: make it anew with bcd-decompose --direction inner");
     }
     return out;
   }
@@ -186,6 +196,11 @@ class Update {
     SceneSetOptions options = options_of(*known);
     options.visual = robot.contains("shapes") && robot.at("shapes") == "visual";
     if (!moved) options.links = stale;
+    for (const Json& link : links)
+      if (link.contains("inner")) {
+        if (!options.inner_links) options.inner_links.emplace();
+        options.inner_links->push_back(link.at("link").get<std::string>());
+      }
     const Json made =
         sets_.robot(robot.at("name").get<std::string>(), path_of(robot.at("urdf")).string(),
                     path_of(*known).parent_path(), options);
@@ -210,10 +225,6 @@ class Update {
     for (const Json& link : links)
       if (is_fresh(link))
         require_ours(robot, link, fresh, parameters, robot.at("urdf").at("sha256"));
-    for (Json& link : fresh)
-      for (const Json& old : links)
-        if (old.at("link") == link.at("link") && old.contains("inner"))
-          link["inner"] = old.at("inner");
     if (only.empty()) {
       links = std::move(fresh);
       return;

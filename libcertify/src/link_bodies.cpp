@@ -7,11 +7,13 @@
 #include <cmath>
 
 #include "issuer.h"
+#include "link_shapes.h"
 
 namespace kaboum::certify {
-namespace {
 
 using robot::Geometry;
+
+namespace {
 
 /// A percentage as it is; a length in the robot's unit in that of a mesh whose coordinates are
 /// multiplied by `scale`.
@@ -28,6 +30,8 @@ SetRequest request_for(const RobotRequest& request, const geom::Vec3& scale) {
   return out;
 }
 
+}  // namespace
+
 CertifiedLinkMesh certify_link_mesh(const robot::LinkMesh& mesh, const RobotRequest& request,
                                     const SetCache* cache, const RobotHooks& hooks) {
   const SetRequest asked = request_for(request, mesh.scale);
@@ -38,6 +42,19 @@ CertifiedLinkMesh certify_link_mesh(const robot::LinkMesh& mesh, const RobotRequ
           certify_file(mesh.file, request.format, asked, cache, of_mesh)};
 }
 
+bool is_placed_exactly(const Geometry& g) {
+  int exponent = 0;
+  return g.origin.linear.isIdentity(0) && g.origin.translation.isZero(0) &&
+         std::all_of(g.size.begin(), g.size.end(),
+                     [&](double s) { return std::abs(std::frexp(s, &exponent)) == 0.5; });
+}
+
+double placing_error(const Geometry& g, double size) {
+  return 0x1p-46 * (size + g.origin.translation.norm());
+}
+
+namespace {
+
 /// Appends the bodies of one shape in the frame of its link, points within the bodies' margins:
 /// those of `set` for a mesh, else a bounding polytope; none for a point.
 /// @param set  of the mesh in its own frame and unit; unused for other shapes.
@@ -47,18 +64,13 @@ void place_shape(const Geometry& g, const geom::ConvexSet* set, const std::strin
     const auto same = [&](const robot::LinkBody& b) { return b.link == index; };
     return link + "/" + std::to_string(std::count_if(bodies.begin(), bodies.end(), same));
   };
-  // The points' own rounding where shape and link lie far from one another's origin.
-  const auto rounding = [&](double size) { return 0x1p-46 * (size + g.origin.translation.norm()); };
   if (robot::is_point(g)) return;
   if (g.shape != Geometry::Shape::Mesh) {
-    bodies.push_back({name(), index, robot::bounding_points(g), rounding(2 * g.size.norm())});
+    bodies.push_back(
+        {name(), index, robot::bounding_points(g), placing_error(g, 2 * g.size.norm())});
     return;
   }
-  int exponent = 0;
-  const bool exact = g.origin.linear.isIdentity(0) && g.origin.translation.isZero(0) &&
-                     std::all_of(g.size.begin(), g.size.end(), [&](double s) {
-                       return std::abs(std::frexp(s, &exponent)) == 0.5;
-                     });
+  const bool exact = is_placed_exactly(g);
   for (const geom::ConvexBody& body : set->bodies) {
     robot::LinkBody b{name(), index, {}, g.size.cwiseAbs().maxCoeff() * set->margin};
     double size = 0;
@@ -67,7 +79,7 @@ void place_shape(const Geometry& g, const geom::ConvexSet* set, const std::strin
       size = std::max(size, scaled.norm());
       b.points.emplace_back(exact ? scaled : g.origin * scaled);
     }
-    if (!exact) b.margin += rounding(size);
+    if (!exact) b.margin += placing_error(g, size);
     bodies.push_back(std::move(b));
   }
 }

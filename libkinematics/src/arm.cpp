@@ -51,6 +51,13 @@ Axis axis_of(const robot::Robot& robot, const robot::Joint& joint, const Transfo
   return axis;
 }
 
+/// What a joint's offset adds to the frame.
+Transform offset_of(const robot::Joint& joint) {
+  if (joint.type == robot::JointType::Revolute)
+    return {robot::rotation_about(joint.axis, joint.offset), Vec3::Zero()};
+  return {Mat3::Identity(), joint.offset * joint.axis};
+}
+
 Arm arm_of_rows(std::span<const robot::Dh> rows, bool distal) {
   Arm arm;
   for (const robot::Dh& row : rows) {
@@ -88,9 +95,7 @@ Arm arm_of(const robot::Robot& robot, std::string_view base, std::string_view ti
                       robot.variables[joint->variable].name +
                       "', which moves another joint of the chain: no inverse kinematics of those");
     const Axis axis = axis_of(robot, *joint, arm.tool);
-    arm.tool = arm.tool * (axis.turns ? Transform{robot::rotation_about(joint->axis, joint->offset),
-                                                  Vec3::Zero()}
-                                      : Transform{Mat3::Identity(), joint->offset * joint->axis});
+    arm.tool = arm.tool * offset_of(*joint);
     arm.axes.push_back(axis);
     arm.variables.push_back(joint->variable);
   }
@@ -99,6 +104,37 @@ Arm arm_of(const robot::Robot& robot, std::string_view base, std::string_view ti
                                                 std::string(base) + "' and '" + std::string(tip) +
                                                 "'");
   return arm;
+}
+
+ArmFrame frame_of(const robot::Robot& robot, const Arm& arm, std::string_view base,
+                  std::string_view link) {
+  ArmFrame out;
+  for (const robot::Joint* joint :
+       joints_between(robot, link_named(robot, base), link_named(robot, link))) {
+    out.pose = out.pose * joint->origin;
+    if (joint->type == robot::JointType::Fixed) continue;
+    bool same = out.axes < arm.axes.size() && arm.variables[out.axes] == joint->variable;
+    if (same) {
+      // A joint of another branch may follow the same variable.
+      const Axis &known = arm.axes[out.axes], axis = axis_of(robot, *joint, out.pose);
+      same = known.turns == axis.turns && known.rate == axis.rate &&
+             known.direction == axis.direction && known.point == axis.point;
+    }
+    if (!same)
+      throw Error(ErrorCode::InvalidArgument, "link '" + std::string(link) +
+                                                  "' moves with joint '" + joint->name +
+                                                  "', which is not the arm's");
+    ++out.axes;
+    out.pose = out.pose * offset_of(*joint);
+  }
+  return out;
+}
+
+Arm arm_to(const Arm& arm, const ArmFrame& frame) {
+  const auto count = static_cast<std::ptrdiff_t>(frame.axes);
+  return {{arm.axes.begin(), arm.axes.begin() + count},
+          frame.pose,
+          {arm.variables.begin(), arm.variables.begin() + count}};
 }
 
 Arm arm_of_distal(std::span<const robot::Dh> rows) { return arm_of_rows(rows, true); }

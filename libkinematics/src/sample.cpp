@@ -12,6 +12,7 @@
 #include <numbers>
 #include <string>
 
+#include "frames.h"
 #include "free_motions.h"
 #include "joint_limits.h"
 
@@ -19,64 +20,6 @@ namespace kaboum::kinematics {
 namespace {
 
 using Kind = FrameId::Kind;
-using Twists = Eigen::Matrix<double, 6, Eigen::Dynamic>;
-
-/// How a frame's pose depends on the unknowns: a block of columns.
-struct Frame {
-  Transform pose;
-  Eigen::Index first = 0, count = 0;
-  bool rigid = true;  ///< six unknowns: the twist itself; else `twists`
-  Twists twists;      ///< of the frame's origin, by the unknowns of the block
-};
-
-/// Poses of everything, and the unknowns.
-struct Frames {
-  std::vector<Frame> tools, objects;
-  Eigen::Index unknowns = 0;
-
-  [[nodiscard]] const Frame* find(const FrameId& id) const {
-    if (id.kind == Kind::World) return nullptr;
-    return id.kind == Kind::Tool ? &tools[id.index] : &objects[id.index];
-  }
-};
-
-void add_columns(const Frame* frame, const Cost::Derivative& by_twist, Eigen::Index row,
-                 Eigen::MatrixXd& out) {
-  if (frame == nullptr || frame->count == 0) return;
-  auto block = out.block(row, frame->first, by_twist.rows(), frame->count);
-  if (frame->rigid)
-    block += by_twist;
-  else
-    block.noalias() += by_twist * frame->twists;
-}
-
-void assemble(const std::vector<Constraint>& constraints, const Frames& frames, double length,
-              Costs& out) {
-  const Transform world;
-  out.value.resize(static_cast<Eigen::Index>(4 * constraints.size()));
-  out.derivative.setZero(out.value.size(), frames.unknowns);
-  Eigen::Index row = 0;
-  for (const Constraint& c : constraints) {
-    const Frame *a = frames.find(c.first.frame), *b = frames.find(c.second.frame);
-    const Cost cost =
-        kinematics::cost(c, a != nullptr ? a->pose : world, b != nullptr ? b->pose : world, length);
-    out.value.segment(row, cost.value.size()) = cost.value;
-    add_columns(a, cost.first, row, out.derivative);
-    add_columns(b, cost.second, row, out.derivative);
-    row += cost.value.size();
-  }
-  out.value.conservativeResize(row);
-  out.derivative.conservativeResize(row, Eigen::NoChange);
-}
-
-/// Pose of the tool, and its derivative, in the world.
-void place_tool(const PlacedArm& robot, const std::vector<double>& q, Frame& frame) {
-  Transform pose;
-  frame.twists = jacobian(robot.arm, q, &pose);
-  frame.twists.topRows<3>() = robot.base.linear * frame.twists.topRows<3>();
-  frame.twists.bottomRows<3>() = robot.base.linear * frame.twists.bottomRows<3>();
-  frame.pose = robot.base * pose;
-}
 
 /// A pose after the twist: turned about its own origin, and moved.
 Transform moved(const Transform& pose, const Eigen::Ref<const Eigen::VectorXd>& twist) {
@@ -96,23 +39,33 @@ Mat3 random_rotation(Random& random) {
       .toRotationMatrix();
 }
 
+/// @throws Error{InvalidArgument} when the problem has no such frame.
+void require_frame(const ConstraintProblem& problem, const FrameId& id) {
+  const auto require = [](bool there, const char* what, std::size_t index) {
+    if (!there)
+      throw Error(ErrorCode::InvalidArgument, std::string("constraint: there is no ") + what +
+                                                  " number " + std::to_string(index));
+  };
+  if (id.kind == Kind::Object) require(id.index < problem.objects.size(), "object", id.index);
+  if (id.kind != Kind::Tool && id.kind != Kind::Link) return;
+  require(id.index < problem.robots.size(), "robot", id.index);
+  if (id.kind == Kind::Link)
+    require(id.link < problem.robots[id.index].links.size(), "link of that robot", id.link);
+}
+
 }  // namespace
 
 void require_valid(const ConstraintProblem& problem) {
+  for (const PlacedArm& robot : problem.robots)
+    for (const ArmFrame& link : robot.links)
+      if (link.axes > robot.arm.axes.size())
+        throw Error(ErrorCode::InvalidArgument, "constraints: a link has more axes than its arm");
   for (std::size_t i = 0; i < problem.constraints.size(); ++i) {
     const Constraint& c = problem.constraints[i];
     try {
       require_valid(c);
-      for (const FrameId& id : {c.first.frame, c.second.frame}) {
-        const std::size_t count = id.kind == Kind::World  ? 1
-                                  : id.kind == Kind::Tool ? problem.robots.size()
-                                                          : problem.objects.size();
-        if (id.index >= count)
-          throw Error(ErrorCode::InvalidArgument,
-                      "constraint: there is no " +
-                          std::string(id.kind == Kind::Tool ? "robot" : "object") + " number " +
-                          std::to_string(id.index));
-      }
+      require_frame(problem, c.first.frame);
+      require_frame(problem, c.second.frame);
     } catch (const Error& error) {
       throw Error(error.code(), std::string(error.what()) + " (constraint " + std::to_string(i) +
                                     ", counted from 0)");
@@ -123,22 +76,13 @@ void require_valid(const ConstraintProblem& problem) {
 Costs evaluate(const ConstraintProblem& problem, const Placement& at, double length) {
   require_valid(problem);
   Frames frames;
-  const auto add = [&](Frame frame, std::size_t count) {
-    frame.first = frames.unknowns;
-    frame.count = static_cast<Eigen::Index>(count);
-    frames.unknowns += frame.count;
-    return frame;
-  };
   for (std::size_t i = 0; i < problem.robots.size(); ++i) {
-    Frame frame = add({}, at.joints[i].size());
-    frame.rigid = false;
-    place_tool(problem.robots[i], at.joints[i], frame);
-    frames.tools.push_back(std::move(frame));
+    frames.add_robot(problem.robots[i], false);
+    frames.place(problem.robots[i], i, at.joints[i]);
   }
-  for (const Transform& pose : at.objects) {
-    Frame frame = add({}, 6);
-    frame.pose = pose;
-    frames.objects.push_back(std::move(frame));
+  for (std::size_t i = 0; i < at.objects.size(); ++i) {
+    frames.add_object();
+    frames.objects[i].pose = at.objects[i];
   }
   Costs out;
   assemble(problem.constraints, frames, length, out);
@@ -179,6 +123,7 @@ class ConstraintSampler::Impl {
   Impl(ConstraintProblem problem, const SampleOptions& options)
       : problem_(std::move(problem)), options_(options), random_(options.seed) {
     require_valid(problem_);
+    constraints_ = without_end_links(problem_);
     length_ = options.length;
     for (const PlacedArm& robot : problem_.robots) {
       if (!(options.length > 0)) length_ = std::max(length_, reach(robot.arm));
@@ -186,18 +131,14 @@ class ConstraintSampler::Impl {
       // Five axes reach some poses only: those that the projection of poses gives are none.
       if (forms_.back() && forms_.back()->family == Family::FiveAxes) forms_.back().reset();
     }
+    // Nor does a tool's pose place the links before it.
+    for (const Constraint& c : constraints_)
+      for (const FrameId& id : {c.first.frame, c.second.frame})
+        if (id.kind == Kind::Link) forms_[id.index].reset();
     if (!(length_ > 0)) length_ = 1;
-    for (std::size_t i = 0; i < problem_.robots.size(); ++i) {
-      Frame frame;
-      frame.rigid = forms_[i].has_value();
-      frame.count = frame.rigid ? 6 : static_cast<Eigen::Index>(problem_.robots[i].arm.axes.size());
-      add(frames_.tools, std::move(frame));
-    }
-    for (std::size_t i = 0; i < problem_.objects.size(); ++i) {
-      Frame frame;
-      frame.count = 6;
-      add(frames_.objects, std::move(frame));
-    }
+    for (std::size_t i = 0; i < problem_.robots.size(); ++i)
+      frames_.add_robot(problem_.robots[i], forms_[i].has_value());
+    for (std::size_t i = 0; i < problem_.objects.size(); ++i) frames_.add_object();
     find_motions();
   }
 
@@ -219,12 +160,6 @@ class ConstraintSampler::Impl {
   Tally tally_;
 
  private:
-  void add(std::vector<Frame>& frames, Frame frame) {
-    frame.first = frames_.unknowns;
-    frames_.unknowns += frame.count;
-    frames.push_back(std::move(frame));
-  }
-
   [[nodiscard]] Transform pose_of(const FrameId& id) const {
     const Frame* frame = frames_.find(id);
     return frame != nullptr ? frame->pose : Transform();
@@ -236,7 +171,7 @@ class ConstraintSampler::Impl {
     if (options_.motions == 0) return;
     for (std::size_t i = 0; i < forms_.size(); ++i)
       if (forms_[i]) {
-        motions_[i] = FreeMotions(problem_.constraints, {Kind::Tool, i}, length_);
+        motions_[i] = FreeMotions(constraints_, {Kind::Tool, i}, length_);
         balls_.push_back(ball_of(problem_.robots[i], *forms_[i]));
       } else {
         balls_.emplace_back();
@@ -267,7 +202,7 @@ class ConstraintSampler::Impl {
       if (forms_[i])
         frames_.tools[i].pose = robot.base * forward(robot.arm, q);
       else
-        place_tool(robot, q, frames_.tools[i]);
+        frames_.place(robot, i, q);
       joints_.push_back(std::move(q));
     }
     for (std::size_t i = 0; i < problem_.objects.size(); ++i) {
@@ -294,7 +229,7 @@ class ConstraintSampler::Impl {
         q += part[static_cast<Eigen::Index>(k)];
         if (options_.limits) q = into_limits(arm.axes[k], q);
       }
-      place_tool(problem_.robots[i], joints_[i], frame);
+      frames_.place(problem_.robots[i], i, joints_[i]);
     }
     for (Frame& frame : frames_.objects)
       frame.pose = moved(frame.pose, change.segment(frame.first, frame.count));
@@ -319,7 +254,7 @@ class ConstraintSampler::Impl {
 
   /// Levenberg–Marquardt with the smallest step that does it: −Jᵀ(JJᵀ + λ)⁻¹ f.
   bool project() {
-    assemble(problem_.constraints, frames_, length_, costs_);
+    assemble(constraints_, frames_, length_, costs_);
     double damping = 1e-6;
     for (int i = 0; i < options_.iterations; ++i) {
       if (!(costs_.value.size() > 0)) return true;
@@ -335,7 +270,7 @@ class ConstraintSampler::Impl {
       const Frames was = frames_;
       const double cost = costs_.value.norm();
       step(change_);
-      assemble(problem_.constraints, frames_, length_, costs_);
+      assemble(constraints_, frames_, length_, costs_);
       if (costs_.value.norm() < cost) {
         damping = std::max(damping / 8, 1e-14);
         continue;
@@ -344,7 +279,7 @@ class ConstraintSampler::Impl {
       damping *= 32;
       frames_ = was;
       joints_ = before_.joints;
-      assemble(problem_.constraints, frames_, length_, costs_);
+      assemble(constraints_, frames_, length_, costs_);
     }
     return costs_.largest() <= options_.bound / 10;
   }
@@ -410,7 +345,9 @@ class ConstraintSampler::Impl {
   [[nodiscard]] double error_of(const Placement& at) const {
     return evaluate(problem_, at, length_).largest();
   }
+
   ConstraintProblem problem_;
+  std::vector<Constraint> constraints_;  ///< with as few features of links as may be
   SampleOptions options_;
   Random random_;
   double length_ = 0;

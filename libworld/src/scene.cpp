@@ -54,37 +54,20 @@ class Parser : detail::SceneRobot {
 
   void add_object(const Located& o) {
     known(o, {"name", "pose", "outer", "inner", "features", "grasps"});
-    Object out{new_name(o), pose_member(o, "pose"), set(o, "outer", "outer"), optional_inner(o), {},
-               {}};
-    for (const Located& f : list(o, "features")) out.features.push_back(feature(f));
+    const std::string name = new_name(o);
+    const Transform pose_of_object = pose_member(o, "pose");
+    auto [outer, inner] = sets_of(o);
+    Object out{name, pose_of_object, std::move(outer), std::move(inner), {}, {}};
+    std::set<std::string> taken;
+    for (const Located& f : list(o, "features")) {
+      known(f, {"name", "point", "line", "plane"});
+      out.features.push_back(feature(f, taken));
+    }
     for (const Located& g : list(o, "grasps")) {
       known(g, {"name", "position", "rpy", "quaternion"});
       out.grasps.push_back({string(need(g, "name")), pose(g)});
     }
     world_.objects.push_back(std::move(out));
-  }
-
-  Feature feature(const Located& f) const {
-    known(f, {"name", "point", "line", "plane"});
-    Feature out;
-    out.name = string(need(f, "name"));
-    const Located *point = find(f, "point"), *line = find(f, "line"), *plane = find(f, "plane");
-    if ((point != nullptr ? 1 : 0) + (line != nullptr ? 1 : 0) + (plane != nullptr ? 1 : 0) != 1)
-      fail(f, "a feature is one of 'point', 'line' and 'plane'");
-    if (point != nullptr) {
-      out.point = vector(*point);
-    } else if (line != nullptr) {
-      known(*line, {"point", "direction"});
-      out.kind = Feature::Kind::Line;
-      out.point = vector(need(*line, "point"));
-      out.direction = unit_vector(need(*line, "direction"));
-    } else {
-      known(*plane, {"point", "normal"});
-      out.kind = Feature::Kind::Plane;
-      out.point = vector(need(*plane, "point"));
-      out.direction = unit_vector(need(*plane, "normal"));
-    }
-    return out;
   }
 
   void add_region(const Located& r) {

@@ -67,7 +67,7 @@ std::vector<double> SceneRobot::read_home(const Located* value, const Located& a
 
 RobotModel SceneRobot::read(const Located& r, const std::string& name) {
   known(r, {"name", "urdf", "shapes", "base", "home", "limits", "links", "links_without_set",
-            "tools", "grippers", "allowed_contacts", "never_in_contact"});
+            "tools", "grippers", "features", "allowed_contacts", "never_in_contact"});
   RobotModel out;
   out.name = name;
   const File urdf = file(need(r, "urdf"));
@@ -97,6 +97,7 @@ RobotModel SceneRobot::read(const Located& r, const std::string& name) {
       g.links.push_back(link_of(out.kinematics, link));
     out.grippers.push_back(std::move(g));
   }
+  add_features(r, out);
   out.fingerprint = fingerprint_of(out);
   out.allowed = connected_links(out);
   for (const Located& pair : list(r, "allowed_contacts"))
@@ -143,6 +144,53 @@ void SceneRobot::require_shapes(const Loaded& loaded, const Located& value, bool
                                   "\"shapes\": \"visual\"");
 }
 
+SceneRobot::Loaded SceneRobot::link_set(const Located& entry, const char* direction,
+                                        const std::string& link, const File& urdf, bool visual) {
+  const Located& value = need(entry, direction);
+  Loaded loaded = container(value, direction);
+  const geom::Provenance& p = loaded.set.provenance;
+  if (p.frame != link)
+    fail(value,
+         loaded.file.name + " is in the frame of '" + p.frame + "', not of link '" + link + "'");
+  require_source(loaded, value, urdf.sha256);
+  require_shapes(loaded, value, visual);
+  return loaded;
+}
+
+void SceneRobot::add_features(const Located& r, RobotModel& out) const {
+  std::set<std::string> taken;
+  for (const Located& f : list(r, "features")) {
+    known(f, {"name", "link", "point", "line", "plane"});
+    out.features.push_back({link_of(out.kinematics, need(f, "link")), feature(f, taken)});
+  }
+}
+
+Feature SceneRobot::feature(const Located& f, std::set<std::string>& taken) const {
+  Feature out;
+  const Located& name = need(f, "name");
+  out.name = string(name);
+  const Located *point = find(f, "point"), *line = find(f, "line"), *plane = find(f, "plane");
+  if ((point != nullptr ? 1 : 0) + (line != nullptr ? 1 : 0) + (plane != nullptr ? 1 : 0) != 1)
+    fail(f, "a feature is one of 'point', 'line' and 'plane'");
+  if (point != nullptr) {
+    out.point = vector(*point);
+  } else if (line != nullptr) {
+    known(*line, {"point", "direction"});
+    out.kind = Feature::Kind::Line;
+    out.point = vector(need(*line, "point"));
+    out.direction = unit_vector(need(*line, "direction"));
+  } else {
+    known(*plane, {"point", "normal"});
+    out.kind = Feature::Kind::Plane;
+    out.point = vector(need(*plane, "point"));
+    out.direction = unit_vector(need(*plane, "normal"));
+  }
+  const char* kind = point != nullptr ? "point" : line != nullptr ? "line" : "plane";
+  if (!taken.insert(std::string(kind).append(" '").append(out.name) + "'").second)
+    fail(name, std::string("the ") + kind + " '" + out.name + "' is there twice");
+  return out;
+}
+
 void SceneRobot::add_shapes(const Located& r, const File& urdf, bool visual, RobotModel& out) {
   std::set<std::uint32_t> has;
   for (const Located& l : list(r, "links")) {
@@ -150,14 +198,14 @@ void SceneRobot::add_shapes(const Located& r, const File& urdf, bool visual, Rob
     const std::uint32_t link = link_of(out.kinematics, need(l, "link"));
     const std::string& name = out.kinematics.links[link].name;
     if (!has.insert(link).second) fail(l, "link '" + name + "' has two entries");
-    const Loaded loaded = container(need(l, "outer"), "outer");
-    const geom::Provenance& p = loaded.set.provenance;
-    if (p.frame != name)
-      fail(need(l, "outer"),
-           loaded.file.name + " is in the frame of '" + p.frame + "', not of link '" + name + "'");
-    require_source(loaded, need(l, "outer"), urdf.sha256);
-    require_shapes(loaded, need(l, "outer"), visual);
-    out.shapes.push_back({link, set(loaded, need(l, "outer")), optional_inner(l)});
+    const Loaded outer = link_set(l, "outer", name, urdf, visual);
+    LinkShape shape{link, set(outer, need(l, "outer")), std::nullopt};
+    if (const Located* value = find(l, "inner")) {
+      const Loaded inner = link_set(l, "inner", name, urdf, visual);
+      require_within(inner, outer, *value);
+      shape.inner = set(inner, *value);
+    }
+    out.shapes.push_back(std::move(shape));
   }
   std::set<std::uint32_t> without;
   for (const Located& l : list(r, "links_without_set")) without.insert(link_of(out.kinematics, l));

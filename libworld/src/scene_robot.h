@@ -1,5 +1,7 @@
 #pragma once
 
+#include <set>
+
 #include "scene_sets.h"
 
 namespace kaboum::world::detail {
@@ -15,6 +17,10 @@ class SceneRobot : public SceneSets {
   std::uint32_t link_of(const robot::Robot& robot, const Located& value) const;
   std::size_t tool_of(const RobotModel& robot, const Located& value) const;
 
+  /// The point, line or plane of an object with these members. @param taken  kinds and names of
+  /// others, to which its own are added.
+  Feature feature(const Located& f, std::set<std::string>& taken) const;
+
  private:
   std::size_t variable_of(const robot::Robot& robot, const std::string& name,
                           const Located& at) const;
@@ -26,7 +32,11 @@ class SceneRobot : public SceneSets {
   bool is_of_visual_shapes(const Located& r) const;
   void note_bare_links(const RobotModel& robot, bool visual);
   void require_shapes(const Loaded& loaded, const Located& value, bool visual) const;
+  /// The member `direction` of a link's entry: a set of this link, of this robot file's shapes.
+  Loaded link_set(const Located& entry, const char* direction, const std::string& link,
+                  const File& urdf, bool visual);
   void add_shapes(const Located& r, const File& urdf, bool visual, RobotModel& out);
+  void add_features(const Located& r, RobotModel& out) const;
 
   AllowedPair pair_of(const RobotModel& robot, const Located& value,
                       AllowedPair::Reason reason) const;

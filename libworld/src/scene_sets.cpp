@@ -133,9 +133,33 @@ void SceneSets::note_sheets(const Loaded& loaded) {
                   "nothing is checked of them");
 }
 
-std::optional<BoundingSet> SceneSets::optional_inner(const Located& object) {
-  if (find(object, "inner") == nullptr) return std::nullopt;
-  return set(object, "inner", "inner");
+std::pair<BoundingSet, std::optional<BoundingSet>> SceneSets::sets_of(const Located& object) {
+  const Located& outer_value = need(object, "outer");
+  const Loaded outer = container(outer_value, "outer");
+  require_source(outer, outer_value, {});
+  std::pair<BoundingSet, std::optional<BoundingSet>> out{set(outer, outer_value), std::nullopt};
+  if (const Located* value = find(object, "inner")) {
+    const Loaded inner = container(*value, "inner");
+    require_source(inner, *value, {});
+    require_within(inner, outer, *value);
+    out.second = set(inner, *value);
+  }
+  return out;
+}
+
+void SceneSets::require_within(const Loaded& inner, const Loaded& outer, const Located& at) const {
+  if (!outer.set.provenance.covers_solid) return;  // what holes leave open is filled in each anew
+  geom::Box3 box;
+  for (const geom::ConvexBody& body : outer.set.bodies)
+    for (const Vec3& p : body.hull.vertices) box.extend(p);
+  const Vec3 margin = Vec3::Constant(outer.set.margin * (1 + 0x1p-50));
+  const Vec3 low = box.min - margin, high = box.max + margin;
+  for (const geom::ConvexBody& body : inner.set.bodies)
+    for (const Vec3& p : body.hull.vertices)
+      if (!((p.array() >= low.array()).all() && (p.array() <= high.array()).all()))
+        fail(need(at, "file"), inner.file.name + " reaches out of " + outer.file.name +
+                                   ": an inner set lies in its outer one, so they are not of one "
+                                   "solid; make both of the same mesh");
 }
 
 }  // namespace kaboum::world::detail

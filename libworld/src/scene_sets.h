@@ -5,6 +5,7 @@
 
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "scene_values.h"
 
@@ -36,8 +37,10 @@ class SceneSets : public SceneValues {
   /// and the files that it was made from.
   void require_source(const Loaded& loaded, const Located& value, const std::string& robot) const;
   BoundingSet set(const Located& object, const char* member, const char* direction);
-  /// Of the member "inner", if there is one.
-  std::optional<BoundingSet> optional_inner(const Located& object);
+  /// The members "outer" and, if there is one, "inner" of an object.
+  std::pair<BoundingSet, std::optional<BoundingSet>> sets_of(const Located& object);
+  /// Refuses an inner set that reaches out of the outer set's box: they are not of one solid.
+  void require_within(const Loaded& inner, const Loaded& outer, const Located& at) const;
   /// Says of which sets nothing is known that would tell when they are out of date.
   void note_unknown_sources();
 

@@ -173,6 +173,69 @@ END
   cmp -s theirs.json before.json || fail "$change: the scene was changed"
 done
 cp arm-kept.urdf arm.urdf
+# Inner sets of links: contacts with them are certain.
+"$BIN/kaboum-scene" make deep.json --robot arm=arm.urdf --object box=meshes/cube.off --inner --inner-links --no-cache --quiet || fail "inner links"
+[ "$(grep -c '"inner"' deep.json)" = 4 ] || fail "not an inner set for each link: $(grep -c '"inner"' deep.json)"
+python3 - <<'END' || fail "deep scene"
+import json
+deep = json.load(open("deep.json"))
+deep["objects"][0]["pose"] = {"position": [-0.75, 5.25, 2.25]}
+json.dump(deep, open("deep.json", "w"), indent=1)
+END
+shows 1 'arm/tip and box collide' "$BIN/kaboum-check" deep.json --configuration 1.5707963,0
+shows 0 '^free$' "$BIN/kaboum-check" deep.json --configuration=-1,0
+expect 2 'inner-links: no robot' "$BIN/kaboum-scene" make bad.json --object box=meshes/cube.off --inner-links
+# They are made anew as the outer ones are, by the same options.
+cp meshes/bar.off kept.off
+cube 4 >meshes/bar.off
+expect 3 'has changed since' "$BIN/kaboum-check" deep.json
+expect 0 '2 sets made anew' "$BIN/kaboum-scene" update deep.json --no-cache
+[ "$(grep -c '"inner"' deep.json)" = 4 ] || fail "the update loses inner sets"
+shows 1 'arm/tip and box collide' "$BIN/kaboum-check" deep.json --configuration 1.5707963,0
+mv kept.off meshes/bar.off
+expect 0 '2 sets made anew' "$BIN/kaboum-scene" update deep.json --no-cache
+python3 - <<'END'
+import json
+deep = json.load(open("deep.json"))
+links = deep["robots"][0]["links"]
+links[0]["inner"] = links[2]["inner"]
+json.dump(deep, open("crossed.json", "w"), indent=1)
+links[0]["inner"] = deep["objects"][0]["inner"]
+json.dump(deep, open("strange.json", "w"), indent=1)
+END
+expect 3 "crossed.json: line [0-9]*, column [0-9]*: .* is in the frame of 'tip', not of link 'base'" "$BIN/kaboum-check" crossed.json
+expect 3 "strange.json: line [0-9]*, column [0-9]*: .*not of link 'base'" "$BIN/kaboum-check" strange.json
+# A mesh mirrored by its scale: the wedge is where the mirror image is, and nowhere else.
+printf 'OFF\n4 4 0\n0 0 0\n4 0 0\n0 2 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n' >meshes/wedge.off
+for scale in '1 1 1' '-1 1 1' '1 -1 1' '-1 -1 -1'; do
+  echo "<robot name=\"w\"><link name=\"l\"><collision><geometry><mesh filename=\"meshes/wedge.off\" scale=\"$scale\"/></geometry></collision></link><link name=\"m\"/><joint name=\"j\" type=\"prismatic\"><parent link=\"l\"/><child link=\"m\"/><limit lower=\"0\" upper=\"1\" effort=\"1\" velocity=\"1\"/></joint></robot>" >wedge.urdf
+  rm -rf wedge wedge.json
+  expect 0 '' "$BIN/kaboum-scene" make wedge.json --robot w=wedge.urdf --object box=meshes/cube.off --inner --inner-links --no-cache
+  for at in '1 1 1' '-1 1 1' '1 -1 1' '-1 -1 -1'; do
+    python3 - "$scale" "$at" <<'END' || fail "wedge at $at"
+import json, sys
+wedge = json.load(open("wedge.json"))
+at = [float(x) for x in sys.argv[2].split()]
+# The cube's corner at 0.1, 0.1, 0.1 of this octant, the cube farther out.
+wedge["objects"][0]["pose"] = {"position": [0.1 if x > 0 else -1.1 for x in at]}
+json.dump(wedge, open("wedge-at.json", "w"))
+END
+    if [ "$at" = "$scale" ]; then
+      shows 1 'w/l and box collide' "$BIN/kaboum-check" wedge-at.json
+    else
+      shows 0 '^free$' "$BIN/kaboum-check" wedge-at.json
+    fi
+  done
+done
+# A set in millimetres in a scene in metres.
+expect 0 '' "$BIN/bcd-decompose" meshes/cube.off -o cell/mm.glb --unit mm --no-cache
+python3 - <<'END'
+import hashlib, json
+mm = json.load(open("near.json"))
+mm["objects"][0]["outer"] = {"file": "cell/mm.glb", "sha256": hashlib.sha256(open("cell/mm.glb", "rb").read()).hexdigest()}
+json.dump(mm, open("mm-set.json", "w"), indent=1)
+END
+expect 3 'mm-set.json: line [0-9]*, column [0-9]*: cell/mm.glb is in mm, the scene in m' "$BIN/kaboum-check" mm-set.json
 mkdir elsewhere
 cp near.json elsewhere/near.json
 expect 3 'arm.urdf: cannot be .*moved or copied with all files that it names' "$BIN/kaboum-check" elsewhere/near.json

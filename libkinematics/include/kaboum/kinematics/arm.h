@@ -37,6 +37,22 @@ struct Arm {
 ///   between them; Error{InvalidInput} when a variable moves two joints of the chain, or none.
 Arm arm_of(const robot::Robot& robot, std::string_view base, std::string_view tip);
 
+/// A frame fixed to a link of an arm: it moves with the first `axes` joints.
+struct ArmFrame {
+  std::size_t axes = 0;  ///< 0: it rests with the base; all: it moves with the tool
+  Transform pose;        ///< in the base's frame at q = 0
+};
+
+/// The frame of a link, for an arm that was made of the same robot and base.
+/// @throws Error{InvalidArgument} when a link is unknown, `base` is not above `link`, or the link
+///   moves with joints that are not the arm's first ones.
+ArmFrame frame_of(const robot::Robot& robot, const Arm& arm, std::string_view base,
+                  std::string_view link);
+
+/// The joints that move a frame, with the frame as tool.
+/// @pre the frame has no more axes than the arm.
+Arm arm_to(const Arm& arm, const ArmFrame& frame);
+
 /// Arm of revolute joints with Denavit–Hartenberg rows; `theta` of a row is the joint's offset.
 /// Distal ("standard") convention: Rz(theta) · Tz(d) · Tx(a) · Rx(alpha).
 Arm arm_of_distal(std::span<const robot::Dh> rows);

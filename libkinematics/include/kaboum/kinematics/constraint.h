@@ -8,7 +8,7 @@
 
 namespace kaboum::kinematics {
 
-/// Features of tools and objects, in their frames. Directions are of unit length.
+/// Features of tools, links and objects, in their frames. Directions are of unit length.
 struct Point {
   Vec3 position = Vec3::Zero();
 };
@@ -22,9 +22,10 @@ using Feature = std::variant<Point, Line, Plane>;
 
 /// What a feature is fixed to.
 struct FrameId {
-  enum class Kind : std::uint8_t { World, Tool, Object };
+  enum class Kind : std::uint8_t { World, Tool, Object, Link };
   Kind kind = Kind::World;
   std::size_t index = 0;  ///< of the robot or object
+  std::size_t link = 0;   ///< of a Link: index in PlacedArm::links of the robot
   bool operator==(const FrameId&) const = default;
 };
 

@@ -10,7 +10,8 @@ namespace kaboum::kinematics {
 /// A robot whose configuration is sought.
 struct PlacedArm {
   Arm arm;
-  Transform base;  ///< of its base in the world
+  Transform base;                    ///< of its base in the world
+  std::vector<ArmFrame> links = {};  ///< that features are fixed to, besides the tool
 };
 
 /// An object whose pose is sought; its position is drawn from a box before it is projected.
@@ -18,7 +19,8 @@ struct FreeObject {
   Vec3 lower = Vec3::Constant(-1), upper = Vec3::Constant(1);  ///< in the world [length]
 };
 
-/// Constraints between features of the world, of robots' tools and of objects; all hold at once.
+/// Constraints between features of the world, of robots' tools and links, and of objects; all hold
+/// at once.
 struct ConstraintProblem {
   std::vector<PlacedArm> robots;
   std::vector<FreeObject> objects;
@@ -56,7 +58,8 @@ struct SampleOptions {
   double length = 0;    ///< as in `cost`; 0: the largest reach of the robots, or 1
   bool limits = true;   ///< whether joints are to be within their limits
   /// Where a robot has a closed form, its tool's pose is projected, and the joints are solved for;
-  /// false: joints are projected, as the thesis does.
+  /// false: joints are projected, as the thesis does. So are those of robots with features between
+  /// base and tool, which the tool's pose does not place.
   bool closed_form = true;
   /// A pose without joints is moved at most so often by what the constraints leave free, until it
   /// has some; 0: the draw has failed then.

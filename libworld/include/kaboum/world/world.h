@@ -38,6 +38,21 @@ struct LinkShape {
   std::optional<BoundingSet> inner;
 };
 
+/// A point, line or plane of an object or a link by name, in its frame.
+struct Feature {
+  enum class Kind { Point, Line, Plane };
+  std::string name;
+  Kind kind = Kind::Point;
+  Vec3 point = Vec3::Zero();
+  Vec3 direction = Vec3::Zero();  ///< of unit length: along the line, or the plane's normal
+};
+
+/// A feature that is fixed to a link, in the link's frame.
+struct LinkFeature {
+  std::uint32_t link = 0;
+  Feature feature;
+};
+
 /// Two links of a robot whose contact is not looked for.
 struct AllowedPair {
   enum class Reason {
@@ -59,17 +74,9 @@ struct RobotModel {
   std::vector<LinkShape> shapes;
   std::vector<ToolFrame> tools;
   std::vector<Gripper> grippers;
+  std::vector<LinkFeature> features;  ///< names of one kind differ
   std::vector<AllowedPair> allowed;
   std::string fingerprint;  ///< hash of what proofs about the robot alone depend on
-};
-
-/// A point, line or plane of an object by name, in its frame.
-struct Feature {
-  enum class Kind { Point, Line, Plane };
-  std::string name;
-  Kind kind = Kind::Point;
-  Vec3 point = Vec3::Zero();
-  Vec3 direction = Vec3::Zero();  ///< of unit length: along the line, or the plane's normal
 };
 
 /// How a tool holds an object.
