@@ -227,10 +227,14 @@ Answer swept_collides(Geometry& geometry, const Question& question) {
   const std::vector<double> to = configuration_of(question.arguments[1], geometry.world.robots[r]);
   const std::size_t o = object_named(geometry, question.arguments[2]);
   Asked asked(geometry, question);
-  if (!asked.state.read_robot(r) || !asked.state.read_object(o)) return asked.not_known();
+  // The other robots are in the world as well, where they are.
+  for (std::size_t other = 0; other < geometry.world.robots.size(); ++other)
+    if (!asked.state.read_robot(other)) return asked.not_known();
+  if (!asked.state.read_object(o)) return asked.not_known();
   const world::WorldState& state = asked.state.world();
   if (state.absent[o]) return Answer::holds(false, question.arguments[2] + " is away");
-  // All other objects are absent: they were not read. Contacts of the robot with itself count.
+  // All other objects are absent: they were not read. Contacts of the robot with itself and
+  // with others count.
   const auto motion =
       check_motion(geometry.checker, state, r, {state.q[r], to}, geometry.options.path.check);
   return Answer::holds(motion.outcome != world::MotionAnswer::Outcome::Free, "it is free");

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <kaboum/base/random.h>
+
+#include <nlohmann/json.hpp>
+
+#include "geometric_state.h"
+#include "goals.h"
+
+namespace kaboum::manipulation {
+
+/// Poses no farther apart are the same: ten times what words are rounded to. [m, 1]
+inline constexpr double kSamePose = 1e-6;
+
+/// Motions one after another: each is looked for in the state that the ones before have led to.
+/// Where one fails the reason is kept, and nothing more is done.
+class MotionSequence {
+ public:
+  /// @param question  its seed and attempt decide what is tried. Must outlive this, as geometry.
+  MotionSequence(const Geometry& geometry, const plan::Question& question,
+                 const GeometricState& state);
+
+  /// To one of some configurations. @return whether it was done.
+  bool go(std::size_t robot, const Goals& goals);
+  bool go(std::size_t robot, const std::vector<double>& q);
+
+  /// @return false.
+  bool fail(plan::Answer::Kind kind, std::string reason);
+
+  [[nodiscard]] const world::WorldState& state() const { return state_; }
+  /// A failure of the first motion is what it is; of later ones it depends on what was chosen
+  /// before: not found.
+  [[nodiscard]] plan::Answer failure() const;
+  [[nodiscard]] plan::Answer found(std::string value) const;
+  /// Of an object that rests or is held now.
+  [[nodiscard]] std::string word_of_object(std::size_t object) const;
+  /// Where a mounted object is on the one below.
+  [[nodiscard]] std::string word_of_mounted(std::size_t object) const;
+  [[nodiscard]] std::optional<world::Attachment> held_by(std::size_t robot,
+                                                         std::size_t object) const;
+  [[nodiscard]] world::Transform pose_of_object(std::size_t object) const;
+
+ protected:
+  [[nodiscard]] world::Transform pose_of_link(std::size_t robot, std::uint32_t link) const;
+  /// How a robot holds an object with the tool that is at one of its grasps; nullopt: none is.
+  [[nodiscard]] std::optional<world::Attachment> find_grasp(std::size_t robot,
+                                                            std::size_t object) const;
+  [[nodiscard]] bool is_free(std::size_t robot, const robot::Path& path) const;
+  [[nodiscard]] bool is_free(const world::WorldState& state) const;
+  /// Moves an object, and what is mounted on it, to the hand or to rest.
+  void carry(std::size_t object, const std::optional<world::Attachment>& held,
+             const world::Transform& pose);
+  void add_goals(Goals& goals, std::size_t robot, std::uint32_t link,
+                 const world::Transform& target) const;
+  void record(std::size_t robot, const robot::Path& path);
+
+  const Geometry& geometry_;
+  const plan::Question& question_;
+  world::WorldState state_;
+  std::vector<std::optional<std::size_t>> mounted_;
+  nlohmann::json paths_ = nlohmann::json::array();
+  plan::Answer::Kind failed_ = plan::Answer::Kind::Impossible;
+  std::string reason_;
+  Random random_;
+
+ private:
+  [[nodiscard]] motion::PathAnswer look_for_path(const world::WorldState& state, std::size_t robot,
+                                                 const Goals& goals,
+                                                 const motion::PathOptions& options) const;
+  [[nodiscard]] const robot::Path& usual_path(std::size_t robot, const Goals& goals,
+                                              const motion::PathOptions& options) const;
+};
+
+/// Whether a tool may hold an object by a grasp: "TOOL/NAME" names the tools that may.
+bool fits(const world::ToolFrame& tool, const world::Grasp& grasp);
+
+}  // namespace kaboum::manipulation

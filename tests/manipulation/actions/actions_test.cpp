@@ -1,0 +1,332 @@
+// Handing over, mounting, lifting, carrying upright and sweeping, among exact meshes: what the
+// paths that are answered do is carried out by the judge, which has none of the library's code.
+
+#include <gtest/gtest.h>
+#include <kaboum/base/error.h>
+#include <kaboum/judge/placement.h>
+#include <kaboum/manipulation/words.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "two_arms.h"
+
+namespace kaboum::test {
+namespace {
+
+using geom::Transform;
+using geom::Vec3;
+using plan::Answer;
+
+constexpr double kStep = 0.01;  // between samples [rad]
+
+/// A configuration whose tool looks straight down.
+const std::vector<double> kDown = {0, -0.3, 1.5, 0, 1.941592654, 0};
+
+class Actions : public ::testing::Test {
+ protected:
+  using Words = std::map<std::string, std::string>;
+
+  /// The block in a hand, everything else where it is at first.
+  Words holding(std::size_t robot, std::size_t grasp, const std::vector<double>& q) {
+    const world::Attachment held = arms_.hold(robot, grasp);
+    state_ = arms_.state();
+    state_.q[robot] = q;
+    state_.objects[TwoArms::kBlock].hold = arms_.hold_of(held);
+    Words out = {
+        {"pose(block)", arms_.word(held)}, {"pose(socket)", "start"}, {"pose(wall)", "start"}};
+    for (std::size_t r = 0; r < 2; ++r)
+      out["conf(" + arms_.world.robots[r].name + ")"] = manipulation::word_of(state_.q[r]);
+    return out;
+  }
+
+  Transform hand(std::size_t robot) const { return arms_.cell.pose_of(state_, robot, arms_.hand); }
+  Transform block() const { return arms_.cell.pose_of(state_, TwoArms::kBlock); }
+
+  /// Whether a robot's tool is at one of the block's grasps.
+  bool at_grasp(std::size_t robot) const {
+    for (const world::Grasp& grasp : arms_.world.objects[TwoArms::kBlock].grasps) {
+      const Transform held = judge::product(
+          judge::product(hand(robot), arms_.world.robots[robot].tools[0].pose), grasp.pose);
+      if ((held.translation - block().translation).norm() < 1e-6 &&
+          (held.linear - block().linear).cwiseAbs().maxCoeff() < 1e-6)
+        return true;
+    }
+    return false;
+  }
+
+  void let_go() {
+    judge::CellState::Place& place = state_.objects[TwoArms::kBlock];
+    place.pose = block();
+    place.hold.reset();
+  }
+
+  void take(std::size_t robot) {
+    EXPECT_TRUE(at_grasp(robot));
+    const Transform at = hand(robot),
+                    inverse{at.linear.transpose(), -(at.linear.transpose() * at.translation)};
+    judge::CellState::Place& place = state_.objects[TwoArms::kBlock];
+    place.hold = {robot, arms_.hand, judge::product(inverse, block()), {}};
+  }
+
+  /// Goes where a motion leads; calls `look` at each sample.
+  void follow(const Motion& m, const std::function<void()>& look = {}) {
+    const std::size_t robot = *arms_.world.find_robot(m.robot);
+    ASSERT_FALSE(m.path.empty());
+    EXPECT_EQ(m.path.front(), state_.q[robot]);
+    const auto& hold = state_.objects[TwoArms::kBlock].hold;
+    const bool holds = m.holds.contains("block");
+    if (hold && hold->robot == robot && !holds) let_go();
+    if (holds && !(hold && hold->robot == robot)) take(robot);
+    for (const std::vector<double>& q : samples_of(m.path, kStep)) {
+      state_.q[robot] = q;
+      const auto meeting = arms_.cell.find_meeting(state_, robot);
+      ASSERT_FALSE(meeting) << m.robot << ": " << meeting->names[0] << " and " << meeting->names[1];
+      for (std::size_t j = 0; j < q.size(); ++j) {
+        const robot::Variable& v = arms_.world.robots[robot].kinematics.variables[j];
+        ASSERT_GE(q[j], *v.lower);
+        ASSERT_LE(q[j], *v.upper);
+      }
+      if (look) look();
+    }
+  }
+
+  /// Where the word of a pose says that the block is, by the judge.
+  void expect_block(const std::string& word) {
+    judge::CellState stated = state_;
+    const manipulation::ObjectPlace place =
+        manipulation::place_of(word, arms_.world, TwoArms::kBlock);
+    judge::CellState::Place& at = stated.objects[TwoArms::kBlock];
+    at.hold.reset();
+    if (place.attachment) at.hold = arms_.hold_of(*place.attachment);
+    at.pose = place.mounted_on
+                  ? judge::product(arms_.world.objects[*place.mounted_on].pose, place.pose)
+                  : place.pose;
+    const Transform a = arms_.cell.pose_of(stated, TwoArms::kBlock), b = block();
+    EXPECT_LT((a.translation - b.translation).norm(), 1e-6) << word;
+    EXPECT_LT((a.linear - b.linear).cwiseAbs().maxCoeff(), 1e-6) << word;
+  }
+
+  TwoArms arms_;
+  plan::ExternalBindings all_ = manipulation::bind_externals(arms_.world, {});
+  judge::CellState state_ = arms_.state();
+};
+
+TEST_F(Actions, HandOverEndsInTheOtherHandWithBothAtHome) {
+  for (const auto& [from, to] : {std::pair{0U, 1U}, std::pair{1U, 0U}}) {
+    const auto& robots = arms_.world.robots;
+    const Words words = holding(from, 0, robots[from].home);
+    const Answer answer =
+        ask(all_, "handOver", {robots[from].name, "block", robots[to].name}, words);
+    ASSERT_EQ(answer.kind, Answer::Kind::Value) << answer.reason;
+    const std::vector<Motion> motions = motions_of(answer);
+    ASSERT_EQ(motions.size(), 4U);
+    const std::string order[] = {robots[from].name, robots[to].name, robots[from].name,
+                                 robots[to].name};
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_EQ(motions[i].robot, order[i]);
+      EXPECT_EQ(motions[i].holds.contains("block"), i == 0 || i == 3);
+      follow(motions[i]);
+      if (i == 1) EXPECT_TRUE(at_grasp(from) && at_grasp(to)) << "both hold it for a moment";
+    }
+    EXPECT_EQ(state_.q[0], robots[0].home);
+    EXPECT_EQ(state_.q[1], robots[1].home);
+    EXPECT_EQ(answer.value.substr(0, 3 + robots[to].name.size()), "on " + robots[to].name);
+    expect_block(answer.value);
+    // The same question has the same answer.
+    EXPECT_EQ(ask(all_, "handOver", {robots[from].name, "block", robots[to].name}, words).payload,
+              answer.payload);
+  }
+}
+
+TEST_F(Actions, WhatIsNotHeldIsNotHandedOver) {
+  Words words = holding(0, 0, arms_.world.robots[0].home);
+  EXPECT_EQ(ask(all_, "handOver", {"right", "block", "left"}, words).kind,
+            Answer::Kind::Impossible);
+  EXPECT_EQ(ask(all_, "handOver", {"left", "block", "left"}, words).kind, Answer::Kind::Impossible);
+  words["pose(block)"] = "start";
+  EXPECT_EQ(ask(all_, "handOver", {"left", "block", "right"}, words).kind,
+            Answer::Kind::Impossible);
+}
+
+TEST_F(Actions, LiftIsStraightUp) {
+  const Words words = holding(0, 0, kDown);
+  const Transform before = block();
+  const Answer answer = ask(all_, "lift", {"left", "block"}, words);
+  ASSERT_EQ(answer.kind, Answer::Kind::Value) << answer.reason;
+  const std::vector<Motion> motions = motions_of(answer);
+  ASSERT_EQ(motions.size(), 1U);
+  double height = 0;
+  follow(motions[0], [&] {
+    const Vec3 gone = block().translation - before.translation;
+    EXPECT_LT(std::hypot(gone.x(), gone.y()), 0.01);
+    EXPECT_GT(gone.z(), height - 1e-3);  // it does not go down
+    height = std::max(height, gone.z());
+  });
+  EXPECT_LT((block().translation - before.translation - Vec3(0, 0, 0.1)).norm(), 1e-6);
+  EXPECT_LT((block().linear - before.linear).cwiseAbs().maxCoeff(), 1e-6);
+  EXPECT_EQ(answer.value, manipulation::word_of(state_.q[0]));
+  // Under a plate there is no room: not found, never a path through it.
+  Words under = words;
+  under["pose(wall)"] = "at 0.27 0.35 1.06 0 0.7071068 0 0.7071068";
+  state_ = arms_.state();
+  EXPECT_NE(ask(all_, "lift", {"left", "block"}, under, 2).kind, Answer::Kind::Value);
+  EXPECT_EQ(ask(all_, "lift", {"right", "block"}, words, 2).kind, Answer::Kind::Impossible);
+}
+
+TEST_F(Actions, PutUprightLeansNoMoreThanItMay) {
+  const Words words = holding(0, 0, kDown);
+  const std::string end = manipulation::word_of(kDown);
+  const Answer answer = ask(all_, "putUpright", {"left", "block", "socket", end}, words);
+  ASSERT_EQ(answer.kind, Answer::Kind::Value) << answer.reason;
+  const std::vector<Motion> motions = motions_of(answer);
+  ASSERT_GE(motions.size(), 2U);
+  double most = 0;
+  std::size_t looked = 0;
+  for (const Motion& m : motions)
+    follow(m, [&] {
+      const Vec3 up = block().linear * Vec3::UnitZ();
+      most = std::max(most, std::atan2(std::hypot(up.x(), up.y()), up.z()));
+      ++looked;
+    });
+  EXPECT_LE(most, 0.26);
+  EXPECT_GT(looked, 50U);
+  EXPECT_EQ(state_.q[0], kDown);
+  expect_block(answer.value);
+  // It stands on the socket's top, as far above as is stated.
+  const Vec3 foot = block() * Vec3(0, 0, -0.08), top(0.55, 0.05, 0.041);
+  EXPECT_LT((foot - top - Vec3(0, 0, 1e-3 + 2 * TwoArms::kEpsilon)).norm(), 1e-6);
+  // From a configuration in which it leans already there is none.
+  const Words leaning = holding(0, 0, arms_.world.robots[0].home);
+  const Answer no = ask(all_, "putUpright", {"left", "block", "socket", end}, leaning, 2);
+  EXPECT_NE(no.kind, Answer::Kind::Value);
+  EXPECT_NE(no.reason.find("not upright where it is"), std::string::npos) << no.reason;
+  // But it can be put there without.
+  EXPECT_EQ(ask(all_, "put", {"left", "block", "socket", end}, leaning).kind, Answer::Kind::Value);
+}
+
+TEST_F(Actions, JoinSlidesAlongTheSeatsNormal) {
+  const Words words = holding(0, 0, kDown);
+  const Answer answer = ask(all_, "join", {"left", "block", "socket", "home"}, words);
+  ASSERT_EQ(answer.kind, Answer::Kind::Value) << answer.reason;
+  const std::vector<Motion> motions = motions_of(answer);
+  ASSERT_EQ(motions.size(), 4U);
+  const Vec3 seat(0.55, 0.05, 0.041);
+  const auto foot = [&] { return Vec3(block() * Vec3(0, 0, -0.08)); };
+  follow(motions[0]);
+  EXPECT_NEAR(foot().z() - seat.z(), 0.07 + 1e-3 + 2 * TwoArms::kEpsilon, 1e-6);  // the entry
+  follow(motions[1], [&] {
+    EXPECT_LT(std::hypot(foot().x() - seat.x(), foot().y() - seat.y()), 1e-3);
+    EXPECT_GT((block().linear * Vec3::UnitZ()).z(), 1 - 1e-4);
+  });
+  EXPECT_LT((foot() - seat - Vec3(0, 0, 1e-3 + 2 * TwoArms::kEpsilon)).norm(), 1e-6);
+  EXPECT_EQ(answer.value.substr(0, 10), "in socket ");
+  expect_block(answer.value);
+  const Transform tool = hand(0);
+  follow(motions[2], [&] {
+    const Vec3 back = tool.linear.transpose() * (hand(0).translation - tool.translation);
+    EXPECT_LT(std::hypot(back.x(), back.y()), 1e-3) << "straight back";
+    EXPECT_LT(back.z(), 1e-3);
+  });
+  follow(motions[3]);
+  EXPECT_EQ(state_.q[0], arms_.world.robots[0].home);
+  expect_block(answer.value);
+  // Mounted, it is no longer there to be mounted; nor is it mounted on itself.
+  Words mounted = words;
+  mounted["pose(block)"] = answer.value;
+  EXPECT_EQ(ask(all_, "join", {"left", "block", "socket", "home"}, mounted).kind,
+            Answer::Kind::Impossible);
+  EXPECT_EQ(ask(all_, "join", {"left", "block", "block", "home"}, words).kind,
+            Answer::Kind::Impossible);
+}
+
+/// The same cell with every box so much larger on each side.
+judge::Cell enlarged(const TwoArms& arms, double by) {
+  judge::Cell out;
+  const auto larger = [&](const geom::Mesh& mesh) {
+    Vec3 low = mesh.vertices.front(), high = low;
+    for (const Vec3& v : mesh.vertices) {
+      low = low.cwiseMin(v);
+      high = high.cwiseMax(v);
+    }
+    return box_at(high - low + Vec3::Constant(2 * by), 0.5 * (low + high));
+  };
+  for (const world::RobotModel& robot : arms.world.robots)
+    out.add_robot(robot.name, robot.kinematics, robot.base);
+  for (std::size_t r = 0; r < arms.world.robots.size(); ++r)
+    for (const world::LinkShape& shape : arms.world.robots[r].shapes)
+      out.add_link(r, shape.link, larger(shape.outer.body(0).hull));
+  for (const world::Object& o : arms.world.objects)
+    out.add_object(o.name, larger(o.outer.body(0).hull));
+  return out;
+}
+
+TEST_F(Actions, SweptCollidesIsNeverWronglyFreeAndRarelyWronglyNot) {
+  const judge::Cell large = enlarged(arms_, 0.01);
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> unit(-1, 1);
+  int free = 0, certain = 0, near = 0;
+  for (int i = 0; i < 200; ++i) {
+    std::vector<double> to = arms_.world.robots[0].home;
+    for (std::size_t j = 0; j < to.size(); ++j)
+      to[j] = std::clamp(to[j] + 0.5 * normal(random), -2.1, 2.1);
+    to = manipulation::configuration_of(manipulation::word_of(to), arms_.world.robots[0]);
+    Transform at;
+    at.linear = Eigen::Quaterniond(unit(random), unit(random), unit(random), unit(random))
+                    .normalized()
+                    .toRotationMatrix();
+    at.translation = {0.45 + 0.3 * unit(random), 0.35 + 0.4 * unit(random),
+                      0.8 + 0.3 * unit(random)};
+    const std::string wall = manipulation::word_of(at);
+    const Words words = {{"conf(left)", "home"}, {"conf(right)", "home"}, {"pose(wall)", wall}};
+    WordState state(words);
+    const std::vector<std::string> arguments = {"left", manipulation::word_of(to), "wall"};
+    const Answer answer = all_.at("sweptCollides")({arguments, state, 1, 0});
+    judge::CellState now = arms_.state();
+    for (judge::CellState::Place& place : now.objects) place.away = true;
+    now.objects[TwoArms::kWall] = {
+        manipulation::place_of(wall, arms_.world, TwoArms::kWall).pose, {}, false};
+    bool meets = false, may = false;
+    for (const std::vector<double>& q : samples_of({now.q[0], to}, 0.004)) {
+      now.q[0] = q;
+      meets = meets || arms_.cell.find_meeting(now, 0).has_value();
+      may = may || large.find_meeting(now, 0).has_value();
+    }
+    if (meets) EXPECT_EQ(answer.kind, Answer::Kind::Value) << i;
+    if (!may) EXPECT_EQ(answer.kind, Answer::Kind::Impossible) << i << ": 2 cm apart";
+    ++(meets ? certain : may ? near : free);
+  }
+  EXPECT_GT(free, 20);
+  EXPECT_GT(certain, 20);
+}
+
+TEST_F(Actions, SweptCollidesReadsTheOtherRobotToo) {
+  // The arm goes to the other side; the other one is there, or has gone.
+  const std::vector<double> over = {-1.2, -0.3, 1.5, 0, 1.2, 0};
+  const std::vector<std::string> arguments = {"left", manipulation::word_of(over), "wall"};
+  const auto answer = [&](const std::vector<double>& right) {
+    WordState state({{"conf(left)", "home"},
+                     {"conf(right)", manipulation::word_of(right)},
+                     {"pose(wall)", "start"}});
+    return all_.at("sweptCollides")({arguments, state, 1, 0}).kind;
+  };
+  judge::CellState now = arms_.state();
+  for (judge::CellState::Place& place : now.objects) place.away = true;
+  for (const std::vector<double>& right : {std::vector<double>{0, -0.3, 1.5, 0, 1.2, 0},
+                                           std::vector<double>{-2.5, -0.3, 1.5, 0, 1.2, 0},
+                                           std::vector<double>{0.9, -0.3, 1.5, 0, 1.2, 0}}) {
+    bool meets = false;
+    now.q[1] = right;
+    for (const std::vector<double>& q : samples_of({arms_.world.robots[0].home, over}, 0.004)) {
+      now.q[0] = q;
+      meets = meets || arms_.cell.find_meeting(now, 0).has_value();
+    }
+    EXPECT_EQ(answer(right) == Answer::Kind::Value, meets);
+  }
+}
+
+}  // namespace
+}  // namespace kaboum::test
