@@ -104,6 +104,7 @@ int solve(const PlanOptions& o) {
   options.timeout = o.timeout;
   options.seed = o.common.seed;
   options.max_memory = parse_memory(o.max_memory);
+  if (!o.assume.empty()) options.assumed = read_outcomes(o.assume);
   Progress progress(o.common.quiet);
   options.progress = [&](const plan::Statistics& s) {
     progress.show(std::to_string(s.expanded) + " states expanded, depth " +
@@ -115,15 +116,12 @@ int solve(const PlanOptions& o) {
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const Verdict said = verdict(solution);
-  Json report = {{"command", "solve"},
-                 {"domain", o.domain},
-                 {"problem", o.problem},
-                 {"search", o.search},
-                 {"status", said.status},
-                 {"limit", solution.limit},
-                 {"lost", solution.lost},
-                 {"scene", o.scene},
-                 {"statistics", statistics_json(solution.statistics)}};
+  Json report = {
+      {"command", "solve"},         {"domain", o.domain},
+      {"problem", o.problem},       {"search", o.search},
+      {"assumed", options.assumed}, {"status", said.status},
+      {"limit", solution.limit},    {"lost", solution.lost},
+      {"scene", o.scene},           {"statistics", statistics_json(solution.statistics)}};
   watch.save();
   if (!o.scene.empty()) {
     report["geometry"] = geometry_json(*o.counters);

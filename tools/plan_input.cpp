@@ -66,8 +66,8 @@ void open_cache(ExternalWatch& watch, const SceneFile& scene, const PlanTexts& t
 
 }  // namespace
 
-plan::Model load_model(const PlanOptions& o, ExternalWatch* watch) {
-  const PlanTexts texts = read_texts(o);
+plan::TaskTexts read_task(const PlanOptions& o, ExternalWatch* watch) {
+  PlanTexts texts = read_texts(o);
   plan::ExternalBindings bindings;
   if (!o.scene.empty()) {
     SceneFile scene = read_scene(o.scene);
@@ -77,11 +77,34 @@ plan::Model load_model(const PlanOptions& o, ExternalWatch* watch) {
     if (watch != nullptr && watch->cache) bindings = watch->cache->wrap(bindings);
   }
   for (const std::string& file : o.plugins)
-    external::merge(bindings, external::load_plugin(file), file);
+    external::merge(bindings, external::load_plugin(file, {o.process_timeout}), file);
   for (const std::string& command : o.processes)
     external::merge(bindings, external::start_process(command, {o.process_timeout}), command);
   if (watch != nullptr) bindings = watch->explanation.watch(bindings);
-  return plan::load(texts.domain, texts.second(), bindings);
+  return {std::move(texts.domain), std::move(texts.problem), std::move(bindings)};
+}
+
+plan::Model load_model(const PlanOptions& o, ExternalWatch* watch) {
+  const plan::TaskTexts task = read_task(o, watch);
+  return plan::load(task.domain, task.problem ? &*task.problem : nullptr, task.bindings);
+}
+
+std::map<std::string, std::string> read_outcomes(const std::string& file) {
+  const std::vector<char> bytes = io::read_file(file);
+  const Json given = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
+  const auto fail = [&] {
+    throw Error(ErrorCode::InvalidInput,
+                file +
+                    ": expected a JSON object of outcomes, as {\"isSpillable(o1)\": true, "
+                    "\"place(o2)\": \"shelf\"}");
+  };
+  if (!given.is_object()) fail();
+  std::map<std::string, std::string> out;
+  for (const auto& [name, value] : given.items()) {
+    if (!value.is_boolean() && !value.is_string()) fail();
+    out[name] = value.is_string() ? value.get<std::string>() : value.get<bool>() ? "true" : "false";
+  }
+  return out;
 }
 
 void ExternalWatch::save() const {

@@ -3,8 +3,10 @@
 #include <kaboum/manipulation/answer_cache.h>
 #include <kaboum/plan/load.h>
 #include <kaboum/plan/plan.h>
+#include <kaboum/plan/replan.h>
 
 #include <cstddef>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -34,15 +36,22 @@ struct ExternalWatch {
   void save() const;
 };
 
-/// The model of the texts; external functions of a scene, of programs and of shared libraries are
-/// bound where some are given.
+/// The texts; external functions of a scene, of programs and of shared libraries are bound where
+/// some are given.
 /// @param watch  filled, if it is given; answers are taken from the cache then.
-/// @throws Error as plan::load, read_scene, start_process and load_plugin.
+/// @throws Error as read_scene, start_process and load_plugin.
+plan::TaskTexts read_task(const PlanOptions& options, ExternalWatch* watch = nullptr);
+
+/// The model of these. @throws Error as read_task and plan::load.
 plan::Model load_model(const PlanOptions& options, ExternalWatch* watch = nullptr);
 
 /// The language that `name` says, else that of the file's name.
 /// @throws Error{InvalidArgument} naming the option when there is none.
 plan::Language language_of(const std::string& file, const std::string& name, const char* option);
+
+/// How sensing turns out, of a JSON file {"isSpillable(o1)": true, "place(o2)": "shelf"}: by atom
+/// or term "true", "false" or a value. @throws Error{InvalidInput} for another one.
+std::map<std::string, std::string> read_outcomes(const std::string& file);
 
 /// @throws Error{InvalidInput} as plan::read_plan.
 plan::Plan read_plan_file(const plan::Model& model, const std::string& file);

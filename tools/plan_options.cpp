@@ -29,7 +29,8 @@ CLI::Option* add_scene(CLI::App& app, PlanOptions& o) {
                  "A command whose program answers external functions by JSON lines "
                  "(docs/planning/externals.md); may be repeated")
       ->type_name("COMMAND");
-  app.add_option("--process-timeout", o.process_timeout, "Longest time for one of its answers")
+  app.add_option("--process-timeout", o.process_timeout,
+                 "Longest time for one answer of a program or plug-in")
       ->check(number_from(1e-3, 1e6))
       ->capture_default_str()
       ->type_name("S");
@@ -58,6 +59,10 @@ CLI::App* add_solve_command(CLI::App& app, PlanOptions& o) {
       ->capture_default_str()
       ->type_name("FILE");
   s->add_flag("--tree", o.tree, "Write the plan as a tree, without shared sub-plans");
+  s->add_option("--assume", o.assume,
+                "Outcomes of sensing that the plan needs branches for alone, a JSON file "
+                "{\"isSpillable(o1)\": false, ...}: where one is wrong, run plans again")
+      ->type_name("FILE");
   s->add_flag("--explain", o.explain,
               "Say which calls of external functions returned no value, how often, and why");
   s->add_flag("--no-cache", o.no_cache,

@@ -22,6 +22,8 @@ struct PlanOptions {
   double timeout = 0;                           ///< 0: none [s]
   std::string max_memory;                       ///< "500M"; empty: no limit
   std::string outcomes = "all", trajectories;   ///< of run
+  unsigned replan = 100;                        ///< of run
+  std::string assume;                           ///< of solve: a file
   double rate = 1000, acceleration = 5;         ///< of run [1/s; rad/s², length/s²]
   std::vector<std::string> packages;            ///< of run
   std::vector<std::string> processes, plugins;  ///< with external functions of a user's own

@@ -9,8 +9,10 @@
 
 #include <CLI/CLI.hpp>
 #include <charconv>
+#include <deque>
 #include <filesystem>
 #include <iostream>
+#include <memory>
 
 #include "plan_input.h"
 #include "scene_file.h"
@@ -34,21 +36,7 @@ plan::RunOptions run_options(const std::string& outcomes) {
     return out;
   }
   out.outcomes = plan::RunOptions::Outcomes::Given;
-  const std::vector<char> bytes = io::read_file(outcomes);
-  const Json given = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
-  const auto fail = [&] {
-    throw Error(ErrorCode::InvalidInput,
-                outcomes +
-                    ": expected a JSON object of outcomes, as {\"isSpillable(o1)\": true, "
-                    "\"place(o2)\": \"shelf\"}");
-  };
-  if (!given.is_object()) fail();
-  for (const auto& [name, value] : given.items()) {
-    if (!value.is_boolean() && !value.is_string()) fail();
-    out.given[name] = value.is_string()   ? value.get<std::string>()
-                      : value.get<bool>() ? "true"
-                                          : "false";
-  }
+  out.given = read_outcomes(outcomes);
   return out;
 }
 
@@ -59,10 +47,11 @@ execution::MotionSink csv_sink(const world::World& world, const std::string& fol
   fs::create_directories(folder, error);
   if (error)
     throw Error(ErrorCode::OutputFailed, folder + ": cannot be created: " + error.message());
-  return [&world, folder, number = 0](const plan::RunStep& step, std::size_t robot,
-                                      const motion::Trajectory& trajectory) mutable {
+  // Every plan that is carried out counts on.
+  return [&world, folder, number = std::make_shared<int>(0)](
+             const plan::RunStep& step, std::size_t robot, const motion::Trajectory& trajectory) {
     char name[64];
-    std::snprintf(name, sizeof name, "%05d-node%u-", ++number, step.node);
+    std::snprintf(name, sizeof name, "%05d-node%u-", ++*number, step.node);
     io::write_file(fs::path(folder) / (name + world.robots[robot].name + ".csv"),
                    to_csv(trajectory, world.robots[robot].kinematics));
   };
@@ -74,6 +63,47 @@ execution::SimulationOptions simulation_options(const PlanOptions& o) {
   out.acceleration = o.acceleration;
   if (o.time_optimal) out.profile = motion::Profile::Trapezoid;
   return out;
+}
+
+const char* name_of(plan::Outcome outcome) {
+  switch (outcome) {
+    case plan::Outcome::Solved:
+      return "solved";
+    case plan::Outcome::Unsolvable:
+      return "unsolvable";
+    case plan::Outcome::NotInferred:
+      return "not inferred";
+    case plan::Outcome::Limit:
+      break;
+  }
+  return "limit";
+}
+
+Json replans_json(const std::vector<plan::Replan>& replans) {
+  Json out = Json::array();
+  for (const plan::Replan& r : replans)
+    out.push_back({{"outcome", r.outcome},
+                   {"actions_before", r.actions},
+                   {"after_plan", r.after},
+                   {"status", name_of(r.result)},
+                   {"reason", r.reason},
+                   {"nodes", r.nodes},
+                   {"known_before", r.reached},
+                   {"wall_seconds", r.seconds}});
+  return out;
+}
+
+/// The first that there is no plan for, in words; and the exit code.
+int say_missing(const std::vector<plan::Replan>& replans) {
+  for (const plan::Replan& r : replans) {
+    if (r.result == plan::Outcome::Solved) continue;
+    std::cerr << "kaboum-plan: no plan from where " << r.outcome << " was sensed, after "
+              << r.actions << (r.actions == 1 ? " action: " : " actions: ") << r.reason << '\n';
+    return r.result == plan::Outcome::Unsolvable    ? kNo
+           : r.result == plan::Outcome::NotInferred ? kNotInferred
+                                                    : kLimit;
+  }
+  return kDone;
 }
 
 Json report_json(const execution::SimulationReport& r, const plan::RunSummary& summary) {
@@ -106,6 +136,15 @@ CLI::App* add_run_command(CLI::App& app, PlanOptions& o) {
                 "{\"isSpillable(o1)\": true, ...}: as it says")
       ->capture_default_str()
       ->type_name("all|seed:N|FILE");
+  r->add_option(
+       "--replan", o.replan,
+       "How often it is planned again, at most, where sensing turns out as the plan has no "
+       "branch for; 0: that is an error")
+      ->capture_default_str()
+      ->type_name("N");
+  r->add_option("--timeout", o.timeout, "Longest time for each new plan [no limit]")
+      ->check(number_from(1e-3, 1e9))
+      ->type_name("S");
   r->add_option("--rate", o.rate, "Samples per second")
       ->check(number_from(1, 1e5))
       ->capture_default_str()
@@ -128,18 +167,36 @@ CLI::App* add_run_command(CLI::App& app, PlanOptions& o) {
 }
 
 int run_plan(const PlanOptions& o) {
-  const plan::RunOptions options = run_options(o.outcomes);
+  plan::ReplanOptions options;
+  options.run = run_options(o.outcomes);
+  options.most = o.replan;
+  options.solve.algorithm = plan::Algorithm::Greedy;
+  options.solve.seed = o.common.seed;
+  options.solve.timeout = o.timeout;
   const SceneFile scene = read_scene(o.scene);
-  const plan::Model model = load_model(o);
+  const plan::TaskTexts task = read_task(o);
+  const plan::Model model =
+      plan::load(task.domain, task.problem ? &*task.problem : nullptr, task.bindings);
   const plan::Plan plan = read_plan_file(model, o.plan);
   std::vector<std::string> notes;
   const judge::Cell cell = execution::exact_cell(scene.world, o.scene, o.packages, notes);
   for (const std::string& note : notes) log(o.common.quiet, note);
-  execution::Simulation simulation(scene.world, cell, model, plan, simulation_options(o),
-                                   csv_sink(scene.world, o.trajectories));
-  const plan::RunSummary summary = plan::run(
-      model, plan, options, [&](const plan::RunStep& step) { simulation.carry_out(step); });
-  const execution::SimulationReport& r = simulation.report();
+  const execution::MotionSink sink = csv_sink(scene.world, o.trajectories);
+  std::deque<execution::Simulation> simulations;  // of each plan
+  const plan::StepsOf steps = [&](const plan::Model& m, const plan::Plan& p) {
+    execution::Simulation& simulation =
+        simulations.emplace_back(scene.world, cell, m, p, simulation_options(o), sink);
+    return [&simulation](const plan::RunStep& step) { simulation.carry_out(step); };
+  };
+  plan::ReplanSummary done;
+  if (o.replan == 0) {
+    done.run = plan::run(model, plan, options.run, steps(model, plan));
+  } else {
+    done = plan::run_and_replan(task, model, plan, options, steps);
+  }
+  const plan::RunSummary& summary = done.run;
+  execution::SimulationReport r;
+  for (const execution::Simulation& simulation : simulations) r += simulation.report();
   Json report = report_json(r, summary);
   report["command"] = "run";
   report["scene"] = o.scene;
@@ -147,14 +204,20 @@ int run_plan(const PlanOptions& o) {
   report["rate"] = o.rate;
   report["triangles"] = cell.triangles();
   report["notes"] = notes;
+  report["replans"] = replans_json(done.replans);
   write_report(o.common, "kaboum-plan", report);
   for (const std::string& problem : r.problems) std::cerr << "kaboum-plan: " << problem << '\n';
   if (!o.common.quiet || !r.good())
     std::cout << (r.good() ? "good: " : "not good: ") << summary.branches
               << (summary.branches == 1 ? " branch, " : " branches, ") << r.motions << " motions, "
               << r.samples << " samples, " << r.collisions << " collisions, " << r.limit_violations
-              << " limit violations, " << r.jumps << " jumps\n";
-  return r.good() ? kDone : kNo;
+              << " limit violations, " << r.jumps << " jumps"
+              << (done.replans.empty() ? ""
+                                       : ", planned again " + std::to_string(done.replans.size()) +
+                                             (done.replans.size() == 1 ? " time" : " times"))
+              << '\n';
+  const int missing = say_missing(done.replans);
+  return r.good() ? missing : kNo;
 }
 
 }  // namespace kaboum::tools

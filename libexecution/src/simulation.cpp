@@ -75,6 +75,21 @@ std::vector<MotionPart> parts_of(const std::string& payload, const world::World&
 
 }  // namespace
 
+SimulationReport& SimulationReport::operator+=(const SimulationReport& other) {
+  steps += other.steps;
+  motions += other.motions;
+  samples += other.samples;
+  collisions += other.collisions;
+  limit_violations += other.limit_violations;
+  jumps += other.jumps;
+  seconds += other.seconds;
+  most_velocity = std::max(most_velocity, other.most_velocity);
+  most_acceleration = std::max(most_acceleration, other.most_acceleration);
+  for (const std::string& problem : other.problems)
+    if (problems.size() < kMostProblems) problems.push_back(problem);
+  return *this;
+}
+
 Simulation::Simulation(const world::World& world, const judge::Cell& cell, const plan::Model& model,
                        const plan::Plan& plan, SimulationOptions options, MotionSink sink)
     : world_(world),

@@ -56,32 +56,46 @@ bool wait_for(int socket, short event, Clock& clock) {
 
 }  // namespace
 
-LineChannel::LineChannel(const std::string& command) {
-  int ends[2];
-  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
+void LineChannel::start(const std::string& name, const std::function<void(int)>& child) {
+  const auto fail = [&] {
     throw Error(ErrorCode::InvalidInput,
-                "'" + command + "' cannot be started: " + std::strerror(errno));
+                "'" + name + "' cannot be started: " + std::strerror(errno));
+  };
+  int ends[2];
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) fail();
   process_ = fork();
   if (process_ == 0) {
     setpgid(0, 0);  // so that all it starts can be ended
-    dup2(ends[1], STDIN_FILENO);
-    dup2(ends[1], STDOUT_FILENO);
-    execl("/bin/sh", "sh", "-c", command.c_str(), static_cast<char*>(nullptr));
+    ::close(ends[0]);
+    child(ends[1]);
     _exit(127);
   }
-  close(ends[1]);
-  socket_ = ends[0];
-  if (process_ < 0) {
-    close(socket_);
-    throw Error(ErrorCode::InvalidInput,
-                "'" + command + "' cannot be started: " + std::strerror(errno));
-  }
+  ::close(ends[1]);
+  lines_.reset(ends[0]);
+  if (process_ < 0) fail();
   setpgid(process_, process_);  // whoever comes first
+}
+
+LineChannel::LineChannel(const std::string& command) {
+  start(command, [&](int socket) {
+    dup2(socket, STDIN_FILENO);
+    dup2(socket, STDOUT_FILENO);
+    execl("/bin/sh", "sh", "-c", command.c_str(), static_cast<char*>(nullptr));
+  });
+}
+
+LineChannel::LineChannel(const std::string& name, const std::function<void(LineSocket&)>& work) {
+  start(name, [&](int socket) {
+    dup2(STDERR_FILENO, STDOUT_FILENO);  // standard output is the planner's result
+    LineSocket lines(socket);
+    work(lines);
+    _exit(0);
+  });
 }
 
 LineChannel::~LineChannel() { end(); }
 
-LineChannel::Got LineChannel::read_line(std::string& line, double& seconds) {
+LineSocket::Got LineSocket::read_line(std::string& line, double& seconds) {
   Clock clock(seconds);
   std::size_t looked_at = 0;
   for (;;) {
@@ -104,7 +118,7 @@ LineChannel::Got LineChannel::read_line(std::string& line, double& seconds) {
   }
 }
 
-bool LineChannel::write_line(std::string line, double& seconds) {
+bool LineSocket::write_line(std::string line, double& seconds) {
   Clock clock(seconds);
   line += '\n';
   std::size_t sent = 0;
@@ -121,9 +135,18 @@ bool LineChannel::write_line(std::string line, double& seconds) {
   return true;
 }
 
+void LineSocket::end_writing() { shutdown(socket_, SHUT_WR); }
+
+void LineSocket::close() { reset(-1); }
+
+void LineSocket::reset(int socket) {
+  if (socket_ >= 0) ::close(socket_);
+  socket_ = socket;
+}
+
 std::string LineChannel::end() {
   if (process_ < 0) return "it has ended";
-  shutdown(socket_, SHUT_WR);
+  lines_.end_writing();
   int status = 0;
   pid_t ended = 0;
   for (int waited = 0; ended == 0 && waited < kPatience; waited += 5) {
@@ -133,8 +156,8 @@ std::string LineChannel::end() {
   const bool by_itself = ended == process_;
   kill(-process_, SIGKILL);  // what it started as well
   if (!by_itself) waitpid(process_, &status, 0);
-  close(socket_);
-  process_ = socket_ = -1;
+  lines_.close();
+  process_ = -1;
   if (!by_itself) return "it was ended";
   if (WIFSIGNALED(status)) return "it ended by signal " + std::to_string(WTERMSIG(status));
   const int code = WEXITSTATUS(status);

@@ -1,32 +1,58 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 namespace kaboum::external {
 
-/// A program that lines are exchanged with.
-class LineChannel {
+/// Lines through a socket, which it closes.
+class LineSocket {
  public:
-  /// Starts a command of the shell. @throws Error{InvalidInput} when that fails.
-  explicit LineChannel(const std::string& command);
-  /// Ends the program, and all that it started.
-  ~LineChannel();
-  LineChannel(const LineChannel&) = delete;
-  LineChannel& operator=(const LineChannel&) = delete;
+  explicit LineSocket(int socket) : socket_(socket) {}
+  ~LineSocket() { close(); }
+  LineSocket(const LineSocket&) = delete;
+  LineSocket& operator=(const LineSocket&) = delete;
 
   enum class Got { Line, End, Late, TooLong };
   /// @param seconds  that are left; less afterwards by what it took.
   Got read_line(std::string& line, double& seconds);
-  /// false: the program takes no more, or not in this time.
+  /// false: the other side takes no more, or not in this time.
   bool write_line(std::string line, double& seconds);
+  /// The other side reads the end.
+  void end_writing();
+  void close();
+  /// Goes on with another socket.
+  void reset(int socket);
 
-  /// Ends the program. @return in words how it ended: "it ended with exit code 1".
+ private:
+  int socket_;
+  std::string buffer_;
+};
+
+/// A process that lines are exchanged with.
+class LineChannel {
+ public:
+  /// Starts a command of the shell. @throws Error{InvalidInput} when that fails.
+  explicit LineChannel(const std::string& command);
+  /// Does `work` in a child of this process, which then ends. What it prints goes to standard
+  /// error. @throws as above.
+  LineChannel(const std::string& name, const std::function<void(LineSocket&)>& work);
+  /// Ends the process, and all that it started.
+  ~LineChannel();
+  LineChannel(const LineChannel&) = delete;
+  LineChannel& operator=(const LineChannel&) = delete;
+
+  [[nodiscard]] LineSocket& lines() { return lines_; }
+
+  /// Ends the process. @return in words how it ended: "it ended with exit code 1".
   std::string end();
 
  private:
-  int socket_ = -1;
+  /// @param child  what the child does with its end of the socket.
+  void start(const std::string& name, const std::function<void(int)>& child);
+
   int process_ = -1;
-  std::string buffer_;
+  LineSocket lines_{-1};
 };
 
 }  // namespace kaboum::external

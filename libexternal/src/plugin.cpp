@@ -1,33 +1,23 @@
-// External functions of a shared library.
+// External functions of a shared library, in a process of its own: a crash or a call without an end
+// is that process's.
 
-#include <dlfcn.h>
 #include <kaboum/base/error.h>
 #include <kaboum/external/plugin.h>
 
-#include <exception>
+#include <memory>
+
+#include "asked_process.h"
+#include "plugin_host.h"
 
 namespace kaboum::external {
 
-plan::ExternalBindings load_plugin(const std::string& file) {
-  const auto fail = [&](const std::string& what) {
-    throw Error(ErrorCode::InvalidInput, file + ": " + what);
-  };
-  // A name without a slash would be looked for in the system's folders.
-  const std::string path = file.find('/') == std::string::npos ? "./" + file : file;
-  void* const library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (library == nullptr) fail(std::string("cannot be loaded: ") + dlerror());
-  using Entry = void (*)(plan::ExternalBindings&);
-  const auto entry = reinterpret_cast<Entry>(dlsym(library, kPluginEntry));
-  if (entry == nullptr)
-    fail(std::string("has no function ") + kPluginEntry + " (docs/planning/externals.md)");
-  plan::ExternalBindings out;
-  try {
-    entry(out);
-  } catch (const std::exception& error) {
-    fail(std::string(kPluginEntry) + " failed: " + error.what());
-  }
-  if (out.empty()) fail(std::string(kPluginEntry) + " binds no functions");
-  return out;
+plan::ExternalBindings load_plugin(const std::string& file, const ProcessOptions& options) {
+  if (!(options.most_seconds > 0))
+    throw Error(ErrorCode::InvalidArgument, "the time for an answer is not above 0");
+  const auto process =
+      std::make_shared<AskedProcess>("plug-in '" + file + "'", options, file,
+                                     [&](LineSocket& lines) { serve_plugin(file, lines); });
+  return AskedProcess::bindings(process);
 }
 
 void merge(plan::ExternalBindings& all, plan::ExternalBindings more, const std::string& origin) {

@@ -62,6 +62,7 @@ for case in 'crash:signal 11' 'leave:exit code 3' 'nonsense:no JSON' 'both:one o
   grep -q "external function 'reach(o1)'\|external function 'isBox(p1)'" err.txt || fail "$name: the function is not named: $(cat err.txt)"
 done
 expect 7 'no answer within' "$P" solve "$E/shelf.kpl" --process 'sh slow.program' --process-timeout 0.3 -o none.json
+grep -q "external function 'reach(o1)'\|external function 'isBox(p1)'" err.txt || fail "slow: the function is not named: $(cat err.txt)"
 pgrep -f 'sh slow.program' >/dev/null && fail "the slow program still runs"
 expect 3 'no JSON' "$P" solve "$E/shelf.kpl" --process 'echo hello' -o none.json
 expect 3 'its first line' "$P" solve "$E/shelf.kpl" --process 'echo 7' -o none.json

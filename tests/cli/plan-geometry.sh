@@ -40,6 +40,33 @@ expect 2 'expected all, seed:N' "$P" run "$S/remove/domain.kpl" remove/problem.k
 expect 0 '' "$P" run "$S/remove/domain.kpl" remove/problem.kpl --scene remove/cell.json --plan remove/plan1.json --rate 50 \
   --outcomes seed:2 --trajectories csv --report run.json
 [ "$(find csv -name '*.csv' | wc -l)" = "$(python3 -c 'import json; print(json.load(open("run.json"))["motions"])')" ] || fail "not a file for each motion"
+# Assumed outcomes: where one is wrong it is planned again. Blocks that are heavy go by another action.
+python3 - "$S/remove/domain.kpl" >weighed.kpl <<'END' || fail "domain with weights"
+import sys
+text = open(sys.argv[1]).read().replace("isHeld(block)", "isHeld(block), isHeavy(block)")
+remove = text[text.index("action remove("):text.index("goal:")]
+light = remove.replace("K(isHeld(?o)) &", "K(isHeld(?o)) & K(!isHeavy(?o)) &")
+heavy = remove.replace("K(isHeld(?o)) &", "K(isHeld(?o)) & K(isHeavy(?o)) &").replace("action remove", "action removeHeavy")
+weigh = "action weigh(?o : block)\n  preconds:\n    K(isHeld(?o)) & !Kw(isHeavy(?o))\n  effects:\n    add(Kw, isHeavy(?o))\n\n"
+print(text.replace(remove, light + heavy + weigh))
+END
+echo '{"isHeavy(o1)": false, "isHeavy(o2)": false, "isHeavy(o3)": false, "isHeavy(o4)": false, "isHeavy(o5)": false}' >light.json
+expect 0 solved "$P" solve weighed.kpl remove/problem.kpl --scene remove/cell.json --assume light.json -o assumed.json
+shows 1 'no case' "$P" check weighed.kpl remove/problem.kpl --scene remove/cell.json --plan assumed.json
+sed 's/"isHeavy(o2)": false/"isHeavy(o2)": true/' light.json >heavy.json
+shows 0 '^good: .*planned again 1 time' "$P" run weighed.kpl remove/problem.kpl --scene remove/cell.json --plan assumed.json --rate 100 \
+  --outcomes heavy.json --report replanned.json
+python3 - <<'END' || fail "report of replanning: $(cat replanned.json)"
+import json
+r = json.load(open("replanned.json"))
+assert [(p["outcome"], p["status"], p["after_plan"]) for p in r["replans"]] == [("isHeavy(o2)", "solved", 0)]
+assert r["collisions"] == r["jumps"] == r["limit_violations"] == 0 and r["replans"][0]["nodes"] > 0
+END
+shows 0 '^good: 1 branch, [0-9]* motions, [0-9]* samples, 0 collisions, 0 limit violations, 0 jumps$' "$P" run weighed.kpl remove/problem.kpl \
+  --scene remove/cell.json --plan assumed.json --rate 100 --outcomes light.json
+expect 3 'no case for isHeavy(o2)' "$P" run weighed.kpl remove/problem.kpl --scene remove/cell.json --plan assumed.json --outcomes heavy.json --replan 0
+echo '{"isGreen(o2)": true}' >green.json
+expect 2 'does not have' "$P" solve weighed.kpl remove/problem.kpl --scene remove/cell.json --assume green.json -o none.json
 # A plan for another scene does not hold in this one; nor does one whose path or value was changed.
 shows 1 invalid "$P" check "$S/remove/domain.kpl" remove/problem.kpl --scene remove/blocked.json --plan remove/plan1.json
 sed 's/\(\\"path\\":\[\[[^]]*\],\[\)[-0-9.]*/\10.123/' remove/plan1.json >changed.json

@@ -277,6 +277,9 @@ ExternalResult QueryEvaluator::ask(Index external, const std::vector<Index>& arg
     } catch (const std::exception& e) {
       throw Error(ErrorCode::InvalidInput, "external function '" + model_.externals[external].name +
                                                "' failed: " + e.what());
+    } catch (...) {
+      throw Error(ErrorCode::InvalidInput, "external function '" + model_.externals[external].name +
+                                               "' failed: it threw what is no std::exception");
     }
     if (result.kind != Answer::Kind::NotFound) break;
   }

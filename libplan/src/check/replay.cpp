@@ -4,6 +4,7 @@
 #include <kaboum/plan/replay.h>
 
 #include <algorithm>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -97,11 +98,17 @@ class Run {
     std::set<std::string> outcomes;
     for (const RuntimeKnowledge& then : after) {
       const auto [next, outcome] =
-          n.branches ? follow(n.branch, then) : std::pair(n.next, std::string());
+          n.branches ? follow(n.branch, then) : std::pair(std::optional(n.next), std::string());
       const NamedKnowledge before_names(model_, evaluator_, k),
           after_names(model_, evaluator_, then);
-      step_({node, before_names, after_names, next, outcome, actions});
-      ways = std::min(kMostBranches, ways + carry_out(next, then, actions + (n.acts ? 1 : 0)));
+      step_({node, before_names, after_names, next.value_or(kNone), outcome, actions});
+      const std::uint64_t done = actions + (n.acts ? 1 : 0);
+      if (!next) {
+        options_.unplanned({outcome, named(then), done});
+        ways = std::min(kMostBranches, ways + 1);
+        continue;
+      }
+      ways = std::min(kMostBranches, ways + carry_out(*next, then, done));
     }
     return seen_[{node, k}] = ways;
   }
@@ -123,8 +130,29 @@ class Run {
     ++used;
   }
 
-  /// Where a branch goes, and what that says.
-  std::pair<Index, std::string> follow(const Plan::Branch& b, const RuntimeKnowledge& k) const {
+  [[nodiscard]] KnownFacts::Term named(const Fact& f) const {
+    const std::vector<Symbol>& symbols = f[0] == 1 ? model_.functions : model_.predicates;
+    KnownFacts::Term out{symbols[f[1]].name};
+    for (std::size_t i = 2; i < f.size(); ++i) out.push_back(evaluator_.name(f[i]));
+    return out;
+  }
+
+  [[nodiscard]] KnownFacts named(const RuntimeKnowledge& k) const {
+    KnownFacts out;
+    for (const auto& [f, truth] : k.atoms()) out.atoms[named(f)] = truth;
+    for (const auto& [f, value] : k.values()) out.values[named(f)] = evaluator_.name(value);
+    for (const auto& [f, values] : k.excluded())
+      for (const Index v : values) out.excluded[named(f)].insert(evaluator_.name(v));
+    for (const auto& [entry, open] : k.exclusive()) {
+      out.exclusive.emplace_back();
+      for (const Fact& f : open) out.exclusive.back().insert(named(f));
+    }
+    return out;
+  }
+
+  /// Where a branch goes, nullopt: it has no case for what was sensed; and what that says.
+  std::pair<std::optional<Index>, std::string> follow(const Plan::Branch& b,
+                                                      const RuntimeKnowledge& k) const {
     const Fact f = branch_fact(b);
     const Index* known = b.function ? k.value(f) : nullptr;
     if (b.function ? known == nullptr : !k.knows_whether(f))
@@ -133,6 +161,7 @@ class Run {
     const Index value = b.function ? *known : k.knows(f, true) ? 1 : 0;
     for (const Plan::Branch::Case& c : b.cases)
       if (c.value == value) return {c.next, case_text(model_, b, value)};
+    if (options_.unplanned) return {std::nullopt, case_text(model_, b, value)};
     throw Error(ErrorCode::InvalidInput, "the plan has no case for " + case_text(model_, b, value));
   }
 

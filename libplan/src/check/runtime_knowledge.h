@@ -37,6 +37,14 @@ class RuntimeKnowledge {
   void forget_value(const Fact& term);
   void drop_exclusive(const std::set<Fact>& atoms);
 
+  // All there is; of a disjunction the atoms that are not decided.
+  [[nodiscard]] const std::map<Fact, bool>& atoms() const { return atoms_; }
+  [[nodiscard]] const std::map<Fact, Index>& values() const { return values_; }
+  [[nodiscard]] const std::map<Fact, std::set<Index>>& excluded() const { return excluded_; }
+  [[nodiscard]] const std::map<std::set<Fact>, std::set<Fact>>& exclusive() const {
+    return exclusive_;
+  }
+
   /// Only what is in `live`, and what Kx ties to it.
   void restrict_to(const std::set<Fact>& live);
 

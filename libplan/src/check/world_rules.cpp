@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "check/query_evaluator.h"
+#include "check/world_enumeration.h"
 
 namespace kaboum::plan {
 std::vector<Index> WorldRules::range(const Fact& f) const {
@@ -37,12 +38,12 @@ std::optional<std::vector<WorldRules::Belief>> WorldRules::start(std::set<Fact> 
   tie(facts);
   const std::vector<Index> none;
   World world;
+  WorldEnumeration worlds;
   for (const Fact& f : facts) {
     columns_[f] = world.size();
     world.push_back(kNone);
-    atoms_.push_back(f[0] == 0);
+    worlds.add_column(f[0] == 0, range(f));
   }
-  std::vector<Constraint> constraints;
   std::vector<Fact> sensed;
   std::set<Fact> stated;
   for (const Update& u : model_.initial) {
@@ -63,7 +64,7 @@ std::optional<std::vector<WorldRules::Belief>> WorldRules::start(std::set<Fact> 
         else if (!l.negated)
           settle(l.value->index);
         else if (at != columns_.end())
-          constraints.push_back({false, {{at->second, l.value->index, true}}});
+          worlds.add({false, {{at->second, l.value->index, true}}});
         break;
       case Update::Database::Kw:
       case Update::Database::Kv:
@@ -72,14 +73,14 @@ std::optional<std::vector<WorldRules::Belief>> WorldRules::start(std::set<Fact> 
         break;
       case Update::Database::Kx:
       case Update::Database::Or: {
-        Constraint c;
+        WorldEnumeration::Constraint c;
         c.exactly_one = u.database == Update::Database::Kx;
         for (const auto& o : u.literals) {
           stated.insert(fact_of(o, none));
           if (const auto column = columns_.find(fact_of(o, none)); column != columns_.end())
             c.literals.push_back({column->second, o.function ? o.value->index : 1, o.negated});
         }
-        if (c.literals.size() == u.literals.size()) constraints.push_back(std::move(c));
+        if (c.literals.size() == u.literals.size()) worlds.add(std::move(c));
         break;
       }
       case Update::Database::Lcw:
@@ -88,61 +89,9 @@ std::optional<std::vector<WorldRules::Belief>> WorldRules::start(std::set<Fact> 
     }
   }
   Belief all;
-  if (!enumerate(world, constraints, all)) return std::nullopt;
+  if (!worlds.enumerate(world, kMostWorlds, all)) return std::nullopt;
   if (all.empty()) throw Error(ErrorCode::InvalidInput, "the initial knowledge contradicts itself");
   return split({std::move(all)}, sensed);
-}
-
-/// Gives atoms the values that follow by a single constraint. @return false: one is violated.
-bool WorldRules::conclude(World& w, const std::vector<Constraint>& constraints,
-                          std::vector<std::size_t>& concluded) const {
-  for (bool again = true; again;) {
-    again = false;
-    for (const Constraint& c : constraints) {
-      std::size_t holding = 0;
-      std::vector<const Constraint::Literal*> open;
-      for (const auto& l : c.literals) {
-        if (w[l.column] == kNone)
-          open.push_back(&l);
-        else if ((w[l.column] == l.value) != l.negated)
-          ++holding;
-      }
-      if (holding + open.size() == 0 || (c.exactly_one && holding > 1)) return false;
-      const bool all_fail = c.exactly_one && holding == 1;
-      if (!all_fail && (holding > 0 || open.size() > 1)) continue;
-      for (const auto* l : open) {
-        if (!atoms_[l->column] || w[l->column] != kNone) continue;
-        w[l->column] = l->negated == all_fail ? 1 : 0;
-        concluded.push_back(l->column);
-        again = true;
-      }
-    }
-  }
-  return true;
-}
-
-bool WorldRules::enumerate(World& w, const std::vector<Constraint>& constraints,
-                           Belief& out) const {
-  std::vector<std::size_t> concluded;
-  bool few = true;
-  if (conclude(w, constraints, concluded)) {
-    const auto open = std::find(w.begin(), w.end(), kNone);
-    if (open == w.end()) {
-      out.insert(w);
-      few = out.size() <= kMostWorlds;
-    } else {
-      const auto column = static_cast<std::size_t>(open - w.begin());
-      const auto of = std::find_if(columns_.begin(), columns_.end(),
-                                   [&](const auto& c) { return c.second == column; });
-      for (const Index v : range(of->first)) {
-        w[column] = v;
-        few = few && enumerate(w, constraints, out);
-      }
-      w[column] = kNone;
-    }
-  }
-  for (const std::size_t column : concluded) w[column] = kNone;
-  return few;
 }
 
 std::vector<WorldRules::Belief> WorldRules::split(std::vector<Belief> all,

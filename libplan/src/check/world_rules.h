@@ -40,15 +40,6 @@ class WorldRules {
  private:
   static constexpr std::size_t kMostWorlds = 1U << 17U;
 
-  struct Constraint {
-    bool exactly_one = false;
-    struct Literal {
-      std::size_t column;
-      Index value;
-      bool negated;
-    };
-    std::vector<Literal> literals;
-  };
   /// An update that happens: in those worlds that meet all conditions.
   struct Happening {
     const Update* update;
@@ -67,9 +58,6 @@ class WorldRules {
   [[nodiscard]] std::vector<Index> range(const Fact& f) const;
   [[nodiscard]] Fact fact_of(const Update::Literal& l, const std::vector<Index>& slots) const;
   void tie(std::set<Fact>& facts) const;
-  bool conclude(World& w, const std::vector<Constraint>& constraints,
-                std::vector<std::size_t>& concluded) const;
-  bool enumerate(World& w, const std::vector<Constraint>& constraints, Belief& out) const;
   [[nodiscard]] std::vector<Belief> split(std::vector<Belief> all,
                                           const std::vector<Fact>& sensed) const;
   template <class Test>
@@ -85,7 +73,6 @@ class WorldRules {
 
   const Model& model_;
   std::map<Fact, std::size_t> columns_;
-  std::vector<bool> atoms_;  ///< by column
 };
 
 }  // namespace kaboum::plan

@@ -1,6 +1,8 @@
 // The initial knowledge: entries one by one, then the atoms that closing predicates makes false.
 #include "language/initial_state.h"
 
+#include <algorithm>
+
 #include "language/numbers.h"
 
 namespace kaboum::plan {
@@ -9,6 +11,46 @@ namespace {
 namespace sx = syntax;
 
 constexpr std::size_t kMaximumInitial = 5'000'000;  // entries, once ground
+/// Predicates with more atoms are closed only where that matters.
+constexpr double kManyAtoms = 1'000'000;
+
+/// Whether it may matter to a query if an atom that no step changes is false, or not known to be
+/// true.
+bool tells_false(const Query& q, Index predicate) {
+  using K = Query::Kind;
+  if ((q.kind == K::KnowWhether || (q.kind == K::Known && q.negated)) && q.symbol == predicate)
+    return true;
+  return std::ranges::any_of(q.children,
+                             [&](const Query& child) { return tells_false(child, predicate); });
+}
+
+/// The same of effects; also where one of them changes the predicate.
+bool tells_false(const std::vector<Effect>& effects, Index predicate) {
+  return std::ranges::any_of(effects, [&](const Effect& e) {
+    if (e.kind == Effect::Kind::Update)
+      return std::ranges::any_of(e.update.literals, [&](const Update::Literal& l) {
+        return !l.function && l.symbol == predicate;
+      });
+    return e.of_world || tells_false(e.condition, predicate) || tells_false(e.children, predicate);
+  });
+}
+
+/// Whether plans may depend on the predicate's atoms being false, rather than not known to be true.
+bool closing_matters(const Model& model, Index predicate) {
+  const auto reads = [](const ExternalFunction& f) { return f.reads_state; };
+  return std::ranges::any_of(model.external_functions, reads) ||
+         tells_false(model.goal, predicate) ||
+         std::ranges::any_of(model.actions, [&](const Action& a) {
+           return tells_false(a.precondition, predicate) || tells_false(a.effects, predicate);
+         });
+}
+
+double atoms_of(const Model& model, Index predicate) {
+  double out = 1;
+  for (const Index t : model.predicates[predicate].parameters)
+    out *= static_cast<double>(model.types[t].objects.size());
+  return out;
+}
 
 }  // namespace
 
@@ -25,10 +67,10 @@ void InitialState::declare(const sx::Document& document) {
   declare_unknown(document);
   for (const sx::Name& name : document.closed) {
     if (name.text == "all" && !terms_.symbols().is_predicate("all")) {
-      for (Index p = 0; p < model_.predicates.size(); ++p) close_predicate(p, {}, closed);
+      for (Index p = 0; p < model_.predicates.size(); ++p) close(p, closed);
       continue;
     }
-    close_predicate(terms_.symbols().predicate(name), {}, closed);
+    close(terms_.symbols().predicate(name), closed);
   }
   for (Update& u : closed) model_.initial.push_back(std::move(u));
 }
@@ -51,6 +93,11 @@ void InitialState::declare_unknown(const sx::Document& document) {
     for (const Argument& a : l.arguments) key.push_back(a.index);
     unknown_.insert(std::move(key));
   }
+}
+
+void InitialState::close(Index predicate, std::vector<Update>& out) {
+  if (atoms_of(model_, predicate) <= kManyAtoms || closing_matters(model_, predicate))
+    close_predicate(predicate, {}, out);
 }
 
 void InitialState::close_predicate(Index predicate, std::vector<Argument> prefix,

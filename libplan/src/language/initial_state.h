@@ -21,6 +21,8 @@ class InitialState {
 
  private:
   void declare_unknown(const syntax::Document& document);
+  /// Makes a predicate's atoms false that are not stated, unless nothing can tell.
+  void close(Index predicate, std::vector<Update>& out);
   void close_predicate(Index predicate, std::vector<Argument> prefix, std::vector<Update>& out);
   void expand(const Effect& e, std::vector<Index>& values, const SourceLocation& location,
               std::vector<Update>& out) const;

@@ -1,6 +1,7 @@
 // The ways into the library: texts of any language become a model, or a text of another language.
 #include <kaboum/plan/load.h>
 
+#include "language/known_state.h"
 #include "language/kpl_parser.h"
 #include "language/kpl_printer.h"
 #include "language/pddl.h"
@@ -57,6 +58,15 @@ std::optional<Language> language_from_name(std::string_view file_name) {
 
 Model load(const Text& domain, const Text* problem, const ExternalBindings& bindings) {
   return resolve(parse(domain, problem), bindings);
+}
+
+Model load_from(const KnownFacts& known, const Text& domain, const Text* problem,
+                const ExternalBindings& bindings) {
+  syntax::Document document = parse(domain, problem);
+  declare_words(known, document);
+  Model model = resolve(document, bindings);
+  start_from(known, model);
+  return model;
 }
 
 std::string convert(const Text& domain, const Text* problem, Language to) {

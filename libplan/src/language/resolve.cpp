@@ -23,8 +23,8 @@ class Resolver {
     model_.name = document_.name.text;
     model_.external_functions = bind_externals(document_, bindings_, symbols_);
     for (const sx::Action& a : document_.actions) declare_action(a);
-    InitialState(terms_, effects_, model_).declare(document_);
     declare_goal();
+    InitialState(terms_, effects_, model_).declare(document_);
     return std::move(model_);
   }
 

@@ -20,9 +20,15 @@ void merge(std::vector<Index>& into, const std::vector<Index>& from) {
 
 }  // namespace
 
-ContingentPlanner::ContingentPlanner(Task& task, SearchFunction search, Limits& limits,
+ContingentPlanner::ContingentPlanner(Task& task, SearchFunction search,
+                                     const Assumptions& assumptions, Limits& limits,
                                      Statistics& statistics)
-    : task_(task), search_(search), limits_(limits), statistics_(statistics), regression_(task) {
+    : task_(task),
+      search_(search),
+      assumptions_(assumptions),
+      limits_(limits),
+      statistics_(statistics),
+      regression_(task) {
   Entry goal;
   goal.condition = task.goal();
   entries_.push_back(std::move(goal));
@@ -37,6 +43,7 @@ Index ContingentPlanner::match(const Word* state) const {
 bool ContingentPlanner::reached(const Word* state) { return match(state) != kNone; }
 
 bool ContingentPlanner::allowed(const Word* state, OperatorId outcome) {
+  if (!expects(state, outcome)) return false;
   if (forbidden_.empty()) return true;
   const auto found = forbidden_.find(State(state, state + task_.layout().words()));
   return found == forbidden_.end() || !found->second.contains(task_.outcome(outcome).fluent);
@@ -107,6 +114,7 @@ Outcome ContingentPlanner::cover(const State& at, OperatorId step, Index next, I
     const OperatorId other = task_.outcome_id(fluent, value);
     Index then = next;
     if (other != step) {
+      if (!expects(at.data(), other)) continue;
       Knowledge k(task_.layout());
       k.assign(at.data());
       if (!task_.apply(other, k)) continue;  // cannot happen
@@ -133,7 +141,8 @@ Index ContingentPlanner::branch(const State& at, std::vector<std::pair<OperatorI
     for (Index v = 0; v < task_.layout().range_size(f); ++v) {
       const OperatorId missing = task_.outcome_id(fluent, v);
       if (std::none_of(cases.begin(), cases.end(),
-                       [&](const auto& c) { return c.first == missing; }))
+                       [&](const auto& c) { return c.first == missing; }) &&
+          expects(at.data(), missing))
         conditions.push_back(pool.leaf(FormulaPool::Kind::ValueIsNot, fluent, v));
     }
   }

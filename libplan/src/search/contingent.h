@@ -5,6 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "search/assumptions.h"
 #include "search/regression.h"
 #include "search/search.h"
 
@@ -19,12 +20,14 @@ namespace kaboum::plan {
 /// outcome that has no plan is forbidden in that state, and the search repeated. If that fails and
 /// a branch that nothing needed was left out, all states are looked at (exhaustive.h): only then is
 /// it proved that there is no plan. The same is tried, on a budget, where failures are many:
-/// repairs can take exponentially many searches among few states. docs/planning/search.md.
+/// repairs can take exponentially many searches among few states. Outcomes that are assumed not to
+/// happen need no plan. docs/planning/search.md.
 class ContingentPlanner final : private Target {
  public:
   using SearchFunction = Found (*)(const SearchInput&);
 
-  ContingentPlanner(Task& task, SearchFunction search, Limits& limits, Statistics& statistics);
+  ContingentPlanner(Task& task, SearchFunction search, const Assumptions& assumptions,
+                    Limits& limits, Statistics& statistics);
 
   /// Plans from the task's initial state. On success `plan()` is the result.
   Outcome run();
@@ -55,6 +58,9 @@ class ContingentPlanner final : private Target {
   // Target
   bool reached(const Word* state) override;
   bool allowed(const Word* state, OperatorId outcome) override;
+  bool expects(const Word* state, OperatorId outcome) override {
+    return assumptions_.expects(state, outcome);
+  }
 
   [[nodiscard]] Index match(const Word* state) const;
   Outcome solve(const State& start, Index& entry, ConflictSet& conflict);
@@ -68,6 +74,7 @@ class ContingentPlanner final : private Target {
 
   Task& task_;
   SearchFunction search_;
+  const Assumptions& assumptions_;
   Limits& limits_;
   Statistics& statistics_;
   Heuristics heuristics_;

@@ -21,6 +21,7 @@ void Exhaustive::expand(Index state) {
   Index fluent = kNone;  // of the branch at hand
   for (const OperatorId step : steps) {
     const Index of = task.is_outcome(step) ? task.outcome(step).fluent : kNone;
+    if (of != kNone && !in_.target.expects(store_[state], step)) continue;
     scratch.assign(store_[state]);
     if (!task.apply(step, scratch)) continue;
     ++in_.statistics.generated;

@@ -22,6 +22,8 @@ class Target {
   virtual bool reached(const Word* state) = 0;
   /// Whether branching on this outcome's fluent in this state is still worth trying.
   virtual bool allowed(const Word* state, OperatorId outcome) = 0;
+  /// Whether a plan needs a branch for this outcome; others are assumed not to happen.
+  virtual bool expects(const Word* state, OperatorId outcome) = 0;
 };
 
 struct Found {

@@ -38,8 +38,9 @@ ContingentPlanner::SearchFunction search_function(Algorithm a) {
 void search(Task& task, const SolveOptions& options, Limits& limits, Solution& solution) {
   ExternalCalls& calls = task.calls();
   calls.seed(options.seed);
+  const Assumptions assumptions(task, options.assumed);
   while (true) {
-    ContingentPlanner planner(task, search_function(options.algorithm), limits,
+    ContingentPlanner planner(task, search_function(options.algorithm), assumptions, limits,
                               solution.statistics);
     solution.outcome = planner.run();
     if (solution.outcome == Outcome::Solved) {
@@ -131,13 +132,15 @@ Solution solve(const Model& model, const SolveOptions& options) {
                                   : lost_knowledge(known);
     // Sets of worlds know no least cost or fewest steps: they come first where the databases would
     // mostly fail, else only after them.
+    // Nor do they know assumptions.
+    const bool use_worlds = options.assumed.empty();
     const bool worlds_first = view || (options.algorithm == Algorithm::Greedy &&
                                        has_disjunctions(model) && lost_in_worlds(model).empty());
-    if (!worlds_first || !search_worlds(model, options, limits, solution))
+    if (!use_worlds || !worlds_first || !search_worlds(model, options, limits, solution))
       search_knowledge(known, options, lost, limits, solution);
     Solution again;
     again.statistics = solution.statistics;
-    if (!worlds_first && solution.outcome == Outcome::NotInferred &&
+    if (use_worlds && !worlds_first && solution.outcome == Outcome::NotInferred &&
         search_worlds(model, options, limits, again))
       solution = std::move(again);
   } catch (const LimitExceeded&) {

@@ -25,7 +25,7 @@ std::optional<AnswerTree::Inserted> AnswerTree::insert(Root& root, const Footpri
   Index content = 0;
   for (const auto& [item, found] : read) {
     const bool replaces = is_leaf(at);
-    if (replaces && leaves_[leaf_number(at)].kind != Answer::Kind::NotFound) return std::nullopt;
+    if (replaces && this->leaf(leaf_number(at)).kind != Answer::Kind::NotFound) return std::nullopt;
     if (at == kNone || replaces) {
       const auto node = static_cast<Index>(nodes_.size());
       nodes_.push_back(item);
@@ -40,15 +40,24 @@ std::optional<AnswerTree::Inserted> AnswerTree::insert(Root& root, const Footpri
   }
   if (at != kNone && !is_leaf(at)) return std::nullopt;
   if (at != kNone) {  // tried again
-    leaves_[leaf_number(at)] = leaf;
-    return Inserted{leaf_number(at), false};
+    const Index known = leaf_number(at);
+    if (is_plain(known)) return std::nullopt;  // it was found already
+    leaves_[known] = leaf;
+    return Inserted{known, false};
   }
-  if (leaf.kind != Answer::Kind::NotFound && root.last != kNone && leaves_[root.last] == leaf) {
+  if (leaf.kind == Answer::Kind::Value && leaf.text == kNone && leaf.attempts == 1 &&
+      leaf.value + 1 < kPlain) {
+    const bool fresh = root.last != (leaf.value | kPlain);
+    root.last = leaf.value | kPlain;
+    link(root, parent, content, root.last | kLeaf);
+    return Inserted{root.last, fresh};
+  }
+  if (leaf.kind != Answer::Kind::NotFound && root.last != kNone && this->leaf(root.last) == leaf) {
     link(root, parent, content, root.last | kLeaf);
     return Inserted{root.last, false};
   }
   const auto made = static_cast<Index>(leaves_.size());
-  if (made >= kLeaf) throw Error(ErrorCode::LimitReached, "too many calls of external functions");
+  if (made >= kPlain) throw Error(ErrorCode::LimitReached, "too many calls of external functions");
   root.last = made;
   leaves_.push_back(leaf);
   link(root, parent, content, made | kLeaf);
@@ -89,7 +98,7 @@ Index AnswerTree::text(std::string text) {
 
 const std::string& AnswerTree::payload(Index leaf) const {
   static const std::string kEmpty;
-  const Index t = leaves_[leaf].text;
+  const Index t = is_plain(leaf) ? kNone : leaves_[leaf].text;
   return t == kNone ? kEmpty : texts_[t];
 }
 

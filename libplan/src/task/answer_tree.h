@@ -47,7 +47,10 @@ class AnswerTree {
   static bool is_leaf(Index node) { return node != kNone && (node & kLeaf) != 0; }
   static Index leaf_number(Index node) { return node & ~kLeaf; }
 
-  [[nodiscard]] const Leaf& leaf(Index number) const { return leaves_[number]; }
+  [[nodiscard]] Leaf leaf(Index number) const {
+    return is_plain(number) ? Leaf{number & ~kPlain, kNone, 1, Answer::Kind::Value}
+                            : leaves_[number];
+  }
   /// What an inner node reads.
   [[nodiscard]] Index reads(Index node) const { return nodes_[node]; }
   /// Where that content leads; kNone: nowhere yet.
@@ -73,6 +76,9 @@ class AnswerTree {
 
  private:
   static constexpr Index kLeaf = Index{1} << 31U;
+  /// Of a leaf's number: all that there is to it is the value, in the other bits.
+  static constexpr Index kPlain = Index{1} << 30U;
+  static bool is_plain(Index leaf) { return leaf != kNone && (leaf & kPlain) != 0; }
   struct Edge {
     Index node = kNone;
     Index content = 0;

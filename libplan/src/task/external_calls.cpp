@@ -86,7 +86,7 @@ bool ExternalCalls::arguments(const Call& c, const Word* state, std::vector<Inde
 }
 
 ExternalCalls::Reply ExternalCalls::reply(Index leaf) const {
-  const AnswerTree::Leaf& l = answers_.leaf(leaf);
+  const AnswerTree::Leaf l = answers_.leaf(leaf);
   const auto kind = l.kind == Answer::Kind::Value      ? Reply::Kind::Value
                     : l.kind == Answer::Kind::NotFound ? Reply::Kind::NotFound
                                                        : Reply::Kind::None;
@@ -103,7 +103,7 @@ ExternalCalls::Reply ExternalCalls::evaluate(Index call, const Word* state) {
   }
   if (at == kNone) return make(call, state, 0);
   const Index leaf = AnswerTree::leaf_number(at);
-  const AnswerTree::Leaf& l = answers_.leaf(leaf);
+  const AnswerTree::Leaf l = answers_.leaf(leaf);
   if (l.kind == Answer::Kind::NotFound && l.attempts < attempts_)
     return make(call, state, l.attempts);
   if (l.kind == Answer::Kind::NotFound && missed_ == kNone) {
@@ -147,6 +147,10 @@ ExternalCalls::Reply ExternalCalls::make(Index call, const Word* state, unsigned
     } catch (const std::exception& e) {
       throw Error(ErrorCode::InvalidInput, "external function '" + text(c, objects) +
                                                "' failed: " + e.what() +
+                                               state_text(model_, handles_, layout_, path));
+    } catch (...) {
+      throw Error(ErrorCode::InvalidInput, "external function '" + text(c, objects) +
+                                               "' failed: it threw what is no std::exception" +
                                                state_text(model_, handles_, layout_, path));
     }
     if (reader.sensed() != kNone) return open(reader.sensed());  // it was told, but went on

@@ -35,7 +35,7 @@ Task::Task(const Model& model, Limits& limits)
 OperatorId Task::action_id(Index schema, const std::vector<Index>& arguments) {
   OperatorId& known = schemas_[schema].id(arguments);
   if (known != kNoOperator) return known;
-  if (actions_.size() >= kOutcome - 1)
+  if (actions_.size() >= OutcomeTable::kFirst - 1)
     throw Error(ErrorCode::LimitReached, "too many ground actions");
   const Action& a = model_.actions[schema];
   auto ground = std::make_unique<GroundAction>();
@@ -71,13 +71,6 @@ std::int64_t Task::cost_of(const Action& a, const std::vector<Index>& slots) con
   return value->second;
 }
 
-OperatorId Task::outcome_id(Index fluent, Index value) {
-  const auto [it, fresh] = outcome_index_.emplace(
-      std::pair(fluent, value), static_cast<OperatorId>(outcomes_.size()) | kOutcome);
-  if (fresh) outcomes_.push_back({fluent, value});
-  return it->second;
-}
-
 std::vector<Index> Task::outcomes(Index fluent, const Word* state) const {
   const Fluent& f = layout_.fluents()[fluent];
   if (!f.function) return {1, 0};
@@ -100,7 +93,7 @@ bool Task::take(const ConditionalEffect::Transfer& t, const Word* state) {
 
 bool Task::apply(OperatorId step, Knowledge& state) {
   if (is_outcome(step)) {
-    const SensingOutcome o = outcomes_[step & ~kOutcome];
+    const SensingOutcome o = outcomes_[step];
     return layout_.fluents()[o.fluent].function ? state.learn_value(o.fluent, o.value)
                                                 : state.learn_atom(o.fluent, o.value != 0);
   }

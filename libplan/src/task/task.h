@@ -2,7 +2,6 @@
 
 #include <kaboum/plan/model.h>
 
-#include <map>
 #include <memory>
 #include <vector>
 
@@ -12,6 +11,7 @@
 #include "task/ground_action.h"
 #include "task/knowledge.h"
 #include "task/layout.h"
+#include "task/outcome_table.h"
 #include "task/query_grounder.h"
 #include "task/solve_limits.h"
 
@@ -51,16 +51,11 @@ class Task {
   /// state is then meaningless and the step not possible.
   bool apply(OperatorId step, Knowledge& state);
 
-  [[nodiscard]] bool is_outcome(OperatorId step) const { return (step & kOutcome) != 0; }
+  [[nodiscard]] bool is_outcome(OperatorId step) const { return OutcomeTable::contains(step); }
   [[nodiscard]] const GroundAction& action(OperatorId step) const { return *actions_[step]; }
-  struct SensingOutcome {
-    Index fluent = 0;
-    Index value = 0;  ///< atom: 1 true, 0 false; term: position in the range
-  };
-  [[nodiscard]] SensingOutcome outcome(OperatorId step) const {
-    return outcomes_[step & ~kOutcome];
-  }
-  OperatorId outcome_id(Index fluent, Index value);
+  using SensingOutcome = OutcomeTable::Outcome;
+  [[nodiscard]] SensingOutcome outcome(OperatorId step) const { return outcomes_[step]; }
+  OperatorId outcome_id(Index fluent, Index value) { return outcomes_.id(fluent, value); }
   /// Every outcome of sensing this fluent in this state.
   [[nodiscard]] std::vector<Index> outcomes(Index fluent, const Word* state) const;
   [[nodiscard]] std::int64_t cost(OperatorId step) const {
@@ -79,8 +74,6 @@ class Task {
   void instances(Index schema, const Possible& possible, const Visit& visit);
 
  private:
-  static constexpr OperatorId kOutcome = OperatorId{1} << 31U;
-
   template <bool Sensing>
   class Expansion;
 
@@ -101,8 +94,7 @@ class Task {
   EffectGrounder grounder_;
   std::vector<ActionSchema> schemas_;
   std::vector<std::unique_ptr<GroundAction>> actions_;
-  std::vector<SensingOutcome> outcomes_;
-  std::map<std::pair<Index, Index>, OperatorId> outcome_index_;
+  OutcomeTable outcomes_;
   std::vector<Index> slots_;
   std::vector<Index> needs_;
   std::vector<std::pair<Index, Word>> taken_;  ///< contents that transfers take over

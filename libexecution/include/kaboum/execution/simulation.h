@@ -32,6 +32,8 @@ struct SimulationReport {
   std::vector<std::string> problems;                ///< the first twenty, in words
 
   [[nodiscard]] bool good() const { return collisions + limit_violations + jumps == 0; }
+  /// With what another simulation looked at.
+  SimulationReport& operator+=(const SimulationReport& other);
 };
 
 /// A motion as it is sampled: for files of a controller.

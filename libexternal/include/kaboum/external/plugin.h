@@ -1,5 +1,6 @@
 #pragma once
 
+#include <kaboum/external/process.h>
 #include <kaboum/plan/externals.h>
 
 #include <string>
@@ -14,10 +15,14 @@ namespace kaboum::external {
 ///     }
 inline constexpr const char* kPluginEntry = "kaboum_externals_1";
 
-/// The external functions of a shared library, which stays loaded.
+/// The external functions of a shared library. It is loaded in a process of its own, a child of
+/// this one, which lives as long as the bindings.
+///
 /// @throws Error{InvalidInput} when it cannot be loaded, has no such function, or binds nothing;
-///   what it throws itself is named.
-plan::ExternalBindings load_plugin(const std::string& file);
+///   what it throws itself is named. The bindings throw as those of `start_process`: when the child
+///   crashes, and when a call takes longer than allowed (it is ended then); and std::runtime_error
+///   with what a function threw.
+plan::ExternalBindings load_plugin(const std::string& file, const ProcessOptions& options = {});
 
 /// Puts bindings together. @param origin  of `more`, for the message.
 /// @throws Error{InvalidInput} for a function that both have.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/plan/externals.h>
+#include <kaboum/plan/known_facts.h>
 #include <kaboum/plan/model.h>
 
 #include <optional>
@@ -24,6 +25,12 @@ struct Text {
 /// Reads, merges and checks a domain and (optionally) its problem.
 /// @throws Error{InvalidInput} "file:line:column: error: ..." with the line and a caret.
 Model load(const Text& domain, const Text* problem, const ExternalBindings& bindings = {});
+
+/// The same task from another state: all that is known there stands in place of the initial
+/// knowledge. Words of handles are constants of this model.
+/// @throws Error{InvalidInput} as above, and for names that the task does not have.
+Model load_from(const KnownFacts& known, const Text& domain, const Text* problem,
+                const ExternalBindings& bindings = {});
 
 /// The same document in another language. @throws Error{InvalidInput} naming what cannot be said in
 /// it.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <kaboum/plan/known_facts.h>
 #include <kaboum/plan/model.h>
 #include <kaboum/plan/plan.h>
 
@@ -32,6 +33,13 @@ struct RunStep {
   std::uint64_t actions = 0;  ///< before this node on the way here
 };
 
+/// Sensing has turned out as the plan has no branch for.
+struct Unplanned {
+  std::string outcome;        ///< "!isSpillable(o1)"
+  KnownFacts known;           ///< then, with what was sensed
+  std::uint64_t actions = 0;  ///< done so far
+};
+
 struct RunOptions {
   enum class Outcomes {
     All,     ///< every way that sensing may turn out
@@ -43,6 +51,9 @@ struct RunOptions {
   /// By atom or term, "isSpillable(o1)": "true", "false", or the value's name.
   std::map<std::string, std::string> given = {};
   std::uint64_t most_states = 1'000'000;
+  /// Called for what the plan has no branch for; the way through the plan ends there. None: that is
+  /// an error.
+  std::function<void(const Unplanned&)> unplanned = {};
 };
 
 struct RunSummary {
@@ -56,8 +67,8 @@ struct RunSummary {
 /// plan says (`check` decides whether that is so, and whether preconditions hold).
 ///
 /// @throws Error{InvalidInput} for graphs with cycles, plans that do not say what their calls
-///   returned, and given outcomes that no case of the plan is for; Error{LimitReached} beyond
-///   `most_states`; what `step` throws.
+///   returned, and outcomes that no case of the plan is for (unless `unplanned` is told of them);
+///   Error{LimitReached} beyond `most_states`; what `step` throws.
 RunSummary run(const Model& model, const Plan& plan, const RunOptions& options,
                const std::function<void(const RunStep&)>& step);
 

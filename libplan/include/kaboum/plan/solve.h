@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 
 namespace kaboum::plan {
@@ -43,6 +44,10 @@ struct SolveOptions {
   /// How often a call that finds nothing is made, with more samples each time, before the search
   /// gives up: all calls once, then all that found nothing once more, and so on.
   unsigned attempts = 8;
+  /// How sensing is assumed to turn out, by atom or term, "isSpillable(o1)": "true", "false", or
+  /// the value's name. The plan has branches for nothing else of these, unless it is known not to
+  /// be so (run_and_replan goes on from there).
+  std::map<std::string, std::string> assumed = {};
 };
 
 enum class Outcome {
@@ -61,7 +66,8 @@ struct Solution {
 };
 
 /// Plans from the model's initial knowledge to its goal. Deterministic, timeouts apart.
-/// @throws Error of what an external function or an inconsistent initial state causes.
+/// @throws Error of what an external function or an inconsistent initial state causes, and
+///   Error{InvalidArgument} for assumptions of what the model does not have.
 Solution solve(const Model& model, const SolveOptions& options);
 
 }  // namespace kaboum::plan

@@ -1,0 +1,188 @@
+// The planner's side of external functions that another process answers, by JSON lines.
+#include "asked_process.h"
+
+#include <kaboum/base/error.h>
+
+#include <stdexcept>
+
+namespace kaboum::external {
+namespace {
+
+using nlohmann::json;
+using plan::Answer;
+using plan::Question;
+
+constexpr std::size_t kQuoted = 80;  ///< of a line that makes no sense [bytes]
+
+std::string excerpt(const std::string& line) {
+  return "'" + line.substr(0, kQuoted) + (line.size() > kQuoted ? "...'" : "'");
+}
+
+std::string dump(const json& value) {
+  return value.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+/// Of functions that said that they do not read it.
+class NoState final : public plan::StateView {
+ public:
+  std::optional<std::string> value(const std::string& function,
+                                   const std::vector<std::string>& /*arguments*/) override {
+    refuse(function);
+  }
+  std::optional<bool> truth(const std::string& predicate,
+                            const std::vector<std::string>& /*arguments*/) override {
+    refuse(predicate);
+  }
+
+ private:
+  [[noreturn]] static void refuse(const std::string& name) {
+    throw Error(ErrorCode::InvalidInput,
+                "it reads '" + name + "', but is among the functions 'of_arguments' alone");
+  }
+};
+
+}  // namespace
+
+std::vector<std::pair<std::string, bool>> AskedProcess::functions() {
+  double seconds = options_.most_seconds;
+  std::string line;
+  const json hello = receive(line, seconds);
+  if (hello.is_object() && hello.contains("error") && hello["error"].is_string())
+    throw Error(ErrorCode::InvalidInput, hello["error"].get<std::string>());
+  std::vector<std::pair<std::string, bool>> out;
+  bool good = hello.is_object() && hello.value("kaboum_externals", json()) == json(1);
+  const auto add = [&](const char* member, bool reads_state) {
+    const json names = good ? hello.value(member, json::array()) : json();
+    good = good && names.is_array();
+    for (const json& name : good ? names : json::array()) {
+      good = good && name.is_string();
+      if (good) out.emplace_back(name.get<std::string>(), reads_state);
+    }
+  };
+  add("functions", true);
+  add("of_arguments", false);
+  if (!good || out.empty())
+    fail(R"(its first line is to be {"kaboum_externals": 1, "functions": ["NAME", ...]}, not )" +
+         excerpt(line));
+  return out;
+}
+
+plan::ExternalBindings AskedProcess::bindings(const std::shared_ptr<AskedProcess>& process) {
+  plan::ExternalBindings out;
+  for (const auto& [name, reads_state] : process->functions()) {
+    if (reads_state) {
+      out[name] = [process, name = name](const Question& q) { return process->ask(name, q); };
+      continue;
+    }
+    out[name] = [process, name = name](std::span<const std::string> arguments) {
+      NoState none;
+      const Answer answer = process->ask(name, {arguments, none});
+      if (answer.kind != Answer::Kind::Value) return std::string();
+      return answer.value.empty() ? std::string("true") : answer.value;
+    };
+  }
+  return out;
+}
+
+Answer AskedProcess::ask(const std::string& function, const Question& question) {
+  const std::lock_guard lock(mutex_);
+  double seconds = options_.most_seconds;
+  send({{"function", function},
+        {"arguments",
+         json(std::vector<std::string>(question.arguments.begin(), question.arguments.end()))},
+        {"seed", question.seed},
+        {"attempt", question.attempt}},
+       seconds);
+  for (;;) {
+    std::string line;
+    const json said = receive(line, seconds);
+    if (!said.is_object()) fail("it answered " + excerpt(line) + ", which is no JSON object");
+    if (said.contains("read") || said.contains("truth"))
+      send(read(said, question.state, line), seconds);
+    else
+      return answer(said, line);
+  }
+}
+
+void AskedProcess::fail(const std::string& what, ErrorCode code) {
+  throw Error(code, name_ + ": " + what);
+}
+
+json AskedProcess::receive(std::string& line, double& seconds) {
+  switch (channel_.lines().read_line(line, seconds)) {
+    case LineSocket::Got::Line:
+      break;
+    case LineSocket::Got::End:
+      fail(channel_.end() + " without an answer");
+    case LineSocket::Got::Late:
+      channel_.end();
+      fail("no answer within " + dump(options_.most_seconds) + " s; it was ended",
+           ErrorCode::LimitReached);
+    case LineSocket::Got::TooLong:
+      channel_.end();
+      fail("it answered with a line of more than 16 MiB");
+  }
+  json out = json::parse(line, nullptr, false);
+  if (out.is_discarded()) fail("it answered " + excerpt(line) + ", which is no JSON");
+  return out;
+}
+
+void AskedProcess::send(const json& message, double& seconds) {
+  if (!channel_.lines().write_line(dump(message), seconds))
+    fail(channel_.end() + ", or reads nothing");
+}
+
+/// What it asks of the state.
+json AskedProcess::read(const json& said, plan::StateView& state, const std::string& line) {
+  const bool truth = said.contains("truth");
+  const json& name = said[truth ? "truth" : "read"];
+  const json list = said.value("arguments", json::array());
+  std::vector<std::string> arguments;
+  if (list.is_array())
+    for (const json& a : list)
+      if (a.is_string()) arguments.push_back(a.get<std::string>());
+  if (!name.is_string() || !list.is_array() || arguments.size() != list.size())
+    fail("it asks what cannot be understood: " + excerpt(line));
+  try {
+    if (truth) {
+      const auto known = state.truth(name.get<std::string>(), arguments);
+      return {{"truth", known ? json(*known) : json()}};
+    }
+    const auto known = state.value(name.get<std::string>(), arguments);
+    return {{"value", known ? json(*known) : json()}};
+  } catch (...) {
+    // The call is over for whoever made it: the value is sensed only when the plan runs, or there
+    // is no such term.
+    double seconds = options_.most_seconds;
+    channel_.lines().write_line(R"({"stop": true})", seconds);
+    throw;
+  }
+}
+
+Answer AskedProcess::answer(const json& said, const std::string& line) {
+  const auto text = [&](const char* member) {
+    if (!said[member].is_string())
+      fail("in its answer '" + std::string(member) + "' is no text: " + excerpt(line));
+    return said[member].get<std::string>();
+  };
+  std::size_t kinds = 0;
+  for (const char* kind : {"value", "holds", "not_found", "impossible"})
+    kinds += said.contains(kind) ? 1 : 0;
+  if (said.contains("error")) throw std::runtime_error(text("error"));
+  if (kinds != 1)
+    fail(R"(an answer has one of "value", "holds", "not_found" and "impossible", not )" +
+         excerpt(line));
+  if (said.contains("not_found")) return Answer::not_found(text("not_found"));
+  if (said.contains("impossible")) return Answer::impossible(text("impossible"));
+  if (said.contains("holds")) {
+    if (!said["holds"].is_boolean()) fail("'holds' is true or false, not " + excerpt(line));
+    return Answer::holds(said["holds"].get<bool>(), said.contains("reason") ? text("reason") : "");
+  }
+  std::string payload;
+  if (said.contains("payload"))
+    payload =
+        said["payload"].is_string() ? said["payload"].get<std::string>() : dump(said["payload"]);
+  return Answer::found(text("value"), std::move(payload));
+}
+
+}  // namespace kaboum::external

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <kaboum/plan/load.h>
+#include <kaboum/plan/replay.h>
+#include <kaboum/plan/solve.h>
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kaboum::plan {
+
+/// A task as it is read, so that it can be read again from another state.
+struct TaskTexts {
+  Text domain;
+  std::optional<Text> problem;
+  ExternalBindings bindings = {};
+};
+
+struct ReplanOptions {
+  RunOptions run = {};      ///< `unplanned` is not looked at
+  SolveOptions solve = {};  ///< how it is planned again
+  unsigned most = 100;      ///< new plans; those that are needed beyond are not made
+};
+
+/// A plan that was made during a run.
+struct Replan {
+  std::string outcome;        ///< that no branch was there for: "!isSpillable(o1)"
+  std::uint64_t actions = 0;  ///< done before, by the plan that had no branch
+  unsigned after = 0;         ///< 0: that was the first plan; else which of these, from 1
+  Outcome result = Outcome::Limit;
+  std::string reason;     ///< why there is no plan
+  std::size_t nodes = 0;  ///< of the new plan
+  double seconds = 0;     ///< of planning
+  bool reached = false;   ///< the same was known before: that plan is carried out
+};
+
+struct ReplanSummary {
+  RunSummary run;  ///< of all plans together; a way is counted in each plan that it is a part of
+  std::vector<Replan> replans;
+  /// Whether there was a plan for all that happened.
+  [[nodiscard]] bool complete() const;
+};
+
+/// What carries out the steps of a plan of a model. Both live as long as the run.
+using StepsOf =
+    std::function<std::function<void(const RunStep&)>(const Model& model, const Plan& plan)>;
+
+/// Carries out a plan as `run` does; where sensing turns out as the plan has no branch for, it is
+/// planned again from what is known then, by the same external functions, and the new plan carried
+/// out [gaschler2016, §3.3.1: assumptions that fail]. Each state is planned for once. Random
+/// outcomes of the new plans have seeds of their own.
+/// @throws Error as `run` and `load_from`.
+ReplanSummary run_and_replan(const TaskTexts& texts, const Model& model, const Plan& plan,
+                             const ReplanOptions& options, const StepsOf& steps);
+
+}  // namespace kaboum::plan

@@ -1,0 +1,223 @@
+// Plans under assumptions, and execution that plans again where one fails: for every way that
+// sensing may turn out, what is done has to be what each thing asks for.
+
+#include <kaboum/plan/replan.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "plan_test.h"
+
+namespace kaboum::plan::test {
+namespace {
+
+/// Things that are weighed, then carried by one arm or, if heavy, by the strong one. Where the
+/// robot goes is a handle, whose words have blanks, and the next call is about it.
+std::string weighing(int n, bool strong = true) {
+  std::string text = "types: object, conf handle\nconstants: conf home; object ";
+  for (int i = 1; i <= n; ++i) text += (i > 1 ? ", o" : "o") + std::to_string(i);
+  text +=
+      "\npredicates: isHeavy(object), isDone(object), isFree\nfunctions: at : conf\n"
+      "externals: go(object, conf) : conf\n"
+      "action weigh(?o : object) preconds: K(isFree) & !Kw(isHeavy(?o))"
+      " effects: add(Kf, !isFree), add(Kw, isHeavy(?o))\n";
+  for (const std::string name : {"carry", "haul"})
+    if (name == "carry" || strong)
+      text += "action " + name + "(?o : object) preconds: K(" + (name == "carry" ? "!" : "") +
+              "isHeavy(?o)) & K(!isDone(?o)) & let ?q = extern(go(?o, at))"
+              " effects: add(Kf, isFree), add(Kf, isDone(?o)), add(Kf, at = ?q)\n";
+  text += "init: K(at = home), K(isFree)";
+  for (int i = 1; i <= n; ++i) text += ", K(!isDone(o" + std::to_string(i) + "))";
+  return text + "\ngoal: forallK(?o : object) K(isDone(?o))";
+}
+
+ExternalBindings walk() {
+  ExternalBindings all;
+  all["go"] = [](const Question& q) {
+    return Answer::found("q 0.5 " + std::to_string(q.arguments[1].size()) + " to " + q.arguments[0],
+                         "from " + q.arguments[1]);
+  };
+  return all;
+}
+
+struct Case {
+  TaskTexts texts;
+  Model model;
+  Plan plan;
+
+  Case(const std::string& text, const std::map<std::string, std::string>& assumed)
+      : texts{{"t.kpl", text, Language::Kpl}, std::nullopt, walk()},
+        model(load(texts.domain, nullptr, texts.bindings)) {
+    SolveOptions o;
+    o.algorithm = Algorithm::Greedy;
+    o.assumed = assumed;
+    const Solution s = solve(model, o);
+    EXPECT_EQ(s.outcome, Outcome::Solved);
+    plan = s.plan;
+  }
+
+  /// What is done, action by action: "haul(o1) from home".
+  ReplanSummary carry_out(const ReplanOptions& options, std::vector<std::string>& done) const {
+    return run_and_replan(texts, model, plan, options, [&](const Model& m, const Plan& p) {
+      return [&](const RunStep& step) {
+        const Plan::Node& node = p.nodes[step.node];
+        if (!node.acts) return;
+        done.push_back(action_text(m, node.action));
+        // Each plan's words go on from where the one before ended.
+        for (const Plan::Call& call : node.calls) {
+          EXPECT_EQ(call.arguments.at(1), step.before.value("at", {}));
+          EXPECT_EQ(call.value, step.after.value("at", {}));
+          EXPECT_EQ(call.payload, "from " + call.arguments.at(1));
+        }
+      };
+    });
+  }
+};
+
+std::map<std::string, std::string> all_light(int n) {
+  std::map<std::string, std::string> out;
+  for (int i = 1; i <= n; ++i) out["isHeavy(o" + std::to_string(i) + ")"] = "false";
+  return out;
+}
+
+TEST(Replan, APlanUnderAssumptionsHasNoOtherBranches) {
+  const Case c(weighing(4), all_light(4));
+  const PlanSize size = measure(c.model, c.plan);
+  EXPECT_EQ(size.leaves, 1U);
+  EXPECT_EQ(size.longest, 8U);
+  EXPECT_FALSE(check(c.model, c.plan).valid) << "it is no plan for all that may happen";
+  const Case full(weighing(4), {});
+  EXPECT_EQ(measure(full.model, full.plan).leaves, 16U);
+  // All searches know assumptions.
+  for (const Algorithm a : kAll) {
+    SolveOptions o;
+    o.algorithm = a;
+    o.assumed = {{"isHeavy(o2)", "true"}};
+    const Solution s = solve(c.model, o);
+    ASSERT_EQ(s.outcome, Outcome::Solved);
+    EXPECT_EQ(measure(c.model, s.plan).leaves, 8U);
+  }
+}
+
+TEST(Replan, EveryOutcomeEndsWithWhatItAsksFor) {
+  constexpr int kThings = 4;
+  const Case c(weighing(kThings), all_light(kThings));
+  for (unsigned heavy = 0; heavy < (1U << kThings); ++heavy) {
+    ReplanOptions options;
+    options.run.outcomes = RunOptions::Outcomes::Given;
+    unsigned count = 0;
+    for (int i = 0; i < kThings; ++i) {
+      const bool is = (heavy >> static_cast<unsigned>(i) & 1U) != 0;
+      count += is ? 1 : 0;
+      options.run.given["isHeavy(o" + std::to_string(i + 1) + ")"] = is ? "true" : "false";
+    }
+    // Planned again with the assumptions: each heavy thing is a surprise of its own.
+    options.solve.assumed = all_light(kThings);
+    for (const bool again : {true, false}) {
+      if (!again) options.solve.assumed.clear();
+      std::vector<std::string> done;
+      const ReplanSummary s = c.carry_out(options, done);
+      EXPECT_TRUE(s.complete());
+      EXPECT_EQ(s.replans.size(), again ? count : std::min(count, 1U));
+      for (int i = 0; i < kThings; ++i) {
+        const bool is = (heavy >> static_cast<unsigned>(i) & 1U) != 0;
+        const std::string o = "(o" + std::to_string(i + 1) + ")";
+        EXPECT_EQ(std::ranges::count(done, "weigh" + o), 1);
+        EXPECT_EQ(std::ranges::count(done, "haul" + o), is ? 1 : 0);
+        EXPECT_EQ(std::ranges::count(done, "carry" + o), is ? 0 : 1);
+        EXPECT_LT(std::ranges::find(done, "weigh" + o),
+                  std::ranges::find(done, (is ? "haul" : "carry") + o));
+      }
+      EXPECT_EQ(done.size(), 2U * kThings);
+    }
+  }
+}
+
+TEST(Replan, AllOutcomesAtOnce) {
+  const Case c(weighing(3), all_light(3));
+  ReplanOptions options;
+  std::vector<std::string> done;
+  const ReplanSummary s = c.carry_out(options, done);
+  EXPECT_TRUE(s.complete());
+  EXPECT_EQ(s.replans.size(), 3U);  // from each of three places on the way
+  for (const Replan& r : s.replans) {
+    EXPECT_EQ(r.after, 0U);
+    EXPECT_EQ(r.outcome.substr(0, 9), "isHeavy(o") << r.outcome;
+    EXPECT_GT(r.nodes, 0U);
+  }
+  std::vector<std::string> again;
+  EXPECT_EQ(c.carry_out(options, again).run.branches, s.run.branches);
+  EXPECT_EQ(done, again);
+}
+
+TEST(Replan, WhatCannotBePlannedIsSaid) {
+  const Case c(weighing(2, false), all_light(2));
+  ReplanOptions options;
+  options.run.outcomes = RunOptions::Outcomes::Given;
+  options.run.given = {{"isHeavy(o1)", "false"}, {"isHeavy(o2)", "true"}};
+  std::vector<std::string> done;
+  ReplanSummary s = c.carry_out(options, done);
+  ASSERT_EQ(s.replans.size(), 1U);
+  EXPECT_FALSE(s.complete());
+  EXPECT_EQ(s.replans[0].outcome, "isHeavy(o2)");
+  EXPECT_EQ(s.replans[0].result, Outcome::Unsolvable);
+  EXPECT_EQ(s.replans[0].reason, "every possibility was tried");
+  // The limit.
+  const Case more(weighing(3), all_light(3));
+  options.run.outcomes = RunOptions::Outcomes::All;
+  options.run.given.clear();
+  options.solve.assumed = all_light(3);
+  options.most = 2;
+  s = more.carry_out(options, done);
+  EXPECT_FALSE(s.complete());
+  EXPECT_EQ(s.replans.back().result, Outcome::Limit);
+  EXPECT_EQ(s.replans.back().reason, "more than 2 new plans are needed");
+  // Without replanning it is an error, as ever.
+  EXPECT_THROW(run(more.model, more.plan, {}, [](const RunStep&) {}), Error);
+}
+
+TEST(Replan, KnowledgeOfEveryKindIsTakenOver) {
+  // A value that is ruled out, and a disjunction that is open, both needed after the surprise.
+  const std::string text =
+      "types: v\nconstants: v a, b, c\npredicates: p, q, r, s, done\nfunctions: f : v\n"
+      "init: Kx(p | q | r), K(f != a), K(!done)\n"
+      "action look preconds: !Kw(s) effects: add(Kw, s)\n"
+      "action lookP preconds: K(s) & !Kw(p) effects: add(Kw, p)\n"
+      "action lookQ preconds: K(s) & !Kw(q) effects: add(Kw, q)\n"
+      "action lookF preconds: K(s) & !Kv(f) effects: add(Kv, f)\n"
+      "action easy preconds: K(!s) effects: add(Kf, done)\n"
+      "action hardB preconds: K(f = b) & (K(p) | K(q) | K(r)) effects: add(Kf, done)\n"
+      "action hardC preconds: K(f = c) & (K(p) | K(q) | K(r)) effects: add(Kf, done)\n"
+      "goal: K(done)";
+  const Case c(text, {{"s", "false"}});
+  EXPECT_EQ(measure(c.model, c.plan).longest, 2U);
+  std::vector<std::string> done;
+  ReplanOptions options;
+  const ReplanSummary s = c.carry_out(options, done);
+  ASSERT_EQ(s.replans.size(), 1U);
+  EXPECT_TRUE(s.complete()) << s.replans[0].reason;
+  EXPECT_EQ(s.replans[0].outcome, "s");
+}
+
+TEST(Replan, AssumptionsOfWhatThereIsNotAreRefused) {
+  const Case c(weighing(2), {});
+  const auto says = [&](const char* text, const char* value) {
+    SolveOptions o;
+    o.assumed = {{text, value}};
+    try {
+      solve(c.model, o);
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_EQ(says("isBlue(o1)", "true"),
+            "it is assumed of 'isBlue(o1)', which the model does not have");
+  EXPECT_EQ(says("isHeavy(o9)", "true"), "it is assumed of 'isHeavy(o9)', but there is no 'o9'");
+  EXPECT_EQ(says("isHeavy", "true"), "it is assumed of 'isHeavy', which has other arguments");
+  EXPECT_EQ(says("isHeavy(o1)", "maybe"),
+            "it is assumed of 'isHeavy(o1)', which is true or false, not maybe");
+}
+
+}  // namespace
+}  // namespace kaboum::plan::test
