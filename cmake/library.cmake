@@ -51,3 +51,22 @@ function(kaboum_add_tool name)
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tools)
   set_property(GLOBAL APPEND PROPERTY KABOUM_TOOLS ${name})
 endfunction()
+
+# kaboum_embed(<target> FILES...): the files' text in the target, as kaboum::embedded(NAME) of <embedded.h>
+# where NAME is a file's name without its folder.
+function(kaboum_embed target)
+  set(_entries "")
+  foreach(_file ${ARGN})
+    get_filename_component(_name ${_file} NAME)
+    file(READ ${_file} _text)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${_file})
+    string(APPEND _entries "  if (name == \"${_name}\")\n    return R\"KABOUM_FILE(${_text})KABOUM_FILE\";\n")
+  endforeach()
+  set(_content "#include <embedded.h>\n\nstd::string_view kaboum::embedded(std::string_view name) {\n${_entries}  return {};\n}\n")
+  set(_folder ${CMAKE_CURRENT_BINARY_DIR}/${target}-embedded)
+  file(CONFIGURE OUTPUT ${_folder}/embedded.cpp CONTENT "@_content@" @ONLY)
+  file(CONFIGURE OUTPUT ${_folder}/embedded.h @ONLY CONTENT
+       "#pragma once\n\n#include <string_view>\n\nnamespace kaboum {\n\n/// The text of a file that is part of the program; empty: there is none of that name.\nstd::string_view embedded(std::string_view name);\n\n}  // namespace kaboum\n")
+  target_sources(${target} PRIVATE ${_folder}/embedded.cpp)
+  target_include_directories(${target} PRIVATE ${_folder})
+endfunction()

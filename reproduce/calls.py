@@ -48,7 +48,7 @@ class Calls:
         # Another build's cached sets are not this one's results.
         decompose = self.programs / "bcd-decompose"
         cache = f"cache-{sha256(decompose)[:12]}" if decompose.is_file() else "cache"
-        environment = dict(os.environ, KABOUM_CACHE=str(self.folder / cache),
+        environment = dict(os.environ, KABOUM_CACHE=str(self.folder / cache), KABOUM_BIN=str(self.programs),
                            PATH=f"{self.programs}{os.pathsep}{os.environ.get('PATH', '')}")
         print(f"{name} ...", end="", file=sys.stderr, flush=True)
         start = time.monotonic()

@@ -9,6 +9,7 @@ import subprocess
 
 import plots
 import sampling
+import scenarios
 import sets
 import sweeps
 import thesis
@@ -344,9 +345,9 @@ def resources_section(context, document):
 
 SECTIONS = [models_section, proposition_1_section, table_4_2_section, same_share_section, table_b_1_section,
             figures_section, pictures_section, sets.section, sweeps.section, sampling.section,
-            resources_section]
+            scenarios.section, resources_section]
 QUICK_SECTIONS = [models_section, proposition_1_section, table_4_2_section, figures_section, pictures_section,
-                  sets.section, sweeps.section, sampling.section, resources_section]
+                  sets.section, sweeps.section, sampling.section, scenarios.section, resources_section]
 
 
 def make(models, runner, folder, quick):

@@ -78,3 +78,24 @@ def vertices_within(rows, percent):
             share = math.log(far / percent) / math.log(far / near)
             return round(n * (more / n) ** share)
     return None
+
+
+def planning(name):
+    """The lines of a table about planning, as they are."""
+    return _read(name)
+
+
+def by_search(name, **where):
+    """Of Tables 6.2 and 6.7: (quantity, search) -> "mean ± standard deviation" as printed."""
+    return {(row["quantity"], search): f"{row[search]} ± {row[search + '_sd']}" for row in _read(name)
+            if all(row[key] == value for key, value in where.items())
+            for search in ("depth_first", "breadth_first", "iterative_deepening")}
+
+
+def exact_ratios():
+    """(library, search, time of collision checks of exact meshes / of bounding sets) where Table 6.7 has both."""
+    time = {(row["geometry"], row["library"], search): float(row[search]) for row in _read("table-6-7.csv")
+            if row["quantity"] == "collision_checking_s" for search in ("depth_first", "breadth_first", "iterative_deepening")}
+    return [(library, search, seconds / time["bounded_0.02m", library, search])
+            for (geometry, library, search), seconds in time.items()
+            if geometry == "exact" and ("bounded_0.02m", library, search) in time]

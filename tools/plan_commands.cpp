@@ -14,6 +14,7 @@
 #include <map>
 
 #include "plan_input.h"
+#include "plan_page.h"
 
 namespace kaboum::tools {
 namespace {
@@ -173,6 +174,7 @@ int check(const PlanOptions& o) {
 }
 
 int show(const PlanOptions& o) {
+  if (!o.html.empty()) return write_page(o);
   const std::string format = drawing_format(o);
   const plan::Model model = load_model(o);
   plan::Plan p = read_plan_file(model, o.plan);

@@ -106,6 +106,14 @@ CLI::App* add_show_command(CLI::App& app, PlanOptions& o) {
       ->check(CLI::IsMember({"text", "dot", "svg"}))
       ->type_name("NAME");
   w->add_flag("--tree", o.tree, "Expand shared sub-plans");
+  w->add_option("--html", o.html,
+                "Instead: one page that plays the plan's execution in the scene of --scene, every "
+                "branch, for a browser; no network is needed")
+      ->excludes("--output-format")
+      ->type_name("FILE");
+  w->add_option("--package-path", o.packages,
+                "With --html: a package of package:// or a folder that holds it; may be repeated")
+      ->type_name("DIR");
   add_common_options(*w, o.common);
   return w;
 }

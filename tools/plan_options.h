@@ -24,8 +24,9 @@ struct PlanOptions {
   std::string outcomes = "all", trajectories;   ///< of run
   unsigned replan = 100;                        ///< of run
   std::string assume;                           ///< of solve: a file
+  std::string html;                             ///< of show
   double rate = 1000, acceleration = 5;         ///< of run [1/s; rad/s², length/s²]
-  std::vector<std::string> packages;            ///< of run
+  std::vector<std::string> packages;            ///< of run and show
   std::vector<std::string> processes, plugins;  ///< with external functions of a user's own
   double process_timeout = 10;                  ///< [s]
   std::shared_ptr<manipulation::GeometryCounters> counters =

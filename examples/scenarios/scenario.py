@@ -91,6 +91,8 @@ def options(name, n, least, most):
     parser.add_argument("--search", default="greedy", choices=["dfs", "bfs", "ids", "greedy", "astar"], help="of the planner [greedy]")
     parser.add_argument("--timeout", type=float, default=300, help="of planning, in seconds [300]")
     parser.add_argument("--scene-only", action="store_true", help="make scene and problem, and stop")
+    parser.add_argument("--plan-only", action="store_true", help="plan and check; execute and draw nothing")
+    parser.add_argument("--no-cache", action="store_true", help="neither take the scene's answers from earlier runs nor keep them")
     o = parser.parse_args()
     if not least <= o.n <= most:
         parser.error(f"N is from {least} to {most}")
@@ -115,7 +117,8 @@ def run(name, o, cell, problem_text):
         done = subprocess.run([tool("kaboum-plan"), command, *files, *arguments, "--report", str(report), "--quiet"], check=False)
         return done.returncode, json.loads(report.read_text()) if report.exists() else {}
 
-    status, solved = call("solve", "-o", plan, "--seed", str(o.seed), "--search", o.search, "--timeout", str(o.timeout))
+    status, solved = call("solve", "-o", plan, "--seed", str(o.seed), "--search", o.search, "--timeout", str(o.timeout),
+                          *(["--no-cache"] if o.no_cache else []))
     result["plan_s"] = round(solved.get("resources", {}).get("user_seconds_searching", 0.0), 4)
     result["predicate_calls"] = solved.get("geometry", {}).get("predicate_calls", 0)
     result["ik_calls"] = solved.get("geometry", {}).get("ik_calls", 0)
@@ -125,11 +128,15 @@ def run(name, o, cell, problem_text):
         result.update(solved=True, actions=size["longest_path"], nodes=size["nodes"], leaves=size["leaves"])
         checked, _ = call("check", "--plan", plan)
         result["checked"] = checked == 0
+        if o.plan_only:
+            print(json.dumps(result))
+            return checked
         executed, report = call("run", "--plan", plan, "--outcomes", "all")
         result.update(executed_branches=report.get("branches", 0), samples=report.get("samples", 0),
                       collisions=report.get("collisions", 0), limit_violations=report.get("limit_violations", 0),
                       jumps=report.get("jumps", 0))
-        subprocess.run([tool("kaboum-plan"), "show", *files, "--plan", plan, "-o", str(out / "plan.svg")], check=True)
+        for drawing in (["-o", str(out / "plan.svg")], ["--html", str(out / "plan.html")]):
+            subprocess.run([tool("kaboum-plan"), "show", *files, "--plan", plan, *drawing], check=True)
         status = max(checked, executed)
     print(json.dumps(result))
     return status

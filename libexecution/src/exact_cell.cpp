@@ -38,36 +38,23 @@ geom::Mesh link_mesh(const std::vector<robot::Geometry>& shapes, const robot::Ro
   return all;
 }
 
-void add_robot(judge::Cell& cell, const world::RobotModel& robot, std::size_t number,
-               const robot::RobotFile& file, bool visual,
-               const std::vector<std::string>& packages) {
-  for (const world::LinkShape& shape : robot.shapes) {
-    const robot::Link& link = file.robot.links.at(shape.link);
-    cell.add_link(number, shape.link,
-                  link_mesh(visual ? link.visual : link.collision, file, packages));
-  }
-  for (const world::AllowedPair& pair : robot.allowed)
-    if (pair.reason == world::AllowedPair::Reason::Stated)
-      cell.allow(robot.name + "/" + robot.kinematics.links[pair.a].name,
-                 robot.name + "/" + robot.kinematics.links[pair.b].name);
-}
-
 }  // namespace
 
-judge::Cell exact_cell(const world::World& world, const fs::path& scene,
-                       const std::vector<std::string>& packages, Notes& notes) {
+std::vector<ExactMesh> exact_meshes(const world::World& world, const fs::path& scene,
+                                    const std::vector<std::string>& packages) {
   const std::vector<char> bytes = io::read_file(scene.string());
   const json description = json::parse(bytes.begin(), bytes.end());
   const fs::path folder = scene.parent_path();
-  judge::Cell cell;
-  for (const world::RobotModel& robot : world.robots)
-    cell.add_robot(robot.name, robot.kinematics, robot.base);
+  std::vector<ExactMesh> out;
   for (std::size_t r = 0; r < world.robots.size(); ++r) {
     const json& stated = description.at("robots").at(r);
     const robot::RobotFile file =
         robot::read_robot((folder / stated.at("urdf").at("file").get<std::string>()).string());
-    add_robot(cell, world.robots[r], r, file, stated.value("shapes", "collision") == "visual",
-              packages);
+    const bool visual = stated.value("shapes", "collision") == "visual";
+    for (std::size_t s = 0; s < world.robots[r].shapes.size(); ++s) {
+      const robot::Link& link = file.robot.links.at(world.robots[r].shapes[s].link);
+      out.push_back({{r, s}, link_mesh(visual ? link.visual : link.collision, file, packages)});
+    }
   }
   for (std::size_t o = 0; o < world.objects.size(); ++o) {
     const json& outer = description.at("objects").at(o).at("outer");
@@ -76,11 +63,31 @@ judge::Cell exact_cell(const world::World& world, const fs::path& scene,
                   scene.string() + ": object '" + world.objects[o].name +
                       "' does not say in 'made_from' which mesh its set was made from: there is no "
                       "exact mesh to judge by");
-    cell.add_object(
-        world.objects[o].name,
-        io::read_mesh((folder / outer["made_from"][0].at("file").get<std::string>()).string())
-            .mesh);
+    out.push_back(
+        {{world::Item::kObject, o},
+         io::read_mesh((folder / outer["made_from"][0].at("file").get<std::string>()).string())
+             .mesh});
   }
+  return out;
+}
+
+judge::Cell exact_cell(const world::World& world, const fs::path& scene,
+                       const std::vector<std::string>& packages, Notes& notes) {
+  judge::Cell cell;
+  for (const world::RobotModel& robot : world.robots)
+    cell.add_robot(robot.name, robot.kinematics, robot.base);
+  for (const ExactMesh& exact : exact_meshes(world, scene, packages)) {
+    const auto [robot, index] = exact.item;
+    if (robot == world::Item::kObject)
+      cell.add_object(world.objects[index].name, exact.mesh);
+    else
+      cell.add_link(robot, world.robots[robot].shapes[index].link, exact.mesh);
+  }
+  for (const world::RobotModel& robot : world.robots)
+    for (const world::AllowedPair& pair : robot.allowed)
+      if (pair.reason == world::AllowedPair::Reason::Stated)
+        cell.allow(robot.name + "/" + robot.kinematics.links[pair.a].name,
+                   robot.name + "/" + robot.kinematics.links[pair.b].name);
   for (const auto& pair : world.allowed) cell.allow(world.name_of(pair[0]), world.name_of(pair[1]));
   if (cell.open() > 0)
     notes.push_back(std::to_string(cell.open()) +

@@ -6,14 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <nlohmann/json.hpp>
 
+#include "motion_part.h"
 #include "simulation_state.h"
 
 namespace kaboum::execution {
 namespace {
-
-using nlohmann::json;
 
 constexpr std::size_t kMostProblems = 20;
 /// Between what is mounted and its seat, beside both ε. [length]
@@ -26,50 +24,6 @@ std::vector<std::uint32_t> touching(const world::RobotModel& robot, std::uint32_
   for (const world::Gripper& gripper : robot.grippers)
     if (robot.tools[gripper.tool].link == link)
       out.insert(out.end(), gripper.links.begin(), gripper.links.end());
-  return out;
-}
-
-}  // namespace
-
-/// Who moves, by which links it holds what, and where it goes.
-struct MotionPart {
-  std::size_t robot = 0;
-  std::map<std::size_t, std::uint32_t> holds;  ///< objects, by what link
-  robot::Path path;
-};
-
-namespace {
-
-/// The motions of a payload; empty: it is of another kind.
-std::vector<MotionPart> parts_of(const std::string& payload, const world::World& world) {
-  std::vector<MotionPart> out;
-  const json list = json::parse(payload, nullptr, false);
-  if (!list.is_array()) return out;
-  for (const json& motion : list) {
-    if (!motion.is_object() || !motion.contains("path") || !motion.contains("robot")) return {};
-    MotionPart part;
-    const auto robot = world.find_robot(motion["robot"].get<std::string>());
-    if (!robot)
-      throw Error(ErrorCode::InvalidInput, "a path of the plan is for robot '" +
-                                               motion["robot"].get<std::string>() +
-                                               "', which the scene does not have");
-    part.robot = *robot;
-    part.path = motion["path"].get<robot::Path>();
-    const robot::Robot& kinematics = world.robots[*robot].kinematics;
-    for (const robot::Path::value_type& q : part.path)
-      if (q.size() != kinematics.variables.size())
-        throw Error(ErrorCode::InvalidInput, "a path of the plan does not fit its robot");
-    const json holds = motion.value("holds", json::object());
-    for (const auto& [name, link] : holds.items()) {
-      const auto object = world.find_object(name);
-      const auto number = kinematics.find_link(link.get<std::string>());
-      if (!object || !number)
-        throw Error(ErrorCode::InvalidInput,
-                    "a path of the plan holds '" + name + "', which the scene does not have");
-      part.holds[*object] = *number;
-    }
-    out.push_back(std::move(part));
-  }
   return out;
 }
 
@@ -98,8 +52,7 @@ Simulation::Simulation(const world::World& world, const judge::Cell& cell, const
       plan_(plan),
       options_(options),
       sink_(std::move(sink)) {
-  if (!(options.rate > 0) || !(options.acceleration > 0) || !(options.usual_velocity > 0))
-    throw Error(ErrorCode::InvalidArgument, "rates and limits must be above 0");
+  require_above_zero(options);
 }
 
 void Simulation::say(const std::string& problem) {
@@ -170,12 +123,7 @@ void Simulation::follow(const MotionPart& part, judge::CellState& state,
     if (part.path.empty()) return;
   }
   hold(part, state);
-  const std::size_t count = part.path.front().size();
-  motion::SpeedLimits limits;
-  for (const robot::Variable& v : world_.robots[part.robot].kinematics.variables)
-    limits.velocity.push_back(v.velocity.value_or(options_.usual_velocity));
-  limits.acceleration.assign(count, options_.acceleration);
-  const motion::Trajectory trajectory(part.path, limits, options_.rate, options_.profile);
+  const motion::Trajectory trajectory = trajectory_of(part, world_, options_);
   ++report_.motions;
   report_.seconds += trajectory.duration();
   look(trajectory, part.robot, state);

@@ -25,6 +25,54 @@ assert r["collisions"] == r["limit_violations"] == r["jumps"] == 0 and r["sample
 assert r["predicate_calls"] > 0 and r["ik_calls"] > 0
 END
   [ -s "$name/plan.svg" ] || fail "$name: no drawing"
+  player "$name"
+}
+# player NAME: the page holds all bodies, all steps, and nothing from elsewhere; its code plays every branch (with node).
+player() {
+  python3 - "$1" "$S/../../tools/player" <<'END_OF_PAGE' || fail "$1: the page"
+import base64, html.parser, json, re, sys
+name, player = sys.argv[1:]
+page = open(f"{name}/plan.html", encoding="utf-8").read()
+class Reader(html.parser.HTMLParser):
+    ids, scripts, inside = set(), [], False
+    def handle_starttag(self, tag, attributes):
+        a = dict(attributes)
+        assert "src" not in a and "href" not in a, (tag, a)
+        if "id" in a:
+            assert a["id"] not in self.ids, a["id"]
+            self.ids.add(a["id"])
+        if tag == "script":
+            self.inside = True
+            self.scripts.append("")
+    def handle_endtag(self, tag):
+        self.inside = self.inside and tag != "script"
+    def handle_data(self, data):
+        if self.inside:
+            self.scripts[-1] += data
+reader = Reader()
+reader.feed(page)
+assert "http" not in page.replace("http://www.w3.org/2000/svg", "") and "{{" not in page
+data = json.loads(reader.scripts[0])
+for script, file in zip(reader.scripts[1:], ("scene.js", "player.js"), strict=True):
+    assert script.strip() == open(f"{player}/{file}", encoding="utf-8").read().strip(), file
+used = set(re.findall(r"\$\('([a-z]+)'\)", reader.scripts[2]))
+assert used and used <= reader.ids, used - reader.ids
+cell, plan = json.load(open(f"{name}/cell.json")), json.load(open(f"{name}/plan.json"))
+links = [f"{r['name']}/{l['link']}" for r in cell["robots"] for l in r["links"]]
+assert [s["name"] for s in data["shapes"]] == links + [o["name"] for o in cell["objects"]]
+assert all(s["bodies"] and s["exact"] for s in data["shapes"])
+assert {s["node"] for s in data["steps"]} == set(range(len(plan["nodes"])))
+assert {f"node-{n}" for n in range(len(plan["nodes"]))} <= reader.ids, "the graph"
+for said, node in zip(data["nodes"], plan["nodes"], strict=True):
+    if "action" in node:
+        assert said["action"] == f"{node['action']}({', '.join(node['arguments'])})", (said["action"], node)
+box = [b for s in data["shapes"] if s["name"] == "table" for b in s["bodies"]]
+if box:
+    assert len(base64.b64decode(box[0]["points"])) == 8 * 3 * 4
+END_OF_PAGE
+  if command -v node >/dev/null; then
+    node "$HERE/play_page.js" "$1/plan.html" "$S/../../tools/player/scene.js" >said.txt 2>&1 || fail "$1: $(tail -5 said.txt)"
+  fi
 }
 scenario force-sensing 2 10 4
 scenario bimanual-assembly 4 8 1
@@ -44,4 +92,10 @@ sed '/^action move/,/^  effects: add(Kf, conf/d; s/^goal:.*/goal: K(containsBear
 expect 7 'join(robot2, o[12], o4, home): not found.*does not slide into o4' "$P" solve inner.kpl bimanual-assembly/problem.kpl \
   --scene bimanual-assembly/cell.json -o none.json --explain --timeout 8
 [ ! -e none.json ] || fail "a plan was written"
+# Pages: what is needed; nothing is written where something is missing.
+expect 2 'needs --scene' "$P" show "$D" bimanual-assembly/problem.kpl --plan again.json --html none.html
+expect 4 'none/page.html' "$P" show "$@" --plan again.json --html none/page.html
+rm bimanual-assembly/pipe.off
+expect 3 'pipe.off' "$P" show "$@" --plan again.json --html none.html
+[ ! -e none.html ] || fail "a page was written"
 finish

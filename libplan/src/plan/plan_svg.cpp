@@ -82,6 +82,7 @@ class Drawing {
       std::string text = node_label(model, plan.nodes[n]);
       if (referred[n]) text += "  #" + std::to_string(n);
       item[n] = add(row(n), plan.nodes[n].branches ? Kind::Branch : Kind::Step, text);
+      items_[item[n]].node = n;
     }
     if (plan.root == kNone) {
       lead(start, 0, "", add(2, Kind::Goal, "goal"), 2);
@@ -137,6 +138,7 @@ class Drawing {
     std::string text;
     double box = 0;  ///< its width without the gap beside it
     double y = 0, height = 0;
+    Index node = kNone;  ///< of the plan, of steps: their boxes have ids
   };
 
   std::size_t add(std::size_t row, Kind kind, std::string text) {
@@ -145,7 +147,7 @@ class Drawing {
                        : kind == Kind::Bend  ? 2
                        : kind == Kind::Label ? letters * kLabelLetter + 6
                                              : letters * kLetter + 16;
-    items_.push_back({kind, std::move(text), box, 0, 0});
+    items_.push_back({kind, std::move(text), box});
     return graph_.add(row, box + kGap);
   }
 
@@ -206,6 +208,7 @@ class Drawing {
     out << "<rect x=\"" << x - item.box / 2 << "\" y=\"" << item.y - item.height / 2
         << "\" width=\"" << item.box << "\" height=\"" << item.height << "\" fill=\"" << fill;
     if (!label) out << "\" rx=\"5\" stroke=\"" << (item.kind == Kind::Reference ? "none" : "black");
+    if (item.node != kNone) out << "\" id=\"node-" << item.node;
     out << "\"/>\n<text x=\"" << x << "\" y=\"" << item.y + 4;
     if (label) out << "\" fill=\"#0050a0\" font-size=\"11";
     out << "\">" << escape_xml(item.text) << "</text>\n";

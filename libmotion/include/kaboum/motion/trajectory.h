@@ -42,6 +42,10 @@ class Trajectory {
   [[nodiscard]] double duration() const {
     return static_cast<double>(first_.back()) / rate_;
   }  ///< [s]
+  /// When a waypoint is reached. [s]
+  [[nodiscard]] double time_at(std::size_t waypoint) const {
+    return static_cast<double>(first_.at(waypoint)) / rate_;
+  }
   /// @pre 0 ≤ time ≤ duration. [s]
   [[nodiscard]] Instant at(double time) const;
   /// Of sample k; waypoints exactly.

@@ -1,0 +1,213 @@
+// Plans as data of a page that plays them.
+
+#include <kaboum/base/error.h>
+#include <kaboum/execution/recording.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "motion_part.h"
+#include "simulation_state.h"
+
+namespace kaboum::execution {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string base64(std::span<const unsigned char> bytes) {
+  static constexpr char kDigits[] =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  out.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t word = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      word = word << 8U | (k < count ? std::uint32_t{bytes[i + k]} : 0U);
+    for (std::size_t k = 0; k < 4; ++k)
+      out += k <= count ? kDigits[word >> (18 - 6 * k) & 63U] : '=';
+  }
+  return out;
+}
+
+/// Numbers of 32 bits, the lowest byte first.
+template <class Number>
+std::string packed(const std::vector<Number>& numbers) {
+  static_assert(sizeof(Number) == 4);
+  std::vector<unsigned char> bytes;
+  bytes.reserve(4 * numbers.size());
+  for (const Number number : numbers) {
+    const auto word = std::bit_cast<std::uint32_t>(number);
+    for (unsigned k = 0; k < 4; ++k) bytes.push_back(word >> 8 * k & 255U);
+  }
+  return base64(bytes);
+}
+
+Json mesh_json(const geom::Mesh& mesh) {
+  std::vector<float> points;
+  for (const geom::Vec3& v : mesh.vertices)
+    for (const double x : v) points.push_back(static_cast<float>(x));
+  std::vector<std::uint32_t> triangles;
+  for (const geom::Triangle& t : mesh.triangles)
+    triangles.insert(triangles.end(), t.begin(), t.end());
+  return {{"points", packed(points)}, {"triangles", packed(triangles)}};
+}
+
+Json pose_json(const geom::Transform& pose) {
+  Json out = Json::array();
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) out.push_back(pose.linear(row, column));
+  for (const double x : pose.translation) out.push_back(x);
+  return out;
+}
+
+Json robot_json(const world::RobotModel& robot) {
+  Json joints = Json::array();
+  for (const robot::Joint& joint : robot.kinematics.joints) {
+    const char* type = joint.type == robot::JointType::Fixed      ? "fixed"
+                       : joint.type == robot::JointType::Revolute ? "revolute"
+                                                                  : "prismatic";
+    joints.push_back({{"type", type},
+                      {"parent", joint.parent},
+                      {"origin", pose_json(joint.origin)},
+                      {"axis", {joint.axis.x(), joint.axis.y(), joint.axis.z()}},
+                      {"variable", joint.variable},
+                      {"multiplier", joint.multiplier},
+                      {"offset", joint.offset}});
+  }
+  return {{"name", robot.name}, {"base", pose_json(robot.base)}, {"joints", std::move(joints)}};
+}
+
+Json shape_json(const world::World& world, const world::Item& item) {
+  Json out = {{"name", world.name_of(item)}};
+  if (item.robot == world::Item::kObject) {
+    out["object"] = item.index;
+  } else {
+    out["robot"] = item.robot;
+    out["link"] = world.robots[item.robot].shapes[item.index].link;
+  }
+  Json bodies = Json::array();
+  const world::BoundingSet& set = world.outer(item);
+  for (std::size_t i = 0; i < set.size(); ++i) bodies.push_back(mesh_json(set.body(i).hull));
+  out["bodies"] = std::move(bodies);
+  return out;
+}
+
+Json state_json(const judge::CellState& state) {
+  Json places = Json::array();
+  for (const judge::CellState::Place& place : state.objects) {
+    if (place.away)
+      places.push_back({{"away", true}});
+    else if (place.hold)
+      places.push_back({{"robot", place.hold->robot},
+                        {"link", place.hold->link},
+                        {"pose", pose_json(place.hold->pose)}});
+    else
+      places.push_back({{"pose", pose_json(place.pose)}});
+  }
+  return {{"q", state.q}, {"places", std::move(places)}};
+}
+
+}  // namespace
+
+struct Recording::Data {
+  Json states = Json::array(), nodes = Json::array(), steps = Json::array();
+};
+
+Recording::Recording(const world::World& world, const plan::Model& model, const plan::Plan& plan,
+                     SimulationOptions options)
+    : world_(world),
+      model_(model),
+      plan_(plan),
+      options_(options),
+      data_(std::make_unique<Data>()) {
+  require_above_zero(options);
+  data_->nodes = Json::array_t(plan.nodes.size());
+}
+
+Recording::~Recording() = default;
+
+std::uint32_t Recording::state_number(const plan::KnownState& known) {
+  const auto stated = state_of(world_, model_, known);
+  if (!stated)
+    throw Error(ErrorCode::InvalidInput,
+                "a configuration or pose is not known when the plan is carried out: it cannot be "
+                "shown");
+  const auto [found, added] =
+      states_.emplace(stated->words, static_cast<std::uint32_t>(states_.size()));
+  if (added) data_->states.push_back(state_json(stated->state));
+  return found->second;
+}
+
+std::uint32_t Recording::step_number(plan::Index node, std::uint32_t state) {
+  const auto [found, added] =
+      steps_.emplace(std::pair(node, state), static_cast<std::uint32_t>(steps_.size()));
+  if (added) data_->steps.push_back({{"node", node}, {"before", state}, {"ways", Json::array()}});
+  return found->second;
+}
+
+void Recording::record_motions(plan::Index number) {
+  Json& out = data_->nodes[number];
+  if (!out.is_null()) return;
+  const plan::Plan::Node& node = plan_.nodes[number];
+  Json motions = Json::array();
+  for (const plan::Plan::Call& call : node.calls)
+    for (const MotionPart& part : parts_of(call.payload, world_)) {
+      if (part.path.empty()) continue;
+      const motion::Trajectory trajectory = trajectory_of(part, world_, options_);
+      Json times = Json::array(), holds = Json::object();
+      for (std::size_t i = 0; i < part.path.size(); ++i) times.push_back(trajectory.time_at(i));
+      for (const auto& [object, link] : part.holds) holds[std::to_string(object)] = link;
+      motions.push_back({{"robot", part.robot},
+                         {"holds", std::move(holds)},
+                         {"times", std::move(times)},
+                         {"path", part.path}});
+    }
+  out = {{"action", node.acts ? action_text(model_, node.action) : ""},
+         {"motions", std::move(motions)}};
+}
+
+void Recording::carry_out(const plan::RunStep& step) {
+  const std::uint32_t before = state_number(step.before), after = state_number(step.after);
+  const std::uint32_t number = step_number(step.node, before);
+  record_motions(step.node);
+  Json way = {{"outcome", step.outcome}, {"after", after}, {"next", nullptr}};
+  if (step.next != plan::kNone) way["next"] = step_number(step.next, after);
+  Json& ways = data_->steps[number]["ways"];
+  if (std::ranges::find(ways, way) == ways.end()) ways.push_back(std::move(way));
+}
+
+std::string Recording::json(const std::vector<ExactMesh>& exact) const {
+  Json out = {{"kaboum_player", 1}, {"unit", world_.unit}};
+  out["robots"] = Json::array();
+  for (const world::RobotModel& robot : world_.robots) out["robots"].push_back(robot_json(robot));
+  auto& shapes = out["shapes"] = Json::array();
+  const auto add = [&](const world::Item& item) {
+    shapes.push_back(shape_json(world_, item));
+    for (const ExactMesh& mesh : exact)
+      if (mesh.item == item) shapes.back()["exact"] = mesh_json(mesh.mesh);
+  };
+  for (std::size_t r = 0; r < world_.robots.size(); ++r)
+    for (std::size_t s = 0; s < world_.robots[r].shapes.size(); ++s) add({r, s});
+  for (std::size_t o = 0; o < world_.objects.size(); ++o) add({world::Item::kObject, o});
+  out["root"] = data_->steps.empty() ? Json(nullptr) : Json(0);
+  out["states"] = data_->states;
+  if (data_->states.empty()) {
+    const world::WorldState first = initial_state(world_);
+    judge::CellState state{first.q, {}};
+    for (std::size_t o = 0; o < world_.objects.size(); ++o) {
+      state.objects.push_back({first.poses[o], std::nullopt, false});
+      if (const auto& a = first.attachments[o])
+        state.objects.back().hold = {a->robot, a->link, a->pose, a->touching};
+    }
+    out["states"].push_back(state_json(state));
+  }
+  out["nodes"] = data_->nodes;
+  out["steps"] = data_->steps;
+  return out.dump();
+}
+
+}  // namespace kaboum::execution
