@@ -22,10 +22,10 @@ QUANTITIES = {  # as the thesis's tables name them, and what they are here
 DIFFERS = (
     "Robots, parts and machine are not the thesis's: the scenes are those of examples/scenarios, robots with a spherical wrist and "
     "parts of 130 to 640 vertices that the project makes. What is counted differs as well. The thesis's collision check is "
-    "one configuration; here a check is a configuration or a whole motion, decided at every instant, so there are fewer of them and "
-    "each takes longer. The thesis moves between given waypoints; here paths are searched for, and collision checking is a part of "
-    "that: its row holds all of the search for paths. Actions take the robot home again, where the thesis moves it by actions of "
-    "their own; that shortens plans. Times are user CPU seconds of one thread, without loading, on a machine that others use.")
+    "one configuration on the way between given waypoints; here paths are searched for, a check is a configuration or a straight motion that is "
+    "decided at every instant, and the row of collision checking holds all of that search. Positive checks are motions that were not "
+    "free. Actions take the robot home again, where the thesis moves it by actions of their own; that shortens plans. Times are user CPU "
+    "seconds of one process, without loading, on a machine that others use; parts of them are stopped by the clock and scaled.")
 
 
 def statistics_of(solve, plan):

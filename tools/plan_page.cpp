@@ -9,6 +9,7 @@
 #include <kaboum/io/mesh_io.h>
 
 #include <filesystem>
+#include <map>
 
 #include "plan_input.h"
 #include "scene_file.h"

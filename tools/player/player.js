@@ -136,7 +136,7 @@
     }
     if (!(low[0] < high[0])) return;
     eye.target = low.map((x, i) => (x + high[i]) / 2);
-    eye.distance = 1.1 * Math.hypot(...minus(high, low));
+    eye.distance = 1.3 * Math.hypot(...minus(high, low));
   })();
 
   function cameraMatrix(width, height) {

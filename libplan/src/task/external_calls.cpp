@@ -13,7 +13,8 @@
 namespace kaboum::plan {
 namespace {
 
-constexpr std::uint8_t kConfirmed = 8;  // answers of each function that are asked for again
+/// Answers of each function that are asked for again; of those that take long to find, as paths do.
+constexpr std::uint8_t kConfirmed = 8, kLongConfirmed = 2;
 
 }  // namespace
 
@@ -186,7 +187,10 @@ Index ExternalCalls::keep(Index call, const Footprint& path, const std::vector<I
                     "arguments and the state only" +
                     state_text(model_, handles_, layout_, path));
   const Index external = calls_[call].external;
-  if (made->fresh && sampled_[external] < kConfirmed) {
+  const bool takes_long =
+      leaf.kind == Answer::Kind::NotFound ||
+      (leaf.kind == Answer::Kind::Value && !answers_.payload(made->leaf).empty());
+  if (made->fresh && sampled_[external] < (takes_long ? kLongConfirmed : kConfirmed)) {
     ++sampled_[external];
     samples_.push_back({call, arguments, path, made->leaf});
   }
