@@ -141,7 +141,9 @@ class Table {
   static Timed fewest(const geom::Prepared& p, const geom::DistanceQuery& original,
                       bmesh::DecimateOptions o, double epsilon) {
     std::size_t good = p.solid.mesh().vertices.size(), bad = 3;
-    Timed best{{p.solid.mesh(), bmesh::Stop::VertexTarget, {}, 0, 0}, 0};
+    Timed best;
+    best.result.mesh = p.solid.mesh();
+    best.result.stop = bmesh::Stop::VertexTarget;
     while (good - bad > 1 && 200 * (good - bad) > good) {
       o.vertices =
           static_cast<std::size_t>(std::sqrt(static_cast<double>(good) * static_cast<double>(bad)));

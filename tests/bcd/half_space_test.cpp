@@ -49,7 +49,9 @@ TEST(MinimiseBeyond, NoPointOfTheHalfSpacesIsBetter) {
       const Vec3 other = *best + 0.3 * normal(random) * direction();
       const bool inside = std::all_of(half_spaces.begin(), half_spaces.end(),
                                       [&](const HalfSpace& h) { return h.height(other) >= 0; });
-      if (inside) EXPECT_GE(value(q, other), value(q, *best) - 1e-8);
+      if (inside) {
+        EXPECT_GE(value(q, other), value(q, *best) - 1e-8);
+      }
     }
   }
   EXPECT_GT(found, 250);
