@@ -16,6 +16,11 @@ if(KABOUM_SANITIZE)
   target_compile_options(kaboum_options INTERFACE
     -fsanitize=${KABOUM_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(kaboum_options INTERFACE -fsanitize=${KABOUM_SANITIZE})
+  # These four checks make a source of templates take more than twice as long to compile (53 s against 22 s),
+  # and see little that AddressSanitizer, or the machine by a fault, does not.
+  if(KABOUM_SANITIZE MATCHES "undefined")
+    target_compile_options(kaboum_options INTERFACE -fno-sanitize=null,alignment,object-size,vptr)
+  endif()
   # ThreadSanitizer does not see what orders tasks inside TBB's binary, and would report races that are
   # none: the project's own loops (libbase, libverify) run by std::thread instead.
   if(KABOUM_SANITIZE MATCHES "thread")

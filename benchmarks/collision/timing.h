@@ -14,7 +14,7 @@ struct Statistics {
 };
 
 /// Runs query(0), …, query(count − 1) three to 12 times, fewer when they are slow, and keeps the
-/// fastest run of each: other programs of the machine only ever add.
+/// fastest run of each: other programs of the machine only ever add. All are 0 of no queries.
 inline Statistics times_of(std::size_t count, const std::function<void(std::size_t)>& query,
                            std::vector<double>& times) {
   times.assign(count, 1e9);
@@ -29,6 +29,7 @@ inline Statistics times_of(std::size_t count, const std::function<void(std::size
       total += took.count();
     }
   }
+  if (count == 0) return {};
   std::vector<double> sorted = times;
   std::sort(sorted.begin(), sorted.end());
   double sum = 0;
