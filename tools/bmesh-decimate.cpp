@@ -57,7 +57,7 @@ void wrap(tools::DecimationCase& run) {
   progress.show("");
   run.wrap = made.certificate();
   run.input.mesh = made.artefact();
-  note(run, tools::sentence_of(*run.wrap));
+  note(run, certify::in_words(*run.wrap));
   if (epsilon) run.request.epsilon = Length{*epsilon - run.wrap->farthest_upper};
 }
 

@@ -38,7 +38,7 @@ Json input_of(const DecimationCase& run) {
 Json preparation_of(const DecimationCase& run) {
   const geom::PreparationReport& p = run.original.report;
   return {{"prepare", run.asked.preparation.name},
-          {"wrap", run.wrap ? to_json(*run.wrap) : Json()},
+          {"wrap", run.wrap ? Json::parse(certify::to_json(*run.wrap)) : Json()},
           {"collapsed_triangles", run.input.collapsed_triangles + p.collapsed_triangles},
           {"dropped_copies", p.dropped_copies},
           {"cancelled_walls", p.cancelled_walls},

@@ -3,6 +3,7 @@
 #include "decompose_options.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/io/cad.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <filesystem>
 #include <map>
 
+#include "decompose_robot_options.h"
 #include "set_format.h"
 
 namespace kaboum::tools {
@@ -26,8 +28,9 @@ const std::map<std::string, bcd::PreStep> kPreSteps{
     {"auto", bcd::PreStep::Auto}, {"on", bcd::PreStep::On}, {"off", bcd::PreStep::Off}};
 
 void add_input(CLI::App& app, DecomposeOptions& o) {
-  app.add_option("INPUT", o.input,
-                 "Mesh to decompose (- for stdin), or a robot (.urdf), every link of it")
+  app.add_option(
+         "INPUT", o.input,
+         "Mesh or STEP file to decompose (- for stdin), or a robot (.urdf), every link of it")
       ->required()
       ->type_name("FILE");
   app.add_option("-o,--output", o.output,
@@ -130,43 +133,14 @@ void add_output(CLI::App& app, DecomposeOptions& o) {
 }
 
 void add_preparation(CLI::App& app, DecomposeOptions& o) {
+  add_preparation_options(app, o.preparation,
+                          "open meshes are refused; of STEP and IGES, auto is wrap, so that the "
+                          "exact faces are covered");
   app.add_flag("--drop-sheets", o.prepare.drop_sheets,
                "Drop back-to-back faces without volume (they are then not covered)");
   add_holes_options(app, o.holes, false);
   app.add_flag("--keep-orientation", o.prepare.keep_orientation,
                "Never turn inconsistent triangles or inside-out components");
-}
-
-void add_robot(CLI::App& app, DecomposeOptions& o) {
-  app.add_option("--geometry", o.geometry, "Which shapes of a robot [collision]")
-      ->check(CLI::IsMember({"collision", "visual"}).description(""))
-      ->type_name("collision|visual");
-  app.add_flag_callback(
-      "--visual", [&o] { o.geometry = "visual"; }, "The same as --geometry visual");
-  app.add_option("--links", o.links,
-                 "Only these links of a robot, separated by commas; the others stay as they are "
-                 "[all]")
-      ->delimiter(',')
-      ->type_name("A,B");
-  app.add_option("--package-path", o.packages,
-                 "A package of a robot's package:// or a folder that holds it, besides "
-                 "$ROS_PACKAGE_PATH, $AMENT_PREFIX_PATH and the folders above the robot's file "
-                 "(repeatable)")
-      ->type_name("DIR");
-  app.add_option(
-         "--mesh-prefix", o.prefix,
-         "Put before the bodies' file names in a robot's new URDF, as in package://arm, with "
-         "a slash between; RViz and MoveIt need it [names relative to the URDF]")
-      ->type_name("URI");
-}
-
-/// Options that a plain mesh has no use for are mistakes.
-void require_options_of_meshes(const CLI::App& app, const DecomposeOptions& o) {
-  for (const char* option :
-       {"--geometry", "--visual", "--links", "--package-path", "--mesh-prefix"})
-    if (app.get_option(option)->count() != 0)
-      throw Error(ErrorCode::InvalidArgument, std::string(option) + " is for robots (.urdf); " +
-                                                  o.input + " is taken for a mesh");
 }
 
 }  // namespace
@@ -177,7 +151,7 @@ void describe(CLI::App& app, DecomposeOptions& o) {
   add_search(app, o);
   add_output(app, o);
   add_preparation(app, o);
-  add_robot(app, o);
+  add_robot_options(app, o);
   app.add_option("--depfile", o.depfile, "Write a Makefile dependency rule")->type_name("FILE");
   app.add_option("--input-format", o.input_format, "Format of INPUT [by extension]")
       ->type_name("NAME");
@@ -194,6 +168,14 @@ void describe(CLI::App& app, DecomposeOptions& o) {
 }
 
 void require_meaning(const CLI::App& app, const DecomposeOptions& o) {
+  require_meaning(app, o.preparation);
+  const std::string given = "--prepare " + o.preparation.name;
+  if (o.preparation.name != "auto") require_absent(app, given, {"--holes", "--require-closed"});
+  if (o.preparation.wraps()) require_absent(app, given, {"--drop-sheets", "--keep-orientation"});
+  if (o.preparation.wraps() && o.direction != "outer")
+    throw Error(ErrorCode::InvalidArgument,
+                "--prepare wrap: what lies in a wrap need not lie in the input; only --direction "
+                "outer");
   if (!is_robot(o.input)) require_options_of_meshes(app, o);
   if (o.max_total > 0 && o.direction != "outer")
     throw Error(ErrorCode::InvalidArgument, "--max-total-vertices needs --direction outer");
@@ -214,6 +196,10 @@ bool is_robot(const std::string& path) {
   return extension == ".urdf";
 }
 
+bool is_cad(const DecomposeOptions& o) {
+  return o.input_format.empty() && io::is_cad_file(o.input);
+}
+
 certify::SetRequest request_of(const DecomposeOptions& o) {
   certify::SetRequest r;
   if (o.direction != "outer") r.direction = certify::SetRequest::Direction::Inner;
@@ -229,6 +215,10 @@ certify::SetRequest request_of(const DecomposeOptions& o) {
   r.min_thickness = o.min_thickness;
   r.preparation = o.prepare;
   r.preparation.holes = o.holes.value();
+  o.preparation.apply(r.preparation);
+  if (r.preparation.holes == geom::Holes::Keep) r.preparation.holes = geom::Holes::Refuse;
+  const bool exact = is_cad(o) && o.preparation.name == "auto" && o.direction == "outer";
+  if (o.preparation.wraps() || exact) r.wrap = o.preparation.request(std::nullopt);
   r.unit = o.unit;
   r.frame = o.frame;
   return r;

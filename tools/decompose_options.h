@@ -8,6 +8,7 @@
 
 #include "cli.h"
 #include "holes_option.h"
+#include "preparation_option.h"
 
 namespace CLI {
 class App;
@@ -27,6 +28,7 @@ struct DecomposeOptions {
   bool no_cache = false;
   geom::PrepareOptions prepare;
   HolesOption holes;
+  PreparationOption preparation;
   CommonOptions common;
 };
 
@@ -38,6 +40,9 @@ void require_meaning(const CLI::App& app, const DecomposeOptions& options);
 
 /// Whether the name is that of a robot.
 bool is_robot(const std::string& path);
+
+/// Whether the input is a STEP or IGES file.
+bool is_cad(const DecomposeOptions& options);
 
 /// What the options ask for.
 certify::SetRequest request_of(const DecomposeOptions& options);

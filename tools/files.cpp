@@ -3,6 +3,7 @@
 #include "files.h"
 
 #include <kaboum/base/error.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
@@ -87,6 +88,40 @@ io::Format format_for(const std::string& path, const std::string& name, const ch
               path + ": unknown file extension; use one of " + choices + ", or give " + option);
 }
 
+namespace {
+
+/// What cannot be written is noticed before anything is computed.
+/// @throws Error{OutputFailed}
+void require_writable(const std::string& option, const std::string& file) {
+  // Only results may be folders that are made.
+  const bool result = option == "--output";
+  std::filesystem::path folder =
+      (result ? without_slash(file) : std::filesystem::path(file)).parent_path();
+  if (folder.empty()) folder = ".";
+  const auto fail = [&](const std::string& what) {
+    throw Error(ErrorCode::OutputFailed, option + ": " + what);
+  };
+  std::error_code error;
+  const auto type = std::filesystem::status(folder, error).type();
+  if (type == std::filesystem::file_type::none && error)
+    fail(folder.string() + ": " + error.message());
+  if (type == std::filesystem::file_type::not_found)
+    fail("there is no folder " + folder.string() + "; create it first");
+  if (type != std::filesystem::file_type::directory) fail(folder.string() + " is no folder");
+  const auto own = std::filesystem::status(file, error).type();
+  if (own == std::filesystem::file_type::directory && !result)
+    fail(file + " is a folder; name a file");
+  // Files are written beside their place and renamed; devices and pipes are written to, and links
+  // lead elsewhere.
+  const bool renamed =
+      !std::filesystem::is_symlink(file, error) &&
+      (own == std::filesystem::file_type::not_found || own == std::filesystem::file_type::regular);
+  if (renamed && ::access(folder.c_str(), W_OK) != 0)
+    fail("the folder " + folder.string() + " cannot be written to");
+}
+
+}  // namespace
+
 void require_apart(const std::vector<std::pair<std::string, std::string>>& outputs,
                    const std::vector<std::string>& inputs) {
   const auto place = [](const std::string& file) {
@@ -99,20 +134,7 @@ void require_apart(const std::vector<std::pair<std::string, std::string>>& outpu
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const std::string& file = outputs[i].second;
     if (file.empty()) continue;
-    // Only results may be folders that are made.
-    const std::filesystem::path folder =
-        (outputs[i].first == "--output" ? without_slash(file) : std::filesystem::path(file))
-            .parent_path();
-    if (file != "-" && !folder.empty()) {
-      std::error_code error;
-      const auto type = std::filesystem::status(folder, error).type();
-      if (type == std::filesystem::file_type::none && error)
-        throw Error(ErrorCode::OutputFailed,
-                    outputs[i].first + ": " + folder.string() + ": " + error.message());
-      if (type != std::filesystem::file_type::directory)
-        throw Error(ErrorCode::OutputFailed, outputs[i].first + ": there is no folder " +
-                                                 folder.string() + "; create it first");
-    }
+    if (file != "-") require_writable(outputs[i].first, file);
     for (const std::string& input : inputs) {
       if (input != "-" && place(file) == place(input))
         throw Error(ErrorCode::InvalidArgument,

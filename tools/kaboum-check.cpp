@@ -177,6 +177,22 @@ int check(const tools::CheckOptions& o) {
   return code;
 }
 
+/// Options that say how a motion or a configuration is meant, without one, would be ignored: the
+/// answer would be that of another state than was meant.
+void require_meaning(const CLI::App& app, const tools::CheckOptions& o) {
+  const auto require = [&](const char* option, bool given, const char* others) {
+    if (app.get_option(option)->count() != 0 && !given)
+      throw Error(ErrorCode::InvalidArgument,
+                  std::string(option) + " needs " + others +
+                      "; without, what is looked at are the robots at home");
+  };
+  const bool moves = !o.path.empty();
+  const bool given = moves || !o.configuration.empty() || !o.configurations.empty();
+  for (const char* option : {"--joint", "--degrees", "--ignore-limits"})
+    require(option, given, "--path, --configuration or --configurations");
+  for (const char* option : {"--resolution", "--max-intervals"}) require(option, moves, "--path");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -192,6 +208,7 @@ int main(int argc, char** argv) {
          {"--path", "--configuration", "--configurations", "--robot", "--preview"})
       if (app.count(name) > 0 && app.get_option(name)->as<std::string>().empty())
         throw Error(ErrorCode::InvalidArgument, std::string(name) + ": the value is empty");
+    require_meaning(app, options);
     return check(options);
   });
 }

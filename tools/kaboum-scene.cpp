@@ -57,6 +57,13 @@ int make_scene(const tools::SceneOptions& o) {
   if (!o.force && std::filesystem::exists(o.scene))
     throw Error(ErrorCode::InvalidArgument,
                 o.scene + " exists; --force replaces it, with all that was edited in it");
+  const std::filesystem::path folder = std::filesystem::path(o.scene).replace_extension();
+  std::error_code error;
+  if (!o.force && std::filesystem::exists(folder, error) &&
+      !std::filesystem::is_empty(folder, error))
+    throw Error(ErrorCode::InvalidArgument,
+                folder.string() + ", where the sets of " + o.scene +
+                    " go, is there already, perhaps of another scene; --force writes into it");
   // Lengths in URDFs are metres; an arm that is a thousand times too small is free of everything.
   if (!o.robots.empty() && o.unit != "m")
     throw Error(ErrorCode::InvalidArgument,

@@ -102,8 +102,8 @@ void wrap(PrepareCase& run, bool doubles) {
     made = naming(o.input, [&] { return certify::certify_wrap(run.input.mesh, request); });
   }
   const certify::WrapCertificate& c = made.certificate();
-  log(o.common.quiet, sentence_of(c));
-  run.report["wrap"] = to_json(c);
+  log(o.common.quiet, in_words(c));
+  run.report["wrap"] = Json::parse(certify::to_json(c));
   run.report["repairs"] = Json::array({{{"kind", "triangles wrapped"},
                                         {"count", c.input_triangles},
                                         {"place", {c.at.x(), c.at.y(), c.at.z()}},

@@ -4,7 +4,6 @@
 #include <kaboum/base/error.h>
 
 #include <CLI/CLI.hpp>
-#include <sstream>
 
 namespace kaboum::tools {
 namespace {
@@ -17,13 +16,6 @@ CLI::Option* add_length(CLI::App& app, const char* name, std::string& value, con
                                  "without blanks or units";
       })
       ->type_name("LENGTH|P%");
-}
-
-std::string digits(double x) {
-  std::ostringstream text;
-  text.precision(4);
-  text << x;
-  return text.str();
 }
 
 }  // namespace
@@ -44,13 +36,14 @@ certify::WrapRequest PreparationOption::request(std::optional<double> farthest) 
   return request;
 }
 
-void add_preparation_options(CLI::App& app, PreparationOption& option) {
+void add_preparation_options(CLI::App& app, PreparationOption& option, const std::string& off) {
   app.add_option("--prepare", option.name,
                  "How the triangles are given a solid. auto: inconsistent triangles and parts that "
                  "are inside out are turned, copies and walls dropped, holes filled; strict: the "
                  "same, but open meshes are refused; wrap: a closed mesh is made round all "
                  "triangles, whatever they are like, and its solid counts; off: the file's own "
-                 "orientation, and open meshes stay open [auto]")
+                 "orientation, and " +
+                     off + " [auto]")
       ->check(CLI::IsMember({"auto", "strict", "wrap", "off"}).description(""))
       ->type_name("auto|strict|wrap|off");
   add_length(app, "--offset", option.offset,
@@ -64,27 +57,6 @@ void add_preparation_options(CLI::App& app, PreparationOption& option) {
 
 void require_meaning(const CLI::App& app, const PreparationOption& option) {
   if (!option.wraps()) require_absent(app, "--prepare " + option.name, {"--offset", "--seal"});
-}
-
-std::string sentence_of(const certify::WrapCertificate& wrap) {
-  return "The solid is that of a wrap round all " + std::to_string(wrap.input_triangles) +
-         " triangles: each lies inside, exactly; no point of it is farther from them than " +
-         digits(wrap.farthest_upper) + " (" + digits(100 * wrap.farthest_upper / wrap.diagonal) +
-         "% of the diagonal); gaps narrower than " + digits(wrap.seal) + " are closed." +
-         (wrap.clearance > 0 ? " All within " + digits(wrap.clearance) +
-                                   " of a triangle is inside, too: the exact faces."
-                             : std::string());
-}
-
-Json to_json(const certify::WrapCertificate& wrap) {
-  return {{"offset", wrap.offset},
-          {"seal", wrap.seal},
-          {"farthest_lower", wrap.farthest_lower},
-          {"farthest_upper", wrap.farthest_upper},
-          {"at", {wrap.at.x(), wrap.at.y(), wrap.at.z()}},
-          {"every_triangle_inside", "verified"},
-          {"clearance", wrap.clearance},
-          {"input_triangles", wrap.input_triangles}};
 }
 
 }  // namespace kaboum::tools

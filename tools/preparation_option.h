@@ -26,15 +26,12 @@ struct PreparationOption {
 };
 
 /// Adds --prepare, --offset and --seal.
-void add_preparation_options(CLI::App& app, PreparationOption& option);
+/// @param off  what `--prepare off` does with open meshes, in words
+void add_preparation_options(CLI::App& app, PreparationOption& option,
+                             const std::string& off = "open meshes stay open");
 
 /// Refuses --offset and --seal without --prepare wrap, and what means nothing beside --prepare.
 /// @throws Error{InvalidArgument}
 void require_meaning(const CLI::App& app, const PreparationOption& option);
-
-/// What a wrap is, in one sentence.
-std::string sentence_of(const certify::WrapCertificate& wrap);
-
-Json to_json(const certify::WrapCertificate& wrap);
 
 }  // namespace kaboum::tools

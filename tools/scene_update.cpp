@@ -21,8 +21,8 @@ class Update {
     try {
       scene_ = Json::parse(world::scene_as_json({bytes.data(), bytes.size()}, o_.scene.string()));
       unit_ = scene_.at("unit").get<std::string>();
-    } catch (const Json::exception& error) {
-      fail(std::string("no scene: ") + error.what());
+    } catch (const Json::exception&) {
+      fail("it is no scene with a unit; kaboum-check says where it is wrong");
     }
   }
 
@@ -39,8 +39,8 @@ class Update {
     out.notes = std::move(sets_.notes);
     out.sizes = std::move(sets_.sizes);
     return out;
-  } catch (const Json::exception& error) {
-    fail(std::string(error.what()) + "; kaboum-check says where it is wrong");
+  } catch (const Json::exception&) {
+    fail("a part of it is missing, or of another kind; kaboum-check says where it is wrong");
   }
 
  private:

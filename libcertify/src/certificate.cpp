@@ -9,6 +9,7 @@
 
 #include "request.h"
 #include "set_record.h"
+#include "wrap_record.h"
 
 namespace kaboum::certify {
 namespace {
@@ -52,6 +53,7 @@ Json record_of(const SetCertificate& c) {
   j["notes"] = c.notes;
   if (c.min_thickness > 0)
     j["min_thickness"] = {{"wished", c.min_thickness}, {"thickened", c.thickened}};
+  if (c.wrap) j["wrap"] = record_of(*c.wrap);
   return j;
 }
 
@@ -118,6 +120,8 @@ SetCertificate read_record(std::string_view text) {
       j.at("min_thickness").at("wished").get_to(c.min_thickness);
       j.at("min_thickness").at("thickened").get_to(c.thickened);
     }
+    if (j.contains("wrap")) c.wrap = wrap_of(j.at("wrap"));
+    c.subject.wrapped = c.wrap.has_value();
     return c;
   } catch (const nlohmann::json::exception&) {
     throw Error(ErrorCode::InvalidInput, "no certificate of a convex set");

@@ -22,6 +22,10 @@ namespace {
 constexpr std::array<double, 3> kSafety{1, 64, 4096};
 /// So often places that inner bodies must not reach are handed to another search.
 constexpr int kAvoided = 5;
+/// Of epsilon, that a wrap round the input may take; the bodies have what it leaves.
+constexpr double kWrapShare = 0.5;
+/// For sums of three lengths.
+constexpr double kSumUp = 1 + 0x1p-50;
 
 /// What both searches are asked for.
 bcd::SetOptions search_of(const SetRequest& r, double diagonal, const Hooks& hooks) {
@@ -90,6 +94,11 @@ Refutation refutation_of(const SetRequest& r, const geom::Mesh& solid, const geo
   out.triangles.insert(out.triangles.end(), inside.surface.outer_triangles.begin(),
                        inside.surface.outer_triangles.end());
   return out;
+}
+
+/// How far points of a wrap may be from the surface that the triangles in it stand for. [length]
+double distance_of(const WrapCertificate& wrap) {
+  return (wrap.farthest_upper + wrap.clearance) * kSumUp;
 }
 
 /// What a search has found, of either direction.
@@ -169,6 +178,37 @@ class Search {
   bool simplified_ = false;
 };
 
+/// A wrap round the input, and what it leaves of epsilon to the search: `r` becomes that.
+std::optional<CertifiedWrap> wrapped(const geom::Mesh& mesh, SetRequest& r, const Hooks& hooks) {
+  if (!r.wrap) return std::nullopt;
+  if (r.direction != SetRequest::Direction::Outer)
+    throw Error(ErrorCode::InvalidArgument,
+                "what lies in a wrap need not lie in the input: bodies inside it have none");
+  const auto epsilon = r.wanted_epsilon();
+  const double whole = epsilon ? epsilon->of(geom::bounding_box(mesh).diagonal()) : 0;
+  WrapRequest asked = *r.wrap;
+  asked.float32 = true;
+  asked.progress = hooks.progress;
+  asked.farthest.reset();
+  if (epsilon) asked.farthest = kWrapShare * whole;
+  CertifiedWrap made = certify_wrap(mesh, asked);
+  if (epsilon) r.epsilon = Length{whole / (kSumUp * kSumUp) - distance_of(made.certificate())};
+  if (epsilon && !(r.epsilon->value > 0))
+    throw Error(ErrorCode::InvalidInput,
+                "the wrap and the exact faces' deviation leave nothing of epsilon for the bodies; "
+                "allow a larger epsilon");
+  return made;
+}
+
+/// Adds how far a wrap is from the surface that it holds to what is certified of its cover.
+void count_wrap(const WrapCertificate& wrap, SetCertificate& c) {
+  c.wrap = wrap;
+  c.subject.wrapped = true;
+  c.distance_upper = (c.distance_upper + distance_of(wrap)) * kSumUp;
+  c.diagonal = wrap.diagonal;
+  c.notes.insert(c.notes.begin(), in_words(wrap));
+}
+
 SetCertificate certificate_of(const SetRequest& r, const geom::Prepared& prepared,
                               const Candidate& found, double diagonal, double safety) {
   const bcd::CoverStatistics& s = found.statistics;
@@ -203,11 +243,14 @@ std::optional<CertifiedSet> certify_set(const geom::Mesh& mesh, const std::strin
     if (hooks.note) hooks.note(text);
   };
   const bool outer = request.direction == SetRequest::Direction::Outer;
-  const geom::Prepared prepared = geom::prepare(mesh, request.preparation);
+  SetRequest asked = request;
+  const std::optional<CertifiedWrap> wrap = wrapped(mesh, asked, hooks);
+  if (wrap) note(in_words(wrap->certificate()));
+  const geom::Prepared prepared = geom::prepare(wrap ? wrap->artefact() : mesh, asked.preparation);
   const geom::Mesh& solid = prepared.solid.mesh();
   const double diagonal = geom::bounding_box(solid).diagonal();
   for (const std::string& text : prepared.report.notes) note(text);
-  Search search(prepared.solid, request, diagonal, hooks);
+  Search search(prepared.solid, asked, diagonal, hooks);
   geom::ConvexSet made;
   made.provenance = origin_of(request, sha256);
   made.provenance.covers_surface = outer && prepared.report.dropped_sheets == 0;
@@ -218,7 +261,9 @@ std::optional<CertifiedSet> certify_set(const geom::Mesh& mesh, const std::strin
     const Candidate candidate = search.run();
     if (candidate.stop == bcd::Stop::TooCoarse) return std::nullopt;
     made.bodies = candidate.bodies;
-    made.provenance.epsilon = candidate.upper;
+    SetCertificate certificate = certificate_of(request, prepared, candidate, diagonal, safety);
+    if (wrap) count_wrap(wrap->certificate(), certificate);
+    made.provenance.epsilon = certificate.distance_upper;
     std::vector<char> container = io::serialise_convex_set(made, io::SetFormat::Glb);
     // What is written is what is verified.
     if (hooks.progress) hooks.progress("verifying");
@@ -226,9 +271,7 @@ std::optional<CertifiedSet> certify_set(const geom::Mesh& mesh, const std::strin
     const Refutation found = refutation_of(request, solid, set);
     wrong = found.reason;
     if (wrong.empty())
-      return Issuer::issue(std::move(set),
-                           certificate_of(request, prepared, candidate, diagonal, safety),
-                           std::move(container));
+      return Issuer::issue(std::move(set), std::move(certificate), std::move(container));
     note("the bodies found do not pass the exact check (" + wrong + "); trying " +
          search.other_means(found));
   }

@@ -25,6 +25,9 @@ Length in_unit_of_mesh(Length epsilon, double scale) {
 SetRequest request_for(const RobotRequest& request, const geom::Vec3& scale) {
   SetRequest out = request.set;
   if (out.epsilon) out.epsilon = in_unit_of_mesh(*out.epsilon, scale.maxCoeff());
+  if (out.wrap)
+    for (std::optional<Length>* length : {&out.wrap->offset, &out.wrap->seal})
+      if (*length) *length = in_unit_of_mesh(**length, scale.maxCoeff());
   // A little more than rounding takes away.
   if (out.min_thickness > 0) out.min_thickness = out.min_thickness / scale.minCoeff() * (1 + 1e-12);
   return out;

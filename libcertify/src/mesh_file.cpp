@@ -1,8 +1,31 @@
 // Mesh files: read, then certified; errors name them.
 
 #include <kaboum/certify/mesh_file.h>
+#include <kaboum/io/cad.h>
 
 namespace kaboum::certify {
+namespace {
+
+/// The triangles of a file; those of a CAD file stand for its exact faces, which a wrap holds.
+io::ReadResult read_triangles(const std::filesystem::path& file, std::optional<io::Format> format,
+                              std::vector<char>& bytes, SetRequest& request) {
+  if (format || !io::is_cad_file(file)) return io::read_mesh(file, format, &bytes);
+  io::CadMesh cad = io::read_cad(file, &bytes);
+  io::ReadResult out;
+  out.file_vertices = cad.mesh.vertices.size();
+  out.mesh = std::move(cad.mesh);
+  out.collapsed_triangles = cad.collapsed_triangles;
+  out.notes = std::move(cad.notes);
+  out.unit = "mm";
+  if (request.wrap)
+    request.wrap->clearance = cad.deviation;
+  else
+    out.notes.emplace_back(
+        "what counts are triangles, not the exact faces that they stand for; a wrap holds these");
+  return out;
+}
+
+}  // namespace
 
 TooCoarse::TooCoarse(const std::string& file)
     : Error(ErrorCode::InvalidInput,
@@ -13,7 +36,7 @@ TooCoarse::TooCoarse(const std::string& file)
 CertifiedFile certify_file(const std::filesystem::path& file, std::optional<io::Format> format,
                            SetRequest request, const SetCache* cache, const Hooks& hooks) {
   std::vector<char> bytes;
-  io::ReadResult read = io::read_mesh(file, format, &bytes);
+  io::ReadResult read = read_triangles(file, format, bytes, request);
   if (hooks.note)
     for (const std::string& text : read.notes) hooks.note(text);
   request.source = file.filename().string();

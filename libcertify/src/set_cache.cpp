@@ -6,6 +6,7 @@
 #include <kaboum/io/convex_io.h>
 #include <kaboum/io/mesh_io.h>
 
+#include <bit>
 #include <string_view>
 
 #include "issuer.h"
@@ -65,9 +66,11 @@ fs::path SetCache::default_folder() { return CacheFolder::default_folder(); }
 
 SetCache::Key SetCache::key_of(const geom::Mesh& mesh, const std::string& sha256,
                                const SetRequest& r) {
-  const std::string text = hash_of(mesh) + '\n' + sha256 + '\n' + r.parameters() + '\n' + r.unit +
-                           '\n' + r.frame + '\n' + r.source + '\n' + KABOUM_VERSION + '\n' +
-                           kAlgorithm + '\n' + kContainer;
+  const double clearance = r.wrap ? r.wrap->clearance : 0;
+  const std::string text = hash_of(mesh) + '\n' +
+                           std::to_string(std::bit_cast<std::uint64_t>(clearance)) + '\n' + sha256 +
+                           '\n' + r.parameters() + '\n' + r.unit + '\n' + r.frame + '\n' +
+                           r.source + '\n' + KABOUM_VERSION + '\n' + kAlgorithm + '\n' + kContainer;
   return {io::sha256(text), origin_of(r, sha256)};
 }
 

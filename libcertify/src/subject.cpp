@@ -30,7 +30,7 @@ std::string in_words(const Subject& s) {
   if (s.holes > 0)
     changes.push_back("with " + counted(s.holes, "hole", "holes") +
                       " filled, its solid the one so closed");
-  std::string text = "the input";
+  std::string text = s.wrapped ? "a wrap round all triangles of the input" : "the input";
   for (std::size_t i = 0; i < changes.size(); ++i) text += (i == 0 ? ": " : "; ") + changes[i];
   return text;
 }

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "issuer.h"
+#include "wrap_record.h"
 
 namespace kaboum::certify {
 namespace {
@@ -47,6 +48,43 @@ void decide(const geom::Mesh& input, const geom::Mesh& wrap, const WrapRequest& 
 }
 
 }  // namespace
+
+std::string in_words(const WrapCertificate& wrap) {
+  return "The solid is that of a wrap round all " + std::to_string(wrap.input_triangles) +
+         " triangles: each lies inside, exactly; no point of it is farther from them than " +
+         number(wrap.farthest_upper) + " (" + number(100 * wrap.farthest_upper / wrap.diagonal) +
+         "% of the diagonal); gaps narrower than " + number(wrap.seal) + " are closed." +
+         (wrap.clearance > 0 ? " All within " + number(wrap.clearance) +
+                                   " of a triangle is inside, too: the exact faces."
+                             : std::string());
+}
+
+std::string to_json(const WrapCertificate& wrap) { return record_of(wrap).dump(); }
+
+nlohmann::ordered_json record_of(const WrapCertificate& wrap) {
+  return {{"offset", wrap.offset},
+          {"seal", wrap.seal},
+          {"diagonal", wrap.diagonal},
+          {"farthest_lower", wrap.farthest_lower},
+          {"farthest_upper", wrap.farthest_upper},
+          {"at", {wrap.at.x(), wrap.at.y(), wrap.at.z()}},
+          {"every_triangle_inside", "verified"},
+          {"clearance", wrap.clearance},
+          {"input_triangles", wrap.input_triangles}};
+}
+
+WrapCertificate wrap_of(const nlohmann::ordered_json& record) {
+  WrapCertificate out;
+  record.at("offset").get_to(out.offset);
+  record.at("seal").get_to(out.seal);
+  record.at("diagonal").get_to(out.diagonal);
+  record.at("farthest_lower").get_to(out.farthest_lower);
+  record.at("farthest_upper").get_to(out.farthest_upper);
+  for (int k = 0; k < 3; ++k) record.at("at").at(k).get_to(out.at[k]);
+  record.at("clearance").get_to(out.clearance);
+  record.at("input_triangles").get_to(out.input_triangles);
+  return out;
+}
 
 CertifiedWrap certify_wrap(const geom::Mesh& input, const WrapRequest& request) {
   if (input.triangles.empty())

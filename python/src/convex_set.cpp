@@ -107,9 +107,18 @@ CertifiedSetValue decompose(
     const std::optional<double>& simplify, double min_thickness, const std::string& direction,
     const std::string& effort, const std::optional<double>& max_work, const std::string& method,
     const std::string& pre_step, const std::string& unit, const std::string& frame,
-    bool drop_sheets, const std::string& holes, bool keep_orientation, bool no_cache, int threads,
+    const std::string& prepare, const py::object& offset, const py::object& seal, bool drop_sheets,
+    const std::string& holes, bool keep_orientation, bool no_cache, int threads,
     const py::object& progress) {
   certify::SetRequest r;
+  if (prepare == "wrap")
+    r.wrap.emplace();
+  else if (prepare != "auto")
+    refuse_name("prepare", prepare, {"auto", "wrap"});
+  if (!r.wrap && (!offset.is_none() || !seal.is_none()))
+    throw Error(ErrorCode::InvalidArgument, "offset and seal are for prepare='wrap'");
+  if (r.wrap) r.wrap->offset = length_of(offset, "offset");
+  if (r.wrap) r.wrap->seal = length_of(seal, "seal");
   r.epsilon = length_of(epsilon, "epsilon");
   r.max_bodies = max_bodies;
   r.max_total_vertices = max_total_vertices;
@@ -178,6 +187,12 @@ pre_step : str
     Simplify the input first: 'auto', 'on' or 'off'.
 unit, frame : str
     Noted in the container; a unit that the mesh's file states comes first.
+prepare : str
+    'auto', or 'wrap': what is covered is a closed mesh round all triangles, whatever they are like;
+    how far it is from them counts towards epsilon.
+offset, seal : float or str, optional
+    Of a wrap: how far it may be from the triangles where it can get near them; hollows behind gaps
+    narrower than this are filled.
 drop_sheets, holes, keep_orientation
     As for `prepare`; holes are filled or refused.
 no_cache : bool
@@ -251,7 +266,8 @@ void bind_convex_sets(py::module_& module) {
       py::arg("max_vertices_per_body") = 64, py::arg("simplify") = py::none(),
       py::arg("min_thickness") = 0.0, py::arg("direction") = "outer", py::arg("effort") = "normal",
       py::arg("max_work") = py::none(), py::arg("method") = "planes", py::arg("pre_step") = "auto",
-      py::arg("unit") = "m", py::arg("frame") = "", py::arg("drop_sheets") = false,
+      py::arg("unit") = "m", py::arg("frame") = "", py::arg("prepare") = "auto",
+      py::arg("offset") = py::none(), py::arg("seal") = py::none(), py::arg("drop_sheets") = false,
       py::arg("holes") = "fill", py::arg("keep_orientation") = false, py::arg("no_cache") = false,
       py::arg("threads") = 0, py::arg("progress") = py::none(), kDoc);
   module.def(

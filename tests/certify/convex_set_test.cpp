@@ -7,11 +7,14 @@
 #include <kaboum/certify/robot.h>
 #include <kaboum/certify/set_cache.h>
 #include <kaboum/certify/sweep.h>
+#include <kaboum/geom/distance.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/verify/cover.h>
 
 #include <cstdlib>
 #include <fstream>
+#include <limits>
+#include <random>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -69,6 +72,75 @@ TEST(CertifySet, InnerSetsLieInside) {
   EXPECT_EQ(inside.solid.answer, verify::Answer::Verified);
 }
 
+/// Triangles that share nothing, some of which cross.
+geom::Mesh soup() {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> at(-1, 1);
+  geom::Mesh out;
+  for (std::uint32_t t = 0; t < 12; ++t) {
+    for (int k = 0; k < 3; ++k) out.vertices.emplace_back(at(random), at(random), at(random));
+    out.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+  }
+  return out;
+}
+
+/// The largest height of p above the planes of a body's facets, of bodies the least.
+double height_above(const geom::ConvexSet& set, const geom::Vec3& p) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const geom::ConvexBody& body : set.bodies) {
+    double highest = -nearest;
+    for (const auto& [i, j, k] : body.hull.triangles) {
+      const geom::Vec3& a = body.hull.vertices[i];
+      const geom::Vec3 n = (body.hull.vertices[j] - a).cross(body.hull.vertices[k] - a);
+      if (n.norm() > 0) highest = std::max(highest, n.dot(p - a) / n.norm());
+    }
+    nearest = std::min(nearest, highest);
+  }
+  return nearest;
+}
+
+TEST(CertifySet, WrapsHoldWhatIsWithinTheClearanceOfTriangles) {
+  const geom::Mesh input = soup();
+  EXPECT_THROW(certify_set(input, "", fast(10)), Error);
+  SetRequest request = fast(10);
+  request.wrap.emplace();
+  request.wrap->clearance = 0.01;
+  const auto made = certify_set(input, "", request);
+  ASSERT_TRUE(made);
+  const SetCertificate& c = made->certificate();
+  ASSERT_TRUE(c.wrap);
+  EXPECT_EQ(c.stop, bcd::Stop::Done);
+  EXPECT_LE(c.distance_upper, 0.1 * geom::bounding_box(input).diagonal());
+  EXPECT_GE(c.distance_upper, c.wrap->farthest_upper + 0.01);
+  EXPECT_EQ(made->artefact().provenance.epsilon, c.distance_upper);
+  const verify::Cover cover = verify::verify_cover(input, made->artefact());
+  EXPECT_EQ(cover.inclusion.surface.answer, verify::Answer::Verified);
+  // Points at the clearance from those of triangles, in any direction.
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> share(0, 1);
+  std::normal_distribution<double> normal;
+  for (int n = 0; n < 20000; ++n) {
+    const auto& [i, j, k] = input.triangles[random() % input.triangles.size()];
+    const double u = share(random), v = (1 - u) * share(random);
+    const geom::Vec3 p =
+        (1 - u - v) * input.vertices[i] + u * input.vertices[j] + v * input.vertices[k];
+    const geom::Vec3 d(normal(random), normal(random), normal(random));
+    ASSERT_LE(height_above(made->artefact(), p + 0.01 * d.normalized()), 1e-9);
+  }
+  // Corners are no farther than it says.
+  const geom::DistanceQuery query(input);
+  for (const geom::ConvexBody& body : made->artefact().bodies)
+    for (const geom::Vec3& p : body.hull.vertices)
+      EXPECT_LE(query.nearest(p).lower, c.distance_upper);
+}
+
+TEST(CertifySet, BodiesInsideHaveNoWrap) {
+  SetRequest request = fast(10);
+  request.direction = SetRequest::Direction::Inner;
+  request.wrap.emplace();
+  EXPECT_THROW(certify_set(torus(), "", request), Error);
+}
+
 TEST(CertifySet, WhatFloat32CannotHoldIsNotMade) {
   EXPECT_FALSE(certify_set(test::translated(torus(), {1e9, 0, 0}), "", fast(1)));
 }
@@ -96,6 +168,10 @@ TEST(SetCertificate, SurvivesItsRecord) {
   EXPECT_EQ(write_record(read_record(write_record(c))), write_record(c));
   EXPECT_EQ(read_record(write_record(c)).subject, c.subject);
   EXPECT_FALSE(c.reached());
+  c.wrap = WrapCertificate{0.1, 0.2, 3, 0.25, 0.3, {1, 2, 3}, 0.05, 12};
+  c.subject.wrapped = true;
+  EXPECT_EQ(write_record(read_record(write_record(c))), write_record(c));
+  EXPECT_TRUE(read_record(write_record(c)).subject.wrapped);
   for (const char* bad : {"", "{}", "[]", "{\"stop\": \"whenever\"}", "{\"stop\": 3}"})
     EXPECT_THROW(read_record(bad), Error) << bad;
 }
@@ -236,6 +312,12 @@ TEST_F(SetCacheTest, HasTheSameBytesForTheSameRequestOnly) {
   SetRequest inner = fast(5);
   inner.direction = SetRequest::Direction::Inner;
   EXPECT_FALSE(cache.find(SetCache::key_of(torus(), "abc", inner), flaw));
+  SetRequest wrapped = fast(5);
+  wrapped.wrap.emplace();
+  const std::string round = SetCache::key_of(torus(), "abc", wrapped).hash;
+  EXPECT_NE(round, SetCache::key_of(torus(), "abc", fast(5)).hash);
+  wrapped.wrap->clearance = 1e-3;
+  EXPECT_NE(round, SetCache::key_of(torus(), "abc", wrapped).hash);
   EXPECT_TRUE(flaw.empty());
 }
 

@@ -93,6 +93,9 @@ for f in world.xml arm.xml robot.srdf scene.xml package.xml; do
   expect 3 "give the \(robot as \)\?\(URDF\|rlkin\)" "$BIN/bcd-decompose" kinds/$f.urdf -o x
   expect 3 "$f: .*give the \(robot as \)\?\(URDF\|rlkin\)" "$BIN/sweep-approx" $f --path t.off -o x.glb
 done
+# What cannot be written is noticed before the work: nothing is written.
+mkdir folder
+expect 4 'report: folder is a folder' "$BIN/bcd-decompose" t.off -o x.glb --report folder
 absent x.off x.obj x.glb x
 
 # A file cut at many places gives an error or, when only trailing bytes are missing, a result.

@@ -50,6 +50,10 @@ for how in '--path through.csv' '--configuration 1.57,0' '--configuration 1.57,0
 done
 expect 2 '2 values are expected, one for each of j1,j2, not 1' "$BIN/kaboum-check" near.json --configuration 0
 expect 2 'not 3' "$BIN/kaboum-check" near.json --configuration 0,0,0
+# What says how a configuration is meant is not ignored without one: another state would be looked at.
+expect 2 'joint needs --path, --configuration' "$BIN/kaboum-check" near.json --joint j2=1.5
+expect 2 'degrees needs' "$BIN/kaboum-check" near.json --degrees
+expect 2 'resolution needs --path' "$BIN/kaboum-check" near.json --configuration 0,0 --resolution 0.1
 printf 'j1,j2\n0,0\n-3,1\n' >away.csv
 shows 0 'free at every instant' "$BIN/kaboum-check" near.json --path away.csv
 shows 0 'free at every instant' "$BIN/kaboum-check" near.json --path away.csv --robot arm --resolution 0.001
@@ -84,7 +88,8 @@ shows 0 'arm/base in room: inside at every instant' "$BIN/kaboum-check" in.json 
 shows 1 'arm/tip in room: not certainly inside from waypoint 1 + ' "$BIN/kaboum-check" in.json --path away.csv --inside arm/tip=room --resolution 0.01 --report in-report.json
 grep -q '"inside_until"' in-report.json || fail "no place where it leaves in the report"
 # The same scene as YAML.
-expect 0 '' "$BIN/kaboum-scene" make cell.yaml --robot arm=arm.urdf --object box=meshes/cube.off --inner --no-cache
+expect 2 'cell, where the sets of cell.yaml go, is there already' "$BIN/kaboum-scene" make cell.yaml --object box=meshes/cube.off
+expect 0 '' "$BIN/kaboum-scene" make cell.yaml --force --robot arm=arm.urdf --object box=meshes/cube.off --inner --no-cache
 grep -q '^robots:' cell.yaml || fail "no YAML: $(head -5 cell.yaml)"
 shows 1 'arm/base and box are within epsilon' "$BIN/kaboum-check" cell.yaml --configuration 0,0
 expect 3 'bad.yaml: line 1, column 1: ' sh -c "{ echo 'thing: 1'; cat cell.yaml; } >bad.yaml; '$BIN/kaboum-check' bad.yaml"

@@ -23,13 +23,35 @@ run_tool() {
   case $code in 2 | 4) [ ! -s out.txt ] || fail "prints to stdout, exit $code: $*: $(head -c 300 out.txt)" ;; esac
 }
 
-# expect CODE WORDS COMMAND...: the exit code, and words of the log, on stderr ('' for any).
+# names_place COMMAND...: whether stderr names an option or a file: one of the command, or what it has to have.
+names_place() {
+  shift
+  for word in "$@"; do
+    case $word in
+      -?*) word=${word%%=*} ;;
+      *.* | */*) ;;
+      *) continue ;;
+    esac
+    grep -qF -- "$word" err.txt && return 0
+  done
+  grep -qE -- '--[a-z]|[A-Z]+ is required|subcommand is required' err.txt
+}
+
+# expect CODE WORDS COMMAND...: the exit code, and words of the log, on stderr. '' stands for any, but a refusal
+# (2, 3, 4) has to name an option or a file, and a "no" or a limit (1, 7) has to say something.
 expect() {
   code=$1
   words=$2
   shift 2
   run_tool "$code" "$@"
-  [ -z "$words" ] || grep -q -- "$words" err.txt || fail "no '$words' on stderr of: $*: $(head -c 300 err.txt)"
+  if [ -n "$words" ]; then
+    grep -q -- "$words" err.txt || fail "no '$words' on stderr of: $*: $(head -c 300 err.txt)"
+    return
+  fi
+  case $code in
+    2 | 3 | 4) names_place "$@" || fail "no option or file named on stderr of: $*: $(head -c 300 err.txt)" ;;
+    1 | 7) [ -s out.txt ] || [ -s err.txt ] || fail "nothing said, exit $code: $*" ;;
+  esac
 }
 
 # shows CODE WORDS COMMAND...: the exit code, and words of the result, on stdout.

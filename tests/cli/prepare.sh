@@ -34,6 +34,29 @@ for f in closed open sheet crossing; do
   expect 0 '' "$BIN/bmesh-decimate" $f.off -o d.stl --prepare wrap --epsilon 5% --effort fast
   shows 0 'verified' "$V" --outer $f.off d.stl --raw
 done
+for f in closed open sheet crossing; do
+  expect 0 'each lies inside, exactly' "$BIN/bcd-decompose" $f.off -o b.glb --prepare wrap --epsilon 5% --effort fast --no-cache --report r.json
+  shows 0 'verified' "$V" --cover $f.off b.glb --raw
+  grep -q '"of": "a wrap round all triangles of the input' r.json || fail "what is covered, in $(cat r.json)"
+  python3 - <<'END' || fail "epsilon of bodies round a wrap: $(cat r.json)"
+import json
+r = json.load(open("r.json"))
+assert r["reach"]["upper_percent"] <= 5 and 0 < r["wrap"]["farthest_upper"] < r["reach"]["upper"], r
+END
+done
+# From the cache the same, and of other lengths another.
+for i in 1 2; do
+  expect 0 'each lies inside, exactly' env KABOUM_CACHE="$PWD/cache" "$BIN/bcd-decompose" crossing.off -o c$i.glb --prepare wrap --epsilon 5% --effort fast --report c$i.json
+done
+cmp c1.glb c2.glb || fail "another set from the cache"
+grep -q '"cached": true' c2.json || fail "not from the cache: $(cat c2.json)"
+expect 0 '' env KABOUM_CACHE="$PWD/cache" "$BIN/bcd-decompose" crossing.off -o c3.glb --prepare wrap --seal 9% --epsilon 20% --effort fast --report c3.json
+grep -q '"cached": false' c3.json || fail "another request's set: $(cat c3.json)"
+expect 3 'refuse' "$BIN/bcd-decompose" open.off -o none.glb --prepare strict --no-cache
+expect 3 '' "$BIN/bcd-decompose" open.off -o none.glb --prepare off --no-cache
+expect 2 'direction outer' "$BIN/bcd-decompose" closed.off -o none.glb --prepare wrap --direction inner
+expect 2 'prepare wrap' "$BIN/bcd-decompose" closed.off -o none.glb --prepare wrap --drop-sheets
+expect 2 'prepare auto' "$BIN/bcd-decompose" closed.off -o none.glb --seal 1%
 # The other way round it must be refuted; so must a result that is too small.
 "$V" --outer w.stl crossing.off --raw >/dev/null 2>&1 && fail "two triangles hold their wrap"
 expect 0 '' "$P" closed.off -o w.off --prepare wrap --seal 4%

@@ -70,6 +70,17 @@ def test_inner_set(ring):
     assert inner.record["direction"] == "inner"
 
 
+def test_whatever_triangles_are_wrapped():
+    soup = (np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0.2, 0.2, -1], [0.2, 0.3, 1], [0.4, 0.2, 1]]), np.arange(6).reshape(2, 3))
+    with pytest.raises(kaboum.Error):
+        kaboum.decompose(soup, epsilon="10%", no_cache=True)
+    with pytest.raises(kaboum.Error, match="prepare='wrap'"):
+        kaboum.decompose(soup, epsilon="10%", seal="4%")
+    made = kaboum.decompose(soup, prepare="wrap", epsilon="10%", seal="4%", effort="fast", no_cache=True)
+    assert 0 < made.report["wrap"]["farthest_upper"] < made.distance[1] <= 0.1 * made.report["wrap"]["diagonal"]
+    assert any("round all 2 triangles" in note for note in made.notes)
+
+
 def test_bodies_are_views(ring):
     bodies = kaboum.decompose(ring, epsilon="5%").bodies
     copies = [b.vertices.copy() for b in bodies]

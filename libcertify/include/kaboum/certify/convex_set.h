@@ -4,6 +4,7 @@
 #include <kaboum/bcd/cover.h>
 #include <kaboum/certify/certified.h>
 #include <kaboum/certify/subject.h>
+#include <kaboum/certify/wrap.h>
 #include <kaboum/geom/convex_set.h>
 #include <kaboum/geom/prepare.h>
 
@@ -35,6 +36,10 @@ struct SetRequest {
 
   /// Holes are filled or refused; kept ones are filled as well.
   geom::PrepareOptions preparation{.holes = geom::Holes::Fill};
+  /// Set: what is covered is a wrap round all triangles (certify_wrap), whatever they are like. How
+  /// far it is from them counts towards epsilon, and so does its clearance. Outer sets only;
+  /// `farthest`, `float32` and `progress` are not looked at.
+  std::optional<WrapRequest> wrap;
 
   // What the container says of itself.
   std::string source;  ///< name of the file
@@ -63,6 +68,9 @@ struct SetCertificate {
   bool out_of_work = false;        ///< with more work the search might do better
   std::vector<std::string> notes;  ///< of preparation: what a user should know of the input
   bcd::Method method = bcd::Method::Planes;
+  /// Of the solid, where it is that of a wrap: distances are then to the solid or to the triangles
+  /// of the input (within its clearance: the surface that they stand for), whichever is nearer.
+  std::optional<WrapCertificate> wrap;
 
   /// Whether epsilon, if asked for, is reached, within all limits.
   [[nodiscard]] bool reached() const { return stop == bcd::Stop::Done; }
@@ -86,12 +94,13 @@ struct Hooks {
 /// (inner). Where that fails the search is repeated, without its pre-step, then with larger
 /// allowances for rounding.
 ///
-/// @param mesh    as read; it is prepared here.
+/// @param mesh    as read; it is prepared, or wrapped, here.
 /// @param sha256  of the file it was read from, for the record.
 /// @return nullopt when float32 cannot hold bodies as near as asked for: too far from the origin,
 /// or
 ///   epsilon too small.
-/// @throws Error{InvalidInput} as geom::prepare and the search; Error{InvalidArgument} on
+/// @throws Error{InvalidInput} as geom::prepare, certify_wrap and the search;
+/// Error{InvalidArgument} on
 ///   contradictory options; Error{Internal} when no bodies pass the exact check.
 std::optional<CertifiedSet> certify_set(const geom::Mesh& mesh, const std::string& sha256,
                                         const SetRequest& request, const Hooks& hooks = {});

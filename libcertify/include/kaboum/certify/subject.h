@@ -13,6 +13,7 @@ struct Subject {
   std::size_t dropped_copies = 0;      ///< triangles of copies: what is left is the same surface
   std::size_t dropped_sheets = 0;  ///< triangles of sheets without volume: no claim holds of them
   std::size_t holes = 0;           ///< filled: the solid is the one so closed
+  bool wrapped = false;            ///< the solid is that of a wrap round all of its triangles
 
   friend bool operator==(const Subject&, const Subject&) = default;
 };

@@ -37,6 +37,12 @@ struct WrapCertificate {
   std::size_t input_triangles = 0;
 };
 
+/// What a wrap is, in one sentence.
+std::string in_words(const WrapCertificate& wrap);
+
+/// As in reports: a JSON object.
+std::string to_json(const WrapCertificate& wrap);
+
 /// A closed mesh whose solid holds every triangle of the input: decided by libverify.
 using CertifiedWrap = Certified<geom::Mesh, WrapCertificate>;
 
