@@ -168,6 +168,8 @@ TEST_F(CacheFolderTest, WritersThatAreKilledLeaveNothingThatIsUsed) {
     if (writer == 0) {
       for (std::size_t i = 0;; ++i) cache.store(kKind, key_of(i % 50), content_of(i % 50, 200000));
     }
+    // A busy machine may take its time until the writer writes at all.
+    while (cache.entries().empty()) std::this_thread::sleep_for(1ms);
     std::this_thread::sleep_for(std::chrono::milliseconds(3 + round));
     kill(writer, SIGKILL);
     waitpid(writer, nullptr, 0);

