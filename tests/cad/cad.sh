@@ -21,7 +21,8 @@ for f in flange box; do expect 0 'in millimetres' "$BIN/mesh-prepare" parts/$f.i
 # Bodies cover the exact faces; an .obj of bodies reads as one mesh whose winding number counts them.
 for part in flange sphere vase; do
   expect 0 'the exact faces' "$BIN/bcd-decompose" parts/$part.step -o $part.obj --epsilon 2% --effort fast --no-cache
-  "$PARTS" check parts/$part.step $part.obj 100000 3 >out.txt || fail "bodies of $part: $(cat out.txt)"
+  # Corners of bodies are inside the part as well, far from its faces.
+  "$PARTS" check parts/$part.step $part.obj 100000 1000 >out.txt || fail "bodies of $part: $(cat out.txt)"
 done
 expect 0 'not the exact faces' "$BIN/bcd-decompose" parts/sphere.step -o strict.obj --prepare strict --epsilon 2% --effort fast --no-cache
 expect 3 'mesh-prepare parts/box.step -o' "$BIN/bmesh-decimate" parts/box.step -o none.stl --ratio 0.1

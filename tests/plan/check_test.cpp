@@ -250,6 +250,21 @@ TEST(Check, TreeAndGraphAreBothValid) {
   EXPECT_GT(measure(m, tree).nodes, measure(m, plan).nodes);
 }
 
+TEST(Check, TheOnlyValueOfATypeIsKnown) {
+  const Model m = model_of(R"(domain one
+types: object, place
+constants: object o1; place p1
+predicates: done(object)
+functions: target(object) : place
+action go(?o : object, ?l : place)
+  preconds: K(target(?o) = ?l)
+  effects: add(Kf, done(?o))
+init: K(target(o1) = p1)
+goal: K(done(o1))
+)");
+  EXPECT_TRUE(valid(m, good_plan(m)));
+}
+
 TEST(PlanFile, IsReadBackAsWritten) {
   const Model m = scenario("bartender", "2");
   const Plan plan = good_plan(m);

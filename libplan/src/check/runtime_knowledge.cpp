@@ -70,7 +70,9 @@ bool RuntimeKnowledge::learn_exclusive(const std::set<Fact>& atoms) {
 bool RuntimeKnowledge::learn_value(const Fact& term, Index value, const std::vector<Index>& range) {
   for (const Index other : range)
     if (other != value && !learn_not_value(term, other, range)) return false;
-  return !rules_out(term, value);
+  if (rules_out(term, value)) return false;
+  if (this->value(term) == nullptr) become_value(term, value);  // there is no other
+  return true;
 }
 
 bool RuntimeKnowledge::learn_not_value(const Fact& term, Index value,
