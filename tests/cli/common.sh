@@ -34,7 +34,7 @@ names_place() {
     esac
     grep -qF -- "$word" err.txt && return 0
   done
-  grep -qE -- '--[a-z]|[A-Z]+ is required|subcommand is required' err.txt
+  grep -qE -- '--[a-z]|[A-Z]+ (is|are) required|subcommand is required|standard input' err.txt
 }
 
 # expect CODE WORDS COMMAND...: the exit code, and words of the log, on stderr. '' stands for any, but a refusal
