@@ -4,8 +4,8 @@
 #include <kaboum/collide/polytope.h>
 
 #include <algorithm>
-#include <cstring>
-#include <limits>
+
+#include "farthest.h"
 
 namespace kaboum::collide {
 namespace {
@@ -30,44 +30,17 @@ Polytope::Polytope(std::span<const geom::Vec3> points) {
   }
   const double largest = magnitude_.maxCoeff();
   if (!(largest >= kSmallestFloat && largest <= kLargestFloat)) return;
-  for (std::size_t i = 0; i < points.size(); i += 4)
+  for (std::size_t i = 0; i < points.size(); i += detail::kFloatsAtOnce)
     for (const std::vector<double>* axis : {&x_, &y_, &z_})
-      for (std::size_t k = i; k < i + 4; ++k)
+      for (std::size_t k = i; k < i + detail::kFloatsAtOnce; ++k)
         floats_.push_back(static_cast<float>((*axis)[std::min(k, points.size() - 1)]));
-}
-
-Polytope::Support Polytope::rough_support(const geom::Vec3& d) const {
-  using Floats [[gnu::vector_size(16)]] = float;
-  using Ints [[gnu::vector_size(16)]] = std::int32_t;
-  const auto all = [](double x) {
-    const auto f = static_cast<float>(x);
-    return Floats{f, f, f, f};
-  };
-  const Floats dx = all(d.x()), dy = all(d.y()), dz = all(d.z());
-  Floats best = all(-std::numeric_limits<float>::infinity());
-  Ints index{0, 1, 2, 3}, best_index = index;
-  const float* end = floats_.data() + floats_.size();
-  for (const float* at = floats_.data(); at != end; at += 12) {
-    Floats x, y, z;
-    std::memcpy(&x, at, sizeof x);
-    std::memcpy(&y, at + 4, sizeof y);
-    std::memcpy(&z, at + 8, sizeof z);
-    const Floats along = dx * x + dy * y + dz * z;
-    const Ints farther = along > best;
-    best = farther ? along : best;
-    best_index = farther ? index : best_index;
-    index += 4;
-  }
-  int lane = 0;
-  for (int k = 1; k < 4; ++k)
-    if (best[k] > best[lane]) lane = k;
-  return {std::min(static_cast<std::uint32_t>(best_index[lane]), size() - 1), best[lane]};
 }
 
 Posed::Posed(const Polytope& body, const geom::Transform& pose)
     : body_(&body),
       pose_(&pose),
-      magnitude_(pose.linear.cwiseAbs() * body.magnitude() + pose.translation.cwiseAbs()) {
+      extent_(extent_of(body, pose)),
+      magnitude_(extent_ + pose.translation.cwiseAbs()) {
   is_small_ = pose.linear.cwiseAbs().maxCoeff() <= 2;
   const bool small = pose.linear.cwiseAbs().maxCoeff() <= kLargestFactor &&
                      pose.translation.cwiseAbs().maxCoeff() <= kLargest;

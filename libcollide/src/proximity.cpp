@@ -6,10 +6,12 @@
 #include <kaboum/collide/proximity.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include "exact_proximity.h"
+#include "farthest.h"
 #include "simplex.h"
 
 namespace kaboum::collide {
@@ -22,19 +24,37 @@ constexpr int kMostSteps = 32;
 /// Of the sum of magnitudes: bounds the error of a gap, and of the components of a difference.
 constexpr double kUnit = 0x1p-48;
 constexpr double kUp = 1 + 0x1p-48;
+/// Of |direction| · extents: bounds the error of products in floats, twice over.
+constexpr double kFloatUnit = 0x1p-19;
 /// Magnitudes below it: products may lose digits to underflow.
 constexpr double kSmallest = 1e-80;
+/// Of vectors that are scaled to directions.
+constexpr double kLeastLength = 1e-300, kMostLength = 1e300;
 
-Vec3 scaled(const Vec3& d) { return d / d.cwiseAbs().maxCoeff(); }
-
-/// From one body to the other.
-Vec3 direction_between(const Posed& a, const Posed& b) {
-  const Vec3 d = scaled(b.center() - a.center());
-  return d.allFinite() ? d : Vec3::UnitX();
+/// Scales the largest |component| to 1, up to rounding. @return false, and leaves the direction as
+/// it is, for what has none: zeros, and numbers that are not finite.
+bool scale(const Vec3& by, Vec3& direction) {
+  const Vec3 size = by.cwiseAbs();
+  const double sum = size.x() + size.y() + size.z();
+  if (!(sum >= kLeastLength && sum <= kMostLength)) return false;
+  direction = by * (1 / std::max(std::max(size.x(), size.y()), size.z()));
+  return true;
 }
 
-bool is_axis(const Axis* axis) {
-  return axis != nullptr && axis->allFinite() && !axis->isZero(0) && scaled(*axis).allFinite();
+double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+double sum_of_products(const Vec3& a, const Vec3& b) {
+  return std::abs(a[0]) * b[0] + std::abs(a[1]) * b[1] + std::abs(a[2]) * b[2];
+}
+
+/// Transposed matrix times vector, entry by entry: vectors of two do not pay here.
+Vec3 back(const Posed& body, const Vec3& d) {
+  const Eigen::Matrix3d& l = body.pose().linear;
+  return {dot(l.col(0), d), dot(l.col(1), d), dot(l.col(2), d)};
+}
+
+std::array<float, 3> in_floats(const Vec3& d) {
+  return {static_cast<float>(d[0]), static_cast<float>(d[1]), static_cast<float>(d[2])};
 }
 
 /// Whether the four corners' hull certainly has the origin inside.
@@ -56,13 +76,15 @@ bool holds_origin(const Simplex& s, double error) {
 /// One step after another towards the point of the differences nearest to the origin.
 class Search {
  public:
-  Search(const Posed& a, const Posed& b, const Axis* axis)
-      : a_(a),
-        b_(b),
-        magnitude_(a.magnitude() + b.magnitude()),
-        error_(kUnit * magnitude_.maxCoeff()),
-        error_norm_(kUnit * magnitude_.lpNorm<1>()),
-        direction_(is_axis(axis) ? scaled(*axis) : direction_between(a, b)) {}
+  Search(const Posed& a, const Posed& b)
+      : a_(a), b_(b), extent_(a.extent() + b.extent()), magnitude_(a.magnitude() + b.magnitude()) {}
+
+  /// Where to look next. @return false, and it stays as it is, where that is no direction.
+  bool aim(const Vec3& direction) { return scale(direction, direction_); }
+  /// From one body to the other.
+  void aim_between() {
+    if (!aim(b_.center() - a_.center())) direction_ = Vec3::UnitX();
+  }
 
   /// Looks along the direction: sets what no difference is nearer than. [length]
   void look() {
@@ -78,14 +100,16 @@ class Search {
     else
       look();
   }
-  void aim(const Vec3& direction) { direction_ = direction; }
   /// The same in floats, with what they may be wrong by.
   void look_roughly() {
-    double error_a = 0, error_b = 0;
-    p_ = a_.rough_support(direction_, error_a);
-    q_ = b_.rough_support(-direction_, error_b);
-    const double sum = direction_.cwiseAbs().dot(magnitude_);
-    gap_ = (-q_.value - p_.value) - (error_a + error_b) - kUnit * sum;
+    const Vec3 d = direction_, towards_a = back(a_, d), towards_b = -back(b_, d);
+    const auto [p, q] = detail::farthest_of(a_.body().floats(), in_floats(towards_a),
+                                            b_.body().floats(), in_floats(towards_b));
+    p_ = {std::min(p.index, a_.body().size() - 1), p.product + dot(d, a_.pose().translation)};
+    q_ = {std::min(q.index, b_.body().size() - 1), q.product - dot(d, b_.pose().translation)};
+    const double error = kFloatUnit * sum_of_products(d, extent_) + 2e-29;
+    const double sum = sum_of_products(d, magnitude_);
+    gap_ = (-q_.value - p_.value) - error - kUnit * sum;
     if (!(sum > kSmallest)) gap_ = -std::numeric_limits<double>::infinity();
   }
   /// Forgets the corners, keeps the direction.
@@ -104,22 +128,26 @@ class Search {
   /// Takes in the corner seen. @return false when that leads no nearer.
   bool step() {
     if (simplex_.size == 4 || simplex_.has(p_.index, q_.index)) return false;
-    simplex_.add({b_.point(q_.index) - a_.point(p_.index), p_.index, q_.index});
-    Simplex next = simplex_;
-    const Vec3 nearest = reduce_to_nearest(next);
-    const double square = nearest.squaredNorm();
-    if (!(square < square_)) return false;
-    simplex_ = next;
+    simplex_.vertex[simplex_.size] = {b_.point(q_.index) - a_.point(p_.index), p_.index, q_.index};
+    ++simplex_.size;
+    const detail::Face face = nearest_face(simplex_);
+    const double square = face.point.squaredNorm();
+    if (!(square < square_)) {
+      --simplex_.size;
+      return false;
+    }
+    keep(simplex_, face);
     square_ = square;
-    nearest_ = nearest;
-    const Vec3 d = scaled(nearest);
-    if (!d.allFinite()) return false;
-    direction_ = d;
-    return true;
+    nearest_ = face.point;
+    return aim(nearest_);
   }
   /// No difference's distance is known to be below it. [length]
-  [[nodiscard]] double upper() const { return nearest_.norm() * kUp + error_norm_ * kUp; }
-  [[nodiscard]] bool meet() const { return simplex_.size == 4 && holds_origin(simplex_, error_); }
+  [[nodiscard]] double upper() const {
+    return nearest_.norm() * kUp + kUnit * magnitude_.lpNorm<1>() * kUp;
+  }
+  [[nodiscard]] bool meet() const {
+    return simplex_.size == 4 && holds_origin(simplex_, kUnit * magnitude_.maxCoeff());
+  }
 
   [[nodiscard]] const Vec3& direction() const { return direction_; }
   [[nodiscard]] const Simplex& simplex() const { return simplex_; }
@@ -137,9 +165,8 @@ class Search {
   }
 
   const Posed &a_, &b_;
-  Vec3 magnitude_;
-  double error_, error_norm_;
-  Vec3 direction_;
+  Vec3 extent_, magnitude_;
+  Vec3 direction_ = Vec3::UnitX();
   Polytope::Support p_, q_;
   double gap_ = 0;
   Simplex simplex_;
@@ -152,12 +179,12 @@ class Search {
 bool are_within(const Posed& a, const Posed& b, double reach, Axis* axis, Decided* decided) {
   if (!(reach >= 0) || !std::isfinite(reach))
     throw Error(ErrorCode::InvalidArgument, "a reach must be a number from 0 on");
-  Search search(a, b, axis);
+  Search search(a, b);
   // Floats first: they find directions and corners as well, and most pairs are far from touching.
   bool rough = a.is_rough() && b.is_rough();
   // A direction that does not separate any more is a worse start than any, and what moved that far
   // will again: none is remembered this time.
-  if (is_axis(axis)) {
+  if (axis != nullptr && search.aim(*axis)) {
     search.look(rough);
     if (search.is_beyond(reach)) {
       if (decided != nullptr) ++decided->at_once;
@@ -165,8 +192,8 @@ bool are_within(const Posed& a, const Posed& b, double reach, Axis* axis, Decide
     }
     *axis = Axis::Zero();
     axis = nullptr;
-    search.aim(direction_between(a, b));
   }
+  search.aim_between();
   for (;; rough = false) {
     for (int steps = 0; steps < kMostSteps; ++steps) {
       search.look(rough);
@@ -190,7 +217,8 @@ bool are_within(const Posed& a, const Posed& b, double reach, Axis* axis, Decide
 }
 
 Gap gap_between(const Posed& a, const Posed& b, Axis* axis) {
-  Search search(a, b, axis);
+  Search search(a, b);
+  if (axis == nullptr || !search.aim(*axis)) search.aim_between();
   Gap best;
   best.upper = std::numeric_limits<double>::infinity();
   for (int steps = 0; steps < kMostSteps; ++steps) {

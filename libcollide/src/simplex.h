@@ -14,7 +14,7 @@ struct Simplex {
     std::uint32_t a = 0, b = 0;
   };
   std::array<Vertex, 4> vertex;
-  std::array<double, 4> share{};  ///< ≥ 0; their sum is 1, rounded
+  std::array<double, 4> share;  ///< ≥ 0; their sum is 1, rounded. Of corners that were kept
   int size = 0;
 
   [[nodiscard]] bool has(std::uint32_t a, std::uint32_t b) const {
@@ -22,12 +22,22 @@ struct Simplex {
       if (vertex[i].a == a && vertex[i].b == b) return true;
     return false;
   }
-  void add(const Vertex& v) { vertex[size++] = v; }
 };
 
-/// Reduces the simplex to the corners whose hull has its point nearest to the origin, and sets
-/// their shares. In rounded arithmetic: whoever uses it checks what comes of it.
-/// @return that point: Σ share · w. Four corners are left only where they seem to hold the origin.
-geom::Vec3 reduce_to_nearest(Simplex& simplex);
+/// Some corners of a simplex, ascending, with shares as there, and their point Σ share · w.
+struct Face {
+  std::array<int, 4> corner{0, 1, 2, 3};
+  std::array<double, 4> share{};
+  int size = 0;
+  geom::Vec3 point;
+};
+
+/// The corners whose hull has the point of the simplex that is nearest to the origin. In rounded
+/// arithmetic: whoever uses it checks what comes of it. All four only where they seem to hold the
+/// origin.
+Face nearest_face(const Simplex& simplex);
+
+/// Leaves out the other corners.
+void keep(Simplex& simplex, const Face& face);
 
 }  // namespace kaboum::collide::detail

@@ -6,6 +6,7 @@
 #include <kaboum/world/scene.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "link_poses.h"
@@ -20,7 +21,7 @@ namespace {
 
 /// Values that errors of kinematics are bounded for beforehand.
 constexpr double kFarthest = 100;
-constexpr auto kNeverApart = [](std::size_t) -> const std::int32_t* { return nullptr; };
+constexpr auto kAllNear = [](std::size_t) -> const std::uint64_t* { return nullptr; };
 
 /// Whether the link holds the object, or may touch what is held.
 bool is_carried_by_link(const WorldState& state, const Item& object, const Item& shape,
@@ -128,19 +129,24 @@ bool Checker::is_within_limits(std::size_t robot, const std::vector<double>& q) 
   return true;
 }
 
-void Checker::add(std::vector<Row>& rows, std::size_t i, std::size_t j) {
-  if (rows.empty() || rows.back().item != i) rows.push_back({i, {}});
-  rows.back().others.push_back(j);
+void Checker::add(std::vector<Row>& rows, std::size_t i, std::size_t j) const {
+  if (rows.empty() || rows.back().item != i)
+    rows.push_back({i, std::vector<std::uint64_t>((items_.size() + 63) / 64)});
+  rows.back().others[j / 64] |= std::uint64_t{1} << (j % 64);
 }
 
 template <typename Skip, typename Look, typename Pair>
 bool Checker::visit_rows(const std::vector<Row>& rows, const Skip& skip, const Look& look,
                          const Pair& pair) {
-  for (const Row& row : rows) {
-    const std::int32_t* apart = look(row.item);
-    for (const std::size_t j : row.others) {
-      if (apart != nullptr && apart[j] != 0) continue;
-      if (!skip(row.item, j) && pair(row.item, j)) return true;
+  for (const auto& [item, others] : rows) {
+    const std::uint64_t* near = look(item);
+    for (std::size_t word = (item + 1) / 64; word < others.size(); ++word) {
+      std::uint64_t left = others[word];
+      if (near != nullptr) left &= near[word];
+      for (; left != 0; left &= left - 1) {
+        const std::size_t j = 64 * word + static_cast<std::size_t>(std::countr_zero(left));
+        if (!skip(item, j) && pair(item, j)) return true;
+      }
     }
   }
   return false;
@@ -176,7 +182,7 @@ std::vector<std::array<Item, 2>> Checker::pairs(const WorldState& state,
                                                 const Options& options) const {
   std::vector<std::array<Item, 2>> out;
   detail::require_fits(*world_, state);
-  visit(state, options, kNeverApart, [&](std::size_t i, std::size_t j) {
+  visit(state, options, kAllNear, [&](std::size_t i, std::size_t j) {
     out.push_back({items_[i], items_[j]});
     return false;
   });
@@ -188,10 +194,7 @@ void Checker::visit_meeting(const WorldState& state, Scratch& scratch, const Opt
                             const Found& found) const {
   place(state, scratch);
   Scratch::Impl& s = *scratch.impl_;
-  const auto look = [&](std::size_t i) -> const std::int32_t* {
-    s.look_from(i);
-    return s.apart.data();
-  };
+  const auto look = [&](std::size_t i) { return s.balls.look_from(i); };
   visit(state, options, look, [&](std::size_t i, std::size_t j) {
     if (s.is_beside_box(i, j) || s.is_beside_box(j, i)) return false;
     const auto bodies = find_collision(s.set(i), s.set(j), 0, &s.memory[i * items_.size() + j]);
@@ -241,7 +244,7 @@ std::optional<Checker::Nearest> Checker::find_nearest(const WorldState& state, S
   Scratch::Impl& s = *scratch.impl_;
   std::optional<Nearest> best;
   double lower = 0;
-  visit(state, options, kNeverApart, [&](std::size_t i, std::size_t j) {
+  visit(state, options, kAllNear, [&](std::size_t i, std::size_t j) {
     const auto distance = clearance(s.set(i), s.set(j));
     if (!distance) return false;
     lower = best ? std::min(lower, distance->lower) : distance->lower;

@@ -12,8 +12,6 @@
 
 namespace kaboum::world {
 
-using collide::PosedSet;
-
 Scratch::Scratch() : impl_(std::make_unique<Impl>()) {}
 Scratch::~Scratch() = default;
 Scratch::Scratch(Scratch&&) noexcept = default;
@@ -92,9 +90,11 @@ void Checker::start(Scratch::Impl& s) const {
   s.placed.assign(n, 0);
   s.poses.resize(n);
   s.errors.assign(n, 0);
-  const std::size_t fours = (n + 3) / 4 * 4;
-  for (std::vector<float>* of_items : {&s.x, &s.y, &s.z, &s.radius}) of_items->assign(fours, 0);
-  s.apart.assign(fours, 0);
+  s.balls = detail::Balls(n);
+  for (const collide::PosedSet& set : s.sets) {
+    const collide::BoundingSet::Ball& ball = set.set().ball();
+    s.hulls.push_back({ball.center, ball.radius * (1 + 1e-8) + 1e-12 * ball.center.lpNorm<1>()});
+  }
   s.memory.assign(n * n, {});
   s.links.resize(world_->robots.size());
   s.held.assign(world_->objects.size(), std::nullopt);
@@ -115,7 +115,8 @@ std::size_t Checker::place_robot(const WorldState& state, std::size_t r, std::si
           sweep::MotionBounds(sweep::LinkMotion(robot.kinematics, link, q, q),
                               hulls_.at(items_[next])),
           robot.base);
-    s.put(next, pose_of(r, link, s), error);
+    kinematics_[r]->place(link, s.links[r], s.poses[next]);
+    s.put(next, error);
     if (!(defects_[r] <= kSmallDefect)) s.set(next);  // throws, or its ball is no matter
   }
   return next;
@@ -126,17 +127,17 @@ void Checker::place_object(const WorldState& state, std::size_t o, std::size_t i
   const auto& attachment = state.attachments[o];
   if (!attachment) {
     const Transform& pose = state.poses[o];
-    s.put(item, pose, detail::rotation_error(pose, radius_[item]));
+    s.poses[item] = pose;
+    s.put(item, detail::rotation_error(pose, radius_[item]));
     s.set(item);
     return;
   }
-  s.put(item, pose_of(attachment->robot, attachment->link, s) * attachment->pose,
-        error_of_held(state, o, item, s));
+  const double error = error_of_held(state, o, item, s);
+  Transform link;
+  kinematics_[attachment->robot]->place(attachment->link, s.links[attachment->robot], link);
+  s.poses[item] = link * attachment->pose;
+  s.put(item, error);
   s.set(item);
-}
-
-Transform Checker::pose_of(std::size_t robot, std::uint32_t link, const Scratch::Impl& s) const {
-  return kinematics_[robot]->pose(link, s.links[robot]);
 }
 
 double Checker::error_of_held(const WorldState& state, std::size_t o, std::size_t item,

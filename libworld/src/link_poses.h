@@ -23,11 +23,14 @@ class LinkPoses {
   void compute(std::span<const double> q, std::vector<Transform>& moved) const;
 
   /// A link's pose in the world. @param moved  of compute
-  [[nodiscard]] Transform pose(std::uint32_t link, const std::vector<Transform>& moved) const {
+  void place(std::uint32_t link, const std::vector<Transform>& moved, Transform& pose) const {
     const Place& place = places_[link];
     const Transform& last = moved[place.moved];
-    if (at_origin_) return place.is_fixed ? last * place.fixed : last;
-    return base_ * (place.is_fixed ? last * place.fixed : last);
+    if (place.is_fixed)
+      pose = last * place.fixed;
+    else
+      pose = last;
+    if (!at_origin_) pose = base_ * pose;
   }
 
   /// Bounds |LᵀL − I| (Frobenius) of every pose's matrix L but for rounding: origins that are not

@@ -2,11 +2,10 @@
 
 #include <kaboum/world/checker.h>
 
-#include <cstdint>
-#include <cstring>
 #include <memory>
 #include <vector>
 
+#include "balls.h"
 #include "link_poses.h"
 
 namespace kaboum::world {
@@ -29,10 +28,14 @@ struct Scratch::Impl {
   std::vector<char> placed;             ///< whether `sets` has it where it is
   std::vector<Transform> poses;         ///< of all items, to the world
   std::vector<double> errors;           ///< of these poses [length]
-  /// Of all items' balls in the world; rounded, the radii large enough for that. A few more, so
-  /// that there are four to look at everywhere.
-  std::vector<float> x, y, z, radius;
-  std::vector<std::int32_t> apart;            ///< of balls, see look_from
+  /// What holds an item, in its frame: all places that it may have are within `reach` and what is
+  /// relative to the translation of the one of the ball's centre. D is at most 3e-9.
+  struct Hull {
+    Vec3 center;
+    double reach;
+  };
+  std::vector<Hull> hulls;                    ///< of all items
+  detail::Balls balls;                        ///< of all items, in the world
   std::vector<collide::Memory> memory;        ///< of pairs of items, row by row
   std::vector<std::vector<Transform>> links;  ///< of all robots, to their roots
 
@@ -45,24 +48,14 @@ struct Scratch::Impl {
   };
   std::vector<std::optional<Held>> held;  ///< by objects, errors for the usual joint values
 
-  /// Says where an item is; its set is placed when it is asked for.
-  void put(std::size_t i, const Transform& pose, double error) {
+  /// Says that an item is where its pose is; its set is placed when it is asked for.
+  void put(std::size_t i, double error) {
     placed[i] = 0;
-    poses[i] = pose;
     errors[i] = error;
-    const collide::BoundingSet::Ball& ball = sets[i].set().ball();
-    const Vec3 center = pose * ball.center;
-    x[i] = static_cast<float>(center.x());
-    y[i] = static_cast<float>(center.y());
-    z[i] = static_cast<float>(center.z());
-    // Rounding of the centre is less than 2^-48 of the lengths, and to floats 2^-23 of the place;
-    // D is at most 3e-9. The rest is for the rounding of look_from.
-    radius[i] =
-        static_cast<float>((ball.radius * (1 + 1e-8) + error +
-                            1e-12 * (pose.translation.lpNorm<1>() + ball.center.lpNorm<1>()) +
-                            0x1p-22 * center.lpNorm<1>()) *
-                               (1 + 0x1p-19) +
-                           1e-15);
+    const Transform& pose = poses[i];
+    const auto& [center, reach] = hulls[i];
+    // Rounding of the centre is less than 2^-48 of the lengths.
+    balls.put(i, pose * center, reach + error + 1e-12 * pose.translation.lpNorm<1>());
   }
 
   /// @throws Error{InvalidArgument} as PosedSet::place
@@ -74,38 +67,16 @@ struct Scratch::Impl {
     return sets[i];
   }
 
-  /// Sets apart[j] to other than 0 only where the balls of items i and j, j > i, are apart.
-  ///
-  /// Differences, squares and sums of floats err by less than 2^-20 together (the parts of a sum
-  /// are not negative), which the radii are larger by; what is too large for floats is not apart.
-  void look_from(std::size_t i) {
-    using Floats [[gnu::vector_size(16)]] = float;
-    using Ints [[gnu::vector_size(16)]] = std::int32_t;
-    const auto all = [](float f) { return Floats{f, f, f, f}; };
-    const auto four = [](const std::vector<float>& from, std::size_t at) {
-      Floats out;
-      std::memcpy(&out, from.data() + at, sizeof out);
-      return out;
-    };
-    const Floats xi = all(x[i]), yi = all(y[i]), zi = all(z[i]), ri = all(radius[i]);
-    for (std::size_t j = (i + 1) & ~std::size_t{3}; j < apart.size(); j += 4) {
-      const Floats dx = four(x, j) - xi, dy = four(y, j) - yi, dz = four(z, j) - zi,
-                   sum = four(radius, j) + ri;
-      const Ints out = dx * dx + dy * dy + dz * dz > sum * sum;
-      std::memcpy(apart.data() + j, &out, sizeof out);
-    }
-  }
-
   /// Whether the ball of item j is apart from the box of item i in the frame of i.
   [[nodiscard]] bool is_beside_box(std::size_t i, std::size_t j) const {
-    // Within radius[j] of the place y of the ball: |p − L⁻¹y| ≤ (1 + D) radius for points p of the
+    // Within the radius of the place y of the ball: |p − L⁻¹y| ≤ (1 + D) radius for points p of the
     // box, and |Lᵀy − L⁻¹y| ≤ 2 D |y|.
-    const Vec3 between = Vec3(x[j], y[j], z[j]) - poses[i].translation;
+    const Vec3 between = balls.center(j) - poses[i].translation;
     const Vec3 p = poses[i].linear.transpose() * between;
     const geom::Box3& box = sets[i].set().box();
-    const Vec3 apart = (box.min - p).cwiseMax(p - box.max).cwiseMax(0.0);
-    const double reach = (radius[j] + errors[i]) * (1 + 1e-8) + 1e-8 * between.lpNorm<1>();
-    return apart.squaredNorm() > reach * reach;
+    const Vec3 beside = (box.min - p).cwiseMax(p - box.max).cwiseMax(0.0);
+    const double reach = (balls.radius(j) + errors[i]) * (1 + 1e-8) + 1e-8 * between.lpNorm<1>();
+    return beside.squaredNorm() > reach * reach;
   }
 };
 

@@ -5,6 +5,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/collide/inclusion.h>
 
+#include <cmath>
 #include <limits>
 #include <thread>
 
@@ -124,6 +125,35 @@ TEST(FindCollision, FindsWhatAllPairsOfBodiesFind) {
   }
   EXPECT_GT(collisions, 40);
   EXPECT_LT(collisions, 360);
+}
+
+TEST(FindCollision, BoxesLeaveOutNoneThatNearlyTouch) {
+  // Bodies with facets along the axes of their frames, facet to facet up to rounding, anywhere:
+  // boxes along these axes are as good as the bodies, and must not be better.
+  std::mt19937_64 random(8);
+  const BoundingSet cube = set_of({kUnit}, Direction::Outer);
+  int meet = 0, apart = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const double away = std::pow(10.0, static_cast<double>(random() % 6) - 2);
+    const geom::Transform there{test::random_rotation(random), test::random_point(random, away)};
+    // The other one turns about the axis across the facet.
+    const double angle = i % 2 == 0 ? 0 : std::uniform_real_distribution<double>(-3, 3)(random);
+    const geom::Transform beside =
+        there *
+        geom::Transform{Eigen::AngleAxisd(angle, Vec3::UnitX()).toRotationMatrix(), {1, 0, 0}};
+    const PosedSet a(cube, there), b(cube, beside);
+    const bool touch = are_within(a.body(0), b.body(0), 0);
+    EXPECT_EQ(find_collision(a, b).has_value(), touch) << i;
+    EXPECT_EQ(find_collision(b, a).has_value(), touch) << i;
+    const double slack = std::uniform_real_distribution<double>(0, 1)(random);
+    const geom::Transform farther{beside.linear, beside.translation + slack * there.linear.col(0)};
+    const PosedSet c(cube, farther);
+    EXPECT_EQ(find_collision(a, c, slack).has_value(), are_within(a.body(0), c.body(0), slack))
+        << i;
+    ++(touch ? meet : apart);
+  }
+  EXPECT_GT(meet, 500);
+  EXPECT_GT(apart, 500);
 }
 
 TEST(FindCollision, SweptAndOtherSetsAreReadAsTheirContainersSay) {

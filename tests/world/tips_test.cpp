@@ -180,7 +180,9 @@ TEST(Motions, OfSlidesThatEndInContact) {
     EXPECT_EQ(answer.outcome,
               k < 100 ? MotionAnswer::Outcome::Contact : MotionAnswer::Outcome::Free)
         << share;
-    if (k < 100) EXPECT_NEAR(answer.share, share, 2e-5);
+    if (k < 100) {
+      EXPECT_NEAR(answer.share, share, 2e-5);
+    }
   }
 }
 

@@ -51,13 +51,19 @@ class BoundingSet {
 
  private:
   friend class PosedSet;
+  friend class OrientedBoxes;
 
   std::vector<Body> bodies_;
   std::vector<Polytope> polytopes_;
-  /// Of the bodies' boxes, axis by axis, for the processor's sake: middle, half the size, and the
-  /// largest |coordinate|.
-  std::array<std::vector<double>, 3> middle_, half_, magnitude_;
-  std::vector<double> margins_;
+  /// Of the bodies' boxes, axis by axis: middle, half the size, and the largest |coordinate|; then
+  /// the margins. Each for as many bodies as stride() says, the last one repeated.
+  std::vector<double> rows_;
+  [[nodiscard]] std::size_t stride() const { return (size() + 1) / 2 * 2; }
+  [[nodiscard]] const double* row(std::size_t i) const { return rows_.data() + i * stride(); }
+  /// Of one body, three rows from there on.
+  [[nodiscard]] geom::Vec3 column(std::size_t from, std::size_t body) const {
+    return {row(from)[body], row(from + 1)[body], row(from + 2)[body]};
+  }
   Ball ball_;
   geom::Box3 box_;
   Direction direction_ = Direction::Outer;
@@ -103,10 +109,11 @@ class PosedSet {
   double defect_ = 0;  ///< of `linear` from a rotation, more than twice what it stretches by
   friend struct BoxPairs;
   [[nodiscard]] const double* low(std::size_t axis) const {
-    return boxes_.data() + axis * set_->size();
+    return boxes_.data() + axis * set_->stride();
   }
   [[nodiscard]] const double* high(std::size_t axis) const { return low(3 + axis); }
-  std::vector<double> boxes_;  ///< lower ends of the bodies' boxes, axis by axis, then upper ends
+  /// Lower ends of the bodies' boxes, axis by axis, then upper ends, each as BoundingSet::row.
+  std::vector<double> boxes_;
   geom::Box3 box_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <kaboum/geom/transform.h>
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -31,12 +32,9 @@ class Polytope {
     return best;
   }
 
-  /// The same in floats, four at a time: the value is off from the largest product by at most
-  /// 2^-20 |d| · magnitude() + 1e-30, and the point's own product by twice as much.
-  /// @pre has_floats(), |d| <= 16
-  [[nodiscard]] Support rough_support(const geom::Vec3& d) const;
-  /// Whether floats hold the coordinates: they are neither too large nor too small for them.
-  [[nodiscard]] bool has_floats() const { return !floats_.empty(); }
+  /// The coordinates in floats: eight x, eight y, eight z, and so on; the last point is repeated.
+  /// Empty where they are too large or too small for that.
+  [[nodiscard]] const std::vector<float>& floats() const { return floats_; }
 
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(x_.size()); }
   [[nodiscard]] geom::Vec3 point(std::uint32_t i) const { return {x_[i], y_[i], z_[i]}; }
@@ -48,7 +46,6 @@ class Polytope {
 
  private:
   std::vector<double> x_, y_, z_;
-  /// Four x, four y, four z, and so on; the last point is repeated.
   std::vector<float> floats_;
   geom::Vec3 center_ = geom::Vec3::Zero(), magnitude_ = geom::Vec3::Zero();
   geom::Box3 box_;
@@ -67,40 +64,51 @@ class Posed {
   Posed(const Polytope& body, const geom::Transform& pose, Checked /*unused*/)
       : body_(&body),
         pose_(&pose),
-        magnitude_(pose.linear.cwiseAbs() * body.magnitude() + pose.translation.cwiseAbs()),
+        extent_(extent_of(body, pose)),
+        magnitude_(extent_ + pose.translation.cwiseAbs()),
         is_small_(true) {}
 
   [[nodiscard]] const Polytope& body() const { return *body_; }
   [[nodiscard]] const geom::Transform& pose() const { return *pose_; }
-  /// |L| · largest |coordinates| + |t|: what rounding errors of placed points are relative to.
+  /// |L| · largest |coordinates|
+  [[nodiscard]] const geom::Vec3& extent() const { return extent_; }
+  /// extent() + |t|: what rounding errors of placed points are relative to.
   [[nodiscard]] const geom::Vec3& magnitude() const { return magnitude_; }
-  [[nodiscard]] geom::Vec3 center() const { return *pose_ * body_->center(); }
+  [[nodiscard]] geom::Vec3 center() const { return placed(body_->center()); }
   /// Rounded image of a point.
-  [[nodiscard]] geom::Vec3 point(std::uint32_t i) const { return *pose_ * body_->point(i); }
+  [[nodiscard]] geom::Vec3 point(std::uint32_t i) const { return placed(body_->point(i)); }
   /// Farthest along d, in rounded arithmetic; the value contains the translation.
   [[nodiscard]] Polytope::Support support(const geom::Vec3& d) const {
     Polytope::Support s = body_->support(pose_->linear.transpose() * d);
     s.value += d.dot(pose_->translation);
     return s;
   }
-  /// Whether rough_support may be asked.
-  [[nodiscard]] bool is_rough() const { return is_small_ && body_->has_floats(); }
-  /// Farthest along d in floats, and in `error` how far the value may be from the largest one.
-  /// @pre is_rough(), |d| <= 2
-  [[nodiscard]] Polytope::Support rough_support(const geom::Vec3& d, double& error) const {
-    const geom::Vec3 local = pose_->linear.transpose() * d;
-    Polytope::Support s = body_->rough_support(local);
-    s.value += d.dot(pose_->translation);
-    error = 0x1p-19 * local.cwiseAbs().dot(body_->magnitude()) + 1e-29;
-    return s;
-  }
+  /// Whether products of its points with directions may be looked at in floats.
+  [[nodiscard]] bool is_rough() const { return is_small_ && !body_->floats().empty(); }
   /// Box along the axes that holds the exact image, and `reach` round it.
   [[nodiscard]] geom::Box3 box(double reach = 0) const;
 
  private:
+  [[nodiscard]] geom::Vec3 placed(const geom::Vec3& p) const {
+    const Eigen::Matrix3d& l = pose_->linear;
+    const geom::Vec3& t = pose_->translation;
+    return {l(0, 0) * p[0] + l(0, 1) * p[1] + l(0, 2) * p[2] + t[0],
+            l(1, 0) * p[0] + l(1, 1) * p[1] + l(1, 2) * p[2] + t[1],
+            l(2, 0) * p[0] + l(2, 1) * p[1] + l(2, 2) * p[2] + t[2]};
+  }
+
+  static geom::Vec3 extent_of(const Polytope& body, const geom::Transform& pose) {
+    const Eigen::Matrix3d& l = pose.linear;
+    const geom::Vec3& m = body.magnitude();
+    const auto along = [&](int k) {
+      return std::abs(l(k, 0)) * m[0] + std::abs(l(k, 1)) * m[1] + std::abs(l(k, 2)) * m[2];
+    };
+    return {along(0), along(1), along(2)};
+  }
+
   const Polytope* body_;
   const geom::Transform* pose_;
-  geom::Vec3 magnitude_;
+  geom::Vec3 extent_, magnitude_;
   bool is_small_ = false;  ///< no entry of the matrix is above 2
 };
 

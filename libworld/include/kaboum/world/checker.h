@@ -3,6 +3,7 @@
 #include <kaboum/sweep/motion.h>
 #include <kaboum/world/world.h>
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <span>
@@ -111,22 +112,20 @@ class Checker {
                           Scratch::Impl& s) const;
   void place_object(const WorldState& state, std::size_t object, std::size_t item,
                     Scratch::Impl& s) const;
-  [[nodiscard]] Transform pose_of(std::size_t robot, std::uint32_t link,
-                                  const Scratch::Impl& s) const;
   double error_of_held(const WorldState& state, std::size_t object, std::size_t item,
                        Scratch::Impl& s) const;
   /// Whether error_ holds for these values of a robot's variables.
   [[nodiscard]] bool is_usual(std::size_t robot, const std::vector<double>& q) const;
 
-  /// Items that an item before them may collide with, ascending.
+  /// Items that an item before them may collide with.
   struct Row {
     std::size_t item = 0;
-    std::vector<std::size_t> others;
+    std::vector<std::uint64_t> others;  ///< bit j % 64 of word j / 64
   };
-  static void add(std::vector<Row>& rows, std::size_t i, std::size_t j);
+  void add(std::vector<Row>& rows, std::size_t i, std::size_t j) const;
 
   /// Calls pair(i, j) for the numbers of items of pairs that are looked at until it is true; not
-  /// for those with apart[j] other than 0, apart = look(i).
+  /// for those whose bit in look(i), as in Row, is 0. All where that is null.
   template <typename Look, typename Pair>
   void visit(const WorldState& state, const Options& options, const Look& look,
              const Pair& pair) const;
