@@ -23,13 +23,14 @@ run_tool() {
   case $code in 2 | 4) [ ! -s out.txt ] || fail "prints to stdout, exit $code: $*: $(head -c 300 out.txt)" ;; esac
 }
 
-# names_place COMMAND...: whether stderr names an option or a file: one of the command, or what it has to have.
+# names_place COMMAND...: whether stderr names an option, a file or a value of some length: one of the command, or
+# what it has to have.
 names_place() {
   shift
   for word in "$@"; do
     case $word in
       -?*) word=${word%%=*} ;;
-      *.* | */*) ;;
+      *.* | */* | ?????*) ;;
       *) continue ;;
     esac
     grep -qF -- "$word" err.txt && return 0
