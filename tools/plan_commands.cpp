@@ -143,9 +143,12 @@ int solve(const PlanOptions& o) {
   report["resources"] = {{"user_seconds_searching", solved - loaded}, {"wall_seconds", wall}};
   write_report(o.common, "kaboum-plan", report);
   if (solution.outcome == plan::Outcome::Solved) {
-    log(o.common.quiet, "solved: " + std::to_string(size.nodes) + " nodes, " +
-                            std::to_string(size.leaves) + " leaves, longest path " +
-                            std::to_string(size.longest) + " actions");
+    const std::size_t n = options.assumed.size();
+    log(o.common.quiet, (n == 0 ? "solved: "
+                                : "solved under " + std::to_string(n) +
+                                      (n == 1 ? " assumption: " : " assumptions: ")) +
+                            std::to_string(size.nodes) + " nodes, " + std::to_string(size.leaves) +
+                            " leaves, longest path " + std::to_string(size.longest) + " actions");
     return kDone;
   }
   std::cerr << "kaboum-plan: " << said.sentence << '\n';

@@ -14,11 +14,12 @@ constexpr std::size_t kShown = 12;  // failures that are told
 plan::ExternalBindings Explanation::watch(const plan::ExternalBindings& bindings) {
   plan::ExternalBindings out;
   for (const auto& [name, function] : bindings) {
-    if (!function.reads_state()) {  // of names alone: it gives no reasons
+    if (!function.takes_seed()) {  // of names alone: it gives no reasons
       out[name] = function;
       continue;
     }
-    out[name] = [notes = notes_, name = name, function = function](const plan::Question& q) {
+    const auto watched = [notes = notes_, name = name,
+                          function = function](const plan::Question& q) {
       plan::Answer answer = function(q);
       if (answer.kind != plan::Answer::Kind::Value && !answer.reason.empty()) {
         std::string call = name + "(";
@@ -30,6 +31,7 @@ plan::ExternalBindings Explanation::watch(const plan::ExternalBindings& bindings
       }
       return answer;
     };
+    out[name] = plan::ExternalBinding(watched, function.reads_state());
   }
   return out;
 }

@@ -30,7 +30,7 @@ CLI::Option* add_scene(CLI::App& app, PlanOptions& o) {
                  "(docs/planning/externals.md); may be repeated")
       ->type_name("COMMAND");
   app.add_option("--process-timeout", o.process_timeout,
-                 "Longest time for one answer of a program or plug-in")
+                 "Longest time for one answer of a program or plug-in, and for its start")
       ->check(number_from(1e-3, 1e6))
       ->capture_default_str()
       ->type_name("S");

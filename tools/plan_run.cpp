@@ -89,6 +89,7 @@ Json replans_json(const std::vector<plan::Replan>& replans) {
                    {"reason", r.reason},
                    {"nodes", r.nodes},
                    {"known_before", r.reached},
+                   {"circle", r.circle},
                    {"wall_seconds", r.seconds}});
   return out;
 }
@@ -96,12 +97,12 @@ Json replans_json(const std::vector<plan::Replan>& replans) {
 /// The first that there is no plan for, in words; and the exit code.
 int say_missing(const std::vector<plan::Replan>& replans) {
   for (const plan::Replan& r : replans) {
-    if (r.result == plan::Outcome::Solved) continue;
+    if (r.result == plan::Outcome::Solved && !r.circle) continue;
     std::cerr << "kaboum-plan: no plan from where " << r.outcome << " was sensed, after "
               << r.actions << (r.actions == 1 ? " action: " : " actions: ") << r.reason << '\n';
-    return r.result == plan::Outcome::Unsolvable    ? kNo
-           : r.result == plan::Outcome::NotInferred ? kNotInferred
-                                                    : kLimit;
+    return r.circle || r.result == plan::Outcome::Unsolvable ? kNo
+           : r.result == plan::Outcome::NotInferred          ? kNotInferred
+                                                             : kLimit;
   }
   return kDone;
 }
@@ -205,10 +206,12 @@ int run_plan(const PlanOptions& o) {
   report["triangles"] = cell.triangles();
   report["notes"] = notes;
   report["replans"] = replans_json(done.replans);
+  const bool good = r.good() && done.complete();
+  report["verdict"] = good ? "good" : "not good";
   write_report(o.common, "kaboum-plan", report);
   for (const std::string& problem : r.problems) std::cerr << "kaboum-plan: " << problem << '\n';
-  if (!o.common.quiet || !r.good())
-    std::cout << (r.good() ? "good: " : "not good: ") << summary.branches
+  if (!o.common.quiet || !good)
+    std::cout << (good ? "good: " : "not good: ") << summary.branches
               << (summary.branches == 1 ? " branch, " : " branches, ") << r.motions << " motions, "
               << r.samples << " samples, " << r.collisions << " collisions, " << r.limit_violations
               << " limit violations, " << r.jumps << " jumps"

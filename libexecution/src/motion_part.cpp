@@ -11,36 +11,51 @@ namespace {
 
 using nlohmann::json;
 
+/// @throws json::exception for members of another kind.
+MotionPart part_of(const json& motion, const world::World& world) {
+  MotionPart part;
+  const auto robot = world.find_robot(motion.at("robot").get<std::string>());
+  if (!robot)
+    throw Error(ErrorCode::InvalidInput, "a path of the plan is for robot '" +
+                                             motion.at("robot").get<std::string>() +
+                                             "', which the scene does not have");
+  part.robot = *robot;
+  part.path = motion.at("path").get<robot::Path>();
+  const robot::Robot& kinematics = world.robots[*robot].kinematics;
+  for (const robot::Path::value_type& q : part.path)
+    if (q.size() != kinematics.variables.size())
+      throw Error(ErrorCode::InvalidInput, "a path of the plan does not fit its robot");
+  const json holds = motion.value("holds", json::object());
+  for (const auto& [name, link] : holds.items()) {
+    const auto object = world.find_object(name);
+    const auto number = kinematics.find_link(link.get<std::string>());
+    if (!object || !number)
+      throw Error(ErrorCode::InvalidInput,
+                  "a path of the plan holds '" + name + "', which the scene does not have");
+    part.holds[*object] = *number;
+  }
+  return part;
+}
+
 }  // namespace
 
-std::vector<MotionPart> parts_of(const std::string& payload, const world::World& world) {
+std::vector<MotionPart> parts_of(const std::string& payload, const world::World& world,
+                                 const std::string& where) {
   std::vector<MotionPart> out;
   const json list = json::parse(payload, nullptr, false);
   if (!list.is_array()) return out;
   for (const json& motion : list) {
     if (!motion.is_object() || !motion.contains("path") || !motion.contains("robot")) return {};
-    MotionPart part;
-    const auto robot = world.find_robot(motion["robot"].get<std::string>());
-    if (!robot)
-      throw Error(ErrorCode::InvalidInput, "a path of the plan is for robot '" +
-                                               motion["robot"].get<std::string>() +
-                                               "', which the scene does not have");
-    part.robot = *robot;
-    part.path = motion["path"].get<robot::Path>();
-    const robot::Robot& kinematics = world.robots[*robot].kinematics;
-    for (const robot::Path::value_type& q : part.path)
-      if (q.size() != kinematics.variables.size())
-        throw Error(ErrorCode::InvalidInput, "a path of the plan does not fit its robot");
-    const json holds = motion.value("holds", json::object());
-    for (const auto& [name, link] : holds.items()) {
-      const auto object = world.find_object(name);
-      const auto number = kinematics.find_link(link.get<std::string>());
-      if (!object || !number)
-        throw Error(ErrorCode::InvalidInput,
-                    "a path of the plan holds '" + name + "', which the scene does not have");
-      part.holds[*object] = *number;
+    try {
+      out.push_back(part_of(motion, world));
+    } catch (const Error& e) {
+      throw Error(e.code(), where + ": " + e.what());
+    } catch (const json::exception&) {
+      throw Error(ErrorCode::InvalidInput,
+                  where +
+                      R"(: a path of the plan is to be {"robot": NAME, "path": [[NUMBER, ...], )"
+                      R"(...], "holds": {OBJECT: LINK, ...}})");
     }
-    out.push_back(std::move(part));
   }
   return out;
 }

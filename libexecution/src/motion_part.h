@@ -16,9 +16,11 @@ struct MotionPart {
 };
 
 /// The motions of a payload; empty: it is of another kind.
-/// @throws Error{InvalidInput} for robots, objects and links that the scene does not have, and
-///   paths that do not fit their robot.
-std::vector<MotionPart> parts_of(const std::string& payload, const world::World& world);
+/// @param where  in the plan it is: "node 3, grasp(o1)".
+/// @throws Error{InvalidInput} for robots, objects and links that the scene does not have, paths
+///   that do not fit their robot, and members of another kind; it begins with `where`.
+std::vector<MotionPart> parts_of(const std::string& payload, const world::World& world,
+                                 const std::string& where);
 
 /// @throws Error{InvalidArgument} for rates and limits that are not above 0.
 void require_above_zero(const SimulationOptions& options);

@@ -155,7 +155,9 @@ void Recording::record_motions(plan::Index number) {
   const plan::Plan::Node& node = plan_.nodes[number];
   Json motions = Json::array();
   for (const plan::Plan::Call& call : node.calls)
-    for (const MotionPart& part : parts_of(call.payload, world_)) {
+    for (const MotionPart& part :
+         parts_of(call.payload, world_,
+                  "node " + std::to_string(number) + ", " + action_text(model_, node.action))) {
       if (part.path.empty()) continue;
       const motion::Trajectory trajectory = trajectory_of(part, world_, options_);
       Json times = Json::array(), holds = Json::object();

@@ -79,7 +79,9 @@ void Simulation::carry_out(const plan::RunStep& step) {
     }
   }
   for (const plan::Plan::Call& call : node.calls)
-    for (const MotionPart& part : parts_of(call.payload, world_)) follow(part, state, step);
+    for (const MotionPart& part :
+         parts_of(call.payload, world_, "node " + std::to_string(step.node) + ", " + where_))
+      follow(part, state, step);
   mounted_ = after->mounted;
   compare(state, after->state);
 }

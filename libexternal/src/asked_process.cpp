@@ -3,6 +3,7 @@
 
 #include <kaboum/base/error.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace kaboum::external {
@@ -48,7 +49,7 @@ std::vector<std::pair<std::string, bool>> AskedProcess::functions() {
   std::string line;
   const json hello = receive(line, seconds);
   if (hello.is_object() && hello.contains("error") && hello["error"].is_string())
-    throw Error(ErrorCode::InvalidInput, hello["error"].get<std::string>());
+    fail(hello["error"].get<std::string>());
   std::vector<std::pair<std::string, bool>> out;
   bool good = hello.is_object() && hello.value("kaboum_externals", json()) == json(1);
   const auto add = [&](const char* member, bool reads_state) {
@@ -57,6 +58,9 @@ std::vector<std::pair<std::string, bool>> AskedProcess::functions() {
     for (const json& name : good ? names : json::array()) {
       good = good && name.is_string();
       if (good) out.emplace_back(name.get<std::string>(), reads_state);
+      if (good &&
+          std::ranges::count(out, out.back().first, &std::pair<std::string, bool>::first) > 1)
+        fail("it offers the function '" + out.back().first + "' twice");
     }
   };
   add("functions", true);
@@ -70,16 +74,11 @@ std::vector<std::pair<std::string, bool>> AskedProcess::functions() {
 plan::ExternalBindings AskedProcess::bindings(const std::shared_ptr<AskedProcess>& process) {
   plan::ExternalBindings out;
   for (const auto& [name, reads_state] : process->functions()) {
-    if (reads_state) {
-      out[name] = [process, name = name](const Question& q) { return process->ask(name, q); };
-      continue;
-    }
-    out[name] = [process, name = name](std::span<const std::string> arguments) {
+    const auto answer = [process, name = name, reads = reads_state](const Question& q) {
       NoState none;
-      const Answer answer = process->ask(name, {arguments, none});
-      if (answer.kind != Answer::Kind::Value) return std::string();
-      return answer.value.empty() ? std::string("true") : answer.value;
+      return process->ask(name, {q.arguments, reads ? q.state : none, q.seed, q.attempt});
     };
+    out[name] = plan::ExternalBinding(answer, reads_state);
   }
   return out;
 }
@@ -128,7 +127,13 @@ json AskedProcess::receive(std::string& line, double& seconds) {
 }
 
 void AskedProcess::send(const json& message, double& seconds) {
-  if (!channel_.lines().write_line(dump(message), seconds))
+  std::string line;
+  try {
+    line = message.dump();
+  } catch (const json::type_error&) {  // replaced, two words would become one
+    fail("it is told in UTF-8, which a word of the state or the arguments is not");
+  }
+  if (!channel_.lines().write_line(std::move(line), seconds))
     fail(channel_.end() + ", or reads nothing");
 }
 

@@ -27,9 +27,8 @@ class AskedProcess {
   /// @throws Error{InvalidInput}, also what the line says went wrong.
   static plan::ExternalBindings bindings(const std::shared_ptr<AskedProcess>& process);
 
-  /// @throws Error{InvalidInput} when it ends or answers what is no answer, Error{LimitReached}
-  /// when
-  ///   that takes too long (it is ended then), std::runtime_error of what it says went wrong.
+  /// @throws Error{InvalidInput} when it ends or answers what is no answer, Error{LimitReached} if
+  ///   it takes too long (it is ended then), std::runtime_error of what it says went wrong.
   plan::Answer ask(const std::string& function, const plan::Question& question);
 
  private:

@@ -62,18 +62,21 @@ void LineChannel::start(const std::string& name, const std::function<void(int)>&
                 "'" + name + "' cannot be started: " + std::strerror(errno));
   };
   int ends[2];
+  if (!group_.start()) fail();
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) fail();
   process_ = fork();
   if (process_ == 0) {
-    setpgid(0, 0);  // so that all it starts can be ended
-    ::close(ends[0]);
-    child(ends[1]);
+    // Nothing leaves this function: what called it is the planner's, and goes on there.
+    try {
+      if (group_.add(0)) child(ends[1]);
+    } catch (...) {
+    }
     _exit(127);
   }
   ::close(ends[1]);
   lines_.reset(ends[0]);
   if (process_ < 0) fail();
-  setpgid(process_, process_);  // whoever comes first
+  static_cast<void>(group_.add(process_));  // whoever comes first
 }
 
 LineChannel::LineChannel(const std::string& command) {
@@ -87,6 +90,7 @@ LineChannel::LineChannel(const std::string& command) {
 LineChannel::LineChannel(const std::string& name, const std::function<void(LineSocket&)>& work) {
   start(name, [&](int socket) {
     dup2(STDERR_FILENO, STDOUT_FILENO);  // standard output is the planner's result
+    close_others(socket, STDERR_FILENO + 1);
     LineSocket lines(socket);
     work(lines);
     _exit(0);
@@ -154,7 +158,7 @@ std::string LineChannel::end() {
     if (ended == 0) usleep(5000);
   }
   const bool by_itself = ended == process_;
-  kill(-process_, SIGKILL);  // what it started as well
+  group_.end();  // what it started as well
   if (!by_itself) waitpid(process_, &status, 0);
   lines_.close();
   process_ = -1;

@@ -3,6 +3,8 @@
 #include <functional>
 #include <string>
 
+#include "process_group.h"
+
 namespace kaboum::external {
 
 /// Lines through a socket, which it closes.
@@ -51,6 +53,7 @@ class LineChannel {
   /// @param child  what the child does with its end of the socket.
   void start(const std::string& name, const std::function<void(int)>& child);
 
+  ProcessGroup group_;
   int process_ = -1;
   LineSocket lines_{-1};
 };

@@ -7,6 +7,7 @@
 
 #include <exception>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 namespace kaboum::external {
 namespace {
@@ -19,9 +20,20 @@ constexpr double kForever = 1e9;  // the planner's side has the limit [s]
 /// Thrown through a function whose call is over: it read what may not be told.
 struct CallOver {};
 
+/// What is no UTF-8 is replaced, as of sentences.
 bool write(LineSocket& lines, const json& message) {
   double seconds = kForever;
   return lines.write_line(message.dump(-1, ' ', false, json::error_handler_t::replace), seconds);
+}
+
+/// Words and payloads are not replaced: two words would become one.
+/// @throws std::runtime_error
+void require_utf8(const std::string& text, const char* what) {
+  try {
+    static_cast<void>(json(text).dump());
+  } catch (const json::type_error&) {
+    throw std::runtime_error(std::string(what) + " is not UTF-8");
+  }
 }
 
 bool read(LineSocket& lines, json& message) {
@@ -71,6 +83,8 @@ json message_of(const Answer& answer) {
       break;
   }
   if (answer.value.empty() && answer.payload.empty()) return {{"holds", true}};
+  require_utf8(answer.value, "the value that it returned");
+  require_utf8(answer.payload, "the payload that it returned");
   json out = {{"value", answer.value}};
   if (!answer.payload.empty()) out["payload"] = answer.payload;
   return out;
@@ -100,9 +114,7 @@ bool answer(const plan::ExternalBindings& bindings, LineSocket& lines) {
 
 /// @throws Error{InvalidInput} when it cannot be loaded, or binds nothing.
 plan::ExternalBindings bindings_of(const std::string& file) {
-  const auto fail = [&](const std::string& what) {
-    throw Error(ErrorCode::InvalidInput, file + ": " + what);
-  };
+  const auto fail = [](const std::string& what) { throw Error(ErrorCode::InvalidInput, what); };
   // A name without a slash would be looked for in the system's folders.
   const std::string path = file.find('/') == std::string::npos ? "./" + file : file;
   void* const library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
@@ -116,6 +128,8 @@ plan::ExternalBindings bindings_of(const std::string& file) {
     entry(out);
   } catch (const std::exception& error) {
     fail(std::string(kPluginEntry) + " failed: " + error.what());
+  } catch (...) {
+    fail(std::string(kPluginEntry) + " failed: it threw what is no std::exception");
   }
   if (out.empty()) fail(std::string(kPluginEntry) + " binds no functions");
   return out;

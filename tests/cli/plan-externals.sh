@@ -64,6 +64,47 @@ done
 expect 7 'no answer within' "$P" solve "$E/shelf.kpl" --process 'sh slow.program' --process-timeout 0.3 -o none.json
 grep -q "external function 'reach(o1)'\|external function 'isBox(p1)'" err.txt || fail "slow: the function is not named: $(cat err.txt)"
 pgrep -f 'sh slow.program' >/dev/null && fail "the slow program still runs"
+# Programs of arguments alone find something later as well.
+cat >later.kpl <<'END'
+domain later
+types: object
+constants: object o1
+predicates: done(object)
+externals: isBox(object)
+action go(?o : object)
+  preconds: extern(isBox(?o))
+  effects: add(Kf, done(?o))
+init: K(!done(o1))
+goal: K(done(o1))
+END
+for list in functions of_arguments; do
+  {
+    echo "echo '{\"kaboum_externals\": 1, \"$list\": [\"isBox\"]}'"
+    # shellcheck disable=SC2016
+    echo 'while read -r q; do case $q in *\"attempt\":2*) echo "{\"holds\": true}";; *) echo "{\"not_found\": \"none yet\"}";; esac; done'
+  } >later.program
+  expect 0 solved "$P" solve later.kpl --process 'sh later.program' -o later.json
+  shows 0 valid "$P" check later.kpl --process 'sh later.program' --plan later.json
+  sed 's/attempt\\":2/attempt\\":99/' later.program >never.program
+  expect 7 'isBox(o1): none yet' "$P" solve later.kpl --process 'sh never.program' -o none.json --explain
+  grep -q 'none yet' err.txt || fail "$list: no reason: $(cat err.txt)"
+done
+# A planner that is killed leaves nothing behind.
+"$P" solve later.kpl --process 'sleep 86399 & sleep 86398' --process-timeout 600 -o none.json 2>killed.txt &
+planner=$!
+tries=0
+while ! pgrep -xf 'sleep 86398' >/dev/null && [ $tries -lt 300 ]; do
+  sleep 0.1
+  tries=$((tries + 1))
+done
+pgrep -xf 'sleep 86398' >/dev/null || fail "the program was not started: $(cat killed.txt)"
+kill -9 $planner
+tries=0
+while pgrep -xf 'sleep 8639[89]' >/dev/null && [ $tries -lt 300 ]; do
+  sleep 0.1
+  tries=$((tries + 1))
+done
+pgrep -xf 'sleep 8639[89]' >/dev/null && fail "the program outlives the planner"
 expect 3 'no JSON' "$P" solve "$E/shelf.kpl" --process 'echo hello' -o none.json
 expect 3 'its first line' "$P" solve "$E/shelf.kpl" --process 'echo 7' -o none.json
 expect 3 'its first line' "$P" solve "$E/shelf.kpl" --process 'echo {}' -o none.json

@@ -51,7 +51,7 @@ weigh = "action weigh(?o : block)\n  preconds:\n    K(isHeld(?o)) & !Kw(isHeavy(
 print(text.replace(remove, light + heavy + weigh))
 END
 echo '{"isHeavy(o1)": false, "isHeavy(o2)": false, "isHeavy(o3)": false, "isHeavy(o4)": false, "isHeavy(o5)": false}' >light.json
-expect 0 solved "$P" solve weighed.kpl remove/problem.kpl --scene remove/cell.json --assume light.json -o assumed.json
+expect 0 'solved under 5 assumptions: ' "$P" solve weighed.kpl remove/problem.kpl --scene remove/cell.json --assume light.json -o assumed.json
 shows 1 'no case' "$P" check weighed.kpl remove/problem.kpl --scene remove/cell.json --plan assumed.json
 sed 's/"isHeavy(o2)": false/"isHeavy(o2)": true/' light.json >heavy.json
 shows 0 '^good: .*planned again 1 time' "$P" run weighed.kpl remove/problem.kpl --scene remove/cell.json --plan assumed.json --rate 100 \
@@ -65,6 +65,42 @@ END
 shows 0 '^good: 1 branch, [0-9]* motions, [0-9]* samples, 0 collisions, 0 limit violations, 0 jumps$' "$P" run weighed.kpl remove/problem.kpl \
   --scene remove/cell.json --plan assumed.json --rate 100 --outcomes light.json
 expect 3 'no case for isHeavy(o2)' "$P" run weighed.kpl remove/problem.kpl --scene remove/cell.json --plan assumed.json --outcomes heavy.json --replan 0
+# Where there is no plan for what was sensed, the run is not good.
+cat >luck.kpl <<'END'
+domain luck
+types: object, robot, block
+constants: robot arm; block o1
+predicates: s, done
+action look
+  preconds: !Kw(s)
+  effects: add(Kw, s)
+action easy
+  preconds: K(!s)
+  effects: add(Kf, done)
+init: K(!done)
+goal: K(done)
+END
+echo '{"s": false}' >good.json
+echo '{"s": true}' >bad.json
+expect 0 'solved under 1 assumption: ' "$P" solve luck.kpl --assume good.json -o luck.json
+shows 0 '^good: 1 branch,' "$P" run luck.kpl --scene remove/cell.json --plan luck.json --outcomes good.json
+for outcomes in all bad.json; do
+  shows 1 '^not good: .*planned again 1 time' "$P" run luck.kpl --scene remove/cell.json --plan luck.json --outcomes $outcomes --report luck.report
+  grep -q '"verdict": "not good"' luck.report || fail "the report says nothing: $(cat luck.report)"
+done
+grep -q '"verdict": "good"' replanned.json || fail "no verdict: $(cat replanned.json)"
+echo '{"isHeavy(o2)": "yes"}' >yes.json
+expect 3 'true or false, not yes' "$P" run weighed.kpl remove/problem.kpl --scene remove/cell.json --plan assumed.json --outcomes yes.json
+# Payloads of another kind are bad input.
+for damage in 's/\\"robot\\":\\"[^\\]*\\"/\\"robot\\":5/' 's/\\"path\\":\[\[[^],]*/\\"path\\":[[null/'; do
+  sed "$damage" remove/plan1.json >kind.json
+  cmp -s kind.json remove/plan1.json && fail "nothing was changed by $damage"
+  for command in "run --rate 50" "show --html kind.html"; do
+    # shellcheck disable=SC2086
+    expect 3 'node [0-9]*, [A-Za-z]*(.*): a path of the plan is to be' "$P" $command "$S/remove/domain.kpl" remove/problem.kpl --scene remove/cell.json \
+      --plan kind.json
+  done
+done
 echo '{"isGreen(o2)": true}' >green.json
 expect 2 'does not have' "$P" solve weighed.kpl remove/problem.kpl --scene remove/cell.json --assume green.json -o none.json
 # A plan for another scene does not hold in this one; nor does one whose path or value was changed.

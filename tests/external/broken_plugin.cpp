@@ -2,6 +2,8 @@
 #include <kaboum/plan/externals.h>
 
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
 #include <stdexcept>
 
 using kaboum::plan::Answer;
@@ -15,6 +17,7 @@ std::string read_at(const Question& q) { return q.state.value("at", {}).value_or
 }  // namespace
 
 extern "C" void kaboum_externals_1(kaboum::plan::ExternalBindings& bindings) {
+  if (std::getenv("KABOUM_BROKEN_ENTRY") != nullptr) throw 7;
   bindings["good"] = [](const Question& q) {
     return Answer::found("after " + read_at(q), "path\n\"of\" it");
   };
@@ -24,6 +27,7 @@ extern "C" void kaboum_externals_1(kaboum::plan::ExternalBindings& bindings) {
   };
   bindings["endless"] = [](const Question& q) -> Answer {
     read_at(q);
+    std::fputs("endless\n", stderr);
     for (volatile bool on = true; on;) {
     }
     return {};
@@ -44,6 +48,8 @@ extern "C" void kaboum_externals_1(kaboum::plan::ExternalBindings& bindings) {
     return Answer::found(read_at(q) + std::to_string(n++));
   };
   bindings["wrongType"] = [](const Question& q) { return Answer::found(read_at(q).substr(5)); };
+  bindings["badWord"] = [](const Question& q) { return Answer::found(read_at(q) + "\x80"); };
+  bindings["badPayload"] = [](const Question& q) { return Answer::found(read_at(q), "\x81"); };
   bindings["stubborn"] = [](const Question& q) {
     for (;;) {
       try {

@@ -199,9 +199,201 @@ TEST(Replan, KnowledgeOfEveryKindIsTakenOver) {
   EXPECT_EQ(s.replans[0].outcome, "s");
 }
 
-TEST(Replan, AssumptionsOfWhatThereIsNotAreRefused) {
+/// Looks, and is done if s does not hold; else by p, q or r, after looking at p or q.
+std::string by_one_of(const std::string& initial, const std::string& actions = "") {
+  return "predicates: p, q, r, s, ready, done\n"
+         "action look preconds: !Kw(s) & K(ready) effects: add(Kw, s)\n"
+         "action lookP preconds: K(s) & !Kw(p) effects: add(Kw, p)\n"
+         "action lookQ preconds: K(s) & !Kw(q) effects: add(Kw, q)\n"
+         "action easy preconds: K(!s) effects: add(Kf, done)\n"
+         "action byP preconds: K(s) & K(p) & K(!ready) effects: add(Kf, done)\n"
+         "action byQ preconds: K(s) & K(q) effects: add(Kf, done)\n"
+         "action byR preconds: K(s) & K(r) effects: add(Kf, done)\n"
+         "action unready preconds: K(s) effects: add(Kf, !ready)\n" +
+         actions + "init: " + initial + ", K(!done)\ngoal: K(done)";
+}
+
+/// All that happens, with the replans of the first surprise.
+ReplanSummary surprised(const Case& c, std::vector<std::string>& done) {
+  const ReplanSummary s = c.carry_out({}, done);
+  EXPECT_EQ(s.replans.size(), 1U);
+  return s;
+}
+
+TEST(Replan, DisjunctionsThatStillHoldAreTakenOver) {
+  for (const char* initial : {"Or(p | q), K(ready)", "Or(q | !r), Or(p | r), K(ready)"}) {
+    const std::string text = by_one_of(initial);
+    EXPECT_EQ(solve(model_of(text), {}).outcome, Outcome::Solved);
+    const Case c(text, {{"s", "false"}});
+    int plans = 0;
+    const ReplanSummary s =
+        run_and_replan(c.texts, c.model, c.plan, {}, [&](const Model& m, const Plan& p) {
+          // The second is a plan for all that may be, on what was taken over alone.
+          if (++plans == 2) EXPECT_TRUE(check(m, p).valid) << check(m, p).violation;
+          return [](const RunStep&) {};
+        });
+    EXPECT_EQ(plans, 2);
+    EXPECT_TRUE(s.complete()) << initial << ": " << s.replans.at(0).reason;
+  }
+  const Case c(by_one_of("Or(p | !q | r), K(r), Or(p | !q), K(ready)"), {{"s", "false"}});
+  RunOptions options;
+  options.unplanned = [](const Unplanned& what) {
+    ASSERT_EQ(what.known.some.size(), 1U) << "the other says nothing more";
+    EXPECT_EQ(what.known.some[0],
+              (std::set<std::pair<KnownFacts::Term, bool>>{{{"p"}, true}, {{"q"}, false}}));
+    EXPECT_FALSE(what.known.cut);
+  };
+  run(c.model, c.plan, options, [](const RunStep&) {});
+}
+
+TEST(Replan, WhatIsCutDownIsNeverUnsolvable) {
+  // q or r holds, as p did not or did; but p may be another when anything is seen.
+  const std::string set = "action set preconds: !K(ready) effects: add(Kf, ready), del(Kf, p)\n";
+  const std::string text = by_one_of("Or(p | q), Or(!p | r), K(!ready)", set);
+  EXPECT_EQ(solve(model_of(text), {}).outcome, Outcome::Solved);
+  std::vector<std::string> done;
+  ReplanSummary s = surprised({text, {{"s", "false"}}}, done);
+  EXPECT_FALSE(s.complete());
+  EXPECT_EQ(s.replans.at(0).result, Outcome::NotInferred);
+  EXPECT_NE(s.replans.at(0).reason.find("more is known"), std::string::npos)
+      << s.replans.at(0).reason;
+  // Of a single disjunction nothing is lost: then it is a proof.
+  s = surprised({by_one_of("Or(q | p), K(!r), K(!ready)", set), {{"s", "false"}}}, done);
+  EXPECT_EQ(s.replans.at(0).result, Outcome::Unsolvable);
+}
+
+TEST(Replan, WhatMayHaveChangedInTheWorldIsNotTakenForKnown) {
+  // Where p holds, q does not after setting; that q held before says nothing.
+  const std::string text = by_one_of(
+      "K(q), K(r), K(!ready)",
+      "action set preconds: !K(ready) effects: add(Kf, ready), whenever K(p) => { add(Kf, !q) }\n");
+  std::vector<std::string> done;
+  ReplanSummary s = surprised({text, {{"s", "false"}}}, done);
+  EXPECT_TRUE(s.complete());
+  const std::string without =
+      text.substr(0, text.find("action byR")) + text.substr(text.find("action unready"));
+  s = surprised({without, {{"s", "false"}}}, done);
+  EXPECT_EQ(s.replans.at(0).result, Outcome::NotInferred);
+}
+
+TEST(Replan, WordsThatAreNamesOfTwoTypesAreRefused) {
+  const auto says = [](const char* word) {
+    const std::string text =
+        "types: object, conf handle, pose handle\nconstants: object o1; conf home\n"
+        "predicates: s, done\nfunctions: at : conf; on : pose\n"
+        "externals: go(conf) : conf; put(conf) : pose\n"
+        "action move preconds: K(at = home) & let ?q = extern(go(at)) & let ?p = extern(put(at))"
+        " effects: add(Kf, at = ?q), add(Kf, on = ?p)\n"
+        "action look preconds: !Kw(s) effects: add(Kw, s)\n"
+        "action use preconds: Kw(s) effects: add(Kf, done)\n"
+        "init: K(at = home)\ngoal: K(done) & (K(s) | K(!s))";
+    KnownFacts known;
+    known.values[{"at"}] = word;
+    known.values[{"on"}] = "w";
+    ExternalBindings all;
+    all["go"] = all["put"] = [](std::span<const std::string>) { return std::string("w"); };
+    try {
+      load_from(known, {"t.kpl", text, Language::Kpl}, nullptr, all);
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_EQ(says("v"), "no error");
+  EXPECT_EQ(says("home"), "no error");
+  for (const char* word : {"o1", "w"})
+    EXPECT_NE(says(word).find("which is a name of two types here"), std::string::npos)
+        << says(word);
+}
+
+TEST(Replan, WhoComesBackToWhereItWasPlannedIsNotDone) {
+  const std::string text =
+      "predicates: p, done\n"
+      "action look preconds: !Kw(p) effects: add(Kw, p)\n"
+      "action shake preconds: K(!p) effects: del(Kf, !p)\n"
+      "action use preconds: K(p) effects: add(Kf, done)\n"
+      "init: K(!done)\ngoal: K(done)";
+  const Case c(text, {{"p", "true"}});
+  ReplanOptions options;
+  options.solve.assumed = {{"p", "true"}};
+  for (const bool all : {true, false}) {
+    if (!all) {
+      options.run.outcomes = RunOptions::Outcomes::Given;
+      options.run.given = {{"p", "false"}};
+    }
+    std::vector<std::string> done;
+    const ReplanSummary s = c.carry_out(options, done);
+    EXPECT_EQ(std::ranges::count(done, "use"), all ? 2 : 0);
+    ASSERT_EQ(s.replans.size(), 2U);
+    EXPECT_FALSE(s.replans[0].circle);
+    EXPECT_EQ(s.replans[1].after, 1U);
+    EXPECT_TRUE(s.replans[1].reached);
+    EXPECT_TRUE(s.replans[1].circle);
+    EXPECT_EQ(s.replans[1].reason, "the plan for this leads back to it");
+    EXPECT_FALSE(s.complete());
+  }
+}
+
+/// f is sensed, after a has been ruled out where t holds.
+std::string ruled_out(const std::string& initial, bool use_c) {
+  return std::string(
+             "types: v\nconstants: v a, b, c\npredicates: t, stripped, done\nfunctions: f : v\n"
+             "action lookT preconds: !Kw(t) effects: add(Kw, t)\n"
+             "action strip preconds: K(t) & !K(stripped) effects: add(Kf, f != a), "
+             "add(Kf, stripped)\n"
+             "action senseN preconds: K(!t) & !Kv(f) effects: add(Kv, f)\n"
+             "action senseS preconds: K(stripped) & !Kv(f) effects: add(Kv, f)\n"
+             "action useA preconds: K(f = a) effects: add(Kf, done)\n"
+             "action useB preconds: K(f = b) effects: add(Kf, done)\n") +
+         (use_c ? "action useC preconds: K(f = c) effects: add(Kf, done)\n" : "") +
+         "init: " + initial + "K(!done), K(!stripped)\ngoal: K(done)";
+}
+
+TEST(Assumptions, BranchesHaveThemOnlyWhereTheyArePossible) {
+  for (const Algorithm a : kAll) {
+    SolveOptions o;
+    o.algorithm = a;
+    o.assumed = {{"f", "a"}};
+    EXPECT_EQ(solve(model_of(ruled_out("", false)), o).outcome, Outcome::Unsolvable);
+    EXPECT_EQ(solve(model_of(ruled_out("K(t), ", false)), o).outcome, Outcome::Unsolvable);
+    EXPECT_EQ(solve(model_of(ruled_out("K(!t), ", false)), o).outcome, Outcome::Solved);
+    const Model m = model_of(ruled_out("", true));
+    const Solution s = solve(m, o);
+    ASSERT_EQ(s.outcome, Outcome::Solved);
+    int without = 0;
+    RunOptions run_options;
+    run_options.unplanned = [&](const Unplanned& what) {
+      ++without;
+      EXPECT_FALSE(what.known.atoms.at({"stripped"})) << what.outcome;
+    };
+    run(m, s.plan, run_options, [](const RunStep&) {});
+    EXPECT_EQ(without, 2) << plan_text(m, s.plan);
+  }
+}
+
+/// An atom that is known to be otherwise in one branch, where the same steps would follow.
+TEST(Assumptions, AtomsThatAreKnownToBeOtherwiseAreNotAssumed) {
+  const std::string text =
+      "predicates: t, p, wet, done\n"
+      "action lookT preconds: !Kw(t) effects: add(Kw, t)\n"
+      "action soak preconds: K(t) & !K(wet) effects: add(Kf, wet), add(Kf, !p)\n"
+      "action dry preconds: K(!t) & !K(wet) effects: add(Kf, wet)\n"
+      "action lookP preconds: K(wet) & !Kw(p) effects: add(Kw, p)\n"
+      "action use preconds: K(wet) & K(p) effects: add(Kf, done)\n";
+  for (const Algorithm a : kAll) {
+    SolveOptions o;
+    o.algorithm = a;
+    o.assumed = {{"p", "true"}};
+    EXPECT_EQ(solve(model_of(text + "init: K(!done), K(!wet)\ngoal: K(done)"), o).outcome,
+              Outcome::Unsolvable);
+    EXPECT_EQ(solve(model_of(text + "init: K(!t), K(!done), K(!wet)\ngoal: K(done)"), o).outcome,
+              Outcome::Solved);
+  }
+}
+
+TEST(Assumptions, OfWhatThereIsNotAreRefused) {
   const Case c(weighing(2), {});
-  const auto says = [&](const char* text, const char* value) {
+  const auto says = [&](const std::string& text, const char* value) {
     SolveOptions o;
     o.assumed = {{text, value}};
     try {
@@ -217,6 +409,42 @@ TEST(Replan, AssumptionsOfWhatThereIsNotAreRefused) {
   EXPECT_EQ(says("isHeavy", "true"), "it is assumed of 'isHeavy', which has other arguments");
   EXPECT_EQ(says("isHeavy(o1)", "maybe"),
             "it is assumed of 'isHeavy(o1)', which is true or false, not maybe");
+  for (const char* text : {"isHeavy(o1", "isHeavy o1)", "isHeavy(o1))", "isHeavy(o1) x", "", "(o1)",
+                           "isHeavy(o1,)", "isHeavy(,o1)", "isHeavy(o1()"})
+    EXPECT_EQ(says(text, "true").find("it is assumed of '" + std::string(text) + "', which is no"),
+              0U)
+        << says(text, "true");
+  EXPECT_EQ(says("isHeavy(o 1)", "true"), "it is assumed of 'isHeavy(o 1)', but there is no 'o 1'");
+  EXPECT_EQ(says(" isHeavy( o1 ) ", "true"), "no error");
+  EXPECT_EQ(says("isFree()", "true"), "no error");
+}
+
+TEST(Replan, OutcomesOfWhatThereIsNotAreRefused) {
+  const Case c(weighing(2), {});
+  const auto says = [&](const char* text, const char* value) {
+    RunOptions o;
+    o.outcomes = RunOptions::Outcomes::Given;
+    o.given = {{text, value}};
+    try {
+      run(c.model, c.plan, o, [](const RunStep&) {});
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ErrorCode::InvalidInput);
+      return std::string(e.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_EQ(says("isHeavy(o1)", "true"), "no error");
+  EXPECT_EQ(says("isHeavy( o1 )", "false"), "no error");
+  EXPECT_EQ(says("isHeavy(o1)", "yes"),
+            "an outcome is given for 'isHeavy(o1)', which is true or false, not yes");
+  EXPECT_EQ(says("isBlue(o1)", "true"),
+            "an outcome is given for 'isBlue(o1)', which the model does not have");
+  EXPECT_EQ(says("isHeavy(o1", "true"),
+            "an outcome is given for 'isHeavy(o1', which is no atom or term");
+  EXPECT_EQ(says("isHeavy(o1, o2)", "true"),
+            "an outcome is given for 'isHeavy(o1, o2)', which has other arguments");
+  EXPECT_EQ(says("isHeavy(o 1)", "true"),
+            "an outcome is given for 'isHeavy(o 1)', but there is no 'o 1'");
 }
 
 }  // namespace

@@ -12,6 +12,9 @@
 #include "check/query_evaluator.h"
 #include "check/runtime_knowledge.h"
 #include "check/transitions.h"
+#include "plan/named_fact.h"
+#include "task/exactness.h"
+#include "task/knowledge_view.h"
 
 namespace kaboum::plan {
 namespace {
@@ -53,7 +56,8 @@ class Run {
         step_(step),
         evaluator_(model, plan),
         transitions_(model, evaluator_),
-        random_(options.seed) {}
+        random_(options.seed),
+        given_(given(model, options)) {}
 
   RunSummary run() {
     const std::vector<RuntimeKnowledge> first = transitions_.initial_states();
@@ -147,6 +151,11 @@ class Run {
       out.exclusive.emplace_back();
       for (const Fact& f : open) out.exclusive.back().insert(named(f));
     }
+    for (const std::set<FactLiteral>& literals : k.some()) {
+      out.some.emplace_back();
+      for (const auto& [f, truth] : literals) out.some.back().emplace(named(f), truth);
+    }
+    out.cut = model_.cut || k.cut() || actions_lose(model_);
     return out;
   }
 
@@ -180,45 +189,33 @@ class Run {
 
   /// Whether what is known is as given.
   bool fits(const RuntimeKnowledge& k) const {
-    return std::ranges::all_of(options_.given, [&](const auto& entry) {
-      const auto [f, function] = fact_of(entry.first);
-      if (function) {
+    return std::ranges::all_of(given_, [&](const auto& entry) {
+      const auto& [f, value] = entry;
+      if (f[0] == 1) {
         const Index* v = k.value(f);
-        return v == nullptr || evaluator_.name(*v) == entry.second;
+        return v == nullptr || evaluator_.name(*v) == value;
       }
-      return !k.knows_whether(f) || k.knows(f, entry.second == "true");
+      return !k.knows_whether(f) || k.knows(f, value == "true");
     });
   }
 
-  /// "p(a, b)" as a fact, and whether it is a function's term.
-  std::pair<Fact, bool> fact_of(const std::string& text) const {
-    const auto fail = [&]() -> std::pair<Fact, bool> {
-      throw Error(ErrorCode::InvalidInput,
-                  "the model has no atom or term '" + text + "', which an outcome is given for");
-    };
-    const std::string name = text.substr(0, text.find('('));
-    const auto predicate = std::ranges::find(model_.predicates, name, &Symbol::name);
-    const auto function = std::ranges::find(model_.functions, name, &Symbol::name);
-    const bool is_function = predicate == model_.predicates.end();
-    if (is_function && function == model_.functions.end()) return fail();
-    const Symbol& symbol = is_function ? *function : *predicate;
-    Fact f = {is_function ? Index{1} : Index{0},
-              static_cast<Index>(is_function ? function - model_.functions.begin()
-                                             : predicate - model_.predicates.begin())};
-    std::string argument;
-    for (const char c : text.substr(std::min(name.size(), text.size()))) {
-      if (c == '(' || c == ' ') continue;
-      if (c != ',' && c != ')') {
-        argument += c;
-        continue;
-      }
-      const auto object = std::ranges::find(model_.objects, argument, &Object::name);
-      if (object == model_.objects.end()) return fail();
-      f.push_back(static_cast<Index>(object - model_.objects.begin()));
-      argument.clear();
+  /// The outcomes that are given, and their values.
+  [[nodiscard]] static std::map<Fact, std::string> given(const Model& model,
+                                                         const RunOptions& options) {
+    std::map<Fact, std::string> out;
+    if (options.outcomes != RunOptions::Outcomes::Given) return out;
+    for (const auto& [text, value] : options.given) {
+      const NamedFact named =
+          read_named_fact(model, text, value, [&name = text](const std::string& what) {
+            std::string said = "an outcome is given for '";
+            said.append(name).append("', ").append(what);
+            throw Error(ErrorCode::InvalidInput, said);
+          });
+      Fact f = {named.function ? Index{1} : Index{0}, named.symbol};
+      f.insert(f.end(), named.arguments.begin(), named.arguments.end());
+      out[f] = value;
     }
-    if (f.size() != 2 + symbol.parameters.size()) return fail();
-    return {f, is_function};
+    return out;
   }
 
   const Model& model_;
@@ -228,6 +225,7 @@ class Run {
   QueryEvaluator evaluator_;
   Transitions transitions_;
   Random random_;
+  std::map<Fact, std::string> given_;
   std::map<std::pair<Index, RuntimeKnowledge>, std::uint64_t> seen_;
   RunSummary summary_;
 };
@@ -237,7 +235,12 @@ class Run {
 RunSummary run(const Model& model, const Plan& plan, const RunOptions& options,
                const std::function<void(const RunStep&)>& step) {
   measure(model, plan);  // refuses cycles
-  return Run(model, plan, options, step).run();
+  std::optional<Model> view = knowledge_view(model);
+  if (!view) return Run(model, plan, options, step).run();
+  // Disjunctions are kept here, as far as one by one they say something.
+  std::ranges::copy_if(model.initial, std::back_inserter(view->initial),
+                       [](const Update& u) { return u.database == Update::Database::Or; });
+  return Run(*view, plan, options, step).run();
 }
 
 }  // namespace kaboum::plan

@@ -7,8 +7,8 @@
 namespace kaboum::plan {
 
 bool RuntimeKnowledge::operator<(const RuntimeKnowledge& o) const {
-  return std::tie(atoms_, values_, excluded_, exclusive_) <
-         std::tie(o.atoms_, o.values_, o.excluded_, o.exclusive_);
+  return std::tie(atoms_, values_, excluded_, exclusive_, some_, cut_) <
+         std::tie(o.atoms_, o.values_, o.excluded_, o.exclusive_, o.some_, o.cut_);
 }
 
 bool RuntimeKnowledge::knows(const Fact& atom, bool truth) const {
@@ -33,37 +33,77 @@ bool RuntimeKnowledge::learn(const Fact& atom, bool truth) {
   return propagate();
 }
 
-/// Exactly one of the undecided atoms of each entry holds; draw every conclusion.
+/// Draws every conclusion from one disjunction at a time.
 bool RuntimeKnowledge::propagate() {
   for (bool again = true; again;) {
     again = false;
-    for (auto it = exclusive_.begin(); it != exclusive_.end(); ++it) {
-      std::set<Fact>& open = it->second;
-      std::set<Fact> undecided;
-      int holding = 0;
-      for (const Fact& f : open) {
-        const auto known = atoms_.find(f);
-        if (known == atoms_.end()) {
-          undecided.insert(f);
-        } else if (known->second) {
-          ++holding;
-        }
-      }
-      if (holding > 1 || (holding == 0 && undecided.empty())) return false;
-      if (holding == 1 || undecided.size() == 1) {
-        for (const Fact& f : undecided) atoms_[f] = holding == 0;
-        exclusive_.erase(it);
-        again = true;
-        break;
-      }
-      open = undecided;
-    }
+    if (!conclude_exclusive(again)) return false;
+    if (!again && !conclude_some(again)) return false;
   }
+  return true;
+}
+
+/// Exactly one of the undecided atoms of each entry holds. Stops where it decided something.
+bool RuntimeKnowledge::conclude_exclusive(bool& again) {
+  for (auto it = exclusive_.begin(); it != exclusive_.end(); ++it) {
+    std::set<Fact>& open = it->second;
+    std::set<Fact> undecided;
+    int holding = 0;
+    for (const Fact& f : open) {
+      const auto known = atoms_.find(f);
+      if (known == atoms_.end()) {
+        undecided.insert(f);
+      } else if (known->second) {
+        ++holding;
+      }
+    }
+    if (holding > 1 || (holding == 0 && undecided.empty())) return false;
+    if (holding == 1 || undecided.size() == 1) {
+      for (const Fact& f : undecided) atoms_[f] = holding == 0;
+      exclusive_.erase(it);
+      again = true;
+      return true;
+    }
+    open = undecided;
+  }
+  return true;
+}
+
+/// At least one of the undecided literals of each holds. Stops where it decided something.
+bool RuntimeKnowledge::conclude_some(bool& again) {
+  std::set<std::set<FactLiteral>> kept;
+  for (const std::set<FactLiteral>& literals : some_) {
+    std::set<FactLiteral> open;
+    bool holds = false;
+    for (const FactLiteral& l : literals) {
+      const auto known = atoms_.find(l.first);
+      if (known == atoms_.end())
+        open.insert(l);
+      else
+        holds |= known->second == l.second;
+    }
+    if (holds) continue;
+    if (open.empty()) return false;
+    if (open.size() > 1) {
+      kept.insert(std::move(open));
+      continue;
+    }
+    atoms_.insert(*open.begin());
+    again = true;
+  }
+  some_ = std::move(kept);
   return true;
 }
 
 bool RuntimeKnowledge::learn_exclusive(const std::set<Fact>& atoms) {
   exclusive_[atoms] = atoms;
+  return propagate();
+}
+
+bool RuntimeKnowledge::learn_some(std::set<FactLiteral> literals) {
+  for (const FactLiteral& l : literals)
+    if (literals.contains({l.first, !l.second})) return true;
+  some_.insert(std::move(literals));
   return propagate();
 }
 
@@ -90,10 +130,20 @@ bool RuntimeKnowledge::learn_not_value(const Fact& term, Index value,
   return false;
 }
 
-/// An entry with this atom undecided says nothing any more about the others.
+/// A disjunction with this atom undecided says nothing any more about the others. Nothing is lost
+/// if it is the only one, and asks of the others no more than that one of them or the atom held.
 void RuntimeKnowledge::release(const Fact& atom) {
   if (atoms_.contains(atom)) return;
-  std::erase_if(exclusive_, [&](const auto& e) { return e.second.contains(atom); });
+  bool ties = false;
+  std::size_t gone = std::erase_if(exclusive_, [&](const auto& e) {
+    const bool has = e.second.contains(atom);
+    ties |= has && e.second.size() > 2;
+    return has;
+  });
+  gone += std::erase_if(some_, [&](const std::set<FactLiteral>& literals) {
+    return literals.contains({atom, true}) || literals.contains({atom, false});
+  });
+  cut_ |= ties || gone > 1;
 }
 
 void RuntimeKnowledge::become(const Fact& atom, bool truth) {
@@ -112,7 +162,9 @@ void RuntimeKnowledge::forget_value(const Fact& term) {
   excluded_.erase(term);
   values_.erase(term);
 }
-void RuntimeKnowledge::drop_exclusive(const std::set<Fact>& atoms) { exclusive_.erase(atoms); }
+void RuntimeKnowledge::drop_exclusive(const std::set<Fact>& atoms) {
+  if (exclusive_.erase(atoms) > 0) cut_ = true;
+}
 
 void RuntimeKnowledge::restrict_to(const std::set<Fact>& live) {
   std::set<Fact> keep = live;
@@ -124,9 +176,19 @@ void RuntimeKnowledge::restrict_to(const std::set<Fact>& live) {
       if (!tied) continue;
       for (const Fact& f : open) again |= keep.insert(f).second;
     }
+    for (const std::set<FactLiteral>& literals : some_) {
+      bool tied = false;
+      for (const FactLiteral& l : literals) tied |= keep.contains(l.first);
+      if (!tied) continue;
+      for (const FactLiteral& l : literals) again |= keep.insert(l.first).second;
+    }
   }
   std::erase_if(exclusive_, [&](const auto& e) {
     return e.second.empty() || !keep.contains(*e.second.begin());
+  });
+  cut_ = false;  // of no matter to who keeps a part
+  std::erase_if(some_, [&](const std::set<FactLiteral>& literals) {
+    return !keep.contains(literals.begin()->first);
   });
   const auto dead = [&](const auto& entry) { return !keep.contains(entry.first); };
   std::erase_if(atoms_, dead);

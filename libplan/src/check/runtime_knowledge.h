@@ -5,12 +5,15 @@
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace kaboum::plan {
 
 /// A ground atom or term: 0 or 1 (a function), symbol, arguments.
 using Fact = std::vector<Index>;
+/// An atom, and whether it is the atom or its negation that holds.
+using FactLiteral = std::pair<Fact, bool>;
 
 /// What an agent knows at run time, when every sensed value is at hand: plain sets, no packing. The
 /// validator's, and only its, notion of a state; the rules are those of
@@ -29,6 +32,7 @@ class RuntimeKnowledge {
   bool learn_value(const Fact& term, Index value, const std::vector<Index>& range);
   bool learn_not_value(const Fact& term, Index value, const std::vector<Index>& range);
   bool learn_exclusive(const std::set<Fact>& atoms);
+  bool learn_some(std::set<FactLiteral> literals);
 
   // Changes of the world.
   void become(const Fact& atom, bool truth);
@@ -44,12 +48,19 @@ class RuntimeKnowledge {
   [[nodiscard]] const std::map<std::set<Fact>, std::set<Fact>>& exclusive() const {
     return exclusive_;
   }
+  /// At least one literal of each holds.
+  [[nodiscard]] const std::set<std::set<FactLiteral>>& some() const { return some_; }
+  /// Whether a disjunction went whose atoms said something of each other still: less is kept then
+  /// than is known.
+  [[nodiscard]] bool cut() const { return cut_; }
 
   /// Only what is in `live`, and what Kx ties to it.
   void restrict_to(const std::set<Fact>& live);
 
  private:
   bool propagate();
+  bool conclude_exclusive(bool& again);
+  bool conclude_some(bool& again);
   void release(const Fact& atom);
 
   std::map<Fact, bool> atoms_;
@@ -57,6 +68,8 @@ class RuntimeKnowledge {
   std::map<Fact, std::set<Index>> excluded_;
   /// Each with the entry it came from: del(Kx) names that.
   std::map<std::set<Fact>, std::set<Fact>> exclusive_;
+  std::set<std::set<FactLiteral>> some_;
+  bool cut_ = false;
 };
 
 }  // namespace kaboum::plan

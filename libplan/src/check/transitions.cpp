@@ -81,8 +81,16 @@ std::vector<RuntimeKnowledge> Transitions::initial_states() const {
         // Closed last: what is sensed or in a disjunction stays open.
         if (!k.knows_whether(f) && !stated.contains(f)) ok = k.learn(f, false);
         break;
-      case Update::Database::Or:
-        break;  // not in a model's knowledge view
+      case Update::Database::Or: {
+        std::set<FactLiteral> literals;
+        for (const Update::Literal& o : u.literals) {
+          const Fact atom = fact(false, o.symbol, o.arguments, none);
+          stated.insert(atom);
+          literals.emplace(atom, !o.negated);
+        }
+        ok = k.learn_some(std::move(literals));
+        break;
+      }
     }
     if (!ok) throw Error(ErrorCode::InvalidInput, "the initial knowledge contradicts itself");
   }

@@ -9,7 +9,7 @@
 namespace kaboum::plan {
 namespace {
 
-/// ModelNames of a model, looked up.
+/// The names of a model, looked up.
 class ModelNames {
  public:
   explicit ModelNames(const Model& model) {
@@ -77,8 +77,10 @@ void start_from(const KnownFacts& facts, Model& model) {
     Update::Literal l = names.literal(term, true, false);
     l.value = names.object(value);
     if (!model.is_a(l.value->index, model.functions[l.symbol].range))
-      throw Error(ErrorCode::InvalidInput, "'" + value + "' is known as a value of '" + term[0] +
-                                               "', but is of another type");
+      throw Error(ErrorCode::InvalidInput,
+                  "it cannot be planned again where '" + term[0] + "' has the value '" + value +
+                      "', which is a name of two types here: words of handles have to differ from "
+                      "objects, and from words of other types of handles");
     initial.push_back(stated(std::move(l)));
   }
   for (const auto& [term, values] : facts.excluded) {
@@ -96,7 +98,15 @@ void start_from(const KnownFacts& facts, Model& model) {
       u.literals.push_back(names.literal(term, false, false));
     initial.push_back(std::move(u));
   }
+  for (const auto& entry : facts.some) {
+    Update u;
+    u.database = Update::Database::Or;
+    for (const auto& [term, truth] : entry)
+      u.literals.push_back(names.literal(term, false, !truth));
+    initial.push_back(std::move(u));
+  }
   model.initial = std::move(initial);
+  model.cut = facts.cut;
 }
 
 }  // namespace kaboum::plan

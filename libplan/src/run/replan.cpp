@@ -5,6 +5,7 @@
 #include <chrono>
 #include <deque>
 #include <map>
+#include <set>
 #include <utility>
 
 namespace kaboum::plan {
@@ -43,14 +44,20 @@ class Runs {
     made.outcome = what.outcome;
     made.actions = what.actions;
     made.after = after;
-    if (const auto known = known_.find(what.known); known != known_.end()) {
+    const auto number = static_cast<unsigned>(summary_.replans.size()) + 1;
+    const auto [known, fresh] = known_.try_emplace(what.known, number);
+    if (!fresh) {
+      const Replan& then = summary_.replans[known->second - 1];
       made.reached = true;
-      made.result = known->second.result;
-      made.reason = known->second.reason;
-      made.nodes = known->second.nodes;
+      made.circle = leads_to(known->second, after);
+      made.result = then.result;
+      made.reason = made.circle ? "the plan for this leads back to it" : then.reason;
+      made.nodes = then.nodes;
+      goes_on_[after].push_back(known->second);
       summary_.replans.push_back(std::move(made));
       return;
     }
+    goes_on_[after].push_back(number);
     if (plans_.size() >= options_.most) {
       made.reason = "more than " + std::to_string(options_.most) + " new plans are needed";
       summary_.replans.push_back(std::move(made));
@@ -68,19 +75,33 @@ class Runs {
                   : found.outcome == Outcome::Unsolvable  ? "every possibility was tried"
                                                           : "";
     made.nodes = found.plan.nodes.size();
-    known_[what.known] = made;
     summary_.replans.push_back(std::move(made));
     if (found.outcome != Outcome::Solved) return;
     plans_.emplace_back(std::move(model), std::move(found.plan));
-    const auto number = static_cast<unsigned>(summary_.replans.size());
     carry_out(plans_.back().first, plans_.back().second, number);
+  }
+
+  /// Whether carrying out the plan `from` has come to that of number `to`.
+  [[nodiscard]] bool leads_to(unsigned from, unsigned to) const {
+    std::set<unsigned> seen = {from};
+    std::vector<unsigned> open = {from};
+    while (!open.empty()) {
+      const unsigned at = open.back();
+      open.pop_back();
+      if (at == to) return true;
+      if (const auto next = goes_on_.find(at); next != goes_on_.end())
+        for (const unsigned n : next->second)
+          if (seen.insert(n).second) open.push_back(n);
+    }
+    return false;
   }
 
   const TaskTexts& texts_;
   const ReplanOptions& options_;
   const StepsOf& steps_;
   std::deque<std::pair<Unplanned, unsigned>> open_;
-  std::map<KnownFacts, Replan> known_;
+  std::map<KnownFacts, unsigned> known_;  ///< states, and which of the replans is for them, from 1
+  std::map<unsigned, std::vector<unsigned>> goes_on_;  ///< plans, and those that take over
   std::deque<std::pair<Model, Plan>> plans_;  ///< they outlive what carries out their steps
   ReplanSummary summary_;
 };
@@ -88,7 +109,8 @@ class Runs {
 }  // namespace
 
 bool ReplanSummary::complete() const {
-  return std::ranges::all_of(replans, [](const Replan& r) { return r.result == Outcome::Solved; });
+  return std::ranges::all_of(
+      replans, [](const Replan& r) { return r.result == Outcome::Solved && !r.circle; });
 }
 
 ReplanSummary run_and_replan(const TaskTexts& texts, const Model& model, const Plan& plan,

@@ -127,6 +127,24 @@ Outcome ContingentPlanner::cover(const State& at, OperatorId step, Index next, I
   return Outcome::Solved;
 }
 
+/// Where outcomes of a branch were left out because of what is assumed, that must still be possible
+/// wherever the branch is used: not known, and not ruled out. What Kx ties to an atom is required
+/// as it is by the regression.
+/// @param outcome  of the branch; what is assumed, if anything is.
+void ContingentPlanner::require_assumption(const State& at, OperatorId outcome,
+                                           std::vector<Formula>& conditions) {
+  const auto [fluent, value] = task_.outcome(outcome);
+  const Fluent& f = task_.layout().fluents()[fluent];
+  const Index values = f.function ? static_cast<Index>(task_.layout().range_size(f)) : 2;
+  bool all = true;
+  for (Index v = 0; v < values; ++v) all = all && expects(at.data(), task_.outcome_id(fluent, v));
+  if (all) return;
+  FormulaPool& pool = task_.pool();
+  conditions.push_back(pool.bits(f.word, f.mask, at[f.word] & f.mask));
+  if (f.exclusion_words > 0)
+    conditions.push_back(pool.bits(f.exclusions + value / 64, Word{1} << (value % 64), 0));
+}
+
 /// A branch, for the state `at` and all others of its regressed condition.
 Index ContingentPlanner::branch(const State& at, std::vector<std::pair<OperatorId, Index>> cases) {
   FormulaPool& pool = task_.pool();
@@ -146,6 +164,7 @@ Index ContingentPlanner::branch(const State& at, std::vector<std::pair<OperatorI
         conditions.push_back(pool.leaf(FormulaPool::Kind::ValueIsNot, fluent, v));
     }
   }
+  require_assumption(at, cases.front().first, conditions);
   Entry e;
   e.branch = true;
   e.step = cases.front().first;

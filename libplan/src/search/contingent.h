@@ -67,6 +67,7 @@ class ContingentPlanner final : private Target {
   Outcome exhaust(std::size_t most_states);
   bool decided_otherwise();
   Index branch(const State& at, std::vector<std::pair<OperatorId, Index>> cases);
+  void require_assumption(const State& at, OperatorId outcome, std::vector<Formula>& conditions);
   Outcome cover(const State& at, OperatorId step, Index next, Index& entry, ConflictSet& conflict);
   Index act(const State& at, OperatorId step, Index next);
   Index add(Entry entry);

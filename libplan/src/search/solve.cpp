@@ -47,7 +47,7 @@ void search(Task& task, const SolveOptions& options, Limits& limits, Solution& s
       solution.plan = planner.plan();
       const auto& functions = task.model().external_functions;
       if (std::any_of(functions.begin(), functions.end(),
-                      [](const auto& f) { return f.reads_state; })) {
+                      [](const auto& f) { return f.takes_seed; })) {
         solution.plan.seed = options.seed;
         solution.plan.attempts = calls.attempts();
       }

@@ -63,7 +63,7 @@ struct Answer {
 };
 
 /// A host function: of names of its arguments alone (an empty string is "false" or "no value"), or
-/// of a question, with the state.
+/// of a question.
 class ExternalBinding {
  public:
   ExternalBinding() = default;
@@ -74,16 +74,21 @@ class ExternalBinding {
           std::string value = f(q.arguments);
           return value.empty() ? Answer{} : Answer::found(std::move(value));
         }) {}
+  /// @param reads_state  false: it asks for nothing of the state, so an answer is one for all.
   template <class F>
-  requires std::is_invocable_r_v<Answer, F&, const Question&> ExternalBinding(F function)
-      : answer_(std::move(function)), reads_state_(true) {}
+  requires std::is_invocable_r_v<Answer, F&, const Question&> ExternalBinding(
+      F function, bool reads_state = true)
+      : answer_(std::move(function)), reads_state_(reads_state), takes_seed_(true) {}
 
   [[nodiscard]] Answer operator()(const Question& question) const { return answer_(question); }
   [[nodiscard]] bool reads_state() const { return reads_state_; }
+  /// Whether what it answers may hang on the question's seed and attempt.
+  [[nodiscard]] bool takes_seed() const { return takes_seed_; }
 
  private:
   std::function<Answer(const Question&)> answer_;
   bool reads_state_ = false;
+  bool takes_seed_ = false;
 };
 
 /// Host functions by the name that `externals:` declares.

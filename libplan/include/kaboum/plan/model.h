@@ -162,6 +162,7 @@ struct ExternalResult {
 struct ExternalFunction {
   std::function<ExternalResult(std::span<const Index> arguments, ExternalContext& context)> call;
   bool reads_state = false;  ///< it may read more than its arguments
+  bool takes_seed = false;   ///< it may read seed and attempt
 };
 
 struct Model {
@@ -176,6 +177,7 @@ struct Model {
   std::vector<Update> initial;  ///< ground, in the order to apply; LCW entries last
   Query goal;
   Index goal_slots = 0;
+  bool cut = false;  ///< more is known than `initial` says: nothing is unsolvable
   /// Values of numeric functions: by function, then arguments.
   std::vector<std::map<std::vector<Index>, std::int64_t>> numbers;
 

@@ -35,12 +35,13 @@ struct Replan {
   std::size_t nodes = 0;  ///< of the new plan
   double seconds = 0;     ///< of planning
   bool reached = false;   ///< the same was known before: that plan is carried out
+  bool circle = false;    ///< that plan, or one that took over from it, has led here
 };
 
 struct ReplanSummary {
   RunSummary run;  ///< of all plans together; a way is counted in each plan that it is a part of
   std::vector<Replan> replans;
-  /// Whether there was a plan for all that happened.
+  /// Whether there was a plan for all that happened, and every way has come to its end.
   [[nodiscard]] bool complete() const;
 };
 
