@@ -20,11 +20,14 @@ plan::ExternalBindings load_plugin(const std::string& file, const ProcessOptions
   return AskedProcess::bindings(process);
 }
 
-void merge(plan::ExternalBindings& all, plan::ExternalBindings more, const std::string& origin) {
-  for (auto& [name, function] : more)
-    if (!all.emplace(name, std::move(function)).second)
-      throw Error(ErrorCode::InvalidInput,
-                  "external function '" + name + "' is bound twice; the second time by " + origin);
+void merge(plan::ExternalBindings& all, const plan::ExternalBindings& more,
+           const std::string& origin) {
+  for (const auto& [name, function] : more)
+    if (!all.emplace(name, function).second)
+      throw Error(ErrorCode::InvalidInput, std::string("external function '")
+                                               .append(name)
+                                               .append("' is bound twice; the second time by ")
+                                               .append(origin));
 }
 
 }  // namespace kaboum::external

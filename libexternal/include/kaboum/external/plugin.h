@@ -26,6 +26,7 @@ plan::ExternalBindings load_plugin(const std::string& file, const ProcessOptions
 
 /// Puts bindings together. @param origin  of `more`, for the message.
 /// @throws Error{InvalidInput} for a function that both have.
-void merge(plan::ExternalBindings& all, plan::ExternalBindings more, const std::string& origin);
+void merge(plan::ExternalBindings& all, const plan::ExternalBindings& more,
+           const std::string& origin);
 
 }  // namespace kaboum::external

@@ -24,6 +24,7 @@ struct KnownFacts {
   /// to each other, or what hangs together that actions may have changed is not kept.
   bool cut = false;
 
+  // NOLINTNEXTLINE(modernize-use-nullptr): what the compiler makes of it is compared with 0
   [[nodiscard]] auto operator<=>(const KnownFacts&) const = default;
 };
 
