@@ -23,6 +23,7 @@ std::vector<double> Sequence::turns() {
   const double first = question_.attempt == 0 ? 0 : random_.between(0, 2 * std::numbers::pi);
   const int count = kTurns * static_cast<int>(question_.attempt + 1);
   std::vector<double> out;
+  out.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) out.push_back(first + 2 * std::numbers::pi * i / count);
   return out;
 }
