@@ -7,14 +7,7 @@
 #include <vector>
 
 namespace kaboum::manipulation {
-namespace {
-
-using nlohmann::json;
-using plan::Answer;
-using plan::Question;
-
-/// Beyond that nothing more is kept. [bytes]
-constexpr std::size_t kMost = std::size_t{1} << 26U;
+namespace answers {  // what a class with a name holds has one, too
 
 /// One thing that was read, and what it was.
 struct Read {
@@ -30,8 +23,21 @@ struct Read {
 
 struct Entry {
   std::vector<Read> reads;
-  Answer answer;
+  plan::Answer answer;
 };
+
+}  // namespace answers
+
+namespace {
+
+using answers::Entry;
+using answers::Read;
+using nlohmann::json;
+using plan::Answer;
+using plan::Question;
+
+/// Beyond that nothing more is kept. [bytes]
+constexpr std::size_t kMost = std::size_t{1} << 26U;
 
 /// Notes what a function reads for the first time.
 class Notes final : public plan::StateView {
@@ -103,7 +109,7 @@ Entry entry_of(const json& j) {
 }  // namespace
 
 struct AnswerCache::Kept {
-  std::map<std::string, std::vector<Entry>> entries;
+  std::map<std::string, std::vector<answers::Entry>> entries;
   std::size_t bytes = 0, reused = 0, fresh = 0;
 
   void load(const std::string& content) {
@@ -121,7 +127,7 @@ struct AnswerCache::Kept {
 
   Answer ask(const std::string& name, const plan::ExternalBinding& function,
              const Question& question) {
-    std::vector<Entry>& all = entries[place_of_question(name, question)];
+    std::vector<answers::Entry>& all = entries[place_of_question(name, question)];
     std::vector<const Entry*> fitting;
     for (const Entry& e : all) fitting.push_back(&e);
     // A function that reads the same reads the same thing next, so all that fit agree on it.

@@ -129,7 +129,9 @@ TEST_F(Actions, HandOverEndsInTheOtherHandWithBothAtHome) {
       EXPECT_EQ(motions[i].robot, order[i]);
       EXPECT_EQ(motions[i].holds.contains("block"), i == 0 || i == 3);
       follow(motions[i]);
-      if (i == 1) EXPECT_TRUE(at_grasp(from) && at_grasp(to)) << "both hold it for a moment";
+      if (i == 1) {
+        EXPECT_TRUE(at_grasp(from) && at_grasp(to)) << "both hold it for a moment";
+      }
     }
     EXPECT_EQ(state_.q[0], robots[0].home);
     EXPECT_EQ(state_.q[1], robots[1].home);
@@ -295,8 +297,12 @@ TEST_F(Actions, SweptCollidesIsNeverWronglyFreeAndRarelyWronglyNot) {
       meets = meets || arms_.cell.find_meeting(now, 0).has_value();
       may = may || large.find_meeting(now, 0).has_value();
     }
-    if (meets) EXPECT_EQ(answer.kind, Answer::Kind::Value) << i;
-    if (!may) EXPECT_EQ(answer.kind, Answer::Kind::Impossible) << i << ": 2 cm apart";
+    if (meets) {
+      EXPECT_EQ(answer.kind, Answer::Kind::Value) << i;
+    }
+    if (!may) {
+      EXPECT_EQ(answer.kind, Answer::Kind::Impossible) << i << ": 2 cm apart";
+    }
     ++(meets ? certain : may ? near : free);
   }
   EXPECT_GT(free, 20);
