@@ -64,7 +64,8 @@ int write_page(const PlanOptions& o) {
   if (o.tree) plan = plan::expand_tree(plan);
   execution::Recording recording(scene.world, model, plan, {});
   plan::run(model, plan, {}, [&](const plan::RunStep& step) { recording.carry_out(step); });
-  const std::string name = std::filesystem::path(o.plan == "-" ? o.domain : o.plan).filename();
+  const std::string name =
+      model.name.empty() ? std::filesystem::path(o.domain).filename().string() : model.name;
   io::write_file(o.html, filled(embedded("page.html"),
                                 {{"title", escape_xml("Plan " + name)},
                                  {"graph", plan::plan_svg(model, plan)},

@@ -94,12 +94,10 @@
       gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(values), gl.STATIC_DRAW);
       return {id, count: values.length / kFloats};
     };
-    const radius = Math.max(0, ...decoded.map((b) => {
-      let r = 0;
-      for (let i = 0; i < b.points.length; i += 3) r = Math.max(r, Math.hypot(b.points[i], b.points[i + 1], b.points[i + 2]));
-      return r;
-    }));
-    return {faces: buffer(faces), lines: buffer(lines), radius};
+    const low = [0, 1, 2].map((k) => Math.min(...decoded.map((b) => b.points.reduce((m, x, i) => i % 3 === k ? Math.min(m, x) : m, Infinity))));
+    const high = [0, 1, 2].map((k) => Math.max(...decoded.map((b) => b.points.reduce((m, x, i) => i % 3 === k ? Math.max(m, x) : m, -Infinity))));
+    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((c) => [0, 1, 2].map((k) => c >> k & 1 ? high[k] : low[k]));
+    return {faces: buffer(faces), lines: buffer(lines), corners};
   }
 
   let program, where;
@@ -124,19 +122,26 @@
   const eye = {target: [0, 0, 0], distance: 3, yaw: -0.9, pitch: 0.45};
   (function frame() {
     const low = [Infinity, Infinity, Infinity], high = low.map((x) => -x);
-    for (const d of drawn) {
-      const pose = S.shapePose(data, data.states[0], d.shape);
-      if (!pose) continue;
-      const r = (d.sets || d.exact || {radius: 0}).radius;
-      // Grounds and tables would hide how large the rest is.
-      for (let i = 0; i < 3; ++i) {
-        low[i] = Math.min(low[i], pose[9 + i] - 0.7 * r);
-        high[i] = Math.max(high[i], pose[9 + i] + 0.7 * r);
-      }
+    const size = () => Math.hypot(...minus(high, low));
+    const robotsFirst = [...drawn].sort((a, b) => (a.shape.robot === undefined) - (b.shape.robot === undefined));
+    let robots = 0;
+    for (const d of robotsFirst) {
+      const pose = S.shapePose(data, data.states[0], d.shape), {corners} = d.sets || d.exact || {corners: []};
+      if (!pose || corners.length === 0) continue;
+      if (d.shape.robot !== undefined) robots = 0;
+      else if (robots === 0) robots = low[0] < high[0] ? size() : Infinity;
+      // Grounds and walls would hide how large the rest is.
+      if (Math.hypot(...minus(corners[7], corners[0])) > 2 * (robots || Infinity)) continue;
+      for (const corner of corners)
+        for (let i = 0; i < 3; ++i) {
+          const x = pose[9 + i] + dot(pose.slice(3 * i, 3 * i + 3), corner);
+          low[i] = Math.min(low[i], x);
+          high[i] = Math.max(high[i], x);
+        }
     }
     if (!(low[0] < high[0])) return;
     eye.target = low.map((x, i) => (x + high[i]) / 2);
-    eye.distance = 1.3 * Math.hypot(...minus(high, low));
+    eye.distance = 1.35 * size();
   })();
 
   function cameraMatrix(width, height) {
