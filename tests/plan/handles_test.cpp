@@ -152,6 +152,85 @@ TEST(Handles, ACallIsMadeOnceForWhatItReads) {
   }
 }
 
+/// n rooms after one another with n doors each, of which a function opens only the last one.
+std::string doors(int n) {
+  std::string text = "types: key handle, door, room\nconstants: key start; door d1";
+  for (int i = 2; i <= n; ++i) text += ", d" + std::to_string(i);
+  text += "; room r1";
+  for (int i = 2; i <= n + 1; ++i) text += ", r" + std::to_string(i);
+  text +=
+      "\npredicates: at(room), next(room, room)\nfunctions: holds : key\n"
+      "externals: open(key, door) : key\n"
+      "action go(?a : room, ?b : room, ?d : door)\n"
+      "preconds: K(at(?a)) & K(next(?a, ?b)) & let ?k = extern(open(holds, ?d))\n"
+      "effects: del(Kf, at(?a)), add(Kf, at(?b)), add(Kf, holds = ?k)\ninit: K(holds = start), "
+      "K(at(r1))";
+  for (int i = 1; i <= n; ++i)
+    text += ", K(next(r" + std::to_string(i) + ", r" + std::to_string(i + 1) + "))";
+  return text + "\ngoal: K(at(r" + std::to_string(n + 1) + "))";
+}
+
+TEST(Handles, FunctionsAreAskedWhenAStepsTurnComes) {
+  constexpr int kRooms = 8;
+  int calls = 0;
+  std::string opens = "d1";
+  ExternalBindings b;
+  b["open"] = [&](const Question& q) {
+    ++calls;
+    return q.arguments[1] == opens ? Answer::found(q.arguments[0] + "'")
+                                   : Answer::impossible("shut");
+  };
+  const Model m = bound(doors(kRooms), b);
+  const auto count = [&](Algorithm a) {
+    calls = 0;
+    const Solution s = with(m, a);
+    EXPECT_EQ(s.outcome, Outcome::Solved);
+    EXPECT_TRUE(check(m, s.plan).valid);
+    EXPECT_EQ(measure(m, s.plan).longest, std::size_t{kRooms});
+    return static_cast<int>(s.statistics.external_calls);
+  };
+  // A call for each step of the plan, and those that confirm them.
+  constexpr int kConfirm = 16;
+  EXPECT_LE(count(Algorithm::DepthFirst), kRooms + kConfirm);
+  EXPECT_LE(count(Algorithm::Greedy), kRooms + kConfirm);
+  // The last layer asks for what reaches the goal until one does; all others ask for all doors.
+  EXPECT_LE(count(Algorithm::BreadthFirst), (kRooms - 1) * kRooms + 1 + kConfirm);
+  EXPECT_GE(count(Algorithm::IterativeDeepening), kRooms * kRooms);
+  // Only the last door opens. Greedy search finds out once which, and then tries it first.
+  opens = "d8";
+  EXPECT_GE(count(Algorithm::DepthFirst), kRooms * kRooms);
+  EXPECT_LE(count(Algorithm::Greedy), kRooms * kRooms + kConfirm);
+  // None does: that is still a proof.
+  opens = "none";
+  for (const Algorithm a : kAll) EXPECT_EQ(with(m, a).outcome, Outcome::Unsolvable);
+}
+
+TEST(Handles, WhatStepsThatArePutOffWaitForIsSensed) {
+  // Whether the function grants the step depends on what is sensed: that is branched on although
+  // the search took the step for possible.
+  ExternalBindings b;
+  b["path"] = [](const Question& q) {
+    const auto wet = q.state.truth("wet", {});
+    if (!wet) return Answer::not_found("");
+    return *wet == (q.arguments[0] == "low") ? Answer::impossible("slippery")
+                                             : Answer::found("p" + q.arguments[0]);
+  };
+  const Model m = bound(
+      "types: way, conf handle\nconstants: conf home; way low, high\npredicates: wet, done\n"
+      "functions: robot : conf\nexternals: path(way) : conf\n"
+      "action look effects: add(Kw, wet)\n"
+      "action go(?w : way) preconds: K(!done) & let ?q = extern(path(?w))"
+      " effects: add(Kf, done), add(Kf, robot = ?q)\n"
+      "init: K(!done), K(robot = home)\ngoal: K(done)",
+      b);
+  for (const Algorithm a : kAll) {
+    const Solution s = with(m, a);
+    ASSERT_EQ(s.outcome, Outcome::Solved) << static_cast<int>(a);
+    EXPECT_EQ(measure(m, s.plan).leaves, 2U);
+    EXPECT_TRUE(check(m, s.plan).valid);
+  }
+}
+
 TEST(Handles, WhatIsNotFoundIsTriedAgainWithTheSameSeeds) {
   std::vector<std::pair<unsigned, std::uint64_t>> tried;
   ExternalBindings b;

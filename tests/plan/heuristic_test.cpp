@@ -82,6 +82,23 @@ std::string random_task(std::uint32_t seed) {
          ")\n";
 }
 
+TEST(Estimates, SensingTellsNothingOfWhatIsKnown) {
+  const auto start = [](const std::string& init) {
+    const Model m =
+        model_of("predicates: p\naction look effects: add(Kw, p)\ninit: " + init + "\ngoal: K(!p)");
+    const Solution s = solved(m, Algorithm::Greedy);
+    EXPECT_EQ(s.outcome, Outcome::Unsolvable);
+    return s.statistics.initial_estimate;
+  };
+  EXPECT_EQ(start("K(p)"), -1) << "a dead end, without a look at any state";
+  EXPECT_EQ(start(""), 1) << "it may be sensed that p is false";
+  // What the action itself makes unknown it may sense.
+  const Model m = model_of(
+      "predicates: p, q\naction toss effects: del(Kf, p), add(Kw, p), add(Kf, q)\ninit: K(p), "
+      "K(!q)\ngoal: K(q) & Kw(p)");
+  EXPECT_EQ(solved(m, Algorithm::Greedy).outcome, Outcome::Solved);
+}
+
 TEST(Estimates, AreSafeAndAdmissibleInEveryReachableState) {
   int tasks = 0;
   std::uint64_t states = 0;

@@ -1,6 +1,7 @@
 // Depth-first, breadth-first and iterative-deepening search, as the thesis compares them in
 // Tables 6.2, 6.4 and 6.7.
 #include <algorithm>
+#include <optional>
 
 #include "search/search.h"
 #include "search/state_store.h"
@@ -42,6 +43,31 @@ struct Successors {
   }
 };
 
+/// A step of one layer that reaches the target, of those that ask external functions and would
+/// reach it if they were possible: only these are asked. The plan is no longer than one that is
+/// found without this look, and most calls of the last layer are not made.
+std::optional<std::pair<Index, OperatorId>> last_step(const SearchInput& in,
+                                                      const StateStore& store, std::size_t begin,
+                                                      std::size_t end) {
+  if (in.task.model().external_functions.empty()) return std::nullopt;
+  Knowledge scratch(in.task.layout());
+  std::vector<OperatorId> steps, outcomes;
+  for (auto state = static_cast<Index>(begin); state < end; ++state) {
+    if (in.limits.exceeded(store.bytes())) return std::nullopt;
+    in.task.expand_unasked(store[state], steps);
+    for (const OperatorId step : steps) {
+      if (!in.task.asks(step)) continue;
+      scratch.assign(store[state]);
+      if (!in.task.suppose(step, scratch) || !in.target.reached(scratch.words())) continue;
+      if (!in.task.decide(store[state], step, outcomes)) continue;
+      scratch.assign(store[state]);
+      if (in.task.apply(step, scratch) && in.target.reached(scratch.words()))
+        return std::pair(state, step);
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Found breadth_first(const SearchInput& in) {
@@ -55,12 +81,25 @@ Found breadth_first(const SearchInput& in) {
     return found;
   }
   Successors next;
-  std::size_t layer_end = 1;
+  std::size_t layer_end = 0;
   std::uint64_t depth = 0;
+  const auto solved = [&](std::vector<OperatorId> steps) {
+    in.statistics.depth = std::max(in.statistics.depth, depth);
+    count_states(store, in.statistics);
+    found.outcome = Outcome::Solved;
+    found.steps = std::move(steps);
+    return found;
+  };
   for (std::size_t i = 0; i < store.size(); ++i) {
     if (i == layer_end) {
       layer_end = store.size();
-      in.statistics.depth = std::max(in.statistics.depth, ++depth);
+      ++depth;  // of the states that are made
+      in.statistics.depth = std::max(in.statistics.depth, depth - 1);
+      if (const auto last = last_step(in, store, i, layer_end)) {
+        std::vector<OperatorId> steps = store.path(last->first);
+        steps.push_back(last->second);
+        return solved(std::move(steps));
+      }
     }
     if (in.limits.exceeded(store.bytes())) {
       count_states(store, in.statistics);
@@ -71,12 +110,7 @@ Found breadth_first(const SearchInput& in) {
       const Word* state = next.words.data() + k * n;
       const auto [number, fresh] =
           store.insert(state, next.hashes[k], static_cast<Index>(i), next.steps[k]);
-      if (!fresh || !in.target.reached(state)) continue;
-      in.statistics.depth = std::max(in.statistics.depth, depth + 1);
-      count_states(store, in.statistics);
-      found.outcome = Outcome::Solved;
-      found.steps = store.path(number);
-      return found;
+      if (fresh && in.target.reached(state)) return solved(store.path(number));
     }
   }
   count_states(store, in.statistics);
@@ -95,13 +129,14 @@ Found depth_first(const SearchInput& in) {
     std::size_t next;
   };
   std::vector<Frame> stack;
+  std::vector<OperatorId> outcomes;
   std::size_t top = 0;  // frames are kept for their capacity
   const auto push = [&](Index state) {
     if (stack.size() == top) stack.emplace_back();
     Frame& f = stack[top++];
     f.state = state;
     f.next = 0;
-    in.task.expand(store[state], f.steps);
+    in.task.expand_unasked(store[state], f.steps);
     ++in.statistics.expanded;
     in.statistics.depth = std::max<std::uint64_t>(in.statistics.depth, top);
   };
@@ -124,6 +159,13 @@ Found depth_first(const SearchInput& in) {
     const OperatorId step = f.steps[f.next++];
     const Word* state = store[f.state];
     if (in.task.is_outcome(step) && !in.target.allowed(state, step)) continue;
+    if (in.task.asks(step)) {  // only now: most steps are never taken
+      outcomes.clear();
+      const bool possible = in.task.decide(state, step, outcomes);
+      for (const OperatorId o : outcomes)
+        if (std::find(f.steps.begin(), f.steps.end(), o) == f.steps.end()) f.steps.push_back(o);
+      if (!possible) continue;
+    }
     scratch.assign(state);
     if (!in.task.apply(step, scratch)) continue;
     ++in.statistics.generated;

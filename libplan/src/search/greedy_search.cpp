@@ -2,10 +2,13 @@
 // that preferred operators lead to; preferred queues are boosted on progress, and estimates
 // deferred to expansion [helmert2006fd]. The relaxed plan guides where deletions do
 // little harm, the landmark events where they do.
+#include <kaboum/base/error.h>
+
 #include <algorithm>
 #include <array>
 #include <optional>
 #include <queue>
+#include <utility>
 
 #include "search/landmarks.h"
 #include "search/relaxed_plan.h"
@@ -18,11 +21,17 @@ namespace {
 struct Open {
   std::uint64_t estimate;
   std::uint64_t order;  // first come, first served
-  Index state;
+  Index item;           // a state, or with kUnasked a step that is not decided yet
   bool operator>(const Open& o) const {
     return std::pair(estimate, order) > std::pair(o.estimate, o.order);
   }
 };
+
+/// Searches where external functions refuse steps: what the first one has learned of that makes the
+/// plans of later ones shorter, and most of what they ask has been asked before.
+constexpr int kRounds = 3;
+
+constexpr Index kUnasked = Index{1} << 31U;
 
 constexpr std::size_t kRelaxed = 0, kRelaxedPreferred = 1, kEvents = 2, kEventsPreferred = 3;
 
@@ -40,9 +49,9 @@ class Queues {
       if (!queues_[q].empty() && (next == queues_.size() || served_[q] < served_[next])) next = q;
     ++served_[next];
     --size_;
-    const Index state = queues_[next].top().state;
+    const Index item = queues_[next].top().item;
     queues_[next].pop();
-    return state;
+    return item;
   }
   void boost(std::size_t queue) { served_[queue] -= kBoost; }
   [[nodiscard]] std::size_t bytes() const { return most_ * sizeof(Open); }
@@ -58,8 +67,10 @@ class Queues {
 
 class GreedySearch {
  public:
-  explicit GreedySearch(const SearchInput& in)
+  /// @param most_expanded  states, before it gives up.
+  GreedySearch(const SearchInput& in, std::uint64_t most_expanded)
       : in_(in),
+        most_expanded_(in.statistics.expanded + most_expanded),
         relaxed_(in.heuristics.relaxed(in.task, in.limits)),
         landmarks_(in.heuristics.landmark(in.task, in.limits)),
         words_(in.task.layout().words()),
@@ -70,11 +81,19 @@ class GreedySearch {
     store_.insert(in_.start.data(), Knowledge::hash_of(in_.start.data(), words_), kNone, 0);
     open_.push(kRelaxed, {0, order_++, 0});
     while (!open_.empty()) {
-      const Index state = open_.pop();
+      Index state = open_.pop();
+      if ((state & kUnasked) != 0) {
+        if (in_.limits.check(bytes())) return finish(Outcome::Limit);
+        const Taken taken = take(unasked_[state & ~kUnasked]);
+        if (taken.reached) return finish(Outcome::Solved);
+        if (taken.state == kNone) continue;
+        state = taken.state;
+      }
       if (state >= expanded_.size()) expanded_.resize(store_.size(), 0);
       if (expanded_[state]) continue;
       expanded_[state] = 1;
-      if (in_.limits.check(bytes())) return finish(Outcome::Limit);
+      if (in_.limits.check(bytes()) || in_.statistics.expanded >= most_expanded_)
+        return finish(Outcome::Limit);
       const std::optional<Estimates> estimates = evaluate(state);
       if (!estimates) continue;
       note_progress(*estimates);
@@ -88,6 +107,47 @@ class GreedySearch {
     std::uint64_t relaxed = 0;
     std::uint64_t events = 0;
   };
+
+  /// A step from a state, whose external functions are asked when its turn comes: most never come.
+  struct Unasked {
+    Index parent = 0;
+    OperatorId step = kNoOperator;  ///< kNoOperator: its turn has come
+    Estimates estimates;
+    bool preferred = false;
+  };
+
+  struct Taken {
+    Index state = kNone;  ///< a new one
+    bool reached = false;
+  };
+
+  /// Asks, and makes the step if it is possible.
+  Taken take(Unasked& unasked) {
+    const Unasked u = std::exchange(unasked, {});
+    if (u.step == kNoOperator) return {};  // in another queue
+    outcomes_.clear();
+    if (in_.task.decide(store_[u.parent], u.step, outcomes_)) return make(u.parent, u.step);
+    for (const OperatorId outcome : outcomes_) {
+      const Taken taken = make(u.parent, outcome);
+      if (taken.reached) return taken;
+      if (taken.state != kNone) push(taken.state, u.estimates, u.preferred);
+    }
+    return {};
+  }
+
+  Taken make(Index parent, OperatorId step) {
+    if (in_.task.is_outcome(step) && !in_.target.allowed(store_[parent], step)) return {};
+    scratch_.assign(store_[parent]);
+    if (!in_.task.apply(step, scratch_)) return {};
+    ++in_.statistics.generated;
+    const auto [number, fresh] = store_.insert(scratch_.words(), scratch_.hash(), parent, step);
+    if (!fresh) return {};
+    ensure(number < kUnasked, "states are numbered");
+    if (!in_.target.reached(scratch_.words())) return {number, false};
+    found_.steps = store_.path(number);
+    in_.statistics.depth = std::max<std::uint64_t>(in_.statistics.depth, found_.steps.size());
+    return {number, true};
+  }
 
   /// nullopt: a dead end. Both estimates are safe: what they call one is one.
   std::optional<Estimates> evaluate(Index state) {
@@ -121,37 +181,36 @@ class GreedySearch {
   /// @return whether a successor reaches the target.
   bool expand(Index state, const Estimates& estimates) {
     const std::vector<OperatorId> helpful = relaxed_.steps();
-    in_.task.expand(store_[state], steps_);
+    in_.task.expand_unasked(store_[state], steps_);
     ++in_.statistics.expanded;
     for (const OperatorId step : steps_) {
-      if (in_.task.is_outcome(step) && !in_.target.allowed(store_[state], step)) continue;
-      scratch_.assign(store_[state]);
-      if (!in_.task.apply(step, scratch_)) continue;
-      ++in_.statistics.generated;
-      const auto [number, fresh] = store_.insert(scratch_.words(), scratch_.hash(), state, step);
-      if (!fresh) continue;
-      if (in_.target.reached(scratch_.words())) {
-        found_.steps = store_.path(number);
-        in_.statistics.depth = std::max<std::uint64_t>(in_.statistics.depth, found_.steps.size());
-        return true;
+      const bool preferred = std::binary_search(helpful.begin(), helpful.end(), step);
+      if (in_.task.asks(step)) {
+        ensure(unasked_.size() < kUnasked, "steps are numbered");
+        push(static_cast<Index>(unasked_.size()) | kUnasked, estimates, preferred);
+        unasked_.push_back({state, step, estimates, preferred});
+        continue;
       }
-      push(number, estimates, std::binary_search(helpful.begin(), helpful.end(), step));
+      const Taken taken = make(state, step);
+      if (taken.reached) return true;
+      if (taken.state != kNone) push(taken.state, estimates, preferred);
     }
     return false;
   }
 
-  void push(Index state, const Estimates& e, bool preferred) {
-    open_.push(kRelaxed, {e.relaxed, order_, state});
-    if (preferred) open_.push(kRelaxedPreferred, {e.relaxed, order_, state});
+  void push(Index item, const Estimates& e, bool preferred) {
+    open_.push(kRelaxed, {e.relaxed, order_, item});
+    if (preferred) open_.push(kRelaxedPreferred, {e.relaxed, order_, item});
     if (use_events_) {
-      open_.push(kEvents, {e.events, order_, state});
-      if (preferred) open_.push(kEventsPreferred, {e.events, order_, state});
+      open_.push(kEvents, {e.events, order_, item});
+      if (preferred) open_.push(kEventsPreferred, {e.events, order_, item});
     }
     ++order_;
   }
 
   [[nodiscard]] std::size_t bytes() const {
-    return store_.bytes() + open_.bytes() + expanded_.capacity();
+    return store_.bytes() + open_.bytes() + expanded_.capacity() +
+           unasked_.capacity() * sizeof(Unasked);
   }
 
   Found finish(Outcome outcome) {
@@ -162,6 +221,7 @@ class GreedySearch {
   }
 
   const SearchInput& in_;
+  std::uint64_t most_expanded_;
   RelaxedPlan& relaxed_;
   LandmarkHeuristic& landmarks_;
   Index words_;
@@ -172,7 +232,8 @@ class GreedySearch {
   std::uint64_t order_ = 0;
   Estimates best_{RelaxedPlan::kDeadEnd, RelaxedPlan::kDeadEnd};
   bool use_events_ = true;
-  std::vector<OperatorId> steps_;
+  std::vector<OperatorId> steps_, outcomes_;
+  std::vector<Unasked> unasked_;
   Found found_;
 };
 
@@ -180,7 +241,17 @@ class GreedySearch {
 
 Found greedy_best_first(const SearchInput& in) {
   if (in.target.reached(in.start.data())) return {Outcome::Solved, {}};
-  return GreedySearch(in).run();
+  Found best;
+  std::uint64_t most_expanded = ~std::uint64_t{0} - in.statistics.expanded;
+  for (int round = 0; round < kRounds; ++round) {
+    const std::uint64_t refused = in.task.refused(), expanded = in.statistics.expanded;
+    Found found = GreedySearch(in, most_expanded).run();
+    if (round == 0 || (found.outcome == Outcome::Solved && found.steps.size() < best.steps.size()))
+      best = std::move(found);
+    if (best.outcome != Outcome::Solved || in.task.refused() == refused) break;
+    most_expanded = in.statistics.expanded - expanded;
+  }
+  return best;
 }
 
 }  // namespace kaboum::plan

@@ -198,6 +198,24 @@ void Relaxation::add_operator(Operator o, std::vector<Index> conditions) {
   operators_.push_back(std::move(o));
 }
 
+/// Whether the change makes known at run time what was unknown before the action, and does nothing
+/// else: no other change of the action concerns the fluent.
+bool Relaxation::senses_unknown(const GroundAction& action, const Change& change) const {
+  if (change.kind != Change::Kind::AddWhether && change.kind != Change::Kind::AddSensed)
+    return false;
+  const Fluent& f = task_.layout().fluents()[change.fluent];
+  if (!f.groups.empty() || f.exclusions != kNone) return false;
+  const auto concerns = [&](const Change& c) { return c.fluent == change.fluent; };
+  return std::none_of(
+      action.effects.begin(), action.effects.end(), [&](const ConditionalEffect& c) {
+        return std::any_of(c.deletions.begin(), c.deletions.end(), concerns) ||
+               std::any_of(c.direct.begin(), c.direct.end(), concerns) ||
+               std::any_of(c.additions.begin(), c.additions.end(), concerns) ||
+               std::any_of(c.transfers.begin(), c.transfers.end(),
+                           [&](const auto& t) { return t.fluent == change.fluent; });
+      });
+}
+
 void Relaxation::add_action(OperatorId step) {
   const GroundAction& a = task_.action(step);
   const Index precondition = node(a.precondition);
@@ -209,14 +227,29 @@ void Relaxation::add_action(OperatorId step) {
     o.step = step;
     o.cost = a.cost;
     o.conditional = i;
-    o.adds = facts_.added(c);
-    if (o.adds.empty()) continue;
     const std::vector<FactId> condition = necessary_facts(c.condition);
     std::set_union(needed.begin(), needed.end(), condition.begin(), condition.end(),
                    std::back_inserter(o.preconditions));
     std::vector<Index> conditions = {precondition};
     if (c.condition != kTrue) conditions.push_back(node(c.condition));
-    add_operator(std::move(o), std::move(conditions));
+    o.adds = facts_.added(c);
+    for (const Change& change : c.sensing) {
+      if (!senses_unknown(a, change)) continue;
+      Operator senses = o;
+      senses.adds = facts_.added(change);
+      std::erase_if(o.adds, [&](FactId f) {
+        return std::find(senses.adds.begin(), senses.adds.end(), f) != senses.adds.end();
+      });
+      const FactId unknown = facts_.fact(change.fluent, 0);
+      std::vector<Index> needs = conditions;
+      needs.push_back(unknown);
+      const auto at =
+          std::lower_bound(senses.preconditions.begin(), senses.preconditions.end(), unknown);
+      if (at == senses.preconditions.end() || *at != unknown)
+        senses.preconditions.insert(at, unknown);
+      add_operator(std::move(senses), std::move(needs));
+    }
+    if (!o.adds.empty()) add_operator(std::move(o), std::move(conditions));
   }
 }
 

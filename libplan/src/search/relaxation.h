@@ -51,6 +51,7 @@ class Relaxation {
  private:
   void reach();
   void add_action(OperatorId step);
+  [[nodiscard]] bool senses_unknown(const GroundAction& action, const Change& change) const;
   void add_operator(Operator o, std::vector<Index> conditions);
   [[nodiscard]] bool possible(Formula f, bool positive) const;
   bool mark(FactId f);

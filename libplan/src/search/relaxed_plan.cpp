@@ -8,6 +8,7 @@ namespace {
 
 constexpr std::uint64_t kLargest = std::uint64_t{1}
                                    << 62U;  // additive costs may grow exponentially
+constexpr std::uint64_t kMostTries = 16;
 
 }  // namespace
 
@@ -29,6 +30,14 @@ void RelaxedPlan::settle(Index node, std::uint64_t cost, Index supporter) {
   supporter_[node] = supporter;
   queue_.emplace_back(cost, node);
   std::push_heap(queue_.begin(), queue_.end(), std::greater<>());
+}
+
+std::uint64_t RelaxedPlan::cost_of(OperatorId step) const {
+  if (task_.is_outcome(step)) return 0;
+  const GroundAction& a = task_.action(step);
+  const std::uint64_t tries = (std::uint64_t{a.granted} + a.refused + 1) / (a.granted + 1);
+  return static_cast<std::uint64_t>(std::max<std::int64_t>(1, a.cost)) *
+         std::min(tries, kMostTries);
 }
 
 std::uint64_t RelaxedPlan::evaluate(const Word* state) {
@@ -63,8 +72,7 @@ std::uint64_t RelaxedPlan::evaluate(const Word* state) {
     }
     for (const Index o : achieves_[node]) {
       const Relaxation::Operator& op = relaxation_.operators()[o];
-      const auto step_cost = static_cast<std::uint64_t>(
-          task_.is_outcome(op.step) ? 0 : std::max<std::int64_t>(1, op.cost));
+      const std::uint64_t step_cost = cost_of(op.step);
       for (const FactId f : op.adds) settle(f, std::min(cost + step_cost, kLargest), o);
     }
   }
@@ -99,9 +107,7 @@ std::uint64_t RelaxedPlan::evaluate(const Word* state) {
   std::sort(steps_.begin(), steps_.end());
   steps_.erase(std::unique(steps_.begin(), steps_.end()), steps_.end());
   std::uint64_t total = 0;
-  for (const OperatorId s : steps_)
-    if (!task_.is_outcome(s))
-      total += static_cast<std::uint64_t>(std::max<std::int64_t>(1, task_.cost(s)));
+  for (const OperatorId s : steps_) total += cost_of(s);
   return total;
 }
 

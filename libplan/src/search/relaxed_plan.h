@@ -9,7 +9,8 @@ namespace kaboum::plan {
 /// The relaxed-plan heuristic (Hoffmann and Nebel 2001, [hoffmann2001ff]): the cost of a plan of
 /// the delete relaxation, put together from each fact's cheapest supporter under the additive
 /// heuristic. Not admissible. Actions cost at least one here: a free step is still a step away from
-/// the goal.
+/// the goal. What external functions say is taken for granted where they were not asked; an action
+/// that they have refused costs more from then on.
 class RelaxedPlan {
  public:
   explicit RelaxedPlan(Task& task, Relaxation& relaxation);
@@ -25,6 +26,9 @@ class RelaxedPlan {
   [[nodiscard]] const std::vector<OperatorId>& steps() const { return steps_; }
 
  private:
+  /// Of an action that external functions refused so far: as often as they are likely to be asked
+  /// until they grant it.
+  [[nodiscard]] std::uint64_t cost_of(OperatorId step) const;
   void settle(Index node, std::uint64_t cost, Index supporter);
 
   Task& task_;

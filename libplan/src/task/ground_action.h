@@ -40,6 +40,9 @@ struct GroundAction {
   std::vector<ConditionalEffect> effects;
   std::vector<Index> lets;       ///< calls whose values the precondition gives names to
   bool conditions_call = false;  ///< a condition of an effect calls an external function
+  bool asks = false;  ///< an external function is asked about the state: put off where wished
+  /// How often `Task::decide` found it possible, and not.
+  std::uint32_t granted = 0, refused = 0;
 };
 
 }  // namespace kaboum::plan

@@ -10,12 +10,13 @@
 namespace kaboum::plan {
 
 /// One look at all instances of the actions. Sensing: queries may be open; what they wait for is
-/// gathered in Task::needs_.
+/// gathered in Task::needs_. Unasked: what external functions say of the state is taken for
+/// granted.
 template <bool Sensing>
 class Task::Expansion {
  public:
-  Expansion(Task& task, const Word* state, std::vector<OperatorId>& steps)
-      : task_(task), state_(state), steps_(steps), slots_(task.slots_.data()) {}
+  Expansion(Task& task, const Word* state, std::vector<OperatorId>& steps, bool unasked)
+      : task_(task), state_(state), steps_(steps), slots_(task.slots_.data()), unasked_(unasked) {}
 
   void expand(Index schema) {
     number_ = schema;
@@ -27,11 +28,19 @@ class Task::Expansion {
     descend(0);
   }
 
+  /// Whether it is the same for every way that sensed values may turn out, and known so far as
+  /// external functions go, which effects happen.
+  bool settled(const GroundAction& action) {
+    if constexpr (Sensing) return decided(action);
+    return !action.conditions_call || resolved(action);
+  }
+
  private:
   /// false: prune. Open formulas are remembered and the descent goes on.
   bool test(Formula f) {
     if (f == kTrue) return true;
     if (f == kFalse) return false;
+    if (unasked_ && task_.pool_.node(f).calls && task_.evaluator_.depends_on_calls(f)) return true;
     if constexpr (!Sensing) return task_.evaluator_.holds(f, state_);
     if (open_count_ > 0 && task_.pool_.node(f).calls)
       return true;  // not called before the rest is decided
@@ -81,12 +90,8 @@ class Task::Expansion {
       }
     }
     const OperatorId step = task_.action_id(number_, arguments_);
-    if constexpr (Sensing) {
-      if (!decided(*task_.actions_[step])) return;
-    } else {
-      if (task_.actions_[step]->conditions_call && !resolved(*task_.actions_[step])) return;
-    }
-    steps_.push_back(step);
+    const GroundAction& action = *task_.actions_[step];
+    if ((unasked_ && action.asks) || settled(action)) steps_.push_back(step);
   }
 
   /// Whether the effects are the same for every way that sensed values may turn out.
@@ -124,6 +129,7 @@ class Task::Expansion {
   const Word* state_;
   std::vector<OperatorId>& steps_;
   Index* slots_;
+  bool unasked_;
   Index number_ = 0;
   ActionSchema* schema_ = nullptr;
   std::vector<Index> arguments_;
@@ -132,19 +138,44 @@ class Task::Expansion {
 };
 
 template <bool Sensing>
-void Task::expand_actions(const Word* state, std::vector<OperatorId>& steps) {
-  Expansion<Sensing> expansion(*this, state, steps);
+void Task::expand_actions(const Word* state, std::vector<OperatorId>& steps, bool unasked) {
+  Expansion<Sensing> expansion(*this, state, steps, unasked);
   for (Index s = 0; s < schemas_.size(); ++s) expansion.expand(s);
 }
 
-void Task::expand(const Word* state, std::vector<OperatorId>& steps) {
+bool Task::decide(const Word* state, OperatorId step, std::vector<OperatorId>& outcomes) {
+  GroundAction& action = *actions_[step];
+  const Truth truth = evaluator_.evaluate(action.precondition, state);
+  needs_.clear();
+  const bool possible =
+      truth == Truth::Yes &&
+      (layout_.sensing() ? Expansion<true>(*this, state, outcomes, false).settled(action)
+                         : Expansion<false>(*this, state, outcomes, false).settled(action));
+  if (truth == Truth::Open) evaluator_.open_fluents(action.precondition, state, needs_);
+  if (possible) {
+    ++action.granted;
+    return true;
+  }
+  if (needs_.empty()) {
+    ++action.refused;
+    ++refused_;
+  }
+  std::sort(needs_.begin(), needs_.end());
+  needs_.erase(std::unique(needs_.begin(), needs_.end()), needs_.end());
+  for (const Index fluent : needs_)
+    for (const Index value : this->outcomes(fluent, state))
+      outcomes.push_back(outcome_id(fluent, value));
+  return false;
+}
+
+void Task::expand(const Word* state, std::vector<OperatorId>& steps, bool unasked) {
   steps.clear();
   if (!layout_.sensing()) {
-    expand_actions<false>(state, steps);
+    expand_actions<false>(state, steps, unasked);
     return;
   }
   needs_.clear();
-  expand_actions<true>(state, steps);
+  expand_actions<true>(state, steps, unasked);
   if (evaluator_.evaluate(goal_, state) == Truth::Open)
     evaluator_.open_fluents(goal_, state, needs_);
   std::sort(needs_.begin(), needs_.end());

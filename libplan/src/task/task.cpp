@@ -4,7 +4,6 @@
 #include <kaboum/base/error.h>
 
 #include <algorithm>
-#include <array>
 
 #include "task/bindings.h"
 #include "task/ground_text.h"
@@ -21,7 +20,8 @@ Task::Task(const Model& model, Limits& limits)
       pool_(layout_, limits),
       evaluator_(pool_, layout_, calls_),
       queries_(model, layout_, limits, pool_, calls_),
-      grounder_(model, layout_, pool_, queries_, limits) {
+      grounder_(model, layout_, pool_, queries_, limits),
+      effects_(layout_, evaluator_, calls_) {
   Index slots = std::max<Index>(model.goal_slots, 1);
   for (const Action& a : model.actions) slots = std::max(slots, a.slots);
   slots_.assign(slots, 0);
@@ -51,6 +51,12 @@ OperatorId Task::action_id(Index schema, const std::vector<Index>& arguments) {
   grounder_.ground(slots, *ground);
   for (const ConditionalEffect& c : ground->effects)
     ground->conditions_call |= pool_.node(c.condition).calls;
+  ground->asks = evaluator_.depends_on_calls(ground->precondition);
+  for (const ConditionalEffect& c : ground->effects) {
+    ground->asks |= evaluator_.depends_on_calls(c.condition);
+    for (const ConditionalEffect::Transfer& t : c.transfers)
+      ground->asks |= is_call(t.operand) && calls_.depends_on_state(t.operand & ~kCallOperand);
+  }
   limits_.work(sizeof(GroundAction) + ground->effects.size() * sizeof(ConditionalEffect));
   known = static_cast<OperatorId>(actions_.size());
   actions_.push_back(std::move(ground));
@@ -79,71 +85,17 @@ std::vector<Index> Task::outcomes(Index fluent, const Word* state) const {
   return k.possible_values(fluent, layout_.range_size(f));
 }
 
-/// @return false: a call has no value.
-bool Task::take(const ConditionalEffect::Transfer& t, const Word* state) {
-  if (!is_call(t.operand)) {
-    taken_.emplace_back(t.fluent, layout_.fluents()[t.operand & ~kTermOperand].get(state));
-    return true;
-  }
-  const ExternalCalls::Reply reply = calls_.evaluate(t.operand & ~kCallOperand, state);
-  if (reply.kind != ExternalCalls::Reply::Kind::Value) return false;
-  taken_.emplace_back(t.fluent, kFirstValue + reply.value);
-  return true;
-}
-
 bool Task::apply(OperatorId step, Knowledge& state) {
   if (is_outcome(step)) {
     const SensingOutcome o = outcomes_[step];
     return layout_.fluents()[o.fluent].function ? state.learn_value(o.fluent, o.value)
                                                 : state.learn_atom(o.fluent, o.value != 0);
   }
-  const GroundAction& a = *actions_[step];
-  taken_.clear();
-  // All conditions, and terms and calls, look at the state before the action; then come deletions,
-  // additions, sensing.
-  std::array<const ConditionalEffect*, 16> few;
-  std::vector<const ConditionalEffect*> many;
-  std::size_t count = 0;
-  bool deletions = false;
-  for (const ConditionalEffect& c : a.effects) {
-    if (c.condition != kTrue) {
-      if (c.test.mask != 0) {
-        if (!c.test.holds(state.words())) continue;
-      } else if (!evaluator_.holds(c.condition, state.words())) {
-        continue;
-      }
-    }
-    deletions |= !c.deletions.empty();
-    for (const ConditionalEffect::Transfer& t : c.transfers)
-      if (!take(t, state.words())) return false;
-    if (count < few.size()) {
-      few[count] = &c;
-    } else {
-      if (many.empty()) many.assign(few.begin(), few.end());
-      many.push_back(&c);
-    }
-    ++count;
-  }
-  const ConditionalEffect* const* fired = many.empty() ? few.data() : many.data();
-  if (deletions)
-    for (std::size_t i = 0; i < count; ++i)
-      for (const Change& c : fired[i]->deletions)
-        if (!state.apply(c)) return false;
-  for (std::size_t i = 0; i < count; ++i) {
-    for (const ConditionalEffect::MaskedWrite& w : fired[i]->writes)
-      state.write(w.word, w.mask, w.bits);
-    for (const Change& c : fired[i]->additions)
-      if (!state.apply(c)) return false;
-  }
-  for (const auto& [fluent, content] : taken_) {
-    const Fluent& f = layout_.fluents()[fluent];
-    state.write(f.word, f.mask, content << f.shift);
-  }
-  // What is sensed is the world after the action.
-  for (std::size_t i = 0; i < count; ++i)
-    for (const Change& c : fired[i]->sensing)
-      if (!state.apply(c)) return false;
-  return true;
+  return effects_.make(*actions_[step], state, false);
+}
+
+bool Task::suppose(OperatorId step, Knowledge& state) {
+  return !actions_[step]->conditions_call && effects_.make(*actions_[step], state, true);
 }
 
 }  // namespace kaboum::plan

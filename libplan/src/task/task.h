@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "task/action_effects.h"
 #include "task/action_schema.h"
 #include "task/effect_grounder.h"
 #include "task/formula_evaluator.h"
@@ -38,7 +39,18 @@ class Task {
   /// Steps possible in a state: applicable actions in order of declaration and arguments; then, for
   /// sensed values that the goal or an otherwise applicable action needs decided, their outcomes;
   /// then, when branching anywhere, the outcomes of all other sensed values that something reads.
-  void expand(const Word* state, std::vector<OperatorId>& steps);
+  void expand(const Word* state, std::vector<OperatorId>& steps) { expand(state, steps, false); }
+  /// The same, but that no external function is asked about the state: what it would say is taken
+  /// for granted. A step that `asks` is possible only if `decide` says so.
+  void expand_unasked(const Word* state, std::vector<OperatorId>& steps) {
+    expand(state, steps, true);
+  }
+  [[nodiscard]] bool asks(OperatorId step) const {
+    return !is_outcome(step) && actions_[step]->asks;
+  }
+  /// Makes the calls of a step of `expand_unasked`. @return whether it is possible.
+  /// @param outcomes  where sensed values leave that open: their outcomes are appended.
+  bool decide(const Word* state, OperatorId step, std::vector<OperatorId>& outcomes);
 
   /// To branch only on need keeps searches small but loses plans: which of two actions to take may
   /// depend on a value that is tested later. So a search on need that fails proves nothing if a
@@ -47,9 +59,16 @@ class Task {
   void branch(Branching b) { branching_ = b; }
   [[nodiscard]] bool pruned_branch() const { return pruned_branch_; }
 
+  /// How often `decide` was false for good, whatever may be sensed.
+  [[nodiscard]] std::uint64_t refused() const { return refused_; }
+
   /// Makes the step. @return false if an outcome or observation contradicts what is known; the
   /// state is then meaningless and the step not possible.
   bool apply(OperatorId step, Knowledge& state);
+
+  /// What a step that `asks` would make of the state if it were possible: what calls return is
+  /// unknown. @return false: that cannot be told.
+  bool suppose(OperatorId step, Knowledge& state);
 
   [[nodiscard]] bool is_outcome(OperatorId step) const { return OutcomeTable::contains(step); }
   [[nodiscard]] const GroundAction& action(OperatorId step) const { return *actions_[step]; }
@@ -77,10 +96,10 @@ class Task {
   template <bool Sensing>
   class Expansion;
 
-  bool take(const ConditionalEffect::Transfer& t, const Word* state);
   [[nodiscard]] std::int64_t cost_of(const Action& a, const std::vector<Index>& slots) const;
   template <bool Sensing>
-  void expand_actions(const Word* state, std::vector<OperatorId>& steps);
+  void expand_actions(const Word* state, std::vector<OperatorId>& steps, bool unasked);
+  void expand(const Word* state, std::vector<OperatorId>& steps, bool unasked);
 
   const Model& model_;
   Limits& limits_;
@@ -92,16 +111,17 @@ class Task {
   std::vector<Word> initial_;
   Formula goal_ = kTrue;
   EffectGrounder grounder_;
+  ActionEffects effects_;
   std::vector<ActionSchema> schemas_;
   std::vector<std::unique_ptr<GroundAction>> actions_;
   OutcomeTable outcomes_;
   std::vector<Index> slots_;
   std::vector<Index> needs_;
-  std::vector<std::pair<Index, Word>> taken_;  ///< contents that transfers take over
   std::vector<Index> sensible_;  ///< fluents whose sensed value some query reads, or Kx ties to one
   Branching branching_ = Branching::OnNeed;
   bool pruned_branch_ = false;  ///< a branch was possible that nothing needed
   std::uint64_t tests_ = 0;
+  std::uint64_t refused_ = 0;
 };
 
 template <class Possible, class Visit>
