@@ -22,6 +22,9 @@ struct Geometry {
   /// Paths in a world without what the domain moves, by all that they depend on: nothing that was
   /// asked before has a say in them.
   mutable std::map<std::string, robot::Path> usual_paths;
+  /// Likewise, where one robot hands something over to another one: the first one's configuration.
+  mutable std::map<std::string, std::vector<double>> usual_meetings;
+  mutable world::Scratch scratch;
 };
 
 /// @throws Error{InvalidInput} for names that the scene does not have.

@@ -6,8 +6,7 @@
 #include <kaboum/manipulation/words.h>
 #include <kaboum/robot/kinematics.h>
 
-#include <algorithm>
-#include <chrono>
+#include "stopwatch.h"
 
 namespace kaboum::manipulation {
 namespace {
@@ -15,23 +14,6 @@ namespace {
 using kinematics::inverse;
 using plan::Answer;
 using world::Transform;
-
-/// Later attempts of a call may work so many times as long as the one before.
-constexpr double kMoreWork = 2;
-
-class Stopwatch {
- public:
-  [[nodiscard]] double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
-std::string name_of(const world::World& world, const std::array<world::Item, 2>& items) {
-  return world.name_of(items[0]) + " and " + world.name_of(items[1]);
-}
 
 }  // namespace
 
@@ -46,7 +28,8 @@ MotionSequence::MotionSequence(const Geometry& geometry, const plan::Question& q
       question_(question),
       state_(state.world()),
       mounted_(state.mounted()),
-      random_(question.seed) {}
+      random_(question.seed),
+      last_paths_(geometry.world.robots.size()) {}
 
 bool MotionSequence::fail(Answer::Kind kind, std::string reason) {
   failed_ = kind;
@@ -103,8 +86,13 @@ void MotionSequence::add_goals(Goals& goals, std::size_t robot, std::uint32_t li
 }
 
 bool MotionSequence::is_free(const world::WorldState& state) const {
-  world::Scratch scratch;
-  return !geometry_.checker.find_contact(state, scratch);
+  return geometry_.checker.is_free(state, geometry_.scratch);
+}
+
+bool MotionSequence::is_free_at(std::size_t robot, const std::vector<double>& q) const {
+  world::WorldState there = state_;
+  there.q[robot] = q;
+  return is_free(there);
 }
 
 /// What moves, what it holds by which link, and how.
@@ -116,109 +104,7 @@ void MotionSequence::record(std::size_t robot, const robot::Path& path) {
       out["holds"][geometry_.world.objects[o].name] = model.kinematics.links[held->link].name;
   paths_.push_back(std::move(out));
   state_.q[robot] = path.back();
-}
-
-motion::PathAnswer MotionSequence::look_for_path(const world::WorldState& state, std::size_t robot,
-                                                 const Goals& goals,
-                                                 const motion::PathOptions& options) const {
-  const Stopwatch watch;
-  motion::PathAnswer answer =
-      find_path(geometry_.checker, state, robot, state.q[robot], goals.configurations, options);
-  if (GeometryCounters* counters = geometry_.options.counters.get()) {
-    ++counters->paths;
-    counters->predicate_calls += answer.spent.configurations + answer.spent.motions;
-    for (const motion::Blocker& blocker : answer.blockers) counters->positive += blocker.times;
-    counters->path_seconds += watch.seconds();
-  }
-  return answer;
-}
-
-/// The path there would be if nothing that the domain moves were there, but what this robot holds;
-/// empty: none was found. It is the same whenever it is asked for.
-const robot::Path& MotionSequence::usual_path(std::size_t robot, const Goals& goals,
-                                              const motion::PathOptions& options) const {
-  std::string key;
-  const auto add = [&](const void* data, std::size_t size) {
-    key.append(static_cast<const char*>(data), size);
-  };
-  add(&robot, sizeof robot);
-  for (const auto& q : state_.q) add(q.data(), q.size() * sizeof(double));
-  for (const auto& q : goals.configurations) add(q.data(), q.size() * sizeof(double));
-  add(&options.seed, sizeof options.seed);
-  add(&options.most_work, sizeof options.most_work);
-  world::WorldState bare = state_;
-  for (std::size_t o = 0; o < bare.absent.size(); ++o) {
-    if (const auto held = held_by(robot, o); held && !bare.absent[o]) {
-      add(&o, sizeof o);
-      add(&held->link, sizeof held->link);
-      add(held->pose.linear.data(), 9 * sizeof(double));
-      add(held->pose.translation.data(), 3 * sizeof(double));
-    } else if (!geometry_.fixed.contains("pose(" + geometry_.world.objects[o].name + ")")) {
-      bare.absent[o] = true;
-      bare.attachments[o].reset();
-    }
-  }
-  constexpr std::size_t kMost = 20'000;  // paths that are kept
-  if (geometry_.usual_paths.size() >= kMost) geometry_.usual_paths.clear();
-  const auto [found, fresh] = geometry_.usual_paths.try_emplace(std::move(key));
-  if (fresh) {
-    motion::PathAnswer answer = look_for_path(bare, robot, goals, options);
-    if (answer.outcome == motion::PathAnswer::Outcome::Found)
-      found->second = std::move(answer.path);
-  }
-  return found->second;
-}
-
-bool MotionSequence::go(std::size_t robot, const std::vector<double>& q) {
-  Goals goals;
-  goals.configurations = {q};
-  return go(robot, goals);
-}
-
-bool MotionSequence::go(std::size_t robot, const Goals& goals) {
-  const auto none = [&](bool all, const std::string& reason) {
-    return fail(all ? Answer::Kind::Impossible : Answer::Kind::NotFound, reason);
-  };
-  motion::PathOptions options = geometry_.options.path;
-  options.seed = question_.seed;
-  for (unsigned i = 0; i < question_.attempt; ++i) options.most_work *= kMoreWork;
-  const bool some_end_is_free =
-      std::ranges::any_of(goals.configurations, [&](const std::vector<double>& q) {
-        world::WorldState there = state_;
-        there.q[robot] = q;
-        return is_free(there);
-      });
-  // What does for most states is tried first: deciding a path is much cheaper than finding one.
-  if (some_end_is_free)
-    if (const robot::Path& usual = usual_path(robot, goals, options);
-        !usual.empty() && is_free(robot, usual)) {
-      record(robot, usual);
-      return true;
-    }
-  const motion::PathAnswer answer = look_for_path(state_, robot, goals, options);
-  using Outcome = motion::PathAnswer::Outcome;
-  switch (answer.outcome) {
-    case Outcome::Found:
-      record(robot, answer.path);
-      return true;
-    case Outcome::GoalInContact:
-      return none(goals.all,
-                  "blocked at its end: " + name_of(geometry_.world, answer.contact->items));
-    case Outcome::StartInContact:
-      return none(true, "the robot cannot start: contact of " +
-                            name_of(geometry_.world, answer.contact->items));
-    case Outcome::StartOutsideLimits:
-    case Outcome::GoalOutsideLimits:
-      return none(true, "outside the limits of a joint");
-    case Outcome::WorkEnded:
-    case Outcome::NodesEnded:
-    case Outcome::TimeEnded:
-      break;
-  }
-  std::string reason = "no path was found";
-  if (!answer.blockers.empty())
-    reason += "; in the way: " + name_of(geometry_.world, answer.blockers.front().items);
-  return none(false, reason);
+  last_paths_[robot] = path;
 }
 
 /// How a robot holds an object with the tool that is at one of its grasps; nullopt: none is.

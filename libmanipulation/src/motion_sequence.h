@@ -2,7 +2,9 @@
 
 #include <kaboum/base/random.h>
 
+#include <initializer_list>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "geometric_state.h"
 #include "goals.h"
@@ -47,12 +49,14 @@ class MotionSequence {
                                                             std::size_t object) const;
   [[nodiscard]] bool is_free(std::size_t robot, const robot::Path& path) const;
   [[nodiscard]] bool is_free(const world::WorldState& state) const;
+  [[nodiscard]] bool is_free_at(std::size_t robot, const std::vector<double>& q) const;
   /// Moves an object, and what is mounted on it, to the hand or to rest.
   void carry(std::size_t object, const std::optional<world::Attachment>& held,
              const world::Transform& pose);
   void add_goals(Goals& goals, std::size_t robot, std::uint32_t link,
                  const world::Transform& target) const;
   void record(std::size_t robot, const robot::Path& path);
+  [[nodiscard]] world::WorldState bare_state(std::size_t robot, std::string& key) const;
 
   const Geometry& geometry_;
   const plan::Question& question_;
@@ -62,14 +66,23 @@ class MotionSequence {
   plan::Answer::Kind failed_ = plan::Answer::Kind::Impossible;
   std::string reason_;
   Random random_;
+  std::vector<robot::Path> last_paths_;  ///< of each robot
 
  private:
+  [[nodiscard]] std::vector<std::vector<double>> nearest_free(
+      const world::WorldState& state, std::size_t robot,
+      const std::vector<std::vector<double>>& goals) const;
   [[nodiscard]] motion::PathAnswer look_for_path(const world::WorldState& state, std::size_t robot,
                                                  const Goals& goals,
                                                  const motion::PathOptions& options) const;
   [[nodiscard]] const robot::Path& usual_path(std::size_t robot, const Goals& goals,
                                               const motion::PathOptions& options) const;
 };
+
+/// Bits of numbers, as part of a key that tells all of them apart.
+void add_to_key(std::string& key, std::span<const double> values);
+void add_to_key(std::string& key, std::initializer_list<double> values);
+void add_to_key(std::string& key, std::uint64_t number);
 
 /// Whether a tool may hold an object by a grasp: "TOOL/NAME" names the tools that may.
 bool fits(const world::ToolFrame& tool, const world::Grasp& grasp);

@@ -49,6 +49,10 @@ class Sequence : public MotionSequence {
   bool go_upright(std::size_t robot, std::size_t object, const world::Attachment& held,
                   const Goals& goals, const world::Transform& link_pose);
   bool meet(std::size_t from, std::size_t object, std::size_t to, const std::vector<double>& q);
+  std::optional<std::vector<double>> meet_somewhere(std::size_t from, std::size_t object,
+                                                    std::size_t to);
+  [[nodiscard]] const std::vector<double>& usual_meeting(std::size_t from, std::size_t object,
+                                                         std::size_t to) const;
 
   std::optional<Target> target_;
 };

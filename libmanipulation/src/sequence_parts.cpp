@@ -1,4 +1,4 @@
-// Motions of an action: putting down, mounting, lifting, handing over.
+// Motions of an action: putting down, mounting, lifting.
 #include <kaboum/base/error.h>
 #include <kaboum/kinematics/arm.h>
 #include <kaboum/manipulation/words.h>
@@ -21,11 +21,6 @@ using world::Transform;
 constexpr double kStep = 0.01, kUprightStep = 0.02;
 /// How far things are lifted before they are carried upright. [m]
 constexpr std::array<double, 6> kHeights{0.03, 0.08, 0.15, 0.25, 0.35, 0.5};
-/// Places at which a thing may be handed over, and configurations to wander to, that are tried;
-/// more with each attempt.
-constexpr int kMeetings = 60, kWanderings = 100;
-/// Ways to take a thing at such a place that are enough.
-constexpr std::size_t kEnough = 4;
 
 /// "seat/pipe" where there is one, else "seat".
 std::string for_part(const world::Object& below, const std::string& name,
@@ -184,10 +179,14 @@ bool Sequence::mount(std::size_t robot, std::size_t object, std::size_t onto) {
     Goals goals;
     add_goals(goals, robot, held->link, before);
     for (const std::vector<double>& goal : goals.configurations) {
+      if (!is_free_at(robot, goal)) {
+        fail(Answer::Kind::NotFound, "no room to slide " + thing.name + " into " + below.name);
+        continue;
+      }
       auto line = follow_line(model, held->link, goal, link, kStep);
       if (!line) continue;
       line->back() = configuration_of(manipulation::word_of(line->back()), model);
-      if (!is_free(robot, *line)) {
+      if (!is_free_at(robot, line->back()) || !is_free(robot, *line)) {
         fail(Answer::Kind::NotFound, thing.name + " does not slide into " + below.name);
         continue;
       }
@@ -235,77 +234,6 @@ bool Sequence::lift(std::size_t robot, std::size_t object, double height) {
     return fail(Answer::Kind::NotFound, name + " is not free to be lifted");
   record(robot, thinned(std::move(*line), [&](const robot::Path& p) { return is_free(robot, p); }));
   return true;
-}
-
-/// One robot holds the object at q; the other one takes it there, and both go home.
-bool Sequence::meet(std::size_t from, std::size_t object, std::size_t to,
-                    const std::vector<double>& q) {
-  world::WorldState then = state_;
-  then.q[from] = q;
-  if (!is_free(then)) return false;
-  const Sequence before = *this;  // NOLINT: what is tried may fail
-  state_ = then;
-  Goals goals;
-  for (const std::vector<double>& goal : goals_of_reach(to, object).configurations) {
-    world::WorldState both = then;
-    both.q[to] = goal;
-    if (is_free(both)) goals.configurations.push_back(goal);
-    if (goals.configurations.size() == kEnough) break;
-  }
-  state_ = before.state_;
-  goals.all = false;
-  const std::vector<world::RobotModel>& robots = geometry_.world.robots;
-  if (!goals.configurations.empty() && go(from, q) && go(to, goals) && take(to, object) &&
-      go(from, robots[from].home) && go(to, robots[to].home))
-    return true;
-  state_ = before.state_;
-  paths_ = before.paths_;
-  return false;
-}
-
-bool Sequence::hand_over(std::size_t from, std::size_t object, std::size_t to) {
-  const std::vector<world::RobotModel>& robots = geometry_.world.robots;
-  const auto held = held_by(from, object);
-  const std::string& name = geometry_.world.objects[object].name;
-  if (!held) return fail(Answer::Kind::Impossible, robots[from].name + " does not hold " + name);
-  if (from == to) return fail(Answer::Kind::Impossible, "a robot hands nothing to itself");
-  const geom::Vec3 middle = 0.5 * (robots[from].base.translation + robots[to].base.translation);
-  const double apart = (robots[from].base.translation - robots[to].base.translation).norm();
-  fail(Answer::Kind::NotFound, "no place was found at which " + robots[to].name + " takes " + name +
-                                   " from " + robots[from].name);
-  const plan::Answer nothing = failure();
-  const int tries = kMeetings * static_cast<int>(question_.attempt + 1);
-  for (int i = 0; i < tries; ++i) {
-    const auto share = [&](double low, double high) { return apart * random_.between(low, high); };
-    const Eigen::Quaterniond turn =
-        Eigen::Quaterniond(random_.between(-1, 1), random_.between(-1, 1), random_.between(-1, 1),
-                           random_.between(-1, 1))
-            .normalized();
-    const geom::Vec3 offset(share(-0.25, 0.25), share(-0.25, 0.25), share(0.1, 0.6));
-    const Transform pose{turn.toRotationMatrix(), middle + offset};
-    Goals goals;
-    add_goals(goals, from, held->link, pose * inverse(held->pose));
-    for (const std::vector<double>& q : goals.configurations)
-      if (meet(from, object, to, q)) return true;
-  }
-  reason_ = nothing.reason;
-  failed_ = Answer::Kind::NotFound;
-  return false;
-}
-
-bool Sequence::wander(std::size_t robot) {
-  const world::RobotModel& model = geometry_.world.robots[robot];
-  const int tries = kWanderings * static_cast<int>(question_.attempt + 1);
-  for (int i = 0; i < tries; ++i) {
-    std::vector<double> q;
-    for (const robot::Variable& v : model.kinematics.variables)
-      q.push_back(random_.between(v.lower.value_or(-3), v.upper.value_or(3)));
-    q = configuration_of(manipulation::word_of(q), model);
-    world::WorldState then = state_;
-    then.q[robot] = q;
-    if (is_free(then) && go(robot, q)) return true;
-  }
-  return fail(Answer::Kind::NotFound, "no configuration to move to was found");
 }
 
 }  // namespace kaboum::manipulation

@@ -1,0 +1,127 @@
+// Motions to places that are found at random: where one robot takes what another one holds, and
+// anywhere.
+#include <kaboum/kinematics/arm.h>
+#include <kaboum/manipulation/words.h>
+
+#include <Eigen/Geometry>
+
+#include "sequence.h"
+
+namespace kaboum::manipulation {
+namespace {
+
+using kinematics::inverse;
+using plan::Answer;
+using world::Transform;
+
+/// Places at which a thing may be handed over, and configurations to wander to, that are tried;
+/// more with each attempt.
+constexpr int kMeetings = 60, kWanderings = 100;
+/// Ways to take a thing at such a place that are enough.
+constexpr std::size_t kEnough = 4;
+
+}  // namespace
+
+/// One robot holds the object at q; the other one takes it there, and both go home.
+bool Sequence::meet(std::size_t from, std::size_t object, std::size_t to,
+                    const std::vector<double>& q) {
+  world::WorldState then = state_;
+  then.q[from] = q;
+  if (!is_free(then)) return false;
+  const world::WorldState before = state_;
+  const nlohmann::json paths = paths_;
+  state_ = then;
+  Goals goals;
+  for (const std::vector<double>& goal : goals_of_reach(to, object).configurations) {
+    world::WorldState both = then;
+    both.q[to] = goal;
+    if (is_free(both)) goals.configurations.push_back(goal);
+    if (goals.configurations.size() == kEnough) break;
+  }
+  state_ = before;
+  goals.all = false;
+  const std::vector<world::RobotModel>& robots = geometry_.world.robots;
+  if (!goals.configurations.empty() && go(from, q) && go(to, goals) && take(to, object) &&
+      go(from, robots[from].home) && go(to, robots[to].home))
+    return true;
+  state_ = before;
+  paths_ = paths;
+  return false;
+}
+
+/// Tries places at random. @return the configuration of `from` at the one at which it was done;
+/// nullopt: at none.
+std::optional<std::vector<double>> Sequence::meet_somewhere(std::size_t from, std::size_t object,
+                                                            std::size_t to) {
+  const std::vector<world::RobotModel>& robots = geometry_.world.robots;
+  const world::Attachment held = *held_by(from, object);
+  const geom::Vec3 middle = 0.5 * (robots[from].base.translation + robots[to].base.translation);
+  const double apart = (robots[from].base.translation - robots[to].base.translation).norm();
+  const int tries = kMeetings * static_cast<int>(question_.attempt + 1);
+  for (int i = 0; i < tries; ++i) {
+    const auto share = [&](double low, double high) { return apart * random_.between(low, high); };
+    const Eigen::Quaterniond turn =
+        Eigen::Quaterniond(random_.between(-1, 1), random_.between(-1, 1), random_.between(-1, 1),
+                           random_.between(-1, 1))
+            .normalized();
+    const geom::Vec3 offset(share(-0.25, 0.25), share(-0.25, 0.25), share(0.1, 0.6));
+    const Transform pose{turn.toRotationMatrix(), middle + offset};
+    Goals goals;
+    add_goals(goals, from, held.link, pose * inverse(held.pose));
+    for (const std::vector<double>& q : goals.configurations)
+      if (meet(from, object, to, q)) return q;
+  }
+  return std::nullopt;
+}
+
+/// Where they would meet if both were at home and nothing that the domain moves were there, but
+/// what is handed over; empty: nowhere. It is the same whenever it is asked for.
+const std::vector<double>& Sequence::usual_meeting(std::size_t from, std::size_t object,
+                                                   std::size_t to) const {
+  std::string key;
+  world::WorldState alone = bare_state(from, key);
+  alone.q[from] = geometry_.world.robots[from].home;
+  alone.q[to] = geometry_.world.robots[to].home;
+  add_to_key(key, {static_cast<double>(from), static_cast<double>(object), static_cast<double>(to),
+                   static_cast<double>(question_.attempt)});
+  add_to_key(key, question_.seed);
+  for (const auto& q : alone.q) add_to_key(key, q);
+  const auto [found, fresh] = geometry_.usual_meetings.try_emplace(std::move(key));
+  if (fresh) {
+    Sequence sequence = *this;
+    sequence.state_ = std::move(alone);
+    if (auto q = sequence.meet_somewhere(from, object, to)) found->second = std::move(*q);
+  }
+  return found->second;
+}
+
+bool Sequence::hand_over(std::size_t from, std::size_t object, std::size_t to) {
+  const std::vector<world::RobotModel>& robots = geometry_.world.robots;
+  const std::string& name = geometry_.world.objects[object].name;
+  if (!held_by(from, object))
+    return fail(Answer::Kind::Impossible, robots[from].name + " does not hold " + name);
+  if (from == to) return fail(Answer::Kind::Impossible, "a robot hands nothing to itself");
+  // What does for most states is tried first.
+  const std::vector<double>& usual = usual_meeting(from, object, to);
+  if (!usual.empty() && meet(from, object, to, usual)) return true;
+  if (meet_somewhere(from, object, to)) return true;
+  return fail(Answer::Kind::NotFound, "no place was found at which " + robots[to].name + " takes " +
+                                          name + " from " + robots[from].name);
+}
+
+bool Sequence::wander(std::size_t robot) {
+  const world::RobotModel& model = geometry_.world.robots[robot];
+  const int tries = kWanderings * static_cast<int>(question_.attempt + 1);
+  for (int i = 0; i < tries; ++i) {
+    std::vector<double> q;
+    for (const robot::Variable& v : model.kinematics.variables)
+      q.push_back(random_.between(v.lower.value_or(-3), v.upper.value_or(3)));
+    q = configuration_of(manipulation::word_of(q), model);
+    world::WorldState then = state_;
+    then.q[robot] = q;
+    if (is_free(then) && go(robot, q)) return true;
+  }
+  return fail(Answer::Kind::NotFound, "no configuration to move to was found");
+}
+
+}  // namespace kaboum::manipulation

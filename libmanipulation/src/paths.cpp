@@ -1,0 +1,193 @@
+// Paths of a sequence of motions: the way back, the usual path, straight, along the tool, and by
+// random trees (docs/planning/geometry.md).
+#include <kaboum/robot/kinematics.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "along_tool.h"
+#include "motion_sequence.h"
+#include "stopwatch.h"
+
+namespace kaboum::manipulation {
+namespace {
+
+using plan::Answer;
+
+/// Later attempts of a call may work so many times as long as the one before.
+constexpr double kMoreWork = 2;
+/// Goals that straight paths and those along the tool are tried for.
+constexpr std::size_t kNear = 4;
+
+std::string name_of(const world::World& world, const std::array<world::Item, 2>& items) {
+  return world.name_of(items[0]) + " and " + world.name_of(items[1]);
+}
+
+}  // namespace
+
+void add_to_key(std::string& key, std::span<const double> values) {
+  key.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());  // NOLINT: bits
+}
+
+void add_to_key(std::string& key, std::initializer_list<double> values) {
+  add_to_key(key, std::span(values.begin(), values.size()));
+}
+
+void add_to_key(std::string& key, std::uint64_t number) {
+  key.append(reinterpret_cast<const char*>(&number), sizeof number);  // NOLINT: bits
+}
+
+/// The goals that are free, of the nearest ones: the farthest that a joint has to go decides.
+std::vector<std::vector<double>> MotionSequence::nearest_free(
+    const world::WorldState& state, std::size_t robot,
+    const std::vector<std::vector<double>>& goals) const {
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t g = 0; g < goals.size(); ++g) {
+    double most = 0;
+    for (std::size_t i = 0; i < goals[g].size(); ++i)
+      most = std::max(most, std::abs(goals[g][i] - state.q[robot][i]));
+    order.emplace_back(most, g);
+  }
+  std::ranges::sort(order);
+  std::vector<std::vector<double>> out;
+  world::WorldState there = state;
+  for (const auto& [distance, g] : order) {
+    there.q[robot] = goals[g];
+    if (!find_out_of_limits(geometry_.world.robots[robot].kinematics, goals[g]) && is_free(there))
+      out.push_back(goals[g]);
+    if (out.size() == kNear) break;
+  }
+  return out;
+}
+
+motion::PathAnswer MotionSequence::look_for_path(const world::WorldState& state, std::size_t robot,
+                                                 const Goals& goals,
+                                                 const motion::PathOptions& options) const {
+  const Stopwatch watch;
+  const std::vector<double>& start = state.q[robot];
+  std::size_t looked_at = 0;
+  const auto count = [&](motion::PathAnswer answer) {
+    looked_at += answer.spent.configurations + answer.spent.motions;
+    return answer;
+  };
+  // Straight, or along the tool, to one of the nearest; then anyhow to any.
+  motion::PathOptions straight = options;
+  straight.most_work = std::min(kNoWork, options.most_work);
+  const auto near = nearest_free(state, robot, goals.configurations);
+  motion::PathAnswer answer;
+  if (!near.empty()) {
+    answer = count(find_path(geometry_.checker, state, robot, start, near, straight));
+    if (answer.outcome == motion::PathAnswer::Outcome::WorkEnded)
+      answer = count(find_path_along_tool(geometry_.checker, state, robot, start, near, options));
+  }
+  if (answer.outcome != motion::PathAnswer::Outcome::Found)
+    answer =
+        count(find_path(geometry_.checker, state, robot, start, goals.configurations, options));
+  if (GeometryCounters* counters = geometry_.options.counters.get()) {
+    ++counters->paths;
+    counters->predicate_calls += looked_at;
+    for (const motion::Blocker& blocker : answer.blockers) counters->positive += blocker.times;
+    counters->path_seconds += watch.seconds();
+  }
+  return answer;
+}
+
+/// The state without what the domain moves, but what this robot holds; of that, all that matters is
+/// added to a key.
+world::WorldState MotionSequence::bare_state(std::size_t robot, std::string& key) const {
+  world::WorldState bare = state_;
+  for (std::size_t o = 0; o < bare.absent.size(); ++o) {
+    if (const auto held = held_by(robot, o); held && !bare.absent[o]) {
+      add_to_key(key, o);
+      add_to_key(key, held->link);
+      add_to_key(key, std::span(held->pose.linear.data(), 9));
+      add_to_key(key, std::span(held->pose.translation.data(), 3));
+    } else if (!geometry_.fixed.contains("pose(" + geometry_.world.objects[o].name + ")")) {
+      bare.absent[o] = true;
+      bare.attachments[o].reset();
+    }
+  }
+  return bare;
+}
+
+/// The path there would be if nothing that the domain moves were there, but what this robot holds;
+/// empty: none was found. It is the same whenever it is asked for.
+const robot::Path& MotionSequence::usual_path(std::size_t robot, const Goals& goals,
+                                              const motion::PathOptions& options) const {
+  std::string key;
+  add_to_key(key, robot);
+  for (const auto& q : state_.q) add_to_key(key, q);
+  for (const auto& q : goals.configurations) add_to_key(key, q);
+  add_to_key(key, options.seed);
+  add_to_key(key, {options.most_work});
+  const world::WorldState bare = bare_state(robot, key);
+  constexpr std::size_t kMost = 20'000;  // paths that are kept
+  if (geometry_.usual_paths.size() >= kMost) geometry_.usual_paths.clear();
+  const auto [found, fresh] = geometry_.usual_paths.try_emplace(std::move(key));
+  if (fresh) {
+    motion::PathAnswer answer = look_for_path(bare, robot, goals, options);
+    if (answer.outcome == motion::PathAnswer::Outcome::Found)
+      found->second = std::move(answer.path);
+  }
+  return found->second;
+}
+
+bool MotionSequence::go(std::size_t robot, const std::vector<double>& q) {
+  // Back where it came from the same way, if that is free as things are now.
+  robot::Path& last = last_paths_[robot];
+  if (last.size() > 1 && last.front() == q && last.back() == state_.q[robot]) {
+    const robot::Path back(last.rbegin(), last.rend());
+    if (is_free(robot, back)) {
+      record(robot, back);
+      return true;
+    }
+  }
+  Goals goals;
+  goals.configurations = {q};
+  return go(robot, goals);
+}
+
+bool MotionSequence::go(std::size_t robot, const Goals& goals) {
+  const auto none = [&](bool all, const std::string& reason) {
+    return fail(all ? Answer::Kind::Impossible : Answer::Kind::NotFound, reason);
+  };
+  motion::PathOptions options = geometry_.options.path;
+  options.seed = question_.seed;
+  for (unsigned i = 0; i < question_.attempt; ++i) options.most_work *= kMoreWork;
+  const bool some_end_is_free = std::ranges::any_of(
+      goals.configurations, [&](const std::vector<double>& q) { return is_free_at(robot, q); });
+  // What does for most states is tried first: deciding a path is much cheaper than finding one.
+  if (some_end_is_free)
+    if (const robot::Path& usual = usual_path(robot, goals, options);
+        !usual.empty() && is_free(robot, usual)) {
+      record(robot, usual);
+      return true;
+    }
+  const motion::PathAnswer answer = look_for_path(state_, robot, goals, options);
+  using Outcome = motion::PathAnswer::Outcome;
+  switch (answer.outcome) {
+    case Outcome::Found:
+      record(robot, answer.path);
+      return true;
+    case Outcome::GoalInContact:
+      return none(goals.all,
+                  "blocked at its end: " + name_of(geometry_.world, answer.contact->items));
+    case Outcome::StartInContact:
+      return none(true, "the robot cannot start: contact of " +
+                            name_of(geometry_.world, answer.contact->items));
+    case Outcome::StartOutsideLimits:
+    case Outcome::GoalOutsideLimits:
+      return none(true, "outside the limits of a joint");
+    case Outcome::WorkEnded:
+    case Outcome::NodesEnded:
+    case Outcome::TimeEnded:
+      break;
+  }
+  std::string reason = "no path was found";
+  if (!answer.blockers.empty())
+    reason += "; in the way: " + name_of(geometry_.world, answer.blockers.front().items);
+  return none(false, reason);
+}
+
+}  // namespace kaboum::manipulation
