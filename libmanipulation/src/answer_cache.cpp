@@ -46,7 +46,7 @@ class Notes final : public plan::StateView {
 
   std::optional<std::string> value(const std::string& function,
                                    const std::vector<std::string>& arguments) override {
-    const auto known = view_.value(function, arguments);
+    auto known = view_.value(function, arguments);
     note({false, function, arguments, known});
     return known;
   }
@@ -129,6 +129,7 @@ struct AnswerCache::Kept {
              const Question& question) {
     std::vector<answers::Entry>& all = entries[place_of_question(name, question)];
     std::vector<const Entry*> fitting;
+    fitting.reserve(all.size());
     for (const Entry& e : all) fitting.push_back(&e);
     // A function that reads the same reads the same thing next, so all that fit agree on it.
     for (std::size_t k = 0; !fitting.empty(); ++k) {

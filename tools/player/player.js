@@ -141,7 +141,7 @@
     }
     if (!(low[0] < high[0])) return;
     eye.target = low.map((x, i) => (x + high[i]) / 2);
-    eye.distance = 1.35 * size();
+    eye.distance = 1.7 * size();  // what is nearer than the middle looks larger
   })();
 
   function cameraMatrix(width, height) {
