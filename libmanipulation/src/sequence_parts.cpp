@@ -25,7 +25,7 @@ constexpr std::array<double, 6> kHeights{0.03, 0.08, 0.15, 0.25, 0.35, 0.5};
 /// "seat/pipe" where there is one, else "seat".
 std::string for_part(const world::Object& below, const std::string& name,
                      const world::Object& part) {
-  const std::string special = name + "/" + part.name;
+  std::string special = name + "/" + part.name;
   for (const world::Feature& feature : below.features)
     if (feature.name == special) return special;
   return name;
