@@ -118,12 +118,8 @@ void read(PrepareCase& run) {
   const PrepareToolOptions& o = run.asked;
   std::vector<char> bytes;
   if (o.input_format.empty() && io::is_cad_file(o.input)) {
-    io::CadMesh cad = io::read_cad(o.input, &bytes);
-    run.input.file_vertices = cad.mesh.vertices.size();
-    run.input.mesh = std::move(cad.mesh);
-    run.input.collapsed_triangles = cad.collapsed_triangles;
-    run.input.notes = std::move(cad.notes);
-    run.input.unit = "mm";
+    io::CadResult cad = io::read_cad(o.input, &bytes);
+    run.input = std::move(cad.read);
     run.deviation = cad.deviation;
     run.report["deviation"] = cad.deviation;
   } else {

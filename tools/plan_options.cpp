@@ -110,6 +110,7 @@ CLI::App* add_show_command(CLI::App& app, PlanOptions& o) {
                 "Instead: one page that plays the plan's execution in the scene of --scene, every "
                 "branch, for a browser; no network is needed")
       ->excludes("--output-format")
+      ->excludes("--output")
       ->type_name("FILE");
   w->add_option("--package-path", o.packages,
                 "With --html: a package of package:// or a folder that holds it; may be repeated")

@@ -59,6 +59,9 @@ int write_page(const PlanOptions& o) {
   if (o.scene.empty())
     throw Error(ErrorCode::InvalidArgument, "--html needs --scene: what is there to be seen");
   const SceneFile scene = read_scene(o.scene);
+  std::vector<std::string> inputs = scene.inputs;
+  inputs.insert(inputs.end(), {o.plan, o.domain, o.problem});
+  require_apart({{"--html", o.html}}, inputs);
   const plan::Model model = load_model(o);
   plan::Plan plan = read_plan_file(model, o.plan);
   if (o.tree) plan = plan::expand_tree(plan);

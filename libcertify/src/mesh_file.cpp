@@ -10,19 +10,9 @@ namespace {
 io::ReadResult read_triangles(const std::filesystem::path& file, std::optional<io::Format> format,
                               std::vector<char>& bytes, SetRequest& request) {
   if (format || !io::is_cad_file(file)) return io::read_mesh(file, format, &bytes);
-  io::CadMesh cad = io::read_cad(file, &bytes);
-  io::ReadResult out;
-  out.file_vertices = cad.mesh.vertices.size();
-  out.mesh = std::move(cad.mesh);
-  out.collapsed_triangles = cad.collapsed_triangles;
-  out.notes = std::move(cad.notes);
-  out.unit = "mm";
-  if (request.wrap)
-    request.wrap->clearance = cad.deviation;
-  else
-    out.notes.emplace_back(
-        "what counts are triangles, not the exact faces that they stand for; a wrap holds these");
-  return out;
+  io::CadResult cad = io::read_cad(file, &bytes);
+  if (request.wrap) request.wrap->clearance = cad.deviation;
+  return std::move(cad.read);
 }
 
 }  // namespace

@@ -55,6 +55,10 @@ CertifiedSet read_entry(std::string_view rest, const SetCache::Key& key) {
   expected.epsilon = set.provenance.epsilon;
   expected.covers_solid = outer && certificate.subject.holes == 0;
   expected.covers_surface = outer && certificate.subject.dropped_sheets == 0;
+  if (certificate.wrap.has_value() != key.clearance.has_value() ||
+      (certificate.wrap && certificate.wrap->clearance != *key.clearance) ||
+      certificate.distance_upper != set.provenance.epsilon)
+    fail("it claims another wrap, or another distance than its container");
   if (set.provenance != expected || certificate.bodies != set.bodies.size() || set.margin != 0)
     fail("its container is that of another input or of other options");
   return Issuer::issue(std::move(set), std::move(certificate), std::move(container));
@@ -71,7 +75,7 @@ SetCache::Key SetCache::key_of(const geom::Mesh& mesh, const std::string& sha256
                            std::to_string(std::bit_cast<std::uint64_t>(clearance)) + '\n' + sha256 +
                            '\n' + r.parameters() + '\n' + r.unit + '\n' + r.frame + '\n' +
                            r.source + '\n' + KABOUM_VERSION + '\n' + kAlgorithm + '\n' + kContainer;
-  return {io::sha256(text), origin_of(r, sha256)};
+  return {io::sha256(text), origin_of(r, sha256), r.wrap ? std::optional(clearance) : std::nullopt};
 }
 
 std::optional<CertifiedSet> SetCache::find(const Key& key, std::string& flaw) const {

@@ -114,9 +114,10 @@ void add_notes(const CadShape& shape, MeshBuilder& builder) {
                  " to no solid, and were read as triangles like the others.");
   std::ostringstream text;
   text.precision(3);
-  text << "What is said is about triangles that stand for the exact faces, which are within "
-       << shape.deviation << " mm of them: twice the largest distance at " << shape.samples
-       << " points, and the file's own tolerance. --prepare wrap encloses the exact faces as well.";
+  text << "Triangles stand for the exact faces, which are within " << shape.deviation
+       << " mm of them: twice the largest distance at " << shape.samples
+       << " points, and the file's own tolerance. Only a wrap (--prepare wrap) holds the faces "
+          "themselves; else what is said is about the triangles.";
   builder.note(text.str());
 }
 
@@ -154,7 +155,7 @@ bool is_cad_file(const std::filesystem::path& path) {
   return is_iges(path) || same_word(extension, ".step") || same_word(extension, ".stp");
 }
 
-CadMesh read_cad(const std::filesystem::path& path, std::vector<char>* bytes_out) {
+CadResult read_cad(const std::filesystem::path& path, std::vector<char>* bytes_out) {
   const std::string name = path.string();
   std::vector<char> bytes = read_file(path);
   const Source source{{bytes.data(), bytes.size()}, name, {}, true};
@@ -176,7 +177,9 @@ CadMesh read_cad(const std::filesystem::path& path, std::vector<char>* bytes_out
   if (!(measured >= 0) || !std::isfinite(measured))
     fail(source, "the deviation of its faces could not be measured; make a mesh of it");
   if (bytes_out != nullptr) *bytes_out = std::move(bytes);
-  return {std::move(read.mesh), read.collapsed_triangles, measured, std::move(read.notes)};
+  read.file_vertices = read.mesh.vertices.size();
+  read.unit = "mm";
+  return {std::move(read), measured};
 }
 
 }  // namespace kaboum::io

@@ -368,5 +368,28 @@ TEST_F(SetCacheTest, EntriesThatClaimMoreThanTheirContainersAreMadeAgain) {
   EXPECT_NE(flaw.find("another input"), std::string::npos) << flaw;
 }
 
+TEST_F(SetCacheTest, EntriesThatClaimAnotherDistanceOrWrapAreMadeAgain) {
+  const SetCache cache(folder_);
+  SetRequest request = fast(20);
+  request.wrap.emplace();
+  ASSERT_TRUE(find_or_certify(soup(), "abc", request, &cache));
+  ASSERT_EQ(entries().size(), 1U);
+  std::ifstream in(entries()[0], std::ios::binary);
+  const std::string good{std::istreambuf_iterator<char>(in), {}};
+  for (const auto& [from, to] :
+       {std::pair("\"upper\":", "\"upper\":1e-9,\"x\":"),
+        std::pair("\"clearance\":0.0", "\"clearance\":0.5"), std::pair("\"wrap\":", "\"w\":")}) {
+    std::string whole = good;
+    ASSERT_NE(whole.find(from), std::string::npos) << from;
+    whole.replace(whole.find(from), std::string_view(from).size(), to);
+    const std::size_t hash = whole.find('\n') + 1, rest = whole.find('\n', hash) + 1;
+    whole.replace(hash, rest - hash - 1, io::sha256(std::string_view(whole).substr(rest)));
+    std::ofstream(entries()[0], std::ios::binary) << whole;
+    std::string flaw;
+    EXPECT_FALSE(cache.find(SetCache::key_of(soup(), "abc", request), flaw)) << to;
+    EXPECT_FALSE(flaw.empty());
+  }
+}
+
 }  // namespace
 }  // namespace kaboum::certify

@@ -94,7 +94,9 @@ expect 7 'join(robot2, o[12], o4, home): not found.*does not slide into o4' "$P"
 [ ! -e none.json ] || fail "a plan was written"
 # Pages: what is needed; nothing is written where something is missing.
 expect 2 'needs --scene' "$P" show "$D" bimanual-assembly/problem.kpl --plan again.json --html none.html
-expect 4 'none/page.html' "$P" show "$@" --plan again.json --html none/page.html
+expect 2 'would overwrite the input' "$P" show "$@" --plan again.json --html again.json
+expect 2 'output' "$P" show "$@" --plan again.json --html none.html -o none.svg
+expect 4 'no folder none' "$P" show "$@" --plan again.json --html none/page.html
 rm bimanual-assembly/pipe.off
 expect 3 'pipe.off' "$P" show "$@" --plan again.json --html none.html
 [ ! -e none.html ] || fail "a page was written"

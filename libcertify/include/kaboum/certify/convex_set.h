@@ -100,8 +100,8 @@ struct Hooks {
 /// or
 ///   epsilon too small.
 /// @throws Error{InvalidInput} as geom::prepare, certify_wrap and the search;
-/// Error{InvalidArgument} on
-///   contradictory options; Error{Internal} when no bodies pass the exact check.
+///   Error{InvalidArgument} on contradictory options; Error{Internal} when no bodies pass the exact
+///   check.
 std::optional<CertifiedSet> certify_set(const geom::Mesh& mesh, const std::string& sha256,
                                         const SetRequest& request, const Hooks& hooks = {});
 

@@ -21,8 +21,9 @@ class SetCache {
 
   /// Of everything that a result depends on.
   struct Key {
-    std::string hash;         ///< SHA-256
-    geom::Provenance origin;  ///< what the container says of itself; its claims apart
+    std::string hash;                      ///< SHA-256
+    geom::Provenance origin;               ///< what the container says of itself; its claims apart
+    std::optional<double> clearance = {};  ///< of a wrap, where one is covered [length]
   };
   static Key key_of(const geom::Mesh& mesh, const std::string& sha256, const SetRequest& request);
 

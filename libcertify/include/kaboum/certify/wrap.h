@@ -19,7 +19,7 @@ struct WrapRequest {
   std::optional<Length> seal;
   /// No point of the wrap may be farther from the input. [length]
   std::optional<double> farthest;
-  /// The surface that is meant is within this of the triangles (io::ReadResult::deviation), and is
+  /// The surface that is meant is within this of the triangles (io::CadResult::deviation), and is
   /// to be inside as well. [length]
   double clearance = 0;
   bool float32 = true;  ///< numbers of the wrap; else doubles

@@ -1,22 +1,18 @@
 #pragma once
 
-#include <kaboum/geom/mesh.h>
+#include <kaboum/io/mesh_io.h>
 
 #include <filesystem>
-#include <string>
 #include <vector>
 
 namespace kaboum::io {
 
 /// Triangles that stand for the exact faces of a CAD file.
-struct CadMesh {
-  geom::Mesh
-      mesh;  ///< millimetres; equal positions merged, triangles with repeated corners dropped
-  std::size_t collapsed_triangles = 0;  ///< dropped
+struct CadResult {
+  ReadResult read;  ///< millimetres; positions that faces share are one vertex of the file
   /// The exact faces are no farther from the triangles than this, as measured: twice the largest
   /// distance at samples, and the file's own tolerance (docs/formats.md). [length]
   double deviation = 0;
-  std::vector<std::string> notes;
 };
 
 /// Whether the name is that of a STEP or IGES file, by its extension.
@@ -27,6 +23,6 @@ bool is_cad_file(const std::filesystem::path& path);
 /// @param bytes_out  the file's bytes, when not null
 /// @throws Error{NotBuilt} where the module is not there; Error{InvalidInput} when the file cannot
 ///   be read, naming it.
-CadMesh read_cad(const std::filesystem::path& path, std::vector<char>* bytes_out = nullptr);
+CadResult read_cad(const std::filesystem::path& path, std::vector<char>* bytes_out = nullptr);
 
 }  // namespace kaboum::io
