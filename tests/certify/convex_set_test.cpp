@@ -133,6 +133,26 @@ TEST(CertifySet, WrapsHoldWhatIsWithinTheClearanceOfTriangles) {
       EXPECT_LE(query.nearest(p).lower, c.distance_upper);
 }
 
+TEST(CertifySet, DistancesOfAWrapAndOfItsCoverAddUp) {
+  SetRequest request = fast(10);
+  request.epsilon.reset();
+  request.max_bodies = 6;
+  WrapRequest wrap;
+  wrap.offset = kaboum::Length{2, true};
+  wrap.seal = kaboum::Length{8, true};
+  wrap.clearance = 0.01;
+  const CertifiedWrap round = certify_wrap(soup(), wrap);
+  const auto of_wrap = certify_set(round.artefact(), "", request);
+  request.wrap = wrap;
+  const auto of_input = certify_set(soup(), "", request);
+  ASSERT_TRUE(of_wrap && of_input);
+  EXPECT_TRUE(same_bodies(of_wrap->artefact(), of_input->artefact()));
+  const double sum =
+      of_wrap->certificate().distance_upper + round.certificate().farthest_upper + 0.01;
+  EXPECT_GE(of_input->certificate().distance_upper, sum);
+  EXPECT_LE(of_input->certificate().distance_upper, sum * (1 + 1e-14));
+}
+
 TEST(CertifySet, BodiesInsideHaveNoWrap) {
   SetRequest request = fast(10);
   request.direction = SetRequest::Direction::Inner;
