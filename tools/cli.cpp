@@ -33,6 +33,25 @@ int exit_code(ErrorCode code) {
   return kInternal;
 }
 
+/// An option or argument that was given without a value, as scripts do with variables that are not
+/// set; nullptr: there is none.
+const CLI::Option* without_value(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& value : option->results())
+      if (value.empty()) return option;
+  for (const CLI::App* command : app.get_subcommands())
+    if (const CLI::Option* option = without_value(*command)) return option;
+  return nullptr;
+}
+
+/// "kaboum-scene make", where a command was given.
+std::string name_with_command(const CLI::App& app, int argc, char** argv) {
+  if (argc > 1)
+    for (const CLI::App* command : app.get_subcommands({}))
+      if (command->check_name(argv[1])) return app.get_name() + " " + command->get_name();
+  return app.get_name();
+}
+
 }  // namespace
 
 const char* version() { return KABOUM_VERSION; }
@@ -50,8 +69,13 @@ int run(CLI::App& app, int argc, char** argv, const std::function<int()>& body) 
     return kOutputFailed;
   } catch (const CLI::ParseError& error) {
     const std::string unknown = explain_unknown(app, argc, argv);
-    std::cerr << name << ": " << (unknown.empty() ? error.what() : unknown) << " (see " << name
-              << " --help)\n";
+    std::cerr << name << ": " << (unknown.empty() ? error.what() : unknown) << " (see "
+              << name_with_command(app, argc, argv) << " --help)\n";
+    return kUsage;
+  }
+  if (const CLI::Option* option = without_value(app)) {
+    std::cerr << name << ": " << option->get_name()
+              << " is empty: give it a value, or leave it out\n";
     return kUsage;
   }
   try {

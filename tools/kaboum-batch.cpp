@@ -135,6 +135,11 @@ void write_summary(const Options& o, const batch::Summary& summary, double wall_
   batch::Json report = summary.json();
   report["resources"] = {{"wall_seconds", wall_seconds}};
   tools::write_report(o.common, "kaboum-batch", report);
+  constexpr int kShown = 5;
+  int shown = 0;
+  for (const batch::Record& record : summary.records)
+    if (!record.done() && !record.reason.empty() && ++shown <= kShown)
+      tools::log(o.common.quiet, record.name + ": " + record.reason);
   tools::log(o.common.quiet, summary.words() + "; " + (folder / "summary.html").string());
 }
 

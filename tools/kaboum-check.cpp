@@ -203,11 +203,6 @@ int main(int argc, char** argv) {
   tools::CheckOptions options;
   tools::describe(app, options);
   return tools::run(app, argc, argv, [&] {
-    // As from a variable of the shell that is not set: what was meant is not known.
-    for (const char* name :
-         {"--path", "--configuration", "--configurations", "--robot", "--preview"})
-      if (app.count(name) > 0 && app.get_option(name)->as<std::string>().empty())
-        throw Error(ErrorCode::InvalidArgument, std::string(name) + ": the value is empty");
     require_meaning(app, options);
     return check(options);
   });

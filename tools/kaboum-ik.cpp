@@ -1,16 +1,17 @@
 // kaboum-ik: the configurations with which a robot's chain reaches a pose.
 #include <kaboum/kinematics/closed_form.h>
 #include <kaboum/kinematics/copies.h>
+#include <kaboum/robot/base_pose.h>
 #include <kaboum/robot/robot_file.h>
 
 #include <CLI/CLI.hpp>
-#include <Eigen/Geometry>
 #include <charconv>
 #include <cmath>
 #include <iostream>
 
-#include "cli.h"
 #include "ik_answer.h"
+#include "ik_options.h"
+#include "scene_file.h"
 
 namespace {
 
@@ -19,15 +20,7 @@ namespace ik = kinematics;
 
 using tools::kDegree;
 using Answer = tools::IkAnswer;
-
-struct Options {
-  std::string robot, base, tip, pose_of, reference;
-  std::vector<double> pose;
-  bool json = false, degrees = false, numeric = false, ignore_limits = false, copies = false,
-       free_heading = false;
-  int starts = 100;
-  tools::CommonOptions common;
-};
+using Options = tools::IkOptions;
 
 [[noreturn]] void usage(const std::string& what) { throw Error(ErrorCode::InvalidArgument, what); }
 
@@ -51,16 +44,6 @@ std::vector<double> parse_joints(const std::string& text, const char* option, co
   for (std::size_t i = 0; i < q.size(); ++i)
     if (degrees && answer.arm.axes[i].turns) q[i] *= kDegree;
   return q;
-}
-
-ik::Transform parse_pose(const std::vector<double>& p) {
-  for (const double x : p)
-    if (!std::isfinite(x)) usage("--pose: expected finite numbers");
-  const Eigen::Quaterniond turn(p[6], p[3], p[4], p[5]);
-  if (std::abs(turn.norm() - 1) > 1e-3)
-    usage("--pose: the quaternion QX QY QZ QW has the length " + std::to_string(turn.norm()) +
-          "; expected 1");
-  return {turn.normalized().toRotationMatrix(), {p[0], p[1], p[2]}};
 }
 
 /// The link that no joint starts from, where there is one only.
@@ -95,16 +78,46 @@ void add_row(Answer& answer, const Options& o, const std::vector<double>& q,
   }
 }
 
-Answer find(const Options& o, const robot::Robot& robot) {
+/// The robot that is asked about, and where its tip is.
+struct Chain {
+  std::string file, sha256;           ///< a URDF, or a scene
+  robot::Robot robot;                 ///< of a scene without --base, standing in its world
+  std::string tip;                    ///< a link
+  std::optional<ik::Transform> tool;  ///< from the tool's frame to the tip's
+};
+
+Chain read_chain(const Options& o) {
+  Chain out;
+  if (o.scene.empty()) {
+    robot::RobotFile read = robot::read_robot(o.robot);
+    out = {o.robot, read.sha256, std::move(read.robot), o.tip, {}};
+  } else {
+    tools::SceneFile scene = tools::read_scene(o.scene);
+    const world::RobotModel& model =
+        scene.world.robots[tools::robot_named(scene.world, o.robot_name)];
+    out = {o.scene, scene.sha256, model.kinematics, o.tip, {}};
+    if (!o.tool.empty()) {
+      const world::ToolFrame& tool = tools::tool_named(model, o.tool);
+      out.tip = model.kinematics.links[tool.link].name;
+      out.tool = tool.pose;
+    }
+    if (o.base.empty()) out.robot = robot::placed(model.kinematics, model.base);
+  }
+  if (out.tip.empty()) out.tip = tools::naming(out.file, [&] { return only_tip(out.robot); });
+  return out;
+}
+
+Answer find(const Options& o, const Chain& chain) {
+  const robot::Robot& robot = chain.robot;
   Answer answer;
-  answer.arm = ik::arm_of(robot, o.base.empty() ? robot.links.front().name : o.base,
-                          o.tip.empty() ? only_tip(robot) : o.tip);
+  answer.arm = ik::arm_of(robot, o.base.empty() ? robot.links.front().name : o.base, chain.tip);
+  if (chain.tool) answer.arm.tool = answer.arm.tool * *chain.tool;
   for (const std::uint32_t v : answer.arm.variables)
     answer.joints.push_back(robot.variables[v].name);
   answer.target =
       o.pose.empty()
           ? ik::forward(answer.arm, parse_joints(o.pose_of, "--pose-of", answer, o.degrees))
-          : parse_pose(o.pose);
+          : robot::parse_pose(o.pose, "--pose");
   const std::vector<double> reference =
       o.reference.empty() ? std::vector<double>(answer.joints.size(), 0.0)
                           : parse_joints(o.reference, "--reference", answer, o.degrees);
@@ -142,15 +155,15 @@ std::string unreached(const Answer& answer, bool free_heading) {
 }
 
 int run(const Options& o) {
-  const robot::RobotFile robot = robot::read_robot(o.robot);
-  const Answer answer = tools::naming(o.robot, [&] { return find(o, robot.robot); });
+  const Chain chain = read_chain(o);
+  const Answer answer = tools::naming(chain.file, [&] { return find(o, chain); });
   tools::Json report = tools::answer_json(answer, o.degrees);
   if (o.json) {
     std::cout << report.dump(2) << '\n';
   } else if (!answer.rows.empty()) {
     tools::print_answer(answer, o.degrees);
   }
-  report["robot"] = {{"file", o.robot}, {"sha256", robot.sha256}};
+  report["robot"] = {{"file", chain.file}, {"sha256", chain.sha256}};
   tools::write_report(o.common, "kaboum-ik", report);
   std::string what = answer.form ? std::string(ik::name_of(answer.form->family)) + ", closed form: "
                                  : "numeric, " + std::to_string(o.starts) + " starts: ";
@@ -188,54 +201,10 @@ int main(int argc, char** argv) {
       "form, for arms with a spherical wrist, with three parallel axes, or with five axes; else "
       "those found numerically.",
       "kaboum-ik");
-  Options o;
-  app.add_option("ROBOT", o.robot, "URDF, or the Robotics Library's rlkin or rlmdl")
-      ->required()
-      ->type_name("FILE");
-  app.add_option("--base", o.base, "Link that the pose is relative to [the root]")
-      ->type_name("LINK");
-  app.add_option("--tip", o.tip, "Link that is to have the pose [the last, if there is only one]")
-      ->type_name("LINK");
-  CLI::Option* pose =
-      app.add_option("--pose", o.pose,
-                     "Where the tip is to be: position, in the robot's unit of length, and unit "
-                     "quaternion: X Y Z QX QY QZ QW")
-          ->expected(7)
-          ->type_name("NUMBER");
-  CLI::Option* pose_of =
-      app.add_option("--pose-of", o.pose_of,
-                     "The pose of this configuration instead: a value per joint, with commas "
-                     "between")
-          ->type_name("Q1,Q2,…");
-  pose->excludes(pose_of);
-  app.add_option("--reference", o.reference,
-                 "Of whole turns, the nearest to this configuration is printed; joints that are "
-                 "free where axes are aligned keep its values; numeric search begins at it [0,0,…]")
-      ->type_name("Q1,Q2,…");
-  app.add_flag(
-      "--copies", o.copies,
-      "Print all that differ by whole turns within the limits, at most 4096 of a solution");
-  app.add_flag("--ignore-limits", o.ignore_limits, "Print solutions outside the limits as well");
-  app.add_flag(
-      "--free-heading", o.free_heading,
-      "Of five axes: keep the pose's position, pitch and roll, and turn its heading (about "
-      "axis 1) so that it can be reached");
-  app.add_flag("--degrees", o.degrees, "Angles are in degrees, those read and printed [radians]");
-  app.add_flag("--numeric", o.numeric, "Search numerically although there is a closed form");
-  app.add_option("--starts", o.starts, "Random configurations that numeric search begins at")
-      ->check(tools::number_from(1, 1e6))
-      ->capture_default_str()
-      ->type_name("N");
-  app.add_flag("--json", o.json, "Print JSON instead of a line of joint values per solution");
-  tools::add_common_options(app, o.common);
-  app.footer(
-      "Exit codes: 0 done; 1 there is no solution, or none within the limits; 2 usage; 3 bad "
-      "input; "
-      "4 output failed; 6 internal error; 7 none found numerically, which proves nothing.");
+  Options options;
+  tools::describe(app, options);
   return tools::run(app, argc, argv, [&] {
-    if (o.pose.empty() && o.pose_of.empty())
-      throw Error(ErrorCode::InvalidArgument,
-                  "where is the tip to be? Give --pose X Y Z QX QY QZ QW or --pose-of Q1,Q2,…");
-    return run(o);
+    tools::require_valid(options);
+    return run(options);
   });
 }

@@ -7,6 +7,7 @@
 #include "cli.h"
 #include "move_files.h"
 #include "move_request.h"
+#include "result_files.h"
 
 namespace {
 
@@ -53,13 +54,14 @@ int move(const MoveOptions& o) {
   }
   report["output_angles"] = o.degrees ? "degrees" : "radians";
   report["output"] = o.output;
-  io::write_file(o.output, written.csv);
-  if (execution) io::write_file(o.trajectory, execution->csv);
+  tools::write_together(
+      {{o.trajectory, [&] { io::write_file(o.trajectory, execution->csv); }},
+       {o.common.report, [&] { tools::write_report(o.common, "kaboum-move", report); }},
+       {o.output, [&] { io::write_file(o.output, written.csv); }}});
   tools::log(o.common.quiet,
              std::to_string(answer.path.size()) + " waypoints" +
                  (answer.straight ? ", straight" : "") + ", free at every instant" +
                  (r.goals.size() > 1 ? "; to goal " + std::to_string(r.numbers[answer.goal]) : ""));
-  tools::write_report(o.common, "kaboum-move", report);
   return tools::kDone;
 }
 
@@ -72,14 +74,5 @@ int main(int argc, char** argv) {
       "kaboum-move"};
   MoveOptions options;
   tools::describe(app, options);
-  return tools::run(app, argc, argv, [&] {
-    // As from a variable of the shell that is not set: what was meant is not known.
-    for (const char* name :
-         {"--robot", "--from", "--start", "--to", "--goals", "--output", "--trajectory"})
-      if (app.count(name) > 0)
-        for (const std::string& value : app.get_option(name)->results())
-          if (value.empty())
-            throw Error(ErrorCode::InvalidArgument, std::string(name) + ": the value is empty");
-    return move(options);
-  });
+  return tools::run(app, argc, argv, [&] { return move(options); });
 }

@@ -46,6 +46,7 @@ int make_scene(const tools::SceneOptions& o) {
   maker.robots = named_files(o.robots, "--robot");
   maker.objects = named_files(o.objects, "--object");
   maker.regions = named_files(o.regions, "--region");
+  maker.places = tools::parse_places(o.places, "--at");
   std::vector<std::string> inputs;
   for (const auto* files : {&maker.robots, &maker.objects, &maker.regions})
     for (const tools::NamedFile& file : *files) inputs.push_back(file.file);
@@ -88,8 +89,10 @@ int make_scene(const tools::SceneOptions& o) {
   maker.options.progress = [&](const std::string& stage) { progress.show(stage); };
   const tools::MadeScene made = tools::make_scene(maker);
   say_made(o, made,
-           o.scene + ": " + std::to_string(made.containers.size()) +
-               " sets, all at the origin: put things where they belong",
+           o.scene + ": " + std::to_string(made.containers.size()) + " sets" +
+               (maker.places.size() < inputs.size()
+                    ? ", what --at does not name at the origin: put things where they belong"
+                    : ""),
            "make");
   return tools::kDone;
 }

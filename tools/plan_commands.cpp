@@ -15,6 +15,7 @@
 
 #include "plan_input.h"
 #include "plan_page.h"
+#include "result_files.h"
 
 namespace kaboum::tools {
 namespace {
@@ -133,15 +134,17 @@ int solve(const PlanOptions& o) {
     std::cerr << watch.explanation.text();
   }
   plan::PlanSize size;
+  std::string text;
   if (solution.outcome == plan::Outcome::Solved) {
     size = plan::measure(model, solution.plan);
     report["plan"] = size_json(size);
     const plan::Plan& graph = solution.plan;
-    const std::string text = plan::write_plan(model, o.tree ? plan::expand_tree(graph) : graph);
-    io::write_file(o.output, text);
+    text = plan::write_plan(model, o.tree ? plan::expand_tree(graph) : graph);
   }
   report["resources"] = {{"user_seconds_searching", solved - loaded}, {"wall_seconds", wall}};
-  write_report(o.common, "kaboum-plan", report);
+  write_together(
+      {{o.common.report, [&] { write_report(o.common, "kaboum-plan", report); }},
+       {text.empty() ? std::string() : o.output, [&] { io::write_file(o.output, text); }}});
   if (solution.outcome == plan::Outcome::Solved) {
     const std::size_t n = options.assumed.size();
     log(o.common.quiet, (n == 0 ? "solved: "

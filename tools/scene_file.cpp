@@ -42,4 +42,14 @@ std::size_t robot_named(const world::World& world, const std::string& name) {
               "--robot: the scene has no robot '" + name + "'" + did_you_mean(name, names));
 }
 
+const world::ToolFrame& tool_named(const world::RobotModel& robot, const std::string& name) {
+  std::vector<std::string> names;
+  for (const world::ToolFrame& tool : robot.tools) {
+    if (tool.name == name) return tool;
+    names.push_back(tool.name);
+  }
+  throw Error(ErrorCode::InvalidArgument, "--tool: robot '" + robot.name + "' has no tool '" +
+                                              name + "'" + did_you_mean(name, names));
+}
+
 }  // namespace kaboum::tools

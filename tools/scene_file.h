@@ -23,4 +23,7 @@ SceneFile read_scene(const std::string& path);
 /// @throws Error{InvalidArgument} when there is none, or there are several without a name.
 std::size_t robot_named(const world::World& world, const std::string& name);
 
+/// @throws Error{InvalidArgument} when the robot has no such tool.
+const world::ToolFrame& tool_named(const world::RobotModel& robot, const std::string& name);
+
 }  // namespace kaboum::tools

@@ -3,7 +3,10 @@
 #include "scene_maker.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/base/similar_name.h>
+#include <kaboum/robot/base_pose.h>
 
+#include <Eigen/Geometry>
 #include <set>
 
 #include "file_names.h"
@@ -21,12 +24,51 @@ NamedFile parse_named_file(const std::string& text, const char* option) {
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
+std::map<std::string, geom::Transform> parse_places(const std::vector<std::string>& texts,
+                                                    const char* option) {
+  std::map<std::string, geom::Transform> out;
+  for (const std::string& text : texts) {
+    const auto equals = text.find('=');
+    if (equals == std::string::npos || equals == 0)
+      throw Error(ErrorCode::InvalidArgument,
+                  std::string(option) + ": NAME=POSE is expected, not '" + text + "'");
+    const std::string name = text.substr(0, equals);
+    if (!out.emplace(name, robot::parse_pose(text.substr(equals + 1), option + (" " + name)))
+             .second)
+      throw Error(ErrorCode::InvalidArgument,
+                  std::string(option) + ": '" + name + "' is placed twice");
+  }
+  return out;
+}
+
+namespace {
+
+/// As scene files state poses; what is turned, by the quaternion nearest to its rotation.
+Json pose_json(const SceneMaker& maker, const std::string& name) {
+  const auto place = maker.places.find(name);
+  if (place == maker.places.end()) return {{"position", {0, 0, 0}}};
+  const geom::Transform& pose = place->second;
+  Json out = {{"position", {pose.translation.x(), pose.translation.y(), pose.translation.z()}}};
+  if (pose.linear != Eigen::Matrix3d::Identity()) {
+    const Eigen::Quaterniond turn = Eigen::Quaterniond(pose.linear).normalized();
+    out["quaternion"] = {turn.x(), turn.y(), turn.z(), turn.w()};
+  }
+  return out;
+}
+
+}  // namespace
+
 MadeScene make_scene(const SceneMaker& maker) {
   std::set<std::string> names;
   for (const auto* files : {&maker.robots, &maker.objects, &maker.regions})
     for (const NamedFile& file : *files)
       if (!names.insert(file.name).second)
         throw Error(ErrorCode::InvalidArgument, "the name '" + file.name + "' is used twice");
+  for (const auto& [name, pose] : maker.places)
+    if (!names.contains(name))
+      throw Error(ErrorCode::InvalidArgument,
+                  "--at: there is nothing of the name '" + name + "'" +
+                      did_you_mean(name, std::vector(names.begin(), names.end())));
   // What is not there is noticed before anything is computed, which takes long.
   for (const auto* files : {&maker.robots, &maker.objects, &maker.regions})
     for (const NamedFile& file : *files)
@@ -41,12 +83,14 @@ MadeScene make_scene(const SceneMaker& maker) {
   const auto container = [&](const std::string& name) {
     return folder / (in_folder.unique(name) + ".glb");
   };
-  const Json origin = {{"position", {0, 0, 0}}};
   Json robots = Json::array(), objects = Json::array(), regions = Json::array();
-  for (const NamedFile& r : maker.robots)
-    robots.push_back(sets.robot(r.name, r.file, folder / in_folder.unique(r.name), maker.options));
+  for (const NamedFile& r : maker.robots) {
+    Json out = sets.robot(r.name, r.file, folder / in_folder.unique(r.name), maker.options);
+    if (maker.places.contains(r.name)) out["base"] = pose_json(maker, r.name);
+    robots.push_back(std::move(out));
+  }
   for (const NamedFile& o : maker.objects) {
-    Json out = {{"name", o.name}, {"pose", origin}};
+    Json out = {{"name", o.name}, {"pose", pose_json(maker, o.name)}};
     out["outer"] = sets.mesh(o.name, o.file, Direction::Outer, container(o.name), maker.options);
     if (maker.inner) {
       Json inner =
@@ -65,7 +109,8 @@ MadeScene make_scene(const SceneMaker& maker) {
     if (inner.is_null())
       throw Error(ErrorCode::InvalidInput, "region '" + r.name + "': no body lies within " +
                                                r.file + " at this --epsilon: give a smaller one");
-    regions.push_back({{"name", r.name}, {"pose", origin}, {"inner", std::move(inner)}});
+    regions.push_back(
+        {{"name", r.name}, {"pose", pose_json(maker, r.name)}, {"inner", std::move(inner)}});
   }
   const Json scene = {{"kaboum_scene", 1},
                       {"unit", maker.options.sets.unit},

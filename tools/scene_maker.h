@@ -1,6 +1,9 @@
 #pragma once
 
+#include <kaboum/geom/transform.h>
+
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -16,12 +19,18 @@ struct NamedFile {
 /// @throws Error{InvalidArgument} naming the option.
 NamedFile parse_named_file(const std::string& text, const char* option);
 
+/// "NAME=POSE" for each, see robot::parse_pose.
+/// @throws Error{InvalidArgument} naming the option.
+std::map<std::string, geom::Transform> parse_places(const std::vector<std::string>& texts,
+                                                    const char* option);
+
 struct SceneMaker {
-  std::filesystem::path scene;              ///< to be written
-  std::vector<NamedFile> robots;            ///< URDF
-  std::vector<NamedFile> objects, regions;  ///< meshes
-  bool inner = false;                       ///< inner sets of objects as well
-  SceneSetOptions options;                  ///< of everything
+  std::filesystem::path scene;                    ///< to be written
+  std::vector<NamedFile> robots;                  ///< URDF
+  std::vector<NamedFile> objects, regions;        ///< meshes
+  std::map<std::string, geom::Transform> places;  ///< of what is named; the origin for the others
+  bool inner = false;                             ///< inner sets of objects as well
+  SceneSetOptions options;                        ///< of everything
 };
 
 struct MadeScene {
@@ -31,8 +40,8 @@ struct MadeScene {
 };
 
 /// Computes what the cache lacks, writes the containers into the folder with the scene's stem
-/// beside it, then the scene; everything is at the origin.
-/// @throws Error naming the file.
+/// beside it, then the scene.
+/// @throws Error naming the file; Error{InvalidArgument} where a place is of nothing.
 MadeScene make_scene(const SceneMaker& maker);
 
 }  // namespace kaboum::tools

@@ -32,6 +32,11 @@ CLI::App* describe_make(CLI::App& app, SceneOptions& o) {
   make->add_option("--object", o.objects, "An object; may be repeated")->type_name("NAME=MESH");
   make->add_option("--region", o.regions, "A region: its inner set; may be repeated")
       ->type_name("NAME=MESH");
+  make->add_option("--at", o.places,
+                   "Where the thing of this name stands in the world, in the scene's unit and "
+                   "radians: X,Y,Z or X,Y,Z,ROLL,PITCH,YAW or X,Y,Z,QX,QY,QZ,QW; may be repeated "
+                   "[the origin]")
+      ->type_name("NAME=POSE");
   make->add_flag("--inner", o.inner, "Inner sets of objects as well: contacts can be certain");
   make->add_flag("--inner-links", o.inner_links,
                  "Inner sets of robots' links as well: so can contacts with them");

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "motion_options.h"
+#include "result_files.h"
 #include "robot_bodies.h"
 #include "scene_robot.h"
 #include "sweep_options.h"
@@ -127,6 +128,26 @@ Json report_of(const Run& run) {
           {"resources", {{"user_seconds_sweeping", run.seconds}}}};
 }
 
+void write_files(const Run& run, io::SetFormat format) {
+  const SweepApproxOptions& o = run.o;
+  const auto preview = [&] {
+    io::write_file(o.preview,
+                   picture_of_sweep(run.robot.robot, run.bodies.artefact(), run.path, run.swept));
+  };
+  const auto depfile = [&] {
+    std::vector<std::string> inputs{o.robot, o.path};
+    if (!o.scene.empty()) inputs.push_back(o.scene);
+    for (std::string& file : strings(run.bodies.certificate().files))
+      inputs.push_back(std::move(file));
+    write_depfile(o.depfile, {o.output}, inputs);
+  };
+  write_together(
+      {{o.preview, preview},
+       {o.common.report, [&] { write_report(o.common, "sweep-approx", report_of(run)); }},
+       {o.depfile, depfile},
+       {o.output, [&] { write_set(run, format); }}});
+}
+
 /// The robot that is asked for, where it stands. `o.robot` becomes its file. @return the base as
 /// --base-pose; empty: at the origin
 std::string place_robot(SweepApproxOptions& o, robot::RobotFile& robot) {
@@ -141,7 +162,7 @@ std::string place_robot(SweepApproxOptions& o, robot::RobotFile& robot) {
     throw Error(ErrorCode::InvalidArgument, "which robot? Give ROBOT, or --scene");
   } else {
     robot = robot::read_robot(o.robot);
-    if (!o.base_pose.empty()) base = robot::parse_base_pose(o.base_pose, "--base-pose");
+    if (!o.base_pose.empty()) base = robot::parse_pose(o.base_pose, "--base-pose");
   }
   if (base.linear.isIdentity(0) && base.translation.isZero(0)) return {};
   naming(o.robot, [&] { robot.robot = robot::placed(robot.robot, base); });
@@ -178,18 +199,7 @@ int sweep_path(SweepApproxOptions o) {
   log(o.common.quiet, summary(run.swept.certificate(), run.bodies.artefact().size()));
   if (!base.empty())
     log(o.common.quiet, "in the world's frame: bound-verify sweep needs --base-pose " + base);
-  write_set(run, format);
-  if (!o.preview.empty())
-    io::write_file(o.preview,
-                   picture_of_sweep(run.robot.robot, run.bodies.artefact(), run.path, run.swept));
-  if (!o.common.report.empty()) write_report(o.common, "sweep-approx", report_of(run));
-  if (!o.depfile.empty()) {
-    std::vector<std::string> inputs{o.robot, o.path};
-    if (!o.scene.empty()) inputs.push_back(o.scene);
-    for (std::string& file : strings(run.bodies.certificate().files))
-      inputs.push_back(std::move(file));
-    write_depfile(o.depfile, {o.output}, inputs);
-  }
+  write_files(run, format);
   return kDone;
 }
 

@@ -25,7 +25,7 @@ SweepCase read(const VerifySweepOptions& o, const CommonOptions& common) {
   if (!o.base_pose.empty())
     naming(o.files[0], [&] {
       run.robot.robot =
-          robot::placed(run.robot.robot, robot::parse_base_pose(o.base_pose, "--base-pose"));
+          robot::placed(run.robot.robot, robot::parse_pose(o.base_pose, "--base-pose"));
     });
   // Limits are no matter of the set.
   std::vector<std::string> notes;

@@ -168,8 +168,9 @@ class Receiver {
 void set_limit(int which, std::uint64_t soft, std::uint64_t hard) {
   rlimit limit{};
   if (::getrlimit(static_cast<__rlimit_resource>(which), &limit) != 0) return;
-  const auto lower = [](rlim_t present, std::uint64_t limit) {
-    return present == RLIM_INFINITY ? static_cast<rlim_t>(limit) : std::min<rlim_t>(present, limit);
+  const auto lower = [](rlim_t present, std::uint64_t wished) {
+    return present == RLIM_INFINITY ? static_cast<rlim_t>(wished)
+                                    : std::min<rlim_t>(present, wished);
   };
   limit.rlim_max = lower(limit.rlim_max, hard);
   limit.rlim_cur = std::min(lower(limit.rlim_cur, soft), limit.rlim_max);

@@ -50,7 +50,7 @@ Robot placed(const Robot& robot, const Transform& base) {
   return out;
 }
 
-Transform parse_base_pose(std::string_view text, const std::string& option) {
+Transform parse_pose(std::string_view text, const std::string& option) {
   const std::vector<double> x = numbers(text, option);
   Transform out;
   if (x.size() != 3 && x.size() != 6 && x.size() != 7 && x.size() != 12)
@@ -62,8 +62,9 @@ Transform parse_base_pose(std::string_view text, const std::string& option) {
   if (x.size() == 6) out.linear = rotation_from_rpy(x[3], x[4], x[5]);
   if (x.size() == 7) {
     const Eigen::Quaterniond turn(x[6], x[3], x[4], x[5]);
-    if (!(std::abs(turn.norm() - 1) < 1e-6))
-      throw Error(ErrorCode::InvalidArgument, option + ": the quaternion is not of length 1");
+    if (!(std::abs(turn.norm() - 1) < 1e-3))
+      throw Error(ErrorCode::InvalidArgument, option + ": the quaternion has the length " +
+                                                  std::to_string(turn.norm()) + "; expected 1");
     out.linear = turn.normalized().toRotationMatrix();
   }
   if (x.size() == 12) {

@@ -164,6 +164,9 @@ void require_times_in_order(const NamedPath& path, const std::vector<std::size_t
 
 NamedPath parse_path_csv(std::string_view text, const std::string& name) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  const auto is_binary = [](char c) { return (c >= 0 && c < '\t') || (c > '\r' && c < ' '); };
+  if (std::any_of(text.begin(), text.end(), is_binary))
+    fail(name, "not a text file; a path is CSV or JSON: joint values, a line for each waypoint");
   NamedPath path;
   bool first = true;
   std::size_t line_number = 0;

@@ -27,6 +27,8 @@ void fail_at(const std::string& name, int line, const std::string& what) {
 void parse_xml(tinyxml2::XMLDocument& document, std::string_view text, const std::string& name) {
   if (text.find('\0') != std::string_view::npos)
     throw Error(ErrorCode::InvalidInput, name + ": not a text file");
+  if (text.find_first_not_of(kXmlBlanks) == std::string_view::npos)
+    throw Error(ErrorCode::InvalidInput, name + ": the file is empty; a URDF or RL file is needed");
   if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
     fail_at(name, document.ErrorLineNum(),
             std::string("not well-formed XML (") +

@@ -98,6 +98,19 @@ mkdir folder
 expect 4 'report: folder is a folder' "$BIN/bcd-decompose" t.off -o x.glb --report folder
 absent x.off x.obj x.glb x
 
+# Values left out, as by variables of the shell that are not set; help is of the command that was given.
+expect 2 'report is empty: give it a value' "$D" t.off -o x.off --vertices 4 --report ''
+expect 2 'o.* is empty' "$D" t.off -o '' --vertices 4
+expect 2 'input is empty' "$BIN/hausdorff-eval" '' t.off
+expect 2 'see kaboum-scene make --help' "$BIN/kaboum-scene" make --foo
+expect 2 'see bound-verify mesh --help' "$BIN/bound-verify" mesh --foo
+: >empty.urdf
+expect 3 'empty.urdf: the file is empty' "$BIN/bcd-decompose" empty.urdf -o x
+printf 'j1\001\n0\n' >binary.csv
+echo '<robot name="r"><link name="l"/></robot>' >r.urdf
+expect 3 'binary.csv: not a text file; a path is CSV or JSON' "$BIN/sweep-approx" r.urdf --path binary.csv -o x.glb
+absent x.off x x.glb
+
 # A file cut at many places gives an error or, when only trailing bytes are missing, a result.
 "$D" "$BRACKET" -o whole.stl --vertices 60 --quiet
 for f in whole.stl; do

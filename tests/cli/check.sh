@@ -258,6 +258,19 @@ sed 's/"name": "arm",/"name": "arm", "limits": {"j2": [-1, 1]},/' proved.json >o
 expect 3 'proved for other limits or other sets' "$BIN/kaboum-check" other.json
 # Making scenes.
 expect 2 'NAME=FILE is expected' "$BIN/kaboum-scene" make bad.json --object meshes/cube.off
+expect 0 '2 sets$' "$BIN/kaboum-scene" make placed.json --object a=meshes/cube.off --object b=meshes/bar.off --at b=1,2,3,0,0,1.5707963267948966 --at a=0,0,-1 --no-cache
+python3 - <<'END' || fail "--at is elsewhere: $(cat placed.json)"
+import json, sys
+a, b = (o["pose"] for o in json.load(open("placed.json"))["objects"])
+turn = b["quaternion"]
+sys.exit(a != {"position": [0, 0, -1]} or b["position"] != [1, 2, 3] or abs(turn[2] - 0.5 ** 0.5) + abs(turn[3] - 0.5 ** 0.5) > 1e-15)
+END
+expect 0 '4 sets$' "$BIN/kaboum-scene" make stands.json --robot arm=arm.urdf --region room=meshes/room.off --at arm=0,0,0.8,0,0,3 --at room=1,0,0 --no-cache
+shows 0 '^free$' "$BIN/kaboum-check" stands.json
+expect 2 "at: there is nothing of the name 'boz'; did you mean 'box'" "$BIN/kaboum-scene" make bad.json --object box=meshes/cube.off --at boz=0,0,1
+expect 2 "at: 'box' is placed twice" "$BIN/kaboum-scene" make bad.json --object box=meshes/cube.off --at box=0,0,1 --at box=0,0,2
+expect 2 'at box: expected numbers with commas between' "$BIN/kaboum-scene" make bad.json --object box=meshes/cube.off --at box=0,0,z
+expect 2 'at: NAME=POSE is expected' "$BIN/kaboum-scene" make bad.json --object box=meshes/cube.off --at 0,0,1
 expect 2 'is used twice' "$BIN/kaboum-scene" make bad.json --object a=meshes/cube.off --object a=meshes/bar.off
 for option in --path --configuration --configurations; do expect 2 'is empty' "$BIN/kaboum-check" near.json $option ''; done
 sed 's/"unit": "m"/"unit": "mm"/' near.json >mm.json

@@ -34,13 +34,12 @@ sed 1d first.csv | while read -r q; do
   python3 - out.txt <<'END' || echo "FAILED: $q is elsewhere" >elsewhere
 import json, sys
 p = json.load(open(sys.argv[1]))["pose"]
-open("pose.txt", "a").write(" ".join(f"{x:.6f}" for x in p) + "\n")
+open("pose.txt", "a").write(",".join(f"{x:.6f}" for x in p) + "\n")
 END
 done
 absent elsewhere
 [ "$(sort -u pose.txt | wc -l)" = 1 ] || fail "several poses: $(cat pose.txt)"
-# shellcheck disable=SC2046
-shows 0 'j1,j2' "$I" arm.urdf --pose $(head -1 pose.txt)
+shows 0 'j1,j2' "$I" arm.urdf --pose "$(head -1 pose.txt)"
 shows 0 '5.7295' "$I" arm.urdf --pose-of 5.72957795131,20,40,17,50,-11 --degrees
 
 # An arm that is only near its family is solved, but what is found need not be all.
@@ -59,7 +58,7 @@ sed 's/"-3"/"2.9"/' arm.urdf >narrow.urdf
 expect 1 "outside the joints' limits only; see --ignore-limits" "$I" narrow.urdf --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2
 shows 0 '# outside the limits' "$I" narrow.urdf --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2 --ignore-limits
 shows 0 'singular: wrist' "$I" arm.urdf --pose-of 0.1,0.4,0.7,0.3,0,-0.2
-expect 1 'the pose is out of reach' "$I" arm.urdf --pose 5 0 0 0 0 0 1
+expect 1 'the pose is out of reach' "$I" arm.urdf --pose 5,0,0,0,0,0,1
 
 # A value on a limit is printed as one within it, in radians and in degrees.
 cat >within.py <<'END'
@@ -83,7 +82,7 @@ grep -q '"complete": false' out.txt || fail "said to be complete"
 cp out.txt one.json
 expect 0 '' "$I" offset.urdf --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2 --json
 cmp -s out.txt one.json || fail "twice the same, another answer"
-expect 7 'no proof' "$I" offset.urdf --pose 5 0 0 0 0 0 1 --starts 3
+expect 7 'no proof' "$I" offset.urdf --pose 5,0,0,0,0,0,1 --starts 3
 expect 0 '' "$I" arm.urdf --numeric --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2
 
 # Five axes: most poses are reached with another heading only.
@@ -97,8 +96,8 @@ expect 0 '' "$I" arm.urdf --numeric --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2
   echo '</robot>'
 } >five.urdf
 expect 0 'five axes, closed form' "$I" five.urdf --pose-of 0.3,0.5,0.6,0.4,0.2
-expect 1 'with another heading only, see --free-heading' "$I" five.urdf --pose 0.4 0.1 0.3 0.5 0.5 0.5 0.5
-expect 0 'closed form' "$I" five.urdf --pose 0.4 0.1 0.3 0.5 0.5 0.5 0.5 --free-heading --json
+expect 1 'with another heading only, see --free-heading' "$I" five.urdf --pose 0.4,0.1,0.3,0.5,0.5,0.5,0.5
+expect 0 'closed form' "$I" five.urdf --pose 0.4,0.1,0.3,0.5,0.5,0.5,0.5 --free-heading --json
 python3 - <<'END' || fail "headings: $(head -c 400 out.txt)"
 import json, subprocess, sys
 out = json.load(open("out.txt"))
@@ -112,15 +111,50 @@ expect 2 'for arms with five axes' "$I" arm.urdf --pose-of 0.1,0.4,0.7,0.3,0.9,-
 sed 's/name="j1"/name="1"/; s/name="j2"/name="a,b"/' five.urdf >names.urdf
 shows 0 '^"1","a,b",j3' "$I" names.urdf --pose-of 0.3,0.5,0.6,0.4,0.2
 
+# A robot of a scene stands in its world, with the scene's limits and tools.
+cat >stands.py <<'END'
+import json
+scene = json.load(open("cell.json"))
+robot = scene["robots"][0]
+robot["base"] = {"position": [1, 2, 3], "rpy": [0, 0, 0.5]}
+robot["limits"] = {"j6": [-0.1, 0.1]}
+robot["tools"] = [{"name": "flange", "link": "l6", "position": [0, 0, 0.25]}]
+json.dump(scene, open("cell.json", "w"))
+END
+"$BIN/kaboum-scene" make cell.json --robot arm=arm.urdf --no-cache --quiet || fail "a scene of an arm without shapes"
+python3 stands.py
+pose_of() { sed -n '/"pose"/,/]/p' out.txt | tr -d ' \n' | sed 's/.*\[//; s/\].*//'; }
+expect 0 '' "$I" --scene cell.json --tool flange --pose-of 0.1,0.4,0.7,0.3,0.9,0.05 --json
+world=$(pose_of)
+expect 0 '' "$I" --scene cell.json --tool flange --pose "$world"
+python3 near.py out.txt 0.1,0.4,0.7,0.3,0.9,0.05 || fail "the scene's arm is elsewhere: $(cat out.txt)"
+expect 0 '' "$I" arm.urdf --pose-of 0.1,0.4,0.7,0.3,0.9,0.05 --json
+python3 - "$world" "$(pose_of)" <<'END' || fail "the world's pose is not that of base, arm and tool"
+import math, sys
+world, arm = ([float(x) for x in text.split(",")] for text in sys.argv[1:])
+x, y, z, qx, qy, qz, qw = arm
+at = [x + 0.5 * (qx * qz + qw * qy), y + 0.5 * (qy * qz - qw * qx), z + 0.25 * (1 - 2 * (qx * qx + qy * qy))]
+c, s = math.cos(0.5), math.sin(0.5)
+at = [1 + c * at[0] - s * at[1], 2 + s * at[0] + c * at[1], 3 + at[2]]
+sys.exit(max(abs(a - b) for a, b in zip(at, world)) > 1e-9)
+END
+expect 1 "outside the joints' limits" "$I" --scene cell.json --pose-of 0.1,0.4,0.7,0.3,0.9,0.5
+expect 2 "has no tool 'flang'; did you mean 'flange'" "$I" --scene cell.json --tool flang --pose 0,0,1
+expect 2 "no robot 'leg'" "$I" --scene cell.json --robot leg --pose 0,0,1
+expect 2 'excludes' "$I" arm.urdf --scene cell.json --pose 0,0,1
+
 # What is wrong, and what to do.
-expect 2 'Give --pose X Y Z QX QY QZ QW or --pose-of' "$I" arm.urdf
-expect 2 'excludes' "$I" arm.urdf --pose 0 0 0 0 0 0 1 --pose-of 0,0,0,0,0,0
+expect 2 'Give --pose X,Y,Z,QX,QY,QZ,QW or --pose-of' "$I" arm.urdf
+expect 2 'excludes' "$I" arm.urdf --pose 0,0,0,0,0,0,1 --pose-of 0,0,0,0,0,0
 expect 2 "arm.urdf: there is no link 'l7'; it has 'base', 'l1'" "$I" arm.urdf --tip l7 --pose-of 0,0,0,0,0,0
 expect 2 'is not between' "$I" arm.urdf --base l5 --tip l2 --pose-of 0
 expect 2 "5 values for the 6 joints 'j1'" "$I" arm.urdf --pose-of 0,0,0,0,0
 expect 2 'expected numbers with commas' "$I" arm.urdf --pose-of 0,x,0,0,0,0
-expect 2 'quaternion QX QY QZ QW has the length 2' "$I" arm.urdf --pose 0 0 0 0 0 0 2
-expect 2 'finite' "$I" arm.urdf --pose nan 0 0 0 0 0 1
+expect 2 'pose: the quaternion has the length 2' "$I" arm.urdf --pose 0,0,0,0,0,0,2
+expect 2 'pose: expected numbers with commas between' "$I" arm.urdf --pose nan,0,0,0,0,0,1
+expect 2 'pose: 2 numbers; a pose is' "$I" arm.urdf --pose 0,1
+expect 2 'of which robot' "$I" --pose 0,0,1
+expect 2 'tool' "$I" arm.urdf --tool flange --pose 0,0,1
 expect 3 'missing.urdf' "$I" missing.urdf --pose-of 0
 expect 0 '' "$I" arm.urdf --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2 --report ik.json --quiet
 [ ! -s err.txt ] || fail "--quiet is not: $(cat err.txt)"

@@ -256,5 +256,6 @@ expect 0 '' "$S" --scene cell.json --robot r --path path.csv -o scene.glb --epsi
 cmp -s scene.glb stands.glb || run_tool 0 "$BIN/bound-verify" sweep $R path.csv scene.glb --base-pose $base --prepare
 expect 3 'outside its limits' "$S" --scene narrow.json --path path.csv -o none.glb
 expect 2 "no robot 'q'" "$S" --scene cell.json --robot q --path path.csv -o none.glb
+expect 4 'long' "$S" $R --path path.csv -o none.glb --epsilon 0.01 --report "$(printf '%300s' '' | tr ' ' x)"
 absent none.glb
 finish

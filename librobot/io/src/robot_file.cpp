@@ -148,12 +148,14 @@ std::vector<std::string> notes_on_flat_shapes(const RobotFile& robot, bool visua
   for (const robot::Link& link : robot.robot.links) {
     if (!links.empty() && std::find(links.begin(), links.end(), link.name) == links.end()) continue;
     for (const Geometry& g : visual ? link.visual : link.collision)
-      if (robot::is_flat(g))
-        out.push_back(robot.path.string() + (g.line > 0 ? ":" + std::to_string(g.line) : "") +
-                      ": link '" + link.name + "': a " + describe(g) +
+      if (robot::is_flat(g)) {
+        std::string place = robot.path.string();
+        if (g.line > 0) place.append(":").append(std::to_string(g.line));
+        out.push_back(place + ": link '" + link.name + "': a " + describe(g) +
                       (robot::is_point(g) ? " is a point: it is not covered"
                                           : " has no volume; its surface is covered, but engines "
                                             "may refuse it: give it a thickness"));
+      }
   }
   return out;
 }

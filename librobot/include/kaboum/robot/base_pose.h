@@ -14,11 +14,12 @@ namespace kaboum::robot {
 Robot placed(const Robot& robot, const Transform& base);
 
 /// A pose of numbers, separated by commas: X,Y,Z or X,Y,Z,ROLL,PITCH,YAW (radians), or X,Y,Z and a
-/// unit quaternion QX,QY,QZ,QW, or X,Y,Z and the matrix of the rotation, row by row.
+/// quaternion QX,QY,QZ,QW of length 1 (to 1e-3, as files print them; it is normalised), or X,Y,Z
+/// and the matrix of the rotation, row by row.
 /// @throws Error{InvalidArgument} naming `option`.
-Transform parse_base_pose(std::string_view text, const std::string& option);
+Transform parse_pose(std::string_view text, const std::string& option);
 
-/// The pose as twelve numbers, which parse_base_pose reads back to the bit.
+/// The pose as twelve numbers, which parse_pose reads back to the bit.
 std::string base_pose_text(const Transform& pose);
 
 }  // namespace kaboum::robot
