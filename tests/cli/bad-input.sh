@@ -101,7 +101,7 @@ absent x.off x.obj x.glb x
 # Values left out, as by variables of the shell that are not set; help is of the command that was given.
 expect 2 'report is empty: give it a value' "$D" t.off -o x.off --vertices 4 --report ''
 expect 2 'o.* is empty' "$D" t.off -o '' --vertices 4
-expect 2 'input is empty' "$BIN/hausdorff-eval" '' t.off
+expect 2 'A is empty' "$BIN/hausdorff-eval" '' t.off
 expect 2 'see kaboum-scene make --help' "$BIN/kaboum-scene" make --foo
 expect 2 'see bound-verify mesh --help' "$BIN/bound-verify" mesh --foo
 : >empty.urdf

@@ -121,7 +121,8 @@ robot["limits"] = {"j6": [-0.1, 0.1]}
 robot["tools"] = [{"name": "flange", "link": "l6", "position": [0, 0, 0.25]}]
 json.dump(scene, open("cell.json", "w"))
 END
-"$BIN/kaboum-scene" make cell.json --robot arm=arm.urdf --no-cache --quiet || fail "a scene of an arm without shapes"
+sed 's,<link name="base"/>,<link name="base"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>,' arm.urdf >stands.urdf
+"$BIN/kaboum-scene" make cell.json --robot arm=stands.urdf --no-cache --quiet || fail "a scene of an arm"
 python3 stands.py
 pose_of() { sed -n '/"pose"/,/]/p' out.txt | tr -d ' \n' | sed 's/.*\[//; s/\].*//'; }
 expect 0 '' "$I" --scene cell.json --tool flange --pose-of 0.1,0.4,0.7,0.3,0.9,0.05 --json

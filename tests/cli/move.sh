@@ -123,8 +123,8 @@ for file in arm.urdf $(find cell -name '*.glb' | head -1); do
   cmp -s "$file" kept.bin || fail "$file is written over"
 done
 expect 4 '' "$M" cell.json --from=0.5,0 --to 1,1 -o nowhere/p.csv
-expect 4 'long' "$M" cell.json --from=0.5,0 --to 1,1 -o p.csv --trajectory t.csv --report "$(printf '%300s' '' | tr ' ' x)"
-absent p.csv t.csv
+expect 4 'long' "$M" cell.json --from=0.5,0 --to 1,1 -o none.csv --trajectory none2.csv --report "$(printf '%300s' '' | tr ' ' x)"
+absent none.csv none2.csv
 expect 7 'samples' "$M" cell.json --from=0.5,0 --to 1,1 -o none.csv --trajectory none2.csv --max-velocity 1e-6
 expect 7 'more than 5000000' "$M" cell.json --from=0.5,0 --to 1,1 -o none.csv --trajectory none2.csv --max-velocity 1e-4
 absent none.csv none2.csv

@@ -12,4 +12,4 @@ add_test(NAME installed_package
           -DWORK=${CMAKE_CURRENT_BINARY_DIR}/consumer -DCONFIG=$<CONFIG> -DCMAKE_CTEST_COMMAND=${CMAKE_CTEST_COMMAND}
           -DGENERATOR=${CMAKE_GENERATOR} -DCOMPILER=${CMAKE_CXX_COMPILER} -DFLAGS=${_consumer_flags}
           -P ${CMAKE_CURRENT_LIST_DIR}/run.cmake)
-set_tests_properties(installed_package PROPERTIES TIMEOUT 600)
+set_tests_properties(installed_package PROPERTIES TIMEOUT 1800)
