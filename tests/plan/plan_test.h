@@ -42,8 +42,9 @@ inline Model model_of(const std::string& kpl) {
 }
 
 inline Model scenario(const std::string& domain, const std::string& arguments) {
-  const Text d{"domain.kpl", slurp(std::string(KABOUM_DOMAINS) + "/" + domain + "/domain.kpl"),
-               Language::Kpl};
+  std::string file = KABOUM_DOMAINS "/";
+  file.append(domain).append("/domain.kpl");
+  const Text d{"domain.kpl", slurp(file), Language::Kpl};
   const Text p{"problem.kpl", made(domain, arguments), Language::Kpl};
   return load(d, &p);
 }

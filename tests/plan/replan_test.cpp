@@ -229,7 +229,9 @@ TEST(Replan, DisjunctionsThatStillHoldAreTakenOver) {
     const ReplanSummary s =
         run_and_replan(c.texts, c.model, c.plan, {}, [&](const Model& m, const Plan& p) {
           // The second is a plan for all that may be, on what was taken over alone.
-          if (++plans == 2) EXPECT_TRUE(check(m, p).valid) << check(m, p).violation;
+          if (++plans == 2) {
+            EXPECT_TRUE(check(m, p).valid) << check(m, p).violation;
+          }
           return [](const RunStep&) {};
         });
     EXPECT_EQ(plans, 2);
