@@ -145,7 +145,7 @@ TEST(Urdf, BadFilesAreRefused) {
     EXPECT_NE(got.find(words), std::string::npos) << got;
     EXPECT_NE(got.find("r.urdf"), std::string::npos) << got;
   };
-  has("", "XML");
+  has("", "the file is empty");
   has("<robot", "r.urdf:1");
   has("<mesh/>", "expected <robot>");
   has(robot_of(""), "r.urdf");
