@@ -27,7 +27,7 @@ END
   [ -s "$name/plan.svg" ] || fail "$name: no drawing"
   player "$name"
 }
-# player NAME: the page holds all bodies, all steps, and nothing from elsewhere; its code plays every branch (with node).
+# player NAME: the page holds all bodies, all steps, and nothing from elsewhere; its code plays every branch.
 player() {
   python3 - "$1" "$S/../../tools/player" <<'END_OF_PAGE' || fail "$1: the page"
 import base64, html.parser, json, re, sys
@@ -70,9 +70,8 @@ box = [b for s in data["shapes"] if s["name"] == "table" for b in s["bodies"]]
 if box:
     assert len(base64.b64decode(box[0]["points"])) == 8 * 3 * 4
 END_OF_PAGE
-  if command -v node >/dev/null; then
-    node "$HERE/play_page.js" "$1/plan.html" "$S/../../tools/player/scene.js" >said.txt 2>&1 || fail "$1: $(tail -5 said.txt)"
-  fi
+  command -v node >/dev/null || fail "Node.js is missing (nodejs, which scripts/setup installs): the page's code has not been run"
+  node "$HERE/play_page.js" "$1/plan.html" "$S/../../tools/player/scene.js" >said.txt 2>&1 || fail "$1: $(tail -5 said.txt)"
 }
 scenario force-sensing 2 10 4
 scenario bimanual-assembly 4 8 1
