@@ -7,6 +7,7 @@
 #include <kaboum/world/motion_check.h>
 #include <kaboum/world/regions.h>
 
+#include "involved.h"
 #include "sequence.h"
 
 namespace kaboum::manipulation {
@@ -23,13 +24,55 @@ struct Asked {
   [[nodiscard]] Answer not_known() const { return Answer::not_found(state.unknown()); }
 };
 
-/// Looks at everything, and does what `act` does; `value` is what it has led to.
+/// A call, by the names of its function and of the things that it is about.
+struct Call {
+  const char* name;
+  std::vector<std::size_t> robots, objects;
+};
+
+/// Rounds after which all things are involved; answers that are kept, and things in the way of them.
+constexpr int kRounds = 4;
+constexpr std::size_t kMostKept = 20'000, kMostDecided = 50'000'000;
+
+std::string key_of(const Call& call, const Question& question) {
+  std::string key = call.name;
+  for (const std::string& argument : question.arguments) key.append(1, ' ').append(argument);
+  key += '\n';
+  add_to_key(key, question.seed);
+  add_to_key(key, question.attempt);
+  return key;
+}
+
+/// Does what `act` does, among the things that the call is about and those that are in the way;
+/// `value` is what it has led to. What fails among some things fails among all.
 template <typename Act, typename Value>
-Answer perform(Geometry& geometry, const Question& question, const Act& act, const Value& value) {
+Answer perform(Geometry& geometry, const Question& question, const Call& call, const Act& act,
+               const Value& value) {
   Asked asked(geometry, question);
   if (!asked.state.read_all()) return asked.not_known();
-  Sequence sequence(geometry, question, asked.state);
-  return act(sequence) ? sequence.found(value(sequence)) : sequence.failure();
+  if (geometry.performed.size() >= kMostKept ||
+      geometry.performed.size() * geometry.placed.size() >= kMostDecided) {
+    geometry.performed.clear();
+    geometry.placed.clear();
+  }
+  Involved involved(geometry, asked.state, call.robots, call.objects);
+  const std::string prefix = key_of(call, question);
+  for (int round = 1;; ++round) {
+    std::string key = prefix;
+    involved.add_to(key);
+    auto found = geometry.performed.find(key);
+    if (found == geometry.performed.end()) {
+      Sequence sequence(geometry, question, involved.state(), involved.mounted());
+      Performed done;
+      done.answer = act(sequence) ? sequence.found(value(sequence)) : sequence.failure();
+      done.motions = sequence.motions();
+      found = geometry.performed.emplace(std::move(key), std::move(done)).first;
+    }
+    Performed& performed = found->second;
+    if (performed.answer.kind != Answer::Kind::Value || !involved.add_obstacles(performed))
+      return performed.answer;
+    if (round == kRounds) involved.add_all();
+  }
 }
 
 /// Reads the object alone, and says where it is out of reach whatever else there is.
@@ -37,9 +80,23 @@ std::optional<Answer> out_of_reach(Geometry& geometry, const Question& question,
                                    std::size_t object) {
   Asked asked(geometry, question);
   if (!asked.state.read_object(object)) return asked.not_known();
-  Sequence sequence(geometry, question, asked.state);
-  if (sequence.is_in_reach(robot, object)) return std::nullopt;
-  return sequence.failure();
+  const world::WorldState& state = asked.state.world();
+  Sequence sequence(geometry, question, state, asked.state.mounted());
+  std::string key;
+  add_to_key(key, robot);
+  add_to_key(key, object);
+  add_to_key(key, question.seed);
+  add_to_key(key, (state.absent[object] ? 1U : 0U) + (sequence.held_by(robot, object) ? 2U : 0U));
+  add_to_key(key, state.q[robot]);
+  add_to_key(key, sequence.pose_of_object(object));
+  if (geometry.reached.size() >= kMostKept) geometry.reached.clear();
+  auto found = geometry.reached.find(key);
+  if (found == geometry.reached.end()) {
+    Answer answer = sequence.is_in_reach(robot, object) ? Answer::holds(true) : sequence.failure();
+    found = geometry.reached.emplace(std::move(key), std::move(answer)).first;
+  }
+  if (found->second.kind == Answer::Kind::Value) return std::nullopt;
+  return found->second;
 }
 
 std::string configuration(const Sequence& s, std::size_t robot) {
@@ -53,7 +110,7 @@ Answer reach(Geometry& geometry, const Question& question) {
   const std::size_t o = object_named(geometry, question.arguments[1]);
   if (auto no = out_of_reach(geometry, question, r, o)) return *no;
   return perform(
-      geometry, question, [&](Sequence& s) { return s.reach(r, o); },
+      geometry, question, {"reach", {r}, {o}}, [&](Sequence& s) { return s.reach(r, o); },
       [&](const Sequence& s) { return configuration(s, r); });
 }
 
@@ -63,7 +120,7 @@ Answer grasp(Geometry& geometry, const Question& question) {
   Asked asked(geometry, question);
   if (!asked.state.read_object(o)) return asked.not_known();
   asked.state.set_robot(r, configuration_of(question.arguments[2], geometry.world.robots[r]));
-  Sequence sequence(geometry, question, asked.state);
+  Sequence sequence(geometry, question, asked.state.world(), asked.state.mounted());
   if (sequence.state().attachments[o] || !sequence.take(r, o))
     return Answer::impossible("no tool of " + geometry.world.robots[r].name + " is at a grasp of " +
                               geometry.world.objects[o].name + ", or it does not rest");
@@ -75,7 +132,8 @@ Answer place(Geometry& geometry, const Question& question) {
   const std::size_t o = object_named(geometry, question.arguments[1]);
   const std::size_t support = object_named(geometry, question.arguments[2]);
   return perform(
-      geometry, question, [&](Sequence& s) { return s.place(r, o, support, false); },
+      geometry, question, {"place", {r}, {o, support}},
+      [&](Sequence& s) { return s.place(r, o, support, false); },
       [&](const Sequence& s) { return configuration(s, r); });
 }
 
@@ -90,7 +148,8 @@ Answer transfer(Geometry& geometry, const Question& question) {
     s.let_go(r, o);
     return s.go(r, end);
   };
-  return perform(geometry, question, act, [&](const Sequence& s) { return s.word_of_object(o); });
+  return perform(geometry, question, {"transfer", {r}, {o, support}}, act,
+                 [&](const Sequence& s) { return s.word_of_object(o); });
 }
 
 Answer fetch(Geometry& geometry, const Question& question) {
@@ -99,7 +158,7 @@ Answer fetch(Geometry& geometry, const Question& question) {
   const std::vector<double> end = configuration_of(question.arguments[2], geometry.world.robots[r]);
   if (auto no = out_of_reach(geometry, question, r, o)) return *no;
   return perform(
-      geometry, question,
+      geometry, question, {"fetch", {r}, {o}},
       [&](Sequence& s) { return s.reach(r, o) && s.take(r, o) && s.go(r, end); },
       [&](const Sequence& s) { return s.word_of_object(o); });
 }
@@ -116,7 +175,8 @@ Answer put_down(Geometry& geometry, const Question& question, bool upright) {
     s.let_go(r, o);
     return s.go(r, end);
   };
-  return perform(geometry, question, act, [&](const Sequence& s) { return s.word_of_object(o); });
+  return perform(geometry, question, {upright ? "putUpright" : "put", {r}, {o, support}}, act,
+                 [&](const Sequence& s) { return s.word_of_object(o); });
 }
 
 }  // namespace
@@ -133,7 +193,8 @@ Answer lift(Geometry& geometry, const Question& question) {
   const std::size_t r = robot_named(geometry, question.arguments[0]);
   const std::size_t o = object_named(geometry, question.arguments[1]);
   return perform(
-      geometry, question, [&](Sequence& s) { return s.lift(r, o, geometry.options.lift); },
+      geometry, question, {"lift", {r}, {o}},
+      [&](Sequence& s) { return s.lift(r, o, geometry.options.lift); },
       [&](const Sequence& s) { return configuration(s, r); });
 }
 
@@ -147,7 +208,8 @@ Answer join(Geometry& geometry, const Question& question) {
     s.let_go(r, o);
     return s.withdraw(r) && s.go(r, end);
   };
-  return perform(geometry, question, act, [&](const Sequence& s) { return s.word_of_mounted(o); });
+  return perform(geometry, question, {"join", {r}, {o, onto}}, act,
+                 [&](const Sequence& s) { return s.word_of_mounted(o); });
 }
 
 Answer hand_over(Geometry& geometry, const Question& question) {
@@ -155,14 +217,15 @@ Answer hand_over(Geometry& geometry, const Question& question) {
   const std::size_t o = object_named(geometry, question.arguments[1]);
   const std::size_t to = robot_named(geometry, question.arguments[2]);
   return perform(
-      geometry, question, [&](Sequence& s) { return s.hand_over(r, o, to); },
+      geometry, question, {"handOver", {r, to}, {o}},
+      [&](Sequence& s) { return s.hand_over(r, o, to); },
       [&](const Sequence& s) { return s.word_of_object(o); });
 }
 
 Answer wander(Geometry& geometry, const Question& question) {
   const std::size_t r = robot_named(geometry, question.arguments[0]);
   return perform(
-      geometry, question, [&](Sequence& s) { return s.wander(r); },
+      geometry, question, {"wander", {r}, {}}, [&](Sequence& s) { return s.wander(r); },
       [&](const Sequence& s) { return configuration(s, r); });
 }
 
@@ -173,7 +236,7 @@ Answer release(Geometry& geometry, const Question& question) {
   Asked asked(geometry, question);
   if (!asked.state.read_object(o)) return asked.not_known();
   asked.state.set_robot(r, configuration_of(question.arguments[2], robot));
-  Sequence sequence(geometry, question, asked.state);
+  Sequence sequence(geometry, question, asked.state.world(), asked.state.mounted());
   if (!sequence.held_by(r, o))
     return Answer::impossible(robot.name + " does not hold " + geometry.world.objects[o].name);
   sequence.let_go(r, o);
@@ -184,7 +247,7 @@ Answer move(Geometry& geometry, const Question& question) {
   const std::size_t r = robot_named(geometry, question.arguments[0]);
   const std::vector<double> end = configuration_of(question.arguments[1], geometry.world.robots[r]);
   return perform(
-      geometry, question, [&](Sequence& s) { return s.go(r, end); },
+      geometry, question, {"move", {r}, {}}, [&](Sequence& s) { return s.go(r, end); },
       [&](const Sequence&) { return question.arguments[1]; });  // "home"
 }
 
@@ -235,8 +298,7 @@ Answer swept_collides(Geometry& geometry, const Question& question) {
   if (state.absent[o]) return Answer::holds(false, question.arguments[2] + " is away");
   // All other objects are absent: they were not read. Contacts of the robot with itself and
   // with others count.
-  const auto motion =
-      check_motion(geometry.checker, state, r, {state.q[r], to}, geometry.options.path.check);
+  const auto motion = check_motion(geometry.checker, state, r, {state.q[r], to}, geometry.check);
   return Answer::holds(motion.outcome != world::MotionAnswer::Outcome::Free, "it is free");
 }
 

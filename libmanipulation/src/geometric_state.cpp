@@ -104,6 +104,16 @@ bool GeometricState::read_all() {
     if (!read_robot(r)) return false;
   for (std::size_t o = 0; o < objects_read_.size(); ++o)
     if (!read_object(o)) return false;
+  if (geometry_.fixed_objects.size() == objects_read_.size()) return true;
+  // All terms have been asked for.
+  const auto is_fixed = [&](const char* function, const std::string& name) {
+    return geometry_.fixed.contains(std::string(function) + "(" + name + ")") ? 1 : 0;
+  };
+  geometry_.fixed_robots.clear();
+  for (const world::RobotModel& robot : geometry_.world.robots)
+    geometry_.fixed_robots.push_back(is_fixed("conf", robot.name));
+  for (const world::Object& object : geometry_.world.objects)
+    geometry_.fixed_objects.push_back(is_fixed("pose", object.name));
   return true;
 }
 

@@ -5,25 +5,50 @@
 
 #include <map>
 #include <set>
+#include <unordered_map>
 
 namespace kaboum::manipulation {
+
+/// A robot goes along a path, with what it carries.
+struct Motion {
+  std::size_t robot = 0;
+  robot::Path path;
+  std::vector<std::pair<std::size_t, world::Attachment>> holds;  ///< objects, ascending
+};
+
+/// What a call has led to among the things that it involves.
+struct Performed {
+  plan::Answer answer;
+  std::vector<Motion> motions;
+  std::vector<signed char> in_the_way;  ///< by Geometry::placed, see Involved
+};
 
 /// A world, and what is asked of it again and again.
 struct Geometry {
   Geometry(world::World w, const ExternalOptions& o)
-      : world(std::move(w)), options(o), checker(world) {}
+      : world(std::move(w)), options(o), checker(world, options.observer.get()) {
+    check.scratch = &scratch;
+    check.where = false;
+  }
   Geometry(const Geometry&) = delete;
   Geometry& operator=(const Geometry&) = delete;
 
   const world::World world;
   const ExternalOptions options;
   const world::Checker checker;
-  std::set<std::string> fixed;  ///< terms that the domain does not have
-  /// Paths in a world without what the domain moves, by all that they depend on: nothing that was
-  /// asked before has a say in them.
-  mutable std::map<std::string, robot::Path> usual_paths;
-  /// Likewise, where one robot hands something over to another one: the first one's configuration.
-  mutable std::map<std::string, std::vector<double>> usual_meetings;
+  world::MotionOptions check = options.path.check;  ///< of all motions
+  std::set<std::string> fixed;                      ///< terms that the domain does not have
+  /// Whether they stay as they are in the scene. @pre a state has been read as a whole
+  [[nodiscard]] bool is_fixed_robot(std::size_t robot) const { return fixed_robots[robot] != 0; }
+  [[nodiscard]] bool is_fixed_object(std::size_t object) const {
+    return fixed_objects[object] != 0;
+  }
+  std::vector<char> fixed_robots, fixed_objects;
+
+  // Kept by all that they depend on: nothing that was asked before has a say in them.
+  std::unordered_map<std::string, Performed> performed;
+  std::unordered_map<std::string, std::uint32_t> placed;  ///< numbers of things where they are
+  std::unordered_map<std::string, plan::Answer> reached;  ///< whether objects are in reach
   mutable world::Scratch scratch;
 };
 

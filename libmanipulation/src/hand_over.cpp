@@ -29,7 +29,7 @@ bool Sequence::meet(std::size_t from, std::size_t object, std::size_t to,
   then.q[from] = q;
   if (!is_free(then)) return false;
   const world::WorldState before = state_;
-  const nlohmann::json paths = paths_;
+  const std::vector<Motion> motions = motions_;
   state_ = then;
   Goals goals;
   for (const std::vector<double>& goal : goals_of_reach(to, object).configurations) {
@@ -45,14 +45,12 @@ bool Sequence::meet(std::size_t from, std::size_t object, std::size_t to,
       go(from, robots[from].home) && go(to, robots[to].home))
     return true;
   state_ = before;
-  paths_ = paths;
+  motions_ = motions;
   return false;
 }
 
-/// Tries places at random. @return the configuration of `from` at the one at which it was done;
-/// nullopt: at none.
-std::optional<std::vector<double>> Sequence::meet_somewhere(std::size_t from, std::size_t object,
-                                                            std::size_t to) {
+/// Tries places at random. @return whether it was done at one.
+bool Sequence::meet_somewhere(std::size_t from, std::size_t object, std::size_t to) {
   const std::vector<world::RobotModel>& robots = geometry_.world.robots;
   const world::Attachment held = *held_by(from, object);
   const geom::Vec3 middle = 0.5 * (robots[from].base.translation + robots[to].base.translation);
@@ -69,30 +67,9 @@ std::optional<std::vector<double>> Sequence::meet_somewhere(std::size_t from, st
     Goals goals;
     add_goals(goals, from, held.link, pose * inverse(held.pose));
     for (const std::vector<double>& q : goals.configurations)
-      if (meet(from, object, to, q)) return q;
+      if (meet(from, object, to, q)) return true;
   }
-  return std::nullopt;
-}
-
-/// Where they would meet if both were at home and nothing that the domain moves were there, but
-/// what is handed over; empty: nowhere. It is the same whenever it is asked for.
-const std::vector<double>& Sequence::usual_meeting(std::size_t from, std::size_t object,
-                                                   std::size_t to) const {
-  std::string key;
-  world::WorldState alone = bare_state(from, key);
-  alone.q[from] = geometry_.world.robots[from].home;
-  alone.q[to] = geometry_.world.robots[to].home;
-  add_to_key(key, {static_cast<double>(from), static_cast<double>(object), static_cast<double>(to),
-                   static_cast<double>(question_.attempt)});
-  add_to_key(key, question_.seed);
-  for (const auto& q : alone.q) add_to_key(key, q);
-  const auto [found, fresh] = geometry_.usual_meetings.try_emplace(std::move(key));
-  if (fresh) {
-    Sequence sequence = *this;
-    sequence.state_ = std::move(alone);
-    if (auto q = sequence.meet_somewhere(from, object, to)) found->second = std::move(*q);
-  }
-  return found->second;
+  return false;
 }
 
 bool Sequence::hand_over(std::size_t from, std::size_t object, std::size_t to) {
@@ -101,9 +78,6 @@ bool Sequence::hand_over(std::size_t from, std::size_t object, std::size_t to) {
   if (!held_by(from, object))
     return fail(Answer::Kind::Impossible, robots[from].name + " does not hold " + name);
   if (from == to) return fail(Answer::Kind::Impossible, "a robot hands nothing to itself");
-  // What does for most states is tried first.
-  const std::vector<double>& usual = usual_meeting(from, object, to);
-  if (!usual.empty() && meet(from, object, to, usual)) return true;
   if (meet_somewhere(from, object, to)) return true;
   return fail(Answer::Kind::NotFound, "no place was found at which " + robots[to].name + " takes " +
                                           name + " from " + robots[from].name);

@@ -6,6 +6,8 @@
 #include <kaboum/manipulation/words.h>
 #include <kaboum/robot/kinematics.h>
 
+#include <nlohmann/json.hpp>
+
 #include "stopwatch.h"
 
 namespace kaboum::manipulation {
@@ -23,11 +25,12 @@ bool fits(const world::ToolFrame& tool, const world::Grasp& grasp) {
 }
 
 MotionSequence::MotionSequence(const Geometry& geometry, const plan::Question& question,
-                               const GeometricState& state)
+                               world::WorldState state,
+                               std::vector<std::optional<std::size_t>> mounted)
     : geometry_(geometry),
       question_(question),
-      state_(state.world()),
-      mounted_(state.mounted()),
+      state_(std::move(state)),
+      mounted_(std::move(mounted)),
       random_(question.seed),
       last_paths_(geometry.world.robots.size()) {}
 
@@ -38,11 +41,19 @@ bool MotionSequence::fail(Answer::Kind kind, std::string reason) {
 }
 
 Answer MotionSequence::failure() const {
-  return {paths_.empty() ? failed_ : Answer::Kind::NotFound, "", "", reason_};
+  return {motions_.empty() ? failed_ : Answer::Kind::NotFound, "", "", reason_};
 }
 
 Answer MotionSequence::found(std::string value) const {
-  return Answer::found(std::move(value), paths_.dump());
+  nlohmann::json paths = nlohmann::json::array();
+  for (const Motion& motion : motions_) {
+    const world::RobotModel& model = geometry_.world.robots[motion.robot];
+    nlohmann::json& path = paths.emplace_back();
+    path = {{"robot", model.name}, {"path", motion.path}};
+    for (const auto& [object, held] : motion.holds)
+      path["holds"][geometry_.world.objects[object].name] = model.kinematics.links[held.link].name;
+  }
+  return Answer::found(std::move(value), paths.dump());
 }
 
 Transform MotionSequence::pose_of_link(std::size_t robot, std::uint32_t link) const {
@@ -63,9 +74,8 @@ std::optional<world::Attachment> MotionSequence::held_by(std::size_t robot,
 
 bool MotionSequence::is_free(std::size_t robot, const robot::Path& path) const {
   const Stopwatch watch;
-  const bool free =
-      check_motion(geometry_.checker, state_, robot, path, geometry_.options.path.check).outcome ==
-      world::MotionAnswer::Outcome::Free;
+  const bool free = check_motion(geometry_.checker, state_, robot, path, geometry_.check).outcome ==
+                    world::MotionAnswer::Outcome::Free;
   if (GeometryCounters* counters = geometry_.options.counters.get()) {
     ++counters->predicate_calls;
     counters->positive += free ? 0 : 1;
@@ -97,12 +107,11 @@ bool MotionSequence::is_free_at(std::size_t robot, const std::vector<double>& q)
 
 /// What moves, what it holds by which link, and how.
 void MotionSequence::record(std::size_t robot, const robot::Path& path) {
-  const world::RobotModel& model = geometry_.world.robots[robot];
-  nlohmann::json out = {{"robot", model.name}, {"path", path}};
+  Motion& motion = motions_.emplace_back();
+  motion.robot = robot;
+  motion.path = path;
   for (std::size_t o = 0; o < state_.attachments.size(); ++o)
-    if (const auto held = held_by(robot, o))
-      out["holds"][geometry_.world.objects[o].name] = model.kinematics.links[held->link].name;
-  paths_.push_back(std::move(out));
+    if (const auto held = held_by(robot, o)) motion.holds.emplace_back(o, *held);
   state_.q[robot] = path.back();
   last_paths_[robot] = path;
 }

@@ -2,10 +2,6 @@
 
 #include <kaboum/base/random.h>
 
-#include <initializer_list>
-#include <nlohmann/json.hpp>
-#include <span>
-
 #include "geometric_state.h"
 #include "goals.h"
 
@@ -19,8 +15,9 @@ inline constexpr double kSamePose = 1e-6;
 class MotionSequence {
  public:
   /// @param question  its seed and attempt decide what is tried. Must outlive this, as geometry.
-  MotionSequence(const Geometry& geometry, const plan::Question& question,
-                 const GeometricState& state);
+  /// @param mounted   what each object is mounted on.
+  MotionSequence(const Geometry& geometry, const plan::Question& question, world::WorldState state,
+                 std::vector<std::optional<std::size_t>> mounted);
 
   /// To one of some configurations. @return whether it was done.
   bool go(std::size_t robot, const Goals& goals);
@@ -30,6 +27,7 @@ class MotionSequence {
   bool fail(plan::Answer::Kind kind, std::string reason);
 
   [[nodiscard]] const world::WorldState& state() const { return state_; }
+  [[nodiscard]] const std::vector<Motion>& motions() const { return motions_; }
   /// A failure of the first motion is what it is; of later ones it depends on what was chosen
   /// before: not found.
   [[nodiscard]] plan::Answer failure() const;
@@ -56,13 +54,12 @@ class MotionSequence {
   void add_goals(Goals& goals, std::size_t robot, std::uint32_t link,
                  const world::Transform& target) const;
   void record(std::size_t robot, const robot::Path& path);
-  [[nodiscard]] world::WorldState bare_state(std::size_t robot, std::string& key) const;
 
   const Geometry& geometry_;
   const plan::Question& question_;
   world::WorldState state_;
   std::vector<std::optional<std::size_t>> mounted_;
-  nlohmann::json paths_ = nlohmann::json::array();
+  std::vector<Motion> motions_;
   plan::Answer::Kind failed_ = plan::Answer::Kind::Impossible;
   std::string reason_;
   Random random_;
@@ -75,14 +72,7 @@ class MotionSequence {
   [[nodiscard]] motion::PathAnswer look_for_path(const world::WorldState& state, std::size_t robot,
                                                  const Goals& goals,
                                                  const motion::PathOptions& options) const;
-  [[nodiscard]] const robot::Path& usual_path(std::size_t robot, const Goals& goals,
-                                              const motion::PathOptions& options) const;
 };
-
-/// Bits of numbers, as part of a key that tells all of them apart.
-void add_to_key(std::string& key, std::span<const double> values);
-void add_to_key(std::string& key, std::initializer_list<double> values);
-void add_to_key(std::string& key, std::uint64_t number);
 
 /// Whether a tool may hold an object by a grasp: "TOOL/NAME" names the tools that may.
 bool fits(const world::ToolFrame& tool, const world::Grasp& grasp);

@@ -1,5 +1,5 @@
-// Paths of a sequence of motions: the way back, the usual path, straight, along the tool, and by
-// random trees (docs/planning/geometry.md).
+// Paths of a sequence of motions: the way back, straight, along the tool, and by random trees
+// (docs/planning/geometry.md).
 #include <kaboum/robot/kinematics.h>
 
 #include <algorithm>
@@ -25,18 +25,6 @@ std::string name_of(const world::World& world, const std::array<world::Item, 2>&
 }
 
 }  // namespace
-
-void add_to_key(std::string& key, std::span<const double> values) {
-  key.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());  // NOLINT: bits
-}
-
-void add_to_key(std::string& key, std::initializer_list<double> values) {
-  add_to_key(key, std::span(values.begin(), values.size()));
-}
-
-void add_to_key(std::string& key, std::uint64_t number) {
-  key.append(reinterpret_cast<const char*>(&number), sizeof number);  // NOLINT: bits
-}
 
 /// The goals that are free, of the nearest ones: the farthest that a joint has to go decides.
 std::vector<std::vector<double>> MotionSequence::nearest_free(
@@ -93,46 +81,6 @@ motion::PathAnswer MotionSequence::look_for_path(const world::WorldState& state,
   return answer;
 }
 
-/// The state without what the domain moves, but what this robot holds; of that, all that matters is
-/// added to a key.
-world::WorldState MotionSequence::bare_state(std::size_t robot, std::string& key) const {
-  world::WorldState bare = state_;
-  for (std::size_t o = 0; o < bare.absent.size(); ++o) {
-    if (const auto held = held_by(robot, o); held && !bare.absent[o]) {
-      add_to_key(key, o);
-      add_to_key(key, held->link);
-      add_to_key(key, std::span(held->pose.linear.data(), 9));
-      add_to_key(key, std::span(held->pose.translation.data(), 3));
-    } else if (!geometry_.fixed.contains("pose(" + geometry_.world.objects[o].name + ")")) {
-      bare.absent[o] = true;
-      bare.attachments[o].reset();
-    }
-  }
-  return bare;
-}
-
-/// The path there would be if nothing that the domain moves were there, but what this robot holds;
-/// empty: none was found. It is the same whenever it is asked for.
-const robot::Path& MotionSequence::usual_path(std::size_t robot, const Goals& goals,
-                                              const motion::PathOptions& options) const {
-  std::string key;
-  add_to_key(key, robot);
-  for (const auto& q : state_.q) add_to_key(key, q);
-  for (const auto& q : goals.configurations) add_to_key(key, q);
-  add_to_key(key, options.seed);
-  add_to_key(key, {options.most_work});
-  const world::WorldState bare = bare_state(robot, key);
-  constexpr std::size_t kMost = 20'000;  // paths that are kept
-  if (geometry_.usual_paths.size() >= kMost) geometry_.usual_paths.clear();
-  const auto [found, fresh] = geometry_.usual_paths.try_emplace(std::move(key));
-  if (fresh) {
-    motion::PathAnswer answer = look_for_path(bare, robot, goals, options);
-    if (answer.outcome == motion::PathAnswer::Outcome::Found)
-      found->second = std::move(answer.path);
-  }
-  return found->second;
-}
-
 bool MotionSequence::go(std::size_t robot, const std::vector<double>& q) {
   // Back where it came from the same way, if that is free as things are now.
   robot::Path& last = last_paths_[robot];
@@ -153,17 +101,9 @@ bool MotionSequence::go(std::size_t robot, const Goals& goals) {
     return fail(all ? Answer::Kind::Impossible : Answer::Kind::NotFound, reason);
   };
   motion::PathOptions options = geometry_.options.path;
+  options.check = geometry_.check;
   options.seed = question_.seed;
   for (unsigned i = 0; i < question_.attempt; ++i) options.most_work *= kMoreWork;
-  const bool some_end_is_free = std::ranges::any_of(
-      goals.configurations, [&](const std::vector<double>& q) { return is_free_at(robot, q); });
-  // What does for most states is tried first: deciding a path is much cheaper than finding one.
-  if (some_end_is_free)
-    if (const robot::Path& usual = usual_path(robot, goals, options);
-        !usual.empty() && is_free(robot, usual)) {
-      record(robot, usual);
-      return true;
-    }
   const motion::PathAnswer answer = look_for_path(state_, robot, goals, options);
   using Outcome = motion::PathAnswer::Outcome;
   switch (answer.outcome) {

@@ -39,10 +39,14 @@ Goals Sequence::goals_of_reach(std::size_t robot, std::size_t object) const {
   return goals;
 }
 
-bool Sequence::is_in_reach(std::size_t robot, std::size_t object) {
+std::optional<Goals> Sequence::goals_in_reach(std::size_t robot, std::size_t object) {
+  const auto none = [&](Answer::Kind kind, const std::string& reason) {
+    fail(kind, reason);
+    return std::nullopt;
+  };
   const world::Object& thing = geometry_.world.objects[object];
   const world::RobotModel& model = geometry_.world.robots[robot];
-  if (state_.absent[object]) return fail(Answer::Kind::Impossible, thing.name + " is away");
+  if (state_.absent[object]) return none(Answer::Kind::Impossible, thing.name + " is away");
   if (thing.grasps.empty())
     throw Error(ErrorCode::InvalidInput,
                 "object '" + thing.name + "' of the scene has no grasps, which reaching it needs");
@@ -50,19 +54,20 @@ bool Sequence::is_in_reach(std::size_t robot, std::size_t object) {
     throw Error(ErrorCode::InvalidInput,
                 "robot '" + model.name + "' of the scene has no tools, which reaching needs");
   if (held_by(robot, object))
-    return fail(Answer::Kind::Impossible, thing.name + " is held already");
-  const Goals goals = goals_of_reach(robot, object);
-  if (!goals.configurations.empty()) return true;
-  return fail(goals.all ? Answer::Kind::Impossible : Answer::Kind::NotFound,
+    return none(Answer::Kind::Impossible, thing.name + " is held already");
+  Goals goals = goals_of_reach(robot, object);
+  if (!goals.configurations.empty()) return goals;
+  return none(goals.all ? Answer::Kind::Impossible : Answer::Kind::NotFound,
               thing.name + " is out of reach");
 }
 
 bool Sequence::reach(std::size_t robot, std::size_t object) {
-  if (!is_in_reach(robot, object)) return false;
+  const auto goals = goals_in_reach(robot, object);
+  if (!goals) return false;
   if (state_.attachments[object])
     return fail(Answer::Kind::Impossible,
                 geometry_.world.objects[object].name + " is held already");
-  return go(robot, goals_of_reach(robot, object));
+  return go(robot, *goals);
 }
 
 bool Sequence::take(std::size_t robot, std::size_t object) {

@@ -12,7 +12,9 @@ class Sequence : public MotionSequence {
 
   // Each is true when it was done.
   /// Whether inverse kinematics knows a configuration that reaches the object by a grasp.
-  bool is_in_reach(std::size_t robot, std::size_t object);
+  bool is_in_reach(std::size_t robot, std::size_t object) {
+    return goals_in_reach(robot, object).has_value();
+  }
   /// To where a tool holds the object by one of its grasps. It may be held by another robot.
   bool reach(std::size_t robot, std::size_t object);
   /// Holds the object, with what is mounted on it, by the tool that is at one of its grasps.
@@ -44,15 +46,14 @@ class Sequence : public MotionSequence {
   };
 
   [[nodiscard]] Goals goals_of_reach(std::size_t robot, std::size_t object) const;
+  /// nullopt: it is out of reach.
+  std::optional<Goals> goals_in_reach(std::size_t robot, std::size_t object);
   /// Turns about the vertical, or a seat's normal, that are tried.
   [[nodiscard]] std::vector<double> turns();
   bool go_upright(std::size_t robot, std::size_t object, const world::Attachment& held,
                   const Goals& goals, const world::Transform& link_pose);
   bool meet(std::size_t from, std::size_t object, std::size_t to, const std::vector<double>& q);
-  std::optional<std::vector<double>> meet_somewhere(std::size_t from, std::size_t object,
-                                                    std::size_t to);
-  [[nodiscard]] const std::vector<double>& usual_meeting(std::size_t from, std::size_t object,
-                                                         std::size_t to) const;
+  bool meet_somewhere(std::size_t from, std::size_t object, std::size_t to);
 
   std::optional<Target> target_;
 };

@@ -47,27 +47,35 @@ Values between(const Values& a, const Values& b, double share) {
 
 SearchSpace::SearchSpace(const world::Checker& checker, world::WorldState state, std::size_t robot,
                          const PathOptions& options)
-    : checker_(checker), state_(std::move(state)), robot_(robot), options_(options) {
+    : checker_(checker),
+      state_(std::move(state)),
+      robot_(robot),
+      options_(options),
+      scratch_(options.check.scratch != nullptr ? *options.check.scratch : own_.emplace()) {
+  check_.where = false;
+  check_.scratch = &scratch_;
   const world::RobotModel& model = checker.world().robots[robot];
   const std::size_t count = model.kinematics.variables.size();
   weight_.assign(count, 0);
-  const auto weigh = [&](std::uint32_t link, const std::vector<geom::Vec3>& points) {
+  const auto weigh = [&](std::uint32_t link, const sweep::Reach& reach) {
     for (std::size_t i = 0; i < count; ++i) {
       Values to = model.home;
       to[i] += 1;
       const sweep::LinkMotion motion(model.kinematics, link, model.home, to);
       if (motion.moves())
-        weight_[i] = std::max(weight_[i], sweep::MotionBounds(motion, points).derivative(1));
+        weight_[i] = std::max(weight_[i], sweep::MotionBounds(motion, reach).derivative(1));
     }
   };
   for (std::size_t i = 0; i < model.shapes.size(); ++i)
-    weigh(model.shapes[i].link, checker.hull_of({robot, i}));
+    weigh(model.shapes[i].link, checker.reach_of(robot, i));
   for (std::size_t o = 0; o < state_.attachments.size(); ++o) {
     const auto& attachment = state_.attachments[o];
     if (!attachment || attachment->robot != robot) continue;
     std::vector<geom::Vec3> points = checker.hull_of({world::Item::kObject, o});
     for (geom::Vec3& p : points) p = attachment->pose * p;
-    weigh(attachment->link, points);
+    weigh(attachment->link, sweep::reach_of(sweep::LinkMotion(model.kinematics, attachment->link,
+                                                              model.home, model.home),
+                                            points));
   }
   double most = 0;
   for (const double w : weight_) most = std::max(most, w);
@@ -138,7 +146,7 @@ bool SearchSpace::looks_free(const Values& from, const Values& to) {
 }
 
 world::MotionAnswer SearchSpace::check(const robot::Path& path) {
-  world::MotionAnswer answer = check_motion(checker_, state_, robot_, path, options_.check);
+  world::MotionAnswer answer = check_motion(checker_, state_, robot_, path, check_);
   const std::size_t segments = std::min(answer.segment + 1, path.size());
   spent_.motions += segments;
   spent_.intervals += answer.intervals;

@@ -50,8 +50,10 @@ class SearchSpace {
   world::WorldState state_;
   std::size_t robot_;
   const PathOptions& options_;
+  world::MotionOptions check_ = options_.check;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-  world::Scratch scratch_;
+  std::optional<world::Scratch> own_;
+  world::Scratch& scratch_;
   Values weight_;  ///< how far a variable moves points, per unit of it
   Values lower_, upper_, near_lower_, near_upper_;
   double range_ = 1, spacing_ = 1;

@@ -15,16 +15,22 @@ using geom::kUp;
 
 }  // namespace
 
-MotionBounds::MotionBounds(const LinkMotion& motion, std::span<const Vec3> points) {
+Reach reach_of(const LinkMotion& motion, std::span<const Vec3> points) {
   ensure(!points.empty(), "bounds of a body without points");
   const auto& stages = motion.stages_;
-  // Largest distance from the origin of the moved frame of a stage, and across the last axis.
-  double distance = 0, across = 0;
+  Reach out;
   for (const Vec3& p : points) {
     const Vec3 q = motion.after_ * p;
-    distance = std::max(distance, q.norm());
-    if (!stages.empty()) across = std::max(across, (stages.back().across * q).norm());
+    out.distance = std::max(out.distance, q.norm());
+    if (!stages.empty()) out.across = std::max(out.across, (stages.back().across * q).norm());
   }
+  return out;
+}
+
+MotionBounds::MotionBounds(const LinkMotion& motion, const Reach& reach) {
+  const auto& stages = motion.stages_;
+  // Largest distance from the origin of the moved frame of a stage, and across the last axis.
+  double distance = reach.distance, across = reach.across;
   double angles = 0;
   for (std::size_t k = stages.size(); k-- > 0;) {
     const auto& stage = stages[k];

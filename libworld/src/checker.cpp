@@ -16,6 +16,7 @@
 namespace kaboum::world {
 
 using collide::PosedSet;
+using detail::PairRow;
 
 namespace {
 
@@ -54,6 +55,32 @@ Exempt is_exempt(const World& world, const Item& a, const Item& b, bool proofs_h
   return out;
 }
 
+/// Of `count` items, that j is one that i may collide with. @pre i < j, and i not below those
+/// before
+void add(std::vector<PairRow>& rows, std::size_t i, std::size_t j, std::size_t count) {
+  if (rows.empty() || rows.back().item != i)
+    rows.push_back({i, std::vector<std::uint64_t>((count + 63) / 64)});
+  rows.back().others[j / 64] |= std::uint64_t{1} << (j % 64);
+}
+
+/// Calls pair(i, j) until it is true; not for pairs of which skip(i, j) is.
+template <typename Skip, typename Look, typename Pair>
+bool visit_rows(const std::vector<PairRow>& rows, const Skip& skip, const Look& look,
+                const Pair& pair) {
+  for (const auto& [item, others] : rows) {
+    const std::uint64_t* near = look(item);
+    for (std::size_t word = (item + 1) / 64; word < others.size(); ++word) {
+      std::uint64_t left = others[word];
+      if (near != nullptr) left &= near[word];
+      for (; left != 0; left &= left - 1) {
+        const std::size_t j = 64 * word + static_cast<std::size_t>(std::countr_zero(left));
+        if (!skip(item, j) && pair(item, j)) return true;
+      }
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 Contact contact_of(const World& world, const Item& a, const Item& b, const PosedSet& at_a,
@@ -74,7 +101,7 @@ Contact contact_of(const World& world, const Item& a, const Item& b, const Posed
   return out;
 }
 
-Checker::Checker(const World& world) : world_(&world) {
+Checker::Checker(const World& world, Observer* observer) : world_(&world), observer_(observer) {
   for (std::size_t r = 0; r < world.robots.size(); ++r) {
     const RobotModel& robot = world.robots[r];
     const std::size_t n = robot.kinematics.variables.size();
@@ -85,6 +112,7 @@ Checker::Checker(const World& world) : world_(&world) {
       high[i] = std::max(std::min(variable.upper.value_or(kFarthest), kFarthest), low[i]);
     }
     error_.emplace_back();
+    reaches_.emplace_back();
     for (std::size_t s = 0; s < robot.shapes.size(); ++s) {
       const Item item{r, s};
       items_.push_back(item);
@@ -92,8 +120,9 @@ Checker::Checker(const World& world) : world_(&world) {
       radius_.push_back(detail::radius_of(robot.shapes[s].outer));
       if (hulls_[item].empty()) hulls_[item].emplace_back(Vec3::Zero());
       const sweep::LinkMotion motion(robot.kinematics, robot.shapes[s].link, low, high);
+      reaches_.back().push_back(sweep::reach_of(motion, hulls_[item]));
       error_.back().push_back(
-          detail::placement_error(sweep::MotionBounds(motion, hulls_[item]), robot.base));
+          detail::placement_error(sweep::MotionBounds(motion, reaches_.back().back()), robot.base));
     }
     low_.push_back(std::move(low));
     high_.push_back(std::move(high));
@@ -114,9 +143,9 @@ Checker::Checker(const World& world) : world_(&world) {
     const bool proved = items_[i].robot != Item::kObject && proofs_hold[items_[i].robot] != 0;
     for (std::size_t j = i + 1; j < items_.size(); ++j) {
       const Exempt exempt = is_exempt(world, items_[i], items_[j], proved);
-      if (exempt == Exempt::WithinLimits) add(rows_within_limits_, i, j);
+      if (exempt == Exempt::WithinLimits) add(rows_within_limits_, i, j, items_.size());
       if (exempt != Exempt::Nowhere) continue;
-      add(items_[i].robot == Item::kObject ? object_rows_ : robot_rows_, i, j);
+      add(items_[i].robot == Item::kObject ? object_rows_ : robot_rows_, i, j, items_.size());
     }
   }
 }
@@ -129,45 +158,24 @@ bool Checker::is_within_limits(std::size_t robot, const std::vector<double>& q) 
   return true;
 }
 
-void Checker::add(std::vector<Row>& rows, std::size_t i, std::size_t j) const {
-  if (rows.empty() || rows.back().item != i)
-    rows.push_back({i, std::vector<std::uint64_t>((items_.size() + 63) / 64)});
-  rows.back().others[j / 64] |= std::uint64_t{1} << (j % 64);
-}
-
-template <typename Skip, typename Look, typename Pair>
-bool Checker::visit_rows(const std::vector<Row>& rows, const Skip& skip, const Look& look,
-                         const Pair& pair) {
-  for (const auto& [item, others] : rows) {
-    const std::uint64_t* near = look(item);
-    for (std::size_t word = (item + 1) / 64; word < others.size(); ++word) {
-      std::uint64_t left = others[word];
-      if (near != nullptr) left &= near[word];
-      for (; left != 0; left &= left - 1) {
-        const std::size_t j = 64 * word + static_cast<std::size_t>(std::countr_zero(left));
-        if (!skip(item, j) && pair(item, j)) return true;
-      }
-    }
-  }
-  return false;
-}
-
 template <typename Look, typename Pair>
 void Checker::visit(const WorldState& state, const Options& options, const Look& look,
                     const Pair& pair) const {
   const bool carries = std::any_of(state.attachments.begin(), state.attachments.end(),
                                    [](const auto& attachment) { return attachment.has_value(); });
   const auto is_absent = [&](std::size_t i) {
-    return !state.absent.empty() && items_[i].robot == Item::kObject &&
-           state.absent[items_[i].index];
+    const auto& [robot, index] = items_[i];
+    if (robot == Item::kObject) return !state.absent.empty() && state.absent[index];
+    return !state.absent_robots.empty() && state.absent_robots[robot];
   };
   const auto skip = [&](std::size_t i, std::size_t j) {
-    return is_absent(j) || (carries && items_[j].robot == Item::kObject &&
-                            is_carried_by_link(state, items_[j], items_[i], *world_));
+    return is_absent(i) || is_absent(j) ||
+           (carries && items_[j].robot == Item::kObject &&
+            is_carried_by_link(state, items_[j], items_[i], *world_));
   };
   if (visit_rows(robot_rows_, skip, look, pair)) return;
   const auto skip_within_limits = [&](std::size_t i, std::size_t /*j*/) {
-    return is_within_limits(items_[i].robot, state.q[items_[i].robot]);
+    return is_absent(i) || is_within_limits(items_[i].robot, state.q[items_[i].robot]);
   };
   if (visit_rows(rows_within_limits_, skip_within_limits, look, pair)) return;
   if (!carries && !options.resting) return;
@@ -192,8 +200,10 @@ std::vector<std::array<Item, 2>> Checker::pairs(const WorldState& state,
 template <typename Found>
 void Checker::visit_meeting(const WorldState& state, Scratch& scratch, const Options& options,
                             const Found& found) const {
+  if (observer_ != nullptr) observer_->asked(state);
   place(state, scratch);
   Scratch::Impl& s = *scratch.impl_;
+  if (s.memory.empty()) s.memory.resize(items_.size() * items_.size());
   const auto look = [&](std::size_t i) { return s.balls.look_from(i); };
   visit(state, options, look, [&](std::size_t i, std::size_t j) {
     if (s.is_beside_box(i, j) || s.is_beside_box(j, i)) return false;

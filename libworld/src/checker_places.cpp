@@ -27,7 +27,8 @@ constexpr double kSmallDefect = 1e-9;
 void require_joint_values(const World& world, const WorldState& state) {
   bool fits = state.q.size() == world.robots.size() && state.poses.size() == world.objects.size() &&
               state.attachments.size() == world.objects.size() &&
-              (state.absent.empty() || state.absent.size() == world.objects.size());
+              (state.absent.empty() || state.absent.size() == world.objects.size()) &&
+              (state.absent_robots.empty() || state.absent_robots.size() == world.robots.size());
   for (std::size_t r = 0; fits && r < world.robots.size(); ++r)
     fits = state.q[r].size() == world.robots[r].kinematics.variables.size();
   if (!fits) throw Error(ErrorCode::InvalidArgument, "a state of another world");
@@ -37,30 +38,22 @@ void require_joint_values(const World& world, const WorldState& state) {
         throw Error(ErrorCode::InvalidArgument, "a joint value that is not from -1e9 to 1e9");
 }
 
-void require_poses(const World& world, const WorldState& state) {
-  for (std::size_t o = 0; o < state.poses.size(); ++o)
-    if (!state.attachments[o] && !(state.poses[o].translation.cwiseAbs().maxCoeff() <= kLargest))
-      throw Error(ErrorCode::InvalidArgument, "a position that is not from -1e9 to 1e9");
-  for (const auto& a : state.attachments)
-    if (a && (a->robot >= world.robots.size() ||
-              a->link >= world.robots[a->robot].kinematics.links.size()))
-      throw Error(ErrorCode::InvalidArgument, "an attachment to a link that does not exist");
+void require_place(const World& world, const WorldState& state, std::size_t o) {
+  const auto& a = state.attachments[o];
+  if (!a && !(state.poses[o].translation.cwiseAbs().maxCoeff() <= kLargest))
+    throw Error(ErrorCode::InvalidArgument, "a position that is not from -1e9 to 1e9");
+  if (a && (a->robot >= world.robots.size() ||
+            a->link >= world.robots[a->robot].kinematics.links.size()))
+    throw Error(ErrorCode::InvalidArgument, "an attachment to a link that does not exist");
 }
 
-bool are_same(const std::vector<Transform>& a, const std::vector<Transform>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Transform)) == 0;
-}
-
-bool is_any_attached(const WorldState& state) {
-  return std::any_of(state.attachments.begin(), state.attachments.end(),
-                     [](const auto& attachment) { return attachment.has_value(); });
-}
+bool are_same(const Transform& a, const Transform& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
 }  // namespace
 
 void detail::require_fits(const World& world, const WorldState& state) {
   require_joint_values(world, state);
-  require_poses(world, state);
+  for (std::size_t o = 0; o < world.objects.size(); ++o) require_place(world, state, o);
 }
 
 double detail::defect_of(const RobotModel& robot, const LinkPoses& kinematics) {
@@ -75,12 +68,15 @@ void Checker::place(const WorldState& state, Scratch& scratch) const {
   if (s.checker != identity_) start(s);
   std::size_t next = 0;
   for (std::size_t r = 0; r < world_->robots.size(); ++r) next = place_robot(state, r, next, s);
-  const bool carries = is_any_attached(state);
-  if (!carries && are_same(state.poses, s.resting)) return;
-  s.resting.clear();  // also if placing throws
-  require_poses(*world_, state);
-  for (std::size_t o = 0; o < world_->objects.size(); ++o) place_object(state, o, next + o, s);
-  if (!carries) s.resting = state.poses;
+  for (std::size_t o = 0; o < world_->objects.size(); ++o) {
+    if (!state.absent.empty() && state.absent[o]) continue;
+    const bool rests = !state.attachments[o];
+    if (rests && s.resting[o] && are_same(*s.resting[o], state.poses[o])) continue;
+    s.resting[o].reset();  // also if placing throws
+    require_place(*world_, state, o);
+    place_object(state, o, next + o, s);
+    if (rests) s.resting[o] = state.poses[o];
+  }
 }
 
 void Checker::start(Scratch::Impl& s) const {
@@ -95,9 +91,9 @@ void Checker::start(Scratch::Impl& s) const {
     const collide::BoundingSet::Ball& ball = set.set().ball();
     s.hulls.push_back({ball.center, ball.radius * (1 + 1e-8) + 1e-12 * ball.center.lpNorm<1>()});
   }
-  s.memory.assign(n * n, {});
   s.links.resize(world_->robots.size());
   s.held.assign(world_->objects.size(), std::nullopt);
+  s.resting.assign(world_->objects.size(), std::nullopt);
   s.checker = identity_;
 }
 
@@ -106,14 +102,14 @@ std::size_t Checker::place_robot(const WorldState& state, std::size_t r, std::si
   const RobotModel& robot = world_->robots[r];
   const std::vector<double>& q = state.q[r];
   kinematics_[r]->compute(q, s.links[r]);
+  if (!state.absent_robots.empty() && state.absent_robots[r]) return next + robot.shapes.size();
   const bool usual = is_usual(r, q);
   for (std::size_t i = 0; i < robot.shapes.size(); ++i, ++next) {
     const std::uint32_t link = robot.shapes[i].link;
     double error = error_[r][i];
     if (!usual)
       error = detail::placement_error(
-          sweep::MotionBounds(sweep::LinkMotion(robot.kinematics, link, q, q),
-                              hulls_.at(items_[next])),
+          sweep::MotionBounds(sweep::LinkMotion(robot.kinematics, link, q, q), reaches_[r][i]),
           robot.base);
     kinematics_[r]->place(link, s.links[r], s.poses[next]);
     s.put(next, error);
@@ -171,11 +167,15 @@ bool Checker::is_usual(std::size_t robot, const std::vector<double>& q) const {
   return true;
 }
 
-std::vector<Checker::Placed> Checker::places(const WorldState& state) const {
-  Scratch scratch;
+std::vector<Checker::Placed> Checker::places(const WorldState& state,
+                                             const std::vector<Item>& items,
+                                             Scratch& scratch) const {
   place(state, scratch);
   std::vector<Placed> out;
-  for (std::size_t i = 0; i < items_.size(); ++i) out.push_back({items_[i], scratch.impl_->set(i)});
+  for (const Item& item : items) {
+    const auto i = static_cast<std::size_t>(std::ranges::find(items_, item) - items_.begin());
+    out.push_back({item, scratch.impl_->set(i)});
+  }
   return out;
 }
 

@@ -2,49 +2,40 @@
 // apart.
 
 #include <kaboum/base/error.h>
-#include <kaboum/robot/kinematics.h>
 #include <kaboum/world/motion_check.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
-#include "mover.h"
+#include "moving_pairs.h"
 
 namespace kaboum::world {
 namespace {
 
-using collide::PosedSet;
+using detail::MovingPairs;
 using Outcome = MotionAnswer::Outcome;
 
-using detail::Mover;
-
-struct Pair {
-  std::size_t mover = 0;             ///< number of a Mover
-  std::optional<std::size_t> other;  ///< another one, else something that rests
-  std::size_t rest = 0;
-  double speed = 0;  ///< bound of how fast they approach each other in a segment [length]
-};
+std::vector<std::size_t> all_of(const MovingPairs& pairs) {
+  std::vector<std::size_t> all(pairs.pairs().size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return all;
+}
 
 class Motion {
  public:
   Motion(const Checker& checker, const WorldState& state, std::size_t robot,
          const robot::Path& path, const MotionOptions& options)
-      : checker_(checker),
-        world_(checker.world()),
-        model_(world_.robots[robot]),
-        robot_(robot),
+      : world_(checker.world()),
         path_(path),
-        options_(options) {
-    collect(state);
-  }
+        options_(options),
+        moving_(checker, state, robot, path, options.scratch) {}
 
   MotionAnswer run() {
     for (std::size_t i = 0; i == 0 || i + 1 < path_.size(); ++i) {
       segment_ = i;
-      prepare(path_[i], path_[std::min(i + 1, path_.size() - 1)]);
-      std::vector<std::size_t> all(pairs_.size());
-      for (std::size_t k = 0; k < all.size(); ++k) all[k] = k;
-      if (!is_free(0, 1, all)) break;
+      moving_.prepare(i);
+      if (!is_free(0, 1, all_of(moving_))) break;
     }
     // What was merely near at some middle may be found free in its parts.
     if (answer_.outcome != Outcome::Contact && !answer_.meets) answer_.contact.reset();
@@ -52,127 +43,9 @@ class Motion {
   }
 
  private:
-  std::size_t mover_of(const Item& item, const WorldState& state) {
-    for (std::size_t i = 0; i < movers_.size(); ++i)
-      if (movers_[i].item == item) return i;
-    movers_.push_back(detail::mover_of(checker_, state, item));
-    places_.emplace_back(world_.outer(item));
-    return movers_.size() - 1;
-  }
-
-  std::size_t rest_of(const Item& item, const std::vector<Checker::Placed>& placed) {
-    for (std::size_t i = 0; i < resting_.size(); ++i)
-      if (resting_[i].item == item) return i;
-    for (const Checker::Placed& p : placed)
-      if (p.item == item) resting_.push_back(p);
-    return resting_.size() - 1;
-  }
-
-  void collect(const WorldState& state) {
-    WorldState start = state;
-    start.q[robot_] = path_.front();
-    const std::vector<Checker::Placed> placed = checker_.places(start);
-    // A path that leaves the limits makes pairs count that are proved apart within them.
-    for (const std::vector<double>& q : path_)
-      if (!checker_.is_within_limits(robot_, q)) start.q[robot_] = q;
-    for (const auto& [a, b] : checker_.pairs(start, {})) {
-      const bool first = detail::is_moved_by(robot_, a, state),
-                 second = detail::is_moved_by(robot_, b, state);
-      if (!first && !second) continue;
-      Pair pair;
-      pair.mover = mover_of(first ? a : b, state);
-      if (first && second)
-        pair.other = mover_of(b, state);
-      else
-        pair.rest = rest_of(first ? b : a, placed);
-      pairs_.push_back(pair);
-    }
-    memory_.resize(pairs_.size());
-  }
-
-  /// The links from the root to one, itself included.
-  [[nodiscard]] std::vector<std::uint32_t> chain(std::uint32_t link) const {
-    std::vector<std::uint32_t> out;
-    for (;; link = model_.kinematics.joints[link - 1].parent) {
-      out.push_back(link);
-      if (link == 0) break;
-    }
-    std::reverse(out.begin(), out.end());
-    return out;
-  }
-
-  /// Ends of the segment with the variables held that move what both links hang from, so that only
-  /// their motion relative to it counts. Unchanged where such a variable moves one of them as well.
-  [[nodiscard]] std::vector<double> held(std::uint32_t a, std::uint32_t b,
-                                         const std::vector<double>& from,
-                                         const std::vector<double>& to) const {
-    const auto x = chain(a), y = chain(b);
-    std::size_t common = 0;
-    while (common < x.size() && common < y.size() && x[common] == y[common]) ++common;
-    const auto& joints = model_.kinematics.joints;
-    std::vector<double> out = to;
-    const auto moved_by = [&](std::uint32_t link) {
-      return joints[link - 1].type == robot::JointType::Fixed ? out.size()
-                                                              : joints[link - 1].variable;
-    };
-    std::vector<char> below(out.size() + 1, 0);
-    for (const auto* links : {&x, &y})
-      for (std::size_t i = common; i < links->size(); ++i) below[moved_by((*links)[i])] = 1;
-    for (std::size_t i = 1; i < common; ++i) {
-      const std::size_t variable = moved_by(x[i]);
-      if (variable == out.size()) continue;
-      if (below[variable] != 0) return to;
-      out[variable] = from[variable];
-    }
-    return out;
-  }
-
-  [[nodiscard]] double speed_of(const Mover& m, const std::vector<double>& from,
-                                const std::vector<double>& to) const {
-    const sweep::LinkMotion motion(model_.kinematics, m.link, from, to);
-    return motion.moves() ? sweep::MotionBounds(motion, m.points).derivative(1) : 0;
-  }
-
-  void prepare(const std::vector<double>& from, const std::vector<double>& to) {
-    motions_.clear();
-    errors_.clear();
-    std::vector<double> speed;
-    for (const Mover& m : movers_) {
-      motions_.emplace_back(model_.kinematics, m.link, from, to);
-      const sweep::MotionBounds bounds(motions_.back(), m.points);
-      speed.push_back(motions_.back().moves() ? bounds.derivative(1) : 0);
-      errors_.push_back(detail::error_of_motion(m, bounds, speed.back(), model_.base));
-    }
-    for (Pair& pair : pairs_) {
-      pair.speed = speed[pair.mover];
-      if (!pair.other) continue;
-      const Mover &a = movers_[pair.mover], &b = movers_[*pair.other];
-      const std::vector<double> end = held(a.link, b.link, from, to);
-      pair.speed = speed_of(a, from, end) + speed_of(b, from, end);
-    }
-  }
-
   [[nodiscard]] std::optional<collide::BodyPair> ask(std::size_t k, double slack) {
-    const Pair& pair = pairs_[k];
     ++answer_.queries;
-    return find_collision(places_[pair.mover], second(pair), slack, &memory_[k]);
-  }
-
-  [[nodiscard]] const PosedSet& second(const Pair& pair) const {
-    return pair.other ? places_[*pair.other] : resting_[pair.rest].place;
-  }
-
-  void place_movers(double at, const std::vector<std::size_t>& pairs) {
-    placed_.assign(movers_.size(), 0);
-    const auto place = [&](std::size_t m) {
-      if (placed_[m] != 0) return;
-      placed_[m] = 1;
-      places_[m].place(model_.base * motions_[m].at(at) * movers_[m].on_link, errors_[m]);
-    };
-    for (const std::size_t k : pairs) {
-      place(pairs_[k].mover);
-      if (pairs_[k].other) place(*pairs_[k].other);
-    }
+    return moving_.ask(k, slack);
   }
 
   /// Whether these pairs are apart from `begin` to `end`; else the answer is written.
@@ -186,20 +59,27 @@ class Motion {
     }
     const double middle = 0.5 * begin + 0.5 * end;
     const double half = std::max(middle - begin, end - middle) * kUp;
-    place_movers(middle, pairs);
+    moving_.place(middle, pairs);
     // The last stretch: doubles hold no instant between its ends.
     const bool last = !(begin < middle && middle < end);
     std::vector<std::size_t> near;
     double farthest = 0;
     bool contact = false;
     for (const std::size_t k : pairs) {
-      const double slack = pairs_[k].speed * half * kUp;
+      const double slack = moving_.pairs()[k].speed * half * kUp;
       const auto bodies = ask(k, slack);
       if (!bodies) continue;
       near.push_back(k);
       farthest = std::max(farthest, slack);
+      if (contact) continue;
       const auto meeting = slack > 0 ? ask(k, 0) : bodies;
-      if (contact || (!meeting && !last && farthest > options_.resolution)) continue;
+      if (meeting && !options_.where) {
+        note(k, *meeting, middle, true);
+        answer_.outcome = Outcome::Contact;
+        answer_.segment = segment_;
+        return false;
+      }
+      if ((!meeting && !last && farthest > options_.resolution)) continue;
       contact = meeting.has_value();
       note(k, meeting ? *meeting : *bodies, middle, contact);
     }
@@ -216,31 +96,70 @@ class Motion {
   /// Keeps the earliest contact; one that meets rather than one that is merely near.
   void note(std::size_t k, const collide::BodyPair& bodies, double at, bool meets) {
     if (answer_.contact && answer_.meets && !meets) return;
-    const Item& other =
-        pairs_[k].other ? movers_[*pairs_[k].other].item : resting_[pairs_[k].rest].item;
-    answer_.contact = contact_of(world_, movers_[pairs_[k].mover].item, other,
-                                 places_[pairs_[k].mover], second(pairs_[k]), bodies);
+    const MovingPairs::Pair& pair = moving_.pairs()[k];
+    answer_.contact = contact_of(world_, moving_.mover(pair), moving_.other(pair), moving_.first(k),
+                                 moving_.second(k), bodies);
     answer_.meets = meets;
     answer_.contact_segment = segment_;
     answer_.contact_share = at;
   }
 
-  const Checker& checker_;
   const World& world_;
-  const RobotModel& model_;
-  std::size_t robot_;
   const robot::Path& path_;
   const MotionOptions& options_;
-  std::vector<Mover> movers_;
-  std::vector<PosedSet> places_;  ///< of the movers
-  std::vector<char> placed_;
-  std::vector<Checker::Placed> resting_;
-  std::vector<Pair> pairs_;
-  std::vector<collide::Memory> memory_;
+  MovingPairs moving_;
   std::size_t segment_ = 0;
-  std::vector<sweep::LinkMotion> motions_;
-  std::vector<double> errors_;
   MotionAnswer answer_;
+};
+
+/// Which things that rest are in the way of a path; each pair is decided by itself.
+class Obstacles {
+ public:
+  Obstacles(const Checker& checker, const WorldState& state, std::size_t robot,
+            const robot::Path& path, const std::vector<Item>& things, const MotionOptions& options)
+      : path_(path),
+        options_(options),
+        moving_(checker, state, robot, path, options.scratch, &things),
+        intervals_(moving_.pairs().size()) {}
+
+  std::vector<Item> run() {
+    for (std::size_t i = 0; i == 0 || i + 1 < path_.size(); ++i) {
+      moving_.prepare(i);
+      look(0, 1, all_of(moving_));
+    }
+    std::sort(found_.begin(), found_.end());
+    return std::move(found_);
+  }
+
+ private:
+  void look(double begin, double end, const std::vector<std::size_t>& pairs) {
+    const double middle = 0.5 * begin + 0.5 * end;
+    const double half = std::max(middle - begin, end - middle) * kUp;
+    moving_.place(middle, pairs);
+    const bool last = !(begin < middle && middle < end);
+    std::vector<std::size_t> near;
+    for (const std::size_t k : pairs) {
+      const MovingPairs::Pair& pair = moving_.pairs()[k];
+      const Item& thing = moving_.other(pair);
+      if (std::ranges::find(found_, thing) != found_.end()) continue;
+      const double slack = pair.speed * half * kUp;
+      if (!moving_.ask(k, slack)) continue;
+      if (slack <= options_.resolution || last || ++intervals_[k] > options_.most_intervals ||
+          moving_.ask(k, 0))
+        found_.push_back(thing);
+      else
+        near.push_back(k);
+    }
+    if (near.empty()) return;
+    look(begin, middle, near);
+    look(middle, end, near);
+  }
+
+  const robot::Path& path_;
+  const MotionOptions& options_;
+  MovingPairs moving_;
+  std::vector<std::size_t> intervals_;  ///< in which a pair was near
+  std::vector<Item> found_;
 };
 
 }  // namespace
@@ -266,7 +185,16 @@ void detail::require_motion(const Checker& checker, const WorldState& state, std
 MotionAnswer check_motion(const Checker& checker, const WorldState& state, std::size_t robot,
                           const robot::Path& path, const MotionOptions& options) {
   detail::require_motion(checker, state, robot, path, options);
+  if (Observer* observer = checker.observer()) observer->asked(state, robot, path, nullptr);
   return Motion(checker, state, robot, path, options).run();
+}
+
+std::vector<Item> find_obstacles(const Checker& checker, const WorldState& state, std::size_t robot,
+                                 const robot::Path& path, const std::vector<Item>& things,
+                                 const MotionOptions& options) {
+  detail::require_motion(checker, state, robot, path, options);
+  if (Observer* observer = checker.observer()) observer->asked(state, robot, path, &things);
+  return Obstacles(checker, state, robot, path, things, options).run();
 }
 
 }  // namespace kaboum::world

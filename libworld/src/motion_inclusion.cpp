@@ -32,7 +32,7 @@ class MovingInclusion {
       answer_.segment = i;
       const std::vector<double>&from = path[i], &to = path[std::min(i + 1, path.size() - 1)];
       const sweep::LinkMotion motion(model_.kinematics, mover_.link, from, to);
-      const sweep::MotionBounds bounds(motion, mover_.points);
+      const sweep::MotionBounds bounds(motion, mover_.reach);
       speed_ = motion.moves() ? bounds.derivative(1) : 0;
       error_ = detail::error_of_motion(mover_, bounds, speed_, model_.base);
       if (!stays(motion, 0, 1)) break;

@@ -19,8 +19,8 @@ namespace kaboum::world::detail {
 struct Mover {
   Item item;
   std::uint32_t link = 0;
-  Transform on_link;         ///< identity for shapes of links
-  std::vector<Vec3> points;  ///< vertices of its hull, in the link's frame
+  Transform on_link;  ///< identity for shapes of links
+  sweep::Reach reach;
   double grasp_error = 0;
 };
 
@@ -36,8 +36,8 @@ inline bool is_moved_by(std::size_t robot, const Item& item, const WorldState& s
 inline Mover mover_of(const Checker& checker, const WorldState& state, const Item& item) {
   Mover out;
   out.item = item;
-  out.points = checker.hull_of(item);
   if (item.robot != Item::kObject) {
+    out.reach = checker.reach_of(item.robot, item.index);
     out.link = checker.world().robots[item.robot].shapes[item.index].link;
     return out;
   }
@@ -45,7 +45,11 @@ inline Mover mover_of(const Checker& checker, const WorldState& state, const Ite
   out.link = attachment.link;
   out.on_link = attachment.pose;
   out.grasp_error = attachment_error(attachment.pose, radius_of(checker.world().outer(item)));
-  for (Vec3& p : out.points) p = attachment.pose * p;
+  std::vector<Vec3> points = checker.hull_of(item);
+  for (Vec3& p : points) p = attachment.pose * p;
+  const RobotModel& robot = checker.world().robots[attachment.robot];
+  out.reach = sweep::reach_of(sweep::LinkMotion(robot.kinematics, out.link, robot.home, robot.home),
+                              points);
   return out;
 }
 

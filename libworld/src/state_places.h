@@ -34,12 +34,12 @@ struct Scratch::Impl {
     Vec3 center;
     double reach;
   };
-  std::vector<Hull> hulls;                    ///< of all items
-  detail::Balls balls;                        ///< of all items, in the world
-  std::vector<collide::Memory> memory;        ///< of pairs of items, row by row
+  std::vector<Hull> hulls;              ///< of all items
+  detail::Balls balls;                  ///< of all items, in the world
+  std::vector<collide::Memory> memory;  ///< of pairs of items, row by row; from their first use on
   std::vector<std::vector<Transform>> links;  ///< of all robots, to their roots
 
-  std::vector<Transform> resting;  ///< the state's poses last time; empty: something was attached
+  std::vector<std::optional<Transform>> resting;  ///< where objects that rest were put last time
   struct Held {
     std::size_t robot = 0;
     std::uint32_t link = 0;

@@ -23,6 +23,8 @@ struct ExternalOptions {
   double clearance = 1e-3;
   double lift = 0.1;  ///< how far things are lifted to be weighed. > 0 [length]
   std::shared_ptr<GeometryCounters> counters = {};  ///< counted in, if there are some
+  /// Is told what the bounded predicates are asked; may be none.
+  std::shared_ptr<world::Observer> observer = {};
   double upright = 0.26;  ///< most that what is kept upright leans, at any instant. > 0 [rad]
 };
 

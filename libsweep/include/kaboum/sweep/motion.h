@@ -12,6 +12,8 @@ using robot::Mat3;
 using robot::Robot;
 using robot::Transform;
 
+struct Reach;
+
 /// The motion of a link while the variables change linearly, q(s) = from + s · (to − from), s in
 /// [0, 1].
 class LinkMotion {
@@ -33,6 +35,7 @@ class LinkMotion {
 
  private:
   friend class MotionBounds;
+  friend Reach reach_of(const LinkMotion& motion, std::span<const Vec3> points);
   struct Stage {
     Transform before;  // from the joint's frame to the moved frame before it
     bool revolute;
@@ -48,12 +51,24 @@ class LinkMotion {
   std::size_t factors_ = 1;  // transforms that rounding enters by
 };
 
+/// How far a body fixed to a link reaches: all that bounds of the link's motions need of it.
+struct Reach {
+  double distance = 0;  ///< from the origin of the frame that the last joint moves [length]
+  double across = 0;    ///< from that joint's axis [length]
+};
+
+/// The same for all motions of the link.
+/// @param points  whose hull is the body, in the link's frame; not empty.
+Reach reach_of(const LinkMotion& motion, std::span<const Vec3> points);
+
 /// Bounds that hold for all points of a body fixed to the link, for the whole motion, whatever the
 /// configuration. docs/algorithms/swept-volumes.md, "Derivatives".
 class MotionBounds {
  public:
   /// @param points  whose hull is the body, in the link's frame; not empty.
-  MotionBounds(const LinkMotion& motion, std::span<const Vec3> points);
+  MotionBounds(const LinkMotion& motion, std::span<const Vec3> points)
+      : MotionBounds(motion, reach_of(motion, points)) {}
+  MotionBounds(const LinkMotion& motion, const Reach& reach);
 
   /// Σ_k ρ_k (S_kⁿ − S_{k−1}ⁿ) + n Σ_p |ḋ_p| S_pⁿ⁻¹ ≥ |dⁿx/dsⁿ|, rounded up. n ≥ 1. [length]
   [[nodiscard]] double derivative(int n) const;

@@ -12,7 +12,13 @@ namespace kaboum::world {
 
 namespace detail {
 class LinkPoses;
-}
+
+/// Items that an item before them may collide with.
+struct PairRow {
+  std::size_t item = 0;
+  std::vector<std::uint64_t> others;  ///< bit j % 64 of word j / 64
+};
+}  // namespace detail
 
 /// Two things whose bounding sets meet.
 struct Contact {
@@ -42,14 +48,30 @@ class Scratch {
   std::unique_ptr<Impl> impl_;
 };
 
+/// Is told what a checker is asked, by who measures that.
+class Observer {
+ public:
+  Observer() = default;
+  virtual ~Observer() = default;
+  Observer(const Observer&) = delete;
+  Observer& operator=(const Observer&) = delete;
+  /// Of find_contact, find_contacts and is_free.
+  virtual void asked(const WorldState& state) = 0;
+  /// Of check_motion; of find_obstacles too, with the things that it looks at.
+  virtual void asked(const WorldState& state, std::size_t robot,
+                     const std::vector<std::vector<double>>& path,
+                     const std::vector<Item>* things) = 0;
+};
+
 /// Collision of all that is in a world, by the bounded predicates of libcollide
 /// (docs/algorithms/bounded-predicates.md). Looked at are robots' links against objects, other
 /// robots and themselves, except allowed pairs and contacts, and carried objects like links. Pairs
 /// of objects that rest are looked at on request. Const throughout: threads may share it.
 class Checker {
  public:
-  /// Refers to the world, which must not change.
-  explicit Checker(const World& world);
+  /// Refers to the world, which must not change, and to the observer, if there is one: threads may
+  /// share the checker as far as they may share that.
+  explicit Checker(const World& world, Observer* observer = nullptr);
 
   struct Options {
     bool resting = false;  ///< pairs of objects that rest, too
@@ -90,10 +112,18 @@ class Checker {
     Item item;
     collide::PosedSet place;
   };
+  /// Of all items.
   /// @throws as find_contact
-  [[nodiscard]] std::vector<Placed> places(const WorldState& state) const;
+  [[nodiscard]] std::vector<Placed> places(const WorldState& state) const {
+    Scratch scratch;
+    return places(state, items_, scratch);
+  }
+  /// Of some, in their order. @pre none of them is absent.
+  [[nodiscard]] std::vector<Placed> places(const WorldState& state, const std::vector<Item>& items,
+                                           Scratch& scratch) const;
 
   [[nodiscard]] const World& world() const { return *world_; }
+  [[nodiscard]] Observer* observer() const { return observer_; }
 
   /// The pairs that are looked at in states with these attachments, in their order.
   [[nodiscard]] std::vector<std::array<Item, 2>> pairs(const WorldState& state,
@@ -103,6 +133,10 @@ class Checker {
   [[nodiscard]] bool is_within_limits(std::size_t robot, const std::vector<double>& q) const;
   /// Vertices of the hull of a robot's shape or an object, in its frame.
   [[nodiscard]] const std::vector<Vec3>& hull_of(const Item& item) const { return hulls_.at(item); }
+  /// How far a robot's shape reaches.
+  [[nodiscard]] const sweep::Reach& reach_of(std::size_t robot, std::size_t shape) const {
+    return reaches_[robot][shape];
+  }
 
  private:
   void place(const WorldState& state, Scratch& scratch) const;
@@ -117,22 +151,11 @@ class Checker {
   /// Whether error_ holds for these values of a robot's variables.
   [[nodiscard]] bool is_usual(std::size_t robot, const std::vector<double>& q) const;
 
-  /// Items that an item before them may collide with.
-  struct Row {
-    std::size_t item = 0;
-    std::vector<std::uint64_t> others;  ///< bit j % 64 of word j / 64
-  };
-  void add(std::vector<Row>& rows, std::size_t i, std::size_t j) const;
-
   /// Calls pair(i, j) for the numbers of items of pairs that are looked at until it is true; not
-  /// for those whose bit in look(i), as in Row, is 0. All where that is null.
+  /// for those whose bit in look(i), as in PairRow, is 0. All where that is null.
   template <typename Look, typename Pair>
   void visit(const WorldState& state, const Options& options, const Look& look,
              const Pair& pair) const;
-  /// Of some rows. @return whether it was true. `skip(i, j)`: pairs that are not looked at.
-  template <typename Skip, typename Look, typename Pair>
-  static bool visit_rows(const std::vector<Row>& rows, const Skip& skip, const Look& look,
-                         const Pair& pair);
 
   /// Calls found(i, j, bodies) for the pairs in contact until it is true.
   template <typename Found>
@@ -144,14 +167,16 @@ class Checker {
                       const Found& found) const;
 
   const World* world_;
+  Observer* observer_;
   std::shared_ptr<const char> identity_ = std::make_shared<char>();  ///< of this and its copies
   std::vector<Item> items_;
   std::map<Item, std::vector<Vec3>> hulls_;
-  std::vector<double> radius_;  ///< of items_
+  std::vector<double> radius_;                      ///< of items_
+  std::vector<std::vector<sweep::Reach>> reaches_;  ///< of the robots' shapes
   /// Places in items_ of pairs that may collide: with a robot's shape first, of two objects.
-  std::vector<Row> robot_rows_, object_rows_;
+  std::vector<detail::PairRow> robot_rows_, object_rows_;
   /// Those of one robot that may collide beyond its limits only.
-  std::vector<Row> rows_within_limits_;
+  std::vector<detail::PairRow> rows_within_limits_;
   std::vector<std::vector<double>> error_;  ///< of robots' shapes, for values from low_ to high_
   std::vector<std::vector<double>> low_, high_;
   std::vector<std::shared_ptr<const detail::LinkPoses>> kinematics_;  ///< of the robots

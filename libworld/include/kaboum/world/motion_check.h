@@ -10,6 +10,10 @@ struct MotionOptions {
   /// farther apart then counts as contact. > 0 [length]
   double resolution = 1e-5;
   std::size_t most_intervals = 1'000'000;
+  /// Whether it matters where in its segment a path stops being free; else the first contact that
+  /// is seen ends the search, which takes less time: `share` is 0 then.
+  bool where = true;
+  Scratch* scratch = nullptr;  ///< that is used; null: one of its own
 };
 
 struct MotionAnswer {
@@ -44,5 +48,16 @@ struct MotionAnswer {
 ///   fit, and a resolution that is not above 0.
 MotionAnswer check_motion(const Checker& checker, const WorldState& state, std::size_t robot,
                           const robot::Path& path, const MotionOptions& options);
+
+/// Which of some things are in the way of a path: not certainly apart, at every instant, from the
+/// robot and what it carries. Each is decided about by itself, so that what is said of it depends
+/// on nothing else in the state; where none of all the things is in the way, and the path is free
+/// without them, it is free (check_motion).
+/// @param things  shapes of other robots, and objects that this robot does not carry.
+/// @return some of these, ascending.
+/// @throws as check_motion
+std::vector<Item> find_obstacles(const Checker& checker, const WorldState& state, std::size_t robot,
+                                 const robot::Path& path, const std::vector<Item>& things,
+                                 const MotionOptions& options);
 
 }  // namespace kaboum::world

@@ -145,6 +145,8 @@ struct WorldState {
   std::vector<std::optional<Attachment>> attachments;  ///< one for every object
   /// For every object whether it has left the world: nothing is checked of it. Empty: none has.
   std::vector<bool> absent = {};
+  /// Likewise for every robot; what it carries is to be absent as well. Empty: none has.
+  std::vector<bool> absent_robots = {};
 };
 
 /// Robots at home, objects where the scene has them.

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <kaboum/world/motion_check.h>
+
+#include <vector>
+
+#include "mover.h"
+
+namespace kaboum::world::detail {
+
+/// The pairs of things of which at least one moves while a robot goes along a path, placed at
+/// instants of one segment after another.
+class MovingPairs {
+ public:
+  struct Pair {
+    std::size_t mover = 0;             ///< number of a Mover
+    std::optional<std::size_t> other;  ///< another one, else something that rests
+    std::size_t rest = 0;
+    double speed = 0;  ///< bound of how fast they approach each other in a segment [length]
+  };
+
+  /// @param scratch  that is used; may be null.
+  /// @param things  only pairs with one of these that rest; all pairs where it is null.
+  MovingPairs(const Checker& checker, const WorldState& state, std::size_t robot,
+              const robot::Path& path, Scratch* scratch, const std::vector<Item>* things = nullptr);
+
+  [[nodiscard]] const std::vector<Pair>& pairs() const { return pairs_; }
+  [[nodiscard]] const Item& mover(const Pair& pair) const { return movers_[pair.mover].item; }
+  [[nodiscard]] const Item& other(const Pair& pair) const {
+    return pair.other ? movers_[*pair.other].item : resting_[pair.rest].item;
+  }
+
+  /// What is asked from now on is about this segment.
+  void prepare(std::size_t segment);
+  /// Puts what moves, of some pairs, where it is at a share of the segment.
+  void place(double at, const std::vector<std::size_t>& pairs);
+  /// Whether the outer sets of a pair come within `slack` of each other there.
+  [[nodiscard]] std::optional<collide::BodyPair> ask(std::size_t pair, double slack) {
+    return find_collision(first(pair), second(pair), slack, &memory_[pair]);
+  }
+  [[nodiscard]] const collide::PosedSet& first(std::size_t pair) const {
+    return places_[pairs_[pair].mover];
+  }
+  [[nodiscard]] const collide::PosedSet& second(std::size_t pair) const {
+    return pairs_[pair].other ? places_[*pairs_[pair].other] : resting_[pairs_[pair].rest].place;
+  }
+
+ private:
+  std::size_t mover_of(const Item& item, const WorldState& state);
+  [[nodiscard]] std::vector<std::uint32_t> chain(std::uint32_t link) const;
+  [[nodiscard]] std::vector<double> held(std::uint32_t a, std::uint32_t b,
+                                         const std::vector<double>& from,
+                                         const std::vector<double>& to) const;
+  [[nodiscard]] double speed_of(const Mover& m, const std::vector<double>& from,
+                                const std::vector<double>& to) const;
+
+  const Checker& checker_;
+  const World& world_;
+  const RobotModel& model_;
+  const robot::Path& path_;
+  std::vector<Mover> movers_;
+  std::vector<collide::PosedSet> places_;  ///< of the movers
+  std::vector<char> placed_;
+  std::vector<Checker::Placed> resting_;
+  std::vector<Pair> pairs_;
+  std::vector<collide::Memory> memory_;
+  std::vector<sweep::LinkMotion> motions_;
+  std::vector<double> errors_;
+};
+
+}  // namespace kaboum::world::detail
