@@ -29,6 +29,7 @@ class Cell:
 
     def __init__(self, epsilon="0.002"):
         self.robots, self.objects, self.meshes, self.shapes = {}, {}, {}, {}
+        self.files = {}  # of robots that are not made here
         self.epsilon = epsilon
         self.allowed = []
 
@@ -38,6 +39,11 @@ class Cell:
         self.meshes[f"{name}.urdf"] = urdf
         self.robots[name] = {"base": {"position": list(base), "rpy": [0, 0, yaw]}, "home": home,
                              "tools": [{"name": tool_name, "link": "hand", "position": [0, 0, along]}]}
+
+    def real_robot(self, name, file, tool, home, base=(0, 0, 0), yaw=0.0):
+        """Of a URDF elsewhere; `tool`: as in a scene."""
+        self.files[name] = str(file)
+        self.robots[name] = {"base": {"position": list(base), "rpy": [0, 0, yaw]}, "home": home, "tools": [tool]}
 
     def object(self, name, shape, mesh, position, features=(), grasps=(), rpy=(0, 0, 0)):
         """`shape` is the mesh's file; things of one shape share it."""
@@ -51,7 +57,7 @@ class Cell:
             (folder / file).write_text(text)
         command = [tool("kaboum-scene"), "make", "cell.json", "--force", "--quiet", "--epsilon", self.epsilon, "--effort", "fast"]
         for name in self.robots:
-            command += ["--robot", f"{name}={name}.urdf"]
+            command += ["--robot", f"{name}={self.files.get(name, name + '.urdf')}"]
         for name, file in self.shapes.items():
             command += ["--object", f"{name}={file}"]
         subprocess.run(command, check=True, cwd=folder)
@@ -83,7 +89,21 @@ def problem(constants, facts, goal=""):
     return text + (f"goal:\n  {goal}\n" if goal else "")
 
 
-def options(name, n, least, most):
+def misused(text):
+    print(text, file=sys.stderr)
+    sys.exit(2)
+
+
+def collection():
+    """The folder of the mesh collection; ends the program where there is none."""
+    folder = pathlib.Path(os.environ.get("KABOUM_MESHES", ""))
+    if not (folder / "robots").is_dir():
+        misused("--real needs the mesh collection: set KABOUM_MESHES to its folder")
+    return folder.resolve()
+
+
+def options(name, n, least, most, more=lambda parser: None):
+    """@param more  adds options of the scenario's own."""
     parser = argparse.ArgumentParser(description=f"Plans, checks, executes and draws the scenario {name}.")
     parser.add_argument("n", nargs="?", type=int, default=n, help=f"size, {least} to {most} [{n}]")
     parser.add_argument("--seed", type=int, default=1, help="of the planner [1]")
@@ -93,20 +113,21 @@ def options(name, n, least, most):
     parser.add_argument("--scene-only", action="store_true", help="make scene and problem, and stop")
     parser.add_argument("--plan-only", action="store_true", help="plan and check; execute and draw nothing")
     parser.add_argument("--no-cache", action="store_true", help="neither take the scene's answers from earlier runs nor keep them")
+    more(parser)
     o = parser.parse_args()
     if not least <= o.n <= most:
         parser.error(f"N is from {least} to {most}")
     return o
 
 
-def run(name, o, cell, problem_text):
+def run(name, o, cell, problem_text, domain="domain.kpl"):
     """All that comes after scene and problem."""
     out = o.out.resolve()
     cell.make(out)
     (out / "problem.kpl").write_text(problem_text)
     if o.scene_only:
         return 0
-    domain, task, scene = str(HERE / name / "domain.kpl"), str(out / "problem.kpl"), str(out / "cell.json")
+    domain, task, scene = str(HERE / name / domain), str(out / "problem.kpl"), str(out / "cell.json")
     plan, files = str(out / "plan.json"), [domain, task, "--scene", scene]
     result = {"scenario": name, "n": o.n, "seed": o.seed, "solved": False, "actions": 0, "nodes": 0, "leaves": 0, "plan_s": 0.0,
               "predicate_calls": 0, "ik_calls": 0, "executed_branches": 0, "samples": 0, "collisions": 0, "limit_violations": 0}

@@ -74,6 +74,10 @@ END_OF_PAGE
   node "$HERE/play_page.js" "$1/plan.html" "$S/../../tools/player/scene.js" >said.txt 2>&1 || fail "$1: $(tail -5 said.txt)"
 }
 scenario force-sensing 2 10 4
+scenario remove 6 12 1 --robots 2
+python3 -c 'import json; print({n["arguments"][0] for n in json.load(open("remove/plan.json"))["nodes"]})' | grep -q 'arm2.*arm\|arm.*arm2' ||
+  fail "one robot takes all blocks"
+expect 2 'set KABOUM_MESHES' env KABOUM_MESHES= "$S/remove/run" 2 --real ur5 --out none
 scenario bimanual-assembly 4 8 1
 P=$BIN/kaboum-plan
 D=$S/bimanual-assembly/domain.kpl
@@ -91,6 +95,42 @@ sed '/^action move/,/^  effects: add(Kf, conf/d; s/^goal:.*/goal: K(containsBear
 expect 7 'join(robot2, o[12], o4, home): not found.*does not slide into o4' "$P" solve inner.kpl bimanual-assembly/problem.kpl \
   --scene bimanual-assembly/cell.json -o none.json --explain --timeout 8
 [ ! -e none.json ] || fail "a plan was written"
+# A plan that swaps the grasps is refused where it does: a bearing that is held inside goes onto the tree, one that is held outside
+# into the pipe. The same action with the other gripper is accepted.
+"$S/bimanual-assembly/run" 4 --scene-only --out outer --grippers outer,outer || fail "two outer grippers"
+# swapped CELL ACTION ARGUMENTS GOAL_OF_ACTION WHAT_IS_HELD: ACTION of the plan, its robot exchanged, after a plan that leads there.
+swapped() {
+  sed "s/^goal:.*/goal: $5/" "$D" >begun.kpl
+  expect 0 solved "$P" solve begun.kpl "$1/problem.kpl" --scene "$1/cell.json" -o begun.json --no-cache
+  sed "s/^goal:.*/goal: $4/" "$D" >goal.kpl
+  python3 - again.json begun.json "$2" "$3" swapped.json <<'END_OF_SWAP' || fail "a plan that swaps grasps"
+import json, sys
+whole, begun, action, arguments, out = json.load(open(sys.argv[1])), json.load(open(sys.argv[2])), *sys.argv[3:]
+node = next(n for n in whole["nodes"] if n["action"] == action)
+names = dict(zip(node["arguments"], arguments.split(",")))
+for call in node["calls"]:
+    motions = json.loads(call["payload"])
+    for motion in motions:
+        motion["robot"] = names.get(motion["robot"], motion["robot"])
+        if "holds" in motion:
+            motion["holds"] = {names.get(o, o): link for o, link in motion["holds"].items()}
+    call["payload"] = json.dumps(motions, separators=(",", ":"))
+    call["arguments"] = [names.get(a, a) for a in call["arguments"]]
+node.update(arguments=arguments.split(","), next="goal")
+begun["nodes"][-1]["next"] = len(begun["nodes"])
+json.dump(dict(begun, nodes=begun["nodes"] + [node]), open(out, "w"))
+END_OF_SWAP
+  shows "$6" "$7" "$P" check goal.kpl "$1/problem.kpl" --scene "$1/cell.json" --plan swapped.json
+}
+first=$(python3 -c 'import json; print(next(n for n in json.load(open("again.json"))["nodes"] if n["action"] == "assembleBearingTree")["arguments"][1])')
+swapped bimanual-assembly assembleBearingTree "robot1,$first,o4" 'K(containsBearing(o4))' "K(isRobotGrasps(robot1, $first))" 0 valid
+for bearing in o1 o2; do
+  swapped bimanual-assembly assembleBearingTree "robot2,$bearing,o4" 'K(containsBearing(o4))' "K(isRobotGrasps(robot2, $bearing))" \
+    1 "precondition of assembleBearingTree(robot2, $bearing, o4) does not hold"
+  swapped outer assemblePipeBearing "robot1,o3,robot2,$bearing" 'K(containsBearing(o3))' \
+    "K(isRobotGrasps(robot1, o3)) \\& K(isRobotGrasps(robot2, $bearing))" \
+    1 "precondition of assemblePipeBearing(robot1, o3, robot2, $bearing) does not hold"
+done
 # Pages: what is needed; nothing is written where something is missing.
 expect 2 'needs --scene' "$P" show "$D" bimanual-assembly/problem.kpl --plan again.json --html none.html
 expect 2 'would overwrite the input' "$P" show "$@" --plan again.json --html again.json
