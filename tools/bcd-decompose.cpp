@@ -55,13 +55,17 @@ int decompose_mesh(const DecomposeOptions& o) {
   return code_of(certificate);
 }
 
-int decompose(const CLI::App& app, const DecomposeOptions& o) {
+int decompose(const CLI::App& app, DecomposeOptions& o) {
   require_meaning(app, o);
+  apply_preset(app, o);
+  std::vector<std::string> inputs{o.input};
+  if (!o.robot.epsilons.empty()) inputs.push_back(o.robot.epsilons);
   require_apart({{"--output", o.output},
                  {"--report", o.common.report},
+                 {"--html-report", o.robot.html},
                  {"--preview", o.preview},
                  {"--depfile", o.depfile}},
-                {o.input});
+                inputs);
   const ThreadLimit threads(o.common.threads);
   try {
     return is_robot(o.input) ? decompose_robot(o) : decompose_mesh(o);

@@ -2,9 +2,12 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/bmesh/log.h>
+#include <kaboum/certify/mesh_file.h>
 
 #include <CLI/CLI.hpp>
+#include <utility>
 
+#include "decimate_robot.h"
 #include "decimation_case.h"
 #include "extract_levels.h"
 #include "result_files.h"
@@ -116,6 +119,15 @@ bool certify_results(tools::DecimationCase& run) {
   return !shortage || shortage->vertices == 0 || say_shortage(run, *shortage);
 }
 
+int simplify_robot(const CLI::App& app, const tools::DecimationOptions& options) {
+  try {
+    return tools::decimate_robot(app, options);
+  } catch (const certify::TooCoarse& error) {  // a valid "no"
+    tools::log(false, std::string(error.what()) + ". Nothing is written");
+    return tools::kNo;
+  }
+}
+
 int decimate(const tools::DecimationOptions& options) {
   tools::DecimationCase run = case_of(options);
   read(run);
@@ -152,6 +164,9 @@ int main(int argc, char** argv) {
   describe(app, options);
   return tools::run(app, argc, argv, [&] {
     const tools::ThreadLimit limit(options.common.threads);
+    const bool robot = tools::is_robot(options.input);
+    if (robot && (options.from == "collision" || options.from == "visual"))
+      options.robot.geometry = std::exchange(options.from, {});
     if (!options.from.empty()) return extract(app, options);
     require_cost_follows(app, options.cost);
     require_meaning(app, options.preparation);
@@ -159,6 +174,8 @@ int main(int argc, char** argv) {
       tools::require_absent(app, "--prepare " + options.preparation.name,
                             {"--holes", "--require-closed"});
     options.effort_given = app.count("--effort") > 0;
+    if (robot) return simplify_robot(app, options);
+    tools::require_options_of_meshes(app, options.input);
     return decimate(options);
   });
 }

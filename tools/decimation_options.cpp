@@ -34,11 +34,14 @@ void require(bool condition, const char* message) {
 }
 
 void describe_results(CLI::App& app, DecimationOptions& o) {
-  app.add_option("INPUT", o.input, "Mesh to simplify (- for stdin)")->type_name("FILE");
+  app.add_option("INPUT", o.input,
+                 "Mesh to simplify (- for stdin), or a robot (.urdf), every mesh of every link")
+      ->type_name("FILE");
   app.add_option(
          "-o,--output", o.output,
          "Where the result goes (- for stdout); {vertices} in the name stands for the wished "
-         "number of vertices")
+         "number of vertices; of robots a folder, which gets a URDF and the meshes that it refers "
+         "to")
       ->type_name("FILE");
   app.add_option("--direction", o.direction,
                  "outer: the result encloses the input; inner: the input encloses the result; any: "
@@ -63,7 +66,7 @@ void describe_results(CLI::App& app, DecimationOptions& o) {
       ->type_name("FILE");
   app.add_option("--from", o.from,
                  "Instead of INPUT: take results from this progressive file, without computing "
-                 "anything anew")
+                 "anything anew. Of a robot: collision or visual, the same as --geometry")
       ->type_name("FILE");
   app.add_option("--ratio", o.ratio,
                  "Stop at this fraction of the input's welded vertices (0 < R < 1)")
@@ -142,6 +145,10 @@ void describe_files(CLI::App& app, DecimationOptions& o) {
       ->type_name("NAME");
   app.add_option("--output-format", o.output_format, "Format of the result [by extension]")
       ->type_name("NAME");
+  add_robot_options(app, o.robot, false);
+  app.add_flag("--no-cache", o.no_cache,
+               "Of robots: neither use nor store results of earlier runs ($KABOUM_CACHE, else "
+               "$XDG_CACHE_HOME/kaboum, else ~/.cache/kaboum)");
   add_common_options(app, o.common);
   app.footer(
       "Give at least one of --vertices, --ratio and --epsilon; the first one reached stops. With "

@@ -9,6 +9,7 @@
 #include "cli.h"
 #include "holes_option.h"
 #include "preparation_option.h"
+#include "robot_options.h"
 
 namespace CLI {
 class App;
@@ -28,6 +29,8 @@ struct DecimationOptions {
   geom::PrepareOptions prepare;
   HolesOption holes;
   PreparationOption preparation;
+  RobotOptions robot;
+  bool no_cache = false;  ///< of robots
   CommonOptions common;
 
   /// Whether the steps are asked for.

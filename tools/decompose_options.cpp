@@ -6,12 +6,8 @@
 #include <kaboum/io/cad.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <cctype>
-#include <filesystem>
 #include <map>
 
-#include "decompose_robot_options.h"
 #include "set_format.h"
 
 namespace kaboum::tools {
@@ -151,7 +147,7 @@ void describe(CLI::App& app, DecomposeOptions& o) {
   add_search(app, o);
   add_output(app, o);
   add_preparation(app, o);
-  add_robot_options(app, o);
+  add_robot_options(app, o.robot, true);
   app.add_option("--depfile", o.depfile, "Write a Makefile dependency rule")->type_name("FILE");
   app.add_option("--input-format", o.input_format, "Format of INPUT [by extension]")
       ->type_name("NAME");
@@ -176,7 +172,10 @@ void require_meaning(const CLI::App& app, const DecomposeOptions& o) {
     throw Error(ErrorCode::InvalidArgument,
                 "--prepare wrap: what lies in a wrap need not lie in the input; only --direction "
                 "outer");
-  if (!is_robot(o.input)) require_options_of_meshes(app, o);
+  if (!is_robot(o.input)) require_options_of_meshes(app, o.input);
+  if (!is_robot(o.input) && app.count("--from") != 0)
+    throw Error(ErrorCode::InvalidArgument,
+                "--from is for robots (.urdf); " + o.input + " is taken for a mesh");
   if (o.max_total > 0 && o.direction != "outer")
     throw Error(ErrorCode::InvalidArgument, "--max-total-vertices needs --direction outer");
   if (o.pre_step == "on" && o.direction != "outer")
@@ -189,11 +188,8 @@ void require_meaning(const CLI::App& app, const DecomposeOptions& o) {
                 "vertices as the distance allows");
 }
 
-bool is_robot(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  return extension == ".urdf";
+void apply_preset(const CLI::App& app, DecomposeOptions& o) {
+  if (is_robot(o.input)) apply_preset(app, o.output, o.robot, &o.min_thickness);
 }
 
 bool is_cad(const DecomposeOptions& o) {

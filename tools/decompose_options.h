@@ -9,6 +9,7 @@
 #include "cli.h"
 #include "holes_option.h"
 #include "preparation_option.h"
+#include "robot_options.h"
 
 namespace CLI {
 class App;
@@ -20,8 +21,7 @@ namespace kaboum::tools {
 struct DecomposeOptions {
   std::string input, output, input_format, output_format, epsilon, direction = "outer";
   std::string effort = "normal", method = "planes", pre_step = "auto";
-  std::string unit = "m", frame, preview, depfile, geometry = "collision", prefix;
-  std::vector<std::string> packages, links;
+  std::string unit = "m", frame, preview, depfile;
   std::size_t max_bodies = 0, max_vertices = 64, max_total = 0;  ///< 0: not given
   double explode = 0.5, min_thickness = 0;
   std::optional<double> simplify, max_work;
@@ -29,6 +29,7 @@ struct DecomposeOptions {
   geom::PrepareOptions prepare;
   HolesOption holes;
   PreparationOption preparation;
+  RobotOptions robot;
   CommonOptions common;
 };
 
@@ -38,8 +39,8 @@ void describe(CLI::App& app, DecomposeOptions& options);
 /// @throws Error{InvalidArgument}
 void require_meaning(const CLI::App& app, const DecomposeOptions& options);
 
-/// Whether the name is that of a robot.
-bool is_robot(const std::string& path);
+/// Of robots: what --for sets, where nothing else does.
+void apply_preset(const CLI::App& app, DecomposeOptions& options);
 
 /// Whether the input is a STEP or IGES file.
 bool is_cad(const DecomposeOptions& options);

@@ -3,39 +3,27 @@
 #include "decompose_robot.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/certify/robot.h>
+#include <kaboum/io/convex_folder.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/robot/kinematics.h>
 
 #include <algorithm>
+#include <chrono>
 
 #include "decompose_words.h"
 #include "robot_bodies.h"
-#include "robot_folder.h"
-#include "robot_urdf.h"
+#include "robot_output.h"
+#include "robot_page.h"
 #include "set_picture.h"
-#include "urdf_output.h"
 
 namespace kaboum::tools {
 namespace {
 
-void require_folder(const DecomposeOptions& o) {
-  if (o.direction != "outer")
-    throw Error(ErrorCode::InvalidArgument,
-                "--direction inner: decompose the robot's meshes one by one");
-  if (!o.output_format.empty() || o.output == "-")
-    throw Error(ErrorCode::InvalidArgument, "-o: a robot's bodies need a folder");
-  const std::filesystem::path folder(o.output);
-  const bool names_file = is_robot(o.output) || io::format_from_name(folder.extension().string());
-  if (names_file && !is_folder(folder))
-    throw Error(ErrorCode::InvalidArgument,
-                "-o: a robot's bodies need a folder, which gets a URDF, the bodies and a container "
-                "per link; name one without the extension of a file, such as " +
-                    std::filesystem::path(folder).replace_extension().string() + ", not " +
-                    o.output);
-}
-
-certify::RobotRequest robot_request(const DecomposeOptions& o) {
-  certify::RobotRequest r{request_of(o), {o.links, o.geometry == "visual", o.packages}, {}, {}};
+certify::RobotRequest robot_request(const DecomposeOptions& o, const robot::RobotFile& robot,
+                                    const robot::ShapeChoice& choice) {
+  certify::RobotRequest r{
+      request_of(o), choice, {}, {}, read_epsilons(o.robot.epsilons, robot.robot)};
   if (!o.input_format.empty()) r.format = io::format_from_name(o.input_format);
   return r;
 }
@@ -44,17 +32,25 @@ certify::RobotRequest robot_request(const DecomposeOptions& o) {
 struct Run {
   const DecomposeOptions& o;
   robot::RobotFile robot;
-  certify::RobotRequest request;
-  certify::CertifiedRobot made;
-  Notes notes;
+  certify::RobotRequest request = {};
+  certify::CertifiedRobot made = {};
+  std::vector<double> seconds = {};  ///< of each mesh, by the clock [s]
+  Notes notes = {};
   int code = kDone;
+
+  [[nodiscard]] const certify::BodiesCertificate& bodies() const {
+    return made.bodies.certificate();
+  }
 };
 
 void certify_links(Run& run) {
+  using Clock = std::chrono::steady_clock;
   Progress progress(run.o.common.quiet);
   certify::RobotHooks hooks =
       hooks_of(run.notes, [&](const std::string& stage) { progress.show(stage); });
-  hooks.made = [&](const certify::CertifiedLinkMesh& mesh) {
+  hooks.made = [&, last = Clock::now()](const certify::CertifiedLinkMesh& mesh) mutable {
+    run.seconds.push_back(std::chrono::duration<double>(Clock::now() - last).count());
+    last = Clock::now();
     progress.show("");
     const std::string file = mesh.mesh.file.string();
     const certify::SetCertificate& certificate = mesh.made.found.set.certificate();
@@ -70,38 +66,31 @@ void certify_links(Run& run) {
       certify::certify_robot(run.robot, run.request, run.o.no_cache ? nullptr : &cache, hooks);
 }
 
-/// The URDF with the bodies that are written.
-std::string urdf_of(const Run& run, const RobotFolder& folder, RobotUrdf& urdf) {
-  const certify::BodiesCertificate& bodies = run.made.bodies.certificate();
-  const std::string prefix = with_slash(run.o.prefix);
-  std::vector<std::vector<ShapeInUrdf>> of_link(run.robot.robot.links.size());
-  std::vector<std::size_t> count(of_link.size());
-  for (std::size_t s = 0; s < bodies.shapes.size(); ++s) {
-    const robot::LinkShape& shape = bodies.shapes[s];
-    const robot::Link& link = run.robot.robot.links[shape.link];
-    ShapeInUrdf& out = of_link[shape.link].emplace_back();
-    out.first = count[shape.link];
-    if (!shape.mesh) {
-      if (!robot::is_point(bodies.choice.shapes_of(link)[shape.index])) ++count[shape.link];
-      continue;
-    }
-    const std::string& name = folder.bodies_of(s);
-    out.meshes.emplace();
-    for (std::size_t b = 0; b < bodies.meshes[*shape.mesh].made.found.set.artefact().bodies.size();
-         ++b)
-      out.meshes->push_back(std::string(prefix).append("bodies/").append(name).append("/").append(
-                                io::default_name(b, name)) +
-                            ".stl");
-    count[shape.link] += out.meshes->size();
-  }
-  for (std::size_t l = 0; l < of_link.size(); ++l) {
-    const std::string& name = run.robot.robot.links[l].name;
-    if (of_link[l].empty())
-      urdf.keep(name);
-    else
-      urdf.replace(name, run.request.shapes.visual, of_link[l]);
-  }
-  return urdf.text();
+/// The files of the bodies, relative to the folder.
+NewShapes shapes_of(const Run& run, const RobotFolder& folder) {
+  const certify::BodiesCertificate& bodies = run.bodies();
+  return new_shapes(run.robot, bodies.choice, bodies.shapes, [&](std::size_t s) {
+    const std::string& name = folder.name_of(s);
+    std::vector<std::string> out;
+    const std::size_t count =
+        bodies.meshes[*bodies.shapes[s].mesh].made.found.set.artefact().bodies.size();
+    for (std::size_t b = 0; b < count; ++b)
+      out.push_back(folder.part() + "/" + name + "/" + io::default_name(b, name) + "." +
+                    run.o.robot.bodies);
+    return out;
+  });
+}
+
+void write(Run& run, RobotOutput& output) {
+  const bool obj = run.o.robot.bodies == "obj";
+  const auto write_mesh = [&](const StoredMesh& s, const std::filesystem::path& place) {
+    io::write_convex_folder(place, run.bodies().meshes[s.mesh].made.found.set.artefact(), s.name,
+                            obj ? io::Format::Obj : io::Format::Stl);
+  };
+  std::vector<std::pair<std::string, std::span<const char>>> links;
+  for (const certify::CertifiedLink& link : run.made.links)
+    links.emplace_back(run.robot.robot.links[link.certificate().link].name, link.bytes());
+  output.write(shapes_of(run, output.folder()), write_mesh, std::move(links), run.notes);
 }
 
 Json links_report(const Run& run, const std::vector<std::string>& files) {
@@ -110,9 +99,9 @@ Json links_report(const Run& run, const std::vector<std::string>& files) {
     const certify::CertifiedLink& link = run.made.links[i];
     Json report = {{"link", run.robot.robot.links[link.certificate().link].name},
                    {"shapes", link.certificate().shapes}};
-    for (const robot::LinkShape& shape : run.made.bodies.certificate().shapes) {
+    for (const robot::LinkShape& shape : run.bodies().shapes) {
       if (shape.link != link.certificate().link || !shape.mesh) continue;
-      const certify::CertifiedLinkMesh& mesh = run.made.bodies.certificate().meshes[*shape.mesh];
+      const certify::CertifiedLinkMesh& mesh = run.bodies().meshes[*shape.mesh];
       report["meshes"].push_back(
           {{"file", mesh.mesh.file.string()}, {"result", report_of(mesh.made)}});
     }
@@ -137,83 +126,103 @@ geom::ConvexSet at_rest(const Run& run) {
   return out;
 }
 
-std::string counted(std::size_t n, const char* one, const char* many) {
-  return std::to_string(n) + ' ' + (n == 1 ? one : many);
-}
-
-/// What a user should know of the result.
-void say(const Run& run, const RobotFolder& folder, const robot::BareLinks& bare,
-         const std::vector<std::string>& stale) {
-  const bool quiet = run.o.common.quiet;
-  const std::size_t bodies = run.made.bodies.artefact().size();
-  const std::string urdf = folder.urdf().string();
-  log(quiet, urdf + ": " + counted(bodies, "body", "bodies") + " of " +
-                 counted(run.made.links.size(), "link", "links") + ", from " +
-                 counted(run.made.bodies.certificate().meshes.size(), "mesh", "meshes"));
-  log(quiet, how_meshes_are_found(urdf, "bodies", with_slash(run.o.prefix)));
-  for (const std::string& text : run.notes.lines()) log(quiet, text);
-  const bool visual = run.request.shapes.visual;
-  for (const std::string& text :
-       robot::notes_on_flat_shapes(run.robot, visual, run.request.shapes.links))
-    log(quiet, text);
-  if (!stale.empty())
-    log(quiet, std::filesystem::path(run.o.output).string() + ": " + robot::names_of(stale) +
-                   (stale.size() == 1 ? " is" : " are") +
-                   " not of this result (perhaps of an earlier one), and left there");
-  for (const std::string& text :
-       robot::notes_on({{}, bare.other}, visual,
-                       visual ? ", which stay as they are"
-                              : ": nothing of this is covered (--visual covers those)"))
-    log(quiet, run.o.input + ": " + text);
-}
-
-Json robot_report(const Run& run, const RobotFolder& folder, const robot::BareLinks& bare,
-                  const std::vector<std::string>& stale, const std::vector<std::string>& files) {
+Json robot_report(const Run& run, const RobotOutput& output) {
   std::size_t bodies = 0, vertices = 0;
   for (const certify::CertifiedLink& link : run.made.links) {
     bodies += link.artefact().bodies.size();
     for (const geom::ConvexBody& body : link.artefact().bodies)
       vertices += body.hull.vertices.size();
   }
-  return {{"urdf", folder.urdf().string()},
-          {"stale", stale},
-          {"bodies", bodies},
-          {"vertices", vertices},
-          {"meshes", run.made.bodies.certificate().meshes.size()},
-          {"links", links_report(run, files)},
-          {"stop", run.code == kDone ? "done" : "epsilon not reached"},
-          {"links_without_shapes", bare.all()},
-          {"input", {{"file", run.o.input}}},
-          {"parameters", run.request.parameters()}};
+  Json report = output.report();
+  report.update({{"bodies", bodies},
+                 {"vertices", vertices},
+                 {"meshes", run.bodies().meshes.size()},
+                 {"links", links_report(run, output.link_files())},
+                 {"stop", run.code == kDone ? "done" : "epsilon not reached"},
+                 {"input", {{"file", run.o.input}}},
+                 {"parameters", run.request.parameters()}});
+  return report;
+}
+
+/// A link's row of the page: what its sets' certificates say.
+PageLink page_link(const Run& run, const certify::CertifiedLink& link) {
+  const certify::LinkCertificate& c = link.certificate();
+  PageLink out;
+  out.name = run.robot.robot.links[c.link].name;
+  out.shapes = c.shapes;
+  out.reach = c.distance;
+  out.bodies = link.artefact().bodies.size();
+  for (const geom::ConvexBody& body : link.artefact().bodies) {
+    out.vertices += body.hull.vertices.size();
+    append_placed(out.result, body.hull, {});
+  }
+  out.verdict = "cover verified exactly";
+  for (const robot::LinkShape& shape : run.bodies().shapes) {
+    if (shape.link != c.link || !shape.mesh) continue;
+    const certify::CertifiedLinkMesh& mesh = run.bodies().meshes[*shape.mesh];
+    const certify::SetCertificate& set = mesh.made.found.set.certificate();
+    out.meshes.push_back(mesh.mesh.file.filename().string());
+    if (!mesh.made.found.cached) out.seconds = out.seconds.value_or(0) + run.seconds[*shape.mesh];
+    if (set.subject.dropped_sheets > 0) out.verdict += ", without the sheets dropped";
+    if (const std::string why = shortfall(set); !why.empty()) {
+      out.verdict += "; " + why;
+      out.holds = false;
+    }
+  }
+  const auto& own = run.request.epsilons;
+  const auto found = own.find(out.name);
+  const auto epsilon =
+      found == own.end() ? run.request.set.wanted_epsilon() : std::optional(found->second);
+  if (epsilon) out.epsilon = epsilon->text();
+  out.original = drawn_shapes(run.robot, run.bodies().choice, c.link);
+  return out;
+}
+
+void write_page(const Run& run, const RobotOutput& output) {
+  RobotPage page{.robot = run.robot.robot.name,
+                 .source = run.o.input,
+                 .tool = std::string("bcd-decompose ") + version() + " " + run.request.parameters(),
+                 .check = "bound-verify robot " + run.o.input + " " +
+                          output.folder().urdf().string() + " --prepare" +
+                          (run.o.robot.visual() ? " --visual" : ""),
+                 .unit = run.o.unit,
+                 .files = output.documents(),
+                 .notes = run.notes.lines(),
+                 .links = {}};
+  for (const certify::CertifiedLink& link : run.made.links)
+    page.links.push_back(page_link(run, link));
+  io::write_file(run.o.robot.html, to_html(page));
 }
 
 }  // namespace
 
 int decompose_robot(const DecomposeOptions& o) {
-  require_folder(o);
-  Run run{o, robot::read_robot(o.input), robot_request(o), {}, {}};
-  const robot::ShapeChoice& choice = run.request.shapes;
-  RobotFolder folder(o.output, run.robot);
-  RobotUrdf urdf(run.robot, o.output);
-  const robot::LinkMeshes meshes = robot::link_meshes(run.robot, choice);
-  for (const robot::Link& link : run.robot.robot.links)
-    if (choice.has(link))
-      urdf.require_shapes(link.name, choice.visual, choice.shapes_of(link).size());
-  folder.name_bodies(meshes, choice, urdf.mesh_stems());
+  if (o.direction != "outer")
+    throw Error(ErrorCode::InvalidArgument,
+                "--direction inner: decompose the robot's meshes one by one");
+  require_robot_folder(o.output, o.output_format);
+  Run run{o, robot::read_robot(o.input)};
+  RobotOutput output(o.robot, o.output, run.robot, "bodies", "");
+  run.request = robot_request(o, run.robot, output.choice());
+  const certify::WantedMeshes meshes =
+      certify::wanted_meshes(run.robot, run.request.shapes, run.request.epsilons);
+  output.plan(meshes);
   require_formats(meshes, o.input_format);
   certify_links(run);
-  const robot::BareLinks bare = robot::bare_links(run.robot.robot, choice.visual, choice.links);
-  const std::vector<std::string> files = folder.write(run.made, urdf_of(run, folder, urdf));
-  const std::vector<std::string> stale = folder.stale();
-  say(run, folder, bare, stale);
+  write(run, output);
+  log(o.common.quiet, output.folder().urdf().string() + ": " +
+                          counted(run.made.bodies.artefact().size(), "body", "bodies") + " of " +
+                          counted(run.made.links.size(), "link", "links") + ", from " +
+                          counted(run.bodies().meshes.size(), "mesh", "meshes"));
+  output.say(o.common.quiet, run.notes);
   if (!o.preview.empty()) io::write_file(o.preview, picture_of(at_rest(run), o.explode));
-  if (!o.common.report.empty())
-    write_report(o.common, "bcd-decompose", robot_report(run, folder, bare, stale, files));
+  if (!o.robot.html.empty()) write_page(run, output);
+  if (!o.common.report.empty()) write_report(o.common, "bcd-decompose", robot_report(run, output));
   if (!o.depfile.empty()) {
     std::vector<std::string> inputs{o.input};
-    for (std::string& file : strings(run.made.bodies.certificate().files))
-      inputs.push_back(std::move(file));
-    write_depfile(o.depfile, {folder.urdf().string()}, inputs);
+    if (!o.robot.epsilons.empty()) inputs.push_back(o.robot.epsilons);
+    for (std::string& file : strings(run.bodies().files)) inputs.push_back(std::move(file));
+    write_depfile(o.depfile, output.documents(), inputs);
   }
   return run.code;
 }

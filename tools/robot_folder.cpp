@@ -1,4 +1,4 @@
-// The folder of a robot's bodies: whose it is, names in it, what is written.
+// The folder that is made of a robot: whose it is, names in it, what is written.
 
 #include "robot_folder.h"
 
@@ -23,8 +23,13 @@ void create(const fs::path& folder) {
 
 }  // namespace
 
-RobotFolder::RobotFolder(fs::path folder, const robot::RobotFile& robot)
-    : folder_(std::move(folder)), urdf_(folder_ / robot.path.filename()), robot_(robot.robot) {
+RobotFolder::RobotFolder(fs::path folder, const robot::RobotFile& robot, std::string part,
+                         std::string extension)
+    : folder_(std::move(folder)),
+      urdf_(folder_ / robot.path.filename()),
+      part_(std::move(part)),
+      extension_(std::move(extension)),
+      robot_(robot.robot) {
   std::error_code error;
   if (fs::equivalent(urdf_, robot.path, error))
     throw Error(ErrorCode::InvalidArgument,
@@ -32,29 +37,42 @@ RobotFolder::RobotFolder(fs::path folder, const robot::RobotFile& robot)
   require_own();
 }
 
-/// Bodies are named after their meshes: those of another robot in the folder would be replaced.
-void RobotFolder::require_own() const {
-  std::error_code error;
-  if (fs::exists(urdf_, error) && !fs::exists(folder_ / "bodies", error))
-    throw Error(ErrorCode::OutputFailed,
-                urdf_.string() + ": exists, and not with bodies/ beside it as a result of this " +
-                    "program would; remove it or name another folder");
-  for (const auto& entry : fs::directory_iterator(folder_, error))
-    if (entry.path().extension() == ".urdf" && entry.path().filename() != urdf_.filename())
-      throw Error(ErrorCode::OutputFailed,
-                  entry.path().string() +
-                      ": another robot, whose bodies would be replaced; name another folder");
+fs::path RobotFolder::document(const std::string& extension) const {
+  return fs::path(urdf_).replace_extension(extension);
 }
 
-/// No body is to get this name: those of bodies end with a number.
+/// What is new is named after its mesh: that of another robot in the folder would be replaced.
+void RobotFolder::require_own() const {
+  std::error_code error;
+  if (fs::exists(urdf_, error) && !fs::exists(folder_ / part_, error))
+    throw Error(ErrorCode::OutputFailed, urdf_.string() + ": exists, and not with " + part_ +
+                                             "/ beside it as a result of this " +
+                                             "program would; remove it or name another folder");
+  for (const auto& entry : fs::directory_iterator(folder_, error))
+    if (entry.path().extension() == ".urdf" && entry.path().filename() != urdf_.filename())
+      throw Error(ErrorCode::OutputFailed, entry.path().string() + ": another robot, whose " +
+                                               part_ + " would be replaced; name another folder");
+}
+
+/// Files are ours where the robot is: its folder was looked at.
+void RobotFolder::require_replaceable(const fs::path& place) const {
+  std::error_code error;
+  if (fs::exists(place, error) && !fs::exists(urdf_, error))
+    throw Error(ErrorCode::OutputFailed, place.string() +
+                                             ": exists, and not as a result of this program; "
+                                             "remove it or name another folder");
+}
+
+/// No new file is to get this stem: those of bodies end with a number.
 void RobotFolder::reserve_stem(const std::string& stem) {
+  if (!extension_.empty()) names_.reserve(stem);
   const std::size_t dash = stem.rfind('-');
   if (dash != std::string::npos && stem.size() - dash > 4 &&
       stem.find_first_not_of("0123456789", dash + 1) == std::string::npos)
     names_.reserve(stem.substr(0, dash));
 }
 
-void RobotFolder::name_bodies(const robot::LinkMeshes& meshes, const robot::ShapeChoice& choice,
+void RobotFolder::name_meshes(const robot::LinkMeshes& meshes, const robot::ShapeChoice& choice,
                               const std::vector<std::string>& taken) {
   for (const std::string& stem : taken) reserve_stem(stem);
   for (const robot::Link& link : robot_.links) reserve_stem(plain_file_name(link.name));
@@ -62,40 +80,45 @@ void RobotFolder::name_bodies(const robot::LinkMeshes& meshes, const robot::Shap
     std::optional<std::size_t>& index = of_shape_.emplace_back();
     if (!shape.mesh) continue;
     const geom::Vec3& scale = choice.shapes_of(robot_.links[shape.link])[shape.index].size;
-    const auto same = std::find_if(stored_.begin(), stored_.end(), [&](const Stored& s) {
+    const auto same = std::find_if(stored_.begin(), stored_.end(), [&](const StoredMesh& s) {
       return s.mesh == *shape.mesh && s.scale == scale;
     });
     index = static_cast<std::size_t>(same - stored_.begin());
     if (same != stored_.end()) continue;
     const fs::path& file = meshes.meshes[*shape.mesh].file;
-    stored_.push_back({*shape.mesh, scale, names_.unique(file.stem().string())});
-    io::require_replaceable(folder_ / "bodies" / stored_.back().name);
+    const std::string wish = file.stem().string() + (extension_.empty() ? "" : "-outer");
+    stored_.push_back({*shape.mesh, scale, names_.unique(wish)});
+    const fs::path place = folder_ / part_ / (stored_.back().name + extension_);
+    if (extension_.empty())
+      io::require_replaceable(place);
+    else
+      require_replaceable(place);
   }
 }
 
-std::vector<std::string> RobotFolder::write(const certify::CertifiedRobot& made,
-                                            const std::string& urdf) {
-  create(folder_ / "bodies");
-  create(folder_ / "links");
-  for (const Stored& s : stored_)
-    io::write_convex_set(folder_ / "bodies" / s.name,
-                         made.bodies.certificate().meshes[s.mesh].made.found.set.artefact(),
-                         io::SetFormat::Directory, s.name);
+std::vector<std::string> RobotFolder::write(const RobotContents& contents) {
+  for (const auto& [extension, text] : contents.documents) require_replaceable(document(extension));
+  create(folder_ / part_);
+  if (!contents.links.empty()) create(folder_ / "links");
+  for (const StoredMesh& s : stored_)
+    contents.write_mesh(s, folder_ / part_ / (s.name + extension_));
   FileNames names;
-  for (const certify::CertifiedLink& link : made.links) {
-    links_.push_back("links/" + names.unique(robot_.links[link.certificate().link].name) + ".glb");
-    io::write_file(folder_ / links_.back(), link.bytes());
+  for (const auto& [link, container] : contents.links) {
+    links_.push_back("links/" + names.unique(link) + ".glb");
+    io::write_file(folder_ / links_.back(), container);
   }
-  io::write_file(urdf_, urdf);
+  for (const auto& [extension, text] : contents.documents)
+    io::write_file(document(extension), text);
+  io::write_file(urdf_, contents.urdf);
   return links_;
 }
 
 std::vector<std::string> RobotFolder::stale() const {
   std::set<fs::path> written;
-  for (const Stored& s : stored_) written.insert(fs::path("bodies") / s.name);
+  for (const StoredMesh& s : stored_) written.insert(fs::path(part_) / (s.name + extension_));
   for (const std::string& file : links_) written.insert(file);
   std::vector<std::string> out;
-  for (const char* part : {"bodies", "links"}) {
+  for (const std::string& part : {part_, std::string("links")}) {
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(folder_ / part, error)) {
       const fs::path name = fs::path(part) / entry.path().filename();

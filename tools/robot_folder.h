@@ -1,69 +1,92 @@
 #pragma once
 
-#include <kaboum/certify/robot.h>
+#include <kaboum/robot/link_meshes.h>
 
 #include <cstddef>
 #include <filesystem>
-#include <map>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "file_names.h"
 
-/// The folder that bcd-decompose makes of a robot:
-/// - `bodies/MESH/MESH-0000.stl` …: the bodies of every distinct mesh and scale, once; no name of a
-///   file, folder and extension apart, is there twice;
+/// The folder that is made of a robot:
+/// - `bodies/MESH/MESH-0000.stl` …: the bodies of every distinct mesh and scale, once; or
+///   `meshes/MESH.stl`, the meshes round them. No name of a file, folder and extension apart, is
+///   there twice;
 /// - `links/LINK.glb`: all bodies of a link in its frame, enlarged by the rounding of scale and
 ///   pose;
-/// - the URDF under its own name, which refers to the bodies.
-/// What else is in bodies/ and links/ stays.
+/// - the robot in other formats, and the URDF under its own name: they refer to the new files.
+/// What else is in these folders stays.
 namespace kaboum::tools {
+
+/// What is made of one mesh at one scale.
+struct StoredMesh {
+  std::size_t mesh = 0;
+  geom::Vec3 scale;
+  std::string name;  ///< of the folder or file, and the stem of files
+};
+
+/// What is written into the folder.
+struct RobotContents {
+  /// Writes a mesh's files.
+  std::function<void(const StoredMesh& stored, const std::filesystem::path& place)> write_mesh;
+  std::vector<std::pair<std::string, std::span<const char>>>
+      links;                                                   ///< name of the link, container
+  std::vector<std::pair<std::string, std::string>> documents;  ///< extension, text
+  std::string urdf;
+};
 
 class RobotFolder {
  public:
+  /// @param part  folder in it for what stands for meshes: "bodies" or "meshes"
+  /// @param extension  of what is in there; empty: folders
   /// @throws Error{InvalidArgument} where the robot's file would be overwritten;
   ///   Error{OutputFailed} where another robot is in the folder.
-  RobotFolder(std::filesystem::path folder, const robot::RobotFile& robot);
+  RobotFolder(std::filesystem::path folder, const robot::RobotFile& robot, std::string part,
+              std::string extension);
 
   [[nodiscard]] const std::filesystem::path& urdf() const { return urdf_; }
+  [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
+  [[nodiscard]] const std::string& part() const { return part_; }
+  /// The file of another format.
+  [[nodiscard]] std::filesystem::path document(const std::string& extension) const;
 
-  /// Gives every mesh at every scale, mirrored or not, a folder for its bodies: MuJoCo tells meshes
+  /// Gives every mesh at every scale, mirrored or not, a name of its own: MuJoCo tells meshes
   /// apart by the stems of their names, and its versions differ where a mesh has several scales.
   /// @param taken  stems of meshes that stay
   /// @throws Error{OutputFailed} when something else is in the place of one.
-  void name_bodies(const robot::LinkMeshes& meshes, const robot::ShapeChoice& choice,
+  void name_meshes(const robot::LinkMeshes& meshes, const robot::ShapeChoice& choice,
                    const std::vector<std::string>& taken);
 
-  /// The folder in bodies/ of the shape's mesh; of the shapes given to name_bodies by index.
-  [[nodiscard]] const std::string& bodies_of(std::size_t shape) const {
+  /// The name of what stands for the shape's mesh; of the shapes given to name_meshes by index.
+  [[nodiscard]] const std::string& name_of(std::size_t shape) const {
     return stored_[*of_shape_[shape]].name;
   }
 
-  /// Writes bodies/ and links/, then the URDF.
+  /// Writes all; the URDF comes last.
   /// @return the files of the links, relative to the folder.
   /// @throws Error{OutputFailed}; nothing but complete files is left behind.
-  std::vector<std::string> write(const certify::CertifiedRobot& made, const std::string& urdf);
+  std::vector<std::string> write(const RobotContents& contents);
 
-  /// What is in bodies/ and links/ and not of this result, as an earlier one with other options
-  /// leaves it. It stays: it may be somebody's own.
+  /// What is there and not of this result, as an earlier one with other options leaves it. It
+  /// stays: it may be somebody's own.
   /// @pre written
   [[nodiscard]] std::vector<std::string> stale() const;
 
  private:
-  struct Stored {
-    std::size_t mesh = 0;
-    geom::Vec3 scale;
-    std::string name;  ///< of the folder, and the stem of its files
-  };
   void require_own() const;
+  void require_replaceable(const std::filesystem::path& place) const;
   void reserve_stem(const std::string& stem);
 
   std::filesystem::path folder_, urdf_;
+  std::string part_, extension_;
   const robot::Robot& robot_;
   FileNames names_;
-  std::vector<Stored> stored_;
+  std::vector<StoredMesh> stored_;
   std::vector<std::optional<std::size_t>> of_shape_;  // index in stored_
   std::vector<std::string> links_;
 };

@@ -24,6 +24,8 @@ std::vector<XMLElement*> children(XMLElement* element, const char* tag) {
   return out;
 }
 
+constexpr const char* kDeclareConvex = "drake:declare_convex";
+
 const char* tag_of(bool visual) { return visual ? "visual" : "collision"; }
 
 }  // namespace
@@ -32,8 +34,8 @@ RobotUrdf::RobotUrdf(const robot::RobotFile& robot, fs::path folder)
     : file_(robot.path.string()),
       from_(fs::absolute(robot.path).parent_path()),
       folder_(std::move(folder)) {
-  const std::vector<char> bytes = io::read_file(robot.path);
-  if (document_.Parse(bytes.data(), bytes.size()) != tinyxml2::XML_SUCCESS ||
+  bytes_ = io::read_file(robot.path);
+  if (document_.Parse(bytes_.data(), bytes_.size()) != tinyxml2::XML_SUCCESS ||
       document_.RootElement() == nullptr || std::string(document_.RootElement()->Name()) != "robot")
     throw Error(ErrorCode::InvalidInput, file_ + ": not a URDF");
 }
@@ -77,8 +79,8 @@ XMLElement* RobotUrdf::collision(const XMLElement* original, const std::string& 
   return copy;
 }
 
-void RobotUrdf::replace(const std::string& link, bool visual,
-                        const std::vector<ShapeInUrdf>& shapes) {
+void RobotUrdf::replace(const std::string& link, bool visual, const std::vector<NewShape>& shapes,
+                        const MeshNames& names) {
   XMLElement* element = element_of(link);
   const std::vector<XMLElement*> originals = children(element, tag_of(visual));
   const std::vector<XMLElement*> old = children(element, "collision");
@@ -91,29 +93,28 @@ void RobotUrdf::replace(const std::string& link, bool visual,
     for (std::size_t b = 0; b < shapes[i].meshes->size(); ++b) {
       XMLElement* copy = collision(originals[i], link, shapes[i].first + b);
       XMLElement* mesh = copy->FirstChildElement("geometry")->FirstChildElement("mesh");
-      mesh->SetAttribute("filename", (*shapes[i].meshes)[b].c_str());
+      mesh->SetAttribute("filename", (names.prefix + (*shapes[i].meshes)[b]).c_str());
+      mesh->DeleteChildren();
+      if (names.declare_convex) mesh->InsertNewChildElement(kDeclareConvex);
       last = element->InsertAfterChild(last, copy);
     }
   }
   for (XMLElement* e : old) element->DeleteChild(e);
+  if (names.declare_convex)
+    document_.RootElement()->SetAttribute("xmlns:drake", "http://drake.mit.edu");
 }
 
 void RobotUrdf::keep(const std::string& link) {
   for (XMLElement* e : children(element_of(link), "collision")) move_references(e);
 }
 
-/// Names relative to the robot's folder become relative to the new one.
 void RobotUrdf::move_references(XMLElement* element) {
   for (XMLElement* e = element->FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
     const std::string tag = e->Name();
     const char* name = e->Attribute("filename");
     if (tag != "collision") move_references(e);
     if (name == nullptr || (tag != "mesh" && tag != "texture")) continue;
-    const std::string reference = name;
-    if (reference.find("://") != std::string::npos || fs::path(reference).is_absolute()) continue;
-    std::error_code error;
-    const fs::path moved = fs::relative(from_ / reference, fs::absolute(folder_), error);
-    if (!error) e->SetAttribute("filename", moved.generic_string().c_str());
+    e->SetAttribute("filename", moved_reference(name, from_, folder_).c_str());
   }
 }
 

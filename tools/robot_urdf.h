@@ -5,17 +5,18 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include "robot_shapes.h"
 
 namespace kaboum::tools {
 
-/// What stands for a shape of a link in a new URDF.
-struct ShapeInUrdf {
-  /// Names of the bodies' files; none: the shape itself, a box, cylinder or sphere.
-  std::optional<std::vector<std::string>> meshes;
-  std::size_t first = 0;  ///< number in the names of its <collision> elements, and on
+/// How new meshes are named in a URDF.
+struct MeshNames {
+  std::string prefix;           ///< put before them
+  bool declare_convex = false;  ///< for Drake, which takes them for convex then
 };
 
 /// A copy of a robot's URDF in which bodies stand for the links' shapes. Everything else stays;
@@ -35,9 +36,13 @@ class RobotUrdf {
   /// Makes the <collision> elements of a link the bodies, each with the pose and scale of the shape
   /// that it stands for, so that the inclusion holds without rounding.
   /// @param visual  whether they stand for the shapes for drawing
-  void replace(const std::string& link, bool visual, const std::vector<ShapeInUrdf>& shapes);
+  void replace(const std::string& link, bool visual, const std::vector<NewShape>& shapes,
+               const MeshNames& names);
   /// Keeps the <collision> elements of a link.
   void keep(const std::string& link);
+
+  /// The original's text.
+  [[nodiscard]] std::string_view original() const { return {bytes_.data(), bytes_.size()}; }
 
   /// The copy's text, the last thing to be asked for.
   std::string text();
@@ -50,6 +55,7 @@ class RobotUrdf {
 
   std::string file_;
   std::filesystem::path from_, folder_;
+  std::vector<char> bytes_;
   tinyxml2::XMLDocument document_;
 };
 

@@ -36,11 +36,12 @@ std::vector<geom::Vec3> inscribed_points(Geometry g) {
 /// The meshes of a request, each with its inner set, or why it has none.
 class InnerMeshes {
  public:
-  InnerMeshes(const robot::LinkMeshes& found, const RobotRequest& request, const SetCache* cache,
+  InnerMeshes(const WantedMeshes& found, const RobotRequest& request, const SetCache* cache,
               const RobotHooks& hooks)
       : why_(found.meshes.size()) {
     for (std::size_t i = 0; i < found.meshes.size(); ++i) try {
-        made.push_back(certify_link_mesh(found.meshes[i], request, cache, hooks));
+        made.push_back(
+            certify_link_mesh(found.meshes[i], found.epsilons[i], request, cache, hooks));
         if (hooks.made) hooks.made(made.back());
         index_[i] = made.size() - 1;
       } catch (const Error& error) {
@@ -159,7 +160,7 @@ InnerLinks certify_inner_links(const robot::RobotFile& robot, const RobotRequest
                                const SetCache* cache, const RobotHooks& hooks) {
   RobotRequest request = asked;
   request.set.direction = SetRequest::Direction::Inner;
-  const robot::LinkMeshes found = robot::link_meshes(robot, request.shapes);
+  const WantedMeshes found = wanted_meshes(robot, request.shapes, request.epsilons);
   InnerMeshes meshes(found, request, cache, hooks);
   InnerLinks out;
   for (std::size_t s = 0; s < found.shapes.size();) {

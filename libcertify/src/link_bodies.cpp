@@ -15,19 +15,14 @@ using robot::Geometry;
 
 namespace {
 
-/// A percentage as it is; a length in the robot's unit in that of a mesh whose coordinates are
-/// multiplied by `scale`.
-Length in_unit_of_mesh(Length epsilon, double scale) {
-  if (!epsilon.percent) epsilon.value /= scale;
-  return epsilon;
-}
-
-SetRequest request_for(const RobotRequest& request, const geom::Vec3& scale) {
+SetRequest request_for(const RobotRequest& request, const std::optional<Length>& epsilon,
+                       const geom::Vec3& scale) {
   SetRequest out = request.set;
-  if (out.epsilon) out.epsilon = in_unit_of_mesh(*out.epsilon, scale.maxCoeff());
+  if (epsilon) out.epsilon = epsilon;
+  if (out.epsilon) out.epsilon = in_unit_of_mesh(*out.epsilon, scale);
   if (out.wrap)
     for (std::optional<Length>* length : {&out.wrap->offset, &out.wrap->seal})
-      if (*length) *length = in_unit_of_mesh(**length, scale.maxCoeff());
+      if (*length) *length = in_unit_of_mesh(**length, scale);
   // A little more than rounding takes away.
   if (out.min_thickness > 0) out.min_thickness = out.min_thickness / scale.minCoeff() * (1 + 1e-12);
   return out;
@@ -35,9 +30,11 @@ SetRequest request_for(const RobotRequest& request, const geom::Vec3& scale) {
 
 }  // namespace
 
-CertifiedLinkMesh certify_link_mesh(const robot::LinkMesh& mesh, const RobotRequest& request,
-                                    const SetCache* cache, const RobotHooks& hooks) {
-  const SetRequest asked = request_for(request, mesh.scale);
+CertifiedLinkMesh certify_link_mesh(const robot::LinkMesh& mesh,
+                                    const std::optional<Length>& epsilon,
+                                    const RobotRequest& request, const SetCache* cache,
+                                    const RobotHooks& hooks) {
+  const SetRequest asked = request_for(request, epsilon, mesh.scale);
   Hooks of_mesh{hooks.progress, {}};
   if (hooks.note)
     of_mesh.note = [&](const std::string& text) { hooks.note(mesh.file.string(), text); };
@@ -90,7 +87,16 @@ void place_shape(const Geometry& g, const geom::ConvexSet* set, const std::strin
 }  // namespace
 
 std::string RobotRequest::parameters() const {
-  return set.parameters() + (shapes.visual ? " --geometry visual" : "");
+  std::string out = set.parameters() + (shapes.visual ? " --geometry visual" : "");
+  for (const auto& [link, epsilon] : epsilons) out += " " + link + ": " + epsilon.text();
+  return out;
+}
+
+std::string RobotRequest::parameters(const std::string& link) const {
+  RobotRequest own{set, shapes, format, tool, {}};
+  if (const auto found = epsilons.find(link); found != epsilons.end())
+    own.set.epsilon = found->second;
+  return own.parameters();
 }
 
 double distance_of(const robot::RobotFile& robot, const BodiesCertificate& bodies,
@@ -105,14 +111,15 @@ CertifiedBodies certify_bodies(const robot::RobotFile& robot, const RobotRequest
                                const SetCache* cache, const RobotHooks& hooks) {
   if (request.set.direction != SetRequest::Direction::Outer)
     throw Error(ErrorCode::InvalidArgument, "a robot's links are held by outer sets only");
-  robot::LinkMeshes found = robot::link_meshes(robot, request.shapes);
+  WantedMeshes found = wanted_meshes(robot, request.shapes, request.epsilons);
   BodiesCertificate out;
   std::vector<robot::LinkBody> bodies;
   out.choice = request.shapes;
-  for (const robot::LinkMesh& mesh : found.meshes) {
-    out.meshes.push_back(certify_link_mesh(mesh, request, cache, hooks));
+  for (std::size_t i = 0; i < found.meshes.size(); ++i) {
+    out.meshes.push_back(
+        certify_link_mesh(found.meshes[i], found.epsilons[i], request, cache, hooks));
     const CertifiedFile& made = out.meshes.back().made;
-    out.files.push_back(mesh.file);
+    out.files.push_back(found.meshes[i].file);
     out.files.insert(out.files.end(), made.other_files.begin(), made.other_files.end());
     if (hooks.made) hooks.made(out.meshes.back());
   }

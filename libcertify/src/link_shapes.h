@@ -6,8 +6,11 @@
 namespace kaboum::certify {
 
 /// The set of one mesh of a robot, in the mesh's own frame and unit.
-CertifiedLinkMesh certify_link_mesh(const robot::LinkMesh& mesh, const RobotRequest& request,
-                                    const SetCache* cache, const RobotHooks& hooks);
+/// @param epsilon  instead of the request's, in the robot's unit
+CertifiedLinkMesh certify_link_mesh(const robot::LinkMesh& mesh,
+                                    const std::optional<Length>& epsilon,
+                                    const RobotRequest& request, const SetCache* cache,
+                                    const RobotHooks& hooks);
 
 /// Whether scaling and placing a mesh's float32 vertices rounds nothing.
 bool is_placed_exactly(const robot::Geometry& g);

@@ -3,16 +3,53 @@
 #include <kaboum/certify/mesh_file.h>
 #include <kaboum/io/cad.h>
 
+#include "known_file.h"
+
 namespace kaboum::certify {
 namespace {
 
+namespace fs = std::filesystem;
+
 /// The triangles of a file; those of a CAD file stand for its exact faces, which a wrap holds.
-io::ReadResult read_triangles(const std::filesystem::path& file, std::optional<io::Format> format,
+io::ReadResult read_triangles(const fs::path& file, std::optional<io::Format> format,
                               std::vector<char>& bytes, SetRequest& request) {
   if (format || !io::is_cad_file(file)) return io::read_mesh(file, format, &bytes);
   io::CadResult cad = io::read_cad(file, &bytes);
   if (request.wrap) request.wrap->clearance = cad.deviation;
   return std::move(cad.read);
+}
+
+/// What the file is known to say of itself takes the place of what was asked for.
+SetRequest with_unit(SetRequest request, const std::string& unit, const Hooks& hooks) {
+  if (unit.empty() || unit == request.unit) return request;
+  if (hooks.note && !request.unit.empty())
+    hooks.note("Its vertices are in " + unit + " as read, and so is its set, not in " +
+               request.unit + ".");
+  request.unit = unit;
+  return request;
+}
+
+void say(const std::vector<std::string>& notes, const Hooks& hooks) {
+  if (!hooks.note) return;
+  for (const std::string& text : notes) hooks.note(text);
+}
+
+/// The result of an earlier run, where the file has the bytes that it had then.
+std::optional<CertifiedFile> find_file(const fs::path& file, std::optional<io::Format> format,
+                                       const SetRequest& request, const SetCache& cache,
+                                       const Hooks& hooks) {
+  if (file == "-" || (!format && io::is_cad_file(file))) return std::nullopt;
+  const std::optional<KnownFile> known =
+      find_known(CacheFolder(cache.folder()), file, format, io::sha256(io::read_file(file)));
+  if (!known) return std::nullopt;
+  std::string flaw;
+  auto set = cache.find(
+      SetCache::key_of(known->mesh_hash, known->sha256, with_unit(request, known->unit, {})), flaw);
+  if (!set) return std::nullopt;
+  say(known->notes, hooks);
+  with_unit(request, known->unit, hooks);
+  say(set->certificate().notes, hooks);
+  return CertifiedFile{known->sha256, known->notes, {}, {std::move(*set), true}};
 }
 
 }  // namespace
@@ -23,20 +60,19 @@ TooCoarse::TooCoarse(const std::string& file)
                 ": float32 is too coarse so far from the origin (or for this epsilon); move the "
                 "mesh to the origin") {}
 
-CertifiedFile certify_file(const std::filesystem::path& file, std::optional<io::Format> format,
+CertifiedFile certify_file(const fs::path& file, std::optional<io::Format> format,
                            SetRequest request, const SetCache* cache, const Hooks& hooks) {
+  request.source = file.filename().string();
+  if (cache != nullptr)
+    if (auto found = find_file(file, format, request, *cache, hooks)) return std::move(*found);
   std::vector<char> bytes;
   io::ReadResult read = read_triangles(file, format, bytes, request);
-  if (hooks.note)
-    for (const std::string& text : read.notes) hooks.note(text);
-  request.source = file.filename().string();
-  if (!read.unit.empty() && read.unit != request.unit) {
-    if (hooks.note && !request.unit.empty())
-      hooks.note("Its vertices are in " + read.unit + " as read, and so is its set, not in " +
-                 request.unit + ".");
-    request.unit = read.unit;
-  }
+  say(read.notes, hooks);
+  request = with_unit(std::move(request), read.unit, hooks);
   const std::string sha256 = io::sha256(bytes);
+  if (cache != nullptr && file != "-")
+    store_known(CacheFolder(cache->folder()), file, format, bytes, SetCache::hash_of(read.mesh),
+                read);
   auto found = [&] {
     try {
       return find_or_certify(read.mesh, sha256, request, cache, hooks);

@@ -23,7 +23,7 @@ geom::Provenance origin_of(const robot::RobotFile& robot, const RobotRequest& re
   p.source = robot.path.filename().string();
   p.source_sha256 = robot.sha256;
   p.tool = request.tool.empty() ? "bcd-decompose " KABOUM_VERSION : request.tool;
-  p.parameters = request.parameters();
+  p.parameters = request.parameters(robot.robot.links[link].name);
   p.unit = request.set.unit;
   p.frame = robot.robot.links[link].name;
   p.direction = "outer";

@@ -27,21 +27,6 @@ constexpr const char* kContainer = "coloured";
 // An entry's content is the certificate in one line, and the container.
 constexpr std::string_view kFormat = "KABOUM-SET 3";
 
-/// Hash of the triangles as read. Their bytes say more than a file's, which may refer to others,
-/// and than a reader's version.
-std::string hash_of(const geom::Mesh& mesh) {
-  std::vector<char> bytes;
-  const auto append = [&](const void* data, std::size_t size) {
-    const auto* begin = static_cast<const char*>(data);
-    bytes.insert(bytes.end(), begin, begin + size);
-  };
-  const std::uint64_t vertices = mesh.vertices.size();
-  append(&vertices, sizeof vertices);
-  for (const geom::Vec3& v : mesh.vertices) append(v.data(), 3 * sizeof(double));
-  for (const geom::Triangle& t : mesh.triangles) append(t.data(), sizeof t);
-  return io::sha256(bytes);
-}
-
 /// @throws Error saying why the entry is not that of the key.
 CertifiedSet read_entry(std::string_view rest, const SetCache::Key& key) {
   const auto fail = [](const char* why) -> void { throw Error(ErrorCode::InvalidInput, why); };
@@ -68,10 +53,28 @@ CertifiedSet read_entry(std::string_view rest, const SetCache::Key& key) {
 
 fs::path SetCache::default_folder() { return CacheFolder::default_folder(); }
 
+std::string SetCache::hash_of(const geom::Mesh& mesh) {
+  std::vector<char> bytes;
+  const auto append = [&](const void* data, std::size_t size) {
+    const auto* begin = static_cast<const char*>(data);
+    bytes.insert(bytes.end(), begin, begin + size);
+  };
+  const std::uint64_t vertices = mesh.vertices.size();
+  append(&vertices, sizeof vertices);
+  for (const geom::Vec3& v : mesh.vertices) append(v.data(), 3 * sizeof(double));
+  for (const geom::Triangle& t : mesh.triangles) append(t.data(), sizeof t);
+  return io::sha256(bytes);
+}
+
 SetCache::Key SetCache::key_of(const geom::Mesh& mesh, const std::string& sha256,
                                const SetRequest& r) {
+  return key_of(hash_of(mesh), sha256, r);
+}
+
+SetCache::Key SetCache::key_of(const std::string& mesh_hash, const std::string& sha256,
+                               const SetRequest& r) {
   const double clearance = r.wrap ? r.wrap->clearance : 0;
-  const std::string text = hash_of(mesh) + '\n' +
+  const std::string text = mesh_hash + '\n' +
                            std::to_string(std::bit_cast<std::uint64_t>(clearance)) + '\n' + sha256 +
                            '\n' + r.parameters() + '\n' + r.unit + '\n' + r.frame + '\n' +
                            r.source + '\n' + KABOUM_VERSION + '\n' + kAlgorithm + '\n' + kContainer;

@@ -2,6 +2,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/base/json_damage.h>
 #include <kaboum/geom/topology.h>
+#include <kaboum/io/convex_folder.h>
 #include <kaboum/io/convex_io.h>
 #include <unistd.h>
 
@@ -73,19 +74,27 @@ bool natural_less(const std::string& a, const std::string& b) {
   return a < b;
 }
 
-bool is_stl(const fs::path& path) {
-  return same_word(path.extension().string(), ".stl") && path.filename().string().front() != '.';
+/// The files of a folder that are bodies: STL, or where there is none, OBJ.
+std::vector<fs::path> body_files(const fs::path& folder, std::error_code& error) {
+  for (const char* extension : {".stl", ".obj"}) {
+    std::vector<fs::path> files;
+    for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+      if (same_word(at->path().extension().string(), extension) &&
+          at->path().filename().string().front() != '.')
+        files.push_back(at->path());
+    if (error || !files.empty()) return files;
+  }
+  return {};
 }
 
 geom::ConvexSet read_directory(const fs::path& path, SetReadDetails& details) {
-  std::vector<fs::path> files;
   std::error_code error;
-  for (fs::directory_iterator at(path, error), end; !error && at != end; at.increment(error))
-    if (is_stl(at->path())) files.push_back(at->path());
+  std::vector<fs::path> files = body_files(path, error);
   const Source source{{}, path.native(), {}, true};
   if (error) fail(source, "the folder cannot be read: " + error.message());
   if (files.empty() && !fs::exists(path / kRecordFile, error))
-    fail(source, "the folder holds no STL file; a set is stored as one STL file per body");
+    fail(source,
+         "the folder holds no STL file (nor OBJ files); a set is stored as one STL file per body");
   std::ranges::sort(files, [](const fs::path& a, const fs::path& b) {
     return natural_less(a.filename().string(), b.filename().string());
   });
@@ -93,7 +102,7 @@ geom::ConvexSet read_directory(const fs::path& path, SetReadDetails& details) {
   details.single_precision = true;
   for (const fs::path& file : files) {
     std::vector<char> bytes;
-    ReadResult read = read_mesh(file, Format::Stl, &bytes);
+    ReadResult read = read_mesh(file, {}, &bytes);
     details.single_precision = details.single_precision && read.single_precision;
     details.bytes.insert(details.bytes.end(), bytes.begin(), bytes.end());
     for (const std::string& note : read.notes)
@@ -179,11 +188,12 @@ std::optional<std::string> stem_of(const fs::path& folder) {
   return stem;
 }
 
-/// Whether a file of a folder has a name that write_directory gives.
+/// Whether a file of a folder has a name that write_convex_folder gives.
 bool is_part_of_set(const fs::path& file, const std::string& files) {
   if (file.filename() == kRecordFile) return true;
   const std::string stem = file.stem().string(), start = files + "-";
-  return file.extension() == ".stl" && stem.size() >= start.size() + 4 && stem.starts_with(start) &&
+  return (file.extension() == ".stl" || file.extension() == ".obj") &&
+         stem.size() >= start.size() + 4 && stem.starts_with(start) &&
          stem.find_first_not_of("0123456789", start.size()) == std::string::npos;
 }
 
@@ -195,42 +205,6 @@ fs::path target_of(const fs::path& path) {
 
 [[noreturn]] void cannot_write(const fs::path& path, const std::string& why) {
   throw Error(ErrorCode::OutputFailed, path.string() + ": cannot be written: " + why);
-}
-
-void write_directory(const fs::path& path, const geom::ConvexSet& set, const std::string& stem) {
-  const auto cannot = [&](const std::string& why) { cannot_write(path, why); };
-  refuse_margin(set, "STL");
-  const geom::ConvexSet clean = cleaned(set);
-  require_replaceable(path);
-  std::error_code error;
-  const fs::path target = target_of(path);
-  const bool exists = fs::exists(target, error);
-  const fs::path parent = target.has_parent_path() ? target.parent_path() : fs::path(".");
-  const std::string suffix = std::to_string(::getpid()) + ".tmp";
-  const fs::path fresh = parent / (".kaboum-new-" + suffix),
-                 old = parent / (".kaboum-old-" + suffix);
-  fs::remove_all(fresh, error);
-  if (!fs::create_directory(fresh, error))
-    cannot("no folder can be created in '" + parent.string() + "': " + error.message());
-  try {
-    for (std::size_t i = 0; i < clean.bodies.size(); ++i)
-      write_file(fresh / (default_name(i, stem) + ".stl"),
-                 serialise_mesh(clean.bodies[i].hull, Format::Stl));
-    Json record = record_of(clean);
-    record[kStem] = stem;
-    write_file(fresh / kRecordFile,
-               record.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
-    if (exists) fs::rename(target, old);
-    fs::rename(fresh, target);
-  } catch (const std::system_error& e) {
-    if (exists && !fs::exists(target, error)) fs::rename(old, target, error);
-    fs::remove_all(fresh, error);
-    cannot(e.code().message());
-  } catch (...) {
-    fs::remove_all(fresh, error);
-    throw;
-  }
-  if (exists) fs::remove_all(old, error);
 }
 
 }  // namespace
@@ -248,6 +222,45 @@ void require_replaceable(const fs::path& folder) {
                                "', which is no part of a convex set written here; name another "
                                "folder");
   if (error) cannot_write(folder, error.message());
+}
+
+void write_convex_folder(const fs::path& path, const geom::ConvexSet& set, const std::string& stem,
+                         Format bodies) {
+  if (bodies != Format::Stl && bodies != Format::Obj)
+    throw Error(ErrorCode::InvalidArgument, "the bodies of a folder are STL or OBJ files");
+  const auto cannot = [&](const std::string& why) { cannot_write(path, why); };
+  refuse_margin(set, "STL");
+  const geom::ConvexSet clean = cleaned(set);
+  require_replaceable(path);
+  std::error_code error;
+  const fs::path target = target_of(path);
+  const bool exists = fs::exists(target, error);
+  const fs::path parent = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  const std::string suffix = std::to_string(::getpid()) + ".tmp";
+  const fs::path fresh = parent / (".kaboum-new-" + suffix),
+                 old = parent / (".kaboum-old-" + suffix);
+  fs::remove_all(fresh, error);
+  if (!fs::create_directory(fresh, error))
+    cannot("no folder can be created in '" + parent.string() + "': " + error.message());
+  try {
+    for (std::size_t i = 0; i < clean.bodies.size(); ++i)
+      write_file(fresh / (default_name(i, stem) + (bodies == Format::Obj ? ".obj" : ".stl")),
+                 serialise_mesh(clean.bodies[i].hull, bodies));
+    Json record = record_of(clean);
+    record[kStem] = stem;
+    write_file(fresh / kRecordFile,
+               record.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    if (exists) fs::rename(target, old);
+    fs::rename(fresh, target);
+  } catch (const std::system_error& e) {
+    if (exists && !fs::exists(target, error)) fs::rename(old, target, error);
+    fs::remove_all(fresh, error);
+    cannot(e.code().message());
+  } catch (...) {
+    fs::remove_all(fresh, error);
+    throw;
+  }
+  if (exists) fs::remove_all(old, error);
 }
 
 std::string default_name(std::size_t index, std::string_view stem) {
@@ -362,7 +375,7 @@ void write_convex_set(const fs::path& path, const geom::ConvexSet& set,
                 path.string() +
                     ": convex sets are written as .glb, .obj, or a folder (a name without "
                     "extension)");
-  if (*format == SetFormat::Directory) return write_directory(path, set, stem);
+  if (*format == SetFormat::Directory) return write_convex_folder(path, set, stem, Format::Stl);
   write_file(path, serialise_convex_set(set, *format));
 }
 

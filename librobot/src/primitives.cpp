@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "model_words.h"
+
 namespace kaboum::robot {
 namespace {
 
@@ -69,13 +71,12 @@ std::vector<Vec3> sphere(double radius) {
   return points;
 }
 
-/// Sizes none of which is 0. What is added leaves the verifier room to decide.
-Vec3 thickened(const Vec3& size) {
-  const double least = 0.005 * size.maxCoeff();
-  return (size.array() == 0).select(least, size);
-}
-
 }  // namespace
+
+Vec3 solid_size(const Geometry& geometry) {
+  const double least = 0.005 * geometry.size.maxCoeff();
+  return (geometry.size.array() == 0).select(least, geometry.size);
+}
 
 bool is_flat(const Geometry& g) {
   return g.shape != Geometry::Shape::Mesh && (g.size.array() == 0).any();
@@ -108,7 +109,7 @@ std::string describe(const Geometry& g) {
 
 double bounding_excess(const Geometry& g) {
   if (g.shape == Geometry::Shape::Mesh) return 0;
-  const Vec3 size = thickened(g.size);
+  const Vec3 size = solid_size(g);
   const double added = (size - g.size).norm();
   if (g.shape == Geometry::Shape::Sphere) return 0.02 * size.x();
   if (g.shape == Geometry::Shape::Cylinder) return 0.005 * size.x() + added;
@@ -118,7 +119,7 @@ double bounding_excess(const Geometry& g) {
 std::vector<Vec3> bounding_points(const Geometry& g) {
   if (is_point(g)) throw Error(ErrorCode::InvalidArgument, "a point is not bounded by a polytope");
   std::vector<Vec3> points;
-  const Vec3 size = thickened(g.size);
+  const Vec3 size = solid_size(g);
   switch (g.shape) {
     case Geometry::Shape::Box:
       points = box(size);

@@ -141,9 +141,10 @@ class Elements {
       fail_at(
           name_, e->NextSiblingElement()->GetLineNum(),
           place + "a second shape in one <geometry>: give it a <" + shape.Name() + "> of its own");
-    if (e->FirstChildElement() != nullptr)
-      fail_at(name_, e->FirstChildElement()->GetLineNum(),
-              place + "<" + e->FirstChildElement()->Name() + "> in <" + e->Name() +
+    const XMLElement* inside = e->FirstChildElement();
+    if (inside != nullptr && std::string_view(inside->Name()) != "drake:declare_convex")
+      fail_at(name_, inside->GetLineNum(),
+              place + "<" + inside->Name() + "> in <" + e->Name() +
                   "> means nothing: an <origin> belongs beside <geometry>");
     Geometry g;
     g.line = e->GetLineNum();

@@ -29,6 +29,7 @@ run wrap "$BIN/mesh-prepare" box.off -o wrapped.stl --prepare wrap --seal 10%
 run decompose "$BIN/bcd-decompose" "$BRACKET" -o set.glb --epsilon 5% --effort fast --no-cache
 run inner "$BIN/bcd-decompose" wide.off -o inner.glb --direction inner --epsilon 20% --no-cache
 run robot "$BIN/bcd-decompose" arm.urdf -o safe --effort fast --no-cache
+run robot-meshes "$BIN/bmesh-decimate" arm.urdf -o round --ratio 0.9 --effort fast --no-cache
 run sweep "$BIN/sweep-approx" arm.urdf --path path.csv -o swept.glb --epsilon 0.2 --no-cache
 run distance "$BIN/hausdorff-eval" box.off wide.off --samples 100
 run verify-outer "$BIN/bound-verify" --outer "$BRACKET" outer.ply

@@ -3,7 +3,7 @@
 set -eu
 BIN=$(cd "$1" && pwd)
 rm -rf "$2"
-mkdir -p "$2/robots/a" "$2/robots/b" "$2/robots/c d é" "$2/set"
+mkdir -p "$2/formats" "$2/robots/a" "$2/robots/b" "$2/robots/c d é" "$2/set"
 cd "$2"
 KABOUM_CACHE=$PWD/cache  # the sweeps' bodies are those of the robots
 export KABOUM_CACHE
@@ -86,18 +86,57 @@ printf 'first,second,fourth\n0,0,0\n0.3,-0.4,0.1\n' >path.csv
 sweep robots/hard.urdf --path path.csv -o swept.urdf --epsilon 0.02 --body-epsilon 5%
 echo swept.urdf >>list.txt
 
+# Other formats than URDF: inertials that are turned, joints that mimic, that can take one value only, of a link's
+# name; names that SDF keeps for itself; a link that a joint moves and that has neither mass nor shape.
+cat >robots/moving.urdf <<'END'
+<robot name="moving">
+  <link name="base"><collision><geometry><mesh filename="a/part.off"/></geometry></collision></link>
+  <link name="arm"><inertial><origin xyz="0.1 0.2 0.3" rpy="0.4 0.5 0.6"/><mass value="2.5"/>
+      <inertia ixx="0.3" iyy="0.4" izz="0.5" ixy="0.01" ixz="0.02" iyz="-0.03"/></inertial>
+    <collision><origin xyz="0 0.1 0" rpy="0 0.5 0"/><geometry><mesh filename="b/part.off" scale="0.5 -0.7 2"/></geometry></collision>
+    <collision><origin xyz="1 0 0" rpy="1 2 3"/><geometry><mesh filename="b/part.off"/></geometry></collision>
+    <collision><geometry><box size="0.2 0.3 0.4"/></geometry></collision></link>
+  <link name="left"><collision><geometry><cylinder radius="0.1" length="0.4"/></geometry></collision></link>
+  <link name="right"><inertial><mass value="0"/><inertia ixx="0" iyy="0" izz="0" ixy="0" ixz="0" iyz="0"/></inertial>
+    <collision><geometry><sphere radius="0.1"/></geometry></collision></link>
+  <link name="locked"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="3" ixy="0" ixz="0" iyz="0"/></inertial>
+    <collision><origin rpy="0.1 0.2 0.3"/><geometry><mesh filename="Part.off"/></geometry></collision></link>
+  <link name="__flange__"/>
+  <link name="tool::tip"/>
+  <joint name="arm" type="revolute"><parent link="base"/><child link="arm"/><origin xyz="0 0.1 1" rpy="0.3 0.2 0.1"/><axis xyz="1 2 3"/>
+    <limit lower="-2" upper="1.5" effort="12" velocity="3"/><dynamics damping="0.7" friction="0.2"/></joint>
+  <joint name="grip" type="prismatic"><parent link="arm"/><child link="left"/><origin xyz="0.5 0 0.1" rpy="0 0 1"/><axis xyz="0 1 0"/>
+    <limit lower="0" upper="0.1" effort="1" velocity="1"/></joint>
+  <joint name="follow" type="prismatic"><parent link="arm"/><child link="right"/><origin xyz="0.5 0 -0.1" rpy="0 1 0"/><axis xyz="0 -1 0"/>
+    <limit lower="-1" upper="1" effort="1" velocity="1"/><mimic joint="grip" multiplier="-2" offset="0.03"/></joint>
+  <joint name="stuck" type="revolute"><parent link="arm"/><child link="locked"/><origin xyz="0 0 0.4" rpy="0.2 0 0"/><axis xyz="0 0 1"/>
+    <limit lower="0.3" upper="0.3" effort="1" velocity="1"/></joint>
+  <joint name="wheel" type="continuous"><parent link="locked"/><child link="__flange__"/><origin xyz="0 0 0.2"/><axis xyz="1 0 0"/></joint>
+  <joint name="end" type="fixed"><parent link="__flange__"/><child link="tool::tip"/><origin xyz="0 0 0.1" rpy="0 0 2"/></joint>
+</robot>
+END
+sed 's/"base"/"world"/' robots/moving.urdf >robots/world.urdf
+sed 's,<collision><geometry><mesh filename="a/part.off"/></geometry></collision></link>,</link>,' robots/world.urdf >robots/bare.urdf
+for robot in hard moving world bare; do
+  decompose "robots/$robot.urdf" -o "formats/$robot" --epsilon 5% --robot-format mjcf,sdf \
+    --mesh-prefix "package://cell/formats/$robot"
+  echo "formats/$robot/$robot.urdf" >>formats.txt
+done
+"$BIN/bmesh-decimate" --quiet robots/hard.urdf -o formats/round --epsilon 5% --effort fast --robot-format mjcf,sdf
+echo formats/round/hard.urdf >>formats.txt
+
 for set in parts parts.glb parts.obj; do
   decompose robots/b/part.off -o "set/$set" --epsilon 1%
 done
 
 # Real robots, where they are.
 if [ -n "${KABOUM_MESHES:-}" ]; then
-  mkdir real
+  mkdir -p real
   find "$KABOUM_MESHES" -name '*.urdf' | sort | while read -r robot; do
     name=$(basename "$robot" .urdf)
-    decompose "$robot" -o "real/$name" --epsilon 5% --drop-sheets --report report.json
+    decompose "$robot" -o "real/$name" --epsilon 5% --drop-sheets --robot-format mjcf,sdf --report report.json
     mv report.json "real/$name"
-    echo "real/$name/$name.urdf" >>list.txt
+    echo "real/$name/$name.urdf" | tee -a formats.txt >>list.txt
   done
   printf '0,0,0,0,0,0\n0.3,-0.2,0.2,0.1,0.2,0.3\n' >six.csv
   find "$KABOUM_MESHES" -name '*.urdf' -o -name '*rlmdl.xml' | sort | while read -r robot; do

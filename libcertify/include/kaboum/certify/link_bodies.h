@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/certify/mesh_file.h>
+#include <kaboum/certify/wanted_meshes.h>
 #include <kaboum/robot/link_body.h>
 #include <kaboum/robot/link_meshes.h>
 
@@ -17,8 +18,12 @@ struct RobotRequest {
   std::optional<io::Format> format;  ///< of the meshes; by default by extension
   std::string tool;  ///< that the containers name; by default bcd-decompose, with its version
 
+  LinkEpsilons epsilons = {};  ///< instead of the sets'
+
   /// As bcd-decompose spells it: the containers' record.
   [[nodiscard]] std::string parameters() const;
+  /// The same of one link.
+  [[nodiscard]] std::string parameters(const std::string& link) const;
 };
 
 /// A mesh of a robot, in its own frame and unit.

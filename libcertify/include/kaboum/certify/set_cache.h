@@ -26,6 +26,14 @@ class SetCache {
     std::optional<double> clearance = {};  ///< of a wrap, where one is covered [length]
   };
   static Key key_of(const geom::Mesh& mesh, const std::string& sha256, const SetRequest& request);
+  /// @param mesh_hash  hash_of the mesh
+  static Key key_of(const std::string& mesh_hash, const std::string& sha256,
+                    const SetRequest& request);
+  /// Of the triangles as read. Their bytes say more than a file's, which may refer to others, and
+  /// than a reader's version.
+  static std::string hash_of(const geom::Mesh& mesh);
+
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
 
   /// @param flaw  becomes the reason why a file that is there is not used, else empty.
   [[nodiscard]] std::optional<CertifiedSet> find(const Key& key, std::string& flaw) const;

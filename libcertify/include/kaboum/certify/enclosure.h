@@ -1,0 +1,79 @@
+#pragma once
+
+#include <kaboum/certify/cache_folder.h>
+#include <kaboum/certify/mesh.h>
+#include <kaboum/certify/wrap.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kaboum::certify {
+
+/// What an enclosing mesh of a file is asked to be: how the file's triangles get a solid, and what
+/// is made of that.
+struct EnclosureRequest {
+  /// Outer, and one result; its distance is measured whatever `measure` says.
+  MeshRequest mesh;
+  geom::PrepareOptions preparation{.holes = geom::Holes::Fill};
+  /// Set: what is enclosed is a wrap round all triangles (certify_wrap), whose distance from them
+  /// counts towards epsilon. `farthest`, `float32` and `progress` are not looked at.
+  std::optional<WrapRequest> wrap;
+
+  /// As bmesh-decimate spells what the result depends on.
+  [[nodiscard]] std::string parameters() const;
+};
+
+/// What was found out about an enclosing mesh. A claim only as part of a CertifiedEnclosure.
+struct EnclosureCertificate {
+  std::size_t vertices_in = 0, vertices = 0, triangles = 0;
+  double diagonal = 0;  ///< of what is enclosed [length]
+  std::optional<double>
+      epsilon;  ///< kept between the result and what is enclosed, a wrap's apart [length]
+  /// No point of the result's surface is farther than this from the file's triangles, a wrap's
+  /// distance included, and no point of what is enclosed from the result. [length]
+  double distance_upper = 0;
+  bmesh::Stop stop = bmesh::Stop::Exhausted;
+  bool reached = true;  ///< MeshCertificate::reached
+  bool out_of_work = false;
+  Subject subject;                ///< what is enclosed
+  std::vector<MeshClaim> claims;  ///< of the mesh, as `claims` gave them when it was made
+  std::optional<WrapCertificate> wrap;
+  std::vector<std::string> notes;  ///< of preparation: what a user should know of the input
+};
+
+/// A mesh that encloses that of a file, in the file's frame and unit. The bytes are those of the
+/// format asked for.
+using CertifiedEnclosure = Certified<geom::Mesh, EnclosureCertificate>;
+
+/// As in reports: a JSON object.
+std::string to_json(const CertifiedEnclosure& enclosure);
+
+/// Prepares or wraps, then certify_mesh.
+/// @param mesh  as read.
+/// @return nullopt when float32 is too coarse, and double is not allowed.
+/// @throws Error as prepare_mesh, certify_wrap and certify_mesh; Error{InvalidArgument} where the
+///   request is for an inner mesh or several; Error{InvalidInput} where the mesh stays open.
+std::optional<CertifiedEnclosure> certify_enclosure(const geom::Mesh& mesh,
+                                                    const EnclosureRequest& request,
+                                                    const MeshHooks& hooks = {});
+
+/// A file and what encloses it.
+struct EnclosedFile {
+  std::string sha256;                    ///< of the file
+  std::vector<std::string> read_notes;   ///< what its reader noted
+  std::vector<std::string> other_files;  ///< read besides it
+  CertifiedEnclosure enclosure;
+  bool cached = false;
+};
+
+/// Reads the file and finds or certifies an enclosing mesh.
+/// @param format  by default by extension.
+/// @param cache   null: none.
+/// @throws Error naming the file, as certify_enclosure; TooCoarse (mesh_file.h).
+EnclosedFile enclose_file(const std::filesystem::path& file, std::optional<io::Format> format,
+                          const EnclosureRequest& request, const CacheFolder* cache = nullptr,
+                          const MeshHooks& hooks = {});
+
+}  // namespace kaboum::certify

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <kaboum/base/length.h>
+#include <kaboum/robot/link_meshes.h>
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kaboum::certify {
+
+/// What is asked for of some links' meshes instead of what is asked for of all, by the links'
+/// names: a length in the robot's unit, or a percentage of each mesh's diagonal.
+using LinkEpsilons = std::map<std::string, Length>;
+
+/// The meshes of the shapes that are meant, each once for every scale and epsilon.
+struct WantedMeshes : robot::LinkMeshes {
+  /// Of each mesh, where a link has one of its own, in the robot's unit.
+  std::vector<std::optional<Length>> epsilons;
+};
+
+/// @throws as robot::link_meshes; Error{InvalidArgument} naming a link of `epsilons` that the robot
+///   does not have.
+WantedMeshes wanted_meshes(const robot::RobotFile& robot, const robot::ShapeChoice& choice,
+                           const LinkEpsilons& epsilons = {});
+
+/// A percentage as it is; a length in the robot's unit in that of a mesh whose coordinates are
+/// multiplied by `scale`.
+Length in_unit_of_mesh(Length length, const geom::Vec3& scale);
+
+}  // namespace kaboum::certify

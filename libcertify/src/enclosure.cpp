@@ -1,0 +1,187 @@
+// Enclosing meshes of triangles and of files: prepared or wrapped, simplified, certified, kept.
+
+#include <kaboum/base/error.h>
+#include <kaboum/certify/enclosure.h>
+#include <kaboum/certify/mesh_file.h>
+
+#include <algorithm>
+
+#include "enclosure_record.h"
+#include "issuer.h"
+#include "known_file.h"
+
+namespace kaboum::certify {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Changes whenever the same request may give another mesh: cached ones are then not found.
+constexpr const char* kDecimation = "distance 1";
+
+// An entry's content is the certificate in one line, and the mesh's bytes.
+constexpr std::string_view kEnclosureEntry = "KABOUM-MESH 1";
+
+constexpr double kShareOfWrap = 0.6;  ///< of epsilon, for a wrap
+
+void require_one_outer(const MeshRequest& request) {
+  if (request.direction != bmesh::Direction::Outer)
+    throw Error(ErrorCode::InvalidArgument, "an enclosing mesh is an outer one");
+  if (request.vertices.size() > 1 || request.record_steps)
+    throw Error(ErrorCode::InvalidArgument, "one enclosing mesh, without its steps, is made");
+}
+
+/// The solid that is enclosed. What a wrap takes of epsilon is not there for simplification.
+geom::Prepared solid_of(const geom::Mesh& mesh, const EnclosureRequest& request, MeshRequest& rest,
+                        EnclosureCertificate& made, const MeshHooks& hooks) {
+  if (!request.wrap) return prepare_mesh(mesh, request.preparation);
+  std::optional<double> epsilon;
+  if (rest.epsilon) epsilon = rest.epsilon->of(geom::bounding_box(mesh).diagonal());
+  WrapRequest wrap = *request.wrap;
+  if (epsilon) wrap.farthest = kShareOfWrap * *epsilon;
+  wrap.float32 = rest.numbers != MeshRequest::Numbers::Double;
+  wrap.progress = hooks.progress;
+  const CertifiedWrap wrapped = certify_wrap(mesh, wrap);
+  made.wrap = wrapped.certificate();
+  if (epsilon) rest.epsilon = Length{*epsilon - made.wrap->farthest_upper};
+  return prepare_mesh(wrapped.artefact(), request.preparation);
+}
+
+/// What the result depends on.
+std::string key_of_enclosure(const std::string& mesh_hash, const EnclosureRequest& request) {
+  return io::sha256(std::string(kEnclosureEntry) + '\n' + mesh_hash + '\n' + request.parameters() +
+                    '\n' + std::to_string(static_cast<int>(request.mesh.format)) + '\n' +
+                    request.mesh.comment + '\n' + KABOUM_VERSION + '\n' + kDecimation);
+}
+
+std::optional<CertifiedEnclosure> find_enclosure(const CacheFolder& cache, const std::string& key,
+                                                 io::Format format) {
+  std::string flaw;
+  const auto content = cache.find(kEnclosureEntry, key, flaw);
+  if (!content) return std::nullopt;
+  const std::size_t end = content->find('\n');
+  if (end == std::string::npos) return std::nullopt;
+  try {
+    EnclosureCertificate certificate = read_enclosure(std::string_view(*content).substr(0, end));
+    std::vector<char> bytes(content->begin() + static_cast<std::ptrdiff_t>(end) + 1,
+                            content->end());
+    geom::Mesh mesh = io::parse_mesh(bytes, format, "the cache's entry").mesh;
+    if (mesh.vertices.size() != certificate.vertices ||
+        mesh.triangles.size() != certificate.triangles)
+      return std::nullopt;
+    return Issuer::issue(std::move(mesh), std::move(certificate), std::move(bytes));
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+void store_enclosure(const CacheFolder& cache, const std::string& key,
+                     const CertifiedEnclosure& made) {
+  std::string content = write_enclosure(made.certificate()) + "\n";
+  content.append(made.bytes().begin(), made.bytes().end());
+  cache.store(kEnclosureEntry, key, content);
+}
+
+}  // namespace
+
+std::string EnclosureRequest::parameters() const {
+  std::string out = "--cost " + std::to_string(static_cast<int>(mesh.cost)) + " --effort " +
+                    std::to_string(static_cast<int>(mesh.effort)) + " --precision " +
+                    std::to_string(static_cast<int>(mesh.numbers));
+  const auto add = [&](const std::string& text) { out += " " + text; };
+  const auto number = [](double x) { return Length{x}.text(); };
+  if (mesh.epsilon) add("--epsilon " + mesh.epsilon->text());
+  for (const std::size_t n : mesh.vertices) add("--vertices " + std::to_string(n));
+  if (mesh.ratio) add("--ratio " + number(*mesh.ratio));
+  if (mesh.as_printed) add("--as-printed");
+  if (mesh.keep_convex) add("--keep-convex");
+  if (mesh.max_work) add("--max-work " + number(*mesh.max_work));
+  if (mesh.sharp_angle) add("--sharp-angle " + number(*mesh.sharp_angle));
+  if (mesh.decide) add("--verify");
+  add("--holes " + std::to_string(static_cast<int>(preparation.holes)));
+  if (preparation.drop_sheets) add("--drop-sheets");
+  if (preparation.keep_orientation) add("--keep-orientation");
+  if (!wrap) return out;
+  add("--prepare wrap");
+  if (wrap->offset) add("--offset " + wrap->offset->text());
+  if (wrap->seal) add("--seal " + wrap->seal->text());
+  add("clearance " + number(wrap->clearance));
+  return out;
+}
+
+std::optional<CertifiedEnclosure> certify_enclosure(const geom::Mesh& mesh,
+                                                    const EnclosureRequest& request,
+                                                    const MeshHooks& hooks) {
+  require_one_outer(request.mesh);
+  EnclosureCertificate made;
+  MeshRequest rest = request.mesh;
+  rest.measure = true;
+  const geom::Prepared solid = solid_of(mesh, request, rest, made, hooks);
+  if (!solid.solid.closed())
+    throw Error(ErrorCode::InvalidInput,
+                "the mesh is open, so it has no solid that a mesh could enclose; have its holes "
+                "filled");
+  const std::optional<CertifiedMesh> result = certify_mesh(solid, rest, hooks);
+  if (!result) return std::nullopt;
+  const MeshCertificate& c = result->certificate();
+  made.vertices_in = c.statistics.vertices_in;
+  made.vertices = c.vertices;
+  made.triangles = result->artefact().triangles.size();
+  made.diagonal = geom::bounding_box(solid.solid.mesh()).diagonal();
+  made.epsilon = c.epsilon;
+  made.distance_upper = c.hausdorff_upper() + (made.wrap ? made.wrap->farthest_upper : 0);
+  made.stop = c.stop;
+  made.reached = c.reached();
+  made.out_of_work = c.out_of_work;
+  made.subject = c.subject;
+  made.subject.wrapped = made.wrap.has_value();
+  made.claims = claims(*result);
+  if (made.wrap) made.notes.push_back(in_words(*made.wrap));
+  made.notes.insert(made.notes.end(), solid.report.notes.begin(), solid.report.notes.end());
+  // As the bytes are read: who finds it in the cache gets the same.
+  std::vector<char> bytes = result->bytes();
+  geom::Mesh back = io::parse_mesh(bytes, request.mesh.format, "the result").mesh;
+  made.vertices = back.vertices.size();
+  made.triangles = back.triangles.size();
+  return Issuer::issue(std::move(back), std::move(made), std::move(bytes));
+}
+
+EnclosedFile enclose_file(const fs::path& file, std::optional<io::Format> format,
+                          const EnclosureRequest& request, const CacheFolder* cache,
+                          const MeshHooks& hooks) {
+  if (cache != nullptr && file != "-") {
+    const auto known = find_known(*cache, file, format, io::sha256(io::read_file(file)));
+    auto found = known ? find_enclosure(*cache, key_of_enclosure(known->mesh_hash, request),
+                                        request.mesh.format)
+                       : std::nullopt;
+    if (found) return {known->sha256, known->notes, {}, std::move(*found), true};
+  }
+  std::vector<char> bytes;
+  io::ReadResult read = io::read_mesh(file, format, &bytes);
+  EnclosedFile out{
+      io::sha256(bytes), std::move(read.notes), std::move(read.other_files), {}, false};
+  const std::string mesh_hash = SetCache::hash_of(read.mesh);
+  const std::string key = key_of_enclosure(mesh_hash, request);
+  if (cache != nullptr) {
+    read.notes = out.read_notes;
+    read.other_files = out.other_files;
+    if (file != "-") store_known(*cache, file, format, bytes, mesh_hash, read);
+    if (auto found = find_enclosure(*cache, key, request.mesh.format)) {
+      out.enclosure = std::move(*found);
+      out.cached = true;
+      return out;
+    }
+  }
+  auto made = [&] {
+    try {
+      return certify_enclosure(read.mesh, request, hooks);
+    } catch (const Error& error) {
+      throw Error(error.code(), file.string() + ": " + error.what());
+    }
+  }();
+  if (!made) throw TooCoarse(file.string());
+  if (cache != nullptr) store_enclosure(*cache, key, *made);
+  out.enclosure = std::move(*made);
+  return out;
+}
+
+}  // namespace kaboum::certify

@@ -1,0 +1,55 @@
+// Files that were read before, told by all their bytes, their names and the readers' version.
+
+#include "known_file.h"
+
+#include <kaboum/base/error.h>
+
+#include <nlohmann/json.hpp>
+
+namespace kaboum::certify {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Changes whenever a reader of libio may give other triangles, notes or units for the same bytes:
+/// what is known of files is then not used.
+constexpr const char* kReaders = "1";
+
+constexpr std::string_view kKind = "KABOUM-FILE 1";
+constexpr std::size_t kReadAtOnce = std::size_t{1} << 15;  ///< [bytes]
+
+std::string key_of_file(const std::filesystem::path& file, std::optional<io::Format> format,
+                        const std::string& sha256) {
+  // The name: notes may have it, and the format is that of its extension.
+  return io::sha256(std::string(kKind) + '\n' + sha256 + '\n' + file.string() + '\n' +
+                    std::to_string(format ? static_cast<int>(*format) : -1) + '\n' +
+                    KABOUM_VERSION + '\n' + kReaders);
+}
+
+}  // namespace
+
+std::optional<KnownFile> find_known(const CacheFolder& cache, const std::filesystem::path& file,
+                                    std::optional<io::Format> format, const std::string& sha256) {
+  std::string flaw;  // it is written again
+  const auto content = cache.find(kKind, key_of_file(file, format, sha256), flaw);
+  if (!content) return std::nullopt;
+  try {
+    const Json json = Json::parse(*content);
+    return KnownFile{sha256, json.at("mesh").get<std::string>(),
+                     json.at("notes").get<std::vector<std::string>>(),
+                     json.at("unit").get<std::string>()};
+  } catch (const nlohmann::json::exception&) {
+    return std::nullopt;
+  }
+}
+
+void store_known(const CacheFolder& cache, const std::filesystem::path& file,
+                 std::optional<io::Format> format, std::span<const char> bytes,
+                 const std::string& mesh_hash, const io::ReadResult& read) {
+  if (!read.other_files.empty() || bytes.size() < kReadAtOnce) return;
+  const Json json = {{"mesh", mesh_hash}, {"notes", read.notes}, {"unit", read.unit}};
+  cache.store(kKind, key_of_file(file, format, io::sha256(bytes)),
+              json.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+}  // namespace kaboum::certify

@@ -1,0 +1,66 @@
+// Enclosing meshes of a robot's links: several at a time, each from the cache where possible.
+
+#include <kaboum/base/error.h>
+#include <kaboum/base/parallel.h>
+#include <kaboum/certify/link_enclosures.h>
+
+#include <chrono>
+#include <mutex>
+
+namespace kaboum::certify {
+namespace {
+
+EnclosureRequest request_of(const LinkEnclosuresRequest& request, const robot::LinkMesh& mesh,
+                            const std::optional<Length>& epsilon) {
+  EnclosureRequest out = request.mesh;
+  if (epsilon) out.mesh.epsilon = epsilon;
+  if (out.mesh.epsilon) out.mesh.epsilon = in_unit_of_mesh(*out.mesh.epsilon, mesh.scale);
+  if (out.wrap)
+    for (std::optional<Length>* length : {&out.wrap->offset, &out.wrap->seal})
+      if (*length) *length = in_unit_of_mesh(**length, mesh.scale);
+  return out;
+}
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+LinkEnclosures enclose_links(const robot::RobotFile& robot, const LinkEnclosuresRequest& request,
+                             const CacheFolder* cache,
+                             const std::function<void(const std::string& stage)>& progress) {
+  WantedMeshes found = wanted_meshes(robot, request.shapes, request.epsilons);
+  if (found.meshes.empty())
+    throw Error(ErrorCode::InvalidInput,
+                robot.path.string() + ": no link has a mesh" +
+                    (request.shapes.visual ? std::string() : "; try --geometry visual"));
+  LinkEnclosures out;
+  out.meshes.resize(found.meshes.size());
+  std::mutex mutex;
+  std::size_t done = 0;
+  parallel_for(std::size_t{0}, found.meshes.size(),
+               [&](std::size_t i) {
+                 const double start = now();
+                 EnclosedLinkMesh& mesh = out.meshes[i];
+                 mesh.mesh = found.meshes[i];
+                 const EnclosureRequest asked = request_of(request, mesh.mesh, found.epsilons[i]);
+                 mesh.epsilon = asked.mesh.epsilon;
+                 mesh.made = enclose_file(mesh.mesh.file, request.format, asked, cache);
+                 mesh.seconds = now() - start;
+                 if (!progress) return;
+                 const std::lock_guard lock(mutex);
+                 progress(std::to_string(++done) + " of " + std::to_string(found.meshes.size()) +
+                          " meshes enclosed");
+               },
+               {.alone = true});
+  for (const EnclosedLinkMesh& mesh : out.meshes) {
+    out.files.push_back(mesh.mesh.file);
+    out.files.insert(out.files.end(), mesh.made.other_files.begin(), mesh.made.other_files.end());
+  }
+  out.files.insert(out.files.end(), found.files.begin(), found.files.end());
+  out.shapes = std::move(found.shapes);
+  return out;
+}
+
+}  // namespace kaboum::certify

@@ -1,0 +1,42 @@
+// The meshes of a robot that are to be held, and how near.
+
+#include <kaboum/base/error.h>
+#include <kaboum/certify/wanted_meshes.h>
+
+#include <algorithm>
+
+namespace kaboum::certify {
+
+WantedMeshes wanted_meshes(const robot::RobotFile& robot, const robot::ShapeChoice& choice,
+                           const LinkEpsilons& epsilons) {
+  for (const auto& [link, epsilon] : epsilons)
+    if (!robot.robot.find_link(link))
+      throw Error(ErrorCode::InvalidArgument,
+                  robot.path.string() + ": there is no link '" + link + "' to have an epsilon");
+  WantedMeshes out{robot::link_meshes(robot, choice), {}};
+  std::vector<robot::LinkMesh> meshes;
+  std::vector<std::size_t> of;  // of `meshes`: index in out.meshes
+  for (robot::LinkShape& shape : out.shapes) {
+    if (!shape.mesh) continue;
+    const auto found = epsilons.find(robot.robot.links[shape.link].name);
+    const std::optional<Length> epsilon =
+        found == epsilons.end() ? std::nullopt : std::optional(found->second);
+    std::size_t i = 0;
+    while (i < of.size() && (of[i] != *shape.mesh || out.epsilons[i] != epsilon)) ++i;
+    if (i == of.size()) {
+      of.push_back(*shape.mesh);
+      meshes.push_back(out.meshes[*shape.mesh]);
+      out.epsilons.push_back(epsilon);
+    }
+    shape.mesh = i;
+  }
+  out.meshes = std::move(meshes);
+  return out;
+}
+
+Length in_unit_of_mesh(Length length, const geom::Vec3& scale) {
+  if (!length.percent) length.value /= scale.maxCoeff();
+  return length;
+}
+
+}  // namespace kaboum::certify

@@ -1,0 +1,233 @@
+// bmesh-decimate on robots: encloses the links' meshes, writes a folder, and says what came of it.
+
+#include "decimate_robot.h"
+
+#include <kaboum/base/error.h>
+#include <kaboum/certify/link_enclosures.h>
+#include <kaboum/certify/mesh_file.h>
+#include <kaboum/robot/robot_file.h>
+
+#include <algorithm>
+
+#include "enclosure_words.h"
+#include "result_files.h"
+#include "robot_bodies.h"
+#include "robot_output.h"
+#include "robot_page.h"
+
+namespace kaboum::tools {
+namespace {
+
+/// Format of the new meshes: what engines read.
+io::Format format_of_meshes(const DecimationOptions& o) {
+  const std::string name = o.output_format.empty() ? o.robot.bodies : o.output_format;
+  if (name != "stl" && name != "obj")
+    throw Error(ErrorCode::InvalidArgument,
+                "--output-format " + name + ": a robot's meshes are stl or obj");
+  return name == "stl" ? io::Format::Stl : io::Format::Obj;
+}
+
+certify::EnclosureRequest enclosure_request(const DecimationOptions& o) {
+  certify::EnclosureRequest r;
+  std::vector<std::size_t> counts;
+  if (!o.vertices.empty()) counts = *parse_counts(o.vertices);
+  require_sound(o, counts);
+  if (counts.size() > 1)
+    throw Error(ErrorCode::InvalidArgument, "--vertices: a robot's meshes are no series");
+  require_sound_formats(o, format_of_meshes(o));
+  r.mesh = request_of(o, std::move(counts), format_of_meshes(o));
+  r.preparation = o.prepare;
+  r.preparation.holes = o.holes.value();
+  o.preparation.apply(r.preparation);
+  if (o.preparation.wraps()) r.wrap = o.preparation.request(std::nullopt);
+  return r;
+}
+
+/// What was made, and where it goes.
+struct Run {
+  const DecimationOptions& o;
+  robot::RobotFile robot;
+  certify::LinkEnclosuresRequest request = {};
+  certify::LinkEnclosures made = {};
+  Notes notes = {};
+};
+
+/// @return the exit code
+int say_meshes(Run& run) {
+  int code = kDone;
+  for (const certify::EnclosedLinkMesh& mesh : run.made.meshes) {
+    const std::string file = mesh.mesh.file.string();
+    const certify::EnclosureCertificate& c = mesh.made.enclosure.certificate();
+    log(run.o.common.quiet,
+        file + ": " + summary(c) + (mesh.made.cached ? " (from the cache)" : ""));
+    const auto [why, own] = shortfall(c);
+    if (!why.empty()) log(run.o.common.quiet, file + ": " + why);
+    code = code == kNo || own == kNo ? kNo : std::max(code, own);
+    for (const std::string& text : mesh.made.read_notes) run.notes.add(file, text);
+    for (const std::string& text : c.notes) run.notes.add(file, text);
+  }
+  return code;
+}
+
+void write(Run& run, RobotOutput& output, const std::string& extension) {
+  const RobotFolder& folder = output.folder();
+  const NewShapes shapes =
+      new_shapes(run.robot, run.request.shapes, run.made.shapes, [&](std::size_t s) {
+        return std::vector<std::string>{folder.part() + "/" + folder.name_of(s) + extension};
+      });
+  output.write(
+      shapes,
+      [&](const StoredMesh& stored, const std::filesystem::path& place) {
+        io::write_file(place, run.made.meshes[stored.mesh].made.enclosure.bytes());
+      },
+      {}, run.notes);
+}
+
+/// The shapes of each link that has some.
+std::vector<std::vector<robot::LinkShape>> shapes_by_link(const Run& run) {
+  std::vector<std::vector<robot::LinkShape>> out;
+  for (const robot::LinkShape& shape : run.made.shapes) {
+    if (out.empty() || out.back().front().link != shape.link) out.emplace_back();
+    out.back().push_back(shape);
+  }
+  return out;
+}
+
+Json decimated_report(const Run& run, const RobotOutput& output, int code) {
+  Json report = output.report(), links = Json::array();
+  std::size_t before = 0, after = 0;
+  for (const std::vector<robot::LinkShape>& shapes : shapes_by_link(run)) {
+    Json link{{"link", run.robot.robot.links[shapes.front().link].name},
+              {"shapes", shapes.size()},
+              {"meshes", Json::array()}};
+    for (const robot::LinkShape& shape : shapes) {
+      if (!shape.mesh) continue;
+      const certify::EnclosedLinkMesh& mesh = run.made.meshes[*shape.mesh];
+      Json result = Json::parse(certify::to_json(mesh.made.enclosure));
+      result["cached"] = mesh.made.cached;
+      link["meshes"].push_back({{"file", mesh.mesh.file.string()},
+                                {"sha256", mesh.made.sha256},
+                                {"result", std::move(result)}});
+    }
+    links.push_back(std::move(link));
+  }
+  for (const certify::EnclosedLinkMesh& mesh : run.made.meshes) {
+    before += mesh.made.enclosure.certificate().vertices_in;
+    after += mesh.made.enclosure.certificate().vertices;
+  }
+  report.update({{"meshes", run.made.meshes.size()},
+                 {"vertices_in", before},
+                 {"vertices", after},
+                 {"links", std::move(links)},
+                 {"stop", code == kDone    ? "done"
+                          : code == kLimit ? "limit"
+                                           : "not reached"},
+                 {"input", {{"file", run.o.input}}},
+                 {"parameters", run.request.mesh.parameters()}});
+  return report;
+}
+
+PageLink page_link(const Run& run, const std::vector<robot::LinkShape>& shapes) {
+  const robot::Link& link = run.robot.robot.links[shapes.front().link];
+  PageLink out;
+  out.name = link.name;
+  out.shapes = shapes.size();
+  out.verdict = "enclosure certified";
+  for (const robot::LinkShape& shape : shapes) {
+    ++out.bodies;
+    if (!shape.mesh) continue;
+    const certify::EnclosedLinkMesh& mesh = run.made.meshes[*shape.mesh];
+    const certify::EnclosureCertificate& c = mesh.made.enclosure.certificate();
+    const robot::Geometry& place = run.request.shapes.shapes_of(link)[shape.index];
+    out.meshes.push_back(mesh.mesh.file.filename().string());
+    out.vertices += c.vertices;
+    out.reach = std::max(out.reach, c.distance_upper * place.size.cwiseAbs().maxCoeff());
+    if (!mesh.made.cached) out.seconds = out.seconds.value_or(0) + mesh.seconds;
+    if (const auto [why, code] = shortfall(c); !why.empty()) {
+      out.verdict += "; " + why;
+      out.holds = false;
+    }
+    append_placed(out.result, mesh.made.enclosure.artefact(), place);
+  }
+  const auto found = run.request.epsilons.find(link.name);
+  const auto epsilon = found == run.request.epsilons.end() ? run.request.mesh.mesh.epsilon
+                                                           : std::optional(found->second);
+  if (epsilon) out.epsilon = epsilon->text();
+  out.original = drawn_shapes(run.robot, run.request.shapes, shapes.front().link);
+  return out;
+}
+
+void write_page(const Run& run, const RobotOutput& output) {
+  RobotPage page{.robot = run.robot.robot.name,
+                 .source = run.o.input,
+                 .tool = std::string("bmesh-decimate ") + version(),
+                 .check = "bound-verify robot " + run.o.input + " " +
+                          output.folder().urdf().string() + " --prepare" +
+                          (run.o.robot.visual() ? " --visual" : ""),
+                 .unit = "the robot's unit",
+                 .files = output.documents(),
+                 .notes = run.notes.lines(),
+                 .links = {}};
+  for (const std::vector<robot::LinkShape>& shapes : shapes_by_link(run))
+    page.links.push_back(page_link(run, shapes));
+  io::write_file(run.o.robot.html, to_html(page));
+}
+
+void require_separate(const DecimationOptions& o) {
+  std::vector<std::string> inputs{o.input};
+  if (!o.robot.epsilons.empty()) inputs.push_back(o.robot.epsilons);
+  require_apart({{"--output", o.output},
+                 {"--report", o.common.report},
+                 {"--html-report", o.robot.html},
+                 {"--depfile", o.depfile}},
+                inputs);
+}
+
+}  // namespace
+
+int decimate_robot(const CLI::App& app, DecimationOptions o) {
+  require_absent(app, "a robot (.urdf)", {"--progressive", "--log"});
+  if (o.direction != "outer")
+    throw Error(ErrorCode::InvalidArgument, "--direction " + o.direction +
+                                                ": a robot's meshes are enclosed; simplify them "
+                                                "one by one for others");
+  require_robot_folder(o.output, "");
+  apply_preset(app, o.output, o.robot, nullptr);
+  require_separate(o);
+  Run run{o, robot::read_robot(o.input)};
+  const io::Format format = format_of_meshes(o);
+  const std::string extension = format == io::Format::Stl ? ".stl" : ".obj";
+  o.robot.declare_convex = false;  // they are not
+  RobotOutput output(o.robot, o.output, run.robot, "meshes", extension);
+  run.request = {
+      enclosure_request(o), output.choice(), {}, read_epsilons(o.robot.epsilons, run.robot.robot)};
+  if (!o.input_format.empty()) run.request.format = io::format_from_name(o.input_format);
+  const certify::WantedMeshes meshes =
+      certify::wanted_meshes(run.robot, run.request.shapes, run.request.epsilons);
+  output.plan(meshes);
+  require_formats(meshes, o.input_format);
+  {
+    Progress progress(o.common.quiet);
+    const certify::CacheFolder cache(certify::CacheFolder::default_folder());
+    run.made = certify::enclose_links(run.robot, run.request, o.no_cache ? nullptr : &cache,
+                                      [&](const std::string& stage) { progress.show(stage); });
+  }
+  const int code = say_meshes(run);
+  write(run, output, extension);
+  log(o.common.quiet, output.folder().urdf().string() + ": " +
+                          counted(run.made.meshes.size(), "mesh", "meshes") + " of " +
+                          counted(shapes_by_link(run).size(), "link", "links"));
+  output.say(o.common.quiet, run.notes);
+  if (!o.robot.html.empty()) write_page(run, output);
+  if (!o.common.report.empty())
+    write_report(o.common, "bmesh-decimate", decimated_report(run, output, code));
+  if (!o.depfile.empty()) {
+    std::vector<std::string> inputs{o.input};
+    if (!o.robot.epsilons.empty()) inputs.push_back(o.robot.epsilons);
+    for (std::string& file : strings(run.made.files)) inputs.push_back(std::move(file));
+    write_depfile(o.depfile, output.documents(), inputs);
+  }
+  return code;
+}
+
+}  // namespace kaboum::tools

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <kaboum/geom/mesh.h>
+#include <kaboum/robot/link_meshes.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+/// Pages about robots that were made: --html-report.
+namespace kaboum::tools {
+
+/// What is said of a link.
+struct PageLink {
+  std::string name;
+  std::vector<std::string> meshes;  ///< files that its shapes come from
+  std::size_t shapes = 0, bodies = 0, vertices = 0;
+  std::string epsilon;            ///< asked for
+  double reach = 0;               ///< certified: nothing is farther from the shapes [length]
+  std::optional<double> seconds;  ///< none: from the cache
+  std::string verdict;
+  bool holds = true;  ///< nothing is left open
+  /// In the link's frame, for the pictures.
+  geom::Mesh original, result;
+};
+
+/// What is said of the robot.
+struct RobotPage {
+  std::string robot, source, tool, check;  ///< name; file; program and version; how to verify
+  std::string unit = "m";
+  std::vector<std::string> files, notes;
+  std::vector<PageLink> links;
+};
+
+/// One HTML file, pictures included.
+std::string to_html(const RobotPage& page);
+
+/// The shapes of a link that are meant, as triangles in its frame; for pictures only.
+/// @throws as robot::resolve_mesh, io::read_mesh
+geom::Mesh drawn_shapes(const robot::RobotFile& robot, const robot::ShapeChoice& choice,
+                        std::uint32_t link);
+
+/// Appends a mesh, moved; mirrored ones are turned.
+void append_placed(geom::Mesh& to, const geom::Mesh& mesh, const robot::Geometry& place);
+
+}  // namespace kaboum::tools
