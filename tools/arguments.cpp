@@ -23,6 +23,14 @@ std::from_chars_result parse_number(std::string_view text, double& value) {
   return std::from_chars(begin, end, value);
 }
 
+/// In small letters, with its dot.
+std::string extension_of(const std::string& name) {
+  std::string extension = std::filesystem::path(name).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return extension;
+}
+
 }  // namespace
 
 std::optional<Length> parse_length(const std::string& text) { return kaboum::parse_length(text); }
@@ -39,14 +47,32 @@ CLI::Validator number_from(double low, double high) {
           ""};
 }
 
+bool is_page(const std::string& name) { return extension_of(name) == ".html"; }
+
 CLI::Validator png_name() {
-  return {[](std::string& s) {
-            std::string extension = std::filesystem::path(s).extension().string();
-            std::transform(extension.begin(), extension.end(), extension.begin(),
-                           [](unsigned char c) { return std::tolower(c); });
-            return s == "-" || extension == ".png"
+  return {[](const std::string& s) {
+            return s == "-" || extension_of(s) == ".png"
                        ? std::string()
                        : "a PNG is written: give a name that ends with .png, not " + s;
+          },
+          ""};
+}
+
+CLI::Validator preview_name() {
+  return {[](const std::string& s) {
+            return s == "-" || extension_of(s) == ".png" || is_page(s)
+                       ? std::string()
+                       : "a picture or a page is written: give a name that ends with .png or "
+                         ".html, not " +
+                             s;
+          },
+          ""};
+}
+
+CLI::Validator page_name() {
+  return {[](const std::string& s) {
+            return is_page(s) ? std::string()
+                              : "a page is written: give a name that ends with .html, not " + s;
           },
           ""};
 }

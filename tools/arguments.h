@@ -22,6 +22,12 @@ CLI::Validator number_from(double low, double high);
 
 /// Refuses names of pictures that are not .png: what is written is.
 CLI::Validator png_name();
+/// Refuses names of previews that are neither pictures (.png) nor pages (.html).
+CLI::Validator preview_name();
+/// Refuses names of pages that are not .html.
+CLI::Validator page_name();
+/// Whether the name is that of a page.
+bool is_page(const std::string& name);
 
 /// Units of length that a container may name.
 CLI::Validator unit_name();

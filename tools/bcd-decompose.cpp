@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "decompose_options.h"
+#include "decompose_preview.h"
 #include "decompose_robot.h"
 #include "decompose_words.h"
 #include "set_format.h"
@@ -35,7 +36,10 @@ int decompose_mesh(const DecomposeOptions& o) {
   log(o.common.quiet, summary(certificate) + (made.found.cached ? " (from the cache)" : ""));
   const std::string why = shortfall(certificate);
   if (!why.empty()) log(o.common.quiet, why);
-  if (!o.preview.empty()) io::write_file(o.preview, picture_of(set, o.explode));
+  if (is_page(o.preview))
+    io::write_file(o.preview, page_of_set(o, certificate, set));
+  else if (!o.preview.empty())
+    io::write_file(o.preview, picture_of(set, o.explode));
   if (!o.common.report.empty()) {
     Json report = report_of(made);
     report["input"] = {{"file", o.input}, {"sha256", made.sha256}};

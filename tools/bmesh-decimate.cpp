@@ -139,10 +139,11 @@ int decimate(const tools::DecimationOptions& options) {
 /// Takes results from a progressive file: what makes a result is in there.
 int extract(const CLI::App& app, const tools::DecimationOptions& o) {
   tools::require_absent(app, "--from",
-                        {"INPUT", "--progressive", "--direction", "--ratio", "--epsilon", "--cost",
-                         "--effort", "--max-work", "--as-printed", "--precision", "--sharp-angle",
-                         "--keep-convex", "--drop-sheets", "--holes", "--require-closed",
-                         "--keep-orientation", "--verify", "--log", "--input-format"});
+                        {"INPUT",         "--progressive", "--direction",      "--ratio",
+                         "--epsilon",     "--cost",        "--effort",         "--max-work",
+                         "--as-printed",  "--precision",   "--sharp-angle",    "--keep-convex",
+                         "--drop-sheets", "--holes",       "--require-closed", "--keep-orientation",
+                         "--verify",      "--log",         "--preview",        "--input-format"});
   return tools::extract_levels(
       {o.from, o.output, o.output_format, o.vertices, o.depfile, o.common});
 }

@@ -35,6 +35,12 @@ std::string formatted(double x);
 /// @return whether double is written
 bool say_shortage(const DecimationCase& run, const certify::Float32Shortage& shortage);
 
+/// What was made, and how near it is, of one result.
+std::string summary_of(const DecimationCase& run, std::size_t place);
+
+/// A page that shows the results over the original. docs/pages.md.
+std::string page_of(const DecimationCase& run);
+
 /// Says what was made, what is claimed of it and what to beware of. @return the exit code
 int conclude(const DecimationCase& run);
 

@@ -33,6 +33,7 @@ void write_rule(const DecimationCase& run) {
 void require_separate_files(const DecimationOptions& asked, const std::vector<std::string>& files) {
   std::vector<std::pair<std::string, std::string>> outputs{{"--log", asked.log},
                                                            {"--progressive", asked.progressive},
+                                                           {"--preview", asked.preview},
                                                            {"--report", asked.common.report},
                                                            {"--depfile", asked.depfile}};
   for (const std::string& file : files) outputs.emplace_back("--output", file);
@@ -46,6 +47,7 @@ void write_files(const DecimationCase& run) {
   files.emplace_back(o.progressive, [&] {
     io::write_file(o.progressive, bmesh::serialise_progressive(progressive(run)));
   });
+  files.emplace_back(o.preview, [&] { io::write_file(o.preview, page_of(run)); });
   files.emplace_back(o.common.report,
                      [&] { write_report(o.common, "bmesh-decimate", report_of(run)); });
   files.emplace_back(o.depfile, [&] { write_rule(run); });

@@ -53,13 +53,6 @@ class Lines {
     return claims_nothing ? kNo : verification;
   }
 
- private:
-  void say(const std::string& text) const { log(run_.asked.common.quiet, text); }
-  /// An error, about the input.
-  void complain(const std::string& text) const {
-    log(false, "bmesh-decimate: " + run_.asked.input + ": " + text);
-  }
-
   [[nodiscard]] std::string summary() const {
     const double diagonal = run_.series.plan.diagonal;
     std::string line = file_ + ": " + std::to_string(made_.statistics.vertices_in) + " → " +
@@ -72,6 +65,13 @@ class Lines {
     if (made_.requested && made_.stop == bmesh::Stop::ErrorBound)
       line += "; epsilon allows no fewer, " + std::to_string(*made_.requested) + " were wished";
     return line;
+  }
+
+ private:
+  void say(const std::string& text) const { log(run_.asked.common.quiet, text); }
+  /// An error, about the input.
+  void complain(const std::string& text) const {
+    log(false, "bmesh-decimate: " + run_.asked.input + ": " + text);
   }
 
   void warn_of_distance() const {
@@ -189,6 +189,10 @@ bool say_shortage(const DecimationCase& run, const certify::Float32Shortage& sho
                  (run.asked.precision == "auto" ? "" : ", with --precision double") + "; or " +
                  remedy);
   return false;
+}
+
+std::string summary_of(const DecimationCase& run, std::size_t place) {
+  return Lines(run, place).summary();
 }
 
 int conclude(const DecimationCase& run) {

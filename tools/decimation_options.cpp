@@ -139,6 +139,11 @@ void describe_files(CLI::App& app, DecimationOptions& o) {
                "Decide enclosure and distances anew, exactly and by independent means, before the "
                "result is written, against the input as prepared; a claim that does not hold gives "
                "exit code 1, an undecided one 7");
+  app.add_option("--preview", o.preview,
+                 "Write a page that shows results over the input in a browser, with distances in "
+                 "colours (.html)")
+      ->check(page_name())
+      ->type_name("FILE");
   app.add_option("--log", o.log, "Write the log of all steps, for bmesh-replay")->type_name("FILE");
   app.add_option("--depfile", o.depfile, "Write a Makefile dependency rule")->type_name("FILE");
   app.add_option("--input-format", o.input_format, "Format of INPUT [by extension]")
@@ -217,7 +222,7 @@ certify::MeshRequest request_of(const DecimationOptions& o, std::vector<std::siz
   r.numbers = kNumbers.at(o.precision);
   r.format = format.value_or(io::Format::Ply);
   r.comment = std::string("bmesh-decimate ") + version();
-  r.measure = !o.common.report.empty();
+  r.measure = !o.common.report.empty() || !o.preview.empty();
   r.decide = o.verify;
   r.record_steps = o.records();
   return r;

@@ -21,7 +21,7 @@ namespace kaboum::tools {
 struct DecimationOptions {
   std::string input, output, input_format, output_format;
   std::string direction = "outer", cost = "distance", effort = "normal", precision = "auto";
-  std::string vertices, epsilon, progressive, from, log, depfile;
+  std::string vertices, epsilon, progressive, from, log, depfile, preview;
   double ratio = 0;  ///< 0: none
   std::optional<double> max_work;
   std::optional<double> sharp_angle;

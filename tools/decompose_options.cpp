@@ -114,11 +114,14 @@ void add_output(CLI::App& app, DecomposeOptions& o) {
       ->capture_default_str()
       ->type_name("NAME");
   app.add_option("--frame", o.frame, "Coordinate frame, noted in the container")->type_name("NAME");
-  app.add_option("--preview", o.preview, "Write a picture of the bodies (PNG)")
-      ->check(png_name())
+  app.add_option(
+         "--preview", o.preview,
+         "Write a picture of the bodies (.png), or a page that shows them over the input in "
+         "a browser (.html)")
+      ->check(preview_name())
       ->type_name("FILE");
   app.add_option("--explode", o.explode,
-                 "How far apart the picture's second panel draws the bodies; 0: no second panel")
+                 "How far apart a picture's second panel draws the bodies; 0: no second panel")
       ->check(number_from(0, 10))
       ->capture_default_str()
       ->needs("--preview")
@@ -176,6 +179,11 @@ void require_meaning(const CLI::App& app, const DecomposeOptions& o) {
   if (!is_robot(o.input) && app.count("--from") != 0)
     throw Error(ErrorCode::InvalidArgument,
                 "--from is for robots (.urdf); " + o.input + " is taken for a mesh");
+  if (is_page(o.preview)) require_absent(app, "--preview with a page", {"--explode"});
+  if (is_page(o.preview) && o.input == "-")
+    throw Error(ErrorCode::InvalidArgument,
+                "--preview: a page shows the input as well, which is read again for that: name a "
+                "file instead of standard input, or a picture (.png)");
   if (o.max_total > 0 && o.direction != "outer")
     throw Error(ErrorCode::InvalidArgument, "--max-total-vertices needs --direction outer");
   if (o.pre_step == "on" && o.direction != "outer")

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "decompose_preview.h"
 #include "decompose_words.h"
 #include "robot_bodies.h"
 #include "robot_output.h"
@@ -215,7 +216,10 @@ int decompose_robot(const DecomposeOptions& o) {
                           counted(run.made.links.size(), "link", "links") + ", from " +
                           counted(run.bodies().meshes.size(), "mesh", "meshes"));
   output.say(o.common.quiet, run.notes);
-  if (!o.preview.empty()) io::write_file(o.preview, picture_of(at_rest(run), o.explode));
+  if (is_page(o.preview))
+    io::write_file(o.preview, page_of_robot(o, run.robot, run.made));
+  else if (!o.preview.empty())
+    io::write_file(o.preview, picture_of(at_rest(run), o.explode));
   if (!o.robot.html.empty()) write_page(run, output);
   if (!o.common.report.empty()) write_report(o.common, "bcd-decompose", robot_report(run, output));
   if (!o.depfile.empty()) {

@@ -11,6 +11,7 @@
 #include <filesystem>
 
 #include "cli.h"
+#include "hausdorff_page.h"
 #include "hausdorff_report.h"
 #include "picture/heatmap.h"
 #include "picture/png_file.h"
@@ -87,8 +88,8 @@ void describe(CLI::App& app, Options& o) {
   app.add_option("--csv", o.csv, "Write the numbers as CSV, a line each way (- for stdout)")
       ->type_name("FILE");
   app.add_option("--heatmap", o.heatmap,
-                 "Colours by distance: .png draws A and B with a scale, .ply is A with colours and "
-                 "the distance as `quality`")
+                 "Colours by distance: .png draws A and B with a scale, .html is a page that shows "
+                 "them in a browser, .ply is A with colours and the distance as `quality`")
       ->type_name("FILE");
   app.add_option("--input-format", o.input_format, "Format of - and of unknown extensions")
       ->type_name("NAME");
@@ -113,7 +114,8 @@ void check_files(const Options& o) {
                        {o.a, o.b});
   if (o.heatmap.empty()) return;
   const std::string extension = std::filesystem::path(o.heatmap).extension().string();
-  require(extension == ".png" || extension == ".ply", "--heatmap: give a .png or .ply file");
+  require(extension == ".png" || extension == ".ply" || tools::is_page(o.heatmap),
+          "--heatmap: give a .png, .html or .ply file");
 }
 
 distance::CompareOptions compare_options(const Options& o, tools::Progress& progress) {
@@ -129,6 +131,10 @@ distance::CompareOptions compare_options(const Options& o, tools::Progress& prog
 
 /// Bytes of the file asked for.
 std::vector<char> heatmap(const Options& o, const Comparison& c, const distance::Compared& result) {
+  if (tools::is_page(o.heatmap)) {
+    const std::string page = tools::page_of(c, result, {o.a, o.b}, o.solid);
+    return {page.begin(), page.end()};
+  }
   const double part = c.diagonal() / 100;
   geom::Mesh a = picture::refined(c.surface(Comparison::A), part);
   const std::vector<double> to_b = c.distances(a, Comparison::B);

@@ -2,46 +2,19 @@
 
 #include "plan_page.h"
 
-#include <embedded.h>
 #include <kaboum/base/error.h>
 #include <kaboum/base/xml_text.h>
 #include <kaboum/execution/recording.h>
 #include <kaboum/io/mesh_io.h>
 
 #include <filesystem>
-#include <map>
 
 #include "plan_input.h"
+#include "player/page.h"
 #include "scene_file.h"
 
 namespace kaboum::tools {
 namespace {
-
-/// JSON as the content of an element <script>: only "</" and "<!" could end or change it.
-std::string in_script(const std::string& json) {
-  std::string out;
-  out.reserve(json.size());
-  for (const char c : json) {
-    if (c == '<')
-      out += "\\u003c";
-    else
-      out += c;
-  }
-  return out;
-}
-
-/// The template with each {{name}} replaced, in one pass: what is put in is not looked at again.
-std::string filled(std::string_view page, const std::map<std::string, std::string>& values) {
-  std::string out;
-  for (;;) {
-    const std::size_t begin = page.find("{{");
-    out += page.substr(0, begin);
-    if (begin == std::string_view::npos) return out;
-    const std::size_t end = page.find("}}", begin);
-    out += values.at(std::string(page.substr(begin + 2, end - begin - 2)));
-    page.remove_prefix(end + 2);
-  }
-}
 
 /// The scene's exact meshes; without them, and a line on stderr, where one cannot be read.
 std::vector<execution::ExactMesh> meshes_of(const SceneFile& scene, const PlanOptions& o) {
@@ -66,15 +39,16 @@ int write_page(const PlanOptions& o) {
   plan::Plan plan = read_plan_file(model, o.plan);
   if (o.tree) plan = plan::expand_tree(plan);
   execution::Recording recording(scene.world, model, plan, {});
-  plan::run(model, plan, {}, [&](const plan::RunStep& step) { recording.carry_out(step); });
+  plan::RunOptions options;
+  options.unplanned = [&](const plan::Unplanned&) { recording.end_unplanned(); };
+  plan::run(model, plan, options, [&](const plan::RunStep& step) { recording.carry_out(step); });
   const std::string name =
       model.name.empty() ? std::filesystem::path(o.domain).filename().string() : model.name;
-  io::write_file(o.html, filled(embedded("page.html"),
-                                {{"title", escape_xml("Plan " + name)},
+  io::write_file(
+      o.html,
+      page::filled("plan.html", {{"title", escape_xml("Plan " + name)},
                                  {"graph", plan::plan_svg(model, plan)},
-                                 {"data", in_script(recording.json(meshes_of(scene, o)))},
-                                 {"scene", std::string(embedded("scene.js"))},
-                                 {"player", std::string(embedded("player.js"))}}));
+                                 {"data", page::in_script(recording.json(meshes_of(scene, o)))}}));
   return kDone;
 }
 

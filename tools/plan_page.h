@@ -2,7 +2,7 @@
 
 #include "plan_options.h"
 
-/// kaboum-plan show --html: a page that plays a plan. docs/planning/player.md.
+/// kaboum-plan show --html: a page that plays a plan. docs/pages.md.
 namespace kaboum::tools {
 
 /// @return the exit code.

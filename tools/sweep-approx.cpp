@@ -14,6 +14,7 @@
 #include "scene_robot.h"
 #include "sweep_options.h"
 #include "sweep_picture.h"
+#include "sweep_preview.h"
 #include "swept_urdf.h"
 #include "urdf_output.h"
 
@@ -131,8 +132,14 @@ Json report_of(const Run& run) {
 void write_files(const Run& run, io::SetFormat format) {
   const SweepApproxOptions& o = run.o;
   const auto preview = [&] {
-    io::write_file(o.preview,
-                   picture_of_sweep(run.robot.robot, run.bodies.artefact(), run.path, run.swept));
+    if (is_page(o.preview))
+      io::write_file(o.preview,
+                     page_of_sweep({o.robot, o.path,
+                                    summary(run.swept.certificate(), run.bodies.artefact().size())},
+                                   run.robot, run.bodies, run.path, run.swept));
+    else
+      io::write_file(o.preview,
+                     picture_of_sweep(run.robot.robot, run.bodies.artefact(), run.path, run.swept));
   };
   const auto depfile = [&] {
     std::vector<std::string> inputs{o.robot, o.path};

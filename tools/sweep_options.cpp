@@ -145,8 +145,11 @@ void add_output(CLI::App& app, SweepApproxOptions& o) {
                  "Put before the bodies' file names in a .urdf, as in package://cell, with a slash "
                  "between; RViz and MoveIt need it [names relative to the URDF]")
       ->type_name("URI");
-  app.add_option("--preview", o.preview, "Write a picture of the swept volume (PNG)")
-      ->check(png_name())
+  app.add_option(
+         "--preview", o.preview,
+         "Write a picture of the swept volume (.png), or a page that shows it over the robot "
+         "along the path in a browser (.html)")
+      ->check(preview_name())
       ->type_name("FILE");
   app.add_option("--depfile", o.depfile, "Write a Makefile dependency rule")->type_name("FILE");
 }

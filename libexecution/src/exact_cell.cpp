@@ -2,43 +2,15 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/execution/exact_cell.h>
-#include <kaboum/geom/convex_hull.h>
 #include <kaboum/io/mesh_io.h>
-#include <kaboum/robot/mesh_files.h>
+#include <kaboum/robot/exact_shapes.h>
 #include <kaboum/robot/robot_file.h>
 
 #include <nlohmann/json.hpp>
 
 namespace kaboum::execution {
-namespace {
-
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-void append(geom::Mesh& all, const geom::Mesh& mesh, const robot::Geometry& g) {
-  const auto first = static_cast<std::uint32_t>(all.vertices.size());
-  for (const geom::Vec3& v : mesh.vertices)
-    all.vertices.emplace_back(g.origin * v.cwiseProduct(g.size));
-  const bool mirrored = g.size.prod() < 0;
-  for (const geom::Triangle& t : mesh.triangles)
-    all.triangles.push_back(mirrored ? geom::Triangle{first + t[0], first + t[2], first + t[1]}
-                                     : geom::Triangle{first + t[0], first + t[1], first + t[2]});
-}
-
-geom::Mesh link_mesh(const std::vector<robot::Geometry>& shapes, const robot::RobotFile& file,
-                     const std::vector<std::string>& packages) {
-  geom::Mesh all;
-  for (const robot::Geometry& g : shapes) {
-    if (g.shape == robot::Geometry::Shape::Mesh) {
-      append(all, io::read_mesh(robot::resolve_mesh(g.mesh, file.path, packages)).mesh, g);
-    } else if (!robot::is_point(g)) {
-      append(all, *geom::convex_hull(robot::bounding_points(g)), robot::Geometry{});
-    }
-  }
-  return all;
-}
-
-}  // namespace
 
 std::vector<ExactMesh> exact_meshes(const world::World& world, const fs::path& scene,
                                     const std::vector<std::string>& packages) {
@@ -53,7 +25,8 @@ std::vector<ExactMesh> exact_meshes(const world::World& world, const fs::path& s
     const bool visual = stated.value("shapes", "collision") == "visual";
     for (std::size_t s = 0; s < world.robots[r].shapes.size(); ++s) {
       const robot::Link& link = file.robot.links.at(world.robots[r].shapes[s].link);
-      out.push_back({{r, s}, link_mesh(visual ? link.visual : link.collision, file, packages)});
+      out.push_back(
+          {{r, s}, robot::exact_shapes(visual ? link.visual : link.collision, file, packages)});
     }
   }
   for (std::size_t o = 0; o < world.objects.size(); ++o) {

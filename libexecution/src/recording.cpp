@@ -2,12 +2,11 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/execution/recording.h>
+#include <kaboum/io/packed_mesh.h>
+#include <kaboum/robot/page_data.h>
 
 #include <algorithm>
-#include <bit>
-#include <cstring>
 #include <nlohmann/json.hpp>
-#include <span>
 
 #include "motion_part.h"
 #include "simulation_state.h"
@@ -17,43 +16,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string base64(std::span<const unsigned char> bytes) {
-  static constexpr char kDigits[] =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  out.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t word = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      word = word << 8U | (k < count ? std::uint32_t{bytes[i + k]} : 0U);
-    for (std::size_t k = 0; k < 4; ++k)
-      out += k <= count ? kDigits[word >> (18 - 6 * k) & 63U] : '=';
-  }
-  return out;
-}
-
-/// Numbers of 32 bits, the lowest byte first.
-template <class Number>
-std::string packed(const std::vector<Number>& numbers) {
-  static_assert(sizeof(Number) == 4);
-  std::vector<unsigned char> bytes;
-  bytes.reserve(4 * numbers.size());
-  for (const Number number : numbers) {
-    const auto word = std::bit_cast<std::uint32_t>(number);
-    for (unsigned k = 0; k < 4; ++k) bytes.push_back(word >> 8 * k & 255U);
-  }
-  return base64(bytes);
-}
-
 Json mesh_json(const geom::Mesh& mesh) {
-  std::vector<float> points;
-  for (const geom::Vec3& v : mesh.vertices)
-    for (const double x : v) points.push_back(static_cast<float>(x));
-  std::vector<std::uint32_t> triangles;
-  for (const geom::Triangle& t : mesh.triangles)
-    triangles.insert(triangles.end(), t.begin(), t.end());
-  return {{"points", packed(points)}, {"triangles", packed(triangles)}};
+  const io::PackedMesh packed = io::pack_mesh(mesh);
+  return {{"points", packed.points}, {"triangles", packed.triangles}};
 }
 
 Json pose_json(const geom::Transform& pose) {
@@ -65,20 +30,9 @@ Json pose_json(const geom::Transform& pose) {
 }
 
 Json robot_json(const world::RobotModel& robot) {
-  Json joints = Json::array();
-  for (const robot::Joint& joint : robot.kinematics.joints) {
-    const char* type = joint.type == robot::JointType::Fixed      ? "fixed"
-                       : joint.type == robot::JointType::Revolute ? "revolute"
-                                                                  : "prismatic";
-    joints.push_back({{"type", type},
-                      {"parent", joint.parent},
-                      {"origin", pose_json(joint.origin)},
-                      {"axis", {joint.axis.x(), joint.axis.y(), joint.axis.z()}},
-                      {"variable", joint.variable},
-                      {"multiplier", joint.multiplier},
-                      {"offset", joint.offset}});
-  }
-  return {{"name", robot.name}, {"base", pose_json(robot.base)}, {"joints", std::move(joints)}};
+  return {{"name", robot.name},
+          {"base", pose_json(robot.base)},
+          {"joints", Json::parse(robot::joints_json(robot.kinematics))}};
 }
 
 Json shape_json(const world::World& world, const world::Item& item) {
@@ -179,7 +133,17 @@ void Recording::carry_out(const plan::RunStep& step) {
   Json way = {{"outcome", step.outcome}, {"after", after}, {"next", nullptr}};
   if (step.next != plan::kNone) way["next"] = step_number(step.next, after);
   Json& ways = data_->steps[number]["ways"];
-  if (std::ranges::find(ways, way) == ways.end()) ways.push_back(std::move(way));
+  auto found = std::ranges::find_if(ways, [&](const Json& other) {
+    return other["outcome"] == way["outcome"] && other["after"] == way["after"] &&
+           other["next"] == way["next"];
+  });
+  if (found == ways.end()) found = ways.insert(ways.end(), std::move(way));
+  last_ = {number, static_cast<std::size_t>(found - ways.begin())};
+}
+
+void Recording::end_unplanned() {
+  if (!last_) throw Error(ErrorCode::InvalidArgument, "no step has been carried out yet");
+  data_->steps[last_->first]["ways"][last_->second]["unplanned"] = true;
 }
 
 std::string Recording::json(const std::vector<ExactMesh>& exact) const {

@@ -1,4 +1,4 @@
-// Plays all steps of a page of kaboum-plan show --html without drawing: node play_page.js PAGE SCENE.JS
+// Plays all steps of a page of kaboum-plan show --html without drawing: node play_page.js PAGE PLAYER_FOLDER
 // The page's own code has to come to the states that the plan states, from one step to the next.
 'use strict';
 const fs = require('fs');
@@ -7,11 +7,12 @@ const assert = require('assert');
 
 const page = fs.readFileSync(process.argv[2], 'utf8');
 const scripts = [...page.matchAll(/<script([^>]*)>\n?([^]*?)<\/script>/g)];
-assert.strictEqual(scripts.length, 3, 'data and two scripts');
+assert.strictEqual(scripts.length, 4, 'data and three scripts');
 const data = JSON.parse(scripts[0][2]);
 for (const [, , code] of scripts.slice(1)) new vm.Script(code);  // throws where it is no JavaScript
-assert.strictEqual(scripts[1][2].trim(), fs.readFileSync(process.argv[3], 'utf8').trim());
-const S = require(require('path').resolve(process.argv[3]));
+const sources = ['scene.js', 'view.js', 'player.js'].map((name) => require('path').resolve(process.argv[3], name));
+sources.forEach((file, i) => assert.strictEqual(scripts[i + 1][2].trim(), fs.readFileSync(file, 'utf8').trim()));
+const S = require(sources[0]);
 
 assert.strictEqual(data.kaboum_player, 1);
 const seen = new Set();
@@ -60,4 +61,6 @@ for (const shape of data.shapes)
     triangles += corners.length / 3;
   }
 assert(S.choicesTo(data, (step) => step === data.steps[data.steps.length - 1]) !== null);
-console.log(`${data.steps.length} steps, ${ends} branches, ${moved} motions, ${triangles} triangles, at most ${most} apart`);
+const unplanned = data.steps.flatMap((step) => step.ways).filter((way) => way.unplanned);
+for (const way of unplanned) assert(way.next === null && way.outcome, 'an outcome that is left out is one, and an end');
+console.log(`${data.steps.length} steps, ${ends} branches, ${unplanned.length} left out, ${moved} motions, ${triangles} triangles, at most ${most} apart`);

@@ -53,9 +53,9 @@ reader = Reader()
 reader.feed(page)
 assert "http" not in page.replace("http://www.w3.org/2000/svg", "") and "{{" not in page
 data = json.loads(reader.scripts[0])
-for script, file in zip(reader.scripts[1:], ("scene.js", "player.js"), strict=True):
+for script, file in zip(reader.scripts[1:], ("scene.js", "view.js", "player.js"), strict=True):
     assert script.strip() == open(f"{player}/{file}", encoding="utf-8").read().strip(), file
-used = set(re.findall(r"\$\('([a-z]+)'\)", reader.scripts[2]))
+used = set(re.findall(r"\$\('([a-z]+)'\)", reader.scripts[3]))
 assert used and used <= reader.ids, used - reader.ids
 cell, plan = json.load(open(f"{name}/cell.json")), json.load(open(f"{name}/plan.json"))
 links = [f"{r['name']}/{l['link']}" for r in cell["robots"] for l in r["links"]]
@@ -71,7 +71,7 @@ if box:
     assert len(base64.b64decode(box[0]["points"])) == 8 * 3 * 4
 END_OF_PAGE
   command -v node >/dev/null || fail "Node.js is missing (nodejs, which scripts/setup installs): the page's code has not been run"
-  node "$HERE/play_page.js" "$1/plan.html" "$S/../../tools/player/scene.js" >said.txt 2>&1 || fail "$1: $(tail -5 said.txt)"
+  node "$HERE/play_page.js" "$1/plan.html" "$S/../../tools/player" >said.txt 2>&1 || fail "$1: $(tail -5 said.txt)"
 }
 scenario force-sensing 2 10 4
 scenario remove 6 12 1 --robots 2

@@ -20,8 +20,7 @@ int parts(const geom::Mesh& mesh, const geom::Triangle& t, double limit) {
 
 }  // namespace
 
-geom::Mesh refined(const geom::Mesh& mesh, double longest) {
-  constexpr double kMostParts = 1e6;
+geom::Mesh refined(const geom::Mesh& mesh, double longest, double most_parts) {
   double limit = longest;
   for (; limit > 0 && limit < 100 * longest; limit *= 1.25) {
     double sum = 0;
@@ -29,7 +28,7 @@ geom::Mesh refined(const geom::Mesh& mesh, double longest) {
       const double n = parts(mesh, t, limit);
       if (n > 1) sum += n * n;
     }
-    if (sum <= kMostParts) break;
+    if (sum <= most_parts) break;
   }
   geom::Mesh out;
   out.vertices = mesh.vertices;

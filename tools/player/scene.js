@@ -84,6 +84,16 @@ const KaboumScene = (() => {
     return path[k].map((x, j) => x + s * (path[k + 1][j] - x));
   }
 
+  /// Joint values at a share of a path of waypoints, each leg taking as long as its largest change of a joint.
+  function pathAt(path, part) {
+    if (part >= 1) return path[path.length - 1];
+    const legs = path.slice(1).map((q, i) => Math.max(...q.map((x, j) => Math.abs(x - path[i][j]))));
+    let left = part * legs.reduce((sum, x) => sum + x, 0);
+    for (let i = 0; i < legs.length; left -= legs[i++])
+      if (left < legs[i]) return path[i].map((x, j) => x + (path[i + 1][j] - x) * left / legs[i]);
+    return path[path.length - 1];
+  }
+
   /// Steps that have no motion are shown for so long. [s]
   const kPause = 0.5;
 
@@ -175,7 +185,11 @@ const KaboumScene = (() => {
     return new Type(bytes.buffer);
   }
 
-  return {identity, multiply, inverse, forward, objectPose, branch, at, gap, shapePose, choicesTo, decode};
+  /// A body or mesh of the page's data, with its numbers.
+  const mesh = ({points, triangles, values}) => ({points: decode(points, Float32Array), triangles: decode(triangles, Uint32Array),
+                                                  values: values ? decode(values, Float32Array) : null});
+
+  return {identity, multiply, inverse, forward, objectPose, branch, at, gap, shapePose, choicesTo, decode, mesh, pathAt};
 })();
 
 if (typeof module !== 'undefined') module.exports = KaboumScene;

@@ -5,13 +5,14 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace kaboum::execution {
 
 /// A plan's execution as data for a player: kinematics, shapes, motions in time, and which step is
-/// followed by which. docs/planning/player.md.
+/// followed by which. docs/pages.md.
 ///
 /// Steps are nodes in geometric states: what is known besides may differ between runs that come to
 /// the same one, and the ways on from it are all of theirs.
@@ -30,6 +31,11 @@ class Recording {
   ///   what the scene does not have.
   void carry_out(const plan::RunStep& step);
 
+  /// The plan has no branch for what the last step's sensing came to: it was made under
+  /// assumptions.
+  /// @throws Error{InvalidArgument} before the first step.
+  void end_unplanned();
+
   /// The page's data. Bounding sets are written without their margins.
   /// @param exact  of the scene; may be empty.
   [[nodiscard]] std::string json(const std::vector<ExactMesh>& exact) const;
@@ -46,6 +52,7 @@ class Recording {
   SimulationOptions options_;
   std::map<std::string, std::uint32_t> states_;                           ///< by words
   std::map<std::pair<plan::Index, std::uint32_t>, std::uint32_t> steps_;  ///< by node and state
+  std::optional<std::pair<std::uint32_t, std::size_t>> last_;             ///< step, and its way on
   std::unique_ptr<Data> data_;
 };
 

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <kaboum/certify/sweep.h>
+
+#include <string>
+
+namespace kaboum::tools {
+
+/// What is said of a sweep beside its picture.
+struct SweepWords {
+  std::string robot, path;  ///< names of files
+  std::string summary;
+};
+
+/// A page: the bodies that bound what is swept, over the robot's shapes along the path.
+/// docs/pages.md.
+/// @throws Error as reading the robot's meshes.
+std::string page_of_sweep(const SweepWords& words, const robot::RobotFile& robot,
+                          const certify::CertifiedBodies& bodies, const robot::Path& path,
+                          const certify::CertifiedSweep& swept);
+
+}  // namespace kaboum::tools
