@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "decompose_words.h"
+#include "robot_output.h"
 #include "player/gaps.h"
 
 namespace kaboum::tools {

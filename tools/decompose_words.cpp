@@ -16,10 +16,6 @@ std::string percent(double length, double diagonal) {
 
 }  // namespace
 
-std::string counted(std::size_t n, const char* one, const char* many) {
-  return std::to_string(n) + ' ' + (n == 1 ? one : many);
-}
-
 int code_of(const certify::SetCertificate& certificate) {
   if (certificate.stop == bcd::Stop::Done) return kDone;
   return certificate.stop == bcd::Stop::OutOfWork ? kLimit : kNo;

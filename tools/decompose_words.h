@@ -9,9 +9,6 @@
 /// What bcd-decompose says of a mesh's set, and how it ends.
 namespace kaboum::tools {
 
-/// "1 body", "2 bodies".
-std::string counted(std::size_t n, const char* one, const char* many);
-
 /// The exit code of a mesh's outcome.
 int code_of(const certify::SetCertificate& certificate);
 

@@ -27,7 +27,7 @@ cmp -s a.glb d.glb || fail "one thread gives other bytes"
 # An entry under another one's name is found out, even if only its container is; so is a cut one.
 mkdir swapped
 expect 0 '' env KABOUM_CACHE=swapped "$D" "$BRACKET" -o e.glb --epsilon 3% --effort fast --quiet
-mine=$(ls swapped)
+mine=$(cd swapped && grep -l "^KABOUM-SET" -- *)
 tetrahedron >other.off
 expect 0 '' env KABOUM_CACHE=other "$D" other.off -o other.glb --epsilon 3% --effort fast
 cp other/*.set "swapped/$mine"

@@ -128,7 +128,7 @@ expect 2 '' "$H" t.off t.off --samples 1
 expect 2 '' "$H" t.off t.off --samples 1e5.5
 expect 2 '' "$H" t.off t.off --backend best
 expect 2 '' "$H" t.off t.off --nonsense
-expect 2 'png or .ply' "$H" t.off t.off --heatmap x.jpg
+expect 2 'png, .html or .ply' "$H" t.off t.off --heatmap x.jpg
 expect 2 'cannot both' "$H" t.off t.off --report x --csv x
 expect 2 'overwrite' "$H" t.off moved.off --csv moved.off
 expect 3 '' "$H" missing.off t.off
