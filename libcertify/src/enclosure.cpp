@@ -178,7 +178,7 @@ EnclosedFile enclose_file(const fs::path& file, std::optional<io::Format> format
       throw Error(error.code(), file.string() + ": " + error.what());
     }
   }();
-  if (!made) throw TooCoarse(file.string());
+  if (!made) throw TooCoarse(file.string(), "choose a format that holds doubles, as obj");
   if (cache != nullptr) store_enclosure(*cache, key, *made);
   out.enclosure = std::move(*made);
   return out;

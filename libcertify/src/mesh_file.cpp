@@ -54,11 +54,10 @@ std::optional<CertifiedFile> find_file(const fs::path& file, std::optional<io::F
 
 }  // namespace
 
-TooCoarse::TooCoarse(const std::string& file)
+TooCoarse::TooCoarse(const std::string& file, const char* remedy)
     : Error(ErrorCode::InvalidInput,
-            file +
-                ": float32 is too coarse so far from the origin (or for this epsilon); move the "
-                "mesh to the origin") {}
+            file + ": float32 is too coarse so far from the origin (or for this epsilon); " +
+                remedy) {}
 
 CertifiedFile certify_file(const fs::path& file, std::optional<io::Format> format,
                            SetRequest request, const SetCache* cache, const Hooks& hooks) {
