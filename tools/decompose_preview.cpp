@@ -11,8 +11,8 @@
 #include <sstream>
 
 #include "decompose_words.h"
-#include "robot_output.h"
 #include "player/gaps.h"
+#include "robot_output.h"
 
 namespace kaboum::tools {
 namespace {

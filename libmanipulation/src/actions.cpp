@@ -30,7 +30,8 @@ struct Call {
   std::vector<std::size_t> robots, objects;
 };
 
-/// Rounds after which all things are involved; answers that are kept, and things in the way of them.
+/// Rounds after which all things are involved; answers that are kept, and things in the way of
+/// them.
 constexpr int kRounds = 4;
 constexpr std::size_t kMostKept = 20'000, kMostDecided = 50'000'000;
 

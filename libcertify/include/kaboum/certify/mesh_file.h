@@ -22,8 +22,7 @@ struct CertifiedFile {
 /// float32 cannot hold bodies as near to this file's mesh as asked for (certify_set).
 class TooCoarse : public Error {
  public:
-  explicit TooCoarse(const std::string& file,
-                     const char* remedy = "move the mesh to the origin");
+  explicit TooCoarse(const std::string& file, const char* remedy = "move the mesh to the origin");
 };
 
 /// Reads the file and finds or certifies its set, which says the unit that the vertices are in as
