@@ -34,7 +34,7 @@ std::string three_digits(double x) {
 /// was covered.
 geom::Mesh original_of(const DecomposeOptions& o) {
   const certify::SetRequest request = request_of(o);
-  const geom::Mesh read =
+  geom::Mesh read =
       is_cad(o)
           ? io::read_cad(o.input).read.mesh
           : io::read_mesh(o.input, format_for(o.input, o.input_format, "--input-format")).mesh;
