@@ -1,9 +1,8 @@
 // A whole world in FCL, to compare with.
 #include "fcl_world.h"
 
-#include <fcl/geometry/bvh/BVH_model.h>
-#include <fcl/geometry/shape/convex.h>
 #include <fcl/narrowphase/collision.h>
+#include <fcl_geometry.h>
 #include <kaboum/robot/kinematics.h>
 
 #include <algorithm>
@@ -13,25 +12,6 @@ namespace {
 
 using world::Item;
 using world::WorldState;
-
-std::shared_ptr<fcl::CollisionGeometryd> geometry_of(const geom::Mesh& mesh, bool convex) {
-  if (convex) {
-    auto vertices = std::make_shared<std::vector<fcl::Vector3d>>(mesh.vertices);
-    auto faces = std::make_shared<std::vector<int>>();
-    for (const geom::Triangle& t : mesh.triangles) {
-      faces->push_back(3);
-      for (const std::uint32_t v : t) faces->push_back(static_cast<int>(v));
-    }
-    return std::make_shared<fcl::Convexd>(vertices, static_cast<int>(mesh.triangles.size()), faces);
-  }
-  auto model = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
-  std::vector<fcl::Triangle> triangles;
-  for (const geom::Triangle& t : mesh.triangles) triangles.emplace_back(t[0], t[1], t[2]);
-  model->beginModel();
-  model->addSubModel(mesh.vertices, triangles);
-  model->endModel();
-  return model;
-}
 
 bool moves_with(const WorldState& state, const Item& item, std::size_t robot) {
   if (item.robot != Item::kObject) return item.robot == robot;
@@ -48,7 +28,8 @@ FclWorld::FclWorld(const world::Checker& checker, const Meshes& meshes, bool con
       items_.push_back(item);
       objects_.emplace_back();
     }
-    objects_.back().push_back(std::make_unique<fcl::CollisionObjectd>(geometry_of(mesh, convex)));
+    objects_.back().push_back(
+        std::make_unique<fcl::CollisionObjectd>(collide::fcl_geometry(mesh, convex)));
   }
 }
 

@@ -29,7 +29,8 @@ std::string key_of_file(const std::filesystem::path& file, std::optional<io::For
 }  // namespace
 
 std::optional<KnownFile> find_known(const CacheFolder& cache, const std::filesystem::path& file,
-                                    std::optional<io::Format> format, const std::string& sha256) {
+                                    std::optional<io::Format> format) {
+  const std::string sha256 = io::sha256(io::read_file(file));
   std::string flaw;  // it is written again
   const auto content = cache.find(kKind, key_of_file(file, format, sha256), flaw);
   if (!content) return std::nullopt;
@@ -44,11 +45,11 @@ std::optional<KnownFile> find_known(const CacheFolder& cache, const std::filesys
 }
 
 void store_known(const CacheFolder& cache, const std::filesystem::path& file,
-                 std::optional<io::Format> format, std::span<const char> bytes,
+                 std::optional<io::Format> format, std::size_t bytes, const std::string& sha256,
                  const std::string& mesh_hash, const io::ReadResult& read) {
-  if (!read.other_files.empty() || bytes.size() < kReadAtOnce) return;
+  if (!read.other_files.empty() || bytes < kReadAtOnce) return;
   const Json json = {{"mesh", mesh_hash}, {"notes", read.notes}, {"unit", read.unit}};
-  cache.store(kKind, key_of_file(file, format, io::sha256(bytes)),
+  cache.store(kKind, key_of_file(file, format, sha256),
               json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 

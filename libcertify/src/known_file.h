@@ -5,7 +5,6 @@
 
 #include <filesystem>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -20,15 +19,17 @@ struct KnownFile {
   std::string unit;
 };
 
-/// What is known of a file with these bytes, whatever may have become of it since.
+/// What is known of a file with the bytes that it has now.
 /// @param format  by default by extension
+/// @throws Error{InvalidInput} when it cannot be read.
 std::optional<KnownFile> find_known(const CacheFolder& cache, const std::filesystem::path& file,
-                                    std::optional<io::Format> format, const std::string& sha256);
+                                    std::optional<io::Format> format);
 
 /// Keeps what reading gave; nothing where other files were read, too, or where the file is so small
 /// that reading it takes no time.
+/// @param bytes, sha256  of the file when it was read.
 void store_known(const CacheFolder& cache, const std::filesystem::path& file,
-                 std::optional<io::Format> format, std::span<const char> bytes,
+                 std::optional<io::Format> format, std::size_t bytes, const std::string& sha256,
                  const std::string& mesh_hash, const io::ReadResult& read);
 
 }  // namespace kaboum::certify

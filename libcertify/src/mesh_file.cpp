@@ -39,8 +39,7 @@ std::optional<CertifiedFile> find_file(const fs::path& file, std::optional<io::F
                                        const SetRequest& request, const SetCache& cache,
                                        const Hooks& hooks) {
   if (file == "-" || (!format && io::is_cad_file(file))) return std::nullopt;
-  const std::optional<KnownFile> known =
-      find_known(CacheFolder(cache.folder()), file, format, io::sha256(io::read_file(file)));
+  const std::optional<KnownFile> known = find_known(CacheFolder(cache.folder()), file, format);
   if (!known) return std::nullopt;
   std::string flaw;
   auto set = cache.find(
@@ -70,8 +69,8 @@ CertifiedFile certify_file(const fs::path& file, std::optional<io::Format> forma
   request = with_unit(std::move(request), read.unit, hooks);
   const std::string sha256 = io::sha256(bytes);
   if (cache != nullptr && file != "-")
-    store_known(CacheFolder(cache->folder()), file, format, bytes, SetCache::hash_of(read.mesh),
-                read);
+    store_known(CacheFolder(cache->folder()), file, format, bytes.size(), sha256,
+                SetCache::hash_of(read.mesh), read);
   auto found = [&] {
     try {
       return find_or_certify(read.mesh, sha256, request, cache, hooks);

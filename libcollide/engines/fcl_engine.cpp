@@ -2,37 +2,15 @@
 
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/broadphase/default_broadphase_callbacks.h>
-#include <fcl/geometry/bvh/BVH_model.h>
-#include <fcl/geometry/shape/convex.h>
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/collision_object.h>
 #include <fcl/narrowphase/distance.h>
 
 #include "engine.h"
+#include "fcl_geometry.h"
 
 namespace kaboum::collide {
 namespace {
-
-using Geometry = std::shared_ptr<fcl::CollisionGeometryd>;
-
-Geometry geometry_of(const geom::Mesh& mesh, bool convex) {
-  if (convex) {
-    auto vertices = std::make_shared<std::vector<fcl::Vector3d>>(mesh.vertices);
-    auto faces = std::make_shared<std::vector<int>>();
-    for (const geom::Triangle& t : mesh.triangles) {
-      faces->push_back(3);
-      for (const std::uint32_t v : t) faces->push_back(static_cast<int>(v));
-    }
-    return std::make_shared<fcl::Convexd>(vertices, static_cast<int>(mesh.triangles.size()), faces);
-  }
-  auto model = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
-  std::vector<fcl::Triangle> triangles;
-  for (const geom::Triangle& t : mesh.triangles) triangles.emplace_back(t[0], t[1], t[2]);
-  model->beginModel();
-  model->addSubModel(mesh.vertices, triangles);
-  model->endModel();
-  return model;
-}
 
 /// libccd as the narrow phase of convex parts: FCL's default.
 class FclEngine : public Engine {
@@ -41,12 +19,12 @@ class FclEngine : public Engine {
     for (const Part& part : model.robot) {
       links_.push_back(part.link);
       robot_objects_.push_back(
-          std::make_unique<fcl::CollisionObjectd>(geometry_of(part.mesh, model.convex)));
+          std::make_unique<fcl::CollisionObjectd>(fcl_geometry(part.mesh, model.convex)));
       robot_.registerObject(robot_objects_.back().get());
     }
     for (const geom::Mesh& mesh : model.scene) {
       scene_objects_.push_back(
-          std::make_unique<fcl::CollisionObjectd>(geometry_of(mesh, model.convex)));
+          std::make_unique<fcl::CollisionObjectd>(fcl_geometry(mesh, model.convex)));
       scene_objects_.back()->computeAABB();
       scene_.registerObject(scene_objects_.back().get());
     }

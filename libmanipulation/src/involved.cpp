@@ -209,14 +209,14 @@ bool Involved::add_obstacles(Performed& performed) {
   for (const Thing& thing : things) {
     if (performed.in_the_way.size() <= thing.number)
       performed.in_the_way.resize(geometry_.placed.size(), kUnknown);
-    if (performed.in_the_way[thing.number] == kUnknown) {
-      performed.in_the_way[thing.number] = kBeside;
-      unknown.push_back(thing);
-    }
+    if (performed.in_the_way[thing.number] == kUnknown) unknown.push_back(thing);
   }
-  if (!unknown.empty())
-    for (const Thing& thing : decide(performed, std::move(unknown)))
-      performed.in_the_way[thing.number] = kInTheWay;
+  if (!unknown.empty()) {
+    // Nothing is said of them unless all are decided: what decides may throw.
+    const std::vector<Thing> obstacles = decide(performed, unknown);
+    for (const Thing& thing : unknown) performed.in_the_way[thing.number] = kBeside;
+    for (const Thing& thing : obstacles) performed.in_the_way[thing.number] = kInTheWay;
+  }
   bool any = false;
   for (const Thing& thing : things) {
     if (performed.in_the_way[thing.number] != kInTheWay) continue;

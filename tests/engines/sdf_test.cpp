@@ -6,13 +6,12 @@
 
 #include "expected.h"
 #include "models.h"
+#include "sdf_collision.h"
 
 namespace engines {
 namespace {
 
 using kaboum::robot::Transform;
-
-Eigen::Vector3d vector(const ignition::math::Vector3d& v) { return {v.X(), v.Y(), v.Z()}; }
 
 Transform transform(const ignition::math::Pose3d& pose) {
   const auto& q = pose.Rot();
@@ -120,26 +119,6 @@ TEST(Sdf, JointsHaveTheirLimits) {
   }
 }
 
-Measure measured(const sdf::Collision& collision, const std::filesystem::path& folder,
-                 const std::string& prefix) {
-  ignition::math::Pose3d raw;
-  EXPECT_TRUE(collision.SemanticPose().Resolve(raw, "__model__").empty()) << collision.Name();
-  const Transform t = transform(raw);
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = t.linear;
-  pose.translation() = t.translation;
-  const sdf::Geometry& g = *collision.Geom();
-  if (const sdf::Box* box = g.BoxShape()) return measure_box(pose, vector(box->Size()));
-  if (const sdf::Cylinder* c = g.CylinderShape())
-    return measure_cylinder(pose, c->Radius(), c->Length());
-  if (const sdf::Sphere* sphere = g.SphereShape()) return measure_sphere(pose, sphere->Radius());
-  const sdf::Mesh* mesh = g.MeshShape();
-  if (mesh == nullptr) return {};
-  EXPECT_TRUE(mesh->Uri().starts_with(prefix)) << mesh->Uri();
-  return measure(mesh->Uri(), corners_of_stl(folder / mesh->Uri().substr(prefix.size()),
-                                             vector(mesh->Scale()), pose));
-}
-
 TEST(Sdf, HasTheBodiesThatWereWritten) {
   for (const Written& w : written()) {
     Loaded loaded;
@@ -154,8 +133,8 @@ TEST(Sdf, HasTheBodiesThatWereWritten) {
       if (link == nullptr) continue;
       std::vector<Measure> there;
       for (std::uint64_t c = 0; c < link->CollisionCount(); ++c)
-        there.push_back(measured(*link->CollisionByIndex(c), w.urdf.parent_path(),
-                                 prefixed ? "model://" + w.prefix : ""));
+        there.push_back(measure_collision(*link->CollisionByIndex(c), w.urdf.parent_path(),
+                                          prefixed ? "model://" + w.prefix : ""));
       const auto found = expected.find(w.robot.links[l].name);
       expect_same(w.urdf.string() + ", link '" + w.robot.links[l].name + "'",
                   found == expected.end() ? std::vector<Measure>{} : found->second, there);
