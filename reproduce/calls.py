@@ -51,12 +51,13 @@ class Calls:
         environment = dict(os.environ, KABOUM_CACHE=str(self.folder / cache), KABOUM_BIN=str(self.programs),
                            PATH=f"{self.programs}{os.pathsep}{os.environ.get('PATH', '')}")
         print(f"{name} ...", end="", file=sys.stderr, flush=True)
-        start = time.monotonic()
+        start, before = time.monotonic(), resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
         limit = (self.limit, self.limit + 5)
         done = subprocess.run([program, *map(str, arguments)], cwd=self.folder, env=environment, capture_output=True,
                               text=True, check=False,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, limit))
         print(f" {time.monotonic() - start:.1f} s", file=sys.stderr, flush=True)
+        user = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
         if done.returncode not in codes:
             self.failures[Step(name)] = (
                 f"stopped (CPU limit {self.limit} s, or out of memory)"
@@ -65,12 +66,16 @@ class Calls:
             for partial in results:
                 (self.folder / partial).unlink(missing_ok=True)
             return None
-        write_json(record, {"key": key, "code": done.returncode, "files": self._hashes(results)})
+        write_json(record, {"key": key, "code": done.returncode, "user_seconds": user, "files": self._hashes(results)})
         return done.returncode
 
     def _hashes(self, results):
         """Of the results that are there."""
         return {r: hash_of(self.folder / r) for r in results if (self.folder / r).is_file()}
+
+    def seconds(self, name):
+        """User CPU time of a call that succeeded, children included."""
+        return json.loads((self.folder / f"{name}.json").read_text())["user_seconds"]
 
     def report(self, name):
         return json.loads((self.folder / name).read_text())

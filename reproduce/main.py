@@ -28,6 +28,9 @@ def arguments(argv):
     parser.add_argument("--limit", type=int, default=900, metavar="SECONDS", help="CPU time of a program [900]")
     parser.add_argument("--programs", type=pathlib.Path, metavar="DIR", default=ROOT / "build/release/bin",
                         help="folder of the built programs [build/release/bin]")
+    parser.add_argument("--sections", metavar="NAME,...", help="only these: " + ", ".join(report.SECTIONS))
+    parser.add_argument("--bounding-mesh", type=pathlib.Path, metavar="PROGRAM",
+                        help="the author's `boundingmesh`, to be run on the same files")
     options = parser.parse_args(argv)
     if options.jobs < 1 or options.limit < 1:
         parser.error("--jobs and --limit must be at least 1")
@@ -47,6 +50,9 @@ def main(argv):
         if unknown:
             parser.error(f"unknown model {sorted(unknown)[0]}; there are {', '.join(m.name for m in known)}")
         chosen = [m for m in known if m.name in names]
+    sections = options.sections.split(",") if options.sections else None
+    if unknown := set(sections or ()) - set(report.SECTIONS):
+        parser.error(f"unknown section {sorted(unknown)[0]}; there are {', '.join(report.SECTIONS)}")
     for model in chosen:
         if not model.path.is_file():
             print(f"reproduce-thesis: {model.path} is missing; correct KABOUM_MESHES, or leave the model out "
@@ -56,10 +62,14 @@ def main(argv):
         if not (options.programs / name).is_file():
             print(f"reproduce-thesis: {options.programs / name} is missing; scripts/build makes it", file=sys.stderr)
             return 3
+    if options.bounding_mesh and not os.access(options.bounding_mesh, os.X_OK):
+        print(f"reproduce-thesis: {options.bounding_mesh} is no program; build it from https://github.com/gaschler/bounding-mesh",
+              file=sys.stderr)
+        return 3
     options.out.mkdir(parents=True, exist_ok=True)
     out = options.out.resolve()
     runner = Runner(options.programs.resolve(), out / "runs", options.jobs, options.limit)
-    report.make(chosen, runner, out, options.quick)
+    report.make(chosen, runner, out, options.quick, sections, options.bounding_mesh and options.bounding_mesh.resolve())
     print(f"{out / 'index.html'}: {runner.executed} runs done, {len(runner.results) - runner.executed} kept"
           + (f", {len(runner.failures)} without a result" if runner.failures else ""))
     return 1 if runner.failures else 0

@@ -7,26 +7,27 @@ for, then, with the results there, to be written.
 
 import subprocess
 
+import gains
+import peer
 import plots
+import ring
 import sampling
 import scenarios
 import sets
 import sweeps
 import thesis
 from document import Document, figure, written
+from lines import DIRECTIONS, HEADER, NOTHING, TABLE_COUNTS, count, distances, result_line, robots, table_row, write_table
 from runs import OURS, THESIS_COSTS, Run
 
-TABLE_COUNTS = (20000, 10000, 5000, 2500)
 SERIES = (40000, 20000, 10000, 5000, 2500, 1250, 625, 312, 156)
-DIRECTIONS = ("outer", "inner")
-NOTHING = "—"
 
 
 class Context:
     """What a section may ask for."""
 
-    def __init__(self, models, runner, folder, quick):
-        self.models, self.runner, self.folder, self.quick = models, runner, folder, quick
+    def __init__(self, models, runner, folder, quick, peer_program=None):
+        self.models, self.runner, self.folder, self.quick, self.peer = models, runner, folder, quick, peer_program
         self.collecting = True
         self.wanted = []
 
@@ -46,48 +47,6 @@ class Context:
         total = model.vertices()
         counts = [n for n in SERIES if n <= 0.7 * total and (n >= 1250 or n >= 0.015 * total)]
         return counts[::2] if self.quick else counts
-
-
-def count(n):
-    return f"{n:,}"
-
-
-def distances(of):
-    """The cells that all distance tables share; `of` maps names to percent."""
-    return [figure(of[key]) for key in (*thesis.DISTANCES, "hausdorff")]
-
-
-HEADER = ["mean o→a", "max o→a", "mean a→o", "max a→o", "Hausdorff"]
-
-
-def result_line(row, target, title):
-    """A line of a table for one of our results."""
-    if row is None:
-        return [count(target), title, *[NOTHING] * 5, "no result"]
-    remark = f"{row['user_seconds']:.1f} s"
-    if row["vertices"] > target:
-        remark += f", stopped at {count(row['vertices'])}"
-    return [count(target), title, *distances(row), remark]
-
-
-def table_row(keys, by, percent, mm=None):
-    """A row of the CSV of a distance table; `mm` are millimetres that the thesis prints."""
-    return [*keys, by, *(mm[key] if mm else "" for key in thesis.DISTANCES),
-            *(percent[key] for key in (*thesis.DISTANCES, "hausdorff"))]
-
-
-def write_table(path, keys, rows):
-    written(path, [*keys, "by", *(f"{key}_mm" for key in thesis.DISTANCES),
-                   *(f"{key}_percent" for key in (*thesis.DISTANCES, "hausdorff"))], rows)
-
-
-def robots(context, document):
-    """The models that stand for the robots of the thesis's tables; says which are not there."""
-    here = [model for model in context.models if model.thesis in thesis.diagonals()]
-    missing = set(thesis.diagonals()) - {model.thesis for model in here}
-    if missing:
-        document.paragraph(f"Left out here, for no model stands for them in this run: {', '.join(sorted(missing))}.")
-    return here
 
 
 def models_section(context, document):
@@ -170,17 +129,19 @@ def table_b_1_section(context, document):
     document.heading("Table B.1: cost functions, outer")
     document.paragraph(
         "The thesis's costs as we run them (bmesh-decimate --effort fast), each beside the thesis's "
-        "figures for it, then our cost, the measured distance, with --effort normal. CSV: "
+        "figures for it; `planes` also without the planes that it puts on sharp edges (--sharp-angle 180), which is Eq. 4.4 "
+        "as printed; then our cost, the measured distance, with --effort normal. CSV: "
         "table-b-1.csv.")
     table = []
 
-    def add_ours(model, n, cost, lines):
+    def add_ours(model, n, cost, lines, sharp_angle=0):
         if n not in context.counts(model, TABLE_COUNTS):
             return
-        row = context.row(Run(model, "outer", cost, vertices=n))
-        lines.append(result_line(row, n, cost))
+        row = context.row(Run(model, "outer", cost, vertices=n, sharp_angle=sharp_angle))
+        name = f"{cost}, no planes at edges" if sharp_angle else cost
+        lines.append(result_line(row, n, name))
         if row:
-            table.append(table_row([model.name, n, cost], "kaboum", row))
+            table.append(table_row([model.name, n, name], "kaboum", row))
 
     for model in robots(context, document):
         lines = []
@@ -191,6 +152,8 @@ def table_b_1_section(context, document):
                     lines.append([count(n), f"thesis, {cost}", *distances(row.percent), ""])
                     table.append(table_row([model.thesis, n, cost], "thesis", row.percent, row.mm))
                 add_ours(model, n, cost, lines)
+                if cost == "planes":
+                    add_ours(model, n, cost, lines, sharp_angle=180)
             add_ours(model, n, OURS, lines)
         document.heading(f"{model.thesis} ({model.title} here)", 3)
         document.table(["vertices", "by", *HEADER, "user time"], lines)
@@ -343,17 +306,20 @@ def resources_section(context, document):
     document.table(["model", "cost", "effort", "vertices", "to", "contractions/s", "MB per 10,000 vertices"], lines)
 
 
-SECTIONS = [models_section, proposition_1_section, table_4_2_section, same_share_section, table_b_1_section,
-            figures_section, pictures_section, sets.section, sweeps.section, sampling.section,
-            scenarios.section, resources_section]
-QUICK_SECTIONS = [models_section, proposition_1_section, table_4_2_section, figures_section, pictures_section,
-                  sets.section, sweeps.section, sampling.section, scenarios.section, resources_section]
+# In the order of the report. Those that a quick run leaves out cost much and say least.
+SECTIONS = {
+    "models": models_section, "proposition-1": proposition_1_section, "table-4-2": table_4_2_section, "same-share": same_share_section,
+    "table-b-1": table_b_1_section, "gains": gains.section, "author": peer.section, "figures": figures_section,
+    "pictures": pictures_section, "sets": sets.section, "ring": ring.section, "sweeps": sweeps.section, "sampling": sampling.section,
+    "scenarios": scenarios.section, "resources": resources_section}
+NOT_QUICK = {"same-share", "table-b-1"}
 
 
-def make(models, runner, folder, quick):
-    """Runs what is needed and writes report.md, index.html, the tables and figures into `folder`."""
-    context = Context(models, runner, folder, quick)
-    sections = QUICK_SECTIONS if quick else SECTIONS
+def make(models, runner, folder, quick, wanted=None, peer_program=None):
+    """Runs what is needed and writes report.md, index.html, the tables and figures into `folder`; `wanted`: names of SECTIONS, all
+    where it is None."""
+    context = Context(models, runner, folder, quick, peer_program)
+    sections = [section for name, section in SECTIONS.items() if (name in wanted if wanted else not (quick and name in NOT_QUICK))]
     for section in sections:
         section(context, Document(""))
     context.collecting = False

@@ -29,18 +29,22 @@ class Run:
     cost: str
     vertices: int = 0
     epsilon: float = 0
+    effort: str = ""  # "": that of the cost
+    sharp_angle: int = 0  # degrees; 0: the default
 
     def options(self):
         # The thesis contracts and does nothing else; our cost is for tightness.
-        effort = "fast" if self.cost in THESIS_COSTS else "normal"
+        effort = self.effort or ("fast" if self.cost in THESIS_COSTS else "normal")
         goal = ["--vertices", str(self.vertices)] if self.vertices else ["--epsilon",
                                                                          f"{self.epsilon:g}%"]
-        return ["--direction", self.direction, "--cost", self.cost, "--effort", effort, *goal, "--drop-sheets",
+        sharp = ["--sharp-angle", str(self.sharp_angle)] if self.sharp_angle else []
+        return ["--direction", self.direction, "--cost", self.cost, "--effort", effort, *sharp, *goal, "--drop-sheets",
                 "--holes", "keep"]
 
     def title(self):
         goal = f"{self.vertices}" if self.vertices else f"{self.epsilon:g}pc"
-        return f"{self.model.name}-{self.direction}-{self.cost}-{goal}"
+        more = [self.effort] * bool(self.effort) + [f"sharp{self.sharp_angle}"] * bool(self.sharp_angle)
+        return "-".join([self.model.name, self.direction, self.cost, *more, goal])
 
 
 class Failure(Exception):
@@ -180,6 +184,7 @@ def _row(run, folder):
     row = {
         "model": run.model.name, "file": run.model.path.name, "sha256": report["input"]["sha256"],
         "direction": run.direction, "cost": run.cost, "effort": report["options"]["effort"],
+        "sharp_angle": run.sharp_angle or "",
         "target_vertices": run.vertices or "", "target_epsilon": run.epsilon or "",
         "vertices_in": report["input"]["vertices"], "closed": report["input"]["closed"],
         "dropped_sheets": report["preparation"]["dropped_sheets"],

@@ -15,7 +15,7 @@ from document import figure, written
 METHODS = ("planes", "clusters", "voxels")
 UNLIMITED = 100000  # vertices of a body
 KEYS = ("o2a_mean", "o2a_max", "a2o_mean", "a2o_max")
-HEADER = ["stage", "by", "bodies", "vertices", "mean o→a", "max o→a", "mean a→o", "max a→o", "union → solid", "verdict"]
+HEADER = ["stage", "by", "bodies", "vertices", "in a body", "mean o→a", "max o→a", "mean a→o", "max a→o", "union → solid", "verdict"]
 NAME = "MITSUBISHI"
 
 
@@ -56,6 +56,18 @@ def write_obj(path, parts):
             file.writelines(points)
             file.writelines("f " + " ".join(str(i + first) for i in t) + "\n" for t in triangles)
             first += len(points)
+
+
+def vertices_per_body(path):
+    """Fewest, mean and most vertices of the objects of an OBJ file."""
+    counts = []
+    with open(path, encoding="utf-8") as file:
+        for line in file:
+            if line.startswith("o "):
+                counts.append(0)
+            elif line.startswith("v "):
+                counts[-1] += 1
+    return min(counts), sum(counts) / len(counts), max(counts)
 
 
 def components(points, triangles):
@@ -148,7 +160,7 @@ class Sets:
             return None
         report = self.call.report(f"{name}-distance-report.json")
         percent, there, back = 100 / report["bbox_diagonal"], report["a_to_b"], report["b_to_a"]
-        return {"name": name, "bodies": bodies, "vertices": vertices, "o2a_mean": percent * there["mean"],
+        return {"name": name, "bodies": bodies, "vertices": vertices, "in_a_body": vertices_per_body(here), "o2a_mean": percent * there["mean"],
                 "o2a_max": percent * there["max_upper"], "a2o_mean": percent * back["mean"],
                 "a2o_max": percent * back["max_upper"], "reach": None if reach is None else percent * reach,
                 "verdict": self.verdict(name, reach)}
@@ -191,7 +203,8 @@ class Sets:
 
 def line(stage, by, row, figure):
     reach = row["reach"]
-    return [stage, by, str(row["bodies"]), f"{row['vertices']:,}", *(figure(row[key]) for key in KEYS),
+    least, mean, most = row["in_a_body"]
+    return [stage, by, str(row["bodies"]), f"{row['vertices']:,}", f"{least}–{most}, mean {mean:.1f}", *(figure(row[key]) for key in KEYS),
             "—" if reach is None else figure(reach), row["verdict"]]
 
 
@@ -217,13 +230,13 @@ def section(context, document):
         if row is None:
             return
         lines.append(line(stage, by, row, figure))
-        table.append([stage, by, row["bodies"], row["vertices"], *(row[key] for key in KEYS), row["reach"] or "",
+        table.append([stage, by, row["bodies"], row["vertices"], *row["in_a_body"], *(row[key] for key in KEYS), row["reach"] or "",
                       row["verdict"]])
 
     def add_thesis(stage, bodies, vertices=None):
         for row in printed:
             if (row.stage, row.bodies) == (stage, bodies) and vertices in (None, row.vertices):
-                add(stage, "thesis", {"bodies": row.bodies, "vertices": row.vertices, "reach": None, "verdict": "—",
+                add(stage, "thesis", {"bodies": row.bodies, "vertices": row.vertices, "in_a_body": row.in_a_body, "reach": None, "verdict": "—",
                                       **row.percent})
 
     hulls = [row.bodies for row in printed if row.stage == "hulls"]
@@ -273,7 +286,8 @@ def section(context, document):
             "across concave places are far from the original and only the vertices are on it. Its a→o must have been "
             "taken at vertices, and are lower bounds.")
     document.table(HEADER, lines)
-    written(context.folder / "table-4-3.csv", ["stage", "by", "bodies", "vertices", *(f"{k}_percent" for k in KEYS),
+    written(context.folder / "table-4-3.csv", ["stage", "by", "bodies", "vertices", *(f"vertices_per_body_{k}" for k in ("min", "mean", "max")),
+                                               *(f"{k}_percent" for k in KEYS),
                                                "union_to_solid_percent", "verdict"], table)
     if printed and plots.available() and any(len(points) > 1 for points in curves.values()):
         path = context.folder / "table-4-3.svg"

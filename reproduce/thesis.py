@@ -55,6 +55,7 @@ class Set:
     stage: str  # hulls, segmentation, bounding
     bodies: int
     vertices: int
+    in_a_body: tuple  # fewest, mean, most vertices
     percent: dict
 
 
@@ -62,6 +63,7 @@ def table_4_3():
     diagonal = diagonals()["MITSUBISHI"]
     stages = {"convex_hulls_of_rigid_bodies": "hulls"}
     return [Set(stages.get(row["stage"], row["stage"]), int(row["convexes"]), int(row["vertices"]),
+                (int(row["vertices_per_convex_min"]), float(row["vertices_per_convex_mean"]), int(row["vertices_per_convex_max"])),
                 {key: 100 * float(row[key]) / diagonal for key in DISTANCES})
             for row in _read("table-4-3.csv") if row["stage"] != "original"]
 

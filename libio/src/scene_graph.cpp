@@ -74,7 +74,7 @@ class SceneReader {
 
   void read(const Placement& placement) {
     scene_.routed |= file_.routed;
-    for (const SceneNode* const node : file_.roots) read_child(*node, placement);
+    read_in_turn(file_.roots, placement);
   }
 
  private:
@@ -111,7 +111,28 @@ class SceneReader {
   void read_children(const SceneField& field, const Placement& placement) {
     if (!field.text.empty())
       fields_.fail_at(field.where, in_quotes(field.name) + " has no nodes; the file is damaged");
-    for (const SceneNode* const child : field.nodes) read_child(*child, placement);
+    read_in_turn(field.nodes, placement);
+  }
+
+  /// Siblings, of which Open Inventor's Rotation and Translation move those that follow, as Coin
+  /// reads them in VRML 97 files.
+  void read_in_turn(const std::vector<const SceneNode*>& nodes, Placement placement) {
+    for (const SceneNode* const node : nodes) {
+      if (node->type == "Rotation" || node->type == "Translation") {
+        placement = placement * read_move(*node);
+      } else {
+        read_child(*node, placement);
+      }
+    }
+  }
+
+  [[nodiscard]] Placement read_move(const SceneNode& node) const {
+    TransformFields fields;
+    const std::string_view own = node.type == "Rotation" ? "rotation" : "translation";
+    for (const SceneField& field : node.fields)
+      if (field.name != own || !read_transform_field(field, fields))
+        fields_.fail_field(node, field);
+    return fields.placement();
   }
 
   void read_group(const SceneNode& node, const Placement& outer) {

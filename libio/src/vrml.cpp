@@ -200,10 +200,13 @@ class VrmlParser {
     }
     if (node.fields.size() >= kMaxSceneFields)
       fail(source_, field.where, "a node with too many fields; the file is damaged");
-    for (const SceneField& other : node.fields)
-      if (other.name == field.name)
-        fail(source_, field.where,
-             "the field " + in_quotes(field.name) + " is given twice; the file is damaged");
+    for (const SceneField& other : node.fields) {
+      if (other.name != field.name) continue;
+      if (node.type == "Material")
+        return;  // Robotics Library: two materials in one; colours say nothing of shapes
+      fail(source_, field.where,
+           "the field " + in_quotes(field.name) + " is given twice; the file is damaged");
+    }
     node.fields.push_back(std::move(field));
   }
 

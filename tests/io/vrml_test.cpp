@@ -52,6 +52,34 @@ TEST(Vrml, Transforms) {
             (std::vector<Vec3>{Vec3(0, 1, 0.5), Vec3(-1, 0, 0), Vec3(0, 0, 0)}));
 }
 
+TEST(Vrml, RotationAndTranslationMoveWhatFollowsInTheirGroup) {
+  const std::string turn = "Rotation { rotation 0 0 1 1.5707963267948966 } ";
+  // The later move is the inner one, as in Coin.
+  expect_near(read(turn + "Translation { translation 1 0 0 } " + kTriangle),
+              {Vec3(0, 1, 0), Vec3(0, 2, 0), Vec3(-1, 1, 0.5)});
+  expect_near(read("Translation { translation 1 0 0 } " + turn + kTriangle),
+              {Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 0, 0.5)});
+  expect_near(read("Group { children [ " + turn + kTriangle + " ] } " + kTriangle),
+              {Vec3(0, 0, 0), Vec3(0, 1, 0), Vec3(-1, 0, 0.5), Vec3(0, 0, 0), Vec3(1, 0, 0),
+               Vec3(0, 1, 0.5)});
+  expect_near(read(kTriangle + turn), {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0.5)});
+  EXPECT_THROW(read("Rotation { rotation 0 0 1 1 angle 2 } " + kTriangle), Error);
+  EXPECT_THROW(read("Rotation { translation 0 0 1 } " + kTriangle), Error);
+  EXPECT_THROW(read("Translation { translation 0 0 } " + kTriangle), Error);
+}
+
+TEST(Vrml, FieldsGivenTwice) {
+  EXPECT_EQ(read("Shape { appearance Appearance { material Material { shininess 1 diffuseColor 1 0 "
+                 "0 diffuseColor 0 1 0 } }"
+                 " geometry IndexedFaceSet { coord Coordinate { point [ 0 0 0, 1 0 0, 0 1 .5 ] } "
+                 "coordIndex [ 0 1 2 ] } }")
+                .size(),
+            3U);
+  EXPECT_THROW(
+      read("Transform { translation 1 0 0 translation 2 0 0 children [ " + kTriangle + " ] }"),
+      Error);
+}
+
 TEST(Vrml, DefAndUse) {
   EXPECT_EQ(read("DEF A " + kTriangle + "Transform { translation 5 0 0 children [ USE A ] }"),
             (std::vector<Vec3>{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0.5), Vec3(5, 0, 0),

@@ -5,6 +5,7 @@
 
 import contextlib
 import csv
+import dataclasses
 import io
 import os
 import pathlib
@@ -12,11 +13,14 @@ import re
 import sys
 import tempfile
 import unittest
+from unittest import mock
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "reproduce"))
 sys.dont_write_bytecode = True
 
+import gains  # noqa: E402
+import lines  # noqa: E402
 import main  # noqa: E402
 import models  # noqa: E402
 import report  # noqa: E402
@@ -249,6 +253,29 @@ class Report(unittest.TestCase):
             self.assertFalse(result.exists())
             self.assertEqual(list(runner.failures.values()), ["exit code 3"])
 
+    def test_the_two_gains_and_another_program(self):
+        """Against the bracket in the place of a robot, and a program that hands its input on."""
+        with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stderr(io.StringIO()):
+            folder = pathlib.Path(folder)
+            program = folder / "boundingmesh"
+            program.write_text("#!/bin/sh\nshift 6\nexec cp \"$1\" \"$2\"\n")
+            program.chmod(0o755)
+            model = dataclasses.replace(BRACKET, thesis="KUKA", thesis_vertices=1000)
+            runner = Runner(PROGRAMS, folder / "runs")
+            with mock.patch.object(gains, "COUNTS", (300,)), mock.patch.object(lines, "TABLE_COUNTS", (300,)):
+                report.make([model], runner, folder, False, ["gains", "author"], program)
+            self.assertEqual(runner.failures, {})
+            text = (folder / "report.md").read_text()
+            gained = {name: float(mean) for name, mean in re.findall(r"^\| ([a-z, ']+) \| 2 \| [0-9.]+× \| ([0-9.]+)× \|", text, re.M)}
+            self.assertEqual(len(gained), 5, text)
+            for change in ("optimiser, on the thesis's cost", "cost, without optimiser", "both"):
+                self.assertLess(gained[change], 1, text)
+            with open(folder / "bounding-mesh.csv", newline="", encoding="utf-8") as file:
+                rows = list(csv.DictReader(file))
+            self.assertEqual([row["by"] for row in rows], ["boundingmesh", "kaboum"] * 2)
+            self.assertTrue(all(float(row["hausdorff_percent"]) < 1e-4 for row in rows if row["by"] == "boundingmesh"), rows)
+            self.assertTrue(all(float(row["hausdorff_percent"]) > 1e-3 for row in rows if row["by"] == "kaboum"), rows)
+
     def test_holes_are_closed(self):
         points = [f"v {x} {y} {z}\n" for x, y, z in ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1))]
         solid = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 4], [2, 3, 4], [3, 1, 4]]
@@ -263,8 +290,13 @@ class Report(unittest.TestCase):
             with self.assertRaises(SystemExit) as stop:
                 main.main(["--models", "no-such-model"])
             self.assertEqual(stop.exception.code, 2)
+            with self.assertRaises(SystemExit) as stop:
+                main.main(["--sections", "no-such-section"])
+            self.assertEqual(stop.exception.code, 2)
             self.assertEqual(main.main(["--quick", "--programs", "/nonexistent"]), 3)
-        self.assertIn("no-such-model", said.getvalue())
+            self.assertEqual(main.main(["--quick", "--programs", str(PROGRAMS), "--bounding-mesh", "/nonexistent"]), 3)
+        for word in ("no-such-model", "no-such-section", "https://github.com/gaschler/bounding-mesh"):
+            self.assertIn(word, said.getvalue())
 
 
 if __name__ == "__main__":

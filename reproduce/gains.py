@@ -1,0 +1,59 @@
+"""What our cost gives and what our optimiser gives: the thesis's cost with and without the optimiser, and ours."""
+
+import math
+
+from lines import DIRECTIONS, HEADER, count, result_line, robots
+from runs import OURS, Run
+
+COSTS = ("planes-adapted", OURS)
+EFFORTS = ("fast", "normal")  # contraction alone, as in the thesis; vertices are moved afterwards
+COUNTS = (10000, 5000, 2500)
+QUICK_COUNTS = (5000,)
+VALUES = (("hausdorff", "Hausdorff"), ("mean", "mean"))
+
+
+def ratio_line(name, pairs):
+    """Geometric means of after / before, by value."""
+    cells = []
+    for value, _ in VALUES:
+        logs = [math.log(after[value] / before[value]) for before, after in pairs if before[value] > 0 and after[value] > 0]
+        cells.append(f"{math.exp(sum(logs) / len(logs)):.2f}×" if logs else "—")
+    seconds = [after["user_seconds"] / max(before["user_seconds"], 1e-3) for before, after in pairs]
+    cells.append(f"{math.exp(sum(math.log(max(s, 1e-3)) for s in seconds) / len(seconds)):.1f}×" if seconds else "—")
+    return [name, str(len(pairs)), *cells]
+
+
+def section(context, document):
+    document.heading("The two gains: cost and optimiser")
+    document.paragraph(
+        "The thesis's cost (planes-adapted) and ours (distance), each with contraction alone, as the thesis works (--effort "
+        "fast), and with vertices moved afterwards (--effort normal). The second half says what each gives by itself: distances "
+        "and time after the change over those before it, geometric means over all models, directions and numbers of vertices.")
+    made = {}
+    for model in robots(context, document):
+        lines = []
+        for direction in DIRECTIONS:
+            for n in context.counts(model, QUICK_COUNTS if context.quick else COUNTS):
+                for cost in COSTS:
+                    for effort in EFFORTS:
+                        row = context.row(Run(model, direction, cost, vertices=n, effort=effort))
+                        title = f"{direction}, {cost}, {effort}"
+                        lines.append(result_line(row, n, title))
+                        if row:
+                            made[model.name, direction, n, cost, effort] = row
+        if not context.collecting:
+            document.heading(f"{model.title}, {count(model.vertices())} vertices", 3)
+            document.table(["vertices", "by", *HEADER, "user time"], lines)
+    if context.collecting or not made:
+        return
+    cases = sorted({key[:3] for key in made})
+
+    def gain(before, after):
+        return [(made[*case, *before], made[*case, *after]) for case in cases
+                if (*case, *before) in made and (*case, *after) in made]
+    document.table(["change", "cases", *(label for _, label in VALUES), "user time"], [
+        ratio_line("optimiser, on the thesis's cost", gain((COSTS[0], "fast"), (COSTS[0], "normal"))),
+        ratio_line("optimiser, on our cost", gain((COSTS[1], "fast"), (COSTS[1], "normal"))),
+        ratio_line("cost, without optimiser", gain((COSTS[0], "fast"), (COSTS[1], "fast"))),
+        ratio_line("cost, with optimiser", gain((COSTS[0], "normal"), (COSTS[1], "normal"))),
+        ratio_line("both", gain((COSTS[0], "fast"), (COSTS[1], "normal")))])
