@@ -2,7 +2,7 @@
 
 import math
 
-from lines import DIRECTIONS, HEADER, count, result_line, robots
+from lines import DIRECTIONS, HEADER, count, result_line
 from runs import OURS, Run
 
 COSTS = ("planes-adapted", OURS)
@@ -30,7 +30,7 @@ def section(context, document):
         "fast), and with vertices moved afterwards (--effort normal). The second half says what each gives by itself: distances "
         "and time after the change over those before it, geometric means over all models, directions and numbers of vertices.")
     made = {}
-    for model in robots(context, document):
+    for model in (m for m in context.models if m.robot or not m.thesis):
         lines = []
         for direction in DIRECTIONS:
             for n in context.counts(model, QUICK_COUNTS if context.quick else COUNTS):
@@ -49,8 +49,9 @@ def section(context, document):
     cases = sorted({key[:3] for key in made})
 
     def gain(before, after):
+        moved = before[1] != after[1]
         return [(made[*case, *before], made[*case, *after]) for case in cases
-                if (*case, *before) in made and (*case, *after) in made]
+                if (*case, *before) in made and (*case, *after) in made and (made[*case, *after]["closed"] or not moved)]
     document.table(["change", "cases", *(label for _, label in VALUES), "user time"], [
         ratio_line("optimiser, on the thesis's cost", gain((COSTS[0], "fast"), (COSTS[0], "normal"))),
         ratio_line("optimiser, on our cost", gain((COSTS[1], "fast"), (COSTS[1], "normal"))),

@@ -41,6 +41,10 @@ void ShapeReader::read_geometry(const SceneNode& node, const Placement& placemen
     ++lines_;
     return;
   }
+  if (node.type == "Box") {
+    read_box(node, placement);
+    return;
+  }
   if (!contains(kSurfaces, node.type))
     fields_.fail_at(node.where, "the geometry node " + in_quotes(node.type) +
                                     " is not supported; export the scene as IndexedFaceSet");
@@ -64,6 +68,31 @@ void ShapeReader::read_geometry(const SceneNode& node, const Placement& placemen
     if (const SceneNode* const points = fields_.only(*coordinates)) read_points(*points);
   copier_.add_points(points_, placement, outermost(node.where));
   read_faces(node, index, !counter_clockwise);
+}
+
+void ShapeReader::read_box(const SceneNode& node, const Placement& placement) {
+  geom::Vec3 size(2, 2, 2);  // ISO/IEC 14772-1, 6.8
+  for (const SceneField& field : node.fields) {
+    if (field.name == "size") {
+      fields_.read_vector(field, size);
+    } else if (field.name != "solid" && !fields_.read_common(field)) {
+      fields_.fail_field(node, field);
+    }
+  }
+  if (!(size.minCoeff() > 0))
+    fields_.fail_at(node.where, "a Box has a size of three lengths above 0");
+  points_.clear();
+  for (unsigned i = 0; i < 8; ++i)
+    points_.emplace_back((i & 1U) != 0 ? size.x() / 2 : -size.x() / 2,
+                         (i & 2U) != 0 ? size.y() / 2 : -size.y() / 2,
+                         (i & 4U) != 0 ? size.z() / 2 : -size.z() / 2);
+  const char* const where = outermost(node.where);
+  copier_.spend(8);
+  copier_.add_points(points_, placement, where);
+  using Side = std::array<std::uint32_t, 4>;
+  for (const Side& side : {Side{0, 4, 6, 2}, Side{1, 3, 7, 5}, Side{0, 1, 5, 4}, Side{2, 6, 7, 3},
+                           Side{0, 2, 3, 1}, Side{4, 5, 7, 6}})
+    copier_.add_face(side, where);
 }
 
 void ShapeReader::read_points(const SceneNode& node) {

@@ -30,6 +30,8 @@ class ShapeReader {
 
   void read_geometry(const SceneNode& node, const Placement& placement);
 
+  void read_box(const SceneNode& node, const Placement& placement);
+
   void read_points(const SceneNode& node);
 
   void read_faces(const SceneNode& node, const SceneField* index, bool reversed);

@@ -80,6 +80,23 @@ TEST(Vrml, FieldsGivenTwice) {
       Error);
 }
 
+TEST(Vrml, Box) {
+  const auto box = parse(
+      kHeader + "Transform { translation 1 0 0 children Shape { geometry Box { size 1 2 4 } } }",
+      Format::Vrml);
+  const std::vector<Vec3> corners = soup(box.mesh);
+  ASSERT_EQ(corners.size(), 36U);
+  double six_volumes = 0;
+  for (std::size_t i = 0; i < corners.size(); i += 3)
+    six_volumes += corners[i].dot(corners[i + 1].cross(corners[i + 2]));
+  EXPECT_DOUBLE_EQ(six_volumes, 6 * 8);
+  EXPECT_EQ(corners.front().x(), 0.5);
+  EXPECT_EQ(read("Shape { geometry Box { } }").size(), 36U);
+  for (const std::string bad :
+       {"size 0 1 1", "size -1 1 1", "size 1 1", "size 1 1 nan", "radius 1"})
+    EXPECT_THROW(read("Shape { geometry Box { " + bad + " } }"), Error) << bad;
+}
+
 TEST(Vrml, DefAndUse) {
   EXPECT_EQ(read("DEF A " + kTriangle + "Transform { translation 5 0 0 children [ USE A ] }"),
             (std::vector<Vec3>{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0.5), Vec3(5, 0, 0),
@@ -93,7 +110,7 @@ TEST(Vrml, DefAndUse) {
 }
 
 TEST(Vrml, OtherGroups) {
-  const std::string other = "Shape { geometry Box { } }";
+  const std::string other = "Shape { geometry Sphere { } }";
   EXPECT_EQ(read("Switch { whichChoice 1 choice [ " + other + " " + kTriangle + " ] }").size(), 3U);
   EXPECT_EQ(read("Switch { choice [ " + other + " ] whichChoice -1 } " + kTriangle).size(), 3U);
   EXPECT_EQ(read("LOD { range [ 1 ] level [ " + kTriangle + " " + other + " ] }").size(), 3U);
@@ -171,7 +188,7 @@ TEST(Vrml, Inline) {
   std::filesystem::create_directories(directory / "parts");
   std::ofstream(directory / "parts" / "a.wrl") << kHeader << kTriangle;
   std::ofstream(directory / "parts" / "loop.wrl") << kHeader << "Inline { url \"loop.wrl\" }";
-  std::ofstream(directory / "parts" / "bad.wrl") << kHeader << "\n\nShape { geometry Box { } }";
+  std::ofstream(directory / "parts" / "bad.wrl") << kHeader << "\n\nShape { geometry Sphere { } }";
   const auto text = [](const std::string& url) {
     return kHeader + "Transform { translation 1 0 0 children Inline { url [ \"" + url + "\" ] } }";
   };

@@ -154,8 +154,8 @@ TEST(X3d, Transforms) {
 
 TEST(X3d, WhatMayHoldASurfaceIsRefusedByName) {
   for (const char* geometry :
-       {"Box", "Sphere", "Cone", "Cylinder", "Text", "ElevationGrid", "Extrusion", "Disk2D",
-        "Rectangle2D", "TriangleSet2D", "ArcClose2D", "NurbsPatchSurface", "NurbsTrimmedSurface",
+       {"Sphere", "Cone", "Cylinder", "Text", "ElevationGrid", "Extrusion", "Disk2D", "Rectangle2D",
+        "TriangleSet2D", "ArcClose2D", "NurbsPatchSurface", "NurbsTrimmedSurface",
         "GeoElevationGrid", "Mystery"})
     expect_refused(kTriangle + shape(std::string("<") + geometry + "/>"), {"line 4", geometry});
   for (const char* node :

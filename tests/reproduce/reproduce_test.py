@@ -260,7 +260,7 @@ class Report(unittest.TestCase):
             program = folder / "boundingmesh"
             program.write_text("#!/bin/sh\nshift 6\nexec cp \"$1\" \"$2\"\n")
             program.chmod(0o755)
-            model = dataclasses.replace(BRACKET, thesis="KUKA", thesis_vertices=1000)
+            model = dataclasses.replace(BRACKET, thesis="KUKA", robot=True)
             runner = Runner(PROGRAMS, folder / "runs")
             with mock.patch.object(gains, "COUNTS", (300,)), mock.patch.object(lines, "TABLE_COUNTS", (300,)):
                 report.make([model], runner, folder, False, ["gains", "author"], program)
