@@ -71,6 +71,7 @@ void read(tools::DecimationCase& run) {
   std::vector<char> bytes;
   run.input = io::read_mesh(o.input, run.input.format, hash ? &bytes : nullptr);
   if (hash) run.log.input_sha256 = io::sha256(bytes);
+  apply(run.input, o.unit, o.input);
   for (const std::string& text : run.input.notes) note(run, text);
   if (o.preparation.wraps()) wrap(run);
   const std::size_t triangles = run.input.mesh.triangles.size();
@@ -143,7 +144,8 @@ int extract(const CLI::App& app, const tools::DecimationOptions& o) {
                          "--epsilon",     "--cost",        "--effort",         "--max-work",
                          "--as-printed",  "--precision",   "--sharp-angle",    "--keep-convex",
                          "--drop-sheets", "--holes",       "--require-closed", "--keep-orientation",
-                         "--verify",      "--log",         "--preview",        "--input-format"});
+                         "--verify",      "--log",         "--preview",        "--input-format",
+                         "--unit",        "--scale"});
   return tools::extract_levels(
       {o.from, o.output, o.output_format, o.vertices, o.depfile, o.common});
 }

@@ -1,6 +1,7 @@
 // The program bmesh-replay: derives a result from its log and says whether it is the one at hand.
 
 #include <kaboum/base/error.h>
+#include <kaboum/io/file_unit.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/verify/replay.h>
 
@@ -8,6 +9,7 @@
 #include <iostream>
 
 #include "cli.h"
+#include "unit_option.h"
 
 namespace {
 
@@ -15,6 +17,7 @@ using namespace kaboum;  // the tool's own names are few
 
 struct Options {
   std::string original, log, result, original_format, result_format;
+  double scale = 1;
   tools::CommonOptions common;
 };
 
@@ -43,18 +46,21 @@ std::string claim(const bmesh::Log& log, const verify::ReplayResult& r) {
 
 int check(const Options& o) {
   std::vector<char> bytes;
-  const io::ReadResult input = io::read_mesh(
+  io::ReadResult input = io::read_mesh(
       o.original, tools::format_for(o.original, o.original_format, "--input-format"), &bytes);
   const bmesh::Log log = bmesh::parse_log(io::read_file(o.log), o.log);
   if (log.input_sha256 != io::sha256(bytes))
     throw Error(ErrorCode::InvalidInput,
                 o.log + ": the log was made from another file than " + o.original);
+  io::require_recorded_scale(o.log, log.tool, o.scale);
+  io::scale(input, o.scale, o.original);
   bytes = {};
   const io::ReadResult result =
       io::read_mesh(o.result, tools::format_for(o.result, o.result_format, "--input-format"));
   const verify::ReplayResult r = verify::replay(input.mesh, log, result.mesh);
   tools::write_report(o.common, "bmesh-replay",
                       {{"verified", r.verified},
+                       {"scale", o.scale},
                        {"violation", r.violation},
                        {"closed", r.closed},
                        {"steps", r.steps},
@@ -91,6 +97,7 @@ int main(int argc, char** argv) {
       ->type_name("NAME");
   app.add_option("--result-format", o.result_format, "Format of RESULT [by extension]")
       ->type_name("NAME");
+  tools::add_scale_option(app, o.scale, "ORIGINAL");
   tools::add_common_options(app, o.common);
   app.footer(
       "Exit codes: 0 verified; 1 refuted; 2 usage; 3 bad input; 4 output failed; 6 internal "

@@ -22,6 +22,7 @@ int verify_mesh(const VerifyOptions& o) {
   mesh.approximation = o.approximation;
   mesh.original_format = o.original_format;
   mesh.approximation_format = o.approximation_format;
+  mesh.unit = o.unit;
   mesh.epsilon = o.epsilon;
   mesh.witness = o.witness;
   mesh.claims = o.claims;
@@ -69,7 +70,8 @@ int decide(const VerifyOptions& o) {
   if (!o.sweep.empty()) return verify_sweep(o);
   if (o.robot) return verify_robot(o);
   if (o.progressive)
-    return tools::verify_progressive(o.original, o.original_format, o.approximation, o.common);
+    return tools::verify_progressive(o.original, o.original_format, o.unit, o.approximation,
+                                     o.common);
   return verify_mesh(o);
 }
 

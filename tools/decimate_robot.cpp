@@ -187,6 +187,8 @@ void require_separate(const DecimationOptions& o) {
 
 int decimate_robot(const CLI::App& app, DecimationOptions o) {
   require_absent(app, "a robot (.urdf)", {"--progressive", "--log"});
+  require_absent(app, "a robot (.urdf), which states its meshes' scales itself",
+                 {"--unit", "--scale"});
   if (o.direction != "outer")
     throw Error(ErrorCode::InvalidArgument, "--direction " + o.direction +
                                                 ": a robot's meshes are enclosed; simplify them "

@@ -150,6 +150,7 @@ void describe_files(CLI::App& app, DecimationOptions& o) {
       ->type_name("NAME");
   app.add_option("--output-format", o.output_format, "Format of the result [by extension]")
       ->type_name("NAME");
+  add_unit_options(app, o.unit, "INPUT");
   add_robot_options(app, o.robot, false);
   app.add_flag("--no-cache", o.no_cache,
                "Of robots: neither use nor store results of earlier runs ($KABOUM_CACHE, else "
@@ -221,7 +222,7 @@ certify::MeshRequest request_of(const DecimationOptions& o, std::vector<std::siz
   r.sharp_angle = o.sharp_angle;
   r.numbers = kNumbers.at(o.precision);
   r.format = format.value_or(io::Format::Ply);
-  r.comment = std::string("bmesh-decimate ") + version();
+  r.comment = std::string("bmesh-decimate ") + version() + o.unit.words();
   r.measure = !o.common.report.empty() || !o.preview.empty();
   r.decide = o.verify;
   r.record_steps = o.records();

@@ -10,6 +10,7 @@
 #include "holes_option.h"
 #include "preparation_option.h"
 #include "robot_options.h"
+#include "unit_option.h"
 
 namespace CLI {
 class App;
@@ -29,6 +30,7 @@ struct DecimationOptions {
   geom::PrepareOptions prepare;
   HolesOption holes;
   PreparationOption preparation;
+  UnitOption unit;
   RobotOptions robot;
   bool no_cache = false;  ///< of robots
   CommonOptions common;

@@ -27,6 +27,8 @@ const char* name_of_stop(bmesh::Stop stop) {
 Json input_of(const DecimationCase& run) {
   Json json{{"file", run.asked.input},
             {"sha256", run.log.input_sha256},
+            {"unit", run.input.unit},
+            {"scale", run.asked.unit.scale},
             {"reader_delivers_float32", run.input.single_precision},
             {"file_vertices", run.input.file_vertices},
             {"file_triangles", run.input.file_triangles},

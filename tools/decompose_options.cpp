@@ -9,6 +9,7 @@
 #include <map>
 
 #include "set_format.h"
+#include "unit_option.h"
 
 namespace kaboum::tools {
 namespace {
@@ -113,6 +114,7 @@ void add_output(CLI::App& app, DecomposeOptions& o) {
       ->check(unit_name())
       ->capture_default_str()
       ->type_name("NAME");
+  add_scale_option(app, o.scale, "INPUT");
   app.add_option("--frame", o.frame, "Coordinate frame, noted in the container")->type_name("NAME");
   app.add_option(
          "--preview", o.preview,
@@ -175,7 +177,10 @@ void require_meaning(const CLI::App& app, const DecomposeOptions& o) {
     throw Error(ErrorCode::InvalidArgument,
                 "--prepare wrap: what lies in a wrap need not lie in the input; only --direction "
                 "outer");
-  if (!is_robot(o.input)) require_options_of_meshes(app, o.input);
+  if (is_robot(o.input))
+    require_absent(app, "a robot (.urdf), which states its meshes' scales itself", {"--scale"});
+  else
+    require_options_of_meshes(app, o.input);
   if (!is_robot(o.input) && app.count("--from") != 0)
     throw Error(ErrorCode::InvalidArgument,
                 "--from is for robots (.urdf); " + o.input + " is taken for a mesh");
@@ -224,6 +229,7 @@ certify::SetRequest request_of(const DecomposeOptions& o) {
   const bool exact = is_cad(o) && o.preparation.name == "auto" && o.direction == "outer";
   if (o.preparation.wraps() || exact) r.wrap = o.preparation.request(std::nullopt);
   r.unit = o.unit;
+  r.scale = o.scale;
   r.frame = o.frame;
   return r;
 }

@@ -23,7 +23,7 @@ struct DecomposeOptions {
   std::string effort = "normal", method = "planes", pre_step = "auto";
   std::string unit = "m", frame, preview, depfile;
   std::size_t max_bodies = 0, max_vertices = 64, max_total = 0;  ///< 0: not given
-  double explode = 0.5, min_thickness = 0;
+  double explode = 0.5, min_thickness = 0, scale = 1;
   std::optional<double> simplify, max_work;
   bool no_cache = false;
   geom::PrepareOptions prepare;

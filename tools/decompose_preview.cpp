@@ -3,6 +3,7 @@
 #include "decompose_preview.h"
 
 #include <kaboum/io/cad.h>
+#include <kaboum/io/file_unit.h>
 #include <kaboum/robot/exact_shapes.h>
 #include <kaboum/verify/cover.h>
 
@@ -34,12 +35,13 @@ std::string three_digits(double x) {
 /// was covered.
 geom::Mesh original_of(const DecomposeOptions& o) {
   const certify::SetRequest request = request_of(o);
-  geom::Mesh read =
-      is_cad(o)
-          ? io::read_cad(o.input).read.mesh
-          : io::read_mesh(o.input, format_for(o.input, o.input_format, "--input-format")).mesh;
-  if (request.wrap) return read;
-  return naming(o.input, [&] { return geom::prepare(read, request.preparation).solid.mesh(); });
+  io::ReadResult read =
+      is_cad(o) ? io::read_cad(o.input).read
+                : io::read_mesh(o.input, format_for(o.input, o.input_format, "--input-format"));
+  io::scale(read, o.scale, o.input);
+  if (request.wrap) return std::move(read.mesh);
+  return naming(o.input,
+                [&] { return geom::prepare(read.mesh, request.preparation).solid.mesh(); });
 }
 
 /// The bodies, without distances.

@@ -2,6 +2,7 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/distance/compare.h>
+#include <kaboum/io/file_unit.h>
 #include <kaboum/io/mesh_io.h>
 
 #include <CLI/CLI.hpp>
@@ -33,6 +34,7 @@ struct Options {
   std::string at_most;
   std::string csv, heatmap;
   int width = 1600, height = 800;
+  tools::UnitOption unit;  // of A
   tools::CommonOptions common;
 };
 
@@ -93,6 +95,7 @@ void describe(CLI::App& app, Options& o) {
       ->type_name("FILE");
   app.add_option("--input-format", o.input_format, "Format of - and of unknown extensions")
       ->type_name("NAME");
+  tools::add_unit_options(app, o.unit, "A");
   tools::add_common_options(app, o.common);
   app.get_option("--seed")->description("Seed of the points behind mean and rms");
   app.footer(
@@ -181,11 +184,13 @@ int run(const Options& o) {
   };
   tools::Progress progress(o.common.quiet);
   const auto start = now();
-  const auto read = [&](const std::string& file, const std::string& as) {
+  const auto read = [&](const std::string& file, const std::string& as,
+                        const tools::UnitOption& unit) {
     progress.show("reading " + file);
-    return tools::read_shape(file, {as, o.input_format});
+    return tools::read_shape(file, {as, o.input_format, unit});
   };
-  std::array<tools::ShapeFile, 2> files{read(o.a, o.a_as), read(o.b, o.b_as)};
+  std::array<tools::ShapeFile, 2> files{read(o.a, o.a_as, o.unit), read(o.b, o.b_as, {})};
+  io::require_same_unit(o.a, files[0].unit, o.b, files[1].unit);
   const double reading = since(start);
   const auto begin = now();
   const auto shape_of = [](tools::ShapeFile& file) {
@@ -204,8 +209,11 @@ int run(const Options& o) {
   if (!o.csv.empty()) io::write_file(o.csv, report.csv());
   if (!o.common.report.empty()) {
     Json json = report.json();
-    json["options"] = {
-        {"gap", o.gap}, {"samples", o.samples}, {"seed", o.common.seed}, {"backend", o.backend}};
+    json["options"] = {{"gap", o.gap},
+                       {"scale", o.unit.scale},
+                       {"samples", o.samples},
+                       {"seed", o.common.seed},
+                       {"backend", o.backend}};
     json["resources"] = {{"seconds_reading", reading},
                          {"seconds_building", building},
                          {"seconds_measuring", measuring},

@@ -71,6 +71,7 @@ Json ComparisonReport::side(Comparison::Side s) const {
   const ShapeFile& file = files[s];
   Json j{{"file", file.shape.name},
          {"sha256", file.sha256},
+         {"unit", file.unit},
          {"kind", file.is_set ? (solid ? "convex set: union" : "convex set: boundary of the union")
                               : (solid ? "mesh: its solid" : "mesh")}};
   if (file.is_set) j["bodies"] = file.bodies;

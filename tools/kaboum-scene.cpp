@@ -47,6 +47,7 @@ int make_scene(const tools::SceneOptions& o) {
   maker.objects = named_files(o.objects, "--object");
   maker.regions = named_files(o.regions, "--region");
   maker.places = tools::parse_places(o.places, "--at");
+  maker.scales = tools::parse_scales(o.scales, "--scale");
   std::vector<std::string> inputs;
   for (const auto* files : {&maker.robots, &maker.objects, &maker.regions})
     for (const tools::NamedFile& file : *files) inputs.push_back(file.file);
@@ -69,8 +70,8 @@ int make_scene(const tools::SceneOptions& o) {
   if (!o.robots.empty() && o.unit != "m")
     throw Error(ErrorCode::InvalidArgument,
                 "--unit " + o.unit +
-                    ": URDFs are in m, and so are scenes with robots; scale the "
-                    "meshes of objects to m");
+                    ": URDFs are in m, and so are scenes with robots; bring the "
+                    "meshes of objects into m with --scale");
   if (o.inner_links && o.robots.empty())
     throw Error(ErrorCode::InvalidArgument, "--inner-links: no robot is asked for (--robot)");
   tools::require_apart({{"SCENE", o.scene}, {"--report", o.common.report}}, inputs);

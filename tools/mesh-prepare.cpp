@@ -4,20 +4,23 @@
 #include <kaboum/certify/mesh_bytes.h>
 #include <kaboum/geom/float32.h>
 #include <kaboum/io/cad.h>
+#include <kaboum/io/file_unit.h>
 #include <kaboum/verify/inclusion.h>
 
 #include <CLI/CLI.hpp>
 
 #include "preparation_option.h"
 #include "repairs.h"
+#include "unit_option.h"
 
 namespace kaboum::tools {
 namespace {
 
 struct PrepareToolOptions {
-  std::string input, output, input_format, output_format, epsilon, depfile, unit;
+  std::string input, output, input_format, output_format, epsilon, depfile;
   bool drop_sheets = false, verify = false;
   PreparationOption preparation;
+  UnitOption unit;
   CommonOptions common;
 };
 
@@ -117,20 +120,21 @@ void wrap(PrepareCase& run, bool doubles) {
 void read(PrepareCase& run) {
   const PrepareToolOptions& o = run.asked;
   std::vector<char> bytes;
-  if (o.input_format.empty() && io::is_cad_file(o.input)) {
-    io::CadResult cad = io::read_cad(o.input, &bytes);
-    run.input = std::move(cad.read);
-    run.deviation = cad.deviation;
-    run.report["deviation"] = cad.deviation;
+  const bool cad = o.input_format.empty() && io::is_cad_file(o.input);
+  if (cad) {
+    io::CadResult part = io::read_cad(o.input, &bytes);
+    run.input = std::move(part.read);
+    run.deviation = part.deviation;
   } else {
     run.input =
         io::read_mesh(o.input, format_for(o.input, o.input_format, "--input-format"), &bytes);
   }
-  if (!o.unit.empty() && !run.input.unit.empty() && o.unit != run.input.unit)
-    throw Error(ErrorCode::InvalidInput, o.input + ": its vertices are in " + run.input.unit +
-                                             ", not in " + o.unit +
-                                             "; leave --unit out, or convert the file");
-  if (run.input.unit.empty()) run.input.unit = o.unit;
+  apply(run.input, o.unit, o.input);
+  if (cad) {
+    if (o.unit.scale != 1)
+      run.deviation = io::scaled_bound(run.deviation, o.unit.scale, run.input.mesh);
+    run.report["deviation"] = run.deviation;
+  }
   run.sha256 = io::sha256(bytes);
   for (const std::string& text : run.input.notes) note(run, text);
 }
@@ -153,10 +157,11 @@ int prepare_file(const CLI::App& app, const PrepareToolOptions& o) {
   }
   const std::vector<char> written =
       certify::serialise_checked(run.mesh, format, doubles && !all_float32(run.mesh),
-                                 std::string("mesh-prepare ") + version());
+                                 std::string("mesh-prepare ") + version() + o.unit.words());
   Json report{{"input", {{"file", o.input}, {"sha256", run.sha256}}},
               {"prepare", o.preparation.name},
-              {"unit", run.input.unit}};
+              {"unit", run.input.unit},
+              {"scale", o.unit.scale}};
   report.update(run.report);
   report["output"] = {{"file", o.output},
                       {"vertices", run.mesh.vertices.size()},
@@ -190,11 +195,7 @@ void describe(CLI::App& app, PrepareToolOptions& o) {
   app.add_flag("--verify", o.verify,
                "Decide exactly whether every triangle of the file lies in the solid (a wrap's "
                "always do, decided in any case)");
-  app.add_option("--unit", o.unit,
-                 "Unit of length of files that state none, for the report; nothing is converted, "
-                 "and a file that states another one is refused")
-      ->check(unit_name())
-      ->type_name("NAME");
+  add_unit_options(app, o.unit, "INPUT");
   app.add_option("--depfile", o.depfile, "Write a Makefile dependency rule")->type_name("FILE");
   app.add_option("--input-format", o.input_format, "Format of INPUT [by extension]")
       ->type_name("NAME");

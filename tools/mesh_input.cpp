@@ -11,10 +11,13 @@
 namespace kaboum::tools {
 namespace {
 
-MeshInput read(const std::string& path, const std::string& format, const char* option) {
+MeshInput read(const std::string& path, const std::string& format, const char* option,
+               const UnitOption& unit = {}) {
   std::vector<char> bytes;
   io::ReadResult r = io::read_mesh(path, format_for(path, format, option), &bytes);
+  apply(r, unit, path);
   MeshInput out;
+  out.unit = r.unit;
   out.mesh = std::move(r.mesh);
   out.sha256 = io::sha256(bytes);
   out.notes = std::move(r.notes);
@@ -27,7 +30,7 @@ MeshInput read(const std::string& path, const std::string& format, const char* o
 }  // namespace
 
 MeshInput read_original(const VerifyMeshOptions& o) {
-  return read(o.original, o.original_format, "--input-format");
+  return read(o.original, o.original_format, "--input-format", o.unit);
 }
 
 ApproximationInput read_approximation(const VerifyMeshOptions& o) {
@@ -50,6 +53,7 @@ ApproximationInput read_approximation(const VerifyMeshOptions& o) {
     if (out.is_set) {
       out.mesh = verify::sum_of(out.set);
       out.sha256 = io::sha256(details.bytes);
+      out.unit = details.unit;
       out.notes = std::move(details.notes);
       return out;
     }

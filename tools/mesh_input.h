@@ -14,6 +14,7 @@ namespace kaboum::tools {
 struct MeshInput {
   geom::Mesh mesh;
   std::string sha256;
+  std::string unit;  ///< io::ReadResult::unit
   std::vector<std::string> notes;
   std::size_t filled_triangles = 0, dropped_sheets = 0;
   std::vector<std::uint32_t> source;  ///< per triangle, if prepared: its index in the file

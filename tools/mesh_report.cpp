@@ -81,9 +81,10 @@ Json claims_of(const MeshCase& run) {
 }
 
 Json file(const std::string& path, const MeshInput& input, bool closed, std::size_t open) {
-  return {
-      {"file", path},     {"sha256", input.sha256},   {"triangles", input.mesh.triangles.size()},
-      {"closed", closed}, {"unbalanced_edges", open}, {"notes", input.notes}};
+  return {{"file", path},        {"sha256", input.sha256},
+          {"unit", input.unit},  {"triangles", input.mesh.triangles.size()},
+          {"closed", closed},    {"unbalanced_edges", open},
+          {"notes", input.notes}};
 }
 
 /// What preparing did to the original, or would have to do.
@@ -135,6 +136,7 @@ Json report_of(const MeshCase& run) {
     json["approximation"]["bodies"] = run.approximation.set.bodies.size();
     json["approximation"]["margin"] = run.approximation.set.margin;
   }
+  json["original"]["scale"] = run.asked.unit.scale;
   add_preparation(run, json["original"]);
   json["claims"] = claims_of(run);
   json["triangles_without_area"] = in.triangles_without_area;

@@ -41,7 +41,49 @@ std::map<std::string, geom::Transform> parse_places(const std::vector<std::strin
   return out;
 }
 
+std::map<std::string, double> parse_scales(const std::vector<std::string>& texts,
+                                           const char* option) {
+  std::map<std::string, double> out;
+  for (const std::string& text : texts) {
+    const auto equals = text.find('=');
+    std::string factor = equals == std::string::npos ? "" : text.substr(equals + 1);
+    if (const std::string why = number_from(1e-9, 1e9)(factor); equals == 0 || !why.empty())
+      throw Error(ErrorCode::InvalidArgument, std::string(option) +
+                                                  ": NAME=FACTOR is expected, not '" + text + "'" +
+                                                  (factor.empty() ? "" : "; the factor " + why));
+    if (!out.emplace(text.substr(0, equals), parse_length(factor)->value).second)
+      throw Error(ErrorCode::InvalidArgument,
+                  std::string(option) + ": '" + text.substr(0, equals) + "' is scaled twice");
+  }
+  return out;
+}
+
 namespace {
+
+/// Refuses options for things that are not there.
+void require_names(const char* option, const std::vector<std::string>& given,
+                   const std::set<std::string>& names) {
+  for (const std::string& name : given)
+    if (!names.contains(name))
+      throw Error(ErrorCode::InvalidArgument,
+                  std::string(option) + ": there is nothing of the name '" + name + "'" +
+                      did_you_mean(name, std::vector(names.begin(), names.end())));
+}
+
+template <class Value>
+std::vector<std::string> keys_of(const std::map<std::string, Value>& values) {
+  std::vector<std::string> out;
+  for (const auto& [name, value] : values) out.push_back(name);
+  return out;
+}
+
+/// Of one mesh.
+SceneSetOptions options_of(const SceneMaker& maker, const std::string& name) {
+  SceneSetOptions out = maker.options;
+  if (const auto scale = maker.scales.find(name); scale != maker.scales.end())
+    out.sets.scale = scale->second;
+  return out;
+}
 
 /// As scene files state poses; what is turned, by the quaternion nearest to its rotation.
 Json pose_json(const SceneMaker& maker, const std::string& name) {
@@ -64,11 +106,13 @@ MadeScene make_scene(const SceneMaker& maker) {
     for (const NamedFile& file : *files)
       if (!names.insert(file.name).second)
         throw Error(ErrorCode::InvalidArgument, "the name '" + file.name + "' is used twice");
-  for (const auto& [name, pose] : maker.places)
-    if (!names.contains(name))
-      throw Error(ErrorCode::InvalidArgument,
-                  "--at: there is nothing of the name '" + name + "'" +
-                      did_you_mean(name, std::vector(names.begin(), names.end())));
+  require_names("--at", keys_of(maker.places), names);
+  for (const NamedFile& robot : maker.robots)
+    if (maker.scales.contains(robot.name))
+      throw Error(
+          ErrorCode::InvalidArgument,
+          "--scale: '" + robot.name + "' is a robot, which states its meshes' scales itself");
+  require_names("--scale", keys_of(maker.scales), names);
   // What is not there is noticed before anything is computed, which takes long.
   for (const auto* files : {&maker.robots, &maker.objects, &maker.regions})
     for (const NamedFile& file : *files)
@@ -90,11 +134,12 @@ MadeScene make_scene(const SceneMaker& maker) {
     robots.push_back(std::move(out));
   }
   for (const NamedFile& o : maker.objects) {
+    const SceneSetOptions options = options_of(maker, o.name);
     Json out = {{"name", o.name}, {"pose", pose_json(maker, o.name)}};
-    out["outer"] = sets.mesh(o.name, o.file, Direction::Outer, container(o.name), maker.options);
+    out["outer"] = sets.mesh(o.name, o.file, Direction::Outer, container(o.name), options);
     if (maker.inner) {
       Json inner =
-          sets.mesh(o.name, o.file, Direction::Inner, container(o.name + "-inner"), maker.options);
+          sets.mesh(o.name, o.file, Direction::Inner, container(o.name + "-inner"), options);
       if (inner.is_null())
         sets.notes.push_back(o.name + ": no body lies within " + o.file +
                              " at this --epsilon; it has no inner set");
@@ -104,8 +149,8 @@ MadeScene make_scene(const SceneMaker& maker) {
     objects.push_back(std::move(out));
   }
   for (const NamedFile& r : maker.regions) {
-    Json inner =
-        sets.mesh(r.name, r.file, Direction::Inner, container(r.name + "-inner"), maker.options);
+    Json inner = sets.mesh(r.name, r.file, Direction::Inner, container(r.name + "-inner"),
+                           options_of(maker, r.name));
     if (inner.is_null())
       throw Error(ErrorCode::InvalidInput, "region '" + r.name + "': no body lies within " +
                                                r.file + " at this --epsilon: give a smaller one");

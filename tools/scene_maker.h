@@ -24,11 +24,17 @@ NamedFile parse_named_file(const std::string& text, const char* option);
 std::map<std::string, geom::Transform> parse_places(const std::vector<std::string>& texts,
                                                     const char* option);
 
+/// "NAME=FACTOR" for each.
+/// @throws Error{InvalidArgument} naming the option.
+std::map<std::string, double> parse_scales(const std::vector<std::string>& texts,
+                                           const char* option);
+
 struct SceneMaker {
   std::filesystem::path scene;                    ///< to be written
   std::vector<NamedFile> robots;                  ///< URDF
   std::vector<NamedFile> objects, regions;        ///< meshes
   std::map<std::string, geom::Transform> places;  ///< of what is named; the origin for the others
+  std::map<std::string, double> scales;           ///< of objects' and regions' meshes
   bool inner = false;                             ///< inner sets of objects as well
   SceneSetOptions options;                        ///< of everything
 };

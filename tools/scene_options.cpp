@@ -37,6 +37,10 @@ CLI::App* describe_make(CLI::App& app, SceneOptions& o) {
                    "radians: X,Y,Z or X,Y,Z,ROLL,PITCH,YAW or X,Y,Z,QX,QY,QZ,QW; may be repeated "
                    "[the origin]")
       ->type_name("NAME=POSE");
+  make->add_option("--scale", o.scales,
+                   "Multiply the coordinates of this object's or region's mesh by FACTOR first, as "
+                   "for one in mm of a scene in m: 0.001; may be repeated [1]")
+      ->type_name("NAME=FACTOR");
   make->add_flag("--inner", o.inner, "Inner sets of objects as well: contacts can be certain");
   make->add_flag("--inner-links", o.inner_links,
                  "Inner sets of robots' links as well: so can contacts with them");

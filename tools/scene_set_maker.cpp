@@ -4,6 +4,7 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/certify/inner_links.h>
+#include <kaboum/io/file_unit.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/world/scene.h>
 
@@ -31,13 +32,15 @@ void create(const fs::path& folder) {
 
 /// What a file holds is what its set says it holds: a scale that is wrong by a thousand is free of
 /// everything.
-void require_unit(const std::string& file, const std::string& needed) {
-  const std::string unit = io::read_mesh(file).unit;
+void require_unit(const std::string& file, double scale, const std::string& needed) {
+  io::ReadResult read = io::read_mesh(file);
+  io::scale(read, scale, file);
+  const std::string& unit = read.unit;
   if (unit.empty() || unit == needed) return;
   throw Error(ErrorCode::InvalidInput, file + ": its vertices are in " + unit +
                                            " as read (docs/formats.md), the scene is in " + needed +
-                                           ": export it in " + needed +
-                                           ", or make a scene of this unit (--unit)");
+                                           ": bring it into " + needed +
+                                           " (--scale), or make a scene of this unit (--unit)");
 }
 
 }  // namespace
@@ -62,6 +65,10 @@ std::optional<std::string> apply_parameters(const std::string& parameters,
                                               : bcd::Effort::Normal;
     } else if (option == "--max-vertices-per-body") {
       known = known && value == std::to_string(options.sets.max_vertices);
+    } else if (option == "--scale") {
+      const std::optional<Length> factor = parse_length(value);
+      known = known && factor && !factor->percent;
+      if (known) options.sets.scale = factor->value;
     } else if (option == "--geometry") {
       options.visual = value == "visual";
     } else if (option != "--direction") {
@@ -193,7 +200,7 @@ void SceneSetMaker::say_size(const std::string& name, const geom::ConvexSet& set
 Json SceneSetMaker::mesh(const std::string& name, const std::string& file,
                          certify::SetRequest::Direction direction, const fs::path& container,
                          const SceneSetOptions& options) {
-  require_unit(file, options.sets.unit);
+  require_unit(file, options.sets.scale, options.sets.unit);
   Notes of_mesh;
   certify::SetRequest request = options.sets;
   request.direction = direction;

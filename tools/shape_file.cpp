@@ -16,9 +16,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void parse_mesh(ShapeFile& out, const std::vector<char>& bytes, io::Format format) {
+/// Where what a file refers to is looked for.
+fs::path folder_of(const std::string& file) {
+  const fs::path path(file);
+  return path.has_parent_path() ? path.parent_path() : ".";
+}
+
+void parse_mesh(ShapeFile& out, const std::vector<char>& bytes, io::Format format,
+                const UnitOption& unit) {
   const std::string& file = out.shape.name;
-  io::ReadResult result = io::parse_mesh(bytes, format, file, fs::path(file).parent_path());
+  io::ReadResult result = io::parse_mesh(bytes, format, file, folder_of(file));
+  apply(result, unit, file);
+  out.unit = result.unit;
   out.notes.insert(out.notes.end(), result.notes.begin(), result.notes.end());
   if (result.collapsed_triangles != 0)
     out.notes.push_back(std::to_string(result.collapsed_triangles) +
@@ -31,12 +40,14 @@ void parse_mesh(ShapeFile& out, const std::vector<char>& bytes, io::Format forma
 /// A set with a margin that is measured as a mesh on request, with a note. False: no such set.
 bool parse_without_margin(ShapeFile& out, const std::vector<char>& bytes) {
   geom::ConvexSet set;
+  io::SetReadDetails details;
   try {
-    set = io::parse_convex_set(bytes, io::Format::Glb, out.shape.name);
+    set = io::parse_convex_set(bytes, io::Format::Glb, out.shape.name, &details);
   } catch (const Error&) {  // the mesh reader says what is wrong
     return false;
   }
   if (!(set.margin > 0)) return false;
+  out.unit = details.unit;
   char margin[40];
   std::snprintf(margin, sizeof margin, "%.6g", set.margin);
   out.notes.push_back("read as a mesh: the set's margin of " + std::string(margin) +
@@ -50,9 +61,9 @@ bool parse_set(ShapeFile& out, const std::vector<char>& bytes, std::optional<io:
                bool asked_for) {
   const std::string& file = out.shape.name;
   io::SetReadDetails details;
-  geom::ConvexSet set =
-      format ? io::parse_convex_set(bytes, *format, file, &details, fs::path(file).parent_path())
-             : io::read_convex_set(file, {}, &details);
+  geom::ConvexSet set = format
+                            ? io::parse_convex_set(bytes, *format, file, &details, folder_of(file))
+                            : io::read_convex_set(file, {}, &details);
   const bool several = set.bodies.size() > 1;
   const auto crooked = several ? geom::find_not_convex(set) : std::nullopt;
   if (!asked_for && format && !details.has_record && (!several || crooked)) {
@@ -62,12 +73,27 @@ bool parse_set(ShapeFile& out, const std::vector<char>& bytes, std::optional<io:
     return false;
   }
   out.sha256 = io::sha256(format ? bytes : details.bytes);
+  out.unit = details.unit;
   out.notes = details.notes;
   out.is_set = true;
   out.bodies = set.bodies.size();
   out.margin = set.margin;
   out.shape.set = std::move(set);
   return true;
+}
+
+/// A set says itself what it is in.
+ShapeFile with_unit(ShapeFile out, const UnitOption& option) {
+  if (option.scale != 1)
+    throw Error(ErrorCode::InvalidArgument,
+                "--scale is for meshes, and " + out.shape.name +
+                    " is a set of bodies, whose record would not hold: have it made anew with "
+                    "--scale, or measure it as a mesh (--a-as mesh)");
+  if (out.unit.empty()) out.unit = option.unit;
+  if (!option.unit.empty() && option.unit != out.unit)
+    throw Error(ErrorCode::InvalidInput,
+                out.shape.name + ": it is in " + out.unit + ", not in " + option.unit);
+  return out;
 }
 
 }  // namespace
@@ -80,7 +106,7 @@ ShapeFile read_shape(const std::string& path, const ShapeOptions& options) {
       throw Error(ErrorCode::InvalidArgument,
                   path + " is a folder, which holds a set of bodies, not a mesh");
     parse_set(out, {}, {}, true);
-    return out;
+    return with_unit(std::move(out), options.unit);
   }
   const bool known =
       path != "-" && io::format_from_name(fs::path(path).extension().string()).has_value();
@@ -90,11 +116,12 @@ ShapeFile read_shape(const std::string& path, const ShapeOptions& options) {
   out.sha256 = io::sha256(bytes);
   const bool may_be_set = format == io::Format::Glb || format == io::Format::Obj;
   if (options.as == "set" || (options.as == "auto" && may_be_set)) {
-    if (parse_set(out, bytes, format, options.as == "set")) return out;
+    if (parse_set(out, bytes, format, options.as == "set"))
+      return with_unit(std::move(out), options.unit);
   } else if (format == io::Format::Glb && parse_without_margin(out, bytes)) {
-    return out;
+    return with_unit(std::move(out), options.unit);
   }
-  parse_mesh(out, bytes, format);
+  parse_mesh(out, bytes, format, options.unit);
   return out;
 }
 

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "unit_option.h"
+
 namespace kaboum::tools {
 
 /// A mesh or a set of bodies from a file.
@@ -14,6 +16,7 @@ struct ShapeFile {
   std::size_t bodies = 0;  ///< of a set
   double margin = 0;       ///< of a set [length]
   std::string sha256;
+  std::string unit;                ///< that it states, or that was said; empty: none
   std::vector<std::string> notes;  ///< things a user should know
 };
 
@@ -22,6 +25,7 @@ struct ShapeOptions {
   /// all convex.
   std::string as = "auto";  ///< auto, mesh or set
   std::string format;       ///< of standard input and unknown extensions
+  UnitOption unit = {};     ///< of a mesh
 };
 
 /// @throws Error naming the file.

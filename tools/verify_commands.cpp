@@ -58,6 +58,7 @@ void add_mesh_command(CLI::App& app, VerifyOptions& o) {
   add_preparation(*c, o, "ORIGINAL");
   add_set(*c, o);
   add_witness(*c, o);
+  add_unit(*c, o);
   add_input_format(*c, o);
   add_approximation_format(*c, o, "APPROXIMATION");
   add_max_contacts(*c, o);
@@ -78,6 +79,7 @@ void add_cover_command(CLI::App& app, VerifyOptions& o) {
   add_epsilon(*c, o, kFromUnion);
   add_preparation(*c, o, "ORIGINAL");
   add_witness(*c, o);
+  add_unit(*c, o);
   add_input_format(*c, o);
   add_approximation_format(*c, o, "SET");
   add_max_contacts(*c, o);
@@ -143,6 +145,7 @@ void add_progressive_command(CLI::App& app, VerifyOptions& o) {
   add_file(*c, "ORIGINAL", o.original, "The mesh that it was made from (- for standard input)")
       ->required();
   add_file(*c, "FILE", o.approximation, "The progressive file")->required();
+  add_unit(*c, o);
   add_input_format(*c, o);
   add_common_options(*c, o.common);
   c->preparse_callback([&o](std::size_t) { o.progressive = true; });

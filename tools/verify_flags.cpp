@@ -44,6 +44,7 @@ void add_flags(CLI::App& app, VerifyOptions& o) {
   add_preparation(app, o, "ORIGINAL");
   CLI::Option* set = add_set(app, o);
   add_witness(app, o);
+  add_unit(app, o);
   add_input_format(app, o);
   add_approximation_format(app, o, "APPROXIMATION");
   add_max_contacts(app, o);
@@ -62,12 +63,13 @@ void require_meaning(const CLI::App& app, const VerifyOptions& o) {
     if (o.claims == "solid")
       throw Error(ErrorCode::InvalidArgument,
                   "--claims solid: with --sweep it follows from the surface claim; use all");
-    require_absent(app, "--sweep", {"--input-format", "--max-contacts"});
+    require_absent(app, "--sweep", {"--input-format", "--max-contacts", "--unit", "--scale"});
     return;
   }
   if (o.robot) {
-    require_absent(app, "--robot",
-                   {"--set", "--witness", "--input-format", "--approximation-format"});
+    require_absent(
+        app, "--robot",
+        {"--set", "--witness", "--input-format", "--approximation-format", "--unit", "--scale"});
     return;
   }
   const char* relation = o.progressive ? "--progressive"

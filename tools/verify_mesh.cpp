@@ -2,6 +2,7 @@
 #include "verify_mesh.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/io/file_unit.h>
 
 #include <cmath>
 #include <iostream>
@@ -26,6 +27,10 @@ void require_possible(const VerifyMeshOptions& o, const CommonOptions& common) {
 /// Reads both files, and says what is to be known of them.
 MeshCase read(const VerifyMeshOptions& o, bool quiet) {
   MeshCase run{o, read_original(o), read_approximation(o), {}, 0, {}, {}};
+  io::require_same_unit(o.original, run.original.unit, o.approximation, run.approximation.unit);
+  if (const geom::Provenance& made = run.approximation.set.provenance;
+      made.source_sha256 == run.original.sha256)
+    io::require_recorded_scale(o.approximation, made.parameters, o.unit.scale);
   if (o.prepare) naming(o.original, [&] { prepare(run.original, o.drop_sheets); });
   const double margin = run.approximation.set.margin;
   if (run.inner() && margin > 0)

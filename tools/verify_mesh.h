@@ -5,6 +5,7 @@
 #include <string>
 
 #include "cli.h"
+#include "unit_option.h"
 
 namespace kaboum::tools {
 
@@ -13,6 +14,7 @@ struct VerifyMeshOptions {
   verify::Relation relation = verify::Relation::Outer;
   std::string original, approximation;  ///< `-`: standard input
   std::string original_format, approximation_format;
+  UnitOption unit;  ///< of the original
   std::string epsilon, witness, claims = "all";
   bool prepare = false, drop_sheets = false;
   bool set = false;  ///< the approximation is a set, whatever the file looks like

@@ -67,6 +67,8 @@ void add_max_contacts(CLI::App& app, VerifyOptions& o) {
       ->type_name("N");
 }
 
+void add_unit(CLI::App& app, VerifyOptions& o) { add_unit_options(app, o.unit, "ORIGINAL"); }
+
 CLI::Option* add_set(CLI::App& app, VerifyOptions& o) {
   return app.add_flag("--set", o.set,
                       "With --inner: APPROXIMATION is a set of convex bodies (known anyway of "

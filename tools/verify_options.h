@@ -23,6 +23,7 @@ struct VerifyOptions {
   std::vector<std::string> sweep;       ///< ROBOT, PATH and SWEPT; else empty
   std::string original, approximation;  ///< of all other relations
   std::string original_format, approximation_format;
+  UnitOption unit;  ///< of the original mesh
   std::string claims = "all", epsilon, witness;
   bool prepare = false, drop_sheets = false, set = false;
   std::size_t max_contacts = VerifyMeshOptions{}.max_contacts;
@@ -44,6 +45,8 @@ void add_claims(CLI::App& app, VerifyOptions& options, const std::vector<std::st
 CLI::Option* add_epsilon(CLI::App& app, VerifyOptions& options, const char* what);
 /// --prepare and --drop-sheets. @param what  is prepared
 void add_preparation(CLI::App& app, VerifyOptions& options, const std::string& what);
+/// --unit and --scale.
+void add_unit(CLI::App& app, VerifyOptions& options);
 CLI::Option* add_set(CLI::App& app, VerifyOptions& options);
 void add_witness(CLI::App& app, VerifyOptions& options);
 void add_input_format(CLI::App& app, VerifyOptions& options);

@@ -3,6 +3,7 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/bmesh/progressive.h>
+#include <kaboum/io/file_unit.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/verify/replay.h>
 
@@ -28,6 +29,7 @@ std::string claim(const bmesh::Progressive& p, const verify::ReplayResult& r) {
 /// What was asked, of which files, and what was found.
 struct ProgressiveCase {
   const std::string &original, &file;
+  double scale;  // of the original
   const bmesh::Progressive& progressive;
   const verify::ReplayResult& result;
 };
@@ -35,19 +37,20 @@ struct ProgressiveCase {
 Json report_of(const ProgressiveCase& run) {
   const verify::ReplayResult& r = run.result;
   const bmesh::Progressive& p = run.progressive;
-  Json json{{"relation", "progressive"},
-            {"verdict", r.verified ? "verified" : "refuted"},
-            {"violation", r.violation},
-            {"original", {{"file", run.original}, {"sha256", p.log.input_sha256}}},
-            {"progressive", {{"file", run.file}, {"made_by", p.log.tool}}},
-            {"direction", p.log.direction == Direction::Outer ? "outer" : "inner"},
-            {"closed", r.closed},
-            {"steps", r.steps},
-            {"predicates", r.predicates},
-            {"against_solids", r.against_original},
-            {"dropped_triangles", r.dropped},
-            {"turned_triangles", r.reversed},
-            {"filled_triangles", r.filled}};
+  Json json{
+      {"relation", "progressive"},
+      {"verdict", r.verified ? "verified" : "refuted"},
+      {"violation", r.violation},
+      {"original", {{"file", run.original}, {"sha256", p.log.input_sha256}, {"scale", run.scale}}},
+      {"progressive", {{"file", run.file}, {"made_by", p.log.tool}}},
+      {"direction", p.log.direction == Direction::Outer ? "outer" : "inner"},
+      {"closed", r.closed},
+      {"steps", r.steps},
+      {"predicates", r.predicates},
+      {"against_solids", r.against_original},
+      {"dropped_triangles", r.dropped},
+      {"turned_triangles", r.reversed},
+      {"filled_triangles", r.filled}};
   for (std::size_t i = 0; i < r.levels; ++i)
     json["levels"].push_back({{"wished", p.levels[i].requested},
                               {"vertices", p.levels[i].vertices},
@@ -84,10 +87,11 @@ std::vector<std::string> lines_of(const ProgressiveCase& run) {
 }  // namespace
 
 int verify_progressive(const std::string& original, const std::string& original_format,
-                       const std::string& progressive, const CommonOptions& common) {
+                       const UnitOption& unit, const std::string& progressive,
+                       const CommonOptions& common) {
   require_apart({{"--report", common.report}}, {original, progressive});
   std::vector<char> bytes;
-  const io::ReadResult input =
+  io::ReadResult input =
       io::read_mesh(original, format_for(original, original_format, "--input-format"), &bytes);
   const bmesh::Progressive p = bmesh::parse_progressive(io::read_file(progressive), progressive);
   if (p.log.input_sha256 != io::sha256(bytes))
@@ -96,9 +100,11 @@ int verify_progressive(const std::string& original, const std::string& original_
   if (p.log.direction == Direction::Any)
     throw Error(ErrorCode::InvalidInput,
                 progressive + ": direction 'any' claims nothing that could be verified");
+  io::require_recorded_scale(progressive, p.log.tool, unit.scale);
+  apply(input, unit, original);
   bytes = {};
   const verify::ReplayResult r = verify::replay_progressive(input.mesh, p);
-  const ProgressiveCase run{original, progressive, p, r};
+  const ProgressiveCase run{original, progressive, unit.scale, p, r};
   if (!common.report.empty()) write_report(common, "bound-verify", report_of(run));
   std::ostream& out = common.report == "-" ? std::cerr : std::cout;
   if (!r.verified)

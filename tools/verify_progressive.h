@@ -3,12 +3,14 @@
 #include <string>
 
 #include "cli.h"
+#include "unit_option.h"
 
 namespace kaboum::tools {
 
 /// `bound-verify --progressive`: checks a progressive file against the mesh it was made from.
 /// @return exit code
 int verify_progressive(const std::string& original, const std::string& original_format,
-                       const std::string& progressive, const CommonOptions& common);
+                       const UnitOption& unit, const std::string& progressive,
+                       const CommonOptions& common);
 
 }  // namespace kaboum::tools

@@ -149,7 +149,7 @@ EnclosedFile enclose_file(const fs::path& file, std::optional<io::Format> format
                           const EnclosureRequest& request, const CacheFolder* cache,
                           const MeshHooks& hooks) {
   if (cache != nullptr && file != "-") {
-    const auto known = find_known(*cache, file, format);
+    const auto known = find_known(*cache, file, format, 1);
     auto found = known ? find_enclosure(*cache, key_of_enclosure(known->mesh_hash, request),
                                         request.mesh.format)
                        : std::nullopt;
@@ -159,7 +159,7 @@ EnclosedFile enclose_file(const fs::path& file, std::optional<io::Format> format
   io::ReadResult read = io::read_mesh(file, format, &bytes);
   const std::string mesh_hash = SetCache::hash_of(read.mesh), sha256 = io::sha256(bytes);
   if (cache != nullptr && file != "-")
-    store_known(*cache, file, format, bytes.size(), sha256, mesh_hash, read);
+    store_known(*cache, file, format, 1, bytes.size(), sha256, mesh_hash, read);
   EnclosedFile out{sha256, std::move(read.notes), std::move(read.other_files), {}, false};
   const std::string key = key_of_enclosure(mesh_hash, request);
   if (cache != nullptr) {

@@ -3,6 +3,7 @@
 #include "known_file.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/base/length.h>
 
 #include <nlohmann/json.hpp>
 
@@ -19,20 +20,20 @@ constexpr std::string_view kKind = "KABOUM-FILE 1";
 constexpr std::size_t kReadAtOnce = std::size_t{1} << 15;  ///< [bytes]
 
 std::string key_of_file(const std::filesystem::path& file, std::optional<io::Format> format,
-                        const std::string& sha256) {
+                        double scale, const std::string& sha256) {
   // The name: notes may have it, and the format is that of its extension.
   return io::sha256(std::string(kKind) + '\n' + sha256 + '\n' + file.string() + '\n' +
                     std::to_string(format ? static_cast<int>(*format) : -1) + '\n' +
-                    KABOUM_VERSION + '\n' + kReaders);
+                    Length{scale}.text() + '\n' + KABOUM_VERSION + '\n' + kReaders);
 }
 
 }  // namespace
 
 std::optional<KnownFile> find_known(const CacheFolder& cache, const std::filesystem::path& file,
-                                    std::optional<io::Format> format) {
+                                    std::optional<io::Format> format, double scale) {
   const std::string sha256 = io::sha256(io::read_file(file));
   std::string flaw;  // it is written again
-  const auto content = cache.find(kKind, key_of_file(file, format, sha256), flaw);
+  const auto content = cache.find(kKind, key_of_file(file, format, scale, sha256), flaw);
   if (!content) return std::nullopt;
   try {
     const Json json = Json::parse(*content);
@@ -45,11 +46,12 @@ std::optional<KnownFile> find_known(const CacheFolder& cache, const std::filesys
 }
 
 void store_known(const CacheFolder& cache, const std::filesystem::path& file,
-                 std::optional<io::Format> format, std::size_t bytes, const std::string& sha256,
-                 const std::string& mesh_hash, const io::ReadResult& read) {
+                 std::optional<io::Format> format, double scale, std::size_t bytes,
+                 const std::string& sha256, const std::string& mesh_hash,
+                 const io::ReadResult& read) {
   if (!read.other_files.empty() || bytes < kReadAtOnce) return;
   const Json json = {{"mesh", mesh_hash}, {"notes", read.notes}, {"unit", read.unit}};
-  cache.store(kKind, key_of_file(file, format, sha256),
+  cache.store(kKind, key_of_file(file, format, scale, sha256),
               json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 

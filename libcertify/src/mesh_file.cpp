@@ -2,6 +2,7 @@
 
 #include <kaboum/certify/mesh_file.h>
 #include <kaboum/io/cad.h>
+#include <kaboum/io/file_unit.h>
 
 #include "known_file.h"
 
@@ -13,9 +14,18 @@ namespace fs = std::filesystem;
 /// The triangles of a file; those of a CAD file stand for its exact faces, which a wrap holds.
 io::ReadResult read_triangles(const fs::path& file, std::optional<io::Format> format,
                               std::vector<char>& bytes, SetRequest& request) {
-  if (format || !io::is_cad_file(file)) return io::read_mesh(file, format, &bytes);
+  const std::string name = file == "-" ? "standard input" : file.string();
+  if (format || !io::is_cad_file(file)) {
+    io::ReadResult read = io::read_mesh(file, format, &bytes);
+    io::scale(read, request.scale, name);
+    return read;
+  }
   io::CadResult cad = io::read_cad(file, &bytes);
-  if (request.wrap) request.wrap->clearance = cad.deviation;
+  io::scale(cad.read, request.scale, name);
+  if (request.wrap)
+    request.wrap->clearance = request.scale == 1
+                                  ? cad.deviation
+                                  : io::scaled_bound(cad.deviation, request.scale, cad.read.mesh);
   return std::move(cad.read);
 }
 
@@ -39,7 +49,8 @@ std::optional<CertifiedFile> find_file(const fs::path& file, std::optional<io::F
                                        const SetRequest& request, const SetCache& cache,
                                        const Hooks& hooks) {
   if (file == "-" || (!format && io::is_cad_file(file))) return std::nullopt;
-  const std::optional<KnownFile> known = find_known(CacheFolder(cache.folder()), file, format);
+  const std::optional<KnownFile> known =
+      find_known(CacheFolder(cache.folder()), file, format, request.scale);
   if (!known) return std::nullopt;
   std::string flaw;
   auto set = cache.find(
@@ -69,7 +80,7 @@ CertifiedFile certify_file(const fs::path& file, std::optional<io::Format> forma
   request = with_unit(std::move(request), read.unit, hooks);
   const std::string sha256 = io::sha256(bytes);
   if (cache != nullptr && file != "-")
-    store_known(CacheFolder(cache->folder()), file, format, bytes.size(), sha256,
+    store_known(CacheFolder(cache->folder()), file, format, request.scale, bytes.size(), sha256,
                 SetCache::hash_of(read.mesh), read);
   auto found = [&] {
     try {

@@ -55,8 +55,8 @@ std::optional<Float32Shortage> too_coarse(const geom::Box3& box, const MeshPlan&
 void require_extent(const geom::Prepared& original) {
   if (original.solid.filled_triangles() > 0 && !geom::convex_hull(original.solid.mesh().vertices))
     throw Error(ErrorCode::InvalidInput,
-                "all triangles lie in one plane and enclose nothing; give the sheet a thickness, "
-                "or have bcd-decompose cover it");
+                "all triangles lie in one plane and enclose nothing; have a wrap give the sheet a "
+                "thickness (--prepare wrap), or have bcd-decompose cover it");
 }
 
 geom::Prepared prepare_mesh(const geom::Mesh& mesh, const geom::PrepareOptions& options) {

@@ -72,6 +72,7 @@ std::string SetRequest::parameters() const {
   if (method != bcd::Method::Planes) add(std::string("--method ") + name_of(method));
   if (pre_step != bcd::PreStep::Auto)
     add(pre_step == bcd::PreStep::On ? "--pre-step on" : "--pre-step off");
+  if (scale != 1) add("--scale " + digits(scale));
   if (preparation.drop_sheets) add("--drop-sheets");
   if (preparation.holes == geom::Holes::Refuse) add("--holes refuse");
   if (preparation.keep_orientation) add("--keep-orientation");

@@ -2,6 +2,8 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/execution/exact_cell.h>
+#include <kaboum/io/convex_io.h>
+#include <kaboum/io/file_unit.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/robot/exact_shapes.h>
 #include <kaboum/robot/robot_file.h>
@@ -36,10 +38,12 @@ std::vector<ExactMesh> exact_meshes(const world::World& world, const fs::path& s
                   scene.string() + ": object '" + world.objects[o].name +
                       "' does not say in 'made_from' which mesh its set was made from: there is no "
                       "exact mesh to judge by");
-    out.push_back(
-        {{world::Item::kObject, o},
-         io::read_mesh((folder / outer["made_from"][0].at("file").get<std::string>()).string())
-             .mesh});
+    const std::string file =
+        (folder / outer["made_from"][0].at("file").get<std::string>()).string();
+    io::ReadResult read = io::read_mesh(file);
+    const fs::path set = folder / outer.at("file").get<std::string>();
+    io::scale(read, io::recorded_scale(io::read_convex_set(set).provenance.parameters), file);
+    out.push_back({{world::Item::kObject, o}, std::move(read.mesh)});
   }
   return out;
 }

@@ -92,13 +92,14 @@ std::vector<Cancelled> find_sheets(const Mesh& mesh, std::span<const Cancelled> 
 void refuse_sheets(std::span<const Cancelled> sheets) {
   std::uint32_t first = kFilled;
   for (const Cancelled& c : sheets) first = std::min(first, c.source);
-  throw Error(ErrorCode::InvalidInput,
-              count_of(sheets.size(), "face lies", "faces lie") +
-                  " back to back with an opposite copy and no volume between (sheets; the first "
-                  "is input triangle " +
-                  std::to_string(first) +
-                  "); give the sheets a thickness, or drop them with --drop-sheets: they are "
-                  "then not enclosed");
+  throw Error(
+      ErrorCode::InvalidInput,
+      count_of(sheets.size(), "face lies", "faces lie") +
+          " back to back with an opposite copy and no volume between (sheets; the first "
+          "is input triangle " +
+          std::to_string(first) +
+          "); have a wrap give the sheets a thickness (mesh-prepare --prepare wrap), or drop "
+          "them with --drop-sheets: they are then not enclosed");
 }
 
 }  // namespace kaboum::geom

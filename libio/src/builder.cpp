@@ -3,6 +3,7 @@
 #include "builder.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/io/file_unit.h>
 
 #include <algorithm>
 #include <array>
@@ -99,25 +100,7 @@ std::uint32_t MeshBuilder::corner(std::int64_t index, std::int64_t first, const 
   return static_cast<std::uint32_t>(index - first);
 }
 
-void MeshBuilder::set_unit(double metres) {
-  constexpr std::array<std::pair<double, const char*>, 8> kNames{{{1, "m"},
-                                                                  {1e-1, "dm"},
-                                                                  {1e-2, "cm"},
-                                                                  {1e-3, "mm"},
-                                                                  {1e-6, "um"},
-                                                                  {1e3, "km"},
-                                                                  {0.0254, "in"},
-                                                                  {0.3048, "ft"}}};
-  for (const auto& [length, name] : kNames)
-    // Products of decimal fractions are rounded; no two of these are near each other.
-    if (std::abs(metres - length) <= 1e-12 * length) {
-      unit_ = name;
-      return;
-    }
-  std::ostringstream text;
-  text << metres << " m";
-  unit_ = text.str();
-}
+void MeshBuilder::set_unit(double metres) { unit_ = unit_of_metres(metres); }
 
 ReadResult MeshBuilder::finish(Format format, bool single_precision) {
   ReadResult result;

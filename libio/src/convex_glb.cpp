@@ -53,6 +53,7 @@ geom::ConvexSet read_gltf_set(const Source& source, SetReadDetails& details) {
     set.bodies.push_back({std::move(name), std::move(result.mesh)});
   }
   details.single_precision = facts.floats;
+  details.unit = gltf_unit(file);
   if (record != nullptr) {
     take_record(Json(*record), source, set);
     details.has_record = true;
@@ -131,7 +132,7 @@ std::vector<char> write_glb_set(const geom::ConvexSet& set) {
     roots.push_back(index);
   }
   Json json;
-  json["asset"] = {{"version", "2.0"}, {"generator", "KABouM"}};
+  json["asset"] = {{"version", "2.0"}, {"generator", kGltfGenerator}};
   json["scene"] = 0;
   json["scenes"] = Json::array({Json::object()});
   if (!set.bodies.empty()) {  // glTF knows no empty arrays

@@ -124,6 +124,7 @@ geom::ConvexSet read_directory(const fs::path& path, SetReadDetails& details) {
     }
     take_record(record, record_source, set);
     details.has_record = true;
+    details.unit = set.provenance.unit;
   }
   return set;
 }
@@ -136,6 +137,7 @@ geom::ConvexSet parse(const Source& source, Format format, SetReadDetails& detai
   const ReadResult read =
       parse_mesh(source.bytes, format, std::string(source.name), source.directory);
   details.single_precision = read.single_precision;
+  details.unit = read.unit;
   details.notes.insert(details.notes.end(), read.notes.begin(), read.notes.end());
   geom::ConvexSet set;
   set.bodies = split_components(read.mesh);

@@ -314,21 +314,28 @@ const JsonItem::Json* gltf_set_record(const GltfFile& file) {
   return extras.has(kGltfSetRecord) ? &extras.json()[kGltfSetRecord] : nullptr;
 }
 
+std::string gltf_unit(const GltfFile& file) {
+  if (const JsonItem::Json* const record = gltf_set_record(file)) {
+    if (!record->is_object()) return "";
+    const auto unit = record->find("unit");
+    return unit != record->end() && unit->is_string() ? unit->get<std::string>() : "";
+  }
+  // A mesh of ours is in the unit of what it was made of, which need not be metres.
+  const JsonItem::Json& asset = file.root().at("asset").json();
+  return asset.value("generator", JsonItem::Json()) == kGltfGenerator ? "" : "m";
+}
+
 ReadResult read_gltf(const Source& source, Format format) {
   GltfFile file(source);
   MeshBuilder builder(source);
   const GltfFacts facts =
       read_gltf_scene(file, [&](const std::string&) -> MeshBuilder& { return builder; });
   refuse_margin(file);
-  builder.set_unit(1);
   note_gltf_facts(facts, file);
   for (std::string& note : file.take_notes()) builder.note(std::move(note));
   ReadResult result = builder.finish(format, facts.floats);
   result.other_files = file.other_files();
-  // A set says itself what it is in.
-  if (const JsonItem::Json* const record = gltf_set_record(file);
-      record != nullptr && record->contains("unit") && (*record)["unit"].is_string())
-    result.unit = (*record)["unit"].get<std::string>();
+  result.unit = gltf_unit(file);
   return result;
 }
 

@@ -32,6 +32,12 @@ void note_gltf_facts(const GltfFacts& facts, GltfFile& file);
 /// The key of a convex set's record in the root's `extras`.
 inline constexpr const char* kGltfSetRecord = "kaboum_convex_set";
 
+/// What our files name as the program that wrote them (glb.cpp, convex_glb.cpp).
+inline constexpr const char* kGltfGenerator = "KABouM";
+
+/// The unit of a file's lengths: what a set's record says; nothing, of a mesh of ours; else metres.
+std::string gltf_unit(const GltfFile& file);
+
 /// The record of a convex set in a file of ours, or nullptr.
 const JsonItem::Json* gltf_set_record(const GltfFile& file);
 

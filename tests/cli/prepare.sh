@@ -44,6 +44,31 @@ r = json.load(open("r.json"))
 assert r["reach"]["upper_percent"] <= 5 and 0 < r["wrap"]["farthest_upper"] < r["reach"]["upper"], r
 END
 done
+# Sheets meant as plates: a wrap gives them a thickness within epsilon, on both sides; auto fills what they go round.
+python3 - <<'END'
+import math
+n = 12
+with open("tube.off", "w") as f:
+    print("OFF\n%d %d 0" % (2 * n, 2 * n), file=f)
+    for z in (0, 2):
+        for i in range(n):
+            print(math.cos(2 * math.pi * i / n), math.sin(2 * math.pi * i / n), z, file=f)
+    for i in range(n):
+        j = (i + 1) % n
+        print("3 %d %d %d\n3 %d %d %d" % (i, j, n + j, i, n + j, n + i), file=f)
+END
+printf 'OFF\n6 4 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n0 1 1\n3 0 1 2\n3 0 2 3\n3 0 3 5\n3 0 5 4\n' >bent.off
+for f in tube bent; do
+  expect 0 '' "$BIN/bmesh-decimate" $f.off -o plate.ply --prepare wrap --epsilon 3% --effort fast --report r.json
+  shows 0 'verified' "$V" --outer $f.off plate.ply --raw
+  shows 0 'Hausdorff' "$BIN/hausdorff-eval" plate.ply $f.off --at-most 3%
+  expect 0 '' "$BIN/bcd-decompose" $f.off -o plate.glb --prepare wrap --epsilon 3% --effort fast --no-cache
+  shows 0 'verified' "$V" --cover $f.off plate.glb --raw --epsilon 3%
+  expect 0 'holes filled\|hole filled' "$P" $f.off -o full.ply
+  expect 1 '' "$BIN/hausdorff-eval" full.ply $f.off --at-most 3%
+done
+expect 3 'have a wrap give the sheets a thickness' "$BIN/bmesh-decimate" sheet.off -o none.off --epsilon 5%
+expect 3 'have a wrap give the sheets a thickness' "$BIN/bcd-decompose" sheet.off -o none.glb --no-cache
 # From the cache the same, and of other lengths another.
 for i in 1 2; do
   expect 0 'each lies inside, exactly' env KABOUM_CACHE="$PWD/cache" "$BIN/bcd-decompose" crossing.off -o c$i.glb --prepare wrap --epsilon 5% --effort fast --report c$i.json

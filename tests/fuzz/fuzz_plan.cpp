@@ -42,7 +42,7 @@ void try_text(const Text& text) {
   options.timeout = 0.05;
   options.max_memory = std::size_t{32} << 20U;
   const Solution s = solve(model, options);
-  if (s.status != Status::Solved) return;
+  if (s.outcome != Outcome::Solved) return;
   const CheckResult r = check(model, s.plan, 10'000);
   if (!r.valid) broken("invalid plan", r.violation.c_str());
   if (!(read_plan(model, write_plan(model, s.plan), "plan") == s.plan))

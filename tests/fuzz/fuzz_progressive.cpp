@@ -3,6 +3,7 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/bmesh/extract.h>
+#include <kaboum/verify/replay.h>
 
 #include <cstdint>
 #include <cstdlib>
@@ -10,6 +11,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   namespace bmesh = kaboum::bmesh;
+  namespace verify = kaboum::verify;
   // The checksum is mended, or hardly anything would be looked at.
   std::vector<char> bytes(data, data + size);
   std::uint64_t sum = 0xcbf29ce484222325;

@@ -2,9 +2,11 @@
 #include <kaboum/verify/mesh_verdict.h>
 
 #include <gtest/gtest.h>
+#include <kaboum/geom/predicates.h>
 #include <kaboum/verify/cover.h>
 
 #include <cmath>
+#include <random>
 
 #include "support/shapes.h"
 
@@ -104,6 +106,35 @@ TEST(MeshVerdict, EmptySolidIsNoVerdict) {
   EXPECT_EQ(alone.inclusion.solid.answer, Answer::Verified);
   EXPECT_EQ(alone.answer, Answer::Undefined);
   EXPECT_EQ(decided(turned, large, Relation::Outer).answer, Answer::Verified);
+}
+
+// Nor may rounding make a solid that is not empty look so: of what is nearly flat the rounded
+// volume has any sign.
+TEST(MeshVerdict, RoundingMakesNoSolidEmpty) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto point = [&] { return Vec3(unit(random), unit(random), unit(random)); };
+  const auto orientation = [](const Mesh& m) {
+    return geom::detail::orient3d_exact(m.vertices[0], m.vertices[1], m.vertices[2], m.vertices[3]);
+  };
+  const Mesh unit_tetrahedron{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)},
+                              {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+  ASSERT_GT(geom::signed_volume(unit_tetrahedron), 0);
+  const Mesh large = cube(-9, 9);
+  int misleading = 0;
+  for (int round = 0; round < 20000 && misleading < 20; ++round) {
+    const Vec3 a = point(), b = point(), c = point();
+    const double u = unit(random), v = unit(random);
+    Mesh flat = unit_tetrahedron;
+    flat.vertices = {a, b, c, a + u * (b - a) + v * (c - a)};
+    const geom::Sign sign = orientation(flat);
+    if (sign == geom::Sign::Zero) continue;
+    const Mesh outward = sign == orientation(unit_tetrahedron) ? flat : flipped(flat);
+    if (!(geom::signed_volume(outward) < 0)) continue;
+    ++misleading;
+    EXPECT_FALSE(decided(outward, large, Relation::Outer, Claims::Solid).vacuous);
+  }
+  EXPECT_EQ(misleading, 20);
 }
 
 TEST(MeshVerdict, DistancesBothWaysAndTheirWitness) {

@@ -34,6 +34,8 @@ struct SetRequest {
   std::optional<double> simplify;  ///< share of epsilon for leaving out vertices
   double min_thickness = 0;        ///< [length]
 
+  /// certify_file multiplies the file's coordinates by it first (io::scale).
+  double scale = 1;
   /// Holes are filled or refused; kept ones are filled as well.
   geom::PrepareOptions preparation{.holes = geom::Holes::Fill};
   /// Set: what is covered is a wrap round all triangles (certify_wrap), whatever they are like. How

@@ -29,6 +29,7 @@ struct SetReadDetails {
   std::vector<char> bytes;         ///< of the file (of all files of a folder, in order)
   bool has_record = false;         ///< the margin and provenance come from the file
   bool single_precision = false;   ///< coordinates were stored as float32
+  std::string unit;                ///< as ReadResult::unit: what states it, or nothing
 };
 
 /// Parses a set from a file in memory: every mesh format, see read_convex_set.

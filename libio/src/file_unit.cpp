@@ -1,0 +1,139 @@
+// Units of length that files state, and coordinates in another one.
+#include <kaboum/base/error.h>
+#include <kaboum/geom/topology.h>
+#include <kaboum/io/file_unit.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+namespace kaboum::io {
+namespace {
+
+struct NamedUnit {
+  double metres;
+  const char* name;
+};
+constexpr std::array<NamedUnit, 8> kUnits{{{1, "m"},
+                                           {1e-1, "dm"},
+                                           {1e-2, "cm"},
+                                           {1e-3, "mm"},
+                                           {1e-6, "um"},
+                                           {1e3, "km"},
+                                           {0.0254, "in"},
+                                           {0.3048, "ft"}}};
+
+std::string digits(double x) {
+  std::array<char, 32> text{};
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), x);
+  return {text.data(), end};
+}
+
+bool has_equal_corners(const geom::Triangle& t) {
+  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
+
+}  // namespace
+
+std::string unit_of_metres(double metres) {
+  for (const NamedUnit& unit : kUnits)
+    // Products of decimal fractions are rounded; no two of these are near each other.
+    if (std::abs(metres - unit.metres) <= 1e-12 * unit.metres) return unit.name;
+  std::ostringstream text;
+  text << metres << " m";
+  return text.str();
+}
+
+std::optional<double> metres_of(const std::string& unit) {
+  for (const NamedUnit& known : kUnits)
+    if (unit == known.name) return known.metres;
+  double metres = 0;
+  const char* const end = unit.data() + unit.size();
+  const auto [at, error] = std::from_chars(unit.data(), end, metres);
+  if (error != std::errc() || std::string_view(at, end) != " m" || !(metres > 0) ||
+      !std::isfinite(metres))
+    return {};
+  return metres;
+}
+
+void scale(ReadResult& read, double factor, const std::string& name) {
+  if (!(factor > 0) || !std::isfinite(factor))
+    throw Error(ErrorCode::InvalidArgument, "a scale must be a positive number");
+  if (factor == 1) return;
+  for (geom::Vec3& v : read.mesh.vertices) {
+    const geom::Vec3 product = factor * v;
+    for (int i = 0; i < 3; ++i)
+      if (!std::isfinite(product[i]) ||
+          (v[i] != 0 && std::abs(product[i]) < std::numeric_limits<double>::min()))
+        throw Error(ErrorCode::InvalidInput,
+                    name + ": its coordinate " + digits(v[i]) + ", times " + digits(factor) +
+                        ", is beyond the range of doubles; choose a factor nearer to 1");
+    v = product;
+  }
+  // Rounding may make neighbours equal.
+  read.mesh = geom::weld(read.mesh);
+  const std::size_t collapsed = std::erase_if(read.mesh.triangles, has_equal_corners);
+  if (collapsed > 0) {
+    read.mesh = geom::weld(read.mesh);
+    read.collapsed_triangles += collapsed;
+    if (read.mesh.triangles.empty())
+      throw Error(ErrorCode::InvalidInput,
+                  name + ": no triangle is left after scaling; choose a factor nearer to 1");
+  }
+  read.single_precision = false;
+  read.notes.push_back("Its coordinates are multiplied by " + digits(factor) +
+                       ", and what is said of it is about the products.");
+  if (const auto metres = metres_of(read.unit)) read.unit = unit_of_metres(*metres / factor);
+}
+
+double scaled_bound(double bound, double factor, const geom::Mesh& scaled) {
+  double largest = 0;
+  for (const geom::Vec3& v : scaled.vertices) largest = std::max(largest, v.cwiseAbs().maxCoeff());
+  // Half a unit in the last place in three coordinates is less than the largest times 2^-52.
+  const double sum =
+      bound * factor * (1 + 0x1p-50) + largest * 0x1p-52 + std::numeric_limits<double>::min();
+  return std::nextafter(sum, std::numeric_limits<double>::infinity());
+}
+
+double recorded_scale(const std::string& parameters) {
+  std::istringstream words(parameters);
+  std::string word;
+  while (words >> word) {
+    if (word != "--scale") continue;
+    double factor = 1;
+    if (words >> word) std::from_chars(word.data(), word.data() + word.size(), factor);
+    return factor;
+  }
+  return 1;
+}
+
+void require_recorded_scale(const std::string& file, const std::string& record, double factor) {
+  const double recorded = recorded_scale(record);
+  if (recorded == factor) return;
+  throw Error(ErrorCode::InvalidInput,
+              file + ": it was made " +
+                  (recorded == 1 ? "without --scale: leave that out"
+                                 : "with --scale " + digits(recorded) + ": give that here, too"));
+}
+
+void require_same_unit(const std::string& file, const std::string& unit,
+                       const std::string& other_file, const std::string& other_unit) {
+  if (unit.empty() || other_unit.empty() || unit == other_unit) return;
+  std::string factor = "FACTOR";
+  const auto from = metres_of(unit), to = metres_of(other_unit);
+  if (from && to) {
+    std::ostringstream text;
+    text.precision(15);
+    text << *from / *to;
+    factor = text.str();
+  }
+  throw Error(ErrorCode::InvalidInput,
+              file + " is in " + unit + " and " + other_file + " in " + other_unit +
+                  " as read (docs/formats.md): lengths of two units are not compared; bring the "
+                  "first into the other's unit with --scale " +
+                  factor + ", or export it in " + other_unit);
+}
+
+}  // namespace kaboum::io

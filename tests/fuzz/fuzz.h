@@ -1,0 +1,34 @@
+#pragma once
+
+#include <kaboum/base/error.h>
+
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+/// What the fuzz targets share: each takes any bytes, and what it asks for holds or the process
+/// ends.
+namespace kaboum::fuzz {
+
+[[noreturn]] inline void broken(const char* what, const std::string& detail) {
+  std::fprintf(stderr, "%s: %s\n", what, detail.c_str());
+  std::abort();
+}
+
+/// Errors about the input are what is wished for; others are not.
+template <class Function>
+void survive(const Function& function) {
+  try {
+    function();
+  } catch (const Error& e) {
+    if (e.code() == ErrorCode::Internal) broken("internal error", e.what());
+  }
+}
+
+/// The first byte, which selects what is read, and the rest.
+inline std::string text_of(const std::uint8_t* data, std::size_t size) {
+  return {reinterpret_cast<const char*>(data) + 1, size - 1};
+}
+
+}  // namespace kaboum::fuzz
