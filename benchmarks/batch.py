@@ -114,4 +114,5 @@ def main():
     return 1 if bad or missing or left or any(c > 1 for c in names.values()) else 0
 
 
-sys.exit(main())
+if __name__ == "__main__":
+    sys.exit(main())

@@ -25,9 +25,9 @@ const std::map<std::string, bcd::PreStep> kPreSteps{
     {"auto", bcd::PreStep::Auto}, {"on", bcd::PreStep::On}, {"off", bcd::PreStep::Off}};
 
 void add_input(CLI::App& app, DecomposeOptions& o) {
-  app.add_option(
-         "INPUT", o.input,
-         "Mesh or STEP file to decompose (- for stdin), or a robot (.urdf), every link of it")
+  app.add_option("INPUT", o.input,
+                 "Mesh or STEP file to decompose (- for stdin), or a robot (.urdf, .xacro), every "
+                 "link of it")
       ->required()
       ->type_name("FILE");
   app.add_option("-o,--output", o.output,
@@ -183,7 +183,7 @@ void require_meaning(const CLI::App& app, const DecomposeOptions& o) {
     require_options_of_meshes(app, o.input);
   if (!is_robot(o.input) && app.count("--from") != 0)
     throw Error(ErrorCode::InvalidArgument,
-                "--from is for robots (.urdf); " + o.input + " is taken for a mesh");
+                "--from is for robots (.urdf, .xacro); " + o.input + " is taken for a mesh");
   if (is_page(o.preview)) require_absent(app, "--preview with a page", {"--explode"});
   if (is_page(o.preview) && o.input == "-")
     throw Error(ErrorCode::InvalidArgument,

@@ -21,10 +21,10 @@ namespace fs = std::filesystem;
 
 struct Options {
   std::vector<std::string> inputs, rules, command;
-  std::string output, rules_file, extension, memory, most_memory;
+  std::string output, rules_file, extension, memory, most_memory, shard;
   std::size_t jobs = 0;
   double timeout = 0;
-  bool retry = false, no_pictures = false;
+  bool retry = false, no_pictures = false, summary = false;
   tools::CommonOptions common;
 };
 
@@ -68,6 +68,13 @@ void describe(CLI::App& app, Options& o) {
       ->check(tools::number_from(0, 1e9))
       ->capture_default_str()
       ->type_name("S");
+  auto* shard = app.add_option("--shard", o.shard,
+                               "Work on one part of N, as several machines do in one folder: files "
+                               "belong to parts by their names. --summary, or the batch without "
+                               "--shard, which does what is missing, writes the summary of all")
+                    ->type_name("K/N");
+  app.add_flag("--summary", o.summary, "Work on nothing, write the summary of what is done so far")
+      ->excludes(shard);
   app.add_flag("--retry", o.retry, "Also do again what was not done for a reason");
   app.add_flag("--no-pictures", o.no_pictures, "Draw no results for the summary");
   app.add_option("--report", o.common.report, "Write a JSON report to this file (- for stdout)")
@@ -103,16 +110,29 @@ std::uintmax_t free_memory() {
   return 0;
 }
 
-/// Whether a job's result is there, and of the same input and options.
+/// Whether a job's result is there, of the input and options as they are now.
 bool is_done(const batch::Job& job, const batch::Journal& journal, const Options& o) {
   const batch::Record* record = journal.find(job.name);
-  if (record == nullptr || record->key != job.key()) return false;
+  if (record == nullptr) return false;
   if (o.retry && !record->done()) return false;
   std::error_code error;
   if (!record->has_result()) return true;
   const fs::path result = fs::path(o.output) / record->output;
   return job.makes_folder() ? fs::is_directory(result, error)
                             : fs::file_size(result, error) == record->output_bytes;
+}
+
+/// What is to be done; of what is, the result is there.
+std::vector<const batch::Job*> waiting_of(const std::vector<batch::Job>& jobs,
+                                          batch::Journal& journal, const Options& o) {
+  std::vector<const batch::Job*> waiting;
+  for (const batch::Job& job : jobs) {
+    if (is_done(job, journal, o)) continue;
+    waiting.push_back(&job);
+    if (const batch::Record* r = journal.find(job.name); r != nullptr && r->has_result())
+      journal.forget(job.name);
+  }
+  return waiting;
 }
 
 std::vector<batch::Record> records_of(const std::vector<batch::Job>& jobs,
@@ -123,35 +143,36 @@ std::vector<batch::Record> records_of(const std::vector<batch::Job>& jobs,
   return records;
 }
 
-void write_summary(const Options& o, const batch::Summary& summary, double wall_seconds) {
+void write_summary(const Options& o, const batch::Summary& summary) {
   const fs::path folder(o.output);
   const auto write = [&](const char* name, const std::string& text) {
     io::write_file(folder / name, text);
   };
   write("summary.html", batch::html_of(summary, "Batch " + folder.filename().string()));
   write("summary.csv", batch::csv_of(summary));
-  write("summary.json",
-        summary.json().dump(1, ' ', false, batch::Json::error_handler_t::replace) + "\n");
-  batch::Json report = summary.json();
-  report["resources"] = {{"wall_seconds", wall_seconds}};
-  tools::write_report(o.common, "kaboum-batch", report);
+  write("summary.json", batch::json_of(summary));
+}
+
+void report(const Options& o, const batch::Summary& summary, double wall_seconds) {
+  if (!o.common.report.empty()) {
+    batch::Json report = summary.json();
+    report["resources"] = {{"wall_seconds", wall_seconds}};
+    tools::write_report(o.common, "kaboum-batch", report);
+  }
   constexpr int kShown = 5;
   int shown = 0;
   for (const batch::Record& record : summary.records)
     if (!record.done() && !record.reason.empty() && ++shown <= kShown)
       tools::log(o.common.quiet, record.name + ": " + record.reason);
-  tools::log(o.common.quiet, summary.words() + "; " + (folder / "summary.html").string());
+  const std::string where = o.shard.empty() ? (fs::path(o.output) / "summary.html").string()
+                                            : "part " + o.shard + " of " + o.output;
+  tools::log(o.common.quiet, summary.words() + "; " + where);
 }
 
-int run(const Options& o) {
-  const auto begin = batch::Clock::now();
-  const std::vector<batch::Job> jobs =
-      batch::find_jobs({o.inputs, rules_of(o), o.extension, o.output});
-  const fs::path folder(o.output);
-  fs::create_directories(folder / batch::kState);
-  batch::Journal journal(folder / batch::kState / "journal.jsonl");
+batch::PoolOptions pool_options(const Options& o, const batch::Journal& journal) {
   batch::PoolOptions options{
-      .folder = folder,
+      .folder = o.output,
+      .scratch = journal.scratch(),
       .jobs = o.jobs,
       .memory = o.memory.empty() ? free_memory() : tools::parse_memory(o.memory, "--memory"),
       .most_memory = tools::parse_memory(o.most_memory, "--max-memory"),
@@ -159,18 +180,27 @@ int run(const Options& o) {
       .pictures = !o.no_pictures,
       .quiet = o.common.quiet};
   if (options.jobs == 0) options.jobs = std::max(1U, std::thread::hardware_concurrency());
-  std::vector<const batch::Job*> waiting;
-  for (const batch::Job& job : jobs)
-    if (!is_done(job, journal, o)) waiting.push_back(&job);
+  return options;
+}
+
+int run(const Options& o) {
+  const auto begin = batch::Clock::now();
+  std::optional<batch::Shard> shard;
+  if (!o.shard.empty()) shard = batch::parse_shard(o.shard);
+  const std::vector<batch::Job> jobs =
+      batch::find_jobs({o.inputs, rules_of(o), o.extension, o.output, shard});
+  batch::Journal journal({o.output, shard, o.summary}, jobs);
+  std::vector<const batch::Job*> waiting = waiting_of(jobs, journal, o);
   const std::size_t before = jobs.size() - waiting.size();
   bool whole = true;
-  {
-    batch::Pool pool(options, journal);
+  if (!o.summary) {
+    batch::Pool pool(pool_options(o, journal), journal);
     whole = pool.run(std::move(waiting));
   }
   const std::vector<batch::Record> records = records_of(jobs, journal);
-  const batch::Summary summary{records, before};
-  write_summary(o, summary, std::chrono::duration<double>(batch::Clock::now() - begin).count());
+  const batch::Summary summary{records, o.summary ? 0 : before, jobs.size() - records.size()};
+  if (!shard) write_summary(o, summary);
+  report(o, summary, std::chrono::duration<double>(batch::Clock::now() - begin).count());
   if (!whole) return tools::kLimit;
   return summary.count("done") == jobs.size() ? tools::kDone : tools::kNo;
 }

@@ -2,10 +2,14 @@
 
 #include "robot_folder.h"
 
+#include <fcntl.h>
 #include <kaboum/base/error.h>
 #include <kaboum/io/convex_io.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <set>
 
 namespace kaboum::tools {
@@ -21,12 +25,43 @@ void create(const fs::path& folder) {
                 folder.string() + ": cannot be created: " + error.message());
 }
 
+/// Programs that write into one folder at the same time take turns: it is one's or the other's, not
+/// of both. Nothing stays when a program is ended. File systems that cannot lock folders, as NFS,
+/// leave this undone.
+class Turn {
+ public:
+  explicit Turn(const fs::path& folder)
+      : folder_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    while (folder_ >= 0 && ::flock(folder_, LOCK_EX) != 0 && errno == EINTR) {
+    }
+  }
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
+  ~Turn() {
+    if (folder_ >= 0) ::close(folder_);
+  }
+
+ private:
+  int folder_;
+};
+
+/// Says that a folder is ours and that its robot is not whole: there while it is written.
+constexpr const char* kUnfinished = ".kaboum-unfinished";
+
+/// The URDF's name in the new folder.
+fs::path urdf_name(const fs::path& robot) {
+  fs::path name = robot.filename();
+  if (!robot::is_xacro(name)) return name;
+  name.replace_extension();
+  return name.extension() == ".urdf" ? name : fs::path(name.string() + ".urdf");
+}
+
 }  // namespace
 
 RobotFolder::RobotFolder(fs::path folder, const robot::RobotFile& robot, std::string part,
                          std::string extension)
     : folder_(std::move(folder)),
-      urdf_(folder_ / robot.path.filename()),
+      urdf_(folder_ / urdf_name(robot.path)),
       part_(std::move(part)),
       extension_(std::move(extension)),
       robot_(robot.robot) {
@@ -54,10 +89,11 @@ void RobotFolder::require_own() const {
                                                part_ + " would be replaced; name another folder");
 }
 
-/// Files are ours where the robot is: its folder was looked at.
+/// Files are ours where the robot is, or where it was being written: its folder was looked at.
 void RobotFolder::require_replaceable(const fs::path& place) const {
   std::error_code error;
-  if (fs::exists(place, error) && !fs::exists(urdf_, error))
+  if (fs::exists(place, error) && !fs::exists(urdf_, error) &&
+      !fs::exists(folder_ / kUnfinished, error))
     throw Error(ErrorCode::OutputFailed, place.string() +
                                              ": exists, and not as a result of this program; "
                                              "remove it or name another folder");
@@ -96,8 +132,20 @@ void RobotFolder::name_meshes(const robot::LinkMeshes& meshes, const robot::Shap
   }
 }
 
+/// An earlier robot here would not be held by the bodies that now come one by one.
+void RobotFolder::begin(const RobotContents& contents) const {
+  io::write_file(folder_ / kUnfinished, std::string_view("A robot is being written here.\n"));
+  std::error_code error;
+  fs::remove(urdf_, error);
+  for (const auto& [extension, text] : contents.documents) fs::remove(document(extension), error);
+}
+
 std::vector<std::string> RobotFolder::write(const RobotContents& contents) {
+  create(folder_);
+  const Turn turn(folder_);
+  require_own();  // others may have been here meanwhile
   for (const auto& [extension, text] : contents.documents) require_replaceable(document(extension));
+  begin(contents);
   create(folder_ / part_);
   if (!contents.links.empty()) create(folder_ / "links");
   for (const StoredMesh& s : stored_)
@@ -110,6 +158,8 @@ std::vector<std::string> RobotFolder::write(const RobotContents& contents) {
   for (const auto& [extension, text] : contents.documents)
     io::write_file(document(extension), text);
   io::write_file(urdf_, contents.urdf);
+  std::error_code error;
+  fs::remove(folder_ / kUnfinished, error);
   return links_;
 }
 

@@ -67,7 +67,9 @@ class RobotFolder {
     return stored_[*of_shape_[shape]].name;
   }
 
-  /// Writes all; the URDF comes last.
+  /// Writes all; the URDF comes last, and is not there while bodies are replaced: a robot that is
+  /// there is whole, whenever a program is ended. Programs that write into one folder at the same
+  /// time take turns, where its file system has locks, and the last one's robot stays.
   /// @return the files of the links, relative to the folder.
   /// @throws Error{OutputFailed}; nothing but complete files is left behind.
   std::vector<std::string> write(const RobotContents& contents);
@@ -79,6 +81,7 @@ class RobotFolder {
 
  private:
   void require_own() const;
+  void begin(const RobotContents& contents) const;
   void require_replaceable(const std::filesystem::path& place) const;
   void reserve_stem(const std::string& stem);
 

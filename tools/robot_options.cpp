@@ -63,7 +63,7 @@ bool is_robot(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
-  return extension == ".urdf";
+  return extension == ".urdf" || extension == ".xacro";
 }
 
 void add_robot_options(CLI::App& app, RobotOptions& o, bool from) {
@@ -105,8 +105,9 @@ void require_options_of_meshes(const CLI::App& app, const std::string& input) {
   for (const char* option : {"--geometry", "--visual", "--links", "--package-path", "--mesh-prefix",
                              "--epsilons", "--robot-format", "--for", "--html-report"})
     if (app.get_option(option)->count() != 0)
-      throw Error(ErrorCode::InvalidArgument, std::string(option) + " is for robots (.urdf); " +
-                                                  input + " is taken for a mesh");
+      throw Error(ErrorCode::InvalidArgument, std::string(option) +
+                                                  " is for robots (.urdf, .xacro); " + input +
+                                                  " is taken for a mesh");
 }
 
 void apply_preset(const CLI::App& app, const std::string& folder, RobotOptions& o,

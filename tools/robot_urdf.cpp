@@ -33,9 +33,9 @@ const char* tag_of(bool visual) { return visual ? "visual" : "collision"; }
 RobotUrdf::RobotUrdf(const robot::RobotFile& robot, fs::path folder)
     : file_(robot.path.string()),
       from_(fs::absolute(robot.path).parent_path()),
-      folder_(std::move(folder)) {
-  bytes_ = io::read_file(robot.path);
-  if (document_.Parse(bytes_.data(), bytes_.size()) != tinyxml2::XML_SUCCESS ||
+      folder_(std::move(folder)),
+      text_(robot.text) {
+  if (document_.Parse(text_.data(), text_.size()) != tinyxml2::XML_SUCCESS ||
       document_.RootElement() == nullptr || std::string(document_.RootElement()->Name()) != "robot")
     throw Error(ErrorCode::InvalidInput, file_ + ": not a URDF");
 }

@@ -42,7 +42,7 @@ class RobotUrdf {
   void keep(const std::string& link);
 
   /// The original's text.
-  [[nodiscard]] std::string_view original() const { return {bytes_.data(), bytes_.size()}; }
+  [[nodiscard]] std::string_view original() const { return text_; }
 
   /// The copy's text, the last thing to be asked for.
   std::string text();
@@ -55,7 +55,7 @@ class RobotUrdf {
 
   std::string file_;
   std::filesystem::path from_, folder_;
-  std::vector<char> bytes_;
+  std::string text_;
   tinyxml2::XMLDocument document_;
 };
 

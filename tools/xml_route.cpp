@@ -12,7 +12,9 @@ std::string route_to_mesh(io::XmlKind kind, const std::string& path) {
              " -o FOLDER decomposes all its links (the name has to end with .urdf); other tools "
              "take its meshes one by one";
     case io::XmlKind::Xacro:
-      return "xacro is not read; run: xacro " + path + " > robot.urdf";
+      return "xacro, not a mesh; bcd-decompose and bmesh-decimate take it as a robot where it is "
+             "called NAME.xacro; other tools after: xacro " +
+             path + " > robot.urdf";
     case io::XmlKind::Srdf:
       return describe(kind) + "; give the URDF that it belongs to";
     case io::XmlKind::Sdf:

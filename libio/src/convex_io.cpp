@@ -1,4 +1,5 @@
 // Sets of convex bodies in files and folders, one container for each of the formats.
+#include <fcntl.h>
 #include <kaboum/base/error.h>
 #include <kaboum/base/json_damage.h>
 #include <kaboum/geom/topology.h>
@@ -7,7 +8,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cerrno>
 #include <cmath>
+#include <cstdio>
 #include <system_error>
 
 #include "convex_formats.h"
@@ -209,6 +213,73 @@ fs::path target_of(const fs::path& path) {
   throw Error(ErrorCode::OutputFailed, path.string() + ": cannot be written: " + why);
 }
 
+/// A folder under a name of its own beside a target, removed at the end of the scope with all that
+/// is in it.
+class NewFolder {
+ public:
+  /// @throws Error{OutputFailed}
+  explicit NewFolder(const fs::path& target)
+      : parent_(target.has_parent_path() ? target.parent_path() : fs::path(".")),
+        path_(unused_name()) {
+    // Whose name it is, on whatever machine, made the folder.
+    std::error_code error;
+    while (!fs::create_directory(path_, error)) {
+      if (error)
+        cannot_write(target,
+                     "no folder can be created in '" + parent_.string() + "': " + error.message());
+      path_ = unused_name();
+    }
+  }
+  NewFolder(const NewFolder&) = delete;
+  NewFolder& operator=(const NewFolder&) = delete;
+  ~NewFolder() {
+    std::error_code error;
+    fs::remove_all(path_, error);
+  }
+
+  [[nodiscard]] const fs::path& path() const { return path_; }
+
+  /// Gives it the target's name, and what had that name before is removed. Of several writers at
+  /// the same time, the last one wins; each puts whole folders there.
+  /// @return 0, or errno
+  [[nodiscard]] int take_place_of(const fs::path& target) const {
+    constexpr int kMostAttempts = 1000;  // each fails only where another writer was faster
+    for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
+      if (::rename(path_.c_str(), target.c_str()) == 0) return 0;  // nothing, or an empty folder
+      if (errno != ENOTEMPTY && errno != EEXIST && errno != ENOTDIR) return errno;
+      // In one step: there is a folder of this name at every moment.
+      if (::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) == 0)
+        return 0;
+      if (errno == ENOENT) continue;
+      // A file system that cannot: in two.
+      const fs::path old = unused_name();
+      if (::rename(target.c_str(), old.c_str()) != 0) {
+        if (errno == ENOENT) continue;
+        return errno;
+      }
+      const bool done = ::rename(path_.c_str(), target.c_str()) == 0;
+      const int why = errno;
+      std::error_code error;
+      if (!done && why != ENOTEMPTY && why != EEXIST) {
+        fs::rename(old, target, error);
+        return why;
+      }
+      fs::remove_all(old, error);
+      if (done) return 0;
+    }
+    return EBUSY;
+  }
+
+ private:
+  [[nodiscard]] fs::path unused_name() const {
+    static std::atomic<std::uint64_t> counter{0};
+    return parent_ /
+           (".kaboum-new-" + std::to_string(::getpid()) + "-" + std::to_string(counter++) + ".tmp");
+  }
+
+  fs::path parent_, path_;
+};
+
 }  // namespace
 
 void require_replaceable(const fs::path& folder) {
@@ -223,46 +294,28 @@ void require_replaceable(const fs::path& folder) {
       cannot_write(folder, "the folder holds '" + at->path().filename().string() +
                                "', which is no part of a convex set written here; name another "
                                "folder");
-  if (error) cannot_write(folder, error.message());
+  const bool vanished = error == std::errc::no_such_file_or_directory;  // to be replaced
+  if (error && !vanished) cannot_write(folder, error.message());
 }
 
 void write_convex_folder(const fs::path& path, const geom::ConvexSet& set, const std::string& stem,
                          Format bodies) {
   if (bodies != Format::Stl && bodies != Format::Obj)
     throw Error(ErrorCode::InvalidArgument, "the bodies of a folder are STL or OBJ files");
-  const auto cannot = [&](const std::string& why) { cannot_write(path, why); };
   refuse_margin(set, "STL");
   const geom::ConvexSet clean = cleaned(set);
   require_replaceable(path);
-  std::error_code error;
   const fs::path target = target_of(path);
-  const bool exists = fs::exists(target, error);
-  const fs::path parent = target.has_parent_path() ? target.parent_path() : fs::path(".");
-  const std::string suffix = std::to_string(::getpid()) + ".tmp";
-  const fs::path fresh = parent / (".kaboum-new-" + suffix),
-                 old = parent / (".kaboum-old-" + suffix);
-  fs::remove_all(fresh, error);
-  if (!fs::create_directory(fresh, error))
-    cannot("no folder can be created in '" + parent.string() + "': " + error.message());
-  try {
-    for (std::size_t i = 0; i < clean.bodies.size(); ++i)
-      write_file(fresh / (default_name(i, stem) + (bodies == Format::Obj ? ".obj" : ".stl")),
-                 serialise_mesh(clean.bodies[i].hull, bodies));
-    Json record = record_of(clean);
-    record[kStem] = stem;
-    write_file(fresh / kRecordFile,
-               record.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
-    if (exists) fs::rename(target, old);
-    fs::rename(fresh, target);
-  } catch (const std::system_error& e) {
-    if (exists && !fs::exists(target, error)) fs::rename(old, target, error);
-    fs::remove_all(fresh, error);
-    cannot(e.code().message());
-  } catch (...) {
-    fs::remove_all(fresh, error);
-    throw;
-  }
-  if (exists) fs::remove_all(old, error);
+  const NewFolder fresh(target);
+  for (std::size_t i = 0; i < clean.bodies.size(); ++i)
+    write_file(fresh.path() / (default_name(i, stem) + (bodies == Format::Obj ? ".obj" : ".stl")),
+               serialise_mesh(clean.bodies[i].hull, bodies));
+  Json record = record_of(clean);
+  record[kStem] = stem;
+  write_file(fresh.path() / kRecordFile,
+             record.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  if (const int why = fresh.take_place_of(target); why != 0)
+    cannot_write(path, std::generic_category().message(why));
 }
 
 std::string default_name(std::size_t index, std::string_view stem) {

@@ -77,7 +77,7 @@ echo '<package/>' >package.xml
 cp robot.urdf urdf.xml
 expect 2 'need a folder' "$D" robot.urdf -o x.off --epsilon 1%
 expect 3 'bcd-decompose urdf.xml -o FOLDER' "$D" urdf.xml -o x.off --epsilon 1%
-expect 3 'xacro robot.urdf.xacro > robot.urdf' "$BIN/bcd-decompose" robot.urdf.xacro -o x
+expect 3 'xacro robot.urdf.xacro > robot.urdf' env PATH=/nowhere "$BIN/bcd-decompose" robot.urdf.xacro -o x
 for tool in "$D" "$BIN/bcd-decompose"; do
   for f in world.sdf world.xml; do expect 3 "^[a-z-]*: $f: SDF .*give the meshes that it names" "$tool" $f -o x.obj --epsilon 1%; done
   expect 3 'arm.xml: MJCF .*give the meshes that it names' "$tool" arm.xml -o x.obj --epsilon 1%

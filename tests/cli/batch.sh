@@ -22,7 +22,7 @@ grep -q 'a b &amp; c.off' out/summary.html || fail "no row in the page"
 grep -q 'src="pictures/results/sub/a%20b%20%26%20c.glb.png"' out/summary.html || fail "no picture in the page"
 [ "$(wc -l <out/summary.csv)" = 13 ] || fail "rows: $(wc -l <out/summary.csv)"
 grep -q '^cut.off,.*failed,3,' out/summary.csv || fail "cut.off: $(grep ^cut out/summary.csv)"
-grep -q '"verdict": "certified"' out/summary.json || fail "no verdict"
+grep -q '"verdict":"certified"' out/summary.json || fail "no verdict"
 python3 -c '
 import json
 rows = json.load(open("out/summary.json"))["rows"]
@@ -95,6 +95,80 @@ expect 0 '40 done; [0-9]* of them earlier' "$B" many -o kept --no-pictures
 absent kept/.kaboum-batch/scratch
 "$B" many -o fresh --no-pictures --quiet || fail "fresh"
 for f in fresh/results/*; do cmp -s "$f" "kept/results/${f##*/}" || fail "$f differs"; done
+
+# In parts, by several runs at the same time: each file once, and all as in one run, whoever does it.
+shards() { # OUT N
+  k=0
+  while [ $k -lt "$2" ]; do
+    k=$((k + 1))
+    "$B" many -o "$1" --no-pictures --quiet --shard $k/"$2" &
+  done
+  wait
+}
+shards parts 3
+[ -f parts/summary.html ] && fail "a part writes the summary of all"
+[ "$(cat parts/.kaboum-batch/journal-*.jsonl | cut -d'"' -f4 | sort | uniq | wc -l)" = 40 ] || fail "not all files are of one part"
+[ "$(cat parts/.kaboum-batch/journal-*.jsonl | wc -l)" = 40 ] || fail "some files are of two parts"
+expect 0 '40 done; .*summary.html' "$B" many -o parts --no-pictures --summary
+diff -r fresh/results parts/results >diff.txt || fail "other results in parts: $(cat diff.txt)"
+rows() { sed -n 's/"wall_seconds.*"vertices_before"//p' "$1/summary.json"; }
+rows fresh >fresh.txt
+rows parts >parts.txt
+[ "$(wc -l <parts.txt)" = 40 ] && cmp -s fresh.txt parts.txt || fail "another summary in parts: $(diff fresh.txt parts.txt | head -n 3)"
+# Another number of parts, or none: nothing is left to do, unless a result is gone.
+shards parts 2
+expect 0 '40 done; 40 of them earlier' "$B" many -o parts --no-pictures
+[ "$(cat parts/.kaboum-batch/journal*.jsonl | wc -l)" = 40 ] || fail "something is done again"
+rm parts/results/m7.ply
+expect 1 '39 done; 1 to do' "$B" many -o parts --no-pictures --summary
+shards parts 5
+expect 0 '40 done' "$B" many -o parts --no-pictures --summary
+[ -s parts/results/m7.ply ] || fail "what is gone is not made again"
+# One part twice at the same time: done twice, and harmless.
+for run in 1 2; do "$B" many -o twice --no-pictures --quiet --shard 1/1 & done
+wait
+expect 0 '40 done' "$B" many -o twice --no-pictures --summary
+diff -r fresh/results twice/results >diff.txt || fail "other results twice: $(cat diff.txt)"
+[ -z "$(find parts twice -name '*.tmp' -o -name 'scratch*')" ] || fail "left behind by parts"
+# Ended by kill -9 and cut short, of all machines; what is old is removed.
+"$B" many -o killed --no-pictures --quiet --shard 1/2 &
+batch=$!
+while [ "$(cat killed/.kaboum-batch/journal-*.jsonl 2>/dev/null | wc -l)" -lt 5 ]; do sleep 0.02; done
+kill -9 "$batch"
+wait "$batch" 2>/dev/null
+for journal in killed/.kaboum-batch/journal-*.jsonl; do printf '{"name":"m0.off","key":"' >>"$journal"; done
+touch -d '8 days ago' killed/.kaboum-batch/scratch-*
+mkdir killed/.kaboum-batch/scratch-of-another
+shards killed 2
+expect 0 '40 done' "$B" many -o killed --no-pictures --summary
+diff -r fresh/results killed/results >diff.txt || fail "other results after an end: $(cat diff.txt)"
+[ "$(cd killed/.kaboum-batch && echo scratch*)" = scratch-of-another ] || fail "scratch: $(ls killed/.kaboum-batch)"
+for wrong in 0/2 3/2 1 1/0 a/b 1/2/3 -1/2; do
+  expect 2 '--shard' "$B" many -o x --shard="$wrong"
+done
+expect 2 '' "$B" many -o x --shard 1/2 --summary
+absent x
+
+# Programs that are told to end with their batch have not failed: they are done the next time.
+cat >told <<'END'
+#!/bin/sh
+[ -e go ] || kill -TERM $$
+cp "$1" "$2"
+END
+chmod +x told
+expect 1 '3 to do' "$B" list.txt -o told-out --no-pictures --command ./told '{input}' '{output}'
+: >go
+expect 1 '2 done, 1 no' "$B" list.txt -o told-out --no-pictures --command ./told '{input}' '{output}'
+
+# A robot with a dot in its name becomes a folder, once.
+mkdir -p dotted
+tetrahedron >dotted/t.off
+echo '<robot name="a"><link name="b"><collision><geometry><mesh filename="t.off"/></geometry></collision></link></robot>' >dotted/arm.v2.urdf
+for run in 1 2; do
+  expect 0 '1 done' "$B" dotted -o dots --no-pictures --rule '*.urdf: bcd-decompose --epsilon 2%'
+done
+[ -s dots/results/arm.v2/arm.v2.urdf ] || fail "no robot: $(find dots/results)"
+[ "$(wc -l <dots/.kaboum-batch/journal.jsonl)" = 1 ] || fail "a robot is done again"
 
 # Results within the folder of inputs are no inputs the next time.
 expect 0 '8 done' "$B" in -o in/results --no-pictures --rule 't[1-8].off: bmesh-decimate --epsilon 1%'

@@ -1,3 +1,4 @@
+#include <kaboum/io/convex_folder.h>
 #include <kaboum/io/convex_io.h>
 #include <unistd.h>
 
@@ -7,6 +8,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <thread>
 
 #include "io_test.h"
 
@@ -150,6 +152,21 @@ TEST_F(ConvexIo, FolderRoundTrip) {
   EXPECT_TRUE(fs::exists(path / "thesis.tex"));
   EXPECT_EQ(entries(), 1U);
   EXPECT_THROW(write_convex_set(directory_ / "none" / "set", set), Error);
+}
+
+TEST_F(ConvexIo, FolderOfManyWritersIsOneOfTheirs) {
+  const fs::path place = directory_ / "set";
+  std::vector<std::thread> writers;
+  for (int w = 0; w < 4; ++w)
+    writers.emplace_back([&, w] {
+      ConvexSet set = sample_set(2 + 3 * w, static_cast<unsigned>(w));
+      set.margin = 0;
+      for (int round = 0; round < 25; ++round) write_convex_folder(place, set, "part", Format::Stl);
+    });
+  for (std::thread& t : writers) t.join();
+  const ConvexSet back = read_convex_set(place);  // whose record counts the bodies
+  EXPECT_EQ((back.bodies.size() - 2) % 3, 0U);
+  EXPECT_EQ(entries(), 1U);
 }
 
 TEST_F(ConvexIo, FolderInNaturalOrder) {

@@ -5,9 +5,7 @@
 
 namespace kaboum::batch {
 
-// Names in a job's scratch folder, and of the folder that holds these.
-inline constexpr const char* kState = ".kaboum-batch";
-inline constexpr const char* kScratch = ".kaboum-batch/scratch";
+// Names in a job's scratch folder.
 inline constexpr const char* kMessages = "messages.txt";
 inline constexpr const char* kReport = "report.json";
 inline constexpr const char* kPicture = "picture.png";

@@ -118,7 +118,7 @@ std::vector<Found> find_inputs(const JobOptions& options) {
 }
 
 std::string extension_for(const Job& job, const std::string& asked) {
-  if (job.input.extension() == ".urdf") return "";  // a robot becomes a folder
+  if (job.makes_folder()) return "";
   if (!asked.empty()) return asked.starts_with('.') ? asked : "." + asked;
   return fs::path(job.command.front()).filename() == "bcd-decompose" ? ".glb" : ".ply";
 }
@@ -128,7 +128,9 @@ std::string extension_for(const Job& job, const std::string& asked) {
 void name_outputs(std::vector<Job>& jobs, const std::string& extension) {
   std::map<std::string, std::size_t> uses;
   const auto short_name = [](const Job& job) {
-    return fs::path(job.name).replace_extension().generic_string();
+    fs::path name = fs::path(job.name).replace_extension();
+    if (job.input.extension() == ".xacro" && name.extension() == ".urdf") name.replace_extension();
+    return name.generic_string();
   };
   for (const Job& job : jobs) ++uses[short_name(job)];
   for (Job& job : jobs)
@@ -179,18 +181,20 @@ std::vector<Job> find_jobs(const JobOptions& options) {
     const auto rule = std::find_if(options.rules.begin(), options.rules.end(), [&](const Rule& r) {
       return fnmatch(r.pattern.c_str(), found.name.c_str(), 0) == 0;
     });
-    if (rule == options.rules.end()) continue;
-    Job job{.name = found.name, .input = found.path, .output = {}, .command = rule->command};
-    struct stat status {};
-    if (stat(job.input.c_str(), &status) == 0) {
-      job.bytes = static_cast<std::uintmax_t>(status.st_size);
-      job.modified = status.st_mtim.tv_sec * 1'000'000'000LL + status.st_mtim.tv_nsec;
-    }
-    jobs.push_back(std::move(job));
+    if (rule != options.rules.end())
+      jobs.push_back(
+          {.name = found.name, .input = found.path, .output = {}, .command = rule->command});
   }
   if (jobs.empty())
     throw Error(ErrorCode::InvalidInput, "no file that could be read matches a rule");
-  name_outputs(jobs, options.extension);
+  name_outputs(jobs, options.extension);  // which depend on all names
+  if (options.shard) std::erase_if(jobs, [&](const Job& j) { return !options.shard->has(j.name); });
+  for (Job& job : jobs) {
+    struct stat status {};
+    if (stat(job.input.c_str(), &status) != 0) continue;
+    job.bytes = static_cast<std::uintmax_t>(status.st_size);
+    job.modified = status.st_mtim.tv_sec * 1'000'000'000LL + status.st_mtim.tv_nsec;
+  }
   return jobs;
 }
 

@@ -2,8 +2,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "shard.h"
 
 /// kaboum-batch: one program for many files.
 namespace kaboum::batch {
@@ -32,7 +35,9 @@ struct Job {
   std::int64_t modified = 0;         ///< [ns]
 
   /// Whether the result is a folder, as robots are.
-  [[nodiscard]] bool makes_folder() const { return fs::path(output).extension().empty(); }
+  [[nodiscard]] bool makes_folder() const {
+    return input.extension() == ".urdf" || input.extension() == ".xacro";
+  }
   /// Changes whenever the result may.
   [[nodiscard]] std::string key() const;
 };
@@ -42,11 +47,12 @@ struct JobOptions {
   std::vector<Rule> rules;          ///< the first that matches counts
   std::string extension;            ///< of results; empty: by program
   fs::path results;                 ///< folder of the batch, whose files are no inputs
+  std::optional<Shard> shard;       ///< only the jobs of this part
 };
 
 /// A job for each input that matches a rule, in the order of their names. Of folders all that is in
-/// them and can be read, a robot's meshes as well; of lists (.txt) a file for each line, relative
-/// to the list.
+/// them and can be read, a robot's meshes as well, but not xacro, which may be parts of robots; of
+/// lists (.txt) a file for each line, relative to the list. A part may have no job.
 /// @throws Error{InvalidInput} when a list or folder cannot be read, or nothing matches.
 std::vector<Job> find_jobs(const JobOptions& options);
 

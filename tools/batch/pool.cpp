@@ -8,8 +8,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <iostream>
+#include <thread>
 
 #include "command.h"
 
@@ -52,6 +54,16 @@ std::uintmax_t size_of(const fs::path& path) {
   return sum;
 }
 
+/// Whether a program was ended by who ends the whole batch, as clusters do at limits of time,
+/// signal by signal and program by program: it has not failed.
+bool is_stopped(const Ended& ended, bool by_us) {
+  if (by_us) return false;
+  // Who kills all kills this process next; where only the program was killed, for want of memory as
+  // a rule, the wait costs little.
+  if (ended.signal == SIGKILL) std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  return ended.signal == SIGTERM || ended.signal == SIGINT || ended.signal == SIGHUP;
+}
+
 void move(const fs::path& from, const fs::path& to) {
   std::error_code error;
   fs::create_directories(to.parent_path(), error);
@@ -65,25 +77,25 @@ Pool::Pool(PoolOptions options, Journal& journal)
     : o_(std::move(options)), journal_(journal), begin_(Clock::now()) {
   block_signals();
   std::error_code error;
-  fs::remove_all(o_.folder / kScratch, error);
-  fs::create_directories(o_.folder / kScratch, error);
-  if (error)
-    throw Error(ErrorCode::OutputFailed, (o_.folder / kScratch).string() + ": " + error.message());
+  fs::remove_all(o_.scratch, error);
+  fs::create_directories(o_.scratch, error);
+  if (error) throw Error(ErrorCode::OutputFailed, o_.scratch.string() + ": " + error.message());
 }
 
 Pool::~Pool() {
   for (const auto& [id, run] : running_) kill(id, SIGKILL);
   while (!running_.empty() && next_ended().id == 0) wait_for_signal();
   std::error_code error;
-  fs::remove_all(o_.folder / kScratch, error);
+  fs::remove_all(o_.scratch, error);
   if (!o_.quiet && isatty(STDERR_FILENO) == 1) std::cerr << "\r\033[K";
 }
 
-bool Pool::run(std::vector<const Job*> waiting) {
-  all_ = waiting.size();
+bool Pool::run(std::vector<const Job*> jobs) {
+  all_ = jobs.size();
   // The largest last would run alone in the end.
-  std::stable_sort(waiting.begin(), waiting.end(),
+  std::stable_sort(jobs.begin(), jobs.end(),
                    [](const Job* a, const Job* b) { return a->bytes > b->bytes; });
+  std::deque<const Job*> waiting(jobs.begin(), jobs.end());
   while (!waiting.empty() || !running_.empty()) {
     start_what_fits(waiting);
     show(waiting.size());
@@ -95,7 +107,7 @@ bool Pool::run(std::vector<const Job*> waiting) {
   return true;
 }
 
-void Pool::start_what_fits(std::vector<const Job*>& waiting) {
+void Pool::start_what_fits(std::deque<const Job*>& waiting) {
   for (auto next = waiting.begin(); next != waiting.end() && running_.size() < o_.jobs;) {
     const std::uintmax_t memory = expected_memory(**next);
     if (o_.memory > 0 && !running_.empty() && used_ + memory > o_.memory) {
@@ -110,7 +122,7 @@ void Pool::start_what_fits(std::vector<const Job*>& waiting) {
 void Pool::begin(const Job& job, std::uintmax_t memory) {
   Running run;
   run.job = &job;
-  run.scratch = o_.folder / kScratch / std::to_string(++number_);
+  run.scratch = o_.scratch / std::to_string(++number_);
   run.begin = Clock::now();
   run.memory = memory;
   std::error_code error;
@@ -127,7 +139,9 @@ void Pool::end(const Ended& ended) {
   Running run = std::move(at->second);
   running_.erase(at);
   program_seconds_ += ended.cpu_seconds;
-  if (run.drawing) {
+  if (is_stopped(ended, run.ended_by_us)) {
+    // Nothing is written down: it is to be done again.
+  } else if (run.drawing) {
     Record record = std::move(*run.drawing);
     const fs::path picture = run.scratch / kPicture;
     if (ended.exit_code == 0 && size_of(picture) > 0) {

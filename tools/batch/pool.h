@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <optional>
 #include <string>
@@ -13,6 +14,7 @@ namespace kaboum::batch {
 
 struct PoolOptions {
   fs::path folder;                 ///< of results
+  fs::path scratch;                ///< of this run alone, in the same file system
   std::size_t jobs = 1;            ///< at a time
   std::uintmax_t memory = 0;       ///< of all of them together; 0: no limit [bytes]
   std::uintmax_t most_memory = 0;  ///< of one; 0: no limit [bytes]
@@ -54,7 +56,7 @@ class Pool {
   bool draw(Running& run, Record& record);
   void add(const Record& record);
   void end_late_ones();
-  void start_what_fits(std::vector<const Job*>& waiting);
+  void start_what_fits(std::deque<const Job*>& waiting);
   [[nodiscard]] std::uintmax_t expected_memory(const Job& job) const;
   void learn(const Job& job, const Ended& ended);
   void show(std::size_t waiting) const;

@@ -120,6 +120,18 @@ void add_row(std::string& page, const Record& record, bool pictures) {
   page.append("</tr>\n");
 }
 
+/// The rows of the page.
+std::vector<const Record*> shown_of(std::span<const Record> records) {
+  constexpr std::size_t kMost = 10'000;
+  std::vector<const Record*> shown;
+  shown.reserve(records.size());
+  for (const Record& record : records) shown.push_back(&record);
+  if (shown.size() <= kMost) return shown;
+  std::stable_partition(shown.begin(), shown.end(), [](const Record* r) { return !r->done(); });
+  shown.resize(kMost);
+  return shown;
+}
+
 }  // namespace
 
 std::size_t Summary::count(const char* state) const {
@@ -133,17 +145,36 @@ std::string Summary::words() const {
     if (const std::size_t n = count(state); n > 0)
       text += (text.empty() ? "" : ", ") + std::to_string(n) + " " + state;
   if (done_before > 0) text += "; " + std::to_string(done_before) + " of them earlier";
-  return text;
+  if (to_do > 0) text += (text.empty() ? "" : "; ") + std::to_string(to_do) + " to do";
+  return text.empty() ? "no file" : text;
+}
+
+Json Summary::head() const {
+  Json counts = Json::object();
+  for (const char* state : kStates) counts[state] = count(state);
+  return {{"files", records.size() + to_do},
+          {"states", counts},
+          {"done_before", done_before},
+          {"to_do", to_do}};
 }
 
 Json Summary::json() const {
-  Json counts = Json::object(), files = Json::array();
-  for (const char* state : kStates) counts[state] = count(state);
+  Json all = head(), files = Json::array();
   for (const Record& record : records) files.push_back(to_json(record));
-  return {{"files", records.size()},
-          {"states", counts},
-          {"done_before", done_before},
-          {"rows", std::move(files)}};
+  all["rows"] = std::move(files);
+  return all;
+}
+
+std::string json_of(const Summary& summary) {
+  std::string text = summary.head().dump(1);
+  text.resize(text.rfind('\n'));  // goes on instead of ending
+  text += ",\n \"rows\": [";
+  const char* before = "\n";
+  for (const Record& record : summary.records) {
+    text += before + to_json(record).dump(-1, ' ', false, Json::error_handler_t::replace);
+    before = ",\n";
+  }
+  return text + "\n ]\n}\n";
 }
 
 std::string csv_of(const Summary& summary) {
@@ -165,18 +196,22 @@ std::string csv_of(const Summary& summary) {
 }
 
 std::string html_of(const Summary& summary, const std::string& title) {
-  const bool pictures = std::any_of(summary.records.begin(), summary.records.end(),
-                                    [](const Record& r) { return !r.picture.empty(); });
+  const std::vector<const Record*> shown = shown_of(summary.records);
+  const bool pictures =
+      std::any_of(shown.begin(), shown.end(), [](const Record* r) { return !r->picture.empty(); });
   std::string page = "<!DOCTYPE html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>" +
                      escape_xml(title) + "</title>\n" + kHead + "<h1>" + escape_xml(title) +
-                     "</h1>\n<p>" + std::to_string(summary.records.size()) +
-                     " files: " + escape_xml(summary.words()) +
-                     ". Lengths are in the units of the files; a click "
-                     "on a title sorts.</p>\n<table><thead><tr>";
+                     "</h1>\n<p>" + std::to_string(summary.records.size() + summary.to_do) +
+                     " files: " + escape_xml(summary.words()) + ". ";
+  if (shown.size() < summary.records.size())
+    page += "Shown are " + std::to_string(shown.size()) +
+            ", first those that are not done; summary.csv has all. ";
+  page +=
+      "Lengths are in the units of the files; a click on a title sorts.</p>\n<table><thead><tr>";
   if (pictures) page += "<th></th>";
   for (const Column& column : kColumns) page += std::string("<th>") + column.title + "</th>";
   page += "</tr></thead><tbody>\n";
-  for (const Record& record : summary.records) add_row(page, record, pictures);
+  for (const Record* record : shown) add_row(page, *record, pictures);
   return page + "</tbody></table>\n" + kScript + "</html>\n";
 }
 

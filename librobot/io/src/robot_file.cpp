@@ -8,8 +8,10 @@
 #include <kaboum/io/xml_kind.h>
 
 #include <algorithm>
+#include <cctype>
 
 #include "is_file.h"
+#include "xacro.h"
 
 namespace kaboum::robot {
 namespace {
@@ -60,20 +62,33 @@ std::string route_to_robot(io::XmlKind kind) {
 
 }  // namespace
 
+bool is_xacro(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension == ".xacro";
+}
+
 RobotFile read_robot(const std::string& path) {
   RobotFile out;
   out.path = path;
+  std::string name = path;
   const std::vector<char> bytes = io::read_file(path);
-  out.sha256 = io::sha256(bytes);
-  const std::string_view text(bytes.data(), bytes.size());
-  const io::XmlKind kind = io::xml_kind(text);
+  if (is_xacro(path)) {
+    out.text = expand_xacro(path);
+    name += " (expanded)";  // whose lines are others
+  } else {
+    out.text.assign(bytes.begin(), bytes.end());
+  }
+  out.sha256 = io::sha256(out.text);
+  const io::XmlKind kind = io::xml_kind(out.text);
   if (const std::string route = route_to_robot(kind); !route.empty())
-    throw Error(ErrorCode::InvalidInput, path + ": " + route);
+    throw Error(ErrorCode::InvalidInput, name + ": " + route);
   if (kind == io::XmlKind::RlRobot) {
-    out.robot = robot::parse_rl(text, path);
+    out.robot = robot::parse_rl(out.text, name);
     find_meshes(out.robot, out.path.parent_path());
   } else {
-    out.robot = robot::parse_urdf(text, path);
+    out.robot = robot::parse_urdf(out.text, name);
   }
   return out;
 }

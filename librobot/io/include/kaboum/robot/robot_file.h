@@ -13,12 +13,19 @@ namespace kaboum::robot {
 struct RobotFile {
   Robot robot;
   std::filesystem::path path;
-  std::string sha256;
+  std::string text;    ///< of the file; of xacro, what it stands for
+  std::string sha256;  ///< of the text
 };
+
+/// Whether a file is xacro by its name, NAME.xacro, NAME.urdf.xacro, which read_robot expands.
+bool is_xacro(const std::filesystem::path& path);
 
 /// Reads URDF, or the Robotics Library's rlkin and rlmdl (told apart by the root element). Links of
 /// the latter get the mesh in the robot's folder that has their name; `bodyN` also that of `linkN`.
-/// @throws Error{InvalidInput}.
+///
+/// Of a file called NAME.xacro, what the program `xacro` makes of it without arguments; its names
+/// of files are relative to NAME.xacro. The program is run: such a file is trusted as a script is.
+/// @throws Error{InvalidInput}, also where `xacro` is not installed, fails or takes too long.
 RobotFile read_robot(const std::string& path);
 
 /// @throws Error{InvalidArgument} naming the first of `links` that the robot does not have.

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace kaboum::robot {
+
+/// What the program `xacro` may use.
+struct XacroLimits {
+  std::uint64_t seconds = 60;                       ///< of CPU time, and twice as long by the clock
+  std::uint64_t memory = std::uint64_t{2} << 30U;   ///< addresses; no limit with sanitizers [bytes]
+  std::uint64_t output = std::uint64_t{64} << 20U;  ///< [bytes]
+};
+
+/// What `xacro FILE` makes of a file: run as a process of its own, found on PATH. Its name as it is
+/// given, in the folder of this process, as a shell would call it.
+///
+/// @throws Error{InvalidInput} when it is not on PATH, fails, is ended by a signal, or reaches a
+///   limit; naming the file and what it said last.
+/// @throws Error{LimitReached} when no process can be started.
+std::string expand_xacro(const std::filesystem::path& file, const XacroLimits& limits = {});
+
+}  // namespace kaboum::robot

@@ -1,0 +1,66 @@
+# shellcheck shell=sh disable=SC2154,SC2016
+# Robots as xacro: expanded by the program of that name, here one that stands for it; what goes wrong is said.
+. "$(dirname "$0")/common.sh"
+D=$BIN/bcd-decompose
+KABOUM_CACHE=$WORK/cache
+export KABOUM_CACHE
+mkdir -p robot/meshes bin none
+tetrahedron >robot/meshes/t.off
+cat >robot/arm.urdf.xacro <<'END'
+<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:property name="reach" value="0.5"/>
+  <link name="base"><collision><geometry><mesh filename="meshes/t.off"/></geometry></collision></link>
+  <link name="tool"><collision><geometry><mesh filename="meshes/t.off" scale="${reach} 1 1"/></geometry></collision></link>
+  <joint name="j" type="revolute"><parent link="base"/><child link="tool"/><axis xyz="0 0 1"/>
+    <origin xyz="0 0 ${reach}"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+</robot>
+END
+expanded() { sed '/xacro:property/d; s/ xmlns:xacro="[^"]*"//; s/${reach}/0.5/' "$1"; }
+expanded robot/arm.urdf.xacro >robot/arm.urdf
+# xacro BODY: a program of this name.
+xacro() {
+  printf '#!/bin/sh\n%s\n' "$1" >bin/xacro
+  chmod +x bin/xacro
+}
+with_xacro() { PATH="$WORK/bin:$PATH" "$@"; }
+xacro 'sed '\''/xacro:property/d; s/ xmlns:xacro="[^"]*"//; s/${reach}/0.5/'\'' "$1"; echo note >&2'
+
+# The same as of the URDF; names of meshes are relative to the file's folder, from wherever it is called.
+expect 0 '2 links' with_xacro "$D" robot/arm.urdf.xacro -o of-xacro --epsilon 2% --depfile x.d
+expect 0 '' "$D" robot/arm.urdf -o of-urdf --epsilon 2%
+cmp -s of-xacro/arm.urdf of-urdf/arm.urdf || fail "another URDF: $(diff of-xacro/arm.urdf of-urdf/arm.urdf)"
+diff -r of-xacro/bodies of-urdf/bodies >diff.txt || fail "other bodies: $(cat diff.txt)"
+grep -q '^of-xacro/arm.urdf: robot/arm.urdf.xacro ' x.d || fail "dependency file: $(cat x.d)"
+shows 0 '^verified: 2 of 2 links' with_xacro "$BIN/bound-verify" robot robot/arm.urdf.xacro of-xacro/arm.urdf --epsilon 2%
+(cd robot/meshes && with_xacro "$D" ../arm.urdf.xacro -o ../../inside --epsilon 2% --quiet) || fail "from another folder"
+cmp -s inside/arm.urdf of-xacro/arm.urdf || fail "from another folder: another URDF"
+cp robot/arm.urdf.xacro robot/plain.XACRO
+expect 0 '' with_xacro "$BIN/bmesh-decimate" robot/plain.XACRO -o plain --epsilon 2%
+[ -s plain/plain.urdf ] || fail "no URDF of plain.XACRO: $(ls plain)"
+echo robot/arm.urdf.xacro >list.txt
+expect 0 '1 done' with_xacro "$BIN/kaboum-batch" list.txt -o batch --command bcd-decompose --epsilon 2%
+cmp -s batch/results/robot/arm/arm.urdf of-xacro/arm.urdf || fail "in a batch: $(find batch/results)"
+
+# Not there, or it fails, or what it makes is no robot.
+refused() {
+  words=$1
+  shift
+  expect 3 "$words" "$@" "$D" robot/arm.urdf.xacro -o x --epsilon 2%
+  grep -q '^bcd-decompose: robot/arm.urdf.xacro' err.txt || fail "the file is not named: $(cat err.txt)"
+  absent x
+}
+refused 'install xacro.*xacro robot/arm.urdf.xacro > robot.urdf' env PATH="$WORK/none"
+xacro 'echo "name reach is not defined" >&2; exit 2'
+refused 'exit code 2: name reach is not defined' with_xacro
+xacro 'exit 0'
+refused 'makes nothing of it' with_xacro
+xacro 'kill -SEGV $$'
+refused 'signal' with_xacro
+xacro 'exec yes "<robot/>"'
+refused 'more than 64 MiB' with_xacro
+xacro 'cat "$1"'
+refused '(expanded):2: <xacro:property>' with_xacro
+xacro 'echo "<sdf version=\"1.9\"/>"'
+refused 'SDF' with_xacro
+pgrep -f "$WORK/bin/xacro" >/dev/null && fail "xacro still runs"
+finish
