@@ -7,6 +7,8 @@
 #include <limits>
 #include <numeric>
 
+#include "inside_out.h"
+
 namespace kaboum::verify {
 namespace {
 
@@ -112,26 +114,6 @@ Answer answer_of(const MeshVerdict& verdict, Claims claims) {
   return defined && !verdict.vacuous ? Answer::Verified : Answer::Undefined;
 }
 
-namespace {
-
-/// Whether the volume is negative, whatever rounding does: sums of corners that differ in size by
-/// many digits may have any sign.
-bool certainly_inside_out(const geom::Mesh& mesh) {
-  const geom::Vec3 o = geom::bounding_box(mesh).center();
-  double sum = 0, magnitude = 0;
-  for (const geom::Triangle& t : mesh.triangles) {
-    const geom::Vec3 a = mesh.vertices[t[0]] - o, b = mesh.vertices[t[1]] - o,
-                     c = mesh.vertices[t[2]] - o;
-    sum += a.dot(b.cross(c));
-    magnitude += a.norm() * b.norm() * c.norm();
-  }
-  // A term errs by less than 32 times 2^-52 of the product of its corners' norms, the sum by one
-  // 2^-52 of all for each term.
-  return sum < -(32.0 + static_cast<double>(mesh.triangles.size())) * 0x1p-52 * magnitude;
-}
-
-}  // namespace
-
 MeshVerdict decide(const MeshQuestion& q,
                    const std::function<void(const MeshVerdict&)>& enclosure) {
   const auto show = [&](const std::string& what) {
@@ -145,7 +127,7 @@ MeshVerdict decide(const MeshQuestion& q,
   out.inclusion = q.relation == Relation::Cover
                       ? verify_cover(q.original, *q.set, options).inclusion
                       : verify_inclusion(q.inner(), q.outer(), options);
-  out.vacuous = q.claims == Claims::Solid && certainly_inside_out(q.inner());
+  out.vacuous = q.claims == Claims::Solid && is_inside_out(q.inner());
   show("measuring what sticks out");
   measure_depths(q, out);
   if (enclosure) enclosure(out);

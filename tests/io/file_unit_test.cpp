@@ -14,7 +14,9 @@ namespace kaboum::io::test {
 namespace {
 
 ReadResult result_of(Mesh mesh, const std::string& unit = "") {
-  ReadResult r{.mesh = std::move(mesh), .format = Format::Off};
+  ReadResult r;
+  r.mesh = std::move(mesh);
+  r.format = Format::Off;
   r.unit = unit;
   return r;
 }

@@ -110,7 +110,7 @@ TEST(MeshVerdict, EmptySolidIsNoVerdict) {
 
 // Nor may rounding make a solid that is not empty look so: of what is nearly flat the rounded
 // volume has any sign.
-TEST(MeshVerdict, RoundingMakesNoSolidEmpty) {
+TEST(MeshVerdict, RoundingTurnsNoSolidInsideOut) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> unit(-1, 1);
   const auto point = [&] { return Vec3(unit(random), unit(random), unit(random)); };
@@ -133,6 +133,7 @@ TEST(MeshVerdict, RoundingMakesNoSolidEmpty) {
     if (!(geom::signed_volume(outward) < 0)) continue;
     ++misleading;
     EXPECT_FALSE(decided(outward, large, Relation::Outer, Claims::Solid).vacuous);
+    EXPECT_TRUE(decided(flipped(outward), large, Relation::Outer, Claims::Solid).vacuous);
   }
   EXPECT_EQ(misleading, 20);
 }
