@@ -93,7 +93,9 @@ TEST(Child, TimeAndMemoryAreLimited) {
   expect_failure(
       []() -> ReadResult {
         std::vector<std::vector<char>> hoard;
-        for (;;) hoard.emplace_back().reserve(std::size_t{1} << 24U);  // pages that are touched take CPU time
+        for (;;)
+          hoard.emplace_back().reserve(std::size_t{1}
+                                       << 24U);  // pages that are touched take CPU time
       },
       "256 MiB");
 }
