@@ -61,7 +61,7 @@ int say_meshes(Run& run) {
     log(run.o.common.quiet,
         file + ": " + summary(c) + (mesh.made.cached ? " (from the cache)" : ""));
     const auto [why, own] = shortfall(c);
-    if (!why.empty()) log(run.o.common.quiet, file + ": " + why);
+    if (!why.empty()) log(run.o.common.quiet, std::string(file).append(": ").append(why));
     code = code == kNo || own == kNo ? kNo : std::max(code, own);
     for (const std::string& text : mesh.made.read_notes) run.notes.add(file, text);
     for (const std::string& text : c.notes) run.notes.add(file, text);

@@ -3,12 +3,15 @@
 #include "scene_maker.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/base/parse_length.h>
 #include <kaboum/base/similar_name.h>
 #include <kaboum/robot/base_pose.h>
 
+#include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
 #include <set>
 
+#include "arguments.h"
 #include "file_names.h"
 
 namespace kaboum::tools {
