@@ -76,6 +76,7 @@ void require_names(const char* option, const std::vector<std::string>& given,
 template <class Value>
 std::vector<std::string> keys_of(const std::map<std::string, Value>& values) {
   std::vector<std::string> out;
+  out.reserve(values.size());
   for (const auto& [name, value] : values) out.push_back(name);
   return out;
 }
