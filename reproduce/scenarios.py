@@ -242,41 +242,47 @@ def exact_against_sets(document, runs):
     document.table(["configurations", "by", "mean [µs]", "99 % [µs]", "of the first"], rows)
 
 
+SEARCH_TIMES = {"exact_fcl": "exact, FCL", "exact_ode": "exact, ODE", "exact_bullet": "exact, Bullet", "sets_fcl": "sets, FCL",
+                "sets_bullet": "sets, Bullet", "sets_sampled": "sets, ours at samples", "sets_at_every_instant": "sets, ours at every instant"}
+
+
 def whole_searches(document, runs):
     """The same for all that the predicates were asked in whole searches."""
     document.heading("Exact meshes against bounding sets, all checks of a search", 3)
     document.paragraph("All that the predicates are asked during a search is recorded and decided again, in one process and by CPU time: by exact "
-                       "meshes in FCL as packaged (trees of triangles, boxes along the axes first), by bounding sets as convex shapes in FCL, and by our "
-                       "predicates. FCL knows no motions at every instant: it looks at them at samples between which no point of the robot moves farther than 2 cm, the "
-                       "thesis's ε, and stops at the first contact; between samples it proves nothing. In the last three columns exact meshes in FCL at samples are "
-                       "compared with bounding sets that the planner decides at every instant, with our predicates at the same samples, and with FCL's at the same samples.")
+                       "meshes in FCL, ODE and Bullet as packaged (trees of triangles; boxes along the axes first), by bounding sets as convex shapes in FCL and "
+                       "Bullet, and by our predicates. The libraries know no motions at every instant: they look at them at samples between which no point of the robot "
+                       "moves farther than 2 cm, the thesis's ε, and stop at the first contact; between samples that proves nothing. First the times, then what exact "
+                       "meshes take for what bounding sets take that the planner decides at every instant, and for the same library's bounding sets at the same samples. "
+                       "Bullet looks for all contacts of two meshes, where the others stop at the first.")
     program = runs.programs.parent / "benchmarks" / "search-benchmark"
     if not program.is_file():
-        document.paragraph("Left out: search-benchmark is not built; cmake --preset release -DKABOUM_BUILD_BENCHMARKS=ON, with FCL.")
+        document.paragraph("Left out: search-benchmark is not built; cmake --preset release -DKABOUM_BUILD_BENCHMARKS=ON, with FCL, Bullet and ODE.")
         return
     rows = []
-    cases = [("bimanual-assembly", 4, "bfs"), ("bimanual-assembly", 4, "dfs"), ("bimanual-assembly", 4, "ids"),
-             ("circular-rearrange", 3, "greedy"), ("stacked", 7, "greedy")]
-    for name, n, search in cases[3:4] if runs.quick else cases:
-        call, folder = runs.call, f"{name}-{n}-scene"
+    cases = [("bimanual-assembly", 4, "bfs", 1), ("bimanual-assembly", 4, "dfs", 1), ("bimanual-assembly", 4, "dfs", 4),
+             ("bimanual-assembly", 4, "ids", 1), ("circular-rearrange", 3, "greedy", 1), ("stacked", 7, "greedy", 1)]
+    for name, n, search, detail in cases[4:5] if runs.quick else cases:
+        call, folder = runs.call, f"{name}-{n}-scene" + (f"-{detail}" if detail > 1 else "")
         files = [f"{folder}/problem.kpl", f"{folder}/cell.json"]
-        if call(f"scene of {name} {n}", SCENARIOS / name / "run", [n, "--scene-only", "--out", folder],
+        if call(f"making {folder}", SCENARIOS / name / "run", [n, "--scene-only", "--detail", detail, "--out", folder],
                 [runs.programs / "kaboum-scene", SCENARIOS / "parts.py", SCENARIOS / "scenario.py", SCENARIOS / name / "run"], files) is None:
             continue
-        result = f"whole-{name}-{n}-{search}.txt"
+        result = f"whole-{name}-{n}-{search}-{detail}.txt"
         script = call.folder / f"{result}.sh"
         script.write_text(f'#!/bin/sh\nexec "{program}" "$1" {" ".join(files)} {search} > {result}\n')
         script.chmod(0o755)
-        if call(f"exact meshes, {name} {n} {search}", script, [SCENARIOS / name / "domain.kpl"],
+        if call(f"exact meshes, {name} {n} {search} {detail}", script, [SCENARIOS / name / "domain.kpl"],
                 [program, SCENARIOS / name / "domain.kpl", *(call.folder / f for f in files)], [result]) is None:
             continue
         found = json.loads((call.folder / result).read_text())
-        seconds = {key: found[key]["s"] for key in ("exact_fcl", "sets_fcl", "sets_sampled", "sets_at_every_instant")}
-        rows.append([f"{name} {n}", search, str(found["configurations"]), str(found["motions"]),
-                     str(found["exact_fcl"]["configurations"]), *(figure(s) for s in seconds.values()),
-                     *(f"{seconds['exact_fcl'] / seconds[key]:.1f}×" for key in ("sets_at_every_instant", "sets_sampled", "sets_fcl"))])
-    document.table(["scenario", "search", "configurations", "motions", "samples", "exact, FCL [s]", "sets, FCL [s]", "sets, ours at samples [s]",
-                    "sets, ours at every instant [s]", "exact ÷ ours at every instant", "exact ÷ ours at samples", "exact ÷ sets, FCL"], rows)
+        seconds = {key: found[key]["s"] for key in SEARCH_TIMES}
+        times = lambda exact, sets: f"{seconds[exact] / seconds[sets]:.1f}×"
+        rows.append([f"{name} {n}", search, str(found["triangles"]), str(found["configurations"]), str(found["motions"]), str(found["exact_fcl"]["configurations"]),
+                     *(figure(s) for s in seconds.values()), *(times(f"exact_{l}", "sets_at_every_instant") for l in ("fcl", "ode", "bullet")),
+                     *(times(f"exact_{l}", f"sets_{l}") for l in ("fcl", "bullet"))])
+    document.table(["scenario", "search", "triangles", "configurations", "motions", "samples", *(f"{what} [s]" for what in SEARCH_TIMES.values()),
+                    *(f"exact, {l} ÷ ours" for l in ("FCL", "ODE", "Bullet")), *(f"exact ÷ sets, {l}" for l in ("FCL", "Bullet"))], rows)
 
 
 def assembly(document, runs):

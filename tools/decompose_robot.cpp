@@ -225,6 +225,7 @@ int decompose_robot(const DecomposeOptions& o) {
   if (!o.depfile.empty()) {
     std::vector<std::string> inputs{o.input};
     if (!o.robot.epsilons.empty()) inputs.push_back(o.robot.epsilons);
+    for (std::string& file : robot::included_files(run.robot)) inputs.push_back(std::move(file));
     for (std::string& file : strings(run.bodies().files)) inputs.push_back(std::move(file));
     write_depfile(o.depfile, output.documents(), inputs);
   }

@@ -170,4 +170,24 @@ void write_depfile(const std::string& path, const std::vector<std::string>& targ
   io::write_file(path, text);
 }
 
+std::vector<std::string> inputs_in_depfile(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) return {};
+  const std::vector<char> text = io::read_file(path);
+  std::vector<std::string> words(1);
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    const bool escaped = (c == '\\' || c == '$') && i + 1 < text.size();
+    if (c == ' ' || c == '\n')
+      words.emplace_back();
+    else
+      words.back() += escaped ? text[++i] : c;
+  }
+  const auto last_target =
+      std::ranges::find_if(words, [](const auto& w) { return w.ends_with(':'); });
+  if (last_target != words.end()) words.erase(words.begin(), last_target + 1);
+  std::erase(words, std::string());
+  return words;
+}
+
 }  // namespace kaboum::tools

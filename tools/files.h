@@ -29,4 +29,7 @@ void require_apart(const std::vector<std::pair<std::string, std::string>>& outpu
 void write_depfile(const std::string& path, const std::vector<std::string>& targets,
                    const std::vector<std::string>& inputs);
 
+/// What write_depfile was given as inputs; nothing where there is no such file.
+std::vector<std::string> inputs_in_depfile(const std::string& path);
+
 }  // namespace kaboum::tools

@@ -10,6 +10,7 @@
 
 #include "batch/command.h"
 #include "batch/pool.h"
+#include "batch/result.h"
 #include "batch/summary.h"
 #include "cli.h"
 #include "memory_size.h"
@@ -110,27 +111,22 @@ std::uintmax_t free_memory() {
   return 0;
 }
 
-/// Whether a job's result is there, of the input and options as they are now.
-bool is_done(const batch::Job& job, const batch::Journal& journal, const Options& o) {
-  const batch::Record* record = journal.find(job.name);
-  if (record == nullptr) return false;
-  if (o.retry && !record->done()) return false;
-  std::error_code error;
-  if (!record->has_result()) return true;
-  const fs::path result = fs::path(o.output) / record->output;
-  return job.makes_folder() ? fs::is_directory(result, error)
-                            : fs::file_size(result, error) == record->output_bytes;
+/// Whether a record holds: the job's other sources are as they were, and the result is that very
+/// one, for a batch with other options may have written there since.
+bool holds(const batch::Job& job, const batch::Record& record, const Options& o) {
+  for (const batch::FileState& source : record.sources)
+    if (batch::file_state(source.path) != source) return false;
+  const fs::path result = fs::path(o.output) / record.output;
+  return record.has_result() ? batch::digest_of(result) == record.sha256
+                             : !batch::is_there(job, result);
 }
 
-/// What is to be done; of what is, the result is there.
 std::vector<const batch::Job*> waiting_of(const std::vector<batch::Job>& jobs,
-                                          batch::Journal& journal, const Options& o) {
+                                          const batch::Journal& journal, bool retry) {
   std::vector<const batch::Job*> waiting;
   for (const batch::Job& job : jobs) {
-    if (is_done(job, journal, o)) continue;
-    waiting.push_back(&job);
-    if (const batch::Record* r = journal.find(job.name); r != nullptr && r->has_result())
-      journal.forget(job.name);
+    const batch::Record* record = journal.find(job.name);
+    if (record == nullptr || (retry && !record->done())) waiting.push_back(&job);
   }
   return waiting;
 }
@@ -189,8 +185,10 @@ int run(const Options& o) {
   if (!o.shard.empty()) shard = batch::parse_shard(o.shard);
   const std::vector<batch::Job> jobs =
       batch::find_jobs({o.inputs, rules_of(o), o.extension, o.output, shard});
-  batch::Journal journal({o.output, shard, o.summary}, jobs);
-  std::vector<const batch::Job*> waiting = waiting_of(jobs, journal, o);
+  batch::Journal journal(
+      {o.output, shard, o.summary}, jobs,
+      [&](const auto& job, const auto& record) { return holds(job, record, o); });
+  std::vector<const batch::Job*> waiting = waiting_of(jobs, journal, o.retry);
   const std::size_t before = jobs.size() - waiting.size();
   bool whole = true;
   if (!o.summary) {

@@ -9,8 +9,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <set>
+#include <string_view>
 
 namespace kaboum::tools {
 namespace {
@@ -32,21 +34,60 @@ class Turn {
  public:
   explicit Turn(const fs::path& folder)
       : folder_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-    while (folder_ >= 0 && ::flock(folder_, LOCK_EX) != 0 && errno == EINTR) {
-    }
+    do {
+      is_mine_ = folder_ >= 0 && ::flock(folder_, LOCK_EX) == 0;
+    } while (folder_ >= 0 && !is_mine_ && errno == EINTR);
   }
   Turn(const Turn&) = delete;
   Turn& operator=(const Turn&) = delete;
   ~Turn() {
     if (folder_ >= 0) ::close(folder_);
   }
+  /// Whether no other program that takes turns is at work here.
+  [[nodiscard]] bool is_mine() const { return is_mine_; }
 
  private:
   int folder_;
+  bool is_mine_ = false;
 };
 
-/// Says that a folder is ours and that its robot is not whole: there while it is written.
+/// Begins the name of a file that says that a folder is ours and its robot not whole: there while
+/// it is written, one of each program, lest the first to end takes away what the others say.
 constexpr const char* kUnfinished = ".kaboum-unfinished";
+
+fs::path own_mark(const fs::path& folder) {
+  std::array<char, 65> host{};
+  if (::gethostname(host.data(), host.size() - 1) != 0) host[0] = '\0';
+  return folder / (std::string(kUnfinished) + "." + host.data() + "." + std::to_string(::getpid()));
+}
+
+std::vector<fs::path> marks_in(const fs::path& folder) {
+  std::vector<fs::path> marks;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error))
+    if (entry.path().filename().string().starts_with(kUnfinished)) marks.push_back(entry.path());
+  return marks;
+}
+
+/// What makes a URDF ours, to be replaced when its robot is made anew: others are somebody's own.
+constexpr std::string_view kMadeByUs =
+    "<!-- Made by KABouM, whose programs replace this file: what bodies/ and meshes/ hold stands "
+    "for "
+    "the collision shapes. -->";
+
+bool is_made_by_us(const fs::path& urdf) {
+  try {
+    const std::vector<char> text = io::read_file(urdf);
+    return std::string_view(text.data(), text.size()).find(kMadeByUs) != std::string_view::npos;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+std::string marked(std::string urdf) {
+  if (urdf.find(kMadeByUs) == std::string::npos) urdf += std::string(kMadeByUs) + "\n";
+  return urdf;
+}
 
 /// The URDF's name in the new folder.
 fs::path urdf_name(const fs::path& robot) {
@@ -79,10 +120,15 @@ fs::path RobotFolder::document(const std::string& extension) const {
 /// What is new is named after its mesh: that of another robot in the folder would be replaced.
 void RobotFolder::require_own() const {
   std::error_code error;
+  if (fs::exists(urdf_, error) && !is_made_by_us(urdf_))
+    throw Error(ErrorCode::OutputFailed,
+                urdf_.string() +
+                    ": exists, and not as a result of this program, which would say so in a "
+                    "comment; remove it or name another folder");
   if (fs::exists(urdf_, error) && !fs::exists(folder_ / part_, error))
-    throw Error(ErrorCode::OutputFailed, urdf_.string() + ": exists, and not with " + part_ +
-                                             "/ beside it as a result of this " +
-                                             "program would; remove it or name another folder");
+    throw Error(ErrorCode::OutputFailed,
+                urdf_.string() + ": exists, and not with " + part_ +
+                    "/ beside it as a result of this kind would; remove it or name another folder");
   for (const auto& entry : fs::directory_iterator(folder_, error))
     if (entry.path().extension() == ".urdf" && entry.path().filename() != urdf_.filename())
       throw Error(ErrorCode::OutputFailed, entry.path().string() + ": another robot, whose " +
@@ -92,8 +138,7 @@ void RobotFolder::require_own() const {
 /// Files are ours where the robot is, or where it was being written: its folder was looked at.
 void RobotFolder::require_replaceable(const fs::path& place) const {
   std::error_code error;
-  if (fs::exists(place, error) && !fs::exists(urdf_, error) &&
-      !fs::exists(folder_ / kUnfinished, error))
+  if (fs::exists(place, error) && !fs::exists(urdf_, error) && marks_in(folder_).empty())
     throw Error(ErrorCode::OutputFailed, place.string() +
                                              ": exists, and not as a result of this program; "
                                              "remove it or name another folder");
@@ -134,7 +179,7 @@ void RobotFolder::name_meshes(const robot::LinkMeshes& meshes, const robot::Shap
 
 /// An earlier robot here would not be held by the bodies that now come one by one.
 void RobotFolder::begin(const RobotContents& contents) const {
-  io::write_file(folder_ / kUnfinished, std::string_view("A robot is being written here.\n"));
+  io::write_file(own_mark(folder_), std::string_view("A robot is being written here.\n"));
   std::error_code error;
   fs::remove(urdf_, error);
   for (const auto& [extension, text] : contents.documents) fs::remove(document(extension), error);
@@ -157,9 +202,11 @@ std::vector<std::string> RobotFolder::write(const RobotContents& contents) {
   }
   for (const auto& [extension, text] : contents.documents)
     io::write_file(document(extension), text);
-  io::write_file(urdf_, contents.urdf);
+  io::write_file(urdf_, marked(contents.urdf));
   std::error_code error;
-  fs::remove(folder_ / kUnfinished, error);
+  // Those of programs that were ended are found here, too, where the folder can be locked.
+  for (const fs::path& mark : turn.is_mine() ? marks_in(folder_) : std::vector{own_mark(folder_)})
+    fs::remove(mark, error);
   return links_;
 }
 

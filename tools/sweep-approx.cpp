@@ -144,6 +144,7 @@ void write_files(const Run& run, io::SetFormat format) {
   const auto depfile = [&] {
     std::vector<std::string> inputs{o.robot, o.path};
     if (!o.scene.empty()) inputs.push_back(o.scene);
+    for (std::string& file : robot::included_files(run.robot)) inputs.push_back(std::move(file));
     for (std::string& file : strings(run.bodies.certificate().files))
       inputs.push_back(std::move(file));
     write_depfile(o.depfile, {o.output}, inputs);

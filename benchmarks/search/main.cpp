@@ -1,8 +1,8 @@
 /// All that the bounded predicates were asked during one search for a plan, decided again: by the
-/// bounding sets, as the planner does it; and by exact meshes and bounding sets in FCL, where
-/// motions are looked at at samples. search-benchmark DOMAIN PROBLEM SCENE [SEARCH [SEED [STEP]]];
-/// prints one JSON object. STEP: no point of a robot moves farther between two samples. [m; 0.02,
-/// as the thesis's ε]
+/// bounding sets, as the planner does it; and by exact meshes and bounding sets in FCL, Bullet and
+/// ODE, where motions are looked at at samples. search-benchmark DOMAIN PROBLEM SCENE [SEARCH [SEED
+/// [STEP]]]; prints one JSON object. STEP: no point of a robot moves farther between two samples.
+/// [m; 0.02, as the thesis's ε]
 #include <kaboum/base/error.h>
 #include <kaboum/execution/exact_cell.h>
 #include <kaboum/io/mesh_io.h>
@@ -17,7 +17,7 @@
 #include <ctime>
 #include <nlohmann/json.hpp>
 
-#include "fcl_world.h"
+#include "other_world.h"
 #include "scene_file.h"
 
 namespace {
@@ -117,19 +117,22 @@ Times sampled(const std::vector<Asked>& all, const std::vector<std::vector<World
   return out;
 }
 
-Times sampled_in_fcl(search::FclWorld fcl, const std::vector<Asked>& all,
-                     const std::vector<std::vector<WorldState>>& samples) {
+template <typename MakeShapes>
+Times sampled_in(const world::Checker& checker, const search::Meshes& meshes,
+                 const MakeShapes& make, const std::vector<Asked>& all,
+                 const std::vector<std::vector<WorldState>>& samples) {
+  search::OtherWorld other(checker, meshes, make);
   return sampled(
       all, samples,
       [&](const Asked& a) {
         if (a.path.empty())
-          fcl.choose_pairs(a.state);
+          other.choose_pairs(a.state);
         else
-          fcl.choose_pairs(samples[&a - all.data()].front(), a.robot,
-                           a.things ? &*a.things : nullptr);
+          other.choose_pairs(samples[static_cast<std::size_t>(&a - all.data())].front(), a.robot,
+                             a.things ? &*a.things : nullptr);
       },
       [&](const Asked& a, const WorldState& state, bool first) {
-        return fcl.collide(state, first || a.path.empty() ? search::FclWorld::kAll : a.robot);
+        return other.collide(state, first || a.path.empty() ? search::OtherWorld::kAll : a.robot);
       });
 }
 
@@ -192,7 +195,7 @@ int run(int argc, char** argv) {
     motions += a.path.empty() ? 0 : 1;
     samples.push_back(a.path.empty() ? std::vector{a.state} : samples_of(checker, a, step));
   }
-  search::FclWorld::Meshes exact, sets;
+  search::Meshes exact, sets;
   std::size_t triangles = 0;
   for (execution::ExactMesh& mesh : execution::exact_meshes(world, argv[3], {})) {
     triangles += mesh.mesh.triangles.size();
@@ -210,8 +213,18 @@ int run(int argc, char** argv) {
       [&](const Asked&, const WorldState& state, bool) {
         return !checker.is_free(state, scratch);
       });
-  const Times by_exact = sampled_in_fcl({checker, exact, false}, all, samples),
-              by_sets = sampled_in_fcl({checker, sets, true}, all, samples);
+  const auto in = [&](const search::Meshes& meshes, const auto& make) {
+    return sampled_in(checker, meshes, make, all, samples);
+  };
+  const auto in_fcl = [](bool convex) {
+    return [=](std::size_t things) { return search::fcl_shapes(things, convex); };
+  };
+  const auto in_bullet = [](bool convex) {
+    return [=](std::size_t things) { return search::bullet_shapes(things, convex); };
+  };
+  const Times by_exact = in(exact, in_fcl(false)), by_sets = in(sets, in_fcl(true)),
+              exact_ode = in(exact, search::ode_shapes), exact_bullet = in(exact, in_bullet(false)),
+              sets_bullet = in(sets, in_bullet(true));
   std::size_t missed = 0;
   for (std::size_t i = 0; i < all.size(); ++i)
     missed += by_exact.contact[i] != 0 && ours.contact[i] == 0 ? 1 : 0;
@@ -227,6 +240,9 @@ int run(int argc, char** argv) {
                               {"sets_sampled", json_of(ours_sampled)},
                               {"exact_fcl", json_of(by_exact)},
                               {"sets_fcl", json_of(by_sets)},
+                              {"exact_ode", json_of(exact_ode)},
+                              {"exact_bullet", json_of(exact_bullet)},
+                              {"sets_bullet", json_of(sets_bullet)},
                               {"missed", missed}};
   std::printf("%s\n", out.dump().c_str());
   return missed == 0 ? 0 : 1;

@@ -3,6 +3,7 @@ spherical wrist, arms with five axes on a mobile base, inner and outer grippers.
 import math
 
 SEGMENTS = 32  # of a solid of revolution
+detail = 1     # as many times as many segments, and rings of round ends
 
 
 class Mesh:
@@ -32,10 +33,10 @@ def box(size, center=(0, 0, 0)):
     return mesh
 
 
-def revolve(profile, closed=False, segments=SEGMENTS):
+def revolve(profile, closed=False):
     """A profile of (radius, height), from below to above on the outside; `closed`: a loop, as of a tube. Open profiles begin and
     end on the axis."""
-    mesh, rings = Mesh(), []
+    mesh, rings, segments = Mesh(), [], SEGMENTS * detail
     for r, z in profile:
         if r == 0:
             rings.append([len(mesh.vertices)] * segments)
@@ -54,9 +55,9 @@ def revolve(profile, closed=False, segments=SEGMENTS):
     return mesh
 
 
-def rounded(low, high, radius, top=None, rings=10):
+def rounded(low, high, radius, top=None):
     """A bar along z with round ends, perhaps tapered to the radius `top`."""
-    top = radius if top is None else top
+    top, rings = radius if top is None else top, 10 * detail
     profile = [(0.0, low)]
     for k in range(1, rings + 1):
         a = math.pi / 2 * k / rings

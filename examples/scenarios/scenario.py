@@ -12,6 +12,8 @@ import subprocess
 import sys
 import time
 
+import parts
+
 HERE = pathlib.Path(__file__).resolve().parent
 DOWN = 3.141592653589793  # a tool that points down
 
@@ -113,8 +115,10 @@ def options(name, n, least, most, more=lambda parser: None):
     parser.add_argument("--scene-only", action="store_true", help="make scene and problem, and stop")
     parser.add_argument("--plan-only", action="store_true", help="plan and check; execute and draw nothing")
     parser.add_argument("--no-cache", action="store_true", help="neither take the scene's answers from earlier runs nor keep them")
+    parser.add_argument("--detail", type=int, default=1, choices=range(1, 9), metavar="K", help="K² times as many triangles, 1 to 8 [1]")
     more(parser)
     o = parser.parse_args()
+    parts.detail = o.detail
     if not least <= o.n <= most:
         parser.error(f"N is from {least} to {most}")
     return o

@@ -45,6 +45,47 @@ again
 again --retry
 [ "$(lines)" = $((before + 5)) ] || fail "with --retry: $(($(lines) - before)), not 5"
 
+# Other options and back, an input changed and back: a result is only done earlier if it is that very one.
+mkdir back
+cp "$BRACKET" back/bracket.obj
+twice() { "$BIN/mesh-prepare" "$BRACKET" -o back/t.off --scale "$1" --quiet; }
+twice 2
+ways() { # OUT OPTIONS...
+  for direction in outer inner outer; do
+    expect 0 '2 done; [^0-9]' "$B" back -o "$@" --command bmesh-decimate --ratio 0.5 --direction $direction
+  done
+  for f in t.ply bracket.ply; do cmp -s "back-first/results/$f" "$1/results/$f" || fail "$1: $f is not the outer one"; done
+  expect 0 '2 of them earlier' "$B" back -o "$@" --command bmesh-decimate --ratio 0.5 --direction outer
+}
+expect 0 '2 done' "$B" back -o back-first --no-pictures --command bmesh-decimate --ratio 0.5 --direction outer
+ways back-whole --no-pictures
+ways back-part --no-pictures --shard 1/1
+cp -p back/t.off kept.off
+twice 3
+again_back() { expect 0 "$1" "$B" back -o back-whole --no-pictures --command bmesh-decimate --ratio 0.5 --direction outer; }
+again_back '1 of them earlier'
+cp -p kept.off back/t.off
+again_back '1 of them earlier'
+cmp -s back-first/results/t.ply back-whole/results/t.ply || fail "of an input that was changed and put back: another result"
+# What fails leaves no result of other options behind.
+expect 1 '2 failed' "$B" back -o back-whole --no-pictures --command bmesh-decimate --ratio 2
+[ -z "$(find back-whole/results -type f)" ] || fail "stale: $(find back-whole/results -type f)"
+
+# A robot is done again when one of its meshes has changed.
+mkdir robot
+cp "$BRACKET" robot/part.obj
+echo '<robot name="a"><link name="b"><collision><geometry><mesh filename="part.obj"/></geometry></collision></link></robot>' >robot/a.urdf
+robot() { expect 0 "$1" "$B" robot/a.urdf -o robots --no-pictures --command bcd-decompose --epsilon "$2" --effort fast; }
+robot '1 done; robots' 3%
+robot '1 of them earlier' 3%
+tetrahedron >t.off
+"$BIN/mesh-prepare" t.off -o robot/part.obj --quiet
+robot '1 done; robots' 3%
+robot '1 of them earlier' 3%
+robot '1 done; robots' 8%
+robot '1 done; robots' 3%
+"$BIN/bound-verify" robot robot/a.urdf robots/results/a/a.urdf --epsilon 3% --quiet || fail "the robot is another batch's"
+
 # A second batch in the same folder, limits, programs that are not there, lists.
 cat >slow <<'END'
 #!/bin/sh

@@ -53,7 +53,7 @@ for moment in 0.005 0.01 0.015 0.02 0.03 0.04 0.05 0.06 0.08 0.1; do
   kill -9 "$ended" 2>/dev/null
   wait "$ended" 2>/dev/null
   find both -depth -name '.kaboum-*.tmp' -exec rm -rf {} +
-  if [ -e both/r.urdf ] && [ ! -e both/.kaboum-unfinished ]; then
+  if [ -e both/r.urdf ] && [ -z "$(find both -name '.kaboum-unfinished*')" ]; then
     one_of_two both || fail "$moment: a mixture"
   fi
   if [ -e both/r.urdf ]; then

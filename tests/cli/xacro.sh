@@ -23,23 +23,37 @@ xacro() {
   chmod +x bin/xacro
 }
 with_xacro() { PATH="$WORK/bin:$PATH" "$@"; }
-xacro 'sed '\''/xacro:property/d; s/ xmlns:xacro="[^"]*"//; s/${reach}/0.5/'\'' "$1"; echo note >&2'
+xacro '[ "$1" != --deps ] || { printf "%s/robot/part.xacro" "${2%/robot/*}"; exit; }; sed '\''/xacro:property/d; s/ xmlns:xacro="[^"]*"//; s/${reach}/0.5/'\'' "$1"; echo note >&2'
 
 # The same as of the URDF; names of meshes are relative to the file's folder, from wherever it is called.
 expect 0 '2 links' with_xacro "$D" robot/arm.urdf.xacro -o of-xacro --epsilon 2% --depfile x.d
 expect 0 '' "$D" robot/arm.urdf -o of-urdf --epsilon 2%
 cmp -s of-xacro/arm.urdf of-urdf/arm.urdf || fail "another URDF: $(diff of-xacro/arm.urdf of-urdf/arm.urdf)"
 diff -r of-xacro/bodies of-urdf/bodies >diff.txt || fail "other bodies: $(cat diff.txt)"
-grep -q '^of-xacro/arm.urdf: robot/arm.urdf.xacro ' x.d || fail "dependency file: $(cat x.d)"
+grep -q "^of-xacro/arm.urdf: robot/arm.urdf.xacro .*$WORK/robot/part.xacro " x.d || fail "dependency file: $(cat x.d)"
 shows 0 '^verified: 2 of 2 links' with_xacro "$BIN/bound-verify" robot robot/arm.urdf.xacro of-xacro/arm.urdf --epsilon 2%
 (cd robot/meshes && with_xacro "$D" ../arm.urdf.xacro -o ../../inside --epsilon 2% --quiet) || fail "from another folder"
 cmp -s inside/arm.urdf of-xacro/arm.urdf || fail "from another folder: another URDF"
 cp robot/arm.urdf.xacro robot/plain.XACRO
 expect 0 '' with_xacro "$BIN/bmesh-decimate" robot/plain.XACRO -o plain --epsilon 2%
 [ -s plain/plain.urdf ] || fail "no URDF of plain.XACRO: $(ls plain)"
+# What somebody has written himself beside the xacro file stays.
+cp robot/arm.urdf kept.urdf
+for tool in bcd-decompose bmesh-decimate; do
+  expect 4 'robot/arm.urdf: exists, and not as a result' with_xacro "$BIN/$tool" robot/arm.urdf.xacro -o robot --epsilon 2%
+  cmp -s robot/arm.urdf kept.urdf || fail "$tool: robot/arm.urdf is another"
+done
+rm robot/arm.urdf
+for run in 1 2; do expect 0 '' with_xacro "$BIN/bmesh-decimate" robot/arm.urdf.xacro -o robot --epsilon 2%; done
+grep -q 'Made by KABouM' robot/arm.urdf || fail "no word of whose it is: $(cat robot/arm.urdf)"
+expect 0 '' with_xacro "$BIN/bcd-decompose" of-xacro/arm.urdf -o again --epsilon 2%
+[ "$(grep -c 'Made by KABouM' again/arm.urdf)" = 1 ] || fail "said twice: $(cat again/arm.urdf)"
 echo robot/arm.urdf.xacro >list.txt
 expect 0 '1 done' with_xacro "$BIN/kaboum-batch" list.txt -o batch --command bcd-decompose --epsilon 2%
 cmp -s batch/results/robot/arm/arm.urdf of-xacro/arm.urdf || fail "in a batch: $(find batch/results)"
+: >robot/part.xacro
+expect 0 '1 done; batch' with_xacro "$BIN/kaboum-batch" list.txt -o batch --command bcd-decompose --epsilon 2%
+expect 0 '1 of them earlier' with_xacro "$BIN/kaboum-batch" list.txt -o batch --command bcd-decompose --epsilon 2%
 
 # Not there, or it fails, or what it makes is no robot.
 refused() {

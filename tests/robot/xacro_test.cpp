@@ -55,7 +55,28 @@ double seconds_of(const auto& action) {
 
 TEST_F(Xacro, GetsTheFileAndGivesItsOutput) {
   program("#!/bin/sh\necho \"<$1/>\"\necho words >&2\n");
-  EXPECT_EQ(expand_xacro("a b/robot.xacro"), "<a b/robot.xacro/>\n");
+  EXPECT_EQ(expand_xacro("a b/robot.xacro"),
+            "<" + (fs::current_path() / "a b/robot.xacro").string() + "/>\n");
+}
+
+TEST_F(Xacro, TakesNoPathForAnOptionOrArgument) {
+  program("#!/bin/sh\necho \"<$1/>\"\n");
+  EXPECT_EQ(expand_xacro("--help.xacro"),
+            "<" + (fs::current_path() / "--help.xacro").string() + "/>\n");
+  try {
+    expand_xacro("side:=left/robot.xacro");
+    FAIL() << "given to xacro as an argument";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("rename"), std::string::npos) << e.what();
+  }
+}
+
+TEST_F(Xacro, SaysWhatItIncludes) {
+  program("#!/bin/sh\n[ \"$1\" = --deps ] && printf '/b/two.xacro /a/one.xacro'\n");
+  EXPECT_EQ(xacro_includes("robot.xacro"),
+            (std::vector<std::string>{"/a/one.xacro", "/b/two.xacro"}));
+  program("#!/bin/sh\n[ \"$1\" = --deps ]\n");
+  EXPECT_TRUE(xacro_includes("robot.xacro").empty());
 }
 
 TEST_F(Xacro, MayWriteMoreThanAPipeHolds) {

@@ -10,6 +10,8 @@
 #include <csignal>
 #include <cstring>
 
+#include "../files.h"
+
 namespace kaboum::batch {
 namespace {
 
@@ -48,6 +50,8 @@ std::vector<std::string> command_of(const Job& job, const fs::path& folder,
   if (explicit_input) return command;
   command.insert(command.begin() + 1, {job.input.string(), "-o", made.string(), "--report",
                                        (scratch / kReport).string(), "--threads", "1"});
+  if (std::ranges::find(command, "--depfile") == command.end())
+    command.insert(command.end(), {"--depfile", (scratch / kSources).string()});
   return command;
 }
 
@@ -71,6 +75,19 @@ std::string reason_of(const Ended& ended, bool late, const std::string& last_wor
   if (ended.signal != 0)
     return std::string("ended by a signal: ") + strsignal(ended.signal) + words;
   return last_words.empty() ? "exit code " + std::to_string(ended.exit_code) : last_words;
+}
+
+std::vector<FileState> sources_in(const fs::path& scratch, const Job& job,
+                                  std::chrono::system_clock::time_point since) {
+  const std::int64_t begun =
+      std::chrono::duration_cast<std::chrono::nanoseconds>(since.time_since_epoch()).count();
+  std::vector<FileState> sources;
+  for (const std::string& name : tools::inputs_in_depfile((scratch / kSources).string())) {
+    if (name == job.input.string()) continue;
+    sources.push_back(file_state(fs::absolute(name).lexically_normal()));
+    if (sources.back().modified >= begun) sources.back().modified = -1;
+  }
+  return sources;
 }
 
 void add_report_in(const fs::path& scratch, Record& record) {

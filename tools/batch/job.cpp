@@ -169,6 +169,13 @@ std::vector<Rule> read_rules(const std::string& file) {
   return rules;
 }
 
+FileState file_state(const fs::path& file) {
+  struct stat status {};
+  if (stat(file.c_str(), &status) != 0) return {file};
+  return {file, static_cast<std::uintmax_t>(status.st_size),
+          status.st_mtim.tv_sec * 1'000'000'000LL + status.st_mtim.tv_nsec};
+}
+
 std::string Job::key() const {
   std::string text = std::to_string(bytes) + " " + std::to_string(modified) + " " KABOUM_VERSION;
   for (const std::string& word : command) text += "\n" + word;
@@ -190,10 +197,9 @@ std::vector<Job> find_jobs(const JobOptions& options) {
   name_outputs(jobs, options.extension);  // which depend on all names
   if (options.shard) std::erase_if(jobs, [&](const Job& j) { return !options.shard->has(j.name); });
   for (Job& job : jobs) {
-    struct stat status {};
-    if (stat(job.input.c_str(), &status) != 0) continue;
-    job.bytes = static_cast<std::uintmax_t>(status.st_size);
-    job.modified = status.st_mtim.tv_sec * 1'000'000'000LL + status.st_mtim.tv_nsec;
+    const FileState input = file_state(job.input);
+    job.bytes = input.bytes;
+    job.modified = input.modified;
   }
   return jobs;
 }

@@ -25,6 +25,16 @@ Rule parse_rule(const std::string& text);
 /// A rule for each line; `#` begins a comment. @throws Error naming file and line
 std::vector<Rule> read_rules(const std::string& file);
 
+/// A file as it was at a moment.
+struct FileState {
+  fs::path path;
+  std::uintmax_t bytes = 0;
+  std::int64_t modified = 0;  ///< [ns]; with the size 0 where it cannot be read
+
+  bool operator==(const FileState&) const = default;
+};
+FileState file_state(const fs::path& file);
+
 /// A file, and what is made of it.
 struct Job {
   std::string name;  ///< what the input is called below its folder
@@ -38,7 +48,8 @@ struct Job {
   [[nodiscard]] bool makes_folder() const {
     return input.extension() == ".urdf" || input.extension() == ".xacro";
   }
-  /// Changes whenever the result may.
+  /// Changes with the input, the options and the version. What else the result depends on is known
+  /// when it has been made (Record::sources).
   [[nodiscard]] std::string key() const;
 };
 

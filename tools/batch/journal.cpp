@@ -18,7 +18,7 @@ namespace kaboum::batch {
 namespace {
 
 constexpr const char* kFolder = ".kaboum-batch";
-constexpr auto kOld = std::chrono::hours(24 * 7);  // no program's run begins or ends for so long
+constexpr auto kOld = std::chrono::hours(24 * 7);  // live runs touch theirs every few minutes
 
 [[noreturn]] void fail(const fs::path& file) {
   throw Error(ErrorCode::OutputFailed, file.string() + ": " + std::strerror(errno));
@@ -61,9 +61,25 @@ const Job* job_of(std::span<const Job> jobs, const std::string& name) {
   return at != jobs.end() && at->name == name ? &*at : nullptr;
 }
 
+/// The last record of each job as it is now. One of other options or another input, later on, takes
+/// nothing back: whether the result is still the record's is seen at the result.
+std::map<std::string, Record> newest_in(const fs::path& journal, std::span<const Job> jobs) {
+  std::map<std::string, Record> newest;
+  std::ifstream lines(journal, std::ios::binary);
+  for (std::string line; std::getline(lines, line);) {
+    auto record = record_from(line);
+    if (!record) continue;
+    const Job* job = job_of(jobs, record->name);
+    if (job != nullptr && job->key() == record->key)
+      newest.insert_or_assign(job->name, std::move(*record));
+  }
+  if (lines.bad()) throw Error(ErrorCode::InvalidInput, journal.string() + ": cannot be read");
+  return newest;
+}
+
 }  // namespace
 
-Journal::Journal(const JournalOptions& options, std::span<const Job> jobs)
+Journal::Journal(const JournalOptions& options, std::span<const Job> jobs, const Holds& holds)
     : folder_(options.folder / kFolder) {
   if (!options.read_only) {
     std::error_code error;
@@ -75,7 +91,7 @@ Journal::Journal(const JournalOptions& options, std::span<const Job> jobs)
     else
       take_whole();
   }
-  read_all(jobs);
+  read_all(jobs, holds);
 }
 
 Journal::~Journal() {
@@ -115,29 +131,20 @@ void Journal::take_part(const Shard& shard) {
   own_ = true;
 }
 
-void Journal::read_all(std::span<const Job> jobs) {
-  std::size_t number = 0;
+void Journal::read_all(std::span<const Job> jobs, const Holds& holds) {
   for (const fs::path& file : journals_in(folder_)) {
-    ++number;
-    std::ifstream lines(file, std::ios::binary);
-    for (std::string line; std::getline(lines, line);) {
-      auto record = record_from(line);
-      if (!record) continue;
-      const Job* job = job_of(jobs, record->name);
-      if (job == nullptr || job->key() != record->key) continue;
-      const auto at = known_.find(record->name);
-      if (at != known_.end() && at->second.journal != number && at->second.record.done() &&
-          !record->done())
-        continue;
-      known_.insert_or_assign(job->name, Known{std::move(*record), number});
+    for (auto& [name, record] : newest_in(file, jobs)) {
+      if (!holds(*job_of(jobs, name), record)) continue;
+      const auto at = known_.find(name);
+      if (at == known_.end() || record.done() || !at->second.done())
+        known_.insert_or_assign(name, std::move(record));
     }
-    if (lines.bad()) throw Error(ErrorCode::InvalidInput, file.string() + ": cannot be read");
   }
 }
 
 const Record* Journal::find(const std::string& name) const {
   const auto at = known_.find(name);
-  return at == known_.end() ? nullptr : &at->second.record;
+  return at == known_.end() ? nullptr : &at->second;
 }
 
 void Journal::add(const Record& record) {
@@ -145,7 +152,7 @@ void Journal::add(const Record& record) {
       to_json(record).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
   if (write(file_, line.data(), line.size()) != static_cast<ssize_t>(line.size())) fail(path_);
   written_ = true;
-  known_.insert_or_assign(record.name, Known{record, 0});
+  known_.insert_or_assign(record.name, record);
 }
 
 }  // namespace kaboum::batch

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -25,37 +26,33 @@ struct JournalOptions {
 /// same file, on several machines or by mistake, and none needs a lock.
 class Journal {
  public:
+  /// Whether what a record says of a job, whose key it has, is still so.
+  using Holds = std::function<bool(const Job&, const Record&)>;
+
   /// @param jobs  in the order of their names; only records of these as they are now are known
   /// @throws Error{OutputFailed}
-  Journal(const JournalOptions& options, std::span<const Job> jobs);
+  Journal(const JournalOptions& options, std::span<const Job> jobs, const Holds& holds);
   ~Journal();
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
 
-  /// The record of a job, or null: the newest of each journal, of these one that is done.
+  /// The record of a job, or null: of the newest of each journal one that holds, done if there is.
   [[nodiscard]] const Record* find(const std::string& name) const;
   /// @throws Error{OutputFailed}
   void add(const Record& record);
-  /// As if there were none: its result is gone.
-  void forget(const std::string& name) { known_.erase(name); }
 
   /// Folder for what this run has begun.
   [[nodiscard]] const fs::path& scratch() const { return scratch_; }
 
  private:
-  struct Known {
-    Record record;
-    std::size_t journal = 0;  ///< of which it is
-  };
-
   void take_whole();
   void take_part(const Shard& shard);
-  void read_all(std::span<const Job> jobs);
+  void read_all(std::span<const Job> jobs, const Holds& holds);
 
   fs::path folder_, path_, scratch_;
   int file_ = -1;
   bool written_ = false, own_ = false;
-  std::map<std::string, Known> known_;
+  std::map<std::string, Record> known_;
 };
 
 }  // namespace kaboum::batch

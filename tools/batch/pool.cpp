@@ -4,7 +4,6 @@
 
 #include <fcntl.h>
 #include <kaboum/base/error.h>
-#include <kaboum/io/mesh_io.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,11 +13,13 @@
 #include <thread>
 
 #include "command.h"
+#include "result.h"
 
 namespace kaboum::batch {
 namespace {
 
 constexpr std::uintmax_t kLeastMemory = std::uintmax_t{48} << 20U;  // of any program [bytes]
+constexpr auto kSignOfLife = std::chrono::minutes(10);
 constexpr double kFirstGuess = 60;  // memory for each byte of an input, before one was seen
 
 /// Waits for the end of a child, a wish to stop, or a tenth of a second.
@@ -42,18 +43,6 @@ double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-std::uintmax_t size_of(const fs::path& path) {
-  std::error_code error;
-  if (!fs::is_directory(path, error)) {
-    const std::uintmax_t size = fs::file_size(path, error);
-    return error ? 0 : size;
-  }
-  std::uintmax_t sum = 0;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(path, error))
-    if (entry.is_regular_file(error)) sum += entry.file_size(error);
-  return sum;
-}
-
 /// Whether a program was ended by who ends the whole batch, as clusters do at limits of time,
 /// signal by signal and program by program: it has not failed.
 bool is_stopped(const Ended& ended, bool by_us) {
@@ -62,13 +51,6 @@ bool is_stopped(const Ended& ended, bool by_us) {
   // a rule, the wait costs little.
   if (ended.signal == SIGKILL) std::this_thread::sleep_for(std::chrono::milliseconds(500));
   return ended.signal == SIGTERM || ended.signal == SIGINT || ended.signal == SIGHUP;
-}
-
-void move(const fs::path& from, const fs::path& to) {
-  std::error_code error;
-  fs::create_directories(to.parent_path(), error);
-  fs::rename(from, to, error);
-  if (error) throw Error(ErrorCode::OutputFailed, to.string() + ": " + error.message());
 }
 
 }  // namespace
@@ -103,6 +85,7 @@ bool Pool::run(std::vector<const Job*> jobs) {
     if (signal == SIGINT || signal == SIGTERM) return false;
     for (Ended ended = next_ended(); ended.id != 0; ended = next_ended()) end(ended);
     end_late_ones();
+    show_life();
   }
   return true;
 }
@@ -124,6 +107,7 @@ void Pool::begin(const Job& job, std::uintmax_t memory) {
   run.job = &job;
   run.scratch = o_.scratch / std::to_string(++number_);
   run.begin = Clock::now();
+  run.since = std::chrono::system_clock::now();
   run.memory = memory;
   std::error_code error;
   fs::create_directories(run.scratch, error);
@@ -174,13 +158,18 @@ void Pool::conclude(Running& run, const Ended& ended) {
   r.peak_megabytes = ended.peak_megabytes;
   r.parameters = parameters_of(job);
   if (!r.done()) r.reason = reason_of(ended, run.ended_by_us, words);
-  const fs::path made = job.makes_folder() ? o_.folder / job.output : result_in(run.scratch, job);
+  const fs::path place = o_.folder / job.output;
+  const fs::path made = job.makes_folder() ? place : result_in(run.scratch, job);
   if (r.state == "done" || r.state == "no") {
-    std::error_code error;
-    if (fs::exists(made, error) && !job.makes_folder()) move(made, o_.folder / job.output);
-    r.output_bytes = size_of(o_.folder / job.output);
+    if (is_there(job, made)) {
+      r.sha256 = digest_of(made);  // of what this program has made, whoever else writes there
+      r.output_bytes = size_of(made);
+      if (!job.makes_folder()) move(made, place);
+    }
     add_report_in(run.scratch, r);
   }
+  if (!r.has_result()) remove_result(job, place);
+  r.sources = sources_in(run.scratch, job, run.since);
   if (!(o_.pictures && r.has_result() && draw(run, r))) add(r);
 }
 
@@ -201,6 +190,14 @@ void Pool::add(const Record& record) {
   journal_.add(record);
   ++done_;
   if (!record.done()) ++short_;
+}
+
+/// Of a scratch folder that was not touched for long, others think that its run is dead.
+void Pool::show_life() {
+  if (Clock::now() < next_sign_) return;
+  next_sign_ = Clock::now() + kSignOfLife;
+  std::error_code error;
+  fs::last_write_time(o_.scratch, fs::file_time_type::clock::now(), error);
 }
 
 void Pool::end_late_ones() {

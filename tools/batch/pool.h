@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -45,7 +46,8 @@ class Pool {
     const Job* job = nullptr;
     fs::path scratch;
     Clock::time_point begin;
-    std::uintmax_t memory = 0;  ///< expected [bytes]
+    std::chrono::system_clock::time_point since;  ///< its program is at work
+    std::uintmax_t memory = 0;                    ///< expected [bytes]
     bool ended_by_us = false;
     std::optional<Record> drawing;  ///< the program is done, its picture is being drawn
   };
@@ -56,6 +58,7 @@ class Pool {
   bool draw(Running& run, Record& record);
   void add(const Record& record);
   void end_late_ones();
+  void show_life();
   void start_what_fits(std::deque<const Job*>& waiting);
   [[nodiscard]] std::uintmax_t expected_memory(const Job& job) const;
   void learn(const Job& job, const Ended& ended);
@@ -68,7 +71,7 @@ class Pool {
   std::size_t all_ = 0, done_ = 0, short_ = 0, number_ = 0;
   std::uintmax_t used_ = 0;  // memory expected of what runs [bytes]
   double program_seconds_ = 0;
-  Clock::time_point begin_;
+  Clock::time_point begin_, next_sign_;
 };
 
 }  // namespace kaboum::batch

@@ -29,6 +29,14 @@ std::string text_at(const Json& json, std::initializer_list<const char*> keys) {
   return at->is_string() ? at->get<std::string>() : std::string();
 }
 
+Json sources_of(const Record& record) {
+  Json sources = Json::array();
+  for (const FileState& file : record.sources)
+    sources.push_back(
+        {{"path", file.path.string()}, {"bytes", file.bytes}, {"modified", file.modified}});
+  return sources;
+}
+
 std::optional<std::uint64_t> count_at(const Json& json, std::initializer_list<const char*> keys) {
   const auto value = number_at(json, keys);
   return value ? std::optional(static_cast<std::uint64_t>(*value)) : std::nullopt;
@@ -61,6 +69,8 @@ Json to_json(const Record& r) {
   return {{"name", r.name},
           {"key", r.key},
           {"output", r.output},
+          {"sha256", r.sha256},
+          {"sources", sources_of(r)},
           {"state", r.state},
           {"exit_code", r.exit_code},
           {"reason", r.reason},
@@ -88,12 +98,17 @@ std::optional<Record> record_from(const std::string& line) {
     for (auto [key, text] : {std::pair{"name", &r.name},
                              {"key", &r.key},
                              {"output", &r.output},
+                             {"sha256", &r.sha256},
                              {"state", &r.state},
                              {"reason", &r.reason},
                              {"verdict", &r.verdict},
                              {"parameters", &r.parameters},
                              {"picture", &r.picture}})
       json.at(key).get_to(*text);
+    for (const Json& source : json.at("sources"))
+      r.sources.push_back({source.at("path").get<std::string>(),
+                           source.at("bytes").get<std::uintmax_t>(),
+                           source.at("modified").get<std::int64_t>()});
     json.at("exit_code").get_to(r.exit_code);
     json.at("input_bytes").get_to(r.input_bytes);
     json.at("output_bytes").get_to(r.output_bytes);

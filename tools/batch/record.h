@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "job.h"
 
@@ -14,6 +15,8 @@ using Json = nlohmann::ordered_json;
 /// What became of a job.
 struct Record {
   std::string name, key, output;
+  std::string sha256;              ///< of the result, as digest_of says; empty: there is none
+  std::vector<FileState> sources;  ///< other files that it depends on, as they were
   /// "done"; "no": a result with a shortfall, or a valid "no"; "failed"; "timeout"; "memory".
   std::string state;
   int exit_code = -1;  ///< -1: ended by a signal
@@ -28,9 +31,7 @@ struct Record {
   std::string verdict, parameters, picture;
 
   [[nodiscard]] bool done() const { return state == "done"; }
-  [[nodiscard]] bool has_result() const {
-    return state == "done" || (state == "no" && output_bytes > 0);
-  }
+  [[nodiscard]] bool has_result() const { return !sha256.empty(); }
 };
 
 Json to_json(const Record& record);

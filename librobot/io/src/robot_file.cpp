@@ -93,6 +93,10 @@ RobotFile read_robot(const std::string& path) {
   return out;
 }
 
+std::vector<std::string> included_files(const RobotFile& robot) {
+  return is_xacro(robot.path) ? xacro_includes(robot.path) : std::vector<std::string>();
+}
+
 void require_links(const RobotFile& robot, const std::vector<std::string>& links) {
   std::vector<std::string> known;
   for (const robot::Link& link : robot.robot.links) known.push_back(link.name);

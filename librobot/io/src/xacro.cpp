@@ -17,6 +17,8 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
+#include <sstream>
 #include <string_view>
 #include <vector>
 
@@ -170,24 +172,28 @@ void require_success(const fs::path& file, int status, const std::string& said) 
     fail(file, "xacro fails, exit code " + std::to_string(WEXITSTATUS(status)) + last_words(said));
 }
 
-}  // namespace
-
-std::string expand_xacro(const fs::path& file, const XacroLimits& limits) {
+/// What the program prints. @param option  before the file's name; empty: none
+std::string run_xacro(const fs::path& file, const std::string& option, const XacroLimits& limits) {
   const std::string program = find_on_path("xacro");
   if (program.empty())
     fail(file,
          "the program xacro, which expands it, is not on PATH; install xacro (ROS has it), or "
          "run where it is: xacro " +
              file.string() + " > robot.urdf");
+  const std::string name = fs::absolute(file).string();
+  if (name.find(":=") != std::string::npos)
+    fail(file, "xacro takes a path with ':=' for an argument; rename the file or its folder");
+  std::vector<std::string> words{program, name};
+  if (!option.empty()) words.insert(words.begin() + 1, option);
+  std::vector<char*> command;
+  for (std::string& word : words) command.push_back(word.data());
+  command.push_back(nullptr);
   Pipe out, messages;
-  const std::string name = file.string();
-  std::array<char*, 3> command{const_cast<char*>(program.c_str()), const_cast<char*>(name.c_str()),
-                               nullptr};
   const pid_t parent = ::getpid();
   const pid_t id = out.is_open() && messages.is_open() ? ::fork() : -1;
   if (id < 0)
-    throw Error(ErrorCode::LimitReached, name + ": no process for xacro (" + std::strerror(errno) +
-                                             "); close other programs");
+    throw Error(ErrorCode::LimitReached, file.string() + ": no process for xacro (" +
+                                             std::strerror(errno) + "); close other programs");
   if (id == 0) become(command.data(), out.to(), messages.to(), limits, parent);
   Process process(id);
   out.close(1);
@@ -202,8 +208,22 @@ std::string expand_xacro(const fs::path& file, const XacroLimits& limits) {
                    " s, or writes more than " + std::to_string(limits.output >> 20U) + " MiB" +
                    last_words(text[1]));
   require_success(file, status, text[1]);
-  if (text[0].empty()) fail(file, "xacro makes nothing of it" + last_words(text[1]));
+  if (text[0].empty() && option.empty())
+    fail(file, "xacro makes nothing of it" + last_words(text[1]));
   return std::move(text[0]);
+}
+
+}  // namespace
+
+std::string expand_xacro(const fs::path& file, const XacroLimits& limits) {
+  return run_xacro(file, "", limits);
+}
+
+std::vector<std::string> xacro_includes(const fs::path& file, const XacroLimits& limits) {
+  std::istringstream printed(run_xacro(file, "--deps", limits));
+  std::vector<std::string> files{std::istream_iterator<std::string>(printed), {}};
+  std::ranges::sort(files);  // xacro's order is that of a set
+  return files;
 }
 
 }  // namespace kaboum::robot

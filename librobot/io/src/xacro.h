@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace kaboum::robot {
 
@@ -13,12 +14,19 @@ struct XacroLimits {
   std::uint64_t output = std::uint64_t{64} << 20U;  ///< [bytes]
 };
 
-/// What `xacro FILE` makes of a file: run as a process of its own, found on PATH. Its name as it is
-/// given, in the folder of this process, as a shell would call it.
+/// What `xacro FILE` makes of a file: run as a process of its own, found on PATH, with the file's
+/// absolute path, which is no option.
 ///
 /// @throws Error{InvalidInput} when it is not on PATH, fails, is ended by a signal, or reaches a
-///   limit; naming the file and what it said last.
+///   limit; naming the file and what it said last. Also where the path has ":=" in it, which xacro
+///   takes for an argument's value.
 /// @throws Error{LimitReached} when no process can be started.
 std::string expand_xacro(const std::filesystem::path& file, const XacroLimits& limits = {});
+
+/// What `xacro --deps FILE` prints: the files that it includes, in order. xacro puts blanks between
+/// them, so that names with blanks come in pieces.
+/// @throws as expand_xacro
+std::vector<std::string> xacro_includes(const std::filesystem::path& file,
+                                        const XacroLimits& limits = {});
 
 }  // namespace kaboum::robot

@@ -28,6 +28,10 @@ bool is_xacro(const std::filesystem::path& path);
 /// @throws Error{InvalidInput}, also where `xacro` is not installed, fails or takes too long.
 RobotFile read_robot(const std::string& path);
 
+/// Files that read_robot read beside the robot's own: what xacro includes, as xacro says.
+/// @throws as read_robot
+std::vector<std::string> included_files(const RobotFile& robot);
+
 /// @throws Error{InvalidArgument} naming the first of `links` that the robot does not have.
 void require_links(const RobotFile& robot, const std::vector<std::string>& links);
 
