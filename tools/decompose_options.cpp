@@ -153,6 +153,12 @@ void describe(CLI::App& app, DecomposeOptions& o) {
   add_output(app, o);
   add_preparation(app, o);
   add_robot_options(app, o.robot, true);
+  app.add_flag(
+      "--srdf", o.srdf,
+      "Also write NAME.srdf beside a robot's URDF, which MoveIt reads: pairs of links that "
+      "need no check, because they are connected or their bodies are proved never to "
+      "touch, at whatever joint values within the limits (for one turn of joints without "
+      "limits); not with --links");
   app.add_option("--depfile", o.depfile, "Write a Makefile dependency rule")->type_name("FILE");
   app.add_option("--input-format", o.input_format, "Format of INPUT [by extension]")
       ->type_name("NAME");
@@ -181,6 +187,10 @@ void require_meaning(const CLI::App& app, const DecomposeOptions& o) {
     require_absent(app, "a robot (.urdf), which states its meshes' scales itself", {"--scale"});
   else
     require_options_of_meshes(app, o.input);
+  if (!is_robot(o.input) && o.srdf)
+    throw Error(ErrorCode::InvalidArgument,
+                "--srdf is for robots (.urdf, .xacro); " + o.input + " is taken for a mesh");
+  if (o.srdf) require_absent(app, "--srdf, which is about all links,", {"--links"});
   if (!is_robot(o.input) && app.count("--from") != 0)
     throw Error(ErrorCode::InvalidArgument,
                 "--from is for robots (.urdf, .xacro); " + o.input + " is taken for a mesh");

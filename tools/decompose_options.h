@@ -25,7 +25,7 @@ struct DecomposeOptions {
   std::size_t max_bodies = 0, max_vertices = 64, max_total = 0;  ///< 0: not given
   double explode = 0.5, min_thickness = 0, scale = 1;
   std::optional<double> simplify, max_work;
-  bool no_cache = false;
+  bool no_cache = false, srdf = false;
   geom::PrepareOptions prepare;
   HolesOption holes;
   PreparationOption preparation;

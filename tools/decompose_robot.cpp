@@ -10,12 +10,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 
 #include "decompose_preview.h"
 #include "decompose_words.h"
 #include "robot_bodies.h"
 #include "robot_output.h"
 #include "robot_page.h"
+#include "robot_pairs.h"
 #include "set_picture.h"
 
 namespace kaboum::tools {
@@ -37,6 +39,7 @@ struct Run {
   certify::CertifiedRobot made = {};
   std::vector<double> seconds = {};  ///< of each mesh, by the clock [s]
   Notes notes = {};
+  std::optional<RobotPairs> pairs = {};  ///< with --srdf
   int code = kDone;
 
   [[nodiscard]] const certify::BodiesCertificate& bodies() const {
@@ -142,6 +145,11 @@ Json robot_report(const Run& run, const RobotOutput& output) {
                  {"stop", run.code == kDone ? "done" : "epsilon not reached"},
                  {"input", {{"file", run.o.input}}},
                  {"parameters", run.request.parameters()}});
+  if (run.pairs)
+    report["pairs_of_links"] = {{"adjacent", run.pairs->adjacent},
+                                {"never_in_contact", run.pairs->never},
+                                {"always_connected", run.pairs->always},
+                                {"others", run.pairs->others}};
   return report;
 }
 
@@ -210,12 +218,17 @@ int decompose_robot(const DecomposeOptions& o) {
   output.plan(meshes);
   require_formats(meshes, o.input_format);
   certify_links(run);
+  if (o.srdf) {
+    run.pairs = pairs_of(run.robot.robot, run.made.links);
+    output.add_document(".srdf", run.pairs->srdf);
+  }
   write(run, output);
   log(o.common.quiet, output.folder().urdf().string() + ": " +
                           counted(run.made.bodies.artefact().size(), "body", "bodies") + " of " +
                           counted(run.made.links.size(), "link", "links") + ", from " +
                           counted(run.bodies().meshes.size(), "mesh", "meshes"));
   output.say(o.common.quiet, run.notes);
+  if (run.pairs) log(o.common.quiet, run.pairs->words);
   if (is_page(o.preview))
     io::write_file(o.preview, page_of_robot(o, run.robot, run.made));
   else if (!o.preview.empty())

@@ -69,24 +69,32 @@ std::vector<fs::path> marks_in(const fs::path& folder) {
   return marks;
 }
 
-/// What makes a URDF ours, to be replaced when its robot is made anew: others are somebody's own.
+/// What makes a document ours, to be replaced when its robot is made anew: others are somebody's
+/// own.
 constexpr std::string_view kMadeByUs =
-    "<!-- Made by KABouM, whose programs replace this file: what bodies/ and meshes/ hold stands "
-    "for "
-    "the collision shapes. -->";
+    "<!-- Made by KABouM, which replaces this file: the shapes are those in bodies/ or meshes/ -->";
 
-bool is_made_by_us(const fs::path& urdf) {
+/// Of all documents but the URDF.
+constexpr std::array<const char*, 3> kExtensions{".xml", ".sdf", ".srdf"};
+
+bool is_made_by_us(const fs::path& document) {
   try {
-    const std::vector<char> text = io::read_file(urdf);
+    const std::vector<char> text = io::read_file(document);
     return std::string_view(text.data(), text.size()).find(kMadeByUs) != std::string_view::npos;
   } catch (const Error&) {
     return false;
   }
 }
 
-std::string marked(std::string urdf) {
-  if (urdf.find(kMadeByUs) == std::string::npos) urdf += std::string(kMadeByUs) + "\n";
-  return urdf;
+std::string marked(std::string document) {
+  if (document.find(kMadeByUs) == std::string::npos) document += std::string(kMadeByUs) + "\n";
+  return document;
+}
+
+void refuse(const fs::path& place) {
+  throw Error(ErrorCode::OutputFailed, place.string() +
+                                           ": exists, and not as a result of this program; remove "
+                                           "it or name another folder");
 }
 
 /// The URDF's name in the new folder.
@@ -120,11 +128,7 @@ fs::path RobotFolder::document(const std::string& extension) const {
 /// What is new is named after its mesh: that of another robot in the folder would be replaced.
 void RobotFolder::require_own() const {
   std::error_code error;
-  if (fs::exists(urdf_, error) && !is_made_by_us(urdf_))
-    throw Error(ErrorCode::OutputFailed,
-                urdf_.string() +
-                    ": exists, and not as a result of this program, which would say so in a "
-                    "comment; remove it or name another folder");
+  if (fs::exists(urdf_, error) && !is_made_by_us(urdf_)) refuse(urdf_);
   if (fs::exists(urdf_, error) && !fs::exists(folder_ / part_, error))
     throw Error(ErrorCode::OutputFailed,
                 urdf_.string() + ": exists, and not with " + part_ +
@@ -139,9 +143,7 @@ void RobotFolder::require_own() const {
 void RobotFolder::require_replaceable(const fs::path& place) const {
   std::error_code error;
   if (fs::exists(place, error) && !fs::exists(urdf_, error) && marks_in(folder_).empty())
-    throw Error(ErrorCode::OutputFailed, place.string() +
-                                             ": exists, and not as a result of this program; "
-                                             "remove it or name another folder");
+    refuse(place);
 }
 
 /// No new file is to get this stem: those of bodies end with a number.
@@ -177,20 +179,26 @@ void RobotFolder::name_meshes(const robot::LinkMeshes& meshes, const robot::Shap
   }
 }
 
-/// An earlier robot here would not be held by the bodies that now come one by one.
-void RobotFolder::begin(const RobotContents& contents) const {
+/// What is known of an earlier robot here does not hold of the bodies that now come one by one: all
+/// documents go, also those that are not made this time.
+void RobotFolder::begin() const {
   io::write_file(own_mark(folder_), std::string_view("A robot is being written here.\n"));
   std::error_code error;
   fs::remove(urdf_, error);
-  for (const auto& [extension, text] : contents.documents) fs::remove(document(extension), error);
+  for (const char* extension : kExtensions)
+    if (is_made_by_us(document(extension))) fs::remove(document(extension), error);
 }
 
 std::vector<std::string> RobotFolder::write(const RobotContents& contents) {
   create(folder_);
   const Turn turn(folder_);
   require_own();  // others may have been here meanwhile
-  for (const auto& [extension, text] : contents.documents) require_replaceable(document(extension));
-  begin(contents);
+  std::error_code error;
+  for (const auto& [extension, text] : contents.documents)
+    if (const fs::path place = document(extension);
+        fs::exists(place, error) && !is_made_by_us(place))
+      refuse(place);
+  begin();
   create(folder_ / part_);
   if (!contents.links.empty()) create(folder_ / "links");
   for (const StoredMesh& s : stored_)
@@ -201,9 +209,8 @@ std::vector<std::string> RobotFolder::write(const RobotContents& contents) {
     io::write_file(folder_ / links_.back(), container);
   }
   for (const auto& [extension, text] : contents.documents)
-    io::write_file(document(extension), text);
+    io::write_file(document(extension), marked(text));
   io::write_file(urdf_, marked(contents.urdf));
-  std::error_code error;
   // Those of programs that were ended are found here, too, where the folder can be locked.
   for (const fs::path& mark : turn.is_mine() ? marks_in(folder_) : std::vector{own_mark(folder_)})
     fs::remove(mark, error);

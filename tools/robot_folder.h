@@ -19,7 +19,8 @@
 ///   there twice;
 /// - `links/LINK.glb`: all bodies of a link in its frame, enlarged by the rounding of scale and
 ///   pose;
-/// - the robot in other formats, and the URDF under its own name: they refer to the new files.
+/// - the robot in other formats, and the URDF under its own name: they refer to the new files, and
+///   a comment says that they are ours, to be replaced.
 /// What else is in these folders stays.
 namespace kaboum::tools {
 
@@ -81,7 +82,7 @@ class RobotFolder {
 
  private:
   void require_own() const;
-  void begin(const RobotContents& contents) const;
+  void begin() const;
   void require_replaceable(const std::filesystem::path& place) const;
   void reserve_stem(const std::string& stem);
 

@@ -95,6 +95,7 @@ void RobotOutput::write(const NewShapes& shapes, decltype(RobotContents::write_m
     else
       urdf_.replace(name, o_.visual(), shapes[l], names);
   }
+  contents.documents.insert(contents.documents.end(), more_.begin(), more_.end());
   contents.urdf = urdf_.text();
   links_ = folder_.write(contents);
 }
@@ -103,6 +104,7 @@ std::vector<std::string> RobotOutput::documents() const {
   std::vector<std::string> out{folder_.urdf().string()};
   if (o_.writes("mjcf")) out.push_back(folder_.document(kMjcf).string());
   if (o_.writes("sdf")) out.push_back(folder_.document(kSdf).string());
+  for (const auto& [extension, text] : more_) out.push_back(folder_.document(extension).string());
   return out;
 }
 

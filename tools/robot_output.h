@@ -36,6 +36,11 @@ class RobotOutput {
   /// @throws Error naming what cannot be replaced or read
   void plan(const robot::LinkMeshes& meshes);
 
+  /// Another file that holds something of the robot, beside its URDF.
+  void add_document(std::string extension, std::string text) {
+    more_.emplace_back(std::move(extension), std::move(text));
+  }
+
   /// Writes the folder. Until then nothing is written.
   void write(const NewShapes& shapes, decltype(RobotContents::write_mesh) write_mesh,
              std::vector<std::pair<std::string, std::span<const char>>> links, Notes& notes);
@@ -60,6 +65,7 @@ class RobotOutput {
   RobotFolder folder_;
   RobotUrdf urdf_;
   std::vector<std::string> links_;
+  std::vector<std::pair<std::string, std::string>> more_;  // extension, text
 };
 
 /// "1 body", "2 bodies".

@@ -78,6 +78,7 @@ echo '<robot name="a"><link name="b"><collision><geometry><mesh filename="part.o
 robot() { expect 0 "$1" "$B" robot/a.urdf -o robots --no-pictures --command bcd-decompose --epsilon "$2" --effort fast; }
 robot '1 done; robots' 3%
 robot '1 of them earlier' 3%
+[ "$(head -n 1 robots/summary.csv | tr , '\n' | wc -l)" = "$(tail -n 1 robots/summary.csv | sed 's/"[^"]*"//g' | tr , '\n' | wc -l)" ] || fail "columns: $(cat robots/summary.csv)"
 tetrahedron >t.off
 "$BIN/mesh-prepare" t.off -o robot/part.obj --quiet
 robot '1 done; robots' 3%

@@ -108,6 +108,22 @@ expect 0 '' "$D" robot/r.urdf -o formats --visual --epsilon 3% --effort fast --r
 grep -q '<sdf version="1.9">' formats/r.sdf && grep -q '<mujoco model="r">' formats/r.xml || fail "formats"
 grep -q '^formats/r.urdf formats/r.xml formats/r.sdf: ' formats.d || fail "dependency file: $(cat formats.d)"
 grep -q '"formats/r.sdf"' formats.json || fail "report"
+# Formats that are not made again do not stay beside other bodies.
+cp -r formats fewer
+expect 0 '' "$D" robot/r.urdf -o fewer --visual --epsilon 9% --effort fast
+[ -e fewer/r.urdf ] && [ ! -e fewer/r.sdf ] && [ ! -e fewer/r.xml ] || fail "formats of before: $(ls fewer)"
+# Pairs of links.
+expect 0 'proved never to touch' "$D" robot/r.urdf -o pairs --visual --epsilon 3% --effort fast --srdf --report pairs.json --depfile pairs.d
+grep -q '^pairs/r.urdf pairs/r.srdf: ' pairs.d || fail "dependency file: $(cat pairs.d)"
+python3 - <<'END' || fail "pairs: $(cat pairs/r.srdf)"
+import json
+import xml.etree.ElementTree as tree
+said = json.load(open("pairs.json"))["pairs_of_links"]
+found = [p.get("reason") for p in tree.parse("pairs/r.srdf").getroot().iter("disable_collisions")]
+assert found.count("Never") == said["never_in_contact"] and found.count("Adjacent") >= said["adjacent"] > 0, (found, said)
+END
+expect 2 '--links' "$D" robot/r.urdf -o x --visual --srdf --links base
+expect 2 'for robots' "$D" robot/meshes/t.off -o x.glb --srdf
 for program in moveit mujoco gazebo bullet drake; do
   expect 0 '' "$D" robot/r.urdf -o "$program" --visual --epsilon 3% --effort fast --for "$program"
   shows 0 '^verified' "$V" robot robot/r.urdf "$program/r.urdf" --visual --prepare

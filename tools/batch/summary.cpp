@@ -182,6 +182,7 @@ std::string csv_of(const Summary& summary) {
   const auto add = [&](const Json& row, const auto& cell) {
     bool first = true;
     for (const auto& [key, value] : row.items()) {
+      if (value.is_array()) continue;  // the JSON has them
       if (!first) text += ',';
       text += cell(key, value);
       first = false;

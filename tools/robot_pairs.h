@@ -1,0 +1,23 @@
+#pragma once
+
+#include <kaboum/certify/robot.h>
+
+#include <functional>
+#include <string>
+
+namespace kaboum::tools {
+
+/// What is known of a robot's pairs of links, by their bodies.
+struct RobotPairs {
+  std::string srdf;  ///< <disable_collisions> of those that need no check
+  std::string words;
+  std::size_t adjacent = 0, never = 0, always = 0;  ///< by the reason in the SRDF
+  std::size_t others = 0;                           ///< that are to be checked
+};
+
+/// Pairs of links that need no check: connected ones, and those whose bodies are proved never to
+/// touch within the limits (world::examine_pairs).
+/// @pre all links with shapes are among the certified ones
+RobotPairs pairs_of(const robot::Robot& robot, const std::vector<certify::CertifiedLink>& links);
+
+}  // namespace kaboum::tools
