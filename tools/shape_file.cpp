@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <optional>
+#include <utility>
 
 #include "cli.h"
 
@@ -22,11 +23,9 @@ fs::path folder_of(const std::string& file) {
   return path.has_parent_path() ? path.parent_path() : ".";
 }
 
-void parse_mesh(ShapeFile& out, const std::vector<char>& bytes, io::Format format,
-                const UnitOption& unit) {
-  const std::string& file = out.shape.name;
-  io::ReadResult result = io::parse_mesh(bytes, format, file, folder_of(file));
-  apply(result, unit, file);
+/// Scaled, with the unit that is said.
+void take_mesh(ShapeFile& out, io::ReadResult result, const UnitOption& unit) {
+  apply(result, unit, out.shape.name);
   out.unit = result.unit;
   out.notes.insert(out.notes.end(), result.notes.begin(), result.notes.end());
   if (result.collapsed_triangles != 0)
@@ -38,7 +37,7 @@ void parse_mesh(ShapeFile& out, const std::vector<char>& bytes, io::Format forma
 }
 
 /// A set with a margin that is measured as a mesh on request, with a note. False: no such set.
-bool parse_without_margin(ShapeFile& out, const std::vector<char>& bytes) {
+bool parse_without_margin(ShapeFile& out, const std::vector<char>& bytes, const UnitOption& unit) {
   geom::ConvexSet set;
   io::SetReadDetails details;
   try {
@@ -47,12 +46,14 @@ bool parse_without_margin(ShapeFile& out, const std::vector<char>& bytes) {
     return false;
   }
   if (!(set.margin > 0)) return false;
-  out.unit = details.unit;
   char margin[40];
   std::snprintf(margin, sizeof margin, "%.6g", set.margin);
   out.notes.push_back("read as a mesh: the set's margin of " + std::string(margin) +
                       " is left out");
-  out.shape.mesh = verify::sum_of(set);
+  io::ReadResult bodies;
+  bodies.mesh = verify::sum_of(set);
+  bodies.unit = details.unit;
+  take_mesh(out, std::move(bodies), unit);
   return true;
 }
 
@@ -88,7 +89,8 @@ ShapeFile with_unit(ShapeFile out, const UnitOption& option) {
     throw Error(ErrorCode::InvalidArgument,
                 "--scale is for meshes, and " + out.shape.name +
                     " is a set of bodies, whose record would not hold: have it made anew with "
-                    "--scale, or measure it as a mesh (--a-as mesh)");
+                    "--scale" +
+                    (is_folder(out.shape.name) ? "" : ", or measure it as a mesh (--a-as mesh)"));
   if (out.unit.empty()) out.unit = option.unit;
   if (!option.unit.empty() && option.unit != out.unit)
     throw Error(ErrorCode::InvalidInput,
@@ -118,10 +120,10 @@ ShapeFile read_shape(const std::string& path, const ShapeOptions& options) {
   if (options.as == "set" || (options.as == "auto" && may_be_set)) {
     if (parse_set(out, bytes, format, options.as == "set"))
       return with_unit(std::move(out), options.unit);
-  } else if (format == io::Format::Glb && parse_without_margin(out, bytes)) {
-    return with_unit(std::move(out), options.unit);
+  } else if (format == io::Format::Glb && parse_without_margin(out, bytes, options.unit)) {
+    return out;
   }
-  parse_mesh(out, bytes, format, options.unit);
+  take_mesh(out, io::parse_mesh(bytes, format, path, folder_of(path)), options.unit);
   return out;
 }
 

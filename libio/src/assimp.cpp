@@ -18,6 +18,7 @@
 #include "fbx_objects.h"
 #include "formats.h"
 #include "scene_copier.h"
+#include "text.h"
 
 namespace kaboum::io {
 namespace {
@@ -153,7 +154,7 @@ ReadResult read_here(const Source& source) {
   if (scene->mMetaData != nullptr && scene->mMetaData->Get("UnitScaleFactor", unit)) {
     builder.set_unit(unit * 0.01);
     if (unit != 1)
-      builder.note("The file's unit is " + std::to_string(unit) +
+      builder.note("The file's unit is " + shortest_digits(unit) +
                    " centimetres; coordinates were not scaled.");
   }
   return builder.finish(Format::Fbx, true);

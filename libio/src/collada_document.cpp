@@ -4,6 +4,7 @@
 #include <array>
 
 #include "names.h"
+#include "text.h"
 
 namespace kaboum::io {
 namespace {
@@ -16,7 +17,7 @@ constexpr std::array<std::string_view, 6> kReferred = {"float_array", "geometry"
 
 double ColladaDocument::metres_of(const XMLElement& unit) const {
   const double value = number(unit, attribute(unit, "meter").value_or("1"));
-  if (!(value > 0)) fail(unit, "a unit of " + std::to_string(value) + " metres");
+  if (!(value > 0)) fail(unit, "a unit of " + shortest_digits(value) + " metres");
   return value;
 }
 

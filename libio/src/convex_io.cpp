@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstdio>
 #include <system_error>
+#include <tuple>
 
 #include "convex_formats.h"
 #include "output.h"
@@ -203,10 +204,15 @@ bool is_part_of_set(const fs::path& file, const std::string& files) {
          stem.find_first_not_of("0123456789", start.size()) == std::string::npos;
 }
 
-/// The folder's path without a slash at the end.
+/// The folder's path without a slash at the end. Behind a symbolic link, its target is replaced,
+/// not the link.
 fs::path target_of(const fs::path& path) {
-  const fs::path target = path.lexically_normal();
-  return target.filename().empty() ? target.parent_path() : target;
+  fs::path target = path.lexically_normal();
+  if (target.filename().empty()) target = target.parent_path();
+  std::error_code error;
+  if (!fs::is_symlink(target, error)) return target;
+  const fs::path behind = fs::canonical(target, error);
+  return behind.empty() ? target : behind;
 }
 
 [[noreturn]] void cannot_write(const fs::path& path, const std::string& why) {
@@ -234,43 +240,50 @@ class NewFolder {
   NewFolder& operator=(const NewFolder&) = delete;
   ~NewFolder() {
     std::error_code error;
-    fs::remove_all(path_, error);
+    if (!path_.empty()) fs::remove_all(path_, error);
   }
 
   [[nodiscard]] const fs::path& path() const { return path_; }
 
-  /// Gives it the target's name, and what had that name before is removed. Of several writers at
-  /// the same time, the last one wins; each puts whole folders there.
-  /// @return 0, or errno
-  [[nodiscard]] int take_place_of(const fs::path& target) const {
+  /// Gives it the target's name, and the folder that had that name before is removed. Of several
+  /// writers at the same time, the last one wins; each puts whole folders there.
+  /// @return 0, or errno: also where the name is a file's or a link's
+  [[nodiscard]] int take_place_of(const fs::path& target) {
     constexpr int kMostAttempts = 1000;  // each fails only where another writer was faster
     for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
-      if (::rename(path_.c_str(), target.c_str()) == 0) return 0;  // nothing, or an empty folder
-      if (errno != ENOTEMPTY && errno != EEXIST && errno != ENOTDIR) return errno;
+      int why = move_to(target);  // where there is nothing, or an empty folder
+      if (!is_in_the_way(why)) return why;
       // In one step: there is a folder of this name at every moment.
       if (::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) == 0)
         return 0;
       if (errno == ENOENT) continue;
       // A file system that cannot: in two.
-      const fs::path old = unused_name();
-      if (::rename(target.c_str(), old.c_str()) != 0) {
+      NewFolder old(target);
+      if (::rename(target.c_str(), old.path_.c_str()) != 0) {
         if (errno == ENOENT) continue;
         return errno;
       }
-      const bool done = ::rename(path_.c_str(), target.c_str()) == 0;
-      const int why = errno;
-      std::error_code error;
-      if (!done && why != ENOTEMPTY && why != EEXIST) {
-        fs::rename(old, target, error);
+      why = move_to(target);
+      if (why == 0) return 0;
+      if (!is_in_the_way(why)) {
+        std::ignore = old.move_to(target);  // fails only where something else has come there
         return why;
       }
-      fs::remove_all(old, error);
-      if (done) return 0;
     }
     return EBUSY;
   }
 
  private:
+  /// errno of a rename to the name of a folder that is not empty.
+  static bool is_in_the_way(int why) { return why == ENOTEMPTY || why == EEXIST; }
+
+  /// Its own name is then free for others, and no longer removed. @return 0, or errno
+  [[nodiscard]] int move_to(const fs::path& target) {
+    if (::rename(path_.c_str(), target.c_str()) != 0) return errno;
+    path_.clear();
+    return 0;
+  }
+
   [[nodiscard]] fs::path unused_name() const {
     static std::atomic<std::uint64_t> counter{0};
     return parent_ /
@@ -306,7 +319,7 @@ void write_convex_folder(const fs::path& path, const geom::ConvexSet& set, const
   const geom::ConvexSet clean = cleaned(set);
   require_replaceable(path);
   const fs::path target = target_of(path);
-  const NewFolder fresh(target);
+  NewFolder fresh(target);
   for (std::size_t i = 0; i < clean.bodies.size(); ++i)
     write_file(fresh.path() / (default_name(i, stem) + (bodies == Format::Obj ? ".obj" : ".stl")),
                serialise_mesh(clean.bodies[i].hull, bodies));

@@ -3,11 +3,15 @@
 #include <kaboum/geom/topology.h>
 #include <kaboum/io/file_unit.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <string_view>
+
+#include "text.h"
 
 namespace kaboum::io {
 namespace {
@@ -25,10 +29,20 @@ constexpr std::array<NamedUnit, 8> kUnits{{{1, "m"},
                                            {0.0254, "in"},
                                            {0.3048, "ft"}}};
 
-std::string digits(double x) {
+/// Whether two numbers of metres are one unit but for rounding. Each is the double nearest to a
+/// decimal fraction, or the product or quotient of two such, and then errs by less than 2^-51.
+bool are_one_unit(double a, double b) { return std::abs(a - b) <= 0x1p-50 * std::min(a, b); }
+
+/// The number of units `to` in `from`, in few digits where these are as good.
+std::string factor_between(double from, double to) {
   std::array<char, 32> text{};
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), x);
-  return {text.data(), end};
+  char* const end = std::to_chars(text.data(), text.data() + text.size(), from / to,
+                                  std::chars_format::general, 15)
+                        .ptr;
+  double factor = 0;
+  std::from_chars(text.data(), end, factor);
+  return are_one_unit(from / factor, to) ? std::string(text.data(), end)
+                                         : shortest_digits(from / to);
 }
 
 bool has_equal_corners(const geom::Triangle& t) {
@@ -39,11 +53,8 @@ bool has_equal_corners(const geom::Triangle& t) {
 
 std::string unit_of_metres(double metres) {
   for (const NamedUnit& unit : kUnits)
-    // Products of decimal fractions are rounded; no two of these are near each other.
-    if (std::abs(metres - unit.metres) <= 1e-12 * unit.metres) return unit.name;
-  std::ostringstream text;
-  text << metres << " m";
-  return text.str();
+    if (are_one_unit(metres, unit.metres)) return unit.name;
+  return shortest_digits(metres) + " m";
 }
 
 std::optional<double> metres_of(const std::string& unit) {
@@ -68,7 +79,8 @@ void scale(ReadResult& read, double factor, const std::string& name) {
       if (!std::isfinite(product[i]) ||
           (v[i] != 0 && std::abs(product[i]) < std::numeric_limits<double>::min()))
         throw Error(ErrorCode::InvalidInput,
-                    name + ": its coordinate " + digits(v[i]) + ", times " + digits(factor) +
+                    name + ": its coordinate " + shortest_digits(v[i]) + ", times " +
+                        shortest_digits(factor) +
                         ", is beyond the range of doubles; choose a factor nearer to 1");
     v = product;
   }
@@ -83,7 +95,7 @@ void scale(ReadResult& read, double factor, const std::string& name) {
                   name + ": no triangle is left after scaling; choose a factor nearer to 1");
   }
   read.single_precision = false;
-  read.notes.push_back("Its coordinates are multiplied by " + digits(factor) +
+  read.notes.push_back("Its coordinates are multiplied by " + shortest_digits(factor) +
                        ", and what is said of it is about the products.");
   if (const auto metres = metres_of(read.unit)) read.unit = unit_of_metres(*metres / factor);
 }
@@ -97,38 +109,39 @@ double scaled_bound(double bound, double factor, const geom::Mesh& scaled) {
   return std::nextafter(sum, std::numeric_limits<double>::infinity());
 }
 
-double recorded_scale(const std::string& parameters) {
-  std::istringstream words(parameters);
+double recorded_scale(const std::string& record, const std::string& file) {
+  std::istringstream words(record);
   std::string word;
   while (words >> word) {
     if (word != "--scale") continue;
-    double factor = 1;
-    if (words >> word) std::from_chars(word.data(), word.data() + word.size(), factor);
+    if (!(words >> word)) word.clear();
+    double factor = 0;
+    const char* const end = word.data() + word.size();
+    const auto [at, error] = std::from_chars(word.data(), end, factor);
+    if (error != std::errc() || at != end || !(factor > 0) || !std::isfinite(factor))
+      throw Error(ErrorCode::InvalidInput, file + ": its record says --scale " + in_quotes(word) +
+                                               ", which is no factor; it is damaged, make it anew");
     return factor;
   }
   return 1;
 }
 
 void require_recorded_scale(const std::string& file, const std::string& record, double factor) {
-  const double recorded = recorded_scale(record);
+  const double recorded = recorded_scale(record, file);
   if (recorded == factor) return;
-  throw Error(ErrorCode::InvalidInput,
-              file + ": it was made " +
-                  (recorded == 1 ? "without --scale: leave that out"
-                                 : "with --scale " + digits(recorded) + ": give that here, too"));
+  throw Error(
+      ErrorCode::InvalidInput,
+      file + ": it was made " +
+          (recorded == 1 ? "without --scale: leave that out"
+                         : "with --scale " + shortest_digits(recorded) + ": give that here, too"));
 }
 
 void require_same_unit(const std::string& file, const std::string& unit,
                        const std::string& other_file, const std::string& other_unit) {
   if (unit.empty() || other_unit.empty() || unit == other_unit) return;
-  std::string factor = "FACTOR";
   const auto from = metres_of(unit), to = metres_of(other_unit);
-  if (from && to) {
-    std::ostringstream text;
-    text.precision(15);
-    text << *from / *to;
-    factor = text.str();
-  }
+  if (from && to && are_one_unit(*from, *to)) return;
+  const std::string factor = from && to ? factor_between(*from, *to) : "FACTOR";
   throw Error(ErrorCode::InvalidInput,
               file + " is in " + unit + " and " + other_file + " in " + other_unit +
                   " as read (docs/formats.md): lengths of two units are not compared; bring the "

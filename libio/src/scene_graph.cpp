@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "builder.h"
 #include "formats.h"
@@ -51,8 +52,8 @@ struct TransformFields {
 struct Scene {
   MeshBuilder& builder;
   SceneCopier copier;
-  double metres = 1;
-  std::size_t depth = 0;  ///< of nested nodes
+  std::optional<double> metres;  ///< the unit that the outermost file states
+  std::size_t depth = 0;         ///< of nested nodes
   std::vector<fs::path> inlined = {};
   bool routed = false;
   std::size_t proxies = 0;
@@ -115,10 +116,11 @@ class SceneReader {
   }
 
   /// Siblings, of which Open Inventor's Rotation and Translation move those that follow, as Coin
-  /// reads them in VRML 97 files.
+  /// reads them in VRML 97 files; X3D has no such nodes.
   void read_in_turn(const std::vector<const SceneNode*>& nodes, Placement placement) {
     for (const SceneNode* const node : nodes) {
-      if (node->type == "Rotation" || node->type == "Translation") {
+      if (file_.siblings_move && (node->type == "Rotation" || node->type == "Translation")) {
+        scene_.copier.visit();
         placement = placement * read_move(*node);
       } else {
         read_child(*node, placement);
@@ -242,7 +244,8 @@ class SceneReader {
     } else {
       parse_vrml(file);
     }
-    if (file.metres != scene_.metres)
+    constexpr double kStandard = 1;  // in both standards, where a file does not state a unit
+    if (file.metres.value_or(kStandard) != scene_.metres.value_or(kStandard))
       fields_.fail_at(where, "the inlined file " + in_quotes(shown) +
                                  " has another unit; export with one unit");
     SceneReader(file, scene_, inline_depth_ + 1, shapes_.outermost(where)).read(placement);
@@ -291,10 +294,11 @@ class SceneReader {
 void add_notes(const Scene& scene) {
   MeshBuilder& builder = scene.builder;
   scene.copier.add_notes();
-  if (scene.metres != 1) {
-    builder.set_unit(scene.metres);
-    builder.note("The file's unit is " + std::to_string(scene.metres) +
-                 " metres; coordinates were not scaled.");
+  if (scene.metres) {
+    builder.set_unit(*scene.metres);
+    if (*scene.metres != 1)
+      builder.note("The file's unit is " + shortest_digits(*scene.metres) +
+                   " metres; coordinates were not scaled.");
   }
   if (!scene.inlined.empty())
     builder.note(counted(scene.inlined.size(), "other file was", "other files were") +

@@ -4,6 +4,7 @@
 
 #include <deque>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,8 +44,9 @@ struct SceneFile {
   std::unique_ptr<XmlDocument> xml = {};  ///< holds the texts of X3D
   std::deque<SceneNode> nodes = {};
   std::vector<const SceneNode*> roots = {};
-  double metres = 1;    ///< the unit of length that the file states
-  bool routed = false;  ///< events are sent between nodes
+  std::optional<double> metres = {};  ///< the unit of length that the file states
+  bool routed = false;                ///< events are sent between nodes
+  bool siblings_move = false;  ///< Rotation and Translation move what follows, as in Open Inventor
 };
 
 constexpr std::size_t kMaxSceneDepth = 256;

@@ -2,6 +2,7 @@
 #include "text.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -62,6 +63,12 @@ std::int64_t parse_integer(const Source& source, std::string_view token, std::st
          in_quotes(token) + " is not an integer where " + std::string(what) +
              " is expected; the file is damaged or of another format");
   return value;
+}
+
+std::string shortest_digits(double x) {
+  std::array<char, 32> text{};
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), x);
+  return {text.data(), end};
 }
 
 bool same_word(std::string_view a, std::string_view b) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "source.h"
@@ -30,6 +31,9 @@ double parse_coordinate(const Source& source, std::string_view token);
 
 /// Integer in `token`, wholly. `what` names it in the message.
 std::int64_t parse_integer(const Source& source, std::string_view token, std::string_view what);
+
+/// The fewest digits that give the double back.
+std::string shortest_digits(double x);
 
 /// True when both are the same up to ASCII case.
 bool same_word(std::string_view a, std::string_view b);

@@ -231,6 +231,9 @@ class VrmlParser {
 
 }  // namespace
 
-void parse_vrml(SceneFile& file) { VrmlParser(file).read(); }
+void parse_vrml(SceneFile& file) {
+  file.siblings_move = true;
+  VrmlParser(file).read();
+}
 
 }  // namespace kaboum::io

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "scene_graph.h"
+#include "text.h"
 
 namespace kaboum::io {
 namespace {
@@ -92,7 +93,7 @@ class X3dParser {
     const std::string_view category = xml_.need(e, "category");
     const double factor = xml_.number(e, xml_.need(e, "conversionFactor"));
     if (category == "length") {
-      if (!(factor > 0)) xml_.fail(e, "a unit of " + std::to_string(factor) + " metres");
+      if (!(factor > 0)) xml_.fail(e, "a unit of " + shortest_digits(factor) + " metres");
       file_.metres = factor;
     } else if (category == "angle" && factor != 1) {
       xml_.fail(e, "angles in another unit than radians are not supported; export in radians");

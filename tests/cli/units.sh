@@ -73,6 +73,21 @@ expect 3 'b1.glb: it was made with --scale 0.001: give that here, too' "$V" --co
 expect 3 'b3.glb: it was made without --scale: leave that out' "$V" --cover mm.off b3.glb --scale 0.001
 shows 0 'verified' "$V" --cover mm.off b3.glb
 expect 2 'sets of bodies\|set of bodies' "$H" b1.glb mm.off --scale 1000
+# A set with a margin, measured as a mesh, is scaled as other meshes.
+python3 - <<'END' || fail "no margin to change"
+data = open("b3.glb", "rb").read()
+assert data.count(b'"margin":0.0,') == 1
+open("margin.glb", "wb").write(data.replace(b'"margin":0.0,', b'"margin":0.5,'))
+END
+expect 2 'measure it as a mesh (--a-as mesh)' "$H" margin.glb m.off --scale 0.001
+expect 0 "margin of 0.5 is left out" "$H" margin.glb m.off --a-as mesh --scale 0.001 --unit m --report r.json
+grep -q 'multiplied by 0.001' err.txt || fail "not scaled: $(cat err.txt)"
+grep -q '"unit": "m"' r.json || fail "the unit as scaled: $(cat r.json)"
+expect 3 'its vertices are in m, not in cm' "$H" margin.glb m.off --a-as mesh --scale 0.001 --unit cm
+mkdir bodies
+tetrahedron >t.off
+expect 0 '' "$P" t.off -o bodies/b.stl
+expect 2 'have it made anew with --scale$' "$H" bodies m.off --scale 0.001
 # The page is about the same triangles.
 expect 0 '' "$B" mm.off -o b4.glb --scale 0.001 --preview b.html
 
@@ -84,6 +99,11 @@ expect 3 'mm.x3d: its vertices are in mm, not in m; .*--scale' "$P" mm.x3d -o no
 expect 3 'its vertices are in m, not in cm' "$P" mm.x3d -o none.obj --unit cm --scale 0.001
 expect 0 '' "$D" mm.x3d -o x.glb --vertices 4 --precision float
 shows 0 'verified' "$V" --outer mm.x3d x.glb
+# Metres that are stated are a unit; X3D without one says nothing.
+sed 's/0.001/1/' mm.x3d >m.x3d
+expect 3 'its vertices are in m, not in cm' "$P" m.x3d -o none.obj --unit cm
+sed 's/<unit[^>]*>//' mm.x3d >none.x3d
+expect 0 '' "$P" none.x3d -o n.obj --unit cm
 # Two units: bound-verify, hausdorff-eval, a scene.
 tetrahedron_gltf
 expect 3 'mm.x3d is in mm and t.gltf in m as read.*--scale 0.001' "$V" --outer mm.x3d t.gltf

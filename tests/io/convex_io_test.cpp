@@ -1,11 +1,23 @@
 #include <kaboum/io/convex_folder.h>
 #include <kaboum/io/convex_io.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
+#include <bit>
+#include <cerrno>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <functional>
+#include <iostream>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <thread>
@@ -167,6 +179,78 @@ TEST_F(ConvexIo, FolderOfManyWritersIsOneOfTheirs) {
   const ConvexSet back = read_convex_set(place);  // whose record counts the bodies
   EXPECT_EQ((back.bodies.size() - 2) % 3, 0U);
   EXPECT_EQ(entries(), 1U);
+}
+
+/// From here on this process cannot exchange two names in one step, as on file systems that lack
+/// it. False: nor can that be arranged.
+bool forbid_exchange() {
+  constexpr std::uint32_t kOffset = offsetof(seccomp_data, args) + 4 * sizeof(std::uint64_t);
+  std::array<sock_filter, 6> filter{
+      {BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
+       BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_renameat2, 0, 3),
+       BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kOffset),  // of the flags, on little-endian machines
+       BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, RENAME_EXCHANGE, 0, 1),
+       BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | EINVAL),
+       BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW)}};
+  const sock_fprog program{static_cast<unsigned short>(filter.size()), filter.data()};
+  return std::endian::native == std::endian::little &&
+         ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
+         ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) == 0;
+}
+
+/// What `run` returns in a child process.
+int in_child(const std::function<int()>& run) {
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(run());
+  int status = 0;
+  if (child < 0 || ::waitpid(child, &status, 0) != child || !WIFEXITED(status)) return -1;
+  return WEXITSTATUS(status);
+}
+
+// Where names cannot be exchanged, what is replaced is put aside: under no name that another
+// machine's process of the same number has made.
+TEST_F(ConvexIo, FolderIsReplacedInTwoSteps) {
+  constexpr int kUnarranged = 77, kNames = 500;
+  const fs::path place = directory_ / "set";
+  ConvexSet set = sample_set(5, 1);
+  set.margin = 0;
+  write_convex_set(place, set);
+  const int result = in_child([&] {
+    if (!forbid_exchange()) return kUnarranged;
+    const std::string start = ".kaboum-new-" + std::to_string(::getpid()) + "-";
+    for (int i = 1; i < kNames; i += 2)
+      fs::create_directory(directory_ / (start + std::to_string(i) + ".tmp"));
+    set.bodies.resize(2);
+    try {
+      write_convex_set(place, set);
+    } catch (const Error& e) {
+      std::cerr << e.what() << '\n';
+      return 1;
+    }
+    return 0;
+  });
+  if (result == kUnarranged) GTEST_SKIP() << "system calls cannot be filtered here";
+  EXPECT_EQ(result, 0);
+  EXPECT_EQ(entries(), 1U + kNames / 2);
+  EXPECT_EQ(read_convex_set(place).bodies.size(), 2U);
+}
+
+TEST_F(ConvexIo, FolderBehindALink) {
+  ConvexSet set = sample_set(5, 1);
+  set.margin = 0;
+  const fs::path place = directory_ / "set", link = directory_ / "link",
+                 astray = directory_ / "astray";
+  write_convex_set(place, set);
+  fs::create_directory_symlink("set", link);
+  set.bodies.resize(2);
+  write_convex_set(link, set, SetFormat::Directory);
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(read_convex_set(place).bodies.size(), 2U);
+  // What is no folder is not replaced.
+  fs::create_symlink("nowhere", astray);
+  EXPECT_THROW(write_convex_set(astray, set, SetFormat::Directory), Error);
+  EXPECT_TRUE(fs::is_symlink(astray));
+  EXPECT_EQ(entries(), 3U);
 }
 
 TEST_F(ConvexIo, FolderInNaturalOrder) {

@@ -111,6 +111,26 @@ TEST(FileUnit, NamesAndMetres) {
   EXPECT_EQ(metres_of("0.005 m"), 0.005);
   for (const char* bad : {"", "parsec", "0 m", "-1 m", "nan m", "1 mm", " m", "1e999 m"})
     EXPECT_FALSE(metres_of(bad).has_value()) << bad;
+  // Digits that give the number back.
+  for (const double metres : {1.0 / 3, 1e-9, 0.0254 / 3, 123456789.125, 0.001 * (1 + 1e-13)})
+    EXPECT_EQ(metres_of(unit_of_metres(metres)), metres) << unit_of_metres(metres);
+  EXPECT_EQ(unit_of_metres(1e-9), "1e-09 m");
+}
+
+// Rounding of one product and one quotient hides no name.
+TEST(FileUnit, NamesOfQuotients) {
+  std::mt19937_64 random(3);
+  for (const char* name : {"m", "dm", "cm", "mm", "um", "km", "in", "ft"}) {
+    const double metres = metres_of(name).value();
+    for (const char* other : {"m", "dm", "cm", "mm", "um", "km", "in", "ft"})
+      EXPECT_EQ(unit_of_metres(metres / (metres / metres_of(other).value())), other);
+    for (int round = 0; round < 1000; ++round) {
+      const double factor = static_cast<double>(1 + random() % 100'000) / 1000;
+      EXPECT_EQ(unit_of_metres(metres * factor / factor), name) << factor;
+      EXPECT_EQ(unit_of_metres(metres / (1 / factor) / factor), name) << factor;
+    }
+    EXPECT_NE(unit_of_metres(metres * (1 + 1e-14)), name);
+  }
 }
 
 // The triangles of a CAD file, scaled, stand for faces that are within the scaled deviation.
@@ -144,11 +164,24 @@ TEST(FileUnit, RecordsOfScales) {
   EXPECT_EQ(recorded_scale("--epsilon 1% --scale 0.001 --effort fast"), 0.001);
   EXPECT_EQ(recorded_scale("bmesh-decimate 0.1.0 --scale 25.4"), 25.4);
   EXPECT_EQ(recorded_scale("--epsilon 1%"), 1);
-  EXPECT_EQ(recorded_scale("--scale"), 1);
+  EXPECT_EQ(recorded_scale("--scale 1e-09"), 1e-9);
   EXPECT_NO_THROW(require_recorded_scale("a.glb", "--scale 0.001", 0.001));
   EXPECT_THROW(require_recorded_scale("a.glb", "--scale 0.001", 1), Error);
   EXPECT_THROW(require_recorded_scale("a.glb", "", 0.001), Error);
-  EXPECT_THROW(require_recorded_scale("a.glb", "--scale nan", 1), Error);
+  // What cannot be understood is not taken for 1.
+  for (const char* bad :
+       {"--scale", "--epsilon 1% --scale --effort", "--scale x", "--scale nan", "--scale inf",
+        "--scale 0", "--scale -1", "--scale 1x", "--scale 0x1p3", "--scale 1e999"}) {
+    EXPECT_THROW(recorded_scale(bad), Error) << bad;
+    try {
+      require_recorded_scale("a.glb", bad, 1);
+      ADD_FAILURE() << bad;
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ErrorCode::InvalidInput);
+      EXPECT_NE(std::string(e.what()).find("a.glb: its record says --scale"), std::string::npos)
+          << e.what();
+    }
+  }
 }
 
 TEST(FileUnit, TwoUnitsAreNotCompared) {
@@ -162,6 +195,27 @@ TEST(FileUnit, TwoUnitsAreNotCompared) {
     for (const char* part : {"a.3mf is in mm", "b.glb in m", "--scale 0.001"})
       EXPECT_NE(std::string(e.what()).find(part), std::string::npos) << e.what();
   }
+  // Two roundings of one unit are one.
+  EXPECT_NO_THROW(require_same_unit("a", "0.005 m", "b", "0.005000000000000001 m"));
+  EXPECT_THROW(require_same_unit("a", "0.005 m", "b", "0.00500000000001 m"), Error);
+}
+
+// Who does as the message says is not refused again.
+TEST(FileUnit, TheFactorThatIsNamedMakesUnitsAlike) {
+  for (const double metres : {0.0254 / 3, 1.0 / 3, 0.3048 / 7, 1e-9, 0.005, 123.456789})
+    for (const char* other : {"mm", "in", "m", "0.007 m"}) {
+      ReadResult r = result_of(tetrahedron(), unit_of_metres(metres));
+      try {
+        require_same_unit("a", r.unit, "b", other);
+        ADD_FAILURE() << r.unit;
+      } catch (const Error& e) {
+        const std::string text = e.what();
+        const std::size_t at = text.find("--scale ") + 8;
+        const double factor = std::stod(text.substr(at, text.find(',', at) - at));
+        scale(r, factor, "a");
+        EXPECT_NO_THROW(require_same_unit("a", r.unit, "b", other)) << text;
+      }
+    }
 }
 
 // What a GLB of ours was made of need not be metres; of other programs it is.

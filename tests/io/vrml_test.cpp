@@ -180,6 +180,12 @@ TEST(Vrml, NestingIsLimited) {
     bomb += "DEF N" + std::to_string(i) + " Group { children [ " + before + " " + before + " ] }\n";
   }
   expect_error(bomb, Format::Vrml, {"repeat too much"}, ErrorCode::LimitReached);
+  // Moves without shapes, again and again.
+  std::string moves = kHeader + "DEF M Group { children [ ";
+  for (int i = 0; i < 30'000; ++i) moves += "Translation { } ";
+  moves += "] }\n";
+  for (int i = 0; i < 30'000; ++i) moves += "USE M ";
+  expect_error(moves, Format::Vrml, {"repeat too much"}, ErrorCode::LimitReached);
 }
 
 TEST(Vrml, Inline) {

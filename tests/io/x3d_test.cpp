@@ -161,7 +161,7 @@ TEST(X3d, WhatMayHoldASurfaceIsRefusedByName) {
   for (const char* node :
        {"Billboard", "GeoTransform", "GeoLocation", "GeoLOD", "HAnimHumanoid", "ParticleSystem",
         "LayerSet", "LayoutGroup", "ScreenGroup", "EspduTransform", "VolumeData", "NurbsSet",
-        "CollidableShape", "ClipPlane", "Mystery"})
+        "CollidableShape", "ClipPlane", "Rotation", "Translation", "Mystery"})
     expect_refused(kTriangle + "<" + node + "/>", {node});
   for (const char* node : {"ProtoInstance", "ProtoDeclare", "ExternProtoDeclare"})
     expect_refused(kTriangle + "<" + node + " name='P'/>", {node, "prototypes"});
@@ -198,6 +198,19 @@ TEST(X3d, Units) {
   EXPECT_EQ(r.unit, "mm");
   EXPECT_EQ(parse(unit("category='length' name='x' conversionFactor='0.5'"), Format::X3d).unit,
             "0.5 m");
+  // Metres are a unit where they are stated; without, the file says nothing.
+  const ReadResult metres =
+      parse(unit("category='length' name='m' conversionFactor='1'"), Format::X3d);
+  EXPECT_EQ(metres.unit, "m");
+  EXPECT_FALSE(has_note(metres, "metres"));
+  EXPECT_EQ(read(kTriangle).unit, "");
+  EXPECT_EQ(parse(unit("category='mass' name='g' conversionFactor='1'"), Format::X3d).unit, "");
+  const ReadResult tiny =
+      parse(unit("category='length' name='nm' conversionFactor='0.000000001'"), Format::X3d);
+  EXPECT_EQ(tiny.unit, "1e-09 m");
+  EXPECT_TRUE(has_note(tiny, "unit is 1e-09 metres"));
+  expect_error(unit("category='length' name='x' conversionFactor='-0.000000001'"), Format::X3d,
+               {"unit of -1e-09 metres"});
   EXPECT_NO_THROW(parse(unit("category='mass' name='g' conversionFactor='0.001'"), Format::X3d));
   expect_error(unit("category='angle' name='degree' conversionFactor='0.01745'"), Format::X3d,
                {"radians"});
@@ -252,9 +265,14 @@ TEST(X3d, Inline) {
   std::ofstream(directory / "mm.x3d")
       << x3d(kTriangle, "<head><unit category='length' conversionFactor='0.001'/></head>");
   std::ofstream(directory / "loop.x3d") << x3d("<Inline url='loop.x3d'/>");
-  const auto inlined = [&](const std::string& attributes) {
-    return parse(x3d("<Transform translation='0 0 1'><Inline " + attributes + "/></Transform>"),
-                 Format::X3d, directory);
+  std::ofstream(directory / "m.x3d")
+      << x3d(kTriangle, "<head><unit category='length' conversionFactor='1'/></head>");
+  std::ofstream(directory / "turned.wrl")
+      << "#VRML V2.0 utf8\nTranslation { translation 0 0 5 } Inline { url \"b.wrl\" }";
+  const auto inlined = [&](const std::string& attributes, const std::string& head = "") {
+    return parse(
+        x3d("<Transform translation='0 0 1'><Inline " + attributes + "/></Transform>", head),
+        Format::X3d, directory);
   };
   for (const char* url :
        {R"(url='"a.x3d" "other.x3d"')", "url='a.x3d'", R"(url='"b.wrl"' load='true')"}) {
@@ -265,6 +283,17 @@ TEST(X3d, Inline) {
   for (const char* bad : {"url='loop.x3d'", "url='mm.x3d'", "url='none.x3d'", "url='/etc/passwd'",
                           "url='http://example.org/a.x3d'", "url='a.x3d' load='false'"})
     EXPECT_THROW(inlined(bad), Error) << bad;
+  // In each file what its format says: VRML's moves, and units, metres where none is stated.
+  EXPECT_EQ(soup(inlined("url='turned.wrl'").mesh)[1], Vec3(1, 0, 6));
+  const auto unit = [](const std::string& metres) {
+    return "<head><unit category='length' conversionFactor='" + metres + "'/></head>";
+  };
+  EXPECT_EQ(inlined("url='m.x3d'").unit, "");
+  EXPECT_EQ(inlined("url='a.x3d'", unit("1")).unit, "m");
+  EXPECT_EQ(inlined("url='m.x3d'", unit("1")).unit, "m");
+  EXPECT_EQ(inlined("url='mm.x3d'", unit("0.001")).unit, "mm");
+  for (const char* other : {"url='a.x3d'", "url='m.x3d'", "url='b.wrl'"})
+    EXPECT_THROW(inlined(other, unit("0.001")), Error) << other;
   std::filesystem::remove_all(directory);
 }
 

@@ -6,8 +6,10 @@
 #include <kaboum/verify/cover.h>
 
 #include <cmath>
+#include <cstdint>
 #include <random>
 
+#include "inside_out.h"
 #include "support/shapes.h"
 
 namespace {
@@ -136,6 +138,44 @@ TEST(MeshVerdict, RoundingTurnsNoSolidInsideOut) {
     EXPECT_TRUE(decided(flipped(outward), large, Relation::Outer, Claims::Solid).vacuous);
   }
   EXPECT_EQ(misleading, 20);
+}
+
+// Two tiny corners over and under a large ring, so that every product of three has one of them: by
+// powers of two, the volume is that of a mesh of middle size, whose products round alike.
+TEST(MeshVerdict, TinyAndLargeCornersTurnNoSolidInsideOut) {
+  constexpr std::uint32_t kRing = 5;
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto point = [&] { return Vec3(unit(random), unit(random), unit(random)); };
+  int turned = 0;
+  for (int round = 0; round < 400; ++round) {
+    Mesh mesh;
+    Vec3 normal = Vec3::Zero();
+    for (std::uint32_t i = 0; i < kRing; ++i) mesh.vertices.push_back(point());
+    for (std::uint32_t i = 0; i < kRing; ++i) {
+      const std::uint32_t j = (i + 1) % kRing;
+      normal += mesh.vertices[i].cross(mesh.vertices[j]);
+      mesh.triangles.push_back({kRing, i, j});
+      mesh.triangles.push_back({kRing + 1, j, i});
+    }
+    // Nearly no volume: what rounding leaves of it.
+    const Vec3 top = point(), across = point();
+    mesh.vertices.push_back(top);
+    mesh.vertices.push_back(top + across - normal * (across.dot(normal) / normal.squaredNorm()));
+    Mesh scaled = mesh;
+    for (std::uint32_t i = 0; i < kRing + 2; ++i)
+      scaled.vertices[i] *= i < kRing ? 0x1p+330 : 0x1p-565;  // 2e99, 8e-171
+    const bool is_turned = verify::is_inside_out(mesh);
+    EXPECT_EQ(verify::is_inside_out(scaled), is_turned) << round;
+    turned += is_turned ? 1 : 0;
+  }
+  EXPECT_GT(turned, 100);
+  EXPECT_LT(turned, 300);
+  for (const double size : {1e-170, 1e-100, 1e-60, 1e60, 1e100}) {
+    const Mesh body = cube(size, 2 * size);
+    EXPECT_FALSE(verify::is_inside_out(body)) << size;
+    EXPECT_TRUE(verify::is_inside_out(flipped(body))) << size;
+  }
 }
 
 TEST(MeshVerdict, DistancesBothWaysAndTheirWitness) {

@@ -7,7 +7,8 @@
 
 namespace kaboum::io {
 
-/// The name of a unit of so many metres: one of kLengthUnits, or "0.005 m".
+/// The name of a unit of so many metres: one of kLengthUnits, where it is one but for the rounding
+/// of one product or quotient; else "0.005 m", whose digits give the double back.
 std::string unit_of_metres(double metres);
 
 /// What ReadResult::unit says, in metres; nullopt where it says nothing.
@@ -26,15 +27,18 @@ void scale(ReadResult& read, double factor, const std::string& name);
 /// rounded up, and what rounding the coordinates may have moved the triangles by. [length]
 double scaled_bound(double bound, double factor, const geom::Mesh& scaled);
 
-/// The factor in the record of what a set was made with ("--epsilon 1% --scale 0.001"); 1: none.
-double recorded_scale(const std::string& parameters);
+/// The factor in the record of what a result was made with ("--epsilon 1% --scale 0.001"); 1: none.
+/// @param file  whose record it is, for the message.
+/// @throws Error{InvalidInput} where the record states a factor that is no positive number.
+double recorded_scale(const std::string& record, const std::string& file = "the set");
 
 /// Refuses to judge a result beside another scale of its input than it was made with.
 /// @param record  what the result's file says it was made with
 /// @throws Error{InvalidInput} naming the result's file, and the option.
 void require_recorded_scale(const std::string& file, const std::string& record, double factor);
 
-/// Refuses to compare lengths of two units; files that state none are taken to be in the other's.
+/// Refuses to compare lengths of two units; files that state none are taken to be in the other's,
+/// and units that differ by rounding alone are one.
 /// @throws Error{InvalidInput} naming both files, and the factor that would make them alike.
 void require_same_unit(const std::string& file, const std::string& unit,
                        const std::string& other_file, const std::string& other_unit);
