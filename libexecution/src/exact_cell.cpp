@@ -42,7 +42,9 @@ std::vector<ExactMesh> exact_meshes(const world::World& world, const fs::path& s
         (folder / outer["made_from"][0].at("file").get<std::string>()).string();
     io::ReadResult read = io::read_mesh(file);
     const fs::path set = folder / outer.at("file").get<std::string>();
-    io::scale(read, io::recorded_scale(io::read_convex_set(set).provenance.parameters), file);
+    io::scale(read,
+              io::recorded_scale(io::read_convex_set(set).provenance.parameters, set.string()),
+              file);
     out.push_back({{world::Item::kObject, o}, std::move(read.mesh)});
   }
   return out;
