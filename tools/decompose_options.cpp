@@ -78,6 +78,16 @@ void add_limits(CLI::App& app, DecomposeOptions& o) {
       ->type_name("N");
 }
 
+void add_budget(CLI::App& app, const char* name, std::size_t& value, const char* what) {
+  app.add_option(name, value,
+                 std::string("Most ") + what +
+                     " of all links of a robot together (1 to 10000000): the least epsilon that "
+                     "allows, the same for all links, so that bodies go where they are needed; "
+                     "takes about as long as ten runs")
+      ->check(CLI::Range(1, 10000000).description(""))
+      ->type_name("N");
+}
+
 void add_search(CLI::App& app, DecomposeOptions& o) {
   app.add_option("--direction", o.direction,
                  "outer: bodies that cover the solid; inner: bodies inside it, which leave out no "
@@ -153,6 +163,8 @@ void describe(CLI::App& app, DecomposeOptions& o) {
   add_output(app, o);
   add_preparation(app, o);
   add_robot_options(app, o.robot, true);
+  add_budget(app, "--robot-bodies", o.robot_bodies, "bodies");
+  add_budget(app, "--robot-vertices", o.robot_vertices, "vertices");
   app.add_flag(
       "--srdf", o.srdf,
       "Also write NAME.srdf beside a robot's URDF, which MoveIt reads: pairs of links that "
@@ -190,6 +202,15 @@ void require_meaning(const CLI::App& app, const DecomposeOptions& o) {
   if (!is_robot(o.input) && o.srdf)
     throw Error(ErrorCode::InvalidArgument,
                 "--srdf is for robots (.urdf, .xacro); " + o.input + " is taken for a mesh");
+  for (const char* budget : {"--robot-bodies", "--robot-vertices"}) {
+    if (app.count(budget) == 0) continue;
+    if (!is_robot(o.input))
+      throw Error(ErrorCode::InvalidArgument, std::string(budget) +
+                                                  " is for robots (.urdf, .xacro); " + o.input +
+                                                  " is taken for a mesh");
+    require_absent(app, budget,
+                   {"--epsilon", "--epsilons", "--max-bodies", "--max-total-vertices"});
+  }
   if (o.srdf) require_absent(app, "--srdf, which is about all links,", {"--links"});
   if (!is_robot(o.input) && app.count("--from") != 0)
     throw Error(ErrorCode::InvalidArgument,

@@ -4,6 +4,7 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/certify/robot.h>
+#include <kaboum/certify/robot_budget.h>
 #include <kaboum/io/convex_folder.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/robot/kinematics.h>
@@ -47,8 +48,22 @@ struct Run {
   }
 };
 
+/// The epsilon that a budget for the whole robot allows.
+void share_out(Run& run, const certify::SetCache* cache) {
+  const auto given = [](std::size_t n) { return n > 0 ? std::optional(n) : std::nullopt; };
+  Progress progress(run.o.common.quiet);
+  certify::RobotHooks hooks;
+  hooks.progress = [&](const std::string& stage) { progress.show("sharing out: " + stage); };
+  run.request.set.epsilon =
+      epsilon_within(run.robot, run.request,
+                     {given(run.o.robot_bodies), given(run.o.robot_vertices)}, cache, hooks);
+}
+
 void certify_links(Run& run) {
   using Clock = std::chrono::steady_clock;
+  const certify::SetCache kept(certify::SetCache::default_folder());
+  const certify::SetCache* cache = run.o.no_cache ? nullptr : &kept;
+  if (run.o.robot_bodies + run.o.robot_vertices > 0) share_out(run, cache);
   Progress progress(run.o.common.quiet);
   certify::RobotHooks hooks =
       hooks_of(run.notes, [&](const std::string& stage) { progress.show(stage); });
@@ -65,9 +80,7 @@ void certify_links(Run& run) {
     log(run.o.common.quiet, file + ": " + why);
     run.code = std::max(run.code, code_of(certificate));
   };
-  const certify::SetCache cache(certify::SetCache::default_folder());
-  run.made =
-      certify::certify_robot(run.robot, run.request, run.o.no_cache ? nullptr : &cache, hooks);
+  run.made = certify::certify_robot(run.robot, run.request, cache, hooks);
 }
 
 /// The files of the bodies, relative to the folder.
