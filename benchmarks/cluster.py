@@ -68,13 +68,18 @@ def many_rows(binary, work, count):
     version = subprocess.run([binary / "kaboum-batch", "--version"], capture_output=True, text=True).stdout.split()[-1]
     names = [f"cell-{i % 997}/assembly-{i % 89}/part-{i:07}.off" for i in range(count)]
     (work / "list.txt").write_text("\n".join(names) + "\n")
-    row = dict(state="failed", exit_code=3, reason="the file is not there: cannot be read: No such file or directory", input_bytes=0,
-               output_bytes=0, wall_seconds=0.0123, cpu_seconds=0.0101, peak_megabytes=12.5, vertices_before=None, vertices_after=None,
-               bodies=None, ratio=None, distance=None, diagonal=None, verdict="", parameters="bmesh-decimate --epsilon 1%", picture="")
+    # All have one result, of about the size of those above.
+    result = b"ply\n" + 2100 * b"x"
+    row = dict(sha256=hashlib.sha256(result).hexdigest(), sources=[], state="done", exit_code=0, reason="", input_bytes=0,
+               output_bytes=len(result), wall_seconds=0.0123, cpu_seconds=0.0101, peak_megabytes=12.5, vertices_before=812, vertices_after=97,
+               bodies=None, ratio=0.119, distance=0.0123, diagonal=1.2345, verdict="certified", parameters="bmesh-decimate --epsilon 1%", picture="")
+    for folder in {pathlib.Path(name).parent for name in names}:
+        (work / "out/results" / folder).mkdir(parents=True)
     journals = [(work / f"out/.kaboum-batch/journal-{k}.jsonl").open("w") for k in range(100)]
     for i, name in enumerate(names):
         output = "results/" + name[:-4] + ".ply"
-        key = hashlib.sha256(f"0 0 {version}\nbmesh-decimate\n--epsilon\n1%\n{output}".encode()).hexdigest()
+        key = hashlib.sha256(f"{work / name}\n0 0 0 {version}\nbmesh-decimate\n--epsilon\n1%\n{output}".encode()).hexdigest()
+        (work / "out" / output).write_bytes(result)
         journals[i % 100].write(json.dumps(dict(name=name, key=key, output=output, **row), separators=(",", ":")) + "\n")
     for journal in journals:
         journal.close()

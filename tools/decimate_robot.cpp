@@ -197,6 +197,8 @@ int decimate_robot(const CLI::App& app, DecimationOptions o) {
   apply_preset(app, o.output, o.robot, nullptr);
   require_separate(o);
   Run run{o, robot::read_robot(o.input)};
+  const std::vector<std::string> included =
+      o.depfile.empty() ? std::vector<std::string>() : robot::included_files(run.robot);
   const io::Format format = format_of_meshes(o);
   const std::string extension = format == io::Format::Stl ? ".stl" : ".obj";
   o.robot.declare_convex = false;  // they are not
@@ -226,7 +228,7 @@ int decimate_robot(const CLI::App& app, DecimationOptions o) {
   if (!o.depfile.empty()) {
     std::vector<std::string> inputs{o.input};
     if (!o.robot.epsilons.empty()) inputs.push_back(o.robot.epsilons);
-    for (std::string& file : robot::included_files(run.robot)) inputs.push_back(std::move(file));
+    inputs.insert(inputs.end(), included.begin(), included.end());
     for (std::string& file : strings(run.made.files)) inputs.push_back(std::move(file));
     write_depfile(o.depfile, output.documents(), inputs);
   }

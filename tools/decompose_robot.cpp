@@ -161,7 +161,7 @@ Json robot_report(const Run& run, const RobotOutput& output) {
   if (run.pairs)
     report["pairs_of_links"] = {{"adjacent", run.pairs->adjacent},
                                 {"never_in_contact", run.pairs->never},
-                                {"always_connected", run.pairs->always},
+                                {"fixed_to_each_other", run.pairs->fixed},
                                 {"others", run.pairs->others}};
   return report;
 }
@@ -224,11 +224,14 @@ int decompose_robot(const DecomposeOptions& o) {
                 "--direction inner: decompose the robot's meshes one by one");
   require_robot_folder(o.output, o.output_format);
   Run run{o, robot::read_robot(o.input)};
+  const std::vector<std::string> included =
+      o.depfile.empty() ? std::vector<std::string>() : robot::included_files(run.robot);
   RobotOutput output(o.robot, o.output, run.robot, "bodies", "");
   run.request = robot_request(o, run.robot, output.choice());
   const certify::WantedMeshes meshes =
       certify::wanted_meshes(run.robot, run.request.shapes, run.request.epsilons);
   output.plan(meshes);
+  if (o.srdf) output.folder().require_own_document(".srdf");
   require_formats(meshes, o.input_format);
   certify_links(run);
   if (o.srdf) {
@@ -251,7 +254,7 @@ int decompose_robot(const DecomposeOptions& o) {
   if (!o.depfile.empty()) {
     std::vector<std::string> inputs{o.input};
     if (!o.robot.epsilons.empty()) inputs.push_back(o.robot.epsilons);
-    for (std::string& file : robot::included_files(run.robot)) inputs.push_back(std::move(file));
+    inputs.insert(inputs.end(), included.begin(), included.end());
     for (std::string& file : strings(run.bodies().files)) inputs.push_back(std::move(file));
     write_depfile(o.depfile, output.documents(), inputs);
   }

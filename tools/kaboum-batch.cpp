@@ -82,6 +82,9 @@ void describe(CLI::App& app, Options& o) {
       ->type_name("FILE");
   app.add_flag("--quiet", o.common.quiet, "Print errors only");
   app.footer(
+      "Programs that are not given {input} are called with INPUT -o OUTPUT --report FILE --threads "
+      "1 "
+      "--depfile FILE.\n"
       "A batch that was ended, however, goes on where it was when it is called again; files that "
       "have changed, or whose options have, are done anew.\n"
       "Exit codes: 0 all done; 1 some are not, for reasons in the summary; 2 usage; 3 bad input; 4 "
@@ -112,13 +115,13 @@ std::uintmax_t free_memory() {
 }
 
 /// Whether a record holds: the job's other sources are as they were, and the result is that very
-/// one, for a batch with other options may have written there since.
+/// one, for a batch with other options may have written there since. Of what failed it is not known
+/// which other files were in the way.
 bool holds(const batch::Job& job, const batch::Record& record, const Options& o) {
   for (const batch::FileState& source : record.sources)
     if (batch::file_state(source.path) != source) return false;
-  const fs::path result = fs::path(o.output) / record.output;
-  return record.has_result() ? batch::digest_of(result) == record.sha256
-                             : !batch::is_there(job, result);
+  if (!record.has_result()) return record.state != "failed" || !job.may_refer_to_others();
+  return batch::digest_of(fs::path(o.output) / record.output) == record.sha256;
 }
 
 std::vector<const batch::Job*> waiting_of(const std::vector<batch::Job>& jobs,

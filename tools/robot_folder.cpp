@@ -93,8 +93,8 @@ std::string marked(std::string document) {
 
 void refuse(const fs::path& place) {
   throw Error(ErrorCode::OutputFailed, place.string() +
-                                           ": exists, and not as a result of this program; remove "
-                                           "it or name another folder");
+                                           ": exists, and is not marked as a result of this "
+                                           "program; remove it or name another folder");
 }
 
 /// The URDF's name in the new folder.
@@ -146,6 +146,12 @@ void RobotFolder::require_replaceable(const fs::path& place) const {
     refuse(place);
 }
 
+void RobotFolder::require_own_document(const std::string& extension) const {
+  std::error_code error;
+  const fs::path place = document(extension);
+  if (fs::exists(place, error) && !is_made_by_us(place)) refuse(place);
+}
+
 /// No new file is to get this stem: those of bodies end with a number.
 void RobotFolder::reserve_stem(const std::string& stem) {
   if (!extension_.empty()) names_.reserve(stem);
@@ -194,10 +200,7 @@ std::vector<std::string> RobotFolder::write(const RobotContents& contents) {
   const Turn turn(folder_);
   require_own();  // others may have been here meanwhile
   std::error_code error;
-  for (const auto& [extension, text] : contents.documents)
-    if (const fs::path place = document(extension);
-        fs::exists(place, error) && !is_made_by_us(place))
-      refuse(place);
+  for (const auto& [extension, text] : contents.documents) require_own_document(extension);
   begin();
   create(folder_ / part_);
   if (!contents.links.empty()) create(folder_ / "links");

@@ -56,6 +56,9 @@ class RobotFolder {
   /// The file of another format.
   [[nodiscard]] std::filesystem::path document(const std::string& extension) const;
 
+  /// @throws Error{OutputFailed} where somebody's own file has a document's name
+  void require_own_document(const std::string& extension) const;
+
   /// Gives every mesh at every scale, mirrored or not, a name of its own: MuJoCo tells meshes
   /// apart by the stems of their names, and its versions differ where a mesh has several scales.
   /// @param taken  stems of meshes that stay

@@ -61,6 +61,8 @@ void RobotOutput::plan(const robot::LinkMeshes& meshes) {
     if (shapes.has(link))
       urdf_.require_shapes(link.name, shapes.visual, shapes.shapes_of(link).size());
   folder_.name_meshes(meshes, shapes, urdf_.mesh_stems());
+  if (o_.writes("mjcf")) folder_.require_own_document(kMjcf);
+  if (o_.writes("sdf")) folder_.require_own_document(kSdf);
 }
 
 std::vector<std::pair<std::string, std::string>> RobotOutput::other_formats(const NewShapes& shapes,

@@ -4,7 +4,7 @@
 
 #include <kaboum/world/allowed_pairs.h>
 
-#include <vector>
+#include <cstdint>
 
 namespace kaboum::tools {
 namespace {
@@ -27,20 +27,17 @@ world::RobotModel model_of(const robot::Robot& robot,
 
 RobotPairs pairs_of(const robot::Robot& robot, const std::vector<certify::CertifiedLink>& links) {
   const world::RobotModel model = model_of(robot, links);
-  std::vector<world::AllowedPair> allowed = connected_links(model);
+  const std::vector<world::LinkPair> examined = examine_pairs(model, {});
+  const std::vector<world::AllowedPair> allowed = pairs_without_check(model, examined);
   RobotPairs out;
-  for (const world::LinkPair& pair : examine_pairs(model, {})) {
-    std::size_t& count = !pair.reason                       ? out.others
-                         : *pair.reason == Reason::Never    ? out.never
-                         : *pair.reason == Reason::Adjacent ? out.adjacent
-                                                            : out.always;
-    ++count;
-    if (pair.reason && *pair.reason != Reason::Adjacent)
-      allowed.push_back({pair.a, pair.b, *pair.reason});
-  }
+  for (const world::AllowedPair& pair : allowed)
+    ++(pair.reason == Reason::Never      ? out.never
+       : pair.reason == Reason::Adjacent ? out.adjacent
+                                         : out.fixed);
+  for (const world::LinkPair& pair : examined) out.others += pair.reason ? 0 : 1;
   out.srdf = to_srdf(model, allowed);
   out.words = "pairs of links that need no check: " + std::to_string(out.adjacent) + " adjacent, " +
-              std::to_string(out.never) + " proved never to touch, " + std::to_string(out.always) +
+              std::to_string(out.never) + " proved never to touch, " + std::to_string(out.fixed) +
               " fixed to each other; " + std::to_string(out.others) + " others";
   return out;
 }

@@ -2,8 +2,9 @@
 
 #include <kaboum/certify/robot.h>
 
-#include <functional>
+#include <cstddef>
 #include <string>
+#include <vector>
 
 namespace kaboum::tools {
 
@@ -11,8 +12,8 @@ namespace kaboum::tools {
 struct RobotPairs {
   std::string srdf;  ///< <disable_collisions> of those that need no check
   std::string words;
-  std::size_t adjacent = 0, never = 0, always = 0;  ///< by the reason in the SRDF
-  std::size_t others = 0;                           ///< that are to be checked
+  std::size_t adjacent = 0, never = 0, fixed = 0;  ///< in the SRDF, by reason
+  std::size_t others = 0;                          ///< that are to be checked
 };
 
 /// Pairs of links that need no check: connected ones, and those whose bodies are proved never to

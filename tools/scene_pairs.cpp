@@ -22,7 +22,6 @@ int find_pairs(const SceneOptions& o) {
   };
   const world::RobotModel& robot = scene.world.robots[robot_named(scene.world, o.robot)];
   const auto name = [&](std::uint32_t link) { return robot.kinematics.links[link].name; };
-  std::vector<world::AllowedPair> allowed = world::connected_links(robot);
   Json pairs = Json::array(), never = Json::array();
   std::vector<world::AllowedPair> proofs;
   world::PairOptions options;
@@ -32,7 +31,8 @@ int find_pairs(const SceneOptions& o) {
     options.stop = [&] {
       return std::chrono::steady_clock::now() - begin > std::chrono::duration<double>(o.timeout);
     };
-  for (const world::LinkPair& pair : examine_pairs(robot, options)) {
+  const std::vector<world::LinkPair> examined = examine_pairs(robot, options);
+  for (const world::LinkPair& pair : examined) {
     const std::string reason = pair.reason ? name_of(*pair.reason) : "unproved";
     pairs.push_back({{"links", {name(pair.a), name(pair.b)}},
                      {"reason", reason},
@@ -43,14 +43,12 @@ int find_pairs(const SceneOptions& o) {
          : pair.meets_always ? "in contact everywhere, though they move against each other"
          : pair.meets        ? "in contact somewhere"
                              : reason));
-    if (!pair.reason || *pair.reason == world::AllowedPair::Reason::Adjacent) continue;
-    allowed.push_back({pair.a, pair.b, *pair.reason});
-    if (*pair.reason != world::AllowedPair::Reason::Never) continue;
+    if (pair.reason != world::AllowedPair::Reason::Never) continue;
     never.push_back({name(pair.a), name(pair.b)});
-    proofs.push_back(allowed.back());
+    proofs.push_back({pair.a, pair.b, *pair.reason});
   }
   if (!o.srdf.empty()) {
-    const std::string text = to_srdf(robot, allowed);
+    const std::string text = to_srdf(robot, pairs_without_check(robot, examined));
     io::write_file(o.srdf, {text.data(), text.size()});
   }
   const Json proved = {{"proved_for", proof_hash(robot, proofs)}, {"pairs", never}};

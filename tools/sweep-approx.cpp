@@ -30,7 +30,8 @@ struct Run {
   robot::BareLinks bare;
   certify::SweepRequest request;
   certify::CertifiedSweep swept;
-  double seconds = 0;  ///< of the sweeping
+  double seconds = 0;                      ///< of the sweeping
+  std::vector<std::string> included = {};  ///< by the robot, where they are asked for
 };
 
 certify::CertifiedBodies make_bodies(const SweepApproxOptions& o, const robot::RobotFile& robot,
@@ -144,7 +145,7 @@ void write_files(const Run& run, io::SetFormat format) {
   const auto depfile = [&] {
     std::vector<std::string> inputs{o.robot, o.path};
     if (!o.scene.empty()) inputs.push_back(o.scene);
-    for (std::string& file : robot::included_files(run.robot)) inputs.push_back(std::move(file));
+    inputs.insert(inputs.end(), run.included.begin(), run.included.end());
     for (std::string& file : strings(run.bodies.certificate().files))
       inputs.push_back(std::move(file));
     write_depfile(o.depfile, {o.output}, inputs);
@@ -188,6 +189,7 @@ int sweep_path(SweepApproxOptions o) {
   const ThreadLimit threads(o.common.threads);
   const io::SetFormat format = output_format(o);
   Run run{o, std::move(robot), {}, {}, {}, sweep_request(o, base), {}};
+  if (!o.depfile.empty()) run.included = robot::included_files(run.robot);
   std::vector<std::string> notes;
   run.path = robot::read_path(o.path, run.robot.robot,
                               {!o.ignore_limits, o.degrees, fixed_joints(o.joints)}, notes);

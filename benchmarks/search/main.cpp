@@ -225,9 +225,13 @@ int run(int argc, char** argv) {
   const Times by_exact = in(exact, in_fcl(false)), by_sets = in(sets, in_fcl(true)),
               exact_ode = in(exact, search::ode_shapes), exact_bullet = in(exact, in_bullet(false)),
               sets_bullet = in(sets, in_bullet(true));
-  std::size_t missed = 0;
-  for (std::size_t i = 0; i < all.size(); ++i)
-    missed += by_exact.contact[i] != 0 && ours.contact[i] == 0 ? 1 : 0;
+  // Contacts of exact meshes by each library that the sets miss, and where it differs from FCL.
+  std::size_t missed = 0, otherwise = 0;
+  for (const Times* exact_times : {&by_exact, &exact_ode, &exact_bullet})
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      missed += exact_times->contact[i] != 0 && ours.contact[i] == 0 ? 1 : 0;
+      otherwise += exact_times->contact[i] != by_exact.contact[i] ? 1 : 0;
+    }
   const nlohmann::json out = {{"search", search},
                               {"seed", seed},
                               {"step_m", step},
@@ -243,9 +247,10 @@ int run(int argc, char** argv) {
                               {"exact_ode", json_of(exact_ode)},
                               {"exact_bullet", json_of(exact_bullet)},
                               {"sets_bullet", json_of(sets_bullet)},
-                              {"missed", missed}};
+                              {"missed", missed},
+                              {"exact_differing", otherwise}};
   std::printf("%s\n", out.dump().c_str());
-  return missed == 0 ? 0 : 1;
+  return missed == 0 && otherwise * 1000 <= all.size() ? 0 : 1;  // touching is a matter of rounding
 }
 
 }  // namespace

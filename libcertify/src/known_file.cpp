@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 
 /// Changes whenever a reader of libio may give other triangles, notes or units for the same bytes:
 /// what is known of files is then not used.
-constexpr const char* kReaders = "2";
+constexpr const char* kReaders = "3";
 
 constexpr std::string_view kKind = "KABOUM-FILE 1";
 constexpr std::size_t kReadAtOnce = std::size_t{1} << 15;  ///< [bytes]

@@ -10,6 +10,9 @@
 #include <assimp/Importer.hpp>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
 #include <cstring>
 #include <memory>
 
@@ -135,6 +138,18 @@ class AssimpReader {
   std::vector<geom::Vec3> points_;
 };
 
+/// The file's unit, a centimetre where it states none; 0: not known. The importer keeps it as a
+/// float, as which 0.1 is another number: the decimal fraction that it was is taken.
+double centimetres_of(const aiScene& scene) {
+  float kept = 0;
+  if (scene.mMetaData == nullptr || !scene.mMetaData->Get("UnitScaleFactor", kept)) return 0;
+  std::array<char, 64> text{};
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), kept);
+  double unit = 0;
+  std::from_chars(text.data(), end, unit);
+  return std::isfinite(unit) ? unit : 0;
+}
+
 ReadResult read_here(const Source& source) {
   Assimp::Importer importer;
   importer.SetIOHandler(std::make_unique<OnlyThisFile>(source).release());
@@ -150,8 +165,7 @@ ReadResult read_here(const Source& source) {
   MeshBuilder builder(source);
   builder.note("The importer (assimp) delivers 32-bit floats; those are taken as the input.");
   AssimpReader(source, *scene, builder).read();
-  double unit = 0;
-  if (scene->mMetaData != nullptr && scene->mMetaData->Get("UnitScaleFactor", unit)) {
+  if (const double unit = centimetres_of(*scene); unit > 0) {
     builder.set_unit(unit * 0.01);
     if (unit != 1)
       builder.note("The file's unit is " + shortest_digits(unit) +

@@ -13,7 +13,7 @@
 #include <cmath>
 #include <cstdio>
 #include <system_error>
-#include <tuple>
+#include <utility>
 
 #include "convex_formats.h"
 #include "output.h"
@@ -248,6 +248,7 @@ class NewFolder {
   /// Gives it the target's name, and the folder that had that name before is removed. Of several
   /// writers at the same time, the last one wins; each puts whole folders there.
   /// @return 0, or errno: also where the name is a file's or a link's
+  /// @throws Error{OutputFailed} where what was there before is now elsewhere, saying where
   [[nodiscard]] int take_place_of(const fs::path& target) {
     constexpr int kMostAttempts = 1000;  // each fails only where another writer was faster
     for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
@@ -266,7 +267,9 @@ class NewFolder {
       why = move_to(target);
       if (why == 0) return 0;
       if (!is_in_the_way(why)) {
-        std::ignore = old.move_to(target);  // fails only where something else has come there
+        if (old.move_to(target) != 0)
+          cannot_write(target, std::generic_category().message(why) +
+                                   "; what was there is now in '" + old.let_go().string() + "'");
         return why;
       }
     }
@@ -274,6 +277,9 @@ class NewFolder {
   }
 
  private:
+  /// It stays. @return its name
+  fs::path let_go() { return std::exchange(path_, {}); }
+
   /// errno of a rename to the name of a folder that is not empty.
   static bool is_in_the_way(int why) { return why == ENOTEMPTY || why == EEXIST; }
 

@@ -108,4 +108,12 @@ std::vector<LinkPair> examine_pairs(const RobotModel& robot, const PairOptions& 
   return out;
 }
 
+std::vector<AllowedPair> pairs_without_check(const RobotModel& robot,
+                                             const std::vector<LinkPair>& examined) {
+  std::vector<AllowedPair> out = connected_links(robot);
+  for (const LinkPair& pair : examined)
+    if (pair.reason == Reason::Never) out.push_back({pair.a, pair.b, Reason::Never});
+  return out;
+}
+
 }  // namespace kaboum::world

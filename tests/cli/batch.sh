@@ -67,9 +67,23 @@ again_back '1 of them earlier'
 cp -p kept.off back/t.off
 again_back '1 of them earlier'
 cmp -s back-first/results/t.ply back-whole/results/t.ply || fail "of an input that was changed and put back: another result"
-# What fails leaves no result of other options behind.
-expect 1 '2 failed' "$B" back -o back-whole --no-pictures --command bmesh-decimate --ratio 2
-[ -z "$(find back-whole/results -type f)" ] || fail "stale: $(find back-whole/results -type f)"
+# What fails, or writes nothing, takes nothing away, and is not said to have a result.
+for command in 'bmesh-decimate --ratio 2' no-such-program "true {input}"; do
+  # shellcheck disable=SC2086
+  "$B" back -o back-whole --no-pictures --quiet --report said.json --command $command 2>err.txt
+  cmp -s back-first/results/t.ply back-whole/results/t.ply || fail "$command: the result of other options is another"
+  [ "$(grep -c '"sha256": ""\|"sha256":""' said.json)" -ge 1 ] || fail "$command: a result: $(cat said.json)"
+done
+again_back '2 of them earlier'
+# Another input of the same name, size and time.
+mkdir pa pb
+tetrahedron | sed 's/^1 0 0/1.5 0 0/' >pa/t.off
+tetrahedron | sed 's/^1 0 0/9.5 0 0/' >pb/t.off
+touch -d @1 pa/t.off pb/t.off
+expect 0 '1 done; p-out' "$B" pa -o p-out --no-pictures
+expect 0 '1 done; p-out' "$B" pb -o p-out --no-pictures
+"$BIN/bound-verify" --outer pb/t.off p-out/results/t.ply --quiet || fail "the result of another input"
+expect 2 'depfile' "$B" back -o x --command bmesh-decimate --ratio 0.5 --depfile=x.d
 
 # A robot is done again when one of its meshes has changed.
 mkdir robot
@@ -84,6 +98,19 @@ tetrahedron >t.off
 robot '1 done; robots' 3%
 robot '1 of them earlier' 3%
 robot '1 done; robots' 8%
+robot '1 done; robots' 3%
+# One that failed for its mesh; one where the program writes nothing; somebody's own robot.
+expect 1 '1 failed' "$B" robot/a.urdf -o robots2 --no-pictures --command bcd-decompose --epsilon 3% --effort slow
+echo no mesh >robot/part.obj
+expect 1 '1 failed' "$B" robot/a.urdf -o robots2 --no-pictures --command bcd-decompose --epsilon 3% --effort fast
+"$BIN/mesh-prepare" t.off -o robot/part.obj --quiet
+expect 0 '1 done; robots2' "$B" robot/a.urdf -o robots2 --no-pictures --command bcd-decompose --epsilon 3% --effort fast
+expect 0 '1 done' "$B" robot/a.urdf -o robots2 --no-pictures --report said.json --command true '{input}' '{output}'
+grep -q '"sha256": ""' said.json || fail "a robot of before is the result of a program that writes nothing: $(cat said.json)"
+mkdir -p robots3/results/a
+echo own >robots3/results/a/mine.urdf
+expect 1 '1 failed' "$B" robot/a.urdf -o robots3 --no-pictures --command bcd-decompose --epsilon 3% --effort fast
+[ "$(cat robots3/results/a/mine.urdf)" = own ] || fail "somebody's robot is gone"
 robot '1 done; robots' 3%
 "$BIN/bound-verify" robot robot/a.urdf robots/results/a/a.urdf --epsilon 3% --quiet || fail "the robot is another batch's"
 

@@ -113,14 +113,16 @@ cp -r formats fewer
 expect 0 '' "$D" robot/r.urdf -o fewer --visual --epsilon 9% --effort fast
 [ -e fewer/r.urdf ] && [ ! -e fewer/r.sdf ] && [ ! -e fewer/r.xml ] || fail "formats of before: $(ls fewer)"
 # Pairs of links.
-expect 0 'proved never to touch' "$D" robot/r.urdf -o pairs --visual --epsilon 3% --effort fast --srdf --report pairs.json --depfile pairs.d
-grep -q '^pairs/r.urdf pairs/r.srdf: ' pairs.d || fail "dependency file: $(cat pairs.d)"
-python3 - <<'END' || fail "pairs: $(cat pairs/r.srdf)"
+sed 's,</robot>,<link name="eye"/><joint name="c" type="fixed"><parent link="base"/><child link="eye"/><origin xyz="0 0 0.1"/></joint></robot>,' robot/r.urdf >robot/pairs.urdf
+expect 0 '2 adjacent, 1 proved never to touch, 1 fixed' "$D" robot/pairs.urdf -o pairs --visual --epsilon 3% --effort fast --srdf --report pairs.json --depfile pairs.d
+grep -q '^pairs/pairs.urdf pairs/pairs.srdf: ' pairs.d || fail "dependency file: $(cat pairs.d)"
+python3 - <<'END' || fail "pairs: $(cat pairs/pairs.srdf)"
 import json
 import xml.etree.ElementTree as tree
 said = json.load(open("pairs.json"))["pairs_of_links"]
-found = [p.get("reason") for p in tree.parse("pairs/r.srdf").getroot().iter("disable_collisions")]
-assert found.count("Never") == said["never_in_contact"] and found.count("Adjacent") >= said["adjacent"] > 0, (found, said)
+found = [p.get("reason") for p in tree.parse("pairs/pairs.srdf").getroot().iter("disable_collisions")]
+assert sorted(found) == ["Adjacent", "Adjacent", "Default", "Never"], found
+assert said == {"adjacent": 2, "never_in_contact": 1, "fixed_to_each_other": 1, "others": 0}, said
 END
 expect 2 '--links' "$D" robot/r.urdf -o x --visual --srdf --links base
 expect 2 'for robots' "$D" robot/meshes/t.off -o x.glb --srdf

@@ -40,7 +40,7 @@ expect 0 '' with_xacro "$BIN/bmesh-decimate" robot/plain.XACRO -o plain --epsilo
 # What somebody has written himself beside the xacro file stays.
 cp robot/arm.urdf kept.urdf
 for tool in bcd-decompose bmesh-decimate; do
-  expect 4 'robot/arm.urdf: exists, and not as a result' with_xacro "$BIN/$tool" robot/arm.urdf.xacro -o robot --epsilon 2%
+  expect 4 'robot/arm.urdf: exists, and is not marked as a result' with_xacro "$BIN/$tool" robot/arm.urdf.xacro -o robot --epsilon 2%
   cmp -s robot/arm.urdf kept.urdf || fail "$tool: robot/arm.urdf is another"
 done
 rm robot/arm.urdf

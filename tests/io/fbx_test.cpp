@@ -26,7 +26,7 @@ const std::string kMesh = R"(	Geometry: 10, "Geometry::g", "Mesh" {
 	}
 )";
 
-std::string fbx(const std::string& objects) {
+std::string fbx(const std::string& objects, const std::string& settings = "") {
   return R"(; FBX 7.3.0 project file { not a brace
 FBXHeaderExtension:  {
 	FBXHeaderVersion: 1003
@@ -37,7 +37,8 @@ GlobalSettings:  {
 	Version: 1000
 	Properties70:  {
 		P: "UpAxis", "int", "Integer", "",1
-	}
+)" + settings +
+         R"(	}
 }
 Objects:  {
 )" + objects +
@@ -114,6 +115,22 @@ TEST(Fbx, ObjectsThatMayHoldASurfaceAreRefused) {
   }
   EXPECT_NO_THROW(
       parse(fbx(kMesh + object("Material", "") + object("NodeAttribute", "Light")), Format::Fbx));
+}
+
+TEST(Fbx, Units) {
+  if (!can_read()) return;
+  const auto unit_of = [](const std::string& factor) {
+    return parse(fbx(kMesh,
+                     "\t\tP: \"UnitScaleFactor\", \"double\", \"Number\", \"\"," + factor + "\n"),
+                 Format::Fbx)
+        .unit;
+  };
+  EXPECT_EQ(unit_of("0.1"), "mm");  // which the importer keeps as a float
+  EXPECT_EQ(unit_of("1"), "cm");
+  EXPECT_EQ(unit_of("2.54"), "in");
+  EXPECT_EQ(unit_of("30.48"), "ft");
+  EXPECT_EQ(unit_of("100"), "m");
+  EXPECT_EQ(parse(fbx(kMesh), Format::Fbx).unit, "cm");
 }
 
 TEST(Fbx, Damaged) {

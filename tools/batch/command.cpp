@@ -50,8 +50,7 @@ std::vector<std::string> command_of(const Job& job, const fs::path& folder,
   if (explicit_input) return command;
   command.insert(command.begin() + 1, {job.input.string(), "-o", made.string(), "--report",
                                        (scratch / kReport).string(), "--threads", "1"});
-  if (std::ranges::find(command, "--depfile") == command.end())
-    command.insert(command.end(), {"--depfile", (scratch / kSources).string()});
+  command.insert(command.end(), {"--depfile", (scratch / kSources).string()});
   return command;
 }
 
@@ -77,15 +76,12 @@ std::string reason_of(const Ended& ended, bool late, const std::string& last_wor
   return last_words.empty() ? "exit code " + std::to_string(ended.exit_code) : last_words;
 }
 
-std::vector<FileState> sources_in(const fs::path& scratch, const Job& job,
-                                  std::chrono::system_clock::time_point since) {
-  const std::int64_t begun =
-      std::chrono::duration_cast<std::chrono::nanoseconds>(since.time_since_epoch()).count();
+std::vector<FileState> sources_in(const fs::path& scratch, const Job& job, std::int64_t since) {
   std::vector<FileState> sources;
   for (const std::string& name : tools::inputs_in_depfile((scratch / kSources).string())) {
     if (name == job.input.string()) continue;
-    sources.push_back(file_state(fs::absolute(name).lexically_normal()));
-    if (sources.back().modified >= begun) sources.back().modified = -1;
+    sources.push_back(file_state(name));
+    if (sources.back().changed >= since) sources.back().modified = -1;
   }
   return sources;
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -35,9 +35,8 @@ std::string reason_of(const Ended& ended, bool late, const std::string& last_wor
 /// Files that the result depends on beside the input, as the program says: a robot's meshes, what
 /// xacro or a scene includes. One that changed while the program ran, so that it is not known which
 /// was read, is given no time, and differs at the next look.
-/// @param since  when the program was started
-std::vector<FileState> sources_in(const fs::path& scratch, const Job& job,
-                                  std::chrono::system_clock::time_point since);
+/// @param since  when the program was started, by the file system's clock [ns]
+std::vector<FileState> sources_in(const fs::path& scratch, const Job& job, std::int64_t since);
 
 /// Adds what the program's report says, where there is one.
 void add_report_in(const fs::path& scratch, Record& record);

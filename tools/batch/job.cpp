@@ -139,6 +139,15 @@ void name_outputs(std::vector<Job>& jobs, const std::string& extension) {
                  extension_for(job, extension);
 }
 
+/// A batch asks for dependency files itself, to know when results are to be made anew.
+void require_own_depfile(const std::vector<std::string>& command) {
+  for (const std::string& word : command)
+    if (word == "--depfile" || word.starts_with("--depfile="))
+      throw Error(ErrorCode::InvalidArgument,
+                  "--depfile: a batch has one written for itself, to see what a result depends on; "
+                  "leave it out");
+}
+
 }  // namespace
 
 Rule parse_rule(const std::string& text) {
@@ -170,14 +179,23 @@ std::vector<Rule> read_rules(const std::string& file) {
 }
 
 FileState file_state(const fs::path& file) {
+  const fs::path path = fs::absolute(file).lexically_normal();
   struct stat status {};
-  if (stat(file.c_str(), &status) != 0) return {file};
-  return {file, static_cast<std::uintmax_t>(status.st_size),
-          status.st_mtim.tv_sec * 1'000'000'000LL + status.st_mtim.tv_nsec};
+  if (stat(path.c_str(), &status) != 0) return {path};
+  const auto nanoseconds = [](const timespec& t) { return t.tv_sec * 1'000'000'000LL + t.tv_nsec; };
+  return {path, static_cast<std::uintmax_t>(status.st_size), nanoseconds(status.st_mtim),
+          nanoseconds(status.st_ctim)};
+}
+
+bool Job::may_refer_to_others() const {
+  const fs::path extension = input.extension();
+  return makes_folder() || extension == ".gltf" || extension == ".wrl" || extension == ".x3d";
 }
 
 std::string Job::key() const {
-  std::string text = std::to_string(bytes) + " " + std::to_string(modified) + " " KABOUM_VERSION;
+  std::string text = state.path.string() + "\n" + std::to_string(state.bytes) + " " +
+                     std::to_string(state.modified) + " " + std::to_string(state.changed) +
+                     " " KABOUM_VERSION;
   for (const std::string& word : command) text += "\n" + word;
   return io::sha256(text + "\n" + output);
 }
@@ -194,13 +212,10 @@ std::vector<Job> find_jobs(const JobOptions& options) {
   }
   if (jobs.empty())
     throw Error(ErrorCode::InvalidInput, "no file that could be read matches a rule");
+  for (const Job& job : jobs) require_own_depfile(job.command);
   name_outputs(jobs, options.extension);  // which depend on all names
   if (options.shard) std::erase_if(jobs, [&](const Job& j) { return !options.shard->has(j.name); });
-  for (Job& job : jobs) {
-    const FileState input = file_state(job.input);
-    job.bytes = input.bytes;
-    job.modified = input.modified;
-  }
+  for (Job& job : jobs) job.state = file_state(job.input);
   return jobs;
 }
 

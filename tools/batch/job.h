@@ -25,11 +25,12 @@ Rule parse_rule(const std::string& text);
 /// A rule for each line; `#` begins a comment. @throws Error naming file and line
 std::vector<Rule> read_rules(const std::string& file);
 
-/// A file as it was at a moment.
+/// A file as it was at a moment; all but the path 0 where there is none.
 struct FileState {
-  fs::path path;
+  fs::path path;  ///< absolute
   std::uintmax_t bytes = 0;
-  std::int64_t modified = 0;  ///< [ns]; with the size 0 where it cannot be read
+  std::int64_t modified = 0;  ///< [ns]
+  std::int64_t changed = 0;   ///< [ns] which, unlike `modified`, nobody can set
 
   bool operator==(const FileState&) const = default;
 };
@@ -41,13 +42,14 @@ struct Job {
   fs::path input;
   std::string output;                ///< below the folder of results
   std::vector<std::string> command;  ///< of its rule
-  std::uintmax_t bytes = 0;          ///< of the input
-  std::int64_t modified = 0;         ///< [ns]
+  FileState state = {};              ///< of the input
 
   /// Whether the result is a folder, as robots are.
   [[nodiscard]] bool makes_folder() const {
     return input.extension() == ".urdf" || input.extension() == ".xacro";
   }
+  /// Whether the input's format is one whose files refer to others.
+  [[nodiscard]] bool may_refer_to_others() const;
   /// Changes with the input, the options and the version. What else the result depends on is known
   /// when it has been made (Record::sources).
   [[nodiscard]] std::string key() const;

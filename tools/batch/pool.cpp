@@ -76,7 +76,7 @@ bool Pool::run(std::vector<const Job*> jobs) {
   all_ = jobs.size();
   // The largest last would run alone in the end.
   std::stable_sort(jobs.begin(), jobs.end(),
-                   [](const Job* a, const Job* b) { return a->bytes > b->bytes; });
+                   [](const Job* a, const Job* b) { return a->state.bytes > b->state.bytes; });
   std::deque<const Job*> waiting(jobs.begin(), jobs.end());
   while (!waiting.empty() || !running_.empty()) {
     start_what_fits(waiting);
@@ -107,10 +107,11 @@ void Pool::begin(const Job& job, std::uintmax_t memory) {
   run.job = &job;
   run.scratch = o_.scratch / std::to_string(++number_);
   run.begin = Clock::now();
-  run.since = std::chrono::system_clock::now();
   run.memory = memory;
   std::error_code error;
   fs::create_directories(run.scratch, error);
+  run.since = file_state(run.scratch).changed;  // by the clock of the file system
+  run.before = marks_of(o_.folder / job.output);
   used_ += memory;
   const pid_t id =
       start(command_of(job, o_.folder, run.scratch), run.scratch / kMessages, o_.most_memory);
@@ -152,7 +153,7 @@ void Pool::conclude(Running& run, const Ended& ended) {
   const std::string words = ended.exit_code == 0 ? "" : last_line(run.scratch / kMessages);
   r.state = state_of(ended, run.ended_by_us, words);
   r.exit_code = ended.exit_code;
-  r.input_bytes = job.bytes;
+  r.input_bytes = job.state.bytes;
   r.wall_seconds = seconds_since(run.begin);
   r.cpu_seconds = ended.cpu_seconds;
   r.peak_megabytes = ended.peak_megabytes;
@@ -161,14 +162,13 @@ void Pool::conclude(Running& run, const Ended& ended) {
   const fs::path place = o_.folder / job.output;
   const fs::path made = job.makes_folder() ? place : result_in(run.scratch, job);
   if (r.state == "done" || r.state == "no") {
-    if (is_there(job, made)) {
+    if (!marks_of(made).empty() && marks_of(made) != run.before) {
       r.sha256 = digest_of(made);  // of what this program has made, whoever else writes there
       r.output_bytes = size_of(made);
       if (!job.makes_folder()) move(made, place);
     }
     add_report_in(run.scratch, r);
   }
-  if (!r.has_result()) remove_result(job, place);
   r.sources = sources_in(run.scratch, job, run.since);
   if (!(o_.pictures && r.has_result() && draw(run, r))) add(r);
 }
@@ -212,15 +212,15 @@ void Pool::end_late_ones() {
 std::uintmax_t Pool::expected_memory(const Job& job) const {
   const auto known = bytes_per_byte_.find(job.command.front());
   const double factor = known == bytes_per_byte_.end() ? kFirstGuess : known->second;
-  return kLeastMemory + static_cast<std::uintmax_t>(factor * static_cast<double>(job.bytes));
+  return kLeastMemory + static_cast<std::uintmax_t>(factor * static_cast<double>(job.state.bytes));
 }
 
 /// The most that was seen is expected of the next ones. Small files say little.
 void Pool::learn(const Job& job, const Ended& ended) {
   const double peak = ended.peak_megabytes * 1048576 - static_cast<double>(kLeastMemory);
-  if (job.bytes < 100'000 || peak <= 0) return;
+  if (job.state.bytes < 100'000 || peak <= 0) return;
   double& factor = bytes_per_byte_[job.command.front()];
-  factor = std::max(factor, 1.2 * peak / static_cast<double>(job.bytes));
+  factor = std::max(factor, 1.2 * peak / static_cast<double>(job.state.bytes));
 }
 
 void Pool::show(std::size_t waiting) const {

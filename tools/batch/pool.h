@@ -1,6 +1,5 @@
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -46,8 +45,9 @@ class Pool {
     const Job* job = nullptr;
     fs::path scratch;
     Clock::time_point begin;
-    std::chrono::system_clock::time_point since;  ///< its program is at work
-    std::uintmax_t memory = 0;                    ///< expected [bytes]
+    std::int64_t since = 0;         ///< its program is at work [ns]
+    std::vector<FileState> before;  ///< what was in the result's place
+    std::uintmax_t memory = 0;      ///< expected [bytes]
     bool ended_by_us = false;
     std::optional<Record> drawing;  ///< the program is done, its picture is being drawn
   };

@@ -32,8 +32,10 @@ std::string text_at(const Json& json, std::initializer_list<const char*> keys) {
 Json sources_of(const Record& record) {
   Json sources = Json::array();
   for (const FileState& file : record.sources)
-    sources.push_back(
-        {{"path", file.path.string()}, {"bytes", file.bytes}, {"modified", file.modified}});
+    sources.push_back({{"path", file.path.string()},
+                       {"bytes", file.bytes},
+                       {"modified", file.modified},
+                       {"changed", file.changed}});
   return sources;
 }
 
@@ -106,9 +108,9 @@ std::optional<Record> record_from(const std::string& line) {
                              {"picture", &r.picture}})
       json.at(key).get_to(*text);
     for (const Json& source : json.at("sources"))
-      r.sources.push_back({source.at("path").get<std::string>(),
-                           source.at("bytes").get<std::uintmax_t>(),
-                           source.at("modified").get<std::int64_t>()});
+      r.sources.push_back(
+          {source.at("path").get<std::string>(), source.at("bytes").get<std::uintmax_t>(),
+           source.at("modified").get<std::int64_t>(), source.at("changed").get<std::int64_t>()});
     json.at("exit_code").get_to(r.exit_code);
     json.at("input_bytes").get_to(r.input_bytes);
     json.at("output_bytes").get_to(r.output_bytes);

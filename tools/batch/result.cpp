@@ -11,21 +11,13 @@
 namespace kaboum::batch {
 namespace {
 
+/// Sorted. @throws fs::filesystem_error where it cannot be looked into
 std::vector<fs::path> files_in(const fs::path& folder) {
   std::vector<fs::path> files;
-  std::error_code error;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder, error))
-    if (entry.is_regular_file(error)) files.push_back(entry.path());
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   return files;
-}
-
-std::vector<fs::path> robots_in(const fs::path& folder) {
-  std::vector<fs::path> robots;
-  std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
-    if (entry.path().extension() == ".urdf") robots.push_back(entry.path());
-  return robots;
 }
 
 std::string digest_of_file(const fs::path& file) { return io::sha256(io::read_file(file)); }
@@ -39,7 +31,11 @@ std::uintmax_t size_of(const fs::path& result) {
     return error ? 0 : size;
   }
   std::uintmax_t sum = 0;
-  for (const fs::path& file : files_in(result)) sum += size_of(file);
+  try {
+    for (const fs::path& file : files_in(result)) sum += size_of(file);
+  } catch (const fs::filesystem_error&) {
+    return 0;
+  }
   return sum;
 }
 
@@ -54,20 +50,21 @@ std::string digest_of(const fs::path& result) {
     return io::sha256(names);
   } catch (const Error&) {
     return {};
+  } catch (const fs::filesystem_error&) {
+    return {};
   }
 }
 
-bool is_there(const Job& job, const fs::path& result) {
+std::vector<FileState> marks_of(const fs::path& result) {
   std::error_code error;
-  return job.makes_folder() ? !robots_in(result).empty() : fs::exists(result, error);
-}
-
-void remove_result(const Job& job, const fs::path& result) {
-  std::error_code error;
-  if (!job.makes_folder())
-    fs::remove(result, error);
-  else
-    for (const fs::path& robot : robots_in(result)) fs::remove(robot, error);
+  if (!fs::is_directory(result, error))
+    return fs::exists(result, error) ? std::vector{file_state(result)} : std::vector<FileState>();
+  std::vector<FileState> marks;
+  for (fs::directory_iterator at(result, error); !error && at != fs::directory_iterator();
+       at.increment(error))
+    if (at->path().extension() == ".urdf") marks.push_back(file_state(at->path()));
+  std::ranges::sort(marks, {}, &FileState::path);
+  return marks;
 }
 
 void move(const fs::path& from, const fs::path& to) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "job.h"
 
@@ -16,12 +17,9 @@ std::uintmax_t size_of(const fs::path& result);
 /// Empty: there is none, or it cannot be read.
 std::string digest_of(const fs::path& result);
 
-/// Whether there is a result: of a folder, its robot.
-bool is_there(const Job& job, const fs::path& result);
-
-/// Takes away what an earlier run with other options, or of another input, has left: a file; of a
-/// robot's folder the robot, whose bodies mean nothing without it.
-void remove_result(const Job& job, const fs::path& result);
+/// What tells whether a program has written a result, though the bytes be the same: of a file, its
+/// state; of a folder, those of the robots in it. Empty: there is none.
+std::vector<FileState> marks_of(const fs::path& result);
 
 /// @throws Error{OutputFailed}
 void move(const fs::path& from, const fs::path& to);

@@ -17,7 +17,6 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
-#include <iterator>
 #include <sstream>
 #include <string_view>
 #include <vector>
@@ -180,7 +179,8 @@ std::string run_xacro(const fs::path& file, const std::string& option, const Xac
          "the program xacro, which expands it, is not on PATH; install xacro (ROS has it), or "
          "run where it is: xacro " +
              file.string() + " > robot.urdf");
-  const std::string name = fs::absolute(file).string();
+  std::string name = file.string();
+  if (name.starts_with('-')) name.insert(0, "./");
   if (name.find(":=") != std::string::npos)
     fail(file, "xacro takes a path with ':=' for an argument; rename the file or its folder");
   std::vector<std::string> words{program, name};
@@ -221,7 +221,18 @@ std::string expand_xacro(const fs::path& file, const XacroLimits& limits) {
 
 std::vector<std::string> xacro_includes(const fs::path& file, const XacroLimits& limits) {
   std::istringstream printed(run_xacro(file, "--deps", limits));
-  std::vector<std::string> files{std::istream_iterator<std::string>(printed), {}};
+  std::vector<std::string> files;
+  std::string name;  // of a file: as many words as it takes
+  for (std::string word; printed >> word;) {
+    name += (name.empty() ? "" : " ") + word;
+    if (!is_file(name)) continue;
+    files.push_back(std::move(name));
+    name.clear();
+  }
+  if (!name.empty())
+    fail(file, "it includes '" + name +
+                   "' by what xacro --deps says, which is no file: dependencies are not known; "
+                   "rename files whose names have blanks at the ends or several together");
   std::ranges::sort(files);  // xacro's order is that of a set
   return files;
 }

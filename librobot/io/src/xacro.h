@@ -14,8 +14,9 @@ struct XacroLimits {
   std::uint64_t output = std::uint64_t{64} << 20U;  ///< [bytes]
 };
 
-/// What `xacro FILE` makes of a file: run as a process of its own, found on PATH, with the file's
-/// absolute path, which is no option.
+/// What `xacro FILE` makes of a file: run as a process of its own, found on PATH. Its name as it is
+/// given, which xacro writes into a comment, in the folder of this process, as a shell would call
+/// it; one that begins with "-" as ./NAME.
 ///
 /// @throws Error{InvalidInput} when it is not on PATH, fails, is ended by a signal, or reaches a
 ///   limit; naming the file and what it said last. Also where the path has ":=" in it, which xacro
@@ -23,9 +24,9 @@ struct XacroLimits {
 /// @throws Error{LimitReached} when no process can be started.
 std::string expand_xacro(const std::filesystem::path& file, const XacroLimits& limits = {});
 
-/// What `xacro --deps FILE` prints: the files that it includes, in order. xacro puts blanks between
-/// them, so that names with blanks come in pieces.
-/// @throws as expand_xacro
+/// The files that it includes, sorted, as `xacro --deps FILE` prints them: with blanks between them
+/// and in them, so that as many words are taken for a name as it takes to be that of a file.
+/// @throws as expand_xacro; Error{InvalidInput} where words are left.
 std::vector<std::string> xacro_includes(const std::filesystem::path& file,
                                         const XacroLimits& limits = {});
 
