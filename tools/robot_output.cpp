@@ -6,7 +6,9 @@
 #include <kaboum/io/mesh_io.h>
 
 #include <algorithm>
+#include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "cli.h"
 #include "file_names.h"

@@ -6,10 +6,11 @@
 #include <kaboum/base/error.h>
 #include <kaboum/base/sha256.h>
 
-#include <algorithm>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 
