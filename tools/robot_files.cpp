@@ -77,7 +77,8 @@ std::string RobotFiles::state_of(const std::string& place) const {
   if (!fs::is_directory(folder_ / place, error)) {
     add(place);
   } else {
-    for (const std::string& name : names_in(folder_ / place)) add(place + "/" + name);
+    for (const std::string& name : names_in(folder_ / place))
+      add(std::string(place).append("/").append(name));
   }
   return out;
 }

@@ -1,18 +1,26 @@
 // SHA-256's compression function by the SHA extensions of x86-64.
 
-#include <kaboum/base/processor.h>
-
 #include "sha256_blocks.h"
 
-#ifdef KABOUM_SHA
+#if defined(__x86_64__) && defined(__GNUC__)
+#define KABOUM_SHA
+#include <cpuid.h>
 #include <immintrin.h>
 #endif
 
 namespace kaboum::detail {
 
-bool has_sha256_instructions() { return has_sha(); }
-
 #ifdef KABOUM_SHA
+
+bool has_sha256_instructions() {
+  // Not all compilers' __builtin_cpu_supports knows "sha": leaf 7, EBX, bit 29.
+  static const bool has = [] {
+    unsigned a = 0, b = 0, c = 0, d = 0;
+    return __get_cpuid_count(7, 0, &a, &b, &c, &d) != 0 && (b >> 29U & 1U) != 0 &&
+           __builtin_cpu_supports("sse4.1") != 0;
+  }();
+  return has;
+}
 
 // The extensions hold the state as (A, B, E, F) and (C, D, G, H), from the highest word down.
 
@@ -54,6 +62,8 @@ bool has_sha256_instructions() { return has_sha(); }
 }
 
 #else
+
+bool has_sha256_instructions() { return false; }
 
 void sha256_by_processor(Sha256State& state, const char* blocks, std::size_t count) {
   sha256_portable(state, blocks, count);

@@ -5,7 +5,6 @@
 /// have to run everywhere.
 #if defined(__x86_64__) && defined(__GNUC__)
 #define KABOUM_AVX2
-#define KABOUM_SHA
 #endif
 
 namespace kaboum {
@@ -14,15 +13,6 @@ namespace kaboum {
 inline bool has_avx2() {
 #ifdef KABOUM_AVX2
   return __builtin_cpu_supports("avx2") != 0;
-#else
-  return false;
-#endif
-}
-
-/// The same of KABOUM_SHA: instructions for SHA-256 (and SSE 4.1).
-inline bool has_sha() {
-#ifdef KABOUM_SHA
-  return __builtin_cpu_supports("sha") != 0 && __builtin_cpu_supports("sse4.1") != 0;
 #else
   return false;
 #endif
