@@ -8,6 +8,8 @@
 #include <kaboum/robot/robot_file.h>
 
 #include <algorithm>
+#include <map>
+#include <span>
 
 #include "enclosure_words.h"
 #include "result_files.h"
@@ -75,6 +77,13 @@ void write(Run& run, RobotOutput& output, const std::string& extension) {
       new_shapes(run.robot, run.request.shapes, run.made.shapes, [&](std::size_t s) {
         return std::vector<std::string>{folder.part() + "/" + folder.name_of(s) + extension};
       });
+  if (!run.o.no_cache) {
+    std::map<std::size_t, std::span<const char>> meshes;
+    for (std::size_t s = 0; s < run.made.shapes.size(); ++s)
+      if (const auto& mesh = run.made.shapes[s].mesh)
+        meshes.emplace(s, run.made.meshes[*mesh].made.enclosure.bytes());
+    output.reuse(certify::CacheFolder(certify::CacheFolder::default_folder()), meshes);
+  }
   output.write(
       shapes,
       [&](const StoredMesh& stored, const std::filesystem::path& place) {

@@ -11,7 +11,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <optional>
+#include <span>
 
 #include "decompose_preview.h"
 #include "decompose_words.h"
@@ -107,6 +109,13 @@ void write(Run& run, RobotOutput& output) {
   std::vector<std::pair<std::string, std::span<const char>>> links;
   for (const certify::CertifiedLink& link : run.made.links)
     links.emplace_back(run.robot.robot.links[link.certificate().link].name, link.bytes());
+  if (!run.o.no_cache) {
+    std::map<std::size_t, std::span<const char>> meshes;
+    for (std::size_t s = 0; s < run.bodies().shapes.size(); ++s)
+      if (const auto& mesh = run.bodies().shapes[s].mesh)
+        meshes.emplace(s, run.bodies().meshes[*mesh].made.found.set.bytes());
+    output.reuse(certify::CacheFolder(certify::CacheFolder::default_folder()), meshes);
+  }
   output.write(shapes_of(run, output.folder()), write_mesh, std::move(links), run.notes);
 }
 

@@ -86,11 +86,6 @@ bool is_made_by_us(const fs::path& document) {
   }
 }
 
-std::string marked(std::string document) {
-  if (document.find(kMadeByUs) == std::string::npos) document += std::string(kMadeByUs) + "\n";
-  return document;
-}
-
 void refuse(const fs::path& place) {
   throw Error(ErrorCode::OutputFailed, place.string() +
                                            ": exists, and is not marked as a result of this "
@@ -106,6 +101,11 @@ fs::path urdf_name(const fs::path& robot) {
 }
 
 }  // namespace
+
+std::string marked(std::string document) {
+  if (document.find(kMadeByUs) == std::string::npos) document += std::string(kMadeByUs) + "\n";
+  return document;
+}
 
 RobotFolder::RobotFolder(fs::path folder, const robot::RobotFile& robot, std::string part,
                          std::string extension)
@@ -212,8 +212,8 @@ std::vector<std::string> RobotFolder::write(const RobotContents& contents) {
     io::write_file(folder_ / links_.back(), container);
   }
   for (const auto& [extension, text] : contents.documents)
-    io::write_file(document(extension), marked(text));
-  io::write_file(urdf_, marked(contents.urdf));
+    io::write_file(document(extension), text);
+  io::write_file(urdf_, contents.urdf);
   // Those of programs that were ended are found here, too, where the folder can be locked.
   for (const fs::path& mark : turn.is_mine() ? marks_in(folder_) : std::vector{own_mark(folder_)})
     fs::remove(mark, error);

@@ -31,7 +31,10 @@ struct StoredMesh {
   std::string name;  ///< of the folder or file, and the stem of files
 };
 
-/// What is written into the folder.
+/// The text of a document with a comment that says that it is ours, to be replaced.
+std::string marked(std::string document);
+
+/// What is written into the folder; documents and URDF are marked.
 struct RobotContents {
   /// Writes a mesh's files.
   std::function<void(const StoredMesh& stored, const std::filesystem::path& place)> write_mesh;

@@ -5,7 +5,13 @@
 #include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
 
+#include <algorithm>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
 #include "cli.h"
+#include "file_names.h"
 #include "urdf_output.h"
 
 namespace kaboum::tools {
@@ -52,8 +58,9 @@ RobotOutput::RobotOutput(const RobotOptions& options, const std::string& output,
                          const robot::RobotFile& robot, std::string part, std::string extension)
     : o_(options),
       robot_(robot),
-      folder_(output, robot, std::move(part), std::move(extension)),
-      urdf_(robot, output) {}
+      folder_(output, robot, std::move(part), extension),
+      urdf_(robot, output),
+      extension_(std::move(extension)) {}
 
 void RobotOutput::plan(const robot::LinkMeshes& meshes) {
   const robot::ShapeChoice shapes = choice();
@@ -85,6 +92,65 @@ std::vector<std::pair<std::string, std::string>> RobotOutput::other_formats(cons
   return out;
 }
 
+void RobotOutput::reuse(const certify::CacheFolder& cache,
+                        const std::map<std::size_t, std::span<const char>>& meshes) {
+  cache_ = cache;
+  std::map<std::string, std::span<const char>> by_name;
+  for (const auto& [shape, bytes] : meshes) by_name.emplace(folder_.name_of(shape), bytes);
+  for (const auto& [name, bytes] : by_name) {
+    places_.push_back(folder_.part() + "/" + name + extension_);
+    meshes_hash_.add(places_.back());
+    meshes_hash_.add({bytes.data(), bytes.size()});
+  }
+}
+
+/// Where all is there already, the robot counts as written now, for Make.
+void RobotOutput::write_or_reuse(RobotContents& contents) {
+  if (!cache_) {
+    links_ = folder_.write(contents);
+    return;
+  }
+  PartsHash key = meshes_hash_;
+  for (const std::string& word : {std::string(version()), o_.bodies}) key.add(word);
+  // What is known of files before they are written, by place.
+  std::map<std::string, std::string_view> known;
+  std::vector<std::string> links;
+  FileNames names;  // as folder_ gives them
+  for (const auto& [link, container] : contents.links) {
+    links.push_back("links/" + names.unique(link) + ".glb");
+    known.emplace(links.back(), std::string_view(container.data(), container.size()));
+  }
+  for (const auto& [extension, text] : contents.documents)
+    known.emplace(folder_.document(extension).filename().string(), text);
+  const std::string urdf = folder_.urdf().filename().string();
+  std::vector<std::string> places = places_;
+  for (const auto& [place, bytes] : known) {
+    key.add(place);
+    key.add(bytes);
+    places.push_back(place);
+  }
+  key.add(urdf);
+  key.add(contents.urdf);
+  places.push_back(urdf);
+  RobotFiles files(*cache_, folder_.path(), key.hash());
+  if (files.are_there(places)) {
+    links_ = std::move(links);
+    std::error_code error;
+    for (const std::string& file : documents())
+      fs::last_write_time(file, fs::file_time_type::clock::now(), error);
+    return;
+  }
+  contents.write_mesh = [&, write = std::move(contents.write_mesh)](const StoredMesh& mesh,
+                                                                    const fs::path& place) {
+    write(mesh, place);
+    files.note_written(folder_.part() + "/" + mesh.name + extension_);
+  };
+  links_ = folder_.write(contents);
+  for (const auto& [place, bytes] : known) files.note(place, bytes);
+  files.note(urdf, contents.urdf);
+  files.remember();
+}
+
 void RobotOutput::write(const NewShapes& shapes, decltype(RobotContents::write_mesh) write_mesh,
                         std::vector<std::pair<std::string, std::span<const char>>> links,
                         Notes& notes) {
@@ -98,8 +164,9 @@ void RobotOutput::write(const NewShapes& shapes, decltype(RobotContents::write_m
       urdf_.replace(name, o_.visual(), shapes[l], names);
   }
   contents.documents.insert(contents.documents.end(), more_.begin(), more_.end());
-  contents.urdf = urdf_.text();
-  links_ = folder_.write(contents);
+  for (auto& [extension, text] : contents.documents) text = marked(std::move(text));
+  contents.urdf = marked(urdf_.text());
+  write_or_reuse(contents);
 }
 
 std::vector<std::string> RobotOutput::documents() const {
@@ -107,6 +174,14 @@ std::vector<std::string> RobotOutput::documents() const {
   if (o_.writes("mjcf")) out.push_back(folder_.document(kMjcf).string());
   if (o_.writes("sdf")) out.push_back(folder_.document(kSdf).string());
   for (const auto& [extension, text] : more_) out.push_back(folder_.document(extension).string());
+  return out;
+}
+
+std::vector<std::string> RobotOutput::stale() const {
+  std::vector<std::string> out = folder_.stale();
+  std::erase_if(out, [&](const std::string& file) {
+    return std::ranges::find(links_, file) != links_.end();
+  });
   return out;
 }
 
@@ -121,10 +196,10 @@ void RobotOutput::say(bool quiet, const Notes& notes) const {
   for (const std::string& text : notes.lines()) log(quiet, text);
   for (const std::string& text : robot::notes_on_flat_shapes(robot_, visual, o_.links))
     log(quiet, text);
-  const std::vector<std::string> stale = folder_.stale();
-  if (!stale.empty())
-    log(quiet, folder_.path().string() + ": " + robot::names_of(stale) +
-                   (stale.size() == 1 ? " is" : " are") +
+  const std::vector<std::string> old = stale();
+  if (!old.empty())
+    log(quiet, folder_.path().string() + ": " + robot::names_of(old) +
+                   (old.size() == 1 ? " is" : " are") +
                    " not of this result (perhaps of an earlier one), and left there");
   for (const std::string& text :
        robot::notes_on({{}, bare().other}, visual,
@@ -137,7 +212,7 @@ Json RobotOutput::report() const {
   const std::vector<std::string> files = documents();
   return {{"urdf", files.front()},
           {"documents", files},
-          {"stale", folder_.stale()},
+          {"stale", stale()},
           {"links_without_shapes", bare().all()}};
 }
 

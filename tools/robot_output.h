@@ -3,6 +3,8 @@
 #include <kaboum/robot/link_meshes.h>
 
 #include <functional>
+#include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -10,6 +12,7 @@
 
 #include "notes.h"
 #include "report.h"
+#include "robot_files.h"
 #include "robot_folder.h"
 #include "robot_options.h"
 #include "robot_shapes.h"
@@ -41,6 +44,11 @@ class RobotOutput {
     more_.emplace_back(std::move(extension), std::move(text));
   }
 
+  /// Has `write` leave files alone that are there as an earlier run has written them.
+  /// @param meshes  what all files of a mesh are made of, by the shape that it stands for
+  void reuse(const certify::CacheFolder& cache,
+             const std::map<std::size_t, std::span<const char>>& meshes);
+
   /// Writes the folder. Until then nothing is written.
   void write(const NewShapes& shapes, decltype(RobotContents::write_mesh) write_mesh,
              std::vector<std::pair<std::string, std::span<const char>>> links, Notes& notes);
@@ -58,14 +66,20 @@ class RobotOutput {
  private:
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> other_formats(
       const NewShapes& shapes, Notes& notes) const;
+  void write_or_reuse(RobotContents& contents);
+  [[nodiscard]] std::vector<std::string> stale() const;
   [[nodiscard]] robot::BareLinks bare() const;
 
   const RobotOptions& o_;
   const robot::RobotFile& robot_;
   RobotFolder folder_;
   RobotUrdf urdf_;
+  std::string extension_;
   std::vector<std::string> links_;
   std::vector<std::pair<std::string, std::string>> more_;  // extension, text
+  std::optional<certify::CacheFolder> cache_;              // none: all is written
+  PartsHash meshes_hash_;                                  // of meshes' places and what is in them
+  std::vector<std::string> places_;                        // of meshes, relative to the folder
 };
 
 /// "1 body", "2 bodies".

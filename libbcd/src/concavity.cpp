@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -98,12 +100,38 @@ class Sampler {
 
   void run() {
     const Vec3 center = box_.center();
+    if (limit_ < std::numeric_limits<double>::infinity()) look_at_middles();
     for (const Triangle& t : hull_.triangles()) {
       if (out_.worst > limit_) return;
       sample_facet(t, center);
     }
     look_at_witnesses();
     if (out_.worst <= limit_) measure_largest();
+  }
+
+  /// Adds what one more witness tells.
+  void run_witness(const SolidField::Witness& witness) {
+    std::vector<HullSide> sides;
+    find_sides(sides);
+    std::size_t likely = 0;
+    look_at(witness, sides, likely);
+    measure_largest();
+  }
+
+  /// The volume, and ∫ d⁴ until it exceeds what is allowed for that volume.
+  void run_fourth(const std::function<double(double volume)>& limit_of) {
+    what_ = What::Fourth;
+    const Vec3 center = box_.center();
+    for (const Triangle& t : hull_.triangles()) {
+      const Vec3& a = points_[t[0]];
+      out_.volume += (points_[t[1]] - a).cross(points_[t[2]] - a).dot(a - center) / 6;
+    }
+    const double limit = limit_of(out_.volume);
+    for (const Triangle& t : hull_.triangles()) {
+      if (out_.fourth > limit) return;
+      sample_facet(t, center);
+    }
+    if (out_.fourth <= limit) look_at_witnesses();
   }
 
  private:
@@ -140,7 +168,18 @@ class Sampler {
     const double d = solid_.field(p);
     if (d <= 0) return;
     out_.fourth += share * d * d * d * d;
-    raise(p, d);
+    if (what_ == What::All) raise(p, d);
+  }
+
+  /// Most hulls that are too far are so in the middle of some facet.
+  void look_at_middles() {
+    for (const Triangle& t : hull_.triangles()) {
+      const Vec3 middle = (points_[t[0]] + points_[t[1]] + points_[t[2]]) / 3;
+      ++samples_;
+      const double d = solid_.field(middle);
+      if (d > limit_) measure(d, middle);
+      if (out_.worst > limit_) return;
+    }
   }
 
   [[nodiscard]] int parts_of(double length) const {
@@ -152,10 +191,10 @@ class Sampler {
     const Vec3 ab = b - a, ac = c - a;
     const Vec3 normal = ab.cross(ac);
     const double area = 0.5 * normal.norm();
-    out_.volume += normal.dot(a - center) / 6;
+    if (what_ == What::All) out_.volume += normal.dot(a - center) / 6;
     const double longest =
         std::sqrt(std::max({ab.squaredNorm(), ac.squaredNorm(), (c - b).squaredNorm()}));
-    sample_edges(t);
+    if (what_ == What::All) sample_edges(t);
     // Slivers need few samples across.
     const double height = longest > 0 ? 2 * area / longest : 0;
     const int m = parts_of(longest);
@@ -208,49 +247,58 @@ class Sampler {
     // The facets' normals, the one first that left out the last witness.
     static thread_local std::vector<HullSide> sides;
     sides.clear();
-    if (!solid_.witnesses().empty()) {
-      for (const Triangle& t : hull_.triangles()) {
-        const Vec3& a = points_[t[0]];
-        const Vec3 normal = (points_[t[1]] - a).cross(points_[t[2]] - a);
-        sides.push_back({a, normal, normal.norm()});
-      }
-    }
+    if (!solid_.witnesses().empty()) find_sides(sides);
     std::size_t likely = 0;
-    for (const SolidField::Witness& witness : solid_.witnesses()) {
-      const Vec3& p = witness.point;
-      const double near = witness.near();
-      if ((p.array() <= box_.min.array() - near).any() ||
-          (p.array() >= box_.max.array() + near).any())
-        continue;
-      double outside = 0;
-      Vec3 back = Vec3::Zero();
-      const auto look_from = [&](std::size_t i) {
-        const auto& [a, normal, length] = sides[i];
-        const double height = normal.dot(p - a);
-        if (!(height > outside * length)) return false;
-        outside = height / length;
-        back = normal / length;
-        return outside >= near;
-      };
-      if (look_from(likely)) continue;
-      outside = 0;
-      std::size_t side = 0;
-      while (side < sides.size() && !look_from(side)) ++side;
-      samples_ += side / kFacetsPerSample + 1;
-      if (side < sides.size()) {
-        likely = side;
-        continue;
-      }
-      const double d = witness.distance - outside;
-      out_.fourth += solid_.witness_area() * d * d * d * d;
-      raise(p - outside * back, d);
+    for (const SolidField::Witness& witness : solid_.witnesses()) look_at(witness, sides, likely);
+  }
+
+  void find_sides(std::vector<HullSide>& sides) const {
+    for (const Triangle& t : hull_.triangles()) {
+      const Vec3& a = points_[t[0]];
+      const Vec3 normal = (points_[t[1]] - a).cross(points_[t[2]] - a);
+      sides.push_back({a, normal, normal.norm()});
     }
+  }
+
+  /// @param likely  of the sides, the one that left out the last witness
+  void look_at(const SolidField::Witness& witness, const std::vector<HullSide>& sides,
+               std::size_t& likely) {
+    const Vec3& p = witness.point;
+    const double near = witness.near();
+    if ((p.array() <= box_.min.array() - near).any() ||
+        (p.array() >= box_.max.array() + near).any())
+      return;
+    double outside = 0;
+    Vec3 back = Vec3::Zero();
+    const auto look_from = [&](std::size_t i) {
+      const auto& [a, normal, length] = sides[i];
+      const double height = normal.dot(p - a);
+      if (!(height > outside * length)) return false;
+      outside = height / length;
+      back = normal / length;
+      return outside >= near;
+    };
+    if (look_from(likely)) return;
+    outside = 0;
+    std::size_t side = 0;
+    while (side < sides.size() && !look_from(side)) ++side;
+    samples_ += side / kFacetsPerSample + 1;
+    if (side < sides.size()) {
+      likely = side;
+      return;
+    }
+    const double d = witness.distance - outside;
+    out_.fourth += solid_.witness_area() * d * d * d * d;
+    if (what_ == What::All) raise(p - outside * back, d);
   }
 
   std::span<const Vec3> points_;
   std::size_t built_of_;
   const geom::HullBuilder& hull_;
   const SolidField& solid_;
+  /// What is looked for: all of Concavity, or no largest distance.
+  enum class What { All, Fourth };
+  What what_ = What::All;
   double limit_;
   Concavity& out_;
   Box3 box_;
@@ -282,8 +330,12 @@ bool spans_beyond(std::span<const Vec3> points, const SolidField& solid, double 
   return false;
 }
 
-Concavity estimate_concavity(std::span<const Vec3> points, const SolidField& solid,
-                             geom::HullBuilder& builder, bool perturbed, double limit) {
+namespace {
+
+/// Builds the hull, thickened where it is flat, and has `sample` sample it.
+template <class Sample>
+Concavity with_hull(std::span<const Vec3> points, const SolidField& solid,
+                    geom::HullBuilder& builder, bool perturbed, double limit, Sample&& sample) {
   Concavity out;
   if (perturbed && !points.empty()) points = perturb(points);
   const std::size_t count = points.size();
@@ -297,8 +349,35 @@ Concavity estimate_concavity(std::span<const Vec3> points, const SolidField& sol
       return out;
     }
   }
-  Sampler(points, count, builder, solid, limit, out).run();
+  Sampler sampler(points, count, builder, solid, limit, out);
+  sample(sampler);
   return out;
+}
+
+}  // namespace
+
+Concavity estimate_concavity(std::span<const Vec3> points, const SolidField& solid,
+                             geom::HullBuilder& builder, bool perturbed, double limit) {
+  return with_hull(points, solid, builder, perturbed, limit,
+                   [](Sampler& sampler) { sampler.run(); });
+}
+
+void add_witness(std::span<const Vec3> hull, const SolidField& solid,
+                 const SolidField::Witness& witness, geom::HullBuilder& builder,
+                 Concavity& concavity) {
+  if (concavity.flat || !builder.build(hull)) {
+    concavity = estimate_concavity(hull, solid, builder);
+    return;
+  }
+  Sampler(hull, hull.size(), builder, solid, std::numeric_limits<double>::infinity(), concavity)
+      .run_witness(witness);
+}
+
+Concavity estimate_fourth(std::span<const Vec3> points, const SolidField& solid,
+                          geom::HullBuilder& builder,
+                          const std::function<double(double volume)>& limit_of) {
+  return with_hull(points, solid, builder, true, std::numeric_limits<double>::infinity(),
+                   [&](Sampler& sampler) { sampler.run_fourth(limit_of); });
 }
 
 }  // namespace kaboum::bcd

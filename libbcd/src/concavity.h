@@ -2,6 +2,7 @@
 
 #include <kaboum/geom/convex_hull.h>
 
+#include <functional>
 #include <span>
 
 #include "solid_field.h"
@@ -25,6 +26,19 @@ struct Concavity {
 Concavity estimate_concavity(std::span<const Vec3> points, const SolidField& solid,
                              geom::HullBuilder& builder, bool perturbed = false,
                              double limit = std::numeric_limits<double>::infinity());
+
+/// `fourth` and `volume` alone, of the points perturbed: what a cut is scored by.
+/// @param limit_of  given the hull's volume: once `fourth` exceeds this, sampling stops, and the
+///   true value is larger still.
+Concavity estimate_fourth(std::span<const Vec3> points, const SolidField& solid,
+                          geom::HullBuilder& builder,
+                          const std::function<double(double volume)>& limit_of);
+
+/// What estimate_concavity gives with one more of the solid's witnesses, given what it gave
+/// without.
+void add_witness(std::span<const Vec3> hull, const SolidField& solid,
+                 const SolidField::Witness& witness, geom::HullBuilder& builder,
+                 Concavity& concavity);
 
 /// Whether a point between two extreme ones of the points (at least one) is farther from the solid
 /// than `limit`: then their hull is, and need not be built.

@@ -22,6 +22,7 @@ void measure_anew(CoverCandidate& result, const Mesh& closed) {
   for (const geom::ConvexBody& body : result.bodies) hulls.push_back(body.hull);
   ExcessOptions options;
   options.absolute_gap = kMeasuredGap * solid.diagonal();
+  options.worth_measuring = kWorthMeasuring;
   result.excess_lower = result.excess_upper = 0;
   for (const Excess& r : measure(hulls, solid, options)) {
     result.excess_lower = std::max(result.excess_lower, r.lower);

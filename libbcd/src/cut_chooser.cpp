@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "principal_box.h"
@@ -23,6 +24,11 @@ constexpr double kPlate = 1e-6, kPlatePenalty = 1e6;
 /// A half that is so many times as bad as the whole needs no look at the other
 /// one.
 constexpr double kHopelessScore = 2;
+/// So many cuts are scored at once, each no further than the best one of those before: a fixed
+/// number, so that the work is the same on any number of threads.
+constexpr std::size_t kAtOnce = 8;
+/// A score of which nothing is known. Limits are widened by what rounding may lose in a score.
+constexpr double kUnscored = std::numeric_limits<double>::infinity(), kRoundedUp = 1 + 0x1p-40;
 /// Cuts into halves of a volume have a score lower by the first share; in full
 /// where the smaller one has one part of the second number.
 constexpr double kBalanced = 0.6, kFullyBalanced = 4;
@@ -46,7 +52,7 @@ void CutChooser::prepare() {
   if (options_.mirrors) mirrors_ = mirror_planes(solid_);
 }
 
-double CutChooser::score(const CutNode& node, const Plane& plane) const {
+double CutChooser::score(const CutNode& node, const Plane& plane, double limit) const {
   const auto [low, high] = extent(node.hull, plane.n);
   const double thinnest = std::min(plane.d - low, high - plane.d);
   // Pieces as thin as their overlap are no smaller.
@@ -62,12 +68,20 @@ double CutChooser::score(const CutNode& node, const Plane& plane) const {
   s.upper.clear();
   if (!append_sides(node.piece, plane, solid_, shift_, s.lower, s.upper))
     return std::numeric_limits<double>::infinity();
-  const double limit = node.concavity.fourth;
-  const Concavity lower = estimate_concavity(s.lower, solid_, s.builder, true);
-  if (lower.fourth > kHopelessScore * limit) return penalty * lower.fourth;
-  const Concavity upper = estimate_concavity(s.upper, solid_, s.builder, true);
-  return penalty * (lower.fourth + upper.fourth) *
-         preference(std::min(lower.volume, upper.volume), lower.volume + upper.volume);
+  const double most = kRoundedUp * limit / penalty;
+  // ∫ d⁴ of a half that is too much by itself, whatever the other one is.
+  const double too_much = most / (1 - kBalanced - options_.halving_bonus);
+  const Concavity lower =
+      estimate_fourth(s.lower, solid_, s.builder, [&](double) { return too_much; });
+  if (lower.fourth > std::min(too_much, kHopelessScore * node.concavity.fourth))
+    return penalty * lower.fourth;
+  const auto preferred = [&](double upper) {
+    return preference(std::min(lower.volume, upper), lower.volume + upper);
+  };
+  const Concavity upper = estimate_fourth(s.upper, solid_, s.builder, [&](double volume) {
+    return most / preferred(volume) - lower.fourth;
+  });
+  return penalty * (lower.fourth + upper.fourth) * preferred(upper.volume);
 }
 
 double CutChooser::preference(double smaller, double volume) const {
@@ -93,7 +107,8 @@ double CutChooser::look_ahead(const CutNode& node, const Plane& plane) const {
     const CutNode child = make_node(std::move(part), solid_);
     double best = child.concavity.fourth;
     if (child.piece.polygons() > 0)
-      for (const Candidate& c : candidates(child)) best = std::min(best, score(child, c.plane));
+      for (const Candidate& c : candidates(child))
+        best = std::min(best, score(child, c.plane, best));
     sum += best;
     volume += child.concavity.volume;
     least = std::min(least, child.concavity.volume);
@@ -179,15 +194,23 @@ CutChooser::Candidate CutChooser::best_in_two(const CutNode& node,
   return list[static_cast<std::size_t>(std::min_element(deep.begin(), deep.end()) - deep.begin())];
 }
 
-void CutChooser::evaluate(const CutNode& node, std::vector<Candidate>& list) const {
-  parallel_for(std::size_t{0}, list.size(),
-               [&](std::size_t i) { list[i].score = score(node, list[i].plane); });
+/// The last ones first, which faces of the solid suggest: they are the best more often than not.
+void CutChooser::evaluate(const CutNode& node, std::vector<Candidate>& list, double limit) const {
+  // Those that are looked into further have to be told apart.
+  const bool all = options_.look_ahead > 1;
+  for (std::size_t end = list.size(); end > 0;) {
+    const std::size_t begin = all || end < kAtOnce ? 0 : end - kAtOnce;
+    parallel_for(begin, end, [&](std::size_t i) {
+      list[i].score = score(node, list[i].plane, all ? kUnscored : limit);
+    });
+    for (; end > begin; --end) limit = std::min(limit, list[end - 1].score);
+  }
 }
 
 std::optional<Plane> CutChooser::choose(const CutNode& node) const {
   if (options_.choose) return options_.choose(node.piece.cell, node.hull);
   std::vector<Candidate> list = candidates(node);
-  evaluate(node, list);
+  evaluate(node, list, kUnscored);
   const auto best_of = [](const std::vector<Candidate>& l) {
     std::size_t best = 0;
     for (std::size_t i = 1; i < l.size(); ++i)
@@ -206,7 +229,7 @@ std::optional<Plane> CutChooser::choose(const CutNode& node) const {
       if (best.plane.d + s > low && best.plane.d + s < high)
         near.push_back({{best.plane.n, best.plane.d + s}});
     if (near.empty()) continue;
-    evaluate(node, near);
+    evaluate(node, near, best.score);
     const Candidate c = best_of(near);
     if (c.score < best.score) best = c;
   }

@@ -45,7 +45,9 @@ class CutChooser {
   [[nodiscard]] std::optional<Plane> choose(const CutNode& node) const;
   /// ∫ d⁴ of both halves' hulls, lower for cuts that are preferred; infinite
   /// for none.
-  [[nodiscard]] double score(const CutNode& node, const Plane& plane) const;
+  /// @param limit  above it, any larger number is given.
+  [[nodiscard]] double score(const CutNode& node, const Plane& plane,
+                             double limit = std::numeric_limits<double>::infinity()) const;
   [[nodiscard]] const SearchOptions& options() const { return options_; }
 
  private:
@@ -63,7 +65,8 @@ class CutChooser {
   [[nodiscard]] double look_ahead(const CutNode& node, const Plane& plane) const;
   /// Factor ≤ 1 of a cut's score, given the smaller half's volume and both.
   [[nodiscard]] double preference(double smaller, double volume) const;
-  void evaluate(const CutNode& node, std::vector<Candidate>& list) const;
+  /// @param limit  as of score
+  void evaluate(const CutNode& node, std::vector<Candidate>& list, double limit) const;
   /// The best by `look_ahead` among the few that are best by themselves.
   [[nodiscard]] Candidate best_in_two(const CutNode& node, std::vector<Candidate> list) const;
 

@@ -53,14 +53,17 @@ void CutTree::reestimate() {
 void CutTree::reestimate(const SolidField::Witness& witness) {
   const Vec3& at = witness.point;
   const double near = witness.near();
+  std::vector<Node*> judged;
   for (Node& n : nodes_) {
     if (n.hull.empty()) continue;
     Box3 box;
     for (const Vec3& p : n.hull) box.extend(p);
-    if ((at.array() < box.min.array() - near).any() || (at.array() > box.max.array() + near).any())
-      continue;
-    n.concavity = estimate_concavity(n.hull, solid_, cut_scratch().builder);
+    if ((at.array() > box.min.array() - near).all() && (at.array() < box.max.array() + near).all())
+      judged.push_back(&n);
   }
+  parallel_for(std::size_t{0}, judged.size(), [&](std::size_t i) {
+    add_witness(judged[i]->hull, solid_, witness, cut_scratch().builder, judged[i]->concavity);
+  });
 }
 
 std::vector<int> CutTree::leaves() const { return leaves(std::numeric_limits<std::size_t>::max()); }
@@ -140,7 +143,7 @@ bool CutTree::halve(int leaf) {
   Plane plane;
   plane.n = box->axes.col(axis);
   plane.d = plane.n.dot(box->mean) + 0.5 * (box->low[axis] + box->high[axis]);
-  if (!std::isfinite(chooser_.score(node, plane))) return false;
+  if (!std::isfinite(chooser_.score(node, plane, 0))) return false;
   cut(leaf, plane);
   return true;
 }

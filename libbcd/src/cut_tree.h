@@ -23,7 +23,7 @@ class CutTree {
   bool cut_worst();
   /// Judges all nodes anew, by the witnesses that there are now.
   void reestimate();
-  /// Judges the nodes round a witness that was added anew.
+  /// Judges the nodes round a witness that was added now.
   void reestimate(const SolidField::Witness& witness);
   /// Cuts this leaf. @return false when no plane cuts it.
   bool cut(int leaf);

@@ -22,13 +22,11 @@ namespace {
 constexpr double kDistanceSlack = 1e-13;
 /// Splits of facets, before the inside is looked at: most bodies are farthest on a facet, and a
 /// thousand tell where.
-constexpr std::size_t kFacetParts = 1000;
+constexpr std::size_t kFacetParts = 200;
 /// Planes that a cube is cut by: more cost more than eight smaller cubes.
 constexpr std::size_t kMostCrossing = 12;
 /// Triangles near a part whose shadows are looked at: beyond, the part is split.
 constexpr std::size_t kMostNear = 24;
-/// Bodies whose samples are below this share of the largest's are not measured (excess.h).
-constexpr double kWorthMeasuring = 0.7;
 /// Work of bounding a part, and for each triangle that is looked at. [ns]
 constexpr std::uint64_t kLook = 800, kTriangle = 60;
 
@@ -317,7 +315,8 @@ std::vector<Excess> measure(const std::vector<Mesh>& bodies, const SolidField& s
   parallel_for(std::size_t{0}, bodies.size(),
                [&](std::size_t i) { sampled[i] = measures[i].sample(); });
   // Only the largest matters: the others are told from it, not measured.
-  for (const double s : sampled) floor = std::max(floor, std::min(kWorthMeasuring * s, ceiling));
+  for (const double s : sampled)
+    floor = std::max(floor, options.worth_measuring * std::min(s, ceiling));
   std::vector<Excess> out(bodies.size());
   parallel_for(std::size_t{0}, bodies.size(),
                [&](std::size_t i) { out[i] = measures[i].run(floor); });

@@ -20,6 +20,8 @@ struct ExcessOptions {
   /// A distance known to be larger is of no interest: measuring stops, with no upper bound.
   /// [length]
   double cutoff = std::numeric_limits<double>::infinity();
+  /// Of many bodies, those below this share of the largest distance sampled are not measured.
+  double worth_measuring = 0.7;
   /// Parts per body that are split; beyond, the bracket is wider than the gaps.
   std::size_t max_parts = 400000;
   /// The same for the work of a body's parts, where many triangles are equally near. [ns]
@@ -27,8 +29,8 @@ struct ExcessOptions {
 };
 
 /// One bracket per body. Branch and bound over facets and, for pits and cavities that a body spans,
-/// over its inside. Distances below `floor`, and below 0.7 of the largest among all bodies or
-/// `ceiling` if that is less, are only told to be below it.
+/// over its inside. Distances below `floor`, and below a share of the largest among all bodies or
+/// of `ceiling` if that is less, are only told to be below it.
 std::vector<Excess> measure(const std::vector<Mesh>& bodies, const SolidField& solid,
                             const ExcessOptions& options, double floor = 0,
                             double ceiling = std::numeric_limits<double>::infinity());

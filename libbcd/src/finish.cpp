@@ -49,16 +49,18 @@ std::vector<Finished> Finisher::finish(std::vector<Body>& bodies, double free_co
                                        double decisive) {
   std::vector<Finished> out(bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) out[i].body = std::move(bodies[i]);
-  find_required(out);
-  std::vector<std::size_t> open(bodies.size());
-  std::iota(open.begin(), open.end(), std::size_t{0});
+  std::vector<std::size_t> open = recall(out, free_cost, decisive);
+  const std::vector<std::size_t> fresh = open;
+  find_required(out, fresh);
   std::vector<Simplified> shapes(bodies.size());
   // Where simplification took too much, no vertex more than needed is left out.
   for (const bool first : {true, false}) {
     Round round = make_hulls(out, open, shapes, free_cost, first);
+    ExcessOptions how = excess_options(open.size());
+    if (decisive > 0) how.worth_measuring = kWorthMeasuring;
     const std::vector<Excess> measured =
-        measure(round.hulls, state_.solid(), excess_options(open.size()), kMeasuredFloor * decisive,
-                decisive > 0 ? kMeasuredCeiling * decisive : kUnbounded);
+        measure(round.hulls, state_.solid(), how, kMeasuredFloor * decisive,
+                decisive > 0 ? decisive : kUnbounded);
     std::vector<std::size_t> failed;
     for (std::size_t i = 0; i < open.size(); ++i) {
       Finished& f = out[open[i]];
@@ -74,7 +76,41 @@ std::vector<Finished> Finisher::finish(std::vector<Body>& bodies, double free_co
     open = std::move(failed);
     if (open.empty()) break;
   }
+  keep(out, fresh, decisive);
   return out;
+}
+
+/// Bodies of the same pieces come up again and again while their number is searched for.
+/// @return those that are not known to be near enough
+std::vector<std::size_t> Finisher::recall(std::vector<Finished>& bodies, double free_cost,
+                                          double decisive) {
+  const std::array<double, 2> asked{free_cost, decisive};
+  if (decisive > 0 && known_for_ != asked) {
+    known_.clear();
+    known_for_ = asked;
+  }
+  std::vector<std::size_t> open;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const auto at = decisive > 0 ? known_.find(bodies[i].body.leaves) : known_.end();
+    if (at == known_.end()) {
+      open.push_back(i);
+      continue;
+    }
+    bodies[i].hull = at->second.hull;
+    bodies[i].excess = at->second.excess;
+    bodies[i].thickened = at->second.thickened;
+  }
+  return open;
+}
+
+void Finisher::keep(const std::vector<Finished>& bodies, const std::vector<std::size_t>& which,
+                    double decisive) {
+  if (!(decisive > 0)) return;
+  for (const std::size_t i : which) {
+    const Finished& f = bodies[i];
+    if (f.excess.upper <= decisive)
+      known_.emplace(f.body.leaves, Finished{{}, f.hull, f.excess, f.thickened});
+  }
 }
 
 /// @param first  whether shapes are simplified now; else those that have been are left as they were
@@ -104,7 +140,9 @@ void Finisher::simplify_hulls(std::vector<Finished>& bodies, double epsilon) {
   struct Open {
     std::size_t body, low;
   };
-  find_required(bodies);  // leaves may have been cut since the bodies were finished
+  std::vector<std::size_t> all(bodies.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  find_required(bodies, all);  // leaves may have been cut since the bodies were finished
   std::vector<Open> open;
   for (std::size_t i = 0; i < bodies.size(); ++i) open.push_back({i, kTooFewVertices});
   for (;;) {
@@ -121,7 +159,7 @@ void Finisher::simplify_hulls(std::vector<Finished>& bodies, double epsilon) {
       hulls[i] = rounded(f.body, simplify(f.body.hull, most, 0, state_.solid()), most);
     });
     const std::vector<Excess> measured =
-        measure(hulls, state_.solid(), how, kMeasuredFloor * epsilon, kMeasuredCeiling * epsilon);
+        measure(hulls, state_.solid(), how, kMeasuredFloor * epsilon, epsilon);
     for (std::size_t i = 0; i < open.size(); ++i) {
       Finished& f = bodies[open[i].body];
       const std::size_t tried = (open[i].low + f.hull.vertices.size()) / 2;
@@ -156,11 +194,12 @@ ExcessOptions Finisher::excess_options(std::size_t bodies) const {
 }
 
 /// The points that a leaf's body has to contain, each leaf's once.
-void Finisher::find_required(const std::vector<Finished>& bodies) {
+void Finisher::find_required(const std::vector<Finished>& bodies,
+                             const std::vector<std::size_t>& which) {
   const CutTree& tree = state_.tree();
   std::vector<int> open;
-  for (const Finished& f : bodies)
-    for (const int leaf : leaves_of(tree, f.body))
+  for (const std::size_t i : which)
+    for (const int leaf : leaves_of(tree, bodies[i].body))
       if (required_.try_emplace(leaf).second) open.push_back(leaf);
   std::vector<std::vector<Vec3>*> place;
   place.reserve(open.size());

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <map>
 #include <vector>
 
@@ -45,7 +47,10 @@ class Finisher {
     std::vector<char> thickened;
   };
   [[nodiscard]] ExcessOptions excess_options(std::size_t bodies) const;
-  void find_required(const std::vector<Finished>& bodies);
+  void find_required(const std::vector<Finished>& bodies, const std::vector<std::size_t>& which);
+  std::vector<std::size_t> recall(std::vector<Finished>& bodies, double free_cost, double decisive);
+  void keep(const std::vector<Finished>& bodies, const std::vector<std::size_t>& which,
+            double decisive);
   bool thicken(Mesh& hull) const;
   [[nodiscard]] Mesh rounded(const Body& body, const Simplified& shape, std::size_t most) const;
   Round make_hulls(const std::vector<Finished>& bodies, const std::vector<std::size_t>& open,
@@ -54,6 +59,9 @@ class Finisher {
   SearchState& state_;
   double point_error_ = 0;                     // of computed points, per coordinate [length]
   std::map<int, std::vector<Vec3>> required_;  // points that a leaf's body contains, by leaf
+  // Bodies finished with known_for_ and found near enough, by the nodes that they are made of.
+  std::map<std::vector<int>, Finished> known_;
+  std::array<double, 2> known_for_{};  // free cost, and what is decisive [length]
 };
 
 }  // namespace kaboum::bcd

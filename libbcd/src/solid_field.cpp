@@ -46,6 +46,7 @@ SolidField::SolidField(const Mesh& mesh, std::size_t nodes, double epsilon, bool
   const double coarse = std::cbrt(size.prod() / static_cast<double>(nodes));
   spacing_ =
       epsilon > 0 ? std::clamp(kSpacingOfEpsilon * epsilon, kFinest * coarse, coarse) : coarse;
+  per_spacing_ = 1 / spacing_;
   step_ = std::max(1, static_cast<int>(2 * coarse / spacing_));
   witness_area_ = step_ * spacing_ * step_ * spacing_;
   shallow_ = std::max(kShallowEpsilon * epsilon, kShallowSpacing * spacing_);
@@ -205,32 +206,35 @@ float SolidField::node(int x, int y, int z) const {
 }
 
 double SolidField::field(const Vec3& p) const {
-  std::array<int, 3> cell{};
+  std::array<std::size_t, 3> cell{};
   Vec3 f, beyond;  // beyond the grid, the way to it counts as well
   for (int k = 0; k < 3; ++k) {
-    const double from_origin = (p[k] - origin_[k]) / spacing_;
+    const double from_origin = (p[k] - origin_[k]) * per_spacing_;
     const double x = std::clamp(from_origin, 0.0, size_[k] - 1.001);
-    beyond[k] = spacing_ * (from_origin - x);
-    cell[k] = static_cast<int>(x);
-    f[k] = x - cell[k];
+    beyond[k] = from_origin - x;
+    cell[k] = static_cast<std::size_t>(static_cast<int>(x));
+    f[k] = x - static_cast<double>(static_cast<int>(x));
   }
   const std::size_t row = static_cast<std::size_t>(size_[0]);
   const std::size_t layer = row * static_cast<std::size_t>(size_[1]);
-  const std::size_t first = static_cast<std::size_t>(cell[0]) +
-                            row * static_cast<std::size_t>(cell[1]) +
-                            layer * static_cast<std::size_t>(cell[2]);
-  std::array<double, 8> v;
+  const std::atomic<float>* first = &value_[cell[0] + row * cell[1] + layer * cell[2]];
+  std::array<float, 8> v;
+  bool known = true;
   for (unsigned c = 0; c < 8; ++c) {
     const unsigned i = c & 1U, j = (c >> 1U) & 1U, k = c >> 2U;
-    const float known = value_[first + i + j * row + k * layer].load(std::memory_order_relaxed);
-    v[c] = known != kUnset ? known
-                           : node(cell[0] + static_cast<int>(i), cell[1] + static_cast<int>(j),
-                                  cell[2] + static_cast<int>(k));
+    v[c] = first[i + j * row + k * layer].load(std::memory_order_relaxed);
+    known = known && v[c] != kUnset;
   }
+  if (!known)
+    for (unsigned c = 0; c < 8; ++c)
+      if (v[c] == kUnset)
+        v[c] =
+            node(static_cast<int>(cell[0] + (c & 1U)), static_cast<int>(cell[1] + ((c >> 1U) & 1U)),
+                 static_cast<int>(cell[2] + (c >> 2U)));
   const auto mix = [](double a, double b, double t) { return a + t * (b - a); };
-  return mix(mix(mix(v[0], v[1], f.x()), mix(v[2], v[3], f.x()), f.y()),
-             mix(mix(v[4], v[5], f.x()), mix(v[6], v[7], f.x()), f.y()), f.z()) +
-         beyond.norm();
+  const double inside = mix(mix(mix(v[0], v[1], f.x()), mix(v[2], v[3], f.x()), f.y()),
+                            mix(mix(v[4], v[5], f.x()), mix(v[6], v[7], f.x()), f.y()), f.z());
+  return beyond.isZero(0) ? inside : inside + spacing_ * beyond.norm();
 }
 
 }  // namespace kaboum::bcd

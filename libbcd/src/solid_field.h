@@ -96,7 +96,7 @@ class SolidField {
     Vec3 a, ab, ac;
   };
   std::vector<Corner> corners_;  // of the triangles, in the order of surface_'s tree
-  double spacing_ = 0, witness_area_ = 0;
+  double spacing_ = 0, per_spacing_ = 0, witness_area_ = 0;
   double shallow_ = 0;  // pits that are no deeper need no witness
   int step_ = 1;        // of the grid, from one place looked at for a witness to the next
   bool witnesses_found_ = false;

@@ -38,9 +38,9 @@ constexpr double kFewestParts = 100, kEnoughParts = 2000;
 constexpr double kAimedShare = 0.93;
 /// Measuring ends where the bracket is narrower than this share of the solid's diagonal.
 constexpr double kMeasuredGap = 1e-5;
-/// Distances below the first share of epsilon need no measuring; where the largest is beyond the
-/// second, those below 0.7 of it need none (excess.h).
-constexpr double kMeasuredFloor = 0.5, kMeasuredCeiling = 0.7;
+/// Distances below the first share of epsilon need no measuring; where the largest is known to be
+/// some length, up to epsilon, those below the second share of it need none (excess.h).
+constexpr double kMeasuredFloor = 0.5, kWorthMeasuring = 0.97;
 /// A body is farther than samples told if a certified distance exceeds theirs by this factor.
 constexpr double kMisjudged = 1.02;
 /// Error of a computed point, as a share of the largest coordinate, with `safety` 1

@@ -1,6 +1,7 @@
 // A folder of results: entries by hash, checked by hash, the longest unused removed first.
 
 #include <kaboum/base/error.h>
+#include <kaboum/base/sha256.h>
 #include <kaboum/certify/cache_folder.h>
 #include <kaboum/io/mesh_io.h>
 
@@ -45,7 +46,7 @@ Parts split(std::string_view bytes) {
     fail("damaged");
   const std::string_view stated = rest.substr(0, kHash);
   rest.remove_prefix(kHash + 1);
-  if (io::sha256(rest) != stated) fail("damaged");
+  if (kaboum::sha256(rest) != stated) fail("damaged");
   parts.key = rest.substr(0, kHash);
   parts.content = rest.substr(kHash + 1);
   return parts;
@@ -111,7 +112,7 @@ void CacheFolder::store(std::string_view kind, const std::string& key,
                         std::string_view content) const {
   if (folder_.empty()) return;
   const std::string rest = key + "\n" + std::string(content);
-  const std::string bytes = std::string(kind) + "\n" + io::sha256(rest) + "\n" + rest;
+  const std::string bytes = std::string(kind) + "\n" + kaboum::sha256(rest) + "\n" + rest;
   std::error_code error;
   fs::create_directories(folder_, error);
   try {

@@ -1,6 +1,7 @@
 // Enclosing meshes of triangles and of files: prepared or wrapped, simplified, certified, kept.
 
 #include <kaboum/base/error.h>
+#include <kaboum/base/sha256.h>
 #include <kaboum/certify/enclosure.h>
 #include <kaboum/certify/mesh_file.h>
 
@@ -48,9 +49,10 @@ geom::Prepared solid_of(const geom::Mesh& mesh, const EnclosureRequest& request,
 
 /// What the result depends on.
 std::string key_of_enclosure(const std::string& mesh_hash, const EnclosureRequest& request) {
-  return io::sha256(std::string(kEnclosureEntry) + '\n' + mesh_hash + '\n' + request.parameters() +
-                    '\n' + std::to_string(static_cast<int>(request.mesh.format)) + '\n' +
-                    request.mesh.comment + '\n' + KABOUM_VERSION + '\n' + kDecimation);
+  return kaboum::sha256(std::string(kEnclosureEntry) + '\n' + mesh_hash + '\n' +
+                        request.parameters() + '\n' +
+                        std::to_string(static_cast<int>(request.mesh.format)) + '\n' +
+                        request.mesh.comment + '\n' + KABOUM_VERSION + '\n' + kDecimation);
 }
 
 std::optional<CertifiedEnclosure> find_enclosure(const CacheFolder& cache, const std::string& key,
@@ -157,7 +159,7 @@ EnclosedFile enclose_file(const fs::path& file, std::optional<io::Format> format
   }
   std::vector<char> bytes;
   io::ReadResult read = io::read_mesh(file, format, &bytes);
-  const std::string mesh_hash = SetCache::hash_of(read.mesh), sha256 = io::sha256(bytes);
+  const std::string mesh_hash = SetCache::hash_of(read.mesh), sha256 = kaboum::sha256(bytes);
   if (cache != nullptr && file != "-")
     store_known(*cache, file, format, 1, bytes.size(), sha256, mesh_hash, read);
   EnclosedFile out{sha256, std::move(read.notes), std::move(read.other_files), {}, false};

@@ -4,6 +4,7 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/base/length.h>
+#include <kaboum/base/sha256.h>
 
 #include <nlohmann/json.hpp>
 
@@ -22,16 +23,16 @@ constexpr std::size_t kReadAtOnce = std::size_t{1} << 15;  ///< [bytes]
 std::string key_of_file(const std::filesystem::path& file, std::optional<io::Format> format,
                         double scale, const std::string& sha256) {
   // The name: notes may have it, and the format is that of its extension.
-  return io::sha256(std::string(kKind) + '\n' + sha256 + '\n' + file.string() + '\n' +
-                    std::to_string(format ? static_cast<int>(*format) : -1) + '\n' +
-                    Length{scale}.text() + '\n' + KABOUM_VERSION + '\n' + kReaders);
+  return kaboum::sha256(std::string(kKind) + '\n' + sha256 + '\n' + file.string() + '\n' +
+                        std::to_string(format ? static_cast<int>(*format) : -1) + '\n' +
+                        Length{scale}.text() + '\n' + KABOUM_VERSION + '\n' + kReaders);
 }
 
 }  // namespace
 
 std::optional<KnownFile> find_known(const CacheFolder& cache, const std::filesystem::path& file,
                                     std::optional<io::Format> format, double scale) {
-  const std::string sha256 = io::sha256(io::read_file(file));
+  const std::string sha256 = kaboum::sha256(io::read_file(file));
   std::string flaw;  // it is written again
   const auto content = cache.find(kKind, key_of_file(file, format, scale, sha256), flaw);
   if (!content) return std::nullopt;

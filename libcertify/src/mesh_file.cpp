@@ -1,5 +1,6 @@
 // Mesh files: read, then certified; errors name them.
 
+#include <kaboum/base/sha256.h>
 #include <kaboum/certify/mesh_file.h>
 #include <kaboum/io/cad.h>
 #include <kaboum/io/file_unit.h>
@@ -78,7 +79,7 @@ CertifiedFile certify_file(const fs::path& file, std::optional<io::Format> forma
   io::ReadResult read = read_triangles(file, format, bytes, request);
   say(read.notes, hooks);
   request = with_unit(std::move(request), read.unit, hooks);
-  const std::string sha256 = io::sha256(bytes);
+  const std::string sha256 = kaboum::sha256(bytes);
   if (cache != nullptr && file != "-")
     store_known(CacheFolder(cache->folder()), file, format, request.scale, bytes.size(), sha256,
                 SetCache::hash_of(read.mesh), read);

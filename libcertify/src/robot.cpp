@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "issuer.h"
+#include "link_cache.h"
 #include "link_polytopes.h"
 
 namespace kaboum::certify {
@@ -74,11 +76,22 @@ CertifiedRobot certify_robot(const robot::RobotFile& robot, const RobotRequest& 
     p.covers_solid = p.covers_solid && claims.covers_solid;
     p.covers_surface = p.covers_surface && claims.covers_surface;
   }
+  std::optional<CacheFolder> folder;
+  if (cache != nullptr) folder.emplace(cache->folder());
   for (const auto& [link, claims] : links) {
     std::vector<robot::LinkBody> bodies;
     for (const robot::LinkBody& body : out.bodies.artefact())
       if (body.link == link.link) bodies.push_back(body);
-    out.links.push_back(certify_link(bodies, link, claims));
+    const LinkCache known(folder ? &*folder : nullptr, {bodies, link, claims});
+    std::string flaw;
+    std::optional<CertifiedLink> set = known.find(flaw);
+    if (hooks.note && !flaw.empty())
+      hooks.note(robot.path.string(), "the cache's entry " + flaw + "; it is made again");
+    if (!set) {
+      set = certify_link(bodies, link, claims);
+      known.store(*set);
+    }
+    out.links.push_back(*std::move(set));
   }
   return out;
 }

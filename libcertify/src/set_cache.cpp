@@ -1,6 +1,7 @@
 // Certified sets kept between runs.
 
 #include <kaboum/base/error.h>
+#include <kaboum/base/sha256.h>
 #include <kaboum/certify/cache_folder.h>
 #include <kaboum/certify/set_cache.h>
 #include <kaboum/io/convex_io.h>
@@ -19,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Changes whenever the same request may give another result: cached results are then not found.
-constexpr const char* kAlgorithm = "planes 25";
+constexpr const char* kAlgorithm = "planes 26";
 
 /// The same of containers' bytes.
 constexpr const char* kContainer = "coloured";
@@ -63,7 +64,7 @@ std::string SetCache::hash_of(const geom::Mesh& mesh) {
   append(&vertices, sizeof vertices);
   for (const geom::Vec3& v : mesh.vertices) append(v.data(), 3 * sizeof(double));
   for (const geom::Triangle& t : mesh.triangles) append(t.data(), sizeof t);
-  return io::sha256(bytes);
+  return kaboum::sha256(bytes);
 }
 
 SetCache::Key SetCache::key_of(const geom::Mesh& mesh, const std::string& sha256,
@@ -78,7 +79,8 @@ SetCache::Key SetCache::key_of(const std::string& mesh_hash, const std::string& 
                            std::to_string(std::bit_cast<std::uint64_t>(clearance)) + '\n' + sha256 +
                            '\n' + r.parameters() + '\n' + r.unit + '\n' + r.frame + '\n' +
                            r.source + '\n' + KABOUM_VERSION + '\n' + kAlgorithm + '\n' + kContainer;
-  return {io::sha256(text), origin_of(r, sha256), r.wrap ? std::optional(clearance) : std::nullopt};
+  return {kaboum::sha256(text), origin_of(r, sha256),
+          r.wrap ? std::optional(clearance) : std::nullopt};
 }
 
 std::optional<CertifiedSet> SetCache::find(const Key& key, std::string& flaw) const {

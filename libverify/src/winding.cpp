@@ -5,6 +5,9 @@
 #include <kaboum/base/error.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
 
 #include "allowance.h"
 #include "cell_sample.h"
@@ -56,10 +59,7 @@ class Line {
       if (sign == Sign::Zero) return false;
       if (sign == Sign::Negative) u = {-u[0], -u[1], -u[2]};
     }
-    for (int k = 0; k < 3; ++k) {
-      exact_direction_[k] = Exact(u[k]);
-      direction_[k] = {static_cast<double>(u[k]), 0};
-    }
+    direction_ = u;
     return true;
   }
 
@@ -114,6 +114,51 @@ class Line {
       box_.low[k] = std::max(box_.low[k], q - 2 * error);
       box_.high[k] = std::min(box_.high[k], q + 2 * error);
     }
+    for (int k = 0; k < 3; ++k) {
+      middle_[k] = 0.5 * box_.low[k] + 0.5 * box_.high[k];
+      half_[k] = std::max(box_.high[k] - middle_[k], middle_[k] - box_.low[k]) * kUp;
+    }
+  }
+
+  /// The sign of a sum of products, given what rounding and the sample's box may take from it.
+  /// @param size  of the products together; underflow would not show in the error of tiny ones
+  static std::optional<Sign> certain_sign(double value, double error, double size) {
+    constexpr double kLeast = 1e-200;
+    if (!(size > kLeast)) return std::nullopt;
+    if (value > error) return Sign::Positive;
+    if (value < -error) return Sign::Negative;
+    return std::nullopt;
+  }
+
+  /// Side of the sample with respect to a → b in the projection, as orient2d_value has it, where
+  /// that is so for all of the sample's box: one evaluation in place of one for each corner.
+  [[nodiscard]] std::optional<Sign> certain_turn(const Vec3& a, const Vec3& b) const {
+    const int u = (axis_ + 1) % 3, v = (axis_ + 2) % 3;
+    const double bu = b[u] - a[u], bv = b[v] - a[v];
+    const double x = bu * (middle_[v] - a[v]), y = bv * (middle_[u] - a[u]);
+    const double size = std::abs(x) + std::abs(y);
+    // Each product has three roundings, their difference one.
+    constexpr double kRoundings = 8 * kUnit;
+    const double error =
+        (kRoundings * size + std::abs(bu) * half_[v] + std::abs(bv) * half_[u]) * kUp;
+    return certain_sign(x - y, error, size);
+  }
+
+  /// The same with respect to a triangle's plane, as orient3d_value has it.
+  [[nodiscard]] std::optional<Sign> certain_side(const Vec3& a, const Vec3& b,
+                                                 const Vec3& c) const {
+    const Vec3 ab = b - a, ac = c - a;
+    double value = 0, size = 0, open = 0;
+    for (int k = 0; k < 3; ++k) {
+      const int u = (k + 1) % 3, v = (k + 2) % 3;
+      const double x = ab[u] * ac[v], y = ab[v] * ac[u], d = middle_[k] - a[k];
+      value += d * (x - y);
+      size += std::abs(d) * (std::abs(x) + std::abs(y));
+      open += half_[k] * (std::abs(x) + std::abs(y));
+    }
+    // In a component of the normal four roundings, three more in its product with d and the sum.
+    constexpr double kRoundings = 16 * kUnit;
+    return certain_sign(value, (kRoundings * size + open) * kUp, size);
   }
 
   [[nodiscard]] const Vec3& corner(int k) const { return meshes_.point(face_.v[k]); }
@@ -124,7 +169,13 @@ class Line {
   [[nodiscard]] Sign sign(const ApproxValue& value, const ExactValue& exact_value) const {
     const Sign at_spot = sign_of_sum(sample_.approx, sample_.exact, value, exact_value);
     if (at_spot != Sign::Zero) return at_spot;
-    return sign_of_sum(direction_, exact_direction_, value, exact_value);
+    Triple<Approx> direction;
+    Triple<Exact> exact_direction;
+    for (int k = 0; k < 3; ++k) {
+      direction[k] = integer<Approx>(direction_[k]);
+      exact_direction[k] = integer<Exact>(direction_[k]);
+    }
+    return sign_of_sum(direction, exact_direction, value, exact_value);
   }
 
   [[nodiscard]] std::optional<int> cross(std::uint32_t gi) const {
@@ -145,8 +196,10 @@ class Line {
         if (face_.v[i] == a || face_.v[i] == b) return integer<Number>(0);
         return orient2d_value<Number>(axis_, meshes_.point(a), meshes_.point(b), corner(i));
       };
-      const Sign s = sign([&](int i) { return value.template operator()<Approx>(i); },
-                          [&](int i) { return value.template operator()<Exact>(i); });
+      const std::optional<Sign> certain = certain_turn(meshes_.point(a), meshes_.point(b));
+      const Sign s = certain ? *certain
+                             : sign([&](int i) { return value.template operator()<Approx>(i); },
+                                    [&](int i) { return value.template operator()<Exact>(i); });
       if (s == Sign::Zero) {
         open = true;
       } else if (s != in) {
@@ -161,8 +214,11 @@ class Line {
       return orient3d_value<Number>(meshes_.point(g.v[0]), meshes_.point(g.v[1]),
                                     meshes_.point(g.v[2]), corner(i));
     };
-    const Sign s = sign([&](int i) { return value.template operator()<Approx>(i); },
-                        [&](int i) { return value.template operator()<Exact>(i); });
+    const std::optional<Sign> certain =
+        certain_side(meshes_.point(g.v[0]), meshes_.point(g.v[1]), meshes_.point(g.v[2]));
+    const Sign s = certain ? *certain
+                           : sign([&](int i) { return value.template operator()<Approx>(i); },
+                                  [&](int i) { return value.template operator()<Exact>(i); });
     if (s == Sign::Zero) {
       for (int i = 0; i < 3; ++i) {
         const std::uint32_t v = face_.v[i];
@@ -185,8 +241,8 @@ class Line {
   int axis_;
   bool above_;
   Bounds box_{};
-  Triple<Approx> direction_;
-  Triple<Exact> exact_direction_;
+  std::array<double, 3> middle_{}, half_{};  // of the box: from its middle to its sides
+  std::array<int, 3> direction_{};
 };
 
 template <class Count>

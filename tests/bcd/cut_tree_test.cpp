@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "cut_chooser.h"
 #include "cut_tree.h"
 #include "solids.h"
 
@@ -42,6 +46,26 @@ TEST_F(CutTreeTest, NodesWithinADistanceAreTheCoarsest) {
     }
   }
   EXPECT_GT(inner, 0U);
+}
+
+TEST_F(CutTreeTest, ScoresAboveALimitAreOnlyKnownToBe) {
+  CutChooser chooser(solid_, {}, tree_.shift());
+  chooser.prepare();
+  const CutNode node = make_node(whole(solid_), solid_);
+  for (const Vec3& n : {Vec3(1, 0, 0), Vec3(0, 0, 1), Vec3(1, 1, 0).normalized()}) {
+    for (int i = -3; i <= 3; ++i) {
+      const Plane plane{n, 0.3 * i};
+      const double score = chooser.score(node, plane);
+      if (!std::isfinite(score)) continue;
+      for (const double share : {0.0, 0.1, 0.5, 0.99, 1.0, 1.01, 2.0}) {
+        const double found = chooser.score(node, plane, share * score);
+        if (share < 1)
+          EXPECT_GT(found, share * score);
+        else
+          EXPECT_EQ(found, score);
+      }
+    }
+  }
 }
 
 TEST_F(CutTreeTest, SplitSortsNodesAndLeavesAlike) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <vector>
 
 #include "solids.h"
 #include "support/fan.h"
@@ -148,6 +149,26 @@ TEST(Excess, NoPointIsFarther) {
         EXPECT_LE(solid.surface().nearest(p).lower, r.upper);
       }
     }
+  }
+}
+
+// Those that are not the farthest are measured as far as is asked for; that changes nothing of the
+// farthest one.
+TEST(Excess, OfManyTheFarthestIsMeasured) {
+  const Mesh inner = box(Vec3(3, 3, 3), 1);
+  const SolidField solid(inner, 20000, 0);
+  std::vector<Mesh> bodies;
+  for (const double beyond : {0.1, 0.4, 0.38, 0.05})
+    bodies.push_back(box(Vec3(3, 3, 3 + beyond), 1));
+  for (const double share : {0.7, 0.97}) {
+    const std::vector<Excess> found =
+        measure(bodies, solid, {.absolute_gap = 1e-5, .worth_measuring = share});
+    EXPECT_LE(found[1].lower, 0.4 + 1e-9);
+    EXPECT_GE(found[1].upper, 0.4);
+    EXPECT_LE(found[1].upper, 0.4 * 1.03);
+    for (const Excess& e : found) EXPECT_LE(e.upper, found[1].upper);
+    EXPECT_GE(found[0].upper, 0.1);
+    EXPECT_GE(found[2].upper, 0.38);
   }
 }
 

@@ -83,6 +83,29 @@ TEST(Concavity, IsTheDistanceOfAPointOfTheHull) {
   EXPECT_FALSE(spans_beyond(l.vertices, solid, 1.1));
 }
 
+// What cuts are scored by is part of the whole estimate, as far as it is asked for.
+TEST(Concavity, ItsFourthPowerAloneIsTheSameUpToALimit) {
+  const Mesh mesh = kaboum::test::torus(1, 0.35, 24, 12);
+  const SolidField solid(mesh, 20000, 0);
+  geom::HullBuilder builder;
+  const Concavity all = estimate_concavity(mesh.vertices, solid, builder, true);
+  ASSERT_GT(all.fourth, 0);
+  for (const double share : {0.0, 0.3, 0.9, 1.0, 1.1}) {
+    double volume = 0;
+    const double limit = share * all.fourth;
+    const Concavity part = estimate_fourth(mesh.vertices, solid, builder, [&](double v) {
+      volume = v;
+      return limit;
+    });
+    EXPECT_EQ(part.volume, all.volume);
+    EXPECT_EQ(volume, all.volume);
+    if (share < 1)
+      EXPECT_GT(part.fourth, limit);
+    else
+      EXPECT_EQ(part.fourth, all.fourth);
+  }
+}
+
 TEST(Concavity, OfConvexSolidsIsNothing) {
   const Mesh cube = kaboum::test::box({1, 1, 1}, 1);
   const SolidField solid(cube, 20000, 0);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <kaboum/base/error.h>
+#include <kaboum/certify/cache_folder.h>
 #include <kaboum/certify/robot.h>
 #include <kaboum/certify/sweep.h>
 #include <kaboum/io/convex_io.h>
@@ -120,6 +121,64 @@ TEST_F(RobotTest, HasTheBytesOfTheTools) {
                 "--body-epsilon 5% --effort fast --no-cache --quiet"),
             0);
   EXPECT_EQ(swept->bytes(), bytes("swept.glb"));
+}
+
+TEST_F(RobotTest, LinksAreKeptBetweenRuns) {
+  const SetCache cache(folder_ / "cache");
+  const CertifiedRobot made = certify_robot(arm(), fast(), &cache);
+  const auto keep = [&] {
+    std::vector<fs::path> out;
+    for (const auto& entry : fs::directory_iterator(folder_ / "cache"))
+      if (CacheFolder::kind_of({entry.path(), 0, {}}).starts_with("KABOUM-LINK"))
+        out.push_back(entry.path());
+    return out;
+  };
+  ASSERT_EQ(keep().size(), 1U);  // the other one is a box
+  std::vector<std::string> notes;
+  RobotHooks hooks;
+  hooks.note = [&](const std::string&, const std::string& text) { notes.push_back(text); };
+  const auto expect_same = [&](const RobotRequest& request) {
+    notes.clear();
+    const CertifiedRobot again = certify_robot(arm(), request, &cache, hooks);
+    ASSERT_EQ(again.links.size(), made.links.size());
+    for (std::size_t i = 0; i < made.links.size(); ++i) {
+      const CertifiedLink &one = made.links[i], &other = again.links[i];
+      EXPECT_EQ(one.bytes(), other.bytes());
+      EXPECT_EQ(one.artefact().provenance, other.artefact().provenance);
+      EXPECT_EQ(one.certificate().link, other.certificate().link);
+      EXPECT_EQ(one.certificate().shapes, other.certificate().shapes);
+      EXPECT_EQ(one.certificate().distance, other.certificate().distance);
+      ASSERT_EQ(one.artefact().bodies.size(), other.artefact().bodies.size());
+      for (std::size_t b = 0; b < one.artefact().bodies.size(); ++b) {
+        EXPECT_EQ(one.artefact().bodies[b].name, other.artefact().bodies[b].name);
+        EXPECT_EQ(one.artefact().bodies[b].hull.vertices, other.artefact().bodies[b].hull.vertices);
+        EXPECT_EQ(one.artefact().bodies[b].hull.triangles,
+                  other.artefact().bodies[b].hull.triangles);
+      }
+    }
+  };
+  expect_same(fast());
+  EXPECT_TRUE(notes.empty());
+  EXPECT_EQ(keep().size(), 1U);
+
+  // What is damaged is made again.
+  const fs::path entry = keep().front();
+  std::vector<char> damaged = io::read_file(entry);
+  damaged[damaged.size() / 2] ^= 1;
+  io::write_file(entry, damaged);
+  expect_same(fast());
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_NE(notes[0].find("made again"), std::string::npos);
+  expect_same(fast());
+  EXPECT_TRUE(notes.empty());
+
+  // Another place in the link's frame is another set.
+  std::string urdf = kArm;
+  urdf.replace(urdf.find("0.7 0.1 -0.3"), 3, "0.8");
+  std::ofstream(folder_ / "arm.urdf") << urdf;
+  const CertifiedRobot moved = certify_robot(arm(), fast(), &cache);
+  EXPECT_NE(moved.links[1].bytes(), made.links[1].bytes());
+  EXPECT_EQ(keep().size(), 2U);
 }
 
 TEST_F(RobotTest, PolytopesThatDoNotHoldTheBodiesAreRefused) {

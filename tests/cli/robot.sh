@@ -269,4 +269,44 @@ expect 3 'bad.urdf' "$D" robot/bad.urdf -o x
 absent x
 : >afile
 expect 4 '' "$D" robot/r.urdf -o afile --effort fast
+
+# What is there as it was written is left alone, and the robot counts as made now; whatever is not, is written again.
+expect 0 '' "$D" robot/r.urdf -o kept --epsilon 3% --effort fast --robot-format sdf --report first.json
+cp -r kept first
+state() {
+  ls -iR kept | grep -v '^total'
+}
+again() {
+  expect 0 '' "$D" robot/r.urdf -o kept --epsilon 3% --effort fast --robot-format sdf --report k.json "$@"
+  diff -r first kept >diff.txt || fail "not as it was at first: $(cat diff.txt)"
+}
+state >before.txt
+touch -d '1 hour ago' kept/r.urdf kept/r.sdf
+: >reference
+again
+state | cmp -s before.txt - || fail "files are written again though nothing changed"
+for f in kept/r.urdf kept/r.sdf; do
+  [ "$f" -ot reference ] && fail "$f does not count as made now"
+done
+for j in first k; do grep -v '"cached"\|seconds\|megabytes' $j.json >$j.txt; done
+grep -q '"stale": \[\]' k.json || fail "a container is said to be of another result"
+cmp -s first.txt k.txt || fail "another report: $(diff first.txt k.txt)"
+printf 'x' | dd of=kept/bodies/bracket/bracket-0001.stl bs=1 seek=100 conv=notrunc 2>/dev/null
+again
+rm kept/bodies/t/t-0000.stl
+again
+cp kept/bodies/t/t-0000.stl kept/bodies/t/t-0001.stl  # whoever reads the folder takes it for a body
+again
+rm kept/links/base.glb
+again
+sed 's/base_0/other/' first/r.urdf >kept/r.urdf
+again
+: >kept/.kaboum-unfinished
+again
+state >before.txt
+again --no-cache
+state | cmp -s before.txt - && fail "--no-cache leaves files as they are"
+expect 0 '' "$D" robot/r.urdf -o kept --epsilon 3% --effort fast --robot-format sdf --for drake
+[ -s kept/bodies/t/t-0000.obj ] || fail "other bodies are not written"
+again
 finish
