@@ -2,7 +2,7 @@
 // that preferred operators lead to; preferred queues are boosted on progress, and estimates
 // deferred to expansion [helmert2006fd]. The relaxed plan guides where deletions do
 // little harm, the landmark events where they do. Both count steps, whatever these cost. Without
-// sensing, states too are made when their turn comes.
+// sensing and external functions, states too are made when their turn comes.
 #include <kaboum/base/error.h>
 
 #include <algorithm>
@@ -50,11 +50,8 @@ class Queues {
     if (best->second.empty()) queues_[next].erase(best);
     return item;
   }
-  /// Preferred states come first for a while.
-  void boost() {
-    served_[kRelaxedPreferred] -= kBoost;
-    served_[kEventsPreferred] -= kBoost;
-  }
+  /// What is in the queue comes first for a while.
+  void boost(std::size_t queue) { served_[queue] -= kBoost; }
   [[nodiscard]] std::size_t bytes() const { return most_ * sizeof(Index); }
 
  private:
@@ -76,7 +73,8 @@ class GreedySearch {
         relaxed_(in.heuristics.relaxed(in.task, in.limits)),
         landmarks_(in.heuristics.landmark(in.task, in.limits)),
         words_(in.task.layout().words()),
-        at_once_(in.task.layout().sensing()),
+        calls_(!in.task.model().external_functions.empty()),
+        at_once_(calls_ || in.task.layout().sensing()),
         store_(words_),
         scratch_(in.task.layout()) {}
 
@@ -179,19 +177,20 @@ class GreedySearch {
   }
 
   void note_progress(const Estimates& e) {
-    bool progress = e.relaxed < best_.relaxed;
-    if (progress) best_.relaxed = e.relaxed;
-    if (use_events_ && e.events < best_.events) {
-      best_.events = e.events;
-      progress = true;
-    }
-    if (progress) open_.boost();
+    const bool relaxed = e.relaxed < best_.relaxed;
+    const bool events = use_events_ && e.events < best_.events;
+    if (relaxed) best_.relaxed = e.relaxed;
+    if (events) best_.events = e.events;
+    // Progress of one estimate is for both, but where calls take longer than all else.
+    const bool both = !calls_ && (relaxed || events);
+    if (relaxed || both) open_.boost(kRelaxedPreferred);
+    if (events || both) open_.boost(kEventsPreferred);
   }
 
   /// @return whether a successor reaches the target.
   bool expand(Index state) {
     const std::vector<OperatorId> helpful = relaxed_.steps();
-    if (at_once_) {
+    if (in_.task.layout().sensing()) {
       in_.task.expand_unasked(store_[state], steps_);
     } else {
       in_.heuristics.steps(in_.task, in_.limits).find(store_[state], steps_);
@@ -238,6 +237,7 @@ class GreedySearch {
   RelaxedPlan& relaxed_;
   LandmarkHeuristic& landmarks_;
   Index words_;
+  bool calls_;    ///< external functions
   bool at_once_;  ///< steps are made when their state is expanded: it may be in a plan already
   StateStore store_;
   Knowledge scratch_;
