@@ -3,10 +3,13 @@
 #include <deque>
 #include <map>
 #include <random>
+#include <set>
 
 #include "plan_test.h"
+#include "search/applicable_steps.h"
 #include "search/invariants.h"
 #include "search/landmarks.h"
+#include "search/radix_queue.h"
 #include "search/relaxed_plan.h"
 #include "search/search.h"
 #include "search/state_store.h"
@@ -82,6 +85,28 @@ std::string random_task(std::uint32_t seed) {
          ")\n";
 }
 
+TEST(RadixQueue, TakesKeysInOrder) {
+  std::mt19937 random(1);
+  RadixQueue queue;
+  for (int round = 0; round < 20; ++round) {
+    std::multiset<RadixQueue::Key> reference;
+    queue.clear();
+    const auto push = [&](RadixQueue::Key key) {
+      queue.push(key, key ^ 1U);
+      reference.insert(key);
+    };
+    for (int i = 0; i < 50; ++i) push(random() % 100);
+    for (int i = 0; i < 2000 && !reference.empty(); ++i) {
+      const auto [key, item] = queue.pop();
+      EXPECT_EQ(key, *reference.begin());
+      EXPECT_EQ(item, key ^ 1U);
+      reference.erase(reference.begin());
+      if (i < 1500) push(key + (random() % 3 == 0 ? random() % (1U << 20U) : random() % 4));
+    }
+    EXPECT_EQ(queue.empty(), reference.empty());
+  }
+}
+
 TEST(Estimates, SensingTellsNothingOfWhatIsKnown) {
   const auto start = [](const std::string& init) {
     const Model m =
@@ -99,12 +124,21 @@ TEST(Estimates, SensingTellsNothingOfWhatIsKnown) {
   EXPECT_EQ(solved(m, Algorithm::Greedy).outcome, Outcome::Solved);
 }
 
+TEST(Estimates, TheRelaxedPlanCountsStepsWhateverTheyCost) {
+  const Model m = model_of(
+      "predicates: p, q\ninit: K(!p) K(!q)\naction one preconds: K(!p) effects: add(Kf, p)\n  "
+      "cost: "
+      "100\naction two preconds: K(p) effects: add(Kf, q)\n  cost: 0\ngoal: K(q)");
+  EXPECT_EQ(solved(m, Algorithm::Greedy).statistics.initial_estimate, 2);
+}
+
 TEST(Estimates, AreSafeAndAdmissibleInEveryReachableState) {
   int tasks = 0;
   std::uint64_t states = 0;
   std::uint64_t positive = 0;
   std::uint64_t dead = 0;
   std::uint64_t exclusive_pairs = 0;
+  std::uint64_t applicable = 0;
   for (std::uint32_t seed = 0; seed < 5000 && !HasFailure(); ++seed) {
     const std::string text = random_task(seed);
     const Model model = model_of(text);
@@ -171,6 +205,15 @@ TEST(Estimates, AreSafeAndAdmissibleInEveryReachableState) {
         EXPECT_EQ(exact[i], kFar) << "seed " << seed << "\n" << text;
         ++dead;
       }
+      EXPECT_TRUE(landmarks.count(store[i]) || exact[i] == kFar) << "seed " << seed << "\n" << text;
+      if (!task.layout().sensing()) {
+        // The same by the facts that ground steps need as by descent over parameters.
+        std::vector<OperatorId> found;
+        task.expand_unasked(store[i], steps);
+        heuristics.steps(task, limits).find(store[i], found);
+        EXPECT_EQ(found, steps) << "seed " << seed << "\n" << text;
+        applicable += found.size();
+      }
       if (relaxed.evaluate(store[i]) == RelaxedPlan::kDeadEnd) {
         EXPECT_EQ(exact[i], kFar) << "seed " << seed << "\n" << text;
         ++dead;
@@ -194,6 +237,7 @@ TEST(Estimates, AreSafeAndAdmissibleInEveryReachableState) {
   EXPECT_GT(positive, 1000U);
   EXPECT_GT(dead, 1000U);
   EXPECT_GT(exclusive_pairs, 20U);
+  EXPECT_GT(applicable, 50'000U);
   std::printf("%d tasks, %lu states, %lu positive estimates, %lu dead ends, %lu exclusive pairs\n",
               tasks, static_cast<unsigned long>(states), static_cast<unsigned long>(positive),
               static_cast<unsigned long>(dead), static_cast<unsigned long>(exclusive_pairs));

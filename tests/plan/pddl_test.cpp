@@ -252,5 +252,28 @@ TEST(Pddl, AStaticPredicateOfAMillionAtomsIsClosedOnlyWhereThatCanBeTold) {
   EXPECT_EQ(outcome("n40", "n3", 0), Outcome::Unsolvable) << "it is still a proof";
 }
 
+TEST(Pddl, ManyParametersAreJoined) {
+  // 30^9 instances, of which the road admits one for each place: found from the facts that hold.
+  std::string objects, init;
+  for (int i = 0; i < 30; ++i) {
+    objects += " x" + std::to_string(i);
+    if (i > 0) init += " (road x" + std::to_string(i - 1) + " x" + std::to_string(i) + ")";
+  }
+  const Model m = pddl(
+      "(define (domain walk) (:requirements :strips :typing :negative-preconditions) (:types place)"
+      " (:predicates (road ?a ?b - place) (at ?a - place) (closed ?a - place))"
+      " (:action walk :parameters (?i ?h ?g ?f ?e ?d ?c ?b ?a - place)"
+      "  :precondition (and (road ?a ?b) (road ?b ?c) (road ?c ?d) (road ?d ?e) (road ?e ?f) (road "
+      "?f "
+      "?g) (road ?g ?h) (road ?h ?i) (not (closed ?i)) (at ?a))"
+      "  :effect (and (at ?b) (not (at ?a)))))"
+      "(define (problem p) (:domain walk) (:objects" +
+      objects + " - place) (:init (at x0) (closed x25)" + init + ") (:goal (at x17)))");
+  const Solution s = solve(m, {Algorithm::Greedy, 0, 0, {}});
+  ASSERT_EQ(s.outcome, Outcome::Solved);
+  EXPECT_EQ(measure(m, s.plan).longest, 17U);
+  EXPECT_EQ(s.statistics.ground_actions, 17U);
+}
+
 }  // namespace
 }  // namespace kaboum::plan::test

@@ -33,4 +33,8 @@ std::optional<std::uint64_t> event_bound(const std::vector<LandmarkEvent>& event
                                          const std::vector<EventOrder>& orders,
                                          const std::vector<std::int64_t>& costs);
 
+/// How many events at least are different ones, those of few steps chosen first; nullopt as above.
+std::optional<std::uint64_t> distinct_events(const std::vector<LandmarkEvent>& events,
+                                             const std::vector<EventOrder>& orders);
+
 }  // namespace kaboum::plan

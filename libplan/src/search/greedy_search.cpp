@@ -1,15 +1,18 @@
 // Greedy best-first search with two estimates, each with a queue of all states and one of those
 // that preferred operators lead to; preferred queues are boosted on progress, and estimates
 // deferred to expansion [helmert2006fd]. The relaxed plan guides where deletions do
-// little harm, the landmark events where they do.
+// little harm, the landmark events where they do. Both count steps, whatever these cost. Without
+// sensing and external functions, states too are made when their turn comes.
 #include <kaboum/base/error.h>
 
 #include <algorithm>
 #include <array>
+#include <deque>
+#include <map>
 #include <optional>
-#include <queue>
 #include <utility>
 
+#include "search/applicable_steps.h"
 #include "search/landmarks.h"
 #include "search/relaxed_plan.h"
 #include "search/search.h"
@@ -18,28 +21,20 @@
 namespace kaboum::plan {
 namespace {
 
-struct Open {
-  std::uint64_t estimate;
-  std::uint64_t order;  // first come, first served
-  Index item;           // a state, or with kUnasked a step that is not decided yet
-  bool operator>(const Open& o) const {
-    return std::pair(estimate, order) > std::pair(o.estimate, o.order);
-  }
-};
-
 /// Searches where external functions refuse steps: what the first one has learned of that makes the
 /// plans of later ones shorter, and most of what they ask has been asked before.
 constexpr int kRounds = 3;
 
-constexpr Index kUnasked = Index{1} << 31U;
+/// Items of queues: states, or with this steps that are not taken yet.
+constexpr Index kStep = Index{1} << 31U;
 
 constexpr std::size_t kRelaxed = 0, kRelaxedPreferred = 1, kEvents = 2, kEventsPreferred = 3;
 
 /// Queues that take turns: the one that was served least, counting boosts.
 class Queues {
  public:
-  void push(std::size_t queue, const Open& open) {
-    queues_[queue].push(open);
+  void push(std::size_t queue, std::uint64_t estimate, Index item) {
+    queues_[queue][estimate].push_back(item);
     most_ = std::max(most_, ++size_);
   }
   [[nodiscard]] bool empty() const { return size_ == 0; }
@@ -49,17 +44,21 @@ class Queues {
       if (!queues_[q].empty() && (next == queues_.size() || served_[q] < served_[next])) next = q;
     ++served_[next];
     --size_;
-    const Index item = queues_[next].top().item;
-    queues_[next].pop();
+    const auto best = queues_[next].begin();
+    const Index item = best->second.front();
+    best->second.pop_front();
+    if (best->second.empty()) queues_[next].erase(best);
     return item;
   }
+  /// What is in the queue comes first for a while.
   void boost(std::size_t queue) { served_[queue] -= kBoost; }
-  [[nodiscard]] std::size_t bytes() const { return most_ * sizeof(Open); }
+  [[nodiscard]] std::size_t bytes() const { return most_ * sizeof(Index); }
 
  private:
   static constexpr std::int64_t kBoost = 1000;  // turns, on progress
 
-  std::array<std::priority_queue<Open, std::vector<Open>, std::greater<>>, 4> queues_;
+  /// By estimate; first come, first served.
+  std::array<std::map<std::uint64_t, std::deque<Index>>, 4> queues_;
   std::array<std::int64_t, 4> served_{};
   std::size_t size_ = 0;
   std::size_t most_ = 0;
@@ -74,22 +73,29 @@ class GreedySearch {
         relaxed_(in.heuristics.relaxed(in.task, in.limits)),
         landmarks_(in.heuristics.landmark(in.task, in.limits)),
         words_(in.task.layout().words()),
+        calls_(!in.task.model().external_functions.empty()),
+        at_once_(calls_ || in.task.layout().sensing()),
         store_(words_),
         scratch_(in.task.layout()) {}
 
   Found run() {
     store_.insert(in_.start.data(), Knowledge::hash_of(in_.start.data(), words_), kNone, 0);
-    open_.push(kRelaxed, {0, order_++, 0});
+    open_.push(kRelaxed, 0, 0);
     while (!open_.empty()) {
       Index state = open_.pop();
-      if ((state & kUnasked) != 0) {
-        if (in_.limits.check(bytes())) return finish(Outcome::Limit);
-        const Taken taken = take(unasked_[state & ~kUnasked]);
+      if ((state & kStep) != 0) {
+        const Taken taken = take(waiting_[state & ~kStep]);
         if (taken.reached) return finish(Outcome::Solved);
-        if (taken.state == kNone) continue;
+        if (taken.state == kNone) {
+          if (in_.limits.exceeded(bytes())) return finish(Outcome::Limit);
+          continue;
+        }
         state = taken.state;
       }
-      if (state >= expanded_.size()) expanded_.resize(store_.size(), 0);
+      if (state >= expanded_.size()) {
+        expanded_.resize(store_.size(), 0);
+        estimates_.resize(store_.size());
+      }
       if (expanded_[state]) continue;
       expanded_[state] = 1;
       if (in_.limits.check(bytes()) || in_.statistics.expanded >= most_expanded_)
@@ -97,7 +103,8 @@ class GreedySearch {
       const std::optional<Estimates> estimates = evaluate(state);
       if (!estimates) continue;
       note_progress(*estimates);
-      if (expand(state, *estimates)) return finish(Outcome::Solved);
+      estimates_[state] = *estimates;
+      if (expand(state)) return finish(Outcome::Solved);
     }
     return finish(Outcome::Unsolvable);
   }
@@ -108,11 +115,11 @@ class GreedySearch {
     std::uint64_t events = 0;
   };
 
-  /// A step from a state, whose external functions are asked when its turn comes: most never come.
-  struct Unasked {
+  /// A step from a state that is made, and whose external functions are asked, when its turn comes:
+  /// for most it never does.
+  struct Waiting {
     Index parent = 0;
     OperatorId step = kNoOperator;  ///< kNoOperator: its turn has come
-    Estimates estimates;
     bool preferred = false;
   };
 
@@ -122,15 +129,17 @@ class GreedySearch {
   };
 
   /// Asks, and makes the step if it is possible.
-  Taken take(Unasked& unasked) {
-    const Unasked u = std::exchange(unasked, {});
-    if (u.step == kNoOperator) return {};  // in another queue
+  Taken take(Waiting& waiting) {
+    const Waiting w = std::exchange(waiting, {});
+    if (w.step == kNoOperator) return {};  // in another queue
+    if (!in_.task.asks(w.step)) return make(w.parent, w.step);
+    if (in_.limits.check(bytes())) return {};
     outcomes_.clear();
-    if (in_.task.decide(store_[u.parent], u.step, outcomes_)) return make(u.parent, u.step);
+    if (in_.task.decide(store_[w.parent], w.step, outcomes_)) return make(w.parent, w.step);
     for (const OperatorId outcome : outcomes_) {
-      const Taken taken = make(u.parent, outcome);
+      const Taken taken = make(w.parent, outcome);
       if (taken.reached) return taken;
-      if (taken.state != kNone) push(taken.state, u.estimates, u.preferred);
+      if (taken.state != kNone) push(taken.state, estimates_[w.parent], w.preferred);
     }
     return {};
   }
@@ -142,7 +151,7 @@ class GreedySearch {
     ++in_.statistics.generated;
     const auto [number, fresh] = store_.insert(scratch_.words(), scratch_.hash(), parent, step);
     if (!fresh) return {};
-    ensure(number < kUnasked, "states are numbered");
+    ensure(number < kStep, "states are numbered");
     if (!in_.target.reached(scratch_.words())) return {number, false};
     found_.steps = store_.path(number);
     in_.statistics.depth = std::max<std::uint64_t>(in_.statistics.depth, found_.steps.size());
@@ -158,7 +167,7 @@ class GreedySearch {
       in_.statistics.initial_estimate = dead ? -1 : static_cast<std::int64_t>(e.relaxed);
     if (dead) return std::nullopt;
     if (!use_events_) return e;
-    const auto events = landmarks_.evaluate(store_[state]);
+    const auto events = landmarks_.count(store_[state]);
     if (!events) return std::nullopt;
     e.events = *events;
     // Not worth it where events are so many that their orders take longer than all the rest.
@@ -168,49 +177,52 @@ class GreedySearch {
   }
 
   void note_progress(const Estimates& e) {
-    if (e.relaxed < best_.relaxed) {
-      best_.relaxed = e.relaxed;
-      open_.boost(kRelaxedPreferred);
-    }
-    if (use_events_ && e.events < best_.events) {
-      best_.events = e.events;
-      open_.boost(kEventsPreferred);
-    }
+    const bool relaxed = e.relaxed < best_.relaxed;
+    const bool events = use_events_ && e.events < best_.events;
+    if (relaxed) best_.relaxed = e.relaxed;
+    if (events) best_.events = e.events;
+    // Progress of one estimate is for both, but where calls take longer than all else.
+    const bool both = !calls_ && (relaxed || events);
+    if (relaxed || both) open_.boost(kRelaxedPreferred);
+    if (events || both) open_.boost(kEventsPreferred);
   }
 
   /// @return whether a successor reaches the target.
-  bool expand(Index state, const Estimates& estimates) {
+  bool expand(Index state) {
     const std::vector<OperatorId> helpful = relaxed_.steps();
-    in_.task.expand_unasked(store_[state], steps_);
+    if (in_.task.layout().sensing()) {
+      in_.task.expand_unasked(store_[state], steps_);
+    } else {
+      in_.heuristics.steps(in_.task, in_.limits).find(store_[state], steps_);
+    }
     ++in_.statistics.expanded;
     for (const OperatorId step : steps_) {
       const bool preferred = std::binary_search(helpful.begin(), helpful.end(), step);
-      if (in_.task.asks(step)) {
-        ensure(unasked_.size() < kUnasked, "steps are numbered");
-        push(static_cast<Index>(unasked_.size()) | kUnasked, estimates, preferred);
-        unasked_.push_back({state, step, estimates, preferred});
+      if (!at_once_ || in_.task.asks(step)) {
+        ensure(waiting_.size() < kStep, "steps are numbered");
+        push(static_cast<Index>(waiting_.size()) | kStep, estimates_[state], preferred);
+        waiting_.push_back({state, step, preferred});
         continue;
       }
       const Taken taken = make(state, step);
       if (taken.reached) return true;
-      if (taken.state != kNone) push(taken.state, estimates, preferred);
+      if (taken.state != kNone) push(taken.state, estimates_[state], preferred);
     }
     return false;
   }
 
   void push(Index item, const Estimates& e, bool preferred) {
-    open_.push(kRelaxed, {e.relaxed, order_, item});
-    if (preferred) open_.push(kRelaxedPreferred, {e.relaxed, order_, item});
+    open_.push(kRelaxed, e.relaxed, item);
+    if (preferred) open_.push(kRelaxedPreferred, e.relaxed, item);
     if (use_events_) {
-      open_.push(kEvents, {e.events, order_, item});
-      if (preferred) open_.push(kEventsPreferred, {e.events, order_, item});
+      open_.push(kEvents, e.events, item);
+      if (preferred) open_.push(kEventsPreferred, e.events, item);
     }
-    ++order_;
   }
 
   [[nodiscard]] std::size_t bytes() const {
     return store_.bytes() + open_.bytes() + expanded_.capacity() +
-           unasked_.capacity() * sizeof(Unasked);
+           estimates_.capacity() * sizeof(Estimates) + waiting_.capacity() * sizeof(Waiting);
   }
 
   Found finish(Outcome outcome) {
@@ -225,15 +237,17 @@ class GreedySearch {
   RelaxedPlan& relaxed_;
   LandmarkHeuristic& landmarks_;
   Index words_;
+  bool calls_;    ///< external functions
+  bool at_once_;  ///< steps are made when their state is expanded: it may be in a plan already
   StateStore store_;
   Knowledge scratch_;
   Queues open_;
-  std::vector<char> expanded_;
-  std::uint64_t order_ = 0;
+  std::vector<char> expanded_;        ///< by state
+  std::vector<Estimates> estimates_;  ///< by state, once expanded
   Estimates best_{RelaxedPlan::kDeadEnd, RelaxedPlan::kDeadEnd};
   bool use_events_ = true;
   std::vector<OperatorId> steps_, outcomes_;
-  std::vector<Unasked> unasked_;
+  std::vector<Waiting> waiting_;
   Found found_;
 };
 

@@ -231,6 +231,17 @@ bool LandmarkHeuristic::relate(Index event, const Word* state) {
 }
 
 std::optional<std::uint64_t> LandmarkHeuristic::evaluate(const Word* state) {
+  if (!find_events(state)) return std::nullopt;
+  return event_bound(events_, orders_, costs_);
+}
+
+std::optional<std::uint64_t> LandmarkHeuristic::count(const Word* state) {
+  if (!find_events(state)) return std::nullopt;
+  return distinct_events(events_, orders_);
+}
+
+/// @return false: a dead end.
+bool LandmarkHeuristic::find_events(const Word* state) {
   events_.clear();
   first_.clear();
   orders_.clear();
@@ -240,8 +251,7 @@ std::optional<std::uint64_t> LandmarkHeuristic::evaluate(const Word* state) {
     if (!relaxation_.facts().holds(goals_[g], state)) last_event(g);
   for (Index i = 0; i < events_.size() && !dead_; ++i)
     if (!relate(i, state)) break;
-  if (dead_) return std::nullopt;
-  return event_bound(events_, orders_, costs_);
+  return !dead_;
 }
 
 }  // namespace kaboum::plan

@@ -29,6 +29,9 @@ class LandmarkHeuristic {
   /// Lower bound on the cost to the goal; nullopt: the goal cannot be reached.
   std::optional<std::uint64_t> evaluate(const Word* state);
 
+  /// Steps of which none can be another one, in every plan: cheaper, and costs do not count.
+  std::optional<std::uint64_t> count(const Word* state);
+
   /// Events of the last evaluation, whose time grows with their cube.
   [[nodiscard]] std::size_t events() const { return events_.size(); }
 
@@ -47,6 +50,7 @@ class LandmarkHeuristic {
     std::vector<FactId> conditions;  ///< common to all achievers
     std::vector<Index> excludes;     ///< goals that exclude this fact
   };
+  bool find_events(const Word* state);
   FactInfo& info(FactId f);
   std::vector<FactId> common_conditions(FactId f);
   Index first_event(std::vector<FactId> facts, const Word* state);

@@ -8,17 +8,17 @@ namespace kaboum::plan {
 using Kind = FormulaPool::Kind;
 
 Relaxation::Relaxation(Task& task, Limits& limits)
-    : task_(task), limits_(limits), facts_(task.model(), task.layout()) {
-  reached_.assign(facts_.size(), 0);
+    : task_(task),
+      limits_(limits),
+      facts_(task.model(), task.layout()),
+      reachability_(task, limits, facts_) {
   nodes_.resize(facts_.size());
-  reach();
-  std::sort(actions_.begin(), actions_.end());
-  for (const OperatorId a : actions_) add_action(a);
+  for (const OperatorId a : actions()) add_action(a);
   for (Index i = 0; i < task.layout().fluents().size(); ++i) {
     const Fluent& f = task.layout().fluents()[i];
     const FactId sensed =
         facts_.fact(i, f.function ? kValueSensed : static_cast<Word>(AtomKnowledge::Whether));
-    if (!reached_[sensed]) continue;
+    if (!reachability_.reached(sensed)) continue;
     for (Index v = 0; v < (f.function ? task.layout().range_size(f) : 2); ++v) {
       Operator o;
       o.step = task.outcome_id(i, v);
@@ -41,82 +41,6 @@ Relaxation::Relaxation(Task& task, Limits& limits)
     add_operator(std::move(o), {});
   }
   node(task.goal());
-}
-
-bool Relaxation::mark(FactId f) {
-  if (reached_[f]) return false;
-  reached_[f] = 1;
-  return true;
-}
-
-bool Relaxation::possible(Formula f, bool positive) const {
-  const FormulaPool& pool = task_.pool();
-  const FormulaPool::Node& n = pool.node(f);
-  switch (n.kind) {
-    case Kind::False:
-      return !positive;
-    case Kind::True:
-      return positive;
-    case Kind::Xor:
-    case Kind::Bits:
-    case Kind::External:
-      return true;
-    case Kind::Not:
-      return possible(*pool.begin(f), !positive);
-    case Kind::And:
-    case Kind::Or:
-      if ((n.kind == Kind::And) == positive)
-        return std::all_of(pool.begin(f), pool.end(f),
-                           [&](Formula c) { return possible(c, positive); });
-      return std::any_of(pool.begin(f), pool.end(f),
-                         [&](Formula c) { return possible(c, positive); });
-    default: {
-      bool always = false;
-      const std::vector<FactId> any = facts_.leaf_contents(n, positive, always);
-      return always ||
-             std::any_of(any.begin(), any.end(), [&](FactId x) { return reached_[x] != 0; });
-    }
-  }
-}
-
-void Relaxation::reach() {
-  const Layout& layout = task_.layout();
-  for (Index i = 0; i < layout.fluents().size(); ++i) {
-    const Fluent& f = layout.fluents()[i];
-    mark(facts_.fact(i, f.get(task_.initial().data())));
-    // What Kx or exclusions may reveal is taken for reachable.
-    if (!f.groups.empty())
-      for (Word c = 0; c < 4; ++c) mark(facts_.fact(i, c));
-    if (f.exclusions != kNone)
-      for (Word c = 0; c < layout.range_size(f) + kFirstValue; ++c) mark(facts_.fact(i, c));
-  }
-  for (bool again = true; again;) {
-    again = false;
-    for (Index s = 0; s < task_.model().actions.size(); ++s) {
-      task_.instances(
-          s, [&](Formula f) { return possible(f, true); },
-          [&](const std::vector<Index>& arguments) {
-            const OperatorId step = task_.action_id(s, arguments);
-            if (step >= reached_action_.size()) reached_action_.resize(step + 1, 0);
-            if (!reached_action_[step]) {
-              reached_action_[step] = 1;
-              actions_.push_back(step);
-              again = true;
-            }
-            for (const ConditionalEffect& c : task_.action(step).effects) {
-              if (!possible(c.condition, true)) continue;
-              for (const FactId x : facts_.added(c)) again |= mark(x);
-            }
-          });
-    }
-    for (Index i = 0; i < layout.fluents().size(); ++i) {
-      const Fluent& f = layout.fluents()[i];
-      const Word sensed = f.function ? kValueSensed : static_cast<Word>(AtomKnowledge::Whether);
-      if (!reached_[facts_.fact(i, sensed)]) continue;
-      const Word count = f.function ? layout.range_size(f) + kFirstValue : 3;
-      for (Word c = f.function ? kFirstValue : 1; c < count; ++c) again |= mark(facts_.fact(i, c));
-    }
-  }
 }
 
 Index Relaxation::node(Formula f, bool positive) {
@@ -157,7 +81,7 @@ Index Relaxation::node(Formula f, bool positive) {
       made.kind = Node::Kind::Any;
       if (always) made.kind = Node::Kind::All;
       if (!always) {
-        std::erase_if(any, [&](FactId x) { return !reached_[x]; });
+        std::erase_if(any, [&](FactId x) { return !reachability_.reached(x); });
         if (any.size() == 1) {
           node_index_[key] = any[0];
           return any[0];
@@ -222,7 +146,7 @@ void Relaxation::add_action(OperatorId step) {
   const std::vector<FactId> needed = necessary_facts(a.precondition);
   for (Index i = 0; i < a.effects.size(); ++i) {
     const ConditionalEffect& c = a.effects[i];
-    if (!possible(c.condition, true)) continue;
+    if (!reachability_.possible(c.condition, true)) continue;
     Operator o;
     o.step = step;
     o.cost = a.cost;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "search/fact_table.h"
+#include "search/reachability.h"
 #include "task/task.h"
 
 namespace kaboum::plan {
@@ -34,7 +35,7 @@ class Relaxation {
 
   [[nodiscard]] const FactTable& facts() const { return facts_; }
   [[nodiscard]] const std::vector<Operator>& operators() const { return operators_; }
-  [[nodiscard]] const std::vector<OperatorId>& actions() const { return actions_; }
+  [[nodiscard]] const std::vector<OperatorId>& actions() const { return reachability_.actions(); }
 
   /// Facts that a formula cannot hold without.
   [[nodiscard]] std::vector<FactId> necessary_facts(Formula f) const;
@@ -49,19 +50,14 @@ class Relaxation {
   Index node(Formula f, bool positive = true);
 
  private:
-  void reach();
   void add_action(OperatorId step);
   [[nodiscard]] bool senses_unknown(const GroundAction& action, const Change& change) const;
   void add_operator(Operator o, std::vector<Index> conditions);
-  [[nodiscard]] bool possible(Formula f, bool positive) const;
-  bool mark(FactId f);
 
   Task& task_;
   Limits& limits_;
   FactTable facts_;
-  std::vector<char> reached_;
-  std::vector<char> reached_action_;
-  std::vector<OperatorId> actions_;
+  Reachability reachability_;
   std::vector<Operator> operators_;
   std::vector<Node> nodes_;
   std::unordered_map<std::uint64_t, Index> node_index_;

@@ -1,16 +1,18 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
+#include "search/radix_queue.h"
 #include "search/relaxation.h"
 
 namespace kaboum::plan {
 
-/// The relaxed-plan heuristic (Hoffmann and Nebel 2001, [hoffmann2001ff]): the cost of a plan of
+/// The relaxed-plan heuristic (Hoffmann and Nebel 2001, [hoffmann2001ff]): the steps of a plan of
 /// the delete relaxation, put together from each fact's cheapest supporter under the additive
-/// heuristic. Not admissible. Actions cost at least one here: a free step is still a step away from
-/// the goal. What external functions say is taken for granted where they were not asked; an action
-/// that they have refused costs more from then on.
+/// heuristic. Not admissible. Every action counts as one, whatever it costs: the goal is near where
+/// few steps are left. What external functions say is taken for granted where they were not asked;
+/// an action that they have refused counts more from then on.
 class RelaxedPlan {
  public:
   explicit RelaxedPlan(Task& task, Relaxation& relaxation);
@@ -19,28 +21,75 @@ class RelaxedPlan {
   static constexpr std::uint64_t kDeadEnd = ~std::uint64_t{0};
   std::uint64_t evaluate(const Word* state);
 
-  /// Nodes of the graph that an evaluation walks.
-  [[nodiscard]] std::size_t size() const { return parents_.size(); }
+  /// Edges of the graph that an evaluation walks.
+  [[nodiscard]] std::size_t size() const { return size_; }
 
   /// Steps of the last relaxed plan, ascending: those applicable now are the preferred ones.
   [[nodiscard]] const std::vector<OperatorId>& steps() const { return steps_; }
 
  private:
+  using Cost = std::uint32_t;
+  /// A conjunction, or with kValue a value: a fact or a disjunction.
+  using Ref = std::uint32_t;
+  static constexpr Ref kValue = Ref{1} << 31U;
+
+  /// Lists of numbers, one after the other.
+  struct Lists {
+    std::vector<Index> first = {0};
+    std::vector<Index> items;
+
+    void add(const std::vector<Index>& list) {
+      items.insert(items.end(), list.begin(), list.end());
+      first.push_back(static_cast<Index>(items.size()));
+    }
+    [[nodiscard]] const Index* begin(Index i) const { return items.data() + first[i]; }
+    [[nodiscard]] const Index* end(Index i) const { return items.data() + first[i + 1]; }
+  };
+  /// A conjunction: of what it waits for, and what it costs so far.
+  struct Counter {
+    Index missing;
+    Cost sum;
+  };
+
+  class Builder;
+
   /// Of an action that external functions refused so far: as often as they are likely to be asked
   /// until they grant it.
-  [[nodiscard]] std::uint64_t cost_of(OperatorId step) const;
-  void settle(Index node, std::uint64_t cost, Index supporter);
+  [[nodiscard]] Cost cost_of(OperatorId step) const;
+  void settle(Index value, Cost cost, Ref supporter);
+  void count(Index conjunction, Cost cost);
+  void complete();
+  void explore(const Word* state);
+  std::uint64_t extract();
 
   Task& task_;
-  Relaxation& relaxation_;
-  Index goal_ = 0;
-  std::vector<std::vector<Index>> parents_;   ///< node: nodes it is a child of
-  std::vector<std::vector<Index>> achieves_;  ///< operator's node: its operator (0 or 1 entries)
-  std::vector<std::uint64_t> cost_;
-  std::vector<Index> missing_;    ///< All nodes: children not yet reached
-  std::vector<Index> supporter_;  ///< Fact: operator; Any: child
+  std::size_t size_ = 0;
+  Ref goal_ = 0;
+  // Values.
+  std::vector<Index> fluents_;     ///< those with facts that matter
+  std::vector<Index> first_fact_;  ///< by these: into value_of_
+  std::vector<Word> contents_;     ///< by these
+  std::vector<Index> value_of_;    ///< by fluent and content; kNone: it does not matter
+  Lists needed_by_;                ///< conjunctions, by value
+  Lists option_of_;                ///< disjunctions, by value
+  // Conjunctions. Those of operators are the precondition and the condition of one effect.
+  std::vector<OperatorId> step_;  ///< kNoOperator: of no operator
+  Lists children_;                ///< Ref
+  Lists part_of_;                 ///< conjunctions
+  Lists brings_;                  ///< values
+  std::vector<Index> empty_;      ///< without children
+  std::vector<Index> asking_;     ///< of actions whose costs change
+
+  // Of the state at hand.
+  std::vector<Counter> at_start_, counters_;
+  std::vector<Cost> cost_;       ///< by value
+  std::vector<Ref> supporter_;   ///< by value
+  std::vector<Index> complete_;  ///< conjunctions that hold, whose consequences are not drawn
+  std::vector<char> seen_value_, seen_conjunction_;
+  std::vector<Ref> todo_, seen_;
+  bool reached_ = false;
+  RadixQueue queue_;
   std::vector<OperatorId> steps_;
-  std::vector<std::pair<std::uint64_t, Index>> queue_;
 };
 
 }  // namespace kaboum::plan

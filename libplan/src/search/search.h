@@ -10,6 +10,7 @@
 
 namespace kaboum::plan {
 
+class ApplicableSteps;
 class Relaxation;
 class RelaxedPlan;
 class Invariants;
@@ -31,16 +32,19 @@ struct Found {
   std::vector<OperatorId> steps;
 };
 
-/// Heuristics of a task, made when a search first needs them and kept for the next.
+/// Heuristics of a task, and what else searches share, made when a search first needs them and kept
+/// for the next.
 struct Heuristics {
   Heuristics();
   ~Heuristics();
   RelaxedPlan& relaxed(Task& task, Limits& limits);
   LandmarkHeuristic& landmark(Task& task, Limits& limits);
+  ApplicableSteps& steps(Task& task, Limits& limits);
   std::unique_ptr<Relaxation> relaxation;
   std::unique_ptr<RelaxedPlan> relaxed_plan;
   std::unique_ptr<Invariants> invariants;
   std::unique_ptr<LandmarkHeuristic> landmarks;
+  std::unique_ptr<ApplicableSteps> applicable;
 };
 
 /// One search from `start` to the target. The algorithm's header tells what it guarantees.

@@ -51,6 +51,7 @@ std::vector<std::vector<const Query*>> ActionSchema::sort_conjuncts() {
     if (q->kind == Query::Kind::Let) named.emplace(q->value->index, c);
     std::size_t depth = c.slots.empty() ? 0 : c.slots.back() + 1;
     const bool external = calls_external(*q);
+    c.calls = external;
     if (external) depth = std::max(depth, latest);
     latest = std::max(latest, depth);
     if (depth == 0) {

@@ -25,6 +25,7 @@ class ActionSchema {
     std::vector<Index> slots;        ///< parameters that it depends on
     std::vector<const Query*> lets;  ///< that name what it reads, to be ground before it
     std::vector<Formula> grounded;   ///< by the slots' values; empty: too many to tabulate
+    bool calls = false;              ///< an external function
   };
   struct Candidate {
     Index object = 0;

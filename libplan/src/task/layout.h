@@ -66,6 +66,15 @@ class Layout {
   [[nodiscard]] Field atom(Index predicate, const Index* arguments) const;
   [[nodiscard]] Field term(Index function, const Index* arguments) const;
 
+  /// Calls `visit(arguments)` for the atoms of a predicate that are true for good.
+  template <class Visit>
+  void true_constants(Index predicate, const Visit& visit) const {
+    for (std::size_t n = numbering_.first_atom()[predicate];
+         n < numbering_.first_atom()[predicate + 1]; ++n)
+      if (atom_fluents_[n] == kNone && atom_constants_[n] == AtomKnowledge::True)
+        visit(numbering_.arguments(predicate, n));
+  }
+
   /// Position of an object among those of a type; kNone if it is not one of them. Handles are
   /// their own positions.
   [[nodiscard]] Index position(Index type, Index object) const {

@@ -24,6 +24,19 @@ class Numbering {
   [[nodiscard]] std::size_t atoms() const { return first_atom_.back(); }
   [[nodiscard]] std::size_t terms() const { return first_term_.back(); }
 
+  /// Of the atom with this number.
+  [[nodiscard]] std::vector<Index> arguments(Index predicate, std::size_t atom) const {
+    const std::vector<Index>& types = model_->predicates[predicate].parameters;
+    std::vector<Index> out(types.size());
+    std::size_t n = atom - first_atom_[predicate];
+    for (std::size_t i = types.size(); i-- > 0;) {
+      const std::vector<Index>& objects = model_->types[types[i]].objects;
+      out[i] = objects[n % objects.size()];
+      n /= objects.size();
+    }
+    return out;
+  }
+
   // The first number of each symbol, and the number after the last.
   [[nodiscard]] const std::vector<std::size_t>& first_atom() const { return first_atom_; }
   [[nodiscard]] const std::vector<std::size_t>& first_term() const { return first_term_; }

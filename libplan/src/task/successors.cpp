@@ -32,7 +32,7 @@ class Task::Expansion {
   /// external functions go, which effects happen.
   bool settled(const GroundAction& action) {
     if constexpr (Sensing) return decided(action);
-    return !action.conditions_call || resolved(action);
+    return task_.resolved(action, state_);
   }
 
  private:
@@ -117,14 +117,6 @@ class Task::Expansion {
     return all;
   }
 
-  /// Whether it is known, so far as external functions go, which effects happen.
-  bool resolved(const GroundAction& action) {
-    return std::none_of(
-        action.effects.begin(), action.effects.end(), [&](const ConditionalEffect& c) {
-          return task_.evaluator_.evaluate(c.condition, state_) == Truth::Unresolved;
-        });
-  }
-
   Task& task_;
   const Word* state_;
   std::vector<OperatorId>& steps_;
@@ -141,6 +133,19 @@ template <bool Sensing>
 void Task::expand_actions(const Word* state, std::vector<OperatorId>& steps, bool unasked) {
   Expansion<Sensing> expansion(*this, state, steps, unasked);
   for (Index s = 0; s < schemas_.size(); ++s) expansion.expand(s);
+}
+
+/// Whether it is known, so far as external functions go, which effects happen.
+bool Task::resolved(const GroundAction& action, const Word* state) const {
+  return !action.conditions_call ||
+         std::none_of(action.effects.begin(), action.effects.end(),
+                      [&](const ConditionalEffect& c) {
+                        return evaluator_.evaluate(c.condition, state) == Truth::Unresolved;
+                      });
+}
+
+bool Task::settled(const Word* state, OperatorId step) const {
+  return actions_[step]->asks || resolved(*actions_[step], state);
 }
 
 bool Task::decide(const Word* state, OperatorId step, std::vector<OperatorId>& outcomes) {

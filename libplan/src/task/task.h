@@ -45,6 +45,9 @@ class Task {
   void expand_unasked(const Word* state, std::vector<OperatorId>& steps) {
     expand(state, steps, true);
   }
+  /// Of an action whose precondition holds, without sensing: whether it is known, so far as
+  /// external functions go, which effects happen, or is put off until it `asks`.
+  [[nodiscard]] bool settled(const Word* state, OperatorId step) const;
   [[nodiscard]] bool asks(OperatorId step) const {
     return !is_outcome(step) && actions_[step]->asks;
   }
@@ -87,15 +90,13 @@ class Task {
 
   [[nodiscard]] std::uint64_t tests() const { return tests_; }  ///< action instances tested so far
 
-  /// Calls `visit(arguments)` for the instances of a schema whose conjuncts `possible` does not
-  /// rule out, tested as soon as their arguments are chosen.
-  template <class Possible, class Visit>
-  void instances(Index schema, const Possible& possible, const Visit& visit);
+  [[nodiscard]] ActionSchema& schema(Index s) { return schemas_[s]; }
 
  private:
   template <bool Sensing>
   class Expansion;
 
+  [[nodiscard]] bool resolved(const GroundAction& action, const Word* state) const;
   [[nodiscard]] std::int64_t cost_of(const Action& a, const std::vector<Index>& slots) const;
   template <bool Sensing>
   void expand_actions(const Word* state, std::vector<OperatorId>& steps, bool unasked);
@@ -123,33 +124,5 @@ class Task {
   std::uint64_t tests_ = 0;
   std::uint64_t refused_ = 0;
 };
-
-template <class Possible, class Visit>
-void Task::instances(Index schema, const Possible& possible, const Visit& visit) {
-  ActionSchema& s = schemas_[schema];
-  std::vector<Index> slots(std::max<std::size_t>(model_.actions[schema].slots, 1), 0);
-  for (ActionSchema::Check& c : s.constant())
-    if (!possible(s.grounded(c, slots.data()))) return;
-  const auto descend = [&](const auto& self, std::size_t depth) -> void {
-    if (depth == s.levels().size()) {
-      visit(std::vector<Index>(slots.begin(), slots.begin() + static_cast<std::ptrdiff_t>(depth)));
-      return;
-    }
-    ActionSchema::Level& level = s.levels()[depth];
-    for (const ActionSchema::Candidate& c : level.candidates) {
-      limits_.work();
-      if (!possible(c.full)) continue;
-      slots[depth] = c.object;
-      bool ok = true;
-      for (ActionSchema::Check& check : level.checks)
-        if (!possible(s.grounded(check, slots.data()))) {
-          ok = false;
-          break;
-        }
-      if (ok) self(self, depth + 1);
-    }
-  };
-  descend(descend, 0);
-}
 
 }  // namespace kaboum::plan

@@ -1,0 +1,426 @@
+// Relaxed reachability by joins, one fact after the other ("semi-naive").
+#include "search/reachability.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <tuple>
+#include <utility>
+
+#include "task/bindings.h"
+
+namespace kaboum::plan {
+
+using Kind = FormulaPool::Kind;
+
+namespace {
+
+constexpr std::size_t kMostPositions = 64;
+
+bool is_atom(const Query& q) {
+  return q.kind == Query::Kind::Known && !q.negated && q.arguments.size() <= kMostPositions &&
+         std::none_of(q.arguments.begin(), q.arguments.end(),
+                      [](const Argument& a) { return a.term != nullptr; });
+}
+
+std::uint64_t mixed(std::uint64_t h, Index object) {
+  return (h ^ object) * 0x9e3779b97f4a7c15ULL ^ (h >> 29U);
+}
+
+std::uint64_t key_of(const Index* arguments, std::uint64_t positions) {
+  std::uint64_t h = 0;
+  for (std::size_t i = 0; positions != 0; ++i, positions >>= 1U)
+    if ((positions & 1U) != 0) h = mixed(h, arguments[i]);
+  return h;
+}
+
+}  // namespace
+
+Reachability::Reachability(Task& task, Limits& limits, const FactTable& facts)
+    : task_(task), limits_(limits), facts_(facts) {
+  const Model& model = task.model();
+  reached_.assign(facts.size(), 0);
+  taken_.assign(task.layout().fluents().size(), 0);
+  Index slots = 1;
+  for (const Action& a : model.actions) slots = std::max(slots, a.slots);
+  slots_.assign(slots, 0);
+  bound_.assign(slots, 0);
+  triggered_.resize(model.predicates.size());
+  make_relations();
+  schemas_.resize(model.actions.size());
+  for (Index s = 0; s < schemas_.size(); ++s) {
+    make_schema(s);
+    make_rule(s, nullptr);
+    for (const Query* atom : schemas_[s].atoms)
+      if (relations_[atom->symbol].size_at_most > relations_[atom->symbol].size) make_rule(s, atom);
+  }
+  start();
+  run();
+  std::sort(actions_.begin(), actions_.end(), [&](OperatorId a, OperatorId b) {
+    const GroundAction& x = task.action(a);
+    const GroundAction& y = task.action(b);
+    return std::tie(layer_of_[a], x.schema, x.arguments) <
+           std::tie(layer_of_[b], y.schema, y.arguments);
+  });
+}
+
+/// What is true for good, and how many atoms may be at most.
+void Reachability::make_relations() {
+  const Model& model = task_.model();
+  relations_.resize(model.predicates.size());
+  for (Index p = 0; p < relations_.size(); ++p) {
+    relations_[p].arity = model.predicates[p].parameters.size();
+    task_.layout().true_constants(p,
+                                  [&](const std::vector<Index>& arguments) { add(p, arguments); });
+    relations_[p].size_at_most = relations_[p].size;
+  }
+  for (const Fluent& f : task_.layout().fluents())
+    if (!f.function) ++relations_[f.symbol].size_at_most;
+}
+
+void Reachability::make_schema(Index schema) {
+  const Action& action = task_.model().actions[schema];
+  ActionSchema& of = task_.schema(schema);
+  Schema& s = schemas_[schema];
+  for (const Query* q : conjuncts(action.precondition))
+    if (is_atom(*q)) s.atoms.push_back(q);
+  for (const ActionSchema::Level& level : of.levels()) {
+    s.candidate_of.emplace_back(task_.model().objects.size(), kNone);
+    for (Index c = 0; c < level.candidates.size(); ++c)
+      s.candidate_of.back()[level.candidates[c].object] = c;
+  }
+  const auto sort = [&](std::vector<ActionSchema::Check>& checks) {
+    for (ActionSchema::Check& c : checks) {
+      if (is_atom(*c.query)) continue;
+      s.ordered.push_back(&c);
+      if (!c.calls) s.rest.push_back(&c);
+    }
+  };
+  sort(of.constant());
+  for (ActionSchema::Level& level : of.levels()) sort(level.checks);
+}
+
+/// About how many atoms match, where these parameters are bound.
+double Reachability::matches(const Query& atom, const std::vector<char>& bound) const {
+  const Relation& r = relations_[atom.symbol];
+  std::size_t free = 0;
+  for (const Argument& a : atom.arguments) free += a.variable && !bound[a.index] ? 1 : 0;
+  if (r.arity == 0) return 1;
+  return std::pow(static_cast<double>(r.size_at_most),
+                  static_cast<double>(free) / static_cast<double>(r.arity));
+}
+
+Index Reachability::lookup(Index predicate, std::uint64_t positions) {
+  Relation& r = relations_[predicate];
+  const auto same = [&](const Relation::Lookup& l) { return l.positions == positions; };
+  const auto known = std::find_if(r.lookups.begin(), r.lookups.end(), same);
+  if (known != r.lookups.end()) return static_cast<Index>(known - r.lookups.begin());
+  Relation::Lookup made;
+  made.positions = positions;
+  for (Index i = 0; i < r.size; ++i)
+    made.found[key_of(r.arguments.data() + i * r.arity, positions)].push_back(i);
+  r.lookups.push_back(std::move(made));
+  return static_cast<Index>(r.lookups.size() - 1);
+}
+
+/// Orders the atoms of a precondition: next comes what likely matches least.
+void Reachability::make_rule(Index schema, const Query* trigger) {
+  const Schema& s = schemas_[schema];
+  const std::size_t parameters = s.candidate_of.size();
+  std::vector<char> bound(slots_.size(), 0);
+  std::vector<ActionSchema::Check*> left = s.rest;
+  std::vector<const Query*> atoms = s.atoms;
+  Rule rule;
+  rule.schema = schema;
+  rule.trigger = trigger;
+  const auto use = [&](const Query& atom) {
+    for (const Argument& a : atom.arguments)
+      if (a.variable) bound[a.index] = 1;
+    atoms.erase(std::find(atoms.begin(), atoms.end(), &atom));
+  };
+  const auto checks = [&] {
+    std::vector<ActionSchema::Check*> ready;
+    std::erase_if(left, [&](ActionSchema::Check* c) {
+      if (!std::all_of(c->slots.begin(), c->slots.end(), [&](Index i) { return bound[i] != 0; }))
+        return false;
+      ready.push_back(c);
+      return true;
+    });
+    return ready;
+  };
+  if (trigger != nullptr) use(*trigger);
+  rule.checks = checks();
+  while (true) {
+    const auto best =
+        std::min_element(atoms.begin(), atoms.end(), [&](const Query* a, const Query* b) {
+          // A rule without trigger joins constants alone: what has none comes first.
+          const auto rank = [&](const Query* q) {
+            const bool none = trigger == nullptr && relations_[q->symbol].size == 0;
+            return std::pair(none ? 0 : 1, matches(*q, bound));
+          };
+          return rank(a) < rank(b);
+        });
+    Join j;
+    if (best != atoms.end()) {
+      j.atom = *best;
+      std::uint64_t positions = 0;
+      bool all = true;
+      for (std::size_t i = 0; i < j.atom->arguments.size(); ++i) {
+        const Argument& a = j.atom->arguments[i];
+        const bool known = !a.variable || bound[a.index];
+        all &= known;
+        if (known) positions |= std::uint64_t{1} << i;
+      }
+      if (!all) j.lookup = lookup(j.atom->symbol, positions);
+      use(*j.atom);
+    } else {
+      const auto free = static_cast<std::size_t>(
+          std::find(bound.begin(), bound.begin() + static_cast<std::ptrdiff_t>(parameters), 0) -
+          bound.begin());
+      if (free == parameters) break;
+      j.parameter = static_cast<Index>(free);
+      bound[free] = 1;
+    }
+    j.checks = checks();
+    rule.joins.push_back(std::move(j));
+  }
+  if (trigger != nullptr) triggered_[trigger->symbol].push_back(static_cast<Index>(rules_.size()));
+  rules_.push_back(std::move(rule));
+}
+
+void Reachability::add(Index predicate, const std::vector<Index>& arguments) {
+  Relation& r = relations_[predicate];
+  for (Relation::Lookup& l : r.lookups)
+    l.found[key_of(arguments.data(), l.positions)].push_back(static_cast<Index>(r.size));
+  r.arguments.insert(r.arguments.end(), arguments.begin(), arguments.end());
+  ++r.size;
+}
+
+void Reachability::mark(FactId f) {
+  if (reached_[f]) return;
+  reached_[f] = 1;
+  queue_.push_back(f);
+}
+
+void Reachability::start() {
+  const Layout& layout = task_.layout();
+  for (Index i = 0; i < layout.fluents().size(); ++i) {
+    const Fluent& f = layout.fluents()[i];
+    mark(facts_.fact(i, f.get(task_.initial().data())));
+    // What Kx or exclusions may reveal is taken for reachable.
+    if (!f.groups.empty())
+      for (Word c = 0; c < 4; ++c) mark(facts_.fact(i, c));
+    if (f.exclusions != kNone)
+      for (Word c = 0; c < layout.range_size(f) + kFirstValue; ++c) mark(facts_.fact(i, c));
+  }
+}
+
+void Reachability::run() {
+  for (const Rule& r : rules_)
+    if (r.trigger == nullptr) apply(r, {});
+  std::size_t next = 0, layer_end = queue_.size();
+  do {
+    while (next < queue_.size()) {
+      if (next == layer_end) {
+        layer_end = queue_.size();
+        ++layer_;
+      }
+      take(queue_[next++]);
+    }
+  } while (again());
+}
+
+/// A fact joins those that were reached before.
+void Reachability::take(FactId fact) {
+  const Index fluent = facts_.fluent_of(fact);
+  const Fluent& f = task_.layout().fluents()[fluent];
+  const Word content = facts_.content_of(fact);
+  if (content == (f.function ? kValueSensed : static_cast<Word>(AtomKnowledge::Whether))) {
+    const Word count = f.function ? task_.layout().range_size(f) + kFirstValue : 3;
+    for (Word c = f.function ? kFirstValue : 1; c < count; ++c) mark(facts_.fact(fluent, c));
+  }
+  if (f.function || content != static_cast<Word>(AtomKnowledge::True)) return;
+  taken_[fluent] = 1;
+  add(f.symbol, f.arguments);
+  for (const Index r : triggered_[f.symbol]) apply(rules_[r], f.arguments);
+}
+
+void Reachability::apply(const Rule& rule, const std::vector<Index>& arguments) {
+  if ((rule.trigger == nullptr || match(schemas_[rule.schema], *rule.trigger, arguments.data())) &&
+      consistent(rule.schema, rule.checks))
+    join(rule, 0);
+  unbind(0);
+}
+
+void Reachability::join(const Rule& rule, std::size_t depth) {
+  if (depth == rule.joins.size()) {
+    instance(rule.schema);
+    return;
+  }
+  const Join& j = rule.joins[depth];
+  const Schema& schema = schemas_[rule.schema];
+  const std::size_t mark = trail_.size();
+  if (j.atom == nullptr) {
+    for (const ActionSchema::Candidate& c :
+         task_.schema(rule.schema).levels()[j.parameter].candidates) {
+      limits_.work();
+      if (bind(schema, j.parameter, c.object) && consistent(rule.schema, j.checks))
+        join(rule, depth + 1);
+      unbind(mark);
+    }
+    return;
+  }
+  if (j.lookup == kNone) {
+    if (holds(*j.atom) && consistent(rule.schema, j.checks)) join(rule, depth + 1);
+    return;
+  }
+  std::uint64_t h = 0;
+  const Relation& relation = relations_[j.atom->symbol];
+  const Relation::Lookup& lookup = relation.lookups[j.lookup];
+  for (std::size_t i = 0; i < relation.arity; ++i)
+    if (((lookup.positions >> i) & 1U) != 0)
+      h = mixed(h, value_of(j.atom->arguments[i], slots_.data()));
+  const auto found = lookup.found.find(h);
+  if (found == lookup.found.end()) return;
+  for (const Index i : found->second) {
+    limits_.work();
+    if (match(schema, *j.atom, relation.arguments.data() + i * relation.arity) &&
+        consistent(rule.schema, j.checks))
+      join(rule, depth + 1);
+    unbind(mark);
+  }
+}
+
+bool Reachability::bind(const Schema& schema, Index parameter, Index object) {
+  if (schema.candidate_of[parameter][object] == kNone) return false;
+  slots_[parameter] = object;
+  bound_[parameter] = 1;
+  trail_.push_back(parameter);
+  return true;
+}
+
+void Reachability::unbind(std::size_t mark) {
+  for (; trail_.size() > mark; trail_.pop_back()) bound_[trail_.back()] = 0;
+}
+
+/// Binds the atom's variables. @return whether these can be its arguments.
+bool Reachability::match(const Schema& schema, const Query& atom, const Index* arguments) {
+  for (std::size_t i = 0; i < atom.arguments.size(); ++i) {
+    const Argument& a = atom.arguments[i];
+    if (a.variable && !bound_[a.index]) {
+      if (!bind(schema, a.index, arguments[i])) return false;
+    } else if (value_of(a, slots_.data()) != arguments[i]) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool Reachability::holds(const Query& atom) const {
+  std::vector<Index> arguments;
+  for (const Argument& a : atom.arguments) arguments.push_back(value_of(a, slots_.data()));
+  const Layout::Field field = task_.layout().atom(atom.symbol, arguments.data());
+  if (!field.exists) return false;
+  if (field.fluent == kNone) return field.atom == AtomKnowledge::True;
+  return taken_[field.fluent] != 0;
+}
+
+/// false: one of them never holds.
+bool Reachability::consistent(Index schema, const std::vector<ActionSchema::Check*>& checks) {
+  return std::none_of(checks.begin(), checks.end(), [&](ActionSchema::Check* c) {
+    return task_.schema(schema).grounded(*c, slots_.data()) == kFalse;
+  });
+}
+
+/// What is no atom. External functions come last: those of instances that nothing else rules out.
+Reachability::Verdict Reachability::test(Index schema) {
+  ActionSchema& of = task_.schema(schema);
+  const Schema& s = schemas_[schema];
+  for (std::size_t p = 0; p < s.candidate_of.size(); ++p)
+    if (!possible(of.levels()[p].candidates[s.candidate_of[p][slots_[p]]].full, true))
+      return Verdict::NotYet;
+  for (ActionSchema::Check* c : s.ordered) {
+    const Formula f = of.grounded(*c, slots_.data());
+    if (f == kFalse) return Verdict::Never;
+    if (!possible(f, true)) return Verdict::NotYet;
+  }
+  return Verdict::Reached;
+}
+
+/// All parameters are bound.
+void Reachability::instance(Index schema) {
+  const std::vector<Index> arguments(
+      slots_.begin(),
+      slots_.begin() + static_cast<std::ptrdiff_t>(schemas_[schema].candidate_of.size()));
+  const Verdict v = test(schema);
+  if (v == Verdict::Reached) act(task_.action_id(schema, arguments));
+  if (v != Verdict::NotYet) return;
+  limits_.work(sizeof(Pending) + arguments.size() * sizeof(Index));
+  pending_.push_back({schema, arguments});
+}
+
+void Reachability::act(OperatorId step) {
+  if (step >= acted_.size()) {
+    acted_.resize(step + 1, 0);
+    layer_of_.resize(step + 1, 0);
+  }
+  if (acted_[step]) return;
+  acted_[step] = 1;
+  layer_of_[step] = layer_;
+  actions_.push_back(step);
+  for (Index e = 0; e < task_.action(step).effects.size(); ++e)
+    if (!act(step, e)) pending_effects_.emplace_back(step, e);
+}
+
+bool Reachability::act(OperatorId step, Index effect) {
+  const ConditionalEffect& e = task_.action(step).effects[effect];
+  if (!possible(e.condition, true)) return false;
+  for (const FactId f : facts_.added(e)) mark(f);
+  return true;
+}
+
+/// What has become possible since. @return whether more facts are reached so.
+bool Reachability::again() {
+  const std::size_t before = queue_.size();
+  std::erase_if(pending_effects_, [&](const auto& e) { return act(e.first, e.second); });
+  std::vector<Pending> left;
+  for (Pending& p : std::exchange(pending_, {})) {
+    std::copy(p.arguments.begin(), p.arguments.end(), slots_.begin());
+    const Verdict v = test(p.schema);
+    if (v == Verdict::Reached) act(task_.action_id(p.schema, p.arguments));
+    if (v == Verdict::NotYet) left.push_back(std::move(p));
+  }
+  pending_ = std::move(left);
+  return queue_.size() > before;
+}
+
+bool Reachability::possible(Formula f, bool positive) const {
+  const FormulaPool& pool = task_.pool();
+  const FormulaPool::Node& n = pool.node(f);
+  switch (n.kind) {
+    case Kind::False:
+      return !positive;
+    case Kind::True:
+      return positive;
+    case Kind::Xor:
+    case Kind::Bits:
+    case Kind::External:
+      return true;
+    case Kind::Not:
+      return possible(*pool.begin(f), !positive);
+    case Kind::And:
+    case Kind::Or:
+      if ((n.kind == Kind::And) == positive)
+        return std::all_of(pool.begin(f), pool.end(f),
+                           [&](Formula c) { return possible(c, positive); });
+      return std::any_of(pool.begin(f), pool.end(f),
+                         [&](Formula c) { return possible(c, positive); });
+    default: {
+      bool always = false;
+      const std::vector<FactId> any = facts_.leaf_contents(n, positive, always);
+      return always || std::any_of(any.begin(), any.end(), [&](FactId x) { return reached(x); });
+    }
+  }
+}
+
+}  // namespace kaboum::plan

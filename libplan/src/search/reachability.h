@@ -1,0 +1,115 @@
+#pragma once
+
+#include <cstdint>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "search/fact_table.h"
+#include "task/task.h"
+
+namespace kaboum::plan {
+
+/// What the delete relaxation of a task reaches, where contents that a fluent has had stay
+/// available: facts, and actions.
+///
+/// Positive atoms of a precondition are joined: each fact that is reached is matched with the atoms
+/// that it can stand for, and the rest of the precondition looked up from there, so an instance is
+/// found when its last atom is reached. What else an instance needs is tested then, and again
+/// while new facts are reached.
+class Reachability {
+ public:
+  /// @pre the arguments outlive it. @throws LimitExceeded
+  Reachability(Task& task, Limits& limits, const FactTable& facts);
+
+  [[nodiscard]] bool reached(FactId f) const { return reached_[f] != 0; }
+  /// Whether the formula, or its negation, may hold.
+  [[nodiscard]] bool possible(Formula f, bool positive) const;
+  /// Those whose preconditions may hold, by how many
+  /// actions come before it at least, schema and arguments.
+  [[nodiscard]] const std::vector<OperatorId>& actions() const { return actions_; }
+
+ private:
+  /// Arguments of the atoms of a predicate that may be true, and where they are found.
+  struct Relation {
+    struct Lookup {
+      std::uint64_t positions = 0;                                  ///< a bit each
+      std::unordered_map<std::uint64_t, std::vector<Index>> found;  ///< by what is at these
+    };
+    std::size_t arity = 0;
+    std::size_t size = 0;
+    std::size_t size_at_most = 0;
+    std::vector<Index> arguments;  ///< of one atom after the other
+    std::vector<Lookup> lookups;
+  };
+  struct Join {
+    const Query* atom = nullptr;  ///< nullptr: all candidates for a parameter
+    Index parameter = 0;
+    Index lookup = kNone;                      ///< kNone: all is bound, so it is only tested
+    std::vector<ActionSchema::Check*> checks;  ///< bound after it
+  };
+  struct Rule {
+    Index schema = 0;
+    const Query* trigger = nullptr;  ///< nullptr: applied once
+    std::vector<ActionSchema::Check*> checks;
+    std::vector<Join> joins;
+  };
+  struct Schema {
+    std::vector<const Query*> atoms;
+    std::vector<std::vector<Index>> candidate_of;     ///< by parameter and object; kNone: is none
+    std::vector<ActionSchema::Check*> ordered, rest;  ///< checks that are no atoms; of them, tested
+                                                      ///< as soon as their parameters are bound
+  };
+  struct Pending {
+    Index schema;
+    std::vector<Index> arguments;
+  };
+  enum class Verdict { Reached, NotYet, Never };
+
+  void start();
+  void make_relations();
+  void make_schema(Index schema);
+  void make_rule(Index schema, const Query* trigger);
+  Index lookup(Index predicate, std::uint64_t positions);
+  [[nodiscard]] double matches(const Query& atom, const std::vector<char>& bound) const;
+  void add(Index predicate, const std::vector<Index>& arguments);
+  void run();
+  void take(FactId f);
+  void apply(const Rule& rule, const std::vector<Index>& arguments);
+  void join(const Rule& rule, std::size_t depth);
+  bool match(const Schema& schema, const Query& atom, const Index* arguments);
+  bool bind(const Schema& schema, Index parameter, Index object);
+  void unbind(std::size_t mark);
+  bool consistent(Index schema, const std::vector<ActionSchema::Check*>& checks);
+  [[nodiscard]] bool holds(const Query& atom) const;
+  Verdict test(Index schema);
+  void instance(Index schema);
+  void act(OperatorId step);
+  bool act(OperatorId step, Index effect);
+  bool again();
+  void mark(FactId f);
+
+  Task& task_;
+  Limits& limits_;
+  const FactTable& facts_;
+  std::vector<char> reached_;
+  std::vector<char> taken_;      ///< by fluent of an atom: that it is true is joined
+  std::vector<char> acted_;      ///< by step
+  std::vector<Index> layer_of_;  ///< by step
+  Index layer_ = 0;              ///< of the fact at hand
+  std::vector<FactId> queue_;    ///< facts that were reached
+  std::vector<OperatorId> actions_;
+  std::vector<Relation> relations_;  ///< by predicate
+  std::vector<Schema> schemas_;
+  std::vector<Rule> rules_;
+  std::vector<std::vector<Index>> triggered_;  ///< by predicate: rules
+  std::vector<Pending> pending_;
+  std::vector<std::pair<OperatorId, Index>> pending_effects_;
+
+  // Of the instance at hand.
+  std::vector<Index> slots_;
+  std::vector<char> bound_;
+  std::vector<Index> trail_;  ///< parameters in the order in which they were bound
+};
+
+}  // namespace kaboum::plan
