@@ -158,10 +158,7 @@ PageLink page_link(const Run& run, const std::vector<robot::LinkShape>& shapes) 
     }
     append_placed(out.result, mesh.made.enclosure.artefact(), place);
   }
-  const auto found = run.request.epsilons.find(link.name);
-  const auto epsilon = found == run.request.epsilons.end() ? run.request.mesh.mesh.epsilon
-                                                           : std::optional(found->second);
-  if (epsilon) out.epsilon = epsilon->text();
+  out.epsilon = epsilon_of(link.name, run.request.epsilons, run.request.mesh.mesh.epsilon);
   out.original = drawn_shapes(run.robot, run.request.shapes, shapes.front().link);
   return out;
 }

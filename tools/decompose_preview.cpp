@@ -5,11 +5,13 @@
 #include <kaboum/io/cad.h>
 #include <kaboum/io/file_unit.h>
 #include <kaboum/robot/exact_shapes.h>
+#include <kaboum/robot/kinematics.h>
 #include <kaboum/verify/cover.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <sstream>
+#include <utility>
 
 #include "decompose_words.h"
 #include "player/gaps.h"
@@ -143,6 +145,18 @@ std::string page_of_robot(const DecomposeOptions& o, const robot::RobotFile& rob
   preview.motion.emplace(
       page::Motion{robot.robot, {std::vector<double>(robot.robot.variables.size(), 0.0)}});
   return page::preview_page(preview);
+}
+
+geom::ConvexSet at_rest(const robot::Robot& robot,
+                        const std::vector<certify::CertifiedLink>& links) {
+  const auto poses = robot::forward(robot, std::vector<double>(robot.variables.size(), 0.0));
+  geom::ConvexSet out;
+  for (const certify::CertifiedLink& link : links)
+    for (geom::ConvexBody body : link.artefact().bodies) {
+      for (geom::Vec3& v : body.hull.vertices) v = poses[link.certificate().link] * v;
+      out.bodies.push_back(std::move(body));
+    }
+  return out;
 }
 
 }  // namespace kaboum::tools

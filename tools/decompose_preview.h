@@ -3,6 +3,7 @@
 #include <kaboum/certify/robot.h>
 
 #include <string>
+#include <vector>
 
 #include "decompose_options.h"
 
@@ -18,5 +19,9 @@ std::string page_of_set(const DecomposeOptions& options, const certify::SetCerti
 /// @throws Error as reading its meshes.
 std::string page_of_robot(const DecomposeOptions& options, const robot::RobotFile& robot,
                           const certify::CertifiedRobot& made);
+
+/// All links at zero joint values, for pictures: not certified.
+geom::ConvexSet at_rest(const robot::Robot& robot,
+                        const std::vector<certify::CertifiedLink>& links);
 
 }  // namespace kaboum::tools

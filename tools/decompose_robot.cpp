@@ -7,7 +7,6 @@
 #include <kaboum/certify/robot_budget.h>
 #include <kaboum/io/convex_folder.h>
 #include <kaboum/io/convex_io.h>
-#include <kaboum/robot/kinematics.h>
 
 #include <algorithm>
 #include <chrono>
@@ -54,11 +53,10 @@ struct Run {
 void share_out(Run& run, const certify::SetCache* cache) {
   const auto given = [](std::size_t n) { return n > 0 ? std::optional(n) : std::nullopt; };
   Progress progress(run.o.common.quiet);
-  certify::RobotHooks hooks;
-  hooks.progress = [&](const std::string& stage) { progress.show("sharing out: " + stage); };
-  run.request.set.epsilon =
-      epsilon_within(run.robot, run.request,
-                     {given(run.o.robot_bodies), given(run.o.robot_vertices)}, cache, hooks);
+  const auto show = [&](const std::string& stage) { progress.show("sharing out: " + stage); };
+  run.request.set.epsilon = epsilon_within(run.robot, run.request,
+                                           {given(run.o.robot_bodies), given(run.o.robot_vertices)},
+                                           cache, {.progress = show, .note = {}, .made = {}});
 }
 
 void certify_links(Run& run) {
@@ -139,19 +137,6 @@ Json links_report(const Run& run, const std::vector<std::string>& files) {
   return out;
 }
 
-/// All links at zero joint values, for pictures: not certified.
-geom::ConvexSet at_rest(const Run& run) {
-  const auto poses =
-      robot::forward(run.robot.robot, std::vector<double>(run.robot.robot.variables.size(), 0.0));
-  geom::ConvexSet out;
-  for (const certify::CertifiedLink& link : run.made.links)
-    for (geom::ConvexBody body : link.artefact().bodies) {
-      for (geom::Vec3& v : body.hull.vertices) v = poses[link.certificate().link] * v;
-      out.bodies.push_back(std::move(body));
-    }
-  return out;
-}
-
 Json robot_report(const Run& run, const RobotOutput& output) {
   std::size_t bodies = 0, vertices = 0;
   for (const certify::CertifiedLink& link : run.made.links) {
@@ -167,11 +152,7 @@ Json robot_report(const Run& run, const RobotOutput& output) {
                  {"stop", run.code == kDone ? "done" : "epsilon not reached"},
                  {"input", {{"file", run.o.input}}},
                  {"parameters", run.request.parameters()}});
-  if (run.pairs)
-    report["pairs_of_links"] = {{"adjacent", run.pairs->adjacent},
-                                {"never_in_contact", run.pairs->never},
-                                {"fixed_to_each_other", run.pairs->fixed},
-                                {"others", run.pairs->others}};
+  if (run.pairs) report["pairs_of_links"] = report_of(*run.pairs);
   return report;
 }
 
@@ -200,11 +181,7 @@ PageLink page_link(const Run& run, const certify::CertifiedLink& link) {
       out.holds = false;
     }
   }
-  const auto& own = run.request.epsilons;
-  const auto found = own.find(out.name);
-  const auto epsilon =
-      found == own.end() ? run.request.set.wanted_epsilon() : std::optional(found->second);
-  if (epsilon) out.epsilon = epsilon->text();
+  out.epsilon = epsilon_of(out.name, run.request.epsilons, run.request.set.wanted_epsilon());
   out.original = drawn_shapes(run.robot, run.bodies().choice, c.link);
   return out;
 }
@@ -257,7 +234,7 @@ int decompose_robot(const DecomposeOptions& o) {
   if (is_page(o.preview))
     io::write_file(o.preview, page_of_robot(o, run.robot, run.made));
   else if (!o.preview.empty())
-    io::write_file(o.preview, picture_of(at_rest(run), o.explode));
+    io::write_file(o.preview, picture_of(at_rest(run.robot.robot, run.made.links), o.explode));
   if (!o.robot.html.empty()) write_page(run, output);
   if (!o.common.report.empty()) write_report(o.common, "bcd-decompose", robot_report(run, output));
   if (!o.depfile.empty()) {

@@ -99,6 +99,13 @@ void add_row(std::string& page, const PageLink& link) {
 
 }  // namespace
 
+std::string epsilon_of(const std::string& link, const certify::LinkEpsilons& own,
+                       const std::optional<Length>& of_all) {
+  const auto found = own.find(link);
+  const std::optional<Length> epsilon = found == own.end() ? of_all : std::optional(found->second);
+  return epsilon ? epsilon->text() : std::string();
+}
+
 std::string to_html(const RobotPage& p) {
   std::string page = kPageHead;
   const std::string name = escape_xml(p.robot);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <kaboum/base/length.h>
+#include <kaboum/certify/wanted_meshes.h>
 #include <kaboum/geom/mesh.h>
 #include <kaboum/robot/link_meshes.h>
 
@@ -31,6 +33,10 @@ struct RobotPage {
   std::vector<std::string> files, notes;
   std::vector<PageLink> links;
 };
+
+/// A link's epsilon as it was asked for: its own, else that of all; empty: none.
+std::string epsilon_of(const std::string& link, const certify::LinkEpsilons& own,
+                       const std::optional<Length>& of_all);
 
 /// One HTML file, pictures included.
 std::string to_html(const RobotPage& page);

@@ -42,4 +42,11 @@ RobotPairs pairs_of(const robot::Robot& robot, const std::vector<certify::Certif
   return out;
 }
 
+Json report_of(const RobotPairs& pairs) {
+  return {{"adjacent", pairs.adjacent},
+          {"never_in_contact", pairs.never},
+          {"fixed_to_each_other", pairs.fixed},
+          {"others", pairs.others}};
+}
+
 }  // namespace kaboum::tools

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "report.h"
+
 namespace kaboum::tools {
 
 /// What is known of a robot's pairs of links, by their bodies.
@@ -15,6 +17,8 @@ struct RobotPairs {
   std::size_t adjacent = 0, never = 0, fixed = 0;  ///< in the SRDF, by reason
   std::size_t others = 0;                          ///< that are to be checked
 };
+
+Json report_of(const RobotPairs& pairs);
 
 /// Pairs of links that need no check: connected ones, and those whose bodies are proved never to
 /// touch within the limits (world::examine_pairs).

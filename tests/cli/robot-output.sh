@@ -124,6 +124,23 @@ found = [p.get("reason") for p in tree.parse("pairs/pairs.srdf").getroot().iter(
 assert sorted(found) == 4 * ["Adjacent"] + ["Default", "Never"], found
 assert said == {"adjacent": 4, "never_in_contact": 1, "fixed_to_each_other": 1, "others": 0}, said
 END
+# A budget for all links: within it, and no coarser than with half of it.
+reach() { python3 -c '
+import json, sys
+r = json.load(open(sys.argv[1]))
+assert r["bodies"] <= int(sys.argv[2]) and r["vertices"] <= int(sys.argv[3]), r
+print(max(l["reach_upper"] for l in r["links"]))' "$@" || fail "budget: $(cat "$1")"; }
+for n in 8 24; do
+  expect 0 '' "$D" robot/r.urdf -o "budget-$n" --visual --effort fast --robot-bodies $n --report "b$n.json"
+  shows 0 '^verified: 3 of 3 links' "$V" robot robot/r.urdf "budget-$n/r.urdf" --visual --prepare
+done
+python3 -c "assert $(reach b24.json 24 1000000) < $(reach b8.json 8 1000000)" || fail "more bodies are no nearer"
+expect 0 '' "$D" robot/r.urdf -o budget-v --visual --effort fast --robot-vertices 200 --report bv.json
+reach bv.json 1000000 200 >/dev/null
+expect 2 'are 4 bodies' "$D" robot/r.urdf -o x --visual --effort fast --robot-bodies 3
+expect 2 '--epsilon' "$D" robot/r.urdf -o x --visual --robot-bodies 24 --epsilon 1%
+expect 2 'for robots' "$D" robot/meshes/t.off -o x.glb --robot-bodies 24
+absent x x.glb
 expect 2 '--links' "$D" robot/r.urdf -o x --visual --srdf --links base
 expect 2 'for robots' "$D" robot/meshes/t.off -o x.glb --srdf
 for program in moveit mujoco gazebo bullet drake; do

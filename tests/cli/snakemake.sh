@@ -18,6 +18,6 @@ grep -q 'Nothing to be done' ../snakemake.txt || fail "the second time does some
 sleep 1.1
 echo '# changed' >>plate.obj
 flow || fail "after a change: $(tail -n 5 ../snakemake.txt)"
-[ "$(cat batch/.kaboum-batch/journal-*.jsonl | wc -l)" = 4 ] || fail "not only the plate is made anew"
+[ "$(cat batch/.kaboum-batch/journal-*.jsonl | wc -l)" = 5 ] || fail "not only the plate and the arm that refers to it are made anew"
 cd .. || exit 1
 finish

@@ -23,17 +23,6 @@ bool is_atom(const Query& q) {
                       [](const Argument& a) { return a.term != nullptr; });
 }
 
-std::uint64_t mixed(std::uint64_t h, Index object) {
-  return (h ^ object) * 0x9e3779b97f4a7c15ULL ^ (h >> 29U);
-}
-
-std::uint64_t key_of(const Index* arguments, std::uint64_t positions) {
-  std::uint64_t h = 0;
-  for (std::size_t i = 0; positions != 0; ++i, positions >>= 1U)
-    if ((positions & 1U) != 0) h = mixed(h, arguments[i]);
-  return h;
-}
-
 }  // namespace
 
 Reachability::Reachability(Task& task, Limits& limits, const FactTable& facts)
@@ -52,7 +41,7 @@ Reachability::Reachability(Task& task, Limits& limits, const FactTable& facts)
     make_schema(s);
     make_rule(s, nullptr);
     for (const Query* atom : schemas_[s].atoms)
-      if (relations_[atom->symbol].size_at_most > relations_[atom->symbol].size) make_rule(s, atom);
+      if (sizes_at_most_[atom->symbol] > relations_[atom->symbol].size()) make_rule(s, atom);
   }
   start();
   run();
@@ -67,21 +56,20 @@ Reachability::Reachability(Task& task, Limits& limits, const FactTable& facts)
 /// What is true for good, and how many atoms may be at most.
 void Reachability::make_relations() {
   const Model& model = task_.model();
-  relations_.resize(model.predicates.size());
-  for (Index p = 0; p < relations_.size(); ++p) {
-    relations_[p].arity = model.predicates[p].parameters.size();
+  for (Index p = 0; p < model.predicates.size(); ++p) {
+    Relation& r = relations_.emplace_back(model.predicates[p].parameters.size());
     task_.layout().true_constants(p,
-                                  [&](const std::vector<Index>& arguments) { add(p, arguments); });
-    relations_[p].size_at_most = relations_[p].size;
+                                  [&](const std::vector<Index>& arguments) { r.add(arguments); });
+    sizes_at_most_.push_back(r.size());
   }
   for (const Fluent& f : task_.layout().fluents())
-    if (!f.function) ++relations_[f.symbol].size_at_most;
+    if (!f.function) ++sizes_at_most_[f.symbol];
 }
 
 void Reachability::make_schema(Index schema) {
   const Action& action = task_.model().actions[schema];
   ActionSchema& of = task_.schema(schema);
-  Schema& s = schemas_[schema];
+  JoinedAction& s = schemas_[schema];
   for (const Query* q : conjuncts(action.precondition))
     if (is_atom(*q)) s.atoms.push_back(q);
   for (const ActionSchema::Level& level : of.levels()) {
@@ -105,32 +93,19 @@ double Reachability::matches(const Query& atom, const std::vector<char>& bound) 
   const Relation& r = relations_[atom.symbol];
   std::size_t free = 0;
   for (const Argument& a : atom.arguments) free += a.variable && !bound[a.index] ? 1 : 0;
-  if (r.arity == 0) return 1;
-  return std::pow(static_cast<double>(r.size_at_most),
-                  static_cast<double>(free) / static_cast<double>(r.arity));
-}
-
-Index Reachability::lookup(Index predicate, std::uint64_t positions) {
-  Relation& r = relations_[predicate];
-  const auto same = [&](const Relation::Lookup& l) { return l.positions == positions; };
-  const auto known = std::find_if(r.lookups.begin(), r.lookups.end(), same);
-  if (known != r.lookups.end()) return static_cast<Index>(known - r.lookups.begin());
-  Relation::Lookup made;
-  made.positions = positions;
-  for (Index i = 0; i < r.size; ++i)
-    made.found[key_of(r.arguments.data() + i * r.arity, positions)].push_back(i);
-  r.lookups.push_back(std::move(made));
-  return static_cast<Index>(r.lookups.size() - 1);
+  if (r.arity() == 0) return 1;
+  return std::pow(static_cast<double>(sizes_at_most_[atom.symbol]),
+                  static_cast<double>(free) / static_cast<double>(r.arity()));
 }
 
 /// Orders the atoms of a precondition: next comes what likely matches least.
 void Reachability::make_rule(Index schema, const Query* trigger) {
-  const Schema& s = schemas_[schema];
+  const JoinedAction& s = schemas_[schema];
   const std::size_t parameters = s.candidate_of.size();
   std::vector<char> bound(slots_.size(), 0);
   std::vector<ActionSchema::Check*> left = s.rest;
   std::vector<const Query*> atoms = s.atoms;
-  Rule rule;
+  JoinRule rule;
   rule.schema = schema;
   rule.trigger = trigger;
   const auto use = [&](const Query& atom) {
@@ -155,7 +130,7 @@ void Reachability::make_rule(Index schema, const Query* trigger) {
         std::min_element(atoms.begin(), atoms.end(), [&](const Query* a, const Query* b) {
           // A rule without trigger joins constants alone: what has none comes first.
           const auto rank = [&](const Query* q) {
-            const bool none = trigger == nullptr && relations_[q->symbol].size == 0;
+            const bool none = trigger == nullptr && relations_[q->symbol].size() == 0;
             return std::pair(none ? 0 : 1, matches(*q, bound));
           };
           return rank(a) < rank(b);
@@ -171,7 +146,7 @@ void Reachability::make_rule(Index schema, const Query* trigger) {
         all &= known;
         if (known) positions |= std::uint64_t{1} << i;
       }
-      if (!all) j.lookup = lookup(j.atom->symbol, positions);
+      if (!all) j.lookup = relations_[j.atom->symbol].lookup(positions);
       use(*j.atom);
     } else {
       const auto free = static_cast<std::size_t>(
@@ -186,14 +161,6 @@ void Reachability::make_rule(Index schema, const Query* trigger) {
   }
   if (trigger != nullptr) triggered_[trigger->symbol].push_back(static_cast<Index>(rules_.size()));
   rules_.push_back(std::move(rule));
-}
-
-void Reachability::add(Index predicate, const std::vector<Index>& arguments) {
-  Relation& r = relations_[predicate];
-  for (Relation::Lookup& l : r.lookups)
-    l.found[key_of(arguments.data(), l.positions)].push_back(static_cast<Index>(r.size));
-  r.arguments.insert(r.arguments.end(), arguments.begin(), arguments.end());
-  ++r.size;
 }
 
 void Reachability::mark(FactId f) {
@@ -216,7 +183,7 @@ void Reachability::start() {
 }
 
 void Reachability::run() {
-  for (const Rule& r : rules_)
+  for (const JoinRule& r : rules_)
     if (r.trigger == nullptr) apply(r, {});
   std::size_t next = 0, layer_end = queue_.size();
   do {
@@ -241,24 +208,24 @@ void Reachability::take(FactId fact) {
   }
   if (f.function || content != static_cast<Word>(AtomKnowledge::True)) return;
   taken_[fluent] = 1;
-  add(f.symbol, f.arguments);
+  relations_[f.symbol].add(f.arguments);
   for (const Index r : triggered_[f.symbol]) apply(rules_[r], f.arguments);
 }
 
-void Reachability::apply(const Rule& rule, const std::vector<Index>& arguments) {
+void Reachability::apply(const JoinRule& rule, const std::vector<Index>& arguments) {
   if ((rule.trigger == nullptr || match(schemas_[rule.schema], *rule.trigger, arguments.data())) &&
       consistent(rule.schema, rule.checks))
     join(rule, 0);
   unbind(0);
 }
 
-void Reachability::join(const Rule& rule, std::size_t depth) {
+void Reachability::join(const JoinRule& rule, std::size_t depth) {
   if (depth == rule.joins.size()) {
     instance(rule.schema);
     return;
   }
   const Join& j = rule.joins[depth];
-  const Schema& schema = schemas_[rule.schema];
+  const JoinedAction& schema = schemas_[rule.schema];
   const std::size_t mark = trail_.size();
   if (j.atom == nullptr) {
     for (const ActionSchema::Candidate& c :
@@ -274,24 +241,20 @@ void Reachability::join(const Rule& rule, std::size_t depth) {
     if (holds(*j.atom) && consistent(rule.schema, j.checks)) join(rule, depth + 1);
     return;
   }
-  std::uint64_t h = 0;
+  std::vector<Index> wanted;  // what is not bound is not looked up by
+  for (const Argument& a : j.atom->arguments) wanted.push_back(value_of(a, slots_.data()));
   const Relation& relation = relations_[j.atom->symbol];
-  const Relation::Lookup& lookup = relation.lookups[j.lookup];
-  for (std::size_t i = 0; i < relation.arity; ++i)
-    if (((lookup.positions >> i) & 1U) != 0)
-      h = mixed(h, value_of(j.atom->arguments[i], slots_.data()));
-  const auto found = lookup.found.find(h);
-  if (found == lookup.found.end()) return;
-  for (const Index i : found->second) {
+  const std::vector<Index>* const found = relation.find(j.lookup, wanted.data());
+  if (found == nullptr) return;
+  for (const Index i : *found) {
     limits_.work();
-    if (match(schema, *j.atom, relation.arguments.data() + i * relation.arity) &&
-        consistent(rule.schema, j.checks))
+    if (match(schema, *j.atom, relation.atom(i)) && consistent(rule.schema, j.checks))
       join(rule, depth + 1);
     unbind(mark);
   }
 }
 
-bool Reachability::bind(const Schema& schema, Index parameter, Index object) {
+bool Reachability::bind(const JoinedAction& schema, Index parameter, Index object) {
   if (schema.candidate_of[parameter][object] == kNone) return false;
   slots_[parameter] = object;
   bound_[parameter] = 1;
@@ -304,7 +267,7 @@ void Reachability::unbind(std::size_t mark) {
 }
 
 /// Binds the atom's variables. @return whether these can be its arguments.
-bool Reachability::match(const Schema& schema, const Query& atom, const Index* arguments) {
+bool Reachability::match(const JoinedAction& schema, const Query& atom, const Index* arguments) {
   for (std::size_t i = 0; i < atom.arguments.size(); ++i) {
     const Argument& a = atom.arguments[i];
     if (a.variable && !bound_[a.index]) {
@@ -335,7 +298,7 @@ bool Reachability::consistent(Index schema, const std::vector<ActionSchema::Chec
 /// What is no atom. External functions come last: those of instances that nothing else rules out.
 Reachability::Verdict Reachability::test(Index schema) {
   ActionSchema& of = task_.schema(schema);
-  const Schema& s = schemas_[schema];
+  const JoinedAction& s = schemas_[schema];
   for (std::size_t p = 0; p < s.candidate_of.size(); ++p)
     if (!possible(of.levels()[p].candidates[s.candidate_of[p][slots_[p]]].full, true))
       return Verdict::NotYet;

@@ -1,14 +1,36 @@
 #pragma once
 
 #include <cstdint>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "search/fact_table.h"
+#include "search/relation.h"
 #include "task/task.h"
 
 namespace kaboum::plan {
+
+/// A step of a join: an atom of the precondition, or a parameter that no atom has.
+struct Join {
+  const Query* atom = nullptr;  ///< nullptr: all candidates for a parameter
+  Index parameter = 0;
+  Index lookup = kNone;                      ///< kNone: all is bound, so it is only tested
+  std::vector<ActionSchema::Check*> checks;  ///< bound after it
+};
+/// How the instances of an action are found that a fact completes.
+struct JoinRule {
+  Index schema = 0;
+  const Query* trigger = nullptr;  ///< nullptr: applied once
+  std::vector<ActionSchema::Check*> checks;
+  std::vector<Join> joins;
+};
+/// What of an action is joined, and what is tested.
+struct JoinedAction {
+  std::vector<const Query*> atoms;
+  std::vector<std::vector<Index>> candidate_of;     ///< by parameter and object; kNone: is none
+  std::vector<ActionSchema::Check*> ordered, rest;  ///< checks that are no atoms; of them, tested
+                                                    ///< as soon as their parameters are bound
+};
 
 /// What the delete relaxation of a task reaches, where contents that a fluent has had stay
 /// available: facts, and actions.
@@ -30,36 +52,6 @@ class Reachability {
   [[nodiscard]] const std::vector<OperatorId>& actions() const { return actions_; }
 
  private:
-  /// Arguments of the atoms of a predicate that may be true, and where they are found.
-  struct Relation {
-    struct Lookup {
-      std::uint64_t positions = 0;                                  ///< a bit each
-      std::unordered_map<std::uint64_t, std::vector<Index>> found;  ///< by what is at these
-    };
-    std::size_t arity = 0;
-    std::size_t size = 0;
-    std::size_t size_at_most = 0;
-    std::vector<Index> arguments;  ///< of one atom after the other
-    std::vector<Lookup> lookups;
-  };
-  struct Join {
-    const Query* atom = nullptr;  ///< nullptr: all candidates for a parameter
-    Index parameter = 0;
-    Index lookup = kNone;                      ///< kNone: all is bound, so it is only tested
-    std::vector<ActionSchema::Check*> checks;  ///< bound after it
-  };
-  struct Rule {
-    Index schema = 0;
-    const Query* trigger = nullptr;  ///< nullptr: applied once
-    std::vector<ActionSchema::Check*> checks;
-    std::vector<Join> joins;
-  };
-  struct Schema {
-    std::vector<const Query*> atoms;
-    std::vector<std::vector<Index>> candidate_of;     ///< by parameter and object; kNone: is none
-    std::vector<ActionSchema::Check*> ordered, rest;  ///< checks that are no atoms; of them, tested
-                                                      ///< as soon as their parameters are bound
-  };
   struct Pending {
     Index schema;
     std::vector<Index> arguments;
@@ -70,15 +62,13 @@ class Reachability {
   void make_relations();
   void make_schema(Index schema);
   void make_rule(Index schema, const Query* trigger);
-  Index lookup(Index predicate, std::uint64_t positions);
   [[nodiscard]] double matches(const Query& atom, const std::vector<char>& bound) const;
-  void add(Index predicate, const std::vector<Index>& arguments);
   void run();
   void take(FactId f);
-  void apply(const Rule& rule, const std::vector<Index>& arguments);
-  void join(const Rule& rule, std::size_t depth);
-  bool match(const Schema& schema, const Query& atom, const Index* arguments);
-  bool bind(const Schema& schema, Index parameter, Index object);
+  void apply(const JoinRule& rule, const std::vector<Index>& arguments);
+  void join(const JoinRule& rule, std::size_t depth);
+  bool match(const JoinedAction& schema, const Query& atom, const Index* arguments);
+  bool bind(const JoinedAction& schema, Index parameter, Index object);
   void unbind(std::size_t mark);
   bool consistent(Index schema, const std::vector<ActionSchema::Check*>& checks);
   [[nodiscard]] bool holds(const Query& atom) const;
@@ -99,9 +89,10 @@ class Reachability {
   Index layer_ = 0;              ///< of the fact at hand
   std::vector<FactId> queue_;    ///< facts that were reached
   std::vector<OperatorId> actions_;
-  std::vector<Relation> relations_;  ///< by predicate
-  std::vector<Schema> schemas_;
-  std::vector<Rule> rules_;
+  std::vector<Relation> relations_;         ///< by predicate: atoms that may be true
+  std::vector<std::size_t> sizes_at_most_;  ///< of them, in the end
+  std::vector<JoinedAction> schemas_;
+  std::vector<JoinRule> rules_;
   std::vector<std::vector<Index>> triggered_;  ///< by predicate: rules
   std::vector<Pending> pending_;
   std::vector<std::pair<OperatorId, Index>> pending_effects_;

@@ -6,7 +6,7 @@
 namespace kaboum::plan {
 namespace {
 
-std::uint64_t mix(Index node, Index content) {
+std::uint64_t slot_of(Index node, Index content) {
   std::uint64_t h = (std::uint64_t{node} << 32U | content) * 0x9e3779b97f4a7c15ULL;
   return h ^ (h >> 29U);
 }
@@ -84,7 +84,7 @@ void AnswerTree::link(Root& root, Index parent, Index content, Index child) {
 
 std::size_t AnswerTree::slot(Index node, Index content) const {
   const std::size_t mask = edges_.size() - 1;
-  std::size_t at = mix(node, content) & mask;
+  std::size_t at = slot_of(node, content) & mask;
   while (edges_[at].node != kNone && (edges_[at].node != node || edges_[at].content != content))
     at = (at + 1) & mask;
   return at;
