@@ -120,7 +120,8 @@ std::uintmax_t free_memory() {
 bool holds(const batch::Job& job, const batch::Record& record, const Options& o) {
   for (const batch::FileState& source : record.sources)
     if (batch::file_state(source.path) != source) return false;
-  if (!record.has_result()) return record.state != "failed" || !job.may_refer_to_others();
+  if (!record.has_result())
+    return record.done() || !record.sources.empty() || !job.may_refer_to_others();
   return batch::digest_of(fs::path(o.output) / record.output) == record.sha256;
 }
 

@@ -146,6 +146,13 @@ void RobotFolder::require_replaceable(const fs::path& place) const {
     refuse(place);
 }
 
+bool RobotFolder::has_other_documents(const RobotContents& contents) const {
+  return std::ranges::any_of(kExtensions, [&](const char* extension) {
+    const auto is_this = [&](const auto& d) { return d.first == extension; };
+    return std::ranges::none_of(contents.documents, is_this) && is_made_by_us(document(extension));
+  });
+}
+
 void RobotFolder::require_own_document(const std::string& extension) const {
   std::error_code error;
   const fs::path place = document(extension);

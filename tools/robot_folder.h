@@ -59,6 +59,8 @@ class RobotFolder {
   /// The file of another format.
   [[nodiscard]] std::filesystem::path document(const std::string& extension) const;
 
+  /// Whether documents of an earlier robot are here that `write` would take away.
+  [[nodiscard]] bool has_other_documents(const RobotContents& contents) const;
   /// @throws Error{OutputFailed} where somebody's own file has a document's name
   void require_own_document(const std::string& extension) const;
 

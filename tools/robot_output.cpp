@@ -133,7 +133,7 @@ void RobotOutput::write_or_reuse(RobotContents& contents) {
   key.add(contents.urdf);
   places.push_back(urdf);
   RobotFiles files(*cache_, folder_.path(), key.hash());
-  if (files.are_there(places)) {
+  if (files.are_there(places) && !folder_.has_other_documents(contents)) {
     links_ = std::move(links);
     std::error_code error;
     for (const std::string& file : documents())

@@ -63,6 +63,10 @@ Length epsilon_within(const robot::RobotFile& robot, RobotRequest request,
                 "meshes beside it");
   Trials trials(robot, std::move(request), budget, cache, hooks);
   const Trial hulls = trials.at({kHullOnly, true});
+  if (!hulls.reached)
+    throw Error(ErrorCode::LimitReached,
+                robot.path.string() +
+                    ": not even one hull for each part is made with the work that is allowed");
   if (!trials.fits(hulls))
     throw Error(ErrorCode::InvalidArgument,
                 robot.path.string() + ": one convex body for each part of its shapes are " +
@@ -75,7 +79,7 @@ Length epsilon_within(const robot::RobotFile& robot, RobotRequest request,
     return trials.fits(trials.at({hulls.distance * std::exp2(power), false}));
   };
   while (least >= -kOctaves && fits(least)) most = least--;
-  for (int i = 0; i < kHalvings; ++i) {
+  for (int i = 0; i < kHalvings && least >= -kOctaves; ++i) {
     const double middle = 0.5 * (least + most);
     (fits(middle) ? most : least) = middle;
   }

@@ -147,6 +147,8 @@ class Line {
   /// The same with respect to a triangle's plane, as orient3d_value has it.
   [[nodiscard]] std::optional<Sign> certain_side(const Vec3& a, const Vec3& b,
                                                  const Vec3& c) const {
+    // What underflow takes from the normal's products would be multiplied by any distance.
+    if (!meshes_.scaled()) return std::nullopt;
     const Vec3 ab = b - a, ac = c - a;
     double value = 0, size = 0, open = 0;
     for (int k = 0; k < 3; ++k) {

@@ -3,6 +3,7 @@
 #include <kaboum/world/allowed_pairs.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <map>
 
 #include "pair_proof.h"
@@ -111,8 +112,13 @@ std::vector<LinkPair> examine_pairs(const RobotModel& robot, const PairOptions& 
 std::vector<AllowedPair> pairs_without_check(const RobotModel& robot,
                                              const std::vector<LinkPair>& examined) {
   std::vector<AllowedPair> out = connected_links(robot);
+  const auto is_connected = [&, connected = out.size()](const LinkPair& pair) {
+    return std::any_of(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(connected),
+                       [&](const AllowedPair& p) { return p.a == pair.a && p.b == pair.b; });
+  };
   for (const LinkPair& pair : examined)
-    if (pair.reason == Reason::Never) out.push_back({pair.a, pair.b, Reason::Never});
+    if (pair.reason == Reason::Never && !is_connected(pair))
+      out.push_back({pair.a, pair.b, Reason::Never});
   return out;
 }
 

@@ -112,6 +112,9 @@ grep -q '"formats/r.sdf"' formats.json || fail "report"
 cp -r formats fewer
 expect 0 '' "$D" robot/r.urdf -o fewer --visual --epsilon 9% --effort fast
 [ -e fewer/r.urdf ] && [ ! -e fewer/r.sdf ] && [ ! -e fewer/r.xml ] || fail "formats of before: $(ls fewer)"
+expect 0 '' "$D" robot/r.urdf -o fewer --visual --epsilon 9% --effort fast --srdf
+expect 0 '' "$D" robot/r.urdf -o fewer --visual --epsilon 9% --effort fast
+[ ! -e fewer/r.srdf ] || fail "pairs of before, where nothing else is written anew"
 # Pairs of links.
 sed 's,</robot>,<link name="eye"/><joint name="c" type="fixed"><parent link="base"/><child link="eye"/><origin xyz="0 0 0.1"/></joint><link name="lens"/><joint name="d" type="fixed"><parent link="base"/><child link="lens"/></joint></robot>,' robot/r.urdf >robot/pairs.urdf
 expect 0 '4 adjacent, 1 proved never to touch, 1 fixed' "$D" robot/pairs.urdf -o pairs --visual --epsilon 3% --effort fast --srdf --report pairs.json --depfile pairs.d

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 #include <kaboum/geom/predicates.h>
 #include <kaboum/verify/cover.h>
+#include <kaboum/verify/inclusion.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -138,6 +140,28 @@ TEST(MeshVerdict, RoundingTurnsNoSolidInsideOut) {
     EXPECT_TRUE(decided(flipped(outward), large, Relation::Outer, Claims::Solid).vacuous);
   }
   EXPECT_EQ(misleading, 20);
+}
+
+// A needle far away, whose normals' components underflow: its faces are crossed or not whatever
+// corner each begins with, and a solid at the origin is not inside.
+TEST(MeshVerdict, ANeedleFarAwayEnclosesNothing) {
+  Mesh small;
+  small.vertices = {{1e-172, 0, 0},
+                    {-1e-172, 1e-172, 1e-173},
+                    {-9e-173, -1e-172, 7e-173},
+                    {-8e-173, -6e-173, -1e-172}};
+  small.triangles = {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}};
+  Mesh needle;
+  needle.vertices = {{1.0000000001e300, -3e-170, 0},
+                     {1e300, 3e-170, -4e-170},
+                     {1e300, 3e-170, 4e-170},
+                     {1.0000000003e300, -1e-170, 0}};
+  needle.triangles = {{0, 2, 1}, {1, 3, 0}, {1, 2, 3}, {2, 0, 3}};
+  for (int turn = 0; turn < 3; ++turn) {
+    EXPECT_NE(verify::verify_inclusion(small, needle).solid.answer, verify::Answer::Verified)
+        << turn;
+    for (geom::Triangle& t : needle.triangles) std::ranges::rotate(t, t.begin() + 1);
+  }
 }
 
 // Two tiny corners over and under a large ring, so that every product of three has one of them: by

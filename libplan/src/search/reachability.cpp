@@ -348,6 +348,7 @@ bool Reachability::again() {
   std::erase_if(pending_effects_, [&](const auto& e) { return act(e.first, e.second); });
   std::vector<Pending> left;
   for (Pending& p : std::exchange(pending_, {})) {
+    limits_.work();
     std::copy(p.arguments.begin(), p.arguments.end(), slots_.begin());
     const Verdict v = test(p.schema);
     if (v == Verdict::Reached) act(task_.action_id(p.schema, p.arguments));

@@ -37,8 +37,8 @@ struct LinkPair {
 /// without the allowed pairs of the robot itself.
 std::vector<LinkPair> examine_pairs(const RobotModel& robot, const PairOptions& options);
 
-/// The pairs that need no check: connected ones, also of links without shapes, and those that were
-/// found never to meet; each once.
+/// The pairs that need no check: connected ones, also of links without shapes, and of the others
+/// those that were found never to meet; each once.
 std::vector<AllowedPair> pairs_without_check(const RobotModel& robot,
                                              const std::vector<LinkPair>& examined);
 
