@@ -186,6 +186,7 @@ std::string run_xacro(const fs::path& file, const std::string& option, const Xac
   std::vector<std::string> words{program, name};
   if (!option.empty()) words.insert(words.begin() + 1, option);
   std::vector<char*> command;
+  command.reserve(words.size() + 1);
   for (std::string& word : words) command.push_back(word.data());
   command.push_back(nullptr);
   Pipe out, messages;
