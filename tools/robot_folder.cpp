@@ -202,7 +202,7 @@ void RobotFolder::begin() const {
     if (is_made_by_us(document(extension))) fs::remove(document(extension), error);
 }
 
-std::vector<std::string> RobotFolder::write(const RobotContents& contents) {
+void RobotFolder::write(const RobotContents& contents) {
   create(folder_);
   const Turn turn(folder_);
   require_own();  // others may have been here meanwhile
@@ -213,24 +213,29 @@ std::vector<std::string> RobotFolder::write(const RobotContents& contents) {
   if (!contents.links.empty()) create(folder_ / "links");
   for (const StoredMesh& s : stored_)
     contents.write_mesh(s, folder_ / part_ / (s.name + extension_));
-  FileNames names;
-  for (const auto& [link, container] : contents.links) {
-    links_.push_back("links/" + names.unique(link) + ".glb");
-    io::write_file(folder_ / links_.back(), container);
-  }
+  const std::vector<std::string> links = link_files(contents);
+  for (std::size_t i = 0; i < links.size(); ++i)
+    io::write_file(folder_ / links[i], contents.links[i].second);
   for (const auto& [extension, text] : contents.documents)
     io::write_file(document(extension), text);
   io::write_file(urdf_, contents.urdf);
   // Those of programs that were ended are found here, too, where the folder can be locked.
   for (const fs::path& mark : turn.is_mine() ? marks_in(folder_) : std::vector{own_mark(folder_)})
     fs::remove(mark, error);
-  return links_;
 }
 
-std::vector<std::string> RobotFolder::stale() const {
+std::vector<std::string> RobotFolder::link_files(const RobotContents& contents) {
+  std::vector<std::string> files;
+  FileNames names;
+  for (const auto& [link, container] : contents.links)
+    files.push_back("links/" + names.unique(link) + ".glb");
+  return files;
+}
+
+std::vector<std::string> RobotFolder::stale(const std::vector<std::string>& links) const {
   std::set<fs::path> written;
   for (const StoredMesh& s : stored_) written.insert(fs::path(part_) / (s.name + extension_));
-  for (const std::string& file : links_) written.insert(file);
+  for (const std::string& file : links) written.insert(file);
   std::vector<std::string> out;
   for (const std::string& part : {part_, std::string("links")}) {
     std::error_code error;

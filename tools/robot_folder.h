@@ -79,14 +79,15 @@ class RobotFolder {
   /// Writes all; the URDF comes last, and is not there while bodies are replaced: a robot that is
   /// there is whole, whenever a program is ended. Programs that write into one folder at the same
   /// time take turns, where its file system has locks, and the last one's robot stays.
-  /// @return the files of the links, relative to the folder.
   /// @throws Error{OutputFailed}; nothing but complete files is left behind.
-  std::vector<std::string> write(const RobotContents& contents);
+  void write(const RobotContents& contents);
+  /// The files of the links, relative to the folder.
+  [[nodiscard]] static std::vector<std::string> link_files(const RobotContents& contents);
 
   /// What is there and not of this result, as an earlier one with other options leaves it. It
   /// stays: it may be somebody's own.
-  /// @pre written
-  [[nodiscard]] std::vector<std::string> stale() const;
+  /// @param links  files of the links
+  [[nodiscard]] std::vector<std::string> stale(const std::vector<std::string>& links) const;
 
  private:
   void require_own() const;
@@ -100,7 +101,6 @@ class RobotFolder {
   FileNames names_;
   std::vector<StoredMesh> stored_;
   std::vector<std::optional<std::size_t>> of_shape_;  // index in stored_
-  std::vector<std::string> links_;
 };
 
 }  // namespace kaboum::tools

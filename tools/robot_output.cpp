@@ -5,13 +5,11 @@
 #include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
 
-#include <algorithm>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "cli.h"
-#include "file_names.h"
 #include "urdf_output.h"
 
 namespace kaboum::tools {
@@ -106,19 +104,18 @@ void RobotOutput::reuse(const certify::CacheFolder& cache,
 
 /// Where all is there already, the robot counts as written now, for Make.
 void RobotOutput::write_or_reuse(RobotContents& contents) {
+  links_ = RobotFolder::link_files(contents);
   if (!cache_) {
-    links_ = folder_.write(contents);
+    folder_.write(contents);
     return;
   }
   PartsHash key = meshes_hash_;
   for (const std::string& word : {std::string(version()), o_.bodies}) key.add(word);
   // What is known of files before they are written, by place.
   std::map<std::string, std::string_view> known;
-  std::vector<std::string> links;
-  FileNames names;  // as folder_ gives them
-  for (const auto& [link, container] : contents.links) {
-    links.push_back("links/" + names.unique(link) + ".glb");
-    known.emplace(links.back(), std::string_view(container.data(), container.size()));
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const std::span<const char> container = contents.links[i].second;
+    known.emplace(links_[i], std::string_view(container.data(), container.size()));
   }
   for (const auto& [extension, text] : contents.documents)
     known.emplace(folder_.document(extension).filename().string(), text);
@@ -134,7 +131,6 @@ void RobotOutput::write_or_reuse(RobotContents& contents) {
   places.push_back(urdf);
   RobotFiles files(*cache_, folder_.path(), key.hash());
   if (files.are_there(places) && !folder_.has_other_documents(contents)) {
-    links_ = std::move(links);
     std::error_code error;
     for (const std::string& file : documents())
       fs::last_write_time(file, fs::file_time_type::clock::now(), error);
@@ -145,7 +141,7 @@ void RobotOutput::write_or_reuse(RobotContents& contents) {
     write(mesh, place);
     files.note_written(folder_.part() + "/" + mesh.name + extension_);
   };
-  links_ = folder_.write(contents);
+  folder_.write(contents);
   for (const auto& [place, bytes] : known) files.note(place, bytes);
   files.note(urdf, contents.urdf);
   files.remember();
@@ -177,14 +173,6 @@ std::vector<std::string> RobotOutput::documents() const {
   return out;
 }
 
-std::vector<std::string> RobotOutput::stale() const {
-  std::vector<std::string> out = folder_.stale();
-  std::erase_if(out, [&](const std::string& file) {
-    return std::ranges::find(links_, file) != links_.end();
-  });
-  return out;
-}
-
 robot::BareLinks RobotOutput::bare() const {
   return robot::bare_links(robot_.robot, o_.visual(), o_.links);
 }
@@ -196,7 +184,7 @@ void RobotOutput::say(bool quiet, const Notes& notes) const {
   for (const std::string& text : notes.lines()) log(quiet, text);
   for (const std::string& text : robot::notes_on_flat_shapes(robot_, visual, o_.links))
     log(quiet, text);
-  const std::vector<std::string> old = stale();
+  const std::vector<std::string> old = folder_.stale(links_);
   if (!old.empty())
     log(quiet, folder_.path().string() + ": " + robot::names_of(old) +
                    (old.size() == 1 ? " is" : " are") +
@@ -212,7 +200,7 @@ Json RobotOutput::report() const {
   const std::vector<std::string> files = documents();
   return {{"urdf", files.front()},
           {"documents", files},
-          {"stale", stale()},
+          {"stale", folder_.stale(links_)},
           {"links_without_shapes", bare().all()}};
 }
 

@@ -67,7 +67,6 @@ class RobotOutput {
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> other_formats(
       const NewShapes& shapes, Notes& notes) const;
   void write_or_reuse(RobotContents& contents);
-  [[nodiscard]] std::vector<std::string> stale() const;
   [[nodiscard]] robot::BareLinks bare() const;
 
   const RobotOptions& o_;
