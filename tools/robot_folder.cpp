@@ -233,9 +233,8 @@ std::vector<std::string> RobotFolder::link_files(const RobotContents& contents) 
 }
 
 std::vector<std::string> RobotFolder::stale(const std::vector<std::string>& links) const {
-  std::set<fs::path> written;
+  std::set<fs::path> written(links.begin(), links.end());
   for (const StoredMesh& s : stored_) written.insert(fs::path(part_) / (s.name + extension_));
-  for (const std::string& file : links) written.insert(file);
   std::vector<std::string> out;
   for (const std::string& part : {part_, std::string("links")}) {
     std::error_code error;
