@@ -30,6 +30,7 @@ int verify_mesh(const VerifyOptions& o) {
   mesh.drop_sheets = o.drop_sheets;
   mesh.set = o.set;
   mesh.max_contacts = o.max_contacts;
+  mesh.max_work = o.max_work;
   return tools::verify_mesh(mesh, o.common);
 }
 
@@ -44,6 +45,7 @@ int verify_robot(const VerifyOptions& o) {
   robot.prepare = o.prepare;
   robot.drop_sheets = o.drop_sheets;
   robot.max_contacts = o.max_contacts;
+  robot.max_work = o.max_work;
   return tools::verify_robot(robot, o.common);
 }
 

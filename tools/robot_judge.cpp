@@ -29,6 +29,7 @@ RobotJudge::RobotJudge(const VerifyRobotOptions& options,
                        std::function<void(const std::string&)> show)
     : o_(options), show_(std::move(show)), epsilon_(epsilon_of(options.epsilon)) {
   limits_.max_contacts = o_.max_contacts;
+  limits_.max_work = o_.max_work;
 }
 
 const GroupFindings& RobotJudge::judge(const MeshGroup& group) {

@@ -61,7 +61,7 @@ void add_mesh_command(CLI::App& app, VerifyOptions& o) {
   add_unit(*c, o);
   add_input_format(*c, o);
   add_approximation_format(*c, o, "APPROXIMATION");
-  add_max_contacts(*c, o);
+  add_limits(*c, o);
   add_common_options(*c, o.common);
 }
 
@@ -82,7 +82,7 @@ void add_cover_command(CLI::App& app, VerifyOptions& o) {
   add_unit(*c, o);
   add_input_format(*c, o);
   add_approximation_format(*c, o, "SET");
-  add_max_contacts(*c, o);
+  add_limits(*c, o);
   add_common_options(*c, o.common);
   c->preparse_callback([&o](std::size_t) { o.cover = true; });
 }
@@ -102,7 +102,7 @@ void add_robot_command(CLI::App& app, VerifyOptions& o) {
   add_claims(*c, o, {"all", "solid", "surface"});
   add_epsilon(*c, o, kOfEachMesh);
   add_preparation(*c, o, "each mesh of ORIGINAL");
-  add_max_contacts(*c, o);
+  add_limits(*c, o);
   add_geometry(*c, o, "ORIGINAL");
   add_common_options(*c, o.common);
   c->preparse_callback([&o](std::size_t) { o.robot = true; });

@@ -47,7 +47,7 @@ void add_flags(CLI::App& app, VerifyOptions& o) {
   add_unit(app, o);
   add_input_format(app, o);
   add_approximation_format(app, o, "APPROXIMATION");
-  add_max_contacts(app, o);
+  add_limits(app, o);
   for (CLI::Option* other : {epsilon, set}) other->excludes(sweep);
   add_links(app, o)->needs(sweep);
   add_geometry(app, o, "ORIGINAL");
@@ -63,7 +63,8 @@ void require_meaning(const CLI::App& app, const VerifyOptions& o) {
     if (o.claims == "solid")
       throw Error(ErrorCode::InvalidArgument,
                   "--claims solid: with --sweep it follows from the surface claim; use all");
-    require_absent(app, "--sweep", {"--input-format", "--max-contacts", "--unit", "--scale"});
+    require_absent(app, "--sweep",
+                   {"--input-format", "--max-contacts", "--max-work", "--unit", "--scale"});
     return;
   }
   if (o.robot) {
@@ -80,7 +81,7 @@ void require_meaning(const CLI::App& app, const VerifyOptions& o) {
   if (o.progressive)
     require_absent(app, "--progressive",
                    {"--claims", "--epsilon", "--prepare", "--raw", "--drop-sheets", "--set",
-                    "--witness", "--approximation-format", "--max-contacts"});
+                    "--witness", "--approximation-format", "--max-contacts", "--max-work"});
 }
 
 }  // namespace kaboum::tools

@@ -83,6 +83,7 @@ int verify_mesh(const VerifyMeshOptions& o, const CommonOptions& common) {
                                       claims_of(o.claims),
                                       run.bound,
                                       o.max_contacts,
+                                      o.max_work,
                                       [&](const std::string& what) { progress.show(what); }};
   run.verdict = verify::decide(question, [&](const verify::MeshVerdict& enclosure) {
     run.verdict = enclosure;

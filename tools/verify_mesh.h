@@ -19,6 +19,7 @@ struct VerifyMeshOptions {
   bool prepare = false, drop_sheets = false;
   bool set = false;  ///< the approximation is a set, whatever the file looks like
   std::size_t max_contacts = verify::InclusionOptions{}.max_contacts;
+  std::optional<double> max_work;
 };
 
 /// Decides the claims, prints and reports them.

@@ -59,12 +59,18 @@ void add_approximation_format(CLI::App& app, VerifyOptions& o, const std::string
       ->type_name("NAME");
 }
 
-void add_max_contacts(CLI::App& app, VerifyOptions& o) {
+void add_limits(CLI::App& app, VerifyOptions& o) {
   app.add_option("--max-contacts", o.max_contacts,
                  "Give up (exit code 7) beyond this many pairs of triangles that touch")
       ->check(CLI::Range(std::size_t{1}, std::size_t{4'000'000'000}))
       ->capture_default_str()
       ->type_name("N");
+  app.add_option("--max-work", o.max_work,
+                 "Leave what encloses what undecided (exit code 7) after so much work, counted in "
+                 "steps that take about so many seconds of one core, so that the answer is the "
+                 "same on any machine [20, and 2 per 1000 triangles]")
+      ->check(number_from(0.001, 1e9))
+      ->type_name("SECONDS");
 }
 
 void add_unit(CLI::App& app, VerifyOptions& o) { add_unit_options(app, o.unit, "ORIGINAL"); }

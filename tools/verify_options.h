@@ -27,6 +27,7 @@ struct VerifyOptions {
   std::string claims = "all", epsilon, witness;
   bool prepare = false, drop_sheets = false, set = false;
   std::size_t max_contacts = VerifyMeshOptions{}.max_contacts;
+  std::optional<double> max_work;
   std::string geometry = "collision";  ///< of robots and sweeps
   std::vector<std::string> packages;   ///< of robots and sweeps
   std::string links, gap, base_pose;   ///< of sweeps, as all below
@@ -52,7 +53,7 @@ void add_witness(CLI::App& app, VerifyOptions& options);
 void add_input_format(CLI::App& app, VerifyOptions& options);
 /// @param of  the file
 void add_approximation_format(CLI::App& app, VerifyOptions& options, const std::string& of);
-void add_max_contacts(CLI::App& app, VerifyOptions& options);
+void add_limits(CLI::App& app, VerifyOptions& options);
 CLI::Option* add_links(CLI::App& app, VerifyOptions& options);
 /// --geometry, --visual and --package-path. @param of  the robot
 void add_geometry(CLI::App& app, VerifyOptions& options, const std::string& of);

@@ -14,6 +14,7 @@ struct VerifyRobotOptions {
   std::vector<std::string> packages;
   bool prepare = false, drop_sheets = false;
   std::size_t max_contacts = 0;
+  std::optional<double> max_work;
 };
 
 /// Decides whether the collision shapes of RESULT hold ORIGINAL's shapes, link by link, and both

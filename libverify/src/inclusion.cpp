@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <mutex>
+#include <set>
 
 #include "allowance.h"
 #include "arrangement.h"
@@ -22,8 +23,9 @@ class Decision {
   Decision(const MeshPair& meshes, const InclusionOptions& options)
       : meshes_(meshes),
         options_(options),
-        allowance_(options.surface_only ? options.max_work
-                                        : std::numeric_limits<double>::infinity()),
+        allowance_(options.max_work.value_or(
+            options.surface_only ? std::numeric_limits<double>::infinity()
+                                 : usual_work(meshes.count(kInside) + meshes.count(kOutside)))),
         arrangement_(meshes, {options.max_contacts, options.max_pairs}, &allowance_) {}
 
   /// Closed chains: the solid claim and, for the inner chain's faces, the surface claim.
@@ -50,9 +52,7 @@ class Decision {
   /// The same within what is allowed, triangles that few others cut first.
   void decide_surface_within_allowance() {
     say("pairs of triangles");
-    std::vector<std::uint32_t> order;
-    for (std::uint32_t f = meshes_.begin(kInside); f < meshes_.end(kInside); ++f)
-      if (meshes_.face(f).axis >= 0) order.push_back(f);
+    std::vector<std::uint32_t> order = faces_of(kInside);
     const auto at = [&](const CellSample& sample, Side side) {
       return winding(meshes_, sample, side, kOutside);
     };
@@ -68,7 +68,8 @@ class Decision {
       if (error.code() != ErrorCode::LimitReached) throw;
       // What sticks out in the middle is known without them.
       allowance_.loop(order.size(), [&](std::size_t i) { holds(middle_sample(order[i])); });
-      left_out_ = order.size() - static_cast<std::size_t>(std::count(bad.begin(), bad.end(), 1));
+      for (const std::uint32_t f : order)
+        if (bad[f - meshes_.begin(kInside)] == 0) left_out_.insert(f);
       return;
     }
     const auto values = [&](Side side) {
@@ -88,13 +89,11 @@ class Decision {
     std::stable_sort(order.begin(), order.end(), [&](std::uint32_t f, std::uint32_t g) {
       return contacts.cuts(f).size() < contacts.cuts(g).size();
     });
-    const std::vector<char> undone = allowance_.loop(order.size(), [&](std::size_t i) {
-      const std::uint32_t f = order[i];
+    decide_each(order, [&](std::uint32_t f) {
       if ((inner[f] != kCut && inner[f] >= 1) || (outer[f] != kCut && outer[f] >= 1)) return;
       // Its middle is in, or beside, one of its cells: most that stick out need no cutting.
       if (holds(middle_sample(f))) visit(f, mask_of(kOutside), decided(f), holds);
     });
-    left_out_ = static_cast<std::size_t>(std::count(undone.begin(), undone.end(), 1));
   }
 
   /// Open chains with one border: w_inner ≤ w_outer.
@@ -113,9 +112,8 @@ class Decision {
           uncut_values(arrangement_, chain, 3, side, value, samples_, allowance_);
       const std::uint32_t begin = meshes_.begin(chain);
       std::vector<char> bad(values.size(), 0);
-      verify::parallel_for(std::size_t{0}, values.size(), [&](std::size_t i) {
-        const auto f = begin + static_cast<std::uint32_t>(i);
-        if (meshes_.face(f).axis < 0) return;
+      decide_each(faces_of(chain), [&](std::uint32_t f) {
+        const std::size_t i = f - begin;
         if (values[i] != kCut) {
           if (values[i] < 0) report(solid_, bad[i], middle_sample(f), side);
           return;
@@ -137,8 +135,8 @@ class Decision {
     conclude(result.surface, surface_, true, false,
              "a part of the inner mesh's surface is outside the outer solid");
     result.samples = samples_;
-    result.left_out = left_out_;
-    result.limited = result.limited || left_out_ > 0;
+    result.left_out = left_out_.size();
+    result.limited = result.limited || !left_out_.empty();
     result.contacts = arrangement_.mutual_cuts();
   }
 
@@ -154,6 +152,22 @@ class Decision {
                     ++samples_;
                     return visitor(sample);
                   });
+  }
+
+  /// body(f) for faces, as far as is allowed; those that are not decided are noted.
+  template <class Body>
+  void decide_each(const std::vector<std::uint32_t>& faces, const Body& body) {
+    const std::vector<char> undone =
+        allowance_.loop(faces.size(), [&](std::size_t i) { body(faces[i]); });
+    for (std::size_t i = 0; i < undone.size(); ++i)
+      if (undone[i] != 0) left_out_.insert(faces[i]);
+  }
+
+  [[nodiscard]] std::vector<std::uint32_t> faces_of(int chain) const {
+    std::vector<std::uint32_t> faces;
+    for (std::uint32_t f = meshes_.begin(chain); f < meshes_.end(chain); ++f)
+      if (meshes_.face(f).axis >= 0) faces.push_back(f);
+    return faces;
   }
 
   /// The side of a chain's faces on which an offending region can lie.
@@ -224,9 +238,8 @@ class Decision {
     prepare_settled(chain);
     const std::uint32_t begin = meshes_.begin(chain);
     std::vector<char> fails(other_values_.size(), 0);
-    verify::parallel_for(std::size_t{0}, fails.size(), [&](std::size_t i) {
-      const auto f = begin + static_cast<std::uint32_t>(i);
-      if (meshes_.face(f).axis < 0) return;
+    decide_each(faces_of(chain), [&](std::uint32_t f) {
+      const std::size_t i = f - begin;
       if (other_values_[i] != kCut) {
         fails[i] = static_cast<char>(!passes(chain, other_values_[i]));
         return;
@@ -253,8 +266,7 @@ class Decision {
     };
     const std::uint32_t begin = meshes_.begin(chain);
     std::vector<char> bad(meshes_.count(chain), 0);
-    verify::parallel_for(std::size_t{0}, failing.size(), [&](std::size_t i) {
-      const std::uint32_t f = failing[i];
+    decide_each(failing, [&](std::uint32_t f) {
       const int own_value = values[f - begin], other_value = other_values_[f - begin];
       // The own number is the same all over the face and harmless.
       if (own_value != kCut && !offends(chain, own_value)) return;
@@ -282,8 +294,7 @@ class Decision {
         arrangement_, kInside, mask_of(kOutside), kOuter,
         [&](const CellSample& sample) { return at(sample, kOuter); }, samples_, allowance_);
     std::vector<char> bad(meshes_.count(kInside), 0);
-    verify::parallel_for(std::size_t{0}, failing.size(), [&](std::size_t i) {
-      const std::uint32_t f = failing[i];
+    decide_each(failing, [&](std::uint32_t f) {
       if (outer_values[f] != kCut) {
         if (outer_values[f] < 1) report(surface_, bad[f], middle_sample(f), kOuter);
         return;
@@ -328,7 +339,7 @@ class Decision {
   const InclusionOptions& options_;
   Allowance allowance_;
   Arrangement arrangement_;
-  std::size_t left_out_ = 0;
+  std::set<std::uint32_t> left_out_;  // faces that a limit left undecided
   std::vector<int> other_values_;
   /// Per face of the other chain: bit 0, its own chain decides the side that the faces in question
   /// are tested on, if it is oriented like them; bit 1, if it is oriented the other way.
@@ -393,8 +404,7 @@ Inclusion verify_inclusion(const geom::Mesh& inner, const geom::Mesh& outer,
     claim->reason =
         result.left_out > 0
             ? std::to_string(result.left_out) +
-                  " triangles were not looked at, for "
-                  "the work that is allowed was done"
+                  " triangles were not decided, for the work that is allowed was done"
             : "more contacts between triangles, or pieces of one, than the limits allow";
   }
   return result;

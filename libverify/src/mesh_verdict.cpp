@@ -49,9 +49,10 @@ DistanceVerdict decide_distance(Between between, const geom::Mesh& from, const g
   return out;
 }
 
-DistanceVerdict decide_excess(const MeshQuestion& q, bool to_solid) {
+DistanceVerdict decide_excess(const MeshQuestion& q, bool to_solid,
+                              const InclusionOptions& options) {
   DistanceVerdict out{to_solid ? Between::UnionToSolid : Between::FacetsToSurface,
-                      verify_excess(*q.set, q.original, *q.bound, to_solid),
+                      verify_excess(*q.set, q.original, *q.bound, to_solid, options),
                       {}};
   out.bracket = bracket_of(out.claim);
   if (out.claim.answer == Answer::Verified) return out;
@@ -67,7 +68,7 @@ DistanceVerdict decide_excess(const MeshQuestion& q, bool to_solid) {
 void decide_distances(const MeshQuestion& q, const InclusionOptions& options, MeshVerdict& out) {
   if (q.relation == Relation::Cover) {
     options.progress("distance");
-    out.distances.push_back(decide_excess(q, out.inclusion.inner_closed));
+    out.distances.push_back(decide_excess(q, out.inclusion.inner_closed, options));
   } else if (q.set != nullptr) {
     options.progress("depth");
     out.depth = verify_depth(q.original, *q.set, *q.bound, options);
@@ -121,6 +122,7 @@ MeshVerdict decide(const MeshQuestion& q,
   };
   InclusionOptions options;
   options.max_contacts = q.max_contacts;
+  options.max_work = q.max_work;
   options.progress = [&](const std::string& what) { show("deciding: " + what); };
   MeshVerdict out;
   if (q.set != nullptr) out.convex = verify_convexity(*q.set).convex;

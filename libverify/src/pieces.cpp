@@ -198,7 +198,7 @@ Division divide(const Arrangement& arrangement, std::uint32_t face, const Good& 
 
 Pieces pieces_with(const MeshPair& meshes, int chain, const InclusionOptions& options,
                    const std::function<bool(int inner, int outer)>& condition) {
-  Allowance allowance(options.max_work);
+  Allowance allowance(options.max_work.value_or(std::numeric_limits<double>::infinity()));
   Arrangement arrangement(meshes, {options.max_contacts, options.max_pairs}, &allowance);
   arrangement.need_own(chain);
   std::atomic<std::size_t> samples = 0;

@@ -224,6 +224,8 @@ Triple<Exact> made_positive(Triple<Exact> a) {
 Sign sign_on(const Triple<Approx>& approx_line, const Triple<Exact>& line,
              const Triple<Approx>& approx_point, const Triple<Exact>& point) {
   if (const auto sign = sign_of(dot(approx_line, approx_point))) return *sign;
+  constexpr std::uint64_t kExact = 1000;  // about nanoseconds
+  count_steps(kExact);
   return sign_of(dot(line, point));
 }
 

@@ -35,6 +35,8 @@ Sign sign_of_sum(const Triple<Approx>& weight, const Triple<Exact>& exact_weight
                  const ApproxValue& value, const ExactValue& exact_value) {
   const Triple<Approx> values{value(0), value(1), value(2)};
   if (const auto sign = sign_of(dot(weight, values))) return *sign;
+  constexpr std::uint64_t kExact = 4000;  // about nanoseconds
+  count_steps(kExact);
   return sign_of(dot(exact_weight, Triple<Exact>{exact_value(0), exact_value(1), exact_value(2)}));
 }
 

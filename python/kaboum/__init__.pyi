@@ -354,6 +354,7 @@ def verify_mesh(
     prepare: bool = False,
     drop_sheets: bool = False,
     max_contacts: int = 100000000,
+    max_work: float | None = None,
     threads: int = 0,
     progress: _Progress | None = None,
 ) -> Verdict: ...
@@ -366,6 +367,7 @@ def verify_cover(
     prepare: bool = False,
     drop_sheets: bool = False,
     max_contacts: int = 100000000,
+    max_work: float | None = None,
     threads: int = 0,
     progress: _Progress | None = None,
 ) -> Verdict: ...
@@ -398,6 +400,7 @@ def verify_robot(
     prepare: bool = False,
     drop_sheets: bool = False,
     max_contacts: int = 100000000,
+    max_work: float | None = None,
     threads: int = 0,
     progress: _Progress | None = None,
 ) -> Verdict: ...

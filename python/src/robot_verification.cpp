@@ -157,7 +157,8 @@ class RobotVerifier {
 Verdict verify_robot(const py::object& original, const py::object& result,
                      const std::string& claims, const py::object& epsilon,
                      const std::string& geometry, const py::object& package_path, bool prepare,
-                     bool drop_sheets, std::size_t max_contacts, int threads,
+                     bool drop_sheets, std::size_t max_contacts,
+                     const std::optional<double>& max_work, int threads,
                      const py::object& progress) {
   const RobotValue first = robot_of(original, "original"), second = robot_of(result, "result");
   Asked asked{is_visual(geometry),
@@ -168,6 +169,7 @@ Verdict verify_robot(const py::object& original, const py::object& result,
               packages_of(package_path),
               {}};
   asked.limits.max_contacts = max_contacts;
+  asked.limits.max_work = max_work;
   Watch watch(progress);
   asked.limits.progress = watch.hook();
   RobotVerifier verifier(*first.file, *second.file, std::move(asked));
@@ -183,8 +185,8 @@ void bind_robot_verification(py::module_& module) {
       py::arg("claims") = "all", py::arg("epsilon") = py::none(), py::arg("geometry") = "collision",
       py::arg("package_path") = py::tuple(), py::arg("prepare") = false,
       py::arg("drop_sheets") = false,
-      py::arg("max_contacts") = verify::InclusionOptions{}.max_contacts, py::arg("threads") = 0,
-      py::arg("progress") = py::none(),
+      py::arg("max_contacts") = verify::InclusionOptions{}.max_contacts,
+      py::arg("max_work") = py::none(), py::arg("threads") = 0, py::arg("progress") = py::none(),
       R"(Decides whether the collision shapes of a robot hold the shapes of another, as `bound-verify robot`.
 
 Parameters
@@ -199,7 +201,7 @@ geometry : str
     Which shapes of the original are to be held: 'collision' or 'visual'.
 package_path : str or sequence of str
     Folders that package:// is looked up in.
-prepare, drop_sheets, max_contacts, threads, progress
+prepare, drop_sheets, max_contacts, max_work, threads, progress
     As for `verify_mesh`.
 
 Returns

@@ -30,6 +30,7 @@ struct Asked {
   std::optional<Length> epsilon;
   bool prepare = false, drop_sheets = false;
   std::size_t max_contacts = 0;
+  std::optional<double> max_work;
   int threads = 0;
 };
 
@@ -67,7 +68,7 @@ Verdict decide(const MeshValue& original, const geom::Mesh& approximation,
                     "epsilon must be larger than the set's margin, and finite");
     }
     return verify::decide({*mesh, approximation, set, asked.relation, asked.claims, bound,
-                           asked.max_contacts, watch.hook()});
+                           asked.max_contacts, asked.max_work, watch.hook()});
   });
   out.answer = found.answer;
   out.claims = claims_of(found);
@@ -77,7 +78,8 @@ Verdict decide(const MeshValue& original, const geom::Mesh& approximation,
 Verdict verify_mesh(const py::object& original, const py::object& approximation,
                     const std::string& relation, const std::string& claims,
                     const py::object& epsilon, bool prepare, bool drop_sheets,
-                    std::size_t max_contacts, int threads, const py::object& progress) {
+                    std::size_t max_contacts, const std::optional<double>& max_work, int threads,
+                    const py::object& progress) {
   static constexpr std::array<std::pair<const char*, verify::Relation>, 2> kRelations{
       {{"outer", verify::Relation::Outer}, {"inner", verify::Relation::Inner}}};
   const Asked asked{value_of(kRelations, relation, "relation"),
@@ -86,6 +88,7 @@ Verdict verify_mesh(const py::object& original, const py::object& approximation,
                     prepare,
                     drop_sheets,
                     max_contacts,
+                    max_work,
                     threads};
   const MeshValue first = mesh_of(original, "original");
   const bool is_set =
@@ -103,13 +106,15 @@ Verdict verify_mesh(const py::object& original, const py::object& approximation,
 
 Verdict verify_cover(const py::object& original, const py::object& set, const std::string& claims,
                      const py::object& epsilon, bool prepare, bool drop_sheets,
-                     std::size_t max_contacts, int threads, const py::object& progress) {
+                     std::size_t max_contacts, const std::optional<double>& max_work, int threads,
+                     const py::object& progress) {
   const Asked asked{verify::Relation::Cover,
                     value_of(kClaims, claims, "claims"),
                     length_of(epsilon, "epsilon"),
                     prepare,
                     drop_sheets,
                     max_contacts,
+                    max_work,
                     threads};
   const auto bodies = set_of(set);
   if (!bodies)
@@ -156,6 +161,9 @@ prepare, drop_sheets : bool
     Judge the original as `prepare` gives it.
 max_contacts : int
     Give up, 'undecided', beyond this many pairs of triangles that touch.
+max_work : float, optional
+    Leave the claims of enclosure undecided after so much work, about so many seconds of one core.
+    Default: 20, and 2 per 1000 triangles.
 threads, progress
     As for `decimate`.
 
@@ -173,7 +181,7 @@ original : mesh
 set : ConvexSet, name of a file or folder, or list of meshes
 epsilon : float or str, optional
     Also decide that no point of the union is farther than this from the solid.
-claims, prepare, drop_sheets, max_contacts, threads, progress
+claims, prepare, drop_sheets, max_contacts, max_work, threads, progress
     As for `verify_mesh`.
 
 Raises
@@ -201,11 +209,13 @@ void bind_verification(py::module_& module) {
              py::kw_only(), py::arg("relation") = "outer", py::arg("claims") = "all",
              py::arg("epsilon") = py::none(), py::arg("prepare") = false,
              py::arg("drop_sheets") = false, py::arg("max_contacts") = contacts,
-             py::arg("threads") = 0, py::arg("progress") = py::none(), kMeshDoc);
+             py::arg("max_work") = py::none(), py::arg("threads") = 0,
+             py::arg("progress") = py::none(), kMeshDoc);
   module.def("verify_cover", &verify_cover, py::arg("original"), py::arg("set"), py::kw_only(),
              py::arg("claims") = "all", py::arg("epsilon") = py::none(), py::arg("prepare") = false,
              py::arg("drop_sheets") = false, py::arg("max_contacts") = contacts,
-             py::arg("threads") = 0, py::arg("progress") = py::none(), kCoverDoc);
+             py::arg("max_work") = py::none(), py::arg("threads") = 0,
+             py::arg("progress") = py::none(), kCoverDoc);
 }
 
 }  // namespace kaboum::python

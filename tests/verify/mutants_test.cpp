@@ -122,17 +122,4 @@ TEST(Inclusion, RefusesWhatIsNoMesh) {
   EXPECT_THROW(verify::verify_inclusion(bad, box({1, 1, 1}, 1)), Error);
 }
 
-TEST(Inclusion, LimitsLeaveItUndecided) {
-  const Mesh a = box({1, 1, 1}, 2), b = translated(box({1, 1, 1}, 3), {0.25, 0.25, 0.25});
-  verify::InclusionOptions options;
-  options.max_contacts = 3;
-  const auto few_contacts = verify::verify_inclusion(a, b, options);
-  EXPECT_EQ(few_contacts.solid.answer, verify::Answer::Undecided);
-  EXPECT_FALSE(few_contacts.solid.reason.empty());
-  options = {};
-  options.max_pieces = 1;
-  const auto few_pieces = verify::verify_inclusion(a, b, options);
-  EXPECT_EQ(few_pieces.solid.answer, verify::Answer::Undecided);
-}
-
 }  // namespace

@@ -48,6 +48,12 @@ struct Claim {
   std::vector<std::uint32_t> inner_triangles, outer_triangles;
 };
 
+/// What deciding an inclusion is allowed where nobody says otherwise: many times what the most
+/// tangled of real meshes takes, so that only what is made to be hard is left undecided. [s]
+inline double usual_work(std::size_t triangles) {
+  return 20 + 2e-3 * static_cast<double>(triangles);
+}
+
 struct InclusionOptions {
   std::size_t max_contacts = 100'000'000;  ///< pairs of triangles that touch, per kind
   std::size_t max_pairs = 4'000'000'000;   ///< pairs of triangles looked at, per kind
@@ -58,10 +64,11 @@ struct InclusionOptions {
   std::size_t settle_from = 1000;
   /// Decides the surface claim alone; the solid one is Undefined. Closed outer meshes only.
   bool surface_only = false;
-  /// With surface_only: ends after so much work, counted in steps that take about so many seconds
-  /// of one core, so that the answer is the same on any machine. Triangles that few others cut are
-  /// looked at first; Inclusion::left_out counts those that were not.
-  double max_work = std::numeric_limits<double>::infinity();
+  /// Ends after so much work, counted in steps that take about so many seconds of one core, so that
+  /// the answer is the same on any machine; infinite: no end. Inclusion::left_out counts the
+  /// triangles that were not decided. Absent: no end with surface_only, where triangles that few
+  /// others cut are looked at first; else usual_work() of both meshes' triangles. [s]
+  std::optional<double> max_work;
   /// Called with what is being done, from one thread.
   std::function<void(const std::string&)> progress;
 };
@@ -80,7 +87,7 @@ struct Inclusion {
   std::size_t triangles_without_area = 0;  ///< in both meshes; they bound nothing
   std::size_t contacts = 0;                ///< pairs of triangles in which one cuts the other
   std::size_t samples = 0;                 ///< winding numbers computed
-  std::size_t left_out = 0;                ///< triangles of which max_work left the claim open
+  std::size_t left_out = 0;                ///< triangles of which a limit left the claim open
   bool limited = false;  ///< a limit ended the search; what is refuted may name too few triangles
 };
 

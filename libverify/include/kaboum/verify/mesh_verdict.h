@@ -26,6 +26,7 @@ struct MeshQuestion {
   Claims claims = Claims::All;    ///< those that decide
   std::optional<double> bound{};  ///< of the distances, above 0 and the set's margin [length]
   std::size_t max_contacts = InclusionOptions{}.max_contacts;
+  std::optional<double> max_work{};  ///< of each inclusion, as InclusionOptions [s]
   std::function<void(const std::string&)> progress{};  ///< called with what is being done
 
   [[nodiscard]] const geom::Mesh& inner() const {
