@@ -12,7 +12,7 @@
 namespace kaboum::wrap {
 namespace {
 
-struct Range {
+struct Block {
   std::array<int, 3> low, high;  ///< cells, the last one included
 };
 
@@ -21,53 +21,54 @@ class TriangleInCells {
  public:
   TriangleInCells(const Lattice& lattice, const std::array<Vec3, 3>& corners)
       : lattice_(lattice), origin_(corners[0]) {
-    for (int i = 0; i < 3; ++i) triangle_[i] = corners[i] - origin_;
-    normal_ = (triangle_[1]).cross(triangle_[2]);
+    std::array<Vec3, 3> triangle;
+    for (std::size_t i = 0; i < 3; ++i) {
+      triangle[i] = corners[i] - origin_;
+      most_ = std::max(most_, triangle[i].cwiseAbs().maxCoeff());
+    }
+    std::size_t count = 0;
+    const auto add = [&](const Vec3& n) { axes_[count++] = {n, range_along(n, triangle), {n, 0}}; };
+    add(triangle[1].cross(triangle[2]));
+    for (std::size_t i = 0; i < 3; ++i)
+      for (int k = 0; k < 3; ++k) add(Vec3::Unit(k).cross(triangle[(i + 1) % 3] - triangle[i]));
+    for (int k = 0; k < 3; ++k) add(Vec3::Unit(k));
   }
 
-  [[nodiscard]] bool may_meet(const Range& range) const {
-    std::array<Vec3, 8> box;
-    const Vec3 low = lattice_.corner(range.low[0], range.low[1], range.low[2]) - origin_;
+  [[nodiscard]] bool may_meet(const Block& block) const {
+    const Vec3 low = lattice_.corner(block.low[0], block.low[1], block.low[2]) - origin_;
     const Vec3 high =
-        lattice_.corner(range.high[0] + 1, range.high[1] + 1, range.high[2] + 1) - origin_;
-    for (unsigned i = 0; i < 8; ++i)
-      box[i] = {(i & 1U) != 0 ? high.x() : low.x(), (i & 2U) != 0 ? high.y() : low.y(),
-                (i & 4U) != 0 ? high.z() : low.z()};
-    Separator separator;
-    for (const Vec3& p : triangle_) separator.look_at(p);
-    separator.look_at(low);
-    separator.look_at(high);
-    const auto apart = [&](const Vec3& n) { return separator.apart(n, triangle_, box); };
-    for (int k = 0; k < 3; ++k)
-      if (apart(Vec3::Unit(k))) return false;
-    if (apart(normal_)) return false;
-    for (int i = 0; i < 3; ++i) {
-      const Vec3 edge = triangle_[(i + 1) % 3] - triangle_[i];
-      for (int k = 0; k < 3; ++k)
-        if (apart(Vec3::Unit(k).cross(edge))) return false;
-    }
-    return true;
+        lattice_.corner(block.high[0] + 1, block.high[1] + 1, block.high[2] + 1) - origin_;
+    const double most = std::max({most_, low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff()});
+    return std::none_of(axes_.begin(), axes_.end(), [&](const Axis& axis) {
+      Range range{0, 0};
+      for (int k = 0; k < 3; ++k) {
+        const double a = axis.n[k] * low[k], b = axis.n[k] * high[k];
+        range.low += std::min(a, b);
+        range.high += std::max(a, b);
+      }
+      return apart(axis.range, range, axis.margin.at(most));
+    });
   }
 
  private:
   const Lattice& lattice_;
   Vec3 origin_;
-  std::array<Vec3, 3> triangle_;
-  Vec3 normal_;
+  double most_ = 0;  ///< the largest |coordinate|
+  std::array<Axis, 13> axes_;
 };
 
-void mark(const TriangleInCells& triangle, const Range& range, BitGrid& cells) {
-  if (!triangle.may_meet(range)) return;
+void mark(const TriangleInCells& triangle, const Block& block, BitGrid& cells) {
+  if (!triangle.may_meet(block)) return;
   int axis = 0;
   for (int k = 1; k < 3; ++k)
-    if (range.high[k] - range.low[k] > range.high[axis] - range.low[axis]) axis = k;
-  if (range.high[axis] == range.low[axis])
-    return cells.set(range.low[0], range.low[1], range.low[2]);
-  const int middle = (range.low[axis] + range.high[axis]) / 2;
-  Range half = range;
+    if (block.high[k] - block.low[k] > block.high[axis] - block.low[axis]) axis = k;
+  if (block.high[axis] == block.low[axis])
+    return cells.set(block.low[0], block.low[1], block.low[2]);
+  const int middle = (block.low[axis] + block.high[axis]) / 2;
+  Block half = block;
   half.high[axis] = middle;
   mark(triangle, half, cells);
-  half = range;
+  half = block;
   half.low[axis] = middle + 1;
   mark(triangle, half, cells);
 }
@@ -130,12 +131,16 @@ BitGrid occupied_cells(const Lattice& lattice, const geom::Mesh& mesh) {
                                       mesh.vertices[t[2]]};
     geom::Box3 box;
     for (const Vec3& p : corners) box.extend(p);
-    Range range{};
+    Block block{};
     for (int k = 0; k < 3; ++k) {
-      range.low[k] = static_cast<int>(above(box.min[k], lattice.side) - 1 - lattice.first[k]);
-      range.high[k] = static_cast<int>(below(box.max[k], lattice.side) - lattice.first[k]);
+      block.low[k] = static_cast<int>(above(box.min[k], lattice.side) - 1 - lattice.first[k]);
+      block.high[k] = static_cast<int>(below(box.max[k], lattice.side) - lattice.first[k]);
     }
-    mark(TriangleInCells(lattice, corners), range, cells);
+    if (block.low == block.high) {  // all of it is in that cell
+      cells.set(block.low[0], block.low[1], block.low[2]);
+    } else {
+      mark(TriangleInCells(lattice, corners), block, cells);
+    }
   }
   return cells;
 }

@@ -4,14 +4,12 @@
 #include <kaboum/geom/distance.h>
 #include <kaboum/geom/mesh.h>
 
-#include <array>
 #include <span>
 #include <vector>
 
-namespace kaboum::wrap {
+#include "cones.h"
 
-using geom::Vec3;
-using Tetrahedron = std::array<Vec3, 4>;
+namespace kaboum::wrap {
 
 /// The nearest point of the input, rounded.
 struct Foot {
@@ -45,10 +43,6 @@ class Obstacle {
   }
 
  private:
-  /// Whether the plane of the triangle has all the points certainly on one side.
-  [[nodiscard]] bool beside(std::uint32_t triangle, const geom::Box3& box,
-                            std::span<const Tetrahedron> tetrahedra) const;
-
   geom::DistanceQuery query_;
   double clearance_;
   std::vector<Vec3> normal_;  ///< of each triangle, of any length, rounded

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 
 /// Rounded arithmetic that says "apart" only where that is certain.
@@ -11,41 +12,58 @@ namespace kaboum::wrap {
 
 using geom::Vec3;
 
-/// Points relative to one of them, and the largest |coordinate| along each axis.
+/// What parts ranges along n has to be larger than this.
 ///
-/// A difference of two doubles errs by at most 2^-53 of itself. Let x̃ be the rounded differences, n
-/// any vector of doubles and M the largest |x̃| per axis. A rounded n·x̃ then errs by less than
-/// (4 · 2^-53 + 2^-53) Σ |n_i| M_i, twice that between two of them, and underflow adds less than
-/// 2^-1000: the margin below is ten times that.
-struct Separator {
-  static constexpr double kError = 1e-14, kTiny = 1e-290;
+/// Points are taken relative to one of them. A difference of two doubles errs by at most 2^-53 of
+/// itself. Let x̃ be the rounded differences, n any vector of doubles and M the largest |x̃_i|. A
+/// rounded n·x̃ then errs by less than (4 · 2^-53 + 2^-53) Σ |n_i| M, twice that between two of
+/// them, and underflow adds less than 2^-1000: the margin is ten times that. Where a sum may
+/// overflow it is infinite.
+struct Margin {
+  static constexpr double kError = 1e-14, kTiny = 1e-290, kMost = 1e300;
   static constexpr double kUp = 1 + 1e-12;  ///< covers the rounding of a norm and a product
 
-  Vec3 most = Vec3::Zero();
-  double clearance = 0;  ///< that "apart" has to leave; ≥ 0
+  double size = 0;  ///< Σ |n_i|, rounded
+  double fixed = kTiny;
 
-  void look_at(const Vec3& x) { most = most.cwiseMax(x.cwiseAbs()); }
-  [[nodiscard]] double margin(const Vec3& n) const {
-    return kError * n.cwiseAbs().dot(most) + kTiny +
-           (clearance > 0 ? clearance * kUp * n.norm() : 0);
-  }
+  /// @param clearance  that has to be left; ≥ 0
+  Margin(const Vec3& n, double clearance)
+      : size(n.cwiseAbs().sum()), fixed(kTiny + (clearance > 0 ? clearance * kUp * n.norm() : 0)) {}
+  Margin() = default;
 
-  /// Whether the plane of normal n has the one convex hull on one side and the other on the other.
-  [[nodiscard]] bool apart(const Vec3& n, std::span<const Vec3> a, std::span<const Vec3> b) const {
-    double a_low = n.dot(a[0]), a_high = a_low;
-    for (const Vec3& p : a.subspan(1)) {
-      const double d = n.dot(p);
-      a_low = std::min(a_low, d);
-      a_high = std::max(a_high, d);
-    }
-    double b_low = n.dot(b[0]), b_high = b_low;
-    for (const Vec3& p : b.subspan(1)) {
-      const double d = n.dot(p);
-      b_low = std::min(b_low, d);
-      b_high = std::max(b_high, d);
-    }
-    return std::max(b_low - a_high, a_low - b_high) > margin(n);  // false for NaN
+  /// @param most  M
+  [[nodiscard]] double at(double most) const {
+    const double largest = size * most;  // no partial sum of n·x̃ is larger, rounding aside
+    return largest < kMost ? kError * largest + fixed : std::numeric_limits<double>::infinity();
   }
+};
+
+struct Range {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+
+  void extend(double x) {
+    low = std::min(low, x);
+    high = std::max(high, x);
+  }
+};
+
+inline Range range_along(const Vec3& n, std::span<const Vec3> points) {
+  Range range;
+  for (const Vec3& p : points) range.extend(n.dot(p));
+  return range;
+}
+
+/// False if the margin is infinite or not a number.
+inline bool apart(const Range& a, const Range& b, double margin) {
+  return std::max(b.low - a.high, a.low - b.high) > margin;
+}
+
+/// A direction, the range of something along it, and the margin it asks for.
+struct Axis {
+  Vec3 n = Vec3::Zero();
+  Range range;
+  Margin margin;
 };
 
 }  // namespace kaboum::wrap

@@ -139,7 +139,7 @@ class Simplifier {
     const auto sample = [&](const Vec3& x) {
       if (!is_near || obstacle_.within(x, room_.offset, hint_)) return;
       if (allowed < 0) allowed = farthest(a, b);
-      is_near = obstacle_.foot(x, hint_).distance <= allowed;
+      is_near = allowed > room_.offset && obstacle_.within(x, allowed, hint_);
     };
     sample(p);
     for_each_changed(a, b, p, [&](const auto&, const auto& after) {
@@ -150,10 +150,11 @@ class Simplifier {
     return is_near;
   }
 
-  [[nodiscard]] double farthest(std::uint32_t a, std::uint32_t b) const {
+  [[nodiscard]] double farthest(std::uint32_t a, std::uint32_t b) {
     double most = room_.offset;
     const auto sample = [&](const Vec3& x) {
-      most = std::max(most, obstacle_.foot(x, hint_).distance);
+      if (!obstacle_.within(x, most, hint_))
+        most = std::max(most, obstacle_.foot(x, hint_).distance);
     };
     for (const std::uint32_t v : {a, b}) {
       sample(surface_.point(v));

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <kaboum/geom/mesh.h>
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "separation.h"
+
+namespace kaboum::wrap {
+
+using Corners = std::array<Vec3, 3>;
+using Tetrahedron = std::array<Vec3, 4>;
+
+/// Tetrahedra with one last corner, and the planes that may part them from triangles: those along
+/// their faces, made once for all triangles, and those along the triangle, or along an edge of
+/// each, which together are all that need be tried.
+class Cones {
+ public:
+  /// Other tetrahedra in place of those before.
+  /// @pre there is at least one; their last corners are the same
+  /// @param clearance  that planes have to leave; ≥ 0 [length]
+  void set(std::span<const Tetrahedron> tetrahedra, double clearance);
+
+  /// False only if certainly no point of the box is within the clearance of a tetrahedron.
+  [[nodiscard]] bool may_meet(const geom::Box3& box) const;
+
+  /// Whether certainly no point of the triangle is. @param normal  of any length, rounded
+  [[nodiscard]] bool clear_of(const Corners& triangle, const Vec3& normal) const;
+
+ private:
+  struct Cone {
+    geom::Box3 box;  ///< with all that is nearer than the clearance
+    Corners corner;  ///< relative to the last one
+    std::array<Axis, 4> faces;
+  };
+  struct Relative {  // a triangle, relative to the last corner
+    Corners corner;
+    double most;  ///< the largest |coordinate| of it and of all cones
+  };
+
+  [[nodiscard]] bool apart(const Cone& cone, const Relative& triangle, const Vec3& normal) const;
+
+  double clearance_ = 0;
+  Vec3 origin_ = Vec3::Zero();
+  double most_ = 0;  ///< the largest |coordinate| relative to it
+  geom::Box3 all_;   ///< holds the cones' boxes
+  Axis common_;      ///< of all cones
+  std::vector<Cone> cones_;
+};
+
+}  // namespace kaboum::wrap
