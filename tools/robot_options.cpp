@@ -3,11 +3,14 @@
 #include "robot_options.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/io/mesh_io.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+
+#include "link_epsilons.h"
 
 namespace kaboum::tools {
 namespace {
@@ -125,6 +128,12 @@ void apply_preset(const CLI::App& app, const std::string& folder, RobotOptions& 
     o.declare_convex = preset.declare_convex;
     if (thickness != nullptr && app.count("--min-thickness") == 0) *thickness = preset.thickness;
   }
+}
+
+certify::LinkEpsilons read_epsilons(const std::string& file, const robot::Robot& robot) {
+  if (file.empty()) return {};
+  const std::vector<char> bytes = io::read_file(file);
+  return parse_epsilons({bytes.begin(), bytes.end()}, file, robot);
 }
 
 }  // namespace kaboum::tools

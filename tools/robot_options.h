@@ -42,11 +42,8 @@ void require_options_of_meshes(const CLI::App& app, const std::string& input);
 void apply_preset(const CLI::App& app, const std::string& folder, RobotOptions& options,
                   double* thickness);
 
-/// --epsilons: names of links, or patterns with * and ?, each with a length or percentage.
-/// @return nothing for links that no line is for; the first line that fits counts, but a line with
-///   the link's name goes before all patterns.
-/// @throws Error{InvalidInput} naming file and line: not a mapping, no length, nothing that fits a
-///   line; Error{NotBuilt} without yaml-cpp.
+/// What the file of --epsilons says; nothing where the option is not given.
+/// @throws Error as parse_epsilons (link_epsilons.h); Error{InvalidInput} when it cannot be read.
 certify::LinkEpsilons read_epsilons(const std::string& file, const robot::Robot& robot);
 
 }  // namespace kaboum::tools

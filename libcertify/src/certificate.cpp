@@ -7,6 +7,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "record_count.h"
 #include "request.h"
 #include "set_record.h"
 #include "wrap_record.h"
@@ -99,26 +100,26 @@ SetCertificate read_record(std::string_view text) {
     const std::optional<bcd::Method> method = method_of(j.at("method").get<std::string>());
     if (!method) throw Error(ErrorCode::InvalidInput, "no certificate: unknown method");
     c.method = *method;
-    j.at("bodies").get_to(c.bodies);
-    j.at("vertices").get_to(c.vertices);
-    j.at("largest_body_vertices").get_to(c.largest_body_vertices);
+    c.bodies = count_at(j, "bodies");
+    c.vertices = count_at(j, "vertices");
+    c.largest_body_vertices = count_at(j, "largest_body_vertices");
     j.at("reach").at("lower").get_to(c.distance_lower);
     j.at("reach").at("upper").get_to(c.distance_upper);
-    j.at("holes").get_to(c.subject.holes);
-    j.at("turned_triangles").get_to(c.subject.reversed_triangles);
-    j.at("dropped_copies").get_to(c.subject.dropped_copies);
-    j.at("dropped_sheets").get_to(c.subject.dropped_sheets);
+    c.subject.holes = count_at(j, "holes");
+    c.subject.reversed_triangles = count_at(j, "turned_triangles");
+    c.subject.dropped_copies = count_at(j, "dropped_copies");
+    c.subject.dropped_sheets = count_at(j, "dropped_sheets");
     j.at("largest_hole").get_to(c.largest_hole);
-    j.at("filled_triangles").get_to(c.filled_triangles);
-    j.at("pieces").get_to(c.pieces);
-    j.at("pre_step_triangles").get_to(c.pre_step_triangles);
+    c.filled_triangles = count_at(j, "filled_triangles");
+    c.pieces = count_at(j, "pieces");
+    c.pre_step_triangles = count_at(j, "pre_step_triangles");
     j.at("out_of_work").get_to(c.out_of_work);
     j.at("safety").get_to(c.safety);
     j.at("diagonal").get_to(c.diagonal);
     j.at("notes").get_to(c.notes);
     if (j.contains("min_thickness")) {
       j.at("min_thickness").at("wished").get_to(c.min_thickness);
-      j.at("min_thickness").at("thickened").get_to(c.thickened);
+      c.thickened = count_at(j.at("min_thickness"), "thickened");
     }
     if (j.contains("wrap")) c.wrap = wrap_of(j.at("wrap"));
     c.subject.wrapped = c.wrap.has_value();

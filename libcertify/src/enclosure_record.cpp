@@ -7,6 +7,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "record_count.h"
 #include "wrap_record.h"
 
 namespace kaboum::certify {
@@ -86,9 +87,9 @@ EnclosureCertificate read_enclosure(std::string_view text) {
   try {
     const Json j = Json::parse(text);
     EnclosureCertificate c;
-    j.at("vertices_in").get_to(c.vertices_in);
-    j.at("vertices").get_to(c.vertices);
-    j.at("triangles").get_to(c.triangles);
+    c.vertices_in = count_at(j, "vertices_in");
+    c.vertices = count_at(j, "vertices");
+    c.triangles = count_at(j, "triangles");
     j.at("diagonal").get_to(c.diagonal);
     if (!j.at("epsilon").is_null()) c.epsilon = j.at("epsilon").get<double>();
     j.at("distance_upper").get_to(c.distance_upper);
@@ -101,10 +102,10 @@ EnclosureCertificate read_enclosure(std::string_view text) {
     if (!known) throw Error(ErrorCode::InvalidInput, "no certificate of a mesh: unknown stop");
     j.at("reached").get_to(c.reached);
     j.at("out_of_work").get_to(c.out_of_work);
-    j.at("turned_triangles").get_to(c.subject.reversed_triangles);
-    j.at("dropped_copies").get_to(c.subject.dropped_copies);
-    j.at("dropped_sheets").get_to(c.subject.dropped_sheets);
-    j.at("holes").get_to(c.subject.holes);
+    c.subject.reversed_triangles = count_at(j, "turned_triangles");
+    c.subject.dropped_copies = count_at(j, "dropped_copies");
+    c.subject.dropped_sheets = count_at(j, "dropped_sheets");
+    c.subject.holes = count_at(j, "holes");
     for (const Json& claim : j.at("claims")) {
       MeshClaim& out = c.claims.emplace_back();
       out.kind = named(kClaimKinds, claim.at("claim").get<std::string>());

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "issuer.h"
+#include "record_count.h"
 #include "wrap_record.h"
 
 namespace kaboum::certify {
@@ -82,7 +83,7 @@ WrapCertificate wrap_of(const nlohmann::ordered_json& record) {
   record.at("farthest_upper").get_to(out.farthest_upper);
   for (int k = 0; k < 3; ++k) record.at("at").at(k).get_to(out.at[k]);
   record.at("clearance").get_to(out.clearance);
-  record.at("input_triangles").get_to(out.input_triangles);
+  out.input_triangles = count_at(record, "input_triangles");
   return out;
 }
 

@@ -378,9 +378,8 @@ void take_record(const Json& record, const Source& source, geom::ConvexSet& set)
     record.at("source_sha256").get_to(p.source_sha256);
     record.at("tool").get_to(p.tool);
     record.at("parameters").get_to(p.parameters);
-    if (record.at("bodies").get<std::size_t>() != set.bodies.size())
-      fail(source, "the record speaks of " +
-                       std::to_string(record.at("bodies").get<std::size_t>()) +
+    if (record.at("bodies") != set.bodies.size())
+      fail(source, "the record speaks of " + record.at("bodies").dump() +
                        " bodies, but there are " + std::to_string(set.bodies.size()) +
                        "; the set is incomplete, write it again");
   } catch (const Json::exception& e) {

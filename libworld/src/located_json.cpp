@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <set>
 
 namespace kaboum::world::detail {
 namespace {
@@ -76,14 +77,8 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
   bool end_object() override { return close(); }
   bool end_array() override { return close(); }
   bool key(string_t& value) override {
-    Located& object = open_.back();
-    const std::size_t at = start_of_string();
-    for (const std::string& name : object.names)
-      if (name == value)
-        throw Error(ErrorCode::InvalidInput,
-                    name_ + ": " + place_of(text_, at) + ": '" + value + "' is used twice");
-    object.names.push_back(value);
-    object.names_at.push_back(at);
+    open_.back().names.push_back(value);
+    open_.back().names_at.push_back(start_of_string());
     return true;
   }
   bool parse_error(std::size_t position, const std::string& /*token*/,
@@ -148,6 +143,9 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
   bool close() {
     Located done = std::move(open_.back());
     open_.pop_back();
+    if (const auto i = repeated_member(done))
+      throw Error(ErrorCode::InvalidInput, name_ + ": " + place_of(text_, done.names_at[*i]) +
+                                               ": '" + done.names[*i] + "' is used twice");
     return add(std::move(done));
   }
   bool add(Located value) {
@@ -185,6 +183,13 @@ const char* name_of(Located::Kind kind) {
     default:
       return "an object";
   }
+}
+
+std::optional<std::size_t> repeated_member(const Located& object) {
+  std::set<std::string_view> before;
+  for (std::size_t i = 0; i < object.names.size(); ++i)
+    if (!before.insert(object.names[i]).second) return i;
+  return std::nullopt;
 }
 
 std::string place_of(std::string_view text, std::size_t at) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,9 @@ struct Located {
 };
 
 const char* name_of(Located::Kind kind);
+
+/// The first member whose name another one has before it.
+std::optional<std::size_t> repeated_member(const Located& object);
 
 /// @param name  of the file, for messages.
 /// @throws Error{InvalidInput} naming line and column: not JSON, a member twice.

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 namespace kaboum::world::detail {
@@ -38,6 +39,16 @@ Located plain(const std::string& text) {
     if (is_digit && error == std::errc() && stop == end) v.kind = Located::Kind::Number;
   }
   return v;
+}
+
+/// Whether it can be said in JSON as well.
+bool is_utf8(const std::string& text) {
+  try {
+    (void)nlohmann::json(text).dump();
+    return true;
+  } catch (const nlohmann::json::type_error&) {
+    return false;
+  }
 }
 
 /// 010 is eight to some programs and ten to others.
@@ -80,14 +91,12 @@ class YamlBuilder : public YAML::EventHandler {
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                 const std::string& value) override {
     refuse_anchor(mark, anchor);
+    if (!is_utf8(value)) fail(mark, "not UTF-8");
     const bool quoted = tag == "!" || tag == "tag:yaml.org,2002:str";
     if (!quoted && tag != "?" && !tag.empty()) fail(mark, "the tag " + tag + " is not read");
     if (expects_name()) {
-      Located& object = open_.back();
-      if (std::find(object.names.begin(), object.names.end(), value) != object.names.end())
-        fail(mark, "'" + value + "' is used twice");
-      object.names.push_back(value);
-      object.names_at.push_back(byte_of(mark));
+      open_.back().names.push_back(value);
+      open_.back().names_at.push_back(byte_of(mark));
       return;
     }
     Located v;
@@ -141,6 +150,9 @@ class YamlBuilder : public YAML::EventHandler {
   void close() {
     Located done = std::move(open_.back());
     open_.pop_back();
+    if (const auto i = repeated_member(done))
+      throw Error(ErrorCode::InvalidInput, name_ + ": " + place_of(text_, done.names_at[*i]) +
+                                               ": '" + done.names[*i] + "' is used twice");
     add(std::move(done));
   }
   void add(Located value) {

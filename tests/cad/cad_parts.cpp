@@ -1,11 +1,12 @@
 // Parts made by OpenCASCADE, and samples of their exact faces.
-//   cad_parts make DIR                  ten parts as STEP, two of them as IGES as well
+//   cad_parts make DIR                  twelve parts as STEP, two of them as IGES as well
 //   cad_parts check PART.step MESH N E  whether N points of the exact faces lie in the mesh's
-//   solid, and
-//                                       no vertex of the mesh is farther than E from all of N
-//                                       points
-// The check shares with the tools the winding number and the reader of MESH; faces are evaluated
-// here.
+//   solid,
+//                                       and no one of N points of the mesh is farther than E, a
+//                                       length or a percentage of the diagonal, from the part
+// The check shares with the tools the winding number, the distance to triangles and the reader of
+// MESH; faces are evaluated here. How far a point is from the part is measured at triangles that
+// are within a hundredth of E of its faces, and E is enlarged by as much.
 
 #include <BRepAdaptor_Surface.hxx>
 #include <BRepAlgoAPI_Cut.hxx>
@@ -14,7 +15,9 @@
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_MakeWire.hxx>
 #include <BRepBuilderAPI_Transform.hxx>
+#include <BRepClass_FaceClassifier.hxx>
 #include <BRepFilletAPI_MakeFillet.hxx>
+#include <BRepLib.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <BRepOffsetAPI_ThruSections.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
@@ -25,8 +28,12 @@
 #include <BRepPrimAPI_MakeTorus.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
+#include <GCE2d_MakeSegment.hxx>
+#include <Geom2d_Ellipse.hxx>
+#include <Geom2d_TrimmedCurve.hxx>
 #include <GeomAPI_PointsToBSpline.hxx>
 #include <Geom_BSplineCurve.hxx>
+#include <Geom_CylindricalSurface.hxx>
 #include <IGESControl_Writer.hxx>
 #include <Poly_Triangulation.hxx>
 #include <STEPControl_Reader.hxx>
@@ -40,12 +47,17 @@
 #include <TopoDS_Wire.hxx>
 #include <gp_Ax1.hxx>
 #include <gp_Ax2.hxx>
+#include <gp_Ax2d.hxx>
+#include <gp_Ax3.hxx>
 #include <gp_Circ.hxx>
 
+#include <kaboum/base/parse_length.h>
 #include <kaboum/base/random.h>
+#include <kaboum/geom/distance.h>
 #include <kaboum/geom/winding.h>
 #include <kaboum/io/mesh_io.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
@@ -90,6 +102,36 @@ TopoDS_Shape grooved() {
     part = BRepAlgoAPI_Cut(part, moved(BRepPrimAPI_MakeTorus(10, 1.2).Shape(), 0, 0, 3 + 3.3 * i))
                .Shape();
   return part;
+}
+
+/// A wire on a cylinder: half an ellipse in its parameters, and the line between its ends.
+TopoDS_Wire half_ellipse(double radius, double height, double width) {
+  const Handle(Geom_CylindricalSurface) on =
+      new Geom_CylindricalSurface(gp_Ax3(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1)), radius);
+  const gp_Ax2d along(gp_Pnt2d(2 * M_PI, height / 2), gp_Dir2d(2 * M_PI, height / 4));
+  const Handle(Geom2d_Ellipse) ellipse = new Geom2d_Ellipse(along, 2 * M_PI, width);
+  const Handle(Geom2d_TrimmedCurve) arc = new Geom2d_TrimmedCurve(ellipse, 0, M_PI);
+  const Handle(Geom2d_TrimmedCurve) line =
+      GCE2d_MakeSegment(ellipse->Value(0), ellipse->Value(M_PI));
+  TopoDS_Wire wire =
+      BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(arc, on), BRepBuilderAPI_MakeEdge(line, on));
+  BRepLib::BuildCurves3d(wire);
+  return wire;
+}
+
+/// A bolt with a thread made like that of OpenCASCADE's tutorial: a second solid, inside out.
+TopoDS_Shape threaded() {
+  BRepOffsetAPI_ThruSections thread(true);
+  thread.AddWire(half_ellipse(7.9, 20, 2));
+  thread.AddWire(half_ellipse(9, 20, 0.5));
+  thread.CheckCompatibility(false);
+  thread.Build();
+  TopoDS_Compound bolt;
+  BRep_Builder builder;
+  builder.MakeCompound(bolt);
+  builder.Add(bolt, cylinder(8, 20));
+  builder.Add(bolt, thread.Shape());
+  return bolt;
 }
 
 /// A spline turned round z.
@@ -139,6 +181,7 @@ int make(const std::string& folder) {
       {"fillets", filleted()},
       {"flange", flange()},
       {"grooves", grooved()},
+      {"thread", threaded()},
       {"vase", vase()},
       {"loft", loft()},
       {"assembly", assembly()}};
@@ -154,26 +197,40 @@ int make(const std::string& folder) {
   return 0;
 }
 
-/// Points of the exact faces: of random triangles, random parameters.
-std::vector<Vec3> samples(const TopoDS_Shape& shape, std::size_t count) {
-  BRepMesh_IncrementalMesh(shape, 0.5, false, 0.5, false);
+/// A point of a face, and its parameters there.
+struct Sample {
+  Vec3 point;
+  gp_Pnt2d parameters;
+  std::size_t face;  ///< number of it
+};
+
+std::vector<TopoDS_Face> faces_of(const TopoDS_Shape& shape) {
+  std::vector<TopoDS_Face> out;
+  for (TopExp_Explorer at(shape, TopAbs_FACE); at.More(); at.Next())
+    out.push_back(TopoDS::Face(at.Current()));
+  return out;
+}
+
+/// Points of the exact faces: of random triangles, random parameters. Between the edge of a hole
+/// and its chord they may be of the surface, but not of the face.
+std::vector<Sample> samples(const TopoDS_Shape& shape, std::size_t count) {
+  BRepMesh_IncrementalMesh(shape, 0.02, false, 0.2, false);
   struct Part {
     BRepAdaptor_Surface surface;
     Handle(Poly_Triangulation) mesh;
   };
   std::vector<Part> parts;
   std::vector<std::pair<std::size_t, int>> triangles;
-  for (TopExp_Explorer at(shape, TopAbs_FACE); at.More(); at.Next()) {
+  for (const TopoDS_Face& face : faces_of(shape)) {
     TopLoc_Location location;
-    const TopoDS_Face face = TopoDS::Face(at.Current());
     const Handle(Poly_Triangulation) mesh = BRep_Tool::Triangulation(face, location);
-    if (mesh.IsNull()) continue;
-    for (int t = 1; t <= mesh->NbTriangles(); ++t) triangles.emplace_back(parts.size(), t);
+    for (int t = 1; !mesh.IsNull() && t <= mesh->NbTriangles(); ++t)
+      triangles.emplace_back(parts.size(), t);
     parts.push_back({BRepAdaptor_Surface(face), mesh});
   }
   Random random(1);
-  std::vector<Vec3> points;
-  while (points.size() < count) {
+  std::vector<Sample> out;
+  while (out.size() < count) {
     const auto& [part, t] = triangles[random.index(triangles.size())];
     std::array<int, 3> n{};
     parts[part].mesh->Triangle(t).Get(n[0], n[1], n[2]);
@@ -186,31 +243,108 @@ std::vector<Vec3> samples(const TopoDS_Shape& shape, std::size_t count) {
                      parts[part].mesh->UVNode(n[1]).XY() * a +
                      parts[part].mesh->UVNode(n[2]).XY() * b;
     const gp_Pnt p = parts[part].surface.Value(uv.X(), uv.Y());
-    points.emplace_back(p.X(), p.Y(), p.Z());
+    out.push_back({{p.X(), p.Y(), p.Z()}, uv, part});
   }
-  return points;
+  return out;
 }
 
-int check(const char* part, const char* result, std::size_t count, double epsilon) {
+void add_face(const TopoDS_Face& face, kaboum::geom::Mesh& out) {
+  TopLoc_Location location;
+  const Handle(Poly_Triangulation) mesh = BRep_Tool::Triangulation(face, location);
+  if (mesh.IsNull()) return;
+  const auto first = static_cast<std::uint32_t>(out.vertices.size()) - 1;  // nodes begin with 1
+  for (int n = 1; n <= mesh->NbNodes(); ++n) {
+    const gp_Pnt p = mesh->Node(n).Transformed(location.Transformation());
+    out.vertices.emplace_back(p.X(), p.Y(), p.Z());
+  }
+  for (int t = 1; t <= mesh->NbTriangles(); ++t) {
+    std::array<int, 3> n{};
+    mesh->Triangle(t).Get(n[0], n[1], n[2]);
+    if (face.Orientation() == TopAbs_REVERSED) std::swap(n[1], n[2]);
+    out.triangles.push_back({first + n[0], first + n[1], first + n[2]});
+  }
+}
+
+/// Triangles of the exact faces of its solids, seen from outside.
+kaboum::geom::Mesh triangles_of(const TopoDS_Shape& shape, double deflection) {
+  BRepMesh_IncrementalMesh(shape, deflection, false, 0.5, false);
+  kaboum::geom::Mesh out;
+  for (TopExp_Explorer solid(shape, TopAbs_SOLID); solid.More(); solid.Next()) {
+    const std::size_t begin = out.triangles.size();
+    for (TopExp_Explorer at(solid.Current(), TopAbs_FACE); at.More(); at.Next())
+      add_face(TopoDS::Face(at.Current()), out);
+    double volume = 0;
+    for (std::size_t t = begin; t < out.triangles.size(); ++t) {
+      const auto& [a, b, c] = out.triangles[t];
+      volume += out.vertices[a].dot(out.vertices[b].cross(out.vertices[c]));
+    }
+    for (std::size_t t = begin; t < out.triangles.size() && volume < 0; ++t)
+      std::swap(out.triangles[t][1], out.triangles[t][2]);
+  }
+  return out;
+}
+
+/// A point of the triangle, at random.
+Vec3 point_in(const kaboum::geom::Mesh& mesh, const kaboum::geom::Triangle& t, Random& random) {
+  double a = random.between(0, 1), b = random.between(0, 1);
+  if (a + b > 1) {
+    a = 1 - a;
+    b = 1 - b;
+  }
+  return mesh.vertices[t[0]] * (1 - a - b) + mesh.vertices[t[1]] * a + mesh.vertices[t[2]] * b;
+}
+
+/// How far points of the mesh are from the part at most: corners, and `count` points by area.
+double farthest(const kaboum::geom::Mesh& mesh, const kaboum::geom::Mesh& part, std::size_t count) {
+  const kaboum::geom::WindingNumber winding(part);
+  const kaboum::geom::DistanceQuery query(part);
+  double out = 0;
+  const auto look_at = [&](const Vec3& p) {
+    const double distance = query.nearest(p).upper;
+    if (distance <= out) return;
+    if (const auto w = winding(p); w && *w < 1) out = distance;
+  };
+  for (const Vec3& v : mesh.vertices) look_at(v);
+  std::vector<double> area;  // of the triangles so far
+  for (const auto& t : mesh.triangles)
+    area.push_back((area.empty() ? 0 : area.back()) +
+                   (mesh.vertices[t[1]] - mesh.vertices[t[0]])
+                       .cross(mesh.vertices[t[2]] - mesh.vertices[t[0]])
+                       .norm());
+  Random random(2);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto at = std::upper_bound(area.begin(), area.end(), random.between(0, area.back()));
+    const auto t = std::min<std::size_t>(at - area.begin(), area.size() - 1);
+    look_at(point_in(mesh, mesh.triangles[t], random));
+  }
+  return out;
+}
+
+int check(const char* part, const char* result, std::size_t count, const char* allowed) {
+  const auto length = kaboum::parse_length(allowed);
   STEPControl_Reader reader;
-  if (reader.ReadFile(part) != IFSelect_RetDone) return 3;
+  if (!length || reader.ReadFile(part) != IFSelect_RetDone) return 3;
   reader.TransferRoots();
-  const std::vector<Vec3> points = samples(reader.OneShape(), count);
+  const TopoDS_Shape shape = reader.OneShape();
+  const std::vector<Sample> points = samples(shape, count);
+  const std::vector<TopoDS_Face> faces = faces_of(shape);
   const auto mesh = kaboum::io::read_mesh(result).mesh;
   const kaboum::geom::WindingNumber winding(mesh);
-  std::size_t outside = 0;
-  for (const Vec3& p : points)
-    if (const auto w = winding(p); w && *w < 1) ++outside;
-  double farthest = 0;
-  for (const Vec3& v : mesh.vertices) {
-    double near = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < points.size(); i += 1 + points.size() / 20000)
-      near = std::min(near, (v - points[i]).norm());
-    farthest = std::max(farthest, near);
+  std::size_t outside = 0, off = 0;
+  kaboum::geom::Box3 box;
+  for (const Sample& s : points) {
+    box.extend(s.point);
+    const auto w = winding(s.point);
+    if (!w || *w >= 1) continue;
+    const BRepClass_FaceClassifier place(faces[s.face], s.parameters, 1e-9);
+    ++(place.State() == TopAbs_OUT ? off : outside);
   }
-  std::cout << outside << " of " << count << " points outside; vertices within " << farthest
-            << '\n';
-  return outside == 0 && farthest <= epsilon ? 0 : 1;
+  const double epsilon = length->of(box.diagonal()), deflection = epsilon / 100;
+  const double reach = farthest(mesh, triangles_of(shape, deflection), count);
+  std::cout << outside << " of " << count << " points outside (" << off
+            << " more are no points of the faces); no one of " << count << " farther than "
+            << reach + deflection << ", where " << epsilon << " is allowed\n";
+  return outside == 0 && reach <= epsilon + deflection ? 0 : 1;
 }
 
 }  // namespace
@@ -219,7 +353,7 @@ int main(int argc, char** argv) {
   const std::string command = argc > 1 ? argv[1] : "";
   if (command == "make" && argc == 3) return make(argv[2]);
   if (command == "check" && argc == 6)
-    return check(argv[2], argv[3], std::strtoull(argv[4], nullptr, 10), std::atof(argv[5]));
+    return check(argv[2], argv[3], std::strtoull(argv[4], nullptr, 10), argv[5]);
   std::cerr << "usage: cad_parts make DIR | check PART.step MESH POINTS EPSILON\n";
   return 2;
 }

@@ -168,6 +168,12 @@ TEST_F(EnclosureTest, RecordsOfOtherThingsAreRefused) {
     EXPECT_THROW(read_enclosure(wrong), Error) << to;
   }
   EXPECT_THROW(read_enclosure(""), Error);
+  // Counts are whole: no number beyond them is converted.
+  for (const char* count : {"1e300", "-1", "1.5"}) {
+    const std::size_t at = record.find("\"vertices\":") + 11;
+    const std::string wrong = std::string(record).replace(at, record.find(',', at) - at, count);
+    EXPECT_THROW(read_enclosure(wrong), Error) << count;
+  }
 }
 
 TEST_F(EnclosureTest, SetsOfKnownFilesAreThoseOfReadOnes) {

@@ -352,6 +352,7 @@ TEST_F(ConvexIo, DamagedContainers) {
   bad("incomplete", [](auto& j) { j["scenes"][0]["nodes"].erase(1); });
   bad("margin", [](auto& j) { j["extras"]["kaboum_convex_set"]["margin"] = -1; });
   bad("record", [](auto& j) { j["extras"]["kaboum_convex_set"].erase("epsilon"); });
+  bad("1e+300 bodies", [](auto& j) { j["extras"]["kaboum_convex_set"]["bodies"] = 1e300; });
   bad("version", [](auto& j) { j["extras"]["kaboum_convex_set"]["version"] = 2; });
   bad("accessors[0]: its 1000000", [](auto& j) { j["accessors"][0]["count"] = 1000000; });
   bad("accessors[0].count", [](auto& j) { j["accessors"][0]["count"] = -1; });

@@ -103,6 +103,10 @@ TEST(Scene, ErrorsNameLineAndColumn) {
   expect_refused(files, "[1]", {"an object is expected, not an array"});
   std::string deep(1000, '[');
   expect_refused(files, deep, {"more than 64"});
+  // Each name is looked for among all others: with 300,000 members that must not take for ever.
+  std::string many = R"({"kaboum_scene": 1)";
+  for (int i = 0; i < 300'000; ++i) many += ",\"k" + std::to_string(i) + "\":1";
+  expect_refused(files, many + "}", {"'k0' is not known"});
 }
 
 TEST(Scene, WhatIsStaleOrOfTheWrongKindIsRefused) {
@@ -493,6 +497,7 @@ TEST(YamlScene, MessagesNameLineAndColumn) {
   has("objects:\n  - *x\n", "line 18");
   has("objects:\n  - !thing {name: o}\n", "tag");
   has("unit: mm\n", "'unit' is used twice");
+  has("objects:\n  - name: \"\xff\"\n", "line 18, column 11: not UTF-8");
   has("objects: [\n", "not YAML");
   has("---\nunit: m\n", "second document");
   has("? [a]\n: 1\n", "name of a member");

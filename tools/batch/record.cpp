@@ -41,7 +41,17 @@ Json sources_of(const Record& record) {
 
 std::optional<std::uint64_t> count_at(const Json& json, std::initializer_list<const char*> keys) {
   const auto value = number_at(json, keys);
-  return value ? std::optional(static_cast<std::uint64_t>(*value)) : std::nullopt;
+  if (!value || !(*value >= 0 && *value < 0x1p64)) return std::nullopt;  // no count, but a number
+  return static_cast<std::uint64_t>(*value);
+}
+
+/// @throws Json::exception where there is no whole number: `get` would convert any.
+template <class Integer>
+Integer integer_at(const Json& json, const char* key) {
+  const Json& value = json.at(key);
+  return value.is_number_integer()
+             ? value.get<Integer>()
+             : static_cast<Integer>(value.get_ref<const Json::number_unsigned_t&>());
 }
 
 /// "certified" of "certified: the result's solid contains the input's".
@@ -108,12 +118,13 @@ std::optional<Record> record_from(const std::string& line) {
                              {"picture", &r.picture}})
       json.at(key).get_to(*text);
     for (const Json& source : json.at("sources"))
-      r.sources.push_back(
-          {source.at("path").get<std::string>(), source.at("bytes").get<std::uintmax_t>(),
-           source.at("modified").get<std::int64_t>(), source.at("changed").get<std::int64_t>()});
-    json.at("exit_code").get_to(r.exit_code);
-    json.at("input_bytes").get_to(r.input_bytes);
-    json.at("output_bytes").get_to(r.output_bytes);
+      r.sources.push_back({source.at("path").get<std::string>(),
+                           integer_at<std::uintmax_t>(source, "bytes"),
+                           integer_at<std::int64_t>(source, "modified"),
+                           integer_at<std::int64_t>(source, "changed")});
+    r.exit_code = integer_at<int>(json, "exit_code");
+    r.input_bytes = integer_at<std::uintmax_t>(json, "input_bytes");
+    r.output_bytes = integer_at<std::uintmax_t>(json, "output_bytes");
     json.at("wall_seconds").get_to(r.wall_seconds);
     json.at("cpu_seconds").get_to(r.cpu_seconds);
     json.at("peak_megabytes").get_to(r.peak_megabytes);
