@@ -323,6 +323,41 @@ TEST(Pddl, AStaticPredicateOfAMillionAtomsIsClosedOnlyWhereThatCanBeTold) {
   EXPECT_EQ(outcome("n40", "n3", 0), Outcome::Unsolvable) << "it is still a proof";
 }
 
+TEST(Pddl, AStaticPredicateOfManyAtomsNeedsNotToBeListed) {
+  // of(a, b, c) has 27 million atoms, of which one holds and none can change.
+  std::string objects;
+  for (int i = 0; i < 300; ++i) objects += " x" + std::to_string(i);
+  const std::string text =
+      "(define (domain d) (:requirements :strips) (:predicates (of ?a ?b ?c) (p ?a))"
+      " (:action f :parameters (?a ?b ?c) :precondition (and (of ?a ?b ?c) (p ?a))"
+      "  :effect (p ?c)))(define (problem q) (:domain d) (:objects" +
+      objects + ") (:init (of x0 x1 x2) (p x0)) (:goal (p x2)))";
+  EXPECT_EQ(solved(pddl(text), Algorithm::Greedy).outcome, Outcome::Solved);
+  // The table of its atoms is not made where there is no memory for it.
+  SolveOptions little;
+  little.max_memory = 100U << 20U;
+  const Solution s = solve(pddl(text), little);
+  EXPECT_EQ(s.outcome, Outcome::Limit);
+  EXPECT_EQ(s.limit, "memory limit reached");
+}
+
+TEST(Pddl, ParametersOfAnActionAreLimited) {
+  const auto text = [](int parameters) {
+    std::string names, precondition;
+    for (int i = 0; i < parameters; ++i) {
+      names += " ?x" + std::to_string(i);
+      precondition += " (p ?x" + std::to_string(i) + ")";
+    }
+    return "(define (domain d) (:requirements :strips) (:predicates (p ?a) (q))"
+           " (:action f :parameters (" +
+           names + ") :precondition (and" + precondition +
+           ") :effect (q)))(define (problem r) (:domain d) (:objects a b) (:init (p a)) (:goal "
+           "(q)))";
+  };
+  EXPECT_EQ(solved(pddl(text(24)), Algorithm::Greedy).outcome, Outcome::Solved);
+  EXPECT_NE(complaint(text(65), Language::Pddl).find("more than 64 parameters"), std::string::npos);
+}
+
 TEST(Pddl, ManyParametersAreJoined) {
   // 30^9 instances, of which the road admits one for each place: found from the facts that hold.
   std::string objects, init;

@@ -9,8 +9,10 @@
 
 namespace kaboum::plan {
 
-/// Most arguments of a symbol, and parameters of an action.
+/// Most arguments of a symbol.
 inline constexpr std::size_t kMaximumArity = 12;
+/// Most parameters of an action.
+inline constexpr std::size_t kMaximumParameters = 64;
 
 /// Index by name.
 using NameTable = std::unordered_map<std::string, Index>;
