@@ -104,6 +104,12 @@ class DocumentParser {
       if (!type.parent.text.empty()) type.name.location.fail("a handle type has no parent");
       type.handle = true;
     }
+    if (in_.accept("=")) {
+      if (!type.parent.text.empty() || type.handle)
+        type.name.location.fail("a union of types has no parent and is no handle type");
+      do type.members.push_back(in_.name("a type"));
+      while (in_.accept("|"));
+    }
     document_.types.push_back(type);
   }
 

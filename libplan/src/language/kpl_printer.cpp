@@ -221,8 +221,10 @@ std::string print_kpl(const syntax::Document& d) {
     out += "\n";
   };
   section("types:", d.types, [](const syntax::Type& t) {
+    std::string members;
+    for (const syntax::Name& m : t.members) members += (members.empty() ? " = " : " | ") + m.text;
     return t.name.text + (t.parent.text.empty() ? "" : " : " + t.parent.text) +
-           (t.handle ? " handle" : "") + ";";
+           (t.handle ? " handle" : "") + members + ";";
   });
   // A type goes on until the next; so constants without one begin a section of their own.
   const std::string* type = nullptr;

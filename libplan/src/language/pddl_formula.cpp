@@ -23,14 +23,26 @@ Name name(const SExpression& e, const char* what) {
   return {e.word, e.location};
 }
 
+Name type_name(const SExpression& e) {
+  if (!e.list) return {e.word, e.location};
+  if (!e.headed("either") || e.items.size() < 2)
+    e.location.fail("expected a type, or (either TYPE ...)");
+  std::string text = "either";
+  for (std::size_t i = 1; i < e.items.size(); ++i)
+    text.append("_").append(name(e.items[i], "a type").text);
+  return {text, e.location};
+}
+
 std::vector<TypedVariable> typed(const SExpression& e, std::size_t from, bool variables) {
   std::vector<TypedVariable> result;
   std::size_t untyped = 0;
   for (std::size_t i = from; i < e.items.size(); ++i) {
     if (e.items[i].is("-")) {
       const SExpression& t = item(e, i + 1, "a type after '-'");
-      if (t.list) t.location.fail("(either ...) is not supported");
-      for (; untyped < result.size(); ++untyped) result[untyped].type = {t.word, t.location};
+      if (t.list && !variables)
+        t.location.fail(
+            "(either ...) is not supported here: an object, and a type, is of one type");
+      for (; untyped < result.size(); ++untyped) result[untyped].type = type_name(t);
       ++i;
       continue;
     }

@@ -13,6 +13,8 @@ namespace pddl {
 /// Item `i` of a list; `what` is for the message if there is none.
 const SExpression& item(const SExpression& e, std::size_t i, const char* what);
 syntax::Name name(const SExpression& e, const char* what);
+/// Of a type; of (either a b) that of the union, which PddlParser declares.
+syntax::Name type_name(const SExpression& e);
 /// "a b - t c": items from `from` on.
 std::vector<syntax::TypedVariable> typed(const SExpression& e, std::size_t from, bool variables);
 

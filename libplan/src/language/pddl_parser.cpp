@@ -29,6 +29,7 @@ class PddlParser {
     document_.sources.push_back(source_);
     const std::vector<SExpression> all = read_s_expressions(*source_);
     if (all.empty()) source_->fail(0, "expected (define ...)");
+    for (const SExpression& e : all) declare_unions(e);
     for (const SExpression& e : all) define(e);
     declare_used_types();
     if (costs_)
@@ -63,7 +64,7 @@ class PddlParser {
       for (std::size_t i = 1; i < e.items.size(); ++i) requirement(e.items[i]);
     } else if (key == ":types") {
       typed_ = true;
-      for (const TypedVariable& t : typed(e, 1, false)) document_.types.push_back({t.name, t.type});
+      for (const TypedVariable& t : typed(e, 1, false)) declare_type({t.name, t.type});
     } else if (key == ":constants" || key == ":objects") {
       for (TypedVariable& c : typed(e, 1, false)) document_.constants.push_back(std::move(c));
     } else if (key == ":predicates") {
@@ -85,6 +86,21 @@ class PddlParser {
     } else if (key != ":domain" && key != ":hidden") {  // the latter is for simulators of the world
       e.location.fail("unsupported section '" + key + "'");
     }
+  }
+
+  /// A type may be named again: below "object" it is anyway.
+  void declare_type(const syntax::Type& type) {
+    const auto root = [](const syntax::Type& t) {
+      return t.parent.text.empty() || t.parent.text == "object";
+    };
+    for (syntax::Type& t : document_.types) {
+      if (t.name.text != type.name.text || !t.members.empty()) continue;
+      if (root(type) || t.parent.text == type.parent.text) return;
+      if (!root(t)) type.name.location.fail("type '" + t.name.text + "' has two parents");
+      t.parent = type.parent;
+      return;
+    }
+    document_.types.push_back(type);
   }
 
   void requirement(const SExpression& e) {
@@ -117,7 +133,7 @@ class PddlParser {
     std::size_t untyped = document_.functions.size();
     for (std::size_t i = 1; i < e.items.size(); ++i) {
       if (e.items[i].is("-")) {
-        const Name range = name(item(e, i + 1, "a type after '-'"), "a type");
+        const Name range = type_name(item(e, i + 1, "a type after '-'"));
         for (; untyped < document_.functions.size(); ++untyped)
           document_.functions[untyped].range = range;
         ++i;
@@ -285,13 +301,34 @@ class PddlParser {
       }
   }
 
+  /// Each (either a b ...) that is a type becomes one with a name.
+  void declare_unions(const SExpression& e) {
+    for (std::size_t i = 0; i < e.items.size(); ++i) {
+      const SExpression& t = e.items[i];
+      if (t.list) declare_unions(t);
+      if (i == 0 || !e.items[i - 1].is("-") || !t.headed("either")) continue;
+      syntax::Type type{type_name(t), {}};
+      for (std::size_t m = 1; m < t.items.size(); ++m)
+        type.members.push_back(name(t.items[m], "a type"));
+      if (std::none_of(document_.types.begin(), document_.types.end(),
+                       [&](const syntax::Type& o) { return o.name.text == type.name.text; }))
+        document_.types.push_back(std::move(type));
+    }
+  }
+
   /// Where a domain has no (:types ...), those that its constants and parameters name are meant.
   void declare_used_types() {
     if (typed_ || document_.actions.empty()) return;
     std::set<std::string> known = {"", "object", "number"};
+    std::vector<Name> members;
+    for (const syntax::Type& t : document_.types) {  // only unions so far
+      known.insert(t.name.text);
+      members.insert(members.end(), t.members.begin(), t.members.end());
+    }
     const auto use = [&](const Name& type) {
       if (known.insert(type.text).second) document_.types.push_back({type, {}});
     };
+    for (const Name& m : members) use(m);
     for (const TypedVariable& c : document_.constants) use(c.type);
     for (const syntax::Signature& s : document_.predicates)
       for (const Name& p : s.parameters) use(p);

@@ -84,7 +84,8 @@ class PddlPrinter {
     for (const syntax::Type& t : d.types)
       if (t.handle) refuse("a handle type");
     for (const syntax::Type& t : d.types)
-      if (t.name.text != "number" && (t.name.text != "object" || rename_object_))
+      if (t.members.empty() && t.name.text != "number" &&
+          (t.name.text != "object" || rename_object_))
         out += " " + type(t.name) + " - " + (t.parent.text.empty() ? "object" : t.parent.text);
     out += ")\n (:constants";
     for (const TypedVariable& c : d.constants) out += " " + c.name.text + " - " + type(c.type);
@@ -117,6 +118,12 @@ class PddlPrinter {
 
   [[nodiscard]] std::string type(const Name& n) const {
     if (n.text.empty()) return "object";
+    for (const syntax::Type& t : document_->types) {
+      if (t.name.text != n.text || t.members.empty()) continue;
+      std::string either = "(either";
+      for (const Name& m : t.members) either.append(" ").append(type(m));
+      return either + ")";
+    }
     return rename_object_ && n.text == "object" ? "kpl-object" : n.text;
   }
   [[nodiscard]] std::string variables(const std::vector<TypedVariable>& list) const {

@@ -31,7 +31,7 @@ class Resolver {
  private:
   void declare_action(const sx::Action& a) {
     SymbolTable::unique(actions_, a.name, static_cast<Index>(model_.actions.size()), "action");
-    if (a.parameters.size() > kMaximumArity) a.name.location.fail("more than 12 parameters");
+    if (a.parameters.size() > kMaximumParameters) a.name.location.fail("more than 64 parameters");
     Action action;
     action.name = a.name.text;
     Scope scope;

@@ -12,6 +12,18 @@ namespace {
 
 constexpr std::size_t kMaximumTypes = 10'000;
 
+bool is_union(const sx::Document& document, const Name& type) {
+  return std::any_of(document.types.begin(), document.types.end(), [&](const sx::Type& t) {
+    return !t.members.empty() && t.name.text == type.text;
+  });
+}
+
+bool same_union(const sx::Type& a, const sx::Type& b) {
+  return a.name.text == b.name.text && !a.members.empty() &&
+         std::equal(a.members.begin(), a.members.end(), b.members.begin(), b.members.end(),
+                    [](const Name& x, const Name& y) { return x.text == y.text; });
+}
+
 }  // namespace
 
 SymbolTable::SymbolTable(const sx::Document& document, Model& model) : model_(model) {
@@ -42,6 +54,8 @@ void SymbolTable::declare_types(const sx::Document& document) {
       continue;
     }
     if (model_.types.size() >= kMaximumTypes) t.name.location.fail("too many types");
+    if (std::any_of(document.types.data(), &t, [&](const sx::Type& o) { return same_union(o, t); }))
+      continue;  // a domain and its problem may both name it
     unique(types_, t.name, static_cast<Index>(model_.types.size()), "type");
     // Handles are no objects: they are below no other type.
     model_.types.push_back({t.name.text, t.handle ? kNone : 0, {}, t.handle});
@@ -50,14 +64,29 @@ void SymbolTable::declare_types(const sx::Document& document) {
     if (!t.parent.text.empty()) {
       if (model_.types[type(t.parent)].handle)
         t.name.location.fail("'" + t.parent.text + "' is a handle type: it has no subtypes");
+      if (is_union(document, t.parent))
+        t.name.location.fail("'" + t.parent.text + "' is a union of types: it has no subtypes");
       model_.types[types_.at(t.name.text)].parent = type(t.parent);
     }
+  declare_members(document);
   for (const sx::Type& t : document.types) {
     const auto found = types_.find(t.name.text);
     Index up = found == types_.end() ? kNone : found->second;
     for (std::size_t steps = 0; up != kNone; up = model_.types[up].parent)
       if (++steps > model_.types.size())
         t.name.location.fail("type '" + t.name.text + "' is its own ancestor");
+  }
+}
+
+void SymbolTable::declare_members(const sx::Document& document) {
+  for (const sx::Type& u : document.types) {
+    if (u.members.empty()) continue;
+    std::vector<Index> members;
+    for (const Name& m : u.members) {
+      if (is_union(document, m)) m.location.fail("'" + m.text + "' is a union of types itself");
+      members.push_back(enumerated_type(m));
+    }
+    model_.types[type(u.name)].members = std::move(members);
   }
 }
 
@@ -73,9 +102,16 @@ void SymbolTable::declare_constants(const sx::Document& document) {
     const auto index = static_cast<Index>(model_.objects.size());
     unique(objects_, c.name, index, "constant");
     const Index t = type(c.type);
+    if (!model_.types[t].members.empty())
+      c.name.location.fail("'" + c.name.text +
+                           "' would be of a union of types: a constant is of one");
     model_.objects.push_back({c.name.text, t});
     for (Index up = t; up != kNone; up = model_.types[up].parent)
       model_.types[up].objects.push_back(index);
+    for (Type& u : model_.types)
+      if (std::any_of(u.members.begin(), u.members.end(),
+                      [&](Index member) { return is_subtype(t, member); }))
+        u.objects.push_back(index);
   }
 }
 
@@ -144,6 +180,13 @@ Index SymbolTable::predicate(const Name& name) const {
 }
 
 bool SymbolTable::is_subtype(Index a, Index b) const {
+  if (a == kNone || b == kNone) return false;
+  const auto& of_a = model_.types[a].members;
+  const auto& of_b = model_.types[b].members;
+  if (std::any_of(of_b.begin(), of_b.end(), [&](Index m) { return is_subtype(a, m); }) ||
+      (!of_a.empty() &&
+       std::all_of(of_a.begin(), of_a.end(), [&](Index m) { return is_subtype(m, b); })))
+    return true;
   for (Index up = a; up != kNone; up = model_.types[up].parent)
     if (up == b) return true;
   return false;
@@ -168,6 +211,13 @@ void SymbolTable::check_type(const Name& name, Index found, Index wanted) const 
                      type_name(wanted));
 }
 
-bool SymbolTable::related(Index a, Index b) const { return is_subtype(a, b) || is_subtype(b, a); }
+bool SymbolTable::related(Index a, Index b) const {
+  if (is_subtype(a, b) || is_subtype(b, a)) return true;
+  if (a == kNone || b == kNone) return false;
+  const auto& of_a = model_.types[a].members;
+  const auto& of_b = model_.types[b].members;
+  return std::any_of(of_a.begin(), of_a.end(), [&](Index m) { return related(m, b); }) ||
+         std::any_of(of_b.begin(), of_b.end(), [&](Index m) { return related(a, m); });
+}
 
 }  // namespace kaboum::plan

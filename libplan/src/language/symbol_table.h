@@ -9,8 +9,10 @@
 
 namespace kaboum::plan {
 
-/// Most arguments of a symbol, and parameters of an action.
+/// Most arguments of a symbol.
 inline constexpr std::size_t kMaximumArity = 12;
+/// Most parameters of an action.
+inline constexpr std::size_t kMaximumParameters = 64;
 
 /// Index by name.
 using NameTable = std::unordered_map<std::string, Index>;
@@ -45,9 +47,9 @@ class SymbolTable {
   [[nodiscard]] bool is_handle(Index type) const {
     return type != kNone && model_.types[type].handle;
   }
-  /// Whether `a` is `b` or a type below it.
+  /// Whether `a` is `b` or a type below it, so that its objects are of both.
   [[nodiscard]] bool is_subtype(Index a, Index b) const;
-  /// Whether one of them is a subtype of the other.
+  /// Whether one of them, or of what it is a union of, is a subtype of the other.
   [[nodiscard]] bool related(Index a, Index b) const;
   /// @throws Error{InvalidInput} if type `found` of what is named is no subtype of `wanted`.
   void check_type(const syntax::Name& name, Index found, Index wanted) const;
@@ -57,6 +59,7 @@ class SymbolTable {
 
  private:
   void declare_types(const syntax::Document& document);
+  void declare_members(const syntax::Document& document);
   void declare_constants(const syntax::Document& document);
   void declare_symbols(const syntax::Document& document);
   [[nodiscard]] Symbol symbol(const syntax::Signature& s, bool external) const;

@@ -82,6 +82,7 @@ struct Type {
   Name name;
   Name parent;  ///< empty text: a root
   bool handle = false;
+  std::vector<Name> members = {};  ///< of a union: it has the objects of these
 };
 
 /// A predicate, a function or an external function.

@@ -86,14 +86,17 @@ std::uint64_t distinct_cost(const std::vector<LandmarkEvent>& events,
     return std::pair(a.cost == 0, a.actions) < std::pair(b.cost == 0, b.actions);
   });
   std::vector<std::size_t> chosen;
+  ActionSet taken(events.empty() ? 0 : events[0].actions.size(), 0);  // by those chosen
   std::uint64_t distinct = 0;
   for (const Size& s : sizes) {
-    const bool fits = std::all_of(chosen.begin(), chosen.end(), [&](std::size_t c) {
-      return get(before[c], s.event) || get(before[s.event], c) ||
-             disjoint(actions[s.event], events[c].actions);
-    });
+    const bool fits = disjoint(actions[s.event], taken) ||
+                      std::all_of(chosen.begin(), chosen.end(), [&](std::size_t c) {
+                        return get(before[c], s.event) || get(before[s.event], c) ||
+                               disjoint(actions[s.event], events[c].actions);
+                      });
     if (!fits) continue;
     chosen.push_back(s.event);
+    for (const auto& [word, bits] : actions[s.event]) taken[word] |= bits;
     distinct += s.cost;
   }
   return distinct;

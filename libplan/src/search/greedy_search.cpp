@@ -2,18 +2,19 @@
 // that preferred operators lead to; preferred queues are boosted on progress, and estimates
 // deferred to expansion [helmert2006fd]. The relaxed plan guides where deletions do
 // little harm, the landmark events where they do. Both count steps, whatever these cost. Without
-// sensing and external functions, states too are made when their turn comes.
+// sensing and external functions, states too are made when their turn comes, and what a relaxed
+// plan makes of a state comes next [vidal2004yahsp].
 #include <kaboum/base/error.h>
 
 #include <algorithm>
-#include <array>
 #include <deque>
-#include <map>
+#include <limits>
 #include <optional>
 #include <utility>
 
 #include "search/applicable_steps.h"
 #include "search/landmarks.h"
+#include "search/queues.h"
 #include "search/relaxed_plan.h"
 #include "search/search.h"
 #include "search/state_store.h"
@@ -30,39 +31,9 @@ constexpr Index kStep = Index{1} << 31U;
 
 constexpr std::size_t kRelaxed = 0, kRelaxedPreferred = 1, kEvents = 2, kEventsPreferred = 3;
 
-/// Queues that take turns: the one that was served least, counting boosts.
-class Queues {
- public:
-  void push(std::size_t queue, std::uint64_t estimate, Index item) {
-    queues_[queue][estimate].push_back(item);
-    most_ = std::max(most_, ++size_);
-  }
-  [[nodiscard]] bool empty() const { return size_ == 0; }
-  Index pop() {
-    std::size_t next = queues_.size();
-    for (std::size_t q = 0; q < queues_.size(); ++q)
-      if (!queues_[q].empty() && (next == queues_.size() || served_[q] < served_[next])) next = q;
-    ++served_[next];
-    --size_;
-    const auto best = queues_[next].begin();
-    const Index item = best->second.front();
-    best->second.pop_front();
-    if (best->second.empty()) queues_[next].erase(best);
-    return item;
-  }
-  /// What is in the queue comes first for a while.
-  void boost(std::size_t queue) { served_[queue] -= kBoost; }
-  [[nodiscard]] std::size_t bytes() const { return most_ * sizeof(Index); }
-
- private:
-  static constexpr std::int64_t kBoost = 1000;  // turns, on progress
-
-  /// By estimate; first come, first served.
-  std::array<std::map<std::uint64_t, std::deque<Index>>, 4> queues_;
-  std::array<std::int64_t, 4> served_{};
-  std::size_t size_ = 0;
-  std::size_t most_ = 0;
-};
+/// States that are expanded before a search looks ahead: what is solved within takes no more steps
+/// than it has to.
+constexpr std::uint64_t kPatience = 200;
 
 class GreedySearch {
  public:
@@ -82,38 +53,29 @@ class GreedySearch {
     store_.insert(in_.start.data(), Knowledge::hash_of(in_.start.data(), words_), kNone, 0);
     open_.push(kRelaxed, 0, 0);
     while (!open_.empty()) {
-      Index state = open_.pop();
-      if ((state & kStep) != 0) {
-        const Taken taken = take(waiting_[state & ~kStep]);
-        if (taken.reached) return finish(Outcome::Solved);
-        if (taken.state == kNone) {
-          if (in_.limits.exceeded(bytes())) return finish(Outcome::Limit);
-          continue;
-        }
-        state = taken.state;
+      const Index item = open_.pop();
+      Taken taken{item, true, false};
+      if ((item & kStep) != 0) taken = take(waiting_[item & ~kStep]);
+      if (taken.reached) return finish(Outcome::Solved);
+      if (!taken.fresh) {
+        if (in_.limits.exceeded(bytes() + store_.growth())) return finish(Outcome::Limit);
+        continue;
       }
-      if (state >= expanded_.size()) {
-        expanded_.resize(store_.size(), 0);
-        estimates_.resize(store_.size());
-      }
-      if (expanded_[state]) continue;
-      expanded_[state] = 1;
-      if (in_.limits.check(bytes()) || in_.statistics.expanded >= most_expanded_)
-        return finish(Outcome::Limit);
-      const std::optional<Estimates> estimates = evaluate(state);
-      if (!estimates) continue;
-      note_progress(*estimates);
-      estimates_[state] = *estimates;
-      if (expand(state)) return finish(Outcome::Solved);
+      if (const std::optional<Outcome> end = follow(taken.state)) return finish(*end);
     }
     return finish(Outcome::Unsolvable);
   }
 
  private:
   struct Estimates {
-    std::uint64_t relaxed = 0;
-    std::uint64_t events = 0;
+    std::uint32_t relaxed = 0;
+    std::uint32_t events = 0;
   };
+  struct Info {
+    Estimates estimates;  ///< once expanded
+    bool expanded = false;
+  };
+  static constexpr std::uint32_t kFar = std::numeric_limits<std::uint32_t>::max();
 
   /// A step from a state that is made, and whose external functions are asked, when its turn comes:
   /// for most it never does.
@@ -124,22 +86,68 @@ class GreedySearch {
   };
 
   struct Taken {
-    Index state = kNone;  ///< a new one
+    Index state = kNone;
+    bool fresh = false;
     bool reached = false;
   };
+
+  /// Expands the state and, as long as that leads nearer, where its relaxed plan leads.
+  /// @return how the search ends, if it does.
+  std::optional<Outcome> follow(Index state) {
+    for (std::uint32_t nearest = kFar; state != kNone;) {
+      if (state >= infos_.size()) infos_.resize(store_.size());
+      if (infos_[state].expanded) break;
+      infos_[state].expanded = true;
+      if (in_.limits.check(bytes() + store_.growth()) || in_.statistics.expanded >= most_expanded_)
+        return Outcome::Limit;
+      const std::optional<Estimates> e = evaluate(state);
+      if (!e) break;
+      note_progress(*e);
+      infos_[state].estimates = *e;
+      if (expand(state)) return Outcome::Solved;
+      if (!impatient() || e->relaxed >= nearest) break;
+      nearest = e->relaxed;
+      const Taken ahead = look_ahead(state);
+      if (ahead.reached) return Outcome::Solved;
+      state = ahead.state;
+    }
+    return std::nullopt;
+  }
+
+  /// Whether to look ahead, where that takes no calls.
+  [[nodiscard]] bool impatient() const { return !at_once_ && in_.statistics.expanded >= kPatience; }
+
+  /// Makes the steps of the relaxed plan of the state at hand, each once, while one is possible.
+  Taken look_ahead(Index state) {
+    std::vector<OperatorId> left = relaxed_.steps_in_order();
+    Taken at{state};
+    const auto use = [&](OperatorId step) {
+      if (at.reached ||
+          !in_.task.evaluator().holds(in_.task.action(step).precondition, store_[at.state]))
+        return false;
+      const Taken next = make(at.state, step);
+      if (next.state == kNone) return false;
+      at = next;
+      if (at.fresh) push(at.state, infos_[state].estimates, false);
+      return true;
+    };
+    while (std::erase_if(left, use) > 0) {
+    }
+    return at;
+  }
 
   /// Asks, and makes the step if it is possible.
   Taken take(Waiting& waiting) {
     const Waiting w = std::exchange(waiting, {});
     if (w.step == kNoOperator) return {};  // in another queue
     if (!in_.task.asks(w.step)) return make(w.parent, w.step);
-    if (in_.limits.check(bytes())) return {};
+    if (in_.limits.check(bytes() + store_.growth())) return {};
     outcomes_.clear();
     if (in_.task.decide(store_[w.parent], w.step, outcomes_)) return make(w.parent, w.step);
     for (const OperatorId outcome : outcomes_) {
       const Taken taken = make(w.parent, outcome);
       if (taken.reached) return taken;
-      if (taken.state != kNone) push(taken.state, estimates_[w.parent], w.preferred);
+      if (taken.fresh) push(taken.state, infos_[w.parent].estimates, w.preferred);
     }
     return {};
   }
@@ -150,26 +158,25 @@ class GreedySearch {
     if (!in_.task.apply(step, scratch_)) return {};
     ++in_.statistics.generated;
     const auto [number, fresh] = store_.insert(scratch_.words(), scratch_.hash(), parent, step);
-    if (!fresh) return {};
     ensure(number < kStep, "states are numbered");
-    if (!in_.target.reached(scratch_.words())) return {number, false};
+    if (!fresh || !in_.target.reached(scratch_.words())) return {number, fresh, false};
     found_.steps = store_.path(number);
     in_.statistics.depth = std::max<std::uint64_t>(in_.statistics.depth, found_.steps.size());
-    return {number, true};
+    return {number, true, true};
   }
 
   /// nullopt: a dead end. Both estimates are safe: what they call one is one.
   std::optional<Estimates> evaluate(Index state) {
-    Estimates e;
-    e.relaxed = relaxed_.evaluate(store_[state]);
-    const bool dead = e.relaxed == RelaxedPlan::kDeadEnd;
+    const std::uint64_t relaxed = relaxed_.evaluate(store_[state]);
+    const bool dead = relaxed == RelaxedPlan::kDeadEnd;
     if (state == 0 && in_.statistics.searches == 1)
-      in_.statistics.initial_estimate = dead ? -1 : static_cast<std::int64_t>(e.relaxed);
+      in_.statistics.initial_estimate = dead ? -1 : static_cast<std::int64_t>(relaxed);
     if (dead) return std::nullopt;
+    Estimates e{static_cast<std::uint32_t>(std::min<std::uint64_t>(relaxed, kFar - 1)), 0};
     if (!use_events_) return e;
     const auto events = landmarks_.count(store_[state]);
     if (!events) return std::nullopt;
-    e.events = *events;
+    e.events = static_cast<std::uint32_t>(*events);
     // Not worth it where events are so many that their orders take longer than all the rest.
     const std::size_t count = landmarks_.events();
     use_events_ = count * count * (count / 64 + 1) < 200 * relaxed_.size() + 1'000'000;
@@ -196,17 +203,20 @@ class GreedySearch {
       in_.heuristics.steps(in_.task, in_.limits).find(store_[state], steps_);
     }
     ++in_.statistics.expanded;
+    const ActionSet awaited = use_events_ && impatient() ? landmarks_.achievers() : ActionSet();
+    const Estimates estimates = infos_[state].estimates;
     for (const OperatorId step : steps_) {
-      const bool preferred = std::binary_search(helpful.begin(), helpful.end(), step);
+      const bool preferred = std::binary_search(helpful.begin(), helpful.end(), step) ||
+                             (!awaited.empty() && landmarks_.is_in(step, awaited));
       if (!at_once_ || in_.task.asks(step)) {
         ensure(waiting_.size() < kStep, "steps are numbered");
-        push(static_cast<Index>(waiting_.size()) | kStep, estimates_[state], preferred);
+        push(static_cast<Index>(waiting_.size()) | kStep, estimates, preferred);
         waiting_.push_back({state, step, preferred});
         continue;
       }
       const Taken taken = make(state, step);
       if (taken.reached) return true;
-      if (taken.state != kNone) push(taken.state, estimates_[state], preferred);
+      if (taken.fresh) push(taken.state, estimates, preferred);
     }
     return false;
   }
@@ -221,8 +231,8 @@ class GreedySearch {
   }
 
   [[nodiscard]] std::size_t bytes() const {
-    return store_.bytes() + open_.bytes() + expanded_.capacity() +
-           estimates_.capacity() * sizeof(Estimates) + waiting_.capacity() * sizeof(Waiting);
+    return store_.bytes() + open_.bytes() + infos_.size() * sizeof(Info) +
+           waiting_.size() * sizeof(Waiting);
   }
 
   Found finish(Outcome outcome) {
@@ -241,13 +251,13 @@ class GreedySearch {
   bool at_once_;  ///< steps are made when their state is expanded: it may be in a plan already
   StateStore store_;
   Knowledge scratch_;
-  Queues open_;
-  std::vector<char> expanded_;        ///< by state
-  std::vector<Estimates> estimates_;  ///< by state, once expanded
-  Estimates best_{RelaxedPlan::kDeadEnd, RelaxedPlan::kDeadEnd};
+  Queues<4> open_;
+  // In chunks: memory is never held twice while they grow.
+  std::deque<Info> infos_;  ///< by state
+  std::deque<Waiting> waiting_;
+  Estimates best_{kFar, kFar};
   bool use_events_ = true;
   std::vector<OperatorId> steps_, outcomes_;
-  std::vector<Waiting> waiting_;
   Found found_;
 };
 

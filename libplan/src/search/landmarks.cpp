@@ -240,6 +240,13 @@ std::optional<std::uint64_t> LandmarkHeuristic::count(const Word* state) {
   return distinct_events(events_, orders_);
 }
 
+ActionSet LandmarkHeuristic::achievers() const {
+  ActionSet all(words_, 0);
+  for (const LandmarkEvent& e : events_)
+    for (std::size_t w = 0; w < words_; ++w) all[w] |= e.actions[w];
+  return all;
+}
+
 /// @return false: a dead end.
 bool LandmarkHeuristic::find_events(const Word* state) {
   events_.clear();

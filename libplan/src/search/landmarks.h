@@ -32,6 +32,13 @@ class LandmarkHeuristic {
   /// Steps of which none can be another one, in every plan: cheaper, and costs do not count.
   std::optional<std::uint64_t> count(const Word* state);
 
+  /// Steps that may be one of the events of the last evaluation.
+  [[nodiscard]] ActionSet achievers() const;
+  [[nodiscard]] bool is_in(OperatorId step, const ActionSet& set) const {
+    const Index n = number_of_[step];
+    return n != kNone && ((set[n / 64] >> (n % 64)) & 1U) != 0;
+  }
+
   /// Events of the last evaluation, whose time grows with their cube.
   [[nodiscard]] std::size_t events() const { return events_.size(); }
 

@@ -280,7 +280,10 @@ std::uint64_t RelaxedPlan::extract() {
       if (supporter_[r - kValue] != kNone) want(supporter_[r - kValue]);
       continue;
     }
-    if (step_[r] != kNoOperator) steps_.push_back(step_[r]);
+    if (step_[r] != kNoOperator) {
+      steps_.push_back(step_[r]);
+      used_.emplace_back(counters_[r].sum, step_[r]);
+    }
     for (const Index *c = children_.begin(r), *end = children_.end(r); c != end; ++c) want(*c);
   }
   for (const Ref r : seen_) (r >= kValue ? seen_value_[r - kValue] : seen_conjunction_[r]) = 0;
@@ -292,8 +295,24 @@ std::uint64_t RelaxedPlan::extract() {
   return total;
 }
 
+std::vector<OperatorId> RelaxedPlan::steps_in_order() const {
+  auto ordered = used_;
+  // Of a step, the effect that comes first.
+  std::sort(ordered.begin(), ordered.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.second, a.first) < std::pair(b.second, b.first);
+  });
+  ordered.erase(std::unique(ordered.begin(), ordered.end(),
+                            [](const auto& a, const auto& b) { return a.second == b.second; }),
+                ordered.end());
+  std::sort(ordered.begin(), ordered.end());
+  std::vector<OperatorId> steps;
+  for (const auto& [cost, step] : ordered) steps.push_back(step);
+  return steps;
+}
+
 std::uint64_t RelaxedPlan::evaluate(const Word* state) {
   steps_.clear();
+  used_.clear();
   explore(state);
   return reached_ ? extract() : kDeadEnd;
 }

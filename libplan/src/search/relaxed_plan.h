@@ -26,6 +26,8 @@ class RelaxedPlan {
 
   /// Steps of the last relaxed plan, ascending: those applicable now are the preferred ones.
   [[nodiscard]] const std::vector<OperatorId>& steps() const { return steps_; }
+  /// The same in an order in which the relaxed plan may make them: by what their conditions cost.
+  [[nodiscard]] std::vector<OperatorId> steps_in_order() const;
 
  private:
   using Cost = std::uint32_t;
@@ -90,6 +92,7 @@ class RelaxedPlan {
   bool reached_ = false;
   RadixQueue queue_;
   std::vector<OperatorId> steps_;
+  std::vector<std::pair<Cost, OperatorId>> used_;  ///< costs and steps, of effects
 };
 
 }  // namespace kaboum::plan

@@ -58,6 +58,11 @@ class StateStore {
            table_.size() * sizeof(Index);
   }
 
+  /// What it takes besides, for a while, when it next grows, if that is near.
+  [[nodiscard]] std::size_t growth() const {
+    return (size_ + 4 * kChunk) * 4 > table_.size() * 3 ? 2 * table_.size() * sizeof(Index) : 0;
+  }
+
   /// Steps from the first state to `state`.
   [[nodiscard]] std::vector<Index> path(Index state) const {
     std::vector<Index> steps;

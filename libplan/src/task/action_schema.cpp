@@ -10,7 +10,8 @@
 namespace kaboum::plan {
 namespace {
 
-constexpr std::size_t kTabulated = 1U << 20U;  // entries of one table by arguments
+constexpr std::size_t kTabulated = 1U << 20U;             // entries of one table by arguments
+constexpr std::size_t kNumbered = std::size_t{1} << 40U;  // times the objects of one type: a word
 
 bool calls_external(const Query& q) {
   return q.kind == Query::Kind::External || q.kind == Query::Kind::Let ||
@@ -87,8 +88,9 @@ void ActionSchema::make_candidates(const std::vector<std::vector<const Query*>>&
       c.test = pool_->as_bits(c.full).value_or(BitTest{});
       levels_[i].candidates.push_back(c);
     }
-    if (instances <= kTabulated) instances *= objects.size();
+    if (instances <= kNumbered) instances *= std::max<std::size_t>(objects.size(), 1);
   }
+  numbered_ = instances <= kNumbered;
   if (instances <= kTabulated) ids_.assign(instances, kNoOperator);
 }
 
@@ -99,17 +101,20 @@ Formula ActionSchema::ground(const Check& check, const Index* slots) {
 }
 
 OperatorId& ActionSchema::id(const std::vector<Index>& arguments) {
-  if (ids_.empty()) {
-    std::string key;
-    for (const Index o : arguments) key.append(reinterpret_cast<const char*>(&o), sizeof o);
-    return id_index_.emplace(key, kNoOperator).first->second;
-  }
-  std::size_t n = 0;
+  if (!ids_.empty()) return ids_[number_of(arguments)];
+  if (numbered_) return id_by_number_.emplace(number_of(arguments), kNoOperator).first->second;
+  std::string key;
+  for (const Index o : arguments) key.append(reinterpret_cast<const char*>(&o), sizeof o);
+  return id_by_arguments_.emplace(key, kNoOperator).first->second;
+}
+
+std::uint64_t ActionSchema::number_of(const std::vector<Index>& arguments) const {
+  std::uint64_t n = 0;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const Index type = action_->parameters[i].type;
     n = n * model_->types[type].objects.size() + layout_->position(type, arguments[i]);
   }
-  return ids_[n];
+  return n;
 }
 
 }  // namespace kaboum::plan

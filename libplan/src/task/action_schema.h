@@ -2,6 +2,7 @@
 
 #include <kaboum/plan/model.h>
 
+#include <cstdint>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -74,8 +75,13 @@ class ActionSchema {
   QueryGrounder* queries_;
   std::vector<Check> constant_;
   std::vector<Level> levels_;
-  std::vector<OperatorId> ids_;  ///< by the arguments' numbers; empty: use id_index_
-  std::unordered_map<std::string, OperatorId> id_index_;
+  /// The number of these arguments among all, if that fits a word.
+  [[nodiscard]] std::uint64_t number_of(const std::vector<Index>& arguments) const;
+
+  std::vector<OperatorId> ids_;  ///< by the arguments' number; empty: too many to tabulate
+  std::unordered_map<std::uint64_t, OperatorId> id_by_number_;
+  std::unordered_map<std::string, OperatorId> id_by_arguments_;  ///< where these are too many
+  bool numbered_ = true;
 };
 
 }  // namespace kaboum::plan

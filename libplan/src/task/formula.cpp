@@ -4,6 +4,7 @@
 #include <kaboum/base/error.h>
 
 #include <algorithm>
+#include <unordered_map>
 
 namespace kaboum::plan {
 namespace {
@@ -28,15 +29,13 @@ Formula FormulaPool::add(Node node, std::vector<Formula> children) {
       mix(static_cast<std::uint64_t>(node.kind), connective ? children.size() : node.b);
   if (!connective) h = mix(h, node.a);
   for (const Formula c : children) h = mix(h, c);
-  const auto [first, last] = index_.equal_range(h);
-  for (auto it = first; it != last; ++it) {
-    const Node& n = nodes_[it->second];
-    if (n.kind != node.kind) continue;
-    if (connective
-            ? std::equal(begin(it->second), end(it->second), children.begin(), children.end())
-            : n.a == node.a && n.b == node.b)
-      return it->second;
-  }
+  const Formula known = index_.find(h, [&](Formula f) {
+    const Node& n = nodes_[f];
+    if (n.kind != node.kind) return false;
+    return connective ? std::equal(begin(f), end(f), children.begin(), children.end())
+                      : n.a == node.a && n.b == node.b;
+  });
+  if (known != kNone) return known;
   if (nodes_.size() >= kMaximumNodes)
     throw Error(ErrorCode::LimitReached, "too many ground formulas");
   const auto f = static_cast<Formula>(nodes_.size());
@@ -48,8 +47,8 @@ Formula FormulaPool::add(Node node, std::vector<Formula> children) {
     children_.insert(children_.end(), children.begin(), children.end());
   }
   nodes_.push_back(node);
-  index_.emplace(h, f);
-  limits_.work(sizeof(Node) + children.size() * sizeof(Formula) + 48);  // 48: of the index
+  index_.insert(h, f);
+  limits_.work(sizeof(Node) + children.size() * sizeof(Formula) + FlatIndex::kBytesEach);
   return f;
 }
 

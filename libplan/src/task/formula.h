@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <map>
 #include <optional>
-#include <unordered_map>
 #include <vector>
 
+#include "task/flat_index.h"
 #include "task/layout.h"
 #include "task/solve_limits.h"
 
@@ -82,7 +82,7 @@ class FormulaPool {
   std::vector<Node> nodes_;
   std::vector<Formula> children_;
   std::vector<std::pair<Word, Word>> masks_;
-  std::unordered_multimap<std::uint64_t, Formula> index_;
+  FlatIndex index_;
   std::map<std::pair<Word, Word>, Index> mask_index_;
 };
 

@@ -8,6 +8,8 @@
 namespace kaboum::plan {
 
 Layout::Layout(const Model& model, Limits& limits) : model_(model), numbering_(model) {
+  limits.hold(numbering_.atoms() * (sizeof(char) + sizeof(AtomKnowledge) + sizeof(Index)) +
+              numbering_.terms() * (sizeof(char) + 2 * sizeof(Index)));
   ChangeAnalysis analysis(model, numbering_, limits);
   atom_fluents_.assign(numbering_.atoms(), kNone);
   term_fluents_.assign(numbering_.terms(), kNone);
@@ -18,8 +20,7 @@ Layout::Layout(const Model& model, Limits& limits) : model_(model), numbering_(m
   sensing_ = analysis.sensing;
   make_groups(analysis.group_atoms);
   assign_words(analysis.function_exclusions);
-  limits.work(atom_fluents_.size() * (sizeof(Index) + sizeof(AtomKnowledge)) +
-              term_fluents_.size() * 2 * sizeof(Index) + fluents_.size() * (sizeof(Fluent) + 32) +
+  limits.work(fluents_.size() * (sizeof(Fluent) + 32) +
               model.types.size() * model.objects.size() * sizeof(Index));
 }
 
@@ -28,6 +29,12 @@ void Layout::make_fluents(const std::vector<Symbol>& symbols, bool function,
                           const std::vector<char>& changes, std::vector<Index>& fluent_of) {
   for (Index s = 0; s < symbols.size(); ++s) {
     if (symbols[s].numeric) continue;
+    const auto& first = function ? numbering_.first_term() : numbering_.first_atom();
+    const auto at = [&](Index symbol) {
+      return changes.begin() + static_cast<std::ptrdiff_t>(first[symbol]);
+    };
+    // Of what never changes there may be millions.
+    if (std::find(at(s), at(s + 1), 1) == at(s + 1)) continue;
     std::vector<Index> arguments(symbols[s].parameters.size());
     const auto visit = [&](const auto& self, std::size_t i) -> void {
       if (i == arguments.size()) {

@@ -8,7 +8,7 @@
 namespace kaboum::plan {
 namespace {
 
-constexpr std::size_t kMaximumNumbered = 20'000'000;    // ground atoms, or terms, of one task
+constexpr std::size_t kMaximumNumbered = 200'000'000;   // ground atoms, or terms, of one task
 constexpr std::size_t kMaximumPositions = 200'000'000;  // types times objects
 
 std::vector<std::size_t> first_numbers(const Model& model, const std::vector<Symbol>& symbols) {

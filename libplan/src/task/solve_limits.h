@@ -30,6 +30,11 @@ class Limits {
     held_ += more_bytes;
     if (++work_ % 1024 == 0 && check(0)) throw LimitExceeded();
   }
+  /// The same of much memory, before it is taken. @throws LimitExceeded
+  void hold(std::size_t more_bytes) {
+    held_ += more_bytes;
+    if (check(0)) throw LimitExceeded();
+  }
   [[nodiscard]] const std::string& reason() const { return reason_; }
 
  private:

@@ -23,8 +23,9 @@ inline constexpr Index kNone = ~Index{0};
 struct Type {
   std::string name;
   Index parent = kNone;
-  std::vector<Index> objects;  ///< of the type and its subtypes, ascending
-  bool handle = false;         ///< further values come into being during a search
+  std::vector<Index> objects;       ///< of the type and its subtypes, ascending
+  bool handle = false;              ///< further values come into being during a search
+  std::vector<Index> members = {};  ///< of a union: its objects are those of these types
 };
 
 struct Object {
