@@ -48,6 +48,7 @@ Json record_of(const EnclosureCertificate& c) {
   Json j{{"vertices_in", c.vertices_in},
          {"vertices", c.vertices},
          {"triangles", c.triangles},
+         {"in_spare_format", c.in_spare_format},
          {"diagonal", c.diagonal},
          {"epsilon", c.epsilon ? Json(*c.epsilon) : Json()},
          {"distance_upper", c.distance_upper}};
@@ -89,6 +90,7 @@ EnclosureCertificate read_enclosure(std::string_view text) {
     j.at("vertices_in").get_to(c.vertices_in);
     j.at("vertices").get_to(c.vertices);
     j.at("triangles").get_to(c.triangles);
+    j.at("in_spare_format").get_to(c.in_spare_format);
     j.at("diagonal").get_to(c.diagonal);
     if (!j.at("epsilon").is_null()) c.epsilon = j.at("epsilon").get<double>();
     j.at("distance_upper").get_to(c.distance_upper);
