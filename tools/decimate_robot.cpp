@@ -38,6 +38,7 @@ certify::EnclosureRequest enclosure_request(const DecimationOptions& o) {
     throw Error(ErrorCode::InvalidArgument, "--vertices: a robot's meshes are no series");
   require_sound_formats(o, format_of_meshes(o));
   r.mesh = request_of(o, std::move(counts), format_of_meshes(o));
+  if (o.output_format.empty() && r.mesh.format == io::Format::Stl) r.spare_format = io::Format::Obj;
   r.preparation = o.prepare;
   r.preparation.holes = o.holes.value();
   o.preparation.apply(r.preparation);
@@ -71,12 +72,14 @@ int say_meshes(Run& run) {
   return code;
 }
 
-void write(Run& run, RobotOutput& output, const std::string& extension) {
-  const RobotFolder& folder = output.folder();
+void write(Run& run, RobotOutput& output) {
+  RobotFolder& folder = output.folder();
+  for (std::size_t i = 0; i < run.made.meshes.size(); ++i)
+    if (run.made.meshes[i].made.enclosure.certificate().in_spare_format)
+      folder.set_extension(i, ".obj");
   const NewShapes shapes =
-      new_shapes(run.robot, run.request.shapes, run.made.shapes, [&](std::size_t s) {
-        return std::vector<std::string>{folder.part() + "/" + folder.name_of(s) + extension};
-      });
+      new_shapes(run.robot, run.request.shapes, run.made.shapes,
+                 [&](std::size_t s) { return std::vector<std::string>{folder.place_of(s)}; });
   if (!run.o.no_cache) {
     std::map<std::size_t, std::span<const char>> meshes;
     for (std::size_t s = 0; s < run.made.shapes.size(); ++s)
@@ -206,9 +209,9 @@ int decimate_robot(const CLI::App& app, DecimationOptions o) {
   const std::vector<std::string> included =
       o.depfile.empty() ? std::vector<std::string>() : robot::included_files(run.robot);
   const io::Format format = format_of_meshes(o);
-  const std::string extension = format == io::Format::Stl ? ".stl" : ".obj";
   o.robot.declare_convex = false;  // they are not
-  RobotOutput output(o.robot, o.output, run.robot, "meshes", extension);
+  RobotOutput output(o.robot, o.output, run.robot, "meshes",
+                     format == io::Format::Stl ? ".stl" : ".obj");
   run.request = {
       enclosure_request(o), output.choice(), {}, read_epsilons(o.robot.epsilons, run.robot.robot)};
   if (!o.input_format.empty()) run.request.format = io::format_from_name(o.input_format);
@@ -223,7 +226,7 @@ int decimate_robot(const CLI::App& app, DecimationOptions o) {
                                       [&](const std::string& stage) { progress.show(stage); });
   }
   const int code = say_meshes(run);
-  write(run, output, extension);
+  write(run, output);
   log(o.common.quiet, output.folder().urdf().string() + ": " +
                           counted(run.made.meshes.size(), "mesh", "meshes") + " of " +
                           counted(shapes_by_link(run).size(), "link", "links"));

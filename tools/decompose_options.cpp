@@ -93,6 +93,12 @@ void add_search(CLI::App& app, DecomposeOptions& o) {
                  "limit with --effort best]")
       ->check(number_from(0.001, 1e9))
       ->type_name("SECONDS");
+  app.add_option("--improve-work", o.improve_work,
+                 "Within epsilon, look for fewer bodies until the search has done so much work, "
+                 "counted in the same way; of a robot: the searches of all its meshes together "
+                 "[30 of a robot, else no other limit; none with --effort best]")
+      ->check(number_from(0, 1e9))
+      ->type_name("SECONDS");
   app.add_option("--method", o.method,
                  "How to find bodies; the claims are the same. clusters (of triangles, as HACD "
                  "does) and voxels (cuts across the axes, as V-HACD does) are there to be compared "
@@ -213,8 +219,9 @@ void require_meaning(const CLI::App& app, const DecomposeOptions& o) {
     throw Error(ErrorCode::InvalidArgument, "--max-total-vertices needs --direction outer");
   if (o.pre_step == "on" && o.direction != "outer")
     throw Error(ErrorCode::InvalidArgument, "--pre-step on needs --direction outer");
-  if (o.simplify && o.direction != "outer")
-    throw Error(ErrorCode::InvalidArgument, "--simplify needs --direction outer");
+  for (const char* option : {"--simplify", "--improve-work"})
+    if (app.count(option) != 0 && o.direction != "outer")
+      throw Error(ErrorCode::InvalidArgument, std::string(option) + " needs --direction outer");
   if (o.simplify && o.max_total > 0)
     throw Error(ErrorCode::InvalidArgument,
                 "--simplify means nothing with --max-total-vertices, which leaves out as many "

@@ -24,7 +24,7 @@ struct DecomposeOptions {
   std::string unit = "m", frame, preview, depfile;
   std::size_t max_bodies = 0, max_vertices = 64, max_total = 0;  ///< 0: not given
   double explode = 0.5, min_thickness = 0, scale = 1;
-  std::optional<double> simplify, max_work;
+  std::optional<double> simplify, max_work, improve_work;
   std::size_t robot_bodies = 0, robot_vertices = 0;  ///< 0: not given
   bool no_cache = false, srdf = false;
   geom::PrepareOptions prepare;

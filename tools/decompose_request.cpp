@@ -35,6 +35,7 @@ certify::SetRequest request_of(const DecomposeOptions& o) {
   r.pre_step = kPreSteps.at(o.pre_step);
   r.simplify = o.simplify;
   r.max_work = o.max_work;
+  r.improve_work = o.improve_work;
   r.min_thickness = o.min_thickness;
   r.preparation = o.prepare;
   r.preparation.holes = o.holes.value();

@@ -159,39 +159,6 @@ void RobotFolder::require_own_document(const std::string& extension) const {
   if (fs::exists(place, error) && !is_made_by_us(place)) refuse(place);
 }
 
-/// No new file is to get this stem: those of bodies end with a number.
-void RobotFolder::reserve_stem(const std::string& stem) {
-  if (!extension_.empty()) names_.reserve(stem);
-  const std::size_t dash = stem.rfind('-');
-  if (dash != std::string::npos && stem.size() - dash > 4 &&
-      stem.find_first_not_of("0123456789", dash + 1) == std::string::npos)
-    names_.reserve(stem.substr(0, dash));
-}
-
-void RobotFolder::name_meshes(const robot::LinkMeshes& meshes, const robot::ShapeChoice& choice,
-                              const std::vector<std::string>& taken) {
-  for (const std::string& stem : taken) reserve_stem(stem);
-  for (const robot::Link& link : robot_.links) reserve_stem(plain_file_name(link.name));
-  for (const robot::LinkShape& shape : meshes.shapes) {
-    std::optional<std::size_t>& index = of_shape_.emplace_back();
-    if (!shape.mesh) continue;
-    const geom::Vec3& scale = choice.shapes_of(robot_.links[shape.link])[shape.index].size;
-    const auto same = std::find_if(stored_.begin(), stored_.end(), [&](const StoredMesh& s) {
-      return s.mesh == *shape.mesh && s.scale == scale;
-    });
-    index = static_cast<std::size_t>(same - stored_.begin());
-    if (same != stored_.end()) continue;
-    const fs::path& file = meshes.meshes[*shape.mesh].file;
-    const std::string wish = file.stem().string() + (extension_.empty() ? "" : "-outer");
-    stored_.push_back({*shape.mesh, scale, names_.unique(wish)});
-    const fs::path place = folder_ / part_ / (stored_.back().name + extension_);
-    if (extension_.empty())
-      io::require_replaceable(place);
-    else
-      require_replaceable(place);
-  }
-}
-
 /// What is known of an earlier robot here does not hold of the bodies that now come one by one: all
 /// documents go, also those that are not made this time.
 void RobotFolder::begin() const {
@@ -211,8 +178,7 @@ void RobotFolder::write(const RobotContents& contents) {
   begin();
   create(folder_ / part_);
   if (!contents.links.empty()) create(folder_ / "links");
-  for (const StoredMesh& s : stored_)
-    contents.write_mesh(s, folder_ / part_ / (s.name + extension_));
+  for (const StoredMesh& s : stored_) contents.write_mesh(s, folder_ / place_of(s));
   const std::vector<std::string> links = link_files(contents);
   for (std::size_t i = 0; i < links.size(); ++i)
     io::write_file(folder_ / links[i], contents.links[i].second);
@@ -234,7 +200,7 @@ std::vector<std::string> RobotFolder::link_files(const RobotContents& contents) 
 
 std::vector<std::string> RobotFolder::stale(const std::vector<std::string>& links) const {
   std::set<fs::path> written(links.begin(), links.end());
-  for (const StoredMesh& s : stored_) written.insert(fs::path(part_) / (s.name + extension_));
+  for (const StoredMesh& s : stored_) written.insert(place_of(s));
   std::vector<std::string> out;
   for (const std::string& part : {part_, std::string("links")}) {
     std::error_code error;

@@ -29,6 +29,7 @@ struct StoredMesh {
   std::size_t mesh = 0;
   geom::Vec3 scale;
   std::string name;  ///< of the folder or file, and the stem of files
+  std::string extension;
 };
 
 /// The text of a document with a comment that says that it is ours, to be replaced.
@@ -75,6 +76,16 @@ class RobotFolder {
   [[nodiscard]] const std::string& name_of(std::size_t shape) const {
     return stored_[*of_shape_[shape]].name;
   }
+  /// The folder or file itself, relative to this one.
+  [[nodiscard]] std::string place_of(std::size_t shape) const {
+    return place_of(stored_[*of_shape_[shape]]);
+  }
+  [[nodiscard]] std::string place_of(const StoredMesh& s) const {
+    return part_ + "/" + s.name + s.extension;
+  }
+  /// Another extension for a mesh, after name_meshes.
+  /// @throws Error{OutputFailed} when something else is in its place.
+  void set_extension(std::size_t mesh, const std::string& extension);
 
   /// Writes all; the URDF comes last, and is not there while bodies are replaced: a robot that is
   /// there is whole, whenever a program is ended. Programs that write into one folder at the same
@@ -93,6 +104,7 @@ class RobotFolder {
   void require_own() const;
   void begin() const;
   void require_replaceable(const std::filesystem::path& place) const;
+  void require_replaceable(const StoredMesh& stored) const;
   void reserve_stem(const std::string& stem);
 
   std::filesystem::path folder_, urdf_;

@@ -56,9 +56,8 @@ RobotOutput::RobotOutput(const RobotOptions& options, const std::string& output,
                          const robot::RobotFile& robot, std::string part, std::string extension)
     : o_(options),
       robot_(robot),
-      folder_(output, robot, std::move(part), extension),
-      urdf_(robot, output),
-      extension_(std::move(extension)) {}
+      folder_(output, robot, std::move(part), std::move(extension)),
+      urdf_(robot, output) {}
 
 void RobotOutput::plan(const robot::LinkMeshes& meshes) {
   const robot::ShapeChoice shapes = choice();
@@ -94,9 +93,9 @@ void RobotOutput::reuse(const certify::CacheFolder& cache,
                         const std::map<std::size_t, std::span<const char>>& meshes) {
   cache_ = cache;
   std::map<std::string, std::span<const char>> by_name;
-  for (const auto& [shape, bytes] : meshes) by_name.emplace(folder_.name_of(shape), bytes);
-  for (const auto& [name, bytes] : by_name) {
-    places_.push_back(folder_.part() + "/" + name + extension_);
+  for (const auto& [shape, bytes] : meshes) by_name.emplace(folder_.place_of(shape), bytes);
+  for (const auto& [place, bytes] : by_name) {
+    places_.push_back(place);
     meshes_hash_.add(places_.back());
     meshes_hash_.add({bytes.data(), bytes.size()});
   }
@@ -139,7 +138,7 @@ void RobotOutput::write_or_reuse(RobotContents& contents) {
   contents.write_mesh = [&, write = std::move(contents.write_mesh)](const StoredMesh& mesh,
                                                                     const fs::path& place) {
     write(mesh, place);
-    files.note_written(folder_.part() + "/" + mesh.name + extension_);
+    files.note_written(folder_.place_of(mesh));
   };
   folder_.write(contents);
   for (const auto& [place, bytes] : known) files.note(place, bytes);

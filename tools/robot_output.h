@@ -34,6 +34,7 @@ class RobotOutput {
 
   [[nodiscard]] robot::ShapeChoice choice() const { return {o_.links, o_.visual(), o_.packages}; }
   [[nodiscard]] const RobotFolder& folder() const { return folder_; }
+  [[nodiscard]] RobotFolder& folder() { return folder_; }
 
   /// Names what will stand for the meshes, before anything is computed.
   /// @throws Error naming what cannot be replaced or read
@@ -73,7 +74,6 @@ class RobotOutput {
   const robot::RobotFile& robot_;
   RobotFolder folder_;
   RobotUrdf urdf_;
-  std::string extension_;
   std::vector<std::string> links_;
   std::vector<std::pair<std::string, std::string>> more_;  // extension, text
   std::optional<certify::CacheFolder> cache_;              // none: all is written

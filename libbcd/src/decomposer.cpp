@@ -42,7 +42,8 @@ std::vector<Finished> Decomposer::within_epsilon() {
   const double epsilon = *state_.options().epsilon;
   std::vector<Finished> bodies = within_.within(epsilon, hopeless());
   if (state_.tuning().reduce) {
-    within_.reduce(bodies, epsilon);
+    state_.begin_improving();
+    if (bodies.size() <= state_.tuning().counted) within_.reduce(bodies, epsilon);
     remove_bodies(state_, finisher_, bodies, epsilon);
   }
   if (state_.options().max_total_vertices) finisher_.simplify_hulls(bodies, epsilon);

@@ -54,7 +54,9 @@ std::vector<Finished> EpsilonSearch::within(double epsilon, std::size_t most) {
     for (const int node : tree.nodes_within(kMergedFrom * threshold * aim))
       parts.push_back(body_of(tree, node));
     for (const double weight : state_.tuning().volume_weights) {
-      if (!best.empty() && state_.spent(kImproving)) break;
+      // Of many bodies, each that is needless goes in the end.
+      if (!best.empty() && (best.size() > state_.tuning().counted || state_.spent(kImproving)))
+        break;
       std::vector<Body> bodies = state_.merged(parts, fewest_possible, aim, weight);
       fewest = fewest == 0 ? bodies.size() : std::min(fewest, bodies.size());
       if (best.empty() || bodies.size() < best.size()) best = std::move(bodies);

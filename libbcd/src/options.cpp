@@ -41,6 +41,8 @@ void require_sound(const SetOptions& options) {
     throw Error(ErrorCode::InvalidArgument, "fewer than 8 vertices per body");
   if (options.max_work && !(*options.max_work > 0))
     throw Error(ErrorCode::InvalidArgument, "max_work must be positive");
+  if (options.improve_work && !(*options.improve_work >= 0))
+    throw Error(ErrorCode::InvalidArgument, "improve_work must not be negative");
 }
 
 void require_sound(const CoverOptions& options) {

@@ -27,10 +27,15 @@ SearchOptions SearchState::search_options() const {
 }
 
 bool SearchState::spent(double share) {
-  const bool out = solid_.work().spent(share);
+  const Work& work = solid_.work();
+  const bool improved = improving_ && share <= kImproving && options_.improve_work &&
+                        static_cast<double>(work.done()) >= 1e9 * *options_.improve_work;
+  const bool out = improved || work.spent(share);
   out_of_work_ = out_of_work_ || out;
   return out;
 }
+
+void SearchState::begin_improving() { improving_ = true; }
 
 void SearchState::report(const char* stage, double fraction) const {
   if (options_.progress) options_.progress({stage, fraction});

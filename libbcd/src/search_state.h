@@ -25,6 +25,8 @@ class SearchState {
 
   /// Whether this share of the work allowed has been done; out_of_work() then says that it was.
   bool spent(double share);
+  /// Epsilon is reached: from now on, what improves the result ends with improve_work, too.
+  void begin_improving();
   [[nodiscard]] bool out_of_work() const { return out_of_work_; }
   /// @param fraction  estimate of the share of the work done, 0 to 1.
   void report(const char* stage, double fraction) const;
@@ -49,7 +51,7 @@ class SearchState {
   SolidField solid_;
   CutTree tree_;
   PairMemo memo_;
-  bool begun_ = false, out_of_work_ = false;
+  bool begun_ = false, improving_ = false, out_of_work_ = false;
 };
 
 }  // namespace kaboum::bcd

@@ -15,7 +15,15 @@ Tuning tuning(Effort effort) {
               .refinements = 12,
               .rounds = 1};
     case Effort::Normal:
-      return {200000, {}, {1, 1.25, 1.5, 2, 3}, {0.8}, {kVolumeWeight, 0.15, 0.02}, 60, 2, true};
+      return {.grid = 200000,
+              .search = {},
+              .multiples = {1, 1.25, 1.5, 2, 3},
+              .thresholds = {0.8},
+              .volume_weights = {kVolumeWeight, 0.15, 0.02},
+              .refinements = 60,
+              .rounds = 2,
+              .reduce = true,
+              .counted = 24};
     case Effort::Best:
       break;
   }

@@ -151,7 +151,8 @@ struct Tuning {
   std::vector<double> volume_weights;  ///< of the added volume when merging, tried in turn
   int refinements;                     ///< rounds of changing the worst body
   int rounds;                          ///< of refining what measuring finds
-  bool reduce = false;                 ///< look for fewer bodies within epsilon by their number
+  bool reduce = false;                 ///< look for fewer bodies within epsilon
+  std::size_t counted = kUnlimited;    ///< by their number, where they are no more than this
 };
 
 Tuning tuning(Effort effort);

@@ -49,6 +49,7 @@ bcd::CoverOptions cover_of(const SetRequest& r, double diagonal, const Hooks& ho
   options.method = r.method;
   options.min_thickness = r.min_thickness;
   if (r.simplify) options.simplify = *r.simplify;
+  options.improve_work = r.improve_work;
   options.pre_step = r.pre_step;
   return options;
 }
@@ -64,6 +65,7 @@ bcd::InnerOptions inner_of(const SetRequest& r, double diagonal, const Hooks& ho
   refuse(r.max_total_vertices.has_value(), "have no limit on all vertices together");
   refuse(r.pre_step == bcd::PreStep::On, "have no pre-step");
   refuse(r.simplify.has_value(), "are not simplified");
+  refuse(r.improve_work.has_value(), "are not fewer for more work");
   return {search_of(r, diagonal, hooks), {}};
 }
 

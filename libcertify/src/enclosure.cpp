@@ -17,10 +17,14 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Changes whenever the same request may give another mesh: cached ones are then not found.
-constexpr const char* kDecimation = "distance 1";
+constexpr const char* kDecimation = "distance 2";
 
 // An entry's content is the certificate in one line, and the mesh's bytes.
 constexpr std::string_view kEnclosureEntry = "KABOUM-MESH 1";
+
+constexpr const char* kSpareNote =
+    "float32 is too coarse for the mesh round it, which is written with the digits of doubles, in "
+    "another format than the others; it encloses as long as its reader does not round to float32";
 
 constexpr double kShareOfWrap = 0.6;  ///< of epsilon, for a wrap
 
@@ -49,14 +53,20 @@ geom::Prepared solid_of(const geom::Mesh& mesh, const EnclosureRequest& request,
 
 /// What the result depends on.
 std::string key_of_enclosure(const std::string& mesh_hash, const EnclosureRequest& request) {
-  return kaboum::sha256(std::string(kEnclosureEntry) + '\n' + mesh_hash + '\n' +
-                        request.parameters() + '\n' +
-                        std::to_string(static_cast<int>(request.mesh.format)) + '\n' +
-                        request.mesh.comment + '\n' + KABOUM_VERSION + '\n' + kDecimation);
+  return kaboum::sha256(
+      std::string(kEnclosureEntry) + '\n' + mesh_hash + '\n' + request.parameters() + '\n' +
+      std::to_string(static_cast<int>(request.mesh.format)) + '\n' +
+      (request.spare_format ? std::to_string(static_cast<int>(*request.spare_format)) + '\n'
+                            : std::string()) +
+      request.mesh.comment + '\n' + KABOUM_VERSION + '\n' + kDecimation);
+}
+
+io::Format format_of(const EnclosureRequest& request, const EnclosureCertificate& made) {
+  return made.in_spare_format && request.spare_format ? *request.spare_format : request.mesh.format;
 }
 
 std::optional<CertifiedEnclosure> find_enclosure(const CacheFolder& cache, const std::string& key,
-                                                 io::Format format) {
+                                                 const EnclosureRequest& request) {
   std::string flaw;
   const auto content = cache.find(kEnclosureEntry, key, flaw);
   if (!content) return std::nullopt;
@@ -66,7 +76,8 @@ std::optional<CertifiedEnclosure> find_enclosure(const CacheFolder& cache, const
     EnclosureCertificate certificate = read_enclosure(std::string_view(*content).substr(0, end));
     std::vector<char> bytes(content->begin() + static_cast<std::ptrdiff_t>(end) + 1,
                             content->end());
-    geom::Mesh mesh = io::parse_mesh(bytes, format, "the cache's entry").mesh;
+    geom::Mesh mesh =
+        io::parse_mesh(bytes, format_of(request, certificate), "the cache's entry").mesh;
     if (mesh.vertices.size() != certificate.vertices ||
         mesh.triangles.size() != certificate.triangles)
       return std::nullopt;
@@ -122,7 +133,13 @@ std::optional<CertifiedEnclosure> certify_enclosure(const geom::Mesh& mesh,
     throw Error(ErrorCode::InvalidInput,
                 "the mesh is open, so it has no solid that a mesh could enclose; have its holes "
                 "filled");
-  const std::optional<CertifiedMesh> result = certify_mesh(solid, rest, hooks);
+  std::optional<CertifiedMesh> result = certify_mesh(solid, rest, hooks);
+  if (!result && request.spare_format) {
+    made.in_spare_format = true;
+    rest.format = *request.spare_format;
+    result = certify_mesh(solid, rest, hooks);
+    made.notes.emplace_back(kSpareNote);
+  }
   if (!result) return std::nullopt;
   const MeshCertificate& c = result->certificate();
   made.vertices_in = c.statistics.vertices_in;
@@ -141,7 +158,7 @@ std::optional<CertifiedEnclosure> certify_enclosure(const geom::Mesh& mesh,
   made.notes.insert(made.notes.end(), solid.report.notes.begin(), solid.report.notes.end());
   // As the bytes are read: who finds it in the cache gets the same.
   std::vector<char> bytes = result->bytes();
-  geom::Mesh back = io::parse_mesh(bytes, request.mesh.format, "the result").mesh;
+  geom::Mesh back = io::parse_mesh(bytes, rest.format, "the result").mesh;
   made.vertices = back.vertices.size();
   made.triangles = back.triangles.size();
   return Issuer::issue(std::move(back), std::move(made), std::move(bytes));
@@ -152,9 +169,9 @@ EnclosedFile enclose_file(const fs::path& file, std::optional<io::Format> format
                           const MeshHooks& hooks) {
   if (cache != nullptr && file != "-") {
     const auto known = find_known(*cache, file, format, 1);
-    auto found = known ? find_enclosure(*cache, key_of_enclosure(known->mesh_hash, request),
-                                        request.mesh.format)
-                       : std::nullopt;
+    auto found = known
+                     ? find_enclosure(*cache, key_of_enclosure(known->mesh_hash, request), request)
+                     : std::nullopt;
     if (found) return {known->sha256, known->notes, {}, std::move(*found), true};
   }
   std::vector<char> bytes;
@@ -165,7 +182,7 @@ EnclosedFile enclose_file(const fs::path& file, std::optional<io::Format> format
   EnclosedFile out{sha256, std::move(read.notes), std::move(read.other_files), {}, false};
   const std::string key = key_of_enclosure(mesh_hash, request);
   if (cache != nullptr) {
-    if (auto found = find_enclosure(*cache, key, request.mesh.format)) {
+    if (auto found = find_enclosure(*cache, key, request)) {
       out.enclosure = std::move(*found);
       out.cached = true;
       return out;

@@ -8,6 +8,7 @@
 
 #include "issuer.h"
 #include "link_shapes.h"
+#include "work_shares.h"
 
 namespace kaboum::certify {
 
@@ -115,9 +116,11 @@ CertifiedBodies certify_bodies(const robot::RobotFile& robot, const RobotRequest
   BodiesCertificate out;
   std::vector<robot::LinkBody> bodies;
   out.choice = request.shapes;
+  const std::vector<std::optional<double>> work = work_of_meshes(found, request.set);
   for (std::size_t i = 0; i < found.meshes.size(); ++i) {
-    out.meshes.push_back(
-        certify_link_mesh(found.meshes[i], found.epsilons[i], request, cache, hooks));
+    RobotRequest own = request;
+    own.set.improve_work = work[i];
+    out.meshes.push_back(certify_link_mesh(found.meshes[i], found.epsilons[i], own, cache, hooks));
     const CertifiedFile& made = out.meshes.back().made;
     out.files.push_back(found.meshes[i].file);
     out.files.insert(out.files.end(), made.other_files.begin(), made.other_files.end());

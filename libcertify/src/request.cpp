@@ -69,6 +69,7 @@ std::string SetRequest::parameters() const {
   add(std::string("--effort ") + name_of(effort));
   if (simplify) add("--simplify " + digits(*simplify));
   if (max_work) add("--max-work " + digits(*max_work));
+  if (improve_work) add("--improve-work " + digits(*improve_work));
   if (method != bcd::Method::Planes) add(std::string("--method ") + name_of(method));
   if (pre_step != bcd::PreStep::Auto)
     add(pre_step == bcd::PreStep::On ? "--pre-step on" : "--pre-step off");

@@ -129,6 +129,23 @@ TEST(Work, TheBestFoundIsGivenAndMeasuredWhenTheWorkIsDone) {
   }
 }
 
+TEST(Work, FewerBodiesAreLookedForWithinTheWorkThatIsForThat) {
+  const Mesh mesh = geom::prepare(kaboum::test::torus_knot(2, 3, 0.2, 60, 8)).solid.mesh();
+  std::vector<std::size_t> bodies;
+  for (const double seconds : {0.0, 5.0}) {
+    CoverOptions options = test::quick(mesh, 2);
+    options.effort = Effort::Normal;
+    options.improve_work = seconds;
+    const CoverCandidate result = find_cover(geom::prepare(mesh).solid, options);
+    EXPECT_EQ(result.stop, Stop::Done);  // what epsilon takes is done, whatever it is
+    EXPECT_LE(result.excess_upper, *options.epsilon);
+    EXPECT_EQ(result.statistics.out_of_work, seconds == 0);
+    test::expect_cover(mesh, result, 64);
+    bodies.push_back(result.bodies.size());
+  }
+  EXPECT_LT(bodies[1], bodies[0]);
+}
+
 TEST(Work, BodiesInsideEndToo) {
   const Mesh mesh = geom::prepare(kaboum::test::torus_knot(2, 3, 0.2, 60, 8)).solid.mesh();
   InnerOptions options = test::quick_inner(mesh, 0.05);

@@ -58,6 +58,23 @@ expect 0 '' "$S" robot/r.urdf -o round4 --visual --epsilon 2% --effort fast
 [ "$(grep -c 'from the cache' err.txt)" -lt 2 ] || fail "a damaged entry is used"
 diff -r round round4 >diff.txt || fail "another result after damage: $(cat diff.txt)"
 shows 0 'are whole' "$BIN/kaboum-cache" verify
+# Where float32 is too coarse, that mesh alone is written with more digits, unless one format is asked for.
+mkdir -p far/meshes
+printf 'OFF\n4 4 0\n40000.1 0 0\n40001.1 0 0\n40000.1 1 0\n40000.1 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n' >far/meshes/far.off
+tetrahedron >far/meshes/near.off
+cat >far/r.urdf <<'END'
+<robot name="far"><link name="a"><visual><geometry><mesh filename="meshes/far.off"/></geometry></visual>
+  <visual><geometry><mesh filename="meshes/near.off"/></geometry></visual></link></robot>
+END
+for run in 1 2; do
+  expect 0 'too coarse' "$S" far/r.urdf -o mixed --visual --epsilon 2% --effort fast
+  [ "$(ls mixed/meshes | tr '\n' ' ')" = 'far-outer.obj near-outer.stl ' ] || fail "run $run: $(ls mixed/meshes)"
+  shows 0 '^verified: 1 of 1 link ' "$V" robot far/r.urdf mixed/r.urdf --visual --prepare
+done
+expect 0 'from the cache' "$S" far/r.urdf -o mixed2 --visual --epsilon 2% --effort fast
+diff -r mixed mixed2 >diff.txt || fail "another result from the cache: $(cat diff.txt)"
+expect 1 'choose a format that holds doubles' "$S" far/r.urdf -o stl --visual --epsilon 2% --output-format stl
+
 expect 0 '' "$S" robot/r.urdf -o objs --visual --epsilon 2% --effort fast --output-format obj --verify
 shows 0 '^verified' "$V" robot robot/r.urdf objs/r.urdf --visual --prepare
 expect 0 '' "$S" robot/r.urdf -o few --visual --vertices 100 --effort fast --links base

@@ -51,6 +51,9 @@ struct SetOptions {
   /// exact check) does not count. [s]
   /// By default `default_work` of the triangles, or without limit for Effort::Best.
   std::optional<double> max_work;
+  /// Within epsilon, fewer bodies are looked for until the search has done so much work in all; by
+  /// default while max_work allows. Outwards only. [s]
+  std::optional<double> improve_work;
   /// Multiplies what is allowed for rounding (the overlap of pieces, the error of computed points);
   /// larger where an exact check of the result fails.
   double safety = 1;

@@ -31,8 +31,9 @@ struct SetRequest {
   std::optional<std::size_t> max_total_vertices;
   bcd::Method method = bcd::Method::Planes;
   bcd::PreStep pre_step = bcd::PreStep::Auto;
-  std::optional<double> simplify;  ///< share of epsilon for leaving out vertices
-  double min_thickness = 0;        ///< [length]
+  std::optional<double> simplify;      ///< share of epsilon for leaving out vertices
+  std::optional<double> improve_work;  ///< nominal seconds, see bcd::SetOptions
+  double min_thickness = 0;            ///< [length]
 
   /// certify_file multiplies the file's coordinates by it first (io::scale).
   double scale = 1;

@@ -16,6 +16,9 @@ namespace kaboum::certify {
 struct EnclosureRequest {
   /// Outer, and one result; its distance is measured whatever `measure` says.
   MeshRequest mesh;
+  /// The format where float32 does not do and that of `mesh` holds nothing else: one that holds
+  /// doubles.
+  std::optional<io::Format> spare_format;
   geom::PrepareOptions preparation{.holes = geom::Holes::Fill};
   /// Set: what is enclosed is a wrap round all triangles (certify_wrap), whose distance from them
   /// counts towards epsilon. `farthest`, `float32` and `progress` are not looked at.
@@ -28,7 +31,8 @@ struct EnclosureRequest {
 /// What was found out about an enclosing mesh. A claim only as part of a CertifiedEnclosure.
 struct EnclosureCertificate {
   std::size_t vertices_in = 0, vertices = 0, triangles = 0;
-  double diagonal = 0;  ///< of what is enclosed [length]
+  bool in_spare_format = false;  ///< the bytes: EnclosureRequest::spare_format
+  double diagonal = 0;           ///< of what is enclosed [length]
   std::optional<double>
       epsilon;  ///< kept between the result and what is enclosed, a wrap's apart [length]
   /// No point of the result's surface is farther than this from the file's triangles, a wrap's

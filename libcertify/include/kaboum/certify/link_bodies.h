@@ -13,7 +13,9 @@ namespace kaboum::certify {
 
 /// What the sets of a robot's links are asked to be.
 struct RobotRequest {
-  SetRequest set;  ///< of each mesh; lengths in the robot's unit. Direction: outer
+  /// Of each mesh; lengths in the robot's unit. Direction: outer. Its `improve_work` is that of all
+  /// meshes together: by default kRobotWork with Effort::Normal.
+  SetRequest set;
   robot::ShapeChoice shapes;
   std::optional<io::Format> format;  ///< of the meshes; by default by extension
   std::string tool;  ///< that the containers name; by default bcd-decompose, with its version
@@ -25,6 +27,10 @@ struct RobotRequest {
   /// The same of one link.
   [[nodiscard]] std::string parameters(const std::string& link) const;
 };
+
+/// Within epsilon, fewer bodies are looked for until all meshes of a robot together have taken so
+/// much work; each of them has a share, and what makes it within epsilon is never cut short. [s]
+inline constexpr double kRobotWork = 30;
 
 /// A mesh of a robot, in its own frame and unit.
 struct CertifiedLinkMesh {
