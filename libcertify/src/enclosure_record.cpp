@@ -88,16 +88,10 @@ EnclosureCertificate read_enclosure(std::string_view text) {
   try {
     const Json j = Json::parse(text);
     EnclosureCertificate c;
-<<<<<<< HEAD
     c.vertices_in = count_at(j, "vertices_in");
     c.vertices = count_at(j, "vertices");
     c.triangles = count_at(j, "triangles");
-=======
-    j.at("vertices_in").get_to(c.vertices_in);
-    j.at("vertices").get_to(c.vertices);
-    j.at("triangles").get_to(c.triangles);
     j.at("in_spare_format").get_to(c.in_spare_format);
->>>>>>> robots
     j.at("diagonal").get_to(c.diagonal);
     if (!j.at("epsilon").is_null()) c.epsilon = j.at("epsilon").get<double>();
     j.at("distance_upper").get_to(c.distance_upper);
