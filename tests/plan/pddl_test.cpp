@@ -323,17 +323,6 @@ TEST(Pddl, AStaticPredicateOfAMillionAtomsIsClosedOnlyWhereThatCanBeTold) {
   EXPECT_EQ(outcome("n40", "n3", 0), Outcome::Unsolvable) << "it is still a proof";
 }
 
-TEST(Pddl, GreedyLooksAheadWhereItTakesLong) {
-  // Two balls a trip: 449 steps. The first 200 states are looked at one by one, then relaxed plans
-  // carry several balls at once.
-  const Model m = pddl(gripper(150));
-  const Solution s = solved(m, Algorithm::Greedy);
-  ASSERT_EQ(s.outcome, Outcome::Solved);
-  EXPECT_GE(measure(m, s.plan).longest, 449U);
-  EXPECT_LT(s.statistics.expanded, 449U);
-  EXPECT_EQ(plan_text(m, solved(m, Algorithm::Greedy).plan), plan_text(m, s.plan));
-}
-
 TEST(Pddl, AStaticPredicateOfManyAtomsNeedsNotToBeListed) {
   // of(a, b, c) has 27 million atoms, of which one holds and none can change.
   std::string objects;

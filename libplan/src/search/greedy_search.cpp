@@ -31,9 +31,12 @@ constexpr Index kStep = Index{1} << 31U;
 
 constexpr std::size_t kRelaxed = 0, kRelaxedPreferred = 1, kEvents = 2, kEventsPreferred = 3;
 
-/// States that are expanded before a search looks ahead: what is solved within takes no more steps
-/// than it has to.
-constexpr std::uint64_t kPatience = 200;
+/// States that are expanded before a search looks ahead, which makes plans longer and uses up what
+/// cannot be replaced: fewer where each takes long.
+std::uint64_t patience(const RelaxedPlan& relaxed) {
+  constexpr std::uint64_t kEdges = 60'000'000;
+  return std::clamp<std::uint64_t>(kEdges / (relaxed.size() + 1), 500, 3'000);
+}
 
 class GreedySearch {
  public:
@@ -46,6 +49,7 @@ class GreedySearch {
         words_(in.task.layout().words()),
         calls_(!in.task.model().external_functions.empty()),
         at_once_(calls_ || in.task.layout().sensing()),
+        patience_(patience(relaxed_)),
         store_(words_),
         scratch_(in.task.layout()) {}
 
@@ -115,7 +119,7 @@ class GreedySearch {
   }
 
   /// Whether to look ahead, where that takes no calls.
-  [[nodiscard]] bool impatient() const { return !at_once_ && in_.statistics.expanded >= kPatience; }
+  [[nodiscard]] bool impatient() const { return !at_once_ && in_.statistics.expanded >= patience_; }
 
   /// Makes the steps of the relaxed plan of the state at hand, each once, while one is possible.
   Taken look_ahead(Index state) {
@@ -249,6 +253,7 @@ class GreedySearch {
   Index words_;
   bool calls_;    ///< external functions
   bool at_once_;  ///< steps are made when their state is expanded: it may be in a plan already
+  std::uint64_t patience_;
   StateStore store_;
   Knowledge scratch_;
   Queues<4> open_;
