@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "decisions.h"
 #include "enclosure_record.h"
 #include "issuer.h"
 #include "known_file.h"
@@ -58,7 +59,7 @@ std::string key_of_enclosure(const std::string& mesh_hash, const EnclosureReques
       std::to_string(static_cast<int>(request.mesh.format)) + '\n' +
       (request.spare_format ? std::to_string(static_cast<int>(*request.spare_format)) + '\n'
                             : std::string()) +
-      request.mesh.comment + '\n' + KABOUM_VERSION + '\n' + kDecimation);
+      request.mesh.comment + '\n' + KABOUM_VERSION + '\n' + kDecimation + '\n' + kDecisions);
 }
 
 io::Format format_of(const EnclosureRequest& request, const EnclosureCertificate& made) {

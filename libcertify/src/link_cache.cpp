@@ -14,6 +14,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "decisions.h"
 #include "issuer.h"
 
 namespace kaboum::certify {
@@ -105,8 +106,8 @@ class Reader {
 
 std::string key_of(const LinkCase& link) {
   Writer w;
-  for (const std::string_view word :
-       {kKind, std::string_view(KABOUM_VERSION), std::string_view(kAlgorithm)})
+  for (const std::string_view word : {kKind, std::string_view(KABOUM_VERSION),
+                                      std::string_view(kAlgorithm), std::string_view(kDecisions)})
     w.text(word);
   w.value(std::endian::native);
   w.value(std::uint64_t{link.certificate.link});

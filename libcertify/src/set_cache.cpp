@@ -10,6 +10,7 @@
 #include <bit>
 #include <string_view>
 
+#include "decisions.h"
 #include "issuer.h"
 #include "request.h"
 #include "set_record.h"
@@ -75,10 +76,10 @@ SetCache::Key SetCache::key_of(const geom::Mesh& mesh, const std::string& sha256
 SetCache::Key SetCache::key_of(const std::string& mesh_hash, const std::string& sha256,
                                const SetRequest& r) {
   const double clearance = r.wrap ? r.wrap->clearance : 0;
-  const std::string text = mesh_hash + '\n' +
-                           std::to_string(std::bit_cast<std::uint64_t>(clearance)) + '\n' + sha256 +
-                           '\n' + r.parameters() + '\n' + r.unit + '\n' + r.frame + '\n' +
-                           r.source + '\n' + KABOUM_VERSION + '\n' + kAlgorithm + '\n' + kContainer;
+  const std::string text =
+      mesh_hash + '\n' + std::to_string(std::bit_cast<std::uint64_t>(clearance)) + '\n' + sha256 +
+      '\n' + r.parameters() + '\n' + r.unit + '\n' + r.frame + '\n' + r.source + '\n' +
+      KABOUM_VERSION + '\n' + kAlgorithm + '\n' + kContainer + '\n' + kDecisions;
   return {kaboum::sha256(text), origin_of(r, sha256),
           r.wrap ? std::optional(clearance) : std::nullopt};
 }
