@@ -99,8 +99,9 @@ Entry entry_of(const json& j) {
     out.reads.push_back(
         {r.at(0).get<bool>(), r.at(1).get<std::string>(), r.at(2).get<std::vector<std::string>>(),
          r.at(3).is_null() ? std::nullopt : std::optional(r.at(3).get<std::string>())});
-  const int kind = j.at("kind").get<int>();
-  if (kind < 0 || kind > 2) throw Error(ErrorCode::InvalidInput, "no kind of answer");
+  // `get` would convert any number.
+  const auto kind = j.at("kind").get_ref<const json::number_unsigned_t&>();
+  if (kind > 2) throw Error(ErrorCode::InvalidInput, "no kind of answer");
   out.answer = {static_cast<Answer::Kind>(kind), j.at("value").get<std::string>(),
                 j.at("payload").get<std::string>(), j.at("reason").get<std::string>()};
   return out;
