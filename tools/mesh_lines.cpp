@@ -131,7 +131,8 @@ std::vector<std::string> lines_of_enclosure(const MeshCase& run) {
                        v.inclusion.solid, solid_extent(run)));
   lines.push_back(line("surface claim",
                        "every triangle with area of " + inner + " is within the solid of " + outer,
-                       std::to_string(v.inclusion.surface.inner_triangles.size()) +
+                       (v.inclusion.limited ? "at least " : "") +
+                           std::to_string(v.inclusion.surface.inner_triangles.size()) +
                            " triangles of " + inner + " are not all within the solid of " + outer,
                        v.inclusion.surface, surface_extent(run)));
   return lines;
@@ -167,6 +168,9 @@ std::vector<std::string> notes_on(const MeshCase& run) {
           std::string(name) +
           " is inside out: its volume is negative, so that its solid is empty or nearly so");
   const verify::Inclusion& in = run.verdict.inclusion;
+  if (in.left_out > 0)
+    lines.push_back(std::to_string(in.left_out) +
+                    " triangles were not decided: --max-work allows more");
   if (in.solid.answer == Answer::Refuted || in.surface.answer == Answer::Refuted)
     for (std::string& hint : hints(run)) lines.push_back(std::move(hint));
   return lines;

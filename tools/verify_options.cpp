@@ -67,8 +67,8 @@ void add_limits(CLI::App& app, VerifyOptions& o) {
       ->type_name("N");
   app.add_option("--max-work", o.max_work,
                  "Leave what encloses what undecided (exit code 7) after so much work, counted in "
-                 "steps that take about so many seconds of one core, so that the answer is the "
-                 "same on any machine [20, and 2 per 1000 triangles]")
+                 "steps that take at most about so many seconds of one core, so that the answer is "
+                 "the same on any machine [60, and 5 per 1000 triangles]")
       ->check(number_from(0.001, 1e9))
       ->type_name("SECONDS");
 }

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <utility>
 
 #include "issuer.h"
@@ -86,12 +87,14 @@ Refutation refutation_of(const SetRequest& r, const geom::Mesh& solid, const geo
       if (claim->answer != verify::Answer::Verified) return claim->reason;
     return {};
   };
+  verify::InclusionOptions options;
+  options.max_work = std::numeric_limits<double>::infinity();  // it has to be decided
   if (r.direction == SetRequest::Direction::Outer) {
-    const verify::Cover cover = verify::verify_cover(solid, set);
+    const verify::Cover cover = verify::verify_cover(solid, set, options);
     return {first_of({&cover.convex, &cover.inclusion.solid, &cover.inclusion.surface}), {}};
   }
   if (geom::find_not_convex(set)) return {"a body is not convex", {}};
-  const verify::Inclusion inside = verify::verify_inclusion(verify::sum_of(set), solid);
+  const verify::Inclusion inside = verify::verify_inclusion(verify::sum_of(set), solid, options);
   Refutation out{first_of({&inside.solid, &inside.surface}), inside.solid.outer_triangles};
   out.triangles.insert(out.triangles.end(), inside.surface.outer_triangles.begin(),
                        inside.surface.outer_triangles.end());

@@ -8,6 +8,7 @@
 #include <kaboum/verify/distance.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "issuer.h"
 #include "mesh_surface.h"
@@ -110,6 +111,7 @@ void MeshCertifier::measure(Candidate& made) const {
 void MeshCertifier::decide(Candidate& made, const Candidate* before) const {
   const io::ReadResult back = io::parse_mesh(made.bytes, request_.format, "the result");
   verify::InclusionOptions options;
+  options.max_work = std::numeric_limits<double>::infinity();  // it has to be decided
   options.progress = [&](const std::string& what) { show("verifying: " + what); };
   const auto bounds = [&](const geom::Mesh& other) {
     return verify::verify_inclusion(outer() ? other : back.mesh, outer() ? back.mesh : other,
@@ -142,7 +144,8 @@ void MeshCertifier::look_at_surface(Candidate& made, double work) {
   MeshCertificate& c = made.certificate;
   if (!original_.solid.closed() || request_.direction == bmesh::Direction::Any) return;
   if (c.decided) {
-    c.surface = DecidedSurface{c.decided->inclusion.surface, 0, {}, false};
+    c.surface =
+        DecidedSurface{c.decided->inclusion.surface, c.decided->inclusion.left_out, {}, false};
   } else {
     if (!samples_) samples_ = sample_surface(original_.solid.mesh());
     c.samples = samples_;

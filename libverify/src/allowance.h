@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <numeric>
+#include <span>
 #include <vector>
 
 #include "parallel.h"
@@ -33,8 +35,29 @@ inline void count_steps(std::uint64_t steps) {
     throw Error(ErrorCode::LimitReached, "more work than allowed for one triangle");
 }
 
+/// What the thread is at may make so many steps more, until the end of the scope.
+class StepLimit {
+ public:
+  explicit StepLimit(std::uint64_t most) : before_(Steps::of_this_thread()) {
+    Steps::of_this_thread().most = before_.done + most;
+  }
+  ~StepLimit() { Steps::of_this_thread().most = before_.most; }
+  StepLimit(const StepLimit&) = delete;
+  StepLimit& operator=(const StepLimit&) = delete;
+
+  [[nodiscard]] std::uint64_t made() const { return Steps::of_this_thread().done - before_.done; }
+
+ private:
+  Steps before_;
+};
+
 /// An end to loops that depends on counted steps alone: the same on any machine and for any number
-/// of threads. Items are taken in blocks, and none may take more than a share of what is allowed.
+/// of threads.
+///
+/// All items have the same share of half of what is left, those that it was not enough for again
+/// the same share of half of the rest, as long as that helps; then one after the other has an
+/// eighth. So what is cheap is done first, and what takes most of the work has it. No loop takes
+/// more than three quarters of what is left.
 class Allowance {
  public:
   /// @param seconds  of one core, about; infinite: no end
@@ -43,15 +66,16 @@ class Allowance {
         most_(limited_ ? static_cast<std::uint64_t>(1e9 * seconds) : 0) {}
 
   [[nodiscard]] bool limited() const { return limited_; }
-  [[nodiscard]] bool spent() const { return limited_ && done_ >= most_; }
+  /// But for less than a thousandth.
+  [[nodiscard]] bool spent() const { return limited_ && left() <= most_ / 1000; }
   [[nodiscard]] std::uint64_t left() const {
     if (!limited_) return std::numeric_limits<std::uint64_t>::max();
-    return spent() ? 0 : most_ - done_;
+    return done_ < most_ ? most_ - done_ : 0;
   }
   void add(std::uint64_t steps) { done_ += steps; }
 
-  /// body(i) for the items, in parallel. @return per item whether it was left undone; empty if none
-  /// can be
+  /// body(i) for the items, in parallel; more than once for those that were given up.
+  /// @return per item whether it was left undone; empty if none can be
   template <class Body>
   std::vector<char> loop(std::size_t count, const Body& body) {
     if (!limited_) {
@@ -59,30 +83,37 @@ class Allowance {
       return {};
     }
     std::vector<char> undone(count, 1);
-    for (std::size_t begin = 0; begin < count && !spent(); begin += kBlock) {
-      const std::uint64_t share = std::max<std::uint64_t>(left() / kShares, 1);
+    std::vector<std::size_t> items(count);
+    std::iota(items.begin(), items.end(), std::size_t{0});
+    const std::uint64_t reserve = left() / 4;
+    const auto try_all = [&](std::span<const std::size_t> some, std::uint64_t share) {
       std::atomic<std::uint64_t> steps = 0;
-      verify::parallel_for(begin, std::min(count, begin + kBlock), [&](std::size_t i) {
-        Steps& mine = Steps::of_this_thread();
-        const Steps before = mine;
-        mine.most = mine.done + share;
+      verify::parallel_for(std::size_t{0}, some.size(), [&](std::size_t i) {
+        const StepLimit limit(share);
         try {
-          body(i);
-          undone[i] = 0;
+          body(some[i]);
+          undone[some[i]] = 0;
         } catch (const Error& error) {
           if (error.code() != ErrorCode::LimitReached) throw;
         }
-        steps += mine.done - before.done;
-        mine.most = before.most;
+        steps += limit.made();
       });
       done_ += steps;
+    };
+    for (std::size_t before = count + 1; !items.empty() && items.size() < before && !spent();) {
+      before = items.size();
+      try_all(items, std::max<std::uint64_t>(left() / (2 * before), 1));
+      std::erase_if(items, [&](std::size_t i) { return undone[i] == 0; });
+    }
+    for (const std::size_t i : items) {
+      if (left() <= reserve || spent()) break;
+      try_all({&i, 1}, std::min(left() / 8, left() - reserve));
     }
     return undone;
   }
 
  private:
   static constexpr double kMost = 1e9;
-  static constexpr std::size_t kBlock = 32, kShares = 64;
   bool limited_;
   std::uint64_t most_, done_ = 0;
 };

@@ -79,12 +79,7 @@ class Decision {
     };
     say("triangles");
     const std::vector<int> inner = values(kInner), outer = values(kOuter);
-    try {
-      prepare_settled(kInside);
-    } catch (const Error& error) {
-      if (error.code() != ErrorCode::LimitReached) throw;
-      decided_.clear();
-    }
+    settle_or_cut(kInside);
     const Contacts& contacts = arrangement_.contacts(kInside, kOutside);
     std::stable_sort(order.begin(), order.end(), [&](std::uint32_t f, std::uint32_t g) {
       return contacts.cuts(f).size() < contacts.cuts(g).size();
@@ -210,6 +205,16 @@ class Decision {
     }
   }
 
+  /// The same; where that is too much work, all cells are cut.
+  void settle_or_cut(int chain) {
+    try {
+      prepare_settled(chain);
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::LimitReached) throw;
+      decided_.clear();
+    }
+  }
+
   /// Coplanar faces that decide the cells of f that they cover.
   [[nodiscard]] std::vector<std::uint32_t> decided(std::uint32_t f) const {
     std::vector<std::uint32_t> result;
@@ -235,7 +240,7 @@ class Decision {
     };
     other_values_ =
         uncut_values(arrangement_, chain, mask_of(other), side, value, samples_, allowance_);
-    prepare_settled(chain);
+    settle_or_cut(chain);
     const std::uint32_t begin = meshes_.begin(chain);
     std::vector<char> fails(other_values_.size(), 0);
     decide_each(faces_of(chain), [&](std::uint32_t f) {
@@ -352,6 +357,8 @@ class Decision {
 
 Inclusion verify_inclusion(const geom::Mesh& inner, const geom::Mesh& outer,
                            const InclusionOptions& options) {
+  if (options.max_work && !(*options.max_work > 0))
+    throw Error(ErrorCode::InvalidArgument, "max_work must be positive");
   const MeshPair meshes(inner, outer);
   Inclusion result;
   result.inner_open_edges = meshes.unbalanced(mask_of(kInside), false);
@@ -404,7 +411,8 @@ Inclusion verify_inclusion(const geom::Mesh& inner, const geom::Mesh& outer,
     claim->reason =
         result.left_out > 0
             ? std::to_string(result.left_out) +
-                  " triangles were not decided, for the work that is allowed was done"
+                  " triangles were not decided within the work, and the pieces of one, that are "
+                  "allowed"
             : "more contacts between triangles, or pieces of one, than the limits allow";
   }
   return result;

@@ -22,9 +22,15 @@ void measure_depths(const MeshQuestion& q, MeshVerdict& out) {
   const Inclusion& in = out.inclusion;
   if (in.solid.answer == Answer::Refuted && !in.relative && !in.limited)
     out.solid_depth = beyond_margin(bracket_solid(q.inner(), q.outer(), in.solid));
-  if (in.surface.answer == Answer::Refuted)
-    out.surface_depth =
-        beyond_margin(bracket_distance(q.inner(), in.surface.inner_triangles, q.outer(), true));
+  if (in.surface.answer != Answer::Refuted) return;
+  BracketEffort effort;
+  if (in.limited)  // its target is as hard to find
+    effort.max_work = q.max_work.value_or(
+        usual_work(q.original.triangles.size() + q.approximation.triangles.size()));
+  out.surface_depth = beyond_margin(
+      bracket_distance(q.inner(), in.surface.inner_triangles, q.outer(), true, effort));
+  // What was left out may stick out farther.
+  if (in.limited) out.surface_depth->upper = std::numeric_limits<double>::infinity();
 }
 
 Bracket bracket_all(const geom::Mesh& from, const geom::Mesh& to, bool to_solid) {

@@ -223,7 +223,7 @@ Pieces pieces_with(const MeshPair& meshes, int chain, const InclusionOptions& op
                            winding(meshes, sample, kOuter, chain));
         });
       } catch (const Error& error) {  // it may satisfy the condition, or not
-        if (error.code() != ErrorCode::LimitReached) throw;
+        if (error.code() != ErrorCode::LimitReached || allowance.limited()) throw;
       }
     }
   });

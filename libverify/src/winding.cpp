@@ -95,7 +95,7 @@ class Line {
 
  private:
   // What looking at one takes, in about nanoseconds.
-  static constexpr std::uint64_t kBox = 4, kFace = 400;
+  static constexpr std::uint64_t kBox = 4, kFace = 150;
 
   /// A box that certainly contains the sample.
   void bound() {

@@ -1,6 +1,9 @@
 // Tetrahedra that are free of triangles: separating planes, certain in spite of rounding.
 #include "cones.h"
 
+#include <cmath>
+#include <limits>
+
 namespace kaboum::wrap {
 namespace {
 
@@ -24,8 +27,11 @@ void Cones::set(std::span<const Tetrahedron> tetrahedra, double clearance) {
     cone.box = {};
     for (const Vec3& p : tetrahedra[i]) cone.box.extend(p);
     if (clearance > 0) {
-      const Vec3 wide = Vec3::Constant(2 * clearance);  // twice: no matter how it is rounded
-      cone.box = {cone.box.min - wide, cone.box.max + wide};
+      for (int k = 0; k < 3; ++k) {  // twice, and outwards: no matter how it is rounded
+        constexpr double kInfinity = std::numeric_limits<double>::infinity();
+        cone.box.min[k] = std::nextafter(cone.box.min[k] - 2 * clearance, -kInfinity);
+        cone.box.max[k] = std::nextafter(cone.box.max[k] + 2 * clearance, kInfinity);
+      }
     }
     all_.extend(cone.box);
     for (std::size_t k = 0; k < 3; ++k) cone.corner[k] = tetrahedra[i][k] - origin_;

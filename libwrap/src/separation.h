@@ -28,8 +28,15 @@ struct Margin {
 
   /// @param clearance  that has to be left; ≥ 0
   Margin(const Vec3& n, double clearance)
-      : size(n.cwiseAbs().sum()), fixed(kTiny + (clearance > 0 ? clearance * kUp * n.norm() : 0)) {}
+      : size(n.cwiseAbs().sum()),
+        fixed(kTiny + (clearance > 0 ? clearance * kUp * length(n, size) : 0)) {}
   Margin() = default;
+
+  /// Not below |n| by more than rounding: squares of small numbers are lost.
+  static double length(const Vec3& n, double size) {
+    const double norm = n.norm();
+    return norm > 1e-140 ? norm : size;
+  }
 
   /// @param most  M
   [[nodiscard]] double at(double most) const {

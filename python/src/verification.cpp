@@ -162,8 +162,8 @@ prepare, drop_sheets : bool
 max_contacts : int
     Give up, 'undecided', beyond this many pairs of triangles that touch.
 max_work : float, optional
-    Leave the claims of enclosure undecided after so much work, about so many seconds of one core.
-    Default: 20, and 2 per 1000 triangles.
+    Leave the claims of enclosure undecided after so much work, at most about so many seconds of
+    one core. Default: 60, and 5 per 1000 triangles.
 threads, progress
     As for `decimate`.
 

@@ -1,11 +1,14 @@
 // Limits leave claims undecided, never verified, and the same ones on any number of threads.
-#include <kaboum/verify/inclusion.h>
+#include <kaboum/base/error.h>
+#include <kaboum/verify/mesh_verdict.h>
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <limits>
 #include <random>
 
+#include "allowance.h"
 #include "support/shapes.h"
 
 namespace {
@@ -48,7 +51,7 @@ Mesh tangle(std::size_t triangles, unsigned seed) {
 TEST(Inclusion, EndsAfterTheWorkThatIsAllowed) {
   const Mesh mesh = tangle(300, 1);
   verify::InclusionOptions options;
-  options.max_work = 0.05;
+  options.max_work = 0.5;
   const auto found = verify::verify_inclusion(mesh, mesh, options);
   EXPECT_EQ(found.solid.answer, verify::Answer::Undecided);
   EXPECT_GT(found.left_out, 0U);
@@ -73,6 +76,44 @@ TEST(Inclusion, UndecidedTrianglesAreNeverVerified) {
     if (work >= 1) {
       EXPECT_EQ(found.solid.answer, verify::Answer::Refuted);
     }
+  }
+}
+
+/// What is left out may stick out farther than what is known to.
+TEST(Verdict, LimitsLeaveNoBoundOfWhatSticksOut) {
+  const Mesh outer = box({1, 1, 1}, 6);
+  Mesh inner = translated(box({0.5, 0.5, 0.5}, 6), {0.25, 0.25, 0.25});
+  inner.vertices.back().z() = 3;
+  bool limited = false;
+  for (double work = 1e-6; work < 1; work *= 1.3) {
+    verify::MeshQuestion question{inner, outer};
+    question.max_work = work;
+    const verify::MeshVerdict verdict = verify::decide(question);
+    limited = limited || verdict.inclusion.limited;
+    if (verdict.surface_depth) {
+      EXPECT_GE(verdict.surface_depth->upper, 2 - 1e-9) << work;
+    }
+    if (verdict.solid_depth) {
+      EXPECT_GE(verdict.solid_depth->upper, 2 - 1e-9) << work;
+    }
+  }
+  EXPECT_TRUE(limited);
+  EXPECT_EQ(verify::decide({inner, outer}).answer, verify::Answer::Refuted);
+}
+
+TEST(Steps, LimitsEndWithTheirScope) {
+  // Whatever ends a loop's body; else what comes after it would be given up.
+  verify::Allowance allowance(1);
+  EXPECT_THROW(allowance.loop(4, [](std::size_t) { throw Error(ErrorCode::Internal, "a bug"); }),
+               Error);
+  verify::count_steps(2'000'000'000);
+}
+
+TEST(Inclusion, WorkHasToBePositive) {
+  for (const double work : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    verify::InclusionOptions options;
+    options.max_work = work;
+    EXPECT_THROW(verify::verify_inclusion(box({1, 1, 1}, 1), box({1, 1, 1}, 1), options), Error);
   }
 }
 

@@ -92,5 +92,20 @@ TEST(Obstacle, ClearTetrahedraHoldNoPointOfTheTriangle) {
   EXPECT_GT(clear, 300);
 }
 
+/// The squares of its normals' components are below the range of doubles.
+TEST(Obstacle, ClearanceHoldsForTinyEdges) {
+  for (const double tiny : {1e-120, 1e-150, 1e-160, 1e-165, 1e-200, 1e-300}) {
+    geom::Mesh mesh;
+    mesh.vertices = {{0, 0, 0}, {tiny, 0, 0}, {0, 1, 0}};
+    mesh.triangles = {{0, 1, 2}};
+    const Obstacle obstacle(mesh, 0.1);
+    const Tetrahedron near{Vec3(0, 0.2, 0.01), Vec3(1, 0.2, 0.01), Vec3(0, 0.8, 0.01),
+                           Vec3(0, 0.2, 1)},
+        far{Vec3(0, 0.2, 0.2), Vec3(1, 0.2, 0.2), Vec3(0, 0.8, 0.2), Vec3(0, 0.2, 1)};
+    EXPECT_FALSE(obstacle.clear(std::array<Tetrahedron, 1>{near})) << tiny;
+    EXPECT_TRUE(obstacle.clear(std::array<Tetrahedron, 1>{far})) << tiny;
+  }
+}
+
 }  // namespace
 }  // namespace kaboum::wrap

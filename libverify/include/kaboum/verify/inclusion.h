@@ -51,7 +51,7 @@ struct Claim {
 /// What deciding an inclusion is allowed where nobody says otherwise: many times what the most
 /// tangled of real meshes takes, so that only what is made to be hard is left undecided. [s]
 inline double usual_work(std::size_t triangles) {
-  return 20 + 2e-3 * static_cast<double>(triangles);
+  return 60 + 5e-3 * static_cast<double>(triangles);
 }
 
 struct InclusionOptions {
@@ -64,13 +64,13 @@ struct InclusionOptions {
   std::size_t settle_from = 1000;
   /// Decides the surface claim alone; the solid one is Undefined. Closed outer meshes only.
   bool surface_only = false;
-  /// Ends after so much work, counted in steps that take about so many seconds of one core, so that
-  /// the answer is the same on any machine; infinite: no end. Inclusion::left_out counts the
-  /// triangles that were not decided. Absent: no end with surface_only, where triangles that few
-  /// others cut are looked at first; else usual_work() of both meshes' triangles. [s]
+  /// Ends after so much work, counted in steps that take at most about so many seconds of one core,
+  /// so that the answer is the same on any machine; infinite: no end. Inclusion::left_out counts
+  /// the triangles that were not decided. Absent: no end with surface_only, where triangles that
+  /// few others cut are looked at first; else usual_work() of both meshes' triangles. [s]
   std::optional<double> max_work;
   /// Called with what is being done, from one thread.
-  std::function<void(const std::string&)> progress;
+  std::function<void(const std::string&)> progress{};
 };
 
 /// What verify_inclusion found.
@@ -101,7 +101,8 @@ struct Inclusion {
 ///
 /// The result does not depend on the number of threads.
 ///
-/// @throws Error{InvalidInput} on indices out of range or coordinates that are not finite.
+/// @throws Error{InvalidInput} on indices out of range or coordinates that are not finite;
+///   Error{InvalidArgument} unless max_work is above 0.
 Inclusion verify_inclusion(const geom::Mesh& inner, const geom::Mesh& outer,
                            const InclusionOptions& options = {});
 

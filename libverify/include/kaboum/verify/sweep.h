@@ -2,6 +2,7 @@
 
 #include <kaboum/verify/cover.h>
 
+#include <limits>
 #include <span>
 
 namespace kaboum::verify {
@@ -47,10 +48,11 @@ struct MovingShape {
 
 struct SweepOptions {
   /// Stretches and parts of triangles that move, and measure, less are not divided further.
-  double gap = 0;                                    ///< > 0 [length]
-  std::size_t max_cells = 20000;                     ///< looked at, per triangle and segment
-  bool solids = true;                                ///< decide the solid claim as well
-  InclusionOptions inclusion;                        ///< limits of the solid claim
+  double gap = 0;                 ///< > 0 [length]
+  std::size_t max_cells = 20000;  ///< looked at, per triangle and segment
+  bool solids = true;             ///< decide the solid claim as well
+  /// Limits of the solid claim; by default it has no end by work.
+  InclusionOptions inclusion{.max_work = std::numeric_limits<double>::infinity()};
   std::function<void(const std::string&)> progress;  ///< called from one thread
 };
 
