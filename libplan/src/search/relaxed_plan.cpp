@@ -306,6 +306,7 @@ std::vector<OperatorId> RelaxedPlan::steps_in_order() const {
                 ordered.end());
   std::sort(ordered.begin(), ordered.end());
   std::vector<OperatorId> steps;
+  steps.reserve(ordered.size());
   for (const auto& [cost, step] : ordered) steps.push_back(step);
   return steps;
 }
