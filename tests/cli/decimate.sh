@@ -183,7 +183,7 @@ awk 'BEGIN { n = 60; print "OFF"; print 3*n, n, 0; x = 7
   for (i = 0; i < 9*n; ++i) { x = (x * 16807) % 2147483647; printf "%.9g%s", x / 2147483647, i % 3 == 2 ? "\n" : " " }
   for (i = 0; i < n; ++i) print 3, 3*i, 3*i+1, 3*i+2 }' >soup.off
 expect 0 '120 stick out' "$D" soup.off -o soup.ply --epsilon 2%
-expect 0 'for the work allowed was done; allow more with --max-work' "$D" soup.off -o soup.ply --epsilon 2% --max-work 0.03 --report soup.json
+expect 0 'for the work allowed was done; allow more with --max-work' "$D" soup.off -o soup.ply --epsilon 2% --max-work 0.01 --report soup.json
 grep -q '"surface_triangles_left_out"' soup.json || fail "no number of triangles left out"
 
 # Usage.
