@@ -152,7 +152,8 @@ void MeshCertifier::look_at_surface(Candidate& made, double work) {
     if (samples_->outside == 0 && !samples_->cut_short) return;
     c.surface = decide_surface(original_, made.mesh, outer(), work);
   }
-  if (refuted(c.surface->claim.answer) && c.surface->left_out == 0)
+  const bool all = c.surface->left_out == 0 && !(c.decided && c.decided->inclusion.limited);
+  if (refuted(c.surface->claim.answer) && all)
     measure_sticking_out(original_, made.mesh, outer(), work, *c.surface);
 }
 

@@ -79,25 +79,47 @@ TEST(Inclusion, UndecidedTrianglesAreNeverVerified) {
   }
 }
 
-/// What is left out may stick out farther than what is known to.
+void join(Mesh& mesh, const Mesh& other) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
+  for (const geom::Triangle& t : other.triangles)
+    mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+}
+
+Mesh spike(const Vec3& apex) {
+  return {{apex, {-1.8, -1.5, 0}, {-1.8, 1.5, 0}, {-1.8, 0, 0.3}},
+          {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}};
+}
+
+/// What is left out may stick out farther: a spike that much of the outer mesh cuts, beside a box
+/// that nothing cuts and that sticks out a little.
 TEST(Verdict, LimitsLeaveNoBoundOfWhatSticksOut) {
-  const Mesh outer = box({1, 1, 1}, 6);
-  Mesh inner = translated(box({0.5, 0.5, 0.5}, 6), {0.25, 0.25, 0.25});
-  inner.vertices.back().z() = 3;
-  bool limited = false;
-  for (double work = 1e-6; work < 1; work *= 1.3) {
+  Mesh outer = translated(box({4, 4, 4}, 1), {-2, -2, -2});
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> coordinate(-1.8, 1.8);
+  for (int i = 0; i < 12; ++i) {
+    Mesh tetrahedron = spike(Vec3::Zero());
+    for (Vec3& p : tetrahedron.vertices)
+      p = {coordinate(random), coordinate(random), coordinate(random)};
+    join(outer, tetrahedron);
+  }
+  Mesh inner = translated(box({0.11, 0.05, 0.05}, 1), {1.9, 1.9, 1.9});
+  join(inner, spike({9, 0.1, 0.1}));
+  ASSERT_GT(geom::signed_volume(spike({9, 0.1, 0.1})), 0);
+  bool left_out = false;  // the spike, and not the box
+  for (double work = 1e-5; work < 1; work *= 1.1) {
     verify::MeshQuestion question{inner, outer};
     question.max_work = work;
     const verify::MeshVerdict verdict = verify::decide(question);
-    limited = limited || verdict.inclusion.limited;
     if (verdict.surface_depth) {
-      EXPECT_GE(verdict.surface_depth->upper, 2 - 1e-9) << work;
+      EXPECT_GE(verdict.surface_depth->upper, 7 - 1e-9) << work;
+      left_out = left_out || (verdict.surface_depth->lower > 0 && verdict.surface_depth->lower < 1);
     }
     if (verdict.solid_depth) {
-      EXPECT_GE(verdict.solid_depth->upper, 2 - 1e-9) << work;
+      EXPECT_GE(verdict.solid_depth->upper, 7 - 1e-9) << work;
     }
   }
-  EXPECT_TRUE(limited);
+  EXPECT_TRUE(left_out);
   EXPECT_EQ(verify::decide({inner, outer}).answer, verify::Answer::Refuted);
 }
 
