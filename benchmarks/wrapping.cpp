@@ -1,6 +1,7 @@
 // Wrapping beside CGAL's Alpha_wrap_3 (GPL: here only, never installed): triangles, user CPU time
 // and the farthest distance of the wrap from the input, at equal offset and equal gap to seal. A
 // ball of radius alpha has the diameter that our wraps seal. Both results are judged by libverify.
+// Each file has a process of its own, so that one does not leave its memory to the next.
 //
 // usage: wrapping-benchmark OFFSET SEAL FILE ...    OFFSET and SEAL as shares of the diagonal
 
@@ -11,7 +12,9 @@
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/verify/inclusion.h>
 #include <kaboum/wrap/wrap.h>
+#include <sys/wait.h>
 #include <tbb/global_control.h>
+#include <unistd.h>
 
 #include <array>
 #include <cstdio>
@@ -65,6 +68,26 @@ Row measured(const geom::Mesh& input, double diagonal, Make&& make) {
   return {mesh.triangles.size(), seconds, far / diagonal, verify::name_of(answer)};
 }
 
+void compare(const char* file, double offset_share, double seal_share) {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const geom::Mesh input = io::read_mesh(file).mesh;
+  const double diagonal = geom::bounding_box(input).diagonal();
+  const double offset = offset_share * diagonal, seal = seal_share * diagonal;
+  const Row ours = measured(input, diagonal, [&] {
+    wrap::WrapOptions options;
+    options.offset = offset;
+    options.seal = seal;
+    return wrap::wrap(input, options).mesh;
+  });
+  const Row theirs = measured(input, diagonal, [&] { return alpha_wrap(input, seal / 2, offset); });
+  std::printf("| %s | %zu | %zu | %zu | %.2f | %.2f | %.1f | %.2f | %.2f | %s, %s |\n",
+              std::filesystem::path(file).filename().c_str(), input.triangles.size(),
+              ours.triangles, theirs.triangles, ours.seconds, theirs.seconds,
+              theirs.seconds / ours.seconds, 100 * ours.distance, 100 * theirs.distance,
+              ours.inside, theirs.inside);
+  std::fflush(stdout);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -72,29 +95,17 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: wrapping-benchmark OFFSET SEAL FILE ...\n");
     return 2;
   }
-  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   std::printf(
       "| mesh | triangles | ours | CGAL's | s | CGAL's s | CPU ratio | farthest, %% | CGAL's, %% | "
       "inside |\n");
   std::printf("|---|--:|--:|--:|--:|--:|--:|--:|--:|---|\n");
+  std::fflush(stdout);
   for (int i = 3; i < argc; ++i) {
-    const geom::Mesh input = io::read_mesh(argv[i]).mesh;
-    const double diagonal = geom::bounding_box(input).diagonal();
-    const double offset = std::atof(argv[1]) * diagonal, seal = std::atof(argv[2]) * diagonal;
-    const Row ours = measured(input, diagonal, [&] {
-      wrap::WrapOptions options;
-      options.offset = offset;
-      options.seal = seal;
-      return wrap::wrap(input, options).mesh;
-    });
-    const Row theirs =
-        measured(input, diagonal, [&] { return alpha_wrap(input, seal / 2, offset); });
-    std::printf("| %s | %zu | %zu | %zu | %.2f | %.2f | %.1f | %.2f | %.2f | %s, %s |\n",
-                std::filesystem::path(argv[i]).filename().c_str(), input.triangles.size(),
-                ours.triangles, theirs.triangles, ours.seconds, theirs.seconds,
-                theirs.seconds / ours.seconds, 100 * ours.distance, 100 * theirs.distance,
-                ours.inside, theirs.inside);
-    std::fflush(stdout);
+    if (fork() == 0) {
+      compare(argv[i], std::atof(argv[1]), std::atof(argv[2]));
+      return 0;
+    }
+    if (wait(nullptr) < 0) return 1;
   }
   return 0;
 }

@@ -220,27 +220,34 @@ TriangleSearch::Nearest DistanceQuery::nearest(const Vec3& p, std::uint32_t hint
 }
 
 std::uint32_t DistanceQuery::within(const Vec3& p, double radius, std::uint32_t hint) const {
-  if (hint != kNone && to_triangle(p, hint).upper <= radius) return hint;
+  const auto is_within = [&](std::uint32_t place) {
+    if (box_beyond(p, corners_[place], radius)) return false;
+    const auto& [a, b, c] = corners_[place];
+    return point_triangle_distance(p, a, b, c).upper <= radius;
+  };
+  if (hint != kNone && is_within(position_[hint])) return hint;
   const auto nodes = bvh_.nodes();
   const double limit = radius * radius;
   std::uint32_t stack[Bvh::kMaxDepth];
   int size = 0;
-  stack[size++] = 0;
+  if (squared_distance(p, nodes[0].box) <= limit) stack[size++] = 0;
   while (size > 0) {
     const std::uint32_t index = stack[--size];
     const Bvh::Node& node = nodes[index];
-    if (squared_distance(p, node.box) > limit) continue;
     if (node.leaf()) {
-      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-        const auto& [a, b, c] = corners_[place_[i]];
-        if (point_triangle_distance(p, a, b, c).upper <= radius) return bvh_.order()[i];
-      }
+      for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
+        if (is_within(place_[i])) return bvh_.order()[i];
       continue;
     }
-    const bool left_first =
-        squared_distance(p, nodes[index + 1].box) <= squared_distance(p, nodes[node.first].box);
-    stack[size++] = left_first ? node.first : index + 1;
-    stack[size++] = left_first ? index + 1 : node.first;
+    std::uint32_t near = index + 1, far = node.first;
+    double to_near = squared_distance(p, nodes[near].box),
+           to_far = squared_distance(p, nodes[far].box);
+    if (to_far < to_near) {
+      std::swap(near, far);
+      std::swap(to_near, to_far);
+    }
+    if (to_far <= limit) stack[size++] = far;
+    if (to_near <= limit) stack[size++] = near;
   }
   return kNone;
 }

@@ -55,20 +55,30 @@ void Cones::set(std::span<const Tetrahedron> tetrahedra, double clearance) {
     for (const Vec3& p : cone.corner) common_.range.extend(sum.dot(p));
 }
 
-bool Cones::may_meet(const geom::Box3& box) const {
-  if (!overlap(box, all_)) return false;
-  // Only what is in their box can be near them: one margin does for every box.
+bool Cones::parts(const Axis& axis, const geom::Box3& box, const geom::Box3& near) const {
   Range range{0, 0};
   for (int k = 0; k < 3; ++k) {
-    const double a = common_.n[k] * (std::max(box.min[k], all_.min[k]) - origin_[k]),
-                 b = common_.n[k] * (std::min(box.max[k], all_.max[k]) - origin_[k]);
+    const double a = axis.n[k] * (std::max(box.min[k], near.min[k]) - origin_[k]),
+                 b = axis.n[k] * (std::min(box.max[k], near.max[k]) - origin_[k]);
     range.low += std::min(a, b);
     range.high += std::max(a, b);
   }
-  return !wrap::apart(range, common_.range, common_.margin.at(most_));
+  // What is in the cones' box is no farther than they are: one margin does for every box.
+  return wrap::apart(range, axis.range, axis.margin.at(most_));
 }
 
-bool Cones::clear_of(const Corners& triangle, const Vec3& normal) const {
+bool Cones::may_meet(const geom::Box3& box) const {
+  return overlap(box, all_) && !parts(common_, box, all_);
+}
+
+bool Cones::choose(const geom::Box3& box) {
+  chosen_.clear();
+  for (const Cone& cone : cones_)
+    if (overlap(box, cone.box) && !parts(cone.faces[0], box, cone.box)) chosen_.push_back(&cone);
+  return !chosen_.empty();
+}
+
+bool Cones::clear_of(const Corners& triangle) const {
   geom::Box3 box;
   for (const Vec3& p : triangle) box.extend(p);
   if (!overlap(box, all_)) return true;
@@ -77,15 +87,12 @@ bool Cones::clear_of(const Corners& triangle, const Vec3& normal) const {
     relative.corner[k] = triangle[k] - origin_;
     relative.most = std::max(relative.most, largest(relative.corner[k]));
   }
-  if (wrap::apart(range_along(common_.n, relative.corner), common_.range,
-                  common_.margin.at(relative.most)))
-    return true;
-  for (const Cone& cone : cones_)
-    if (overlap(box, cone.box) && !apart(cone, relative, normal)) return false;
+  for (const Cone* cone : chosen_)
+    if (overlap(box, cone->box) && !apart(*cone, relative)) return false;
   return true;
 }
 
-bool Cones::apart(const Cone& cone, const Relative& triangle, const Vec3& normal) const {
+bool Cones::apart(const Cone& cone, const Relative& triangle) const {
   for (const Axis& axis : cone.faces)
     if (wrap::apart(range_along(axis.n, triangle.corner), axis.range,
                     axis.margin.at(triangle.most)))
@@ -96,8 +103,8 @@ bool Cones::apart(const Cone& cone, const Relative& triangle, const Vec3& normal
     return wrap::apart(range_along(n, triangle.corner), range,
                        Margin(n, clearance_).at(triangle.most));
   };
-  if (along(normal)) return true;
   const auto& [a, b, c] = triangle.corner;
+  if (along((b - a).cross(c - a))) return true;
   const auto& [p, q, r] = cone.corner;
   for (const Vec3& e : {Vec3(b - a), Vec3(c - b), Vec3(a - c)})
     for (const Vec3& f : {p, q, r, Vec3(q - p), Vec3(r - q), Vec3(p - r)})

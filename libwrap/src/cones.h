@@ -26,8 +26,11 @@ class Cones {
   /// False only if certainly no point of the box is within the clearance of a tetrahedron.
   [[nodiscard]] bool may_meet(const geom::Box3& box) const;
 
-  /// Whether certainly no point of the triangle is. @param normal  of any length, rounded
-  [[nodiscard]] bool clear_of(const Corners& triangle, const Vec3& normal) const;
+  /// Chooses the tetrahedra that may meet the box. @return whether there are any
+  bool choose(const geom::Box3& box);
+
+  /// Whether certainly no point of the triangle is within the clearance of a chosen one.
+  [[nodiscard]] bool clear_of(const Corners& triangle) const;
 
  private:
   struct Cone {
@@ -40,7 +43,10 @@ class Cones {
     double most;  ///< the largest |coordinate| of it and of all cones
   };
 
-  [[nodiscard]] bool apart(const Cone& cone, const Relative& triangle, const Vec3& normal) const;
+  /// Whether the axis parts its cones from what is in both boxes, of which `near` holds all that is
+  /// not too far from the cones.
+  [[nodiscard]] bool parts(const Axis& axis, const geom::Box3& box, const geom::Box3& near) const;
+  [[nodiscard]] bool apart(const Cone& cone, const Relative& triangle) const;
 
   double clearance_ = 0;
   Vec3 origin_ = Vec3::Zero();
@@ -48,6 +54,7 @@ class Cones {
   geom::Box3 all_;   ///< holds the cones' boxes
   Axis common_;      ///< of all cones
   std::vector<Cone> cones_;
+  std::vector<const Cone*> chosen_;
 };
 
 }  // namespace kaboum::wrap

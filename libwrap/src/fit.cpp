@@ -15,21 +15,34 @@ bool Room::allows(const Vec3& p) const {
 }
 
 void Fit::approach() {
+  std::vector<std::uint32_t> far;
   for (std::uint32_t v = 0; v < surface_.vertex_count(); ++v)
-    if (!surface_.star(v).empty()) approach(v);
+    if (!surface_.star(v).empty() && !approach(v)) far.push_back(v);
+  for (const std::uint32_t v : far) approach(v);
 }
 
-void Fit::approach(std::uint32_t v) {
+bool Fit::approach(std::uint32_t v) {
   constexpr double kNear = 1.2;  // times the aim: not worth a step
   const Vec3 p = surface_.point(v);
   const Foot foot = obstacle_.foot(p, hint_[v]);
   hint_[v] = foot.triangle;
-  if (foot.distance <= kNear * room_.aim()) return;
+  if (foot.distance <= kNear * room_.aim()) return true;
   const Vec3 target = foot.point + room_.aim() / foot.distance * (p - foot.point);
   for (const double part : {1.0, 0.5, 0.25, 0.125}) {
     const Vec3 q = surface_.representable(p + part * (target - p));
-    if (room_.allows(q) && surface_.move(v, q)) return;
+    if (room_.allows(q) && surface_.move(v, q)) return part == 1;
   }
+  return false;
+}
+
+const Foot& Fit::foot_of(std::uint32_t triangle, const Vec3& middle) const {
+  if (triangle >= known_.size()) known_.resize(surface_.triangle_count());
+  std::optional<Known>& known = known_[triangle];
+  if (!known || known->middle != middle) {
+    const std::uint32_t hint = known ? known->foot.triangle : hint_[surface_.triangle(triangle)[0]];
+    known = Known{middle, obstacle_.foot(middle, hint)};
+  }
+  return known->foot;
 }
 
 Plane Fit::plane_of(std::uint32_t triangle) const {
@@ -39,7 +52,7 @@ Plane Fit::plane_of(std::uint32_t triangle) const {
   const double twice = normal.norm();
   if (!(twice > 0)) return {};
   const Vec3 middle = (c[0] + c[1] + c[2]) / 3;
-  const Foot foot = obstacle_.foot(middle, hint_[t[0]]);
+  const Foot& foot = foot_of(triangle, middle);
   const Vec3 away = middle - foot.point;
   if (foot.distance > room_.far() || !(away.norm() > 0.01 * room_.offset))
     return {normal / twice, middle, twice / 2};

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <functional>
+#include <optional>
 #include <vector>
 
 #include "cells.h"
@@ -33,7 +33,8 @@ class Fit {
   Fit(Surface& surface, const Obstacle& obstacle, const Room& room)
       : surface_(surface), obstacle_(obstacle), room_(room), hint_(surface.vertex_count(), 0) {}
 
-  /// Each vertex goes towards the nearest point of the input, as far as it may.
+  /// Each vertex goes towards the nearest point of the input, as far as it may; those that did not
+  /// get near try once more when all have moved.
   void approach();
   /// Each vertex goes to where the tangent planes of the input's offset near it meet: onto the
   /// edges of planes.
@@ -47,13 +48,21 @@ class Fit {
   [[nodiscard]] Plane plane_of(std::uint32_t triangle) const;
 
  private:
-  void approach(std::uint32_t v);
+  /// The input's nearest point to the middle of a triangle; asked for once while it stays there.
+  [[nodiscard]] const Foot& foot_of(std::uint32_t triangle, const Vec3& middle) const;
+  /// @return whether the vertex is near now
+  bool approach(std::uint32_t v);
   void settle(std::uint32_t v, const std::vector<Plane>& planes);
 
   Surface& surface_;
   const Obstacle& obstacle_;
   const Room& room_;
   std::vector<std::uint32_t> hint_;  ///< per vertex: a triangle of the input that was near
+  struct Known {
+    Vec3 middle;
+    Foot foot;
+  };
+  mutable std::vector<std::optional<Known>> known_;  ///< per triangle, where it was last
 };
 
 }  // namespace kaboum::wrap

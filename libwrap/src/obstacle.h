@@ -5,7 +5,6 @@
 #include <kaboum/geom/mesh.h>
 
 #include <span>
-#include <vector>
 
 #include "cones.h"
 
@@ -45,7 +44,6 @@ class Obstacle {
  private:
   geom::DistanceQuery query_;
   double clearance_;
-  std::vector<Vec3> normal_;  ///< of each triangle, of any length, rounded
 };
 
 }  // namespace kaboum::wrap

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <queue>
 #include <tuple>
 
@@ -81,9 +82,10 @@ class Simplifier {
     if (cost(a, b, surface_.point(b) - origin_) < cost(a, b, other - origin_))
       other = surface_.point(b);
     const double weight = quadric_[a].weight + quadric_[b].weight;
+    std::optional<double> allowed;
     for (const Vec3& p : {best, other}) {
       if (cost(a, b, p - origin_) > weight * room_.aim() * room_.aim()) continue;
-      if (!room_.allows(p) || !keeps_shape(a, b, p) || !near(a, b, p)) continue;
+      if (!room_.allows(p) || !keeps_shape(a, b, p) || !near(a, b, p, allowed)) continue;
       if (!surface_.contract(a, b, p)) continue;
       quadric_[a] += quadric_[b];
       ++version_[a];
@@ -132,14 +134,16 @@ class Simplifier {
   }
 
   /// Samples of what would be there are within the offset, or not farther away than the farthest
-  /// of what is there.
-  [[nodiscard]] bool near(std::uint32_t a, std::uint32_t b, const Vec3& p) {
-    double allowed = -1;
+  /// of what is there. @param allowed  that, once it is known
+  [[nodiscard]] bool near(std::uint32_t a, std::uint32_t b, const Vec3& p,
+                          std::optional<double>& allowed) {
     bool is_near = true;
     const auto sample = [&](const Vec3& x) {
-      if (!is_near || obstacle_.within(x, room_.offset, hint_)) return;
-      if (allowed < 0) allowed = farthest(a, b);
-      is_near = allowed > room_.offset && obstacle_.within(x, allowed, hint_);
+      if (!is_near || obstacle_.within(x, allowed.value_or(room_.offset), hint_)) return;
+      is_near = false;
+      if (allowed) return;
+      allowed = farthest(a, b);
+      is_near = *allowed > room_.offset && obstacle_.within(x, *allowed, hint_);
     };
     sample(p);
     for_each_changed(a, b, p, [&](const auto&, const auto& after) {

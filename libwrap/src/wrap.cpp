@@ -78,7 +78,7 @@ Wrap wrap(const geom::Mesh& input, const WrapOptions& options) {
   const Room room{lattice, cells.open, options.offset};
   Fit fit(surface, obstacle, room);
   say("vertices");
-  for (int i = 0; i < 2; ++i) fit.approach();
+  fit.approach();
   say("edges");
   simplify(surface, obstacle, room, fit);
   fit.settle();

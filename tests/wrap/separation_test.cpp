@@ -3,6 +3,10 @@
 #include <gtest/gtest.h>
 #include <kaboum/base/random.h>
 
+#include <array>
+#include <cmath>
+#include <vector>
+
 #include "cells.h"
 #include "obstacle.h"
 
@@ -105,6 +109,64 @@ TEST(Obstacle, ClearanceHoldsForTinyEdges) {
     EXPECT_FALSE(obstacle.clear(std::array<Tetrahedron, 1>{near})) << tiny;
     EXPECT_TRUE(obstacle.clear(std::array<Tetrahedron, 1>{far})) << tiny;
   }
+}
+
+/// Steps have many tetrahedra, and inputs many triangles, of which a few are tried in the end: what
+/// is clear holds no point of any triangle, nor is nearer than the clearance to one.
+TEST(Obstacle, ClearStepsHoldNoPointOfAnyTriangle) {
+  Random random(29);
+  int clear = 0, not_clear = 0;
+  for (int i = 0; i < 2000; ++i) {
+    geom::Mesh mesh;
+    const double size = i % 3 == 0 ? 0.02 : 0.3;
+    for (int t = 0; t < 40; ++t) {
+      const Vec3 middle = random_point(random, 1);
+      for (int k = 0; k < 3; ++k) mesh.vertices.emplace_back(middle + random_point(random, size));
+      const auto first = static_cast<std::uint32_t>(3 * t);
+      mesh.triangles.push_back({first, first + 1, first + 2});
+    }
+    const double clearance = i % 2 == 0 ? 0 : 0.01;
+    const Obstacle obstacle(mesh, clearance);
+    const Vec3 p = random_point(random, 1);
+    std::vector<Tetrahedron> step(static_cast<std::size_t>(1 + i % 9));
+    for (Tetrahedron& t : step) {
+      for (Vec3& corner : t) corner = p + random_point(random, 0.3);
+      t[3] = p;
+    }
+    if (!obstacle.clear(step)) {
+      ++not_clear;
+      continue;
+    }
+    ++clear;
+    for (const Tetrahedron& t : step) {
+      for (int n = 0; n < 60; ++n) {
+        std::array<double, 4> w;
+        for (double& x : w) x = -std::log(random.between(1e-9, 1));
+        const Vec3 q =
+            (w[0] * t[0] + w[1] * t[1] + w[2] * t[2] + w[3] * t[3]) / (w[0] + w[1] + w[2] + w[3]);
+        for (const auto& [a, b, c] : mesh.triangles)
+          ASSERT_GT(
+              geom::point_triangle_distance(q, mesh.vertices[a], mesh.vertices[b], mesh.vertices[c])
+                  .upper,
+              clearance);
+      }
+      for (const auto& c : mesh.triangles) {  // corners, edges and middles of the triangles
+        for (int n = 0; n < 20; ++n) {
+          double u = random.between(0, 1), v = n < 8 ? 0 : random.between(0, 1);
+          if (u + v > 1) u = 1 - u, v = 1 - v;
+          const Vec3& o = mesh.vertices[c[static_cast<std::size_t>(n % 3)]];
+          const Vec3 q = o + u * (mesh.vertices[c[static_cast<std::size_t>((n + 1) % 3)]] - o) +
+                         v * (mesh.vertices[c[static_cast<std::size_t>((n + 2) % 3)]] - o);
+          Eigen::Matrix3d m;
+          for (int k = 0; k < 3; ++k) m.col(k) = t[static_cast<std::size_t>(k)] - t[3];
+          const Vec3 w = m.inverse() * (q - t[3]);
+          ASSERT_FALSE((w.array() > 1e-9).all() && w.sum() < 1 - 1e-9);
+        }
+      }
+    }
+  }
+  EXPECT_GT(clear, 300);
+  EXPECT_GT(not_clear, 300);
 }
 
 }  // namespace
