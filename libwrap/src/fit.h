@@ -13,10 +13,11 @@ namespace kaboum::wrap {
 struct Room {
   const Lattice& lattice;
   const BitGrid& open;  ///< cells outside, and those that the input meets; not the sealed ones
+  double clearance;     ///< the surface may be nowhere nearer to the input [length]
   double offset;        ///< the surface should be nowhere farther from the input [length]
 
   /// The distance that is aimed at: half the room on either side.
-  [[nodiscard]] double aim() const { return 0.5 * offset; }
+  [[nodiscard]] double aim() const { return 0.5 * (clearance + offset); }
   /// Farther away the surface stays as it is: it closes a gap.
   [[nodiscard]] double far() const { return 1.75 * lattice.side; }
   [[nodiscard]] bool allows(const Vec3& p) const;

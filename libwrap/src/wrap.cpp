@@ -75,7 +75,7 @@ Wrap wrap(const geom::Mesh& input, const WrapOptions& options) {
   result.first_triangles = first.triangles.size();
   const Obstacle obstacle(input, options.clearance);
   Surface surface(std::move(first), obstacle, options.float32);
-  const Room room{lattice, cells.open, options.offset};
+  const Room room{lattice, cells.open, options.clearance, options.offset};
   Fit fit(surface, obstacle, room);
   say("vertices");
   fit.approach();

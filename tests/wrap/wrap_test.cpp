@@ -163,6 +163,26 @@ TEST(Wrap, KeepsAClearance) {
   }
 }
 
+/// With a clearance of nearly a third of the offset, the surface goes to the middle of what is
+/// left: it is not held up at tips and edges.
+TEST(Wrap, GetsNearTipsWithAClearance) {
+  for (const int segments : {12, 72, 200}) {
+    for (const double height : {1.0, 2.0, 4.0}) {
+      const Mesh mesh = test::cone(segments, height);
+      const double diagonal = geom::bounding_box(mesh).diagonal();
+      WrapOptions options;
+      options.offset = 0.01 * diagonal;
+      options.seal = 4 * options.offset;
+      options.clearance = 0.32 * options.offset;
+      const Mesh around = wrap(mesh, options).mesh;
+      const geom::DistanceQuery query(mesh);
+      EXPECT_LT(geom::directed_distance(around, query, {.relative_gap = 0.01}).max_upper,
+                2 * options.offset)
+          << segments << ' ' << height;
+    }
+  }
+}
+
 TEST(Wrap, IsTheSameForAnyNumberOfThreads) {
   const Mesh soup = random_soup(2, 200, 0.2);
   Mesh first;
