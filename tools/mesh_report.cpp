@@ -140,6 +140,8 @@ Json report_of(const MeshCase& run) {
   add_preparation(run, json["original"]);
   json["claims"] = claims_of(run);
   json["triangles_without_area"] = in.triangles_without_area;
+  json["limited"] = in.limited;
+  json["triangles_left_out"] = in.left_out;
   json["contacts"] = in.contacts;
   json["samples"] = in.samples;
   return json;

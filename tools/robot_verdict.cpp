@@ -44,6 +44,8 @@ Finding finding_of(const verify::HeldShape& held, const verify::Holders& holders
                       {"solid", claim_json(held.inclusion->solid)},
                       {"surface", claim_json(held.inclusion->surface)}};
   f.json["triangles_without_area"] = held.inclusion->triangles_without_area;
+  f.json["limited"] = held.inclusion->limited;
+  f.json["triangles_left_out"] = held.inclusion->left_out;
   if (!held.decisive) return f;
   const bool convex = holders.all_convex();
   const std::string bodies =

@@ -248,6 +248,20 @@ done
 grep -q '"verdict": "refuted"' r.json || fail 'verdict in the report'
 grep -q "\"sha256\": \"$(sha256sum "$BRACKET" | cut -d' ' -f1)\"" r.json || fail 'hash in the report'
 
+grep -q '"limited": false' r.json || fail 'a limit in the report'
+
+# What a limit leaves open is counted.
+tetrahedra() {
+  awk -v n=60 -v x="$1" 'BEGIN { print "OFF"; print 4*n, 4*n, 0
+    for (i = 0; i < 12*n; ++i) { x = (x * 16807) % 2147483647; printf "%.9g%s", x / 2147483647, i % 3 == 2 ? "\n" : " " }
+    for (a = 0; a < 4*n; a += 4) { print 3, a, a+2, a+1; print 3, a, a+1, a+3; print 3, a, a+3, a+2; print 3, a+1, a+2, a+3 } }'
+}
+tetrahedra 7 >these.off
+tetrahedra 99 >those.off
+expect 1 'triangles were not decided: --max-work allows more' "$V" --outer these.off those.off --max-work 1 --report limited.json
+grep -q '"limited": true' limited.json || fail 'no limit in the report'
+grep -q '"triangles_left_out": [1-9]' limited.json || fail 'no triangles left out in the report'
+
 # Same report on any number of threads, yes or no.
 for n in 1 2 5; do
   "$V" --outer "$BRACKET" outer.ply --epsilon 5% --report "yes$n.json" --threads $n >"yes$n.txt" || fail 'run'
