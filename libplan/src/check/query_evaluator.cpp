@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <exception>
 
+#include "check/derived_facts.h"
+
 namespace kaboum::plan {
 
 Fact fact(bool function, Index symbol, const std::vector<Argument>& arguments,
@@ -99,6 +101,8 @@ std::optional<bool> QueryEvaluator::truth(const Query& q, std::vector<Index>& sl
       return holds_of_value(q, slots, k);
     case Query::Kind::KnowValue:
       return k.value(fact(true, q.symbol, q.arguments, slots)) != nullptr;
+    case Query::Kind::Derived:
+      return derived(q, slots, k) != q.negated;
     case Query::Kind::Same:
       return object(q.arguments[0], slots) == object(q.arguments[1], slots);
     case Query::Kind::External:
@@ -175,6 +179,20 @@ std::optional<bool> QueryEvaluator::only(const Query& q, const Query& one,
   return result;
 }
 
+bool QueryEvaluator::derived(const Query& q, const std::vector<Index>& slots,
+                             const RuntimeKnowledge& k) const {
+  const Fact atom = fact(false, q.symbol, q.arguments, slots);
+  if (derived_ != nullptr) return derived_->holds(atom);
+  struct Reset {
+    DerivedFacts*& at;
+    ~Reset() { at = nullptr; }
+  };
+  DerivedFacts facts(model_, *this, k);
+  const Reset reset{derived_};
+  derived_ = &facts;
+  return facts.holds(atom);
+}
+
 std::optional<Index> QueryEvaluator::value(const Argument& a, const std::vector<Index>& slots,
                                            const RuntimeKnowledge& k) const {
   if (!a.term) return object(a, slots);
@@ -205,6 +223,8 @@ bool QueryEvaluator::reads(const Query& q, std::vector<Index>& slots, std::set<F
     case Query::Kind::KnowValue:
       out.insert(fact(true, q.symbol, q.arguments, slots));
       return true;
+    case Query::Kind::Derived:
+      return false;
     case Query::Kind::External:
     case Query::Kind::Let:
       for (const Argument& a : q.arguments)

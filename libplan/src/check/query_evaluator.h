@@ -13,6 +13,8 @@
 
 namespace kaboum::plan {
 
+class DerivedFacts;
+
 /// The atom or term for these slots.
 Fact fact(bool function, Index symbol, const std::vector<Argument>& arguments,
           const std::vector<Index>& slots);
@@ -61,6 +63,7 @@ class QueryEvaluator {
                            const RuntimeKnowledge& k) const;
   bool holds_of_value(const Query& q, const std::vector<Index>& slots,
                       const RuntimeKnowledge& k) const;
+  bool derived(const Query& q, const std::vector<Index>& slots, const RuntimeKnowledge& k) const;
   ExternalResult call(const Query& q, const std::vector<Index>& slots, const RuntimeKnowledge& k,
                       std::vector<Index>* arguments = nullptr) const;
   ExternalResult ask(Index external, const std::vector<Index>& arguments,
@@ -72,6 +75,7 @@ class QueryEvaluator {
   mutable HandleTable handles_;
   /// Of functions that do not read the state.
   mutable std::map<std::pair<Index, std::vector<Index>>, ExternalResult> calls_;
+  mutable DerivedFacts* derived_ = nullptr;  ///< while the body of a rule is evaluated
 };
 
 }  // namespace kaboum::plan

@@ -178,11 +178,13 @@ bool WorldRules::holds(const Query& q, std::vector<Index>& slots, const Belief& 
     }
     case K::Same:
       return object(q.arguments[0], slots) == object(q.arguments[1], slots);
+    case K::Derived:
     case K::External:
     case K::Let:
       break;
   }
-  throw Error(ErrorCode::Internal, "external functions are not asked about possible worlds");
+  throw Error(ErrorCode::Internal,
+              "neither external functions nor rules are asked about possible worlds");
 }
 
 void WorldRules::fire(const std::vector<Effect>& effects, Happening so_far, const Belief& b,

@@ -46,6 +46,7 @@ Query of_world(const Query& q, bool positive, const SourceLocation& location) {
       return of_world(q.children[0], !positive, location);
     case K::Known:
     case K::KnownValue:
+    case K::Derived:
       out.negated = q.negated != !positive;
       return out;
     case K::Same:
@@ -69,6 +70,9 @@ Update::Literal EffectResolver::literal(const sx::Formula& f, bool negated, Scop
   if (f.kind == K::Atom) {
     const sx::Term& t = f.terms.at(0);
     Query q = queries_.atom(t, scope, unfolded);
+    if (q.kind == Query::Kind::Derived)
+      t.name.location.fail("'" + t.name.text +
+                           "' is derived by rules: no effect and no initial entry can set it");
     l.symbol = q.symbol;
     l.arguments = std::move(q.arguments);
     l.negated = negated;

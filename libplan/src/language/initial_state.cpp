@@ -40,6 +40,8 @@ bool closing_matters(const Model& model, Index predicate) {
   const auto reads = [](const ExternalFunction& f) { return f.reads_state; };
   return std::ranges::any_of(model.external_functions, reads) ||
          tells_false(model.goal, predicate) ||
+         std::ranges::any_of(model.rules,
+                             [&](const Rule& r) { return tells_false(r.body, predicate); }) ||
          std::ranges::any_of(model.actions, [&](const Action& a) {
            return tells_false(a.precondition, predicate) || tells_false(a.effects, predicate);
          });
@@ -96,6 +98,7 @@ void InitialState::declare_unknown(const sx::Document& document) {
 }
 
 void InitialState::close(Index predicate, std::vector<Update>& out) {
+  if (model_.predicates[predicate].derived()) return;
   if (atoms_of(model_, predicate) <= kManyAtoms || closing_matters(model_, predicate))
     close_predicate(predicate, {}, out);
 }

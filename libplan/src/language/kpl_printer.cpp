@@ -212,6 +212,9 @@ void check_names(const syntax::Document& d) {
 
 std::string print_kpl(const syntax::Document& d) {
   check_names(d);
+  if (!d.rules.empty())
+    d.rules[0].head.location.fail("kpl cannot say derived predicates ('" + d.rules[0].head.text +
+                                  "')");
   std::string out;
   if (!d.name.text.empty()) out += "domain " + d.name.text + "\n\n";
   const auto section = [&](const char* heading, const auto& list, const auto& line) {

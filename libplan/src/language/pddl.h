@@ -7,8 +7,9 @@
 
 namespace kaboum::plan {
 
-/// Reads a PDDL domain or problem: typing, ADL, object fluents, action costs, and :observe with
-/// (unknown ...) and (oneof ...) for incomplete knowledge. Closed world but for what is unknown.
+/// Reads a PDDL domain or problem: typing, ADL, object fluents, action costs, derived predicates,
+/// and :observe with (unknown ...) and (oneof ...) for incomplete knowledge. Closed world but for
+/// what is unknown.
 /// @throws Error{InvalidInput} naming a requirement or construct that is not supported.
 syntax::Document parse_pddl(std::shared_ptr<const Source> source);
 

@@ -74,6 +74,8 @@ class PddlParser {
       functions(e);
     } else if (key == ":action") {
       action(e);
+    } else if (key == ":derived") {
+      rule(e);
     } else if (key == ":init") {
       for (std::size_t i = 1; i < e.items.size(); ++i) initial(e.items[i]);
     } else if (key == ":goal") {
@@ -117,6 +119,7 @@ class PddlParser {
                                               ":adl",
                                               ":object-fluents",
                                               ":action-costs",
+                                              ":derived-predicates",
                                               ":contingent"};
     if (std::none_of(kSupported.begin(), kSupported.end(), [&](const char* s) { return e.is(s); }))
       e.location.fail("unsupported requirement '" + e.word + "'");
@@ -171,6 +174,16 @@ class PddlParser {
     // Costs count only where some action has them; then the others are free.
     costs_ |= !a.cost.empty();
     document_.actions.push_back(std::move(a));
+  }
+
+  void rule(const SExpression& e) {
+    const SExpression& head = item(e, 1, "a predicate with its variables");
+    syntax::Rule r;
+    r.head = name(item(head, 0, "a predicate with its variables"), "a predicate's name");
+    r.parameters = typed(head, 1, true);
+    r.body = formula(item(e, 2, "a condition"), true);
+    if (e.items.size() > 3) e.items[3].location.fail("a rule has one condition: use (and ...)");
+    document_.rules.push_back(std::move(r));
   }
 
   void observe(const SExpression& e, std::vector<Effect>& out) const {
@@ -334,6 +347,8 @@ class PddlParser {
       for (const Name& p : s.parameters) use(p);
     for (const syntax::Action& a : document_.actions)
       for (const TypedVariable& p : a.parameters) use(p.type);
+    for (const syntax::Rule& r : document_.rules)
+      for (const TypedVariable& p : r.parameters) use(p.type);
   }
 
   /// Everything not stated is false, but for what is unknown.

@@ -77,9 +77,9 @@ class PddlPrinter {
 
  private:
   std::string domain(const syntax::Document& d, const std::string& title, bool costs) const {
-    std::string out =
-        "(define (domain " + title +
-        ")\n (:requirements :typing :adl :object-fluents :action-costs :contingent)\n";
+    std::string out = "(define (domain " + title +
+                      ")\n (:requirements :typing :adl :object-fluents :action-costs " +
+                      (d.rules.empty() ? ":contingent" : ":derived-predicates") + ")\n";
     out += " (:types";
     for (const syntax::Type& t : d.types)
       if (t.handle) refuse("a handle type");
@@ -95,8 +95,15 @@ class PddlPrinter {
     for (const syntax::Signature& s : d.functions)
       out += " " + signature(s) + " - " + type(s.range);
     out += std::string(costs ? " (total-cost) - number" : "") + ")\n";
+    for (const syntax::Rule& r : d.rules) out += rule(r);
     for (const syntax::Action& a : d.actions) out += action(a, costs);
     return out + ")\n\n";
+  }
+
+  [[nodiscard]] std::string rule(const syntax::Rule& r) const {
+    std::string head = "(" + r.head.text;
+    for (const TypedVariable& v : r.parameters) head += " ?" + v.name.text + " - " + type(v.type);
+    return " (:derived " + head + ")\n  " + condition(r.body) + ")\n";
   }
 
   std::string problem(const syntax::Document& d, const std::string& title, bool costs) const {

@@ -142,7 +142,7 @@ Query QueryResolver::atom(const sx::Term& t, Scope& scope, std::vector<Unfolded>
                              ? "'" + t.name.text + "' is a function: compare it with '='"
                              : "unknown predicate '" + t.name.text + "'");
   Query q;
-  q.kind = Query::Kind::Known;
+  q.kind = model().predicates[*p].derived() ? Query::Kind::Derived : Query::Kind::Known;
   q.symbol = *p;
   q.arguments = terms_.arguments(t, model().predicates[*p], scope, unfolded);
   return q;
@@ -270,6 +270,8 @@ Query QueryResolver::know_whether(const sx::Formula& f, Scope& scope) const {
   }
   if (f.kind != K::Atom) f.location.fail("Kw(...) holds an atom or an equality");
   Query q = atom(f.terms.at(0), scope, unfolded);
+  if (q.kind == Query::Kind::Derived)
+    f.terms[0].name.location.fail("'" + f.terms[0].name.text + "' is derived: it is always known");
   q.kind = Query::Kind::KnowWhether;
   return wrap(std::move(unfolded), std::move(q));
 }

@@ -22,13 +22,15 @@ class QueryResolver {
   /// The same, and `let` among the conjuncts.
   Query precondition(const syntax::Formula& f, Scope& scope) const;
 
-  /// K(p(arguments)).
+  /// K(p(arguments)), or of a derived predicate that it holds.
   Query atom(const syntax::Term& t, Scope& scope, std::vector<Unfolded>& unfolded) const;
 
   /// New variables in scope, for the caller to take out again.
   BoundSlots bind(const std::vector<syntax::TypedVariable>& variables, Scope& scope) const;
   /// Variables of an LCW pattern that nothing binds stand for every object: they are bound here.
   BoundSlots bind_wildcards(const syntax::Term& t, Scope& scope) const;
+
+  [[nodiscard]] const SymbolTable& symbols() const { return terms_.symbols(); }
 
  private:
   Query let(const syntax::Formula& f, Scope& scope) const;
@@ -46,7 +48,6 @@ class QueryResolver {
   Query know_whether(const syntax::Formula& f, Scope& scope) const;
   Query know_value(const syntax::Formula& f, Scope& scope) const;
   Query closed_world(const syntax::Formula& f, Scope& scope) const;
-  [[nodiscard]] const SymbolTable& symbols() const { return terms_.symbols(); }
   [[nodiscard]] const Model& model() const { return symbols().model(); }
 
   const TermResolver& terms_;

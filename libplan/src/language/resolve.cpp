@@ -6,6 +6,7 @@
 #include "language/initial_state.h"
 #include "language/numbers.h"
 #include "language/query_resolver.h"
+#include "language/rule_resolver.h"
 #include "language/symbol_table.h"
 #include "language/term_resolver.h"
 
@@ -22,6 +23,7 @@ class Resolver {
   Model run() {
     model_.name = document_.name.text;
     model_.external_functions = bind_externals(document_, bindings_, symbols_);
+    resolve_rules(document_, queries_, model_);
     for (const sx::Action& a : document_.actions) declare_action(a);
     declare_goal();
     InitialState(terms_, effects_, model_).declare(document_);

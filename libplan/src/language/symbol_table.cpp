@@ -138,6 +138,7 @@ void SymbolTable::declare_symbols(const sx::Document& document) {
     unique(predicates_, s.name, static_cast<Index>(model_.predicates.size()), "predicate");
     model_.predicates.push_back(symbol(s, false));
   }
+  for (const sx::Rule& r : document.rules) model_.predicates[predicate(r.head)].level = 0;
   for (const sx::Signature& s : document.functions) {
     unique(functions_, s.name, static_cast<Index>(model_.functions.size()), "function");
     if (predicates_.contains(s.name.text))

@@ -25,6 +25,7 @@ syntax::Document syntax::merge(Document domain, Document problem) {
   append(domain.externals, problem.externals);
   append(domain.tables, problem.tables);
   append(domain.actions, problem.actions);
+  append(domain.rules, problem.rules);
   append(domain.initial, problem.initial);
   append(domain.goals, problem.goals);
   append(domain.closed, problem.closed);

@@ -78,6 +78,13 @@ struct Action {
   std::vector<Term> cost;  ///< empty: 1; else one term, a number or a function of number
 };
 
+/// Of a derived predicate: it holds of the parameters where the body does.
+struct Rule {
+  Name head;
+  std::vector<TypedVariable> parameters;
+  Formula body;
+};
+
 struct Type {
   Name name;
   Name parent;  ///< empty text: a root
@@ -112,6 +119,7 @@ struct Document {
   std::vector<Signature> externals;
   std::vector<Table> tables;
   std::vector<Action> actions;
+  std::vector<Rule> rules;
   std::vector<Effect> initial;
   std::vector<Formula> goals;    ///< conjunction
   std::vector<Name> closed;      ///< predicates closed in the initial state ("all": every one)

@@ -189,6 +189,7 @@ std::string print_xml(const syntax::Document& d) {
   };
   for (const syntax::Type& t : d.types)
     if (t.name.text != "object") refuse("types ('" + t.name.text + "')");
+  if (!d.rules.empty()) refuse("derived predicates ('" + d.rules[0].head.text + "')");
   if (!d.externals.empty()) refuse("external functions ('" + d.externals[0].name.text + "')");
   if (!d.closed.empty()) refuse("'closed:'");
   for (const syntax::Signature& f : d.functions)

@@ -369,6 +369,7 @@ bool Reachability::possible(Formula f, bool positive) const {
     case Kind::Xor:
     case Kind::Bits:
     case Kind::External:
+    case Kind::Derived:
       return true;
     case Kind::Not:
       return possible(*pool.begin(f), !positive);

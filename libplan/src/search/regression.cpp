@@ -22,6 +22,8 @@ bool leaf_touched(const FormulaPool& pool, const Layout& layout, Formula f,
   const FormulaPool::Node& n = pool.node(f);
   if (n.kind == Kind::Bits) return (touched[n.a] & pool.bits_mask(n)) != 0;
   if (n.kind == Kind::True || n.kind == Kind::False || n.kind == Kind::External) return false;
+  if (n.kind == Kind::Derived)  // by some rule or other
+    return std::any_of(touched.begin(), touched.end(), [](Word w) { return w != 0; });
   const Fluent& fluent = layout.fluents()[n.a];
   if ((touched[fluent.word] & fluent.mask) != 0) return true;
   for (Index i = 0; i < fluent.exclusion_words; ++i)
@@ -104,6 +106,9 @@ void Regression::require_read(Formula f) {
   } else if (kind == Kind::Bits) {
     const FormulaPool::Node n = pool.node(f);
     required_.push_back(pool.bits(n.a, pool.bits_mask(n), before_[n.a] & pool.bits_mask(n)));
+  } else if (kind == Kind::Derived) {
+    for (const Index fluent : task_.derived().fluents(pool.node(f).a))
+      require_as_before(task_.layout().fluents()[fluent]);
   } else if (kind != Kind::True && kind != Kind::False && kind != Kind::External) {
     for (const Index fluent : tied_to(pool.node(f).a)) {
       const Fluent& read = task_.layout().fluents()[fluent];
@@ -142,6 +147,7 @@ Formula Regression::rewrite(Formula f) {
     return pool.bits(n.a, mask & ~set, value & ~set);
   }
   const Truth t = task_.evaluator().evaluate(f, after_.words());
+  if (n.kind == Kind::Derived) require_read(f);
   if (t == Truth::Open) {
     open_ = true;
     return f;

@@ -44,6 +44,18 @@ Relaxation::Relaxation(Task& task, Limits& limits)
 }
 
 Index Relaxation::node(Formula f, bool positive) {
+  const Index made = make_node(f, positive);
+  // Not within one another: chains of rules may be long, and come back to where they began.
+  while (!pending_.empty()) {
+    const auto [at, body, holds] = pending_.back();
+    pending_.pop_back();
+    const Index child = make_node(body, holds);
+    nodes_[at].children = {child};
+  }
+  return made;
+}
+
+Index Relaxation::make_node(Formula f, bool positive) {
   const std::uint64_t key = (std::uint64_t{f} << 1U) | (positive ? 1U : 0U);
   if (const auto known = node_index_.find(key); known != node_index_.end()) return known->second;
   const FormulaPool& pool = task_.pool();
@@ -55,7 +67,7 @@ Index Relaxation::node(Formula f, bool positive) {
       made.kind = (n.kind == Kind::True) == positive ? Node::Kind::All : Node::Kind::Any;
       break;
     case Kind::Not: {
-      const Index child = node(*pool.begin(f), !positive);
+      const Index child = make_node(*pool.begin(f), !positive);
       node_index_[key] = child;
       return child;
     }
@@ -63,17 +75,25 @@ Index Relaxation::node(Formula f, bool positive) {
     case Kind::Or:
       made.kind = (n.kind == Kind::And) == positive ? Node::Kind::All : Node::Kind::Any;
       for (const Formula* c = pool.begin(f); c != pool.end(f); ++c)
-        made.children.push_back(node(*c, positive));
+        made.children.push_back(make_node(*c, positive));
       break;
     case Kind::Xor:
       made.kind = positive ? Node::Kind::Any : Node::Kind::All;
       if (positive)
         for (const Formula* c = pool.begin(f); c != pool.end(f); ++c)
-          made.children.push_back(node(*c, true));
+          made.children.push_back(make_node(*c, true));
       break;
     case Kind::Bits:
     case Kind::External:
       made.kind = Node::Kind::All;  // optimistic; calling is left to the search
+      break;
+    case Kind::Derived:
+      // What its rules need costs nothing more. Of a recursive one the negation is taken for true:
+      // its rules' negations may need one another.
+      made.kind = Node::Kind::All;
+      if (!positive && task_.derived().recursive(n.a)) break;
+      made.kind = Node::Kind::Any;
+      pending_.push_back({static_cast<Index>(nodes_.size()), task_.derived().body(n.a), positive});
       break;
     default: {
       bool always = false;

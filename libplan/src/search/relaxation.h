@@ -50,6 +50,14 @@ class Relaxation {
   Index node(Formula f, bool positive = true);
 
  private:
+  /// A derived atom whose rules are still to be made nodes of.
+  struct Pending {
+    Index node;
+    Formula body;
+    bool positive;
+  };
+
+  Index make_node(Formula f, bool positive);
   void add_action(OperatorId step);
   [[nodiscard]] bool senses_unknown(const GroundAction& action, const Change& change) const;
   void add_operator(Operator o, std::vector<Index> conditions);
@@ -61,6 +69,7 @@ class Relaxation {
   std::vector<Operator> operators_;
   std::vector<Node> nodes_;
   std::unordered_map<std::uint64_t, Index> node_index_;
+  std::vector<Pending> pending_;
 };
 
 }  // namespace kaboum::plan

@@ -42,13 +42,14 @@ class FormulaPool {
     ValueWhether,  ///< Kw(f = v)
     ValueKnown,    ///< Kv(f)
     Bits,          ///< state[a] & masks_[b] == values_[b]
-    External       ///< call a, expected value b (kNone: true)
+    External,      ///< call a, expected value b (kNone: true)
+    Derived        ///< derived atom a (derived_atoms.h)
   };
   struct Node {
     Kind kind = Kind::False;
     bool calls = false;  ///< an External is in it
-    Index a = 0;         ///< fluent, word or call; of a connective: first child in children_
-    Index b = 0;         ///< value; of a connective: number of children
+    Index a = 0;  ///< fluent, word, call or derived atom; of a connective: first child in children_
+    Index b = 0;  ///< value; of a connective: number of children
   };
 
   FormulaPool(const Layout& layout, Limits& limits);
@@ -62,6 +63,7 @@ class FormulaPool {
   Formula one(const std::vector<Formula>& children);  ///< exclusive or: exactly one
   Formula bits(Index word, Word mask, Word value);
   Formula external(Index call, Index expected);
+  Formula derived(Index atom) { return leaf(Kind::Derived, atom); }
 
   [[nodiscard]] const Node& node(Formula f) const { return nodes_[f]; }
   [[nodiscard]] const Formula* begin(Formula f) const { return children_.data() + nodes_[f].a; }

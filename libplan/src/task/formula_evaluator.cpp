@@ -91,6 +91,8 @@ Truth FormulaEvaluator::evaluate(Formula f, const Word* state) const {
       const Fluent& fluent = layout_.fluents()[n.a];
       return yes(fluent.get(state) != kValueUnknown || excluded(fluent, state, n.b));
     }
+    case Kind::Derived:
+      return yes(derived_.holds(n.a, state, *this));
     case Kind::Bits:
       return yes((state[n.a] & pool_.bits_mask(n)) == pool_.bits_value(n));
     case Kind::External: {

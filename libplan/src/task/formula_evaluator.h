@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "task/derived_atoms.h"
 #include "task/external_calls.h"
 #include "task/formula.h"
 #include "task/layout.h"
@@ -18,8 +19,9 @@ enum class Truth : std::uint8_t { No, Yes, Open, Unresolved };
 class FormulaEvaluator {
  public:
   /// @pre all arguments outlive it.
-  FormulaEvaluator(const FormulaPool& pool, const Layout& layout, ExternalCalls& calls)
-      : pool_(pool), layout_(layout), calls_(calls) {}
+  FormulaEvaluator(const FormulaPool& pool, const Layout& layout, ExternalCalls& calls,
+                   DerivedAtoms& derived)
+      : pool_(pool), layout_(layout), calls_(calls), derived_(derived) {}
 
   /// Conjunctions and disjunctions are evaluated from left to right and stop at the first child
   /// that decides; an External is not called once an earlier child is open.
@@ -48,6 +50,7 @@ class FormulaEvaluator {
   const FormulaPool& pool_;
   const Layout& layout_;
   ExternalCalls& calls_;
+  DerivedAtoms& derived_;
 };
 
 }  // namespace kaboum::plan

@@ -51,6 +51,10 @@ Formula QueryGrounder::ground(const Query& q, std::vector<Index>& slots) {
     case Query::Kind::WhetherValue:
     case Query::Kind::KnowValue:
       return ground_term(q, slots);
+    case Query::Kind::Derived: {
+      const Formula f = rules_.atom(q.symbol, objects(q, slots), *this);
+      return q.negated ? pool_.negate(f) : f;
+    }
     case Query::Kind::Same:
       return constant(value_of(q.arguments[0], slots.data()) ==
                       value_of(q.arguments[1], slots.data()));

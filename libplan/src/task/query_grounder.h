@@ -7,6 +7,7 @@
 #include "task/external_calls.h"
 #include "task/formula.h"
 #include "task/layout.h"
+#include "task/rule_grounder.h"
 #include "task/solve_limits.h"
 
 namespace kaboum::plan {
@@ -17,8 +18,13 @@ class QueryGrounder {
  public:
   /// @pre all arguments outlive it.
   QueryGrounder(const Model& model, const Layout& layout, Limits& limits, FormulaPool& pool,
-                ExternalCalls& calls)
-      : model_(model), layout_(layout), limits_(limits), pool_(pool), calls_(calls) {}
+                ExternalCalls& calls, DerivedAtoms& derived)
+      : model_(model),
+        layout_(layout),
+        limits_(limits),
+        pool_(pool),
+        calls_(calls),
+        rules_(model, limits, pool, derived) {}
 
   /// The query for these slots; `let` gives its slot the call's number.
   Formula ground(const Query& query, std::vector<Index>& slots);
@@ -38,6 +44,7 @@ class QueryGrounder {
   Limits& limits_;
   FormulaPool& pool_;
   ExternalCalls& calls_;
+  RuleGrounder rules_;
   bool monotone_ = true;  ///< ground() is within no negation and no exclusive or
 };
 

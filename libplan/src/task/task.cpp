@@ -18,8 +18,9 @@ Task::Task(const Model& model, Limits& limits)
       layout_(model, limits),
       calls_(model, layout_, limits),
       pool_(layout_, limits),
-      evaluator_(pool_, layout_, calls_),
-      queries_(model, layout_, limits, pool_, calls_),
+      derived_(pool_, layout_),
+      evaluator_(pool_, layout_, calls_, derived_),
+      queries_(model, layout_, limits, pool_, calls_, derived_),
       grounder_(model, layout_, pool_, queries_, limits),
       effects_(layout_, evaluator_, calls_) {
   Index slots = std::max<Index>(model.goal_slots, 1);

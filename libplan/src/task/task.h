@@ -33,6 +33,7 @@ class Task {
   [[nodiscard]] const FormulaEvaluator& evaluator() const { return evaluator_; }
   [[nodiscard]] QueryGrounder& queries() { return queries_; }
   [[nodiscard]] ExternalCalls& calls() { return calls_; }
+  [[nodiscard]] const DerivedAtoms& derived() const { return derived_; }
   [[nodiscard]] const std::vector<Word>& initial() const { return initial_; }
   [[nodiscard]] Formula goal() const { return goal_; }
 
@@ -107,6 +108,7 @@ class Task {
   Layout layout_;
   ExternalCalls calls_;
   FormulaPool pool_;
+  DerivedAtoms derived_;
   FormulaEvaluator evaluator_;
   QueryGrounder queries_;
   std::vector<Word> initial_;

@@ -246,6 +246,7 @@ class Grounder {
         return leaf(Kind::Decided, true, q, slots);
       case Query::Kind::Same:
         return constant(of(q.arguments[0], slots) == of(q.arguments[1], slots));
+      case Query::Kind::Derived:
       case Query::Kind::External:
       case Query::Kind::Let:
         break;

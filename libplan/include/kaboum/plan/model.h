@@ -39,6 +39,12 @@ struct Symbol {
   std::vector<Index> parameters;  ///< types
   Index range = kNone;            ///< type of the value; kNone: a truth value
   bool numeric = false;           ///< a function whose constant values are integers (costs)
+  /// Of a derived predicate; kNone: effects say where it holds. Its rules read derived predicates
+  /// of lower levels, and those of its own level that it depends on and that depend on it.
+  Index level = kNone;
+  bool recursive = false;  ///< derived, and depends on itself
+
+  [[nodiscard]] bool derived() const { return level != kNone; }
 };
 
 struct FunctionTerm;
@@ -72,6 +78,7 @@ struct Query {
     KnownValue,    ///< K(f(arguments) = value), or != when negated
     WhetherValue,  ///< Kw(f(arguments) = value)
     KnowValue,     ///< Kv(f(arguments))
+    Derived,       ///< p(arguments) holds by the rules, or does not when negated
     Same,          ///< arguments[0] and arguments[1] are the same object
     External,      ///< extern(g(arguments)), or extern(g(arguments)) = value if it has one
     Let            ///< extern(g(arguments)) has a value, and slot `value` stands for it from now on
@@ -137,6 +144,15 @@ struct Action {
   std::vector<Argument> cost_arguments;
 };
 
+/// A derived predicate holds of objects where, for these as slots 0, 1, ..., the body of one of its
+/// rules does: the least set of atoms for which that is so, level by level.
+struct Rule {
+  Index predicate = 0;
+  std::vector<Index> parameters;  ///< types: the rule is of objects of these
+  Index slots = 0;                ///< parameters and quantified variables together
+  Query body;
+};
+
 /// What an external function may ask of the state.
 class StateReader {
  public:
@@ -175,6 +191,7 @@ struct Model {
   std::vector<Symbol> externals;
   std::vector<ExternalFunction> external_functions;  ///< one per external
   std::vector<Action> actions;
+  std::vector<Rule> rules;      ///< all is known where there are some
   std::vector<Update> initial;  ///< ground, in the order to apply; LCW entries last
   Query goal;
   Index goal_slots = 0;
