@@ -50,6 +50,19 @@ TEST(Derived, RecursiveRulesAreALeastFixedPoint) {
   EXPECT_EQ(solved(pddl(text), Algorithm::Greedy).outcome, Outcome::Unsolvable);
 }
 
+TEST(Derived, WhatWasLookedAtTooEarlyIsLookedAtAgain) {
+  // b rests on a, and is first asked for while a is not decided yet.
+  const Model m = pddl(
+      "(define (domain d) (:requirements :adl :derived-predicates) (:predicates (x) (c) (r) (a) "
+      "(b))"
+      " (:derived (r) (and (a) (b))) (:derived (a) (or (b) (c))) (:derived (b) (a))"
+      " (:derived (a) (and (x) (r)))"
+      " (:action f :parameters () :precondition (not (c)) :effect (and (c) (x))))"
+      "(define (problem p) (:domain d) (:init (c)) (:goal (r)))");
+  EXPECT_TRUE(check(m, Plan{}).valid);
+  EXPECT_EQ(fewest(m), 0U);
+}
+
 TEST(Derived, LongChainsOfRulesAreFollowed) {
   constexpr int kRooms = 1500;
   std::string objects, facts;
