@@ -38,6 +38,13 @@ std::uint64_t patience(const RelaxedPlan& relaxed) {
   return std::clamp<std::uint64_t>(kEdges / (relaxed.size() + 1), 500, 3'000);
 }
 
+/// States that may be expanded in all, as far as progress so far tells, for a search to go on
+/// without.
+std::uint64_t most_steady(const RelaxedPlan& relaxed) {
+  constexpr std::uint64_t kEdges = 3'000'000'000;
+  return kEdges / (relaxed.size() + 1);
+}
+
 class GreedySearch {
  public:
   /// @param most_expanded  states, before it gives up.
@@ -50,6 +57,7 @@ class GreedySearch {
         calls_(!in.task.model().external_functions.empty()),
         at_once_(calls_ || in.task.layout().sensing()),
         patience_(patience(relaxed_)),
+        most_steady_(most_steady(relaxed_)),
         store_(words_),
         scratch_(in.task.layout()) {}
 
@@ -118,8 +126,17 @@ class GreedySearch {
     return std::nullopt;
   }
 
-  /// Whether to look ahead, where that takes no calls.
-  [[nodiscard]] bool impatient() const { return !at_once_ && in_.statistics.expanded >= patience_; }
+  /// Whether to look ahead, where that takes no calls. Once it does it goes on.
+  [[nodiscard]] bool impatient() {
+    if (!impatient_ && !at_once_ && in_.statistics.expanded >= patience_) impatient_ = !steady();
+    return impatient_;
+  }
+
+  /// Whether the relaxed estimate falls so fast that the goal is not far.
+  [[nodiscard]] bool steady() const {
+    const std::uint64_t fallen = first_ - best_.relaxed;
+    return in_.statistics.expanded * first_ <= most_steady_ * fallen;
+  }
 
   /// Makes the steps of the relaxed plan of the state at hand, each once, while one is possible.
   Taken look_ahead(Index state) {
@@ -173,6 +190,7 @@ class GreedySearch {
   std::optional<Estimates> evaluate(Index state) {
     const std::uint64_t relaxed = relaxed_.evaluate(store_[state]);
     const bool dead = relaxed == RelaxedPlan::kDeadEnd;
+    if (state == 0) first_ = dead ? 0 : std::min<std::uint64_t>(relaxed, kFar - 1);
     if (state == 0 && in_.statistics.searches == 1)
       in_.statistics.initial_estimate = dead ? -1 : static_cast<std::int64_t>(relaxed);
     if (dead) return std::nullopt;
@@ -254,6 +272,9 @@ class GreedySearch {
   bool calls_;    ///< external functions
   bool at_once_;  ///< steps are made when their state is expanded: it may be in a plan already
   std::uint64_t patience_;
+  std::uint64_t most_steady_;
+  std::uint64_t first_ = 0;  ///< the first state's relaxed estimate
+  bool impatient_ = false;
   StateStore store_;
   Knowledge scratch_;
   Queues<4> open_;

@@ -27,7 +27,7 @@ std::vector<FactId> united(const std::vector<FactId>& a, const std::vector<FactI
 }  // namespace
 
 LandmarkHeuristic::LandmarkHeuristic(Task& task, const Relaxation& relaxation,
-                                     const Invariants& invariants)
+                                     const Invariants& invariants, Formula goal)
     : task_(task), relaxation_(relaxation), invariants_(invariants) {
   number_of_.assign(task.action_count(), kNone);
   for (const OperatorId a : relaxation.actions()) {
@@ -53,7 +53,7 @@ LandmarkHeuristic::LandmarkHeuristic(Task& task, const Relaxation& relaxation,
   };
   opaque_.resize(relaxation.facts().size());
   for (FactId f = 0; f < relaxation.facts().size(); ++f) opaque_[f] = opaque(f) ? 1 : 0;
-  for (const FactId f : relaxation.necessary_facts(task.goal()))
+  for (const FactId f : relaxation.necessary_facts(goal))
     if (!opaque_[f]) goals_.push_back(f);
   goals_in_group_.resize(invariants.groups());
   for (Index g = 0; g < goals_.size(); ++g)

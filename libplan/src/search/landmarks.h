@@ -24,7 +24,9 @@ namespace kaboum::plan {
 /// Proof of admissibility: docs/planning/search.md.
 class LandmarkHeuristic {
  public:
-  LandmarkHeuristic(Task& task, const Relaxation& relaxation, const Invariants& invariants);
+  /// @param goal  what holds of a reachable state where the task's goal does.
+  LandmarkHeuristic(Task& task, const Relaxation& relaxation, const Invariants& invariants,
+                    Formula goal);
 
   /// Lower bound on the cost to the goal; nullopt: the goal cannot be reached.
   std::optional<std::uint64_t> evaluate(const Word* state);

@@ -2,6 +2,7 @@
 #include "search/relaxation.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace kaboum::plan {
 
@@ -124,6 +125,17 @@ std::vector<FactId> Relaxation::necessary_facts(Formula f) const {
   if (n.kind == Kind::And) {
     for (const Formula* c = pool.begin(f); c != pool.end(f); ++c)
       for (const FactId x : necessary_facts(*c)) result.push_back(x);
+  } else if (n.kind == Kind::Or) {
+    for (const Formula* c = pool.begin(f); c != pool.end(f); ++c) {
+      std::vector<FactId> of = necessary_facts(*c), common;
+      if (c != pool.begin(f)) {
+        std::set_intersection(result.begin(), result.end(), of.begin(), of.end(),
+                              std::back_inserter(common));
+        of = std::move(common);
+      }
+      result = std::move(of);
+      if (result.empty()) break;
+    }
   } else if (n.kind == Kind::IsTrue || n.kind == Kind::IsFalse || n.kind == Kind::ValueIs) {
     bool always = false;
     const std::vector<FactId> any = facts_.leaf_contents(n, true, always);

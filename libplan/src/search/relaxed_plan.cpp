@@ -184,9 +184,9 @@ class RelaxedPlan::Builder {
   std::vector<std::vector<Index>> needed_by_;
 };
 
-RelaxedPlan::RelaxedPlan(Task& task, Relaxation& relaxation) : task_(task) {
-  const Index goal = relaxation.node(task.goal());
-  Builder(*this, relaxation).build(goal);
+RelaxedPlan::RelaxedPlan(Task& task, Relaxation& relaxation, Formula goal) : task_(task) {
+  const Index node = relaxation.node(goal);
+  Builder(*this, relaxation).build(node);
   cost_.resize(needed_by_.first.size() - 1);
   supporter_.resize(cost_.size());
   seen_value_.assign(cost_.size(), 0);

@@ -15,7 +15,8 @@ namespace kaboum::plan {
 /// an action that they have refused counts more from then on.
 class RelaxedPlan {
  public:
-  explicit RelaxedPlan(Task& task, Relaxation& relaxation);
+  /// @param goal  what holds of a reachable state where the task's goal does.
+  RelaxedPlan(Task& task, Relaxation& relaxation, Formula goal);
 
   /// Estimate from this state; kDeadEnd if the goal is out of reach even relaxed.
   static constexpr std::uint64_t kDeadEnd = ~std::uint64_t{0};

@@ -40,11 +40,13 @@ struct Heuristics {
   RelaxedPlan& relaxed(Task& task, Limits& limits);
   LandmarkHeuristic& landmark(Task& task, Limits& limits);
   ApplicableSteps& steps(Task& task, Limits& limits);
+  void prepare(Task& task, Limits& limits);
   std::unique_ptr<Relaxation> relaxation;
   std::unique_ptr<RelaxedPlan> relaxed_plan;
   std::unique_ptr<Invariants> invariants;
   std::unique_ptr<LandmarkHeuristic> landmarks;
   std::unique_ptr<ApplicableSteps> applicable;
+  Formula goal = kTrue;  ///< the task's, without what no reachable state has
 };
 
 /// One search from `start` to the target. The algorithm's header tells what it guarantees.
