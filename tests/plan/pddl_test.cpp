@@ -198,6 +198,16 @@ TEST(Pddl, AVariableBeginsAWordOfItsOwn) {
   EXPECT_EQ(optimum(m), 1U);
 }
 
+TEST(Pddl, APredicateNamedAllLeavesTheWorldClosed) {
+  const std::string text =
+      "(define (domain d) (:predicates (all) (p ?x)) (:action f :parameters (?x)"
+      " :precondition (not (p ?x)) :effect (and (p ?x) (all))))"
+      "(define (problem q) (:domain d) (:objects a b) (:init (p a)) (:goal (and (all) (p b))))";
+  EXPECT_EQ(optimum(pddl(text)), 1U);
+  const std::string kpl = convert({"t.pddl", text, Language::Pddl}, nullptr, Language::Kpl);
+  EXPECT_EQ(optimum(model_of(kpl)), 1U);
+}
+
 TEST(Pddl, NamesWhatIsNotSupported) {
   const std::string head = "(define (domain d) (:requirements ";
   EXPECT_NE(complaint(head + ":durative-actions))", Language::Pddl)

@@ -1,6 +1,7 @@
 // Writes .kpl in one canonical form: what is printed reads as the same document.
 #include "language/kpl_printer.h"
 
+#include <algorithm>
 #include <set>
 
 #include "language/lexer.h"
@@ -271,7 +272,16 @@ std::string print_kpl(const syntax::Document& d) {
     }
     return update(e) + ";";
   });
-  section("closed:", d.closed, [](const syntax::Name& n) { return n.text + ";"; });
+  std::vector<syntax::Name> closed = d.closed;
+  if (d.closed_world) {
+    const auto is_all = [](const syntax::Signature& s) { return s.name.text == "all"; };
+    closed = {{"all", {}}};
+    if (std::any_of(d.predicates.begin(), d.predicates.end(), is_all)) {
+      closed.clear();
+      for (const syntax::Signature& s : d.predicates) closed.push_back(s.name);
+    }
+  }
+  section("closed:", closed, [](const syntax::Name& n) { return n.text + ";"; });
   section("unknown:", d.unknown, [](const Formula& f) { return print_formula(f) + ";"; });
   for (const Formula& g : d.goals) out += "goal:\n  " + print_formula(g) + "\n";
   return out;

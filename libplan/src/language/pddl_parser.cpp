@@ -55,7 +55,7 @@ class PddlParser {
     const Name n = name(item(head, 1, "a name"), "a name");
     if (domain || document_.name.text.empty()) document_.name = n;
     for (std::size_t i = 2; i < e.items.size(); ++i) section(e.items[i]);
-    if (!domain) close_world(head.location);
+    if (!domain) close_world();
   }
 
   void section(const SExpression& e) {
@@ -352,8 +352,8 @@ class PddlParser {
   }
 
   /// Everything not stated is false, but for what is unknown.
-  void close_world(const SourceLocation& location) {
-    document_.closed.push_back({"all", location});
+  void close_world() {
+    document_.closed_world = true;
     document_.unknown = std::move(unknown_);
   }
 

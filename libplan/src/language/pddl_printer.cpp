@@ -110,8 +110,9 @@ class PddlPrinter {
     std::string out = "(define (problem " + title + "-problem)\n (:domain " + title + ")\n (:init";
     for (const Effect& e : d.initial) out += "\n  " + initial(e);
     for (const Formula& f : d.unknown) out += "\n  (unknown " + literal(f) + ")";
-    const bool closed = std::any_of(d.closed.begin(), d.closed.end(),
-                                    [](const Name& n) { return n.text == "all"; });
+    const bool closed =
+        d.closed_world || std::any_of(d.closed.begin(), d.closed.end(),
+                                      [](const Name& n) { return n.text == "all"; });
     if (!closed)
       refuse(
           "an open world: PDDL takes what is not stated for false; state 'closed: all' if that is "

@@ -25,6 +25,7 @@ void require_complete(const sx::Document& document) {
     return std::ranges::all_of(list, [&](const sx::Effect& e) { return plain(plain, e); });
   };
   const bool closed =
+      document.closed_world ||
       std::ranges::any_of(document.closed, [](const sx::Name& n) { return n.text == "all"; });
   if ((!closed && !document.goals.empty()) || !document.unknown.empty() ||
       !document.externals.empty() || !all_plain(document.initial) ||

@@ -29,6 +29,7 @@ syntax::Document syntax::merge(Document domain, Document problem) {
   append(domain.initial, problem.initial);
   append(domain.goals, problem.goals);
   append(domain.closed, problem.closed);
+  domain.closed_world |= problem.closed_world;
   append(domain.unknown, problem.unknown);
   append(domain.sources, problem.sources);
   return domain;

@@ -123,6 +123,7 @@ struct Document {
   std::vector<Effect> initial;
   std::vector<Formula> goals;    ///< conjunction
   std::vector<Name> closed;      ///< predicates closed in the initial state ("all": every one)
+  bool closed_world = false;     ///< every predicate is closed, also where one is named "all"
   std::vector<Formula> unknown;  ///< atoms that closing leaves open
   /// Of a PDDL domain: its conditional effects assume that everything is known.
   bool assumes_complete = false;

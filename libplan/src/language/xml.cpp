@@ -191,7 +191,7 @@ std::string print_xml(const syntax::Document& d) {
     if (t.name.text != "object") refuse("types ('" + t.name.text + "')");
   if (!d.rules.empty()) refuse("derived predicates ('" + d.rules[0].head.text + "')");
   if (!d.externals.empty()) refuse("external functions ('" + d.externals[0].name.text + "')");
-  if (!d.closed.empty()) refuse("'closed:'");
+  if (!d.closed.empty() || d.closed_world) refuse("'closed:'");
   for (const syntax::Signature& f : d.functions)
     if (f.range.text == "number") refuse("functions of numbers ('" + f.name.text + "')");
   // The kpl printer's pieces are the XML form's texts.
