@@ -12,6 +12,7 @@
 #include <map>
 
 #include "memory_size.h"
+#include "outcomes.h"
 #include "scene_file.h"
 
 namespace kaboum::tools {
@@ -91,20 +92,7 @@ plan::Model load_model(const PlanOptions& o, ExternalWatch* watch) {
 
 std::map<std::string, std::string> read_outcomes(const std::string& file) {
   const std::vector<char> bytes = io::read_file(file);
-  const Json given = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
-  const auto fail = [&] {
-    throw Error(ErrorCode::InvalidInput,
-                file +
-                    ": expected a JSON object of outcomes, as {\"isSpillable(o1)\": true, "
-                    "\"place(o2)\": \"shelf\"}");
-  };
-  if (!given.is_object()) fail();
-  std::map<std::string, std::string> out;
-  for (const auto& [name, value] : given.items()) {
-    if (!value.is_boolean() && !value.is_string()) fail();
-    out[name] = value.is_string() ? value.get<std::string>() : value.get<bool>() ? "true" : "false";
-  }
-  return out;
+  return parse_outcomes({bytes.begin(), bytes.end()}, file);
 }
 
 void ExternalWatch::save() const {

@@ -49,8 +49,7 @@ plan::Model load_model(const PlanOptions& options, ExternalWatch* watch = nullpt
 /// @throws Error{InvalidArgument} naming the option when there is none.
 plan::Language language_of(const std::string& file, const std::string& name, const char* option);
 
-/// How sensing turns out, of a JSON file {"isSpillable(o1)": true, "place(o2)": "shelf"}: by atom
-/// or term "true", "false" or a value. @throws Error{InvalidInput} for another one.
+/// A file of outcomes. @throws Error{InvalidInput} as parse_outcomes.
 std::map<std::string, std::string> read_outcomes(const std::string& file);
 
 /// @throws Error{InvalidInput} as plan::read_plan.

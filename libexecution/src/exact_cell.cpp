@@ -7,6 +7,7 @@
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/robot/exact_shapes.h>
 #include <kaboum/robot/robot_file.h>
+#include <kaboum/world/scene.h>
 
 #include <nlohmann/json.hpp>
 
@@ -17,7 +18,8 @@ using nlohmann::json;
 std::vector<ExactMesh> exact_meshes(const world::World& world, const fs::path& scene,
                                     const std::vector<std::string>& packages) {
   const std::vector<char> bytes = io::read_file(scene.string());
-  const json description = json::parse(bytes.begin(), bytes.end());
+  const json description =
+      json::parse(world::scene_as_json({bytes.data(), bytes.size()}, scene.string()));
   const fs::path folder = scene.parent_path();
   std::vector<ExactMesh> out;
   for (std::size_t r = 0; r < world.robots.size(); ++r) {

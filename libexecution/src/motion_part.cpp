@@ -25,8 +25,8 @@ MotionPart part_of(const json& motion, const world::World& world) {
   for (const robot::Path::value_type& q : part.path)
     if (q.size() != kinematics.variables.size())
       throw Error(ErrorCode::InvalidInput, "a path of the plan does not fit its robot");
-  const json holds = motion.value("holds", json::object());
-  for (const auto& [name, link] : holds.items()) {
+  if (!motion.contains("holds")) return part;
+  for (const auto& [name, link] : motion.at("holds").items()) {
     const auto object = world.find_object(name);
     const auto number = kinematics.find_link(link.get<std::string>());
     if (!object || !number)

@@ -2,6 +2,7 @@
 #include "asked_process.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/base/json_damage.h>
 
 #include <algorithm>
 #include <stdexcept>
@@ -121,6 +122,8 @@ json AskedProcess::receive(std::string& line, double& seconds) {
       channel_.end();
       fail("it answered with a line of more than 16 MiB");
   }
+  if (is_nested_too_deep(line))
+    fail("it answered " + excerpt(line) + ", with " + describe_json_depth());
   json out = json::parse(line, nullptr, false);
   if (out.is_discarded()) fail("it answered " + excerpt(line) + ", which is no JSON");
   return out;

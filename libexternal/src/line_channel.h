@@ -39,6 +39,8 @@ class LineChannel {
   /// Does `work` in a child of this process, which then ends. What it prints goes to standard
   /// error. @throws as above.
   LineChannel(const std::string& name, const std::function<void(LineSocket&)>& work);
+  /// Takes over a socket to whatever is on its other side: there is no process to be ended.
+  explicit LineChannel(int socket) : lines_(socket) {}
   /// Ends the process, and all that it started.
   ~LineChannel();
   LineChannel(const LineChannel&) = delete;

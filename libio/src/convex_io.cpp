@@ -118,6 +118,8 @@ geom::ConvexSet read_directory(const fs::path& path, SetReadDetails& details) {
     const std::vector<char> bytes = read_file(path / kRecordFile);
     const std::string name = (path / kRecordFile).string();
     const Source record_source{{bytes.data(), bytes.size()}, name, {}, true};
+    if (is_nested_too_deep(record_source.bytes))
+      fail(record_source, describe_json_depth() + "; write the set again");
     Json record;
     try {
       record = Json::parse(bytes.begin(), bytes.end());

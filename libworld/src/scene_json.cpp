@@ -1,5 +1,7 @@
 // Scenes as JSON, whatever they are written in.
 
+#include <kaboum/base/error.h>
+#include <kaboum/base/json_damage.h>
 #include <kaboum/world/scene.h>
 
 #include <cmath>
@@ -43,7 +45,11 @@ Json json_of(const Located& value) {
 }  // namespace
 
 std::string scene_as_json(std::string_view text, const std::string& name) {
-  if (!detail::is_yaml(name)) return std::string(text);
+  if (!detail::is_yaml(name)) {
+    if (is_nested_too_deep(text))
+      throw Error(ErrorCode::InvalidInput, name + ": " + describe_json_depth());
+    return std::string(text);
+  }
   return json_of(detail::parse_located_yaml(text, name)).dump();
 }
 

@@ -52,11 +52,14 @@ END
 broken flood <<'END'
 yes | head -c 40000000 | tr -d '\n'
 END
+broken deep <<'END'
+python3 -c 'print("{\"value\": \"q\", \"payload\": " + "[" * 100000 + "]" * 100000 + "}")'
+END
 broken fickle <<'END'
 n=$((n + 1)); echo "{\"value\": \"q$n\"}"
 END
 for case in 'crash:signal 11' 'leave:exit code 3' 'nonsense:no JSON' 'both:one of' 'number:is no text' 'absent:no function of that name' \
-  'flood:more than 16 MiB'; do
+  'flood:more than 16 MiB' 'deep:more than 64 lists and objects in each other'; do
   name=${case%%:*}
   expect 3 "${case#*:}" "$P" solve "$E/shelf.kpl" --process "sh $name.program" -o none.json
   grep -q "external function 'reach(o1)'\|external function 'isBox(p1)'" err.txt || fail "$name: the function is not named: $(cat err.txt)"

@@ -181,6 +181,20 @@ TEST_F(ConvexIo, FolderOfManyWritersIsOneOfTheirs) {
   EXPECT_EQ(entries(), 1U);
 }
 
+TEST_F(ConvexIo, RecordOfAFolderThatIsNestedTooDeepIsRefused) {
+  const fs::path place = directory_ / "set";
+  ConvexSet set = sample_set(2, 1);
+  set.margin = 0;
+  write_convex_folder(place, set, "part", Format::Stl);
+  const std::string name = (place / "convex-set.json").string();
+  std::vector<char> bytes = read_file(name);
+  std::string record(bytes.begin(), bytes.end());
+  const std::string deep = std::string(100'000, '[') + std::string(100'000, ']');
+  record.replace(record.find("\"bodies\": 2"), 11, "\"bodies\": " + deep);
+  write_file(name, record);
+  EXPECT_THROW(read_convex_set(place), Error);
+}
+
 /// From here on this process cannot exchange two names in one step, as on file systems that lack
 /// it. False: nor can that be arranged.
 bool forbid_exchange() {

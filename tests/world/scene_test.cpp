@@ -471,6 +471,7 @@ TEST(YamlScene, SaysWhatTheSameJsonSays) {
   const std::string back = scene_as_json(yaml_scene(files, ""), "scene.yaml");
   EXPECT_EQ(files.world(back).robots.at(0).base.linear, world.robots.at(0).base.linear);
   EXPECT_EQ(scene_as_json(json, "scene.json"), json);
+  EXPECT_THROW(scene_as_json(std::string(100'000, '['), "scene.json"), Error);
 }
 
 TEST(YamlScene, MessagesNameLineAndColumn) {

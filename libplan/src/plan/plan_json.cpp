@@ -26,6 +26,7 @@ class Reader {
   Reader(const Model& model, const std::string& file) : model_(model), file_(file) {}
 
   Plan read(const std::string& text) {
+    if (is_nested_too_deep(text)) fail(describe_json_depth() + "; that is no plan");
     Json json;
     try {
       json = Json::parse(text);

@@ -28,4 +28,32 @@ inline std::string describe_json_damage(std::string_view text, std::size_t byte)
   return "not JSON at " + place + (near.empty() ? "" : ", near '" + near + "'");
 }
 
+/// How deep the lists and objects of JSON from elsewhere may be in each other: values are copied,
+/// compared and written by recursion.
+constexpr std::size_t kDeepestJson = 64;
+
+/// Whether they are deeper, as far as the text is JSON.
+inline bool is_nested_too_deep(std::string_view text) {
+  std::size_t depth = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '"')
+      quoted = !quoted;
+    else if (quoted)
+      i += c == '\\' ? 1 : 0;
+    else if (c == '[' || c == '{')
+      ++depth;
+    else if ((c == ']' || c == '}') && depth > 0)
+      --depth;
+    if (depth > kDeepestJson) return true;
+  }
+  return false;
+}
+
+/// "more than 64 lists and objects in each other".
+inline std::string describe_json_depth() {
+  return "more than " + std::to_string(kDeepestJson) + " lists and objects in each other";
+}
+
 }  // namespace kaboum

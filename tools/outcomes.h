@@ -1,0 +1,14 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+namespace kaboum::tools {
+
+/// How sensing turns out, of JSON {"isSpillable(o1)": true, "place(o2)": "shelf"}: by atom or term
+/// "true", "false" or a value.
+/// @param file  its name, for messages.
+/// @throws Error{InvalidInput} for other texts.
+std::map<std::string, std::string> parse_outcomes(const std::string& text, const std::string& file);
+
+}  // namespace kaboum::tools
