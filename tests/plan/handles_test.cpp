@@ -635,12 +635,14 @@ class RandomTask {
 };
 
 TEST(Handles, VerdictsAreThoseOfAnExhaustiveSearch) {
-  // A thousand by hand: KABOUM_PLAN_TASKS=1000.
+  // More by hand: KABOUM_PLAN_TASKS=100000.
   const char* const wanted = std::getenv("KABOUM_PLAN_TASKS");
   const std::uint32_t tasks =
-      wanted == nullptr ? 150 : static_cast<std::uint32_t>(std::atoi(wanted));
+      wanted == nullptr ? 1000 : static_cast<std::uint32_t>(std::atoi(wanted));
   std::array<int, 3> count{};
-  for (std::uint32_t seed = 0; seed < tasks && !HasFailure(); ++seed) {
+  // Of 80694, a step of a shared part of the plan would ask in vain on one of the ways to it.
+  for (std::uint32_t i = 0; i <= tasks && !HasFailure(); ++i) {
+    const std::uint32_t seed = i < tasks ? i : 80694;
     const RandomTask task(seed);
     bool missed = false;
     const bool left = task.has_plan(true, missed);

@@ -58,7 +58,10 @@ std::optional<std::pair<Index, OperatorId>> last_step(const SearchInput& in,
     for (const OperatorId step : steps) {
       if (!in.task.asks(step)) continue;
       scratch.assign(store[state]);
-      if (!in.task.suppose(step, scratch) || !in.target.reached(scratch.words())) continue;
+      {
+        const ExternalCalls::Supposing supposing(in.task.calls());
+        if (!in.task.suppose(step, scratch) || !in.target.reached(scratch.words())) continue;
+      }
       if (!in.task.decide(store[state], step, outcomes)) continue;
       scratch.assign(store[state]);
       if (in.task.apply(step, scratch) && in.target.reached(scratch.words()))

@@ -238,7 +238,8 @@ Formula Regression::before(OperatorId step, Formula condition, const Word* befor
     for (const ConditionalEffect& c : a.effects) {
       const bool happens = task_.evaluator().holds(c.condition, before);
       // An effect that does not happen here must not happen, if it could touch what is asked for or
-      // be an observation that contradicts what is known there.
+      // be an observation that contradicts what is known there; and where a call says so, this has
+      // to find an answer, or the step is not possible.
       bool observes = false;
       const std::vector<Word> kept = touched_;
       const std::size_t requirements = required_.size();
@@ -265,7 +266,8 @@ Formula Regression::before(OperatorId step, Formula condition, const Word* befor
       if (happens) {
         fired.push_back(freeze(c.condition, before));
       } else {
-        if (observes || overlaps(condition)) idle.push_back(freeze(c.condition, before));
+        if (observes || overlaps(condition) || task_.evaluator().depends_on_calls(c.condition))
+          idle.push_back(freeze(c.condition, before));
         touched_ = kept;
         required_.resize(requirements);
       }

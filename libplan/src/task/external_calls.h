@@ -63,6 +63,25 @@ class ExternalCalls {
   /// The last call that found nothing since `try_again`, as "g(a): reason"; empty: there is none.
   [[nodiscard]] std::string missed() const;
 
+  /// While it lives, what is not found is not missed: it is asked of what is supposed only, and
+  /// is missed when it is asked again of a state that there is.
+  class Supposing {
+   public:
+    explicit Supposing(ExternalCalls& calls)
+        : calls_(calls), missed_(calls.missed_), missed_call_(calls.missed_call_) {}
+    ~Supposing() {
+      calls_.missed_ = missed_;
+      calls_.missed_call_ = std::move(missed_call_);
+    }
+    Supposing(const Supposing&) = delete;
+    Supposing& operator=(const Supposing&) = delete;
+
+   private:
+    ExternalCalls& calls_;
+    Index missed_;
+    std::string missed_call_;
+  };
+
   /// Makes some calls again. @throws Error{InvalidInput} if one answers differently.
   void confirm();
 
