@@ -105,7 +105,8 @@ int main(int argc, char** argv) {
       compare(argv[i], std::atof(argv[1]), std::atof(argv[2]));
       return 0;
     }
-    if (wait(nullptr) < 0) return 1;
+    int status = 0;
+    if (wait(&status) < 0 || status != 0) return 1;
   }
   return 0;
 }

@@ -53,6 +53,8 @@ void Cones::set(std::span<const Tetrahedron> tetrahedra, double clearance) {
   common_.range.extend(0);
   for (const Cone& cone : cones_)
     for (const Vec3& p : cone.corner) common_.range.extend(sum.dot(p));
+  chosen_.clear();
+  for (const Cone& cone : cones_) chosen_.push_back(&cone);
 }
 
 bool Cones::parts(const Axis& axis, const geom::Box3& box, const geom::Box3& near) const {

@@ -26,7 +26,8 @@ class Cones {
   /// False only if certainly no point of the box is within the clearance of a tetrahedron.
   [[nodiscard]] bool may_meet(const geom::Box3& box) const;
 
-  /// Chooses the tetrahedra that may meet the box. @return whether there are any
+  /// Chooses the tetrahedra that may meet the box, out of all, which are chosen at first.
+  /// @return whether there are any
   bool choose(const geom::Box3& box);
 
   /// Whether certainly no point of the triangle is within the clearance of a chosen one.

@@ -16,8 +16,10 @@ struct Room {
   double clearance;     ///< the surface may be nowhere nearer to the input [length]
   double offset;        ///< the surface should be nowhere farther from the input [length]
 
-  /// The distance that is aimed at: half the room on either side.
+  /// The distance that is aimed at, in the middle of the room.
   [[nodiscard]] double aim() const { return 0.5 * (clearance + offset); }
+  /// The room on either side.
+  [[nodiscard]] double slack() const { return 0.5 * (offset - clearance); }
   /// Farther away the surface stays as it is: it closes a gap.
   [[nodiscard]] double far() const { return 1.75 * lattice.side; }
   [[nodiscard]] bool allows(const Vec3& p) const;

@@ -84,7 +84,7 @@ class Simplifier {
     const double weight = quadric_[a].weight + quadric_[b].weight;
     std::optional<double> allowed;
     for (const Vec3& p : {best, other}) {
-      if (cost(a, b, p - origin_) > weight * room_.aim() * room_.aim()) continue;
+      if (cost(a, b, p - origin_) > weight * room_.slack() * room_.slack()) continue;
       if (!room_.allows(p) || !keeps_shape(a, b, p) || !near(a, b, p, allowed)) continue;
       if (!surface_.contract(a, b, p)) continue;
       quadric_[a] += quadric_[b];

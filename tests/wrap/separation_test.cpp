@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "cells.h"
@@ -12,6 +13,8 @@
 
 namespace kaboum::wrap {
 namespace {
+
+using geom::Mesh;
 
 Vec3 random_point(Random& random, double size) {
   const double x = random.between(-size, size), y = random.between(-size, size),
@@ -167,6 +170,67 @@ TEST(Obstacle, ClearStepsHoldNoPointOfAnyTriangle) {
   }
   EXPECT_GT(clear, 300);
   EXPECT_GT(not_clear, 300);
+}
+
+/// A fan of needles from one tip: the hierarchy cuts them, its boxes hold parts.
+Mesh needles() {
+  Mesh mesh;
+  for (int t = 0; t < 120; ++t) {
+    const double h = 2 * std::numbers::pi * t / 120;
+    mesh.vertices.insert(mesh.vertices.end(), {Vec3(0, 0, 0), Vec3(std::cos(h), std::sin(h), 1),
+                                               Vec3(std::cos(h + 0.05), std::sin(h + 0.05), 1)});
+    const auto first = static_cast<std::uint32_t>(3 * t);
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  return mesh;
+}
+
+/// Tetrahedra with a corner, an edge or a face that is parallel to a triangle, at a multiple of the
+/// clearance above it, and all else beyond.
+TEST(Obstacle, TheClearanceIsKeptExactly) {
+  const Mesh fan = needles();
+  EXPECT_GT(geom::DistanceQuery(fan).hierarchy().order().size(), fan.triangles.size());
+  Random random(31);
+  for (int i = 0; i < 3000; ++i) {
+    Mesh mesh = fan;
+    if (i % 3 != 0) {
+      mesh = {};
+      for (int k = 0; k < 3; ++k) mesh.vertices.push_back(random_point(random, 1));
+      if (i % 3 == 1)  // across an axis
+        for (Vec3& v : mesh.vertices) v[i % 9 / 3] = 0.25;
+      mesh.triangles = {{0, 1, 2}};
+    }
+    const geom::Triangle& t = mesh.triangles[random.index(mesh.triangles.size())];
+    const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    const double clearance = i % 2 == 0 ? 0.1 : 1e-4;
+    const Obstacle obstacle(mesh, clearance);
+    const Vec3 n = (b - a).cross(c - a).normalized() * (i % 4 < 2 ? 1 : -1);
+    const double u = random.between(0.1, 0.5), v = random.between(0.1, 0.4);
+    const Vec3 foot = a + u * (b - a) + v * (c - a);
+    const double size = i % 5 == 0 ? 0.01 : 0.3;
+    const auto beyond = [&] {
+      const Vec3 d = random_point(random, size);
+      return Vec3(d + (std::abs(d.dot(n)) - d.dot(n)) * n);
+    };
+    const auto beside = [&] {
+      const Vec3 d = random_point(random, size);
+      return Vec3(d - d.dot(n) * n);
+    };
+    const int kind = i / 3 % 4;  // what is parallel: a face, an edge, a corner; the last corner
+    const Vec3 edge = beside();
+    const std::array<Vec3, 4> from{kind < 2    ? edge
+                                   : kind == 2 ? Vec3(0, 0, 0)
+                                               : beyond(),
+                                   kind < 2 ? Vec3(-edge) : beyond(),
+                                   kind == 0 ? beside() : beyond(),
+                                   kind == 3 ? Vec3(0, 0, 0) : beyond()};
+    for (const double gap : {0.5, 0.9, 0.999, 1 - 1e-9, 1.01}) {
+      if (gap > 1 && mesh.triangles.size() > 1) continue;  // another may be near
+      Tetrahedron tetrahedron;
+      for (std::size_t k = 0; k < 4; ++k) tetrahedron[k] = foot + gap * clearance * n + from[k];
+      ASSERT_EQ(obstacle.clear(std::span(&tetrahedron, 1)), gap > 1) << i << ' ' << gap;
+    }
+  }
 }
 
 }  // namespace

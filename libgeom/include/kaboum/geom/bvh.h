@@ -10,7 +10,8 @@ namespace kaboum::geom {
 
 /// Bounding-volume hierarchy over the triangles of a mesh: a binary tree of axis-aligned boxes,
 /// nodes in depth-first order, left child next to its parent. Boxes are exact (minima and maxima of
-/// coordinates, no arithmetic), so a query that tests boxes exactly misses nothing.
+/// coordinates, no arithmetic; of_parts: those of parts are widened by more than their corners are
+/// rounded), so a query that tests boxes exactly misses nothing.
 class Bvh {
  public:
   struct Node {
