@@ -191,6 +191,12 @@ TEST(Derived, RefusedWithFileAndLine) {
     return "";
   };
   EXPECT_EQ(with("closed: all\ngoal: K(near(r1)) & !K(!near(r0)) & K(!shut)"), "");
+  EXPECT_NE(with("predicates: all\nclosed: all\ngoal: K(near(r1))").find("need complete knowledge"),
+            std::string::npos);
+  EXPECT_NE(with("functions: f : object\nclosed: all\ngoal: K(near(r1))")
+                .find("the initial state has no value of 'f' for some arguments"),
+            std::string::npos);
+  EXPECT_EQ(with("functions: f : object\ninit: K(f = r0)\nclosed: all\ngoal: K(near(r1))"), "");
   EXPECT_NE(with("goal: K(near(r1))").find("need complete knowledge"), std::string::npos);
   EXPECT_NE(with("closed: all\ngoal: Kw(near(r1))").find("'near' is derived: it is always known"),
             std::string::npos);

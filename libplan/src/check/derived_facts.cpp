@@ -10,12 +10,25 @@
 namespace kaboum::plan {
 namespace {
 
-// Rules within one another: calls are nested as deeply. What lies deeper than the first waits for
-// the next round.
-constexpr int kDeepInRound = 300;
-constexpr int kDeepest = 600;
+// Rules within one another, counted by how deep their conditions are: calls are nested as deeply.
+// What lies deeper than the first waits for the next round.
+constexpr int kDeepInRound = 2000;
+constexpr int kDeepest = 4000;
+constexpr int kOfARule = 4;  ///< calls between its head and its condition
+
+int depth_of(const Query& q) {
+  int most = 0;
+  for (const Query& c : q.children) most = std::max(most, depth_of(c));
+  return most + 1;
+}
 
 }  // namespace
+
+DerivedFacts::DerivedFacts(const Model& model, const QueryEvaluator& evaluator,
+                           const RuntimeKnowledge& k)
+    : model_(model), evaluator_(evaluator), k_(k) {
+  for (const Rule& r : model.rules) body_depth_.push_back(depth_of(r.body));
+}
 
 bool DerivedFacts::holds(const Fact& atom) {
   if (const auto known = decided_.find(atom); known != decided_.end()) return known->second;
@@ -61,10 +74,12 @@ bool DerivedFacts::look(const Fact& atom, Round& round) {
 }
 
 bool DerivedFacts::by_rules(const Fact& atom) {
-  ++depth_;
   bool truth = false;
-  for (const Rule& r : model_.rules) {
+  for (std::size_t n = 0; n < model_.rules.size(); ++n) {
+    const Rule& r = model_.rules[n];
     if (truth || r.predicate != atom[1]) continue;
+    const int deeper = kOfARule + body_depth_[n];
+    depth_ += deeper;
     std::vector<Index> slots(std::max<Index>(r.slots, 1), 0);
     bool fits = true;
     for (std::size_t i = 0; i < r.parameters.size(); ++i) {
@@ -72,8 +87,8 @@ bool DerivedFacts::by_rules(const Fact& atom) {
       fits = fits && model_.is_a(slots[i], r.parameters[i]);
     }
     truth = fits && evaluator_.holds(r.body, slots, k_);
+    depth_ -= deeper;
   }
-  --depth_;
   return truth;
 }
 

@@ -16,8 +16,7 @@ namespace kaboum::plan {
 class DerivedFacts {
  public:
   /// @pre all arguments outlive it.
-  DerivedFacts(const Model& model, const QueryEvaluator& evaluator, const RuntimeKnowledge& k)
-      : model_(model), evaluator_(evaluator), k_(k) {}
+  DerivedFacts(const Model& model, const QueryEvaluator& evaluator, const RuntimeKnowledge& k);
 
   /// @param atom  as `fact` makes it.
   /// @throws Error{LimitReached} where too many predicates rest on one another to be followed.
@@ -41,7 +40,8 @@ class DerivedFacts {
   std::map<Fact, bool> decided_;
   std::map<Index, Round> rounds_;  ///< by level
   std::set<Fact> found_;           ///< atoms that hold
-  int depth_ = 0;
+  std::vector<int> body_depth_;    ///< of each rule
+  int depth_ = 0;                  ///< of calls, roughly
 };
 
 }  // namespace kaboum::plan

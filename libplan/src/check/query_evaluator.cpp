@@ -52,6 +52,8 @@ QueryEvaluator::QueryEvaluator(const Model& model, const Plan& plan)
 
 std::optional<bool> QueryEvaluator::truth(const Query& q, std::vector<Index>& slots,
                                           const RuntimeKnowledge& k) const {
+  if (derived_ == nullptr && !model_.rules.empty())
+    return with_derived(k, [&] { return truth(q, slots, k); });
   switch (q.kind) {
     case Query::Kind::True:
       return true;
@@ -102,7 +104,7 @@ std::optional<bool> QueryEvaluator::truth(const Query& q, std::vector<Index>& sl
     case Query::Kind::KnowValue:
       return k.value(fact(true, q.symbol, q.arguments, slots)) != nullptr;
     case Query::Kind::Derived:
-      return derived(q, slots, k) != q.negated;
+      return derived(q, slots) != q.negated;
     case Query::Kind::Same:
       return object(q.arguments[0], slots) == object(q.arguments[1], slots);
     case Query::Kind::External:
@@ -122,6 +124,8 @@ std::optional<bool> QueryEvaluator::truth(const Query& q, std::vector<Index>& sl
 
 std::optional<bool> QueryEvaluator::denied(const Query& q, std::vector<Index>& slots,
                                            const RuntimeKnowledge& k) const {
+  if (derived_ == nullptr && !model_.rules.empty())
+    return with_derived(k, [&] { return denied(q, slots, k); });
   // false: not all of them, true: one of them; nullopt where that is not found.
   const auto of = [&](bool one, const auto& parts, const auto& denies) {
     std::optional<bool> result = !one;
@@ -179,10 +183,13 @@ std::optional<bool> QueryEvaluator::only(const Query& q, const Query& one,
   return result;
 }
 
-bool QueryEvaluator::derived(const Query& q, const std::vector<Index>& slots,
-                             const RuntimeKnowledge& k) const {
-  const Fact atom = fact(false, q.symbol, q.arguments, slots);
-  if (derived_ != nullptr) return derived_->holds(atom);
+bool QueryEvaluator::derived(const Query& q, const std::vector<Index>& slots) const {
+  return derived_->holds(fact(false, q.symbol, q.arguments, slots));
+}
+
+template <class Evaluate>
+std::optional<bool> QueryEvaluator::with_derived(const RuntimeKnowledge& k,
+                                                 Evaluate&& evaluate) const {
   struct Reset {
     DerivedFacts*& at;
     ~Reset() { at = nullptr; }
@@ -190,7 +197,7 @@ bool QueryEvaluator::derived(const Query& q, const std::vector<Index>& slots,
   DerivedFacts facts(model_, *this, k);
   const Reset reset{derived_};
   derived_ = &facts;
-  return facts.holds(atom);
+  return evaluate();
 }
 
 std::optional<Index> QueryEvaluator::value(const Argument& a, const std::vector<Index>& slots,

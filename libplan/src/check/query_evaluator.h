@@ -63,7 +63,10 @@ class QueryEvaluator {
                            const RuntimeKnowledge& k) const;
   bool holds_of_value(const Query& q, const std::vector<Index>& slots,
                       const RuntimeKnowledge& k) const;
-  bool derived(const Query& q, const std::vector<Index>& slots, const RuntimeKnowledge& k) const;
+  bool derived(const Query& q, const std::vector<Index>& slots) const;
+  /// Evaluates with what is worked out of derived predicates on the way.
+  template <class Evaluate>
+  std::optional<bool> with_derived(const RuntimeKnowledge& k, Evaluate&& evaluate) const;
   ExternalResult call(const Query& q, const std::vector<Index>& slots, const RuntimeKnowledge& k,
                       std::vector<Index>* arguments = nullptr) const;
   ExternalResult ask(Index external, const std::vector<Index>& arguments,
@@ -75,7 +78,7 @@ class QueryEvaluator {
   mutable HandleTable handles_;
   /// Of functions that do not read the state.
   mutable std::map<std::pair<Index, std::vector<Index>>, ExternalResult> calls_;
-  mutable DerivedFacts* derived_ = nullptr;  ///< while the body of a rule is evaluated
+  mutable DerivedFacts* derived_ = nullptr;  ///< while a query is evaluated
 };
 
 }  // namespace kaboum::plan

@@ -67,13 +67,10 @@ void InitialState::declare(const sx::Document& document) {
     expand(r, values, e.location, e.database == sx::Database::Lcw ? closed : model_.initial);
   }
   declare_unknown(document);
-  bool world = document.closed_world;
-  for (const sx::Name& name : document.closed) {
-    if (name.text == "all" && !terms_.symbols().is_predicate("all"))
-      world = true;
-    else
+  const bool world = closes_world(document);
+  for (const sx::Name& name : document.closed)
+    if (name.text != "all" || terms_.symbols().is_predicate("all"))
       close(terms_.symbols().predicate(name), closed);
-  }
   for (Index p = 0; world && p < model_.predicates.size(); ++p) close(p, closed);
   for (Update& u : closed) model_.initial.push_back(std::move(u));
 }

@@ -110,10 +110,7 @@ class PddlPrinter {
     std::string out = "(define (problem " + title + "-problem)\n (:domain " + title + ")\n (:init";
     for (const Effect& e : d.initial) out += "\n  " + initial(e);
     for (const Formula& f : d.unknown) out += "\n  (unknown " + literal(f) + ")";
-    const bool closed =
-        d.closed_world || std::any_of(d.closed.begin(), d.closed.end(),
-                                      [](const Name& n) { return n.text == "all"; });
-    if (!closed)
+    if (!closes_world(d))
       refuse(
           "an open world: PDDL takes what is not stated for false; state 'closed: all' if that is "
           "meant");

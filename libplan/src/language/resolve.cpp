@@ -27,6 +27,7 @@ class Resolver {
     for (const sx::Action& a : document_.actions) declare_action(a);
     declare_goal();
     InitialState(terms_, effects_, model_).declare(document_);
+    require_values(document_, model_);
     return std::move(model_);
   }
 

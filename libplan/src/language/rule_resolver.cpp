@@ -3,6 +3,7 @@
 #include "language/rule_resolver.h"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "language/plural.h"
@@ -24,10 +25,7 @@ void require_complete(const sx::Document& document) {
   const auto all_plain = [&](const std::vector<sx::Effect>& list) {
     return std::ranges::all_of(list, [&](const sx::Effect& e) { return plain(plain, e); });
   };
-  const bool closed =
-      document.closed_world ||
-      std::ranges::any_of(document.closed, [](const sx::Name& n) { return n.text == "all"; });
-  if ((!closed && !document.goals.empty()) || !document.unknown.empty() ||
+  if ((!closes_world(document) && !document.goals.empty()) || !document.unknown.empty() ||
       !document.externals.empty() || !all_plain(document.initial) ||
       !std::ranges::all_of(document.actions,
                            [&](const sx::Action& a) { return all_plain(a.effects); }))
@@ -117,6 +115,30 @@ void give_levels(const std::vector<std::vector<Index>>& depends, Model& model) {
 }
 
 }  // namespace
+
+void require_values(const sx::Document& document, const Model& model) {
+  if (document.rules.empty() || document.goals.empty()) return;
+  std::set<std::vector<Index>> known;
+  std::vector<double> missing(model.functions.size(), 0);
+  for (std::size_t f = 0; f < missing.size(); ++f) {
+    if (model.functions[f].numeric) continue;
+    missing[f] = 1;
+    for (const Index type : model.functions[f].parameters)
+      missing[f] *= static_cast<double>(model.types[type].objects.size());
+  }
+  for (const Update& u : model.initial) {
+    const Update::Literal& l = u.literals[0];
+    if (!l.function || l.negated) continue;
+    std::vector<Index> term = {l.symbol};
+    for (const Argument& a : l.arguments) term.push_back(a.index);
+    if (known.insert(std::move(term)).second) --missing[l.symbol];
+  }
+  for (std::size_t f = 0; f < missing.size(); ++f)
+    if (missing[f] > 0)
+      document.rules[0].head.location.fail(
+          "derived predicates need complete knowledge: the initial state has no value of '" +
+          model.functions[f].name + "' for some arguments");
+}
 
 void resolve_rules(const sx::Document& document, const QueryResolver& queries, Model& model) {
   if (document.rules.empty()) return;

@@ -12,4 +12,8 @@ namespace kaboum::plan {
 ///         depends on its own negation, and where not all is known.
 void resolve_rules(const syntax::Document& document, const QueryResolver& queries, Model& model);
 
+/// @pre the initial state is resolved
+/// @throws Error{InvalidInput} at the first rule if some function has no value for some arguments.
+void require_values(const syntax::Document& document, const Model& model);
+
 }  // namespace kaboum::plan

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -129,6 +130,14 @@ struct Document {
   bool assumes_complete = false;
   std::vector<std::shared_ptr<const Source>> sources;  ///< keep the locations alive
 };
+
+/// Whether all predicates are closed. A predicate that is named "all" is closed alone by that name.
+inline bool closes_world(const Document& d) {
+  const auto is_all = [](const Name& n) { return n.text == "all"; };
+  return d.closed_world || (std::any_of(d.closed.begin(), d.closed.end(), is_all) &&
+                            std::none_of(d.predicates.begin(), d.predicates.end(),
+                                         [&](const Signature& s) { return is_all(s.name); }));
+}
 
 /// `problem` appended to `domain`: constants, initial knowledge, goal, tables, and any declaration.
 Document merge(Document domain, Document problem);

@@ -106,6 +106,7 @@ class GreedySearch {
   /// Expands the state and, as long as that leads nearer, where its relaxed plan leads.
   /// @return how the search ends, if it does.
   std::optional<Outcome> follow(Index state) {
+    ahead_ = looks_ahead();
     for (std::uint32_t nearest = kFar; state != kNone;) {
       if (state >= infos_.size()) infos_.resize(store_.size());
       if (infos_[state].expanded) break;
@@ -117,7 +118,7 @@ class GreedySearch {
       note_progress(*e);
       infos_[state].estimates = *e;
       if (expand(state)) return Outcome::Solved;
-      if (!impatient() || e->relaxed >= nearest) break;
+      if (!ahead_ || e->relaxed >= nearest) break;
       nearest = e->relaxed;
       const Taken ahead = look_ahead(state);
       if (ahead.reached) return Outcome::Solved;
@@ -126,10 +127,13 @@ class GreedySearch {
     return std::nullopt;
   }
 
-  /// Whether to look ahead, where that takes no calls. Once it does it goes on.
-  [[nodiscard]] bool impatient() {
-    if (!impatient_ && !at_once_ && in_.statistics.expanded >= patience_) impatient_ = !steady();
-    return impatient_;
+  /// Whether to look ahead from the next state, where that takes no calls: from every other one
+  /// while the relaxed estimate falls steadily; once it did not, from all.
+  [[nodiscard]] bool looks_ahead() {
+    if (at_once_ || in_.statistics.expanded < patience_) return false;
+    impatient_ = impatient_ || !steady();
+    turn_ = !turn_;
+    return impatient_ || turn_;
   }
 
   /// Whether the relaxed estimate falls so fast that the goal is not far.
@@ -225,7 +229,7 @@ class GreedySearch {
       in_.heuristics.steps(in_.task, in_.limits).find(store_[state], steps_);
     }
     ++in_.statistics.expanded;
-    const ActionSet awaited = use_events_ && impatient() ? landmarks_.achievers() : ActionSet();
+    const ActionSet awaited = use_events_ && ahead_ ? landmarks_.achievers() : ActionSet();
     const Estimates estimates = infos_[state].estimates;
     for (const OperatorId step : steps_) {
       const bool preferred = std::binary_search(helpful.begin(), helpful.end(), step) ||
@@ -274,7 +278,8 @@ class GreedySearch {
   std::uint64_t patience_;
   std::uint64_t most_steady_;
   std::uint64_t first_ = 0;  ///< the first state's relaxed estimate
-  bool impatient_ = false;
+  bool impatient_ = false, turn_ = false;
+  bool ahead_ = false;  ///< it looks ahead from the state at hand
   StateStore store_;
   Knowledge scratch_;
   Queues<4> open_;

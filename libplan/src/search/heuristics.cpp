@@ -23,7 +23,9 @@ Formula possible_part(Task& task, const Relaxation& relaxation, const Invariants
     p = possible_part(task, relaxation, invariants, p, whole && kind == Kind::And);
   const Formula made = kind == Kind::And ? pool.all(parts) : pool.any(parts);
   if (whole || kind == Kind::Or) return made;
-  const std::vector<FactId> facts = relaxation.necessary_facts(made);
+  constexpr std::size_t kMost = 100;  // that are compared with each other
+  std::vector<FactId> facts = relaxation.necessary_facts(made);
+  facts.resize(std::min(facts.size(), kMost));
   for (std::size_t i = 0; i < facts.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (invariants.exclusive(facts[i], facts[j])) return kFalse;
