@@ -41,7 +41,7 @@ std::uint64_t patience(const RelaxedPlan& relaxed) {
 /// States that may be expanded in all, as far as progress so far tells, for a search to go on
 /// without.
 std::uint64_t most_steady(const RelaxedPlan& relaxed) {
-  constexpr std::uint64_t kEdges = 3'000'000'000;
+  constexpr std::uint64_t kEdges = 1'000'000'000;
   return kEdges / (relaxed.size() + 1);
 }
 
@@ -127,13 +127,12 @@ class GreedySearch {
     return std::nullopt;
   }
 
-  /// Whether to look ahead from the next state, where that takes no calls: from every other one
-  /// while the relaxed estimate falls steadily; once it did not, from all.
+  /// Whether to look ahead from the next state, where that takes no calls: once the relaxed
+  /// estimate did not fall steadily.
   [[nodiscard]] bool looks_ahead() {
     if (at_once_ || in_.statistics.expanded < patience_) return false;
     impatient_ = impatient_ || !steady();
-    turn_ = !turn_;
-    return impatient_ || turn_;
+    return impatient_;
   }
 
   /// Whether the relaxed estimate falls so fast that the goal is not far.
@@ -278,7 +277,7 @@ class GreedySearch {
   std::uint64_t patience_;
   std::uint64_t most_steady_;
   std::uint64_t first_ = 0;  ///< the first state's relaxed estimate
-  bool impatient_ = false, turn_ = false;
+  bool impatient_ = false;
   bool ahead_ = false;  ///< it looks ahead from the state at hand
   StateStore store_;
   Knowledge scratch_;
