@@ -31,4 +31,11 @@ inline std::string text_of(const std::uint8_t* data, std::size_t size) {
   return {reinterpret_cast<const char*>(data) + 1, size - 1};
 }
 
+/// A whole target: calls look(kind, text), of which the first byte says the kind, 0 to kinds - 1.
+template <class Look>
+int select(const std::uint8_t* data, std::size_t size, int kinds, const Look& look) {
+  if (size > 0) survive([&] { look(data[0] % kinds, text_of(data, size)); });
+  return 0;
+}
+
 }  // namespace kaboum::fuzz

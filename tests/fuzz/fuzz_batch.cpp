@@ -22,10 +22,8 @@ void require_same(const batch::Record& record) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  if (size == 0) return 0;
-  const std::string text = fuzz::text_of(data, size);
-  fuzz::survive([&] {
-    switch (data[0] % 3) {
+  return fuzz::select(data, size, 3, [](int kind, const std::string& text) {
+    switch (kind) {
       case 0:
         if (const auto record = batch::record_from(text)) require_same(*record);
         break;
@@ -41,5 +39,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (batch::parse_rule(text).command.empty()) fuzz::broken("a rule", "without a program");
     }
   });
-  return 0;
 }

@@ -44,10 +44,8 @@ void look_at(const robot::NamedPath& path) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  if (size == 0) return 0;
-  const std::string text = fuzz::text_of(data, size);
-  fuzz::survive([&] {
-    switch (data[0] % 3) {
+  return fuzz::select(data, size, 3, [](int kind, const std::string& text) {
+    switch (kind) {
       case 0:
         look_at(robot::parse_path_csv(text, "fuzz"));
         break;
@@ -63,5 +61,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       }
     }
   });
-  return 0;
 }

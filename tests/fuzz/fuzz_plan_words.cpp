@@ -72,10 +72,8 @@ void look_at_answers(const std::string& text) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  if (size == 0) return 0;
-  const std::string text = fuzz::text_of(data, size);
-  fuzz::survive([&] {
-    switch (data[0] % 4) {
+  return fuzz::select(data, size, 4, [](int kind, const std::string& text) {
+    switch (kind) {
       case 0:
         return look_at_place(text);
       case 1:
@@ -87,5 +85,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         return look_at_answers(text);
     }
   });
-  return 0;
 }

@@ -26,10 +26,8 @@ void look_at(const robot::Robot& robot) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  if (size == 0) return 0;
-  const std::string text = fuzz::text_of(data, size);
-  fuzz::survive([&] {
-    switch (data[0] % 3) {
+  return fuzz::select(data, size, 3, [](int kind, const std::string& text) {
+    switch (kind) {
       case 0:
         look_at(robot::parse_urdf(text, "fuzz"));
         break;
@@ -41,5 +39,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
           if (!(inertial.mass >= 0)) fuzz::broken("mass", link);
     }
   });
-  return 0;
 }

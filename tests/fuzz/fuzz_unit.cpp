@@ -53,10 +53,8 @@ void look_at_scaled(const std::string& text) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  if (size == 0) return 0;
-  const std::string text = fuzz::text_of(data, size);
-  fuzz::survive([&] {
-    switch (data[0] % 3) {
+  return fuzz::select(data, size, 3, [](int kind, const std::string& text) {
+    switch (kind) {
       case 0:
         return require_positive(io::recorded_scale(text, "fuzz"), text);
       case 1:
@@ -65,5 +63,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         return look_at_scaled(text);
     }
   });
-  return 0;
 }

@@ -12,9 +12,9 @@ namespace {
 
 // Rules within one another, counted by how deep their conditions are: calls are nested as deeply.
 // What lies deeper than the first waits for the next round.
-constexpr int kDeepInRound = 2000;
-constexpr int kDeepest = 4000;
-constexpr int kOfARule = 4;  ///< calls between its head and its condition
+constexpr int kDeepInRound = 1500;
+constexpr int kDeepest = 2500;
+constexpr int kOfARule = 2;  ///< for the calls between its head and its condition
 
 int depth_of(const Query& q) {
   int most = 0;
