@@ -42,7 +42,7 @@ std::optional<Inertial> sound_inertial(const std::string& link, const Inertial& 
   constexpr double kLeast = 1e-14;               // MuJoCo's
   constexpr double kRoom = 1e-9, kWorth = 1e-6;  // of the largest moment
   const Eigen::SelfAdjointEigenSolver<Mat3> solver(inertial.inertia, Eigen::EigenvaluesOnly);
-  const Vec3 main = solver.eigenvalues();  // rising
+  const Vec3& main = solver.eigenvalues();  // rising
   if (!(inertial.mass > kLeast) || !(main.x() > kLeast)) {
     notes.push_back("The inertial of link '" + link +
                     "' is not positive, and left out: simulators refuse it.");

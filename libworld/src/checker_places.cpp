@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "link_poses.h"
 #include "placement.h"
@@ -47,7 +46,9 @@ void require_place(const World& world, const WorldState& state, std::size_t o) {
     throw Error(ErrorCode::InvalidArgument, "an attachment to a link that does not exist");
 }
 
-bool are_same(const Transform& a, const Transform& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+bool are_same(const Transform& a, const Transform& b) {
+  return a.linear == b.linear && a.translation == b.translation;
+}
 
 }  // namespace
 
