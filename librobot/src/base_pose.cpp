@@ -68,7 +68,7 @@ Transform parse_pose(std::string_view text, const std::string& option) {
     out.linear = turn.normalized().toRotationMatrix();
   }
   if (x.size() == 12) {
-    for (int i = 0; i < 9; ++i) out.linear(i / 3, i % 3) = x[static_cast<std::size_t>(3 + i)];
+    for (int i = 0; i < 9; ++i) out.linear(i / 3, i % 3) = x[3 + static_cast<std::size_t>(i)];
     const Mat3 defect = out.linear * out.linear.transpose() - Mat3::Identity();
     if (!(defect.cwiseAbs().maxCoeff() < 1e-12) || !(out.linear.determinant() > 0))
       throw Error(ErrorCode::InvalidArgument, option + ": the matrix is no rotation (to 1e-12)");

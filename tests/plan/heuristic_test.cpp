@@ -7,6 +7,7 @@
 
 #include "plan_test.h"
 #include "search/applicable_steps.h"
+#include "search/engine.h"
 #include "search/invariants.h"
 #include "search/landmarks.h"
 #include "search/radix_queue.h"
@@ -132,6 +133,32 @@ TEST(Estimates, TheRelaxedPlanCountsStepsWhateverTheyCost) {
   EXPECT_EQ(solved(m, Algorithm::Greedy).statistics.initial_estimate, 2);
 }
 
+struct Goal : Target {
+  explicit Goal(const Task& of) : task(of) {}
+  bool reached(const Word* state) override { return task.evaluator().holds(task.goal(), state); }
+  bool allowed(const Word*, OperatorId) override { return true; }
+  bool expects(const Word*, OperatorId) override { return true; }
+  const Task& task;
+};
+
+/// Its steps, made one after the other, lead to the goal.
+bool has_plan_by_width(Task& task, Limits& limits, Statistics& statistics, Heuristics& heuristics) {
+  Goal goal(task);
+  if (goal.reached(task.initial().data())) return true;
+  const auto engine = width_engine({task, task.initial(), goal, limits, statistics, heuristics});
+  std::optional<Found> found;
+  while (!found) found = engine->advance(10'000, 0);
+  if (found->outcome != Outcome::Solved) return false;
+  Knowledge state(task.layout());
+  state.assign(task.initial().data());
+  for (const OperatorId step : found->steps) {
+    EXPECT_TRUE(task.evaluator().holds(task.action(step).precondition, state.words()));
+    EXPECT_TRUE(task.apply(step, state));
+  }
+  EXPECT_TRUE(goal.reached(state.words()));
+  return true;
+}
+
 TEST(Estimates, AreSafeAndAdmissibleInEveryReachableState) {
   int tasks = 0;
   std::uint64_t states = 0;
@@ -139,6 +166,7 @@ TEST(Estimates, AreSafeAndAdmissibleInEveryReachableState) {
   std::uint64_t dead = 0;
   std::uint64_t exclusive_pairs = 0;
   std::uint64_t applicable = 0;
+  std::uint64_t by_width = 0;
   for (std::uint32_t seed = 0; seed < 5000 && !HasFailure(); ++seed) {
     const std::string text = random_task(seed);
     const Model model = model_of(text);
@@ -226,6 +254,11 @@ TEST(Estimates, AreSafeAndAdmissibleInEveryReachableState) {
           EXPECT_FALSE(heuristics.invariants->exclusive(now[k], now[l])) << "seed " << seed << "\n"
                                                                          << text;
     }
+    if (!task.layout().sensing()) {
+      const bool found = has_plan_by_width(task, limits, statistics, heuristics);
+      EXPECT_EQ(found, exact[0] < kFar) << "seed " << seed << "\n" << text;
+      by_width += found ? 1 : 0;
+    }
     for (FactId x = 0; x < facts.size(); ++x)
       for (FactId y = x + 1; y < facts.size(); ++y)
         exclusive_pairs +=
@@ -237,6 +270,7 @@ TEST(Estimates, AreSafeAndAdmissibleInEveryReachableState) {
   EXPECT_GT(positive, 1000U);
   EXPECT_GT(dead, 1000U);
   EXPECT_GT(exclusive_pairs, 20U);
+  EXPECT_GT(by_width, 100U);
   EXPECT_GT(applicable, 50'000U);
   std::printf("%d tasks, %lu states, %lu positive estimates, %lu dead ends, %lu exclusive pairs\n",
               tasks, static_cast<unsigned long>(states), static_cast<unsigned long>(positive),

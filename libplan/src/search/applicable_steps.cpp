@@ -2,15 +2,20 @@
 #include "search/applicable_steps.h"
 
 #include <algorithm>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
 namespace kaboum::plan {
+namespace {
+
+constexpr std::size_t kDeepest = 8;  // facts that a step is found by
+
+}  // namespace
 
 ApplicableSteps::ApplicableSteps(const Task& task, const Relaxation& relaxation)
     : task_(task), facts_(relaxation.facts()) {
   const FormulaPool& pool = task.pool();
-  watchers_.resize(facts_.size());
   // The facts that each step needs, and how many steps need each.
   std::vector<std::vector<FactId>> needs;
   std::vector<Index> needed(facts_.size(), 0);
@@ -50,25 +55,49 @@ ApplicableSteps::ApplicableSteps(const Task& task, const Relaxation& relaxation)
     needs.push_back(relaxation.necessary_facts(f));
     for (const FactId x : needs.back()) ++needed[x];
   }
-  std::vector<char> watched(task.layout().fluents().size(), 0);
+  // What each is found by: facts that many steps need come first, so that much is left out early.
+  std::vector<std::vector<FactId>> paths(steps_.size());
   for (Index i = 0; i < steps_.size(); ++i) {
-    if (needs[i].empty()) {
-      always_.push_back(i);
-      continue;
-    }
-    // What is false is so in most states.
-    const auto rank = [&](FactId x) {
-      const bool negative = !task.layout().fluents()[facts_.fluent_of(x)].function &&
-                            facts_.content_of(x) == static_cast<Word>(AtomKnowledge::False);
-      return std::pair(negative, needed[x]);
+    std::vector<FactId>& path = paths[i];
+    for (const FactId f : needs[i])
+      if (distinguishes(f)) path.push_back(f);
+    const auto comes_first = [&](FactId a, FactId b) {
+      return std::pair(needed[b], a) < std::pair(needed[a], b);
     };
-    const FactId rarest = *std::min_element(needs[i].begin(), needs[i].end(),
-                                            [&](FactId a, FactId b) { return rank(a) < rank(b); });
-    watchers_[rarest].push_back(i);
-    watched[facts_.fluent_of(rarest)] = 1;
+    std::sort(path.begin(), path.end(), comes_first);
+    path.resize(std::min(path.size(), kDeepest));
   }
-  for (Index i = 0; i < watched.size(); ++i)
-    if (watched[i]) watched_fluents_.push_back(i);
+  order_.resize(steps_.size());
+  std::iota(order_.begin(), order_.end(), 0);
+  std::stable_sort(order_.begin(), order_.end(),
+                   [&](Index a, Index b) { return paths[a] < paths[b]; });
+  grow(paths, 0, static_cast<Index>(order_.size()), 0, {});
+}
+
+/// What is false is so in most states; of handles not all have a fact of their own.
+bool ApplicableSteps::distinguishes(FactId f) const {
+  const Fluent& fluent = task_.layout().fluents()[facts_.fluent_of(f)];
+  if (fluent.function) return !fluent.handle;
+  return facts_.content_of(f) != static_cast<Word>(AtomKnowledge::False);
+}
+
+/// A node for the steps order_[begin ... end), whose paths are the same up to `depth`.
+/// @param test  of the fact that leads there
+void ApplicableSteps::grow(const std::vector<std::vector<FactId>>& paths, Index begin, Index end,
+                           std::size_t depth, const BitTest& test) {
+  const std::size_t node = nodes_.size();
+  Index next = begin;
+  while (next < end && paths[order_[next]].size() == depth) ++next;
+  nodes_.push_back({test, begin, next, 0});
+  while (next < end) {
+    const FactId f = paths[order_[next]][depth];
+    const Fluent& fluent = task_.layout().fluents()[facts_.fluent_of(f)];
+    const Index first = next;
+    while (next < end && paths[order_[next]][depth] == f) ++next;
+    grow(paths, first, next, depth + 1,
+         {fluent.word, fluent.mask, facts_.content_of(f) << fluent.shift});
+  }
+  nodes_[node].skip = static_cast<Index>(nodes_.size());
 }
 
 bool ApplicableSteps::applicable(const Step& s, const Word* state) const {
@@ -82,13 +111,16 @@ bool ApplicableSteps::applicable(const Step& s, const Word* state) const {
 void ApplicableSteps::find(const Word* state, std::vector<OperatorId>& steps) {
   steps.clear();
   found_.clear();
-  const auto look = [&](const std::vector<Index>& at) {
-    for (const Index i : at)
-      if (applicable(steps_[i], state)) found_.push_back(i);
-  };
-  look(always_);
-  for (const Index i : watched_fluents_)
-    look(watchers_[facts_.fact(i, task_.layout().fluents()[i].get(state))]);
+  for (Index n = 0; n < nodes_.size();) {
+    const Node& node = nodes_[n];
+    if (!node.test.holds(state)) {
+      n = node.skip;
+      continue;
+    }
+    for (Index i = node.first; i < node.last; ++i)
+      if (applicable(steps_[order_[i]], state)) found_.push_back(order_[i]);
+    ++n;
+  }
   std::sort(found_.begin(), found_.end());
   for (const Index i : found_) steps.push_back(steps_[i].step);
 }

@@ -13,23 +13,22 @@
 #include <utility>
 
 #include "search/applicable_steps.h"
+#include "search/difference_store.h"
+#include "search/engine.h"
 #include "search/landmarks.h"
 #include "search/queues.h"
 #include "search/relaxed_plan.h"
-#include "search/search.h"
-#include "search/state_store.h"
 
 namespace kaboum::plan {
 namespace {
-
-/// Searches where external functions refuse steps: what the first one has learned of that makes the
-/// plans of later ones shorter, and most of what they ask has been asked before.
-constexpr int kRounds = 3;
 
 /// Items of queues: states, or with this steps that are not taken yet.
 constexpr Index kStep = Index{1} << 31U;
 
 constexpr std::size_t kRelaxed = 0, kRelaxedPreferred = 1, kEvents = 2, kEventsPreferred = 3;
+
+// Nanoseconds, about.
+constexpr std::uint64_t kPerState = 5'000, kPerEdge = 3, kPerEvent = 1'500;
 
 /// States that are expanded before a search looks ahead, which makes plans longer and uses up what
 /// cannot be replaced: fewer where each takes long.
@@ -45,7 +44,7 @@ std::uint64_t most_steady(const RelaxedPlan& relaxed) {
   return kEdges / (relaxed.size() + 1);
 }
 
-class GreedySearch {
+class GreedySearch final : public Engine {
  public:
   /// @param most_expanded  states, before it gives up.
   GreedySearch(const SearchInput& in, std::uint64_t most_expanded)
@@ -53,29 +52,36 @@ class GreedySearch {
         most_expanded_(in.statistics.expanded + most_expanded),
         relaxed_(in.heuristics.relaxed(in.task, in.limits)),
         landmarks_(in.heuristics.landmark(in.task, in.limits)),
-        words_(in.task.layout().words()),
         calls_(!in.task.model().external_functions.empty()),
         at_once_(calls_ || in.task.layout().sensing()),
         patience_(patience(relaxed_)),
         most_steady_(most_steady(relaxed_)),
-        store_(words_),
-        scratch_(in.task.layout()) {}
-
-  Found run() {
-    store_.insert(in_.start.data(), Knowledge::hash_of(in_.start.data(), words_), kNone, 0);
+        store_(in.start.data(), in.task.layout().words()),
+        scratch_(in.task.layout()) {
+    scratch_.keep_log(true);
     open_.push(kRelaxed, 0, 0);
-    while (!open_.empty()) {
+  }
+
+  std::optional<Found> advance(std::uint64_t work, std::size_t besides) override {
+    besides_ = besides;
+    for (const std::uint64_t most = work_ + work; work_ < most;) {
+      if (open_.empty()) return finish(Outcome::Unsolvable);
       const Index item = open_.pop();
       Taken taken{item, true, false};
       if ((item & kStep) != 0) taken = take(waiting_[item & ~kStep]);
       if (taken.reached) return finish(Outcome::Solved);
       if (!taken.fresh) {
-        if (in_.limits.exceeded(bytes() + store_.growth())) return finish(Outcome::Limit);
+        if (in_.limits.exceeded(held())) return finish(Outcome::Limit);
         continue;
       }
       if (const std::optional<Outcome> end = follow(taken.state)) return finish(*end);
     }
-    return finish(Outcome::Unsolvable);
+    return std::nullopt;
+  }
+
+  [[nodiscard]] std::size_t bytes() const override {
+    return store_.bytes() + open_.bytes() + infos_.size() * sizeof(Info) +
+           waiting_.size() * sizeof(Waiting);
   }
 
  private:
@@ -111,7 +117,7 @@ class GreedySearch {
       if (state >= infos_.size()) infos_.resize(store_.size());
       if (infos_[state].expanded) break;
       infos_[state].expanded = true;
-      if (in_.limits.check(bytes() + store_.growth()) || in_.statistics.expanded >= most_expanded_)
+      if (in_.limits.check(held()) || in_.statistics.expanded >= most_expanded_)
         return Outcome::Limit;
       const std::optional<Estimates> e = evaluate(state);
       if (!e) break;
@@ -147,7 +153,7 @@ class GreedySearch {
     Taken at{state};
     const auto use = [&](OperatorId step) {
       if (at.reached ||
-          !in_.task.evaluator().holds(in_.task.action(step).precondition, store_[at.state]))
+          !in_.task.evaluator().holds(in_.task.action(step).precondition, store_.read(at.state)))
         return false;
       const Taken next = make(at.state, step);
       if (next.state == kNone) return false;
@@ -165,9 +171,9 @@ class GreedySearch {
     const Waiting w = std::exchange(waiting, {});
     if (w.step == kNoOperator) return {};  // in another queue
     if (!in_.task.asks(w.step)) return make(w.parent, w.step);
-    if (in_.limits.check(bytes() + store_.growth())) return {};
+    if (in_.limits.check(held())) return {};
     outcomes_.clear();
-    if (in_.task.decide(store_[w.parent], w.step, outcomes_)) return make(w.parent, w.step);
+    if (in_.task.decide(store_.read(w.parent), w.step, outcomes_)) return make(w.parent, w.step);
     for (const OperatorId outcome : outcomes_) {
       const Taken taken = make(w.parent, outcome);
       if (taken.reached) return taken;
@@ -177,11 +183,15 @@ class GreedySearch {
   }
 
   Taken make(Index parent, OperatorId step) {
-    if (in_.task.is_outcome(step) && !in_.target.allowed(store_[parent], step)) return {};
-    scratch_.assign(store_[parent]);
+    if (in_.task.is_outcome(step) && !in_.target.allowed(store_.read(parent), step)) return {};
+    if (std::exchange(scratch_of_, parent) == parent) {
+      scratch_.undo(0);
+    } else {
+      scratch_.assign(store_.read(parent), store_.hash(parent));
+    }
     if (!in_.task.apply(step, scratch_)) return {};
     ++in_.statistics.generated;
-    const auto [number, fresh] = store_.insert(scratch_.words(), scratch_.hash(), parent, step);
+    const auto [number, fresh] = store_.insert(scratch_, parent, step);
     ensure(number < kStep, "states are numbered");
     if (!fresh || !in_.target.reached(scratch_.words())) return {number, fresh, false};
     found_.steps = store_.path(number);
@@ -191,7 +201,8 @@ class GreedySearch {
 
   /// nullopt: a dead end. Both estimates are safe: what they call one is one.
   std::optional<Estimates> evaluate(Index state) {
-    const std::uint64_t relaxed = relaxed_.evaluate(store_[state]);
+    const std::uint64_t relaxed = relaxed_.evaluate(store_.read(state));
+    work_ += kPerState + kPerEdge * relaxed_.walked();
     const bool dead = relaxed == RelaxedPlan::kDeadEnd;
     if (state == 0) first_ = dead ? 0 : std::min<std::uint64_t>(relaxed, kFar - 1);
     if (state == 0 && in_.statistics.searches == 1)
@@ -199,12 +210,13 @@ class GreedySearch {
     if (dead) return std::nullopt;
     Estimates e{static_cast<std::uint32_t>(std::min<std::uint64_t>(relaxed, kFar - 1)), 0};
     if (!use_events_) return e;
-    const auto events = landmarks_.count(store_[state]);
+    const auto events = landmarks_.count(store_.read(state));
     if (!events) return std::nullopt;
     e.events = static_cast<std::uint32_t>(*events);
     // Not worth it where events are so many that their orders take longer than all the rest.
-    const std::size_t count = landmarks_.events();
-    use_events_ = count * count * (count / 64 + 1) < 200 * relaxed_.size() + 1'000'000;
+    const std::size_t count = landmarks_.events(), triples = count * count * (count / 64 + 1);
+    work_ += kPerEvent * count + triples;
+    use_events_ = triples < 200 * relaxed_.size() + 1'000'000;
     return e;
   }
 
@@ -223,9 +235,9 @@ class GreedySearch {
   bool expand(Index state) {
     const std::vector<OperatorId> helpful = relaxed_.steps();
     if (in_.task.layout().sensing()) {
-      in_.task.expand_unasked(store_[state], steps_);
+      in_.task.expand_unasked(store_.read(state), steps_);
     } else {
-      in_.heuristics.steps(in_.task, in_.limits).find(store_[state], steps_);
+      in_.heuristics.steps(in_.task, in_.limits).find(store_.read(state), steps_);
     }
     ++in_.statistics.expanded;
     const ActionSet awaited = use_events_ && ahead_ ? landmarks_.achievers() : ActionSet();
@@ -255,10 +267,8 @@ class GreedySearch {
     }
   }
 
-  [[nodiscard]] std::size_t bytes() const {
-    return store_.bytes() + open_.bytes() + infos_.size() * sizeof(Info) +
-           waiting_.size() * sizeof(Waiting);
-  }
+  /// For the limit of memory.
+  [[nodiscard]] std::size_t held() const { return bytes() + store_.growth() + besides_; }
 
   Found finish(Outcome outcome) {
     in_.statistics.states = std::max<std::uint64_t>(in_.statistics.states, store_.size());
@@ -267,11 +277,12 @@ class GreedySearch {
     return std::move(found_);
   }
 
-  const SearchInput& in_;
+  const SearchInput in_;
   std::uint64_t most_expanded_;
+  std::uint64_t work_ = 0;
+  std::size_t besides_ = 0;  ///< bytes that others hold
   RelaxedPlan& relaxed_;
   LandmarkHeuristic& landmarks_;
-  Index words_;
   bool calls_;    ///< external functions
   bool at_once_;  ///< steps are made when their state is expanded: it may be in a plan already
   std::uint64_t patience_;
@@ -279,8 +290,9 @@ class GreedySearch {
   std::uint64_t first_ = 0;  ///< the first state's relaxed estimate
   bool impatient_ = false;
   bool ahead_ = false;  ///< it looks ahead from the state at hand
-  StateStore store_;
+  DifferenceStore store_;
   Knowledge scratch_;
+  Index scratch_of_ = kNone;  ///< the state that it was made of
   Queues<4> open_;
   // In chunks: memory is never held twice while they grow.
   std::deque<Info> infos_;  ///< by state
@@ -293,19 +305,8 @@ class GreedySearch {
 
 }  // namespace
 
-Found greedy_best_first(const SearchInput& in) {
-  if (in.target.reached(in.start.data())) return {Outcome::Solved, {}};
-  Found best;
-  std::uint64_t most_expanded = ~std::uint64_t{0} - in.statistics.expanded;
-  for (int round = 0; round < kRounds; ++round) {
-    const std::uint64_t refused = in.task.refused(), expanded = in.statistics.expanded;
-    Found found = GreedySearch(in, most_expanded).run();
-    if (round == 0 || (found.outcome == Outcome::Solved && found.steps.size() < best.steps.size()))
-      best = std::move(found);
-    if (best.outcome != Outcome::Solved || in.task.refused() == refused) break;
-    most_expanded = in.statistics.expanded - expanded;
-  }
-  return best;
+std::unique_ptr<Engine> greedy_engine(const SearchInput& in, std::uint64_t most_expanded) {
+  return std::make_unique<GreedySearch>(in, most_expanded);
 }
 
 }  // namespace kaboum::plan

@@ -220,6 +220,7 @@ void RelaxedPlan::complete() {
     const Index a = complete_.back();
     complete_.pop_back();
     if (a == goal_) reached_ = true;
+    walked_ += brings_.size(a);
     const Cost cost = counters_[a].sum;
     // Of two that cost the same the first supports, in every state: relaxed plans share more steps
     // then and change less between states. (What is free might come to support itself.)
@@ -241,6 +242,7 @@ void RelaxedPlan::explore(const Word* state) {
   queue_.clear();
   complete_ = empty_;
   reached_ = false;
+  walked_ = counters_.size() / 8;
   const auto& fluents = task_.layout().fluents();
   for (Index i = 0; i < fluents_.size(); ++i) {
     const Word content = std::min(fluents[fluents_[i]].get(state), contents_[i] - 1);
@@ -257,6 +259,7 @@ void RelaxedPlan::explore(const Word* state) {
     }
     for (const Index *d = option_of_.begin(value), *end = option_of_.end(value); d != end; ++d)
       settle(*d, cost, value | kValue);
+    walked_ += needed_by_.size(value);
     for (const Index *a = needed_by_.begin(value), *end = needed_by_.end(value); a != end; ++a)
       count(*a, cost);
     complete();

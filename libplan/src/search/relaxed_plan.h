@@ -24,6 +24,8 @@ class RelaxedPlan {
 
   /// Edges of the graph that an evaluation walks.
   [[nodiscard]] std::size_t size() const { return size_; }
+  /// Those that the last evaluation has walked: it ends where the goal is reached.
+  [[nodiscard]] std::size_t walked() const { return walked_; }
 
   /// Steps of the last relaxed plan, ascending: those applicable now are the preferred ones.
   [[nodiscard]] const std::vector<OperatorId>& steps() const { return steps_; }
@@ -47,6 +49,7 @@ class RelaxedPlan {
     }
     [[nodiscard]] const Index* begin(Index i) const { return items.data() + first[i]; }
     [[nodiscard]] const Index* end(Index i) const { return items.data() + first[i + 1]; }
+    [[nodiscard]] std::size_t size(Index i) const { return first[i + 1] - first[i]; }
   };
   /// A conjunction: of what it waits for, and what it costs so far.
   struct Counter {
@@ -91,6 +94,7 @@ class RelaxedPlan {
   std::vector<char> seen_value_, seen_conjunction_;
   std::vector<Ref> todo_, seen_;
   bool reached_ = false;
+  std::size_t walked_ = 0;
   RadixQueue queue_;
   std::vector<OperatorId> steps_;
   std::vector<std::pair<Cost, OperatorId>> used_;  ///< costs and steps, of effects

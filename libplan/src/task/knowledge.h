@@ -55,8 +55,12 @@ class Knowledge {
         hash_(hash_of(words_.data(), layout.words())) {}
 
   void assign(const Word* words) {
+    assign(words, hash_of(words, static_cast<Index>(words_.size())));
+  }
+  /// @param hash  hash_of(words, ...)
+  void assign(const Word* words, std::uint64_t hash) {
     words_.assign(words, words + words_.size());
-    hash_ = hash_of(words, static_cast<Index>(words_.size()));
+    hash_ = hash;
     log_.clear();
   }
   [[nodiscard]] const Word* words() const { return words_.data(); }
@@ -70,6 +74,8 @@ class Knowledge {
   /// From now on, changes can be undone back to a mark.
   void keep_log(bool on) { logging_ = on; }
   [[nodiscard]] std::size_t mark() const { return log_.size(); }
+  /// Words that were written to since, and what they had been.
+  [[nodiscard]] const std::vector<std::pair<Index, Word>>& log() const { return log_; }
   void undo(std::size_t mark) {
     for (; log_.size() > mark; log_.pop_back()) put(log_.back().first, log_.back().second);
   }

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "search/search.h"
+
+namespace kaboum::plan {
+
+/// A search that can pause.
+class Engine {
+ public:
+  virtual ~Engine() = default;
+
+  /// Goes on for so much work: about a nanosecond each, but counted, not measured, so that equal
+  /// searches pause at equal states.
+  /// @param besides  bytes that others hold, for the limit of memory
+  /// @return what it has found, if it ends within that.
+  virtual std::optional<Found> advance(std::uint64_t work, std::size_t besides) = 0;
+  [[nodiscard]] virtual std::size_t bytes() const = 0;
+};
+
+/// Greedy best-first search with relaxed plans and landmark events (greedy_search.cpp).
+/// @param most_expanded  states, before it gives up.
+std::unique_ptr<Engine> greedy_engine(const SearchInput& in, std::uint64_t most_expanded);
+
+/// Best-first width search (width_search.cpp).
+/// @pre without sensing and external functions.
+std::unique_ptr<Engine> width_engine(const SearchInput& in);
+
+/// Both, which take turns that become longer, estimates first.
+/// @param first  work of the first turns
+/// @pre without sensing and external functions.
+Found take_turns(const SearchInput& in, std::uint64_t first);
+
+}  // namespace kaboum::plan

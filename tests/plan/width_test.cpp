@@ -1,0 +1,178 @@
+// Search by novelty: how states are held, what is new, and verdicts with and without pauses.
+#include <algorithm>
+#include <map>
+#include <random>
+#include <set>
+
+#include "plan_test.h"
+#include "search/difference_store.h"
+#include "search/engine.h"
+#include "search/novelty.h"
+
+namespace kaboum::plan::test {
+namespace {
+
+/// So many atoms that each may become true or false.
+Model switches(int count) {
+  std::string text = "types: t\nconstants: t ";
+  for (int i = 0; i < count; ++i) text += (i ? ", c" : "c") + std::to_string(i);
+  text += "\npredicates: on(t)\n";
+  text += "action up(?x : t) preconds: true effects: add(Kf, on(?x))\n";
+  text += "action down(?x : t) preconds: true effects: add(Kf, !on(?x))\n";
+  return model_of(text + "goal: K(on(c0))");
+}
+
+/// Random walks: states are known again, whatever led there, and read as they were.
+void walk(int atoms) {
+  const Model model = switches(atoms);
+  const SolveOptions options;
+  Statistics statistics;
+  Limits limits(options, statistics);
+  const Task task(model, limits);
+  const Index words = task.layout().words(), fluents = task.layout().fluents().size();
+  std::mt19937 random(atoms);
+  const std::vector<Word> start = task.initial();
+  DifferenceStore store(start.data(), words);
+  std::map<std::vector<Word>, Index> numbers = {{start, 0}};
+  std::vector<std::vector<Word>> states = {start};
+  Knowledge scratch(task.layout());
+  scratch.keep_log(true);
+  std::size_t again = 0;
+  for (int i = 0; i < 30'000; ++i) {
+    const auto parent = static_cast<Index>(random() % states.size());
+    const Word* const read = store.read(parent);
+    ASSERT_TRUE(std::equal(read, read + words, states[parent].begin()));
+    scratch.assign(read, store.hash(parent));
+    for (unsigned k = random() % 4; k > 0; --k)
+      scratch.learn_atom(static_cast<Index>(random() % 5 == 0 ? random() % fluents : random() % 4),
+                         true);
+    if (random() % 3 == 0) scratch.apply({Change::Kind::AddFalse, static_cast<Index>(random() % 4), 0, {}});
+    const std::vector<Word> now(scratch.words(), scratch.words() + words);
+    ASSERT_EQ(scratch.hash(), Knowledge::hash_of(now.data(), words));
+    const auto [number, fresh] = store.insert(scratch, parent, i);
+    const auto [known, added] = numbers.emplace(now, number);
+    ASSERT_EQ(fresh, added);
+    ASSERT_EQ(number, known->second);
+    again += added ? 0 : 1;
+    if (!added) continue;
+    states.push_back(now);
+    ASSERT_EQ(store.size(), states.size());
+    ASSERT_EQ(store.path(number).back(), static_cast<Index>(i));
+    ASSERT_EQ(store.path(number).size(), store.path(parent).size() + 1);
+  }
+  EXPECT_GT(again, 1000U);
+  EXPECT_GT(states.size(), 1000U);
+}
+
+TEST(DifferenceStore, HoldsShortStates) { walk(100); }
+
+TEST(DifferenceStore, HoldsLongStatesAsDifferences) {
+  walk(5000);
+  const Model model = switches(5000);
+  const SolveOptions options;
+  Statistics statistics;
+  Limits limits(options, statistics);
+  const Task task(model, limits);
+  DifferenceStore store(task.initial().data(), task.layout().words());
+  const std::size_t empty = store.bytes();
+  Knowledge scratch(task.layout());
+  scratch.keep_log(true);
+  for (Index i = 0; i < 5000; ++i) {
+    scratch.assign(store.read(0), store.hash(0));
+    scratch.learn_atom(i, true);
+    store.insert(scratch, 0, i);
+  }
+  EXPECT_EQ(store.size(), 5001U);
+  EXPECT_LT(store.bytes() - empty, 5000U * 100) << "a state whole takes 1250 bytes";
+}
+
+TEST(Novelty, IsThatOfTheDefinition) {
+  std::mt19937 random(7);
+  for (const Index facts : {5U, 64U, 200U}) {
+    Novelty novelty(facts, 1 << 28);
+    std::set<std::pair<Index, Index>> had;  // class, fact
+    std::set<std::array<Index, 3>> pairs;   // class, fresh, present
+    std::array<int, 4> counts{};
+    for (int i = 0; i < 3000; ++i) {
+      const Index state_class = random() % 3;
+      std::set<Index> present;
+      for (unsigned k = 1 + random() % 6; k > 0; --k) present.insert(random() % facts);
+      std::vector<Index> all(present.begin(), present.end()), fresh;
+      for (const Index f : all)
+        if (random() % 2 != 0) fresh.push_back(f);
+      int expected = 3;
+      for (const Index f : fresh)
+        for (const Index p : all)
+          if (pairs.insert({state_class, f, p}).second) expected = 2;
+      for (const Index f : fresh)
+        if (had.emplace(state_class, f).second) expected = 1;
+      ASSERT_EQ(novelty.of(state_class, fresh, all), expected);
+      ++counts[static_cast<std::size_t>(expected)];
+    }
+    EXPECT_GT(counts[1], 0);
+    EXPECT_GT(counts[2], 0);
+    EXPECT_TRUE(counts[3] > 0 || facts > 64);
+  }
+}
+
+TEST(Novelty, PairsAreForgottenWhereTheyWouldTakeTooMuch) {
+  Novelty novelty(1000, 1 << 12);
+  for (Index f = 0; f + 1 < 1000; ++f) novelty.of(0, {f, f + 1}, {f, f + 1});
+  EXPECT_LE(novelty.bytes(), (1U << 17U) + 1000 / 8);
+  EXPECT_EQ(novelty.of(0, {3}, {3, 700}), 3) << "a pair, but no longer kept";
+  EXPECT_EQ(novelty.of(1, {3}, {3, 700}), 1);
+}
+
+struct Reached : Target {
+  explicit Reached(const Task& of) : task(of) {}
+  bool reached(const Word* state) override { return task.evaluator().holds(task.goal(), state); }
+  bool allowed(const Word*, OperatorId) override { return true; }
+  bool expects(const Word*, OperatorId) override { return true; }
+  const Task& task;
+};
+
+/// What an engine finds with pauses of this much work.
+Found run(const Model& model, std::uint64_t work,
+          const std::function<Found(const SearchInput&, std::uint64_t)>& search) {
+  const SolveOptions options;
+  Statistics statistics;
+  Limits limits(options, statistics);
+  Task task(model, limits);
+  Heuristics heuristics;
+  Reached target(task);
+  return search({task, task.initial(), target, limits, statistics, heuristics}, work);
+}
+
+Found by_width(const SearchInput& in, std::uint64_t work) {
+  const auto engine = width_engine(in);
+  for (;;)
+    if (auto found = engine->advance(work, 0)) return *found;
+}
+
+TEST(Width, PausesChangeNothing) {
+  for (const auto& [domain, n] : {std::pair("stacked", "6"), std::pair("remove", "9")}) {
+    const Model model = scenario(domain, n);
+    const Found whole = run(model, std::uint64_t{1} << 60U, by_width);
+    ASSERT_EQ(whole.outcome, Outcome::Solved);
+    EXPECT_EQ(run(model, 1, by_width).steps, whole.steps);
+    EXPECT_EQ(run(model, 1'000'000, by_width).steps, whole.steps);
+  }
+}
+
+TEST(Width, TurnsFindWhatEitherFinds) {
+  for (const auto& [domain, n] : {std::pair("stacked", "7"), std::pair("remove", "9")}) {
+    const Model model = scenario(domain, n);
+    for (const std::uint64_t first : {1U, 100'000U, 100'000'000U})
+      EXPECT_EQ(run(model, first, take_turns).outcome, Outcome::Solved);
+  }
+  const Model none = model_of(
+      "types: t\nconstants: t a, b, c, d\npredicates: on(t), done\ninit: K(!done)\n"
+      "action up(?x : t) preconds: true effects: add(Kf, on(?x))\n"
+      "action down(?x : t) preconds: true effects: add(Kf, !on(?x))\n"
+      "action end preconds: K(on(a)) & K(!on(a)) effects: add(Kf, done)\ngoal: K(done)");
+  for (const std::uint64_t first : {1U, 100'000U})
+    EXPECT_EQ(run(none, first, take_turns).outcome, Outcome::Unsolvable);
+}
+
+}  // namespace
+}  // namespace kaboum::plan::test
