@@ -4,7 +4,8 @@
 namespace kaboum::tools {
 namespace {
 
-void add(std::vector<Repair>& repairs, const char* kind, std::size_t count, geom::Box3 box = {}) {
+void add(std::vector<Repair>& repairs, const char* kind, std::size_t count,
+         const geom::Box3& box = {}) {
   if (count > 0) repairs.push_back({kind, count, box});
 }
 

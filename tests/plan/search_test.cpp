@@ -22,6 +22,33 @@ TEST(Search, UnsolvableIsToldFromLimit) {
   EXPECT_NE(s.limit.find("memory"), std::string::npos);
 }
 
+TEST(Search, PreconditionsMayHaveThousandsOfConjuncts) {
+  // The last one, which no rule joins, is brought about; or it is not.
+  constexpr int kCount = 2000;
+  const auto task = [](const std::string& last) {
+    std::string atoms, init, all;
+    for (int i = 0; i < kCount; ++i) {
+      const std::string p = "p" + std::to_string(i);
+      atoms += p + ", ";
+      init += i + 1 < kCount ? "K(" + p + ") " : "K(!" + p + ") ";
+      all += "K(" + p + ") & ";
+    }
+    return model_of("types: t\nconstants: t a, b\npredicates: " + atoms +
+                    "on(t), done\ninit: K(!done) K(on(a)) K(!on(b)) " + init +
+                    "\naction go(?x : t) preconds: " + all +
+                    "K(on(?x)) & K(?x != a) effects: add(Kf, done)\n"
+                    "action put preconds: !K(done) effects: add(Kf, on(b))\n"
+                    "action last preconds: !K(done) effects: add(Kf, " +
+                    last + ")\ngoal: K(done)");
+  };
+  for (const Algorithm a : {Algorithm::Greedy, Algorithm::AStar}) {
+    const Solution s = solved(task("p" + std::to_string(kCount - 1)), a);
+    ASSERT_EQ(s.outcome, Outcome::Solved);
+    EXPECT_EQ(s.plan.nodes.size(), 3U);
+    EXPECT_EQ(solve(task("on(a)"), {a, 0, 0, {}}).outcome, Outcome::Unsolvable);
+  }
+}
+
 TEST(Search, SensingThatDoesNotHelpIsNoPlan) {
   // Weighing tells, but the full box cannot be moved: only one outcome has a plan.
   const Model m = model_of(

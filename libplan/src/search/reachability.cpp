@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -16,11 +17,17 @@ using Kind = FormulaPool::Kind;
 namespace {
 
 constexpr std::size_t kMostPositions = 64;
+constexpr std::size_t kMostJoined = 64;  // atoms of a precondition: rules grow with their cube
 
 bool is_atom(const Query& q) {
   return q.kind == Query::Kind::Known && !q.negated && q.arguments.size() <= kMostPositions &&
          std::none_of(q.arguments.begin(), q.arguments.end(),
                       [](const Argument& a) { return a.term != nullptr; });
+}
+
+bool has_variables(const Query* q) {
+  return std::any_of(q->arguments.begin(), q->arguments.end(),
+                     [](const Argument& a) { return a.variable; });
 }
 
 }  // namespace
@@ -72,6 +79,11 @@ void Reachability::make_schema(Index schema) {
   JoinedAction& s = schemas_[schema];
   for (const Query* q : conjuncts(action.precondition))
     if (is_atom(*q)) s.atoms.push_back(q);
+  if (s.atoms.size() > kMostJoined) {  // those with variables, the others are tested
+    std::stable_partition(s.atoms.begin(), s.atoms.end(), has_variables);
+    s.atoms.resize(kMostJoined);
+  }
+  const std::set<const Query*> joined(s.atoms.begin(), s.atoms.end());
   for (const ActionSchema::Level& level : of.levels()) {
     s.candidate_of.emplace_back(task_.model().objects.size(), kNone);
     for (Index c = 0; c < level.candidates.size(); ++c)
@@ -79,7 +91,7 @@ void Reachability::make_schema(Index schema) {
   }
   const auto sort = [&](std::vector<ActionSchema::Check>& checks) {
     for (ActionSchema::Check& c : checks) {
-      if (is_atom(*c.query)) continue;
+      if (joined.contains(c.query)) continue;
       s.ordered.push_back(&c);
       if (!c.calls) s.rest.push_back(&c);
     }
