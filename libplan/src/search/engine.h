@@ -13,8 +13,8 @@ class Engine {
  public:
   virtual ~Engine() = default;
 
-  /// Goes on for so much work: about a nanosecond each, but counted, not measured, so that equal
-  /// searches pause at equal states.
+  /// Goes on, until so much work has led no nearer to the goal: about a nanosecond each, but
+  /// counted, not measured, so that equal searches pause at equal states.
   /// @param besides  bytes that others hold, for the limit of memory
   /// @return what it has found, if it ends within that.
   virtual std::optional<Found> advance(std::uint64_t work, std::size_t besides) = 0;

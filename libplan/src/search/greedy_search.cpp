@@ -64,7 +64,8 @@ class GreedySearch final : public Engine {
 
   std::optional<Found> advance(std::uint64_t work, std::size_t besides) override {
     besides_ = besides;
-    for (const std::uint64_t most = work_ + work; work_ < most;) {
+    turn_ = work;
+    for (pause_ = work_ + turn_; work_ < pause_;) {
       if (open_.empty()) return finish(Outcome::Unsolvable);
       const Index item = open_.pop();
       Taken taken{item, true, false};
@@ -223,6 +224,7 @@ class GreedySearch final : public Engine {
   void note_progress(const Estimates& e) {
     const bool relaxed = e.relaxed < best_.relaxed;
     const bool events = use_events_ && e.events < best_.events;
+    if (relaxed || events) pause_ = work_ + turn_;
     if (relaxed) best_.relaxed = e.relaxed;
     if (events) best_.events = e.events;
     // Progress of one estimate is for both, but where calls take longer than all else.
@@ -279,7 +281,7 @@ class GreedySearch final : public Engine {
 
   const SearchInput in_;
   std::uint64_t most_expanded_;
-  std::uint64_t work_ = 0;
+  std::uint64_t work_ = 0, pause_ = 0, turn_ = 0;
   std::size_t besides_ = 0;  ///< bytes that others hold
   RelaxedPlan& relaxed_;
   LandmarkHeuristic& landmarks_;

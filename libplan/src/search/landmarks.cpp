@@ -247,6 +247,13 @@ ActionSet LandmarkHeuristic::achievers() const {
   return all;
 }
 
+std::vector<std::vector<FactId>> LandmarkHeuristic::landmarks() const {
+  std::vector<std::vector<FactId>> out;
+  for (const LandmarkEvent& e : events_)
+    if (!e.last) out.push_back(e.facts);
+  return out;
+}
+
 /// @return false: a dead end.
 bool LandmarkHeuristic::find_events(const Word* state) {
   events_.clear();

@@ -44,6 +44,9 @@ class LandmarkHeuristic {
   /// Events of the last evaluation, whose time grows with their cube.
   [[nodiscard]] std::size_t events() const { return events_.size(); }
 
+  /// By event of the last evaluation: facts of which one has yet to come true for the first time.
+  [[nodiscard]] std::vector<std::vector<FactId>> landmarks() const;
+
  private:
   /// Achievers of a fact that can only be its first achievers while all of `guards` hold.
   struct Bucket {

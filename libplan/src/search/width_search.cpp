@@ -1,7 +1,8 @@
 // Best-first width search [lipovetzky2017bfws], BFWS(f5): states come first that have a fact, then
-// two facts, which no state before them had with as many goals open and as much of a relaxed plan
-// done; of these, those with few open goals. Relaxed plans are made only where a goal has come to
-// hold, so most states take a small part of the time that an estimate does.
+// two facts, which no state before them had with as much left to do and as much of a relaxed plan
+// done; of these, those with little left to do: goals, and landmarks of the first state that did
+// not come true on the way. Relaxed plans are made only where less is left than before, so most
+// states take a small part of the time that an estimate does.
 #include <kaboum/base/error.h>
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 #include "search/applicable_steps.h"
 #include "search/difference_store.h"
 #include "search/engine.h"
+#include "search/landmarks.h"
 #include "search/novelty.h"
 #include "search/relaxation.h"
 #include "search/relaxed_plan.h"
@@ -77,6 +79,7 @@ class WidthSearch final : public Engine {
         applicable_(in.heuristics.steps(in.task, in.limits)),
         goals_(in.heuristics.relaxation->necessary_facts(in.heuristics.goal)),
         brings_(in.task.action_count()),
+        landmarks_of_(said_.count()),
         store_(in.start.data(), in.task.layout().words()),
         scratch_(in.task.layout()),
         novelty_(said_.count(), kMostPairBytes),
@@ -85,12 +88,16 @@ class WidthSearch final : public Engine {
       for (const FactId f : o.adds)
         if (said_.number(f) != kNone) brings_[o.step].push_back(said_.number(f));
     scratch_.keep_log(true);
-    nodes_.push_back({open_goals(in.start.data())});
+    find_landmarks(in.heuristics.landmark(in.task, in.limits));
+    nodes_.push_back({open_goals(in.start.data()) + landmarks_});
+    marks_.assign(landmark_words(), 0);
+    least_left_ = nodes_[0].left;
     push(0, 1);
   }
 
   std::optional<Found> advance(std::uint64_t work, std::size_t besides) override {
-    for (const std::uint64_t most = work_ + work; work_ < most;) {
+    turn_ = work;
+    for (pause_ = work_ + turn_; work_ < pause_;) {
       if (open_.empty()) return Found{Outcome::Unsolvable, {}};
       if (in_.limits.exceeded(bytes() + store_.growth() + besides)) return Found{};
       const Index state = pop();
@@ -108,20 +115,31 @@ class WidthSearch final : public Engine {
 
  private:
   struct Node {
-    std::uint32_t open_goals = 0;
+    std::uint32_t left = 0;  ///< goals that are open, landmarks that did not come true
     Index plan = kNone;      ///< the relaxed plan at hand; kNone: to be made
     std::uint32_t done = 0;  ///< of its facts, how many have come to hold since
-    std::size_t marks = 0;   ///< in `marks_`: which
+    std::size_t marks = 0;   ///< in `marks_`: landmarks that came true, then facts of the plan
   };
+
+  [[nodiscard]] std::size_t landmark_words() const { return (landmarks_ + 63) / 64; }
+
+  void find_landmarks(LandmarkHeuristic& heuristic) {
+    if (!heuristic.count(in_.start.data())) return;
+    for (const std::vector<FactId>& facts : heuristic.landmarks()) {
+      if (std::any_of(facts.begin(), facts.end(),
+                      [&](FactId f) { return said_.number(f) == kNone; }))
+        continue;
+      for (const FactId f : facts) landmarks_of_[said_.number(f)].push_back(landmarks_);
+      ++landmarks_;
+    }
+  }
 
   [[nodiscard]] std::uint32_t open_goals(const Word* state) const {
     return static_cast<std::uint32_t>(std::count_if(
         goals_.begin(), goals_.end(), [&](FactId g) { return !facts_.holds(g, state); }));
   }
 
-  void push(Index state, int novelty) {
-    open_[{novelty, nodes_[state].open_goals}].push_back(state);
-  }
+  void push(Index state, int novelty) { open_[{novelty, nodes_[state].left}].push_back(state); }
   Index pop() {
     const auto best = open_.begin();
     const Index state = best->second.front();
@@ -145,7 +163,8 @@ class WidthSearch final : public Engine {
     facts.erase(std::unique(facts.begin(), facts.end()), facts.end());
     Node& node = nodes_[state];
     node.plan = static_cast<Index>(plans_.size());
-    node.marks = marks_.size();
+    const std::size_t before = std::exchange(node.marks, marks_.size());
+    for (std::size_t i = 0; i < landmark_words(); ++i) marks_.push_back(marks_[before + i]);
     marks_.resize(marks_.size() + (facts.size() + 63) / 64, 0);
     plans_.push_back(std::move(facts));
     return true;
@@ -212,34 +231,56 @@ class WidthSearch final : public Engine {
     list_changes(words);
     const Node before = nodes_[parent];
     Node node{open_goals(scratch_.words()), before.plan, 0, marks_.size()};
-    if (node.open_goals < before.open_goals) {
+    node.left += mark_landmarks(before, node);
+    if (node.left < before.left) {
       node.plan = kNone;
     } else {
-      mark(before, node);
+      node.done = mark_plan(before, node);
     }
-    const bool same = node.open_goals == before.open_goals && node.done == before.done;
+    if (node.left < least_left_) {
+      least_left_ = node.left;
+      pause_ = work_ + turn_;  // as long as it leads nearer
+    }
+    const bool same = node.left == before.left && node.done == before.done;
     const std::vector<Index>& looked_at = same ? fresh_ : now_;
     work_ += 30 * looked_at.size() * (1 + now_.size() / 4);
     const auto [entry, added] =
-        classes_.try_emplace({node.open_goals, node.done}, static_cast<Index>(classes_.size()));
+        classes_.try_emplace({node.left, node.done}, static_cast<Index>(classes_.size()));
     const int novelty = novelty_.of(entry->second, looked_at, now_);
     nodes_.push_back(node);
     push(static_cast<Index>(nodes_.size() - 1), novelty);
   }
 
-  /// Which of the relaxed plan's facts have come to hold.
-  void mark(const Node& before, Node& node) {
+  void mark(std::size_t first, std::size_t bit) {
+    marks_[first + bit / 64] |= std::uint64_t{1} << (bit % 64);
+  }
+  [[nodiscard]] std::uint32_t marked(std::size_t first, std::size_t words) const {
+    std::uint32_t count = 0;
+    for (std::size_t i = 0; i < words; ++i)
+      count += static_cast<std::uint32_t>(std::popcount(marks_[first + i]));
+    return count;
+  }
+
+  /// @return how many landmarks did not come true.
+  std::uint32_t mark_landmarks(const Node& before, const Node& node) {
+    for (std::size_t i = 0; i < landmark_words(); ++i) marks_.push_back(marks_[before.marks + i]);
+    for (const Index f : fresh_)
+      for (const Index landmark : landmarks_of_[f]) mark(node.marks, landmark);
+    return landmarks_ - marked(node.marks, landmark_words());
+  }
+
+  /// @return how many of the relaxed plan's facts have come to hold.
+  std::uint32_t mark_plan(const Node& before, const Node& node) {
     const std::vector<Index>& plan = plans_[before.plan];
-    const std::size_t count = (plan.size() + 63) / 64;
-    for (std::size_t i = 0; i < count; ++i) marks_.push_back(marks_[before.marks + i]);
+    const std::size_t words = (plan.size() + 63) / 64, first = node.marks + landmark_words();
+    for (std::size_t i = 0; i < words; ++i)
+      marks_.push_back(marks_[before.marks + landmark_words() + i]);
     for (const Index f : fresh_) {
       const auto found = std::lower_bound(plan.begin(), plan.end(), f);
-      if (found == plan.end() || *found != f) continue;
-      const auto bit = static_cast<std::size_t>(found - plan.begin());
-      marks_[node.marks + bit / 64] |= std::uint64_t{1} << (bit % 64);
+      if (found != plan.end() && *found == f)
+        mark(first, static_cast<std::size_t>(found - plan.begin()));
     }
-    for (std::size_t i = 0; i < count; ++i)
-      node.done += static_cast<std::uint32_t>(std::popcount(marks_[node.marks + i]));
+    return marked(first, words);
   }
 
   const SearchInput in_;
@@ -247,17 +288,20 @@ class WidthSearch final : public Engine {
   const FactTable& facts_;
   SaidFacts said_;
   ApplicableSteps& applicable_;
-  std::vector<FactId> goals_;               ///< that every goal state has
-  std::vector<std::vector<Index>> brings_;  ///< facts, by step
+  std::vector<FactId> goals_;                     ///< that every goal state has
+  std::vector<std::vector<Index>> brings_;        ///< facts, by step
+  Index landmarks_ = 0;                           ///< their number
+  std::vector<std::vector<Index>> landmarks_of_;  ///< by fact
   DifferenceStore store_;
   Knowledge scratch_;  ///< the successor at hand
   Novelty novelty_;
-  std::uint64_t work_ = 0;
+  std::uint64_t work_ = 0, pause_ = 0, turn_ = 0;
+  std::uint32_t least_left_ = 0;
   std::deque<Node> nodes_;  ///< by state
   std::vector<std::vector<Index>> plans_;
   std::deque<std::uint64_t> marks_;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, Index> classes_;  ///< by goals open, plan done
-  std::map<std::pair<int, std::uint32_t>, std::deque<Index>> open_;   ///< by novelty, goals open
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Index> classes_;  ///< by left, done
+  std::map<std::pair<int, std::uint32_t>, std::deque<Index>> open_;   ///< by novelty, left
   std::vector<OperatorId> steps_;
   std::vector<char> is_here_;                        ///< by fact: in present_
   std::vector<Index> present_;                       ///< facts of the state that is expanded
