@@ -9,7 +9,7 @@ namespace kaboum::plan {
 namespace {
 
 constexpr std::size_t kLong = 32;                      // words: shorter states are held whole
-constexpr std::size_t kChunk = std::size_t{1} << 16U;  // words
+constexpr std::size_t kChunk = std::size_t{1} << 13U;  // words
 
 }  // namespace
 

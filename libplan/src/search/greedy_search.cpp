@@ -137,7 +137,7 @@ class GreedySearch final : public Engine {
   /// Whether to look ahead from the next state, where that takes no calls: once the relaxed
   /// estimate did not fall steadily.
   [[nodiscard]] bool looks_ahead() {
-    if (at_once_ || in_.statistics.expanded < patience_) return false;
+    if (at_once_ || expanded_ < patience_) return false;
     impatient_ = impatient_ || !steady();
     return impatient_;
   }
@@ -145,7 +145,7 @@ class GreedySearch final : public Engine {
   /// Whether the relaxed estimate falls so fast that the goal is not far.
   [[nodiscard]] bool steady() const {
     const std::uint64_t fallen = first_ - best_.relaxed;
-    return in_.statistics.expanded * first_ <= most_steady_ * fallen;
+    return expanded_ * first_ <= most_steady_ * fallen;
   }
 
   /// Makes the steps of the relaxed plan of the state at hand, each once, while one is possible.
@@ -241,6 +241,7 @@ class GreedySearch final : public Engine {
     } else {
       in_.heuristics.steps(in_.task, in_.limits).find(store_.read(state), steps_);
     }
+    ++expanded_;
     ++in_.statistics.expanded;
     const ActionSet awaited = use_events_ && ahead_ ? landmarks_.achievers() : ActionSet();
     const Estimates estimates = infos_[state].estimates;
@@ -287,6 +288,7 @@ class GreedySearch final : public Engine {
   LandmarkHeuristic& landmarks_;
   bool calls_;    ///< external functions
   bool at_once_;  ///< steps are made when their state is expanded: it may be in a plan already
+  std::uint64_t expanded_ = 0;  ///< states
   std::uint64_t patience_;
   std::uint64_t most_steady_;
   std::uint64_t first_ = 0;  ///< the first state's relaxed estimate
