@@ -6,6 +6,7 @@
 #include "plan_test.h"
 #include "possible_worlds.h"
 #include "random_model.h"
+#include "works_merged.h"
 
 namespace kaboum::plan::test {
 namespace {
@@ -129,6 +130,44 @@ TEST(Beliefs, VerdictsWithEveryKindOfUpdateAreThoseOfAnExhaustiveSearch) {
     compare(Generator(seed + 300'000, false).model(4, 0), count, true);
   EXPECT_GT(count.solvable, 25);
   EXPECT_GT(count.unsolvable, 25);
+}
+
+TEST(Beliefs, WhatWorksFromWhatRunsHaveInCommonWorksInEachOfThem) {
+  std::mt19937 random(1);
+  const auto pick = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };
+  int works = 0;
+  int fails = 0;
+  for (std::uint32_t seed = 0; seed < 1500 && !HasFailure(); ++seed) {
+    const std::string text = ContingentGenerator(seed + 700'000).model();
+    const Model m = model_of(text);
+    Solution s;
+    try {
+      s = solve(m, {});
+    } catch (const Error&) {
+      continue;  // the initial knowledge contradicts itself
+    }
+    if (s.outcome != Outcome::Solved || s.plan.root == kNone) continue;
+    for (int i = 0; i < 8; ++i) {
+      Plan p = s.plan;
+      Plan::Node& n = p.nodes[pick(p.nodes.size())];
+      const Index to = pick(3) == 0 ? kNone : static_cast<Index>(pick(p.nodes.size()));
+      if (i > 0 && pick(2) == 0) std::swap(n.action, p.nodes[pick(p.nodes.size())].action);
+      if (i > 0) (n.branches ? n.branch.cases[pick(n.branch.cases.size())].next : n.next) = to;
+      try {
+        measure(m, p);
+      } catch (const Error&) {
+        continue;  // a cycle
+      }
+      if (!works_merged(m, p)) {
+        ++fails;
+        continue;
+      }
+      ++works;
+      EXPECT_TRUE(check(m, p).valid) << "seed " << seed << "\n" << text << plan_text(m, p);
+    }
+  }
+  EXPECT_GT(works, 150);
+  EXPECT_GT(fails, 70);
 }
 
 /// Find out where one is in a ring of n cells, one of them with a wall, by looking and moving: only

@@ -4,6 +4,7 @@
 #include "plan_test.h"
 #include "possible_worlds.h"
 #include "random_model.h"
+#include "works_merged.h"
 
 namespace kaboum::plan::test {
 namespace {
@@ -239,6 +240,65 @@ TEST(Check, AgreesWithSetsOfWorldsOnDamagedPlans) {
   }
   EXPECT_GT(refused, 200);
   EXPECT_GT(accepted, 100);
+}
+
+/// n balls are each in one of three cells. Each is looked for in the first cell for nothing, then
+/// all are looked for and taken.
+Plan looks_twice(const Model& m, Index n) {
+  const auto object = [&](const std::string& name) {
+    return static_cast<Index>(std::ranges::find(m.objects, name, &Object::name) -
+                              m.objects.begin());
+  };
+  Plan p;
+  const auto act = [&](Index schema, Index ball, const char* cell) -> Plan::Node& {
+    p.nodes.emplace_back();
+    p.nodes.back().acts = true;
+    p.nodes.back().action = {schema, {object("o" + std::to_string(ball)), object(cell)}};
+    return p.nodes.back();
+  };
+  const auto look = [&](Index ball, const char* cell, Index found, Index not_found) {
+    Plan::Node& node = act(0, ball, cell);
+    node.branches = true;
+    node.branch.symbol = 0;
+    node.branch.arguments = node.action.arguments;
+    node.branch.cases = {{0, not_found}, {1, found}};
+  };
+  for (Index i = 0; i < n; ++i) look(i, "a", i + 1, i + 1);
+  for (Index i = 0; i < n; ++i) {
+    const auto at = static_cast<Index>(p.nodes.size());
+    look(i, "a", at + 1, at + 2);
+    act(1, i, "a").next = i + 1 < n ? at + 5 : kNone;
+    look(i, "b", at + 3, at + 4);
+    act(1, i, "b").next = i + 1 < n ? at + 5 : kNone;
+    act(1, i, "c").next = i + 1 < n ? at + 5 : kNone;
+  }
+  p.root = 0;
+  return p;
+}
+
+TEST(Check, RunsThatMeetAreReplayedAtOnceWhereTheyAreMany) {
+  constexpr Index n = 18;
+  std::string text = "types: ball, cell constants: cell a, b, c; ball o0";
+  for (Index i = 1; i < n; ++i) text += ", o" + std::to_string(i);
+  text += " predicates: in(ball, cell), taken(ball) closed: taken init: ";
+  for (Index i = 0; i < n; ++i) {
+    const std::string o = "in(o" + std::to_string(i) + ", ";
+    text += "Kx(" + o + "a) | " + o + "b) | " + o + "c)) ";
+  }
+  text +=
+      "action look(?o : ball, ?c : cell) preconds: true effects: add(Kw, in(?o, ?c)) "
+      "action take(?o : ball, ?c : cell) preconds: K(in(?o, ?c)) effects: add(Kf, taken(?o)) "
+      "goal: forallK(?o : ball) K(taken(?o))";
+  const Model m = model_of(text);
+  Plan plan = looks_twice(m, n);
+  const CheckResult r = check(m, plan, 50'000);
+  EXPECT_TRUE(r.valid) << r.violation;
+  EXPECT_TRUE(works_merged(m, plan));
+  for (const char* cell : {"b", "c"}) {  // where the last ball is not, and may be
+    std::swap(plan.nodes.back().action.arguments.back(),
+              plan.nodes[plan.nodes.size() - 2].action.arguments.back());
+    EXPECT_EQ(works_merged(m, plan), *cell == 'c');
+  }
 }
 
 TEST(Check, TreeAndGraphAreBothValid) {

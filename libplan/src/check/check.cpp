@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "check/live_facts.h"
+#include "check/merged_replay.h"
 #include "check/query_evaluator.h"
 #include "check/runtime_knowledge.h"
 #include "check/transitions.h"
@@ -22,10 +23,12 @@ namespace {
 
 class Checker {
  public:
-  Checker(const Model& model, const Plan& plan, std::uint64_t limit)
+  /// @param monotone  whether MergedReplay takes the model that this one is, or is made of.
+  Checker(const Model& model, const Plan& plan, std::uint64_t limit, bool monotone)
       : model_(model),
         plan_(plan),
         limit_(limit),
+        monotone_(monotone),
         evaluator_(model, plan),
         live_(model, plan, evaluator_),
         transitions_(model, evaluator_) {}
@@ -34,6 +37,7 @@ class Checker {
     for (RuntimeKnowledge& k : transitions_.initial_states())
       visit(plan_.root, std::move(k), kNoParent, "");
     while (!queue_.empty() && result_.violation.empty()) {
+      if (visits_.size() >= merge_at_ && confirmed_at_once()) return result_;
       const std::size_t v = queue_.front();
       queue_.pop_front();
       replay(v);
@@ -48,6 +52,16 @@ class Checker {
 
  private:
   static constexpr std::size_t kNoParent = ~std::size_t{0};
+  static constexpr std::size_t kManyVisits = 20'000;
+
+  /// Tried once.
+  bool confirmed_at_once() {
+    merge_at_ = ~std::size_t{0};
+    result_.valid =
+        monotone_ && MergedReplay(model_, plan_, evaluator_, live_, transitions_).confirms();
+    result_.leaves = std::max<decltype(result_.leaves)>(result_.leaves, result_.valid ? 1 : 0);
+    return result_.valid;
+  }
 
   struct Visit {
     Index node;
@@ -187,6 +201,7 @@ class Checker {
   const Model& model_;
   const Plan& plan_;
   std::uint64_t limit_;
+  bool monotone_;
   QueryEvaluator evaluator_;
   LiveFacts live_;
   Transitions transitions_;
@@ -195,6 +210,7 @@ class Checker {
   std::deque<std::size_t> queue_;
   std::map<Index, std::size_t> contradicted_;  ///< nodes, and a visit in which they contradict
   std::set<Index> passed_;                     ///< nodes that some run gets through
+  std::size_t merge_at_ = kManyVisits;
   CheckResult result_;
 };
 
@@ -204,7 +220,7 @@ CheckResult check(const Model& model, const Plan& plan, std::uint64_t limit) {
   measure(model, plan);  // refuses cycles
   const std::optional<Model> view = knowledge_view(model);
   const Model& known = view ? *view : model;
-  CheckResult by_databases = Checker(known, plan, limit).run();
+  CheckResult by_databases = Checker(known, plan, limit, MergedReplay::takes(model)).run();
   // What they refute may follow all the same, where they keep less than that.
   if (by_databases.valid || (!view && lost_knowledge(known).empty())) return by_databases;
   if (!WorldReplay::takes(model)) return by_databases;

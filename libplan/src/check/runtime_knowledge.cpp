@@ -2,6 +2,7 @@
 // are those of [petrick2002pks].
 #include "check/runtime_knowledge.h"
 
+#include <algorithm>
 #include <tuple>
 
 namespace kaboum::plan {
@@ -164,6 +165,65 @@ void RuntimeKnowledge::forget_value(const Fact& term) {
 }
 void RuntimeKnowledge::drop_exclusive(const std::set<Fact>& atoms) {
   if (exclusive_.erase(atoms) > 0) cut_ = true;
+}
+
+/// Whether it is known that exactly one of the atoms holds.
+bool RuntimeKnowledge::exactly_one(const std::set<Fact>& atoms) const {
+  std::set<Fact> undecided;
+  int holding = 0;
+  for (const Fact& f : atoms) {
+    const auto known = atoms_.find(f);
+    if (known == atoms_.end())
+      undecided.insert(f);
+    else if (known->second)
+      ++holding;
+  }
+  if (holding == 1) return undecided.empty();
+  return holding == 0 && std::ranges::any_of(exclusive_, [&](const auto& entry) {
+           return entry.second == undecided;
+         });
+}
+
+bool RuntimeKnowledge::at_least_one(const std::set<FactLiteral>& literals) const {
+  return std::ranges::any_of(literals, [&](const auto& l) { return knows(l.first, l.second); }) ||
+         std::ranges::any_of(
+             some_, [&](const auto& known) { return std::ranges::includes(literals, known); });
+}
+
+/// Of the atoms of an entry those of which one may hold.
+std::set<Fact> RuntimeKnowledge::candidates(const std::set<Fact>& entry) const {
+  if (const auto found = exclusive_.find(entry); found != exclusive_.end()) return found->second;
+  std::set<Fact> holding;
+  for (const Fact& f : entry)
+    if (knows(f, true)) holding.insert(f);
+  return holding;
+}
+
+void RuntimeKnowledge::weaken_to(const RuntimeKnowledge& other,
+                                 const std::set<std::set<Fact>>& entries) {
+  std::map<std::set<Fact>, std::set<Fact>> exclusive;
+  for (const std::set<Fact>& entry : entries) {
+    std::set<Fact> either = candidates(entry);
+    either.merge(other.candidates(entry));
+    if (either.size() > 1 && exactly_one(either) && other.exactly_one(either))
+      exclusive[entry] = std::move(either);
+  }
+  std::erase_if(some_, [&](const auto& literals) { return !other.at_least_one(literals); });
+  for (const auto& literals : other.some_)
+    if (at_least_one(literals)) some_.insert(literals);
+  std::erase_if(atoms_, [&](const auto& a) { return !other.knows(a.first, a.second); });
+  for (auto& [term, values] : excluded_)
+    std::erase_if(values, [&](Index v) { return !other.rules_out(term, v); });
+  for (const auto& [term, values] : other.excluded_)
+    for (const Index v : values)
+      if (values_.contains(term) && rules_out(term, v)) excluded_[term].insert(v);
+  std::erase_if(values_, [&](const auto& v) {
+    const Index* same = other.value(v.first);
+    return same == nullptr || *same != v.second;
+  });
+  std::erase_if(excluded_, [](const auto& e) { return e.second.empty(); });
+  exclusive_ = std::move(exclusive);
+  cut_ |= other.cut_;
 }
 
 void RuntimeKnowledge::restrict_to(const std::set<Fact>& live) {

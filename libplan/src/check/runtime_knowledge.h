@@ -54,10 +54,15 @@ class RuntimeKnowledge {
   /// than is known.
   [[nodiscard]] bool cut() const { return cut_; }
 
+  /// Only what follows from this and from the other alike, in both from these entries of Kx.
+  void weaken_to(const RuntimeKnowledge& other, const std::set<std::set<Fact>>& entries);
   /// Only what is in `live`, and what Kx ties to it.
   void restrict_to(const std::set<Fact>& live);
 
  private:
+  [[nodiscard]] std::set<Fact> candidates(const std::set<Fact>& entry) const;
+  [[nodiscard]] bool exactly_one(const std::set<Fact>& atoms) const;
+  [[nodiscard]] bool at_least_one(const std::set<FactLiteral>& literals) const;
   bool propagate();
   bool conclude_exclusive(bool& again);
   bool conclude_some(bool& again);
