@@ -265,6 +265,49 @@ TEST(Beliefs, WhatBranchesNeedNotTellApartTheyShare) {
   EXPECT_LE(measure(m, s.plan).nodes, 200U);
 }
 
+/// Balls of unknown colour in unknown cells of a ring go to where their colour goes.
+std::string balls_in_a_ring(int balls, int cells) {
+  std::string text = "types: ball, cell, colour constants: colour red, blue, green; cell c0";
+  for (int i = 1; i < cells; ++i) text += ", c" + std::to_string(i);
+  text += "; ball o0";
+  for (int i = 1; i < balls; ++i) text += ", o" + std::to_string(i);
+  text +=
+      " predicates: in(ball, cell), of(ball, colour), goes(colour, cell), at(cell), next(cell, "
+      "cell), held(ball), gone(ball) closed: at, next, held, gone, goes "
+      "init: K(at(c0)) K(goes(red, c0)) K(goes(blue, c2)) K(goes(green, c4)) ";
+  const auto any = [&](const std::string& atom, const std::vector<std::string>& values) {
+    text += "Kx(";
+    for (const std::string& v : values) text += (v == values[0] ? "" : " | ") + atom + v + ")";
+    text += ") ";
+  };
+  std::vector<std::string> names;
+  for (int i = 0; i < cells; ++i) {
+    names.push_back("c" + std::to_string(i));
+    const std::string here = "c" + std::to_string(i);
+    const std::string there = "c" + std::to_string((i + 1) % cells);
+    text += "K(next(" + here + ", " + there + ")) K(next(" + there + ", " + here + ")) ";
+  }
+  for (int i = 0; i < balls; ++i) {
+    any("in(o" + std::to_string(i) + ", ", names);
+    any("of(o" + std::to_string(i) + ", ", {"red", "blue", "green"});
+  }
+  return text +
+         "action look(?o : ball, ?c : cell) preconds: K(at(?c)) effects: add(Kw, in(?o, ?c)) "
+         "action inspect(?o : ball, ?k : colour) preconds: K(held(?o)) effects: add(Kw, of(?o, "
+         "?k)) action go(?c : cell, ?d : cell) preconds: K(at(?c)) & K(next(?c, ?d)) effects: "
+         "add(Kf, !at(?c)), add(Kf, at(?d)) action take(?o : ball, ?c : cell) preconds: K(at(?c)) "
+         "& K(in(?o, ?c)) effects: add(Kf, held(?o)), add(Kf, !in(?o, ?c)) action drop(?o : ball, "
+         "?k : colour, ?c : cell) preconds: K(held(?o)) & K(of(?o, ?k)) & K(goes(?k, ?c)) & "
+         "K(at(?c)) effects: add(Kf, gone(?o)) goal: forallK(?o : ball) K(gone(?o))";
+}
+
+TEST(Beliefs, OneGoalAfterTheOtherKeepsPlansSmall) {
+  const Model m = model_of(balls_in_a_ring(5, 8));
+  const Solution s = solved(m, Algorithm::Greedy);
+  EXPECT_EQ(s.outcome, Outcome::Solved);
+  EXPECT_LE(measure(m, s.plan).nodes, 500U);
+}
+
 TEST(Beliefs, PlansCutShortAreRefuted) {
   const Model m = pddl(lost_in_a_ring(4));
   const Plan plan = solved(m, Algorithm::Greedy).plan;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <queue>
 #include <tuple>
 
@@ -14,8 +15,30 @@ namespace {
 constexpr std::size_t kMostFailures = 200;
 constexpr std::size_t kDeepest = 20'000;
 
+constexpr std::size_t kFirstTurn = 4'000;
+
+using Sensed = std::vector<std::pair<Index, Index>>;
+
+/// How many worlds a belief has, as a logarithm.
+int spread(const BeliefSpace& space, const Word* belief) {
+  double sum = 0;
+  for (Index c = 0; c < space.task().components.size(); ++c)
+    sum += std::log2(space.sets(c).members(space.set_of(c, belief)).count);
+  return static_cast<int>(sum * 16);
+}
+
+/// Whether no variable has one value here and another there.
+bool agree(const Sensed& a, const Sensed& b) {
+  return std::ranges::all_of(a, [&](const auto& x) {
+    return std::ranges::none_of(
+        b, [&](const auto& y) { return x.first == y.first && x.second != y.second; });
+  });
+}
+
 /// Thrown out of nested obligations when they fail too often.
 struct TooManyFailures {};
+/// The same when the turn is over.
+struct TurnIsOver {};
 
 }  // namespace
 
@@ -25,13 +48,13 @@ BeliefSearch::BeliefSearch(BeliefSpace& space, const Model& model, bool guided, 
       guided_(guided),
       limits_(limits),
       statistics_(statistics),
-      estimate_(space),
+      estimates_(space),
       policy_(space, model),
       store_(static_cast<Index>(std::max<std::size_t>(space.words(), 1))) {}
 
 void BeliefSearch::check_limits() {
   const std::size_t bytes =
-      store_.bytes() + space_.bytes() + estimate_.bytes() + policy_.bytes() +
+      store_.bytes() + space_.bytes() + estimates_.bytes() + policy_.bytes() +
       nodes_.size() * (sizeof(Node) + 40) + edges_.size() * sizeof(Edge) +
       outcomes_.size() * (sizeof(Index) + sizeof(decltype(sensed_)::value_type) + 16);
   statistics_.states = nodes_.size();
@@ -53,11 +76,12 @@ Index BeliefSearch::node(const Word* belief) {
 
 int BeliefSearch::estimate(Index n) {
   if (!guided_) return 0;
-  if (nodes_[n].estimate < 0) {
-    nodes_[n].estimate = estimate_(store_[n]);
-    if (nodes_[n].estimate >= WorldEstimate::kDead) bury(n);
+  int& h = nodes_[n].estimates.at(static_cast<std::size_t>(guide_));
+  if (h < 0) {
+    h = estimates_(guide_, store_[n]);
+    if (h >= BeliefEstimates::kDead) bury(n);
   }
-  return nodes_[n].estimate;
+  return h;
 }
 
 void BeliefSearch::expand(Index n) {
@@ -98,14 +122,19 @@ void BeliefSearch::expand(Index n) {
   }
   for (Index e = first; e < edges_.size() && nodes_[n].entry == kNone; ++e)
     if (edges_[e].unsolved == 0) {
-      std::vector<BeliefPolicy::Case> cases;
-      for (Index i = edges_[e].first; i < edges_[e].first + edges_[e].outcomes; ++i)
-        cases.push_back({sensed_[i], nodes_[outcomes_[i]].entry});
-      solve(n, policy_.add(store_[n], edges_[e].op, std::move(cases)));
+      solve(n, enter(edges_[e]));
     }
   if (nodes_[n].entry == kNone &&
       std::all_of(edges_.begin() + first, edges_.end(), [](const Edge& e) { return e.dead; }))
     bury(n);
+}
+
+/// An entry of the policy for a step all outcomes of which are solved.
+Index BeliefSearch::enter(const Edge& e) {
+  std::vector<BeliefPolicy::Case> cases;
+  for (Index i = e.first; i < e.first + e.outcomes; ++i)
+    cases.push_back({sensed_[i], nodes_[outcomes_[i]].entry});
+  return policy_.add(store_[e.source], e.op, std::move(cases));
 }
 
 /// The node, and all before it that are thereby solved, get entries of the policy.
@@ -119,10 +148,7 @@ void BeliefSearch::solve(Index n, Index entry) {
       const Index number = nodes_[at].incoming[i];
       Edge& e = edges_[number];
       if (--e.unsolved > 0 || nodes_[e.source].entry != kNone) continue;
-      std::vector<BeliefPolicy::Case> cases;
-      for (Index k = e.first; k < e.first + e.outcomes; ++k)
-        cases.push_back({sensed_[k], nodes_[outcomes_[k]].entry});
-      nodes_[e.source].entry = policy_.add(store_[e.source], e.op, std::move(cases));
+      nodes_[e.source].entry = enter(e);
       todo.push_back(e.source);
     }
   }
@@ -165,19 +191,14 @@ std::optional<BeliefSearch::Path> BeliefSearch::weak_plan(Index from, bool& prov
                                     std::vector<std::pair<Item, std::size_t>>, std::greater<>>;
   Queue nearest, surest;
   std::size_t order = 0;
-  const auto spread = [&](Index n) {
-    double sum = 0;
-    for (Index c = 0; c < space_.task().components.size(); ++c)
-      sum += std::log2(space_.sets(c).members(space_.set_of(c, store_[n])).count);
-    return static_cast<int>(sum * 16);
-  };
   const auto push = [&](Index n) {
     const int h = estimate(n);
     if (nodes_[n].dead) return;
     ++order;
-    const int s = guided_ ? spread(n) : 0;
+    const bool by_spread = guided_ && guide_ == Guide::Worlds;
+    const int s = by_spread ? spread(space_, store_[n]) : 0;
     nearest.push({{h, s, n}, order});
-    if (guided_) surest.push({{s, h, n}, order});
+    if (by_spread) surest.push({{s, h, n}, order});
   };
   const auto path = [&](Index to) {
     Path p;
@@ -203,6 +224,7 @@ std::optional<BeliefSearch::Path> BeliefSearch::weak_plan(Index from, bool& prov
       ++statistics_.reused;
       return path(n);
     }
+    if (statistics_.expanded >= turn_end_) throw TurnIsOver();
     expand(n);
     if (nodes_[n].entry != kNone) return path(n);
     for (Index e = nodes_[n].first_edge; e < nodes_[n].first_edge + nodes_[n].edges; ++e) {
@@ -241,17 +263,10 @@ std::optional<BeliefSearch::Path> BeliefSearch::replay(Index from, const Path& p
     for (Index e = nodes_[at].first_edge; e < nodes_[at].first_edge + nodes_[at].edges; ++e)
       if (edges_[e].op == old.op && usable(edges_[e])) found = e;
     if (found == kNone) return std::nullopt;
-    const auto& wanted = sensed_[path[i].outcome];
-    Index outcome = kNone;
-    for (Index k = edges_[found].first; k < edges_[found].first + edges_[found].outcomes; ++k) {
-      const bool agrees = std::all_of(wanted.begin(), wanted.end(), [&](const auto& w) {
-        return std::none_of(sensed_[k].begin(), sensed_[k].end(), [&](const auto& s) {
-          return s.first == w.first && s.second != w.second;
-        });
-      });
-      if (agrees && outcome == kNone) outcome = k;
-    }
-    if (outcome == kNone || nodes_[outcomes_[outcome]].dead) return std::nullopt;
+    Index outcome = edges_[found].first;
+    const Index end = outcome + edges_[found].outcomes;
+    while (outcome < end && !agree(sensed_[path[i].outcome], sensed_[outcome])) ++outcome;
+    if (outcome == end || nodes_[outcomes_[outcome]].dead) return std::nullopt;
     made.push_back({found, outcome});
     at = outcomes_[outcome];
   }
@@ -309,10 +324,12 @@ bool BeliefSearch::achieve(Index n) {
   return success;
 }
 
+bool BeliefSearch::all_solved() const {
+  return std::ranges::all_of(roots_, [&](Index r) { return nodes_[r].entry != kNone; });
+}
+
 bool BeliefSearch::done() const {
-  return std::all_of(roots_.begin(), roots_.end(),
-                     [&](Index r) { return nodes_[r].entry != kNone; }) ||
-         std::any_of(roots_.begin(), roots_.end(), [&](Index r) { return nodes_[r].dead; });
+  return all_solved() || std::ranges::any_of(roots_, [&](Index r) { return nodes_[r].dead; });
 }
 
 /// Expands all there is.
@@ -324,8 +341,39 @@ bool BeliefSearch::exhaust() {
     else
       expand(n);
   }
-  return std::all_of(roots_.begin(), roots_.end(),
-                     [&](Index r) { return nodes_[r].entry != kNone; });
+  return all_solved();
+}
+
+/// Plans for all roots, repairs included, until so many nodes are expanded.
+BeliefSearch::Attempt BeliefSearch::attempt(Guide guide, std::size_t most_expanded) {
+  guide_ = guide;
+  turn_end_ = most_expanded;
+  failures_ = depth_ = 0;
+  Attempt result = Attempt::Failed;
+  try {
+    if (std::all_of(roots_.begin(), roots_.end(), [&](Index r) { return achieve(r); }))
+      return Attempt::Solved;
+  } catch (const TooManyFailures&) {
+  } catch (const TurnIsOver&) {
+    result = Attempt::TurnOver;
+  }
+  std::fill(open_obligation_.begin(), open_obligation_.end(), 0);
+  for (Edge& e : edges_) e.blocked = false;
+  return result;
+}
+
+/// Both guides in turn, each for as long as its repairs do not fail; what one has solved the other
+/// finds.
+bool BeliefSearch::take_turns() {
+  constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max();
+  if (!guided_) return attempt(Guide::Worlds, kUnlimited) == Attempt::Solved;
+  std::vector<Guide> guides = {Guide::Knowledge, Guide::Worlds};
+  for (std::size_t turn = kFirstTurn; !guides.empty() && !done(); turn *= 2)
+    std::erase_if(guides, [&](Guide g) {
+      const std::size_t end = guides.size() == 1 ? kUnlimited : statistics_.expanded + turn;
+      return !done() && attempt(g, end) == Attempt::Failed;
+    });
+  return all_solved();
 }
 
 kaboum::plan::Outcome BeliefSearch::run(const std::vector<Outcome>& start) {
@@ -338,13 +386,7 @@ kaboum::plan::Outcome BeliefSearch::run(const std::vector<Outcome>& start) {
     for (const Index r : roots_) most = std::max(most, estimate(r));
     statistics_.initial_estimate = most;
   }
-  try {
-    for (const Index r : roots_)
-      if (!achieve(r)) break;
-  } catch (const TooManyFailures&) {
-    std::fill(open_obligation_.begin(), open_obligation_.end(), 0);
-  }
-  const bool solved = exhaust();
+  const bool solved = take_turns() || exhaust();
   check_limits();
   return solved ? kaboum::plan::Outcome::Solved : kaboum::plan::Outcome::Unsolvable;
 }

@@ -2,14 +2,15 @@
 
 #include <kaboum/plan/solve.h>
 
+#include <array>
 #include <optional>
 #include <vector>
 
 #include "search/state_store.h"
 #include "task/solve_limits.h"
+#include "worlds/belief_estimates.h"
 #include "worlds/belief_policy.h"
 #include "worlds/belief_space.h"
-#include "worlds/world_estimate.h"
 
 namespace kaboum::plan::worlds {
 
@@ -17,9 +18,10 @@ namespace kaboum::plan::worlds {
 /// as soon as it has an edge all outcomes of which are, and so are then those before it.
 ///
 /// What is expanded next is found by weak plans: a best-first search that may choose outcomes looks
-/// for a solved node, then the other outcomes along its way are achieved in turn, from the end. If
-/// that fails too often, or for good, every belief is expanded: when none is left, what is not
-/// solved has no plan. docs/planning/knowledge-states.md, "Possible worlds".
+/// for a solved node, then the other outcomes along its way are achieved in turn, from the end. Two
+/// estimates guide that in turn. If it fails too often, or for good, every belief is expanded: when
+/// none is left, what is not solved has no plan. docs/planning/knowledge-states.md, "Possible
+/// worlds".
 class BeliefSearch {
  public:
   /// @param guided  whether estimates order the search; else breadth first.
@@ -32,8 +34,8 @@ class BeliefSearch {
 
  private:
   struct Node {
-    int estimate = -1;
-    Index entry = kNone;  ///< of the policy; kNone: not solved
+    std::array<int, 2> estimates = {-1, -1};  ///< by Guide
+    Index entry = kNone;                      ///< of the policy; kNone: not solved
     Index first_edge = 0, edges = 0;
     bool expanded = false;
     bool dead = false;
@@ -50,10 +52,12 @@ class BeliefSearch {
     Index edge, outcome;
   };
   using Path = std::vector<Hop>;
+  enum class Attempt : std::uint8_t { Solved, Failed, TurnOver };
 
   Index node(const Word* belief);
   int estimate(Index n);
   void expand(Index n);
+  Index enter(const Edge& e);
   void solve(Index n, Index entry);
   void bury(Index n);
   [[nodiscard]] bool usable(const Edge& e) const;
@@ -61,7 +65,10 @@ class BeliefSearch {
   void leave_needless_sensing_out(Index from, Path& path);
   std::optional<Path> replay(Index from, const Path& path, std::size_t without);
   bool achieve(Index n);
+  Attempt attempt(Guide guide, std::size_t most_expanded);
+  bool take_turns();
   bool exhaust();
+  [[nodiscard]] bool all_solved() const;
   [[nodiscard]] bool done() const;
   void check_limits();
 
@@ -69,7 +76,9 @@ class BeliefSearch {
   bool guided_;
   Limits& limits_;
   Statistics& statistics_;
-  WorldEstimate estimate_;
+  BeliefEstimates estimates_;
+  Guide guide_ = Guide::Worlds;
+  std::size_t turn_end_ = 0;  ///< of expanded nodes
   BeliefPolicy policy_;
   StateStore store_;
   std::vector<Node> nodes_;

@@ -4,13 +4,12 @@
 #include <algorithm>
 
 #include "task/knowledge.h"
+#include "worlds/alternatives.h"
 
 namespace kaboum::plan::worlds {
 namespace {
 
-using Kind = Condition::Kind;
 constexpr int kFar = WorldEstimate::kDead;
-constexpr std::size_t kMostAlternatives = 16;
 
 }  // namespace
 
@@ -27,7 +26,7 @@ WorldEstimate::WorldEstimate(const BeliefSpace& space) : space_(space) {
     for (const Index f : unary_[u].needs) needed_by_[f].push_back(u);
     if (unary_[u].needs.empty()) without_needs_.push_back(u);
   }
-  goals_ = needs(task.goal);
+  goals_ = needs({&task.goal});
   cost_.resize(facts);
   supporter_.resize(facts);
   marked_.resize(facts);
@@ -36,34 +35,15 @@ WorldEstimate::WorldEstimate(const BeliefSpace& space) : space_(space) {
   chosen_.resize(task.operators.size());
 }
 
-/// Sets of facts one of which a world must have for the condition; what says nothing of one world
-/// is left out.
-std::vector<std::vector<Index>> WorldEstimate::needs(const Condition& c) const {
-  const WorldTask& task = space_.task();
-  std::vector<std::vector<Index>> all = {{}};
-  if (c.kind == Kind::Is) return {{fact(c.variable, c.value)}};
-  if (c.kind == Kind::IsNot && task.variables[c.variable].size == 2)
-    return {{fact(c.variable, 1 - c.value)}};
-  if (c.kind == Kind::False) return {};
-  if (c.kind == Kind::Or) {
-    std::vector<std::vector<Index>> some;
-    for (const Condition& child : c.children)
-      for (auto& n : needs(child)) some.push_back(std::move(n));
-    return some.size() > kMostAlternatives ? all : some;
+/// Sets of facts one of which a world must have for all conditions.
+std::vector<std::vector<Index>> WorldEstimate::needs(
+    const std::vector<const Condition*>& all) const {
+  std::vector<std::vector<Index>> facts;
+  for (const auto& literals : alternatives(space_.task(), all)) {
+    facts.emplace_back();
+    for (const auto& [variable, value] : literals) facts.back().push_back(fact(variable, value));
   }
-  if (c.kind != Kind::And) return all;
-  for (const Condition& child : c.children) {
-    const std::vector<std::vector<Index>> more = needs(child);
-    if (all.size() * more.size() > kMostAlternatives) continue;
-    std::vector<std::vector<Index>> product;
-    for (const auto& a : all)
-      for (const auto& b : more) {
-        product.push_back(a);
-        product.back().insert(product.back().end(), b.begin(), b.end());
-      }
-    all = std::move(product);
-  }
-  return all;
+  return facts;
 }
 
 void WorldEstimate::add_unary(const Operator& o, Index number) {
@@ -76,12 +56,7 @@ void WorldEstimate::add_unary(const Operator& o, Index number) {
       for (Index v = 0; v < task.variables[s.variable].size; ++v)
         adds.push_back(fact(s.variable, v));
     if (adds.empty()) continue;
-    Condition all;
-    all.kind = Kind::And;
-    all.children = {o.precondition, s.known, s.world};
-    for (std::vector<Index>& n : needs(all)) {
-      std::sort(n.begin(), n.end());
-      n.erase(std::unique(n.begin(), n.end()), n.end());
+    for (std::vector<Index>& n : needs({&o.precondition, &s.known, &s.world})) {
       if (!unary_.empty() && unary_.back().group == number && unary_.back().needs == n) {
         unary_.back().adds.insert(unary_.back().adds.end(), adds.begin(), adds.end());
       } else {

@@ -31,7 +31,8 @@ class WorldEstimate {
 
   [[nodiscard]] Index fact(Index variable, Index value) const { return base_[variable] + value; }
   void add_unary(const Operator& o, Index number);
-  [[nodiscard]] std::vector<std::vector<Index>> needs(const Condition& c) const;
+  [[nodiscard]] std::vector<std::vector<Index>> needs(
+      const std::vector<const Condition*>& all) const;
   int relaxed_plan(const std::vector<Index>& state);
 
   const BeliefSpace& space_;
