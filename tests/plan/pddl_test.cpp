@@ -389,5 +389,37 @@ TEST(Pddl, ManyParametersAreJoined) {
   EXPECT_EQ(s.statistics.ground_actions, 17U);
 }
 
+TEST(Pddl, ATypeThatIsLeftOutIsMeantWhereObjectsAreOfIt) {
+  const std::string domain =
+      "(define (domain d) (:types obj) (:predicates (in ?o ?b) (full ?b)) (:action put :parameters "
+      "(?o - obj ?b - bin) :effect (and (in ?o ?b) (full ?b))))";
+  const auto problem = [](const std::string& type) {
+    return "(define (problem p) (:domain d) (:objects a - obj b - " + type +
+           ") (:init) (:goal (and (in a b) (full b))))";
+  };
+  const auto read = [&](const std::string& type) {
+    const Text p{"p.pddl", problem(type), Language::Pddl};
+    return load({"d.pddl", domain, Language::Pddl}, &p);
+  };
+  EXPECT_EQ(solved(read("bin"), Algorithm::Greedy).outcome, Outcome::Solved);
+  EXPECT_THROW(read("bni"), Error);
+  EXPECT_THROW(read("obj"), Error);
+}
+
+TEST(Pddl, SensorsAndInvariants) {
+  // A traveller sees at each place whether the roads from there are open; one of two is.
+  const Model m = pddl(
+      "(define (domain ctp) (:requirements :typing :equality) (:types place road) (:predicates (on "
+      "?p - place ?r - road) (open ?r - road) (at ?p - place)) (:action go :parameters (?p ?q - "
+      "place ?r - road) :precondition (and (at ?p) (on ?p ?r) (on ?q ?r) (open ?r)) :effect (and "
+      "(not (at ?p)) (at ?q))) (:sensor see :parameters (?p - place ?r - road) :condition (and (at "
+      "?p) (on ?p ?r)) :sense (open ?r))) (define (problem p) (:domain ctp) (:objects a b - place "
+      "r s - road) (:init (at a) (on a r) (on b r) (on a s) (on b s) (invariant (open r) (open s)) "
+      "(invariant (not (open r)) (not (open s)))) (:hidden (open r)) (:goal (at b)))");
+  const Solution s = solved(m, Algorithm::Greedy);
+  EXPECT_EQ(s.outcome, Outcome::Solved);
+  EXPECT_EQ(measure(m, s.plan).leaves, 2U);
+}
+
 }  // namespace
 }  // namespace kaboum::plan::test

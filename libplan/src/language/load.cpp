@@ -29,7 +29,11 @@ syntax::Document parse(const Text& text) {
 
 syntax::Document parse(const Text& domain, const Text* problem) {
   syntax::Document d = parse(domain);
-  return problem == nullptr ? d : syntax::merge(std::move(d), parse(*problem));
+  if (problem == nullptr) return d;
+  syntax::Document p = parse(*problem);
+  if (domain.language == Language::Pddl && problem->language == Language::Pddl)
+    declare_shared_types(d, p);
+  return syntax::merge(std::move(d), std::move(p));
 }
 
 /// Names that nothing declares are only found when the text is read: it must read as it was

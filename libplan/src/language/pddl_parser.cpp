@@ -72,7 +72,7 @@ class PddlParser {
         document_.predicates.push_back(signature(e.items[i]));
     } else if (key == ":functions") {
       functions(e);
-    } else if (key == ":action") {
+    } else if (key == ":action" || key == ":sensor") {
       action(e);
     } else if (key == ":derived") {
       rule(e);
@@ -151,7 +151,9 @@ class PddlParser {
                   [](const syntax::Signature& s) { return s.name.text == "total-cost"; });
   }
 
+  /// Or a sensor: an action that only observes.
   void action(const SExpression& e) {
+    const bool sensor = e.headed(":sensor");
     syntax::Action a;
     a.name = name(item(e, 1, "the action's name"), "the action's name");
     a.precondition.location = e.location;
@@ -160,11 +162,11 @@ class PddlParser {
       const SExpression& value = item(e, i + 1, "what the keyword introduces");
       if (key == ":parameters") {
         a.parameters = typed(value, 0, true);
-      } else if (key == ":precondition") {
+      } else if (key == ":precondition" || (sensor && key == ":condition")) {
         a.precondition = formula(value, true);
       } else if (key == ":effect") {
         effects(value, a.effects, a);
-      } else if (key == ":observe") {
+      } else if (key == ":observe" || (sensor && key == ":sense")) {
         observe(value, a.effects);
         contingent_ = true;
       } else {
@@ -268,7 +270,7 @@ class PddlParser {
         clauses_of_oneof(entry);
       return;
     }
-    if (e.headed("or")) {
+    if (e.headed("or") || e.headed("invariant")) {
       entry.database = syntax::Database::Or;
       alternatives(e, entry);
       document_.initial.push_back(std::move(entry));
@@ -366,6 +368,20 @@ class PddlParser {
 };
 
 }  // namespace
+
+void declare_shared_types(syntax::Document& domain, const syntax::Document& problem) {
+  const auto declare = [&](const Name& type) {
+    const auto is_type = [&](const auto& t) { return t.name.text == type.text; };
+    const auto is_of_it = [&](const TypedVariable& o) { return o.type.text == type.text; };
+    if (type.text != "object" && std::ranges::none_of(domain.types, is_type) &&
+        std::ranges::any_of(problem.constants, is_of_it))
+      domain.types.push_back({type, {}});
+  };
+  for (const syntax::Signature& p : domain.predicates)
+    for (const Name& type : p.parameters) declare(type);
+  for (const syntax::Action& a : domain.actions)
+    for (const TypedVariable& p : a.parameters) declare(p.type);
+}
 
 syntax::Document parse_pddl(std::shared_ptr<const Source> source) {
   return PddlParser(std::move(source)).read();
