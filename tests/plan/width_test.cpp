@@ -12,14 +12,16 @@
 namespace kaboum::plan::test {
 namespace {
 
-/// So many atoms that each may become true or false.
-Model switches(int count) {
+/// So many atoms that each may become true or false; the first are to be true.
+Model switches(int count, int goals = 1) {
   std::string text = "types: t\nconstants: t ";
   for (int i = 0; i < count; ++i) text += (i ? ", c" : "c") + std::to_string(i);
   text += "\npredicates: on(t)\n";
   text += "action up(?x : t) preconds: true effects: add(Kf, on(?x))\n";
   text += "action down(?x : t) preconds: true effects: add(Kf, !on(?x))\n";
-  return model_of(text + "goal: K(on(c0))");
+  text += "goal: K(on(c0))";
+  for (int i = 1; i < goals; ++i) text += " & K(on(c" + std::to_string(i) + "))";
+  return model_of(text);
 }
 
 /// Random walks: states are known again, whatever led there, and read as they were.
@@ -46,7 +48,8 @@ void walk(int atoms) {
     for (unsigned k = random() % 4; k > 0; --k)
       scratch.learn_atom(static_cast<Index>(random() % 5 == 0 ? random() % fluents : random() % 4),
                          true);
-    if (random() % 3 == 0) scratch.apply({Change::Kind::AddFalse, static_cast<Index>(random() % 4), 0, {}});
+    if (random() % 3 == 0)
+      scratch.apply({Change::Kind::AddFalse, static_cast<Index>(random() % 4), 0, {}});
     const std::vector<Word> now(scratch.words(), scratch.words() + words);
     ASSERT_EQ(scratch.hash(), Knowledge::hash_of(now.data(), words));
     const auto [number, fresh] = store.insert(scratch, parent, i);
@@ -88,7 +91,7 @@ TEST(DifferenceStore, HoldsLongStatesAsDifferences) {
 
 TEST(Novelty, IsThatOfTheDefinition) {
   std::mt19937 random(7);
-  for (const Index facts : {5U, 64U, 200U}) {
+  for (const Index facts : {5U, 64U, 200U, 3000U}) {
     Novelty novelty(facts, 1 << 28);
     std::set<std::pair<Index, Index>> had;  // class, fact
     std::set<std::array<Index, 3>> pairs;   // class, fresh, present
@@ -112,6 +115,7 @@ TEST(Novelty, IsThatOfTheDefinition) {
     EXPECT_GT(counts[1], 0);
     EXPECT_GT(counts[2], 0);
     EXPECT_TRUE(counts[3] > 0 || facts > 64);
+    EXPECT_TRUE(novelty.bytes() > 1U << 17U || facts < 3000) << "its table has grown";
   }
 }
 
@@ -131,16 +135,20 @@ struct Reached : Target {
   const Task& task;
 };
 
-/// What an engine finds with pauses of this much work.
-Found run(const Model& model, std::uint64_t work,
-          const std::function<Found(const SearchInput&, std::uint64_t)>& search) {
-  const SolveOptions options;
-  Statistics statistics;
+using Search = Found (*)(const SearchInput&, std::uint64_t);
+
+/// What a search finds with pauses after this much work.
+Found run(const Model& model, std::uint64_t work, Search search, Statistics& statistics,
+          const SolveOptions& options = {}) {
   Limits limits(options, statistics);
   Task task(model, limits);
   Heuristics heuristics;
   Reached target(task);
   return search({task, task.initial(), target, limits, statistics, heuristics}, work);
+}
+Found run(const Model& model, std::uint64_t work, Search search) {
+  Statistics statistics;
+  return run(model, work, search, statistics);
 }
 
 Found by_width(const SearchInput& in, std::uint64_t work) {
@@ -172,6 +180,138 @@ TEST(Width, TurnsFindWhatEitherFinds) {
       "action end preconds: K(on(a)) & K(!on(a)) effects: add(Kf, done)\ngoal: K(done)");
   for (const std::uint64_t first : {1U, 100'000U})
     EXPECT_EQ(run(none, first, take_turns).outcome, Outcome::Unsolvable);
+}
+
+/// Steps that disjunctive knowledge and excluded values make for themselves.
+TEST(Width, TakesWhatIsKnownWithoutAStep) {
+  const std::string switches =
+      "types: t, v\nconstants: t c0, c1, c2, c3, c4, c5; v a, b, c\n"
+      "predicates: on(t), done, x, y, p, q\nfunctions: f : v\n"
+      "action up(?x : t) preconds: true effects: add(Kf, on(?x))\n"
+      "action down(?x : t) preconds: true effects: add(Kf, !on(?x))\n";
+  const std::string excluded =
+      switches +
+      "init: K(!done) K(f != a)\naction look preconds: K(f = b) effects: add(Kf, f != b)\n"
+      "action leave preconds: K(on(c5)) effects: add(Kf, f != b)\n";
+  const std::string group =
+      switches +
+      "init: K(!done) K(x) K(!q)\naction turn preconds: K(x) effects: add(Kf, y), add(Kf, !x)\n"
+      "action guess preconds: K(y) & K(on(c5)) effects: add(Kx, p | q)\n";
+  struct Case {
+    std::string text;
+    Outcome outcome;
+  };
+  const std::string end = "action end preconds: ", done = " effects: add(Kf, done)\ngoal: K(done)";
+  for (const auto& [text, outcome] :
+       {Case{excluded + end + "K(on(c0)) & K(!on(c0))" + done, Outcome::Unsolvable},
+        Case{excluded + end + "K(f = c)" + done, Outcome::Solved},
+        Case{group + end + "K(p) & K(x)" + done, Outcome::Unsolvable},
+        Case{group + end + "K(p)" + done, Outcome::Solved}})
+    for (const std::uint64_t first : {1U, 10'000U}) {
+      const Model model = model_of(text);
+      EXPECT_EQ(run(model, first, by_width).outcome, outcome) << text;
+      EXPECT_EQ(run(model, first, take_turns).outcome, outcome) << text;
+      EXPECT_EQ(solve(model, {Algorithm::BreadthFirst, 0, 0, {}}).outcome == Outcome::Solved,
+                outcome == Outcome::Solved)
+          << text;
+    }
+}
+
+/// A scenario, beside many atoms that nothing brings about and nothing needs.
+std::string padded(const std::string& domain, int atoms) {
+  std::string text = slurp(KABOUM_DOMAINS "/" + domain + "/domain.kpl");
+  std::string names;
+  for (int i = 0; i < atoms; ++i) names += (i ? ", z" : "z") + std::to_string(i);
+  text += "\ntypes: filler\nconstants: filler " + names +
+          "\npredicates: filled(filler), never\n"
+          "action fill(?f : filler) preconds: K(never) effects: add(Kf, filled(?f))\n";
+  return text;
+}
+
+TEST(Width, LongStatesAreSearchedAsShortOnes) {
+  for (const auto& [domain, n] : {std::pair("stacked", "6"), std::pair("remove", "9")}) {
+    const Text problem{"problem.kpl", made(domain, n), Language::Kpl};
+    const Model shorter = load({"domain.kpl", padded(domain, 10), Language::Kpl}, &problem);
+    const Model longer = load({"domain.kpl", padded(domain, 3000), Language::Kpl}, &problem);
+    for (const Search search : {by_width, take_turns}) {
+      Statistics of_shorter, of_longer;
+      const Found a = run(shorter, 100'000'000, search, of_shorter);
+      const Found b = run(longer, 100'000'000, search, of_longer);
+      ASSERT_EQ(a.outcome, Outcome::Solved);
+      ASSERT_EQ(b.outcome, Outcome::Solved);
+      EXPECT_EQ(a.steps.size(), b.steps.size());
+      if (search != by_width) continue;
+      EXPECT_EQ(of_shorter.expanded, of_longer.expanded);
+      EXPECT_EQ(of_shorter.generated, of_longer.generated);
+    }
+  }
+}
+
+TEST(Width, TheLimitOfMemoryIsKept) {
+  const Model model = switches(1000, 100);
+  SolveOptions options;
+  options.max_memory = 32 << 20;
+  Statistics statistics;
+  const Search quietly = [](const SearchInput& in, std::uint64_t work) {
+    const Found found = by_width(in, work);
+    EXPECT_EQ(in.limits.reason(), "") << "another search may go on";
+    return found;
+  };
+  EXPECT_EQ(run(model, 1'000'000, quietly, statistics, options).outcome, Outcome::Limit);
+  EXPECT_GT(statistics.state_bytes, options.max_memory / 4);
+  EXPECT_LE(statistics.state_bytes, options.max_memory);
+  // Which is what take_turns does.
+  EXPECT_EQ(run(model, 1, take_turns, statistics, options).outcome, Outcome::Solved);
+}
+
+/// A grid where things are collected one at a time and brought to a corner, with switches that do
+/// not matter.
+Model collecting(int width, int things, int switches) {
+  std::string text = "types: cell, thing, switch\nconstants: cell ";
+  for (int i = 0; i < width * width; ++i) text += (i ? ", c" : "c") + std::to_string(i);
+  text += "; thing ";
+  for (int i = 0; i < things; ++i) text += (i ? ", t" : "t") + std::to_string(i);
+  text += "; switch ";
+  for (int i = 0; i < switches; ++i) text += (i ? ", s" : "s") + std::to_string(i);
+  text +=
+      "\npredicates: at(cell), lies(thing, cell), held(thing), free, beside(cell, cell), "
+      "on(switch)\nclosed: all\ninit: K(at(c0)) K(free)\n";
+  const auto cell = [](int c) { return "c" + std::to_string(c); };
+  for (int c = 0; c < width * width; ++c) {
+    if (c % width < width - 1)
+      text += "K(beside(" + cell(c) + ", " + cell(c + 1) + ")) K(beside(" + cell(c + 1) + ", " +
+              cell(c) + ")) ";
+    if (c + width < width * width)
+      text += "K(beside(" + cell(c) + ", " + cell(c + width) + ")) K(beside(" + cell(c + width) +
+              ", " + cell(c) + ")) ";
+  }
+  std::string goal = "\ngoal: true";
+  for (int t = 0; t < things; ++t) {
+    const std::string thing = "t" + std::to_string(t);
+    text += "K(lies(" + thing + ", " + cell(width * width - 1 - t * (width - 1) / 2) + ")) ";
+    goal += " & K(lies(" + thing + ", c0))";
+  }
+  text +=
+      "\naction go(?a : cell, ?b : cell) preconds: K(at(?a)) & K(beside(?a, ?b))\n"
+      "  effects: add(Kf, at(?b)), add(Kf, !at(?a))\n"
+      "action take(?t : thing, ?c : cell) preconds: K(at(?c)) & K(lies(?t, ?c)) & K(free)\n"
+      "  effects: add(Kf, held(?t)), add(Kf, !lies(?t, ?c)), add(Kf, !free)\n"
+      "action put(?t : thing, ?c : cell) preconds: K(at(?c)) & K(held(?t))\n"
+      "  effects: add(Kf, !held(?t)), add(Kf, lies(?t, ?c)), add(Kf, free)\n"
+      "action flip(?s : switch) preconds: K(!on(?s)) effects: add(Kf, on(?s))\n"
+      "action flop(?s : switch) preconds: K(on(?s)) effects: add(Kf, !on(?s))";
+  return model_of(text + goal);
+}
+
+TEST(Width, NoveltyFindsTheWay) {
+  for (int things = 1; things < 5; ++things) {
+    Statistics statistics;
+    SolveOptions options;
+    options.timeout = 30;
+    EXPECT_EQ(run(collecting(7, things, 12), 1, by_width, statistics, options).outcome,
+              Outcome::Solved);
+    EXPECT_LT(statistics.expanded, 1000U * static_cast<unsigned>(things)) << "of some 10^6 states";
+  }
 }
 
 }  // namespace

@@ -16,7 +16,8 @@ class Engine {
   /// Goes on, until so much work has led no nearer to the goal: about a nanosecond each, but
   /// counted, not measured, so that equal searches pause at equal states.
   /// @param besides  bytes that others hold, for the limit of memory
-  /// @return what it has found, if it ends within that.
+  /// @return what it has found, if it ends within that; Outcome::Limit and no reason in the limits
+  /// where it alone needs too much memory.
   virtual std::optional<Found> advance(std::uint64_t work, std::size_t besides) = 0;
   [[nodiscard]] virtual std::size_t bytes() const = 0;
 };

@@ -28,7 +28,7 @@ constexpr Index kStep = Index{1} << 31U;
 constexpr std::size_t kRelaxed = 0, kRelaxedPreferred = 1, kEvents = 2, kEventsPreferred = 3;
 
 // Nanoseconds, about.
-constexpr std::uint64_t kPerState = 5'000, kPerEdge = 3, kPerEvent = 1'500;
+constexpr std::uint64_t kPerState = 5'000, kPerStep = 700, kPerEdge = 3, kPerEvent = 1'500;
 
 /// States that are expanded before a search looks ahead, which makes plans longer and uses up what
 /// cannot be replaced: fewer where each takes long.
@@ -153,7 +153,7 @@ class GreedySearch final : public Engine {
     std::vector<OperatorId> left = relaxed_.steps_in_order();
     Taken at{state};
     const auto use = [&](OperatorId step) {
-      if (at.reached ||
+      if (at.reached || in_.task.is_outcome(step) ||
           !in_.task.evaluator().holds(in_.task.action(step).precondition, store_.read(at.state)))
         return false;
       const Taken next = make(at.state, step);
@@ -190,6 +190,7 @@ class GreedySearch final : public Engine {
     } else {
       scratch_.assign(store_.read(parent), store_.hash(parent));
     }
+    work_ += kPerStep;
     if (!in_.task.apply(step, scratch_)) return {};
     ++in_.statistics.generated;
     const auto [number, fresh] = store_.insert(scratch_, parent, step);

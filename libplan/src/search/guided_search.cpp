@@ -38,7 +38,11 @@ Found take_turns(const SearchInput& in, std::uint64_t first) {
   for (std::uint64_t work = first;; work *= 2) {
     if (auto found = estimates->advance(work, novelty ? novelty->bytes() : 0)) return *found;
     if (!novelty) novelty = width_engine(in);
-    if (auto found = novelty->advance(work, estimates->bytes())) return *found;
+    auto found = novelty->advance(work, estimates->bytes());
+    if (!found) continue;
+    if (found->outcome != Outcome::Limit || !in.limits.reason().empty()) return *found;
+    novelty.reset();  // there is not memory enough for both
+    return estimates->advance(kUnlimited, 0).value();
   }
 }
 

@@ -68,7 +68,7 @@ int Novelty::of(Index state_class, const std::vector<Index>& fresh,
     if ((word & bit) == 0) novelty = 1;
     word |= bit;
   }
-  if (size_ * 2 >= most_blocks_) return novelty;
+  if (size_ * 2 >= most_blocks_ || fresh.size() * present.size() > kMostPairs) return novelty;
   for (const Index f : fresh)
     if (put_pairs(state_class * facts_ + f, present)) novelty = std::min(novelty, 2);
   return novelty;

@@ -11,17 +11,24 @@ namespace kaboum::plan {
 /// [lipovetzky2017bfws].
 class Novelty {
  public:
-  /// @param most_bytes  that pairs may take: once half of it is in use, no further pair is new.
+  static constexpr std::size_t kMostPairs = std::size_t{1} << 18U;
+
+  /// @param most_bytes  that pairs may take: where half of it is in use, no further pair is new.
   Novelty(Index facts, std::size_t most_bytes);
 
   /// 1 if the class had no state with one of `fresh` so far, 2 if none with one of `fresh` besides
   /// one of `present`, else 3.
+  /// Pairs are not looked at where they would be more than kMostPairs.
   /// @param fresh    among those present
   /// @param present  ascending is fastest
   int of(Index state_class, const std::vector<Index>& fresh, const std::vector<Index>& present);
 
   [[nodiscard]] std::size_t bytes() const {
-    return blocks_.size() * sizeof(Block) + had_.size() * facts_ / 8;
+    return blocks_.size() * sizeof(Block) + had_.size() * row_blocks_ * sizeof(std::uint64_t);
+  }
+  /// What it takes besides, for a while, when it next grows, if that is near.
+  [[nodiscard]] std::size_t growth() const {
+    return (size_ + kMostPairs) * 4 > blocks_.size() * 3 ? 2 * blocks_.size() * sizeof(Block) : 0;
   }
 
  private:

@@ -23,6 +23,7 @@ namespace kaboum::plan {
 namespace {
 
 constexpr std::size_t kMostPairBytes = std::size_t{1} << 29U;
+constexpr std::size_t kQueueBytes = 640;  // of a queue with nothing in it, about
 
 /// Facts that say something: an atom is true, a term has a value. By number, and by the words of a
 /// state.
@@ -86,7 +87,8 @@ class WidthSearch final : public Engine {
         is_here_(said_.count(), 0) {
     for (const auto& o : in.heuristics.relaxation->operators())
       for (const FactId f : o.adds)
-        if (said_.number(f) != kNone) brings_[o.step].push_back(said_.number(f));
+        if (!in.task.is_outcome(o.step) && said_.number(f) != kNone)
+          brings_[o.step].push_back(said_.number(f));
     scratch_.keep_log(true);
     find_landmarks(in.heuristics.landmark(in.task, in.limits));
     nodes_.push_back({open_goals(in.start.data()) + landmarks_});
@@ -97,20 +99,25 @@ class WidthSearch final : public Engine {
 
   std::optional<Found> advance(std::uint64_t work, std::size_t besides) override {
     turn_ = work;
-    for (pause_ = work_ + turn_; work_ < pause_;) {
+    besides_ = besides;
+    std::optional<Found> found;
+    for (pause_ = work_ + turn_; work_ < pause_ && !found;) {
       if (open_.empty()) return Found{Outcome::Unsolvable, {}};
-      if (in_.limits.exceeded(bytes() + store_.growth() + besides)) return Found{};
+      if (out_of_limits()) return Found{};
       const Index state = pop();
       if (nodes_[state].plan == kNone && !make_plan(state)) continue;
-      if (const Index reached = expand(state); reached != kNone)
-        return Found{Outcome::Solved, store_.path(reached)};
+      found = expand(state);
     }
-    return std::nullopt;
+    in_.statistics.states = std::max<std::uint64_t>(in_.statistics.states, store_.size());
+    in_.statistics.state_bytes = std::max<std::uint64_t>(in_.statistics.state_bytes, bytes());
+    return found;
   }
 
   [[nodiscard]] std::size_t bytes() const override {
     return store_.bytes() + novelty_.bytes() + nodes_.size() * (sizeof(Node) + sizeof(Index)) +
-           marks_.size() * sizeof(std::uint64_t);
+           marks_.size() * sizeof(std::uint64_t) + plan_facts_ * sizeof(Index) +
+           plans_.size() * sizeof(plans_[0]) + classes_.size() * kQueueBytes +
+           open_.size() * kQueueBytes;
   }
 
  private:
@@ -156,9 +163,11 @@ class WidthSearch final : public Engine {
     if (dead) return false;
     list_present(words);
     std::vector<Index> facts;
-    for (const OperatorId step : relaxed_.steps())
+    for (const OperatorId step : relaxed_.steps()) {
+      if (in_.task.is_outcome(step)) continue;
       for (const Index f : brings_[step])
         if (!is_here_[f]) facts.push_back(f);
+    }
     std::sort(facts.begin(), facts.end());
     facts.erase(std::unique(facts.begin(), facts.end()), facts.end());
     Node& node = nodes_[state];
@@ -166,6 +175,7 @@ class WidthSearch final : public Engine {
     const std::size_t before = std::exchange(node.marks, marks_.size());
     for (std::size_t i = 0; i < landmark_words(); ++i) marks_.push_back(marks_[before + i]);
     marks_.resize(marks_.size() + (facts.size() + 63) / 64, 0);
+    plan_facts_ += facts.size();
     plans_.push_back(std::move(facts));
     return true;
   }
@@ -178,8 +188,17 @@ class WidthSearch final : public Engine {
     for (const Index f : present_) is_here_[f] = 1;
   }
 
-  /// @return a successor that reaches the target, or kNone.
-  Index expand(Index state) {
+  /// Looked at as often as some work takes. It ends without reason where memory is all that it
+  /// lacks: other searches may go on.
+  bool out_of_limits() {
+    if (work_ < next_look_) return false;
+    next_look_ = work_ + 1'000'000;
+    const std::size_t held = bytes() + store_.growth() + novelty_.growth() + besides_;
+    return !in_.limits.fits(held) || in_.limits.check(held);
+  }
+
+  /// @return how the search ends, if it does.
+  std::optional<Found> expand(Index state) {
     const Word* const words = store_.read(state);
     list_present(words);
     applicable_.find(words, steps_);
@@ -187,18 +206,21 @@ class WidthSearch final : public Engine {
     ++in_.statistics.expanded;
     work_ += 2'000 + 2 * in_.task.layout().words() + 10 * present_.size();
     for (const OperatorId step : steps_) {
+      if (out_of_limits()) return Found{};
       scratch_.undo(0);
       if (!in_.task.apply(step, scratch_)) continue;
-      work_ += 700;
+      work_ += 700 + goals_.size();
       ++in_.statistics.generated;
       const auto [number, fresh] = store_.insert(scratch_, state, step);
       if (!fresh) continue;
-      if (in_.target.reached(scratch_.words())) return number;
+      if (in_.target.reached(scratch_.words())) {
+        std::vector<OperatorId> path = store_.path(number);
+        in_.statistics.depth = std::max<std::uint64_t>(in_.statistics.depth, path.size());
+        return Found{Outcome::Solved, std::move(path)};
+      }
       evaluate(state, words);
     }
-    in_.statistics.states = std::max<std::uint64_t>(in_.statistics.states, store_.size());
-    in_.statistics.state_bytes = std::max<std::uint64_t>(in_.statistics.state_bytes, bytes());
-    return kNone;
+    return std::nullopt;
   }
 
   /// Lists facts that the successor at hand has besides its parent's, and all that it has.
@@ -210,10 +232,11 @@ class WidthSearch final : public Engine {
     std::sort(changed_.begin(), changed_.end());
     changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
     for (const Index word : changed_) {
+      const auto before = static_cast<std::ptrdiff_t>(gone_.size());
       said_.each(parent, word, [&](Index f) { gone_.push_back(f); });
       said_.each(scratch_.words(), word, [&](Index f) {
         if (is_here_[f]) {
-          std::erase(gone_, f);
+          gone_.erase(std::find(gone_.begin() + before, gone_.end(), f));
         } else {
           fresh_.push_back(f);
         }
@@ -243,7 +266,8 @@ class WidthSearch final : public Engine {
     }
     const bool same = node.left == before.left && node.done == before.done;
     const std::vector<Index>& looked_at = same ? fresh_ : now_;
-    work_ += 30 * looked_at.size() * (1 + now_.size() / 4);
+    const std::size_t pairs = looked_at.size() * now_.size();
+    work_ += now_.size() + 30 * looked_at.size() + (pairs > Novelty::kMostPairs ? 0 : 8 * pairs);
     const auto [entry, added] =
         classes_.try_emplace({node.left, node.done}, static_cast<Index>(classes_.size()));
     const int novelty = novelty_.of(entry->second, looked_at, now_);
@@ -295,7 +319,9 @@ class WidthSearch final : public Engine {
   DifferenceStore store_;
   Knowledge scratch_;  ///< the successor at hand
   Novelty novelty_;
-  std::uint64_t work_ = 0, pause_ = 0, turn_ = 0;
+  std::uint64_t work_ = 0, pause_ = 0, turn_ = 0, next_look_ = 0;
+  std::size_t besides_ = 0;
+  std::size_t plan_facts_ = 0;  ///< of all plans
   std::uint32_t least_left_ = 0;
   std::deque<Node> nodes_;  ///< by state
   std::vector<std::vector<Index>> plans_;

@@ -24,6 +24,11 @@ class Limits {
   /// The same, at every call: where one step takes long.
   bool check(std::size_t bytes);
 
+  /// Whether so much may be held by a search; it need not stop if not.
+  [[nodiscard]] bool fits(std::size_t bytes) const {
+    return options_.max_memory == 0 || bytes + held_ <= options_.max_memory;
+  }
+
   /// For grounding and analysis: some work was done, and this much more memory is held until
   /// `solve` ends. @throws LimitExceeded
   void work(std::size_t more_bytes = 0) {
