@@ -212,8 +212,8 @@ void RuntimeKnowledge::weaken_to(const RuntimeKnowledge& other,
   for (const auto& literals : other.some_)
     if (at_least_one(literals)) some_.insert(literals);
   std::erase_if(atoms_, [&](const auto& a) { return !other.knows(a.first, a.second); });
-  for (auto& [term, values] : excluded_)
-    std::erase_if(values, [&](Index v) { return !other.rules_out(term, v); });
+  for (auto& entry : excluded_)
+    std::erase_if(entry.second, [&](Index v) { return !other.rules_out(entry.first, v); });
   for (const auto& [term, values] : other.excluded_)
     for (const Index v : values)
       if (values_.contains(term) && rules_out(term, v)) excluded_[term].insert(v);

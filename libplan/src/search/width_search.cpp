@@ -116,7 +116,7 @@ class WidthSearch final : public Engine {
   [[nodiscard]] std::size_t bytes() const override {
     return store_.bytes() + novelty_.bytes() + nodes_.size() * (sizeof(Node) + sizeof(Index)) +
            marks_.size() * sizeof(std::uint64_t) + plan_facts_ * sizeof(Index) +
-           plans_.size() * sizeof(plans_[0]) + classes_.size() * kQueueBytes +
+           plans_.size() * sizeof(std::vector<Index>) + classes_.size() * kQueueBytes +
            open_.size() * kQueueBytes;
   }
 

@@ -44,6 +44,7 @@ Index KnowledgeEstimate::known(const Literal& l) {
 
 std::vector<Index> KnowledgeEstimate::known(const std::vector<Literal>& all) {
   std::vector<Index> made;
+  made.reserve(all.size());
   for (const Literal& l : all) made.push_back(known(l));
   return made;
 }
@@ -77,6 +78,7 @@ void KnowledgeEstimate::add_change(const Step& s, Index step) {
       std::vector<Index> needs = {step};
       for (const Literal& l : there) needs.push_back(in_world(l, w));
       std::vector<Index> adds;
+      adds.reserve(literals.size());
       for (const Literal& l : literals) adds.push_back(in_world(l, w));
       rules_.add(std::move(needs), adds, Cost::Sum);
     }
