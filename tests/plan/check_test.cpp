@@ -339,5 +339,67 @@ TEST(PlanFile, RefusesForeignNames) {
   EXPECT_THROW(read_plan(m, text, "p.json"), Error);
 }
 
+/// An effect of the world changes x by what r is; then x is sensed. Its value before is known to no
+/// one any more, so that tells nothing of r.
+TEST(Check, WhatIsSensedIsNotComparedWithWhatWasForgotten) {
+  const Model m = load(
+      {"t.pddl",
+       "(define (domain d) (:requirements :contingent :conditional-effects) (:predicates (r) (x) "
+       "(g))\n"
+       " (:action peek :parameters () :observe (x))\n"
+       " (:action look :parameters () :effect (when (not (r)) (not (x))) :observe (x))\n"
+       " (:action right :parameters () :precondition (r) :effect (g))\n"
+       " (:action wrong :parameters () :precondition (not (r)) :effect (g)))\n"
+       "(define (problem p) (:domain d) (:init (unknown (r)) (unknown (x))) (:goal (g)))",
+       Language::Pddl},
+      nullptr);
+  EXPECT_EQ(solved(m, Algorithm::Greedy).outcome, Outcome::Unsolvable);
+  const std::string plan =
+      R"({"format":"kaboum-plan","version":1,"domain":"d","root":0,"nodes":[
+      {"action":"peek","arguments":[],"branch":{"predicate":"x","arguments":[],
+       "cases":[{"value":true,"next":1},{"value":false,"next":1}]}},
+      {"action":"look","arguments":[],"next":2},
+      {"branch":{"predicate":"r","arguments":[],
+       "cases":[{"value":true,"next":3},{"value":false,"next":4}]}},
+      {"action":"right","arguments":[],"next":"goal"},
+      {"action":"wrong","arguments":[],"next":"goal"}]})";
+  const CheckResult r = check(m, read_plan(m, plan, "plan.json"));
+  EXPECT_FALSE(r.valid);
+  EXPECT_NE(r.violation.find("branches on r"), std::string::npos) << r.violation;
+}
+
+/// Propagation does not see the contradiction before one of the atoms is sensed.
+TEST(Check, ContradictoryKnowledgeConfirmsNothing) {
+  const Model m = model_of(
+      "predicates: a, b, c, g\nclosed: g\ninit: Kx(a | b) Kx(b | c) Kx(a | c)\n"
+      "action sense preconds: true effects: add(Kw, a)\n"
+      "action read preconds: Kw(b) & Kw(c) effects: add(Kf, !g)\ngoal: K(g)");
+  const Plan plan = read_plan(m,
+                              R"({"format":"kaboum-plan","version":1,"domain":"","root":0,"nodes":[
+      {"action":"sense","arguments":[],"next":1},{"action":"read","arguments":[],"next":"goal"}]})",
+                              "plan.json");
+  EXPECT_FALSE(works_merged(m, plan));
+  EXPECT_FALSE(valid(m, plan));
+}
+
+/// Where more knowledge might harm, or less might do more, runs are not merged.
+TEST(Check, MergesOnlyWhereMoreKnowledgeNeverHarms) {
+  const auto takes = [](const std::string& action, const std::string& goal = "K(p)") {
+    return MergedReplay::takes(
+        model_of("types: t\nconstants: t a, b\npredicates: p, q\nfunctions: f : t, h : t\n"
+                 "action x " +
+                 action + "\ngoal: " + goal));
+  };
+  EXPECT_TRUE(takes("preconds: K(p) effects: add(Kf, q)"));
+  EXPECT_TRUE(takes("preconds: K(!p) | Kw(q) effects: add(Kw, q), del(Kf, p)"));
+  EXPECT_TRUE(takes("preconds: true effects: whenever K(p) => add(Kf, q)"));
+  EXPECT_FALSE(takes("preconds: !K(p) effects: add(Kf, q)"));
+  EXPECT_FALSE(takes("preconds: !Kw(p) effects: add(Kw, p)"));
+  EXPECT_FALSE(takes("preconds: true effects: K(p) => add(Kf, q)"));
+  EXPECT_FALSE(takes("preconds: true effects: add(Kx, p | q)"));
+  EXPECT_FALSE(takes("preconds: true effects: add(Kf, f != a)"));
+  EXPECT_FALSE(takes("preconds: K(p) effects: add(Kf, q)", "!K(p)"));
+}
+
 }  // namespace
 }  // namespace kaboum::plan::test

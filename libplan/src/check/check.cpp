@@ -37,7 +37,7 @@ class Checker {
     for (RuntimeKnowledge& k : transitions_.initial_states())
       visit(plan_.root, std::move(k), kNoParent, "");
     while (!queue_.empty() && result_.violation.empty()) {
-      if (visits_.size() >= merge_at_ && confirmed_at_once()) return result_;
+      if (!tried_at_once_ && visits_.size() >= kManyVisits && confirmed_at_once()) return result_;
       const std::size_t v = queue_.front();
       queue_.pop_front();
       replay(v);
@@ -54,11 +54,16 @@ class Checker {
   static constexpr std::size_t kNoParent = ~std::size_t{0};
   static constexpr std::size_t kManyVisits = 20'000;
 
-  /// Tried once.
+  /// Is tried once.
   bool confirmed_at_once() {
-    merge_at_ = ~std::size_t{0};
-    result_.valid =
-        monotone_ && MergedReplay(model_, plan_, evaluator_, live_, transitions_).confirms();
+    tried_at_once_ = true;
+    if (!monotone_) return false;
+    try {
+      result_.valid = MergedReplay(model_, plan_, evaluator_, live_, transitions_).confirms();
+    } catch (const Error& e) {
+      // What runs have in common may leave more outcomes open than can be looked at.
+      if (e.code() != ErrorCode::LimitReached) throw;
+    }
     result_.leaves = std::max<decltype(result_.leaves)>(result_.leaves, result_.valid ? 1 : 0);
     return result_.valid;
   }
@@ -210,7 +215,7 @@ class Checker {
   std::deque<std::size_t> queue_;
   std::map<Index, std::size_t> contradicted_;  ///< nodes, and a visit in which they contradict
   std::set<Index> passed_;                     ///< nodes that some run gets through
-  std::size_t merge_at_ = kManyVisits;
+  bool tried_at_once_ = false;
   CheckResult result_;
 };
 

@@ -13,6 +13,14 @@ std::vector<Index> successors(const Plan::Node& node) {
   return next;
 }
 
+/// Whether it leaves out worlds, by the value of its fact.
+bool observes(const Update& u) {
+  using D = Update::Database;
+  if (!u.add) return false;
+  return u.database == D::Kw || u.database == D::Kv || u.database == D::Lcw ||
+         (u.database == D::Kf && u.literals[0].function && u.literals[0].negated);
+}
+
 }  // namespace
 
 Fact branch_fact(const Plan::Branch& b) {
@@ -27,8 +35,9 @@ std::vector<Index> bind(const Action& a, const PlanAction& action) {
   return slots;
 }
 
-LiveFacts::LiveFacts(const Model& model, const Plan& plan, const QueryEvaluator& evaluator)
-    : model_(model), evaluator_(evaluator) {
+LiveFacts::LiveFacts(const Model& model, const Plan& plan, const QueryEvaluator& evaluator,
+                     Sensing sensing)
+    : model_(model), evaluator_(evaluator), sensing_(sensing) {
   std::vector<Index> slots(std::max<Index>(model.goal_slots, 1), 0);
   goal_.all = !evaluator.reads(model.goal, slots, goal_.facts);
   by_node_.resize(plan.nodes.size());
@@ -74,6 +83,10 @@ void LiveFacts::effect_reads(const Effect& e, std::vector<Index>& slots, Reads& 
   if (e.kind == Effect::Kind::Update)
     if (const auto& value = e.update.literals[0].value; value && value->term)
       out.facts.insert(fact(true, value->term->function, value->term->arguments, slots));
+  if (sensing_ == Sensing::Reads && e.kind == Effect::Kind::Update && observes(e.update)) {
+    const Update::Literal& l = e.update.literals[0];
+    out.facts.insert(fact(l.function, l.symbol, l.arguments, slots));
+  }
   // A disjunction combines with what is known of its atoms by then.
   if (e.kind == Effect::Kind::Update && e.update.database == Update::Database::Kx)
     for (const Update::Literal& l : e.update.literals)

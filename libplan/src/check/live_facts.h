@@ -2,6 +2,7 @@
 
 #include <kaboum/plan/plan.h>
 
+#include <cstdint>
 #include <set>
 #include <vector>
 
@@ -18,8 +19,13 @@ std::vector<Index> bind(const Action& a, const PlanAction& action);
 /// dropped there.
 class LiveFacts {
  public:
+  /// Whether to sense is to read: it is where sets of worlds are kept, in which what is sensed may
+  /// tell of anything else.
+  enum class Sensing : std::uint8_t { DoesNotRead, Reads };
+
   /// @pre the plan has no cycles.
-  LiveFacts(const Model& model, const Plan& plan, const QueryEvaluator& evaluator);
+  LiveFacts(const Model& model, const Plan& plan, const QueryEvaluator& evaluator,
+            Sensing sensing = Sensing::DoesNotRead);
 
   struct Reads {
     std::set<Fact> facts;
@@ -34,6 +40,7 @@ class LiveFacts {
 
   const Model& model_;
   const QueryEvaluator& evaluator_;
+  Sensing sensing_;
   Reads goal_;
   std::vector<Reads> by_node_;
 };

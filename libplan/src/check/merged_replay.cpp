@@ -83,12 +83,12 @@ bool MergedReplay::confirms() {
     if (at == arrived_.end()) continue;  // no run comes here
     RuntimeKnowledge k = std::move(at->second);
     arrived_.erase(at);
-    k.restrict_to(live_.at(n).facts);
+    if (!live_.at(n).all) k.restrict_to(live_.at(n).facts);
     if (!carry_out(n, k)) return false;
   }
   const auto end = arrived_.find(kNone);
   std::vector<Index> slots(std::max<Index>(model_.goal_slots, 1), 0);
-  return end == arrived_.end() || evaluator_.holds(model_.goal, slots, end->second);
+  return end != arrived_.end() && evaluator_.holds(model_.goal, slots, end->second);
 }
 
 bool MergedReplay::carry_out(Index n, const RuntimeKnowledge& k) {
@@ -99,6 +99,7 @@ bool MergedReplay::carry_out(Index n, const RuntimeKnowledge& k) {
     std::vector<Index> slots = bind(a, node.action);
     if (!evaluator_.holds(a.precondition, slots, k)) return false;
     after = transitions_.after(a, slots, k);
+    if (after.empty()) return false;  // what it observes contradicts what is known
   }
   for (RuntimeKnowledge& then : after) {
     if (!node.branches)

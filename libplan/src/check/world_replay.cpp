@@ -12,7 +12,7 @@ WorldReplay::WorldReplay(const Model& model, const Plan& plan, std::uint64_t lim
       plan_(plan),
       limit_(limit),
       evaluator_(model, plan),
-      live_(model, plan, evaluator_),
+      live_(model, plan, evaluator_, LiveFacts::Sensing::Reads),
       rules_(model) {}
 
 std::string WorldReplay::path(std::size_t v) const {

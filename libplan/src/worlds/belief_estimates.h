@@ -21,18 +21,20 @@ class BeliefEstimates {
 
   static_assert(kDead == KnowledgeEstimate::kDead);
 
-  explicit BeliefEstimates(const BeliefSpace& space) : space_(space), worlds_(space) {}
+  BeliefEstimates(const BeliefSpace& space, Limits& limits)
+      : space_(space), limits_(limits), worlds_(space) {}
 
-  /// kDead: the belief has no plan.
+  /// kDead: the belief has no plan. @throws LimitExceeded
   int operator()(Guide guide, const Word* belief) {
     if (guide == Guide::Worlds) return worlds_(belief);
-    if (!knowledge_) knowledge_.emplace(space_);
+    if (!knowledge_) knowledge_.emplace(space_, limits_);
     return (*knowledge_)(belief);
   }
   [[nodiscard]] std::size_t bytes() const { return worlds_.bytes(); }
 
  private:
   const BeliefSpace& space_;
+  Limits& limits_;
   WorldEstimate worlds_;
   std::optional<KnowledgeEstimate> knowledge_;  ///< made when it is needed
 };

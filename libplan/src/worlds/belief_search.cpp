@@ -48,7 +48,7 @@ BeliefSearch::BeliefSearch(BeliefSpace& space, const Model& model, bool guided, 
       guided_(guided),
       limits_(limits),
       statistics_(statistics),
-      estimates_(space),
+      estimates_(space, limits),
       policy_(space, model),
       store_(static_cast<Index>(std::max<std::size_t>(space.words(), 1))) {}
 

@@ -6,12 +6,16 @@
 
 namespace kaboum::plan::worlds {
 
-KnowledgeEstimate::KnowledgeEstimate(const BeliefSpace& space) : space_(space) {
+KnowledgeEstimate::KnowledgeEstimate(const BeliefSpace& space, Limits& limits) : space_(space) {
   const WorldTask& task = space.task();
   for (const Variable& v : task.variables)
     base_.push_back(rules_.propositions(v.size * (v.hidden ? kSample : 1)));
   ruled_out_ = rules_.propositions(static_cast<Index>(task.components.size()) * kSample);
-  for (const Operator& o : task.operators) add_operator(o);
+  for (const Operator& o : task.operators) {
+    const std::size_t before = rules_.bytes();
+    add_operator(o);
+    limits.hold(2 * (rules_.bytes() - before));
+  }
   add_goal(task.goal);
 }
 

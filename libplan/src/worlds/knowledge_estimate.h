@@ -3,6 +3,7 @@
 #include <map>
 #include <vector>
 
+#include "task/solve_limits.h"
 #include "worlds/alternatives.h"
 #include "worlds/belief_space.h"
 #include "worlds/relaxed_rules.h"
@@ -17,7 +18,8 @@ class KnowledgeEstimate {
  public:
   static constexpr int kDead = RelaxedRules::kUnreached;
 
-  explicit KnowledgeEstimate(const BeliefSpace& space);
+  /// @throws LimitExceeded
+  KnowledgeEstimate(const BeliefSpace& space, Limits& limits);
 
   /// kDead: the belief has no plan.
   int operator()(const Word* belief);

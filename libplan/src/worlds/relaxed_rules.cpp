@@ -16,6 +16,11 @@ Index RelaxedRules::propositions(Index count) {
   return first;
 }
 
+std::size_t RelaxedRules::bytes() const {
+  const auto of = [](const Lists& l) { return l.begins.size() + l.elements.size(); };
+  return (of(needs_) + of(adds_) + kinds_.size() + propositions_) * sizeof(Index);
+}
+
 void RelaxedRules::add(std::vector<Index> needs, const std::vector<Index>& adds, Cost cost) {
   std::sort(needs.begin(), needs.end());
   needs.erase(std::unique(needs.begin(), needs.end()), needs.end());

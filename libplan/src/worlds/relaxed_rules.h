@@ -24,6 +24,9 @@ class RelaxedRules {
   /// @pre no plan was asked for yet. A rule without needs always applies.
   void add(std::vector<Index> needs, const std::vector<Index>& adds, Cost cost);
 
+  /// Of what it holds before a plan is first asked for; about as much again is held then.
+  [[nodiscard]] std::size_t bytes() const;
+
   /// How many steps a relaxed plan [hoffmann2001ff] has that brings a proposition about: of each
   /// that it needs the cheapest rule, costs added up. kUnreached: there is none.
   int plan(const std::vector<Index>& holding, Index wanted);
