@@ -421,5 +421,19 @@ TEST(Pddl, SensorsAndInvariants) {
   EXPECT_EQ(measure(m, s.plan).leaves, 2U);
 }
 
+TEST(Pddl, InvariantsThatHoldAnywayOpenNothing) {
+  for (const char* law : {"", "(invariant (at a) (at b))", "(invariant (not (at b)) (at a))"}) {
+    const Model m =
+        pddl(std::string(
+                 "(define (domain d) (:requirements :strips :typing) (:types place) (:constants "
+                 "a b - place) (:predicates (at ?p - place) (open)) (:action look :parameters () "
+                 ":precondition (at a) :observe (open)) (:action round :parameters () "
+                 ":precondition (and (at a) (not (at b))) :effect (and (not (at a)) (at b)))) "
+                 "(define (problem p) (:domain d) (:init ") +
+             law + " (at a) (unknown (open))) (:goal (at b)))");
+    EXPECT_EQ(solved(m, Algorithm::Greedy).outcome, Outcome::Solved) << law;
+  }
+}
+
 }  // namespace
 }  // namespace kaboum::plan::test

@@ -21,6 +21,13 @@ using syntax::Term;
 using syntax::TypedVariable;
 using K = Formula::Kind;
 
+std::string text_of(const SExpression& e) {
+  if (!e.list) return e.word;
+  std::string text = "(";
+  for (const SExpression& i : e.items) text += text_of(i) + " ";
+  return text + ")";
+}
+
 class PddlParser {
  public:
   explicit PddlParser(std::shared_ptr<const Source> source) : source_(std::move(source)) {}
@@ -78,6 +85,7 @@ class PddlParser {
       rule(e);
     } else if (key == ":init") {
       for (std::size_t i = 1; i < e.items.size(); ++i) initial(e.items[i]);
+      for (const SExpression* i : invariants_) invariant(*i);
     } else if (key == ":goal") {
       document_.goals.push_back(formula(item(e, 1, "a goal"), true));
     } else if (key == ":metric") {
@@ -270,10 +278,9 @@ class PddlParser {
         clauses_of_oneof(entry);
       return;
     }
-    if (e.headed("or") || e.headed("invariant")) {
-      entry.database = syntax::Database::Or;
-      alternatives(e, entry);
-      document_.initial.push_back(std::move(entry));
+    if (e.headed("or")) return disjunction(e);
+    if (e.headed("invariant")) {
+      invariants_.push_back(&e);
       return;
     }
     if (e.headed("=") && item(e, 1, "a function").headed("total-cost")) return;
@@ -283,6 +290,22 @@ class PddlParser {
       entry.formulas.push_back(literal(e));
     }
     document_.initial.push_back(std::move(entry));
+    stated_.insert(text_of(e));
+  }
+
+  void disjunction(const SExpression& e) {
+    Effect entry;
+    entry.location = e.location;
+    entry.database = syntax::Database::Or;
+    alternatives(e, entry);
+    document_.initial.push_back(std::move(entry));
+  }
+
+  /// What a stated literal satisfies says nothing, and opens no atoms.
+  void invariant(const SExpression& e) {
+    if (std::none_of(e.items.begin() + 1, e.items.end(),
+                     [&](const SExpression& l) { return stated_.contains(text_of(l)); }))
+      disjunction(e);
   }
 
   /// The literals of (oneof ...) and (or ...); their atoms are open.
@@ -361,6 +384,8 @@ class PddlParser {
 
   std::shared_ptr<const Source> source_;
   syntax::Document document_;
+  std::vector<const SExpression*> invariants_;  ///< of the initial state
+  std::set<std::string> stated_;                ///< literals of it
   std::vector<Formula> unknown_;
   bool costs_ = false;
   bool typed_ = false;  ///< it has (:types ...)
