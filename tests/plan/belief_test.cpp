@@ -340,5 +340,24 @@ TEST(Beliefs, WhatTheLanguageSays) {
        "'and' inside (oneof");
 }
 
+/// What only leads on by the agent's conditions, or by one of many values, is no dead end.
+TEST(Beliefs, ConditionsOfTheAgentAndLongRangesLeadOn) {
+  const Model conditional = model_of(
+      "predicates: p, q, g\ninit: K(!g) Kx(p | q)\naction look preconds: true effects: add(Kw, p)\n"
+      "action act preconds: true effects: K(p) => add(Kf, g), K(q) => add(Kf, g)\ngoal: K(g)");
+  const Solution s = solved(conditional, Algorithm::Greedy);
+  ASSERT_EQ(s.outcome, Outcome::Solved);
+  EXPECT_EQ(measure(conditional, s.plan).leaves, 2U);
+  std::string text = "types: v\nconstants: v v0";
+  for (int i = 1; i < 40; ++i) text += ", v" + std::to_string(i);
+  text +=
+      "\npredicates: p, q, g\nfunctions: f : v\ninit: K(!g) Kx(p | q)\n"
+      "action see preconds: true effects: add(Kv, f)\n"
+      "action look preconds: Kv(f) effects: add(Kw, p)\n"
+      "action win(?x : v) preconds: K(f = ?x) & K(p) effects: add(Kf, g)\n"
+      "action lose(?x : v) preconds: K(f = ?x) & K(q) effects: add(Kf, g)\ngoal: K(g)";
+  EXPECT_EQ(solved(model_of(text), Algorithm::Greedy).outcome, Outcome::Solved);
+}
+
 }  // namespace
 }  // namespace kaboum::plan::test
