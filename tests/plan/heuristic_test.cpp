@@ -5,6 +5,7 @@
 #include <random>
 #include <set>
 
+#include "goal_target.h"
 #include "plan_test.h"
 #include "search/applicable_steps.h"
 #include "search/engine.h"
@@ -133,17 +134,9 @@ TEST(Estimates, TheRelaxedPlanCountsStepsWhateverTheyCost) {
   EXPECT_EQ(solved(m, Algorithm::Greedy).statistics.initial_estimate, 2);
 }
 
-struct Goal : Target {
-  explicit Goal(const Task& of) : task(of) {}
-  bool reached(const Word* state) override { return task.evaluator().holds(task.goal(), state); }
-  bool allowed(const Word*, OperatorId) override { return true; }
-  bool expects(const Word*, OperatorId) override { return true; }
-  const Task& task;
-};
-
 /// Its steps, made one after the other, lead to the goal.
 bool has_plan_by_width(Task& task, Limits& limits, Statistics& statistics, Heuristics& heuristics) {
-  Goal goal(task);
+  GoalTarget goal(task);
   if (goal.reached(task.initial().data())) return true;
   const auto engine = width_engine({task, task.initial(), goal, limits, statistics, heuristics});
   std::optional<Found> found;

@@ -4,6 +4,7 @@
 #include <random>
 #include <set>
 
+#include "goal_target.h"
 #include "plan_test.h"
 #include "search/difference_store.h"
 #include "search/engine.h"
@@ -127,14 +128,6 @@ TEST(Novelty, PairsAreForgottenWhereTheyWouldTakeTooMuch) {
   EXPECT_EQ(novelty.of(1, {3}, {3, 700}), 1);
 }
 
-struct Reached : Target {
-  explicit Reached(const Task& of) : task(of) {}
-  bool reached(const Word* state) override { return task.evaluator().holds(task.goal(), state); }
-  bool allowed(const Word*, OperatorId) override { return true; }
-  bool expects(const Word*, OperatorId) override { return true; }
-  const Task& task;
-};
-
 using Search = Found (*)(const SearchInput&, std::uint64_t);
 
 /// What a search finds with pauses after this much work.
@@ -143,7 +136,7 @@ Found run(const Model& model, std::uint64_t work, Search search, Statistics& sta
   Limits limits(options, statistics);
   Task task(model, limits);
   Heuristics heuristics;
-  Reached target(task);
+  GoalTarget target(task);
   return search({task, task.initial(), target, limits, statistics, heuristics}, work);
 }
 Found run(const Model& model, std::uint64_t work, Search search) {

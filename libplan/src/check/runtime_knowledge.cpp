@@ -184,12 +184,6 @@ bool RuntimeKnowledge::exactly_one(const std::set<Fact>& atoms) const {
          });
 }
 
-bool RuntimeKnowledge::at_least_one(const std::set<FactLiteral>& literals) const {
-  return std::ranges::any_of(literals, [&](const auto& l) { return knows(l.first, l.second); }) ||
-         std::ranges::any_of(
-             some_, [&](const auto& known) { return std::ranges::includes(literals, known); });
-}
-
 /// Of the atoms of an entry those of which one may hold.
 std::set<Fact> RuntimeKnowledge::candidates(const std::set<Fact>& entry) const {
   if (const auto found = exclusive_.find(entry); found != exclusive_.end()) return found->second;
@@ -208,9 +202,8 @@ void RuntimeKnowledge::weaken_to(const RuntimeKnowledge& other,
     if (either.size() > 1 && exactly_one(either) && other.exactly_one(either))
       exclusive[entry] = std::move(either);
   }
-  std::erase_if(some_, [&](const auto& literals) { return !other.at_least_one(literals); });
-  for (const auto& literals : other.some_)
-    if (at_least_one(literals)) some_.insert(literals);
+  cut_ |= !some_.empty();
+  some_.clear();  // what is not looked for is not in common
   std::erase_if(atoms_, [&](const auto& a) { return !other.knows(a.first, a.second); });
   for (auto& entry : excluded_)
     std::erase_if(entry.second, [&](Index v) { return !other.rules_out(entry.first, v); });

@@ -62,7 +62,6 @@ class RuntimeKnowledge {
  private:
   [[nodiscard]] std::set<Fact> candidates(const std::set<Fact>& entry) const;
   [[nodiscard]] bool exactly_one(const std::set<Fact>& atoms) const;
-  [[nodiscard]] bool at_least_one(const std::set<FactLiteral>& literals) const;
   bool propagate();
   bool conclude_exclusive(bool& again);
   bool conclude_some(bool& again);

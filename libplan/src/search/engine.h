@@ -8,6 +8,9 @@
 
 namespace kaboum::plan {
 
+/// Work, in nanoseconds, about: of a step that is made, of an edge of a relaxed plan's graph.
+inline constexpr std::uint64_t kPerStep = 700, kPerEdge = 3;
+
 /// A search that can pause.
 class Engine {
  public:

@@ -27,8 +27,7 @@ constexpr Index kStep = Index{1} << 31U;
 
 constexpr std::size_t kRelaxed = 0, kRelaxedPreferred = 1, kEvents = 2, kEventsPreferred = 3;
 
-// Nanoseconds, about.
-constexpr std::uint64_t kPerState = 5'000, kPerStep = 700, kPerEdge = 3, kPerEvent = 1'500;
+constexpr std::uint64_t kPerState = 5'000, kPerEvent = 1'500;  // work, besides that of engine.h
 
 /// States that are expanded before a search looks ahead, which makes plans longer and uses up what
 /// cannot be replaced: fewer where each takes long.

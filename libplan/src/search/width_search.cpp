@@ -159,7 +159,7 @@ class WidthSearch final : public Engine {
   bool make_plan(Index state) {
     const Word* const words = store_.read(state);
     const bool dead = relaxed_.evaluate(words) == RelaxedPlan::kDeadEnd;
-    work_ += 3 * relaxed_.walked();
+    work_ += kPerEdge * relaxed_.walked();
     if (dead) return false;
     list_present(words);
     std::vector<Index> facts;
@@ -209,7 +209,7 @@ class WidthSearch final : public Engine {
       if (out_of_limits()) return Found{};
       scratch_.undo(0);
       if (!in_.task.apply(step, scratch_)) continue;
-      work_ += 700 + goals_.size();
+      work_ += kPerStep + goals_.size();
       ++in_.statistics.generated;
       const auto [number, fresh] = store_.insert(scratch_, state, step);
       if (!fresh) continue;

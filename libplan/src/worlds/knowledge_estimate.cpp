@@ -2,6 +2,8 @@
 // component, as are labels in the planning graphs of [bryce2006planning].
 #include "worlds/knowledge_estimate.h"
 
+#include <kaboum/base/error.h>
+
 #include <algorithm>
 
 namespace kaboum::plan::worlds {
@@ -94,7 +96,8 @@ void KnowledgeEstimate::add_operator(const Operator& o) {
   for (const auto& needed : alternatives(task, {&o.precondition}))
     rules_.add(known(needed), {step}, Cost::Step);
   for (const Step& s : o.steps) {
-    observes_ |= s.kind == Step::Kind::Rule || s.kind == Step::Kind::OneOf;
+    // An observation would rule worlds out, for which there are no rules here.
+    ensure(s.kind != Step::Kind::Rule && s.kind != Step::Kind::OneOf, "grounding refuses these");
     Index made = step;
     if (s.known.kind != Condition::Kind::True) {
       made = rules_.propositions(1);
@@ -152,10 +155,10 @@ int KnowledgeEstimate::operator()(const Word* belief) {
   for (Index plan = 0; plan < std::min(most, kPlans); ++plan) {
     sample(belief, plan);
     const int steps = rules_.plan(holding_, next);
-    if (steps >= kDead) return observes_ ? kDead - 1 : kDead;
+    if (steps >= kDead) return kDead;
     shortest = std::min(shortest, steps);
   }
-  return std::min(open * kGoal + shortest, kDead - 1);
+  return std::min(std::min(open, kDead / kGoal) * kGoal + shortest, kDead - 1);
 }
 
 }  // namespace kaboum::plan::worlds

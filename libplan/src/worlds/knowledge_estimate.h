@@ -51,7 +51,6 @@ class KnowledgeEstimate {
   void sample(const Word* belief, Index plan);
 
   const BeliefSpace& space_;
-  bool observes_ = false;  ///< an observation may rule worlds out: none of them is dead for certain
   RelaxedRules rules_;
   std::vector<Index> base_;  ///< by variable
   Index ruled_out_ = 0;
