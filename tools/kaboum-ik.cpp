@@ -159,7 +159,7 @@ int run(const Options& o) {
   const Answer answer = tools::naming(chain.file, [&] { return find(o, chain); });
   tools::Json report = tools::answer_json(answer, o.degrees);
   if (o.json) {
-    std::cout << report.dump(2) << '\n';
+    std::cout << report.dump(2, ' ', false, tools::Json::error_handler_t::replace) << '\n';
   } else if (!answer.rows.empty()) {
     tools::print_answer(answer, o.degrees);
   }
