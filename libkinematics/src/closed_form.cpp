@@ -37,8 +37,8 @@ ShoulderTurns shoulder_turns(const ClosedForm& form, const FreeWithin& within, d
     return out;
   }
   out.free = on_axis && std::abs(form.lateral) <= within.length;
-  out.nearly = !out.free && near < kNearlySingular &&
-               std::abs(form.lateral) < kNearlySingular * form.reach;
+  out.nearly =
+      !out.free && near < kNearlySingular && std::abs(form.lateral) < kNearlySingular * form.reach;
   if (on_axis) return out;
   out.single = r < kNothing * form.reach;
   out.count = out.single ? 1 : 2;
@@ -258,8 +258,8 @@ class Solver {
     out.rotation_error = rotation + model.rotation;
     out.singular = shoulder_ | elbow_ | wrist_;
     out.free = free_shoulder_ | free_elbow_ | free_wrist_;
-    // Errors of the target and the formulas, as far as singular places near it make them larger; the
-    // square root where two solutions coincide is covered by the largest.
+    // Errors of the target and the formulas, as far as singular places near it make them larger;
+    // the square root where two solutions coincide is covered by the largest.
     constexpr double kRounding = 1e-14, kLargest = 1e-4;
     const double condition = shoulder_condition_ * elbow_condition_ * wrist_condition_;
     out.accuracy = std::min(kLargest, kRounding / std::max(condition, 1e-300));

@@ -31,14 +31,12 @@ inline Interval operator+(const Interval& a, const Interval& b) {
 }
 inline Interval operator-(const Interval& a, const Interval& b) { return a + -b; }
 inline Interval operator*(const Interval& a, const Interval& b) {
-  const auto [least, most] = std::minmax(
-      {a.lower * b.lower, a.lower * b.upper, a.upper * b.lower, a.upper * b.upper});
+  const auto [least, most] =
+      std::minmax({a.lower * b.lower, a.lower * b.upper, a.upper * b.lower, a.upper * b.upper});
   return widened(least, most);
 }
 /// @pre the number is above 0.
-inline Interval operator/(const Interval& a, double b) {
-  return widened(a.lower / b, a.upper / b);
-}
+inline Interval operator/(const Interval& a, double b) { return widened(a.lower / b, a.upper / b); }
 
 inline Interval square(const Interval& a) {
   const double most = std::max(std::abs(a.lower), std::abs(a.upper));
@@ -69,10 +67,9 @@ inline bool may_hold_turned(const Interval& a, double angle) {
 inline Interval cos(const Interval& a) {
   const double x = std::cos(a.lower), y = std::cos(a.upper);
   const double slack = 1e-15 * std::max(std::abs(a.lower), std::abs(a.upper));
-  return clamped(
-      widened(may_hold_turned(a, std::numbers::pi) ? -1 : std::min(x, y) - slack,
-              may_hold_turned(a, 0) ? 1 : std::max(x, y) + slack),
-      -1, 1);
+  return clamped(widened(may_hold_turned(a, std::numbers::pi) ? -1 : std::min(x, y) - slack,
+                         may_hold_turned(a, 0) ? 1 : std::max(x, y) + slack),
+                 -1, 1);
 }
 inline Interval sin(const Interval& a) {
   constexpr double kQuarter = std::numbers::pi / 2;

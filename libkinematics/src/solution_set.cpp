@@ -25,7 +25,7 @@ struct Goal {
 
 /// The joints' angles in the formulas. Some are given: free ones, and what they branch off at.
 struct Branch {
-  unsigned free = 0, given = 0;  ///< joints as bits; the free ones are given
+  unsigned free = 0, given = 0;   ///< joints as bits; the free ones are given
   std::array<double, 6> angle{};  ///< of those that are given and not free
   double elbow = 1;               ///< sign of the elbow's sine
   double wrist = 1;  ///< sign of that of the wrist; where axes are aligned cosine of joint 5
@@ -378,7 +378,8 @@ class Branches {
 };
 
 /// Looks where a branch is within the limits: boxes of values of its free joints are halved until
-/// the others are within their limits in all of them, or one of them is outside in all, for certain.
+/// the others are within their limits in all of them, or one of them is outside in all, for
+/// certain.
 class Exploration {
  public:
   Exploration(const ClosedForm& form, const Goal& goal, const Transform& target,
@@ -584,7 +585,8 @@ class Exploration {
           out.ranges[k].lower = std::min(out.ranges[k].lower, box[k].lower);
           out.ranges[k].upper = std::max(out.ranges[k].upper, box[k].upper);
         }
-    const std::size_t step = std::max<std::size_t>(1, good_.size() / (2 * options_.representatives));
+    const std::size_t step =
+        std::max<std::size_t>(1, good_.size() / (2 * options_.representatives));
     for (std::size_t i = step / 2; i < good_.size(); i += step) add(out, middle(good_[i]));
   }
 
@@ -631,8 +633,7 @@ SolutionSet solve_set(const ClosedForm& form, const Transform& target,
   };
   // Of a model that is not the arm, branches are missed at the borders of what is within reach.
   constexpr double kExact = 1e-8, kExactFamilies = 1e-10;
-  const double off =
-      std::max(form.model_error.position / form.reach, form.model_error.rotation);
+  const double off = std::max(form.model_error.position / form.reach, form.model_error.rotation);
   if (off > kExact) doubt("the arm is only nearly of its family");
   if (options.limits)
     for (const Solution& s : out.isolated)

@@ -1,5 +1,5 @@
-// Poses that singular configurations make: what made a pose is an answer, in a family, or it is said
-// that the answer is not complete.
+// Poses that singular configurations make: what made a pose is an answer, in a family, or it is
+// said that the answer is not complete.
 #include <gtest/gtest.h>
 #include <kaboum/kinematics/copies.h>
 #include <kaboum/kinematics/numeric.h>
@@ -207,7 +207,8 @@ struct Count {
   void print(const std::string& what) const {
     std::cout << what << ": " << poses << " poses, " << complete << " complete, " << families
               << " with families, " << empty << " proved empty\n";
-    for (const auto& [reason, times] : reasons) std::cout << "  " << times << ": " << reason << '\n';
+    for (const auto& [reason, times] : reasons)
+      std::cout << "  " << times << ": " << reason << '\n';
   }
 };
 
