@@ -1,10 +1,9 @@
 // STEP and IGES by OpenCASCADE, as a module that is loaded when such a file is read: its libraries
 // take longer to load than most programs run.
 //
-// Faces are made into triangles by its incremental mesher. Nodes on edges and vertices get one
-// point each, whichever face they are asked of, so that solids are closed. The deviation is
-// measured: at the nodes of a fine grid in the parameters of every triangle, from the exact surface
-// to the triangle.
+// What the file states is counted first, from its entities (census.h); what was transferred has to
+// be that. Faces are made into triangles by OpenCASCADE's incremental mesher, made finer where that
+// is needed, and the distance of the exact faces and edges from them is bounded (exact_cover.h).
 
 #include <BRepBndLib.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
@@ -38,6 +37,7 @@
 #include "../src/cad_shape.h"
 #include "census.h"
 #include "exact_cover.h"
+#include "exact_integrals.h"
 
 namespace kaboum::io {
 namespace {
@@ -171,14 +171,21 @@ class Reading {
       result_.solids.push_back(name_of(reader_, at.Current()));
     for (TopExp_Explorer at(shape, TopAbs_FACE, TopAbs_SOLID); at.More(); at.Next())
       ++result_.loose_faces;
-    cover_exact_shape(shape, kWish * kChord * diagonal, result_);
-    if (result_.bare_faces > 0) return;
+    ExactCover cover = cover_exact_shape(shape, kWish * kChord * diagonal);
+    result_.bare_faces = cover.bare_faces;
+    if (cover.bare_faces > 0) return;
     // Faces, edges and vertices may be this far from each other, as the file says; or as was
     // proved.
-    result_.deviation += std::max(result_.gap, ShapeAnalysis_ShapeTolerance().Tolerance(shape, 1));
+    result_.deviation =
+        cover.distance + std::max(cover.gap, ShapeAnalysis_ShapeTolerance().Tolerance(shape, 1));
+    result_.pieces = cover.pieces;
     if (!(result_.deviation <= kMost * diagonal))
       refuse("the exact shape can only be said to be within " + std::to_string(result_.deviation) +
-             " mm of triangles (" + result_.worst + ", " + result_.worst_gap + ")");
+             " mm of triangles (" + cover.farthest + ", " + cover.widest + ")");
+    check_integrals(shape, cover, result_.deviation,
+                    result_.loose_faces == 0 && !result_.solids.empty());
+    result_.points = std::move(cover.points);
+    result_.triangles = std::move(cover.triangles);
   }
 
   XSControl_Reader& reader_;

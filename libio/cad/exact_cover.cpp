@@ -252,7 +252,7 @@ using Pair = std::pair<int, int>;
 
 class Cover {
  public:
-  Cover(const TopoDS_Shape& shape, double wish, CadShape& result) : wish_(wish), result_(result) {
+  Cover(const TopoDS_Shape& shape, double wish) : wish_(wish) {
     TopExp::MapShapes(shape, TopAbs_EDGE, edges_);
     TopExp::MapShapes(shape, TopAbs_VERTEX, vertices_);
     lines_.resize(static_cast<std::size_t>(edges_.Extent()) + 1);
@@ -296,7 +296,8 @@ class Cover {
     if (!is_filled(f)) throw std::runtime_error(f.name + ": its triangles do not fill its border");
   }
 
-  void run() {
+  ExactCover run() {
+    if (result_.bare_faces > 0) return std::move(result_);
     const std::size_t before = count_triangles();
     pieces_left_ = kPiecesPerTriangle * before + kMorePieces;
     for (int round = 0;; ++round) {
@@ -315,6 +316,7 @@ class Cover {
       refine_ = false;  // once more, to bound what cannot be made finer
     }
     deliver();
+    return std::move(result_);
   }
 
  private:
@@ -932,7 +934,7 @@ class Cover {
         for (std::size_t i = 0; i + 1 < line.t.size(); ++i)
           worse(bound_gap(*line.curve, b.curve, *f.surface, line.t[i], line.t[i + 1], kGap * wish_,
                           0),
-                line.name + " beside " + f.name, result_.gap, result_.worst_gap);
+                line.name + " beside " + f.name, result_.gap, result_.widest);
       }
   }
 
@@ -946,24 +948,24 @@ class Cover {
 
   void deliver() {
     for (const FaceMesh& f : faces_) {
-      worse(f.bound, f.name, result_.deviation, result_.worst);
+      worse(f.bound, f.name, result_.distance, result_.farthest);
       for (const auto& n : f.triangles) {
         geom::Triangle t{f.point[n[0]], f.point[n[1]], f.point[n[2]]};
         if (f.reversed) std::swap(t[1], t[2]);
         result_.triangles.push_back(t);
       }
+      result_.ends.push_back(result_.triangles.size());
     }
     for (const Line& line : lines_)
       for (const double bound : line.bounds)
-        if (line.curve) worse(bound, line.name, result_.deviation, result_.worst);
+        if (line.curve) worse(bound, line.name, result_.distance, result_.farthest);
     pieces_left_ += kMorePieces;
     bound_gaps();
-    result_.faces = faces_.size();
-    result_.deviation += kRounding * largest_;
+    result_.distance += kRounding * largest_;
   }
 
   double wish_;
-  CadShape& result_;
+  ExactCover result_;
   TopTools_IndexedMapOfShape edges_, vertices_;
   std::vector<Line> lines_;  ///< by number of the edge
   std::vector<FaceMesh> faces_;
@@ -976,11 +978,11 @@ class Cover {
 
 }  // namespace
 
-void cover_exact_shape(const TopoDS_Shape& shape, double wish, CadShape& result) {
-  Cover cover(shape, wish, result);
+ExactCover cover_exact_shape(const TopoDS_Shape& shape, double wish) {
+  Cover cover(shape, wish);
   for (TopExp_Explorer at(shape, TopAbs_FACE); at.More(); at.Next())
     cover.add(TopoDS::Face(at.Current()));
-  if (result.bare_faces == 0) cover.run();
+  return cover.run();
 }
 
 }  // namespace kaboum::io

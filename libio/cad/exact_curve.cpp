@@ -26,6 +26,7 @@
 namespace kaboum::io {
 namespace {
 
+constexpr int kParts = 8;      ///< of a knot interval, for bounds of derivatives
 constexpr double kWidest = 1;  ///< half the angle of an arc with one triangle round it [rad]
 
 /// OpenCASCADE's classes of curves in the plane and in space.
@@ -144,15 +145,37 @@ CurveDerivatives<N> bezier_derivatives(const std::vector<Eigen::Matrix<double, N
 }
 
 template <int N>
+Cells Cells::of(const Spline<N>& spline, int parts) {
+  Cells out;
+  for (int k = spline.first(); k <= spline.last(); ++k) {
+    const double low = spline.knots[k], high = spline.knots[k + 1];
+    for (int i = 0; i < parts && low < high; ++i) {
+      const double t = low + (high - low) * i / parts;
+      if (!out.begin.empty() && !(out.begin.back() < t)) continue;  // too narrow to be divided
+      out.begin.push_back(t);
+      out.interval.push_back(k);
+    }
+  }
+  out.begin.push_back(spline.knots[spline.last() + 1]);
+  return out;
+}
+
+std::pair<std::size_t, std::size_t> Cells::range(double a, double b) const {
+  const auto first = begin.begin(), last = begin.end() - 1;
+  const auto low = std::upper_bound(first, last, a), high = std::lower_bound(first, last, b);
+  const std::size_t i = low == first ? 0 : static_cast<std::size_t>(low - first) - 1;
+  const std::size_t j = high == first ? 0 : static_cast<std::size_t>(high - first) - 1;
+  return {i, std::max(i, j)};
+}
+
+template <int N>
 void ExactCurve<N>::prepare() {
   if (kind_ != Kind::Spline) return;
+  cells_ = Cells::of(spline_, spline_.degree > 1 ? kParts : 1);
   std::vector<typename Spline<N>::Pole> points;
-  bounds_.resize(spline_.knots.size());
-  for (int k = spline_.first(); k <= spline_.last(); ++k) {
-    const double length = spline_.knots[k + 1] - spline_.knots[k];
-    if (!(length > 0)) continue;
-    spline_.bezier(k, spline_.knots[k], spline_.knots[k + 1], points);
-    bounds_[k] = bezier_derivatives<N>(points, length);
+  for (std::size_t i = 0; i < cells_.interval.size(); ++i) {
+    spline_.bezier(cells_.interval[i], cells_.begin[i], cells_.begin[i + 1], points);
+    bounds_.push_back(bezier_derivatives<N>(points, cells_.begin[i + 1] - cells_.begin[i]));
   }
 }
 
@@ -242,10 +265,9 @@ CurveDerivatives<N> ExactCurve<N>::derivatives(double a, double b) const {
       out.second = 2 * y;
       break;
     case Kind::Spline:
-      for (int k = spline_.interval(a), last = spline_.interval_before(b, k); k <= last; ++k) {
-        if (!(spline_.knots[k] < spline_.knots[k + 1])) continue;
-        out.first = out.first.cwiseMax(bounds_[k].first);
-        out.second = out.second.cwiseMax(bounds_[k].second);
+      for (auto [i, last] = cells_.range(a, b); i <= last; ++i) {
+        out.first = out.first.cwiseMax(bounds_[i].first);
+        out.second = out.second.cwiseMax(bounds_[i].second);
       }
       break;
   }
@@ -351,6 +373,7 @@ template class ExactCurve<2>;
 template class ExactCurve<3>;
 template struct Spline<2>;
 template struct Spline<3>;
+template Cells Cells::of<3>(const Spline<3>&, int);
 template CurveDerivatives<3> bezier_derivatives<3>(const std::vector<Eigen::Matrix<double, 4, 1>>&,
                                                    double);
 

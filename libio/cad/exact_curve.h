@@ -32,6 +32,18 @@ struct Spline {
   void bezier(int k, double a, double b, std::vector<Pole>& out) const;
 };
 
+/// Parts of knot intervals, for which derivatives are bounded.
+struct Cells {
+  std::vector<double> begin;  ///< of each; and the end of the last
+  std::vector<int> interval;  ///< knot interval of each
+
+  /// @param parts  of each interval
+  template <int N>
+  static Cells of(const Spline<N>& spline, int parts);
+  /// First and last one that meet [a, b]; the nearest ones beyond their ends.
+  [[nodiscard]] std::pair<std::size_t, std::size_t> range(double a, double b) const;
+};
+
 /// Bounds of the absolute values of first and second derivatives, by coordinate.
 template <int N>
 struct CurveDerivatives {
@@ -71,7 +83,8 @@ class ExactCurve {
   Kind kind_ = Kind::Line;
   Point origin_ = Point::Zero(), x_ = Point::Zero(), y_ = Point::Zero();
   Spline<N> spline_;
-  std::vector<CurveDerivatives<N>> bounds_;  ///< by knot interval
+  Cells cells_;                              ///< of the spline
+  std::vector<CurveDerivatives<N>> bounds_;  ///< by cell
 };
 
 /// Bounds of derivatives of the rational Bézier curve with these points over an interval.

@@ -18,11 +18,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 #include "exact_curve.h"
 
 namespace kaboum::io {
 namespace {
+
+constexpr int kParts = 4;  ///< of a knot interval, for bounds of derivatives
 
 using Vec3 = Eigen::Vector3d;
 using Vec4 = Eigen::Vector4d;
@@ -122,7 +125,11 @@ class Revolution : public ExactSurface {
     curve_.add_hull(box.min().y(), box.max().y(), hull);
     double radius = 0;
     for (const Vec3& p : hull) radius = std::max(radius, axis_.cross(p - origin_).norm());
-    return {radius, d.first.norm(), radius, d.first.norm(), d.second.norm()};
+    // Only what the curve moves away from the axis turns with it.
+    const Vec3 a = axis_.cwiseAbs(), f = d.first;
+    const Vec3 away(a.y() * f.z() + a.z() * f.y(), a.z() * f.x() + a.x() * f.z(),
+                    a.x() * f.y() + a.y() * f.x());
+    return {radius, f.norm(), radius, std::min(f.norm(), away.norm()), d.second.norm()};
   }
 
  private:
@@ -167,7 +174,8 @@ class SplineSurface : public ExactSurface {
         by_v_ = by_v_ && w == first_row;
         by_u_ = by_u_ && w == first_column;
       }
-    known_.resize(u_.knots.size() * v_.knots.size());
+    u_cells_ = Cells::of(u_, u_.degree > 1 ? kParts : 1);
+    v_cells_ = Cells::of(v_, v_.degree > 1 ? kParts : 1);
     for (int d = 0; d < 2; ++d) {
       const Spline<3>& s1 = d == 0 ? u_ : v_;
       if (period_[d] > 0) continue;
@@ -180,13 +188,13 @@ class SplineSurface : public ExactSurface {
   Vec3 value(const Vec2& at) const override { return vector_of(at_.Value(at.x(), at.y()).XYZ()); }
 
   SurfaceDerivatives derivatives(const Box2& box) const override {
-    std::vector<int> is, js;
-    intervals(u_, 0, box.min().x(), box.max().x(), is);
-    intervals(v_, 1, box.min().y(), box.max().y(), js);
+    std::vector<std::size_t> is, js;
+    cells(u_cells_, 0, box.min().x(), box.max().x(), is);
+    cells(v_cells_, 1, box.min().y(), box.max().y(), js);
     SurfaceDerivatives out;
-    for (const int i : is)
-      for (const int j : js) {
-        const SurfaceDerivatives& d = of_intervals(i, j);
+    for (const std::size_t i : is)
+      for (const std::size_t j : js) {
+        const SurfaceDerivatives& d = of_cells(i, j);
         out.u = std::max(out.u, d.u);
         out.v = std::max(out.v, d.v);
         out.uu = std::max(out.uu, d.uu);
@@ -203,18 +211,17 @@ class SplineSurface : public ExactSurface {
   }
 
   /// Those that meet [a, b]; of a period, wherever it is repeated.
-  void intervals(const Spline<3>& s, int direction, double a, double b,
-                 std::vector<int>& out) const {
+  void cells(const Cells& s, int direction, double a, double b,
+             std::vector<std::size_t>& out) const {
     const auto add = [&](double low, double high) {
-      for (int k = s.interval(low), last = s.interval_before(high, k); k <= last; ++k)
-        if (s.knots[k] < s.knots[k + 1]) out.push_back(k);
+      for (auto [k, last] = s.range(low, high); k <= last; ++k) out.push_back(k);
     };
     const double period = period_[direction];
     if (!(period > 0)) {
       add(a, b);
       return;
     }
-    const double first = s.knots[s.first()], last = s.knots[s.last() + 1];
+    const double first = s.begin.front(), last = s.begin.back();
     if (b - a >= period) {
       add(first, last);
       return;
@@ -225,17 +232,17 @@ class SplineSurface : public ExactSurface {
     if (a - shift <= first) add(last, last);  // where rounding ends on the other side
   }
 
-  const SurfaceDerivatives& of_intervals(int i, int j) const {
-    Known& known = known_[static_cast<std::size_t>(i) * v_.knots.size() + j];
-    if (!known.is) {
-      known.value = compute(i, j);
-      known.is = true;
-    }
-    return known.value;
+  const SurfaceDerivatives& of_cells(std::size_t i, std::size_t j) const {
+    const auto [at, fresh] = known_.try_emplace(i * v_cells_.interval.size() + j);
+    if (fresh) at->second = compute(i, j);
+    return at->second;
   }
 
-  SurfaceDerivatives compute(int i, int j) const {
+  SurfaceDerivatives compute(std::size_t cell_i, std::size_t cell_j) const {
     const int p = u_.degree, q = v_.degree;
+    const int i = u_cells_.interval[cell_i], j = v_cells_.interval[cell_j];
+    const double u0 = u_cells_.begin[cell_i], u1 = u_cells_.begin[cell_i + 1];
+    const double v0 = v_cells_.begin[cell_j], v1 = v_cells_.begin[cell_j + 1];
     // Bézier points of the patch: along u for each row of poles, then along v.
     std::vector<std::vector<Vec4>> half(q + 1);
     Spline<3> line = u_;
@@ -243,15 +250,15 @@ class SplineSurface : public ExactSurface {
       for (int a = 0; a <= p; ++a)
         line.poles[i - p + a] =
             poles_[static_cast<std::size_t>(i - p + a) * columns_ + (j - q + b)];
-      line.bezier(i, u_.knots[i], u_.knots[i + 1], half[b]);
+      line.bezier(i, u0, u1, half[b]);
     }
     std::vector<std::vector<Vec4>> net(p + 1);
     Spline<3> across = v_;
     for (int a = 0; a <= p; ++a) {
       for (int b = 0; b <= q; ++b) across.poles[j - q + b] = half[b][a];
-      across.bezier(j, v_.knots[j], v_.knots[j + 1], net[a]);
+      across.bezier(j, v0, v1, net[a]);
     }
-    const double hu = u_.knots[i + 1] - u_.knots[i], hv = v_.knots[j + 1] - v_.knots[j];
+    const double hu = u1 - u0, hv = v1 - v0;
     if (by_v_) return of_rows(net, hu, hv);
     if (!by_u_) return bounds(net, hu, hv);
     std::vector<std::vector<Vec4>> turned(q + 1, std::vector<Vec4>(p + 1));
@@ -345,18 +352,14 @@ class SplineSurface : public ExactSurface {
     return out;
   }
 
-  struct Known {
-    bool is = false;
-    SurfaceDerivatives value;
-  };
-
   GeomAdaptor_Surface at_;
   Spline<3> u_, v_;  ///< knots and degrees; their poles are places for rows and columns
   int rows_ = 0, columns_ = 0;
   std::vector<Vec4> poles_;
   bool positive_ = true;
   bool by_u_ = true, by_v_ = true;  ///< weights depend on u, on v only
-  mutable std::vector<Known> known_;
+  Cells u_cells_, v_cells_;
+  mutable std::unordered_map<std::size_t, SurfaceDerivatives> known_;
 };
 
 std::unique_ptr<ExactSurface> elementary(const Handle(Geom_Surface) & surface,

@@ -1,5 +1,11 @@
 // Parts made by OpenCASCADE, and samples of their exact faces.
 //   cad_parts make DIR                  twelve parts as STEP, two of them as IGES as well
+//   cad_parts more DIR                  parts that are hard to read: ribs between samples of edges,
+//                                       a tessellated solid, entities renamed and left out
+//   cad_parts within PART               whether the exact edges and faces of a file, at their knots
+//                                       and between, are as near the triangles as is claimed
+//   cad_parts covers-box MESH           whether the box of the renamed and left out entities is in
+//                                       the mesh's solid
 //   cad_parts check PART.step MESH N E  whether N points of the exact faces lie in the mesh's
 //   solid,
 //                                       and no one of N points of the mesh is farther than E, a
@@ -8,6 +14,8 @@
 // MESH; faces are evaluated here. How far a point is from the part is measured at triangles that
 // are within a hundredth of E of its faces, and E is enlarged by as much.
 
+#include <Adaptor3d_Curve.hxx>
+#include <BRepAdaptor_Curve.hxx>
 #include <BRepAdaptor_Surface.hxx>
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepAlgoAPI_Fuse.hxx>
@@ -23,9 +31,11 @@
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCone.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakePrism.hxx>
 #include <BRepPrimAPI_MakeRevol.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
 #include <BRepPrimAPI_MakeTorus.hxx>
+#include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <GCE2d_MakeSegment.hxx>
@@ -33,11 +43,14 @@
 #include <Geom2d_TrimmedCurve.hxx>
 #include <GeomAPI_PointsToBSpline.hxx>
 #include <Geom_BSplineCurve.hxx>
+#include <Geom_BSplineSurface.hxx>
 #include <Geom_CylindricalSurface.hxx>
 #include <IGESControl_Writer.hxx>
 #include <Poly_Triangulation.hxx>
 #include <STEPControl_Reader.hxx>
 #include <STEPControl_Writer.hxx>
+#include <TColStd_Array1OfInteger.hxx>
+#include <TColStd_Array1OfReal.hxx>
 #include <TColgp_Array1OfPnt.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
@@ -55,13 +68,18 @@
 #include <kaboum/base/random.h>
 #include <kaboum/geom/distance.h>
 #include <kaboum/geom/winding.h>
+#include <kaboum/io/cad.h>
 #include <kaboum/io/mesh_io.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <limits>
+#include <map>
+#include <sstream>
 
 namespace {
 
@@ -194,6 +212,130 @@ int make(const std::string& folder) {
     IGESControl_Writer iges("MM", 1);  // solids
     if (!iges.AddShape(shape) || !iges.Write((folder + "/" + name + ".iges").c_str())) return 1;
   }
+  return 0;
+}
+
+/// A block one side of which is a spline with a rib that is 5 high: between the samples of a
+/// mesher.
+TopoDS_Shape ribbed(double width) {
+  const double at = 37.31;
+  std::vector<double> x;  // of the poles
+  for (int i = 0; i < 10; ++i) x.push_back(at * i / 10);
+  for (int i = -3; i <= 3; ++i) x.push_back(at + i * width);
+  for (int i = 1; i <= 10; ++i) x.push_back(at + 3 * width + (100 - at - 3 * width) * i / 10);
+  const int count = static_cast<int>(x.size()), degree = 3, last = count - degree + 1;
+  TColgp_Array1OfPnt poles(1, count);
+  for (int i = 0; i < count; ++i) poles(i + 1) = gp_Pnt(x[i], x[i] == at ? -7.5 : 0, 0);
+  TColStd_Array1OfReal knots(1, last);
+  TColStd_Array1OfInteger times(1, last);
+  for (int i = 1; i <= last; ++i) {
+    times(i) = i == 1 || i == last ? degree + 1 : 1;
+    knots(i) = (x[i - 1] + x[i] + x[i + 1]) / 3;
+  }
+  knots(1) = 0;
+  knots(last) = 100;
+  const Handle(Geom_BSplineCurve) side = new Geom_BSplineCurve(poles, knots, times, degree);
+  const gp_Pnt a(100, 0, 0), b(100, 20, 0), c(0, 20, 0), d(0, 0, 0);
+  BRepBuilderAPI_MakeWire wire;
+  wire.Add(BRepBuilderAPI_MakeEdge(side).Edge());
+  wire.Add(BRepBuilderAPI_MakeEdge(a, b).Edge());
+  wire.Add(BRepBuilderAPI_MakeEdge(b, c).Edge());
+  wire.Add(BRepBuilderAPI_MakeEdge(c, d).Edge());
+  return BRepPrimAPI_MakePrism(BRepBuilderAPI_MakeFace(wire.Wire()).Face(), gp_Vec(0, 0, 10))
+      .Shape();
+}
+
+/// A plane plate that is bounded by such a spline: no face is curved, only the edge.
+TopoDS_Shape bumpy_sheet() {
+  const TopoDS_Shape solid = ribbed(0.05);
+  for (TopExp_Explorer at(solid, TopAbs_FACE); at.More(); at.Next()) {
+    const BRepAdaptor_Surface surface(TopoDS::Face(at.Current()));
+    if (surface.GetType() == GeomAbs_Plane &&
+        std::abs(surface.Plane().Axis().Direction().Z()) > 0.9)
+      return at.Current();
+  }
+  return solid;
+}
+
+bool write_step(const TopoDS_Shape& shape, const std::string& name) {
+  STEPControl_Writer step;
+  return step.Transfer(shape, STEPControl_AsIs) == IFSelect_RetDone &&
+         step.Write(name.c_str()) == IFSelect_RetDone;
+}
+
+/// The statements of a STEP file's data section: "#12 = TYPE(...)".
+std::vector<std::string> statements(const std::string& text) {
+  std::vector<std::string> out;
+  for (std::size_t at = text.find("DATA;") + 5; at < text.find("ENDSEC;", text.find("DATA;"));) {
+    const std::size_t end = text.find(';', at) + 1;
+    const std::string statement = text.substr(at, end - at);
+    if (statement.find('#') == std::string::npos) break;
+    out.push_back(statement);
+    at = end;
+  }
+  return out;
+}
+
+void write_text(const std::string& name, const std::string& text) {
+  std::ofstream(name, std::ios::binary) << text;
+}
+
+/// Of each type in a file of one box: one entity under an unknown name, and one left out.
+void write_variants(const std::string& folder) {
+  write_step(box(10, 20, 30), folder + "/base.step");
+  std::ifstream in(folder + "/base.step", std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  in.close();
+  std::filesystem::remove(folder + "/base.step");
+  const std::size_t begin = text.find("DATA;") + 5, end = text.find("ENDSEC;", begin);
+  std::map<std::string, std::vector<std::size_t>> of_type;
+  const std::vector<std::string> all = statements(text);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::size_t name = all[i].find_first_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ");
+    if (name == std::string::npos) continue;
+    of_type[all[i].substr(name, all[i].find_first_of(" (\n", name) - name)].push_back(i);
+  }
+  for (const auto& [type, places] : of_type) {
+    const std::size_t place = places[places.size() / 2];
+    for (const bool renamed : {true, false}) {
+      std::string data;
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        std::string statement = all[i];
+        if (i == place && renamed)
+          statement.replace(statement.find(type), type.size(), "X_" + type);
+        if (i != place || renamed) data += statement;
+      }
+      write_text(folder + "/" + type + (renamed ? "-renamed" : "-dropped") + ".step",
+                 text.substr(0, begin) + data + text.substr(end));
+    }
+  }
+}
+
+/// A box as usual, and a tetrahedron beside it that is tessellated.
+void write_tessellated(const std::string& name) {
+  write_step(box(1, 1, 1), name);
+  std::ifstream in(name, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  in.close();
+  const std::size_t rep = text.find("ADVANCED_BREP_SHAPE_REPRESENTATION");
+  text.insert(text.find("),", rep), ",#90001");
+  text.insert(text.find("ENDSEC;", rep),
+              "#90001=TESSELLATED_SOLID('',(#90002),$);\n"
+              "#90002=TRIANGULATED_FACE('',#90003,4,(),$,(),((1,3,2),(1,2,4),(2,3,4),(3,1,4)));\n"
+              "#90003=COORDINATES_LIST('',4,((3.,0.,0.),(4.,0.,0.),(3.,1.,0.),(3.,0.,1.)));\n");
+  write_text(name, text);
+}
+
+int make_more(const std::string& folder) {
+  for (const double width : {0.3, 0.2, 0.05, 0.01, 0.002}) {
+    std::ostringstream name;
+    name << folder << "/rib-" << width << ".step";
+    if (!write_step(ribbed(width), name.str())) return 1;
+  }
+  if (!write_step(bumpy_sheet(), folder + "/sheet.step")) return 1;
+  write_tessellated(folder + "/tessellated.step");
+  std::filesystem::create_directory(folder + "/variants");
+  write_variants(folder + "/variants");
   return 0;
 }
 
@@ -347,13 +489,101 @@ int check(const char* part, const char* result, std::size_t count, const char* a
   return outside == 0 && reach <= epsilon + deflection ? 0 : 1;
 }
 
+/// The ends of intervals between which an edge or a surface is a polynomial or the like.
+std::vector<double> breaks(const TColStd_Array1OfReal& knots, double from, double to) {
+  std::vector<double> out{from, to};
+  for (int i = knots.Lower(); i <= knots.Upper(); ++i)
+    if (knots(i) > from && knots(i) < to) out.push_back(knots(i));
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+/// Parameters at the ends of these intervals and between.
+std::vector<double> dense(const std::vector<double>& ends, int between) {
+  std::vector<double> out;
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i)
+    for (int k = 0; k < between; ++k)
+      out.push_back(ends[i] + (ends[i + 1] - ends[i]) * k / between);
+  out.push_back(ends.back());
+  return out;
+}
+
+/// Whether all exact edges and faces are within the claimed deviation of the triangles, by
+/// OpenCASCADE's evaluators.
+int within(const char* part) {
+  const kaboum::io::CadResult claimed = kaboum::io::read_cad(part);
+  const kaboum::geom::DistanceQuery query(claimed.read.mesh);
+  STEPControl_Reader reader;
+  if (reader.ReadFile(part) != IFSelect_RetDone) return 3;
+  reader.TransferRoots();
+  const TopoDS_Shape shape = reader.OneShape();
+  double worst = 0;
+  std::size_t count = 0;
+  const auto distance = [&](const gp_Pnt& p) {
+    ++count;
+    return query.nearest({p.X(), p.Y(), p.Z()}).lower;
+  };
+  for (TopExp_Explorer at(shape, TopAbs_EDGE); at.More(); at.Next()) {
+    if (BRep_Tool::Degenerated(TopoDS::Edge(at.Current()))) continue;
+    const BRepAdaptor_Curve curve(TopoDS::Edge(at.Current()));
+    std::vector<double> ends{curve.FirstParameter(), curve.LastParameter()};
+    if (curve.GetType() == GeomAbs_BSplineCurve)
+      ends = breaks(curve.BSpline()->Knots(), ends[0], ends[1]);
+    for (const double t : dense(ends, ends.size() > 2 ? 20 : 200))
+      worst = std::max(worst, distance(curve.Value(t)));
+  }
+  for (const TopoDS_Face& face : faces_of(shape)) {
+    const BRepAdaptor_Surface surface(face);
+    double u0 = 0, u1 = 0, v0 = 0, v1 = 0;
+    BRepTools::UVBounds(face, u0, u1, v0, v1);
+    std::vector<double> us{u0, u1}, vs{v0, v1};
+    if (surface.GetType() == GeomAbs_BSplineSurface) {
+      us = breaks(surface.BSpline()->UKnots(), u0, u1);
+      vs = breaks(surface.BSpline()->VKnots(), v0, v1);
+    } else if (surface.GetType() == GeomAbs_SurfaceOfExtrusion &&
+               surface.BasisCurve()->GetType() == GeomAbs_BSplineCurve) {
+      us = breaks(surface.BasisCurve()->BSpline()->Knots(), u0, u1);
+    }
+    for (const double u : dense(us, us.size() > 2 ? 8 : 60))
+      for (const double v : dense(vs, vs.size() > 2 ? 8 : 60)) {
+        const double d = distance(surface.Value(u, v));
+        if (d <= claimed.deviation) continue;
+        const BRepClass_FaceClassifier place(face, gp_Pnt2d(u, v), 1e-9);
+        if (place.State() != TopAbs_OUT) worst = std::max(worst, d);
+      }
+  }
+  std::cout << part << ": no one of " << count << " points farther than " << worst << ", where "
+            << claimed.deviation << " is claimed\n";
+  return worst <= claimed.deviation ? 0 : 1;
+}
+
+/// Whether points of the box of the variants are in the mesh's solid.
+int covers_box(const char* result) {
+  const auto mesh = kaboum::io::read_mesh(result).mesh;
+  const kaboum::geom::WindingNumber winding(mesh);
+  std::size_t outside = 0;
+  for (int i = 0; i < 27; ++i) {
+    const Vec3 p(9.99 * (i % 3) / 2 + 0.005, 19.99 * (i / 3 % 3) / 2 + 0.005,
+                 29.99 * (i / 9) / 2 + 0.005);
+    const auto w = winding(p);
+    if (w && *w < 1) ++outside;
+  }
+  std::cout << outside << " of 27 points outside\n";
+  return outside == 0 ? 0 : 1;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   const std::string command = argc > 1 ? argv[1] : "";
   if (command == "make" && argc == 3) return make(argv[2]);
+  if (command == "more" && argc == 3) return make_more(argv[2]);
+  if (command == "covers-box" && argc == 3) return covers_box(argv[2]);
+  if (command == "within" && argc == 3) return within(argv[2]);
   if (command == "check" && argc == 6)
     return check(argv[2], argv[3], std::strtoull(argv[4], nullptr, 10), argv[5]);
-  std::cerr << "usage: cad_parts make DIR | check PART.step MESH POINTS EPSILON\n";
+  std::cerr << "usage: cad_parts make DIR | more DIR | within PART.step | covers-box MESH | check "
+               "PART.step MESH "
+               "POINTS EPSILON\n";
   return 2;
 }
