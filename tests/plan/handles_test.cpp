@@ -308,6 +308,64 @@ TEST(Handles, OfWhatIsNotKnownACallSaysNothing) {
   plans(head + go("!(K(done) & extern(collides(pos)))"), Outcome::Solved, 1);
 }
 
+TEST(Handles, AFailureThatRestsOnAChoiceIsNoProof) {
+  // A grasp is one of several; what follows fails with it, whatever it reads, or does not.
+  const std::string head =
+      "types: conf handle, pose handle\nconstants: conf home, side; pose start\n"
+      "predicates: held, done\nfunctions: at : conf; pos : pose\n"
+      "externals: grasp(conf) : pose; on(pose) : pose; go(conf) : conf; ready(pose); far(conf) : "
+      "conf\n"
+      "init: K(at = home), K(pos = start), K(!held), K(!done)\ngoal: K(done)\n"
+      "action take preconds: K(!held) & let ?p = extern(grasp(at)) & let ?q = extern(go(at))"
+      " effects: add(Kf, held), add(Kf, pos = ?p), add(Kf, at = ?q)\n";
+  const auto finish = [](const std::string& query) {
+    return "action finish preconds: K(held) & " + query + " effects: add(Kf, done)\n";
+  };
+  ExternalBindings b;
+  bool chosen = true;
+  b["grasp"] = [&chosen](const Question&) {
+    Answer out = Answer::found("a grasp", "path");
+    out.chosen = chosen;
+    return out;
+  };
+  b["go"] = [](const Question& q) {
+    (void)q.state.value("pos", {});
+    Answer out = Answer::found(q.arguments[0]);
+    out.fixed = true;
+    return out;
+  };
+  b["on"] = [](const Question& q) {
+    return q.arguments[0] == "start" ? Answer::impossible("on the table")
+                                     : Answer::found("on " + q.arguments[0]);
+  };
+  b["ready"] = [](const Question&) { return Answer::holds(true); };
+  b["far"] = [](const Question&) { return Answer::impossible("3 m away"); };
+  const auto outcome = [&](const std::string& query, const std::string& says) {
+    const Model m = bound(head + finish(query), b);
+    for (const Algorithm a : kAll) {
+      const Solution s = with(m, a);
+      if (!says.empty()) expect_says(s.outcome == Outcome::Limit ? s.limit : s.refused, says);
+      EXPECT_TRUE(s.outcome == with(m, Algorithm::BreadthFirst).outcome);
+    }
+    return with(m, Algorithm::BreadthFirst).outcome;
+  };
+  const std::string by = "the value that was chosen for grasp(home)";
+  // Nothing that is chosen is read, or only by what must have another value.
+  EXPECT_EQ(outcome("let ?q = extern(far(at))", "far(home): 3 m away"), Outcome::Unsolvable);
+  EXPECT_EQ(outcome("let ?p = extern(on(pos)) & let ?q = extern(far(at))", "far(home): 3 m away"),
+            Outcome::Unsolvable);
+  // It is read by what is impossible, or says what is so, or is compared.
+  b["on"] = [](const Question&) { return Answer::impossible("no room"); };
+  EXPECT_EQ(outcome("let ?p = extern(on(pos))", by), Outcome::Limit);
+  EXPECT_EQ(outcome("!extern(ready(pos))", by), Outcome::Limit);
+  EXPECT_EQ(outcome("K(pos = start)", by), Outcome::Limit);
+  // Where there is no choice, all these are proofs.
+  chosen = false;
+  EXPECT_EQ(outcome("let ?p = extern(on(pos))", "on(a grasp): no room"), Outcome::Unsolvable);
+  EXPECT_EQ(outcome("!extern(ready(pos))", ""), Outcome::Unsolvable);
+  EXPECT_EQ(outcome("K(pos = start)", ""), Outcome::Unsolvable);
+}
+
 TEST(Handles, WhatACallMayReadOfTheUnknownIsLost) {
   ExternalBindings b;
   for (const bool is : {true, false})
