@@ -1,5 +1,5 @@
 // The validator: a plan is replayed breadth first, over pairs of a node and a state of knowledge.
-// It reads the lifted model; nothing of the planner is included here.
+// It reads the lifted model, and includes nothing of the planner: scripts/include-graph sees to it.
 #include <kaboum/base/error.h>
 #include <kaboum/plan/check.h>
 
@@ -15,23 +15,20 @@
 #include "check/runtime_knowledge.h"
 #include "check/transitions.h"
 #include "check/world_replay.h"
-#include "task/exactness.h"
-#include "task/knowledge_view.h"
 
 namespace kaboum::plan {
 namespace {
 
 class Checker {
  public:
-  /// @param monotone  whether MergedReplay takes the model that this one is, or is made of.
-  Checker(const Model& model, const Plan& plan, std::uint64_t limit, bool monotone)
+  Checker(const Model& model, const Plan& plan, std::uint64_t limit)
       : model_(model),
         plan_(plan),
         limit_(limit),
-        monotone_(monotone),
         evaluator_(model, plan),
         live_(model, plan, evaluator_),
-        transitions_(model, evaluator_) {}
+        transitions_(model, evaluator_, Transitions::Disjunctions::LeftOut),
+        kept_less_(std::ranges::any_of(model.initial, is_disjunction)) {}
 
   CheckResult run() {
     for (RuntimeKnowledge& k : transitions_.initial_states())
@@ -50,14 +47,24 @@ class Checker {
     return result_;
   }
 
+  /// Whether some state that was replayed kept less than follows: what is refuted there may be
+  /// right all the same.
+  [[nodiscard]] bool kept_less() const { return kept_less_; }
+
  private:
+  /// Of several of them, states do not conclude all that follows.
+  static bool is_disjunction(const Update& u) {
+    return u.database == Update::Database::Or ||
+           (u.database == Update::Database::Kx && !u.literals[0].function);
+  }
+
   static constexpr std::size_t kNoParent = ~std::size_t{0};
   static constexpr std::size_t kManyVisits = 20'000;
 
   /// Is tried once.
   bool confirmed_at_once() {
     tried_at_once_ = true;
-    if (!monotone_) return false;
+    if (!MergedReplay::takes(model_)) return false;
     try {
       result_.valid = MergedReplay(model_, plan_, evaluator_, live_, transitions_).confirms();
     } catch (const Error& e) {
@@ -138,6 +145,7 @@ class Checker {
       after.push_back(*at.state);
     }
     for (RuntimeKnowledge& k : after) {
+      kept_less_ |= k.cut();
       if (!node.branches) {
         visit(node.next, std::move(k), v, label);
         continue;
@@ -206,7 +214,6 @@ class Checker {
   const Model& model_;
   const Plan& plan_;
   std::uint64_t limit_;
-  bool monotone_;
   QueryEvaluator evaluator_;
   LiveFacts live_;
   Transitions transitions_;
@@ -216,6 +223,7 @@ class Checker {
   std::map<Index, std::size_t> contradicted_;  ///< nodes, and a visit in which they contradict
   std::set<Index> passed_;                     ///< nodes that some run gets through
   bool tried_at_once_ = false;
+  bool kept_less_;
   CheckResult result_;
 };
 
@@ -223,12 +231,9 @@ class Checker {
 
 CheckResult check(const Model& model, const Plan& plan, std::uint64_t limit) {
   measure(model, plan);  // refuses cycles
-  const std::optional<Model> view = knowledge_view(model);
-  const Model& known = view ? *view : model;
-  CheckResult by_databases = Checker(known, plan, limit, MergedReplay::takes(model)).run();
-  // What they refute may follow all the same, where they keep less than that.
-  if (by_databases.valid || (!view && lost_knowledge(known).empty())) return by_databases;
-  if (!WorldReplay::takes(model)) return by_databases;
+  Checker checker(model, plan, limit);
+  CheckResult by_databases = checker.run();
+  if (by_databases.valid || !checker.kept_less() || !WorldReplay::takes(model)) return by_databases;
   if (const auto by_worlds = WorldReplay(model, plan, limit).run()) return *by_worlds;
   throw Error(ErrorCode::LimitReached,
               "the databases of knowledge do not confirm the plan (" + by_databases.violation +

@@ -187,6 +187,80 @@ bool QueryEvaluator::derived(const Query& q, const std::vector<Index>& slots) co
   return derived_->holds(fact(false, q.symbol, q.arguments, slots));
 }
 
+QueryEvaluator::Extent QueryEvaluator::extent(const Query& q, Subject of, std::vector<Index>& slots,
+                                              const RuntimeKnowledge& k) const {
+  const auto of_truth = [](std::optional<bool> t) {
+    return !t ? Extent::SomeWorlds : *t ? Extent::EveryWorld : Extent::NoWorld;
+  };
+  switch (q.kind) {
+    case Query::Kind::Known: {
+      const Fact f = fact(false, q.symbol, q.arguments, slots);
+      if (!k.knows_whether(f)) return Extent::SomeWorlds;
+      return of_truth(k.knows(f, !q.negated));
+    }
+    case Query::Kind::KnownValue: {
+      const Fact f = fact(true, q.symbol, q.arguments, slots);
+      const Index c = object(*q.value, slots);
+      if (!model_.is_a(c, model_.functions[q.symbol].range) || k.rules_out(f, c))
+        return of_truth(q.negated);
+      return k.value(f) == nullptr ? Extent::SomeWorlds : of_truth(!q.negated);
+    }
+    case Query::Kind::KnowWhether:
+    case Query::Kind::WhetherValue:
+    case Query::Kind::KnowValue:
+      return of == Subject::World ? Extent::EveryWorld : of_truth(truth(q, slots, k));
+    case Query::Kind::External:
+    case Query::Kind::Let:
+      // What it makes of a state in which more is known, nobody can say.
+      if (model_.external_functions[q.symbol].reads_state) return Extent::SomeWorlds;
+      for (const Argument& a : q.arguments)
+        if (!value(a, slots, k)) return Extent::SomeWorlds;
+      return of_truth(truth(q, slots, k));
+    case Query::Kind::True:
+    case Query::Kind::False:
+    case Query::Kind::Same:
+    case Query::Kind::Derived:  // where there are rules all is known
+      return of_truth(truth(q, slots, k));
+    default:
+      return extent_of_children(q, of, slots, k);
+  }
+}
+
+/// Of connectives and quantifiers: the least, the greatest, or the opposite of their parts.
+QueryEvaluator::Extent QueryEvaluator::extent_of_children(const Query& q, Subject of,
+                                                          std::vector<Index>& slots,
+                                                          const RuntimeKnowledge& k) const {
+  std::vector<Extent> parts;
+  if (q.kind == Query::Kind::Exists || q.kind == Query::Kind::ForAll) {
+    for (const Index o : model_.types[q.type].objects) {
+      slots.at(q.symbol) = o;
+      parts.push_back(extent(q.children[0], of, slots, k));
+    }
+  } else {
+    for (const Query& c : q.children) parts.push_back(extent(c, of, slots, k));
+  }
+  switch (q.kind) {
+    case Query::Kind::And:
+    case Query::Kind::ForAll:
+      return std::ranges::min(parts.empty() ? std::vector{Extent::EveryWorld} : parts);
+    case Query::Kind::Or:
+    case Query::Kind::Exists:
+      return std::ranges::max(parts.empty() ? std::vector{Extent::NoWorld} : parts);
+    case Query::Kind::Not:
+      return parts[0] == Extent::SomeWorlds   ? parts[0]
+             : parts[0] == Extent::EveryWorld ? Extent::NoWorld
+                                              : Extent::EveryWorld;
+    case Query::Kind::Xor: {
+      const auto everywhere = std::ranges::count(parts, Extent::EveryWorld);
+      if (everywhere > 1) return Extent::NoWorld;
+      if (std::ranges::count(parts, Extent::SomeWorlds) > 0) return Extent::SomeWorlds;
+      return everywhere == 1 ? Extent::EveryWorld : Extent::NoWorld;
+    }
+    default:
+      throw Error(ErrorCode::Internal, "unexpected connective");
+  }
+}
+
 template <class Evaluate>
 std::optional<bool> QueryEvaluator::with_derived(const RuntimeKnowledge& k,
                                                  Evaluate&& evaluate) const {

@@ -3,6 +3,7 @@
 #include <kaboum/plan/model.h>
 #include <kaboum/plan/plan.h>
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <set>
@@ -40,6 +41,16 @@ class QueryEvaluator {
     return truth(q, slots, k).value_or(false);
   }
 
+  /// In which of the worlds that what is known allows a condition holds.
+  enum class Extent : std::uint8_t { NoWorld, SomeWorlds, EveryWorld };
+  /// Whose condition it is: of the world, where K(p) stands for p and all is known; or of the
+  /// agent, where only K(p) and K(f = c) do, and what asks for knowledge is about the agent's.
+  enum class Subject : std::uint8_t { World, Agent };
+  /// By Kleene's strong three-valued logic: never wrong, but where atoms of a condition hang on one
+  /// another it may say SomeWorlds where more could be said.
+  [[nodiscard]] Extent extent(const Query& q, Subject of, std::vector<Index>& slots,
+                              const RuntimeKnowledge& k) const;
+
   /// Adds what the query reads. @return false if it may read anything.
   bool reads(const Query& q, std::vector<Index>& slots, std::set<Fact>& out) const;
 
@@ -63,6 +74,8 @@ class QueryEvaluator {
                            const RuntimeKnowledge& k) const;
   bool holds_of_value(const Query& q, const std::vector<Index>& slots,
                       const RuntimeKnowledge& k) const;
+  Extent extent_of_children(const Query& q, Subject of, std::vector<Index>& slots,
+                            const RuntimeKnowledge& k) const;
   bool derived(const Query& q, const std::vector<Index>& slots) const;
   /// Evaluates with what is worked out of derived predicates on the way.
   template <class Evaluate>
