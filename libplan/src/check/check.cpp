@@ -1,5 +1,7 @@
-// The validator: a plan is replayed breadth first, over pairs of a node and a state of knowledge.
-// It reads the lifted model, and includes nothing of the planner: scripts/include-graph sees to it.
+// The validator: a plan is replayed over pairs of a node and a state of knowledge, each once:
+// breadth first, where it is known beforehand what is read from a node on; else depth first, and a
+// state is one that was replayed if it agrees with it on all that was read from there on. It reads
+// the lifted model, and includes nothing of the planner: scripts/include-graph sees to it.
 #include <kaboum/base/error.h>
 #include <kaboum/plan/check.h>
 
@@ -28,11 +30,13 @@ class Checker {
         evaluator_(model, plan),
         live_(model, plan, evaluator_),
         transitions_(model, evaluator_, Transitions::Disjunctions::LeftOut),
+        depth_first_(std::ranges::any_of(model.external_functions, &ExternalFunction::reads_state)),
         kept_less_(std::ranges::any_of(model.initial, is_disjunction)) {}
 
   CheckResult run() {
     for (RuntimeKnowledge& k : transitions_.initial_states())
       visit(plan_.root, std::move(k), kNoParent, "");
+    if (depth_first_) replay_depth_first();
     while (!queue_.empty() && result_.violation.empty()) {
       if (!tried_at_once_ && visits_.size() >= kManyVisits && confirmed_at_once()) return result_;
       const std::size_t v = queue_.front();
@@ -95,15 +99,99 @@ class Checker {
     if (result_.violation.empty()) result_.violation = what + ", " + path(v);
   }
 
-  void visit(Index node, RuntimeKnowledge k, std::size_t parent, std::string label) {
-    if (!live_.at(node).all) k.restrict_to(live_.at(node).facts);
-    const auto [it, fresh] = seen_.emplace(node, std::move(k));
-    if (!fresh) return;
+  void count_state() {
     if (++result_.states > limit_)
       throw Error(ErrorCode::LimitReached,
                   "more than " + std::to_string(limit_) + " states to replay");
+  }
+
+  void visit(Index node, RuntimeKnowledge k, std::size_t parent, std::string label) {
+    if (depth_first_) {
+      arrivals_.push_back({node, std::move(k), std::move(label)});
+      return;
+    }
+    if (!live_.at(node).all) k.restrict_to(live_.at(node).facts);
+    const auto [it, fresh] = seen_.emplace(node, std::move(k));
+    if (!fresh) return;
+    count_state();
     visits_.push_back({node, &it->second, parent, std::move(label)});
     queue_.push_back(visits_.size() - 1);
+  }
+
+  /// A state that a node is reached in.
+  struct Arrival {
+    Index node;
+    RuntimeKnowledge state;
+    std::string label;
+  };
+  /// One that is being replayed.
+  struct Open {
+    Index node;
+    RuntimeKnowledge state;
+    std::size_t visit;
+    std::set<Fact> read = {};  ///< by external functions, here and further down
+    std::vector<Arrival> next = {};
+    std::size_t at = 0;  ///< of `next`
+  };
+  /// States in which a node was replayed, as far as that rests on them.
+  struct Replayed {
+    std::set<Fact> read;  ///< by external functions
+    std::set<RuntimeKnowledge> states;
+  };
+
+  /// Of a state, what a node and all after it may read.
+  void restrict_to_read(RuntimeKnowledge& k, Index node, const std::set<Fact>& read) const {
+    if (live_.at(node).all) return;
+    std::set<Fact> facts = live_.at(node).facts;
+    facts.insert(read.begin(), read.end());
+    k.restrict_to(facts);
+  }
+
+  /// External functions answer alike wherever what they asked of the state is alike.
+  const Replayed* find_replayed(Index node, const RuntimeKnowledge& k) const {
+    const auto at = replayed_.find(node);
+    if (at == replayed_.end()) return nullptr;
+    for (const Replayed& r : at->second) {
+      RuntimeKnowledge part = k;
+      restrict_to_read(part, node, r.read);
+      if (r.states.contains(part)) return &r;
+    }
+    return nullptr;
+  }
+
+  void remember(Open& o) {
+    std::vector<Replayed>& all = replayed_[o.node];
+    const auto same = std::ranges::find(all, o.read, &Replayed::read);
+    Replayed& r = same == all.end() ? all.emplace_back(Replayed{o.read, {}}) : *same;
+    restrict_to_read(o.state, o.node, r.read);
+    r.states.insert(std::move(o.state));
+  }
+
+  void replay_depth_first() {
+    std::vector<Open> open;
+    open.push_back({kNone, {}, kNoParent, {}, std::exchange(arrivals_, {})});
+    while (!open.empty() && result_.violation.empty()) {
+      Open& o = open.back();
+      if (o.at < o.next.size()) {
+        Arrival a = std::move(o.next[o.at++]);
+        if (const Replayed* r = find_replayed(a.node, a.state)) {
+          o.read.insert(r->read.begin(), r->read.end());
+          continue;
+        }
+        count_state();
+        Open deeper{a.node, std::move(a.state), visits_.size()};
+        visits_.push_back({a.node, &deeper.state, o.visit, std::move(a.label)});
+        evaluator_.note_reads(&deeper.read);
+        replay(deeper.visit);
+        evaluator_.note_reads(nullptr);
+        deeper.next = std::exchange(arrivals_, {});
+        open.push_back(std::move(deeper));
+        continue;
+      }
+      if (o.visit != kNoParent) remember(o);
+      if (open.size() > 1) open[open.size() - 2].read.insert(o.read.begin(), o.read.end());
+      open.pop_back();
+    }
   }
 
   void end(std::size_t v) {
@@ -222,6 +310,9 @@ class Checker {
   std::deque<std::size_t> queue_;
   std::map<Index, std::size_t> contradicted_;  ///< nodes, and a visit in which they contradict
   std::set<Index> passed_;                     ///< nodes that some run gets through
+  bool depth_first_;  ///< external functions may read anything: what they did is known afterwards
+  std::vector<Arrival> arrivals_;
+  std::map<Index, std::vector<Replayed>> replayed_;
   bool tried_at_once_ = false;
   bool kept_less_;
   CheckResult result_;

@@ -19,27 +19,30 @@ Fact fact(bool function, Index symbol, const std::vector<Argument>& arguments,
 
 namespace {
 
-/// What a state of knowledge answers to an external function.
+/// What a state of knowledge answers to an external function. What it is asked can be noted.
 class KnowledgeReader final : public StateReader {
  public:
-  explicit KnowledgeReader(const RuntimeKnowledge& k) : k_(k) {}
+  KnowledgeReader(const RuntimeKnowledge& k, std::set<Fact>* noted) : k_(k), noted_(noted) {}
   std::optional<Index> value(Index function, std::span<const Index> arguments) override {
-    const Index* v = k_.value(fact(1, function, arguments));
+    const Fact f = asked(1, function, arguments);
+    const Index* v = k_.value(f);
     return v == nullptr ? std::nullopt : std::optional<Index>(*v);
   }
   std::optional<bool> truth(Index predicate, std::span<const Index> arguments) override {
-    const Fact f = fact(0, predicate, arguments);
+    const Fact f = asked(0, predicate, arguments);
     if (!k_.knows_whether(f)) return std::nullopt;
     return k_.knows(f, true);
   }
 
  private:
-  static Fact fact(Index kind, Index symbol, std::span<const Index> arguments) {
+  Fact asked(Index kind, Index symbol, std::span<const Index> arguments) {
     Fact f = {kind, symbol};
     f.insert(f.end(), arguments.begin(), arguments.end());
+    if (noted_ != nullptr) noted_->insert(f);
     return f;
   }
   const RuntimeKnowledge& k_;
+  std::set<Fact>* noted_;
 };
 
 }  // namespace
@@ -310,7 +313,7 @@ bool QueryEvaluator::reads(const Query& q, std::vector<Index>& slots, std::set<F
     case Query::Kind::Let:
       for (const Argument& a : q.arguments)
         if (a.term) out.insert(fact(true, a.term->function, a.term->arguments, slots));
-      return !model_.external_functions[q.symbol].reads_state;
+      return true;
     default:
       break;
   }
@@ -371,7 +374,7 @@ ExternalResult QueryEvaluator::ask(Index external, const std::vector<Index>& arg
                                    const RuntimeKnowledge& k) const {
   ExternalResult result;
   for (unsigned attempt = 0; attempt < attempts_; ++attempt) {
-    KnowledgeReader reader(k);
+    KnowledgeReader reader(k, noted_);
     ExternalContext context{reader, handles_, seed_, attempt};
     try {
       result = model_.external_functions[external].call(arguments, context);

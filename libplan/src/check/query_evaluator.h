@@ -51,8 +51,13 @@ class QueryEvaluator {
   [[nodiscard]] Extent extent(const Query& q, Subject of, std::vector<Index>& slots,
                               const RuntimeKnowledge& k) const;
 
-  /// Adds what the query reads. @return false if it may read anything.
+  /// Adds what the query reads, but for what external functions ask of the state: that is noted.
+  /// @return false if it may read anything, by rules.
   bool reads(const Query& q, std::vector<Index>& slots, std::set<Fact>& out) const;
+
+  /// From now on facts that external functions ask of the state are added to `reads`.
+  /// @param reads  outlives it, or is replaced; nullptr: nothing is noted.
+  void note_reads(std::set<Fact>* reads) const { noted_ = reads; }
 
   /// The object or handle that an argument stands for; nullopt: a term whose value is not known.
   std::optional<Index> value(const Argument& a, const std::vector<Index>& slots,
@@ -92,6 +97,7 @@ class QueryEvaluator {
   /// Of functions that do not read the state.
   mutable std::map<std::pair<Index, std::vector<Index>>, ExternalResult> calls_;
   mutable DerivedFacts* derived_ = nullptr;  ///< while a query is evaluated
+  mutable std::set<Fact>* noted_ = nullptr;
 };
 
 }  // namespace kaboum::plan
