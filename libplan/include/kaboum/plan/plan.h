@@ -61,8 +61,7 @@ struct PlanSize {
   std::int64_t cost = 0;      ///< of the most expensive path
 };
 
-/// @throws Error{InvalidInput} if the graph has a cycle or a missing node, or a branch two cases for
-///   a value.
+/// @throws Error{InvalidInput} for a cycle, a missing node, or two cases of a branch for one value.
 PlanSize measure(const Model& model, const Plan& plan);
 
 /// The same plan without sharing. @throws Error{LimitReached} beyond `limit` nodes.
