@@ -730,5 +730,74 @@ TEST(Handles, VerdictsAreThoseOfAnExhaustiveSearch) {
   for (const int n : count) EXPECT_GT(n, static_cast<int>(tasks) / 10);
 }
 
+/// What was sensed of objects that are done with differs between runs; no function asks for it.
+TEST(Handles, CheckReplaysOnceWhatFunctionsDoNotTellApart) {
+  int calls = 0;
+  const Model m =
+      load({"t.kpl", force_sensing(12, "home"), Language::Kpl}, nullptr, geometry(calls));
+  const Solution s = with(m, Algorithm::Greedy);
+  ASSERT_EQ(s.outcome, Outcome::Solved);
+  const CheckResult r = check(m, s.plan);
+  EXPECT_TRUE(r.valid) << r.violation;
+  EXPECT_LT(r.states, 200U);  // 4,096 ways that sensing may turn out
+}
+
+/// Both outcomes lead to one node; the function that is asked there reads what was sensed.
+TEST(Handles, CheckReplaysAgainWhatFunctionsTellApart) {
+  const auto where = [](const Question& q) {
+    return Answer::found(q.state.truth("p", {}) == true ? "here" : "there");
+  };
+  const Model m = load({"t.kpl",
+                        "types: conf handle\nconstants: conf home\npredicates: p, done\n"
+                        "functions: robot : conf\nexternals: where(conf) : conf\n"
+                        "action sense preconds: true effects: add(Kw, p)\n"
+                        "action go preconds: let ?q = extern(where(robot))"
+                        " effects: add(Kf, robot = ?q), add(Kf, done)\n"
+                        "init: K(robot = home) goal: K(done)",
+                        Language::Kpl},
+                       nullptr, {{"where", where}});
+  const auto plan = [&](const std::string& if_not) {
+    const std::string go = R"({"action":"go","arguments":[],"calls":[{"external":"where",
+        "arguments":["home"],"value":"VALUE"}],"next":"goal"})";
+    std::string here = go, other = go;
+    here.replace(here.find("VALUE"), 5, "here");
+    other.replace(other.find("VALUE"), 5, "there");
+    return read_plan(m,
+                     R"({"format":"kaboum-plan","version":1,"root":0,"seed":1,"attempts":1,"nodes":[
+        {"action":"sense","arguments":[],"branch":{"predicate":"p","arguments":[],
+         "cases":[{"value":true,"next":1},{"value":false,"next":)" +
+                         if_not + "}]}}," + here + "," + other + "]}",
+                     "plan.json");
+  };
+  EXPECT_TRUE(check(m, plan("2")).valid);
+  const CheckResult r = check(m, plan("1"));
+  EXPECT_FALSE(r.valid);
+  expect_says(r.violation, "returns 'there', not 'here'");
+}
+
+/// An effect under a condition of the world that is not known may set a handle: its value is not
+/// known then.
+TEST(Handles, AHandleThatMayHaveChangedIsNotKnown) {
+  const auto where = [](const Question&) { return Answer::found("there"); };
+  const Model m =
+      load({"t.kpl",
+            "types: conf handle\nconstants: conf home\npredicates: p, done\n"
+            "functions: robot : conf\nexternals: where(conf) : conf; near(conf)\n"
+            "action go preconds: let ?q = extern(where(robot))"
+            " effects: whenever K(p) => add(Kf, robot = ?q)\n"
+            "action stop preconds: extern(near(robot)) effects: add(Kf, done)\n"
+            "init: K(robot = home) goal: K(done)",
+            Language::Kpl},
+           nullptr, {{"where", where}, {"near", [](const Question& q) {
+                                          return Answer::holds(q.arguments[0] == "there");
+                                        }}});
+  const Plan plan = read_plan(m,
+                              R"({"format":"kaboum-plan","version":1,"root":0,"seed":1,"attempts":1,
+      "nodes":[{"action":"go","arguments":[],"calls":[{"external":"where","arguments":["home"],
+       "value":"there"}],"next":1},{"action":"stop","arguments":[],"next":"goal"}]})",
+                              "plan.json");
+  EXPECT_FALSE(check(m, plan).valid);
+}
+
 }  // namespace
 }  // namespace kaboum::plan::test
