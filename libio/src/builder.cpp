@@ -144,6 +144,12 @@ void MeshBuilder::split_polygons(ReadResult& result) {
     positions.clear();
     for (std::size_t i = 0; i < polygon.corners; ++i) positions.push_back(points_[corners[i]]);
     if (!splitter.split(positions, pieces) && ++fans == 1) first_fan = polygon.where;
+    if (const double bend = bend_of(positions); bend > 0) {
+      ++result.bent_polygons;
+      result.largest_bend = std::max(result.largest_bend, bend);
+      if (positions.size() == 4 && pieces.size() == 2)
+        result.bent_quads.push_back(static_cast<std::uint32_t>(all.size()));
+    }
     for (const geom::Triangle& t : pieces)
       all.push_back({corners[t[0]], corners[t[1]], corners[t[2]]});
     result.file_triangles += polygon.corners - 2;
@@ -156,6 +162,21 @@ void MeshBuilder::split_polygons(ReadResult& result) {
     result.notes.push_back(counted(fans, "polygon is", "polygons are") +
                            " not simple or without area (first: " + place(source_, first_fan) +
                            ") and became a plain fan of triangles.");
+}
+
+/// What the rounding of a file's numbers bends is not worth a note.
+void MeshBuilder::note_bends(ReadResult& result) {
+  constexpr double kWorth = 1e-6;  // of the diagonal
+  if (!(result.largest_bend > kWorth * geom::bounding_box(result.mesh).diagonal())) return;
+  std::ostringstream bend;
+  bend.precision(3);
+  bend << result.largest_bend;
+  result.notes.push_back(
+      counted(result.bent_polygons, "polygon is not plane", "polygons are not plane") +
+      ", by up to " + bend.str() +
+      ", so that the ways of splitting them differ: one of four corners is split "
+      "from its first to its third corner, a convex one like a fan from its first "
+      "corner, others by ear clipping.");
 }
 
 void MeshBuilder::weld(ReadResult& result) {
@@ -179,9 +200,16 @@ void MeshBuilder::weld(ReadResult& result) {
     points_.swap(welder.points());
   }
   const std::size_t before = triangles_.size();
-  std::erase_if(triangles_, [](const geom::Triangle& t) {
+  const auto is_collapsed = [](const geom::Triangle& t) {
     return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
-  });
+  };
+  if (!result.bent_quads.empty()) {  // numbers of triangles that are left; both of a bent quad are
+    std::vector<std::uint32_t> dropped(before + 1, 0);
+    for (std::size_t t = 0; t < before; ++t)
+      dropped[t + 1] = dropped[t] + static_cast<std::uint32_t>(is_collapsed(triangles_[t]));
+    for (std::uint32_t& t : result.bent_quads) t -= dropped[t];
+  }
+  std::erase_if(triangles_, is_collapsed);
   result.collapsed_triangles += before - triangles_.size();
   if (triangles_.size() < before) {
     // Vertices that only collapsed triangles used go; the rest keeps its order of first use.
@@ -200,6 +228,7 @@ void MeshBuilder::weld(ReadResult& result) {
   }
   result.mesh.vertices = std::move(points_);
   result.mesh.triangles = std::move(triangles_);
+  note_bends(result);
 }
 
 }  // namespace kaboum::io
