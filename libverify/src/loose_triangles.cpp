@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -21,21 +22,21 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
+/// Four numbers that are compared at once; the last is 0.
+using Lanes = float __attribute__((vector_size(16)));
+
 /// A box of coordinates that a monotone map has rounded to float32: what met before meets after.
 struct SmallBox {
-  std::array<float, 3> low, high;
+  Lanes low, high;
 
   void include(const SmallBox& other) {
-    for (int k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], other.low[k]);
-      high[k] = std::max(high[k], other.high[k]);
-    }
+    low = low < other.low ? low : other.low;
+    high = high > other.high ? high : other.high;
   }
   [[nodiscard]] bool meets(const SmallBox& other) const {
-    // Without short cuts: one branch.
-    return static_cast<int>(low[0] <= other.high[0]) & static_cast<int>(other.low[0] <= high[0]) &
-           static_cast<int>(low[1] <= other.high[1]) & static_cast<int>(other.low[1] <= high[1]) &
-           static_cast<int>(low[2] <= other.high[2]) & static_cast<int>(other.low[2] <= high[2]);
+    const auto all =
+        std::bit_cast<std::array<std::int64_t, 2>>((low <= other.high) & (other.low <= high));
+    return (all[0] & all[1]) == -1;
   }
 };
 
@@ -98,10 +99,13 @@ class BoxLevels {
     const double extent = (box.max - box.min).maxCoeff();
     const double scale = extent > 0 ? 1 / extent : 1;
     // Subtraction, product and conversion are monotone in every rounding.
-    std::vector<std::array<float, 3>> points(mesh.vertices.size());
-    for (std::size_t v = 0; v < points.size(); ++v)
-      for (int k = 0; k < 3; ++k)
-        points[v][k] = static_cast<float>((mesh.vertices[v][k] - box.min[k]) * scale);
+    std::vector<Lanes> points(mesh.vertices.size());
+    for (std::size_t v = 0; v < points.size(); ++v) {
+      const Vec3& p = mesh.vertices[v];
+      points[v] = Lanes{static_cast<float>((p.x() - box.min.x()) * scale),
+                        static_cast<float>((p.y() - box.min.y()) * scale),
+                        static_cast<float>((p.z() - box.min.z()) * scale), 0};
+    }
     low_ = box.min;
     scale_ = scale;
     for (std::uint32_t f = 0; f < faces.size(); ++f)
@@ -111,10 +115,9 @@ class BoxLevels {
     for (std::size_t i = 0; i < items_.size(); ++i) {
       const auto& v = faces.face(items_[i]).v;
       const auto &a = points[v[0]], &b = points[v[1]], &c = points[v[2]];
-      for (int k = 0; k < 3; ++k) {
-        boxes_[i].low[k] = std::min(std::min(a[k], b[k]), c[k]);
-        boxes_[i].high[k] = std::max(std::max(a[k], b[k]), c[k]);
-      }
+      boxes_[i] = {a, a};
+      boxes_[i].include({b, b});
+      boxes_[i].include({c, c});
     }
     build();
   }
@@ -159,7 +162,7 @@ class BoxLevels {
     return (x | (x << 2U)) & 0x09249249U;
   }
 
-  void sort_items(const Faces& faces, const std::vector<std::array<float, 3>>& points) {
+  void sort_items(const Faces& faces, const std::vector<Lanes>& points) {
     std::vector<Keyed> keyed(items_.size()), other(items_.size());
     for (std::size_t i = 0; i < items_.size(); ++i) keyed[i].face = items_[i];
     sort_part(faces, points, keyed, other, 0, keyed.size(), 0);
@@ -167,7 +170,7 @@ class BoxLevels {
   }
 
   /// Sorts along a curve that fills the part's box; what falls into one place, again in its own.
-  static void sort_part(const Faces& faces, const std::vector<std::array<float, 3>>& points,
+  static void sort_part(const Faces& faces, const std::vector<Lanes>& points,
                         std::vector<Keyed>& keyed, std::vector<Keyed>& other, std::size_t begin,
                         std::size_t end, int depth) {
     constexpr std::size_t kSame = 64;
@@ -473,9 +476,13 @@ class Search {
     const std::uint32_t n = tree.count();
     const std::uint32_t i_end = std::min(n, BoxLevels::kLeaf * (t.i + 1)),
                         j_end = std::min(n, BoxLevels::kLeaf * (t.j + 1));
-    for (std::uint32_t i = BoxLevels::kLeaf * t.i; i < i_end; ++i)
+    const SmallBox& leaf = tree.levels().front()[t.j];
+    for (std::uint32_t i = BoxLevels::kLeaf * t.i; i < i_end; ++i) {
+      const SmallBox box = tree.box(i);
+      if (!box.meets(leaf)) continue;
       for (std::uint32_t j = t.i == t.j ? i + 1 : BoxLevels::kLeaf * t.j; j < j_end; ++j)
-        if (tree.box(i).meets(tree.box(j))) compare(tree.item(i), tree.item(j), pairs);
+        if (box.meets(tree.box(j))) compare(tree.item(i), tree.item(j), pairs);
+    }
   }
 
   /// Unmarks the triangles that another one cuts or lies along. @return false: too many pairs
