@@ -191,7 +191,7 @@ DecidedSurface MeshCertifier::decided_surface(const Candidate& made) {
   out.claim = inclusion.surface;
   out.left_out = inclusion.left_out;
   out.looked_at = outer() ? claimed_.mesh().triangles.size() : made.mesh.triangles.size();
-  if (!outer() || original_.report.walls.empty()) return out;
+  if (!outer() || original_.report.left_out.empty()) return out;
   const DecidedSurface walls =
       decide_others(claimed_.mesh(), original_.solid.mesh().triangles.size());
   if (walls.claim.answer == verify::Answer::Verified) return out;

@@ -19,9 +19,9 @@ constexpr double kDepthShare = 0.3;
 }  // namespace
 
 ClaimedSurface::ClaimedSurface(const geom::Prepared& original) : original_(original) {
-  if (original.report.walls.empty()) return;
+  if (original.report.left_out.empty()) return;
   with_walls_ = original.solid.mesh();
-  for (const geom::Wall& wall : original.report.walls) {
+  for (const geom::LeftOut& wall : original.report.left_out) {
     const auto n = static_cast<std::uint32_t>(with_walls_.vertices.size());
     with_walls_.vertices.insert(with_walls_.vertices.end(), wall.corners.begin(),
                                 wall.corners.end());
@@ -34,13 +34,13 @@ const std::vector<std::uint32_t>& ClaimedSurface::loose() {
   looked_ = true;
   loose_ = verify::find_loose_triangles(original_.solid.mesh());
   const auto walls = static_cast<std::uint32_t>(original_.solid.mesh().triangles.size());
-  for (std::uint32_t i = 0; i < original_.report.walls.size(); ++i) loose_.push_back(walls + i);
+  for (std::uint32_t i = 0; i < original_.report.left_out.size(); ++i) loose_.push_back(walls + i);
   return loose_;
 }
 
 std::uint32_t ClaimedSurface::source(std::uint32_t t) const {
   const std::size_t triangles = original_.solid.mesh().triangles.size();
-  if (t >= triangles) return original_.report.walls[t - triangles].source;
+  if (t >= triangles) return original_.report.left_out[t - triangles].source;
   return t < original_.report.source.size() ? original_.report.source[t] : kFill;
 }
 

@@ -16,7 +16,7 @@ class ClaimedSurface {
   explicit ClaimedSurface(const geom::Prepared& original);
 
   [[nodiscard]] const geom::Mesh& mesh() const {
-    return original_.report.walls.empty() ? original_.solid.mesh() : with_walls_;
+    return original_.report.left_out.empty() ? original_.solid.mesh() : with_walls_;
   }
   /// Of mesh(): those that the solid claim does not protect.
   [[nodiscard]] const std::vector<std::uint32_t>& loose();

@@ -4,6 +4,7 @@
 #include <kaboum/base/parallel.h>
 #include <kaboum/geom/holes.h>
 #include <kaboum/geom/hollows.h>
+#include <kaboum/geom/moderate.h>
 #include <kaboum/geom/predicates.h>
 #include <kaboum/geom/prepare.h>
 #include <kaboum/geom/topology.h>
@@ -26,11 +27,9 @@
 #include "solid_mesh_maker.h"
 
 namespace kaboum::geom {
-namespace {
 
-/// Products of four coordinates must neither overflow nor vanish.
-void require_moderate(const Mesh& input) {
-  const Box3 box = bounding_box(input);
+void require_moderate(const Mesh& mesh) {
+  const Box3 box = bounding_box(mesh);
   if (box.empty()) return;
   const double magnitude = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
   const double extent = (box.max - box.min).maxCoeff();
@@ -42,6 +41,8 @@ void require_moderate(const Mesh& input) {
     throw Error(ErrorCode::InvalidInput, text.str());
   }
 }
+
+namespace {
 
 /// The steps of preparation, and what each of them notes.
 class Preparation {
@@ -128,6 +129,9 @@ class Preparation {
       if (tri[0] == tri[1] || tri[1] == tri[2] || tri[2] == tri[0]) {
         keep[t] = 0;
         ++report_.collapsed_triangles;
+        report_.left_out.push_back(
+            {report_.source[t],
+             {mesh_.vertices[tri[0]], mesh_.vertices[tri[1]], mesh_.vertices[tri[2]]}});
       }
     }
     if (report_.collapsed_triangles == 0) return;
@@ -182,7 +186,7 @@ class Preparation {
     for (const Cancelled& c : cancelled_) {
       const bool is_sheet = sheet != sheets.end() && sheet->source == c.source;
       if (is_sheet) ++sheet;
-      if (!is_sheet && c.source != kFilled) report_.walls.push_back({c.source, c.corners});
+      if (!is_sheet && c.source != kFilled) report_.left_out.push_back({c.source, c.corners});
     }
     if (!sheets.empty())
       report_.notes.push_back(

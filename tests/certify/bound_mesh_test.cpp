@@ -200,7 +200,7 @@ TEST(BoundMesh, WallsThatReachOutAreFound) {
   plate.triangles = {{0, 1, 2}, {0, 2, 1}};
   const Mesh mesh = test::merged({notched, plate});
   const geom::Prepared prepared = prepare_mesh(mesh);
-  ASSERT_EQ(prepared.report.walls.size(), 2U);
+  ASSERT_EQ(prepared.report.left_out.size(), 2U);
   const auto bare = certify_mesh(prepared, fast(notched.vertices.size()));
   ASSERT_TRUE(bare);
   EXPECT_EQ(bare->certificate().surface_answer(), Answer::Refuted);

@@ -30,10 +30,10 @@ struct PrepareOptions {
   enum class Diagonal { AsGiven, Outward, Inward } diagonal = Diagonal::AsGiven;
 };
 
-/// An input triangle that cancelled with one that lies on it the other way round.
-struct Wall {
-  std::uint32_t source;         ///< index in the input
-  std::array<Vec3, 3> corners;  ///< oriented as when it cancelled
+/// An input triangle that is left out and that the solid need not hold.
+struct LeftOut {
+  std::uint32_t source;  ///< index in the input
+  std::array<Vec3, 3> corners;
 };
 
 /// How a prepared mesh came from the input: nothing that a claim about it rests on.
@@ -48,8 +48,9 @@ struct PreparationReport {
   std::size_t collapsed_triangles = 0;  ///< dropped: repeated corners
   std::size_t dropped_copies = 0;       ///< dropped: identically oriented copies
   std::size_t cancelled_walls = 0;      ///< dropped: triangles in opposite pairs inside the solid
-  /// Those: their middles and corners are inside the solid, the rest of them need not be.
-  std::vector<Wall> walls;
+  /// Those, whose middles and corners are inside the solid while the rest of them need not be; and
+  /// those with repeated corners, which are segments and points. Not sheets dropped on request.
+  std::vector<LeftOut> left_out;
   std::size_t dropped_sheets = 0;  ///< dropped: triangles in opposite pairs outside, on request
   std::size_t reversed_components = 0;    ///< shells that were inside out, turned as a whole
   std::vector<std::uint32_t> inside_out;  ///< an input triangle of each of those
