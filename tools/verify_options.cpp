@@ -27,7 +27,8 @@ void add_preparation(CLI::App& app, VerifyOptions& o, const std::string& what) {
   app.add_flag("--prepare", o.prepare,
                "Judge " + what +
                    " as bmesh-decimate and bcd-decompose prepare it (parts that are inside out "
-                   "turned, copies and walls dropped, holes filled) instead of the file as it is: "
+                   "turned, copies and walls dropped, holes filled, quads that are not plane split "
+                   "so that both ways are bounded) instead of the file as it is: "
                    "what their claims, and a container's epsilon, are about");
   app.add_flag("--drop-sheets", o.drop_sheets,
                "With --prepare: drop sheets (faces back to back without volume), as bmesh-decimate "
