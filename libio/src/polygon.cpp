@@ -34,6 +34,10 @@ geom::Vec3 newell_normal(std::span<const geom::Vec3> corners) {
 double bend_of(std::span<const geom::Vec3> corners) {
   // The first three corners that span a plane; every other one is on it, or the polygon is bent.
   const std::size_t n = corners.size();
+  for (int k = 0; k < 3; ++k)  // most often
+    if (std::all_of(corners.begin(), corners.end(),
+                    [&](const geom::Vec3& p) { return p[k] == corners[0][k]; }))
+      return 0;
   double largest = 0;
   for (const geom::Vec3& p : corners) largest = std::max(largest, p.cwiseAbs().maxCoeff());
   std::size_t b = 1, c = 0;
