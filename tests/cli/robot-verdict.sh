@@ -2,7 +2,6 @@
 # One verdict a link: terminal, page, report and exit code say the same, and each command that a page prints ends as
 # the page says. Robots with meshes that bound no solid, bad ones and none.
 . "$(dirname "$0")/common.sh"
-SCHEMA=$3
 KABOUM_CACHE=$WORK/cache
 export KABOUM_CACHE
 mkdir -p "it's a robot/m"
