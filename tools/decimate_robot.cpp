@@ -43,8 +43,7 @@ certify::EnclosureRequest enclosure_request(const DecimationOptions& o) {
   r.preparation = o.prepare;
   r.preparation.holes = o.holes.value();
   o.preparation.apply(r.preparation);
-  const bool if_needed = o.preparation.name == "auto" &&
-                         r.preparation.holes == geom::Holes::Fill &&
+  const bool if_needed = o.preparation.name == "auto" && r.preparation.holes == geom::Holes::Fill &&
                          !r.preparation.keep_orientation;
   if (o.preparation.wraps() || if_needed) r.wrap = o.preparation.request(std::nullopt);
   if (r.wrap) r.wrap->where_needed = if_needed;
@@ -98,8 +97,7 @@ void write(Run& run, RobotOutput& output) {
   if (!run.o.no_cache) {
     std::map<std::size_t, std::span<const char>> meshes;
     for (std::size_t s = 0; s < run.made.shapes.size(); ++s)
-      if (const auto& mesh = run.made.shapes[s].mesh;
-          mesh && run.made.meshes[*mesh].flaw.empty())
+      if (const auto& mesh = run.made.shapes[s].mesh; mesh && run.made.meshes[*mesh].flaw.empty())
         meshes.emplace(s, run.made.meshes[*mesh].made.enclosure.bytes());
     output.reuse(certify::CacheFolder(certify::CacheFolder::default_folder()), meshes);
   }
@@ -112,8 +110,8 @@ void write(Run& run, RobotOutput& output) {
 }
 
 RobotCheck check_of(const Run& run, const RobotOutput& output) {
-  return tools::check_of(run.o.input, output.folder().urdf().string(), run.o.robot, run.o.preparation,
-                  run.o.prepare.drop_sheets, {}, run.verdicts);
+  return tools::check_of(run.o.input, output.folder().urdf().string(), run.o.robot,
+                         run.o.preparation, run.o.prepare.drop_sheets, {}, run.verdicts);
 }
 
 /// The shapes of each link that has some.

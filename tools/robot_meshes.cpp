@@ -18,7 +18,8 @@ using robot::Geometry;
 const verify::MeshFile& RobotMeshes::file_of(const Geometry& g, const robot::RobotFile& robot) {
   const auto [at, fresh] = named_.try_emplace({robot.path.string(), g.mesh});
   if (!fresh) return *at->second;
-  const verify::MeshFile& file = read(robot::find_only_mesh(g.mesh, robot.path, packages_).string());
+  const verify::MeshFile& file =
+      read(robot::find_only_mesh(g.mesh, robot.path, packages_).string());
   at->second = &file;
   return file;
 }
@@ -29,7 +30,8 @@ const verify::MeshFile& RobotMeshes::read(const std::string& path) {
   std::vector<char> bytes;
   io::ReadResult read = io::read_mesh(path, {}, &bytes);
   return files_
-      .emplace(path, verify::MeshFile{path, io::sha256(bytes), std::move(read.mesh), std::move(read.notes)})
+      .emplace(path, verify::MeshFile{path, io::sha256(bytes), std::move(read.mesh),
+                                      std::move(read.notes)})
       .first->second;
 }
 

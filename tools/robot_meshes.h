@@ -29,7 +29,8 @@ class RobotMeshes {
 
   std::vector<std::string> packages_;
   std::map<std::string, verify::MeshFile> files_;
-  std::map<std::pair<std::string, std::string>, const verify::MeshFile*> named_;  // robot, reference
+  std::map<std::pair<std::string, std::string>, const verify::MeshFile*>
+      named_;  // robot, reference
 };
 
 }  // namespace kaboum::tools

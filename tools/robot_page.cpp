@@ -168,7 +168,8 @@ geom::Mesh drawn_shapes(const robot::RobotFile& robot, const robot::ShapeChoice&
       try {
         append_placed(
             out, io::read_mesh(robot::resolve_mesh(g.mesh, robot.path, choice.packages)).mesh, g);
-      } catch (const Error&) {  // NOLINT(bugprone-empty-catch): one that cannot be read is not drawn
+      } catch (
+          const Error&) {  // NOLINT(bugprone-empty-catch): one that cannot be read is not drawn
       }
     } else if (!robot::is_point(g)) {
       if (const auto hull = geom::convex_hull(robot::bounding_points(g)))

@@ -3,8 +3,8 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/bcd/inner.h>
-#include <kaboum/certify/mesh.h>
 #include <kaboum/certify/convex_set.h>
+#include <kaboum/certify/mesh.h>
 #include <kaboum/geom/width.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/verify/cover.h>
@@ -210,8 +210,7 @@ CertifiedWrap wrapped(const geom::Mesh& mesh, SetRequest& r, const Hooks& hooks)
 std::string outside_of(const geom::ConvexSet& set, const geom::Mesh& mesh) {
   verify::InclusionOptions options;
   options.surface_only = true;
-  const verify::Claim claim =
-      verify::verify_inclusion(mesh, verify::sum_of(set), options).surface;
+  const verify::Claim claim = verify::verify_inclusion(mesh, verify::sum_of(set), options).surface;
   return claim.answer == verify::Answer::Verified ? std::string() : claim.reason;
 }
 
@@ -303,7 +302,8 @@ std::optional<CertifiedSet> certify(const geom::Mesh& mesh, const std::string& s
       if (outer && !wrap && prepared.report.collapsed_triangles > 0)
         if (const std::string out = outside_of(set, mesh); !out.empty()) {
           if (because.empty() && request.wrap && request.wrap->where_needed)
-            return certify(mesh, sha256, request, hooks, "triangles with repeated corners stick out");
+            return certify(mesh, sha256, request, hooks,
+                           "triangles with repeated corners stick out");
           throw Error(ErrorCode::InvalidInput,
                       "triangles with repeated corners stick out of the solid (" + out + ")");
         }

@@ -64,14 +64,14 @@ TrianglesInside look_at(const geom::Mesh& triangles, const geom::Mesh& result) {
   options.surface_only = true;
   options.max_work = verify::usual_work(triangles.triangles.size() + result.triangles.size());
   const verify::Inclusion found = verify::verify_inclusion(triangles, result, options);
-  TrianglesInside out{found.surface.answer, found.surface.reason,
-                      found.surface.inner_triangles.size(), {}};
+  TrianglesInside out{
+      found.surface.answer, found.surface.reason, found.surface.inner_triangles.size(), {}};
   if (out.answer != verify::Answer::Refuted || found.left_out > 0 || found.limited) return out;
   verify::BracketEffort effort;
   effort.max_work = options.max_work.value();
-  const double upper = verify::bracket_distance(triangles, found.surface.inner_triangles, result,
-                                                true, effort)
-                           .upper;
+  const double upper =
+      verify::bracket_distance(triangles, found.surface.inner_triangles, result, true, effort)
+          .upper;
   if (std::isfinite(upper)) out.farther = upper;
   return out;
 }
@@ -79,9 +79,8 @@ TrianglesInside look_at(const geom::Mesh& triangles, const geom::Mesh& result) {
 std::string in_words(const TrianglesInside& inside) {
   if (inside.answer != verify::Answer::Refuted)
     return "whether every triangle would be inside is not decided";
-  return std::to_string(inside.outside) +
-         (inside.outside == 1 ? " triangle" : " triangles") + " would stick out" +
-         (inside.farther ? ", by up to " + number_up(*inside.farther) : "");
+  return std::to_string(inside.outside) + (inside.outside == 1 ? " triangle" : " triangles") +
+         " would stick out" + (inside.farther ? ", by up to " + number_up(*inside.farther) : "");
 }
 
 /// What the result depends on.

@@ -165,7 +165,8 @@ CertifiedBodies certify_bodies(const robot::RobotFile& robot, const RobotRequest
   for (std::size_t i = 0; i < found.meshes.size(); ++i) {
     RobotRequest own = request;
     own.set.improve_work = work[i];
-    out.meshes.push_back(certify_somehow(found.meshes[i], found.epsilons[i], own, cache, hooks, first));
+    out.meshes.push_back(
+        certify_somehow(found.meshes[i], found.epsilons[i], own, cache, hooks, first));
     const CertifiedFile& made = out.meshes.back().made;
     out.files.push_back(found.meshes[i].file);
     out.files.insert(out.files.end(), made.other_files.begin(), made.other_files.end());

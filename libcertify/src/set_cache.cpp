@@ -79,7 +79,8 @@ SetCache::Key SetCache::key_of(const std::string& mesh_hash, const std::string& 
   const std::string text =
       mesh_hash + '\n' + std::to_string(std::bit_cast<std::uint64_t>(clearance)) + '\n' + sha256 +
       '\n' + r.parameters() + '\n' + r.unit + '\n' + r.frame + '\n' + r.source + '\n' +
-      (r.wrap && r.wrap->where_needed ? "wrapped where needed\n" : "") + KABOUM_VERSION + '\n' + kAlgorithm + '\n' + kContainer + '\n' + kDecisions;
+      (r.wrap && r.wrap->where_needed ? "wrapped where needed\n" : "") + KABOUM_VERSION + '\n' +
+      kAlgorithm + '\n' + kContainer + '\n' + kDecisions;
   return {kaboum::sha256(text), origin_of(r, sha256),
           r.wrap ? std::optional(clearance) : std::nullopt, r.wrap && r.wrap->where_needed};
 }

@@ -29,8 +29,8 @@ class Files {
     std::vector<char> bytes;
     io::ReadResult read = io::read_mesh(path, {}, &bytes);
     return files_
-        .emplace(path, verify::MeshFile{path, sha256(bytes), std::move(read.mesh),
-                                        std::move(read.notes)})
+        .emplace(path,
+                 verify::MeshFile{path, sha256(bytes), std::move(read.mesh), std::move(read.notes)})
         .first->second;
   }
 

@@ -363,7 +363,7 @@ TEST_F(MixedRobotTest, OneBadMeshIsNamedAndTheRestHeld) {
 TEST_F(MixedRobotTest, TooNearForAWrapIsHeldFartherAway) {
   RobotRequest request = tolerant();
   request.shapes.links = {"sheet"};
-  request.set.epsilon = Length{1e-9};
+  request.set.epsilon = Length{1e-7};
   const CertifiedRobot made = certify_robot(mixed(), request);
   const std::vector<LinkVerdict> found = verdicts(made);
   ASSERT_EQ(found.size(), 1U);

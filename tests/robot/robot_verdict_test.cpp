@@ -67,15 +67,12 @@ struct Case {
       result.links[0].collision.push_back(shape_of(name));
     }
   }
-  void add(const std::string& name, const geom::Mesh& mesh) {
-    files[name] = {name, "", mesh, {}};
-  }
+  void add(const std::string& name, const geom::Mesh& mesh) { files[name] = {name, "", mesh, {}}; }
   verify::RobotVerdict decide(Solid solid, Claims claims = Claims::All,
                               std::optional<Length> epsilon = {}, bool drop_sheets = false) {
-    verify::RobotQuestion q{original, result,
-                            [this](const Geometry& g, bool) -> const verify::MeshFile& {
-                              return files.at(g.mesh);
-                            }};
+    verify::RobotQuestion q{
+        original, result,
+        [this](const Geometry& g, bool) -> const verify::MeshFile& { return files.at(g.mesh); }};
     q.solid = solid;
     q.claims = claims;
     q.epsilon = epsilon;

@@ -52,8 +52,7 @@ HeldShape Holders::hold_any(const geom::Mesh& mesh, Claims claims,
   };
   if (!has_area(mesh)) return undecided("none of its triangles has an area");
   if (set_.bodies.empty()) {
-    const bool any =
-        claims != Claims::Solid || (closed(mesh) && geom::signed_volume(mesh) != 0);
+    const bool any = claims != Claims::Solid || (closed(mesh) && geom::signed_volume(mesh) != 0);
     undecided("the result's link has no closed mesh of its pose and scale");
     if (given_ == 0 && any) out.answer = Answer::Refuted;
     return out;

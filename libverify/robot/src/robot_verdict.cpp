@@ -53,19 +53,19 @@ geom::Mesh turned(geom::Mesh mesh) {
 /// The triangles of a file and what they bound, as far as that is judged.
 struct Subject {
   const MeshFile* file = nullptr;
-  geom::Mesh mesh;           ///< whose solid is judged, and its triangles
-  bool both_ways = false;    ///< what it winds round backwards counts as well
-  bool file_as_well = false; ///< the file has triangles that `mesh` does not have
+  geom::Mesh mesh;            ///< whose solid is judged, and its triangles
+  bool both_ways = false;     ///< what it winds round backwards counts as well
+  bool file_as_well = false;  ///< the file has triangles that `mesh` does not have
   std::size_t dropped_sheets = 0;
-  std::string refusal;       ///< why it could not be prepared
+  std::string refusal;  ///< why it could not be prepared
 };
 
 Subject subject_of(const MeshFile& file, const RobotQuestion& q) {
   Subject out{&file, file.mesh, q.solid != Solid::AsFile, false, 0, {}};
   if (q.solid != Solid::Prepared) return out;
   try {
-    geom::Prepared p = geom::prepare(
-        file.mesh, {.drop_sheets = q.drop_sheets, .holes = geom::Holes::Fill});
+    geom::Prepared p =
+        geom::prepare(file.mesh, {.drop_sheets = q.drop_sheets, .holes = geom::Holes::Fill});
     const geom::PreparationReport& r = p.report;
     out.both_ways = r.hollow.has_value();
     out.dropped_sheets = r.dropped_sheets;
@@ -95,8 +95,8 @@ class Judgement {
 
  private:
   void decide() {
-    const HeldShape held = subject_.both_ways ? held_both_ways()
-                                              : holders_.hold(subject_.mesh, q_.claims, q_.limits);
+    const HeldShape held =
+        subject_.both_ways ? held_both_ways() : holders_.hold(subject_.mesh, q_.claims, q_.limits);
     out_.answer = held.answer;
     out_.text = held.reason;
     if (held.prepare_helps && q_.solid == Solid::AsFile)
@@ -153,16 +153,15 @@ class Judgement {
     if (!out_.triangles || out_.triangles->answer != Answer::Refuted) return;
     BracketEffort effort;
     effort.max_work = q_.limits.max_work.value_or(usual_work(measured_->triangles.size()));
-    out_.sticks_out = bracket_distance(*measured_, out_.triangles->inner_triangles,
-                                       holders_.sum(), true, effort);
+    out_.sticks_out =
+        bracket_distance(*measured_, out_.triangles->inner_triangles, holders_.sum(), true, effort);
     if (out_.limited) out_.sticks_out->upper = std::numeric_limits<double>::infinity();
   }
 
   void put_into_words() {
     const std::size_t n = holders_.set().bodies.size();
-    const std::string bodies = holders_.all_convex()
-                                   ? counted(n, "convex body", "convex bodies")
-                                   : counted(n, "mesh", "meshes, not all convex");
+    const std::string bodies = holders_.all_convex() ? counted(n, "convex body", "convex bodies")
+                                                     : counted(n, "mesh", "meshes, not all convex");
     if (out_.answer == Answer::Verified) {
       out_.text = std::string(out_.solid && out_.triangles ? "its solid and surface are"
                               : out_.solid                 ? "its solid is"
@@ -174,8 +173,7 @@ class Judgement {
     if (refuted) {
       const std::size_t outside = out_.triangles->inner_triangles.size();
       out_.text = (out_.limited ? "at least " : "") + counted(outside, "triangle", "triangles") +
-                  (holders_.refutes() ? outside == 1 ? " is" : " are"
-                                      : std::string(" may be")) +
+                  (holders_.refutes() ? outside == 1 ? " is" : " are" : std::string(" may be")) +
                   " not inside the " + bodies + " of its pose";
       if (out_.sticks_out) out_.text += ", by " + in_words(*out_.sticks_out);
       out_.text += ", in the mesh's own unit";
@@ -278,9 +276,10 @@ class RobotJudge {
       verdict.shape = g.shape;
       verdict.name = describe(g);
       verdict.answer = find_again(g, match);
-      verdict.text = verdict.answer == Answer::Verified  ? "the result has it as well"
-                     : verdict.answer == Answer::Refuted ? "the result's link has no shape at all"
-                                                         : "the result has none of its size and pose";
+      verdict.text = verdict.answer == Answer::Verified ? "the result has it as well"
+                     : verdict.answer == Answer::Refuted
+                         ? "the result's link has no shape at all"
+                         : "the result has none of its size and pose";
       out.shapes.push_back(std::move(verdict));
     }
     for (const ShapeVerdict& shape : out.shapes) out.answer = worse(out.answer, shape.answer);
@@ -331,8 +330,10 @@ class RobotJudge {
       subjects.push_back(subject_of(*file, q_));
       const Subject& subject = subjects.back();
       if (!subject.refusal.empty())
-        note(file->path, "every triangle is judged as it is, for which solid they bound cannot be "
-                         "told (" + subject.refusal + ")");
+        note(file->path,
+             "every triangle is judged as it is, for which solid they bound cannot be "
+             "told (" +
+                 subject.refusal + ")");
       out.push_back(Judgement(subject, holders, q_).run());
       out.back().held_by = hold;
       if (!out.back().closed && q_.solid == Solid::AsFile) out_.open = true;
@@ -359,8 +360,7 @@ class RobotJudge {
     const std::string& path = subjects.front().file->path;
     if (!(scaled.bound > 0) || !std::isfinite(scaled.bound))
       throw Error(ErrorCode::InvalidInput, "epsilon is no length in the unit of " + path +
-                                               ", whose scale is " +
-                                               number_text(scale.maxCoeff()));
+                                               ", whose scale is " + number_text(scale.maxCoeff()));
     ShapeVerdict out;
     out.name = "bodies";
     out.bound = scaled.bound;

@@ -40,9 +40,9 @@ struct SetRequest {
   /// Holes are filled or refused; kept ones are filled as well.
   geom::PrepareOptions preparation{.holes = geom::Holes::Fill};
   /// Set: what is covered is a wrap round all triangles (certify_wrap), whatever they are like, or
-  /// only where that is needed (`where_needed`). How far it is from them counts towards epsilon, and
-  /// so does its clearance. Outer sets only; `farthest`, `float32` and `progress` are not looked
-  /// at.
+  /// only where that is needed (`where_needed`). How far it is from them counts towards epsilon,
+  /// and so does its clearance. Outer sets only; `farthest`, `float32` and `progress` are not
+  /// looked at.
   std::optional<WrapRequest> wrap;
 
   // What the container says of itself.

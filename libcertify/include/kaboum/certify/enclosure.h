@@ -30,8 +30,8 @@ struct EnclosureRequest {
   [[nodiscard]] std::string parameters() const;
 };
 
-/// Whether every triangle of a file lies in the solid of a mesh: decided by libverify from the bytes
-/// of both. Triangles of sheets dropped on request are not asked for.
+/// Whether every triangle of a file lies in the solid of a mesh: decided by libverify from the
+/// bytes of both. Triangles of sheets dropped on request are not asked for.
 struct TrianglesInside {
   verify::Answer answer = verify::Answer::Undefined;
   std::string reason;             ///< of what is not verified
@@ -54,7 +54,7 @@ struct EnclosureCertificate {
   bmesh::Stop stop = bmesh::Stop::Exhausted;
   bool reached = true;  ///< MeshCertificate::reached
   bool out_of_work = false;
-  Subject subject;                ///< what is enclosed
+  Subject subject;  ///< what is enclosed
   TrianglesInside inside;
   std::vector<MeshClaim> claims;  ///< of the mesh, as `claims` gave them when it was made
   std::optional<WrapCertificate> wrap;

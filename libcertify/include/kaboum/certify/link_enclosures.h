@@ -25,7 +25,7 @@ struct EnclosedLinkMesh {
   robot::LinkMesh mesh;
   std::optional<Length> epsilon;  ///< asked for, in its unit
   EnclosedFile made;
-  double seconds = 0;  ///< that it took, by the clock, together with others [s]
+  double seconds = 0;     ///< that it took, by the clock, together with others [s]
   std::string flaw = {};  ///< why `made` holds nothing (LinkEnclosuresRequest::partial); else empty
 };
 

@@ -12,7 +12,7 @@ struct LinkCertificate {
   std::uint32_t link = 0;
   std::size_t shapes = 0;
   std::size_t kept = 0;  ///< of these, that have no bodies: 0 of links that have a set
-  double distance = 0;  ///< of the bodies beyond their shapes; the set's own: its epsilon [length]
+  double distance = 0;   ///< of the bodies beyond their shapes; the set's own: its epsilon [length]
 };
 
 /// The set of a link, in its frame: serialised, read back, and decided exactly by libverify to hold

@@ -12,11 +12,11 @@ namespace kaboum::geom {
 /// triangles of a part that was open were turned to agree.
 inline std::string doubt_about(const PreparationReport& report) {
   if (report.hollow)
-    return "its surface crosses itself, and part of what it encloses is inside out, and would count "
+    return "its surface crosses itself, and part of what it encloses is inside out, and would "
+           "count "
            "as outside";
-  const bool guessed = std::any_of(report.notes.begin(), report.notes.end(), [](const auto& note) {
-    return note.starts_with("WARNING: ");
-  });
+  const bool guessed = std::any_of(report.notes.begin(), report.notes.end(),
+                                   [](const auto& note) { return note.starts_with("WARNING: "); });
   return guessed ? "it is open, and which solid is meant would be a guess" : "";
 }
 

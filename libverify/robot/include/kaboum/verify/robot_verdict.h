@@ -38,7 +38,7 @@ struct RobotQuestion {
   /// The file of a mesh of the original, or of the result. May throw; the value stays.
   std::function<const MeshFile&(const robot::Geometry& mesh, bool of_result)> file_of;
   std::vector<std::string> links = {};  ///< only these; empty: all
-  bool visual = false;  ///< shapes for drawing of the original are to be held
+  bool visual = false;                  ///< shapes for drawing of the original are to be held
   Claims claims = Claims::All;
   Solid solid = Solid::AsFile;
   bool drop_sheets = false;  ///< with Solid::Prepared: nothing is asked about sheets
@@ -73,9 +73,9 @@ struct ShapeVerdict {
   bool closed = true;                 ///< else only the triangles were judged
   std::size_t triangles_without_area = 0, left_out = 0, dropped_sheets = 0;
   bool limited = false;
-  std::optional<Claim> convex = {};             ///< of what holds it
-  std::optional<DistanceClaim> distance = {};   ///< of the bodies; then `shape` means nothing
-  std::optional<double> bound = {};             ///< of the distance
+  std::optional<Claim> convex = {};            ///< of what holds it
+  std::optional<DistanceClaim> distance = {};  ///< of the bodies; then `shape` means nothing
+  std::optional<double> bound = {};            ///< of the distance
 };
 
 struct LinkVerdict {
