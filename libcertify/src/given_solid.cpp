@@ -5,6 +5,8 @@
 #include <kaboum/base/error.h>
 #include <kaboum/geom/preparation_doubt.h>
 
+#include <algorithm>
+
 namespace kaboum::certify {
 namespace {
 
@@ -51,6 +53,7 @@ GivenSolid give_solid(const geom::Mesh& mesh, Prepare prepare, const geom::Prepa
     } catch (const Error& error) {
       if (!if_needed || error.code() != ErrorCode::InvalidInput) throw;
       out.why = error.what();
+      out.why.resize(std::min(out.why.size(), out.why.find("; have a wrap")));  // as is done here
       out.wrapped = mesh;
     }
   }
