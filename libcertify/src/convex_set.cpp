@@ -298,14 +298,15 @@ std::optional<CertifiedSet> certify(const geom::Mesh& mesh, const std::string& s
       found.reason = outside_of(set, given.wrapped);
     wrong = found.reason;
     if (wrong.empty()) {
-      // Triangles without a solid's side that preparing leaves out.
-      if (outer && !wrap && prepared.report.collapsed_triangles > 0)
+      // Segments, and walls of which the solid holds middle and corners.
+      if (outer && !wrap && !prepared.report.left_out.empty())
         if (const std::string out = outside_of(set, mesh); !out.empty()) {
           if (because.empty() && request.wrap && request.wrap->where_needed)
             return certify(mesh, sha256, request, hooks,
-                           "triangles with repeated corners stick out");
-          throw Error(ErrorCode::InvalidInput,
-                      "triangles with repeated corners stick out of the solid (" + out + ")");
+                           "walls, or triangles with repeated corners, would stick out");
+          throw Error(
+              ErrorCode::InvalidInput,
+              "walls, or triangles with repeated corners, stick out of the solid (" + out + ")");
         }
       return Issuer::issue(std::move(set), std::move(certificate), std::move(container));
     }

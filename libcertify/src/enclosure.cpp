@@ -84,6 +84,7 @@ std::string in_words(const TrianglesInside& inside) {
 }
 
 /// What the result depends on.
+/// @param mesh_hash  of the mesh and the file, whose quads count
 std::string key_of_enclosure(const std::string& mesh_hash, const EnclosureRequest& request) {
   return kaboum::sha256(
       std::string(kEnclosureEntry) + '\n' + mesh_hash + '\n' + request.parameters() + '\n' +
@@ -221,13 +222,15 @@ std::optional<CertifiedEnclosure> certify_enclosure(const geom::Mesh& mesh,
 }
 
 EnclosedFile enclose_file(const fs::path& file, std::optional<io::Format> format,
-                          const EnclosureRequest& request, const CacheFolder* cache,
+                          const EnclosureRequest& asked, const CacheFolder* cache,
                           const MeshHooks& hooks) {
+  EnclosureRequest request = asked;
   if (cache != nullptr && file != "-") {
     const auto known = find_known(*cache, file, format, 1);
-    auto found = known
-                     ? find_enclosure(*cache, key_of_enclosure(known->mesh_hash, request), request)
-                     : std::nullopt;
+    auto found =
+        known ? find_enclosure(*cache, key_of_enclosure(known->mesh_hash + known->sha256, request),
+                               request)
+              : std::nullopt;
     if (found) return {known->sha256, known->notes, {}, std::move(*found), true};
   }
   std::vector<char> bytes;
@@ -235,8 +238,10 @@ EnclosedFile enclose_file(const fs::path& file, std::optional<io::Format> format
   const std::string mesh_hash = SetCache::hash_of(read.mesh), sha256 = kaboum::sha256(bytes);
   if (cache != nullptr && file != "-")
     store_known(*cache, file, format, 1, bytes.size(), sha256, mesh_hash, read);
+  request.preparation.quads = read.bent_quads;
+  request.preparation.diagonal = geom::PrepareOptions::Diagonal::Outward;
   EnclosedFile out{sha256, std::move(read.notes), std::move(read.other_files), {}, false};
-  const std::string key = key_of_enclosure(mesh_hash, request);
+  const std::string key = key_of_enclosure(mesh_hash + sha256, request);
   if (cache != nullptr) {
     if (auto found = find_enclosure(*cache, key, request)) {
       out.enclosure = std::move(*found);

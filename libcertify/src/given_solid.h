@@ -33,6 +33,12 @@ GivenSolid give_solid(const geom::Mesh& mesh, Prepare prepare, const geom::Prepa
                       const std::function<CertifiedWrap(const geom::Mesh&)>& make,
                       const std::string& because = {});
 
+/// The triangles, and those that fill their holes: the solid that is closed so is wrapped, too.
+geom::Mesh with_fillings(geom::Mesh mesh, const geom::SolidMesh& solid);
+
+/// The triangles, and those of the other way of splitting quads that are not plane.
+geom::Mesh with_other_diagonals(geom::Mesh mesh, const geom::PrepareOptions& options);
+
 /// The sentence that says so.
 std::string why_wrapped(const std::string& why);
 
