@@ -19,6 +19,7 @@ MeshInput read(const std::string& path, const std::string& format, const char* o
   MeshInput out;
   out.unit = r.unit;
   out.mesh = std::move(r.mesh);
+  out.quads = std::move(r.bent_quads);
   out.sha256 = io::sha256(bytes);
   out.notes = std::move(r.notes);
   if (r.collapsed_triangles != 0)
@@ -30,7 +31,10 @@ MeshInput read(const std::string& path, const std::string& format, const char* o
 }  // namespace
 
 MeshInput read_original(const VerifyMeshOptions& o) {
-  return read(o.original, o.original_format, "--input-format", o.unit);
+  using Diagonal = geom::PrepareOptions::Diagonal;
+  MeshInput out = read(o.original, o.original_format, "--input-format", o.unit);
+  out.diagonal = o.relation == verify::Relation::Inner ? Diagonal::Inward : Diagonal::Outward;
+  return out;
 }
 
 ApproximationInput read_approximation(const VerifyMeshOptions& o) {
@@ -64,7 +68,12 @@ ApproximationInput read_approximation(const VerifyMeshOptions& o) {
 }
 
 void prepare(MeshInput& original, bool drop_sheets) {
-  geom::Prepared prepared = prepare_original(original.mesh, drop_sheets, true);
+  geom::PrepareOptions options;
+  options.drop_sheets = drop_sheets;
+  options.holes = geom::Holes::Fill;
+  options.quads = original.quads;
+  options.diagonal = original.diagonal;
+  geom::Prepared prepared = geom::prepare(original.mesh, options);
   geom::PreparationReport& report = prepared.report;
   original.mesh = prepared.solid.mesh();
   original.notes.insert(original.notes.end(), report.notes.begin(), report.notes.end());

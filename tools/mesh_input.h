@@ -2,6 +2,7 @@
 
 #include <kaboum/geom/convex_set.h>
 #include <kaboum/geom/mesh.h>
+#include <kaboum/geom/prepare.h>
 
 #include <string>
 #include <vector>
@@ -18,6 +19,9 @@ struct MeshInput {
   std::vector<std::string> notes;
   std::size_t filled_triangles = 0, dropped_sheets = 0;
   std::vector<std::uint32_t> source;  ///< per triangle, if prepared: its index in the file
+  /// How preparing splits quads that are not plane: as the programs that make results do.
+  std::vector<std::uint32_t> quads = {};
+  geom::PrepareOptions::Diagonal diagonal = geom::PrepareOptions::Diagonal::AsGiven;
 };
 
 /// A mesh, or a set: `mesh` is the sum of its bodies then.

@@ -31,6 +31,44 @@ geom::Vec3 newell_normal(std::span<const geom::Vec3> corners) {
 
 }  // namespace
 
+double bend_of(std::span<const geom::Vec3> corners) {
+  // The first three corners that span a plane; every other one is on it, or the polygon is bent.
+  const std::size_t n = corners.size();
+  for (int k = 0; k < 3; ++k)  // most often
+    if (std::all_of(corners.begin(), corners.end(),
+                    [&](const geom::Vec3& p) { return p[k] == corners[0][k]; }))
+      return 0;
+  double largest = 0;
+  for (const geom::Vec3& p : corners) largest = std::max(largest, p.cwiseAbs().maxCoeff());
+  std::size_t b = 1, c = 0;
+  while (b < n && corners[b] == corners[0]) ++b;
+  const auto collinear = [&](const geom::Vec3& p) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+      if (geom::orient2d(corners[0][u], corners[0][v], corners[b][u], corners[b][v], p[u], p[v]) !=
+          geom::Sign::Zero)
+        return false;
+    }
+    return true;
+  };
+  for (c = b + 1; c < n && collinear(corners[c]); ++c) {
+  }
+  bool bent = false;
+  for (std::size_t d = c + 1; d < n && !bent; ++d)
+    bent = geom::orient3d(corners[0], corners[b], corners[c], corners[d]) != geom::Sign::Zero;
+  if (!bent) return 0;
+  const geom::Vec3 normal = newell_normal(corners).stableNormalized();
+  double low = 0, high = 0;
+  for (const geom::Vec3& p : corners) {
+    const double height = normal.dot(p / largest - corners[0] / largest);
+    low = std::min(low, height);
+    high = std::max(high, height);
+  }
+  // A normal of length 1 but for some roundings, and a dozen of them in each height.
+  constexpr double kRoundings = 64 * 0x1p-53;
+  return ((high - low) * (1 + kRoundings) + kRoundings) * largest;
+}
+
 bool PolygonSplitter::split(std::span<const geom::Vec3> corners,
                             std::vector<geom::Triangle>& triangles) {
   triangles.clear();
