@@ -54,7 +54,7 @@ constexpr double kGap = 0.25;        ///< share of the wish that edges may be be
 /// Pieces that are halved, for each triangle and on top of that; then bounds stay as they are.
 constexpr std::size_t kPiecesPerTriangle = 40, kMorePieces = 400'000;
 /// Triangles that are made, in those that there were and on top of that.
-constexpr std::size_t kMoreTimes = 4, kMoreTriangles = 200'000;
+constexpr std::size_t kMoreTimes = 4, kMoreTriangles = 50'000;
 
 Vec3 vector_of(const gp_Pnt& p) { return {p.X(), p.Y(), p.Z()}; }
 
@@ -252,7 +252,7 @@ using Pair = std::pair<int, int>;
 
 class Cover {
  public:
-  Cover(const TopoDS_Shape& shape, double wish) : wish_(wish) {
+  Cover(const TopoDS_Shape& shape, double wish, double most) : wish_(wish), most_(most) {
     TopExp::MapShapes(shape, TopAbs_EDGE, edges_);
     TopExp::MapShapes(shape, TopAbs_VERTEX, vertices_);
     lines_.resize(static_cast<std::size_t>(edges_.Extent()) + 1);
@@ -299,6 +299,13 @@ class Cover {
   ExactCover run() {
     if (result_.bare_faces > 0) return std::move(result_);
     const std::size_t before = count_triangles();
+    pieces_left_ = kPiecesPerTriangle * before + kMorePieces;
+    bound_gaps();
+    if (result_.gap > most_)
+      throw std::runtime_error(result_.widest + ": its curve can only be said to be within " +
+                               std::to_string(result_.gap) + " mm of the face");
+    // Where edges are beside their faces, finer triangles come no nearer to both.
+    wish_ = std::max(wish_, 2 * result_.gap);
     pieces_left_ = kPiecesPerTriangle * before + kMorePieces;
     for (int round = 0;; ++round) {
       most_halvings_ = round == 0 || !refine_ ? kHalvings : kHalvingsBetween;
@@ -959,12 +966,10 @@ class Cover {
     for (const Line& line : lines_)
       for (const double bound : line.bounds)
         if (line.curve) worse(bound, line.name, result_.distance, result_.farthest);
-    pieces_left_ += kMorePieces;
-    bound_gaps();
     result_.distance += kRounding * largest_;
   }
 
-  double wish_;
+  double wish_, most_;
   ExactCover result_;
   TopTools_IndexedMapOfShape edges_, vertices_;
   std::vector<Line> lines_;  ///< by number of the edge
@@ -978,8 +983,8 @@ class Cover {
 
 }  // namespace
 
-ExactCover cover_exact_shape(const TopoDS_Shape& shape, double wish) {
-  Cover cover(shape, wish);
+ExactCover cover_exact_shape(const TopoDS_Shape& shape, double wish, double most) {
+  Cover cover(shape, wish, most);
   for (TopExp_Explorer at(shape, TopAbs_FACE); at.More(); at.Next())
     cover.add(TopoDS::Face(at.Current()));
   return cover.run();

@@ -25,7 +25,8 @@ struct ExactCover {
 /// it, and bounds how far these are from the triangles. docs/algorithms/cad.md
 ///
 /// @param wish  distance of the exact faces that is aimed at [length]
-/// @throws std::runtime_error naming the face or edge that cannot be bounded.
-ExactCover cover_exact_shape(const TopoDS_Shape& shape, double wish);
+/// @param most  that an edge's curve may be beside its faces [length]
+/// @throws std::runtime_error naming the face or edge that cannot be bounded, or is farther.
+ExactCover cover_exact_shape(const TopoDS_Shape& shape, double wish, double most);
 
 }  // namespace kaboum::io

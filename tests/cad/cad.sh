@@ -38,6 +38,8 @@ for width in 0.3 0.01; do
   expect 0 'is inside, too: the exact faces' "$BIN/bcd-decompose" more/rib-$width.step -o rib.obj --epsilon 2% --effort fast --no-cache
   "$PARTS" check more/rib-$width.step rib.obj 100000 10% >out.txt || fail "bodies of a rib: $(cat out.txt)"
 done
+# An edge with a rib that OpenCASCADE loses where it projects the edge onto its face.
+expect 3 'edge .* beside face' "$BIN/mesh-prepare" more/projected.step -o none.ply
 # What is in the file is read, or the file is refused by the entity's name.
 expect 3 'TESSELLATED_SOLID' "$BIN/mesh-prepare" more/tessellated.step -o none.ply
 [ "$(find more/variants -name '*.step' | wc -l)" -ge 48 ] || fail "variants are missing"

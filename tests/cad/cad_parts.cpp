@@ -22,6 +22,7 @@
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_MakeWire.hxx>
+#include <BRepBuilderAPI_NurbsConvert.hxx>
 #include <BRepBuilderAPI_Transform.hxx>
 #include <BRepClass_FaceClassifier.hxx>
 #include <BRepFilletAPI_MakeFillet.hxx>
@@ -46,6 +47,7 @@
 #include <Geom_BSplineSurface.hxx>
 #include <Geom_CylindricalSurface.hxx>
 #include <IGESControl_Writer.hxx>
+#include <Interface_Static.hxx>
 #include <Poly_Triangulation.hxx>
 #include <STEPControl_Reader.hxx>
 #include <STEPControl_Writer.hxx>
@@ -333,6 +335,12 @@ int make_more(const std::string& folder) {
     if (!write_step(ribbed(width), name.str())) return 1;
   }
   if (!write_step(bumpy_sheet(), folder + "/sheet.step")) return 1;
+  // The same on a spline surface, without curves in its parameters: reading has to make them.
+  Interface_Static::SetIVal("write.surfacecurve.mode", 0);
+  const bool written =
+      write_step(BRepBuilderAPI_NurbsConvert(bumpy_sheet()).Shape(), folder + "/projected.step");
+  Interface_Static::SetIVal("write.surfacecurve.mode", 1);
+  if (!written) return 1;
   write_tessellated(folder + "/tessellated.step");
   std::filesystem::create_directory(folder + "/variants");
   write_variants(folder + "/variants");

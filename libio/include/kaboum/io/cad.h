@@ -10,8 +10,8 @@ namespace kaboum::io {
 /// Triangles that stand for the exact faces of a CAD file.
 struct CadResult {
   ReadResult read;  ///< millimetres; positions that faces share are one vertex of the file
-  /// The exact faces are no farther from the triangles than this, as measured: twice the largest
-  /// distance at samples, and the file's own tolerance (docs/formats.md). [length]
+  /// No point of the exact faces and edges is farther from the triangles: proved, not measured
+  /// (docs/algorithms/cad.md). [length]
   double deviation = 0;
 };
 
@@ -22,7 +22,7 @@ bool is_cad_file(const std::filesystem::path& path);
 /// of memory and time.
 /// @param bytes_out  the file's bytes, when not null
 /// @throws Error{NotBuilt} where the module is not there; Error{InvalidInput} when the file cannot
-///   be read, naming it.
+///   be read, or when it may hold shape that is not read: naming file and entity.
 CadResult read_cad(const std::filesystem::path& path, std::vector<char>* bytes_out = nullptr);
 
 }  // namespace kaboum::io
