@@ -25,6 +25,11 @@ void note(tools::DecimationCase& run, const std::string& text) {
   run.notes.push_back(text);
 }
 
+/// Whether the triangles stand for exact faces, which are to be enclosed as well.
+bool wraps_exact_faces(const tools::DecimationOptions& o, io::Format format) {
+  return io::is_cad(format) && o.direction == "outer" && o.preparation.holds_exact_faces();
+}
+
 /// What is asked for, where it is not contradictory.
 tools::DecimationCase case_of(const tools::DecimationOptions& o) {
   std::vector<std::size_t> counts;
@@ -39,6 +44,11 @@ tools::DecimationCase case_of(const tools::DecimationOptions& o) {
   if (!o.output.empty()) format = tools::format_for(o.output, o.output_format, "--output-format");
   run.input.format = tools::format_for(o.input, o.input_format, "--input-format");
   tools::require_sound_formats(o, format);
+  if (wraps_exact_faces(o, run.input.format) && o.records())
+    throw Error(ErrorCode::InvalidArgument,
+                "--log and --progressive start from triangles, and " + o.input +
+                    " has exact faces: write a wrap round them with mesh-prepare first, and "
+                    "simplify that, or claim it of the triangles alone (--prepare strict)");
   run.request = tools::request_of(o, std::move(counts), format);
   return run;
 }
@@ -49,9 +59,13 @@ void wrap(tools::DecimationCase& run) {
   const tools::DecimationOptions& o = run.asked;
   std::optional<double> epsilon;
   if (run.request.epsilon)
-    epsilon = run.request.epsilon->of(geom::bounding_box(run.input.mesh).diagonal());
+    epsilon = run.request.epsilon->of(geom::bounding_box(run.input.mesh).diagonal()) -
+              run.input.deviation;
+  if (epsilon && !(*epsilon > 0))
+    tools::naming(o.input, [&] { certify::refuse_deviation(run.input.deviation); });
   certify::WrapRequest request =
       o.preparation.request(epsilon ? std::optional(kShare * *epsilon) : std::nullopt);
+  request.clearance = run.input.deviation;
   request.float32 = o.precision != "double";
   tools::Progress progress(o.common.quiet);
   request.progress = [&](const std::string& stage) { progress.show(stage); };
@@ -73,7 +87,7 @@ void read(tools::DecimationCase& run) {
   if (hash) run.log.input_sha256 = io::sha256(bytes);
   apply(run.input, o.unit, o.input);
   for (const std::string& text : run.input.notes) note(run, text);
-  if (o.preparation.wraps()) wrap(run);
+  if (o.preparation.wraps() || wraps_exact_faces(o, run.input.format)) wrap(run);
   const std::size_t triangles = run.input.mesh.triangles.size();
   geom::PrepareOptions options = o.prepare;
   options.holes = o.holes.value();

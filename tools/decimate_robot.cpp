@@ -43,6 +43,7 @@ certify::EnclosureRequest enclosure_request(const DecimationOptions& o) {
   r.preparation.holes = o.holes.value();
   o.preparation.apply(r.preparation);
   if (o.preparation.wraps()) r.wrap = o.preparation.request(std::nullopt);
+  r.hold_exact_faces = o.preparation.holds_exact_faces();
   return r;
 }
 

@@ -133,7 +133,7 @@ void describe_files(CLI::App& app, DecimationOptions& o) {
   app.add_flag("--drop-sheets", o.prepare.drop_sheets,
                "Drop back-to-back faces without volume (they are then not enclosed)");
   add_holes_options(app, o.holes, true);
-  add_preparation_options(app, o.preparation);
+  add_preparation_options(app, o.preparation, "open meshes stay open", true);
   app.add_flag("--keep-orientation", o.prepare.keep_orientation,
                "Never turn inconsistent triangles or inside-out components");
   app.add_flag("--verify", o.verify,

@@ -2,7 +2,6 @@
 
 #include "decompose_preview.h"
 
-#include <kaboum/io/cad.h>
 #include <kaboum/io/file_unit.h>
 #include <kaboum/robot/exact_shapes.h>
 #include <kaboum/robot/kinematics.h>
@@ -35,13 +34,12 @@ std::string three_digits(double x) {
 
 /// The triangles that distances are to: of the solid as prepared; of the file where a wrap is what
 /// was covered.
-geom::Mesh original_of(const DecomposeOptions& o) {
+geom::Mesh original_of(const DecomposeOptions& o, bool wrapped) {
   const certify::SetRequest request = request_of(o);
   io::ReadResult read =
-      is_cad(o) ? io::read_cad(o.input).read
-                : io::read_mesh(o.input, format_for(o.input, o.input_format, "--input-format"));
+      io::read_mesh(o.input, format_for(o.input, o.input_format, "--input-format"));
   io::scale(read, o.scale, o.input);
-  if (request.wrap) return std::move(read.mesh);
+  if (wrapped) return std::move(read.mesh);
   return naming(o.input,
                 [&] { return geom::prepare(read.mesh, request.preparation).solid.mesh(); });
 }
@@ -67,7 +65,7 @@ std::string verdict_of(const certify::SetCertificate& c) {
 std::string page_of_set(const DecomposeOptions& o, const certify::SetCertificate& c,
                         const geom::ConvexSet& set) {
   const bool outer = c.direction == certify::SetRequest::Direction::Outer;
-  const geom::Mesh original = original_of(o);
+  const geom::Mesh original = original_of(o, c.wrap.has_value());
   const double extent = geom::bounding_box(original).diagonal();
   page::Preview preview{"Bodies of " + file_name(o.input), set.provenance.unit};
   Layer input{"input", outer ? Layer::View::Shown : Layer::View::Transparent, false};

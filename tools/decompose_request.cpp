@@ -41,8 +41,8 @@ certify::SetRequest request_of(const DecomposeOptions& o) {
   r.preparation.holes = o.holes.value();
   o.preparation.apply(r.preparation);
   if (r.preparation.holes == geom::Holes::Keep) r.preparation.holes = geom::Holes::Refuse;
-  const bool exact = is_cad(o) && o.preparation.name == "auto" && o.direction == "outer";
-  if (o.preparation.wraps() || exact) r.wrap = o.preparation.request(std::nullopt);
+  if (o.preparation.wraps()) r.wrap = o.preparation.request(std::nullopt);
+  r.hold_exact_faces = o.preparation.holds_exact_faces();
   r.unit = o.unit;
   r.scale = o.scale;
   r.frame = o.frame;

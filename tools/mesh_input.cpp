@@ -12,12 +12,17 @@ namespace kaboum::tools {
 namespace {
 
 MeshInput read(const std::string& path, const std::string& format, const char* option,
-               const UnitOption& unit = {}) {
+               const UnitOption& unit = {}, std::size_t density = 0) {
   std::vector<char> bytes;
   io::ReadResult r = io::read_mesh(path, format_for(path, format, option), &bytes);
   apply(r, unit, path);
   MeshInput out;
   out.unit = r.unit;
+  out.deviation = r.deviation;
+  out.about_exact = io::about_exact_faces(r);
+  if (density > 0 && io::is_cad(r.format))
+    out.exact =
+        verify::read_exact_points(bytes, r.format, path, density, unit.scale, r.exact_faces);
   out.mesh = std::move(r.mesh);
   out.sha256 = io::sha256(bytes);
   out.notes = std::move(r.notes);
@@ -30,7 +35,10 @@ MeshInput read(const std::string& path, const std::string& format, const char* o
 }  // namespace
 
 MeshInput read_original(const VerifyMeshOptions& o) {
-  return read(o.original, o.original_format, "--input-format", o.unit);
+  // Whether they are inside what encloses, or is covered, is what they can tell.
+  const bool enclosed = o.relation != verify::Relation::Inner;
+  return read(o.original, o.original_format, "--input-format", o.unit,
+              enclosed ? o.exact_points : 0);
 }
 
 ApproximationInput read_approximation(const VerifyMeshOptions& o) {

@@ -43,12 +43,13 @@ geom::Prepared solid_of(const geom::Mesh& mesh, const EnclosureRequest& request,
   std::optional<double> epsilon;
   if (rest.epsilon) epsilon = rest.epsilon->of(geom::bounding_box(mesh).diagonal());
   WrapRequest wrap = *request.wrap;
-  if (epsilon) wrap.farthest = kShareOfWrap * *epsilon;
+  if (epsilon) wrap.farthest = kShareOfWrap * (*epsilon - wrap.clearance);
+  if (wrap.farthest && !(*wrap.farthest > 0)) refuse_deviation(wrap.clearance);
   wrap.float32 = rest.numbers != MeshRequest::Numbers::Double;
   wrap.progress = hooks.progress;
   const CertifiedWrap wrapped = certify_wrap(mesh, wrap);
   made.wrap = wrapped.certificate();
-  if (epsilon) rest.epsilon = Length{*epsilon - made.wrap->farthest_upper};
+  if (epsilon) rest.epsilon = Length{*epsilon - made.wrap->clearance - made.wrap->farthest_upper};
   return prepare_mesh(wrapped.artefact(), request.preparation);
 }
 
@@ -148,7 +149,10 @@ std::optional<CertifiedEnclosure> certify_enclosure(const geom::Mesh& mesh,
   made.triangles = result->artefact().triangles.size();
   made.diagonal = geom::bounding_box(solid.solid.mesh()).diagonal();
   made.epsilon = c.epsilon;
-  made.distance_upper = c.hausdorff_upper() + (made.wrap ? made.wrap->farthest_upper : 0);
+  made.distance_upper = c.hausdorff_upper();
+  if (made.wrap)
+    made.distance_upper =
+        (made.distance_upper + made.wrap->farthest_upper + made.wrap->clearance) * (1 + 0x1p-50);
   made.stop = c.stop;
   made.reached = c.reached();
   made.out_of_work = c.out_of_work;
@@ -166,9 +170,10 @@ std::optional<CertifiedEnclosure> certify_enclosure(const geom::Mesh& mesh,
 }
 
 EnclosedFile enclose_file(const fs::path& file, std::optional<io::Format> format,
-                          const EnclosureRequest& request, const CacheFolder* cache,
+                          const EnclosureRequest& asked, const CacheFolder* cache,
                           const MeshHooks& hooks) {
-  if (cache != nullptr && file != "-") {
+  EnclosureRequest request = asked;
+  if (cache != nullptr && file != "-") {  // CAD files are never known
     const auto known = find_known(*cache, file, format, 1);
     auto found = known
                      ? find_enclosure(*cache, key_of_enclosure(known->mesh_hash, request), request)
@@ -178,7 +183,8 @@ EnclosedFile enclose_file(const fs::path& file, std::optional<io::Format> format
   std::vector<char> bytes;
   io::ReadResult read = io::read_mesh(file, format, &bytes);
   const std::string mesh_hash = SetCache::hash_of(read.mesh), sha256 = kaboum::sha256(bytes);
-  if (cache != nullptr && file != "-")
+  hold_exact_faces(read, request.hold_exact_faces, request.wrap);
+  if (cache != nullptr && file != "-" && !io::is_cad(read.format))
     store_known(*cache, file, format, 1, bytes.size(), sha256, mesh_hash, read);
   EnclosedFile out{sha256, std::move(read.notes), std::move(read.other_files), {}, false};
   const std::string key = key_of_enclosure(mesh_hash, request);

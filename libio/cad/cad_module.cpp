@@ -220,7 +220,7 @@ void read(XSControl_Reader& reader, const char* path, CadShape& result) {
   for (TopExp_Explorer at(shape, TopAbs_FACE, TopAbs_SOLID); at.More(); at.Next())
     ++result.loose_faces;
   for (TopExp_Explorer at(shape, TopAbs_FACE); at.More(); at.Next())
-    collector.add_face(TopoDS::Face(at.Current()));
+    collector.add_face(TopoDS::Face(at.Current())), ++result.faces;
   // Faces, edges and vertices may be this far from each other.
   result.deviation += ShapeAnalysis_ShapeTolerance().Tolerance(shape, 1);
 }
