@@ -28,8 +28,14 @@ std::vector<std::filesystem::path> places() {
       here.dli_fname != nullptr) {
     std::error_code none;
     const auto program = std::filesystem::canonical(here.dli_fname, none);
-    if (!none)
-      result.push_back(program.parent_path().parent_path() / KABOUM_LIBRARY_FOLDER / kCadModule);
+    // Beside bin/, or so many folders above that of a Python module.
+    const bool library = program.extension() == ".so";
+    for (const int up : {2, 3, 5}) {
+      auto folder = program;
+      for (int i = 0; i < up; ++i) folder = folder.parent_path();
+      if (!none && (up > 2) == library)
+        result.push_back(folder / KABOUM_LIBRARY_FOLDER / kCadModule);
+    }
   }
   result.emplace_back(std::filesystem::path(KABOUM_INSTALLED_LIBRARIES) / kCadModule);
   return result;

@@ -31,8 +31,14 @@ std::vector<fs::path> places() {
       here.dli_fname != nullptr) {
     std::error_code none;
     const fs::path program = fs::canonical(here.dli_fname, none);
-    if (!none)
-      out.push_back(program.parent_path().parent_path() / KABOUM_LIBRARY_FOLDER / kPointsModule);
+    // Beside bin/, or so many folders above that of a Python module.
+    const bool library = program.extension() == ".so";
+    for (const int up : {2, 3, 5}) {
+      auto folder = program;
+      for (int i = 0; i < up; ++i) folder = folder.parent_path();
+      if (!none && (up > 2) == library)
+        out.push_back(folder / KABOUM_LIBRARY_FOLDER / kPointsModule);
+    }
   }
   out.emplace_back(fs::path(KABOUM_INSTALLED_LIBRARIES) / kPointsModule);
   return out;
