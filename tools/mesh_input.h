@@ -19,8 +19,8 @@ struct MeshInput {
   std::string unit;  ///< io::ReadResult::unit
   std::vector<std::string> notes;
   std::size_t filled_triangles = 0, dropped_sheets = 0;
-  double deviation = 0;         ///< of exact faces from the triangles; 0: there are none [length]
-  std::string about_exact = {}; ///< what is to be known where the triangles stand for exact faces
+  double deviation = 0;          ///< of exact faces from the triangles; 0: there are none [length]
+  std::string about_exact = {};  ///< what is to be known where the triangles stand for exact faces
   std::optional<verify::ExactPoints> exact = {};  ///< of these, where they are looked at
   std::vector<std::uint32_t> source;  ///< per triangle, if prepared: its index in the file
 };

@@ -85,10 +85,10 @@ std::string line_of_points(const verify::PointClaim& claim, const MeshCase& run)
   if (claim.answer == Answer::Verified)
     return line + "all " + all + " are within the solid of " + outer_name(run) +
            " (points can refute, and prove nothing)";
-  return line + std::to_string(claim.outside) + " of " + all + " stick out of " +
-         outer_name(run) + ", by up to " + number_up(claim.farthest) + ", near " +
-         point(claim.at) + ", face " + std::to_string(claim.face + 1) + " (" +
-         std::to_string(claim.faces) + (claim.faces == 1 ? " face" : " faces") + " in all)";
+  return line + std::to_string(claim.outside) + " of " + all + " stick out of " + outer_name(run) +
+         ", by up to " + number_up(claim.farthest) + ", near " + point(claim.at) + ", face " +
+         std::to_string(claim.face + 1) + " (" + std::to_string(claim.faces) +
+         (claim.faces == 1 ? " face" : " faces") + " in all)";
 }
 
 /// What users most often got wrong when an enclosure is refuted.
@@ -186,8 +186,7 @@ std::string last_line(const MeshCase& run) {
   const Answer answer = run.verdict.answer;
   return std::string(name_of(answer)) +
          (open && answer == Answer::Verified ? ", as far as an open mesh defines it" : "") +
-         about_triangles(run) +
-         except_sheets({{run.asked.original, run.original.dropped_sheets}});
+         about_triangles(run) + except_sheets({{run.asked.original, run.original.dropped_sheets}});
 }
 
 std::vector<std::string> notes_on(const MeshCase& run) {

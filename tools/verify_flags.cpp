@@ -69,10 +69,9 @@ void require_meaning(const CLI::App& app, const VerifyOptions& o) {
     return;
   }
   if (o.robot) {
-    require_absent(
-        app, "--robot",
-        {"--set", "--witness", "--input-format", "--approximation-format", "--unit", "--scale",
-                    "--exact-points"});
+    require_absent(app, "--robot",
+                   {"--set", "--witness", "--input-format", "--approximation-format", "--unit",
+                    "--scale", "--exact-points"});
     return;
   }
   const char* relation = o.progressive ? "--progressive"
@@ -81,10 +80,10 @@ void require_meaning(const CLI::App& app, const VerifyOptions& o) {
                                        : "--outer";
   require_absent(app, relation, {"--geometry", "--visual", "--package-path"});
   if (o.progressive)
-    require_absent(app, "--progressive",
-                   {"--claims", "--epsilon", "--prepare", "--raw", "--drop-sheets", "--set",
-                    "--witness", "--approximation-format", "--max-contacts", "--max-work",
-                    "--exact-points"});
+    require_absent(
+        app, "--progressive",
+        {"--claims", "--epsilon", "--prepare", "--raw", "--drop-sheets", "--set", "--witness",
+         "--approximation-format", "--max-contacts", "--max-work", "--exact-points"});
 }
 
 }  // namespace kaboum::tools

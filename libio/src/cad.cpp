@@ -24,8 +24,7 @@ namespace {
 std::vector<std::filesystem::path> places() {
   std::vector<std::filesystem::path> result;
   Dl_info here{};
-  if (::dladdr(reinterpret_cast<const void*>(&read_cad), &here) != 0 &&
-      here.dli_fname != nullptr) {
+  if (::dladdr(reinterpret_cast<const void*>(&read_cad), &here) != 0 && here.dli_fname != nullptr) {
     std::error_code none;
     const auto program = std::filesystem::canonical(here.dli_fname, none);
     // Beside bin/, or so many folders above that of a Python module.

@@ -108,8 +108,8 @@ Verdict decide(const MeshValue& original, const geom::Mesh& approximation,
 Verdict verify_mesh(const py::object& original, const py::object& approximation,
                     const std::string& relation, const std::string& claims,
                     const py::object& epsilon, bool prepare, bool drop_sheets,
-                    std::size_t max_contacts, const std::optional<double>& max_work, std::size_t exact_points, int threads,
-                    const py::object& progress) {
+                    std::size_t max_contacts, const std::optional<double>& max_work,
+                    std::size_t exact_points, int threads, const py::object& progress) {
   static constexpr std::array<std::pair<const char*, verify::Relation>, 2> kRelations{
       {{"outer", verify::Relation::Outer}, {"inner", verify::Relation::Inner}}};
   const Asked asked{value_of(kRelations, relation, "relation"),
@@ -137,8 +137,8 @@ Verdict verify_mesh(const py::object& original, const py::object& approximation,
 
 Verdict verify_cover(const py::object& original, const py::object& set, const std::string& claims,
                      const py::object& epsilon, bool prepare, bool drop_sheets,
-                     std::size_t max_contacts, const std::optional<double>& max_work, std::size_t exact_points, int threads,
-                     const py::object& progress) {
+                     std::size_t max_contacts, const std::optional<double>& max_work,
+                     std::size_t exact_points, int threads, const py::object& progress) {
   const Asked asked{verify::Relation::Cover,
                     value_of(kClaims, claims, "claims"),
                     length_of(epsilon, "epsilon"),
@@ -245,14 +245,12 @@ void bind_verification(py::module_& module) {
              py::arg("epsilon") = py::none(), py::arg("prepare") = false,
              py::arg("drop_sheets") = false, py::arg("max_contacts") = contacts,
              py::arg("max_work") = py::none(), py::arg("exact_points") = verify::kPointDensity,
-             py::arg("threads") = 0,
-             py::arg("progress") = py::none(), kMeshDoc);
+             py::arg("threads") = 0, py::arg("progress") = py::none(), kMeshDoc);
   module.def("verify_cover", &verify_cover, py::arg("original"), py::arg("set"), py::kw_only(),
              py::arg("claims") = "all", py::arg("epsilon") = py::none(), py::arg("prepare") = false,
              py::arg("drop_sheets") = false, py::arg("max_contacts") = contacts,
              py::arg("max_work") = py::none(), py::arg("exact_points") = verify::kPointDensity,
-             py::arg("threads") = 0,
-             py::arg("progress") = py::none(), kCoverDoc);
+             py::arg("threads") = 0, py::arg("progress") = py::none(), kCoverDoc);
 }
 
 }  // namespace kaboum::python

@@ -35,8 +35,8 @@ std::vector<Record> records_of(const std::string& text) {
     Record record{std::atoi(text.c_str() + at + 1), at, end + 1, {}};
     std::size_t name = text.find('=', at);
     while (name < end && !std::isalpha(static_cast<unsigned char>(text[name]))) ++name;
-    while (name < end && (std::isalnum(static_cast<unsigned char>(text[name])) != 0 ||
-                          text[name] == '_'))
+    while (name < end &&
+           (std::isalnum(static_cast<unsigned char>(text[name])) != 0 || text[name] == '_'))
       record.name += text[name++];
     out.push_back(record);
     at = end + 1;
@@ -73,9 +73,9 @@ const std::regex& numbers() {
 
 /// Whether records of that name say where something is, or in which unit.
 bool places(const std::string& name) {
-  for (const char* word : {"UNIT", "CONTEXT", "TRANSFORMATION", "PLACEMENT", "MAPPED", "MAP",
-                           "RELATIONSHIP", "ASSEMBLY", "MEASURE", "UNCERTAINTY", "DIRECTION",
-                           "CARTESIAN_POINT", "DIMENSIONAL"})
+  for (const char* word :
+       {"UNIT", "CONTEXT", "TRANSFORMATION", "PLACEMENT", "MAPPED", "MAP", "RELATIONSHIP",
+        "ASSEMBLY", "MEASURE", "UNCERTAINTY", "DIRECTION", "CARTESIAN_POINT", "DIMENSIONAL"})
     if (name.find(word) != std::string::npos) return true;
   return false;
 }
@@ -124,8 +124,7 @@ class StepDamage {
     if (all.size() < 2) return false;
     const std::size_t i = random_.index(all.size() - 1);
     const Span a = all[i], b = all[i + 1];
-    return put(record, what, {a.begin, b.end},
-               slice(b) + slice({a.end, b.begin}) + slice(a));
+    return put(record, what, {a.begin, b.end}, slice(b) + slice({a.end, b.begin}) + slice(a));
   }
 
   bool truncate(const Record& record) {
@@ -166,9 +165,10 @@ class StepDamage {
 
   bool change_name(const Record& record) {
     static const std::vector<std::string> kNames{
-        "PLANE",       "CYLINDRICAL_SURFACE", "SPHERICAL_SURFACE", "OPEN_SHELL",
-        "CLOSED_SHELL", "ADVANCED_FACE",      "FACE_SURFACE",      "EDGE_LOOP",
-        "CIRCLE",      "LINE",                "FACE_BOUND",        "POLY_LOOP"};
+        "PLANE",        "CYLINDRICAL_SURFACE", "SPHERICAL_SURFACE",
+        "OPEN_SHELL",   "CLOSED_SHELL",        "ADVANCED_FACE",
+        "FACE_SURFACE", "EDGE_LOOP",           "CIRCLE",
+        "LINE",         "FACE_BOUND",          "POLY_LOOP"};
     const std::size_t at = text_.find(record.name, record.begin);
     return put(record, "the name of another entity in place", {at, at + record.name.size()},
                kNames[random_.index(kNames.size())]);
@@ -226,7 +226,8 @@ class StepDamage {
         return change_name(record);
       case 14: {
         const auto at = one_of(all_of(text_, body(record), numbers()));
-        return at && put(record, "nonsense for a number", *at, random_.index(2) == 0 ? "1.E400" : "abc");
+        return at &&
+               put(record, "nonsense for a number", *at, random_.index(2) == 0 ? "1.E400" : "abc");
       }
       default: {
         static const std::regex pattern("\\(((?:#[0-9]+,?)+)\\)");
@@ -327,7 +328,8 @@ class IgesDamage {
     switch (kind) {
       case 0:  // the line is lost
         out_.what = "loss";
-        out_.text = text_.substr(0, line.begin) + text_.substr(std::min(line.end + 1, text_.size()));
+        out_.text =
+            text_.substr(0, line.begin) + text_.substr(std::min(line.end + 1, text_.size()));
         if (line.owner > 0) out_.touched.insert(line.owner);
         return true;
       case 1:

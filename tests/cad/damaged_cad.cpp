@@ -13,8 +13,9 @@
 //   (b) every face of the undamaged part, in each place that it had there, whose record and all
 //       records below it stand in the damaged file as they were: whoever reads that carefully
 //       finds the face, wherever damage left it: in no shell, in a solid that has lost its name, in
-//       an assembly that refers to nothing. Where it is nobody can tell if a record above faces that
-//       places things or states a unit was touched; then (b) says nothing, and (a) alone counts.
+//       an assembly that refers to nothing. Where it is nobody can tell if a record above faces
+//       that places things or states a unit was touched; then (b) says nothing, and (a) alone
+//       counts.
 // Or the program refuses: what it cannot read it has to say. Exit codes but 0 are all right, unless
 // a program is killed by a signal other than that of the limit of time.
 //
@@ -91,8 +92,7 @@ Vec3 vector_of(const gp_Pnt& p) { return {p.X(), p.Y(), p.Z()}; }
 std::vector<double> between(const TColStd_Array1OfReal& ends, int parts) {
   std::vector<double> out;
   for (int i = ends.Lower(); i < ends.Upper(); ++i)
-    for (int k = 0; k < parts; ++k)
-      out.push_back(ends(i) + (ends(i + 1) - ends(i)) * k / parts);
+    for (int k = 0; k < parts; ++k) out.push_back(ends(i) + (ends(i + 1) - ends(i)) * k / parts);
   out.push_back(ends.Last());
   return out;
 }
@@ -284,7 +284,12 @@ class Campaign {
     const bool iges = model.name.ends_with(".iges");
     const fs::path whole = folder_ / ("whole-" + model.name);
     std::ofstream(whole, std::ios::binary) << model.text;
-    const std::vector<FacePoints> faces = faces_of(whole, iges);
+    std::vector<FacePoints> faces = faces_of(whole, iges);
+    for (const auto& [entity, at] : model.unread) {
+      faces.push_back({entity, {}});
+      for (std::size_t i = 0; i + 2 < at.size(); i += 3)
+        faces.back().points.emplace_back(at[i], at[i + 1], at[i + 2]);
+    }
     std::size_t known = 0;
     for (const FacePoints& face : faces) known += face.entity != 0 ? 1 : 0;
     Count before = count_;
@@ -292,9 +297,8 @@ class Campaign {
       try_variant(model, iges, faces, seed);
     std::cout << model.name << ": " << faces.size() << " faces, " << known << " known by entity; "
               << variants << " variants, " << count_.runs - before.runs << " runs, "
-              << count_.done - before.done << " ended with 0 ("
-              << count_.compared - before.compared << " beside undamaged faces), "
-              << count_.wrong - before.wrong << " wrong\n";
+              << count_.done - before.done << " ended with 0 (" << count_.compared - before.compared
+              << " beside undamaged faces), " << count_.wrong - before.wrong << " wrong\n";
   }
 
   [[nodiscard]] const Count& count() const { return count_; }
@@ -309,10 +313,10 @@ class Campaign {
     const std::vector<FacePoints> left = faces_left(model, faces, damage, iges);
     const std::string result = (folder_ / "result").string();
     const std::size_t wrong = count_.wrong + count_.killed;
-    try_program(file, iges, left, damage.what, result + ".obj",
-                {(programs_ / "bcd-decompose").string(), file.string(), "-o", result + ".obj",
-                 "--epsilon", "10%", "--effort", "fast", "--no-cache", "--threads", "1",
-                 "--report", result + ".json"});
+    try_program(
+        file, iges, left, damage.what, result + ".obj",
+        {(programs_ / "bcd-decompose").string(), file.string(), "-o", result + ".obj", "--epsilon",
+         "10%", "--effort", "fast", "--no-cache", "--threads", "1", "--report", result + ".json"});
     if (seed % 5 == 0)
       try_program(file, iges, left, damage.what, result + ".ply",
                   {(programs_ / "mesh-prepare").string(), file.string(), "-o", result + ".ply",
@@ -338,7 +342,8 @@ class Campaign {
     ++count_.done;
     if (!left.empty()) ++count_.compared;
     const int verdict = in_child([&] {
-      // The bodies of a set hold the exact faces, and say so by a wrap; meshes say how far they are.
+      // The bodies of a set hold the exact faces, and say so by a wrap; meshes say how far they
+      // are.
       const bool set = made.extension() == ".obj";
       const Result result(kaboum::io::read_mesh(made).mesh, set ? 0 : stated_deviation(report));
       const bool old = holds_all(result, left, "undamaged faces");

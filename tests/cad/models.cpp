@@ -125,10 +125,9 @@ TopoDS_Shape spike(double width) {
   const Handle(Geom_BSplineCurve) lower = new Geom_BSplineCurve(poles, at, times, 3);
   const std::array<gp_Pnt, 4> corner{gp_Pnt(0, 0, 0), gp_Pnt(100, 0, 0), gp_Pnt(100, 20, 0),
                                      gp_Pnt(0, 20, 0)};
-  BRepBuilderAPI_MakeWire wire(BRepBuilderAPI_MakeEdge(lower),
-                               BRepBuilderAPI_MakeEdge(corner[1], corner[2]),
-                               BRepBuilderAPI_MakeEdge(corner[2], corner[3]),
-                               BRepBuilderAPI_MakeEdge(corner[3], corner[0]));
+  BRepBuilderAPI_MakeWire wire(
+      BRepBuilderAPI_MakeEdge(lower), BRepBuilderAPI_MakeEdge(corner[1], corner[2]),
+      BRepBuilderAPI_MakeEdge(corner[2], corner[3]), BRepBuilderAPI_MakeEdge(corner[3], corner[0]));
   return BRepPrimAPI_MakePrism(BRepBuilderAPI_MakeFace(wire.Wire()).Face(), gp_Vec(0, 0, 10))
       .Shape();
 }
@@ -231,6 +230,7 @@ CadModel tessellated() {
   if (at == std::string::npos) throw std::runtime_error("no representation of the box");
   model.text.insert(end, solid);
   model.text.insert(at + items.size(), "#9002,");
+  model.unread = {{9000, {3, 0, 0, 4, 0, 0, 3, 1, 0, 4, 1, 0, 3, 0, 1, 4, 0, 1, 3, 1, 1, 4, 1, 1}}};
   return model;
 }
 

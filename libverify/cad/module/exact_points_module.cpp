@@ -11,11 +11,19 @@
 #include <BRepTopAdaptor_FClass2d.hxx>
 #include <BRep_Tool.hxx>
 #include <IGESControl_Reader.hxx>
+#include <IGESData_IGESEntity.hxx>
+#include <IGESGeom_BoundedSurface.hxx>
+#include <IGESGeom_TrimmedSurface.hxx>
+#include <IGESSolid_Face.hxx>
 #include <Interface_CheckIterator.hxx>
+#include <Interface_InterfaceModel.hxx>
 #include <Precision.hxx>
 #include <STEPControl_Reader.hxx>
 #include <Standard_Failure.hxx>
+#include <StepData_UndefinedEntity.hxx>
+#include <StepShape_FaceSurface.hxx>
 #include <TColStd_Array1OfReal.hxx>
+#include <TCollection_HAsciiString.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_MapOfShape.hxx>
 #include <TopoDS.hxx>
@@ -23,6 +31,8 @@
 #include <TopoDS_Face.hxx>
 #include <TopoDS_Shape.hxx>
 #include <TopoDS_Vertex.hxx>
+#include <TransferBRep.hxx>
+#include <Transfer_TransientProcess.hxx>
 #include <XSControl_TransferReader.hxx>
 #include <XSControl_WorkSession.hxx>
 #include <gp_Pnt.hxx>
@@ -30,7 +40,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
+#include <string>
 
 #include "../src/point_list.h"
 
@@ -49,8 +61,9 @@ std::vector<double> divided(const TColStd_Array1OfReal& ends, std::size_t parts)
   for (int i = ends.Lower(); i < ends.Upper(); ++i) {
     const double from = ends.Value(i), to = ends.Value(i + 1);
     for (std::size_t k = 1; k <= parts; ++k)
-      out.push_back(k == parts ? to : from + (to - from) * static_cast<double>(k) /
-                                                 static_cast<double>(parts));
+      out.push_back(k == parts
+                        ? to
+                        : from + (to - from) * static_cast<double>(k) / static_cast<double>(parts));
   }
   return out;
 }
@@ -145,6 +158,20 @@ class Sampler {
   TopTools_MapOfShape edges_, vertices_;
 };
 
+/// What the file calls the entity: "entity #12".
+std::string name_of(const Handle(Interface_InterfaceModel) & model, int entity) {
+  if (entity <= 0 || entity > model->NbEntities()) return "the file";
+  return "entity " + std::string(model->StringLabel(model->Value(entity))->ToCString());
+}
+
+void require_none_failed(const XSControl_Reader& reader, Interface_CheckIterator checks,
+                         const char* what) {
+  for (checks.Start(); checks.More(); checks.Next())
+    if (checks.Value()->HasFailed())
+      refuse(name_of(reader.Model(), checks.Number()) + " " + what + ": " +
+             checks.Value()->CFail(1));
+}
+
 /// Every root of the file became a shape, and nothing in it failed.
 void require_transferred(XSControl_Reader& reader) {
   const int roots = reader.NbRootsForTransfer();
@@ -155,19 +182,59 @@ void require_transferred(XSControl_Reader& reader) {
            " parts of the file can be made of what is in it");
   for (int i = 1; i <= reader.NbShapes(); ++i)
     if (reader.Shape(i).IsNull()) refuse("part " + std::to_string(i) + " of the file is empty");
-  Interface_CheckIterator checks = reader.WS()->TransferReader()->LastCheckList();
-  for (checks.Start(); checks.More(); checks.Next())
-    if (checks.Value()->HasFailed())
-      refuse("entity " + std::to_string(checks.Number()) +
-             " of the file cannot be made: " + checks.Value()->CFail(1));
+  require_none_failed(reader, reader.WS()->ModelCheckList(false), "is not what it should be");
+  require_none_failed(reader, reader.WS()->TransferReader()->LastCheckList(), "cannot be made");
+}
+
+/// Whether an entity that OpenCASCADE does not know may carry a face, by its name in the file.
+bool may_have_faces(const std::string& name) {
+  for (const char* word :
+       {"FACE", "SHELL", "SOLID", "BREP", "TESSELLATED", "TRIANGULATED", "SURFACE", "VOLUME", "CSG",
+        "BLOCK", "SPHERE", "TORUS", "CYLINDER", "CONE", "WEDGE", "MAPPED_ITEM"})
+    if (name.find(word) != std::string::npos) return true;
+  return false;
+}
+
+bool is_face(const Handle(Standard_Transient) & entity) {
+  return entity->IsKind(STANDARD_TYPE(StepShape_FaceSurface)) ||
+         entity->IsKind(STANDARD_TYPE(IGESSolid_Face)) ||
+         entity->IsKind(STANDARD_TYPE(IGESGeom_TrimmedSurface)) ||
+         entity->IsKind(STANDARD_TYPE(IGESGeom_BoundedSurface));
+}
+
+/// Every face that the file has is one of the part's, wherever it is placed.
+void require_faces_of(XSControl_Reader& reader, const TopoDS_Shape& part) {
+  std::set<const void*> in_part;
+  for (TopExp_Explorer at(part, TopAbs_FACE); at.More(); at.Next())
+    in_part.insert(at.Current().TShape().get());
+  const Handle(Interface_InterfaceModel) model = reader.Model();
+  const Handle(Transfer_TransientProcess) process =
+      reader.WS()->TransferReader()->TransientProcess();
+  for (int i = 1; i <= model->NbEntities(); ++i) {
+    const Handle(Standard_Transient) entity = model->Value(i);
+    const std::string label = name_of(model, i);
+    const Handle(StepData_UndefinedEntity) unknown =
+        Handle(StepData_UndefinedEntity)::DownCast(entity);
+    if (!unknown.IsNull() && may_have_faces(unknown->StepType()))
+      refuse(label + " is of a type that cannot be read, " + unknown->StepType());
+    if (!is_face(entity)) continue;
+    const TopoDS_Shape shape = TransferBRep::ShapeResult(process, entity);
+    if (shape.IsNull()) refuse(label + " is a face that no part of the file has");
+    bool found = false;
+    for (TopExp_Explorer at(shape, TopAbs_FACE); at.More(); at.Next())
+      found = found || in_part.contains(at.Current().TShape().get());
+    if (!found) refuse(label + " is a face that no part of the file has");
+  }
 }
 
 void list(XSControl_Reader& reader, const char* path, std::size_t density, PointList& result) {
   if (reader.ReadFile(path) != IFSelect_RetDone)
     refuse("the file cannot be read; it is damaged or of another kind");
   require_transferred(reader);
+  const TopoDS_Shape part = reader.OneShape();
+  require_faces_of(reader, part);
   Sampler sampler(density, result);
-  for (TopExp_Explorer at(reader.OneShape(), TopAbs_FACE); at.More(); at.Next())
+  for (TopExp_Explorer at(part, TopAbs_FACE); at.More(); at.Next())
     sampler.add(TopoDS::Face(at.Current()));
   if (result.faces == 0) refuse("the file has no faces");
 }

@@ -98,7 +98,8 @@ std::string message_of(std::span<const char> bytes, io::Format format, const std
   list_points(file.path().c_str(), format == io::Format::Iges, density, list);
   if (!list.error.empty())
     throw Error(ErrorCode::InvalidInput,
-                name + ": exact faces, read a second time: " + list.error);
+                name + ": its exact faces, read a second time: " + list.error +
+                    "; export it again, or judge the triangles alone (--exact-points 0)");
   const std::array<std::uint64_t, 3> counts{list.of_face.size(), list.faces, list.edges};
   std::string out;
   put(out, counts.data(), counts.size());
@@ -151,7 +152,8 @@ ExactPoints read_exact_points(std::span<const char> bytes, io::Format format,
     throw Error(ErrorCode::InvalidInput,
                 name + ": " + std::to_string(out.faces) +
                     " exact faces were found where the triangles stand for " +
-                    std::to_string(faces) + ", so that one of both readings is wrong");
+                    std::to_string(faces) +
+                    ", so that one of both readings is wrong; make a mesh of it elsewhere");
   double largest = 0;
   for (geom::Vec3& p : out.points) {
     p *= scale;

@@ -9,10 +9,10 @@
 namespace kaboum::verify {
 
 struct PointList {
-  std::vector<double> coordinates;      ///< three of each point [mm]
-  std::vector<std::uint32_t> of_face;   ///< of each point; faces are counted from 0
-  std::size_t faces = 0, edges = 0;     ///< one for each place of a face; edges of all of them
-  std::string error;                    ///< why nothing was read; empty if everything was
+  std::vector<double> coordinates;     ///< three of each point [mm]
+  std::vector<std::uint32_t> of_face;  ///< of each point; faces are counted from 0
+  std::size_t faces = 0, edges = 0;    ///< one for each place of a face; edges of all of them
+  std::string error;                   ///< why nothing was read; empty if everything was
 };
 
 /// The module's only function. Catches everything.

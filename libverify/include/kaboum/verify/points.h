@@ -17,7 +17,7 @@ struct PointQuestion {
 /// refutes.
 struct PointClaim {
   Answer answer = Answer::Undefined;
-  std::string reason;  ///< one clause; empty unless undefined
+  std::string reason;                              ///< one clause; empty unless undefined
   std::size_t points = 0, outside = 0, faces = 0;  ///< faces: that have points outside
   /// Of the points outside the one that sticks out farthest: certainly by this. [length]
   double farthest = 0;
