@@ -50,6 +50,19 @@ shows 1 'exact points: refuted' "$BIN/bound-verify" mesh --outer parts/torus.ste
 "$BIN/bound-verify" mesh --outer parts/vase.step vase-wrap.ply --exact-points 40 --threads 1 --report a.json >a.txt
 "$BIN/bound-verify" mesh --outer parts/vase.step vase-wrap.ply --exact-points 40 --threads 3 --report b.json >b.txt
 cmp a.txt b.txt || fail "the verdict depends on threads"
+# In Python the same functions hold and judge exact faces.
+if PYTHONPATH="$BIN/../python" python3 -c 'import kaboum' 2>/dev/null; then
+  PYTHONPATH="$BIN/../python" python3 - <<'END' || fail "STEP in Python"
+import kaboum
+part = kaboum.read("parts/vase.step")
+assert part.unit == "mm" and 0 < part.deviation < 0.1, part.deviation
+held = kaboum.verify_cover(part, kaboum.decompose(part, epsilon="2%", effort="fast", no_cache=True))
+assert held and held.claims["exact_points"]["answer"] == "verified", held.claims
+own = kaboum.verify_mesh("parts/vase.step", part)
+assert own.answer == "refuted" and own.claims["exact_points"]["outside"] > 0, own.claims
+assert kaboum.verify_mesh(part, part, exact_points=0)
+END
+fi
 # Every program that reads a mesh reads these, too.
 expect 0 'the exact faces' "$BIN/bmesh-decimate" parts/vase.step -o simple.ply --epsilon 2% --effort fast
 "$PARTS" check parts/vase.step simple.ply 100000 2.5% >out.txt || fail "decimated: $(cat out.txt)"
