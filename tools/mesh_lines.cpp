@@ -172,7 +172,7 @@ namespace {
 std::string about_triangles(const MeshCase& run) {
   const MeshInput& original = run.original;
   if (original.about_exact.empty() || run.verdict.answer != Answer::Verified) return {};
-  return std::string(" of the triangles, which stand for exact faces within ") +
+  return std::string(", of the triangles, which stand for exact faces within ") +
          number_up(original.deviation) +
          (original.exact ? "; no point of these that was looked at sticks out"
                          : "; of these nothing is said");

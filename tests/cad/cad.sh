@@ -38,7 +38,7 @@ done
 shows 1 'exact points: refuted: .* stick out of the union of the bodies, by up to .*, near (.*), face 1' \
   "$BIN/bound-verify" cover parts/sphere.step strict.obj --prepare
 shows 1 'solid claim: verified' "$BIN/bound-verify" cover parts/sphere.step strict.obj --prepare
-shows 0 'verified of the triangles, which stand for exact faces within .*; of these nothing is said' \
+shows 0 'verified, of the triangles, which stand for exact faces within .*; of these nothing is said' \
   "$BIN/bound-verify" cover parts/sphere.step strict.obj --prepare --exact-points 0
 shows 1 'exact points: refuted' "$BIN/bound-verify" mesh --outer parts/vase.step vase.ply
 shows 1 'exact points: refuted' "$BIN/bound-verify" cover parts/flange.step vase.obj
@@ -73,7 +73,7 @@ expect 2 'mesh-prepare' "$BIN/bmesh-decimate" parts/vase.step -o simple.ply --ra
 expect 0 '' "$BIN/bmesh-decimate" parts/vase.step -o simple.ply --ratio 0.5 --log l --prepare strict --effort fast
 shows 0 'verified' "$BIN/bmesh-replay" parts/vase.step l simple.ply
 expect 0 'what is said is about the triangles' "$BIN/bcd-decompose" parts/box.step -o in.glb --direction inner --epsilon 5% --no-cache
-shows 0 'verified of the triangles' "$BIN/bound-verify" mesh --inner parts/box.step in.glb --prepare
+shows 0 'verified, of the triangles' "$BIN/bound-verify" mesh --inner parts/box.step in.glb --prepare
 expect 0 'exact faces' "$BIN/hausdorff-eval" parts/vase.step vase.ply --samples 100 --at-most 1%
 expect 1 'not certain' "$BIN/hausdorff-eval" parts/vase.step vase.ply --samples 100 --at-most 1e-9
 expect 0 '' "$BIN/mesh-picture" parts/vase.step parts/flange.iges -o vase.png
