@@ -108,11 +108,16 @@ std::string page_of_robot(const DecomposeOptions& o, const robot::RobotFile& rob
   Layer result{"bodies", Layer::View::Transparent};
   result.bodies = result.all_edges = true;
   std::size_t count = 0;
+  std::vector<std::string> points;  // links that have nothing else
   double reach = 0;
   for (const certify::CertifiedLink& made_link : made.links) {
     const std::uint32_t index = made_link.certificate().link;
     const geom::Mesh exact = robot::exact_shapes(bodies.choice.shapes_of(robot.robot.links[index]),
                                                  robot, bodies.choice.packages);
+    if (exact.triangles.empty()) {
+      points.push_back(robot.robot.links[index].name);
+      continue;
+    }
     const geom::DistanceQuery triangles(exact);
     const auto& hulls = made_link.artefact().bodies;
     const std::vector<page::DistanceOf> distances(hulls.size(), page::distance_to(triangles));
@@ -139,6 +144,8 @@ std::string page_of_robot(const DecomposeOptions& o, const robot::RobotFile& rob
   }
   preview.facts.emplace_back("reach", "no point of a body is farther from its link's shapes than " +
                                           three_digits(reach) + ", certified");
+  for (const std::string& link : points)
+    preview.facts.emplace_back(link, "its shapes are points, which no body covers");
   preview.layers = {std::move(input), std::move(result)};
   preview.motion.emplace(
       page::Motion{robot.robot, {std::vector<double>(robot.robot.variables.size(), 0.0)}});

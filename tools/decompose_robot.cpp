@@ -168,7 +168,8 @@ PageLink page_link(const Run& run, const certify::CertifiedLink& link) {
     out.vertices += body.hull.vertices.size();
     append_placed(out.result, body.hull, {});
   }
-  out.verdict = "cover verified exactly";
+  out.verdict = link.artefact().bodies.empty() ? "its shapes are points, which no body covers"
+                                               : "cover verified exactly";
   for (const robot::LinkShape& shape : run.bodies().shapes) {
     if (shape.link != c.link || !shape.mesh) continue;
     const certify::CertifiedLinkMesh& mesh = run.bodies().meshes[*shape.mesh];

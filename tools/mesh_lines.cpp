@@ -1,4 +1,7 @@
 // What was found of two meshes, in words.
+#include <kaboum/geom/topology.h>
+
+#include <algorithm>
 #include <cmath>
 
 #include "mesh_case.h"
@@ -145,7 +148,7 @@ std::vector<std::string> lines_of_enclosure(const MeshCase& run) {
                            : "a part of the solid of " + inner + " is outside that of " + outer,
                        v.inclusion.solid, solid_extent(run)));
   lines.push_back(line("surface claim",
-                       "every triangle with area of " + inner + " is within the solid of " + outer,
+                       "every triangle of " + inner + " is within the solid of " + outer,
                        (v.inclusion.limited ? "at least " : "") +
                            std::to_string(v.inclusion.surface.inner_triangles.size()) +
                            " triangles of " + inner + " are not all within the solid of " + outer,
@@ -215,6 +218,14 @@ std::string why_undefined(const MeshCase& run) {
            " is inside out: its volume is negative, so that its solid is empty or nearly "
            "so, and that it is enclosed says nothing. Turn its triangles round" +
            (run.inner() ? "" : " (--prepare does)") + ", or ask for --claims all";
+  const geom::Mesh& mesh = run.inner() ? run.approximation.mesh : run.original.mesh;
+  const auto has_no_area = [&](const geom::Triangle& t) {
+    return geom::is_degenerate(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+  };
+  if (std::all_of(mesh.triangles.begin(), mesh.triangles.end(), has_no_area))
+    return inner +
+           ": none of its triangles has an area, so that it has no solid. The surface claim is "
+           "defined: --claims surface";
   if (in.inner_closed && in.outer_closed)
     return "a mesh without any triangle that has an area; no distance to it is defined";
   if (in.outer_closed)

@@ -1,6 +1,7 @@
 // Wraps: made, measured, and decided by libverify.
 #include <kaboum/certify/wrap.h>
 #include <kaboum/geom/distance.h>
+#include <kaboum/geom/moderate.h>
 #include <kaboum/verify/inclusion.h>
 #include <kaboum/wrap/wrap.h>
 
@@ -15,8 +16,9 @@ namespace kaboum::certify {
 namespace {
 
 constexpr Length kOffset{0.1, true}, kSeal{1, true};
-constexpr double kOffsetShare = 0.25;  ///< of the farthest that is allowed
-constexpr int kTries = 4;              ///< of gaps to seal, each half of the one before
+constexpr double kLeast = 1e-9, kMost = 100;  ///< of lengths asked for, in diagonals
+constexpr double kOffsetShare = 0.25;         ///< of the farthest that is allowed
+constexpr int kTries = 4;                     ///< of gaps to seal, each half of the one before
 
 std::string number(double x) {
   std::array<char, 32> text{};
@@ -104,6 +106,7 @@ CertifiedWrap certify_wrap(const geom::Mesh& input, const WrapRequest& request) 
   if (input.triangles.empty())
     throw Error(ErrorCode::InvalidInput, "there are no triangles to wrap");
   geom::require_valid(input);
+  geom::require_moderate(input);
   WrapCertificate made;
   made.input_triangles = input.triangles.size();
   made.diagonal = geom::bounding_box(input).diagonal();
@@ -116,6 +119,14 @@ CertifiedWrap certify_wrap(const geom::Mesh& input, const WrapRequest& request) 
   made.seal = request.seal       ? request.seal->of(made.diagonal)
               : request.farthest ? *request.farthest
                                  : kSeal.of(made.diagonal);
+  for (const auto& [length, name] : {std::pair{made.offset, "offset"},
+                                     {made.seal, "seal"},
+                                     {request.farthest.value_or(made.offset), "epsilon"}})
+    if (!(length >= kLeast * made.diagonal && length <= kMost * made.diagonal))
+      throw Error(ErrorCode::InvalidArgument, std::string(name) + ": " + number(length) +
+                                                  " is not from " + number(kLeast) + " to " +
+                                                  number(kMost) + " times the diagonal, which is " +
+                                                  number(made.diagonal));
   made.clearance = request.clearance;
   if (made.offset < 3 * made.clearance) {
     if (request.offset)

@@ -4,6 +4,7 @@
 #include <kaboum/base/parallel.h>
 #include <kaboum/geom/holes.h>
 #include <kaboum/geom/hollows.h>
+#include <kaboum/geom/moderate.h>
 #include <kaboum/geom/prepare.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/geom/winding.h>
@@ -25,11 +26,9 @@
 #include "solid_mesh_maker.h"
 
 namespace kaboum::geom {
-namespace {
 
-/// Products of four coordinates must neither overflow nor vanish.
-void require_moderate(const Mesh& input) {
-  const Box3 box = bounding_box(input);
+void require_moderate(const Mesh& mesh) {
+  const Box3 box = bounding_box(mesh);
   if (box.empty()) return;
   const double magnitude = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
   const double extent = (box.max - box.min).maxCoeff();
@@ -41,6 +40,8 @@ void require_moderate(const Mesh& input) {
     throw Error(ErrorCode::InvalidInput, text.str());
   }
 }
+
+namespace {
 
 /// The steps of preparation, and what each of them notes.
 class Preparation {

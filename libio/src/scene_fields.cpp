@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "scene_nodes.h"
+
 namespace kaboum::io {
 
 void SceneFields::fail_at(const char* where, const std::string& what) const {
@@ -80,7 +82,7 @@ const SceneNode* SceneFields::only(const SceneField& field) const {
 bool SceneFields::read_common(const SceneField& field) const {
   if (field.name == "metadata") {
     for (const SceneNode* const n : field.nodes)
-      if (!n->type.starts_with("Metadata"))
+      if (!contains(kMetadata, n->type))
         fail_at(n->where, in_quotes(n->type) + " where metadata is expected");
     return true;
   }

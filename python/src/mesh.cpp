@@ -33,12 +33,19 @@ std::size_t rows_of(const py::array& array, const char* argument, const char* wh
 }
 
 std::vector<geom::Vec3> copy_vertices(const py::object& value, const char* argument) {
-  const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(value);
+  const py::array given = py::array::ensure(value);
+  if (!given) {
+    PyErr_Clear();
+    refuse(argument, "vertices must be numbers");
+  }
+  const std::size_t rows = rows_of(given, argument, "vertices");
+  require_doubles(given, std::string(argument) + ": vertices");
+  const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(given);
   if (!array) {
     PyErr_Clear();
     refuse(argument, "vertices must be numbers");
   }
-  std::vector<geom::Vec3> out(rows_of(array, argument, "vertices"));
+  std::vector<geom::Vec3> out(rows);
   const double* p = array.data();
   for (geom::Vec3& v : out) {
     v = Eigen::Map<const geom::Vec3>(p);
@@ -144,14 +151,16 @@ It may be given wherever a mesh is expected, here and to libraries that take `ve
 Parameters
 ----------
 vertices : n x 3 numbers
-    In any unit of length; results have the same one.
+    In any unit of length; results have the same one. Nothing is rounded: numbers of other types
+    than float64 (integers, long doubles) must be float64 numbers.
 faces : m x 3 whole numbers
     Indices of vertices, counter-clockwise seen from outside.
 
 Raises
 ------
 Error
-    'invalid_argument' on other shapes, 'invalid_input' on indices out of range.)")
+    'invalid_argument' on other shapes and on numbers that are no float64, naming the first;
+    'invalid_input' on indices out of range.)")
       .def_property_readonly(
           "vertices", [](const MeshValue& m) { return vertices_of(m.mesh); },
           "n x 3 float64, a view that cannot be written. [length]")

@@ -138,6 +138,31 @@ TEST(Obj, IndicesSlashesPolygonsAndContinuation) {
   expect_error("v 0 0 0\nv 1 0 0\nf 1 2\n", Format::Obj, {"line 3", "fewer than three corners"});
 }
 
+// A name may end with a backslash; nothing is lost by it.
+TEST(Obj, BackslashesSwallowNoStatement) {
+  const std::string v = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 1\n";
+  for (const char* statement :
+       {"g C:\\a\\\n", "o x \\\n", "usemtl y\\\r\n", "mtllib \\\n", "vn 0 0 1 \\\n", "vt 0 0\\\n",
+        "l 1 2 \\\n", "p 1 \\\n 2 \\\n", "s 1\\\n", "curv 0 1 1 2\\\n"}) {
+    const ReadResult r = parse(v + statement + "f 1 2 3\nf 1 2 4\n", Format::Obj);
+    EXPECT_EQ(r.mesh.triangles.size(), 2U) << statement;
+    EXPECT_TRUE(has_note(r, std::string(statement).starts_with("p") ? "line 6" : "line 5"))
+        << statement;
+    EXPECT_TRUE(has_note(r, "backslash")) << statement;
+  }
+  // What is no statement belongs to the line before.
+  const ReadResult r = parse(v + "g a \\\n b c\nparm u 0 \\\n 1 2 \\\n3\nf 1 2 3\n", Format::Obj);
+  EXPECT_EQ(r.mesh.triangles.size(), 1U);
+  EXPECT_FALSE(has_note(r, "backslash"));
+  // In a vertex or a face it does as well: nothing is left out without a word.
+  expect_error("v 0 0 0 \\\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n", Format::Obj,
+               {"line 2", "'v'", "backslash"});
+  expect_error(v + "f 1 2 3 \\\nf 1 2 4\n", Format::Obj, {"line 6", "'f'"});
+  expect_error("v 0 0 0 1 x 1\n", Format::Obj, {"line 1", "'x'"});
+  EXPECT_EQ(parse(v + "# C:\\a\\\nf 1 2 3\n", Format::Obj).mesh.triangles.size(), 1U);
+  EXPECT_EQ(parse(v + "g x # C:\\a\\\nf 1 2 3\n", Format::Obj).mesh.triangles.size(), 1U);
+}
+
 TEST(Obj, FacesMayComeBeforeVertices) {
   EXPECT_EQ(parse("f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0", Format::Obj).mesh.triangles.size(), 1U);
 }

@@ -111,6 +111,7 @@ ExternalCalls::Reply ExternalCalls::evaluate(Index call, const Word* state) {
     missed_ = leaf;
     missed_call_ = model_.externals[calls_[call].external].name;
   }
+  if (l.chosen && chosen_.empty()) chosen_ = model_.externals[calls_[call].external].name;
   return reply(leaf);
 }
 
@@ -160,6 +161,10 @@ ExternalCalls::Reply ExternalCalls::make(Index call, const Word* state, unsigned
     if (result.kind != Answer::Kind::NotFound) break;
   }
   leaf.kind = result.kind;
+  leaf.chosen = result.kind == Answer::Kind::Value && result.chosen;
+  if (leaf.chosen && chosen_.empty()) chosen_ = text(c, objects);
+  if (result.kind == Answer::Kind::Impossible && !result.reason.empty() && refusals_++ == 0)
+    refused_ = text(c, objects) + ": " + result.reason;
   leaf.value = result.value;
   leaf.text = answers_.text(result.kind == Answer::Kind::Value ? std::move(result.payload)
                                                                : std::move(result.reason));
@@ -258,6 +263,12 @@ std::string ExternalCalls::missed() const {
   if (missed_ == kNone) return "";
   const std::string& reason = payload(missed_);
   return missed_call_ + (reason.empty() ? "" : ": " + reason);
+}
+
+std::string ExternalCalls::refused() const {
+  if (refusals_ < 2) return refused_;
+  return refused_ + "; and " + std::to_string(refusals_ - 1) +
+         (refusals_ == 2 ? " other call without a value" : " other calls without a value");
 }
 
 std::string ExternalCalls::text(const Call& c, const std::vector<Index>& objects) const {

@@ -58,20 +58,30 @@ class ExternalCalls {
   void try_again() {
     ++attempts_;
     missed_ = kNone;
+    chosen_.clear();
   }
   [[nodiscard]] unsigned attempts() const { return attempts_; }
   /// The last call that found nothing since `try_again`, as "g(a): reason"; empty: there is none.
   [[nodiscard]] std::string missed() const;
+  /// A call whose value was chosen among several, since `try_again`; empty: there is none.
+  [[nodiscard]] const std::string& chosen() const { return chosen_; }
+  /// The first call that was impossible, as "g(a): reason", and how many others were; empty: none
+  /// gave a reason.
+  [[nodiscard]] std::string refused() const;
 
   /// While it lives, what is not found is not missed: it is asked of what is supposed only, and
   /// is missed when it is asked again of a state that there is.
   class Supposing {
    public:
     explicit Supposing(ExternalCalls& calls)
-        : calls_(calls), missed_(calls.missed_), missed_call_(calls.missed_call_) {}
+        : calls_(calls),
+          missed_(calls.missed_),
+          missed_call_(calls.missed_call_),
+          chosen_(calls.chosen_) {}
     ~Supposing() {
       calls_.missed_ = missed_;
       calls_.missed_call_ = std::move(missed_call_);
+      calls_.chosen_ = std::move(chosen_);
     }
     Supposing(const Supposing&) = delete;
     Supposing& operator=(const Supposing&) = delete;
@@ -79,7 +89,7 @@ class ExternalCalls {
    private:
     ExternalCalls& calls_;
     Index missed_;
-    std::string missed_call_;
+    std::string missed_call_, chosen_;
   };
 
   /// Makes some calls again. @throws Error{InvalidInput} if one answers differently.
@@ -132,7 +142,8 @@ class ExternalCalls {
   std::uint64_t seed_ = 0;
   unsigned attempts_ = 1;
   Index missed_ = kNone;  ///< a leaf
-  std::string missed_call_;
+  std::string missed_call_, chosen_, refused_;
+  std::size_t refusals_ = 0;
   std::size_t bytes_told_ = 0;
   std::uint64_t made_ = 0;
   double seconds_ = 0;
