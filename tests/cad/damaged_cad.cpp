@@ -203,10 +203,11 @@ int run(std::vector<std::string> words) {
 /// Holds points or not: a result, with what it may be away from them.
 class Result {
  public:
-  Result(const kaboum::geom::Mesh& mesh, double allowed)
-      : winding_(mesh),
-        query_(mesh),
-        allowed_(allowed + 1e-6 * kaboum::geom::bounding_box(mesh).diagonal()) {}
+  Result(kaboum::geom::Mesh mesh, double allowed)
+      : mesh_(std::move(mesh)),
+        winding_(mesh_),
+        query_(mesh_),
+        allowed_(allowed + 1e-6 * kaboum::geom::bounding_box(mesh_).diagonal()) {}
 
   /// How far outside; 0: it is held.
   [[nodiscard]] double outside(const Vec3& p) const {
@@ -216,6 +217,7 @@ class Result {
   }
 
  private:
+  kaboum::geom::Mesh mesh_;
   kaboum::geom::WindingNumber winding_;
   kaboum::geom::DistanceQuery query_;
   double allowed_;
