@@ -17,15 +17,14 @@ std::pair<std::string, int> shortfall(const certify::EnclosureCertificate& c) {
         kLimit};
   if (!c.reached) return {"fewer vertices cannot be reached; the result so far is written", kNo};
   for (const certify::MeshClaim& claim : c.claims) {
-    const bool sampled = claim.basis == certify::Basis::Samples;
     if (claim.answer == Answer::Refuted)
       return {
           "the solid is enclosed, but not all triangles: some bound no solid; --prepare wrap "
           "encloses those as well",
-          claim.basis == certify::Basis::Bytes ? kNo : kDone};
-    if (claim.answer == Answer::Undecided && !sampled)
+          kNo};
+    if (claim.answer == Answer::Undecided)
       return {std::string("the claim ") + name_of(claim.kind) + " is undecided: " + claim.reason,
-              claim.basis == certify::Basis::Bytes ? kLimit : kDone};
+              kLimit};
   }
   return {{}, kDone};
 }

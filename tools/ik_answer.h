@@ -35,6 +35,7 @@ struct IkAnswer {
   std::optional<kinematics::ClosedForm> form;
   std::size_t found = 0;  ///< isolated ones, whatever the limits
   std::vector<Family> families;
+  bool outside = false;  ///< there are families, outside the limits
   std::vector<Row> rows;
   /// Why these need not be all; empty: they are, up to the accuracy of closed forms.
   std::string incomplete;

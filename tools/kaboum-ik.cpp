@@ -126,6 +126,11 @@ void find_in_closed_form(Answer& answer, const Options& o, const std::vector<dou
     ik::SolutionSet set = ik::solve_set(*answer.form, target, options);
     if (!set.complete && answer.incomplete.empty()) answer.incomplete = set.reason;
     answer.found += set.isolated.size();
+    if (options.limits && set.isolated.empty() && set.families.empty()) {
+      ik::SolutionSetOptions any = options;
+      any.limits = false;
+      answer.outside = answer.outside || !ik::solve_set(*answer.form, target, any).families.empty();
+    }
     const auto add = [&](const ik::Solution& s) {
       add_row(answer, o, {s.q.begin(), s.q.begin() + joints}, reference,
               {{}, {s.position_error, s.rotation_error}, s.singular, true, target, s.free});
@@ -219,9 +224,10 @@ int run(const Options& o) {
     return tools::kLimit;
   }
   std::cerr << "kaboum-ik: "
-            << (answer.found == 0 ? unreached(answer, o.free_heading)
-                                  : "the pose is reached outside the joints' limits only; see "
-                                    "--ignore-limits")
+            << (answer.found == 0 && !answer.outside
+                    ? unreached(answer, o.free_heading)
+                    : "the pose is reached outside the joints' limits only; see "
+                      "--ignore-limits")
             << '\n';
   return tools::kNo;
 }

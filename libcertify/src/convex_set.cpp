@@ -251,6 +251,7 @@ std::optional<CertifiedSet> certify_set(const geom::Mesh& mesh, const std::strin
   SetRequest asked = request;
   const std::optional<CertifiedWrap> wrap = wrapped(mesh, asked, hooks);
   if (wrap) note(in_words(wrap->certificate()));
+  if (wrap) asked.preparation.quads.clear();  // of the input
   const geom::Prepared prepared = geom::prepare(wrap ? wrap->artefact() : mesh, asked.preparation);
   const geom::Mesh& solid = prepared.solid.mesh();
   const double diagonal = geom::bounding_box(solid).diagonal();

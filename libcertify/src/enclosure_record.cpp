@@ -23,8 +23,7 @@ constexpr std::array kStopNames{std::pair{bmesh::Stop::VertexTarget, "vertices"}
 constexpr std::array kClaimKinds{
     MeshClaim::Kind::Solid,  MeshClaim::Kind::Winding,          MeshClaim::Kind::Surface,
     MeshClaim::Kind::Nested, MeshClaim::Kind::OriginalToResult, MeshClaim::Kind::ResultToOriginal};
-constexpr std::array kBases{Basis::Bytes, Basis::Meshes, Basis::Steps, Basis::Measured,
-                            Basis::Samples};
+constexpr std::array kBases{Basis::Bytes, Basis::Meshes, Basis::Steps, Basis::Measured};
 constexpr std::array kAnswers{Answer::Verified, Answer::Refuted, Answer::Undecided,
                               Answer::Undefined};
 

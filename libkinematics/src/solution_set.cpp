@@ -309,6 +309,9 @@ class Branches {
     const bool upright = is_aligned(level), folded = is_folded(x, y);
     const double towards = std::atan2(g_.z.y(), g_.z.x());
     if (!closes(x, y)) return;
+    // Stretched, the elbow turns by the root of how far the wrist is from axis 1.
+    const double stretched = 1 - (square(x) + square(y)) / square(f_.a2 + f_.forearm);
+    if (stretched < 1e-8 && std::hypot(g_.t.x(), g_.t.y()) > 1e-14 * f_.reach) nearly_ = true;
     if (folded) {
       add_sides(with_free(free, 1, kElbow), false, true);
       if (upright) {

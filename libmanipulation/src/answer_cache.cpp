@@ -91,7 +91,8 @@ json to_json(const std::string& place, const Entry& entry) {
           {"value", entry.answer.value},
           {"payload", entry.answer.payload},
           {"reason", entry.answer.reason},
-          {"chosen", entry.answer.chosen}};
+          {"chosen", entry.answer.chosen},
+          {"fixed", entry.answer.fixed}};
 }
 
 Entry entry_of(const json& j) {
@@ -103,9 +104,9 @@ Entry entry_of(const json& j) {
   // `get` would convert any number.
   const auto kind = j.at("kind").get_ref<const json::number_unsigned_t&>();
   if (kind > 2) throw Error(ErrorCode::InvalidInput, "no kind of answer");
-  out.answer = {static_cast<Answer::Kind>(kind), j.at("value").get<std::string>(),
+  out.answer = {static_cast<Answer::Kind>(kind),    j.at("value").get<std::string>(),
                 j.at("payload").get<std::string>(), j.at("reason").get<std::string>(),
-                j.at("chosen").get<bool>()};
+                j.at("chosen").get<bool>(),         j.at("fixed").get<bool>()};
   return out;
 }
 

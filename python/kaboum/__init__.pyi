@@ -84,6 +84,10 @@ class BoundingMesh:
     @property
     def reached(self) -> bool: ...
     @property
+    def holds(self) -> bool: ...
+    @property
+    def wrapped(self) -> bool: ...
+    @property
     def closed(self) -> bool: ...
     @property
     def out_of_work(self) -> bool: ...
@@ -249,6 +253,9 @@ def decimate(
     precision: Literal["auto", "float", "double"] = "auto",
     sharp_angle: float = 90.0,
     keep_convex: bool = False,
+    prepare: Literal["auto", "strict", "wrap", "off"] = "auto",
+    offset: _Length | None = None,
+    seal: _Length | None = None,
     drop_sheets: bool = False,
     holes: Literal["fill", "keep", "refuse"] = "fill",
     keep_orientation: bool = False,
@@ -273,6 +280,9 @@ def decimate(
     precision: Literal["auto", "float", "double"] = "auto",
     sharp_angle: float = 90.0,
     keep_convex: bool = False,
+    prepare: Literal["auto", "strict", "wrap", "off"] = "auto",
+    offset: _Length | None = None,
+    seal: _Length | None = None,
     drop_sheets: bool = False,
     holes: Literal["fill", "keep", "refuse"] = "fill",
     keep_orientation: bool = False,

@@ -46,7 +46,7 @@ std::optional<AnswerTree::Inserted> AnswerTree::insert(Root& root, const Footpri
     return Inserted{known, false};
   }
   if (leaf.kind == Answer::Kind::Value && leaf.text == kNone && leaf.attempts == 1 &&
-      !leaf.chosen && leaf.value + 1 < kPlain) {
+      leaf.value + 1 < kPlain) {
     const bool fresh = root.last != (leaf.value | kPlain);
     root.last = leaf.value | kPlain;
     link(root, parent, content, root.last | kLeaf);

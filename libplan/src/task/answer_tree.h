@@ -36,7 +36,6 @@ class AnswerTree {
     Index text = kNone;          ///< payload or reason
     std::uint16_t attempts = 0;  ///< made so far
     Answer::Kind kind = Answer::Kind::Impossible;
-    bool chosen = false;  ///< of a value: others may do as well
     [[nodiscard]] bool operator==(const Leaf&) const = default;
   };
   /// The tree of one call.

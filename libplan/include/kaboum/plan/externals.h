@@ -50,6 +50,8 @@ struct Answer {
   /// Of a value: it was chosen among several, or others were not looked for. Where a search with
   /// it fails, it is not proved that there is no plan.
   bool chosen = false;
+  /// Of a value: there is this one or none, whatever the state; only the arguments decide it.
+  bool fixed = false;
 
   static Answer found(std::string value, std::string payload = "") {
     return {Kind::Value, std::move(value), std::move(payload), ""};
