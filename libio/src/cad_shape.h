@@ -15,7 +15,6 @@ struct CadShape {
   std::size_t faces = 0;            ///< one for each place of a face
   std::size_t loose_faces = 0;      ///< in no solid
   std::size_t bare_faces = 0;       ///< that could not be made into triangles
-  std::size_t faces = 0;            ///< that triangles stand for
   /// No point of the exact faces and edges is farther from the triangles, by the proof in
   /// docs/algorithms/cad.md.
   double deviation = 0;
