@@ -10,6 +10,7 @@
 #include <map>
 #include <optional>
 #include <regex>
+#include <sstream>
 #include <vector>
 
 namespace kaboum::test {
@@ -376,8 +377,91 @@ class IgesDamage {
   Damage out_;
 };
 
-/// Entities that each record refers to. Of IGES all odd integers of the parameters that may be
-/// numbers of directory entries: some of them are not, so that too much is said to be below.
+/// Directory entries that an IGES entity's parameters name. Of types that make no faces all odd
+/// integers, some of which mean something else: too much is said to be below these.
+std::set<int> pointers_in(const std::string& parameters) {
+  std::vector<int> p;
+  std::stringstream text(parameters.substr(0, parameters.find(';')));
+  for (std::string word; std::getline(text, word, ',');) p.push_back(std::atoi(word.c_str()));
+  std::set<int> out;
+  const auto at = [&](std::size_t i) { return i < p.size() ? p[i] : 0; };
+  const auto take = [&](std::initializer_list<std::size_t> places) {
+    for (const std::size_t i : places)
+      if (at(i) != 0) out.insert(std::abs(at(i)));
+  };
+  const auto take_each = [&](std::size_t first, std::size_t step, int count) {
+    for (int i = 0; i < count; ++i) take({first + step * static_cast<std::size_t>(i)});
+  };
+  switch (at(0)) {
+    case 100:  // curves, points, splines
+    case 104:
+    case 106:
+    case 110:
+    case 112:
+    case 116:
+    case 123:
+    case 124:
+    case 126:
+    case 128:
+    case 502:
+      break;
+    case 102:  // a curve of several
+      take_each(2, 1, at(1));
+      break;
+    case 108:  // surfaces
+    case 140:
+      take({5});
+      break;
+    case 118:
+    case 120:
+      take({1, 2});
+      break;
+    case 122:
+      take({1});
+      break;
+    case 142:  // a curve on a surface, a trimmed surface
+      take({2, 3, 4});
+      break;
+    case 144:
+      take({1, 4});
+      take_each(5, 1, at(3));
+      break;
+    case 190:
+      take({1, 2, 3});
+      break;
+    case 192:
+    case 194:
+    case 198:
+      take({1, 2, 4, 5});
+      break;
+    case 196:
+      take({1, 3, 4});
+      break;
+    case 504:  // lists of edges, loops, faces
+      for (const std::size_t step : {0U, 1U, 3U}) take_each(2 + step, 5, at(1));
+      break;
+    case 508: {
+      std::size_t k = 2;
+      for (int i = 0; i < at(1) && k < p.size(); ++i) {
+        const int curves = std::max(0, at(k + 4));
+        take({k + 1});
+        take_each(k + 6, 2, curves);
+        k += 5 + 2 * static_cast<std::size_t>(curves);
+      }
+      break;
+    }
+    case 510:
+      take({1});
+      take_each(4, 1, at(2));
+      break;
+    default:
+      for (const int number : p)
+        if (number % 2 == 1) out.insert(number);
+  }
+  return out;
+}
+
+/// Entities that each record refers to.
 std::map<int, std::set<int>> references_of(const std::string& text, bool iges) {
   std::map<int, std::set<int>> out;
   if (!iges) {
@@ -386,22 +470,14 @@ std::map<int, std::set<int>> references_of(const std::string& text, bool iges) {
         out[record.number].insert(std::atoi(text.c_str() + at.begin + 1));
     return out;
   }
-  static const std::regex integers("[0-9]+");
-  int last = 0;
-  const std::vector<Line> lines = lines_of(text);
-  for (const Line& line : lines)
-    if (line.section == 'D') last = std::max(last, line.number);
   std::map<int, std::string> parameters;
-  for (const Line& line : lines)
+  for (const Line& line : lines_of(text))
     if (line.section == 'P')
       parameters[line.owner] += text.substr(line.begin, kParameters);
     else if (line.section == 'D' && line.number % 2 == 1)  // its transformation
-      out[line.owner].insert(std::atoi(text.substr(line.begin + 48, 8).c_str()));
-  for (const auto& [owner, words] : parameters)
-    for (const Span at : all_of(words, {0, words.size()}, integers)) {
-      const int number = std::atoi(words.c_str() + at.begin);
-      if (number % 2 == 1 && number <= last) out[owner].insert(number);
-    }
+      if (const int matrix = std::atoi(text.substr(line.begin + 48, 8).c_str()); matrix > 0)
+        out[line.owner].insert(matrix);
+  for (const auto& [owner, words] : parameters) out[owner].merge(pointers_in(words));
   return out;
 }
 
