@@ -164,7 +164,7 @@ std::string name_of(const Handle(Interface_InterfaceModel) & model, int entity) 
   return "entity " + std::string(model->StringLabel(model->Value(entity))->ToCString());
 }
 
-void require_none_failed(const XSControl_Reader& reader, Interface_CheckIterator checks,
+void require_none_failed(const XSControl_Reader& reader, const Interface_CheckIterator& checks,
                          const char* what) {
   for (checks.Start(); checks.More(); checks.Next())
     if (checks.Value()->HasFailed())
