@@ -100,7 +100,8 @@ std::string page_of_set(const DecomposeOptions& o, const certify::SetCertificate
 }
 
 std::string page_of_robot(const DecomposeOptions& o, const robot::RobotFile& robot,
-                          const certify::CertifiedRobot& made) {
+                          const certify::CertifiedRobot& made,
+                          const std::vector<certify::LinkVerdict>& verdicts) {
   const certify::BodiesCertificate& bodies = made.bodies.certificate();
   page::Preview preview{"Bodies of " + file_name(o.input), o.unit};
   preview.meaning = "distance of the bodies from the shapes of their link";
@@ -135,8 +136,12 @@ std::string page_of_robot(const DecomposeOptions& o, const robot::RobotFile& rob
       {"options", o.epsilon.empty() ? request_of(o).parameters() : "--epsilon " + o.epsilon},
       {"result",
        counted(count, "body", "bodies") + " of " + counted(made.links.size(), "link", "links")},
-      {"verdict", "the bodies of every link hold its shapes: decided exactly"}};
+      {"verdict", in_words(verdicts) + ": decided exactly"}};
+  for (const certify::LinkVerdict& link : verdicts)
+    if (link.outcome != certify::Outcome::Held)
+      preview.facts.emplace_back("link " + robot.robot.links[link.link].name, link.sentence);
   for (const certify::CertifiedLinkMesh& mesh : bodies.meshes) {
+    if (!mesh.held) continue;
     const certify::SetCertificate& c = mesh.made.found.set.certificate();
     const std::string why = shortfall(c);
     preview.facts.emplace_back(mesh.mesh.file.filename().string(),

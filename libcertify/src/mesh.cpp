@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "given_solid.h"
 #include "mesh_certifier.h"
 #include "mesh_options.h"
 
@@ -57,33 +58,6 @@ MeshSeries certify(const geom::Prepared& original, const MeshRequest& request,
 }
 
 constexpr double kShareOfWrap = 0.6;  ///< of epsilon, for a wrap
-
-/// The triangles, and those that fill their holes: the solid that is closed so is wrapped, too.
-geom::Mesh with_fillings(const geom::Mesh& input, const geom::SolidMesh& solid) {
-  geom::Mesh out = input;
-  const geom::Mesh& filled = solid.mesh();
-  for (std::size_t t = filled.triangles.size() - solid.filled_triangles();
-       t < filled.triangles.size(); ++t) {
-    const auto at = static_cast<std::uint32_t>(out.vertices.size());
-    for (const std::uint32_t v : filled.triangles[t]) out.vertices.push_back(filled.vertices[v]);
-    out.triangles.push_back({at, at + 1, at + 2});
-  }
-  return out;
-}
-
-/// The triangles, and those of the other way of splitting quads that are not plane.
-geom::Mesh with_other_diagonals(geom::Mesh mesh, const geom::PrepareOptions& options) {
-  if (options.diagonal == geom::PrepareOptions::Diagonal::AsGiven) return mesh;
-  for (const std::uint32_t quad : options.quads) {
-    const geom::Triangle s = mesh.triangles.at(quad), t = mesh.triangles.at(quad + 1);
-    // All four corners, in any order: of their triangles two are there already.
-    for (const std::uint32_t d : t) {
-      if (std::find(s.begin(), s.end(), d) != s.end()) continue;
-      for (int k = 0; k < 3; ++k) mesh.triangles.push_back({s[k], s[(k + 1) % 3], d});
-    }
-  }
-  return mesh;
-}
 
 /// Bounds a wrap. What it takes of epsilon is not there for decimation.
 BoundedMesh bound_wrap(const geom::Mesh& input, const MeshRequest& request,

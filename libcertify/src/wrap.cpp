@@ -55,6 +55,7 @@ void decide(const geom::Mesh& input, const geom::Mesh& wrap, const WrapRequest& 
 void hold_exact_faces(const io::ReadResult& read, bool hold, std::optional<WrapRequest>& wrap) {
   if (!io::is_cad(read.format)) return;
   if (hold && !wrap) wrap.emplace();
+  if (hold) wrap->where_needed = false;
   if (wrap) wrap->clearance = read.deviation;
 }
 

@@ -411,7 +411,7 @@ def verify_robot(
     epsilon: _Length | None = None,
     geometry: _Geometry = "collision",
     package_path: _Path | Sequence[_Path] = (),
-    prepare: bool = False,
+    prepare: bool | Literal["auto", "wrap"] = False,
     drop_sheets: bool = False,
     max_contacts: int = 100000000,
     max_work: float | None = None,

@@ -93,7 +93,9 @@ for f in bent-a bent-b; do
     shows 0 'verified' "$V" --outer $g.obj bent.ply --raw
   done
 done
-expect 3 'have a wrap give the sheets a thickness' "$BIN/bcd-decompose" sheet.off -o none.glb --no-cache
+expect 3 'have a wrap give the sheets a thickness' "$BIN/bcd-decompose" sheet.off -o none.glb --no-cache --prepare strict
+expect 0 'A wrap takes the place of the mesh, so that every triangle is inside' "$BIN/bcd-decompose" sheet.off -o thick.glb --no-cache
+shows 0 'verified' "$BIN/bound-verify" cover sheet.off thick.glb --raw
 # From the cache the same, and of other lengths another.
 for i in 1 2; do
   expect 0 'each lies inside, exactly' env KABOUM_CACHE="$PWD/cache" "$BIN/bcd-decompose" crossing.off -o c$i.glb --prepare wrap --epsilon 5% --effort fast --report c$i.json

@@ -797,6 +797,7 @@ TEST(Handles, AHandleThatMayHaveChangedIsNotKnown) {
        "value":"there"}],"next":1},{"action":"stop","arguments":[],"next":"goal"}]})",
                               "plan.json");
   EXPECT_FALSE(check(m, plan).valid);
+  for (const Algorithm a : kAll) EXPECT_EQ(with(m, a).outcome, Outcome::NotInferred);
 }
 
 }  // namespace
