@@ -142,9 +142,11 @@ CertifiedSetValue decompose(
   r.unit = value.unit.empty() ? unit : value.unit;
   r.source = std::filesystem::path(value.source).filename().string();
   // Of STEP and IGES the exact faces are what is covered.
-  if (value.deviation > 0 && r.direction == certify::SetRequest::Direction::Outer && !r.wrap)
-    r.wrap.emplace();
-  if (r.wrap) r.wrap->clearance = value.deviation;
+  if (value.deviation > 0 && r.direction == certify::SetRequest::Direction::Outer) {
+    if (!r.wrap) r.wrap.emplace();
+    r.wrap->where_needed = false;
+    r.wrap->clearance = value.deviation;
+  }
   Watch watch(progress);
   return run(threads, [&] {
     CertifiedSetValue out;
