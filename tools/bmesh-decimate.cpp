@@ -61,6 +61,10 @@ void read(tools::DecimationCase& run) {
   if (hash) run.log.input_sha256 = io::sha256(bytes);
   apply(run.input, o.unit, o.input);
   for (const std::string& text : run.input.notes) note(run, text);
+  if (o.records() && !run.input.bent_quads.empty())
+    note(run,
+         "quads that are not plane stay split as they are read, for the steps start from there: "
+         "bound-verify judges that without --prepare");
 }
 
 certify::MeshPreparation preparation_of(const tools::DecimationCase& run) {

@@ -45,7 +45,9 @@ void add_preparation(CLI::App& app, VerifyOptions& o, const std::string& what) {
   app.add_flag("--prepare{auto}", o.prepare,
                "Judge " + what +
                    " as bmesh-decimate and bcd-decompose prepare it (parts that are inside out "
-                   "turned, copies and walls dropped, holes filled) instead of the file as it is: "
+                   "turned, copies and walls dropped, holes filled, quads that are not plane split "
+                   "so that "
+                   "both ways are bounded) instead of the file as it is: "
                    "what their claims, and a container's epsilon, are about. Of robots every "
                    "triangle of the file is judged besides, and that alone, with all that closed "
                    "meshes wind round, where preparing refuses a mesh; --prepare=wrap: of all "

@@ -4,6 +4,7 @@
 
 #include "mesh_surface.h"
 
+#include <kaboum/geom/topology.h>
 #include <kaboum/verify/loose_triangles.h>
 
 #include <algorithm>

@@ -32,18 +32,32 @@ geom::Vec3 newell_normal(std::span<const geom::Vec3> corners) {
 }  // namespace
 
 double bend_of(std::span<const geom::Vec3> corners) {
-  // The first corners that span a plane; all others are to be on it.
+  // The first three corners that span a plane; every other one is on it, or the polygon is bent.
   const std::size_t n = corners.size();
-  bool bent = false;
-  std::size_t b = 1;
-  while (b < n && corners[b] == corners[0]) ++b;
-  for (std::size_t c = b + 1; c + 1 < n && !bent; ++c)
-    for (std::size_t d = c + 1; d < n && !bent; ++d)
-      bent = geom::orient3d(corners[0], corners[b], corners[c], corners[d]) != geom::Sign::Zero;
-  if (!bent) return 0;
+  for (int k = 0; k < 3; ++k)  // most often
+    if (std::all_of(corners.begin(), corners.end(),
+                    [&](const geom::Vec3& p) { return p[k] == corners[0][k]; }))
+      return 0;
   double largest = 0;
   for (const geom::Vec3& p : corners) largest = std::max(largest, p.cwiseAbs().maxCoeff());
-  geom::Vec3 normal = newell_normal(corners).stableNormalized();
+  std::size_t b = 1, c = 0;
+  while (b < n && corners[b] == corners[0]) ++b;
+  const auto collinear = [&](const geom::Vec3& p) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+      if (geom::orient2d(corners[0][u], corners[0][v], corners[b][u], corners[b][v], p[u], p[v]) !=
+          geom::Sign::Zero)
+        return false;
+    }
+    return true;
+  };
+  for (c = b + 1; c < n && collinear(corners[c]); ++c) {
+  }
+  bool bent = false;
+  for (std::size_t d = c + 1; d < n && !bent; ++d)
+    bent = geom::orient3d(corners[0], corners[b], corners[c], corners[d]) != geom::Sign::Zero;
+  if (!bent) return 0;
+  const geom::Vec3 normal = newell_normal(corners).stableNormalized();
   double low = 0, high = 0;
   for (const geom::Vec3& p : corners) {
     const double height = normal.dot(p / largest - corners[0] / largest);

@@ -345,6 +345,7 @@ void bind_decimation(py::module_& module) {
       py::arg("direction") = "outer", py::arg("cost") = "distance", py::arg("effort") = "normal",
       py::arg("max_work") = py::none(), py::arg("as_printed") = false,
       py::arg("precision") = "auto", py::arg("sharp_angle") = 90.0, py::arg("keep_convex") = false,
+      py::arg("prepare") = "auto", py::arg("offset") = py::none(), py::arg("seal") = py::none(),
       py::arg("drop_sheets") = false, py::arg("holes") = "fill",
       py::arg("keep_orientation") = false, py::arg("verify") = false, py::arg("measure") = false,
       py::arg("output_format") = "ply", py::arg("threads") = 0, py::arg("progress") = py::none(),

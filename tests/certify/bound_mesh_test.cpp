@@ -96,7 +96,6 @@ std::vector<Case> bad_meshes() {
   all.push_back({"ball and odd sheet", test::merged({ball, sheet})});
   all.push_back({"Moebius strip", test::moebius_strip(12, 1)});
   all.push_back({"grid", test::grid(3, [](double x, double y) { return x * y; })});
-  // A wall between touching boxes that reaches out of both, middle and corners inside.
   Mesh apart = test::soup(ball);
   all.push_back({"pieces of a ball", apart});
   return all;
@@ -173,6 +172,18 @@ TEST(BoundMesh, WhatIsAskedForIsKept) {
   EXPECT_EQ(inner.surface_answer() == Answer::Verified,
             all_inside(inner.series.meshes.front().artefact(), bow_tie()));
   EXPECT_THROW(bound_mesh(bow_tie(), fast(8, Direction::Inner), coarse(Wrap::Always)), Error);
+}
+
+TEST(BoundMesh, SegmentsThatStickOutAreFound) {
+  Mesh mesh = test::icosphere(1);
+  const auto n = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.emplace_back(3, 0, 0);
+  mesh.triangles.push_back({0, n, n});
+  EXPECT_EQ(bound_mesh(mesh, fast(40), coarse(Wrap::Never)).surface_answer(), Answer::Refuted);
+  mesh.vertices[n] = {0.1, 0, 0};
+  const BoundedMesh within = bound_mesh(mesh, fast(40), coarse());
+  EXPECT_EQ(within.surface_answer(), Answer::Verified);
+  EXPECT_FALSE(within.wrap);
 }
 
 TEST(BoundMesh, WallsThatReachOutAreFound) {
