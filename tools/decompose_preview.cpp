@@ -35,13 +35,13 @@ std::string three_digits(double x) {
 
 /// The triangles that distances are to: of the solid as prepared; of the file where a wrap is what
 /// was covered.
-geom::Mesh original_of(const DecomposeOptions& o) {
+geom::Mesh original_of(const DecomposeOptions& o, bool wrapped) {
   const certify::SetRequest request = request_of(o);
   io::ReadResult read =
       is_cad(o) ? io::read_cad(o.input).read
                 : io::read_mesh(o.input, format_for(o.input, o.input_format, "--input-format"));
   io::scale(read, o.scale, o.input);
-  if (request.wrap) return std::move(read.mesh);
+  if (wrapped) return std::move(read.mesh);
   return naming(o.input,
                 [&] { return geom::prepare(read.mesh, request.preparation).solid.mesh(); });
 }
@@ -67,7 +67,7 @@ std::string verdict_of(const certify::SetCertificate& c) {
 std::string page_of_set(const DecomposeOptions& o, const certify::SetCertificate& c,
                         const geom::ConvexSet& set) {
   const bool outer = c.direction == certify::SetRequest::Direction::Outer;
-  const geom::Mesh original = original_of(o);
+  const geom::Mesh original = original_of(o, c.wrap.has_value());
   const double extent = geom::bounding_box(original).diagonal();
   page::Preview preview{"Bodies of " + file_name(o.input), set.provenance.unit};
   Layer input{"input", outer ? Layer::View::Shown : Layer::View::Transparent, false};
@@ -102,7 +102,8 @@ std::string page_of_set(const DecomposeOptions& o, const certify::SetCertificate
 }
 
 std::string page_of_robot(const DecomposeOptions& o, const robot::RobotFile& robot,
-                          const certify::CertifiedRobot& made) {
+                          const certify::CertifiedRobot& made,
+                          const std::vector<certify::LinkVerdict>& verdicts) {
   const certify::BodiesCertificate& bodies = made.bodies.certificate();
   page::Preview preview{"Bodies of " + file_name(o.input), o.unit};
   preview.meaning = "distance of the bodies from the shapes of their link";
@@ -137,8 +138,12 @@ std::string page_of_robot(const DecomposeOptions& o, const robot::RobotFile& rob
       {"options", o.epsilon.empty() ? request_of(o).parameters() : "--epsilon " + o.epsilon},
       {"result",
        counted(count, "body", "bodies") + " of " + counted(made.links.size(), "link", "links")},
-      {"verdict", "the bodies of every link hold its shapes: decided exactly"}};
+      {"verdict", in_words(verdicts) + ": decided exactly"}};
+  for (const certify::LinkVerdict& link : verdicts)
+    if (link.outcome != certify::Outcome::Held)
+      preview.facts.emplace_back("link " + robot.robot.links[link.link].name, link.sentence);
   for (const certify::CertifiedLinkMesh& mesh : bodies.meshes) {
+    if (!mesh.held) continue;
     const certify::SetCertificate& c = mesh.made.found.set.certificate();
     const std::string why = shortfall(c);
     preview.facts.emplace_back(mesh.mesh.file.filename().string(),

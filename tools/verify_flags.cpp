@@ -49,7 +49,7 @@ void add_flags(CLI::App& app, VerifyOptions& o) {
   add_approximation_format(app, o, "APPROXIMATION");
   add_limits(app, o);
   for (CLI::Option* other : {epsilon, set}) other->excludes(sweep);
-  add_links(app, o)->needs(sweep);
+  add_links(app, o);
   add_geometry(app, o, "ORIGINAL");
   for (CLI::Option* option : add_motion(app, o)) option->needs(sweep);
   shorten(app);
@@ -77,7 +77,7 @@ void require_meaning(const CLI::App& app, const VerifyOptions& o) {
                          : o.cover     ? "--cover"
                          : o.inner     ? "--inner"
                                        : "--outer";
-  require_absent(app, relation, {"--geometry", "--visual", "--package-path"});
+  require_absent(app, relation, {"--geometry", "--visual", "--package-path", "--links"});
   if (o.progressive)
     require_absent(app, "--progressive",
                    {"--claims", "--epsilon", "--prepare", "--raw", "--drop-sheets", "--set",

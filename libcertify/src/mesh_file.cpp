@@ -79,6 +79,10 @@ CertifiedFile certify_file(const fs::path& file, std::optional<io::Format> forma
   io::ReadResult read = read_triangles(file, format, bytes, request);
   say(read.notes, hooks);
   request = with_unit(std::move(request), read.unit, hooks);
+  request.preparation.quads = read.bent_quads;
+  request.preparation.diagonal = request.direction == SetRequest::Direction::Outer
+                                     ? geom::PrepareOptions::Diagonal::Outward
+                                     : geom::PrepareOptions::Diagonal::Inward;
   const std::string sha256 = kaboum::sha256(bytes);
   if (cache != nullptr && file != "-")
     store_known(CacheFolder(cache->folder()), file, format, request.scale, bytes.size(), sha256,

@@ -150,6 +150,12 @@ void MeshBuilder::split_polygons(ReadResult& result) {
                   std::string(source_.name) + ": " + place(source_, polygon.where) +
                       ": splitting the polygons into triangles takes too long (this one has " +
                       std::to_string(polygon.corners) + " corners); export the mesh as triangles");
+    if (const double bend = bend_of(positions); bend > 0) {
+      ++result.bent_polygons;
+      result.largest_bend = std::max(result.largest_bend, bend);
+      if (positions.size() == 4 && pieces.size() == 2)
+        result.bent_quads.push_back(static_cast<std::uint32_t>(all.size()));
+    }
     for (const geom::Triangle& t : pieces)
       all.push_back({corners[t[0]], corners[t[1]], corners[t[2]]});
     result.file_triangles += polygon.corners - 2;
@@ -167,6 +173,21 @@ void MeshBuilder::split_polygons(ReadResult& result) {
     result.notes.push_back(counted(fans, "polygon is", "polygons are") +
                            " not simple or without area (first: " + place(source_, first_fan) +
                            ") and became a plain fan of triangles.");
+}
+
+/// What the rounding of a file's numbers bends is not worth a note.
+void MeshBuilder::note_bends(ReadResult& result) {
+  constexpr double kWorth = 1e-6;  // of the diagonal
+  if (!(result.largest_bend > kWorth * geom::bounding_box(result.mesh).diagonal())) return;
+  std::ostringstream bend;
+  bend.precision(3);
+  bend << result.largest_bend;
+  result.notes.push_back(
+      counted(result.bent_polygons, "polygon is not plane", "polygons are not plane") +
+      ", by up to " + bend.str() +
+      ", so that the ways of splitting them differ: one of four corners is split "
+      "from its first to its third corner, a convex one like a fan from its first "
+      "corner, others by ear clipping.");
 }
 
 /// Drops triangles with equal corners that are edges, or corners, of others. Of those that are
@@ -249,7 +270,16 @@ void MeshBuilder::weld(ReadResult& result) {
     points_.swap(welder.points());
   }
   const std::size_t before = triangles_.size();
+  const std::vector<geom::Triangle> all =
+      result.bent_quads.empty() ? std::vector<geom::Triangle>() : triangles_;
   drop_collapsed(result);
+  // Numbers of triangles that are left: both of a bent quad are.
+  std::vector<std::uint32_t> left(all.size(), 0);
+  for (std::size_t i = 0, j = 0; i < all.size() && j < triangles_.size(); ++i) {
+    if (all[i] != triangles_[j]) continue;
+    left[i] = static_cast<std::uint32_t>(j++);
+  }
+  for (std::uint32_t& t : result.bent_quads) t = left[t];
   result.collapsed_triangles += before - triangles_.size();
   if (triangles_.size() < before) {
     // Vertices that only collapsed triangles used go; the rest keeps its order of first use.
@@ -268,6 +298,7 @@ void MeshBuilder::weld(ReadResult& result) {
   }
   result.mesh.vertices = std::move(points_);
   result.mesh.triangles = std::move(triangles_);
+  note_bends(result);
 }
 
 }  // namespace kaboum::io

@@ -75,6 +75,7 @@ class MeshBuilder {
   };
   void split_polygons(ReadResult& result);
   void weld(ReadResult& result);
+  static void note_bends(ReadResult& result);
   void drop_collapsed(ReadResult& result);
 
   const Source& source_;

@@ -114,10 +114,10 @@ void add_notes(const CadShape& shape, MeshBuilder& builder) {
                  " to no solid, and were read as triangles like the others.");
   std::ostringstream text;
   text.precision(3);
-  text << "Triangles stand for the exact faces, which are within " << shape.deviation
-       << " mm of them: twice the largest distance at " << shape.samples
-       << " points, and the file's own tolerance. Only a wrap (--prepare wrap) holds the faces "
-          "themselves; else what is said is about the triangles.";
+  text << "Triangles stand for the exact faces, no point of which is farther than "
+       << shape.deviation << " mm from them: proved, in " << shape.pieces
+       << " pieces. Only a wrap (--prepare wrap) holds the faces themselves; else what is said is "
+          "about the triangles.";
   builder.note(text.str());
 }
 

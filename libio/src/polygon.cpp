@@ -31,6 +31,30 @@ geom::Vec3 newell_normal(std::span<const geom::Vec3> corners) {
 
 }  // namespace
 
+double bend_of(std::span<const geom::Vec3> corners) {
+  // The first corners that span a plane; all others are to be on it.
+  const std::size_t n = corners.size();
+  bool bent = false;
+  std::size_t b = 1;
+  while (b < n && corners[b] == corners[0]) ++b;
+  for (std::size_t c = b + 1; c + 1 < n && !bent; ++c)
+    for (std::size_t d = c + 1; d < n && !bent; ++d)
+      bent = geom::orient3d(corners[0], corners[b], corners[c], corners[d]) != geom::Sign::Zero;
+  if (!bent) return 0;
+  double largest = 0;
+  for (const geom::Vec3& p : corners) largest = std::max(largest, p.cwiseAbs().maxCoeff());
+  geom::Vec3 normal = newell_normal(corners).stableNormalized();
+  double low = 0, high = 0;
+  for (const geom::Vec3& p : corners) {
+    const double height = normal.dot(p / largest - corners[0] / largest);
+    low = std::min(low, height);
+    high = std::max(high, height);
+  }
+  // A normal of length 1 but for some roundings, and a dozen of them in each height.
+  constexpr double kRoundings = 64 * 0x1p-53;
+  return ((high - low) * (1 + kRoundings) + kRoundings) * largest;
+}
+
 bool PolygonSplitter::split(std::span<const geom::Vec3> corners,
                             std::vector<geom::Triangle>& triangles) {
   triangles.clear();

@@ -8,6 +8,11 @@
 
 namespace kaboum::io {
 
+/// How far the corners of a polygon are from one plane: an upper bound of their extent across the
+/// plane that fits best, 0 if they are in one plane exactly. Where it is not 0, ways of splitting
+/// differ. [length]
+double bend_of(std::span<const geom::Vec3> corners);
+
 /// Splits polygons into triangles without adding vertices. Internal to kaboum_io.
 ///
 /// The directed edges of the triangles sum up to the directed edges of the polygon, whatever its

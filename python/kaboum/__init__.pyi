@@ -82,6 +82,10 @@ class BoundingMesh:
     @property
     def reached(self) -> bool: ...
     @property
+    def holds(self) -> bool: ...
+    @property
+    def wrapped(self) -> bool: ...
+    @property
     def closed(self) -> bool: ...
     @property
     def out_of_work(self) -> bool: ...
@@ -247,6 +251,9 @@ def decimate(
     precision: Literal["auto", "float", "double"] = "auto",
     sharp_angle: float = 90.0,
     keep_convex: bool = False,
+    prepare: Literal["auto", "strict", "wrap", "off"] = "auto",
+    offset: _Length | None = None,
+    seal: _Length | None = None,
     drop_sheets: bool = False,
     holes: Literal["fill", "keep", "refuse"] = "fill",
     keep_orientation: bool = False,
@@ -271,6 +278,9 @@ def decimate(
     precision: Literal["auto", "float", "double"] = "auto",
     sharp_angle: float = 90.0,
     keep_convex: bool = False,
+    prepare: Literal["auto", "strict", "wrap", "off"] = "auto",
+    offset: _Length | None = None,
+    seal: _Length | None = None,
     drop_sheets: bool = False,
     holes: Literal["fill", "keep", "refuse"] = "fill",
     keep_orientation: bool = False,
@@ -397,7 +407,7 @@ def verify_robot(
     epsilon: _Length | None = None,
     geometry: _Geometry = "collision",
     package_path: _Path | Sequence[_Path] = (),
-    prepare: bool = False,
+    prepare: bool | Literal["auto", "wrap"] = False,
     drop_sheets: bool = False,
     max_contacts: int = 100000000,
     max_work: float | None = None,

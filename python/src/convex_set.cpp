@@ -117,6 +117,8 @@ CertifiedSetValue decompose(
     refuse_name("prepare", prepare, {"auto", "wrap"});
   if (!r.wrap && (!offset.is_none() || !seal.is_none()))
     throw Error(ErrorCode::InvalidArgument, "offset and seal are for prepare='wrap'");
+  if (!r.wrap && direction == "outer" && holes == "fill" && !keep_orientation)
+    r.wrap.emplace().where_needed = true;
   if (r.wrap) r.wrap->offset = length_of(offset, "offset");
   if (r.wrap) r.wrap->seal = length_of(seal, "seal");
   r.epsilon = length_of(epsilon, "epsilon");

@@ -39,9 +39,10 @@ struct SetRequest {
   double scale = 1;
   /// Holes are filled or refused; kept ones are filled as well.
   geom::PrepareOptions preparation{.holes = geom::Holes::Fill};
-  /// Set: what is covered is a wrap round all triangles (certify_wrap), whatever they are like. How
-  /// far it is from them counts towards epsilon, and so does its clearance. Outer sets only;
-  /// `farthest`, `float32` and `progress` are not looked at.
+  /// Set: what is covered is a wrap round all triangles (certify_wrap), whatever they are like, or
+  /// only where that is needed (`where_needed`). How far it is from them counts towards epsilon,
+  /// and so does its clearance. Outer sets only; `farthest`, `float32` and `progress` are not
+  /// looked at.
   std::optional<WrapRequest> wrap;
 
   // What the container says of itself.

@@ -11,6 +11,10 @@
 namespace kaboum::certify {
 
 struct WrapRequest {
+  /// The wrap takes the place of the prepared mesh only where that is needed: preparing refuses the
+  /// triangles, or is in doubt about what they enclose (geom::doubt_about). Then holes that it
+  /// filled are wrapped as well. certify_wrap does not look at it.
+  bool where_needed = false;
   /// How far the wrap may be from the input where it can get near it [a quarter of `farthest`, else
   /// 0.1 %]; percentages are of the diagonal.
   std::optional<Length> offset;

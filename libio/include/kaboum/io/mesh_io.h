@@ -3,6 +3,7 @@
 #include <kaboum/geom/mesh.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -51,6 +52,13 @@ struct ReadResult {
   std::size_t file_vertices = 0;   ///< as stored, before merging
   std::size_t file_triangles = 0;  ///< after splitting polygons, before anything is dropped
   std::size_t split_polygons = 0;  ///< faces with more than three corners that were triangulated
+  /// Polygons whose corners are not in one plane, exactly: how they are split makes a difference.
+  std::size_t bent_polygons = 0;
+  /// No bent polygon's corners lie farther apart than this across a plane. [length]
+  double largest_bend = 0;
+  /// Bent polygons of four corners, each by the first of its two triangles, which follow each
+  /// other: geom::PrepareOptions takes the diagonal that encloses, or is enclosed by, both ways.
+  std::vector<std::uint32_t> bent_quads = {};
   std::size_t collapsed_triangles = 0;  ///< dropped: two or three equal corners after merging
   std::vector<std::string> notes;       ///< things a user should know; one sentence each
   /// Files read besides this one, each once: VRML's and X3D's Inline, glTF's buffers.
