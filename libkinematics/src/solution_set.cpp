@@ -436,12 +436,11 @@ class Exploration {
     return f_.sign[joint] * q + Interval(f_.offset[joint]);
   }
 
-  /// A joint's values that are looked at: its limits, or a whole turn.
+  /// A joint's values that are looked at: its limits, or a whole turn within them.
   [[nodiscard]] Interval range_of(std::size_t joint) const {
     const Axis& axis = f_.arm.axes[joint];
-    const bool several = free_.size() > 1;
     if (options_.limits) {
-      if (axis.upper - axis.lower <= (several ? 2 * kPi : 8 * kPi)) return {axis.lower, axis.upper};
+      if (axis.upper - axis.lower <= 2 * kPi) return {axis.lower, axis.upper};
       if (axis.lower > -kPi) return {axis.lower, axis.lower + 2 * kPi};
       if (axis.upper < kPi) return {axis.upper - 2 * kPi, axis.upper};
     }
