@@ -146,9 +146,10 @@ void describe_files(CLI::App& app, DecimationOptions& o) {
       ->check(page_name())
       ->type_name("FILE");
   app.add_option("--log", o.log, "Write the log of all steps, for bmesh-replay")->type_name("FILE");
-  app.add_option("--depfile", o.depfile,
-                 "Write a Makefile dependency rule; names that have no place in one are refused. If "
-                 "FILE ends in .list: the inputs, each followed by a zero byte")
+  app.add_option(
+         "--depfile", o.depfile,
+         "Write a Makefile dependency rule; names that have no place in one are refused. If "
+         "FILE ends in .list: the inputs, each followed by a zero byte")
       ->type_name("FILE");
   app.add_option("--input-format", o.input_format, "Format of INPUT [by extension]")
       ->type_name("NAME");

@@ -163,9 +163,10 @@ void describe(CLI::App& app, DecomposeOptions& o) {
       "need no check, because they are connected or their bodies are proved never to "
       "touch, at whatever joint values within the limits (for one turn of joints without "
       "limits); not with --links");
-  app.add_option("--depfile", o.depfile,
-                 "Write a Makefile dependency rule; names that have no place in one are refused. If "
-                 "FILE ends in .list: the inputs, each followed by a zero byte")
+  app.add_option(
+         "--depfile", o.depfile,
+         "Write a Makefile dependency rule; names that have no place in one are refused. If "
+         "FILE ends in .list: the inputs, each followed by a zero byte")
       ->type_name("FILE");
   app.add_option("--input-format", o.input_format, "Format of INPUT [by extension]")
       ->type_name("NAME");

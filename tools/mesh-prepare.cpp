@@ -182,9 +182,10 @@ void describe(CLI::App& app, PrepareToolOptions& o) {
                "Decide exactly whether every triangle of the file lies in the solid (a wrap's "
                "always do, decided in any case)");
   add_unit_options(app, o.unit, "INPUT");
-  app.add_option("--depfile", o.depfile,
-                 "Write a Makefile dependency rule; names that have no place in one are refused. If "
-                 "FILE ends in .list: the inputs, each followed by a zero byte")
+  app.add_option(
+         "--depfile", o.depfile,
+         "Write a Makefile dependency rule; names that have no place in one are refused. If "
+         "FILE ends in .list: the inputs, each followed by a zero byte")
       ->type_name("FILE");
   app.add_option("--input-format", o.input_format, "Format of INPUT [by extension]")
       ->type_name("NAME");
