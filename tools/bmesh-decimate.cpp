@@ -25,6 +25,11 @@ void note(tools::DecimationCase& run, const std::string& text) {
   run.notes.push_back(text);
 }
 
+/// Whether the triangles stand for exact faces, which are to be enclosed as well.
+bool wraps_exact_faces(const tools::DecimationOptions& o, io::Format format) {
+  return io::is_cad(format) && o.direction == "outer" && o.preparation.holds_exact_faces();
+}
+
 /// What is asked for, where it is not contradictory.
 tools::DecimationCase case_of(const tools::DecimationOptions& o) {
   std::vector<std::size_t> counts;
@@ -39,6 +44,11 @@ tools::DecimationCase case_of(const tools::DecimationOptions& o) {
   if (!o.output.empty()) format = tools::format_for(o.output, o.output_format, "--output-format");
   run.input.format = tools::format_for(o.input, o.input_format, "--input-format");
   tools::require_sound_formats(o, format);
+  if (wraps_exact_faces(o, run.input.format) && o.records())
+    throw Error(ErrorCode::InvalidArgument,
+                "--log and --progressive start from triangles, and " + o.input +
+                    " has exact faces: write a wrap round them with mesh-prepare first, and "
+                    "simplify that, or claim it of the triangles alone (--prepare strict)");
   run.request = tools::request_of(o, std::move(counts), format);
   return run;
 }
@@ -69,10 +79,12 @@ certify::MeshPreparation preparation_of(const tools::DecimationCase& run) {
     out.options.quads = run.input.bent_quads;
     out.options.diagonal = run.outer() ? Diagonal::Outward : Diagonal::Inward;
   }
-  out.wrap = o.preparation.wraps()          ? Wrap::Always
+  const bool always = o.preparation.wraps() || wraps_exact_faces(o, run.input.format);
+  out.wrap = always                         ? Wrap::Always
              : o.preparation.name == "auto" ? Wrap::WhereNeeded
                                             : Wrap::Never;
   out.wrapping = o.preparation.request(std::nullopt);
+  out.wrapping.clearance = run.input.deviation;
   return out;
 }
 

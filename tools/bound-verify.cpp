@@ -31,6 +31,7 @@ int verify_mesh(const VerifyOptions& o) {
   mesh.set = o.set;
   mesh.max_contacts = o.max_contacts;
   mesh.max_work = o.max_work;
+  mesh.exact_points = o.exact_points;
   return tools::verify_mesh(mesh, o.common);
 }
 

@@ -47,6 +47,7 @@ certify::EnclosureRequest enclosure_request(const DecimationOptions& o) {
                          !r.preparation.keep_orientation;
   if (o.preparation.wraps() || if_needed) r.wrap = o.preparation.request(std::nullopt);
   if (r.wrap) r.wrap->where_needed = if_needed;
+  r.hold_exact_faces = o.preparation.holds_exact_faces();
   return r;
 }
 

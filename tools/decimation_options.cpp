@@ -133,7 +133,7 @@ void describe_files(CLI::App& app, DecimationOptions& o) {
   app.add_flag("--drop-sheets", o.prepare.drop_sheets,
                "Drop back-to-back faces without volume (they are then not enclosed)");
   add_holes_options(app, o.holes, true);
-  add_preparation_options(app, o.preparation);
+  add_preparation_options(app, o.preparation, "open meshes stay open", true);
   app.add_flag("--keep-orientation", o.prepare.keep_orientation,
                "Never turn inconsistent triangles or inside-out components");
   app.add_flag("--verify", o.verify,
@@ -146,9 +146,10 @@ void describe_files(CLI::App& app, DecimationOptions& o) {
       ->check(page_name())
       ->type_name("FILE");
   app.add_option("--log", o.log, "Write the log of all steps, for bmesh-replay")->type_name("FILE");
-  app.add_option("--depfile", o.depfile,
-                 "Write a Makefile dependency rule; names that have no place in one are refused. If "
-                 "FILE ends in .list: the inputs, each followed by a zero byte")
+  app.add_option(
+         "--depfile", o.depfile,
+         "Write a Makefile dependency rule; names that have no place in one are refused. If "
+         "FILE ends in .list: the inputs, each followed by a zero byte")
       ->type_name("FILE");
   app.add_option("--input-format", o.input_format, "Format of INPUT [by extension]")
       ->type_name("NAME");

@@ -2,7 +2,6 @@
 
 #include "decompose_preview.h"
 
-#include <kaboum/io/cad.h>
 #include <kaboum/io/file_unit.h>
 #include <kaboum/robot/exact_shapes.h>
 #include <kaboum/robot/kinematics.h>
@@ -38,8 +37,7 @@ std::string three_digits(double x) {
 geom::Mesh original_of(const DecomposeOptions& o, bool wrapped) {
   const certify::SetRequest request = request_of(o);
   io::ReadResult read =
-      is_cad(o) ? io::read_cad(o.input).read
-                : io::read_mesh(o.input, format_for(o.input, o.input_format, "--input-format"));
+      io::read_mesh(o.input, format_for(o.input, o.input_format, "--input-format"));
   io::scale(read, o.scale, o.input);
   if (wrapped) return std::move(read.mesh);
   return naming(o.input,

@@ -24,9 +24,6 @@ std::string lower_extension(const std::string& path) {
 /// What to do with a file of a kind that is no mesh to read; empty when there is nothing to say.
 std::string route(const std::string& path) {
   const std::string extension = lower_extension(path);
-  if (extension == ".step" || extension == ".stp" || extension == ".iges" || extension == ".igs")
-    return "make a mesh of it first: mesh-prepare " + path +
-           " -o part.ply (with --prepare wrap, one that holds the exact faces)";
   if (extension == ".brep") return "this kind of CAD file is not read; export it as STEP";
   const auto is = [&](std::initializer_list<const char*> names) {
     return std::any_of(names.begin(), names.end(), [&](const char* n) { return extension == n; });

@@ -12,12 +12,17 @@ namespace kaboum::tools {
 namespace {
 
 MeshInput read(const std::string& path, const std::string& format, const char* option,
-               const UnitOption& unit = {}) {
+               const UnitOption& unit = {}, std::size_t density = 0) {
   std::vector<char> bytes;
   io::ReadResult r = io::read_mesh(path, format_for(path, format, option), &bytes);
   apply(r, unit, path);
   MeshInput out;
   out.unit = r.unit;
+  out.deviation = r.deviation;
+  out.about_exact = io::about_exact_faces(r);
+  if (density > 0 && io::is_cad(r.format))
+    out.exact =
+        verify::read_exact_points(bytes, r.format, path, density, unit.scale, r.exact_faces);
   out.mesh = std::move(r.mesh);
   out.quads = std::move(r.bent_quads);
   out.sha256 = io::sha256(bytes);
@@ -32,8 +37,11 @@ MeshInput read(const std::string& path, const std::string& format, const char* o
 
 MeshInput read_original(const VerifyMeshOptions& o) {
   using Diagonal = geom::PrepareOptions::Diagonal;
-  MeshInput out = read(o.original, o.original_format, "--input-format", o.unit);
-  out.diagonal = o.relation == verify::Relation::Inner ? Diagonal::Inward : Diagonal::Outward;
+  const bool inner = o.relation == verify::Relation::Inner;
+  // Whether points of exact faces are inside what encloses, or is covered, is what they can tell.
+  MeshInput out =
+      read(o.original, o.original_format, "--input-format", o.unit, inner ? 0 : o.exact_points);
+  out.diagonal = inner ? Diagonal::Inward : Diagonal::Outward;
   return out;
 }
 

@@ -61,6 +61,7 @@ void add_mesh_command(CLI::App& app, VerifyOptions& o) {
   add_unit(*c, o);
   add_input_format(*c, o);
   add_approximation_format(*c, o, "APPROXIMATION");
+  add_exact_points(*c, o);
   add_limits(*c, o);
   add_common_options(*c, o.common);
 }
@@ -82,6 +83,7 @@ void add_cover_command(CLI::App& app, VerifyOptions& o) {
   add_unit(*c, o);
   add_input_format(*c, o);
   add_approximation_format(*c, o, "SET");
+  add_exact_points(*c, o);
   add_limits(*c, o);
   add_common_options(*c, o.common);
   c->preparse_callback([&o](std::size_t) { o.cover = true; });

@@ -97,6 +97,17 @@ void add_limits(CLI::App& app, VerifyOptions& o) {
       ->type_name("SECONDS");
 }
 
+CLI::Option* add_exact_points(CLI::App& app, VerifyOptions& o) {
+  return app
+      .add_option("--exact-points", o.exact_points,
+                  "Of STEP and IGES: how densely points of the exact faces are looked at, which "
+                  "refute where they stick out; parts of each interval between knots of an edge, "
+                  "and of a face in each direction; 0: the triangles alone are judged")
+      ->check(CLI::Range(std::size_t{0}, std::size_t{10'000}).description(""))
+      ->capture_default_str()
+      ->type_name("N");
+}
+
 void add_unit(CLI::App& app, VerifyOptions& o) { add_unit_options(app, o.unit, "ORIGINAL"); }
 
 CLI::Option* add_set(CLI::App& app, VerifyOptions& o) {

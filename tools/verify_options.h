@@ -29,6 +29,7 @@ struct VerifyOptions {
   bool drop_sheets = false, set = false;
   std::size_t max_contacts = VerifyMeshOptions{}.max_contacts;
   std::optional<double> max_work;
+  std::size_t exact_points = VerifyMeshOptions{}.exact_points;
   std::string geometry = "collision";  ///< of robots and sweeps
   std::vector<std::string> packages;   ///< of robots and sweeps
   std::string links;                   ///< of robots and sweeps
@@ -63,6 +64,7 @@ void add_input_format(CLI::App& app, VerifyOptions& options);
 /// @param of  the file
 void add_approximation_format(CLI::App& app, VerifyOptions& options, const std::string& of);
 void add_limits(CLI::App& app, VerifyOptions& options);
+CLI::Option* add_exact_points(CLI::App& app, VerifyOptions& options);
 CLI::Option* add_links(CLI::App& app, VerifyOptions& options);
 /// --geometry, --visual and --package-path. @param of  the robot
 void add_geometry(CLI::App& app, VerifyOptions& options, const std::string& of);

@@ -48,11 +48,13 @@ GivenSolid solid_of(const geom::Mesh& mesh, const EnclosureRequest& request, Mes
         std::optional<double> epsilon;
         if (rest.epsilon) epsilon = rest.epsilon->of(geom::bounding_box(mesh).diagonal());
         WrapRequest wrap = *request.wrap;
-        if (epsilon) wrap.farthest = kShareOfWrap * *epsilon;
+        if (epsilon) wrap.farthest = kShareOfWrap * (*epsilon - wrap.clearance);
+        if (wrap.farthest && !(*wrap.farthest > 0)) refuse_deviation(wrap.clearance);
         wrap.float32 = rest.numbers != MeshRequest::Numbers::Double;
         wrap.progress = hooks.progress;
         CertifiedWrap made = certify_wrap(triangles, wrap);
-        if (epsilon) rest.epsilon = Length{*epsilon - made.certificate().farthest_upper};
+        const WrapCertificate& c = made.certificate();
+        if (epsilon) rest.epsilon = Length{*epsilon - c.clearance - c.farthest_upper};
         return made;
       },
       because);
@@ -181,7 +183,10 @@ std::optional<CertifiedEnclosure> certify(const geom::Mesh& mesh, const Enclosur
   made.vertices_in = c.statistics.vertices_in;
   made.diagonal = geom::bounding_box(solid.solid.mesh()).diagonal();
   made.epsilon = c.epsilon;
-  made.distance_upper = c.hausdorff_upper() + (made.wrap ? made.wrap->farthest_upper : 0);
+  made.distance_upper = c.hausdorff_upper();
+  if (made.wrap)
+    made.distance_upper =
+        (made.distance_upper + made.wrap->farthest_upper + made.wrap->clearance) * (1 + 0x1p-50);
   made.stop = c.stop;
   made.reached = c.reached();
   made.out_of_work = c.out_of_work;
@@ -225,7 +230,7 @@ EnclosedFile enclose_file(const fs::path& file, std::optional<io::Format> format
                           const EnclosureRequest& asked, const CacheFolder* cache,
                           const MeshHooks& hooks) {
   EnclosureRequest request = asked;
-  if (cache != nullptr && file != "-") {
+  if (cache != nullptr && file != "-") {  // CAD files are never known
     const auto known = find_known(*cache, file, format, 1);
     auto found =
         known ? find_enclosure(*cache, key_of_enclosure(known->mesh_hash + known->sha256, request),
@@ -236,7 +241,8 @@ EnclosedFile enclose_file(const fs::path& file, std::optional<io::Format> format
   std::vector<char> bytes;
   io::ReadResult read = io::read_mesh(file, format, &bytes);
   const std::string mesh_hash = SetCache::hash_of(read.mesh), sha256 = kaboum::sha256(bytes);
-  if (cache != nullptr && file != "-")
+  hold_exact_faces(read, request.hold_exact_faces, request.wrap);
+  if (cache != nullptr && file != "-" && !io::is_cad(read.format))
     store_known(*cache, file, format, 1, bytes.size(), sha256, mesh_hash, read);
   request.preparation.quads = read.bent_quads;
   request.preparation.diagonal = geom::PrepareOptions::Diagonal::Outward;

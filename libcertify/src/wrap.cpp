@@ -52,6 +52,20 @@ void decide(const geom::Mesh& input, const geom::Mesh& wrap, const WrapRequest& 
 
 }  // namespace
 
+void hold_exact_faces(const io::ReadResult& read, bool hold, std::optional<WrapRequest>& wrap) {
+  if (!io::is_cad(read.format)) return;
+  if (hold && !wrap) wrap.emplace();
+  if (hold) wrap->where_needed = false;
+  if (wrap) wrap->clearance = read.deviation;
+}
+
+void refuse_deviation(double clearance) {
+  throw Error(ErrorCode::InvalidInput,
+              "the exact faces may be " + number(clearance) +
+                  " from the triangles that stand for them, which leaves nothing of epsilon; allow "
+                  "more, or make what is claimed one about the triangles (--prepare strict)");
+}
+
 std::string in_words(const WrapCertificate& wrap) {
   return "The solid is that of a wrap round all " + std::to_string(wrap.input_triangles) +
          " triangles: each lies inside, exactly; no point of it is farther from them than " +

@@ -171,6 +171,7 @@ class Reading {
       result_.solids.push_back(name_of(reader_, at.Current()));
     for (TopExp_Explorer at(shape, TopAbs_FACE, TopAbs_SOLID); at.More(); at.Next())
       ++result_.loose_faces;
+    result_.faces = count_faces(shape);
     ExactCover cover = cover_exact_shape(shape, kWish * kChord * diagonal, kMost * diagonal);
     result_.bare_faces = cover.bare_faces;
     if (cover.bare_faces > 0) return;

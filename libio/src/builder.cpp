@@ -129,7 +129,7 @@ void MeshBuilder::split_polygons(ReadResult& result) {
   result.file_triangles = triangles_.size();
   if (polygons_.empty()) return;
   // Hostile polygons cannot stall the reader: a few seconds.
-  PolygonSplitter splitter(300'000'000);
+  PolygonSplitter splitter(600'000'000);
   std::vector<geom::Triangle> all, pieces;
   all.reserve(triangles_.size() + polygon_corners_.size());
   std::vector<geom::Vec3> positions;

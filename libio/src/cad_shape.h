@@ -12,6 +12,7 @@ struct CadShape {
   std::vector<geom::Vec3> points;  ///< millimetres
   std::vector<geom::Triangle> triangles;
   std::vector<std::string> solids;  ///< a name each, perhaps empty
+  std::size_t faces = 0;            ///< one for each place of a face
   std::size_t loose_faces = 0;      ///< in no solid
   std::size_t bare_faces = 0;       ///< that could not be made into triangles
   /// No point of the exact faces and edges is farther from the triangles, by the proof in

@@ -101,6 +101,7 @@ void scale(ReadResult& read, double factor, const std::string& name) {
                   name + ": no triangle is left after scaling; choose a factor nearer to 1");
   }
   read.single_precision = false;
+  if (read.deviation > 0) read.deviation = scaled_bound(read.deviation, factor, read.mesh);
   read.notes.push_back("Its coordinates are multiplied by " + shortest_digits(factor) +
                        ", and what is said of it is about the products.");
   if (const auto metres = metres_of(read.unit)) read.unit = unit_of_metres(*metres / factor);

@@ -271,11 +271,18 @@ bool PolygonSplitter::is_ear(std::uint32_t i) {
     for (std::uint32_t column = first_column; column <= last_column; ++column) {
       std::uint64_t steps = 1;
       bool holds = false;
-      for (std::uint32_t r = grid_.first[std::size_t{row} * grid_.columns + column];
-           r != kNone && !holds; r = grid_.next[r]) {
+      std::uint32_t* link = &grid_.first[std::size_t{row} * grid_.columns + column];
+      while (*link != kNone && !holds) {
+        const std::uint32_t r = *link;
+        Corner& c = ring_[r];
         ++steps;
-        const Corner& c = ring_[r];
-        if (!c.reflex || c.x < min_x || c.x > max_x || c.y < min_y || c.y > max_y) continue;
+        if (!c.reflex) {  // no longer
+          c.listed = false;
+          *link = grid_.next[r];
+          continue;
+        }
+        link = &grid_.next[r];
+        if (c.x < min_x || c.x > max_x || c.y < min_y || c.y > max_y) continue;
         if (same_place(r, p) || same_place(r, i) || same_place(r, n)) continue;
         steps += 3;
         holds = turn(p, i, r) >= 0 && turn(i, n, r) >= 0 && turn(n, p, r) >= 0;

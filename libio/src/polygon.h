@@ -61,7 +61,7 @@ class PolygonSplitter {
   void spend(std::uint64_t steps) { budget_ -= steps < budget_ ? steps : budget_; }
 
   /// Reflex corners, which may lie in an ear, by the cell of a grid that they are in. Corners that
-  /// have become convex, or were cut off, stay and are passed over.
+  /// have become convex, or were cut off, leave it when they are met.
   struct Grid {
     double x, y, per_x, per_y;  ///< its lowest corner; cells per length
     std::uint32_t columns, rows;

@@ -96,9 +96,6 @@ inline constexpr std::array<std::string_view, 83> kHarmless = {"Appearance",
                                                                "VolumePickSensor",
                                                                "WorldInfo"};
 
-inline constexpr std::array<std::string_view, 6> kMetadata = {"MetadataBoolean", "MetadataDouble",
-                                                              "MetadataFloat",   "MetadataInteger",
-                                                              "MetadataSet",     "MetadataString"};
 /// Fields of grouping nodes and shapes that neither hold nor move a surface.
 inline constexpr std::array<std::string_view, 14> kGroupFields = {
     "bboxCenter", "bboxDisplay", "bboxSize",   "castShadow", "collide",  "description", "enabled",

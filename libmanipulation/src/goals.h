@@ -15,6 +15,11 @@ struct Goals {
   bool all = true;
   bool alone = true;        ///< the robot has no joints but those that move the link
   std::string listed = {};  ///< what of the scene they are for: "the 4 grasps …"; empty: one pose
+
+  /// "none of the 4 grasps …"
+  [[nodiscard]] std::string none() const {
+    return (listed.starts_with("the only") ? "not even " : "none of ") + listed;
+  }
 };
 
 /// How goals are looked for.

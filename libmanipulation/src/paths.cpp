@@ -115,7 +115,7 @@ bool MotionSequence::go(std::size_t robot, const Goals& goals) {
       const bool all = goals.all && goals.alone;
       std::string where = "blocked at its end";
       if (!goals.listed.empty())
-        where = (all ? "none of " : "no configuration that was tried for ") + goals.listed +
+        where = (all ? goals.none() : "no configuration that was tried for " + goals.listed) +
                 " is free of contact";
       return none(all, where + ": " + name_of(geometry_.world, answer.contact->items));
     }

@@ -42,8 +42,8 @@ Goals Sequence::goals_of_reach(std::size_t robot, std::size_t object) const {
     return std::ranges::any_of(model.tools,
                                [&](const world::ToolFrame& tool) { return fits(tool, grasp); });
   });
-  goals.listed = "the " + std::to_string(fitting) + (fitting == 1 ? " grasp" : " grasps") +
-                 " listed for " + thing.name;
+  goals.listed = (fitting == 1 ? "the only grasp" : "the " + std::to_string(fitting) + " grasps") +
+                 (" listed for " + thing.name);
   return goals;
 }
 
@@ -66,7 +66,7 @@ std::optional<Goals> Sequence::goals_in_reach(std::size_t robot, std::size_t obj
   Goals goals = goals_of_reach(robot, object);
   if (!goals.configurations.empty()) return goals;
   if (goals.all)
-    return none(Answer::Kind::Impossible, thing.name + " is out of reach: none of " + goals.listed +
+    return none(Answer::Kind::Impossible, thing.name + " is out of reach: " + goals.none() +
                                               " can be reached by " + model.name);
   return none(Answer::Kind::NotFound,
               thing.name + " was not found to be in reach: nothing was found for " + goals.listed);

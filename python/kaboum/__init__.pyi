@@ -40,6 +40,8 @@ class Mesh:
     @property
     def unit(self) -> str: ...
     @property
+    def deviation(self) -> float: ...
+    @property
     def notes(self) -> list[str]: ...
     @property
     def volume(self) -> float: ...
@@ -365,6 +367,7 @@ def verify_mesh(
     drop_sheets: bool = False,
     max_contacts: int = 100000000,
     max_work: float | None = None,
+    exact_points: int = 17,
     threads: int = 0,
     progress: _Progress | None = None,
 ) -> Verdict: ...
@@ -378,6 +381,7 @@ def verify_cover(
     drop_sheets: bool = False,
     max_contacts: int = 100000000,
     max_work: float | None = None,
+    exact_points: int = 17,
     threads: int = 0,
     progress: _Progress | None = None,
 ) -> Verdict: ...

@@ -209,7 +209,14 @@ std::vector<BoundingMesh> decimated(const py::object& mesh,
       made.series = certify::certify_meshes(*original, request, hooks);
       notes.insert(notes.end(), original->report.notes.begin(), original->report.notes.end());
     } else {
-      made = certify::bound_mesh(*value.mesh, request, preparation, hooks);
+      using Wrap = certify::MeshPreparation::Wrap;
+      certify::MeshPreparation asked = preparation;
+      // Of STEP and IGES the exact faces are what is enclosed.
+      if (value.deviation > 0 && request.direction == bmesh::Direction::Outer &&
+          asked.wrap == Wrap::WhereNeeded)
+        asked.wrap = Wrap::Always;
+      asked.wrapping.clearance = value.deviation;
+      made = certify::bound_mesh(*value.mesh, request, asked, hooks);
       for (std::string& text : certify::notes_of(made)) notes.push_back(std::move(text));
     }
     if (made.series.meshes.empty()) throw certify::TooCoarse(name);

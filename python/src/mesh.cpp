@@ -100,6 +100,11 @@ MeshValue read(const std::string& path, const std::optional<std::string>& format
     if (read.collapsed_triangles > 0)
       out.notes.push_back(std::to_string(read.collapsed_triangles) +
                           " triangles with repeated corners bound nothing and are left out");
+    if (io::is_cad(read.format)) {
+      out.deviation = read.deviation;
+      out.exact_faces = read.exact_faces;
+      out.format = read.format;
+    }
     return out;
   });
 }
@@ -166,6 +171,9 @@ Error
       .def_readonly("sha256", &MeshValue::sha256, "Of that file, or ''.")
       .def_readonly("unit", &MeshValue::unit,
                     "Unit of length where the file states it or its format has one, else ''.")
+      .def_readonly("deviation", &MeshValue::deviation,
+                    "Of STEP and IGES: the exact faces, which the faces here stand for, are no "
+                    "farther from them. Else 0. [length]")
       .def_readonly("notes", &MeshValue::notes, "What a user should know of the reading.")
       .def_property_readonly(
           "volume", [](const MeshValue& m) { return geom::signed_volume(*m.mesh); },
@@ -222,7 +230,7 @@ Coordinates are the doubles nearest to the numbers in the file; equal vertices a
 Parameters
 ----------
 path : str or os.PathLike
-    STL, OBJ, PLY, OFF, VRML, X3D, COLLADA, 3MF, glTF or FBX.
+    STL, OBJ, PLY, OFF, VRML, X3D, COLLADA, 3MF, glTF, FBX, STEP or IGES.
 format : str, optional
     'stl', 'ply', ...; by default by the extension.
 

@@ -70,7 +70,6 @@
 #include <kaboum/base/random.h>
 #include <kaboum/geom/distance.h>
 #include <kaboum/geom/winding.h>
-#include <kaboum/io/cad.h>
 #include <kaboum/io/mesh_io.h>
 
 #include <algorithm>
@@ -519,8 +518,8 @@ std::vector<double> dense(const std::vector<double>& ends, int between) {
 /// Whether all exact edges and faces are within the claimed deviation of the triangles, by
 /// OpenCASCADE's evaluators.
 int within(const char* part) {
-  const kaboum::io::CadResult claimed = kaboum::io::read_cad(part);
-  const kaboum::geom::DistanceQuery query(claimed.read.mesh);
+  const kaboum::io::ReadResult claimed = kaboum::io::read_mesh(part);
+  const kaboum::geom::DistanceQuery query(claimed.mesh);
   STEPControl_Reader reader;
   if (reader.ReadFile(part) != IFSelect_RetDone) return 3;
   reader.TransferRoots();

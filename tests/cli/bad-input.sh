@@ -63,7 +63,7 @@ expect 3 'too long' "$BIN/bound-verify" --cover t.off "$long.glb"
 expect 3 'no such file or folder' "$BIN/bound-verify" --cover t.off "$long"
 # What is no mesh is answered with a way to one.
 for f in part.step part.STP part.iges robot.urdf.xacro empty.xml; do : >$f; done
-for f in part.step part.STP part.iges; do expect 3 "mesh-prepare $f -o" "$D" $f -o x.off --epsilon 1%; done
+for f in part.step part.STP part.iges; do expect 3 "$f: the file is empty" "$D" $f -o x.off --epsilon 1%; done
 : >part.brep
 expect 3 'export it as STEP' "$D" part.brep -o x.off --epsilon 1%
 echo '<robot name="r"><link name="l"/></robot>' >robot.urdf

@@ -44,6 +44,9 @@ struct SetRequest {
   /// and so does its clearance. Outer sets only; `farthest`, `float32` and `progress` are not
   /// looked at.
   std::optional<WrapRequest> wrap;
+  /// certify_file wraps the triangles of CAD files, which stand for exact faces, of itself, so that
+  /// an outer set holds these. False: what is claimed is about the triangles.
+  bool hold_exact_faces = true;
 
   // What the container says of itself.
   std::string source;  ///< name of the file

@@ -25,6 +25,9 @@ struct EnclosureRequest {
   /// or not every triangle is inside otherwise. `farthest`, `float32` and `progress` are not looked
   /// at.
   std::optional<WrapRequest> wrap;
+  /// enclose_file wraps the triangles of CAD files, which stand for exact faces, of itself, so that
+  /// these are enclosed. False: what is claimed is about the triangles.
+  bool hold_exact_faces = true;
 
   /// As bmesh-decimate spells what the result depends on.
   [[nodiscard]] std::string parameters() const;
@@ -48,8 +51,9 @@ struct EnclosureCertificate {
   double diagonal = 0;           ///< of what is enclosed [length]
   std::optional<double>
       epsilon;  ///< kept between the result and what is enclosed, a wrap's apart [length]
-  /// No point of the result's surface is farther than this from the file's triangles, a wrap's
-  /// distance included, and no point of what is enclosed from the result. [length]
+  /// No point of the result's surface is farther than this from the file's triangles (its exact
+  /// faces), a wrap's distance included, and no point of what is enclosed from the result.
+  /// [length]
   double distance_upper = 0;
   bmesh::Stop stop = bmesh::Stop::Exhausted;
   bool reached = true;  ///< MeshCertificate::reached

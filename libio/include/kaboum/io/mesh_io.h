@@ -28,7 +28,9 @@ enum class Format {
   Fbx,
   ThreeMf,
   X3d,
-  Vrml
+  Vrml,
+  Step,
+  Iges
 };
 
 /// Format named by `text`: a format name ("stl", "ply-ascii") or a file name's extension (".stl").
@@ -41,6 +43,10 @@ std::vector<std::string> writable_formats();
 
 /// True when the format stores coordinates as text or as 64-bit floats, so that doubles survive.
 bool holds_double(Format format);
+
+/// Whether files of the format hold exact faces, which the triangles that are read stand for
+/// (ReadResult::deviation): STEP and IGES.
+bool is_cad(Format format);
 
 /// A mesh as read, and what the reader did on the way.
 struct ReadResult {
@@ -66,7 +72,15 @@ struct ReadResult {
   /// Unit of length of the vertices where the file states it (3MF, FBX, X3D) or its format has one
   /// (COLLADA, glTF: m): one of kLengthUnits, or a length ("0.005 m"). Empty: nothing says it.
   std::string unit = {};
+  /// Of CAD files: the exact faces, which are what is meant, are no farther from the triangles than
+  /// this (docs/formats.md). 0: the triangles are meant. [length]
+  double deviation = 0;
+  std::size_t exact_faces = 0;  ///< of CAD files, one for each place of a face
 };
+
+/// What is to be known of a mesh whose triangles stand for exact faces, wherever something is said
+/// about the triangles alone; empty where they are what is meant.
+std::string about_exact_faces(const ReadResult& read);
 
 /// Parses a file held in memory.
 ///
@@ -80,6 +94,9 @@ struct ReadResult {
 /// the faces. COLLADA: scaled to metres by its <unit>, its <up_axis> is ignored, as robot
 /// descriptions expect. FBX, 3MF and X3D: not scaled. A note says so in each case. VRML and X3D:
 /// LOD gives its finest level, Switch its choice. What is refused: docs/formats.md.
+///
+/// STEP and IGES: millimetres; triangles that stand for the exact faces within `deviation`, made by
+/// OpenCASCADE, a module that is loaded in a child process with limits of memory and time.
 ///
 /// @param base_directory  where files that this one refers to are found (VRML's Inline, glTF's
 ///   buffers), by relative paths; empty: nowhere.
