@@ -4,6 +4,7 @@
 #include <kaboum/base/length.h>
 #include <kaboum/geom/prepare.h>
 #include <kaboum/io/mesh_io.h>
+#include <pybind11/numpy.h>
 
 #include <array>
 #include <optional>
