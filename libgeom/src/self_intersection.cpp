@@ -57,7 +57,8 @@ bool meet_improperly(const NamedTriangle& a, const NamedTriangle& b) {
     return Kernel::Segment_3(point(t.at[(apex + 1) % 3]), point(t.at[(apex + 2) % 3]));
   };
   if (common == 0) return CGAL::do_intersect(triangle(a), triangle(b));
-  // They meet in more than a corner if, and only if, the side opposite to it, of one, meets the other.
+  // They meet in more than a corner if, and only if, the side opposite to it, of one, meets the
+  // other.
   if (common == 1)
     return CGAL::do_intersect(triangle(a), segment(b, of_b)) ||
            CGAL::do_intersect(triangle(b), segment(a, of_a));

@@ -35,7 +35,8 @@ Sphere circumsphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) 
 
 Vec3 circumcenter(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 u = b - a, v = c - a, n = u.cross(v);
-  const Vec3 x = (u.squaredNorm() * v.cross(n) + v.squaredNorm() * n.cross(u)) / (2 * n.squaredNorm());
+  const Vec3 x =
+      (u.squaredNorm() * v.cross(n) + v.squaredNorm() * n.cross(u)) / (2 * n.squaredNorm());
   return x.allFinite() ? Vec3(a + x) : Vec3((a + b + c) / 3);
 }
 
@@ -196,7 +197,8 @@ class Carver {
       nearest = end;
       nearest_x = b;
     }
-    if (nearest.distance <= std::max(tau, options_.radius)) return on_offset(nearest_x, nearest.triangle);
+    if (nearest.distance <= std::max(tau, options_.radius))
+      return on_offset(nearest_x, nearest.triangle);
     return {};
   }
 
@@ -221,7 +223,8 @@ class Carver {
           const std::uint32_t d = delaunay_.cell(c).next[i];
           if (d == kNone || info_[d].outside) continue;
           const auto& next = delaunay_.cell(d).next;
-          push(d, static_cast<std::uint32_t>(std::find(next.begin(), next.end(), c) - next.begin()));
+          push(d,
+               static_cast<std::uint32_t>(std::find(next.begin(), next.end(), c) - next.begin()));
         }
         return;
       }

@@ -136,8 +136,7 @@ std::uint32_t Delaunay::insert(const Vec3& p, std::uint32_t near, double apart) 
   for (Facet& f : rim_) {
     const std::uint32_t hidden = f.cell;
     f.cell = new_cell();
-    cells_[f.cell] = {{v, f.corner[0], f.corner[1], f.corner[2]},
-                      {f.beyond, kNone, kNone, kNone}};
+    cells_[f.cell] = {{v, f.corner[0], f.corner[1], f.corner[2]}, {f.beyond, kNone, kNone, kNone}};
     if (f.beyond != kNone) {
       auto& next = cells_[f.beyond].next;
       std::size_t side = 0;  // where two tetrahedra meet, they meet in one facet

@@ -1,4 +1,5 @@
-// An enclosing closed mesh of any triangles: tetrahedra carved from outside, steps towards the input.
+// An enclosing closed mesh of any triangles: tetrahedra carved from outside, steps towards the
+// input.
 #include <kaboum/base/error.h>
 #include <kaboum/geom/float32.h>
 #include <kaboum/geom/self_intersection.h>
@@ -41,9 +42,10 @@ void require_fine(const geom::Box3& box, const WrapOptions& o) {
   constexpr double kSmallest = 1e-40, kLargest = 1e40;
   const double diagonal = box.diagonal();
   if (diagonal > 0 && !(diagonal > kSmallest && diagonal < kLargest))
-    throw Error(ErrorCode::InvalidInput,
-                "the triangles are too small or too large for a wrap: their box has a diagonal of " +
-                    std::to_string(diagonal) + "; use another unit of length");
+    throw Error(
+        ErrorCode::InvalidInput,
+        "the triangles are too small or too large for a wrap: their box has a diagonal of " +
+            std::to_string(diagonal) + "; use another unit of length");
   if (!(8 * spacing_of(box, o) <= o.seal))
     throw Error(ErrorCode::InvalidInput,
                 o.float32 ? "the coordinates are too large for 32-bit numbers as fine as the wrap "

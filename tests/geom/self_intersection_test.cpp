@@ -1,4 +1,5 @@
-// Spheres through four points against rationals; meshes that meet themselves, and those that do not.
+// Spheres through four points against rationals; meshes that meet themselves, and those that do
+// not.
 #include <gtest/gtest.h>
 #include <kaboum/geom/in_sphere.h>
 #include <kaboum/geom/self_intersection.h>
@@ -79,8 +80,9 @@ TEST(SelfIntersections, AreNoneOfWhatIsEmbedded) {
 
 TEST(SelfIntersections, AreFound) {
   const Mesh sphere = test::icosphere(2);
-  EXPECT_GT(self_intersections(test::merged({sphere, test::translated(sphere, {0.7, 0, 0})})).triangles,
-            10U);
+  EXPECT_GT(
+      self_intersections(test::merged({sphere, test::translated(sphere, {0.7, 0, 0})})).triangles,
+      10U);
   // The same surface twice, and one that touches another with a corner.
   EXPECT_EQ(self_intersections(test::merged({sphere, sphere})).triangles,
             2 * sphere.triangles.size());

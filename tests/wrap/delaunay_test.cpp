@@ -17,10 +17,8 @@ void expect_sound(const Delaunay& d, double volume) {
     if (cell.gone()) continue;
     const auto& [a, b, e, f] = cell.vertex;
     ASSERT_EQ(geom::orient3d(d.point(a), d.point(b), d.point(e), d.point(f)), geom::Sign::Positive);
-    sum += (d.point(b) - d.point(a))
-               .cross(d.point(e) - d.point(a))
-               .dot(d.point(f) - d.point(a)) /
-           6;
+    sum +=
+        (d.point(b) - d.point(a)).cross(d.point(e) - d.point(a)).dot(d.point(f) - d.point(a)) / 6;
     for (std::uint32_t v = 0; v < d.point_count(); ++v)
       ASSERT_NE(geom::in_sphere(d.point(a), d.point(b), d.point(e), d.point(f), d.point(v)),
                 geom::Sign::Positive);

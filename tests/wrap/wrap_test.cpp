@@ -125,7 +125,8 @@ TEST(Wrap, OfAPlateWithHolesIsTight) {
     // Holes of a side of 0.6 stay open where the ball goes through them.
     const double whole = 6.4 * 6.4, holes = 36 * 0.6 * 0.6, border = 2 * 0.002 * diagonal;
     const double height = geom::bounding_box(plate).max.z() - geom::bounding_box(plate).min.z();
-    const double area = seal < 0.06 ? whole - holes + border * (4 * 6.4 + 36 * 4 * 0.6) : whole + border * 4 * 6.4;
+    const double area =
+        seal < 0.06 ? whole - holes + border * (4 * 6.4 + 36 * 4 * 0.6) : whole + border * 4 * 6.4;
     EXPECT_LT(geom::signed_volume(around), 1.1 * area * (height + border)) << seal;
     if (seal > 0.1) EXPECT_GT(geom::signed_volume(around), 0.9 * whole * height);
   }

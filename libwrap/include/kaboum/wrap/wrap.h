@@ -36,9 +36,9 @@ struct Wrap {
 ///
 /// Carves Delaunay tetrahedra from outside, as far as a ball of diameter `seal` gets, and moves,
 /// splits and contracts their boundary as near to the input as it may: each step adds tetrahedra
-/// of which none meets the input, and new triangles that meet no others. docs/algorithms/wrapping.md
-/// has the proof. How far the wrap reaches is not promised by this function: measure it
-/// (geom::directed_distance).
+/// of which none meets the input, and new triangles that meet no others.
+/// docs/algorithms/wrapping.md has the proof. How far the wrap reaches is not promised by this
+/// function: measure it (geom::directed_distance).
 ///
 /// The result does not depend on the number of threads.
 ///
