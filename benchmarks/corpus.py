@@ -89,9 +89,12 @@ def judge(tools, mesh, case, work, seconds):
     facts = json.loads(report.read_text())
     row["triangles"] = facts["input"].get("triangles", 0)
     epsilon = "2%" if tool == "bcd-decompose" else recorded_epsilon(facts)
-    command = [tools / "bound-verify", relation, mesh, result, "--prepare"]
-    command += ["--drop-sheets"] if "--drop-sheets" in options else []
-    command += ["--epsilon", epsilon] if epsilon else []
+    if facts.get("preparation", {}).get("wrap"):  # whatever the file's solid: each of its triangles is inside
+        command = [tools / "bound-verify", relation, mesh, result, "--raw"]
+    else:
+        command = [tools / "bound-verify", relation, mesh, result, "--prepare"]
+        command += ["--drop-sheets"] if "--drop-sheets" in options else []
+        command += ["--epsilon", epsilon] if epsilon else []
     code, used, out, err = run(command, seconds)
     row.update(verifier=code, verifier_seconds=round(used, 2), epsilon=epsilon)
     lines = out.strip().splitlines()

@@ -21,8 +21,7 @@ certify::CertifiedFile certify_mesh(const DecomposeOptions& o) {
       [&](const std::string& stage) { progress.show(stage); },
       [&](const std::string& text) { log(o.common.quiet, o.input + ": " + text); }};
   const certify::SetCache cache(certify::SetCache::default_folder());
-  std::optional<io::Format> format;  // none: a CAD file
-  if (!is_cad(o)) format = format_for(o.input, o.input_format, "--input-format");
+  const io::Format format = format_for(o.input, o.input_format, "--input-format");
   return certify::certify_file(o.input, format, request_of(o), o.no_cache ? nullptr : &cache,
                                hooks);
 }

@@ -25,6 +25,11 @@ void note(tools::DecimationCase& run, const std::string& text) {
   run.notes.push_back(text);
 }
 
+/// Whether the triangles stand for exact faces, which are to be enclosed as well.
+bool wraps_exact_faces(const tools::DecimationOptions& o, io::Format format) {
+  return io::is_cad(format) && o.direction == "outer" && o.preparation.holds_exact_faces();
+}
+
 /// What is asked for, where it is not contradictory.
 tools::DecimationCase case_of(const tools::DecimationOptions& o) {
   std::vector<std::size_t> counts;
@@ -39,32 +44,15 @@ tools::DecimationCase case_of(const tools::DecimationOptions& o) {
   if (!o.output.empty()) format = tools::format_for(o.output, o.output_format, "--output-format");
   run.input.format = tools::format_for(o.input, o.input_format, "--input-format");
   tools::require_sound_formats(o, format);
+  if (wraps_exact_faces(o, run.input.format) && o.records())
+    throw Error(ErrorCode::InvalidArgument,
+                "--log and --progressive start from triangles, and " + o.input +
+                    " has exact faces: write a wrap round them with mesh-prepare first, and "
+                    "simplify that, or claim it of the triangles alone (--prepare strict)");
   run.request = tools::request_of(o, std::move(counts), format);
   return run;
 }
 
-/// Puts a wrap in the input's place. What it takes of epsilon is not there for decimation.
-void wrap(tools::DecimationCase& run) {
-  constexpr double kShare = 0.6;  // of epsilon, for the wrap
-  const tools::DecimationOptions& o = run.asked;
-  std::optional<double> epsilon;
-  if (run.request.epsilon)
-    epsilon = run.request.epsilon->of(geom::bounding_box(run.input.mesh).diagonal());
-  certify::WrapRequest request =
-      o.preparation.request(epsilon ? std::optional(kShare * *epsilon) : std::nullopt);
-  request.float32 = o.precision != "double";
-  tools::Progress progress(o.common.quiet);
-  request.progress = [&](const std::string& stage) { progress.show(stage); };
-  const certify::CertifiedWrap made =
-      tools::naming(o.input, [&] { return certify::certify_wrap(run.input.mesh, request); });
-  progress.show("");
-  run.wrap = made.certificate();
-  run.input.mesh = made.artefact();
-  note(run, certify::in_words(*run.wrap));
-  if (epsilon) run.request.epsilon = Length{*epsilon - run.wrap->farthest_upper};
-}
-
-/// Reads and prepares the input.
 void read(tools::DecimationCase& run) {
   const tools::DecimationOptions& o = run.asked;
   const bool hash = o.records() || !o.common.report.empty();
@@ -73,51 +61,71 @@ void read(tools::DecimationCase& run) {
   if (hash) run.log.input_sha256 = io::sha256(bytes);
   apply(run.input, o.unit, o.input);
   for (const std::string& text : run.input.notes) note(run, text);
-  if (o.preparation.wraps()) wrap(run);
-  const std::size_t triangles = run.input.mesh.triangles.size();
-  geom::PrepareOptions options = o.prepare;
-  options.holes = o.holes.value();
-  o.preparation.apply(options);
-  run.original =
-      tools::naming(o.input, [&] { return certify::prepare_mesh(run.input.mesh, options); });
+  if (o.records() && !run.input.bent_quads.empty())
+    note(run,
+         "quads that are not plane stay split as they are read, for the steps start from there: "
+         "bound-verify judges that without --prepare");
+}
+
+certify::MeshPreparation preparation_of(const tools::DecimationCase& run) {
+  using Wrap = certify::MeshPreparation::Wrap;
+  using Diagonal = geom::PrepareOptions::Diagonal;
+  const tools::DecimationOptions& o = run.asked;
+  certify::MeshPreparation out;
+  out.options = o.prepare;
+  out.options.holes = o.holes.value();
+  o.preparation.apply(out.options);
+  if (!o.records() && run.request.direction != bmesh::Direction::Any) {  // logs start from the file
+    out.options.quads = run.input.bent_quads;
+    out.options.diagonal = run.outer() ? Diagonal::Outward : Diagonal::Inward;
+  }
+  const bool always = o.preparation.wraps() || wraps_exact_faces(o, run.input.format);
+  out.wrap = always                         ? Wrap::Always
+             : o.preparation.name == "auto" ? Wrap::WhereNeeded
+                                            : Wrap::Never;
+  out.wrapping = o.preparation.request(std::nullopt);
+  out.wrapping.clearance = run.input.deviation;
+  return out;
+}
+
+/// Makes and certifies the results.
+void bound(tools::DecimationCase& run) {
+  const tools::DecimationOptions& o = run.asked;
+  {
+    tools::Progress progress(o.common.quiet);
+    const certify::MeshHooks hooks{
+        .progress = [&](const std::string& stage) { progress.show(stage); },
+        .found = [&] { run.seconds_decimated = tools::user_seconds(); },
+        .prepared = [&] { run.seconds_read = tools::user_seconds(); }};
+    run.made = tools::naming(o.input, [&] {
+      return bound_mesh(run.input.mesh, run.request, preparation_of(run), hooks);
+    });
+  }
+  for (const std::string& text : notes_of(run.made)) note(run, text);
+  if (!run.original().solid.closed())
+    note(run, "its border stays where it is, as --holes keep asks");
   if (o.records()) {
     run.log.direction = run.request.direction;
     run.log.tool = run.request.comment;
-    bmesh::record_preparation(run.original.report, triangles, run.log);
+    bmesh::record_preparation(run.original().report, run.input.mesh.triangles.size(), run.log);
+    run.log.steps = std::move(run.made.series.steps);
   }
   run.input.mesh = {};
-  for (const std::string& text : run.original.report.notes) note(run, text);
-  if (!run.original.solid.closed()) note(run, "its border stays where it is, as --holes keep asks");
 }
 
-/// @return whether there are numbers that results can be made of
-bool plan(tools::DecimationCase& run) {
+/// Says what was planned. @return whether there are numbers that results are made of
+bool say_plan(tools::DecimationCase& run) {
   const tools::DecimationOptions& o = run.asked;
-  run.series.plan = tools::naming(o.input, [&] { return plan_mesh(run.original, run.request); });
-  const certify::MeshPlan& plan = run.series.plan;
+  const certify::MeshPlan& plan = run.series().plan;
   if (plan.epsilon && *plan.epsilon > 0.1 * plan.diagonal)
     say(run, "note: epsilon is " + tools::formatted(100 * *plan.epsilon / plan.diagonal) +
                  "% of the diagonal, which bounds hardly anything; 1% is written --epsilon 1%");
-  run.seconds_read = tools::user_seconds();
-  if (plan.shortage && !say_shortage(run, *plan.shortage)) return false;
+  const auto& shortage = run.series().shortage;
+  if (shortage && !say_shortage(run, *shortage)) return false;
   if (o.effort_given && plan.effort != run.request.effort)
     note(run, "--effort " + o.effort + " has no effect " +
                   (o.keep_convex ? "with --keep-convex" : "on open meshes"));
   return true;
-}
-
-/// @return whether there are numbers that results are made of
-bool certify_results(tools::DecimationCase& run) {
-  {
-    tools::Progress progress(run.asked.common.quiet);
-    run.series =
-        certify_meshes(run.original, run.request,
-                       {.progress = [&](const std::string& stage) { progress.show(stage); },
-                        .found = [&] { run.seconds_decimated = tools::user_seconds(); }});
-  }
-  run.log.steps = std::move(run.series.steps);
-  const auto& shortage = run.series.shortage;
-  return !shortage || shortage->vertices == 0 || say_shortage(run, *shortage);
 }
 
 int simplify_robot(const CLI::App& app, const tools::DecimationOptions& options) {
@@ -132,7 +140,8 @@ int simplify_robot(const CLI::App& app, const tools::DecimationOptions& options)
 int decimate(const tools::DecimationOptions& options) {
   tools::DecimationCase run = case_of(options);
   read(run);
-  if (!plan(run) || !certify_results(run)) return tools::kNo;
+  bound(run);
+  if (!say_plan(run)) return tools::kNo;
   write_files(run);
   return conclude(run);
 }

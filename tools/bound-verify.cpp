@@ -26,11 +26,12 @@ int verify_mesh(const VerifyOptions& o) {
   mesh.epsilon = o.epsilon;
   mesh.witness = o.witness;
   mesh.claims = o.claims;
-  mesh.prepare = o.prepare;
+  mesh.prepare = is_prepared(o);
   mesh.drop_sheets = o.drop_sheets;
   mesh.set = o.set;
   mesh.max_contacts = o.max_contacts;
   mesh.max_work = o.max_work;
+  mesh.exact_points = o.exact_points;
   return tools::verify_mesh(mesh, o.common);
 }
 
@@ -42,6 +43,7 @@ int verify_robot(const VerifyOptions& o) {
   robot.geometry = o.geometry;
   robot.epsilon = o.epsilon;
   robot.packages = o.packages;
+  robot.links = tools::split_names(o.links);
   robot.prepare = o.prepare;
   robot.drop_sheets = o.drop_sheets;
   robot.max_contacts = o.max_contacts;
@@ -61,7 +63,7 @@ int verify_sweep(const VerifyOptions& o) {
   sweep.packages = o.packages;
   sweep.joints = o.joints;
   sweep.base_pose = o.base_pose;
-  sweep.prepare = o.prepare;
+  sweep.prepare = is_prepared(o);
   sweep.drop_sheets = o.drop_sheets;
   sweep.degrees = o.degrees;
   sweep.max_cells = o.max_cells;

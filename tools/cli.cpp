@@ -5,6 +5,7 @@
 #include <tbb/global_control.h>
 #include <unistd.h>
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 #include <filesystem>
 #include <iostream>
@@ -91,6 +92,14 @@ int run(CLI::App& app, int argc, char** argv, const std::function<int()>& body) 
   } catch (const std::filesystem::filesystem_error& error) {
     std::cerr << name << ": " << error.path1().string() << ": " << error.code().message() << '\n';
     return kOutputFailed;  // inputs are opened, not looked at
+  } catch (const nlohmann::json::type_error& error) {
+    constexpr int kNotUtf8 = 316;
+    if (error.id != kNotUtf8) {
+      std::cerr << name << ": internal error: " << error.what() << '\n';
+      return kInternal;
+    }
+    std::cerr << name << ": a name is not UTF-8, which the result has to be; rename it\n";
+    return kBadInput;
   } catch (const std::exception& error) {
     std::cerr << name << ": internal error: " << error.what() << '\n';
     return kInternal;

@@ -14,6 +14,7 @@
 #include "enclosure_words.h"
 #include "result_files.h"
 #include "robot_bodies.h"
+#include "robot_check.h"
 #include "robot_output.h"
 #include "robot_page.h"
 
@@ -42,7 +43,11 @@ certify::EnclosureRequest enclosure_request(const DecimationOptions& o) {
   r.preparation = o.prepare;
   r.preparation.holes = o.holes.value();
   o.preparation.apply(r.preparation);
-  if (o.preparation.wraps()) r.wrap = o.preparation.request(std::nullopt);
+  const bool if_needed = o.preparation.name == "auto" && r.preparation.holes == geom::Holes::Fill &&
+                         !r.preparation.keep_orientation;
+  if (o.preparation.wraps() || if_needed) r.wrap = o.preparation.request(std::nullopt);
+  if (r.wrap) r.wrap->where_needed = if_needed;
+  r.hold_exact_faces = o.preparation.holds_exact_faces();
   return r;
 }
 
@@ -52,38 +57,48 @@ struct Run {
   robot::RobotFile robot;
   certify::LinkEnclosuresRequest request = {};
   certify::LinkEnclosures made = {};
+  std::vector<certify::LinkVerdict> verdicts = {};
   Notes notes = {};
+
+  [[nodiscard]] int code() const { return exit_code(outcome_of(verdicts)); }
 };
 
-/// @return the exit code
-int say_meshes(Run& run) {
-  int code = kDone;
+void say_meshes(Run& run) {
   for (const certify::EnclosedLinkMesh& mesh : run.made.meshes) {
     const std::string file = mesh.mesh.file.string();
+    if (!mesh.flaw.empty()) {
+      log(run.o.common.quiet, mesh.flaw);
+      continue;
+    }
     const certify::EnclosureCertificate& c = mesh.made.enclosure.certificate();
     log(run.o.common.quiet,
         file + ": " + summary(c) + (mesh.made.cached ? " (from the cache)" : ""));
-    const auto [why, own] = shortfall(c);
-    if (!why.empty()) log(run.o.common.quiet, std::string(file).append(": ").append(why));
-    code = code == kNo || own == kNo ? kNo : std::max(code, own);
+    if (const std::string why = shortfall(c); !why.empty())
+      log(run.o.common.quiet, std::string(file).append(": ").append(why));
     for (const std::string& text : mesh.made.read_notes) run.notes.add(file, text);
     for (const std::string& text : c.notes) run.notes.add(file, text);
   }
-  return code;
 }
 
 void write(Run& run, RobotOutput& output) {
   RobotFolder& folder = output.folder();
-  for (std::size_t i = 0; i < run.made.meshes.size(); ++i)
-    if (run.made.meshes[i].made.enclosure.certificate().in_spare_format)
+  for (std::size_t i = 0; i < run.made.meshes.size(); ++i) {
+    if (!run.made.meshes[i].flaw.empty())
+      folder.leave_out(i);
+    else if (run.made.meshes[i].made.enclosure.certificate().in_spare_format)
       folder.set_extension(i, ".obj");
+  }
   const NewShapes shapes =
-      new_shapes(run.robot, run.request.shapes, run.made.shapes,
-                 [&](std::size_t s) { return std::vector<std::string>{folder.place_of(s)}; });
+      new_shapes(run.robot, run.request.shapes, run.made.shapes, [&](std::size_t s) {
+        std::vector<std::string> out;
+        if (run.made.meshes[*run.made.shapes[s].mesh].flaw.empty())
+          out.push_back(folder.place_of(s));
+        return out;
+      });
   if (!run.o.no_cache) {
     std::map<std::size_t, std::span<const char>> meshes;
     for (std::size_t s = 0; s < run.made.shapes.size(); ++s)
-      if (const auto& mesh = run.made.shapes[s].mesh)
+      if (const auto& mesh = run.made.shapes[s].mesh; mesh && run.made.meshes[*mesh].flaw.empty())
         meshes.emplace(s, run.made.meshes[*mesh].made.enclosure.bytes());
     output.reuse(certify::CacheFolder(certify::CacheFolder::default_folder()), meshes);
   }
@@ -93,6 +108,11 @@ void write(Run& run, RobotOutput& output) {
         io::write_file(place, run.made.meshes[stored.mesh].made.enclosure.bytes());
       },
       {}, run.notes);
+}
+
+RobotCheck check_of(const Run& run, const RobotOutput& output) {
+  return tools::check_of(run.o.input, output.folder().urdf().string(), run.o.robot,
+                         run.o.preparation, run.o.prepare.drop_sheets, {}, run.verdicts);
 }
 
 /// The shapes of each link that has some.
@@ -105,16 +125,21 @@ std::vector<std::vector<robot::LinkShape>> shapes_by_link(const Run& run) {
   return out;
 }
 
-Json decimated_report(const Run& run, const RobotOutput& output, int code) {
+Json decimated_report(const Run& run, const RobotOutput& output) {
   Json report = output.report(), links = Json::array();
-  std::size_t before = 0, after = 0;
+  std::size_t before = 0, after = 0, at = 0;
   for (const std::vector<robot::LinkShape>& shapes : shapes_by_link(run)) {
     Json link{{"link", run.robot.robot.links[shapes.front().link].name},
               {"shapes", shapes.size()},
               {"meshes", Json::array()}};
+    link.update(report_of(run.verdicts[at++]));
     for (const robot::LinkShape& shape : shapes) {
       if (!shape.mesh) continue;
       const certify::EnclosedLinkMesh& mesh = run.made.meshes[*shape.mesh];
+      if (!mesh.flaw.empty()) {
+        link["meshes"].push_back({{"file", mesh.mesh.file.string()}, {"flaw", mesh.flaw}});
+        continue;
+      }
       Json result = Json::parse(certify::to_json(mesh.made.enclosure));
       result["cached"] = mesh.made.cached;
       link["meshes"].push_back({{"file", mesh.mesh.file.string()},
@@ -124,6 +149,7 @@ Json decimated_report(const Run& run, const RobotOutput& output, int code) {
     links.push_back(std::move(link));
   }
   for (const certify::EnclosedLinkMesh& mesh : run.made.meshes) {
+    if (!mesh.flaw.empty()) continue;
     before += mesh.made.enclosure.certificate().vertices_in;
     after += mesh.made.enclosure.certificate().vertices;
   }
@@ -131,34 +157,38 @@ Json decimated_report(const Run& run, const RobotOutput& output, int code) {
                  {"vertices_in", before},
                  {"vertices", after},
                  {"links", std::move(links)},
-                 {"stop", code == kDone    ? "done"
-                          : code == kLimit ? "limit"
-                                           : "not reached"},
+                 {"stop", run.code() == kDone    ? "done"
+                          : run.code() == kLimit ? "limit"
+                                                 : "not reached"},
+                 {"verdict", name_of(outcome_of(run.verdicts))},
+                 {"sentence", in_words(run.verdicts)},
+                 {"check", check_of(run, output).command},
                  {"input", {{"file", run.o.input}}},
                  {"parameters", run.request.mesh.parameters()}});
   return report;
 }
 
-PageLink page_link(const Run& run, const std::vector<robot::LinkShape>& shapes) {
+PageLink page_link(const Run& run, const std::vector<robot::LinkShape>& shapes,
+                   const certify::LinkVerdict& verdict) {
   const robot::Link& link = run.robot.robot.links[shapes.front().link];
   PageLink out;
   out.name = link.name;
   out.shapes = shapes.size();
-  out.verdict = "enclosure certified";
+  out.verdict = verdict;
   for (const robot::LinkShape& shape : shapes) {
     ++out.bodies;
     if (!shape.mesh) continue;
     const certify::EnclosedLinkMesh& mesh = run.made.meshes[*shape.mesh];
+    if (!mesh.flaw.empty()) {
+      out.meshes.push_back(mesh.mesh.file.filename().string());
+      continue;
+    }
     const certify::EnclosureCertificate& c = mesh.made.enclosure.certificate();
     const robot::Geometry& place = run.request.shapes.shapes_of(link)[shape.index];
     out.meshes.push_back(mesh.mesh.file.filename().string());
     out.vertices += c.vertices;
     out.reach = std::max(out.reach, c.distance_upper * place.size.cwiseAbs().maxCoeff());
     if (!mesh.made.cached) out.seconds = out.seconds.value_or(0) + mesh.seconds;
-    if (const auto [why, code] = shortfall(c); !why.empty()) {
-      out.verdict += "; " + why;
-      out.holds = false;
-    }
     append_placed(out.result, mesh.made.enclosure.artefact(), place);
   }
   out.epsilon = epsilon_of(link.name, run.request.epsilons, run.request.mesh.mesh.epsilon);
@@ -170,15 +200,14 @@ void write_page(const Run& run, const RobotOutput& output) {
   RobotPage page{.robot = run.robot.robot.name,
                  .source = run.o.input,
                  .tool = std::string("bmesh-decimate ") + version(),
-                 .check = "bound-verify robot " + run.o.input + " " +
-                          output.folder().urdf().string() + " --prepare" +
-                          (run.o.robot.visual() ? " --visual" : ""),
+                 .check = check_of(run, output),
                  .unit = "the robot's unit",
                  .files = output.documents(),
                  .notes = run.notes.lines(),
                  .links = {}};
+  std::size_t at = 0;
   for (const std::vector<robot::LinkShape>& shapes : shapes_by_link(run))
-    page.links.push_back(page_link(run, shapes));
+    page.links.push_back(page_link(run, shapes, run.verdicts[at++]));
   io::write_file(run.o.robot.html, to_html(page));
 }
 
@@ -214,6 +243,7 @@ int decimate_robot(const CLI::App& app, DecimationOptions o) {
                      format == io::Format::Stl ? ".stl" : ".obj");
   run.request = {
       enclosure_request(o), output.choice(), {}, read_epsilons(o.robot.epsilons, run.robot.robot)};
+  run.request.partial = true;
   if (!o.input_format.empty()) run.request.format = io::format_from_name(o.input_format);
   const certify::WantedMeshes meshes =
       certify::wanted_meshes(run.robot, run.request.shapes, run.request.epsilons);
@@ -225,15 +255,17 @@ int decimate_robot(const CLI::App& app, DecimationOptions o) {
     run.made = certify::enclose_links(run.robot, run.request, o.no_cache ? nullptr : &cache,
                                       [&](const std::string& stage) { progress.show(stage); });
   }
-  const int code = say_meshes(run);
+  run.verdicts = verdicts(run.made);
+  say_meshes(run);
   write(run, output);
   log(o.common.quiet, output.folder().urdf().string() + ": " +
                           counted(run.made.meshes.size(), "mesh", "meshes") + " of " +
                           counted(shapes_by_link(run).size(), "link", "links"));
+  say_verdicts(run.robot.robot, run.verdicts, o.common.quiet);
   output.say(o.common.quiet, run.notes);
   if (!o.robot.html.empty()) write_page(run, output);
   if (!o.common.report.empty())
-    write_report(o.common, "bmesh-decimate", decimated_report(run, output, code));
+    write_report(o.common, "bmesh-decimate", decimated_report(run, output));
   if (!o.depfile.empty()) {
     std::vector<std::string> inputs{o.input};
     if (!o.robot.epsilons.empty()) inputs.push_back(o.robot.epsilons);
@@ -241,7 +273,7 @@ int decimate_robot(const CLI::App& app, DecimationOptions o) {
     for (std::string& file : strings(run.made.files)) inputs.push_back(std::move(file));
     write_depfile(o.depfile, output.documents(), inputs);
   }
-  return code;
+  return run.code();
 }
 
 }  // namespace kaboum::tools

@@ -16,15 +16,16 @@ namespace kaboum::tools {
 struct DecimationCase {
   const DecimationOptions& asked;
   certify::MeshRequest request = {};
-  std::vector<std::string> files = {};                ///< of each result; an empty name: none
-  io::ReadResult input = {};                          ///< its mesh is dropped once it is prepared
-  std::optional<certify::WrapCertificate> wrap = {};  ///< whose mesh is the original
-  geom::Prepared original = {};
+  std::vector<std::string> files = {};  ///< of each result; an empty name: none
+  io::ReadResult input = {};            ///< its mesh is dropped once it is prepared
   std::vector<std::string> notes = {};  ///< of reading and preparing, and options without effect
   bmesh::Log log = {};                  ///< without the steps, unless they are asked for
-  certify::MeshSeries series = {};
+  certify::BoundedMesh made = {};
   double seconds_read = 0, seconds_decimated = 0;  ///< of the process, when that was done
 
+  [[nodiscard]] const geom::Prepared& original() const { return made.original; }
+  [[nodiscard]] const certify::MeshSeries& series() const { return made.series; }
+  [[nodiscard]] const std::optional<certify::WrapCertificate>& wrap() const { return made.wrap; }
   [[nodiscard]] bool outer() const { return request.direction == bmesh::Direction::Outer; }
 };
 

@@ -10,10 +10,10 @@ namespace {
 
 bmesh::Progressive progressive(const DecimationCase& run) {
   bmesh::Progressive p{run.log,
-                       run.series.plan.precision == bmesh::Precision::Double,
-                       run.original.solid.mesh(),
+                       run.series().plan.precision == bmesh::Precision::Double,
+                       run.original().solid.mesh(),
                        {}};
-  for (const certify::CertifiedMesh& made : run.series.meshes) {
+  for (const certify::CertifiedMesh& made : run.series().meshes) {
     const certify::MeshCertificate& c = made.certificate();
     p.levels.push_back({c.requested.value_or(c.vertices), c.vertices, c.steps});
   }
@@ -51,9 +51,9 @@ void write_files(const DecimationCase& run) {
   files.emplace_back(o.common.report,
                      [&] { write_report(o.common, "bmesh-decimate", report_of(run)); });
   files.emplace_back(o.depfile, [&] { write_rule(run); });
-  for (std::size_t i = 0; i < run.series.meshes.size(); ++i)
+  for (std::size_t i = 0; i < run.series().meshes.size(); ++i)
     files.emplace_back(run.files[i],
-                       [&run, i] { io::write_file(run.files[i], run.series.meshes[i].bytes()); });
+                       [&run, i] { io::write_file(run.files[i], run.series().meshes[i].bytes()); });
   write_together(files);
 }
 

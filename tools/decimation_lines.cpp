@@ -20,15 +20,15 @@ class Lines {
  public:
   Lines(const DecimationCase& run, std::size_t place)
       : run_(run),
-        made_(run.series.meshes[place].certificate()),
+        made_(run.series().meshes[place].certificate()),
         file_(run.files[place].empty() ? run.asked.progressive : run.files[place]) {}
 
   /// @return the exit code that this result gives
   [[nodiscard]] int conclude() const {
     say(summary());
     warn_of_distance();
-    if (made_.surface) warn_of_surface(*made_.surface);
-    const int verification = made_.decided ? conclude_verification(*made_.decided) : kDone;
+    const int surface = made_.decided ? kDone : conclude_surface();
+    const int verification = made_.decided ? conclude_verification(*made_.decided) : surface;
     const bool claims_nothing = !made_.closed && made_.direction != bmesh::Direction::Any;
     if (claims_nothing)
       complain(std::string("the mesh is open, so it has no solid that the result could ") +
@@ -54,14 +54,18 @@ class Lines {
   }
 
   [[nodiscard]] std::string summary() const {
-    const double diagonal = run_.series.plan.diagonal;
+    const double diagonal = run_.series().plan.diagonal;
     std::string line = file_ + ": " + std::to_string(made_.statistics.vertices_in) + " → " +
                        std::to_string(made_.vertices) + " vertices, " + run_.asked.direction;
     if (made_.direction != bmesh::Direction::Any)
-      line += made_.closed ? ", certified" : ", NOTHING IS ENCLOSED: the mesh is open";
-    if (made_.original_to_result)
-      line += ", within " + formatted(made_.hausdorff_upper()) + " (" +
-              formatted(100 * made_.hausdorff_upper() / diagonal) + "%)";
+      line += !made_.closed ? ", NOTHING IS ENCLOSED: the mesh is open"
+              : made_.surface_answer() == Answer::Verified ? ", certified"
+                                                           : ", NOT ALL TRIANGLES ARE CERTIFIED";
+    if (made_.original_to_result) {
+      const double wrap = run_.wrap() ? run_.wrap()->farthest_upper : 0;
+      const double within = made_.hausdorff_upper() + wrap;
+      line += ", within " + formatted(within) + " (" + formatted(100 * within / diagonal) + "%)";
+    }
     if (made_.requested && made_.stop == bmesh::Stop::ErrorBound)
       line += "; epsilon allows no fewer, " + std::to_string(*made_.requested) + " were wished";
     return line;
@@ -75,13 +79,13 @@ class Lines {
   }
 
   void warn_of_distance() const {
-    const double diagonal = run_.series.plan.diagonal;
+    const double diagonal = run_.series().plan.diagonal;
     const auto warn = [&](const std::string& what, double length, const char* where) {
       if (!(length > kFar * diagonal)) return;
       say("warning: " + what + formatted(100 * length / diagonal) + "% of the diagonal " + where +
           "; " +
-          (run_.series.plan.epsilon ? "use a smaller --epsilon"
-                                    : "use more vertices, or --epsilon to bound the distance"));
+          (run_.series().plan.epsilon ? "use a smaller --epsilon"
+                                      : "use more vertices, or --epsilon to bound the distance"));
     };
     warn("the result reaches ", made_.outliers.beyond_box, "beyond the input's bounding box");
     warn("the input has vertices ", made_.outliers.away, "away from the result");
@@ -93,19 +97,34 @@ class Lines {
            " out was not decided, for the work allowed was done; allow more with --max-work";
   }
 
-  /// Which claim holds and which does not, where they differ.
-  void warn_of_surface(const certify::DecidedSurface& surface) const {
+  /// Says which claim holds and which does not, where they differ. @return the exit code
+  [[nodiscard]] int conclude_surface() const {
     const bool outer = run_.outer();
-    if (surface.claim.answer == Answer::Undecided && made_.samples) {
-      say(std::string("warning: ") +
-          (outer ? "the input's solid is enclosed; whether all of its triangles are"
-                 : "the result's solid is inside the input's; whether all of its triangles are") +
-          " is left open: " + std::to_string(made_.samples->outside) + " of " +
-          std::to_string(made_.samples->faces) +
-          " triangles of the input looked at bound no solid, and " + not_looked_at(surface));
-      return;
+    if (made_.surface_answer() == Answer::Verified || !made_.surface) return kDone;
+    const certify::DecidedSurface& surface = *made_.surface;
+    if (surface.claim.answer != Answer::Refuted) {
+      complain(std::string(outer ? "the input's solid is enclosed; "
+                                 : "the result's solid is inside the input's; ") +
+               not_looked_at(surface) + ". The result is written");
+      return kLimit;
     }
-    if (surface.claim.answer != Answer::Refuted) return;
+    complain(sticking_out(surface) + ". The result is written" +
+             (outer ? remedy() : std::string("; only its solid lies in the input's")));
+    return kNo;
+  }
+
+  /// How to have all triangles enclosed.
+  [[nodiscard]] std::string remedy() const {
+    const std::string why = run_.made.why_not_wrapped;
+    if (run_.asked.records())
+      return "; --prepare wrap encloses every triangle, or write the wrap with mesh-prepare first, "
+             "if steps are wished for";
+    if (!why.empty()) return "; a wrap would hold every triangle, but: " + why;
+    return "; --prepare wrap encloses every triangle";
+  }
+
+  [[nodiscard]] std::string sticking_out(const certify::DecidedSurface& surface) const {
+    const bool outer = run_.outer();
     const std::size_t count = surface.claim.inner_triangles.size();
     const verify::Bracket& out = surface.sticks_out;
     const std::string depth = in_words(out);
@@ -122,7 +141,7 @@ class Lines {
                                         (outer ? " of the input" : " of the result"));
     text += " (the input is folded or inside out there: such faces bound no solid)";
     if (surface.left_out > 0) text += "; " + not_looked_at(surface);
-    say("warning: " + text);
+    return text;
   }
 
   /// Says which claims are not verified. @return the exit code that they give
@@ -136,13 +155,12 @@ class Lines {
       if (answer != Answer::Undecided) code = kNo;
     };
     look("the solid claim", decided.inclusion.solid.answer, decided.inclusion.solid.reason);
-    const verify::Claim& surface = decided.inclusion.surface;
-    if (surface.answer == Answer::Refuted) {
+    if (made_.surface) {  // open meshes have none
+      const verify::Claim& surface = made_.surface->claim;
       look("the surface claim", surface.answer,
-           std::to_string(surface.inner_triangles.size()) + " triangles stick out, by " +
-               in_words(made_.surface->sticks_out));
-    } else if (surface.answer != Answer::Undefined) {  // open meshes have none
-      look("the surface claim", surface.answer, surface.reason);
+           surface.answer == Answer::Refuted ? sticking_out(*made_.surface) : surface.reason);
+      if (surface.answer == Answer::Refuted && run_.outer())
+        say("note" + remedy().replace(0, 1, ":"));
     }
     if (decided.nested) look("the nesting in the level before", *decided.nested, "");
     look("a distance", decided.original_to_result, "");
@@ -173,7 +191,7 @@ bool say_shortage(const DecimationCase& run, const certify::Float32Shortage& sho
   } else {
     why = std::to_string(shortage.vertices) + (shortage.vertices == 1 ? " vertex" : " vertices") +
           " without a certified float32 position";
-    if (!run.original.solid.closed()) {
+    if (!run.original().solid.closed()) {
       why +=
           ": an open mesh's border stays where it is, and its coordinates are no float32 numbers";
       remedy = "round the input's coordinates to float32 first, or close its holes";
@@ -197,7 +215,7 @@ std::string summary_of(const DecimationCase& run, std::size_t place) {
 
 int conclude(const DecimationCase& run) {
   bool no = false, limit = false;
-  for (std::size_t i = 0; i < run.series.meshes.size(); ++i) {
+  for (std::size_t i = 0; i < run.series().meshes.size(); ++i) {
     const int code = Lines(run, i).conclude();
     no = no || code == kNo;
     limit = limit || code == kLimit;

@@ -133,7 +133,7 @@ void describe_files(CLI::App& app, DecimationOptions& o) {
   app.add_flag("--drop-sheets", o.prepare.drop_sheets,
                "Drop back-to-back faces without volume (they are then not enclosed)");
   add_holes_options(app, o.holes, true);
-  add_preparation_options(app, o.preparation);
+  add_preparation_options(app, o.preparation, "open meshes stay open", true);
   app.add_flag("--keep-orientation", o.prepare.keep_orientation,
                "Never turn inconsistent triangles or inside-out components");
   app.add_flag("--verify", o.verify,
@@ -146,7 +146,11 @@ void describe_files(CLI::App& app, DecimationOptions& o) {
       ->check(page_name())
       ->type_name("FILE");
   app.add_option("--log", o.log, "Write the log of all steps, for bmesh-replay")->type_name("FILE");
-  app.add_option("--depfile", o.depfile, "Write a Makefile dependency rule")->type_name("FILE");
+  app.add_option(
+         "--depfile", o.depfile,
+         "Write a Makefile dependency rule; names that have no place in one are refused. If "
+         "FILE ends in .list: the inputs, each followed by a zero byte")
+      ->type_name("FILE");
   app.add_option("--input-format", o.input_format, "Format of INPUT [by extension]")
       ->type_name("NAME");
   app.add_option("--output-format", o.output_format, "Format of the result [by extension]")
@@ -160,12 +164,21 @@ void describe_files(CLI::App& app, DecimationOptions& o) {
   app.footer(
       "Give at least one of --vertices, --ratio and --epsilon; the first one reached stops. With "
       "--from: --vertices.\n"
-      "Exit codes: 0 done; 1 the wished number of vertices cannot be reached (the best result is "
-      "written), the mesh is open and --holes keep leaves it so (the result is written and "
-      "encloses nothing), float32 is too coarse here (nothing is written) or --verify found a "
-      "claim that does not hold; 2 usage; 3 bad input; 4 output failed; 5 feature not built; 6 "
-      "internal error; 7 limit reached (with --max-work the wished number of vertices, or what "
-      "epsilon allows, is not reached: the best result is written).");
+      "With --prepare auto a mesh of which a triangle would not lie in the outer result, or that "
+      "has "
+      "no solid, is wrapped (not with --log, --progressive, --keep-orientation and --holes keep).\n"
+      "Exit codes: 0 done: outer, every triangle of INPUT lies in the result; inner, every "
+      "triangle "
+      "of the result lies in the solid of INPUT; 1 the wished number of vertices cannot be reached "
+      "(the best result is written), triangles stick out and no wrap may or can take the input's "
+      "place (the result is written), the mesh is open and --holes keep leaves it so (the result "
+      "is "
+      "written and encloses nothing), float32 is too coarse here (nothing is written) or --verify "
+      "found a claim that does not hold; 2 usage; 3 bad input; 4 output failed; 5 feature not "
+      "built; 6 internal error; 7 limit reached (with --max-work the wished number of vertices, or "
+      "what epsilon allows, is not reached, or whether a triangle sticks out is left open: the "
+      "best "
+      "result is written).");
 }
 
 }  // namespace

@@ -21,28 +21,28 @@ std::string words_of(const certify::MeshClaim& claim) {
 
 std::string page_of(const DecimationCase& run) {
   const bool inner = run.request.direction == bmesh::Direction::Inner;
-  const geom::Mesh& original = run.original.solid.mesh();
-  const double extent = run.series.plan.diagonal;
+  const geom::Mesh& original = run.original().solid.mesh();
+  const double extent = run.series().plan.diagonal;
   const std::string name = std::filesystem::path(run.asked.input).filename().string();
   page::Preview preview{"Result of bmesh-decimate " + name};
   preview.meaning = "distance from the other surface";
   preview.facts.emplace_back("input", name + ", " + std::to_string(original.vertices.size()) +
                                           " vertices, " +
                                           std::to_string(original.triangles.size()) + " triangles" +
-                                          (run.wrap ? " of a wrap round it" : ""));
-  if (run.series.plan.epsilon)
-    preview.facts.emplace_back("epsilon", formatted(*run.series.plan.epsilon) + " (" +
-                                              formatted(100 * *run.series.plan.epsilon / extent) +
+                                          (run.wrap() ? " of a wrap round it" : ""));
+  if (run.series().plan.epsilon)
+    preview.facts.emplace_back("epsilon", formatted(*run.series().plan.epsilon) + " (" +
+                                              formatted(100 * *run.series().plan.epsilon / extent) +
                                               "% of the diagonal)");
-  preview.layers.push_back(
-      {run.wrap ? "wrap" : "input", inner ? Layer::View::Transparent : Layer::View::Shown, false});
+  preview.layers.push_back({run.wrap() ? "wrap" : "input",
+                            inner ? Layer::View::Transparent : Layer::View::Shown, false});
   const geom::DistanceQuery to_original(original);
-  for (std::size_t i = 0; i < run.series.meshes.size(); ++i) {
-    const certify::CertifiedMesh& made = run.series.meshes[i];
-    const bool last = i + 1 == run.series.meshes.size();
+  for (std::size_t i = 0; i < run.series().meshes.size(); ++i) {
+    const certify::CertifiedMesh& made = run.series().meshes[i];
+    const bool last = i + 1 == run.series().meshes.size();
     const std::string count = std::to_string(made.artefact().vertices.size()) + " vertices";
     Layer& result = preview.layers.emplace_back();
-    result.name = run.series.meshes.size() == 1 ? "result" : count;
+    result.name = run.series().meshes.size() == 1 ? "result" : count;
     result.view = !last   ? Layer::View::Hidden
                   : inner ? Layer::View::Shown
                           : Layer::View::Transparent;

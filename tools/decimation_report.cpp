@@ -33,14 +33,17 @@ Json input_of(const DecimationCase& run) {
             {"file_vertices", run.input.file_vertices},
             {"file_triangles", run.input.file_triangles},
             {"split_polygons", run.input.split_polygons}};
-  json.update(to_json(geom::analyse(run.original.solid.mesh())));
+  json.update(to_json(geom::analyse(run.original().solid.mesh())));
   return json;
 }
 
 Json preparation_of(const DecimationCase& run) {
-  const geom::PreparationReport& p = run.original.report;
+  const geom::PreparationReport& p = run.original().report;
   return {{"prepare", run.asked.preparation.name},
-          {"wrap", run.wrap ? Json::parse(certify::to_json(*run.wrap)) : Json()},
+          {"why_wrapped", run.made.why_wrapped.empty() ? Json() : Json(run.made.why_wrapped)},
+          {"why_not_wrapped",
+           run.made.why_not_wrapped.empty() ? Json() : Json(run.made.why_not_wrapped)},
+          {"wrap", run.wrap() ? Json::parse(certify::to_json(*run.wrap())) : Json()},
           {"collapsed_triangles", run.input.collapsed_triangles + p.collapsed_triangles},
           {"dropped_copies", p.dropped_copies},
           {"cancelled_walls", p.cancelled_walls},
@@ -48,14 +51,14 @@ Json preparation_of(const DecimationCase& run) {
           {"turned_components", p.reversed_components},
           {"turned_triangles", p.reversed_triangles},
           {"holes", p.holes},
-          {"filled_triangles", run.original.solid.filled_triangles()},
+          {"filled_triangles", run.original().solid.filled_triangles()},
           {"largest_hole", p.largest_hole},
           {"notes", run.notes}};
 }
 
 Json options_of(const DecimationCase& run) {
   const DecimationOptions& o = run.asked;
-  const certify::MeshPlan& plan = run.series.plan;
+  const certify::MeshPlan& plan = run.series().plan;
   return {{"direction", o.direction},
           {"cost", o.cost},
           {"effort", name_of(plan.effort)},
@@ -108,6 +111,7 @@ void add_surface(Json& json, const MeshCertificate& c, bool outer) {
   } else if (c.surface) {
     const certify::DecidedSurface& surface = *c.surface;
     json["surface"] = decided_surface(surface.claim, outer);
+    json["surface_triangles_looked_at"] = surface.looked_at;
     if (surface.left_out > 0) json["surface_triangles_left_out"] = surface.left_out;
     if (surface.claim.answer == Answer::Refuted) {
       const verify::Bracket& out = surface.sticks_out;
@@ -117,16 +121,6 @@ void add_surface(Json& json, const MeshCertificate& c, bool outer) {
                                {"at", {out.at.x(), out.at.y(), out.at.z()}},
                                {"triangle", surface.at_filling ? Json() : Json(out.triangle)}};
     }
-  } else if (!outer) {
-    json["surface"] = c.keep_convex
-                          ? "none"
-                          : "certified: every triangle of the result lies in the input's solid, "
-                            "unless those of the input do not";
-  } else {
-    json["surface"] =
-        "sampled: every input face looked at bounds the input's solid, which is contained";
-    json["surface_faces_sampled"] = c.samples->faces;
-    json["surface_faces_outside_solid"] = c.samples->outside;
   }
 }
 
@@ -139,7 +133,7 @@ Json claims_of(const DecimationCase& run, const MeshCertificate& c) {
                            : "open mesh: certified only that the generalised winding number "
                              "nowhere " +
                                  std::string(outer ? "falls" : "rises");
-  if (run.series.meshes.size() > 1)
+  if (run.series().meshes.size() > 1)
     json["nested"] = outer ? "certified: contains the finer results"
                            : "certified: contained in the finer results";
   add_surface(json, c, outer);
@@ -166,10 +160,10 @@ Json steps_of(const bmesh::DecimateStatistics& s) {
 
 /// What the report says of one result.
 Json result_of(const DecimationCase& run, std::size_t place) {
-  const certify::CertifiedMesh& made = run.series.meshes[place];
+  const certify::CertifiedMesh& made = run.series().meshes[place];
   const MeshCertificate& c = made.certificate();
   const std::string& file = run.files[place];
-  const double diagonal = run.series.plan.diagonal;
+  const double diagonal = run.series().plan.diagonal;
   Json r;
   r["stop"] = name_of_stop(c.stop);
   r["out_of_work"] = c.out_of_work;
@@ -196,11 +190,11 @@ Json report_of(const DecimationCase& run) {
   Json r{
       {"input", input_of(run)}, {"preparation", preparation_of(run)}, {"options", options_of(run)}};
   if (!run.asked.progressive.empty()) r["progressive"] = run.asked.progressive;
-  if (run.series.meshes.size() == 1) {
+  if (run.series().meshes.size() == 1) {
     r.update(result_of(run, 0));
   } else {
-    for (std::size_t i = 0; i < run.series.meshes.size(); ++i) {
-      const MeshCertificate& c = run.series.meshes[i].certificate();
+    for (std::size_t i = 0; i < run.series().meshes.size(); ++i) {
+      const MeshCertificate& c = run.series().meshes[i].certificate();
       Json& entry = r["levels"].emplace_back();
       entry["vertices"] = *c.requested;
       entry["reached"] = c.stop == bmesh::Stop::VertexTarget;

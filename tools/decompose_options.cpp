@@ -3,7 +3,6 @@
 #include "decompose_options.h"
 
 #include <kaboum/base/error.h>
-#include <kaboum/io/cad.h>
 
 #include <CLI/CLI.hpp>
 
@@ -139,9 +138,7 @@ void add_output(CLI::App& app, DecomposeOptions& o) {
 }
 
 void add_preparation(CLI::App& app, DecomposeOptions& o) {
-  add_preparation_options(app, o.preparation,
-                          "open meshes are refused; of STEP and IGES, auto is wrap, so that the "
-                          "exact faces are covered");
+  add_preparation_options(app, o.preparation, "open meshes are refused", true);
   app.add_flag("--drop-sheets", o.prepare.drop_sheets,
                "Drop back-to-back faces without volume (they are then not covered)");
   add_holes_options(app, o.holes, false);
@@ -166,7 +163,11 @@ void describe(CLI::App& app, DecomposeOptions& o) {
       "need no check, because they are connected or their bodies are proved never to "
       "touch, at whatever joint values within the limits (for one turn of joints without "
       "limits); not with --links");
-  app.add_option("--depfile", o.depfile, "Write a Makefile dependency rule")->type_name("FILE");
+  app.add_option(
+         "--depfile", o.depfile,
+         "Write a Makefile dependency rule; names that have no place in one are refused. If "
+         "FILE ends in .list: the inputs, each followed by a zero byte")
+      ->type_name("FILE");
   app.add_option("--input-format", o.input_format, "Format of INPUT [by extension]")
       ->type_name("NAME");
   add_set_format_option(app, o.output_format);
@@ -230,10 +231,6 @@ void require_meaning(const CLI::App& app, const DecomposeOptions& o) {
 
 void apply_preset(const CLI::App& app, DecomposeOptions& o) {
   if (is_robot(o.input)) apply_preset(app, o.output, o.robot, &o.min_thickness);
-}
-
-bool is_cad(const DecomposeOptions& o) {
-  return o.input_format.empty() && io::is_cad_file(o.input);
 }
 
 }  // namespace kaboum::tools

@@ -43,9 +43,6 @@ void require_meaning(const CLI::App& app, const DecomposeOptions& options);
 /// Of robots: what --for sets, where nothing else does.
 void apply_preset(const CLI::App& app, DecomposeOptions& options);
 
-/// Whether the input is a STEP or IGES file.
-bool is_cad(const DecomposeOptions& options);
-
 /// What the options ask for.
 certify::SetRequest request_of(const DecomposeOptions& options);
 

@@ -2,7 +2,6 @@
 
 #include "decompose_preview.h"
 
-#include <kaboum/io/cad.h>
 #include <kaboum/io/file_unit.h>
 #include <kaboum/robot/exact_shapes.h>
 #include <kaboum/robot/kinematics.h>
@@ -35,13 +34,12 @@ std::string three_digits(double x) {
 
 /// The triangles that distances are to: of the solid as prepared; of the file where a wrap is what
 /// was covered.
-geom::Mesh original_of(const DecomposeOptions& o) {
+geom::Mesh original_of(const DecomposeOptions& o, bool wrapped) {
   const certify::SetRequest request = request_of(o);
   io::ReadResult read =
-      is_cad(o) ? io::read_cad(o.input).read
-                : io::read_mesh(o.input, format_for(o.input, o.input_format, "--input-format"));
+      io::read_mesh(o.input, format_for(o.input, o.input_format, "--input-format"));
   io::scale(read, o.scale, o.input);
-  if (request.wrap) return std::move(read.mesh);
+  if (wrapped) return std::move(read.mesh);
   return naming(o.input,
                 [&] { return geom::prepare(read.mesh, request.preparation).solid.mesh(); });
 }
@@ -67,7 +65,7 @@ std::string verdict_of(const certify::SetCertificate& c) {
 std::string page_of_set(const DecomposeOptions& o, const certify::SetCertificate& c,
                         const geom::ConvexSet& set) {
   const bool outer = c.direction == certify::SetRequest::Direction::Outer;
-  const geom::Mesh original = original_of(o);
+  const geom::Mesh original = original_of(o, c.wrap.has_value());
   const double extent = geom::bounding_box(original).diagonal();
   page::Preview preview{"Bodies of " + file_name(o.input), set.provenance.unit};
   Layer input{"input", outer ? Layer::View::Shown : Layer::View::Transparent, false};
@@ -102,7 +100,8 @@ std::string page_of_set(const DecomposeOptions& o, const certify::SetCertificate
 }
 
 std::string page_of_robot(const DecomposeOptions& o, const robot::RobotFile& robot,
-                          const certify::CertifiedRobot& made) {
+                          const certify::CertifiedRobot& made,
+                          const std::vector<certify::LinkVerdict>& verdicts) {
   const certify::BodiesCertificate& bodies = made.bodies.certificate();
   page::Preview preview{"Bodies of " + file_name(o.input), o.unit};
   preview.meaning = "distance of the bodies from the shapes of their link";
@@ -110,11 +109,16 @@ std::string page_of_robot(const DecomposeOptions& o, const robot::RobotFile& rob
   Layer result{"bodies", Layer::View::Transparent};
   result.bodies = result.all_edges = true;
   std::size_t count = 0;
+  std::vector<std::string> points;  // links that have nothing else
   double reach = 0;
   for (const certify::CertifiedLink& made_link : made.links) {
     const std::uint32_t index = made_link.certificate().link;
     const geom::Mesh exact = robot::exact_shapes(bodies.choice.shapes_of(robot.robot.links[index]),
                                                  robot, bodies.choice.packages);
+    if (exact.triangles.empty()) {
+      points.push_back(robot.robot.links[index].name);
+      continue;
+    }
     const geom::DistanceQuery triangles(exact);
     const auto& hulls = made_link.artefact().bodies;
     const std::vector<page::DistanceOf> distances(hulls.size(), page::distance_to(triangles));
@@ -132,8 +136,12 @@ std::string page_of_robot(const DecomposeOptions& o, const robot::RobotFile& rob
       {"options", o.epsilon.empty() ? request_of(o).parameters() : "--epsilon " + o.epsilon},
       {"result",
        counted(count, "body", "bodies") + " of " + counted(made.links.size(), "link", "links")},
-      {"verdict", "the bodies of every link hold its shapes: decided exactly"}};
+      {"verdict", in_words(verdicts) + ": decided exactly"}};
+  for (const certify::LinkVerdict& link : verdicts)
+    if (link.outcome != certify::Outcome::Held)
+      preview.facts.emplace_back("link " + robot.robot.links[link.link].name, link.sentence);
   for (const certify::CertifiedLinkMesh& mesh : bodies.meshes) {
+    if (!mesh.held) continue;
     const certify::SetCertificate& c = mesh.made.found.set.certificate();
     const std::string why = shortfall(c);
     preview.facts.emplace_back(mesh.mesh.file.filename().string(),
@@ -141,6 +149,8 @@ std::string page_of_robot(const DecomposeOptions& o, const robot::RobotFile& rob
   }
   preview.facts.emplace_back("reach", "no point of a body is farther from its link's shapes than " +
                                           three_digits(reach) + ", certified");
+  for (const std::string& link : points)
+    preview.facts.emplace_back(link, "its shapes are points, which no body covers");
   preview.layers = {std::move(input), std::move(result)};
   preview.motion.emplace(
       page::Motion{robot.robot, {std::vector<double>(robot.robot.variables.size(), 0.0)}});

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <kaboum/certify/robot.h>
+#include <kaboum/certify/link_verdict.h>
 
 #include <string>
 #include <vector>
@@ -18,7 +18,8 @@ std::string page_of_set(const DecomposeOptions& options, const certify::SetCerti
 /// Of a robot, at zero joint values.
 /// @throws Error as reading its meshes.
 std::string page_of_robot(const DecomposeOptions& options, const robot::RobotFile& robot,
-                          const certify::CertifiedRobot& made);
+                          const certify::CertifiedRobot& made,
+                          const std::vector<certify::LinkVerdict>& verdicts);
 
 /// All links at zero joint values, for pictures: not certified.
 geom::ConvexSet at_rest(const robot::Robot& robot,

@@ -41,8 +41,12 @@ certify::SetRequest request_of(const DecomposeOptions& o) {
   r.preparation.holes = o.holes.value();
   o.preparation.apply(r.preparation);
   if (r.preparation.holes == geom::Holes::Keep) r.preparation.holes = geom::Holes::Refuse;
-  const bool exact = is_cad(o) && o.preparation.name == "auto" && o.direction == "outer";
-  if (o.preparation.wraps() || exact) r.wrap = o.preparation.request(std::nullopt);
+  const bool if_needed = o.preparation.name == "auto" && o.direction == "outer" &&
+                         r.preparation.holes == geom::Holes::Fill &&
+                         !r.preparation.keep_orientation;
+  if (o.preparation.wraps() || if_needed) r.wrap = o.preparation.request(std::nullopt);
+  if (r.wrap) r.wrap->where_needed = if_needed;
+  r.hold_exact_faces = o.preparation.holds_exact_faces();
   r.unit = o.unit;
   r.scale = o.scale;
   r.frame = o.frame;

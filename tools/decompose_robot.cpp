@@ -17,6 +17,7 @@
 #include "decompose_preview.h"
 #include "decompose_words.h"
 #include "robot_bodies.h"
+#include "robot_check.h"
 #include "robot_output.h"
 #include "robot_page.h"
 #include "robot_pairs.h"
@@ -40,12 +41,19 @@ struct Run {
   certify::RobotRequest request = {};
   certify::CertifiedRobot made = {};
   std::vector<double> seconds = {};  ///< of each mesh, by the clock [s]
+  std::vector<certify::LinkVerdict> verdicts = {};
   Notes notes = {};
   std::optional<RobotPairs> pairs = {};  ///< with --srdf
-  int code = kDone;
 
   [[nodiscard]] const certify::BodiesCertificate& bodies() const {
     return made.bodies.certificate();
+  }
+  [[nodiscard]] int code() const { return exit_code(outcome_of(verdicts)); }
+  /// The set of a link; null: a mesh of it is kept.
+  [[nodiscard]] const certify::CertifiedLink* set_of(std::uint32_t link) const {
+    for (const certify::CertifiedLink& set : made.links)
+      if (set.certificate().link == link) return &set;
+    return nullptr;
   }
 };
 
@@ -72,15 +80,16 @@ void certify_links(Run& run) {
     last = Clock::now();
     progress.show("");
     const std::string file = mesh.mesh.file.string();
+    if (!mesh.flaw.empty()) log(run.o.common.quiet, mesh.flaw);
+    if (!mesh.held) return;
     const certify::SetCertificate& certificate = mesh.made.found.set.certificate();
     log(run.o.common.quiet,
         file + ": " + summary(certificate) + (mesh.made.found.cached ? " (from the cache)" : ""));
     const std::string why = shortfall(certificate);
-    if (why.empty()) return;
-    log(run.o.common.quiet, file + ": " + why);
-    run.code = std::max(run.code, code_of(certificate));
+    if (!why.empty()) log(run.o.common.quiet, file + ": " + why);
   };
   run.made = certify::certify_robot(run.robot, run.request, cache, hooks);
+  run.verdicts = verdicts(run.made);
 }
 
 /// The files of the bodies, relative to the folder.
@@ -89,6 +98,7 @@ NewShapes shapes_of(const Run& run, const RobotFolder& folder) {
   return new_shapes(run.robot, bodies.choice, bodies.shapes, [&](std::size_t s) {
     const std::string& name = folder.name_of(s);
     std::vector<std::string> out;
+    if (!bodies.meshes[*bodies.shapes[s].mesh].held) return out;
     const std::size_t count =
         bodies.meshes[*bodies.shapes[s].mesh].made.found.set.artefact().bodies.size();
     for (std::size_t b = 0; b < count; ++b)
@@ -100,6 +110,8 @@ NewShapes shapes_of(const Run& run, const RobotFolder& folder) {
 
 void write(Run& run, RobotOutput& output) {
   const bool obj = run.o.robot.bodies == "obj";
+  for (std::size_t i = 0; i < run.bodies().meshes.size(); ++i)
+    if (!run.bodies().meshes[i].held) output.folder().leave_out(i);
   const auto write_mesh = [&](const StoredMesh& s, const std::filesystem::path& place) {
     io::write_convex_folder(place, run.bodies().meshes[s.mesh].made.found.set.artefact(), s.name,
                             obj ? io::Format::Obj : io::Format::Stl);
@@ -110,31 +122,47 @@ void write(Run& run, RobotOutput& output) {
   if (!run.o.no_cache) {
     std::map<std::size_t, std::span<const char>> meshes;
     for (std::size_t s = 0; s < run.bodies().shapes.size(); ++s)
-      if (const auto& mesh = run.bodies().shapes[s].mesh)
+      if (const auto& mesh = run.bodies().shapes[s].mesh; mesh && run.bodies().meshes[*mesh].held)
         meshes.emplace(s, run.bodies().meshes[*mesh].made.found.set.bytes());
     output.reuse(certify::CacheFolder(certify::CacheFolder::default_folder()), meshes);
   }
   output.write(shapes_of(run, output.folder()), write_mesh, std::move(links), run.notes);
 }
 
+/// @param files  of the links that have a set
 Json links_report(const Run& run, const std::vector<std::string>& files) {
   Json out = Json::array();
-  for (std::size_t i = 0; i < run.made.links.size(); ++i) {
-    const certify::CertifiedLink& link = run.made.links[i];
-    Json report = {{"link", run.robot.robot.links[link.certificate().link].name},
-                   {"shapes", link.certificate().shapes}};
+  for (const certify::LinkVerdict& link : run.verdicts) {
+    Json report = {{"link", run.robot.robot.links[link.link].name}, {"shapes", link.shapes}};
+    report.update(report_of(link));
     for (const robot::LinkShape& shape : run.bodies().shapes) {
-      if (shape.link != link.certificate().link || !shape.mesh) continue;
+      if (shape.link != link.link || !shape.mesh) continue;
       const certify::CertifiedLinkMesh& mesh = run.bodies().meshes[*shape.mesh];
-      report["meshes"].push_back(
-          {{"file", mesh.mesh.file.string()}, {"result", report_of(mesh.made)}});
+      Json one{{"file", mesh.mesh.file.string()}};
+      if (mesh.held) one["result"] = report_of(mesh.made);
+      if (!mesh.flaw.empty()) one["flaw"] = mesh.flaw;
+      report["meshes"].push_back(std::move(one));
     }
-    report["file"] = files[i];
-    report["bodies"] = link.artefact().bodies.size();
-    report["reach_upper"] = link.certificate().distance;
+    if (const certify::CertifiedLink* set = run.set_of(link.link)) {
+      report["file"] = files[static_cast<std::size_t>(set - run.made.links.data())];
+      report["bodies"] = set->artefact().bodies.size();
+      report["reach_upper"] = set->certificate().distance;
+    }
     out.push_back(std::move(report));
   }
   return out;
+}
+
+/// The command that decides it from the files alone; epsilon as well, where it is one for all links
+/// and of distances to what the files hold, not to wraps.
+RobotCheck check_of(const Run& run, const RobotOutput& output) {
+  std::optional<Length> epsilon = run.request.set.wanted_epsilon();
+  if (!run.request.epsilons.empty() || outcome_of(run.verdicts) != certify::Outcome::Held)
+    epsilon.reset();
+  for (const certify::CertifiedLinkMesh& mesh : run.bodies().meshes)
+    if (!mesh.held || mesh.made.found.set.certificate().wrap) epsilon.reset();
+  return tools::check_of(run.o.input, output.folder().urdf().string(), run.o.robot,
+                         run.o.preparation, run.o.prepare.drop_sheets, epsilon, run.verdicts);
 }
 
 Json robot_report(const Run& run, const RobotOutput& output) {
@@ -149,40 +177,39 @@ Json robot_report(const Run& run, const RobotOutput& output) {
                  {"vertices", vertices},
                  {"meshes", run.bodies().meshes.size()},
                  {"links", links_report(run, output.link_files())},
-                 {"stop", run.code == kDone ? "done" : "epsilon not reached"},
+                 {"stop", run.code() == kDone ? "done" : "epsilon not reached"},
+                 {"verdict", name_of(outcome_of(run.verdicts))},
+                 {"sentence", in_words(run.verdicts)},
+                 {"check", check_of(run, output).command},
                  {"input", {{"file", run.o.input}}},
                  {"parameters", run.request.parameters()}});
   if (run.pairs) report["pairs_of_links"] = report_of(*run.pairs);
   return report;
 }
 
-/// A link's row of the page: what its sets' certificates say.
-PageLink page_link(const Run& run, const certify::CertifiedLink& link) {
-  const certify::LinkCertificate& c = link.certificate();
+/// A link's row of the page.
+PageLink page_link(const Run& run, const certify::LinkVerdict& link) {
   PageLink out;
-  out.name = run.robot.robot.links[c.link].name;
-  out.shapes = c.shapes;
-  out.reach = c.distance;
-  out.bodies = link.artefact().bodies.size();
-  for (const geom::ConvexBody& body : link.artefact().bodies) {
-    out.vertices += body.hull.vertices.size();
-    append_placed(out.result, body.hull, {});
-  }
-  out.verdict = "cover verified exactly";
-  for (const robot::LinkShape& shape : run.bodies().shapes) {
-    if (shape.link != c.link || !shape.mesh) continue;
-    const certify::CertifiedLinkMesh& mesh = run.bodies().meshes[*shape.mesh];
-    const certify::SetCertificate& set = mesh.made.found.set.certificate();
-    out.meshes.push_back(mesh.mesh.file.filename().string());
-    if (!mesh.made.found.cached) out.seconds = out.seconds.value_or(0) + run.seconds[*shape.mesh];
-    if (set.subject.dropped_sheets > 0) out.verdict += ", without the sheets dropped";
-    if (const std::string why = shortfall(set); !why.empty()) {
-      out.verdict += "; " + why;
-      out.holds = false;
+  out.name = run.robot.robot.links[link.link].name;
+  out.shapes = link.shapes;
+  out.verdict = link;
+  if (const certify::CertifiedLink* set = run.set_of(link.link)) {
+    out.reach = set->certificate().distance;
+    out.bodies = set->artefact().bodies.size();
+    for (const geom::ConvexBody& body : set->artefact().bodies) {
+      out.vertices += body.hull.vertices.size();
+      append_placed(out.result, body.hull, {});
     }
   }
+  for (const robot::LinkShape& shape : run.bodies().shapes) {
+    if (shape.link != link.link || !shape.mesh) continue;
+    const certify::CertifiedLinkMesh& mesh = run.bodies().meshes[*shape.mesh];
+    out.meshes.push_back(mesh.mesh.file.filename().string());
+    if (mesh.held && !mesh.made.found.cached)
+      out.seconds = out.seconds.value_or(0) + run.seconds[*shape.mesh];
+  }
   out.epsilon = epsilon_of(out.name, run.request.epsilons, run.request.set.wanted_epsilon());
-  out.original = drawn_shapes(run.robot, run.bodies().choice, c.link);
+  out.original = drawn_shapes(run.robot, run.bodies().choice, link.link);
   return out;
 }
 
@@ -190,15 +217,12 @@ void write_page(const Run& run, const RobotOutput& output) {
   RobotPage page{.robot = run.robot.robot.name,
                  .source = run.o.input,
                  .tool = std::string("bcd-decompose ") + version() + " " + run.request.parameters(),
-                 .check = "bound-verify robot " + run.o.input + " " +
-                          output.folder().urdf().string() + " --prepare" +
-                          (run.o.robot.visual() ? " --visual" : ""),
+                 .check = check_of(run, output),
                  .unit = run.o.unit,
                  .files = output.documents(),
                  .notes = run.notes.lines(),
                  .links = {}};
-  for (const certify::CertifiedLink& link : run.made.links)
-    page.links.push_back(page_link(run, link));
+  for (const certify::LinkVerdict& link : run.verdicts) page.links.push_back(page_link(run, link));
   io::write_file(run.o.robot.html, to_html(page));
 }
 
@@ -214,6 +238,7 @@ int decompose_robot(const DecomposeOptions& o) {
       o.depfile.empty() ? std::vector<std::string>() : robot::included_files(run.robot);
   RobotOutput output(o.robot, o.output, run.robot, "bodies", "");
   run.request = robot_request(o, run.robot, output.choice());
+  run.request.partial = true;
   const certify::WantedMeshes meshes =
       certify::wanted_meshes(run.robot, run.request.shapes, run.request.epsilons);
   output.plan(meshes);
@@ -227,12 +252,13 @@ int decompose_robot(const DecomposeOptions& o) {
   write(run, output);
   log(o.common.quiet, output.folder().urdf().string() + ": " +
                           counted(run.made.bodies.artefact().size(), "body", "bodies") + " of " +
-                          counted(run.made.links.size(), "link", "links") + ", from " +
+                          counted(run.verdicts.size(), "link", "links") + ", from " +
                           counted(run.bodies().meshes.size(), "mesh", "meshes"));
+  say_verdicts(run.robot.robot, run.verdicts, o.common.quiet);
   output.say(o.common.quiet, run.notes);
   if (run.pairs) log(o.common.quiet, run.pairs->words);
   if (is_page(o.preview))
-    io::write_file(o.preview, page_of_robot(o, run.robot, run.made));
+    io::write_file(o.preview, page_of_robot(o, run.robot, run.made, run.verdicts));
   else if (!o.preview.empty())
     io::write_file(o.preview, picture_of(at_rest(run.robot.robot, run.made.links), o.explode));
   if (!o.robot.html.empty()) write_page(run, output);
@@ -244,7 +270,7 @@ int decompose_robot(const DecomposeOptions& o) {
     for (std::string& file : strings(run.bodies().files)) inputs.push_back(std::move(file));
     write_depfile(o.depfile, output.documents(), inputs);
   }
-  return run.code;
+  return run.code();
 }
 
 }  // namespace kaboum::tools

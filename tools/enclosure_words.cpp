@@ -2,32 +2,21 @@
 
 #include "enclosure_words.h"
 
-#include "cli.h"
 #include "decimation_case.h"
 
 namespace kaboum::tools {
 
 using verify::Answer;
 
-std::pair<std::string, int> shortfall(const certify::EnclosureCertificate& c) {
+std::string shortfall(const certify::EnclosureCertificate& c) {
   if (c.stop == bmesh::Stop::OutOfWork)
-    return {
-        "the work allowed has ended; the result so far is written. Allow more with --max-work, "
-        "or give --effort fast",
-        kLimit};
-  if (!c.reached) return {"fewer vertices cannot be reached; the result so far is written", kNo};
-  for (const certify::MeshClaim& claim : c.claims) {
-    const bool sampled = claim.basis == certify::Basis::Samples;
-    if (claim.answer == Answer::Refuted)
-      return {
-          "the solid is enclosed, but not all triangles: some bound no solid; --prepare wrap "
-          "encloses those as well",
-          claim.basis == certify::Basis::Bytes ? kNo : kDone};
-    if (claim.answer == Answer::Undecided && !sampled)
-      return {std::string("the claim ") + name_of(claim.kind) + " is undecided: " + claim.reason,
-              claim.basis == certify::Basis::Bytes ? kLimit : kDone};
-  }
-  return {{}, kDone};
+    return "the work allowed has ended; the result so far is written. Allow more with --max-work, "
+           "or give --effort fast";
+  if (!c.reached) return "fewer vertices cannot be reached; the result so far is written";
+  if (c.inside.answer == Answer::Refuted)
+    return "not every triangle is inside: some bound no solid; --prepare wrap encloses those as "
+           "well";
+  return {};
 }
 
 std::string summary(const certify::EnclosureCertificate& c) {

@@ -24,9 +24,6 @@ std::string lower_extension(const std::string& path) {
 /// What to do with a file of a kind that is no mesh to read; empty when there is nothing to say.
 std::string route(const std::string& path) {
   const std::string extension = lower_extension(path);
-  if (extension == ".step" || extension == ".stp" || extension == ".iges" || extension == ".igs")
-    return "make a mesh of it first: mesh-prepare " + path +
-           " -o part.ply (with --prepare wrap, one that holds the exact faces)";
   if (extension == ".brep") return "this kind of CAD file is not read; export it as STEP";
   const auto is = [&](std::initializer_list<const char*> names) {
     return std::any_of(names.begin(), names.end(), [&](const char* n) { return extension == n; });
@@ -124,6 +121,13 @@ void require_writable(const std::string& option, const std::string& file) {
 
 void require_apart(const std::vector<std::pair<std::string, std::string>>& outputs,
                    const std::vector<std::string>& inputs) {
+  std::string depfile;
+  std::vector<std::string> targets;
+  for (const auto& [option, file] : outputs) {
+    if (option == "--depfile") depfile = file;
+    if (option == "--output" || option == "--progressive") targets.push_back(file);
+  }
+  require_depfile(depfile, targets, inputs);
   const auto place = [](const std::string& file) {
     if (file == "-") return std::filesystem::path("-");
     std::error_code error;
@@ -148,46 +152,96 @@ void require_apart(const std::vector<std::pair<std::string, std::string>>& outpu
   }
 }
 
-void write_depfile(const std::string& path, const std::vector<std::string>& targets,
-                   const std::vector<std::string>& inputs) {
-  const auto escaped = [](const std::string& s) {
-    std::string out;
-    for (const char c : s) {
-      if (c == ' ' || c == '#' || c == '\\') out += '\\';
-      if (c == '$') out += '$';
-      out += c;
-    }
-    return out;
+namespace {
+
+/// Where a list of files is written instead of a rule: any name can be in it.
+bool is_list(const std::string& depfile) { return depfile.ends_with(".list"); }
+
+/// Why a character cannot be in a name within a rule; empty where it can. GNU make has no way to
+/// write most of them, and ninja reads `\` before others as itself.
+std::string_view no_place_for(char c, bool target) {
+  if (static_cast<unsigned char>(c) < ' ' || c == '\x7F') return "a control character";
+  if (c == '*' || c == '?' || c == '[') return "a wildcard of make";
+  if (c == '=') return "'='";
+  if (c == ';') return "';'";
+  if (c == '|') return "'|'";
+  if (target && c == '%') return "'%'";
+  if (target && c == '&') return "'&'";
+  return {};
+}
+
+/// A name as GNU make and ninja both read it.
+/// @throws Error{InvalidArgument} where there is no such way
+std::string in_rule(const std::string& name, bool target) {
+  const auto refuse = [&](std::string_view what) {
+    std::string shown = name;
+    std::ranges::replace_if(
+        shown, [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7F'; }, '?');
+    throw Error(ErrorCode::InvalidArgument,
+                "--depfile: the name '" + shown + "' has " + std::string(what) +
+                    ", which has no place in a rule of make; rename it, or let the name of the "
+                    "dependency file end in .list");
   };
+  std::string out;
+  std::size_t backslashes = 0;  // right before
+  for (const char c : name) {
+    if (const std::string_view why = no_place_for(c, target); !why.empty()) refuse(why);
+    if ((c == '#' || c == ':') && backslashes > 0) refuse("a backslash before '#' or ':'");
+    if (c == ' ') out.append(backslashes, '\\');  // they are halved there
+    if (c == ' ' || c == '#' || c == ':') out += '\\';
+    if (c == '$') out += '$';
+    out += c;
+    backslashes = c == '\\' ? backslashes + 1 : 0;
+  }
+  if (backslashes > 0) refuse("a backslash at its end");
+  if (name.starts_with('~')) refuse("'~' at its beginning");
+  if (name.ends_with(')')) refuse("')' at its end");
+  return out;
+}
+
+std::string rule_of(const std::vector<std::string>& targets,
+                    const std::vector<std::string>& inputs) {
   std::string text;
   for (const std::string& target : targets)
-    if (!target.empty()) text += (text.empty() ? "" : " ") + escaped(target);
+    if (!target.empty()) text += (text.empty() ? "" : " ") + in_rule(target, true);
   text += ":";
   std::set<std::string> listed{"-"};
   for (const std::string& input : inputs)
-    if (listed.insert(input).second) text += " " + escaped(input);
-  text += "\n";
-  io::write_file(path, text);
+    if (listed.insert(input).second) text += " " + in_rule(input, false);
+  return text + "\n";
 }
 
-std::vector<std::string> inputs_in_depfile(const std::string& path) {
+std::string list_of(const std::vector<std::string>& inputs) {
+  std::string text;
+  std::set<std::string> listed{"-"};
+  for (const std::string& input : inputs)
+    if (listed.insert(input).second) text += input + '\0';
+  return text;
+}
+
+}  // namespace
+
+void require_depfile(const std::string& path, const std::vector<std::string>& targets,
+                     const std::vector<std::string>& inputs) {
+  if (!path.empty() && !is_list(path)) rule_of(targets, inputs);
+}
+
+void write_depfile(const std::string& path, const std::vector<std::string>& targets,
+                   const std::vector<std::string>& inputs) {
+  io::write_file(path, is_list(path) ? list_of(inputs) : rule_of(targets, inputs));
+}
+
+std::vector<std::string> files_in_list(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) return {};
   const std::vector<char> text = io::read_file(path);
-  std::vector<std::string> words(1);
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    const bool escaped = (c == '\\' || c == '$') && i + 1 < text.size();
-    if (c == ' ' || c == '\n')
-      words.emplace_back();
-    else
-      words.back() += escaped ? text[++i] : c;
+  std::vector<std::string> names;
+  for (auto at = text.begin(); at != text.end();) {
+    const auto end = std::find(at, text.end(), '\0');
+    names.emplace_back(at, end);
+    at = end == text.end() ? end : end + 1;
   }
-  const auto last_target =
-      std::ranges::find_if(words, [](const auto& w) { return w.ends_with(':'); });
-  if (last_target != words.end()) words.erase(words.begin(), last_target + 1);
-  std::erase(words, std::string());
-  return words;
+  return names;
 }
 
 }  // namespace kaboum::tools

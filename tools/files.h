@@ -18,18 +18,25 @@ bool is_folder(const std::filesystem::path& path);
 io::Format format_for(const std::string& path, const std::string& name, const char* option);
 
 /// Refuses to write a file twice, over an input, or into a folder that does not exist or cannot be
-/// looked into; outputs are
-/// (option, file), empty files are none.
+/// looked into; outputs are (option, file), empty files are none. With a --depfile, --output,
+/// --progressive and the inputs must have names that can be in it.
 /// @throws Error{InvalidArgument}, Error{OutputFailed}
 void require_apart(const std::vector<std::pair<std::string, std::string>>& outputs,
                    const std::vector<std::string>& inputs);
 
+/// Whether the names can be written in a rule of make as GNU make and ninja read them; of a
+/// dependency file of the name *.list, any can.
+/// @throws Error{InvalidArgument} naming the one that cannot
+void require_depfile(const std::string& path, const std::vector<std::string>& targets,
+                     const std::vector<std::string>& inputs);
+
 /// A Makefile rule saying that the targets (empty names are none) depend on `inputs`, each listed
-/// once.
+/// once. If the name ends in .list: the inputs, each followed by a zero byte.
+/// @throws Error{InvalidArgument} as require_depfile
 void write_depfile(const std::string& path, const std::vector<std::string>& targets,
                    const std::vector<std::string>& inputs);
 
-/// What write_depfile was given as inputs; nothing where there is no such file.
-std::vector<std::string> inputs_in_depfile(const std::string& path);
+/// The inputs in a .list; none where there is no such file.
+std::vector<std::string> files_in_list(const std::string& path);
 
 }  // namespace kaboum::tools

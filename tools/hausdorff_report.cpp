@@ -83,6 +83,7 @@ Json ComparisonReport::side(Comparison::Side s) const {
   if (!file.is_set && !solid) j["closed"] = topology.closed();
   j["degenerate_triangles"] = topology.degenerate_triangles;
   j["surface_error"] = comparison.surface_error(s);
+  if (file.deviation > 0) j["deviation"] = file.deviation;
   j["notes"] = file.notes;
   return j;
 }

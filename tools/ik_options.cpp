@@ -42,8 +42,9 @@ void describe(CLI::App& app, IkOptions& o) {
           ->type_name("Q1,Q2,…");
   pose->excludes(pose_of);
   app.add_option("--reference", o.reference,
-                 "Of whole turns, the nearest to this configuration is printed; joints that are "
-                 "free where axes are aligned keep its values; numeric search begins at it [0,0,…]")
+                 "Of whole turns, the nearest to this configuration is printed; of a family with "
+                 "a free joint, the one that keeps its value comes first; numeric search begins at "
+                 "it [0,0,…]")
       ->type_name("Q1,Q2,…");
   app.add_flag(
       "--copies", o.copies,
@@ -64,7 +65,9 @@ void describe(CLI::App& app, IkOptions& o) {
   app.footer(
       "Exit codes: 0 done; 1 there is no solution, or none within the limits; 2 usage; 3 bad "
       "input; "
-      "4 output failed; 6 internal error; 7 none found numerically, which proves nothing.");
+      "4 output failed; 6 internal error; 7 none found, which proves nothing: numerically, or "
+      "where "
+      "the pose is singular and it is not decided that no family has one within the limits.");
 }
 
 void require_valid(const IkOptions& o) {

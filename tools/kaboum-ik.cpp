@@ -1,6 +1,6 @@
 // kaboum-ik: the configurations with which a robot's chain reaches a pose.
-#include <kaboum/kinematics/closed_form.h>
 #include <kaboum/kinematics/copies.h>
+#include <kaboum/kinematics/solution_set.h>
 #include <kaboum/robot/base_pose.h>
 #include <kaboum/robot/robot_file.h>
 
@@ -19,6 +19,10 @@ using namespace kaboum;  // the tool's own names are few
 namespace ik = kinematics;
 
 using tools::kDegree;
+
+/// Configurations of a family that are printed, about.
+constexpr std::size_t kRepresentatives = 6;
+
 using Answer = tools::IkAnswer;
 using Options = tools::IkOptions;
 
@@ -61,7 +65,6 @@ std::string only_tip(const robot::Robot& robot) {
 
 void add_row(Answer& answer, const Options& o, const std::vector<double>& q,
              const std::vector<double>& reference, Answer::Row row) {
-  ++answer.found;
   std::vector<std::vector<double>> choices;
   if (o.copies && !o.ignore_limits) {
     choices = ik::copies(answer.arm, q);
@@ -107,6 +110,39 @@ Chain read_chain(const Options& o) {
   return out;
 }
 
+void find_in_closed_form(Answer& answer, const Options& o, const std::vector<double>& reference) {
+  const auto joints = static_cast<long>(answer.joints.size());
+  ik::SolutionSetOptions options;
+  std::copy(reference.begin(), reference.end(), options.solve.reference.begin());
+  options.limits = !o.ignore_limits;
+  options.representatives = kRepresentatives;
+  std::vector<ik::Transform> targets{answer.target};
+  if (o.free_heading) {
+    targets = ik::with_other_headings(*answer.form, answer.target);
+    if (ik::has_any_heading(*answer.form, answer.target))
+      answer.incomplete = "the pose can be reached with many headings, or nearly so";
+  }
+  for (const ik::Transform& target : targets) {
+    ik::SolutionSet set = ik::solve_set(*answer.form, target, options);
+    if (!set.complete && answer.incomplete.empty()) answer.incomplete = set.reason;
+    answer.found += set.isolated.size();
+    if (options.limits && set.isolated.empty() && set.families.empty()) {
+      ik::SolutionSetOptions any = options;
+      any.limits = false;
+      answer.outside = answer.outside || !ik::solve_set(*answer.form, target, any).families.empty();
+    }
+    const auto add = [&](const ik::Solution& s) {
+      add_row(answer, o, {s.q.begin(), s.q.begin() + joints}, reference,
+              {{}, {s.position_error, s.rotation_error}, s.singular, true, target, s.free});
+    };
+    for (const ik::Solution& s : set.isolated) add(s);
+    for (ik::SolutionFamily& family : set.families) {
+      for (const ik::Solution& s : family.representatives) add(s);
+      answer.families.push_back({std::move(family), target});
+    }
+  }
+}
+
 Answer find(const Options& o, const Chain& chain) {
   const robot::Robot& robot = chain.robot;
   Answer answer;
@@ -125,24 +161,19 @@ Answer find(const Options& o, const Chain& chain) {
   if (o.free_heading && (!answer.form || answer.form->family != ik::Family::FiveAxes))
     usage("--free-heading is for arms with five axes and a closed form; this one is not");
   if (answer.form) {
-    ik::SolveOptions options;
-    std::copy(reference.begin(), reference.end(), options.reference.begin());
-    const std::vector<ik::Transform> targets =
-        o.free_heading ? ik::with_other_headings(*answer.form, answer.target)
-                       : std::vector<ik::Transform>{answer.target};
-    for (const ik::Transform& target : targets)
-      for (const ik::Solution& s : ik::solve(*answer.form, target, options))
-        add_row(answer, o, {s.q.begin(), s.q.begin() + static_cast<long>(answer.joints.size())},
-                reference, {{}, {s.position_error, s.rotation_error}, s.singular, true, target});
+    find_in_closed_form(answer, o, reference);
     return answer;
   }
+  answer.incomplete = "a numeric search finds no proof";
   ik::NumericOptions options;
   options.seed = o.common.seed;
   options.starts = o.starts;
   options.limits = !o.ignore_limits;
   if (!o.reference.empty()) options.first = reference;
-  for (const ik::NumericSolution& s : ik::solve_numeric_all(answer.arm, answer.target, options))
+  for (const ik::NumericSolution& s : ik::solve_numeric_all(answer.arm, answer.target, options)) {
+    ++answer.found;
     add_row(answer, o, s.q, reference, {{}, s.error, ik::kRegular, true, answer.target});
+  }
   return answer;
 }
 
@@ -159,7 +190,7 @@ int run(const Options& o) {
   const Answer answer = tools::naming(chain.file, [&] { return find(o, chain); });
   tools::Json report = tools::answer_json(answer, o.degrees);
   if (o.json) {
-    std::cout << report.dump(2) << '\n';
+    std::cout << report.dump(2, ' ', false, tools::Json::error_handler_t::replace) << '\n';
   } else if (!answer.rows.empty()) {
     tools::print_answer(answer, o.degrees);
   }
@@ -168,27 +199,35 @@ int run(const Options& o) {
   std::string what = answer.form ? std::string(ik::name_of(answer.form->family)) + ", closed form: "
                                  : "numeric, " + std::to_string(o.starts) + " starts: ";
   what += std::to_string(answer.found) + (answer.found == 1 ? " solution" : " solutions");
+  if (!answer.families.empty())
+    what += answer.families.size() == 1
+                ? " and a family with a free joint"
+                : " and " + std::to_string(answer.families.size()) + " families with a free joint";
   if (answer.form && !o.ignore_limits)
     what += ", " + std::to_string(answer.rows.size()) +
             (o.copies ? " configurations within the limits, whole turns counted"
                       : " within the limits");
   tools::log(o.common.quiet, what);
+  for (const Answer::Family& f : answer.families)
+    tools::log(o.common.quiet, "a family: " + family_text(answer, f.family, o.degrees));
+  if (answer.form && !answer.incomplete.empty() && !answer.rows.empty())
+    tools::log(o.common.quiet, "there may be others: " + answer.incomplete);
   if (!answer.rows.empty()) return tools::kDone;
   if (!answer.form) {
     std::cerr << "kaboum-ik: none found, which is no proof that there is none; try --starts "
               << 10 * o.starts << '\n';
     return tools::kLimit;
   }
-  if (!is_complete(answer)) {
-    std::cerr
-        << "kaboum-ik: none found, which is no proof that there is none: the arm is only nearly of "
-           "this family; try --numeric\n";
+  if (!answer.incomplete.empty()) {
+    std::cerr << "kaboum-ik: none found, which is no proof that there is none: "
+              << answer.incomplete << "; try --numeric\n";
     return tools::kLimit;
   }
   std::cerr << "kaboum-ik: "
-            << (answer.found == 0 ? unreached(answer, o.free_heading)
-                                  : "the pose is reached outside the joints' limits only; see "
-                                    "--ignore-limits")
+            << (answer.found == 0 && !answer.outside
+                    ? unreached(answer, o.free_heading)
+                    : "the pose is reached outside the joints' limits only; see "
+                      "--ignore-limits")
             << '\n';
   return tools::kNo;
 }

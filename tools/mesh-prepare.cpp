@@ -3,7 +3,6 @@
 #include <kaboum/certify/mesh.h>
 #include <kaboum/certify/mesh_bytes.h>
 #include <kaboum/geom/float32.h>
-#include <kaboum/io/cad.h>
 #include <kaboum/io/file_unit.h>
 #include <kaboum/verify/inclusion.h>
 
@@ -28,7 +27,6 @@ struct PrepareToolOptions {
 struct PrepareCase {
   const PrepareToolOptions& asked;
   io::ReadResult input = {};
-  double deviation = 0;  ///< of a CAD file's exact faces from the triangles [length]
   std::string sha256 = {};
   geom::Mesh mesh = {};  ///< that is written
   std::vector<std::string> notes = {};
@@ -96,7 +94,7 @@ void wrap(PrepareCase& run, bool doubles) {
   if (!o.epsilon.empty())
     farthest = parse_length(o.epsilon)->of(geom::bounding_box(run.input.mesh).diagonal());
   certify::WrapRequest request = o.preparation.request(farthest);
-  request.clearance = run.deviation;
+  request.clearance = run.input.deviation;
   request.float32 = !doubles || all_float32(run.input.mesh);
   certify::CertifiedWrap made;
   {
@@ -120,21 +118,9 @@ void wrap(PrepareCase& run, bool doubles) {
 void read(PrepareCase& run) {
   const PrepareToolOptions& o = run.asked;
   std::vector<char> bytes;
-  const bool cad = o.input_format.empty() && io::is_cad_file(o.input);
-  if (cad) {
-    io::CadResult part = io::read_cad(o.input, &bytes);
-    run.input = std::move(part.read);
-    run.deviation = part.deviation;
-  } else {
-    run.input =
-        io::read_mesh(o.input, format_for(o.input, o.input_format, "--input-format"), &bytes);
-  }
+  run.input = io::read_mesh(o.input, format_for(o.input, o.input_format, "--input-format"), &bytes);
   apply(run.input, o.unit, o.input);
-  if (cad) {
-    if (o.unit.scale != 1)
-      run.deviation = io::scaled_bound(run.deviation, o.unit.scale, run.input.mesh);
-    run.report["deviation"] = run.deviation;
-  }
+  if (io::is_cad(run.input.format)) run.report["deviation"] = run.input.deviation;
   run.sha256 = io::sha256(bytes);
   for (const std::string& text : run.input.notes) note(run, text);
 }
@@ -196,7 +182,11 @@ void describe(CLI::App& app, PrepareToolOptions& o) {
                "Decide exactly whether every triangle of the file lies in the solid (a wrap's "
                "always do, decided in any case)");
   add_unit_options(app, o.unit, "INPUT");
-  app.add_option("--depfile", o.depfile, "Write a Makefile dependency rule")->type_name("FILE");
+  app.add_option(
+         "--depfile", o.depfile,
+         "Write a Makefile dependency rule; names that have no place in one are refused. If "
+         "FILE ends in .list: the inputs, each followed by a zero byte")
+      ->type_name("FILE");
   app.add_option("--input-format", o.input_format, "Format of INPUT [by extension]")
       ->type_name("NAME");
   app.add_option("--output-format", o.output_format, "Format of the result [by extension]")

@@ -12,13 +12,19 @@ namespace kaboum::tools {
 namespace {
 
 MeshInput read(const std::string& path, const std::string& format, const char* option,
-               const UnitOption& unit = {}) {
+               const UnitOption& unit = {}, std::size_t density = 0) {
   std::vector<char> bytes;
   io::ReadResult r = io::read_mesh(path, format_for(path, format, option), &bytes);
   apply(r, unit, path);
   MeshInput out;
   out.unit = r.unit;
+  out.deviation = r.deviation;
+  out.about_exact = io::about_exact_faces(r);
+  if (density > 0 && io::is_cad(r.format))
+    out.exact =
+        verify::read_exact_points(bytes, r.format, path, density, unit.scale, r.exact_faces);
   out.mesh = std::move(r.mesh);
+  out.quads = std::move(r.bent_quads);
   out.sha256 = io::sha256(bytes);
   out.notes = std::move(r.notes);
   if (r.collapsed_triangles != 0)
@@ -30,7 +36,13 @@ MeshInput read(const std::string& path, const std::string& format, const char* o
 }  // namespace
 
 MeshInput read_original(const VerifyMeshOptions& o) {
-  return read(o.original, o.original_format, "--input-format", o.unit);
+  using Diagonal = geom::PrepareOptions::Diagonal;
+  const bool inner = o.relation == verify::Relation::Inner;
+  // Whether points of exact faces are inside what encloses, or is covered, is what they can tell.
+  MeshInput out =
+      read(o.original, o.original_format, "--input-format", o.unit, inner ? 0 : o.exact_points);
+  out.diagonal = inner ? Diagonal::Inward : Diagonal::Outward;
+  return out;
 }
 
 ApproximationInput read_approximation(const VerifyMeshOptions& o) {
@@ -64,7 +76,12 @@ ApproximationInput read_approximation(const VerifyMeshOptions& o) {
 }
 
 void prepare(MeshInput& original, bool drop_sheets) {
-  geom::Prepared prepared = prepare_original(original.mesh, drop_sheets, true);
+  geom::PrepareOptions options;
+  options.drop_sheets = drop_sheets;
+  options.holes = geom::Holes::Fill;
+  options.quads = original.quads;
+  options.diagonal = original.diagonal;
+  geom::Prepared prepared = geom::prepare(original.mesh, options);
   geom::PreparationReport& report = prepared.report;
   original.mesh = prepared.solid.mesh();
   original.notes.insert(original.notes.end(), report.notes.begin(), report.notes.end());

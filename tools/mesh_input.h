@@ -2,7 +2,10 @@
 
 #include <kaboum/geom/convex_set.h>
 #include <kaboum/geom/mesh.h>
+#include <kaboum/geom/prepare.h>
+#include <kaboum/verify/exact_points.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +20,13 @@ struct MeshInput {
   std::string unit;  ///< io::ReadResult::unit
   std::vector<std::string> notes;
   std::size_t filled_triangles = 0, dropped_sheets = 0;
+  double deviation = 0;          ///< of exact faces from the triangles; 0: there are none [length]
+  std::string about_exact = {};  ///< what is to be known where the triangles stand for exact faces
+  std::optional<verify::ExactPoints> exact = {};  ///< of these, where they are looked at
   std::vector<std::uint32_t> source;  ///< per triangle, if prepared: its index in the file
+  /// How preparing splits quads that are not plane: as the programs that make results do.
+  std::vector<std::uint32_t> quads = {};
+  geom::PrepareOptions::Diagonal diagonal = geom::PrepareOptions::Diagonal::AsGiven;
 };
 
 /// A mesh, or a set: `mesh` is the sum of its bodies then.

@@ -1,4 +1,7 @@
 // What was found of two meshes, in words.
+#include <kaboum/geom/topology.h>
+
+#include <algorithm>
 #include <cmath>
 
 #include "mesh_case.h"
@@ -76,6 +79,21 @@ std::string outer_name(const MeshCase& run) {
          (margin > 0 ? ", with the margin " + number(margin) + " included" : "");
 }
 
+/// What the points of exact faces tell, which the claims before are not about.
+std::string line_of_points(const verify::PointClaim& claim, const MeshCase& run) {
+  const std::string all = std::to_string(claim.points) + " points of the " +
+                          std::to_string(run.original.exact->faces) + " exact faces";
+  std::string line = std::string("exact points: ") + name_of(claim.answer) + ": ";
+  if (claim.answer == Answer::Undefined) return line + claim.reason;
+  if (claim.answer == Answer::Verified)
+    return line + "all " + all + " are within the solid of " + outer_name(run) +
+           " (points can refute, and prove nothing)";
+  return line + std::to_string(claim.outside) + " of " + all + " stick out of " + outer_name(run) +
+         ", by up to " + number_up(claim.farthest) + ", near " + point(claim.at) + ", face " +
+         std::to_string(claim.face + 1) + " (" + std::to_string(claim.faces) +
+         (claim.faces == 1 ? " face" : " faces") + " in all)";
+}
+
 /// What users most often got wrong when an enclosure is refuted.
 std::vector<std::string> hints(const MeshCase& run) {
   std::vector<std::string> lines;
@@ -130,11 +148,12 @@ std::vector<std::string> lines_of_enclosure(const MeshCase& run) {
                            : "a part of the solid of " + inner + " is outside that of " + outer,
                        v.inclusion.solid, solid_extent(run)));
   lines.push_back(line("surface claim",
-                       "every triangle with area of " + inner + " is within the solid of " + outer,
+                       "every triangle of " + inner + " is within the solid of " + outer,
                        (v.inclusion.limited ? "at least " : "") +
                            std::to_string(v.inclusion.surface.inner_triangles.size()) +
                            " triangles of " + inner + " are not all within the solid of " + outer,
                        v.inclusion.surface, surface_extent(run)));
+  if (v.exact_points) lines.push_back(line_of_points(*v.exact_points, run));
   return lines;
 }
 
@@ -150,13 +169,27 @@ std::vector<std::string> lines_of_distances(const MeshCase& run) {
   return lines;
 }
 
+namespace {
+
+/// What a verdict has to say where exact faces are meant.
+std::string about_triangles(const MeshCase& run) {
+  const MeshInput& original = run.original;
+  if (original.about_exact.empty() || run.verdict.answer != Answer::Verified) return {};
+  return std::string(", of the triangles, which stand for exact faces within ") +
+         number_up(original.deviation) +
+         (original.exact ? "; no point of these that was looked at sticks out"
+                         : "; of these nothing is said");
+}
+
+}  // namespace
+
 std::string last_line(const MeshCase& run) {
   const verify::Inclusion& in = run.verdict.inclusion;
   const bool open = !in.inner_closed || !in.outer_closed;
   const Answer answer = run.verdict.answer;
   return std::string(name_of(answer)) +
          (open && answer == Answer::Verified ? ", as far as an open mesh defines it" : "") +
-         except_sheets({{run.asked.original, run.original.dropped_sheets}});
+         about_triangles(run) + except_sheets({{run.asked.original, run.original.dropped_sheets}});
 }
 
 std::vector<std::string> notes_on(const MeshCase& run) {
@@ -185,6 +218,14 @@ std::string why_undefined(const MeshCase& run) {
            " is inside out: its volume is negative, so that its solid is empty or nearly "
            "so, and that it is enclosed says nothing. Turn its triangles round" +
            (run.inner() ? "" : " (--prepare does)") + ", or ask for --claims all";
+  const geom::Mesh& mesh = run.inner() ? run.approximation.mesh : run.original.mesh;
+  const auto has_no_area = [&](const geom::Triangle& t) {
+    return geom::is_degenerate(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+  };
+  if (std::all_of(mesh.triangles.begin(), mesh.triangles.end(), has_no_area))
+    return inner +
+           ": none of its triangles has an area, so that it has no solid. The surface claim is "
+           "defined: --claims surface";
   if (in.inner_closed && in.outer_closed)
     return "a mesh without any triangle that has an area; no distance to it is defined";
   if (in.outer_closed)

@@ -73,6 +73,18 @@ Json claims_of(const MeshCase& run) {
     json["margin"] = run.approximation.set.margin;
     json["to_solid"] = distance.between == Between::UnionToSolid;
   }
+  if (v.exact_points) {
+    const verify::PointClaim& points = *v.exact_points;
+    Json& json = claims["exact_points"];
+    json = {{"answer", name_of(points.answer)}, {"reason", points.reason},
+            {"points", points.points},          {"outside", points.outside},
+            {"faces_outside", points.faces},    {"rounding", points.rounding}};
+    if (points.outside > 0) {
+      json["farthest"] = points.farthest;
+      json["at"] = to_json(points.at);
+      json["face"] = points.face + 1;
+    }
+  }
   if (v.depth) {
     claims["depth"] = to_json(*v.depth);
     claims["depth"]["bound"] = *run.bound;
@@ -137,6 +149,11 @@ Json report_of(const MeshCase& run) {
     json["approximation"]["margin"] = run.approximation.set.margin;
   }
   json["original"]["scale"] = run.asked.unit.scale;
+  if (!run.original.about_exact.empty()) json["original"]["deviation"] = run.original.deviation;
+  if (const auto& exact = run.original.exact) {
+    json["original"]["exact_faces"] = exact->faces;
+    json["original"]["exact_edges"] = exact->edges;
+  }
   add_preparation(run, json["original"]);
   json["claims"] = claims_of(run);
   json["triangles_without_area"] = in.triangles_without_area;

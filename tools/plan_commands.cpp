@@ -69,7 +69,10 @@ Verdict verdict(const plan::Solution& s) {
     case plan::Outcome::Solved:
       return {"solved", "", kDone};
     case plan::Outcome::Unsolvable:
-      return {"unsolvable", "unsolvable: every possibility was tried", kNo};
+      return {"unsolvable",
+              s.refused.empty() ? "unsolvable: every possibility was tried"
+                                : "unsolvable with what external functions answer: " + s.refused,
+              kNo};
     case plan::Outcome::NotInferred:
       return {"not inferred",
               "no plan with what the knowledge state can infer; it is not proved that there is "
@@ -118,12 +121,17 @@ int solve(const PlanOptions& o) {
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const Verdict said = verdict(solution);
-  Json report = {
-      {"command", "solve"},         {"domain", o.domain},
-      {"problem", o.problem},       {"search", o.search},
-      {"assumed", options.assumed}, {"status", said.status},
-      {"limit", solution.limit},    {"lost", solution.lost},
-      {"scene", o.scene},           {"statistics", statistics_json(solution.statistics)}};
+  Json report = {{"command", "solve"},
+                 {"domain", o.domain},
+                 {"problem", o.problem},
+                 {"search", o.search},
+                 {"assumed", options.assumed},
+                 {"status", said.status},
+                 {"limit", solution.limit},
+                 {"lost", solution.lost},
+                 {"refused", solution.refused},
+                 {"scene", o.scene},
+                 {"statistics", statistics_json(solution.statistics)}};
   watch.save();
   if (!o.scene.empty()) {
     report["geometry"] = geometry_json(*o.counters);

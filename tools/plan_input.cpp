@@ -52,7 +52,7 @@ manipulation::ExternalOptions external_options(const PlanOptions& o) {
   return out;
 }
 
-constexpr const char* kAnswers = "KABOUM-ANSWERS 4";
+constexpr const char* kAnswers = "KABOUM-ANSWERS 5";
 
 /// One entry for scene, domain and problem: all that answers depend on beside the questions.
 void open_cache(ExternalWatch& watch, const SceneFile& scene, const PlanTexts& texts) {

@@ -8,6 +8,10 @@
 namespace kaboum::tools {
 namespace {
 
+constexpr const char* kExactFaces =
+    ". Of STEP and IGES, auto is wrap for what encloses, so that the exact faces are inside, too; "
+    "else what is claimed is about the triangles that stand for them";
+
 CLI::Option* add_length(CLI::App& app, const char* name, std::string& value, const char* text) {
   return app.add_option(name, value, text)
       ->check([](const std::string& s) {
@@ -36,14 +40,15 @@ certify::WrapRequest PreparationOption::request(std::optional<double> farthest) 
   return request;
 }
 
-void add_preparation_options(CLI::App& app, PreparationOption& option, const std::string& off) {
+void add_preparation_options(CLI::App& app, PreparationOption& option, const std::string& off,
+                             bool exact) {
   app.add_option("--prepare", option.name,
                  "How the triangles are given a solid. auto: inconsistent triangles and parts that "
                  "are inside out are turned, copies and walls dropped, holes filled; strict: the "
                  "same, but open meshes are refused; wrap: a closed mesh is made round all "
                  "triangles, whatever they are like, and its solid counts; off: the file's own "
                  "orientation, and " +
-                     off + " [auto]")
+                     off + (exact ? kExactFaces : "") + " [auto]")
       ->check(CLI::IsMember({"auto", "strict", "wrap", "off"}).description(""))
       ->type_name("auto|strict|wrap|off");
   add_length(app, "--offset", option.offset,

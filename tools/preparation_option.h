@@ -19,6 +19,9 @@ struct PreparationOption {
   std::string name = "auto", offset, seal;
 
   [[nodiscard]] bool wraps() const { return name == "wrap"; }
+  /// Whether an outer result is to hold the exact faces of a CAD file, not only the triangles that
+  /// stand for them: `auto` wraps these.
+  [[nodiscard]] bool holds_exact_faces() const { return wraps() || name == "auto"; }
   /// Sets what `strict` and `off` mean.
   void apply(geom::PrepareOptions& options) const;
   /// @param farthest  that the wrap may be from the input [length]
@@ -26,9 +29,10 @@ struct PreparationOption {
 };
 
 /// Adds --prepare, --offset and --seal.
-/// @param off  what `--prepare off` does with open meshes, in words
+/// @param off    what `--prepare off` does with open meshes, in words
+/// @param exact  `auto` holds exact faces
 void add_preparation_options(CLI::App& app, PreparationOption& option,
-                             const std::string& off = "open meshes stay open");
+                             const std::string& off = "open meshes stay open", bool exact = false);
 
 /// Refuses --offset and --seal without --prepare wrap, and what means nothing beside --prepare.
 /// @throws Error{InvalidArgument}

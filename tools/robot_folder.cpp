@@ -178,7 +178,8 @@ void RobotFolder::write(const RobotContents& contents) {
   begin();
   create(folder_ / part_);
   if (!contents.links.empty()) create(folder_ / "links");
-  for (const StoredMesh& s : stored_) contents.write_mesh(s, folder_ / place_of(s));
+  for (const StoredMesh& s : stored_)
+    if (!s.left_out) contents.write_mesh(s, folder_ / place_of(s));
   const std::vector<std::string> links = link_files(contents);
   for (std::size_t i = 0; i < links.size(); ++i)
     io::write_file(folder_ / links[i], contents.links[i].second);
@@ -200,7 +201,8 @@ std::vector<std::string> RobotFolder::link_files(const RobotContents& contents) 
 
 std::vector<std::string> RobotFolder::stale(const std::vector<std::string>& links) const {
   std::set<fs::path> written(links.begin(), links.end());
-  for (const StoredMesh& s : stored_) written.insert(place_of(s));
+  for (const StoredMesh& s : stored_)
+    if (!s.left_out) written.insert(place_of(s));
   std::vector<std::string> out;
   for (const std::string& part : {part_, std::string("links")}) {
     std::error_code error;

@@ -30,6 +30,7 @@ struct StoredMesh {
   geom::Vec3 scale;
   std::string name;  ///< of the folder or file, and the stem of files
   std::string extension;
+  bool left_out = false;  ///< nothing was made of it
 };
 
 /// The text of a document with a comment that says that it is ours, to be replaced.
@@ -86,6 +87,9 @@ class RobotFolder {
   /// Another extension for a mesh, after name_meshes.
   /// @throws Error{OutputFailed} when something else is in its place.
   void set_extension(std::size_t mesh, const std::string& extension);
+
+  /// Nothing is written of a mesh, after name_meshes.
+  void leave_out(std::size_t mesh);
 
   /// Writes all; the URDF comes last, and is not there while bodies are replaced: a robot that is
   /// there is whole, whenever a program is ended. Programs that write into one folder at the same

@@ -44,6 +44,11 @@ void RobotFolder::require_replaceable(const StoredMesh& stored) const {
   stored.extension.empty() ? io::require_replaceable(place) : require_replaceable(place);
 }
 
+void RobotFolder::leave_out(std::size_t mesh) {
+  for (StoredMesh& s : stored_)
+    if (s.mesh == mesh) s.left_out = true;
+}
+
 void RobotFolder::set_extension(std::size_t mesh, const std::string& extension) {
   for (StoredMesh& s : stored_) {
     if (s.mesh != mesh) continue;

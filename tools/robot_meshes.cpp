@@ -15,21 +15,23 @@ namespace kaboum::tools {
 namespace fs = std::filesystem;
 using robot::Geometry;
 
-const RobotMeshes::File& RobotMeshes::file_of(const Geometry& g, const robot::RobotFile& robot) {
+const verify::MeshFile& RobotMeshes::file_of(const Geometry& g, const robot::RobotFile& robot) {
   const auto [at, fresh] = named_.try_emplace({robot.path.string(), g.mesh});
   if (!fresh) return *at->second;
-  const File& file = read(robot::find_only_mesh(g.mesh, robot.path, packages_).string());
+  const verify::MeshFile& file =
+      read(robot::find_only_mesh(g.mesh, robot.path, packages_).string());
   at->second = &file;
   return file;
 }
 
-const RobotMeshes::File& RobotMeshes::read(const std::string& path) {
+const verify::MeshFile& RobotMeshes::read(const std::string& path) {
   const auto at = files_.find(path);
   if (at != files_.end()) return at->second;
   std::vector<char> bytes;
   io::ReadResult read = io::read_mesh(path, {}, &bytes);
   return files_
-      .emplace(path, File{path, io::sha256(bytes), std::move(read.mesh), std::move(read.notes)})
+      .emplace(path, verify::MeshFile{path, io::sha256(bytes), std::move(read.mesh),
+                                      std::move(read.notes)})
       .first->second;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <kaboum/geom/mesh.h>
 #include <kaboum/robot/robot_file.h>
+#include <kaboum/verify/robot_verdict.h>
 
 #include <map>
 #include <string>
@@ -13,17 +13,11 @@ namespace kaboum::tools {
 /// The mesh files that robots' shapes stand for, each read once.
 class RobotMeshes {
  public:
-  struct File {
-    std::string path, sha256;
-    geom::Mesh mesh;
-    std::vector<std::string> notes;
-  };
-
   /// @param packages  folders that package:// URIs are looked up in.
   explicit RobotMeshes(std::vector<std::string> packages) : packages_(std::move(packages)) {}
 
   /// The file of a mesh, where there is only one that may be meant. @throws Error naming it.
-  const File& file_of(const robot::Geometry& mesh, const robot::RobotFile& robot);
+  const verify::MeshFile& file_of(const robot::Geometry& mesh, const robot::RobotFile& robot);
 
   /// A record beside one of the files read that names a mesh which the original has among its
   /// shapes of the other kind only; empty: there is none. @param visual  the kind that is judged.
@@ -31,11 +25,12 @@ class RobotMeshes {
                                                  bool visual) const;
 
  private:
-  const File& read(const std::string& path);
+  const verify::MeshFile& read(const std::string& path);
 
   std::vector<std::string> packages_;
-  std::map<std::string, File> files_;
-  std::map<std::pair<std::string, std::string>, const File*> named_;  // robot, reference
+  std::map<std::string, verify::MeshFile> files_;
+  std::map<std::pair<std::string, std::string>, const verify::MeshFile*>
+      named_;  // robot, reference
 };
 
 }  // namespace kaboum::tools

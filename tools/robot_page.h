@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/base/length.h>
+#include <kaboum/certify/link_verdict.h>
 #include <kaboum/certify/wanted_meshes.h>
 #include <kaboum/geom/mesh.h>
 #include <kaboum/robot/link_meshes.h>
@@ -8,6 +9,8 @@
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "robot_check.h"
 
 /// Pages about robots that were made: --html-report.
 namespace kaboum::tools {
@@ -20,15 +23,15 @@ struct PageLink {
   std::string epsilon;            ///< asked for
   double reach = 0;               ///< certified: nothing is farther from the shapes [length]
   std::optional<double> seconds;  ///< none: from the cache
-  std::string verdict;
-  bool holds = true;  ///< nothing is left open
+  certify::LinkVerdict verdict;
   /// In the link's frame, for the pictures.
   geom::Mesh original, result;
 };
 
 /// What is said of the robot.
 struct RobotPage {
-  std::string robot, source, tool, check;  ///< name; file; program and version; how to verify
+  std::string robot, source, tool;  ///< name; file; program and version
+  RobotCheck check;
   std::string unit = "m";
   std::vector<std::string> files, notes;
   std::vector<PageLink> links;
@@ -42,7 +45,7 @@ std::string epsilon_of(const std::string& link, const certify::LinkEpsilons& own
 std::string to_html(const RobotPage& page);
 
 /// The shapes of a link that are meant, as triangles in its frame; for pictures only.
-/// @throws as robot::resolve_mesh, io::read_mesh
+/// Meshes that cannot be read are left out.
 geom::Mesh drawn_shapes(const robot::RobotFile& robot, const robot::ShapeChoice& choice,
                         std::uint32_t link);
 

@@ -16,10 +16,13 @@ world::RobotModel model_of(const robot::Robot& robot,
   world::RobotModel model;
   model.name = robot.name;
   model.kinematics = robot;
-  for (const certify::CertifiedLink& link : links)
+  for (const certify::CertifiedLink& link : links) {
+    // Of a link that has points only nothing is proved: its pairs are left to the checks.
+    if (link.artefact().bodies.empty()) continue;
     model.shapes.push_back({static_cast<std::uint32_t>(link.certificate().link),
                             world::BoundingSet(link.artefact()),
                             {}});
+  }
   return model;
 }
 

@@ -72,9 +72,13 @@ NewShapes new_shapes(const robot::RobotFile& robot, const robot::ShapeChoice& ch
     const robot::LinkShape& shape = shapes[s];
     NewShape& made = out[shape.link].emplace_back();
     made.first = count[shape.link];
-    if (shape.mesh) {
-      made.meshes = meshes_of(s);
-      count[shape.link] += made.meshes->size();
+    std::vector<std::string> meshes;
+    if (shape.mesh) meshes = meshes_of(s);
+    if (!meshes.empty()) {
+      count[shape.link] += meshes.size();
+      made.meshes = std::move(meshes);
+    } else if (shape.mesh) {
+      ++count[shape.link];
     } else if (!robot::is_point(choice.shapes_of(robot.robot.links[shape.link])[shape.index])) {
       ++count[shape.link];
     }
@@ -92,7 +96,8 @@ robot::Model new_model(const robot::RobotFile& robot, std::string_view text,
     if (shapes[l].empty()) {
       keeper.rename(link.collision);
     } else {
-      const std::vector<Geometry>& originals = choice.shapes_of(robot.robot.links[l]);
+      std::vector<Geometry> originals = choice.shapes_of(robot.robot.links[l]);
+      keeper.rename(originals);  // of those that stay
       link.collision.clear();
       for (std::size_t i = 0; i < shapes[l].size(); ++i)
         append(originals[i], shapes[l][i], prefix, link.collision);

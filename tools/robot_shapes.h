@@ -17,7 +17,7 @@ namespace kaboum::tools {
 /// What stands for a shape of a link.
 struct NewShape {
   /// Names of its meshes' files, relative to the new robot's; none: the shape itself, a box,
-  /// cylinder or sphere.
+  /// cylinder or sphere, or a mesh that nothing could be made of.
   std::optional<std::vector<std::string>> meshes;
   std::size_t first = 0;  ///< number in the names of its <collision> elements, and on
 };
@@ -25,7 +25,8 @@ struct NewShape {
 /// By link; links without stay as they are.
 using NewShapes = std::vector<std::vector<NewShape>>;
 
-/// @param meshes_of  names of the files that stand for the mesh of a shape, given by its index
+/// @param meshes_of  names of the files that stand for the mesh of a shape, given by its index;
+///   none: it stays
 NewShapes new_shapes(const robot::RobotFile& robot, const robot::ShapeChoice& choice,
                      const std::vector<robot::LinkShape>& shapes,
                      const std::function<std::vector<std::string>(std::size_t shape)>& meshes_of);

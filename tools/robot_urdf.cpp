@@ -87,7 +87,9 @@ void RobotUrdf::replace(const std::string& link, bool visual, const std::vector<
   tinyxml2::XMLNode* last = element->LastChild();
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     if (!shapes[i].meshes) {
-      last = element->InsertAfterChild(last, collision(originals[i], link, shapes[i].first));
+      XMLElement* copy = collision(originals[i], link, shapes[i].first);
+      move_references(copy);  // of a mesh that stays
+      last = element->InsertAfterChild(last, copy);
       continue;
     }
     for (std::size_t b = 0; b < shapes[i].meshes->size(); ++b) {

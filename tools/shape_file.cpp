@@ -27,6 +27,7 @@ fs::path folder_of(const std::string& file) {
 void take_mesh(ShapeFile& out, io::ReadResult result, const UnitOption& unit) {
   apply(result, unit, out.shape.name);
   out.unit = result.unit;
+  out.deviation = result.deviation;
   out.notes.insert(out.notes.end(), result.notes.begin(), result.notes.end());
   if (result.collapsed_triangles != 0)
     out.notes.push_back(std::to_string(result.collapsed_triangles) +

@@ -15,6 +15,7 @@ struct ShapeFile {
   bool is_set = false;
   std::size_t bodies = 0;  ///< of a set
   double margin = 0;       ///< of a set [length]
+  double deviation = 0;    ///< of exact faces from the triangles; 0: there are none [length]
   std::string sha256;
   std::string unit;                ///< that it states, or that was said; empty: none
   std::vector<std::string> notes;  ///< things a user should know

@@ -151,7 +151,11 @@ void add_output(CLI::App& app, SweepApproxOptions& o) {
          "along the path in a browser (.html)")
       ->check(preview_name())
       ->type_name("FILE");
-  app.add_option("--depfile", o.depfile, "Write a Makefile dependency rule")->type_name("FILE");
+  app.add_option(
+         "--depfile", o.depfile,
+         "Write a Makefile dependency rule; names that have no place in one are refused. If "
+         "FILE ends in .list: the inputs, each followed by a zero byte")
+      ->type_name("FILE");
 }
 
 std::vector<std::string> split(const std::string& list) {

@@ -3,7 +3,6 @@
 #include "verdict.h"
 
 #include <cmath>
-#include <cstdlib>
 #include <iomanip>
 #include <sstream>
 
@@ -12,31 +11,6 @@
 namespace kaboum::tools {
 
 using verify::Answer;
-
-std::string number(double x) {
-  std::ostringstream text;
-  text << std::setprecision(6) << x;
-  return text.str();
-}
-
-namespace {
-
-/// Moves x by steps smaller than what six digits resolve until its text is on the wanted side.
-std::string rounded(double x, bool up) {
-  const auto right = [&](const std::string& text) {
-    const double value = std::strtod(text.c_str(), nullptr);
-    return up ? value >= x : value <= x;
-  };
-  std::string text = number(x);
-  const double step = (up ? 1e-6 : -1e-6) * std::abs(x);
-  for (int i = 1; i < 20 && !right(text); ++i) text = number(x + i * step);
-  return text;
-}
-
-}  // namespace
-
-std::string number_down(double x) { return rounded(x, false); }
-std::string number_up(double x) { return rounded(x, true); }
 
 std::string in_words(const verify::Bracket& bracket) {
   std::string text;

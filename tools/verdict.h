@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/base/length.h>
+#include <kaboum/base/number_text.h>
 #include <kaboum/geom/mesh.h>
 #include <kaboum/verify/bracket.h>
 #include <kaboum/verify/claims.h>
@@ -13,12 +14,11 @@
 /// What the relations of bound-verify share in what they are asked, and in telling what they found.
 namespace kaboum::tools {
 
-/// Six digits.
-std::string number(double x);
+using kaboum::number_down;
+using kaboum::number_up;
 
-/// Six digits, not above (not below) the number.
-std::string number_down(double x);
-std::string number_up(double x);
+/// Six digits.
+inline std::string number(double x) { return number_text(x); }
 
 /// "at least X and at most Y", as far as they are known.
 std::string in_words(const verify::Bracket& bracket);

@@ -61,6 +61,7 @@ void add_mesh_command(CLI::App& app, VerifyOptions& o) {
   add_unit(*c, o);
   add_input_format(*c, o);
   add_approximation_format(*c, o, "APPROXIMATION");
+  add_exact_points(*c, o);
   add_limits(*c, o);
   add_common_options(*c, o.common);
 }
@@ -82,6 +83,7 @@ void add_cover_command(CLI::App& app, VerifyOptions& o) {
   add_unit(*c, o);
   add_input_format(*c, o);
   add_approximation_format(*c, o, "SET");
+  add_exact_points(*c, o);
   add_limits(*c, o);
   add_common_options(*c, o.common);
   c->preparse_callback([&o](std::size_t) { o.cover = true; });
@@ -94,14 +96,18 @@ void add_robot_command(CLI::App& app, VerifyOptions& o) {
       "hold those of the first.",
       "A mesh is held by the meshes of the same pose and scale in the same link, so that no "
       "rounding of poses matters; boxes, cylinders and spheres must be there again.\n\n"
-      "A result of bcd-decompose: bound-verify robot INPUT.urdf DIR/INPUT.urdf --prepare, with "
-      "--geometry visual where --visual was given: all its links at once.");
+      "One line says of each link whether every triangle of it is inside, or which are not, and by "
+      "how much.\n\n"
+      "A result of bcd-decompose or bmesh-decimate: bound-verify robot INPUT.urdf DIR/INPUT.urdf "
+      "--prepare, with --visual, --links, --drop-sheets and --package-path where these were given, "
+      "and --prepare=wrap where that was; their --html-report has the command.");
   add_file(*c, "ORIGINAL", o.original, "A robot (URDF)")->required();
   add_file(*c, "RESULT", o.approximation, "The robot whose shapes hold those of the first (URDF)")
       ->required();
   add_claims(*c, o, {"all", "solid", "surface"});
   add_epsilon(*c, o, kOfEachMesh);
   add_preparation(*c, o, "each mesh of ORIGINAL");
+  add_links(*c, o);
   add_limits(*c, o);
   add_geometry(*c, o, "ORIGINAL");
   add_common_options(*c, o.common);

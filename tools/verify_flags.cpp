@@ -47,9 +47,10 @@ void add_flags(CLI::App& app, VerifyOptions& o) {
   add_unit(app, o);
   add_input_format(app, o);
   add_approximation_format(app, o, "APPROXIMATION");
+  CLI::Option* exact = add_exact_points(app, o);
   add_limits(app, o);
-  for (CLI::Option* other : {epsilon, set}) other->excludes(sweep);
-  add_links(app, o)->needs(sweep);
+  for (CLI::Option* other : {epsilon, set, exact}) other->excludes(sweep);
+  add_links(app, o);
   add_geometry(app, o, "ORIGINAL");
   for (CLI::Option* option : add_motion(app, o)) option->needs(sweep);
   shorten(app);
@@ -68,20 +69,21 @@ void require_meaning(const CLI::App& app, const VerifyOptions& o) {
     return;
   }
   if (o.robot) {
-    require_absent(
-        app, "--robot",
-        {"--set", "--witness", "--input-format", "--approximation-format", "--unit", "--scale"});
+    require_absent(app, "--robot",
+                   {"--set", "--witness", "--input-format", "--approximation-format", "--unit",
+                    "--scale", "--exact-points"});
     return;
   }
   const char* relation = o.progressive ? "--progressive"
                          : o.cover     ? "--cover"
                          : o.inner     ? "--inner"
                                        : "--outer";
-  require_absent(app, relation, {"--geometry", "--visual", "--package-path"});
+  require_absent(app, relation, {"--geometry", "--visual", "--package-path", "--links"});
   if (o.progressive)
-    require_absent(app, "--progressive",
-                   {"--claims", "--epsilon", "--prepare", "--raw", "--drop-sheets", "--set",
-                    "--witness", "--approximation-format", "--max-contacts", "--max-work"});
+    require_absent(
+        app, "--progressive",
+        {"--claims", "--epsilon", "--prepare", "--raw", "--drop-sheets", "--set", "--witness",
+         "--approximation-format", "--max-contacts", "--max-work", "--exact-points"});
 }
 
 }  // namespace kaboum::tools

@@ -57,6 +57,12 @@ void set_bound(MeshCase& run, const Length& epsilon) {
   run.bound = bound;
 }
 
+std::optional<verify::PointQuestion> points_of(const MeshCase& run) {
+  const auto& exact = run.original.exact;
+  if (!exact) return std::nullopt;
+  return verify::PointQuestion{exact->points, exact->of_face, exact->rounding};
+}
+
 }  // namespace
 
 int verify_mesh(const VerifyMeshOptions& o, const CommonOptions& common) {
@@ -84,7 +90,8 @@ int verify_mesh(const VerifyMeshOptions& o, const CommonOptions& common) {
                                       run.bound,
                                       o.max_contacts,
                                       o.max_work,
-                                      [&](const std::string& what) { progress.show(what); }};
+                                      [&](const std::string& what) { progress.show(what); },
+                                      points_of(run)};
   run.verdict = verify::decide(question, [&](const verify::MeshVerdict& enclosure) {
     run.verdict = enclosure;
     say(lines_of_enclosure(run));  // at once: a distance may take long

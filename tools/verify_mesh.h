@@ -1,5 +1,6 @@
 #pragma once
 
+#include <kaboum/verify/exact_points.h>
 #include <kaboum/verify/mesh_verdict.h>
 
 #include <string>
@@ -20,6 +21,7 @@ struct VerifyMeshOptions {
   bool set = false;  ///< the approximation is a set, whatever the file looks like
   std::size_t max_contacts = verify::InclusionOptions{}.max_contacts;
   std::optional<double> max_work;
+  std::size_t exact_points = verify::kPointDensity;  ///< of CAD files; 0: triangles alone
 };
 
 /// Decides the claims, prints and reports them.

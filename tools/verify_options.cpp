@@ -1,11 +1,29 @@
 // The options of bound-verify, each defined once.
 #include "verify_options.h"
 
+#include <kaboum/base/error.h>
+
 #include <CLI/CLI.hpp>
+#include <sstream>
 
 #include "motion_options.h"
 
 namespace kaboum::tools {
+
+bool is_prepared(const VerifyOptions& o) {
+  if (o.prepare == "wrap")
+    throw Error(ErrorCode::InvalidArgument,
+                "--prepare=wrap is of robots; of a mesh, --raw judges every triangle");
+  return !o.prepare.empty();
+}
+
+std::vector<std::string> split_names(const std::string& list) {
+  std::vector<std::string> out;
+  std::istringstream stream(list);
+  for (std::string name; std::getline(stream, name, ',');)
+    if (!name.empty()) out.push_back(name);
+  return out;
+}
 
 void add_claims(CLI::App& app, VerifyOptions& o, const std::vector<std::string>& names) {
   app.add_option("--claims", o.claims,
@@ -24,11 +42,17 @@ CLI::Option* add_epsilon(CLI::App& app, VerifyOptions& o, const char* what) {
 
 /// @param what  is prepared: "ORIGINAL"
 void add_preparation(CLI::App& app, VerifyOptions& o, const std::string& what) {
-  app.add_flag("--prepare", o.prepare,
+  app.add_flag("--prepare{auto}", o.prepare,
                "Judge " + what +
                    " as bmesh-decimate and bcd-decompose prepare it (parts that are inside out "
-                   "turned, copies and walls dropped, holes filled) instead of the file as it is: "
-                   "what their claims, and a container's epsilon, are about");
+                   "turned, copies and walls dropped, holes filled, quads that are not plane split "
+                   "so that "
+                   "both ways are bounded) instead of the file as it is: "
+                   "what their claims, and a container's epsilon, are about. Of robots every "
+                   "triangle of the file is judged besides, and that alone, with all that closed "
+                   "meshes wind round, where preparing refuses a mesh; --prepare=wrap: of all "
+                   "meshes, as results of --prepare wrap promise")
+      ->check(CLI::IsMember({"auto", "wrap"}).description(""));
   app.add_flag("--drop-sheets", o.drop_sheets,
                "With --prepare: drop sheets (faces back to back without volume), as bmesh-decimate "
                "and bcd-decompose do with this option; nothing is then said about them, and the "
@@ -71,6 +95,17 @@ void add_limits(CLI::App& app, VerifyOptions& o) {
                  "the same on any machine [60, and 5 per 1000 triangles]")
       ->check(number_from(0.001, 1e9))
       ->type_name("SECONDS");
+}
+
+CLI::Option* add_exact_points(CLI::App& app, VerifyOptions& o) {
+  return app
+      .add_option("--exact-points", o.exact_points,
+                  "Of STEP and IGES: how densely points of the exact faces are looked at, which "
+                  "refute where they stick out; parts of each interval between knots of an edge, "
+                  "and of a face in each direction; 0: the triangles alone are judged")
+      ->check(CLI::Range(std::size_t{0}, std::size_t{10'000}).description(""))
+      ->capture_default_str()
+      ->type_name("N");
 }
 
 void add_unit(CLI::App& app, VerifyOptions& o) { add_unit_options(app, o.unit, "ORIGINAL"); }

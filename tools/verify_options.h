@@ -25,17 +25,27 @@ struct VerifyOptions {
   std::string original_format, approximation_format;
   UnitOption unit;  ///< of the original mesh
   std::string claims = "all", epsilon, witness;
-  bool prepare = false, drop_sheets = false, set = false;
+  std::string prepare;  ///< empty: not given
+  bool drop_sheets = false, set = false;
   std::size_t max_contacts = VerifyMeshOptions{}.max_contacts;
   std::optional<double> max_work;
+  std::size_t exact_points = VerifyMeshOptions{}.exact_points;
   std::string geometry = "collision";  ///< of robots and sweeps
   std::vector<std::string> packages;   ///< of robots and sweeps
-  std::string links, gap, base_pose;   ///< of sweeps, as all below
+  std::string links;                   ///< of robots and sweeps
+  std::string gap, base_pose;          ///< of sweeps, as all below
   std::vector<std::string> joints;
   bool degrees = false;
   std::size_t max_cells = VerifySweepOptions{}.max_cells;
   CommonOptions common;
 };
+
+/// Whether a mesh or the meshes of a motion are to be prepared.
+/// @throws Error{InvalidArgument} on --prepare=wrap, which is of robots
+bool is_prepared(const VerifyOptions& options);
+
+/// Names between commas.
+std::vector<std::string> split_names(const std::string& list);
 
 inline constexpr const char* kVerifyExitCodes =
     "Exit codes: 0 verified; 1 refuted; 2 usage; 3 bad input, or not closed where a claim needs "
@@ -54,6 +64,7 @@ void add_input_format(CLI::App& app, VerifyOptions& options);
 /// @param of  the file
 void add_approximation_format(CLI::App& app, VerifyOptions& options, const std::string& of);
 void add_limits(CLI::App& app, VerifyOptions& options);
+CLI::Option* add_exact_points(CLI::App& app, VerifyOptions& options);
 CLI::Option* add_links(CLI::App& app, VerifyOptions& options);
 /// --geometry, --visual and --package-path. @param of  the robot
 void add_geometry(CLI::App& app, VerifyOptions& options, const std::string& of);

@@ -1,23 +1,27 @@
-// `bound-verify robot`: goes through the links of two robots and says what holds what.
+// `bound-verify robot`: reads two robots, has them judged, prints and reports the verdict.
 #include "verify_robot.h"
 
 #include <kaboum/base/error.h>
 #include <kaboum/robot/robot_file.h>
-#include <kaboum/verify/motion_alike.h>
 
+#include <algorithm>
+#include <cmath>
 #include <iostream>
 
-#include "robot_judge.h"
+#include "notes.h"
+#include "prepared_original.h"
+#include "robot_meshes.h"
+#include "verdict.h"
 
 namespace kaboum::tools {
 namespace {
 
 using robot::Geometry;
 using verify::Answer;
-using verify::MatchedShapes;
 
-const char* name_of_shape(Geometry::Shape shape) {
-  switch (shape) {
+const char* name_of_shape(const verify::ShapeVerdict& shape) {
+  if (shape.bound) return "bodies";
+  switch (shape.shape) {
     case Geometry::Shape::Mesh:
       return "mesh";
     case Geometry::Shape::Box:
@@ -30,192 +34,232 @@ const char* name_of_shape(Geometry::Shape shape) {
   return "sphere";
 }
 
+/// Triangles are numbered as read, or as prepared; not all of many are listed.
+Json claim_json(const verify::Claim& claim) {
+  Json json{{"answer", name_of(claim.answer)}, {"reason", claim.reason}};
+  if (!claim.witness) return json;
+  constexpr std::size_t kMost = 100;
+  std::vector<std::uint32_t> triangles = claim.inner_triangles;
+  std::sort(triangles.begin(), triangles.end());
+  const std::size_t all = triangles.size();
+  triangles.resize(std::min(all, kMost));
+  const geom::Vec3& p = claim.witness->point;
+  json["witness"] = {{"point", {p.x(), p.y(), p.z()}},
+                     {"depth", claim.witness->depth},
+                     {"triangles_outside", all},
+                     {"triangles", triangles}};
+  return json;
+}
+
+Json shape_json(const verify::ShapeVerdict& s) {
+  Json json{{"shape", name_of_shape(s)}, {"answer", name_of(s.answer)}, {"text", s.text}};
+  if (s.file != nullptr) {
+    json["file"] = s.file->path;
+    json["sha256"] = s.file->sha256;
+    for (const verify::MeshFile* body : s.held_by)
+      json["held_by"].push_back({{"file", body->path}, {"sha256", body->sha256}});
+  }
+  if (s.convex) {
+    json["claims"]["convex"] = claim_json(*s.convex);
+    if (s.solid) json["claims"]["solid"] = claim_json(*s.solid);
+    if (s.triangles) json["claims"]["surface"] = claim_json(*s.triangles);
+    json["triangles_without_area"] = s.triangles_without_area;
+    json["limited"] = s.limited;
+    json["triangles_left_out"] = s.left_out;
+  }
+  if (s.sticks_out) {
+    json["sticks_out_lower"] = s.sticks_out->lower;
+    if (std::isfinite(s.sticks_out->upper)) json["sticks_out_upper"] = s.sticks_out->upper;
+  }
+  if (s.distance)
+    json["distance"] = {{"answer", name_of(s.distance->answer)},
+                        {"reason", s.distance->reason},
+                        {"bound", *s.bound},
+                        {"largest_found", s.distance->largest}};
+  return json;
+}
+
+Json link_json(const verify::LinkVerdict& link) {
+  Json json{{"link", link.link},
+            {"answer", name_of(link.answer)},
+            {"sentence", link.sentence},
+            {"shapes", Json::array()}};
+  for (const verify::ShapeVerdict& shape : link.shapes) json["shapes"].push_back(shape_json(shape));
+  return json;
+}
+
 class RobotVerifier {
  public:
   RobotVerifier(const VerifyRobotOptions& options, const CommonOptions& common)
       : o_(options),
         common_(common),
+        epsilon_(epsilon_of(o_.epsilon)),
         original_(robot::read_robot(o_.original)),
         result_(robot::read_robot(o_.result)),
         meshes_(o_.packages),
-        progress_(common.quiet),
-        judge_(o_, [this](const std::string& what) { show(what); }) {}
+        progress_(common.quiet) {}
 
   int run() {
-    read_meshes();
-    const std::string motion = verify::difference_in_motion(original_.robot, result_.robot);
+    robot::require_links(original_, o_.links);
+    const verify::RobotQuestion question = question_of();
+    read_meshes(question);
     find_bare_links();
-    say(motion.empty() ? "joints: verified: both robots move alike" : "joints: refuted: " + motion);
-    answer_ = motion.empty() ? Answer::Verified : Answer::Refuted;
-    for (const robot::Link& link : original_.robot.links) check(link);
-    if (judge_.measures()) look_for_strangers();
-    if (!common_.report.empty()) write_report(common_, "bound-verify", report(motion));
+    const verify::RobotVerdict verdict =
+        verify::decide(question, [&](const verify::LinkVerdict& link) {
+          say("link '" + link.link + "': " + name_of(link.answer) + ": " + link.sentence);
+        });
+    for (const auto& [link, count] : verdict.strangers)
+      say("link '" + link + "': undecided: how far " + std::to_string(count) +
+          (count == 1 ? " shape" : " shapes") +
+          " of the result that the original has no match for reach from it");
+    say(verdict.motion.empty() ? "joints: verified: both robots move alike"
+                               : "joints: refuted: " + verdict.motion);
+    take_notes(verdict);
+    if (!common_.report.empty()) write_report(common_, "bound-verify", report(verdict));
     progress_.show("");
-    add_note_on_records();
-    for (const std::string& note : judge_.notes.lines()) log(common_.quiet, "note: " + note);
-    const std::string open =
-        judge_.open() && answer_ == Answer::Verified ? ", as far as open meshes define it" : "";
-    say(name_of(answer_) + open + ": " +
-        robot::links_judged(links_.size(), original_.robot.links.size(), bare_) +
-        except_sheets(judge_.dropped()));
-    return exit_code(answer_);
+    for (const std::string& note : notes_.lines()) log(common_.quiet, "note: " + note);
+    const std::string open = verdict.open && verdict.answer == Answer::Verified
+                                 ? ", as far as open meshes define it"
+                                 : "";
+    say(name_of(verdict.answer) + open + ": " +
+        robot::links_judged(verdict.links.size(),
+                            o_.links.empty() ? original_.robot.links.size() : o_.links.size(),
+                            bare_) +
+        except_sheets(dropped_in(verdict)));
+    return exit_code(verdict.answer);
   }
 
  private:
   [[nodiscard]] bool visual() const { return o_.geometry == "visual"; }
 
-  /// Prints at once: what follows may take long.
-  void say(const std::string& line) {
-    if (common_.quiet) return;
-    progress_.show("");
-    std::ostream& out = common_.report == "-" ? std::cerr : std::cout;
-    out << line << std::endl;
+  verify::RobotQuestion question_of() {
+    verify::RobotQuestion q{
+        original_.robot, result_.robot,
+        [this](const Geometry& mesh, bool of_result) -> const auto& {return meshes_.file_of(
+                                                         mesh, of_result ? result_ : original_);
   }
-
-  void show(const std::string& what) {
-    progress_.show("link " + std::to_string(at_) + " of " +
-                   std::to_string(original_.robot.links.size()) + ": deciding: " + what);
-  }
-
-  /// What is drawn, but does not collide, is easily overlooked.
-  void find_bare_links() {
-    bare_ = robot::bare_links(original_.robot, visual());
-    if (visual()) bare_.other.clear();  // their shapes for collisions are judged
-    for (const std::string& note : robot::notes_on(bare_, visual(), ": nothing of this is judged"))
-      log(common_.quiet, "note: " + o_.original + ": " + note);
-    for (const std::string& note : robot::notes_on_flat_shapes(original_, visual()))
-      log(common_.quiet, "note: " + note);
-  }
-
-  /// Bodies of the other kind of shapes are easily taken.
-  void add_note_on_records() {
-    if (answer_ == Answer::Verified) return;
-    if (const std::string record = meshes_.record_of_other_kind(original_, visual());
-        !record.empty())
-      judge_.notes.add(record, std::string("these bodies were made of a ") +
-                                   (visual() ? "collision" : "visual") +
-                                   " mesh of the original: judge them with" +
-                                   (visual() ? "out --visual" : " --visual"));
-  }
-
-  /// Those to be held: for drawings, of links without, those for collisions, which
-  /// `bcd-decompose --visual` leaves as they are.
-  [[nodiscard]] const std::vector<Geometry>& shapes_of(const robot::Link& link) const {
-    return visual() && !link.visual.empty() ? link.visual : link.collision;
-  }
-  [[nodiscard]] const std::vector<Geometry>& result_of(const std::string& link) const {
-    static const std::vector<Geometry> kNone;
-    const auto index = result_.robot.find_link(link);
-    return index ? result_.robot.links[*index].collision : kNone;
-  }
-
-  /// Before anything is written, so that no mesh is written over.
-  void read_meshes() {
-    std::size_t shapes = 0;
-    std::vector<std::string> inputs{o_.original, o_.result};
-    const auto read_all = [&](const std::vector<Geometry>& of, const robot::RobotFile& robot) {
-      for (const Geometry& g : of)
-        if (g.shape == Geometry::Shape::Mesh) inputs.push_back(meshes_.file_of(g, robot).path);
-    };
-    for (const robot::Link& link : original_.robot.links) {
-      shapes += shapes_of(link).size();
-      read_all(shapes_of(link), original_);
-    }
-    for (const robot::Link& link : result_.robot.links) read_all(link.collision, result_);
-    if (shapes == 0)
-      throw Error(ErrorCode::InvalidInput, o_.original + ": no link has a shape" +
-                                               (visual() ? "" : "; try --geometry visual"));
-    require_apart({{"--report", common_.report}}, inputs);
-  }
-
-  void check(const robot::Link& link) {
-    ++at_;
-    const std::vector<Geometry>&shapes = shapes_of(link), &there = result_of(link.name);
-    if (shapes.empty()) return;
-    Json json{{"link", link.name}, {"shapes", Json::array()}};
-    for (const MatchedShapes& match : verify::match_shapes(shapes, there)) {
-      const Geometry& g = shapes[match.originals.front()];
-      if (g.shape == Geometry::Shape::Mesh)
-        add_meshes(json, link, match);
-      else
-        add(json, link, name_of_shape(g.shape), describe(g), finding_of(g, match));
-    }
-    links_.push_back(std::move(json));
-  }
-
-  void add_meshes(Json& json, const robot::Link& link, const MatchedShapes& match) {
-    const std::vector<Geometry>&shapes = shapes_of(link), &there = result_of(link.name);
-    MeshGroup group{{}, {}, shapes[match.originals.front()].size.cwiseAbs()};
-    for (const std::size_t i : match.originals)
-      group.originals.push_back(&meshes_.file_of(shapes[i], original_));
-    for (const std::size_t i : match.there)
-      group.bodies.push_back(&meshes_.file_of(there[i], result_));
-    const GroupFindings& found = judge_.judge(group);
-    for (std::size_t i = 0; i < group.originals.size(); ++i) {
-      const RobotMeshes::File& file = *group.originals[i];
-      Finding f = beside_others(found.originals[i], match);
-      f.json["file"] = file.path;
-      f.json["sha256"] = file.sha256;
-      for (const RobotMeshes::File* body : group.bodies)
-        f.json["held_by"].push_back({{"file", body->path}, {"sha256", body->sha256}});
-      add(json, link, "mesh", file.path, f);
-    }
-    if (found.distance) add(json, link, "bodies", "bodies", *found.distance);
-  }
-
-  void add(Json& json, const robot::Link& link, const std::string& shape, const std::string& title,
-           const Finding& f) {
-    answer_ = worse(answer_, f.answer);
-    say("link '" + link.name + "': " + title + ": " + name_of(f.answer) + ": " + f.text);
-    Json entry{{"shape", shape}, {"answer", name_of(f.answer)}, {"text", f.text}};
-    entry.update(f.json);
-    json["shapes"].push_back(std::move(entry));
-  }
-
-  /// Shapes of the result that stand for none of the original's: their distance is not judged.
-  void look_for_strangers() {
-    for (const robot::Link& link : result_.robot.links) {
-      const auto index = original_.robot.find_link(link.name);
-      const std::vector<Geometry> known =
-          index ? shapes_of(original_.robot.links[*index]) : std::vector<Geometry>{};
-      const std::size_t strangers = verify::count_strangers(known, link.collision);
-      if (strangers == 0) continue;
-      answer_ = worse(answer_, Answer::Undecided);
-      say("link '" + link.name + "': undecided: how far " + count(strangers, "shape", "shapes") +
-          " of the result that the original has no match for reach from it");
-    }
-  }
-
-  [[nodiscard]] Json report(const std::string& motion) const {
-    const auto file = [](const std::string& path, const robot::RobotFile& robot) {
-      return Json{{"file", path}, {"sha256", robot.sha256}};
-    };
-    return {{"relation", "robot"},
-            {"verdict", name_of(answer_)},
-            {"deciding_claims", o_.claims},
-            {"geometry", o_.geometry},
-            {"prepared", o_.prepare},
-            {"dropped_sheet_triangles", judge_.dropped()},
-            {"original", file(o_.original, original_)},
-            {"result", file(o_.result, result_)},
-            {"joints", {{"answer", motion.empty() ? "verified" : "refuted"}, {"reason", motion}}},
-            {"links", links_},
-            {"links_without_shapes", bare_.all()},
-            {"links_with_other_shapes_only", bare_.other},
-            {"notes", judge_.notes.lines()}};
-  }
-
-  const VerifyRobotOptions& o_;
-  const CommonOptions& common_;
-  robot::RobotFile original_, result_;
-  RobotMeshes meshes_;
-  Progress progress_;
-  RobotJudge judge_;
-  Answer answer_ = Answer::Verified;
-  robot::BareLinks bare_;
-  std::size_t at_ = 0;  // number of the link
-  Json links_ = Json::array();
 };
+q.visual = visual();
+q.links = o_.links;
+q.claims = claims_of(o_.claims);
+q.solid = o_.prepare == "auto"   ? verify::Solid::Prepared
+          : o_.prepare == "wrap" ? verify::Solid::Enclosed
+                                 : verify::Solid::AsFile;
+q.drop_sheets = o_.drop_sheets;
+q.epsilon = epsilon_;
+q.limits.max_contacts = o_.max_contacts;
+q.limits.max_work = o_.max_work;
+q.progress = [this](const std::string& what) { progress_.show("deciding: " + what); };
+return q;
+}  // namespace
+
+/// Prints at once: what follows may take long.
+void say(const std::string& line) {
+  if (common_.quiet) return;
+  progress_.show("");
+  std::ostream& out = common_.report == "-" ? std::cerr : std::cout;
+  out << line << std::endl;
+}
+
+/// What is drawn, but does not collide, is easily overlooked.
+void find_bare_links() {
+  bare_ = robot::bare_links(original_.robot, visual(), o_.links);
+  if (visual()) bare_.other.clear();  // their shapes for collisions are judged
+  for (const std::string& note : robot::notes_on(bare_, visual(), ": nothing of this is judged"))
+    log(common_.quiet, "note: " + o_.original + ": " + note);
+  for (const std::string& note : robot::notes_on_flat_shapes(original_, visual(), o_.links))
+    log(common_.quiet, "note: " + note);
+}
+
+void take_notes(const verify::RobotVerdict& verdict) {
+  for (const auto& [file, text] : verdict.notes) notes_.add(file, text);
+  if (o_.prepare.empty())
+    for (const verify::LinkVerdict& link : verdict.links)
+      for (const verify::ShapeVerdict& shape : link.shapes)
+        if (shape.file != nullptr) note_on_unprepared(shape);
+  if (verdict.answer == Answer::Verified) return;
+  // Bodies of the other kind of shapes are easily taken.
+  if (const std::string record = meshes_.record_of_other_kind(original_, visual()); !record.empty())
+    notes_.add(record, std::string("these bodies were made of a ") +
+                           (visual() ? "collision" : "visual") +
+                           " mesh of the original: judge them with" +
+                           (visual() ? "out --visual" : " --visual"));
+}
+
+void note_on_unprepared(const verify::ShapeVerdict& shape) {
+  if (const auto found = find_inside_out(shape.file->mesh); found && found->refusal.empty())
+    notes_.add(shape.file->path, text_of(*found));
+  if (shape.answer == Answer::Verified) return;
+  try {
+    if (!prepare_original(shape.file->mesh, false, true).report.notes.empty())
+      notes_.add(shape.file->path,
+                 "bcd-decompose speaks of the mesh as prepared; --prepare judges that");
+  } catch (const Error&) {  // NOLINT(bugprone-empty-catch): then it is not prepared either
+  }
+}
+
+/// Before anything is written, so that no mesh is written over.
+void read_meshes(const verify::RobotQuestion& question) {
+  std::size_t shapes = 0;
+  std::vector<std::string> inputs{o_.original, o_.result};
+  const auto read_all = [&](const std::vector<Geometry>& of, const robot::RobotFile& robot) {
+    for (const Geometry& g : of)
+      if (g.shape == Geometry::Shape::Mesh) inputs.push_back(meshes_.file_of(g, robot).path);
+  };
+  for (const robot::Link& link : original_.robot.links) {
+    if (!question.is_asked(link)) continue;
+    shapes += question.shapes_of(link).size();
+    read_all(question.shapes_of(link), original_);
+  }
+  for (const robot::Link& link : result_.robot.links)
+    if (question.is_asked(link)) read_all(link.collision, result_);
+  if (shapes == 0)
+    throw Error(ErrorCode::InvalidInput, o_.original + ": no link has a shape" +
+                                             (visual() ? "" : "; try --geometry visual"));
+  require_apart({{"--report", common_.report}}, inputs);
+}
+
+static DroppedSheets dropped_in(const verify::RobotVerdict& verdict) {
+  DroppedSheets out;
+  for (const verify::LinkVerdict& link : verdict.links)
+    for (const verify::ShapeVerdict& shape : link.shapes)
+      if (shape.dropped_sheets > 0) out[shape.name] = shape.dropped_sheets;
+  return out;
+}
+
+[[nodiscard]] Json report(const verify::RobotVerdict& verdict) const {
+  const auto file = [](const std::string& path, const robot::RobotFile& robot) {
+    return Json{{"file", path}, {"sha256", robot.sha256}};
+  };
+  Json links = Json::array();
+  for (const verify::LinkVerdict& link : verdict.links) links.push_back(link_json(link));
+  return {
+      {"relation", "robot"},
+      {"verdict", name_of(verdict.answer)},
+      {"deciding_claims", o_.claims},
+      {"geometry", o_.geometry},
+      {"prepared", !o_.prepare.empty()},
+      {"prepare", o_.prepare.empty() ? "off" : o_.prepare},
+      {"dropped_sheet_triangles", dropped_in(verdict)},
+      {"original", file(o_.original, original_)},
+      {"result", file(o_.result, result_)},
+      {"joints",
+       {{"answer", verdict.motion.empty() ? "verified" : "refuted"}, {"reason", verdict.motion}}},
+      {"links", std::move(links)},
+      {"links_without_shapes", bare_.all()},
+      {"links_with_other_shapes_only", bare_.other},
+      {"notes", notes_.lines()}};
+}
+
+const VerifyRobotOptions& o_;
+const CommonOptions& common_;
+std::optional<Length> epsilon_;
+robot::RobotFile original_, result_;
+RobotMeshes meshes_;
+Progress progress_;
+robot::BareLinks bare_;
+Notes notes_;
+};  // namespace kaboum::tools
 
 }  // namespace
 

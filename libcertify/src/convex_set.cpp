@@ -4,6 +4,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/bcd/inner.h>
 #include <kaboum/certify/convex_set.h>
+#include <kaboum/certify/mesh.h>
 #include <kaboum/geom/width.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/verify/cover.h>
@@ -13,6 +14,7 @@
 #include <limits>
 #include <utility>
 
+#include "given_solid.h"
 #include "issuer.h"
 #include "request.h"
 
@@ -184,8 +186,7 @@ class Search {
 };
 
 /// A wrap round the input, and what it leaves of epsilon to the search: `r` becomes that.
-std::optional<CertifiedWrap> wrapped(const geom::Mesh& mesh, SetRequest& r, const Hooks& hooks) {
-  if (!r.wrap) return std::nullopt;
+CertifiedWrap wrapped(const geom::Mesh& mesh, SetRequest& r, const Hooks& hooks) {
   if (r.direction != SetRequest::Direction::Outer)
     throw Error(ErrorCode::InvalidArgument,
                 "what lies in a wrap need not lie in the input: bodies inside it have none");
@@ -205,13 +206,22 @@ std::optional<CertifiedWrap> wrapped(const geom::Mesh& mesh, SetRequest& r, cons
   return made;
 }
 
+/// Why not every triangle of a mesh is in the bodies; empty: they are.
+std::string outside_of(const geom::ConvexSet& set, const geom::Mesh& mesh) {
+  verify::InclusionOptions options;
+  options.surface_only = true;
+  const verify::Claim claim = verify::verify_inclusion(mesh, verify::sum_of(set), options).surface;
+  return claim.answer == verify::Answer::Verified ? std::string() : claim.reason;
+}
+
 /// Adds how far a wrap is from the surface that it holds to what is certified of its cover.
-void count_wrap(const WrapCertificate& wrap, SetCertificate& c) {
+void count_wrap(const WrapCertificate& wrap, const std::string& why, SetCertificate& c) {
   c.wrap = wrap;
   c.subject.wrapped = true;
   c.distance_upper = (c.distance_upper + distance_of(wrap)) * kSumUp;
   c.diagonal = wrap.diagonal;
   c.notes.insert(c.notes.begin(), in_words(wrap));
+  if (!why.empty()) c.notes.insert(c.notes.begin(), why_wrapped(why));
 }
 
 SetCertificate certificate_of(const SetRequest& r, const geom::Prepared& prepared,
@@ -242,16 +252,26 @@ SetCertificate certificate_of(const SetRequest& r, const geom::Prepared& prepare
 
 }  // namespace
 
-std::optional<CertifiedSet> certify_set(const geom::Mesh& mesh, const std::string& sha256,
-                                        const SetRequest& request, const Hooks& hooks) {
+namespace {
+
+/// @param because  a wrap is needed for this reason; empty: as far as is known it is not
+std::optional<CertifiedSet> certify(const geom::Mesh& mesh, const std::string& sha256,
+                                    const SetRequest& request, const Hooks& hooks,
+                                    const std::string& because) {
   const auto note = [&](const std::string& text) {
     if (hooks.note) hooks.note(text);
   };
   const bool outer = request.direction == SetRequest::Direction::Outer;
   SetRequest asked = request;
-  const std::optional<CertifiedWrap> wrap = wrapped(mesh, asked, hooks);
+  // A flat sheet that is closed by its own fill has no volume.
+  const Prepare prepare = asked.wrap && asked.wrap->where_needed ? prepare_mesh : geom::prepare;
+  const GivenSolid given = give_solid(
+      mesh, prepare, asked.preparation, asked.wrap,
+      [&](const geom::Mesh& triangles) { return wrapped(triangles, asked, hooks); }, because);
+  const std::optional<CertifiedWrap>& wrap = given.wrap;
+  const geom::Prepared& prepared = given.prepared;
+  if (!given.why.empty()) note(why_wrapped(given.why));
   if (wrap) note(in_words(wrap->certificate()));
-  const geom::Prepared prepared = geom::prepare(wrap ? wrap->artefact() : mesh, asked.preparation);
   const geom::Mesh& solid = prepared.solid.mesh();
   const double diagonal = geom::bounding_box(solid).diagonal();
   for (const std::string& text : prepared.report.notes) note(text);
@@ -267,21 +287,41 @@ std::optional<CertifiedSet> certify_set(const geom::Mesh& mesh, const std::strin
     if (candidate.stop == bcd::Stop::TooCoarse) return std::nullopt;
     made.bodies = candidate.bodies;
     SetCertificate certificate = certificate_of(request, prepared, candidate, diagonal, safety);
-    if (wrap) count_wrap(wrap->certificate(), certificate);
+    if (wrap) count_wrap(wrap->certificate(), given.why, certificate);
     made.provenance.epsilon = certificate.distance_upper;
     std::vector<char> container = io::serialise_convex_set(made, io::SetFormat::Glb);
     // What is written is what is verified.
     if (hooks.progress) hooks.progress("verifying");
     geom::ConvexSet set = io::parse_convex_set(container, io::Format::Glb, "the result");
-    const Refutation found = refutation_of(request, solid, set);
+    Refutation found = refutation_of(request, solid, set);
+    if (found.reason.empty() && wrap && !given.wrapped.empty())
+      found.reason = outside_of(set, given.wrapped);
     wrong = found.reason;
-    if (wrong.empty())
+    if (wrong.empty()) {
+      // Segments, and walls of which the solid holds middle and corners.
+      if (outer && !wrap && !prepared.report.left_out.empty())
+        if (const std::string out = outside_of(set, mesh); !out.empty()) {
+          if (because.empty() && request.wrap && request.wrap->where_needed)
+            return certify(mesh, sha256, request, hooks,
+                           "walls, or triangles with repeated corners, would stick out");
+          throw Error(
+              ErrorCode::InvalidInput,
+              "walls, or triangles with repeated corners, stick out of the solid (" + out + ")");
+        }
       return Issuer::issue(std::move(set), std::move(certificate), std::move(container));
+    }
     note("the bodies found do not pass the exact check (" + wrong + "); trying " +
          search.other_means(found));
   }
   throw Error(ErrorCode::Internal,
               "no bodies were found that pass the exact check (" + wrong + "); nothing is written");
+}
+
+}  // namespace
+
+std::optional<CertifiedSet> certify_set(const geom::Mesh& mesh, const std::string& sha256,
+                                        const SetRequest& request, const Hooks& hooks) {
+  return certify(mesh, sha256, request, hooks, {});
 }
 
 }  // namespace kaboum::certify

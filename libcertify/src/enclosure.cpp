@@ -1,14 +1,17 @@
 // Enclosing meshes of triangles and of files: prepared or wrapped, simplified, certified, kept.
 
 #include <kaboum/base/error.h>
+#include <kaboum/base/number_text.h>
 #include <kaboum/base/sha256.h>
 #include <kaboum/certify/enclosure.h>
 #include <kaboum/certify/mesh_file.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "decisions.h"
 #include "enclosure_record.h"
+#include "given_solid.h"
 #include "issuer.h"
 #include "known_file.h"
 
@@ -21,7 +24,7 @@ namespace fs = std::filesystem;
 constexpr const char* kDecimation = "distance 3";
 
 // An entry's content is the certificate in one line, and the mesh's bytes.
-constexpr std::string_view kEnclosureEntry = "KABOUM-MESH 1";
+constexpr std::string_view kEnclosureEntry = "KABOUM-MESH 2";
 
 constexpr const char* kSpareNote =
     "float32 is too coarse for the mesh round it, which is written with the digits of doubles, in "
@@ -37,22 +40,53 @@ void require_one_outer(const MeshRequest& request) {
 }
 
 /// The solid that is enclosed. What a wrap takes of epsilon is not there for simplification.
-geom::Prepared solid_of(const geom::Mesh& mesh, const EnclosureRequest& request, MeshRequest& rest,
-                        EnclosureCertificate& made, const MeshHooks& hooks) {
-  if (!request.wrap) return prepare_mesh(mesh, request.preparation);
-  std::optional<double> epsilon;
-  if (rest.epsilon) epsilon = rest.epsilon->of(geom::bounding_box(mesh).diagonal());
-  WrapRequest wrap = *request.wrap;
-  if (epsilon) wrap.farthest = kShareOfWrap * *epsilon;
-  wrap.float32 = rest.numbers != MeshRequest::Numbers::Double;
-  wrap.progress = hooks.progress;
-  const CertifiedWrap wrapped = certify_wrap(mesh, wrap);
-  made.wrap = wrapped.certificate();
-  if (epsilon) rest.epsilon = Length{*epsilon - made.wrap->farthest_upper};
-  return prepare_mesh(wrapped.artefact(), request.preparation);
+GivenSolid solid_of(const geom::Mesh& mesh, const EnclosureRequest& request, MeshRequest& rest,
+                    const MeshHooks& hooks, const std::string& because) {
+  return give_solid(
+      mesh, prepare_mesh, request.preparation, request.wrap,
+      [&](const geom::Mesh& triangles) {
+        std::optional<double> epsilon;
+        if (rest.epsilon) epsilon = rest.epsilon->of(geom::bounding_box(mesh).diagonal());
+        WrapRequest wrap = *request.wrap;
+        if (epsilon) wrap.farthest = kShareOfWrap * (*epsilon - wrap.clearance);
+        if (wrap.farthest && !(*wrap.farthest > 0)) refuse_deviation(wrap.clearance);
+        wrap.float32 = rest.numbers != MeshRequest::Numbers::Double;
+        wrap.progress = hooks.progress;
+        CertifiedWrap made = certify_wrap(triangles, wrap);
+        const WrapCertificate& c = made.certificate();
+        if (epsilon) rest.epsilon = Length{*epsilon - c.clearance - c.farthest_upper};
+        return made;
+      },
+      because);
+}
+
+/// Whether every triangle is in the solid of a closed mesh.
+TrianglesInside look_at(const geom::Mesh& triangles, const geom::Mesh& result) {
+  verify::InclusionOptions options;
+  options.surface_only = true;
+  options.max_work = verify::usual_work(triangles.triangles.size() + result.triangles.size());
+  const verify::Inclusion found = verify::verify_inclusion(triangles, result, options);
+  TrianglesInside out{
+      found.surface.answer, found.surface.reason, found.surface.inner_triangles.size(), {}};
+  if (out.answer != verify::Answer::Refuted || found.left_out > 0 || found.limited) return out;
+  verify::BracketEffort effort;
+  effort.max_work = options.max_work.value();
+  const double upper =
+      verify::bracket_distance(triangles, found.surface.inner_triangles, result, true, effort)
+          .upper;
+  if (std::isfinite(upper)) out.farther = upper;
+  return out;
+}
+
+std::string in_words(const TrianglesInside& inside) {
+  if (inside.answer != verify::Answer::Refuted)
+    return "whether every triangle would be inside is not decided";
+  return std::to_string(inside.outside) + (inside.outside == 1 ? " triangle" : " triangles") +
+         " would stick out" + (inside.farther ? ", by up to " + number_up(*inside.farther) : "");
 }
 
 /// What the result depends on.
+/// @param mesh_hash  of the mesh and the file, whose quads count
 std::string key_of_enclosure(const std::string& mesh_hash, const EnclosureRequest& request) {
   return kaboum::sha256(
       std::string(kEnclosureEntry) + '\n' + mesh_hash + '\n' + request.parameters() + '\n' +
@@ -115,21 +149,24 @@ std::string EnclosureRequest::parameters() const {
   if (preparation.drop_sheets) add("--drop-sheets");
   if (preparation.keep_orientation) add("--keep-orientation");
   if (!wrap) return out;
-  add("--prepare wrap");
+  add(wrap->where_needed ? "wrapped where needed" : "--prepare wrap");
   if (wrap->offset) add("--offset " + wrap->offset->text());
   if (wrap->seal) add("--seal " + wrap->seal->text());
   add("clearance " + number(wrap->clearance));
   return out;
 }
 
-std::optional<CertifiedEnclosure> certify_enclosure(const geom::Mesh& mesh,
-                                                    const EnclosureRequest& request,
-                                                    const MeshHooks& hooks) {
-  require_one_outer(request.mesh);
+namespace {
+
+/// @param because  a wrap is needed for this reason; empty: as far as is known it is not
+std::optional<CertifiedEnclosure> certify(const geom::Mesh& mesh, const EnclosureRequest& request,
+                                          const MeshHooks& hooks, const std::string& because) {
   EnclosureCertificate made;
   MeshRequest rest = request.mesh;
   rest.measure = true;
-  const geom::Prepared solid = solid_of(mesh, request, rest, made, hooks);
+  const GivenSolid given = solid_of(mesh, request, rest, hooks, because);
+  const geom::Prepared& solid = given.prepared;
+  if (given.wrap) made.wrap = given.wrap->certificate();
   if (!solid.solid.closed())
     throw Error(ErrorCode::InvalidInput,
                 "the mesh is open, so it has no solid that a mesh could enclose; have its holes "
@@ -144,17 +181,19 @@ std::optional<CertifiedEnclosure> certify_enclosure(const geom::Mesh& mesh,
   if (!result) return std::nullopt;
   const MeshCertificate& c = result->certificate();
   made.vertices_in = c.statistics.vertices_in;
-  made.vertices = c.vertices;
-  made.triangles = result->artefact().triangles.size();
   made.diagonal = geom::bounding_box(solid.solid.mesh()).diagonal();
   made.epsilon = c.epsilon;
-  made.distance_upper = c.hausdorff_upper() + (made.wrap ? made.wrap->farthest_upper : 0);
+  made.distance_upper = c.hausdorff_upper();
+  if (made.wrap)
+    made.distance_upper =
+        (made.distance_upper + made.wrap->farthest_upper + made.wrap->clearance) * (1 + 0x1p-50);
   made.stop = c.stop;
   made.reached = c.reached();
   made.out_of_work = c.out_of_work;
   made.subject = c.subject;
   made.subject.wrapped = made.wrap.has_value();
   made.claims = claims(*result);
+  if (!given.why.empty()) made.notes.push_back(why_wrapped(given.why));
   if (made.wrap) made.notes.push_back(in_words(*made.wrap));
   made.notes.insert(made.notes.end(), solid.report.notes.begin(), solid.report.notes.end());
   // As the bytes are read: who finds it in the cache gets the same.
@@ -162,26 +201,53 @@ std::optional<CertifiedEnclosure> certify_enclosure(const geom::Mesh& mesh,
   geom::Mesh back = io::parse_mesh(bytes, rest.format, "the result").mesh;
   made.vertices = back.vertices.size();
   made.triangles = back.triangles.size();
+  if (hooks.progress) hooks.progress("verifying");
+  made.inside = look_at(request.preparation.drop_sheets ? solid.solid.mesh() : mesh, back);
   return Issuer::issue(std::move(back), std::move(made), std::move(bytes));
 }
 
+}  // namespace
+
+std::optional<CertifiedEnclosure> certify_enclosure(const geom::Mesh& mesh,
+                                                    const EnclosureRequest& request,
+                                                    const MeshHooks& hooks) {
+  require_one_outer(request.mesh);
+  std::optional<CertifiedEnclosure> made = certify(mesh, request, hooks, {});
+  const bool may_wrap = request.wrap && request.wrap->where_needed;
+  if (!made || !may_wrap || made->certificate().wrap ||
+      made->certificate().inside.answer == verify::Answer::Verified)
+    return made;
+  try {
+    if (auto wrapped = certify(mesh, request, hooks, in_words(made->certificate().inside)))
+      return wrapped;
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::InvalidInput && error.code() != ErrorCode::LimitReached) throw;
+  }
+  return made;
+}
+
 EnclosedFile enclose_file(const fs::path& file, std::optional<io::Format> format,
-                          const EnclosureRequest& request, const CacheFolder* cache,
+                          const EnclosureRequest& asked, const CacheFolder* cache,
                           const MeshHooks& hooks) {
-  if (cache != nullptr && file != "-") {
+  EnclosureRequest request = asked;
+  if (cache != nullptr && file != "-") {  // CAD files are never known
     const auto known = find_known(*cache, file, format, 1);
-    auto found = known
-                     ? find_enclosure(*cache, key_of_enclosure(known->mesh_hash, request), request)
-                     : std::nullopt;
+    auto found =
+        known ? find_enclosure(*cache, key_of_enclosure(known->mesh_hash + known->sha256, request),
+                               request)
+              : std::nullopt;
     if (found) return {known->sha256, known->notes, {}, std::move(*found), true};
   }
   std::vector<char> bytes;
   io::ReadResult read = io::read_mesh(file, format, &bytes);
   const std::string mesh_hash = SetCache::hash_of(read.mesh), sha256 = kaboum::sha256(bytes);
-  if (cache != nullptr && file != "-")
+  hold_exact_faces(read, request.hold_exact_faces, request.wrap);
+  if (cache != nullptr && file != "-" && !io::is_cad(read.format))
     store_known(*cache, file, format, 1, bytes.size(), sha256, mesh_hash, read);
+  request.preparation.quads = read.bent_quads;
+  request.preparation.diagonal = geom::PrepareOptions::Diagonal::Outward;
   EnclosedFile out{sha256, std::move(read.notes), std::move(read.other_files), {}, false};
-  const std::string key = key_of_enclosure(mesh_hash, request);
+  const std::string key = key_of_enclosure(mesh_hash + sha256, request);
   if (cache != nullptr) {
     if (auto found = find_enclosure(*cache, key, request)) {
       out.enclosure = std::move(*found);

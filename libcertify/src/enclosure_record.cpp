@@ -23,8 +23,7 @@ constexpr std::array kStopNames{std::pair{bmesh::Stop::VertexTarget, "vertices"}
 constexpr std::array kClaimKinds{
     MeshClaim::Kind::Solid,  MeshClaim::Kind::Winding,          MeshClaim::Kind::Surface,
     MeshClaim::Kind::Nested, MeshClaim::Kind::OriginalToResult, MeshClaim::Kind::ResultToOriginal};
-constexpr std::array kBases{Basis::Bytes, Basis::Meshes, Basis::Steps, Basis::Measured,
-                            Basis::Samples};
+constexpr std::array kBases{Basis::Bytes, Basis::Meshes, Basis::Steps, Basis::Measured};
 constexpr std::array kAnswers{Answer::Verified, Answer::Refuted, Answer::Undecided,
                               Answer::Undefined};
 
@@ -61,6 +60,10 @@ Json record_of(const EnclosureCertificate& c) {
   j["dropped_copies"] = c.subject.dropped_copies;
   j["dropped_sheets"] = c.subject.dropped_sheets;
   j["holes"] = c.subject.holes;
+  j["every_triangle_inside"] = {{"answer", name_of(c.inside.answer)},
+                                {"reason", c.inside.reason},
+                                {"outside", c.inside.outside}};
+  if (c.inside.farther) j["every_triangle_inside"]["sticks_out_upper"] = *c.inside.farther;
   j["claims"] = Json::array();
   for (const MeshClaim& claim : c.claims) j["claims"].push_back(record_of(claim));
   if (c.wrap) j["wrap"] = record_of(*c.wrap);
@@ -108,6 +111,12 @@ EnclosureCertificate read_enclosure(std::string_view text) {
     c.subject.dropped_copies = count_at(j, "dropped_copies");
     c.subject.dropped_sheets = count_at(j, "dropped_sheets");
     c.subject.holes = count_at(j, "holes");
+    const Json& inside = j.at("every_triangle_inside");
+    c.inside.answer = named(kAnswers, inside.at("answer").get<std::string>());
+    inside.at("reason").get_to(c.inside.reason);
+    c.inside.outside = count_at(inside, "outside");
+    if (inside.contains("sticks_out_upper"))
+      c.inside.farther = inside.at("sticks_out_upper").get<double>();
     for (const Json& claim : j.at("claims")) {
       MeshClaim& out = c.claims.emplace_back();
       out.kind = named(kClaimKinds, claim.at("claim").get<std::string>());

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 
 #include "issuer.h"
 #include "link_shapes.h"
@@ -42,6 +43,48 @@ CertifiedLinkMesh certify_link_mesh(const robot::LinkMesh& mesh,
   return {mesh, asked.wanted_epsilon(),
           certify_file(mesh.file, request.format, asked, cache, of_mesh)};
 }
+
+namespace {
+
+/// One body round a wrap, however far it is from the mesh.
+SetRequest loosest(SetRequest r) {
+  r.epsilon.reset();
+  r.max_total_vertices.reset();
+  r.max_bodies = 1;
+  r.wrap.emplace();
+  return r;
+}
+
+bool is_of_mesh(const Error& error) {
+  return error.code() == ErrorCode::InvalidInput || error.code() == ErrorCode::LimitReached;
+}
+
+/// As certify_link_mesh, but for what may be wrong with the mesh: RobotRequest::partial.
+CertifiedLinkMesh certify_somehow(const robot::LinkMesh& mesh, const std::optional<Length>& epsilon,
+                                  const RobotRequest& request, const SetCache* cache,
+                                  const RobotHooks& hooks, std::exception_ptr& first) {
+  std::string flaw;
+  try {
+    return certify_link_mesh(mesh, epsilon, request, cache, hooks);
+  } catch (const Error& error) {
+    if (!request.partial || !is_of_mesh(error)) throw;
+    flaw = error.what();
+    if (!first) first = std::current_exception();
+  }
+  CertifiedLinkMesh out{mesh, epsilon, {}, flaw, false};
+  if (!request.set.wrap) return out;
+  RobotRequest loose = request;
+  loose.set = loosest(loose.set);
+  try {
+    out.made = certify_link_mesh(mesh, {}, loose, cache, hooks).made;
+    out.held = true;
+  } catch (const Error& error) {
+    if (!is_of_mesh(error)) throw;
+  }
+  return out;
+}
+
+}  // namespace
 
 bool is_placed_exactly(const Geometry& g) {
   int exponent = 0;
@@ -104,6 +147,7 @@ double distance_of(const robot::RobotFile& robot, const BodiesCertificate& bodie
                    const robot::LinkShape& shape) {
   const Geometry& g = bodies.choice.shapes_of(robot.robot.links[shape.link])[shape.index];
   if (!shape.mesh) return robot::bounding_excess(g);
+  if (!bodies.meshes[*shape.mesh].held) return 0;  // the shape stays
   const geom::ConvexSet& set = bodies.meshes[*shape.mesh].made.found.set.artefact();
   return g.size.cwiseAbs().maxCoeff() * std::max(set.provenance.epsilon, 0.0);
 }
@@ -116,11 +160,13 @@ CertifiedBodies certify_bodies(const robot::RobotFile& robot, const RobotRequest
   BodiesCertificate out;
   std::vector<robot::LinkBody> bodies;
   out.choice = request.shapes;
+  std::exception_ptr first;  // of meshes that are not held as asked for
   const std::vector<std::optional<double>> work = work_of_meshes(found, request.set);
   for (std::size_t i = 0; i < found.meshes.size(); ++i) {
     RobotRequest own = request;
     own.set.improve_work = work[i];
-    out.meshes.push_back(certify_link_mesh(found.meshes[i], found.epsilons[i], own, cache, hooks));
+    out.meshes.push_back(
+        certify_somehow(found.meshes[i], found.epsilons[i], own, cache, hooks, first));
     const CertifiedFile& made = out.meshes.back().made;
     out.files.push_back(found.meshes[i].file);
     out.files.insert(out.files.end(), made.other_files.begin(), made.other_files.end());
@@ -130,11 +176,13 @@ CertifiedBodies certify_bodies(const robot::RobotFile& robot, const RobotRequest
   out.shapes = std::move(found.shapes);
   for (const robot::LinkShape& shape : out.shapes) {
     const robot::Link& link = robot.robot.links[shape.link];
+    if (shape.mesh && !out.meshes[*shape.mesh].held) continue;
     place_shape(request.shapes.shapes_of(link)[shape.index],
                 shape.mesh ? &out.meshes[*shape.mesh].made.found.set.artefact() : nullptr,
                 link.name, shape.link, bodies);
     out.distance = std::max(out.distance, distance_of(robot, out, shape));
   }
+  if (bodies.empty() && first) std::rethrow_exception(first);
   if (bodies.empty())
     throw Error(ErrorCode::InvalidInput,
                 robot.path.string() + ": no link has a shape" +

@@ -4,7 +4,9 @@
 #include <kaboum/base/parallel.h>
 #include <kaboum/certify/link_enclosures.h>
 
+#include <algorithm>
 #include <chrono>
+#include <exception>
 #include <mutex>
 
 namespace kaboum::certify {
@@ -37,6 +39,7 @@ LinkEnclosures enclose_links(const robot::RobotFile& robot, const LinkEnclosures
                     (request.shapes.visual ? std::string() : "; try --geometry visual"));
   LinkEnclosures out;
   out.meshes.resize(found.meshes.size());
+  std::vector<std::exception_ptr> flaws(found.meshes.size());
   std::mutex mutex;
   std::size_t done = 0;
   parallel_for(std::size_t{0}, found.meshes.size(),
@@ -46,7 +49,15 @@ LinkEnclosures enclose_links(const robot::RobotFile& robot, const LinkEnclosures
                  mesh.mesh = found.meshes[i];
                  const EnclosureRequest asked = request_of(request, mesh.mesh, found.epsilons[i]);
                  mesh.epsilon = asked.mesh.epsilon;
-                 mesh.made = enclose_file(mesh.mesh.file, request.format, asked, cache);
+                 try {
+                   mesh.made = enclose_file(mesh.mesh.file, request.format, asked, cache);
+                 } catch (const Error& error) {
+                   if (!request.partial || (error.code() != ErrorCode::InvalidInput &&
+                                            error.code() != ErrorCode::LimitReached))
+                     throw;
+                   mesh.flaw = error.what();
+                   flaws[i] = std::current_exception();
+                 }
                  mesh.seconds = now() - start;
                  if (!progress) return;
                  const std::lock_guard lock(mutex);
@@ -54,6 +65,8 @@ LinkEnclosures enclose_links(const robot::RobotFile& robot, const LinkEnclosures
                           " meshes enclosed");
                },
                {.alone = true});
+  if (std::ranges::all_of(flaws, [](const auto& flaw) { return flaw != nullptr; }))
+    std::rethrow_exception(flaws.front());
   for (const EnclosedLinkMesh& mesh : out.meshes) {
     out.files.push_back(mesh.mesh.file);
     out.files.insert(out.files.end(), mesh.made.other_files.begin(), mesh.made.other_files.end());

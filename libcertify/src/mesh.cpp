@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "given_solid.h"
 #include "mesh_certifier.h"
 #include "mesh_options.h"
 
@@ -32,10 +33,9 @@ std::vector<bmesh::DecimateResult> decimate(const geom::Prepared& original,
   return one;
 }
 
-}  // namespace
-
-MeshSeries certify_meshes(const geom::Prepared& original, const MeshRequest& request,
-                          const MeshHooks& hooks) {
+/// @param wrapped  the input, where the original is its wrap; else null
+MeshSeries certify(const geom::Prepared& original, const MeshRequest& request,
+                   const MeshHooks& hooks, const geom::Mesh* wrapped) {
   require_extent(original);
   MeshSeries series;
   series.plan = plan_mesh(original, request);
@@ -53,8 +53,127 @@ MeshSeries certify_meshes(const geom::Prepared& original, const MeshRequest& req
     if (!request.may_be_double()) return series;
   }
   series.meshes =
-      MeshCertifier(original, request, series.plan, hooks).certify(std::move(candidates));
+      MeshCertifier(original, request, series.plan, hooks, wrapped).certify(std::move(candidates));
   return series;
+}
+
+constexpr double kShareOfWrap = 0.6;  ///< of epsilon, for a wrap
+
+/// Bounds a wrap. What it takes of epsilon is not there for decimation.
+BoundedMesh bound_wrap(const geom::Mesh& input, const MeshRequest& request,
+                       const MeshPreparation& preparation, const MeshHooks& hooks) {
+  if (request.direction != bmesh::Direction::Outer)
+    throw Error(ErrorCode::InvalidArgument,
+                "what lies in a wrap need not lie in the input: only outer results");
+  if (request.record_steps)
+    throw Error(ErrorCode::InvalidArgument, "steps start from the input, not from a wrap round it");
+  MeshRequest rest = request;
+  WrapRequest asked = preparation.wrapping;
+  asked.farthest.reset();
+  std::optional<double> epsilon;
+  if (request.epsilon) {
+    epsilon = request.epsilon->of(geom::bounding_box(input).diagonal()) - asked.clearance;
+    if (!(*epsilon > 0))
+      throw Error(
+          ErrorCode::InvalidInput,
+          "the exact faces' deviation from the triangles leaves nothing of epsilon; allow a "
+          "larger epsilon");
+    asked.farthest = kShareOfWrap * *epsilon;
+  }
+  asked.float32 = request.numbers != MeshRequest::Numbers::Double;
+  asked.progress = hooks.progress;
+  const CertifiedWrap wrap = certify_wrap(input, asked);
+  BoundedMesh made;
+  made.wrap = wrap.certificate();
+  if (epsilon) rest.epsilon = Length{*epsilon - made.wrap->farthest_upper};
+  made.original = prepare_mesh(wrap.artefact());
+  if (hooks.prepared) hooks.prepared();
+  made.series = certify(made.original, rest, hooks, &input);
+  return made;
+}
+
+bool may_help(const Error& error) {
+  return error.code() == ErrorCode::InvalidInput || error.code() == ErrorCode::LimitReached;
+}
+
+}  // namespace
+
+verify::Answer BoundedMesh::surface_answer() const {
+  verify::Answer answer = verify::Answer::Verified;
+  if (series.meshes.empty()) return verify::Answer::Undefined;
+  for (const CertifiedMesh& made : series.meshes)
+    answer = verify::worse(answer, made.certificate().surface_answer());
+  return answer;
+}
+
+std::vector<std::string> notes_of(const BoundedMesh& made) {
+  std::vector<std::string> notes;
+  if (!made.wrap) {
+    notes = made.original.report.notes;
+    if (!made.why_not_wrapped.empty())
+      notes.push_back("the input is not wrapped, although some of its triangles need that: " +
+                      made.why_not_wrapped);
+    return notes;
+  }
+  if (!made.why_wrapped.empty()) notes.push_back("the input is wrapped: " + made.why_wrapped);
+  notes.push_back(in_words(*made.wrap));
+  return notes;
+}
+
+MeshSeries certify_meshes(const geom::Prepared& original, const MeshRequest& request,
+                          const MeshHooks& hooks) {
+  return certify(original, request, hooks, nullptr);
+}
+
+BoundedMesh bound_mesh(const geom::Mesh& input, const MeshRequest& request,
+                       const MeshPreparation& preparation, const MeshHooks& hooks) {
+  using Wrap = MeshPreparation::Wrap;
+  if (preparation.wrap == Wrap::Always)
+    return bound_wrap(with_other_diagonals(input, preparation.options), request, preparation,
+                      hooks);
+  const bool may_wrap =
+      preparation.wrap == Wrap::WhereNeeded && request.direction == bmesh::Direction::Outer &&
+      preparation.options.holes == geom::Holes::Fill && !preparation.options.keep_orientation;
+  BoundedMesh made;
+  std::string why;
+  try {
+    made.original = prepare_mesh(input, preparation.options);
+  } catch (const Error& error) {
+    if (!may_wrap || request.record_steps || preparation.options.drop_sheets ||
+        error.code() != ErrorCode::InvalidInput)
+      throw;
+    why = error.what();
+  }
+  if (why.empty()) {
+    if (hooks.prepared) hooks.prepared();
+    made.series = certify(made.original, request, hooks, nullptr);
+    const verify::Answer answer = made.surface_answer();
+    if (!may_wrap || answer == verify::Answer::Verified || answer == verify::Answer::Undefined)
+      return made;
+    if (request.record_steps) {
+      made.why_not_wrapped = "steps start from the input, not from a wrap round it";
+      return made;
+    }
+    why = answer == verify::Answer::Refuted
+              ? "some triangles of the input bound no solid, and would stick out of a result round "
+                "the rest"
+              : "whether all triangles of the input are enclosed without is not decided";
+  }
+  try {
+    BoundedMesh wrap = bound_wrap(
+        with_fillings(with_other_diagonals(input, preparation.options), made.original.solid),
+        request, preparation, hooks);
+    wrap.why_wrapped = why;
+    // Where float32 does not do for the wrap, the result without it stands.
+    if (!wrap.series.meshes.empty() || made.series.meshes.empty()) return wrap;
+    made.why_not_wrapped = "float32 is too coarse for it";
+  } catch (const Error& error) {
+    if (!may_help(error)) throw;
+    if (made.series.meshes.empty())
+      throw Error(ErrorCode::InvalidInput, why + ". Nor is it wrapped: " + error.what());
+    made.why_not_wrapped = error.what();
+  }
+  return made;
 }
 
 std::optional<CertifiedMesh> certify_mesh(const geom::Prepared& original,

@@ -11,16 +11,8 @@ using Kind = MeshClaim::Kind;
 using verify::Answer;
 
 MeshClaim surface_claim(const MeshCertificate& c) {
-  if (c.decided)
-    return {Kind::Surface, Basis::Bytes, c.surface->claim.answer, c.surface->claim.reason};
-  if (c.surface)
-    return {Kind::Surface, Basis::Meshes, c.surface->claim.answer, c.surface->claim.reason};
-  if (c.direction == bmesh::Direction::Inner && !c.keep_convex)
-    return {Kind::Surface, Basis::Steps, Answer::Undecided,
-            "it holds unless triangles of the original do not lie in its solid"};
-  return {Kind::Surface, Basis::Samples, Answer::Undecided,
-          "all of " + std::to_string(c.samples->faces) +
-              " triangles of the original looked at bound its solid"};
+  return {Kind::Surface, c.decided ? Basis::Bytes : Basis::Meshes, c.surface->claim.answer,
+          c.surface->claim.reason};
 }
 
 void add_distances(const MeshCertificate& c, std::vector<MeshClaim>& claims) {
@@ -60,11 +52,9 @@ const char* name_of(Basis basis) {
     case Basis::Steps:
       return "by exact tests of every step";
     case Basis::Measured:
-      return "measured";
-    case Basis::Samples:
       break;
   }
-  return "sampled";
+  return "measured";
 }
 
 const char* name_of(MeshClaim::Kind kind) {
@@ -89,6 +79,10 @@ double MeshCertificate::hausdorff_upper() const {
   return std::max(original_to_result->max_upper, result_to_original->max_upper);
 }
 
+verify::Answer MeshCertificate::surface_answer() const {
+  return surface ? surface->claim.answer : Answer::Undefined;
+}
+
 bool MeshCertificate::reached() const {
   return (stop != bmesh::Stop::Exhausted && stop != bmesh::Stop::OutOfWork) || !requested ||
          vertices <= *requested;
@@ -110,8 +104,7 @@ std::vector<MeshClaim> claims(const CertifiedMesh& mesh) {
     all.push_back({Kind::Nested, by_bytes ? Basis::Bytes : Basis::Steps,
                    by_bytes ? *c.decided->nested : Answer::Verified});
   }
-  const bool keeps_hull = c.direction == bmesh::Direction::Inner && c.keep_convex;
-  if (c.closed && (c.surface || !keeps_hull)) all.push_back(surface_claim(c));
+  if (c.surface) all.push_back(surface_claim(c));
   add_distances(c, all);
   return all;
 }

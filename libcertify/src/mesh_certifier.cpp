@@ -1,18 +1,17 @@
 // What makes a certificate of a candidate: its bytes, read back; distances; libverify's answers
-// about these bytes; and, where libverify is not asked about all, whether surfaces may stick out.
+// about these bytes; and whether all triangles are where they should be.
 
 #include "mesh_certifier.h"
 
 #include <kaboum/base/error.h>
 #include <kaboum/certify/mesh_bytes.h>
 #include <kaboum/verify/distance.h>
+#include <kaboum/verify/loose_triangles.h>
 
 #include <algorithm>
 #include <limits>
 
 #include "issuer.h"
-#include "mesh_surface.h"
-
 namespace kaboum::certify {
 namespace {
 
@@ -22,6 +21,12 @@ constexpr std::size_t kMaxPieces = std::size_t{1} << 20;
 constexpr double kRoom = 1e-3, kLeastBound = 1e-6;
 /// Vertices of the original that are looked at for being far from the result.
 constexpr std::size_t kOutlierSamples = 1000;
+
+/// Nothing of a wrap was turned, dropped or filled.
+bool is_as_it_was(const geom::PreparationReport& r) {
+  return r.reversed_triangles == 0 && r.collapsed_triangles == 0 && r.dropped_copies == 0 &&
+         r.cancelled_walls == 0 && r.dropped_sheets == 0 && r.holes == 0;
+}
 
 bool refuted(verify::Answer answer) { return answer == verify::Answer::Refuted; }
 
@@ -73,6 +78,7 @@ MeshCertifier::Candidate MeshCertifier::begin(bmesh::DecimateResult candidate, s
   c.keep_convex = request_.keep_convex;
   c.closed = original_.solid.closed();
   c.subject = subject_of(original_.report);
+  c.subject.wrapped = wrapped_ != nullptr;
   c.finer = place;
   if (!plan_.vertices.empty()) c.requested = plan_.vertices[place];
   c.vertices = candidate.mesh.vertices.size();
@@ -143,18 +149,59 @@ void MeshCertifier::decide(Candidate& made, const Candidate* before) const {
 void MeshCertifier::look_at_surface(Candidate& made, double work) {
   MeshCertificate& c = made.certificate;
   if (!original_.solid.closed() || request_.direction == bmesh::Direction::Any) return;
-  if (c.decided) {
-    c.surface =
-        DecidedSurface{c.decided->inclusion.surface, c.decided->inclusion.left_out, {}, false};
-  } else {
-    if (!samples_) samples_ = sample_surface(original_.solid.mesh());
-    c.samples = samples_;
-    if (samples_->outside == 0 && !samples_->cut_short) return;
-    c.surface = decide_surface(original_, made.mesh, outer(), work);
+  if (wrapped_ != nullptr) {
+    // The wrap's solid holds them, and the result's the wrap's: decided, and certified by the
+    // steps.
+    c.surface.emplace().claim.answer = verify::Answer::Verified;
+    if (c.decided) c.surface = decided_surface(made);
+    ensure(!refuted(c.surface_answer()),
+           "the verification refutes that the result of a wrap holds the input's triangles");
+    return;
   }
+  const geom::Mesh& from = outer() ? claimed_.mesh() : made.mesh;
+  const geom::Mesh& to = outer() ? made.mesh : original_.solid.mesh();
+  if (c.decided)
+    c.surface = decided_surface(made);
+  else
+    c.surface = decide_surface(
+        from, outer() ? claimed_.loose() : verify::find_loose_triangles(made.mesh), to, work);
   const bool all = c.surface->left_out == 0 && !(c.decided && c.decided->inclusion.limited);
-  if (refuted(c.surface->claim.answer) && all)
-    measure_sticking_out(original_, made.mesh, outer(), work, *c.surface);
+  if (!refuted(c.surface_answer()) || !all) return;
+  measure_sticking_out(from, to, work, *c.surface);
+  if (!outer()) return;
+  std::uint32_t& triangle = c.surface->sticks_out.triangle;
+  triangle = claimed_.source(triangle);
+  c.surface->at_filling = triangle == ClaimedSurface::kFill;
+}
+
+/// As decided from the bytes; walls, and what is in a wrap, are no part of that.
+DecidedSurface MeshCertifier::decided_surface(const Candidate& made) {
+  const double unlimited = std::numeric_limits<double>::infinity();
+  DecidedSurface out;
+  const auto decide_others = [&](const geom::Mesh& mesh, std::size_t first) {
+    show("verifying: the input's triangles");
+    std::vector<std::uint32_t> triangles;
+    for (std::size_t t = first; t < mesh.triangles.size(); ++t)
+      triangles.push_back(static_cast<std::uint32_t>(t));
+    const io::ReadResult back = io::parse_mesh(made.bytes, request_.format, "the result");
+    return decide_surface(mesh, triangles, back.mesh, unlimited);
+  };
+  if (wrapped_ != nullptr) return decide_others(*wrapped_, 0);
+  const verify::Inclusion& inclusion = made.certificate.decided->inclusion;
+  out.claim = inclusion.surface;
+  out.left_out = inclusion.left_out;
+  out.looked_at = outer() ? claimed_.mesh().triangles.size() : made.mesh.triangles.size();
+  if (!outer() || original_.report.left_out.empty()) return out;
+  const DecidedSurface walls =
+      decide_others(claimed_.mesh(), original_.solid.mesh().triangles.size());
+  if (walls.claim.answer == verify::Answer::Verified) return out;
+  if (!refuted(out.claim.answer)) out.claim.reason = walls.claim.reason;
+  out.claim.answer = verify::worse(out.claim.answer, walls.claim.answer);
+  out.claim.inner_triangles.insert(out.claim.inner_triangles.end(),
+                                   walls.claim.inner_triangles.begin(),
+                                   walls.claim.inner_triangles.end());
+  out.left_out += walls.left_out;
+  return out;
 }
 
 /// Without epsilon nothing keeps vertices near the original: few of them mean spikes, or inwards

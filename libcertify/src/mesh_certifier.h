@@ -5,6 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "mesh_surface.h"
+
 // From candidates to certified meshes. Internal to kaboum_certify.
 namespace kaboum::certify {
 
@@ -16,9 +18,15 @@ void require_extent(const geom::Prepared& original);
 class MeshCertifier {
  public:
   /// All are referred to.
+  /// @param wrapped  the input, where the original is a wrap whose solid holds all of its triangles
   MeshCertifier(const geom::Prepared& original, const MeshRequest& request, const MeshPlan& plan,
-                const MeshHooks& hooks)
-      : original_(original), request_(request), plan_(plan), hooks_(hooks) {}
+                const MeshHooks& hooks, const geom::Mesh* wrapped = nullptr)
+      : original_(original),
+        request_(request),
+        plan_(plan),
+        hooks_(hooks),
+        wrapped_(wrapped),
+        claimed_(original) {}
 
   /// @param candidates  one for each number of vertices asked for, or one
   /// @throws Error{Internal} when a claim is refuted, or the bytes do not hold the mesh.
@@ -37,6 +45,7 @@ class MeshCertifier {
   void measure(Candidate& made) const;
   void decide(Candidate& made, const Candidate* before) const;
   void look_at_surface(Candidate& made, double work);
+  [[nodiscard]] DecidedSurface decided_surface(const Candidate& made);
   [[nodiscard]] Outliers outliers(const geom::Mesh& result) const;
 
   void show(const std::string& stage) const {
@@ -48,7 +57,8 @@ class MeshCertifier {
   const MeshRequest& request_;
   const MeshPlan& plan_;
   const MeshHooks& hooks_;
-  std::optional<SurfaceSamples> samples_;
+  const geom::Mesh* wrapped_;
+  ClaimedSurface claimed_;
   std::size_t steps_ = 0;  // of the candidates begun
 };
 

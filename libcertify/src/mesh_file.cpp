@@ -2,7 +2,6 @@
 
 #include <kaboum/base/sha256.h>
 #include <kaboum/certify/mesh_file.h>
-#include <kaboum/io/cad.h>
 #include <kaboum/io/file_unit.h>
 
 #include "known_file.h"
@@ -15,19 +14,11 @@ namespace fs = std::filesystem;
 /// The triangles of a file; those of a CAD file stand for its exact faces, which a wrap holds.
 io::ReadResult read_triangles(const fs::path& file, std::optional<io::Format> format,
                               std::vector<char>& bytes, SetRequest& request) {
-  const std::string name = file == "-" ? "standard input" : file.string();
-  if (format || !io::is_cad_file(file)) {
-    io::ReadResult read = io::read_mesh(file, format, &bytes);
-    io::scale(read, request.scale, name);
-    return read;
-  }
-  io::CadResult cad = io::read_cad(file, &bytes);
-  io::scale(cad.read, request.scale, name);
-  if (request.wrap)
-    request.wrap->clearance = request.scale == 1
-                                  ? cad.deviation
-                                  : io::scaled_bound(cad.deviation, request.scale, cad.read.mesh);
-  return std::move(cad.read);
+  io::ReadResult read = io::read_mesh(file, format, &bytes);
+  io::scale(read, request.scale, file == "-" ? "standard input" : file.string());
+  const bool outer = request.direction == SetRequest::Direction::Outer;
+  hold_exact_faces(read, outer && request.hold_exact_faces, request.wrap);
+  return read;
 }
 
 /// What the file is known to say of itself takes the place of what was asked for.
@@ -45,11 +36,16 @@ void say(const std::vector<std::string>& notes, const Hooks& hooks) {
   for (const std::string& text : notes) hooks.note(text);
 }
 
+bool has_exact_faces(const fs::path& file, std::optional<io::Format> format) {
+  if (!format) format = io::format_from_name(file.extension().string());
+  return format && io::is_cad(*format);
+}
+
 /// The result of an earlier run, where the file has the bytes that it had then.
 std::optional<CertifiedFile> find_file(const fs::path& file, std::optional<io::Format> format,
                                        const SetRequest& request, const SetCache& cache,
                                        const Hooks& hooks) {
-  if (file == "-" || (!format && io::is_cad_file(file))) return std::nullopt;
+  if (file == "-" || has_exact_faces(file, format)) return std::nullopt;
   const std::optional<KnownFile> known =
       find_known(CacheFolder(cache.folder()), file, format, request.scale);
   if (!known) return std::nullopt;
@@ -79,8 +75,12 @@ CertifiedFile certify_file(const fs::path& file, std::optional<io::Format> forma
   io::ReadResult read = read_triangles(file, format, bytes, request);
   say(read.notes, hooks);
   request = with_unit(std::move(request), read.unit, hooks);
+  request.preparation.quads = read.bent_quads;
+  request.preparation.diagonal = request.direction == SetRequest::Direction::Outer
+                                     ? geom::PrepareOptions::Diagonal::Outward
+                                     : geom::PrepareOptions::Diagonal::Inward;
   const std::string sha256 = kaboum::sha256(bytes);
-  if (cache != nullptr && file != "-")
+  if (cache != nullptr && file != "-" && !io::is_cad(read.format))
     store_known(CacheFolder(cache->folder()), file, format, request.scale, bytes.size(), sha256,
                 SetCache::hash_of(read.mesh), read);
   auto found = [&] {

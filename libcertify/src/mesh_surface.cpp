@@ -1,60 +1,48 @@
-// Whether triangles stick out of the solid that encloses what they bound. The solid claim is
-// certified by the steps; the surface claim fails only where faces bound no solid (folds,
-// inside-out parts). So faces of the original are sampled, and where some bound none, libverify
-// decides.
+// Whether triangles stick out of the solid that is to hold them. The solid claim is certified by
+// the steps; the surface claim fails only where triangles bound no solid (folds, inside-out parts,
+// walls that reach out). libverify finds those that may, and decides each.
 
 #include "mesh_surface.h"
 
-#include <kaboum/geom/winding.h>
+#include <kaboum/geom/topology.h>
+#include <kaboum/verify/loose_triangles.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace kaboum::certify {
 namespace {
 
 /// Of what is allowed for the surface of one result, for how far its triangles stick out.
 constexpr double kDepthShare = 0.3;
-/// Distance inwards at which a face's inner side is looked at, in diagonals of the box.
-constexpr double kInwards = 1e-9;
 
 }  // namespace
 
-SurfaceSamples sample_surface(const geom::Mesh& mesh) {
-  constexpr std::size_t kMost = 20000, kRounds = 16, kEnough = 1000, kMostCrossings = 400'000;
-  const geom::WindingNumber winding(mesh);
-  const double diagonal = geom::bounding_box(mesh).diagonal();
-  const std::size_t step = mesh.triangles.size() / kMost + 1;
-  SurfaceSamples samples;
-  std::size_t crossings = 0;
-  const auto look_at = [&](const geom::Triangle& tri) {
-    const geom::Vec3 &a = mesh.vertices[tri[0]], &b = mesh.vertices[tri[1]],
-                     &c = mesh.vertices[tri[2]];
-    const geom::Vec3 n = (b - a).cross(c - a);
-    if (!(n.norm() > 0)) return;
-    int w = 0;
-    bool touches = false;
-    winding.crossings((a + b + c) / 3.0 - n * (kInwards * diagonal / n.norm()),
-                      [&](std::uint32_t, int sign) {
-                        ++crossings;
-                        w += sign;
-                        touches = touches || sign == 0;
-                      });
-    if (touches) return;
-    ++samples.faces;
-    samples.outside += w < 1;
-  };
-  for (std::size_t round = 0; round < kRounds; ++round) {
-    for (std::size_t t = round * step; t < mesh.triangles.size(); t += kRounds * step) {
-      if (crossings > kMostCrossings) {
-        samples.cut_short = true;
-        return samples;
-      }
-      look_at(mesh.triangles[t]);
-    }
-    if (samples.outside > 0 && samples.faces >= kEnough) break;
+ClaimedSurface::ClaimedSurface(const geom::Prepared& original) : original_(original) {
+  if (original.report.left_out.empty()) return;
+  with_walls_ = original.solid.mesh();
+  for (const geom::LeftOut& wall : original.report.left_out) {
+    const auto n = static_cast<std::uint32_t>(with_walls_.vertices.size());
+    with_walls_.vertices.insert(with_walls_.vertices.end(), wall.corners.begin(),
+                                wall.corners.end());
+    with_walls_.triangles.push_back({n, n + 1, n + 2});
   }
-  return samples;
+}
+
+const std::vector<std::uint32_t>& ClaimedSurface::loose() {
+  if (looked_) return loose_;
+  looked_ = true;
+  loose_ = verify::find_loose_triangles(original_.solid.mesh());
+  const auto walls = static_cast<std::uint32_t>(original_.solid.mesh().triangles.size());
+  for (std::uint32_t i = 0; i < original_.report.left_out.size(); ++i) loose_.push_back(walls + i);
+  return loose_;
+}
+
+std::uint32_t ClaimedSurface::source(std::uint32_t t) const {
+  const std::size_t triangles = original_.solid.mesh().triangles.size();
+  if (t >= triangles) return original_.report.left_out[t - triangles].source;
+  return t < original_.report.source.size() ? original_.report.source[t] : kFill;
 }
 
 double work_for_surface(double allowed, double done, std::size_t results) {
@@ -64,27 +52,33 @@ double work_for_surface(double allowed, double done, std::size_t results) {
          static_cast<double>(results);
 }
 
-DecidedSurface decide_surface(const geom::Prepared& original, const geom::Mesh& result, bool outer,
-                              double work) {
+DecidedSurface decide_surface(const geom::Mesh& from, const std::vector<std::uint32_t>& triangles,
+                              const geom::Mesh& to, double work) {
+  DecidedSurface out;
+  out.looked_at = triangles.size();
+  out.claim.answer = verify::Answer::Verified;
+  if (triangles.empty()) return out;
+  geom::Mesh part;
+  part.vertices = from.vertices;
+  part.triangles.reserve(triangles.size());
+  for (const std::uint32_t t : triangles) part.triangles.push_back(from.triangles[t]);
+  if (triangles.size() < from.triangles.size()) part = geom::weld(part);
   verify::InclusionOptions options;
   options.surface_only = true;
   options.max_work = (1 - kDepthShare) * work;
-  const verify::Inclusion found = verify::verify_inclusion(
-      outer ? original.solid.mesh() : result, outer ? result : original.solid.mesh(), options);
-  return {found.surface, found.left_out, {}, false};
+  const verify::Inclusion found = verify::verify_inclusion(part, to, options);
+  out.claim = found.surface;
+  out.left_out = found.left_out;
+  for (std::uint32_t& t : out.claim.inner_triangles) t = triangles[t];
+  return out;
 }
 
-void measure_sticking_out(const geom::Prepared& original, const geom::Mesh& result, bool outer,
-                          double work, DecidedSurface& surface) {
-  const geom::Mesh &from = outer ? original.solid.mesh() : result,
-                   &to = outer ? result : original.solid.mesh();
+void measure_sticking_out(const geom::Mesh& from, const geom::Mesh& to, double work,
+                          DecidedSurface& surface) {
   verify::BracketEffort effort;
   effort.max_work = kDepthShare * work;
   surface.sticks_out =
       verify::bracket_distance(from, surface.claim.inner_triangles, to, true, effort);
-  std::uint32_t& triangle = surface.sticks_out.triangle;
-  surface.at_filling = outer && triangle >= original.report.source.size();
-  if (outer && !surface.at_filling) triangle = original.report.source[triangle];
 }
 
 }  // namespace kaboum::certify

@@ -77,7 +77,7 @@ std::string SetRequest::parameters() const {
   if (preparation.drop_sheets) add("--drop-sheets");
   if (preparation.holes == geom::Holes::Refuse) add("--holes refuse");
   if (preparation.keep_orientation) add("--keep-orientation");
-  if (wrap) add("--prepare wrap");
+  if (wrap && !wrap->where_needed) add("--prepare wrap");
   if (wrap && wrap->offset) add("--offset " + wrap->offset->text());
   if (wrap && wrap->seal) add("--seal " + wrap->seal->text());
   return out;

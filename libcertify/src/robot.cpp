@@ -70,6 +70,10 @@ CertifiedRobot certify_robot(const robot::RobotFile& robot, const RobotRequest& 
       links.push_back({{shape.link, 0, 0}, origin_of(robot, request, shape.link)});
     auto& [link, p] = links.back();
     ++link.shapes;
+    if (shape.mesh && !made.meshes[*shape.mesh].held) {
+      ++link.kept;
+      continue;
+    }
     link.distance = std::max(link.distance, distance_of(robot, made, shape));
     if (!shape.mesh) continue;
     const geom::Provenance& claims = made.meshes[*shape.mesh].made.found.set.artefact().provenance;
@@ -79,6 +83,7 @@ CertifiedRobot certify_robot(const robot::RobotFile& robot, const RobotRequest& 
   std::optional<CacheFolder> folder;
   if (cache != nullptr) folder.emplace(cache->folder());
   for (const auto& [link, claims] : links) {
+    if (link.kept > 0) continue;  // a set without a shape of it would be no set of the link
     std::vector<robot::LinkBody> bodies;
     for (const robot::LinkBody& body : out.bodies.artefact())
       if (body.link == link.link) bodies.push_back(body);

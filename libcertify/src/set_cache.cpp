@@ -42,7 +42,7 @@ CertifiedSet read_entry(std::string_view rest, const SetCache::Key& key) {
   expected.epsilon = set.provenance.epsilon;
   expected.covers_solid = outer && certificate.subject.holes == 0;
   expected.covers_surface = outer && certificate.subject.dropped_sheets == 0;
-  if (certificate.wrap.has_value() != key.clearance.has_value() ||
+  if ((certificate.wrap ? !key.clearance : key.clearance && !key.may_be_unwrapped) ||
       (certificate.wrap && certificate.wrap->clearance != *key.clearance) ||
       certificate.distance_upper != set.provenance.epsilon)
     fail("it claims another wrap, or another distance than its container");
@@ -79,9 +79,10 @@ SetCache::Key SetCache::key_of(const std::string& mesh_hash, const std::string& 
   const std::string text =
       mesh_hash + '\n' + std::to_string(std::bit_cast<std::uint64_t>(clearance)) + '\n' + sha256 +
       '\n' + r.parameters() + '\n' + r.unit + '\n' + r.frame + '\n' + r.source + '\n' +
-      KABOUM_VERSION + '\n' + kAlgorithm + '\n' + kContainer + '\n' + kDecisions;
+      (r.wrap && r.wrap->where_needed ? "wrapped where needed\n" : "") + KABOUM_VERSION + '\n' +
+      kAlgorithm + '\n' + kContainer + '\n' + kDecisions;
   return {kaboum::sha256(text), origin_of(r, sha256),
-          r.wrap ? std::optional(clearance) : std::nullopt};
+          r.wrap ? std::optional(clearance) : std::nullopt, r.wrap && r.wrap->where_needed};
 }
 
 std::optional<CertifiedSet> SetCache::find(const Key& key, std::string& flaw) const {

@@ -1,6 +1,7 @@
 // Wraps: made, measured, and decided by libverify.
 #include <kaboum/certify/wrap.h>
 #include <kaboum/geom/distance.h>
+#include <kaboum/geom/moderate.h>
 #include <kaboum/verify/inclusion.h>
 #include <kaboum/wrap/wrap.h>
 
@@ -15,8 +16,9 @@ namespace kaboum::certify {
 namespace {
 
 constexpr Length kOffset{0.1, true}, kSeal{1, true};
-constexpr double kOffsetShare = 0.25;  ///< of the farthest that is allowed
-constexpr int kTries = 4;              ///< of gaps to seal, each half of the one before
+constexpr double kLeast = 1e-9, kMost = 100;  ///< of lengths asked for, in diagonals
+constexpr double kOffsetShare = 0.25;         ///< of the farthest that is allowed
+constexpr int kTries = 4;                     ///< of gaps to seal, each half of the one before
 
 std::string number(double x) {
   std::array<char, 32> text{};
@@ -49,6 +51,20 @@ void decide(const geom::Mesh& input, const geom::Mesh& wrap, const WrapRequest& 
 }
 
 }  // namespace
+
+void hold_exact_faces(const io::ReadResult& read, bool hold, std::optional<WrapRequest>& wrap) {
+  if (!io::is_cad(read.format)) return;
+  if (hold && !wrap) wrap.emplace();
+  if (hold) wrap->where_needed = false;
+  if (wrap) wrap->clearance = read.deviation;
+}
+
+void refuse_deviation(double clearance) {
+  throw Error(ErrorCode::InvalidInput,
+              "the exact faces may be " + number(clearance) +
+                  " from the triangles that stand for them, which leaves nothing of epsilon; allow "
+                  "more, or make what is claimed one about the triangles (--prepare strict)");
+}
 
 std::string in_words(const WrapCertificate& wrap) {
   return "The solid is that of a wrap round all " + std::to_string(wrap.input_triangles) +
@@ -91,6 +107,7 @@ CertifiedWrap certify_wrap(const geom::Mesh& input, const WrapRequest& request) 
   if (input.triangles.empty())
     throw Error(ErrorCode::InvalidInput, "there are no triangles to wrap");
   geom::require_valid(input);
+  geom::require_moderate(input);
   WrapCertificate made;
   made.input_triangles = input.triangles.size();
   made.diagonal = geom::bounding_box(input).diagonal();
@@ -103,6 +120,14 @@ CertifiedWrap certify_wrap(const geom::Mesh& input, const WrapRequest& request) 
   made.seal = request.seal       ? request.seal->of(made.diagonal)
               : request.farthest ? *request.farthest
                                  : kSeal.of(made.diagonal);
+  for (const auto& [length, name] : {std::pair{made.offset, "offset"},
+                                     {made.seal, "seal"},
+                                     {request.farthest.value_or(made.offset), "epsilon"}})
+    if (!(length >= kLeast * made.diagonal && length <= kMost * made.diagonal))
+      throw Error(ErrorCode::InvalidArgument, std::string(name) + ": " + number(length) +
+                                                  " is not from " + number(kLeast) + " to " +
+                                                  number(kMost) + " times the diagonal, which is " +
+                                                  number(made.diagonal));
   made.clearance = request.clearance;
   if (made.offset < 3 * made.clearance) {
     if (request.offset)

@@ -72,6 +72,7 @@ void Simulation::carry_out(const plan::RunStep& step) {
   ++report_.steps;
   judge::CellState state = before->state;
   mounted_ = before->mounted;
+  carried_.clear();
   if (report_.steps == 1) {
     if (const auto meeting = cell_.find_meeting(state)) {
       ++report_.collisions;
@@ -83,6 +84,12 @@ void Simulation::carry_out(const plan::RunStep& step) {
          parts_of(call.payload, world_, "node " + std::to_string(step.node) + ", " + where_))
       follow(part, state, step);
   mounted_ = after->mounted;
+  for (std::size_t o = 0; o < state.objects.size(); ++o)
+    if (after->state.objects[o].away && before->state.objects[o].hold && !state.objects[o].hold &&
+        !carried_.contains(o)) {
+      ++report_.jumps;
+      say(world_.objects[o].name + " stays where it was, and the plan says it is away");
+    }
   compare(state, after->state);
 }
 
@@ -100,9 +107,11 @@ void Simulation::hold(const MotionPart& part, judge::CellState& state) {
         say(meeting->names[0] + " and " + meeting->names[1] + " meet when one is let go");
       }
     } else if (held) {
+      carried_.insert(o);
       continue;
     }
     if (wanted == part.holds.end()) continue;
+    carried_.insert(o);
     const geom::Transform link = cell_.pose_of(state, part.robot, wanted->second);
     const geom::Transform pose = cell_.pose_of(state, o);
     const auto below = mounted_[o];

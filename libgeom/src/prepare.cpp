@@ -4,6 +4,8 @@
 #include <kaboum/base/parallel.h>
 #include <kaboum/geom/holes.h>
 #include <kaboum/geom/hollows.h>
+#include <kaboum/geom/moderate.h>
+#include <kaboum/geom/predicates.h>
 #include <kaboum/geom/prepare.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/geom/winding.h>
@@ -25,11 +27,9 @@
 #include "solid_mesh_maker.h"
 
 namespace kaboum::geom {
-namespace {
 
-/// Products of four coordinates must neither overflow nor vanish.
-void require_moderate(const Mesh& input) {
-  const Box3 box = bounding_box(input);
+void require_moderate(const Mesh& mesh) {
+  const Box3 box = bounding_box(mesh);
   if (box.empty()) return;
   const double magnitude = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
   const double extent = (box.max - box.min).maxCoeff();
@@ -41,6 +41,8 @@ void require_moderate(const Mesh& input) {
     throw Error(ErrorCode::InvalidInput, text.str());
   }
 }
+
+namespace {
 
 /// The steps of preparation, and what each of them notes.
 class Preparation {
@@ -69,6 +71,7 @@ class Preparation {
     reverse_shells();
     drop_copies();
     sort_out_pairs();
+    choose_diagonals();
     number_by_first_use();
     parallel_invoke(
         [&] { find_border(); },
@@ -126,6 +129,9 @@ class Preparation {
       if (tri[0] == tri[1] || tri[1] == tri[2] || tri[2] == tri[0]) {
         keep[t] = 0;
         ++report_.collapsed_triangles;
+        report_.left_out.push_back(
+            {report_.source[t],
+             {mesh_.vertices[tri[0]], mesh_.vertices[tri[1]], mesh_.vertices[tri[2]]}});
       }
     }
     if (report_.collapsed_triangles == 0) return;
@@ -176,6 +182,12 @@ class Preparation {
     if (!sheets.empty() && !options_.drop_sheets) refuse_sheets(sheets);
     report_.dropped_sheets = sheets.size();
     report_.cancelled_walls = cancelled_.size() - sheets.size();
+    auto sheet = sheets.begin();  // in the order of the cancelled ones
+    for (const Cancelled& c : cancelled_) {
+      const bool is_sheet = sheet != sheets.end() && sheet->source == c.source;
+      if (is_sheet) ++sheet;
+      if (!is_sheet && c.source != kFilled) report_.left_out.push_back({c.source, c.corners});
+    }
     if (!sheets.empty())
       report_.notes.push_back(
           count_of(sheets.size(), "triangle", "triangles") +
@@ -183,6 +195,41 @@ class Preparation {
     if (report_.cancelled_walls != 0)
       report_.notes.push_back(count_of(report_.cancelled_walls, "triangle", "triangles") +
                               " of walls between touching bodies cancelled");
+  }
+
+  /// Splits quads along the diagonal that is asked for, where both of their triangles are left and
+  /// agree. The chain's border stays, and so does all but the tetrahedra of the quads' corners.
+  void choose_diagonals() {
+    using Diagonal = PrepareOptions::Diagonal;
+    if (options_.diagonal == Diagonal::AsGiven || options_.quads.empty()) return;
+    const Sign wanted = options_.diagonal == Diagonal::Outward ? Sign::Negative : Sign::Positive;
+    std::vector<std::uint32_t> place(std::size_t{input_triangles_} + 1, kFilled);
+    for (std::uint32_t t = 0; t < report_.source.size(); ++t)
+      if (report_.source[t] != kFilled) place[report_.source[t]] = t;
+    for (const std::uint32_t quad : options_.quads) {
+      if (quad + 1 >= input_triangles_) continue;
+      const std::uint32_t i = place[quad], j = place[quad + 1];
+      if (i == kFilled || j == kFilled) continue;
+      Triangle &s = mesh_.triangles[i], &t = mesh_.triangles[j];
+      // s = (a, b, c), t = (c, d, a), in some order of each.
+      int k = 0;
+      while (k < 3 && std::find(t.begin(), t.end(), s[k]) != t.end()) ++k;
+      if (k == 3) continue;
+      const std::uint32_t b = s[k], c = s[(k + 1) % 3], a = s[(k + 2) % 3];
+      int l = 0;
+      while (l < 3 && (t[l] == a || t[l] == c)) ++l;
+      if (l == 3 || t[(l + 1) % 3] != a || t[(l + 2) % 3] != c) continue;
+      const std::uint32_t d = t[l];
+      // Beyond the plane of (a, b, c), the quad is a valley along a–c: the other diagonal lies
+      // outwards.
+      const Sign side =
+          orient3d(mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c], mesh_.vertices[d]);
+      if (side == Sign::Zero || side == wanted || b == d) continue;
+      s = {a, b, d};
+      t = {b, c, d};
+      ++report_.quads_split_anew;
+    }
+    if (report_.quads_split_anew > 0) find_edges();
   }
 
   void fill() {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <set>
 
 #include "chains.h"
 #include "levels.h"
@@ -170,7 +171,7 @@ class ShellJudge {
   /// Whether a joined chain, or a piece of one, still winds less than 0 times somewhere beside its
   /// triangles, as turned. Faces of two bodies that lie in each other without common corners change
   /// the winding number within a region, so one probe does not speak for all of it. Of large chains
-  /// only some triangles are looked at.
+  /// only some triangles are looked at, of copies one.
   void look_everywhere() {
     constexpr std::size_t kMaxTriangles = 20'000;
     std::vector<std::int8_t> weight(mesh_.triangles.size(), 0);
@@ -178,7 +179,11 @@ class ShellJudge {
       if (shells_.chains.closed[c] == 0 || shells_.chains.joined[c] == 0 || sign_[c] < 0) continue;
       const std::vector<std::uint32_t>& all = shells_.members[c];
       for (const std::uint32_t t : all) weight[t] = static_cast<std::int8_t>(sense_[c]);
+      std::set<Triangle> seen;
       for (std::size_t i = 0; i < all.size(); i += 1 + all.size() / kMaxTriangles) {
+        Triangle key = mesh_.triangles[all[i]];
+        std::sort(key.begin(), key.end());
+        if (!seen.insert(key).second) continue;
         const Vec3 &p = corner(all[i], 0), &q = corner(all[i], 1), &r = corner(all[i], 2);
         const Vec3 normal = (q - p).cross(r - p);
         const double size = std::sqrt(normal.norm());

@@ -6,188 +6,48 @@
 // measured: at the nodes of a fine grid in the parameters of every triangle, from the exact surface
 // to the triangle.
 
-#include <BRepAdaptor_Surface.hxx>
 #include <BRepBndLib.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
 #include <IGESControl_Reader.hxx>
-#include <Poly_PolygonOnTriangulation.hxx>
-#include <Poly_Triangulation.hxx>
+#include <IMeshData_Status.hxx>
+#include <Interface_Check.hxx>
+#include <Interface_CheckIterator.hxx>
 #include <STEPControl_Reader.hxx>
 #include <ShapeAnalysis_ShapeTolerance.hxx>
 #include <Standard_Failure.hxx>
+#include <StepData_StepModel.hxx>
 #include <StepRepr_RepresentationItem.hxx>
 #include <TCollection_HAsciiString.hxx>
-#include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
-#include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Edge.hxx>
-#include <TopoDS_Face.hxx>
-#include <TopoDS_Vertex.hxx>
 #include <TransferBRep.hxx>
 #include <Transfer_TransientProcess.hxx>
 #include <XSControl_TransferReader.hxx>
 #include <XSControl_WorkSession.hxx>
-#include <gp_Pnt.hxx>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <unordered_map>
 
 #include "../src/cad_shape.h"
+#include "census.h"
+#include "exact_cover.h"
 
 namespace kaboum::io {
 namespace {
 
-using geom::Vec3;
-
-constexpr double kChord = 2e-4;  ///< wished deviation, as a share of the shape's diagonal
+constexpr double kChord = 2e-4;  ///< chords of the mesher, as a share of the shape's diagonal
+constexpr double kWish = 1.5;    ///< deviation that is aimed at, in chords
 constexpr double kAngle = 0.35;  ///< between neighbouring triangles [rad]
-constexpr int kGrid = 4;         ///< samples divide a triangle's sides by this
-constexpr double kBetween = 2;   ///< the deviation between samples, in that at samples
+constexpr double kMost = 0.02;   ///< deviation that is taken, as a share of the diagonal
 
-Vec3 vector_of(const gp_Pnt& p) { return {p.X(), p.Y(), p.Z()}; }
-
-double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 ab = b - a;
-  const double length = ab.squaredNorm();
-  const double t = length > 0 ? std::clamp((p - a).dot(ab) / length, 0.0, 1.0) : 0;
-  return (p - a - t * ab).norm();
-}
-
-double distance_to_triangle(const Vec3& p, const std::array<Vec3, 3>& t) {
-  const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
-  const double twice = n.norm();
-  bool above = twice > 0;
-  for (int i = 0; i < 3 && above; ++i) above = n.dot((t[(i + 1) % 3] - t[i]).cross(p - t[i])) >= 0;
-  if (above) return std::abs(n.dot(p - t[0])) / twice;
-  return std::min({distance_to_segment(p, t[0], t[1]), distance_to_segment(p, t[1], t[2]),
-                   distance_to_segment(p, t[2], t[0])});
-}
-
-/// Takes the triangles of all faces of a meshed shape.
-class Collector {
- public:
-  /// @param chord  that was wished for: nearer triangles than that are not looked for
-  Collector(const TopoDS_Shape& shape, double chord, CadShape& result)
-      : result_(result), chord_(chord) {
-    TopExp::MapShapes(shape, TopAbs_EDGE, edges_);
-    TopExp::MapShapes(shape, TopAbs_VERTEX, vertices_);
-  }
-
-  void add_face(const TopoDS_Face& face) {
-    TopLoc_Location location;
-    const Handle(Poly_Triangulation) mesh = BRep_Tool::Triangulation(face, location);
-    if (mesh.IsNull()) {
-      ++result_.bare_faces;
-      return;
-    }
-    std::vector<std::uint32_t> number(static_cast<std::size_t>(mesh->NbNodes()) + 1, 0);
-    name_border(face, mesh, location, number);
-    std::vector<Vec3> point(number.size());
-    for (int i = 1; i <= mesh->NbNodes(); ++i) {
-      const Vec3 own = vector_of(mesh->Node(i).Transformed(location.Transformation()));
-      if (number[i] == 0) {
-        result_.points.push_back(own);
-        number[i] = static_cast<std::uint32_t>(result_.points.size());
-      }
-      point[i] = result_.points[number[i] - 1];
-      result_.deviation = std::max(result_.deviation, (point[i] - own).norm());
-    }
-    std::vector<std::array<int, 3>> nodes;
-    std::vector<std::array<Vec3, 3>> corners;
-    for (int t = 1; t <= mesh->NbTriangles(); ++t) {
-      std::array<int, 3> n{};
-      mesh->Triangle(t).Get(n[0], n[1], n[2]);
-      nodes.push_back(n);
-      corners.push_back({point[n[0]], point[n[1]], point[n[2]]});
-      if (face.Orientation() == TopAbs_REVERSED) std::swap(n[1], n[2]);
-      result_.triangles.push_back({number[n[0]] - 1, number[n[1]] - 1, number[n[2]] - 1});
-    }
-    if (!mesh->HasUVNodes()) {
-      ++result_.bare_faces;
-      return;
-    }
-    const BRepAdaptor_Surface surface(face);
-    for (std::size_t t = 0; t < nodes.size(); ++t) measure(surface, mesh, nodes[t], t, corners);
-  }
-
- private:
-  /// Nodes on edges and vertices: one number for all faces that they are on.
-  void name_border(const TopoDS_Face& face, const Handle(Poly_Triangulation) & mesh,
-                   const TopLoc_Location& location, std::vector<std::uint32_t>& number) {
-    poles_.clear();
-    for (TopExp_Explorer at(face, TopAbs_EDGE); at.More(); at.Next()) {
-      const TopoDS_Edge edge = TopoDS::Edge(at.Current());
-      const Handle(Poly_PolygonOnTriangulation) polygon =
-          BRep_Tool::PolygonOnTriangulation(edge, mesh, location);
-      if (polygon.IsNull()) continue;
-      const int count = polygon->NbNodes(), index = edges_.FindIndex(edge);
-      const int first = vertices_.FindIndex(TopExp::FirstVertex(edge)),
-                last = vertices_.FindIndex(TopExp::LastVertex(edge));
-      for (int i = 1; i <= count; ++i) {
-        std::pair<int, int> key{index, i};
-        if (i == 1 || BRep_Tool::Degenerated(edge)) {
-          key = {-1, first};
-        } else if (i == count) {
-          key = {-1, last};
-        }
-        std::uint32_t& known = border_[key];
-        const int node = polygon->Node(i);
-        if (BRep_Tool::Degenerated(edge)) poles_[node] = free_parameter(edge, face);
-        if (known == 0) {
-          result_.points.push_back(
-              vector_of(mesh->Node(node).Transformed(location.Transformation())));
-          known = static_cast<std::uint32_t>(result_.points.size());
-        }
-        number[node] = known;
-      }
-    }
-  }
-
-  /// Of an edge that is a point of the surface: the parameter that means nothing there, 1 or 2.
-  static int free_parameter(const TopoDS_Edge& edge, const TopoDS_Face& face) {
-    gp_Pnt2d first, last;
-    BRep_Tool::UVPoints(edge, face, first, last);
-    return std::abs(first.X() - last.X()) >= std::abs(first.Y() - last.Y()) ? 1 : 2;
-  }
-
-  void measure(const BRepAdaptor_Surface& surface, const Handle(Poly_Triangulation) & mesh,
-               const std::array<int, 3>& node, std::size_t own,
-               const std::vector<std::array<Vec3, 3>>& triangles) {
-    std::array<gp_Pnt2d, 3> uv;
-    for (int i = 0; i < 3; ++i) uv[i] = mesh->UVNode(node[i]);
-    for (int i = 0; i < 3; ++i) {
-      // A pole has one of its many parameters: what the other two corners lie between is meant.
-      const auto pole = poles_.find(node[i]);
-      if (pole == poles_.end()) continue;
-      const gp_Pnt2d &p = uv[(i + 1) % 3], &q = uv[(i + 2) % 3];
-      uv[i].SetCoord(pole->second, 0.5 * (p.Coord(pole->second) + q.Coord(pole->second)));
-    }
-    for (int i = 0; i <= kGrid; ++i) {
-      for (int j = 0; i + j <= kGrid; ++j) {
-        const double a = static_cast<double>(i) / kGrid, b = static_cast<double>(j) / kGrid;
-        const gp_XY at = uv[0].XY() * (1 - a - b) + uv[1].XY() * a + uv[2].XY() * b;
-        const Vec3 p = vector_of(surface.Value(at.X(), at.Y()));
-        double near = distance_to_triangle(p, triangles[own]);
-        // Near poles, the middle between parameters lies beside another triangle of the face.
-        for (std::size_t t = 0; t < triangles.size() && near > chord_; ++t)
-          near = std::min(near, distance_to_triangle(p, triangles[t]));
-        result_.deviation = std::max(result_.deviation, kBetween * near);
-        ++result_.samples;
-      }
-    }
-  }
-
-  CadShape& result_;
-  double chord_;
-  TopTools_IndexedMapOfShape edges_, vertices_;
-  std::map<int, int> poles_;  ///< of the face: nodes at a point, and the parameter that is free
-  std::map<std::pair<int, int>, std::uint32_t> border_;  ///< number and one; 0: none yet
-};
+[[noreturn]] void refuse(const std::string& what) { throw std::runtime_error(what); }
 
 /// The name of the entity that a solid was made of.
 std::string name_of(const XSControl_Reader& reader, const TopoDS_Shape& solid) {
@@ -199,31 +59,137 @@ std::string name_of(const XSControl_Reader& reader, const TopoDS_Shape& solid) {
   return item->Name()->ToCString();
 }
 
-void read(XSControl_Reader& reader, const char* path, CadShape& result) {
-  if (reader.ReadFile(path) != IFSelect_RetDone) {
-    result.error = "the file cannot be read; it is damaged or of another kind";
-    return;
-  }
-  reader.TransferRoots();
-  const TopoDS_Shape shape = reader.OneShape();
-  Bnd_Box box;
-  if (!shape.IsNull()) BRepBndLib::Add(shape, box, false);
-  if (shape.IsNull() || box.IsVoid()) {
-    result.error = "the file has no faces";
-    return;
-  }
-  const double diagonal = std::sqrt(box.SquareExtent());
-  const BRepMesh_IncrementalMesh meshing(shape, kChord * diagonal, false, kAngle, false);
-  Collector collector(shape, kChord * diagonal, result);
-  for (TopExp_Explorer at(shape, TopAbs_SOLID); at.More(); at.Next())
-    result.solids.push_back(name_of(reader, at.Current()));
-  for (TopExp_Explorer at(shape, TopAbs_FACE, TopAbs_SOLID); at.More(); at.Next())
-    ++result.loose_faces;
-  for (TopExp_Explorer at(shape, TopAbs_FACE); at.More(); at.Next())
-    collector.add_face(TopoDS::Face(at.Current()));
-  // Faces, edges and vertices may be this far from each other.
-  result.deviation += ShapeAnalysis_ShapeTolerance().Tolerance(shape, 1);
+std::size_t count_faces(const TopoDS_Shape& shape) {
+  std::size_t count = 0;
+  if (shape.IsNull()) return 0;
+  for (TopExp_Explorer at(shape, TopAbs_FACE); at.More(); at.Next()) ++count;
+  return count;
 }
+
+/// Edges that are no points, as often as the face's bounds have them.
+std::size_t count_edges(const TopoDS_Shape& shape) {
+  std::size_t count = 0;
+  for (TopExp_Explorer at(shape, TopAbs_EDGE); at.More(); at.Next())
+    if (!BRep_Tool::Degenerated(TopoDS::Edge(at.Current()))) ++count;
+  return count;
+}
+
+/// What a check says first.
+std::string complaint(const Handle(Interface_Check) & check) {
+  return check->NbFails() > 0 ? check->CFail(1) : "";
+}
+
+class Reading {
+ public:
+  Reading(XSControl_Reader& reader, bool iges, CadShape& result)
+      : reader_(reader), iges_(iges), result_(result) {}
+
+  void run(const char* path) {
+    if (!iges_) {
+      std::ifstream file(path, std::ios::binary);
+      census_ = step_census({std::istreambuf_iterator<char>(file), {}});
+    }
+    if (reader_.ReadFile(path) != IFSelect_RetDone)
+      refuse("the file cannot be read; it is damaged or of another kind");
+    model_ = reader_.Model();
+    if (iges_) census_ = iges_census(model_);
+    number_entities();
+    check_loading();
+    reader_.TransferRoots();
+    process_ = reader_.WS()->TransferReader()->TransientProcess();
+    const TopoDS_Shape shape = reader_.OneShape();
+    check_transfer(shape);
+    Bnd_Box box;
+    if (!shape.IsNull()) BRepBndLib::Add(shape, box, false);
+    if (shape.IsNull() || box.IsVoid()) refuse("the file has no faces");
+    mesh(shape, std::sqrt(box.SquareExtent()));
+  }
+
+ private:
+  /// The entities of the census by their numbers in the model.
+  void number_entities() {
+    const Handle(StepData_StepModel) step = Handle(StepData_StepModel)::DownCast(model_);
+    for (int i = 1; i <= model_->NbEntities(); ++i)
+      number_[iges_ ? i : step->IdentLabel(model_->Value(i))] = i;
+  }
+
+  [[nodiscard]] std::string label(const Handle(Standard_Transient) & entity) const {
+    const Handle(TCollection_HAsciiString) text = model_->StringLabel(entity);
+    return (text.IsNull() ? std::string("an entity") : std::string(text->ToCString())) + " " +
+           model_->TypeName(entity, false);
+  }
+
+  /// Entities whose text could not be understood.
+  void check_loading() const {
+    const Handle(Interface_Check) global = model_->GlobalCheck(true);
+    if (global->NbFails() > 0) refuse(complaint(global));
+    for (int i = 1; i <= model_->NbEntities(); ++i) {
+      const Handle(Standard_Transient) entity = model_->Value(i);
+      const std::int64_t id =
+          iges_ ? i : Handle(StepData_StepModel)::DownCast(model_)->IdentLabel(entity);
+      if (census_.harmless.count(id) > 0) continue;
+      if (model_->IsErrorEntity(i) || model_->IsUnknownEntity(i)) {
+        const Handle(Interface_Check) check = model_->Check(i, true);
+        refuse(label(entity) + " cannot be understood: " + complaint(check));
+      }
+    }
+  }
+
+  /// Every face that the file states is there, in all its places, and no other.
+  void check_transfer(const TopoDS_Shape& shape) const {
+    Interface_CheckIterator checks = process_->CheckList(true);
+    for (checks.Start(); checks.More(); checks.Next()) {
+      const Handle(Interface_Check) check = checks.Value();
+      if (check->NbFails() > 0)
+        refuse((checks.Number() > 0 ? label(model_->Value(checks.Number())) + ": " : "") +
+               complaint(check));
+    }
+    double stated = 0;
+    for (const FaceUse& face : census_.faces) {
+      const auto at = number_.find(face.id);
+      if (at == number_.end()) refuse(face.name + " was not read");
+      const TopoDS_Shape made = TransferBRep::ShapeResult(process_, model_->Value(at->second));
+      const std::size_t count = count_faces(made);
+      if (count == 0) refuse(face.name + " could not be made into a face");
+      if (count_edges(made) < face.edges)
+        refuse(face.name + ": of its " + std::to_string(face.edges) + " edges only " +
+               std::to_string(count_edges(made)) + " could be made");
+      stated += face.uses * static_cast<double>(count);
+    }
+    const std::size_t made = count_faces(shape);
+    if (stated != static_cast<double>(made))
+      refuse("the file states " + std::to_string(static_cast<std::int64_t>(stated)) +
+             " faces, counting all places of parts, and " + std::to_string(made) +
+             " could be made");
+  }
+
+  void mesh(const TopoDS_Shape& shape, double diagonal) {
+    BRepMesh_IncrementalMesh meshing(shape, kChord * diagonal, false, kAngle, false);
+    if ((meshing.GetStatusFlags() & IMeshData_Failure) != 0)
+      refuse("a face could not be made into triangles");
+    for (TopExp_Explorer at(shape, TopAbs_SOLID); at.More(); at.Next())
+      result_.solids.push_back(name_of(reader_, at.Current()));
+    for (TopExp_Explorer at(shape, TopAbs_FACE, TopAbs_SOLID); at.More(); at.Next())
+      ++result_.loose_faces;
+    result_.faces = count_faces(shape);
+    cover_exact_shape(shape, kWish * kChord * diagonal, result_);
+    if (result_.bare_faces > 0) return;
+    // Faces, edges and vertices may be this far from each other, as the file says; or as was
+    // proved.
+    result_.deviation += std::max(result_.gap, ShapeAnalysis_ShapeTolerance().Tolerance(shape, 1));
+    if (!(result_.deviation <= kMost * diagonal))
+      refuse("the exact shape can only be said to be within " + std::to_string(result_.deviation) +
+             " mm of triangles (" + result_.worst + ", " + result_.worst_gap + ")");
+  }
+
+  XSControl_Reader& reader_;
+  bool iges_;
+  CadShape& result_;
+  Census census_;
+  Handle(Interface_InterfaceModel) model_;
+  Handle(Transfer_TransientProcess) process_;
+  std::unordered_map<std::int64_t, int> number_;
+};
 
 }  // namespace
 }  // namespace kaboum::io
@@ -233,14 +199,14 @@ extern "C" __attribute__((visibility("default"))) void kaboum_read_cad(
   try {
     if (iges) {
       IGESControl_Reader reader;
-      kaboum::io::read(reader, path, result);
+      kaboum::io::Reading(reader, true, result).run(path);
     } else {
       STEPControl_Reader reader;
-      kaboum::io::read(reader, path, result);
+      kaboum::io::Reading(reader, false, result).run(path);
     }
   } catch (const Standard_Failure& failure) {
     result.error = std::string("OpenCASCADE failed: ") + failure.GetMessageString();
   } catch (const std::exception& failure) {
-    result.error = std::string("OpenCASCADE failed: ") + failure.what();
+    result.error = failure.what();
   }
 }

@@ -179,9 +179,11 @@ ReadResult read_here(const Source& source) {
 bool has_assimp() { return true; }
 
 ReadResult read_fbx(const Source& source) {
-  check_fbx_objects(source);
-  return read_in_child(source, child_limits(source.bytes.size()),
-                       [&] { return read_here(source); });
+  std::vector<std::string> notes = check_fbx_objects(source);
+  ReadResult result =
+      read_in_child(source, child_limits(source.bytes.size()), [&] { return read_here(source); });
+  std::ranges::move(notes, std::back_inserter(result.notes));
+  return result;
 }
 
 }  // namespace kaboum::io

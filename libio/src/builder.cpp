@@ -10,6 +10,7 @@
 #include <bit>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "polygon.h"
 
@@ -127,8 +128,8 @@ ReadResult MeshBuilder::finish(Format format, bool single_precision) {
 void MeshBuilder::split_polygons(ReadResult& result) {
   result.file_triangles = triangles_.size();
   if (polygons_.empty()) return;
-  // Containment tests: linear in the file's size, so that hostile polygons cannot stall the reader.
-  PolygonSplitter splitter(100'000'000 + 100 * std::uint64_t{source_.bytes.size()});
+  // Hostile polygons cannot stall the reader: a few seconds.
+  PolygonSplitter splitter(600'000'000);
   std::vector<geom::Triangle> all, pieces;
   all.reserve(triangles_.size() + polygon_corners_.size());
   std::vector<geom::Vec3> positions;
@@ -144,10 +145,26 @@ void MeshBuilder::split_polygons(ReadResult& result) {
     positions.clear();
     for (std::size_t i = 0; i < polygon.corners; ++i) positions.push_back(points_[corners[i]]);
     if (!splitter.split(positions, pieces) && ++fans == 1) first_fan = polygon.where;
+    if (splitter.exhausted())
+      throw Error(ErrorCode::LimitReached,
+                  std::string(source_.name) + ": " + place(source_, polygon.where) +
+                      ": splitting the polygons into triangles takes too long (this one has " +
+                      std::to_string(polygon.corners) + " corners); export the mesh as triangles");
+    if (const double bend = bend_of(positions); bend > 0) {
+      ++result.bent_polygons;
+      result.largest_bend = std::max(result.largest_bend, bend);
+      if (positions.size() == 4 && pieces.size() == 2)
+        result.bent_quads.push_back(static_cast<std::uint32_t>(all.size()));
+    }
     for (const geom::Triangle& t : pieces)
       all.push_back({corners[t[0]], corners[t[1]], corners[t[2]]});
     result.file_triangles += polygon.corners - 2;
-    result.collapsed_triangles += polygon.corners - 2 - pieces.size();
+    if (pieces.empty()) {  // all corners are in one or two places
+      for (std::size_t i = 0; i + 2 < polygon.corners; ++i)
+        all.push_back({corners[i], corners[i + 1], corners[i + 2]});
+    } else {
+      result.collapsed_triangles += polygon.corners - 2 - pieces.size();
+    }
   }
   all.insert(all.end(), triangle(taken), triangles_.end());
   triangles_.swap(all);
@@ -156,6 +173,80 @@ void MeshBuilder::split_polygons(ReadResult& result) {
     result.notes.push_back(counted(fans, "polygon is", "polygons are") +
                            " not simple or without area (first: " + place(source_, first_fan) +
                            ") and became a plain fan of triangles.");
+}
+
+/// What the rounding of a file's numbers bends is not worth a note.
+void MeshBuilder::note_bends(ReadResult& result) {
+  constexpr double kWorth = 1e-6;  // of the diagonal
+  if (!(result.largest_bend > kWorth * geom::bounding_box(result.mesh).diagonal())) return;
+  std::ostringstream bend;
+  bend.precision(3);
+  bend << result.largest_bend;
+  result.notes.push_back(
+      counted(result.bent_polygons, "polygon is not plane", "polygons are not plane") +
+      ", by up to " + bend.str() +
+      ", so that the ways of splitting them differ: one of four corners is split "
+      "from its first to its third corner, a convex one like a fan from its first "
+      "corner, others by ear clipping.");
+}
+
+/// Drops triangles with equal corners that are edges, or corners, of others. Of those that are
+/// segments and points apart from all others each stays once: they may stick out of something. A
+/// mesh of nothing else is left empty.
+void MeshBuilder::drop_collapsed(ReadResult& result) {
+  const auto collapsed = [](const geom::Triangle& t) {
+    return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+  };
+  if (std::ranges::none_of(triangles_, collapsed)) return;
+  using Edge = std::pair<std::uint32_t, std::uint32_t>;
+  const auto edge = [](std::uint32_t a, std::uint32_t b) { return Edge(std::minmax(a, b)); };
+  const auto own_edge = [&](const geom::Triangle& t) {
+    return edge(t[0], t[0] != t[1] ? t[1] : t[2]);
+  };
+  std::vector<Edge> wanted;  // edges that collapsed triangles are
+  for (const geom::Triangle& t : triangles_)
+    if (collapsed(t)) wanted.push_back(own_edge(t));
+  std::ranges::sort(wanted);
+  wanted.erase(std::ranges::unique(wanted).begin(), wanted.end());
+  std::vector<char> held(wanted.size(), 0), used(points_.size(), 0);
+  const auto hold = [&](const Edge& e) {
+    const auto found = std::ranges::lower_bound(wanted, e);
+    if (found != wanted.end() && *found == e)
+      held[static_cast<std::size_t>(found - wanted.begin())] = 1;
+  };
+  bool any = false;
+  for (const geom::Triangle& t : triangles_) {
+    if (collapsed(t)) continue;
+    any = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      used[t[k]] = 1;
+      hold(edge(t[k], t[(k + 1) % 3]));
+    }
+  }
+  std::size_t apart = 0;
+  // Segments before points, which may be their ends.
+  for (const bool points : {false, true}) {
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      const auto& [a, b] = wanted[i];
+      if ((a == b) != points || held[i] != 0 || (points && used[a] != 0)) {
+        if ((a == b) == points) held[i] = 1;
+        continue;
+      }
+      used[a] = used[b] = 1;
+      ++apart;
+    }
+  }
+  std::erase_if(triangles_, [&](const geom::Triangle& t) {
+    if (!collapsed(t)) return false;
+    const auto found = std::ranges::lower_bound(wanted, own_edge(t));
+    char& is_held = held[static_cast<std::size_t>(found - wanted.begin())];
+    return !any || std::exchange(is_held, char{1}) != 0;
+  });
+  if (any && apart > 0)
+    result.notes.push_back(counted(apart, "triangle with equal corners is a segment or point",
+                                   "triangles with equal corners are segments or points") +
+                           " that no other triangle has; " +
+                           (apart == 1 ? "it counts" : "they count") + " as such.");
 }
 
 void MeshBuilder::weld(ReadResult& result) {
@@ -179,9 +270,16 @@ void MeshBuilder::weld(ReadResult& result) {
     points_.swap(welder.points());
   }
   const std::size_t before = triangles_.size();
-  std::erase_if(triangles_, [](const geom::Triangle& t) {
-    return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
-  });
+  const std::vector<geom::Triangle> all =
+      result.bent_quads.empty() ? std::vector<geom::Triangle>() : triangles_;
+  drop_collapsed(result);
+  // Numbers of triangles that are left: both of a bent quad are.
+  std::vector<std::uint32_t> left(all.size(), 0);
+  for (std::size_t i = 0, j = 0; i < all.size() && j < triangles_.size(); ++i) {
+    if (all[i] != triangles_[j]) continue;
+    left[i] = static_cast<std::uint32_t>(j++);
+  }
+  for (std::uint32_t& t : result.bent_quads) t = left[t];
   result.collapsed_triangles += before - triangles_.size();
   if (triangles_.size() < before) {
     // Vertices that only collapsed triangles used go; the rest keeps its order of first use.
@@ -200,6 +298,7 @@ void MeshBuilder::weld(ReadResult& result) {
   }
   result.mesh.vertices = std::move(points_);
   result.mesh.triangles = std::move(triangles_);
+  note_bends(result);
 }
 
 }  // namespace kaboum::io

@@ -75,6 +75,8 @@ class MeshBuilder {
   };
   void split_polygons(ReadResult& result);
   void weld(ReadResult& result);
+  static void note_bends(ReadResult& result);
+  void drop_collapsed(ReadResult& result);
 
   const Source& source_;
   std::vector<geom::Vec3> points_;

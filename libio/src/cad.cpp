@@ -1,7 +1,6 @@
 // STEP and IGES: by a module that is loaded, in a child process, when such a file is read.
 #include <dlfcn.h>
 #include <kaboum/base/error.h>
-#include <kaboum/io/cad.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -14,6 +13,7 @@
 #include "builder.h"
 #include "cad_shape.h"
 #include "child.h"
+#include "formats.h"
 #include "text.h"
 
 namespace kaboum::io {
@@ -24,23 +24,20 @@ namespace {
 std::vector<std::filesystem::path> places() {
   std::vector<std::filesystem::path> result;
   Dl_info here{};
-  if (::dladdr(reinterpret_cast<const void*>(&is_cad_file), &here) != 0 &&
-      here.dli_fname != nullptr) {
+  if (::dladdr(reinterpret_cast<const void*>(&read_cad), &here) != 0 && here.dli_fname != nullptr) {
     std::error_code none;
     const auto program = std::filesystem::canonical(here.dli_fname, none);
-    if (!none)
-      result.push_back(program.parent_path().parent_path() / KABOUM_LIBRARY_FOLDER / kCadModule);
+    // Beside bin/, or so many folders above that of a Python module.
+    const bool library = program.extension() == ".so";
+    for (const int up : {2, 3, 5}) {
+      auto folder = program;
+      for (int i = 0; i < up; ++i) folder = folder.parent_path();
+      if (!none && (up > 2) == library)
+        result.push_back(folder / KABOUM_LIBRARY_FOLDER / kCadModule);
+    }
   }
   result.emplace_back(std::filesystem::path(KABOUM_INSTALLED_LIBRARIES) / kCadModule);
   return result;
-}
-
-bool has_module() {
-  const auto all = places();
-  return std::any_of(all.begin(), all.end(), [](const std::filesystem::path& file) {
-    std::error_code none;
-    return std::filesystem::exists(file, none);
-  });
 }
 
 /// The file's bytes under a name that other libraries can open.
@@ -65,24 +62,6 @@ class NamedBytes {
 
  private:
   int fd_;
-};
-
-/// A number that a child process leaves to this one.
-class SharedNumber {
- public:
-  SharedNumber()
-      : at_(static_cast<double*>(::mmap(nullptr, sizeof(double), PROT_READ | PROT_WRITE,
-                                        MAP_SHARED | MAP_ANONYMOUS, -1, 0))) {
-    if (at_ == MAP_FAILED) throw Error(ErrorCode::LimitReached, "no memory; close other programs");
-    *at_ = std::nan("");
-  }
-  SharedNumber(const SharedNumber&) = delete;
-  SharedNumber& operator=(const SharedNumber&) = delete;
-  ~SharedNumber() { ::munmap(at_, sizeof(double)); }
-  [[nodiscard]] double& value() { return *at_; }
-
- private:
-  double* at_;
 };
 
 ReadCad* load() {
@@ -112,16 +91,9 @@ void add_notes(const CadShape& shape, MeshBuilder& builder) {
   if (shape.loose_faces > 0)
     builder.note(counted(shape.loose_faces, "face belongs", "faces belong") +
                  " to no solid, and were read as triangles like the others.");
-  std::ostringstream text;
-  text.precision(3);
-  text << "Triangles stand for the exact faces, which are within " << shape.deviation
-       << " mm of them: twice the largest distance at " << shape.samples
-       << " points, and the file's own tolerance. Only a wrap (--prepare wrap) holds the faces "
-          "themselves; else what is said is about the triangles.";
-  builder.note(text.str());
 }
 
-ReadResult read_here(const Source& source, bool iges, double& deviation) {
+ReadResult read_here(const Source& source, Format format) {
   ReadCad* read = load();
   if (read == nullptr)
     throw Error(ErrorCode::NotBuilt, std::string(source.name) +
@@ -130,7 +102,7 @@ ReadResult read_here(const Source& source, bool iges, double& deviation) {
                                          "that it was built with");
   const NamedBytes file(source.bytes);
   CadShape shape;
-  read(file.name().c_str(), iges, shape);
+  read(file.name().c_str(), format == Format::Iges, shape);
   if (!shape.error.empty()) fail(source, shape.error + "; export it again, or make a mesh of it");
   if (shape.bare_faces > 0)
     fail(source, counted(shape.bare_faces, "face", "faces") +
@@ -139,47 +111,52 @@ ReadResult read_here(const Source& source, bool iges, double& deviation) {
   for (const geom::Vec3& p : shape.points) builder.add_point(p, source.begin());
   for (const geom::Triangle& t : shape.triangles) builder.add_triangle(t);
   add_notes(shape, builder);
-  deviation = shape.deviation;
-  return builder.finish(Format::Obj, false);  // the message between processes has no better word
-}
-
-bool is_iges(const std::filesystem::path& path) {
-  const std::string extension = path.extension().string();
-  return same_word(extension, ".iges") || same_word(extension, ".igs");
+  if (!(shape.deviation >= 0) || !std::isfinite(shape.deviation))
+    fail(source, "the deviation of its faces could not be measured; make a mesh of it");
+  ReadResult result = builder.finish(format, false);
+  result.file_vertices = result.mesh.vertices.size();
+  result.unit = "mm";
+  result.deviation = shape.deviation;
+  result.exact_faces = shape.faces;
+  result.notes.push_back(about_exact_faces(result) + " That is proved, in " +
+                         std::to_string(shape.pieces) + " pieces.");
+  return result;
 }
 
 }  // namespace
 
-bool is_cad_file(const std::filesystem::path& path) {
-  const std::string extension = path.extension().string();
-  return is_iges(path) || same_word(extension, ".step") || same_word(extension, ".stp");
+bool has_cad() {
+  const auto all = places();
+  return std::any_of(all.begin(), all.end(), [](const std::filesystem::path& file) {
+    std::error_code none;
+    return std::filesystem::exists(file, none);
+  });
 }
 
-CadResult read_cad(const std::filesystem::path& path, std::vector<char>* bytes_out) {
-  const std::string name = path.string();
-  std::vector<char> bytes = read_file(path);
-  const Source source{{bytes.data(), bytes.size()}, name, {}, true};
-  if (bytes.empty()) fail(source, "the file is empty; get it again");
-  if (!has_module())
+std::string about_exact_faces(const ReadResult& read) {
+  if (!is_cad(read.format)) return {};
+  std::ostringstream text;
+  text.precision(3);
+  text << "Triangles stand for its " << read.exact_faces << " exact faces, which are within "
+       << read.deviation << (read.unit.empty() ? "" : " " + read.unit)
+       << " of them. Only what keeps that clear (a wrap) holds the faces themselves; else what is "
+          "said is about the triangles.";
+  return text.str();
+}
+
+ReadResult read_cad(const Source& source, Format format) {
+  if (!has_cad())
     throw Error(ErrorCode::NotBuilt,
-                name +
+                std::string(source.name) +
                     ": reading STEP and IGES needs OpenCASCADE, which this build leaves out; "
                     "make a mesh of it, for example by gmsh: gmsh " +
-                    name + " -2 -clmax 5 -o part.stl (5: longest edge, in its unit)");
+                    std::string(source.name) +
+                    " -2 -clmax 5 -o part.stl (5: longest edge, in its unit)");
   // The libraries alone take half a gigabyte of addresses.
-  ChildLimits limits = child_limits(bytes.size());
+  ChildLimits limits = child_limits(source.bytes.size());
   limits.memory *= 2;
   limits.seconds *= 3;
-  SharedNumber deviation;
-  ReadResult read = read_in_child(
-      source, limits, [&] { return read_here(source, is_iges(path), deviation.value()); });
-  const double measured = deviation.value();
-  if (!(measured >= 0) || !std::isfinite(measured))
-    fail(source, "the deviation of its faces could not be measured; make a mesh of it");
-  if (bytes_out != nullptr) *bytes_out = std::move(bytes);
-  read.file_vertices = read.mesh.vertices.size();
-  read.unit = "mm";
-  return {std::move(read), measured};
+  return read_in_child(source, limits, [&] { return read_here(source, format); });
 }
 
 }  // namespace kaboum::io

@@ -24,6 +24,7 @@
 #include <csignal>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <mutex>
 #include <type_traits>
 
@@ -56,7 +57,7 @@ std::uint64_t address_limit(const ChildLimits& limits) {
 
 // --- the message: a kind, then an error's code and text, or the fields of a ReadResult ---
 
-enum class Kind : std::uint8_t { Mesh, Error, NoMemory, Exception };
+enum class Kind : std::uint8_t { Mesh, Bytes, Error, NoMemory, Exception };
 
 class Sender {
  public:
@@ -93,6 +94,8 @@ class Sender {
     value(r.other_files.size());
     for (const std::string& file : r.other_files) text(file);
     text(r.unit);
+    value(r.deviation);
+    value(r.exact_faces);
     value(r.mesh.vertices.size());
     bytes(r.mesh.vertices.data(), r.mesh.vertices.size() * sizeof(geom::Vec3));
     value(r.mesh.triangles.size());
@@ -121,7 +124,7 @@ class Receiver {
   ReadResult mesh() {
     ReadResult r;
     const auto format = value<std::underlying_type_t<Format>>();
-    ok_ = ok_ && format >= 0 && format <= static_cast<int>(Format::Vrml);
+    ok_ = ok_ && format >= 0 && format <= static_cast<int>(Format::Iges);
     if (ok_) r.format = static_cast<Format>(format);
     r.single_precision = value<std::uint8_t>() != 0;
     for (std::size_t* n :
@@ -130,6 +133,9 @@ class Receiver {
     for (auto n = value<std::size_t>(); n > 0 && ok_; --n) r.notes.push_back(text());
     for (auto n = value<std::size_t>(); n > 0 && ok_; --n) r.other_files.push_back(text());
     r.unit = text();
+    r.deviation = value<double>();
+    ok_ = ok_ && r.deviation >= 0 && r.deviation <= std::numeric_limits<double>::max();
+    r.exact_faces = value<std::size_t>();
     array(r.mesh.vertices);
     array(r.mesh.triangles);
     for (const geom::Vec3& p : r.mesh.vertices) ok_ = ok_ && p.allFinite();
@@ -193,7 +199,7 @@ void reset_signals() {
 
 /// Ends by _exit: the caller's buffers, files and exit handlers are the caller's.
 [[noreturn]] void run(int to, const ChildLimits& limits, std::uint64_t addresses,
-                      const std::function<ReadResult()>& read) {
+                      const std::function<void(Sender&)>& work) {
   reset_signals();
   set_limit(RLIMIT_CORE, 0, 0);
   set_limit(RLIMIT_CPU, limits.seconds, limits.seconds + 1);
@@ -206,7 +212,7 @@ void reset_signals() {
   }
   Sender sender(to);
   try {
-    sender.mesh(read());
+    work(sender);
   } catch (const Error& e) {
     sender.value(Kind::Error);
     sender.value(e.code());
@@ -299,11 +305,17 @@ constexpr const char* kRemedy =
                    ::strsignal(signal) + ")" + kRemedy);
 }
 
-ReadResult result_of(const Source& source, const ChildLimits& limits, std::string_view message) {
+/// What the child was to send, of the kind that is expected.
+template <class Take>
+auto result_of(const Source& source, const ChildLimits& limits, std::string_view message,
+               Kind expected, const Take& take) {
   Receiver receiver(message);
-  switch (receiver.value<Kind>()) {
+  const Kind kind = receiver.value<Kind>();
+  switch (kind) {
     case Kind::Mesh:
-      if (ReadResult result = receiver.mesh(); receiver.complete()) return result;
+    case Kind::Bytes:
+      if (kind != expected) break;
+      if (auto result = take(receiver); receiver.complete()) return result;
       break;
     case Kind::Error: {
       const auto code = receiver.value<ErrorCode>();
@@ -329,8 +341,11 @@ ChildLimits child_limits(std::uint64_t file_size) {
   return {1024 * kMiB + 256 * file_size, 20 + 5 * (file_size / kMiB)};
 }
 
-ReadResult read_in_child(const Source& source, const ChildLimits& limits,
-                         const std::function<ReadResult()>& read) {
+namespace {
+
+/// All that a child sends that does the work.
+std::string message_of_child(const Source& source, const ChildLimits& limits,
+                             const std::function<void(Sender&)>& work) {
   const std::uint64_t addresses = address_limit(limits);
   const auto cannot = [&](const char* what) {
     throw Error(ErrorCode::LimitReached, std::string(source.name) +
@@ -348,7 +363,7 @@ ReadResult read_in_child(const Source& source, const ChildLimits& limits,
   ::sigfillset(&all);
   ::pthread_sigmask(SIG_SETMASK, &all, &before);
   const pid_t id = ::fork();
-  if (id == 0) run(to.fd, limits, addresses, read);
+  if (id == 0) run(to.fd, limits, addresses, work);
   const int error = errno;
   ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
   errno = error;
@@ -362,7 +377,29 @@ ReadResult read_in_child(const Source& source, const ChildLimits& limits,
   if (end == End::TooLong) fail_by_signal(source, limits, SIGKILL);
   const int status = child.wait();
   if (WIFSIGNALED(status)) fail_by_signal(source, limits, WTERMSIG(status));
-  return result_of(source, limits, message);
+  return message;
+}
+
+}  // namespace
+
+ReadResult read_in_child(const Source& source, const ChildLimits& limits,
+                         const std::function<ReadResult()>& read) {
+  const std::string message =
+      message_of_child(source, limits, [&](Sender& sender) { sender.mesh(read()); });
+  return result_of(source, limits, message, Kind::Mesh,
+                   [](Receiver& receiver) { return receiver.mesh(); });
+}
+
+std::string bytes_of_child(const std::string& name, const ChildLimits& limits,
+                           const std::function<std::string()>& work) {
+  const Source source{{}, name, {}, true};
+  const std::string message = message_of_child(source, limits, [&](Sender& sender) {
+    const std::string bytes = work();
+    sender.value(Kind::Bytes);
+    sender.text(bytes);
+  });
+  return result_of(source, limits, message, Kind::Bytes,
+                   [](Receiver& receiver) { return receiver.text(); });
 }
 
 }  // namespace kaboum::io

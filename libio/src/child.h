@@ -1,5 +1,6 @@
 #pragma once
 
+#include <kaboum/io/child_process.h>
 #include <kaboum/io/mesh_io.h>
 
 #include <functional>
@@ -7,15 +8,6 @@
 #include "source.h"
 
 namespace kaboum::io {
-
-/// What a child process may use.
-struct ChildLimits {
-  std::uint64_t memory;   ///< bytes besides what the process has already; no limit with sanitizers
-  std::uint64_t seconds;  ///< of CPU time
-};
-
-/// 1 GiB and 256 times the file's size, 20 s and 5 s per MiB.
-ChildLimits child_limits(std::uint64_t file_size);
 
 /// Calls `read` in a child process with limited memory and CPU time, and returns what it returned.
 ///

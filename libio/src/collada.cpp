@@ -40,6 +40,8 @@ constexpr std::array<std::string_view, 19> kLibraries = {"library_animation_clip
                                                          "library_physics_models",
                                                          "library_physics_scenes",
                                                          "library_visual_scenes"};
+constexpr std::array<std::string_view, 5> kVersions = {"1.4", "1.4.0", "1.4.1", "1.5", "1.5.0"};
+
 class ColladaReader {
  public:
   ColladaReader(const Source& source, MeshBuilder& builder)
@@ -48,7 +50,7 @@ class ColladaReader {
   void read() {
     const XMLElement& root = xml_.root();
     const std::string_view version = attribute(root, "version").value_or("");
-    if (!is_named(root, "COLLADA") || !(version.starts_with("1.4") || version.starts_with("1.5")))
+    if (!is_named(root, "COLLADA") || !contains(kVersions, version))
       xml_.fail(root, "no COLLADA document of version 1.4 or 1.5");
     const XMLElement* scene = nullptr;
     xml_.each(root, [&](const XMLElement& e) {
@@ -57,8 +59,9 @@ class ColladaReader {
         scene = &e;
       } else if (is_named(e, "library_animations")) {
         animated_ = true;
-      } else if (!is_named(e, "asset") && !is_named(e, "extra") &&
-                 !contains(kLibraries, e.Name())) {
+      } else if (is_named(e, "extra")) {
+        xml_.check_extra(e);
+      } else if (!is_named(e, "asset") && !contains(kLibraries, e.Name())) {
         xml_.fail_unknown(e);
       }
     });
@@ -103,7 +106,9 @@ class ColladaReader {
         physics_ = true;
       } else if (is_named(e, "instance_kinematics_scene")) {
         kinematics_ = true;
-      } else if (!is_named(e, "extra")) {
+      } else if (is_named(e, "extra")) {
+        xml_.check_extra(e);
+      } else {
         xml_.fail_unknown(e);
       }
     });
@@ -113,7 +118,9 @@ class ColladaReader {
     xml_.each(xml_.referred(*shown, "url", "visual_scene"), [&](const XMLElement& e) {
       if (is_named(e, "node")) {
         read_node(e, placement, nullptr, 0);
-      } else if (!is_named(e, "asset") && !is_named(e, "evaluate_scene") && !is_named(e, "extra")) {
+      } else if (is_named(e, "extra")) {
+        xml_.check_extra(e);
+      } else if (!is_named(e, "asset") && !is_named(e, "evaluate_scene")) {
         xml_.fail_unknown(e);
       }
     });
@@ -144,21 +151,34 @@ class ColladaReader {
           xml_.fail(*obstacle, tag(*obstacle) +
                                    " moves meshes and is not supported; apply transforms before "
                                    "exporting");
+        check_instance(e);
         place(xml_.referred(e, "url", "geometry"), placement);
       } else if (name == "instance_controller") {
         xml_.fail(e,
                   "a skinned or morphed mesh is not supported; apply its deformation before "
                   "exporting");
+      } else if (name == "extra") {
+        xml_.check_extra(e);
       } else if (!contains(kOther, name)) {
         xml_.fail_unknown(e);
       }
     });
   }
 
+  void check_instance(const XMLElement& instance) const {
+    xml_.each(instance, [&](const XMLElement& e) {
+      if (is_named(e, "extra")) {
+        xml_.check_extra(e);
+      } else if (!is_named(e, "bind_material")) {
+        xml_.fail_unknown(e);
+      }
+    });
+  }
+
   /// What may be in a node besides meshes and nodes.
-  static constexpr std::array<std::string_view, 10> kOther = {
-      "asset",  "extra",  "instance_camera", "instance_light", "lookat",
-      "matrix", "rotate", "scale",           "skew",           "translate"};
+  static constexpr std::array<std::string_view, 9> kOther = {
+      "asset",  "instance_camera", "instance_light", "lookat",   "matrix",
+      "rotate", "scale",           "skew",           "translate"};
 
   /// The placement that a transform element stands for; nullopt for other elements.
   [[nodiscard]] std::optional<Placement> transform(const XMLElement& e) {

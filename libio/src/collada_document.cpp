@@ -13,6 +13,28 @@ namespace {
 constexpr std::array<std::string_view, 6> kReferred = {"float_array", "geometry", "node",
                                                        "source",      "vertices", "visual_scene"};
 
+/// Of <technique> in <extra>: programs' own data on names, layers, looks, lights, cameras and
+/// bones.
+constexpr std::array<std::string_view, 19> kProfiles = {"AUTODESK",
+                                                        "BLENDER",
+                                                        "FCOLLADA",
+                                                        "GOOGLEEARTH",
+                                                        "MAX3D",
+                                                        "MAYA",
+                                                        "NVIDIA_FXCOMPOSER",
+                                                        "NvidiaFXComposer",
+                                                        "OGRE",
+                                                        "OpenCOLLADA",
+                                                        "OpenCOLLADA3dsMax",
+                                                        "OpenCOLLADAMaya",
+                                                        "OpenCOLLADA_Maya",
+                                                        "RENDERMONKEY",
+                                                        "SKETCHUP",
+                                                        "SketchUp",
+                                                        "XSI",
+                                                        "blender",
+                                                        "sketchup"};
+
 }  // namespace
 
 double ColladaDocument::metres_of(const XMLElement& unit) const {
@@ -69,6 +91,23 @@ std::uint64_t ColladaDocument::natural(const XMLElement& e, const char* name,
   if (number < 0 || number > 0xFFFFFFFFLL)
     fail(e, "the number " + in_quotes(*value) + " is out of range; the file is damaged");
   return static_cast<std::uint64_t>(number);
+}
+
+void ColladaDocument::check_extra(const XMLElement& extra) const {
+  each(extra, [&](const XMLElement& e) {
+    if (is_named(e, "asset")) return;
+    if (!is_named(e, "technique")) fail_unknown(e);
+    const std::string_view profile = need(e, "profile");
+    if (!contains(kProfiles, profile))
+      fail(e, "extra data of the profile " + in_quotes(profile) +
+                  " is not known and might hold geometry; export without it");
+    // By this, a joint's scale does not reach its children.
+    const XMLElement* const compensate = e.FirstChildElement("segment_scale_compensate");
+    if (compensate != nullptr && text(*compensate) != "0" && text(*compensate) != "false")
+      fail(*compensate,
+           "joints that compensate scales are not supported; apply transforms before "
+           "exporting");
+  });
 }
 
 std::vector<std::uint32_t> ColladaDocument::integers(const XMLElement& e) const {

@@ -40,6 +40,10 @@ class ColladaDocument : public XmlDocument {
   [[nodiscard]] std::uint64_t natural(const XMLElement& e, const char* name,
                                       std::optional<std::uint64_t> otherwise) const;
 
+  /// Vendors' data beside the standard's: fails unless their profiles are known to hold and move no
+  /// surface.
+  void check_extra(const XMLElement& extra) const;
+
   /// The natural numbers below 2^32 in an element's text.
   [[nodiscard]] std::vector<std::uint32_t> integers(const XMLElement& e) const;
 

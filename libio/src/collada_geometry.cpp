@@ -12,6 +12,7 @@ ColladaSurface ColladaGeometry::read(const XMLElement& geometry) {
   bool has_content = false;
   xml_.each(geometry, [&](const XMLElement& e) {
     const std::string_view name = e.Name();
+    if (name == "extra") xml_.check_extra(e);
     if (name == "asset" || name == "extra") return;
     if (std::exchange(has_content, true)) xml_.fail(e, "a geometry with two contents");
     if (name == "mesh") {
@@ -43,7 +44,9 @@ void ColladaGeometry::read_mesh(const XMLElement& mesh, ColladaSurface& surface)
       read_faces(e, *vertices, surface);
     } else if (name == "lines" || name == "linestrips") {
       ++lines_;
-    } else if (name != "source" && name != "vertices" && name != "extra") {
+    } else if (name == "extra") {
+      xml_.check_extra(e);
+    } else if (name != "source" && name != "vertices") {
       xml_.fail_unknown(e);
     }
   });
@@ -52,7 +55,10 @@ void ColladaGeometry::read_mesh(const XMLElement& mesh, ColladaSurface& surface)
 void ColladaGeometry::read_vertices(const XMLElement& vertices, std::vector<geom::Vec3>& points) {
   const XMLElement* position = nullptr;
   xml_.each(vertices, [&](const XMLElement& e) {
-    if (is_named(e, "extra")) return;
+    if (is_named(e, "extra")) {
+      xml_.check_extra(e);
+      return;
+    }
     if (!is_named(e, "input")) xml_.fail_unknown(e);
     if (xml_.need(e, "semantic") != "POSITION") return;
     if (position != nullptr) xml_.fail(e, "vertices with two positions");
@@ -149,7 +155,9 @@ void ColladaGeometry::read_faces(const XMLElement& faces, const XMLElement& vert
       sizes = xml_.integers(e);
     } else if (is_named(e, "ph")) {
       xml_.fail(e, "polygons with holes are not supported; triangulate before exporting");
-    } else if (!is_named(e, "input") && !is_named(e, "extra")) {
+    } else if (is_named(e, "extra")) {
+      xml_.check_extra(e);
+    } else if (!is_named(e, "input")) {
       xml_.fail_unknown(e);
     }
   });

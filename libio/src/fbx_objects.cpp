@@ -5,7 +5,12 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
 
 #include "bytes.h"
 #include "text.h"
@@ -53,12 +58,71 @@ constexpr std::array<std::string_view, 12> kAttributes = {
     "Camera", "CameraSwitcher", "Effector", "FKEffector", "IKEffector",    "Light",
     "Limb",   "LimbNode",       "Marker",   "Null",       "OpticalMarker", "Root"};
 
-/// Judges one object. @param type  its last text property, as "Mesh"; empty when it has none.
+/// Judges the objects one by one, then how they are connected.
 class ObjectCheck {
  public:
+  using Id = std::int64_t;
+  static constexpr Id kRoot = 0;  ///< of the scene, which is no object
+
   explicit ObjectCheck(const Source& source) : source_(source) {}
 
-  void operator()(std::string_view kind, std::string_view type, const char* where) {
+  /// @param type  its last text property, as "Mesh"; empty when it has none.
+  void object(std::string_view kind, std::string_view type, std::optional<Id> id,
+              const char* where) {
+    judge(kind, type, where);
+    if (!id || (kind != "Model" && kind != "Geometry")) return;
+    if (!objects_.try_emplace(*id, Object{kind, type, where}).second)
+      fail(source_, where,
+           "a second object of the number " + std::to_string(*id) + "; the file is damaged");
+  }
+
+  /// An object and what it belongs to. @param type  "OO": of two objects as wholes
+  void connection(std::string_view type, Id object, Id owner) {
+    if (type == "OO") owned_.emplace(owner, object);
+  }
+
+  /// What the scene does not show.
+  [[nodiscard]] std::vector<std::string> notes() const {
+    const auto is_model = [&](Id id) {
+      const auto found = objects_.find(id);
+      return found != objects_.end() && found->second.kind == "Model";
+    };
+    std::set<Id> shown{kRoot};
+    for (std::vector<Id> stack{kRoot}; !stack.empty();) {
+      const auto [first, last] = owned_.equal_range(stack.back());
+      stack.pop_back();
+      for (auto c = first; c != last; ++c)
+        if (is_model(c->second) && shown.insert(c->second).second) stack.push_back(c->second);
+    }
+    std::set<Id> placed;
+    for (const auto& [owner, id] : owned_) {
+      const auto found = objects_.find(id);
+      if (found == objects_.end() || found->second.kind != "Geometry" ||
+          found->second.type != "Mesh" || !is_model(owner))
+        continue;
+      if (!shown.contains(owner))
+        fail(source_, objects_.at(owner).where,
+             "a model with a mesh that is not connected to the scene's root; connect it, or "
+             "delete it");
+      placed.insert(id);
+    }
+    const auto hidden = std::ranges::count_if(objects_, [&](const auto& entry) {
+      return entry.second.kind == "Geometry" && entry.second.type == "Mesh" &&
+             !placed.contains(entry.first);
+    });
+    if (hidden == 0) return {};
+    return {counted(static_cast<std::size_t>(hidden), "mesh that no model shows was",
+                    "meshes that no model shows were") +
+            " left out."};
+  }
+
+ private:
+  struct Object {
+    std::string_view kind, type;
+    const char* where;
+  };
+
+  void judge(std::string_view kind, std::string_view type, const char* where) const {
     if (kind == "Geometry") {
       // A Shape is a mesh's deformation, which a Deformer would apply; a Line has no surface.
       if (type != "Mesh" && type != "Shape" && type != "Line")
@@ -79,8 +143,9 @@ class ObjectCheck {
     }
   }
 
- private:
   const Source& source_;
+  std::map<Id, Object> objects_;  ///< models and geometry
+  std::multimap<Id, Id> owned_;   ///< by owner
 };
 
 // --- binary ---
@@ -99,6 +164,7 @@ class BinaryObjects {
       const Record r = record(at, source_.bytes.size());
       if (r.end == 0) return;
       if (r.name == "Objects") read_objects(r);
+      if (r.name == "Connections") read_connections(r);
       at = r.end;
     }
   }
@@ -142,14 +208,33 @@ class BinaryObjects {
     for (std::size_t at = objects.children; at < objects.end;) {
       const Record r = record(at, objects.end);
       if (r.end == 0) return;
-      check_(r.name, last_text(r), source_.begin() + at);
+      const Values values = values_of(r);
+      check_.object(r.name, values.last_text,
+                    values.count > 0 ? std::optional(values.first[0]) : std::nullopt,
+                    source_.begin() + at);
       at = r.end;
     }
   }
 
-  /// The last property of type S.
-  [[nodiscard]] std::string_view last_text(const Record& r) const {
-    std::string_view text;
+  void read_connections(const Record& connections) {
+    for (std::size_t at = connections.children; at < connections.end;) {
+      const Record r = record(at, connections.end);
+      if (r.end == 0) return;
+      const Values values = values_of(r);
+      if (r.name == "C" && values.count == 2)
+        check_.connection(values.first_text, values.first[0], values.first[1]);
+      at = r.end;
+    }
+  }
+
+  struct Values {
+    std::string_view first_text, last_text;     ///< of type S
+    std::array<ObjectCheck::Id, 2> first = {};  ///< of type L
+    std::size_t count = 0;                      ///< of these
+  };
+
+  [[nodiscard]] Values values_of(const Record& r) const {
+    Values values;
     std::size_t at = r.first_property;
     for (std::uint64_t i = 0; i < r.properties; ++i) {
       if (at >= r.children) fail_damaged(r.at);
@@ -170,10 +255,15 @@ class BinaryObjects {
         size = head + load_little<std::uint32_t>(source_.begin() + at + (array ? 8 : 0));
       }
       if (size > r.children - at) fail_damaged(r.at);
-      if (type == 'S') text = source_.bytes.substr(at + 4, static_cast<std::size_t>(size) - 4);
+      if (type == 'S') {
+        values.last_text = source_.bytes.substr(at + 4, static_cast<std::size_t>(size) - 4);
+        if (values.first_text.empty()) values.first_text = values.last_text;
+      }
+      if (type == 'L' && values.count < values.first.size())
+        values.first[values.count++] = load_little<std::int64_t>(source_.begin() + at);
       at += static_cast<std::size_t>(size);
     }
-    return text;
+    return values;
   }
 
   const Source& source_;
@@ -192,31 +282,49 @@ class TextObjects {
 
   void read() {
     std::size_t depth = 0;
-    std::string_view key, type;  // of the record that is being read
+    std::string_view key, first_text, type;  // of the record that is being read
+    std::vector<ObjectCheck::Id> numbers;    // its first ones
     const char* where = at_;
-    bool in_objects = false;
+    std::string_view section;
+    const auto end_record = [&] {
+      if (depth == 1 && section == "Connections" && key == "C" && numbers.size() == 2)
+        check_.connection(first_text, numbers[0], numbers[1]);
+      key = first_text = type = {};
+      numbers.clear();
+    };
     while (at_ != source_.end()) {
       const char c = *at_;
       if (c == ';') {
         while (at_ != source_.end() && detail::char_class(*at_) != detail::kEol) ++at_;
       } else if (c == '"') {
         type = quoted();
+        if (first_text.empty()) first_text = type;
       } else if (c == '{') {
-        if (depth == 0) in_objects = key == "Objects";
-        if (depth == 1 && in_objects) check_(key, type, where);
+        if (depth == 0) section = key;
+        if (depth == 1 && section == "Objects")
+          check_.object(key, type, numbers.empty() ? std::nullopt : std::optional(numbers[0]),
+                        where);
+        end_record();
         ++depth;
         ++at_;
       } else if (c == '}') {
         if (depth == 0) fail(source_, at_, "a brace too many; the file is damaged");
+        end_record();
         --depth;
         ++at_;
       } else if (is_name(c)) {
         const char* const first = at_;
         while (at_ != source_.end() && is_name(*at_)) ++at_;
+        const std::string_view word(first, static_cast<std::size_t>(at_ - first));
+        ObjectCheck::Id number = 0;
         if (at_ != source_.end() && *at_ == ':') {
-          key = {first, static_cast<std::size_t>(at_ - first)};
-          type = {};
+          end_record();
+          key = word;
           where = first;
+        } else if (depth == 1 && numbers.size() < 2 &&
+                   std::from_chars(word.data(), word.data() + word.size(), number).ptr ==
+                       word.data() + word.size()) {
+          numbers.push_back(number);
         }
       } else {
         ++at_;
@@ -250,7 +358,7 @@ class TextObjects {
 
 }  // namespace
 
-void check_fbx_objects(const Source& source) {
+std::vector<std::string> check_fbx_objects(const Source& source) {
   Source named = source;
   named.text = !source.bytes.starts_with("Kaydara FBX Binary");
   ObjectCheck check(named);
@@ -259,6 +367,7 @@ void check_fbx_objects(const Source& source) {
   } else {
     BinaryObjects(named, check).read();
   }
+  return check.notes();
 }
 
 }  // namespace kaboum::io

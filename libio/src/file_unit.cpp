@@ -84,9 +84,15 @@ void scale(ReadResult& read, double factor, const std::string& name) {
                         ", is beyond the range of doubles; choose a factor nearer to 1");
     v = product;
   }
-  // Rounding may make neighbours equal.
+  // Rounding may make neighbours equal. Segments and points that were there stay.
+  std::vector<geom::Triangle> kept;
+  const std::vector<geom::Triangle> before = read.mesh.triangles;
   read.mesh = geom::weld(read.mesh);
-  const std::size_t collapsed = std::erase_if(read.mesh.triangles, has_equal_corners);
+  for (std::size_t t = 0; t < before.size(); ++t)
+    if (!has_equal_corners(read.mesh.triangles[t]) || has_equal_corners(before[t]))
+      kept.push_back(read.mesh.triangles[t]);
+  const std::size_t collapsed = before.size() - kept.size();
+  read.mesh.triangles = std::move(kept);
   if (collapsed > 0) {
     read.mesh = geom::weld(read.mesh);
     read.collapsed_triangles += collapsed;
@@ -95,6 +101,7 @@ void scale(ReadResult& read, double factor, const std::string& name) {
                   name + ": no triangle is left after scaling; choose a factor nearer to 1");
   }
   read.single_precision = false;
+  if (read.deviation > 0) read.deviation = scaled_bound(read.deviation, factor, read.mesh);
   read.notes.push_back("Its coordinates are multiplied by " + shortest_digits(factor) +
                        ", and what is said of it is about the products.");
   if (const auto metres = metres_of(read.unit)) read.unit = unit_of_metres(*metres / factor);

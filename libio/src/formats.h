@@ -21,6 +21,9 @@ ReadResult read_gltf(const Source& source, Format format);
 /// @throws Error{NotBuilt} without assimp.
 ReadResult read_fbx(const Source& source);
 bool has_assimp();
+/// STEP and IGES. @throws Error{NotBuilt} where the module is not there.
+ReadResult read_cad(const Source& source, Format format);
+bool has_cad();
 
 /// `mesh` holds only used vertices, all finite, no −0, and valid indices.
 std::vector<char> write_stl_binary(const geom::Mesh& mesh, const WriteOptions& options);

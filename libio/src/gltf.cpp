@@ -264,6 +264,17 @@ class GltfReader {
       file_.note(counted(unused, "mesh that the scene does not show was",
                          "meshes that the scene does not show were") +
                  " left out.");
+    std::size_t hidden = 0;
+    for (std::size_t i = 0; i < visited_.size(); ++i) {
+      const JsonItem node = file_.root().at("nodes").at(i);
+      if (visited_[i] || !node.has("mesh")) continue;
+      const std::uint64_t mesh = node.at("mesh").integer();
+      if (mesh < used_.size() && used_[mesh]) ++hidden;  // else the mesh is counted
+    }
+    if (hidden > 0)
+      file_.note(counted(hidden, "further node with a mesh, which the scene does not show, was",
+                         "further nodes with meshes, which the scene does not show, were") +
+                 " left out.");
     if (lines_ > 0)
       file_.note(counted(lines_, "set of lines or points was", "sets of lines or points were") +
                  " ignored.");

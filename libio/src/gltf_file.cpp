@@ -23,30 +23,65 @@ constexpr std::size_t kGlbHeader = 12, kChunkHeader = 8;
 constexpr int kMaxJsonDepth = 256;
 constexpr std::uint64_t kMaxInteger = std::uint64_t{1} << 53U;
 
-/// Extensions of looks, sound, light and names, wherever they stand.
-constexpr std::array<std::string_view, 12> kHarmlessPrefixes = {
-    "KHR_materials_", "EXT_materials_", "ADOBE_materials_", "KHR_texture_",
-    "EXT_texture_",   "MSFT_texture_",  "MSFT_packing_",    "KHR_lights_",
-    "EXT_lights_",    "KHR_audio",      "KHR_animation_",   "KHR_xmp"};
-constexpr std::array<std::string_view, 11> kHarmless = {"AGI_articulations",
+/// Extensions of looks, sound, light and names, wherever they stand. Names, not what they begin
+/// with: what is invented may move a vertex. AGI_articulations moves nodes by its initial values.
+constexpr std::array<std::string_view, 51> kHarmless = {"ADOBE_materials_clearcoat_specular",
+                                                        "ADOBE_materials_clearcoat_tint",
+                                                        "ADOBE_materials_thin_transparency",
                                                         "AGI_stk_metadata",
                                                         "CESIUM_primitive_outline",
                                                         "EXT_feature_metadata",
                                                         "EXT_instance_features",
+                                                        "EXT_lights_ies",
+                                                        "EXT_lights_image_based",
                                                         "EXT_mesh_features",
+                                                        "EXT_mesh_manifold",
                                                         "EXT_structural_metadata",
+                                                        "EXT_texture_avif",
+                                                        "EXT_texture_webp",
+                                                        "FB_geometry_metadata",
                                                         "FB_ngon_encoding",
+                                                        "GODOT_single_root",
+                                                        "KHR_animation_pointer",
+                                                        "KHR_audio",
+                                                        "KHR_audio_emitter",
+                                                        "KHR_audio_graph",
+                                                        "KHR_lights_environment",
+                                                        "KHR_lights_punctual",
+                                                        "KHR_materials_anisotropy",
+                                                        "KHR_materials_clearcoat",
+                                                        "KHR_materials_common",
+                                                        "KHR_materials_diffuse_transmission",
+                                                        "KHR_materials_dispersion",
+                                                        "KHR_materials_emissive_strength",
+                                                        "KHR_materials_ior",
+                                                        "KHR_materials_iridescence",
+                                                        "KHR_materials_pbrSpecularGlossiness",
+                                                        "KHR_materials_sheen",
+                                                        "KHR_materials_specular",
+                                                        "KHR_materials_transmission",
+                                                        "KHR_materials_unlit",
+                                                        "KHR_materials_variants",
+                                                        "KHR_materials_volume",
                                                         "KHR_node_hoverability",
                                                         "KHR_node_selectability",
-                                                        "MSFT_lod"};
+                                                        "KHR_texture_basisu",
+                                                        "KHR_texture_transform",
+                                                        "KHR_xmp",
+                                                        "KHR_xmp_json_ld",
+                                                        "MSFT_audio_emitter",
+                                                        "MSFT_lod",
+                                                        "MSFT_packing_normalRoughnessMetallic",
+                                                        "MSFT_packing_occlusionRoughnessMetallic",
+                                                        "MSFT_texture_dds",
+                                                        "NV_materials_mdl",
+                                                        "VRMC_materials_mtoon"};
 /// Extensions of geometry that the readers of accessors and nodes understand.
 constexpr std::array<std::string_view, 2> kImplemented = {"EXT_mesh_gpu_instancing",
                                                           "KHR_mesh_quantization"};
 
 bool harmless(std::string_view name) {
-  return std::ranges::any_of(kHarmlessPrefixes,
-                             [&](std::string_view prefix) { return name.starts_with(prefix); }) ||
-         std::ranges::find(kHarmless, name) != kHarmless.end();
+  return std::ranges::find(kHarmless, name) != kHarmless.end();
 }
 
 /// What to do about an extension that is not read.

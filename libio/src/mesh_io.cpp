@@ -16,26 +16,32 @@ struct FormatInfo {
   std::string_view name;
   Format format;
   bool writable;
-  bool needs_assimp;
+  bool (*available)();
   bool canonical;  ///< listed; the others are further spellings
 };
 
+bool always() { return true; }
+
 constexpr std::array kFormats = {
-    FormatInfo{"3mf", Format::ThreeMf, false, false, true},
-    FormatInfo{"collada", Format::Collada, false, false, false},
-    FormatInfo{"dae", Format::Collada, false, false, true},
-    FormatInfo{"fbx", Format::Fbx, false, true, true},
-    FormatInfo{"glb", Format::Glb, true, false, true},
-    FormatInfo{"gltf", Format::Gltf, false, false, true},
-    FormatInfo{"obj", Format::Obj, true, false, true},
-    FormatInfo{"off", Format::Off, true, false, true},
-    FormatInfo{"ply", Format::Ply, true, false, true},
-    FormatInfo{"ply-ascii", Format::PlyAscii, true, false, true},
-    FormatInfo{"stl", Format::Stl, true, false, true},
-    FormatInfo{"stl-ascii", Format::StlAscii, true, false, true},
-    FormatInfo{"vrml", Format::Vrml, false, false, false},
-    FormatInfo{"wrl", Format::Vrml, false, false, true},
-    FormatInfo{"x3d", Format::X3d, false, false, true},
+    FormatInfo{"3mf", Format::ThreeMf, false, always, true},
+    FormatInfo{"collada", Format::Collada, false, always, false},
+    FormatInfo{"dae", Format::Collada, false, always, true},
+    FormatInfo{"fbx", Format::Fbx, false, has_assimp, true},
+    FormatInfo{"glb", Format::Glb, true, always, true},
+    FormatInfo{"gltf", Format::Gltf, false, always, true},
+    FormatInfo{"iges", Format::Iges, false, has_cad, true},
+    FormatInfo{"igs", Format::Iges, false, has_cad, false},
+    FormatInfo{"obj", Format::Obj, true, always, true},
+    FormatInfo{"off", Format::Off, true, always, true},
+    FormatInfo{"ply", Format::Ply, true, always, true},
+    FormatInfo{"ply-ascii", Format::PlyAscii, true, always, true},
+    FormatInfo{"step", Format::Step, false, has_cad, true},
+    FormatInfo{"stl", Format::Stl, true, always, true},
+    FormatInfo{"stl-ascii", Format::StlAscii, true, always, true},
+    FormatInfo{"stp", Format::Step, false, has_cad, false},
+    FormatInfo{"vrml", Format::Vrml, false, always, false},
+    FormatInfo{"wrl", Format::Vrml, false, always, true},
+    FormatInfo{"x3d", Format::X3d, false, always, true},
 };
 
 std::string joined(const std::vector<std::string>& names) {
@@ -76,6 +82,9 @@ ReadResult read_as(const Source& source, Format format) {
       return read_gltf(source, format);
     case Format::Fbx:
       return read_fbx(source);
+    case Format::Step:
+    case Format::Iges:
+      return read_cad(source, format);
   }
   throw Error(ErrorCode::InvalidArgument, "unknown format");
 }
@@ -150,7 +159,7 @@ std::optional<Format> format_from_name(std::string_view text) {
 }
 
 std::vector<std::string> readable_formats() {
-  return names_of([](const FormatInfo& info) { return !info.needs_assimp || has_assimp(); });
+  return names_of([](const FormatInfo& info) { return info.available(); });
 }
 
 std::vector<std::string> writable_formats() {
@@ -170,6 +179,8 @@ bool holds_double(Format format) {
       return false;
   }
 }
+
+bool is_cad(Format format) { return format == Format::Step || format == Format::Iges; }
 
 ReadResult parse_mesh(std::span<const char> bytes, Format format, const std::string& name,
                       const std::filesystem::path& base_directory) {

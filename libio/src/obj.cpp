@@ -1,5 +1,7 @@
 // Wavefront OBJ: vertices and faces. Statements that make other surfaces, and unknown ones, are
-// refused; those that cannot make a surface are ignored.
+// refused; those that cannot make a surface are ignored. A backslash at the end of a line joins the
+// next one to it, but in a statement that is ignored it takes no other statement into it: a name
+// may end so.
 
 #include <algorithm>
 #include <array>
@@ -22,7 +24,8 @@ constexpr std::array<std::string_view, 31> kIgnored = {
     "end",        "hole", "lod",      "maplib", "mg",        "parm",  "res",      "scrv",
     "shadow_obj", "sp",   "stech",    "step",   "trace_obj", "trim",  "usemap"};
 constexpr std::array<std::string_view, 4> kSurfaces = {"bsp", "bzp", "cdp", "surf"};
-constexpr std::array<std::string_view, 3> kCurves = {"cdc", "curv", "curv2"};
+constexpr std::array<std::string_view, 5> kLines = {"cdc", "curv", "curv2", "l", "p"};
+constexpr std::array<std::string_view, 5> kOthers = {"call", "csh", "f", "fo", "v"};
 
 class ObjReader {
  public:
@@ -32,14 +35,19 @@ class ObjReader {
         builder_(source) {}
 
   ReadResult read() {
-    for (; !scan_.done(); scan_.skip_line()) {
+    while (!scan_.done()) {
       const std::string_view record = scan_.token_on_line();
       if (record == "v") {
         read_vertex();
+        scan_.skip_line();
       } else if (record == "f" || record == "fo") {
         read_face();
+        scan_.skip_line();
       } else if (!record.empty()) {
         read_other(record);
+        skip_other();
+      } else {
+        scan_.skip_line();
       }
     }
     if (highest_at_ != nullptr && highest_ >= builder_.point_count())
@@ -48,6 +56,11 @@ class ObjReader {
       builder_.note(counted(lines_, "statement of points, lines or curves was",
                             "statements of points, lines or curves were") +
                     " ignored.");
+    if (taken_apart_ > 0)
+      builder_.note(counted(taken_apart_, "line that ends", "lines that end") +
+                    " with a backslash in a statement that is ignored (first: " +
+                    place(source_, first_taken_apart_) +
+                    "): the next line is a statement, and was read as one.");
     return builder_.finish(Format::Obj, false);
   }
 
@@ -63,20 +76,49 @@ class ObjReader {
     }
     // A fourth number alone is a weight, by which some programs divide; more are colours.
     const std::string_view weight = scan_.token_on_line();
-    if (!weight.empty() && scan_.token_on_line().empty() && parse_coordinate(source_, weight) != 1)
+    std::size_t more = 0;
+    for (auto token = weight; !token.empty(); token = scan_.token_on_line(), ++more)
+      if (!to_double(token))
+        fail(source_, token.data(),
+             in_quotes(token) + " where a vertex goes on" +
+                 (is_statement(token) ? ", after a backslash at the end of the line before" : "") +
+                 "; the file is damaged");
+    if (more == 1 && parse_coordinate(source_, weight) != 1)
       fail(source_, where,
            "a vertex with the weight " + in_quotes(weight) + "; export without weights");
     builder_.add_point(p, where);
   }
 
+  template <std::size_t N>
+  static bool is_in(const std::array<std::string_view, N>& names, std::string_view name) {
+    return std::ranges::find(names, name) != names.end();
+  }
+
+  static bool is_statement(std::string_view word) {
+    return is_in(kIgnored, word) || is_in(kSurfaces, word) || is_in(kLines, word) ||
+           is_in(kOthers, word);
+  }
+
+  /// Skips the rest of a statement that is ignored, further lines included.
+  void skip_other() {
+    const char* where = scan_.last();
+    while (scan_.skip_to_next_line()) {
+      const char* const next = scan_.position();
+      const bool other = is_statement(scan_.token_on_line());
+      scan_.seek(next);
+      if (other) {
+        if (++taken_apart_ == 1) first_taken_apart_ = where;
+        return;
+      }
+      where = next;
+    }
+  }
+
   void read_other(std::string_view record) {
-    const auto is_in = [&](const auto& names) {
-      return std::ranges::find(names, record) != names.end();
-    };
-    if (is_in(kIgnored)) return;
-    if (record == "p" || record == "l" || is_in(kCurves)) {
+    if (is_in(kIgnored, record)) return;
+    if (is_in(kLines, record)) {
       ++lines_;
-    } else if (is_in(kSurfaces)) {
+    } else if (is_in(kSurfaces, record)) {
       fail(source_, record.data(),
            "a free-form surface (" + std::string(record) + "); export it as polygons");
     } else if (record == "call" || record == "csh") {
@@ -122,7 +164,9 @@ class ObjReader {
   std::vector<std::uint32_t> corners_;
   std::uint32_t highest_ = 0;
   const char* highest_at_ = nullptr;
-  std::size_t lines_ = 0;  ///< and points and curves
+  std::size_t lines_ = 0;        ///< and points and curves
+  std::size_t taken_apart_ = 0;  ///< lines that a backslash joins with a statement
+  const char* first_taken_apart_ = nullptr;
 };
 
 }  // namespace

@@ -339,19 +339,15 @@ class DataReader {
     return static_cast<std::uint64_t>(n);
   }
 
-  /// Elements of unknown names may be faces in disguise: those with lists of integers or with three
-  /// and more integers that are wide enough for indices.
+  /// Elements of unknown names may be faces, patches or spheres: those with lists, or with three
+  /// and more numbers.
   void refuse_geometry(const Element& element) const {
     constexpr std::array<std::string_view, 6> kNoFaces = {
         "camera", "edge", "material", "multi_texture_face", "multi_texture_vertex", "user"};
     if (element.count == 0 || std::ranges::find(kNoFaces, element.name) != kNoFaces.end()) return;
-    std::size_t integers = 0, lists = 0;
-    for (const Property& p : element.properties) {
-      const bool integer = p.type != Scalar::Float32 && p.type != Scalar::Float64;
-      lists += p.count && integer ? 1 : 0;
-      integers += !p.count && integer && size_of(p.type) >= 2 ? 1 : 0;
-    }
-    if (lists > 0 || integers >= 3)
+    const bool lists = std::ranges::any_of(element.properties,
+                                           [](const Property& p) { return p.count.has_value(); });
+    if (lists || element.properties.size() >= 3)
       fail(source_, "the PLY element " + in_quotes(element.name) +
                         " may hold geometry and cannot be read; export the mesh with elements "
                         "'vertex' and 'face' only");
@@ -366,6 +362,8 @@ class DataReader {
         axis = p.name[0] - 'x';
       if (axis >= 0) ++found[static_cast<std::size_t>(axis)];
       axes.push_back(axis);
+      if (p.count && p.type != Scalar::Float32 && p.type != Scalar::Float64)
+        builder_.note("The list " + in_quotes(p.name) + " of element 'vertex' was ignored.");
     }
     if (found != std::array<int, 3>{1, 1, 1})
       fail(source_, "element 'vertex' needs each of the properties x, y and z once; export again");

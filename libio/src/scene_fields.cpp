@@ -1,9 +1,12 @@
 // Values of VRML 97 and X3D: numbers, truth values and nodes of fields, or why there are none.
 #include "scene_fields.h"
 
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <optional>
+
+#include "names.h"
 
 namespace kaboum::io {
 
@@ -79,8 +82,11 @@ const SceneNode* SceneFields::only(const SceneField& field) const {
 
 bool SceneFields::read_common(const SceneField& field) const {
   if (field.name == "metadata") {
+    constexpr std::array<std::string_view, 6> kMetadata = {"MetadataBoolean", "MetadataDouble",
+                                                           "MetadataFloat",   "MetadataInteger",
+                                                           "MetadataSet",     "MetadataString"};
     for (const SceneNode* const n : field.nodes)
-      if (!n->type.starts_with("Metadata"))
+      if (!contains(kMetadata, n->type))
         fail_at(n->where, in_quotes(n->type) + " where metadata is expected");
     return true;
   }

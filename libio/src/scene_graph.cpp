@@ -53,6 +53,7 @@ struct Scene {
   MeshBuilder& builder;
   SceneCopier copier;
   std::optional<double> metres;  ///< the unit that the outermost file states
+  fs::path directory;            ///< of the outermost file
   std::size_t depth = 0;         ///< of nested nodes
   std::vector<fs::path> inlined = {};
   bool routed = false;
@@ -266,7 +267,8 @@ class SceneReader {
     return std::string(text.substr(0, text.find('"')));
   }
 
-  /// Only files below or beside this one, never the network, devices or absolute places.
+  /// Only files in the outermost file's folder or below, never the network, devices or absolute
+  /// places.
   [[nodiscard]] fs::path inline_path(std::string_view url, const char* where) const {
     const fs::path relative(url);
     if (url.find("://") != std::string_view::npos || relative.is_absolute())
@@ -277,6 +279,11 @@ class SceneReader {
           where, "Inline of " + in_quotes(url) +
                      " needs the file's directory; read the file by its path, not from a pipe");
     fs::path path = file_.source.directory / relative;
+    const fs::path inside =
+        path.lexically_normal().lexically_relative(scene_.directory.lexically_normal());
+    if (inside.empty() || *inside.begin() == "..")
+      fields_.fail_at(where, "Inline of " + in_quotes(url) +
+                                 " leaves the folder of the file; put it there, or below");
     std::error_code ignored;
     if (!fs::is_regular_file(path, ignored))
       fields_.fail_at(where, "the inlined file " + in_quotes(path.string()) +
@@ -337,7 +344,7 @@ ReadResult read_scene(const Source& source, Format format) {
   } else {
     parse_x3d(file);
   }
-  Scene scene{builder, SceneCopier(builder), file.metres};
+  Scene scene{builder, SceneCopier(builder), file.metres, source.directory};
   SceneReader(file, scene, 0, nullptr).read({});
   add_notes(scene);
   ReadResult result = builder.finish(format, false);

@@ -105,4 +105,15 @@ void Scanner::skip_line() {
   }
 }
 
+bool Scanner::skip_to_next_line() {
+  while (at_ != source_.end()) {
+    if (at_joint()) {
+      skip_joint();
+      return true;
+    }
+    if (detail::char_class(*at_++) == detail::kEol) return false;
+  }
+  return false;
+}
+
 }  // namespace kaboum::io

@@ -80,6 +80,9 @@ class Scanner {
 
   /// Moves to the start of the next line.
   void skip_line();
+  /// The same, also past a backslash that joins this line with the next. @return whether there was
+  /// one
+  bool skip_to_next_line();
 
   void seek(const char* position) { at_ = last_ = position; }
   [[nodiscard]] bool done() const { return at_ == source_.end(); }

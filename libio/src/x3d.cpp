@@ -31,6 +31,14 @@ std::string_view default_field(std::string_view type) {
       "IndexedFaceSet",          "IndexedQuadSet", "IndexedTriangleFanSet", "IndexedTriangleSet",
       "IndexedTriangleStripSet", "QuadSet",        "TriangleFanSet",        "TriangleSet",
       "TriangleStripSet"};
+  constexpr std::array<std::string_view, 3> kVertexAttributes = {
+      "FloatVertexAttribute", "Matrix3VertexAttribute", "Matrix4VertexAttribute"};
+  constexpr std::array<std::string_view, 5> kTextureCoordinates = {
+      "MultiTextureCoordinate", "TextureCoordinate", "TextureCoordinate3D", "TextureCoordinate4D",
+      "TextureCoordinateGenerator"};
+  constexpr std::array<std::string_view, 6> kMetadata = {"MetadataBoolean", "MetadataDouble",
+                                                         "MetadataFloat",   "MetadataInteger",
+                                                         "MetadataSet",     "MetadataString"};
   constexpr std::array<std::string_view, 21> kOtherGeometry = {"Arc2D",
                                                                "ArcClose2D",
                                                                "Box",
@@ -58,9 +66,9 @@ std::string_view default_field(std::string_view type) {
   if (type == "Normal") return "normal";
   if (type == "Color" || type == "ColorRGBA") return "color";
   if (type == "FogCoordinate") return "fogCoord";
-  if (type.ends_with("VertexAttribute")) return "attrib";
-  if (type.starts_with("TextureCoordinate") || type == "MultiTextureCoordinate") return "texCoord";
-  if (type.starts_with("Metadata")) return "metadata";
+  if (contains(kVertexAttributes, type)) return "attrib";
+  if (contains(kTextureCoordinates, type)) return "texCoord";
+  if (contains(kMetadata, type)) return "metadata";
   return "children";
 }
 
@@ -113,7 +121,7 @@ class X3dParser {
     if (const auto name = attribute(e, "DEF")) defined_[*name] = &node;
     for (const auto* a = e.FirstAttribute(); a != nullptr; a = a->Next()) {
       const std::string_view name = a->Name();
-      if (contains(kNoFields, name) || name.starts_with("xmlns")) continue;
+      if (contains(kNoFields, name) || name == "xmlns" || name.starts_with("xmlns:")) continue;
       node.field(name, node.where).text = a->Value();
     }
     const auto read_child = [&](const XMLElement& child) {

@@ -7,6 +7,7 @@
 #include <Eigen/QR>
 #include <cmath>
 
+#include "improve.h"
 #include "tolerances.h"
 
 namespace kaboum::kinematics {
@@ -14,6 +15,44 @@ namespace {
 
 double square(double x) { return x * x; }
 double length(double x, double y) { return std::sqrt(x * x + y * y); }
+
+}  // namespace
+
+ShoulderTurns shoulder_turns(const ClosedForm& form, const FreeWithin& within, double side,
+                             const Vec3& t, const Vec3& z) {
+  ShoulderTurns out;
+  const double across = length(t.x(), t.y()), rest = square(across) - square(form.lateral);
+  if (rest < -kBorder * square(form.reach)) return out;
+  const double r = rest > 0 ? std::sqrt(rest) : 0, near = across / form.reach;
+  const bool on_axis = across <= within.length;
+  // With five axes joint 1 is to put axis 5 into a plane through axis 1, too: that says more of it
+  // than the wrist's place does where this is near axis 1, or at the border of reach.
+  const bool five = form.family == Family::FiveAxes;
+  const double level = length(z.x(), z.y());
+  if (five && level > within.angle && (level > 1e-3 || level > r / form.reach)) {
+    out.angle = {std::atan2(z.y(), z.x()), std::atan2(z.y(), z.x()) + kPi};
+    out.count = 2;
+    out.nearly = near < kNearlySingular && level < kNearlySingular;
+    out.condition = level;
+    return out;
+  }
+  out.free = on_axis && std::abs(form.lateral) <= within.length;
+  out.nearly =
+      !out.free && near < kNearlySingular && std::abs(form.lateral) < kNearlySingular * form.reach;
+  if (on_axis) return out;
+  out.single = r < kNothing * form.reach;
+  out.count = out.single ? 1 : 2;
+  out.condition = std::min(1.0, r / form.reach);
+  const double d = side * form.lateral;
+  for (int branch = 0; branch < out.count; ++branch) {
+    const double kappa = branch == 0 ? r : -r;
+    out.angle[static_cast<std::size_t>(branch)] =
+        std::atan2(kappa * t.y() - d * t.x(), kappa * t.x() + d * t.y());
+  }
+  return out;
+}
+
+namespace {
 
 double wrapped(double angle) {
   while (angle > kPi) angle -= 2 * kPi;
@@ -31,7 +70,7 @@ class Solver {
  public:
   Solver(const ClosedForm& form, const Transform& target, const SolveOptions& options,
          Solutions& out)
-      : f_(form), options_(options), out_(out) {
+      : f_(form), within_(form, options.bound), options_(options), out_(out) {
     const Transform flange = form.base_inverse * target * form.tool_inverse;
     n_ = flange.linear.col(0);
     s_ = flange.linear.col(1);
@@ -51,10 +90,9 @@ class Solver {
     for_each_shoulder(-1, [&] {
       const Vec3 z1(turn_[0].s, -turn_[0].c, 0);
       const double zn = z1.dot(n_), zs = z1.dot(s_), zz = z1.dot(z_), off = length(zn, zs);
-      const bool free = off < kNothing;
+      const bool free = look_at_wrist(off, 5);
       for (int branch = 0; branch < (free ? 1 : 2); ++branch) {
         const double sigma = branch == 0 ? 1 : -1;
-        wrist_ = free ? kWrist : kRegular;
         turn_[4] = turn(4, std::atan2(sigma * off, zz));
         turn_[5] = free ? kept(5) : turn(5, std::atan2(-sigma * zs, sigma * zn));
         const Vec3 z4 = -(turn_[5].s * n_ + turn_[5].c * s_);
@@ -87,32 +125,29 @@ class Solver {
     return {q, std::sin(angle), std::cos(angle)};
   }
 
-  /// Joint 1 turns the wrist's sideways place to `lateral`: side · (c0 ty − s0 tx) = lateral.
-  /// `along_` is what is left: c0 tx + s0 ty.
+  /// `along_` is what joint 1 leaves of the wrist's place: c0 tx + s0 ty.
   template <class Next>
   void for_each_shoulder(double side, const Next& next) {
-    const double across = length(t_.x(), t_.y()), rest = square(across) - square(f_.lateral);
-    if (rest < -kBorder * square(reach_)) return;
-    const double r = rest > 0 ? std::sqrt(rest) : 0;
-    const bool on_axis = across < kNothing * reach_, single = r < kNothing * reach_;
-    const double d = side * f_.lateral;
-    shoulder_ = single ? kShoulder : kRegular;
-    // With five axes, the wrist on axis 1 leaves two turns: those that put axis 5 where it is to
-    // be.
-    const bool by_direction =
-        on_axis && f_.family == Family::FiveAxes && length(z_.x(), z_.y()) >= kNothing;
-    if (by_direction) shoulder_ = kRegular;
-    for (int branch = 0; branch < (single && !by_direction ? 1 : 2); ++branch) {
-      const double kappa = branch == 0 ? r : -r;
-      if (by_direction)
-        turn_[0] = turn(0, std::atan2(z_.y(), z_.x()) + (branch == 0 ? 0 : kPi));
-      else if (on_axis)
-        turn_[0] = kept(0);
-      else
-        turn_[0] = turn(0, std::atan2(kappa * t_.y() - d * t_.x(), kappa * t_.x() + d * t_.y()));
+    const ShoulderTurns turns = shoulder_turns(f_, within_, side, t_, z_);
+    out_.nearly_singular |= turns.nearly;
+    shoulder_ = turns.free || turns.single ? kShoulder : kRegular;
+    free_shoulder_ = turns.free ? 1U : 0U;
+    shoulder_condition_ = turns.condition;
+    for (int branch = 0; branch < (turns.free ? 1 : turns.count); ++branch) {
+      turn_[0] = turns.free ? kept(0) : turn(0, turns.angle[static_cast<std::size_t>(branch)]);
       along_ = turn_[0].c * t_.x() + turn_[0].s * t_.y();
       next();
     }
+  }
+
+  /// @param off  sine of the angle between two axes; where they are aligned `joint` is free.
+  bool look_at_wrist(double off, std::size_t joint) {
+    const bool free = off <= within_.angle;
+    out_.nearly_singular |= !free && off < kNearlySingular;
+    wrist_ = free ? kWrist : kRegular;
+    free_wrist_ = free ? 1U << joint : 0U;
+    wrist_condition_ = free ? 1 : off;
+    return free;
   }
 
   /// Joints 2 and 3 of two links in a plane: a2 e^{iθ1} + second e^{i(θ1 + θ2 + bend)} = x + iy.
@@ -124,9 +159,12 @@ class Solver {
     cosine = std::min(1.0, std::max(-1.0, cosine));
     const double sine = std::sqrt(1 - square(cosine)), inner = std::atan2(sine, cosine);
     const double k1 = f_.a2 + second * cosine;
-    const bool folded = v < square(kNothing * reach_);
-    elbow_ = sine == 0 || folded ? kElbow : kRegular;
-    for (int branch = 0; branch < (sine == 0 ? 1 : 2); ++branch) {
+    const bool folded = v <= square(within_.length), single = sine == 0 || folded;
+    out_.nearly_singular |= !folded && v < square(kNearlySingular * reach_);
+    elbow_ = single ? kElbow : kRegular;
+    free_elbow_ = folded ? 1U << 1U : 0U;
+    elbow_condition_ = folded ? 1 : sine * std::min(1.0, std::sqrt(v) / reach_);
+    for (int branch = 0; branch < (single ? 1 : 2); ++branch) {
       const double epsilon = branch == 0 ? 1 : -1, k2 = epsilon * second * sine;
       turn_[1] = folded ? kept(1) : turn(1, std::atan2(k1 * y - k2 * x, k1 * x + k2 * y));
       turn_[2] = turn(2, epsilon * inner - bend);
@@ -147,8 +185,7 @@ class Solver {
     const Vec3 n(x3.dot(n_), y3.dot(n_), z3.dot(n_)), s(x3.dot(s_), y3.dot(s_), z3.dot(s_)),
         z(x3.dot(z_), y3.dot(z_), z3.dot(z_));
     const double off = length(z.x(), z.y());
-    const bool free = off < kNothing;
-    wrist_ = free ? kWrist : kRegular;
+    const bool free = look_at_wrist(off, 3);
     const double a3 = free ? 0 : std::atan2(z.y(), z.x()), a4 = std::atan2(off, -z.z());
     turn_[3] = free ? kept(3) : turn(3, a3);
     turn_[4] = turn(4, a4);
@@ -220,18 +257,28 @@ class Solver {
     out.position_error = position + model.position;
     out.rotation_error = rotation + model.rotation;
     out.singular = shoulder_ | elbow_ | wrist_;
+    out.free = free_shoulder_ | free_elbow_ | free_wrist_;
+    // Errors of the target and the formulas, as far as singular places near it make them larger;
+    // the square root where two solutions coincide is covered by the largest.
+    constexpr double kRounding = 1e-14, kLargest = 1e-4;
+    const double condition = shoulder_condition_ * elbow_condition_ * wrist_condition_;
+    out.accuracy = std::min(kLargest, kRounding / std::max(condition, 1e-300));
   }
 
   const ClosedForm& f_;
+  const FreeWithin within_;
   const SolveOptions& options_;
   Solutions& out_;
   Vec3 n_, s_, z_, t_;  ///< the target: axes and origin of the last frame, in the first
   double reach_ = 0, along_ = 0, c12_ = 1, s12_ = 0;
   unsigned shoulder_ = kRegular, elbow_ = kRegular, wrist_ = kRegular;
+  unsigned free_shoulder_ = 0, free_elbow_ = 0, free_wrist_ = 0;
+  double shoulder_condition_ = 1, elbow_condition_ = 1, wrist_condition_ = 1;
   std::array<Turn, 6> turn_;
 };
 
-/// Newton's method on the arm itself. Whether it came within the bound.
+}  // namespace
+
 bool improve(const ClosedForm& f, const Transform& target, const SolveOptions& options,
              Solution& solution) {
   const std::span<double> q(solution.q.data(), f.arm.axes.size());
@@ -254,8 +301,6 @@ bool improve(const ClosedForm& f, const Transform& target, const SolveOptions& o
   for (double& value : q) value = wrapped(value);
   return true;
 }
-
-}  // namespace
 
 Solutions solve(const ClosedForm& form, const Transform& target, const SolveOptions& options) {
   Solutions found;

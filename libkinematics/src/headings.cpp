@@ -20,6 +20,14 @@ Transform turned(const Transform& pose, double angle) {
 
 }  // namespace
 
+bool has_any_heading(const ClosedForm& form, const Transform& target) {
+  const Transform tool = form.base_inverse * target;
+  const Vec3 axis = tool.linear * form.tool_inverse.linear.col(2);
+  const Vec3& p = tool.translation;
+  return std::hypot(axis.x(), axis.y()) < kNearlySingular ||
+         std::hypot(p.x(), p.y()) < kNearlySingular * form.reach;
+}
+
 std::vector<Transform> with_other_headings(const ClosedForm& form, const Transform& target) {
   if (form.family != Family::FiveAxes) return {};
   const Transform tool = form.base_inverse * target;  // in the first frame: axis 1 is z

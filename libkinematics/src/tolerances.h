@@ -1,5 +1,8 @@
 #pragma once
 
+#include <kaboum/kinematics/closed_form.h>
+
+#include <algorithm>
 #include <numbers>
 
 /// What the closed forms and the samplers count as nothing.
@@ -11,5 +14,33 @@ inline constexpr double kNothing = 1e-12;
 /// So little out of reach (in parts of the arm's) may be rounding, or the model's error: taken as
 /// the border, and whether that reaches the target is what the check of all solutions decides.
 inline constexpr double kBorder = 1e-6;
+/// So near (in radians, or parts of the reach) to where a joint is free, rounding of the target
+/// moves it visibly: what is found then need not be all.
+inline constexpr double kNearlySingular = 1e-6;
+
+/// So near to where a joint is free it is: with any value of it the target is met within the bound
+/// of solutions.
+struct FreeWithin {
+  double angle = 0, length = 0;
+
+  FreeWithin(const ClosedForm& form, double bound)
+      : angle(std::min(bound, 1e-9) / 8 + 4 * form.model_error.rotation),
+        length(std::min(bound, 1e-9) / 8 * form.reach + 4 * form.model_error.position) {}
+};
+
+/// Angles of joint 1 that turn the wrist's sideways place to `lateral`.
+struct ShoulderTurns {
+  std::array<double, 2> angle{};  ///< in the formulas
+  int count = 0;                  ///< 0: out of reach
+  bool free = false;              ///< any will do: `count` is 0
+  bool single = false;            ///< two coincide
+  bool nearly = false;            ///< nearly free
+  double condition = 1;           ///< errors of the target are larger by 1 / this in the angle
+};
+
+/// @param side  joint 1 is to meet side · (c0 ty − s0 tx) = lateral.
+/// @param t, z  origin of the target's last frame, direction of its last axis, in the first frame.
+ShoulderTurns shoulder_turns(const ClosedForm& form, const FreeWithin& within, double side,
+                             const Vec3& t, const Vec3& z);
 
 }  // namespace kaboum::kinematics

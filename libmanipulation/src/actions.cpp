@@ -247,9 +247,11 @@ Answer release(Geometry& geometry, const Question& question) {
 Answer move(Geometry& geometry, const Question& question) {
   const std::size_t r = robot_named(geometry, question.arguments[0]);
   const std::vector<double> end = configuration_of(question.arguments[1], geometry.world.robots[r]);
-  return perform(
+  Answer answer = perform(
       geometry, question, {"move", {r}, {}}, [&](Sequence& s) { return s.go(r, end); },
       [&](const Sequence&) { return question.arguments[1]; });  // "home"
+  answer.fixed = true;
+  return answer;
 }
 
 Answer is_inside(Geometry& geometry, const Question& question) {

@@ -90,7 +90,9 @@ json to_json(const std::string& place, const Entry& entry) {
           {"kind", static_cast<int>(entry.answer.kind)},
           {"value", entry.answer.value},
           {"payload", entry.answer.payload},
-          {"reason", entry.answer.reason}};
+          {"reason", entry.answer.reason},
+          {"chosen", entry.answer.chosen},
+          {"fixed", entry.answer.fixed}};
 }
 
 Entry entry_of(const json& j) {
@@ -102,8 +104,9 @@ Entry entry_of(const json& j) {
   // `get` would convert any number.
   const auto kind = j.at("kind").get_ref<const json::number_unsigned_t&>();
   if (kind > 2) throw Error(ErrorCode::InvalidInput, "no kind of answer");
-  out.answer = {static_cast<Answer::Kind>(kind), j.at("value").get<std::string>(),
-                j.at("payload").get<std::string>(), j.at("reason").get<std::string>()};
+  out.answer = {static_cast<Answer::Kind>(kind),    j.at("value").get<std::string>(),
+                j.at("payload").get<std::string>(), j.at("reason").get<std::string>(),
+                j.at("chosen").get<bool>(),         j.at("fixed").get<bool>()};
   return out;
 }
 

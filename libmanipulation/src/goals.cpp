@@ -1,46 +1,82 @@
-// Inverse kinematics of a robot of a scene: all configurations where there is a closed form, those
-// that are found elsewhere.
+// Inverse kinematics of a robot of a scene: all configurations where there is a closed form, with
+// some of each family that a free joint makes; those that are found elsewhere.
 #include "goals.h"
 
-#include <kaboum/kinematics/closed_form.h>
 #include <kaboum/kinematics/copies.h>
 #include <kaboum/kinematics/numeric.h>
+#include <kaboum/kinematics/solution_set.h>
 #include <kaboum/manipulation/words.h>
 #include <kaboum/robot/kinematics.h>
 
+#include <algorithm>
+
 namespace kaboum::manipulation {
 namespace ik = kaboum::kinematics;
+namespace {
+
+/// Configurations of a family that are taken at first.
+constexpr std::size_t kOfFamily = 24;
+/// Between the values that words keep. [rad, or length]
+constexpr double kWordStep = 1e-9;
+
+/// As words keep it. Rounding may take a value past its limit: then the next one within is taken.
+std::vector<double> rounded(std::vector<double> q, const world::RobotModel& robot) {
+  std::vector<double> out = configuration_of(word_of(q), robot);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const robot::Variable& v = robot.kinematics.variables[i];
+    if (v.lower && out[i] < *v.lower) q[i] = out[i] + kWordStep;
+    if (v.upper && out[i] > *v.upper) q[i] = out[i] - kWordStep;
+  }
+  return configuration_of(word_of(q), robot);
+}
+
+/// Whether no joint moves but the arm's.
+bool is_alone(const robot::Robot& robot, const ik::Arm& arm) {
+  const auto moving = std::ranges::count_if(robot.joints, [](const robot::Joint& joint) {
+    return joint.type != robot::JointType::Fixed;
+  });
+  return static_cast<std::size_t>(moving) == arm.axes.size();
+}
+
+}  // namespace
 
 void add_goals(Goals& goals, const world::RobotModel& robot, std::uint32_t link,
                const world::Transform& target, const std::vector<double>& from,
-               std::uint64_t seed) {
+               const GoalSearch& search) {
   const robot::Robot& kinematics = robot.kinematics;
   const ik::Arm arm = ik::arm_of(kinematics, kinematics.links[0].name, kinematics.links[link].name);
   const world::Transform in_base = ik::inverse(robot.base) * target;
   std::vector<double> reference;
   for (const std::uint32_t variable : arm.variables) reference.push_back(from[variable]);
+  goals.alone = goals.alone && is_alone(kinematics, arm);
 
   const auto add = [&](std::span<const double> q) {
     const auto near = ik::nearest_copy(arm, q, reference);
     if (!near) return;
     std::vector<double> full = from;
     for (std::size_t i = 0; i < near->size(); ++i) full[arm.variables[i]] = (*near)[i];
-    full = configuration_of(word_of(full), robot);
-    if (!robot::find_out_of_limits(kinematics, full))
+    full = rounded(std::move(full), robot);
+    if (robot::find_out_of_limits(kinematics, full))
+      goals.all = false;  // limits closer than words can tell
+    else
       goals.configurations.push_back(std::move(full));
   };
   if (const auto form = ik::recognise(arm)) {
-    ik::SolveOptions options;
-    std::copy(reference.begin(), reference.end(), options.reference.begin());
-    for (const ik::Solution& solution : ik::solve(*form, in_base, options)) {
-      if (solution.singular & ik::kWrist) goals.all = false;  // a joint is free
+    ik::SolutionSetOptions options;
+    std::copy(reference.begin(), reference.end(), options.solve.reference.begin());
+    options.representatives = kOfFamily * (search.attempt + 1);
+    const ik::SolutionSet set = ik::solve_set(*form, in_base, options);
+    goals.all = goals.all && set.complete && set.families.empty();
+    for (const ik::Solution& solution : set.isolated)
       add(std::span(solution.q).first(arm.axes.size()));
-    }
+    for (const ik::SolutionFamily& family : set.families)
+      for (const ik::Solution& solution : family.representatives)
+        add(std::span(solution.q).first(arm.axes.size()));
     return;
   }
   goals.all = false;
   ik::NumericOptions options;
-  options.seed = seed;
+  options.seed = search.seed;
   for (const ik::NumericSolution& solution : ik::solve_numeric_all(arm, in_base, options))
     add(solution.q);
 }

@@ -10,13 +10,30 @@ namespace kaboum::manipulation {
 /// Configurations of a robot that bring a link to a pose.
 struct Goals {
   std::vector<std::vector<double>> configurations;  ///< as words keep them; within the limits
-  bool all = true;  ///< there are no others, whole turns apart, up to the accuracy of closed forms
+  /// Nothing else reaches the poses, whole turns apart, up to the accuracy of closed forms: there
+  /// is no joint that is free, or nearly, and no search that may have missed one.
+  bool all = true;
+  bool alone = true;        ///< the robot has no joints but those that move the link
+  std::string listed = {};  ///< what of the scene they are for: "the 4 grasps …"; empty: one pose
+
+  /// "none of the 4 grasps …"
+  [[nodiscard]] std::string none() const {
+    return (listed.starts_with("the only") ? "not even " : "none of ") + listed;
+  }
+};
+
+/// How goals are looked for.
+struct GoalSearch {
+  std::uint64_t seed = 1;  ///< where the arm has no closed form
+  /// Of families with a free joint: more configurations are taken from them.
+  unsigned attempt = 0;
 };
 
 /// Adds those for a pose of a link in the world. Joints that do not move the link stay as in
-/// `from`; of configurations that differ by whole turns, the nearest to it is taken.
-/// @param seed  of the search, where the arm has no closed form.
+/// `from`; of configurations that differ by whole turns, the nearest to it is taken. Where a joint
+/// is free, configurations evenly spread over its range are.
 void add_goals(Goals& goals, const world::RobotModel& robot, std::uint32_t link,
-               const world::Transform& target, const std::vector<double>& from, std::uint64_t seed);
+               const world::Transform& target, const std::vector<double>& from,
+               const GoalSearch& search);
 
 }  // namespace kaboum::manipulation

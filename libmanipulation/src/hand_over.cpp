@@ -78,7 +78,10 @@ bool Sequence::hand_over(std::size_t from, std::size_t object, std::size_t to) {
   if (!held_by(from, object))
     return fail(Answer::Kind::Impossible, robots[from].name + " does not hold " + name);
   if (from == to) return fail(Answer::Kind::Impossible, "a robot hands nothing to itself");
-  if (meet_somewhere(from, object, to)) return true;
+  if (meet_somewhere(from, object, to)) {
+    chosen_ = true;
+    return true;
+  }
   return fail(Answer::Kind::NotFound, "no place was found at which " + robots[to].name + " takes " +
                                           name + " from " + robots[from].name);
 }
@@ -93,7 +96,10 @@ bool Sequence::wander(std::size_t robot) {
     q = configuration_of(manipulation::word_of(q), model);
     world::WorldState then = state_;
     then.q[robot] = q;
-    if (is_free(then) && go(robot, q)) return true;
+    if (is_free(then) && go(robot, q)) {
+      chosen_ = true;
+      return true;
+    }
   }
   return fail(Answer::Kind::NotFound, "no configuration to move to was found");
 }

@@ -53,7 +53,9 @@ Answer MotionSequence::found(std::string value) const {
     for (const auto& [object, held] : motion.holds)
       path["holds"][geometry_.world.objects[object].name] = model.kinematics.links[held.link].name;
   }
-  return Answer::found(std::move(value), paths.dump());
+  Answer out = Answer::found(std::move(value), paths.dump());
+  out.chosen = chosen_;
+  return out;
 }
 
 Transform MotionSequence::pose_of_link(std::size_t robot, std::uint32_t link) const {
@@ -88,7 +90,7 @@ void MotionSequence::add_goals(Goals& goals, std::size_t robot, std::uint32_t li
                                const Transform& target) const {
   const Stopwatch watch;
   manipulation::add_goals(goals, geometry_.world.robots[robot], link, target, state_.q[robot],
-                          question_.seed);
+                          {question_.seed, question_.attempt});
   if (GeometryCounters* counters = geometry_.options.counters.get()) {
     ++counters->ik_calls;
     counters->ik_seconds += watch.seconds();

@@ -62,6 +62,7 @@ class MotionSequence {
   std::vector<Motion> motions_;
   plan::Answer::Kind failed_ = plan::Answer::Kind::Impossible;
   std::string reason_;
+  bool chosen_ = false;  ///< something was chosen among several things that might do
   Random random_;
   std::vector<robot::Path> last_paths_;  ///< of each robot
 

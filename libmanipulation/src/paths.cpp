@@ -109,10 +109,16 @@ bool MotionSequence::go(std::size_t robot, const Goals& goals) {
   switch (answer.outcome) {
     case Outcome::Found:
       record(robot, answer.path);
+      chosen_ = chosen_ || goals.configurations.size() > 1 || !goals.all || !goals.alone;
       return true;
-    case Outcome::GoalInContact:
-      return none(goals.all,
-                  "blocked at its end: " + name_of(geometry_.world, answer.contact->items));
+    case Outcome::GoalInContact: {
+      const bool all = goals.all && goals.alone;
+      std::string where = "blocked at its end";
+      if (!goals.listed.empty())
+        where = (all ? goals.none() : "no configuration that was tried for " + goals.listed) +
+                " is free of contact";
+      return none(all, where + ": " + name_of(geometry_.world, answer.contact->items));
+    }
     case Outcome::StartInContact:
       return none(true, "the robot cannot start: contact of " +
                             name_of(geometry_.world, answer.contact->items));

@@ -5,6 +5,7 @@
 #include <kaboum/kinematics/arm.h>
 #include <kaboum/manipulation/words.h>
 
+#include <algorithm>
 #include <numbers>
 
 namespace kaboum::manipulation {
@@ -30,12 +31,19 @@ std::vector<double> Sequence::turns() {
 
 Goals Sequence::goals_of_reach(std::size_t robot, std::size_t object) const {
   const world::RobotModel& model = geometry_.world.robots[robot];
+  const world::Object& thing = geometry_.world.objects[object];
   Goals goals;
-  for (const world::Grasp& grasp : geometry_.world.objects[object].grasps)
+  for (const world::Grasp& grasp : thing.grasps)
     for (const world::ToolFrame& tool : model.tools)
       if (fits(tool, grasp))
         add_goals(goals, robot, tool.link,
                   pose_of_object(object) * inverse(grasp.pose) * inverse(tool.pose));
+  const auto fitting = std::ranges::count_if(thing.grasps, [&](const world::Grasp& grasp) {
+    return std::ranges::any_of(model.tools,
+                               [&](const world::ToolFrame& tool) { return fits(tool, grasp); });
+  });
+  goals.listed = (fitting == 1 ? "the only grasp" : "the " + std::to_string(fitting) + " grasps") +
+                 (" listed for " + thing.name);
   return goals;
 }
 
@@ -57,8 +65,11 @@ std::optional<Goals> Sequence::goals_in_reach(std::size_t robot, std::size_t obj
     return none(Answer::Kind::Impossible, thing.name + " is held already");
   Goals goals = goals_of_reach(robot, object);
   if (!goals.configurations.empty()) return goals;
-  return none(goals.all ? Answer::Kind::Impossible : Answer::Kind::NotFound,
-              thing.name + " is out of reach");
+  if (goals.all)
+    return none(Answer::Kind::Impossible, thing.name + " is out of reach: " + goals.none() +
+                                              " can be reached by " + model.name);
+  return none(Answer::Kind::NotFound,
+              thing.name + " was not found to be in reach: nothing was found for " + goals.listed);
 }
 
 bool Sequence::reach(std::size_t robot, std::size_t object) {

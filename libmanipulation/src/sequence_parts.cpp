@@ -120,10 +120,12 @@ bool Sequence::place(std::size_t robot, std::size_t object, std::size_t support,
   const geom::Vec3 bottom = feature_named(thing, "bottom", Kind::Point, "putting it down").point;
   // One after the other: an object that is put to the same place again is likely to be in the same
   // state again.
-  fail(Answer::Kind::NotFound, thing.name + " on " + below.name + " is out of reach");
+  fail(Answer::Kind::NotFound, "nothing was found to be in reach");
   const std::vector<double> angles = turns();
+  std::size_t points = 0;
   for (const world::Feature& feature : below.features) {
     if (feature.kind != Kind::Point || !feature.name.starts_with("top")) continue;
+    ++points;
     const geom::Vec3 top = pose_of_object(support) * feature.point + gap * geom::Vec3::UnitZ();
     for (const double angle : angles) {
       Transform pose = turned(geom::Vec3::UnitZ(), angle);
@@ -136,9 +138,14 @@ bool Sequence::place(std::size_t robot, std::size_t object, std::size_t support,
       if (goals.configurations.empty()) continue;
       if (!(upright ? go_upright(robot, object, *held, goals, link) : go(robot, goals))) continue;
       target_ = Target{object, pose, std::nullopt, held->link, 0};
+      chosen_ = true;
       return true;
     }
   }
+  if (failed_ == Answer::Kind::NotFound)
+    reason_ = thing.name + " on " + below.name + ": " + std::to_string(points) +
+              (points == 1 ? " point 'top…'" : " points 'top…'") + " of the scene and " +
+              std::to_string(angles.size()) + " turns were tried; the last: " + reason_;
   return false;
 }
 
@@ -196,6 +203,7 @@ bool Sequence::mount(std::size_t robot, std::size_t object, std::size_t onto) {
       if (!go(robot, one)) continue;
       record(robot, *line);
       target_ = Target{object, pose, onto, held->link, depth};
+      chosen_ = true;
       return true;
     }
   }
@@ -233,6 +241,7 @@ bool Sequence::lift(std::size_t robot, std::size_t object, double height) {
   if (!is_free(robot, *line))
     return fail(Answer::Kind::NotFound, name + " is not free to be lifted");
   record(robot, thinned(std::move(*line), [&](const robot::Path& p) { return is_free(robot, p); }));
+  chosen_ = true;
   return true;
 }
 

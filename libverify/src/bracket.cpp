@@ -220,18 +220,16 @@ class Farthest {
 };
 
 /// In the meshes' unit.
-Bracket bracket_faces(const MeshPair& meshes, const std::vector<std::uint32_t>& faces,
-                      bool to_solid, const Pieces& target, const BracketEffort& effort) {
+Bracket bracket_faces(const MeshPair& meshes, const std::vector<Face>& faces, bool to_solid,
+                      const Pieces& target, const BracketEffort& effort) {
   std::vector<Part> parts;
   parts.reserve(faces.size());
-  for (const std::uint32_t f : faces)
-    parts.push_back({{meshes.corner(f, 0), meshes.corner(f, 1), meshes.corner(f, 2)},
-                     f,
+  for (const Face& f : faces)
+    parts.push_back({{meshes.point(f.v[0]), meshes.point(f.v[1]), meshes.point(f.v[2])},
+                     f.source,
                      0,
                      std::numeric_limits<double>::infinity()});
-  Bracket result = Farthest(meshes, target, to_solid).search(std::move(parts), effort);
-  if (!faces.empty()) result.triangle = meshes.face(result.triangle).source;
-  return result;
+  return Farthest(meshes, target, to_solid).search(std::move(parts), effort);
 }
 
 Bracket outside_of(const MeshPair& meshes, Bracket bracket) {
@@ -262,8 +260,9 @@ Bracket bracket_distance(const geom::Mesh& from, std::span<const std::uint32_t> 
   const MeshPair meshes(part, to);
   const std::optional<Pieces> target = measurable(meshes, to_solid, effort.max_work);
   if (!target) return {};
-  std::vector<std::uint32_t> faces;
-  for (std::uint32_t f = meshes.begin(kInside); f < meshes.end(kInside); ++f) faces.push_back(f);
+  std::vector<Face> faces = meshes.repeated(kInside);  // segments and points are measured as well
+  faces.insert(faces.end(), meshes.faces().begin() + meshes.begin(kInside),
+               meshes.faces().begin() + meshes.end(kInside));
   Bracket result = outside_of(meshes, bracket_faces(meshes, faces, to_solid, *target, effort));
   if (!triangles.empty()) result.triangle = triangles[result.triangle];
   return result;
@@ -275,9 +274,9 @@ Bracket bracket_solid(const geom::Mesh& inner, const geom::Mesh& outer, const Cl
   const std::optional<Pieces> target = measurable(meshes, true);
   if (!target || !solid.witness) return {};
   const std::vector<std::uint32_t> offending = offending_faces(meshes, solid);
-  std::vector<std::uint32_t> of_inner;
+  std::vector<Face> of_inner;
   for (const std::uint32_t f : offending)
-    if (meshes.face(f).chain == kInside) of_inner.push_back(f);
+    if (meshes.face(f).chain == kInside) of_inner.push_back(meshes.face(f));
   const double slack = rounding_of_distances(meshes.largest_coordinate());
   const Triangles triangles(meshes, target->parts);
   const NearestTriangle perhaps(triangles, target->perhaps);

@@ -84,8 +84,21 @@ struct Crossing {
 /// Where face f meets the plane that its corners have the given sides of.
 Crossing crossing(const Face& f, const std::array<Sign, 3>& sides);
 /// Sides of f's corners with respect to g's plane; common vertices are on it.
-std::array<Sign, 3> sides_of(const MeshPair& meshes, const Face& f, std::uint32_t g);
+template <class Meshes>
+std::array<Sign, 3> sides_of(const Meshes& meshes, const Face& f, std::uint32_t g) {
+  std::array<Sign, 3> sides;
+  for (int k = 0; k < 3; ++k) {
+    sides[k] =
+        meshes.face(g).place_of(f.v[k]) >= 0 ? Sign::Zero : meshes.side(g, meshes.point(f.v[k]));
+  }
+  return sides;
+}
 /// Order of two ends along the common line of both planes: `p` of one face, `q` of the other.
-Sign order_of(const MeshPair& meshes, const Crossing::End& p, const Crossing::End& q);
+template <class Meshes>
+Sign order_of(const Meshes& meshes, const Crossing::End& p, const Crossing::End& q) {
+  if (p.from == q.from || p.from == q.to || p.to == q.from || p.to == q.to) return Sign::Zero;
+  return geom::orient3d(meshes.point(p.from), meshes.point(p.to), meshes.point(q.from),
+                        meshes.point(q.to));
+}
 
 }  // namespace kaboum::verify

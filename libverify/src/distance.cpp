@@ -179,6 +179,21 @@ class Judge {
   const DistanceClaimOptions& options_;
 };
 
+/// Whether a triangle without area of what is measured to is as near to a point as that.
+bool near_without_area(const MeshPair& meshes, const Vec3& p, double distance) {
+  const auto is_near = [&](const Face& face) {
+    const Vec3 q =
+        closest_point(p, meshes.point(face.v[0]), meshes.point(face.v[1]), meshes.point(face.v[2]));
+    return (q - p).norm() <= distance;
+  };
+  const std::vector<Face>& repeated = meshes.repeated(kOutside);
+  if (std::any_of(repeated.begin(), repeated.end(), is_near)) return true;
+  if (meshes.without_area(kOutside) == 0) return false;
+  return std::any_of(meshes.faces().begin() + meshes.begin(kOutside),
+                     meshes.faces().begin() + meshes.end(kOutside),
+                     [&](const Face& face) { return face.axis < 0 && is_near(face); });
+}
+
 }  // namespace
 
 DistanceClaim verify_distance(const geom::Mesh& from, const geom::Mesh& to, double epsilon,
@@ -190,8 +205,16 @@ DistanceClaim verify_distance(const geom::Mesh& from, const geom::Mesh& to, doub
   }
   const double slack = rounding_of_distances(meshes.largest_coordinate());
   const Judge judge(meshes, epsilon * meshes.scale(), slack, options);
-  const std::uint32_t count = meshes.count(kInside);
+  // Segments and points are measured as what they are.
+  std::vector<Face> faces = meshes.repeated(kInside);
+  faces.insert(faces.end(), meshes.faces().begin() + meshes.begin(kInside),
+               meshes.faces().begin() + meshes.end(kInside));
+  const auto count = static_cast<std::uint32_t>(faces.size());
   DistanceClaim result;
+  if (count == 0) {
+    result.reason = "the mesh that is measured from has no triangles";
+    return result;
+  }
   if (meshes.tree(kOutside).empty()) {
     result.reason = "no triangle of the mesh that is measured to has an area";
     return result;
@@ -202,8 +225,8 @@ DistanceClaim verify_distance(const geom::Mesh& from, const geom::Mesh& to, doub
     const std::uint32_t size = std::min(kBlock, count - first);
     claims.assign(size, {});
     verify::parallel_for(std::uint32_t{0}, size, [&](std::uint32_t i) {
-      const std::uint32_t f = first + i;
-      claims[i] = judge(meshes.corner(f, 0), meshes.corner(f, 1), meshes.corner(f, 2));
+      const std::array<std::uint32_t, 3>& v = faces[first + i].v;
+      claims[i] = judge(meshes.point(v[0]), meshes.point(v[1]), meshes.point(v[2]));
     });
     for (std::uint32_t i = 0; i < size; ++i) {
       const DistanceClaim& claim = claims[i];
@@ -211,7 +234,7 @@ DistanceClaim verify_distance(const geom::Mesh& from, const geom::Mesh& to, doub
       if (claim.largest > result.largest) {
         result.largest = claim.largest;
         result.at = claim.at;
-        result.triangle = meshes.face(first + i).source;
+        result.triangle = faces[first + i].source;
       }
       if (claim.answer == Answer::Refuted ||
           (claim.answer == Answer::Undecided && result.answer == Answer::Verified)) {
@@ -219,7 +242,13 @@ DistanceClaim verify_distance(const geom::Mesh& from, const geom::Mesh& to, doub
         result.reason = claim.reason;
       }
     }
-    if (result.answer == Answer::Refuted) break;
+    if (result.answer == Answer::Refuted) {
+      if (!options.to_solid && near_without_area(meshes, result.at, result.largest + 2 * slack)) {
+        result.answer = Answer::Undecided;
+        result.reason = "the point found is near a triangle without area, which is passed over";
+      }
+      break;
+    }
     if (result.pieces > options.max_pieces) {
       result.answer = Answer::Undecided;
       result.reason = "too many parts of triangles would have to be looked at";

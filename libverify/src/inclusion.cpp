@@ -4,14 +4,18 @@
 #include <kaboum/verify/inclusion.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <map>
 #include <mutex>
 #include <set>
 
 #include "allowance.h"
 #include "arrangement.h"
 #include "cell_sample.h"
+#include "nearest.h"
 #include "parallel.h"
+#include "point_in_solid.h"
 #include "uncut_values.h"
 #include "witness.h"
 
@@ -122,6 +126,26 @@ class Decision {
     }
   }
 
+  /// The surface claim for the inner chain's triangles without area: the segments and points that
+  /// they are.
+  /// @pre the claim was decided for those with area
+  void decide_without_area() {
+    std::vector<Face> thin = meshes_.repeated(kInside);
+    for (std::uint32_t f = meshes_.begin(kInside); f < meshes_.end(kInside); ++f)
+      if (meshes_.face(f).axis < 0) thin.push_back(meshes_.face(f));
+    if (thin.empty()) return;
+    say("triangles without area");
+    std::set<std::uint32_t> open = left_out_;  // faces that need not lie in the outer solid
+    for (const Offence& offence : surface_.list) open.insert(offence.face);
+    const std::vector<char> undone = allowance_.loop(thin.size(), [&](std::size_t i) {
+      if (const std::optional<Vec3> at = outside_of(thin[i], open)) {
+        const std::lock_guard lock(surface_.mutex);
+        thin_.try_emplace(thin[i].source, *at);
+      }
+    });
+    for (std::size_t i = 0; i < undone.size(); ++i) thin_left_out_ += undone[i] != 0 ? 1 : 0;
+  }
+
   /// Turns what was found into answers; claims that nothing refutes keep theirs.
   void conclude(Inclusion& result) {
     conclude(result.solid, solid_, false, result.relative,
@@ -130,8 +154,8 @@ class Decision {
     conclude(result.surface, surface_, true, false,
              "a part of the inner mesh's surface is outside the outer solid");
     result.samples = samples_;
-    result.left_out = left_out_.size();
-    result.limited = result.limited || !left_out_.empty();
+    result.left_out = left_out_.size() + thin_left_out_;
+    result.limited = result.limited || result.left_out > 0;
     result.contacts = arrangement_.mutual_cuts();
   }
 
@@ -312,6 +336,33 @@ class Decision {
     });
   }
 
+  /// A point of a triangle without area that is not in the outer solid. What is an edge, or a
+  /// corner, of a face that lies in it does as well.
+  [[nodiscard]] std::optional<Vec3> outside_of(const Face& thin,
+                                               const std::set<std::uint32_t>& open) const {
+    std::array<std::uint32_t, 3> v = thin.v;
+    // Along a line this is the order on it.
+    std::sort(v.begin(), v.end(), [&](std::uint32_t a, std::uint32_t b) {
+      const Vec3 &p = meshes_.point(a), &q = meshes_.point(b);
+      return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
+    });
+    const auto is_held = [&](std::uint32_t a, std::uint32_t b) {
+      const auto around = meshes_.around_edge(a, b);
+      return std::any_of(around.begin(), around.end(), [&](std::uint32_t f) {
+        const Face& face = meshes_.face(f);
+        return face.chain == kInside && face.axis >= 0 && face.place_of(a) >= 0 &&
+               face.place_of(b) >= 0 && !open.contains(f);
+      });
+    };
+    if (is_held(v[0], v[2])) return std::nullopt;
+    for (const auto& [a, b] : {std::pair{v[0], v[1]}, {v[1], v[2]}}) {
+      if (is_held(a, b) || (a == b && v[0] != v[2])) continue;
+      if (auto at = segment_outside(meshes_, kOutside, meshes_.point(a), meshes_.point(b)))
+        return at;
+    }
+    return std::nullopt;
+  }
+
   struct Offences {
     std::mutex mutex;
     std::vector<Offence> list;
@@ -333,11 +384,40 @@ class Decision {
       (face.chain == kInside ? claim.inner_triangles : claim.outer_triangles)
           .push_back(face.source);
     }
-    if (offences.list.empty()) return;
+    const bool thin = on_surface && !thin_.empty();
+    if (thin) {
+      for (const auto& [source, at] : thin_) claim.inner_triangles.push_back(source);
+      std::sort(claim.inner_triangles.begin(), claim.inner_triangles.end());
+    }
+    if (offences.list.empty() && !thin) return;
     claim.answer = Answer::Refuted;
     claim.reason = reason;
     say("a witness");
-    claim.witness = find_witness(meshes_, offences.list, on_surface, relative);
+    claim.witness = offences.list.empty()
+                        ? thin_witness()
+                        : find_witness(meshes_, offences.list, on_surface, relative);
+  }
+
+  /// The farthest of what triangles without area have outside.
+  [[nodiscard]] Witness thin_witness() const {
+    const NearestTriangle nearest(meshes_, kOutside);
+    std::optional<Witness> best;
+    const auto look_at = [&](const Vec3& p, bool exact) {
+      const double depth = nearest.distance(p);
+      if (!best || (exact != best->exact ? exact : depth > best->depth))
+        best = Witness{p, depth, exact};
+    };
+    const auto look_at_corners = [&](const Face& face) {
+      if (!thin_.contains(face.source)) return;
+      for (const std::uint32_t v : face.v)
+        if (winding_at(meshes_, kOutside, meshes_.point(v)).value_or(1) <= 0)
+          look_at(meshes_.point(v), true);
+    };
+    for (const Face& face : meshes_.repeated(kInside)) look_at_corners(face);
+    for (std::uint32_t f = meshes_.begin(kInside); f < meshes_.end(kInside); ++f)
+      if (meshes_.face(f).axis < 0) look_at_corners(meshes_.face(f));
+    for (const auto& [source, at] : thin_) look_at(at, false);
+    return {meshes_.point_outside(best->point), meshes_.length_outside(best->depth), best->exact};
   }
 
   const MeshPair& meshes_;
@@ -351,6 +431,9 @@ class Decision {
   std::vector<std::uint8_t> decided_;
   std::atomic<std::size_t> samples_ = 0;
   Offences solid_, surface_;
+  /// Triangles without area, by their number, with a point that is not in the outer solid, rounded.
+  std::map<std::uint32_t, Vec3> thin_;
+  std::size_t thin_left_out_ = 0;
 };
 
 }  // namespace
@@ -366,8 +449,8 @@ Inclusion verify_inclusion(const geom::Mesh& inner, const geom::Mesh& outer,
   result.inner_closed = result.inner_open_edges == 0;
   result.outer_closed = result.outer_open_edges == 0;
   result.triangles_without_area = meshes.without_area(kInside) + meshes.without_area(kOutside) +
-                                  meshes.repeated_corners(kInside) +
-                                  meshes.repeated_corners(kOutside);
+                                  meshes.repeated(kInside).size() +
+                                  meshes.repeated(kOutside).size();
   const bool same_border = meshes.same_border();
 
   // Claims that have a meaning count as true until they are refuted.
@@ -384,6 +467,18 @@ Inclusion verify_inclusion(const geom::Mesh& inner, const geom::Mesh& outer,
       undefined(result.solid, "the meshes are not closed and have different borders");
   }
 
+  // Nothing is no part of anything, and what has no area has no solid.
+  if (inner.triangles.empty()) {
+    undefined(result.solid, "the inner mesh has no triangles");
+    undefined(result.surface, "the inner mesh has no triangles");
+    return result;
+  }
+  const bool has_area = !meshes.tree(kInside).empty();
+  if (!has_area) {
+    result.relative = false;
+    undefined(result.solid, "no triangle of the inner mesh has an area, so that it has no solid");
+  }
+
   if (options.surface_only) {
     result.relative = false;
     undefined(result.solid, "only the surface claim was asked for");
@@ -391,7 +486,9 @@ Inclusion verify_inclusion(const geom::Mesh& inner, const geom::Mesh& outer,
 
   Decision decision(meshes, options);
   try {
-    if (options.surface_only) {
+    if (!has_area) {
+      // segments and points only
+    } else if (options.surface_only) {
       if (result.outer_closed) decision.decide_surface_within_allowance();
     } else if (result.relative) {
       decision.decide_difference();
@@ -400,6 +497,7 @@ Inclusion verify_inclusion(const geom::Mesh& inner, const geom::Mesh& outer,
     } else if (result.outer_closed) {
       decision.decide_surface();
     }
+    if (result.outer_closed) decision.decide_without_area();
   } catch (const Error& error) {
     if (error.code() != ErrorCode::LimitReached) throw;
     result.limited = true;

@@ -89,7 +89,8 @@ MeshPair::MeshPair(const geom::Mesh& inside, const geom::Mesh& outside) {
       face.chain = static_cast<std::uint8_t>(chain);
       face.source = t;
       if (face.v[0] == face.v[1] || face.v[1] == face.v[2] || face.v[2] == face.v[0]) {
-        ++repeated_[chain];
+        face.axis = -1;
+        repeated_[chain].push_back(face);
         continue;
       }
       faces_.push_back(face);

@@ -36,8 +36,8 @@ struct Face {
 };
 
 /// Both meshes with one set of vertices, equal coordinates merged (−0 = +0): faces of the inside
-/// chain first. Faces with repeated corners are left out; faces without area stay, as they count in
-/// the balance of edges, but are marked.
+/// chain first. Faces with repeated corners are kept apart; faces without area stay among the
+/// others, as they count in the balance of edges, but are marked.
 ///
 /// Coordinates are the meshes' times one power of two that brings the largest to about 1, so that
 /// products neither overflow nor underflow; if some coordinate would not survive that exactly, they
@@ -82,7 +82,8 @@ class MeshPair {
   [[nodiscard]] std::size_t unbalanced(OperandMask chains, bool difference) const;
 
   [[nodiscard]] std::size_t without_area(int chain) const { return without_area_[chain]; }
-  [[nodiscard]] std::size_t repeated_corners(int chain) const { return repeated_[chain]; }
+  /// The faces with repeated corners.
+  [[nodiscard]] const std::vector<Face>& repeated(int chain) const { return repeated_[chain]; }
 
   /// Boxes of the faces with area.
   [[nodiscard]] const BoxTree& tree(int chain) const { return tree_[chain]; }
@@ -101,7 +102,8 @@ class MeshPair {
   std::vector<Face> faces_;
   std::uint32_t split_ = 0;
   std::vector<std::uint32_t> first_, incident_;
-  std::array<std::size_t, 2> without_area_{}, repeated_{};
+  std::array<std::size_t, 2> without_area_{};
+  std::array<std::vector<Face>, 2> repeated_;
   std::array<BoxTree, 2> tree_;
 };
 

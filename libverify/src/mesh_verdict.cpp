@@ -112,6 +112,7 @@ Answer answer_of(const MeshVerdict& verdict, Claims claims) {
   if (verdict.convex) besides.push_back(verdict.convex->answer);
   for (const DistanceVerdict& d : verdict.distances) besides.push_back(d.claim.answer);
   if (verdict.depth) besides.push_back(verdict.depth->answer);
+  if (verdict.exact_points) besides.push_back(verdict.exact_points->answer);
   const auto any = [](const std::vector<Answer>& answers, Answer a) {
     return std::find(answers.begin(), answers.end(), a) != answers.end();
   };
@@ -138,6 +139,11 @@ MeshVerdict decide(const MeshQuestion& q,
   out.vacuous = q.claims == Claims::Solid && is_inside_out(q.inner());
   show("measuring what sticks out");
   measure_depths(q, out);
+  if (q.exact_points && q.relation != Relation::Inner) {
+    show("deciding: points of exact faces");
+    out.exact_points =
+        verify_points(*q.exact_points, q.outer(), q.set != nullptr ? q.set->margin : 0);
+  }
   if (enclosure) enclosure(out);
   if (q.bound) decide_distances(q, options, out);
   out.answer = answer_of(out, q.claims);

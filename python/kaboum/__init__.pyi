@@ -40,6 +40,8 @@ class Mesh:
     @property
     def unit(self) -> str: ...
     @property
+    def deviation(self) -> float: ...
+    @property
     def notes(self) -> list[str]: ...
     @property
     def volume(self) -> float: ...
@@ -81,6 +83,10 @@ class BoundingMesh:
     def stop(self) -> str: ...
     @property
     def reached(self) -> bool: ...
+    @property
+    def holds(self) -> bool: ...
+    @property
+    def wrapped(self) -> bool: ...
     @property
     def closed(self) -> bool: ...
     @property
@@ -247,6 +253,9 @@ def decimate(
     precision: Literal["auto", "float", "double"] = "auto",
     sharp_angle: float = 90.0,
     keep_convex: bool = False,
+    prepare: Literal["auto", "strict", "wrap", "off"] = "auto",
+    offset: _Length | None = None,
+    seal: _Length | None = None,
     drop_sheets: bool = False,
     holes: Literal["fill", "keep", "refuse"] = "fill",
     keep_orientation: bool = False,
@@ -271,6 +280,9 @@ def decimate(
     precision: Literal["auto", "float", "double"] = "auto",
     sharp_angle: float = 90.0,
     keep_convex: bool = False,
+    prepare: Literal["auto", "strict", "wrap", "off"] = "auto",
+    offset: _Length | None = None,
+    seal: _Length | None = None,
     drop_sheets: bool = False,
     holes: Literal["fill", "keep", "refuse"] = "fill",
     keep_orientation: bool = False,
@@ -355,6 +367,7 @@ def verify_mesh(
     drop_sheets: bool = False,
     max_contacts: int = 100000000,
     max_work: float | None = None,
+    exact_points: int = 17,
     threads: int = 0,
     progress: _Progress | None = None,
 ) -> Verdict: ...
@@ -368,6 +381,7 @@ def verify_cover(
     drop_sheets: bool = False,
     max_contacts: int = 100000000,
     max_work: float | None = None,
+    exact_points: int = 17,
     threads: int = 0,
     progress: _Progress | None = None,
 ) -> Verdict: ...
@@ -397,7 +411,7 @@ def verify_robot(
     epsilon: _Length | None = None,
     geometry: _Geometry = "collision",
     package_path: _Path | Sequence[_Path] = (),
-    prepare: bool = False,
+    prepare: bool | Literal["auto", "wrap"] = False,
     drop_sheets: bool = False,
     max_contacts: int = 100000000,
     max_work: float | None = None,

@@ -8,6 +8,60 @@
 #include <cmath>
 
 namespace kaboum::python {
+namespace {
+
+[[noreturn]] void refuse_rounding(const py::array& array, const std::string& name,
+                                  py::ssize_t entry) {
+  const py::ssize_t row = entry / array.shape(1), column = entry % array.shape(1);
+  const py::object number = array[py::make_tuple(row, column)];
+  throw Error(ErrorCode::InvalidArgument,
+              name + "[" + std::to_string(row) + ", " + std::to_string(column) + "] is " +
+                  py::str(number).cast<std::string>() + ", which is no float64; round it first");
+}
+
+/// @param back  a double as a Number; nullopt where it is none
+template <class Number, class Back>
+void require_same(const py::array& given, const std::string& name, const Back& back) {
+  const auto array = py::array_t<Number, py::array::c_style | py::array::forcecast>::ensure(given);
+  if (!array) throw py::error_already_set();
+  const Number* const first = array.data();
+  for (py::ssize_t i = 0; i < array.size(); ++i) {
+    const std::optional<Number> same = back(static_cast<double>(first[i]));
+    const bool is_nan = first[i] != first[i];  // refused where it matters
+    if (!is_nan && same != first[i]) refuse_rounding(given, name, i);
+  }
+}
+
+}  // namespace
+
+void require_doubles(const py::array& array, const std::string& name) {
+  const char kind = array.dtype().kind();
+  const py::ssize_t size = array.dtype().itemsize();
+  const auto refuse = [&] { throw Error(ErrorCode::InvalidArgument, name + " must be numbers"); };
+  if (kind == 'f' && size > 8) {
+    require_same<long double>(array, name,
+                              [](double x) { return std::optional(static_cast<long double>(x)); });
+  } else if (kind == 'i' && size > 4) {
+    require_same<std::int64_t>(array, name, [](double x) {
+      return x >= 0x1p63 ? std::nullopt : std::optional(static_cast<std::int64_t>(x));
+    });
+  } else if (kind == 'u' && size > 4) {
+    require_same<std::uint64_t>(array, name, [](double x) {
+      return x >= 0x1p64 ? std::nullopt : std::optional(static_cast<std::uint64_t>(x));
+    });
+  } else if (kind == 'O') {
+    py::ssize_t i = 0;
+    for (const py::handle x : array.attr("ravel")()) {
+      if (PyNumber_Check(x.ptr()) == 0 || PyComplex_Check(x.ptr()) != 0) refuse();
+      PyObject* const number = PyNumber_Float(x.ptr());
+      if (number == nullptr) throw py::error_already_set();
+      if (!py::reinterpret_steal<py::object>(number).equal(x)) refuse_rounding(array, name, i);
+      ++i;
+    }
+  } else if (kind != 'f' && kind != 'i' && kind != 'u' && array.size() > 0) {
+    refuse();
+  }
+}
 
 std::optional<Length> length_of(const py::object& value, const char* argument) {
   if (value.is_none()) return std::nullopt;

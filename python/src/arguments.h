@@ -4,6 +4,7 @@
 #include <kaboum/base/length.h>
 #include <kaboum/geom/prepare.h>
 #include <kaboum/io/mesh_io.h>
+#include <pybind11/numpy.h>
 
 #include <array>
 #include <optional>
@@ -47,6 +48,12 @@ geom::Holes holes_of(const std::string& name, bool may_keep);
 std::optional<io::Format> format_of(const std::optional<std::string>& name, const char* argument);
 
 /// A str or os.PathLike as a path; nullopt: it is neither.
+/// Checks that nothing is rounded when a two-dimensional array becomes one of doubles: numbers of
+/// other types must be doubles all the same.
+/// @param name  what it is, for messages
+/// @throws Error{InvalidArgument} naming the first that is none
+void require_doubles(const py::array& array, const std::string& name);
+
 std::optional<std::string> path_of(const py::object& value);
 
 }  // namespace kaboum::python

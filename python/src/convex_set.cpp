@@ -117,6 +117,8 @@ CertifiedSetValue decompose(
     refuse_name("prepare", prepare, {"auto", "wrap"});
   if (!r.wrap && (!offset.is_none() || !seal.is_none()))
     throw Error(ErrorCode::InvalidArgument, "offset and seal are for prepare='wrap'");
+  if (!r.wrap && direction == "outer" && holes == "fill" && !keep_orientation)
+    r.wrap.emplace().where_needed = true;
   if (r.wrap) r.wrap->offset = length_of(offset, "offset");
   if (r.wrap) r.wrap->seal = length_of(seal, "seal");
   r.epsilon = length_of(epsilon, "epsilon");
@@ -139,6 +141,12 @@ CertifiedSetValue decompose(
   const MeshValue value = mesh_of(mesh, "mesh");
   r.unit = value.unit.empty() ? unit : value.unit;
   r.source = std::filesystem::path(value.source).filename().string();
+  // Of STEP and IGES the exact faces are what is covered.
+  if (value.deviation > 0 && r.direction == certify::SetRequest::Direction::Outer) {
+    if (!r.wrap) r.wrap.emplace();
+    r.wrap->where_needed = false;
+    r.wrap->clearance = value.deviation;
+  }
   Watch watch(progress);
   return run(threads, [&] {
     CertifiedSetValue out;
@@ -189,7 +197,8 @@ unit, frame : str
     Noted in the container; a unit that the mesh's file states comes first.
 prepare : str
     'auto', or 'wrap': what is covered is a closed mesh round all triangles, whatever they are like;
-    how far it is from them counts towards epsilon.
+    how far it is from them counts towards epsilon. A mesh read from STEP or IGES is wrapped in any
+    case, so that its exact faces are covered.
 offset, seal : float or str, optional
     Of a wrap: how far it may be from the triangles where it can get near them; hollows behind gaps
     narrower than this are filled.

@@ -52,6 +52,7 @@ struct BoundingMesh {
   CertifiedMesh made;
   io::Format format = io::Format::Ply;
   std::vector<std::string> notes;
+  bool wrapped = false;
   double diagonal = 0;
 
   [[nodiscard]] const MeshCertificate& certificate() const { return made.certificate(); }
@@ -138,6 +139,15 @@ It may be given wherever a mesh is expected.)")
       .def_property_readonly(
           "reached", [](const BoundingMesh& m) { return m.certificate().reached(); },
           "Whether there are as few vertices as wished, or epsilon allows no fewer.")
+      .def_property_readonly(
+          "holds",
+          [](const BoundingMesh& m) {
+            return m.certificate().surface_answer() == verify::Answer::Verified;
+          },
+          "Whether every triangle is where it should be: of the original in the result (inner: the "
+          "other way round). `claims` says what is not.")
+      .def_readonly("wrapped", &BoundingMesh::wrapped,
+                    "Whether what is enclosed is a wrap of the original; `notes` say why.")
       .def_property_readonly("closed", of(&MeshCertificate::closed),
                              "Whether the original has a solid; else nothing is enclosed.")
       .def_property_readonly("out_of_work", of(&MeshCertificate::out_of_work),
@@ -176,7 +186,8 @@ std::vector<std::size_t> counts_of(const py::object& vertices, bool& several) {
   return vertices.cast<std::vector<std::size_t>>();
 }
 
-std::vector<BoundingMesh> decimated(const py::object& mesh, const geom::PrepareOptions& prepare,
+std::vector<BoundingMesh> decimated(const py::object& mesh,
+                                    const certify::MeshPreparation& preparation,
                                     const certify::MeshRequest& request, int threads,
                                     const py::object& progress) {
   Watch watch(progress);
@@ -192,25 +203,43 @@ std::vector<BoundingMesh> decimated(const py::object& mesh, const geom::PrepareO
     notes = value.notes;
   }
   return run(threads, [&] {
-    if (!original)
-      original = std::make_shared<geom::Prepared>(certify::prepare_mesh(*value.mesh, prepare));
-    notes.insert(notes.end(), original->report.notes.begin(), original->report.notes.end());
-    const certify::MeshSeries series =
-        certify::certify_meshes(*original, request, {.progress = watch.hook(), .found = {}});
-    if (series.meshes.empty()) throw certify::TooCoarse(name);
+    const certify::MeshHooks hooks{.progress = watch.hook(), .found = {}, .prepared = {}};
+    certify::BoundedMesh made;
+    if (original) {
+      made.series = certify::certify_meshes(*original, request, hooks);
+      notes.insert(notes.end(), original->report.notes.begin(), original->report.notes.end());
+    } else {
+      using Wrap = certify::MeshPreparation::Wrap;
+      certify::MeshPreparation asked = preparation;
+      // Of STEP and IGES the exact faces are what is enclosed.
+      if (value.deviation > 0 && request.direction == bmesh::Direction::Outer &&
+          asked.wrap == Wrap::WhereNeeded)
+        asked.wrap = Wrap::Always;
+      asked.wrapping.clearance = value.deviation;
+      made = certify::bound_mesh(*value.mesh, request, asked, hooks);
+      for (std::string& text : certify::notes_of(made)) notes.push_back(std::move(text));
+    }
+    if (made.series.meshes.empty()) throw certify::TooCoarse(name);
     std::vector<BoundingMesh> out;
-    for (const CertifiedMesh& made : series.meshes)
-      out.push_back({made, request.format, notes, series.plan.diagonal});
+    for (const CertifiedMesh& one : made.series.meshes)
+      out.push_back({one, request.format, notes, made.wrap.has_value(), made.series.plan.diagonal});
     return out;
   });
 }
+
+constexpr std::array<std::pair<const char*, certify::MeshPreparation::Wrap>, 4> kPreparations{
+    {{"auto", certify::MeshPreparation::Wrap::WhereNeeded},
+     {"strict", certify::MeshPreparation::Wrap::Never},
+     {"wrap", certify::MeshPreparation::Wrap::Always},
+     {"off", certify::MeshPreparation::Wrap::Never}}};
 
 py::object decimate(const py::object& mesh, const py::object& vertices,
                     const std::optional<double>& ratio, const py::object& epsilon,
                     const std::string& direction, const std::string& cost,
                     const std::string& effort, const std::optional<double>& max_work,
                     bool as_printed, const std::string& precision, double sharp_angle,
-                    bool keep_convex, bool drop_sheets, const std::string& holes,
+                    bool keep_convex, const std::string& prepare, const py::object& offset,
+                    const py::object& seal, bool drop_sheets, const std::string& holes,
                     bool keep_orientation, bool verify, bool measure,
                     const std::string& output_format, int threads, const py::object& progress) {
   certify::MeshRequest r;
@@ -232,10 +261,16 @@ py::object decimate(const py::object& mesh, const py::object& vertices,
   r.measure = measure;
   r.format = *format_of(output_format, "output_format");
   r.comment = "bmesh-decimate " KABOUM_VERSION;
-  const geom::PrepareOptions prepare{.drop_sheets = drop_sheets,
-                                     .holes = holes_of(holes, true),
-                                     .keep_orientation = keep_orientation};
-  std::vector<BoundingMesh> made = decimated(mesh, prepare, r, threads, progress);
+  certify::MeshPreparation preparation;
+  preparation.wrap = value_of(kPreparations, prepare, "prepare");
+  preparation.options = {.drop_sheets = drop_sheets,
+                         .holes = prepare == "strict" ? geom::Holes::Refuse
+                                  : prepare == "off"  ? geom::Holes::Keep
+                                                      : holes_of(holes, true),
+                         .keep_orientation = keep_orientation || prepare == "off"};
+  preparation.wrapping.offset = length_of(offset, "offset");
+  preparation.wrapping.seal = length_of(seal, "seal");
+  std::vector<BoundingMesh> made = decimated(mesh, preparation, r, threads, progress);
   if (several) return py::cast(std::move(made));
   return py::cast(std::move(made.front()));
 }
@@ -271,8 +306,13 @@ sharp_angle : float
     Edges sharper than this resist spikes (costs 'planes...' only). [degrees]
 keep_convex : bool
     Convex in, convex out, exactly.
+prepare : str
+    'auto', 'strict', 'wrap' or 'off': how the triangles get a solid. 'auto' wraps the mesh where some
+    triangle would not be enclosed otherwise, or there is no solid.
+offset, seal : float or str, optional
+    Of a wrap, as for `wrap`.
 drop_sheets, holes, keep_orientation
-    As for `prepare`.
+    As for `kaboum.prepare`.
 verify : bool
     Decide all claims anew, exactly and by independent means.
 measure : bool
@@ -287,7 +327,8 @@ progress : callable, optional
 Returns
 -------
 BoundingMesh, or a list of them
-    Where a wished number cannot be reached, `reached` is False; the result encloses as ever.
+    Where a wished number cannot be reached, `reached` is False; the result encloses as ever. Where
+    triangles stick out and no wrap may or can take the mesh's place, `holds` is False.
 
 Raises
 ------
@@ -304,6 +345,7 @@ void bind_decimation(py::module_& module) {
       py::arg("direction") = "outer", py::arg("cost") = "distance", py::arg("effort") = "normal",
       py::arg("max_work") = py::none(), py::arg("as_printed") = false,
       py::arg("precision") = "auto", py::arg("sharp_angle") = 90.0, py::arg("keep_convex") = false,
+      py::arg("prepare") = "auto", py::arg("offset") = py::none(), py::arg("seal") = py::none(),
       py::arg("drop_sheets") = false, py::arg("holes") = "fill",
       py::arg("keep_orientation") = false, py::arg("verify") = false, py::arg("measure") = false,
       py::arg("output_format") = "ply", py::arg("threads") = 0, py::arg("progress") = py::none(),

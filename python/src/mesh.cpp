@@ -33,12 +33,19 @@ std::size_t rows_of(const py::array& array, const char* argument, const char* wh
 }
 
 std::vector<geom::Vec3> copy_vertices(const py::object& value, const char* argument) {
-  const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(value);
+  const py::array given = py::array::ensure(value);
+  if (!given) {
+    PyErr_Clear();
+    refuse(argument, "vertices must be numbers");
+  }
+  const std::size_t rows = rows_of(given, argument, "vertices");
+  require_doubles(given, std::string(argument) + ": vertices");
+  const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(given);
   if (!array) {
     PyErr_Clear();
     refuse(argument, "vertices must be numbers");
   }
-  std::vector<geom::Vec3> out(rows_of(array, argument, "vertices"));
+  std::vector<geom::Vec3> out(rows);
   const double* p = array.data();
   for (geom::Vec3& v : out) {
     v = Eigen::Map<const geom::Vec3>(p);
@@ -93,6 +100,11 @@ MeshValue read(const std::string& path, const std::optional<std::string>& format
     if (read.collapsed_triangles > 0)
       out.notes.push_back(std::to_string(read.collapsed_triangles) +
                           " triangles with repeated corners bound nothing and are left out");
+    if (io::is_cad(read.format)) {
+      out.deviation = read.deviation;
+      out.exact_faces = read.exact_faces;
+      out.format = read.format;
+    }
     return out;
   });
 }
@@ -139,14 +151,16 @@ It may be given wherever a mesh is expected, here and to libraries that take `ve
 Parameters
 ----------
 vertices : n x 3 numbers
-    In any unit of length; results have the same one.
+    In any unit of length; results have the same one. Nothing is rounded: numbers of other types
+    than float64 (integers, long doubles) must be float64 numbers.
 faces : m x 3 whole numbers
     Indices of vertices, counter-clockwise seen from outside.
 
 Raises
 ------
 Error
-    'invalid_argument' on other shapes, 'invalid_input' on indices out of range.)")
+    'invalid_argument' on other shapes and on numbers that are no float64, naming the first;
+    'invalid_input' on indices out of range.)")
       .def_property_readonly(
           "vertices", [](const MeshValue& m) { return vertices_of(m.mesh); },
           "n x 3 float64, a view that cannot be written. [length]")
@@ -157,6 +171,9 @@ Error
       .def_readonly("sha256", &MeshValue::sha256, "Of that file, or ''.")
       .def_readonly("unit", &MeshValue::unit,
                     "Unit of length where the file states it or its format has one, else ''.")
+      .def_readonly("deviation", &MeshValue::deviation,
+                    "Of STEP and IGES: the exact faces, which the faces here stand for, are no "
+                    "farther from them. Else 0. [length]")
       .def_readonly("notes", &MeshValue::notes, "What a user should know of the reading.")
       .def_property_readonly(
           "volume", [](const MeshValue& m) { return geom::signed_volume(*m.mesh); },
@@ -213,7 +230,7 @@ Coordinates are the doubles nearest to the numbers in the file; equal vertices a
 Parameters
 ----------
 path : str or os.PathLike
-    STL, OBJ, PLY, OFF, VRML, X3D, COLLADA, 3MF, glTF or FBX.
+    STL, OBJ, PLY, OFF, VRML, X3D, COLLADA, 3MF, glTF, FBX, STEP or IGES.
 format : str, optional
     'stl', 'ply', ...; by default by the extension.
 

@@ -2,9 +2,11 @@
 
 #include <kaboum/geom/mesh.h>
 #include <kaboum/geom/prepare.h>
+#include <kaboum/io/mesh_io.h>
 #include <pybind11/numpy.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +21,9 @@ struct MeshValue {
   std::string source = {}, sha256 = {};  ///< of the file it was read from; else empty
   std::string unit = {};                 ///< where the file states it
   std::vector<std::string> notes = {};   ///< of the reader
+  double deviation = 0;  ///< of exact faces from the triangles; 0: there are none [length]
+  std::size_t exact_faces = 0;
+  std::optional<io::Format> format = {};  ///< of the file, where it has exact faces
 };
 
 struct PreparedValue {

@@ -128,6 +128,9 @@ void bind_class(py::module_& module) {
       .def_property_readonly(
           "limit", [](const SolutionValue& s) { return s.found.limit; }, "Which limit was reached.")
       .def_property_readonly(
+          "refused", [](const SolutionValue& s) { return s.found.refused; },
+          "The first call of an external function that was impossible, and why.")
+      .def_property_readonly(
           "lost", [](const SolutionValue& s) { return s.found.lost; },
           "What the knowledge state does not keep.")
       .def_property_readonly("plan", &plan_of,

@@ -30,6 +30,9 @@ constexpr std::array<std::pair<const char*, StepRule>, 6> kRules{
 robot::Path path_from(const py::object& value, const robot::Robot& robot,
                       const robot::PathOptions& options, std::vector<std::string>& notes) {
   if (const auto file = path_of(value)) return robot::read_path(*file, robot, options, notes);
+  const py::array given = py::array::ensure(value);
+  if (!given) PyErr_Clear();
+  if (given && given.ndim() == 2) require_doubles(given, "path");
   const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(value);
   if (!array) PyErr_Clear();
   const std::size_t variables = robot.variables.size();

@@ -1,6 +1,7 @@
 // Claims about meshes and sets: kaboum.verify_mesh and verify_cover, as bound-verify.
 
 #include <kaboum/verify/cover.h>
+#include <kaboum/verify/exact_points.h>
 #include <kaboum/verify/mesh_verdict.h>
 
 #include <cmath>
@@ -32,7 +33,20 @@ struct Asked {
   std::size_t max_contacts = 0;
   std::optional<double> max_work;
   int threads = 0;
+  std::size_t exact_points = verify::kPointDensity;
 };
+
+/// Of a mesh that was read from a file with exact faces, unless it is to enclose.
+std::optional<verify::ExactPoints> exact_points_of(const MeshValue& original, const Asked& asked) {
+  if (!original.format || asked.exact_points == 0 || asked.relation == verify::Relation::Inner)
+    return std::nullopt;
+  const std::vector<char> bytes = io::read_file(original.source);
+  if (io::sha256(bytes) != original.sha256)
+    throw Error(ErrorCode::InvalidInput,
+                original.source + ": it has changed since the mesh was read; read it again");
+  return verify::read_exact_points(bytes, *original.format, original.source, asked.exact_points, 1,
+                                   original.exact_faces);
+}
 
 py::dict claims_of(const verify::MeshVerdict& found) {
   py::dict out;
@@ -47,6 +61,19 @@ py::dict claims_of(const verify::MeshVerdict& found) {
     out[verify::name_of(d.between)] = distance;
   }
   if (found.depth) out["depth"] = dict_of(*found.depth);
+  if (const auto& points = found.exact_points) {
+    py::dict exact;
+    exact["answer"] = verify::name_of(points->answer);
+    exact["reason"] = points->reason;
+    exact["points"] = points->points;
+    exact["outside"] = points->outside;
+    if (points->outside > 0) {
+      exact["farthest"] = points->farthest;
+      exact["at"] = array_of(points->at);
+      exact["face"] = points->face + 1;
+    }
+    out["exact_points"] = exact;
+  }
   return out;
 }
 
@@ -67,8 +94,11 @@ Verdict decide(const MeshValue& original, const geom::Mesh& approximation,
         throw Error(ErrorCode::InvalidArgument,
                     "epsilon must be larger than the set's margin, and finite");
     }
+    const auto exact = exact_points_of(original, asked);
+    std::optional<verify::PointQuestion> points;
+    if (exact) points = verify::PointQuestion{exact->points, exact->of_face, exact->rounding};
     return verify::decide({*mesh, approximation, set, asked.relation, asked.claims, bound,
-                           asked.max_contacts, asked.max_work, watch.hook()});
+                           asked.max_contacts, asked.max_work, watch.hook(), points});
   });
   out.answer = found.answer;
   out.claims = claims_of(found);
@@ -78,8 +108,8 @@ Verdict decide(const MeshValue& original, const geom::Mesh& approximation,
 Verdict verify_mesh(const py::object& original, const py::object& approximation,
                     const std::string& relation, const std::string& claims,
                     const py::object& epsilon, bool prepare, bool drop_sheets,
-                    std::size_t max_contacts, const std::optional<double>& max_work, int threads,
-                    const py::object& progress) {
+                    std::size_t max_contacts, const std::optional<double>& max_work,
+                    std::size_t exact_points, int threads, const py::object& progress) {
   static constexpr std::array<std::pair<const char*, verify::Relation>, 2> kRelations{
       {{"outer", verify::Relation::Outer}, {"inner", verify::Relation::Inner}}};
   const Asked asked{value_of(kRelations, relation, "relation"),
@@ -89,7 +119,8 @@ Verdict verify_mesh(const py::object& original, const py::object& approximation,
                     drop_sheets,
                     max_contacts,
                     max_work,
-                    threads};
+                    threads,
+                    exact_points};
   const MeshValue first = mesh_of(original, "original");
   const bool is_set =
       py::isinstance<SetValue>(approximation) || py::isinstance<CertifiedSetValue>(approximation);
@@ -106,8 +137,8 @@ Verdict verify_mesh(const py::object& original, const py::object& approximation,
 
 Verdict verify_cover(const py::object& original, const py::object& set, const std::string& claims,
                      const py::object& epsilon, bool prepare, bool drop_sheets,
-                     std::size_t max_contacts, const std::optional<double>& max_work, int threads,
-                     const py::object& progress) {
+                     std::size_t max_contacts, const std::optional<double>& max_work,
+                     std::size_t exact_points, int threads, const py::object& progress) {
   const Asked asked{verify::Relation::Cover,
                     value_of(kClaims, claims, "claims"),
                     length_of(epsilon, "epsilon"),
@@ -115,7 +146,8 @@ Verdict verify_cover(const py::object& original, const py::object& set, const st
                     drop_sheets,
                     max_contacts,
                     max_work,
-                    threads};
+                    threads,
+                    exact_points};
   const auto bodies = set_of(set);
   if (!bodies)
     throw Error(ErrorCode::InvalidArgument,
@@ -164,6 +196,9 @@ max_contacts : int
 max_work : float, optional
     Leave the claims of enclosure undecided after so much work, at most about so many seconds of
     one core. Default: 60, and 5 per 1000 triangles.
+exact_points : int
+    Of an original that was read from STEP or IGES: how densely points of its exact faces are
+    looked at, which refute where they stick out; 0: the triangles alone are judged.
 threads, progress
     As for `decimate`.
 
@@ -181,7 +216,7 @@ original : mesh
 set : ConvexSet, name of a file or folder, or list of meshes
 epsilon : float or str, optional
     Also decide that no point of the union is farther than this from the solid.
-claims, prepare, drop_sheets, max_contacts, max_work, threads, progress
+claims, prepare, drop_sheets, max_contacts, max_work, exact_points, threads, progress
     As for `verify_mesh`.
 
 Raises
@@ -209,13 +244,13 @@ void bind_verification(py::module_& module) {
              py::kw_only(), py::arg("relation") = "outer", py::arg("claims") = "all",
              py::arg("epsilon") = py::none(), py::arg("prepare") = false,
              py::arg("drop_sheets") = false, py::arg("max_contacts") = contacts,
-             py::arg("max_work") = py::none(), py::arg("threads") = 0,
-             py::arg("progress") = py::none(), kMeshDoc);
+             py::arg("max_work") = py::none(), py::arg("exact_points") = verify::kPointDensity,
+             py::arg("threads") = 0, py::arg("progress") = py::none(), kMeshDoc);
   module.def("verify_cover", &verify_cover, py::arg("original"), py::arg("set"), py::kw_only(),
              py::arg("claims") = "all", py::arg("epsilon") = py::none(), py::arg("prepare") = false,
              py::arg("drop_sheets") = false, py::arg("max_contacts") = contacts,
-             py::arg("max_work") = py::none(), py::arg("threads") = 0,
-             py::arg("progress") = py::none(), kCoverDoc);
+             py::arg("max_work") = py::none(), py::arg("exact_points") = verify::kPointDensity,
+             py::arg("threads") = 0, py::arg("progress") = py::none(), kCoverDoc);
 }
 
 }  // namespace kaboum::python

@@ -297,9 +297,8 @@ TEST(CertifyMesh, WithoutDecidingClaimsSayWhatTheyRestOn) {
   const auto outer = certify_mesh(prepare_mesh(torus()), request);
   ASSERT_TRUE(outer);
   EXPECT_EQ(kinds(*outer, Basis::Steps, Answer::Verified), (std::set{Kind::Solid}));
-  EXPECT_EQ(kinds(*outer, Basis::Samples, Answer::Undecided), (std::set{Kind::Surface}));
-  EXPECT_EQ(outer->certificate().samples->outside, 0U);
-  EXPECT_GT(outer->certificate().samples->faces, 500U);
+  EXPECT_EQ(kinds(*outer, Basis::Meshes, Answer::Verified), (std::set{Kind::Surface}));
+  EXPECT_EQ(outer->certificate().surface->looked_at, 0U);  // all bound the solid
   EXPECT_EQ(kinds(*outer, Basis::Measured, Answer::Verified),
             (std::set{Kind::OriginalToResult, Kind::ResultToOriginal}));
   request.measure = false;
@@ -321,11 +320,12 @@ TEST(CertifyMesh, TrianglesThatBoundNoSolidAreFoundToStickOut) {
     EXPECT_GT(made->certificate().surface->sticks_out.lower, 0.1);
     EXPECT_LT(made->certificate().surface->sticks_out.triangle,
               original.solid.mesh().triangles.size());
+    EXPECT_EQ(made->certificate().surface_answer(), Answer::Refuted);
   }
 }
 
 TEST(CertifyMesh, SurfacesBehindEachOtherHideNoFold) {
-  // Four hundred boxes within each other, and a fold whose faces a sampling looks at last.
+  // Four hundred boxes within each other, and a fold among their triangles.
   geom::Mesh mesh;
   for (int i = 1; i <= 400; ++i)
     mesh = test::merged({mesh, test::translated(test::box({2. * i, 2. * i, 2. * i}, 1),
@@ -343,8 +343,7 @@ TEST(CertifyMesh, SurfacesBehindEachOtherHideNoFold) {
   request.decide = request.measure = false;
   const auto made = certify_mesh(prepare_mesh(mesh), request);
   ASSERT_TRUE(made);
-  EXPECT_TRUE(made->certificate().samples->cut_short);
-  EXPECT_EQ(made->certificate().samples->outside, 0U);
+  EXPECT_LE(made->certificate().surface->looked_at, fold.triangles.size());
   EXPECT_EQ(kinds(*made, Basis::Meshes, Answer::Refuted), (std::set{Kind::Surface}));
 }
 

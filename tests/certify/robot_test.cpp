@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <kaboum/base/error.h>
 #include <kaboum/certify/cache_folder.h>
+#include <kaboum/certify/link_verdict.h>
 #include <kaboum/certify/robot.h>
 #include <kaboum/certify/sweep.h>
 #include <kaboum/io/convex_io.h>
@@ -274,6 +275,133 @@ TEST_F(RobotTest, SaysWhichFileIsAtFault) {
   EXPECT_NE(error_of(fast()).find("part.off: float32"), std::string::npos);
   fs::remove(folder_ / "part.off");
   EXPECT_NE(error_of(fast()).find("part.off"), std::string::npos);
+}
+
+/// A box, and a fin of two quads back to back that are split along different diagonals.
+geom::Mesh finned() {
+  geom::Mesh out = test::box({1, 1, 1}, 1);
+  const auto first = static_cast<std::uint32_t>(out.vertices.size());
+  for (const auto& [x, y] : {std::pair{1.1, 0.2}, {1.4, 0.2}, {1.4, 0.8}, {1.1, 0.8}})
+    out.vertices.emplace_back(x, y, 0.5);
+  for (const geom::Triangle& t : {geom::Triangle{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}})
+    out.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  return out;
+}
+
+constexpr const char* kMixed = R"(<robot name="mixed">
+  <link name="good"><collision><geometry><mesh filename="part.off"/></geometry></collision></link>
+  <link name="sheet"><collision><geometry><mesh filename="sheet.off"/></geometry></collision></link>
+  <link name="bad"><collision><geometry><mesh filename="bad.off"/></geometry></collision>
+    <collision><geometry><mesh filename="part.off"/></geometry></collision></link>
+  <joint name="a" type="fixed"><parent link="good"/><child link="sheet"/></joint>
+  <joint name="b" type="fixed"><parent link="good"/><child link="bad"/></joint>
+</robot>)";
+
+class MixedRobotTest : public RobotTest {
+ protected:
+  void SetUp() override {
+    RobotTest::SetUp();
+    std::ofstream(folder_ / "mixed.urdf") << kMixed;
+    std::ofstream(folder_ / "bad.off") << "OFF\n4 4 0\n0 0 0\n";
+    geom::Mesh sheet = test::box({1, 1, 1}, 1);
+    const auto first = static_cast<std::uint32_t>(sheet.vertices.size());
+    sheet.vertices.insert(sheet.vertices.end(), {{1, 0.2, 0.5}, {1.3, 0.2, 0.5}, {1.3, 0.8, 0.5}});
+    sheet.triangles.push_back({first, first + 1, first + 2});
+    sheet.triangles.push_back({first, first + 2, first + 1});
+    write_as("sheet.off", sheet);
+  }
+  void write_as(const std::string& name, const geom::Mesh& mesh) const {
+    io::write_file(folder_ / name, io::serialise_mesh(mesh, *io::format_from_name("off")));
+  }
+  robot::RobotFile mixed() const { return robot::read_robot((folder_ / "mixed.urdf").string()); }
+  static RobotRequest tolerant() {
+    RobotRequest request = fast();
+    request.partial = true;
+    request.set.wrap.emplace().where_needed = true;
+    return request;
+  }
+  static LinkEnclosuresRequest enclosures() {
+    LinkEnclosuresRequest request;
+    request.mesh.mesh.epsilon = Length{5, true};
+    request.mesh.mesh.effort = bmesh::Effort::Fast;
+    request.mesh.mesh.format = io::Format::Stl;
+    request.mesh.mesh.decide = false;
+    request.mesh.wrap.emplace().where_needed = true;
+    request.partial = true;
+    return request;
+  }
+  void expect_inside(const geom::Mesh& triangles, const geom::Mesh& of) const {
+    verify::InclusionOptions options;
+    options.surface_only = true;
+    EXPECT_EQ(verify::verify_inclusion(triangles, of, options).surface.answer,
+              verify::Answer::Verified);
+  }
+  geom::Mesh mesh_of(const std::string& name) const { return io::read_mesh(folder_ / name).mesh; }
+};
+
+TEST_F(MixedRobotTest, OneBadMeshIsNamedAndTheRestHeld) {
+  const robot::RobotFile robot = mixed();
+  EXPECT_THROW(certify_robot(robot, fast()), Error);
+  const CertifiedRobot made = certify_robot(robot, tolerant());
+  const std::vector<LinkVerdict> found = verdicts(made);
+  ASSERT_EQ(found.size(), 3U);
+  EXPECT_EQ(found[0].outcome, Outcome::Held);
+  EXPECT_EQ(found[1].outcome, Outcome::Held);
+  EXPECT_EQ(found[2].outcome, Outcome::Kept);
+  EXPECT_EQ(found[0].sentence, "every triangle is inside");
+  EXPECT_EQ(found[2].sentence.find("NOT enclosed, its mesh stays as it was: "), 0U);
+  EXPECT_NE(found[2].sentence.find("bad.off"), std::string::npos);
+  EXPECT_EQ(outcome_of(found), Outcome::Kept);
+  EXPECT_EQ(in_words(found), "NOT every triangle is known to be inside: 1 of 3 links is not held");
+  ASSERT_EQ(made.links.size(), 2U);  // no set of a link without one of its shapes
+  EXPECT_EQ(made.links[1].certificate().link, 1U);
+  const CertifiedLinkMesh& sheet = made.bodies.certificate().meshes[1];
+  EXPECT_TRUE(sheet.made.found.set.certificate().wrap);
+  expect_inside(mesh_of("sheet.off"), verify::sum_of(made.links[1].artefact()));
+}
+
+TEST_F(MixedRobotTest, TooNearForAWrapIsHeldFartherAway) {
+  RobotRequest request = tolerant();
+  request.shapes.links = {"sheet"};
+  request.set.epsilon = Length{1e-7};
+  const CertifiedRobot made = certify_robot(mixed(), request);
+  const std::vector<LinkVerdict> found = verdicts(made);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].outcome, Outcome::Far);
+  EXPECT_EQ(found[0].sentence.find("every triangle is inside, but not as near"), 0U);
+  expect_inside(mesh_of("sheet.off"), verify::sum_of(made.links.at(0).artefact()));
+  request.set.wrap.reset();  // as --prepare strict: then it stays, and nothing is made
+  EXPECT_THROW(certify_robot(mixed(), request), Error);
+  request.shapes.links = {"sheet", "good"};
+  request.set.epsilon = Length{5, true};
+  const std::vector<LinkVerdict> kept = verdicts(certify_robot(mixed(), request));
+  EXPECT_EQ(kept.at(0).outcome, Outcome::Held);
+  EXPECT_EQ(kept.at(1).outcome, Outcome::Kept);
+}
+
+TEST_F(MixedRobotTest, MeshesThatBoundNothingAreWrappedWhereTheyWouldStickOut) {
+  write_as("sheet.off", finned());
+  const LinkEnclosures made = enclose_links(mixed(), enclosures());
+  const std::vector<LinkVerdict> found = verdicts(made);
+  ASSERT_EQ(found.size(), 3U);
+  EXPECT_EQ(found[0].outcome, Outcome::Held);
+  EXPECT_EQ(found[1].outcome, Outcome::Held);
+  EXPECT_EQ(found[2].outcome, Outcome::Kept);
+  const EnclosedFile& fin = made.meshes.at(1).made;
+  EXPECT_TRUE(fin.enclosure.certificate().wrap);
+  expect_inside(finned(), fin.enclosure.artefact());
+  // Not wrapped, it would stick out: which is said, with how far.
+  LinkEnclosuresRequest request = enclosures();
+  request.mesh.wrap.reset();
+  const LinkEnclosures plain = enclose_links(mixed(), request);
+  const LinkVerdict out = verdicts(plain).at(1);
+  EXPECT_EQ(out.outcome, Outcome::Outside);
+  EXPECT_NE(out.sentence.find("4 triangles stick out, by up to 0."), std::string::npos)
+      << out.sentence;
+  const TrianglesInside& inside = plain.meshes.at(1).made.enclosure.certificate().inside;
+  ASSERT_TRUE(inside.farther);
+  EXPECT_LE(*inside.farther, 0.41);
+  EXPECT_GE(*inside.farther, 0.3);
 }
 
 }  // namespace

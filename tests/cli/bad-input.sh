@@ -24,11 +24,11 @@ expect 3 '' "$D" huge.stl -o x.off --vertices 4
 printf 'ply\nformat binary_little_endian 1.0\nelement vertex 4294967295\nproperty float x\nproperty float y\nproperty float z\nelement face 4294967295\nproperty list uchar int vertex_indices\nend_header\nabcdefgh' >huge.ply
 expect 3 '' "$D" huge.ply -o x.off --vertices 4
 printf 'OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n' >flat.off
-expect 3 'lie in one plane' "$D" flat.off -o x.off --vertices 4
+expect 3 'lie in one plane' "$D" flat.off -o x.off --vertices 4 --keep-orientation
 printf 'OFF\n3 2 0\n0 0 0\n1 0 0\n2 0 0\n3 0 0 1\n3 1 1 1\n' >degenerate.off
 expect 3 '' "$D" degenerate.off -o x.off --vertices 4
 printf 'OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 2 1\n' >sheet.off
-expect 3 'drop-sheets' "$D" sheet.off -o x.off --vertices 4
+expect 3 'drop-sheets' "$D" sheet.off -o x.off --vertices 4 --prepare strict
 expect 3 '' "$D" sheet.off -o x.off --vertices 4 --drop-sheets
 tetrahedron | sed '$d' | sed 's/^4 4 0/4 3 0/' >open.off
 expect 3 'holes fill' "$D" open.off -o x.off --vertices 4 --require-closed
@@ -43,7 +43,7 @@ awk 'BEGIN { n = 5; print "OFF"; print 2 * n, 2 * n, 0; pi = atan2(0, -1)
   for (i = 0; i < n; i++) { a = 2 * i; b = a + 1; c = a + 2; d = a + 3
     if (i == n - 1) { c = 1; d = 0 }
     print 3, a, c, b; print 3, b, c, d } }' >moebius.off
-expect 3 'one-sided' "$D" moebius.off -o x.off --vertices 4
+expect 3 'one-sided' "$D" moebius.off -o x.off --vertices 4 --prepare strict
 absent x.off
 
 # Folders that cannot be looked into (here: names too long) are no internal errors; nor is /proc.
@@ -63,7 +63,7 @@ expect 3 'too long' "$BIN/bound-verify" --cover t.off "$long.glb"
 expect 3 'no such file or folder' "$BIN/bound-verify" --cover t.off "$long"
 # What is no mesh is answered with a way to one.
 for f in part.step part.STP part.iges robot.urdf.xacro empty.xml; do : >$f; done
-for f in part.step part.STP part.iges; do expect 3 "mesh-prepare $f -o" "$D" $f -o x.off --epsilon 1%; done
+for f in part.step part.STP part.iges; do expect 3 "$f: the file is empty" "$D" $f -o x.off --epsilon 1%; done
 : >part.brep
 expect 3 'export it as STEP' "$D" part.brep -o x.off --epsilon 1%
 echo '<robot name="r"><link name="l"/></robot>' >robot.urdf

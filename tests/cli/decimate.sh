@@ -178,13 +178,17 @@ expect 3 'scale the mesh' "$D" vast.off -o x.off --vertices 4
 awk 'NR>2 && NR<7 {printf "%.17g %.17g %.17g\n", $1*1e-80, $2*1e-80, $3*1e-80; next} {print}' t.off >minute.off
 expect 3 'scale the mesh' "$D" minute.off -o x.off --vertices 4
 
-# Random triangles, which bound nothing: what sticks out is said, as far as the work allowed goes.
+# Random triangles, which bound nothing: they are wrapped, or else what sticks out is said, as far as the work allowed goes.
 awk 'BEGIN { n = 60; print "OFF"; print 3*n, n, 0; x = 7
   for (i = 0; i < 9*n; ++i) { x = (x * 16807) % 2147483647; printf "%.9g%s", x / 2147483647, i % 3 == 2 ? "\n" : " " }
   for (i = 0; i < n; ++i) print 3, 3*i, 3*i+1, 3*i+2 }' >soup.off
-expect 0 '120 stick out' "$D" soup.off -o soup.ply --epsilon 2%
-expect 0 'for the work allowed was done; allow more with --max-work' "$D" soup.off -o soup.ply --epsilon 2% --max-work 0.01 --report soup.json
+expect 1 '120 stick out.*--prepare wrap encloses every triangle' "$D" soup.off -o soup.ply --epsilon 2% --log soup.log
+expect 1 'for the work allowed was done; allow more with --max-work' "$D" soup.off -o soup.ply --epsilon 2% --max-work 0.01 --report soup.json \
+  --keep-orientation
 grep -q '"surface_triangles_left_out"' soup.json || fail "no number of triangles left out"
+expect 0 'the input is wrapped: some triangles of the input bound no solid' "$D" soup.off -o soup.ply --epsilon 10% --effort fast --report soup.json
+grep -q '"why_wrapped": "some' soup.json || fail "no reason for the wrap: $(cat soup.json)"
+shows 0 'verified' "$BIN/bound-verify" --outer soup.off soup.ply --raw
 
 # Usage.
 expect 2 '' "$D"

@@ -85,6 +85,61 @@ cmp -s out.txt one.json || fail "twice the same, another answer"
 expect 7 'no proof' "$I" offset.urdf --pose 5,0,0,0,0,0,1 --starts 3
 expect 0 '' "$I" arm.urdf --numeric --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2
 
+# Where a joint is free, its family is given: the joint, its range, configurations within the limits.
+{
+  echo '<robot name="parallel"><link name="base"/>'
+  joint j1 base l1 '0 0 0.089' '0 0 1' 6.28
+  joint j2 l1 l2 '0 0.136 0' '0 1 0' 6.28
+  joint j3 l2 l3 '0 -0.12 0.425' '0 1 0' 6.28
+  joint j4 l3 l4 '0 0 0.392' '0 1 0' 6.28
+  joint j5 l4 l5 '0 0.093 0' '0 0 1' 6.28
+  joint j6 l5 l6 '0 0 0.095' '0 1 0' 6.28
+  echo '</robot>'
+} >parallel.urdf
+cat >family.py <<'END'
+# FILE JOINT VALUE [LOWER UPPER]: whether a family has the joint free at the value, all of it within
+import json, math, sys
+out, joint, value = json.load(open(sys.argv[1])), sys.argv[2], float(sys.argv[3])
+lower, upper = (float(x) for x in sys.argv[4:6] or ("-6.28", "6.28"))
+assert out["complete"], out.get("incomplete")
+turns = [value + 2 * math.pi * k for k in (-1, 0, 1)]
+found = False
+for f in out["families"]:
+    if f["free"] != [joint]:
+        continue
+    at = out["joints"].index(joint)
+    for r in f["ranges"]:
+        assert r["joint"] == joint and lower <= r["from"] <= r["to"] <= upper, r
+        found = found or any(r["from"] - 1e-5 < t < r["to"] + 1e-5 for t in turns)
+    for q in f["representatives"]:
+        assert any(r["from"] <= q[at] <= r["to"] for r in f["ranges"]), (q, f["ranges"])
+        assert q in [s["q"] for s in out["solutions"]]
+assert found, out["families"]
+END
+for q in 0,0.7,-0.7,-1.5707963267948966,0,-1.5707963267948966 -1.04,-0.39,0.3,-1.81,0,1.86 0.3,0.5,1.0,1.5,0,1.6416; do
+  expect 0 'a family: j6 is free, from' "$I" parallel.urdf --pose-of "$q" --json
+  python3 family.py out.txt j6 "${q##*,}" || fail "not in a family: $q"
+  # Its own value comes first where it is the reference.
+  expect 0 '' "$I" parallel.urdf --pose-of "$q" --reference "$q"
+  python3 near.py out.txt "$q" || python3 - out.txt "$q" <<'END' || fail "$q is not among them: $(cat out.txt)"
+import sys
+wanted = [float(x) for x in sys.argv[2].split(",")]
+rows = [[float(x) for x in line.split("#")[0].split(",")] for line in open(sys.argv[1]).readlines()[1:]]
+sys.exit(not any(max(abs(a - b) for a, b in zip(row, wanted)) < 1e-7 for row in rows))
+END
+done
+# Limits: of the family what is within; where a limit is in the way of all of it, that is proved.
+sed '/name="l6"/,/limit/s/lower="-6.28" upper="6.28"/lower="1.8" upper="1.9"/' parallel.urdf >part.urdf
+expect 0 'j6 is free, from 1.8' "$I" part.urdf --pose-of -1.04,-0.39,0.3,-1.81,0,1.86 --json
+python3 family.py out.txt j6 1.86 1.8 1.9 || fail "a part of a family: $(head -c 600 out.txt)"
+sed '/name="l5"/,/limit/s/lower="-6.28" upper="6.28"/lower="0.1" upper="1"/' parallel.urdf >none.urdf
+expect 1 "outside the joints' limits only" "$I" none.urdf --pose-of -1.04,-0.39,0.3,-1.81,0,1.86
+shows 0 '# free: j6' "$I" none.urdf --pose-of -1.04,-0.39,0.3,-1.81,0,1.86 --ignore-limits
+# Nearly singular: what rounding decides is not complete.
+expect 0 'nearly singular' "$I" parallel.urdf --pose-of -1.04,-0.39,0.3,-1.81,1e-8,1.86 --json
+grep -q '"complete": false' out.txt || fail "complete, nearly singular"
+grep -q '"incomplete": "the pose is nearly singular' out.txt || fail "not said why it is not complete"
+
 # Five axes: most poses are reached with another heading only.
 {
   echo '<robot name="five"><link name="base"/>'

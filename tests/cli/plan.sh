@@ -52,6 +52,23 @@ expect 2 '' "$P"
 "$DOMAINS/stacked/make-problem" 9 >nine.kpl
 expect 7 '' "$P" solve "$DOMAINS/stacked/domain.kpl" nine.kpl --search bfs --max-memory 1M -o none.json
 absent none.json
+# The limit of memory holds for what a search takes besides states: lists of steps, and tables while they grow.
+"$DOMAINS/stacked/make-problem" 14 >fourteen.kpl
+for search in dfs bfs ids; do
+  python3 - "$P" "$DOMAINS/stacked/domain.kpl" "$search" <<'END' || fail "$search: memory"
+import os, subprocess, sys
+program, domain, search = sys.argv[1:]
+def peak(problem, limit):
+    child = subprocess.Popen([program, "solve", domain, problem, "--search", search, "--max-memory", limit, "-o", "none.json"],
+                             stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+    status, usage = os.wait4(child.pid, 0)[1:]
+    return os.waitstatus_to_exitcode(status), usage.ru_maxrss * 1024
+nothing = peak("nine.kpl", "1K")
+taken = peak("fourteen.kpl", "20M")
+assert nothing[0] == taken[0] == 7, (nothing, taken)
+assert taken[1] - nothing[1] < 1.05 * 20 * 2**20, (nothing, taken)
+END
+done
 # Plans that are damaged: where, and what to do.
 head -c 200 four.json >cut.json
 expect 3 '^kaboum-plan: cut.json: the JSON is cut short: it ends at line [0-9]*, column [0-9]*; write the plan again' \

@@ -67,8 +67,35 @@ for f in tube bent; do
   expect 0 'holes filled\|hole filled' "$P" $f.off -o full.ply
   expect 1 '' "$BIN/hausdorff-eval" full.ply $f.off --at-most 3%
 done
-expect 3 'have a wrap give the sheets a thickness' "$BIN/bmesh-decimate" sheet.off -o none.off --epsilon 5%
-expect 3 'have a wrap give the sheets a thickness' "$BIN/bcd-decompose" sheet.off -o none.glb --no-cache
+expect 3 'have a wrap give the sheets a thickness' "$BIN/bmesh-decimate" sheet.off -o none.off --epsilon 5% --prepare strict
+for f in sheet crossing; do
+  expect 0 'the input is wrapped' "$BIN/bmesh-decimate" $f.off -o auto.ply --epsilon 5% --effort fast
+  shows 0 'verified' "$V" --outer $f.off auto.ply --raw
+done
+expect 3 'Nor is it wrapped' "$BIN/bmesh-decimate" sheet.off -o none.off --epsilon 1e-9
+# Quads that are not plane: both ways of splitting them are enclosed, and enclose.
+bent_box() { # CORNERS OF THE TOP: as given, or turned by one
+  printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1.2\nv 1 1 1\nv 0 1 1.1\n'
+  printf 'f 4 3 2 1\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n%s\n' "$1"
+}
+bent_box 'f 5 6 7 8' >bent-a.obj
+bent_box 'f 6 7 8 5' >bent-b.obj
+expect 0 '1 polygon is not plane, by up to 0' "$BIN/bmesh-decimate" bent-a.obj -o bent.ply --vertices 8
+for f in bent-a bent-b; do
+  for g in bent-a bent-b; do
+    expect 0 '' "$BIN/bmesh-decimate" $f.obj -o bent.ply --vertices 8
+    shows 0 'verified' "$V" --outer $g.obj bent.ply
+    expect 0 '' "$BIN/bmesh-decimate" $f.obj -o bent.ply --vertices 8 --direction inner
+    shows 0 'verified' "$V" --inner $g.obj bent.ply
+    expect 0 '' "$BIN/bcd-decompose" $f.obj -o bent.glb --epsilon 5% --no-cache
+    shows 0 'verified' "$V" --cover $g.obj bent.glb
+    expect 0 '' "$BIN/bmesh-decimate" $f.obj -o bent.ply --prepare wrap --epsilon 5% --effort fast
+    shows 0 'verified' "$V" --outer $g.obj bent.ply --raw
+  done
+done
+expect 3 'have a wrap give the sheets a thickness' "$BIN/bcd-decompose" sheet.off -o none.glb --no-cache --prepare strict
+expect 0 'A wrap takes the place of the mesh, so that every triangle is inside' "$BIN/bcd-decompose" sheet.off -o thick.glb --no-cache
+shows 0 'verified' "$BIN/bound-verify" cover sheet.off thick.glb --raw
 # From the cache the same, and of other lengths another.
 for i in 1 2; do
   expect 0 'each lies inside, exactly' env KABOUM_CACHE="$PWD/cache" "$BIN/bcd-decompose" crossing.off -o c$i.glb --prepare wrap --epsilon 5% --effort fast --report c$i.json

@@ -30,7 +30,7 @@ expect 0 'of 3 links, from 2 meshes' "$D" robot/r.urdf -o drawn --from visual --
 expect 0 '' "$D" robot/r.urdf -o drawn2 --visual --epsilon 3% --effort fast --quiet
 diff -r drawn drawn2 >diff.txt || fail "--from visual is not --visual: $(cat diff.txt)"
 shows 0 '^verified: 3 of 3 links' "$V" robot robot/r.urdf drawn/r.urdf --visual --prepare --epsilon 3%
-grep -q '<b>wrist_1</b>' page.html && grep -q 'all verified' page.html || fail "the page says nothing of a link"
+grep -q '<b>wrist_1</b>' page.html && grep -q 'every triangle of 3 links is inside' page.html || fail "the page says nothing of a link"
 [ "$(grep -o 'data:image/png;base64,iVBOR' page.html | wc -l)" = 6 ] || fail "pictures"
 expect 2 'for robots' "$D" robot/meshes/t.off -o x.glb --from visual
 expect 2 'overwrite the input' "$D" robot/r.urdf -o x --html-report robot/r.urdf
@@ -42,7 +42,7 @@ shows 0 '^verified: 3 of 3 links' "$V" robot robot/r.urdf round/r.urdf --visual 
 [ "$(grep -c 'meshes/bracket-outer.*stl' round/r.urdf)" = 3 ] || fail "meshes of the URDF: $(grep filename round/r.urdf)"
 grep -q 'scale="0.5 -0.5 0.5"' round/r.urdf || fail "scale"
 grep -q '^round/r.urdf: .*robot/r.urdf .*bracket.obj' round.d || fail "dependency file: $(cat round.d)"
-grep -q 'enclosure certified' round.html || fail "the page of enclosing meshes"
+grep -q 'every triangle is inside' round.html || fail "the page of enclosing meshes"
 expect 0 'from the cache' "$S" robot/r.urdf -o round2 --visual --epsilon 2% --effort fast --threads 1
 diff -r round round2 >diff.txt || fail "another result from the cache: $(cat diff.txt)"
 expect 0 '' "$S" robot/r.urdf -o round3 --visual --epsilon 2% --effort fast --threads 1 --no-cache

@@ -78,23 +78,23 @@ awk 'NR < 3 || NR > 6 { print; next } NR == 3 { c = cos(0.3); s = sin(0.3) }
 shows 0 'verified' "$BIN/bound-verify" --cover thin/posed.off thin/out/links/l.glb
 # All links at once, from the two robots' files.
 V=$BIN/bound-verify
-shows 0 "link 'arm/1': box: verified" "$V" --robot robot/r.urdf out/r.urdf --prepare --epsilon 3% --report v.json
-[ "$(grep -c ': verified' out.txt)" = 8 ] || fail "not all shapes: $(cat out.txt)"
+shows 0 "link 'arm/1': verified: every triangle is inside: 2 meshes in [0-9]* bod.*; 1 shape is as it was" "$V" --robot robot/r.urdf out/r.urdf --prepare --epsilon 3% --report v.json
+[ "$(grep -c ': verified' out.txt)" = 3 ] || fail "not all shapes: $(cat out.txt)"
 grep -q '"relation": "robot"' v.json || fail "report"
 grep -q 'bodies/t/t-0000.stl' v.json || fail "the report does not name what holds the meshes"
-shows 0 'surface is within' "$V" --robot robot/r.urdf out/r.urdf --claims surface
-shows 1 'bodies: refuted' "$V" --robot robot/r.urdf out/r.urdf --epsilon 0.01%
+shows 0 'every triangle is inside' "$V" --robot robot/r.urdf out/r.urdf --claims surface
+shows 1 'refuted: bodies: at least' "$V" --robot robot/r.urdf out/r.urdf --epsilon 0.01%
 # What is no longer there, somewhere else, or moves in another way is noticed.
 cp -r out bad
 sed 's,bracket-0001.stl,bracket-0000.stl,' out/r.urdf >bad/r.urdf
 cmp -s out/r.urdf bad/r.urdf && fail "no second body of the base"
-shows 1 "bracket.obj: refuted" "$V" --robot robot/r.urdf bad/r.urdf
+shows 1 "refuted: robot/meshes/bracket.obj: [0-9]* triangles* .* not inside .* by at most" "$V" --robot robot/r.urdf bad/r.urdf
 sed 's,<collision name="base_1">,<collision name="x"><origin xyz="0 0 1e-9"/>,' out/r.urdf >bad/r.urdf
 shows 7 'the 1 shape of other poses' "$V" --robot robot/r.urdf bad/r.urdf
 sed 's/scale="0.2 -0.2 0.5"/scale="0.2 -0.2 0.4"/' out/r.urdf >bad/r.urdf
 shows 7 'no closed mesh of its pose and scale' "$V" --robot robot/r.urdf bad/r.urdf
 sed 's/box size="0.2 0.2 0.1"/box size="0.2 0.2 0.11"/' out/r.urdf >bad/r.urdf
-shows 7 'box: undecided' "$V" --robot robot/r.urdf bad/r.urdf
+shows 7 'undecided: box.*the result has none of its size' "$V" --robot robot/r.urdf bad/r.urdf
 sed 's,<link name="frame">,<link name="frame"><collision><geometry><sphere radius="9"/></geometry></collision>,
   s,<link name="frame"/>,<link name="frame"><collision><geometry><sphere radius="9"/></geometry></collision></link>,' \
   out/r.urdf >bad/r.urdf
@@ -102,8 +102,9 @@ shows 0 'verified' "$V" --robot robot/r.urdf bad/r.urdf
 shows 7 "link 'frame': undecided: how far 1 shape" "$V" --robot robot/r.urdf bad/r.urdf --epsilon 3%
 # A link that lost its shapes holds nothing, whatever they were; limits are the robot's, too.
 sed '/<collision/,/<\/collision>/d' out/r.urdf >bad/r.urdf
-shows 1 "t.off: refuted: the result's link has no" "$V" --robot robot/r.urdf bad/r.urdf
-grep -q "box: refuted: the result's link has no shape" out.txt || fail "a box that is gone: $(cat out.txt)"
+shows 1 "refuted: robot/meshes/t.off: the result's link has no.*; nor are 2 other shapes" "$V" --robot robot/r.urdf bad/r.urdf
+"$V" --robot robot/r.urdf bad/r.urdf --quiet --report gone.json
+grep -q "the result's link has no shape at all" gone.json || fail "a box that is gone: $(cat gone.json)"
 sed 's/upper="2"/upper="2.5"/' out/r.urdf >bad/r.urdf
 shows 1 "joints: refuted: joint '[a-z]*' has other limits" "$V" --robot robot/r.urdf bad/r.urdf
 sed 's/<axis xyz="0 1 0"/<axis xyz="0 0 1"/' out/r.urdf >bad/r.urdf
@@ -143,7 +144,7 @@ shows 0 'verified' "$V" --robot one/t.urdf one/t.urdf
 shows 7 'no closed mesh' "$V" --robot one/t.urdf one/faces.urdf
 grep -q 'face3.off and 3 more meshes: it is not closed' err.txt || fail "the open mesh is not named"
 shows 7 'no closed mesh' "$V" --robot one/face.urdf one/face.urdf
-shows 0 'within 1 convex body' "$V" --robot one/t.urdf one/both.urdf
+shows 0 'every triangle is inside: 1 mesh in 1 body' "$V" --robot one/t.urdf one/both.urdf
 shows 0 'as far as open meshes define it' "$V" --robot one/face.urdf one/t.urdf
 expect 7 'inside out' "$V" --robot one/inverse.urdf one/t.urdf --claims solid
 expect 2 'report' "$V" --robot one/t.urdf one/t.urdf --report one/t.off
@@ -200,7 +201,7 @@ grep -q 'of 1 link, from 1 mesh$' err.txt || fail "counts: $(cat err.txt)"
 grep -q 'bodies/t/t-0000.stl' seen/v.urdf || fail "no bodies for drawing shapes"
 grep -q 'box size' seen/v.urdf || fail "a link without a shape for drawing lost its collision shape"
 shows 0 'verified' "$V" --robot robot/v.urdf seen/v.urdf --geometry visual
-grep -q "link 'arm/1': box: verified" out.txt || fail "collision shapes of a link that is not drawn are not judged"
+grep -q "link 'arm/1': verified: .*1 shape is as it was" out.txt || fail "collision shapes of a link that is not drawn are not judged"
 grep -q 'filename="../robot/meshes/t.off"' seen/v.urdf || fail "a mesh that stays is not found from the folder"
 
 sed '3,6s/1/3/' robot/meshes/t.off >robot/meshes/large.off

@@ -40,11 +40,34 @@ printf 'OFF\n8 12 0\n0 0 0\n4 3 0\n4 0 0\n0 1 0\n0 0 1\n4 3 1\n4 0 1\n0 1 1\n' >
 for t in '0 1 2' '0 2 3' '4 6 5' '4 7 6' '0 4 5' '0 5 1' '1 5 6' '1 6 2' '2 6 7' '2 7 3' '3 7 4' '3 4 0'; do
   echo "3 $t"
 done >>fold.off
-expect 0 'solid is enclosed, but not all of its triangles: 10 stick out, by at least 1.2' "$D" fold.off -o folded.off --vertices 8 \
-  --report fold.json
+expect 1 'solid is enclosed, but not all of its triangles: 10 stick out, by at least 1.2' "$D" fold.off -o folded.off --vertices 8 \
+  --report fold.json --prepare strict
 grep -q '"surface_triangles_outside": 10' fold.json || fail 'no number of triangles that stick out'
 shows 1 'solid claim: verified' "$V" --outer fold.off folded.off --prepare
 grep -q 'surface claim: refuted: 10 .*stick out by at least 1.2' out.txt || fail "no depth: $(cat out.txt)"
+
+for options in '--vertices 40' '--epsilon 10%' '--vertices 40 --verify' '--epsilon 10% --cost planes'; do
+  # shellcheck disable=SC2086  # options
+  expect 0 'the input is wrapped' "$D" fold.off -o folded.off $options --effort fast
+  shows 0 'surface claim: verified' "$V" --outer fold.off folded.off --raw
+done
+expect 1 '' "$D" fold.off -o folded.off --vertices 8 --log fold.log --quiet
+expect 1 '' "$D" fold.off -o folded.off --vertices 8 --keep-orientation --quiet
+# Triangles without area are segments and points, which stick out or not.
+printf 'OFF\n3 1 0\n0.5 0.5 0.5\n5 0.5 0.5\n3 0.5 0.5\n3 0 1 2\n' >segment.off
+shows 1 'surface claim: refuted: 1 .*they stick out by at least 4 and at most 4' "$V" mesh --outer segment.off one.off --raw
+expect 1 '' "$V" cover segment.off one.off --raw
+shows 0 'every triangle of the original' "$V" mesh --outer segment.off one.off --scale 0.2 --raw
+expect 3 'none of its triangles has an area' "$V" mesh --outer segment.off one.off --claims solid
+{ sed 's/^8 12 0/9 13 0/; s/^\(1 1 1\)$/\1\n3 0.5 0.5/' one.off; echo 3 0 8 8; } >whisker.off
+shows 1 'surface claim: refuted: 1 .*triangle 12' "$V" mesh --outer whisker.off one.off --raw
+grep -q 'segment or point that no other triangle has' err.txt || fail "the whisker is not noted: $(cat err.txt)"
+cube -1 4 >five.off
+shows 0 'every triangle of the original' "$V" mesh --outer whisker.off five.off --raw
+printf 'OFF\n2 1 0\n0 0 0\n9 0 0\n3 0 1 1\n' >only.off
+expect 3 'no triangles: all 1 have two or more equal corners' "$V" mesh --outer only.off one.off --raw
+printf 'v 0 0 0\nv 5 5 5\n' >points.obj
+expect 3 'no triangles' "$V" mesh --outer points.obj one.off --raw
 
 # Open meshes.
 shows 0 'surface claim: verified' "$V" --outer open.off three.off

@@ -153,5 +153,44 @@ TEST(Simulation, CountsWhatIsWrong) {
   EXPECT_GT(carry_out(c, -1.5, "on arm/hand 0.12 0 0 0 0 0 1").report.limit_violations, 0U);
 }
 
+/// The block is picked; then the hand moves on by these parts of a motion, and the block is away.
+SimulationReport taken_away(const std::string& parts) {
+  Case c;
+  std::string domain = kDomain;
+  domain.insert(domain.find("init:"),
+                "action remove(?o : object)\n  preconds: let ?q = extern(reach(arm, ?o))\n"
+                "  effects: add(Kf, isDone), add(Kf, conf(arm) = ?q), add(Kf, pose(?o) = away)\n");
+  const plan::Model model = plan::load({"test", domain}, nullptr, host());
+  std::string json = R"({"format": "kaboum-plan", "version": 1, "root": 0, "nodes": [
+    {"action": "pick", "arguments": ["block"], "calls": [
+      {"external": "reach", "arguments": ["arm", "block"], "value": "q 1",
+       "payload": "[{\"robot\":\"arm\",\"path\":[[0.0],[1.0]]}]"},
+      {"external": "grasp", "arguments": ["arm", "block", "q 1"],
+       "value": "on arm/hand 0.12 0 0 0 0 0 1"}], "next": 1},
+    {"action": "remove", "arguments": ["block"], "calls": [
+      {"external": "reach", "arguments": ["arm", "block"], "value": "q 0.5", "payload": "PARTS"}],
+     "next": "goal"}]})";
+  json.replace(json.find("PARTS"), 5, parts);
+  const plan::Plan plan = read_plan(model, json, "test");
+  Simulation simulation(c.world, c.cell, model, plan, {});
+  run(model, plan, {}, [&](const plan::RunStep& step) { simulation.carry_out(step); });
+  return simulation.report();
+}
+
+TEST(Simulation, WhatIsLeftBehindIsNotTakenAway) {
+  const std::string empty = R"({\"robot\":\"arm\",\"path\":[[1.0],[0.5]]})";
+  const std::string holding =
+      R"({\"robot\":\"arm\",\"path\":[[1.0],[0.5]],\"holds\":{\"block\":\"hand\"}})";
+  const SimulationReport left = taken_away("[" + empty + "]");
+  EXPECT_EQ(left.jumps, 1U);
+  ASSERT_EQ(left.problems.size(), 1U);
+  EXPECT_NE(left.problems[0].find("block stays where it was"), std::string::npos)
+      << left.problems[0];
+  EXPECT_TRUE(taken_away("[" + holding + "]").good());
+  // Carried, put down, and left there.
+  EXPECT_TRUE(
+      taken_away("[" + holding + R"(,{\"robot\":\"arm\",\"path\":[[0.5],[0.4],[0.5]]}])").good());
+}
+
 }  // namespace
 }  // namespace kaboum::execution

@@ -250,6 +250,37 @@ TEST(Collada, WhatMayHoldASurfaceIsRefusedByName) {
   EXPECT_TRUE(has_note(r, "Animations"));
 }
 
+// Other programs' data, by the names of these, wherever it is on the way to a triangle.
+TEST(Collada, ExtraDataOfUnknownProfilesIsRefused) {
+  const auto extra = [](const std::string& profile, const std::string& content = "<x/>") {
+    return "<extra><technique profile=\"" + profile + "\">" + content + "</technique></extra>";
+  };
+  const auto everywhere = [&](const std::string& text) {
+    std::vector<Document> all(7);
+    all[0].node = "<node>" + text + R"(<instance_geometry url="#g"/></node>)";
+    all[1].node = R"(<node><instance_geometry url="#g">)" + text + "</instance_geometry></node>";
+    all[2].node += text;
+    all[3].scene += text;
+    all[4].libraries = text;
+    all[5].faces += text;
+    all[6].vertices =
+        R"(<vertices id="v"><input semantic="POSITION" source="#p"/>)" + text + "</vertices>";
+    return all;
+  };
+  for (const char* profile : {"blender", "MAYA", "GOOGLEEARTH", "FCOLLADA", "OpenCOLLADA3dsMax"})
+    for (const Document& d : everywhere(extra(profile))) EXPECT_NO_THROW(read(d)) << d.text();
+  for (const char* profile : {"blender_volumes", "MAYA2", "VENDOR"})
+    for (const Document& d : everywhere(extra(profile))) expect_refused(d, {profile});
+  for (const Document& d :
+       everywhere(extra("MAYA", "<segment_scale_compensate>1</segment_scale_compensate>")))
+    expect_refused(d, {"compensate"});
+  EXPECT_NO_THROW(
+      read(with_node(extra("MAYA", "<segment_scale_compensate>0</segment_scale_compensate>"))));
+  Document d;
+  d.node = R"(<node><instance_geometry url="#g"><shape/></instance_geometry></node>)";
+  expect_refused(d, {"shape"});
+}
+
 TEST(Collada, Damaged) {
   expect_error("this is no XML", Format::Collada, {"XML"});
   expect_error("<COLLADA version=\"1.3\"/>", Format::Collada, {"1.4"});

@@ -26,7 +26,10 @@ const std::string kMesh = R"(	Geometry: 10, "Geometry::g", "Mesh" {
 	}
 )";
 
-std::string fbx(const std::string& objects, const std::string& settings = "") {
+const std::string kConnections = "\tC: \"OO\",20,0\n\tC: \"OO\",10,20\n";
+
+std::string fbx(const std::string& objects, const std::string& settings = "",
+                const std::string& connections = kConnections) {
   return R"(; FBX 7.3.0 project file { not a brace
 FBXHeaderExtension:  {
 	FBXHeaderVersion: 1003
@@ -44,10 +47,8 @@ Objects:  {
 )" + objects +
          R"(}
 Connections:  {
-	C: "OO",20,0
-	C: "OO",10,20
-}
-)";
+)" + connections +
+         "}\n";
 }
 
 /// A record of a binary file with 4-byte sizes, at `at`.
@@ -115,6 +116,43 @@ TEST(Fbx, ObjectsThatMayHoldASurfaceAreRefused) {
   }
   EXPECT_NO_THROW(
       parse(fbx(kMesh + object("Material", "") + object("NodeAttribute", "Light")), Format::Fbx));
+}
+
+// assimp leaves them out without a word.
+TEST(Fbx, ModelsThatAreNotInTheSceneAreRefused) {
+  if (!can_read()) return;
+  const std::string more = R"(	Geometry: 11, "Geometry::h", "Mesh" {
+		Vertices: *12 {
+			a: 5,0,0,6,0,0,5,1,0,5,0,1
+		}
+		PolygonVertexIndex: *12 {
+			a: 0,2,-2,0,1,-4,1,2,-4,2,0,-4
+		}
+		GeometryVersion: 124
+	}
+	Model: 21, "Model::loose", "Mesh" {
+		Version: 232
+	}
+	Model: 22, "Model::parent", "Null" {
+		Version: 232
+	}
+)";
+  const auto connected = [&](const std::string& more_connections) {
+    return fbx(kMesh + more, "", kConnections + more_connections);
+  };
+  const std::string of_model = "\tC: \"OO\",11,21\n";
+  EXPECT_EQ(parse(connected(of_model + "\tC: \"OO\",21,0\n"), Format::Fbx).mesh.triangles.size(),
+            8U);
+  EXPECT_EQ(parse(connected(of_model + "\tC: \"OO\",21,22\n\tC: \"OO\",22,0\n"), Format::Fbx)
+                .mesh.triangles.size(),
+            8U);
+  expect_error(connected(of_model), Format::Fbx, {"line 35", "not connected"});
+  expect_error(connected(of_model + "\tC: \"OO\",21,22\n"), Format::Fbx, {"not connected"});
+  expect_error(connected(of_model + "\tC: \"OP\",21,0,\"x\"\n"), Format::Fbx, {"not connected"});
+  const ReadResult hidden = parse(connected("\tC: \"OO\",21,0\n"), Format::Fbx);
+  EXPECT_EQ(hidden.mesh.triangles.size(), 4U);
+  EXPECT_TRUE(has_note(hidden, "1 mesh that no model shows"));
+  expect_error(fbx(kMesh + kMesh), Format::Fbx, {"second object of the number 10"});
 }
 
 TEST(Fbx, Units) {

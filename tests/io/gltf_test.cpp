@@ -350,6 +350,17 @@ TEST(Gltf, ExtensionsThatMayHoldGeometryAreRefused) {
   }
   for (const char* name : {"KHR_physics_rigid_bodies", "OMI_physics_body"})
     expect_refused(with(Json::json_pointer("/nodes/0"), name), {name});
+  // What begins like harmless ones, and what moves nodes.
+  for (const char* name :
+       {"AGI_articulations", "KHR_texture_geometry_displace", "KHR_materials_displacement",
+        "EXT_materials_shells", "EXT_texture_relief", "ADOBE_materials_", "MSFT_texture_",
+        "MSFT_packing_vertices", "KHR_lights_solid", "KHR_audio_shape", "KHR_animation_rig",
+        "KHR_xmp_mesh"}) {
+    Gltf required = triangle();
+    required.json["extensionsRequired"] = {name};
+    expect_refused(required, {name});
+    expect_refused(with(Json::json_pointer("/nodes/0"), name), {name});
+  }
   Gltf g = triangle();
   g.json["extensionsRequired"] = {"KHR_texture_basisu"};
   EXPECT_EQ(read(g), kTriangle);
@@ -387,8 +398,10 @@ TEST(Gltf, Scenes) {
   g.json["scene"] = 1;
   EXPECT_EQ(read(g)[0], Vec3(5, 0, 0));
   EXPECT_TRUE(has_note(parse(g.glb(), Format::Glb), "3 scenes"));
+  EXPECT_TRUE(has_note(parse(g.glb(), Format::Glb), "1 further node with a mesh"));
   g.json["scene"] = 2;
   EXPECT_EQ(read(g).size(), 6U);  // all roots
+  EXPECT_FALSE(has_note(parse(g.glb(), Format::Glb), "further node"));
   g.json.erase("scene");
   expect_refused(g, {"3 scenes"});
   g.json["scene"] = 3;

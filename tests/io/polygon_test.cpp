@@ -221,6 +221,34 @@ TEST(Polygon, ClosedMeshStaysClosed) {
   EXPECT_EQ(r.split_polygons, n + 2);
 }
 
+// Far fewer steps than the square of their corners.
+TEST(Polygon, LargeOnesTakeNoLonger) {
+  constexpr int kCorners = 20'000;
+  std::mt19937_64 random(9);
+  std::uniform_real_distribution<double> unit(0.3, 1);
+  std::vector<Vec3> star, gear;
+  for (int i = 0; i < kCorners; ++i) {
+    const double angle = 2 * 3.14159265358979 * i / kCorners, radius = unit(random);
+    star.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0);
+    const double tooth = 1 + 0.01 * (i % 2);
+    gear.emplace_back(tooth * std::cos(angle), tooth * std::sin(angle), 0);
+  }
+  std::vector<Triangle> triangles;
+  for (const std::vector<Vec3>* polygon : {&star, &gear}) {
+    PolygonSplitter splitter(20'000'000);
+    EXPECT_TRUE(splitter.split(*polygon, triangles));
+    EXPECT_FALSE(splitter.exhausted());
+    EXPECT_EQ(triangles.size(), polygon->size() - 2);
+  }
+}
+
+TEST(Polygon, BudgetEndsInAnError) {
+  std::string text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf";
+  for (int i = 0; i < 20'000; ++i) text += " 1 2 3 4";
+  expect_error(text, Format::Obj, {"line 5", "80000 corners", "export the mesh as triangles"},
+               ErrorCode::LimitReached);
+}
+
 TEST(Polygon, BudgetEndsInAFan) {
   std::vector<Vec3> comb;
   for (int i = 0; i < 200; ++i) comb.emplace_back(i, i % 2 == 0 ? 5 : 1, 0);

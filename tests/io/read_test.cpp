@@ -55,13 +55,28 @@ TEST(Welding, MergesEqualPositionsInOrderOfFirstUse) {
   EXPECT_TRUE(has_note(r, "1 vertex that no face uses"));
 }
 
-TEST(Welding, DropsCollapsedTrianglesAndTheirVertices) {
-  const ReadResult r = parse(
-      "v 5 5 5\nv 0 0 0\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 1 2\nf 2 3 4\nf 2 4 5\n", Format::Obj);
-  EXPECT_EQ(r.file_triangles, 3U);
-  EXPECT_EQ(r.collapsed_triangles, 2U);
+// What is an edge or corner of others goes; a segment or point apart stays, once.
+TEST(Welding, CollapsedTrianglesAreEdgesOrStay) {
+  const std::string v = "v 5 5 5\nv 0 0 0\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 9 9 9\n";
+  const ReadResult r = parse(v + "f 2 3 4\nf 2 4 5\nf 4 4 2\nf 5 5 5\nf 2 4 2 4\n", Format::Obj);
+  EXPECT_EQ(r.file_triangles, 6U);
+  EXPECT_EQ(r.collapsed_triangles, 5U);
   EXPECT_EQ(r.mesh.triangles.size(), 1U);
   EXPECT_EQ(r.mesh.vertices.size(), 3U);
+  EXPECT_FALSE(has_note(r, "equal corners"));
+  // A segment with one end of its own, twice; a point; a quadrilateral that is a segment; the ends
+  // of segments.
+  const ReadResult apart =
+      parse(v + "f 2 4 5\nf 1 1 2\nf 2 1 2\nf 6 6 6\nf 4 6 6 4\nf 1 1 1\n", Format::Obj);
+  EXPECT_EQ(apart.file_triangles, 7U);
+  EXPECT_EQ(apart.mesh.triangles.size(), 3U);
+  EXPECT_EQ(apart.mesh.vertices.size(), 5U);
+  EXPECT_EQ(apart.collapsed_triangles, 4U);
+  EXPECT_TRUE(has_note(apart, "2 triangles with equal corners are segments or points"));
+  const ReadResult point = parse(v + "f 2 4 5\nf 6 6 6\nf 6 6 6\n", Format::Obj);
+  EXPECT_EQ(point.mesh.triangles.size(), 2U);
+  EXPECT_EQ(point.mesh.vertices.size(), 4U);
+  EXPECT_TRUE(has_note(point, "1 triangle with equal corners is a segment or point"));
   expect_error("v 0 0 0\nv 1 1 1\nf 1 1 2\n", Format::Obj, {"no triangles", "equal corners"});
 }
 
@@ -136,6 +151,31 @@ TEST(Obj, IndicesSlashesPolygonsAndContinuation) {
   EXPECT_EQ(r.mesh.triangles[1], (Triangle{0, 2, 3}));
   EXPECT_EQ(r.mesh.triangles[2], (Triangle{0, 2, 3}));
   expect_error("v 0 0 0\nv 1 0 0\nf 1 2\n", Format::Obj, {"line 3", "fewer than three corners"});
+}
+
+// A name may end with a backslash; nothing is lost by it.
+TEST(Obj, BackslashesSwallowNoStatement) {
+  const std::string v = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 1\n";
+  for (const char* statement :
+       {"g C:\\a\\\n", "o x \\\n", "usemtl y\\\r\n", "mtllib \\\n", "vn 0 0 1 \\\n", "vt 0 0\\\n",
+        "l 1 2 \\\n", "p 1 \\\n 2 \\\n", "s 1\\\n", "curv 0 1 1 2\\\n"}) {
+    const ReadResult r = parse(v + statement + "f 1 2 3\nf 1 2 4\n", Format::Obj);
+    EXPECT_EQ(r.mesh.triangles.size(), 2U) << statement;
+    EXPECT_TRUE(has_note(r, std::string(statement).starts_with("p") ? "line 6" : "line 5"))
+        << statement;
+    EXPECT_TRUE(has_note(r, "backslash")) << statement;
+  }
+  // What is no statement belongs to the line before.
+  const ReadResult r = parse(v + "g a \\\n b c\nparm u 0 \\\n 1 2 \\\n3\nf 1 2 3\n", Format::Obj);
+  EXPECT_EQ(r.mesh.triangles.size(), 1U);
+  EXPECT_FALSE(has_note(r, "backslash"));
+  // In a vertex or a face it does as well: nothing is left out without a word.
+  expect_error("v 0 0 0 \\\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n", Format::Obj,
+               {"line 2", "'v'", "backslash"});
+  expect_error(v + "f 1 2 3 \\\nf 1 2 4\n", Format::Obj, {"line 6", "'f'"});
+  expect_error("v 0 0 0 1 x 1\n", Format::Obj, {"line 1", "'x'"});
+  EXPECT_EQ(parse(v + "# C:\\a\\\nf 1 2 3\n", Format::Obj).mesh.triangles.size(), 1U);
+  EXPECT_EQ(parse(v + "g x # C:\\a\\\nf 1 2 3\n", Format::Obj).mesh.triangles.size(), 1U);
 }
 
 TEST(Obj, FacesMayComeBeforeVertices) {

@@ -47,6 +47,11 @@ TEST(Refusal, PlyListsElementsAndCounts) {
   expect_error(
       with("element triangle 1\nproperty int a\nproperty int b\nproperty int c\n", "0 1 2\n"),
       Format::Ply, {"'triangle'"});
+  expect_error(with("element bezier 1\nproperty list uchar float control_points\n", "3 0 1 2\n"),
+               Format::Ply, {"bezier"});
+  expect_error(
+      with("element sphere 1\nproperty float x\nproperty float y\nproperty float r\n", "0 1 2\n"),
+      Format::Ply, {"sphere"});
   EXPECT_NO_THROW(
       parse(with("element tetrahedron 0\nproperty list uchar int v\n", ""), Format::Ply));
   EXPECT_NO_THROW(parse(with("element edge 1\nproperty int vertex1\nproperty int vertex2\n"

@@ -216,6 +216,22 @@ TEST(Vrml, Inline) {
   EXPECT_NE(message("parts/none.wrl").find("cannot be read"), std::string::npos);
   EXPECT_NE(message("http://example.org/x.wrl").find("not supported"), std::string::npos);
   EXPECT_NE(message("/etc/passwd").find("not supported"), std::string::npos);
+  // Out of the folder, from here or from a file in it; within it `..` is as good as any other.
+  std::ofstream(directory / "outside.wrl") << kHeader << kTriangle;
+  std::ofstream(directory / "parts" / "up.wrl") << kHeader << "Inline { url \"../outside.wrl\" }";
+  EXPECT_EQ(message("parts/../parts/a.wrl"), "no error");
+  EXPECT_EQ(message("parts/up.wrl"), "no error");
+  const auto from_parts = [&](const std::string& url) -> std::string {
+    try {
+      parse(text(url), Format::Vrml, directory / "parts");
+      return "no error";
+    } catch (const Error& e) {
+      return e.what();
+    }
+  };
+  EXPECT_EQ(from_parts("a.wrl"), "no error");
+  for (const char* url : {"../outside.wrl", "up.wrl", "x/../../outside.wrl", ".."})
+    EXPECT_NE(from_parts(url).find("leaves the folder"), std::string::npos) << url;
   std::filesystem::remove_all(directory);
 }
 

@@ -1,6 +1,7 @@
 // The validator, and whether it notices damage done to good plans.
 #include <random>
 
+#include "damaged_plan.h"
 #include "plan_test.h"
 #include "possible_worlds.h"
 #include "random_model.h"
@@ -106,57 +107,6 @@ TEST(Check, ACycleIsRefused) {
   EXPECT_THROW(check(m, plan), Error);
 }
 
-/// What the validator should say, by sets of worlds: every precondition, branch and end.
-bool valid_in_worlds(const Model& m, const Plan& p) {
-  const Worlds worlds(m);
-  std::set<std::pair<Index, Belief>> seen;
-  std::vector<std::pair<Index, Belief>> todo;
-  std::set<Index> contradicted, passed;
-  const auto visit = [&](Index n, const Belief& b) {
-    if (seen.emplace(n, b).second) todo.emplace_back(n, b);
-  };
-  for (const Belief& b : worlds.initial()) visit(p.root, b);
-  while (!todo.empty()) {
-    const auto [n, belief] = todo.back();
-    todo.pop_back();
-    if (n == kNone) {
-      std::vector<Index> slots(std::max<Index>(m.goal_slots, 1), 0);
-      if (!worlds.holds(m.goal, slots, belief)) return false;
-      continue;
-    }
-    const Plan::Node& node = p.nodes[n];
-    std::vector<Belief> after = {belief};
-    if (node.acts) {
-      const Action& a = m.actions[node.action.schema];
-      std::vector<Index> slots(std::max<Index>(a.slots, 1), 0);
-      std::copy(node.action.arguments.begin(), node.action.arguments.end(), slots.begin());
-      if (!worlds.holds(a.precondition, slots, belief)) return false;
-      after = worlds.apply(belief, worlds.fired(a, node.action.arguments, belief));
-      (after.empty() ? contradicted : passed).insert(n);
-    }
-    for (const Belief& b : after) {
-      if (!node.branches) {
-        visit(node.next, b);
-        continue;
-      }
-      const std::size_t item =
-          worlds.number(node.branch.function, node.branch.symbol, node.branch.arguments);
-      const Index value = (*b.begin())[item];
-      for (const World& w : b)
-        if (w[item] != value) return false;
-      bool found = false;
-      for (const Plan::Branch::Case& c : node.branch.cases) {
-        if (c.value != value || found) continue;
-        found = true;
-        visit(c.next, b);
-      }
-      if (!found) return false;
-    }
-  }
-  return std::all_of(contradicted.begin(), contradicted.end(),
-                     [&](Index n) { return passed.contains(n); });
-}
-
 /// Good plans of random models, damaged in every way there is: the validator and the sets of worlds
 /// must agree, whether the damage matters or not.
 TEST(Check, AgreesWithSetsOfWorldsOnDamagedPlans) {
@@ -177,52 +127,7 @@ TEST(Check, AgreesWithSetsOfWorldsOnDamagedPlans) {
     ASSERT_TRUE(valid(m, s.plan)) << text;
     ASSERT_TRUE(valid_in_worlds(m, s.plan)) << text;
     for (int i = 0; i < 12; ++i) {
-      Plan p = s.plan;
-      for (std::size_t edits = 1 + pick(2); edits > 0; --edits) {
-        Plan::Node& n = p.nodes[pick(p.nodes.size())];
-        const auto anywhere = [&] {
-          return pick(3) == 0 ? kNone : static_cast<Index>(pick(p.nodes.size()));
-        };
-        switch (pick(8)) {
-          case 0:  // another successor
-            (n.branches ? n.branch.cases[pick(n.branch.cases.size())].next : n.next) = anywhere();
-            break;
-          case 1:  // another argument
-            if (!n.action.arguments.empty())
-              n.action.arguments[pick(n.action.arguments.size())] = static_cast<Index>(pick(3));
-            break;
-          case 2: {  // another action
-            if (!n.acts) break;
-            n.action.schema = static_cast<Index>(pick(m.actions.size()));
-            n.action.arguments.assign(m.actions[n.action.schema].parameters.size(),
-                                      static_cast<Index>(pick(3)));
-            break;
-          }
-          case 3:  // exchanged actions
-            std::swap(n.action, p.nodes[pick(p.nodes.size())].action);
-            break;
-          case 4:  // a case lost
-            if (n.branches && n.branch.cases.size() > 1)
-              n.branch.cases.erase(n.branch.cases.begin() +
-                                   static_cast<std::ptrdiff_t>(pick(n.branch.cases.size())));
-            break;
-          case 5:  // cases exchanged
-            if (n.branches) std::swap(n.branch.cases.front().next, n.branch.cases.back().next);
-            break;
-          case 6:  // the action, or the branch, forgotten
-            if (n.acts && n.branches) {
-              n.acts = pick(2) != 0;
-              n.branches = !n.acts;
-              if (!n.branches) n.next = n.branch.cases.front().next;
-            }
-            break;
-          default:  // another start
-            p.root = anywhere();
-        }
-      }
-      for (Plan::Node& n : p.nodes)
-        if (n.acts && n.action.arguments.size() != m.actions[n.action.schema].parameters.size())
-          n.action.arguments.assign(m.actions[n.action.schema].parameters.size(), 0);
+      const Plan p = damaged(m, s.plan, 1 + pick(2), random);
       bool cycle = false;
       try {
         measure(m, p);
@@ -337,6 +242,25 @@ TEST(PlanFile, RefusesForeignNames) {
   const std::size_t at = text.find("\"move\"");
   text.replace(at, 6, "\"fly\"");
   EXPECT_THROW(read_plan(m, text, "p.json"), Error);
+}
+
+TEST(PlanFile, RefusesAnotherDomain) {
+  const Model m = scenario("stacked", "3");
+  std::string text = write_plan(m, good_plan(m));
+  const std::string name = "\"" + m.name + "\"";
+  text.replace(text.find(name), name.size(), "\"another\"");
+  EXPECT_THROW(read_plan(m, text, "p.json"), Error);
+}
+
+/// The second one would say nothing, or something else: whoever made it meant another plan.
+TEST(PlanFile, RefusesTwoCasesForAValue) {
+  const Model m = scenario("force-sensing", "1");
+  Plan plan = good_plan(m);
+  const auto branching = std::ranges::find(plan.nodes, true, &Plan::Node::branches);
+  ASSERT_NE(branching, plan.nodes.end());
+  branching->branch.cases.push_back(branching->branch.cases[0]);
+  EXPECT_THROW(check(m, plan), Error);
+  EXPECT_THROW(read_plan(m, write_plan(m, plan), "p.json"), Error);
 }
 
 /// An effect of the world changes x by what r is; then x is sensed. Its value before is known to no

@@ -308,6 +308,64 @@ TEST(Handles, OfWhatIsNotKnownACallSaysNothing) {
   plans(head + go("!(K(done) & extern(collides(pos)))"), Outcome::Solved, 1);
 }
 
+TEST(Handles, AFailureThatRestsOnAChoiceIsNoProof) {
+  // A grasp is one of several; what follows fails with it, whatever it reads, or does not.
+  const std::string head =
+      "types: conf handle, pose handle\nconstants: conf home, side; pose start\n"
+      "predicates: held, done\nfunctions: at : conf; pos : pose\n"
+      "externals: grasp(conf) : pose; on(pose) : pose; go(conf) : conf; ready(pose); far(conf) : "
+      "conf\n"
+      "init: K(at = home), K(pos = start), K(!held), K(!done)\ngoal: K(done)\n"
+      "action take preconds: K(!held) & let ?p = extern(grasp(at)) & let ?q = extern(go(at))"
+      " effects: add(Kf, held), add(Kf, pos = ?p), add(Kf, at = ?q)\n";
+  const auto finish = [](const std::string& query) {
+    return "action finish preconds: K(held) & " + query + " effects: add(Kf, done)\n";
+  };
+  ExternalBindings b;
+  bool chosen = true;
+  b["grasp"] = [&chosen](const Question&) {
+    Answer out = Answer::found("a grasp", "path");
+    out.chosen = chosen;
+    return out;
+  };
+  b["go"] = [](const Question& q) {
+    (void)q.state.value("pos", {});
+    Answer out = Answer::found(q.arguments[0]);
+    out.fixed = true;
+    return out;
+  };
+  b["on"] = [](const Question& q) {
+    return q.arguments[0] == "start" ? Answer::impossible("on the table")
+                                     : Answer::found("on " + q.arguments[0]);
+  };
+  b["ready"] = [](const Question&) { return Answer::holds(true); };
+  b["far"] = [](const Question&) { return Answer::impossible("3 m away"); };
+  const auto outcome = [&](const std::string& query, const std::string& says) {
+    const Model m = bound(head + finish(query), b);
+    for (const Algorithm a : kAll) {
+      const Solution s = with(m, a);
+      if (!says.empty()) expect_says(s.outcome == Outcome::Limit ? s.limit : s.refused, says);
+      EXPECT_TRUE(s.outcome == with(m, Algorithm::BreadthFirst).outcome);
+    }
+    return with(m, Algorithm::BreadthFirst).outcome;
+  };
+  const std::string by = "the value that was chosen for grasp(home)";
+  // Nothing that is chosen is read, or only by what must have another value.
+  EXPECT_EQ(outcome("let ?q = extern(far(at))", "far(home): 3 m away"), Outcome::Unsolvable);
+  EXPECT_EQ(outcome("let ?p = extern(on(pos)) & let ?q = extern(far(at))", "far(home): 3 m away"),
+            Outcome::Unsolvable);
+  // It is read by what is impossible, or says what is so, or is compared.
+  b["on"] = [](const Question&) { return Answer::impossible("no room"); };
+  EXPECT_EQ(outcome("let ?p = extern(on(pos))", by), Outcome::Limit);
+  EXPECT_EQ(outcome("!extern(ready(pos))", by), Outcome::Limit);
+  EXPECT_EQ(outcome("K(pos = start)", by), Outcome::Limit);
+  // Where there is no choice, all these are proofs.
+  chosen = false;
+  EXPECT_EQ(outcome("let ?p = extern(on(pos))", "on(a grasp): no room"), Outcome::Unsolvable);
+  EXPECT_EQ(outcome("!extern(ready(pos))", ""), Outcome::Unsolvable);
+  EXPECT_EQ(outcome("K(pos = start)", ""), Outcome::Unsolvable);
+}
+
 TEST(Handles, WhatACallMayReadOfTheUnknownIsLost) {
   ExternalBindings b;
   for (const bool is : {true, false})
@@ -670,6 +728,76 @@ TEST(Handles, VerdictsAreThoseOfAnExhaustiveSearch) {
     }
   }
   for (const int n : count) EXPECT_GT(n, static_cast<int>(tasks) / 10);
+}
+
+/// What was sensed of objects that are done with differs between runs; no function asks for it.
+TEST(Handles, CheckReplaysOnceWhatFunctionsDoNotTellApart) {
+  int calls = 0;
+  const Model m =
+      load({"t.kpl", force_sensing(12, "home"), Language::Kpl}, nullptr, geometry(calls));
+  const Solution s = with(m, Algorithm::Greedy);
+  ASSERT_EQ(s.outcome, Outcome::Solved);
+  const CheckResult r = check(m, s.plan);
+  EXPECT_TRUE(r.valid) << r.violation;
+  EXPECT_LT(r.states, 200U);  // 4,096 ways that sensing may turn out
+}
+
+/// Both outcomes lead to one node; the function that is asked there reads what was sensed.
+TEST(Handles, CheckReplaysAgainWhatFunctionsTellApart) {
+  const auto where = [](const Question& q) {
+    return Answer::found(q.state.truth("p", {}) == true ? "here" : "there");
+  };
+  const Model m = load({"t.kpl",
+                        "types: conf handle\nconstants: conf home\npredicates: p, done\n"
+                        "functions: robot : conf\nexternals: where(conf) : conf\n"
+                        "action sense preconds: true effects: add(Kw, p)\n"
+                        "action go preconds: let ?q = extern(where(robot))"
+                        " effects: add(Kf, robot = ?q), add(Kf, done)\n"
+                        "init: K(robot = home) goal: K(done)",
+                        Language::Kpl},
+                       nullptr, {{"where", where}});
+  const auto plan = [&](const std::string& if_not) {
+    const std::string go = R"({"action":"go","arguments":[],"calls":[{"external":"where",
+        "arguments":["home"],"value":"VALUE"}],"next":"goal"})";
+    std::string here = go, other = go;
+    here.replace(here.find("VALUE"), 5, "here");
+    other.replace(other.find("VALUE"), 5, "there");
+    return read_plan(m,
+                     R"({"format":"kaboum-plan","version":1,"root":0,"seed":1,"attempts":1,"nodes":[
+        {"action":"sense","arguments":[],"branch":{"predicate":"p","arguments":[],
+         "cases":[{"value":true,"next":1},{"value":false,"next":)" +
+                         if_not + "}]}}," + here + "," + other + "]}",
+                     "plan.json");
+  };
+  EXPECT_TRUE(check(m, plan("2")).valid);
+  const CheckResult r = check(m, plan("1"));
+  EXPECT_FALSE(r.valid);
+  expect_says(r.violation, "returns 'there', not 'here'");
+}
+
+/// An effect under a condition of the world that is not known may set a handle: its value is not
+/// known then.
+TEST(Handles, AHandleThatMayHaveChangedIsNotKnown) {
+  const auto where = [](const Question&) { return Answer::found("there"); };
+  const Model m =
+      load({"t.kpl",
+            "types: conf handle\nconstants: conf home\npredicates: p, done\n"
+            "functions: robot : conf\nexternals: where(conf) : conf; near(conf)\n"
+            "action go preconds: let ?q = extern(where(robot))"
+            " effects: whenever K(p) => add(Kf, robot = ?q)\n"
+            "action stop preconds: extern(near(robot)) effects: add(Kf, done)\n"
+            "init: K(robot = home) goal: K(done)",
+            Language::Kpl},
+           nullptr, {{"where", where}, {"near", [](const Question& q) {
+                                          return Answer::holds(q.arguments[0] == "there");
+                                        }}});
+  const Plan plan = read_plan(m,
+                              R"({"format":"kaboum-plan","version":1,"root":0,"seed":1,"attempts":1,
+      "nodes":[{"action":"go","arguments":[],"calls":[{"external":"where","arguments":["home"],
+       "value":"there"}],"next":1},{"action":"stop","arguments":[],"next":"goal"}]})",
+                              "plan.json");
+  EXPECT_FALSE(check(m, plan).valid);
+  for (const Algorithm a : kAll) EXPECT_EQ(with(m, a).outcome, Outcome::NotInferred);
 }
 
 }  // namespace

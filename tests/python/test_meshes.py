@@ -1,5 +1,6 @@
 """Meshes in and out: arrays, objects that look like meshes, files, errors."""
 
+import fractions
 import types
 
 import numpy as np
@@ -27,6 +28,39 @@ def test_dtypes(box, vertices, faces):
     mesh = kaboum.Mesh(convert(box[0], vertices), convert(box[1], faces))
     np.testing.assert_array_equal(mesh.vertices, box[0])
     np.testing.assert_array_equal(mesh.faces, box[1])
+
+
+@pytest.mark.parametrize("number, ok", [
+    (np.int64(2**53), True),
+    (np.int64(2**53 + 1), False),
+    (np.int64(2**63 - 1), False),
+    (np.int64(-2**63), True),
+    (np.uint64(2**64 - 1), False),
+    (np.uint64(2**63), True),
+    (np.longdouble(0.5), True),
+    (np.longdouble(1) + np.longdouble(2) ** -60, False),
+    (np.longdouble("1e400"), False),
+    (fractions.Fraction(3, 8), True),
+    (fractions.Fraction(1, 3), False),
+    (2**70, True),
+    (2**70 + 1, False),
+    (np.float16(0.25), True),
+    (1j, False),
+    ("0.1", False),
+])
+def test_numbers_are_never_rounded(box, number, ok):
+    vertices = [[0, 0, 0], [1, 0, number], [0, 1, 0]]
+    if isinstance(number, np.generic):
+        vertices = np.array(vertices, dtype=number.dtype)
+        vertices[1, 2] = number
+    if ok:
+        assert kaboum.Mesh(vertices, [[0, 1, 2]]).vertices[1, 2] == number
+        return
+    with pytest.raises(kaboum.Error) as error:
+        kaboum.Mesh(vertices, [[0, 1, 2]])
+    assert error.value.code == "invalid_argument"
+    if not isinstance(number, (str, complex)):
+        assert "vertices[1, 2] is " + str(number) in str(error.value)
 
 
 def test_layouts(box):

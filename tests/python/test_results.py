@@ -15,6 +15,23 @@ from conftest import cube, signed_volume, torus
 BIN = os.environ["KABOUM_BIN"]
 
 
+def test_nothing_is_enclosed_by_nothing():
+    solid = (np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]),
+             np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]))
+    none = np.zeros((0, 3), int)
+    for nothing in ((np.zeros((0, 3)), none), (solid[0] * 100, none)):
+        for verdict in (kaboum.verify_mesh(nothing, solid), kaboum.verify_cover(nothing, [solid])):
+            assert not verdict and verdict.answer == "undefined"
+    for faces in ([[0, 1, 2]], [[0, 1, 1]], [[1, 0, 0]], [[1, 1, 1]]):
+        out = (np.array([[0.0, 0, 0], [9, 0, 0], [5, 0, 0]]), np.array(faces))
+        for verdict in (kaboum.verify_mesh(out, solid), kaboum.verify_cover(out, [solid])):
+            assert not verdict and verdict.answer == "refuted"
+            assert verdict.claims["surface"]["answer"] == "refuted"
+        within = (out[0] / 9, out[1])
+        assert kaboum.verify_mesh(within, solid) and kaboum.verify_cover(within, [solid])
+        assert kaboum.verify_mesh(within, solid, claims="solid").answer == "undefined"
+
+
 def test_outer_and_inner(ring):
     volume = signed_volume(*ring)
     outer = kaboum.decimate(ring, epsilon="2%", verify=True)

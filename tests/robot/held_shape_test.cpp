@@ -58,7 +58,7 @@ TEST(HeldShape, HeldByOneOrByTwoTogether) {
   EXPECT_EQ(Holders({}).hold(both, Claims::All).answer, Answer::Refuted);
 }
 
-// What is open or inside out holds nothing; what is not convex refutes nothing.
+// What is open or inside out holds nothing; several that are not all convex refute nothing.
 TEST(HeldShape, NotEveryMeshHolds) {
   const geom::Mesh solid = block({0, 0, 0}, {2, 2, 2}), inner = block({0.5, 0.5, 0.5}, {1, 1, 1});
   geom::Mesh open = solid;
@@ -72,7 +72,10 @@ TEST(HeldShape, NotEveryMeshHolds) {
   const geom::Mesh hollow = merged({solid, flipped(block({0.25, 0.25, 0.25}, {1.5, 1.5, 1.5}))});
   const Holders crooked({{"hollow", &hollow}});
   EXPECT_FALSE(crooked.all_convex());
-  EXPECT_EQ(crooked.hold(inner, Claims::All).answer, Answer::Undecided);
+  EXPECT_EQ(crooked.hold(inner, Claims::All).answer, Answer::Refuted);
+  const Holders several({{"hollow", &hollow}, {"solid", &inner}});
+  EXPECT_EQ(several.hold(block({0.3, 0.3, 0.3}, {0.4, 0.4, 0.4}), Claims::All).answer,
+            Answer::Undecided);
   EXPECT_FALSE(crooked.distance({inner}, 1).claim);
 }
 

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "support/oracle.h"
+#include "support/segment_oracle.h"
 
 namespace kaboum::test {
 namespace {
@@ -74,18 +75,23 @@ void Tally::compare(const MeshPair& pair, const ArrangementVerdict& truth,
   }
   if (claim.inner_closed != truth.inner_closed || claim.outer_closed != truth.outer_closed)
     fault(pair.name + ": closedness");
-  const bool relative = !(truth.inner_closed && truth.outer_closed) && truth.same_border;
+  // What has no area has no solid; what has no triangles lies nowhere.
+  const bool thin = with_area(pair.inner).triangles.empty(), none = pair.inner.triangles.empty();
+  const bool relative = !thin && !(truth.inner_closed && truth.outer_closed) && truth.same_border;
   if (claim.relative != relative) fault(pair.name + ": relative or not");
-  const Answer solid = answer_for(relative ? truth.difference : truth.solid);
+  const Answer solid = answer_for(thin ? std::nullopt : relative ? truth.difference : truth.solid);
   if (claim.solid.answer != solid) {
     fault(pair.name + ": solid claim " + name_of(claim.solid.answer) + " but " + name_of(solid));
   }
-  const Answer surface = answer_for(truth.surface);
+  const Answer surface =
+      answer_for(none                    ? std::nullopt
+                 : truth.surface == true ? std::optional(thin_in_solid(pair.inner, pair.outer))
+                                         : truth.surface);
   if (claim.surface.answer != surface) {
     fault(pair.name + ": surface claim " + name_of(claim.surface.answer) + " but " +
           name_of(surface));
   }
-  // Triangles without area bound nothing; a witness may lie on one.
+  // Triangles without area bound nothing.
   const geom::Mesh inner = with_area(pair.inner), outer = with_area(pair.outer);
   for (const verify::Claim* c : {&claim.solid, &claim.surface}) {
     if (c->answer != Answer::Refuted) {
@@ -122,7 +128,7 @@ void Tally::compare(const MeshPair& pair, const ArrangementVerdict& truth,
       // It speaks of the inner mesh's surface: p is on it, or can be moved to it without meeting
       // the outer mesh.
       const auto b = winding_number_slow(outer, p);
-      const double away = distance(p, inner);
+      const double away = distance(p, pair.inner);
       contradicts =
           b && *b <= 0 && (away < 0.999 * distance(p, outer) || away < 1e-5 * (1 + p.norm()));
     }

@@ -48,7 +48,7 @@ Mesh tangle(std::size_t triangles, unsigned seed) {
   return mesh;
 }
 
-TEST(Inclusion, EndsAfterTheWorkThatIsAllowed) {
+TEST(Inclusion, EndsAfterTheWorkAllowedOnAnyNumberOfThreads) {
   const Mesh mesh = tangle(300, 1);
   verify::InclusionOptions options;
   options.max_work = 0.5;

@@ -73,7 +73,7 @@ TEST(Surface, AloneIsTheSame) {
       Answer::Verified);
 }
 
-TEST(Surface, EndsWithTheWorkAllowed) {
+TEST(Surface, EndsWithTheWorkAllowedOnAnyNumberOfThreads) {
   const Pair pair;
   const std::vector<std::uint32_t>& all = whole().surface.inner_triangles;
   for (const double work : {1e-6, 1e-4, 1e-3, 3e-3}) {

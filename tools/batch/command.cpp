@@ -78,7 +78,7 @@ std::string reason_of(const Ended& ended, bool late, const std::string& last_wor
 
 std::vector<FileState> sources_in(const fs::path& scratch, const Job& job, std::int64_t since) {
   std::vector<FileState> sources;
-  for (const std::string& name : tools::inputs_in_depfile((scratch / kSources).string())) {
+  for (const std::string& name : tools::files_in_list((scratch / kSources).string())) {
     if (name == job.input.string()) continue;
     sources.push_back(file_state(name));
     if (sources.back().changed >= since) sources.back().modified = -1;

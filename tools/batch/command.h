@@ -14,7 +14,7 @@ namespace kaboum::batch {
 inline constexpr const char* kMessages = "messages.txt";
 inline constexpr const char* kReport = "report.json";
 inline constexpr const char* kPicture = "picture.png";
-inline constexpr const char* kSources = "sources.d";
+inline constexpr const char* kSources = "sources.list";
 
 /// Where the program writes its result, which is moved when it is whole.
 fs::path result_in(const fs::path& scratch, const Job& job);

@@ -108,8 +108,12 @@ std::string preview_page(const Preview& preview) {
                      {"joints", Json::parse(robot::joints_json(preview.motion->robot))}};
     data["path"] = preview.motion->path;
   }
-  return filled("preview.html",
-                {{"title", escape_xml(preview.title)}, {"data", in_script(data.dump())}});
+  // Names of files need not be UTF-8, pages have to be.
+  const auto text_of = [](const Json& json) {
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  };
+  const auto title = Json::parse(text_of(preview.title)).get<std::string>();
+  return filled("preview.html", {{"title", escape_xml(title)}, {"data", in_script(text_of(data))}});
 }
 
 }  // namespace kaboum::page

@@ -1,5 +1,7 @@
-// The validator: a plan is replayed breadth first, over pairs of a node and a state of knowledge.
-// It reads the lifted model; nothing of the planner is included here.
+// The validator: a plan is replayed over pairs of a node and a state of knowledge, each once:
+// breadth first, where it is known beforehand what is read from a node on; else depth first, and a
+// state is one that was replayed if it agrees with it on all that was read from there on. It reads
+// the lifted model, and includes nothing of the planner: scripts/include-graph sees to it.
 #include <kaboum/base/error.h>
 #include <kaboum/plan/check.h>
 
@@ -15,27 +17,26 @@
 #include "check/runtime_knowledge.h"
 #include "check/transitions.h"
 #include "check/world_replay.h"
-#include "task/exactness.h"
-#include "task/knowledge_view.h"
 
 namespace kaboum::plan {
 namespace {
 
 class Checker {
  public:
-  /// @param monotone  whether MergedReplay takes the model that this one is, or is made of.
-  Checker(const Model& model, const Plan& plan, std::uint64_t limit, bool monotone)
+  Checker(const Model& model, const Plan& plan, std::uint64_t limit)
       : model_(model),
         plan_(plan),
         limit_(limit),
-        monotone_(monotone),
         evaluator_(model, plan),
         live_(model, plan, evaluator_),
-        transitions_(model, evaluator_) {}
+        transitions_(model, evaluator_, Transitions::Disjunctions::LeftOut),
+        depth_first_(std::ranges::any_of(model.external_functions, &ExternalFunction::reads_state)),
+        kept_less_(std::ranges::any_of(model.initial, is_disjunction)) {}
 
   CheckResult run() {
     for (RuntimeKnowledge& k : transitions_.initial_states())
       visit(plan_.root, std::move(k), kNoParent, "");
+    if (depth_first_) replay_depth_first();
     while (!queue_.empty() && result_.violation.empty()) {
       if (!tried_at_once_ && visits_.size() >= kManyVisits && confirmed_at_once()) return result_;
       const std::size_t v = queue_.front();
@@ -50,14 +51,24 @@ class Checker {
     return result_;
   }
 
+  /// Whether some state that was replayed kept less than follows: what is refuted there may be
+  /// right all the same.
+  [[nodiscard]] bool kept_less() const { return kept_less_; }
+
  private:
+  /// Of several of them, states do not conclude all that follows.
+  static bool is_disjunction(const Update& u) {
+    return u.database == Update::Database::Or ||
+           (u.database == Update::Database::Kx && !u.literals[0].function);
+  }
+
   static constexpr std::size_t kNoParent = ~std::size_t{0};
   static constexpr std::size_t kManyVisits = 20'000;
 
   /// Is tried once.
   bool confirmed_at_once() {
     tried_at_once_ = true;
-    if (!monotone_) return false;
+    if (!MergedReplay::takes(model_)) return false;
     try {
       result_.valid = MergedReplay(model_, plan_, evaluator_, live_, transitions_).confirms();
     } catch (const Error& e) {
@@ -88,15 +99,99 @@ class Checker {
     if (result_.violation.empty()) result_.violation = what + ", " + path(v);
   }
 
-  void visit(Index node, RuntimeKnowledge k, std::size_t parent, std::string label) {
-    if (!live_.at(node).all) k.restrict_to(live_.at(node).facts);
-    const auto [it, fresh] = seen_.emplace(node, std::move(k));
-    if (!fresh) return;
+  void count_state() {
     if (++result_.states > limit_)
       throw Error(ErrorCode::LimitReached,
                   "more than " + std::to_string(limit_) + " states to replay");
+  }
+
+  void visit(Index node, RuntimeKnowledge k, std::size_t parent, std::string label) {
+    if (depth_first_) {
+      arrivals_.push_back({node, std::move(k), std::move(label)});
+      return;
+    }
+    if (!live_.at(node).all) k.restrict_to(live_.at(node).facts);
+    const auto [it, fresh] = seen_.emplace(node, std::move(k));
+    if (!fresh) return;
+    count_state();
     visits_.push_back({node, &it->second, parent, std::move(label)});
     queue_.push_back(visits_.size() - 1);
+  }
+
+  /// A state that a node is reached in.
+  struct Arrival {
+    Index node;
+    RuntimeKnowledge state;
+    std::string label;
+  };
+  /// One that is being replayed.
+  struct Open {
+    Index node;
+    RuntimeKnowledge state;
+    std::size_t visit;
+    std::set<Fact> read = {};  ///< by external functions, here and further down
+    std::vector<Arrival> next = {};
+    std::size_t at = 0;  ///< of `next`
+  };
+  /// States in which a node was replayed, as far as that rests on them.
+  struct Replayed {
+    std::set<Fact> read;  ///< by external functions
+    std::set<RuntimeKnowledge> states;
+  };
+
+  /// Of a state, what a node and all after it may read.
+  void restrict_to_read(RuntimeKnowledge& k, Index node, const std::set<Fact>& read) const {
+    if (live_.at(node).all) return;
+    std::set<Fact> facts = live_.at(node).facts;
+    facts.insert(read.begin(), read.end());
+    k.restrict_to(facts);
+  }
+
+  /// External functions answer alike wherever what they asked of the state is alike.
+  const Replayed* find_replayed(Index node, const RuntimeKnowledge& k) const {
+    const auto at = replayed_.find(node);
+    if (at == replayed_.end()) return nullptr;
+    for (const Replayed& r : at->second) {
+      RuntimeKnowledge part = k;
+      restrict_to_read(part, node, r.read);
+      if (r.states.contains(part)) return &r;
+    }
+    return nullptr;
+  }
+
+  void remember(Open& o) {
+    std::vector<Replayed>& all = replayed_[o.node];
+    const auto same = std::ranges::find(all, o.read, &Replayed::read);
+    Replayed& r = same == all.end() ? all.emplace_back(Replayed{o.read, {}}) : *same;
+    restrict_to_read(o.state, o.node, r.read);
+    r.states.insert(std::move(o.state));
+  }
+
+  void replay_depth_first() {
+    std::vector<Open> open;
+    open.push_back({kNone, {}, kNoParent, {}, std::exchange(arrivals_, {})});
+    while (!open.empty() && result_.violation.empty()) {
+      Open& o = open.back();
+      if (o.at < o.next.size()) {
+        Arrival a = std::move(o.next[o.at++]);
+        if (const Replayed* r = find_replayed(a.node, a.state)) {
+          o.read.insert(r->read.begin(), r->read.end());
+          continue;
+        }
+        count_state();
+        Open deeper{a.node, std::move(a.state), visits_.size()};
+        visits_.push_back({a.node, &deeper.state, o.visit, std::move(a.label)});
+        evaluator_.note_reads(&deeper.read);
+        replay(deeper.visit);
+        evaluator_.note_reads(nullptr);
+        deeper.next = std::exchange(arrivals_, {});
+        open.push_back(std::move(deeper));
+        continue;
+      }
+      if (o.visit != kNoParent) remember(o);
+      if (open.size() > 1) open[open.size() - 2].read.insert(o.read.begin(), o.read.end());
+      open.pop_back();
+    }
   }
 
   void end(std::size_t v) {
@@ -138,6 +233,7 @@ class Checker {
       after.push_back(*at.state);
     }
     for (RuntimeKnowledge& k : after) {
+      kept_less_ |= k.cut();
       if (!node.branches) {
         visit(node.next, std::move(k), v, label);
         continue;
@@ -206,7 +302,6 @@ class Checker {
   const Model& model_;
   const Plan& plan_;
   std::uint64_t limit_;
-  bool monotone_;
   QueryEvaluator evaluator_;
   LiveFacts live_;
   Transitions transitions_;
@@ -215,7 +310,11 @@ class Checker {
   std::deque<std::size_t> queue_;
   std::map<Index, std::size_t> contradicted_;  ///< nodes, and a visit in which they contradict
   std::set<Index> passed_;                     ///< nodes that some run gets through
+  bool depth_first_;  ///< external functions may read anything: what they did is known afterwards
+  std::vector<Arrival> arrivals_;
+  std::map<Index, std::vector<Replayed>> replayed_;
   bool tried_at_once_ = false;
+  bool kept_less_;
   CheckResult result_;
 };
 
@@ -223,12 +322,9 @@ class Checker {
 
 CheckResult check(const Model& model, const Plan& plan, std::uint64_t limit) {
   measure(model, plan);  // refuses cycles
-  const std::optional<Model> view = knowledge_view(model);
-  const Model& known = view ? *view : model;
-  CheckResult by_databases = Checker(known, plan, limit, MergedReplay::takes(model)).run();
-  // What they refute may follow all the same, where they keep less than that.
-  if (by_databases.valid || (!view && lost_knowledge(known).empty())) return by_databases;
-  if (!WorldReplay::takes(model)) return by_databases;
+  Checker checker(model, plan, limit);
+  CheckResult by_databases = checker.run();
+  if (by_databases.valid || !checker.kept_less() || !WorldReplay::takes(model)) return by_databases;
   if (const auto by_worlds = WorldReplay(model, plan, limit).run()) return *by_worlds;
   throw Error(ErrorCode::LimitReached,
               "the databases of knowledge do not confirm the plan (" + by_databases.violation +

@@ -15,8 +15,8 @@ Fact branch_fact(const Plan::Branch& b);
 /// Slots of an action with its arguments in place.
 std::vector<Index> bind(const Action& a, const PlanAction& action);
 
-/// What each node of a plan, and all that may follow it, reads; knowledge of anything else can be
-/// dropped there.
+/// What each node of a plan, and all that may follow it, reads, but for what external functions ask
+/// of the state; knowledge of anything else can be dropped there.
 class LiveFacts {
  public:
   /// Whether to sense is to read: it is where sets of worlds are kept, in which what is sensed may
@@ -29,7 +29,7 @@ class LiveFacts {
 
   struct Reads {
     std::set<Fact> facts;
-    bool all = false;  ///< an external function may read anything
+    bool all = false;  ///< rules may read anything
   };
   /// kNone: the end, where the goal is read.
   [[nodiscard]] const Reads& at(Index node) const { return node == kNone ? goal_ : by_node_[node]; }

@@ -19,27 +19,30 @@ Fact fact(bool function, Index symbol, const std::vector<Argument>& arguments,
 
 namespace {
 
-/// What a state of knowledge answers to an external function.
+/// What a state of knowledge answers to an external function. What it is asked can be noted.
 class KnowledgeReader final : public StateReader {
  public:
-  explicit KnowledgeReader(const RuntimeKnowledge& k) : k_(k) {}
+  KnowledgeReader(const RuntimeKnowledge& k, std::set<Fact>* noted) : k_(k), noted_(noted) {}
   std::optional<Index> value(Index function, std::span<const Index> arguments) override {
-    const Index* v = k_.value(fact(1, function, arguments));
+    const Fact f = asked(1, function, arguments);
+    const Index* v = k_.value(f);
     return v == nullptr ? std::nullopt : std::optional<Index>(*v);
   }
   std::optional<bool> truth(Index predicate, std::span<const Index> arguments) override {
-    const Fact f = fact(0, predicate, arguments);
+    const Fact f = asked(0, predicate, arguments);
     if (!k_.knows_whether(f)) return std::nullopt;
     return k_.knows(f, true);
   }
 
  private:
-  static Fact fact(Index kind, Index symbol, std::span<const Index> arguments) {
+  Fact asked(Index kind, Index symbol, std::span<const Index> arguments) {
     Fact f = {kind, symbol};
     f.insert(f.end(), arguments.begin(), arguments.end());
+    if (noted_ != nullptr) noted_->insert(f);
     return f;
   }
   const RuntimeKnowledge& k_;
+  std::set<Fact>* noted_;
 };
 
 }  // namespace
@@ -187,6 +190,80 @@ bool QueryEvaluator::derived(const Query& q, const std::vector<Index>& slots) co
   return derived_->holds(fact(false, q.symbol, q.arguments, slots));
 }
 
+QueryEvaluator::Extent QueryEvaluator::extent(const Query& q, Subject of, std::vector<Index>& slots,
+                                              const RuntimeKnowledge& k) const {
+  const auto of_truth = [](std::optional<bool> t) {
+    return !t ? Extent::SomeWorlds : *t ? Extent::EveryWorld : Extent::NoWorld;
+  };
+  switch (q.kind) {
+    case Query::Kind::Known: {
+      const Fact f = fact(false, q.symbol, q.arguments, slots);
+      if (!k.knows_whether(f)) return Extent::SomeWorlds;
+      return of_truth(k.knows(f, !q.negated));
+    }
+    case Query::Kind::KnownValue: {
+      const Fact f = fact(true, q.symbol, q.arguments, slots);
+      const Index c = object(*q.value, slots);
+      if (!model_.is_a(c, model_.functions[q.symbol].range) || k.rules_out(f, c))
+        return of_truth(q.negated);
+      return k.value(f) == nullptr ? Extent::SomeWorlds : of_truth(!q.negated);
+    }
+    case Query::Kind::KnowWhether:
+    case Query::Kind::WhetherValue:
+    case Query::Kind::KnowValue:
+      return of == Subject::World ? Extent::EveryWorld : of_truth(truth(q, slots, k));
+    case Query::Kind::External:
+    case Query::Kind::Let:
+      // What it makes of a state in which more is known, nobody can say.
+      if (model_.external_functions[q.symbol].reads_state) return Extent::SomeWorlds;
+      for (const Argument& a : q.arguments)
+        if (!value(a, slots, k)) return Extent::SomeWorlds;
+      return of_truth(truth(q, slots, k));
+    case Query::Kind::True:
+    case Query::Kind::False:
+    case Query::Kind::Same:
+    case Query::Kind::Derived:  // where there are rules all is known
+      return of_truth(truth(q, slots, k));
+    default:
+      return extent_of_children(q, of, slots, k);
+  }
+}
+
+/// Of connectives and quantifiers: the least, the greatest, or the opposite of their parts.
+QueryEvaluator::Extent QueryEvaluator::extent_of_children(const Query& q, Subject of,
+                                                          std::vector<Index>& slots,
+                                                          const RuntimeKnowledge& k) const {
+  std::vector<Extent> parts;
+  if (q.kind == Query::Kind::Exists || q.kind == Query::Kind::ForAll) {
+    for (const Index o : model_.types[q.type].objects) {
+      slots.at(q.symbol) = o;
+      parts.push_back(extent(q.children[0], of, slots, k));
+    }
+  } else {
+    for (const Query& c : q.children) parts.push_back(extent(c, of, slots, k));
+  }
+  switch (q.kind) {
+    case Query::Kind::And:
+    case Query::Kind::ForAll:
+      return std::ranges::min(parts.empty() ? std::vector{Extent::EveryWorld} : parts);
+    case Query::Kind::Or:
+    case Query::Kind::Exists:
+      return std::ranges::max(parts.empty() ? std::vector{Extent::NoWorld} : parts);
+    case Query::Kind::Not:
+      return parts[0] == Extent::SomeWorlds   ? parts[0]
+             : parts[0] == Extent::EveryWorld ? Extent::NoWorld
+                                              : Extent::EveryWorld;
+    case Query::Kind::Xor: {
+      const auto everywhere = std::ranges::count(parts, Extent::EveryWorld);
+      if (everywhere > 1) return Extent::NoWorld;
+      if (std::ranges::count(parts, Extent::SomeWorlds) > 0) return Extent::SomeWorlds;
+      return everywhere == 1 ? Extent::EveryWorld : Extent::NoWorld;
+    }
+    default:
+      throw Error(ErrorCode::Internal, "unexpected connective");
+  }
+}
+
 template <class Evaluate>
 std::optional<bool> QueryEvaluator::with_derived(const RuntimeKnowledge& k,
                                                  Evaluate&& evaluate) const {
@@ -236,7 +313,7 @@ bool QueryEvaluator::reads(const Query& q, std::vector<Index>& slots, std::set<F
     case Query::Kind::Let:
       for (const Argument& a : q.arguments)
         if (a.term) out.insert(fact(true, a.term->function, a.term->arguments, slots));
-      return !model_.external_functions[q.symbol].reads_state;
+      return true;
     default:
       break;
   }
@@ -297,7 +374,7 @@ ExternalResult QueryEvaluator::ask(Index external, const std::vector<Index>& arg
                                    const RuntimeKnowledge& k) const {
   ExternalResult result;
   for (unsigned attempt = 0; attempt < attempts_; ++attempt) {
-    KnowledgeReader reader(k);
+    KnowledgeReader reader(k, noted_);
     ExternalContext context{reader, handles_, seed_, attempt};
     try {
       result = model_.external_functions[external].call(arguments, context);

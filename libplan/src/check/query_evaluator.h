@@ -3,6 +3,7 @@
 #include <kaboum/plan/model.h>
 #include <kaboum/plan/plan.h>
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <set>
@@ -40,8 +41,23 @@ class QueryEvaluator {
     return truth(q, slots, k).value_or(false);
   }
 
-  /// Adds what the query reads. @return false if it may read anything.
+  /// In which of the worlds that what is known allows a condition holds.
+  enum class Extent : std::uint8_t { NoWorld, SomeWorlds, EveryWorld };
+  /// Whose condition it is: of the world, where K(p) stands for p and all is known; or of the
+  /// agent, where only K(p) and K(f = c) do, and what asks for knowledge is about the agent's.
+  enum class Subject : std::uint8_t { World, Agent };
+  /// By Kleene's strong three-valued logic: never wrong, but where atoms of a condition hang on one
+  /// another it may say SomeWorlds where more could be said.
+  [[nodiscard]] Extent extent(const Query& q, Subject of, std::vector<Index>& slots,
+                              const RuntimeKnowledge& k) const;
+
+  /// Adds what the query reads, but for what external functions ask of the state: that is noted.
+  /// @return false if it may read anything, by rules.
   bool reads(const Query& q, std::vector<Index>& slots, std::set<Fact>& out) const;
+
+  /// From now on facts that external functions ask of the state are added to `reads`.
+  /// @param reads  outlives it, or is replaced; nullptr: nothing is noted.
+  void note_reads(std::set<Fact>* reads) const { noted_ = reads; }
 
   /// The object or handle that an argument stands for; nullopt: a term whose value is not known.
   std::optional<Index> value(const Argument& a, const std::vector<Index>& slots,
@@ -63,6 +79,8 @@ class QueryEvaluator {
                            const RuntimeKnowledge& k) const;
   bool holds_of_value(const Query& q, const std::vector<Index>& slots,
                       const RuntimeKnowledge& k) const;
+  Extent extent_of_children(const Query& q, Subject of, std::vector<Index>& slots,
+                            const RuntimeKnowledge& k) const;
   bool derived(const Query& q, const std::vector<Index>& slots) const;
   /// Evaluates with what is worked out of derived predicates on the way.
   template <class Evaluate>
@@ -79,6 +97,7 @@ class QueryEvaluator {
   /// Of functions that do not read the state.
   mutable std::map<std::pair<Index, std::vector<Index>>, ExternalResult> calls_;
   mutable DerivedFacts* derived_ = nullptr;  ///< while a query is evaluated
+  mutable std::set<Fact>* noted_ = nullptr;
 };
 
 }  // namespace kaboum::plan

@@ -13,8 +13,6 @@
 #include "check/runtime_knowledge.h"
 #include "check/transitions.h"
 #include "plan/named_fact.h"
-#include "task/exactness.h"
-#include "task/knowledge_view.h"
 
 namespace kaboum::plan {
 namespace {
@@ -55,7 +53,7 @@ class Run {
         options_(options),
         step_(step),
         evaluator_(model, plan),
-        transitions_(model, evaluator_),
+        transitions_(model, evaluator_, Transitions::Disjunctions::Kept),
         random_(options.seed),
         given_(given(model, options)) {}
 
@@ -155,7 +153,7 @@ class Run {
       out.some.emplace_back();
       for (const auto& [f, truth] : literals) out.some.back().emplace(named(f), truth);
     }
-    out.cut = model_.cut || k.cut() || actions_lose(model_);
+    out.cut = model_.cut || k.cut();
     return out;
   }
 
@@ -235,12 +233,7 @@ class Run {
 RunSummary run(const Model& model, const Plan& plan, const RunOptions& options,
                const std::function<void(const RunStep&)>& step) {
   measure(model, plan);  // refuses cycles
-  std::optional<Model> view = knowledge_view(model);
-  if (!view) return Run(model, plan, options, step).run();
-  // Disjunctions are kept here, as far as one by one they say something.
-  std::ranges::copy_if(model.initial, std::back_inserter(view->initial),
-                       [](const Update& u) { return u.database == Update::Database::Or; });
-  return Run(*view, plan, options, step).run();
+  return Run(model, plan, options, step).run();
 }
 
 }  // namespace kaboum::plan

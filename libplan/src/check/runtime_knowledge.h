@@ -50,9 +50,10 @@ class RuntimeKnowledge {
   }
   /// At least one literal of each holds.
   [[nodiscard]] const std::set<std::set<FactLiteral>>& some() const { return some_; }
-  /// Whether a disjunction went whose atoms said something of each other still: less is kept then
-  /// than is known.
+  /// Whether less is kept than is known: a disjunction went whose atoms said something of each
+  /// other still, or something happened that hangs on what is unknown.
   [[nodiscard]] bool cut() const { return cut_; }
+  void keep_less() { cut_ = true; }
 
   /// Only what follows from this and from the other alike, in both from these entries of Kx.
   void weaken_to(const RuntimeKnowledge& other, const std::set<std::set<Fact>>& entries);

@@ -88,7 +88,7 @@ std::vector<RuntimeKnowledge> Transitions::initial_states() const {
           stated.insert(atom);
           literals.emplace(atom, !o.negated);
         }
-        ok = k.learn_some(std::move(literals));
+        if (disjunctions_ == Disjunctions::Kept) ok = k.learn_some(std::move(literals));
         break;
       }
     }
@@ -128,22 +128,32 @@ bool Transitions::learn_exclusive(RuntimeKnowledge& k, const Update& u,
   return true;
 }
 
-/// Updates whose conditions hold before the action.
+/// Updates whose conditions hold before the action, and those whose conditions may hold in the
+/// world. Of the latter, sensing and observations say nothing.
 void Transitions::fire(const std::vector<Effect>& effects, std::vector<Index>& slots,
-                       const RuntimeKnowledge& k, std::vector<GroundUpdate>& out) const {
+                       const RuntimeKnowledge& k, bool possibly, Happening& out) const {
+  using Extent = QueryEvaluator::Extent;
+  using Subject = QueryEvaluator::Subject;
   for (const Effect& e : effects) {
     if (e.kind == Effect::Kind::Update) {
-      out.push_back({&e.update, slots});
+      const bool changes_world = !e.update.add || e.update.database == Update::Database::Kf;
+      if (changes_world || !possibly) out.updates.push_back({&e.update, slots, possibly});
+    } else if (e.kind == Effect::Kind::When && e.of_world) {
+      const Extent where = evaluator_.extent(e.condition, Subject::World, slots, k);
+      if (where == Extent::NoWorld) continue;
+      out.tied |= where == Extent::SomeWorlds;
+      fire(e.children, slots, k, possibly || where == Extent::SomeWorlds, out);
     } else if (e.kind == Effect::Kind::When) {
+      out.tied |= evaluator_.extent(e.condition, Subject::Agent, slots, k) == Extent::SomeWorlds;
       const std::optional<bool> happens = evaluator_.truth(e.condition, slots, k);
       if (!happens)
         throw Error(ErrorCode::LimitReached,
                     "an effect's condition rests on an external function that finds nothing");
-      if (*happens) fire(e.children, slots, k, out);
+      if (*happens) fire(e.children, slots, k, possibly, out);
     } else {
       for (const Index o : model_.types[e.type].objects) {
         slots.at(e.slot) = o;
-        fire(e.children, slots, k, out);
+        fire(e.children, slots, k, possibly, out);
       }
     }
   }
@@ -222,7 +232,9 @@ bool Transitions::add_to(RuntimeKnowledge& k, const GroundUpdate& g, const Runti
   const Update::Literal& l = u.literals[0];
   const Fact f = fact(l.function, l.symbol, l.arguments, g.slots);
   if (l.value && is_handle(l)) {
-    if (const auto v = evaluator_.value(*l.value, g.slots, before)) {
+    const auto v = evaluator_.value(*l.value, g.slots, before);
+    const Index* known = k.value(f);
+    if (v && (!g.possibly || (known != nullptr && *known == *v))) {
       k.become_value(f, *v);
     } else {
       k.forget_value(f);
@@ -231,7 +243,7 @@ bool Transitions::add_to(RuntimeKnowledge& k, const GroundUpdate& g, const Runti
   }
   switch (u.database) {
     case Update::Database::Kf:
-      if (!u.maybe) return add_literal(k, f, l, g.slots);
+      if (!u.maybe && !g.possibly) return add_literal(k, f, l, g.slots);
       may_become(k, f, l, g.slots);
       return true;
     case Update::Database::Kw:
@@ -240,6 +252,7 @@ bool Transitions::add_to(RuntimeKnowledge& k, const GroundUpdate& g, const Runti
       sensed.push_back(f);
       return true;
     case Update::Database::Kx:
+      if (!l.function) k.keep_less();  // of several disjunctions not all that follows is concluded
       if (l.function) {
         const Index* known = k.value(f);
         const bool kept = known == nullptr ||
@@ -258,25 +271,29 @@ bool Transitions::add_to(RuntimeKnowledge& k, const GroundUpdate& g, const Runti
 /// The literal may have come true: it stays known if it was, and its negation does not.
 void Transitions::may_become(RuntimeKnowledge& k, const Fact& f, const Update::Literal& l,
                              const std::vector<Index>& slots) const {
-  if (!l.function) {
-    if (!k.knows(f, !l.negated)) k.forget(f);
+  const Index* value = l.function ? k.value(f) : nullptr;
+  if (!l.function ? k.knows(f, !l.negated)
+      : l.negated ? k.rules_out(f, object(*l.value, slots))
+                  : value != nullptr && *value == object(*l.value, slots))
     return;
-  }
-  const Index v = object(*l.value, slots);
-  const Index* known = k.value(f);
-  const bool holds = l.negated ? k.rules_out(f, v) : known != nullptr && *known == v;
-  if (!holds) k.forget_value(f);
+  k.keep_less();  // which of such changes happened together
+  if (l.function)
+    k.forget_value(f);
+  else
+    k.forget(f);
 }
 
 std::vector<RuntimeKnowledge> Transitions::after(const Action& action, std::vector<Index>& slots,
                                                  const RuntimeKnowledge& before) const {
-  std::vector<GroundUpdate> fired;
-  fire(action.effects, slots, before, fired);
-  std::erase_if(fired, [&](const GroundUpdate& g) {
+  Happening happening;
+  fire(action.effects, slots, before, false, happening);
+  const std::vector<GroundUpdate>& fired = happening.updates;
+  std::erase_if(happening.updates, [&](const GroundUpdate& g) {
     return !std::all_of(g.update->literals.begin(), g.update->literals.end(),
                         [&](const Update::Literal& l) { return in_range(l, g.slots); });
   });
   RuntimeKnowledge k = before;
+  if (happening.tied) k.keep_less();
   std::vector<Fact> sensed;
   for (const GroundUpdate& g : fired)
     if (!g.update->add) delete_from(k, g);

@@ -2,6 +2,7 @@
 
 #include <kaboum/plan/model.h>
 
+#include <cstdint>
 #include <vector>
 
 #include "check/query_evaluator.h"
@@ -10,11 +11,19 @@
 namespace kaboum::plan {
 
 /// The states of run-time knowledge that a model's initial entries and actions lead to.
+///
+/// Effects under a condition of the world happen where it holds in every world that what is known
+/// allows, and may happen where it holds in some. A state that keeps less than follows then says so
+/// (RuntimeKnowledge::cut).
+///
 /// All functions throw Error{LimitReached} where sensing has too many outcomes.
 class Transitions {
  public:
-  Transitions(const Model& model, const QueryEvaluator& evaluator)
-      : model_(model), evaluator_(evaluator) {}
+  /// Whether states keep initial disjunctions (Or), or only that their atoms are stated.
+  enum class Disjunctions : std::uint8_t { Kept, LeftOut };
+
+  Transitions(const Model& model, const QueryEvaluator& evaluator, Disjunctions disjunctions)
+      : model_(model), evaluator_(evaluator), disjunctions_(disjunctions) {}
 
   /// @throws Error{InvalidInput} if the initial knowledge contradicts itself.
   [[nodiscard]] std::vector<RuntimeKnowledge> initial_states() const;
@@ -25,9 +34,16 @@ class Transitions {
                                                     const RuntimeKnowledge& before) const;
 
  private:
+  /// An update that happens, or only may.
   struct GroundUpdate {
     const Update* update;
     std::vector<Index> slots;
+    bool possibly;
+  };
+  /// What an action does in a state.
+  struct Happening {
+    std::vector<GroundUpdate> updates;
+    bool tied = false;  ///< some hang on what is unknown, and the state cannot say how
   };
 
   [[nodiscard]] const std::vector<Index>& range(Index function) const;
@@ -35,7 +51,7 @@ class Transitions {
   [[nodiscard]] std::vector<RuntimeKnowledge> split(RuntimeKnowledge k,
                                                     const std::vector<Fact>& sensed) const;
   void fire(const std::vector<Effect>& effects, std::vector<Index>& slots,
-            const RuntimeKnowledge& k, std::vector<GroundUpdate>& out) const;
+            const RuntimeKnowledge& k, bool possibly, Happening& out) const;
   [[nodiscard]] bool is_handle(const Update::Literal& l) const {
     return l.function && model_.types[model_.functions[l.symbol].range].handle;
   }
@@ -55,6 +71,7 @@ class Transitions {
 
   const Model& model_;
   const QueryEvaluator& evaluator_;
+  Disjunctions disjunctions_;
 };
 
 }  // namespace kaboum::plan

@@ -20,8 +20,8 @@ class WorldReplay {
  public:
   WorldReplay(const Model& model, const Plan& plan, std::uint64_t limit);
 
-  /// Whether the model is of the kind: it has no external functions.
-  static bool takes(const Model& model) { return model.externals.empty(); }
+  /// Whether the model is of the kind: it has neither external functions nor rules.
+  static bool takes(const Model& model) { return model.externals.empty() && model.rules.empty(); }
 
   /// nullopt: there are too many worlds to begin with.
   std::optional<CheckResult> run();

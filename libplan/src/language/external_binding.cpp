@@ -148,6 +148,8 @@ ExternalFunction host_function(const ExternalBinding& function, const Symbol& g,
         result.kind = answer.kind;
         result.payload = std::move(answer.payload);
         result.reason = std::move(answer.reason);
+        result.chosen = answer.chosen;
+        result.fixed = answer.fixed;
         if (answer.kind != Answer::Kind::Value || g.range == kNone) return result;
         const auto found = names->object_of.find(answer.value);
         const bool constant =

@@ -3,6 +3,7 @@
 #include <kaboum/plan/plan.h>
 
 #include <algorithm>
+#include <set>
 
 namespace kaboum::plan {
 namespace {
@@ -16,6 +17,15 @@ std::vector<Index> successors(const Plan::Node& n) {
   std::vector<Index> result;
   for (const Plan::Branch::Case& c : n.branch.cases) result.push_back(c.next);
   return result;
+}
+
+/// A second case for a value would say nothing, or something else.
+void require_one_case_each(const Plan::Branch& branch) {
+  std::set<Index> values;
+  for (const Plan::Branch::Case& c : branch.cases)
+    if (!values.insert(c.value).second)
+      throw Error(ErrorCode::InvalidInput,
+                  "two cases of a branch of the plan are for the same value");
 }
 
 /// Nodes reachable from the root, each after its successors.
@@ -122,6 +132,7 @@ PlanSize measure(const Model& model, const Plan& plan) {
       b.longest = std::max(b.longest, child.longest);
       b.cost = std::max(b.cost, child.cost);
     }
+    if (n.branches) require_one_case_each(n.branch);
     if (n.acts) {
       b.actions = saturating(b.actions, 1);
       b.longest += 1;

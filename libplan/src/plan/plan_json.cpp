@@ -25,19 +25,21 @@ class Reader {
  public:
   Reader(const Model& model, const std::string& file) : model_(model), file_(file) {}
 
-  Plan read(const std::string& text) {
-    if (is_nested_too_deep(text)) fail(describe_json_depth() + "; that is no plan");
+  Plan read(const std::string& file_text) {
+    if (is_nested_too_deep(file_text)) fail(describe_json_depth() + "; that is no plan");
     Json json;
     try {
-      json = Json::parse(text);
+      json = Json::parse(file_text);
     } catch (const Json::parse_error& e) {
-      fail(describe_json_damage(text, e.byte) + "; write the plan again (kaboum-plan solve)");
+      fail(describe_json_damage(file_text, e.byte) + "; write the plan again (kaboum-plan solve)");
     } catch (const Json::exception&) {
       fail("a number in it is out of range; write the plan again (kaboum-plan solve)");
     }
     if (!json.is_object() || json.value("format", Json()) != Json("kaboum-plan"))
       fail("not a kaboum-plan file");
     if (json.value("version", Json()) != Json(1)) fail("unknown version of the format");
+    if (json.contains("domain") && text(json, "domain") != model_.name)
+      fail("it is a plan of domain '" + text(json, "domain") + "', not of '" + model_.name + "'");
     Plan plan;
     if (json.contains("attempts")) {
       const Json& seed = member(json, "seed");
@@ -181,6 +183,8 @@ class Reader {
         fail("the value of a predicate's case is true or false");
       }
       made.next = next(member(c, "next"));
+      if (std::ranges::find(b.cases, made.value, &Plan::Branch::Case::value) != b.cases.end())
+        fail("two cases of its branch are for the same value");
       b.cases.push_back(made);
     }
     return b;

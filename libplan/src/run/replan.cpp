@@ -11,6 +11,10 @@
 namespace kaboum::plan {
 namespace {
 
+std::string unsolvable_because(const Solution& s) {
+  return s.refused.empty() ? "every possibility was tried" : s.refused;
+}
+
 /// Runs of plans one after another, in the order in which they turn out to be needed.
 class Runs {
  public:
@@ -72,7 +76,7 @@ class Runs {
     made.result = found.outcome;
     made.reason = found.outcome == Outcome::Limit         ? found.limit
                   : found.outcome == Outcome::NotInferred ? found.lost
-                  : found.outcome == Outcome::Unsolvable  ? "every possibility was tried"
+                  : found.outcome == Outcome::Unsolvable  ? unsolvable_because(found)
                                                           : "";
     made.nodes = found.plan.nodes.size();
     summary_.replans.push_back(std::move(made));

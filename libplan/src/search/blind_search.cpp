@@ -16,6 +16,9 @@ void count_states(const StateStore& store, Statistics& s) {
   s.state_bytes = store.bytes();
 }
 
+/// For the limit of memory: what the table of states takes for a while when it grows included.
+std::size_t held(const StateStore& store) { return store.bytes() + store.growth(); }
+
 /// Successors of one state, made together so that the table's lines are fetched ahead.
 struct Successors {
   std::vector<OperatorId> steps;
@@ -53,7 +56,7 @@ std::optional<std::pair<Index, OperatorId>> last_step(const SearchInput& in,
   Knowledge scratch(in.task.layout());
   std::vector<OperatorId> steps, outcomes;
   for (auto state = static_cast<Index>(begin); state < end; ++state) {
-    if (in.limits.exceeded(store.bytes())) return std::nullopt;
+    if (in.limits.exceeded(held(store))) return std::nullopt;
     in.task.expand_unasked(store[state], steps);
     for (const OperatorId step : steps) {
       if (!in.task.asks(step)) continue;
@@ -104,7 +107,7 @@ Found breadth_first(const SearchInput& in) {
         return solved(std::move(steps));
       }
     }
-    if (in.limits.exceeded(store.bytes())) {
+    if (in.limits.exceeded(held(store))) {
       count_states(store, in.statistics);
       return found;
     }
@@ -133,13 +136,16 @@ Found depth_first(const SearchInput& in) {
   };
   std::vector<Frame> stack;
   std::vector<OperatorId> outcomes;
-  std::size_t top = 0;  // frames are kept for their capacity
+  std::size_t top = 0;         // frames are kept for their capacity
+  std::size_t step_bytes = 0;  // of all frames
   const auto push = [&](Index state) {
     if (stack.size() == top) stack.emplace_back();
     Frame& f = stack[top++];
     f.state = state;
     f.next = 0;
+    const std::size_t before = f.steps.capacity();
     in.task.expand_unasked(store[state], f.steps);
+    step_bytes += (f.steps.capacity() - before) * sizeof(OperatorId);
     ++in.statistics.expanded;
     in.statistics.depth = std::max<std::uint64_t>(in.statistics.depth, top);
   };
@@ -150,7 +156,11 @@ Found depth_first(const SearchInput& in) {
   }
   push(0);
   while (top > 0) {
-    if (in.limits.exceeded(store.bytes())) {
+    // A frame's list, as all small blocks, takes some bytes of the allocator's; a stack is copied
+    // when it grows.
+    const std::size_t frames =
+        step_bytes + stack.size() * 2 * sizeof(void*) + stack.capacity() * sizeof(Frame) * 3 / 2;
+    if (in.limits.exceeded(held(store) + frames)) {
       count_states(store, in.statistics);
       return found;
     }
@@ -206,7 +216,7 @@ Found iterative_deepening(const SearchInput& in) {
   enum class Round { Solved, Limit, Failed };
   const auto descend = [&](const auto& self, Index left) -> Round {
     const std::size_t depth = path.size();
-    if (in.limits.exceeded(store.bytes())) return Round::Limit;
+    if (in.limits.exceeded(held(store))) return Round::Limit;
     in.task.expand(state.words(), steps[depth]);
     ++in.statistics.expanded;
     for (std::size_t i = 0; i < steps[depth].size(); ++i) {

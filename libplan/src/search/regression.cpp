@@ -208,6 +208,7 @@ void Regression::touch_transfer(const ConditionalEffect::Transfer& t, bool happe
   const auto& fluents = task_.layout().fluents();
   const Fluent& f = fluents[t.fluent];
   touch_field(f.mask, f.word);
+  if (t.operand == kNone) return;  // unknown then, whatever it was
   if (happens && !reads_field(condition, f)) return;
   if (is_call(t.operand)) {
     require_footprint(t.operand & ~kCallOperand, before_, required_);

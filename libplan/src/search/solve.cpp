@@ -52,7 +52,16 @@ void search(Task& task, const SolveOptions& options, Limits& limits, Solution& s
         solution.plan.attempts = calls.attempts();
       }
     }
-    if (solution.outcome != Outcome::Unsolvable || calls.missed().empty()) break;
+    if (solution.outcome != Outcome::Unsolvable) break;
+    if (calls.missed().empty()) {
+      solution.refused = calls.refused();
+      if (calls.chosen().empty()) break;
+      solution.outcome = Outcome::Limit;
+      solution.limit = "with the value that was chosen for " + calls.chosen() +
+                       " there is none; others may do, and are not tried" +
+                       (solution.refused.empty() ? "" : "; " + solution.refused);
+      return;
+    }
     if (calls.attempts() >= options.attempts) {
       solution.outcome = Outcome::Limit;
       solution.limit = "an external function found nothing in " + std::to_string(calls.attempts()) +

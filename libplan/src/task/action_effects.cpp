@@ -7,6 +7,10 @@ namespace kaboum::plan {
 
 /// @return false: a call has no value.
 bool ActionEffects::take(const ConditionalEffect::Transfer& t, const Word* state, bool supposed) {
+  if (t.operand == kNone) {  // it may have been taken over
+    taken_.emplace_back(t.fluent, kValueUnknown);
+    return true;
+  }
   if (!is_call(t.operand)) {
     taken_.emplace_back(t.fluent, layout_.fluents()[t.operand & ~kTermOperand].get(state));
     return true;

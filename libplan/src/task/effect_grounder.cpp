@@ -73,6 +73,10 @@ void EffectGrounder::add_update(const Update& u, const std::vector<Index>& slots
   if (!at.exists) return;  // an argument outside its type: no such atom
   ensure(at.fluent != kNone, "an effect changes what was taken for constant");
   if (l.value && l.function && layout_.fluents()[at.fluent].handle) {
+    if (u.maybe) {  // it is not known then
+      out.transfers.push_back({at.fluent, kNone});
+      return;
+    }
     const Index o = queries_.operand(*l.value, slots);
     if (is_call(o) || is_term(o)) {
       out.transfers.push_back({at.fluent, o});

@@ -28,10 +28,6 @@ class Exactness {
     if (model_.cut) return "more is known than the disjunctions that were taken over say";
     for (const Update& u : model_.initial)
       if (is_disjunction(u) && !worlds_) return kDisjunctions;
-    return lost_by_actions();
-  }
-
-  std::string lost_by_actions() const {
     for (const Action& a : model_.actions) {
       std::string found = lost_by(a.effects);
       if (!found.empty()) return found + " (action '" + a.name + "')";
@@ -178,6 +174,5 @@ class Exactness {
 
 std::string lost_knowledge(const Model& model) { return Exactness(model, false).lost(); }
 std::string lost_in_worlds(const Model& model) { return Exactness(model, true).lost(); }
-bool actions_lose(const Model& model) { return !Exactness(model, false).lost_by_actions().empty(); }
 
 }  // namespace kaboum::plan

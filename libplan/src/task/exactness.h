@@ -14,8 +14,4 @@ std::string lost_knowledge(const Model& model);
 /// The same of sets of possible worlds: only effects that hang on what is known, not on the world.
 std::string lost_in_worlds(const Model& model);
 
-/// Whether the databases may know less after an action than could be concluded before it. Initial
-/// disjunctions are of no matter.
-bool actions_lose(const Model& model);
-
 }  // namespace kaboum::plan

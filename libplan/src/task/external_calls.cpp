@@ -16,6 +16,35 @@ namespace {
 /// Answers of each function that are asked for again; of those that take long to find, as paths do.
 constexpr std::uint8_t kConfirmed = 8, kLongConfirmed = 2;
 
+/// Handle types whose values a query compares with something.
+void add_compared(const Model& model, const Query& q, std::set<Index>& types) {
+  const auto add = [&](Index type) {
+    if (type != kNone && model.types[type].handle) types.insert(type);
+  };
+  if (q.kind == Query::Kind::KnownValue || q.kind == Query::Kind::WhetherValue)
+    add(model.functions[q.symbol].range);
+  if (q.kind == Query::Kind::External && q.value) add(model.externals[q.symbol].range);
+  for (const Query& child : q.children) add_compared(model, child, types);
+}
+
+void add_compared(const Model& model, const std::vector<Effect>& effects, std::set<Index>& types) {
+  for (const Effect& e : effects) {
+    add_compared(model, e.condition, types);
+    add_compared(model, e.children, types);
+  }
+}
+
+std::set<Index> compared_handle_types(const Model& model) {
+  std::set<Index> types;
+  add_compared(model, model.goal, types);
+  for (const Action& a : model.actions) {
+    add_compared(model, a.precondition, types);
+    add_compared(model, a.effects, types);
+  }
+  for (const Rule& r : model.rules) add_compared(model, r.body, types);
+  return types;
+}
+
 }  // namespace
 
 ExternalCalls::ExternalCalls(const Model& model, const Layout& layout, Limits& limits)
@@ -134,8 +163,10 @@ ExternalCalls::Reply ExternalCalls::make(Index call, const Word* state, unsigned
   if (!arguments(c, state, objects, path, why)) return why;
   AnswerTree::Leaf leaf;
   ExternalResult result;
+  std::size_t known = 0;
   for (unsigned attempt = first_attempt; attempt < attempts_; ++attempt) {
     NotedReader reader(layout_, state, path);
+    known = handles_.size();
     try {
       result = run(c, objects, reader, attempt);
     } catch (const ReadingStopped&) {
@@ -159,6 +190,7 @@ ExternalCalls::Reply ExternalCalls::make(Index call, const Word* state, unsigned
     if (limits_.check(0)) throw LimitExceeded();
     if (result.kind != Answer::Kind::NotFound) break;
   }
+  note(c, objects, path, result, handles_.size() > known);
   leaf.kind = result.kind;
   leaf.value = result.value;
   leaf.text = answers_.text(result.kind == Answer::Kind::Value ? std::move(result.payload)
@@ -174,6 +206,51 @@ ExternalCalls::Reply ExternalCalls::make(Index call, const Word* state, unsigned
     bytes_told_ = now;
   }
   return reply(made);
+}
+
+void ExternalCalls::note(const Call& c, const std::vector<Index>& objects, const Footprint& path,
+                         const ExternalResult& result, bool fresh) {
+  if (result.kind == Answer::Kind::NotFound) return;
+  if (result.kind == Answer::Kind::Impossible && !result.reason.empty() && refusals_++ == 0)
+    refused_ = text(c, objects) + ": " + result.reason;
+  std::vector<Index> read = objects;
+  for (const auto& [item, content] : path) {
+    if (is_call(item))
+      read.push_back(content);
+    else if (layout_.fluents()[item].function && content >= kFirstValue)
+      read.push_back(layout_.object(item, content - kFirstValue));
+  }
+  const Index range = model_.externals[c.external].range;
+  const bool handle =
+      result.kind == Answer::Kind::Value && range != kNone && model_.types[range].handle;
+  if (!handle) final_.insert(read.begin(), read.end());
+  if (result.fixed) read = objects;
+  const auto source = std::find_if(read.begin(), read.end(),
+                                   [&](Index object) { return chosen_.contains(object); });
+  if (result.kind != Answer::Kind::Value || (!result.chosen && source == read.end())) return;
+  const std::string by = source == read.end() ? text(c, objects) : chosen_.at(*source);
+  if (!handle) {
+    if (result.chosen) any_choice_ = by;
+    return;
+  }
+  // What was known before may have been read before.
+  if (chosen_.emplace(result.value, by).second && !fresh) any_choice_ = by;
+  chosen_types_.insert(range);
+}
+
+std::string ExternalCalls::chosen() const {
+  if (chosen_.empty() || !any_choice_.empty()) return any_choice_;
+  for (const auto& [handle, by] : chosen_)
+    if (final_.contains(handle)) return by;
+  for (const Index type : compared_handle_types(model_))
+    if (chosen_types_.contains(type)) return chosen_.begin()->second;
+  return "";
+}
+
+std::string ExternalCalls::refused() const {
+  if (refusals_ < 2) return refused_;
+  return refused_ + "; and " + std::to_string(refusals_ - 1) +
+         (refusals_ == 2 ? " other call without a value" : " other calls without a value");
 }
 
 /// Notes the answer where it is found again; some are noted to be confirmed as well.

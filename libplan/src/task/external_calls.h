@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -62,6 +63,12 @@ class ExternalCalls {
   [[nodiscard]] unsigned attempts() const { return attempts_; }
   /// The last call that found nothing since `try_again`, as "g(a): reason"; empty: there is none.
   [[nodiscard]] std::string missed() const;
+  /// A call whose value was chosen among several, when a failure may be due to that choice: some
+  /// final answer rests on it. Empty: there is none.
+  [[nodiscard]] std::string chosen() const;
+  /// The first call that was impossible, as "g(a): reason", and how many others were; empty: none
+  /// gave a reason.
+  [[nodiscard]] std::string refused() const;
 
   /// While it lives, what is not found is not missed: it is asked of what is supposed only, and
   /// is missed when it is asked again of a state that there is.
@@ -116,6 +123,9 @@ class ExternalCalls {
                      unsigned attempt);
   Index keep(Index call, const Footprint& path, const std::vector<Index>& arguments,
              const AnswerTree::Leaf& leaf);
+  /// Notes what rests on what was chosen.
+  void note(const Call& c, const std::vector<Index>& objects, const Footprint& path,
+            const ExternalResult& result, bool fresh);
   [[nodiscard]] Reply reply(Index leaf) const;
   static Reply open(Index fluent) { return {Reply::Kind::Open, 0, fluent}; }
   [[nodiscard]] std::string text(const Call& c, const std::vector<Index>& objects) const;
@@ -133,6 +143,12 @@ class ExternalCalls {
   unsigned attempts_ = 1;
   Index missed_ = kNone;  ///< a leaf
   std::string missed_call_;
+  std::map<Index, std::string> chosen_;  ///< handles that rest on a choice, and whose value it was
+  std::set<Index> final_;                ///< handles that final answers rest on
+  std::set<Index> chosen_types_;
+  std::string any_choice_;  ///< a choice that anything may rest on
+  std::string refused_;
+  std::size_t refusals_ = 0;
   std::size_t bytes_told_ = 0;
   std::uint64_t made_ = 0;
   double seconds_ = 0;

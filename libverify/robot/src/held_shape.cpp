@@ -33,6 +33,17 @@ Holders::Holders(const std::vector<NamedMesh>& meshes) : given_(meshes.size()) {
 
 HeldShape Holders::hold(const geom::Mesh& mesh, Claims claims,
                         const InclusionOptions& limits) const {
+  if (!(geom::signed_volume(mesh) < 0) || !has_area(mesh) || !closed(mesh))
+    return hold_any(mesh, claims, limits);
+  HeldShape out;
+  out.prepare_helps = true;
+  out.answer = Answer::Undecided;
+  out.reason = "it is inside out: its volume is negative";
+  return out;
+}
+
+HeldShape Holders::hold_any(const geom::Mesh& mesh, Claims claims,
+                            const InclusionOptions& limits) const {
   HeldShape out;
   const auto undecided = [&](const char* why) {
     out.answer = Answer::Undecided;
@@ -40,13 +51,8 @@ HeldShape Holders::hold(const geom::Mesh& mesh, Claims claims,
     return out;
   };
   if (!has_area(mesh)) return undecided("none of its triangles has an area");
-  const double volume = geom::signed_volume(mesh);
-  if (volume < 0 && closed(mesh)) {
-    out.prepare_helps = true;
-    return undecided("it is inside out: its volume is negative");
-  }
   if (set_.bodies.empty()) {
-    const bool any = claims != Claims::Solid || (closed(mesh) && volume > 0);
+    const bool any = claims != Claims::Solid || (closed(mesh) && geom::signed_volume(mesh) != 0);
     undecided("the result's link has no closed mesh of its pose and scale");
     if (given_ == 0 && any) out.answer = Answer::Refuted;
     return out;
@@ -65,7 +71,7 @@ HeldShape Holders::hold(const geom::Mesh& mesh, Claims claims,
     return out;
   }
   out.answer = out.decisive->answer;
-  if (out.answer == Answer::Refuted && !all_convex()) out.answer = Answer::Undecided;
+  if (out.answer == Answer::Refuted && !refutes()) out.answer = Answer::Undecided;
   if (out.decisive->answer != Answer::Refuted) out.reason = out.decisive->reason;
   return out;
 }

@@ -153,6 +153,26 @@ TEST_F(Actions, WhatIsNotHeldIsNotHandedOver) {
             Answer::Kind::Impossible);
 }
 
+TEST_F(Actions, RefusalsNameWhatWasListed) {
+  Words words = {{"conf(left)", "home"},
+                 {"conf(right)", "home"},
+                 {"pose(socket)", "start"},
+                 {"pose(wall)", "start"},
+                 {"pose(block)", "at 3 0.35 0.2 0 0 0 1"}};
+  const Answer far = ask(all_, "reach", {"left", "block"}, words);
+  EXPECT_EQ(far.kind, Answer::Kind::Impossible);
+  EXPECT_NE(far.reason.find("none of the 5 grasps listed for block"), std::string::npos)
+      << far.reason;
+  EXPECT_FALSE(far.chosen);
+  words["pose(block)"] = "start";
+  const Answer near = ask(all_, "reach", {"left", "block"}, words);
+  EXPECT_EQ(near.kind, Answer::Kind::Value) << near.reason;
+  EXPECT_TRUE(near.chosen) << "other grasps might do";
+  const Answer home = ask(all_, "move", {"left", "home"}, words);
+  EXPECT_EQ(home.kind, Answer::Kind::Value) << home.reason;
+  EXPECT_TRUE(home.fixed && !home.chosen);
+}
+
 TEST_F(Actions, LiftIsStraightUp) {
   const Words words = holding(0, 0, kDown);
   const Transform before = block();

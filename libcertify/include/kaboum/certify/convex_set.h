@@ -39,10 +39,14 @@ struct SetRequest {
   double scale = 1;
   /// Holes are filled or refused; kept ones are filled as well.
   geom::PrepareOptions preparation{.holes = geom::Holes::Fill};
-  /// Set: what is covered is a wrap round all triangles (certify_wrap), whatever they are like. How
-  /// far it is from them counts towards epsilon, and so does its clearance. Outer sets only;
-  /// `farthest`, `float32` and `progress` are not looked at.
+  /// Set: what is covered is a wrap round all triangles (certify_wrap), whatever they are like, or
+  /// only where that is needed (`where_needed`). How far it is from them counts towards epsilon,
+  /// and so does its clearance. Outer sets only; `farthest`, `float32` and `progress` are not
+  /// looked at.
   std::optional<WrapRequest> wrap;
+  /// certify_file wraps the triangles of CAD files, which stand for exact faces, of itself, so that
+  /// an outer set holds these. False: what is claimed is about the triangles.
+  bool hold_exact_faces = true;
 
   // What the container says of itself.
   std::string source;  ///< name of the file

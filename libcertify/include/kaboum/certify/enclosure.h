@@ -21,11 +21,27 @@ struct EnclosureRequest {
   std::optional<io::Format> spare_format;
   geom::PrepareOptions preparation{.holes = geom::Holes::Fill};
   /// Set: what is enclosed is a wrap round all triangles (certify_wrap), whose distance from them
-  /// counts towards epsilon. `farthest`, `float32` and `progress` are not looked at.
+  /// counts towards epsilon; with `where_needed` only where preparing refuses them or is in doubt,
+  /// or not every triangle is inside otherwise. `farthest`, `float32` and `progress` are not looked
+  /// at.
   std::optional<WrapRequest> wrap;
+  /// enclose_file wraps the triangles of CAD files, which stand for exact faces, of itself, so that
+  /// these are enclosed. False: what is claimed is about the triangles.
+  bool hold_exact_faces = true;
 
   /// As bmesh-decimate spells what the result depends on.
   [[nodiscard]] std::string parameters() const;
+};
+
+/// Whether every triangle of a file lies in the solid of a mesh: decided by libverify from the
+/// bytes of both. Triangles of sheets dropped on request are not asked for.
+struct TrianglesInside {
+  verify::Answer answer = verify::Answer::Undefined;
+  std::string reason;             ///< of what is not verified
+  std::size_t outside = 0;        ///< triangles that are known not to be inside
+  std::optional<double> farther;  ///< they stick out by no more, where that is known [length]
+
+  friend bool operator==(const TrianglesInside&, const TrianglesInside&) = default;
 };
 
 /// What was found out about an enclosing mesh. A claim only as part of a CertifiedEnclosure.
@@ -35,13 +51,15 @@ struct EnclosureCertificate {
   double diagonal = 0;           ///< of what is enclosed [length]
   std::optional<double>
       epsilon;  ///< kept between the result and what is enclosed, a wrap's apart [length]
-  /// No point of the result's surface is farther than this from the file's triangles, a wrap's
-  /// distance included, and no point of what is enclosed from the result. [length]
+  /// No point of the result's surface is farther than this from the file's triangles (its exact
+  /// faces), a wrap's distance included, and no point of what is enclosed from the result.
+  /// [length]
   double distance_upper = 0;
   bmesh::Stop stop = bmesh::Stop::Exhausted;
   bool reached = true;  ///< MeshCertificate::reached
   bool out_of_work = false;
-  Subject subject;                ///< what is enclosed
+  Subject subject;  ///< what is enclosed
+  TrianglesInside inside;
   std::vector<MeshClaim> claims;  ///< of the mesh, as `claims` gave them when it was made
   std::optional<WrapCertificate> wrap;
   std::vector<std::string> notes;  ///< of preparation: what a user should know of the input
@@ -54,7 +72,7 @@ using CertifiedEnclosure = Certified<geom::Mesh, EnclosureCertificate>;
 /// As in reports: a JSON object.
 std::string to_json(const CertifiedEnclosure& enclosure);
 
-/// Prepares or wraps, then certify_mesh.
+/// Prepares or wraps, then certify_mesh; decides whether every triangle is inside.
 /// @param mesh  as read.
 /// @return nullopt when float32 is too coarse, and double is not allowed.
 /// @throws Error as prepare_mesh, certify_wrap and certify_mesh; Error{InvalidArgument} where the

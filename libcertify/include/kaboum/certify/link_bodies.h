@@ -21,6 +21,10 @@ struct RobotRequest {
   std::string tool;  ///< that the containers name; by default bcd-decompose, with its version
 
   LinkEpsilons epsilons = {};  ///< instead of the sets'
+  /// A mesh that cannot be held as asked for does not refuse the robot: it gets one body round a
+  /// wrap of it, farther than epsilon, or none; CertifiedLinkMesh::flaw says why. Where no mesh has
+  /// bodies, and no other shape, the first flaw is thrown.
+  bool partial = false;
 
   /// As bcd-decompose spells it: the containers' record.
   [[nodiscard]] std::string parameters() const;
@@ -37,6 +41,8 @@ struct CertifiedLinkMesh {
   robot::LinkMesh mesh;
   std::optional<Length> epsilon;  ///< asked for, in its unit
   CertifiedFile made;
+  std::string flaw = {};  ///< why it is not held as asked for (RobotRequest::partial); else empty
+  bool held = true;       ///< else `made` holds nothing
 };
 
 /// How long work is watched; all may be empty. Called from the calling thread.

@@ -15,6 +15,9 @@ struct LinkEnclosuresRequest {
   robot::ShapeChoice shapes;
   std::optional<io::Format> format;  ///< of the meshes; by default by extension
   LinkEpsilons epsilons;
+  /// A mesh that cannot be enclosed does not refuse the robot: EnclosedLinkMesh::flaw says why, and
+  /// it stays as it is. Where none can, the first flaw is thrown.
+  bool partial = false;
 };
 
 /// A mesh of a robot and what encloses it, in its own frame and unit.
@@ -22,7 +25,8 @@ struct EnclosedLinkMesh {
   robot::LinkMesh mesh;
   std::optional<Length> epsilon;  ///< asked for, in its unit
   EnclosedFile made;
-  double seconds = 0;  ///< that it took, by the clock, together with others [s]
+  double seconds = 0;     ///< that it took, by the clock, together with others [s]
+  std::string flaw = {};  ///< why `made` holds nothing (LinkEnclosuresRequest::partial); else empty
 };
 
 struct LinkEnclosures {

@@ -4,6 +4,7 @@
 #include <kaboum/bmesh/decimate.h>
 #include <kaboum/certify/certified.h>
 #include <kaboum/certify/mesh_certificate.h>
+#include <kaboum/certify/wrap.h>
 #include <kaboum/geom/prepare.h>
 #include <kaboum/io/mesh_io.h>
 
@@ -92,7 +93,9 @@ struct MeshSeries {
 /// How long work is watched. All may be empty; called from the calling thread.
 struct MeshHooks {
   std::function<void(const std::string& stage)> progress;  ///< often; may throw to cancel
-  std::function<void()> found;  ///< once: candidates are found, certifying begins
+  std::function<void()> found;  ///< candidates are found, certifying begins
+  /// The solid is known, decimating begins; again where a wrap takes the place of the first one.
+  std::function<void()> prepared = {};
 };
 
 /// geom::prepare, and refuses what would enclose nothing by itself: a flat sheet, closed by its own
@@ -116,7 +119,46 @@ MeshPlan plan_mesh(const geom::Prepared& original, const MeshRequest& request);
 MeshSeries certify_meshes(const geom::Prepared& original, const MeshRequest& request,
                           const MeshHooks& hooks = {});
 
-/// The same for one result; certificate.stop says why it has no fewer vertices.
+/// How the triangles of a mesh get the solid that is bounded.
+struct MeshPreparation {
+  enum class Wrap {
+    Never,
+    /// Where the mesh can be given no solid, or some triangle would not lie in an outer result:
+    /// only with Holes::Fill and without keep_orientation, for those say which solid is wanted.
+    WhereNeeded,
+    Always,  ///< outer results only
+  };
+  geom::PrepareOptions options{.holes = geom::Holes::Fill};
+  Wrap wrap = Wrap::WhereNeeded;
+  WrapRequest wrapping = {};  ///< `farthest`, `float32` and `progress` are not looked at
+};
+
+/// Bounding meshes of an input, and what was bounded.
+struct BoundedMesh {
+  geom::Prepared original;              ///< the input as prepared, or its wrap
+  std::optional<WrapCertificate> wrap;  ///< of the input; the original is the wrap
+  std::string why_wrapped;              ///< where that was not asked for
+  std::string why_not_wrapped;          ///< where it was needed
+  MeshSeries series;
+
+  /// Whether all triangles of the input are in all results (outer), or all triangles of these in
+  /// the input's solid (inner); Undefined where nothing is claimed.
+  [[nodiscard]] verify::Answer surface_answer() const;
+};
+
+/// What a user should know of how the input got its solid, in sentences.
+std::vector<std::string> notes_of(const BoundedMesh& made);
+
+/// Gives the mesh a solid, and bounds that by certify_meshes. With Wrap::WhereNeeded every triangle
+/// of the input is in every outer result, or BoundedMesh::why_not_wrapped says what was in the way.
+/// A wrap is what certify_wrap makes; how far it reaches counts towards epsilon.
+///
+/// @throws as prepare_mesh, certify_meshes and certify_wrap; Error{InvalidArgument} where a wrap is
+///   asked for and other than outer results, or their steps.
+BoundedMesh bound_mesh(const geom::Mesh& input, const MeshRequest& request,
+                       const MeshPreparation& preparation = {}, const MeshHooks& hooks = {});
+
+/// The same as certify_meshes for one result; certificate.stop says why it has no fewer vertices.
 /// @return nullopt when float32 is too coarse, and double is not allowed.
 /// @throws as certify_meshes; Error{InvalidArgument} when several numbers of vertices are asked
 /// for.

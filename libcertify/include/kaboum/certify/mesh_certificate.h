@@ -18,7 +18,6 @@ enum class Basis {
   Meshes,    ///< decided by libverify from the meshes
   Steps,     ///< every step passed exact tests: docs/algorithms/bounding-mesh.md has the theorem
   Measured,  ///< a certified bracket of geom::directed_distance
-  Samples,   ///< some places were looked at: evidence, no certificate
 };
 
 const char* name_of(Basis basis);
@@ -42,19 +41,12 @@ struct MeshClaim {
 
 const char* name_of(MeshClaim::Kind kind);
 
-/// Faces of the original whose inner side is not in its solid, among some that were looked at: only
-/// the surface claim would protect them.
-struct SurfaceSamples {
-  std::size_t faces = 0, outside = 0;
-  /// So many surfaces lie behind each other that looking ended early: what was not looked at may
-  /// be outside.
-  bool cut_short = false;
-};
-
-/// The surface claim, decided: from the bytes, or from the meshes where faces of the original do
-/// not bound its solid (folds, inside-out parts); elsewhere it follows from the solid claim.
+/// The surface claim, decided for every triangle: of the original, walls that cancelled and fills
+/// of holes included (outer), or of the result (inner). Of a wrapped input: of all its triangles.
 struct DecidedSurface {
+  /// Triangles: of the original (inner: of the result), then its walls.
   verify::Claim claim;
+  std::size_t looked_at = 0;   ///< triangles that the solid claim does not protect
   std::size_t left_out = 0;    ///< triangles that it leaves open, for the work allowed was done
   verify::Bracket sticks_out;  ///< if it is refuted and leaves none open; triangle: of the input
   bool at_filling = false;     ///< its triangle fills a hole: not one of the input
@@ -93,13 +85,14 @@ struct MeshCertificate {
   /// Certified brackets of the largest distance, surface to surface.
   std::optional<geom::DirectedDistance> original_to_result, result_to_original;
   std::optional<DecidedMesh> decided;
-  std::optional<DecidedSurface> surface;
-  std::optional<SurfaceSamples>
-      samples;  ///< where the surface claim was not decided from the bytes
+  std::optional<DecidedSurface> surface;  ///< unless nothing is enclosed
   Outliers outliers;
 
   /// Upper bound of the Hausdorff distance. [length] @pre it was measured
   [[nodiscard]] double hausdorff_upper() const;
+
+  /// Whether every triangle is where it is claimed to be; Undefined where nothing is claimed.
+  [[nodiscard]] verify::Answer surface_answer() const;
 
   /// Whether there are as few vertices as requested, or epsilon allows no fewer.
   [[nodiscard]] bool reached() const;

@@ -28,8 +28,9 @@ class TooCoarse : public Error {
 /// Reads the file and finds or certifies its set, which says the unit that the vertices are in as
 /// read, whatever the request says, where the file or its format states one: in a note where that
 /// is another one.
-/// A CAD file's triangles stand for its exact faces (io::read_cad): a wrap, where asked for, holds
-/// these, and how far they may be from the triangles counts towards epsilon.
+/// A CAD file's triangles stand for its exact faces (io::ReadResult::deviation): an outer set holds
+/// these, as SetRequest::hold_exact_faces asks, and how far they may be from the triangles counts
+/// towards epsilon.
 /// @param format   by default by extension.
 /// @param request  its source becomes the file's name.
 /// @param cache    null: none.

@@ -11,7 +11,8 @@ namespace kaboum::certify {
 struct LinkCertificate {
   std::uint32_t link = 0;
   std::size_t shapes = 0;
-  double distance = 0;  ///< of the bodies beyond their shapes; the set's own: its epsilon [length]
+  std::size_t kept = 0;  ///< of these, that have no bodies: 0 of links that have a set
+  double distance = 0;   ///< of the bodies beyond their shapes; the set's own: its epsilon [length]
 };
 
 /// The set of a link, in its frame: serialised, read back, and decided exactly by libverify to hold
@@ -21,7 +22,8 @@ using CertifiedLink = Certified<geom::ConvexSet, LinkCertificate>;
 
 struct CertifiedRobot {
   CertifiedBodies bodies;
-  std::vector<CertifiedLink> links;  ///< those that were asked for and have shapes
+  /// Those that were asked for and have shapes, all of them held.
+  std::vector<CertifiedLink> links;
 };
 
 /// Certified sets for all links of a robot: certify_bodies, then a container for each link. Where

@@ -3,6 +3,7 @@
 #include <kaboum/base/length.h>
 #include <kaboum/certify/certified.h>
 #include <kaboum/geom/mesh.h>
+#include <kaboum/io/mesh_io.h>
 
 #include <functional>
 #include <optional>
@@ -11,6 +12,10 @@
 namespace kaboum::certify {
 
 struct WrapRequest {
+  /// The wrap takes the place of the prepared mesh only where that is needed: preparing refuses the
+  /// triangles, or is in doubt about what they enclose (geom::doubt_about). Then holes that it
+  /// filled are wrapped as well. certify_wrap does not look at it.
+  bool where_needed = false;
   /// How far the wrap may be from the input where it can get near it [a quarter of `farthest`, else
   /// 0.1 %]; percentages are of the diagonal.
   std::optional<Length> offset;
@@ -19,12 +24,19 @@ struct WrapRequest {
   std::optional<Length> seal;
   /// No point of the wrap may be farther from the input. [length]
   std::optional<double> farthest;
-  /// The surface that is meant is within this of the triangles (io::CadResult::deviation), and is
+  /// The surface that is meant is within this of the triangles (io::ReadResult::deviation), and is
   /// to be inside as well. [length]
   double clearance = 0;
   bool float32 = true;  ///< numbers of the wrap; else doubles
   std::function<void(const std::string& stage)> progress;
 };
+
+/// How a file's triangles are wrapped where they stand for exact faces: clear of these. Wraps that
+/// are asked for get the clearance, and where none is, one is made if `hold` says so.
+void hold_exact_faces(const io::ReadResult& read, bool hold, std::optional<WrapRequest>& wrap);
+
+/// @throws Error{InvalidInput}: an epsilon that leaves nothing beside the deviation of exact faces.
+[[noreturn]] void refuse_deviation(double clearance);
 
 struct WrapCertificate {
   double offset = 0, seal = 0;  ///< as wrapped [length]

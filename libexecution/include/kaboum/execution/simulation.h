@@ -45,7 +45,8 @@ struct MotionPart;  // a motion of a payload
 /// Carries out the nodes of plans: robots follow the paths that payloads state, by polynomials of
 /// degree 5, objects are carried by what holds them, and the exact meshes are looked at in every
 /// sample. Contacts, limits (by differences of samples) and whether things end where the plan says
-/// they do are counted; nothing of the bounding sets or of what made the plan is asked.
+/// they do are counted; nothing of the bounding sets or of what made the plan is asked. What a
+/// robot holds can leave the world from its hand, or from where a motion of the node has put it.
 class Simulation {
  public:
   /// All arguments outlive it.
@@ -76,6 +77,7 @@ class Simulation {
   std::set<std::string> done_;                       ///< nodes with geometric states
   std::string where_;                                ///< for messages
   std::vector<std::optional<std::size_t>> mounted_;  ///< what each object is on, in a node
+  std::set<std::size_t> carried_;  ///< objects that a motion of the node has carried
   SimulationReport report_;
 };
 

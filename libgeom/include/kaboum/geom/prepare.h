@@ -2,6 +2,7 @@
 
 #include <kaboum/geom/solid_mesh.h>
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -20,6 +21,19 @@ struct PrepareOptions {
   bool drop_sheets = false;  ///< drop opposite coincident faces without volume, with a note
   Holes holes = Holes::Keep;
   bool keep_orientation = false;  ///< never turn a triangle
+
+  /// Polygons of four corners that are not plane, each by the first of its two triangles, which
+  /// follow each other in the input (io::ReadResult::bent_quads).
+  std::vector<std::uint32_t> quads = {};
+  /// Which of the two diagonals splits these. Outward: the solid contains that of any other choice.
+  /// Inward: it is contained in that.
+  enum class Diagonal { AsGiven, Outward, Inward } diagonal = Diagonal::AsGiven;
+};
+
+/// An input triangle that is left out and that the solid need not hold.
+struct LeftOut {
+  std::uint32_t source;  ///< index in the input
+  std::array<Vec3, 3> corners;
 };
 
 /// How a prepared mesh came from the input: nothing that a claim about it rests on.
@@ -34,6 +48,9 @@ struct PreparationReport {
   std::size_t collapsed_triangles = 0;  ///< dropped: repeated corners
   std::size_t dropped_copies = 0;       ///< dropped: identically oriented copies
   std::size_t cancelled_walls = 0;      ///< dropped: triangles in opposite pairs inside the solid
+  /// Those, whose middles and corners are inside the solid while the rest of them need not be; and
+  /// those with repeated corners, which are segments and points. Not sheets dropped on request.
+  std::vector<LeftOut> left_out;
   std::size_t dropped_sheets = 0;  ///< dropped: triangles in opposite pairs outside, on request
   std::size_t reversed_components = 0;    ///< shells that were inside out, turned as a whole
   std::vector<std::uint32_t> inside_out;  ///< an input triangle of each of those
@@ -51,7 +68,8 @@ struct PreparationReport {
   /// A place that surfaces enclose and that counts as outside, although it need not be a cavity:
   /// the first found, and noted.
   std::optional<Vec3> hollow;
-  std::vector<std::string> notes;  ///< the same in words, for who made the file
+  std::size_t quads_split_anew = 0;  ///< along the other diagonal
+  std::vector<std::string> notes;    ///< the same in words, for who made the file
 };
 
 /// A mesh whose solid is defined, and how it came from the input.

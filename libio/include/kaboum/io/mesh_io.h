@@ -3,6 +3,7 @@
 #include <kaboum/geom/mesh.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -27,7 +28,9 @@ enum class Format {
   Fbx,
   ThreeMf,
   X3d,
-  Vrml
+  Vrml,
+  Step,
+  Iges
 };
 
 /// Format named by `text`: a format name ("stl", "ply-ascii") or a file name's extension (".stl").
@@ -41,6 +44,10 @@ std::vector<std::string> writable_formats();
 /// True when the format stores coordinates as text or as 64-bit floats, so that doubles survive.
 bool holds_double(Format format);
 
+/// Whether files of the format hold exact faces, which the triangles that are read stand for
+/// (ReadResult::deviation): STEP and IGES.
+bool is_cad(Format format);
+
 /// A mesh as read, and what the reader did on the way.
 struct ReadResult {
   geom::Mesh mesh;  ///< vertices with equal coordinates merged (−0 = +0), in order of first use
@@ -51,6 +58,13 @@ struct ReadResult {
   std::size_t file_vertices = 0;   ///< as stored, before merging
   std::size_t file_triangles = 0;  ///< after splitting polygons, before anything is dropped
   std::size_t split_polygons = 0;  ///< faces with more than three corners that were triangulated
+  /// Polygons whose corners are not in one plane, exactly: how they are split makes a difference.
+  std::size_t bent_polygons = 0;
+  /// No bent polygon's corners lie farther apart than this across a plane. [length]
+  double largest_bend = 0;
+  /// Bent polygons of four corners, each by the first of its two triangles, which follow each
+  /// other: geom::PrepareOptions takes the diagonal that encloses, or is enclosed by, both ways.
+  std::vector<std::uint32_t> bent_quads = {};
   std::size_t collapsed_triangles = 0;  ///< dropped: two or three equal corners after merging
   std::vector<std::string> notes;       ///< things a user should know; one sentence each
   /// Files read besides this one, each once: VRML's and X3D's Inline, glTF's buffers.
@@ -58,7 +72,15 @@ struct ReadResult {
   /// Unit of length of the vertices where the file states it (3MF, FBX, X3D) or its format has one
   /// (COLLADA, glTF: m): one of kLengthUnits, or a length ("0.005 m"). Empty: nothing says it.
   std::string unit = {};
+  /// Of CAD files: the exact faces, which are what is meant, are no farther from the triangles than
+  /// this (docs/formats.md). 0: the triangles are meant. [length]
+  double deviation = 0;
+  std::size_t exact_faces = 0;  ///< of CAD files, one for each place of a face
 };
+
+/// What is to be known of a mesh whose triangles stand for exact faces, wherever something is said
+/// about the triangles alone; empty where they are what is meant.
+std::string about_exact_faces(const ReadResult& read);
 
 /// Parses a file held in memory.
 ///
@@ -72,6 +94,9 @@ struct ReadResult {
 /// the faces. COLLADA: scaled to metres by its <unit>, its <up_axis> is ignored, as robot
 /// descriptions expect. FBX, 3MF and X3D: not scaled. A note says so in each case. VRML and X3D:
 /// LOD gives its finest level, Switch its choice. What is refused: docs/formats.md.
+///
+/// STEP and IGES: millimetres; triangles that stand for the exact faces within `deviation`, made by
+/// OpenCASCADE, a module that is loaded in a child process with limits of memory and time.
 ///
 /// @param base_directory  where files that this one refers to are found (VRML's Inline, glTF's
 ///   buffers), by relative paths; empty: nowhere.

@@ -14,12 +14,12 @@ enum class Family {
   FiveAxes,      ///< 5 axes: 2 ∥ 3 ∥ 4, 1 ⟂ 2, 4 ⟂ 5
 };
 
-/// Where a solution is not an isolated one.
+/// Where solutions coincide, or are not isolated ones: `Solution::free` tells which.
 enum Singular : unsigned {
   kRegular = 0,
   kShoulder = 1,  ///< the wrist is on the first axis, or at the border of what it can reach
-  kElbow = 2,     ///< the arm is stretched or folded: two solutions coincide
-  kWrist = 4,     ///< axes are aligned: a joint is free and keeps the value of the reference
+  kElbow = 2,     ///< the arm is stretched, or folded onto itself
+  kWrist = 4,     ///< axes are aligned
 };
 
 using Joints = std::array<double, 6>;  ///< the last is 0 where there are five axes [rad]
@@ -29,6 +29,11 @@ struct Solution {
   double position_error = 0;     ///< at most this far from the target [length]
   double rotation_error = 0;     ///< at most, as in PoseError
   unsigned singular = kRegular;  ///< of Singular
+  /// Joints, as bits 1 << i, that may have any value, and have that of the reference here: others
+  /// of the family are other solutions (solution_set.h).
+  unsigned free = 0;
+  /// Joints that are not free are known to this, the target's rounding included. [rad]
+  double accuracy = 0;
 };
 
 /// At most eight solutions; no memory is allocated.
@@ -50,6 +55,9 @@ class Solutions {
       }
     size_ = kept;
   }
+
+  /// Somewhere a joint is nearly free: what rounding has done to the target decides what is found.
+  bool nearly_singular = false;
 
  private:
   std::array<Solution, 8> items_;
@@ -101,6 +109,10 @@ Solutions solve(const ClosedForm& form, const Transform& target, const SolveOpti
 /// most four, each reached if joints 2 to 4 reach far enough; the target itself where its last axis
 /// is along axis 1, or its origin on it. Empty for other families.
 std::vector<Transform> with_other_headings(const ClosedForm& form, const Transform& target);
+
+/// Whether a target's heading is free, too, or nearly: its last axis is along axis 1, or its origin
+/// on it. `with_other_headings` gives the target alone there.
+bool has_any_heading(const ClosedForm& form, const Transform& target);
 
 const char* name_of(Family family);
 

@@ -47,6 +47,11 @@ struct Answer {
   std::string value;    ///< the name of an object of the function's type, or any word of a handle
   std::string payload;  ///< kept with the plan: a path, samples used, ...
   std::string reason;   ///< why there is no value: "blocked by o3"
+  /// Of a value: it was chosen among several, or others were not looked for. Where a search with
+  /// it fails, it is not proved that there is no plan.
+  bool chosen = false;
+  /// Of a value: there is this one or none, whatever the state; only the arguments decide it.
+  bool fixed = false;
 
   static Answer found(std::string value, std::string payload = "") {
     return {Kind::Value, std::move(value), std::move(payload), ""};

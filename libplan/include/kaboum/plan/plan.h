@@ -61,7 +61,7 @@ struct PlanSize {
   std::int64_t cost = 0;      ///< of the most expensive path
 };
 
-/// @throws Error{InvalidInput} if the graph has a cycle or a missing node.
+/// @throws Error{InvalidInput} for a cycle, a missing node, or two cases of a branch for one value.
 PlanSize measure(const Model& model, const Plan& plan);
 
 /// The same plan without sharing. @throws Error{LimitReached} beyond `limit` nodes.
@@ -69,7 +69,7 @@ Plan expand_tree(const Plan& plan, std::size_t limit = 1'000'000);
 
 /// JSON, as docs/planning/plans.md describes it.
 std::string write_plan(const Model& model, const Plan& plan);
-/// @throws Error{InvalidInput} on anything but a well-formed plan of this model's names.
+/// @throws Error{InvalidInput} on anything but a well-formed plan of this model's domain and names.
 Plan read_plan(const Model& model, const std::string& json, const std::string& file_name);
 
 /// An indented text, Graphviz DOT, or a drawing.

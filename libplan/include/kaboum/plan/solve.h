@@ -60,7 +60,9 @@ enum class Outcome {
 struct Solution {
   Outcome outcome = Outcome::Limit;
   std::string limit;  ///< which, when the outcome is Limit
-  std::string lost;   ///< what the knowledge states do not keep, when the outcome is NotInferred
+  /// Why there is no plan, when an external function was asked: the first call that was impossible.
+  std::string refused;
+  std::string lost;  ///< what the knowledge states do not keep, when the outcome is NotInferred
   Plan plan;
   Statistics statistics;
 };

@@ -5,6 +5,7 @@
 #include <kaboum/verify/claims.h>
 #include <kaboum/verify/distance.h>
 #include <kaboum/verify/inclusion.h>
+#include <kaboum/verify/points.h>
 
 #include <functional>
 #include <optional>
@@ -28,6 +29,9 @@ struct MeshQuestion {
   std::size_t max_contacts = InclusionOptions{}.max_contacts;
   std::optional<double> max_work{};  ///< of each inclusion, as InclusionOptions [s]
   std::function<void(const std::string&)> progress{};  ///< called with what is being done
+  /// Of the exact faces that the original's triangles stand for, which are to be enclosed or
+  /// covered as well. Not looked at of Inner.
+  std::optional<PointQuestion> exact_points{};
 
   [[nodiscard]] const geom::Mesh& inner() const {
     return relation == Relation::Inner ? approximation : original;
@@ -63,13 +67,16 @@ struct MeshVerdict {
   std::vector<DistanceVerdict> distances;
   std::optional<Claim>
       depth;  ///< of an inner set: that it leaves out nothing deeper than the bound
+  /// Of the points of exact faces, where they were asked for: they refute, and prove nothing.
+  std::optional<PointClaim> exact_points;
   /// The solid claim alone decides, and the enclosed mesh is inside out: its solid is empty, or
   /// nearly so, and within any other.
   bool vacuous = false;
   Answer answer = Answer::Undefined;  ///< of all claims that decide
 };
 
-/// The worst answer of the claims of enclosure that decide and of convexity, distances and depth.
+/// The worst answer of the claims of enclosure that decide and of convexity, distances, depth and
+/// the points of exact faces.
 /// One claim of enclosure may be undefined, as a solid is of an open mesh; not both.
 Answer answer_of(const MeshVerdict& verdict, Claims claims);
 

@@ -38,11 +38,22 @@ class Holders {
   /// about a point only where one of them does.
   explicit Holders(const std::vector<NamedMesh>& meshes);
 
-  /// Whether the mesh is in the union of the holders. Where these are not all convex, negative
-  /// windings of one may hide what another holds: what would be refuted is undecided then.
+  /// Whether the mesh is in the union of the holders. Where there are several and they are not all
+  /// convex, negative windings of one may hide what another holds: what would be refuted is
+  /// undecided then.
   /// @throws as verify_inclusion
   [[nodiscard]] HeldShape hold(const geom::Mesh& mesh, Claims claims,
                                const InclusionOptions& limits = {}) const;
+
+  /// The same of a mesh that is closed whichever way it is oriented: one that is inside out is
+  /// judged as it is.
+  [[nodiscard]] HeldShape hold_any(const geom::Mesh& mesh, Claims claims,
+                                   const InclusionOptions& limits = {}) const;
+  /// Whether the mesh is in the sum of the holders. @pre there are some
+  [[nodiscard]] Inclusion inclusion_of(const geom::Mesh& mesh,
+                                       const InclusionOptions& limits) const {
+    return verify_inclusion(mesh, sum_, limits);
+  }
 
   /// Whether no point of the holders is farther than `bound` from the solids of the meshes.
   /// @pre bound > 0 [length, as the meshes]
@@ -53,6 +64,9 @@ class Holders {
   [[nodiscard]] const geom::ConvexSet& set() const { return set_; }
   [[nodiscard]] const Claim& convex() const { return convex_; }
   [[nodiscard]] bool all_convex() const { return convex_.answer == Answer::Verified; }
+  /// Whether what is not in their sum is in none of them.
+  [[nodiscard]] bool refutes() const { return all_convex() || set_.bodies.size() < 2; }
+  [[nodiscard]] const geom::Mesh& sum() const { return sum_; }
   /// Names of those that are left out, and why.
   [[nodiscard]] const std::vector<std::pair<std::string, std::string>>& left_out() const {
     return left_out_;

@@ -1,0 +1,200 @@
+// Faces of an IGES file: which entities the file shows, and in how many places.
+//
+// Entities that nothing refers to are shown, with what their groups, subfigures and solids hold.
+
+#include <IGESData_IGESEntity.hxx>
+#include <IGESData_UndefinedEntity.hxx>
+#include <Interface_EntityIterator.hxx>
+#include <Interface_Graph.hxx>
+
+#include <map>
+#include <stdexcept>
+
+#include "census.h"
+
+namespace kaboum::io {
+namespace {
+
+enum class IgesKind { Unknown, Face, Surface, Container, Part, Harmless };
+
+/// By its number; the forms of 106, 108 and 402 differ.
+IgesKind iges_kind(int type, int form) {
+  switch (type) {
+    case 143:  // bounded surface
+    case 144:  // trimmed surface
+    case 510:  // face
+      return IgesKind::Face;
+    case 108:  // plane: bounded, or without a bound
+      return form == 0 ? IgesKind::Part : IgesKind::Surface;
+    case 114:  // parametric spline surface
+    case 118:  // ruled surface
+    case 120:  // surface of revolution
+    case 122:  // tabulated cylinder
+    case 128:  // rational B-spline surface
+    case 140:  // offset surface
+    case 190:  // plane surface
+    case 192:  // right circular cylindrical surface
+    case 194:  // right circular conical surface
+    case 196:  // spherical surface
+    case 198:  // toroidal surface
+      return IgesKind::Surface;
+    case 186:  // manifold solid B-rep object
+    case 308:  // subfigure definition
+    case 402:  // associativity instance; groups are some of its forms
+    case 408:  // singular subfigure instance
+    case 514:  // shell
+      return IgesKind::Container;
+    case 100:  // circular arc
+    case 102:  // composite curve
+    case 104:  // conic arc
+    case 106:  // copious data
+    case 110:  // line
+    case 112:  // parametric spline curve
+    case 116:  // point
+    case 123:  // direction
+    case 124:  // transformation matrix
+    case 126:  // rational B-spline curve
+    case 130:  // offset curve
+    case 132:  // connect point
+    case 141:  // boundary
+    case 142:  // curve on a parametric surface
+    case 502:  // vertex list
+    case 504:  // edge list
+    case 508:  // loop
+      return IgesKind::Part;
+    case 0:    // null
+    case 202:  // annotation, from angular dimensions to sections
+    case 204:
+    case 206:
+    case 208:
+    case 210:
+    case 212:
+    case 213:
+    case 214:
+    case 216:
+    case 218:
+    case 220:
+    case 222:
+    case 228:
+    case 230:
+    case 304:  // line font
+    case 310:  // text font
+    case 312:  // text display template
+    case 314:  // colour
+    case 404:  // drawing
+    case 406:  // property
+    case 410:  // view
+      return IgesKind::Harmless;
+    default:
+      return IgesKind::Unknown;
+  }
+}
+
+bool is_group(int type, int form) {
+  return type != 402 || form == 1 || form == 7 || form == 14 || form == 15;
+}
+
+class IgesCensus {
+ public:
+  explicit IgesCensus(const Handle(Interface_InterfaceModel) & model)
+      : model_(model), graph_(model) {}
+
+  Census run() {
+    const int count = model_->NbEntities();
+    for (int i = 1; i <= count; ++i) {
+      const Handle(IGESData_IGESEntity) e = at(i);
+      if (e.IsNull() || kind(i) == IgesKind::Unknown)
+        refuse(name(i) + ": entities of this type are not read");
+      if (model_->IsRedefinedContent(i) || model_->IsUnknownEntity(i) ||
+          e->IsKind(STANDARD_TYPE(IGESData_UndefinedEntity)))
+        if (kind(i) != IgesKind::Harmless)
+          refuse(name(i) + " cannot be understood: its form or its parameters are not known");
+      if (e->HasTransf() && e->TypeNumber() == 308)
+        refuse(name(i) + " is moved, which is not read");
+    }
+    for (int i = 1; i <= count; ++i)
+      if (kind(i) != IgesKind::Part && kind(i) != IgesKind::Harmless && !is_referred(i)) add(i, 0);
+    Census out;
+    for (int i = 1; i <= count; ++i) {
+      const double uses = uses_[i];
+      if (kind(i) == IgesKind::Face && uses == 0) refuse(name(i) + " is a face that nothing shows");
+      if (kind(i) == IgesKind::Harmless) out.harmless.insert(i);
+      if (uses > 0) out.faces.push_back({i, name(i), uses, 0});
+    }
+    return out;
+  }
+
+ private:
+  [[noreturn]] static void refuse(const std::string& what) { throw std::runtime_error(what); }
+
+  Handle(IGESData_IGESEntity) at(int i) const {
+    return Handle(IGESData_IGESEntity)::DownCast(model_->Value(i));
+  }
+  IgesKind kind(int i) const {
+    const auto e = at(i);
+    return e.IsNull() ? IgesKind::Unknown : iges_kind(e->TypeNumber(), e->FormNumber());
+  }
+  /// "D7 (type 186)", as in the file's directory.
+  std::string name(int i) const {
+    const auto e = at(i);
+    const std::string place = "D" + std::to_string(2 * i - 1);
+    if (e.IsNull()) return place;
+    return place + " (type " + std::to_string(e->TypeNumber()) +
+           (e->FormNumber() != 0 ? ", form " + std::to_string(e->FormNumber()) : std::string()) +
+           ")";
+  }
+
+  /// Whether a shape that is shown by itself, or a definition for others, holds it.
+  bool is_referred(int i) const {
+    if (at(i)->TypeNumber() == 308) return true;  // shown by its instances only
+    for (Interface_EntityIterator by = graph_.Sharings(model_->Value(i)); by.More(); by.Next()) {
+      const int holder = model_->Number(by.Value());
+      const auto e = at(holder);
+      if (kind(holder) == IgesKind::Harmless) continue;
+      if (!is_group(e->TypeNumber(), e->FormNumber())) continue;
+      return true;
+    }
+    return false;
+  }
+
+  void add(int i, int depth) {
+    if (depth > 100) refuse(name(i) + " is a part of itself");
+    if (++places_ > 10'000'000) refuse(name(i) + ": too many places of it");
+    switch (kind(i)) {
+      case IgesKind::Face:
+      case IgesKind::Surface:
+        uses_[i] += 1;
+        break;
+      case IgesKind::Container: {
+        if (!is_group(at(i)->TypeNumber(), at(i)->FormNumber())) break;
+        std::size_t parts = 0;
+        for (Interface_EntityIterator of = graph_.Shareds(model_->Value(i)); of.More(); of.Next()) {
+          const int part = model_->Number(of.Value());
+          if (part <= 0) refuse(name(i) + " refers to nothing");
+          if (kind(part) == IgesKind::Part || kind(part) == IgesKind::Harmless) continue;
+          ++parts;
+          add(part, depth + 1);
+        }
+        const int type = at(i)->TypeNumber();
+        if (parts == 0 && (type == 186 || type == 514 || type == 408))
+          refuse(name(i) + " has no faces");
+        break;
+      }
+      default:
+        break;
+    }
+  }
+
+  Handle(Interface_InterfaceModel) model_;
+  Interface_Graph graph_;
+  std::map<int, double> uses_;
+  std::size_t places_ = 0;
+};
+
+}  // namespace
+
+Census iges_census(const Handle(Interface_InterfaceModel) & model) {
+  return IgesCensus(model).run();
+}
+
+}  // namespace kaboum::io

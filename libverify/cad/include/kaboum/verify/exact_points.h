@@ -1,0 +1,42 @@
+#pragma once
+
+#include <kaboum/geom/mesh.h>
+#include <kaboum/io/mesh_io.h>
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace kaboum::verify {
+
+/// Points of the exact faces and edges of a CAD file, by a reading of its own.
+struct ExactPoints {
+  std::vector<geom::Vec3> points;
+  std::vector<std::uint32_t> of_face;  ///< of each point; faces are counted from 0
+  std::size_t faces = 0, edges = 0;    ///< one for each place of a face; edges of all of them
+  /// What evaluating may have moved a point by, in each coordinate. [length]
+  double rounding = 0;
+};
+
+/// Parts of an interval between knots, where nothing else is asked for.
+inline constexpr std::size_t kPointDensity = 17;
+
+/// Evaluates faces inside their loops, edges in both of their forms, and vertices, at all knots and
+/// between them. docs/algorithms/exact-inclusion.md, "Exact faces".
+///
+/// Nothing is shared with the reading that makes triangles but OpenCASCADE's file readers; a module
+/// is loaded in a child process with limits of memory and time.
+///
+/// @param format   io::is_cad
+/// @param density  parts of each interval between knots of an edge; a face has at least as many in
+///   each direction, and three between knots. At least 1.
+/// @param scale    the points are multiplied by it, as io::scale does.
+/// @param faces    that the first reading has found: another number is refused.
+/// @throws Error{NotBuilt} where the module is not there; Error{InvalidInput} where the file cannot
+///   be read, or not all of it; Error{InvalidArgument} on a density of 0.
+ExactPoints read_exact_points(std::span<const char> bytes, io::Format format,
+                              const std::string& name, std::size_t density, double scale,
+                              std::size_t faces);
+
+}  // namespace kaboum::verify

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <kaboum/verify/inclusion.h>
+
+#include <span>
+
+namespace kaboum::verify {
+
+/// Points that a solid is to hold.
+struct PointQuestion {
+  std::span<const geom::Vec3> points;
+  std::span<const std::uint32_t> of_face;  ///< of each point: the exact face that it is on
+  double rounding = 0;  ///< what each coordinate of a point may be wrong by [length]
+};
+
+/// The answer. Points prove nothing of what is between them: Verified says that none of them
+/// refutes.
+struct PointClaim {
+  Answer answer = Answer::Undefined;
+  std::string reason;                              ///< one clause; empty unless undefined
+  std::size_t points = 0, outside = 0, faces = 0;  ///< faces: that have points outside
+  /// Of the points outside the one that sticks out farthest: certainly by this. [length]
+  double farthest = 0;
+  geom::Vec3 at = geom::Vec3::Zero();
+  std::uint32_t face = 0;
+  double rounding = 0;  ///< as asked [length]
+};
+
+/// Decides of each point whether it lies outside the solid: its winding number, exact, is below 1,
+/// it is on no triangle, and it is farther from all of them than the margin and what it may be
+/// wrong by. Undefined if the solid's mesh is not closed, or there are no points.
+///
+/// @param margin  of a set whose bodies' sum the mesh is [length]
+/// @throws Error{InvalidInput} on indices out of range or coordinates that are not finite.
+PointClaim verify_points(const PointQuestion& question, const geom::Mesh& solid, double margin = 0);
+
+}  // namespace kaboum::verify

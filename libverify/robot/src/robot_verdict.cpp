@@ -1,0 +1,453 @@
+// The verdict on a robot, link by link.
+
+#include <kaboum/base/error.h>
+#include <kaboum/base/number_text.h>
+#include <kaboum/geom/prepare.h>
+#include <kaboum/geom/topology.h>
+#include <kaboum/verify/held_shape.h>
+#include <kaboum/verify/matching_shapes.h>
+#include <kaboum/verify/motion_alike.h>
+#include <kaboum/verify/robot_verdict.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+namespace kaboum::verify {
+namespace {
+
+using robot::Geometry;
+
+std::string counted(std::size_t n, const char* one, const char* many) {
+  return std::to_string(n) + ' ' + (n == 1 ? one : many);
+}
+
+std::string text_of(const geom::Vec3& p) {
+  return "(" + number_text(p.x()) + ", " + number_text(p.y()) + ", " + number_text(p.z()) + ")";
+}
+
+std::string in_words(const Bracket& b) {
+  std::string text = std::isfinite(b.upper) ? "at most " + number_up(b.upper) : std::string();
+  if (b.lower > 0)
+    text += std::string(text.empty() ? "" : " and ") + "at least " + number_down(b.lower) +
+            ", farthest at " + text_of(b.at);
+  return text;
+}
+
+/// Calls `work`; its errors name the file.
+template <class Work>
+auto naming(const std::string& file, const Work& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    throw Error(error.code(), file + ": " + error.what());
+  }
+}
+
+geom::Mesh turned(geom::Mesh mesh) {
+  for (geom::Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+  return mesh;
+}
+
+/// The triangles of a file and what they bound, as far as that is judged.
+struct Subject {
+  const MeshFile* file = nullptr;
+  geom::Mesh mesh;            ///< whose solid is judged, and its triangles
+  bool both_ways = false;     ///< what it winds round backwards counts as well
+  bool file_as_well = false;  ///< the file has triangles that `mesh` does not have
+  std::size_t dropped_sheets = 0;
+  std::string refusal;  ///< why it could not be prepared
+};
+
+Subject subject_of(const MeshFile& file, const RobotQuestion& q) {
+  Subject out{&file, file.mesh, q.solid != Solid::AsFile, false, 0, {}};
+  if (q.solid != Solid::Prepared) return out;
+  try {
+    geom::Prepared p =
+        geom::prepare(file.mesh, {.drop_sheets = q.drop_sheets, .holes = geom::Holes::Fill});
+    const geom::PreparationReport& r = p.report;
+    out.both_ways = r.hollow.has_value();
+    out.dropped_sheets = r.dropped_sheets;
+    out.file_as_well = r.dropped_sheets == 0 && r.collapsed_triangles + r.cancelled_walls > 0;
+    out.mesh = p.solid.mesh();
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::InvalidInput || q.drop_sheets)
+      throw Error(error.code(), file.path + ": " + error.what());
+    out.refusal = error.what();
+  }
+  return out;
+}
+
+/// A mesh and what holds it, decided.
+class Judgement {
+ public:
+  Judgement(const Subject& subject, const Holders& holders, const RobotQuestion& q)
+      : subject_(subject), holders_(holders), q_(q) {}
+
+  ShapeVerdict run() {
+    out_.file = subject_.file;
+    out_.name = subject_.file->path;
+    out_.dropped_sheets = subject_.dropped_sheets;
+    naming(out_.name, [&] { decide(); });
+    return std::move(out_);
+  }
+
+ private:
+  void decide() {
+    const HeldShape held =
+        subject_.both_ways ? held_both_ways() : holders_.hold(subject_.mesh, q_.claims, q_.limits);
+    out_.answer = held.answer;
+    out_.text = held.reason;
+    if (held.prepare_helps && q_.solid == Solid::AsFile)
+      out_.text += "; --prepare judges it as bcd-decompose takes it";
+    if (!held.inclusion) return;
+    const Inclusion& in = *held.inclusion;
+    out_.convex = holders_.convex();
+    out_.closed = in.inner_closed;
+    out_.triangles_without_area = in.triangles_without_area;
+    out_.left_out = in.left_out;
+    out_.limited = in.limited;
+    if (held.surface) out_.triangles = in.surface;
+    if (held.solid) out_.solid = in.solid;
+    measured_ = &subject_.mesh;
+    if (held.surface && subject_.file_as_well) look_at_file();
+    if (!out_.triangles && !out_.solid) {
+      out_.answer = Answer::Undefined;
+      return;
+    }
+    out_.answer = Answer::Verified;
+    for (const std::optional<Claim>* claim : {&out_.triangles, &out_.solid})
+      if (*claim) out_.answer = worse(out_.answer, (*claim)->answer);
+    if (out_.answer == Answer::Refuted && !holders_.refutes()) out_.answer = Answer::Undecided;
+    measure();
+    put_into_words();
+  }
+
+  /// Every triangle, and all that they wind round.
+  HeldShape held_both_ways() {
+    HeldShape out = holders_.hold_any(subject_.mesh, q_.claims, q_.limits);
+    if (!out.solid || out.inclusion->solid.answer != Answer::Verified) return out;
+    HeldShape back = holders_.hold_any(turned(subject_.mesh), Claims::Solid, q_.limits);
+    if (!back.inclusion) return out;
+    Inclusion& in = *out.inclusion;
+    in.solid = back.inclusion->solid;
+    in.left_out += back.inclusion->left_out;
+    in.limited = in.limited || back.inclusion->limited;
+    return out;
+  }
+
+  /// The file's triangles that preparing has left out lie inside as well.
+  void look_at_file() {
+    InclusionOptions options = q_.limits;
+    options.surface_only = true;
+    const Inclusion in = holders_.inclusion_of(subject_.file->mesh, options);
+    if (worse(out_.triangles->answer, in.surface.answer) == out_.triangles->answer) return;
+    out_.triangles = in.surface;
+    out_.left_out += in.left_out;
+    out_.limited = out_.limited || in.limited;
+    measured_ = &subject_.file->mesh;
+  }
+
+  void measure() {
+    if (!out_.triangles || out_.triangles->answer != Answer::Refuted) return;
+    BracketEffort effort;
+    effort.max_work = q_.limits.max_work.value_or(usual_work(measured_->triangles.size()));
+    out_.sticks_out =
+        bracket_distance(*measured_, out_.triangles->inner_triangles, holders_.sum(), true, effort);
+    if (out_.limited) out_.sticks_out->upper = std::numeric_limits<double>::infinity();
+  }
+
+  void put_into_words() {
+    const std::size_t n = holders_.set().bodies.size();
+    const std::string bodies = holders_.all_convex() ? counted(n, "convex body", "convex bodies")
+                                                     : counted(n, "mesh", "meshes, not all convex");
+    if (out_.answer == Answer::Verified) {
+      out_.text = std::string(out_.solid && out_.triangles ? "its solid and surface are"
+                              : out_.solid                 ? "its solid is"
+                                                           : "its surface is") +
+                  " within " + bodies;
+      return;
+    }
+    const bool refuted = out_.triangles && out_.triangles->answer == Answer::Refuted;
+    if (refuted) {
+      const std::size_t outside = out_.triangles->inner_triangles.size();
+      out_.text = (out_.limited ? "at least " : "") + counted(outside, "triangle", "triangles") +
+                  (holders_.refutes() ? outside == 1 ? " is" : " are" : std::string(" may be")) +
+                  " not inside the " + bodies + " of its pose";
+      if (out_.sticks_out) out_.text += ", by " + in_words(*out_.sticks_out);
+      out_.text += ", in the mesh's own unit";
+      return;
+    }
+    if (out_.solid && out_.solid->answer == Answer::Refuted) {
+      out_.text = std::string(out_.triangles ? "every triangle is inside, but " : "") +
+                  "not all that it encloses is within the " + bodies + " of its pose";
+      if (const auto& witness = out_.solid->witness)
+        out_.text += ": " + text_of(witness->point) + " is " + number_text(witness->depth) +
+                     " outside, in the mesh's own unit";
+      return;
+    }
+    for (const std::optional<Claim>* claim : {&out_.triangles, &out_.solid})
+      if (*claim && (*claim)->answer != Answer::Verified) out_.text = (*claim)->reason;
+  }
+
+  const Subject& subject_;
+  const Holders& holders_;
+  const RobotQuestion& q_;
+  const geom::Mesh* measured_ = nullptr;
+  ShapeVerdict out_;
+};
+
+/// What distances are measured to: the mesh's solid and all triangles of the file. Where preparing
+/// refuses the file, what is left of it without sheets; no solid where it refuses that, too.
+struct Measured {
+  geom::Mesh mesh;
+  bool has_solid = true;
+};
+
+Measured measured_to(const Subject& subject, const RobotQuestion& q) {
+  const bool is_prepared = q.solid == Solid::Prepared && subject.refusal.empty();
+  if (q.solid == Solid::AsFile || (is_prepared && !subject.file_as_well)) return {subject.mesh};
+  Measured out;
+  try {
+    out.mesh = is_prepared ? subject.mesh
+                           : geom::prepare(subject.file->mesh,
+                                           {.drop_sheets = true, .holes = geom::Holes::Fill})
+                                 .solid.mesh();
+  } catch (const Error&) {
+    out.has_solid = false;
+  }
+  // All triangles, on both sides: their windings cancel.
+  for (const geom::Mesh& mesh : {subject.file->mesh, turned(subject.file->mesh)}) {
+    const auto first = static_cast<std::uint32_t>(out.mesh.vertices.size());
+    out.mesh.vertices.insert(out.mesh.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+    for (const geom::Triangle& t : mesh.triangles)
+      out.mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  return out;
+}
+
+class RobotJudge {
+ public:
+  explicit RobotJudge(const RobotQuestion& q) : q_(q) {}
+
+  RobotVerdict run(const std::function<void(const LinkVerdict&)>& judged) {
+    out_.motion = difference_in_motion(q_.original, q_.result);
+    if (!out_.motion.empty()) out_.answer = Answer::Refuted;
+    std::size_t shapes = 0;
+    for (const robot::Link& link : q_.original.links)
+      if (q_.is_asked(link)) shapes += q_.shapes_of(link).size();
+    if (shapes == 0)
+      throw Error(ErrorCode::InvalidInput,
+                  std::string("no link has a shape") +
+                      (q_.visual ? "" : "; those for drawing may be meant"));
+    for (const robot::Link& link : q_.original.links) {
+      if (!q_.is_asked(link) || q_.shapes_of(link).empty()) continue;
+      out_.links.push_back(judge(link));
+      out_.answer = worse(out_.answer, out_.links.back().answer);
+      if (judged) judged(out_.links.back());
+    }
+    if (q_.epsilon) look_for_strangers();
+    return std::move(out_);
+  }
+
+ private:
+  [[nodiscard]] const std::vector<Geometry>& result_of(const std::string& link) const {
+    static const std::vector<Geometry> kNone;
+    const auto index = q_.result.find_link(link);
+    return index ? q_.result.links[*index].collision : kNone;
+  }
+
+  void note(const std::string& file, const std::string& text) {
+    if (std::pair line{file, text}; std::ranges::find(out_.notes, line) == out_.notes.end())
+      out_.notes.push_back(std::move(line));
+  }
+
+  LinkVerdict judge(const robot::Link& link) {
+    LinkVerdict out{link.name, Answer::Verified, {}, {}};
+    const std::vector<Geometry>&shapes = q_.shapes_of(link), &there = result_of(link.name);
+    for (const MatchedShapes& match : match_shapes(shapes, there)) {
+      const Geometry& g = shapes[match.originals.front()];
+      if (g.shape == Geometry::Shape::Mesh) {
+        judge_meshes(link.name, shapes, there, match, out.shapes);
+        continue;
+      }
+      ShapeVerdict verdict;
+      verdict.shape = g.shape;
+      verdict.name = describe(g);
+      verdict.answer = find_again(g, match);
+      verdict.text = verdict.answer == Answer::Verified ? "the result has it as well"
+                     : verdict.answer == Answer::Refuted
+                         ? "the result's link has no shape at all"
+                         : "the result has none of its size and pose";
+      out.shapes.push_back(std::move(verdict));
+    }
+    for (const ShapeVerdict& shape : out.shapes) out.answer = worse(out.answer, shape.answer);
+    out.sentence = sentence_of(out);
+    return out;
+  }
+
+  void judge_meshes(const std::string& link, const std::vector<Geometry>& shapes,
+                    const std::vector<Geometry>& there, const MatchedShapes& match,
+                    std::vector<ShapeVerdict>& out) {
+    std::vector<const MeshFile*> originals, bodies;
+    for (const std::size_t i : match.originals) originals.push_back(&q_.file_of(shapes[i], false));
+    for (const std::size_t i : match.there) bodies.push_back(&q_.file_of(there[i], true));
+    const geom::Vec3 scale = shapes[match.originals.front()].size.cwiseAbs();
+    const Key key{originals, bodies, scale.x(), scale.y(), scale.z()};
+    auto at = judged_.find(key);
+    if (at == judged_.end())
+      at = judged_.emplace(key, decide(link, originals, bodies, scale)).first;
+    for (ShapeVerdict verdict : at->second) {
+      const Answer answer = beside_others(verdict.answer, match);
+      if (answer != verdict.answer && !verdict.distance)
+        verdict.text += "; what the " + counted(match.elsewhere, "shape", "shapes") +
+                        " of other poses hold is not looked at";
+      if (!verdict.distance) verdict.answer = answer;
+      out.push_back(std::move(verdict));
+    }
+  }
+
+  std::vector<ShapeVerdict> decide(const std::string& link,
+                                   const std::vector<const MeshFile*>& originals,
+                                   const std::vector<const MeshFile*>& bodies,
+                                   const geom::Vec3& scale) {
+    std::vector<Holders::NamedMesh> named;
+    for (const MeshFile* file : bodies) named.push_back({file->path, &file->mesh});
+    const Holders holders(named);
+    for (const auto& [path, why] : holders.left_out()) note(path, why);
+    std::vector<const MeshFile*> hold;
+    for (const MeshFile* file : bodies)
+      if (std::ranges::none_of(holders.left_out(),
+                               [&](const auto& left) { return left.first == file->path; }))
+        hold.push_back(file);
+    std::vector<ShapeVerdict> out;
+    std::vector<Subject> subjects;
+    bool held = true;
+    for (const MeshFile* file : originals) {
+      if (q_.progress) q_.progress("link " + link + ": " + file->path);
+      for (const std::string& text : file->notes) note(file->path, text);
+      subjects.push_back(subject_of(*file, q_));
+      const Subject& subject = subjects.back();
+      if (!subject.refusal.empty())
+        note(file->path,
+             "every triangle is judged as it is, for which solid they bound cannot be "
+             "told (" +
+                 subject.refusal + ")");
+      out.push_back(Judgement(subject, holders, q_).run());
+      out.back().held_by = hold;
+      if (!out.back().closed && q_.solid == Solid::AsFile) out_.open = true;
+      held = held && out.back().answer == Answer::Verified;
+    }
+    if (q_.epsilon && held) out.push_back(distance(link, subjects, holders, scale));
+    return out;
+  }
+
+  /// How far the bodies of one frame are from all of its meshes together.
+  ShapeVerdict distance(const std::string& link, const std::vector<Subject>& subjects,
+                        const Holders& holders, const geom::Vec3& scale) {
+    if (q_.progress) q_.progress("link " + link + ": distance");
+    double diagonal = 0;
+    bool has_solid = true;
+    std::vector<geom::Mesh> meshes;
+    for (const Subject& subject : subjects) {
+      Measured to = measured_to(subject, q_);
+      has_solid = has_solid && to.has_solid;
+      diagonal = std::max(diagonal, geom::bounding_box(to.mesh).diagonal());
+      meshes.push_back(std::move(to.mesh));
+    }
+    const ScaledBound scaled = scaled_bound(*q_.epsilon, diagonal, scale);
+    const std::string& path = subjects.front().file->path;
+    if (!(scaled.bound > 0) || !std::isfinite(scaled.bound))
+      throw Error(ErrorCode::InvalidInput, "epsilon is no length in the unit of " + path +
+                                               ", whose scale is " + number_text(scale.maxCoeff()));
+    ShapeVerdict out;
+    out.name = "bodies";
+    out.bound = scaled.bound;
+    const HeldDistance found =
+        naming(path, [&] { return holders.distance(meshes, scaled.bound, q_.limits); });
+    out.answer = answer_of(found, scaled);
+    if (!found.claim) {
+      out.text = "distances are decided of convex bodies only, and not all are";
+      return out;
+    }
+    const DistanceClaim& claim = *found.claim;
+    out.distance = claim;
+    if (out.answer == Answer::Refuted && !has_solid) out.answer = Answer::Undecided;
+    out.text = out.answer == Answer::Verified
+                   ? "nowhere more than " + number_text(scaled.bound) + " from the solid"
+                   : "at least " + number_text(claim.largest) + " from the solid at " +
+                         text_of(claim.at) + ", claimed " + number_text(scaled.bound);
+    out.text += ", in the mesh's own unit";
+    if (!found.to_solid) out.text += " (to the surface, as it is open)";
+    if (!has_solid) out.text += "; which solid its triangles bound is not known";
+    if (out.answer == Answer::Undecided && scaled.uneven) out.text += "; the scale is uneven";
+    return out;
+  }
+
+  [[nodiscard]] std::string sentence_of(const LinkVerdict& link) const {
+    std::size_t meshes = 0, others = 0, bodies = 0, sheets = 0, distances = 0, bad = 0;
+    std::vector<const MeshFile*> holders;
+    const ShapeVerdict* worst = nullptr;
+    for (const ShapeVerdict& s : link.shapes) {
+      if (s.bound) {
+        ++distances;
+      } else if (s.shape != Geometry::Shape::Mesh) {
+        ++others;
+      } else {
+        ++meshes;
+        sheets += s.dropped_sheets;
+        for (const MeshFile* file : s.held_by)
+          if (std::ranges::find(holders, file) == holders.end()) holders.push_back(file);
+      }
+      if (s.answer == Answer::Verified) continue;
+      ++bad;
+      if (worst == nullptr || worse(s.answer, worst->answer) != worst->answer) worst = &s;
+    }
+    bodies = holders.size();
+    if (worst != nullptr)
+      return worst->name + ": " + worst->text +
+             (bad > 1 ? "; nor are " + counted(bad - 1, "other shape", "other shapes") : "");
+    std::string out;
+    if (meshes > 0) {
+      out = q_.claims == Claims::Solid ? "its solid is inside: "
+            : sheets > 0 ? "every triangle is inside but the " + counted(sheets, "one", "ones") +
+                               " of sheets, which were dropped: "
+                         : "every triangle is inside: ";
+      out += counted(meshes, "mesh", "meshes") + " in " + counted(bodies, "body", "bodies");
+      if (distances > 0) out += ", nowhere farther from it than asked";
+    }
+    if (others > 0)
+      out += (out.empty() ? "" : "; ") + counted(others, "shape", "shapes") +
+             (others == 1 ? " is as it was" : " are as they were");
+    return out;
+  }
+
+  void look_for_strangers() {
+    for (const robot::Link& link : q_.result.links) {
+      if (!q_.is_asked(link)) continue;
+      const auto index = q_.original.find_link(link.name);
+      const std::vector<Geometry> known =
+          index ? q_.shapes_of(q_.original.links[*index]) : std::vector<Geometry>{};
+      const std::size_t strangers = count_strangers(known, link.collision);
+      if (strangers == 0) continue;
+      out_.answer = worse(out_.answer, Answer::Undecided);
+      out_.strangers.emplace_back(link.name, strangers);
+    }
+  }
+
+  using Key = std::tuple<std::vector<const MeshFile*>, std::vector<const MeshFile*>, double, double,
+                         double>;
+  const RobotQuestion& q_;
+  RobotVerdict out_;
+  std::map<Key, std::vector<ShapeVerdict>> judged_;
+};
+
+}  // namespace
+
+RobotVerdict decide(const RobotQuestion& question,
+                    const std::function<void(const LinkVerdict&)>& judged) {
+  return RobotJudge(question).run(judged);
+}
+
+}  // namespace kaboum::verify

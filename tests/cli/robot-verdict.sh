@@ -1,0 +1,181 @@
+# shellcheck shell=sh disable=SC2154
+# One verdict a link: terminal, page, report and exit code say the same, and each command that a page prints ends as
+# the page says. Robots with meshes that bound no solid, bad ones and none.
+. "$(dirname "$0")/common.sh"
+KABOUM_CACHE=$WORK/cache
+export KABOUM_CACHE
+mkdir -p "it's a robot/m"
+
+python3 - "it's a robot" <<'END'
+import sys
+folder = sys.argv[1]
+
+def off(name, vertices, faces):
+    with open(f"{folder}/m/{name}.off", "w") as f:
+        f.write(f"OFF\n{len(vertices)} {len(faces)} 0\n")
+        for v in vertices:
+            f.write("%.9g %.9g %.9g\n" % tuple(v))
+        for t in faces:
+            f.write(f"{len(t)} " + " ".join(map(str, t)) + "\n")
+
+def prism(polygon, low, high):
+    """Of a polygon in the plane of x and y; triangles."""
+    n = len(polygon)
+    vertices = [(x, y, z) for z in (low, high) for x, y in polygon]
+    faces = [(0, i + 1, i) for i in range(1, n - 1)] + [(n, n + i, n + i + 1) for i in range(1, n - 1)]
+    for i in range(n):
+        j = (i + 1) % n
+        faces += [(i, j, n + j), (i, n + j, n + i)]
+    return vertices, faces
+
+def add(*parts):
+    vertices, faces = [], []
+    for v, f in parts:
+        faces += [tuple(i + len(vertices) for i in t) for t in f]
+        vertices += v
+    return vertices, faces
+
+def turned(part):
+    return part[0], [t[::-1] for t in part[1]]
+
+box = prism([(0, 0), (1, 0), (1, 1), (0, 1)], 0, 1)
+flap = [(1, 0.2, 0.5), (1.3, 0.2, 0.5), (1.3, 0.8, 0.55)]
+sheet = flap, [(0, 1, 2), (0, 2, 1)]
+off("good", *box)
+off("sheet", *add(box, sheet))
+off("plate", [(0, 0, 0), (1, 0, 0), (1, 1, 0.1), (0, 1, 0)], [(0, 1, 2), (0, 2, 3), (2, 1, 0), (3, 2, 0)])
+off("inverted", *turned(box))
+# Half of it winds the other way, whichever way it is turned.
+off("crossed", *prism([(0, 0), (1, 1), (1, 0), (0, 1)], 0, 0.5))
+off("open", box[0], box[1][:2] + box[1][4:])
+# A fin of two triangles back to back, joined to the box at an edge that others have.
+off("fold", *add(box, ([(1, 0, 0), (1, 1, 0), (1.2, 0.5, -0.2)], [(0, 1, 2), (1, 0, 2)])))
+# The same with other diagonals on its two sides: no triangle has an opposite copy.
+off("fin", *add(box, ([(1.1, 0.2, 0.5), (1.4, 0.2, 0.5), (1.4, 0.8, 0.5), (1.1, 0.8, 0.5)],
+                      [(0, 1, 2), (0, 2, 3), (0, 3, 1), (1, 3, 2)])))
+off("empty", [], [])
+with open(f"{folder}/m/damaged.stl", "wb") as f:
+    f.write(b"\0" * 80 + (1000).to_bytes(4, "little") + b"\1" * 70)
+
+def robot(name, links):
+    text = f'<robot name="{name}">\n'
+    for i, (link, shapes) in enumerate(links):
+        text += f'<link name="{link}">' + "".join(
+            f'<{kind}><origin xyz="{0.1 * k} 0 0"/><geometry>{g}</geometry></{kind}>'
+            for k, g in enumerate(shapes) for kind in ("visual", "collision")) + "</link>\n"
+        if i:
+            text += (f'<joint name="j{i}" type="revolute"><parent link="{links[i - 1][0]}"/><child link="{link}"/>'
+                     '<axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>\n')
+    with open(f"{folder}/{name}.urdf", "w") as f:
+        f.write(text + "</robot>\n")
+
+def mesh(name, scale=None):
+    return f'<mesh filename="m/{name}"' + (f' scale="{scale}"' if scale else "") + "/>"
+
+odd = ["sheet", "plate", "inverted", "crossed", "open", "fold", "fin"]
+robot("odd", [("base", [mesh("good.off"), '<box size="0.2 0.2 0.1"/>'])] +
+      [(name, [mesh(name + ".off")]) for name in odd] +
+      [("scaled", [mesh("sheet.off", "0.5 -0.5 1"), mesh("good.off")])])
+robot("zero", [("base", [mesh("good.off")]), ("ball", ['<sphere radius="0"/>']), ("flat", ['<box size="0 0 0"/>'])])
+robot("bad", [("base", [mesh("good.off")]), ("broken", [mesh("damaged.stl"), mesh("good.off")]),
+              ("nothing", [mesh("empty.off")]), ("sheet", [mesh("sheet.off")])])
+robot("worst", [("base", [mesh("damaged.stl")])])
+robot("few", [("base", [mesh("good.off")]), ("plate", [mesh("plate.off")]), ("tool", [mesh("sheet.off")])])
+END
+
+# look EXIT FOLDER: whether page, report and terminal of the last run say what its exit code says, and whether the
+# page's commands end as it says.
+cat >look.py <<'END'
+import html, json, re, subprocess, sys
+code, page, report, terminal = int(sys.argv[1]), open("p.html").read(), json.load(open("r.json")), open("err.txt").read()
+held = code == 0
+bad = []
+def require(condition, what):
+    if not condition:
+        bad.append(what)
+require((report["verdict"] == "held") == held, f"report: {report['verdict']}")
+require(all((l["verdict"] == "held") == (l["sentence"].startswith(("every triangle is inside", "its shapes are", "its shapes stay")) and "not as near" not in l["sentence"]
+        and "ended before" not in l["sentence"]) for l in report["links"]), "a link's verdict is not its sentence")
+require(report["sentence"] in terminal, "the terminal has another sentence")
+rows = re.findall(r'<td class="(yes|no)">(.*?)</td></tr>', page)
+require(len(rows) == len(report["links"]) + 1, f"{len(rows)} rows")
+for row, link in zip(rows, report["links"]):
+    require(html.unescape(row[1]) == link["sentence"] and (row[0] == "yes") == (link["verdict"] == "held"), f"page: {row}")
+require(html.unescape(rows[-1][1]) == report["sentence"] and (rows[-1][0] == "yes") == held, f"page: {rows[-1]}")
+for text, name in ((page, "page"), (terminal, "terminal")):
+    lines = [l for l in re.split("\n|<br>", text) if "NOT" in l and "dropped on request" not in l]
+    require(not held or not lines, f"{name}: a NOT beside exit code 0: {lines[:3]}")
+commands = [html.unescape(c) for c in re.findall(r"<code>(.*?)</code>", page)]
+require(len(commands) == 1 and commands[0] == report["check"], f"commands: {commands}")
+for command in commands:
+    run = subprocess.run(command, shell=True, capture_output=True, text=True)
+    inside = all(l["verdict"] in ("held", "epsilon not reached", "work ended") for l in report["links"])
+    require((run.returncode == 0) == inside, f"{command}: exit {run.returncode}: {run.stdout[-600:]} {run.stderr[-300:]}")
+    require(("exit code above 0" in page) == (not inside), "the page does not say how its command ends")
+    if run.returncode == 0:
+        said = [l for l in run.stdout.splitlines() if l.startswith("link ")]
+        require(len(said) == len(report["links"]) and all(": verified: " in l for l in said), f"links: {run.stdout}")
+print("\n".join(bad))
+sys.exit(1 if bad else 0)
+END
+PATH=$BIN:$PATH
+# made CODE WORDS PROGRAM ARGUMENT...
+made() {
+  rm -rf out p.html r.json
+  expect "$@" --html-report p.html --report r.json
+  python3 look.py "$got" >looked.txt || fail "$*: $(cat looked.txt)"
+}
+
+R="it's a robot"
+for geometry in collision visual; do
+  made 0 'every triangle of 9 links is inside' bcd-decompose "$R/odd.urdf" -o out --epsilon 0.05 --effort fast --geometry $geometry
+  made 0 'every triangle of 9 links is inside' bmesh-decimate "$R/odd.urdf" -o out --epsilon 0.05 --geometry $geometry
+done
+made 0 'A wrap takes the place of the mesh' bcd-decompose "$R/odd.urdf" -o "it's out" --epsilon 0.05 --effort fast
+made 0 'every triangle' bcd-decompose "$R/odd.urdf" -o out --epsilon 0.05 --effort fast --prepare wrap
+made 0 'every triangle' bmesh-decimate "$R/odd.urdf" -o out --epsilon 0.05 --prepare wrap
+made 0 'every triangle' bcd-decompose "$R/odd.urdf" -o out --effort fast
+# Only some links: the others, that hold nothing, are not judged either.
+made 0 'every triangle of 1 link is inside' bcd-decompose "$R/few.urdf" -o out --links tool --epsilon 0.05 --effort fast
+made 0 'every triangle of 2 links is inside' bmesh-decimate "$R/few.urdf" -o out --links tool,base --epsilon 0.05
+# What was left out on request is said, and not called inside.
+made 0 'but the 2 of sheets that were dropped on request' bcd-decompose "$R/few.urdf" -o out --links tool --drop-sheets --effort fast
+# Nothing is verified about nothing, and a shape of size 0 is no obstacle.
+made 0 'every triangle of 3 links is inside' bcd-decompose "$R/zero.urdf" -o out --epsilon 0.05 --effort fast
+made 0 'every triangle of 3 links is inside' bmesh-decimate "$R/zero.urdf" -o out --epsilon 0.05
+# One bad mesh does not refuse the robot: it stays where it was, is named, and the exit code says so.
+for program in 'bcd-decompose --effort fast' bmesh-decimate; do
+  # shellcheck disable=SC2086
+  made 1 "link 'broken': NOT enclosed, its mesh stays as it was: .*damaged.stl" $program "$R/bad.urdf" -o out --epsilon 0.05
+  grep -q "link 'nothing': NOT enclosed" err.txt || fail "the empty mesh is not named: $(cat err.txt)"
+  for kept in damaged.stl empty.off; do
+    grep -q "<collision.*\|filename=\"../it's a robot/m/$kept\"\|filename=\"../it&apos;s a robot/m/$kept\"" out/bad.urdf || fail "$kept is lost"
+  done
+  [ "$(grep -c '<collision ' out/bad.urdf)" -ge 5 ] || fail "collision shapes are lost: $(cat out/bad.urdf)"
+done
+[ ! -e out/links/broken.glb ] || fail "a set of a link without one of its shapes"
+# Where nothing can be made, nothing is written.
+for program in bcd-decompose bmesh-decimate; do
+  rm -rf out
+  expect 3 'damaged.stl' $program "$R/worst.urdf" -o out --epsilon 0.05
+  absent out
+done
+# strict and off do as they are told: what they cannot hold stays, and is named.
+made 1 "link 'sheet': NOT enclosed" bcd-decompose "$R/odd.urdf" -o out --epsilon 0.05 --effort fast --prepare strict
+# Too near for a wrap: every triangle is inside, but not as near as asked for.
+made 1 "link 'plate': every triangle is inside, but not as near" bcd-decompose "$R/few.urdf" -o out --links plate --epsilon 1e-7 --effort fast
+
+# A result that lost a body is refuted, by how much it sticks out.
+bcd-decompose "$R/few.urdf" -o out --links tool --epsilon 0.01 --effort fast --quiet
+python3 - <<'END'
+import re
+text = open("out/few.urdf").read()
+bodies = re.findall(r"<collision name=.*?</collision>", text, re.S)
+mine = [b for b in bodies if "bodies/sheet" in b]
+assert len(mine) > 1
+open("out/few.urdf", "w").write(text.replace(mine[0], ""))
+END
+shows 1 "link 'tool': refuted: .*triangles* \(is\|are\) not inside the .*, by at most" bound-verify robot "$R/few.urdf" out/few.urdf \
+  --prepare --links tool --report v.json
+grep -q '"sticks_out_upper"' v.json || fail "by how much is not in the report"
+finish

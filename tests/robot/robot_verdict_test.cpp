@@ -1,0 +1,180 @@
+// The verdict on a robot: one answer and one sentence a link, whatever its meshes bound.
+#include <gtest/gtest.h>
+#include <kaboum/base/error.h>
+#include <kaboum/verify/robot_verdict.h>
+
+#include <map>
+
+#include "support/shapes.h"
+
+namespace kaboum::test {
+namespace {
+
+using robot::Geometry;
+using verify::Answer;
+using verify::Claims;
+using verify::Solid;
+
+geom::Mesh block(const geom::Vec3& low, const geom::Vec3& high) {
+  return translated(box(high - low, 1), low);
+}
+
+/// A triangle and the same back to back.
+geom::Mesh sheet(double reach) {
+  geom::Mesh out;
+  out.vertices = {{1, 0.2, 0.5}, {1 + reach, 0.2, 0.5}, {1 + reach, 0.8, 0.5}};
+  out.triangles = {{0, 1, 2}, {0, 2, 1}};
+  return out;
+}
+
+/// An extruded bow tie: half of it winds backwards.
+geom::Mesh bow_tie() {
+  geom::Mesh out;
+  for (const double z : {0.0, 1.0})
+    for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 1.0}, {1.0, 0.0}, {0.0, 1.0}})
+      out.vertices.emplace_back(x, y, z);
+  out.triangles = {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}};
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    const std::uint32_t j = (i + 1) % 4;
+    out.triangles.push_back({i, j, 4 + j});
+    out.triangles.push_back({i, 4 + j, 4 + i});
+  }
+  return out;
+}
+
+Geometry shape_of(const std::string& mesh) {
+  Geometry g;
+  g.shape = Geometry::Shape::Mesh;
+  g.mesh = mesh;
+  g.size.setOnes();
+  return g;
+}
+
+/// Robots of one link each, and their meshes by name.
+struct Case {
+  std::map<std::string, verify::MeshFile> files = {};
+  robot::Robot original = {}, result = {};
+
+  Case(const geom::Mesh& mesh, const std::vector<geom::Mesh>& bodies) {
+    original.links.resize(1);
+    original.links[0].name = "l";
+    result = original;
+    add("original", mesh);
+    original.links[0].collision.push_back(shape_of("original"));
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      const std::string name = "body" + std::to_string(i);
+      add(name, bodies[i]);
+      result.links[0].collision.push_back(shape_of(name));
+    }
+  }
+  void add(const std::string& name, const geom::Mesh& mesh) { files[name] = {name, "", mesh, {}}; }
+  verify::RobotVerdict decide(Solid solid, Claims claims = Claims::All,
+                              std::optional<Length> epsilon = {}, bool drop_sheets = false) {
+    verify::RobotQuestion q{
+        original, result,
+        [this](const Geometry& g, bool) -> const verify::MeshFile& { return files.at(g.mesh); }};
+    q.solid = solid;
+    q.claims = claims;
+    q.epsilon = epsilon;
+    q.drop_sheets = drop_sheets;
+    return verify::decide(q);
+  }
+};
+
+const geom::Mesh kBox = block({0, 0, 0}, {1, 1, 1});
+const geom::Mesh kRound = block({-0.1, -0.1, -0.1}, {1.1, 1.1, 1.1});
+const geom::Mesh kWide = block({-0.1, -0.1, -0.1}, {1.4, 1.1, 1.1});
+
+TEST(RobotVerdict, SheetsAreJudgedWhateverBoundsTheSolid) {
+  for (const Solid solid : {Solid::AsFile, Solid::Prepared, Solid::Enclosed}) {
+    Case held(merged({kBox, sheet(0.3)}), {kWide});
+    const verify::RobotVerdict yes = held.decide(solid);
+    EXPECT_EQ(yes.answer, Answer::Verified);
+    ASSERT_EQ(yes.links.size(), 1U);
+    EXPECT_EQ(yes.links[0].sentence, "every triangle is inside: 1 mesh in 1 body");
+    Case out(merged({kBox, sheet(0.3)}), {kRound});
+    const verify::RobotVerdict no = out.decide(solid);
+    EXPECT_EQ(no.answer, Answer::Refuted);
+    const verify::ShapeVerdict& shape = no.links.at(0).shapes.at(0);
+    ASSERT_TRUE(shape.triangles && shape.sticks_out);
+    EXPECT_EQ(shape.triangles->inner_triangles.size(), 2U);
+    EXPECT_NEAR(shape.sticks_out->upper, 0.2, 0.001);
+    EXPECT_GE(shape.sticks_out->upper, 0.2 - 1e-12);
+    EXPECT_NE(no.links[0].sentence.find("2 triangles are not inside"), std::string::npos)
+        << no.links[0].sentence;
+    // Only triangles' claim: the same; only the solid's: the box is held.
+    EXPECT_EQ(out.decide(solid, Claims::Surface).answer, Answer::Refuted);
+    EXPECT_EQ(out.decide(solid, Claims::Solid).answer, Answer::Verified);
+  }
+}
+
+TEST(RobotVerdict, SheetsDroppedOnRequestAreNamed) {
+  Case out(merged({kBox, sheet(0.3)}), {kRound});
+  const verify::RobotVerdict found = out.decide(Solid::Prepared, Claims::All, {}, true);
+  EXPECT_EQ(found.answer, Answer::Verified);
+  EXPECT_NE(found.links.at(0).sentence.find("but the 2 ones of sheets"), std::string::npos)
+      << found.links[0].sentence;
+}
+
+// A frame whose walls hold the triangles does not hold what these enclose.
+TEST(RobotVerdict, WhatIsWoundRoundBackwardsIsAskedForToo) {
+  std::vector<geom::Mesh> walls;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double at : {0.0, 1.0}) {
+      geom::Vec3 low = geom::Vec3::Constant(-0.1), high = geom::Vec3::Constant(1.1);
+      low[axis] = at - 0.1;
+      high[axis] = at + 0.1;
+      walls.push_back(block(low, high));
+    }
+  for (const Solid solid : {Solid::Prepared, Solid::Enclosed}) {
+    EXPECT_EQ(Case(kBox, walls).decide(solid).answer, Answer::Refuted);
+    EXPECT_EQ(Case(flipped(kBox), walls).decide(solid).answer, Answer::Refuted);
+    EXPECT_EQ(Case(flipped(kBox), walls).decide(solid, Claims::Surface).answer, Answer::Verified);
+    EXPECT_EQ(Case(flipped(kBox), {kRound}).decide(solid).answer, Answer::Verified);
+    EXPECT_EQ(Case(bow_tie(), {kRound}).decide(solid).answer, Answer::Verified);
+    // Both halves, whichever of them winds backwards.
+    EXPECT_EQ(Case(bow_tie(), walls).decide(solid).answer, Answer::Refuted);
+    EXPECT_EQ(Case(flipped(bow_tie()), walls).decide(solid).answer, Answer::Refuted);
+  }
+}
+
+TEST(RobotVerdict, DistancesOfWhatBoundsNoSolid) {
+  Case held(merged({kBox, sheet(0.3)}), {kWide});
+  for (const Solid solid : {Solid::Prepared, Solid::Enclosed}) {
+    // The farthest corners are beside the sheet.
+    EXPECT_EQ(held.decide(solid, Claims::All, Length{0.5}).answer, Answer::Verified);
+    EXPECT_EQ(held.decide(solid, Claims::All, Length{0.1}).answer, Answer::Refuted);
+  }
+}
+
+TEST(RobotVerdict, OneMeshThatIsNotConvexRefutes) {
+  const geom::Mesh ring = merged({kWide, flipped(block({1.15, 0.1, 0.4}, {1.35, 0.9, 0.6}))});
+  EXPECT_EQ(Case(merged({kBox, sheet(0.3)}), {ring}).decide(Solid::Prepared).answer,
+            Answer::Refuted);
+  EXPECT_EQ(Case(merged({kBox, sheet(0.3)}), {ring, kRound}).decide(Solid::Prepared).answer,
+            Answer::Undecided);
+}
+
+TEST(RobotVerdict, TheWorstShapeIsTheLinks) {
+  Case two(kBox, {kRound});
+  Geometry ball;
+  ball.shape = Geometry::Shape::Sphere;
+  ball.size.setConstant(0.5);
+  two.original.links[0].collision.push_back(ball);
+  EXPECT_EQ(two.decide(Solid::Prepared).answer, Answer::Undecided);
+  EXPECT_NE(two.decide(Solid::Prepared).links.at(0).sentence.find("none of its size"),
+            std::string::npos);
+  two.result.links[0].collision.push_back(ball);
+  EXPECT_EQ(two.decide(Solid::Prepared).links.at(0).sentence,
+            "every triangle is inside: 1 mesh in 1 body; 1 shape is as it was");
+  two.original.links[0].name = "other";
+  two.result = two.original;
+  two.result.links[0].collision.clear();
+  const verify::RobotVerdict gone = two.decide(Solid::Prepared);
+  EXPECT_EQ(gone.answer, Answer::Refuted);
+  EXPECT_NE(gone.links.at(0).sentence.find("nor are 1 other shape"), std::string::npos)
+      << gone.links[0].sentence;
+}
+
+}  // namespace
+}  // namespace kaboum::test
