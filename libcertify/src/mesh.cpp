@@ -93,7 +93,9 @@ BoundedMesh bound_wrap(const geom::Mesh& input, const MeshRequest& request,
 }
 
 bool may_help(const Error& error) {
-  return error.code() == ErrorCode::InvalidInput || error.code() == ErrorCode::LimitReached;
+  // InvalidArgument: epsilon makes the offset too small.
+  return error.code() == ErrorCode::InvalidInput || error.code() == ErrorCode::LimitReached ||
+         error.code() == ErrorCode::InvalidArgument;
 }
 
 }  // namespace

@@ -425,6 +425,8 @@ class Exploration {
   /// Of evaluations; the narrowest boxes of one free joint, and of several. [rad]
   static constexpr int kMost = 5'000;
   static constexpr double kNarrow = 1e-6, kNarrowOfSeveral = 0.15;
+  /// Ranges are as exact as this. [rad]
+  static constexpr double kBorderOfRange = 1e-5;
   /// What is this near a limit is not certainly outside: more than the bound of solutions does to
   /// joints that are not nearly free. [rad]
   static constexpr double kSlack = 1e-6;
@@ -533,6 +535,8 @@ class Exploration {
       if (how == Fit::Within && (!several || width < 0.5)) {
         good_.push_back(box);
       } else if (count >= kMost || width <= (several ? kNarrowOfSeveral : kNarrow)) {
+        // A piece that is given up before it is narrow may hold anything.
+        if (!several && width > kNarrow) decided_ = false;
         if (solution_at(middle(box)))
           good_.push_back(box);
         else
@@ -552,8 +556,8 @@ class Exploration {
     // What is not known is at the border of what is within the limits, or may be more of it.
     for (const Box& box : unknown_)
       if (!std::any_of(good_.begin(), good_.end(), [&](const Box& good) {
-            return box[0].lower <= good[0].upper + 10 * kNarrow &&
-                   box[0].upper >= good[0].lower - 10 * kNarrow;
+            return box[0].lower <= good[0].upper + kBorderOfRange &&
+                   box[0].upper >= good[0].lower - kBorderOfRange;
           }))
         decided_ = false;
   }

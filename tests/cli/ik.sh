@@ -110,7 +110,7 @@ for f in out["families"]:
     at = out["joints"].index(joint)
     for r in f["ranges"]:
         assert r["joint"] == joint and lower <= r["from"] <= r["to"] <= upper, r
-        found = found or any(r["from"] - 1e-5 < t < r["to"] + 1e-5 for t in turns)
+        found = found or any(r["from"] - 2e-5 < t < r["to"] + 2e-5 for t in turns)
     for q in f["representatives"]:
         assert any(r["from"] <= q[at] <= r["to"] for r in f["ranges"]), (q, f["ranges"])
         assert q in [s["q"] for s in out["solutions"]]

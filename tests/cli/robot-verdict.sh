@@ -87,7 +87,7 @@ END
 # page's commands end as it says.
 cat >look.py <<'END'
 import html, json, re, subprocess, sys
-code, page, report, terminal = int(sys.argv[1]), open("p.html").read(), json.load(open("r.json")), open("err.txt").read()
+code, page, report, terminal = int(sys.argv[1]), re.sub('src="[^"]*"', "", open("p.html").read()), json.load(open("r.json")), open("err.txt").read()
 held = code == 0
 bad = []
 def require(condition, what):
@@ -103,7 +103,7 @@ for row, link in zip(rows, report["links"]):
     require(html.unescape(row[1]) == link["sentence"] and (row[0] == "yes") == (link["verdict"] == "held"), f"page: {row}")
 require(html.unescape(rows[-1][1]) == report["sentence"] and (rows[-1][0] == "yes") == held, f"page: {rows[-1]}")
 for text, name in ((page, "page"), (terminal, "terminal")):
-    lines = [l for l in re.split("\n|<br>", text) if "NOT" in l and "dropped on request" not in l]
+    lines = [l for l in re.split("\n|<br>", text) if re.search("\\bNOT\\b", l) and "dropped on request" not in l]
     require(not held or not lines, f"{name}: a NOT beside exit code 0: {lines[:3]}")
 commands = [html.unescape(c) for c in re.findall(r"<code>(.*?)</code>", page)]
 require(len(commands) == 1 and commands[0] == report["check"], f"commands: {commands}")

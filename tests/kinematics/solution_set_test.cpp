@@ -168,7 +168,7 @@ bool holds(const SolutionSet& set, const std::vector<double>& q) {
         const JointRange& range = family.ranges[r];
         for (int turn = -2; turn <= 2; ++turn) {
           const double value = q[family.free[k]] + turn * 2 * kPi;
-          one |= value > range.lower - 3e-6 && value < range.upper + 3e-6;
+          one |= value > range.lower - 1.2e-5 && value < range.upper + 1.2e-5;
         }
       }
       in = one;
