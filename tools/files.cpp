@@ -157,16 +157,19 @@ namespace {
 /// Where a list of files is written instead of a rule: any name can be in it.
 bool is_list(const std::string& depfile) { return depfile.ends_with(".list"); }
 
-/// Why a character cannot be in a name within a rule; empty where it can. GNU make has no way to
-/// write most of them, and ninja reads `\` before others as itself.
+/// Why a character cannot be in a name within a rule; empty where it can. There is no way to write
+/// these that GNU make and ninja both read so.
 std::string_view no_place_for(char c, bool target) {
   if (static_cast<unsigned char>(c) < ' ' || c == '\x7F') return "a control character";
   if (c == '*' || c == '?' || c == '[') return "a wildcard of make";
+  if (c == '\'' || c == '"' || c == '`') return "a quotation mark";
+  if (c == '<' || c == '>') return "'<' or '>'";
   if (c == '=') return "'='";
   if (c == ';') return "';'";
   if (c == '|') return "'|'";
+  if (c == '&') return "'&'";
+  if (c == '^') return "'^'";
   if (target && c == '%') return "'%'";
-  if (target && c == '&') return "'&'";
   return {};
 }
 

@@ -128,4 +128,9 @@ expect 3 'bad.off' "$D" bad.off -o x.glb
 expect 3 '' "$D" none.off -o x.glb
 expect 4 '' "$D" t.off -o /nonexistent/dir/x.glb
 absent x.glb
+# A name that is not UTF-8.
+odd=$(printf 'a\377')
+cp t.off "$odd.off"
+expect 0 '' "$D" "$odd.off" -o odd.glb --preview odd.html
+iconv -f utf-8 -t utf-8 odd.html >/dev/null || fail "the page is not UTF-8"
 finish

@@ -128,4 +128,16 @@ expect 2 'direction outer' "$BIN/bmesh-decimate" closed.off -o none.off --prepar
 expect 2 'mesh-prepare first' "$BIN/bmesh-decimate" closed.off -o none.off --prepare wrap --epsilon 5% --log l.log
 expect 2 '' "$V" --outer closed.off w.stl --raw --prepare
 absent none.off
+# Sizes beyond those that can be worked on, and lengths that have nothing to do with the mesh.
+for size in 1e-100 1e-165 1.7e308; do
+  awk -v s="$size" 'BEGIN { print "OFF\n4 4 0\n0 0 0\n" s " 0 0\n0 " s " 0\n0 0 " s "\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3" }' >size.off
+  expect 3 'coordinates up to 1e60 and extents from 1e-60 can be worked on' "$P" size.off -o size.ply --prepare wrap
+  absent size.ply
+done
+printf 'OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n' >unit.off
+for option in --offset --seal --epsilon; do
+  for length in 1e-100 1e100; do
+    expect 2 'times the diagonal' "$P" unit.off -o size.ply --prepare wrap $option $length
+  done
+done
 finish

@@ -310,4 +310,19 @@ state | cmp -s before.txt - && fail "--no-cache leaves files as they are"
 expect 0 '' "$D" robot/r.urdf -o kept --epsilon 3% --effort fast --robot-format sdf --for drake
 [ -s kept/bodies/t/t-0000.obj ] || fail "other bodies are not written"
 again
+# Links whose shapes are points: the robot is made all the same, and they are named.
+for shape in '<sphere radius="0"/>' '<box size="0 0 0"/>' '<cylinder radius="0" length="0"/>'; do
+  cat >point.urdf <<END
+<robot name="z"><link name="a"><collision><geometry><box size="1 1 1"/></geometry></collision></link>
+<link name="dot"><collision><geometry>$shape</geometry></collision></link>
+<link name="c"><collision><geometry><box size="1 1 1"/></geometry></collision></link>
+<joint name="j" type="fixed"><parent link="a"/><child link="dot"/></joint>
+<joint name="k" type="revolute"><parent link="a"/><child link="c"/><origin xyz="3 0 0"/><axis xyz="0 0 1"/>
+<limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>
+END
+  rm -rf dotted
+  expect 0 "link 'dot'.* is a point: it is not covered" "$D" point.urdf -o dotted --srdf --preview dotted.html --html-report links.html
+  grep -q 'disable_collisions' dotted/*.srdf || fail "no pairs beside a point"
+  grep -q 'dot.*its shapes are points, which no body covers' dotted.html || fail "the page does not name the point's link"
+done
 finish
