@@ -80,9 +80,7 @@ certify::MeshPreparation preparation_of(const tools::DecimationCase& run) {
     out.options.diagonal = run.outer() ? Diagonal::Outward : Diagonal::Inward;
   }
   const bool always = o.preparation.wraps() || wraps_exact_faces(o, run.input.format);
-  out.wrap = always                         ? Wrap::Always
-             : o.preparation.name == "auto" ? Wrap::WhereNeeded
-                                            : Wrap::Never;
+  out.wrap = always ? Wrap::Always : o.preparation.name == "auto" ? Wrap::WhereNeeded : Wrap::Never;
   out.wrapping = o.preparation.request(std::nullopt);
   out.wrapping.clearance = run.input.deviation;
   return out;
