@@ -139,7 +139,7 @@ class Reading {
   void check_transfer(const TopoDS_Shape& shape) const {
     Interface_CheckIterator checks = process_->CheckList(true);
     for (checks.Start(); checks.More(); checks.Next()) {
-      const Handle(Interface_Check) check = checks.Value();
+      const Handle(Interface_Check)& check = checks.Value();
       if (check->NbFails() > 0)
         refuse((checks.Number() > 0 ? label(model_->Value(checks.Number())) + ": " : "") +
                complaint(check));

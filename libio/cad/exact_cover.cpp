@@ -428,7 +428,7 @@ class Cover {
   }
 
   void add_line(Line& line, const TopoDS_Edge& edge, const Poly_PolygonOnTriangulation& polygon) {
-    const Handle(TColStd_HArray1OfReal) t = polygon.Parameters();
+    const Handle(TColStd_HArray1OfReal)& t = polygon.Parameters();
     const int count = polygon.NbNodes();
     for (int i = 0; i < count; ++i) line.t.push_back(t->Value(t->Lower() + i));
     for (int i = 0; i + 1 < count; ++i)
