@@ -95,6 +95,8 @@ Refutation refutation_of(const SetRequest& r, const geom::Mesh& solid, const geo
     const verify::Cover cover = verify::verify_cover(solid, set, options);
     return {first_of({&cover.convex, &cover.inclusion.solid, &cover.inclusion.surface}), {}};
   }
+  // Of a solid that is deep nowhere: nothing is claimed to lie in it.
+  if (set.bodies.empty()) return {};
   if (geom::find_not_convex(set)) return {"a body is not convex", {}};
   const verify::Inclusion inside = verify::verify_inclusion(verify::sum_of(set), solid, options);
   Refutation out{first_of({&inside.solid, &inside.surface}), inside.solid.outer_triangles};

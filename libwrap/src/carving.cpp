@@ -88,6 +88,20 @@ class Carver {
     }
   };
 
+  /// Tetrahedra round a vertex in groups that are connected through facets at it.
+  struct Groups {
+    std::vector<std::uint32_t> round, group;  ///< the tetrahedra, and the group of each
+    std::vector<double> size;                 ///< of each group, six times its volume
+    std::vector<char> outside;                ///< of each group
+    std::uint32_t outer = 0, inner = 0;       ///< number of groups
+    [[nodiscard]] std::size_t place_of(std::uint32_t c) const {
+      return static_cast<std::size_t>(std::find(round.begin(), round.end(), c) - round.begin());
+    }
+  };
+  [[nodiscard]] Groups groups_round(std::uint32_t v) const;
+  [[nodiscard]] std::vector<std::uint32_t> bridge(std::uint32_t v, const Groups& groups) const;
+  [[nodiscard]] std::vector<std::uint32_t> filling(std::uint32_t v) const;
+
   static geom::Box3 box_round(const geom::Mesh& input, const CarvingOptions& o) {
     geom::Box3 box = geom::bounding_box(input);
     const double border = 3 * (o.radius + o.offset) + 0.05 * box.diagonal();
@@ -255,10 +269,97 @@ class Carver {
   std::uint32_t stamps_ = 0, pushed_ = 0;
 };
 
+/// The groups of the tetrahedra round a vertex.
+Carver::Groups Carver::groups_round(std::uint32_t v) const {
+  const auto volume = [&](std::uint32_t c) {
+    const auto& corner = delaunay_.cell(c).vertex;
+    const Vec3& a = delaunay_.point(corner[0]);
+    return (delaunay_.point(corner[1]) - a)
+        .cross(delaunay_.point(corner[2]) - a)
+        .dot(delaunay_.point(corner[3]) - a);
+  };
+  Groups out;
+  delaunay_.cells_round(v, out.round);
+  out.group.assign(out.round.size(), kNone);
+  for (std::size_t first = 0; first < out.round.size(); ++first) {
+    if (out.group[first] != kNone) continue;
+    const auto number = static_cast<std::uint32_t>(out.size.size());
+    const bool outside = info_[out.round[first]].outside;
+    (outside ? out.outer : out.inner) += 1;
+    out.size.push_back(0);
+    out.outside.push_back(outside ? 1 : 0);
+    std::vector<std::size_t> stack{first};
+    out.group[first] = number;
+    while (!stack.empty()) {
+      const std::size_t k = stack.back();
+      stack.pop_back();
+      out.size[number] += volume(out.round[k]);
+      const Delaunay::Cell& cell = delaunay_.cell(out.round[k]);
+      for (std::uint32_t i = 0; i < 4; ++i) {
+        if (cell.vertex[i] == v || cell.next[i] == kNone) continue;
+        const std::size_t at = out.place_of(cell.next[i]);
+        if (out.group[at] != kNone || info_[out.round[at]].outside != outside) continue;
+        out.group[at] = number;
+        stack.push_back(at);
+      }
+    }
+  }
+  return out;
+}
+
+/// The tetrahedra of a shortest way from the first group inside to another one.
+std::vector<std::uint32_t> Carver::bridge(std::uint32_t v, const Groups& groups) const {
+  std::uint32_t from = 0;
+  while (groups.outside[from] != 0) ++from;
+  std::vector<std::size_t> reached, parent(groups.round.size(), kNone);
+  std::vector<char> seen(groups.round.size(), 0);
+  for (std::size_t k = 0; k < groups.round.size(); ++k)
+    if (groups.group[k] == from) {
+      reached.push_back(k);
+      seen[k] = 1;
+    }
+  for (std::size_t r = 0; r < reached.size(); ++r) {
+    const std::size_t k = reached[r];
+    const Delaunay::Cell& cell = delaunay_.cell(groups.round[k]);
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      if (cell.vertex[i] == v || cell.next[i] == kNone) continue;
+      const std::size_t at = groups.place_of(cell.next[i]);
+      if (seen[at] != 0) continue;
+      seen[at] = 1;
+      parent[at] = k;
+      if (groups.outside[groups.group[at]] == 0) {
+        std::vector<std::uint32_t> way;
+        for (std::size_t b = k; groups.group[b] != from; b = parent[b])
+          way.push_back(groups.round[b]);
+        return way;
+      }
+      reached.push_back(at);
+    }
+  }
+  return {};
+}
+
+/// What is to be taken inside so that there is one group outside, or a group inside fewer.
+std::vector<std::uint32_t> Carver::filling(std::uint32_t v) const {
+  const Groups groups = groups_round(v);
+  if (groups.outer <= 1)
+    return groups.inner > 1 && groups.outer > 0 ? bridge(v, groups) : std::vector<std::uint32_t>{};
+  // All but the largest group outside is filled.
+  std::uint32_t largest = kNone;
+  for (std::uint32_t g = 0; g < groups.size.size(); ++g)
+    if (groups.outside[g] != 0 && (largest == kNone || groups.size[g] > groups.size[largest]))
+      largest = g;
+  std::vector<std::uint32_t> fill;
+  for (std::size_t k = 0; k < groups.round.size(); ++k)
+    if (groups.outside[groups.group[k]] != 0 && groups.group[k] != largest)
+      fill.push_back(groups.round[k]);
+  return fill;
+}
+
 /// Where the tetrahedra outside, or those inside, form several groups round a vertex, connected
 /// through facets at it, some that are outside are taken inside.
 void Carver::make_manifold() {
-  std::vector<std::uint32_t> round, waiting;
+  std::vector<std::uint32_t> waiting;
   std::vector<char> waits(delaunay_.point_count(), 0);
   const auto wait = [&](std::uint32_t v) {
     if (waits[v] == 0) waiting.push_back(v);
@@ -271,87 +372,12 @@ void Carver::make_manifold() {
         for (const std::uint8_t k : Delaunay::kFacet[i]) wait(delaunay_.cell(c).vertex[k]);
   }
   std::reverse(waiting.begin(), waiting.end());
-  std::vector<std::uint32_t> group;
-  const auto volume = [&](std::uint32_t c) {
-    const auto& v = delaunay_.cell(c).vertex;
-    const Vec3& a = delaunay_.point(v[0]);
-    return (delaunay_.point(v[1]) - a)
-        .cross(delaunay_.point(v[2]) - a)
-        .dot(delaunay_.point(v[3]) - a);
-  };
   while (!waiting.empty()) {
     const std::uint32_t v = waiting.back();
     waiting.pop_back();
     waits[v] = 0;
     if (v < 8) continue;  // corners of the box
-    while (true) {
-      delaunay_.cells_round(v, round);
-      group.assign(round.size(), kNone);
-      std::uint32_t groups = 0, outer = 0, inner = 0;
-      std::vector<double> size;
-      std::vector<char> outside;
-      for (std::size_t first = 0; first < round.size(); ++first) {
-        if (group[first] != kNone) continue;
-        const bool out = info_[round[first]].outside;
-        (out ? outer : inner) += 1;
-        size.push_back(0);
-        outside.push_back(out ? 1 : 0);
-        std::vector<std::size_t> stack{first};
-        group[first] = groups;
-        while (!stack.empty()) {
-          const std::size_t k = stack.back();
-          stack.pop_back();
-          size[groups] += volume(round[k]);
-          const Delaunay::Cell& cell = delaunay_.cell(round[k]);
-          for (std::uint32_t i = 0; i < 4; ++i) {
-            if (cell.vertex[i] == v || cell.next[i] == kNone) continue;
-            const auto at = static_cast<std::size_t>(
-                std::find(round.begin(), round.end(), cell.next[i]) - round.begin());
-            if (group[at] != kNone || info_[round[at]].outside != out) continue;
-            group[at] = groups;
-            stack.push_back(at);
-          }
-        }
-        ++groups;
-      }
-      std::vector<std::uint32_t> fill;
-      if (outer > 1) {
-        // All but the largest group outside is filled.
-        std::uint32_t largest = kNone;
-        for (std::uint32_t g = 0; g < groups; ++g)
-          if (outside[g] != 0 && (largest == kNone || size[g] > size[largest])) largest = g;
-        for (std::size_t k = 0; k < round.size(); ++k)
-          if (outside[group[k]] != 0 && group[k] != largest) fill.push_back(round[k]);
-      } else if (inner > 1 && outer > 0) {
-        // A shortest bridge from the first group inside to another.
-        std::uint32_t from = 0;
-        while (outside[from] != 0) ++from;
-        std::vector<std::size_t> reached, parent(round.size(), kNone);
-        std::vector<char> seen(round.size(), 0);
-        for (std::size_t k = 0; k < round.size(); ++k)
-          if (group[k] == from) {
-            reached.push_back(k);
-            seen[k] = 1;
-          }
-        for (std::size_t r = 0; r < reached.size() && fill.empty(); ++r) {
-          const std::size_t k = reached[r];
-          const Delaunay::Cell& cell = delaunay_.cell(round[k]);
-          for (std::uint32_t i = 0; i < 4; ++i) {
-            if (cell.vertex[i] == v || cell.next[i] == kNone) continue;
-            const auto at = static_cast<std::size_t>(
-                std::find(round.begin(), round.end(), cell.next[i]) - round.begin());
-            if (seen[at] != 0) continue;
-            seen[at] = 1;
-            parent[at] = k;
-            if (outside[group[at]] == 0) {
-              for (std::size_t b = k; group[b] != from; b = parent[b]) fill.push_back(round[b]);
-              break;
-            }
-            reached.push_back(at);
-          }
-        }
-      }
-      if (fill.empty()) break;
+    for (auto fill = filling(v); !fill.empty(); fill = filling(v)) {
       for (const std::uint32_t c : fill) {
         info_[c].outside = false;
         for (const std::uint32_t w : delaunay_.cell(c).vertex)

@@ -31,6 +31,7 @@ verify::Answer inside(const Mesh& mesh, const std::vector<geom::ConvexBody>& bod
 void expect_claims(const Mesh& mesh, const InnerCandidate& result, std::size_t max_vertices) {
   test::expect_bodies(result.bodies, max_vertices);
   EXPECT_LE(result.uncovered_depth_lower, result.uncovered_depth_upper);
+  if (result.bodies.empty()) return;  // of what is deep nowhere
   EXPECT_EQ(inside(mesh, result.bodies), verify::Answer::Verified);
 }
 

@@ -63,10 +63,11 @@ TEST(CertifySet, IsWhatItsContainerHolds) {
 }
 
 TEST(CertifySet, InnerSetsLieInside) {
-  SetRequest request = fast(10);
+  SetRequest request = fast(3);
   request.direction = SetRequest::Direction::Inner;
   const auto made = certify_set(torus(), "", request);
   ASSERT_TRUE(made);
+  ASSERT_FALSE(made->artefact().bodies.empty());
   const verify::Inclusion inside =
       verify::verify_inclusion(verify::sum_of(made->artefact()), torus());
   EXPECT_EQ(inside.solid.answer, verify::Answer::Verified);

@@ -143,7 +143,7 @@ TEST_F(EnclosureTest, DamageIsNotUsed) {
   const CacheFolder kept = cache();
   const EnclosedFile first = enclose_file(folder_ / "part.off", {}, fast(), &kept);
   ASSERT_EQ(kept.entries().size(), 2U);  // the mesh, and what the file was read as
-  for (const char* kind : {"KABOUM-MESH 1", "KABOUM-FILE 1"}) {
+  for (const char* kind : {"KABOUM-MESH 2", "KABOUM-FILE 1"}) {
     damage(kind);
     const EnclosedFile again = enclose_file(folder_ / "part.off", {}, fast(), &kept);
     EXPECT_EQ(again.cached, std::string(kind) == "KABOUM-FILE 1") << kind;

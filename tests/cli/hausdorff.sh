@@ -107,9 +107,9 @@ for n in 1 4; do
   sed -e '/"resources"/,/}/d' solid$n.json >s$n.json
 done
 cmp -s s1.json s4.json || fail "the solids' report differs on 4 threads"
-# A triangle with a repeated corner is left out, and that is said.
+# A triangle with a repeated corner that is no edge of another one is a segment, and counts as one.
 { cat full.obj; printf 'v 50 0 0\nv 90 0 0\nf -1 -2 -1\n'; } >segment.obj
-expect 0 'segment.obj: 1 triangle with repeated corners left out' "$H" full.obj segment.obj --b-as mesh
+expect 0 'segment.obj: 1 triangle with equal corners is a segment or point that no other triangle has; it counts as such' "$H" full.obj segment.obj --b-as mesh
 printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n' >open.off
 expect 3 'open.off: no closed chain' "$H" --solid full.obj open.off
 block 0 1 0 1 >inverted.obj

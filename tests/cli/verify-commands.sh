@@ -84,7 +84,7 @@ for option in '--geometry visual' --visual '--links arm' '--gap 1' --degrees '--
   refused cover one.off three.off $option
 done
 for option in --outer --inner --set; do refused cover one.off three.off $option; done
-for option in --set '--witness w.obj' '--input-format off' '--approximation-format off' '--links arm' '--gap 1'; do
+for option in --set '--witness w.obj' '--input-format off' '--approximation-format off' '--gap 1'; do
   # shellcheck disable=SC2086
   refused robot thin.urdf thick.urdf $option
 done

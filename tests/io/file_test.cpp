@@ -138,7 +138,7 @@ TEST_F(Files, ReadMesh) {
   EXPECT_NE(read_error(directory_ / "none.ply").find("none.ply: cannot be read"),
             std::string::npos);
   EXPECT_NE(read_error(directory_, Format::Ply).find("directory"), std::string::npos);
-  EXPECT_NE(read_error(directory_ / "mesh.step").find("stl"), std::string::npos);
+  EXPECT_NE(read_error(directory_ / "mesh.xyz").find("stl"), std::string::npos);
   EXPECT_NE(read_error(path, Format::Off).find("mesh.PLY: line 1"), std::string::npos);
 }
 

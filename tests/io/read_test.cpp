@@ -324,7 +324,8 @@ TEST(Formats, Names) {
   EXPECT_EQ(format_from_name(".wrl"), Format::Vrml);
   EXPECT_EQ(format_from_name("3mf"), Format::ThreeMf);
   EXPECT_EQ(format_from_name(""), std::nullopt);
-  EXPECT_EQ(format_from_name("step"), std::nullopt);
+  EXPECT_EQ(format_from_name(".stp"), Format::Step);
+  EXPECT_EQ(format_from_name("xyz"), std::nullopt);
   for (const auto& names : {readable_formats(), writable_formats()}) {
     EXPECT_TRUE(std::ranges::is_sorted(names));
     for (const std::string& name : names) EXPECT_TRUE(format_from_name(name)) << name;
