@@ -51,7 +51,7 @@ shows 1 'exact points: refuted' "$BIN/bound-verify" mesh --outer parts/torus.ste
 "$BIN/bound-verify" mesh --outer parts/vase.step vase-wrap.ply --exact-points 40 --threads 3 --report b.json >b.txt
 cmp a.txt b.txt || fail "the verdict depends on threads"
 # In Python the same functions hold and judge exact faces.
-if PYTHONPATH="$BIN/../python" python3 -c 'import kaboum' 2>/dev/null; then
+if PYTHONPATH="$BIN/../python" python3 -c 'import numpy, kaboum' 2>/dev/null; then
   PYTHONPATH="$BIN/../python" python3 - <<'END' || fail "STEP in Python"
 import kaboum
 part = kaboum.read("parts/vase.step")
