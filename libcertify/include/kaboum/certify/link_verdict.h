@@ -11,7 +11,7 @@
 /// and end with.
 namespace kaboum::certify {
 
-/// What came of a link, the best first.
+/// Verdicts of a link, the best first.
 enum class Outcome {
   Held,       ///< every triangle is inside, as near as asked for
   Late,       ///< every triangle is inside; the work allowed ended before epsilon was reached
@@ -33,7 +33,7 @@ struct LinkVerdict {
   std::size_t dropped_sheets = 0;  ///< triangles of sheets dropped on request, which are not inside
 };
 
-/// Of the links that were asked for and have shapes, in order.
+/// Verdicts of the links asked for that have shapes, in order.
 std::vector<LinkVerdict> verdicts(const CertifiedRobot& robot);
 std::vector<LinkVerdict> verdicts(const LinkEnclosures& robot);
 

@@ -119,7 +119,7 @@ MeshPlan plan_mesh(const geom::Prepared& original, const MeshRequest& request);
 MeshSeries certify_meshes(const geom::Prepared& original, const MeshRequest& request,
                           const MeshHooks& hooks = {});
 
-/// How the triangles of a mesh get the solid that is bounded.
+/// Ways to give the triangles of a mesh the solid that is bounded.
 struct MeshPreparation {
   enum class Wrap {
     Never,
