@@ -31,7 +31,7 @@ for part in flange sphere vase; do
 import json
 r = json.load(open("r.json"))
 points = r["claims"]["exact_points"]
-assert r["verdict"] == "verified" and points["answer"] == "verified" and points["points"] > 500 and points["outside"] == 0
+assert r["verdict"] == "verified" and points["answer"] == "verified" and points["points"] > 200 and points["outside"] == 0
 assert r["original"]["deviation"] > 0 and r["original"]["exact_faces"] > 0
 END
 done
@@ -67,7 +67,7 @@ fi
 expect 0 'the exact faces' "$BIN/bmesh-decimate" parts/vase.step -o simple.ply --epsilon 2% --effort fast
 "$PARTS" check parts/vase.step simple.ply 100000 2.5% >out.txt || fail "decimated: $(cat out.txt)"
 shows 0 'exact points: verified' "$BIN/bound-verify" mesh --outer parts/vase.step simple.ply
-expect 0 'what is said is about the triangles' "$BIN/bmesh-decimate" parts/vase.step -o simple.ply --epsilon 2% --prepare strict --effort fast
+expect 0 'what is said is about the triangles' "$BIN/bmesh-decimate" parts/vase.step -o simple.ply --epsilon 0.05% --prepare strict --effort fast
 shows 1 'exact points: refuted' "$BIN/bound-verify" mesh --outer parts/vase.step simple.ply --epsilon 3%
 expect 2 'mesh-prepare' "$BIN/bmesh-decimate" parts/vase.step -o simple.ply --ratio 0.5 --log l
 expect 0 '' "$BIN/bmesh-decimate" parts/vase.step -o simple.ply --ratio 0.5 --log l --prepare strict --effort fast
@@ -110,7 +110,7 @@ for part in more/variants/*-renamed.step; do
   expect 3 "X_$type" "$BIN/bcd-decompose" "$part" -o none.glb --no-cache
 done
 for part in more/variants/*-dropped.step; do
-  for tool in "mesh-prepare $part -o whole.ply" "bcd-decompose $part -o whole.obj --no-cache --effort fast"; do
+  for tool in "mesh-prepare $part -o whole.ply" "bcd-decompose --no-cache --effort fast $part -o whole.obj"; do
     # shellcheck disable=SC2086
     if "$BIN"/$tool >out.txt 2>err.txt; then
       "$PARTS" covers-box "${tool##* -o }" || fail "$part: exit 0, and the box is not covered"
