@@ -3,10 +3,14 @@
 #include "step_file.h"
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <stdexcept>
 
 namespace kaboum::io {
 namespace {
+
+constexpr double kLargest = 1e100;  ///< of numbers; OpenCASCADE takes larger ones for infinite
 
 bool is_capital(char c) { return c >= 'A' && c <= 'Z'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -218,7 +222,24 @@ class Parser {
     if (at_ == begin) fail("a parameter expected");
     const bool typed = is_capital(text_[begin]);
     if (typed && peek() == '(') return;  // its value follows, as a list of one
+    check_value(text_.substr(begin, at_ - begin));
     tokens_.push_back({StepToken::Value});
+  }
+
+  /// An enumeration between points, or a number that is one.
+  void check_value(std::string_view word) const {
+    if (word.size() > 2 && word.front() == '.' && word.back() == '.') return;
+    const std::string_view digits = word.substr(word.front() == '+' ? 1 : 0);
+    double value = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    const bool tiny =
+        error == std::errc::result_out_of_range && word.find("E-") != std::string_view::npos;  // 0
+    const bool large = error == std::errc::result_out_of_range && !tiny;
+    if (error == std::errc::invalid_argument || end != digits.data() + digits.size() ||
+        (!large && !std::isfinite(value)))
+      fail("'" + std::string(word.substr(0, 40)) + "' is no number");
+    if (large || std::abs(value) > kLargest)
+      fail("the number " + std::string(word.substr(0, 40)) + " is beyond 1e100");
   }
 
   std::string_view text_;
