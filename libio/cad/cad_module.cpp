@@ -85,10 +85,12 @@ class Reading {
       : reader_(reader), iges_(iges), result_(result) {}
 
   void run(const char* path) {
-    if (!iges_) {
-      std::ifstream file(path, std::ios::binary);
-      census_ = step_census({std::istreambuf_iterator<char>(file), {}});
-    }
+    std::ifstream file(path, std::ios::binary);
+    std::string text{std::istreambuf_iterator<char>(file), {}};
+    if (iges_)
+      check_iges_numbers(text);
+    else
+      census_ = step_census(std::move(text));
     if (reader_.ReadFile(path) != IFSelect_RetDone)
       refuse("the file cannot be read; it is damaged or of another kind");
     model_ = reader_.Model();

@@ -4,11 +4,25 @@
 
 #include <IGESData_IGESEntity.hxx>
 #include <IGESData_UndefinedEntity.hxx>
+#include <IGESGeom_Boundary.hxx>
+#include <IGESGeom_BoundedSurface.hxx>
+#include <IGESGeom_CompositeCurve.hxx>
+#include <IGESGeom_CurveOnSurface.hxx>
+#include <IGESGeom_Line.hxx>
+#include <IGESGeom_TrimmedSurface.hxx>
+#include <IGESSolid_Face.hxx>
+#include <IGESSolid_Loop.hxx>
 #include <Interface_EntityIterator.hxx>
 #include <Interface_Graph.hxx>
+#include <gp_Pnt.hxx>
 
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
 #include <map>
 #include <stdexcept>
+#include <string>
 
 #include "census.h"
 
@@ -94,6 +108,48 @@ bool is_group(int type, int form) {
   return type != 402 || form == 1 || form == 7 || form == 14 || form == 15;
 }
 
+using IgesEntity = Handle(IGESData_IGESEntity);
+
+/// Pieces of a curve that are no points.
+std::size_t count_pieces(const IgesEntity& curve, int depth = 0) {
+  if (curve.IsNull() || depth > 100) return 0;
+  if (const auto all = Handle(IGESGeom_CompositeCurve)::DownCast(curve); !all.IsNull()) {
+    std::size_t sum = 0;
+    for (int i = 1; i <= all->NbCurves(); ++i) sum += count_pieces(all->Curve(i), depth + 1);
+    return sum;
+  }
+  if (curve->TypeNumber() == 116) return 0;  // a point
+  const auto line = Handle(IGESGeom_Line)::DownCast(curve);
+  return line.IsNull() || line->StartPoint().Distance(line->EndPoint()) > 0 ? 1 : 0;
+}
+
+std::size_t count_edges(const Handle(IGESGeom_CurveOnSurface) & border) {
+  return border.IsNull() ? 0 : count_pieces(border->Curve3D());
+}
+
+/// Edges that the bounds of a face state, as curves in space. What is stated only in the plane of
+/// the surface's parameters is not counted: a piece there may be a point.
+std::size_t count_edges(const IgesEntity& face) {
+  std::size_t sum = 0;
+  if (const auto f = Handle(IGESSolid_Face)::DownCast(face); !f.IsNull()) {
+    for (int i = 1; i <= f->NbLoops(); ++i) {
+      const Handle(IGESSolid_Loop) loop = f->Loop(i);
+      for (int k = 1; !loop.IsNull() && k <= loop->NbEdges(); ++k)
+        sum += loop->EdgeType(k) == 0 ? 1 : 0;  // else a vertex
+    }
+  } else if (const auto t = Handle(IGESGeom_TrimmedSurface)::DownCast(face); !t.IsNull()) {
+    if (t->HasOuterContour()) sum += count_edges(t->OuterContour());
+    for (int i = 1; i <= t->NbInnerContours(); ++i) sum += count_edges(t->InnerContour(i));
+  } else if (const auto b = Handle(IGESGeom_BoundedSurface)::DownCast(face); !b.IsNull()) {
+    for (int i = 1; i <= b->NbBoundaries(); ++i) {
+      const Handle(IGESGeom_Boundary) border = b->Boundary(i);
+      for (int k = 1; !border.IsNull() && k <= border->NbModelSpaceCurves(); ++k)
+        sum += count_pieces(border->ModelSpaceCurve(k));
+    }
+  }
+  return sum;
+}
+
 class IgesCensus {
  public:
   explicit IgesCensus(const Handle(Interface_InterfaceModel) & model)
@@ -119,7 +175,7 @@ class IgesCensus {
       const double uses = uses_[i];
       if (kind(i) == IgesKind::Face && uses == 0) refuse(name(i) + " is a face that nothing shows");
       if (kind(i) == IgesKind::Harmless) out.harmless.insert(i);
-      if (uses > 0) out.faces.push_back({i, name(i), uses, 0});
+      if (uses > 0) out.faces.push_back({i, name(i), uses, count_edges(at(i))});
     }
     return out;
   }
@@ -192,6 +248,35 @@ class IgesCensus {
 };
 
 }  // namespace
+
+void check_iges_numbers(std::string_view text) {
+  std::size_t sequence = 0;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (line.size() < 73 || line[72] != 'P') continue;
+    ++sequence;
+    for (std::size_t at = 0; at < 64;) {
+      std::size_t next = std::min(line.find_first_of(",; ", at), std::size_t{64});
+      std::string word(line.substr(at, next - at));
+      if (const std::size_t h = word.find('H'); h != std::string::npos && h > 0 && h < 9) {
+        // A text of so many characters, as far as it is on this line.
+        next = std::max(next, std::min<std::size_t>(at + h + 1 + std::atoi(word.c_str()), 64));
+        word.clear();
+      }
+      std::replace(word.begin(), word.end(), 'D', 'E');
+      double value = 0;
+      const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+      const bool whole = !word.empty() && stop == word.data() + word.size();
+      const bool tiny = word.find("E-") != std::string::npos;
+      if (whole && ((error == std::errc::result_out_of_range && !tiny) || std::abs(value) > 1e100))
+        throw std::runtime_error("line P" + std::to_string(sequence) + ": the number " + word +
+                                 " is beyond 1e100");
+      at = next + 1;
+    }
+  }
+}
 
 Census iges_census(const Handle(Interface_InterfaceModel) & model) {
   return IgesCensus(model).run();

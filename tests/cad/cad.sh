@@ -73,7 +73,10 @@ expect 2 'mesh-prepare' "$BIN/bmesh-decimate" parts/vase.step -o simple.ply --ra
 expect 0 '' "$BIN/bmesh-decimate" parts/vase.step -o simple.ply --ratio 0.5 --log l --prepare strict --effort fast
 shows 0 'verified' "$BIN/bmesh-replay" parts/vase.step l simple.ply
 expect 0 'what is said is about the triangles' "$BIN/bcd-decompose" parts/box.step -o in.glb --direction inner --epsilon 5% --no-cache
-shows 0 'verified, of the triangles' "$BIN/bound-verify" mesh --inner parts/box.step in.glb --prepare
+shows 0 'verified, of the triangles' "$BIN/bound-verify" mesh --inner parts/box.step in.glb --prepare --report r.json
+grep -q 'an inner claim is about the triangles' r.json || fail "the report on an inner set does not say what it is about"
+shows 0 'not looked at: an inner claim is about the triangles; the exact faces may lie up to .* inside' \
+  "$BIN/bound-verify" mesh --inner parts/box.step in.glb --prepare
 expect 0 'exact faces' "$BIN/hausdorff-eval" parts/vase.step vase.ply --samples 100 --at-most 1%
 expect 1 'not certain' "$BIN/hausdorff-eval" parts/vase.step vase.ply --samples 100 --at-most 1e-9
 expect 0 '' "$BIN/mesh-picture" parts/vase.step parts/flange.iges -o vase.png
@@ -88,6 +91,21 @@ expect 0 'the exact faces' "$BIN/kaboum-scene" make cell.json --object vase=part
 shows 0 'exact points: verified' "$BIN/bound-verify" cover parts/vase.step cell/vase.glb --scale 0.001
 head -c 2000 parts/vase.step >cut.step
 expect 3 'cut.step' "$BIN/mesh-prepare" cut.step -o none.ply
+# Numbers are numbers; those that OpenCASCADE takes for infinite make it count for ever.
+for wrong in 1.E400:'beyond 1e100' -1.E101:'beyond 1e100' abc:'is no number' 1.5.2:'is no number' nan:'is no number'; do
+  sed "0,/CARTESIAN_POINT('',(-*[0-9.]*,/s//CARTESIAN_POINT('',(${wrong%%:*},/" parts/vase.step >wrong.step
+  expect 3 "${wrong#*:}" "$BIN/mesh-prepare" wrong.step -o none.ply
+done
+sed '0,/25[.]980762114,/s//1.E400,      /' parts/flange.iges >wrong.iges
+expect 3 'beyond 1e100' "$BIN/mesh-prepare" wrong.iges -o none.ply
+# What carries no shape may be wrong, in both readings of the file; what may carry some may not.
+for extra in "COLOUR_RGB('',0.1,0.2)" "STYLED_ITEM('',(#1),#1)" "(COLOUR() COLOUR_RGB('',0.1))" "DATE_AND_TIME(#1)"; do
+  sed "0,/^#1 *=/s//#90001 = $extra;\n#1 =/" parts/box.step >extra.step
+  expect 0 '' "$BIN/mesh-prepare" extra.step -o extra.ply
+  shows 0 'exact points: verified' "$BIN/bound-verify" mesh --outer extra.step extra.ply
+done
+sed "0,/^#1 *=/s//#90001 = PLANE('',0.1);\n#1 =/" parts/box.step >extra.step
+expect 3 '#90001 PLANE' "$BIN/mesh-prepare" extra.step -o none.ply
 # No point of an edge or a face is farther than what is claimed: twelve parts, ribs of any width between the mesher's samples.
 mkdir more
 "$PARTS" more more >/dev/null || fail "the parts that are hard to read cannot be made"
